@@ -1,0 +1,57 @@
+# The commands of this repository. Each works alone on a fresh Debian 12 or Ubuntu 24.04 machine: what is missing is
+# installed first (toolchain/setup.sh), and nothing is fetched when nothing is missing.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+
+PRESET := release
+BUILD := build/$(PRESET)
+JOBS ?= $(shell nproc)
+PYTHON := .venv/bin/python
+DEMO := A10 A15 A16 A18a A18b A18c
+DEMO_OUT := out/demo
+
+# A Python path set for something else must not reach into .venv.
+unexport PYTHONPATH PYTHONHOME
+
+.PHONY: help setup build test demo bench docs lint format lock clean
+
+help: ## list these targets
+	@echo "stillspin: targets"
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
+
+setup: ## install what is missing: Debian packages, Python packages in .venv
+	@bash toolchain/setup.sh
+
+build: setup ## compile firmware, virtual chip, plant and Python module into build/release
+	@cmake --preset $(PRESET) --log-level=WARNING
+	@cmake --build --preset $(PRESET) --parallel $(JOBS)
+
+test: build ## run every check, the C++ tests and the Python tests
+	@bash toolchain/run-tests.sh $(PRESET)
+
+demo: build ## reproduce the main figures of the first paper and write out/demo/report.html
+	@.venv/bin/stillspin reproduce $(DEMO) --out $(DEMO_OUT)
+	@bash toolchain/show.sh $(DEMO_OUT)/report.html
+
+bench: build ## measure how fast the simulation runs
+	@bash toolchain/setup.sh build bench
+	@bash toolchain/bench.sh $(BUILD)
+
+docs: setup ## build the book into site/
+	@$(PYTHON) -m mkdocs build --quiet --strict --config-file toolchain/mkdocs.yml
+	@bash toolchain/show.sh site/index.html
+
+lint: setup ## run the checks alone: include arrows, 16-bit int, formatting, types, links
+	@$(PYTHON) toolchain/check.py
+
+format: setup ## rewrite C, C++ and Python in the house format
+	@$(PYTHON) toolchain/check.py --fix format ruff
+
+lock: setup ## renew toolchain/requirements.lock (needs the network)
+	@bash toolchain/lock.sh
+
+clean: ## remove build products and reports; .venv stays
+	@rm -rf build out site sim_host/stillspin/_core*.so .mypy_cache .ruff_cache .pytest_cache
+	@find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -1,0 +1,37 @@
+// Current control in the rotor frame: two PI controllers placed by internal-model control (Kp = a L, Ki = a R, so that the
+// loop is first order with bandwidth a), with the rotational voltages fed forward and anti-windup from the voltage that
+// the modulator really gives.
+//
+// The measurement is the mean over the last period and the voltage acts in the middle of the next but one: two periods
+// of delay. a = 1800 rad/s leaves about 69 degrees of phase margin at 10 kHz; more than 2600 rad/s is refused.
+
+#ifndef STILLSPIN_CONTROL_CURRENT_CONTROLLER_H
+#define STILLSPIN_CONTROL_CURRENT_CONTROLLER_H
+
+#include <stdbool.h>
+
+#include "control/machine_model.h"
+#include "control/pi.h"
+
+typedef struct {
+  pi_config_t d, q;
+} current_controller_config_t;
+
+typedef struct {
+  pi_state_t d, q;
+} current_controller_t;
+
+/// Gains for a bandwidth in rad/s (100..2600 at a 100 us period). Returns false when the bandwidth is out of range.
+bool current_controller_design(current_controller_config_t* c, const machine_model_t* m, int32_t bandwidth_rads,
+                               int32_t period_us);
+
+void current_controller_reset(current_controller_t* s);
+
+/// One step: currents in A Q20, speed in binary angle per period; returns the voltage command in V Q16.
+dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c, const machine_model_t* m,
+                             dq_t reference_q20, dq_t measured_q20, int32_t speed_bpp);
+
+/// Reports the part of the command that the modulator had to drop (asked minus realised, V Q16).
+void current_controller_limited(current_controller_t* s, const current_controller_config_t* c, dq_t excess_q16);
+
+#endif

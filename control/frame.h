@@ -1,0 +1,71 @@
+// Reference frames: three phases, the stationary alpha-beta frame and a rotating d-q frame.
+//
+// Clarke is amplitude invariant (peak values) and takes a + b + c = 0; alpha lies on phase a. Park turns by the electrical
+// angle, d-axis ahead. A vector keeps the Q format of its components. Valid below half of the 32-bit range: no saturation.
+//
+// A slope measured in alpha-beta and turned by Park is *not* the derivative of the d-q current: the two differ by
+// omega J i (see docs, "Physics").
+
+#ifndef STILLSPIN_CONTROL_FRAME_H
+#define STILLSPIN_CONTROL_FRAME_H
+
+#include "hal/qmath/qmath.h"
+
+typedef struct {
+  int32_t alpha, beta;
+} ab_t;
+
+typedef struct {
+  int32_t d, q;
+} dq_t;
+
+typedef struct {
+  int32_t a, b, c;
+} abc_t;
+
+/// Sine and cosine of one electrical angle, Q30.
+typedef struct {
+  int32_t sin_q30, cos_q30;
+} rotation_t;
+
+#define FRAME_SQRT3_INV_Q30 619925131L  // 1/sqrt(3)
+#define FRAME_SQRT3_HALF_Q30 929887697L // sqrt(3)/2
+
+static inline rotation_t frame_rotation(uint32_t angle_bam) {
+  rotation_t r;
+  q_sincos(angle_bam, &r.sin_q30, &r.cos_q30);
+  return r;
+}
+
+/// Two measured phases of a star-connected machine (a + b + c = 0).
+static inline ab_t frame_clarke2(int32_t a, int32_t b) {
+  ab_t v = {a, q_mul(a + 2 * b, FRAME_SQRT3_INV_Q30, 30)};
+  return v;
+}
+
+/// Three phase quantities with any common part, e.g. leg voltages.
+static inline ab_t frame_clarke3(abc_t x) {
+  ab_t v = {(2 * x.a - x.b - x.c) / 3, q_mul(x.b - x.c, FRAME_SQRT3_INV_Q30, 30)};
+  return v;
+}
+
+static inline abc_t frame_inverse_clarke(ab_t v) {
+  const int32_t half = v.alpha / 2;
+  const int32_t side = q_mul(v.beta, FRAME_SQRT3_HALF_Q30, 30);
+  abc_t x = {v.alpha, side - half, -side - half};
+  return x;
+}
+
+static inline dq_t frame_park(ab_t v, rotation_t r) {
+  dq_t w = {q_mul(v.alpha, r.cos_q30, 30) + q_mul(v.beta, r.sin_q30, 30),
+            q_mul(v.beta, r.cos_q30, 30) - q_mul(v.alpha, r.sin_q30, 30)};
+  return w;
+}
+
+static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
+  ab_t v = {q_mul(w.d, r.cos_q30, 30) - q_mul(w.q, r.sin_q30, 30),
+            q_mul(w.d, r.sin_q30, 30) + q_mul(w.q, r.cos_q30, 30)};
+  return v;
+}
+
+#endif

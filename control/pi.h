@@ -1,0 +1,36 @@
+// Proportional-integral controller with a limit that is imposed from outside (anti-windup by back-calculation).
+//
+// u = Kp e + I;  I += Ki T e. When the actuator could not follow, pi_limited() lets the integrator run towards the value
+// with which the output would have been the realised one, at the rate `release` (a few times Ki/Kp), so that a long limit
+// does not wind it up and a short one, where the proportional part alone is limited, does not empty it.
+
+#ifndef STILLSPIN_CONTROL_PI_H
+#define STILLSPIN_CONTROL_PI_H
+
+#include "hal/qmath/qmath.h"
+
+typedef struct {
+  int32_t kp_q20;        // output per error, both in their own units
+  int32_t ki_q20;        // per step
+  int32_t release_q20;   // share of the excess taken off the integrator per step, 0..1
+  unsigned error_shift;  // output Q = error Q + 20 - error_shift
+} pi_config_t;
+
+typedef struct {
+  int32_t integral;  // output units with four more fractional bits
+} pi_state_t;
+
+static inline void pi_reset(pi_state_t* s, int32_t output) { s->integral = q_shl_sat(output, 4); }
+
+/// One step; returns the output before any limit.
+static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error) {
+  s->integral = q_add_sat(s->integral, q_mul_sat(error, c->ki_q20, c->error_shift - 4u));
+  return q_add_sat(q_mul_sat(error, c->kp_q20, c->error_shift), q_shr_round(s->integral, 4));
+}
+
+/// Tells the controller what became of its output: `excess` = asked minus realised.
+static inline void pi_limited(pi_state_t* s, const pi_config_t* c, int32_t excess) {
+  s->integral = q_sub_sat(s->integral, q_mul_sat(excess, c->release_q20, 16));
+}
+
+#endif

@@ -1,0 +1,94 @@
+#include "control/speed_controller.h"
+
+#define ONE_Q30 1073741824L
+
+static bool in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <= hi; }
+
+static bool config_valid(const speed_controller_config_t* c) {
+  return in_range(c->friction_q24, 0, 16777216L) && in_range(c->inertia_q24, 168L, 16777216L) &&
+         in_range(c->step_periods, 1, 100) && in_range(c->alpha_q8, 256L, 25600000L) &&
+         in_range(c->trajectory_ms_q8, 512L, 51200L) && in_range(c->pi_bandwidth_q8, 256L, 51200L) &&
+         in_range(c->pi_damping_q12, 1228L, 12288L);
+}
+
+// exp(-x) and (1 - exp(-x)) / x for 0 <= x < 1, Q30, by their series: exact where B Ts / J is tiny.
+static int32_t exp_minus_q30(int32_t x_q30) {
+  int32_t sum = ONE_Q30;
+  int32_t term = ONE_Q30;
+  for (int32_t n = 1; n <= 7; n++) {
+    term = -q_mul(term, x_q30, 30) / n;
+    sum += term;
+  }
+  return sum;
+}
+
+static int32_t mean_decay_q30(int32_t x_q30) {
+  int32_t sum = ONE_Q30;
+  int32_t term = ONE_Q30;
+  for (int32_t n = 2; n <= 7; n++) {
+    term = -q_mul(term, x_q30, 30) / n;
+    sum += term;
+  }
+  return sum;
+}
+
+bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m) {
+  if (!config_valid(c)) return false;
+  const int32_t step_q30 = q_div(c->step_periods, m->periods_per_second, 30);  // Ts, s
+  const int32_t x_q30 = q_mul_sat(q_div(c->friction_q24, c->inertia_q24, 20), step_q30, 20);
+  if (x_q30 >= ONE_Q30 / 2) return false;
+  s->decay_q30 = exp_minus_q30(x_q30);
+  // b: acceleration per N m (Q12 bpp per period) * Kt (Q24) * periods, to Q8 bpp per A.
+  const int32_t accel_per_amp_q8 = q_mul_sat(m->accel_q12, m->torque_q24, 28);
+  s->response_q8 = q_mul_sat(accel_per_amp_q8 * c->step_periods, mean_decay_q30(x_q30), 30);
+  if (s->response_q8 < 256L) return false;
+  s->amps_per_bpp = q_div(16777216L, s->response_q8, 24);
+  // alpha b^2 with b in rad/s (mechanical) per A: b = Kt Ts / J.
+  const int32_t b_q24 = q_mul_sat(q_div(m->torque_q24, c->inertia_q24, 20), step_q30, 26);
+  const int32_t weight_q16 = q_mul_sat(q_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
+  s->share_q30 = ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30);
+  const int32_t ratio_q30 = q_div(c->step_periods * 1000L, q_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
+  if (ratio_q30 >= ONE_Q30 / 2) return false;
+  s->approach_q30 = ONE_Q30 - exp_minus_q30(ratio_q30);
+  // Pole assignment: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, written with b = Kt Ts / J.
+  const int32_t wn_ts_q24 = q_mul_sat(c->pi_bandwidth_q8, step_q30, 14);
+  s->pi_kp = q_mul_sat(s->amps_per_bpp, q_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
+  s->pi_ki = q_mul_sat(s->amps_per_bpp, q_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
+  speed_controller_preset(s, 0);
+  return true;
+}
+
+void speed_controller_preset(speed_controller_t* s, int32_t current_q20) {
+  s->current_q20 = current_q20;
+  s->integral_q20 = current_q20;
+}
+
+// A per bpp (Q40) times bpp to A Q20.
+static int32_t amps_q20(int32_t amps_per_bpp, int32_t speed_bpp) { return q_mul_sat(amps_per_bpp, speed_bpp, 20); }
+
+static int32_t predictive_step(speed_controller_t* s, const speed_controller_input_t* in) {
+  const int32_t distance = q_sub_sat(in->reference_bpp, in->speed_bpp);
+  const int32_t target_change = q_add_sat(in->reference_step_bpp, q_mul(distance, s->approach_q30, 30));
+  const int32_t own_change = q_mul(in->speed_bpp, s->decay_q30 - ONE_Q30, 30);
+  // (53): the current that would reach the target in one step, minus the one that flows, times k b.
+  const int32_t deadbeat = amps_q20(s->amps_per_bpp, q_sub_sat(target_change, own_change));
+  const int32_t own = s->current_q20 + q_mul(q_sub_sat(deadbeat, s->current_q20), s->share_q30, 30);
+  const int32_t total = q_clamp(q_add_sat(own, in->load_current_q20), -in->limit_q20, in->limit_q20);
+  s->current_q20 = q_sub_sat(total, in->load_current_q20);
+  return total;
+}
+
+static int32_t pi_law_step(speed_controller_t* s, const speed_controller_input_t* in) {
+  const int32_t error = q_sub_sat(in->reference_bpp, in->speed_bpp);
+  const int32_t proportional = amps_q20(s->pi_kp, error);
+  const int32_t integral = q_add_sat(s->integral_q20, amps_q20(s->pi_ki, error));
+  const int32_t asked = q_add_sat(proportional, integral);
+  const int32_t given = q_clamp(asked, -in->limit_q20, in->limit_q20);
+  // Hold the integrator while the limit is reached and the error would drive it further.
+  if (given == asked || (asked > given) != (error > 0)) s->integral_q20 = integral;
+  return given;
+}
+
+int32_t speed_controller_step(speed_controller_t* s, speed_law_t law, const speed_controller_input_t* in) {
+  return (law == SPEED_PI) ? pi_law_step(s, in) : predictive_step(s, in);
+}

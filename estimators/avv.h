@@ -1,0 +1,39 @@
+// AVV: the rotor angle from how the current deviation differs between voltage vectors (seed paper, section 4, eqs (37)-(41)).
+//
+// The differences between windows depend on L^-1(theta) alone: y = ds - Y0 dv = 1/2 dY S(2 theta) dv. Any two or three
+// distinct vectors will do; the windows are weighted with the square of their span (their information). The model's own
+// slope at the observed angle is taken off first, which removes what resistance, back-EMF and rotation change between
+// the windows' instants; what is left is turned into the angle error by atan2, valid for any error up to a quarter turn.
+// 2 theta leaves the polarity open: the observer's own half turn is kept, polarity.h finds the right one at the start.
+
+#ifndef STILLSPIN_ESTIMATORS_AVV_H
+#define STILLSPIN_ESTIMATORS_AVV_H
+
+#include "estimators/tracking_observer.h"
+
+typedef struct {
+  int32_t bandwidth_short_q30;  // bandwidth * T of the tracking observer with windows that tell little
+  int32_t bandwidth_long_q30;   // and with long windows; 0 < short <= long < 0.1
+} avv_config_t;
+
+/// Weighted regression over the windows: what AVV and the admittance adaptation share.
+typedef struct {
+  int32_t spread_q8;    // mean |dv|^2, V^2
+  int32_t skew_q8;      // mean of dv_d^2 - dv_q^2, V^2
+  int32_t along_q16;    // residual along dv, V A per period: error of the mean admittance
+  int32_t mirror_q16;   // residual along the mirrored dv: error of the saliency
+  int32_t cross_q16;    // residual across the mirrored dv: angle error
+  int32_t information;  // spread times the windows' weight, 0 when there are no two distinct vectors
+} avv_regression_t;
+
+typedef struct {
+  tracking_observer_t observer;
+  avv_regression_t regression;  // of the last step
+  int32_t error_bam;            // last measured angle error
+} avv_t;
+
+void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);
+
+estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
+
+#endif

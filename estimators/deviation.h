@@ -1,0 +1,36 @@
+// The current deviation of one window against the machine model, in the estimated rotor frame.
+//
+// Residual = measured slope - model slope at the estimated angle and speed; with the true angle theta^ + e the residual
+// is (to first order) h_angle e + h_speed (w - w^). Seed paper eqs (15)-(24) with every term kept; see machine_model.h.
+//   h_angle,d = dY (v_q - R i_q) + w lambda/Lq - w i_d (Lq/Ld - Ld/Lq)
+//   h_angle,q = dY (v_d - R i_d) + w i_q (Lq/Ld - Ld/Lq)
+//   h_speed,d = (Lq/Ld - 1) i_q,  h_speed,q = (1 - Ld/Lq) i_d - lambda/Lq
+
+#ifndef STILLSPIN_ESTIMATORS_DEVIATION_H
+#define STILLSPIN_ESTIMATORS_DEVIATION_H
+
+#include "estimators/estimator.h"
+
+typedef struct {
+  dq_t residual_q20;  // A per period
+  dq_t voltage_q16;   // V
+  dq_t current_q20;   // A
+  int32_t w_q30;      // estimated speed, rad per period
+} deviation_t;
+
+/// Angle of the estimator in the middle of a window.
+static inline uint32_t deviation_angle_at(uint32_t angle_bam, int32_t speed_bpp, int16_t middle_tick) {
+  const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)middle_tick) * 107374;
+  return angle_bam - (uint32_t)q_mul(speed_bpp, before_q30, 30);
+}
+
+deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
+                               int32_t speed_bpp);
+
+/// Sensitivity of the residual to the angle, A per period and rad, Q20.
+dq_t deviation_angle_sensitivity(const machine_model_t* m, const deviation_t* d);
+
+/// Sensitivity to the speed, A per period per (rad per period), Q20.
+dq_t deviation_speed_sensitivity(const machine_model_t* m, const deviation_t* d);
+
+#endif

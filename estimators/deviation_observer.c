@@ -1,0 +1,137 @@
+#include "estimators/deviation_observer.h"
+
+#include "estimators/deviation.h"
+
+#define ONE_Q20 1048576L
+#define BAM_PER_UNIT 10680707L        // 2^-6 rad
+#define BPP_PER_UNIT 166886L          // 2^-12 rad per period
+#define ACCEL_Q8_PER_UNIT 667544L     // 2^-18 rad per period^2
+#define ANGLE_VARIANCE (128L * ONE_Q20)
+#define SPEED_VARIANCE (64L * ONE_Q20)
+#define LOAD_VARIANCE (64L * ONE_Q20)
+#define VARIANCE_MAX (512L * ONE_Q20)
+#define SCORE_MAX (48L * ONE_Q20)       // residuals beyond 48 sigma count as 48
+#define INFORMATION_MAX (8L * 16777216L)
+
+typedef struct {
+  int32_t aa, as, ss;  // Q24
+  int32_t a, s;        // score, Q20
+} information_t;
+
+typedef struct {
+  int32_t a, s;
+} gain_t;
+
+void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m, int32_t noise_q20,
+                               int32_t load_rate_q20) {
+  c->inverse_noise_q20 = q_div(ONE_Q20, q_clamp(noise_q20, 1049, ONE_Q20), 20);
+  // N m -> acceleration units: accel (bpp per N m) / 2607.6; a random walk reaches its 10 ms value in 100 periods.
+  const int32_t units_q12 = q_mul_sat(q_mul_sat(m->accel_q12, load_rate_q20, 20), 6587625L, 34);
+  const int32_t per_period = q_mul_sat(units_q12, units_q12, 4) / 100;
+  c->load_noise_q20 = q_clamp(per_period, 1, VARIANCE_MAX / 8);
+}
+
+void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
+  const deviation_observer_t fresh = {angle_bam, speed_bpp, load_accel_q8, 0, ANGLE_VARIANCE, 0, 0,
+                                      SPEED_VARIANCE, 0, LOAD_VARIANCE};
+  *s = fresh;
+}
+
+static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
+  const int32_t change_q8 = q_add_sat(s->speed_rest_q8, q_sub_sat(torque_accel_q8, s->load_accel_q8));
+  const int32_t change = q_shr(change_q8, 8);
+  s->angle_bam += (uint32_t)(s->speed_bpp + change / 2);
+  s->speed_bpp += change;
+  s->speed_rest_q8 = change_q8 - change * 256;
+  // A period is 1/64 of the unit of time.
+  s->p_aa += q_shr_round(2 * s->p_as + q_shr_round(s->p_ss + s->p_al, 6), 6);
+  s->p_as += q_shr_round(s->p_ss + s->p_al, 6);
+  s->p_al += q_shr_round(s->p_sl, 6);
+  s->p_ss += q_shr_round(2 * s->p_sl + q_shr_round(s->p_ll, 6), 6);
+  s->p_sl += q_shr_round(s->p_ll, 6);
+  s->p_ll += c->load_noise_q20;
+}
+
+// One scalar measurement: sensitivities and residual, all divided by the noise.
+static void collect(information_t* n, int32_t g_a_q20, int32_t g_s_q20, int32_t e_q20) {
+  const int32_t e = q_clamp(e_q20, -SCORE_MAX, SCORE_MAX);
+  n->aa = q_add_sat(n->aa, q_mul_sat(g_a_q20, g_a_q20, 16));
+  n->as = q_add_sat(n->as, q_mul_sat(g_a_q20, g_s_q20, 16));
+  n->ss = q_add_sat(n->ss, q_mul_sat(g_s_q20, g_s_q20, 16));
+  n->a = q_add_sat(n->a, q_mul_sat(g_a_q20, e, 20));
+  n->s = q_add_sat(n->s, q_mul_sat(g_s_q20, e, 20));
+}
+
+static void collect_window(information_t* n, const deviation_observer_t* s, const deviation_observer_config_t* c,
+                           const machine_model_t* m, const estimator_window_t* w) {
+  const deviation_t d = deviation_evaluate(m, w, s->angle_bam, s->speed_bpp);
+  const dq_t h_a = deviation_angle_sensitivity(m, &d);
+  const dq_t h_s = deviation_speed_sensitivity(m, &d);
+  // span / N / sigma turns a slope into a current difference in units of its noise.
+  const int32_t scale_q20 = q_mul_sat(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
+  collect(n, q_mul_sat(h_a.d, scale_q20, 26), q_mul_sat(h_s.d, scale_q20, 32), q_mul_sat(d.residual_q20.d, scale_q20, 20));
+  collect(n, q_mul_sat(h_a.q, scale_q20, 26), q_mul_sat(h_s.q, scale_q20, 32), q_mul_sat(d.residual_q20.q, scale_q20, 20));
+}
+
+// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16.
+static gain_t times_information(const information_t* n, int32_t x_a_q20, int32_t x_s_q20) {
+  const gain_t g = {q_add_sat(q_mul_sat(n->aa, x_a_q20, 28), q_mul_sat(n->as, x_s_q20, 28)),
+                    q_add_sat(q_mul_sat(n->as, x_a_q20, 28), q_mul_sat(n->ss, x_s_q20, 28))};
+  return g;
+}
+
+// Row of P (1 + I P)^-1, Q20; inverse: the four elements of (1 + I P)^-1, Q24.
+static gain_t gain_row(const int32_t inverse[4], int32_t p_a, int32_t p_s) {
+  const gain_t k = {q_mul(p_a, inverse[0], 24) + q_mul(p_s, inverse[2], 24),
+                    q_mul(p_a, inverse[1], 24) + q_mul(p_s, inverse[3], 24)};
+  return k;
+}
+
+static int32_t reduced(int32_t p, gain_t k, gain_t g) { return p - q_mul(k.a, g.a, 16) - q_mul(k.s, g.s, 16); }
+
+static int32_t positive(int32_t variance) { return q_clamp(variance, 16, VARIANCE_MAX); }
+
+static int32_t scored(gain_t k, const information_t* n) {
+  return q_add_sat(q_mul_sat(k.a, n->a, 20), q_mul_sat(k.s, n->s, 20));
+}
+
+static void update(deviation_observer_t* s, const information_t* n) {
+  const gain_t ga = times_information(n, s->p_aa, s->p_as);
+  const gain_t gs = times_information(n, s->p_as, s->p_ss);
+  const gain_t gl = times_information(n, s->p_al, s->p_sl);
+  // 1 + I P = [1 + ga.a, gs.a; ga.s, 1 + gs.s], Q16.
+  const int32_t m_aa = q_add_sat(ga.a, 65536L);
+  const int32_t m_ss = q_add_sat(gs.s, 65536L);
+  const int32_t det_q12 = q_max(q_sub_sat(q_mul_sat(m_aa, m_ss, 20), q_mul_sat(gs.a, ga.s, 20)), 4096);
+  const int32_t per_det_q30 = q_div(4096, det_q12, 30);
+  const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), -q_mul_sat(gs.a, per_det_q30, 22),
+                              -q_mul_sat(ga.s, per_det_q30, 22), q_mul_sat(m_aa, per_det_q30, 22)};
+  const gain_t ka = gain_row(inverse, s->p_aa, s->p_as);
+  const gain_t ks = gain_row(inverse, s->p_as, s->p_ss);
+  const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
+  s->angle_bam += (uint32_t)q_mul_sat(scored(ka, n), BAM_PER_UNIT, 20);
+  s->speed_bpp += q_mul_sat(scored(ks, n), BPP_PER_UNIT, 20);
+  s->load_accel_q8 = q_sub_sat(s->load_accel_q8, q_mul_sat(scored(kl, n), ACCEL_Q8_PER_UNIT, 20));
+  s->p_sl = reduced(s->p_sl, ks, gl);
+  s->p_ll = positive(reduced(s->p_ll, kl, gl));
+  s->p_al = reduced(s->p_al, ka, gl);
+  s->p_as = reduced(s->p_as, ka, gs);
+  s->p_ss = positive(reduced(s->p_ss, ks, gs));
+  s->p_aa = positive(reduced(s->p_aa, ka, ga));
+}
+
+estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
+                                           const estimator_input_t* in) {
+  information_t n = {0, 0, 0, 0, 0};
+  predict(s, c, in->torque_accel_q8);
+  for (uint16_t k = 0; k < in->window_count; k++) {
+    if (c->zero_vectors_only && !in->windows[k].zero_vector) continue;
+    collect_window(&n, s, c, in->model, &in->windows[k]);
+  }
+  n.aa = q_min(n.aa, INFORMATION_MAX);
+  n.ss = q_min(n.ss, INFORMATION_MAX);
+  update(s, &n);
+  const int32_t certainty = 32767 - q_shr(s->p_aa, 12);
+  const estimator_output_t out = {s->angle_bam, s->speed_bpp, s->load_accel_q8, q_max(certainty, 0)};
+  return out;
+}

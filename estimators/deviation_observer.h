@@ -1,0 +1,43 @@
+// Deviation observer: angle, speed and load from the whole deviation vector of every window it is given.
+//
+// The full-vector form of ZVV. Both axes of the residual of each window (deviation.h) are measurements of the angle and
+// the speed at once; an extended Kalman filter with the load as third state weights them by what they tell. With zero
+// vectors only it is what the paper's ZVV can become; given the active windows as well it has the angle information of
+// AVV, and needs no choice between the two.
+//
+// Per period all windows are compressed into a 2 x 2 information matrix and a score, so that one update of the 3 x 3
+// covariance and one division do for any number of windows: P+ = P (1 + I P)^-1, x+ = x + P+ b.
+//
+// Units: angle 2^-6 rad, speed 2^-12 rad per period, acceleration 2^-18 rad per period^2 (that is: time in units of 64
+// periods), which keep every covariance between 0.01 and 1000: Q20. Information is Q24, scores Q20.
+
+#ifndef STILLSPIN_ESTIMATORS_DEVIATION_OBSERVER_H
+#define STILLSPIN_ESTIMATORS_DEVIATION_OBSERVER_H
+
+#include "estimators/estimator.h"
+
+typedef struct {
+  int32_t inverse_noise_q20;  // 1 / rms error of a current difference, 1/A, 1..1000
+  int32_t load_noise_q20;     // variance that the load gains per period, own units
+  bool zero_vectors_only;
+} deviation_observer_config_t;
+
+typedef struct {
+  uint32_t angle_bam;
+  int32_t speed_bpp;
+  int32_t load_accel_q8;
+  int32_t speed_rest_q8;
+  int32_t p_aa, p_as, p_al, p_ss, p_sl, p_ll;  // covariance of angle, speed, (minus) load acceleration, Q20
+} deviation_observer_t;
+
+/// Makes the configuration from an rms error in A (Q20, 0.001..1) and the load change expected in 10 ms (N m, Q20).
+void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m, int32_t noise_q20,
+                               int32_t load_rate_q20);
+
+/// Starts with an uncertainty of 10 degrees, 20 rad/s and 3 N m or so.
+void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);
+
+estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
+                                           const estimator_input_t* in);
+
+#endif

@@ -1,0 +1,41 @@
+// What every position estimator is given and what it gives.
+//
+// All estimators keep their angle at the *start of the running period* (the instant at which the control interrupt is
+// raised); the windows lie in the period before. Angles are binary angles (2^32 a turn), speeds binary angle per period,
+// accelerations binary angle per period^2 with eight fractional bits.
+
+#ifndef STILLSPIN_ESTIMATORS_ESTIMATOR_H
+#define STILLSPIN_ESTIMATORS_ESTIMATOR_H
+
+#include <stdbool.h>
+
+#include "control/machine_model.h"
+
+#define ESTIMATOR_WINDOWS 3
+#define ESTIMATOR_PERIOD_TICKS 10000
+
+/// One window: the current deviation under a constant voltage vector.
+typedef struct {
+  ab_t slope_q20;       // di/dt, A per period
+  ab_t current_q20;     // current in the middle of the window, A
+  ab_t voltage_q16;     // voltage at the terminals: switching state and DC link less the devices' drops, V
+  int16_t middle_tick;  // instant half-way between the two bursts
+  int16_t span_ticks;   // time between the two bursts
+  bool zero_vector;
+} estimator_window_t;
+
+typedef struct {
+  const machine_model_t* model;
+  const estimator_window_t* windows;
+  uint16_t window_count;    // 0..ESTIMATOR_WINDOWS
+  int32_t torque_accel_q8;  // acceleration by the air-gap torque of the measured current
+} estimator_input_t;
+
+typedef struct {
+  uint32_t angle_bam;
+  int32_t speed_bpp;
+  int32_t load_accel_q8;  // acceleration that the load takes away
+  int32_t quality_q15;    // 0 useless .. 32767 as good as it gets
+} estimator_output_t;
+
+#endif

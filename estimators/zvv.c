@@ -1,0 +1,52 @@
+#include "estimators/zvv.h"
+
+#include "estimators/deviation.h"
+
+#define ERROR_LIMIT_BAM 178956970L  // 15 degrees: more than that a linearised D does not tell
+#define INTEGRAL_LIMIT 2000000000L
+#define RAD_Q24_TO_BAM 683565276L  // 2^32 / (2 pi), for a product shifted by 24
+
+void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp) {
+  s->angle_bam = angle_bam;
+  s->speed_bpp = speed_bpp;
+  s->integral_q8bpp = q_shl_sat(speed_bpp, 8);
+}
+
+// D of one window, A per period, Q20 (22).
+static int32_t deviation_q20(const zvv_t* s, const machine_model_t* m, const estimator_window_t* w) {
+  const rotation_t r = frame_rotation(deviation_angle_at(s->angle_bam, s->speed_bpp, w->middle_tick));
+  const dq_t slope = frame_park(w->slope_q20, r);
+  const dq_t current = frame_park(w->current_q20, r);
+  const dq_t drop = frame_park(w->voltage_q16, r);
+  const int32_t w_q30 = machine_speed_rad_q30(q_shr(s->integral_q8bpp, 8));
+  const int32_t volts_q16 = q_mul(m->rs_q24, current.q, 28) + q_mul(m->emf_q16, w_q30, 30) - drop.q;
+  return slope.q + q_mul(m->yq_q30, volts_q16, 26);
+}
+
+static void correct(zvv_t* s, const zvv_config_t* c, int32_t error_bam) {
+  s->integral_q8bpp = q_clamp(q_add_sat(s->integral_q8bpp, q_mul(error_bam, c->ki_q40, 32)), -INTEGRAL_LIMIT,
+                              INTEGRAL_LIMIT);
+  s->speed_bpp = q_shr(s->integral_q8bpp, 8) + q_mul(error_bam, c->kp_q30, 30);
+}
+
+estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in) {
+  const machine_model_t* m = in->model;
+  // Kq in A per period and rad (24).
+  const int32_t volts_q16 = q_mul(m->rs_q24, c->id_reference_q20, 28);
+  const int32_t kq_q20 = -q_mul(m->yd_q30 - m->yq_q30, volts_q16, 26);
+  int32_t sum_q20 = 0;
+  int32_t count = 0;
+  s->angle_bam += (uint32_t)s->speed_bpp;
+  for (uint16_t k = 0; k < in->window_count; k++) {
+    if (!in->windows[k].zero_vector) continue;
+    sum_q20 += deviation_q20(s, m, &in->windows[k]);
+    count++;
+  }
+  const bool usable = count > 0 && kq_q20 != 0;
+  if (usable) {
+    const int32_t error_rad_q24 = q_clamp(q_div(sum_q20 / count, kq_q20, 24), -16777216L, 16777216L);
+    correct(s, c, q_clamp(q_mul(error_rad_q24, RAD_Q24_TO_BAM, 24), -ERROR_LIMIT_BAM, ERROR_LIMIT_BAM));
+  }
+  const estimator_output_t out = {s->angle_bam, s->speed_bpp, 0, usable ? 32767 : 0};
+  return out;
+}

@@ -1,0 +1,31 @@
+// ZVV as the seed paper has it (section 3, eqs (20)-(24), Fig. 2): the q-axis current deviation under a zero vector.
+//
+//   D = s_q + (R i_q + lambda w^)/Lq,   Kq = R (Ld - Lq) i_d* / (Ld Lq),   angle error = D / Kq, then PI -> speed -> angle.
+//
+// It needs i_d* != 0. Only the integral part of the speed goes into D: with the whole PI output fed back one step later
+// the loop is unstable unless Kp < Lq |Kq| / lambda, about 6 rad/s on the paper's motor. The terms that the paper drops
+// bias the angle by w Ld^2 / (R (Lq - Ld)), 3 degrees at 5 rpm and 37 at 60 rpm there, and the loop is slow (a few rad/s):
+// it holds light loads near standstill with exact parameters, not more. deviation_observer.h uses both axes and all terms.
+
+#ifndef STILLSPIN_ESTIMATORS_ZVV_H
+#define STILLSPIN_ESTIMATORS_ZVV_H
+
+#include "estimators/estimator.h"
+
+typedef struct {
+  int32_t kp_q30;            // Kp * T, per period
+  int32_t ki_q40;            // Ki * T^2, per period^2
+  int32_t id_reference_q20;  // i_d* in use, A
+} zvv_config_t;
+
+typedef struct {
+  uint32_t angle_bam;
+  int32_t speed_bpp;       // PI output
+  int32_t integral_q8bpp;  // integral part, with eight more fractional bits, |speed| below 200 rpm or so
+} zvv_t;
+
+void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp);
+
+estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in);
+
+#endif

@@ -1,0 +1,24 @@
+// The control interrupt: once per PWM period, at its start. It reads like the block diagram.
+
+#include "firmware/drive.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_profile.h"
+#include "firmware/isr_cycles.h"
+
+void drive_control_interrupt(void) {
+  drive_t* const d = &drive;
+  hal_irq_control_begin();
+  drive_read_samples(d);
+  hal_profile_step(CYCLES_READ_SAMPLES);
+  drive_estimate(d);
+  hal_profile_step(CYCLES_ESTIMATE);
+  drive_protect(d);
+  drive_sequence(d);
+  hal_profile_step(CYCLES_SUPERVISE);
+  drive_control_speed(d);
+  drive_control_current(d);
+  hal_profile_step(CYCLES_CONTROL);
+  drive_modulate(d);
+  drive_publish(d);
+  hal_irq_control_end();
+}

@@ -1,0 +1,15 @@
+// Current control, every period.
+
+#include "firmware/drive.h"
+
+void drive_control_current(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  if (!c->closed) {
+    const dq_t none = {0, 0};
+    c->command_q16 = none;
+    current_controller_reset(&c->current);
+    return;
+  }
+  c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
+                                           c->measured_q20, d->position.used.speed_bpp);
+}

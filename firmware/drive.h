@@ -1,0 +1,142 @@
+// The drive: everything that lives from one control interrupt to the next.
+//
+// One instance, cleared at start-up. The control interrupt owns it; the window interrupt owns sampling.h's buffers; the
+// background level only leaves requests in `request`.
+
+#ifndef STILLSPIN_FIRMWARE_DRIVE_H
+#define STILLSPIN_FIRMWARE_DRIVE_H
+
+#include "control/current_controller.h"
+#include "control/field_weakening.h"
+#include "control/ramp.h"
+#include "control/speed_controller.h"
+#include "estimators/admittance.h"
+#include "estimators/blend.h"
+#include "estimators/deviation_observer.h"
+#include "estimators/polarity.h"
+#include "estimators/slopes.h"
+#include "estimators/zvv.h"
+#include "firmware/drive_api.h"
+#include "svpwm/dead_time.h"
+#include "svpwm/modulator.h"
+
+#define DRIVE_PERIOD_US 100
+#define DRIVE_PERIODS_PER_MS 10
+
+/// Derived from the parameters, see drive_config.c.
+typedef struct {
+  machine_model_t nameplate;
+  modulator_config_t modulator;
+  dead_time_config_t dead_time;
+  current_controller_config_t current;
+  speed_controller_config_t speed;
+  avv_config_t avv;
+  zvv_config_t zvv;
+  deviation_observer_config_t observer;
+  blend_config_t blend;
+  slopes_config_t slopes;
+  int32_t volts_per_code_q16;
+  int32_t bpp_per_rpm_q8;
+  int32_t rpm_per_bpp_q40;
+  int32_t adapt_share_q30;
+  int32_t torque_per_accel_q24;  // N m (Q16) per electrical acceleration (Q8), Q24
+  int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
+  int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
+  int32_t saliency_turn_bam;     // turn of the saliency axis per ampere of i_q
+} drive_config_t;
+
+/// What the control interrupt knows about the last period.
+typedef struct {
+  estimator_window_t windows[ESTIMATOR_WINDOWS];
+  ab_t ripple_q16[ESTIMATOR_WINDOWS];  // ripple flux at the middle of each window, V period
+  uint16_t count;
+  int32_t raw_a_q8, raw_b_q8;          // mean codes of the first burst
+  int32_t link_q16;  // filtered DC-link voltage, V
+} drive_samples_t;
+
+/// Angle and speed in use and the estimators behind them.
+typedef struct {
+  estimator_output_t used, low, high;
+  avv_t avv;
+  deviation_observer_t observer;
+  zvv_t zvv;
+  blend_t blend;
+  admittance_t admittance;
+  tracking_observer_t encoder;
+} drive_position_t;
+
+typedef struct {
+  current_controller_t current;
+  speed_controller_t speed;
+  field_weakening_t weakening;
+  ramp_t ramp;
+  dq_t reference_q20;     // current reference
+  dq_t measured_q20;      // mean current of the last period
+  dq_t command_q16;       // voltage command
+  int32_t target_bpp;     // speed asked for
+  bool closed;            // current loop closed
+  bool speed_ready;       // the speed controller could be set up
+} drive_control_t;
+
+typedef struct {
+  modulator_t state;
+  svpwm_pattern_t sampled;  // pattern of the period whose windows were just read
+  svpwm_pattern_t running;  // pattern of the period that has just begun
+} drive_modulation_t;
+
+typedef struct {
+  uint16_t missing, overrun, diverged_periods;
+} drive_supervision_t;
+
+typedef struct {
+  bool start, stop, reset, reload;
+} drive_request_t;
+
+typedef struct {
+  drive_state_t state;
+  drive_fault_t fault;
+  int32_t limits;
+  uint32_t periods;         // since the state was entered
+  uint16_t millisecond;     // period inside the millisecond
+  uint16_t polarity_tries;
+  polarity_t polarity;
+  machine_model_t model;  // nameplate, with adapted admittances
+  drive_config_t config;
+  bool config_valid;
+  drive_samples_t samples;
+  drive_position_t position;
+  drive_control_t control;
+  drive_modulation_t modulation;
+  drive_supervision_t supervision;
+  drive_request_t request;
+  drive_signals_t signals;
+} drive_t;
+
+extern drive_t drive;
+
+/// Clears everything and loads the configuration. The C start-up of the chip does not zero globals.
+void drive_reset(void);
+
+/// Rebuilds the configuration from the parameters; false, with the old one kept, when they do not fit together.
+bool drive_config_load(drive_config_t* c);
+
+bool drive_is_energised(void);
+void drive_parameters_changed(void);
+
+/// Latches a fault and opens the power stage.
+void drive_raise(drive_t* d, drive_fault_t fault);
+
+// The steps of the control interrupt, in their order.
+void drive_read_samples(drive_t* d);   // sampling.c
+void drive_estimate(drive_t* d);       // position.c
+void drive_protect(drive_t* d);        // protection.c
+void drive_sequence(drive_t* d);       // state_machine.c
+void drive_control_speed(drive_t* d);  // speed_task.c
+void drive_control_current(drive_t* d);  // current_task.c
+void drive_modulate(drive_t* d);       // modulation.c
+void drive_publish(drive_t* d);        // drive_api.c
+
+void drive_control_interrupt(void);
+void drive_window_interrupt(void);
+
+#endif

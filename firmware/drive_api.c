@@ -1,0 +1,68 @@
+// Commands, inspection and the drive's own memory.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/position.h"
+#include "firmware/sampling.h"
+
+drive_t drive;
+
+void drive_reset(void) {
+  static const drive_t empty;
+  drive = empty;
+  sampling_reset();
+  parameters_reset();
+  drive.config.slopes.offset_a_q8 = 2048L * 256L;
+  drive.config.slopes.offset_b_q8 = 2048L * 256L;
+  drive.config_valid = drive_config_load(&drive.config);
+  drive.model = drive.config.nameplate;
+  admittance_init(&drive.position.admittance, &drive.model);
+  drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+  modulator_reset(&drive.modulation.state);
+  position_preset(&drive, 0);
+}
+
+bool drive_is_energised(void) {
+  return drive.state == DRIVE_START || drive.state == DRIVE_RUN || drive.state == DRIVE_STOP;
+}
+
+void drive_parameters_changed(void) { drive.request.reload = true; }
+
+void drive_command_start(void) { drive.request.start = true; }
+
+void drive_command_stop(void) { drive.request.stop = true; }
+
+void drive_command_reset(void) { drive.request.reset = true; }
+
+void drive_command_speed(int32_t rpm_q16) {
+  const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
+  drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
+}
+
+const drive_signals_t* drive_signals(void) { return &drive.signals; }
+
+static int32_t rpm_q16(const drive_t* d, int32_t speed_bpp) {
+  return q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24);
+}
+
+void drive_publish(drive_t* d) {
+  drive_signals_t* const s = &d->signals;
+  s->state = (int32_t)d->state;
+  s->fault = (int32_t)d->fault;
+  s->limit = d->limits;
+  s->angle = (int32_t)d->position.used.angle_bam;
+  s->speed = rpm_q16(d, d->position.used.speed_bpp);
+  s->angle_low = (int32_t)d->position.low.angle_bam;
+  s->angle_avv = (int32_t)d->position.high.angle_bam;
+  s->weight = d->position.blend.share_q15;
+  s->speed_reference = rpm_q16(d, d->control.ramp.value);
+  s->current_d = d->control.measured_q20.d;
+  s->current_q = d->control.measured_q20.q;
+  s->current_d_reference = d->control.reference_q20.d;
+  s->current_q_reference = d->control.reference_q20.q;
+  s->voltage_d = d->control.command_q16.d;
+  s->voltage_q = d->control.command_q16.q;
+  s->link_voltage = d->samples.link_q16;
+  s->load_torque = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 24);
+  s->windows = d->samples.count;
+}

@@ -1,0 +1,94 @@
+// From the parameters, in the user's units, to the constants of every module.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "hal/hal_adc.h"
+
+#define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
+
+// Ticks of 10 ns from a time in us, Q16.
+static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
+
+// bandwidth (rad/s, Q8) * T, Q30: 100 us * 2^22 = 419.43.
+static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return q_mul(bandwidth_q8, 439804651L, 20); }
+
+static bool load_machine(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  machine_parameters_t m;
+  m.rs_q24 = p->stator_resistance + p->device_resistance;
+  m.ld_q30 = q_mul(p->inductance_d, MILLIHENRY_Q30, 30);
+  m.lq_q30 = q_mul(p->inductance_q, MILLIHENRY_Q30, 30);
+  m.flux_q28 = p->magnet_flux;
+  m.inertia_q24 = p->inertia;
+  m.pole_pairs = p->pole_pairs;
+  m.period_us = DRIVE_PERIOD_US;
+  if (!machine_model_init(&c->nameplate, &m)) return false;
+  // rpm to binary angle per period: pole pairs / 60 s * T * 2^32 = 7158.2788 per pole pair.
+  c->bpp_per_rpm_q8 = p->pole_pairs * 1832519L;
+  c->rpm_per_bpp_q40 = q_div(16777216L, c->bpp_per_rpm_q8, 24);
+  c->torque_per_accel_q24 = q_div(1048576L, c->nameplate.accel_q12, 24);
+  return true;
+}
+
+static bool load_modulation(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  c->modulator.pulse_ticks = ticks(p->pulse_time);
+  c->modulator.extended.window_min_ticks = ticks(p->window_minimum);
+  c->modulator.extended.window_max_ticks = ticks(p->window_maximum);
+  c->modulator.extended.zero_ticks = ticks(p->zero_time);
+  c->modulator.sampling.settle_ticks = ticks(p->settle_time);
+  c->modulator.sampling.burst_ticks = HAL_ADC_BURST_TICKS;
+  c->modulator.sampling.span_min_ticks = 300;
+  c->modulator.sampling.last_tick = 9640;
+  c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
+  c->dead_time.released_ticks = ticks(p->turn_off_delay);
+  c->dead_time.band_q20 = p->drop_band;
+  c->dead_time.drop_q16 = p->device_drop;
+  return modulator_config_valid(&c->modulator) && c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
+         c->dead_time.blocked_ticks <= SVPWM_FIRST_TICK - 20;
+}
+
+static bool load_control(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  c->speed.friction_q24 = p->friction;
+  c->speed.inertia_q24 = p->inertia;
+  c->speed.step_periods = DRIVE_PERIODS_PER_MS;
+  c->speed.alpha_q8 = p->speed_alpha;
+  c->speed.trajectory_ms_q8 = p->speed_trajectory;
+  c->speed.pi_bandwidth_q8 = p->speed_pi_bandwidth;
+  c->speed.pi_damping_q12 = p->speed_pi_damping;
+  // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
+  c->friction_per_bpp_q40 = q_mul_sat(q_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
+  c->ramp_step_bpp = q_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
+  speed_controller_t trial;
+  return speed_controller_init(&trial, &c->speed, &c->nameplate) &&
+         current_controller_design(&c->current, &c->nameplate, p->current_bandwidth, DRIVE_PERIOD_US);
+}
+
+static bool load_position(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  c->avv.bandwidth_short_q30 = bandwidth_step_q30(p->avv_bandwidth_short);
+  c->avv.bandwidth_long_q30 = bandwidth_step_q30(q_max(p->avv_bandwidth_long, p->avv_bandwidth_short));
+  c->zvv.kp_q30 = bandwidth_step_q30(p->zvv_proportional);
+  c->zvv.ki_q40 = q_mul(p->zvv_integral, 11258999L, 18);  // rad/s^2 Q8 * T^2 as Q40
+  deviation_observer_design(&c->observer, &c->nameplate, q_mul(p->observer_noise, 1073741824L, 18) / 1000,
+                            p->observer_load_rate);
+  c->observer.zero_vectors_only = p->observer_windows == 0;
+  const int32_t low = q_mul_sat(p->blend_low, c->bpp_per_rpm_q8, 24);
+  const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
+  // 2^30 / (time constant in periods); 30 s means none.
+  c->adapt_share_q30 = (p->adapt_time >= 30000L * 256L) ? 0 : q_div(256, p->adapt_time * DRIVE_PERIODS_PER_MS, 30);
+  c->saliency_turn_bam = q_mul(p->saliency_angle, 11930465L, 24);  // 2^32 / 360 per degree
+  c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
+  c->slopes.start_samples = HAL_ADC_START_SAMPLES;
+  c->slopes.end_samples = HAL_ADC_END_SAMPLES;
+  c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
+  return blend_design(&c->blend, low, high);
+}
+
+bool drive_config_load(drive_config_t* c) {
+  drive_config_t fresh = *c;
+  if (!load_machine(&fresh) || !load_modulation(&fresh) || !load_control(&fresh) || !load_position(&fresh)) return false;
+  *c = fresh;
+  return true;
+}

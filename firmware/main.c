@@ -1,0 +1,57 @@
+// The image's entry: brings the board up, then serves the watchdog and waits for interrupts.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_clock.h"
+#include "hal/hal_encoder.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_safety.h"
+#include "hal/hal_time.h"
+
+// The dead band of the gate signals, ticks; the power stage's own minimum is the parameter's business.
+static uint16_t dead_band_ticks(void) {
+  const int32_t ticks = q_shr_round(parameters.dead_time * 100, 16);
+  return (uint16_t)q_max(ticks, (int32_t)HAL_PWM_DEAD_BAND_MIN_TICKS);
+}
+
+// A changed parameter becomes effective as a whole, between two control interrupts.
+static void reload(void) {
+  static drive_config_t fresh;
+  drive.request.reload = false;
+  fresh = drive.config;
+  drive.config_valid = drive_config_load(&fresh);
+  const uint16_t state = hal_irq_disable();
+  if (drive.config_valid) drive.config = fresh;
+  if (!drive_is_energised()) {
+    drive.model = drive.config.nameplate;
+    drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+    (void)hal_pwm_set_dead_band(dead_band_ticks());
+  }
+  hal_irq_restore(state);
+}
+
+void firmware_main(void) {
+  drive_reset();
+  if (!hal_clock_init()) {
+    for (;;) hal_idle();  // no clock, no drive: the gates stay off
+  }
+  hal_time_init();
+  hal_safety_init();
+  (void)hal_pwm_init(dead_band_ticks());
+  hal_adc_init();
+  hal_encoder_init((uint32_t)parameters.encoder_counts);
+  hal_irq_install(drive_control_interrupt, drive_window_interrupt);
+  hal_watchdog_start();
+  hal_irq_enable();
+  uint32_t served = hal_time_cycles();
+  for (;;) {
+    hal_idle();
+    if (drive.request.reload) reload();
+    if (hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {
+      served = hal_time_cycles();
+      hal_watchdog_service();
+    }
+  }
+}

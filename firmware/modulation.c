@@ -1,0 +1,64 @@
+// From the voltage command to the compare registers.
+
+#include "firmware/drive.h"
+#include "firmware/isr_cycles.h"
+#include "firmware/parameters.h"
+#include "hal/hal_profile.h"
+#include "hal/hal_pwm.h"
+
+#define DEADLINE_TICK 9700u  // later than this in the period nothing is written
+#define EXCITATION_BY_SOURCE 3
+
+// The paper's scheme wants long zero vectors at low speed and extended active ones from below the blend on.
+static excitation_t excitation(const drive_t* d) {
+  if (d->state == DRIVE_START) return EXCITATION_ALTERNATING;
+  if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
+  if (parameters.position_source != 1) return EXCITATION_ALTERNATING;
+  const int32_t enter = d->config.blend.low_bpp / 4 * 3;
+  return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_CENTRED : EXCITATION_EXTENDED;
+}
+
+// The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
+static uint32_t angle_at_action(const drive_t* d) {
+  const int32_t speed = d->position.used.speed_bpp;
+  return d->position.used.angle_bam + (uint32_t)(speed + speed / 2);
+}
+
+static void write_frame(drive_t* d, const svpwm_pattern_t* p, const svpwm_pulses_t* command) {
+  const sampling_config_t* const c = &d->config.modulator.sampling;
+  hal_pwm_frame_t f;
+  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
+    f.rise_tick[k] = (uint16_t)command->rise[k];
+    f.fall_tick[k] = (uint16_t)command->fall[k];
+    const bool used = k < p->window_count;
+    f.burst_start_tick[k] = used ? (uint16_t)svpwm_burst_start(c, &p->windows[k]) : HAL_PWM_NONE;
+    f.burst_end_tick[k] = used ? (uint16_t)svpwm_burst_end(c, &p->windows[k]) : HAL_PWM_NONE;
+  }
+  const bool written = hal_pwm_write(&f, DEADLINE_TICK);
+  d->supervision.overrun = written ? 0u : (uint16_t)(d->supervision.overrun + 1u);
+  d->modulation.sampled = d->modulation.running;
+  if (written) d->modulation.running = *p;
+  if (!written) d->limits |= LIMIT_OVERRUN;
+}
+
+void drive_modulate(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const rotation_t r = frame_rotation(angle_at_action(d));
+  const ab_t current_q20 = frame_inverse_park(c->measured_q20, r);
+  const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);
+  const ab_t wanted_q16 = frame_inverse_park(c->command_q16, r);
+  const ab_t asked_q16 = {wanted_q16.alpha + drop_q16.alpha, wanted_q16.beta + drop_q16.beta};
+  svpwm_pattern_t pattern;
+  svpwm_pulses_t command;
+  const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d), asked_q16,
+                                                   d->samples.link_q16, &pattern);
+  if (result.limited && c->closed) {
+    const ab_t excess_q16 = {asked_q16.alpha - result.realised_q16.alpha, asked_q16.beta - result.realised_q16.beta};
+    current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
+    d->limits |= LIMIT_VOLTAGE;
+  }
+  dead_time_compensate(&d->config.dead_time, &pattern.pulses, current_q20, (d->model.yd_q30 + d->model.yq_q30) / 2,
+                       d->samples.link_q16, &command);
+  hal_profile_step(CYCLES_MODULATE);
+  write_frame(d, &pattern, &command);
+}

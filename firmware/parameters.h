@@ -1,0 +1,20 @@
+// The parameter values in use, by name. The table itself is parameter_list.h; drive_api.h has access by id.
+
+#ifndef STILLSPIN_FIRMWARE_PARAMETERS_H
+#define STILLSPIN_FIRMWARE_PARAMETERS_H
+
+#include "firmware/drive_api.h"
+
+/// One int32_t per parameter, with the table's number of fractional bits.
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) int32_t name;
+typedef struct {
+#include "firmware/parameter_list.h"
+} parameters_t;
+#undef PARAMETER
+
+extern parameters_t parameters;
+
+/// Puts every parameter to its default.
+void parameters_reset(void);
+
+#endif

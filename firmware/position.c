@@ -1,0 +1,107 @@
+// Which angle and speed the control uses: the position source, chosen by a table.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/position.h"
+#include "hal/hal_encoder.h"
+
+#define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
+
+typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_input_t* in);
+
+static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
+  d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
+  if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) {
+    admittance_step(&d->position.admittance, &d->position.avv.regression, d->config.adapt_share_q30);
+  }
+  return d->position.high;
+}
+
+static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in) {
+  d->position.low = deviation_observer_step(&d->position.observer, &d->config.observer, in);
+  return d->position.low;
+}
+
+static estimator_output_t source_observer_avv(drive_t* d, const estimator_input_t* in) {
+  (void)step_avv(d, in);
+  (void)step_observer(d, in);
+  return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
+}
+
+static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) {
+  (void)step_avv(d, in);
+  d->config.zvv.id_reference_q20 = d->control.reference_q20.d;
+  d->position.low = zvv_step(&d->position.zvv, &d->config.zvv, in);
+  return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
+}
+
+// The reference encoder: angle from the count; the tracking observer of AVV makes a speed of it.
+static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in) {
+  const uint32_t angle = position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, parameters.encoder_counts);
+  tracking_observer_predict(&d->position.encoder, in->torque_accel_q8);
+  tracking_observer_correct(&d->position.encoder, angle_diff_bam(angle, d->position.encoder.angle_bam),
+                            d->config.avv.bandwidth_long_q30);
+  const estimator_output_t out = {d->position.encoder.angle_bam, d->position.encoder.speed_bpp,
+                                  d->position.encoder.load_accel_q8, 32767};
+  (void)step_avv(d, in);
+  d->position.low = out;
+  return out;
+}
+
+static const position_source_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv, step_observer};
+
+// Saturation turns the axis that the windows see; the estimators live in that frame.
+static void turn_to_rotor(const drive_t* d, estimator_output_t* out) {
+  out->angle_bam -= (uint32_t)q_mul(d->config.saliency_turn_bam, d->control.measured_q20.q, 20);
+}
+
+static void measure_current(drive_t* d) {
+  const drive_samples_t* const s = &d->samples;
+  dq_t sum = {0, 0};
+  if (s->count == 0u) return;
+  for (uint16_t k = 0; k < s->count; k++) {
+    const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)s->windows[k].middle_tick) * 107374;
+    const uint32_t angle =
+        d->position.used.angle_bam + (uint32_t)q_mul(d->position.used.speed_bpp, 1073741824L - before_q30, 30);
+    const rotation_t r = frame_rotation(angle);
+    const dq_t i = frame_park(s->windows[k].current_q20, r);
+    const dq_t flux_q16 = frame_park(s->ripple_q16[k], r);
+    sum.d += i.d - q_mul(d->model.yd_q30, flux_q16.d, 26);
+    sum.q += i.q - q_mul(d->model.yq_q30, flux_q16.q, 26);
+  }
+  d->control.measured_q20.d = sum.d / (int32_t)s->count;
+  d->control.measured_q20.q = sum.q / (int32_t)s->count;
+}
+
+void drive_estimate(drive_t* d) {
+  measure_current(d);
+  const bool starting = d->state != DRIVE_RUN && d->state != DRIVE_STOP;
+  const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
+  estimator_input_t in;
+  in.model = &d->model;
+  in.windows = d->samples.windows;
+  in.window_count = d->samples.count;
+  // While the polarity is open the sign of the torque is, too.
+  in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
+  const bool encoder = parameters.position_source == 0;
+  d->position.used = (starting && !encoder) ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
+  if (!encoder) turn_to_rotor(d, &d->position.used);
+}
+
+void position_preset(drive_t* d, uint32_t angle_bam) {
+  drive_position_t* const p = &d->position;
+  avv_preset(&p->avv, angle_bam, 0, 0);
+  deviation_observer_preset(&p->observer, angle_bam, 0, 0);
+  zvv_preset(&p->zvv, angle_bam, 0);
+  blend_reset(&p->blend);
+  const estimator_output_t still = {angle_bam, 0, 0, 0};
+  p->low = still;
+  p->high = still;
+  if (parameters.position_source != 0) p->used = still;
+}
+
+uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {
+  // 2^32 / counts, exact where the counts are a power of two, to 1e-5 of a turn otherwise.
+  const uint32_t per_count = 0xFFFFFFFFuL / (uint32_t)counts_per_turn + 1u;
+  return count * per_count * (uint32_t)pole_pairs;
+}

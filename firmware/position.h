@@ -1,0 +1,14 @@
+// Position sources of the drive, beside the step that drive.h declares.
+
+#ifndef STILLSPIN_FIRMWARE_POSITION_H
+#define STILLSPIN_FIRMWARE_POSITION_H
+
+#include "firmware/drive.h"
+
+/// Lets every estimator start from this angle, at rest.
+void position_preset(drive_t* d, uint32_t angle_bam);
+
+/// Electrical angle of an encoder count whose zero lies on phase a.
+uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);
+
+#endif

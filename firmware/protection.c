@@ -1,0 +1,57 @@
+// What opens the power stage: looked at in every period, before anything is commanded.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_safety.h"
+
+#define MISSING_MAX 5u   // periods without samples
+#define OVERRUN_MAX 10u  // periods repeated because the interrupt was late
+
+void drive_raise(drive_t* d, drive_fault_t fault) {
+  hal_pwm_gates_off();
+  if (d->state == DRIVE_FAULT) return;
+  d->fault = fault;
+  d->state = DRIVE_FAULT;
+  d->periods = 0;
+  d->control.closed = false;
+  hal_safety_fault_lamp(true);
+}
+
+static bool over_current(const drive_t* d) {
+  for (uint16_t k = 0; k < d->samples.count; k++) {
+    const abc_t i = frame_inverse_clarke(d->samples.windows[k].current_q20);
+    const int32_t limit = parameters.trip_current;
+    if (q_abs_sat(i.a) > limit || q_abs_sat(i.b) > limit || q_abs_sat(i.c) > limit) return true;
+  }
+  return false;
+}
+
+// The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
+static bool diverged(drive_t* d) {
+  const int32_t limit_bam = q_mul(parameters.divergence_limit, 11930465L, 16);
+  const int32_t speed_limit = q_mul_sat(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
+  const int32_t apart = q_abs_sat(angle_diff_bam(d->position.low.angle_bam, d->position.high.angle_bam));
+  const bool both = parameters.position_source == 2 || parameters.position_source == 0 ||
+                    (parameters.position_source == 1 && d->position.blend.region == BLEND_BOTH);
+  const bool wrong = (both && apart > limit_bam) || q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
+  d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + 1u) : 0u;
+  return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+}
+
+static drive_fault_t check(drive_t* d) {
+  if (hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
+  if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
+  if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
+  if (over_current(d)) return FAULT_CURRENT_LIMIT;
+  if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
+  if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
+  if ((d->state == DRIVE_RUN || d->state == DRIVE_STOP) && diverged(d)) return FAULT_DIVERGENCE;
+  return FAULT_NONE;
+}
+
+void drive_protect(drive_t* d) {
+  if (!drive_is_energised()) return;
+  const drive_fault_t fault = check(d);
+  if (fault != FAULT_NONE) drive_raise(d, fault);
+}

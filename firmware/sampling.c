@@ -1,0 +1,87 @@
+// From bursts of conversions to windows with slope, current and voltage.
+//
+// The window interrupt stores raw sums; the control interrupt, once per period, swaps the two buffers and turns the sums
+// of the period before into physical quantities, with the pattern that was running then.
+
+#include "firmware/drive.h"
+#include "firmware/isr_cycles.h"
+#include "firmware/sampling.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_profile.h"
+#include "svpwm/ripple.h"
+
+static sampling_buffer_t sampling_buffers[2];
+static uint16_t sampling_filling;
+
+void sampling_reset(void) {
+  sampling_buffers[0].count = 0;
+  sampling_buffers[1].count = 0;
+  sampling_filling = 0;
+}
+
+void drive_window_interrupt(void) {
+  sampling_buffer_t* const b = &sampling_buffers[sampling_filling];
+  hal_adc_window_t spare;
+  hal_adc_read_window((b->count < ESTIMATOR_WINDOWS) ? &b->windows[b->count] : &spare);
+  b->count++;
+  hal_profile_step(CYCLES_WINDOW);
+}
+
+const sampling_buffer_t* sampling_swap(void) {
+  const uint16_t full = sampling_filling;
+  sampling_filling = (uint16_t)(1u - full);
+  sampling_buffers[sampling_filling].count = 0;
+  return &sampling_buffers[full];
+}
+
+// Active vectors: Clarke of the switching state, Q30.
+static ab_t state_vector_q30(uint16_t state) {
+  const abc_t legs = {((state & 1u) != 0u) ? 1073741824L : 0, ((state & 2u) != 0u) ? 1073741824L : 0,
+                      ((state & 4u) != 0u) ? 1073741824L : 0};
+  const abc_t third = {legs.a / 3, legs.b / 3, legs.c / 3};
+  const ab_t v = {2 * third.a - third.b - third.c, q_mul(legs.b - legs.c, FRAME_SQRT3_INV_Q30, 30)};
+  return v;
+}
+
+static ab_t window_voltage(const drive_t* d, const svpwm_window_t* w, ab_t current_q20) {
+  const ab_t vector = state_vector_q30(w->state);
+  const ab_t drop = dead_time_drop_q16(&d->config.dead_time, current_q20);
+  const ab_t v = {q_mul(d->samples.link_q16, vector.alpha, 30) - drop.alpha,
+                  q_mul(d->samples.link_q16, vector.beta, 30) - drop.beta};
+  return v;
+}
+
+static void evaluate(drive_t* d, const svpwm_window_t* w, const hal_adc_window_t* raw, estimator_window_t* out) {
+  const sampling_config_t* const c = &d->config.modulator.sampling;
+  const int16_t begin = (int16_t)(svpwm_burst_start(c, w) + (int16_t)HAL_ADC_START_DELAY_TICKS);
+  const int16_t end = (int16_t)(svpwm_burst_end(c, w) + (int16_t)HAL_ADC_END_DELAY_TICKS);
+  const slopes_sums_t sums = {raw->start_a, raw->start_b, raw->end_a, raw->end_b};
+  out->span_ticks = (int16_t)(end - begin);
+  out->middle_tick = (int16_t)((begin + end) / 2);
+  out->zero_vector = svpwm_is_zero_vector(w->state);
+  slopes_evaluate(&d->config.slopes, &sums, out);
+  out->voltage_q16 = window_voltage(d, w, out->current_q20);
+}
+
+static void filter_link(drive_t* d, const hal_adc_window_t* raw) {
+  const int32_t volts_q16 = (int32_t)raw->link * d->config.volts_per_code_q16;
+  d->samples.link_q16 += (d->samples.link_q16 == 0) ? volts_q16 : q_shr(volts_q16 - d->samples.link_q16, 3);
+}
+
+void drive_read_samples(drive_t* d) {
+  const sampling_buffer_t* const b = sampling_swap();
+  const svpwm_pattern_t* const p = &d->modulation.sampled;
+  drive_samples_t* const s = &d->samples;
+  s->count = 0;
+  const bool complete = b->count == p->window_count;
+  d->supervision.missing = (complete && p->window_count > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
+  if (!complete) return;
+  s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+  s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+  for (uint16_t k = 0; k < p->window_count; k++) {
+    filter_link(d, &b->windows[k]);
+    evaluate(d, &p->windows[k], &b->windows[k], &s->windows[k]);
+    s->ripple_q16[k] = svpwm_ripple_q16(&p->pulses, s->windows[k].middle_tick, s->link_q16);
+  }
+  s->count = p->window_count;
+}

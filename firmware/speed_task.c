@@ -1,0 +1,62 @@
+// Speed control and field weakening, once a millisecond on a tick of the control interrupt.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+
+#define INV_SQRT3_Q30 619925131L
+
+static int32_t voltage_limit(const drive_t* d) {
+  const int32_t share_q30 = q_mul(parameters.voltage_use, 10737418L, 16);  // percent to Q30
+  return q_mul(q_mul(d->samples.link_q16, INV_SQRT3_Q30, 30), share_q30, 30);
+}
+
+static void weaken_field(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  field_weakening_input_t in;
+  in.speed_bpp = d->position.used.speed_bpp;
+  in.iq_q20 = c->reference_q20.q;
+  in.voltage_q16 = q_hypot(c->command_q16.d, c->command_q16.q);
+  in.voltage_limit_q16 = voltage_limit(d);
+  in.current_limit_q20 = parameters.weakening_limit;
+  in.trim_gain_q20 = parameters.weakening_gain;
+  const int32_t weakening = field_weakening_step(&c->weakening, &in, &d->model);
+  const int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
+  c->reference_q20.d = q_add_sat(weakening, bias);
+  if (weakening < 0) d->limits |= LIMIT_WEAKENING;
+}
+
+// Current that balances the estimated load. The observers see friction as part of the load; the speed law's own model
+// has it too, so it is taken off here.
+static int32_t load_current(const drive_t* d) {
+  const int32_t speed = d->position.used.speed_bpp;
+  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 20);
+  const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
+  const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
+  return q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
+}
+
+static int32_t current_room(const drive_t* d) {
+  const int32_t limit = parameters.current_limit;
+  const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
+  return (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
+}
+
+void drive_control_speed(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
+  if (d->millisecond != 0u) return;
+  admittance_apply(&d->position.admittance, &d->model);
+  d->limits = 0;
+  if (d->state != DRIVE_RUN && d->state != DRIVE_STOP) return;
+  weaken_field(d);
+  speed_controller_input_t in;
+  in.reference_bpp = c->ramp.value;
+  ramp_step(&c->ramp, (d->state == DRIVE_STOP) ? 0 : c->target_bpp, d->config.ramp_step_bpp);
+  in.reference_step_bpp = (d->config.ramp_step_bpp == 0) ? 0 : c->ramp.step;
+  if (d->config.ramp_step_bpp == 0) in.reference_bpp = c->ramp.value;
+  in.speed_bpp = d->position.used.speed_bpp;
+  in.load_current_q20 = load_current(d);
+  in.limit_q20 = current_room(d);
+  c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)parameters.speed_law, &in);
+  if (q_abs_sat(c->reference_q20.q) >= in.limit_q20) d->limits |= LIMIT_CURRENT;
+}

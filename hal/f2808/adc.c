@@ -1,0 +1,71 @@
+#include "hal/f2808/f2808_values.h"
+#include "hal/f2808/pie.h"
+#include "hal/f2808/reg_access.h"
+#include "hal/f2808/registers.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_time.h"
+
+#define POWER_UP_CYCLES (5000uL * HAL_TIME_CYCLES_PER_US)
+#define POLL_CYCLES 10u
+
+// A pair takes one slot of a sequence and two results, A before B. Sequencer 2 has the upper eight results.
+#define RESULT(n) (REG_MIRROR_ADCRESULT0 + (n))
+#define SEQ2_FIRST_RESULT 8u
+#define PAIRS_IN_BURST 4u
+
+#define CONTROL2 ((uint16_t)(ADCTRL2_EPWM_SOCA_SEQ1_MASK | ADCTRL2_EPWM_SOCB_SEQ2_MASK | ADCTRL2_INT_ENA_SEQ2_MASK))
+
+static void power_up(void) {
+  // Bandgap, reference and converter may come up together on this chip; then the references need 5 ms.
+  target_write16(REG_ADCTRL3, REG_FIELD(ADCTRL3_ADCBGRFDN, ADCTRL3_BANDGAP_ON) | ADCTRL3_ADCPWDN_MASK |
+                                  REG_FIELD(ADCTRL3_ADCCLKPS, 0u) |
+                                  REG_FIELD(ADCTRL3_SMODE_SEL, ADCTRL3_SMODE_SIMULTANEOUS));
+  const uint32_t start = hal_time_cycles();
+  while (hal_time_cycles() - start < POWER_UP_CYCLES) {
+    target_elapse(POLL_CYCLES);
+  }
+}
+
+// Back to the first slots of both sequences, without losing the triggers.
+TARGET_RAM_CODE static void reset_sequencers(void) {
+  target_write16(REG_ADCTRL2, CONTROL2 | ADCTRL2_RST_SEQ1_MASK | ADCTRL2_RST_SEQ2_MASK);
+}
+
+void hal_adc_init(void) {
+  target_write16(REG_ADCTRL1, ADCTRL1_RESET_MASK);
+  TARGET_NOP();  // the reset takes two cycles
+  TARGET_NOP();
+  power_up();
+  // Two sequencers, one run a trigger, no clock divider, shortest sample window: everything 0.
+  target_write16(REG_ADCTRL1, 0u);
+  target_write16(REG_ADCMAXCONV, REG_FIELD(ADCMAXCONV_MAX_CONV1, PAIRS_IN_BURST - 1u) |
+                                     REG_FIELD(ADCMAXCONV_MAX_CONV2, PAIRS_IN_BURST - 1u));
+  target_write16(REG_ADCCHSELSEQ1,
+                 REG_FIELD(ADCCHSELSEQ1_CONV00, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ1_CONV01, ADC_PAIR_0) |
+                     REG_FIELD(ADCCHSELSEQ1_CONV02, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ1_CONV03, ADC_PAIR_0));
+  target_write16(REG_ADCCHSELSEQ3,
+                 REG_FIELD(ADCCHSELSEQ3_CONV08, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV09, ADC_PAIR_0) |
+                     REG_FIELD(ADCCHSELSEQ3_CONV10, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV11, ADC_PAIR_1));
+  reset_sequencers();
+}
+
+// Sum of every other result: one channel of `pairs` successive pairs.
+TARGET_RAM_CODE static uint16_t sum_of(uint16_t first_result, uint16_t pairs) {
+  uint16_t sum = 0u;
+  for (uint16_t i = 0u; i < pairs; i++) {
+    sum = (uint16_t)(sum + target_read16(RESULT(first_result + 2u * i)));
+  }
+  return sum;
+}
+
+TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
+  window->start_a = sum_of(0u, HAL_ADC_START_SAMPLES);
+  window->start_b = sum_of(1u, HAL_ADC_START_SAMPLES);
+  window->end_a = sum_of(SEQ2_FIRST_RESULT, HAL_ADC_END_SAMPLES);
+  window->end_b = sum_of(SEQ2_FIRST_RESULT + 1u, HAL_ADC_END_SAMPLES);
+  window->link = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES));
+  window->aux = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES + 1u));
+  reset_sequencers();
+  target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
+  pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
+}

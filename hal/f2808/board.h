@@ -1,0 +1,15 @@
+// Which pin of the chip is what on the board.
+
+#ifndef STILLSPIN_HAL_F2808_BOARD_H
+#define STILLSPIN_HAL_F2808_BOARD_H
+
+#define BOARD_PIN_FIRST_GATE 0u  // GPIO0..5: a upper, a lower, b upper, b lower, c upper, c lower
+#define BOARD_GATE_PINS 6u
+#define BOARD_PIN_OVER_CURRENT 12u  // TZ1, low when the comparator has fired
+#define BOARD_PIN_ENCODER_A 20u
+#define BOARD_PIN_ENCODER_B 21u
+#define BOARD_PIN_ENCODER_INDEX 23u
+#define BOARD_PIN_FAULT_LAMP 31u
+#define BOARD_PIN_GATE_ENABLE 34u  // kept alive by toggling
+
+#endif

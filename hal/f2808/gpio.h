@@ -1,0 +1,22 @@
+// Pin configuration. The functions lift the register protection by themselves: do not call them between eallow and
+// edis.
+
+#ifndef STILLSPIN_HAL_F2808_GPIO_H
+#define STILLSPIN_HAL_F2808_GPIO_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// Gives the pin (0..34) to a peripheral, as the last of its settings. mux: 1..3; qualification: GPIO_QUALIFY_x.
+void gpio_give_to_peripheral(uint16_t pin, uint16_t mux, uint16_t qualification, bool pull_up);
+
+// Makes the pin an output that starts with the given level.
+void gpio_make_output(uint16_t pin, bool level);
+
+void gpio_write(uint16_t pin, bool level);
+void gpio_toggle(uint16_t pin);
+
+// Level at the pin, whatever it is used for.
+bool gpio_read(uint16_t pin);
+
+#endif

@@ -1,0 +1,28 @@
+#include "hal/f2808/board.h"
+#include "hal/f2808/f2808_values.h"
+#include "hal/f2808/gpio.h"
+#include "hal/f2808/pwm_modules.h"
+#include "hal/f2808/reg_access.h"
+#include "hal/f2808/registers.h"
+#include "hal/hal_safety.h"
+
+void hal_safety_init(void) {
+  gpio_make_output(BOARD_PIN_GATE_ENABLE, false);
+  gpio_make_output(BOARD_PIN_FAULT_LAMP, false);
+  // Asynchronous: the trip must also work when the clock has stopped, and not wait for samples.
+  gpio_give_to_peripheral(BOARD_PIN_OVER_CURRENT, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
+  target_eallow();
+  for (uint16_t module = PWM_FIRST_LEG_MODULE; module < PWM_FIRST_LEG_MODULE + HAL_PWM_LEGS; module++) {
+    target_write16(EPWM_BASE(module) + EPWM_TZSEL, EPWM_TZSEL_OSHT1_MASK);
+  }
+  target_write16(EPWM_BASE(PWM_TRIP_WITNESS_MODULE) + EPWM_TZSEL, EPWM_TZSEL_OSHT1_MASK);
+  target_edis();
+}
+
+void hal_safety_toggle_enable(void) {
+  gpio_toggle(BOARD_PIN_GATE_ENABLE);
+}
+
+void hal_safety_fault_lamp(bool lit) {
+  gpio_write(BOARD_PIN_FAULT_LAMP, lit);
+}

@@ -1,0 +1,286 @@
+// Register accesses: what they cost, address decode, write protection (EALLOW) and clock gates.
+
+#include "hal/f2808/registers.h"
+#include "sim_host/chip/core.hpp"
+
+namespace stillspin::chip {
+namespace {
+
+// Cycles of an access. Writes and frame 0 need no wait states; reads of peripheral frames 1 and 2 have two (SPRS230).
+// Frame 2 has a 16-bit bus, a 32-bit access makes two.
+constexpr Tick kWriteCycles = 1;
+constexpr Tick kFrame0ReadCycles = 1;
+constexpr Tick kFrame12ReadCycles = 3;
+constexpr std::uint32_t kFrame1Start = 0x6000;
+constexpr std::uint32_t kFrame2Start = 0x7000;
+
+// Data space below 0x8000 in pages of 64 words: the finest grain at which the F2808's peripherals are laid out.
+enum class Device : std::uint8_t {
+  kNone,
+  kIdentity,
+  kFlash,
+  kAdcMirror,
+  kTimers,
+  kPie,
+  kEPwm,
+  kEQep1,
+  kGpio,
+  kSystem,
+  kAdc
+};
+
+constexpr unsigned kPageShift = 6;
+constexpr std::uint32_t kPageMask = 0x3F;
+constexpr std::uint32_t kPageCount = 0x8000 >> kPageShift;
+constexpr std::uint32_t kAdcFrame = 0x7100;
+constexpr std::uint32_t kMirrorWords = 16;
+
+struct PageTable {
+  Device device[kPageCount] = {};
+  constexpr void set(std::uint32_t address, Device to) { device[address >> kPageShift] = to; }
+};
+
+constexpr PageTable make_page_table() {
+  PageTable table;
+  table.set(REG_DEVICECNF, Device::kIdentity);
+  table.set(REG_FOPT, Device::kFlash);
+  table.set(REG_MIRROR_ADCRESULT0, Device::kAdcMirror);
+  table.set(CPUTIMER_BASE(0), Device::kTimers);
+  table.set(REG_PIECTRL, Device::kPie);
+  for (unsigned n = 1; n <= 6; ++n) table.set(EPWM_BASE(n), Device::kEPwm);
+  table.set(EQEP_BASE(1), Device::kEQep1);
+  table.set(REG_GPACTRL, Device::kGpio);
+  table.set(REG_GPADAT, Device::kGpio);
+  table.set(kSystemFrame, Device::kSystem);
+  table.set(kAdcFrame, Device::kAdc);
+  return table;
+}
+
+constexpr PageTable kPages = make_page_table();
+
+Device device_at(std::uint32_t address) {
+  const std::uint32_t page = address >> kPageShift;
+  return page < kPageCount ? kPages.device[page] : Device::kNone;
+}
+
+std::uint16_t offset_in_page(std::uint32_t address) { return static_cast<std::uint16_t>(address & kPageMask); }
+int epwm_module(std::uint32_t address) { return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift); }
+
+// Identification: part number of the F2808, revision C (the last one that the errata SPRZ171 name).
+constexpr std::uint16_t kPartNumber = 0x003C;
+constexpr std::uint16_t kRevision = 0x0003;
+constexpr std::uint32_t kDeviceConfiguration = DEVICECNF_VMAPS_MASK | DEVICECNF_XRSn_MASK | DEVICECNF_ENPROT_MASK;
+
+Tick read_cycles(std::uint32_t address) { return address < kFrame1Start ? kFrame0ReadCycles : kFrame12ReadCycles; }
+Tick halves(std::uint32_t address) { return address >= kFrame2Start ? 2 : 1; }
+
+bool epwm_register_protected(std::uint16_t offset) {
+  constexpr std::uint64_t mask = 1ull << EPWM_TZSEL | 1ull << EPWM_TZCTL | 1ull << EPWM_TZEINT | 1ull << EPWM_TZCLR |
+                                 1ull << EPWM_TZFRC | 1ull << EPWM_HRCNFG;
+  return (mask >> offset & 1u) != 0;
+}
+
+}  // namespace
+
+// ---- the four accesses ---------------------------------------------------------------------------------
+
+std::uint16_t Core::read16(std::uint32_t address) {
+  spend(read_cycles(address));
+  ++statistics_.reads;
+  std::uint16_t value = 0;
+  try {
+    value = bus_read(address);
+    if (world_touched_) after_world();
+  } catch (...) {
+    fail_with_current_exception();
+  }
+  finish_access();
+  return value;
+}
+
+void Core::write16(std::uint32_t address, std::uint16_t value) {
+  spend(kWriteCycles);
+  ++statistics_.writes;
+  try {
+    bus_write(address, value);
+    if (world_touched_) after_world();
+  } catch (...) {
+    fail_with_current_exception();
+  }
+  finish_access();
+}
+
+std::uint32_t Core::read32(std::uint32_t address) {
+  spend(read_cycles(address) * halves(address));
+  ++statistics_.reads;
+  std::uint32_t value = 0;
+  try {
+    value = bus_read(address);
+    value |= static_cast<std::uint32_t>(bus_read(address + 1)) << 16;
+    if (world_touched_) after_world();
+  } catch (...) {
+    fail_with_current_exception();
+  }
+  finish_access();
+  return value;
+}
+
+void Core::write32(std::uint32_t address, std::uint32_t value) {
+  spend(kWriteCycles * halves(address));
+  ++statistics_.writes;
+  try {
+    bus_write(address, static_cast<std::uint16_t>(value & 0xFFFFu));
+    bus_write(address + 1, static_cast<std::uint16_t>(value >> 16));
+    if (world_touched_) after_world();
+  } catch (...) {
+    fail_with_current_exception();
+  }
+  finish_access();
+}
+
+// ---- what stands in the way of an access ---------------------------------------------------------------
+
+bool Core::protection_stops(std::uint32_t address) {
+  if (eallow_) return false;
+  ++statistics_.protected_writes_lost;
+  statistics_.last_protected_address = address;
+  return true;
+}
+
+bool Core::gate_stops(bool clocked, std::uint32_t address) {
+  if (clocked) return false;
+  ++statistics_.gated_accesses;
+  statistics_.last_gated_address = address;
+  return true;
+}
+
+void Core::note_unmodelled(std::uint32_t address) {
+  ++statistics_.unmodelled_accesses;
+  statistics_.last_unmodelled_address = address;
+}
+
+// ---- reads ---------------------------------------------------------------------------------------------
+
+std::uint16_t Core::bus_read(std::uint32_t address) {
+  switch (device_at(address)) {
+    case Device::kEPwm: return read_epwm(address);
+    case Device::kAdc:
+      return gate_stops(system_.adc_clock(), address) ? 0 : adc_.read(offset_in_page(address), now_);
+    case Device::kAdcMirror:
+      if (address - REG_MIRROR_ADCRESULT0 >= kMirrorWords || gate_stops(system_.adc_clock(), address)) return 0;
+      return adc_.read(static_cast<std::uint16_t>(kAdcMirrorOffset + offset_in_page(address)), now_);
+    case Device::kPie:
+      return address < REG_PIECTRL ? 0 : interrupts_.read(static_cast<std::uint16_t>(address - REG_PIECTRL));
+    case Device::kTimers: return timers_.read(offset_in_page(address), now_);
+    case Device::kGpio:
+      world_touched_ = true;
+      return gpio_.read(static_cast<std::uint16_t>(address - kGpioFrame), now_);
+    case Device::kEQep1:
+      return gate_stops(system_.eqep_clock(1), address) ? 0 : eqep1_.read(offset_in_page(address), now_);
+    case Device::kSystem: return read_system(offset_in_page(address));
+    case Device::kFlash: return flash_.read(address);
+    case Device::kIdentity: return read_identity(address);
+    case Device::kNone: break;
+  }
+  note_unmodelled(address);
+  return 0;
+}
+
+std::uint16_t Core::read_epwm(std::uint32_t address) {
+  const int module = epwm_module(address);
+  if (gate_stops(system_.epwm_clock(module), address)) return 0;
+  return epwm_.read(module, offset_in_page(address), now_);
+}
+
+std::uint16_t Core::read_system(std::uint16_t offset) const {
+  return Watchdog::owns(offset) ? watchdog_.read(offset, now_) : system_.read(offset);
+}
+
+std::uint16_t Core::read_identity(std::uint32_t address) const {
+  switch (address) {
+    case REG_DEVICECNF: return static_cast<std::uint16_t>(kDeviceConfiguration & 0xFFFFu);
+    case REG_DEVICECNF + 1: return static_cast<std::uint16_t>(kDeviceConfiguration >> 16);
+    case REG_PARTID: return kPartNumber;
+    case REG_REVID: return kRevision;
+    default: return 0;
+  }
+}
+
+std::uint16_t Core::inspect(std::uint32_t address) {
+  const Statistics before = statistics_;
+  const std::uint16_t value = bus_read(address);
+  statistics_ = before;
+  return value;
+}
+
+// ---- writes --------------------------------------------------------------------------------------------
+
+void Core::bus_write(std::uint32_t address, std::uint16_t value) {
+  switch (device_at(address)) {
+    case Device::kEPwm: write_epwm(address, value); return;
+    case Device::kAdc: write_adc(address, value); return;
+    case Device::kPie:
+      if (address >= REG_PIECTRL) interrupts_.write(static_cast<std::uint16_t>(address - REG_PIECTRL), value);
+      return;
+    case Device::kGpio: write_gpio(address, value); return;
+    case Device::kTimers:
+      timers_.write(offset_in_page(address), value, now_);
+      set_due(kTimers, timers_.next_event());
+      return;
+    case Device::kEQep1: write_eqep1(address, value); return;
+    case Device::kSystem:
+      if (!protection_stops(address)) write_system(offset_in_page(address), value);
+      return;
+    case Device::kFlash: write_flash(address, value); return;
+    case Device::kIdentity: protection_stops(address); return;  // nothing there is worth changing
+    case Device::kAdcMirror: return;                            // read-only
+    case Device::kNone: note_unmodelled(address); return;
+  }
+}
+
+void Core::write_epwm(std::uint32_t address, std::uint16_t value) {
+  const int module = epwm_module(address);
+  const std::uint16_t offset = offset_in_page(address);
+  if (gate_stops(system_.epwm_clock(module), address)) return;
+  if (epwm_register_protected(offset) && protection_stops(address)) return;
+  epwm_.write(module, offset, value, now_);
+  set_due(kEPwm, epwm_.next_event());
+}
+
+void Core::write_adc(std::uint32_t address, std::uint16_t value) {
+  if (gate_stops(system_.adc_clock(), address)) return;
+  adc_.write(offset_in_page(address), value, now_);
+  set_due(kAdc, adc_.next_event());
+}
+
+void Core::write_eqep1(std::uint32_t address, std::uint16_t value) {
+  if (gate_stops(system_.eqep_clock(1), address)) return;
+  eqep1_.write(offset_in_page(address), value, now_);
+  set_due(kEQep1, eqep1_.next_event());
+}
+
+void Core::write_gpio(std::uint32_t address, std::uint16_t value) {
+  const auto offset = static_cast<std::uint16_t>(address - kGpioFrame);
+  const bool protected_register = Gpio::is_protected(offset);
+  if (protected_register && protection_stops(address)) return;
+  gpio_.write(offset, value, now_);
+  world_touched_ = true;
+  if (protected_register) pins_dirty_ = true;  // trip inputs may have been routed
+}
+
+void Core::write_flash(std::uint32_t address, std::uint16_t value) {
+  if (protection_stops(address)) return;
+  flash_.write(address, value);
+  check_flash_waits();
+}
+
+void Core::write_system(std::uint16_t offset, std::uint16_t value) {
+  if (!Watchdog::owns(offset)) {
+    apply(system_.write(offset, value, now_));
+    return;
+  }
+  if (watchdog_.write(offset, value, now_) == Watchdog::Outcome::kReset) request_reset();
+  set_due(kWatchdog, watchdog_.next_event());
+}
+
+}  // namespace stillspin::chip

@@ -1,0 +1,18 @@
+#include "sim_host/chip/chip.hpp"
+
+#include "sim_host/chip/core.hpp"
+
+namespace stillspin::chip {
+
+Chip::Chip(World& world, Firmware firmware) : core_(std::make_unique<Core>(world, firmware)) {}
+Chip::~Chip() = default;
+
+void Chip::run_until(Tick t) { core_->run_until(t); }
+Tick Chip::now() const { return core_->now(); }
+const Statistics& Chip::statistics() const { return core_->statistics(); }
+const std::string& Chip::error() const { return core_->error(); }
+void Chip::pins_changed() { core_->pins_changed(); }
+bool Chip::is_idle() const { return core_->is_idle(); }
+std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
+
+}  // namespace stillspin::chip

@@ -1,0 +1,86 @@
+// The virtual TMS320F2808: runs the unchanged firmware against models of the peripherals it uses.
+//
+// Firmware runs on a stack of its own, up to an exact tick, and reaches the chip through the target_* functions of
+// hal/f2808/target.h. Time passes only in those: every register access costs cycles, events (PWM edges, conversions,
+// timers, the world's own) run in order at their exact ticks, and interrupts are taken after an access, in target_idle,
+// in target_elapse and at the return from an interrupt.
+//
+//     Chip chip(world, firmware_main);
+//     chip.run_until(50'000'000);            // half a second
+//     chip.statistics().interrupts;
+//
+// Exactness: run_until(t) runs every event and every access up to and including t and leaves now() == t. How a run is cut
+// into calls does not change it.
+// Start: tick 0 is the moment the boot ROM would jump to the flash entry point. A watchdog reset discards the firmware's
+// stack and enters firmware_main again; C variables keep their values, so firmware must initialise what it relies on
+// (the DSP's start-up code does not zero them either).
+// Threads: a chip is used by one thread at a time. The world's callbacks run on the firmware's stack (1 MiB), may throw
+// C++ exceptions (run_until passes them on), and must not call run_until.
+// Errors: what the real chip could not survive (an unset interrupt vector, an impossible PLL ratio) ends the run:
+// run_until throws std::runtime_error, then and at every later call.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_CHIP_HPP
+#define STILLSPIN_SIM_HOST_CHIP_CHIP_HPP
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "sim_host/chip/world.hpp"
+
+namespace stillspin::chip {
+
+class Core;
+
+/// What happened since power-on. Lost writes are firmware mistakes that the real chip hides.
+struct Statistics {
+  std::uint64_t reads = 0;  // register accesses by the firmware
+  std::uint64_t writes = 0;
+  std::uint64_t events = 0;
+  std::uint64_t interrupts = 0;
+  std::uint64_t spurious_interrupts = 0;  // the request had been withdrawn: channel 1 of its group ran
+  std::uint64_t protected_writes_lost = 0;  // written without EALLOW
+  std::uint32_t last_protected_address = 0;
+  std::uint64_t gated_accesses = 0;  // peripheral clock off: reads gave 0, writes were lost
+  std::uint32_t last_gated_address = 0;
+  std::uint64_t unmodelled_accesses = 0;  // no register of the model there
+  std::uint32_t last_unmodelled_address = 0;
+  std::uint64_t resets = 0;  // after power-on
+  Tick idle_ticks = 0;       // asleep in target_idle
+};
+
+class Chip {
+ public:
+  using Firmware = void (*)();
+
+  /// `firmware` is the image's entry; it must not return. The world must outlive the chip.
+  Chip(World& world, Firmware firmware);
+  ~Chip();
+  Chip(const Chip&) = delete;
+  Chip& operator=(const Chip&) = delete;
+
+  void run_until(Tick t);
+  Tick now() const;
+
+  const Statistics& statistics() const;
+
+  /// What ended the run, empty while all is well.
+  const std::string& error() const;
+
+  /// A level that pin_level() gives may have changed: the chip looks at its trip inputs again, in the tick in which a
+  /// callback of the world says so. After World::call it looks anyway.
+  void pins_changed();
+
+  /// Whether the CPU is asleep in target_idle.
+  bool is_idle() const;
+
+  /// A register's content without an access: no time passes, protection and gates apply. For tests and inspection.
+  std::uint16_t inspect(std::uint32_t address);
+
+ private:
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace stillspin::chip
+
+#endif

@@ -1,0 +1,271 @@
+#include "sim_host/chip/core.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace stillspin::chip {
+namespace {
+
+// A watchdog reset holds the chip for this long; the pins are low meanwhile.
+constexpr Tick kResetPulse = 512 * kOscillatorPeriod;
+
+class CurrentScope {
+ public:
+  explicit CurrentScope(Core* core) : previous_(Core::set_current(core)) {}
+  ~CurrentScope() { Core::set_current(previous_); }
+  CurrentScope(const CurrentScope&) = delete;
+  CurrentScope& operator=(const CurrentScope&) = delete;
+
+ private:
+  Core* previous_;
+};
+
+}  // namespace
+
+Core::Core(World& world, Chip::Firmware firmware)
+    : world_(world),
+      firmware_(firmware),
+      system_(*this),
+      watchdog_(*this),
+      timers_(*this),
+      gpio_(world),
+      epwm_(*this),
+      adc_(*this),
+      eqep1_(*this, 1) {
+  due_.fill(kNever);
+  reset(0, false);
+}
+
+// ---- life cycle -------------------------------------------------------------------------------------
+
+void Core::reset(Tick t, bool by_watchdog) {
+  release_ = by_watchdog ? t + kResetPulse : t;
+  interrupts_.reset();
+  eallow_ = idle_ = stop_ = reset_requested_ = false;
+  depth_ = 0;
+  flash_.reset();
+  system_.reset();
+  period_ = system_.sysclk_period();
+  gpio_.reset(t);
+  reset_peripherals(t);
+  watchdog_.reset(release_, by_watchdog);
+  due_[kSystem] = system_.next_event();
+  due_[kEPwm] = epwm_.next_event();
+  due_[kAdc] = adc_.next_event();
+  due_[kEQep1] = eqep1_.next_event();
+  due_[kTimers] = timers_.next_event();
+  due_[kWatchdog] = watchdog_.next_event();
+  update_horizon();
+  coroutine_.prepare(&Core::firmware_entry, this);
+}
+
+void Core::reset_peripherals(Tick t) {
+  epwm_.reset(t);
+  epwm_.set_time_base_clock(false, t);
+  epwm_.set_trip_pins(trips_ = 0, t);
+  adc_.reset(t);
+  eqep1_.reset(t);
+  timers_.reset(release_);
+}
+
+void Core::firmware_entry(void* core) {
+  auto& self = *static_cast<Core*>(core);
+  if (self.release_ > self.now_) self.advance(self.release_);
+  self.firmware_();
+  self.model_error("the firmware returned from its entry function, at tick", self.now_);
+  self.leave_firmware();
+}
+
+void Core::run_until(Tick t) {
+  if (t < now_) throw std::invalid_argument("run_until: the chip is already past that tick");
+  check_outcome();
+  limit_ = t;
+  due_[kWorldCall] = world_.next_call();
+  update_horizon();
+  const CurrentScope scope(this);
+  if (pins_dirty_) update_trips();
+  resume_firmware();
+}
+
+void Core::resume_firmware() {
+  for (;;) {
+    coroutine_.resume();
+    check_outcome();
+    if (!reset_requested_) return;
+    ++statistics_.resets;
+    reset(now_, true);
+    if (world_touched_) after_world();
+    check_outcome();
+  }
+}
+
+void Core::check_outcome() {
+  if (exception_) std::rethrow_exception(exception_);
+  if (!error_.empty()) throw std::runtime_error(error_);
+}
+
+void Core::leave_firmware() {
+  for (;;) coroutine_.suspend();  // never resumed: discarded by a reset, or dead after an error
+}
+
+void Core::request_reset() { stop_ = reset_requested_ = true; }
+
+void Core::model_error(const char* text, std::int64_t value) {
+  stop_ = true;
+  if (!error_.empty()) return;  // the first one is the cause
+  error_ = "virtual F2808, tick " + std::to_string(now_) + ": " + text + " (" + std::to_string(value) + ")";
+}
+
+void Core::fail_with_current_exception() {
+  stop_ = true;
+  exception_ = std::current_exception();
+  error_ = "virtual F2808, tick " + std::to_string(now_) + ": the world threw an exception";
+}
+
+// ---- time and events ----------------------------------------------------------------------------------
+
+// Lets time pass to `target` with everything that is due at or before it; stops for the host at the end of the run.
+void Core::advance(Tick target) {
+  for (;;) {
+    const Tick stop = std::min(target, limit_);
+    run_events(stop);
+    if (stop_) leave_firmware();
+    now_ = stop;
+    if (stop == target) return;
+    coroutine_.suspend();
+  }
+}
+
+// Lets time pass to the next event, but not beyond `target`. May return earlier, after a stop: the host may have changed
+// the world, so the caller looks again.
+void Core::wait_for_event(Tick target) {
+  const Tick goal = std::min(target, std::max(next_event_, now_));
+  if (goal > limit_) {
+    advance(limit_);
+    coroutine_.suspend();
+    return;
+  }
+  run_events(goal);
+  if (stop_) leave_firmware();
+  now_ = goal;
+}
+
+void Core::run_events(Tick last) {
+  try {
+    while (next_event_ <= last && !stop_) {
+      unsigned source = 0;
+      while (due_[source] != next_event_) ++source;
+      now_ = std::max(now_, next_event_);
+      ++statistics_.events;
+      run_event(static_cast<Source>(source));
+      if (world_touched_) after_world();
+    }
+  } catch (...) {
+    fail_with_current_exception();
+  }
+}
+
+void Core::run_event(Source source) {
+  switch (source) {
+    case kWorldCall: run_world(); break;
+    case kSystem: apply(system_.run_event()); break;
+    case kEPwm:
+      epwm_.run_event(now_);
+      set_due(kEPwm, epwm_.next_event());
+      break;
+    case kAdc:
+      adc_.run_event(now_);
+      set_due(kAdc, adc_.next_event());
+      break;
+    case kEQep1:
+      eqep1_.run_event(now_);
+      set_due(kEQep1, eqep1_.next_event());
+      break;
+    case kTimers:
+      timers_.run_event(now_);
+      set_due(kTimers, timers_.next_event());
+      break;
+    case kWatchdog: run_watchdog(); break;
+    case kSources: break;
+  }
+}
+
+void Core::run_world() {
+  world_.call(now_);
+  world_touched_ = true;
+  pins_dirty_ = true;
+}
+
+void Core::run_watchdog() {
+  if (watchdog_.run_event(now_) == Watchdog::Outcome::kReset) request_reset();
+  set_due(kWatchdog, watchdog_.next_event());
+}
+
+void Core::after_world() {
+  world_touched_ = false;
+  set_due(kWorldCall, world_.next_call());
+  if (pins_dirty_) update_trips();
+}
+
+void Core::update_trips() {
+  pins_dirty_ = false;
+  const unsigned active = gpio_.trips_routed() ? gpio_.active_trips(now_) : 0;
+  if (active == trips_) return;
+  trips_ = active;
+  epwm_.set_trip_pins(active, now_);
+  set_due(kEPwm, epwm_.next_event());
+}
+
+// Clocks or the time-base gate changed: every counter goes on with its new clock.
+void Core::apply(unsigned effects) {
+  if ((effects & SystemControl::kClocks) != 0) {
+    period_ = system_.sysclk_period();
+    epwm_.clocks_changed(now_);
+    adc_.clocks_changed(now_);
+    eqep1_.clocks_changed(now_);
+    timers_.clocks_changed(now_);
+    check_flash_waits();
+  }
+  if ((effects & SystemControl::kTimeBase) != 0) epwm_.set_time_base_clock(system_.time_base_clock(), now_);
+  due_[kEPwm] = epwm_.next_event();
+  due_[kAdc] = adc_.next_event();
+  due_[kEQep1] = eqep1_.next_event();
+  due_[kTimers] = timers_.next_event();
+  due_[kSystem] = system_.next_event();
+  update_horizon();
+}
+
+void Core::check_flash_waits() {
+  if (!flash_.waits_suffice(period_)) {
+    model_error("flash wait states too few for this SYSCLKOUT: FBANKWAIT", flash_.bank_wait());
+  }
+}
+
+// ---- services -----------------------------------------------------------------------------------------
+
+void Core::raise_interrupt(unsigned vector, Tick) {
+  if (!interrupts_.raise(vector)) model_error("a peripheral raised a vector that has no line", vector);
+}
+
+void Core::start_of_conversion(bool soca, Tick t) {
+  if (!system_.adc_clock()) return;
+  adc_.start_of_conversion(soca, t);
+  set_due(kAdc, adc_.next_event());
+}
+
+void Core::pwm_outputs(int module, bool a, bool b, Tick t) {
+  gpio_.pwm_outputs(module, a, b, t);
+  world_touched_ = true;
+}
+
+std::uint16_t Core::sample(int channel, Tick t) {
+  world_touched_ = true;
+  return world_.adc_sample(t, channel);
+}
+
+std::int64_t Core::encoder_edges(Tick t) {
+  if (gpio_.encoder_routed()) encoder_held_ = world_.encoder_edges(t);
+  return encoder_held_;
+}
+
+}  // namespace stillspin::chip

@@ -1,0 +1,191 @@
+// The inside of the virtual chip: time, event order, bus and CPU. Not for users of the chip, see chip.hpp.
+//
+// Split over core.cpp (life cycle, events, services), cpu.cpp (what the firmware's instructions do), bus.cpp (address
+// decode and protection). The target_* functions reach the core that runs on the present thread through current().
+//
+// The fast path of an access: add its cost to now_, compare with horizon_, decode, test for an interrupt. horizon_ is the
+// last tick that can be reached without an event or the end of the run.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_CORE_HPP
+#define STILLSPIN_SIM_HOST_CHIP_CORE_HPP
+
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <string>
+
+#include "sim_host/chip/adc.hpp"
+#include "sim_host/chip/chip.hpp"
+#include "sim_host/chip/coroutine.hpp"
+#include "sim_host/chip/cpu_timers.hpp"
+#include "sim_host/chip/epwm.hpp"
+#include "sim_host/chip/eqep.hpp"
+#include "sim_host/chip/flash_control.hpp"
+#include "sim_host/chip/gpio.hpp"
+#include "sim_host/chip/interrupts.hpp"
+#include "sim_host/chip/peripheral.hpp"
+#include "sim_host/chip/system_control.hpp"
+#include "sim_host/chip/watchdog.hpp"
+
+namespace stillspin::chip {
+
+class Core final : public ChipServices {
+ public:
+  Core(World& world, Chip::Firmware firmware);
+  virtual ~Core() = default;
+  Core(const Core&) = delete;
+  Core& operator=(const Core&) = delete;
+
+  /// Makes `core` the one that the target_* functions of this thread reach; gives back the one before.
+  static Core* set_current(Core* core);
+
+  // ---- for Chip
+  void run_until(Tick t);
+  Tick now() const { return now_; }
+  const Statistics& statistics() const { return statistics_; }
+  const std::string& error() const { return error_; }
+  void pins_changed() { pins_dirty_ = world_touched_ = true; }
+  bool is_idle() const { return idle_; }
+  std::uint16_t inspect(std::uint32_t address);
+
+  // ---- for the firmware (target_*)
+  std::uint16_t read16(std::uint32_t address);
+  void write16(std::uint32_t address, std::uint16_t value);
+  std::uint32_t read32(std::uint32_t address);
+  void write32(std::uint32_t address, std::uint32_t value);
+  void set_eallow(bool on);
+  void set_interrupts_masked(bool masked);
+  std::uint16_t read_ier();
+  void write_ier(std::uint16_t mask);
+  void clear_ifr();
+  void set_vector(std::uint16_t vector, Isr isr);
+  void idle();
+  void elapse(std::uint16_t cycles);
+
+  // ---- for the peripherals
+  void raise_interrupt(unsigned vector, Tick t) override;
+  void start_of_conversion(bool soca, Tick t) override;
+  void pwm_outputs(int module, bool a, bool b, Tick t) override;
+  std::uint16_t sample(int channel, Tick t) override;
+  std::int64_t encoder_edges(Tick t) override;
+  Tick sysclk_period() const override { return system_.sysclk_period(); }
+  unsigned hspclk_divider() const override { return system_.hspclk_divider(); }
+  bool epwm_clock(int module) const override { return system_.epwm_clock(module); }
+  bool adc_clock() const override { return system_.adc_clock(); }
+  bool eqep_clock(int instance) const override { return system_.eqep_clock(instance); }
+  void model_error(const char* text, std::int64_t value) override;
+
+ private:
+  // In the order in which they run at one tick.
+  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kTimers, kWatchdog, kSources };
+
+  // Life cycle (core.cpp).
+  static void firmware_entry(void* core);
+  void reset(Tick t, bool by_watchdog);
+  void reset_peripherals(Tick t);
+  void resume_firmware();
+  void check_outcome();
+  [[noreturn]] void leave_firmware();
+  void request_reset();
+  void fail_with_current_exception();
+
+  // Time and events (core.cpp).
+  void spend(Tick cycles) {
+    const Tick target = now_ + cycles * period_;
+    if (target <= horizon_) {
+      now_ = target;
+    } else {
+      advance(target);
+    }
+  }
+  void advance(Tick target);
+  void wait_for_event(Tick target);
+  void run_events(Tick last);
+  void run_event(Source source);
+  void run_world();
+  void run_watchdog();
+  void after_world();
+  void update_trips();
+  void apply(unsigned system_effects);
+  void set_due(Source source, Tick due) {
+    const Tick before = due_[source];
+    due_[source] = due;
+    if (due < next_event_) {
+      next_event_ = due;
+      horizon_ = due - 1 < limit_ ? due - 1 : limit_;
+    } else if (before == next_event_ && due != before) {
+      update_horizon();
+    }
+  }
+  void update_horizon() {
+    Tick first = due_[0];
+    for (unsigned source = 1; source < kSources; ++source) first = due_[source] < first ? due_[source] : first;
+    next_event_ = first;
+    horizon_ = first - 1 < limit_ ? first - 1 : limit_;
+  }
+  void check_flash_waits();
+
+  // CPU (cpu.cpp).
+  void spend_instruction();
+  void finish_access() {
+    if (stop_) leave_firmware();
+    if (interrupts_.deliverable()) take_interrupts();
+  }
+  void take_interrupts();
+  void take_interrupt();
+
+  // Bus (bus.cpp).
+  std::uint16_t bus_read(std::uint32_t address);
+  void bus_write(std::uint32_t address, std::uint16_t value);
+  bool protection_stops(std::uint32_t address);
+  bool gate_stops(bool clocked, std::uint32_t address);
+  void note_unmodelled(std::uint32_t address);
+  std::uint16_t read_identity(std::uint32_t address) const;
+  void write_system(std::uint16_t offset, std::uint16_t value);
+  std::uint16_t read_system(std::uint16_t offset) const;
+  void write_epwm(std::uint32_t address, std::uint16_t value);
+  std::uint16_t read_epwm(std::uint32_t address);
+  void write_gpio(std::uint32_t address, std::uint16_t value);
+  void write_flash(std::uint32_t address, std::uint16_t value);
+  void write_adc(std::uint32_t address, std::uint16_t value);
+  void write_eqep1(std::uint32_t address, std::uint16_t value);
+
+  // Touched at every access: kept together.
+  Tick now_ = 0;
+  Tick horizon_ = -1;
+  Tick period_ = 2 * kOscillatorPeriod;  // SYSCLKOUT
+  bool stop_ = false;                    // a reset or an error waits: leave the firmware
+  bool world_touched_ = false;           // its next call may have moved
+  bool pins_dirty_ = false;
+  bool eallow_ = false;
+  bool idle_ = false;
+  Interrupts interrupts_;
+  Tick limit_ = 0;
+  Tick next_event_ = kNever;
+  std::array<Tick, kSources> due_{};
+  Statistics statistics_;
+
+  World& world_;
+  Chip::Firmware firmware_;
+  SystemControl system_;
+  Watchdog watchdog_;
+  CpuTimers timers_;
+  Gpio gpio_;
+  FlashControl flash_;
+  EPwmBank epwm_;
+  Adc adc_;
+  EQep eqep1_;
+
+  unsigned depth_ = 0;  // nested interrupts
+  unsigned trips_ = 0;
+  std::int64_t encoder_held_ = 0;
+  Tick release_ = 0;  // end of the reset pulse
+  bool reset_requested_ = false;
+  std::string error_;
+  std::exception_ptr exception_;
+  Coroutine coroutine_;
+};
+
+}  // namespace stillspin::chip
+
+#endif

@@ -1,0 +1,69 @@
+// General purpose pins: function select, direction, output latches, and the routing between pins and peripherals.
+//
+// A pin belongs to the function that its two mux bits name. As GPIO it is an input (the world's level) or an output (the
+// latch's). ePWM outputs reach the world only when routed to their pins; trip inputs and the encoder only count when
+// routed. A pin that nobody drives is low to the world, as the board's pull-down makes it.
+// Not modelled: input qualification (a level is seen at once), pull-ups, XINT selection, wake-up selection (stored).
+// Source: SPRU712 (GPIO); gpio mux table of the data manual SPRS230.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_GPIO_HPP
+#define STILLSPIN_SIM_HOST_CHIP_GPIO_HPP
+
+#include <array>
+#include <cstdint>
+
+#include "sim_host/chip/world.hpp"
+
+namespace stillspin::chip {
+
+class Gpio {
+ public:
+  explicit Gpio(World& world) : world_(world) {}
+
+  void reset(Tick t);
+  std::uint16_t read(std::uint16_t offset, Tick t);  // offset from kGpioFrame
+  void write(std::uint16_t offset, std::uint16_t value, Tick t);
+
+  /// Whether a register needs EALLOW: all but the data registers do.
+  static bool is_protected(std::uint16_t offset);
+
+  /// Output of an ePWM module (0..5), on its way to the pins GPIO2m and GPIO2m+1.
+  void pwm_outputs(int module, bool a, bool b, Tick t);
+
+  /// TZ1..TZ6 that are routed to a pin which is low now: bit n-1 for TZn.
+  unsigned active_trips(Tick t);
+  bool trips_routed() const { return trips_routed_; }
+  bool encoder_routed() const { return encoder_routed_; }
+
+ private:
+  static constexpr unsigned kPins = 35;
+  static constexpr unsigned kPwmPins = 12;
+
+  unsigned function(unsigned pin) const;
+  bool is_output(unsigned pin) const;
+  bool level(unsigned pin, Tick t);
+  std::uint16_t read_levels(unsigned half, Tick t);
+  void write_latch(std::uint16_t offset, std::uint16_t value);
+  void update_routes();
+  void drive(Tick t);
+  void drive_pwm_pins(Tick t);
+  void drive_pwm(int module, Tick t);
+
+  World& world_;
+  std::array<std::uint16_t, 0x20> control_{};   // GPACTRL .. GPBPUD
+  std::array<std::uint16_t, 0x20> select_{};    // GPIOXINT1SEL .. GPIOLPMSEL
+  std::array<std::uint16_t, 4> latch_{};        // pins 0-15, 16-31, 32-47, 48-63
+  std::uint64_t outputs_ = 0;                   // pins that are general purpose outputs
+  std::uint64_t driven_ = 0;                    // levels of those, as the world knows them
+  unsigned pwm_levels_ = 0;                     // ePWM outputs, bit 2m for A of module m, 2m+1 for B
+  unsigned pwm_routed_ = 0;
+  unsigned pwm_pins_ = 0;                       // what the world knows
+  bool trips_routed_ = false;
+  bool encoder_routed_ = false;
+};
+
+inline constexpr std::uint32_t kGpioFrame = 0x6F80;
+
+}  // namespace stillspin::chip
+
+#endif

@@ -1,0 +1,45 @@
+// What is soldered around the chip: the seam between the virtual F2808 and everything outside its package.
+//
+// The chip calls; the world answers. Times are ticks of 10 ns counted from power-on and never decrease from one call
+// to the next, so that a world may integrate its continuous state lazily up to the time it is given.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_WORLD_HPP
+#define STILLSPIN_SIM_HOST_CHIP_WORLD_HPP
+
+#include <cstdint>
+#include <limits>
+
+namespace stillspin::chip {
+
+using Tick = std::int64_t;  // 10 ns
+inline constexpr Tick kTicksPerSecond = 100'000'000;
+inline constexpr Tick kNever = std::numeric_limits<Tick>::max();
+
+class World {
+ public:
+  virtual ~World() = default;
+
+  /// The pins of ePWM1..6 changed: `module` 0..5; levels as seen at the pin. A pin that is not driven (trip zone with
+  /// high impedance, or not muxed to the ePWM) reads low, as the board's pull-down makes it.
+  virtual void on_pwm_pins(Tick t, int module, bool a, bool b) = 0;
+
+  /// The sample-and-hold of `channel` (0..7 = ADCINA0..7, 8..15 = ADCINB0..7) opens at t: the 12-bit code it will give.
+  virtual std::uint16_t adc_sample(Tick t, int channel) = 0;
+
+  /// Level at a pin used as an input (0..34), asked when firmware reads it.
+  virtual bool pin_level(Tick t, int pin) = 0;
+
+  /// A pin used as a general purpose output changed.
+  virtual void on_output_pin(Tick t, int pin, bool level) = 0;
+
+  /// Quadrature edges counted since power-on by the encoder on eQEP1 (signed), and the count at the last index pulse.
+  virtual std::int64_t encoder_edges(Tick t) = 0;
+
+  /// When the world next wants to be called on its own account (kNever when not), and that call.
+  virtual Tick next_call() const = 0;
+  virtual void call(Tick t) = 0;
+};
+
+}  // namespace stillspin::chip
+
+#endif

@@ -1,0 +1,43 @@
+// One way to get from the start of a segment to its end, or to the first event on the way.
+
+#ifndef STILLSPIN_SIM_HOST_PLANT_FLOW_HPP
+#define STILLSPIN_SIM_HOST_PLANT_FLOW_HPP
+
+#include <memory>
+
+#include "sim_host/plant/model.hpp"
+
+namespace stillspin::plant {
+
+/// Start of a segment, with the slopes there (every user needs them, so they are computed once).
+struct SegmentStart {
+  State y{};       // y[kAngle] = 0
+  State slope{};   // dy/dt
+  Pair flux;       // Vs
+  Pair flux_slope; // V
+};
+
+struct Advance {
+  double reached = 0.0;  // s from the start, > 0 unless an event is due at once
+  bool event = false;
+  Fired fired{};         // which event functions have reached zero
+  bool has_end_slope = false;
+  State end_slope{};     // dy/dt at the end, when the method has it (to its own order)
+};
+
+class Flow {
+ public:
+  virtual ~Flow() = default;
+
+  /// From `start` over at most `h` seconds (> 0) to `end`.
+  virtual Advance advance(const Model& model, const SegmentStart& start, double h, State& end) = 0;
+};
+
+std::unique_ptr<Flow> make_runge_kutta();
+std::unique_ptr<Flow> make_erkstep(double relative_tolerance);
+std::unique_ptr<Flow> make_reference();
+std::unique_ptr<Flow> make_flow(const SolverConfig& config);
+
+}  // namespace stillspin::plant
+
+#endif

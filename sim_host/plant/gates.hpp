@@ -1,0 +1,56 @@
+// From driver inputs to conducting devices: turn-on and turn-off delay of six devices.
+//
+// A pulse that is over before its device has reacted never happens: an edge that would take effect before the edge that
+// it follows removes both.
+
+#ifndef STILLSPIN_SIM_HOST_PLANT_GATES_HPP
+#define STILLSPIN_SIM_HOST_PLANT_GATES_HPP
+
+#include <array>
+#include <deque>
+#include <limits>
+
+#include "sim_host/plant/config.hpp"
+
+namespace stillspin::plant {
+
+inline constexpr Tick kNever = std::numeric_limits<Tick>::max();
+
+class Gates {
+ public:
+  Gates(Tick turn_on_delay, Tick turn_off_delay) : on_delay_(turn_on_delay), off_delay_(turn_off_delay) {}
+
+  void set(Tick t, int leg, bool upper, bool lower);
+
+  /// When the next device changes.
+  Tick next() const { return next_; }
+
+  /// Lets all changes up to t happen; the legs whose devices have changed.
+  std::array<bool, 3> apply(Tick t);
+
+  bool upper(int leg) const { return devices_[2 * leg].on; }
+  bool lower(int leg) const { return devices_[2 * leg + 1].on; }
+
+ private:
+  struct Change {
+    Tick tick;
+    bool on;
+  };
+  struct Device {
+    bool input = false;
+    bool on = false;
+    std::deque<Change> pending;
+  };
+
+  void set_device(Device& device, Tick t, bool on);
+  void find_next();
+
+  std::array<Device, 6> devices_;
+  Tick on_delay_;
+  Tick off_delay_;
+  Tick next_ = kNever;
+};
+
+}  // namespace stillspin::plant
+
+#endif

@@ -1,0 +1,128 @@
+#include "sim_host/plant/sensors.hpp"
+
+#include <cmath>
+
+namespace stillspin::plant {
+namespace {
+
+constexpr double kForgotten = 40.0;        // time constants after which nothing is left (4e-18)
+constexpr double kWholeTick = 1e-9;        // ticks: rounding of seconds
+constexpr double kShortParabola = 1e-9;    // s: a shorter segment is a straight line (curvature would be rounding)
+
+double phase_value(int phase, const AlphaBeta& x) {
+  if (phase == 0) return x.alpha;
+  const double turn = 0.5 * kSqrt3 * x.beta;
+  return phase == 1 ? turn - 0.5 * x.alpha : -turn - 0.5 * x.alpha;
+}
+
+}  // namespace
+
+Sensors::Sensors(const PlantConfig& c, const AlphaBeta& initial)
+    : config_(c.sensor),
+      tau_(c.sensor.bandwidth > 0.0 ? 1.0 / (2.0 * kPi * c.sensor.bandwidth) : 0.0),
+      inverse_tau_(2.0 * kPi * c.sensor.bandwidth),
+      ring_scale_(1.5 * c.sensor.ring_amplitude / c.link.source_voltage),
+      filtered_(initial) {
+  for (int n = 0; n < kFine; ++n) fine_[n] = decay(n * kSecondsPerTick);
+  for (int n = 0; n < kCoarse; ++n) coarse_[n] = decay(n * kFine * kSecondsPerTick);
+  for (int n = 0; n < kFine; ++n) fine_filter_[n] = exponential(-n * kSecondsPerTick * inverse_tau_);
+  for (int n = 0; n < kCoarse; ++n) {
+    coarse_filter_[n] = n == 0 ? 1.0 : coarse_filter_[n - 1] * exponential(-kFine * kSecondsPerTick * inverse_tau_);
+  }
+}
+
+/// exp(-seconds/tau): from the tables for whole ticks up to their end, which is most of the time.
+double Sensors::forgetting(double seconds) const {
+  const double scaled = seconds * inverse_tau_;
+  if (scaled > kForgotten) return 0.0;
+  const double ticks = seconds * 1e8;
+  const int whole = static_cast<int>(ticks + 0.5);
+  if (whole < kFine * kCoarse && std::fabs(ticks - whole) < kWholeTick) {
+    return coarse_filter_[whole / kFine] * fine_filter_[whole % kFine];
+  }
+  return exponential(-scaled);
+}
+
+AlphaBeta Sensors::filtered(const AlphaBeta& i0, const AlphaBeta& d0, const AlphaBeta& i1, double s) const {
+  if (tau_ == 0.0) return i1;
+  if (!(s > 0.0)) return filtered_;
+  const double left = forgetting(s);
+  const double per_square = s > kShortParabola ? 2.0 / (s * s) : 0.0;
+  const auto one = [&](double y0, double u0, double v0, double u1) {
+    const double c = (u1 - u0 - v0 * s) * per_square;
+    const double at_start = u0 - tau_ * v0 + tau_ * tau_ * c;
+    const double at_end = u1 - tau_ * (v0 + c * s) + tau_ * tau_ * c;
+    return at_end + (y0 - at_start) * left;
+  };
+  return {one(filtered_.alpha, i0.alpha, d0.alpha, i1.alpha), one(filtered_.beta, i0.beta, d0.beta, i1.beta)};
+}
+
+Sensors::Phasor Sensors::decay(double seconds) const {
+  const double size = exponential(-seconds / config_.ring_decay);
+  const Rotation turn = rotation(2.0 * kPi * config_.ring_frequency * seconds);
+  return {size * turn.c, size * turn.s};
+}
+
+bool Sensors::decay(Tick ticks, Phasor* factor) const {
+  if (static_cast<double>(ticks) * kSecondsPerTick > kForgotten * config_.ring_decay) return false;
+  if (ticks < kFine) {
+    *factor = fine_[static_cast<std::size_t>(ticks)];
+  } else if (ticks < kFine * kCoarse) {
+    *factor = product(coarse_[static_cast<std::size_t>(ticks / kFine)], fine_[static_cast<std::size_t>(ticks % kFine)]);
+  } else {
+    *factor = decay(static_cast<double>(ticks) * kSecondsPerTick);
+  }
+  return true;
+}
+
+void Sensors::excite(Tick t, double fraction, const std::array<double, 3>& step) {
+  if (ring_scale_ == 0.0) return;
+  // Phasors live on whole ticks: an edge inside a tick is booked on the next one, already that much older.
+  const Tick tick = fraction > 0.0 ? t + 1 : t;
+  Phasor factor;
+  if (decay(tick - ring_tick_, &factor)) {
+    ring_alpha_ = product(ring_alpha_, factor);
+    ring_beta_ = product(ring_beta_, factor);
+  } else {
+    ring_alpha_ = ring_beta_ = Phasor{};
+  }
+  ring_tick_ = tick;
+  const Phasor born = fraction > 0.0 ? decay(kSecondsPerTick - fraction) : Phasor{1.0, 0.0};
+  const double alpha = ring_scale_ * (2.0 * step[0] - step[1] - step[2]) * (1.0 / 3.0);
+  const double beta = ring_scale_ * (step[1] - step[2]) * (1.0 / kSqrt3);
+  ring_alpha_.re += alpha * born.re;
+  ring_alpha_.im += alpha * born.im;
+  ring_beta_.re += beta * born.re;
+  ring_beta_.im += beta * born.im;
+}
+
+AlphaBeta Sensors::ringing(Tick t) const {
+  Phasor factor;
+  if (ring_scale_ == 0.0 || !decay(t - ring_tick_, &factor)) return {};
+  return {product(ring_alpha_, factor).im, product(ring_beta_, factor).im};
+}
+
+double Sensors::reading(int phase, Tick t, const AlphaBeta& filtered, const AlphaBeta& ringing) const {
+  const Failure& f = failures_[phase];
+  if (f.stuck) return f.stuck_at;
+  const double current = phase_value(phase, filtered) + phase_value(phase, ringing);
+  double reading = f.gain * config_.gain[phase] * current + config_.offset[phase];
+  if (f.drift != 0.0) reading += f.drift * static_cast<double>(t - f.drift_from) * kSecondsPerTick;
+  return reading;
+}
+
+void Sensors::stick(int phase, double value) {
+  failures_[phase].stuck = true;
+  failures_[phase].stuck_at = value;
+}
+
+void Sensors::drift(int phase, Tick from, double per_second) {
+  failures_[phase].drift = per_second;
+  failures_[phase].drift_from = from;
+}
+
+void Sensors::scale(int phase, double factor) { failures_[phase].gain *= factor; }
+
+void Sensors::repair() { failures_ = {}; }
+
+}  // namespace stillspin::plant

@@ -1,0 +1,83 @@
+// Current sensors between the true currents and the ADC input: first-order bandwidth, ringing after voltage edges, gain
+// and offset. Exact between events instead of integrated (a 1 us time constant would make the machine stiff).
+//
+// Bandwidth: over a segment the current is a parabola u through start, start slope and end; then
+//   y(h) = p(h) + (y(0) - p(0)) exp(-h/tau),   p = u - tau u' + tau^2 u''.
+// Ringing: an edge of the leg voltage by dV adds A dV/V sin(2 pi f t) exp(-t/tau_r) to the switched phase and minus half
+// of that to the others (V = source voltage). Both are linear and sum to zero over the phases, so alpha/beta suffices.
+
+#ifndef STILLSPIN_SIM_HOST_PLANT_SENSORS_HPP
+#define STILLSPIN_SIM_HOST_PLANT_SENSORS_HPP
+
+#include <array>
+
+#include "sim_host/plant/portable_math.hpp"
+#include "sim_host/plant/trajectory.hpp"
+
+namespace stillspin::plant {
+
+class Sensors {
+ public:
+  Sensors(const PlantConfig& config, const AlphaBeta& initial);
+
+  /// The segment from current i0 with slope d0 to i1, h seconds long, has passed.
+  void commit(const AlphaBeta& i0, const AlphaBeta& d0, const AlphaBeta& i1, double h) {
+    filtered_ = filtered(i0, d0, i1, h);
+  }
+
+  /// Filter output at i1, s seconds after the start of a segment.
+  AlphaBeta filtered(const AlphaBeta& i0, const AlphaBeta& d0, const AlphaBeta& i1, double s) const;
+
+  /// Leg voltages jumped by `step` V at `fraction` s after tick t.
+  void excite(Tick t, double fraction, const std::array<double, 3>& step);
+
+  /// Ringing at t, which is not before the last edge.
+  AlphaBeta ringing(Tick t) const;
+
+  /// Reading of `phase` (A) at t for the filtered current and the ringing.
+  double reading(int phase, Tick t, const AlphaBeta& filtered, const AlphaBeta& ringing) const;
+
+  void stick(int phase, double value);
+  void drift(int phase, Tick from, double per_second);
+  void scale(int phase, double factor);
+  void repair();
+
+ private:
+  struct Failure {
+    bool stuck = false;
+    double stuck_at = 0.0;  // A
+    double drift = 0.0;     // A/s
+    Tick drift_from = 0;
+    double gain = 1.0;
+  };
+  struct Phasor {
+    double re = 0.0;
+    double im = 0.0;
+  };
+
+  double forgetting(double seconds) const;
+  static Phasor product(const Phasor& a, const Phasor& b) {
+    return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+  }
+  Phasor decay(double seconds) const;
+  bool decay(Tick ticks, Phasor* factor) const;
+
+  SensorConfig config_;
+  double tau_;          // s, 0 = ideal
+  double inverse_tau_;  // 1/s
+  double ring_scale_;   // A/V
+  AlphaBeta filtered_;
+  Phasor ring_alpha_, ring_beta_;
+  Tick ring_tick_ = 0;
+  static constexpr int kFine = 64;
+  static constexpr int kCoarse = 128;
+  std::array<Phasor, kFine> fine_;      // decay over 0..63 ticks
+  std::array<Phasor, kCoarse> coarse_;  // decay over 0, 64, 128, ... ticks
+  std::array<double, kFine> fine_filter_;
+  std::array<double, kCoarse> coarse_filter_;
+  std::array<Failure, 3> failures_;
+};
+
+}  // namespace stillspin::plant
+
+#endif

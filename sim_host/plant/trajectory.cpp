@@ -1,0 +1,152 @@
+#include "sim_host/plant/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace stillspin::plant {
+namespace {
+
+constexpr double kStandingStill = 1e-14;  // s
+constexpr int kMaxAtOnce = 60;            // more events than that at one instant are a defect of the model
+constexpr int kResetAfter = 64;            // segments
+constexpr double kGrazing = 1e-9;         // A: a double crossing less deep does not matter
+
+}  // namespace
+
+Trajectory::Trajectory(const PlantConfig& c)
+    : model_(c), flow_(make_flow(c.solver)), ripple_speed_(2.0 * kPi * c.link.ripple_frequency) {
+  const double turn = std::floor(c.initial.angle / (2.0 * kPi) + 0.5);
+  angle_ = c.initial.angle - 2.0 * kPi * turn;
+  turns_ = static_cast<std::int64_t>(turn);
+  const double link = c.initial.link_voltage < 0.0 ? c.link.source_voltage : c.initial.link_voltage;
+  start_.y = {c.initial.current_d, c.initial.current_q, c.mechanics.locked ? 0.0 : c.initial.speed, 0.0, link};
+  model_.base = rotation(angle_);
+  model_.anchor = model_.machine.anchor(start_.y[kIq]);
+  model_.resolve(start_.y, {});
+}
+
+void Trajectory::begin() {
+  model_.anchor = model_.machine.anchor_near(start_.y[kIq], model_.anchor);
+  start_.flux = model_.flux(start_.y);
+  model_.derive(0.0, start_.y, start_.flux, start_.slope, start_.flux_slope);
+  started_ = true;
+}
+
+void Trajectory::look_ahead(Tick end) {
+  if (!started_) begin();
+  const double h = time_to(end);
+  step_ = flow_->advance(model_, start_, h, end_);
+  end_tick_ = end;
+  take_end_slope();
+  ahead_ = true;
+  if (step_.event) return;
+  const double dip = grazing_instant();
+  if (dip <= 0.0) return;
+  // Stop at the lowest point: there the event function is negative, so that the flow finds the first crossing.
+  ++grazing_;
+  step_ = flow_->advance(model_, start_, dip, end_);
+  take_end_slope();
+  if (step_.event) return;
+  step_.event = true;  // it was not that deep after all: an event of nothing, so that the end need not be a whole tick
+}
+
+void Trajectory::take_end_slope() {
+  end_slope_known_ = step_.has_end_slope;
+  if (end_slope_known_) end_slope_ = step_.end_slope;
+}
+
+/// A current that falls and comes back inside the segment may have crossed zero twice, which its end does not show.
+/// When it may have: the instant of its minimum, else 0.
+double Trajectory::grazing_instant() const {
+  if (model_.clamp == Clamp::kAll) return 0.0;
+  const double h = step_.reached;
+  const AlphaBeta i0 = start_current(), d0 = start_slope();
+  for (int k = 0; k < 3; ++k) {
+    if (model_.direction[k] == 0 || model_.legs[k].perfect) continue;
+    const double ka = k == 0 ? 1.0 : -0.5;
+    const double kb = k == 0 ? 0.0 : k == 1 ? 0.5 * kSqrt3 : -0.5 * kSqrt3;
+    const double sign = model_.direction[k];
+    const double g0 = sign * (ka * i0.alpha + kb * i0.beta);
+    const double s0 = sign * (ka * d0.alpha + kb * d0.beta);
+    if (s0 >= 0.0 || g0 + s0 * h >= 0.0) continue;  // convex curves lie above their tangent
+    double lowest = 0.0, where = 0.0;
+    for (int n = 1; n < 16; ++n) {
+      const double x = h * n / 16.0;
+      const AlphaBeta i = current(at_offset(x));
+      const double g = sign * (ka * i.alpha + kb * i.beta);
+      if (g < lowest) {
+        lowest = g;
+        where = x;
+      }
+    }
+    if (lowest < -kGrazing) return where;
+  }
+  return 0.0;
+}
+
+State Trajectory::at_offset(double s) const {
+  const double h = step_.reached;
+  if (s >= h) return end_;
+  if (!end_slope_known_) {
+    model_.derive(h, end_, end_slope_);
+    end_slope_known_ = true;
+  }
+  const double x = s / h;
+  const double w1 = x * x * (3.0 - 2.0 * x);
+  const double w0 = 1.0 - w1;
+  const double s0 = s * (1.0 - x) * (1.0 - x);
+  const double s1 = s * x * (x - 1.0);
+  State y;
+  for (int n = 0; n < kStates; ++n) {
+    y[n] = w0 * start_.y[n] + w1 * end_[n] + s0 * start_.slope[n] + s1 * end_slope_[n];
+  }
+  return y;
+}
+
+void Trajectory::commit() {
+  model_.project(end_);
+  const double turned_by = end_[kAngle];
+  angle_ += turned_by;
+  if (std::fabs(angle_) > kPi) {
+    const std::int64_t turn = nearest(angle_ / (2.0 * kPi));
+    angle_ -= 2.0 * kPi * static_cast<double>(turn);
+    turns_ += turn;
+  }
+  end_[kAngle] = 0.0;
+  start_.y = end_;
+  at_once_ = step_.reached > kStandingStill ? 0 : at_once_ + 1;
+  if (at_once_ > kMaxAtOnce) {
+    throw std::runtime_error("plant: more than " + std::to_string(kMaxAtOnce) + " events at tick " +
+                             std::to_string(tick_) + "; the conduction modes do not settle");
+  }
+  if (step_.event) {
+    const double local = fraction_ + step_.reached;
+    const Tick whole = static_cast<Tick>(local * 1e8);
+    tick_ += whole;
+    fraction_ = std::max(0.0, local - static_cast<double>(whole) * kSecondsPerTick);
+  } else {
+    tick_ = end_tick_;
+    fraction_ = 0.0;
+  }
+  model_.load_start += model_.load_slope * step_.reached;
+  turn_bases(turned_by);
+  restart();
+}
+
+/// Rotations follow by small turns; every so often they are set anew, so that rounding does not add up.
+void Trajectory::turn_bases(double angle) {
+  if (++since_set_ < kResetAfter) {
+    model_.base = turned(model_.base, angle);
+    model_.ripple_base = turned(model_.ripple_base, ripple_speed_ * step_.reached);
+    return;
+  }
+  since_set_ = 0;
+  model_.anchor = model_.machine.anchor(start_.y[kIq]);
+  model_.base = rotation(angle_);
+  const double cycles = ripple_speed_ / (2.0 * kPi) * (static_cast<double>(tick_) * kSecondsPerTick + fraction_);
+  model_.ripple_base = rotation(2.0 * kPi * (cycles - std::floor(cycles)));
+}
+
+}  // namespace stillspin::plant

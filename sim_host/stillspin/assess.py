@@ -1,0 +1,60 @@
+"""From the records of a scenario's runs to its figures of merit and drawings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from stillspin import figures, records
+from stillspin.execute import Outcome
+from stillspin.scenario import Plot, Scenario
+
+_PANELS = ("speed", "position_error", "torque", "currents")
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A plot of a scenario as SVG text."""
+
+    title: str
+    svg: str
+
+
+@dataclass(frozen=True)
+class ScenarioResult:
+    """A scenario with how its runs ended, its figures of merit and its drawings."""
+
+    scenario: Scenario
+    outcomes: list[Outcome]
+    figures: list[figures.Result]
+    drawings: list[Drawing]
+
+    @property
+    def broken(self) -> list[Outcome]:
+        """The runs that do not count."""
+        return [outcome for outcome in self.outcomes if outcome.broken]
+
+
+def assess(
+    scenario: Scenario, outcomes: Sequence[Outcome], directory: Path, profile: str, draw: bool
+) -> ScenarioResult:
+    """Figures and drawings of a scenario. Runs that broke off are drawn as far as they got, but not measured.
+
+    Args:
+        scenario: what to measure.
+        outcomes: of its runs, in their order.
+        directory: where the records are.
+        profile: name, for the goals.
+        draw: whether to draw.
+    """
+    recorded = {outcome.run: records.read(directory / outcome.file).signals for outcome in outcomes if outcome.file}
+    counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
+    measured = figures.evaluate(scenario, counting, profile)
+    drawings = []
+    if draw and recorded:
+        from stillspin import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
+
+        chosen = scenario.plots or (Plot("", _PANELS, tuple(recorded), None),)
+        drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded)) for plot in chosen]
+    return ScenarioResult(scenario, list(outcomes), measured, drawings)

@@ -1,0 +1,137 @@
+"""The command line `stillspin`.
+
+Exit status: 0 when every run ran, whatever its figures; 1 when a run broke off; 2 for bad input, said in one line.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from stillspin import __version__, campaign, core, execute, output, profile, report, resources, scenario_file, tables
+from stillspin.one_line_errors import BROKEN, OneLineErrors
+from stillspin.progress import Bar
+from stillspin.revision import revision
+
+app = typer.Typer(
+    cls=OneLineErrors,
+    help="The virtual drive: run the firmware on a simulated inverter and motor and measure what it does.",
+    rich_markup_mode=None,
+    add_completion=False,
+)
+
+ProfileOption = Annotated[
+    str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
+]
+SeedOption = Annotated[
+    int, typer.Option("--seed", min=0, max=2**32 - 1, help="Seed of the noise: the same seed, the same run.")
+]
+ChangeOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Change an entry of the plant (section.entry=value) or a firmware parameter (name=value). Repeatable.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Options:
+    """What `run` and `reproduce` have in common."""
+
+    profile: str
+    seed: int
+    changes: list[str]
+    out: Path
+    jobs: int
+    draw: bool
+
+
+def _carry_out(ids: Iterable[str], options: Options) -> None:
+    """Run the scenarios, write the results, print what came out, and end the process when a run broke off."""
+    scenarios = [scenario_file.load(identifier) for identifier in ids]
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(options.profile, schema, known)
+    changes = profile.changes(options.changes, schema, known)
+    settings = execute.Settings(chosen, changes, options.seed, revision())
+    jobs = [job for scenario in scenarios for job in execute.prepare(scenario, settings, native)]
+    with output.fresh_directory(options.out) as directory:
+        plan = campaign.Plan(scenarios, jobs, directory / output.RUNS, chosen.name, options.draw)
+        with Bar(Console(stderr=True)) as bar:
+            results = campaign.run_all(plan, options.jobs, bar)
+        report.write(directory, results, settings)
+    tables.summary(results)
+    total = report.tally(results)
+    print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
+    broken = [outcome for result in results for outcome in result.broken]
+    for outcome in broken:
+        print(f"stillspin: {outcome.scenario}, run {outcome.run}: broken off: {outcome.broken}", file=sys.stderr)
+    if broken:
+        raise typer.Exit(BROKEN)
+
+
+@app.command()
+def run(
+    *,
+    scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
+    profile_name: ProfileOption = "bench",
+    seed: SeedOption = 1,
+    change: ChangeOption = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-SCENARIO].")
+    ] = None,
+    no_plots: Annotated[bool, typer.Option("--no-plots", help="Do not draw.")] = False,
+) -> None:
+    """Run one scenario: figures of merit, plots, and a Parquet file per run."""
+    identifier = scenario_file.find(scenario).stem
+    where = out or Path(f"results-{identifier}")
+    _carry_out([identifier], Options(profile_name, seed, change or [], where, jobs=1, draw=not no_plots))
+
+
+@app.command()
+def reproduce(
+    *,
+    scenarios: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: all].")] = None,
+    profile_name: ProfileOption = "bench",
+    seed: SeedOption = 1,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", "-j", min=1, max=256, help="Runs at a time [default: one per processor].")
+    ] = None,
+) -> None:
+    """Run scenarios in parallel and write report.html and metrics.json."""
+    chosen = dict.fromkeys(scenario_file.find(identifier).stem for identifier in scenarios or scenario_file.ids())
+    _carry_out(chosen, Options(profile_name, seed, [], out, jobs or len(os.sched_getaffinity(0)), draw=True))
+
+
+@app.command(name="list")
+def list_() -> None:
+    """The scenarios and the profiles."""
+    tables.scenarios(scenario_file.load(identifier) for identifier in scenario_file.ids())
+    print(f"\nprofiles: {', '.join(resources.names('profiles'))}")
+
+
+@app.command()
+def params() -> None:
+    """The firmware's parameters: number, name, range, default, meaning."""
+    tables.parameters(core.parameters(core.load()).values())
+
+
+@app.command()
+def version() -> None:
+    """The version, and the revision of the sources."""
+    print(f"stillspin {__version__} ({revision()})")
+
+
+def main() -> None:
+    """Entry point of the console script."""
+    app()

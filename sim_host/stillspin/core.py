@@ -1,0 +1,226 @@
+"""Typed view of the native module `stillspin._core`, the one door to the virtual drive.
+
+The lists of plant entries and of firmware parameters come from the native module and are listed nowhere else.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from stillspin.errors import InputError, did_you_mean
+
+Value = float | int | bool | str
+Plant = dict[str, dict[str, Value]]
+Signals = dict[str, npt.NDArray[Any]]
+Command = tuple[float, str, float]
+LoadPoint = tuple[float, float]
+Progress = Callable[[float], bool]
+
+
+class NativeResult(Protocol):
+    """What a run gives back. Arrays have one element per record, all the same length."""
+
+    signals: Mapping[str, npt.NDArray[Any]]
+    completed: bool
+    reason: str
+    faults: Sequence[tuple[float, str]]
+    stats: Mapping[str, float]
+
+
+class NativeCore(Protocol):
+    """The functions of `stillspin._core`."""
+
+    def run(
+        self,
+        *,
+        plant: Plant,
+        motor: str,
+        parameters: dict[str, float],
+        commands: list[Command],
+        load: list[LoadPoint],
+        duration: float,
+        max_start: float,
+        record_every: int,
+        seed: int,
+        progress: Progress | None,
+    ) -> NativeResult:
+        """One run. Times in s from the end of the start procedure; progress gets the share done, false stops."""
+        ...
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """The firmware's parameter table."""
+        ...
+
+    def signals(self) -> list[dict[str, Any]]:
+        """Name, unit and meaning of every recorded signal."""
+        ...
+
+    def plant_schema(self) -> dict[str, dict[str, dict[str, Any]]]:
+        """Section -> key -> unit, minimum, maximum, default, help of the plant."""
+        ...
+
+
+def load() -> NativeCore:
+    """The native module.
+
+    Raises:
+        InputError: it is not built, or does not load on this machine.
+    """
+    try:
+        return cast(NativeCore, importlib.import_module("stillspin._core"))
+    except ImportError as error:
+        raise InputError(
+            f"the native module stillspin._core does not load ({error}); build it as the README says"
+        ) from error
+
+
+def _choices(row: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(str(choice) for choice in row.get("choices", ()))
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One settable number, switch or word: an entry of the plant or a firmware parameter."""
+
+    name: str
+    unit: str
+    minimum: float | None
+    maximum: float | None
+    default: Value
+    help: str
+    choices: tuple[str, ...] = ()
+    access: str = ""
+    number: int = 0
+    decimals: int = 0
+
+    @property
+    def range_text(self) -> str:
+        """The allowed values in words, such as "0 … 450 V"."""
+        if self.choices:
+            return "one of " + ", ".join(self.choices)
+        if isinstance(self.default, bool):
+            return "true or false"
+        low = "-∞" if self.minimum is None else f"{self.minimum:g}"
+        high = "∞" if self.maximum is None else f"{self.maximum:g}"
+        return f"{low} … {high}{' ' + self.unit if self.unit else ''}"
+
+    def check(self, value: object, where: str) -> Value:
+        """`value` as the type of this entry.
+
+        Args:
+            value: a bool, number or text, from TOML or the command line.
+            where: how to name it in a message.
+
+        Raises:
+            InputError: wrong type or out of range.
+        """
+        if self.choices and isinstance(value, str):
+            return self._choice(value, where)
+        if isinstance(self.default, bool):
+            if not isinstance(value, bool):
+                raise InputError(f"{where} = {value!r}: must be true or false")
+            return value
+        if isinstance(self.default, str):
+            if not isinstance(value, str):
+                raise InputError(f"{where} = {value!r}: must be text")
+            return value
+        return self._number(value, where)
+
+    def _choice(self, value: str, where: str) -> Value:
+        if value not in self.choices:
+            raise InputError(f"{where} = '{value}': not a choice{did_you_mean(value, self.choices)}")
+        return value if isinstance(self.default, str) else self.choices.index(value)
+
+    def _number(self, value: object, where: str) -> Value:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            unit = f" in {self.unit}" if self.unit else ""
+            raise InputError(f"{where} = {value!r}: must be a number{unit} ({self.range_text})")
+        # A parameter's default is always a number; what is whole in the plant (poles, bits) has a whole default.
+        whole = isinstance(self.default, int)
+        if not np.isfinite(value) or (whole and value != int(value)):
+            raise InputError(
+                f"{where} = {value!r}: must be a {'whole' if whole else 'finite'} number ({self.range_text})"
+            )
+        too_low = self.minimum is not None and value < self.minimum
+        too_high = self.maximum is not None and value > self.maximum
+        if too_low or too_high:
+            raise InputError(f"{where} = {value:g}: out of range, allowed is {self.range_text}")
+        return int(value) if whole else float(value)
+
+
+Schema = dict[str, dict[str, Entry]]
+
+
+def plant_schema(core: NativeCore) -> Schema:
+    """Section -> key -> entry of everything that can be set on the plant."""
+    return {
+        section: {
+            key: Entry(
+                name=f"{section}.{key}",
+                unit=row.get("unit", ""),
+                minimum=row.get("minimum"),
+                maximum=row.get("maximum"),
+                default=row["default"],
+                help=row.get("help", ""),
+                choices=_choices(row),
+            )
+            for key, row in keys.items()
+        }
+        for section, keys in core.plant_schema().items()
+    }
+
+
+def parameters(core: NativeCore) -> dict[str, Entry]:
+    """Name -> firmware parameter, in the order of the firmware's table."""
+    return {
+        row["name"]: Entry(
+            name=row["name"],
+            unit=row["unit"],
+            minimum=float(row["minimum"]),
+            maximum=float(row["maximum"]),
+            default=float(row["default"]),
+            help=row["help"],
+            choices=_choices(row),
+            access=str(row["access"]),
+            number=int(row["id"]),
+            decimals=int(row["decimals"]),
+        )
+        for row in core.parameters()
+    }
+
+
+def parameter(known: Mapping[str, Entry], name: str, value: object, where: str) -> float:
+    """The value of firmware parameter `name` as the firmware takes it: a number, a choice by its index.
+
+    Raises:
+        InputError: no such parameter, or a value that it does not take.
+    """
+    if name not in known:
+        raise InputError(f"{where}: there is no firmware parameter '{name}'{did_you_mean(name, known)}")
+    if isinstance(value, bool):
+        value = int(value)
+    return float(known[name].check(value, where))
+
+
+def plant_entry(schema: Schema, section: str, key: str, value: object, where: str) -> Value:
+    """The checked value of plant entry `section.key`.
+
+    Raises:
+        InputError: no such section or key, or a value that it does not take.
+    """
+    section_known(schema, section, where)
+    if key not in schema[section]:
+        raise InputError(f"{where}: section '{section}' has no entry '{key}'{did_you_mean(key, schema[section])}")
+    return schema[section][key].check(value, where)
+
+
+def section_known(schema: Schema, section: str, where: str) -> None:
+    """Complain when the plant has no such section."""
+    if section not in schema:
+        raise InputError(f"{where}: there is no plant section '{section}'{did_you_mean(section, schema)}")

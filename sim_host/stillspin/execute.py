@@ -1,0 +1,168 @@
+"""One run, from settings to a Parquet file and an outcome. Runs in a worker process or in this one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stillspin import core, figures, records
+from stillspin.core import NativeCore, NativeResult, Plant
+from stillspin.errors import InputError
+from stillspin.profile import Changes, Profile, merged
+from stillspin.scenario import Run, Scenario
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What all runs of a campaign have in common."""
+
+    profile: Profile
+    changes: Changes
+    seed: int
+    revision: str
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run with everything resolved and checked, ready for another process."""
+
+    scenario: str
+    run: Run
+    motor: str
+    plant: Plant
+    parameters: dict[str, float]
+    seed: int
+    file: str
+    about: dict[str, Any]
+    units: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended. `broken`: why it does not count, None when it does; `file`: None when nothing was recorded."""
+
+    scenario: str
+    run: str
+    broken: str | None
+    file: str | None
+    stats: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def speed_ratio(self) -> float:
+        """Simulated seconds per second of computing, 0 when unknown."""
+        wall = self.stats.get("wall_seconds", 0.0)
+        return self.stats.get("simulated_seconds", 0.0) / wall if wall > 0.0 else 0.0
+
+
+def prepare(scenario: Scenario, settings: Settings, native: NativeCore) -> list[Job]:
+    """The runs of a scenario: the profile, the scenario's own settings and the user's changes laid over one another.
+
+    Raises:
+        InputError: the scenario asks for an entry, parameter or value that does not exist.
+    """
+    known = _Known(
+        core.plant_schema(native),
+        core.parameters(native),
+        {str(row["name"]): str(row.get("unit", "")) for row in native.signals()},
+    )
+    return [_job(scenario, run, settings, known) for run in scenario.runs]
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What the native module knows by name."""
+
+    schema: core.Schema
+    parameters: Mapping[str, core.Entry]
+    units: dict[str, str]
+
+
+def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job:
+    where = f"scenario {scenario.id}, run {run.name}"
+    own_plant: Plant = {
+        section: {key: core.plant_entry(known.schema, section, key, value, where) for key, value in keys.items()}
+        for section, keys in run.plant.items()
+    }
+    own = {
+        name: core.parameter(known.parameters, name, value, f"{where}: {name}")
+        for name, value in run.parameters.items()
+    }
+    _check_commands(run, known.parameters, where)
+    plant = merged(settings.profile.plant, own_plant, settings.changes.plant)
+    parameters = {**settings.profile.parameters, **own, **settings.changes.parameters}
+    about = {
+        "scenario": scenario.id,
+        "run": run.name,
+        "profile": settings.profile.name,
+        "seed": settings.seed,
+        "revision": settings.revision,
+        "changes": settings.changes.words,
+        "motor": scenario.motor,
+        "plant": plant,
+        "parameters": parameters,
+        "load": run.load,
+        "duration": run.duration,
+    }
+    file = f"{scenario.id}-{run.name}.parquet"
+    return Job(scenario.id, run, scenario.motor, plant, parameters, settings.seed, file, about, known.units)
+
+
+def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> None:
+    for _, what, value in run.commands:
+        if what.startswith("set:"):
+            core.parameter(known, what.removeprefix("set:"), value, f"{where}: {what}")
+        elif what not in {"speed_ref_rpm", "start", "stop"}:
+            raise InputError(f"{where}: unknown command '{what}'; known: speed_ref_rpm, start, stop, set:<parameter>")
+
+
+def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None) -> Outcome:
+    """Run it and write its record into `directory`. Never raises for what happens inside the run.
+
+    Args:
+        job: the run.
+        directory: where the Parquet file goes.
+        progress: gets the share done (0 … 1); false breaks the run off.
+    """
+    native = core.load()
+    run = job.run
+    try:
+        result = native.run(
+            plant=job.plant,
+            motor=job.motor,
+            parameters=job.parameters,
+            commands=list(run.commands),
+            load=list(run.load),
+            duration=run.duration,
+            max_start=run.max_start,
+            record_every=run.record_every,
+            seed=job.seed,
+            progress=progress,
+        )
+    except (RuntimeError, ValueError, ArithmeticError) as error:
+        return Outcome(job.scenario, run.name, _one_line(error), None)
+    broken = _broken(result, run)
+    about = {**job.about, "broken": broken, "faults": [list(fault) for fault in result.faults]}
+    records.write(directory / job.file, result.signals, about, job.units)
+    return Outcome(
+        job.scenario, run.name, broken, job.file, {name: float(value) for name, value in result.stats.items()}
+    )
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def _broken(result: NativeResult, run: Run) -> str | None:
+    """Why the run does not count."""
+    if not result.completed:
+        return result.reason or "broken off without a reason"
+    if result.faults:
+        at, words = result.faults[0]
+        return f"fault at {at:.3f} s: {words}"
+    if np.asarray(result.signals["time"]).size < 2:
+        return "nothing was recorded"
+    return figures.shaft_problem(dict(result.signals), run)

@@ -1,0 +1,241 @@
+"""Figures of merit of a run, computed from its recorded signals.
+
+Definitions (the same for every scenario):
+- position error: true electrical angle minus the angle that the controller used at the same instant, wrapped to
+  ±180°, in electrical degrees; `peak` over the window, `rms` over the window's last second;
+- speed ripple: half the peak-to-peak of the true shaft speed over the window's last second;
+- overshoot, settling (2 % of the step), dip, recovery: of the true shaft speed.
+A figure in a window shorter than a second that asks for its last second takes all of it. Values that do not exist, such
+as a settling time that the window does not see the end of, are infinite.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from stillspin.core import Signals
+from stillspin.scenario import Run, Window
+
+Floats = npt.NDArray[np.float64]
+
+SETTLED = 0.02
+"""Half width of the settling band, as a share of the step."""
+
+LAST_SECOND = 1.0
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What a metric sees: the records of one window, and what was commanded in it.
+
+    Attributes:
+        signals: equally long arrays; `time` in s.
+        command: commanded speed (rpm) at each record.
+        initial: commanded speed (rpm) just before the window: where a step comes from.
+        target: commanded speed (rpm) at the end of the window: where it goes to.
+    """
+
+    signals: Signals
+    command: Floats
+    initial: float
+    target: float
+
+    @property
+    def time(self) -> Floats:
+        """Times of the records (s)."""
+        return as_floats(self.signals["time"])
+
+    @property
+    def speed(self) -> Floats:
+        """True shaft speed (rpm)."""
+        return as_floats(self.signals["true_speed"])
+
+    def last(self, seconds: float = LAST_SECOND) -> Piece:
+        """The last part of the piece."""
+        return self._part(self.time >= self.time[-1] - seconds)
+
+    def _part(self, mask: npt.NDArray[np.bool_]) -> Piece:
+        return Piece(
+            {name: data[mask] for name, data in self.signals.items()}, self.command[mask], self.initial, self.target
+        )
+
+
+def as_floats(data: npt.NDArray[Any]) -> Floats:
+    """The array in double precision."""
+    return np.asarray(data, dtype=np.float64)
+
+
+def cut(signals: Signals, run: Run, window: Window) -> Piece:
+    """The part of a run in a window.
+
+    Args:
+        signals: recorded signals of the run.
+        run: for its commands.
+        window: first and last time (s), both included.
+
+    Raises:
+        ValueError: the record does not cover the window.
+    """
+    time = as_floats(signals["time"])
+    first, last = window
+    step = float(np.median(np.diff(time))) if time.size > 1 else 0.0
+    # The records may start and end up to one record away from the window's corners.
+    if time.size < 2 or time[0] > first + 1.5 * step or time[-1] < last - 1.5 * step:
+        raise ValueError(f"the record does not cover the window {first:g} … {last:g} s")
+    mask = (time >= first) & (time <= last)
+    inside = {name: data[mask] for name, data in signals.items()}
+    before = run.speed_command(np.array([np.nextafter(first, -np.inf)]))[0]
+    command = run.speed_command(time[mask])
+    return Piece(inside, command, float(before), float(command[-1]))
+
+
+def wrap_degrees(radians: Floats) -> Floats:
+    """Angles in degrees, wrapped to −180 … 180."""
+    wrapped: Floats = np.degrees(np.remainder(radians + np.pi, 2.0 * np.pi) - np.pi)
+    return wrapped
+
+
+def position_error(signals: Signals) -> Floats:
+    """True minus used electrical angle, degrees el., of every record."""
+    return wrap_degrees(as_floats(signals["true_angle"]) - as_floats(signals["est_angle"]))
+
+
+def position_error_peak(piece: Piece) -> float:
+    """Largest magnitude of the position error in the window, degrees el."""
+    return float(np.max(np.abs(position_error(piece.signals))))
+
+
+def position_error_rms(piece: Piece) -> float:
+    """Root mean square of the position error over the last second, degrees el. A constant error counts in full."""
+    return float(np.sqrt(np.mean(np.square(position_error(piece.last().signals)))))
+
+
+def speed_ripple(piece: Piece) -> float:
+    """Half the peak-to-peak of the true speed over the last second, rpm."""
+    return float(np.ptp(piece.last().speed)) / 2.0
+
+
+def speed_error(piece: Piece) -> float:
+    """Magnitude of the mean of true minus commanded speed over the last second, rpm."""
+    last = piece.last()
+    return abs(float(np.mean(last.speed - last.command)))
+
+
+def speed_error_share(piece: Piece) -> float:
+    """The speed error in percent of the commanded speed at the end."""
+    return 100.0 * speed_error(piece) / abs(piece.target) if piece.target else float("inf")
+
+
+def overshoot(piece: Piece) -> float:
+    """How far the true speed goes beyond the target of a step that begins with the window, in percent of the step."""
+    step = piece.target - piece.initial
+    if step == 0.0:
+        return float("inf")
+    beyond = (piece.speed - piece.target) * np.sign(step)
+    return 100.0 * max(0.0, float(np.max(beyond))) / abs(step)
+
+
+def _last_outside(piece: Piece, band: float) -> float:
+    """Time (s) from the window's start until the true speed is within `band` (rpm) of the target for good."""
+    outside = np.flatnonzero(np.abs(piece.speed - piece.target) > band)
+    if outside.size == 0:
+        return 0.0
+    if outside[-1] + 1 >= piece.time.size:
+        return float("inf")
+    return float(piece.time[outside[-1] + 1] - piece.time[0])
+
+
+def settling_time(piece: Piece) -> float:
+    """Time (s) from a step at the window's start until the true speed stays within 2 % of the step."""
+    return _last_outside(piece, SETTLED * abs(piece.target - piece.initial))
+
+
+def recovery_time(piece: Piece) -> float:
+    """Time (s) from a load step at the window's start until the true speed stays within 2 % of the target."""
+    return _last_outside(piece, SETTLED * abs(piece.target))
+
+
+def dip(piece: Piece) -> float:
+    """How far the true speed falls short of the target in the window (at standstill: moves at all), rpm."""
+    short = piece.target - piece.speed
+    if piece.target == 0.0:
+        return float(np.max(np.abs(short)))
+    return max(0.0, float(np.max(short * np.sign(piece.target))))
+
+
+def position_drift(piece: Piece) -> float:
+    """Largest distance of the shaft from where it was when the last second began, degrees el."""
+    angle = np.unwrap(as_floats(piece.last().signals["true_angle"]))
+    return float(np.degrees(np.max(np.abs(angle - angle[0]))))
+
+
+def position_offset(piece: Piece) -> float:
+    """Distance of the shaft at the window's end from where it was at its start, degrees el."""
+    angle = np.unwrap(as_floats(piece.signals["true_angle"]))
+    return float(np.degrees(abs(angle[-1] - angle[0])))
+
+
+def tracking_error_rms(piece: Piece) -> float:
+    """Root mean square of commanded minus true speed over the window, rpm."""
+    return float(np.sqrt(np.mean(np.square(piece.command - piece.speed))))
+
+
+def tracking_error_peak(piece: Piece) -> float:
+    """Largest magnitude of commanded minus true speed in the window, rpm."""
+    return float(np.max(np.abs(piece.command - piece.speed)))
+
+
+def current_vector(signals: Signals) -> tuple[Floats, Floats]:
+    """True stator current in the stationary frame, amplitude invariant: i_α, i_β (A)."""
+    a, b, c = (as_floats(signals[name]) for name in ("i_a", "i_b", "i_c"))
+    return (2.0 * a - b - c) / 3.0, (b - c) / np.sqrt(3.0)
+
+
+def radius_deviation(piece: Piece) -> float:
+    """Rms deviation of the current vector's length from its mean over the last second, percent of the mean."""
+    radius = np.hypot(*current_vector(piece.last().signals))
+    mean = float(np.mean(radius))
+    return 100.0 * float(np.std(radius)) / mean if mean > 0.0 else float("inf")
+
+
+def current_peak(piece: Piece) -> float:
+    """Largest true phase current in the window, A."""
+    return max(float(np.max(np.abs(piece.signals[name]))) for name in ("i_a", "i_b", "i_c"))
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of figure: its function, its unit and its definition in a line."""
+
+    function: Callable[[Piece], float]
+    unit: str
+
+    @property
+    def help(self) -> str:
+        """The first line of the function's description."""
+        return (self.function.__doc__ or "").splitlines()[0]
+
+
+KINDS: dict[str, Kind] = {
+    "position_error_peak": Kind(position_error_peak, "deg el"),
+    "position_error_rms": Kind(position_error_rms, "deg el"),
+    "speed_ripple": Kind(speed_ripple, "rpm"),
+    "speed_error": Kind(speed_error, "rpm"),
+    "speed_error_share": Kind(speed_error_share, "%"),
+    "overshoot": Kind(overshoot, "%"),
+    "settling_time": Kind(settling_time, "s"),
+    "recovery_time": Kind(recovery_time, "s"),
+    "dip": Kind(dip, "rpm"),
+    "position_drift": Kind(position_drift, "deg el"),
+    "position_offset": Kind(position_offset, "deg el"),
+    "tracking_error_rms": Kind(tracking_error_rms, "rpm"),
+    "tracking_error_peak": Kind(tracking_error_peak, "rpm"),
+    "radius_deviation": Kind(radius_deviation, "%"),
+    "current_peak": Kind(current_peak, "A"),
+}
+"""Every kind of figure that a scenario file can ask for; besides these there is `ratio` of two other figures."""

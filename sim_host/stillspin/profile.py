@@ -1,0 +1,161 @@
+"""Plant profiles (`profiles/*.toml`) and the changes that `--set` makes to a plant and to firmware parameters.
+
+A profile's sections and keys are those of the plant, in the plant's units; what it does not mention stays at the
+plant's own default for the motor of the scenario. Its section `parameters` holds firmware parameters that belong to the
+board of that plant, such as the dead time that its gate drivers need.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from stillspin import core, resources, toml_table
+from stillspin.errors import InputError, did_you_mean
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A named plant. It holds only the entries and firmware parameters that the profile states."""
+
+    name: str
+    description: str
+    plant: core.Plant
+    parameters: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
+class Changes:
+    """What `--set` changes: entries of the plant, firmware parameters, and the words as they were given."""
+
+    plant: core.Plant = field(default_factory=dict)
+    parameters: dict[str, float] = field(default_factory=dict)
+    words: list[str] = field(default_factory=list)
+
+
+def find(name_or_path: str) -> Path:
+    """The file of a profile given by name or by path.
+
+    Raises:
+        InputError: there is no such profile or file.
+    """
+    if name_or_path.endswith(".toml") or "/" in name_or_path:
+        path = Path(name_or_path)
+        if not path.is_file():
+            raise InputError(f"profile '{name_or_path}': there is no such file")
+        return path
+    known = resources.names("profiles")
+    if name_or_path not in known:
+        raise InputError(
+            f"there is no profile '{name_or_path}'{did_you_mean(name_or_path, known)}, or a path to a .toml file"
+        )
+    return resources.directory("profiles") / f"{name_or_path}.toml"
+
+
+def load(name_or_path: str, schema: core.Schema, known: Mapping[str, core.Entry]) -> Profile:
+    """Read and check a profile.
+
+    Args:
+        name_or_path: "bench", "ideal" or the path of a TOML file.
+        schema: what the plant can be told.
+        known: the firmware's parameters.
+
+    Raises:
+        InputError: not found, not TOML, unknown entry, wrong type or out of range.
+    """
+    path = find(name_or_path)
+    table = toml_table.read(path)
+    description = table.text("description", "").strip()
+    parameters = {
+        name: core.parameter(known, name, value, f"{path}: parameters.{name}")
+        for name, value in table.table("parameters").items().items()
+    }
+    plant: core.Plant = {}
+    for section, keys in table.items().items():
+        if section not in {"description", "parameters"}:
+            plant[section] = _section(section, keys, schema, path)
+    return Profile(path.stem, description, plant, parameters)
+
+
+def _section(section: str, keys: object, schema: core.Schema, path: Path) -> dict[str, core.Value]:
+    if not isinstance(keys, dict):
+        known = ["description", "parameters", *schema]
+        raise InputError(f"{path}: unknown key '{section}'{did_you_mean(section, known)}")
+    core.section_known(schema, section, str(path))
+    return {
+        key: core.plant_entry(schema, section, key, value, f"{path}: {section}.{key}") for key, value in keys.items()
+    }
+
+
+def merged(*plants: Mapping[str, Mapping[str, core.Value]]) -> core.Plant:
+    """Plants laid over one another; later ones win entry by entry."""
+    result: core.Plant = {}
+    for plant in plants:
+        for section, keys in plant.items():
+            result.setdefault(section, {}).update(keys)
+    return result
+
+
+def split_assignment(word: str) -> tuple[str, str]:
+    """Name and value text of `name=value`.
+
+    Raises:
+        InputError: there is no "=", or nothing on one side of it.
+    """
+    name, equals, value = (part.strip() for part in word.partition("="))
+    if not equals or not name or not value:
+        raise InputError(
+            f"--set '{word}': must be section.entry=value or parameter=value, such as inverter.dead_time=1e-6"
+        )
+    return name, value
+
+
+def parse_value(text: str) -> core.Value:
+    """A value of the command line: true, false, a number, else text."""
+    if text.lower() in {"true", "false"}:
+        return text.lower() == "true"
+    if re.fullmatch(r"[+-]?\d+", text):
+        return int(text)
+    if _NUMBER.fullmatch(text):
+        return float(text)
+    return text
+
+
+def changes(words: Iterable[str], schema: core.Schema, known: Mapping[str, core.Entry]) -> Changes:
+    """Sort the words of `--set` into plant entries and firmware parameters, checked.
+
+    Raises:
+        InputError: malformed, unknown, wrong type, a unit behind the number, or out of range.
+    """
+    result = Changes()
+    for word in words:
+        name, text = split_assignment(word)
+        value = parse_value(text)
+        where = f"--set {name}"
+        section, dot, key = name.partition(".")
+        if dot and name not in known:
+            _no_unit(schema.get(section, {}).get(key), text, value, where)
+            checked = core.plant_entry(schema, section, key, value, where)
+            result.plant.setdefault(section, {})[key] = checked
+        else:
+            _no_unit(known.get(name), text, value, where)
+            if name not in known:
+                near = [*known, *(f"{part}.{item}" for part, keys in schema.items() for item in keys)]
+                raise InputError(f"--set '{word}': there is no parameter '{name}'{did_you_mean(name, near)}")
+            result.parameters[name] = core.parameter(known, name, value, where)
+        result.words.append(f"{name}={text}")
+    return result
+
+
+def _no_unit(entry: core.Entry | None, text: str, value: core.Value, where: str) -> None:
+    """Say so when a number comes with a unit: 1us is not a number, and 1e-6 is meant."""
+    if entry is None or isinstance(entry.default, str) or not isinstance(value, str):
+        return
+    number = _NUMBER.match(text)
+    if number:
+        unit = f"in {entry.unit}" if entry.unit else "without a unit"
+        raise InputError(f"{where} = '{text}': give the number alone, {unit} ({entry.range_text})")

@@ -1,0 +1,70 @@
+"""The progress bar of a campaign, drawn with rich on stderr."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from stillspin.campaign import Watcher
+from stillspin.execute import Outcome
+from stillspin.scenario import Scenario
+
+_ASSESSING = 0.1  # evaluating and drawing a scenario, in units of one run
+
+
+class Bar(Watcher):
+    """One bar over everything: runs by their share done, then figures and plots."""
+
+    def __init__(self, console: Console) -> None:
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+            TimeElapsedColumn(),
+        )
+        # Nothing is drawn where nobody looks, such as in a log file.
+        self._progress = Progress(
+            *columns, TimeRemainingColumn(), console=console, transient=True, disable=not console.is_terminal
+        )
+        self._task: TaskID | None = None
+        self._runs = self._done = self._drawn = 0
+        self._shares = 0.0
+
+    def __enter__(self) -> Bar:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def total(self, runs: int, scenarios: int) -> None:
+        """How much there is to do."""
+        self._runs = runs
+        self._task = self._progress.add_task("", total=runs + _ASSESSING * scenarios)
+        self._show()
+
+    def progress(self, shares: Sequence[float]) -> None:
+        """Share done of every run."""
+        self._shares = sum(min(max(share, 0.0), 1.0) for share in shares)
+        self._show()
+
+    def finished(self, outcome: Outcome) -> None:
+        """A run ended."""
+        self._done += 1
+        self._show()
+
+    def assessed(self, scenario: Scenario) -> None:
+        """A scenario's figures and plots are ready."""
+        self._drawn += 1
+        self._show()
+
+    def _show(self) -> None:
+        if self._task is None:
+            return
+        done = max(self._shares, float(self._done)) + _ASSESSING * self._drawn
+        self._progress.update(self._task, completed=done, description=f"{self._done} of {self._runs} runs")

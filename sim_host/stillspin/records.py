@@ -1,0 +1,61 @@
+"""One run on disk: a Parquet file with a column per signal and everything that makes the run repeatable beside it.
+
+The figures of merit and the plots are computed from what is read back, so the file is all that a claim rests on.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from stillspin.core import Signals
+
+_KEY = b"stillspin"
+
+
+@dataclass(frozen=True)
+class Record:
+    """Signals of a run and what is known about it (scenario, run, profile, seed, revision, plant, outcome …)."""
+
+    signals: Signals
+    about: dict[str, Any]
+
+
+def write(path: Path, signals: Mapping[str, Any], about: Mapping[str, Any], units: Mapping[str, str]) -> None:
+    """Write a run.
+
+    Args:
+        path: the file; its directory exists.
+        signals: equally long arrays. Floating point is stored in single precision (1e-7 of the value, far below any
+            sensor here), but `time` in double.
+        about: JSON values, stored in the file's metadata.
+        units: unit per signal, stored with its column.
+    """
+    columns = {name: _stored(name, np.asarray(data)) for name, data in signals.items()}
+    fields = [
+        pa.field(name, pa.from_numpy_dtype(data.dtype), metadata={"unit": units.get(name, "")})
+        for name, data in columns.items()
+    ]
+    schema = pa.schema(fields, metadata={_KEY: json.dumps(about, sort_keys=True)})
+    table = pa.table([pa.array(data) for data in columns.values()], schema=schema)
+    pq.write_table(table, path, compression="zstd")
+
+
+def _stored(name: str, data: Any) -> Any:
+    if data.dtype.kind == "f":
+        return data.astype(np.float64 if name == "time" else np.float32)
+    return data
+
+
+def read(path: Path) -> Record:
+    """Read a run written by `write`."""
+    table = pq.read_table(path)
+    signals = {name: table.column(name).to_numpy() for name in table.column_names}
+    return Record(signals, json.loads((table.schema.metadata or {}).get(_KEY, b"{}")))

@@ -1,0 +1,131 @@
+"""Results for people (`report.html`, one file with everything in it) and for programs (`metrics.json`)."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from stillspin.assess import ScenarioResult
+from stillspin.execute import Settings
+from stillspin.figures import Result
+from stillspin.output import MARK, RUNS
+from stillspin.profile import Profile
+
+PAGE = "report.html"
+
+PARAMETER_NOTE = "nominal parameters (from the nameplate)"
+"""On which parameters the firmware ran: there is no commissioning yet that would find better ones."""
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How many goals there are, how many are met, and how many runs broke off."""
+
+    goals: int
+    met: int
+    broken: int
+
+    @property
+    def verdict(self) -> str:
+        """`broken off`, `short`, `met`, or `stated` where there is no goal."""
+        if self.broken:
+            return "broken off"
+        if self.met < self.goals:
+            return "short"
+        return "met" if self.goals else "stated"
+
+
+def tally(results: Sequence[ScenarioResult]) -> Tally:
+    """Count over scenarios."""
+    figures = [figure for result in results for figure in result.figures if figure.goal is not None]
+    return Tally(
+        len(figures), sum(bool(figure.met) for figure in figures), sum(len(result.broken) for result in results)
+    )
+
+
+def verdict(figure: Result) -> str:
+    """`met`, `short`, `no value`, or nothing when there is no goal."""
+    if figure.value is None:
+        return "no value"
+    return "" if figure.met is None else "met" if figure.met else "short"
+
+
+def number(value: float | None) -> str:
+    """A number as people read it: three significant digits, a dash for none."""
+    if value is None:
+        return "–"
+    if value == 0.0 or 0.01 <= abs(value) < 1e5:
+        digits = 0 if abs(value) >= 100 else 1 if abs(value) >= 10 else 2 if abs(value) >= 1 else 3
+        text = f"{value:.{digits}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text else text
+        return text.replace("-", "−")
+    return f"{value:.2e}".replace("-", "−")
+
+
+def unit_text(unit: str) -> str:
+    """A unit as people write it."""
+    return {"deg el": "° el", "N m": "N·m"}.get(unit, unit)
+
+
+def metrics(results: Sequence[ScenarioResult], settings: Settings) -> dict[str, Any]:
+    """The content of `metrics.json`. It depends on nothing but the profile, the seed and the sources."""
+    return {
+        "profile": settings.profile.name,
+        "seed": settings.seed,
+        "revision": settings.revision,
+        "scenarios": {
+            result.scenario.id: {figure.name: figure.as_json() for figure in result.figures} for result in results
+        },
+    }
+
+
+def write(directory: Path, results: Sequence[ScenarioResult], settings: Settings) -> None:
+    """Write `metrics.json` and `report.html` into a directory."""
+    text = json.dumps(metrics(results, settings), indent=2, ensure_ascii=False, allow_nan=False)
+    (directory / MARK).write_text(text + "\n", encoding="utf-8")
+    (directory / PAGE).write_text(html(results, settings), encoding="utf-8")
+
+
+def html(results: Sequence[ScenarioResult], settings: Settings) -> str:
+    """The page."""
+    environment = Environment(
+        loader=PackageLoader("stillspin", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(number=number, unit=unit_text, verdict=verdict, image=_image, slug=_slug)
+    return environment.get_template("report.html.j2").render(
+        results=results,
+        tallies={result.scenario.id: tally([result]) for result in results},
+        total=tally(results),
+        profile=settings.profile,
+        seed=settings.seed,
+        revision=settings.revision,
+        changes=settings.changes.words,
+        parameter_note=PARAMETER_NOTE,
+        plant_rows=_plant_rows(settings.profile),
+        runs_directory=RUNS,
+    )
+
+
+def _plant_rows(profile: Profile) -> list[tuple[str, str]]:
+    rows = [(f"{section}.{key}", value) for section, keys in profile.plant.items() for key, value in keys.items()]
+    rows += [(f"parameter {name}", value) for name, value in profile.parameters.items()]
+    return [(name, str(value).lower() if isinstance(value, bool) else f"{value}") for name, value in rows]
+
+
+def _image(svg: str) -> str:
+    """A drawing as the source of an <img>: its ids and styles stay its own."""
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode("ascii")
+
+
+def _slug(text: str) -> str:
+    return text.replace(" ", "-")

@@ -1,0 +1,60 @@
+"""Tables on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from stillspin import report
+from stillspin.assess import ScenarioResult
+from stillspin.core import Entry
+from stillspin.scenario import Scenario
+
+_COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
+_RIGHT = {"value", "paper", "goal", "runs", "default", "number"}
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for heading in headings:
+        table.add_column(heading, justify="right" if heading in _RIGHT else "left")
+    return table
+
+
+def _print(table: Table) -> None:
+    """A table that goes to a file or a pipe has no screen to fit, so it keeps its width."""
+    console = Console()
+    Console(width=None if console.is_terminal else 200).print(table)
+
+
+def summary(results: Iterable[ScenarioResult]) -> None:
+    """Every figure of merit."""
+    table = _table("scenario", "figure", "value", "unit", "paper", "goal", "")
+    for result in results:
+        for figure in result.figures:
+            value, paper, goal = (report.number(item) for item in (figure.value, figure.paper, figure.goal))
+            word = report.verdict(figure)
+            shown = Text(word, style=_COLOURS[word])
+            unit = report.unit_text(figure.unit)
+            table.add_row(result.scenario.id, figure.name, value, unit, paper, goal, shown)
+    _print(table)
+
+
+def scenarios(items: Iterable[Scenario]) -> None:
+    """What can be run."""
+    table = _table("id", "motor", "runs", "scenario", "paper")
+    for item in items:
+        table.add_row(item.id, item.motor, str(len(item.runs)), item.title, item.paper_figure)
+    _print(table)
+
+
+def parameters(entries: Iterable[Entry]) -> None:
+    """The firmware's parameters."""
+    table = _table("number", "name", "default", "range", "access", "meaning")
+    for entry in entries:
+        default = f"{entry.default:.{entry.decimals}f}"
+        table.add_row(str(entry.number), entry.name, default, entry.range_text, entry.access, Text(entry.help))
+    _print(table)

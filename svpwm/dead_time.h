@@ -1,0 +1,29 @@
+// Dead-time and device-drop compensation.
+//
+// During the dead time the current decides: with the current out of the leg (i > 0) the lower diode holds the leg low
+// until the upper device turns on, with i < 0 the upper diode lifts it as soon as the lower device lets go. So an edge
+// follows its command by dead time + turn-on delay or by the turn-off delay, and the command is advanced by that much.
+// What counts is the current *at the edge*, ripple included. Between the two signs the shift is interpolated: there the
+// current clamps at zero for part of the dead time. Physics, section 5.
+
+#ifndef STILLSPIN_SVPWM_DEAD_TIME_H
+#define STILLSPIN_SVPWM_DEAD_TIME_H
+
+#include "svpwm/pattern.h"
+
+typedef struct {
+  int16_t blocked_ticks;   // dead time + turn-on delay, 0..240
+  int16_t released_ticks;  // turn-off delay, 0..blocked
+  int32_t band_q20;        // current below which the sign is not trusted, A, 0.01..2
+  int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
+} dead_time_config_t;
+
+/// Commands that make the motor see the pattern's edges. current_q20: mean phase currents in that period, alpha-beta, A;
+/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V.
+void dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
+                          int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command);
+
+/// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
+ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20);
+
+#endif

@@ -1,0 +1,39 @@
+#include "svpwm/modulator.h"
+
+static bool in_range(int16_t x, int16_t lo, int16_t hi) { return x >= lo && x <= hi; }
+
+bool modulator_config_valid(const modulator_config_t* c) {
+  return in_range(c->pulse_ticks, 1500, 4700) && in_range(c->extended.window_min_ticks, 500, 3000) &&
+         in_range(c->extended.window_max_ticks, c->extended.window_min_ticks, 4000) &&
+         in_range(c->extended.zero_ticks, 0, 5000) && in_range(c->sampling.settle_ticks, 100, 2500) &&
+         in_range(c->sampling.burst_ticks, 50, 500) && in_range(c->sampling.span_min_ticks, 100, 2000) &&
+         in_range(c->sampling.last_tick, 5000, 9800);
+}
+
+void modulator_reset(modulator_t* s) {
+  s->alternating.leg = 0;
+  s->alternating.pair_first = false;
+  s->is_alternating = true;
+}
+
+// Leaves the alternating layout at its limit and comes back with a fifth to spare.
+static bool alternate(const modulator_t* s, const modulator_config_t* c, const svpwm_on_time_t* t) {
+  const int16_t pulse = s->is_alternating ? c->pulse_ticks : (int16_t)(c->pulse_ticks - c->pulse_ticks / 5);
+  return svpwm_alternating_fits(t, pulse);
+}
+
+modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, excitation_t excitation,
+                                  ab_t voltage_q16, int32_t link_q16, svpwm_pattern_t* pattern) {
+  const svpwm_on_time_t t = svpwm_on_time(voltage_q16, link_q16);
+  s->is_alternating = excitation == EXCITATION_ALTERNATING && alternate(s, c, &t);
+  if (s->is_alternating) {
+    svpwm_alternating(&s->alternating, &t, c->pulse_ticks, &pattern->pulses);
+  } else if (excitation == EXCITATION_CENTRED) {
+    svpwm_centred(&t, &pattern->pulses);
+  } else {
+    svpwm_extended(&c->extended, &t, &pattern->pulses);
+  }
+  svpwm_find_windows(&c->sampling, pattern);
+  const modulator_result_t result = {t.realised_q16, t.limited};
+  return result;
+}

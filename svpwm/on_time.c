@@ -1,0 +1,25 @@
+#include "svpwm/on_time.h"
+
+#define LINK_MIN_Q16 655360L  // 10 V
+
+static int32_t largest(abc_t x) { return q_max(x.a, q_max(x.b, x.c)); }
+static int32_t smallest(abc_t x) { return q_min(x.a, q_min(x.b, x.c)); }
+
+svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16) {
+  svpwm_on_time_t t;
+  const int32_t ticks_per_volt_q20 = q_div(SVPWM_PERIOD_TICKS, q_max(link_q16, LINK_MIN_Q16), 31) * 32L;
+  abc_t v = frame_inverse_clarke(voltage_q16);
+  t.realised_q16 = voltage_q16;
+  const int32_t spread_q4 = q_mul_sat(largest(v) - smallest(v), ticks_per_volt_q20, 32);
+  t.limited = spread_q4 > SVPWM_SPREAD_MAX_TICKS * 16L;
+  if (t.limited) {
+    const int32_t share_q30 = q_div(SVPWM_SPREAD_MAX_TICKS * 16L, spread_q4, 30);
+    t.realised_q16.alpha = q_mul(voltage_q16.alpha, share_q30, 30);
+    t.realised_q16.beta = q_mul(voltage_q16.beta, share_q30, 30);
+    v = frame_inverse_clarke(t.realised_q16);
+  }
+  t.leg[0] = (int16_t)q_mul(v.a, ticks_per_volt_q20, 36);
+  t.leg[1] = (int16_t)q_mul(v.b, ticks_per_volt_q20, 36);
+  t.leg[2] = (int16_t)q_mul(v.c, ticks_per_volt_q20, 36);
+  return t;
+}

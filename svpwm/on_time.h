@@ -1,0 +1,22 @@
+// From a voltage vector to the on-times of the three legs, up to a common part that the layout chooses.
+
+#ifndef STILLSPIN_SVPWM_ON_TIME_H
+#define STILLSPIN_SVPWM_ON_TIME_H
+
+#include "svpwm/pattern.h"
+
+// Shortest pulse and shortest gap: with less, the dead band would swallow the edge.
+#define SVPWM_PULSE_MIN_TICKS 300
+// Largest difference of two on-times that leaves both.
+#define SVPWM_SPREAD_MAX_TICKS (SVPWM_ROOM_TICKS - SVPWM_PULSE_MIN_TICKS)
+
+typedef struct {
+  int16_t leg[SVPWM_LEGS];  // on-time minus the common part, ticks, each rounded so that differences are exact to a tick
+  ab_t realised_q16;        // the voltage vector that these on-times give, V
+  bool limited;             // the command was longer than what fits and has been shortened in its direction
+} svpwm_on_time_t;
+
+/// voltage_q16: wanted vector, V; link_q16: DC-link voltage, V, at least 10 V (less is taken as 10 V).
+svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16);
+
+#endif

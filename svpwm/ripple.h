@@ -1,0 +1,18 @@
+// The switching ripple that a pattern makes, as the flux by which the machine departs from its course without ripple.
+//
+// For a leg with pulse [r, f] of a period N, the integral of (leg voltage - its mean) from the start of the period is
+//   Vdc [ clamp(t - r, 0, f - r) - (f - r) t / N ],
+// zero at both ends of every period whatever the pattern. Divided by the inductance it is the ripple current: it turns a
+// sample taken anywhere into the current without ripple, and that into the current at an edge. The reference is the
+// current at the period's ends and not its mean over the period, because patterns change from period to period: the ends
+// are continuous, while the mean jumps when the order of the pulses is turned round.
+
+#ifndef STILLSPIN_SVPWM_RIPPLE_H
+#define STILLSPIN_SVPWM_RIPPLE_H
+
+#include "svpwm/pattern.h"
+
+/// Ripple flux at `tick`, V * period, Q16 (multiply by T/L to have amperes).
+ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16);
+
+#endif

@@ -1,0 +1,86 @@
+// Stand-ins for the core of the virtual chip, for tests of one peripheral: records what the peripheral says, and runs
+// its events in order of time as the core would.
+
+#ifndef STILLSPIN_TESTS_CHIP_PERIPHERAL_BENCH_HPP
+#define STILLSPIN_TESTS_CHIP_PERIPHERAL_BENCH_HPP
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim_host/chip/peripheral.hpp"
+
+namespace stillspin::chip::testing {
+
+struct PinEdge {
+  Tick t;
+  int module;
+  bool a;
+  bool b;
+  bool operator==(const PinEdge& o) const { return t == o.t && module == o.module && a == o.a && b == o.b; }
+};
+inline std::ostream& operator<<(std::ostream& out, const PinEdge& e) {
+  return out << "{t " << e.t << ", module " << e.module << ", A " << e.a << ", B " << e.b << "}";
+}
+
+template <typename What>
+struct Stamped {
+  What what;
+  Tick t;
+  bool operator==(const Stamped& o) const { return what == o.what && t == o.t; }
+};
+template <typename What>
+std::ostream& operator<<(std::ostream& out, const Stamped<What>& s) {
+  return out << "{" << s.what << " at " << s.t << "}";
+}
+
+class RecordingServices final : public ChipServices {
+ public:
+  std::vector<Stamped<unsigned>> interrupts;
+  std::vector<Stamped<bool>> starts;  // true SOCA
+  std::vector<Stamped<int>> samples;
+  std::vector<PinEdge> edges;
+  std::vector<std::string> errors;
+  std::function<std::uint16_t(int, Tick)> code = [](int channel, Tick) {
+    return static_cast<std::uint16_t>(100 + channel);
+  };
+  std::int64_t encoder = 0;
+  Tick sysclk = 1;
+  unsigned hspclk = 1;
+  bool clocked = true;
+
+  void raise_interrupt(unsigned vector, Tick t) override { interrupts.push_back({vector, t}); }
+  void start_of_conversion(bool soca, Tick t) override { starts.push_back({soca, t}); }
+  void pwm_outputs(int module, bool a, bool b, Tick t) override { edges.push_back({t, module, a, b}); }
+  std::uint16_t sample(int channel, Tick t) override {
+    samples.push_back({channel, t});
+    return code(channel, t);
+  }
+  std::int64_t encoder_edges(Tick) override { return encoder; }
+  Tick sysclk_period() const override { return sysclk; }
+  unsigned hspclk_divider() const override { return hspclk; }
+  bool epwm_clock(int) const override { return clocked; }
+  bool adc_clock() const override { return clocked; }
+  bool eqep_clock(int) const override { return clocked; }
+  void model_error(const char* text, std::int64_t) override { errors.emplace_back(text); }
+
+  void forget() {
+    interrupts.clear();
+    starts.clear();
+    samples.clear();
+    edges.clear();
+  }
+};
+
+/// Run everything that is due up to and including `until`.
+template <typename Peripheral>
+void run_until(Peripheral& peripheral, Tick until) {
+  while (peripheral.next_event() <= until) {
+    peripheral.run_event(peripheral.next_event());
+  }
+}
+
+}  // namespace stillspin::chip::testing
+
+#endif

@@ -1,0 +1,92 @@
+#include "hal/f2808/registers.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_time.h"
+#include "tests/hal/bus_test.hpp"
+
+namespace stillspin::test {
+
+class Adc : public BusTest {
+ protected:
+  void SetUp() override { bus.power_all(); }
+};
+
+TEST_F(Adc, powers_up_and_waits_5_ms_before_anything_else) {
+  const std::uint64_t before = bus.cycles;
+  hal_adc_init();
+  const std::size_t power = bus.first_write(REG_ADCTRL3);
+  EXPECT_EQ(bus.steps[power].value, 0x00E1u) << "bandgap, reference, converter; simultaneous; ADCCLK = HSPCLK";
+  expect_before(bus.first_write(REG_ADCTRL1, ADCTRL1_RESET_MASK), power, "reset before power-up");
+  expect_before(power, bus.first_write(REG_ADCMAXCONV), "power-up before set-up");
+  EXPECT_GE(bus.cycles - before, 500000u) << "5 ms at 100 MHz";
+  EXPECT_LT(bus.cycles - before, 510000u) << "2 % more is the polling; much more is a wrong unit";
+}
+
+TEST_F(Adc, sequences_are_four_current_pairs_and_three_with_the_slow_pair) {
+  hal_adc_init();
+  EXPECT_EQ(bus.words[REG_ADCMAXCONV], 0x0033u) << "four pairs each";
+  EXPECT_EQ(bus.words[REG_ADCCHSELSEQ1], 0x0000u) << "A0 with B0, four times";
+  EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3], 0x1000u) << "A0 with B0 three times, then A1 with B1";
+  EXPECT_EQ(bus.words[REG_ADCTRL1], 0u) << "dual sequencers, no continuous run, shortest window";
+}
+
+TEST_F(Adc, triggers_are_armed_last) {
+  hal_adc_init();
+  const std::size_t arm = bus.first_write(REG_ADCTRL2);
+  EXPECT_EQ(arm, bus.last_write_of_all());
+  EXPECT_EQ(bus.steps[arm].value, 0x4149u) << "SOCA to SEQ1, SOCB to SEQ2, SEQ2 interrupt, both sequencers reset";
+}
+
+TEST_F(Adc, results_are_summed_by_channel) {
+  for (std::uint16_t n = 0; n < 16; ++n) {
+    bus.words[REG_MIRROR_ADCRESULT0 + n] = static_cast<std::uint16_t>(1u << (n % 12));
+  }
+  hal_adc_window_t window = {};
+  hal_adc_read_window(&window);
+  EXPECT_EQ(window.start_a, 0x001u + 0x004u + 0x010u + 0x040u) << "results 0, 2, 4, 6";
+  EXPECT_EQ(window.start_b, 0x002u + 0x008u + 0x020u + 0x080u) << "results 1, 3, 5, 7";
+  EXPECT_EQ(window.end_a, 0x100u + 0x400u + 0x001u) << "results 8, 10, 12";
+  EXPECT_EQ(window.end_b, 0x200u + 0x800u + 0x002u) << "results 9, 11, 13";
+  EXPECT_EQ(window.link, 0x004u) << "result 14";
+  EXPECT_EQ(window.aux, 0x008u) << "result 15";
+}
+
+TEST_F(Adc, full_scale_sums_fit) {
+  for (std::uint32_t n = 0; n < 16; ++n) {
+    bus.words[REG_MIRROR_ADCRESULT0 + n] = 4095;
+  }
+  hal_adc_window_t window = {};
+  hal_adc_read_window(&window);
+  EXPECT_EQ(window.start_a, 4u * 4095u);
+  EXPECT_EQ(window.end_b, 3u * 4095u);
+}
+
+TEST_F(Adc, window_is_read_then_rearmed_then_flag_cleared_then_acknowledged) {
+  hal_adc_window_t window = {};
+  hal_adc_read_window(&window);
+  std::size_t last_result = 0;
+  for (std::size_t i = 0; i < bus.steps.size(); ++i) {
+    const bool result = bus.steps[i].op == Op::kRead && bus.steps[i].address >= REG_MIRROR_ADCRESULT0 &&
+                        bus.steps[i].address < REG_MIRROR_ADCRESULT0 + 16;
+    last_result = result ? i : last_result;
+  }
+  const std::size_t rearm = bus.first_write(REG_ADCTRL2);
+  const std::size_t clear = bus.first_write(REG_ADCST);
+  const std::size_t acknowledge = bus.first_write(REG_PIEACK);
+  expect_before(last_result, rearm, "results before they may be overwritten");
+  expect_before(rearm, clear, "sequencers before the flag");
+  expect_before(clear, acknowledge, "flag before PIEACK, or the interrupt would come twice");
+  EXPECT_EQ(bus.steps[rearm].value, 0x4149u) << "the triggers stay on";
+  EXPECT_EQ(bus.steps[clear].value, 0x0030u);
+  EXPECT_EQ(bus.steps[acknowledge].value, 0x0001u) << "group 1 and no other";
+}
+
+TEST_F(Adc, delays_follow_from_the_converter_clock) {
+  constexpr unsigned kAdcClockTicks = 8;  // 12.5 MHz
+  EXPECT_EQ(2 * HAL_ADC_HOLD_TICKS, 7 * kAdcClockTicks);
+  EXPECT_EQ(HAL_ADC_PAIR_TICKS, 3 * kAdcClockTicks);
+  EXPECT_EQ(2 * HAL_ADC_START_DELAY_TICKS, 2 * HAL_ADC_HOLD_TICKS + (HAL_ADC_START_SAMPLES - 1) * HAL_ADC_PAIR_TICKS);
+  EXPECT_EQ(2 * HAL_ADC_END_DELAY_TICKS, 2 * HAL_ADC_HOLD_TICKS + (HAL_ADC_END_SAMPLES - 1) * HAL_ADC_PAIR_TICKS);
+  EXPECT_EQ(HAL_ADC_BURST_TICKS, HAL_ADC_HOLD_TICKS + 3 * HAL_ADC_PAIR_TICKS + 5 * kAdcClockTicks);
+}
+
+}  // namespace stillspin::test

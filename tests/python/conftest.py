@@ -1,0 +1,35 @@
+"""Fixtures: the package with a fake native module, in this process and as a tree that subprocesses import."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import fake_core
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "sim_host" / "stillspin"
+
+
+@pytest.fixture
+def core(monkeypatch):
+    """The fake native module in place of the real one, whether or not that is built."""
+    monkeypatch.setitem(sys.modules, "stillspin._core", fake_core)
+    return fake_core
+
+
+@pytest.fixture(scope="session")
+def fake_tree(tmp_path_factory):
+    """A directory to put on PYTHONPATH: the package's own files, with the fake as its native module.
+
+    Worker processes import everything anew, so they need it as files.
+    """
+    tree = tmp_path_factory.mktemp("tree")
+    skipped = shutil.ignore_patterns("_core*", "__pycache__")
+    shutil.copytree(PACKAGE, tree / "stillspin", ignore=skipped)
+    for name in ("profiles", "scenarios"):
+        shutil.copytree(ROOT / "sim_host" / name, tree / name)
+    shutil.copy(Path(fake_core.__file__), tree / "stillspin" / "_core.py")
+    return tree

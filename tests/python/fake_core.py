@@ -1,0 +1,178 @@
+"""A stand-in for the native module `stillspin._core`, for tests of the Python code around it.
+
+The "motor" is a first-order lag with a load dip, the "estimator" the true angle plus a slow wobble and a little noise.
+It has nothing to do with a real drive; what it keeps is the interface and determinism in the seed. Special values make
+it fail on purpose: `inverter.dead_short = true` faults, `friction = 99` in the firmware never turns the shaft.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from types import SimpleNamespace
+
+import numpy as np
+
+SAMPLE = 1e-4  # s, one PWM period
+
+_SCHEMA = {
+    "machine": {
+        "pole_pairs": ("", 1, 50, 4),
+        "resistance": ("Ohm", 1e-4, 100.0, 0.32),
+        "saturation": ("", None, None, True),
+        "emf_harmonic_5": ("", 0.0, 0.3, 0.02),
+        "emf_harmonic_7": ("", 0.0, 0.3, 0.01),
+    },
+    "mechanics": {"inertia": ("kg m2", 1e-6, 100.0, 0.00455), "cogging_torque": ("N m", 0.0, 10.0, 0.1)},
+    "inverter": {
+        "switch_threshold": ("V", 0.0, 10.0, 1.0),
+        "switch_resistance": ("Ohm", 0.0, 10.0, 0.04),
+        "diode_threshold": ("V", 0.0, 10.0, 0.9),
+        "diode_resistance": ("Ohm", 0.0, 10.0, 0.03),
+        "turn_on_delay": ("ticks", 0, 1000, 30),
+        "turn_off_delay": ("ticks", 0, 1000, 60),
+        "dead_short": ("", None, None, False),
+    },
+    "link": {
+        "source_voltage": ("V", 1.0, 2000.0, 300.0),
+        "stiff": ("", None, None, False),
+        "source_resistance": ("Ohm", 1e-3, 1000.0, 0.3),
+        "capacitance": ("F", 1e-6, 1.0, 2e-3),
+        "ripple": ("", 0.0, 0.5, 0.01),
+        "ripple_frequency": ("Hz", 0.0, 5000.0, 300.0),
+        "rectifier": ("", None, None, False),
+        "brake_chopper": ("", None, None, False),
+    },
+    "sensor": {
+        "count": ("", 2, 3, 2),
+        "bandwidth": ("Hz", 0.0, 1e8, 150e3),
+        **{f"gain_{phase}": ("A/A", 0.5, 1.5, 1.0) for phase in "abc"},
+        **{f"offset_{phase}": ("A", -5.0, 5.0, 0.0) for phase in "abc"},
+        "ring_amplitude": ("A", 0.0, 10.0, 0.3),
+        "ring_frequency": ("Hz", 1e3, 5e6, 200e3),
+        "ring_decay": ("s", 1e-8, 1e-4, 2e-6),
+    },
+    "adc": {
+        "voltage_gain": ("V/V", 0.5, 1.5, 1.01),
+        "noise": ("LSB", 0.0, 100.0, 1.2),
+        "inl": ("LSB", 0.0, 50.0, 1.5),
+    },
+    "parameter_error": dict.fromkeys(
+        ("resistance", "inductance_d", "inductance_q", "magnet_flux", "inertia"), ("", -0.9, 9.0, 0.0)
+    ),
+    "solver": {"method": ("", None, None, "runge_kutta")},
+}
+_CHOICES = {"solver.method": ["runge_kutta", "erk_step", "reference"]}
+
+_PARAMETERS = [
+    (7, "friction", "Nms", 5, 0.0, 500.0, 0.003, "STOPPED", "viscous friction"),
+    (20, "dead_time", "us", 2, 0.0, 5.0, 2.0, "STOPPED", "dead band of the gate signals"),
+    (21, "turn_on_delay", "us", 2, 0.0, 2.0, 0.3, "STOPPED", "turn-on delay"),
+    (22, "turn_off_delay", "us", 2, 0.0, 2.0, 0.6, "STOPPED", "turn-off delay"),
+    (23, "device_drop", "V", 3, 0.0, 5.0, 0.95, "STOPPED", "on-state drop of a device"),
+    (24, "device_resistance", "ohm", 4, 0.0, 1.0, 0.035, "STOPPED", "on-state resistance of a device"),
+    (40, "excitation", "", 0, 0.0, 3.0, 3.0, "STOPPED", "pulse pattern"),
+    (60, "position_source", "", 0, 0.0, 4.0, 2.0, "STOPPED", "where the angle comes from"),
+    (68, "observer_windows", "", 0, 0.0, 1.0, 1.0, "ALWAYS", "windows of the observer"),
+    (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
+    (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),
+]
+
+SIGNALS = {
+    "time": "s", "true_angle": "rad", "est_angle": "rad", "true_speed": "rpm", "est_speed": "rpm", "speed_ref": "rpm",
+    "torque": "N m", "load_torque": "N m", "i_a": "A", "i_b": "A", "i_c": "A", "true_i_d": "A", "true_i_q": "A",
+    "i_d": "A", "i_q": "A", "i_d_ref": "A", "i_q_ref": "A", "v_d": "V", "v_q": "V", "v_dc": "V", "angle_zvv": "rad",
+    "angle_avv": "rad", "weight": "", "load_estimate": "N m", "state": "", "fault": "", "limit": "",
+}  # fmt: skip
+
+
+def plant_schema():
+    return {
+        section: {
+            key: {
+                "unit": unit,
+                "minimum": low,
+                "maximum": high,
+                "default": default,
+                "help": f"{key} of the {section}",
+                **({"choices": _CHOICES[f"{section}.{key}"]} if f"{section}.{key}" in _CHOICES else {}),
+            }
+            for key, (unit, low, high, default) in keys.items()
+        }
+        for section, keys in _SCHEMA.items()
+    }
+
+
+def parameters():
+    names = ("id", "name", "unit", "decimals", "minimum", "maximum", "default", "access", "help")
+    return [dict(zip(names, row, strict=True)) for row in _PARAMETERS]
+
+
+def signals():
+    return [{"name": name, "unit": unit, "help": name} for name, unit in SIGNALS.items()]
+
+
+def _ramped(target, slope):
+    """The reference follows its target with a bounded slope, 0 for a jump."""
+    if slope == 0.0:
+        return target
+    out = np.zeros_like(target)
+    now = 0.0
+    for index, wanted in enumerate(target):
+        now += min(max(wanted - now, -slope * SAMPLE), slope * SAMPLE)
+        out[index] = now
+    return out
+
+
+def _lag(values, constant):
+    out = np.zeros_like(values)
+    now = 0.0
+    for index, value in enumerate(values):
+        now += (value - now) * SAMPLE / constant
+        out[index] = now
+    return out
+
+
+def run(*, plant, motor, parameters, commands, load, duration, max_start, record_every, seed, progress):
+    began = clock.perf_counter()
+    for share in (0.25, 0.5, 0.75, 1.0):
+        if progress is not None and not progress(share):
+            return SimpleNamespace(
+                signals={"time": np.zeros(0)}, completed=False, reason="stopped", faults=[], stats={}
+            )
+    time = np.arange(-0.05, duration + SAMPLE / 2, SAMPLE)
+    at = np.array([-1.0] + [row[0] for row in commands if row[1] == "speed_ref_rpm"])
+    value = np.array([0.0] + [row[2] for row in commands if row[1] == "speed_ref_rpm"])
+    target = value[np.searchsorted(at, time, side="right") - 1]
+    reference = _ramped(target, parameters.get("speed_ramp", 3000.0))
+    torque = np.interp(time, *zip(*load, strict=True)) if load else np.zeros_like(time)
+    constant = 0.012 if parameters.get("speed_law", 0.0) == 0.0 else 0.03
+    lag = _lag(torque, 0.05)
+    speed = _lag(reference, constant) - 1000.0 * constant * (torque - lag)
+    if parameters.get("friction") == 99.0:
+        speed = np.zeros_like(speed)
+    noise = np.random.default_rng(seed).normal(0.0, plant.get("adc", {}).get("noise", 1.2), time.size)
+    pairs = plant.get("machine", {}).get("pole_pairs", 4)
+    angle = 0.3 + np.cumsum(speed) * SAMPLE * 2.0 * np.pi / 60.0 * pairs
+    used = angle - np.radians(0.3 * np.sin(2.0 * np.pi * 1.3 * time) + 0.05 * noise)
+    current = torque / 0.96 + 0.5
+    phases = [-current * np.sin(angle - shift * 2.0 * np.pi / 3.0) for shift in range(3)]
+    zero = np.zeros_like(time)
+    data = {
+        "time": time, "true_angle": np.remainder(angle + np.pi, 2 * np.pi) - np.pi,
+        "est_angle": np.remainder(used, 2 * np.pi), "true_speed": speed, "est_speed": speed + 0.2 * noise,
+        "speed_ref": reference, "torque": lag, "load_torque": torque,
+        "i_a": phases[0], "i_b": phases[1], "i_c": phases[2],
+        "true_i_d": zero, "true_i_q": current, "i_d": 0.01 * noise, "i_q": current + 0.01 * noise, "i_d_ref": zero,
+        "i_q_ref": current, "v_d": zero, "v_q": speed * 0.067, "v_dc": zero + 300.0,
+        "angle_zvv": used, "angle_avv": used,
+        "weight": np.clip((100.0 - np.abs(speed)) / 40.0, 0.0, 1.0), "load_estimate": lag,
+        "state": np.full(time.size, 4), "fault": np.zeros(time.size, int), "limit": np.zeros(time.size, int),
+    }  # fmt: skip
+    short = plant.get("inverter", {}).get("dead_short", False)
+    return SimpleNamespace(
+        signals={name: column[:: int(record_every)] for name, column in data.items()},
+        completed=not short,
+        reason="over-current at 0.100 s" if short else "",
+        faults=[(0.1, "over-current")] if short else [],
+        stats={"wall_seconds": clock.perf_counter() - began, "simulated_seconds": duration + 0.05, "plant_share": 0.5},
+    )

@@ -1,0 +1,207 @@
+"""The checks of toolchain/checks catch what they are for: each is given planted violations and clean counterparts."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+from checks import arrows, conditionals, int16, links  # noqa: E402
+from checks.preprocessor import without_comments  # noqa: E402
+
+
+def plant(root: Path, path: str, text: str = "") -> Path:
+    """Writes ``text`` to ``path`` under ``root``."""
+    file = root / path
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """A tree with one header in each part of the house."""
+    for path in (
+        "hal/qmath/qmath.h",
+        "hal/hal_pwm.h",
+        "hal/f2808/registers.h",
+        "hal/f2808/target.h",
+        "hal/f2808/pwm_internal.h",
+        "control/frame.h",
+        "control/pi.h",
+        "svpwm/modulator.h",
+        "estimators/avv.h",
+        "firmware/drive.h",
+        "sim_host/chip/world.hpp",
+        "sim_host/plant/plant.hpp",
+    ):
+        plant(tmp_path, path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("source", "include"),
+    [
+        ("hal/qmath/x.c", "control/pi.h"),
+        ("hal/hal_x.h", "control/pi.h"),
+        ("control/x.c", "svpwm/modulator.h"),
+        ("control/x.c", "estimators/avv.h"),
+        ("control/x.h", "hal/hal_pwm.h"),
+        ("svpwm/x.c", "firmware/drive.h"),
+        ("estimators/x.c", "control/pi.h"),
+        ("estimators/x.c", "hal/hal_pwm.h"),
+        ("firmware/x.c", "hal/f2808/registers.h"),
+        ("hal/f2808/x.c", "firmware/drive.h"),
+        ("hal/f2808/x.c", "control/frame.h"),
+        ("hal/f2808/x.c", "svpwm/modulator.h"),
+        ("hal/f2808/x.c", "estimators/avv.h"),
+        ("sim_host/chip/x.cpp", "firmware/drive.h"),
+        ("sim_host/chip/x.cpp", "hal/f2808/pwm_internal.h"),
+        ("sim_host/plant/x.cpp", "hal/f2808/registers.h"),
+        ("control/x.c", "sim_host/chip/world.hpp"),
+        ("control/x.c", "../firmware/drive.h"),
+        ("control/x.c", "control/../firmware/drive.h"),
+        ("control/x.c", "control/no_such_file.h"),
+        ("control/x.c", "math.h"),
+    ],
+)
+def test_arrow_that_goes_up_is_caught(house: Path, source: str, include: str) -> None:
+    plant(house, source, f'#include <stdint.h>\n#include "{include}"\n')
+    findings = arrows.check(house)
+    assert [(f.path, f.line) for f in findings] == [(source, 2)]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "#include <firmware/drive.h>",
+        '  #  include "firmware/drive.h"',
+        '#include /* why not */ "firmware/drive.h"',
+        '#include \\\n "firmware/drive.h"',
+        '#define DRIVE "firmware/drive.h"\n#include DRIVE',
+    ],
+)
+def test_disguised_arrow_is_caught(house: Path, line: str) -> None:
+    plant(house, "control/x.c", line + "\n")
+    assert len(arrows.check(house)) == 1
+
+
+@pytest.mark.parametrize(
+    ("source", "include"),
+    [
+        ("control/x.c", '"hal/qmath/qmath.h"'),
+        ("control/x.c", '"pi.h"'),
+        ("control/x.c", "<stdbool.h>"),
+        ("estimators/x.c", '"control/frame.h"'),
+        ("firmware/x.c", '"hal/hal_pwm.h"'),
+        ("firmware/x.c", '"estimators/avv.h"'),
+        ("hal/f2808/x.c", '"hal/hal_pwm.h"'),
+        ("sim_host/chip/x.cpp", '"hal/f2808/target.h"'),
+        ("sim_host/plant/x.cpp", "<vector>"),
+        ("sim_host/bench/x.cpp", '"firmware/drive.h"'),
+    ],
+)
+def test_arrow_that_goes_down_passes(house: Path, source: str, include: str) -> None:
+    plant(house, source, f'#include {include}\n// #include "firmware/drive.h"\n')
+    assert arrows.check(house) == []
+
+
+def test_comment_stripping_keeps_strings_and_line_numbers() -> None:
+    assert without_comments('a "/* no */" /* x\ny */ b // c\nd') == 'a "/* no */"     \n     b     \nd'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#ifdef HOST\nint x;\n#endif\n",
+        "#if defined(__TMS320C28XX__)\nint x;\n#endif\n",
+        "#ifndef __x86_64__\nint x;\n#endif\n",
+        "#if 1\n#error broken\nint x;\n#endif\n",
+        "#ifndef A_H\n#define A_H\n#if UINT_MAX > 65535\n#define WIDE 1\n#endif\n#endif\n",
+    ],
+)
+def test_code_that_only_one_build_sees_is_caught(text: str) -> None:
+    assert len(conditionals.check_text("firmware/x.c", text)) == 1
+
+
+def test_guards_and_compile_time_errors_pass() -> None:
+    text = """
+#ifndef A_H
+#define A_H
+#ifdef __cplusplus
+extern "C" {
+#endif
+#if PERIOD > 9999
+#error the period does not fit the counter
+#endif
+#endif
+"""
+    assert conditionals.check_text("firmware/a.h", text) == []
+
+
+def test_sixteen_bit_fault_is_caught_that_the_host_compiler_accepts(tmp_path: Path) -> None:
+    clang = int16.find_clang()
+    assert clang is not None, "make setup installs a clang with the msp430 target"
+    fault = plant(
+        tmp_path,
+        "control/x.c",
+        "#include <stdint.h>\nint32_t f(void);\nint32_t f(void) {\n  return 1 << 20;\n}\n",
+    )
+    host = shutil.which("gcc")
+    assert host is not None
+    flags = [flag for flag in int16.FLAGS if flag.startswith(("-W", "-std", "-fsyntax"))]
+    assert subprocess.run([host, *flags, str(fault)], check=False).returncode == 0
+    assert [(f.path, f.line) for f in int16.check(tmp_path)] == [("control/x.c", 4)]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "int16_t f(int32_t x) { return x; }",  # narrowing
+        "uint16_t f(void) { return 70000; }",  # a constant that needs more than 16 bits
+        "int32_t f(int16_t a, int16_t b) { int16_t a1 = a; { int16_t a1 = b; return a1; } }",  # shadowing
+        "int32_t f(void) { return FEATURE_X; }",  # not declared
+    ],
+)
+def test_other_faults_are_caught_with_the_drives_flags(tmp_path: Path, body: str) -> None:
+    plant(tmp_path, "firmware/x.c", f"#include <stdint.h>\n{body}\n")
+    assert int16.check(tmp_path)
+
+
+def test_widened_arithmetic_passes(tmp_path: Path) -> None:
+    body = "int32_t f(int16_t a, int16_t b);\nint32_t f(int16_t a, int16_t b) { return (int32_t)a * b; }\n"
+    plant(tmp_path, "firmware/x.c", f"#include <stdint.h>\n{body}")
+    assert int16.check(tmp_path) == []
+
+
+def test_dead_link_and_dead_path_are_caught(tmp_path: Path) -> None:
+    plant(tmp_path, "docs/index.md", "[there](there.md) and `control/pi.h`\n")
+    plant(tmp_path, "docs/there.md", "```\n[not](a-link.md)\n```\n")
+    plant(tmp_path, "control/pi.h")
+    plant(tmp_path, "README.md", "[a](docs/index.md)\n![b](docs/images/none.png)\nsee `control/none.c`\n")
+    findings = links.check(tmp_path)
+    assert [(f.path, f.line) for f in findings] == [("README.md", 2), ("README.md", 3)]
+
+
+def test_lock_file_names_no_address() -> None:
+    """Where packages come from is the machine's business: the lock says what, not whence."""
+    lock = (ROOT / "toolchain/requirements.lock").read_text(encoding="utf-8")
+    assert "://" not in lock
+    assert "--index" not in lock and "--find-links" not in lock
+    pinned = [line for line in lock.splitlines() if line and not line.startswith((" ", "#"))]
+    assert pinned and all("==" in line for line in pinned)
+
+
+def test_every_dependency_is_explained() -> None:
+    """Each direct dependency has its reason in the book."""
+    book = (ROOT / "docs/dependencies.md").read_text(encoding="utf-8")
+    rows = (ROOT / "toolchain/debian-packages.txt").read_text(encoding="utf-8").splitlines()
+    debian = [row.split("|")[1].strip() for row in rows if not row.startswith("#")]
+    requirements = (ROOT / "toolchain/requirements.in").read_text(encoding="utf-8").splitlines()
+    python = [line.split(">")[0].strip() for line in requirements if not line.startswith("#")]
+    assert debian and python
+    assert [name for name in debian + python if f"`{name}`" not in book] == []

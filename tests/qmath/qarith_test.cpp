@@ -1,0 +1,137 @@
+// Arithmetic against 128-bit integers: every result is exact, so every comparison is for equality.
+
+#include "hal/qmath/qarith.h"
+
+#include <algorithm>
+
+#include "tests/qmath/worst.hpp"
+
+namespace {
+
+using stillspin::test::edges;
+using stillspin::test::RandomInt32;
+using Wide = __int128;
+
+Wide floor_shift(Wide x, unsigned n) {
+  const Wide unit = Wide{1} << n;
+  const Wide quotient = x / unit;
+  return (x % unit < 0) ? quotient - 1 : quotient;
+}
+
+// floor(x / 2^n + 1/2) without using the shift of a negative number
+Wide round_shift(Wide x, unsigned n) {
+  return n == 0 ? x : floor_shift(x + (Wide{1} << (n - 1)), n);
+}
+
+std::int32_t saturate(Wide x) {
+  return static_cast<std::int32_t>(std::clamp<Wide>(x, Wide{INT32_MIN}, Wide{INT32_MAX}));
+}
+
+bool fits(Wide x) {
+  return x == Wide{saturate(x)};
+}
+
+void check_product(std::int32_t a, std::int32_t b, unsigned shift) {
+  const Wide exact = round_shift(Wide{a} * b, shift);
+  ASSERT_EQ(q_mul_sat(a, b, shift), saturate(exact)) << a << " * " << b << " >> " << shift;
+  ASSERT_TRUE(Wide{q_mul64(a, b, shift)} == exact) << a << " * " << b << " >> " << shift;
+  if (fits(exact)) {
+    ASSERT_EQ(q_mul(a, b, shift), static_cast<std::int32_t>(exact)) << a << " * " << b << " >> " << shift;
+  }
+}
+
+void check_pair(std::int32_t a, std::int32_t b) {
+  ASSERT_EQ(q_add_sat(a, b), saturate(Wide{a} + b)) << a << ", " << b;
+  ASSERT_EQ(q_sub_sat(a, b), saturate(Wide{a} - b)) << a << ", " << b;
+  ASSERT_EQ(q_max(a, b), std::max(a, b));
+  ASSERT_EQ(q_min(a, b), std::min(a, b));
+  ASSERT_TRUE(Wide{q_mul_hi(a, b)} == floor_shift(Wide{a} * b, 32)) << a << ", " << b;
+  const auto ua = static_cast<std::uint32_t>(a);
+  const auto ub = static_cast<std::uint32_t>(b);
+  ASSERT_TRUE(Wide{q_umul_hi(ua, ub)} == floor_shift(Wide{ua} * ub, 32)) << ua << ", " << ub;
+}
+
+void check_one(std::int32_t x) {
+  ASSERT_EQ(q_neg_sat(x), saturate(-Wide{x}));
+  ASSERT_EQ(q_abs_sat(x), saturate(x < 0 ? -Wide{x} : Wide{x}));
+  ASSERT_TRUE(Wide{q_abs_u32(x)} == (x < 0 ? -Wide{x} : Wide{x}));
+  for (unsigned n = 0; n < 32; ++n) {
+    ASSERT_TRUE(Wide{q_shr(x, n)} == floor_shift(x, n)) << x << " >> " << n;
+    ASSERT_TRUE(Wide{q_shr_round(x, n)} == round_shift(x, n)) << x << " >> " << n;
+    ASSERT_EQ(q_shl_sat(x, n), saturate(Wide{x} * (Wide{1} << n))) << x << " << " << n;
+  }
+}
+
+TEST(QArith, OneArgument) {
+  for (const std::int32_t x : edges()) check_one(x);
+  RandomInt32 random(1);
+  for (int i = 0; i < 20000; ++i) check_one(random());
+}
+
+TEST(QArith, TwoArguments) {
+  for (const std::int32_t a : edges()) {
+    for (const std::int32_t b : edges()) check_pair(a, b);
+  }
+  RandomInt32 random(2);
+  for (int i = 0; i < 500000; ++i) check_pair(random(), random());
+}
+
+TEST(QArith, Product) {
+  for (const std::int32_t a : edges()) {
+    for (const std::int32_t b : edges()) {
+      for (const unsigned shift : {1u, 15u, 16u, 20u, 30u, 31u, 32u, 61u, 62u}) check_product(a, b, shift);
+    }
+  }
+  RandomInt32 random(3);
+  for (int i = 0; i < 500000; ++i) check_product(random(), random(), 1 + random.below(62));
+}
+
+TEST(QArith, ProductRoundsHalvesUp) {
+  EXPECT_EQ(q_mul(3, 1, 1), 2);    // 1.5
+  EXPECT_EQ(q_mul(-3, 1, 1), -1);  // -1.5
+  EXPECT_EQ(q_mul(1, -1, 1), 0);   // -0.5
+  EXPECT_EQ(q_shr_round(-3, 1), -1);
+}
+
+TEST(QArith, Saturate64) {
+  EXPECT_EQ(q_sat64(INT64_MAX), INT32_MAX);
+  EXPECT_EQ(q_sat64(INT64_MIN), INT32_MIN);
+  EXPECT_EQ(q_sat64(std::int64_t{INT32_MAX} + 1), INT32_MAX);
+  EXPECT_EQ(q_sat64(std::int64_t{INT32_MIN} - 1), INT32_MIN);
+  for (const std::int32_t x : edges()) EXPECT_EQ(q_sat64(x), x);
+  for (unsigned n = 0; n < 64; ++n) {
+    EXPECT_TRUE(Wide{q_shr64(INT64_MIN, n)} == floor_shift(INT64_MIN, n));
+    EXPECT_TRUE(Wide{q_shr64(-3, n)} == floor_shift(-3, n));
+  }
+}
+
+TEST(QArith, Clamp) {
+  EXPECT_EQ(q_clamp(5, -2, 3), 3);
+  EXPECT_EQ(q_clamp(-5, -2, 3), -2);
+  EXPECT_EQ(q_clamp(1, -2, 3), 1);
+  EXPECT_EQ(q_clamp(INT32_MIN, INT32_MIN, INT32_MAX), INT32_MIN);
+  EXPECT_EQ(q_clamp(7, 4, 4), 4);
+}
+
+// Every pair with one argument over all 2^16 values and the other over a stride that is coprime with the word.
+TEST(QArith, SixteenBits) {
+  const auto saturate16 = [](std::int64_t x) { return std::clamp<std::int64_t>(x, INT16_MIN, INT16_MAX); };
+  std::vector<std::int32_t> others = {INT16_MIN, INT16_MIN + 1, -1, 0, 1, INT16_MAX - 1, INT16_MAX};
+  for (std::int32_t b = INT16_MIN; b <= INT16_MAX; b += 331) others.push_back(b);
+  long mismatches = 0;
+  for (std::int32_t a = INT16_MIN; a <= INT16_MAX; ++a) {
+    for (const std::int32_t b : others) {
+      const auto a16 = static_cast<std::int16_t>(a);
+      const auto b16 = static_cast<std::int16_t>(b);
+      const auto product = static_cast<std::int64_t>(std::floor((a * static_cast<double>(b)) / 32768.0 + 0.5));
+      mismatches += q15_mul(a16, b16) != saturate16(product);
+      mismatches += q15_add_sat(a16, b16) != saturate16(std::int64_t{a} + b);
+      mismatches += q15_sub_sat(a16, b16) != saturate16(std::int64_t{a} - b);
+    }
+  }
+  EXPECT_EQ(mismatches, 0);
+  EXPECT_EQ(q15_sat(40000), INT16_MAX);
+  EXPECT_EQ(q15_sat(-40000), INT16_MIN);
+}
+
+}  // namespace

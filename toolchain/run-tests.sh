@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Runs the checks, the C++ tests and the Python tests, all three whatever the ones before gave, so that one run shows
+# everything that is wrong. Usage: toolchain/run-tests.sh PRESET, after a build.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=$1
+failed=()
+
+.venv/bin/python toolchain/check.py || failed+=("checks (make lint)")
+ctest --preset "$preset" --progress || failed+=("C++ tests (ctest --preset $preset)")
+.venv/bin/python -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python || failed+=("Python tests")
+
+if ((${#failed[@]})); then
+  printf 'failed: %s\n' "${failed[@]}" >&2
+  exit 1
+fi
