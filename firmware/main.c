@@ -39,7 +39,7 @@ void firmware_main(void) {
   }
   hal_time_init();
   hal_safety_init();
-  (void)hal_pwm_init(dead_band_ticks());
+  drive.config_valid = hal_pwm_init(dead_band_ticks()) && drive.config_valid;
   hal_adc_init();
   hal_encoder_init((uint32_t)parameters.encoder_counts);
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);

@@ -37,7 +37,7 @@ PARAMETER(41, pulse_time, "us", 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of 
 PARAMETER(42, window_minimum, "us", 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
 PARAMETER(43, window_maximum, "us", 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")
 PARAMETER(44, zero_time, "us", 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept beside the extended ones")
-PARAMETER(45, settle_time, "us", 16, 2, 100, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
+PARAMETER(45, settle_time, "us", 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
 
 // Position and speed
 PARAMETER(60, position_source, "", 0, 0, 0, 4, 2, STOPPED, "0 encoder, 1 paper (q-axis ZVV and AVV), 2 deviation observer and AVV, 3 AVV alone, 4 observer alone")

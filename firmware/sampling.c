@@ -29,8 +29,9 @@ void drive_window_interrupt(void) {
 
 const sampling_buffer_t* sampling_swap(void) {
   const uint16_t full = sampling_filling;
-  sampling_filling = (uint16_t)(1u - full);
-  sampling_buffers[sampling_filling].count = 0;
+  const uint16_t next = (uint16_t)(1u - full);
+  sampling_buffers[next].count = 0;  // before the switch: the window interrupt may come in between
+  sampling_filling = next;
   return &sampling_buffers[full];
 }
 

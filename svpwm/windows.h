@@ -6,7 +6,7 @@
 #include "svpwm/pattern.h"
 
 typedef struct {
-  int16_t settle_ticks;  // from an edge at the motor to the first sample: dead time is compensated, ringing is not
+  int16_t settle_ticks;  // from an edge at the motor to the first sample, at least 400: ringing, and reading the last window
   int16_t burst_ticks;   // length of a burst of conversions
   int16_t span_min_ticks;  // shortest useful time between the two bursts
   int16_t last_tick;     // the last burst must have been triggered by here, so that it is read before the period ends

@@ -63,16 +63,24 @@ Device device_at(std::uint32_t address) {
   return page < kPageCount ? kPages.device[page] : Device::kNone;
 }
 
-std::uint16_t offset_in_page(std::uint32_t address) { return static_cast<std::uint16_t>(address & kPageMask); }
-int epwm_module(std::uint32_t address) { return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift); }
+std::uint16_t offset_in_page(std::uint32_t address) {
+  return static_cast<std::uint16_t>(address & kPageMask);
+}
+int epwm_module(std::uint32_t address) {
+  return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift);
+}
 
 // Identification: part number of the F2808, revision C (the last one that the errata SPRZ171 name).
 constexpr std::uint16_t kPartNumber = 0x003C;
 constexpr std::uint16_t kRevision = 0x0003;
 constexpr std::uint32_t kDeviceConfiguration = DEVICECNF_VMAPS_MASK | DEVICECNF_XRSn_MASK | DEVICECNF_ENPROT_MASK;
 
-Tick read_cycles(std::uint32_t address) { return address < kFrame1Start ? kFrame0ReadCycles : kFrame12ReadCycles; }
-Tick halves(std::uint32_t address) { return address >= kFrame2Start ? 2 : 1; }
+Tick read_cycles(std::uint32_t address) {
+  return address < kFrame1Start ? kFrame0ReadCycles : kFrame12ReadCycles;
+}
+Tick halves(std::uint32_t address) {
+  return address >= kFrame2Start ? 2 : 1;
+}
 
 bool epwm_register_protected(std::uint16_t offset) {
   constexpr std::uint64_t mask = 1ull << EPWM_TZSEL | 1ull << EPWM_TZCTL | 1ull << EPWM_TZEINT | 1ull << EPWM_TZCLR |
@@ -163,7 +171,8 @@ void Core::note_unmodelled(std::uint32_t address) {
 
 std::uint16_t Core::bus_read(std::uint32_t address) {
   switch (device_at(address)) {
-    case Device::kEPwm: return read_epwm(address);
+    case Device::kEPwm:
+      return read_epwm(address);
     case Device::kAdc:
       return gate_stops(system_.adc_clock(), address) ? 0 : adc_.read(offset_in_page(address), now_);
     case Device::kAdcMirror:
@@ -171,16 +180,21 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return adc_.read(static_cast<std::uint16_t>(kAdcMirrorOffset + offset_in_page(address)), now_);
     case Device::kPie:
       return address < REG_PIECTRL ? 0 : interrupts_.read(static_cast<std::uint16_t>(address - REG_PIECTRL));
-    case Device::kTimers: return timers_.read(offset_in_page(address), now_);
+    case Device::kTimers:
+      return timers_.read(offset_in_page(address), now_);
     case Device::kGpio:
       world_touched_ = true;
       return gpio_.read(static_cast<std::uint16_t>(address - kGpioFrame), now_);
     case Device::kEQep1:
       return gate_stops(system_.eqep_clock(1), address) ? 0 : eqep1_.read(offset_in_page(address), now_);
-    case Device::kSystem: return read_system(offset_in_page(address));
-    case Device::kFlash: return flash_.read(address);
-    case Device::kIdentity: return read_identity(address);
-    case Device::kNone: break;
+    case Device::kSystem:
+      return read_system(offset_in_page(address));
+    case Device::kFlash:
+      return flash_.read(address);
+    case Device::kIdentity:
+      return read_identity(address);
+    case Device::kNone:
+      break;
   }
   note_unmodelled(address);
   return 0;
@@ -198,11 +212,16 @@ std::uint16_t Core::read_system(std::uint16_t offset) const {
 
 std::uint16_t Core::read_identity(std::uint32_t address) const {
   switch (address) {
-    case REG_DEVICECNF: return static_cast<std::uint16_t>(kDeviceConfiguration & 0xFFFFu);
-    case REG_DEVICECNF + 1: return static_cast<std::uint16_t>(kDeviceConfiguration >> 16);
-    case REG_PARTID: return kPartNumber;
-    case REG_REVID: return kRevision;
-    default: return 0;
+    case REG_DEVICECNF:
+      return static_cast<std::uint16_t>(kDeviceConfiguration & 0xFFFFu);
+    case REG_DEVICECNF + 1:
+      return static_cast<std::uint16_t>(kDeviceConfiguration >> 16);
+    case REG_PARTID:
+      return kPartNumber;
+    case REG_REVID:
+      return kRevision;
+    default:
+      return 0;
   }
 }
 
@@ -217,24 +236,39 @@ std::uint16_t Core::inspect(std::uint32_t address) {
 
 void Core::bus_write(std::uint32_t address, std::uint16_t value) {
   switch (device_at(address)) {
-    case Device::kEPwm: write_epwm(address, value); return;
-    case Device::kAdc: write_adc(address, value); return;
+    case Device::kEPwm:
+      write_epwm(address, value);
+      return;
+    case Device::kAdc:
+      write_adc(address, value);
+      return;
     case Device::kPie:
       if (address >= REG_PIECTRL) interrupts_.write(static_cast<std::uint16_t>(address - REG_PIECTRL), value);
       return;
-    case Device::kGpio: write_gpio(address, value); return;
+    case Device::kGpio:
+      write_gpio(address, value);
+      return;
     case Device::kTimers:
       timers_.write(offset_in_page(address), value, now_);
       set_due(kTimers, timers_.next_event());
       return;
-    case Device::kEQep1: write_eqep1(address, value); return;
+    case Device::kEQep1:
+      write_eqep1(address, value);
+      return;
     case Device::kSystem:
       if (!protection_stops(address)) write_system(offset_in_page(address), value);
       return;
-    case Device::kFlash: write_flash(address, value); return;
-    case Device::kIdentity: protection_stops(address); return;  // nothing there is worth changing
-    case Device::kAdcMirror: return;                            // read-only
-    case Device::kNone: note_unmodelled(address); return;
+    case Device::kFlash:
+      write_flash(address, value);
+      return;
+    case Device::kIdentity:
+      protection_stops(address);
+      return;  // nothing there is worth changing
+    case Device::kAdcMirror:
+      return;  // read-only
+    case Device::kNone:
+      note_unmodelled(address);
+      return;
   }
 }
 

@@ -9,15 +9,14 @@
 //     chip.run_until(50'000'000);            // half a second
 //     chip.statistics().interrupts;
 //
-// Exactness: run_until(t) runs every event and every access up to and including t and leaves now() == t. How a run is cut
-// into calls does not change it.
-// Start: tick 0 is the moment the boot ROM would jump to the flash entry point. A watchdog reset discards the firmware's
-// stack and enters firmware_main again; C variables keep their values, so firmware must initialise what it relies on
-// (the DSP's start-up code does not zero them either).
-// Threads: a chip is used by one thread at a time. The world's callbacks run on the firmware's stack (1 MiB), may throw
-// C++ exceptions (run_until passes them on), and must not call run_until.
-// Errors: what the real chip could not survive (an unset interrupt vector, an impossible PLL ratio) ends the run:
-// run_until throws std::runtime_error, then and at every later call.
+// Exactness: run_until(t) runs every event and every access up to and including t and leaves now() == t. How a run is
+// cut into calls does not change it. Start: tick 0 is the moment the boot ROM would jump to the flash entry point. A
+// watchdog reset discards the firmware's stack and enters firmware_main again; C variables keep their values, so
+// firmware must initialise what it relies on (the DSP's start-up code does not zero them either). Threads: a chip is
+// used by one thread at a time. The world's callbacks run on the firmware's stack (1 MiB), may throw C++ exceptions
+// (run_until passes them on), and must not call run_until. Errors: what the real chip could not survive (an unset
+// interrupt vector, an impossible PLL ratio) ends the run: run_until throws std::runtime_error, then and at every later
+// call.
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_CHIP_HPP
 #define STILLSPIN_SIM_HOST_CHIP_CHIP_HPP
@@ -38,7 +37,7 @@ struct Statistics {
   std::uint64_t writes = 0;
   std::uint64_t events = 0;
   std::uint64_t interrupts = 0;
-  std::uint64_t spurious_interrupts = 0;  // the request had been withdrawn: channel 1 of its group ran
+  std::uint64_t spurious_interrupts = 0;    // the request had been withdrawn: channel 1 of its group ran
   std::uint64_t protected_writes_lost = 0;  // written without EALLOW
   std::uint32_t last_protected_address = 0;
   std::uint64_t gated_accesses = 0;  // peripheral clock off: reads gave 0, writes were lost
@@ -47,6 +46,11 @@ struct Statistics {
   std::uint32_t last_unmodelled_address = 0;
   std::uint64_t resets = 0;  // after power-on
   Tick idle_ticks = 0;       // asleep in target_idle
+
+  std::uint64_t conversions = 0;          // ADC sequences completed
+  std::uint64_t conversions_delayed = 0;  // the trigger found the converter busy and waited
+  std::uint64_t conversions_lost = 0;     // the trigger found another one waiting
+  std::uint64_t conversions_aborted = 0;  // ended by a sequencer reset
 };
 
 class Chip {
@@ -62,7 +66,7 @@ class Chip {
   void run_until(Tick t);
   Tick now() const;
 
-  const Statistics& statistics() const;
+  Statistics statistics() const;
 
   /// What ended the run, empty while all is well.
   const std::string& error() const;
@@ -70,6 +74,9 @@ class Chip {
   /// A level that pin_level() gives may have changed: the chip looks at its trip inputs again, in the tick in which a
   /// callback of the world says so. After World::call it looks anyway.
   void pins_changed();
+
+  /// Erratum of silicon revisions 0, A, B: in simultaneous sampling ADCINBn reads high by ADCINAn / 256. Off at first.
+  void set_adc_crosstalk(bool on);
 
   /// Whether the CPU is asleep in target_idle.
   bool is_idle() const;

@@ -55,7 +55,8 @@ void Core::reset(Tick t, bool by_watchdog) {
   due_[kEQep1] = eqep1_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kWatchdog] = watchdog_.next_event();
-  update_horizon();
+  find_rest();
+  find_next();
   coroutine_.prepare(&Core::firmware_entry, this);
 }
 
@@ -81,7 +82,8 @@ void Core::run_until(Tick t) {
   check_outcome();
   limit_ = t;
   due_[kWorldCall] = world_.next_call();
-  update_horizon();
+  find_rest();
+  find_next();
   const CurrentScope scope(this);
   if (pins_dirty_) update_trips();
   resume_firmware();
@@ -99,6 +101,15 @@ void Core::resume_firmware() {
   }
 }
 
+Statistics Core::statistics() const {
+  Statistics statistics = statistics_;
+  statistics.conversions = adc_.statistics().sequences;
+  statistics.conversions_delayed = adc_.statistics().delayed_triggers;
+  statistics.conversions_lost = adc_.statistics().lost_triggers;
+  statistics.conversions_aborted = adc_.statistics().aborted;
+  return statistics;
+}
+
 void Core::check_outcome() {
   if (exception_) std::rethrow_exception(exception_);
   if (!error_.empty()) throw std::runtime_error(error_);
@@ -108,7 +119,9 @@ void Core::leave_firmware() {
   for (;;) coroutine_.suspend();  // never resumed: discarded by a reset, or dead after an error
 }
 
-void Core::request_reset() { stop_ = reset_requested_ = true; }
+void Core::request_reset() {
+  stop_ = reset_requested_ = true;
+}
 
 void Core::model_error(const char* text, std::int64_t value) {
   stop_ = true;
@@ -124,6 +137,13 @@ void Core::fail_with_current_exception() {
 
 // ---- time and events ----------------------------------------------------------------------------------
 
+void Core::find_rest() {
+  rest_source_ = kWorldCall;
+  for (const Source source : {kSystem, kEQep1, kTimers, kWatchdog}) {
+    if (due_[source] < due_[rest_source_]) rest_source_ = source;
+  }
+}
+
 // Lets time pass to `target` with everything that is due at or before it; stops for the host at the end of the run.
 void Core::advance(Tick target) {
   for (;;) {
@@ -136,8 +156,8 @@ void Core::advance(Tick target) {
   }
 }
 
-// Lets time pass to the next event, but not beyond `target`. May return earlier, after a stop: the host may have changed
-// the world, so the caller looks again.
+// Lets time pass to the next event, but not beyond `target`. May return earlier, after a stop: the host may have
+// changed the world, so the caller looks again.
 void Core::wait_for_event(Tick target) {
   const Tick goal = std::min(target, std::max(next_event_, now_));
   if (goal > limit_) {
@@ -153,11 +173,9 @@ void Core::wait_for_event(Tick target) {
 void Core::run_events(Tick last) {
   try {
     while (next_event_ <= last && !stop_) {
-      unsigned source = 0;
-      while (due_[source] != next_event_) ++source;
       now_ = std::max(now_, next_event_);
       ++statistics_.events;
-      run_event(static_cast<Source>(source));
+      run_event(next_source_);
       if (world_touched_) after_world();
     }
   } catch (...) {
@@ -167,8 +185,12 @@ void Core::run_events(Tick last) {
 
 void Core::run_event(Source source) {
   switch (source) {
-    case kWorldCall: run_world(); break;
-    case kSystem: apply(system_.run_event()); break;
+    case kWorldCall:
+      run_world();
+      break;
+    case kSystem:
+      apply(system_.run_event());
+      break;
     case kEPwm:
       epwm_.run_event(now_);
       set_due(kEPwm, epwm_.next_event());
@@ -185,8 +207,11 @@ void Core::run_event(Source source) {
       timers_.run_event(now_);
       set_due(kTimers, timers_.next_event());
       break;
-    case kWatchdog: run_watchdog(); break;
-    case kSources: break;
+    case kWatchdog:
+      run_watchdog();
+      break;
+    case kSources:
+      break;
   }
 }
 
@@ -232,7 +257,8 @@ void Core::apply(unsigned effects) {
   due_[kEQep1] = eqep1_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kSystem] = system_.next_event();
-  update_horizon();
+  find_rest();
+  find_next();
 }
 
 void Core::check_flash_waits() {

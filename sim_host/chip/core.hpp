@@ -1,10 +1,10 @@
 // The inside of the virtual chip: time, event order, bus and CPU. Not for users of the chip, see chip.hpp.
 //
-// Split over core.cpp (life cycle, events, services), cpu.cpp (what the firmware's instructions do), bus.cpp (address
-// decode and protection). The target_* functions reach the core that runs on the present thread through current().
+// Split over core.cpp (life cycle, events, services), cpu.cpp (interrupts, IDLE, time), bus.cpp (register accesses) and
+// target.cpp (the firmware's C functions, which reach the core that runs on their thread).
 //
-// The fast path of an access: add its cost to now_, compare with horizon_, decode, test for an interrupt. horizon_ is the
-// last tick that can be reached without an event or the end of the run.
+// The fast path of an access: add its cost to now_, compare with horizon_, decode, test for an interrupt. horizon_ is
+// the last tick that can be reached without an event or the end of the run.
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_CORE_HPP
 #define STILLSPIN_SIM_HOST_CHIP_CORE_HPP
@@ -32,7 +32,7 @@ namespace stillspin::chip {
 class Core final : public ChipServices {
  public:
   Core(World& world, Chip::Firmware firmware);
-  virtual ~Core() = default;
+  ~Core() = default;
   Core(const Core&) = delete;
   Core& operator=(const Core&) = delete;
 
@@ -42,7 +42,8 @@ class Core final : public ChipServices {
   // ---- for Chip
   void run_until(Tick t);
   Tick now() const { return now_; }
-  const Statistics& statistics() const { return statistics_; }
+  Statistics statistics() const;
+  void set_adc_crosstalk(bool on) { adc_.set_crosstalk(on); }
   const std::string& error() const { return error_; }
   void pins_changed() { pins_dirty_ = world_touched_ = true; }
   bool is_idle() const { return idle_; }
@@ -107,22 +108,23 @@ class Core final : public ChipServices {
   void after_world();
   void update_trips();
   void apply(unsigned system_effects);
+  // Notes when a source next wants to run and keeps the earliest at hand; at one tick the lower source goes first.
+  // ePWM and ADC change with almost every event, the others seldom: their earliest is kept separately.
   void set_due(Source source, Tick due) {
-    const Tick before = due_[source];
+    if (due_[source] == due) return;
     due_[source] = due;
-    if (due < next_event_) {
-      next_event_ = due;
-      horizon_ = due - 1 < limit_ ? due - 1 : limit_;
-    } else if (before == next_event_ && due != before) {
-      update_horizon();
-    }
+    if (source != kEPwm && source != kAdc) find_rest();
+    find_next();
   }
-  void update_horizon() {
-    Tick first = due_[0];
-    for (unsigned source = 1; source < kSources; ++source) first = due_[source] < first ? due_[source] : first;
-    next_event_ = first;
-    horizon_ = first - 1 < limit_ ? first - 1 : limit_;
+  void find_next() {
+    Source first = due_[kAdc] < due_[kEPwm] ? kAdc : kEPwm;
+    const Tick rest = due_[rest_source_];
+    if (rest < due_[first] || (rest == due_[first] && rest_source_ < first)) first = rest_source_;
+    next_source_ = first;
+    next_event_ = due_[first];
+    horizon_ = next_event_ - 1 < limit_ ? next_event_ - 1 : limit_;
   }
+  void find_rest();
   void check_flash_waits();
 
   // CPU (cpu.cpp).
@@ -162,6 +164,8 @@ class Core final : public ChipServices {
   Interrupts interrupts_;
   Tick limit_ = 0;
   Tick next_event_ = kNever;
+  Source next_source_ = kWorldCall;
+  Source rest_source_ = kWorldCall;  // the earliest besides ePWM and ADC
   std::array<Tick, kSources> due_{};
   Statistics statistics_;
 

@@ -117,7 +117,7 @@ struct Coroutine::Context {
   void make(std::byte* stack, std::size_t size, void (*start)()) {
     auto* top = reinterpret_cast<std::uintptr_t*>(stack + size);
 #if defined(__x86_64__)
-    top -= 2;  // an aligned slot above: at a function's entry rsp is 8 below a multiple of 16
+    top -= 2;    // an aligned slot above: at a function's entry rsp is 8 below a multiple of 16
     *--top = 0;  // "return address" of the trampoline: ends a debugger's backtrace
     *--top = reinterpret_cast<std::uintptr_t>(start);
     for (std::size_t i = 0; i < kSavedWords; ++i) *--top = 0;
@@ -160,7 +160,9 @@ Coroutine::Coroutine() : context_(std::make_unique<Context>()) {
   mprotect(memory, page, PROT_NONE);
 }
 
-Coroutine::~Coroutine() { munmap(stack_, stack_size_); }
+Coroutine::~Coroutine() {
+  munmap(stack_, stack_size_);
+}
 
 void Coroutine::prepare(Entry entry, void* argument) {
   entry_ = entry;
@@ -207,7 +209,9 @@ void Coroutine::resume() {
   context_->enter();
 }
 
-void Coroutine::suspend() { context_->leave(); }
+void Coroutine::suspend() {
+  context_->leave();
+}
 
 void Coroutine::trampoline() {
   starting->entry_(starting->argument_);

@@ -24,7 +24,8 @@ class Coroutine {
   Coroutine(const Coroutine&) = delete;
   Coroutine& operator=(const Coroutine&) = delete;
 
-  /// Prepares a start of `entry(argument)` at the next resume(); whatever ran before is discarded. `entry` never returns.
+  /// Prepares a start of `entry(argument)` at the next resume(); whatever ran before is discarded. `entry` never
+  /// returns.
   void prepare(Entry entry, void* argument);
 
   /// From the owner's stack: run the coroutine until it suspends.

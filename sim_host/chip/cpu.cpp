@@ -1,9 +1,6 @@
 // What the firmware's instructions do besides register accesses: interrupts, IDLE, the passing of time.
 
-#include <algorithm>
-
 #include "hal/f2808/registers.h"
-#include "hal/f2808/target.h"
 #include "sim_host/chip/core.hpp"
 
 namespace stillspin::chip {
@@ -21,7 +18,9 @@ constexpr unsigned kMaxDepth = 32;  // nesting deeper than this is a runaway, th
 
 }  // namespace
 
-void Core::spend_instruction() { spend(kInstructionCycles); }
+void Core::spend_instruction() {
+  spend(kInstructionCycles);
+}
 
 void Core::set_eallow(bool on) {
   spend_instruction();
@@ -68,7 +67,8 @@ void Core::set_vector(std::uint16_t vector, Isr isr) {
 
 // IDLE ends when an enabled interrupt is requested; with INTM set the CPU goes on without taking it.
 void Core::idle() {
-  if (system_.low_power_mode_selected()) model_error("IDLE with a low-power mode selected in LPMCR0 is not modelled", 0);
+  if (system_.low_power_mode_selected())
+    model_error("IDLE with a low-power mode selected in LPMCR0 is not modelled", 0);
   spend_instruction();
   finish_access();
   const std::uint64_t taken = statistics_.interrupts;

@@ -13,12 +13,18 @@ constexpr std::uint16_t kControlMask =
     CPUTIMER_TCR_FREE_MASK | CPUTIMER_TCR_SOFT_MASK | CPUTIMER_TCR_TIE_MASK | CPUTIMER_TCR_TSS_MASK;
 constexpr std::array<unsigned, 3> kVectors = {VECTOR_TINT0, Interrupts::kVectorInt13, VECTOR_TINT2};
 
-std::uint32_t with_low(std::uint32_t word, std::uint16_t low) { return (word & 0xFFFF0000u) | low; }
+std::uint32_t with_low(std::uint32_t word, std::uint16_t low) {
+  return (word & 0xFFFF0000u) | low;
+}
 std::uint32_t with_high(std::uint32_t word, std::uint16_t high) {
   return (word & 0xFFFFu) | static_cast<std::uint32_t>(high) << 16;
 }
-std::uint16_t low_of(std::uint32_t word) { return static_cast<std::uint16_t>(word & 0xFFFFu); }
-std::uint16_t high_of(std::uint32_t word) { return static_cast<std::uint16_t>(word >> 16); }
+std::uint16_t low_of(std::uint32_t word) {
+  return static_cast<std::uint16_t>(word & 0xFFFFu);
+}
+std::uint16_t high_of(std::uint32_t word) {
+  return static_cast<std::uint16_t>(word >> 16);
+}
 // The prescaler registers interleave two bytes: TPR holds the low bytes of PSC and TDDR, TPRH the high ones.
 std::uint16_t byte_pair(std::uint32_t psc, std::uint32_t tddr, unsigned shift) {
   return static_cast<std::uint16_t>(((psc >> shift) & 0xFFu) << 8 | ((tddr >> shift) & 0xFFu));
@@ -26,7 +32,9 @@ std::uint16_t byte_pair(std::uint32_t psc, std::uint32_t tddr, unsigned shift) {
 
 }  // namespace
 
-bool CpuTimers::Timer::running() const { return (control & CPUTIMER_TCR_TSS_MASK) == 0; }
+bool CpuTimers::Timer::running() const {
+  return (control & CPUTIMER_TCR_TSS_MASK) == 0;
+}
 
 std::int64_t CpuTimers::Timer::counted(Tick t, Tick clock) const {
   if (!running()) return cycles;
@@ -100,14 +108,22 @@ std::uint16_t CpuTimers::read(std::uint16_t offset, Tick t) {
   const Timer& timer = timers_[offset / kTimerSpan];
   const auto psc = static_cast<std::uint32_t>(timer.counted(t, clock_) % (std::int64_t{timer.prescale} + 1));
   switch (offset % kTimerSpan) {
-    case CPUTIMER_TIM_LSW: return low_of(timer.count(t, clock_));
-    case CPUTIMER_TIM_MSW: return high_of(timer.count(t, clock_));
-    case CPUTIMER_PRD_LSW: return low_of(timer.period);
-    case CPUTIMER_PRD_MSW: return high_of(timer.period);
-    case CPUTIMER_TCR: return static_cast<std::uint16_t>(timer.control | (timer.flag ? CPUTIMER_TCR_TIF_MASK : 0));
-    case CPUTIMER_TPR: return byte_pair(psc, timer.prescale, 0);
-    case CPUTIMER_TPRH: return byte_pair(psc, timer.prescale, 8);
-    default: return 0;
+    case CPUTIMER_TIM_LSW:
+      return low_of(timer.count(t, clock_));
+    case CPUTIMER_TIM_MSW:
+      return high_of(timer.count(t, clock_));
+    case CPUTIMER_PRD_LSW:
+      return low_of(timer.period);
+    case CPUTIMER_PRD_MSW:
+      return high_of(timer.period);
+    case CPUTIMER_TCR:
+      return static_cast<std::uint16_t>(timer.control | (timer.flag ? CPUTIMER_TCR_TIF_MASK : 0));
+    case CPUTIMER_TPR:
+      return byte_pair(psc, timer.prescale, 0);
+    case CPUTIMER_TPRH:
+      return byte_pair(psc, timer.prescale, 8);
+    default:
+      return 0;
   }
 }
 
@@ -124,11 +140,21 @@ void CpuTimers::write_register(Timer& timer, std::uint16_t reg, std::uint16_t va
   const auto tim = static_cast<std::uint32_t>(timer.cycles / divider);
   const auto psc = static_cast<std::uint32_t>(timer.cycles % divider);
   switch (reg) {
-    case CPUTIMER_TIM_LSW: timer.load(with_low(tim, value), psc); break;
-    case CPUTIMER_TIM_MSW: timer.load(with_high(tim, value), psc); break;
-    case CPUTIMER_PRD_LSW: timer.period = with_low(timer.period, value); break;
-    case CPUTIMER_PRD_MSW: timer.period = with_high(timer.period, value); break;
-    case CPUTIMER_TCR: write_control(timer, value); break;
+    case CPUTIMER_TIM_LSW:
+      timer.load(with_low(tim, value), psc);
+      break;
+    case CPUTIMER_TIM_MSW:
+      timer.load(with_high(tim, value), psc);
+      break;
+    case CPUTIMER_PRD_LSW:
+      timer.period = with_low(timer.period, value);
+      break;
+    case CPUTIMER_PRD_MSW:
+      timer.period = with_high(timer.period, value);
+      break;
+    case CPUTIMER_TCR:
+      write_control(timer, value);
+      break;
     case CPUTIMER_TPR:
       timer.prescale = (timer.prescale & 0xFF00u) | (value & CPUTIMER_TPR_TDDR_MASK);
       timer.load(tim, psc);
@@ -137,7 +163,8 @@ void CpuTimers::write_register(Timer& timer, std::uint16_t reg, std::uint16_t va
       timer.prescale = (timer.prescale & 0x00FFu) | static_cast<std::uint32_t>(value & CPUTIMER_TPRH_TDDRH_MASK) << 8;
       timer.load(tim, psc);
       break;
-    default: break;
+    default:
+      break;
   }
 }
 

@@ -29,13 +29,13 @@ class CpuTimers final : public Peripheral {
 
  private:
   struct Timer {
-    std::uint32_t period = 0xFFFF;    // PRD
-    std::uint32_t prescale = 0;       // TDDRH:TDDR
-    std::int64_t cycles = 0xFFFF;     // x at `since`
+    std::uint32_t period = 0xFFFF;  // PRD
+    std::uint32_t prescale = 0;     // TDDRH:TDDR
+    std::int64_t cycles = 0xFFFF;   // x at `since`
     Tick since = 0;
-    Tick zero = kNever;               // when TIM next reaches zero, if that matters
-    std::uint16_t control = 0;        // FREE, SOFT, TIE, TSS
-    bool flag = false;                // TIF
+    Tick zero = kNever;         // when TIM next reaches zero, if that matters
+    std::uint16_t control = 0;  // FREE, SOFT, TIE, TSS
+    bool flag = false;          // TIF
 
     bool running() const;
     std::int64_t wrap() const { return (std::int64_t{period} + 1) * (std::int64_t{prescale} + 1); }

@@ -19,26 +19,47 @@ class FlashControl {
 
   std::uint16_t read(std::uint32_t address) const {
     switch (address) {
-      case REG_FOPT: return option_;
-      case REG_FPWR: return power_;
-      case REG_FSTATUS: return power_;  // a mode is reached at once
-      case REG_FSTDBYWAIT: return standby_wait_;
-      case REG_FACTIVEWAIT: return active_wait_;
-      case REG_FBANKWAIT: return bank_wait_;
-      case REG_FOTPWAIT: return otp_wait_;
-      default: return 0;
+      case REG_FOPT:
+        return option_;
+      case REG_FPWR:
+        return power_;
+      case REG_FSTATUS:
+        return power_;  // a mode is reached at once
+      case REG_FSTDBYWAIT:
+        return standby_wait_;
+      case REG_FACTIVEWAIT:
+        return active_wait_;
+      case REG_FBANKWAIT:
+        return bank_wait_;
+      case REG_FOTPWAIT:
+        return otp_wait_;
+      default:
+        return 0;
     }
   }
 
   void write(std::uint32_t address, std::uint16_t value) {
     switch (address) {
-      case REG_FOPT: option_ = value & FOPT_ENPIPE_MASK; break;
-      case REG_FPWR: power_ = value & FPWR_PWR_MASK; break;
-      case REG_FSTDBYWAIT: standby_wait_ = value & FSTDBYWAIT_STDBYWAIT_MASK; break;
-      case REG_FACTIVEWAIT: active_wait_ = value & FACTIVEWAIT_ACTIVEWAIT_MASK; break;
-      case REG_FBANKWAIT: bank_wait_ = value & (FBANKWAIT_RANDWAIT_MASK | FBANKWAIT_PAGEWAIT_MASK); break;
-      case REG_FOTPWAIT: otp_wait_ = value & FOTPWAIT_OTPWAIT_MASK; break;
-      default: break;
+      case REG_FOPT:
+        option_ = value & FOPT_ENPIPE_MASK;
+        break;
+      case REG_FPWR:
+        power_ = value & FPWR_PWR_MASK;
+        break;
+      case REG_FSTDBYWAIT:
+        standby_wait_ = value & FSTDBYWAIT_STDBYWAIT_MASK;
+        break;
+      case REG_FACTIVEWAIT:
+        active_wait_ = value & FACTIVEWAIT_ACTIVEWAIT_MASK;
+        break;
+      case REG_FBANKWAIT:
+        bank_wait_ = value & (FBANKWAIT_RANDWAIT_MASK | FBANKWAIT_PAGEWAIT_MASK);
+        break;
+      case REG_FOTPWAIT:
+        otp_wait_ = value & FOTPWAIT_OTPWAIT_MASK;
+        break;
+      default:
+        break;
     }
   }
 

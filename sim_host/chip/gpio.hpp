@@ -1,10 +1,10 @@
 // General purpose pins: function select, direction, output latches, and the routing between pins and peripherals.
 //
-// A pin belongs to the function that its two mux bits name. As GPIO it is an input (the world's level) or an output (the
-// latch's). ePWM outputs reach the world only when routed to their pins; trip inputs and the encoder only count when
-// routed. A pin that nobody drives is low to the world, as the board's pull-down makes it.
-// Not modelled: input qualification (a level is seen at once), pull-ups, XINT selection, wake-up selection (stored).
-// Source: SPRU712 (GPIO); gpio mux table of the data manual SPRS230.
+// A pin belongs to the function that its two mux bits name. As GPIO it is an input (the world's level) or an output
+// (the latch's). ePWM outputs reach the world only when routed to their pins; trip inputs and the encoder only count
+// when routed. A pin that nobody drives is low to the world, as the board's pull-down makes it. Not modelled: input
+// qualification (a level is seen at once), pull-ups, XINT selection, wake-up selection (stored). Source: SPRU712
+// (GPIO); gpio mux table of the data manual SPRS230.
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_GPIO_HPP
 #define STILLSPIN_SIM_HOST_CHIP_GPIO_HPP
@@ -50,14 +50,14 @@ class Gpio {
   void drive_pwm(int module, Tick t);
 
   World& world_;
-  std::array<std::uint16_t, 0x20> control_{};   // GPACTRL .. GPBPUD
-  std::array<std::uint16_t, 0x20> select_{};    // GPIOXINT1SEL .. GPIOLPMSEL
-  std::array<std::uint16_t, 4> latch_{};        // pins 0-15, 16-31, 32-47, 48-63
-  std::uint64_t outputs_ = 0;                   // pins that are general purpose outputs
-  std::uint64_t driven_ = 0;                    // levels of those, as the world knows them
-  unsigned pwm_levels_ = 0;                     // ePWM outputs, bit 2m for A of module m, 2m+1 for B
+  std::array<std::uint16_t, 0x20> control_{};  // GPACTRL .. GPBPUD
+  std::array<std::uint16_t, 0x20> select_{};   // GPIOXINT1SEL .. GPIOLPMSEL
+  std::array<std::uint16_t, 4> latch_{};       // pins 0-15, 16-31, 32-47, 48-63
+  std::uint64_t outputs_ = 0;                  // pins that are general purpose outputs
+  std::uint64_t driven_ = 0;                   // levels of those, as the world knows them
+  unsigned pwm_levels_ = 0;                    // ePWM outputs, bit 2m for A of module m, 2m+1 for B
   unsigned pwm_routed_ = 0;
-  unsigned pwm_pins_ = 0;                       // what the world knows
+  unsigned pwm_pins_ = 0;  // what the world knows
   bool trips_routed_ = false;
   bool encoder_routed_ = false;
 };

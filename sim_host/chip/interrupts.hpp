@@ -1,9 +1,9 @@
 // The way of an interrupt: PIE flag -> PIE enable -> group acknowledge -> IFR -> IER -> INTM, and the vector table.
 //
 // Twelve PIE groups of eight channels feed the CPU lines INT1..INT12 (bits 0..11 of IFR and IER); CPU timers 1 and 2 go
-// to INT13 and INT14 directly. A group that has sent a request is blocked until firmware writes its PIEACK bit, whatever
-// else happens: an ISR that forgets it gets no second interrupt from its group.
-// Source: SPRU712 (PIE), SPRU430 (CPU).
+// to INT13 and INT14 directly. A group that has sent a request is blocked until firmware writes its PIEACK bit,
+// whatever else happens: an ISR that forgets it gets no second interrupt from its group. Source: SPRU712 (PIE), SPRU430
+// (CPU).
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_INTERRUPTS_HPP
 #define STILLSPIN_SIM_HOST_CHIP_INTERRUPTS_HPP

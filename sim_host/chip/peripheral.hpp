@@ -7,8 +7,8 @@
 // What the core guarantees
 //  * t never decreases from one call to the next, over all functions of one peripheral.
 //  * Events come in order of time, each at its exact tick: before an access or any other call at t is made, every event
-//    due at or before t has been run. At one tick the order is: world, ePWM, ADC, eQEP, CPU timers, watchdog. So a
-//    start of conversion reaches the ADC in the tick in which the ePWM made it.
+//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, CPU timers,
+//    watchdog. So a start of conversion reaches the ADC in the tick in which the ePWM made it.
 //  * Peripherals see only accesses that the bus lets through: EALLOW protection and clock gating (PCLKCR0/1) are the
 //    core's business, so are the access times. Unknown offsets may arrive: read 0, ignore writes.
 //  * A 32-bit access arrives as two 16-bit calls at one tick, low word (even offset) first.
@@ -24,7 +24,8 @@
 //    Declare the classes `final` so that the core can call them directly.
 //
 // Classes that the core instantiates (one constructor argument, the services):
-//    epwm.hpp: EPwmBank(ChipServices&)      adc.hpp: Adc(ChipServices&)      eqep.hpp: EQep(ChipServices&, int instance 1..2)
+//    epwm.hpp: EPwmBank(ChipServices&)      adc.hpp: Adc(ChipServices&)      eqep.hpp: EQep(ChipServices&, int
+//    instance 1..2)
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_PERIPHERAL_HPP
 #define STILLSPIN_SIM_HOST_CHIP_PERIPHERAL_HPP

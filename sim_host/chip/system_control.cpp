@@ -12,7 +12,9 @@ constexpr std::uint16_t kGates1Mask = 0xCF3F;
 constexpr std::uint16_t kLowPowerReset = 0x00FC;
 constexpr std::uint16_t kXclkMask = XCLK_XCLKOUTDIV_MASK;
 
-constexpr std::uint16_t offset_of(std::uint32_t address) { return static_cast<std::uint16_t>(address - kSystemFrame); }
+constexpr std::uint16_t offset_of(std::uint32_t address) {
+  return static_cast<std::uint16_t>(address - kSystemFrame);
+}
 
 }  // namespace
 
@@ -25,7 +27,9 @@ void SystemControl::reset() {
   update_clock();
 }
 
-unsigned SystemControl::divider() const { return (status_ & PLLSTS_CLKINDIV_MASK) != 0 ? 1u : 2u; }
+unsigned SystemControl::divider() const {
+  return (status_ & PLLSTS_CLKINDIV_MASK) != 0 ? 1u : 2u;
+}
 
 bool SystemControl::ratio_is_whole(unsigned multiplier) const {
   return (kOscillatorPeriod * divider()) % static_cast<Tick>(multiplier) == 0;
@@ -53,34 +57,62 @@ unsigned SystemControl::run_event() {
 bool SystemControl::eqep_clock(int instance) const {
   return (gates1_ >> (PCLKCR1_EQEP1ENCLK_LSB + instance - 1) & 1u) != 0;
 }
-bool SystemControl::time_base_clock() const { return (gates0_ & PCLKCR0_TBCLKSYNC_MASK) != 0; }
-bool SystemControl::low_power_mode_selected() const { return (low_power_ & LPMCR0_LPM_MASK) != 0; }
+bool SystemControl::time_base_clock() const {
+  return (gates0_ & PCLKCR0_TBCLKSYNC_MASK) != 0;
+}
+bool SystemControl::low_power_mode_selected() const {
+  return (low_power_ & LPMCR0_LPM_MASK) != 0;
+}
 
 std::uint16_t SystemControl::read(std::uint16_t offset) const {
   switch (offset) {
-    case offset_of(REG_XCLK): return xclk_;
-    case offset_of(REG_PLLSTS): return static_cast<std::uint16_t>(status_ | (lock_ == kNever ? PLLSTS_PLLLOCKS_MASK : 0));
-    case offset_of(REG_HISPCP): return hispcp_;
-    case offset_of(REG_LOSPCP): return lospcp_;
-    case offset_of(REG_PCLKCR0): return gates0_;
-    case offset_of(REG_PCLKCR1): return gates1_;
-    case offset_of(REG_LPMCR0): return low_power_;
-    case offset_of(REG_PLLCR): return multiplier_;
-    default: return 0;
+    case offset_of(REG_XCLK):
+      return xclk_;
+    case offset_of(REG_PLLSTS):
+      return static_cast<std::uint16_t>(status_ | (lock_ == kNever ? PLLSTS_PLLLOCKS_MASK : 0));
+    case offset_of(REG_HISPCP):
+      return hispcp_;
+    case offset_of(REG_LOSPCP):
+      return lospcp_;
+    case offset_of(REG_PCLKCR0):
+      return gates0_;
+    case offset_of(REG_PCLKCR1):
+      return gates1_;
+    case offset_of(REG_LPMCR0):
+      return low_power_;
+    case offset_of(REG_PLLCR):
+      return multiplier_;
+    default:
+      return 0;
   }
 }
 
 unsigned SystemControl::write(std::uint16_t offset, std::uint16_t value, Tick t) {
   switch (offset) {
-    case offset_of(REG_XCLK): xclk_ = value & kXclkMask; return kNothing;
-    case offset_of(REG_PLLSTS): return write_status(value);
-    case offset_of(REG_HISPCP): hispcp_ = value & HISPCP_HSPCLK_MASK; return kClocks;
-    case offset_of(REG_LOSPCP): lospcp_ = value & LOSPCP_LSPCLK_MASK; return kNothing;
-    case offset_of(REG_PCLKCR0): gates0_ = value & kGates0Mask; return kClocks | kTimeBase;
-    case offset_of(REG_PCLKCR1): gates1_ = value & kGates1Mask; return kClocks;
-    case offset_of(REG_LPMCR0): low_power_ = value; return kNothing;
-    case offset_of(REG_PLLCR): return write_multiplier(value & PLLCR_DIV_MASK, t);
-    default: return kNothing;
+    case offset_of(REG_XCLK):
+      xclk_ = value & kXclkMask;
+      return kNothing;
+    case offset_of(REG_PLLSTS):
+      return write_status(value);
+    case offset_of(REG_HISPCP):
+      hispcp_ = value & HISPCP_HSPCLK_MASK;
+      return kClocks;
+    case offset_of(REG_LOSPCP):
+      lospcp_ = value & LOSPCP_LSPCLK_MASK;
+      return kNothing;
+    case offset_of(REG_PCLKCR0):
+      gates0_ = value & kGates0Mask;
+      return kClocks | kTimeBase;
+    case offset_of(REG_PCLKCR1):
+      gates1_ = value & kGates1Mask;
+      return kClocks;
+    case offset_of(REG_LPMCR0):
+      low_power_ = value;
+      return kNothing;
+    case offset_of(REG_PLLCR):
+      return write_multiplier(value & PLLCR_DIV_MASK, t);
+    default:
+      return kNothing;
   }
 }
 

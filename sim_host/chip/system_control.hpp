@@ -1,10 +1,10 @@
 // System control: PLL and SYSCLKOUT, peripheral clock gates and prescalers, low-power mode selection.
 //
-// The board's crystal gives OSCCLK = 20 MHz. A bypassed PLL (PLLCR = 0, also the state after reset) gives OSCCLK / 2, or
-// OSCCLK with CLKINDIV set; otherwise SYSCLKOUT = OSCCLK * PLLCR / 2. Time is counted in ticks of 10 ns, so only ratios
-// with a whole number of ticks per cycle can be simulated: at 20 MHz PLLCR = 1, 2, 5, 10. Others are a model error.
-// A write to PLLCR drops SYSCLKOUT to OSCCLK / 2 until the PLL has locked, 131072 OSCCLK cycles later.
-// Source: SPRU712 (clocking), TI's DSP280x_SysCtrl.c (order of the writes).
+// The board's crystal gives OSCCLK = 20 MHz. A bypassed PLL (PLLCR = 0, also the state after reset) gives OSCCLK / 2,
+// or OSCCLK with CLKINDIV set; otherwise SYSCLKOUT = OSCCLK * PLLCR / 2. Time is counted in ticks of 10 ns, so only
+// ratios with a whole number of ticks per cycle can be simulated: at 20 MHz PLLCR = 1, 2, 5, 10. Others are a model
+// error. A write to PLLCR drops SYSCLKOUT to OSCCLK / 2 until the PLL has locked, 131072 OSCCLK cycles later. Source:
+// SPRU712 (clocking), TI's DSP280x_SysCtrl.c (order of the writes).
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_SYSTEM_CONTROL_HPP
 #define STILLSPIN_SIM_HOST_CHIP_SYSTEM_CONTROL_HPP

@@ -13,10 +13,14 @@ constexpr std::uint16_t kCheck = 5u << WDCR_WDCHK_LSB;
 constexpr std::uint16_t kFirstKey = 0x55;
 constexpr std::uint16_t kSecondKey = 0xAA;
 
-constexpr std::uint16_t offset_of(std::uint32_t address) { return static_cast<std::uint16_t>(address - kSystemFrame); }
+constexpr std::uint16_t offset_of(std::uint32_t address) {
+  return static_cast<std::uint16_t>(address - kSystemFrame);
+}
 
 // WDPS 0 and 1 both mean no division.
-constexpr Tick step_for(std::uint16_t prescale) { return kBaseStep << (prescale == 0 ? 0 : prescale - 1); }
+constexpr Tick step_for(std::uint16_t prescale) {
+  return kBaseStep << (prescale == 0 ? 0 : prescale - 1);
+}
 
 }  // namespace
 
@@ -66,20 +70,28 @@ std::uint16_t Watchdog::read(std::uint16_t offset, Tick t) const {
       return static_cast<std::uint16_t>((override_ ? SCSR_WDOVERRIDE_MASK : 0) |
                                         (interrupt_mode_ ? SCSR_WDENINT_MASK : 0) |
                                         (t >= interrupt_end_ ? SCSR_WDINTS_MASK : 0));
-    case offset_of(REG_WDCNTR): return count(t);
+    case offset_of(REG_WDCNTR):
+      return count(t);
     case offset_of(REG_WDKEY):  // a read of the key port gives the control register
     case offset_of(REG_WDCR):
       return static_cast<std::uint16_t>(prescale_ | (disabled_ ? WDCR_WDDIS_MASK : 0) | (flag_ ? WDCR_WDFLAG_MASK : 0));
-    default: return 0;
+    default:
+      return 0;
   }
 }
 
 Watchdog::Outcome Watchdog::write(std::uint16_t offset, std::uint16_t value, Tick t) {
   switch (offset) {
-    case offset_of(REG_SCSR): write_scsr(value); return Outcome::kNothing;
-    case offset_of(REG_WDKEY): write_key(value, t); return Outcome::kNothing;
-    case offset_of(REG_WDCR): return write_control(value, t);
-    default: return Outcome::kNothing;  // WDCNTR is read-only
+    case offset_of(REG_SCSR):
+      write_scsr(value);
+      return Outcome::kNothing;
+    case offset_of(REG_WDKEY):
+      write_key(value, t);
+      return Outcome::kNothing;
+    case offset_of(REG_WDCR):
+      return write_control(value, t);
+    default:
+      return Outcome::kNothing;  // WDCNTR is read-only
   }
 }
 
@@ -99,7 +111,7 @@ Watchdog::Outcome Watchdog::write_control(std::uint16_t value, Tick t) {
   const std::uint16_t now = count(t);
   const std::uint16_t prescale = value & WDCR_WDPS_MASK;
   const bool disabled = override_ ? (value & WDCR_WDDIS_MASK) != 0 : disabled_;
-  if ((value & WDCR_WDFLAG_MASK) != 0) flag_ = false;  // write 1 clears
+  if ((value & WDCR_WDFLAG_MASK) != 0) flag_ = false;                            // write 1 clears
   if (prescale == prescale_ && disabled == disabled_) return Outcome::kNothing;  // keeps the started count
   prescale_ = prescale;
   disabled_ = disabled;

@@ -45,12 +45,12 @@ class Watchdog {
   bool flag_ = false;
   bool override_ = true;
   bool interrupt_mode_ = false;
-  bool armed_ = false;  // 0x55 was the last key
+  bool armed_ = false;       // 0x55 was the last key
   std::uint16_t count_ = 0;  // at since_
   Tick since_ = 0;
-  Tick step_ = 1;            // ticks per count
+  Tick step_ = 1;  // ticks per count
   Tick overflow_ = kNever;
-  Tick interrupt_end_ = 0;   // WDINTS is low until then
+  Tick interrupt_end_ = 0;  // WDINTS is low until then
 };
 
 }  // namespace stillspin::chip

@@ -25,6 +25,10 @@ struct Advance {
   State end_slope{};     // dy/dt at the end, when the method has it (to its own order)
 };
 
+/// Events are located from brackets on this grid of time since the start of the segment, not from wherever the look
+/// ahead happened to end: so the instant found, to its last bit, does not depend on who looked when.
+inline constexpr double kEventCell = 1e-7;  // s
+
 class Flow {
  public:
   virtual ~Flow() = default;

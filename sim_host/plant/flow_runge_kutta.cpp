@@ -65,48 +65,76 @@ class RungeKutta final : public Flow {
     return lowest(g);
   }
 
-  /// First zero of the lowest event function in (0, h], which is negative at h: Illinois on repeated steps.
+  /// First zero of the lowest event function in (0, h], at the end of which it is negative.
   Advance locate(const Model& model, const SegmentStart& start, double h, State& end) {
     Events g;
+    Bracket b = cell(model, start, h, end, g);
+    if (b.g_low <= kMissed) {
+      // A current that has just left zero starts at about zero: look for the point from which it comes back.
+      for (double probe = 0.5 * b.high; b.g_low <= kMissed; probe *= 0.5) {
+        if (probe < kShortest) {  // it goes the wrong way from the start
+          trial(model, start, b.high, end, g);
+          end = start.y;
+          return finish(0.0, g);
+        }
+        const double value = trial(model, start, probe, end, g);
+        if (std::fabs(value) <= kMissed) return finish(probe, g);
+        b.take(probe, value);
+      }
+    }
+    return polish(model, start, b, end, g);
+  }
+
+  struct Bracket {
+    double low, g_low;    // >= 0 here
+    double high, g_high;  // < 0 here
+
+    void take(double where, double value) {
+      (value < 0.0 ? high : low) = where;
+      (value < 0.0 ? g_high : g_low) = value;
+    }
+    double secant() const { return (low * g_high - high * g_low) / (g_high - g_low); }
+  };
+
+  /// The cell of the grid in which the function turns negative: found by bisection between grid points, started where
+  /// the secant points, because nearly always the function is nearly straight.
+  Bracket cell(const Model& model, const SegmentStart& start, double h, State& end, Events& g) {
     model.events(0.0, start.y, g);
-    double low = 0.0, g_low = lowest(g);
-    double high = h;
-    double g_high = trial(model, start, h, end, g);
-    // A current that has just left zero starts at about zero: look for the point from which it comes back.
-    for (double probe = 0.5 * h; g_low <= kMissed && probe > kShortest; probe *= 0.5) {
-      const double value = trial(model, start, probe, end, g);
-      if (value > kMissed) {
-        low = probe;
-        g_low = value;
-      } else if (value < -kMissed) {
-        high = probe;
-        g_high = value;
-      } else {
-        return finish(probe, g);
-      }
-    }
-    if (g_low <= kMissed) {  // it goes the wrong way from the start
-      trial(model, start, high, end, g);
-      end = start.y;
-      return finish(0.0, g);
-    }
-    double where = high;
-    int side = 0;
-    for (int n = 0; n < 100 && high - low > kShortest; ++n) {
-      where = (low * g_high - high * g_low) / (g_high - g_low);
+    const double g_start = lowest(g);
+    Bracket whole{0.0, g_start, h, trial(model, start, h, end, g)};
+    long low = 0, high = static_cast<long>(std::ceil(h / kEventCell));
+    Bracket b{0.0, g_start, static_cast<double>(high) * kEventCell, whole.g_high};
+    bool high_known = false;  // the value at the grid point beyond h is not that at h
+    long probe = static_cast<long>(whole.secant() / kEventCell);
+    for (int n = 0; high - low > 1; ++n) {
+      if (n > 1 || probe <= low || probe >= high) probe = n == 1 ? low + 1 : (low + high) / 2;
+      const double where = static_cast<double>(probe) * kEventCell;
       const double value = trial(model, start, where, end, g);
-      if (std::fabs(value) < 0.1 * kMissed) return finish(where, g);
-      if (value < 0.0) {
-        high = where;
-        g_high = value;
-        if (side == -1) g_low *= 0.5;
-        side = -1;
-      } else {
-        low = where;
-        g_low = value;
-        if (side == 1) g_high *= 0.5;
-        side = 1;
-      }
+      b.take(where, value);
+      (value < 0.0 ? high : low) = probe;
+      high_known |= value < 0.0;
+      probe = value < 0.0 ? probe - 1 : probe + 1;
+    }
+    if (!high_known) b.g_high = trial(model, start, b.high, end, g);
+    if (b.g_high >= 0.0) {  // it comes back between h and the grid point
+      b.high = h;
+      b.g_high = whole.g_high;
+    }
+    return b;
+  }
+
+  /// Illinois method.
+  Advance polish(const Model& model, const SegmentStart& start, Bracket b, State& end, Events& g) {
+    double where = b.high;
+    int side = 0;
+    for (int n = 0; n < 100 && b.high - b.low > kShortest; ++n) {
+      where = b.secant();
+      const double value = trial(model, start, where, end, g);
+      if (std::fabs(value) < 0.1 * kMissed) break;
+      b.take(where, value);
+      const int now = value < 0.0 ? -1 : 1;
+      if (now == side) (now < 0 ? b.g_low : b.g_high) *= 0.5;
+      side = now;
     }
     return finish(where, g);
   }

@@ -2,6 +2,7 @@
 // end, and find events with SUNDIALS' own root search on falling event functions.
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -63,16 +64,19 @@ class SundialsFlow : public Flow {
   Advance advance(const Model& model, const SegmentStart& start, double h, State& end) override {
     user_.model = &model;
     for (;; h *= 0.5) {
-      std::copy_n(start.y.begin(), kStates, vector_.data());
-      Advance a;
-      a.reached = h;
       if (h < kShortest) {
         for (int n = 0; n < kStates; ++n) end[n] = start.y[n] + h * start.slope[n];
+        Advance a;
+        a.reached = h;
         return a;
       }
-      a.event = evolve(h, &a.reached, a.fired);
-      std::copy_n(vector_.data(), kStates, end.begin());
-      if (a.event) return a;
+      Advance a = attempt(start, h, end);
+      if (a.event) {
+        // Again over a step that ends just behind it: a shorter interpolant is a better one.
+        const double again = std::ceil(a.reached / kEventCell) * kEventCell;
+        const Advance better = again > kShortest ? attempt(start, again, end) : a;
+        return better.event ? better : attempt(start, h, end);
+      }
       // Both ends of a step on the same side, or a start within rounding of zero, hide a crossing: look closer.
       Events g;
       model.events(h, end, g);
@@ -81,6 +85,15 @@ class SundialsFlow : public Flow {
   }
 
  protected:
+  Advance attempt(const SegmentStart& start, double h, State& end) {
+    std::copy_n(start.y.begin(), kStates, vector_.data());
+    Advance a;
+    a.reached = h;
+    a.event = evolve(h, &a.reached, a.fired);
+    std::copy_n(vector_.data(), kStates, end.begin());
+    return a;
+  }
+
   virtual bool evolve(double h, double* reached, Fired& fired) = 0;
 
   void set_tolerance(double relative) {

@@ -81,7 +81,7 @@ double Trajectory::grazing_instant() const {
         where = x;
       }
     }
-    if (lowest < -kGrazing) return where;
+    if (lowest < -kGrazing) return std::max(1.0, std::floor(where / kEventCell + 0.5)) * kEventCell;
   }
   return 0.0;
 }

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -16,6 +16,7 @@ import typer
 from rich.console import Console
 
 from stillspin import __version__, campaign, core, execute, output, profile, report, resources, scenario_file, tables
+from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
 from stillspin.progress import Bar
 from stillspin.revision import revision
@@ -27,11 +28,33 @@ app = typer.Typer(
     add_completion=False,
 )
 
+
+def _whole(name: str, low: int, high: int) -> Callable[[str], int]:
+    """A parser of whole numbers that says what was given and what is allowed."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = low - 1
+        if not low <= value <= high:
+            raise InputError(f"{name} '{text}': must be a whole number, {low} … {high}")
+        return value
+
+    return parse
+
+
 ProfileOption = Annotated[
     str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
 ]
 SeedOption = Annotated[
-    int, typer.Option("--seed", min=0, max=2**32 - 1, help="Seed of the noise: the same seed, the same run.")
+    int,
+    typer.Option(
+        "--seed",
+        metavar="N",
+        parser=_whole("--seed", 0, 2**32 - 1),
+        help="Seed of the noise: the same seed, the same run.",
+    ),
 ]
 ChangeOption = Annotated[
     list[str] | None,
@@ -105,7 +128,14 @@ def reproduce(
     seed: SeedOption = 1,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, max=256, help="Runs at a time [default: one per processor].")
+        int | None,
+        typer.Option(
+            "--jobs",
+            "-j",
+            metavar="N",
+            parser=_whole("--jobs", 1, 256),
+            help="Runs at a time [default: one per processor].",
+        ),
     ] = None,
 ) -> None:
     """Run scenarios in parallel and write report.html and metrics.json."""

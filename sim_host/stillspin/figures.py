@@ -69,7 +69,7 @@ def evaluate(scenario: Scenario, recorded: Mapping[str, Signals], profile: str) 
     results: dict[str, Result] = {}
     for figure in scenario.figures:
         value, note = _ratio(figure, results) if figure.of else _largest(figure, scenario, recorded)
-        results[figure.name] = _result(figure, value, note, profile)
+        results[figure.name] = _result(figure, value, note, profile, len(scenario.runs))
     return list(results.values())
 
 
@@ -98,7 +98,7 @@ def _ratio(figure: Figure, results: Mapping[str, Result]) -> tuple[float | None,
     return over / under, ""
 
 
-def _result(figure: Figure, value: float | None, note: str, profile: str) -> Result:
+def _result(figure: Figure, value: float | None, note: str, profile: str, runs: int) -> Result:
     goal = figure.goal.of(profile)
     rounded = None if value is None else float(f"{value:.6g}")
     met = None if goal is None else rounded is not None and abs(rounded) <= goal
@@ -109,15 +109,15 @@ def _result(figure: Figure, value: float | None, note: str, profile: str) -> Res
         paper=figure.paper,
         goal=goal,
         met=met,
-        where=_where(figure),
+        where=_where(figure, runs),
         note=note or figure.note,
     )
 
 
-def _where(figure: Figure) -> str:
-    """The runs and windows in words."""
+def _where(figure: Figure, runs: int) -> str:
+    """The runs and windows in words; `runs` is how many the scenario has."""
     if figure.of:
         return f"{figure.of[0]} / {figure.of[1]}"
-    windows = ", ".join(f"{first:g} … {last:g} s" for first, last in figure.windows)
-    runs = ", ".join(figure.runs[:3]) + (f" and {len(figure.runs) - 3} more" if len(figure.runs) > 3 else "")
-    return f"{runs}: {windows}"
+    windows = ", ".join(f"{first:g} … {last:g} s".replace(" ", "\N{NO-BREAK SPACE}") for first, last in figure.windows)
+    names = f"all {runs} runs" if len(figure.runs) == runs > 3 else ", ".join(figure.runs)
+    return f"{names}: {windows}"

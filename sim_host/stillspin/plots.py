@@ -28,7 +28,7 @@ from stillspin.panels import PANELS, Panel
 from stillspin.scenario import Plot, Scenario, Window
 
 WIDTH = 9.2
-PANEL_HEIGHT = 1.75
+PANEL_HEIGHT = 1.85
 COLUMNS = 1100
 """Slices a line is thinned to; each keeps its smallest and its largest value."""
 
@@ -46,9 +46,16 @@ COLOURS = {
 }
 RUN_COLOURS = ["#0b5fa5", "#e07b00", "#1b8a5a", "#b3243b", "#7a4fb0", "#8a6d1b", "#1aa3b8", "#5c5c5c"]
 
+# An estimate lies as a pale band under the true line, so that both are seen where they agree.
+ROLES: dict[str, Any] = {
+    "true": {"zorder": 3},
+    "reference": {"zorder": 4, "linestyle": (0, (4, 2)), "linewidth": 1.0},
+    "estimate": {"zorder": 2, "linewidth": 2.6, "alpha": 0.6},
+}
+
 STYLE: Any = {
     "font.family": "DejaVu Sans",  # comes with matplotlib: the same drawing on every machine
-    "font.size": 9,
+    "font.size": 10.5,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.edgecolor": "#888888",
@@ -61,7 +68,7 @@ STYLE: Any = {
     "xtick.color": "#555555",
     "ytick.color": "#555555",
     "legend.frameon": False,
-    "legend.fontsize": 8,
+    "legend.fontsize": 9.5,
     "lines.linewidth": 1.1,
     "svg.fonttype": "path",
     "svg.hashsalt": "stillspin",  # the same run gives the same bytes
@@ -76,14 +83,13 @@ def draw(plot: Plot, scenario: Scenario, recorded: Mapping[str, Signals]) -> str
     Args:
         plot: what to show.
         scenario: to which the plot belongs.
-        recorded: signals by run; runs of the plot that have none are left out.
+        recorded: signals by run; runs of the plot that have none in its window are left out.
     """
-    shown = {name: recorded[name] for name in plot.runs if name in recorded}
+    parts = {name: _visible(recorded[name], plot.window) for name in plot.runs if name in recorded}
+    shown = {name: part for name, part in parts.items() if part["time"].size > 1}
     with mpl.rc_context(STYLE):
-        if "trajectory" in plot.panels:
-            canvas = _trajectories(shown, scenario, plot.window)
-        else:
-            canvas = _stack(plot, scenario, shown)
+        square = "trajectory" in plot.panels
+        canvas = _trajectories(shown, scenario) if square else _stack(plot, scenario, shown)
         text = io.StringIO()
         canvas.savefig(text, format="svg", metadata={"Date": None, "Creator": "stillspin"})
         plt.close(canvas)
@@ -107,8 +113,7 @@ def _stack(plot: Plot, scenario: Scenario, shown: Mapping[str, Signals]) -> Canv
 
 
 def _panel(axes: Axes, panel: Panel, plot: Plot, scenario: Scenario, shown: Mapping[str, Signals]) -> None:
-    for number, (name, signals) in enumerate(shown.items()):
-        part = _visible(signals, plot.window)
+    for number, (name, part) in enumerate(shown.items()):
         time = metrics.as_floats(part["time"])
         run = scenario.run(name)
         if len(shown) == 1:
@@ -119,7 +124,7 @@ def _panel(axes: Axes, panel: Panel, plot: Plot, scenario: Scenario, shown: Mapp
             look = _Look(run.title or name, RUN_COLOURS[number % len(RUN_COLOURS)], first.role)
             _line(axes, panel, (time, first.compute(part, run)), look)
     if len(shown) > 1:
-        _shared(axes, panel, plot, scenario, shown)
+        _shared(axes, panel, scenario, shown)
     axes.set_ylabel(panel.label)
     axes.margins(x=0.0)
     if panel.symmetric:
@@ -127,26 +132,44 @@ def _panel(axes: Axes, panel: Panel, plot: Plot, scenario: Scenario, shown: Mapp
     if panel.wraps:
         axes.set_ylim(-190, 190)
         axes.set_yticks([-180, -90, 0, 90, 180])
+    # Runs have the same colours in all panels: the first one names them.
+    if len(shown) <= 1 or panel is PANELS[plot.panels[0]]:
+        _legend(axes)
+
+
+def _legend(axes: Axes) -> None:
+    """In a row above the axes, where it covers nothing."""
     handles, labels = axes.get_legend_handles_labels()
-    if len(labels) > 1:
-        axes.legend(handles, labels, loc="upper left", bbox_to_anchor=(1.0, 1.02), handlelength=1.4)
+    if len(labels) < 2:
+        return
+    many = len(labels) > 5
+    axes.legend(
+        handles,
+        labels,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.98),
+        ncols=len(labels),
+        fontsize=8.0 if many else 9.5,
+        handlelength=0.9 if many else 1.3,
+        columnspacing=0.9 if many else 1.2,
+        borderaxespad=0.0,
+    )
 
 
-def _shared(axes: Axes, panel: Panel, plot: Plot, scenario: Scenario, shown: Mapping[str, Signals]) -> None:
+def _shared(axes: Axes, panel: Panel, scenario: Scenario, shown: Mapping[str, Signals]) -> None:
     """The reference of a panel that overlays runs, once when it is the same in all of them."""
-    name, signals = next(iter(shown.items()))
+    name, part = next(iter(shown.items()))
     commands = {scenario.run(other).commands for other in shown}
     reference = next((line for line in panel.lines if line.role == "reference"), None)
     if reference is None or len(commands) > 1:
         return
-    part = _visible(signals, plot.window)
     points = metrics.as_floats(part["time"]), reference.compute(part, scenario.run(name))
     _line(axes, panel, points, _Look(reference.label, COLOURS["reference"], "reference"))
 
 
 @dataclass(frozen=True)
 class _Look:
-    """Legend, colour and role of a line; references are dashed."""
+    """Word in the legend, colour and role of a line."""
 
     label: str
     colour: str
@@ -155,16 +178,7 @@ class _Look:
 
 def _line(axes: Axes, panel: Panel, points: tuple[Floats, Floats], look: _Look) -> None:
     time, values = thinned(*(_broken(*points) if panel.wraps else points))
-    dashed = look.role == "reference"
-    axes.plot(
-        time,
-        values,
-        label=look.label,
-        color=look.colour,
-        linestyle=(0, (4, 2)) if dashed else "-",
-        linewidth=1.0 if dashed else 1.1,
-        zorder={"true": 3, "reference": 4}.get(look.role, 2.5),
-    )
+    axes.plot(time, values, label=look.label, color=look.colour, **ROLES.get(look.role, {}))
 
 
 def _visible(signals: Signals, window: Window | None) -> Signals:
@@ -203,11 +217,11 @@ def thinned(time: Floats, values: Floats, columns: int = COLUMNS) -> tuple[Float
     return time[index], values[index]
 
 
-def _trajectories(shown: Mapping[str, Signals], scenario: Scenario, window: Window | None) -> Canvas:
+def _trajectories(shown: Mapping[str, Signals], scenario: Scenario) -> Canvas:
     """The current vector's path in the stationary frame, one square per run, all to the same scale."""
     count = max(1, len(shown))
     canvas, grid = plt.subplots(1, count, squeeze=False, figsize=(WIDTH, WIDTH / 2.3), layout="constrained")
-    paths = {name: metrics.current_vector(_visible(signals, window)) for name, signals in shown.items()}
+    paths = {name: metrics.current_vector(signals) for name, signals in shown.items()}
     limit = 1.08 * max((float(np.max(np.hypot(*path))) for path in paths.values()), default=1.0)
     for axes, (name, (alpha, beta)) in zip(_flat(grid), paths.items(), strict=False):
         axes.plot(alpha, beta, color=COLOURS["true"], linewidth=0.6)

@@ -108,9 +108,7 @@ def split_assignment(word: str) -> tuple[str, str]:
     """
     name, equals, value = (part.strip() for part in word.partition("="))
     if not equals or not name or not value:
-        raise InputError(
-            f"--set '{word}': must be section.entry=value or parameter=value, such as inverter.dead_time=1e-6"
-        )
+        raise InputError(f"--set '{word}': must be section.entry=value or parameter=value, such as adc.noise=0.5")
     return name, value
 
 

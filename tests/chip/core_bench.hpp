@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "hal/f2808/registers.h"
@@ -35,7 +37,10 @@ struct PwmChange {
 class RecordingWorld final : public stillspin::chip::World {
  public:
   void on_pwm_pins(Tick t, int module, bool a, bool b) override { pwm.push_back({t, module, a, b}); }
-  std::uint16_t adc_sample(Tick, int channel) override { return static_cast<std::uint16_t>(channel * 100); }
+  std::uint16_t adc_sample(Tick t, int channel) override {
+    samples.emplace_back(t, channel);
+    return static_cast<std::uint16_t>(channel * 100);
+  }
   bool pin_level(Tick, int pin) override { return levels[static_cast<std::size_t>(pin)]; }
   void on_output_pin(Tick t, int pin, bool level) override { pins.push_back({t, pin, level}); }
   std::int64_t encoder_edges(Tick) override { return edges; }
@@ -53,6 +58,7 @@ class RecordingWorld final : public stillspin::chip::World {
 
   std::vector<PwmChange> pwm;
   std::vector<PinChange> pins;
+  std::vector<std::pair<Tick, int>> samples;  // tick, channel
   std::vector<Tick> called;
 };
 
@@ -64,7 +70,9 @@ inline void write_protected(std::uint32_t address, std::uint16_t value) {
   target_edis();
 }
 
-inline void disable_watchdog() { write_protected(REG_WDCR, 0x0068); }
+inline void disable_watchdog() {
+  write_protected(REG_WDCR, 0x0068);
+}
 
 /// SYSCLKOUT 100 MHz, watchdog off.
 inline void start_clock() {
@@ -84,9 +92,13 @@ inline void install(unsigned vector, target_isr_t isr) {
   target_write16(REG_PIEIER(group), static_cast<std::uint16_t>(enabled | 1u << (vector - VECTOR_PIE_FIRST) % 8));
 }
 
-inline void enable_pie() { target_write16(REG_PIECTRL, PIECTRL_ENPIE_MASK); }
+inline void enable_pie() {
+  target_write16(REG_PIECTRL, PIECTRL_ENPIE_MASK);
+}
 
-inline std::uint16_t group_bit(unsigned group) { return static_cast<std::uint16_t>(1u << (group - 1)); }
+inline std::uint16_t group_bit(unsigned group) {
+  return static_cast<std::uint16_t>(1u << (group - 1));
+}
 
 /// Sets a PIE flag by hand, as a peripheral would.
 inline void raise_by_hand(unsigned vector) {

@@ -34,12 +34,14 @@ class Clock : public ::testing::Test {
 };
 
 TEST_F(Clock, StartsAtHalfTheOscillator) {
-  run([] {
-    times[0] = chip->now();
-    target_elapse(100);
-    times[1] = chip->now();
-    sleep_for_ever();
-  }, 5000);
+  run(
+      [] {
+        times[0] = chip->now();
+        target_elapse(100);
+        times[1] = chip->now();
+        sleep_for_ever();
+      },
+      5000);
   EXPECT_EQ(times[0], 0);
   EXPECT_EQ(times[1], 1000);  // 100 cycles of 10 MHz
 }
@@ -83,13 +85,15 @@ TEST_F(Clock, RatioOfFive) {
 }
 
 TEST_F(Clock, UndividedOscillator) {
-  run([] {
-    write_protected(REG_PLLSTS, PLLSTS_CLKINDIV_MASK);
-    times[0] = chip->now();
-    target_elapse(100);
-    times[1] = chip->now();
-    sleep_for_ever();
-  }, 5000);
+  run(
+      [] {
+        write_protected(REG_PLLSTS, PLLSTS_CLKINDIV_MASK);
+        times[0] = chip->now();
+        target_elapse(100);
+        times[1] = chip->now();
+        sleep_for_ever();
+      },
+      5000);
   EXPECT_EQ(times[1] - times[0], 500);  // 20 MHz
 }
 

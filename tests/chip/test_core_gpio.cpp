@@ -154,10 +154,12 @@ TEST_F(Pins, TripPinActsInTheTickOfTheWorldsCall) {
 
 TEST_F(Pins, TripPinReportedThroughPinsChanged) {
   world.levels[12] = true;
-  run([] {
-    trip_on_tz1();
-    sleep_for_ever();
-  }, 10'000);
+  run(
+      [] {
+        trip_on_tz1();
+        sleep_for_ever();
+      },
+      10'000);
   ASSERT_EQ(world.pwm.size(), 1u);
   world.levels[12] = false;
   device->pins_changed();
@@ -189,6 +191,37 @@ TEST_F(Pins, PinLowWhenTheTripIsRoutedTripsAtOnce) {
   });
   ASSERT_FALSE(world.pwm.empty());
   EXPECT_FALSE(world.pwm.back().a);
+}
+
+void count_encoder() {
+  write_protected(REG_PCLKCR1, PCLKCR1_EQEP1ENCLK_MASK);
+  target_write32(EQEP_BASE(1) + EQEP_QPOSMAX, 4095);
+  target_write16(EQEP_BASE(1) + EQEP_QEPCTL, 0x1008);  // QPEN, wraps at QPOSMAX
+  target_elapse(1000);
+  wide[0] = target_read32(EQEP_BASE(1) + EQEP_QPOSCNT);
+}
+
+TEST_F(Pins, EncoderCountsWhenRouted) {
+  world.edges = 100;
+  world.calls = {5'000};
+  world.on_call = [this](Tick) { world.edges = 150; };
+  run([] {
+    write_protected32(REG_GPAMUX2, 1u << 8 | 1u << 10);
+    count_encoder();
+    sleep_for_ever();
+  });
+  EXPECT_EQ(wide[0], 50u);
+}
+
+TEST_F(Pins, EncoderStandsStillWhenNotRouted) {
+  world.edges = 100;
+  world.calls = {5'000};
+  world.on_call = [this](Tick) { world.edges = 150; };
+  run([] {
+    count_encoder();
+    sleep_for_ever();
+  });
+  EXPECT_EQ(wide[0], 0u);
 }
 
 TEST_F(Pins, ClearedPinLevelIsSeenByAPollingFirmware) {

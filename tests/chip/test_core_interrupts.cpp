@@ -33,7 +33,9 @@ class Irq : public ::testing::Test {
   std::unique_ptr<Chip> device;
 };
 
-void acknowledge(unsigned group) { target_write16(REG_PIEACK, group_bit(group)); }
+void acknowledge(unsigned group) {
+  target_write16(REG_PIEACK, group_bit(group));
+}
 
 void open_groups(std::uint16_t groups) {
   enable_pie();
@@ -79,10 +81,22 @@ TEST_F(Irq, LatencyCountsFromTheFlag) {
 
 TEST_F(Irq, LowerChannelAndGroupFirst) {
   run([] {
-    install(VECTOR_SEQ1INT, [] { order.push_back(11); acknowledge(1); });
-    install(VECTOR_SEQ2INT, [] { order.push_back(12); acknowledge(1); });
-    install(VECTOR_EPWM1_INT, [] { order.push_back(31); acknowledge(3); });
-    install(VECTOR_EPWM2_INT, [] { order.push_back(32); acknowledge(3); });
+    install(VECTOR_SEQ1INT, [] {
+      order.push_back(11);
+      acknowledge(1);
+    });
+    install(VECTOR_SEQ2INT, [] {
+      order.push_back(12);
+      acknowledge(1);
+    });
+    install(VECTOR_EPWM1_INT, [] {
+      order.push_back(31);
+      acknowledge(3);
+    });
+    install(VECTOR_EPWM2_INT, [] {
+      order.push_back(32);
+      acknowledge(3);
+    });
     enable_pie();
     target_write16(REG_PIEIFR(3), 0x03);
     target_write16(REG_PIEIFR(1), 0x03);
@@ -95,8 +109,14 @@ TEST_F(Irq, LowerChannelAndGroupFirst) {
 TEST_F(Irq, PieOffersTheLowestChannelWhenItFetchesNotWhenItAsked) {
   // SEQ2 asks first, SEQ1 is flagged before the CPU lets the group in: the vector fetched is SEQ1's.
   run([] {
-    install(VECTOR_SEQ1INT, [] { order.push_back(11); acknowledge(1); });
-    install(VECTOR_SEQ2INT, [] { order.push_back(12); acknowledge(1); });
+    install(VECTOR_SEQ1INT, [] {
+      order.push_back(11);
+      acknowledge(1);
+    });
+    install(VECTOR_SEQ2INT, [] {
+      order.push_back(12);
+      acknowledge(1);
+    });
     enable_pie();
     target_write16(REG_PIEIFR(1), 0x02);
     target_write16(REG_PIEIFR(1), 0x03);
@@ -109,7 +129,10 @@ TEST_F(Irq, PieOffersTheLowestChannelWhenItFetchesNotWhenItAsked) {
 TEST_F(Irq, GroupStaysBlockedWithoutAcknowledge) {
   run([] {
     install(VECTOR_SEQ1INT, [] { order.push_back(11); });  // forgets PIEACK
-    install(VECTOR_EPWM1_INT, [] { order.push_back(31); acknowledge(3); });
+    install(VECTOR_EPWM1_INT, [] {
+      order.push_back(31);
+      acknowledge(3);
+    });
     open_groups(group_bit(1) | group_bit(3));
     raise_by_hand(VECTOR_SEQ1INT);
     raise_by_hand(VECTOR_SEQ1INT);
@@ -150,14 +173,17 @@ TEST_F(Irq, NestsOnlyWhenTheIsrSaysSo) {
     sleep_for_ever();
   });
   EXPECT_EQ(order, (std::vector<int>{31, 1, 11, 2}));
-  EXPECT_EQ(seen[0], group_bit(1));                 // its own group is shut
+  EXPECT_EQ(seen[0], group_bit(1));  // its own group is shut
   EXPECT_EQ(seen[1], 0);
   EXPECT_EQ(seen[2], group_bit(1) | group_bit(3));  // restored
 }
 
 TEST_F(Irq, WaitsForIntm) {
   run([] {
-    install(VECTOR_SEQ1INT, [] { order.push_back(11); acknowledge(1); });
+    install(VECTOR_SEQ1INT, [] {
+      order.push_back(11);
+      acknowledge(1);
+    });
     open_groups(group_bit(1));
     target_disable_interrupts();
     raise_by_hand(VECTOR_SEQ1INT);
@@ -172,7 +198,10 @@ TEST_F(Irq, WaitsForIntm) {
 
 TEST_F(Irq, ClearIfrForgetsARequestAndLeavesTheGroupBlocked) {
   run([] {
-    install(VECTOR_SEQ1INT, [] { order.push_back(11); acknowledge(1); });
+    install(VECTOR_SEQ1INT, [] {
+      order.push_back(11);
+      acknowledge(1);
+    });
     enable_pie();
     target_write_ier(group_bit(1));
     raise_by_hand(VECTOR_SEQ1INT);
@@ -190,8 +219,14 @@ TEST_F(Irq, ClearIfrForgetsARequestAndLeavesTheGroupBlocked) {
 
 TEST_F(Irq, WithdrawnRequestRunsChannelOne) {
   run([] {
-    install(VECTOR_SEQ1INT, [] { order.push_back(11); acknowledge(1); });
-    install(VECTOR_SEQ2INT, [] { order.push_back(12); acknowledge(1); });
+    install(VECTOR_SEQ1INT, [] {
+      order.push_back(11);
+      acknowledge(1);
+    });
+    install(VECTOR_SEQ2INT, [] {
+      order.push_back(12);
+      acknowledge(1);
+    });
     enable_pie();
     target_write_ier(group_bit(1));
     raise_by_hand(VECTOR_SEQ2INT);

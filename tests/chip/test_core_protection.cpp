@@ -38,10 +38,18 @@ TEST_F(Protection, WriteWithoutEallowIsLostAndCounted) {
 }
 
 TEST_F(Protection, EveryProtectedFrameAsksForEallow) {
-  static const std::uint32_t addresses[] = {
-      REG_PLLCR,   REG_WDCR,    REG_PCLKCR1,          REG_FBANKWAIT, REG_GPAMUX1,
-      REG_GPADIR,  REG_GPBPUD,  REG_GPIOXINT1SEL,     REG_DEVICECNF, EPWM_BASE(2) + EPWM_TZSEL,
-      EPWM_BASE(6) + EPWM_TZCLR, EPWM_BASE(1) + EPWM_TZFRC};
+  static const std::uint32_t addresses[] = {REG_PLLCR,
+                                            REG_WDCR,
+                                            REG_PCLKCR1,
+                                            REG_FBANKWAIT,
+                                            REG_GPAMUX1,
+                                            REG_GPADIR,
+                                            REG_GPBPUD,
+                                            REG_GPIOXINT1SEL,
+                                            REG_DEVICECNF,
+                                            EPWM_BASE(2) + EPWM_TZSEL,
+                                            EPWM_BASE(6) + EPWM_TZCLR,
+                                            EPWM_BASE(1) + EPWM_TZFRC};
   run([] {
     write_protected(REG_PCLKCR1, 0x3F);  // so that the ePWM registers are not stopped by their gates
     for (const std::uint32_t address : addresses) target_write16(address, 0);

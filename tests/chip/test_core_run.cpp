@@ -37,7 +37,7 @@ TEST_F(Run, EndsAtTheTickAskedFor) {
 
 TEST_F(Run, AccessesUpToTheEndAreDoneLaterOnesAreNot) {
   start([] {
-    write_protected(REG_GPADIR, 1);           // ends at tick 30
+    write_protected(REG_GPADIR, 1);             // ends at tick 30
     for (;;) target_write16(REG_GPATOGGLE, 1);  // every 10 ticks
   });
   device->run_until(59);

@@ -77,17 +77,19 @@ TEST_F(Timer, PrescalerDivides) {
 TEST_F(Timer, TimersOneAndTwoHaveTheirOwnLines) {
   static std::vector<int> order;
   order.clear();
-  run([] {
-    start_clock();
-    install(13, [] { order.push_back(1); });
-    install(VECTOR_TINT2, [] { order.push_back(2); });
-    enable_pie();
-    target_write_ier(0x3000);  // INT13, INT14
-    target_enable_interrupts();
-    arm(2, 500, 0, CPUTIMER_TCR_TIE_MASK);
-    arm(1, 1'000'000, 0, CPUTIMER_TCR_TIE_MASK);
-    for (;;) target_idle();
-  }, 700'000);
+  run(
+      [] {
+        start_clock();
+        install(13, [] { order.push_back(1); });
+        install(VECTOR_TINT2, [] { order.push_back(2); });
+        enable_pie();
+        target_write_ier(0x3000);  // INT13, INT14
+        target_enable_interrupts();
+        arm(2, 500, 0, CPUTIMER_TCR_TIE_MASK);
+        arm(1, 1'000'000, 0, CPUTIMER_TCR_TIE_MASK);
+        for (;;) target_idle();
+      },
+      700'000);
   ASSERT_GE(order.size(), 3u);
   for (int n : order) EXPECT_EQ(n, 2);
   device->run_until(1'800'000);
@@ -106,9 +108,9 @@ TEST_F(Timer, FreeRunningTimeBase) {
     count[2] = target_read32(CPUTIMER_BASE(2) + CPUTIMER_TIM);
     sleep_for_ever();
   });
-  EXPECT_EQ(count[0], 0xFFFFFFFFu - 1);              // the read itself takes a cycle
+  EXPECT_EQ(count[0], 0xFFFFFFFFu - 1);  // the read itself takes a cycle
   EXPECT_EQ(count[0] - count[1], 12'345u + 1);
-  EXPECT_EQ(count[1] - count[2], 120'000u + 1);      // a borrow from the high word
+  EXPECT_EQ(count[1] - count[2], 120'000u + 1);  // a borrow from the high word
 }
 
 TEST_F(Timer, StoppedTimerStands) {
@@ -150,16 +152,18 @@ TEST_F(Timer, FlagIsSetAtZeroAndClearedByWritingOne) {
 }
 
 TEST_F(Timer, CountSurvivesAChangeOfClock) {
-  run([] {
-    disable_watchdog();
-    arm(2, 0xFFFFFFFFu, 0, 0);
-    target_elapse(1000);
-    count[0] = target_read32(CPUTIMER_BASE(2) + CPUTIMER_TIM);
-    write_protected(REG_PLLSTS, PLLSTS_CLKINDIV_MASK);  // from 10 to 20 MHz
-    target_elapse(1000);
-    count[1] = target_read32(CPUTIMER_BASE(2) + CPUTIMER_TIM);
-    sleep_for_ever();
-  }, 100'000);
+  run(
+      [] {
+        disable_watchdog();
+        arm(2, 0xFFFFFFFFu, 0, 0);
+        target_elapse(1000);
+        count[0] = target_read32(CPUTIMER_BASE(2) + CPUTIMER_TIM);
+        write_protected(REG_PLLSTS, PLLSTS_CLKINDIV_MASK);  // from 10 to 20 MHz
+        target_elapse(1000);
+        count[1] = target_read32(CPUTIMER_BASE(2) + CPUTIMER_TIM);
+        sleep_for_ever();
+      },
+      100'000);
   EXPECT_EQ(0xFFFFFFFFu - count[0], 1001u);
   EXPECT_EQ(count[0] - count[1], 1000u + 4);  // cycles, whatever their length: EALLOW, write, EDIS, read
 }

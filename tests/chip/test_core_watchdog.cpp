@@ -13,7 +13,7 @@ std::vector<Tick> starts;
 std::vector<std::uint16_t> control;  // WDCR at each start
 std::uint16_t seen[4];
 
-constexpr Tick kStep = 512 * 5;            // a count at OSCCLK / 512, 20 MHz
+constexpr Tick kStep = 512 * 5;  // a count at OSCCLK / 512, 20 MHz
 constexpr Tick kOverflow = 256 * kStep;
 constexpr Tick kResetPulse = 512 * 5;
 
@@ -37,10 +37,12 @@ void note_start() {
 }
 
 TEST_F(Dog, ResetsAfter256CountsAndTellsSo) {
-  run([] {
-    note_start();
-    sleep_for_ever();
-  }, 2 * kOverflow + kResetPulse - 1);  // just before the second one
+  run(
+      [] {
+        note_start();
+        sleep_for_ever();
+      },
+      2 * kOverflow + kResetPulse - 1);  // just before the second one
   ASSERT_EQ(starts.size(), 2u);
   EXPECT_EQ(resets(), 1u);
   EXPECT_EQ(starts[1], kOverflow + kResetPulse);
@@ -49,95 +51,113 @@ TEST_F(Dog, ResetsAfter256CountsAndTellsSo) {
 }
 
 TEST_F(Dog, CounterCounts) {
-  run([] {
-    target_elapse(static_cast<std::uint16_t>(10 * kStep / 10));
-    seen[0] = target_read16(REG_WDCNTR);
-    sleep_for_ever();
-  }, 30'000);
+  run(
+      [] {
+        target_elapse(static_cast<std::uint16_t>(10 * kStep / 10));
+        seen[0] = target_read16(REG_WDCNTR);
+        sleep_for_ever();
+      },
+      30'000);
   EXPECT_EQ(seen[0], 10);
 }
 
 TEST_F(Dog, KeysInOrderKeepItQuiet) {
-  run([] {
-    for (;;) {
-      target_elapse(50'000);  // 5 ms of the 6.55 ms allowed
-      write_protected(REG_WDKEY, 0x55);
-      write_protected(REG_WDKEY, 0xAA);
-    }
-  }, 10 * kOverflow);
+  run(
+      [] {
+        for (;;) {
+          target_elapse(50'000);  // 5 ms of the 6.55 ms allowed
+          write_protected(REG_WDKEY, 0x55);
+          write_protected(REG_WDKEY, 0xAA);
+        }
+      },
+      10 * kOverflow);
   EXPECT_EQ(resets(), 0u);
 }
 
 TEST_F(Dog, KeysWithoutEallowDoNothing) {
-  run([] {
-    for (;;) {
-      target_elapse(50'000);
-      target_write16(REG_WDKEY, 0x55);
-      target_write16(REG_WDKEY, 0xAA);
-    }
-  }, kOverflow + 100);
+  run(
+      [] {
+        for (;;) {
+          target_elapse(50'000);
+          target_write16(REG_WDKEY, 0x55);
+          target_write16(REG_WDKEY, 0xAA);
+        }
+      },
+      kOverflow + 100);
   EXPECT_EQ(resets(), 1u);
 }
 
 TEST_F(Dog, WrongKeyBreaksTheSequence) {
-  run([] {
-    for (;;) {
-      target_elapse(50'000);
-      write_protected(REG_WDKEY, 0x55);
-      write_protected(REG_WDKEY, 0x32);
-      write_protected(REG_WDKEY, 0xAA);
-    }
-  }, kOverflow + 100);
+  run(
+      [] {
+        for (;;) {
+          target_elapse(50'000);
+          write_protected(REG_WDKEY, 0x55);
+          write_protected(REG_WDKEY, 0x32);
+          write_protected(REG_WDKEY, 0xAA);
+        }
+      },
+      kOverflow + 100);
   EXPECT_EQ(resets(), 1u);
 }
 
 TEST_F(Dog, SecondKeyAloneDoesNothing) {
-  run([] {
-    for (;;) {
-      target_elapse(50'000);
-      write_protected(REG_WDKEY, 0xAA);
-    }
-  }, kOverflow + 100);
+  run(
+      [] {
+        for (;;) {
+          target_elapse(50'000);
+          write_protected(REG_WDKEY, 0xAA);
+        }
+      },
+      kOverflow + 100);
   EXPECT_EQ(resets(), 1u);
 }
 
 TEST_F(Dog, WrongCheckBitsResetAtOnce) {
-  run([] {
-    note_start();
-    if (starts.size() == 1) write_protected(REG_WDCR, 0x0040);
-    disable_watchdog();
-    sleep_for_ever();
-  }, 20'000);
+  run(
+      [] {
+        note_start();
+        if (starts.size() == 1) write_protected(REG_WDCR, 0x0040);
+        disable_watchdog();
+        sleep_for_ever();
+      },
+      20'000);
   EXPECT_EQ(resets(), 1u);
   ASSERT_EQ(starts.size(), 2u);
   EXPECT_EQ(starts[1], 50 + kResetPulse);  // a read of 3 cycles, EALLOW, the write; at 10 MHz
 }
 
 TEST_F(Dog, CanBeDisabled) {
-  run([] {
-    disable_watchdog();
-    sleep_for_ever();
-  }, 4 * kOverflow);
+  run(
+      [] {
+        disable_watchdog();
+        sleep_for_ever();
+      },
+      4 * kOverflow);
   EXPECT_EQ(resets(), 0u);
 }
 
 TEST_F(Dog, PrescaleStretchesIt) {
-  run([] {
-    write_protected(REG_WDCR, 0x002B);  // WDPS 3: divide by 4
-    sleep_for_ever();
-  }, 4 * kOverflow - 1);
+  run(
+      [] {
+        write_protected(REG_WDCR, 0x002B);  // WDPS 3: divide by 4
+        sleep_for_ever();
+      },
+      4 * kOverflow - 1);
   EXPECT_EQ(resets(), 0u);
   device->run_until(4 * kOverflow + 100);
   EXPECT_EQ(resets(), 1u);
 }
 
 TEST_F(Dog, OverrideLocksTheDisableBit) {
-  run([] {
-    write_protected(REG_SCSR, SCSR_WDOVERRIDE_MASK);
-    disable_watchdog();
-    seen[0] = target_read16(REG_WDCR);
-    sleep_for_ever();
-  }, kOverflow + 100);
+  run(
+      [] {
+        write_protected(REG_SCSR, SCSR_WDOVERRIDE_MASK);
+        disable_watchdog();
+        seen[0] = target_read16(REG_WDCR);
+        sleep_for_ever();
+      },
+      kOverflow + 100);
   EXPECT_EQ(seen[0] & WDCR_WDDIS_MASK, 0);
   EXPECT_EQ(resets(), 1u);
 }
@@ -145,33 +165,37 @@ TEST_F(Dog, OverrideLocksTheDisableBit) {
 TEST_F(Dog, InterruptModeWakesInsteadOfResetting) {
   static int woken;
   woken = 0;
-  run([] {
-    install(VECTOR_WAKEINT, [] {
-      ++woken;
-      target_write16(REG_PIEACK, group_bit(1));
-    });
-    enable_pie();
-    target_write_ier(group_bit(1));
-    target_enable_interrupts();
-    write_protected(REG_SCSR, SCSR_WDENINT_MASK);
-    for (;;) target_idle();
-  }, 3 * kOverflow + 1000);  // the ISR needs its time
+  run(
+      [] {
+        install(VECTOR_WAKEINT, [] {
+          ++woken;
+          target_write16(REG_PIEACK, group_bit(1));
+        });
+        enable_pie();
+        target_write_ier(group_bit(1));
+        target_enable_interrupts();
+        write_protected(REG_SCSR, SCSR_WDENINT_MASK);
+        for (;;) target_idle();
+      },
+      3 * kOverflow + 1000);  // the ISR needs its time
   EXPECT_EQ(resets(), 0u);
   EXPECT_EQ(woken, 3);
 }
 
 TEST_F(Dog, ResetLowersPinsAndForgetsRegisters) {
-  run([] {
-    note_start();
-    seen[0] = target_read16(REG_PIEIER(1));
-    seen[1] = target_read16(REG_GPADIR);
-    seen[2] = target_read_ier();
-    target_write16(REG_PIEIER(1), 0xFF);
-    target_write_ier(0x0FFF);
-    write_protected(REG_GPADIR, 1);
-    target_write16(REG_GPASET, 1);
-    sleep_for_ever();
-  }, kOverflow + kResetPulse - 1);
+  run(
+      [] {
+        note_start();
+        seen[0] = target_read16(REG_PIEIER(1));
+        seen[1] = target_read16(REG_GPADIR);
+        seen[2] = target_read_ier();
+        target_write16(REG_PIEIER(1), 0xFF);
+        target_write_ier(0x0FFF);
+        write_protected(REG_GPADIR, 1);
+        target_write16(REG_GPASET, 1);
+        sleep_for_ever();
+      },
+      kOverflow + kResetPulse - 1);
   ASSERT_EQ(world.pins.size(), 2u);
   EXPECT_EQ(world.pins[1], (PinChange{kOverflow, 0, false}));
   device->run_until(kOverflow + kResetPulse + 1000);
@@ -182,15 +206,17 @@ TEST_F(Dog, ResetLowersPinsAndForgetsRegisters) {
 }
 
 TEST_F(Dog, BitesInsideAnInterruptToo) {
-  run([] {
-    note_start();
-    install(VECTOR_SEQ1INT, [] { sleep_for_ever(); });
-    enable_pie();
-    target_write_ier(group_bit(1));
-    target_enable_interrupts();
-    raise_by_hand(VECTOR_SEQ1INT);
-    sleep_for_ever();
-  }, 5 * (kOverflow + kResetPulse) + 1000);
+  run(
+      [] {
+        note_start();
+        install(VECTOR_SEQ1INT, [] { sleep_for_ever(); });
+        enable_pie();
+        target_write_ier(group_bit(1));
+        target_enable_interrupts();
+        raise_by_hand(VECTOR_SEQ1INT);
+        sleep_for_ever();
+      },
+      5 * (kOverflow + kResetPulse) + 1000);
   EXPECT_EQ(resets(), 5u);
   EXPECT_EQ(starts.size(), 6u);
   EXPECT_EQ(device->statistics().interrupts, 6u);

@@ -45,7 +45,7 @@ TEST(Plant, TwoRunsAreByteIdentical) {
 
 TEST(Plant, LookingDoesNotChangeTheTrajectory) {
   const PlantConfig c;
-  const testing::Recording r = testing::record_ramp_and_load(c, 300);
+  const testing::Recording r = testing::record_ramp_and_load(c, 2000);
   Plant rarely(c), often(c);
   testing::replay(rarely, r, {9999}, [&](Tick) {});
   std::vector<Tick> at;
@@ -56,8 +56,8 @@ TEST(Plant, LookingDoesNotChangeTheTrajectory) {
     often.energy();
     often.current_sensor(1);
   });
-  rarely.advance(3'000'000);
-  often.advance(3'000'000);
+  rarely.advance(20'000'000);
+  often.advance(20'000'000);
   EXPECT_EQ(rarely.state().current, often.state().current);
   EXPECT_EQ(rarely.state().angle_m, often.state().angle_m);
   EXPECT_EQ(rarely.current_sensor(0), often.current_sensor(0));
@@ -171,7 +171,7 @@ TEST(Plant, LinkSagReachesTheLinkThroughItsResistance) {
   Plant plant(c);
   plant.inject({FaultKind::kLinkSag, 0, 0.5});
   plant.advance(60'000);  // one time constant of 0.3 Ohm and 2 mF
-  EXPECT_NEAR(plant.state().link_voltage, 150.0 + 150.0 * std::exp(-1.0), 1e-6);
+  EXPECT_NEAR(plant.state().link_voltage, 150.0 + 150.0 * std::exp(-1.0), 5e-6);  // RK4, 25 us: (h/RC)^5/120 a step
 }
 
 TEST(Plant, RippleOfTheSource) {
@@ -224,8 +224,7 @@ TEST(Plant, RejectsTimeThatGoesBackAndBadIndices) {
 TEST(Plant, LeavingTheFluxMapIsAnError) {
   PlantConfig c;
   c.mechanics.locked = true;
-  c.initial.angle = kPi;  // drives i_d negative
-  c.initial.current_q = 60.0;
+  c.initial.angle = -0.75 * kPi;  // drives i_d far down and i_q far up
   Plant plant(c);
   plant.set_gate(0, 0, true, false);
   plant.set_gate(0, 1, false, true);

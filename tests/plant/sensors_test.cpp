@@ -171,7 +171,9 @@ TEST(Adc, InlIsSmoothAndWithinItsLimit) {
     const double ideal = 2048.0 + current * 2048.0 / 20.0;
     const double error = mean_code(c, current, &deviation) - ideal;
     EXPECT_LE(std::fabs(error), 1.5 + 0.5);  // INL and rounding
-    if (n > -200) EXPECT_LT(std::fabs(error - last), 1.6) << "two codes next to each other: rounding of both and slope";
+    if (n > -200) {
+      EXPECT_LT(std::fabs(error - last), 1.6) << "neighbours: rounding of both, and the slope at the end";
+    }
     last = error;
     lowest = std::min(lowest, error);
     highest = std::max(highest, error);

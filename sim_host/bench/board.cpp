@@ -1,0 +1,83 @@
+#include "sim_host/bench/board.hpp"
+
+#include "hal/f2808/registers.h"
+
+namespace stillspin::bench {
+namespace {
+
+// ADC channels of the board: 0..7 are ADCINA0..7, 8..15 are ADCINB0..7.
+constexpr int kChannelCurrentA = 0;
+constexpr int kChannelLink = 1;
+constexpr int kChannelCurrentB = 8;
+constexpr int kChannelAuxiliary = 9;
+
+}  // namespace
+
+Board::Board(const plant::PlantConfig& config, PeriodListener& listener) : plant_(config), listener_(listener) {}
+
+void Board::drive_leg(Tick t, int leg) {
+  plant_.set_gate(t, leg, enabled_ && upper_[leg], enabled_ && lower_[leg]);
+}
+
+void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
+  if (module >= 3) return;
+  upper_[module] = a;
+  lower_[module] = b;
+  drive_leg(t, module);
+}
+
+std::uint16_t Board::adc_sample(Tick t, int channel) {
+  switch (channel) {
+    case kChannelCurrentA: return plant_.adc_code(t, plant::AdcInput::kCurrentA);
+    case kChannelCurrentB: return plant_.adc_code(t, plant::AdcInput::kCurrentB);
+    case kChannelLink: watch_current(t); return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
+    case kChannelAuxiliary: return plant_.adc_code(t, plant::AdcInput::kTemperature);
+    default: return 0;
+  }
+}
+
+// The comparator is looked at with every window's last sample and at every period start.
+void Board::watch_current(Tick t) {
+  if (plant_.take_peak_current(t) <= kComparatorAmps) return;
+  if (t >= tripped_until_) trips_++;
+  tripped_until_ = t + kComparatorHold;
+  chip_->pins_changed();
+}
+
+bool Board::pin_level(Tick t, int pin) { return pin != kPinOverCurrent || t >= tripped_until_; }
+
+void Board::on_output_pin(Tick t, int pin, bool /*level*/) {
+  if (pin != kPinEnable) return;
+  last_toggle_ = t;
+  watch_enable(t);
+}
+
+void Board::watch_enable(Tick t) {
+  const bool alive = t - last_toggle_ < kEnableTimeout;
+  if (alive == enabled_) return;
+  enabled_ = alive;
+  for (int leg = 0; leg < 3; leg++) drive_leg(t, leg);
+}
+
+std::int64_t Board::encoder_edges(Tick t) { return plant_.encoder_count(t); }
+
+// Puts the calls on the starts of ePWM1's periods, as soon as its counter runs.
+void Board::align(Tick t) {
+  const bool running = (chip_->inspect(REG_PCLKCR0) & PCLKCR0_TBCLKSYNC_MASK) != 0;
+  const Tick counter = chip_->inspect(EPWM_BASE(1) + EPWM_TBCTR);
+  next_call_ = t + kPeriod - (running ? counter : 0);
+  aligned_ = running;
+}
+
+void Board::call(Tick t) {
+  watch_enable(t);
+  watch_current(t);
+  if (!aligned_) {
+    align(t);
+    return;
+  }
+  next_call_ = t + kPeriod;
+  listener_.on_period(t);
+}
+
+}  // namespace stillspin::bench

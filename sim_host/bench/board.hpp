@@ -1,0 +1,73 @@
+// The inverter board: what lies between the chip's pins and the plant.
+//
+// Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
+// been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the over-current
+// input (GPIO12, TZ1, low active) when a phase current has exceeded 19 A, and holds it for 10 us.
+
+#ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
+#define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
+
+#include <array>
+
+#include "sim_host/chip/chip.hpp"
+#include "sim_host/plant/plant.hpp"
+
+namespace stillspin::bench {
+
+using chip::Tick;
+
+inline constexpr double kComparatorAmps = 19.0;
+inline constexpr Tick kComparatorHold = 1'000;
+inline constexpr Tick kEnableTimeout = 500'000;
+inline constexpr Tick kPeriod = 10'000;
+inline constexpr int kPinOverCurrent = 12;
+inline constexpr int kPinEnable = 34;
+
+/// Told at the start of every PWM period, before the control interrupt runs.
+class PeriodListener {
+ public:
+  virtual ~PeriodListener() = default;
+  virtual void on_period(Tick t) = 0;
+};
+
+class Board : public chip::World {
+ public:
+  Board(const plant::PlantConfig& config, PeriodListener& listener);
+
+  /// The chip that sits on the board; needed before it runs.
+  void attach(chip::Chip& chip) { chip_ = &chip; }
+
+  plant::Plant& plant() { return plant_; }
+  bool gates_enabled() const { return enabled_; }
+  std::uint64_t trips() const { return trips_; }
+
+  void on_pwm_pins(Tick t, int module, bool a, bool b) override;
+  std::uint16_t adc_sample(Tick t, int channel) override;
+  bool pin_level(Tick t, int pin) override;
+  void on_output_pin(Tick t, int pin, bool level) override;
+  std::int64_t encoder_edges(Tick t) override;
+  Tick next_call() const override { return next_call_; }
+  void call(Tick t) override;
+
+ private:
+  void align(Tick t);
+  void watch_enable(Tick t);
+  void watch_current(Tick t);
+  void drive_leg(Tick t, int leg);
+
+  plant::Plant plant_;
+  PeriodListener& listener_;
+  chip::Chip* chip_ = nullptr;
+  std::array<bool, 3> upper_{};
+  std::array<bool, 3> lower_{};
+  Tick next_call_ = 0;
+  Tick last_toggle_ = -kEnableTimeout;
+  Tick tripped_until_ = -1;
+  std::uint64_t trips_ = 0;
+  bool enabled_ = false;
+  bool aligned_ = false;
+};
+
+}  // namespace stillspin::bench
+
+#endif

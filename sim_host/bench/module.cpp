@@ -1,0 +1,172 @@
+// The Python module stillspin._core: the virtual drive as functions. Python's side of the contract is core.py.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "firmware/drive_api.h"
+#include "sim_host/bench/run.hpp"
+
+namespace nb = nanobind;
+using namespace stillspin::bench;
+
+namespace {
+
+double number(const std::string& where, nb::handle value) {
+  if (nb::isinstance<nb::str>(value)) {
+    const std::string word = nb::cast<std::string>(value);
+    const auto& known = solver_choices();
+    const auto found = std::find(known.begin(), known.end(), word);
+    if (found == known.end()) throw std::invalid_argument(where + " = '" + word + "': not a choice");
+    return static_cast<double>(found - known.begin());
+  }
+  return nb::cast<double>(value);
+}
+
+Setup setup_from(const nb::dict& plant, std::uint64_t seed) {
+  Setup setup;
+  for (const auto& [section, keys] : plant) {
+    for (const auto& [key, value] : nb::cast<nb::dict>(keys)) {
+      const std::string s = nb::cast<std::string>(section);
+      const std::string k = nb::cast<std::string>(key);
+      set_entry(setup, s, k, number(s + "." + k, value));
+    }
+  }
+  setup.nominal.adc.seed = seed;
+  return setup;
+}
+
+nb::object array(std::vector<double> values) {
+  auto* data = new std::vector<double>(std::move(values));
+  nb::capsule owner(data, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(data->data(), {data->size()}, owner));
+}
+
+nb::dict signals_of(RunResult& result) {
+  nb::dict signals;
+  for (std::size_t k = 0; k < columns().size(); k++) signals[columns()[k].name] = array(std::move(result.values[k]));
+  return signals;
+}
+
+struct PythonResult {
+  nb::dict signals;
+  bool completed;
+  std::string reason;
+  std::vector<std::pair<double, std::string>> faults;
+  std::map<std::string, double> stats;
+};
+
+// Asks Python now and then; a signal such as Ctrl-C ends the run.
+std::function<bool(double)> progress_of(const nb::object& callback) {
+  return [callback](double share) {
+    nb::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    return callback.is_none() || nb::cast<bool>(callback(share));
+  };
+}
+
+PythonResult run_in_python(const nb::dict& plant, const std::string& motor, const std::map<std::string, double>& parameters,
+                           const std::vector<std::tuple<double, std::string, double>>& commands,
+                           const std::vector<std::pair<double, double>>& load, double duration, double max_start,
+                           int record_every, std::uint64_t seed, const nb::object& progress) {
+  if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
+  RunRequest request;
+  request.setup = setup_from(plant, seed);
+  request.parameters = parameters;
+  for (const auto& [time, what, value] : commands) request.commands.push_back({time, what, value});
+  request.load = load;
+  request.duration = duration;
+  request.max_start = max_start;
+  request.record_every = record_every;
+  request.progress = progress_of(progress);
+  RunResult result;
+  {
+    nb::gil_scoped_release release;
+    result = run(request);
+  }
+  return {signals_of(result), result.completed, result.reason, result.faults, result.stats};
+}
+
+nb::list parameter_rows() {
+  nb::list rows;
+  for (std::uint16_t k = 0; k < parameter_count(); k++) {
+    const parameter_info_t* p = parameter_info(k);
+    nb::dict row;
+    row["id"] = p->id;
+    row["name"] = p->name;
+    row["unit"] = p->unit;
+    row["decimals"] = p->decimals;
+    row["minimum"] = std::ldexp(p->minimum, -p->q);
+    row["maximum"] = std::ldexp(p->maximum, -p->q);
+    row["default"] = std::ldexp(p->initial, -p->q);
+    row["access"] = p->access == PARAMETER_ALWAYS ? "always" : "stopped";
+    row["help"] = p->meaning;
+    rows.append(row);
+  }
+  return rows;
+}
+
+nb::list signal_rows() {
+  nb::list rows;
+  for (const ColumnInfo& c : columns()) {
+    nb::dict row;
+    row["name"] = c.name;
+    row["unit"] = c.unit;
+    row["help"] = c.meaning;
+    rows.append(row);
+  }
+  return rows;
+}
+
+nb::object default_of(const Entry& e) {
+  const double value = e.get(Setup());
+  switch (e.kind) {
+    case EntryKind::kSwitch: return nb::bool_(value != 0.0);
+    case EntryKind::kWhole: return nb::int_(static_cast<long>(value));
+    case EntryKind::kChoice: return nb::str(solver_choices()[static_cast<std::size_t>(value)].c_str());
+    default: return nb::float_(value);
+  }
+}
+
+nb::dict schema() {
+  nb::dict sections;
+  for (const Entry& e : entries()) {
+    if (!sections.contains(e.section)) sections[e.section] = nb::dict();
+    nb::dict row;
+    row["unit"] = e.unit;
+    row["minimum"] = e.minimum;
+    row["maximum"] = e.maximum;
+    row["default"] = default_of(e);
+    row["help"] = e.help;
+    if (e.kind == EntryKind::kChoice) row["choices"] = solver_choices();
+    nb::cast<nb::dict>(sections[e.section])[e.key] = row;
+  }
+  return sections;
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+  m.doc() = "The virtual drive: firmware, virtual F2808 and plant in one process.";
+  nb::class_<PythonResult>(m, "RunResult")
+      .def_ro("signals", &PythonResult::signals)
+      .def_ro("completed", &PythonResult::completed)
+      .def_ro("reason", &PythonResult::reason)
+      .def_ro("faults", &PythonResult::faults)
+      .def_ro("stats", &PythonResult::stats);
+  m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
+        nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
+        nb::arg("seed"), nb::arg("progress").none(), "One run of the virtual drive; see core.py.");
+  m.def("parameters", &parameter_rows, "The firmware's parameter table.");
+  m.def("signals", &signal_rows, "Name, unit and meaning of the recorded columns.");
+  m.def("plant_schema", &schema, "Section -> key -> unit, minimum, maximum, default, help of the plant.");
+}

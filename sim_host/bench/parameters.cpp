@@ -1,0 +1,32 @@
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "firmware/drive_api.h"
+#include "sim_host/bench/run.hpp"
+
+namespace stillspin::bench {
+namespace {
+
+const parameter_info_t* find(const std::string& name) {
+  for (std::uint16_t k = 0; k < parameter_count(); k++) {
+    if (name == parameter_info(k)->name) return parameter_info(k);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) {
+  const parameter_info_t* info = find(name);
+  if (info == nullptr) throw std::invalid_argument("there is no firmware parameter '" + name + "'");
+  id = info->id;
+  const double raw = std::round(std::ldexp(value, info->q));
+  if (std::isfinite(raw) && raw >= info->minimum && raw <= info->maximum) return static_cast<std::int32_t>(raw);
+  std::ostringstream text;
+  text << "firmware parameter " << name << " = " << value << ": out of range, allowed is "
+       << std::ldexp(info->minimum, -info->q) << " to " << std::ldexp(info->maximum, -info->q) << " " << info->unit;
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace stillspin::bench

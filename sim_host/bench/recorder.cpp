@@ -1,0 +1,92 @@
+#include "sim_host/bench/recorder.hpp"
+
+#include <cmath>
+
+namespace stillspin::bench {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRpmPerRads = 30.0 / kPi;
+
+struct Row {
+  double time;
+  const plant::PlantState& p;
+  const drive_signals_t& f;
+};
+
+double scaled(std::int32_t raw, int q) { return std::ldexp(static_cast<double>(raw), -q); }
+double radians(std::int32_t bam) { return scaled(bam, 31) * kPi; }
+
+struct Column {
+  ColumnInfo info;
+  double (*value)(const Row&);
+};
+
+// Names, units and meaning of the record; the firmware's own part follows firmware/signal_list.h.
+const Column kColumns[] = {
+    {{"time", "s", "0 is the end of the start procedure"}, [](const Row& r) { return r.time; }},
+    {{"true_angle", "rad", "electrical rotor angle"}, [](const Row& r) { return r.p.angle_e; }},
+    {{"est_angle", "rad", "electrical angle that the controller used"}, [](const Row& r) { return radians(r.f.angle); }},
+    {{"true_speed", "rpm", "shaft speed"}, [](const Row& r) { return r.p.speed_m * kRpmPerRads; }},
+    {{"est_speed", "rpm", "speed that the controller used"}, [](const Row& r) { return scaled(r.f.speed, 16); }},
+    {{"speed_ref", "rpm", "speed reference after its ramp"},
+     [](const Row& r) { return scaled(r.f.speed_reference, 16); }},
+    {{"torque", "Nm", "air-gap torque"}, [](const Row& r) { return r.p.torque; }},
+    {{"load_torque", "Nm", "load torque"}, [](const Row& r) { return r.p.load; }},
+    {{"i_a", "A", "current of phase a"}, [](const Row& r) { return r.p.current[0]; }},
+    {{"i_b", "A", "current of phase b"}, [](const Row& r) { return r.p.current[1]; }},
+    {{"i_c", "A", "current of phase c"}, [](const Row& r) { return r.p.current[2]; }},
+    {{"true_i_d", "A", "d-axis current at the period's start"}, [](const Row& r) { return r.p.current_d; }},
+    {{"true_i_q", "A", "q-axis current at the period's start"}, [](const Row& r) { return r.p.current_q; }},
+    {{"i_d", "A", "d-axis current as measured"}, [](const Row& r) { return scaled(r.f.current_d, 20); }},
+    {{"i_q", "A", "q-axis current as measured"}, [](const Row& r) { return scaled(r.f.current_q, 20); }},
+    {{"i_d_ref", "A", "d-axis current reference"}, [](const Row& r) { return scaled(r.f.current_d_reference, 20); }},
+    {{"i_q_ref", "A", "q-axis current reference"}, [](const Row& r) { return scaled(r.f.current_q_reference, 20); }},
+    {{"v_d", "V", "d-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_d, 16); }},
+    {{"v_q", "V", "q-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_q, 16); }},
+    {{"v_dc", "V", "DC-link voltage"}, [](const Row& r) { return r.p.link_voltage; }},
+    {{"angle_zvv", "rad", "electrical angle of the low-speed estimator"},
+     [](const Row& r) { return radians(r.f.angle_low); }},
+    {{"angle_avv", "rad", "electrical angle of the AVV estimator"}, [](const Row& r) { return radians(r.f.angle_avv); }},
+    {{"weight", "", "share of the low-speed estimator"}, [](const Row& r) { return r.f.weight / 32767.0; }},
+    {{"load_estimate", "Nm", "estimated load torque, friction included"},
+     [](const Row& r) { return scaled(r.f.load_torque, 16); }},
+    {{"state", "", "state of the drive"}, [](const Row& r) { return static_cast<double>(r.f.state); }},
+    {{"fault", "", "latched fault"}, [](const Row& r) { return static_cast<double>(r.f.fault); }},
+    {{"limit", "", "active limits, bits"}, [](const Row& r) { return static_cast<double>(r.f.limit); }},
+};
+
+}  // namespace
+
+const std::vector<ColumnInfo>& columns() {
+  static const std::vector<ColumnInfo> list = [] {
+    std::vector<ColumnInfo> all;
+    for (const Column& c : kColumns) all.push_back(c.info);
+    return all;
+  }();
+  return list;
+}
+
+Recorder::Recorder(int every) : every_(every), values_(columns().size()) {}
+
+void Recorder::reserve(std::size_t rows) {
+  for (auto& column : values_) column.reserve(rows);
+}
+
+void Recorder::begin_row(double time, const plant::PlantState& state) {
+  open_ = skipped_ == 0;
+  skipped_ = (skipped_ + 1) % every_;
+  if (!open_) return;
+  time_ = time;
+  state_ = state;
+}
+
+void Recorder::finish_row(const drive_signals_t& signals, double origin) {
+  if (!open_) return;
+  open_ = false;
+  const Row row{time_ - origin, state_, signals};
+  std::size_t k = 0;
+  for (const Column& c : kColumns) values_[k++].push_back(c.value(row));
+}
+
+}  // namespace stillspin::bench

@@ -1,0 +1,213 @@
+#include "sim_host/bench/run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "firmware/drive_api.h"
+#include "sim_host/bench/board.hpp"
+#include "sim_host/bench/recorder.hpp"
+
+namespace stillspin::bench {
+namespace {
+
+constexpr double kSecondsPerTick = 1e-8;
+constexpr Tick kChunk = 1'000'000;           // between looks at progress
+constexpr Tick kEarliestStart = 5'000'000;   // 50 ms after power-on
+
+const char* fault_name(std::int32_t fault) {
+  switch (fault) {
+    case FAULT_NONE: return "none";
+    case FAULT_OVER_CURRENT: return "over-current comparator";
+    case FAULT_CURRENT_LIMIT: return "sampled current beyond trip_current";
+    case FAULT_LINK_LOW: return "DC link below link_minimum";
+    case FAULT_LINK_HIGH: return "DC link above link_maximum";
+    case FAULT_OVERRUN: return "control interrupt overrun";
+    case FAULT_NO_SAMPLES: return "no samples from the ADC";
+    case FAULT_DIVERGENCE: return "estimators diverged or speed not plausible";
+    case FAULT_POLARITY: return "polarity of the magnet ambiguous";
+    case FAULT_OFFSET: return "current offset implausible";
+    case FAULT_PARAMETER: return "parameters do not fit together";
+    default: return "unknown fault";
+  }
+}
+
+struct RawParameter {
+  unsigned id;
+  std::int32_t raw;
+};
+
+std::vector<RawParameter> raw_parameters(const std::map<std::string, double>& wanted) {
+  std::vector<RawParameter> list;
+  for (const auto& [name, value] : wanted) {
+    RawParameter p{};
+    p.raw = parameter_raw(name, value, p.id);
+    list.push_back(p);
+  }
+  return list;
+}
+
+// Follows the drive from period to period: gives the commands, keeps the record.
+class Director : public PeriodListener {
+ public:
+  Director(const RunRequest& request, RunResult& result)
+      : request_(request), result_(result), recorder_(request.record_every), parameters_(raw_parameters(request.parameters)) {
+    recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
+    for (const Command& c : request.commands) check(c);
+  }
+
+  void attach(Board& board) { board_ = &board; }
+  Tick origin() const { return origin_; }
+  bool running() const { return origin_ >= 0; }
+  bool broken() const { return !result_.reason.empty(); }
+  std::vector<std::vector<double>> take_record() { return recorder_.take(); }
+
+  void on_period(Tick t) override {
+    const drive_signals_t& s = *drive_signals();
+    if (running()) recorder_.finish_row(s, origin_ * kSecondsPerTick);
+    watch_fault(t, s);
+    board_->plant().advance(t);
+    if (!running()) prepare(t, s);
+    if (running()) give_commands(t);
+    if (running()) recorder_.begin_row(t * kSecondsPerTick, board_->plant().state());
+  }
+
+ private:
+  static void check(const Command& c) {
+    unsigned id = 0;
+    if (c.what.rfind("set:", 0) == 0) {
+      (void)parameter_raw(c.what.substr(4), c.value, id);
+    } else if (c.what != "speed_ref_rpm" && c.what != "start" && c.what != "stop" && c.what != "reset") {
+      throw std::invalid_argument("there is no command '" + c.what +
+                                  "': speed_ref_rpm, start, stop, reset or set:<parameter>");
+    }
+  }
+
+  void watch_fault(Tick t, const drive_signals_t& s) {
+    if (s.fault == last_fault_) return;
+    last_fault_ = s.fault;
+    if (s.fault == FAULT_NONE) return;
+    const double at = (t - (running() ? origin_ : 0)) * kSecondsPerTick;
+    result_.faults.emplace_back(at, fault_name(s.fault));
+    if (!running()) result_.reason = std::string("fault during the start: ") + fault_name(s.fault);
+  }
+
+  void prepare(Tick t, const drive_signals_t& s) {
+    if (!configured_ && s.state == DRIVE_READY) {
+      for (const RawParameter& p : parameters_) set(p);
+      configured_ = true;
+    } else if (configured_ && !started_ && t >= kEarliestStart) {
+      drive_command_start();
+      started_ = true;
+    } else if (started_ && s.state == DRIVE_RUN) {
+      begin(t);
+    }
+  }
+
+  void set(const RawParameter& p) {
+    const parameter_result_t r = parameter_set(static_cast<std::uint16_t>(p.id), p.raw);
+    if (r != SET_OK) result_.reason = "the drive refused parameter " + std::to_string(p.id);
+  }
+
+  void begin(Tick t) {
+    origin_ = t;
+    std::vector<plant::LoadPoint> points;
+    for (const auto& [time, torque] : request_.load) points.push_back({t + std::llround(time / kSecondsPerTick), torque});
+    board_->plant().set_load(points);
+  }
+
+  void give_commands(Tick t) {
+    const double now = (t - origin_) * kSecondsPerTick;
+    while (next_command_ < request_.commands.size() && request_.commands[next_command_].time <= now + 1e-9) {
+      give(request_.commands[next_command_++]);
+    }
+  }
+
+  void give(const Command& c) {
+    if (c.what == "speed_ref_rpm") drive_command_speed(static_cast<std::int32_t>(std::lround(c.value * 65536.0)));
+    if (c.what == "start") drive_command_start();
+    if (c.what == "stop") drive_command_stop();
+    if (c.what == "reset") drive_command_reset();
+    if (c.what.rfind("set:", 0) == 0) {
+      RawParameter p{};
+      p.raw = parameter_raw(c.what.substr(4), c.value, p.id);
+      set(p);
+    }
+  }
+
+  const RunRequest& request_;
+  RunResult& result_;
+  Recorder recorder_;
+  std::vector<RawParameter> parameters_;
+  Board* board_ = nullptr;
+  Tick origin_ = -1;
+  std::size_t next_command_ = 0;
+  std::int32_t last_fault_ = FAULT_NONE;
+  bool configured_ = false;
+  bool started_ = false;
+};
+
+void check_request(const RunRequest& r) {
+  if (!(r.duration > 0.0 && r.duration <= 3600.0)) throw std::invalid_argument("duration must be above 0 and up to 3600 s");
+  if (!(r.max_start > 0.0 && r.max_start <= 60.0)) throw std::invalid_argument("max_start must be above 0 and up to 60 s");
+  if (r.record_every < 1) throw std::invalid_argument("record_every must be at least 1");
+}
+
+// Runs to the end of the start procedure, then for the duration. False when the run broke off.
+bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunResult& result) {
+  const Tick latest_start = std::llround(request.max_start / kSecondsPerTick);
+  const Tick length = std::llround(request.duration / kSecondsPerTick);
+  for (;;) {
+    const Tick end = director.running() ? director.origin() + length + kPeriod : latest_start;
+    if (chip.now() >= end) break;
+    chip.run_until(std::min(chip.now() + kChunk, end));
+    if (director.broken()) return false;
+    const double done = director.running() ? double(chip.now() - director.origin()) / length : 0.0;
+    if (request.progress && !request.progress(std::min(done, 1.0))) {
+      result.reason = "stopped by the user";
+      return false;
+    }
+  }
+  if (!director.running()) result.reason = "the start procedure took longer than " + std::to_string(request.max_start) + " s";
+  if (result.reason.empty() && !result.faults.empty()) result.reason = "fault: " + result.faults.front().second;
+  return result.reason.empty();
+}
+
+}  // namespace
+
+RunResult run(const RunRequest& request) {
+  check_request(request);
+  RunResult result;
+  Director director(request, result);
+  Board board(request.setup.plant(), director);
+  director.attach(board);
+  chip::Chip chip(board, firmware_main);
+  board.attach(chip);
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    result.completed = play(request, chip, director, result);
+  } catch (const std::runtime_error& error) {
+    result.reason = error.what();
+  }
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (const auto short_circuit = board.plant().shoot_through()) {
+    result.completed = false;
+    result.reason = "both devices of leg " + std::to_string(short_circuit->leg) + " conducted at tick " +
+                    std::to_string(short_circuit->tick);
+  }
+  result.values = director.take_record();
+  const chip::Statistics& s = chip.statistics();
+  result.stats = {{"wall_seconds", wall},
+                  {"simulated_seconds", chip.now() * kSecondsPerTick},
+                  {"start_seconds", director.running() ? director.origin() * kSecondsPerTick : 0.0},
+                  {"register_accesses", double(s.reads + s.writes)},
+                  {"interrupts", double(s.interrupts)},
+                  {"lost_writes", double(s.protected_writes_lost + s.gated_accesses)},
+                  {"unmodelled_accesses", double(s.unmodelled_accesses)},
+                  {"resets", double(s.resets)},
+                  {"trips", double(board.trips())}};
+  return result;
+}
+
+}  // namespace stillspin::bench

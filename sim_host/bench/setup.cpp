@@ -1,0 +1,119 @@
+#include "sim_host/bench/setup.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace stillspin::bench {
+namespace {
+
+#define ENTRY(section, key, unit, kind, minimum, maximum, field, help)                              \
+  Entry{#section, #key, unit, EntryKind::kind, minimum, maximum,                                    \
+        [](const Setup& s) { return static_cast<double>(s.field); },                                \
+        [](Setup& s, double v) { s.field = static_cast<std::decay_t<decltype(s.field)>>(v); }, help}
+
+const std::vector<Entry> kEntries = {
+    ENTRY(machine, pole_pairs, "", kWhole, 1, 50, nominal.machine.pole_pairs, "pole pairs"),
+    ENTRY(machine, resistance, "ohm", kNumber, 1e-4, 100, nominal.machine.resistance, "nominal stator resistance"),
+    ENTRY(machine, inductance_d, "H", kNumber, 1e-6, 1, nominal.machine.inductance_d, "nominal d-axis inductance"),
+    ENTRY(machine, inductance_q, "H", kNumber, 1e-6, 1, nominal.machine.inductance_q,
+          "nominal q-axis inductance at zero current"),
+    ENTRY(machine, magnet_flux, "Vs", kNumber, 0, 10, nominal.machine.magnet_flux, "nominal magnet flux linkage"),
+    ENTRY(machine, rated_peak_current, "A", kNumber, 0.1, 1000, nominal.machine.rated_peak_current,
+          "scale of the saturation map"),
+    ENTRY(machine, saturation, "", kSwitch, 0, 1, nominal.machine.saturation, "saturation with cross-coupling"),
+    ENTRY(machine, cross_inductance, "H", kNumber, -0.01, 0.01, nominal.machine.cross_inductance,
+          "nominal incremental Ldq at rated i_q"),
+    ENTRY(machine, emf_harmonic_5, "", kNumber, 0, 0.3, nominal.machine.emf_harmonic_5, "share of the fundamental EMF"),
+    ENTRY(machine, emf_harmonic_7, "", kNumber, 0, 0.3, nominal.machine.emf_harmonic_7, "share of the fundamental EMF"),
+    ENTRY(mechanics, inertia, "kgm2", kNumber, 1e-6, 100, nominal.mechanics.inertia, "nominal inertia"),
+    ENTRY(mechanics, viscous_friction, "Nms", kNumber, 0, 10, nominal.mechanics.viscous_friction, "viscous friction"),
+    ENTRY(mechanics, coulomb_friction, "Nm", kNumber, 0, 100, nominal.mechanics.coulomb_friction, "dry friction"),
+    ENTRY(mechanics, stiction, "Nm", kNumber, 0, 100, nominal.mechanics.stiction, "torque to break loose"),
+    ENTRY(mechanics, cogging_torque, "Nm", kNumber, 0, 10, nominal.mechanics.cogging_torque, "cogging, six per pole pair"),
+    ENTRY(mechanics, locked, "", kSwitch, 0, 1, nominal.mechanics.locked, "the rotor cannot turn"),
+    ENTRY(inverter, switch_threshold, "V", kNumber, 0, 10, nominal.inverter.switch_threshold, "switch on-state drop"),
+    ENTRY(inverter, switch_resistance, "ohm", kNumber, 0, 10, nominal.inverter.switch_resistance, "and its slope"),
+    ENTRY(inverter, diode_threshold, "V", kNumber, 0, 10, nominal.inverter.diode_threshold, "diode on-state drop"),
+    ENTRY(inverter, diode_resistance, "ohm", kNumber, 0, 10, nominal.inverter.diode_resistance, "and its slope"),
+    ENTRY(inverter, turn_on_delay, "10ns", kWhole, 0, 1000, nominal.inverter.turn_on_delay, "driver input to conduction"),
+    ENTRY(inverter, turn_off_delay, "10ns", kWhole, 0, 1000, nominal.inverter.turn_off_delay, "driver input to blocking"),
+    ENTRY(link, source_voltage, "V", kNumber, 1, 2000, nominal.link.source_voltage, "DC-link source"),
+    ENTRY(link, stiff, "", kSwitch, 0, 1, nominal.link.stiff, "the link is the source itself"),
+    ENTRY(link, source_resistance, "ohm", kNumber, 1e-3, 1000, nominal.link.source_resistance, "source resistance"),
+    ENTRY(link, capacitance, "F", kNumber, 1e-6, 1, nominal.link.capacitance, "link capacitor"),
+    ENTRY(link, ripple, "", kNumber, 0, 0.5, nominal.link.ripple, "peak ripple, share of the source voltage"),
+    ENTRY(link, ripple_frequency, "Hz", kNumber, 0, 5000, nominal.link.ripple_frequency, "its frequency"),
+    ENTRY(link, rectifier, "", kSwitch, 0, 1, nominal.link.rectifier, "the source does not sink"),
+    ENTRY(link, brake_chopper, "", kSwitch, 0, 1, nominal.link.brake_chopper, "brake resistor with hysteresis"),
+    ENTRY(link, brake_on_voltage, "V", kNumber, 1, 5000, nominal.link.brake_on_voltage, "brake on"),
+    ENTRY(link, brake_off_voltage, "V", kNumber, 1, 5000, nominal.link.brake_off_voltage, "brake off"),
+    ENTRY(link, brake_resistance, "ohm", kNumber, 0.1, 10000, nominal.link.brake_resistance, "brake resistor"),
+    ENTRY(sensor, count, "", kWhole, 2, 3, nominal.sensor.count, "current sensors"),
+    ENTRY(sensor, bandwidth, "Hz", kNumber, 0, 1e8, nominal.sensor.bandwidth, "first order; 0 is ideal"),
+    ENTRY(sensor, gain_a, "", kNumber, 0.5, 1.5, nominal.sensor.gain[0], "gain of sensor a"),
+    ENTRY(sensor, gain_b, "", kNumber, 0.5, 1.5, nominal.sensor.gain[1], "gain of sensor b"),
+    ENTRY(sensor, gain_c, "", kNumber, 0.5, 1.5, nominal.sensor.gain[2], "gain of sensor c"),
+    ENTRY(sensor, offset_a, "A", kNumber, -5, 5, nominal.sensor.offset[0], "offset of sensor a"),
+    ENTRY(sensor, offset_b, "A", kNumber, -5, 5, nominal.sensor.offset[1], "offset of sensor b"),
+    ENTRY(sensor, offset_c, "A", kNumber, -5, 5, nominal.sensor.offset[2], "offset of sensor c"),
+    ENTRY(sensor, ring_amplitude, "A", kNumber, 0, 10, nominal.sensor.ring_amplitude, "ringing after an edge"),
+    ENTRY(sensor, ring_frequency, "Hz", kNumber, 1e3, 5e6, nominal.sensor.ring_frequency, "its frequency"),
+    ENTRY(sensor, ring_decay, "s", kNumber, 1e-8, 1e-4, nominal.sensor.ring_decay, "its time constant"),
+    ENTRY(adc, current_range, "A", kNumber, 0.1, 10000, nominal.adc.current_range, "codes 0..4095 are -range..range"),
+    ENTRY(adc, voltage_range, "V", kNumber, 1, 5000, nominal.adc.voltage_range, "codes 0..4095 are 0..range"),
+    ENTRY(adc, voltage_gain, "", kNumber, 0.5, 1.5, nominal.adc.voltage_gain, "gain of the link divider"),
+    ENTRY(adc, noise, "LSB", kNumber, 0, 100, nominal.adc.noise, "rms noise of a conversion"),
+    ENTRY(adc, inl, "LSB", kNumber, 0, 50, nominal.adc.inl, "integral non-linearity, peak"),
+    ENTRY(adc, temperature_code, "", kWhole, 0, 4095, nominal.adc.temperature_code, "code of the heat-sink channel"),
+    ENTRY(initial, angle, "rad", kNumber, -1e3, 1e3, nominal.initial.angle, "electrical angle at power-on"),
+    ENTRY(initial, speed, "rad/s", kNumber, -1e4, 1e4, nominal.initial.speed, "mechanical speed at power-on"),
+    ENTRY(parameter_error, resistance, "", kNumber, -0.9, 5, error.resistance, "true minus nominal, share of nominal"),
+    ENTRY(parameter_error, inductance_d, "", kNumber, -0.9, 5, error.inductance_d, "true minus nominal"),
+    ENTRY(parameter_error, inductance_q, "", kNumber, -0.9, 5, error.inductance_q, "true minus nominal"),
+    ENTRY(parameter_error, magnet_flux, "", kNumber, -0.9, 5, error.magnet_flux, "true minus nominal"),
+    ENTRY(parameter_error, inertia, "", kNumber, -0.9, 5, error.inertia, "true minus nominal"),
+    ENTRY(solver, method, "", kChoice, 0, 2, solver, "erkstep: ARKODE, adaptive; rk4: fixed steps, fast; reference: CVODE"),
+    ENTRY(solver, relative_tolerance, "", kNumber, 1e-13, 1e-3, nominal.solver.relative_tolerance, "of erkstep"),
+    ENTRY(solver, max_segment, "10ns", kWhole, 1, 10000, nominal.solver.max_segment, "longest step between events"),
+};
+
+#undef ENTRY
+
+}  // namespace
+
+const std::vector<Entry>& entries() { return kEntries; }
+
+const std::vector<std::string>& solver_choices() {
+  static const std::vector<std::string> choices = {"erkstep", "rk4", "reference"};
+  return choices;
+}
+
+void set_entry(Setup& setup, const std::string& section, const std::string& key, double value) {
+  for (const Entry& e : kEntries) {
+    if (section != e.section || key != e.key) continue;
+    if (!std::isfinite(value) || value < e.minimum || value > e.maximum) {
+      throw std::invalid_argument(section + "." + key + " = " + std::to_string(value) + " " + e.unit +
+                                  ": out of range, allowed is " + std::to_string(e.minimum) + " to " +
+                                  std::to_string(e.maximum));
+    }
+    e.set(setup, value);
+    return;
+  }
+  throw std::invalid_argument("there is no plant entry " + section + "." + key);
+}
+
+plant::PlantConfig Setup::plant() const {
+  plant::PlantConfig c = nominal;
+  c.machine.resistance *= 1.0 + error.resistance;
+  c.machine.inductance_d *= 1.0 + error.inductance_d;
+  c.machine.inductance_q *= 1.0 + error.inductance_q;
+  c.machine.cross_inductance *= 1.0 + error.inductance_q;
+  c.machine.magnet_flux *= 1.0 + error.magnet_flux;
+  c.mechanics.inertia *= 1.0 + error.inertia;
+  constexpr plant::Solver kSolvers[] = {plant::Solver::kErkStep, plant::Solver::kRungeKutta, plant::Solver::kReference};
+  c.solver.solver = kSolvers[static_cast<int>(solver)];
+  c.validate();
+  return c;
+}
+
+}  // namespace stillspin::bench

@@ -1,0 +1,59 @@
+// The plant as a table of named entries: what profiles and command lines may set, with units, ranges and meaning.
+//
+// The one list of plant entries: it fills plant::PlantConfig and is what the Python side shows, checks and documents.
+
+#ifndef STILLSPIN_SIM_HOST_BENCH_SETUP_HPP
+#define STILLSPIN_SIM_HOST_BENCH_SETUP_HPP
+
+#include <string>
+#include <vector>
+
+#include "sim_host/plant/config.hpp"
+
+namespace stillspin::bench {
+
+/// True minus nominal, as a fraction of nominal.
+struct ParameterError {
+  double resistance = 0.0;
+  double inductance_d = 0.0;
+  double inductance_q = 0.0;
+  double magnet_flux = 0.0;
+  double inertia = 0.0;
+};
+
+/// A plant with nominal parameters and how far the true ones are from them.
+struct Setup {
+  plant::PlantConfig nominal = plant::PlantConfig::ideal();
+  ParameterError error;
+  double solver = 1;  // index into the choices of solver.method
+
+  /// The plant with the true parameters, validated (std::invalid_argument names entry, value and range).
+  plant::PlantConfig plant() const;
+};
+
+enum class EntryKind { kNumber, kWhole, kSwitch, kChoice };
+
+struct Entry {
+  const char* section;
+  const char* key;
+  const char* unit;
+  EntryKind kind;
+  double minimum;
+  double maximum;
+  double (*get)(const Setup&);
+  void (*set)(Setup&, double);
+  const char* help;
+};
+
+/// All entries, grouped by section.
+const std::vector<Entry>& entries();
+
+/// Words for the values of a kChoice entry.
+const std::vector<std::string>& solver_choices();
+
+/// Sets one entry; throws std::invalid_argument when it does not exist or the value is out of range.
+void set_entry(Setup& setup, const std::string& section, const std::string& key, double value);
+
+}  // namespace stillspin::bench
+
+#endif

@@ -1,0 +1,71 @@
+"""Plots keep every peak of a long record, survive records that are cut short, and are the same every time."""
+
+import numpy as np
+import pytest
+
+from stillspin import panels, plots, scenario_file
+from stillspin.scenario import Plot
+
+
+def recorded(duration=1.0, first=-0.05):
+    time = np.arange(first, duration, 1e-3)
+    names = (
+        "true_angle",
+        "est_angle",
+        "true_speed",
+        "est_speed",
+        "speed_ref",
+        "torque",
+        "load_torque",
+        "load_estimate",
+    )
+    names += ("true_i_d", "true_i_q", "i_d_ref", "i_q_ref", "i_a", "i_b", "i_c", "weight", "v_dc")
+    return {"time": time, **{name: np.sin(20.0 * time + number) for number, name in enumerate(names)}}
+
+
+def test_thinning_keeps_the_extremes_and_their_order():
+    time = np.arange(100_000) * 1e-4
+    values = np.random.default_rng(1).normal(size=time.size)
+    values[41_234], values[41_237] = 50.0, -60.0
+    thin_time, thin = plots.thinned(time, values, columns=500)
+    assert thin.size <= 1000
+    assert (thin.max(), thin.min()) == (50.0, -60.0)
+    assert np.all(np.diff(thin_time) > 0.0)
+    assert thin_time[thin.argmax()] == time[41_234]
+
+
+def test_thinning_keeps_gaps():
+    values = np.zeros(10_000)
+    values[5_000] = np.nan
+    assert np.isnan(plots.thinned(np.arange(10_000.0), values, columns=100)[1]).sum() == 1
+
+
+def test_short_lines_are_left_alone():
+    time = np.arange(10.0)
+    assert plots.thinned(time, time)[0] is time
+
+
+def test_travel_starts_near_the_true_angle_and_unwraps():
+    line_true, line_used = panels.PANELS["travel"].lines
+    turns = np.linspace(3.0, 20.0, 500)
+    wrapped = np.remainder(turns + np.pi, 2 * np.pi) - np.pi
+    signals = {"time": turns, "true_angle": wrapped, "est_angle": np.remainder(turns + 0.1, 2 * np.pi)}
+    run = scenario_file.load("A10").runs[0]
+    assert line_true.compute(signals, run) == pytest.approx(np.degrees(turns - 3.0))
+    assert line_used.compute(signals, run) == pytest.approx(np.degrees(turns - 2.9))
+
+
+@pytest.mark.parametrize("panel", panels.PANELS)
+@pytest.mark.parametrize("runs", [("predictive",), ("predictive", "pi")])
+def test_every_panel_draws_one_run_and_several(panel, runs):
+    plot = Plot("", (panel,), runs, None)
+    svg = plots.draw(plot, scenario_file.load("A18a"), {name: recorded() for name in runs})
+    assert svg.startswith("<?xml")
+    assert svg == plots.draw(plot, scenario_file.load("A18a"), {name: recorded() for name in runs})
+
+
+@pytest.mark.parametrize("panel", panels.PANELS)
+@pytest.mark.parametrize("records", [{}, {"pi": recorded(0.1)}, {"pi": recorded(-0.01)}])
+def test_a_run_that_ended_before_the_window_is_left_out(panel, records):
+    plot = Plot("", (panel,), ("predictive", "pi"), (0.5, 0.9))
+    assert "</svg>" in plots.draw(plot, scenario_file.load("A18a"), records)

@@ -1,0 +1,215 @@
+"""Scenario files: those that ship say what the bench is committed to; wrong ones are refused in one line."""
+
+import json
+
+import fake_core
+import numpy as np
+import pytest
+
+from stillspin import execute, profile, scenario_file
+from stillspin.errors import InputError
+
+# Scenario, figure, the paper's number, the goal in `bench`, the goal in `ideal`: the project's commitments. A change of
+# any of them is a decision, not a slip; the same numbers stand in the book.
+COMMITMENTS = [
+    ("A10", "position_error_peak", 2.0, 0.8, 0.5),
+    ("A10", "position_error_rms", None, 0.3, 0.3),
+    ("A10", "speed_ripple", 1.0, 0.8, 0.5),
+    ("A11", "position_error_peak", 2.0, 1.5, 1.0),
+    ("A11", "position_error_rms", None, 0.6, 0.6),
+    ("A11", "ramp_position_error_peak", 2.0, 3.0, 3.0),
+    ("A11", "step_position_error_peak", None, 6.0, 6.0),
+    ("A15", "transition_position_error_peak", 6.0, 3.0, 2.0),
+    ("A15", "steady_position_error_peak", 2.0, 1.5, 1.0),
+    ("A16", "position_error_peak", 4.0, 2.5, 1.5),
+    ("A17", "load_1nm_position_error_peak", 2.0, 1.2, 1.2),
+    ("A17", "load_4nm_position_error_peak", 3.0, 1.8, 1.8),
+    ("A18a", "overshoot", 3.0, 1.0, 1.0),
+    ("A18a", "pi_overshoot", 10.0, None, None),
+    ("A18a", "pi_settling_time", 0.3, None, None),
+    ("A18b", "dip", 60.0, 35.0, 35.0),
+    ("A18b", "pi_dip", 150.0, None, None),
+]
+
+EXAMPLE = """
+id = "T1"
+title = "test"
+motor = "A"
+
+[defaults]
+duration = 2.0
+parameters = { speed_law = 0, speed_ramp = 0 }
+reached = [{ window = [1.0, 2.0], band = 5.0 }]
+
+[[runs]]
+name = "one"
+commands = [[0.5, "speed_ref_rpm", 100.0]]
+parameters = { speed_law = 1 }
+
+[[runs]]
+name = "two"
+duration = 3.0
+reference = { shape = "points", points = [[0.0, 0.0], [0.2, 20.0]], interval = 0.1 }
+
+[[figures]]
+name = "speed_ripple"
+window = [0.0, 2.0]
+
+[[plots]]
+panels = ["speed"]
+"""
+
+
+def read(tmp_path, text=EXAMPLE):
+    path = tmp_path / "T1.toml"
+    path.write_text(text, encoding="utf-8")
+    return scenario_file.read(path)
+
+
+@pytest.mark.parametrize(("scenario", "figure", "paper", "bench", "ideal"), COMMITMENTS)
+def test_the_commitments_stand_in_the_files(scenario, figure, paper, bench, ideal):
+    found = next(item for item in scenario_file.load(scenario).figures if item.name == figure)
+    assert (found.paper, found.goal.of("bench"), found.goal.of("ideal")) == (paper, bench, ideal)
+
+
+@pytest.mark.parametrize("identifier", scenario_file.ids())
+def test_every_scenario_that_ships_can_be_prepared(identifier):
+    scenario = scenario_file.load(identifier)
+    bench = profile.Profile("bench", "", {})
+    jobs = execute.prepare(scenario, execute.Settings(bench, profile.Changes(), 1, "r"), fake_core)
+    assert [job.run.name for job in jobs] == [run.name for run in scenario.runs]
+    json.dumps([job.about for job in jobs])
+
+
+@pytest.mark.parametrize("identifier", scenario_file.ids())
+def test_evaluation_begins_after_the_start_and_peaks_are_taken_over_stated_windows(identifier):
+    """The start procedure and the 0.2 s after it are not evaluated."""
+    for figure in scenario_file.load(identifier).figures:
+        assert all(first >= 0.2 for first, _ in figure.windows)
+
+
+@pytest.mark.parametrize("identifier", ["A18a", "A18b", "A18c", "A19"])
+def test_no_scenario_tunes_the_controller(identifier):
+    """Only what a scenario compares, and the ramp where a step is said, may differ from the drive's parameters."""
+    assert {name for run in scenario_file.load(identifier).runs for name in run.parameters} <= {
+        "speed_law",
+        "speed_ramp",
+    }
+
+
+def test_most_scenarios_touch_no_parameter_at_all():
+    for identifier in ("A10", "A11", "A15", "A16", "A17"):
+        assert all(not run.parameters and not run.plant for run in scenario_file.load(identifier).runs)
+
+
+def test_defaults_are_joined_with_what_a_run_says(tmp_path):
+    one, two = read(tmp_path).runs
+    assert one.parameters == {"speed_law": 1.0, "speed_ramp": 0.0}
+    assert two.parameters == {"speed_law": 0.0, "speed_ramp": 0.0}
+    assert (one.duration, two.duration) == (2.0, 3.0)
+
+
+def test_a_moving_reference_becomes_set_points(tmp_path):
+    run = read(tmp_path).runs[1]
+    assert run.commands == ((0.0, "speed_ref_rpm", 0.0), (0.1, "speed_ref_rpm", 10.0), (0.2, "speed_ref_rpm", 20.0))
+    assert run.speed_command(np.array([-1.0, 0.0, 0.15, 9.0])).tolist() == [0.0, 0.0, 10.0, 20.0]
+
+
+def test_a_sine_starts_at_its_zero_and_keeps_its_amplitude():
+    run = scenario_file.load("A19").runs[0]
+    times, speeds = np.array([command[0] for command in run.commands]), [command[2] for command in run.commands]
+    assert speeds[0] == 0.0
+    assert max(speeds) == pytest.approx(600.0)
+    assert np.diff(times) == pytest.approx(0.001)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('id = "T1"', 'id = "T2"', "must be the file's name"),
+        ('motor = "A"', 'motor = "C"', "one of A, B"),
+        ('title = "test"', "", "'title' is missing"),
+        ('title = "test"', "title = 5", "must be text"),
+        ('title = "test"', 'titel = "test"', "'title' is missing"),
+        ('motor = "A"', 'motor = "A"\nmotro = 1', "unknown key 'motro'; did you mean 'motor'"),
+        ("duration = 2.0", "duration = 0", "at least"),
+        ("duration = 2.0", "duration = '2'", "must be a number"),
+        ("duration = 2.0", "duration = nan", "must be a number"),
+        ("duration = 2.0", "", "'duration' is missing"),
+        ('name = "one"', 'name = "One"', "lower case"),
+        ('name = "one"', 'name = "two"', "used twice"),
+        ('[[0.5, "speed_ref_rpm", 100.0]]', '[[2.5, "speed_ref_rpm", 100.0]]', "not within 0 … 2 s"),
+        ('[[0.5, "speed_ref_rpm", 100.0]]', '[[0.5, "speed_ref_rpm"]]', "[number, text, number]"),
+        ('[[0.5, "speed_ref_rpm", 100.0]]', '[[0.5, 7, "x"]]', "[number, text, number]"),
+        ("speed_law = 1 }", "speed_law = [1] }", "number or the name of a choice"),
+        ('shape = "points"', 'shape = "square"', "'sine' or 'points'"),
+        ("points = [[0.0, 0.0], [0.2, 20.0]]", "points = [[0.0, 0.0]]", "at least two points"),
+        ("reached = [{ window = [1.0, 2.0], band = 5.0 }]", "", "'reached' is missing"),
+        ("window = [1.0, 2.0]", "window = [1.0, 2.5]", "≤ 2"),
+        ("window = [0.0, 2.0]", "window = [2.0, 0.0]", "0 ≤ from < to"),
+        ("window = [0.0, 2.0]", "window = [0.0, 2.5]", "to ≤ 2"),
+        ("window = [0.0, 2.0]", "", "window = None"),
+        ('name = "speed_ripple"', 'name = "speed_riple"', "did you mean 'speed_ripple'"),
+        ('name = "speed_ripple"', 'name = "r"\nkind = "ratio"', "name the two figures"),
+        ('name = "speed_ripple"', 'name = "r"\nkind = "ratio"\nof = ["a", "b"]', "no figure 'a' before it"),
+        ('name = "speed_ripple"', 'name = "speed_ripple"\nruns = "tow"', "did you mean 'two'"),
+        ('name = "speed_ripple"', 'name = "speed_ripple"\ngoal = { ideal = "x" }', "table of numbers by profile"),
+        ('name = "speed_ripple"', 'name = "speed_ripple"\ngoal = "low"', "must be a number"),
+        ('panels = ["speed"]', 'panels = ["sped"]', "did you mean 'speed'"),
+        ('panels = ["speed"]', "", "'panels' is missing"),
+        ("[[figures]]", "[[figure]]", "at least one of [[figures]]"),
+    ],
+)
+def test_a_wrong_file_is_refused_in_one_line(tmp_path, old, new, said):
+    assert old in EXAMPLE
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, EXAMPLE.replace(old, new))
+    message = str(caught.value)
+    assert said in message
+    assert "T1.toml" in message
+    assert "\n" not in message
+
+
+def test_load_corners_must_rise(tmp_path):
+    with pytest.raises(InputError, match="times must rise"):
+        read(tmp_path, EXAMPLE.replace("duration = 3.0", "duration = 3.0\nload = [[1.0, 0.0], [0.5, 1.0]]"))
+
+
+def test_a_file_that_is_not_text_is_refused(tmp_path):
+    path = tmp_path / "T1.toml"
+    path.write_bytes(b"id = '\xff'")
+    with pytest.raises(InputError, match="not UTF-8"):
+        scenario_file.read(path)
+
+
+@pytest.mark.parametrize(("given", "near"), [("A18d", "A18"), ("a1o", "A1"), ("", "known: A10")])
+def test_unknown_scenarios_are_refused_with_what_there_is(given, near):
+    with pytest.raises(InputError, match=near):
+        scenario_file.load(given)
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("set:speed_rmp", "did you mean 'speed_ramp'"),
+        ("set:dead_time", "0 … 5 us"),
+        ("speed_ref", "unknown command 'speed_ref'"),
+    ],
+)
+def test_commands_are_checked_before_anything_runs(tmp_path, command, said):
+    scenario = read(tmp_path, EXAMPLE.replace('"speed_ref_rpm", 100.0', f'"{command}", 100.0'))
+    settings = execute.Settings(profile.Profile("bench", "", {}), profile.Changes(), 1, "r")
+    with pytest.raises(InputError, match=said):
+        execute.prepare(scenario, settings, fake_core)
+
+
+def test_the_users_change_wins_over_the_scenario_and_that_over_the_profile():
+    settings = execute.Settings(
+        profile.Profile("mine", "", {"adc": {"noise": 1.0, "inl": 1.0}}, {"speed_ramp": 5.0, "dead_time": 1.0}),
+        profile.Changes({"adc": {"noise": 2.0}}, {"speed_law": 1.0}, []),
+        1,
+        "r",
+    )
+    predictive = execute.prepare(scenario_file.load("A18a"), settings, fake_core)[0]
+    assert predictive.parameters == {"speed_law": 1.0, "speed_ramp": 0.0, "dead_time": 1.0}
+    assert predictive.plant == {"adc": {"noise": 2.0, "inl": 1.0}}
