@@ -2,13 +2,15 @@
 
 // Q20 error times Q20 gain to Q16 volts.
 #define ERROR_SHIFT 24u
+// Bandwidth over the corner of the integrator.
+#define RESET_RATIO 4
 
-static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30, int32_t bandwidth_rads,
+static pi_config_t design_axis(int32_t inductance_q30, int32_t bandwidth_rads,
                                int32_t period_us) {
   pi_config_t c;
   const int32_t step_q24 = q_div(bandwidth_rads * period_us, 1000000L, 24);  // bandwidth * T
   c.kp_q20 = q_mul(inductance_q30, bandwidth_rads, 10);
-  c.ki_q20 = q_mul(m->rs_q24, step_q24, 28);
+  c.ki_q20 = q_mul(c.kp_q20, step_q24, 24) / RESET_RATIO;
   c.release_q20 = 4 * q_div(c.ki_q20, c.kp_q20, 20);
   c.error_shift = ERROR_SHIFT;
   return c;
@@ -18,8 +20,8 @@ bool current_controller_design(current_controller_config_t* c, const machine_mod
                                int32_t period_us) {
   const int32_t step_ppm = bandwidth_rads * period_us;  // bandwidth * T in parts per million
   if (bandwidth_rads < 100 || step_ppm > 260000L) return false;
-  c->d = design_axis(m, m->ld_q30, bandwidth_rads, period_us);
-  c->q = design_axis(m, m->lq_q30, bandwidth_rads, period_us);
+  c->d = design_axis(m->ld_q30, bandwidth_rads, period_us);
+  c->q = design_axis(m->lq_q30, bandwidth_rads, period_us);
   return true;
 }
 

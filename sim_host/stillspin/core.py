@@ -178,21 +178,25 @@ def plant_schema(core: NativeCore) -> Schema:
 
 def parameters(core: NativeCore) -> dict[str, Entry]:
     """Name -> firmware parameter, in the order of the firmware's table."""
-    return {
-        row["name"]: Entry(
-            name=row["name"],
-            unit=row["unit"],
-            minimum=float(row["minimum"]),
-            maximum=float(row["maximum"]),
-            default=float(row["default"]),
-            help=row["help"],
-            choices=_choices(row),
-            access=str(row["access"]),
-            number=int(row["id"]),
-            decimals=int(row["decimals"]),
-        )
-        for row in core.parameters()
-    }
+    return {row["name"]: _parameter_entry(row) for row in core.parameters()}
+
+
+def _parameter_entry(row: Mapping[str, Any]) -> Entry:
+    decimals = int(row["decimals"])
+    # The firmware keeps its table in binary fractions; people think in the decimals of the table.
+    minimum, maximum, default = (round(float(row[key]), decimals) for key in ("minimum", "maximum", "default"))
+    return Entry(
+        name=row["name"],
+        unit=row["unit"],
+        minimum=minimum,
+        maximum=maximum,
+        default=default,
+        help=row["help"],
+        choices=_choices(row),
+        access=str(row["access"]),
+        number=int(row["id"]),
+        decimals=decimals,
+    )
 
 
 def parameter(known: Mapping[str, Entry], name: str, value: object, where: str) -> float:

@@ -115,8 +115,8 @@ def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> No
     for _, what, value in run.commands:
         if what.startswith("set:"):
             core.parameter(known, what.removeprefix("set:"), value, f"{where}: {what}")
-        elif what not in {"speed_ref_rpm", "start", "stop"}:
-            raise InputError(f"{where}: unknown command '{what}'; known: speed_ref_rpm, start, stop, set:<parameter>")
+        elif what not in {"speed_ref_rpm", "start", "stop", "reset"}:
+            raise InputError(f"{where}: unknown command '{what}'; known: speed_ref_rpm, start, stop, reset, set:<parameter>")
 
 
 def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None) -> Outcome:

@@ -26,6 +26,9 @@ Floats = npt.NDArray[np.float64]
 SETTLED = 0.02
 """Half width of the settling band, as a share of the step."""
 
+QUIET = 0.05
+"""For which share of the window, at its end, the speed must have stayed in the band to count as settled."""
+
 LAST_SECOND = 1.0
 
 
@@ -76,7 +79,8 @@ def cut(signals: Signals, run: Run, window: Window) -> Piece:
     Args:
         signals: recorded signals of the run.
         run: for its commands.
-        window: first and last time (s), both included.
+        window: first and last time (s); a record at the first belongs to it, one at the last does not (there the next
+            command begins).
 
     Raises:
         ValueError: the record does not cover the window.
@@ -87,7 +91,7 @@ def cut(signals: Signals, run: Run, window: Window) -> Piece:
     # The records may start and end up to one record away from the window's corners.
     if time.size < 2 or time[0] > first + 1.5 * step or time[-1] < last - 1.5 * step:
         raise ValueError(f"the record does not cover the window {first:g} … {last:g} s")
-    mask = (time >= first) & (time <= last)
+    mask = (time > first - 0.25 * step) & (time < last - 0.25 * step)
     inside = {name: data[mask] for name, data in signals.items()}
     before = run.speed_command(np.array([np.nextafter(first, -np.inf)]))[0]
     command = run.speed_command(time[mask])
@@ -145,7 +149,9 @@ def _last_outside(piece: Piece, band: float) -> float:
     outside = np.flatnonzero(np.abs(piece.speed - piece.target) > band)
     if outside.size == 0:
         return 0.0
-    if outside[-1] + 1 >= piece.time.size:
+    # What is within the band only as the window ends has not settled; it may just be passing.
+    quiet = piece.time[-1] - piece.time[outside[-1]]
+    if quiet < QUIET * (piece.time[-1] - piece.time[0]):
         return float("inf")
     return float(piece.time[outside[-1] + 1] - piece.time[0])
 
