@@ -25,15 +25,18 @@ setup: ## install what is missing: Debian packages, Python packages in .venv
 	@bash toolchain/setup.sh
 
 build: setup ## compile firmware, virtual chip, plant and Python module into build/release
-	@cmake --preset $(PRESET) --log-level=WARNING
+	@mkdir -p build
+	@cmake --preset $(PRESET) >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
 	@cmake --build --preset $(PRESET) --parallel $(JOBS)
 
 test: build ## run every check, the C++ tests and the Python tests
 	@bash toolchain/run-tests.sh $(PRESET)
 
 demo: build ## reproduce the main figures of the first paper and write out/demo/report.html
-	@.venv/bin/stillspin reproduce $(DEMO) --out $(DEMO_OUT)
-	@bash toolchain/show.sh $(DEMO_OUT)/report.html
+	@rm -rf $(DEMO_OUT)
+	@status=0; .venv/bin/stillspin reproduce $(DEMO) --out $(DEMO_OUT) || status=$$?; \
+	if [[ -f $(DEMO_OUT)/report.html ]]; then bash toolchain/show.sh $(DEMO_OUT)/report.html; fi; \
+	exit $$status  # 1 when a run broke off: the report says which and why
 
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench

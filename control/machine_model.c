@@ -33,7 +33,8 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;
   m->accel_q12 = q_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
-  return m->accel_q12 < INT32_MAX;
+  // A constant at the end of its format is not the machine's.
+  return m->accel_q12 < INT32_MAX && m->emf_q16 < INT32_MAX && m->yd_q30 < INT32_MAX && m->kappa_d_q24 < INT32_MAX;
 }
 
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {

@@ -39,7 +39,8 @@ typedef struct {
   int32_t periods_per_second;  // 1/T
 } machine_model_t;
 
-/// Derives the constants. Returns false, leaving the model unusable, when a parameter is outside its range.
+/// Derives the constants. Returns false, leaving the model unusable, when a parameter is outside its range or a constant
+/// outside its format: T/L from 2 A/V, lambda/T from 32768 V, Lq/Ld from 129, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
 /// Recomputes what follows from the inductances after an adaptation changed yd/yq.

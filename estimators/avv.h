@@ -23,6 +23,7 @@ typedef struct {
   int32_t along_q16;    // residual along dv, V A per period: error of the mean admittance
   int32_t mirror_q16;   // residual along the mirrored dv: error of the saliency
   int32_t cross_q16;    // residual across the mirrored dv: angle error
+  int32_t curl_q16;     // residual across dv: mismatch of the two current sensors
   int32_t information;  // spread times the windows' weight, 0 when there are no two distinct vectors
 } avv_regression_t;
 

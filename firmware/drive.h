@@ -14,6 +14,7 @@
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/polarity.h"
+#include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/zvv.h"
 #include "firmware/drive_api.h"
@@ -62,6 +63,7 @@ typedef struct {
   zvv_t zvv;
   blend_t blend;
   admittance_t admittance;
+  sensor_match_t sensors;
   tracking_observer_t encoder;
 } drive_position_t;
 

@@ -46,7 +46,7 @@ PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical sp
 PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 160, ALWAYS, "tracking observer with long windows")
 PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer with short windows")
 PARAMETER(65, adapt_time, "ms", 8, 0, 5, 30000, 50, ALWAYS, "time constant of the admittance adaptation; 30000 is off")
-PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 500, ALWAYS, "rms error of a current difference over a window")
+PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms error of a current difference over a window")
 PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 60, ALWAYS, "load change per 10 ms that the observer expects")
 PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS, "windows given to the deviation observer: 0 zero vectors only, 1 all")
 PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 40, ALWAYS, "Kp of the paper's ZVV observer")

@@ -9,10 +9,18 @@
 
 typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_input_t* in);
 
+static void match_sensors(drive_t* d) {
+  if (!d->modulation.state.is_alternating) return;
+  sensor_match_step(&d->position.sensors, &d->position.avv.regression, d->position.admittance.mean_q30,
+                    d->config.adapt_share_q30);
+  d->config.slopes.mismatch_q30 = d->position.sensors.mismatch_q30;
+}
+
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) {
     admittance_step(&d->position.admittance, &d->position.avv.regression, d->config.adapt_share_q30);
+    match_sensors(d);
   }
   return d->position.high;
 }

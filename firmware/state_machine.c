@@ -41,6 +41,7 @@ static void begin_start(drive_t* d) {
   d->polarity_tries = 0;
   d->model = d->config.nameplate;
   admittance_init(&d->position.admittance, &d->model);
+  sensor_match_reset(&d->position.sensors);
   position_preset(d, 0);
   modulator_reset(&d->modulation.state);
   field_weakening_reset(&d->control.weakening);

@@ -1,6 +1,8 @@
 // Simulated seconds per wall second of the whole virtual drive in profile `bench`, all events on, for both integrators.
+// With a speed in rpm as argument: one short run at that speed and nothing else, for instruction counting.
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "sim_host/bench/run.hpp"
 
@@ -20,7 +22,15 @@ RunRequest bench_request(double solver) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    RunRequest r = bench_request(1);
+    r.commands = {{0.0, "speed_ref_rpm", std::atof(argv[1])}};
+    r.duration = 0.5;
+    const RunResult result = run(r);
+    std::printf("%s\n", result.completed ? "completed" : result.reason.c_str());
+    return result.completed ? 0 : 1;
+  }
   const char* names[] = {"ERKStep", "fast fixed step"};
   double ratios[2] = {};
   for (int k = 0; k < 2; k++) {

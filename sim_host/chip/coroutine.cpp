@@ -20,7 +20,8 @@
 #include <sanitizer/common_interface_defs.h>
 #endif
 
-#if (defined(__x86_64__) || defined(__aarch64__)) && defined(__ELF__)
+// STILLSPIN_PORTABLE_SWITCH forces the portable switch, to try it on a processor that has the fast one.
+#if (defined(__x86_64__) || defined(__aarch64__)) && defined(__ELF__) && !defined(STILLSPIN_PORTABLE_SWITCH)
 #define STILLSPIN_FAST_SWITCH 1
 #else
 #include <ucontext.h>

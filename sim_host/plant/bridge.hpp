@@ -26,8 +26,8 @@ struct LegLine {
 };
 
 struct Leg {
-  LegLine low;   // positive current
-  LegLine high;  // negative current
+  LegLine low;           // positive current
+  LegLine high;          // negative current
   bool open = false;     // the wire is cut: the terminal follows any voltage
   bool perfect = false;  // low and high are one line: the direction of the current does not matter
 

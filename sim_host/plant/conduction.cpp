@@ -12,9 +12,9 @@
 namespace stillspin::plant {
 namespace {
 
-constexpr double kZeroCurrent = 1e-9;   // A: below this a current counts as zero
-constexpr double kZeroSpeed = 1e-9;     // rad/s
-constexpr double kLeaving = 1e-6;       // V: the accuracy to which the end of a clamp is located
+constexpr double kZeroCurrent = 1e-9;  // A: below this a current counts as zero
+constexpr double kZeroSpeed = 1e-9;    // rad/s
+constexpr double kLeaving = 1e-6;      // V: the accuracy to which the end of a clamp is located
 
 }  // namespace
 

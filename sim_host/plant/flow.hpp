@@ -11,18 +11,19 @@ namespace stillspin::plant {
 
 /// Start of a segment, with the slopes there (every user needs them, so they are computed once).
 struct SegmentStart {
-  State y{};       // y[kAngle] = 0
-  State slope{};   // dy/dt
-  Pair flux;       // Vs
-  Pair flux_slope; // V
+  State y{};        // y[kAngle] = 0
+  State slope{};    // dy/dt
+  Pair flux;        // Vs
+  Pair flux_slope;  // V
 };
 
 struct Advance {
   double reached = 0.0;  // s from the start, > 0 unless an event is due at once
   bool event = false;
-  Fired fired{};         // which event functions have reached zero
+  Fired fired{};     // which event functions have reached zero
+  bool far = false;  // no event function came near zero on the way
   bool has_end_slope = false;
-  State end_slope{};     // dy/dt at the end, when the method has it (to its own order)
+  State end_slope{};  // dy/dt at the end, when the method has it (to its own order)
 };
 
 /// Events are located from brackets on this grid of time since the start of the segment, not from wherever the look
@@ -34,7 +35,7 @@ class Flow {
   virtual ~Flow() = default;
 
   /// From `start` over at most `h` seconds (> 0) to `end`.
-  virtual Advance advance(const Model& model, const SegmentStart& start, double h, State& end) = 0;
+  virtual void advance(const Model& model, const SegmentStart& start, double h, State& end, Advance& result) = 0;
 };
 
 std::unique_ptr<Flow> make_runge_kutta();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMissed = 1e-10;    // A or V: an event function this far below zero has crossed
 constexpr double kShortest = 1e-15;  // s: below this a bracket is a point
-constexpr double kAtZero = 1e-9;      // A or V: reached together with the first one
+constexpr double kAtZero = 1e-9;     // A or V: reached together with the first one
 
 State plus(const State& y, double h, const State& slope) {
   State r;
@@ -24,12 +24,21 @@ State plus(const State& y, double h, const State& slope) {
 
 class RungeKutta final : public Flow {
  public:
-  Advance advance(const Model& model, const SegmentStart& start, double h, State& end) override {
+  void advance(const Model& model, const SegmentStart& start, double h, State& end, Advance& result) override {
     step(model, start, h, end);
-    Events g;
-    model.events(h, end, g);
-    if (lowest(g) >= -kMissed) return {h, false, {}, true, last_slope_};
-    return locate(model, start, h, end);
+    result.reached = h;
+    result.event = false;
+    result.far = model.far_from_events(start.y, start.slope, last_slope_, h);
+    result.has_end_slope = true;
+    if (!result.far) {
+      Events g;
+      model.events(h, end, g);
+      if (lowest(g) < -kMissed) {
+        result = locate(model, start, h, end);
+        return;
+      }
+    }
+    result.end_slope = last_slope_;
   }
 
  private:
@@ -47,9 +56,15 @@ class RungeKutta final : public Flow {
     State k2, k3;
     State& k4 = last_slope_;
     Pair f2, f3, f4;
-    model.derive<kClamped>(half, plus(s.y, half, s.slope), moved(s.flux, half, s.flux_slope), k2, f2);
-    model.derive<kClamped>(half, plus(s.y, half, k2), moved(s.flux, half, f2), k3, f3);
-    model.derive<kClamped>(h, plus(s.y, h, k3), moved(s.flux, h, f3), k4, f4);
+    const State y2 = plus(s.y, half, s.slope);
+    const Rotation e2 = turned(model.base, y2[kAngle]);
+    model.derive<kClamped>(half, y2, e2, moved(s.flux, half, s.flux_slope), k2, f2);
+    const State y3 = plus(s.y, half, k2);
+    const Rotation e3 = nudged(e2, y3[kAngle] - y2[kAngle]);
+    model.derive<kClamped>(half, y3, e3, moved(s.flux, half, f2), k3, f3);
+    const State y4 = plus(s.y, h, k3);
+    const Rotation e4 = turned(model.base, y4[kAngle]);
+    model.derive<kClamped>(h, y4, e4, moved(s.flux, h, f3), k4, f4);
     for (int n = 0; n < kStates; ++n) {
       end[n] = s.y[n] + h * (1.0 / 6.0) * ((s.slope[n] + k4[n]) + 2.0 * (k2[n] + k3[n]));
     }
@@ -140,7 +155,11 @@ class RungeKutta final : public Flow {
   }
 
   Advance finish(double reached, const Events& g) {
-    Advance a{reached, true, {}, true, last_slope_};
+    Advance a;
+    a.reached = reached;
+    a.event = true;
+    a.has_end_slope = true;
+    a.end_slope = last_slope_;
     const double lowest_value = lowest(g);
     for (int n = 0; n < kEvents; ++n) a.fired[n] = g[n] < kAtZero || g[n] == lowest_value;
     return a;
@@ -151,6 +170,8 @@ class RungeKutta final : public Flow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_runge_kutta() { return std::make_unique<RungeKutta>(); }
+std::unique_ptr<Flow> make_runge_kutta() {
+  return std::make_unique<RungeKutta>();
+}
 
 }  // namespace stillspin::plant

@@ -12,10 +12,10 @@
 namespace stillspin::plant {
 namespace {
 
-constexpr double kMissed = 1e-8;       // A or V: an event function below this has crossed unseen
-constexpr double kShortest = 1e-12;    // s: shorter segments are one Euler step (a change of at most 1e-7 A)
+constexpr double kMissed = 1e-8;     // A or V: an event function below this has crossed unseen
+constexpr double kShortest = 1e-12;  // s: shorter segments are one Euler step (a change of at most 1e-7 A)
 constexpr double kReferenceTolerance = 1e-10;
-constexpr double kReferenceStep = 2e-6;  // s: what a double crossing inside a step may hide
+constexpr double kReferenceStep = 2e-6;                            // s: what a double crossing inside a step may hide
 constexpr double kTypical[kStates] = {1.0, 1.0, 1.0, 1.0, 100.0};  // scale of the absolute tolerance; angle in rad
 
 struct UserData {
@@ -61,8 +61,13 @@ class SundialsFlow : public Flow {
  public:
   SundialsFlow() : vector_(kStates, context_), tolerance_(kStates, context_) {}
 
-  Advance advance(const Model& model, const SegmentStart& start, double h, State& end) override {
+  void advance(const Model& model, const SegmentStart& start, double h, State& end, Advance& result) override {
     user_.model = &model;
+    result = search(model, start, h, end);
+  }
+
+ protected:
+  Advance search(const Model& model, const SegmentStart& start, double h, State& end) {
     for (;; h *= 0.5) {
       if (h < kShortest) {
         for (int n = 0; n < kStates; ++n) end[n] = start.y[n] + h * start.slope[n];
@@ -84,7 +89,6 @@ class SundialsFlow : public Flow {
     }
   }
 
- protected:
   Advance attempt(const SegmentStart& start, double h, State& end) {
     std::copy_n(start.y.begin(), kStates, vector_.data());
     Advance a;
@@ -119,8 +123,7 @@ class SundialsFlow : public Flow {
 
 class ErkStep final : public SundialsFlow {
  public:
-  explicit ErkStep(double relative_tolerance)
-      : memory_(ERKStepCreate(right_hand_side, 0.0, vector_, context_)) {
+  explicit ErkStep(double relative_tolerance) : memory_(ERKStepCreate(right_hand_side, 0.0, vector_, context_)) {
     set_tolerance(relative_tolerance);
     check(ERKStepSetErrHandlerFn(memory_, silent, nullptr), "ERKStepSetErrHandlerFn");
     check(ERKStepSetUserData(memory_, &user_), "ERKStepSetUserData");
@@ -183,8 +186,12 @@ class Reference final : public SundialsFlow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_erkstep(double relative_tolerance) { return std::make_unique<ErkStep>(relative_tolerance); }
-std::unique_ptr<Flow> make_reference() { return std::make_unique<Reference>(); }
+std::unique_ptr<Flow> make_erkstep(double relative_tolerance) {
+  return std::make_unique<ErkStep>(relative_tolerance);
+}
+std::unique_ptr<Flow> make_reference() {
+  return std::make_unique<Reference>();
+}
 
 std::unique_ptr<Flow> make_flow(const SolverConfig& config) {
   switch (config.solver) {

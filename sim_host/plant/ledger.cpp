@@ -37,8 +37,7 @@ void Ledger::book(const Trajectory& trajectory, double h) {
 EnergyLedger Ledger::read(const Model& model, const State& y) const {
   EnergyLedger result = booked_;
   const Rotation six = sixfold(turned(model.base, y[kAngle]));
-  result.stored = model.machine.field_energy(y[kId], y[kIq]) +
-                  0.5 * model.mechanics.inertia * y[kSpeed] * y[kSpeed] +
+  result.stored = model.machine.field_energy(y[kId], y[kIq]) + 0.5 * model.mechanics.inertia * y[kSpeed] * y[kSpeed] +
                   model.mechanics.cogging_torque * six.c / (6.0 * model.machine.pole_pairs);
   if (!model.link.stiff) result.stored += 0.5 * model.link.capacitance * y[kLink] * y[kLink];
   return result;

@@ -86,8 +86,7 @@ class Machine {
   /// Energy of the field above that at zero current, J.
   double field_energy(double id, double iq) const {
     const double x = iq * inverse_knee;
-    const double main =
-        inverse_knee > 0.0 ? 0.5 * knee * knee * lq * logarithm(1.0 + x * x) : 0.5 * lq * iq * iq;
+    const double main = inverse_knee > 0.0 ? 0.5 * knee * knee * lq * logarithm(1.0 + x * x) : 0.5 * lq * iq * iq;
     return 1.5 * (0.5 * ld * id * id + k * id * iq * iq + main);
   }
 

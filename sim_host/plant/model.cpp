@@ -52,9 +52,10 @@ void Model::float_legs(double link_voltage, const Rotation& e, const Pair& held,
 }
 
 void Model::derive(double t, const State& y, const Pair& psi, State& dy, Pair& dflux) const {
-  if (clamp == Clamp::kNone) return core<0, false>(t, y, psi, dy, dflux, nullptr);
-  if (clamp == Clamp::kAll) return core<3, false>(t, y, psi, dy, dflux, nullptr);
-  core<1, false>(t, y, psi, dy, dflux, nullptr);
+  const Rotation e = turned(base, y[kAngle]);
+  if (clamp == Clamp::kNone) return core<0, false>(t, y, e, psi, dy, dflux, nullptr);
+  if (clamp == Clamp::kAll) return core<3, false>(t, y, e, psi, dy, dflux, nullptr);
+  core<1, false>(t, y, e, psi, dy, dflux, nullptr);
 }
 
 void Model::derive(double t, const State& y, State& dy) const {
@@ -65,12 +66,15 @@ void Model::derive(double t, const State& y, State& dy) const {
 void Model::derive(double t, const State& y, State& dy, Probe& probe) const {
   Pair ignored;
   const Pair psi = flux(y);
-  if (clamp == Clamp::kNone) return core<0, true>(t, y, psi, dy, ignored, &probe);
-  if (clamp == Clamp::kAll) return core<3, true>(t, y, psi, dy, ignored, &probe);
-  core<1, true>(t, y, psi, dy, ignored, &probe);
+  const Rotation e = turned(base, y[kAngle]);
+  if (clamp == Clamp::kNone) return core<0, true>(t, y, e, psi, dy, ignored, &probe);
+  if (clamp == Clamp::kAll) return core<3, true>(t, y, e, psi, dy, ignored, &probe);
+  core<1, true>(t, y, e, psi, dy, ignored, &probe);
 }
 
-double Model::link_voltage(double t, const State& y) const { return link.stiff ? source_voltage(t) : y[kLink]; }
+double Model::link_voltage(double t, const State& y) const {
+  return link.stiff ? source_voltage(t) : y[kLink];
+}
 
 std::array<double, 3> Model::leg_voltages(const State& y) const {
   if (clamp != Clamp::kNone) {
@@ -130,6 +134,17 @@ void Model::events(double t, const State& y, Events& g) const {
   if (link.brake_chopper && !link.stiff) {
     g[kBrakeEvent] = brake ? y[kLink] - link.brake_off_voltage : link.brake_on_voltage - y[kLink];
   }
+}
+
+bool Model::far_from_events(const State& y, const State& slope, const State& end_slope, double h) const {
+  if (clamp != Clamp::kNone || shaft == Shaft::kTurning || shaft == Shaft::kStuck || link.brake_chopper) return false;
+  const double d = std::max(std::fabs(slope[kId]), std::fabs(end_slope[kId]));
+  const double q = std::max(std::fabs(slope[kIq]), std::fabs(end_slope[kIq]));
+  const double turning_by = std::max(std::fabs(slope[kAngle]), std::fabs(end_slope[kAngle]));
+  // Slopes are nearly straight over a segment; a quarter more covers their bend.
+  const double reach = 1.25 * h * (d + q + turning_by * (std::fabs(y[kId]) + std::fabs(y[kIq])));
+  const Phases i = phase_currents(base, y[kId], y[kIq]);
+  return std::fabs(i[0]) > reach && std::fabs(i[1]) > reach && std::fabs(i[2]) > reach;
 }
 
 void Model::outside_map(const State& y) const {

@@ -36,9 +36,9 @@ struct Probe {
   std::array<double, 3> current;      // A
   std::array<double, 3> leg_voltage;  // V
   Pair flux;
-  double torque;         // N m
-  double cogging;        // N m
-  double load;           // N m
+  double torque;          // N m
+  double cogging;         // N m
+  double load;            // N m
   double source_voltage;  // V
   double source_current;  // A
   double rail_current;    // A from the positive rail into the legs
@@ -53,20 +53,25 @@ class Model {
   void derive(double t, const State& y, State& dy, Probe& probe) const;
 
   /// Same with the flux given instead of computed, and its slope returned: a Runge-Kutta step that carries the flux
-  /// along needs no arc tangent in its stages. kClamped = number of clamped legs (0, 1, 3), known to the caller.
+  /// along needs no arc tangent in its stages. The template: `e` is the rotor position at y, and kClamped the number of
+  /// clamped legs (0, 1, 3), both known to the caller.
   template <int kClamped>
-  void derive(double t, const State& y, const Pair& flux, State& dy, Pair& dflux) const;
+  void derive(double t, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux) const;
   void derive(double t, const State& y, const Pair& flux, State& dy, Pair& dflux) const;
 
   void events(double t, const State& y, Events& g) const;
+
+  /// True when currents are the only thing that events can come from, and none can have reached zero: each starts
+  /// further from it than it can have moved with the slopes at both ends.
+  bool far_from_events(const State& y, const State& slope, const State& end_slope, double h) const;
 
   std::array<double, 3> currents(const State& y) const;
   double source_voltage(double t) const;
   double load(double t) const { return load_start + load_slope * t; }
 
   /// Chooses directions of all legs whose current is zero, clamps, friction and brake after an event, so that a current
-  /// leaves zero only to the side to which it is driven; `fired` = the event functions that reached zero (none at a gate
-  /// edge). Needs y[kAngle] = 0. Projects y onto the zero currents.
+  /// leaves zero only to the side to which it is driven; `fired` = the event functions that reached zero (none at a
+  /// gate edge). Needs y[kAngle] = 0. Projects y onto the zero currents.
   void resolve(State& y, const Fired& fired);
 
   /// Sets y so that the currents of legs that do not conduct are exactly zero.
@@ -101,7 +106,7 @@ class Model {
   using Phases = std::array<double, 3>;
 
   template <int kClamped, bool kProbe>
-  void core(double t, const State& y, const Pair& flux, State& dy, Pair& dflux, Probe* probe) const;
+  void core(double t, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux, Probe* probe) const;
   double clamp_leg(int leg, const Rotation& e, double electrical_speed, const State& y, Pair& u) const;
   void float_legs(double link_voltage, const Rotation& e, const Pair& held, Phases& v) const;
   void leg_events(double t, const State& y, Events& g) const;

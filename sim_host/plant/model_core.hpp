@@ -1,5 +1,5 @@
-// The right-hand side itself, in a header so that an integrator can inline its stages: one after the other they wait for
-// each other's results, side by side the processor overlaps them.
+// The right-hand side itself, in a header so that an integrator can inline its stages: one after the other they wait
+// for each other's results, side by side the processor overlaps them.
 
 #ifndef STILLSPIN_SIM_HOST_PLANT_MODEL_CORE_HPP
 #define STILLSPIN_SIM_HOST_PLANT_MODEL_CORE_HPP
@@ -36,11 +36,11 @@ inline double Model::clamp_leg(int leg, const Rotation& e, double electrical_spe
 }
 
 template <int kClamped, bool kProbe>
-[[gnu::always_inline]] inline void Model::core(double t, const State& y, const Pair& psi, State& dy, Pair& dflux, Probe* probe) const {
+[[gnu::always_inline]] inline void Model::core(double t, const State& y, const Rotation& e, const Pair& psi, State& dy,
+                                               Pair& dflux, Probe* probe) const {
   const double id = y[kId], iq = y[kIq];
   const double speed = y[kSpeed];
   const double electrical = machine.pole_pairs * speed;
-  const Rotation e = turned(base, y[kAngle]);
   const double source = source_voltage(t);
   const double link_voltage = link.stiff ? source : y[kLink];
   Pair h;
@@ -106,8 +106,9 @@ template <int kClamped, bool kProbe>
 }
 
 template <int kClamped>
-[[gnu::always_inline]] inline void Model::derive(double t, const State& y, const Pair& psi, State& dy, Pair& dflux) const {
-  core<kClamped, false>(t, y, psi, dy, dflux, nullptr);
+[[gnu::always_inline]] inline void Model::derive(double t, const State& y, const Rotation& e, const Pair& psi,
+                                                 State& dy, Pair& dflux) const {
+  core<kClamped, false>(t, y, e, psi, dy, dflux, nullptr);
 }
 
 }  // namespace stillspin::plant

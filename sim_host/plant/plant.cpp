@@ -49,7 +49,7 @@ struct Plant::Impl {
   template <typename Change>
   void transition(const Fired& fired, Change change);
   void cut();
-  void set_legs();
+  void set_leg(int k);
   const State& present();
   const AlphaBeta& filtered();
   const AlphaBeta& ringing();
@@ -116,24 +116,22 @@ void Plant::Impl::edges(Tick t) {
   const std::array<bool, 3> changed = gates.apply(t);
   const LoadProfile::Piece piece = load.at(t);
   load_end = piece.end;
-  const bool any = changed[0] || changed[1] || changed[2];
   for (int k = 0; k < 3 && !shoot_through; ++k) {
     if (gates.upper(k) && gates.lower(k)) shoot_through = ShootThrough{t, k};
   }
   const auto change = [&] {
     trajectory.model().load_start = piece.torque;
     trajectory.model().load_slope = piece.slope;
-    if (any) set_legs();
+    for (int k = 0; k < 3; ++k) {
+      if (changed[k]) set_leg(k);
+    }
   };
   transition({}, change);
 }
 
-void Plant::Impl::set_legs() {
-  for (int k = 0; k < 3; ++k) {
-    const bool both = gates.upper(k) && gates.lower(k);
-    trajectory.model().legs[k] =
-        Leg::make(config.inverter, gates.upper(k) && !both, gates.lower(k) && !both, open[k]);
-  }
+void Plant::Impl::set_leg(int k) {
+  const bool both = gates.upper(k) && gates.lower(k);
+  trajectory.model().legs[k] = Leg::make(config.inverter, gates.upper(k) && !both, gates.lower(k) && !both, open[k]);
 }
 
 /// Something changes at the start of the current segment; leg voltages that jump by it make the sensors ring.
@@ -215,7 +213,9 @@ void Plant::advance(Tick t) {
   impl_->integrate_to(t);
 }
 
-Tick Plant::now() const { return impl_->now; }
+Tick Plant::now() const {
+  return impl_->now;
+}
 
 double Plant::current_sensor(int phase) const {
   check_index("phase", phase);
@@ -260,8 +260,7 @@ PlantState Plant::state() const {
   const double angle = trajectory.angle() + y[kAngle];
   const double turn = std::floor(angle / (2.0 * kPi) + 0.5);
   s.angle_e = angle - 2.0 * kPi * turn;
-  s.angle_m =
-      (angle + 2.0 * kPi * static_cast<double>(trajectory.turns())) / impl_->config.machine.pole_pairs;
+  s.angle_m = (angle + 2.0 * kPi * static_cast<double>(trajectory.turns())) / impl_->config.machine.pole_pairs;
   s.speed_m = y[kSpeed];
   s.torque = p.torque;
   s.cogging = p.cogging;
@@ -276,8 +275,7 @@ std::int64_t Plant::encoder_count(Tick t) {
   const State& y = impl_->present();
   const Trajectory& trajectory = impl_->trajectory;
   const double turns = static_cast<double>(trajectory.turns()) + (trajectory.angle() + y[kAngle]) / (2.0 * kPi);
-  return static_cast<std::int64_t>(
-      std::floor(turns * impl_->config.encoder_counts / impl_->config.machine.pole_pairs));
+  return static_cast<std::int64_t>(std::floor(turns * impl_->config.encoder_counts / impl_->config.machine.pole_pairs));
 }
 
 double Plant::take_peak_current(Tick t) {
@@ -309,7 +307,7 @@ void Plant::inject(const Fault& fault) {
   switch (fault.kind) {
     case FaultKind::kOpenPhase:
       impl_->open[k] = true;
-      impl_->transition({}, [&] { impl_->set_legs(); });
+      impl_->transition({}, [&] { impl_->set_leg(fault.index); });
       break;
     case FaultKind::kSensorStuck:
       impl_->sensors.stick(fault.index, fault.value);
@@ -335,11 +333,13 @@ void Plant::clear_faults() {
   impl_->open = {};
   impl_->transition({}, [&] {
     impl_->trajectory.model().sag = 1.0;
-    impl_->set_legs();
+    for (int k = 0; k < 3; ++k) impl_->set_leg(k);
   });
 }
 
-std::optional<ShootThrough> Plant::shoot_through() const { return impl_->shoot_through; }
+std::optional<ShootThrough> Plant::shoot_through() const {
+  return impl_->shoot_through;
+}
 
 EnergyLedger Plant::energy() const {
   const State& y = impl_->present();
@@ -355,6 +355,8 @@ PlantStats Plant::stats() const {
   return s;
 }
 
-const PlantConfig& Plant::config() const { return impl_->config; }
+const PlantConfig& Plant::config() const {
+  return impl_->config;
+}
 
 }  // namespace stillspin::plant

@@ -26,19 +26,19 @@ namespace stillspin::plant {
 /// True values at one instant.
 struct PlantState {
   Tick tick = 0;
-  std::array<double, 3> current{};        // A, phases a, b, c; exactly 0 in a leg that does not conduct
-  double current_d = 0.0;                 // A
-  double current_q = 0.0;                 // A
-  double flux_d = 0.0;                    // Vs, without the harmonics
-  double flux_q = 0.0;                    // Vs
-  double angle_e = 0.0;                   // rad electrical, -pi..pi
-  double angle_m = 0.0;                   // rad mechanical, not wrapped, from angle 0 of turn 0
-  double speed_m = 0.0;                   // rad/s mechanical
-  double torque = 0.0;                    // N m, electromagnetic without cogging
-  double cogging = 0.0;                   // N m
-  double load = 0.0;                      // N m, as set by set_load
-  double link_voltage = 0.0;              // V
-  std::array<double, 3> leg_voltage{};    // V against the negative rail
+  std::array<double, 3> current{};      // A, phases a, b, c; exactly 0 in a leg that does not conduct
+  double current_d = 0.0;               // A
+  double current_q = 0.0;               // A
+  double flux_d = 0.0;                  // Vs, without the harmonics
+  double flux_q = 0.0;                  // Vs
+  double angle_e = 0.0;                 // rad electrical, -pi..pi
+  double angle_m = 0.0;                 // rad mechanical, not wrapped, from angle 0 of turn 0
+  double speed_m = 0.0;                 // rad/s mechanical
+  double torque = 0.0;                  // N m, electromagnetic without cogging
+  double cogging = 0.0;                 // N m
+  double load = 0.0;                    // N m, as set by set_load
+  double link_voltage = 0.0;            // V
+  std::array<double, 3> leg_voltage{};  // V against the negative rail
 };
 
 struct LoadPoint {
@@ -60,27 +60,27 @@ struct EnergyLedger {
   double source = 0.0;             // delivered by the ideal source
   double source_resistance = 0.0;  // lost in it (and in the jump of an ideal rectifier)
   double brake = 0.0;
-  double link = 0.0;               // from the capacitor into the inverter
-  double device = 0.0;             // lost in switches and diodes
+  double link = 0.0;    // from the capacitor into the inverter
+  double device = 0.0;  // lost in switches and diodes
   double copper = 0.0;
-  double friction = 0.0;           // viscous and Coulomb
-  double load = 0.0;               // given to the load
-  double stored = 0.0;             // now: capacitor + magnetic field + rotor + cogging
+  double friction = 0.0;  // viscous and Coulomb
+  double load = 0.0;      // given to the load
+  double stored = 0.0;    // now: capacitor + magnetic field + rotor + cogging
 };
 
 struct PlantStats {
-  std::uint64_t segments = 0;    // committed steps of the driver
-  std::uint64_t discarded = 0;   // looked ahead and cut short by a later edge
-  std::uint64_t events = 0;      // currents that reached zero, clamps left, stiction, brake
-  std::uint64_t grazing = 0;     // double crossings found inside a step
+  std::uint64_t segments = 0;   // committed steps of the driver
+  std::uint64_t discarded = 0;  // looked ahead and cut short by a later edge
+  std::uint64_t events = 0;     // currents that reached zero, clamps left, stiction, brake
+  std::uint64_t grazing = 0;    // double crossings found inside a step
 };
 
 enum class FaultKind {
-  kOpenPhase,     // index = phase; no current from now on
-  kSensorStuck,   // index = phase; the sensor reads `value` A
-  kSensorDrift,   // index = phase; the offset moves by `value` A/s
-  kSensorGain,    // index = phase; the gain is multiplied by `value`
-  kLinkSag,       // the source voltage is multiplied by `value` (0..2)
+  kOpenPhase,    // index = phase; no current from now on
+  kSensorStuck,  // index = phase; the sensor reads `value` A
+  kSensorDrift,  // index = phase; the offset moves by `value` A/s
+  kSensorGain,   // index = phase; the gain is multiplied by `value`
+  kLinkSag,      // the source voltage is multiplied by `value` (0..2)
 };
 
 struct Fault {

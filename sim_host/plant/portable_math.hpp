@@ -25,17 +25,23 @@ struct Rotation {
 inline Rotation reduced_rotation(double x) {
   const double q = x * x;
   const double s =
-      x * (1.0 +
-           q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 + q * (1.0 / 362880 + q * (-1.0 / 39916800 +
-           q * (1.0 / 6227020800.0 - q * (1.0 / 1307674368000.0))))))));
+      x * (1.0 + q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 +
+                                                       q * (1.0 / 362880 + q * (-1.0 / 39916800 +
+                                                                                q * (1.0 / 6227020800.0 -
+                                                                                     q * (1.0 / 1307674368000.0))))))));
   const double c =
-      1.0 + q * (-0.5 + q * (1.0 / 24 + q * (-1.0 / 720 + q * (1.0 / 40320 + q * (-1.0 / 3628800 +
-      q * (1.0 / 479001600.0 + q * (-1.0 / 87178291200.0 + q * (1.0 / 20922789888000.0))))))));
+      1.0 + q * (-0.5 + q * (1.0 / 24 +
+                             q * (-1.0 / 720 + q * (1.0 / 40320 +
+                                                    q * (-1.0 / 3628800 + q * (1.0 / 479001600.0 +
+                                                                               q * (-1.0 / 87178291200.0 +
+                                                                                    q * (1.0 / 20922789888000.0))))))));
   return {c, s};
 }
 
 /// Nearest whole number, |x| < 2^62. (std::floor is a library call on processors without SSE4.1.)
-inline std::int64_t nearest(double x) { return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5); }
+inline std::int64_t nearest(double x) {
+  return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
+}
 
 /// cos and sin of x, |x| < 1e4 (reduction loses |x| * 1e-16).
 inline Rotation rotation(double x) {
@@ -60,7 +66,7 @@ inline Rotation rotation(double x) {
 inline Rotation turned(const Rotation& e, double x) {
   const double q = x * x;
   Rotation d;
-  if (q < 2.5e-3) {  // |x| < 0.05: the first neglected terms are below 1e-15
+  if (q < 2.5e-3) {           // |x| < 0.05: the first neglected terms are below 1e-15
     const double q2 = q * q;  // in pairs: half the latency of Horner's rule
     d.s = x * ((1.0 - q * (1.0 / 6)) + q2 * (1.0 / 120 - q * (1.0 / 5040)));
     d.c = (1.0 - q * 0.5) + q2 * (1.0 / 24 - q * (1.0 / 720));
@@ -68,6 +74,14 @@ inline Rotation turned(const Rotation& e, double x) {
     d = rotation(x);
   }
   return {e.c * d.c - e.s * d.s, e.s * d.c + e.c * d.s};
+}
+
+/// Same as turned() for an x that is expected to be tiny.
+inline Rotation nudged(const Rotation& e, double x) {
+  const double q = x * x;
+  if (!(q < 1e-9)) return turned(e, x);  // |x| < 3e-5: the first neglected term is below 5e-15
+  const double c = 1.0 - 0.5 * q;
+  return {c * e.c - x * e.s, c * e.s + x * e.c};
 }
 
 /// Same as `e` six times: cos 6x, sin 6x from cos x, sin x.
@@ -136,8 +150,14 @@ inline double arc_tangent(double x) {
   u = u / (1.0 + std::sqrt(1.0 + u * u));  // a quarter, u <= 0.1989
   const double q = u * u;
   const double p =
-      u * (1.0 + q * (-1.0 / 3 + q * (1.0 / 5 + q * (-1.0 / 7 + q * (1.0 / 9 + q * (-1.0 / 11 +
-      q * (1.0 / 13 + q * (-1.0 / 15 + q * (1.0 / 17 + q * (-1.0 / 19 + q * (1.0 / 21)))))))))));
+      u *
+      (1.0 + q * (-1.0 / 3 +
+                  q * (1.0 / 5 +
+                       q * (-1.0 / 7 +
+                            q * (1.0 / 9 +
+                                 q * (-1.0 / 11 +
+                                      q * (1.0 / 13 +
+                                           q * (-1.0 / 15 + q * (1.0 / 17 + q * (-1.0 / 19 + q * (1.0 / 21)))))))))));
   const double angle = inverted ? 0.5 * kPi - 4.0 * p : 4.0 * p;
   return x < 0.0 ? -angle : angle;
 }

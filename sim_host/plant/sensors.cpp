@@ -5,9 +5,9 @@
 namespace stillspin::plant {
 namespace {
 
-constexpr double kForgotten = 40.0;        // time constants after which nothing is left (4e-18)
-constexpr double kWholeTick = 1e-9;        // ticks: rounding of seconds
-constexpr double kShortParabola = 1e-9;    // s: a shorter segment is a straight line (curvature would be rounding)
+constexpr double kForgotten = 40.0;      // time constants after which nothing is left (4e-18)
+constexpr double kWholeTick = 1e-9;      // ticks: rounding of seconds
+constexpr double kShortParabola = 1e-9;  // s: a shorter segment is a straight line (curvature would be rounding)
 
 double phase_value(int phase, const AlphaBeta& x) {
   if (phase == 0) return x.alpha;
@@ -121,8 +121,12 @@ void Sensors::drift(int phase, Tick from, double per_second) {
   failures_[phase].drift_from = from;
 }
 
-void Sensors::scale(int phase, double factor) { failures_[phase].gain *= factor; }
+void Sensors::scale(int phase, double factor) {
+  failures_[phase].gain *= factor;
+}
 
-void Sensors::repair() { failures_ = {}; }
+void Sensors::repair() {
+  failures_ = {};
+}
 
 }  // namespace stillspin::plant

@@ -3,8 +3,9 @@
 //
 // Bandwidth: over a segment the current is a parabola u through start, start slope and end; then
 //   y(h) = p(h) + (y(0) - p(0)) exp(-h/tau),   p = u - tau u' + tau^2 u''.
-// Ringing: an edge of the leg voltage by dV adds A dV/V sin(2 pi f t) exp(-t/tau_r) to the switched phase and minus half
-// of that to the others (V = source voltage). Both are linear and sum to zero over the phases, so alpha/beta suffices.
+// Ringing: an edge of the leg voltage by dV adds A dV/V sin(2 pi f t) exp(-t/tau_r) to the switched phase and minus
+// half of that to the others (V = source voltage). Both are linear and sum to zero over the phases, so alpha/beta
+// suffices.
 
 #ifndef STILLSPIN_SIM_HOST_PLANT_SENSORS_HPP
 #define STILLSPIN_SIM_HOST_PLANT_SENSORS_HPP

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStandingStill = 1e-14;  // s
 constexpr int kMaxAtOnce = 60;            // more events than that at one instant are a defect of the model
-constexpr int kResetAfter = 64;            // segments
+constexpr int kResetAfter = 64;           // segments
 constexpr double kGrazing = 1e-9;         // A: a double crossing less deep does not matter
 
 }  // namespace
@@ -37,24 +37,19 @@ void Trajectory::begin() {
 void Trajectory::look_ahead(Tick end) {
   if (!started_) begin();
   const double h = time_to(end);
-  step_ = flow_->advance(model_, start_, h, end_);
+  flow_->advance(model_, start_, h, end_, step_);
   end_tick_ = end;
-  take_end_slope();
+  end_slope_known_ = step_.has_end_slope;
   ahead_ = true;
-  if (step_.event) return;
+  if (step_.event || step_.far) return;
   const double dip = grazing_instant();
   if (dip <= 0.0) return;
   // Stop at the lowest point: there the event function is negative, so that the flow finds the first crossing.
   ++grazing_;
-  step_ = flow_->advance(model_, start_, dip, end_);
-  take_end_slope();
+  flow_->advance(model_, start_, dip, end_, step_);
+  end_slope_known_ = step_.has_end_slope;
   if (step_.event) return;
   step_.event = true;  // it was not that deep after all: an event of nothing, so that the end need not be a whole tick
-}
-
-void Trajectory::take_end_slope() {
-  end_slope_known_ = step_.has_end_slope;
-  if (end_slope_known_) end_slope_ = step_.end_slope;
 }
 
 /// A current that falls and comes back inside the segment may have crossed zero twice, which its end does not show.
@@ -90,7 +85,7 @@ State Trajectory::at_offset(double s) const {
   const double h = step_.reached;
   if (s >= h) return end_;
   if (!end_slope_known_) {
-    model_.derive(h, end_, end_slope_);
+    model_.derive(h, end_, step_.end_slope);
     end_slope_known_ = true;
   }
   const double x = s / h;
@@ -100,7 +95,7 @@ State Trajectory::at_offset(double s) const {
   const double s1 = s * x * (x - 1.0);
   State y;
   for (int n = 0; n < kStates; ++n) {
-    y[n] = w0 * start_.y[n] + w1 * end_[n] + s0 * start_.slope[n] + s1 * end_slope_[n];
+    y[n] = w0 * start_.y[n] + w1 * end_[n] + s0 * start_.slope[n] + s1 * step_.end_slope[n];
   }
   return y;
 }

@@ -24,10 +24,10 @@ class Trajectory {
   explicit Trajectory(const PlantConfig& config);
 
   // The start of the current segment.
-  Tick tick() const { return tick_; }          // the tick at or before it
+  Tick tick() const { return tick_; }            // the tick at or before it
   double fraction() const { return fraction_; }  // s after that tick
   bool at(Tick t) const { return tick_ == t && fraction_ == 0.0; }
-  double angle() const { return angle_; }      // rad electrical, -pi..pi
+  double angle() const { return angle_; }        // rad electrical, -pi..pi
   std::int64_t turns() const { return turns_; }  // electrical turns
   const State& start() const { return start_.y; }
   std::array<double, 3> leg_voltages() const { return model_.leg_voltages(start_.y); }
@@ -65,7 +65,6 @@ class Trajectory {
  private:
   static AlphaBeta stator(const Rotation& e, double d, double q) { return {e.c * d - e.s * q, e.s * d + e.c * q}; }
   void begin();
-  void take_end_slope();
   void turn_bases(double angle);
   double time_to(Tick t) const { return static_cast<double>(t - tick_) * kSecondsPerTick - fraction_; }
   double grazing_instant() const;
@@ -81,9 +80,8 @@ class Trajectory {
 
   SegmentStart start_;
   State end_{};
-  mutable State end_slope_{};
-  Advance step_;
-  Tick end_tick_ = 0;  // of a segment without event
+  mutable Advance step_;  // its end slope may be evaluated late
+  Tick end_tick_ = 0;     // of a segment without event
   bool started_ = false;
   bool ahead_ = false;
   mutable bool end_slope_known_ = false;

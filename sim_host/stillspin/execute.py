@@ -116,7 +116,8 @@ def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> No
         if what.startswith("set:"):
             core.parameter(known, what.removeprefix("set:"), value, f"{where}: {what}")
         elif what not in {"speed_ref_rpm", "start", "stop", "reset"}:
-            raise InputError(f"{where}: unknown command '{what}'; known: speed_ref_rpm, start, stop, reset, set:<parameter>")
+            known_words = "speed_ref_rpm, start, stop, reset, set:<parameter>"
+            raise InputError(f"{where}: unknown command '{what}'; known: {known_words}")
 
 
 def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None) -> Outcome:

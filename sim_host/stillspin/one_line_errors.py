@@ -13,12 +13,14 @@ from stillspin.errors import CampaignError, InputError
 
 BROKEN = 1
 BAD_INPUT = 2
+INTERRUPTED = 130
 
 
 class OneLineErrors(TyperGroup):
     """A group of commands that says what was wrong in one line.
 
-    Exit status: 2 for bad input (also the command line's own complaints), 1 when the runs could not be carried out.
+    Exit status: 2 for bad input (also the command line's own complaints), 1 when the runs could not be carried out,
+    130 when interrupted.
     """
 
     def main(
@@ -33,6 +35,8 @@ class OneLineErrors(TyperGroup):
         """Run the command line and end the process (unless `standalone_mode` is off)."""
         try:
             status = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
+            if status == INTERRUPTED:
+                _complain("interrupted; nothing was written", status)
         except InputError as error:
             status = _complain(str(error), BAD_INPUT)
         except TyperException as error:

@@ -103,8 +103,8 @@ PANELS: dict[str, Panel] = {
         (
             Line("$i_q$ true", _signal("true_i_q"), "q"),
             Line("$i_d$ true", _signal("true_i_d"), "d"),
-            Line("$i_q$*", _signal("i_q_ref"), "reference"),
-            Line("$i_d$*", _signal("i_d_ref"), "reference"),
+            Line("$i_q$*", _signal("i_q_ref"), "setpoint"),
+            Line("$i_d$*", _signal("i_d_ref"), "setpoint"),
         ),
     ),
     "phases": Panel(

@@ -37,6 +37,7 @@ COLOURS = {
     "true": "#0b5fa5",
     "estimate": "#e07b00",
     "reference": "#3a3a3a",
+    "setpoint": "#9aa3ad",
     "error": "#b3243b",
     "q": "#0b5fa5",
     "d": "#1b8a5a",
@@ -50,6 +51,7 @@ RUN_COLOURS = ["#0b5fa5", "#e07b00", "#1b8a5a", "#b3243b", "#7a4fb0", "#8a6d1b",
 ROLES: dict[str, Any] = {
     "true": {"zorder": 3},
     "reference": {"zorder": 4, "linestyle": (0, (4, 2)), "linewidth": 1.0},
+    "setpoint": {"zorder": 1.5, "linewidth": 2.2},
     "estimate": {"zorder": 2, "linewidth": 2.6, "alpha": 0.6},
 }
 

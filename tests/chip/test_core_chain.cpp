@@ -14,6 +14,13 @@ Tick isr_time = 0;
 std::uint16_t results[8];
 std::uint16_t left_justified = 0;
 
+// Two ways to an ADCCLK of 12.5 MHz: HISPCP and ADCTRL3.ADCCLKPS.
+struct AdcClockRecipe {
+  std::uint16_t hispcp;
+  std::uint16_t adcclkps;
+};
+AdcClockRecipe recipe;
+
 constexpr Tick kAdcClock = 8;  // ticks at 12.5 MHz
 constexpr std::uint16_t kTrigger = 4000;
 
@@ -37,7 +44,8 @@ void set_up_pwm() {
 }
 
 void set_up_adc() {
-  target_write16(REG_ADCTRL3, 0x00E9);  // powered, HSPCLK 100 MHz / 8, simultaneous
+  // Powered, simultaneous.
+  target_write16(REG_ADCTRL3, static_cast<std::uint16_t>(0x00E1 | recipe.adcclkps << ADCTRL3_ADCCLKPS_LSB));
   target_write16(REG_ADCMAXCONV, 0x0030);
   target_write16(REG_ADCCHSELSEQ3, 0x1000);  // three pairs of A0/B0, then A1/B1
   target_write16(REG_ADCTRL2, ADCTRL2_INT_ENA_SEQ2_MASK | ADCTRL2_EPWM_SOCB_SEQ2_MASK);
@@ -46,7 +54,7 @@ void set_up_adc() {
 extern "C" void chain_firmware() {
   start_clock();
   target_eallow();
-  target_write16(REG_HISPCP, 0);
+  target_write16(REG_HISPCP, recipe.hispcp);
   target_write16(REG_PCLKCR0, PCLKCR0_ADCENCLK_MASK);
   target_write16(REG_PCLKCR1, PCLKCR1_EPWM1ENCLK_MASK);
   target_write32(REG_GPAMUX1, 1);
@@ -61,7 +69,15 @@ extern "C" void chain_firmware() {
   for (;;) target_idle();
 }
 
-TEST(Chain, EveryLinkAtItsTick) {
+class Chain : public ::testing::TestWithParam<AdcClockRecipe> {
+ protected:
+  void SetUp() override { recipe = GetParam(); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Recipes, Chain,
+                         ::testing::Values(AdcClockRecipe{0, 4}, AdcClockRecipe{4, 0}, AdcClockRecipe{1, 2}));
+
+TEST_P(Chain, EveryLinkAtItsTick) {
   RecordingWorld world;
   Chip device(world, chain_firmware);
   chip = &device;
@@ -89,7 +105,21 @@ TEST(Chain, EveryLinkAtItsTick) {
   EXPECT_EQ(device.statistics().conversions_lost, 0u);
 }
 
-TEST(Chain, PeriodIsExact) {
+TEST_P(Chain, WorldIsCalledBeforeThePwmEdgeOfItsTick) {
+  RecordingWorld world;
+  Chip device(world, chain_firmware);
+  chip = &device;
+  device.run_until(2'000'000);
+  const Tick edge = world.pwm.back().t + 10'000;  // the same edge of the next period
+  std::size_t before = 0;
+  world.calls = {edge};
+  world.on_call = [&](Tick) { before = world.pwm.size(); };
+  device.run_until(edge);
+  EXPECT_EQ(world.pwm.back().t, edge);
+  EXPECT_EQ(before, world.pwm.size() - 1);
+}
+
+TEST_P(Chain, PeriodIsExact) {
   RecordingWorld world;
   Chip device(world, chain_firmware);
   chip = &device;

@@ -70,6 +70,21 @@ TEST_F(Clock, LocksAfter131072OscillatorCycles) {
   EXPECT_EQ(seen[1], 10);
 }
 
+TEST_F(Clock, LockBitRisesInItsTick) {
+  run(
+      [] {
+        disable_watchdog();
+        write_protected(REG_PLLCR, 10);
+        times[0] = chip->now() - 10;  // EDIS comes after the write
+        sleep_for_ever();
+      },
+      1000);
+  device->run_until(times[0] + kLockTicks - 1);
+  EXPECT_EQ(device->inspect(REG_PLLSTS) & PLLSTS_PLLLOCKS_MASK, 0);
+  device->run_until(times[0] + kLockTicks);
+  EXPECT_EQ(device->inspect(REG_PLLSTS) & PLLSTS_PLLLOCKS_MASK, PLLSTS_PLLLOCKS_MASK);
+}
+
 TEST_F(Clock, RatioOfFive) {
   run([] {
     disable_watchdog();
@@ -120,6 +135,15 @@ TEST_F(Clock, TooFewFlashWaitStatesAreAnError) {
     disable_watchdog();
     write_protected(REG_FBANKWAIT, 0x0202);  // enough for 10 MHz, not for 100 MHz: 3 x 10 ns < 36 ns
     write_protected(REG_PLLCR, 10);
+    sleep_for_ever();
+  });
+  EXPECT_NE(error.find("flash"), std::string::npos) << error;
+}
+
+TEST_F(Clock, LoweringTheFlashWaitStatesTooFarIsAnError) {
+  const std::string error = error_of([] {
+    start_clock();
+    write_protected(REG_FBANKWAIT, 0x0203);  // paged accesses in 30 ns
     sleep_for_ever();
   });
   EXPECT_NE(error.find("flash"), std::string::npos) << error;

@@ -118,14 +118,13 @@ TEST_F(Pins, PwmReachesTheWorldOnlyThroughItsPin) {
     force_epwm1a_high();
     target_elapse(100);
     seen[0] = target_read16(REG_GPADAT);
+    wide[0] = static_cast<std::uint32_t>(chip->now());
     write_protected32(REG_GPAMUX1, 1);
     seen[1] = target_read16(REG_GPADAT);
     sleep_for_ever();
   });
   ASSERT_EQ(world.pwm.size(), 1u);
-  EXPECT_EQ(world.pwm[0].module, 0);
-  EXPECT_TRUE(world.pwm[0].a);
-  EXPECT_FALSE(world.pwm[0].b);
+  EXPECT_EQ(world.pwm[0], (PwmChange{wide[0] + 20, 0, true, false}));  // EALLOW and the write, at 10 MHz
   EXPECT_EQ(seen[0], 0);
   EXPECT_EQ(seen[1], 1);
 }

@@ -205,6 +205,23 @@ TEST_F(Dog, ResetLowersPinsAndForgetsRegisters) {
   EXPECT_EQ(seen[2], 0);
 }
 
+TEST_F(Dog, ResetRestoresClockGatesAndWaitStates) {
+  run(
+      [] {
+        note_start();
+        if (starts.size() == 1) {
+          write_protected(REG_FBANKWAIT, 0x0303);
+          write_protected(REG_PCLKCR1, 0x3F);
+          write_protected(REG_WDCR, 0);
+        }
+        sleep_for_ever();
+      },
+      10'000);
+  ASSERT_EQ(starts.size(), 2u);
+  EXPECT_EQ(device->inspect(REG_FBANKWAIT), 0x0F0F);
+  EXPECT_EQ(device->inspect(REG_PCLKCR1), 0);
+}
+
 TEST_F(Dog, BitesInsideAnInterruptToo) {
   run(
       [] {

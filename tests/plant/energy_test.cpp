@@ -70,8 +70,7 @@ TEST(Energy, BrakingIntoARectifierLinkThroughTheChopper) {
   c.link.brake_off_voltage = 305.0;
   c.solver.ledger = false;
   // Up to 150 rad/s, then down: the rotor's energy goes into the capacitor and from there into the resistor.
-  const testing::Recording r = testing::record(
-      c, 4000, [](double t) { return t < 0.2 ? 150.0 : 0.0; }, {});
+  const testing::Recording r = testing::record(c, 4000, [](double t) { return t < 0.2 ? 150.0 : 0.0; }, {});
   c.solver.ledger = true;
   Plant plant(c);
   const double stored = plant.energy().stored;

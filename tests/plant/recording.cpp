@@ -86,9 +86,8 @@ Recording record(const PlantConfig& config, int periods, const Reference& speed,
 Recording record_ramp_and_load(const PlantConfig& config, int periods) {
   const Tick step = static_cast<Tick>(periods) * kPeriod * 6 / 10;
   const double ramp = 0.4 * periods * kPeriodSeconds;
-  return record(
-      config, periods, [ramp](double t) { return 100.0 * std::min(t / ramp, 1.0); },
-      {{step, 0.0}, {step + 500'000, 3.0}});
+  return record(config, periods, [ramp](double t) { return 100.0 * std::min(t / ramp, 1.0); },
+                {{step, 0.0}, {step + 500'000, 3.0}});
 }
 
 void replay(Plant& plant, const Recording& recording, const std::vector<Tick>& at,

@@ -11,8 +11,8 @@
 
 namespace stillspin::plant::testing {
 
-inline constexpr Tick kPeriod = 10000;     // 10 kHz
-inline constexpr Tick kDeadTime = 200;     // 2 us
+inline constexpr Tick kPeriod = 10000;  // 10 kHz
+inline constexpr Tick kDeadTime = 200;  // 2 us
 inline constexpr double kPeriodSeconds = 1e-4;
 
 struct GateEdge {

@@ -6,8 +6,9 @@ import shutil
 import sys
 from pathlib import Path
 
-import fake_core
 import pytest
+
+import fake_core
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"

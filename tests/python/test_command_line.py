@@ -30,7 +30,7 @@ def left_over(directory):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("run", "A1O"), "there is no scenario 'A1O'; did you mean 'A10'"),
+        (("run", "A1O"), "there is no scenario 'A1O'; did you mean 'A1"),
         (("run",), "Missing argument"),
         (("run", "A10", "--profile", "bnch"), "did you mean 'bench'"),
         (("run", "A10", "--profile", "none.toml"), "no such file"),
@@ -122,9 +122,22 @@ def test_an_exception_of_the_native_module_breaks_the_run_off(call, core, monkey
 
 
 def test_a_programming_error_leaves_no_results(call, core, tmp_path, monkeypatch):
-    monkeypatch.setattr(core, "run", lambda **_: 1 / 0 if False else [][0])
-    with pytest.raises(IndexError):
+    def broken(**_):
+        raise KeyError("a bug")
+
+    monkeypatch.setattr(core, "run", broken)
+    with pytest.raises(KeyError):
         CliRunner().invoke(cli.app, ["run", "A10", "--out", str(tmp_path / "r")], catch_exceptions=False)
+    assert left_over(tmp_path) == []
+
+
+def test_an_interrupt_is_said_and_leaves_nothing(call, core, tmp_path, monkeypatch):
+    def interrupted(**_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(core, "run", interrupted)
+    result = call("run", "A10")
+    assert (result.exit_code, result.stderr) == (130, "stillspin: interrupted; nothing was written\n")
     assert left_over(tmp_path) == []
 
 
@@ -197,20 +210,14 @@ def test_worker_processes_give_the_same_results_as_one(fake_tree, tmp_path):
 
 
 def test_a_worker_that_dies_is_said_in_one_line(fake_tree, tmp_path):
-    code = (
-        "import os, stillspin._core as c\n"
-        "from stillspin import cli\n"
-        "cli.app(['reproduce', 'A10', '--jobs', '2', '--out', 'r'])\n"
-    )
     poisoned = tmp_path / "tree"
     poisoned.mkdir()
     (poisoned / "sitecustomize.py").write_text(
         "import sys, os\nif 'multiprocessing.spawn' in ' '.join(sys.orig_argv):\n    os._exit(9)\n", encoding="utf-8"
     )
     environment = {**os.environ, "PYTHONPATH": f"{poisoned}{os.pathsep}{fake_tree}"}
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
-    )
+    command = [sys.executable, "-m", "stillspin", "reproduce", "A10", "--jobs", "2", "--out", "r"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1].startswith("stillspin: a worker process died")
     assert left_over(tmp_path) == ["tree"]

@@ -1,4 +1,4 @@
-"""Evaluation of a scenario: the worst of runs and windows, ratios, goals per profile, and the check of the true shaft."""
+"""Evaluation of a scenario: the worst of runs and windows, ratios, goals per profile, the check of the true shaft."""
 
 import numpy as np
 import pytest
@@ -81,10 +81,10 @@ def test_a_ratio_without_one_of_its_figures_has_no_value():
     assert figures.evaluate(a_scenario(*wanted), {"one": RECORDED["one"]}, "bench")[2].value is None
 
 
-def shaft(speed, **check):
+def shaft(turning, **check):
     """What is said about a shaft that turns at this speed (function of time) when it should be at 100 rpm ± 5."""
     run = a_run("one", (Reached(check.pop("window", (1.0, 2.0)), 5.0, **check),))
-    return figures.shaft_problem({"time": TIME, "true_speed": speed(TIME)}, run)
+    return figures.shaft_problem({"time": TIME, "true_speed": turning(TIME)}, run)
 
 
 def test_a_shaft_that_follows_is_fine():

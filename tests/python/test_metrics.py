@@ -71,7 +71,7 @@ def test_peak_looks_at_the_whole_window_and_rms_at_its_last_second():
         return np.where(time < 1.0, 10.0, 2.0 * np.sin(2.0 * np.pi * 5.0 * time))
 
     early = angles(error, 0)
-    assert metrics.position_error_peak(early) == 10.0
+    assert metrics.position_error_peak(early) == pytest.approx(10.0)
     assert metrics.position_error_rms(early) == pytest.approx(np.sqrt(2.0), rel=1e-3)
 
 
@@ -144,8 +144,14 @@ def test_settling_counts_the_last_departure():
 
 
 def test_what_never_settles_has_no_settling_time():
-    wobble = piece((0.5, 3.0), ((0.5, 600.0),), true_speed=lambda t: 600.0 + 20.0 * np.sin(40.0 * t))
-    assert metrics.settling_time(wobble) == np.inf
+    """Not even when it happens to be within the band as the window ends."""
+    for phase in (0.0, 0.5 * np.pi):
+        wobble = piece(
+            (0.5, 3.0),
+            ((0.5, 600.0),),
+            true_speed=lambda t, phase=phase: 600.0 + 20.0 * np.sin(40.0 * (t - 3.0) + phase),
+        )
+        assert metrics.settling_time(wobble) == np.inf
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -212,6 +218,12 @@ def test_a_window_beyond_the_record_is_an_error():
     signals = {"time": time, "true_speed": np.zeros(time.shape)}
     with pytest.raises(ValueError, match="does not cover"):
         metrics.cut(signals, a_run((0.0, 1.0)), (0.5, 1.1))
+
+
+def test_a_command_at_the_very_end_of_a_window_belongs_to_what_follows():
+    held = piece((0.5, 1.5), ((0.2, 100.0), (1.5, 0.0)), true_speed=100.0)
+    assert held.target == 100.0
+    assert np.all(held.command == 100.0)
 
 
 def test_a_step_on_the_windows_corner_starts_from_the_command_before_it():

@@ -1,13 +1,13 @@
-"""Profiles and --set: every entry is checked against what the plant and the firmware know, and complaints are one line."""
+"""Profiles and --set: every entry is checked against what plant and firmware know, and complaints are one line."""
 
 import math
 import string
 
-import fake_core
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import fake_core
 from stillspin import core, profile
 from stillspin.errors import InputError
 
@@ -41,7 +41,7 @@ def test_the_profiles_load(name):
 
 
 def test_the_ideal_profile_states_everything_that_bench_spoils():
-    """A default of the plant must not leak a flaw into `ideal`: what bench states, ideal states too, or it is harmless."""
+    """A default of the plant must not leak a flaw into `ideal`: what bench states, ideal states, or it is harmless."""
     bench, ideal = (profile.load(name, SCHEMA, KNOWN).plant for name in ("bench", "ideal"))
     stated = {f"{section}.{key}" for section, keys in ideal.items() for key in keys}
     harmless = {
@@ -92,7 +92,7 @@ def test_a_wrong_profile_is_refused_in_one_line(tmp_path, text, said):
 
 
 def test_unknown_profiles_are_refused_with_what_there_is():
-    with pytest.raises(InputError, match="did you mean 'bench'.*ideal"):
+    with pytest.raises(InputError, match=r"did you mean 'bench'.*ideal"):
         profile.load("bensch", SCHEMA, KNOWN)
     with pytest.raises(InputError, match="no such file"):
         profile.load("./bench.toml.orig/none.toml", SCHEMA, KNOWN)
@@ -198,5 +198,5 @@ def _is_float(text):
 def test_choices_of_parameters_may_be_given_by_name():
     law = core.Entry("speed_law", "", 0.0, 1.0, 0.0, "", choices=("predictive", "pi"))
     assert core.parameter({"speed_law": law}, "speed_law", "pi", "here") == 1.0
-    with pytest.raises(InputError, match="did you mean 'pi'|known: pi, predictive"):
+    with pytest.raises(InputError, match="known: pi, predictive"):
         core.parameter({"speed_law": law}, "speed_law", "p", "here")

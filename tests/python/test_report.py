@@ -2,10 +2,12 @@
 
 import json
 import re
+import sys
 
 import pytest
 from typer.testing import CliRunner
 
+import fake_core
 from stillspin import cli, report, scenario_file
 from stillspin.figures import Result
 
@@ -13,10 +15,8 @@ from stillspin.figures import Result
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     """Results of three scenarios on the fake native module."""
-    import fake_core
-
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(__import__("sys").modules, "stillspin._core", fake_core)
+        patch.setitem(sys.modules, "stillspin._core", fake_core)
         out = tmp_path_factory.mktemp("results") / "r"
         chosen = ["A10", "A14", "A18c"]
         arguments = ["reproduce", *chosen, "--profile", "ideal", "--seed", "9", "--jobs", "1", "--out", str(out)]

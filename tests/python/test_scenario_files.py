@@ -2,11 +2,11 @@
 
 import json
 
-import fake_core
 import numpy as np
 import pytest
 
-from stillspin import execute, profile, scenario_file
+import fake_core
+from stillspin import execute, figures, profile, scenario_file
 from stillspin.errors import InputError
 
 # Scenario, figure, the paper's number, the goal in `bench`, the goal in `ideal`: the project's commitments. A change of
@@ -97,6 +97,22 @@ def test_no_scenario_tunes_the_controller(identifier):
     }
 
 
+@pytest.mark.parametrize("identifier", scenario_file.ids())
+@pytest.mark.parametrize("turning", [0.0, -1.0, 0.5], ids=["stalled", "reversed", "half as fast"])
+def test_no_run_counts_whose_shaft_does_something_else(identifier, turning):
+    for run in scenario_file.load(identifier).runs:
+        time = np.arange(0.0, run.duration + 5e-4, 1e-3)
+        command = run.speed_command(time)
+        follows = {"time": time, "true_speed": command}
+        assert figures.shaft_problem(follows, run) is None
+        # At standstill the opposite of doing what was commanded is to run away.
+        other = command * turning if command.any() else np.full(time.shape, 20.0)
+        assert (figures.shaft_problem({"time": time, "true_speed": other}, run) is None) == (
+            # At 5 rpm half the speed is still creeping forward; the speed ripple tells.
+            identifier == "A10" and turning == 0.5
+        )
+
+
 def test_most_scenarios_touch_no_parameter_at_all():
     for identifier in ("A10", "A11", "A15", "A16", "A17"):
         assert all(not run.parameters and not run.plant for run in scenario_file.load(identifier).runs)
@@ -151,7 +167,11 @@ def test_a_sine_starts_at_its_zero_and_keeps_its_amplitude():
         ("window = [0.0, 2.0]", "", "window = None"),
         ('name = "speed_ripple"', 'name = "speed_riple"', "did you mean 'speed_ripple'"),
         ('name = "speed_ripple"', 'name = "r"\nkind = "ratio"', "name the two figures"),
-        ('name = "speed_ripple"', 'name = "r"\nkind = "ratio"\nof = ["a", "b"]', "no figure 'a' before it"),
+        (
+            "[[figures]]",
+            '[[figures]]\nname = "r"\nkind = "ratio"\nof = ["speed_ripple", "b"]\n[[figures]]',
+            "no figure 'speed_ripple' before it",
+        ),
         ('name = "speed_ripple"', 'name = "speed_ripple"\nruns = "tow"', "did you mean 'two'"),
         ('name = "speed_ripple"', 'name = "speed_ripple"\ngoal = { ideal = "x" }', "table of numbers by profile"),
         ('name = "speed_ripple"', 'name = "speed_ripple"\ngoal = "low"', "must be a number"),

@@ -1,0 +1,90 @@
+// The current controller's gains and its output, step by step, against the same law in double precision.
+
+#include <gtest/gtest.h>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "control/current_controller.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+TEST(CurrentController, Gains) {
+  Random random(30);
+  for (int n = 0; n < 2000; ++n) {
+    Motor motor;
+    motor.rs = random.log_between(0.01, 10.0);
+    motor.ld = random.log_between(0.3e-3, 50e-3);
+    motor.lq = motor.ld * random.between(1.0, 3.0);
+    const auto bandwidth = static_cast<std::int32_t>(random.between(100.0, 2600.0));
+    const machine_model_t m = model_of(motor);
+    current_controller_config_t c;
+    ASSERT_TRUE(current_controller_design(&c, &m, bandwidth, 100));
+    const pi_config_t* axes[] = {&c.d, &c.q};
+    const double inductances[] = {motor.ld, motor.lq};
+    for (int axis = 0; axis < 2; ++axis) {
+      const double kp = bandwidth * inductances[axis];
+      const double ki = kp * bandwidth * kPeriod / 4.0;  // corner at a quarter of the bandwidth
+      // L is stored with 2^-31 H, 3e-6 of 0.3 mH at worst once multiplied by the bandwidth, and the result with 2^-21
+      ASSERT_NEAR(real(axes[axis]->kp_q20, 20), kp, 2e-6 + bandwidth * std::ldexp(1.0, -30));
+      ASSERT_NEAR(real(axes[axis]->ki_q20, 20), ki, 2e-6 + 1e-5 * ki);
+      // four times the quotient of two rounded gains
+      ASSERT_NEAR(real(axes[axis]->release_q20, 20), 4.0 * ki / kp, 4e-6 + 4.0 * 1.5e-6 / kp);
+    }
+  }
+}
+
+TEST(CurrentController, RefusesBandwidthsThatTheDelayDoesNotAllow) {
+  const machine_model_t m = model_of(Motor{});
+  current_controller_config_t c;
+  EXPECT_FALSE(current_controller_design(&c, &m, 99, 100));
+  EXPECT_TRUE(current_controller_design(&c, &m, 100, 100));
+  EXPECT_TRUE(current_controller_design(&c, &m, 2600, 100));
+  EXPECT_FALSE(current_controller_design(&c, &m, 2601, 100));
+  EXPECT_FALSE(current_controller_design(&c, &m, -2000, 100));
+}
+
+TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
+  Random random(31);
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  current_controller_config_t c;
+  ASSERT_TRUE(current_controller_design(&c, &m, 1800, 100));
+  current_controller_t s;
+  current_controller_reset(&s);
+  const double a = 1800.0;
+  const double ki = a * a * kPeriod / 4.0;
+  Vector integral = {0.0, 0.0};
+  for (int n = 0; n < 3000; ++n) {
+    const Vector reference = {random.between(-10.0, 2.0), random.between(-12.0, 12.0)};
+    const Vector measured = reference + Vector{random.between(-2.0, 2.0), random.between(-2.0, 2.0)};
+    const double w = random.between(-1300.0, 1300.0);
+    const Vector error = reference - measured;
+    integral = integral + Vector{motor.ld * error.x, motor.lq * error.y} * ki;
+    const Vector expected = {a * motor.ld * error.x + integral.x - w * motor.lq * measured.y,
+                             a * motor.lq * error.y + integral.y + w * (motor.ld * measured.x + motor.flux)};
+    const dq_t v =
+        current_controller_step(&s, &c, &m, raw_dq(reference, 20), raw_dq(measured, 20), bpp(w));
+    // Gains right to 2e-6 (17 A make 4e-5 V a step, of alternating sign), speed to 1.5e-5 rad/s, flux to 4e-9 V s,
+    // 1/T exact: 1 mV leaves a factor of some five. Of 200 V that is 5e-6.
+    ASSERT_NEAR(real(v.d, 16), expected.x, 1e-3) << n;
+    ASSERT_NEAR(real(v.q, 16), expected.y, 1e-3) << n;
+  }
+}
+
+TEST(CurrentController, RotationalVoltagesAtRest) {
+  const machine_model_t m = model_of(Motor{});
+  current_controller_config_t c;
+  ASSERT_TRUE(current_controller_design(&c, &m, 1800, 100));
+  current_controller_t s;
+  current_controller_reset(&s);
+  const dq_t i = raw_dq({-3.0, 8.0}, 20);
+  const dq_t still = current_controller_step(&s, &c, &m, i, i, 0);
+  EXPECT_EQ(still.d, 0);
+  EXPECT_EQ(still.q, 0);
+}
+
+}  // namespace

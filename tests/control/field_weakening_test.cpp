@@ -1,0 +1,115 @@
+// Field weakening against the steady-state voltage equation in double precision.
+
+#include <gtest/gtest.h>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "control/field_weakening.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kNoLimit = 1000.0;
+
+double analytic(const Motor& motor, double w, double voltage, double iq) {
+  const double flux = voltage / std::fabs(w);
+  const double room = flux * flux - motor.lq * iq * motor.lq * iq;
+  return std::min(0.0, ((room > 0.0 ? std::sqrt(room) : 0.0) - motor.flux) / motor.ld);
+}
+
+field_weakening_input_t input(double w, double iq, double voltage, double limit, double current, double gain) {
+  return {bpp(w), raw(iq, 20), raw(voltage, 16), raw(limit, 16), raw(current, 20), raw(gain, 20)};
+}
+
+TEST(FieldWeakening, MotorAAt3000RpmAnd160Volts) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  const field_weakening_input_t in = input(motor.electrical(3000.0), 1.0, 160.0, 160.0, 12.0, 0.002);
+  const double id = real(field_weakening_step(&s, &in, &m), 20);
+  EXPECT_GT(id, -7.0);
+  EXPECT_LT(id, -6.6);
+  const field_weakening_input_t low = input(motor.electrical(3000.0), 0.0, 138.0, 138.0, 12.0, 0.002);
+  field_weakening_reset(&s);
+  EXPECT_NEAR(real(field_weakening_step(&s, &low, &m), 20), -10.25, 0.15);  // "-10 A at 138 V", physics
+}
+
+TEST(FieldWeakening, FeedForwardOverTheWholeRange) {
+  Random random(50);
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  for (int n = 0; n < 20000; ++n) {
+    const double w = random.between(-1500.0, 1500.0);
+    const double iq = random.between(-12.0, 12.0);
+    const double limit = random.between(30.0, 250.0);
+    field_weakening_t s;
+    field_weakening_reset(&s);
+    const field_weakening_input_t in = input(w, iq, limit, limit, 30.0, 0.0);
+    const double id = real(field_weakening_step(&s, &in, &m), 20);
+    const double exact = std::max(-30.0, analytic(motor, w, limit, iq));
+    // The flux is right to 2^-16/V + 1e-6 of itself; divided by Ld = 4.9 mH, and steep where the root comes to zero
+    const double flux = limit / std::fabs(w);
+    const double room = flux * flux - motor.lq * iq * motor.lq * iq;
+    const double steep = (room > 1e-6) ? flux / std::sqrt(room) : 1000.0;
+    ASSERT_NEAR(id, exact, 0.001 + 2e-6 * steep * flux / motor.ld) << w << ", " << iq << ", " << limit;
+  }
+}
+
+TEST(FieldWeakening, NothingBelowTheBaseSpeed) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  for (const double rpm : {0.0, 1.0, -300.0, 1500.0}) {
+    const field_weakening_input_t in = input(motor.electrical(rpm), 5.0, 30.0, 155.0, 12.0, 0.002);
+    for (int n = 0; n < 200; ++n) ASSERT_EQ(field_weakening_step(&s, &in, &m), 0) << rpm;
+  }
+}
+
+TEST(FieldWeakening, IntegratesWhatTheFeedForwardMisses) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  const double w = motor.electrical(3000.0);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  // The true flux is 5 % larger than the model's: the voltage follows the true one.
+  double id = 0.0;
+  double voltage = 0.0;
+  for (int n = 0; n < 3000; ++n) {
+    voltage = std::hypot(w * (1.05 * motor.flux + motor.ld * id), w * motor.lq * 2.0);
+    const field_weakening_input_t in = input(w, 2.0, voltage, 160.0, 12.0, 0.002);
+    id = real(field_weakening_step(&s, &in, &m), 20);
+  }
+  EXPECT_NEAR(voltage, 160.0, 0.1);  // w Ld gain = 0.012 per step: 3000 steps are 36 time constants
+  EXPECT_LT(id, analytic(motor, w, 160.0, 2.0) - 1.0);
+}
+
+TEST(FieldWeakening, StaysBetweenItsLimitAndZeroAndDoesNotWindUp) {
+  Random random(51);
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  for (int n = 0; n < 5000; ++n) {
+    const field_weakening_input_t in = input(random.between(-2000.0, 2000.0), random.between(-14.0, 14.0),
+                                             random.between(0.0, kNoLimit), random.between(10.0, 250.0), 9.0, 0.1);
+    const double id = real(field_weakening_step(&s, &in, &m), 20);
+    ASSERT_LE(id, 0.0);
+    ASSERT_GE(id, -9.0);
+    ASSERT_GE(real(s.trim_q20, 20), -9.0);
+  }
+  // a voltage far too high for long ...
+  const field_weakening_input_t high = input(100.0, 0.0, kNoLimit, 100.0, 9.0, 0.002);
+  for (int n = 0; n < 5000; ++n) field_weakening_step(&s, &high, &m);
+  EXPECT_NEAR(real(s.current_q20, 20), -9.0, 1e-5);
+  // ... is forgotten within limit / (gain * volts left) = 9 / (0.002 * 90) = 50 steps
+  const field_weakening_input_t fine = input(100.0, 0.0, 10.0, 100.0, 9.0, 0.002);
+  for (int n = 0; n < 52; ++n) field_weakening_step(&s, &fine, &m);
+  EXPECT_EQ(s.current_q20, 0);
+}
+
+}  // namespace

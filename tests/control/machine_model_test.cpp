@@ -1,0 +1,181 @@
+// The machine's constants against the SI formulas, over random machines and the ends of the ranges.
+
+#include <gtest/gtest.h>
+
+#include "tests/control/quantities.hpp"
+
+namespace {
+
+using stillspin::test::kTurn;
+using stillspin::test::Motor;
+using stillspin::test::Random;
+using stillspin::test::raw_dq;
+using stillspin::test::parameters_of;
+using stillspin::test::raw;
+using stillspin::test::real;
+
+// The error allowed: some LSB of the result plus what the arguments' own rounding does.
+void expect_close(double got, double exact, double lsb, double relative, const char* what) {
+  ASSERT_NEAR(got, exact, lsb + std::fabs(exact) * relative) << what;
+}
+
+bool fits(const Motor& m) {
+  const double y_max = m.period / m.ld;
+  const double accel = m.pole_pairs * m.period * m.period / (kTurn * m.inertia) * std::ldexp(1.0, 32);
+  return y_max < 1.99 && m.flux / m.period < 32700.0 && m.lq / m.ld < 128.0 && accel < 524000.0;
+}
+
+// Inductances and fluxes are rounded to the firmware's format before they are used; the formulas get the same numbers.
+Motor as_stored(const Motor& m) {
+  const machine_parameters_t p = parameters_of(m);
+  Motor s = m;
+  s.rs = real(p.rs_q24, 24);
+  s.ld = real(p.ld_q30, 30);
+  s.lq = real(p.lq_q30, 30);
+  s.flux = real(p.flux_q28, 28);
+  s.inertia = real(p.inertia_q24, 24);
+  s.period = p.period_us * 1e-6;
+  return s;
+}
+
+void check(const Motor& asked) {
+  const machine_parameters_t p = parameters_of(asked);
+  const Motor s = as_stored(asked);
+  machine_model_t m = {};
+  ASSERT_TRUE(machine_model_init(&m, &p));
+  // T as Q30 is right to 2^-31 s, 2.4e-5 of 20 us
+  const double t_rel = std::ldexp(1.0, -31) / s.period * 1.01;
+  expect_close(real(m.yd_q30, 30), s.period / s.ld, std::ldexp(1.0, -30), t_rel, "yd");
+  expect_close(real(m.yq_q30, 30), s.period / s.lq, std::ldexp(1.0, -30), t_rel, "yq");
+  expect_close(real(m.emf_q16, 16), s.flux / s.period, std::ldexp(1.0, -16), t_rel, "emf");
+  // kappa comes from the rounded admittances: 2^-31 of each, relative to yq
+  const double y_rel = std::ldexp(1.0, -30) / real(m.yq_q30, 30);
+  expect_close(real(m.kappa_d_q24, 24), s.lq / s.ld - 1.0, std::ldexp(1.0, -24) + y_rel * s.lq / s.ld, 1e-9, "kappa d");
+  expect_close(real(m.kappa_q_q24, 24), 1.0 - s.ld / s.lq, std::ldexp(1.0, -24) + y_rel, 1e-9, "kappa q");
+  // flux / 16 and (Ld - Lq) / 64 are cut off to whole LSB of Q24
+  const double torque_lsb = 1.5 * s.pole_pairs * std::ldexp(1.0, -24) + std::ldexp(1.0, -24);
+  expect_close(real(m.torque_q24, 24), 1.5 * s.pole_pairs * s.flux, torque_lsb, 0.0, "torque");
+  expect_close(real(m.reluctance_q24, 24), 1.5 * s.pole_pairs * (s.ld - s.lq), torque_lsb, 0.0, "reluctance");
+  // 2867 stands for 2867.08 (3e-5); the quotient is rounded once per pole pair
+  const double accel = s.pole_pairs * s.period * s.period / (kTurn * s.inertia) * std::ldexp(1.0, 32);
+  expect_close(real(m.accel_q12, 12), accel, (0.5 * s.pole_pairs + 0.5) * std::ldexp(1.0, -12), 4e-5, "acceleration");
+  EXPECT_EQ(m.periods_per_second, std::lround(1.0 / s.period));
+}
+
+TEST(MachineModel, MotorA) { check(Motor{}); }
+
+TEST(MachineModel, RandomMachines) {
+  Random random(10);
+  int used = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Motor m;
+    m.rs = random.log_between(0.0011, 49.0);
+    m.ld = random.log_between(20.1e-6, 0.4);
+    m.lq = std::min(m.ld * random.log_between(1.0, 20.0), 0.49);
+    m.flux = random.log_between(0.00101, 0.99);
+    m.inertia = random.log_between(1.01e-5, 0.99);
+    m.pole_pairs = 1 + random.below(20);
+    m.period = (20 + random.below(481)) * 1e-6;
+    if (!fits(m)) continue;
+    used++;
+    ASSERT_NO_FATAL_FAILURE(check(m)) << m.ld << " H, " << m.lq << " H, " << m.flux << " Vs, " << m.inertia
+                                      << " kgm2, " << m.pole_pairs << ", " << m.period;
+  }
+  EXPECT_GT(used, 5000);  // otherwise nothing was tested
+}
+
+TEST(MachineModel, EndsOfTheRanges) {
+  Motor m;
+  m.rs = 50.0;
+  check(m);
+  m.rs = 0.00101;
+  check(m);
+  m.ld = m.lq = 0.5;
+  check(m);
+  m.ld = m.lq = 51e-6;
+  check(m);
+  m.flux = 1.0;
+  check(m);
+  m.inertia = 1.0;
+  check(m);
+  m.pole_pairs = 20;
+  check(m);
+}
+
+using Field = std::int32_t machine_parameters_t::*;
+
+TEST(MachineModel, RejectsWhatIsOutsideItsRange) {
+  const struct {
+    Field field;
+    double below, above;
+    int q;
+  } cases[] = {
+      {&machine_parameters_t::rs_q24, 0.0009, 51.0, 24},      {&machine_parameters_t::ld_q30, 19e-6, 0.51, 30},
+      {&machine_parameters_t::lq_q30, 4.8e-3, 0.51, 30},      {&machine_parameters_t::flux_q28, 0.0009, 1.01, 28},
+      {&machine_parameters_t::inertia_q24, 0.9e-5, 1.01, 24}, {&machine_parameters_t::pole_pairs, 0, 21, 0},
+      {&machine_parameters_t::period_us, 19, 501, 0},
+  };
+  for (const auto& c : cases) {
+    machine_model_t m = {};
+    for (const double bad : {c.below, c.above, -1.0}) {
+      machine_parameters_t p = parameters_of(Motor{});
+      p.*c.field = raw(bad, c.q);
+      EXPECT_FALSE(machine_model_init(&m, &p)) << bad;
+    }
+  }
+}
+
+// A constant that saturates would be a wrong machine without a word.
+TEST(MachineModel, RejectsMachinesWhoseConstantsDoNotFit) {
+  machine_model_t m = {};
+  Motor light;
+  light.inertia = 1.01e-5;
+  light.pole_pairs = 20;
+  light.period = 500e-6;
+  Motor fast;  // y = 5 A per V and period
+  fast.ld = fast.lq = 100e-6;
+  fast.period = 500e-6;
+  Motor strong;  // lambda / T = 50000 V
+  strong.flux = 1.0;
+  strong.period = 20e-6;
+  Motor salient;  // Lq / Ld = 1000
+  salient.ld = 0.4e-3;
+  salient.lq = 0.4;
+  for (const Motor& motor : {light, fast, strong, salient}) {
+    const machine_parameters_t p = parameters_of(motor);
+    EXPECT_FALSE(machine_model_init(&m, &p)) << motor.ld << ", " << motor.flux << ", " << motor.inertia;
+  }
+}
+
+TEST(MachineModel, AdaptedAdmittancesMoveTheSaliency) {
+  machine_model_t m = stillspin::test::model_of(Motor{});
+  const double yd = 0.025, yq = 0.011;
+  machine_model_set_admittance(&m, raw(yd, 30), raw(yq, 30));
+  EXPECT_EQ(m.yd_q30, raw(yd, 30));
+  EXPECT_EQ(m.yq_q30, raw(yq, 30));
+  EXPECT_NEAR(real(m.kappa_d_q24, 24), yd / yq - 1.0, 1e-6);
+  EXPECT_NEAR(real(m.kappa_q_q24, 24), 1.0 - yq / yd, 1e-6);
+}
+
+TEST(MachineModel, TorqueWithReluctance) {
+  Random random(11);
+  const Motor motor;
+  const machine_model_t m = stillspin::test::model_of(motor);
+  for (int n = 0; n < 5000; ++n) {
+    const double id = random.between(-20.0, 20.0);
+    const double iq = random.between(-20.0, 20.0);
+    const double kt = 1.5 * motor.pole_pairs * (motor.flux + (motor.ld - motor.lq) * id);
+    // constants cut off at Q24 times 6 (4e-7), times 20 A: 1e-5; the result's own LSB is 1.5e-5
+    ASSERT_NEAR(real(machine_torque_constant_q24(&m, raw(id, 20)), 24), kt, 1e-5);
+    ASSERT_NEAR(real(machine_torque_q16(&m, raw_dq({id, iq}, 20)), 16), kt * iq, 2e-4);
+  }
+}
+
+TEST(MachineModel, SpeedInRadPerPeriod) {
+  for (const double w : {-1.8, -0.1257, -1e-6, 0.0, 1e-6, 0.05, 1.8}) {
+    const std::int32_t speed_bpp = raw(w / kTurn, 32);
+    EXPECT_NEAR(real(machine_speed_rad_q30(speed_bpp), 30), w, 2e-9) << w;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,162 @@
+// Coefficients of the speed controllers against eqs (47)-(54) in double precision, over random drives.
+
+#include <gtest/gtest.h>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "control/speed_controller.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+struct Design {
+  Motor motor;
+  int step_periods = 10;
+  double alpha = 200.0, trajectory = 8e-3, bandwidth = 20.0, damping = 0.8;
+
+  double step() const { return step_periods * motor.period; }
+  double decay() const { return std::exp(-motor.friction * step() / motor.inertia); }
+  /// b of (49), rad/s (mechanical) per A, in its limit for B -> 0 too.
+  double response() const {
+    const double x = motor.friction * step() / motor.inertia;
+    const double mean = (x > 1e-9) ? -std::expm1(-x) / x : 1.0;
+    return motor.torque_constant() * step() / motor.inertia * mean;
+  }
+  /// Binary angle per period and rad/s (mechanical).
+  double bpp_per_rad_s() const { return motor.pole_pairs * motor.period / kTurn * std::ldexp(1.0, 32); }
+
+  speed_controller_config_t config() const {
+    speed_controller_config_t c;
+    c.friction_q24 = raw(motor.friction, 24);
+    c.inertia_q24 = raw(motor.inertia, 24);
+    c.step_periods = step_periods;
+    c.alpha_q8 = raw(alpha, 8);
+    c.trajectory_ms_q8 = raw(trajectory * 1e3, 8);
+    c.pi_bandwidth_q8 = raw(bandwidth, 8);
+    c.pi_damping_q12 = raw(damping, 12);
+    return c;
+  }
+};
+
+void check(const Design& wanted) {
+  Design d = wanted;
+  d.motor.inertia = real(raw(wanted.motor.inertia, 24), 24);  // what the firmware is told
+  d.motor.friction = real(raw(wanted.motor.friction, 24), 24);
+  const machine_model_t m = model_of(d.motor);
+  const speed_controller_config_t c = d.config();
+  speed_controller_t s;
+  ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+  const double b_bpp = d.response() * d.bpp_per_rad_s();
+  const double b = d.response();
+  // B/J has 20 fractional bits; at most 1e-6 of the exponent per second of step
+  ASSERT_NEAR(real(s.decay_q30, 30), d.decay(), 1e-8);
+  // the machine's constants: acceleration to 4e-5 and half an LSB of Q12 per pole pair, torque constant to 1e-6
+  const double relative = 6e-5 + 0.6 * d.motor.pole_pairs / m.accel_q12 + real(1, 24) * 20 / real(m.torque_q24, 24);
+  ASSERT_NEAR(real(s.response_q8, 8), b_bpp, 0.01 + b_bpp * relative);
+  ASSERT_NEAR(real(s.amps_per_bpp, 40) * b_bpp, 1.0, relative + 1e-5 + 0.5 / s.amps_per_bpp);
+  // (54): k b = alpha b^2 / (alpha b^2 + 1). The controller takes b without the small factor of (49): B Ts / 2 J of it.
+  const double weight = d.alpha * b * b;
+  const double exact = weight / (weight + 1.0);
+  const double x = d.motor.friction * d.step() / d.motor.inertia;
+  ASSERT_NEAR(real(s.share_q30, 30), exact, 2e-4 + (x + 2e-3) * exact * (1.0 - exact) + 2e-5 / (weight + 1.0));
+  ASSERT_NEAR(real(s.approach_q30, 30), -std::expm1(-d.step() / d.trajectory), 1e-3);
+  // PI: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, in A per bpp
+  const double j_kt = d.motor.inertia / d.motor.torque_constant() / d.bpp_per_rad_s();
+  const double kp = 2.0 * d.damping * d.bandwidth * j_kt;
+  const double ki = d.bandwidth * d.bandwidth * d.step() * j_kt;
+  ASSERT_NEAR(real(s.pi_kp, 40), kp, real(2, 40) + kp * (3e-3 + x + relative));
+  ASSERT_NEAR(real(s.pi_ki, 40), ki, real(2, 40) + ki * (4e-3 + x + relative));
+}
+
+TEST(SpeedController, CoefficientsOfMotorA) { check(Design{}); }
+
+TEST(SpeedController, CoefficientsOfRandomDrives) {
+  Random random(40);
+  for (int n = 0; n < 3000; ++n) {
+    Design d;
+    d.motor.inertia = random.log_between(2e-4, 0.1);
+    d.motor.friction = d.motor.inertia * random.log_between(1e-3, 50.0);
+    if (d.motor.friction > 0.9) d.motor.friction = 0.9;
+    d.motor.flux = random.log_between(0.02, 0.5);
+    d.motor.pole_pairs = 1 + random.below(8);
+    d.alpha = random.log_between(2.0, 90000.0);
+    d.trajectory = random.log_between(2.2e-3, 0.19);
+    d.bandwidth = random.log_between(2.0, 190.0);
+    d.damping = random.between(0.31, 2.9);
+    ASSERT_NO_FATAL_FAILURE(check(d)) << n << ": J " << d.motor.inertia << ", B " << d.motor.friction << ", flux "
+                                      << d.motor.flux << ", pp " << d.motor.pole_pairs << ", alpha " << d.alpha;
+  }
+}
+
+TEST(SpeedController, NoFrictionIsTheLimitOfSmallFriction) {
+  Design d;
+  d.motor.friction = 0.0;
+  check(d);
+  d.motor.friction = 1e-7;
+  check(d);
+}
+
+TEST(SpeedController, RefusesWhatIsOutOfRange) {
+  const machine_model_t m = model_of(Motor{});
+  using Field = std::int32_t speed_controller_config_t::*;
+  const struct {
+    Field field;
+    std::int32_t below, above;
+  } cases[] = {
+      {&speed_controller_config_t::friction_q24, -1, 16777217},     {&speed_controller_config_t::inertia_q24, 167, 16777217},
+      {&speed_controller_config_t::step_periods, 0, 101},           {&speed_controller_config_t::alpha_q8, 255, 25600001},
+      {&speed_controller_config_t::trajectory_ms_q8, 511, 51201},   {&speed_controller_config_t::pi_bandwidth_q8, 255, 51201},
+      {&speed_controller_config_t::pi_damping_q12, 1227, 12289},
+  };
+  for (const auto& c : cases) {
+    for (const std::int32_t bad : {c.below, c.above}) {
+      speed_controller_config_t config = Design{}.config();
+      config.*c.field = bad;
+      speed_controller_t s;
+      EXPECT_FALSE(speed_controller_init(&s, &config, &m)) << bad;
+    }
+  }
+  Design sticky;  // B Ts / J = 1.5: the series no longer holds
+  sticky.motor.friction = 0.9;
+  sticky.motor.inertia = 6e-4;
+  const machine_model_t light = model_of(sticky.motor);
+  const speed_controller_config_t config = sticky.config();
+  speed_controller_t s;
+  EXPECT_FALSE(speed_controller_init(&s, &config, &light));
+}
+
+// (53), one step, from any state.
+TEST(SpeedController, OneStepOfThePredictiveLaw) {
+  Random random(41);
+  const Design d;
+  const machine_model_t m = model_of(d.motor);
+  const speed_controller_config_t c = d.config();
+  speed_controller_t s;
+  ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+  const double b = d.response();
+  const double share = d.alpha * b * b / (d.alpha * b * b + 1.0);
+  for (int n = 0; n < 5000; ++n) {
+    const double before = random.between(-10.0, 10.0);
+    const double w = random.between(-300.0, 300.0);
+    const double reference = w + random.between(-30.0, 30.0);
+    const double ramp = random.between(-1.0, 1.0);
+    const double load = random.between(-8.0, 8.0);
+    const double limit = random.between(1.0, 14.0);
+    speed_controller_preset(&s, raw(before, 20));
+    const auto to_bpp = [&](double mechanical) { return raw(mechanical * d.bpp_per_rad_s(), 0); };
+    const speed_controller_input_t in = {to_bpp(reference), to_bpp(ramp), to_bpp(w), raw(load, 20), raw(limit, 20)};
+    const double target = w + ramp + (reference - w) * -std::expm1(-d.step() / d.trajectory);
+    const double own = before + share / b * (target - d.decay() * w - b * before);
+    const double expected = std::max(-limit, std::min(limit, own + load));
+    const double got = real(speed_controller_step(&s, SPEED_PREDICTIVE, &in), 20);
+    // share and b are right to 3e-4, the deadbeat current is up to 200 A
+    ASSERT_NEAR(got, expected, 0.06) << n;
+    ASSERT_NEAR(real(s.current_q20, 20), got - load, 1e-5);  // what flows for the shaft, after the limit
+    ASSERT_LE(std::fabs(got), limit + 1e-6);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Instructions of the firmware per control interrupt, by source folder and file, from a callgrind record.
+
+Usage: toolchain/isr_cost.py callgrind.out
+
+Only lines of the firmware's own sources count, wherever they were inlined; the virtual chip behind a register access
+and the plant behind it do not. The background loop and the window interrupt are in the sum.
+"""
+
+import re
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+FOLDERS = ("hal/qmath", "hal/f2808", "control", "svpwm", "estimators", "firmware")
+INTERRUPT = "drive_control_interrupt"
+
+
+def names_of(text: str, table: dict[str, str]) -> str:
+    """A name, kept in or looked up from callgrind's compressed table: "(12) name" or "(12)"."""
+    match = re.match(r"\((\d+)\)(?: (.*))?$", text)
+    if not match:
+        return text
+    number, name = match.groups()
+    if name:
+        table[number] = name
+    return table[number]
+
+
+def count(path: Path) -> tuple[dict[str, int], int]:
+    """Self cost by source file, and how often the control interrupt was called."""
+    files: dict[str, str] = {}
+    functions: dict[str, str] = {}
+    cost: dict[str, int] = defaultdict(int)
+    interrupts = 0
+    current = called = ""
+    skip = False
+    for line in path.read_text().splitlines():
+        key, equals, value = line.partition("=")
+        if equals and key in {"fl", "fi", "fe"}:
+            current = names_of(value, files)
+        elif equals and key in {"cfi", "cfl"}:
+            names_of(value, files)
+        elif equals and key == "fn":
+            names_of(value, functions)
+        elif equals and key == "cfn":
+            called = names_of(value, functions)
+        elif equals and key == "calls":
+            interrupts += int(value.split()[0]) if called.startswith(INTERRUPT) else 0
+            skip = True  # the next line is the inclusive cost of the call
+        elif re.match(r"[+\-*\d]", line):
+            if not skip:
+                cost[current] += int(line.split()[1])
+            skip = False
+    return cost, interrupts
+
+
+def folder_of(file: str) -> str | None:
+    """The firmware folder that a source file lies in."""
+    return next((folder for folder in FOLDERS if f"/{folder}/" in file), None)
+
+
+def main() -> int:
+    """Print the table."""
+    cost, interrupts = count(Path(sys.argv[1]))
+    if interrupts == 0:
+        print("isr_cost: no control interrupt in this record", file=sys.stderr)
+        return 1
+    total = 0.0
+    for folder in FOLDERS:
+        rows = {Path(f).name: c / interrupts for f, c in cost.items() if folder_of(f) == folder}
+        if not rows:
+            continue
+        largest = ", ".join(f"{n} {c:.0f}" for n, c in sorted(rows.items(), key=lambda r: -r[1])[:4])
+        print(f"  {folder:12s} {sum(rows.values()):7.0f}   {largest}")
+        total += sum(rows.values())
+    print(f"  {'all':12s} {total:7.0f}   over {interrupts} interrupts")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
