@@ -30,5 +30,5 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
 bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks) {
   const int16_t high = max16(t->leg[0], max16(t->leg[1], t->leg[2]));
   const int16_t low = min16(t->leg[0], min16(t->leg[1], t->leg[2]));
-  return (int16_t)(high - low) < pulse_ticks / 2;
+  return (int16_t)(high - low) < pulse_ticks / 10 * 7;
 }
