@@ -40,11 +40,12 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
   s->decay_q30 = exp_minus_q30(x_q30);
   // b: acceleration per N m (Q12 bpp per period) * Kt (Q24) * periods, to Q8 bpp per A.
   const int32_t accel_per_amp_q8 = q_mul_sat(m->accel_q12, m->torque_q24, 28);
-  s->response_q8 = q_mul_sat(accel_per_amp_q8 * c->step_periods, mean_decay_q30(x_q30), 30);
-  if (s->response_q8 < 256L) return false;
+  s->response_q8 = q_mul_sat(q_sat64((int64_t)accel_per_amp_q8 * c->step_periods), mean_decay_q30(x_q30), 30);
   s->amps_per_bpp = q_div(16777216L, s->response_q8, 24);
+  // A rotor so heavy, or so light, that the gains do not fit.
+  if (s->amps_per_bpp == INT32_MAX || accel_per_amp_q8 > INT32_MAX / c->step_periods) return false;
   // alpha b^2 with b in rad/s (mechanical) per A: b = Kt Ts / J.
-  const int32_t b_q24 = q_mul_sat(q_div(m->torque_q24, c->inertia_q24, 20), step_q30, 26);
+  const int32_t b_q24 = q_mul_sat(q_div(m->torque_q24, c->inertia_q24, 16), step_q30, 22);
   const int32_t weight_q16 = q_mul_sat(q_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
   s->share_q30 = ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30);
   const int32_t ratio_q30 = q_div(c->step_periods * 1000L, q_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
@@ -54,6 +55,7 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
   const int32_t wn_ts_q24 = q_mul_sat(c->pi_bandwidth_q8, step_q30, 14);
   s->pi_kp = q_mul_sat(s->amps_per_bpp, q_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
   s->pi_ki = q_mul_sat(s->amps_per_bpp, q_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
+  if (s->pi_kp == INT32_MAX) return false;
   speed_controller_preset(s, 0);
   return true;
 }

@@ -51,7 +51,8 @@ typedef struct {
   int32_t limit_q20;           // largest |i_q| allowed now, A
 } speed_controller_input_t;
 
-/// Derives the gains. Returns false when a value is out of range.
+/// Derives the gains. Returns false when a value is out of range, or the rotor so heavy or light that an ampere changes
+/// the speed by less than 512 or more than 8 million bpp in a step.
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m);
 
 /// Makes the next step start from this current, e.g. at a change of mode.

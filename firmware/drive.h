@@ -116,9 +116,6 @@ typedef struct {
 
 extern drive_t drive;
 
-/// Clears everything and loads the configuration. The C start-up of the chip does not zero globals.
-void drive_reset(void);
-
 /// Rebuilds the configuration from the parameters; false, with the old one kept, when they do not fit together.
 bool drive_config_load(drive_config_t* c);
 

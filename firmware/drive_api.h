@@ -64,6 +64,8 @@ uint16_t parameter_count(void);
 const parameter_info_t* parameter_info(uint16_t index);
 parameter_result_t parameter_set(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
+/// Why the present parameters cannot be used together, one sentence; NULL when they can.
+const char* parameter_conflict(void);
 
 void drive_command_start(void);
 void drive_command_stop(void);
@@ -71,6 +73,9 @@ void drive_command_stop(void);
 void drive_command_speed(int32_t rpm_q16);
 /// Clears a latched fault; the drive goes back to READY.
 void drive_command_reset(void);
+
+/// Power-on state: clears the drive and puts every parameter to its default. firmware_main does it first.
+void drive_reset(void);
 
 /// The image's entry: never returns.
 void firmware_main(void);

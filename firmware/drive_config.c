@@ -80,8 +80,6 @@ static bool load_position(drive_config_t* c) {
   c->adapt_share_q30 = (p->adapt_time >= 30000L * 256L) ? 0 : q_div(256, p->adapt_time * DRIVE_PERIODS_PER_MS, 30);
   c->saliency_turn_bam = q_mul(p->saliency_angle, 11930465L, 24);  // 2^32 / 360 per degree
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
-  c->slopes.start_samples = HAL_ADC_START_SAMPLES;
-  c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);
 }

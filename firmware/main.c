@@ -1,5 +1,7 @@
 // The image's entry: brings the board up, then serves the watchdog and waits for interrupts.
 
+#include <stddef.h>
+
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 #include "hal/hal_adc.h"
@@ -21,7 +23,7 @@ static void reload(void) {
   static drive_config_t fresh;
   drive.request.reload = false;
   fresh = drive.config;
-  drive.config_valid = drive_config_load(&fresh);
+  drive.config_valid = parameter_conflict() == NULL && drive_config_load(&fresh);
   const uint16_t state = hal_irq_disable();
   if (drive.config_valid) drive.config = fresh;
   if (!drive_is_energised()) {

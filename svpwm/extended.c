@@ -66,8 +66,10 @@ void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
   const order_t o = sort_legs(t->leg);
   const int16_t middle = (SVPWM_FIRST_TICK + SVPWM_LAST_TICK) / 2;
-  // The common part puts the largest and the smallest on-time at equal distance from half the room.
-  const int16_t common = (int16_t)(SVPWM_ROOM_TICKS / 2 - (t->leg[o.hi] + t->leg[o.lo]) / 2);
+  // The common part puts the largest and the smallest on-time at equal distance from half the room, as far as the
+  // shortest pulse allows.
+  const int16_t even = (int16_t)(SVPWM_ROOM_TICKS / 2 - (t->leg[o.hi] + t->leg[o.lo]) / 2);
+  const int16_t common = max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[o.lo]));
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
     const int16_t on = (int16_t)(common + t->leg[k]);
     pulses->rise[k] = (int16_t)(middle - on / 2);

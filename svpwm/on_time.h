@@ -7,8 +7,8 @@
 
 // Shortest pulse and shortest gap: with less, the dead band would swallow the edge.
 #define SVPWM_PULSE_MIN_TICKS 300
-// Largest difference of two on-times that leaves both.
-#define SVPWM_SPREAD_MAX_TICKS (SVPWM_ROOM_TICKS - SVPWM_PULSE_MIN_TICKS)
+// Largest difference of two on-times that leaves both; rounding the legs may add one tick to it.
+#define SVPWM_SPREAD_MAX_TICKS (SVPWM_ROOM_TICKS - SVPWM_PULSE_MIN_TICKS - 1)
 
 typedef struct {
   int16_t leg[SVPWM_LEGS];  // on-time minus the common part, ticks, each rounded so that differences are exact to a tick

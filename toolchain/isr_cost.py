@@ -75,6 +75,13 @@ def main() -> int:
         print(f"  {folder:12s} {sum(rows.values()):7.0f}   {largest}")
         total += sum(rows.values())
     print(f"  {'all':12s} {total:7.0f}   over {interrupts} interrupts")
+    everything = sum(cost.values())
+    shares = {
+        part: sum(c for f, c in cost.items() if f"/sim_host/{part}/" in f) / everything for part in ("plant", "chip")
+    }
+    shares["firmware"] = total * interrupts / everything
+    shares["rest"] = 1.0 - sum(shares.values())  # libraries (mathematics, memory), bench
+    print("  share of all instructions: " + ", ".join(f"{part} {100 * share:.0f} %" for part, share in shares.items()))
     return 0
 
 

@@ -1,5 +1,7 @@
 #include "sim_host/bench/board.hpp"
 
+#include <chrono>
+
 #include "hal/f2808/registers.h"
 
 namespace stillspin::bench {
@@ -11,11 +13,40 @@ constexpr int kChannelLink = 1;
 constexpr int kChannelCurrentB = 8;
 constexpr int kChannelAuxiliary = 9;
 
+constexpr std::uint64_t kTimedEvery = 64;
+
+std::int64_t now_ns() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
 }  // namespace
+
+// Books the time of a plant call, in the periods that are timed.
+class Board::PlantTimer {
+ public:
+  explicit PlantTimer(Board& board) : board_(board), begin_(board.timing_ ? now_ns() : 0) {}
+  ~PlantTimer() {
+    if (board_.timing_) board_.plant_ns_ += now_ns() - begin_;
+  }
+  PlantTimer(const PlantTimer&) = delete;
+  PlantTimer& operator=(const PlantTimer&) = delete;
+
+ private:
+  Board& board_;
+  std::int64_t begin_;
+};
+
+void Board::time_periods() {
+  if (timing_) period_ns_ += now_ns() - period_begin_ns_;
+  timing_ = ++periods_ % kTimedEvery == 0;
+  if (timing_) period_begin_ns_ = now_ns();
+}
 
 Board::Board(const plant::PlantConfig& config, PeriodListener& listener) : plant_(config), listener_(listener) {}
 
 void Board::drive_leg(Tick t, int leg) {
+  const PlantTimer timer(*this);
   plant_.set_gate(t, leg, enabled_ && upper_[leg], enabled_ && lower_[leg]);
 }
 
@@ -27,6 +58,7 @@ void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
 }
 
 std::uint16_t Board::adc_sample(Tick t, int channel) {
+  const PlantTimer timer(*this);
   switch (channel) {
     case kChannelCurrentA: return plant_.adc_code(t, plant::AdcInput::kCurrentA);
     case kChannelCurrentB: return plant_.adc_code(t, plant::AdcInput::kCurrentB);
@@ -77,6 +109,7 @@ void Board::call(Tick t) {
     return;
   }
   next_call_ = t + kPeriod;
+  time_periods();
   listener_.on_period(t);
 }
 

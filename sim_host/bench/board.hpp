@@ -41,6 +41,9 @@ class Board : public chip::World {
   bool gates_enabled() const { return enabled_; }
   std::uint64_t trips() const { return trips_; }
 
+  /// Share of the computing time that went into the plant, from every 64th period; 0 before the first.
+  double plant_share() const { return period_ns_ > 0 ? double(plant_ns_) / double(period_ns_) : 0.0; }
+
   void on_pwm_pins(Tick t, int module, bool a, bool b) override;
   std::uint16_t adc_sample(Tick t, int channel) override;
   bool pin_level(Tick t, int pin) override;
@@ -50,6 +53,8 @@ class Board : public chip::World {
   void call(Tick t) override;
 
  private:
+  class PlantTimer;
+  void time_periods();
   void align(Tick t);
   void watch_enable(Tick t);
   void watch_current(Tick t);
@@ -64,6 +69,11 @@ class Board : public chip::World {
   Tick last_toggle_ = -kEnableTimeout;
   Tick tripped_until_ = -1;
   std::uint64_t trips_ = 0;
+  std::uint64_t periods_ = 0;
+  std::int64_t period_begin_ns_ = 0;
+  std::int64_t period_ns_ = 0;
+  std::int64_t plant_ns_ = 0;
+  bool timing_ = false;
   bool enabled_ = false;
   bool aligned_ = false;
 };

@@ -167,6 +167,8 @@ NB_MODULE(_core, m) {
         nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
         nb::arg("seed"), nb::arg("progress").none(), "One run of the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
+  m.def("check_parameters", &check_parameters, nb::arg("parameters"),
+        "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");
   m.def("signals", &signal_rows, "Name, unit and meaning of the recorded columns.");
   m.def("plant_schema", &schema, "Section -> key -> unit, minimum, maximum, default, help of the plant.");
 }

@@ -29,4 +29,15 @@ std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) 
   throw std::invalid_argument(text.str());
 }
 
+void check_parameters(const std::map<std::string, double>& parameters) {
+  drive_reset();
+  for (const auto& [name, value] : parameters) {
+    unsigned id = 0;
+    const std::int32_t raw = parameter_raw(name, value, id);
+    (void)parameter_set(static_cast<std::uint16_t>(id), raw);
+  }
+  const char* const conflict = parameter_conflict();
+  if (conflict != nullptr) throw std::invalid_argument(std::string("firmware parameters: ") + conflict);
+}
+
 }  // namespace stillspin::bench

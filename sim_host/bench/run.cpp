@@ -154,7 +154,7 @@ void check_request(const RunRequest& r) {
   if (r.record_every < 1) throw std::invalid_argument("record_every must be at least 1");
 }
 
-// Runs to the end of the start procedure, then for the duration. False when the run broke off.
+// Runs to the end of the start procedure, then for the duration. False when the run broke off; a fault ends it.
 bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunResult& result) {
   const Tick latest_start = std::llround(request.max_start / kSecondsPerTick);
   const Tick length = std::llround(request.duration / kSecondsPerTick);
@@ -162,6 +162,8 @@ bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunRe
     const Tick end = director.running() ? director.origin() + length + kPeriod : latest_start;
     if (chip.now() >= end) break;
     chip.run_until(std::min(chip.now() + kChunk, end));
+    if (chip.statistics().resets > 0) result.reason = "the watchdog reset the chip";
+    if (director.running() && !result.faults.empty()) result.reason = "fault: " + result.faults.front().second;
     if (director.broken()) return false;
     const double done = director.running() ? double(chip.now() - director.origin()) / length : 0.0;
     if (request.progress && !request.progress(std::min(done, 1.0))) {
@@ -170,7 +172,6 @@ bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunRe
     }
   }
   if (!director.running()) result.reason = "the start procedure took longer than " + std::to_string(request.max_start) + " s";
-  if (result.reason.empty() && !result.faults.empty()) result.reason = "fault: " + result.faults.front().second;
   return result.reason.empty();
 }
 
@@ -206,7 +207,8 @@ RunResult run(const RunRequest& request) {
                   {"lost_writes", double(s.protected_writes_lost + s.gated_accesses)},
                   {"unmodelled_accesses", double(s.unmodelled_accesses)},
                   {"resets", double(s.resets)},
-                  {"trips", double(board.trips())}};
+                  {"trips", double(board.trips())},
+                  {"plant_share", board.plant_share()}};
   return result;
 }
 

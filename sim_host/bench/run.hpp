@@ -52,6 +52,10 @@ struct RunResult {
 /// Throws std::invalid_argument for what cannot be run (unknown parameter or command, value out of range).
 RunResult run(const RunRequest& request);
 
+/// Checks firmware parameters as the drive would: throws std::invalid_argument for an unknown one, a value out of range or
+/// values that do not fit together.
+void check_parameters(const std::map<std::string, double>& parameters);
+
 /// Raw value of a firmware parameter from user units; throws std::invalid_argument with value, range and unit.
 std::int32_t parameter_raw(const std::string& name, double value, unsigned& id);
 

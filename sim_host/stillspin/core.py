@@ -57,6 +57,10 @@ class NativeCore(Protocol):
         """The firmware's parameter table."""
         ...
 
+    def check_parameters(self, parameters: dict[str, float]) -> None:
+        """Raises ValueError when firmware parameters do not fit together."""
+        ...
+
     def signals(self) -> list[dict[str, Any]]:
         """Name, unit and meaning of every recorded signal."""
         ...

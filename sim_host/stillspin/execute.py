@@ -69,7 +69,13 @@ def prepare(scenario: Scenario, settings: Settings, native: NativeCore) -> list[
         core.parameters(native),
         {str(row["name"]): str(row.get("unit", "")) for row in native.signals()},
     )
-    return [_job(scenario, run, settings, known) for run in scenario.runs]
+    jobs = [_job(scenario, run, settings, known) for run in scenario.runs]
+    for job in jobs:
+        try:
+            native.check_parameters(job.parameters)
+        except ValueError as error:
+            raise InputError(f"scenario {scenario.id}, run {job.run.name}: {error}") from error
+    return jobs
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@
 namespace stillspin::bench {
 namespace {
 
-// Voltage along phase a, of the ideal inverter: 2/3 of 300 V times what leg a is on longer than legs b and c, less twice
-// the dead band, which takes from the leg with positive and adds to the legs with negative current. Through 0.32 Ohm and
-// 4.9 mH, a time constant of 15 ms.
+// Voltage along phase a, of the ideal inverter: 2/3 of 300 V times what leg a is on longer than legs b and c, less
+// twice the dead band, which takes from the leg with positive and adds to the legs with negative current. Through 0.32
+// Ohm and 4.9 mH, a time constant of 15 ms.
 constexpr std::uint16_t kBase = 1000;
 constexpr std::uint16_t kOverload = 2200;  // 23.2 V: 72 A in the end, 19 A after 4.7 ms
 constexpr std::uint16_t kModerate = 1140;  // 2.0 V: 6.25 A in the end

@@ -86,9 +86,7 @@ Rig::Rig(const plant::PlantConfig& config) : board(config, *this), chip(board, r
   board.attach(chip);
 }
 
-void Rig::on_period(Tick t) {
-  starts.push_back({t, chip.inspect(EPWM_BASE(1) + EPWM_TBCTR), rig_firmware.periods});
-}
+void Rig::on_period(Tick t) { starts.push_back({t, chip.inspect(EPWM_BASE(1) + EPWM_TBCTR), rig_firmware.periods}); }
 
 void Rig::run_until(Tick t) {
   while (chip.now() < t) {

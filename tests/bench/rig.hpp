@@ -1,5 +1,6 @@
 // Chip, board and plant under a firmware that does as the test says: it holds constant pulses through the drivers of
-// hal/ and keeps the gate enable alive, and nothing else. It protects nothing, so that what stops the current is the board.
+// hal/ and keeps the gate enable alive, and nothing else. It protects nothing, so that what stops the current is the
+// board.
 
 #ifndef STILLSPIN_TESTS_BENCH_RIG_HPP
 #define STILLSPIN_TESTS_BENCH_RIG_HPP
@@ -21,7 +22,7 @@ struct RigFirmware {
   bool gates_refused = false;  // hal_pwm_gates_on has returned false
   bool toggle = true;          // keep the gate enable alive
   bool tripped_by_pin = false;
-  std::uint64_t periods = 0;   // control interrupts so far
+  std::uint64_t periods = 0;  // control interrupts so far
 };
 
 extern RigFirmware rig_firmware;
@@ -68,8 +69,8 @@ class Rig final : public PeriodListener {
 };
 
 inline constexpr std::uint16_t kRigDeadBand = 20;  // ticks: small, so that small pulses still drive a current
-inline constexpr std::uint16_t kRigBurst = 7000;  // tick of the window's last burst: after every pulse
-inline constexpr Tick kRigReady = 3'000'000;  // 30 ms: clock, PWM and ADC are up, control interrupts come
+inline constexpr std::uint16_t kRigBurst = 7000;   // tick of the window's last burst: after every pulse
+inline constexpr Tick kRigReady = 3'000'000;       // 30 ms: clock, PWM and ADC are up, control interrupts come
 
 }  // namespace stillspin::bench
 

@@ -58,7 +58,7 @@ void check(const Design& wanted) {
   ASSERT_NEAR(real(s.response_q8, 8), b_bpp, 0.01 + b_bpp * relative);
   ASSERT_NEAR(real(s.amps_per_bpp, 40) * b_bpp, 1.0, relative + 1e-5 + 0.5 / s.amps_per_bpp);
   // (54): k b = alpha b^2 / (alpha b^2 + 1). The controller takes b without the small factor of (49): B Ts / 2 J of it.
-  const double weight = d.alpha * b * b;
+  const double weight = d.alpha * std::min(b * b, 128.0);  // 128: the end of the format, k b is 0.99 there
   const double exact = weight / (weight + 1.0);
   const double x = d.motor.friction * d.step() / d.motor.inertia;
   ASSERT_NEAR(real(s.share_q30, 30), exact, 2e-4 + (x + 2e-3) * exact * (1.0 - exact) + 2e-5 / (weight + 1.0));
@@ -67,14 +67,18 @@ void check(const Design& wanted) {
   const double j_kt = d.motor.inertia / d.motor.torque_constant() / d.bpp_per_rad_s();
   const double kp = 2.0 * d.damping * d.bandwidth * j_kt;
   const double ki = d.bandwidth * d.bandwidth * d.step() * j_kt;
-  ASSERT_NEAR(real(s.pi_kp, 40), kp, real(2, 40) + kp * (3e-3 + x + relative));
-  ASSERT_NEAR(real(s.pi_ki, 40), ki, real(2, 40) + ki * (4e-3 + x + relative));
+  // the bandwidth has 8 fractional bits, and (wn Ts)^2 24
+  const double wn_relative = 1.0 / 512.0 / d.bandwidth + 1e-3;
+  const double square = d.bandwidth * d.bandwidth * d.step() * d.step();
+  ASSERT_NEAR(real(s.pi_kp, 40), kp, real(2, 40) + kp * (wn_relative + x + relative));
+  ASSERT_NEAR(real(s.pi_ki, 40), ki, real(2, 40) + ki * (2.0 * wn_relative + x + relative + real(1, 24) / square));
 }
 
 TEST(SpeedController, CoefficientsOfMotorA) { check(Design{}); }
 
 TEST(SpeedController, CoefficientsOfRandomDrives) {
   Random random(40);
+  int used = 0;
   for (int n = 0; n < 3000; ++n) {
     Design d;
     d.motor.inertia = random.log_between(2e-4, 0.1);
@@ -86,9 +90,35 @@ TEST(SpeedController, CoefficientsOfRandomDrives) {
     d.trajectory = random.log_between(2.2e-3, 0.19);
     d.bandwidth = random.log_between(2.0, 190.0);
     d.damping = random.between(0.31, 2.9);
+    const double gain = std::max(1.0, 2.0 * d.damping * d.bandwidth * d.step());
+    if (d.response() * d.bpp_per_rad_s() < 520.0 * gain) continue;  // too heavy for the gains' format
+    if (d.response() * d.bpp_per_rad_s() > 8.3e6) continue;  // too light
+    used++;
     ASSERT_NO_FATAL_FAILURE(check(d)) << n << ": J " << d.motor.inertia << ", B " << d.motor.friction << ", flux "
                                       << d.motor.flux << ", pp " << d.motor.pole_pairs << ", alpha " << d.alpha;
   }
+  EXPECT_GT(used, 1500);
+}
+
+// With 1/b at the end of its format the loop would be silently too slow.
+TEST(SpeedController, RefusesRotorsThatAreTooHeavyOrTooLight) {
+  for (const double inertia : {0.4, 0.6, 0.99}) {
+    Design d;
+    d.motor.inertia = inertia;
+    const machine_model_t m = model_of(d.motor);
+    const speed_controller_config_t c = d.config();
+    speed_controller_t s;
+    EXPECT_EQ(speed_controller_init(&s, &c, &m), inertia < 0.5) << inertia;
+  }
+  Design light;  // 7 N m per A on 1e-4 kg m2: more than 8 million bpp per A and step
+  light.motor.inertia = 1.01e-4;
+  light.motor.friction = 0.0;
+  light.motor.flux = 0.9;
+  light.motor.pole_pairs = 5;
+  const machine_model_t m = model_of(light.motor);
+  const speed_controller_config_t c = light.config();
+  speed_controller_t s;
+  EXPECT_FALSE(speed_controller_init(&s, &c, &m));
 }
 
 TEST(SpeedController, NoFrictionIsTheLimitOfSmallFriction) {

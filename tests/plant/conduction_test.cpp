@@ -117,34 +117,35 @@ TEST(Conduction, ClampHoldsWhileTheRotorTurns) {
     EXPECT_NEAR(i_c, 0.0, 1e-8) << t;  // Hermite error over 25 us
     largest = std::max(largest, s.current[0]);
   }
-  EXPECT_GT(largest, 2.0);
+  EXPECT_GT(largest, 1.0);
 }
 
 TEST(Conduction, DoubleCrossingInsideOneSegmentIsSeen) {
-  // Short circuit at high speed with a dc part: some phase current dips below zero and comes back. In steps of 100 us
-  // its ends show nothing of it; for the time of the dip the drops of the leg have the other sign (1.9 V, up to 0.02
-  // A).
+  // Short circuit at high speed with a dc part of the currents, such that one phase current dips below zero and
+  // comes back. In steps of 50 us its ends show nothing of it; for the time of the dip the drops of the leg have the
+  // other sign (1.9 V: 0.01 A).
   std::uint64_t grazing = 0;
   double worst = 0.0;
-  for (int n = 0; n < 400; ++n) {
+  for (int n = 0; n < 100; ++n) {
     const auto run = [&](Tick segment) {
       PlantConfig c;
       c.mechanics.inertia = 1e6;
       c.link.stiff = true;
       c.initial.speed = 300.0;
-      c.initial.angle = n * 0.0157;
+      c.machine.saturation = false;            // 80 A are outside of the map
+      c.initial.current_d = 44.23 + 4e-4 * n;  // phase c reaches for zero at 6.3 ms
       c.solver.max_segment = segment;
       Plant plant(c);
       for (int leg = 0; leg < 3; ++leg) plant.set_gate(0, leg, false, true);
-      plant.advance(1'000'000);
+      plant.advance(700'000);
       grazing += segment > 1000 ? plant.stats().grazing : 0;
       return plant.state().current;
     };
-    const auto coarse = run(10000), fine = run(500);
+    const auto coarse = run(5000), fine = run(500);
     for (int k = 0; k < 3; ++k) worst = std::max(worst, std::fabs(coarse[k] - fine[k]));
   }
   EXPECT_GT(grazing, 3u) << "the scenario must contain what it tests";
-  EXPECT_LT(worst, 5e-4);  // RK4 at 1200 rad/s over 100 us; sixth harmonic 0.7 rad per step
+  EXPECT_LT(worst, 5e-4);  // of 60 A: RK4 at 1200 rad/s over 50 us, and a sixth harmonic of 0.36 rad per step
 }
 
 TEST(Conduction, FastRotorRectifiesIntoTheLink) {

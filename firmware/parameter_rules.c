@@ -1,0 +1,22 @@
+// What the table's ranges cannot say: which parameters must fit together.
+
+#include <stddef.h>
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+
+#define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
+
+const char* parameter_conflict(void) {
+  static drive_config_t trial;
+  const parameters_t* const p = &parameters;
+  if (p->inductance_q < p->inductance_d) return "inductance_q must be at least inductance_d";
+  if (p->blend_high <= p->blend_low) return "blend_high must be above blend_low";
+  if (p->window_maximum < p->window_minimum) return "window_maximum must be at least window_minimum";
+  if (p->link_maximum <= p->link_minimum) return "link_maximum must be above link_minimum";
+  if (p->dead_time + p->turn_on_delay < p->turn_off_delay) return "turn_off_delay must not exceed dead_time + turn_on_delay";
+  if (p->dead_time + p->turn_on_delay > EDGE_SHIFT_MAX_Q16) return "dead_time + turn_on_delay must not exceed 2.4 us";
+  if (p->trip_current < p->current_limit) return "trip_current must be at least current_limit";
+  trial = drive.config;
+  return drive_config_load(&trial) ? NULL : "the machine's parameters are too extreme together: inertia, flux, inductances";
+}
