@@ -21,7 +21,7 @@ static int32_t feed_forward_q20(const field_weakening_input_t* in, const machine
 }
 
 int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {
-  const int32_t forward = q_min(feed_forward_q20(in, m), 0);
+  const int32_t forward = q_clamp(feed_forward_q20(in, m), -in->current_limit_q20, 0);
   const int32_t left = q_sub_sat(in->voltage_limit_q16, in->voltage_q16);
   const int32_t trim = q_add_sat(s->trim_q20, q_mul_sat(left, in->trim_gain_q20, 16));
   // The trim may take back no more than the feed-forward gives, and add no more than the limit leaves.

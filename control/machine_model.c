@@ -38,7 +38,8 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
 }
 
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {
-  return m->torque_q24 + q_mul(m->reluctance_q24, id_q20, 20);
+  // With a large positive i_d the reluctance would turn the sign; nobody wants to run there, and it is divided by.
+  return q_max(m->torque_q24 + q_mul(m->reluctance_q24, id_q20, 20), m->torque_q24 / 4);
 }
 
 int32_t machine_torque_q16(const machine_model_t* m, dq_t current_q20) {

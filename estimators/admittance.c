@@ -1,7 +1,7 @@
 #include "estimators/admittance.h"
 
 void admittance_init(admittance_t* s, const machine_model_t* m) {
-  s->nominal_mean_q30 = (m->yd_q30 + m->yq_q30) / 2;
+  s->nominal_mean_q30 = m->yd_q30 / 2 + m->yq_q30 / 2;
   s->nominal_half_q30 = (m->yd_q30 - m->yq_q30) / 2;
   s->mean_q30 = s->nominal_mean_q30;
   s->half_q30 = s->nominal_half_q30;
@@ -15,7 +15,9 @@ void admittance_step(admittance_t* s, const avv_regression_t* r, int32_t share_q
   const int32_t mean = s->mean_q30 + q_mul(error_q30(r->along_q16, r->spread_q8), share_q30, 30);
   const int32_t half = s->half_q30 + q_mul(error_q30(r->mirror_q16, r->spread_q8), share_q30, 30);
   s->mean_q30 = q_clamp(mean, s->nominal_mean_q30 / 4 * 3, s->nominal_mean_q30 / 2 * 3);
-  s->half_q30 = q_clamp(half, s->nominal_half_q30 / 3, s->nominal_half_q30 * 2);
+  // Both admittances stay positive, whatever the windows say.
+  const int32_t half_max = q_min(q_shl_sat(s->nominal_half_q30, 1), s->mean_q30 / 10 * 9);
+  s->half_q30 = q_clamp(half, q_min(s->nominal_half_q30 / 3, half_max), half_max);
 }
 
 void admittance_apply(const admittance_t* s, machine_model_t* m) {

@@ -89,7 +89,18 @@ static gain_t gain_row(const int32_t inverse[4], int32_t p_a, int32_t p_s) {
 
 static int32_t reduced(int32_t p, gain_t k, gain_t g) { return p - q_mul(k.a, g.a, 16) - q_mul(k.s, g.s, 16); }
 
-static int32_t positive(int32_t variance) { return q_clamp(variance, 16, VARIANCE_MAX); }
+static int32_t positive(int32_t variance) { return q_max(variance, 16); }
+
+// Takes a variance back to its limit, and its two covariances with it: else a correlation would exceed one while a state
+// is not observed, and the covariances would grow until they overflow.
+static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2) {
+  if (*variance <= VARIANCE_MAX) return;
+  // 1 - excess / (2 limit), at most sqrt(limit / variance), as Q30: the limit is 2^29.
+  const int32_t keep_q30 = 1073741824L - q_min(*variance - VARIANCE_MAX, VARIANCE_MAX);
+  *covariance1 = q_mul(*covariance1, keep_q30, 30);
+  *covariance2 = q_mul(*covariance2, keep_q30, 30);
+  *variance = VARIANCE_MAX;
+}
 
 static int32_t scored(gain_t k, const information_t* n) {
   return q_add_sat(q_mul_sat(k.a, n->a, 20), q_mul_sat(k.s, n->s, 20));
@@ -118,6 +129,21 @@ static void update(deviation_observer_t* s, const information_t* n) {
   s->p_as = reduced(s->p_as, ka, gs);
   s->p_ss = positive(reduced(s->p_ss, ks, gs));
   s->p_aa = positive(reduced(s->p_aa, ka, ga));
+  limit(&s->p_aa, &s->p_as, &s->p_al);
+  limit(&s->p_ss, &s->p_as, &s->p_sl);
+  limit(&s->p_ll, &s->p_al, &s->p_sl);
+}
+
+// More information than the formats hold counts as less, all of it alike, or the update would overshoot.
+static void bound(information_t* n) {
+  const int32_t largest = q_max(n->aa, n->ss);
+  if (largest <= INFORMATION_MAX) return;
+  const int32_t share_q30 = q_div(INFORMATION_MAX, largest, 30);
+  n->aa = q_mul(n->aa, share_q30, 30);
+  n->as = q_mul(n->as, share_q30, 30);
+  n->ss = q_mul(n->ss, share_q30, 30);
+  n->a = q_mul(n->a, share_q30, 30);
+  n->s = q_mul(n->s, share_q30, 30);
 }
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
@@ -128,8 +154,7 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
     if (c->zero_vectors_only && !in->windows[k].zero_vector) continue;
     collect_window(&n, s, c, in->model, &in->windows[k]);
   }
-  n.aa = q_min(n.aa, INFORMATION_MAX);
-  n.ss = q_min(n.ss, INFORMATION_MAX);
+  bound(&n);
   update(s, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);
   const estimator_output_t out = {s->angle_bam, s->speed_bpp, s->load_accel_q8, q_max(certainty, 0)};

@@ -65,6 +65,7 @@ typedef struct {
   admittance_t admittance;
   sensor_match_t sensors;
   tracking_observer_t encoder;
+  uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
 } drive_position_t;
 
 typedef struct {
@@ -100,6 +101,7 @@ typedef struct {
   int32_t limits;
   uint32_t periods;         // since the state was entered
   uint16_t millisecond;     // period inside the millisecond
+  uint16_t heartbeat;       // counts control interrupts, for the watchdog
   uint16_t polarity_tries;
   polarity_t polarity;
   machine_model_t model;  // nameplate, with adapted admittances

@@ -9,7 +9,7 @@
 drive_t drive;
 
 void drive_reset(void) {
-  static const drive_t empty;
+  static const drive_t empty = {0};
   drive = empty;
   sampling_reset();
   parameters_reset();

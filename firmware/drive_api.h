@@ -32,7 +32,8 @@ typedef enum {
   FAULT_DIVERGENCE = 7,      // the estimators disagree, or the speed is not plausible
   FAULT_POLARITY = 8,        // the polarity of the magnet could not be told
   FAULT_OFFSET = 9,          // a current offset is implausible
-  FAULT_PARAMETER = 10       // a parameter is not usable with the others
+  FAULT_PARAMETER = 10,      // parameters not usable together, or an interrupt that nobody expects
+  FAULT_GATES_OFF = 11       // the gates were switched off behind the drive's back
 } drive_fault_t;
 
 typedef enum { LIMIT_CURRENT = 1, LIMIT_VOLTAGE = 2, LIMIT_WEAKENING = 4, LIMIT_OVERRUN = 8 } drive_limit_t;
@@ -71,7 +72,7 @@ void drive_command_start(void);
 void drive_command_stop(void);
 /// Mechanical speed reference, rpm Q16; clamped to the speed limit.
 void drive_command_speed(int32_t rpm_q16);
-/// Clears a latched fault; the drive goes back to READY.
+/// Clears a latched fault; the drive calibrates its offsets again and is READY.
 void drive_command_reset(void);
 
 /// Power-on state: clears the drive and puts every parameter to its default. firmware_main does it first.

@@ -4,6 +4,7 @@
 #include "firmware/parameters.h"
 #include "hal/hal_adc.h"
 
+#define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
 #define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
@@ -22,7 +23,7 @@ static bool load_machine(drive_config_t* c) {
   m.inertia_q24 = p->inertia;
   m.pole_pairs = p->pole_pairs;
   m.period_us = DRIVE_PERIOD_US;
-  if (!machine_model_init(&c->nameplate, &m)) return false;
+  if (!machine_model_init(&c->nameplate, &m) || c->nameplate.yd_q30 > ADMITTANCE_MAX_Q30) return false;
   // rpm to binary angle per period: pole pairs / 60 s * T * 2^32 = 7158.2788 per pole pair.
   c->bpp_per_rpm_q8 = p->pole_pairs * 1832519L;
   c->rpm_per_bpp_q40 = q_div(16777216L, c->bpp_per_rpm_q8, 24);

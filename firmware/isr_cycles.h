@@ -1,16 +1,17 @@
 // Run time of the steps of the control interrupt on the chip, in cycles of SYSCLKOUT: what the virtual chip lets pass.
 //
-// Estimates: instructions counted natively, times 1.3 for wait states and 32-bit arithmetic on a 16-bit data path. They
-// make a compare value that is written too late be seen too late; they are no measurement of the compiler's code.
+// Estimates, no measurement of the compiler's code: operations counted over whole runs (420 32 x 32 bit products with
+// rounding, 67 upper halves, 13 divisions, 133 saturations per period) at 13, 6, 250 and 8 cycles, shared out over the
+// steps by their instructions. They make a compare value that is written too late be seen too late.
 
 #ifndef STILLSPIN_FIRMWARE_ISR_CYCLES_H
 #define STILLSPIN_FIRMWARE_ISR_CYCLES_H
 
-#define CYCLES_READ_SAMPLES 700u
-#define CYCLES_ESTIMATE 3000u
+#define CYCLES_READ_SAMPLES 1200u
+#define CYCLES_ESTIMATE 4500u
 #define CYCLES_SUPERVISE 100u
-#define CYCLES_CONTROL 400u
-#define CYCLES_MODULATE 1600u
+#define CYCLES_CONTROL 500u
+#define CYCLES_MODULATE 2200u
 #define CYCLES_WINDOW 60u
 
 #endif

@@ -29,7 +29,8 @@ static void reload(void) {
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
-    (void)hal_pwm_set_dead_band(dead_band_ticks());
+    hal_encoder_init((uint32_t)parameters.encoder_counts);
+    if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(dead_band_ticks());
   }
   hal_irq_restore(state);
 }
@@ -48,11 +49,14 @@ void firmware_main(void) {
   hal_watchdog_start();
   hal_irq_enable();
   uint32_t served = hal_time_cycles();
+  uint16_t seen = drive.heartbeat;
   for (;;) {
     hal_idle();
     if (drive.request.reload) reload();
-    if (hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {
+    // The watchdog is served for a control interrupt that lives, not for a background loop that does.
+    if (drive.heartbeat != seen && hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {
       served = hal_time_cycles();
+      seen = drive.heartbeat;
       hal_watchdog_service();
     }
   }

@@ -43,9 +43,13 @@ static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) 
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
-// The reference encoder: angle from the count; the tracking observer of AVV makes a speed of it.
+// The reference encoder: angle from the count and the offset found at the start; a tracking observer makes a speed of it.
+static uint32_t encoder_angle(const drive_t* d) {
+  return position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, parameters.encoder_counts);
+}
+
 static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in) {
-  const uint32_t angle = position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, parameters.encoder_counts);
+  const uint32_t angle = encoder_angle(d) + d->position.encoder_offset_bam;
   tracking_observer_predict(&d->position.encoder, in->torque_accel_q8);
   tracking_observer_correct(&d->position.encoder, angle_diff_bam(angle, d->position.encoder.angle_bam),
                             d->config.avv.bandwidth_long_q30);
@@ -92,7 +96,7 @@ void drive_estimate(drive_t* d) {
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
   const bool encoder = parameters.position_source == 0;
-  d->position.used = (starting && !encoder) ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
+  d->position.used = starting ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
   if (!encoder) turn_to_rotor(d, &d->position.used);
 }
 
@@ -105,7 +109,9 @@ void position_preset(drive_t* d, uint32_t angle_bam) {
   const estimator_output_t still = {angle_bam, 0, 0, 0};
   p->low = still;
   p->high = still;
-  if (parameters.position_source != 0) p->used = still;
+  p->used = still;
+  p->encoder_offset_bam = angle_bam - encoder_angle(d);
+  tracking_observer_preset(&p->encoder, angle_bam, 0, 0);
 }
 
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {

@@ -41,6 +41,7 @@ static bool diverged(drive_t* d) {
 
 static drive_fault_t check(drive_t* d) {
   if (hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
+  if (hal_pwm_is_tripped()) return FAULT_GATES_OFF;
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
   if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
   if (over_current(d)) return FAULT_CURRENT_LIMIT;

@@ -7,6 +7,7 @@
 #include "firmware/isr_cycles.h"
 #include "firmware/sampling.h"
 #include "hal/hal_adc.h"
+#include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "svpwm/ripple.h"
 
@@ -28,10 +29,11 @@ void drive_window_interrupt(void) {
 }
 
 const sampling_buffer_t* sampling_swap(void) {
+  const uint16_t state = hal_irq_disable();
   const uint16_t full = sampling_filling;
-  const uint16_t next = (uint16_t)(1u - full);
-  sampling_buffers[next].count = 0;  // before the switch: the window interrupt may come in between
-  sampling_filling = next;
+  sampling_filling = (uint16_t)(1u - full);
+  sampling_buffers[sampling_filling].count = 0;
+  hal_irq_restore(state);
   return &sampling_buffers[full];
 }
 

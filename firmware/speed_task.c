@@ -3,11 +3,9 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define INV_SQRT3_Q30 619925131L
-
 static int32_t voltage_limit(const drive_t* d) {
   const int32_t share_q30 = q_mul(parameters.voltage_use, 10737418L, 16);  // percent to Q30
-  return q_mul(q_mul(d->samples.link_q16, INV_SQRT3_Q30, 30), share_q30, 30);
+  return q_mul(q_mul(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30), share_q30, 30);
 }
 
 static void weaken_field(drive_t* d) {
@@ -21,7 +19,7 @@ static void weaken_field(drive_t* d) {
   in.trim_gain_q20 = parameters.weakening_gain;
   const int32_t weakening = field_weakening_step(&c->weakening, &in, &d->model);
   const int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
-  c->reference_q20.d = q_add_sat(weakening, bias);
+  c->reference_q20.d = q_clamp(q_add_sat(weakening, bias), -parameters.current_limit, parameters.current_limit);
   if (weakening < 0) d->limits |= LIMIT_WEAKENING;
 }
 

@@ -4,10 +4,12 @@
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "firmware/sampling.h"
+#include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 
 #define CALIBRATE_PERIODS 256u
+#define SAMPLES_TIMEOUT 2000u
 #define OFFSET_MAX_Q8 (100L * 256L)  // codes off the middle: about 1 A on a 20 A range
 #define SETTLE_PERIODS 200u          // for the angle to be found with the power stage on
 #define CLOSED_PERIODS 100u          // for the current loop to settle at zero
@@ -20,6 +22,7 @@ static void enter(drive_t* d, drive_state_t state) {
 
 static void calibrate(drive_t* d) {
   slopes_config_t* const c = &d->config.slopes;
+  if (d->periods > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
   if (d->samples.count == 0u) return;
   c->offset_a_q8 += q_shr(d->samples.raw_a_q8 - c->offset_a_q8, 4);
   c->offset_b_q8 += q_shr(d->samples.raw_b_q8 - c->offset_b_q8, 4);
@@ -34,10 +37,12 @@ static void calibrate(drive_t* d) {
 }
 
 static void begin_start(drive_t* d) {
-  if (!d->config_valid || !d->control.speed_ready) {
+  if (!d->config_valid || !d->control.speed_ready || hal_irq_unexpected_count() != 0u) {
     drive_raise(d, FAULT_PARAMETER);
     return;
   }
+  static const drive_supervision_t healthy = {0, 0, 0};
+  d->supervision = healthy;
   d->polarity_tries = 0;
   d->model = d->config.nameplate;
   admittance_init(&d->position.admittance, &d->model);
@@ -56,7 +61,7 @@ static void begin_start(drive_t* d) {
 }
 
 static void begin_run(drive_t* d, uint32_t angle_bam) {
-  if (parameters.position_source != 0) position_preset(d, angle_bam);
+  position_preset(d, angle_bam);
   speed_controller_preset(&d->control.speed, 0);
   d->control.reference_q20.q = 0;
   enter(d, DRIVE_RUN);
@@ -84,11 +89,6 @@ static void judge_polarity(drive_t* d) {
 }
 
 static void start(drive_t* d) {
-  if (parameters.position_source == 0 && d->periods > SETTLE_PERIODS) {
-    d->control.closed = true;
-    begin_run(d, 0);
-    return;
-  }
   d->control.closed = d->periods > SETTLE_PERIODS;
   if (d->periods < SETTLE_PERIODS + CLOSED_PERIODS) return;
   if (parameters.polarity_check == 0) {
@@ -114,14 +114,23 @@ static void stop(drive_t* d) {
   enter(d, DRIVE_READY);
 }
 
+// Opens the power stage at once and goes back to READY.
+static void abandon_start(drive_t* d) {
+  hal_pwm_gates_off();
+  d->control.closed = false;
+  enter(d, DRIVE_READY);
+}
+
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
+  if (r->reload) return;  // first the changed parameters, then the start
+  if (d->state == DRIVE_START && r->stop) abandon_start(d);
   if (d->state == DRIVE_READY && r->start) begin_start(d);
   if (d->state == DRIVE_RUN && r->stop) enter(d, DRIVE_STOP);
   if (d->state == DRIVE_FAULT && r->reset) {
     d->fault = FAULT_NONE;
     hal_safety_fault_lamp(false);
-    enter(d, DRIVE_READY);
+    enter(d, DRIVE_CALIBRATE);
   }
   r->start = false;
   r->stop = false;
@@ -130,6 +139,7 @@ static void take_requests(drive_t* d) {
 
 void drive_sequence(drive_t* d) {
   d->periods++;
+  d->heartbeat++;
   hal_safety_toggle_enable();
   switch (d->state) {
     case DRIVE_BOOT: enter(d, DRIVE_CALIBRATE); break;

@@ -29,6 +29,7 @@ const char* fault_name(std::int32_t fault) {
     case FAULT_POLARITY: return "polarity of the magnet ambiguous";
     case FAULT_OFFSET: return "current offset implausible";
     case FAULT_PARAMETER: return "parameters do not fit together";
+    case FAULT_GATES_OFF: return "gates switched off unexpectedly";
     default: return "unknown fault";
   }
 }

@@ -42,9 +42,10 @@ TEST(Alignment, TrueAndUsedAngleAreOfOneInstant) {
   ASSERT_NEAR(column(result, "true_speed").back(), 1500.0, 5.0);
 
   // 1500 rpm with 4 pole pairs is 3.6 degrees el. a period; one count of the encoder is 0.35 degrees el., so the mean
-  // lags by half a count, and the tracking observer adds a little of its own.
+  // lags by half a count, and the zero found at the start is as good as AVV was then. Half of the 3.6 degrees tells a
+  // row of the same instant from one of the next.
   const ErrorRange same = error_of(result, 0);
-  EXPECT_NEAR(same.mean, 0.18, 0.3);
+  EXPECT_NEAR(same.mean, 0.18, 1.8);
   EXPECT_LT(same.highest - same.lowest, 1.0);
   // The measure itself must see a shift of one row.
   EXPECT_NEAR(error_of(result, 1).mean - same.mean, 3.6, 0.1);

@@ -38,6 +38,7 @@ TEST(Determinism, ARunDoesNotDependOnTheRunBefore) {
   const RunResult fresh = run(request(5));
   RunRequest different = request(9);
   different.parameters["current_limit"] = 6.0;
+  different.parameters["weakening_limit"] = 6.0;
   different.parameters["speed_ramp"] = 500.0;
   different.parameters["dead_time"] = 1.5;
   different.commands = {{0.0, "speed_ref_rpm", -200.0}};

@@ -1,0 +1,108 @@
+// Dead-time compensation against a leg in double precision: two devices with delays, two diodes, a dead band.
+
+#include "tests/svpwm/period.hpp"
+
+extern "C" {
+#include "svpwm/dead_time.h"
+#include "svpwm/ripple.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kDeadTicks = 200.0, kTurnOn = 30.0, kTurnOff = 60.0;
+constexpr double kLink = 300.0;
+
+dead_time_config_t config() {
+  return {static_cast<std::int16_t>(kDeadTicks + kTurnOn), static_cast<std::int16_t>(kTurnOff), raw(0.2, 20),
+          raw(0.95, 16)};
+}
+
+/// When the leg's voltage really changes. The commanded edge switches one device off at once and the other on after the
+/// dead band; each follows after its own delay. A current out of the leg (i > 0) is carried by the lower diode whenever
+/// the upper device is off, a current into it by the upper diode whenever the lower device is off.
+double edge_at_motor(double command, bool rising, double current) {
+  const double off = command + kTurnOff;
+  const double on = command + kDeadTicks + kTurnOn;
+  if (rising) return (current > 0.0) ? on : off;  // the upper device must turn on, or the lower one lets go
+  return (current > 0.0) ? off : on;
+}
+
+double phase(Vector i, int leg) { return legs_of(i)[static_cast<std::size_t>(leg)]; }
+
+svpwm_pulses_t some_pulses(Random& random) {
+  modulator_config_t c = default_modulator();
+  modulator_t s;
+  modulator_reset(&s);
+  svpwm_pattern_t p;
+  modulator_step(&s, &c, static_cast<excitation_t>(random.below(3)), raw_ab(random.direction(random.between(0.0, 90.0)), 16),
+                 raw(kLink, 16), &p);
+  return p.pulses;
+}
+
+TEST(DeadTime, TheMotorSeesTheWantedEdges) {
+  Random random(120);
+  const Motor motor;
+  const dead_time_config_t c = config();
+  const double y = 0.5 * kPeriod * (1.0 / motor.ld + 1.0 / motor.lq);
+  int positive = 0, negative = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const svpwm_pulses_t wanted = some_pulses(random);
+    const Vector mean = random.direction(random.between(0.0, 12.0));
+    svpwm_pulses_t command;
+    dead_time_compensate(&c, &wanted, raw_ab(mean, 20), raw(y, 30), raw(kLink, 16), &command);
+    for (int leg = 0; leg < 3; ++leg) {
+      for (const bool rising : {true, false}) {
+        const std::int16_t edge = rising ? wanted.rise[leg] : wanted.fall[leg];
+        const std::int16_t sent = rising ? command.rise[leg] : command.fall[leg];
+        // what counts is the current at the edge: mean and ripple
+        const Vector flux = real(svpwm_ripple_q16(&wanted, edge, raw(kLink, 16)), 16);
+        const double current = phase(mean + flux * y, leg);
+        ASSERT_GE(sent, 1);
+        ASSERT_LE(sent, 9999);
+        if (std::fabs(current) < 0.202) {
+          // inside the band the shift is between the two
+          ASSERT_GE(edge - sent, kTurnOff - 1);
+          ASSERT_LE(edge - sent, kDeadTicks + kTurnOn + 1);
+          continue;
+        }
+        (current > 0.0 ? positive : negative)++;
+        ASSERT_NEAR(edge_at_motor(sent, rising, current), edge, 1.0) << current << ", leg " << leg << rising;
+      }
+    }
+  }
+  EXPECT_GT(positive, 3000);
+  EXPECT_GT(negative, 3000);
+}
+
+TEST(DeadTime, InTheBandTheShiftIsLinear) {
+  const dead_time_config_t c = config();
+  const svpwm_pulses_t wanted = {{2000, 2000, 2000}, {7000, 7000, 7000}};  // 000 and 111: no ripple
+  for (double i = -0.2; i <= 0.2; i += 0.02) {
+    svpwm_pulses_t command;
+    dead_time_compensate(&c, &wanted, raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16), &command);
+    const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
+    const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
+    EXPECT_NEAR(wanted.rise[0] - command.rise[0], middle + half * i / 0.2, 0.51) << i;
+    EXPECT_NEAR(wanted.fall[0] - command.fall[0], middle - half * i / 0.2, 0.51) << i;
+  }
+}
+
+TEST(DeadTime, DropOpposesEachPhaseCurrent) {
+  Random random(121);
+  const dead_time_config_t c = config();
+  for (int n = 0; n < 3000; ++n) {
+    const Vector i = random.direction(random.between(0.0, 10.0));
+    const auto phases = legs_of(i);
+    double drop[3];
+    for (std::size_t k = 0; k < 3; ++k) drop[k] = 0.95 * std::max(-1.0, std::min(1.0, phases[k] / 0.2));
+    const Vector expected = {(2.0 * drop[0] - drop[1] - drop[2]) / 3.0, (drop[1] - drop[2]) / std::sqrt(3.0)};
+    const Vector got = real(dead_time_drop_q16(&c, raw_ab(i, 20)), 16);
+    // signs have 15 bits and reach 32767 / 32768: 3e-5 of 0.95 V in three phases
+    ASSERT_NEAR(got.x, expected.x, 1.2e-4);
+    ASSERT_NEAR(got.y, expected.y, 1.2e-4);
+  }
+}
+
+}  // namespace

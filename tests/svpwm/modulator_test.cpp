@@ -1,0 +1,130 @@
+// The modulator as a whole: means over sequences of periods, changes of layout, limits, windows of each layout.
+
+#include "tests/svpwm/period.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kLink = 300.0;
+
+TEST(Modulator, EveryLayoutGivesTheCommandedMean) {
+  Random random(100);
+  const modulator_config_t c = default_modulator();
+  modulator_t s;
+  modulator_reset(&s);
+  int limited = 0;
+  for (int n = 0; n < 30000; ++n) {
+    const auto excitation = static_cast<excitation_t>(n % 3);
+    const double link = random.between(150.0, 420.0);
+    const Vector v = any_voltage(random, link, (n % 2 == 0) ? 0.2 : 1.3);
+    svpwm_pattern_t p;
+    const modulator_result_t r = modulator_step(&s, &c, excitation, raw_ab(v, 16), raw(link, 16), &p);
+    ASSERT_NO_FATAL_FAILURE(expect_valid(p.pulses));
+    const Vector realised = real(r.realised_q16, 16);
+    ASSERT_NO_FATAL_FAILURE(expect_mean(p.pulses, realised, link)) << n;
+    ASSERT_NEAR((realised - v).length(), 0.0, r.limited ? 1e9 : 2e-5);
+    ASSERT_LT(std::fabs(realised.x * v.y - realised.y * v.x), 1e-4 * (1.0 + v.length()));  // its direction is kept
+    limited += r.limited ? 1 : 0;
+  }
+  EXPECT_GT(limited, 500);
+}
+
+TEST(Modulator, AlternatingLeavesAtItsLimitAndReturnsWithAFifthToSpare) {
+  const modulator_config_t c = default_modulator();
+  modulator_t s;
+  modulator_reset(&s);
+  svpwm_pattern_t p;
+  // along phase a the spread is 1.5 v / Vdc: 2940 ticks (0.7 * 4200) are 58.8 V, four fifths of it 47 V
+  const auto step = [&](double volts) {
+    modulator_step(&s, &c, EXCITATION_ALTERNATING, raw_ab({volts, 0.0}, 16), raw(kLink, 16), &p);
+    return s.is_alternating;
+  };
+  EXPECT_TRUE(step(58.0));
+  EXPECT_FALSE(step(59.5));
+  EXPECT_FALSE(step(47.6));
+  EXPECT_TRUE(step(46.5));
+  EXPECT_TRUE(step(58.0));
+}
+
+TEST(Modulator, AlternatingHasTwoOppositeWindowsOfUsefulLength) {
+  Random random(101);
+  const modulator_config_t c = default_modulator();
+  modulator_t s;
+  modulator_reset(&s);
+  for (int n = 0; n < 2000; ++n) {
+    svpwm_pattern_t p;
+    const Vector v = random.direction(random.between(0.0, 30.0));
+    modulator_step(&s, &c, EXCITATION_ALTERNATING, raw_ab(v, 16), raw(kLink, 16), &p);
+    ASSERT_TRUE(s.is_alternating);
+    ASSERT_GE(p.window_count, 2);
+    std::uint16_t seen = 0;
+    for (int k = 0; k < p.window_count; ++k) {
+      const svpwm_window_t& w = p.windows[k];
+      if (svpwm_is_zero_vector(w.state)) continue;
+      if (w.end - w.begin < c.pulse_ticks / 2) continue;
+      seen = static_cast<std::uint16_t>(seen ^ w.state);
+    }
+    ASSERT_EQ(seen, 7) << n;  // a vector and its complement
+  }
+}
+
+TEST(Modulator, ExtendedHasTwoDifferentActiveWindowsWhilePossible) {
+  Random random(102);
+  const modulator_config_t c = default_modulator();
+  modulator_t s;
+  modulator_reset(&s);
+  for (int n = 0; n < 3000; ++n) {
+    svpwm_pattern_t p;
+    const Vector v = random.direction(random.between(0.0, 110.0));
+    modulator_step(&s, &c, EXCITATION_EXTENDED, raw_ab(v, 16), raw(kLink, 16), &p);
+    std::vector<std::uint16_t> active;
+    for (int k = 0; k < p.window_count; ++k) {
+      if (!svpwm_is_zero_vector(p.windows[k].state)) active.push_back(p.windows[k].state);
+    }
+    ASSERT_GE(active.size(), 2u) << v.x << ", " << v.y;
+    ASSERT_NE(active[0], active[1]);
+  }
+}
+
+TEST(Modulator, CentredHasAZeroWindowAtLowVoltage) {
+  const modulator_config_t c = default_modulator();
+  modulator_t s;
+  modulator_reset(&s);
+  svpwm_pattern_t p;
+  modulator_step(&s, &c, EXCITATION_CENTRED, raw_ab({10.0, 4.0}, 16), raw(kLink, 16), &p);
+  bool zero = false;
+  for (int k = 0; k < p.window_count; ++k) zero = zero || svpwm_is_zero_vector(p.windows[k].state);
+  EXPECT_TRUE(zero);
+}
+
+TEST(Modulator, ConfigurationRangesIncludeTheirEndsOnly) {
+  const struct {
+    std::int16_t extended_config_t::* extended;
+    std::int16_t sampling_config_t::* sampling;
+    std::int16_t lowest, highest;
+  } cases[] = {
+      {nullptr, nullptr, 1500, 4700},
+      {&extended_config_t::window_min_ticks, nullptr, 500, 3000},
+      {&extended_config_t::window_max_ticks, nullptr, 1800, 4000},
+      {&extended_config_t::zero_ticks, nullptr, 0, 5000},
+      {nullptr, &sampling_config_t::settle_ticks, 400, 2500},
+      {nullptr, &sampling_config_t::burst_ticks, 50, 500},
+      {nullptr, &sampling_config_t::span_min_ticks, 100, 2000},
+      {nullptr, &sampling_config_t::last_tick, 5000, 9800},
+  };
+  for (const auto& k : cases) {
+    const auto valid = [&](int value) {
+      modulator_config_t c = default_modulator();
+      std::int16_t& field = k.extended ? c.extended.*k.extended : k.sampling ? c.sampling.*k.sampling : c.pulse_ticks;
+      field = static_cast<std::int16_t>(value);
+      return modulator_config_valid(&c);
+    };
+    EXPECT_TRUE(valid(k.lowest)) << k.lowest;
+    EXPECT_TRUE(valid(k.highest)) << k.highest;
+    EXPECT_FALSE(valid(k.lowest - 1)) << k.lowest;
+    EXPECT_FALSE(valid(k.highest + 1)) << k.highest;
+  }
+}
+
+}  // namespace

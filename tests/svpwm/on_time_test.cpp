@@ -1,0 +1,64 @@
+// On-times of the legs against the voltage vector, in double precision.
+
+#include "tests/svpwm/period.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+TEST(OnTime, DifferencesAreTheLineToLineVoltages) {
+  Random random(60);
+  for (int n = 0; n < 50000; ++n) {
+    const double link = random.between(20.0, 900.0);
+    const double angle = random.between(-kPi, kPi);
+    const Vector v = Vector{0.999 * random.unit() * longest_vector(angle, link), 0.0}.turned(angle);
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    ASSERT_FALSE(t.limited) << v.x << ", " << v.y << ", " << link;
+    const auto legs = legs_of(v);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // half a tick, and 2^-17 V of 20 V; differences are then within one tick
+      ASSERT_NEAR(t.leg[k], legs[k] / link * 10000.0, 0.51);
+    }
+    ASSERT_EQ(t.realised_q16.alpha, raw_ab(v, 16).alpha);
+    ASSERT_EQ(t.realised_q16.beta, raw_ab(v, 16).beta);
+  }
+}
+
+TEST(OnTime, LongVectorsKeepTheirDirection) {
+  Random random(61);
+  for (int n = 0; n < 50000; ++n) {
+    const double link = random.between(20.0, 450.0);
+    const double angle = random.between(-kPi, kPi);
+    const double length = longest_vector(angle, link) * random.between(1.001, 8.0);
+    const Vector v = Vector{length, 0.0}.turned(angle);
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    ASSERT_TRUE(t.limited);
+    const Vector realised = real(t.realised_q16, 16);
+    // 2^-17 V in each component of at least 11 V: 1e-6 rad; the shortening has 30 bits
+    ASSERT_LT(std::fabs(wrapped(std::atan2(realised.y, realised.x) - angle)), 3e-6);
+    // as long as the hexagon allows, to a quarter of a sixteenth of a tick
+    ASSERT_NEAR(realised.length() / longest_vector(angle, link), 1.0, 2e-5);
+    const auto [lo, hi] = std::minmax({t.leg[0], t.leg[1], t.leg[2]});
+    ASSERT_LE(hi - lo, SVPWM_SPREAD_MAX_TICKS + 1);
+    ASSERT_GE(hi - lo, SVPWM_SPREAD_MAX_TICKS - 1);
+    const auto legs = legs_of(realised);
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(t.leg[k], legs[k] / link * 10000.0, 0.52);
+  }
+}
+
+TEST(OnTime, LinkBelowTenVoltsIsTakenAsTen) {
+  for (const double link : {-5.0, 0.0, 3.0, 10.0}) {
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab({2.0, 0.0}, 16), raw(link, 16));
+    EXPECT_EQ(t.leg[0], 2000) << link;
+    EXPECT_EQ(t.leg[1], -1000);
+    EXPECT_EQ(t.leg[2], -1000);
+  }
+}
+
+TEST(OnTime, ZeroIsZero) {
+  const svpwm_on_time_t t = svpwm_on_time({0, 0}, raw(300.0, 16));
+  EXPECT_FALSE(t.limited);
+  for (const int leg : t.leg) EXPECT_EQ(leg, 0);
+}
+
+}  // namespace

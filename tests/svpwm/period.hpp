@@ -1,0 +1,103 @@
+// One PWM period looked at tick by tick, without the modulator's own arithmetic.
+
+#ifndef STILLSPIN_TESTS_SVPWM_PERIOD_HPP
+#define STILLSPIN_TESTS_SVPWM_PERIOD_HPP
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "svpwm/modulator.h"
+}
+
+namespace stillspin::test {
+
+/// Ticks of a period in which leg k is high, from -rise/fall- as the hardware does it: set at rise, clear at fall.
+inline std::array<std::uint16_t, SVPWM_PERIOD_TICKS> states(const svpwm_pulses_t& p) {
+  std::array<std::uint16_t, SVPWM_PERIOD_TICKS> s{};
+  for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
+    for (int tick = p.rise[leg]; tick < p.fall[leg]; ++tick) {
+      if (tick >= 0 && tick < SVPWM_PERIOD_TICKS) s[static_cast<std::size_t>(tick)] |= 1u << leg;
+    }
+  }
+  return s;
+}
+
+/// The intervals of constant state, in the order of time.
+inline std::vector<svpwm_window_t> intervals(const svpwm_pulses_t& p) {
+  const auto s = states(p);
+  std::vector<svpwm_window_t> list = {{0, 0, s[0]}};
+  for (std::int16_t tick = 0; tick < SVPWM_PERIOD_TICKS; ++tick) {
+    if (s[static_cast<std::size_t>(tick)] != list.back().state) {
+      list.push_back({tick, tick, s[static_cast<std::size_t>(tick)]});
+    }
+    list.back().end = static_cast<std::int16_t>(tick + 1);
+  }
+  return list;
+}
+
+/// How long a state lasts in all, ticks.
+inline int lasts(const svpwm_pulses_t& p, std::uint16_t state) {
+  int sum = 0;
+  for (const svpwm_window_t& w : intervals(p)) sum += (w.state == state) ? w.end - w.begin : 0;
+  return sum;
+}
+
+/// Legs' voltages (V) that give a vector, up to a common part.
+inline std::array<double, 3> legs_of(Vector v) {
+  const double half = 0.5 * v.x;
+  const double side = std::sqrt(3.0) / 2.0 * v.y;
+  return {v.x, side - half, -side - half};
+}
+
+inline int on_time(const svpwm_pulses_t& p, int leg) { return p.fall[leg] - p.rise[leg]; }
+
+/// Each pulse inside the room and long enough for the dead band, as is the gap to the next period's.
+inline void expect_valid(const svpwm_pulses_t& p) {
+  for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
+    ASSERT_GE(p.rise[leg], SVPWM_FIRST_TICK) << leg;
+    ASSERT_LE(p.fall[leg], SVPWM_LAST_TICK) << leg;
+    ASSERT_GE(on_time(p, leg), SVPWM_PULSE_MIN_TICKS) << leg;
+    ASSERT_GE(SVPWM_PERIOD_TICKS - on_time(p, leg), SVPWM_PULSE_MIN_TICKS) << leg;
+  }
+}
+
+/// Line-to-line on-times against the voltage, within one tick.
+inline void expect_mean(const svpwm_pulses_t& p, Vector voltage, double link) {
+  const auto v = legs_of(voltage);
+  for (int leg = 0; leg < 3; ++leg) {
+    const int next = (leg + 1) % 3;
+    const double ticks = (v[static_cast<std::size_t>(leg)] - v[static_cast<std::size_t>(next)]) / link * 10000.0;
+    // each on-time is rounded to half a tick; 0.01 for the rounding of volts and link
+    ASSERT_NEAR(on_time(p, leg) - on_time(p, next), ticks, 1.01) << leg;
+  }
+}
+
+/// The firmware's defaults on motor A.
+inline modulator_config_t default_modulator() {
+  modulator_config_t c;
+  c.extended = {1800, 3000, 0};
+  c.sampling = {1050, 140, 300, 9640};
+  c.pulse_ticks = 4200;
+  return c;
+}
+
+/// A voltage of any direction, up to a share of the hexagon's inner circle Vdc / sqrt 3.
+inline Vector any_voltage(Random& random, double link, double share) {
+  return random.direction(random.unit() * share * link / std::sqrt(3.0));
+}
+
+/// Largest voltage in a direction whose on-times differ by no more than the room lets them.
+inline double longest_vector(double angle, double link) {
+  const auto v = legs_of({std::cos(angle), std::sin(angle)});
+  const double spread = std::max({v[0], v[1], v[2]}) - std::min({v[0], v[1], v[2]});
+  return SVPWM_SPREAD_MAX_TICKS / 10000.0 * link / spread;
+}
+
+}  // namespace stillspin::test
+
+#endif

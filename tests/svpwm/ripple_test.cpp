@@ -1,0 +1,56 @@
+// Ripple flux against the integral of the pulses, tick by tick in double precision.
+
+#include "tests/svpwm/period.hpp"
+
+extern "C" {
+#include "svpwm/ripple.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+/// Integral of (vector - its mean) from the start of the period, V * period, after every tick.
+std::vector<Vector> integrated(const svpwm_pulses_t& p, double link) {
+  const auto s = states(p);
+  const auto vector_of = [&](std::uint16_t state) {
+    const double a = state & 1u, b = (state >> 1) & 1u, c = (state >> 2) & 1u;
+    return Vector{(2.0 * a - b - c) / 3.0 * link, (b - c) / std::sqrt(3.0) * link};
+  };
+  Vector mean = {0.0, 0.0};
+  for (const std::uint16_t state : s) mean = mean + vector_of(state) * 1e-4;
+  std::vector<Vector> flux = {{0.0, 0.0}};
+  for (const std::uint16_t state : s) flux.push_back(flux.back() + (vector_of(state) - mean) * 1e-4);
+  return flux;
+}
+
+TEST(Ripple, IsTheIntegralOfTheVoltageLessItsMean) {
+  Random random(110);
+  for (int n = 0; n < 60; ++n) {
+    const double link = random.between(50.0, 420.0);
+    svpwm_pulses_t p;
+    for (int leg = 0; leg < 3; ++leg) {
+      p.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
+      p.fall[leg] = static_cast<std::int16_t>(random.between(p.rise[leg] + 1.0, 9960.0));
+    }
+    const std::vector<Vector> exact = integrated(p, link);
+    for (int tick = 0; tick <= 10000; tick += 7) {
+      const Vector flux = real(svpwm_ripple_q16(&p, static_cast<std::int16_t>(tick), raw(link, 16)), 16);
+      // Each leg is rounded to 1/32 tick, Clarke cuts off up to 1/16: an eighth of a tick of the link, and 2^-16 V.
+      // As a current of motor A that is 0.1 mA.
+      const double tolerance = 0.125 * link * 1e-4 + 3e-5;
+      ASSERT_NEAR(flux.x, exact[static_cast<std::size_t>(tick)].x, tolerance) << n << ", " << tick;
+      ASSERT_NEAR(flux.y, exact[static_cast<std::size_t>(tick)].y, tolerance) << n << ", " << tick;
+    }
+  }
+}
+
+TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
+  const svpwm_pulses_t p = {{260, 5760, 5800}, {4500, 9960, 9900}};
+  for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {
+    const Vector flux = real(svpwm_ripple_q16(&p, tick, raw(300.0, 16)), 16);
+    EXPECT_NEAR(flux.length(), 0.0, 0.004);  // an eighth of a tick
+  }
+}
+
+}  // namespace

@@ -1,0 +1,105 @@
+// Windows: constant states, room for settling and bursts, the longest three, in the order of time.
+
+#include "tests/svpwm/period.hpp"
+
+#include <algorithm>
+
+#include "hal/hal_adc.h"
+
+namespace {
+
+using namespace stillspin::test;
+
+svpwm_pattern_t pattern_of(const svpwm_pulses_t& pulses, const sampling_config_t& c) {
+  svpwm_pattern_t p = {};
+  p.pulses = pulses;
+  svpwm_find_windows(&c, &p);
+  return p;
+}
+
+void expect_rules(const svpwm_pattern_t& p, const sampling_config_t& c) {
+  ASSERT_LE(p.window_count, SVPWM_WINDOWS);
+  const auto s = states(p.pulses);
+  for (int k = 0; k < p.window_count; ++k) {
+    const svpwm_window_t& w = p.windows[k];
+    for (int tick = w.begin; tick < w.end; ++tick) ASSERT_EQ(s[static_cast<std::size_t>(tick)], w.state) << tick;
+    const int start = svpwm_burst_start(&c, &w);
+    const int end = svpwm_burst_end(&c, &w);
+    ASSERT_GE(start, w.begin + c.settle_ticks);
+    ASSERT_GE(start, 1);
+    ASSERT_LE(end + c.burst_ticks, w.end);
+    ASSERT_LE(end, c.last_tick);
+    ASSERT_GE(end - start, c.span_min_ticks);
+    if (k > 0) {
+      // the previous window must have been converted and read before the sequencers start again
+      const int gap = start - svpwm_burst_end(&c, &p.windows[k - 1]);
+      ASSERT_GE(gap, static_cast<int>(HAL_ADC_WINDOW_GAP_TICKS));
+    }
+  }
+}
+
+TEST(Windows, ObeyTheRulesForRandomPulses) {
+  Random random(90);
+  int windows = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const sampling_config_t c = {static_cast<std::int16_t>(random.between(400.0, 2500.0)), HAL_ADC_BURST_TICKS,
+                                 static_cast<std::int16_t>(random.between(100.0, 2000.0)),
+                                 static_cast<std::int16_t>(random.between(5000.0, 9800.0))};
+    svpwm_pulses_t pulses;
+    for (int leg = 0; leg < 3; ++leg) {
+      pulses.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
+      pulses.fall[leg] = static_cast<std::int16_t>(random.between(pulses.rise[leg] + 1.0, 9960.0));
+    }
+    const svpwm_pattern_t p = pattern_of(pulses, c);
+    ASSERT_NO_FATAL_FAILURE(expect_rules(p, c)) << n;
+    windows += p.window_count;
+  }
+  EXPECT_GT(windows, 3000);
+}
+
+// Every interval looked at, the three with the longest span kept.
+TEST(Windows, AreTheLongestOnes) {
+  Random random(91);
+  const sampling_config_t c = default_modulator().sampling;
+  for (int n = 0; n < 1500; ++n) {
+    svpwm_pulses_t pulses;
+    for (int leg = 0; leg < 3; ++leg) {
+      pulses.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
+      pulses.fall[leg] = static_cast<std::int16_t>(random.between(pulses.rise[leg] + 1.0, 9960.0));
+    }
+    std::vector<int> spans;
+    for (const svpwm_window_t& w : intervals(pulses)) {
+      const int last = std::min<int>(w.end - c.burst_ticks, c.last_tick);
+      const int span = last - (w.begin + c.settle_ticks);
+      if (span >= c.span_min_ticks) spans.push_back(span);
+    }
+    std::sort(spans.rbegin(), spans.rend());
+    if (spans.size() > 3) spans.resize(3);
+    const svpwm_pattern_t p = pattern_of(pulses, c);
+    std::vector<int> found;
+    for (int k = 0; k < p.window_count; ++k) {
+      found.push_back(svpwm_burst_end(&c, &p.windows[k]) - svpwm_burst_start(&c, &p.windows[k]));
+    }
+    std::sort(found.rbegin(), found.rend());
+    ASSERT_EQ(found, spans) << n;
+  }
+}
+
+TEST(Windows, NoneInPulsesThatAreAllTooShort) {
+  const sampling_config_t c = {2500, 140, 2000, 9640};
+  const svpwm_pulses_t pulses = {{1500, 3000, 4500}, {6000, 7500, 9000}};
+  EXPECT_EQ(pattern_of(pulses, c).window_count, 0);
+}
+
+TEST(Windows, CoincidentEdgesMakeNoEmptyWindow) {
+  const sampling_config_t c = {400, 140, 100, 9640};
+  const svpwm_pulses_t pulses = {{1000, 1000, 1000}, {5000, 5000, 5000}};
+  const svpwm_pattern_t p = pattern_of(pulses, c);
+  ASSERT_EQ(p.window_count, 3);
+  EXPECT_EQ(p.windows[0].state, 0);
+  EXPECT_EQ(p.windows[1].state, 7);
+  EXPECT_EQ(p.windows[2].state, 0);
+  expect_rules(p, c);
+}
+
+}  // namespace
