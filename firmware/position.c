@@ -110,8 +110,11 @@ void position_preset(drive_t* d, uint32_t angle_bam) {
   p->low = still;
   p->high = still;
   p->used = still;
-  p->encoder_offset_bam = angle_bam - encoder_angle(d);
-  tracking_observer_preset(&p->encoder, angle_bam, 0, 0);
+}
+
+void position_align_encoder(drive_t* d, uint32_t angle_bam) {
+  d->position.encoder_offset_bam = angle_bam - encoder_angle(d);
+  tracking_observer_preset(&d->position.encoder, angle_bam, 0, 0);
 }
 
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {

@@ -8,6 +8,9 @@
 /// Lets every estimator start from this angle, at rest.
 void position_preset(drive_t* d, uint32_t angle_bam);
 
+/// Makes the encoder's present count mean this angle. Reads the encoder.
+void position_align_encoder(drive_t* d, uint32_t angle_bam);
+
 /// Electrical angle of an encoder count whose zero lies on phase a.
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);
 

@@ -62,6 +62,7 @@ static void begin_start(drive_t* d) {
 
 static void begin_run(drive_t* d, uint32_t angle_bam) {
   position_preset(d, angle_bam);
+  position_align_encoder(d, angle_bam);
   speed_controller_preset(&d->control.speed, 0);
   d->control.reference_q20.q = 0;
   enter(d, DRIVE_RUN);

@@ -34,7 +34,7 @@ class Flow {
  public:
   virtual ~Flow() = default;
 
-  /// From `start` over at most `h` seconds (> 0) to `end`.
+  /// From `start` over at most `h` seconds (> 0) to `end`. May stop short of h without an event.
   virtual void advance(const Model& model, const SegmentStart& start, double h, State& end, Advance& result) = 0;
 };
 

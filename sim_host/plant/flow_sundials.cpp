@@ -12,8 +12,9 @@
 namespace stillspin::plant {
 namespace {
 
-constexpr double kMissed = 1e-8;     // A or V: an event function below this has crossed unseen
-constexpr double kShortest = 1e-12;  // s: shorter segments are one Euler step (a change of at most 1e-7 A)
+constexpr double kMissed = 1e-8;       // A or V: an event function below this has crossed unseen
+constexpr double kShortest = 1e-12;    // s: shorter segments are one Euler step (a change of at most 1e-7 A)
+constexpr double kFirstPart = 1.6e-6;  // s: where to look closer for a crossing that went unseen
 constexpr double kReferenceTolerance = 1e-10;
 constexpr double kReferenceStep = 2e-6;                            // s: what a double crossing inside a step may hide
 constexpr double kTypical[kStates] = {1.0, 1.0, 1.0, 1.0, 100.0};  // scale of the absolute tolerance; angle in rad
@@ -67,26 +68,40 @@ class SundialsFlow : public Flow {
   }
 
  protected:
+  /// Whole way, or to the first event; a part of the way when a crossing went unseen.
   Advance search(const Model& model, const SegmentStart& start, double h, State& end) {
-    for (;; h *= 0.5) {
-      if (h < kShortest) {
-        for (int n = 0; n < kStates; ++n) end[n] = start.y[n] + h * start.slope[n];
-        Advance a;
-        a.reached = h;
-        return a;
-      }
-      Advance a = attempt(start, h, end);
-      if (a.event) {
-        // Again over a step that ends just behind it: a shorter interpolant is a better one.
-        const double again = std::ceil(a.reached / kEventCell) * kEventCell;
-        const Advance better = again > kShortest ? attempt(start, again, end) : a;
-        return better.event ? better : attempt(start, h, end);
-      }
-      // Both ends of a step on the same side, or a start within rounding of zero, hide a crossing: look closer.
-      Events g;
-      model.events(h, end, g);
+    Advance a;
+    if (h < kShortest) {
+      for (int n = 0; n < kStates; ++n) end[n] = start.y[n] + h * start.slope[n];
+      a.reached = h;
+      return a;
+    }
+    a = attempt(start, h, end);
+    if (a.event) return sharpened(a, start, h, end);
+    Events g;
+    model.events(h, end, g);
+    if (*std::min_element(g.begin(), g.end()) >= -kMissed) return a;
+    // Both ends of a step on the same side, or a start within rounding of zero, hide a crossing: look closer.
+    for (double part = kFirstPart; part > kShortest; part *= 0.25) {
+      if (part >= h) continue;
+      a = attempt(start, part, end);
+      if (a.event) return a;
+      model.events(part, end, g);
       if (*std::min_element(g.begin(), g.end()) >= -kMissed) return a;
     }
+    a.reached = 0.0;  // wrong from the start
+    a.event = true;
+    for (int n = 0; n < kEvents; ++n) a.fired[n] = g[n] < -kMissed;
+    end = start.y;
+    return a;
+  }
+
+  /// The event again, over a step that ends just behind it: a shorter interpolant is a better one.
+  Advance sharpened(const Advance& first, const SegmentStart& start, double h, State& end) {
+    const double again = std::ceil(first.reached / kEventCell) * kEventCell;
+    if (again < kShortest) return first;
+    const Advance better = attempt(start, again, end);
+    return better.event ? better : attempt(start, h, end);
   }
 
   Advance attempt(const SegmentStart& start, double h, State& end) {
@@ -186,12 +201,8 @@ class Reference final : public SundialsFlow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_erkstep(double relative_tolerance) {
-  return std::make_unique<ErkStep>(relative_tolerance);
-}
-std::unique_ptr<Flow> make_reference() {
-  return std::make_unique<Reference>();
-}
+std::unique_ptr<Flow> make_erkstep(double relative_tolerance) { return std::make_unique<ErkStep>(relative_tolerance); }
+std::unique_ptr<Flow> make_reference() { return std::make_unique<Reference>(); }
 
 std::unique_ptr<Flow> make_flow(const SolverConfig& config) {
   switch (config.solver) {

@@ -38,23 +38,25 @@ void Trajectory::look_ahead(Tick end) {
   if (!started_) begin();
   const double h = time_to(end);
   flow_->advance(model_, start_, h, end_, step_);
+  if (!step_.event && !step_.far) {
+    const double dip = grazing_instant();
+    if (dip > 0.0) {
+      // Stop at the lowest point: there the event function is negative, so that the flow finds the first crossing.
+      ++grazing_;
+      flow_->advance(model_, start_, dip, end_, step_);
+    }
+  }
+  // Short of the end: an event of nothing, so that the segment may end inside a tick.
+  if (step_.reached < h) step_.event = true;
   end_tick_ = end;
-  end_slope_known_ = step_.has_end_slope;
   ahead_ = true;
-  if (step_.event || step_.far) return;
-  const double dip = grazing_instant();
-  if (dip <= 0.0) return;
-  // Stop at the lowest point: there the event function is negative, so that the flow finds the first crossing.
-  ++grazing_;
-  flow_->advance(model_, start_, dip, end_, step_);
   end_slope_known_ = step_.has_end_slope;
-  if (step_.event) return;
-  step_.event = true;  // it was not that deep after all: an event of nothing, so that the end need not be a whole tick
 }
 
 /// A current that falls and comes back inside the segment may have crossed zero twice, which its end does not show.
 /// When it may have: the instant of its minimum, else 0.
-double Trajectory::grazing_instant() const {
+double Trajectory::grazing_instant() {
+  end_slope_known_ = step_.has_end_slope;
   if (model_.clamp == Clamp::kAll) return 0.0;
   const double h = step_.reached;
   const AlphaBeta i0 = start_current(), d0 = start_slope();

@@ -67,7 +67,7 @@ class Trajectory {
   void begin();
   void turn_bases(double angle);
   double time_to(Tick t) const { return static_cast<double>(t - tick_) * kSecondsPerTick - fraction_; }
-  double grazing_instant() const;
+  double grazing_instant();
 
   Model model_;
   std::unique_ptr<Flow> flow_;

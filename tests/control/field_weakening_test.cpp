@@ -112,4 +112,16 @@ TEST(FieldWeakening, StaysBetweenItsLimitAndZeroAndDoesNotWindUp) {
   EXPECT_EQ(s.current_q20, 0);
 }
 
+// Where the feed-forward asks for far more than the limit, the trim must still be able to take the current back at once.
+TEST(FieldWeakening, TrimActsAtTheLimit) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  // 60 V at 3000 rpm: the feed-forward is -23 A of 9
+  const field_weakening_input_t in = input(motor.electrical(3000.0), 0.0, 50.0, 60.0, 9.0, 0.01);
+  EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), -9.0 + 0.1, 1e-4);
+  EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), -9.0 + 0.2, 1e-4);
+}
+
 }  // namespace

@@ -171,6 +171,16 @@ TEST(MachineModel, TorqueWithReluctance) {
   }
 }
 
+// The torque constant is divided by: it must not come near zero, let alone change its sign.
+TEST(MachineModel, TorqueConstantKeepsAQuarterOfTheMagnets) {
+  const Motor motor;
+  const machine_model_t m = stillspin::test::model_of(motor);
+  for (const double id : {45.0, 55.0, 1000.0}) {  // 0.16 / 0.0029 = 55 A cancel the magnet
+    EXPECT_NEAR(real(machine_torque_constant_q24(&m, raw(id, 20)), 24), 0.25 * motor.torque_constant(), 1e-6) << id;
+  }
+  EXPECT_NEAR(real(machine_torque_constant_q24(&m, raw(-50.0, 20)), 24), 6.0 * (0.16 + 0.0029 * 50.0), 1e-4);
+}
+
 TEST(MachineModel, SpeedInRadPerPeriod) {
   for (const double w : {-1.8, -0.1257, -1e-6, 0.0, 1e-6, 0.05, 1.8}) {
     const std::int32_t speed_bpp = raw(w / kTurn, 32);

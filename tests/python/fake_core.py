@@ -19,6 +19,7 @@ _SCHEMA = {
         "pole_pairs": ("", 1, 50, 4),
         "resistance": ("Ohm", 1e-4, 100.0, 0.32),
         "saturation": ("", None, None, True),
+        "cross_inductance": ("H", -0.01, 0.01, 1.18e-4),
         "emf_harmonic_5": ("", 0.0, 0.3, 0.02),
         "emf_harmonic_7": ("", 0.0, 0.3, 0.01),
     },
