@@ -66,8 +66,7 @@ TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
     integral = integral + Vector{motor.ld * error.x, motor.lq * error.y} * ki;
     const Vector expected = {a * motor.ld * error.x + integral.x - w * motor.lq * measured.y,
                              a * motor.lq * error.y + integral.y + w * (motor.ld * measured.x + motor.flux)};
-    const dq_t v =
-        current_controller_step(&s, &c, &m, raw_dq(reference, 20), raw_dq(measured, 20), bpp(w));
+    const dq_t v = current_controller_step(&s, &c, &m, raw_dq(reference, 20), raw_dq(measured, 20), bpp(w));
     // Gains right to 2e-6 (17 A make 4e-5 V a step, of alternating sign), speed to 1.5e-5 rad/s, flux to 4e-9 V s,
     // 1/T exact: 1 mV leaves a factor of some five. Of 200 V that is 5e-6.
     ASSERT_NEAR(real(v.d, 16), expected.x, 1e-3) << n;

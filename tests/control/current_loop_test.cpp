@@ -25,8 +25,8 @@ class Loop {
 
   /// One period; returns the mean current measured over it, in the rotor frame.
   Vector step(Vector reference) {
-    const dq_t v = current_controller_step(&state_, &config_, &model_, raw_dq(reference, 20), raw_dq(mean_, 20),
-                                           bpp(w_));
+    const dq_t v =
+        current_controller_step(&state_, &config_, &model_, raw_dq(reference, 20), raw_dq(mean_, 20), bpp(w_));
     Vector asked = real(v, 16);
     const Vector next = (asked.length() > limit_) ? asked * (limit_ / asked.length()) : asked;
     if (asked.length() > limit_) current_controller_limited(&state_, &config_, raw_dq(asked - next, 16));
@@ -89,8 +89,8 @@ Response step_response(double rpm, bool q_axis, double amps) {
   return r;
 }
 
-// a (1 + a / 4 s) / s without delay has a double pole at a / 2 and overshoots by e^-2 = 13.5 %; the 200 us of delay make
-// some 17 % of it. 63 % are reached after about 0.7 / a and the delay.
+// a (1 + a / 4 s) / s without delay has a double pole at a / 2 and overshoots by e^-2 = 13.5 %; the 200 us of delay
+// make some 17 % of it. 63 % are reached after about 0.7 / a and the delay.
 void expect_designed(const Response& r) {
   EXPECT_GE(r.rise_ms, 0.5);
   EXPECT_LE(r.rise_ms, 0.8);

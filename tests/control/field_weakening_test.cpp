@@ -112,7 +112,8 @@ TEST(FieldWeakening, StaysBetweenItsLimitAndZeroAndDoesNotWindUp) {
   EXPECT_EQ(s.current_q20, 0);
 }
 
-// Where the feed-forward asks for far more than the limit, the trim must still be able to take the current back at once.
+// Where the feed-forward asks for far more than the limit, the trim must still be able to take the current back at
+// once.
 TEST(FieldWeakening, TrimActsAtTheLimit) {
   const Motor motor;
   const machine_model_t m = model_of(motor);

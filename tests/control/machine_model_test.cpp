@@ -8,10 +8,10 @@ namespace {
 
 using stillspin::test::kTurn;
 using stillspin::test::Motor;
-using stillspin::test::Random;
-using stillspin::test::raw_dq;
 using stillspin::test::parameters_of;
+using stillspin::test::Random;
 using stillspin::test::raw;
+using stillspin::test::raw_dq;
 using stillspin::test::real;
 
 // The error allowed: some LSB of the result plus what the arguments' own rounding does.
@@ -78,8 +78,8 @@ TEST(MachineModel, RandomMachines) {
     m.period = (20 + random.below(481)) * 1e-6;
     if (!fits(m)) continue;
     used++;
-    ASSERT_NO_FATAL_FAILURE(check(m)) << m.ld << " H, " << m.lq << " H, " << m.flux << " Vs, " << m.inertia
-                                      << " kgm2, " << m.pole_pairs << ", " << m.period;
+    ASSERT_NO_FATAL_FAILURE(check(m)) << m.ld << " H, " << m.lq << " H, " << m.flux << " Vs, " << m.inertia << " kgm2, "
+                                      << m.pole_pairs << ", " << m.period;
   }
   EXPECT_GT(used, 5000);  // otherwise nothing was tested
 }

@@ -25,9 +25,7 @@ inline double real(std::int64_t raw, int q) { return std::ldexp(static_cast<doub
 inline std::int32_t raw(double x, int q) { return static_cast<std::int32_t>(std::llround(std::ldexp(x, q))); }
 
 /// An angle as a binary angle; whole turns fall away.
-inline std::uint32_t bam(double rad) {
-  return static_cast<std::uint32_t>(std::llround(std::ldexp(rad / kTurn, 32)));
-}
+inline std::uint32_t bam(double rad) { return static_cast<std::uint32_t>(std::llround(std::ldexp(rad / kTurn, 32))); }
 
 /// A signed binary angle in rad, -pi..pi; also a speed in rad per period.
 inline double rad(std::int32_t angle_bam) { return real(angle_bam, 32) * kTurn; }

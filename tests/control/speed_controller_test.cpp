@@ -92,7 +92,7 @@ TEST(SpeedController, CoefficientsOfRandomDrives) {
     d.damping = random.between(0.31, 2.9);
     const double gain = std::max(1.0, 2.0 * d.damping * d.bandwidth * d.step());
     if (d.response() * d.bpp_per_rad_s() < 520.0 * gain) continue;  // too heavy for the gains' format
-    if (d.response() * d.bpp_per_rad_s() > 8.3e6) continue;  // too light
+    if (d.response() * d.bpp_per_rad_s() > 8.3e6) continue;         // too light
     used++;
     ASSERT_NO_FATAL_FAILURE(check(d)) << n << ": J " << d.motor.inertia << ", B " << d.motor.friction << ", flux "
                                       << d.motor.flux << ", pp " << d.motor.pole_pairs << ", alpha " << d.alpha;
@@ -136,9 +136,12 @@ TEST(SpeedController, RefusesWhatIsOutOfRange) {
     Field field;
     std::int32_t below, above;
   } cases[] = {
-      {&speed_controller_config_t::friction_q24, -1, 16777217},     {&speed_controller_config_t::inertia_q24, 167, 16777217},
-      {&speed_controller_config_t::step_periods, 0, 101},           {&speed_controller_config_t::alpha_q8, 255, 25600001},
-      {&speed_controller_config_t::trajectory_ms_q8, 511, 51201},   {&speed_controller_config_t::pi_bandwidth_q8, 255, 51201},
+      {&speed_controller_config_t::friction_q24, -1, 16777217},
+      {&speed_controller_config_t::inertia_q24, 167, 16777217},
+      {&speed_controller_config_t::step_periods, 0, 101},
+      {&speed_controller_config_t::alpha_q8, 255, 25600001},
+      {&speed_controller_config_t::trajectory_ms_q8, 511, 51201},
+      {&speed_controller_config_t::pi_bandwidth_q8, 255, 51201},
       {&speed_controller_config_t::pi_damping_q12, 1227, 12289},
   };
   for (const auto& c : cases) {

@@ -44,8 +44,8 @@ std::vector<double> run(const Conditions& run_with) {
   shaft.motor.inertia *= run_with.inertia_factor;
   const Motor nominal;
   const machine_model_t m = model_of(nominal);
-  const speed_controller_config_t c = {raw(nominal.friction, 24), raw(nominal.inertia, 24), 10, raw(200.0, 8),
-                                       raw(8.0, 8), raw(20.0, 8), raw(0.8, 12)};
+  const speed_controller_config_t c = {
+      raw(nominal.friction, 24), raw(nominal.inertia, 24), 10, raw(200.0, 8), raw(8.0, 8), raw(20.0, 8), raw(0.8, 12)};
   speed_controller_t s;
   EXPECT_TRUE(speed_controller_init(&s, &c, &m));
   ramp_t ramp = {0, 0};
@@ -143,8 +143,8 @@ TEST(PiLoop, PolesAreWhereTheyWereAssigned) {
   const machine_model_t m = model_of(motor);
   for (const double wn : {5.0, 20.0, 60.0}) {
     for (const double zeta : {0.5, 0.8}) {
-      const speed_controller_config_t c = {0, raw(motor.inertia, 24), 10, raw(200.0, 8), raw(8.0, 8), raw(wn, 8),
-                                           raw(zeta, 12)};
+      const speed_controller_config_t c = {0,          raw(motor.inertia, 24), 10, raw(200.0, 8), raw(8.0, 8),
+                                           raw(wn, 8), raw(zeta, 12)};
       speed_controller_t s;
       ASSERT_TRUE(speed_controller_init(&s, &c, &m));
       const double b = real(s.response_q8, 8);

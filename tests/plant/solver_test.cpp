@@ -83,7 +83,7 @@ TEST(Solver, RefinementConvergesWithTheOrderOfTheMethod) {
 }
 
 TEST(Solver, FastDriveAtTheVoltageLimit) {
-  // 250 rad/s (1 kHz electrical is 157 Hz here), clipped duties, hard load step.
+  // 250 rad/s (159 Hz electrical) needs more than the link has: clipped duties, and a hard load step.
   const PlantConfig config;
   const testing::Recording recording = testing::record(
       config, 3000, [](double t) { return std::min(250.0, 1500.0 * t); }, {{20'000'000, 0.0}, {20'100'000, 8.0}});

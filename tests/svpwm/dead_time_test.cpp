@@ -36,8 +36,8 @@ svpwm_pulses_t some_pulses(Random& random) {
   modulator_t s;
   modulator_reset(&s);
   svpwm_pattern_t p;
-  modulator_step(&s, &c, static_cast<excitation_t>(random.below(3)), raw_ab(random.direction(random.between(0.0, 90.0)), 16),
-                 raw(kLink, 16), &p);
+  modulator_step(&s, &c, static_cast<excitation_t>(random.below(3)),
+                 raw_ab(random.direction(random.between(0.0, 90.0)), 16), raw(kLink, 16), &p);
   return p.pulses;
 }
 

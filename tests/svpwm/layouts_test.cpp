@@ -73,7 +73,7 @@ TEST(Extended, MeanVoltageAndPulses) {
 
 /// What the layout should be, found the slow way: every window length tried, the pulses laid out, the result looked at.
 struct Best {
-  int window = 0;      // longest window with which everything fits
+  int window = 0;  // longest window with which everything fits
   bool with_zero = false;
 };
 

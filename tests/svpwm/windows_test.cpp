@@ -1,10 +1,9 @@
 // Windows: constant states, room for settling and bursts, the longest three, in the order of time.
 
-#include "tests/svpwm/period.hpp"
-
 #include <algorithm>
 
 #include "hal/hal_adc.h"
+#include "tests/svpwm/period.hpp"
 
 namespace {
 

@@ -1,0 +1,190 @@
+// AVV: the angle error that the regression finds, without and with what it has to see through.
+
+#include <gtest/gtest.h>
+
+#include "tests/estimators/machine_windows.hpp"
+
+extern "C" {
+#include "estimators/avv.h"
+#include "estimators/slopes.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+using namespace stillspin::test::seen;
+
+const avv_config_t kConfig = {raw(100.0 * kPeriod, 30), raw(200.0 * kPeriod, 30)};
+
+struct Estimate {
+  double error;  // true minus observed, as measured, rad
+  avv_t state;
+};
+
+// One step from an observer that will stand at observed, w when the windows are looked at.
+Estimate measure(const std::vector<Window>& windows, double observed, std::int32_t speed_bpp = 0) {
+  const machine_model_t model = model_of(Motor{});
+  avv_t s = {};
+  avv_preset(&s, bam(observed) - static_cast<std::uint32_t>(speed_bpp), speed_bpp, 0);
+  const Input in(model, windows);
+  (void)avv_step(&s, &kConfig, in.get());
+  return {rad(s.error_bam), s};
+}
+
+// States of 0 (the zero vector) and 1..6; 7 is 0 again.
+std::vector<std::vector<int>> distinct_sets() {
+  std::vector<std::vector<int>> sets;
+  for (int a = 0; a < 7; ++a) {
+    for (int b = a + 1; b < 7; ++b) {
+      sets.push_back({a, b});
+      for (int c = b + 1; c < 7; ++c) sets.push_back({a, b, c});
+    }
+  }
+  return sets;
+}
+
+// Equal currents in all windows at standstill: the differences are L^-1 dv and nothing else, so any error up to a quarter
+// turn comes out exactly. What is left: slopes of 1e-6 A per period beside a saliency of 0.75 A per period and more.
+TEST(Avv, ExactAtStandstillWithAnyDistinctVectorsAndAnyError) {
+  Random random(30);
+  for (const std::vector<int>& states : distinct_sets()) {
+    for (int n = 0; n < 40; ++n) {
+      const double theta = random.between(-kPi, kPi);
+      const double error = random.between(-80.0, 80.0) * kDegree;
+      const Vector current = random.direction(random.between(0.0, 12.0));
+      std::vector<Window> windows;
+      for (const int state : states) {
+        windows.push_back(window_at(Motor{}, theta, 0.0, current, state_vector(state),
+                                    1500 + 3000 * static_cast<int>(windows.size()), 400 + random.below(3500)));
+      }
+      const Estimate e = measure(windows, theta - error);
+      ASSERT_NEAR(e.error / kDegree, error / kDegree, 0.002) << states.size() << " windows, " << states[0] << states[1];
+      ASSERT_GT(e.state.regression.information, 0);
+    }
+  }
+}
+
+// Moving, with the current changing between the windows: the model at the observed angle takes most of it off, so what is
+// left is of second order in the angle error: (|wL'i| + |w lambda| + R |di|) against dY dv / 2.
+TEST(Avv, SmallErrorsAtSpeedWithResistanceEmfAndRotation) {
+  Random random(31);
+  double worst = 0.0;
+  for (int n = 0; n < 4000; ++n) {
+    const std::int32_t speed = bpp(random.between(-1250.0, 1250.0));
+    const double w = rad_per_s(speed);
+    const double theta = random.between(-kPi, kPi);
+    const double error = random.between(-3.0, 3.0) * kDegree;
+    const Vector current = random.direction(random.between(0.0, 12.0));
+    const std::vector<int> states = distinct_sets()[static_cast<std::size_t>(random.below(56))];
+    std::vector<Window> windows;
+    for (const int state : states) {
+      const Vector at_window = current + random.direction(random.between(0.0, 1.5));  // ripple
+      windows.push_back(window_at(Motor{}, theta, w, at_window, state_vector(state),
+                                  1500 + 3000 * static_cast<int>(windows.size()), 1500));
+    }
+    const Estimate e = measure(windows, theta - error, speed);
+    // ripple between the windows turned by the error: 1.5 A * 1250 rad/s * (Lq/Ld - Ld/Lq) ~ 1800 A/s, and twice that
+    // with two windows apart, beside a saliency of 15 000 A/s (two neighbouring vectors, least): a quarter of the error
+    ASSERT_NEAR(e.error, error, 0.25 * std::fabs(error) + 0.002 * kDegree) << n << " at " << w;
+    worst = std::max(worst, std::fabs(e.error - error));
+  }
+  EXPECT_GT(worst, 0.01 * kDegree);  // otherwise the currents did not differ
+}
+
+TEST(Avv, NothingIsMeasuredAtTheTrueAngleHoweverFastAndLoaded) {
+  Random random(32);
+  for (int n = 0; n < 3000; ++n) {
+    const std::int32_t speed = bpp(random.between(-1250.0, 1250.0));
+    const double theta = random.between(-kPi, kPi);
+    std::vector<Window> windows;
+    for (const int state : {1 + random.below(6), 0}) {
+      windows.push_back(window_at(Motor{}, theta, rad_per_s(speed), random.direction(12.0), state_vector(state),
+                                  2500 + 4000 * static_cast<int>(windows.size()), 1800));
+    }
+    // residuals within 4e-5 A per period (deviation_test) beside 0.76 A per period: 5e-5 rad in 2 theta
+    ASSERT_NEAR(measure(windows, theta, speed).error / kDegree, 0.0, 0.004);
+  }
+}
+
+TEST(Avv, OneVectorTellsNothing) {
+  const Window w = window_at(Motor{}, 0.5, 0.0, {3, 1}, state_vector(3), 3000, 2000);
+  for (const std::vector<Window>& windows : {std::vector<Window>{}, {w}, {w, w}}) {
+    const machine_model_t model = model_of(Motor{});
+    avv_t s = {};
+    avv_preset(&s, bam(0.3), 0, 0);
+    const Input in(model, windows);
+    const estimator_output_t out = avv_step(&s, &kConfig, in.get());
+    EXPECT_EQ(out.angle_bam, bam(0.3));
+    EXPECT_EQ(out.quality_q15, 0);
+    EXPECT_EQ(s.regression.information, 0);
+  }
+}
+
+// The half turn is the observer's own: the windows look the same from the other side.
+TEST(Avv, HalfATurnIsLeftOpen) {
+  const auto windows = alternating(Motor{}, 0, 0.7, 0.0, {2, 1});
+  EXPECT_NEAR(measure(windows, 0.7 - 0.1).error, 0.1, 1e-4);
+  EXPECT_NEAR(measure(windows, 0.7 - 0.1 + kPi).error, 0.1, 1e-4);
+}
+
+constexpr double kAmpsPerCode = 20.0 / 2048.0;
+
+// Codes of a burst around a current: Gaussian noise per conversion, then the converter's rounding.
+std::uint16_t burst(Random& random, double amps, int samples, double noise) {
+  int sum = 0;
+  for (int n = 0; n < samples; ++n) {
+    sum += static_cast<int>(std::lround(2048.0 + (amps + noise * random.normal()) / kAmpsPerCode));
+  }
+  return static_cast<std::uint16_t>(sum);
+}
+
+Window through_the_converter(Random& random, Window w, double noise) {
+  const Vector half = w.slope * (w.span / 20000.0);
+  const Vector begin = w.current - half, end = w.current + half;
+  const auto phase_b = [](Vector i) { return 0.5 * (std::sqrt(3.0) * i.y - i.x); };
+  const slopes_config_t c = {2048 * 256, 2048 * 256, raw(kAmpsPerCode, 30), 0, 4, 3};
+  const slopes_sums_t sums = {burst(random, begin.x, 4, noise), burst(random, phase_b(begin), 4, noise),
+                              burst(random, end.x, 3, noise), burst(random, phase_b(end), 3, noise)};
+  estimator_window_t out = w.raw();
+  slopes_evaluate(&c, &sums, &out);
+  w.slope = real(out.slope_q20, 20);
+  w.current = real(out.current_q20, 20);
+  return w;
+}
+
+// One pair of 28 us windows at +x and -x, 11.7 mA per conversion and a quantisation of 9.8/sqrt(12) mA: 12 mA in all.
+// Difference of the means of 3 and 4: 12 sqrt(1/3 + 1/4) = 9.2 mA a phase; the Clarke of two phases has a mean variance
+// of 4/3 over the directions, two windows sqrt2: 15.0 mA across, beside dY/2 400 V 28 us = 0.425 A: 2 theta 0.0353 rad,
+// theta 1.01 degrees.
+TEST(Avv, NoiseOfAPairOfLongWindows) {
+  Random random(33);
+  double sum = 0.0;
+  constexpr int kTrials = 6000;
+  for (int n = 0; n < kTrials; ++n) {
+    const double theta = random.between(-kPi, kPi);
+    std::vector<Window> windows = alternating(Motor{}, n, theta, 0.0, random.direction(6.0));
+    for (Window& w : windows) w = through_the_converter(random, w, 11.7e-3);
+    const double error = measure(windows, theta).error / kDegree;
+    sum += error * error;
+  }
+  // the rms of 6000 has a spread of 1 %; less noise than the bound would be as wrong as more
+  EXPECT_NEAR(std::sqrt(sum / kTrials), 1.01, 0.04);
+}
+
+// The bandwidth follows the information: long windows pull harder.
+TEST(Avv, BandwidthBetweenShortAndLongWindows) {
+  const auto pulled = [](int span, int state) {
+    std::vector<Window> windows = {window_at(Motor{}, 0.5, 0.0, {0, 0}, state_vector(state), 2500, span),
+                                   window_at(Motor{}, 0.5, 0.0, {0, 0}, state_vector(7 - state), 7500, span)};
+    const double e = 5.0 * kDegree;
+    const Estimate m = measure(windows, 0.5 - e);
+    return (rad(m.state.observer.angle_bam) - (0.5 - e)) / e / (3.0 * kPeriod);  // rad/s
+  };
+  EXPECT_NEAR(pulled(300, 1), 100.0, 1.0);
+  EXPECT_NEAR(pulled(4000, 1), 200.0, 1.0);
+  const double between = pulled(1200, 1);
+  EXPECT_GT(between, 110.0);
+  EXPECT_LT(between, 195.0);
+}
+
+}  // namespace

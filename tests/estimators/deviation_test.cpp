@@ -1,0 +1,119 @@
+// The deviation of a window: nothing at the true angle, and its sensitivities against numeric derivatives.
+
+#include <gtest/gtest.h>
+
+#include "tests/estimators/machine_windows.hpp"
+
+extern "C" {
+#include "estimators/deviation.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+using namespace stillspin::test::seen;
+
+struct Point {
+  double theta;
+  std::int32_t speed_bpp;
+  Vector current, voltage;
+  int middle;
+  double w() const { return rad_per_s(speed_bpp); }
+};
+
+Point random_point(Random& random) {
+  Point p;
+  p.theta = random.between(-kPi, kPi);
+  p.speed_bpp = bpp(random.between(-1300.0, 1300.0));  // 3100 rpm on four pole pairs
+  p.current = random.direction(random.between(0.0, 15.0));
+  p.voltage = state_vector(random.below(8)) + random.direction(random.between(0.0, 3.0));  // with device drops
+  p.middle = 500 + random.below(9000);
+  return p;
+}
+
+Motor random_motor(Random& random) {
+  Motor m;
+  m.ld = random.log_between(2e-3, 20e-3);
+  m.lq = m.ld * random.between(1.0, 3.0);
+  m.flux = random.log_between(0.02, 0.3);
+  m.rs = random.log_between(0.05, 5.0);
+  return m;
+}
+
+// T = 100 us is 1.7e-6 off as Q30, and with it every model slope (up to 15 A per period here: 2.6e-5); the rest is a few
+// roundings to 1e-6.
+constexpr double kResidualTolerance = 4e-5;
+
+TEST(Deviation, NothingIsLeftAtTheTrueAngleAndSpeed) {
+  Random random(1);
+  double largest = 0.0;
+  for (int n = 0; n < 20000; ++n) {
+    const Motor motor = random_motor(random);
+    const machine_model_t model = model_of(motor);
+    const Point p = random_point(random);
+    const Window w = window_at(motor, p.theta, p.w(), p.current, p.voltage, p.middle, 2000);
+    const estimator_window_t raw_window = w.raw();
+    const deviation_t d = deviation_evaluate(&model, &raw_window, bam(p.theta), p.speed_bpp);
+    ASSERT_NEAR(real(d.residual_q20.d, 20), 0.0, kResidualTolerance) << n;
+    ASSERT_NEAR(real(d.residual_q20.q, 20), 0.0, kResidualTolerance) << n;
+    largest = std::max(largest, w.slope.length());
+  }
+  EXPECT_GT(largest, 8.0);  // there was something to leave nothing of
+}
+
+TEST(Deviation, VoltageAndCurrentInTheFrameAtTheWindowsMiddle) {
+  Random random(2);
+  const machine_model_t model = model_of(Motor{});
+  for (int n = 0; n < 2000; ++n) {
+    const Point p = random_point(random);
+    const estimator_window_t w = window_at(Motor{}, p.theta, p.w(), p.current, p.voltage, p.middle, 2000).raw();
+    const deviation_t d = deviation_evaluate(&model, &w, bam(p.theta), p.speed_bpp);
+    const double middle = angle_at(p.theta, p.w(), p.middle);
+    const Vector v = p.voltage.turned(-middle);
+    const Vector i = p.current.turned(-middle);
+    // 200 V turned by a time that is right to 1.7e-6 of 0.13 rad: 5e-5 V, and the LSB of 1.5e-5
+    ASSERT_NEAR(real(d.voltage_q16.d, 16), v.x, 1e-4);
+    ASSERT_NEAR(real(d.voltage_q16.q, 16), v.y, 1e-4);
+    ASSERT_NEAR(real(d.current_q20.d, 20), i.x, 1e-5);
+    ASSERT_NEAR(real(d.current_q20.q, 20), i.y, 1e-5);
+    ASSERT_NEAR(real(d.w_q30, 30), p.w() * kPeriod, 4e-9);
+  }
+}
+
+// The residual is the true slope less a constant, so its derivatives are those of the true slope.
+TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
+  Random random(3);
+  constexpr double kStep = 1e-4;  // rad; central differences: the rest is 1e-8 of the value
+  for (int n = 0; n < 10000; ++n) {
+    const Motor m = random_motor(random);
+    const machine_model_t model = model_of(m);
+    const Point p = random_point(random);
+    const estimator_window_t w = window_at(m, p.theta, p.w(), p.current, p.voltage, p.middle, 2000).raw();
+    const deviation_t d = deviation_evaluate(&model, &w, bam(p.theta), p.speed_bpp);
+    const double at = angle_at(p.theta, p.w(), p.middle);
+    const auto slope = [&](double theta, double speed) {
+      return (current_derivative(m, theta, speed, p.current, p.voltage) * m.period).turned(-at);
+    };
+    const Vector by_angle = (slope(at + kStep, p.w()) - slope(at - kStep, p.w())) * (0.5 / kStep);
+    const double dw = 10.0;  // the slope is linear in the speed: any step will do
+    const Vector by_speed = (slope(at, p.w() + dw) - slope(at, p.w() - dw)) * (0.5 / dw / m.period);
+    const Vector h_a = real(deviation_angle_sensitivity(&model, &d), 20);
+    const Vector h_s = real(deviation_speed_sensitivity(&model, &d), 20);
+    // 1.7e-6 of T as above in both; kappa is right to a few 1e-7 and is multiplied by 15 A
+    ASSERT_NEAR(h_a.x, by_angle.x, 3e-5 + 3e-6 * by_angle.length()) << n;
+    ASSERT_NEAR(h_a.y, by_angle.y, 3e-5 + 3e-6 * by_angle.length()) << n;
+    ASSERT_NEAR(h_s.x, by_speed.x, 2e-5 + 4e-6 * by_speed.length()) << n;
+    ASSERT_NEAR(h_s.y, by_speed.y, 2e-5 + 4e-6 * by_speed.length()) << n;
+  }
+}
+
+TEST(Deviation, AngleInTheMiddleOfAWindow) {
+  const std::uint32_t angle = bam(1.0);
+  EXPECT_EQ(deviation_angle_at(angle, 0, 3000), angle);
+  // 3000 rpm, the whole period back: the time is right to 1.7e-6 of the 0.126 rad
+  const std::int32_t speed = bpp(1256.0);
+  EXPECT_NEAR(rad(angle - deviation_angle_at(angle, speed, 0)), 0.1256, 1e-6);
+  EXPECT_NEAR(rad(angle - deviation_angle_at(angle, -speed, 7500)), -0.0314, 1e-6);
+}
+
+}  // namespace

@@ -1,0 +1,141 @@
+// The polarity test on a shaft that is inertia alone.
+
+#include <gtest/gtest.h>
+
+#include "tests/estimators/machine_windows.hpp"
+
+extern "C" {
+#include "estimators/polarity.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+using namespace stillspin::test::seen;
+
+constexpr double kAmps = 3.0;
+
+// Electrical acceleration of motor A, rad per period^2, per ampere of i_q.
+double accel_per_amp() {
+  const Motor m;
+  return m.torque_constant() / m.inertia * m.pole_pairs * kPeriod * kPeriod;
+}
+
+struct Conditions {
+  bool wrong_way_round = false;
+  bool blocked = false;
+  double inertia = 1.0;   // times motor A's
+  double load_amps = 0.0;  // constant load, as the current that would balance it
+  double noise = 0.0;     // rad, of every angle measured
+};
+
+struct Outcome {
+  polarity_t state;
+  double travel = 0.0, rest_speed = 0.0;  // rad, rad per period
+  double current_sum = 0.0, largest_current = 0.0;
+};
+
+Outcome run(const Conditions& c, std::uint64_t seed = 1) {
+  Random random(seed);
+  Outcome o = {};
+  double angle = 2.9, speed = 0.0;  // near half a turn, so that the wrap is part of the test
+  const double start = angle;
+  const double turned = c.wrong_way_round ? kPi : 0.0;  // what the saliency took for the d-axis
+  polarity_begin(&o.state, bam(angle + turned), raw(kAmps, 20), accel_q8(accel_per_amp() * kAmps));
+  for (int n = 0; n < POLARITY_LENGTH; ++n) {
+    EXPECT_EQ(o.state.result, POLARITY_PENDING) << n;
+    const double measured = angle + turned + c.noise * random.normal();
+    const double iq = real(polarity_step(&o.state, bam(measured)), 20);
+    const double torque = (c.wrong_way_round ? -iq : iq) - c.load_amps;
+    const double acceleration = c.blocked ? 0.0 : torque * accel_per_amp() / c.inertia;
+    angle += speed + 0.5 * acceleration;
+    speed += acceleration;
+    o.travel = std::max(o.travel, std::fabs(angle - start));
+    o.current_sum += iq;
+    o.largest_current = std::max(o.largest_current, std::fabs(iq));
+  }
+  o.rest_speed = speed;
+  return o;
+}
+
+double response(const Outcome& o) { return static_cast<double>(o.state.response_bam) / o.state.expected_bam; }
+
+TEST(Polarity, RightAndWrong) {
+  const Outcome right = run({});
+  EXPECT_EQ(right.state.result, POLARITY_RIGHT);
+  EXPECT_NEAR(response(right), 1.0, 0.01);  // the expectation is exactly this shaft's: only roundings are left
+  Conditions c;
+  c.wrong_way_round = true;
+  const Outcome wrong = run(c);
+  EXPECT_EQ(wrong.state.result, POLARITY_WRONG);
+  EXPECT_NEAR(response(wrong), -1.0, 0.01);
+}
+
+// It must not turn the shaft: accel n^2 electrical is 2.3 degrees, a sixth of a degree... and back to rest.
+TEST(Polarity, TheShaftHardlyMovesAndComesToRest) {
+  const Outcome o = run({});
+  const double excursion = accel_per_amp() * kAmps * POLARITY_SEGMENT * POLARITY_SEGMENT;
+  EXPECT_NEAR(o.travel, excursion, 1e-6);
+  EXPECT_LT(o.travel / Motor{}.pole_pairs / kDegree, 1.0);
+  EXPECT_NEAR(o.rest_speed, 0.0, 1e-12);
+  EXPECT_EQ(o.current_sum, 0.0);
+  EXPECT_NEAR(o.largest_current, kAmps, 1e-5);
+}
+
+TEST(Polarity, BlockedIsAmbiguous) {
+  Conditions c;
+  c.blocked = true;
+  EXPECT_EQ(run(c).state.result, POLARITY_AMBIGUOUS);
+  c.noise = 1.0 * kDegree;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    EXPECT_EQ(run(c, seed).state.result, POLARITY_AMBIGUOUS) << seed;
+  }
+}
+
+// Four times the inertia expected is the border.
+TEST(Polarity, FarTooMuchInertiaIsAmbiguous) {
+  for (const bool wrong : {false, true}) {
+    Conditions c;
+    c.wrong_way_round = wrong;
+    c.inertia = 3.8;
+    EXPECT_EQ(run(c).state.result, wrong ? POLARITY_WRONG : POLARITY_RIGHT);
+    c.inertia = 4.2;
+    EXPECT_EQ(run(c).state.result, POLARITY_AMBIGUOUS);
+    c.inertia = 0.25;  // bare shaft where a load was expected
+    EXPECT_EQ(run(c).state.result, wrong ? POLARITY_WRONG : POLARITY_RIGHT);
+  }
+}
+
+// A constant load as large as the test's own torque accelerates the shaft all the time; the two patterns' difference
+// does not see it.
+TEST(Polarity, AConstantLoadChangesNothing) {
+  for (const double load : {-1.0, -0.3, 0.3, 1.0}) {
+    for (const bool wrong : {false, true}) {
+      Conditions c;
+      c.wrong_way_round = wrong;
+      c.load_amps = load;
+      const Outcome o = run(c);
+      EXPECT_EQ(o.state.result, wrong ? POLARITY_WRONG : POLARITY_RIGHT) << load;
+      EXPECT_NEAR(std::fabs(response(o)), 1.0, 0.02) << load;
+    }
+  }
+}
+
+// One degree of noise per period: the mean of 20 in each third leaves 8 % of the response, the threshold is nine of that.
+TEST(Polarity, NoiseIsAveraged) {
+  Conditions c;
+  c.noise = 1.0 * kDegree;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    c.wrong_way_round = seed % 2 == 0;
+    EXPECT_EQ(run(c, seed).state.result, c.wrong_way_round ? POLARITY_WRONG : POLARITY_RIGHT) << seed;
+  }
+}
+
+TEST(Polarity, NothingIsCommandedAfterTheEnd) {
+  Outcome o = run({});
+  EXPECT_EQ(polarity_step(&o.state, 0), 0);
+  EXPECT_EQ(o.state.result, POLARITY_RIGHT);
+  EXPECT_EQ(o.state.tick, POLARITY_LENGTH);
+}
+
+}  // namespace

@@ -1,0 +1,189 @@
+// From parameters to constants: defaults, what is refused, and thousands of random sets.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/position.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+std::uint16_t id_of(const std::string& name) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    if (name == parameter_info(k)->name) return parameter_info(k)->id;
+  }
+  ADD_FAILURE() << "no parameter " << name;
+  return 0;
+}
+
+// In the user's unit, rounded to the parameter's format.
+void set(const std::string& name, double value) {
+  const std::uint16_t id = id_of(name);
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    const parameter_info_t* const info = parameter_info(k);
+    if (info->id == id) {
+      ASSERT_EQ(parameter_set(id, raw(value, info->q)), SET_OK) << name << " = " << value;
+    }
+  }
+}
+
+class DriveConfig : public testing::Test {
+ protected:
+  void SetUp() override { drive_reset(); }
+  void TearDown() override { drive_reset(); }
+};
+
+TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
+  EXPECT_TRUE(drive.config_valid);
+  EXPECT_TRUE(drive.control.speed_ready);
+  const drive_config_t& c = drive.config;
+  const Motor m;
+  // a decimal parameter is right to half an LSB of its Q format; the tolerances are a few of those, relative
+  EXPECT_NEAR(real(c.nameplate.ld_q30, 30), m.ld, 1e-8);
+  EXPECT_NEAR(real(c.nameplate.lq_q30, 30), m.lq, 1e-8);
+  EXPECT_NEAR(real(c.nameplate.flux_q28, 28), m.flux, 1e-8);
+  EXPECT_NEAR(real(c.nameplate.rs_q24, 24), 0.32 + 0.035, 1e-6);  // with the devices
+  EXPECT_EQ(c.nameplate.pole_pairs, 4);
+  const double bpp_per_rpm = std::ldexp(4.0 / 60.0 * kPeriod, 32);
+  EXPECT_NEAR(real(c.bpp_per_rpm_q8, 8) / bpp_per_rpm, 1.0, 1e-6);
+  EXPECT_NEAR(real(c.rpm_per_bpp_q40, 40) * bpp_per_rpm, 1.0, 1e-6);
+  EXPECT_NEAR(c.blend.low_bpp / (60.0 * bpp_per_rpm), 1.0, 1e-5);
+  EXPECT_NEAR(c.blend.high_bpp / (100.0 * bpp_per_rpm), 1.0, 1e-5);
+  EXPECT_NEAR(c.ramp_step_bpp / (3.0 * bpp_per_rpm), 1.0, 1e-4);  // 3000 rpm/s in a millisecond
+  EXPECT_EQ(c.modulator.pulse_ticks, 4200);
+  EXPECT_EQ(c.modulator.extended.window_min_ticks, 1800);
+  EXPECT_EQ(c.modulator.extended.window_max_ticks, 3000);
+  EXPECT_EQ(c.modulator.sampling.settle_ticks, 1050);
+  EXPECT_EQ(c.dead_time.blocked_ticks, 230);
+  EXPECT_EQ(c.dead_time.released_ticks, 60);
+  EXPECT_NEAR(real(c.slopes.amps_per_code_q30, 30), 20.0 / 2048.0, 1e-9);
+  EXPECT_NEAR(real(c.volts_per_code_q16, 16), 450.0 / 4096.0, 1.0 / 65536.0);
+  EXPECT_NEAR(real(c.avv.bandwidth_long_q30, 30), 200.0 * kPeriod, 1e-8);
+  EXPECT_NEAR(real(c.avv.bandwidth_short_q30, 30), 100.0 * kPeriod, 1e-8);
+  EXPECT_NEAR(real(c.zvv.kp_q30, 30), 4.0 * kPeriod, 1e-8);
+  EXPECT_NEAR(real(c.zvv.ki_q40, 40) / (4.0 * kPeriod * kPeriod), 1.0, 1e-4);
+  EXPECT_NEAR(real(c.observer.inverse_noise_q20, 20), 10.0, 0.01);  // 100 mA
+  EXPECT_NEAR(real(c.adapt_share_q30, 30), kPeriod / 50e-3, 1e-8);
+  const double newton_metres = m.inertia / m.pole_pairs * kTurn / std::ldexp(kPeriod * kPeriod, 32);  // per bpp a period
+  EXPECT_NEAR(real(c.torque_per_accel_q24, 24) / (256.0 * newton_metres), 1.0, 1e-3);
+  // torque per speed: B times mechanical rad/s per bpp
+  EXPECT_NEAR(real(c.friction_per_bpp_q40, 40) / (m.friction / m.pole_pairs * kTurn / std::ldexp(kPeriod, 32)), 1.0, 1e-3);
+}
+
+// Refused, and the configuration in use is left as it was.
+void expect_refused() {
+  drive_config_t c = drive.config;
+  c.slopes.offset_a_q8 = 12345;
+  drive_config_t before;
+  std::memcpy(&before, &c, sizeof c);
+  EXPECT_FALSE(drive_config_load(&c));
+  EXPECT_EQ(std::memcmp(&before, &c, sizeof c), 0);
+}
+
+TEST_F(DriveConfig, InconsistentBlend) {
+  set("blend_low", 100.0);
+  set("blend_high", 100.0);
+  expect_refused();
+  set("blend_high", 99.0);
+  expect_refused();
+  set("blend_high", 101.0);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+}
+
+TEST_F(DriveConfig, InductanceAcrossBelowTheOneAlong) {
+  set("inductance_q", 4.8);
+  expect_refused();
+  set("inductance_q", 4.9);  // a surface-magnet machine is allowed
+  EXPECT_TRUE(drive_config_load(&drive.config));
+}
+
+TEST_F(DriveConfig, WindowLimitsTheWrongWayRound) {
+  set("window_minimum", 25.0);
+  set("window_maximum", 24.0);
+  expect_refused();
+  set("window_maximum", 25.0);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+}
+
+TEST_F(DriveConfig, OffsetsAndMismatchSurviveAReload) {
+  drive.config.slopes.offset_a_q8 = 2050 * 256;
+  drive.config.slopes.mismatch_q30 = 777;
+  set("blend_high", 120.0);
+  ASSERT_TRUE(drive_config_load(&drive.config));
+  EXPECT_EQ(drive.config.slopes.offset_a_q8, 2050 * 256);
+  EXPECT_EQ(drive.config.slopes.mismatch_q30, 777);
+}
+
+// Anywhere between the ends, the ends themselves included; also near the default, so that some sets are accepted.
+std::int32_t random_value(Random& random, const parameter_info_t& p, bool wild) {
+  const int kind = random.below(8);
+  if (wild && kind == 0) return p.minimum;
+  if (wild && kind == 1) return p.maximum;
+  const double lo = wild ? p.minimum : std::max<double>(p.minimum, p.initial - 0.2 * std::fabs(p.initial));
+  const double hi = wild ? p.maximum : std::min<double>(p.maximum, p.initial + 0.2 * std::fabs(p.initial));
+  return static_cast<std::int32_t>(std::llround(random.between(lo, hi)));
+}
+
+TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
+  Random random(80);
+  int accepted = 0, refused = 0;
+  for (int n = 0; n < 4000; ++n) {
+    parameters_reset();
+    for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+      const parameter_info_t& p = *parameter_info(k);
+      ASSERT_EQ(parameter_set(p.id, random_value(random, p, n % 2 == 0)), SET_OK) << p.name;
+    }
+    drive_config_t c = drive.config;
+    if (!drive_config_load(&c)) {
+      ++refused;
+      continue;
+    }
+    ++accepted;
+    ASSERT_LE(parameters.inductance_d, parameters.inductance_q);
+    ASSERT_LT(parameters.blend_low, parameters.blend_high);
+    ASSERT_LE(parameters.window_minimum, parameters.window_maximum);
+    ASSERT_GT(c.nameplate.yq_q30, 0);
+    ASSERT_GE(c.nameplate.yd_q30, c.nameplate.yq_q30);
+    ASSERT_LT(c.blend.low_bpp, c.blend.high_bpp);
+    ASSERT_GE(c.avv.bandwidth_long_q30, c.avv.bandwidth_short_q30);
+    ASSERT_GE(c.dead_time.blocked_ticks, c.dead_time.released_ticks);
+    ASSERT_GE(c.ramp_step_bpp, 0);
+    ASSERT_GT(c.observer.inverse_noise_q20, 0);
+    ASSERT_GT(c.observer.load_noise_q20, 0);
+    const double low = real(parameters.blend_low, 16) / 60.0 * parameters.pole_pairs * std::ldexp(kPeriod, 32);
+    ASSERT_NEAR(c.blend.low_bpp / low, 1.0, 1e-4);
+  }
+  EXPECT_GT(accepted, 100);  // both ways were taken
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(DriveConfig, SpeedCommandIsClampedToTheLimit) {
+  const double per_rpm = Motor{}.pole_pairs / 60.0 * std::ldexp(kPeriod, 32);
+  const std::pair<double, double> cases[] = {{600, 600}, {-600, -600}, {5000, 3300}, {-32000, -3300}};
+  for (const auto& [asked, got] : cases) {
+    drive_command_speed(raw(asked, 16));
+    EXPECT_NEAR(drive.control.target_bpp / per_rpm, got, 0.01) << asked;
+  }
+}
+
+TEST_F(DriveConfig, EncoderAngle) {
+  for (const int counts : {4096, 1000, 65536}) {
+    for (const int count : {0, 1, counts / 3, counts - 1}) {
+      const double exact = kTurn * 4 * count / counts;
+      // 2^32 / counts rounded up by less than one LSB per count
+      EXPECT_NEAR(wrapped(rad(position_encoder_angle(static_cast<std::uint32_t>(count), 4, counts)) - exact), 0.0,
+                  4.0 * count * kTurn * std::ldexp(1.0, -32) + 1e-8);
+    }
+  }
+}
+
+}  // namespace

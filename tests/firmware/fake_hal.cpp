@@ -1,0 +1,57 @@
+#include "tests/firmware/fake_hal.hpp"
+
+#include "hal/hal_clock.h"
+#include "hal/hal_encoder.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_profile.h"
+#include "hal/hal_safety.h"
+#include "hal/hal_time.h"
+
+namespace stillspin::test {
+FakeBoard board;
+}
+
+using stillspin::test::board;
+
+extern "C" {
+
+bool hal_pwm_init(std::uint16_t) { return true; }
+bool hal_pwm_set_dead_band(std::uint16_t) { return true; }
+
+bool hal_pwm_write(const hal_pwm_frame_t* frame, std::uint16_t) {
+  if (board.late) return false;
+  board.frame = *frame;
+  board.frames++;
+  return true;
+}
+
+bool hal_pwm_gates_on(void) {
+  board.gates_on = !board.pin_low;
+  return board.gates_on;
+}
+
+void hal_pwm_gates_off(void) {
+  board.gates_on = false;
+  board.gates_off_calls++;
+}
+
+std::uint16_t hal_pwm_period_tick(void) { return 0; }
+bool hal_pwm_is_tripped(void) { return !board.gates_on; }
+bool hal_pwm_was_tripped_by_pin(void) { return board.tripped_by_pin; }
+
+void hal_adc_init(void) {}
+void hal_adc_read_window(hal_adc_window_t* window) {
+  *window = board.adc.front();
+  board.adc.pop_front();
+}
+
+std::uint16_t hal_irq_disable(void) { return 0; }
+void hal_irq_restore(std::uint16_t) {}
+std::uint16_t hal_irq_unexpected_count(void) { return 0; }
+void hal_profile_step(std::uint16_t) {}
+void hal_irq_control_begin(void) {}
+void hal_irq_control_end(void) {}
+void hal_safety_toggle_enable(void) { board.enable_toggles++; }
+void hal_safety_fault_lamp(bool on) { board.lamp = on; }
+std::uint32_t hal_encoder_count(void) { return board.encoder; }
+}

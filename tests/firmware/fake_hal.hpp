@@ -1,0 +1,83 @@
+// The board under the firmware: what it was told, and what it shall answer.
+
+#ifndef STILLSPIN_TESTS_FIRMWARE_FAKE_HAL_HPP
+#define STILLSPIN_TESTS_FIRMWARE_FAKE_HAL_HPP
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "hal/hal_adc.h"
+#include "hal/hal_pwm.h"
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/position.h"
+#include "firmware/sampling.h"
+}
+
+namespace stillspin::test {
+
+struct FakeBoard {
+  bool gates_on = false, lamp = false;
+  bool tripped_by_pin = false, pin_low = false;
+  bool late = false;  // hal_pwm_write comes too late
+  int gates_off_calls = 0, frames = 0, enable_toggles = 0;
+  hal_pwm_frame_t frame = {};
+  std::deque<hal_adc_window_t> adc;  // what hal_adc_read_window gives next
+  std::uint32_t encoder = 0;
+};
+extern FakeBoard board;
+
+/// Codes of a board at rest: no current, 300 V.
+inline hal_adc_window_t still_window(double link = 300.0) {
+  hal_adc_window_t w = {};
+  w.start_a = w.start_b = 4 * 2048;
+  w.end_a = w.end_b = 3 * 2048;
+  w.link = static_cast<std::uint16_t>(std::lround(link / 450.0 * 4096.0));
+  return w;
+}
+
+class Drive : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    board = FakeBoard{};
+    drive_reset();
+  }
+
+  /// One period: as many window interrupts as the pattern has windows, then the control interrupt.
+  void period(const hal_adc_window_t& w = still_window(), int missing = 0) {
+    const int count = drive.modulation.sampled.window_count - missing;
+    for (int k = 0; k < count; ++k) {
+      board.adc.push_back(w);
+      drive_window_interrupt();
+    }
+    drive_control_interrupt();
+  }
+
+  void periods(int n) {
+    for (int k = 0; k < n; ++k) period();
+  }
+
+  /// Ready, calibrated.
+  void make_ready() {
+    periods(400);
+    ASSERT_EQ(drive.state, DRIVE_READY);
+  }
+
+  /// Running, with the encoder and without the polarity test, which needs a machine behind it.
+  void make_run() {
+    parameters.position_source = 0;
+    parameters.polarity_check = 0;
+    make_ready();
+    drive_command_start();
+    periods(350);
+    ASSERT_EQ(drive.state, DRIVE_RUN);
+  }
+};
+
+}  // namespace stillspin::test
+
+#endif

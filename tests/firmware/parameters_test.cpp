@@ -1,0 +1,146 @@
+// The parameter table: its rows against a second reading of the list in double precision, and access by number.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+extern "C" {
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+}
+
+namespace {
+
+struct Row {
+  int id;
+  std::string name;
+  int q, decimals;
+  double minimum, maximum, initial;
+  std::int32_t* value;
+  bool always;
+};
+
+constexpr bool STOPPED = false, ALWAYS = true;
+
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
+  {id, #name, q, decimals, minimum, maximum, initial, &parameters.name, access},
+const Row kRows[] = {
+#include "firmware/parameter_list.h"
+};
+#undef PARAMETER
+
+double exact(double value, const Row& r) { return std::ldexp(value / std::pow(10.0, r.decimals), r.q); }
+
+class Parameters : public testing::Test {
+ protected:
+  void SetUp() override { drive_reset(); }
+  void TearDown() override { drive_reset(); }
+};
+
+TEST_F(Parameters, NumbersAndNamesAreUnique) {
+  std::set<int> ids;
+  std::set<std::string> names;
+  for (const Row& r : kRows) {
+    EXPECT_TRUE(ids.insert(r.id).second) << r.id;
+    EXPECT_TRUE(names.insert(r.name).second) << r.name;
+    EXPECT_GT(r.id, 0);
+  }
+  EXPECT_EQ(parameter_count(), std::size(kRows));
+}
+
+TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    const Row& r = kRows[k];
+    const parameter_info_t* const info = parameter_info(k);
+    ASSERT_NE(info, nullptr);
+    EXPECT_EQ(info->id, r.id);
+    EXPECT_EQ(info->name, r.name);
+    EXPECT_EQ(info->q, r.q) << r.name;
+    EXPECT_EQ(info->decimals, r.decimals) << r.name;
+    EXPECT_EQ(info->access, r.always ? PARAMETER_ALWAYS : PARAMETER_STOPPED) << r.name;
+    EXPECT_GT(std::string(info->meaning).size(), 3u) << r.name;
+    const std::pair<std::int32_t, double> pairs[] = {
+        {info->minimum, r.minimum}, {info->maximum, r.maximum}, {info->initial, r.initial}};
+    for (const auto& [raw, decimal] : pairs) {
+      const double wanted = exact(decimal, r);
+      ASSERT_LE(std::fabs(wanted), 2147483647.0) << r.name << " does not fit";
+      // half an LSB of rounding, exact halves either way
+      EXPECT_LE(std::fabs(raw - wanted), 0.5 + 1e-6) << r.name;
+    }
+  }
+}
+
+TEST_F(Parameters, DefaultsLieInsideTheRanges) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    const parameter_info_t* const info = parameter_info(k);
+    EXPECT_LT(info->minimum, info->maximum) << info->name;
+    EXPECT_LE(info->minimum, info->initial) << info->name;
+    EXPECT_LE(info->initial, info->maximum) << info->name;
+    EXPECT_EQ(parameter_get(info->id), info->initial) << info->name;
+    EXPECT_EQ(*kRows[k].value, info->initial) << info->name;
+  }
+}
+
+TEST_F(Parameters, SetAndGet) {
+  for (const Row& r : kRows) {
+    const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows));
+    for (const std::int32_t raw : {info->minimum, info->maximum, info->minimum + 1}) {
+      drive.request.reload = false;
+      ASSERT_EQ(parameter_set(info->id, raw), SET_OK) << r.name;
+      EXPECT_EQ(parameter_get(info->id), raw) << r.name;
+      EXPECT_EQ(*r.value, raw) << r.name;
+      EXPECT_TRUE(drive.request.reload) << r.name;
+    }
+  }
+  parameters_reset();
+  for (const Row& r : kRows) EXPECT_NEAR(*r.value, exact(r.initial, r), 0.500001) << r.name;
+}
+
+TEST_F(Parameters, ARefusedValueChangesNothing) {
+  for (const Row& r : kRows) {
+    const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows));
+    for (const std::int32_t raw : {info->minimum - 1, info->maximum + 1, std::numeric_limits<std::int32_t>::min(),
+                                   std::numeric_limits<std::int32_t>::max()}) {
+      drive.request.reload = false;
+      EXPECT_EQ(parameter_set(info->id, raw), SET_RANGE) << r.name;
+      EXPECT_EQ(parameter_get(info->id), info->initial) << r.name;
+      EXPECT_FALSE(drive.request.reload) << r.name;
+    }
+  }
+}
+
+TEST_F(Parameters, UnknownNumbers) {
+  std::set<int> known;
+  for (const Row& r : kRows) known.insert(r.id);
+  for (int id = 0; id <= 0xFFFF; ++id) {
+    if (known.count(id) != 0) continue;
+    ASSERT_EQ(parameter_set(static_cast<std::uint16_t>(id), 1), SET_UNKNOWN) << id;
+    ASSERT_EQ(parameter_get(static_cast<std::uint16_t>(id)), 0) << id;
+  }
+  EXPECT_FALSE(drive.request.reload);
+  EXPECT_EQ(parameter_info(parameter_count()), nullptr);
+  EXPECT_EQ(parameter_info(0xFFFF), nullptr);
+}
+
+// With the power stage on, what the running drive was set up with stays.
+TEST_F(Parameters, RefusedWhileEnergised) {
+  const drive_state_t all[] = {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY, DRIVE_START,
+                               DRIVE_RUN,  DRIVE_STOP,      DRIVE_FAULT};
+  for (const drive_state_t state : all) {
+    const bool energised = state == DRIVE_START || state == DRIVE_RUN || state == DRIVE_STOP;
+    drive.state = state;
+    EXPECT_EQ(drive_is_energised(), energised) << state;
+    for (const Row& r : kRows) {
+      const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows));
+      parameters_reset();
+      const bool allowed = r.always || !energised;
+      EXPECT_EQ(parameter_set(info->id, info->minimum), allowed ? SET_OK : SET_RUNNING) << r.name;
+      EXPECT_EQ(parameter_get(info->id), allowed ? info->minimum : info->initial) << r.name;
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,86 @@
+// From codes to windows: times, voltages, the filtered link; and the frames that go to the hardware.
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
+  make_run();
+  Random random(310);
+  for (int n = 0; n < 300; ++n) {
+    const svpwm_pattern_t p = drive.modulation.sampled;
+    // a current of 3 A along phase a that rises by some codes in each window
+    hal_adc_window_t w = still_window();
+    const int base = 2048 + 307;
+    const int rise = random.below(41) - 20;
+    w.start_a = static_cast<std::uint16_t>(4 * base);
+    w.end_a = static_cast<std::uint16_t>(3 * (base + rise));
+    w.start_b = static_cast<std::uint16_t>(4 * (2048 - 153));
+    w.end_b = static_cast<std::uint16_t>(3 * (2048 - 153));
+    period(w);
+    ASSERT_EQ(drive.samples.count, p.window_count);
+    for (int k = 0; k < p.window_count; ++k) {
+      const estimator_window_t& e = drive.samples.windows[k];
+      const svpwm_window_t& from = p.windows[k];
+      const int begin = from.begin + 1050 + static_cast<int>(HAL_ADC_START_DELAY_TICKS);
+      const int end = std::min(from.end - 140, 9640) + static_cast<int>(HAL_ADC_END_DELAY_TICKS);
+      ASSERT_EQ(e.span_ticks, end - begin);
+      ASSERT_NEAR(e.middle_tick, 0.5 * (begin + end), 0.5);
+      ASSERT_EQ(e.zero_vector, from.state == 0 || from.state == 7);
+      const double a = from.state & 1u, b = (from.state >> 1) & 1u, c = (from.state >> 2) & 1u;
+      // less 0.95 V against each phase's current: a positive, b and c negative by half
+      const double drop[] = {0.95, -0.95, -0.95};
+      const double link = real(drive.samples.link_q16, 16);
+      const Vector v = {(2.0 * a - b - c) / 3.0 * link - (2.0 * drop[0] - drop[1] - drop[2]) / 3.0,
+                        (b - c) / std::sqrt(3.0) * link - (drop[1] - drop[2]) / std::sqrt(3.0)};
+      // the link is filtered on from window to window: up to 0.05 V between this window and the last
+      ASSERT_NEAR(real(e.voltage_q16.alpha, 16), v.x, 0.1);
+      ASSERT_NEAR(real(e.voltage_q16.beta, 16), v.y, 0.1);
+      ASSERT_NEAR(real(e.slope_q20.alpha, 20), rise * 20.0 / 2048.0 * 10000.0 / (end - begin), 0.01);
+    }
+    if (drive.state != DRIVE_RUN) break;
+  }
+}
+
+TEST_F(Drive, LinkFilterSettlesOnTheMeasurement) {
+  make_ready();
+  EXPECT_NEAR(real(drive.samples.link_q16, 16), 300.0, 0.06);  // half a code
+  for (int n = 0; n < 40; ++n) period(still_window(250.0));
+  EXPECT_NEAR(real(drive.samples.link_q16, 16), 250.0, 0.06);
+}
+
+TEST_F(Drive, EveryFrameIsOneThatTheHardwareCanDo) {
+  make_run();
+  Random random(311);
+  drive_command_speed(raw(3000.0, 16));
+  for (int n = 0; n < 3000 && drive.state == DRIVE_RUN; ++n) {
+    board.encoder = (board.encoder + 20u) & 4095u;
+    hal_adc_window_t w = still_window();
+    w.start_a = static_cast<std::uint16_t>(4 * (2048 + random.below(800) - 400));
+    w.end_a = static_cast<std::uint16_t>(3 * (2048 + random.below(800) - 400));
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;  // no divergence: it is not the subject
+    period(w);
+    const hal_pwm_frame_t& f = board.frame;
+    for (int leg = 0; leg < 3; ++leg) {
+      ASSERT_GE(f.rise_tick[leg], 1);
+      ASSERT_LT(f.rise_tick[leg], f.fall_tick[leg]);
+      ASSERT_LE(f.fall_tick[leg], 9999);
+    }
+    int last = -1000;
+    for (int k = 0; k < 3; ++k) {
+      if (f.burst_start_tick[k] == HAL_PWM_NONE) {
+        ASSERT_EQ(f.burst_end_tick[k], HAL_PWM_NONE);
+        continue;
+      }
+      ASSERT_GE(f.burst_start_tick[k], last + static_cast<int>(HAL_ADC_WINDOW_GAP_TICKS));
+      ASSERT_GE(f.burst_end_tick[k], f.burst_start_tick[k] + HAL_ADC_BURST_TICKS);
+      last = f.burst_end_tick[k];
+      ASSERT_LE(last, 9640);
+    }
+  }
+  EXPECT_GT(board.frames, 1000);
+}
+
+}  // namespace

@@ -1,0 +1,191 @@
+// States and faults: what opens the power stage, and what it takes to close it.
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+TEST_F(Drive, FromBootToReadyWithTheGatesOff) {
+  EXPECT_EQ(drive.state, DRIVE_BOOT);
+  period();
+  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  make_ready();
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_GT(board.enable_toggles, 300);  // the hardware watchdog of the gate driver
+}
+
+TEST_F(Drive, CalibrationTakesTheOffsets) {
+  hal_adc_window_t w = still_window();
+  w.start_a = 4 * 2048 + 25;
+  w.start_b = 4 * 2048 - 13;
+  for (int n = 0; n < 400; ++n) period(w);
+  ASSERT_EQ(drive.state, DRIVE_READY);
+  // a first-order mean of 16 periods over 256; floor(x / 16) stops up to 15 short
+  EXPECT_NEAR(real(drive.config.slopes.offset_a_q8, 8), 2048.0 + 25.0 / 4.0, 16.0 / 256);
+  EXPECT_NEAR(real(drive.config.slopes.offset_b_q8, 8), 2048.0 - 13.0 / 4.0, 16.0 / 256);
+}
+
+TEST_F(Drive, AnImplausibleOffsetIsAFault) {
+  hal_adc_window_t w = still_window();
+  w.start_a = 4 * (2048 + 130);
+  for (int n = 0; n < 400; ++n) period(w);
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, FAULT_OFFSET);
+  EXPECT_TRUE(board.lamp);
+}
+
+TEST_F(Drive, StartNeedsReady) {
+  drive_command_start();
+  periods(20);
+  EXPECT_NE(drive.state, DRIVE_START);
+  EXPECT_FALSE(board.gates_on);
+  make_ready();
+  periods(50);
+  EXPECT_EQ(drive.state, DRIVE_READY) << "an early command must not be remembered";
+}
+
+TEST_F(Drive, StartRunStop) {
+  make_run();
+  EXPECT_TRUE(board.gates_on);
+  EXPECT_TRUE(drive.control.closed);
+  drive_command_stop();
+  periods(30);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_FALSE(drive.control.closed);
+}
+
+TEST_F(Drive, StartIsRefusedWithParametersThatDoNotFit) {
+  make_ready();
+  drive.config_valid = false;
+  drive_command_start();
+  periods(3);
+  EXPECT_EQ(drive.fault, FAULT_PARAMETER);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Drive, StartIsRefusedWhileTheComparatorIsLow) {
+  make_ready();
+  board.pin_low = true;
+  drive_command_start();
+  periods(3);
+  EXPECT_EQ(drive.fault, FAULT_OVER_CURRENT);
+  EXPECT_FALSE(board.gates_on);
+}
+
+/// Whatever happened must have opened the power stage, be latched, and stay so until the reset.
+void expect_fault(drive_fault_t fault) {
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, fault);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_TRUE(board.lamp);
+  EXPECT_FALSE(drive.control.closed);
+}
+
+TEST_F(Drive, ComparatorTrip) {
+  make_run();
+  board.tripped_by_pin = true;
+  period();
+  expect_fault(FAULT_OVER_CURRENT);
+}
+
+TEST_F(Drive, SampledCurrentBeyondTheTripLevel) {
+  make_run();
+  hal_adc_window_t w = still_window();
+  const auto codes = [](double amps) { return 2048.0 + amps / 20.0 * 2048.0; };
+  for (const double amps : {17.5, 18.5}) {  // the limit is 18 A
+    w.start_a = static_cast<std::uint16_t>(4 * codes(amps));
+    w.end_a = static_cast<std::uint16_t>(3 * codes(amps));
+    w.start_b = static_cast<std::uint16_t>(4 * codes(-amps / 2));
+    w.end_b = static_cast<std::uint16_t>(3 * codes(-amps / 2));
+    period(w);
+    if (amps < 18.0) {
+      EXPECT_EQ(drive.state, DRIVE_RUN);
+    }
+  }
+  expect_fault(FAULT_CURRENT_LIMIT);
+}
+
+TEST_F(Drive, TheThirdPhaseIsWatchedToo) {
+  make_run();
+  hal_adc_window_t w = still_window();
+  w.start_a = w.start_b = static_cast<std::uint16_t>(4 * (2048 + 10 * 102.4));  // 10 A each, so c has -20 A
+  w.end_a = w.end_b = static_cast<std::uint16_t>(3 * (2048 + 10 * 102.4));
+  period(w);
+  expect_fault(FAULT_CURRENT_LIMIT);
+}
+
+TEST_F(Drive, LinkVoltageOutOfItsRange) {
+  for (const double volts : {140.0, 430.0}) {
+    SetUp();
+    make_run();
+    for (int n = 0; n < 40; ++n) period(still_window(volts));  // the filter takes a few windows
+    expect_fault(volts < 200.0 ? FAULT_LINK_LOW : FAULT_LINK_HIGH);
+  }
+}
+
+TEST_F(Drive, FivePeriodsWithoutSamplesAreBornSixAreNot) {
+  make_run();
+  for (int n = 0; n < 5; ++n) period(still_window(), 1);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  period();
+  for (int n = 0; n < 5; ++n) period(still_window(), 1);
+  EXPECT_EQ(drive.state, DRIVE_RUN) << "one good period starts the count again";
+  period(still_window(), 1);
+  expect_fault(FAULT_NO_SAMPLES);
+}
+
+TEST_F(Drive, LateInterruptsRepeatThePatternAndFaultInTheEnd) {
+  make_run();
+  board.late = true;
+  const int frames = board.frames;
+  for (int n = 0; n < 8; ++n) period();
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(board.frames, frames);
+  EXPECT_NE(drive.limits & LIMIT_OVERRUN, 0);
+  for (int n = 0; n < 5; ++n) period();
+  expect_fault(FAULT_OVERRUN);
+}
+
+TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
+  make_run();
+  const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
+  int n = 0;
+  while (drive.state == DRIVE_RUN && n < 2 * allowed) {
+    // the encoder says one thing, AVV is held a quarter turn away
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x40000000u;
+    period();
+    n++;
+  }
+  expect_fault(FAULT_DIVERGENCE);
+  EXPECT_NEAR(n, allowed, 3);
+}
+
+TEST_F(Drive, FaultStaysUntilTheReset) {
+  make_run();
+  board.tripped_by_pin = true;
+  period();
+  drive_command_start();
+  periods(20);
+  expect_fault(FAULT_OVER_CURRENT);
+  board.tripped_by_pin = false;
+  drive_command_reset();
+  periods(2);
+  EXPECT_EQ(drive.state, DRIVE_CALIBRATE) << "an implausible offset must not slip through a reset";
+  periods(400);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_FALSE(board.lamp);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Drive, SpeedReferenceIsClampedToTheLimit) {
+  for (const double rpm : {1000.0, 5000.0, -5000.0}) {
+    drive_command_speed(raw(rpm, 16));
+    const double expected = std::max(-3300.0, std::min(3300.0, rpm));
+    EXPECT_NEAR(rad_per_s(drive.control.target_bpp) / kTurn * 60.0 / 4.0, expected, 0.01);
+  }
+}
+
+}  // namespace
