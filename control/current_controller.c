@@ -5,8 +5,7 @@
 // Bandwidth over the corner of the integrator.
 #define RESET_RATIO 4
 
-static pi_config_t design_axis(int32_t inductance_q30, int32_t bandwidth_rads,
-                               int32_t period_us) {
+static pi_config_t design_axis(int32_t inductance_q30, int32_t bandwidth_rads, int32_t period_us) {
   pi_config_t c;
   const int32_t step_q24 = q_div(bandwidth_rads * period_us, 1000000L, 24);  // bandwidth * T
   c.kp_q20 = q_mul(inductance_q30, bandwidth_rads, 10);

@@ -1,10 +1,11 @@
-// Current control in the rotor frame: two PI controllers with bandwidth a (Kp = a L) and the integrator's corner at a/4,
-// the rotational voltages fed forward and anti-windup from the voltage that the modulator really gives.
+// Current control in the rotor frame: two PI controllers with bandwidth a (Kp = a L) and the integrator's corner at
+// a/4, the rotational voltages fed forward and anti-windup from the voltage that the modulator really gives.
 //
-// The corner is not the machine's own R/L, as internal-model control has it: what the dead time leaves over is a voltage
-// disturbance that turns with the current, and with R/L it would decay in L/R, about 20 ms, far too slow for the speed
-// loop. The measurement is taken over the last period and the voltage acts in the middle of the next but one: two periods
-// of delay. a = 1800 rad/s leaves about 55 degrees of phase margin at 10 kHz; more than 2600 rad/s is refused.
+// The corner is not the machine's own R/L, as internal-model control has it: what the dead time leaves over is a
+// voltage disturbance that turns with the current, and with R/L it would decay in L/R, about 20 ms, far too slow for
+// the speed loop. The measurement is taken over the last period and the voltage acts in the middle of the next but one:
+// two periods of delay. a = 1800 rad/s leaves about 55 degrees of phase margin at 10 kHz; more than 2600 rad/s is
+// refused.
 
 #ifndef STILLSPIN_CONTROL_CURRENT_CONTROLLER_H
 #define STILLSPIN_CONTROL_CURRENT_CONTROLLER_H

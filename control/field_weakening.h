@@ -16,12 +16,12 @@ typedef struct {
 } field_weakening_t;
 
 typedef struct {
-  int32_t speed_bpp;           // electrical speed
-  int32_t iq_q20;              // q-axis current reference
-  int32_t voltage_q16;         // magnitude of the voltage command
-  int32_t voltage_limit_q16;   // what it may be
-  int32_t current_limit_q20;   // largest |id| allowed, A
-  int32_t trim_gain_q20;       // A per V and step, Q20
+  int32_t speed_bpp;          // electrical speed
+  int32_t iq_q20;             // q-axis current reference
+  int32_t voltage_q16;        // magnitude of the voltage command
+  int32_t voltage_limit_q16;  // what it may be
+  int32_t current_limit_q20;  // largest |id| allowed, A
+  int32_t trim_gain_q20;      // A per V and step, Q20
 } field_weakening_input_t;
 
 void field_weakening_reset(field_weakening_t* s);

@@ -1,7 +1,8 @@
 // Reference frames: three phases, the stationary alpha-beta frame and a rotating d-q frame.
 //
-// Clarke is amplitude invariant (peak values) and takes a + b + c = 0; alpha lies on phase a. Park turns by the electrical
-// angle, d-axis ahead. A vector keeps the Q format of its components. Valid below half of the 32-bit range: no saturation.
+// Clarke is amplitude invariant (peak values) and takes a + b + c = 0; alpha lies on phase a. Park turns by the
+// electrical angle, d-axis ahead. A vector keeps the Q format of its components. Valid below half of the 32-bit range:
+// no saturation.
 //
 // A slope measured in alpha-beta and turned by Park is *not* the derivative of the d-q current: the two differ by
 // omega J i (see docs, "Physics").
@@ -28,8 +29,8 @@ typedef struct {
   int32_t sin_q30, cos_q30;
 } rotation_t;
 
-#define FRAME_SQRT3_INV_Q30 619925131L  // 1/sqrt(3)
-#define FRAME_SQRT3_HALF_Q30 929887697L // sqrt(3)/2
+#define FRAME_SQRT3_INV_Q30 619925131L   // 1/sqrt(3)
+#define FRAME_SQRT3_HALF_Q30 929887697L  // sqrt(3)/2
 
 static inline rotation_t frame_rotation(uint32_t angle_bam) {
   rotation_t r;

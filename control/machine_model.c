@@ -5,8 +5,7 @@ static bool in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <=
 static bool parameters_valid(const machine_parameters_t* p) {
   return in_range(p->rs_q24, 16777L, 838860800L) && in_range(p->ld_q30, 21474L, 536870912L) &&
          in_range(p->lq_q30, p->ld_q30, 536870912L) && in_range(p->flux_q28, 268435L, 268435456L) &&
-         in_range(p->inertia_q24, 168L, 16777216L) && in_range(p->pole_pairs, 1, 20) &&
-         in_range(p->period_us, 20, 500);
+         in_range(p->inertia_q24, 168L, 16777216L) && in_range(p->pole_pairs, 1, 20) && in_range(p->period_us, 20, 500);
 }
 
 void machine_model_set_admittance(machine_model_t* m, int32_t yd_q30, int32_t yq_q30) {

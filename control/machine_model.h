@@ -25,22 +25,22 @@ typedef struct {
 } machine_parameters_t;
 
 typedef struct {
-  int32_t rs_q24;           // ohm
-  int32_t ld_q30, lq_q30;   // H
-  int32_t flux_q28;         // V s
-  int32_t yd_q30, yq_q30;   // T/L, A per V and period
-  int32_t emf_q16;          // lambda/T: V per (rad per period)
-  int32_t kappa_d_q24;      // Lq/Ld - 1
-  int32_t kappa_q_q24;      // 1 - Ld/Lq
-  int32_t torque_q24;       // 3/2 p lambda, N m per A of i_q at i_d = 0
-  int32_t reluctance_q24;   // 3/2 p (Ld - Lq), N m per A^2
-  int32_t accel_q12;        // electrical acceleration per torque, binary angle per period^2 and N m
+  int32_t rs_q24;          // ohm
+  int32_t ld_q30, lq_q30;  // H
+  int32_t flux_q28;        // V s
+  int32_t yd_q30, yq_q30;  // T/L, A per V and period
+  int32_t emf_q16;         // lambda/T: V per (rad per period)
+  int32_t kappa_d_q24;     // Lq/Ld - 1
+  int32_t kappa_q_q24;     // 1 - Ld/Lq
+  int32_t torque_q24;      // 3/2 p lambda, N m per A of i_q at i_d = 0
+  int32_t reluctance_q24;  // 3/2 p (Ld - Lq), N m per A^2
+  int32_t accel_q12;       // electrical acceleration per torque, binary angle per period^2 and N m
   int32_t pole_pairs;
   int32_t periods_per_second;  // 1/T
 } machine_model_t;
 
-/// Derives the constants. Returns false, leaving the model unusable, when a parameter is outside its range or a constant
-/// outside its format: T/L from 2 A/V, lambda/T from 32768 V, Lq/Ld from 129, too light a rotor.
+/// Derives the constants. Returns false, leaving the model unusable, when a parameter is outside its range or a
+/// constant outside its format: T/L from 2 A/V, lambda/T from 32768 V, Lq/Ld from 129, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
 /// Recomputes what follows from the inductances after an adaptation changed yd/yq.

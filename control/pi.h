@@ -1,8 +1,8 @@
 // Proportional-integral controller with a limit that is imposed from outside (anti-windup by back-calculation).
 //
-// u = Kp e + I;  I += Ki T e. When the actuator could not follow, pi_limited() lets the integrator run towards the value
-// with which the output would have been the realised one, at the rate `release` (a few times Ki/Kp), so that a long limit
-// does not wind it up and a short one, where the proportional part alone is limited, does not empty it.
+// u = Kp e + I;  I += Ki T e. When the actuator could not follow, pi_limited() lets the integrator run towards the
+// value with which the output would have been the realised one, at the rate `release` (a few times Ki/Kp), so that a
+// long limit does not wind it up and a short one, where the proportional part alone is limited, does not empty it.
 
 #ifndef STILLSPIN_CONTROL_PI_H
 #define STILLSPIN_CONTROL_PI_H

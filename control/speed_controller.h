@@ -4,9 +4,9 @@
 //   w(n+1) = a w(n) + b i(n),   a = exp(-B Ts / J),   b = Kt Ts / J * (1 - x/2 + x^2/6), x = B Ts / J    (47)-(49)
 // and minimising alpha (w(n+1) - w_r(n+1))^2 + (delta i)^2 gives
 //   delta i = k [w_r(n+1) - a w(n) - b i(n-1)],   k = alpha b / (alpha b^2 + 1)                          (53), (54)
-// Two things are added to the paper. The target w_r(n+1) is a reference trajectory that starts at the measured speed and
-// closes the distance with a time constant: with w_r = w* itself the loop has poles at z^2 - (2 - 2kb) z + (1 - kb),
-// which ring for every kb below one and amplify the estimator's noise as kb approaches it. And the load is not the
+// Two things are added to the paper. The target w_r(n+1) is a reference trajectory that starts at the measured speed
+// and closes the distance with a time constant: with w_r = w* itself the loop has poles at z^2 - (2 - 2kb) z + (1 -
+// kb), which ring for every kb below one and amplify the estimator's noise as kb approaches it. And the load is not the
 // differentiated speed of the paper's Fig. 7 but the load torque that the position observer carries as a state.
 //
 // PI: pole assignment for J s w = Kt i - B w with the damping and frequency given; integrator with conditional release.
@@ -23,13 +23,13 @@
 typedef enum { SPEED_PREDICTIVE = 0, SPEED_PI = 1 } speed_law_t;
 
 typedef struct {
-  int32_t friction_q24;         // B, N m s per rad, 0..1
-  int32_t inertia_q24;          // J, kg m^2
-  int32_t step_periods;         // speed period in PWM periods, 1..100
-  int32_t alpha_q8;             // weight of the predicted speed error, A^2 s^2 / rad^2, 1..100000
-  int32_t trajectory_ms_q8;     // time constant of the reference trajectory, 2..200 ms
-  int32_t pi_bandwidth_q8;      // natural frequency of the PI loop, rad/s, 1..200
-  int32_t pi_damping_q12;       // its damping, 0.3..3
+  int32_t friction_q24;      // B, N m s per rad, 0..1
+  int32_t inertia_q24;       // J, kg m^2
+  int32_t step_periods;      // speed period in PWM periods, 1..100
+  int32_t alpha_q8;          // weight of the predicted speed error, A^2 s^2 / rad^2, 1..100000
+  int32_t trajectory_ms_q8;  // time constant of the reference trajectory, 2..200 ms
+  int32_t pi_bandwidth_q8;   // natural frequency of the PI loop, rad/s, 1..200
+  int32_t pi_damping_q12;    // its damping, 0.3..3
 } speed_controller_config_t;
 
 typedef struct {

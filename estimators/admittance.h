@@ -1,8 +1,9 @@
 // Slow adaptation of the machine's admittances to what the windows show (saturation, nameplate errors).
 //
 // With differences of active vectors, y = (Y0 + 1/2 dY S(2 theta)) dv is linear in Y0 and 1/2 dY: the residual along dv
-// belongs to Y0, the one along the mirrored dv to 1/2 dY (avv.h). A least-mean-squares step per period moves both, within
-// bounds around the nameplate. It makes AVV independent of the inductances, which the paper's three-vector form is too.
+// belongs to Y0, the one along the mirrored dv to 1/2 dY (avv.h). A least-mean-squares step per period moves both,
+// within bounds around the nameplate. It makes AVV independent of the inductances, which the paper's three-vector form
+// is too.
 
 #ifndef STILLSPIN_ESTIMATORS_ADMITTANCE_H
 #define STILLSPIN_ESTIMATORS_ADMITTANCE_H

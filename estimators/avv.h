@@ -1,10 +1,12 @@
-// AVV: the rotor angle from how the current deviation differs between voltage vectors (seed paper, section 4, eqs (37)-(41)).
+// AVV: the rotor angle from how the current deviation differs between voltage vectors (seed paper, section 4, eqs
+// (37)-(41)).
 //
 // The differences between windows depend on L^-1(theta) alone: y = ds - Y0 dv = 1/2 dY S(2 theta) dv. Any two or three
 // distinct vectors will do; the windows are weighted with the square of their span (their information). The model's own
 // slope at the observed angle is taken off first, which removes what resistance, back-EMF and rotation change between
-// the windows' instants; what is left is turned into the angle error by atan2, valid for any error up to a quarter turn.
-// 2 theta leaves the polarity open: the observer's own half turn is kept, polarity.h finds the right one at the start.
+// the windows' instants; what is left is turned into the angle error by atan2, valid for any error up to a quarter
+// turn. 2 theta leaves the polarity open: the observer's own half turn is kept, polarity.h finds the right one at the
+// start.
 
 #ifndef STILLSPIN_ESTIMATORS_AVV_H
 #define STILLSPIN_ESTIMATORS_AVV_H

@@ -3,14 +3,14 @@
 #include "estimators/deviation.h"
 
 #define ONE_Q20 1048576L
-#define BAM_PER_UNIT 10680707L        // 2^-6 rad
-#define BPP_PER_UNIT 166886L          // 2^-12 rad per period
-#define ACCEL_Q8_PER_UNIT 667544L     // 2^-18 rad per period^2
+#define BAM_PER_UNIT 10680707L     // 2^-6 rad
+#define BPP_PER_UNIT 166886L       // 2^-12 rad per period
+#define ACCEL_Q8_PER_UNIT 667544L  // 2^-18 rad per period^2
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define VARIANCE_MAX (512L * ONE_Q20)
-#define SCORE_MAX (48L * ONE_Q20)       // residuals beyond 48 sigma count as 48
+#define SCORE_MAX (48L * ONE_Q20)  // residuals beyond 48 sigma count as 48
 #define INFORMATION_MAX (8L * 16777216L)
 
 typedef struct {
@@ -32,8 +32,8 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
 }
 
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
-  const deviation_observer_t fresh = {angle_bam, speed_bpp, load_accel_q8, 0, ANGLE_VARIANCE, 0, 0,
-                                      SPEED_VARIANCE, 0, LOAD_VARIANCE};
+  const deviation_observer_t fresh = {angle_bam, speed_bpp, load_accel_q8,  0, ANGLE_VARIANCE,
+                                      0,         0,         SPEED_VARIANCE, 0, LOAD_VARIANCE};
   *s = fresh;
 }
 
@@ -69,8 +69,10 @@ static void collect_window(information_t* n, const deviation_observer_t* s, cons
   const dq_t h_s = deviation_speed_sensitivity(m, &d);
   // span / N / sigma turns a slope into a current difference in units of its noise.
   const int32_t scale_q20 = q_mul_sat(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
-  collect(n, q_mul_sat(h_a.d, scale_q20, 26), q_mul_sat(h_s.d, scale_q20, 32), q_mul_sat(d.residual_q20.d, scale_q20, 20));
-  collect(n, q_mul_sat(h_a.q, scale_q20, 26), q_mul_sat(h_s.q, scale_q20, 32), q_mul_sat(d.residual_q20.q, scale_q20, 20));
+  collect(n, q_mul_sat(h_a.d, scale_q20, 26), q_mul_sat(h_s.d, scale_q20, 32),
+          q_mul_sat(d.residual_q20.d, scale_q20, 20));
+  collect(n, q_mul_sat(h_a.q, scale_q20, 26), q_mul_sat(h_s.q, scale_q20, 32),
+          q_mul_sat(d.residual_q20.q, scale_q20, 20));
 }
 
 // (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16.
@@ -91,8 +93,8 @@ static int32_t reduced(int32_t p, gain_t k, gain_t g) { return p - q_mul(k.a, g.
 
 static int32_t positive(int32_t variance) { return q_max(variance, 16); }
 
-// Takes a variance back to its limit, and its two covariances with it: else a correlation would exceed one while a state
-// is not observed, and the covariances would grow until they overflow.
+// Takes a variance back to its limit, and its two covariances with it: else a correlation would exceed one while a
+// state is not observed, and the covariances would grow until they overflow.
 static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2) {
   if (*variance <= VARIANCE_MAX) return;
   // 1 - excess / (2 limit), at most sqrt(limit / variance), as Q30: the limit is 2^29.

@@ -1,8 +1,8 @@
 // What every position estimator is given and what it gives.
 //
 // All estimators keep their angle at the *start of the running period* (the instant at which the control interrupt is
-// raised); the windows lie in the period before. Angles are binary angles (2^32 a turn), speeds binary angle per period,
-// accelerations binary angle per period^2 with eight fractional bits.
+// raised); the windows lie in the period before. Angles are binary angles (2^32 a turn), speeds binary angle per
+// period, accelerations binary angle per period^2 with eight fractional bits.
 
 #ifndef STILLSPIN_ESTIMATORS_ESTIMATOR_H
 #define STILLSPIN_ESTIMATORS_ESTIMATOR_H

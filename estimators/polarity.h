@@ -1,11 +1,11 @@
 // Polarity of the magnet by motion: which of the two half turns left open by the saliency is the right one.
 //
-// Saturation cannot tell it on a machine with linear magnetics, so the shaft is asked: the current pattern + - (pause) - +
-// along the estimated q-axis moves it by a fraction of a mechanical degree and brings it back to rest; with the wrong
-// polarity it moves the other way. The pattern is then repeated with opposite sign and the two responses are subtracted,
-// which removes what a constant load does. The response is the mean angle in the pause, where the excursion is largest,
-// less that before and after the pattern. All three are taken without current: cross-saturation turns the axis that the
-// windows see by as much as the shaft moves.
+// Saturation cannot tell it on a machine with linear magnetics, so the shaft is asked: the current pattern + - (pause)
+// - + along the estimated q-axis moves it by a fraction of a mechanical degree and brings it back to rest; with the
+// wrong polarity it moves the other way. The pattern is then repeated with opposite sign and the two responses are
+// subtracted, which removes what a constant load does. The response is the mean angle in the pause, where the excursion
+// is largest, less that before and after the pattern. All three are taken without current: cross-saturation turns the
+// axis that the windows see by as much as the shaft moves.
 //
 // A segment lasts 40 periods; the whole test 560 (56 ms at 10 kHz). A response below a quarter of what the inertia lets
 // expect is ambiguous (blocked shaft, far too large inertia, noise).
@@ -22,11 +22,11 @@
 typedef enum { POLARITY_PENDING = 0, POLARITY_RIGHT = 1, POLARITY_WRONG = 2, POLARITY_AMBIGUOUS = 3 } polarity_result_t;
 
 typedef struct {
-  int16_t tick;            // periods since the start
-  int32_t current_q20;     // amplitude, A
-  int32_t expected_bam;    // response if the model is right
-  int32_t response_bam;    // sum so far
-  uint32_t origin_bam;     // angle at the beginning
+  int16_t tick;          // periods since the start
+  int32_t current_q20;   // amplitude, A
+  int32_t expected_bam;  // response if the model is right
+  int32_t response_bam;  // sum so far
+  uint32_t origin_bam;   // angle at the beginning
   polarity_result_t result;
 } polarity_t;
 

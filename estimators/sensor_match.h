@@ -1,8 +1,8 @@
 // Mismatch of the two current sensors, found while running.
 //
 // Gains 1 + g and 1 - g on phases a and b multiply the slopes by 1 + g ([1, 1/sqrt3; 1/sqrt3, -1] + J/sqrt3). The first
-// part looks like a saliency of Y0 g that stands still: left alone it bends the angle by up to Y0 g / (sqrt3 1/2 dY), 0.7
-// degrees at 0.5 % on the paper's motor, twice an electrical turn. The second part, Y0 g / sqrt3 across dv, is like
+// part looks like a saliency of Y0 g that stands still: left alone it bends the angle by up to Y0 g / (sqrt3 1/2 dY),
+// 0.7 degrees at 0.5 % on the paper's motor, twice an electrical turn. The second part, Y0 g / sqrt3 across dv, is like
 // nothing that a machine does, once the direction of dv goes round evenly (then the saliency's own part cancels), as it
 // does in the alternating layout, at standstill too. So g is read from there and taken off the samples.
 

@@ -13,8 +13,7 @@ void slopes_evaluate(const slopes_config_t* c, const slopes_sums_t* sums, estima
   const int32_t gain_b = c->amps_per_code_q30 + trim;
   // Codes (Q8) to A (Q20) is a factor amps_per_code (Q30) >> 18.
   const int32_t per_period_q20 = q_div(ESTIMATOR_PERIOD_TICKS, w->span_ticks, 20);
-  const ab_t change_q20 = frame_clarke2(q_mul(end_a - start_a, gain_a, 18),
-                                        q_mul(end_b - start_b, gain_b, 18));
+  const ab_t change_q20 = frame_clarke2(q_mul(end_a - start_a, gain_a, 18), q_mul(end_b - start_b, gain_b, 18));
   w->slope_q20.alpha = q_mul_sat(change_q20.alpha, per_period_q20, 20);
   w->slope_q20.beta = q_mul_sat(change_q20.beta, per_period_q20, 20);
   w->current_q20 = frame_clarke2(q_mul((start_a + end_a) / 2 - c->offset_a_q8, gain_a, 18),

@@ -6,7 +6,7 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t offset_a_q8, offset_b_q8;  // ADC codes at zero current
+  int32_t offset_a_q8, offset_b_q8;    // ADC codes at zero current
   int32_t amps_per_code_q30;           // mean of the two sensors
   int32_t mismatch_q30;                // g: sensor a reads 1 + g, sensor b 1 - g
   int16_t start_samples, end_samples;  // conversions in each sum

@@ -1,8 +1,8 @@
 // Tracking observer: angle, speed and load from angle errors and the torque that the current makes.
 //
 // Third order: angle += speed; speed += torque acceleration - load; the error corrects all three with a triple pole at
-// -bandwidth. Because the torque is fed forward, the speed does not lag behind what the drive itself does; only the load
-// is seen late. Gains l1 = 3x, l2 = 3x^2, l3 = x^3 with x = bandwidth * T.
+// -bandwidth. Because the torque is fed forward, the speed does not lag behind what the drive itself does; only the
+// load is seen late. Gains l1 = 3x, l2 = 3x^2, l3 = x^3 with x = bandwidth * T.
 
 #ifndef STILLSPIN_ESTIMATORS_TRACKING_OBSERVER_H
 #define STILLSPIN_ESTIMATORS_TRACKING_OBSERVER_H

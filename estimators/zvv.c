@@ -24,8 +24,8 @@ static int32_t deviation_q20(const zvv_t* s, const machine_model_t* m, const est
 }
 
 static void correct(zvv_t* s, const zvv_config_t* c, int32_t error_bam) {
-  s->integral_q8bpp = q_clamp(q_add_sat(s->integral_q8bpp, q_mul(error_bam, c->ki_q40, 32)), -INTEGRAL_LIMIT,
-                              INTEGRAL_LIMIT);
+  s->integral_q8bpp =
+      q_clamp(q_add_sat(s->integral_q8bpp, q_mul(error_bam, c->ki_q40, 32)), -INTEGRAL_LIMIT, INTEGRAL_LIMIT);
   s->speed_bpp = q_shr(s->integral_q8bpp, 8) + q_mul(error_bam, c->kp_q30, 30);
 }
 

@@ -1,12 +1,13 @@
 // ZVV as the seed paper has it (section 3, eqs (20)-(24), Fig. 2): the q-axis current deviation under a zero vector.
 //
-//   D = s_q + (R i_q + lambda w^)/Lq,   Kq = R (Ld - Lq) i_d* / (Ld Lq),   angle error = D / Kq, then PI -> speed -> angle.
+//   D = s_q + (R i_q + lambda w^)/Lq,   Kq = R (Ld - Lq) i_d* / (Ld Lq),   angle error = D / Kq, then PI -> speed ->
+//   angle.
 //
 // It needs i_d* != 0. Only the integral part of the speed goes into D: with the whole PI output fed back one step later
 // the loop is unstable unless Kp < Lq |Kq| / lambda, about 6 rad/s on the paper's motor. What the paper drops of the
-// rotated slope, w (1 - Ld/Lq) id, biases the angle by w Ld / R, 1.8 degrees at 5 rpm and 22 at 60 rpm there, and the loop
-// is slow (a few rad/s): it holds light loads near standstill with exact parameters, not more. deviation_observer.h uses
-// both axes and all terms.
+// rotated slope, w (1 - Ld/Lq) id, biases the angle by w Ld / R, 1.8 degrees at 5 rpm and 22 at 60 rpm there, and the
+// loop is slow (a few rad/s): it holds light loads near standstill with exact parameters, not more.
+// deviation_observer.h uses both axes and all terms.
 
 #ifndef STILLSPIN_ESTIMATORS_ZVV_H
 #define STILLSPIN_ESTIMATORS_ZVV_H

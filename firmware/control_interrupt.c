@@ -1,9 +1,9 @@
 // The control interrupt: once per PWM period, at its start. It reads like the block diagram.
 
 #include "firmware/drive.h"
+#include "firmware/isr_cycles.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
-#include "firmware/isr_cycles.h"
 
 void drive_control_interrupt(void) {
   drive_t* const d = &drive;

@@ -51,8 +51,8 @@ typedef struct {
   estimator_window_t windows[ESTIMATOR_WINDOWS];
   ab_t ripple_q16[ESTIMATOR_WINDOWS];  // ripple flux at the middle of each window, V period
   uint16_t count;
-  int32_t raw_a_q8, raw_b_q8;          // mean codes of the first burst
-  int32_t link_q16;  // filtered DC-link voltage, V
+  int32_t raw_a_q8, raw_b_q8;  // mean codes of the first burst
+  int32_t link_q16;            // filtered DC-link voltage, V
 } drive_samples_t;
 
 /// Angle and speed in use and the estimators behind them.
@@ -73,12 +73,12 @@ typedef struct {
   speed_controller_t speed;
   field_weakening_t weakening;
   ramp_t ramp;
-  dq_t reference_q20;     // current reference
-  dq_t measured_q20;      // mean current of the last period
-  dq_t command_q16;       // voltage command
-  int32_t target_bpp;     // speed asked for
-  bool closed;            // current loop closed
-  bool speed_ready;       // the speed controller could be set up
+  dq_t reference_q20;  // current reference
+  dq_t measured_q20;   // mean current of the last period
+  dq_t command_q16;    // voltage command
+  int32_t target_bpp;  // speed asked for
+  bool closed;         // current loop closed
+  bool speed_ready;    // the speed controller could be set up
 } drive_control_t;
 
 typedef struct {
@@ -99,9 +99,9 @@ typedef struct {
   drive_state_t state;
   drive_fault_t fault;
   int32_t limits;
-  uint32_t periods;         // since the state was entered
-  uint16_t millisecond;     // period inside the millisecond
-  uint16_t heartbeat;       // counts control interrupts, for the watchdog
+  uint32_t periods;      // since the state was entered
+  uint16_t millisecond;  // period inside the millisecond
+  uint16_t heartbeat;    // counts control interrupts, for the watchdog
   uint16_t polarity_tries;
   polarity_t polarity;
   machine_model_t model;  // nameplate, with adapted admittances
@@ -128,14 +128,14 @@ void drive_parameters_changed(void);
 void drive_raise(drive_t* d, drive_fault_t fault);
 
 // The steps of the control interrupt, in their order.
-void drive_read_samples(drive_t* d);   // sampling.c
-void drive_estimate(drive_t* d);       // position.c
-void drive_protect(drive_t* d);        // protection.c
-void drive_sequence(drive_t* d);       // state_machine.c
-void drive_control_speed(drive_t* d);  // speed_task.c
+void drive_read_samples(drive_t* d);     // sampling.c
+void drive_estimate(drive_t* d);         // position.c
+void drive_protect(drive_t* d);          // protection.c
+void drive_sequence(drive_t* d);         // state_machine.c
+void drive_control_speed(drive_t* d);    // speed_task.c
 void drive_control_current(drive_t* d);  // current_task.c
-void drive_modulate(drive_t* d);       // modulation.c
-void drive_publish(drive_t* d);        // drive_api.c
+void drive_modulate(drive_t* d);         // modulation.c
+void drive_publish(drive_t* d);          // drive_api.c
 
 void drive_control_interrupt(void);
 void drive_window_interrupt(void);

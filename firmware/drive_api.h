@@ -1,5 +1,5 @@
-// What stands above the drive may do with it: commands, parameters, inspection. The console and the bus use these calls;
-// so does the test bench. All are called from the background level.
+// What stands above the drive may do with it: commands, parameters, inspection. The console and the bus use these
+// calls; so does the test bench. All are called from the background level.
 
 #ifndef STILLSPIN_FIRMWARE_DRIVE_API_H
 #define STILLSPIN_FIRMWARE_DRIVE_API_H
@@ -17,23 +17,23 @@ typedef enum {
   DRIVE_READY = 2,
   DRIVE_START = 3,  // initial angle and polarity
   DRIVE_RUN = 4,
-  DRIVE_STOP = 5,   // speed to zero, then ready
+  DRIVE_STOP = 5,  // speed to zero, then ready
   DRIVE_FAULT = 6
 } drive_state_t;
 
 typedef enum {
   FAULT_NONE = 0,
-  FAULT_OVER_CURRENT = 1,    // comparator, through the trip zone
-  FAULT_CURRENT_LIMIT = 2,   // a sampled phase beyond trip_current
+  FAULT_OVER_CURRENT = 1,   // comparator, through the trip zone
+  FAULT_CURRENT_LIMIT = 2,  // a sampled phase beyond trip_current
   FAULT_LINK_LOW = 3,
   FAULT_LINK_HIGH = 4,
-  FAULT_OVERRUN = 5,         // the control interrupt missed its period repeatedly
-  FAULT_NO_SAMPLES = 6,      // the ADC was not triggered
-  FAULT_DIVERGENCE = 7,      // the estimators disagree, or the speed is not plausible
-  FAULT_POLARITY = 8,        // the polarity of the magnet could not be told
-  FAULT_OFFSET = 9,          // a current offset is implausible
-  FAULT_PARAMETER = 10,      // parameters not usable together, or an interrupt that nobody expects
-  FAULT_GATES_OFF = 11       // the gates were switched off behind the drive's back
+  FAULT_OVERRUN = 5,     // the control interrupt missed its period repeatedly
+  FAULT_NO_SAMPLES = 6,  // the ADC was not triggered
+  FAULT_DIVERGENCE = 7,  // the estimators disagree, or the speed is not plausible
+  FAULT_POLARITY = 8,    // the polarity of the magnet could not be told
+  FAULT_OFFSET = 9,      // a current offset is implausible
+  FAULT_PARAMETER = 10,  // parameters not usable together, or an interrupt that nobody expects
+  FAULT_GATES_OFF = 11   // the gates were switched off behind the drive's back
 } drive_fault_t;
 
 typedef enum { LIMIT_CURRENT = 1, LIMIT_VOLTAGE = 2, LIMIT_WEAKENING = 4, LIMIT_OVERRUN = 8 } drive_limit_t;

@@ -5,7 +5,7 @@
 #include "hal/hal_adc.h"
 
 #define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
-#define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
+#define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
@@ -79,7 +79,7 @@ static bool load_position(drive_config_t* c) {
   const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
   // 2^30 / (time constant in periods); 30 s means none.
   c->adapt_share_q30 = (p->adapt_time >= 30000L * 256L) ? 0 : q_div(256, p->adapt_time * DRIVE_PERIODS_PER_MS, 30);
-  c->saliency_turn_bam = q_mul(p->saliency_angle, 11930465L, 24);  // 2^32 / 360 per degree
+  c->saliency_turn_bam = q_mul(p->saliency_angle, 11930465L, 24);               // 2^32 / 360 per degree
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);
@@ -87,7 +87,8 @@ static bool load_position(drive_config_t* c) {
 
 bool drive_config_load(drive_config_t* c) {
   drive_config_t fresh = *c;
-  if (!load_machine(&fresh) || !load_modulation(&fresh) || !load_control(&fresh) || !load_position(&fresh)) return false;
+  if (!load_machine(&fresh) || !load_modulation(&fresh) || !load_control(&fresh) || !load_position(&fresh))
+    return false;
   *c = fresh;
   return true;
 }

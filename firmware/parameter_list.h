@@ -32,7 +32,8 @@ PARAMETER(29, link_maximum, "V", 16, 1, 100, 15000, 4200, STOPPED, "DC-link volt
 PARAMETER(30, trip_current, "A", 20, 2, 50, 1950, 1800, STOPPED, "software over-current limit on a sampled phase")
 
 // Excitation
-PARAMETER(40, excitation, "", 0, 0, 0, 3, 3, STOPPED, "0 centred, 1 extended, 2 alternating, 3 what the position source wants")
+PARAMETER(40, excitation, "", 0, 0, 0, 3, 3, STOPPED,
+          "0 centred, 1 extended, 2 alternating, 3 what the position source wants")
 PARAMETER(41, pulse_time, "us", 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of the alternating layout")
 PARAMETER(42, window_minimum, "us", 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
 PARAMETER(43, window_maximum, "us", 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")
@@ -40,19 +41,24 @@ PARAMETER(44, zero_time, "us", 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept besi
 PARAMETER(45, settle_time, "us", 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
 
 // Position and speed
-PARAMETER(60, position_source, "", 0, 0, 0, 4, 2, STOPPED, "0 encoder, 1 paper (q-axis ZVV and AVV), 2 deviation observer and AVV, 3 AVV alone, 4 observer alone")
-PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED, "mechanical speed below which the low-speed estimator is used")
+PARAMETER(60, position_source, "", 0, 0, 0, 4, 2, STOPPED,
+          "0 encoder, 1 paper (q-axis ZVV and AVV), 2 deviation observer and AVV, 3 AVV alone, 4 observer alone")
+PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED,
+          "mechanical speed below which the low-speed estimator is used")
 PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical speed above which AVV is used")
 PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 200, ALWAYS, "tracking observer with long windows")
 PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer with short windows")
 PARAMETER(65, adapt_time, "ms", 8, 0, 5, 30000, 50, ALWAYS, "time constant of the admittance adaptation; 30000 is off")
 PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms error of a current difference over a window")
 PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 60, ALWAYS, "load change per 10 ms that the observer expects")
-PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS, "windows given to the deviation observer: 0 zero vectors only, 1 all")
+PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS,
+          "windows given to the deviation observer: 0 zero vectors only, 1 all")
 PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 40, ALWAYS, "Kp of the paper's ZVV observer")
 PARAMETER(70, zvv_integral, "rad/s2", 8, 1, 0, 20000, 40, ALWAYS, "Ki of the paper's ZVV observer")
-PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS, "d-axis current below the blend, makes the ZVV deviation observable")
-PARAMETER(72, saliency_angle, "deg/A", 24, 3, -5000, 5000, 0, ALWAYS, "turn of the saliency axis per ampere of i_q (cross-saturation)")
+PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS,
+          "d-axis current below the blend, makes the ZVV deviation observable")
+PARAMETER(72, saliency_angle, "deg/A", 24, 3, -5000, 5000, 0, ALWAYS,
+          "turn of the saliency axis per ampere of i_q (cross-saturation)")
 PARAMETER(73, encoder_counts, "", 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
 // Control
@@ -63,12 +69,14 @@ PARAMETER(83, speed_trajectory, "ms", 8, 1, 20, 2000, 70, STOPPED, "time constan
 PARAMETER(84, speed_pi_bandwidth, "rad/s", 8, 1, 10, 2000, 200, STOPPED, "natural frequency of the PI speed loop")
 PARAMETER(85, speed_pi_damping, "", 12, 2, 30, 300, 80, STOPPED, "damping of the PI speed loop")
 PARAMETER(86, speed_ramp, "rpm/s", 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
-PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS, "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
+PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
+          "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
 PARAMETER(88, weakening_limit, "A", 20, 2, 0, 1600, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, "A/V", 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
 // Start and supervision
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of the polarity test")
-PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS, "disagreement of the estimators that counts as divergence")
+PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
+          "disagreement of the estimators that counts as divergence")
 PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 20, ALWAYS, "for how long")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED, "test the polarity of the magnet at start")

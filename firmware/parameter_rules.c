@@ -5,7 +5,7 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define SAMPLING_MIN_Q16 294912L  // 4.5 us: two bursts and the shortest useful time between them
+#define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
 #define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
 
 const char* parameter_conflict(void) {
@@ -15,16 +15,23 @@ const char* parameter_conflict(void) {
   if (p->blend_high <= p->blend_low) return "blend_high must be above blend_low";
   if (p->window_maximum < p->window_minimum) return "window_maximum must be at least window_minimum";
   if (p->link_maximum <= p->link_minimum) return "link_maximum must be above link_minimum";
-  if (p->dead_time + p->turn_on_delay < p->turn_off_delay) return "turn_off_delay must not exceed dead_time + turn_on_delay";
+  if (p->dead_time + p->turn_on_delay < p->turn_off_delay)
+    return "turn_off_delay must not exceed dead_time + turn_on_delay";
   if (p->dead_time + p->turn_on_delay > EDGE_SHIFT_MAX_Q16) return "dead_time + turn_on_delay must not exceed 2.4 us";
   if (p->trip_current < p->current_limit) return "trip_current must be at least current_limit";
-  if (p->trip_current > p->current_full_scale / 100 * 97) return "trip_current must be below 97 % of current_full_scale";
+  if (p->trip_current > p->current_full_scale / 100 * 97)
+    return "trip_current must be below 97 % of current_full_scale";
   if (p->link_maximum > p->link_full_scale / 100 * 97) return "link_maximum must be below 97 % of link_full_scale";
   if (p->weakening_limit > p->current_limit) return "weakening_limit must not exceed current_limit";
-  if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return "window_minimum must be settle_time + 4.5 us or more";
-  if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return "0.65 pulse_time must be settle_time + 4.5 us or more";
-  if (p->position_source == 1 && q_abs_sat(p->id_low_speed) < 1048576L) return "position_source 1 needs id_low_speed of 1 A or more";
-  if (p->excitation == 0 && (p->position_source == 2 || p->position_source == 3)) return "excitation 0 has no active vectors for AVV";
+  if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16)
+    return "window_minimum must be settle_time + 4.5 us or more";
+  if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16)
+    return "0.65 pulse_time must be settle_time + 4.5 us or more";
+  if (p->position_source == 1 && q_abs_sat(p->id_low_speed) < 1048576L)
+    return "position_source 1 needs id_low_speed of 1 A or more";
+  if (p->excitation == 0 && (p->position_source == 2 || p->position_source == 3))
+    return "excitation 0 has no active vectors for AVV";
   trial = drive.config;
-  return drive_config_load(&trial) ? NULL : "the machine's parameters are too extreme together: inertia, flux, inductances";
+  return drive_config_load(&trial) ? NULL
+                                   : "the machine's parameters are too extreme together: inertia, flux, inductances";
 }

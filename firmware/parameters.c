@@ -17,16 +17,16 @@ parameters_t parameters;
 #define RAW(value, q, ten) \
   (int32_t)((((value) < 0 ? -1LL : 1LL) * (ten) / 2 + (long long)(value) * (1LL << (q))) / (ten))
 
-#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning)            \
-  {id,                                                                                                \
-   #name,                                                                                             \
-   unit,                                                                                              \
-   q,                                                                                                 \
-   decimals,                                                                                          \
-   RAW(minimum, q, TEN_##decimals),                                                                   \
-   RAW(maximum, q, TEN_##decimals),                                                                   \
-   RAW(initial, q, TEN_##decimals),                                                                   \
-   PARAMETER_##access,                                                                                \
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
+  {id,                                                                                     \
+   #name,                                                                                  \
+   unit,                                                                                   \
+   q,                                                                                      \
+   decimals,                                                                               \
+   RAW(minimum, q, TEN_##decimals),                                                        \
+   RAW(maximum, q, TEN_##decimals),                                                        \
+   RAW(initial, q, TEN_##decimals),                                                        \
+   PARAMETER_##access,                                                                     \
    meaning},
 static const parameter_info_t table[] = {
 #include "firmware/parameter_list.h"

@@ -1,8 +1,9 @@
 // Which angle and speed the control uses: the position source, chosen by a table.
 
+#include "firmware/position.h"
+
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
-#include "firmware/position.h"
 #include "hal/hal_encoder.h"
 
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
@@ -43,7 +44,8 @@ static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) 
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
-// The reference encoder: angle from the count and the offset found at the start; a tracking observer makes a speed of it.
+// The reference encoder: angle from the count and the offset found at the start; a tracking observer makes a speed of
+// it.
 static uint32_t encoder_angle(const drive_t* d) {
   return position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, parameters.encoder_counts);
 }

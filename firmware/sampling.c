@@ -1,11 +1,12 @@
 // From bursts of conversions to windows with slope, current and voltage.
 //
-// The window interrupt stores raw sums; the control interrupt, once per period, swaps the two buffers and turns the sums
-// of the period before into physical quantities, with the pattern that was running then.
+// The window interrupt stores raw sums; the control interrupt, once per period, swaps the two buffers and turns the
+// sums of the period before into physical quantities, with the pattern that was running then.
+
+#include "firmware/sampling.h"
 
 #include "firmware/drive.h"
 #include "firmware/isr_cycles.h"
-#include "firmware/sampling.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"

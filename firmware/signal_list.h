@@ -1,6 +1,6 @@
-// The drive's signals that tools may look at. SIGNAL(name, unit, q, meaning): an int32_t member of drive_signals_t with q
-// fractional bits; angles are binary angles (unit "turn", q 32). They belong to one run of the control interrupt.
-// No include guard: it is included with different meanings of SIGNAL.
+// The drive's signals that tools may look at. SIGNAL(name, unit, q, meaning): an int32_t member of drive_signals_t with
+// q fractional bits; angles are binary angles (unit "turn", q 32). They belong to one run of the control interrupt. No
+// include guard: it is included with different meanings of SIGNAL.
 
 SIGNAL(state, "", 0, "state of the drive, drive_state_t")
 SIGNAL(fault, "", 0, "latched fault, drive_fault_t")

@@ -143,11 +143,20 @@ void drive_sequence(drive_t* d) {
   d->heartbeat++;
   hal_safety_toggle_enable();
   switch (d->state) {
-    case DRIVE_BOOT: enter(d, DRIVE_CALIBRATE); break;
-    case DRIVE_CALIBRATE: calibrate(d); break;
-    case DRIVE_START: start(d); break;
-    case DRIVE_STOP: stop(d); break;
-    default: break;
+    case DRIVE_BOOT:
+      enter(d, DRIVE_CALIBRATE);
+      break;
+    case DRIVE_CALIBRATE:
+      calibrate(d);
+      break;
+    case DRIVE_START:
+      start(d);
+      break;
+    case DRIVE_STOP:
+      stop(d);
+      break;
+    default:
+      break;
   }
   take_requests(d);
 }

@@ -2,9 +2,9 @@
 //
 // First one leg alone is high, then the other two, so the vectors are +x and -x; the pulse lengths are adjusted by the
 // command. Angle information grows with the square of a window's length, and the pair +x, -x has twice the difference
-// of an active and a zero vector: at standstill this is worth some fifty times the information of three windows of 20 us
-// for about the same ripple. x goes round the three phases and the order of the pulses changes, which turns an error of
-// the mean inductance into something that averages out (docs, "Physics").
+// of an active and a zero vector: at standstill this is worth some fifty times the information of three windows of 20
+// us for about the same ripple. x goes round the three phases and the order of the pulses changes, which turns an error
+// of the mean inductance into something that averages out (docs, "Physics").
 
 #ifndef STILLSPIN_SVPWM_ALTERNATING_H
 #define STILLSPIN_SVPWM_ALTERNATING_H
@@ -12,7 +12,7 @@
 #include "svpwm/on_time.h"
 
 typedef struct {
-  uint16_t leg;      // x, 0..2
+  uint16_t leg;     // x, 0..2
   bool pair_first;  // -x before +x
 } alternating_state_t;
 

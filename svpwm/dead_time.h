@@ -18,8 +18,8 @@ typedef struct {
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
 } dead_time_config_t;
 
-/// Commands that make the motor see the pattern's edges. current_q20: mean phase currents in that period, alpha-beta, A;
-/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V.
+/// Commands that make the motor see the pattern's edges. current_q20: mean phase currents in that period, alpha-beta,
+/// A; admittance_q30: mean T/L, A per V and period; link_q16: DC link, V.
 void dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
                           int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command);
 

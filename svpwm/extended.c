@@ -17,9 +17,21 @@ static int16_t max16(int16_t a, int16_t b) { return (a > b) ? a : b; }
 static order_t sort_legs(const int16_t leg[SVPWM_LEGS]) {
   order_t o = {0, 1, 2};
   uint16_t swap;
-  if (leg[o.hi] < leg[o.mid]) { swap = o.hi; o.hi = o.mid; o.mid = swap; }
-  if (leg[o.mid] < leg[o.lo]) { swap = o.mid; o.mid = o.lo; o.lo = swap; }
-  if (leg[o.hi] < leg[o.mid]) { swap = o.hi; o.hi = o.mid; o.mid = swap; }
+  if (leg[o.hi] < leg[o.mid]) {
+    swap = o.hi;
+    o.hi = o.mid;
+    o.mid = swap;
+  }
+  if (leg[o.mid] < leg[o.lo]) {
+    swap = o.mid;
+    o.mid = o.lo;
+    o.lo = swap;
+  }
+  if (leg[o.hi] < leg[o.mid]) {
+    swap = o.hi;
+    o.hi = o.mid;
+    o.mid = swap;
+  }
   return o;
 }
 
@@ -43,7 +55,10 @@ static int16_t longest_window(int16_t t1, int16_t t2, int16_t room, const extend
   if (layout_for(t1, t2, good).length > room) return 0;
   for (int16_t n = 0; n < SEARCH_STEPS; n++) {
     const int16_t trial = (int16_t)((good + bad) / 2);
-    if (layout_for(t1, t2, trial).length <= room) good = trial; else bad = trial;
+    if (layout_for(t1, t2, trial).length <= room)
+      good = trial;
+    else
+      bad = trial;
   }
   return good;
 }

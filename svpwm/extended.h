@@ -2,9 +2,9 @@
 //
 // With the legs sorted by on-time (hi, mid, lo; T1 = hi - mid, T2 = mid - lo), the rising edges are spread so that the
 // first vector lasts A = max(T1, W) and the second B = max(T2, W); the falling edges then come in the same order and
-// produce the complements that give the surplus back. The layout occupies m + A + B, m being the on-time of `lo`; what is
-// left of the period is 000. W is the longest that fits, between the two limits given, with a zero window if possible and
-// without it near the voltage limit.
+// produce the complements that give the surplus back. The layout occupies m + A + B, m being the on-time of `lo`; what
+// is left of the period is 000. W is the longest that fits, between the two limits given, with a zero window if
+// possible and without it near the voltage limit.
 
 #ifndef STILLSPIN_SVPWM_EXTENDED_H
 #define STILLSPIN_SVPWM_EXTENDED_H

@@ -8,8 +8,8 @@
 #include "svpwm/windows.h"
 
 typedef enum {
-  EXCITATION_CENTRED = 0,   // plain SVPWM: long zero vectors, what the paper's ZVV method runs on
-  EXCITATION_EXTENDED = 1,  // two active vectors and a zero vector of at least T_min each
+  EXCITATION_CENTRED = 0,     // plain SVPWM: long zero vectors, what the paper's ZVV method runs on
+  EXCITATION_EXTENDED = 1,    // two active vectors and a zero vector of at least T_min each
   EXCITATION_ALTERNATING = 2  // two long opposite vectors while the voltage allows, extended above
 } excitation_t;
 

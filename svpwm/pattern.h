@@ -17,7 +17,8 @@
 #define SVPWM_LEGS 3
 #define SVPWM_WINDOWS 3
 
-// Edges stay inside [FIRST, LAST]: room for the shift of the dead-time compensation, and no pulse over the period's end.
+// Edges stay inside [FIRST, LAST]: room for the shift of the dead-time compensation, and no pulse over the period's
+// end.
 #define SVPWM_FIRST_TICK 260
 #define SVPWM_LAST_TICK 9960
 #define SVPWM_ROOM_TICKS (SVPWM_LAST_TICK - SVPWM_FIRST_TICK)

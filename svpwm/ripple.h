@@ -2,10 +2,10 @@
 //
 // For a leg with pulse [r, f] of a period N, the integral of (leg voltage - its mean) from the start of the period is
 //   Vdc [ clamp(t - r, 0, f - r) - (f - r) t / N ],
-// zero at both ends of every period whatever the pattern. Divided by the inductance it is the ripple current: it turns a
-// sample taken anywhere into the current without ripple, and that into the current at an edge. The reference is the
-// current at the period's ends and not its mean over the period, because patterns change from period to period: the ends
-// are continuous, while the mean jumps when the order of the pulses is turned round.
+// zero at both ends of every period whatever the pattern. Divided by the inductance it is the ripple current: it turns
+// a sample taken anywhere into the current without ripple, and that into the current at an edge. The reference is the
+// current at the period's ends and not its mean over the period, because patterns change from period to period: the
+// ends are continuous, while the mean jumps when the order of the pulses is turned round.
 
 #ifndef STILLSPIN_SVPWM_RIPPLE_H
 #define STILLSPIN_SVPWM_RIPPLE_H

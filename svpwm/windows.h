@@ -6,10 +6,11 @@
 #include "svpwm/pattern.h"
 
 typedef struct {
-  int16_t settle_ticks;  // from an edge at the motor to the first sample, at least 400: ringing, and reading the last window
-  int16_t burst_ticks;   // length of a burst of conversions
+  int16_t settle_ticks;    // from an edge at the motor to the first sample, at least 400: ringing, and reading the last
+                           // window
+  int16_t burst_ticks;     // length of a burst of conversions
   int16_t span_min_ticks;  // shortest useful time between the two bursts
-  int16_t last_tick;     // the last burst must have been triggered by here, so that it is read before the period ends
+  int16_t last_tick;       // the last burst must have been triggered by here, so that it is read before the period ends
 } sampling_config_t;
 
 /// Fills windows and window_count of the pattern from its pulses: the longest ones, in the order of time.

@@ -34,6 +34,4 @@ void hal_encoder_init(uint32_t counts_per_turn) {
 // The counter itself, not the unit timer's latch: the timer cannot be started in step with the PWM, so the latch would
 // be up to a period old by an unknown amount, while a read in the control interrupt is late by less than a microsecond,
 // 0.4 counts at 6000 rpm. The 32-bit read is one access.
-uint32_t hal_encoder_count(void) {
-  return target_read32(EQEP + EQEP_QPOSCNT);
-}
+uint32_t hal_encoder_count(void) { return target_read32(EQEP + EQEP_QPOSCNT); }

@@ -8,9 +8,7 @@
 #define PORT_B_CONTROL_OFFSET (REG_GPBCTRL - REG_GPACTRL)
 #define PORT_B_DATA_OFFSET (REG_GPBDAT - REG_GPADAT)
 
-static uint32_t bit_of(uint16_t pin) {
-  return 1uL << (pin & 31u);
-}
+static uint32_t bit_of(uint16_t pin) { return 1uL << (pin & 31u); }
 
 static uint32_t control_register(uint16_t pin, uint32_t port_a_register) {
   return pin < 32u ? port_a_register : port_a_register + PORT_B_CONTROL_OFFSET;
@@ -47,10 +45,6 @@ void gpio_write(uint16_t pin, bool level) {
   target_write32(data_register(pin, level ? REG_GPASET : REG_GPACLEAR), bit_of(pin));
 }
 
-void gpio_toggle(uint16_t pin) {
-  target_write32(data_register(pin, REG_GPATOGGLE), bit_of(pin));
-}
+void gpio_toggle(uint16_t pin) { target_write32(data_register(pin, REG_GPATOGGLE), bit_of(pin)); }
 
-bool gpio_read(uint16_t pin) {
-  return (target_read32(data_register(pin, REG_GPADAT)) & bit_of(pin)) != 0uL;
-}
+bool gpio_read(uint16_t pin) { return (target_read32(data_register(pin, REG_GPADAT)) & bit_of(pin)) != 0uL; }

@@ -14,13 +14,9 @@ static hal_isr_t control_function = NULL;
 static hal_isr_t window_function = NULL;
 static volatile uint16_t unexpected_count = 0u;
 
-static TARGET_ISR void control_isr(void) {
-  control_function();
-}
+static TARGET_ISR void control_isr(void) { control_function(); }
 
-static TARGET_ISR void window_isr(void) {
-  window_function();
-}
+static TARGET_ISR void window_isr(void) { window_function(); }
 
 // Not acknowledged: an interrupt that nobody asked for must not come a second time.
 static TARGET_ISR void unexpected_isr(void) {
@@ -104,10 +100,6 @@ TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
   return state;
 }
 
-TARGET_RAM_CODE void hal_irq_restore(uint16_t state) {
-  target_write_ier(state);
-}
+TARGET_RAM_CODE void hal_irq_restore(uint16_t state) { target_write_ier(state); }
 
-uint16_t hal_irq_unexpected_count(void) {
-  return unexpected_count;
-}
+uint16_t hal_irq_unexpected_count(void) { return unexpected_count; }

@@ -133,9 +133,7 @@ bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
   return true;
 }
 
-TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) {
-  return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR);
-}
+TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
 
 // False too when the next period has begun before its control interrupt could come: the counter then looks early. Such
 // a period start waits in the event counter. It is read after the time, so that none slips in between.
@@ -161,9 +159,7 @@ TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadli
   return in_time;
 }
 
-static bool is_tripped(uint16_t module) {
-  return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK);
-}
+static bool is_tripped(uint16_t module) { return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK); }
 
 bool hal_pwm_gates_on(void) {
   if (!gpio_read(BOARD_PIN_OVER_CURRENT)) {
@@ -195,6 +191,4 @@ bool hal_pwm_is_tripped(void) {
   return false;
 }
 
-bool hal_pwm_was_tripped_by_pin(void) {
-  return is_tripped(PWM_TRIP_WITNESS_MODULE);
-}
+bool hal_pwm_was_tripped_by_pin(void) { return is_tripped(PWM_TRIP_WITNESS_MODULE); }

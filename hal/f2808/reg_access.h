@@ -26,8 +26,6 @@ static inline void reg32_change(uint32_t address, uint32_t mask, uint32_t bits) 
   target_write32(address, (target_read32(address) & ~mask) | bits);
 }
 
-static inline bool reg_any(uint32_t address, uint16_t mask) {
-  return (target_read16(address) & mask) != 0u;
-}
+static inline bool reg_any(uint32_t address, uint16_t mask) { return (target_read16(address) & mask) != 0u; }
 
 #endif

@@ -140,7 +140,7 @@
 #define PARTID_PARTNO_MASK 0x00FFu
 #define PARTID_PARTTYPE_LSB 8
 #define PARTID_PARTTYPE_MASK 0xFF00u
-#define REG_REVID 0x0883uL  // silicon revision number
+#define REG_REVID 0x0883uL      // silicon revision number
 #define REG_PROTSTART 0x0884uL  // block protection start (EALLOW)
 #define REG_PROTRANGE 0x0885uL  // block protection range (EALLOW)
 
@@ -181,19 +181,19 @@
 #define PIECTRL_ENPIE_MASK 0x0001u
 #define PIECTRL_PIEVECT_LSB 1
 #define PIECTRL_PIEVECT_MASK 0xFFFEu
-#define REG_PIEACK 0x0CE1uL  // group acknowledge, write 1 clears
+#define REG_PIEACK 0x0CE1uL                                                        // group acknowledge, write 1 clears
 #define REG_PIEIER(group) ((uint32_t)(0x0CE2uL + 2uL * (uint32_t)((group) - 1u)))  // group 1..12, bit INTx.y - 1
 #define REG_PIEIFR(group) ((uint32_t)(0x0CE3uL + 2uL * (uint32_t)((group) - 1u)))  // group 1..12, bit INTx.y - 1
 
 // ---- CPU timers 0, 1, 2 ------------------------------------------------------------------------------
 #define CPUTIMER_BASE(n) ((uint32_t)(0x0C00uL + 0x08uL * (uint32_t)((n))))
-#define CPUTIMER_TIM 0x00u  // down-counter value (32)
+#define CPUTIMER_TIM 0x00u      // down-counter value (32)
 #define CPUTIMER_TIM_LSW 0x00u  // low word
 #define CPUTIMER_TIM_MSW 0x01u  // high word
-#define CPUTIMER_PRD 0x02u  // reload period (32)
+#define CPUTIMER_PRD 0x02u      // reload period (32)
 #define CPUTIMER_PRD_LSW 0x02u  // low word
 #define CPUTIMER_PRD_MSW 0x03u  // high word
-#define CPUTIMER_TCR 0x04u  // timer control
+#define CPUTIMER_TCR 0x04u      // timer control
 #define CPUTIMER_TCR_TSS_LSB 4
 #define CPUTIMER_TCR_TSS_MASK 0x0010u
 #define CPUTIMER_TCR_TRB_LSB 5
@@ -218,32 +218,32 @@
 #define CPUTIMER_TPRH_PSCH_MASK 0xFF00u
 
 // ---- General purpose pins ----------------------------------------------------------------------------
-#define REG_GPACTRL 0x6F80uL  // port A qualification sampling periods (EALLOW, 32)
-#define REG_GPAQSEL1 0x6F82uL  // GPIO0-15 input qualification (EALLOW, 32)
-#define REG_GPAQSEL2 0x6F84uL  // GPIO16-31 input qualification (EALLOW, 32)
-#define REG_GPAMUX1 0x6F86uL  // GPIO0-15 function select (EALLOW, 32)
-#define REG_GPAMUX2 0x6F88uL  // GPIO16-31 function select (EALLOW, 32)
-#define REG_GPADIR 0x6F8AuL  // port A direction, 1 output (EALLOW, 32)
-#define REG_GPAPUD 0x6F8CuL  // port A pull-up disable (EALLOW, 32)
-#define REG_GPBCTRL 0x6F90uL  // port B qualification sampling period (EALLOW, 32)
-#define REG_GPBQSEL1 0x6F92uL  // GPIO32-34 input qualification (EALLOW, 32)
-#define REG_GPBQSEL2 0x6F94uL  // reserved (EALLOW, 32)
-#define REG_GPBMUX1 0x6F96uL  // GPIO32-34 function select (EALLOW, 32)
-#define REG_GPBMUX2 0x6F98uL  // reserved (EALLOW, 32)
-#define REG_GPBDIR 0x6F9AuL  // port B direction (EALLOW, 32)
-#define REG_GPBPUD 0x6F9CuL  // port B pull-up disable (EALLOW, 32)
-#define REG_GPADAT 0x6FC0uL  // port A pin state / latch (32)
-#define REG_GPASET 0x6FC2uL  // port A write-1 set (32)
-#define REG_GPACLEAR 0x6FC4uL  // port A write-1 clear (32)
-#define REG_GPATOGGLE 0x6FC6uL  // port A write-1 toggle (32)
-#define REG_GPBDAT 0x6FC8uL  // port B pin state / latch (32)
-#define REG_GPBSET 0x6FCAuL  // port B write-1 set (32)
-#define REG_GPBCLEAR 0x6FCCuL  // port B write-1 clear (32)
-#define REG_GPBTOGGLE 0x6FCEuL  // port B write-1 toggle (32)
+#define REG_GPACTRL 0x6F80uL       // port A qualification sampling periods (EALLOW, 32)
+#define REG_GPAQSEL1 0x6F82uL      // GPIO0-15 input qualification (EALLOW, 32)
+#define REG_GPAQSEL2 0x6F84uL      // GPIO16-31 input qualification (EALLOW, 32)
+#define REG_GPAMUX1 0x6F86uL       // GPIO0-15 function select (EALLOW, 32)
+#define REG_GPAMUX2 0x6F88uL       // GPIO16-31 function select (EALLOW, 32)
+#define REG_GPADIR 0x6F8AuL        // port A direction, 1 output (EALLOW, 32)
+#define REG_GPAPUD 0x6F8CuL        // port A pull-up disable (EALLOW, 32)
+#define REG_GPBCTRL 0x6F90uL       // port B qualification sampling period (EALLOW, 32)
+#define REG_GPBQSEL1 0x6F92uL      // GPIO32-34 input qualification (EALLOW, 32)
+#define REG_GPBQSEL2 0x6F94uL      // reserved (EALLOW, 32)
+#define REG_GPBMUX1 0x6F96uL       // GPIO32-34 function select (EALLOW, 32)
+#define REG_GPBMUX2 0x6F98uL       // reserved (EALLOW, 32)
+#define REG_GPBDIR 0x6F9AuL        // port B direction (EALLOW, 32)
+#define REG_GPBPUD 0x6F9CuL        // port B pull-up disable (EALLOW, 32)
+#define REG_GPADAT 0x6FC0uL        // port A pin state / latch (32)
+#define REG_GPASET 0x6FC2uL        // port A write-1 set (32)
+#define REG_GPACLEAR 0x6FC4uL      // port A write-1 clear (32)
+#define REG_GPATOGGLE 0x6FC6uL     // port A write-1 toggle (32)
+#define REG_GPBDAT 0x6FC8uL        // port B pin state / latch (32)
+#define REG_GPBSET 0x6FCAuL        // port B write-1 set (32)
+#define REG_GPBCLEAR 0x6FCCuL      // port B write-1 clear (32)
+#define REG_GPBTOGGLE 0x6FCEuL     // port B write-1 toggle (32)
 #define REG_GPIOXINT1SEL 0x6FE0uL  // pin feeding XINT1 (EALLOW)
 #define REG_GPIOXINT2SEL 0x6FE1uL  // pin feeding XINT2 (EALLOW)
-#define REG_GPIOXNMISEL 0x6FE2uL  // pin feeding XNMI (EALLOW)
-#define REG_GPIOLPMSEL 0x6FE8uL  // wake-up pin selection (EALLOW, 32)
+#define REG_GPIOXNMISEL 0x6FE2uL   // pin feeding XNMI (EALLOW)
+#define REG_GPIOLPMSEL 0x6FE8uL    // wake-up pin selection (EALLOW, 32)
 
 // ---- Analog-to-digital converter ---------------------------------------------------------------------
 #define REG_ADCTRL1 0x7100uL  // ADC control 1
@@ -335,7 +335,7 @@
 #define ADCASEQSR_SEQ_CNTR_LSB 8
 #define ADCASEQSR_SEQ_CNTR_MASK 0x0F00u
 #define REG_ADCRESULT0 0x7108uL  // result, left justified <<4
-#define REG_ADCTRL3 0x7118uL  // power, clock, sampling mode
+#define REG_ADCTRL3 0x7118uL     // power, clock, sampling mode
 #define ADCTRL3_SMODE_SEL_LSB 0
 #define ADCTRL3_SMODE_SEL_MASK 0x0001u
 #define ADCTRL3_ADCCLKPS_LSB 1
@@ -397,12 +397,12 @@
 #define EPWM_TBSTS_SYNCI_MASK 0x0002u
 #define EPWM_TBSTS_CTRMAX_LSB 2
 #define EPWM_TBSTS_CTRMAX_MASK 0x0004u
-#define EPWM_TBPHS 0x02u  // phase pair (32 bit) (32)
+#define EPWM_TBPHS 0x02u          // phase pair (32 bit) (32)
 #define EPWM_TBPHS_TBPHSHR 0x02u  // high-resolution phase
-#define EPWM_TBPHS_TBPHS 0x03u  // phase offset
-#define EPWM_TBCTR 0x04u  // counter value
-#define EPWM_TBPRD 0x05u  // period, shadowed
-#define EPWM_CMPCTL 0x07u  // compare shadow control
+#define EPWM_TBPHS_TBPHS 0x03u    // phase offset
+#define EPWM_TBCTR 0x04u          // counter value
+#define EPWM_TBPRD 0x05u          // period, shadowed
+#define EPWM_CMPCTL 0x07u         // compare shadow control
 #define EPWM_CMPCTL_LOADAMODE_LSB 0
 #define EPWM_CMPCTL_LOADAMODE_MASK 0x0003u
 #define EPWM_CMPCTL_LOADBMODE_LSB 2
@@ -415,11 +415,11 @@
 #define EPWM_CMPCTL_SHDWAFULL_MASK 0x0100u
 #define EPWM_CMPCTL_SHDWBFULL_LSB 9
 #define EPWM_CMPCTL_SHDWBFULL_MASK 0x0200u
-#define EPWM_CMPA 0x08u  // compare A pair (32 bit) (32)
+#define EPWM_CMPA 0x08u         // compare A pair (32 bit) (32)
 #define EPWM_CMPA_CMPAHR 0x08u  // high-resolution compare A
-#define EPWM_CMPA_CMPA 0x09u  // compare A
-#define EPWM_CMPB 0x0Au  // compare B
-#define EPWM_AQCTLA 0x0Bu  // output A actions
+#define EPWM_CMPA_CMPA 0x09u    // compare A
+#define EPWM_CMPB 0x0Au         // compare B
+#define EPWM_AQCTLA 0x0Bu       // output A actions
 #define EPWM_AQCTLA_ZRO_LSB 0
 #define EPWM_AQCTLA_ZRO_MASK 0x0003u
 #define EPWM_AQCTLA_PRD_LSB 2
@@ -594,18 +594,18 @@
 
 // ---- Quadrature encoder 1, 2 -------------------------------------------------------------------------
 #define EQEP_BASE(n) ((uint32_t)(0x6B00uL + 0x40uL * (uint32_t)((n) - 1u)))
-#define EQEP_QPOSCNT 0x00u  // position counter (32)
+#define EQEP_QPOSCNT 0x00u   // position counter (32)
 #define EQEP_QPOSINIT 0x02u  // init value (32)
-#define EQEP_QPOSMAX 0x04u  // maximum position (32)
-#define EQEP_QPOSCMP 0x06u  // compare value (32)
+#define EQEP_QPOSMAX 0x04u   // maximum position (32)
+#define EQEP_QPOSCMP 0x06u   // compare value (32)
 #define EQEP_QPOSILAT 0x08u  // index latch (32)
 #define EQEP_QPOSSLAT 0x0Au  // strobe latch (32)
-#define EQEP_QPOSLAT 0x0Cu  // unit-time latch (32)
-#define EQEP_QUTMR 0x0Eu  // unit timer (32)
-#define EQEP_QUPRD 0x10u  // unit period (32)
-#define EQEP_QWDTMR 0x12u  // watchdog timer
-#define EQEP_QWDPRD 0x13u  // watchdog period
-#define EQEP_QDECCTL 0x14u  // decoder control
+#define EQEP_QPOSLAT 0x0Cu   // unit-time latch (32)
+#define EQEP_QUTMR 0x0Eu     // unit timer (32)
+#define EQEP_QUPRD 0x10u     // unit period (32)
+#define EQEP_QWDTMR 0x12u    // watchdog timer
+#define EQEP_QWDPRD 0x13u    // watchdog period
+#define EQEP_QDECCTL 0x14u   // decoder control
 #define EQEP_QDECCTL_QSP_LSB 5
 #define EQEP_QDECCTL_QSP_MASK 0x0020u
 #define EQEP_QDECCTL_QIP_LSB 6
@@ -780,8 +780,8 @@
 #define EQEP_QEPSTS_FIDF_MASK 0x0040u
 #define EQEP_QEPSTS_UPEVNT_LSB 7
 #define EQEP_QEPSTS_UPEVNT_MASK 0x0080u
-#define EQEP_QCTMR 0x1Du  // capture timer
-#define EQEP_QCPRD 0x1Eu  // capture period
+#define EQEP_QCTMR 0x1Du     // capture timer
+#define EQEP_QCPRD 0x1Eu     // capture period
 #define EQEP_QCTMRLAT 0x1Fu  // capture timer latch
 #define EQEP_QCPRDLAT 0x20u  // capture period latch
 
@@ -805,7 +805,7 @@
 #define XNMICR_POLARITY_MASK 0x000Cu
 #define REG_XINT1CTR 0x7078uL  // XINT1 edge time counter
 #define REG_XINT2CTR 0x7079uL  // XINT2 edge time counter
-#define REG_XNMICTR 0x707FuL  // XNMI edge time counter
+#define REG_XNMICTR 0x707FuL   // XNMI edge time counter
 
 // ---- Interrupt vectors (index into the PIE table of 128) ---------------------------------------------
 #define VECTOR_TINT2 14u
@@ -814,49 +814,49 @@
 #define VECTOR_EMUINT 17u
 #define VECTOR_XNMI 18u
 #define VECTOR_ILLEGAL 19u
-#define VECTOR_SEQ1INT 32u  // INT1.1: ADC sequencer 1 done
-#define VECTOR_SEQ2INT 33u  // INT1.2: ADC sequencer 2 done
-#define VECTOR_XINT1 35u  // INT1.4: external 1
-#define VECTOR_XINT2 36u  // INT1.5: external 2
-#define VECTOR_ADCINT 37u  // INT1.6: ADC SEQ1 or SEQ2 combined
-#define VECTOR_TINT0 38u  // INT1.7: CPU timer 0
-#define VECTOR_WAKEINT 39u  // INT1.8: watchdog or low-power wake
+#define VECTOR_SEQ1INT 32u      // INT1.1: ADC sequencer 1 done
+#define VECTOR_SEQ2INT 33u      // INT1.2: ADC sequencer 2 done
+#define VECTOR_XINT1 35u        // INT1.4: external 1
+#define VECTOR_XINT2 36u        // INT1.5: external 2
+#define VECTOR_ADCINT 37u       // INT1.6: ADC SEQ1 or SEQ2 combined
+#define VECTOR_TINT0 38u        // INT1.7: CPU timer 0
+#define VECTOR_WAKEINT 39u      // INT1.8: watchdog or low-power wake
 #define VECTOR_EPWM1_TZINT 40u  // INT2.1: ePWM1 trip zone
 #define VECTOR_EPWM2_TZINT 41u  // INT2.2: ePWM2 trip zone
 #define VECTOR_EPWM3_TZINT 42u  // INT2.3: ePWM3 trip zone
 #define VECTOR_EPWM4_TZINT 43u  // INT2.4: ePWM4 trip zone
 #define VECTOR_EPWM5_TZINT 44u  // INT2.5: ePWM5 trip zone
 #define VECTOR_EPWM6_TZINT 45u  // INT2.6: ePWM6 trip zone
-#define VECTOR_EPWM1_INT 48u  // INT3.1: ePWM1 event
-#define VECTOR_EPWM2_INT 49u  // INT3.2: ePWM2 event
-#define VECTOR_EPWM3_INT 50u  // INT3.3: ePWM3 event
-#define VECTOR_EPWM4_INT 51u  // INT3.4: ePWM4 event
-#define VECTOR_EPWM5_INT 52u  // INT3.5: ePWM5 event
-#define VECTOR_EPWM6_INT 53u  // INT3.6: ePWM6 event
-#define VECTOR_ECAP1_INT 56u  // INT4.1: capture event
-#define VECTOR_ECAP2_INT 57u  // INT4.2: capture event
-#define VECTOR_ECAP3_INT 58u  // INT4.3: capture event
-#define VECTOR_ECAP4_INT 59u  // INT4.4: capture event
-#define VECTOR_EQEP1_INT 64u  // INT5.1: encoder event
-#define VECTOR_EQEP2_INT 65u  // INT5.2: encoder event
-#define VECTOR_SPIRXINTA 72u  // INT6.1: SPI receive
-#define VECTOR_SPITXINTA 73u  // INT6.2: SPI transmit
-#define VECTOR_SPIRXINTB 74u  // INT6.3: SPI receive
-#define VECTOR_SPITXINTB 75u  // INT6.4: SPI transmit
-#define VECTOR_SPIRXINTC 76u  // INT6.5: SPI receive
-#define VECTOR_SPITXINTC 77u  // INT6.6: SPI transmit
-#define VECTOR_SPIRXINTD 78u  // INT6.7: SPI receive
-#define VECTOR_SPITXINTD 79u  // INT6.8: SPI transmit
-#define VECTOR_I2CINT1A 88u  // INT8.1: I2C basic
-#define VECTOR_I2CINT2A 89u  // INT8.2: I2C FIFO
-#define VECTOR_SCIRXINTA 96u  // INT9.1: SCI receive
-#define VECTOR_SCITXINTA 97u  // INT9.2: SCI transmit
-#define VECTOR_SCIRXINTB 98u  // INT9.3: SCI receive
-#define VECTOR_SCITXINTB 99u  // INT9.4: SCI transmit
-#define VECTOR_ECAN0INTA 100u  // INT9.5: eCAN line 0
-#define VECTOR_ECAN1INTA 101u  // INT9.6: eCAN line 1
-#define VECTOR_ECAN0INTB 102u  // INT9.7: eCAN line 0
-#define VECTOR_ECAN1INTB 103u  // INT9.8: eCAN line 1
+#define VECTOR_EPWM1_INT 48u    // INT3.1: ePWM1 event
+#define VECTOR_EPWM2_INT 49u    // INT3.2: ePWM2 event
+#define VECTOR_EPWM3_INT 50u    // INT3.3: ePWM3 event
+#define VECTOR_EPWM4_INT 51u    // INT3.4: ePWM4 event
+#define VECTOR_EPWM5_INT 52u    // INT3.5: ePWM5 event
+#define VECTOR_EPWM6_INT 53u    // INT3.6: ePWM6 event
+#define VECTOR_ECAP1_INT 56u    // INT4.1: capture event
+#define VECTOR_ECAP2_INT 57u    // INT4.2: capture event
+#define VECTOR_ECAP3_INT 58u    // INT4.3: capture event
+#define VECTOR_ECAP4_INT 59u    // INT4.4: capture event
+#define VECTOR_EQEP1_INT 64u    // INT5.1: encoder event
+#define VECTOR_EQEP2_INT 65u    // INT5.2: encoder event
+#define VECTOR_SPIRXINTA 72u    // INT6.1: SPI receive
+#define VECTOR_SPITXINTA 73u    // INT6.2: SPI transmit
+#define VECTOR_SPIRXINTB 74u    // INT6.3: SPI receive
+#define VECTOR_SPITXINTB 75u    // INT6.4: SPI transmit
+#define VECTOR_SPIRXINTC 76u    // INT6.5: SPI receive
+#define VECTOR_SPITXINTC 77u    // INT6.6: SPI transmit
+#define VECTOR_SPIRXINTD 78u    // INT6.7: SPI receive
+#define VECTOR_SPITXINTD 79u    // INT6.8: SPI transmit
+#define VECTOR_I2CINT1A 88u     // INT8.1: I2C basic
+#define VECTOR_I2CINT2A 89u     // INT8.2: I2C FIFO
+#define VECTOR_SCIRXINTA 96u    // INT9.1: SCI receive
+#define VECTOR_SCITXINTA 97u    // INT9.2: SCI transmit
+#define VECTOR_SCIRXINTB 98u    // INT9.3: SCI receive
+#define VECTOR_SCITXINTB 99u    // INT9.4: SCI transmit
+#define VECTOR_ECAN0INTA 100u   // INT9.5: eCAN line 0
+#define VECTOR_ECAN1INTA 101u   // INT9.6: eCAN line 1
+#define VECTOR_ECAN0INTB 102u   // INT9.7: eCAN line 0
+#define VECTOR_ECAN1INTB 103u   // INT9.8: eCAN line 1
 #define VECTOR_COUNT 128u
 #define VECTOR_PIE_FIRST 32u  // INT1.1; a group has eight channels
 

@@ -19,10 +19,6 @@ void hal_safety_init(void) {
   target_edis();
 }
 
-void hal_safety_toggle_enable(void) {
-  gpio_toggle(BOARD_PIN_GATE_ENABLE);
-}
+void hal_safety_toggle_enable(void) { gpio_toggle(BOARD_PIN_GATE_ENABLE); }
 
-void hal_safety_fault_lamp(bool lit) {
-  gpio_write(BOARD_PIN_FAULT_LAMP, lit);
-}
+void hal_safety_fault_lamp(bool lit) { gpio_write(BOARD_PIN_FAULT_LAMP, lit); }

@@ -22,48 +22,22 @@ extern __cregister volatile unsigned int IFR;
 
 #define TARGET_VECTOR_TABLE 0x0D00uL  // 128 vectors of two words
 
-static inline uint16_t target_read16(uint32_t address) {
-  return *(volatile uint16_t*)address;
-}
-static inline void target_write16(uint32_t address, uint16_t value) {
-  *(volatile uint16_t*)address = value;
-}
-static inline uint32_t target_read32(uint32_t address) {
-  return *(volatile uint32_t*)address;
-}
-static inline void target_write32(uint32_t address, uint32_t value) {
-  *(volatile uint32_t*)address = value;
-}
-static inline void target_eallow(void) {
-  __asm(" EALLOW");
-}
-static inline void target_edis(void) {
-  __asm(" EDIS");
-}
-static inline void target_enable_interrupts(void) {
-  __asm(" CLRC INTM");
-}
-static inline void target_disable_interrupts(void) {
-  __asm(" SETC INTM");
-}
-static inline uint16_t target_read_ier(void) {
-  return IER;
-}
-static inline void target_write_ier(uint16_t mask) {
-  IER = mask;
-}
-static inline void target_clear_ifr(void) {
-  IFR = 0u;
-}
+static inline uint16_t target_read16(uint32_t address) { return *(volatile uint16_t*)address; }
+static inline void target_write16(uint32_t address, uint16_t value) { *(volatile uint16_t*)address = value; }
+static inline uint32_t target_read32(uint32_t address) { return *(volatile uint32_t*)address; }
+static inline void target_write32(uint32_t address, uint32_t value) { *(volatile uint32_t*)address = value; }
+static inline void target_eallow(void) { __asm(" EALLOW"); }
+static inline void target_edis(void) { __asm(" EDIS"); }
+static inline void target_enable_interrupts(void) { __asm(" CLRC INTM"); }
+static inline void target_disable_interrupts(void) { __asm(" SETC INTM"); }
+static inline uint16_t target_read_ier(void) { return IER; }
+static inline void target_write_ier(uint16_t mask) { IER = mask; }
+static inline void target_clear_ifr(void) { IFR = 0u; }
 static inline void target_set_vector(uint16_t vector, target_isr_t isr) {
   *(volatile target_isr_t*)(TARGET_VECTOR_TABLE + 2uL * vector) = isr;
 }
-static inline void target_idle(void) {
-  __asm(" IDLE");
-}
-static inline void target_elapse(uint16_t cycles) {
-  (void)cycles;
-}
+static inline void target_idle(void) { __asm(" IDLE"); }
+static inline void target_elapse(uint16_t cycles) { (void)cycles; }
 
 #else
 

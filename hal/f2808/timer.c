@@ -16,14 +16,8 @@ void hal_time_init(void) {
 }
 
 // The timer counts down.
-uint32_t hal_time_cycles(void) {
-  return 0xFFFFFFFFuL - target_read32(TIMER + CPUTIMER_TIM);
-}
+uint32_t hal_time_cycles(void) { return 0xFFFFFFFFuL - target_read32(TIMER + CPUTIMER_TIM); }
 
-void hal_idle(void) {
-  target_idle();
-}
+void hal_idle(void) { target_idle(); }
 
-void hal_profile_step(uint16_t cycles) {
-  target_elapse(cycles);
-}
+void hal_profile_step(uint16_t cycles) { target_elapse(cycles); }

@@ -12,9 +12,7 @@ static void write_control(uint16_t bits) {
   target_edis();
 }
 
-void watchdog_stop(void) {
-  write_control(WDCR_WDDIS_MASK);
-}
+void watchdog_stop(void) { write_control(WDCR_WDDIS_MASK); }
 
 void hal_watchdog_start(void) {
   target_eallow();
@@ -33,6 +31,4 @@ void hal_watchdog_service(void) {
   target_edis();
 }
 
-bool hal_watchdog_caused_reset(void) {
-  return reg_any(REG_WDCR, WDCR_WDFLAG_MASK);
-}
+bool hal_watchdog_caused_reset(void) { return reg_any(REG_WDCR, WDCR_WDFLAG_MASK); }

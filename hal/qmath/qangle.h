@@ -25,37 +25,23 @@ typedef uint32_t angle_bam32_t;
 #define ANGLE_BAM_PER_RAD_Q28_Q29 1367130551L
 
 // The shortest way from b to a, -1/2 turn .. +1/2 turn (exactly half a turn is negative).
-static inline int32_t angle_diff_bam(angle_bam32_t a, angle_bam32_t b) {
-  return (int32_t)(a - b);
-}
+static inline int32_t angle_diff_bam(angle_bam32_t a, angle_bam32_t b) { return (int32_t)(a - b); }
 
 // a moved by a signed angle.
-static inline angle_bam32_t angle_add_bam(angle_bam32_t a, int32_t delta_bam) {
-  return a + (uint32_t)delta_bam;
-}
+static inline angle_bam32_t angle_add_bam(angle_bam32_t a, int32_t delta_bam) { return a + (uint32_t)delta_bam; }
 
 // The electrical angle of a mechanical one: pole_pairs turns for one.
-static inline angle_bam32_t angle_times(angle_bam32_t a, uint16_t pole_pairs) {
-  return a * (uint32_t)pole_pairs;
-}
+static inline angle_bam32_t angle_times(angle_bam32_t a, uint16_t pole_pairs) { return a * (uint32_t)pole_pairs; }
 
 // Turns to binary angle; whole turns fall away.
-static inline angle_bam32_t angle_from_turn_q15(int32_t turn_q15) {
-  return (uint32_t)turn_q15 << 17;
-}
+static inline angle_bam32_t angle_from_turn_q15(int32_t turn_q15) { return (uint32_t)turn_q15 << 17; }
 
-static inline angle_bam32_t angle_from_turn_q30(int32_t turn_q30) {
-  return (uint32_t)turn_q30 << 2;
-}
+static inline angle_bam32_t angle_from_turn_q30(int32_t turn_q30) { return (uint32_t)turn_q30 << 2; }
 
 // Binary angle to turns, -0.5 .. +0.5 (rounded: +0.5 is possible).
-static inline int32_t angle_to_turn_q15(angle_bam32_t a) {
-  return q_shr_round((int32_t)a, 17);
-}
+static inline int32_t angle_to_turn_q15(angle_bam32_t a) { return q_shr_round((int32_t)a, 17); }
 
-static inline int32_t angle_to_turn_q30(angle_bam32_t a) {
-  return q_shr_round((int32_t)a, 2);
-}
+static inline int32_t angle_to_turn_q30(angle_bam32_t a) { return q_shr_round((int32_t)a, 2); }
 
 // Radians in Q28 (-8 .. +8 rad) to binary angle, within 2 LSB; whole turns fall away.
 static inline angle_bam32_t angle_from_rad_q28(int32_t rad_q28) {

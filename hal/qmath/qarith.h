@@ -15,14 +15,10 @@
 typedef char q_right_shift_is_arithmetic[((-3L >> 1) == -2L && (-3LL >> 1) == -2LL) ? 1 : -1];
 
 // floor(x / 2^n), n = 0..31.
-static inline int32_t q_shr(int32_t x, unsigned n) {
-  return x >> n;
-}
+static inline int32_t q_shr(int32_t x, unsigned n) { return x >> n; }
 
 // floor(x / 2^n), n = 0..63.
-static inline int64_t q_shr64(int64_t x, unsigned n) {
-  return x >> n;
-}
+static inline int64_t q_shr64(int64_t x, unsigned n) { return x >> n; }
 
 // round(x / 2^n), halves up, n = 0..31.
 static inline int32_t q_shr_round(int32_t x, unsigned n) {
@@ -32,13 +28,9 @@ static inline int32_t q_shr_round(int32_t x, unsigned n) {
   return q_shr(x, n) + (q_shr(x, n - 1) & 1);
 }
 
-static inline int32_t q_max(int32_t a, int32_t b) {
-  return (a > b) ? a : b;
-}
+static inline int32_t q_max(int32_t a, int32_t b) { return (a > b) ? a : b; }
 
-static inline int32_t q_min(int32_t a, int32_t b) {
-  return (a < b) ? a : b;
-}
+static inline int32_t q_min(int32_t a, int32_t b) { return (a < b) ? a : b; }
 
 // x limited to lo..hi. Not valid for lo > hi.
 static inline int32_t q_clamp(int32_t x, int32_t lo, int32_t hi) {
@@ -56,28 +48,18 @@ static inline int32_t q_sat64(int64_t x) {
   return (x < INT32_MIN) ? INT32_MIN : (int32_t)x;
 }
 
-static inline int32_t q_add_sat(int32_t a, int32_t b) {
-  return q_sat64((int64_t)a + b);
-}
+static inline int32_t q_add_sat(int32_t a, int32_t b) { return q_sat64((int64_t)a + b); }
 
-static inline int32_t q_sub_sat(int32_t a, int32_t b) {
-  return q_sat64((int64_t)a - b);
-}
+static inline int32_t q_sub_sat(int32_t a, int32_t b) { return q_sat64((int64_t)a - b); }
 
 // -x, and INT32_MAX for INT32_MIN.
-static inline int32_t q_neg_sat(int32_t x) {
-  return (x == INT32_MIN) ? INT32_MAX : -x;
-}
+static inline int32_t q_neg_sat(int32_t x) { return (x == INT32_MIN) ? INT32_MAX : -x; }
 
 // |x|, and INT32_MAX for INT32_MIN.
-static inline int32_t q_abs_sat(int32_t x) {
-  return (x < 0) ? q_neg_sat(x) : x;
-}
+static inline int32_t q_abs_sat(int32_t x) { return (x < 0) ? q_neg_sat(x) : x; }
 
 // |x| exactly: 2^31 for INT32_MIN.
-static inline uint32_t q_abs_u32(int32_t x) {
-  return (x < 0) ? ((uint32_t)0 - (uint32_t)x) : (uint32_t)x;
-}
+static inline uint32_t q_abs_u32(int32_t x) { return (x < 0) ? ((uint32_t)0 - (uint32_t)x) : (uint32_t)x; }
 
 // x * 2^n, saturated, n = 0..31.
 static inline int32_t q_shl_sat(int32_t x, unsigned n) {
@@ -96,41 +78,25 @@ static inline int64_t q_mul64(int32_t a, int32_t b, unsigned shift) {
 }
 
 // round(a * b / 2^shift), halves up, shift = 1..62. The caller guarantees that the result fits 32 bits.
-static inline int32_t q_mul(int32_t a, int32_t b, unsigned shift) {
-  return (int32_t)q_mul64(a, b, shift);
-}
+static inline int32_t q_mul(int32_t a, int32_t b, unsigned shift) { return (int32_t)q_mul64(a, b, shift); }
 
 // round(a * b / 2^shift), halves up, saturated, shift = 1..62.
-static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift) {
-  return q_sat64(q_mul64(a, b, shift));
-}
+static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift) { return q_sat64(q_mul64(a, b, shift)); }
 
 // floor(a * b / 2^32): the upper word of the product, one instruction where a function needs no rounding.
-static inline int32_t q_mul_hi(int32_t a, int32_t b) {
-  return (int32_t)q_shr64((int64_t)a * b, 32);
-}
+static inline int32_t q_mul_hi(int32_t a, int32_t b) { return (int32_t)q_shr64((int64_t)a * b, 32); }
 
 // floor(a * b / 2^32) of unsigned numbers.
-static inline uint32_t q_umul_hi(uint32_t a, uint32_t b) {
-  return (uint32_t)(((uint64_t)a * b) >> 32);
-}
+static inline uint32_t q_umul_hi(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
 
 // x limited to the range of int16_t.
-static inline int16_t q15_sat(int32_t x) {
-  return (int16_t)q_clamp(x, INT16_MIN, INT16_MAX);
-}
+static inline int16_t q15_sat(int32_t x) { return (int16_t)q_clamp(x, INT16_MIN, INT16_MAX); }
 
-static inline int16_t q15_add_sat(int16_t a, int16_t b) {
-  return q15_sat((int32_t)a + b);
-}
+static inline int16_t q15_add_sat(int16_t a, int16_t b) { return q15_sat((int32_t)a + b); }
 
-static inline int16_t q15_sub_sat(int16_t a, int16_t b) {
-  return q15_sat((int32_t)a - b);
-}
+static inline int16_t q15_sub_sat(int16_t a, int16_t b) { return q15_sat((int32_t)a - b); }
 
 // round(a * b / 2^15), halves up; -1 * -1 saturates to the largest Q15 number.
-static inline int16_t q15_mul(int16_t a, int16_t b) {
-  return q15_sat(q_shr((int32_t)a * b + 0x4000L, 15));
-}
+static inline int16_t q15_mul(int16_t a, int16_t b) { return q15_sat(q_shr((int32_t)a * b + 0x4000L, 15)); }
 
 #endif

@@ -57,9 +57,7 @@ uint32_t q_sqrt64(uint64_t x) {
   return root + ((rest > root && root != UINT32_MAX) ? 1 : 0);
 }
 
-uint32_t q_sqrt32(uint32_t x) {
-  return q_sqrt64(x);
-}
+uint32_t q_sqrt32(uint32_t x) { return q_sqrt64(x); }
 
 int32_t q_hypot(int32_t a, int32_t b) {
   const uint32_t a_size = q_abs_u32(a);

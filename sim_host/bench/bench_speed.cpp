@@ -36,11 +36,12 @@ int main(int argc, char** argv) {
   for (int k = 0; k < 2; k++) {
     RunResult r = run(bench_request(k));
     ratios[k] = r.stats["simulated_seconds"] / r.stats["wall_seconds"];
-    std::printf("%-16s %6.2f simulated seconds per second, %2.0f %% of it plant  (%s, %.0f register accesses and %.1f "
-                "interrupts per period)\n",
-                names[k], ratios[k], 100.0 * r.stats["plant_share"], r.completed ? "completed" : r.reason.c_str(),
-                r.stats["register_accesses"] / (r.stats["simulated_seconds"] * 1e4),
-                r.stats["interrupts"] / (r.stats["simulated_seconds"] * 1e4));
+    std::printf(
+        "%-16s %6.2f simulated seconds per second, %2.0f %% of it plant  (%s, %.0f register accesses and %.1f "
+        "interrupts per period)\n",
+        names[k], ratios[k], 100.0 * r.stats["plant_share"], r.completed ? "completed" : r.reason.c_str(),
+        r.stats["register_accesses"] / (r.stats["simulated_seconds"] * 1e4),
+        r.stats["interrupts"] / (r.stats["simulated_seconds"] * 1e4));
   }
   std::printf("ratio of the two  %.2f\n", ratios[1] / ratios[0]);
   return 0;

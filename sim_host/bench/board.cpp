@@ -60,11 +60,17 @@ void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
 std::uint16_t Board::adc_sample(Tick t, int channel) {
   const PlantTimer timer(*this);
   switch (channel) {
-    case kChannelCurrentA: return plant_.adc_code(t, plant::AdcInput::kCurrentA);
-    case kChannelCurrentB: return plant_.adc_code(t, plant::AdcInput::kCurrentB);
-    case kChannelLink: watch_current(t); return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
-    case kChannelAuxiliary: return plant_.adc_code(t, plant::AdcInput::kTemperature);
-    default: return 0;
+    case kChannelCurrentA:
+      return plant_.adc_code(t, plant::AdcInput::kCurrentA);
+    case kChannelCurrentB:
+      return plant_.adc_code(t, plant::AdcInput::kCurrentB);
+    case kChannelLink:
+      watch_current(t);
+      return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
+    case kChannelAuxiliary:
+      return plant_.adc_code(t, plant::AdcInput::kTemperature);
+    default:
+      return 0;
   }
 }
 

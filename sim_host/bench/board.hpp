@@ -1,8 +1,8 @@
 // The inverter board: what lies between the chip's pins and the plant.
 //
 // Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
-// been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the over-current
-// input (GPIO12, TZ1, low active) when a phase current has exceeded 19 A, and holds it for 10 us.
+// been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
+// over-current input (GPIO12, TZ1, low active) when a phase current has exceeded 19 A, and holds it for 10 us.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP

@@ -74,7 +74,8 @@ std::function<bool(double)> progress_of(const nb::object& callback) {
   };
 }
 
-PythonResult run_in_python(const nb::dict& plant, const std::string& motor, const std::map<std::string, double>& parameters,
+PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
+                           const std::map<std::string, double>& parameters,
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
                            int record_every, std::uint64_t seed, const nb::object& progress) {
@@ -130,10 +131,14 @@ nb::list signal_rows() {
 nb::object default_of(const Entry& e) {
   const double value = e.get(Setup());
   switch (e.kind) {
-    case EntryKind::kSwitch: return nb::bool_(value != 0.0);
-    case EntryKind::kWhole: return nb::int_(static_cast<long>(value));
-    case EntryKind::kChoice: return nb::str(solver_choices()[static_cast<std::size_t>(value)].c_str());
-    default: return nb::float_(value);
+    case EntryKind::kSwitch:
+      return nb::bool_(value != 0.0);
+    case EntryKind::kWhole:
+      return nb::int_(static_cast<long>(value));
+    case EntryKind::kChoice:
+      return nb::str(solver_choices()[static_cast<std::size_t>(value)].c_str());
+    default:
+      return nb::float_(value);
   }
 }
 

@@ -13,24 +13,37 @@ namespace stillspin::bench {
 namespace {
 
 constexpr double kSecondsPerTick = 1e-8;
-constexpr Tick kChunk = 1'000'000;           // between looks at progress
-constexpr Tick kEarliestStart = 5'000'000;   // 50 ms after power-on
+constexpr Tick kChunk = 1'000'000;          // between looks at progress
+constexpr Tick kEarliestStart = 5'000'000;  // 50 ms after power-on
 
 const char* fault_name(std::int32_t fault) {
   switch (fault) {
-    case FAULT_NONE: return "none";
-    case FAULT_OVER_CURRENT: return "over-current comparator";
-    case FAULT_CURRENT_LIMIT: return "sampled current beyond trip_current";
-    case FAULT_LINK_LOW: return "DC link below link_minimum";
-    case FAULT_LINK_HIGH: return "DC link above link_maximum";
-    case FAULT_OVERRUN: return "control interrupt overrun";
-    case FAULT_NO_SAMPLES: return "no samples from the ADC";
-    case FAULT_DIVERGENCE: return "estimators diverged or speed not plausible";
-    case FAULT_POLARITY: return "polarity of the magnet ambiguous";
-    case FAULT_OFFSET: return "current offset implausible";
-    case FAULT_PARAMETER: return "parameters do not fit together";
-    case FAULT_GATES_OFF: return "gates switched off unexpectedly";
-    default: return "unknown fault";
+    case FAULT_NONE:
+      return "none";
+    case FAULT_OVER_CURRENT:
+      return "over-current comparator";
+    case FAULT_CURRENT_LIMIT:
+      return "sampled current beyond trip_current";
+    case FAULT_LINK_LOW:
+      return "DC link below link_minimum";
+    case FAULT_LINK_HIGH:
+      return "DC link above link_maximum";
+    case FAULT_OVERRUN:
+      return "control interrupt overrun";
+    case FAULT_NO_SAMPLES:
+      return "no samples from the ADC";
+    case FAULT_DIVERGENCE:
+      return "estimators diverged or speed not plausible";
+    case FAULT_POLARITY:
+      return "polarity of the magnet ambiguous";
+    case FAULT_OFFSET:
+      return "current offset implausible";
+    case FAULT_PARAMETER:
+      return "parameters do not fit together";
+    case FAULT_GATES_OFF:
+      return "gates switched off unexpectedly";
+    default:
+      return "unknown fault";
   }
 }
 
@@ -53,7 +66,10 @@ std::vector<RawParameter> raw_parameters(const std::map<std::string, double>& wa
 class Director : public PeriodListener {
  public:
   Director(const RunRequest& request, RunResult& result)
-      : request_(request), result_(result), recorder_(request.record_every), parameters_(raw_parameters(request.parameters)) {
+      : request_(request),
+        result_(result),
+        recorder_(request.record_every),
+        parameters_(raw_parameters(request.parameters)) {
     recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
     for (const Command& c : request.commands) check(c);
   }
@@ -114,7 +130,8 @@ class Director : public PeriodListener {
   void begin(Tick t) {
     origin_ = t;
     std::vector<plant::LoadPoint> points;
-    for (const auto& [time, torque] : request_.load) points.push_back({t + std::llround(time / kSecondsPerTick), torque});
+    for (const auto& [time, torque] : request_.load)
+      points.push_back({t + std::llround(time / kSecondsPerTick), torque});
     board_->plant().set_load(points);
   }
 
@@ -150,8 +167,10 @@ class Director : public PeriodListener {
 };
 
 void check_request(const RunRequest& r) {
-  if (!(r.duration > 0.0 && r.duration <= 3600.0)) throw std::invalid_argument("duration must be above 0 and up to 3600 s");
-  if (!(r.max_start > 0.0 && r.max_start <= 60.0)) throw std::invalid_argument("max_start must be above 0 and up to 60 s");
+  if (!(r.duration > 0.0 && r.duration <= 3600.0))
+    throw std::invalid_argument("duration must be above 0 and up to 3600 s");
+  if (!(r.max_start > 0.0 && r.max_start <= 60.0))
+    throw std::invalid_argument("max_start must be above 0 and up to 60 s");
   if (r.record_every < 1) throw std::invalid_argument("record_every must be at least 1");
 }
 
@@ -172,7 +191,8 @@ bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunRe
       return false;
     }
   }
-  if (!director.running()) result.reason = "the start procedure took longer than " + std::to_string(request.max_start) + " s";
+  if (!director.running())
+    result.reason = "the start procedure took longer than " + std::to_string(request.max_start) + " s";
   return result.reason.empty();
 }
 

@@ -1,7 +1,7 @@
 // One run of the virtual drive: power-on, start, a sequence of commands and loads, and a record of it.
 //
-// The firmware has static state, so one run at a time in a process. Time 0 of commands, loads, record and duration is the
-// moment at which the drive has finished its start procedure.
+// The firmware has static state, so one run at a time in a process. Time 0 of commands, loads, record and duration is
+// the moment at which the drive has finished its start procedure.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_RUN_HPP
 #define STILLSPIN_SIM_HOST_BENCH_RUN_HPP
@@ -17,20 +17,20 @@
 namespace stillspin::bench {
 
 struct Command {
-  double time;        // s
-  std::string what;   // "speed_ref_rpm", "start", "stop", "reset", "set:<parameter>"
+  double time;       // s
+  std::string what;  // "speed_ref_rpm", "start", "stop", "reset", "set:<parameter>"
   double value;
 };
 
 struct RunRequest {
   Setup setup;
-  std::map<std::string, double> parameters;        // firmware parameters, in the table's units
-  std::vector<Command> commands;                   // in the order of time
-  std::vector<std::pair<double, double>> load;     // s, N m; piecewise linear
-  double duration = 1.0;                           // s, 0..3600
-  double max_start = 2.0;                          // s from power-on to the end of the start procedure
-  int record_every = 1;                            // PWM periods per record
-  std::function<bool(double)> progress;            // share done; false stops the run
+  std::map<std::string, double> parameters;     // firmware parameters, in the table's units
+  std::vector<Command> commands;                // in the order of time
+  std::vector<std::pair<double, double>> load;  // s, N m; piecewise linear
+  double duration = 1.0;                        // s, 0..3600
+  double max_start = 2.0;                       // s from power-on to the end of the start procedure
+  int record_every = 1;                         // PWM periods per record
+  std::function<bool(double)> progress;         // share done; false stops the run
 };
 
 /// A recorded column and what it is.
@@ -52,8 +52,8 @@ struct RunResult {
 /// Throws std::invalid_argument for what cannot be run (unknown parameter or command, value out of range).
 RunResult run(const RunRequest& request);
 
-/// Checks firmware parameters as the drive would: throws std::invalid_argument for an unknown one, a value out of range or
-/// values that do not fit together.
+/// Checks firmware parameters as the drive would: throws std::invalid_argument for an unknown one, a value out of range
+/// or values that do not fit together.
 void check_parameters(const std::map<std::string, double>& parameters);
 
 /// Raw value of a firmware parameter from user units; throws std::invalid_argument with value, range and unit.

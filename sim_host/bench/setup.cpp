@@ -7,9 +7,11 @@ namespace stillspin::bench {
 namespace {
 
 #define ENTRY(section, key, unit, kind, minimum, maximum, field, help)                              \
-  Entry{#section, #key, unit, EntryKind::kind, minimum, maximum,                                    \
+  Entry {                                                                                           \
+    #section, #key, unit, EntryKind::kind, minimum, maximum,                                        \
         [](const Setup& s) { return static_cast<double>(s.field); },                                \
-        [](Setup& s, double v) { s.field = static_cast<std::decay_t<decltype(s.field)>>(v); }, help}
+        [](Setup& s, double v) { s.field = static_cast<std::decay_t<decltype(s.field)>>(v); }, help \
+  }
 
 const std::vector<Entry> kEntries = {
     ENTRY(machine, pole_pairs, "", kWhole, 1, 50, nominal.machine.pole_pairs, "pole pairs"),
@@ -29,14 +31,17 @@ const std::vector<Entry> kEntries = {
     ENTRY(mechanics, viscous_friction, "Nms", kNumber, 0, 10, nominal.mechanics.viscous_friction, "viscous friction"),
     ENTRY(mechanics, coulomb_friction, "Nm", kNumber, 0, 100, nominal.mechanics.coulomb_friction, "dry friction"),
     ENTRY(mechanics, stiction, "Nm", kNumber, 0, 100, nominal.mechanics.stiction, "torque to break loose"),
-    ENTRY(mechanics, cogging_torque, "Nm", kNumber, 0, 10, nominal.mechanics.cogging_torque, "cogging, six per pole pair"),
+    ENTRY(mechanics, cogging_torque, "Nm", kNumber, 0, 10, nominal.mechanics.cogging_torque,
+          "cogging, six per pole pair"),
     ENTRY(mechanics, locked, "", kSwitch, 0, 1, nominal.mechanics.locked, "the rotor cannot turn"),
     ENTRY(inverter, switch_threshold, "V", kNumber, 0, 10, nominal.inverter.switch_threshold, "switch on-state drop"),
     ENTRY(inverter, switch_resistance, "ohm", kNumber, 0, 10, nominal.inverter.switch_resistance, "and its slope"),
     ENTRY(inverter, diode_threshold, "V", kNumber, 0, 10, nominal.inverter.diode_threshold, "diode on-state drop"),
     ENTRY(inverter, diode_resistance, "ohm", kNumber, 0, 10, nominal.inverter.diode_resistance, "and its slope"),
-    ENTRY(inverter, turn_on_delay, "10ns", kWhole, 0, 1000, nominal.inverter.turn_on_delay, "driver input to conduction"),
-    ENTRY(inverter, turn_off_delay, "10ns", kWhole, 0, 1000, nominal.inverter.turn_off_delay, "driver input to blocking"),
+    ENTRY(inverter, turn_on_delay, "10ns", kWhole, 0, 1000, nominal.inverter.turn_on_delay,
+          "driver input to conduction"),
+    ENTRY(inverter, turn_off_delay, "10ns", kWhole, 0, 1000, nominal.inverter.turn_off_delay,
+          "driver input to blocking"),
     ENTRY(link, source_voltage, "V", kNumber, 1, 2000, nominal.link.source_voltage, "DC-link source"),
     ENTRY(link, stiff, "", kSwitch, 0, 1, nominal.link.stiff, "the link is the source itself"),
     ENTRY(link, source_resistance, "ohm", kNumber, 1e-3, 1000, nominal.link.source_resistance, "source resistance"),
@@ -72,7 +77,8 @@ const std::vector<Entry> kEntries = {
     ENTRY(parameter_error, inductance_q, "", kNumber, -0.9, 5, error.inductance_q, "true minus nominal"),
     ENTRY(parameter_error, magnet_flux, "", kNumber, -0.9, 5, error.magnet_flux, "true minus nominal"),
     ENTRY(parameter_error, inertia, "", kNumber, -0.9, 5, error.inertia, "true minus nominal"),
-    ENTRY(solver, method, "", kChoice, 0, 2, solver, "erkstep: ARKODE, adaptive; rk4: fixed steps, fast; reference: CVODE"),
+    ENTRY(solver, method, "", kChoice, 0, 2, solver,
+          "erkstep: ARKODE, adaptive; rk4: fixed steps, fast; reference: CVODE"),
     ENTRY(solver, relative_tolerance, "", kNumber, 1e-13, 1e-3, nominal.solver.relative_tolerance, "of erkstep"),
     ENTRY(solver, max_segment, "10ns", kWhole, 1, 10000, nominal.solver.max_segment, "longest step between events"),
 };

@@ -10,11 +10,11 @@
 // modelled: the 2.5 count from the trigger itself, and half an ADCCLK of an odd number of ticks is rounded up.
 //
 // Sequencers: SEQ1 has CONV00..07 and RESULT0..7, SEQ2 CONV08..15 and RESULT8..15, cascaded (SEQ_CASC) one of all 16.
-// In simultaneous mode CONVxx names the pair, its results go to two registers, and a pointer turns back to the first CONV
-// when its result registers are full (after 4 pairs, 8 when cascaded). The pointer stays where a sequence ended until
-// RST_SEQn is written. A running sequence is never interrupted; a trigger that comes meanwhile waits (one for each
-// sequencer, shown by SOC_SEQn), a second one is lost; SEQ1 goes first. A waiting sequence starts when the running one
-// ends, with the full trigger-to-sample time.
+// In simultaneous mode CONVxx names the pair, its results go to two registers, and a pointer turns back to the first
+// CONV when its result registers are full (after 4 pairs, 8 when cascaded). The pointer stays where a sequence ended
+// until RST_SEQn is written. A running sequence is never interrupted; a trigger that comes meanwhile waits (one for
+// each sequencer, shown by SOC_SEQn), a second one is lost; SEQ1 goes first. A waiting sequence starts when the running
+// one ends, with the full trigger-to-sample time.
 //
 // Codes are 0 until the band gap and the core have been powered for 5 ms.
 // Not modelled: internal calibration, external trigger pin, external reference, emulation halt.
@@ -99,7 +99,7 @@ class Adc final : public Peripheral {
 
   ChipServices& services_;
   AdcSequencer sequencers_[2];
-  int active_ = -1;  // index of the running sequencer
+  int active_ = -1;    // index of the running sequencer
   int remaining_ = 0;  // SEQ_CNTR: conversions (pairs) still to be held, minus one
   bool all_held_ = false;
   Timing timing_;

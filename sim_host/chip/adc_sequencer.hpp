@@ -8,10 +8,10 @@
 namespace stillspin::chip {
 
 struct AdcSequencer {
-  int first = 0;          // its first CONV and its first RESULT register: 0 or 8
-  int states = 8;         // CONVs it has: 8, or 16 when cascaded
-  int pointer = 0;        // 0 .. states-1
-  bool waiting = false;   // SOC_SEQn: a trigger has come and not been served
+  int first = 0;            // its first CONV and its first RESULT register: 0 or 8
+  int states = 8;           // CONVs it has: 8, or 16 when cascaded
+  int pointer = 0;          // 0 .. states-1
+  bool waiting = false;     // SOC_SEQn: a trigger has come and not been served
   bool end_toggle = false;  // EOS_BUFn
 
   int conv() const { return first + pointer; }

@@ -63,24 +63,16 @@ Device device_at(std::uint32_t address) {
   return page < kPageCount ? kPages.device[page] : Device::kNone;
 }
 
-std::uint16_t offset_in_page(std::uint32_t address) {
-  return static_cast<std::uint16_t>(address & kPageMask);
-}
-int epwm_module(std::uint32_t address) {
-  return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift);
-}
+std::uint16_t offset_in_page(std::uint32_t address) { return static_cast<std::uint16_t>(address & kPageMask); }
+int epwm_module(std::uint32_t address) { return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift); }
 
 // Identification: part number of the F2808, revision C (the last one that the errata SPRZ171 name).
 constexpr std::uint16_t kPartNumber = 0x003C;
 constexpr std::uint16_t kRevision = 0x0003;
 constexpr std::uint32_t kDeviceConfiguration = DEVICECNF_VMAPS_MASK | DEVICECNF_XRSn_MASK | DEVICECNF_ENPROT_MASK;
 
-Tick read_cycles(std::uint32_t address) {
-  return address < kFrame1Start ? kFrame0ReadCycles : kFrame12ReadCycles;
-}
-Tick halves(std::uint32_t address) {
-  return address >= kFrame2Start ? 2 : 1;
-}
+Tick read_cycles(std::uint32_t address) { return address < kFrame1Start ? kFrame0ReadCycles : kFrame12ReadCycles; }
+Tick halves(std::uint32_t address) { return address >= kFrame2Start ? 2 : 1; }
 
 bool epwm_register_protected(std::uint16_t offset) {
   constexpr std::uint64_t mask = 1ull << EPWM_TZSEL | 1ull << EPWM_TZCTL | 1ull << EPWM_TZEINT | 1ull << EPWM_TZCLR |

@@ -7,29 +7,13 @@ namespace stillspin::chip {
 Chip::Chip(World& world, Firmware firmware) : core_(std::make_unique<Core>(world, firmware)) {}
 Chip::~Chip() = default;
 
-void Chip::run_until(Tick t) {
-  core_->run_until(t);
-}
-Tick Chip::now() const {
-  return core_->now();
-}
-Statistics Chip::statistics() const {
-  return core_->statistics();
-}
-const std::string& Chip::error() const {
-  return core_->error();
-}
-void Chip::pins_changed() {
-  core_->pins_changed();
-}
-void Chip::set_adc_crosstalk(bool on) {
-  core_->set_adc_crosstalk(on);
-}
-bool Chip::is_idle() const {
-  return core_->is_idle();
-}
-std::uint16_t Chip::inspect(std::uint32_t address) {
-  return core_->inspect(address);
-}
+void Chip::run_until(Tick t) { core_->run_until(t); }
+Tick Chip::now() const { return core_->now(); }
+Statistics Chip::statistics() const { return core_->statistics(); }
+const std::string& Chip::error() const { return core_->error(); }
+void Chip::pins_changed() { core_->pins_changed(); }
+void Chip::set_adc_crosstalk(bool on) { core_->set_adc_crosstalk(on); }
+bool Chip::is_idle() const { return core_->is_idle(); }
+std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
 
 }  // namespace stillspin::chip

@@ -119,9 +119,7 @@ void Core::leave_firmware() {
   for (;;) coroutine_.suspend();  // never resumed: discarded by a reset, or dead after an error
 }
 
-void Core::request_reset() {
-  stop_ = reset_requested_ = true;
-}
+void Core::request_reset() { stop_ = reset_requested_ = true; }
 
 void Core::model_error(const char* text, std::int64_t value) {
   stop_ = true;

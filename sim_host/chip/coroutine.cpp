@@ -161,9 +161,7 @@ Coroutine::Coroutine() : context_(std::make_unique<Context>()) {
   mprotect(memory, page, PROT_NONE);
 }
 
-Coroutine::~Coroutine() {
-  munmap(stack_, stack_size_);
-}
+Coroutine::~Coroutine() { munmap(stack_, stack_size_); }
 
 void Coroutine::prepare(Entry entry, void* argument) {
   entry_ = entry;
@@ -210,9 +208,7 @@ void Coroutine::resume() {
   context_->enter();
 }
 
-void Coroutine::suspend() {
-  context_->leave();
-}
+void Coroutine::suspend() { context_->leave(); }
 
 void Coroutine::trampoline() {
   starting->entry_(starting->argument_);

@@ -18,9 +18,7 @@ constexpr unsigned kMaxDepth = 32;  // nesting deeper than this is a runaway, th
 
 }  // namespace
 
-void Core::spend_instruction() {
-  spend(kInstructionCycles);
-}
+void Core::spend_instruction() { spend(kInstructionCycles); }
 
 void Core::set_eallow(bool on) {
   spend_instruction();

@@ -13,18 +13,12 @@ constexpr std::uint16_t kControlMask =
     CPUTIMER_TCR_FREE_MASK | CPUTIMER_TCR_SOFT_MASK | CPUTIMER_TCR_TIE_MASK | CPUTIMER_TCR_TSS_MASK;
 constexpr std::array<unsigned, 3> kVectors = {VECTOR_TINT0, Interrupts::kVectorInt13, VECTOR_TINT2};
 
-std::uint32_t with_low(std::uint32_t word, std::uint16_t low) {
-  return (word & 0xFFFF0000u) | low;
-}
+std::uint32_t with_low(std::uint32_t word, std::uint16_t low) { return (word & 0xFFFF0000u) | low; }
 std::uint32_t with_high(std::uint32_t word, std::uint16_t high) {
   return (word & 0xFFFFu) | static_cast<std::uint32_t>(high) << 16;
 }
-std::uint16_t low_of(std::uint32_t word) {
-  return static_cast<std::uint16_t>(word & 0xFFFFu);
-}
-std::uint16_t high_of(std::uint32_t word) {
-  return static_cast<std::uint16_t>(word >> 16);
-}
+std::uint16_t low_of(std::uint32_t word) { return static_cast<std::uint16_t>(word & 0xFFFFu); }
+std::uint16_t high_of(std::uint32_t word) { return static_cast<std::uint16_t>(word >> 16); }
 // The prescaler registers interleave two bytes: TPR holds the low bytes of PSC and TDDR, TPRH the high ones.
 std::uint16_t byte_pair(std::uint32_t psc, std::uint32_t tddr, unsigned shift) {
   return static_cast<std::uint16_t>(((psc >> shift) & 0xFFu) << 8 | ((tddr >> shift) & 0xFFu));
@@ -32,9 +26,7 @@ std::uint16_t byte_pair(std::uint32_t psc, std::uint32_t tddr, unsigned shift) {
 
 }  // namespace
 
-bool CpuTimers::Timer::running() const {
-  return (control & CPUTIMER_TCR_TSS_MASK) == 0;
-}
+bool CpuTimers::Timer::running() const { return (control & CPUTIMER_TCR_TSS_MASK) == 0; }
 
 std::int64_t CpuTimers::Timer::counted(Tick t, Tick clock) const {
   if (!running()) return cycles;

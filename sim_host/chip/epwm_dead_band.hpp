@@ -21,9 +21,9 @@ namespace stillspin::chip {
 
 class DeadBand {
  public:
-  std::uint16_t control = 0;         // DBCTL
-  std::uint16_t rising_delay = 0;    // DBRED, TBCLKs
-  std::uint16_t falling_delay = 0;   // DBFED, TBCLKs
+  std::uint16_t control = 0;        // DBCTL
+  std::uint16_t rising_delay = 0;   // DBRED, TBCLKs
+  std::uint16_t falling_delay = 0;  // DBFED, TBCLKs
 
   /// Levels of the action qualifier at t, or a changed register.
   void input(bool a, bool b, Tick clock_period, Tick t) {

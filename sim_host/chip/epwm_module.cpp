@@ -48,7 +48,7 @@ unsigned EPwmModule::load_events(unsigned mode_lsb, unsigned shadow_off_mask) co
 /// Which counts matter follows from the registers; call after each change of one that is not a mere shadow.
 void EPwmModule::reschedule(Tick t) {
   const unsigned sync_out = field(control_, EPWM_TBCTL_SYNCOSEL_MASK, EPWM_TBCTL_SYNCOSEL_LSB);
-  sync_out_events_ = sync_out == kSyncOutZero         ? unsigned{kCountZero}
+  sync_out_events_ = sync_out == kSyncOutZero       ? unsigned{kCountZero}
                      : sync_out == kSyncOutCompareB ? unsigned{kCountBUp} | unsigned{kCountBDown}
                                                     : 0u;
   load_a_events_ = load_events(EPWM_CMPCTL_LOADAMODE_LSB, EPWM_CMPCTL_SHDWAMODE_MASK);

@@ -40,9 +40,7 @@ class EPwmModule {
   std::uint16_t read(std::uint16_t offset, Tick t) const;
   unsigned write(std::uint16_t offset, std::uint16_t value, Tick t);
 
-  Tick next_event() const {
-    return std::min(std::min(base_.next_stop(), sync_load_), dead_band_.next_event());
-  }
+  Tick next_event() const { return std::min(std::min(base_.next_stop(), sync_load_), dead_band_.next_event()); }
   unsigned run_event(Tick t);
 
   /// SYSCLKOUT period in ticks, and whether TBCLK reaches the counter (clock gate and TBCLKSYNC).

@@ -72,8 +72,8 @@ unsigned EPwmModule::write_time_base(std::uint16_t offset, std::uint16_t value, 
 }
 
 void EPwmModule::write_compare(std::uint16_t offset, std::uint16_t value, Tick t) {
-  constexpr unsigned kWritable = EPWM_CMPCTL_LOADAMODE_MASK | EPWM_CMPCTL_LOADBMODE_MASK |
-                                 EPWM_CMPCTL_SHDWAMODE_MASK | EPWM_CMPCTL_SHDWBMODE_MASK;
+  constexpr unsigned kWritable =
+      EPWM_CMPCTL_LOADAMODE_MASK | EPWM_CMPCTL_LOADBMODE_MASK | EPWM_CMPCTL_SHDWAMODE_MASK | EPWM_CMPCTL_SHDWBMODE_MASK;
   const bool immediate_a = bit_set(compare_control_, EPWM_CMPCTL_SHDWAMODE_MASK);
   const bool immediate_b = bit_set(compare_control_, EPWM_CMPCTL_SHDWBMODE_MASK);
   switch (offset) {

@@ -169,9 +169,7 @@ void TimeBase::set_period(std::uint16_t value, Tick t) {
   locate(at, up, edge);
 }
 
-void TimeBase::add_stop(std::int32_t p, unsigned event) {
-  stops_[stop_count_++] = Stop{p, event};
-}
+void TimeBase::add_stop(std::int32_t p, unsigned event) { stops_[stop_count_++] = Stop{p, event}; }
 
 void TimeBase::rebuild_stops() {
   stop_count_ = 0;

@@ -107,7 +107,7 @@ class TimeBase {
 
   CountMode mode_ = CountMode::stopped;
   bool running_ = false;
-  bool up_ = true;           // direction kept while stopped
+  bool up_ = true;            // direction kept while stopped
   bool first_clock_ = false;  // the events at the anchor itself are still due
   bool reached_max_ = false;
   Outside outside_ = Outside::no;

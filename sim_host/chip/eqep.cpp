@@ -12,9 +12,7 @@ enum PositionReset : unsigned { kOnIndex = 0, kOnMaximum = 1, kOnFirstIndex = 2,
 constexpr std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 constexpr std::int64_t floor_modulo(std::int64_t a, std::int64_t b) { return a - floor_divide(a, b) * b; }
 
-unsigned position_reset(std::uint16_t control) {
-  return field(control, EQEP_QEPCTL_PCRM_MASK, EQEP_QEPCTL_PCRM_LSB);
-}
+unsigned position_reset(std::uint16_t control) { return field(control, EQEP_QEPCTL_PCRM_MASK, EQEP_QEPCTL_PCRM_LSB); }
 
 }  // namespace
 
@@ -288,8 +286,7 @@ std::uint16_t EQep::read(std::uint16_t offset, Tick t) {
       return flags_;
     case EQEP_QEPSTS:
       look(t);
-      return static_cast<std::uint16_t>(status_ |
-                                        (forward_ ? EQEP_QEPSTS_QDF_MASK | EQEP_QEPSTS_QDLF_MASK : 0u));
+      return static_cast<std::uint16_t>(status_ | (forward_ ? EQEP_QEPSTS_QDF_MASK | EQEP_QEPSTS_QDLF_MASK : 0u));
     default:
       return 0;
   }

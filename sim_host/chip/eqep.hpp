@@ -53,21 +53,21 @@ class EQep final : public Peripheral {
   ChipServices& services_;
   int instance_;
 
-  std::uint32_t position_ = 0;        // QPOSCNT
-  std::uint32_t position_init_ = 0;   // QPOSINIT
-  std::uint32_t position_max_ = 0;    // QPOSMAX
+  std::uint32_t position_ = 0;          // QPOSCNT
+  std::uint32_t position_init_ = 0;     // QPOSINIT
+  std::uint32_t position_max_ = 0;      // QPOSMAX
   std::uint32_t position_compare_ = 0;  // QPOSCMP, stored
-  std::uint32_t index_latch_ = 0;     // QPOSILAT
-  std::uint32_t strobe_latch_ = 0;    // QPOSSLAT
-  std::uint32_t position_latch_ = 0;  // QPOSLAT
-  std::uint32_t unit_period_ = 0;     // QUPRD
-  std::uint16_t decoder_ = 0;         // QDECCTL
-  std::uint16_t control_ = 0;         // QEPCTL
-  std::uint16_t capture_ = 0;         // QCAPCTL, stored
-  std::uint16_t compare_control_ = 0;  // QPOSCTL, stored
+  std::uint32_t index_latch_ = 0;       // QPOSILAT
+  std::uint32_t strobe_latch_ = 0;      // QPOSSLAT
+  std::uint32_t position_latch_ = 0;    // QPOSLAT
+  std::uint32_t unit_period_ = 0;       // QUPRD
+  std::uint16_t decoder_ = 0;           // QDECCTL
+  std::uint16_t control_ = 0;           // QEPCTL
+  std::uint16_t capture_ = 0;           // QCAPCTL, stored
+  std::uint16_t compare_control_ = 0;   // QPOSCTL, stored
   std::uint16_t interrupt_enable_ = 0;  // QEINT
-  std::uint16_t flags_ = 0;           // QFLG
-  std::uint16_t status_ = 0;          // QEPSTS without the direction
+  std::uint16_t flags_ = 0;             // QFLG
+  std::uint16_t status_ = 0;            // QEPSTS without the direction
   bool forward_ = true;
   bool index_seen_ = false;
   std::int64_t last_edges_ = 0;

@@ -5,9 +5,7 @@
 namespace stillspin::chip {
 namespace {
 
-constexpr std::uint16_t offset_of(std::uint32_t address) {
-  return static_cast<std::uint16_t>(address - kGpioFrame);
-}
+constexpr std::uint16_t offset_of(std::uint32_t address) { return static_cast<std::uint16_t>(address - kGpioFrame); }
 
 constexpr std::uint16_t kData = offset_of(REG_GPADAT);
 constexpr std::uint16_t kDataEnd = offset_of(REG_GPBTOGGLE) + 2;
@@ -49,17 +47,11 @@ void Gpio::reset(Tick t) {
   drive_pwm_pins(t);
 }
 
-bool Gpio::is_protected(std::uint16_t offset) {
-  return offset < kData || offset >= kDataEnd;
-}
+bool Gpio::is_protected(std::uint16_t offset) { return offset < kData || offset >= kDataEnd; }
 
-unsigned Gpio::function(unsigned pin) const {
-  return control_[mux_word(pin)] >> (pin % 8 * 2) & 3u;
-}
+unsigned Gpio::function(unsigned pin) const { return control_[mux_word(pin)] >> (pin % 8 * 2) & 3u; }
 
-bool Gpio::is_output(unsigned pin) const {
-  return (control_[direction_word(pin)] >> pin % 16 & 1u) != 0;
-}
+bool Gpio::is_output(unsigned pin) const { return (control_[direction_word(pin)] >> pin % 16 & 1u) != 0; }
 
 bool Gpio::level(unsigned pin, Tick t) {
   if ((outputs_ >> pin & 1u) != 0) return (latch_[pin / 16] >> pin % 16 & 1u) != 0;

@@ -11,9 +11,7 @@ constexpr unsigned kInt14Line = 13;
 constexpr std::uint32_t kTableAddress = 0x0D00;  // of the vectors, two words each: what PIECTRL.PIEVECT shows
 
 // Index of the lowest bit that is set; `bits` is not 0.
-unsigned lowest(unsigned bits) {
-  return static_cast<unsigned>(__builtin_ctz(bits));
-}
+unsigned lowest(unsigned bits) { return static_cast<unsigned>(__builtin_ctz(bits)); }
 
 }  // namespace
 

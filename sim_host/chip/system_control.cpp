@@ -12,9 +12,7 @@ constexpr std::uint16_t kGates1Mask = 0xCF3F;
 constexpr std::uint16_t kLowPowerReset = 0x00FC;
 constexpr std::uint16_t kXclkMask = XCLK_XCLKOUTDIV_MASK;
 
-constexpr std::uint16_t offset_of(std::uint32_t address) {
-  return static_cast<std::uint16_t>(address - kSystemFrame);
-}
+constexpr std::uint16_t offset_of(std::uint32_t address) { return static_cast<std::uint16_t>(address - kSystemFrame); }
 
 }  // namespace
 
@@ -27,9 +25,7 @@ void SystemControl::reset() {
   update_clock();
 }
 
-unsigned SystemControl::divider() const {
-  return (status_ & PLLSTS_CLKINDIV_MASK) != 0 ? 1u : 2u;
-}
+unsigned SystemControl::divider() const { return (status_ & PLLSTS_CLKINDIV_MASK) != 0 ? 1u : 2u; }
 
 bool SystemControl::ratio_is_whole(unsigned multiplier) const {
   return (kOscillatorPeriod * divider()) % static_cast<Tick>(multiplier) == 0;
@@ -57,12 +53,8 @@ unsigned SystemControl::run_event() {
 bool SystemControl::eqep_clock(int instance) const {
   return (gates1_ >> (PCLKCR1_EQEP1ENCLK_LSB + instance - 1) & 1u) != 0;
 }
-bool SystemControl::time_base_clock() const {
-  return (gates0_ & PCLKCR0_TBCLKSYNC_MASK) != 0;
-}
-bool SystemControl::low_power_mode_selected() const {
-  return (low_power_ & LPMCR0_LPM_MASK) != 0;
-}
+bool SystemControl::time_base_clock() const { return (gates0_ & PCLKCR0_TBCLKSYNC_MASK) != 0; }
+bool SystemControl::low_power_mode_selected() const { return (low_power_ & LPMCR0_LPM_MASK) != 0; }
 
 std::uint16_t SystemControl::read(std::uint16_t offset) const {
   switch (offset) {

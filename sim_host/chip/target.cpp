@@ -39,47 +39,19 @@ using stillspin::chip::current;
 
 extern "C" {
 
-uint16_t target_read16(uint32_t address) {
-  return current().read16(address);
-}
-void target_write16(uint32_t address, uint16_t value) {
-  current().write16(address, value);
-}
-uint32_t target_read32(uint32_t address) {
-  return current().read32(address);
-}
-void target_write32(uint32_t address, uint32_t value) {
-  current().write32(address, value);
-}
-void target_eallow(void) {
-  current().set_eallow(true);
-}
-void target_edis(void) {
-  current().set_eallow(false);
-}
-void target_enable_interrupts(void) {
-  current().set_interrupts_masked(false);
-}
-void target_disable_interrupts(void) {
-  current().set_interrupts_masked(true);
-}
-uint16_t target_read_ier(void) {
-  return current().read_ier();
-}
-void target_write_ier(uint16_t mask) {
-  current().write_ier(mask);
-}
-void target_clear_ifr(void) {
-  current().clear_ifr();
-}
-void target_set_vector(uint16_t vector, target_isr_t isr) {
-  current().set_vector(vector, isr);
-}
-void target_idle(void) {
-  current().idle();
-}
-void target_elapse(uint16_t cycles) {
-  current().elapse(cycles);
-}
+uint16_t target_read16(uint32_t address) { return current().read16(address); }
+void target_write16(uint32_t address, uint16_t value) { current().write16(address, value); }
+uint32_t target_read32(uint32_t address) { return current().read32(address); }
+void target_write32(uint32_t address, uint32_t value) { current().write32(address, value); }
+void target_eallow(void) { current().set_eallow(true); }
+void target_edis(void) { current().set_eallow(false); }
+void target_enable_interrupts(void) { current().set_interrupts_masked(false); }
+void target_disable_interrupts(void) { current().set_interrupts_masked(true); }
+uint16_t target_read_ier(void) { return current().read_ier(); }
+void target_write_ier(uint16_t mask) { current().write_ier(mask); }
+void target_clear_ifr(void) { current().clear_ifr(); }
+void target_set_vector(uint16_t vector, target_isr_t isr) { current().set_vector(vector, isr); }
+void target_idle(void) { current().idle(); }
+void target_elapse(uint16_t cycles) { current().elapse(cycles); }
 
 }  // extern "C"

@@ -13,14 +13,10 @@ constexpr std::uint16_t kCheck = 5u << WDCR_WDCHK_LSB;
 constexpr std::uint16_t kFirstKey = 0x55;
 constexpr std::uint16_t kSecondKey = 0xAA;
 
-constexpr std::uint16_t offset_of(std::uint32_t address) {
-  return static_cast<std::uint16_t>(address - kSystemFrame);
-}
+constexpr std::uint16_t offset_of(std::uint32_t address) { return static_cast<std::uint16_t>(address - kSystemFrame); }
 
 // WDPS 0 and 1 both mean no division.
-constexpr Tick step_for(std::uint16_t prescale) {
-  return kBaseStep << (prescale == 0 ? 0 : prescale - 1);
-}
+constexpr Tick step_for(std::uint16_t prescale) { return kBaseStep << (prescale == 0 ? 0 : prescale - 1); }
 
 }  // namespace
 

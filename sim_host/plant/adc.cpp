@@ -20,9 +20,7 @@ std::uint16_t Adc::current(int phase, double amperes) {
   return convert(kMiddle + codes_per_ampere_ * amperes, noise_[phase]);
 }
 
-std::uint16_t Adc::link_voltage(double volts) {
-  return convert(codes_per_volt_ * volts, noise_[3]);
-}
+std::uint16_t Adc::link_voltage(double volts) { return convert(codes_per_volt_ * volts, noise_[3]); }
 
 std::uint16_t Adc::convert(double code, Noise& noise) const {
   const double clipped = std::min(std::max(code, 0.0), kLast);

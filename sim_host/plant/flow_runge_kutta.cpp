@@ -170,8 +170,6 @@ class RungeKutta final : public Flow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_runge_kutta() {
-  return std::make_unique<RungeKutta>();
-}
+std::unique_ptr<Flow> make_runge_kutta() { return std::make_unique<RungeKutta>(); }
 
 }  // namespace stillspin::plant

@@ -72,9 +72,7 @@ void Model::derive(double t, const State& y, State& dy, Probe& probe) const {
   core<1, true>(t, y, e, psi, dy, ignored, &probe);
 }
 
-double Model::link_voltage(double t, const State& y) const {
-  return link.stiff ? source_voltage(t) : y[kLink];
-}
+double Model::link_voltage(double t, const State& y) const { return link.stiff ? source_voltage(t) : y[kLink]; }
 
 std::array<double, 3> Model::leg_voltages(const State& y) const {
   if (clamp != Clamp::kNone) {

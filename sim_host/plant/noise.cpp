@@ -32,9 +32,7 @@ const Ziggurat& ziggurat() {
   return table;
 }
 
-std::uint64_t rotated(std::uint64_t x, int by) {
-  return (x << by) | (x >> (64 - by));
-}
+std::uint64_t rotated(std::uint64_t x, int by) { return (x << by) | (x >> (64 - by)); }
 
 std::uint64_t split_mix(std::uint64_t& x) {
   x += 0x9e3779b97f4a7c15u;
@@ -64,9 +62,7 @@ std::uint64_t Noise::bits() {
   return result;
 }
 
-double Noise::uniform() {
-  return (static_cast<double>(bits() >> 11) + 1.0) * 0x1p-53;
-}
+double Noise::uniform() { return (static_cast<double>(bits() >> 11) + 1.0) * 0x1p-53; }
 
 double Noise::tail(bool negative) {
   double x, y;

@@ -213,9 +213,7 @@ void Plant::advance(Tick t) {
   impl_->integrate_to(t);
 }
 
-Tick Plant::now() const {
-  return impl_->now;
-}
+Tick Plant::now() const { return impl_->now; }
 
 double Plant::current_sensor(int phase) const {
   check_index("phase", phase);
@@ -337,9 +335,7 @@ void Plant::clear_faults() {
   });
 }
 
-std::optional<ShootThrough> Plant::shoot_through() const {
-  return impl_->shoot_through;
-}
+std::optional<ShootThrough> Plant::shoot_through() const { return impl_->shoot_through; }
 
 EnergyLedger Plant::energy() const {
   const State& y = impl_->present();
@@ -355,8 +351,6 @@ PlantStats Plant::stats() const {
   return s;
 }
 
-const PlantConfig& Plant::config() const {
-  return impl_->config;
-}
+const PlantConfig& Plant::config() const { return impl_->config; }
 
 }  // namespace stillspin::plant

@@ -39,9 +39,7 @@ inline Rotation reduced_rotation(double x) {
 }
 
 /// Nearest whole number, |x| < 2^62. (std::floor is a library call on processors without SSE4.1.)
-inline std::int64_t nearest(double x) {
-  return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
-}
+inline std::int64_t nearest(double x) { return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5); }
 
 /// cos and sin of x, |x| < 1e4 (reduction loses |x| * 1e-16).
 inline Rotation rotation(double x) {

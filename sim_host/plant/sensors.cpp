@@ -121,12 +121,8 @@ void Sensors::drift(int phase, Tick from, double per_second) {
   failures_[phase].drift_from = from;
 }
 
-void Sensors::scale(int phase, double factor) {
-  failures_[phase].gain *= factor;
-}
+void Sensors::scale(int phase, double factor) { failures_[phase].gain *= factor; }
 
-void Sensors::repair() {
-  failures_ = {};
-}
+void Sensors::repair() { failures_ = {}; }
 
 }  // namespace stillspin::plant

@@ -23,7 +23,8 @@ TEST(Timeline, TimeZeroIsTheStateRun) {
   const RunResult result = run(encoder_request(0.02));
   ASSERT_TRUE(result.completed) << result.reason;
   for (const double state : column(result, "state")) EXPECT_EQ(state, DRIVE_RUN);
-  // Not started before 50 ms; the start takes 200 periods for the angle, 100 for the current loop, 560 for the polarity.
+  // Not started before 50 ms; the start takes 200 periods for the angle, 100 for the current loop, 560 for the
+  // polarity.
   EXPECT_GE(result.stats.at("start_seconds"), 0.136);
   EXPECT_LT(result.stats.at("start_seconds"), 0.138);
 }

@@ -70,9 +70,7 @@ inline void write_protected(std::uint32_t address, std::uint16_t value) {
   target_edis();
 }
 
-inline void disable_watchdog() {
-  write_protected(REG_WDCR, 0x0068);
-}
+inline void disable_watchdog() { write_protected(REG_WDCR, 0x0068); }
 
 /// SYSCLKOUT 100 MHz, watchdog off.
 inline void start_clock() {
@@ -92,13 +90,9 @@ inline void install(unsigned vector, target_isr_t isr) {
   target_write16(REG_PIEIER(group), static_cast<std::uint16_t>(enabled | 1u << (vector - VECTOR_PIE_FIRST) % 8));
 }
 
-inline void enable_pie() {
-  target_write16(REG_PIECTRL, PIECTRL_ENPIE_MASK);
-}
+inline void enable_pie() { target_write16(REG_PIECTRL, PIECTRL_ENPIE_MASK); }
 
-inline std::uint16_t group_bit(unsigned group) {
-  return static_cast<std::uint16_t>(1u << (group - 1));
-}
+inline std::uint16_t group_bit(unsigned group) { return static_cast<std::uint16_t>(1u << (group - 1)); }
 
 /// Sets a PIE flag by hand, as a peripheral would.
 inline void raise_by_hand(unsigned vector) {

@@ -12,8 +12,14 @@ TEST_F(AdcTiming, BurstOfFourPairs) {
   const Tick t0 = now;
   trigger(true);
   run(t0 + 1000);
-  EXPECT_EQ(services.samples, (Samples{{0, t0 + 28}, {8, t0 + 28}, {0, t0 + 52}, {8, t0 + 52},
-                                       {0, t0 + 76}, {8, t0 + 76}, {0, t0 + 100}, {8, t0 + 100}}));
+  EXPECT_EQ(services.samples, (Samples{{0, t0 + 28},
+                                       {8, t0 + 28},
+                                       {0, t0 + 52},
+                                       {8, t0 + 52},
+                                       {0, t0 + 76},
+                                       {8, t0 + 76},
+                                       {0, t0 + 100},
+                                       {8, t0 + 100}}));
   EXPECT_EQ(times_of(VECTOR_SEQ1INT), (Times{t0 + 140}));
   EXPECT_EQ(times_of(VECTOR_ADCINT), (Times{t0 + 140}));
   EXPECT_EQ(burst(4), 140);

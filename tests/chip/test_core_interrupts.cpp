@@ -33,9 +33,7 @@ class Irq : public ::testing::Test {
   std::unique_ptr<Chip> device;
 };
 
-void acknowledge(unsigned group) {
-  target_write16(REG_PIEACK, group_bit(group));
-}
+void acknowledge(unsigned group) { target_write16(REG_PIEACK, group_bit(group)); }
 
 void open_groups(std::uint16_t groups) {
   enable_pie();

@@ -67,8 +67,8 @@ struct SteppedEPwm {
       level[o] = chosen == kToggle ? !level[o] : chosen == kSet ? true : chosen == kClear ? false : level[o];
     }
     for (int i = 0; i < 2; ++i) {
-      const bool load = (zero && (load_mode[i] == 0 || load_mode[i] == 2)) ||
-                        (top && (load_mode[i] == 1 || load_mode[i] == 2));
+      const bool load =
+          (zero && (load_mode[i] == 0 || load_mode[i] == 2)) || (top && (load_mode[i] == 1 || load_mode[i] == 2));
       compare[i] = load ? compare_shadow[i] : compare[i];
     }
     period = zero ? period_shadow : period;

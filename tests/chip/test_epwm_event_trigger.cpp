@@ -12,8 +12,9 @@ class EPwmEventTrigger : public EPwmBench {};
 TEST_F(EPwmEventTrigger, CompareValuesStartTheTwoBursts) {
   configure_leg(3, 9999, 1200, 4700);
   write(3, EPWM_ETPS, (1u << EPWM_ETPS_SOCAPRD_LSB) | (1u << EPWM_ETPS_SOCBPRD_LSB));
-  write(3, EPWM_ETSEL, (kOnAUp << EPWM_ETSEL_SOCASEL_LSB) | EPWM_ETSEL_SOCAEN_MASK |
-                           (kOnBUp << EPWM_ETSEL_SOCBSEL_LSB) | EPWM_ETSEL_SOCBEN_MASK);
+  write(3, EPWM_ETSEL,
+        (kOnAUp << EPWM_ETSEL_SOCASEL_LSB) | EPWM_ETSEL_SOCAEN_MASK | (kOnBUp << EPWM_ETSEL_SOCBSEL_LSB) |
+            EPWM_ETSEL_SOCBEN_MASK);
   start();
   run(14999);
   EXPECT_EQ(services.starts, (Starts{{true, 1200}, {false, 4700}, {true, 11200}, {false, 14700}}));

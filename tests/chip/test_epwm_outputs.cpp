@@ -19,10 +19,8 @@ class EPwmOutputs : public EPwmBench {
 };
 
 TEST_F(EPwmOutputs, DeadBandDelaysTheTwoRisingPins) {
-  EXPECT_EQ(pulse(1000, 3000, 200, 150), (Edges{{1000, 0, false, false},
-                                                {1200, 0, true, false},
-                                                {3000, 0, false, false},
-                                                {3150, 0, false, true}}));
+  EXPECT_EQ(pulse(1000, 3000, 200, 150),
+            (Edges{{1000, 0, false, false}, {1200, 0, true, false}, {3000, 0, false, false}, {3150, 0, false, true}}));
 }
 
 TEST_F(EPwmOutputs, PulseShorterThanTheDeadBandIsSwallowed) {
@@ -38,10 +36,9 @@ TEST_F(EPwmOutputs, PulseAsLongAsTheDeadBandIsSwallowedAndOneTickMoreIsNot) {
   run(20000);
   services.forget();
   run(30000);
-  EXPECT_EQ(services.edges, (Edges{{21000, 0, false, false},
-                                   {21200, 0, true, false},
-                                   {21201, 0, false, false},
-                                   {21401, 0, false, true}}));
+  EXPECT_EQ(
+      services.edges,
+      (Edges{{21000, 0, false, false}, {21200, 0, true, false}, {21201, 0, false, false}, {21401, 0, false, true}}));
 }
 
 TEST_F(EPwmOutputs, NotchShorterThanTheDeadBandKeepsTheLowerSwitchOff) {
@@ -97,10 +94,9 @@ TEST_F(EPwmOutputs, PolarityAndModesOfTheDeadBand) {
   write(0, EPWM_DBCTL, 3u | (3u << EPWM_DBCTL_POLSEL_LSB) | (3u << EPWM_DBCTL_IN_MODE_LSB));
   services.forget();
   run(19999);
-  EXPECT_EQ(services.edges, (Edges{{11000, 0, true, false},
-                                   {11100, 0, false, false},
-                                   {13000, 0, true, false},
-                                   {13050, 0, true, true}}));
+  EXPECT_EQ(
+      services.edges,
+      (Edges{{11000, 0, true, false}, {11100, 0, false, false}, {13000, 0, true, false}, {13050, 0, true, true}}));
 }
 
 TEST_F(EPwmOutputs, LaterEventWinsAtOneCount) {

@@ -12,10 +12,9 @@ TEST_F(EPwmTimeBase, PulseStandsWhereTheCompareRegistersSay) {
   now = 17;
   start();
   run(17 + 20000);
-  EXPECT_EQ(services.edges, (Edges{{1017, 0, true, false},
-                                   {3017, 0, false, false},
-                                   {11017, 0, true, false},
-                                   {13017, 0, false, false}}));
+  EXPECT_EQ(
+      services.edges,
+      (Edges{{1017, 0, true, false}, {3017, 0, false, false}, {11017, 0, true, false}, {13017, 0, false, false}}));
 }
 
 TEST_F(EPwmTimeBase, CounterCanBeReadAtAnyTime) {
@@ -155,8 +154,7 @@ TEST_F(EPwmTimeBase, UpDownCountsBothWays) {
   EXPECT_EQ(read(0, EPWM_TBCTR), 0);
   EXPECT_TRUE(read(0, EPWM_TBSTS) & EPWM_TBSTS_CTRDIR_MASK) << "at zero it is up";
   run(12000);
-  EXPECT_EQ(services.edges,
-            (Edges{{1500, 0, true, false}, {8500, 0, false, false}, {11500, 0, true, false}}));
+  EXPECT_EQ(services.edges, (Edges{{1500, 0, true, false}, {8500, 0, false, false}, {11500, 0, true, false}}));
 }
 
 TEST_F(EPwmTimeBase, DownCountsFromThePeriod) {
@@ -167,10 +165,8 @@ TEST_F(EPwmTimeBase, DownCountsFromThePeriod) {
   start();
   run(2000);
   // Zero at 0, then 999 at 1, 600 at 400, zero at 1000.
-  EXPECT_EQ(services.edges, (Edges{{400, 0, true, false},
-                                   {1000, 0, false, false},
-                                   {1400, 0, true, false},
-                                   {2000, 0, false, false}}));
+  EXPECT_EQ(services.edges,
+            (Edges{{400, 0, true, false}, {1000, 0, false, false}, {1400, 0, true, false}, {2000, 0, false, false}}));
 }
 
 TEST_F(EPwmTimeBase, CounterStandsWithoutItsClock) {

@@ -81,8 +81,8 @@ Motor scaled(double d, double q) {
 }
 
 TEST(Admittance, ErrorsOfBothInductancesAreFound) {
-  const std::pair<double, double> factors[] = {{1.2, 1.0},  {0.8, 1.0}, {1.0, 1.2}, {1.0, 0.8},
-                                               {1.2, 1.2},  {0.8, 0.8}, {0.8, 1.2}};
+  const std::pair<double, double> factors[] = {{1.2, 1.0}, {0.8, 1.0}, {1.0, 1.2}, {1.0, 0.8},
+                                               {1.2, 1.2}, {0.8, 0.8}, {0.8, 1.2}};
   for (const auto& [d, q] : factors) {
     const Motor truth = scaled(d, q);
     for (const double theta : {0.0, 1.1, -2.3}) {
@@ -153,8 +153,8 @@ TEST(SensorMatch, WithoutItTheAngleIsBent) {
   EXPECT_NEAR(worst, 0.72, 0.1);
 }
 
-// Errors of the inductances and of the angle are symmetric matrices: over the three directions nothing of them is across
-// dv. That is so for one angle; here the observer is put back to its wrong angle in every period.
+// Errors of the inductances and of the angle are symmetric matrices: over the three directions nothing of them is
+// across dv. That is so for one angle; here the observer is put back to its wrong angle in every period.
 TEST(SensorMatch, AMatchedPairStaysMatchedWhateverTheSaliency) {
   Random random(60);
   for (int n = 0; n < 40; ++n) {
@@ -169,8 +169,8 @@ TEST(SensorMatch, AMatchedPairStaysMatchedWhateverTheSaliency) {
   }
 }
 
-// As the drive runs it, the observer tracking and the admittances adapting. While Y0 is wrong the observed angle wobbles
-// with dv, which does leave something across it; it goes when Y0 is found.
+// As the drive runs it, the observer tracking and the admittances adapting. While Y0 is wrong the observed angle
+// wobbles with dv, which does leave something across it; it goes when Y0 is found.
 TEST(SensorMatch, AMatchedPairStaysMatchedInTheDrive) {
   Random random(61);
   for (int n = 0; n < 40; ++n) {

@@ -43,8 +43,9 @@ std::vector<std::vector<int>> distinct_sets() {
   return sets;
 }
 
-// Equal currents in all windows at standstill: the differences are L^-1 dv and nothing else, so any error up to a quarter
-// turn comes out exactly. What is left: slopes of 1e-6 A per period beside a saliency of 0.75 A per period and more.
+// Equal currents in all windows at standstill: the differences are L^-1 dv and nothing else, so any error up to a
+// quarter turn comes out exactly. What is left: slopes of 1e-6 A per period beside a saliency of 0.75 A per period and
+// more.
 TEST(Avv, ExactAtStandstillWithAnyDistinctVectorsAndAnyError) {
   Random random(30);
   for (const std::vector<int>& states : distinct_sets()) {
@@ -64,8 +65,8 @@ TEST(Avv, ExactAtStandstillWithAnyDistinctVectorsAndAnyError) {
   }
 }
 
-// Moving, with the current changing between the windows: the model at the observed angle takes most of it off, so what is
-// left is of second order in the angle error: (|wL'i| + |w lambda| + R |di|) against dY dv / 2.
+// Moving, with the current changing between the windows: the model at the observed angle takes most of it off, so what
+// is left is of second order in the angle error: (|wL'i| + |w lambda| + R |di|) against dY dv / 2.
 TEST(Avv, SmallErrorsAtSpeedWithResistanceEmfAndRotation) {
   Random random(31);
   double worst = 0.0;

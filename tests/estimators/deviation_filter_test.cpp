@@ -31,7 +31,8 @@ class Reference {
       const double d = 1e-5;
       const Vector ha = (residual(w, x_[0] - d, x_[1]) - residual(w, x_[0] + d, x_[1])) * (0.5 / d);
       const double back = 1.0 - w.middle_tick / 10000.0;
-      const Vector hs = (residual(w, x_[0] - d * back, x_[1] - d) - residual(w, x_[0] + d * back, x_[1] + d)) * (0.5 / d);
+      const Vector hs =
+          (residual(w, x_[0] - d * back, x_[1] - d) - residual(w, x_[0] + d * back, x_[1] + d)) * (0.5 / d);
       for (const double axis : {0.0, 1.0}) {
         const double scale = w.span_ticks / 10000.0 / noise_;
         const auto of = [&](Vector v) { return (axis == 0.0 ? v.x : v.y) * scale; };

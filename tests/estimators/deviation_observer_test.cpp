@@ -95,10 +95,10 @@ class Filter {
 struct Case {
   const char* name;
   bool zero_vectors_only;
-  double noise;            // A, true and believed rms error of a current difference
-  double angle_bound;      // of the difference between the two filters, degrees
-  double speed_bound;      // rad/s
-  double load_bound;       // N m
+  double noise;        // A, true and believed rms error of a current difference
+  double angle_bound;  // of the difference between the two filters, degrees
+  double speed_bound;  // rad/s
+  double load_bound;   // N m
 };
 
 std::vector<Window> windows_of(const Case& c, const Motor& m, int n, double theta, double w, Vector i) {
@@ -161,7 +161,8 @@ INSTANTIATE_TEST_SUITE_P(DeviationObserver, AgainstEkf,
                                          Case{"zero_vectors", true, 0.012, 0.05, 0.3, 0.05}),
                          [](const auto& instance) { return instance.param.name; });
 
-// Whatever it is fed: any vectors, saturated slopes, no windows, wild torque. A negative variance turns the sign of a gain.
+// Whatever it is fed: any vectors, saturated slopes, no windows, wild torque. A negative variance turns the sign of a
+// gain.
 TEST(DeviationObserver, VariancesStayPositiveUnderAbuse) {
   Random random(71);
   const machine_model_t model = model_of(Motor{});

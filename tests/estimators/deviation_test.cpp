@@ -40,8 +40,8 @@ Motor random_motor(Random& random) {
   return m;
 }
 
-// T = 100 us is 1.7e-6 off as Q30, and with it every model slope (up to 15 A per period here: 2.6e-5); the rest is a few
-// roundings to 1e-6.
+// T = 100 us is 1.7e-6 off as Q30, and with it every model slope (up to 15 A per period here: 2.6e-5); the rest is a
+// few roundings to 1e-6.
 constexpr double kResidualTolerance = 4e-5;
 
 TEST(Deviation, NothingIsLeftAtTheTrueAngleAndSpeed) {

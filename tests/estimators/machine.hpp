@@ -24,7 +24,7 @@ inline Vector slope_of(const Motor& m, double theta, double w, Vector i, Vector 
   const double mean = 0.5 * (m.ld + m.lq);
   const double half = 0.5 * (m.ld - m.lq);
   const double c = std::cos(2.0 * theta), s = std::sin(2.0 * theta);
-  const auto mirror = [&](Vector x) { return Vector{c * x.x + s * x.y, s * x.x - c * x.y}; };       // S(2 theta)
+  const auto mirror = [&](Vector x) { return Vector{c * x.x + s * x.y, s * x.x - c * x.y}; };        // S(2 theta)
   const auto mirror_rate = [&](Vector x) { return Vector{-s * x.x + c * x.y, c * x.x + s * x.y}; };  // dS / d(2 theta)
   const Vector turn = mirror_rate(i) * (w * 2.0 * half);
   const Vector emf = Vector{-std::sin(theta), std::cos(theta)} * (w * m.flux);

@@ -24,9 +24,9 @@ double accel_per_amp() {
 struct Conditions {
   bool wrong_way_round = false;
   bool blocked = false;
-  double inertia = 1.0;   // times motor A's
+  double inertia = 1.0;    // times motor A's
   double load_amps = 0.0;  // constant load, as the current that would balance it
-  double noise = 0.0;     // rad, of every angle measured
+  double noise = 0.0;      // rad, of every angle measured
 };
 
 struct Outcome {
@@ -121,7 +121,8 @@ TEST(Polarity, AConstantLoadChangesNothing) {
   }
 }
 
-// One degree of noise per period: the mean of 20 in each third leaves 8 % of the response, the threshold is nine of that.
+// One degree of noise per period: the mean of 20 in each third leaves 8 % of the response, the threshold is nine of
+// that.
 TEST(Polarity, NoiseIsAveraged) {
   Conditions c;
   c.noise = 1.0 * kDegree;

@@ -45,8 +45,8 @@ Result reference(const slopes_config_t& c, const slopes_sums_t& s, int span, dou
   const double gain_b = kAmpsPerCode * (1.0 + mismatch);
   const double sa = s.start_a / 4.0, sb = s.start_b / 4.0, ea = s.end_a / 3.0, eb = s.end_b / 3.0;
   const Vector change = clarke((ea - sa) * gain_a, (eb - sb) * gain_b);
-  return {change * (10000.0 / span), clarke(((sa + ea) / 2 - real(c.offset_a_q8, 8)) * gain_a,
-                                            ((sb + eb) / 2 - real(c.offset_b_q8, 8)) * gain_b)};
+  return {change * (10000.0 / span),
+          clarke(((sa + ea) / 2 - real(c.offset_a_q8, 8)) * gain_a, ((sb + eb) / 2 - real(c.offset_b_q8, 8)) * gain_b)};
 }
 
 // A mean is cut off to 1/256 code, 3.8e-5 A: the end mean is (a third of a code is not a whole number of 256ths), and
@@ -103,7 +103,8 @@ TEST(Slopes, OffsetsCancelInASlope) {
   EXPECT_NEAR(plain.current.x - shifted.current.x, 30 * kAmpsPerCode, 1e-5);
 }
 
-// Sensors that read 1 + g and 1 - g, and a configuration that knows it: the true current comes out, to second order in g.
+// Sensors that read 1 + g and 1 - g, and a configuration that knows it: the true current comes out, to second order in
+// g.
 TEST(Slopes, KnownMismatchIsTakenOff) {
   for (const double g : {-0.02, -0.005, 0.005, 0.02}) {
     const double a0 = 3.0, a1 = 7.0, b0 = -2.0, b1 = -4.5;

@@ -98,7 +98,8 @@ TEST(TrackingObserver, ALoadStepIsEstimated) {
   EXPECT_NEAR(largest, 0.2707 * load / (per_step * per_step), 0.03 * 0.2707 * load / (per_step * per_step));
 }
 
-// Accelerations below one unit of speed per period must not be lost: 2^-8 of a unit moves the speed once in 256 periods.
+// Accelerations below one unit of speed per period must not be lost: 2^-8 of a unit moves the speed once in 256
+// periods.
 TEST(TrackingObserver, SmallAccelerationsAddUp) {
   for (const std::int32_t torque_q8 : {1, -1, 100, -100}) {
     tracking_observer_t s;

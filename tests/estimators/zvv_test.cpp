@@ -25,7 +25,8 @@ std::vector<Window> zero_window(double theta, double estimate, double id) {
   return {window_at(Motor{}, theta, 0.0, Vector{id, 0.0}.turned(estimate), {0, 0}, 5000, 6000)};
 }
 
-// The loop with the same physics in double precision: error = (sin 2e / 2 of the machine), with the EMF of the integral.
+// The loop with the same physics in double precision: error = (sin 2e / 2 of the machine), with the EMF of the
+// integral.
 struct Loop {
   double estimate, integral = 0.0;  // rad, rad/s
   void step(double theta, double kp, double ki, double id, double& last_speed) {
@@ -82,7 +83,8 @@ TEST(Zvv, StaysStableBeyondThePapersLimit) {
   EXPECT_NEAR(run(10.0 * kDegree, -1.7, 12.0, 4.0, 5.0, 14.0).error / kDegree, 0.0, 0.1);
 }
 
-// With i_d* < 0 the sign of K_q turns and D's EMF term works against it: Ki must stay below Kp Lq |Kq| / lambda (24 here).
+// With i_d* < 0 the sign of K_q turns and D's EMF term works against it: Ki must stay below Kp Lq |Kq| / lambda (24
+// here).
 TEST(Zvv, NegativeCurrentIsStableUpToItsLimitOnly) {
   EXPECT_NEAR(run(5.0 * kDegree, 0.3, 4.0, 4.0, -5.0, 9.0).error / kDegree, 0.0, 0.1);
   EXPECT_GT(run(5.0 * kDegree, 0.3, 4.0, 40.0, -5.0, 9.0).peak / kDegree, 20.0);

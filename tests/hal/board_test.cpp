@@ -14,9 +14,7 @@ constexpr std::uint32_t kLamp = 1u << 31;
 constexpr std::uint32_t kEnable = 1u << 2;  // GPIO34 in port B
 constexpr std::uint32_t kTrip = 1u << 12;
 
-std::uint32_t pair(std::uint32_t word, unsigned pin) {
-  return (word >> (2 * (pin % 16))) & 3u;
-}
+std::uint32_t pair(std::uint32_t word, unsigned pin) { return (word >> (2 * (pin % 16))) & 3u; }
 }  // namespace
 
 class Board : public BusTest {

@@ -15,12 +15,8 @@ constexpr std::uint32_t kEPwmEnd = 0x6980;
 constexpr std::uint32_t kEQep1End = 0x6B40;
 constexpr std::uint32_t kAccessCycles = 2;
 
-bool in(std::uint32_t address, std::uint32_t first, std::uint32_t last) {
-  return address >= first && address <= last;
-}
-bool is_epwm(std::uint32_t address) {
-  return in(address, EPWM_BASE(1), kEPwmEnd - 1);
-}
+bool in(std::uint32_t address, std::uint32_t first, std::uint32_t last) { return address >= first && address <= last; }
+bool is_epwm(std::uint32_t address) { return in(address, EPWM_BASE(1), kEPwmEnd - 1); }
 
 // From the register list of the chip, written down a second time here on purpose.
 bool needs_eallow(std::uint32_t address) {
@@ -34,9 +30,7 @@ bool needs_eallow(std::uint32_t address) {
 
 }  // namespace
 
-FakeBus& FakeBus::current() {
-  return *the_bus;
-}
+FakeBus& FakeBus::current() { return *the_bus; }
 
 FakeBus::FakeBus() : previous_(the_bus) {
   the_bus = this;
@@ -45,9 +39,7 @@ FakeBus::FakeBus() : previous_(the_bus) {
   words[REG_GPADAT + 1] = 0xFFFF;
 }
 
-FakeBus::~FakeBus() {
-  the_bus = previous_;
-}
+FakeBus::~FakeBus() { the_bus = previous_; }
 
 void FakeBus::power_all() {
   words[REG_PCLKCR0] = PCLKCR0_ADCENCLK_MASK;
@@ -157,9 +149,7 @@ void FakeBus::write16(std::uint32_t address, std::uint16_t value) {
 using stillspin::test::FakeBus;
 using stillspin::test::Op;
 
-std::uint16_t target_read16(std::uint32_t address) {
-  return FakeBus::current().read16(address);
-}
+std::uint16_t target_read16(std::uint32_t address) { return FakeBus::current().read16(address); }
 
 void target_write16(std::uint32_t address, std::uint16_t value) {
   FakeBus::current().record(Op::kWrite, address, value);
@@ -193,24 +183,16 @@ void target_edis() {
   FakeBus::current().protection_lifted = false;
 }
 
-void target_enable_interrupts() {
-  FakeBus::current().record(Op::kEnableInterrupts, 0, 0);
-}
-void target_disable_interrupts() {
-  FakeBus::current().record(Op::kDisableInterrupts, 0, 0);
-}
-std::uint16_t target_read_ier() {
-  return FakeBus::current().ier;
-}
+void target_enable_interrupts() { FakeBus::current().record(Op::kEnableInterrupts, 0, 0); }
+void target_disable_interrupts() { FakeBus::current().record(Op::kDisableInterrupts, 0, 0); }
+std::uint16_t target_read_ier() { return FakeBus::current().ier; }
 
 void target_write_ier(std::uint16_t mask) {
   FakeBus::current().record(Op::kWriteIer, 0, mask);
   FakeBus::current().ier = mask;
 }
 
-void target_clear_ifr() {
-  FakeBus::current().record(Op::kClearIfr, 0, 0);
-}
+void target_clear_ifr() { FakeBus::current().record(Op::kClearIfr, 0, 0); }
 
 void target_set_vector(std::uint16_t vector, target_isr_t isr) {
   FakeBus& bus = FakeBus::current();
@@ -221,9 +203,5 @@ void target_set_vector(std::uint16_t vector, target_isr_t isr) {
   bus.vectors[vector] = isr;
 }
 
-void target_idle() {
-  FakeBus::current().record(Op::kIdle, 0, 0);
-}
-void target_elapse(std::uint16_t cycles) {
-  FakeBus::current().cycles += cycles;
-}
+void target_idle() { FakeBus::current().record(Op::kIdle, 0, 0); }
+void target_elapse(std::uint16_t cycles) { FakeBus::current().cycles += cycles; }

@@ -8,12 +8,8 @@ namespace stillspin::test {
 namespace {
 int control_calls = 0;
 int window_calls = 0;
-void control() {
-  ++control_calls;
-}
-void window() {
-  ++window_calls;
-}
+void control() { ++control_calls; }
+void window() { ++window_calls; }
 constexpr std::uint16_t kGroup1 = 0x0001;
 constexpr std::uint16_t kGroup3 = 0x0004;
 }  // namespace

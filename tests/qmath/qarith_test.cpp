@@ -19,17 +19,13 @@ Wide floor_shift(Wide x, unsigned n) {
 }
 
 // floor(x / 2^n + 1/2) without using the shift of a negative number
-Wide round_shift(Wide x, unsigned n) {
-  return n == 0 ? x : floor_shift(x + (Wide{1} << (n - 1)), n);
-}
+Wide round_shift(Wide x, unsigned n) { return n == 0 ? x : floor_shift(x + (Wide{1} << (n - 1)), n); }
 
 std::int32_t saturate(Wide x) {
   return static_cast<std::int32_t>(std::clamp<Wide>(x, Wide{INT32_MIN}, Wide{INT32_MAX}));
 }
 
-bool fits(Wide x) {
-  return x == Wide{saturate(x)};
-}
+bool fits(Wide x) { return x == Wide{saturate(x)}; }
 
 void check_product(std::int32_t a, std::int32_t b, unsigned shift) {
   const Wide exact = round_shift(Wide{a} * b, shift);

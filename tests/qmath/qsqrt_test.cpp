@@ -17,9 +17,7 @@ bool is_nearest(std::uint64_t x, std::uint64_t r) {
   return four_x < upper && (r == 0 || Wide{2 * r - 1} * (2 * r - 1) < four_x);
 }
 
-void check(std::uint64_t x) {
-  ASSERT_TRUE(is_nearest(x, q_sqrt64(x))) << "sqrt(" << x << ") = " << q_sqrt64(x);
-}
+void check(std::uint64_t x) { ASSERT_TRUE(is_nearest(x, q_sqrt64(x))) << "sqrt(" << x << ") = " << q_sqrt64(x); }
 
 constexpr std::uint64_t kLastNotSaturated = UINT64_MAX - UINT32_MAX;  // (2^32 - 1/2)^2 = 2^64 - 2^32 + 1/4
 
