@@ -25,7 +25,7 @@ struct ParameterError {
 struct Setup {
   plant::PlantConfig nominal = plant::PlantConfig::ideal();
   ParameterError error;
-  double solver = 1;  // index into the choices of solver.method
+  double solver = 0;  // index into the choices of solver.method: SUNDIALS unless the fast integrator is asked for
 
   /// The plant with the true parameters, validated (std::invalid_argument names entry, value and range).
   plant::PlantConfig plant() const;
