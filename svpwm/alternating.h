@@ -19,8 +19,8 @@ typedef struct {
 /// Places the pulses and moves on to the next x. pulse_ticks: mean length of the two pulses, 1500..4700.
 void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t pulse_ticks, svpwm_pulses_t* pulses);
 
-/// True when the command is small enough for this layout: below 0.7 of the pulse both opposite vectors stay sampleable, up
-/// to some 50 V with any x.
+/// True when the command is small enough for this layout: below 0.7 of the pulse both opposite vectors stay sampleable,
+/// up to some 50 V with any x.
 bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks);
 
 #endif
