@@ -27,7 +27,7 @@ static void regress(const deviation_t d[], const int32_t share_q30[], uint16_t c
     s.d += weighted(d[k].residual_q20.d, share_q30[k]);
     s.q += weighted(d[k].residual_q20.q, share_q30[k]);
   }
-  const avv_regression_t empty = {0, 0, 0, 0, 0, 0, 0};
+  const avv_regression_t empty = {0, 0, 0, 0, 0, 0};
   *r = empty;
   for (uint16_t k = 0; k < count; k++) {
     const dq_t dv = {q_shr(d[k].voltage_q16.d - v.d, 2), q_shr(d[k].voltage_q16.q - v.q, 2)};  // Q14
@@ -37,7 +37,6 @@ static void regress(const deviation_t d[], const int32_t share_q30[], uint16_t c
     const int32_t vd_sd = q_mul_sat(dv.d, ds.d, 18);
     const int32_t vq_sq = q_mul_sat(dv.q, ds.q, 18);
     r->spread_q8 += weighted(dd_q8 + qq_q8, share_q30[k]);
-    r->skew_q8 += weighted(dd_q8 - qq_q8, share_q30[k]);
     r->along_q16 += weighted(q_add_sat(vd_sd, vq_sq), share_q30[k]);
     r->mirror_q16 += weighted(q_sub_sat(vd_sd, vq_sq), share_q30[k]);
     const int32_t vq_sd = q_mul_sat(dv.q, ds.d, 18);

@@ -21,7 +21,6 @@ typedef struct {
 /// Weighted regression over the windows: what AVV and the admittance adaptation share.
 typedef struct {
   int32_t spread_q8;    // mean |dv|^2, V^2
-  int32_t skew_q8;      // mean of dv_d^2 - dv_q^2, V^2
   int32_t along_q16;    // residual along dv, V A per period: error of the mean admittance
   int32_t mirror_q16;   // residual along the mirrored dv: error of the saliency
   int32_t cross_q16;    // residual across the mirrored dv: angle error

@@ -115,10 +115,10 @@ TEST(Admittance, NothingIsLearntFromOneVectorOrWithoutAShare) {
   admittance_t a;
   admittance_init(&a, &model);
   const admittance_t before = a;
-  const avv_regression_t blind = {1000, 0, 1000000, 1000000, 0, 0, 0};
+  const avv_regression_t blind = {1000, 1000000, 1000000, 0, 0, 0};
   admittance_step(&a, &blind, kShare);
   EXPECT_EQ(a.mean_q30, before.mean_q30);
-  const avv_regression_t seen = {10000000, 0, 1000000, 1000000, 0, 0, 1000000};
+  const avv_regression_t seen = {10000000, 1000000, 1000000, 0, 0, 1000000};
   admittance_step(&a, &seen, 0);
   EXPECT_EQ(a.mean_q30, before.mean_q30);
   EXPECT_EQ(a.half_q30, before.half_q30);
