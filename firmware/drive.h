@@ -127,6 +127,13 @@ void drive_parameters_changed(void);
 /// Latches a fault and opens the power stage.
 void drive_raise(drive_t* d, drive_fault_t fault);
 
+/// Enters a state and starts counting its periods.
+void drive_enter(drive_t* d, drive_state_t state);
+
+// The state START (start.c).
+void drive_begin_start(drive_t* d);
+void drive_start(drive_t* d);
+
 // The steps of the control interrupt, in their order.
 void drive_read_samples(drive_t* d);     // sampling.c
 void drive_estimate(drive_t* d);         // position.c
