@@ -29,19 +29,9 @@ void current_controller_reset(current_controller_t* s) {
   pi_reset(&s->q, 0);
 }
 
-// Rotational voltages -w psi_q and w psi_d, V Q16.
-static dq_t rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {
-  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
-  const dq_t flux_q28 = {q_mul(m->ld_q30, i_q20.d, 22) + m->flux_q28, q_mul(m->lq_q30, i_q20.q, 22)};
-  dq_t v;
-  v.d = -q_mul(q_mul_sat(flux_q28.q, m->periods_per_second, 12), w_q30, 30);
-  v.q = q_mul(q_mul_sat(flux_q28.d, m->periods_per_second, 12), w_q30, 30);
-  return v;
-}
-
 dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c, const machine_model_t* m,
                              dq_t reference_q20, dq_t measured_q20, int32_t speed_bpp) {
-  const dq_t rotational = rotational_voltage_q16(m, measured_q20, speed_bpp);
+  const dq_t rotational = machine_rotational_voltage_q16(m, measured_q20, speed_bpp);
   dq_t v;
   v.d = pi_step(&s->d, &c->d, reference_q20.d - measured_q20.d) + rotational.d;
   v.q = pi_step(&s->q, &c->q, reference_q20.q - measured_q20.q) + rotational.q;

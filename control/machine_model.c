@@ -1,5 +1,10 @@
 #include "control/machine_model.h"
 
+#define ONE_Q24 ((int32_t)16777216L)
+#define EMF_END_Q16 2097152000L    // 32000 V
+#define RATIO_END_Q24 2097152000L  // 125
+#define K0_END_Q20 2097152000L     // 2000 A per period
+
 static bool in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <= hi; }
 
 static bool parameters_valid(const machine_parameters_t* p) {
@@ -8,11 +13,61 @@ static bool parameters_valid(const machine_parameters_t* p) {
          in_range(p->inertia_q24, 168L, 16777216L) && in_range(p->pole_pairs, 1, 20) && in_range(p->period_us, 20, 500);
 }
 
-void machine_model_set_admittance(machine_model_t* m, int32_t yd_q30, int32_t yq_q30) {
-  m->yd_q30 = yd_q30;
-  m->yq_q30 = yq_q30;
-  m->kappa_d_q24 = q_div(yd_q30 - yq_q30, yq_q30, 24);
-  m->kappa_q_q24 = q_div(yd_q30 - yq_q30, yd_q30, 24);
+// T in seconds as Q30 is period_us * 2^30 / 1e6.
+static int32_t period_q30(int32_t period_us) { return q_div(period_us, 1000000L, 30); }
+
+// k0 = -Y J psi0 with psi0 = psi(0, i_q) - L i_q: Y J L (0, i_q) is what K has already counted.
+static void place_flux(machine_model_t* m, int32_t iq_q20) {
+  const dq_t turned = {m->psi_q_q16, -m->psi_d_q16};  // -J psi
+  dq_t k0 = {q_add_sat(q_mul_sat(m->yd_q30, turned.d, 26), q_mul_sat(m->ydq_q30, turned.q, 26)),
+             q_add_sat(q_mul_sat(m->ydq_q30, turned.d, 26), q_mul_sat(m->yq_q30, turned.q, 26))};
+  // h at (0, i_q) is -Y J psi + J (0, i_q): K there is taken off again.
+  k0.d = q_sub_sat(k0.d, q_add_sat(iq_q20, q_mul_sat(m->k_dq_q24, iq_q20, 24)));
+  k0.q = q_add_sat(k0.q, q_mul_sat(m->k_dd_q24, iq_q20, 24));
+  m->k0_q20 = k0;
+}
+
+// K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
+static void turn_with_admittance(machine_model_t* m) {
+  const int32_t t_q24 = q_div(m->ydq_q30, m->yq_q30, 24);
+  const int32_t r_q24 = q_div(m->yd_q30, m->yq_q30, 24);
+  const int32_t t2_q24 = q_mul(t_q24, t_q24, 24);
+  const int32_t per_det_q24 = q_div(ONE_Q24, r_q24 - t2_q24, 24);
+  const int32_t g_q24 = q_mul_sat(q_add_sat(r_q24, ONE_Q24), per_det_q24, 24);
+  m->k_dd_q24 = -q_mul_sat(t_q24, g_q24, 24);
+  m->k_dq_q24 = r_q24 - ONE_Q24 + q_mul_sat(t2_q24, g_q24, 24);
+  m->k_qd_q24 = ONE_Q24 - q_mul_sat(ONE_Q24 + t2_q24, per_det_q24, 24);
+}
+
+void machine_model_move(machine_model_t* m, int32_t iq_q20) {
+  const machine_point_t p = machine_map_at(&m->map, iq_q20);
+  m->yd_q30 = p.ydd_q30 + m->trim.mean_q30 + m->trim.half_q30;
+  m->yq_q30 = p.yqq_q30 + m->trim.mean_q30 - m->trim.half_q30;
+  m->ydq_q30 = p.ydq_q30;
+  m->psi_d_q16 = p.psi_d_q16;
+  // An inductance that differs from the table's differs in its flux as well.
+  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_div(p.yqq_q30, m->yq_q30, 24), 24);
+  turn_with_admittance(m);
+  place_flux(m, iq_q20);
+}
+
+bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map) {
+  machine_map_t fresh;
+  if (!machine_map_init(&fresh, map, m->period_q30, m->emf_q16)) return false;
+  m->map = fresh;
+  machine_model_move(m, 0);
+  return true;
+}
+
+static bool unsaturated(machine_model_t* m) {
+  machine_map_parameters_t flat;
+  flat.current_q20 = 4194304L;
+  for (uint16_t k = 0; k < MACHINE_MAP_POINTS; k++) {
+    flat.ldd_q30[k] = m->ld_q30;
+    flat.lqq_q30[k] = m->lq_q30;
+    flat.ldq_q30[k] = 0;
+  }
+  return machine_model_saturate(m, &flat);
 }
 
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
@@ -22,18 +77,27 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->lq_q30 = p->lq_q30;
   m->flux_q28 = p->flux_q28;
   m->pole_pairs = p->pole_pairs;
+  m->period_q30 = period_q30(p->period_us);
   m->periods_per_second = q_div(1000000L, p->period_us, 0);
-  // T in seconds as Q30 is period_us * 2^30 / 1e6.
-  const int32_t period_q30 = q_div(p->period_us, 1000000L, 30);
-  machine_model_set_admittance(m, q_div(period_q30, p->ld_q30, 30), q_div(period_q30, p->lq_q30, 30));
-  m->emf_q16 = q_div(p->flux_q28, period_q30, 18);
+  m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
+  m->trim.mean_q30 = 0;
+  m->trim.half_q30 = 0;
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;
   m->accel_q12 = q_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
   // A constant at the end of its format is not the machine's.
-  return m->accel_q12 < INT32_MAX && m->emf_q16 < INT32_MAX && m->yd_q30 < INT32_MAX && m->kappa_d_q24 < INT32_MAX;
+  return m->accel_q12 < INT32_MAX && m->emf_q16 < EMF_END_Q16 && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 &&
+         m->k0_q20.q > -K0_END_Q20;
+}
+
+dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {
+  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
+  // L_d i_d / T as V per (rad per period).
+  const int32_t armature_q16 = q_mul_sat(q_mul_sat(m->ld_q30, i_q20.d, 22), m->periods_per_second, 12);
+  const dq_t v = {-q_mul(m->psi_q_q16, w_q30, 30), q_mul(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
+  return v;
 }
 
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {

@@ -1,10 +1,12 @@
 // The machine as the control sees it: constants per PWM period, so that a step of the model is a multiplication.
 //
-// Rotor frame, one period T as the unit of time:
-//   s_d = y_d (v_d - R i_d)                + w kappa_d i_q
-//   s_q = y_q (v_q - R i_q - w lambda / T) + w kappa_q i_d
-// are the components of the *rotated alpha-beta slope* (current change per period), with y = T/L, w = omega T,
-// kappa_d = Lq/Ld - 1 and kappa_q = 1 - Ld/Lq. Seed paper, eqs (15)-(20), with the rotation term kept.
+// Rotor frame, one period T as the unit of time, at the working point (machine_map.h), w = omega T:
+//   s = Y (v - R i) + w h,    h = K i + k0
+// is the *rotated alpha-beta slope* (current change per period): di_dq/dt + w J i with L di_dq/dt = v - R i - w J psi.
+// Y = T L^-1 is the incremental admittance, and with the flux psi/T = L/T i + psi0 around the working point
+//   K = J - Y J L / T,  k0 = -Y J psi0.
+// Without saturation K = [0, Lq/Ld - 1; 1 - Ld/Lq, 0] and k0 = (0, -lambda/Lq): seed paper, eqs (15)-(20), with the
+// rotation term kept.
 
 #ifndef STILLSPIN_CONTROL_MACHINE_MODEL_H
 #define STILLSPIN_CONTROL_MACHINE_MODEL_H
@@ -12,44 +14,76 @@
 #include <stdbool.h>
 
 #include "control/frame.h"
+#include "control/machine_map.h"
 
 /// Physical parameters, all positive.
 typedef struct {
   int32_t rs_q24;       // stator resistance with the devices' on-state resistance, ohm, 0.001..50
-  int32_t ld_q30;       // d-axis inductance, H, 20e-6..0.5
-  int32_t lq_q30;       // q-axis inductance, H, ld..0.5
+  int32_t ld_q30;       // d-axis inductance at no current, H, 20e-6..0.5
+  int32_t lq_q30;       // q-axis inductance at no current, H, ld..0.5
   int32_t flux_q28;     // magnet flux linkage, V s, 0.001..1
   int32_t inertia_q24;  // kg m^2, 1e-5..1
   int32_t pole_pairs;   // 1..20
   int32_t period_us;    // PWM period, microseconds, 20..500
 } machine_parameters_t;
 
+/// What the drive learns while it runs, added to what the parameters say.
+typedef struct {
+  int32_t mean_q30, half_q30;  // of the admittances: (ydd + yqq)/2 and (ydd - yqq)/2
+} machine_trim_t;
+
 typedef struct {
   int32_t rs_q24;          // ohm
-  int32_t ld_q30, lq_q30;  // H
+  int32_t ld_q30, lq_q30;  // H, at no current
   int32_t flux_q28;        // V s
-  int32_t yd_q30, yq_q30;  // T/L, A per V and period
   int32_t emf_q16;         // lambda/T: V per (rad per period)
-  int32_t kappa_d_q24;     // Lq/Ld - 1
-  int32_t kappa_q_q24;     // 1 - Ld/Lq
   int32_t torque_q24;      // 3/2 p lambda, N m per A of i_q at i_d = 0
   int32_t reluctance_q24;  // 3/2 p (Ld - Lq), N m per A^2
   int32_t accel_q12;       // electrical acceleration per torque, binary angle per period^2 and N m
   int32_t pole_pairs;
   int32_t periods_per_second;  // 1/T
+  int32_t period_q30;          // T, s
+  machine_map_t map;
+  machine_trim_t trim;
+  // At the working point, see machine_model_move.
+  int32_t yd_q30, yq_q30, ydq_q30;       // Y
+  int32_t k_dd_q24, k_dq_q24, k_qd_q24;  // K; K_qq = -K_dd
+  dq_t k0_q20;                           // A per period and (rad per period)
+  int32_t psi_d_q16, psi_q_q16;          // psi/T at i_d = 0, V per (rad per period)
 } machine_model_t;
 
-/// Derives the constants. Returns false, leaving the model unusable, when a parameter is outside its range or a
-/// constant outside its format: T/L from 2 A/V, lambda/T from 32768 V, Lq/Ld from 129, too light a rotor.
+/// Derives the constants, without saturation. Returns false, leaving the model unusable, when a parameter is outside
+/// its range or a constant outside its format: T/L from 2 A/V, lambda/T from 32000 V, Lq/Ld from 126, lambda/L from
+/// 2000 A, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
-/// Recomputes what follows from the inductances after an adaptation changed yd/yq.
-void machine_model_set_admittance(machine_model_t* m, int32_t yd_q30, int32_t yq_q30);
+/// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).
+bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map);
+
+/// Moves the working point to a torque current and takes the trim into account. Once per period: three divisions.
+void machine_model_move(machine_model_t* m, int32_t iq_q20);
+
+/// Y x, Q20, of a voltage in V Q16.
+static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {
+  const dq_t s = {q_mul(m->yd_q30, v_q16.d, 26) + q_mul(m->ydq_q30, v_q16.q, 26),
+                  q_mul(m->ydq_q30, v_q16.d, 26) + q_mul(m->yq_q30, v_q16.q, 26)};
+  return s;
+}
+
+/// h = K i + k0: what the slope changes with the speed, A per period and (rad per period), Q20.
+static inline dq_t machine_turn_q20(const machine_model_t* m, dq_t i_q20) {
+  const dq_t h = {q_mul(m->k_dd_q24, i_q20.d, 24) + q_mul(m->k_dq_q24, i_q20.q, 24) + m->k0_q20.d,
+                  q_mul(m->k_qd_q24, i_q20.d, 24) - q_mul(m->k_dd_q24, i_q20.q, 24) + m->k0_q20.q};
+  return h;
+}
 
 /// Electrical speed in rad per period, Q30, from binary angle per period (|speed| below 1.9 rad per period).
 static inline int32_t machine_speed_rad_q30(int32_t speed_bpp) {
   return q_mul(speed_bpp, 1686629713L, 30);  // 2 pi / 4
 }
+
+/// Voltage induced by the rotation, V Q16, at the working point and a current in A Q20: w (-psi_q, psi_d).
+dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp);
 
 /// Air-gap torque, N m Q16, of mean currents in A Q20. Seed paper eq (2) with P/2 instead of the misprinted P.
 int32_t machine_torque_q16(const machine_model_t* m, dq_t current_q20);

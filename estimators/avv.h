@@ -11,6 +11,7 @@
 #ifndef STILLSPIN_ESTIMATORS_AVV_H
 #define STILLSPIN_ESTIMATORS_AVV_H
 
+#include "estimators/regression.h"
 #include "estimators/tracking_observer.h"
 
 typedef struct {
@@ -18,20 +19,10 @@ typedef struct {
   int32_t bandwidth_long_q30;   // and with long windows; 0 < short <= long < 0.1
 } avv_config_t;
 
-/// Weighted regression over the windows: what AVV and the admittance adaptation share.
-typedef struct {
-  int32_t spread_q8;    // mean |dv|^2, V^2
-  int32_t along_q16;    // residual along dv, V A per period: error of the mean admittance
-  int32_t mirror_q16;   // residual along the mirrored dv: error of the saliency
-  int32_t cross_q16;    // residual across the mirrored dv: angle error
-  int32_t curl_q16;     // residual across dv: mismatch of the two current sensors
-  int32_t information;  // spread times the windows' weight, 0 when there are no two distinct vectors
-} avv_regression_t;
-
 typedef struct {
   tracking_observer_t observer;
-  avv_regression_t regression;  // of the last step
-  int32_t error_bam;            // last measured angle error
+  regression_t regression;  // of the last step
+  int32_t error_bam;        // last measured angle error
 } avv_t;
 
 void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);

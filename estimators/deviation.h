@@ -1,10 +1,9 @@
 // The current deviation of one window against the machine model, in the estimated rotor frame.
 //
 // Residual = measured slope - model slope at the estimated angle and speed; with the true angle theta^ + e the residual
-// is (to first order) h_angle e + h_speed (w - w^). Seed paper eqs (15)-(24) with every term kept; see machine_model.h.
-//   h_angle,d = dY (v_q - R i_q) + w lambda/Lq - w i_d (Lq/Ld - Ld/Lq)
-//   h_angle,q = dY (v_d - R i_d) + w i_q (Lq/Ld - Ld/Lq)
-//   h_speed,d = (Lq/Ld - 1) i_q,  h_speed,q = (1 - Ld/Lq) i_d - lambda/Lq
+// is (to first order) h_angle e + h_speed (w - w^). Seed paper eqs (15)-(24) with every term kept; Y, K and h = K i +
+// k0 as in machine_model.h, u = v - R i:
+//   h_angle = (J Y - Y J) u + w (J h - K J i),  h_speed = h.
 
 #ifndef STILLSPIN_ESTIMATORS_DEVIATION_H
 #define STILLSPIN_ESTIMATORS_DEVIATION_H
@@ -14,7 +13,9 @@
 typedef struct {
   dq_t residual_q20;  // A per period
   dq_t voltage_q16;   // V
+  dq_t drive_q16;     // V, voltage less the resistance's: u
   dq_t current_q20;   // A
+  dq_t turn_q20;      // h, A per period and (rad per period)
   int32_t w_q30;      // estimated speed, rad per period
 } deviation_t;
 
@@ -29,8 +30,5 @@ deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_
 
 /// Sensitivity of the residual to the angle, A per period and rad, Q20.
 dq_t deviation_angle_sensitivity(const machine_model_t* m, const deviation_t* d);
-
-/// Sensitivity to the speed, A per period per (rad per period), Q20.
-dq_t deviation_speed_sensitivity(const machine_model_t* m, const deviation_t* d);
 
 #endif

@@ -66,7 +66,7 @@ static void collect_window(information_t* n, const deviation_observer_t* s, cons
                            const machine_model_t* m, const estimator_window_t* w) {
   const deviation_t d = deviation_evaluate(m, w, s->angle_bam, s->speed_bpp);
   const dq_t h_a = deviation_angle_sensitivity(m, &d);
-  const dq_t h_s = deviation_speed_sensitivity(m, &d);
+  const dq_t h_s = d.turn_q20;
   // span / N / sigma turns a slope into a current difference in units of its noise.
   const int32_t scale_q20 = q_mul_sat(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
   collect(n, q_mul_sat(h_a.d, scale_q20, 26), q_mul_sat(h_s.d, scale_q20, 32),

@@ -3,7 +3,7 @@
 #define SQRT3_Q28 464943848L
 #define MISMATCH_MAX_Q30 53687091L  // 5 %
 
-void sensor_match_step(sensor_match_t* s, const avv_regression_t* r, int32_t mean_q30, int32_t share_q30) {
+void sensor_match_step(sensor_match_t* s, const regression_t* r, int32_t mean_q30, int32_t share_q30) {
   if (r->information <= 0) return;
   const int32_t across_q30 = q_div(r->curl_q16, r->spread_q8, 22);  // A per V and period
   const int32_t error_q30 = q_mul_sat(q_div(across_q30, mean_q30, 30), SQRT3_Q28, 28);

@@ -11,6 +11,7 @@
 #include "control/ramp.h"
 #include "control/speed_controller.h"
 #include "estimators/admittance.h"
+#include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/polarity.h"
@@ -43,7 +44,6 @@ typedef struct {
   int32_t torque_per_accel_q24;  // N m (Q16) per electrical acceleration (Q8), Q24
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
-  int32_t saliency_turn_bam;     // turn of the saliency axis per ampere of i_q
 } drive_config_t;
 
 /// What the control interrupt knows about the last period.
@@ -62,7 +62,6 @@ typedef struct {
   deviation_observer_t observer;
   zvv_t zvv;
   blend_t blend;
-  admittance_t admittance;
   sensor_match_t sensors;
   tracking_observer_t encoder;
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
@@ -104,7 +103,7 @@ typedef struct {
   uint16_t heartbeat;    // counts control interrupts, for the watchdog
   uint16_t polarity_tries;
   polarity_t polarity;
-  machine_model_t model;  // nameplate, with adapted admittances
+  machine_model_t model;  // nameplate, at the working point and with what was learnt
   drive_config_t config;
   bool config_valid;
   drive_samples_t samples;

@@ -19,7 +19,6 @@ void drive_reset(void) {
   drive.config.slopes.offset_b_q8 = 2048L * 256L;
   drive.config_valid = drive_config_load(&drive.config);
   drive.model = drive.config.nameplate;
-  admittance_init(&drive.position.admittance, &drive.model);
   drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
   modulator_reset(&drive.modulation.state);
   position_preset(&drive, 0);

@@ -13,6 +13,23 @@ static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 
 // bandwidth (rad/s, Q8) * T, Q30: 100 us * 2^22 = 419.43.
 static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return q_mul(bandwidth_q8, 439804651L, 20); }
 
+// Share of an inductance (H, Q30) in percent (Q16).
+static int32_t share_of(int32_t inductance_q30, int32_t percent_q16) {
+  return q_mul(inductance_q30, q_mul(percent_q16, 10737418L, 16), 30);
+}
+
+static bool load_map(machine_model_t* m) {
+  const parameters_t* const p = &parameters;
+  const machine_map_parameters_t map = {p->map_current,
+                                        {m->ld_q30, share_of(m->ld_q30, p->ldd_1), share_of(m->ld_q30, p->ldd_2),
+                                         share_of(m->ld_q30, p->ldd_3), share_of(m->ld_q30, p->ldd_4)},
+                                        {m->lq_q30, share_of(m->lq_q30, p->lqq_1), share_of(m->lq_q30, p->lqq_2),
+                                         share_of(m->lq_q30, p->lqq_3), share_of(m->lq_q30, p->lqq_4)},
+                                        {0, q_mul(p->ldq_1, MILLIHENRY_Q30, 30), q_mul(p->ldq_2, MILLIHENRY_Q30, 30),
+                                         q_mul(p->ldq_3, MILLIHENRY_Q30, 30), q_mul(p->ldq_4, MILLIHENRY_Q30, 30)}};
+  return machine_model_saturate(m, &map);
+}
+
 static bool load_machine(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   machine_parameters_t m;
@@ -24,6 +41,7 @@ static bool load_machine(drive_config_t* c) {
   m.pole_pairs = p->pole_pairs;
   m.period_us = DRIVE_PERIOD_US;
   if (!machine_model_init(&c->nameplate, &m) || c->nameplate.yd_q30 > ADMITTANCE_MAX_Q30) return false;
+  if (!load_map(&c->nameplate)) return false;
   // rpm to binary angle per period: pole pairs / 60 s * T * 2^32 = 7158.2788 per pole pair.
   c->bpp_per_rpm_q8 = p->pole_pairs * 1832519L;
   c->rpm_per_bpp_q40 = q_div(16777216L, c->bpp_per_rpm_q8, 24);
@@ -79,7 +97,6 @@ static bool load_position(drive_config_t* c) {
   const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
   // 2^30 / (time constant in periods); 30 s means none.
   c->adapt_share_q30 = (p->adapt_time >= 30000L * 256L) ? 0 : q_div(256, p->adapt_time * DRIVE_PERIODS_PER_MS, 30);
-  c->saliency_turn_bam = q_mul(p->saliency_angle, 11930465L, 24);               // 2^32 / 360 per degree
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);

@@ -57,8 +57,6 @@ PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 40, ALWAYS, "Kp of the p
 PARAMETER(70, zvv_integral, "rad/s2", 8, 1, 0, 20000, 40, ALWAYS, "Ki of the paper's ZVV observer")
 PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS,
           "d-axis current below the blend, makes the ZVV deviation observable")
-PARAMETER(72, saliency_angle, "deg/A", 24, 3, -5000, 5000, 0, ALWAYS,
-          "turn of the saliency axis per ampere of i_q (cross-saturation)")
 PARAMETER(73, encoder_counts, "", 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
 // Control
@@ -73,6 +71,21 @@ PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
           "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
 PARAMETER(88, weakening_limit, "A", 20, 2, 0, 1600, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, "A/V", 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
+
+// Saturation: incremental inductances at i_d = 0 and i_q = 1/4 .. 4/4 of map_current
+PARAMETER(110, map_current, "A", 20, 2, 100, 10000, 1400, STOPPED, "i_q of the map's last point")
+PARAMETER(111, lqq_1, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 1/4 of map_current")
+PARAMETER(112, lqq_2, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 2/4 of map_current")
+PARAMETER(113, lqq_3, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 3/4 of map_current")
+PARAMETER(114, lqq_4, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at map_current")
+PARAMETER(115, ldd_1, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_d at 1/4 of map_current")
+PARAMETER(116, ldd_2, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_d at 2/4 of map_current")
+PARAMETER(117, ldd_3, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_d at 3/4 of map_current")
+PARAMETER(118, ldd_4, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_d at map_current")
+PARAMETER(119, ldq_1, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 1/4 of map_current")
+PARAMETER(120, ldq_2, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 2/4 of map_current")
+PARAMETER(121, ldq_3, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 3/4 of map_current")
+PARAMETER(122, ldq_4, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at map_current")
 
 // Start and supervision
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of the polarity test")

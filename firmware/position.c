@@ -12,7 +12,7 @@ typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_inpu
 
 static void match_sensors(drive_t* d) {
   if (!d->modulation.state.is_alternating) return;
-  sensor_match_step(&d->position.sensors, &d->position.avv.regression, d->position.admittance.mean_q30,
+  sensor_match_step(&d->position.sensors, &d->position.avv.regression, d->model.yd_q30 / 2 + d->model.yq_q30 / 2,
                     d->config.adapt_share_q30);
   d->config.slopes.mismatch_q30 = d->position.sensors.mismatch_q30;
 }
@@ -20,7 +20,7 @@ static void match_sensors(drive_t* d) {
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) {
-    admittance_step(&d->position.admittance, &d->position.avv.regression, d->config.adapt_share_q30);
+    admittance_step(&d->model, &d->position.avv.regression, d->config.adapt_share_q30);
     match_sensors(d);
   }
   return d->position.high;
@@ -64,11 +64,6 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
 
 static const position_source_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv, step_observer};
 
-// Saturation turns the axis that the windows see; the estimators live in that frame.
-static void turn_to_rotor(const drive_t* d, estimator_output_t* out) {
-  out->angle_bam -= (uint32_t)q_mul(d->config.saliency_turn_bam, d->control.measured_q20.q, 20);
-}
-
 static void measure_current(drive_t* d) {
   const drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
@@ -89,6 +84,7 @@ static void measure_current(drive_t* d) {
 
 void drive_estimate(drive_t* d) {
   measure_current(d);
+  machine_model_move(&d->model, d->control.measured_q20.q);
   const bool starting = d->state != DRIVE_RUN && d->state != DRIVE_STOP;
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
@@ -97,9 +93,7 @@ void drive_estimate(drive_t* d) {
   in.window_count = d->samples.count;
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
-  const bool encoder = parameters.position_source == 0;
   d->position.used = starting ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
-  if (!encoder) turn_to_rotor(d, &d->position.used);
 }
 
 void position_preset(drive_t* d, uint32_t angle_bam) {

@@ -43,7 +43,6 @@ void drive_control_speed(drive_t* d) {
   drive_control_t* const c = &d->control;
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
   if (d->millisecond != 0u) return;
-  admittance_apply(&d->position.admittance, &d->model);
   d->limits = 0;
   if (d->state != DRIVE_RUN && d->state != DRIVE_STOP) return;
   weaken_field(d);

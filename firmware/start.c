@@ -19,7 +19,6 @@ void drive_begin_start(drive_t* d) {
   d->supervision = healthy;
   d->polarity_tries = 0;
   d->model = d->config.nameplate;
-  admittance_init(&d->position.admittance, &d->model);
   sensor_match_reset(&d->position.sensors);
   position_preset(d, 0);
   modulator_reset(&d->modulation.state);

@@ -50,7 +50,7 @@ TEST(CurrentController, RefusesBandwidthsThatTheDelayDoesNotAllow) {
 TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
   Random random(31);
   const Motor motor;
-  const machine_model_t m = model_of(motor);
+  machine_model_t m = model_of(motor);
   current_controller_config_t c;
   ASSERT_TRUE(current_controller_design(&c, &m, 1800, 100));
   current_controller_t s;
@@ -66,11 +66,12 @@ TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
     integral = integral + Vector{motor.ld * error.x, motor.lq * error.y} * ki;
     const Vector expected = {a * motor.ld * error.x + integral.x - w * motor.lq * measured.y,
                              a * motor.lq * error.y + integral.y + w * (motor.ld * measured.x + motor.flux)};
+    machine_model_move(&m, raw(measured.y, 20));
     const dq_t v = current_controller_step(&s, &c, &m, raw_dq(reference, 20), raw_dq(measured, 20), bpp(w));
-    // Gains right to 2e-6 (17 A make 4e-5 V a step, of alternating sign), speed to 1.5e-5 rad/s, flux to 4e-9 V s,
-    // 1/T exact: 1 mV leaves a factor of some five. Of 200 V that is 5e-6.
-    ASSERT_NEAR(real(v.d, 16), expected.x, 1e-3) << n;
-    ASSERT_NEAR(real(v.q, 16), expected.y, 1e-3) << n;
+    // Gains right to 2e-6 (17 A make 4e-5 V a step, of alternating sign), speed to 1.5e-5 rad/s, flux linkages per T to
+    // the 1.7e-6 that T is right to: of 300 V that is 5e-4.
+    ASSERT_NEAR(real(v.d, 16), expected.x, 1.5e-3) << n;
+    ASSERT_NEAR(real(v.q, 16), expected.y, 1.5e-3) << n;
   }
 }
 

@@ -25,6 +25,7 @@ class Loop {
 
   /// One period; returns the mean current measured over it, in the rotor frame.
   Vector step(Vector reference) {
+    machine_model_move(&model_, raw(mean_.y, 20));
     const dq_t v =
         current_controller_step(&state_, &config_, &model_, raw_dq(reference, 20), raw_dq(mean_, 20), bpp(w_));
     Vector asked = real(v, 16);

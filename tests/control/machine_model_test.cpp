@@ -22,7 +22,8 @@ void expect_close(double got, double exact, double lsb, double relative, const c
 bool fits(const Motor& m) {
   const double y_max = m.period / m.ld;
   const double accel = m.pole_pairs * m.period * m.period / (kTurn * m.inertia) * std::ldexp(1.0, 32);
-  return y_max < 1.99 && m.flux / m.period < 32700.0 && m.lq / m.ld < 128.0 && accel < 524000.0;
+  return y_max < 1.99 && m.flux / m.period < 31900.0 && m.lq / m.ld < 126.0 && accel < 524000.0 &&
+         m.flux / m.lq < 1990.0 && 4.0 * m.lq / m.period < 31900.0;
 }
 
 // Inductances and fluxes are rounded to the firmware's format before they are used; the formulas get the same numbers.
@@ -48,10 +49,17 @@ void check(const Motor& asked) {
   expect_close(real(m.yd_q30, 30), s.period / s.ld, std::ldexp(1.0, -30), t_rel, "yd");
   expect_close(real(m.yq_q30, 30), s.period / s.lq, std::ldexp(1.0, -30), t_rel, "yq");
   expect_close(real(m.emf_q16, 16), s.flux / s.period, std::ldexp(1.0, -16), t_rel, "emf");
-  // kappa comes from the rounded admittances: 2^-31 of each, relative to yq
+  // K comes from the rounded admittances: 2^-31 of each, relative to yq
   const double y_rel = std::ldexp(1.0, -30) / real(m.yq_q30, 30);
-  expect_close(real(m.kappa_d_q24, 24), s.lq / s.ld - 1.0, std::ldexp(1.0, -24) + y_rel * s.lq / s.ld, 1e-9, "kappa d");
-  expect_close(real(m.kappa_q_q24, 24), 1.0 - s.ld / s.lq, std::ldexp(1.0, -24) + y_rel, 1e-9, "kappa q");
+  // the ratio, its square and the determinant's inverse are rounded one after the other
+  const double ratio = s.lq / s.ld;
+  expect_close(real(m.k_dq_q24, 24), ratio - 1.0, std::ldexp(2.0, -24) + y_rel * ratio, 1e-9, "K_dq");
+  expect_close(real(m.k_qd_q24, 24), 1.0 - 1.0 / ratio, std::ldexp(2.0, -24) + y_rel, 1e-9, "K_qd");
+  EXPECT_EQ(m.k_dd_q24, 0);
+  EXPECT_EQ(m.k0_q20.d, 0);
+  expect_close(real(m.k0_q20.q, 20), -s.flux / s.lq,
+               std::ldexp(1.0, -20) + std::ldexp(1.0, -16) * s.period / s.lq + y_rel * s.flux / s.lq, 2.0 * t_rel,
+               "k0_q");
   // flux / 16 and (Ld - Lq) / 64 are cut off to whole LSB of Q24
   const double torque_lsb = 1.5 * s.pole_pairs * std::ldexp(1.0, -24) + std::ldexp(1.0, -24);
   expect_close(real(m.torque_q24, 24), 1.5 * s.pole_pairs * s.flux, torque_lsb, 0.0, "torque");
@@ -92,9 +100,10 @@ TEST(MachineModel, EndsOfTheRanges) {
   check(m);
   m.ld = m.lq = 0.5;
   check(m);
-  m.ld = m.lq = 51e-6;
-  check(m);
   m.flux = 1.0;
+  check(m);
+  m.ld = m.lq = 51e-6;
+  m.flux = 0.1;
   check(m);
   m.inertia = 1.0;
   check(m);
@@ -141,20 +150,27 @@ TEST(MachineModel, RejectsMachinesWhoseConstantsDoNotFit) {
   Motor salient;  // Lq / Ld = 1000
   salient.ld = 0.4e-3;
   salient.lq = 0.4;
-  for (const Motor& motor : {light, fast, strong, salient}) {
+  Motor loose;  // lambda / Lq = 3200 A
+  loose.ld = loose.lq = 50.1e-6;
+  for (const Motor& motor : {light, fast, strong, salient, loose}) {
     const machine_parameters_t p = parameters_of(motor);
     EXPECT_FALSE(machine_model_init(&m, &p)) << motor.ld << ", " << motor.flux << ", " << motor.inertia;
   }
 }
 
-TEST(MachineModel, AdaptedAdmittancesMoveTheSaliency) {
+TEST(MachineModel, TheTrimMovesTheSaliency) {
   machine_model_t m = stillspin::test::model_of(Motor{});
   const double yd = 0.025, yq = 0.011;
-  machine_model_set_admittance(&m, raw(yd, 30), raw(yq, 30));
-  EXPECT_EQ(m.yd_q30, raw(yd, 30));
-  EXPECT_EQ(m.yq_q30, raw(yq, 30));
-  EXPECT_NEAR(real(m.kappa_d_q24, 24), yd / yq - 1.0, 1e-6);
-  EXPECT_NEAR(real(m.kappa_q_q24, 24), 1.0 - yq / yd, 1e-6);
+  m.trim.mean_q30 = raw(0.5 * (yd + yq), 30) - m.yd_q30 / 2 - m.yq_q30 / 2;
+  m.trim.half_q30 = raw(0.5 * (yd - yq), 30) - m.yd_q30 / 2 + m.yq_q30 / 2;
+  machine_model_move(&m, raw(3.0, 20));
+  EXPECT_NEAR(real(m.yd_q30, 30), yd, 4e-9);
+  EXPECT_NEAR(real(m.yq_q30, 30), yq, 4e-9);
+  EXPECT_NEAR(real(m.k_dq_q24, 24), yd / yq - 1.0, 2e-6);
+  EXPECT_NEAR(real(m.k_qd_q24, 24), 1.0 - yq / yd, 2e-6);
+  // with the inductance the flux of i_q differs: psi_q = Lq i_q still, so nothing is left in k0
+  EXPECT_NEAR(real(m.psi_q_q16, 16), 3.0 / yq, 1e-3);
+  EXPECT_NEAR(real(m.k0_q20.d, 20), 0.0, 2e-5);
 }
 
 TEST(MachineModel, TorqueWithReluctance) {

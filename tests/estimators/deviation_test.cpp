@@ -98,8 +98,8 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
     const double dw = 10.0;  // the slope is linear in the speed: any step will do
     const Vector by_speed = (slope(at, p.w() + dw) - slope(at, p.w() - dw)) * (0.5 / dw / m.period);
     const Vector h_a = real(deviation_angle_sensitivity(&model, &d), 20);
-    const Vector h_s = real(deviation_speed_sensitivity(&model, &d), 20);
-    // 1.7e-6 of T as above in both; kappa is right to a few 1e-7 and is multiplied by 15 A
+    const Vector h_s = real(d.turn_q20, 20);
+    // 1.7e-6 of T as above in both; K is right to a few 1e-7 and is multiplied by 15 A
     ASSERT_NEAR(h_a.x, by_angle.x, 3e-5 + 3e-6 * by_angle.length()) << n;
     ASSERT_NEAR(h_a.y, by_angle.y, 3e-5 + 3e-6 * by_angle.length()) << n;
     ASSERT_NEAR(h_s.x, by_speed.x, 2e-5 + 4e-6 * by_speed.length()) << n;

@@ -59,7 +59,7 @@ double sigma(unsigned state, int span, double amps, bool of_speed, std::uint64_t
     const estimator_window_t w = sampled(motor, {state, 5000, span}, theta, 0.0, current, random);
     const deviation_t d = deviation_evaluate(&m, &w, bam(theta), 0);
     const Vector e = real(d.residual_q20, 20);
-    const Vector h = real(of_speed ? deviation_speed_sensitivity(&m, &d) : deviation_angle_sensitivity(&m, &d), 20);
+    const Vector h = real(of_speed ? d.turn_q20 : deviation_angle_sensitivity(&m, &d), 20);
     const double error = (e.x * h.x + e.y * h.y) / (h.x * h.x + h.y * h.y);
     squares += error * error;
   }

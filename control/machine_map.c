@@ -1,0 +1,66 @@
+#include "control/machine_map.h"
+
+#define FLUX_END_Q16 2097152000L  // 32000 V
+#define ONE_Q30 1073741824L
+
+// psi/T gained over a segment: mean inductance times its current, V per (rad per period), Q16.
+static int32_t flux_gain_q16(int32_t l0_q30, int32_t l1_q30, int32_t step_q20, int32_t period_q30) {
+  const int32_t flux_q28 = q_mul_sat(l0_q30 / 2 + l1_q30 / 2, step_q20, 22);
+  return q_div(flux_q28, period_q30, 18);
+}
+
+// T L^-1. The determinants of the machine are as small as 1e-9 H^2: 64 bits until the quotient.
+static bool invert(machine_point_t* y, int32_t ldd_q30, int32_t lqq_q30, int32_t ldq_q30, int32_t period_q30) {
+  // Leakage factors as quotients keep the digits: Ldd (1 - Ldq^2 / (Ldd Lqq)).
+  const int32_t tilt_d_q30 = q_div(ldq_q30, ldd_q30, 30);
+  const int32_t tilt_q_q30 = q_div(ldq_q30, lqq_q30, 30);
+  if (q_abs_sat(tilt_d_q30) >= ONE_Q30 || q_abs_sat(tilt_q_q30) >= ONE_Q30) return false;
+  const int32_t left_q30 = ONE_Q30 - q_mul(tilt_d_q30, tilt_q_q30, 30);
+  y->ydd_q30 = q_div(period_q30, q_mul(ldd_q30, left_q30, 30), 30);
+  y->yqq_q30 = q_div(period_q30, q_mul(lqq_q30, left_q30, 30), 30);
+  y->ydq_q30 = -q_mul(y->yqq_q30, tilt_d_q30, 30);
+  return y->ydd_q30 < INT32_MAX && y->yqq_q30 > 0;
+}
+
+bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int32_t period_q30, int32_t emf_q16) {
+  if (p->current_q20 < 1048576L || p->current_q20 > 104857600L) return false;
+  const int32_t step_q20 = p->current_q20 / MACHINE_MAP_SEGMENTS;
+  map->per_segment_q26 = q_div(1048576L, step_q20, 26);
+  int32_t psi_d_q16 = emf_q16;
+  int32_t psi_q_q16 = 0;
+  for (uint16_t k = 0; k < MACHINE_MAP_POINTS; k++) {
+    machine_point_t* const y = &map->points[k];
+    if (p->ldd_q30[k] <= 0 || p->lqq_q30[k] < p->ldd_q30[k]) return false;
+    if (!invert(y, p->ldd_q30[k], p->lqq_q30[k], p->ldq_q30[k], period_q30)) return false;
+    if (k > 0u) {
+      psi_d_q16 = q_add_sat(psi_d_q16, flux_gain_q16(p->ldq_q30[k - 1u], p->ldq_q30[k], step_q20, period_q30));
+      psi_q_q16 = q_add_sat(psi_q_q16, flux_gain_q16(p->lqq_q30[k - 1u], p->lqq_q30[k], step_q20, period_q30));
+    }
+    if (q_abs_sat(psi_d_q16) > FLUX_END_Q16 || psi_q_q16 > FLUX_END_Q16) return false;
+    y->psi_d_q16 = psi_d_q16;
+    y->psi_q_q16 = psi_q_q16;
+  }
+  return true;
+}
+
+static int32_t between(int32_t a, int32_t b, int32_t share_q26) { return a + q_mul(b - a, share_q26, 26); }
+
+machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
+  const int32_t at_q26 = q_mul_sat(q_abs_sat(iq_q20), map->per_segment_q26, 20);
+  const uint16_t k = (uint16_t)q_min(q_shr(at_q26, 26), MACHINE_MAP_SEGMENTS - 1);
+  const machine_point_t* const a = &map->points[k];
+  const machine_point_t* const b = a + 1;
+  const int32_t beyond_q26 = at_q26 - (int32_t)(k * 67108864L);
+  const int32_t share_q26 = q_min(beyond_q26, 67108864L);
+  machine_point_t p;
+  p.ydd_q30 = between(a->ydd_q30, b->ydd_q30, share_q26);
+  p.yqq_q30 = between(a->yqq_q30, b->yqq_q30, share_q26);
+  p.ydq_q30 = between(a->ydq_q30, b->ydq_q30, share_q26);
+  p.psi_d_q16 = between(a->psi_d_q16, b->psi_d_q16, beyond_q26);
+  p.psi_q_q16 = between(a->psi_q_q16, b->psi_q_q16, beyond_q26);
+  if (iq_q20 < 0) {
+    p.ydq_q30 = -p.ydq_q30;
+    p.psi_q_q16 = -p.psi_q_q16;
+  }
+  return p;
+}

@@ -1,0 +1,158 @@
+// The table of a saturated machine against the machine itself, in double precision.
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/control/quantities.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+// A field that stores energy, as in the literature of synchronous machines with a magnet on the d axis:
+//   psi_d = lambda + Ld id + k iq^2 / 2,  psi_q = Lq s atan(iq / s) + k id iq.
+struct Saturated {
+  Motor motor;
+  double k = 1.1e-5;   // H/A
+  double knee = 22.0;  // A
+  double ldq(double iq) const { return k * iq; }
+  double lqq(double iq) const { return motor.lq / (1.0 + iq * iq / (knee * knee)); }
+  double psi_d(double id, double iq) const { return motor.flux + motor.ld * id + 0.5 * k * iq * iq; }
+  double psi_q(double id, double iq) const { return motor.lq * knee * std::atan(iq / knee) + k * id * iq; }
+
+  machine_map_parameters_t table(double current) const {
+    machine_map_parameters_t p = {};
+    p.current_q20 = raw(current, 20);
+    for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {
+      const double iq = current * n / MACHINE_MAP_SEGMENTS;
+      p.ldd_q30[n] = raw(motor.ld, 30);
+      p.lqq_q30[n] = raw(lqq(iq), 30);
+      p.ldq_q30[n] = raw(ldq(iq), 30);
+    }
+    return p;
+  }
+
+  // Rotated slope per period, at i_d small enough for Lqq not to depend on it: the equations of the rotor frame.
+  Vector slope(Vector i, Vector v, double w) const {
+    const Vector u = {v.x - motor.rs * i.x + w * psi_q(i.x, i.y), v.y - motor.rs * i.y - w * psi_d(i.x, i.y)};
+    const double a = motor.ld, b = lqq(i.y) + k * i.x, c = ldq(i.y);
+    const double det = a * b - c * c;
+    const Vector rate = {(b * u.x - c * u.y) / det, (a * u.y - c * u.x) / det};
+    return {(rate.x - w * i.y) * kPeriod, (rate.y + w * i.x) * kPeriod};
+  }
+};
+
+machine_model_t model_with(const Saturated& s, double current) {
+  machine_model_t m = model_of(s.motor);
+  const machine_map_parameters_t table = s.table(current);
+  if (!machine_model_saturate(&m, &table)) throw "map out of range";
+  return m;
+}
+
+TEST(MachineMap, FlatWithoutSaturation) {
+  const machine_model_t m = model_of(Motor{});
+  for (const double iq : {-30.0, -14.0, -3.0, 0.0, 1.0, 10.0, 40.0}) {
+    const machine_point_t p = machine_map_at(&m.map, raw(iq, 20));
+    EXPECT_EQ(p.ydd_q30, m.yd_q30) << iq;
+    EXPECT_EQ(p.yqq_q30, m.yq_q30) << iq;
+    EXPECT_EQ(p.ydq_q30, 0) << iq;
+    EXPECT_NEAR(real(p.psi_d_q16, 16), 1600.0, 0.01) << iq;
+    EXPECT_NEAR(real(p.psi_q_q16, 16), 78.0 * iq, 0.01 + 3e-6 * 78.0 * std::fabs(iq)) << iq;
+  }
+}
+
+TEST(MachineMap, AdmittanceIsTheInverseOfTheInductance) {
+  const Saturated s;
+  const machine_model_t m = model_with(s, 14.0);
+  for (const double iq : {-14.0, -10.5, -3.5, 0.0, 3.5, 7.0, 14.0}) {
+    const machine_point_t p = machine_map_at(&m.map, raw(iq, 20));
+    const double ydd = real(p.ydd_q30, 30), yqq = real(p.yqq_q30, 30), ydq = real(p.ydq_q30, 30);
+    // Y L = T; T is right to 1.7e-6, inductances to 1e-9 H of 5 mH
+    EXPECT_NEAR(ydd * s.motor.ld + ydq * s.ldq(iq), kPeriod, 4e-10) << iq;
+    EXPECT_NEAR(yqq * s.lqq(iq) + ydq * s.ldq(iq), kPeriod, 4e-10) << iq;
+    EXPECT_NEAR(ydd * s.ldq(iq) + ydq * s.lqq(iq), 0.0, 4e-10) << iq;
+  }
+}
+
+TEST(MachineMap, FluxFollowsFromTheInductances) {
+  const Saturated s;
+  const machine_model_t m = model_with(s, 14.0);
+  for (double iq = -14.0; iq <= 14.0; iq += 0.7) {
+    const machine_point_t p = machine_map_at(&m.map, raw(iq, 20));
+    // straight lines for a curve: a segment's sag is h^2/8 L' = 3.5^2 / 8 * 2 * 7.8e-3 * 14 / 22^2 = 0.7e-3 Vs at most,
+    // the trapezoid's own error is a third of that, per segment
+    EXPECT_NEAR(real(p.psi_q_q16, 16) * kPeriod, s.psi_q(0.0, iq), 0.8e-3) << iq;
+    // the mutual inductance is a straight line: only k h^2/8 = 1.7e-5 Vs between the points
+    EXPECT_NEAR(real(p.psi_d_q16, 16) * kPeriod, s.psi_d(0.0, iq), 1.8e-5) << iq;
+  }
+}
+
+// The whole of machine_model_move: the model's slope is the machine's, for any current near the working point.
+TEST(MachineMap, TheModelsSlopeIsTheMachines) {
+  const Saturated s;
+  machine_model_t m = model_with(s, 14.0);
+  Random random(20);
+  for (int n = 0; n < 4000; ++n) {
+    const double iq = 3.5 * (random.below(9) - 4);
+    machine_model_move(&m, raw(iq, 20));
+    const Vector i = {random.between(-0.5, 0.5), iq + random.between(-0.5, 0.5)};
+    const Vector v = random.direction(random.between(0.0, 200.0));
+    const double w = random.between(-1300.0, 1300.0);
+    const dq_t u = {raw(v.x - s.motor.rs * i.x, 16), raw(v.y - s.motor.rs * i.y, 16)};
+    const Vector admitted = real(machine_admit_q20(&m, u), 20);
+    const Vector h = real(machine_turn_q20(&m, raw_dq(i, 20)), 20);
+    const Vector got = admitted + h * (w * kPeriod);
+    const Vector exact = s.slope(i, v, w);
+    // half an ampere off the point changes Lqq by up to 1.5 %: of |v| T/L + w flux / L; and the flux table's 0.5e-3 Vs
+    const double allowed = 2e-3 + 0.006 * exact.length() + 0.02 * std::fabs(w * kPeriod) * s.motor.flux / s.lqq(iq);
+    ASSERT_NEAR(got.x, exact.x, allowed) << iq << " A, " << w << " rad/s";
+    ASSERT_NEAR(got.y, exact.y, allowed + 0.015 * v.length() * kPeriod / s.lqq(iq)) << iq << " A, " << w << " rad/s";
+  }
+}
+
+// The same exactly on a point, at the currents of the table: no approximation but the flux's trapezoid.
+TEST(MachineMap, OnThePointsTheSlopeIsExact) {
+  const Saturated s;
+  machine_model_t m = model_with(s, 14.0);
+  Random random(21);
+  for (int n = 0; n < 4000; ++n) {
+    const double iq = 3.5 * (random.below(9) - 4);
+    machine_model_move(&m, raw(iq, 20));
+    const Vector v = random.direction(random.between(0.0, 200.0));
+    const double w = random.between(-1300.0, 1300.0);
+    const dq_t u = {raw(v.x, 16), raw(v.y - s.motor.rs * iq, 16)};
+    const Vector got =
+        real(machine_admit_q20(&m, u), 20) + real(machine_turn_q20(&m, raw_dq({0.0, iq}, 20)), 20) * (w * kPeriod);
+    const Vector exact = s.slope({0.0, iq}, v, w);
+    const double flux = 0.5e-3 * std::fabs(w) * kPeriod / s.motor.ld;  // error of psi_q by the trapezoid
+    ASSERT_NEAR(got.x, exact.x, 3e-5 + 4e-6 * exact.length() + flux) << iq << " A, " << w << " rad/s";
+    ASSERT_NEAR(got.y, exact.y, 3e-5 + 4e-6 * exact.length() + 0.1 * flux) << iq << " A, " << w << " rad/s";
+  }
+}
+
+TEST(MachineMap, RejectsWhatIsNoMachine) {
+  const Saturated s;
+  machine_model_t m = model_of(s.motor);
+  const machine_model_t before = m;
+  machine_map_parameters_t p = s.table(14.0);
+  EXPECT_TRUE(machine_model_saturate(&m, &p));
+  m = before;
+  for (const double current : {-1.0, 0.0, 0.9, 101.0}) {
+    p = s.table(14.0);
+    p.current_q20 = raw(current, 20);
+    EXPECT_FALSE(machine_model_saturate(&m, &p)) << current;
+  }
+  p = s.table(14.0);
+  p.ldq_q30[3] = p.ldd_q30[3];  // more mutual than own inductance
+  EXPECT_FALSE(machine_model_saturate(&m, &p));
+  p = s.table(14.0);
+  p.lqq_q30[4] = p.ldd_q30[4] - 1;  // the saliency turned round
+  EXPECT_FALSE(machine_model_saturate(&m, &p));
+  p = s.table(14.0);
+  p.ldd_q30[1] = 0;
+  EXPECT_FALSE(machine_model_saturate(&m, &p));
+  EXPECT_EQ(machine_map_at(&m.map, raw(14.0, 20)).yqq_q30, before.yq_q30);  // the old one is kept
+}
+
+}  // namespace
