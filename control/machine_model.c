@@ -44,7 +44,8 @@ void machine_model_move(machine_model_t* m, int32_t iq_q20) {
   m->yd_q30 = p.ydd_q30 + m->trim.mean_q30 + m->trim.half_q30;
   m->yq_q30 = p.yqq_q30 + m->trim.mean_q30 - m->trim.half_q30;
   m->ydq_q30 = p.ydq_q30;
-  m->psi_d_q16 = p.psi_d_q16;
+  m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
+  m->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
   // An inductance that differs from the table's differs in its flux as well.
   m->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_div(p.yqq_q30, m->yq_q30, 24), 24);
   turn_with_admittance(m);
@@ -72,7 +73,7 @@ static bool unsaturated(machine_model_t* m) {
 
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   if (!parameters_valid(p)) return false;
-  m->rs_q24 = p->rs_q24;
+  m->nominal_rs_q24 = p->rs_q24;
   m->ld_q30 = p->ld_q30;
   m->lq_q30 = p->lq_q30;
   m->flux_q28 = p->flux_q28;
@@ -82,8 +83,8 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
-  m->trim.mean_q30 = 0;
-  m->trim.half_q30 = 0;
+  static const machine_trim_t none = {0, 0, 0, 0};
+  m->trim = none;
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;
   m->accel_q12 = q_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);

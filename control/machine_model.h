@@ -30,10 +30,12 @@ typedef struct {
 /// What the drive learns while it runs, added to what the parameters say.
 typedef struct {
   int32_t mean_q30, half_q30;  // of the admittances: (ydd + yqq)/2 and (ydd - yqq)/2
+  int32_t rs_q24;              // of the resistance, ohm
+  int32_t psi_q16;             // of the magnet's flux/T, V per (rad per period)
 } machine_trim_t;
 
 typedef struct {
-  int32_t rs_q24;          // ohm
+  int32_t nominal_rs_q24;  // ohm
   int32_t ld_q30, lq_q30;  // H, at no current
   int32_t flux_q28;        // V s
   int32_t emf_q16;         // lambda/T: V per (rad per period)
@@ -46,6 +48,7 @@ typedef struct {
   machine_map_t map;
   machine_trim_t trim;
   // At the working point, see machine_model_move.
+  int32_t rs_q24;                        // ohm
   int32_t yd_q30, yq_q30, ydq_q30;       // Y
   int32_t k_dd_q24, k_dq_q24, k_qd_q24;  // K; K_qq = -K_dd
   dq_t k0_q20;                           // A per period and (rad per period)

@@ -12,7 +12,7 @@ void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_ac
 // Half the turn of the saliency from where the model has it: eq (41) in the observed frame. The model's saliency is
 // (h, c) = ((ydd - yqq)/2, ydq), the measured one (h + mirror, c + cross) per spread; their quotient needs no second
 // arc tangent.
-static int32_t angle_error(const regression_t* r, const machine_model_t* m) {
+int32_t avv_angle_error(const regression_t* r, const machine_model_t* m) {
   const int32_t h_q30 = (m->yd_q30 - m->yq_q30) / 2;
   const int32_t c_q30 = m->ydq_q30;
   const int32_t along_q16 = q_add_sat(q_mul_sat(h_q30, r->spread_q8, 22), r->mirror_q16);
@@ -47,7 +47,7 @@ estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_inp
   }
   regression_evaluate(&s->regression, d, in);
   if (s->regression.information > 0) {
-    s->error_bam = angle_error(&s->regression, in->model);
+    s->error_bam = avv_angle_error(&s->regression, in->model);
     tracking_observer_correct(&s->observer, s->error_bam, bandwidth_q30(c, s->regression.information));
   }
   const estimator_output_t out = {s->observer.angle_bam, s->observer.speed_bpp, s->observer.load_accel_q8,

@@ -1,7 +1,5 @@
 #include "estimators/deviation_observer.h"
 
-#include "estimators/deviation.h"
-
 #define ONE_Q20 1048576L
 #define BAM_PER_UNIT 10680707L     // 2^-6 rad
 #define BPP_PER_UNIT 166886L       // 2^-12 rad per period
@@ -11,6 +9,13 @@
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define VARIANCE_MAX (512L * ONE_Q20)
 #define SCORE_MAX (48L * ONE_Q20)  // residuals beyond 48 sigma count as 48
+#define ONE_Q30 1073741823L
+#define ALERT_SHIFT 9u              // an alert fades within 51 ms
+#define ALERT_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
+#define LEAN_MIN 40                 // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define MEAN_SHIFT 5u
+#define POWER_SHIFT 8u
+#define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define INFORMATION_MAX (8L * 16777216L)
 
 typedef struct {
@@ -22,23 +27,73 @@ typedef struct {
   int32_t a, s;
 } gain_t;
 
-void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m, int32_t noise_q20,
-                               int32_t load_rate_q20) {
-  c->inverse_noise_q20 = q_div(ONE_Q20, q_clamp(noise_q20, 1049, ONE_Q20), 20);
-  // N m -> acceleration units: accel (bpp per N m) / 2607.6; a random walk reaches its 10 ms value in 100 periods.
+// N m in 10 ms -> variance per period: acceleration in own units is accel (bpp per N m) / 2607.6; a random walk reaches
+// its 10 ms value in 100 periods.
+static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20) {
   const int32_t units_q12 = q_mul_sat(q_mul_sat(m->accel_q12, load_rate_q20, 20), 6587625L, 34);
-  const int32_t per_period = q_mul_sat(units_q12, units_q12, 4) / 100;
-  c->load_noise_q20 = q_clamp(per_period, 1, VARIANCE_MAX / 8);
+  return q_clamp(q_mul_sat(units_q12, units_q12, 4) / 100, 1, VARIANCE_MAX / 8);
+}
+
+void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
+                               const deviation_observer_tuning_t* t) {
+  c->inverse_noise_q20 = q_div(ONE_Q20, q_clamp(t->noise_q20, 1049, ONE_Q20), 20);
+  c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
+  c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
+  c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
+  c->crawl_bpp = q_clamp(t->crawl_bpp, 1, INT32_MAX / 4);
 }
 
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
-  const deviation_observer_t fresh = {angle_bam, speed_bpp, load_accel_q8,  0, ANGLE_VARIANCE,
-                                      0,         0,         SPEED_VARIANCE, 0, LOAD_VARIANCE};
-  *s = fresh;
+  static const deviation_observer_t uncertain = {
+      .p_aa = ANGLE_VARIANCE, .p_ss = SPEED_VARIANCE, .p_ll = LOAD_VARIANCE, .score_power_q24 = POWER_START};
+  *s = uncertain;
+  s->angle_bam = angle_bam;
+  s->speed_bpp = speed_bpp;
+  s->load_accel_q8 = load_accel_q8;
+}
+
+// 1 at a crawl, 0 from three times that speed.
+static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_observer_config_t* c) {
+  const int32_t above = q_abs_sat(s->speed_bpp) - c->crawl_bpp;
+  return ONE_Q30 - q_min(q_div(q_max(above, 0), 2 * c->crawl_bpp, 30), ONE_Q30);
+}
+
+// The mean of white scores over 32 periods has 1/63 of their power: four standard deviations are a quarter of its root.
+// The power is measured, not the information's word for it: it holds whatever noise the observer was told.
+static bool scores_lean(deviation_observer_t* s, const information_t* n) {
+  s->mean_score_q20 += q_shr_round(n->a - s->mean_score_q20, MEAN_SHIFT);
+  s->score_power_q24 += q_shr_round(q_sub_sat(q_mul_sat(n->a, n->a, 16), s->score_power_q24), POWER_SHIFT);
+  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 4 &&
+         q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
+}
+
+// A step is noticed when it has already turned the shaft: a load that changed a quarter of the unit of time (16
+// periods) ago has left speed and angle behind as well, and the covariance says by how much.
+static void admit_load_step(deviation_observer_t* s, int32_t variance_q20) {
+  s->p_ll += variance_q20;
+  s->p_sl += q_shr_round(variance_q20, 2);
+  s->p_ss += q_shr_round(variance_q20, 4);
+  s->p_al += q_shr_round(variance_q20, 5);
+  s->p_as += q_shr_round(variance_q20, 7);
+  s->p_aa += q_shr_round(variance_q20, 10);
+}
+
+static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
+  const bool lean = scores_lean(s, n);
+  const int32_t crawl_q30 = crawl_share_q30(s, c);
+  s->alert_q30 -= q_shr_round(s->alert_q30, ALERT_SHIFT);
+  if (lean && crawl_q30 > 0 && s->alert_q30 < ALERT_AGAIN_Q30) {
+    s->alert_q30 = ONE_Q30;
+    admit_load_step(s, q_mul(c->load_step_q20, crawl_q30, 30));
+  }
+  const int32_t quiet_q30 = crawl_q30 - q_mul(crawl_q30, s->alert_q30, 30);
+  s->p_ll += c->load_noise_q20 - q_mul(c->load_noise_q20 - c->load_noise_quiet_q20, quiet_q30, 30);
 }
 
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
-  const int32_t change_q8 = q_add_sat(s->speed_rest_q8, q_sub_sat(torque_accel_q8, s->load_accel_q8));
+  const int32_t load_q8 =
+      q_add_sat(s->load_accel_q8, cogging_load(&s->cogging, &c->cogging, s->angle_bam, s->speed_bpp));
+  const int32_t change_q8 = q_add_sat(s->speed_rest_q8, q_sub_sat(torque_accel_q8, load_q8));
   const int32_t change = q_shr(change_q8, 8);
   s->angle_bam += (uint32_t)(s->speed_bpp + change / 2);
   s->speed_bpp += change;
@@ -49,7 +104,6 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
   s->p_al += q_shr_round(s->p_sl, 6);
   s->p_ss += q_shr_round(2 * s->p_sl + q_shr_round(s->p_ll, 6), 6);
   s->p_sl += q_shr_round(s->p_ll, 6);
-  s->p_ll += c->load_noise_q20;
 }
 
 // One scalar measurement: sensitivities and residual, all divided by the noise.
@@ -62,17 +116,16 @@ static void collect(information_t* n, int32_t g_a_q20, int32_t g_s_q20, int32_t 
   n->s = q_add_sat(n->s, q_mul_sat(g_s_q20, e, 20));
 }
 
-static void collect_window(information_t* n, const deviation_observer_t* s, const deviation_observer_config_t* c,
-                           const machine_model_t* m, const estimator_window_t* w) {
-  const deviation_t d = deviation_evaluate(m, w, s->angle_bam, s->speed_bpp);
-  const dq_t h_a = deviation_angle_sensitivity(m, &d);
-  const dq_t h_s = d.turn_q20;
+static void collect_window(information_t* n, const deviation_observer_config_t* c, const machine_model_t* m,
+                           const estimator_window_t* w, const deviation_t* d) {
+  const dq_t h_a = deviation_angle_sensitivity(m, d);
+  const dq_t h_s = d->turn_q20;
   // span / N / sigma turns a slope into a current difference in units of its noise.
   const int32_t scale_q20 = q_mul_sat(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
   collect(n, q_mul_sat(h_a.d, scale_q20, 26), q_mul_sat(h_s.d, scale_q20, 32),
-          q_mul_sat(d.residual_q20.d, scale_q20, 20));
+          q_mul_sat(d->residual_q20.d, scale_q20, 20));
   collect(n, q_mul_sat(h_a.q, scale_q20, 26), q_mul_sat(h_s.q, scale_q20, 32),
-          q_mul_sat(d.residual_q20.q, scale_q20, 20));
+          q_mul_sat(d->residual_q20.q, scale_q20, 20));
 }
 
 // (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16.
@@ -108,7 +161,7 @@ static int32_t scored(gain_t k, const information_t* n) {
   return q_add_sat(q_mul_sat(k.a, n->a, 20), q_mul_sat(k.s, n->s, 20));
 }
 
-static void update(deviation_observer_t* s, const information_t* n) {
+static void update(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
   const gain_t ga = times_information(n, s->p_aa, s->p_as);
   const gain_t gs = times_information(n, s->p_as, s->p_ss);
   const gain_t gl = times_information(n, s->p_al, s->p_sl);
@@ -124,7 +177,9 @@ static void update(deviation_observer_t* s, const information_t* n) {
   const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
   s->angle_bam += (uint32_t)q_mul_sat(scored(ka, n), BAM_PER_UNIT, 20);
   s->speed_bpp += q_mul_sat(scored(ks, n), BPP_PER_UNIT, 20);
-  s->load_accel_q8 = q_sub_sat(s->load_accel_q8, q_mul_sat(scored(kl, n), ACCEL_Q8_PER_UNIT, 20));
+  const int32_t load_q8 = -q_mul_sat(scored(kl, n), ACCEL_Q8_PER_UNIT, 20);
+  s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
+  cogging_learn(&s->cogging, &c->cogging, s->speed_bpp, load_q8);
   s->p_sl = reduced(s->p_sl, ks, gl);
   s->p_ll = positive(reduced(s->p_ll, kl, gl));
   s->p_al = reduced(s->p_al, ka, gl);
@@ -151,14 +206,19 @@ static void bound(information_t* n) {
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in) {
   information_t n = {0, 0, 0, 0, 0};
+  deviation_t d[ESTIMATOR_WINDOWS];
   predict(s, c, in->torque_accel_q8);
   for (uint16_t k = 0; k < in->window_count; k++) {
-    if (c->zero_vectors_only && !in->windows[k].zero_vector) continue;
-    collect_window(&n, s, c, in->model, &in->windows[k]);
+    const estimator_window_t* const w = &in->windows[k];
+    d[k] = deviation_evaluate(in->model, w, s->angle_bam, s->speed_bpp);
+    if (!c->zero_vectors_only || w->zero_vector) collect_window(&n, c, in->model, w, &d[k]);
   }
+  regression_evaluate(&s->regression, d, in);
   bound(&n);
-  update(s, &n);
+  admit_load_change(s, c, &n);
+  update(s, c, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);
-  const estimator_output_t out = {s->angle_bam, s->speed_bpp, s->load_accel_q8, q_max(certainty, 0)};
+  const int32_t load_q8 = q_add_sat(s->load_accel_q8, s->cogging.now_q8);
+  const estimator_output_t out = {s->angle_bam, s->speed_bpp, load_q8, q_max(certainty, 0)};
   return out;
 }

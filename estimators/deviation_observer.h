@@ -8,17 +8,34 @@
 // Per period all windows are compressed into a 2 x 2 information matrix and a score, so that one update of the 3 x 3
 // covariance and one division do for any number of windows: P+ = P (1 + I P)^-1, x+ = x + P+ b.
 //
+// How much the load may change is not known beforehand: a shaft that turns evenly wants a filter that is slow, a load
+// step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond four of its
+// standard deviations is a load that changes.
+//
 // Units: angle 2^-6 rad, speed 2^-12 rad per period, acceleration 2^-18 rad per period^2 (that is: time in units of 64
 // periods), which keep every covariance between 0.01 and 1000: Q20. Information is Q24, scores Q20.
 
 #ifndef STILLSPIN_ESTIMATORS_DEVIATION_OBSERVER_H
 #define STILLSPIN_ESTIMATORS_DEVIATION_OBSERVER_H
 
-#include "estimators/estimator.h"
+#include "estimators/cogging.h"
+#include "estimators/regression.h"
 
 typedef struct {
-  int32_t inverse_noise_q20;  // 1 / rms error of a current difference, 1/A, 1..1000
-  int32_t load_noise_q20;     // variance that the load gains per period, own units
+  int32_t noise_q20;            // rms error of a current difference, A, 0.001..1
+  int32_t load_rate_q20;        // load change expected in 10 ms, N m
+  int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes
+  int32_t load_step_q20;        // step of the load to look out for at a crawl, N m
+  int32_t crawl_bpp;            // electrical speed up to which it is a crawl, 1 or more
+} deviation_observer_tuning_t;
+
+typedef struct {
+  int32_t inverse_noise_q20;     // 1 / rms error of a current difference, 1/A, 1..1000
+  int32_t load_noise_q20;        // variance that the load gains per period, own units
+  int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes
+  int32_t load_step_q20;         // variance of a step of the load
+  int32_t crawl_bpp;             // at least 1
+  cogging_config_t cogging;
   bool zero_vectors_only;
 } deviation_observer_config_t;
 
@@ -28,11 +45,16 @@ typedef struct {
   int32_t load_accel_q8;
   int32_t speed_rest_q8;
   int32_t p_aa, p_as, p_al, p_ss, p_sl, p_ll;  // covariance of angle, speed, (minus) load acceleration, Q20
+  int32_t mean_score_q20;                      // of the angle, over 32 periods
+  int32_t score_power_q24;                     // over 256 periods
+  int32_t alert_q30;                           // 1 when the load has just changed, decays
+  cogging_t cogging;
+  regression_t regression;  // of the last step, at the angle before it
 } deviation_observer_t;
 
-/// Makes the configuration from an rms error in A (Q20, 0.001..1) and the load change expected in 10 ms (N m, Q20).
-void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m, int32_t noise_q20,
-                               int32_t load_rate_q20);
+/// Makes the configuration; values outside their ranges are taken to the nearest end.
+void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
+                               const deviation_observer_tuning_t* t);
 
 /// Starts with an uncertainty of 10 degrees, 20 rad/s and 3 N m or so.
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);

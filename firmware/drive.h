@@ -17,6 +17,7 @@
 #include "estimators/polarity.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
+#include "estimators/voltage_match.h"
 #include "estimators/zvv.h"
 #include "firmware/drive_api.h"
 #include "svpwm/dead_time.h"
@@ -40,7 +41,8 @@ typedef struct {
   int32_t volts_per_code_q16;
   int32_t bpp_per_rpm_q8;
   int32_t rpm_per_bpp_q40;
-  int32_t adapt_share_q30;
+  int32_t adapt_share_q30;       // per period, of admittances and sensor match
+  int32_t drift_share_q30;       // of resistance and flux
   int32_t torque_per_accel_q24;  // N m (Q16) per electrical acceleration (Q8), Q24
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump

@@ -5,7 +5,10 @@
 #include "hal/hal_adc.h"
 
 #define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
-#define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
+#define CRAWL_MIN_RPM_Q16 65536L       // where cogging is learnt
+#define CRAWL_MAX_RPM_Q16 655360L
+#define COGGING_MAX_Q20 1048576L    // 1 N m
+#define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
@@ -84,19 +87,30 @@ static bool load_control(drive_config_t* c) {
          current_controller_design(&c->current, &c->nameplate, p->current_bandwidth, DRIVE_PERIOD_US);
 }
 
+// 1 / (time constant in periods), Q30, of a time in ms, Q8; 30 s means none.
+static int32_t share_per_period_q30(int32_t time_q8) {
+  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256, time_q8 * DRIVE_PERIODS_PER_MS, 30);
+}
+
 static bool load_position(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->avv.bandwidth_short_q30 = bandwidth_step_q30(p->avv_bandwidth_short);
   c->avv.bandwidth_long_q30 = bandwidth_step_q30(q_max(p->avv_bandwidth_long, p->avv_bandwidth_short));
   c->zvv.kp_q30 = bandwidth_step_q30(p->zvv_proportional);
   c->zvv.ki_q40 = q_mul(p->zvv_integral, 11258999L, 18);  // rad/s^2 Q8 * T^2 as Q40
-  deviation_observer_design(&c->observer, &c->nameplate, q_mul(p->observer_noise, 1073741824L, 18) / 1000,
-                            p->observer_load_rate);
+  const deviation_observer_tuning_t observer = {q_mul(p->observer_noise, 1073741824L, 18) / 1000, p->observer_load_rate,
+                                                p->observer_load_quiet, p->observer_load_step,
+                                                q_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24)};
+  deviation_observer_design(&c->observer, &c->nameplate, &observer);
+  c->observer.cogging.order = p->cogging_order;
+  c->observer.cogging.slow_bpp = q_mul(CRAWL_MIN_RPM_Q16, c->bpp_per_rpm_q8, 24);
+  c->observer.cogging.fast_bpp = c->observer.crawl_bpp;
+  c->observer.cogging.bound_q8 = q_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24);
   c->observer.zero_vectors_only = p->observer_windows == 0;
   const int32_t low = q_mul_sat(p->blend_low, c->bpp_per_rpm_q8, 24);
   const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
-  // 2^30 / (time constant in periods); 30 s means none.
-  c->adapt_share_q30 = (p->adapt_time >= 30000L * 256L) ? 0 : q_div(256, p->adapt_time * DRIVE_PERIODS_PER_MS, 30);
+  c->adapt_share_q30 = share_per_period_q30(p->adapt_time);
+  c->drift_share_q30 = share_per_period_q30(p->drift_time);
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);

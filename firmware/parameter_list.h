@@ -41,7 +41,7 @@ PARAMETER(44, zero_time, "us", 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept besi
 PARAMETER(45, settle_time, "us", 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
 
 // Position and speed
-PARAMETER(60, position_source, "", 0, 0, 0, 4, 2, STOPPED,
+PARAMETER(60, position_source, "", 0, 0, 0, 4, 4, STOPPED,
           "0 encoder, 1 paper (q-axis ZVV and AVV), 2 deviation observer and AVV, 3 AVV alone, 4 observer alone")
 PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED,
           "mechanical speed below which the low-speed estimator is used")
@@ -51,12 +51,19 @@ PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "trackin
 PARAMETER(65, adapt_time, "ms", 8, 0, 5, 30000, 50, ALWAYS, "time constant of the admittance adaptation; 30000 is off")
 PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms error of a current difference over a window")
 PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 60, ALWAYS, "load change per 10 ms that the observer expects")
+PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,
+          "the same at a crawl, while nothing shows that the load changes")
+PARAMETER(77, observer_load_step, "Nm", 20, 2, 1, 10000, 200, ALWAYS,
+          "step of the load that it looks out for at a crawl")
+PARAMETER(76, cogging_order, "", 0, 0, 0, 60, 6, ALWAYS, "waves of cogging per electrical turn; 0 learns none")
 PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
 PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 40, ALWAYS, "Kp of the paper's ZVV observer")
 PARAMETER(70, zvv_integral, "rad/s2", 8, 1, 0, 20000, 40, ALWAYS, "Ki of the paper's ZVV observer")
 PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS,
           "d-axis current below the blend, makes the ZVV deviation observable")
+PARAMETER(74, drift_time, "ms", 8, 0, 50, 30000, 2000, ALWAYS,
+          "time constant of the adaptation of resistance and flux; 30000 is off")
 PARAMETER(73, encoder_counts, "", 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
 // Control

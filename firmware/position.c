@@ -10,25 +10,35 @@
 
 typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_input_t* in);
 
-static void match_sensors(drive_t* d) {
+// What the regression tells of machine and sensors is taken over slowly.
+static void adapt(drive_t* d, const regression_t* r) {
+  admittance_step(&d->model, r, d->config.adapt_share_q30);
   if (!d->modulation.state.is_alternating) return;
-  sensor_match_step(&d->position.sensors, &d->position.avv.regression, d->model.yd_q30 / 2 + d->model.yq_q30 / 2,
-                    d->config.adapt_share_q30);
+  sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
   d->config.slopes.mismatch_q30 = d->position.sensors.mismatch_q30;
 }
 
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
-  if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) {
-    admittance_step(&d->model, &d->position.avv.regression, d->config.adapt_share_q30);
-    match_sensors(d);
-  }
+  if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) adapt(d, &d->position.avv.regression);
   return d->position.high;
 }
 
 static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in) {
   d->position.low = deviation_observer_step(&d->position.observer, &d->config.observer, in);
   return d->position.low;
+}
+
+// One estimator for all speeds; the regression is that of its own deviations.
+static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
+  const estimator_output_t out = step_observer(d, in);
+  const regression_t* const r = &d->position.observer.regression;
+  if (q_abs_sat(avv_angle_error(r, &d->model)) < ADAPT_ERROR_MAX_BAM) {
+    adapt(d, r);
+    voltage_match_step(&d->model, r, machine_speed_rad_q30(out.speed_bpp), d->config.drift_share_q30);
+  }
+  d->position.high = out;
+  return out;
 }
 
 static estimator_output_t source_observer_avv(drive_t* d, const estimator_input_t* in) {
@@ -62,7 +72,8 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
   return out;
 }
 
-static const position_source_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv, step_observer};
+static const position_source_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv,
+                                            source_observer};
 
 static void measure_current(drive_t* d) {
   const drive_samples_t* const s = &d->samples;

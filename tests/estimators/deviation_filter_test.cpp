@@ -2,6 +2,7 @@
 // covariance that stays positive, no overflow.
 
 #include "tests/estimators/machine.hpp"
+#include "tests/estimators/observer.hpp"
 
 extern "C" {
 #include "estimators/deviation_observer.h"
@@ -116,7 +117,7 @@ TEST(DeviationFilter, AgreesWithDoublePrecisionOverALongRandomRun) {
   const machine_model_t m = model_of(motor);
   const double noise = 0.05, load_rate = 0.6;
   deviation_observer_config_t c;
-  deviation_observer_design(&c, &m, raw(noise, 20), raw(load_rate, 20));
+  design_plain(&c, &m, raw(noise, 20), raw(load_rate, 20));
   c.zero_vectors_only = false;
   deviation_observer_t s;
   deviation_observer_preset(&s, 0, 0, 0);
@@ -177,7 +178,7 @@ TEST(DeviationFilter, WaitsWithoutInformation) {
   const Motor motor;
   const machine_model_t m = model_of(motor);
   deviation_observer_config_t c;
-  deviation_observer_design(&c, &m, raw(0.05, 20), raw(5.0, 20));
+  design_plain(&c, &m, raw(0.05, 20), raw(5.0, 20));
   for (const bool zero_windows : {false, true}) {
     c.zero_vectors_only = true;
     deviation_observer_t s;
@@ -210,7 +211,7 @@ TEST(DeviationFilter, SurvivesAnyWindow) {
   const Motor motor;
   const machine_model_t m = model_of(motor);
   deviation_observer_config_t c;
-  deviation_observer_design(&c, &m, raw(0.001, 20), raw(5.0, 20));
+  design_plain(&c, &m, raw(0.001, 20), raw(5.0, 20));
   c.zero_vectors_only = false;
   deviation_observer_t s;
   deviation_observer_preset(&s, 0, 0, 0);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "tests/estimators/machine_windows.hpp"
+#include "tests/estimators/observer.hpp"
 
 extern "C" {
 #include "estimators/deviation_observer.h"
@@ -114,7 +115,7 @@ TEST_P(AgainstEkf, AgreesOver2000Periods) {
   const Motor m;
   const machine_model_t model = model_of(m);
   deviation_observer_config_t config = {};
-  deviation_observer_design(&config, &model, raw(c.noise, 20), raw(0.6, 20));
+  design_plain(&config, &model, raw(c.noise, 20), raw(0.6, 20));
   config.zero_vectors_only = c.zero_vectors_only;
   const double per_torque = m.pole_pairs / m.inertia * kPeriod * kPeriod;  // rad per period^2 and N m
   const double load_variance = std::pow(0.6 * per_torque, 2) / 100.0;
@@ -171,8 +172,7 @@ TEST(DeviationObserver, VariancesStayPositiveUnderAbuse) {
   deviation_observer_preset(&s, 0, 0, 0);
   for (int n = 0; n < 100000; ++n) {
     if (n % 5000 == 0) {
-      deviation_observer_design(&config, &model, raw(random.log_between(0.001, 1.0), 20),
-                                raw(random.log_between(0.01, 100.0), 20));
+      design_plain(&config, &model, raw(random.log_between(0.001, 1.0), 20), raw(random.log_between(0.01, 100.0), 20));
       config.zero_vectors_only = random.below(3) == 0;
     }
     if (n % 9973 == 0) deviation_observer_preset(&s, bam(random.between(-3.0, 3.0)), bpp(random.between(-900, 900)), 0);
@@ -200,7 +200,7 @@ TEST(DeviationObserver, VariancesStayPositiveUnderAbuse) {
 TEST(DeviationObserver, UncertaintyGrowsWithoutWindowsAndShrinksWithThem) {
   const machine_model_t model = model_of(Motor{});
   deviation_observer_config_t config = {};
-  deviation_observer_design(&config, &model, raw(0.1, 20), raw(0.6, 20));
+  design_plain(&config, &model, raw(0.1, 20), raw(0.6, 20));
   deviation_observer_t s = {};
   deviation_observer_preset(&s, 0, 0, 0);
   const std::int32_t fresh = s.p_aa;
