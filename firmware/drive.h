@@ -25,6 +25,7 @@
 
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
+#define ADAPTATION_TURN 5u  // periods in which every adaptation has its turn
 
 /// Derived from the parameters, see drive_config.c.
 typedef struct {
@@ -41,7 +42,7 @@ typedef struct {
   int32_t volts_per_code_q16;
   int32_t bpp_per_rpm_q8;
   int32_t rpm_per_bpp_q40;
-  int32_t adapt_share_q30;       // per period, of admittances and sensor match
+  int32_t adapt_share_q30;       // per turn, of admittances and sensor match
   int32_t drift_share_q30;       // of resistance and flux
   int32_t torque_per_accel_q24;  // N m (Q16) per electrical acceleration (Q8), Q24
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
@@ -66,6 +67,7 @@ typedef struct {
   blend_t blend;
   sensor_match_t sensors;
   tracking_observer_t encoder;
+  uint16_t adaptation;          // whose turn it is
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
 } drive_position_t;
 

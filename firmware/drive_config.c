@@ -87,9 +87,9 @@ static bool load_control(drive_config_t* c) {
          current_controller_design(&c->current, &c->nameplate, p->current_bandwidth, DRIVE_PERIOD_US);
 }
 
-// 1 / (time constant in periods), Q30, of a time in ms, Q8; 30 s means none.
-static int32_t share_per_period_q30(int32_t time_q8) {
-  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256, time_q8 * DRIVE_PERIODS_PER_MS, 30);
+// 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.
+static int32_t share_per_turn_q30(int32_t time_q8) {
+  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)ADAPTATION_TURN, time_q8 * DRIVE_PERIODS_PER_MS, 30);
 }
 
 static bool load_position(drive_config_t* c) {
@@ -109,8 +109,8 @@ static bool load_position(drive_config_t* c) {
   c->observer.zero_vectors_only = p->observer_windows == 0;
   const int32_t low = q_mul_sat(p->blend_low, c->bpp_per_rpm_q8, 24);
   const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
-  c->adapt_share_q30 = share_per_period_q30(p->adapt_time);
-  c->drift_share_q30 = share_per_period_q30(p->drift_time);
+  c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
+  c->drift_share_q30 = share_per_turn_q30(p->drift_time);
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);

@@ -48,7 +48,8 @@ PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED,
 PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical speed above which AVV is used")
 PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 200, ALWAYS, "tracking observer with long windows")
 PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer with short windows")
-PARAMETER(65, adapt_time, "ms", 8, 0, 5, 30000, 50, ALWAYS, "time constant of the admittance adaptation; 30000 is off")
+PARAMETER(65, adapt_time, "ms", 8, 0, 20, 30000, 150, ALWAYS,
+          "time constant of the adaptation of admittances and sensors; 30000 is off")
 PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms error of a current difference over a window")
 PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 60, ALWAYS, "load change per 10 ms that the observer expects")
 PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,

@@ -10,12 +10,28 @@
 
 typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_input_t* in);
 
-// What the regression tells of machine and sensors is taken over slowly.
+// What the regression tells of machine and sensors is taken over slowly, one thing per period in turn. The turn has
+// five places because five has no factor in common with the six periods in which the alternating layout repeats: each
+// adaptation sees every direction of the voltage.
 static void adapt(drive_t* d, const regression_t* r) {
-  admittance_step(&d->model, r, d->config.adapt_share_q30);
-  if (!d->modulation.state.is_alternating) return;
-  sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
-  d->config.slopes.mismatch_q30 = d->position.sensors.mismatch_q30;
+  const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
+  d->position.adaptation = (uint16_t)((d->position.adaptation + 1u) % ADAPTATION_TURN);
+  switch (d->position.adaptation) {
+    case 0:
+      admittance_step(&d->model, r, d->config.adapt_share_q30);
+      break;
+    case 1:
+      if (!d->modulation.state.is_alternating) break;
+      sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
+      d->config.slopes.mismatch_q30 = d->position.sensors.mismatch_q30;
+      break;
+    case 2:
+      if (d->state == DRIVE_RUN || d->state == DRIVE_STOP)
+        voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
+      break;
+    default:
+      break;
+  }
 }
 
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
@@ -33,10 +49,7 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
 static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
-  if (q_abs_sat(avv_angle_error(r, &d->model)) < ADAPT_ERROR_MAX_BAM) {
-    adapt(d, r);
-    voltage_match_step(&d->model, r, machine_speed_rad_q30(out.speed_bpp), d->config.drift_share_q30);
-  }
+  if (q_abs_sat(avv_angle_error(r, &d->model)) < ADAPT_ERROR_MAX_BAM) adapt(d, r);
   d->position.high = out;
   return out;
 }
