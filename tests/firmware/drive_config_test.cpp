@@ -72,7 +72,7 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.zvv.kp_q30, 30), 4.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.zvv.ki_q40, 40) / (4.0 * kPeriod * kPeriod), 1.0, 1e-4);
   EXPECT_NEAR(real(c.observer.inverse_noise_q20, 20), 10.0, 0.01);  // 100 mA
-  EXPECT_NEAR(real(c.adapt_share_q30, 30), kPeriod / 50e-3, 1e-8);
+  EXPECT_NEAR(real(c.adapt_share_q30, 30), ADAPTATION_TURN * kPeriod / 150e-3, 1e-8);
   const double newton_metres =
       m.inertia / m.pole_pairs * kTurn / std::ldexp(kPeriod * kPeriod, 32);  // per bpp a period
   EXPECT_NEAR(real(c.torque_per_accel_q24, 24) / (256.0 * newton_metres), 1.0, 1e-3);
