@@ -14,10 +14,12 @@
 #include <memory>
 
 #include "firmware/drive_api.h"
+#include "sim_host/bench/replay.hpp"
 #include "sim_host/bench/run.hpp"
 
 namespace nb = nanobind;
 using namespace stillspin::bench;
+using stillspin::plant::Tick;
 
 namespace {
 
@@ -95,6 +97,23 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
     result = run(request);
   }
   return {signals_of(result), result.completed, result.reason, result.faults, result.stats};
+}
+
+nb::dict replay_in_python(const nb::dict& plant, const std::vector<std::tuple<Tick, int, bool, bool>>& edges,
+                          const std::vector<std::pair<Tick, double>>& load, const std::vector<Tick>& at) {
+  ReplayRequest request;
+  request.setup = setup_from(plant, 1);
+  for (const auto& [tick, leg, upper, lower] : edges) request.edges.push_back({tick, leg, upper, lower});
+  for (const auto& [tick, torque] : load) request.load.push_back({tick, torque});
+  request.at = at;
+  std::vector<std::vector<double>> values;
+  {
+    nb::gil_scoped_release release;
+    values = replay(request);
+  }
+  nb::dict result;
+  for (std::size_t k = 0; k < values.size(); k++) result[replay_columns()[k].name] = array(std::move(values[k]));
+  return result;
 }
 
 nb::list parameter_rows() {
@@ -176,4 +195,6 @@ NB_MODULE(_core, m) {
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");
   m.def("signals", &signal_rows, "Name, unit and meaning of the recorded columns.");
   m.def("plant_schema", &schema, "Section -> key -> unit, minimum, maximum, default, help of the plant.");
+  m.def("replay", &replay_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("edges"), nb::arg("load"), nb::arg("at"),
+        "The plant alone under a given sequence of gate edges; see core.py.");
 }

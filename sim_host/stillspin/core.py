@@ -20,6 +20,7 @@ Plant = dict[str, dict[str, Value]]
 Signals = dict[str, npt.NDArray[Any]]
 Command = tuple[float, str, float]
 LoadPoint = tuple[float, float]
+GateEdge = tuple[int, int, bool, bool]  # tick, leg, upper, lower
 Progress = Callable[[float], bool]
 
 
@@ -67,6 +68,21 @@ class NativeCore(Protocol):
 
     def plant_schema(self) -> dict[str, dict[str, dict[str, Any]]]:
         """Section -> key -> unit, minimum, maximum, default, help of the plant."""
+        ...
+
+    def replay(
+        self,
+        *,
+        plant: Plant,
+        edges: list[GateEdge],
+        load: list[tuple[int, float]],
+        at: list[int],
+    ) -> Mapping[str, npt.NDArray[Any]]:
+        """The plant alone, open loop: gate edges and load points in, true values at the ticks `at` out.
+
+        A tick is 10 ns from power-on. Columns: i_a, i_b, i_c, i_d, i_q (A), torque (N m), speed (rad/s mechanical),
+        angle (rad mechanical, not wrapped).
+        """
         ...
 
 
