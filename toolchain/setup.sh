@@ -57,10 +57,13 @@ apt() {
     apt-get -q -o DPkg::Lock::Timeout=300 "$@" </dev/null
 }
 
+# `apt-cache show` succeeds for a package that others only mention; what can be installed has a candidate version.
+is_installable() { LC_ALL=C apt-cache policy "$1" 2>/dev/null | grep 'Candidate: [^(]' >/dev/null; }
+
 newest_clang_package() {
   local version
   for version in 22 21 20 19 18 17 16 15 14; do
-    if apt-cache show "clang-$version" >/dev/null 2>&1; then
+    if is_installable "clang-$version"; then
       echo "clang-$version"
       return
     fi

@@ -99,7 +99,12 @@ def test_a_machine_without_clang_gets_the_newest_in_the_lists(machine: Machine) 
     for version in range(14, 23):
         machine.tool(f"clang-{version}", status=1)
     machine.tool("clang", status=1)
-    machine.tool("apt-cache", "[[ ${!#} =~ ^clang-(14|16|19)$ ]] || exit 100")
+    # As apt-cache does: 21 is only mentioned by another package, 22 unknown.
+    machine.tool(
+        "apt-cache",
+        "case ${!#} in clang-14 | clang-16 | clang-19) echo '  Candidate: 1:1.0-1' ;;"
+        " clang-21) echo '  Candidate: (none)' ;; esac",
+    )
     machine.tool("apt-get")
     run = machine.setup()
     assert run.returncode == 0, run.stderr
