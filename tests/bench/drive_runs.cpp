@@ -1,6 +1,7 @@
 #include "tests/bench/drive_runs.hpp"
 
 #include <stdexcept>
+#include <string>
 
 namespace stillspin::bench {
 
@@ -21,11 +22,11 @@ RunRequest noisy_request(double duration, std::uint64_t seed) {
   return request;
 }
 
-const std::vector<double>& column(const RunResult& result, const std::string& name) {
+const std::vector<double>& column(const RunResult& result, std::string_view name) {
   for (std::size_t k = 0; k < columns().size(); ++k) {
     if (name == columns()[k].name) return result.values.at(k);
   }
-  throw std::out_of_range("no column " + name);
+  throw std::out_of_range("no column " + std::string(name));
 }
 
 }  // namespace stillspin::bench

@@ -3,7 +3,7 @@
 #ifndef STILLSPIN_TESTS_BENCH_DRIVE_RUNS_HPP
 #define STILLSPIN_TESTS_BENCH_DRIVE_RUNS_HPP
 
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim_host/bench/run.hpp"
@@ -17,7 +17,7 @@ RunRequest encoder_request(double duration);
 RunRequest noisy_request(double duration, std::uint64_t seed);
 
 /// A column of the record by its name.
-const std::vector<double>& column(const RunResult& result, const std::string& name);
+const std::vector<double>& column(const RunResult& result, std::string_view name);
 
 }  // namespace stillspin::bench
 
