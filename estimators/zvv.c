@@ -12,15 +12,45 @@ void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp) {
   s->integral_q8bpp = q_shl_sat(speed_bpp, 8);
 }
 
-// D of one window, A per period, Q20 (22).
-static int32_t deviation_q20(const zvv_t* s, const machine_model_t* m, const estimator_window_t* w) {
-  const rotation_t r = frame_rotation(deviation_angle_at(s->angle_bam, s->speed_bpp, w->middle_tick));
+// D (22) and its voltage over the windows; both are sums until mean_deviation divides them.
+typedef struct {
+  int32_t deviation_q20;  // A per period
+  int32_t volts_q16;      // what the devices take along the d-axis, V
+} seen_t;
+
+// One window. The frame turns with speed_bpp; emf_bpp is the speed that D takes off.
+static void see(seen_t* sum, const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
+                int32_t speed_bpp, int32_t emf_bpp) {
+  const rotation_t r = frame_rotation(deviation_angle_at(angle_bam, speed_bpp, w->middle_tick));
   const dq_t slope = frame_park(w->slope_q20, r);
   const dq_t current = frame_park(w->current_q20, r);
   const dq_t drop = frame_park(w->voltage_q16, r);
-  const int32_t w_q30 = machine_speed_rad_q30(q_shr(s->integral_q8bpp, 8));
+  const int32_t w_q30 = machine_speed_rad_q30(emf_bpp);
   const int32_t volts_q16 = q_mul(m->rs_q24, current.q, 28) + q_mul(m->emf_q16, w_q30, 30) - drop.q;
-  return slope.q + q_mul(m->yq_q30, volts_q16, 26);
+  sum->deviation_q20 += slope.q + q_mul(m->yq_q30, volts_q16, 26);
+  sum->volts_q16 -= drop.d;
+}
+
+static bool mean_deviation(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t emf_bpp,
+                           seen_t* mean) {
+  seen_t sum = {0, 0};
+  int32_t count = 0;
+  for (uint16_t k = 0; k < in->window_count; k++) {
+    if (!in->windows[k].zero_vector) continue;
+    see(&sum, in->model, &in->windows[k], angle_bam, speed_bpp, emf_bpp);
+    count++;
+  }
+  if (count == 0) return false;
+  mean->deviation_q20 = sum.deviation_q20 / count;
+  mean->volts_q16 = sum.volts_q16 / count;
+  return true;
+}
+
+bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t* deviation_q20) {
+  seen_t mean;
+  if (!mean_deviation(in, angle_bam, speed_bpp, speed_bpp, &mean)) return false;
+  *deviation_q20 = mean.deviation_q20;
+  return true;
 }
 
 static void correct(zvv_t* s, const zvv_config_t* c, int32_t error_bam) {
@@ -31,20 +61,16 @@ static void correct(zvv_t* s, const zvv_config_t* c, int32_t error_bam) {
 
 estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in) {
   const machine_model_t* m = in->model;
-  // Kq in A per period and rad (24).
-  const int32_t volts_q16 = q_mul(m->rs_q24, c->id_reference_q20, 28);
-  const int32_t kq_q20 = -q_mul(m->yd_q30 - m->yq_q30, volts_q16, 26);
-  int32_t sum_q20 = 0;
-  int32_t count = 0;
+  seen_t mean = {s->deviation_q20, 0};
   s->angle_bam += (uint32_t)s->speed_bpp;
-  for (uint16_t k = 0; k < in->window_count; k++) {
-    if (!in->windows[k].zero_vector) continue;
-    sum_q20 += deviation_q20(s, m, &in->windows[k]);
-    count++;
-  }
-  const bool usable = count > 0 && kq_q20 != 0;
+  const bool seen = mean_deviation(in, s->angle_bam, s->speed_bpp, q_shr(s->integral_q8bpp, 8), &mean);
+  s->deviation_q20 = mean.deviation_q20;
+  // Kq in A per period and rad (24). What the devices take along the d-axis acts like R i_d.
+  const int32_t volts_q16 = q_mul(m->rs_q24, c->id_reference_q20, 28) + mean.volts_q16;
+  const int32_t kq_q20 = -q_mul(m->yd_q30 - m->yq_q30, volts_q16, 26);
+  const bool usable = seen && kq_q20 != 0;
   if (usable) {
-    const int32_t error_rad_q24 = q_clamp(q_div(sum_q20 / count, kq_q20, 24), -16777216L, 16777216L);
+    const int32_t error_rad_q24 = q_clamp(q_div(s->deviation_q20, kq_q20, 24), -16777216L, 16777216L);
     correct(s, c, q_clamp(q_mul(error_rad_q24, RAD_Q24_TO_BAM, 24), -ERROR_LIMIT_BAM, ERROR_LIMIT_BAM));
   }
   const estimator_output_t out = {s->angle_bam, s->speed_bpp, 0, usable ? 32767 : 0};

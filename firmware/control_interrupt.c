@@ -9,9 +9,10 @@ void drive_control_interrupt(void) {
   drive_t* const d = &drive;
   hal_irq_control_begin();
   drive_read_samples(d);
-  hal_profile_step(CYCLES_READ_SAMPLES);
+  const bool windows = d->samples.count > 0u;
+  hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);
   drive_estimate(d);
-  hal_profile_step(CYCLES_ESTIMATE);
+  hal_profile_step(windows ? CYCLES_ESTIMATE : CYCLES_ESTIMATE_BLIND);
   drive_protect(d);
   drive_sequence(d);
   hal_profile_step(CYCLES_SUPERVISE);

@@ -4,7 +4,7 @@
 
 void drive_control_current(drive_t* d) {
   drive_control_t* const c = &d->control;
-  if (!c->closed) {
+  if (!c->closed || d->hysteresis.running) {
     const dq_t none = {0, 0};
     c->command_q16 = none;
     current_controller_reset(&c->current);

@@ -20,6 +20,7 @@
 #include "estimators/voltage_match.h"
 #include "estimators/zvv.h"
 #include "firmware/drive_api.h"
+#include "firmware/hysteresis.h"
 #include "svpwm/dead_time.h"
 #include "svpwm/modulator.h"
 
@@ -40,6 +41,7 @@ typedef struct {
   blend_config_t blend;
   slopes_config_t slopes;
   int32_t volts_per_code_q16;
+  int32_t codes_per_amp_q16;  // ADC codes
   int32_t bpp_per_rpm_q8;
   int32_t rpm_per_bpp_q40;
   int32_t adapt_share_q30;       // per turn, of admittances and sensor match
@@ -47,6 +49,7 @@ typedef struct {
   int32_t torque_per_accel_q24;  // N m (Q16) per electrical acceleration (Q8), Q24
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
+  uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
 } drive_config_t;
 
 /// What the control interrupt knows about the last period.
@@ -69,6 +72,7 @@ typedef struct {
   tracking_observer_t encoder;
   uint16_t adaptation;          // whose turn it is
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
+  int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
 } drive_position_t;
 
 typedef struct {
@@ -88,6 +92,7 @@ typedef struct {
   modulator_t state;
   svpwm_pattern_t sampled;  // pattern of the period whose windows were just read
   svpwm_pattern_t running;  // pattern of the period that has just begun
+  ab_t asked_q16;           // voltage asked of the modulator, drops of the devices added
 } drive_modulation_t;
 
 typedef struct {
@@ -114,6 +119,7 @@ typedef struct {
   drive_position_t position;
   drive_control_t control;
   drive_modulation_t modulation;
+  hysteresis_t hysteresis;
   drive_supervision_t supervision;
   drive_request_t request;
   drive_signals_t signals;
@@ -146,6 +152,11 @@ void drive_control_speed(drive_t* d);    // speed_task.c
 void drive_control_current(drive_t* d);  // current_task.c
 void drive_modulate(drive_t* d);         // modulation.c
 void drive_publish(drive_t* d);          // drive_api.c
+
+// Hysteresis in the place of current control and modulation (hysteresis.c).
+bool drive_hysteresis(drive_t* d);            // switches it on and off with the state; true while it is on
+void drive_hysteresis_samples(drive_t* d);    // in the place of the windows
+void drive_hysteresis_slice(hysteresis_t* h);  // the slice interrupt
 
 void drive_control_interrupt(void);
 void drive_window_interrupt(void);

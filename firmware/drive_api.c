@@ -64,6 +64,9 @@ void drive_publish(drive_t* d) {
   s->current_q_reference = d->control.reference_q20.q;
   s->voltage_d = d->control.command_q16.d;
   s->voltage_q = d->control.command_q16.q;
+  s->voltage_alpha = d->modulation.asked_q16.alpha;
+  s->voltage_beta = d->modulation.asked_q16.beta;
+  s->deviation_q = q_mul_sat(d->position.deviation_q20, 10000L, 12);  // per period to per second, Q20 to Q8
   s->link_voltage = d->samples.link_q16;
   s->load_torque = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 24);
   s->windows = d->samples.count;

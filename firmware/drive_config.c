@@ -111,7 +111,9 @@ static bool load_position(drive_config_t* c) {
   const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
   c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
   c->drift_share_q30 = share_per_turn_q30(p->drift_time);
+  c->encoder_trim_bam = (uint32_t)q_mul(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
+  c->codes_per_amp_q16 = q_div(65536L, c->slopes.amps_per_code_q30, 30);
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);
 }

@@ -8,10 +8,14 @@
 #define STILLSPIN_FIRMWARE_ISR_CYCLES_H
 
 #define CYCLES_READ_SAMPLES 1200u
+#define CYCLES_READ_SLICES 400u  // no windows to evaluate
 #define CYCLES_ESTIMATE 4500u
+#define CYCLES_ESTIMATE_BLIND 900u  // without windows: the observers only predict
 #define CYCLES_SUPERVISE 100u
 #define CYCLES_CONTROL 500u
 #define CYCLES_MODULATE 2200u
+#define CYCLES_REFER 550u  // references of the hysteresis
 #define CYCLES_WINDOW 60u
+#define CYCLES_SLICE 120u
 
 #endif

@@ -42,12 +42,14 @@ static void write_frame(drive_t* d, const svpwm_pattern_t* p, const svpwm_pulses
 }
 
 void drive_modulate(drive_t* d) {
+  if (drive_hysteresis(d)) return;
   drive_control_t* const c = &d->control;
   const rotation_t r = frame_rotation(angle_at_action(d));
   const ab_t current_q20 = frame_inverse_park(c->measured_q20, r);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);
   const ab_t wanted_q16 = frame_inverse_park(c->command_q16, r);
   const ab_t asked_q16 = {wanted_q16.alpha + drop_q16.alpha, wanted_q16.beta + drop_q16.beta};
+  d->modulation.asked_q16 = asked_q16;
   svpwm_pattern_t pattern;
   svpwm_pulses_t command;
   const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d), asked_q16,

@@ -32,8 +32,8 @@ PARAMETER(29, link_maximum, "V", 16, 1, 100, 15000, 4200, STOPPED, "DC-link volt
 PARAMETER(30, trip_current, "A", 20, 2, 50, 1950, 1800, STOPPED, "software over-current limit on a sampled phase")
 
 // Excitation
-PARAMETER(40, excitation, "", 0, 0, 0, 3, 3, STOPPED,
-          "0 centred, 1 extended, 2 alternating, 3 what the position source wants")
+PARAMETER(40, excitation, "", 0, 0, 0, 4, 3, STOPPED,
+          "0 centred, 1 extended, 2 alternating, 3 what the position source wants, 4 one long zero vector")
 PARAMETER(41, pulse_time, "us", 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of the alternating layout")
 PARAMETER(42, window_minimum, "us", 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
 PARAMETER(43, window_maximum, "us", 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")
@@ -101,3 +101,14 @@ PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
 PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 20, ALWAYS, "for how long")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED, "test the polarity of the magnet at start")
+
+// Encoder as reference, hysteresis control
+PARAMETER(170, encoder_trim, "deg", 16, 2, -18000, 18000, 0, ALWAYS,
+          "added to the electrical angle of the encoder: a deliberate angle error")
+PARAMETER(171, current_law, "", 0, 0, 0, 1, 0, STOPPED, "0 PI with space vectors, 1 hysteresis; 1 needs the encoder")
+PARAMETER(172, hysteresis_band, "A", 20, 3, 20, 5000, 400, ALWAYS,
+          "half width of the hysteresis, where the adaptation begins")
+PARAMETER(173, hysteresis_frequency, "kHz", 16, 2, 0, 2500, 1000, ALWAYS,
+          "mean switching frequency that the hysteresis adapts to; 0 keeps the band")
+PARAMETER(174, slice_time, "us", 16, 2, 500, 2000, 500, STOPPED,
+          "interval of the hysteresis' decisions, a whole part of 100 us")

@@ -4,6 +4,7 @@
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
+#include "hal/hal_pwm.h"
 
 #define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
 #define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
@@ -29,8 +30,11 @@ const char* parameter_conflict(void) {
     return "0.65 pulse_time must be settle_time + 4.5 us or more";
   if (p->position_source == 1 && q_abs_sat(p->id_low_speed) < 1048576L)
     return "position_source 1 needs id_low_speed of 1 A or more";
-  if (p->excitation == 0 && (p->position_source == 2 || p->position_source == 3))
-    return "excitation 0 has no active vectors for AVV";
+  if ((p->excitation == 0 || p->excitation == 4) && (p->position_source == 2 || p->position_source == 3))
+    return "excitation 0 and 4 have no active vectors for AVV";
+  if (p->current_law == 1 && p->position_source != 0) return "current_law 1 needs position_source 0";
+  if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
+    return "100 us must be a whole number of slice_time";
   trial = drive.config;
   return drive_config_load(&trial) ? NULL
                                    : "the machine's parameters are too extreme together: inertia, flux, inductances";

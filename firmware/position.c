@@ -64,6 +64,7 @@ static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) 
   (void)step_avv(d, in);
   d->config.zvv.id_reference_q20 = d->control.reference_q20.d;
   d->position.low = zvv_step(&d->position.zvv, &d->config.zvv, in);
+  d->position.deviation_q20 = d->position.zvv.deviation_q20;
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
@@ -78,10 +79,13 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
   tracking_observer_predict(&d->position.encoder, in->torque_accel_q8);
   tracking_observer_correct(&d->position.encoder, angle_diff_bam(angle, d->position.encoder.angle_bam),
                             d->config.avv.bandwidth_long_q30);
-  const estimator_output_t out = {d->position.encoder.angle_bam, d->position.encoder.speed_bpp,
-                                  d->position.encoder.load_accel_q8, 32767};
+  estimator_output_t out = {d->position.encoder.angle_bam, d->position.encoder.speed_bpp,
+                            d->position.encoder.load_accel_q8, 32767};
   (void)step_avv(d, in);
   d->position.low = out;
+  // Behind the observer: turning the frame is no motion of the shaft.
+  out.angle_bam += d->config.encoder_trim_bam;
+  (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &d->position.deviation_q20);
   return out;
 }
 

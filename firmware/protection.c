@@ -27,12 +27,18 @@ static bool over_current(const drive_t* d) {
   return false;
 }
 
+// Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
+static bool encoder_beside_avv(void) {
+  return parameters.position_source == 0 && parameters.current_law == 0 && parameters.excitation != EXCITATION_CENTRED &&
+         parameters.excitation != EXCITATION_LONG_ZERO;
+}
+
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
 static bool diverged(drive_t* d) {
   const int32_t limit_bam = q_mul(parameters.divergence_limit, 11930465L, 16);
   const int32_t speed_limit = q_mul_sat(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
   const int32_t apart = q_abs_sat(angle_diff_bam(d->position.low.angle_bam, d->position.high.angle_bam));
-  const bool both = parameters.position_source == 2 || parameters.position_source == 0 ||
+  const bool both = parameters.position_source == 2 || encoder_beside_avv() ||
                     (parameters.position_source == 1 && d->position.blend.region == BLEND_BOTH);
   const bool wrong = (both && apart > limit_bam) || q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
   d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + 1u) : 0u;

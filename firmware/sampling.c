@@ -22,6 +22,10 @@ void sampling_reset(void) {
 }
 
 void drive_window_interrupt(void) {
+  if (drive.hysteresis.running) {
+    drive_hysteresis_slice(&drive.hysteresis);
+    return;
+  }
   sampling_buffer_t* const b = &sampling_buffers[sampling_filling];
   hal_adc_window_t spare;
   hal_adc_read_window((b->count < ESTIMATOR_WINDOWS) ? &b->windows[b->count] : &spare);
@@ -73,6 +77,10 @@ static void filter_link(drive_t* d, const hal_adc_window_t* raw) {
 }
 
 void drive_read_samples(drive_t* d) {
+  if (d->hysteresis.running) {
+    drive_hysteresis_samples(d);
+    return;
+  }
   const sampling_buffer_t* const b = sampling_swap();
   const svpwm_pattern_t* const p = &d->modulation.sampled;
   drive_samples_t* const s = &d->samples;

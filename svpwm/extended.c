@@ -91,3 +91,11 @@ void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
     pulses->fall[k] = (int16_t)(pulses->rise[k] + on);
   }
 }
+
+void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
+  const order_t o = sort_legs(t->leg);
+  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
+    pulses->rise[k] = SVPWM_FIRST_TICK;
+    pulses->fall[k] = (int16_t)(SVPWM_FIRST_TICK + SVPWM_PULSE_MIN_TICKS + t->leg[k] - t->leg[o.lo]);
+  }
+}

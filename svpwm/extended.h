@@ -19,7 +19,10 @@ typedef struct {
 
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
-/// Plain space-vector modulation, pulses centred: the longest zero vectors, no extension.
+/// Plain space-vector modulation, pulses centred, no extension.
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
+
+/// The shortest pulses that give the voltage, at the beginning of the period: all of the zero vector in one piece.
+void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 #endif

@@ -30,6 +30,8 @@ modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, e
     svpwm_alternating(&s->alternating, &t, c->pulse_ticks, &pattern->pulses);
   } else if (excitation == EXCITATION_CENTRED) {
     svpwm_centred(&t, &pattern->pulses);
+  } else if (excitation == EXCITATION_LONG_ZERO) {
+    svpwm_long_zero(&t, &pattern->pulses);
   } else {
     svpwm_extended(&c->extended, &t, &pattern->pulses);
   }

@@ -1,3 +1,4 @@
+#include "hal/f2808/adc_sequences.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/pie.h"
 #include "hal/f2808/reg_access.h"
@@ -12,6 +13,7 @@
 #define RESULT(n) (REG_MIRROR_ADCRESULT0 + (n))
 #define SEQ2_FIRST_RESULT 8u
 #define PAIRS_IN_BURST 4u
+#define PAIRS_IN_SLICE 2u
 
 #define CONTROL2 ((uint16_t)(ADCTRL2_EPWM_SOCA_SEQ1_MASK | ADCTRL2_EPWM_SOCB_SEQ2_MASK | ADCTRL2_INT_ENA_SEQ2_MASK))
 
@@ -26,8 +28,7 @@ static void power_up(void) {
   }
 }
 
-// Back to the first slots of both sequences, without losing the triggers.
-TARGET_RAM_CODE static void reset_sequencers(void) {
+TARGET_RAM_CODE void adc_rearm(void) {
   target_write16(REG_ADCTRL2, CONTROL2 | ADCTRL2_RST_SEQ1_MASK | ADCTRL2_RST_SEQ2_MASK);
 }
 
@@ -38,16 +39,33 @@ void hal_adc_init(void) {
   power_up();
   // Two sequencers, one run a trigger, no clock divider, shortest sample window: everything 0.
   target_write16(REG_ADCTRL1, 0u);
-  target_write16(REG_ADCMAXCONV, REG_FIELD(ADCMAXCONV_MAX_CONV1, PAIRS_IN_BURST - 1u) |
-                                     REG_FIELD(ADCMAXCONV_MAX_CONV2, PAIRS_IN_BURST - 1u));
   target_write16(REG_ADCCHSELSEQ1,
                  REG_FIELD(ADCCHSELSEQ1_CONV00, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ1_CONV01, ADC_PAIR_0) |
                      REG_FIELD(ADCCHSELSEQ1_CONV02, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ1_CONV03, ADC_PAIR_0));
+  adc_sequence_windows();
+}
+
+static void set_lengths(uint16_t pairs2) {
+  target_write16(REG_ADCMAXCONV, REG_FIELD(ADCMAXCONV_MAX_CONV1, PAIRS_IN_BURST - 1u) |
+                                     REG_FIELD(ADCMAXCONV_MAX_CONV2, pairs2 - 1u));
+}
+
+void adc_sequence_windows(void) {
+  set_lengths(PAIRS_IN_BURST);
   target_write16(REG_ADCCHSELSEQ3,
                  REG_FIELD(ADCCHSELSEQ3_CONV08, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV09, ADC_PAIR_0) |
                      REG_FIELD(ADCCHSELSEQ3_CONV10, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV11, ADC_PAIR_1));
-  reset_sequencers();
+  adc_rearm();
 }
+
+void adc_sequence_slices(void) {
+  set_lengths(PAIRS_IN_SLICE);
+  target_write16(REG_ADCCHSELSEQ3,
+                 REG_FIELD(ADCCHSELSEQ3_CONV08, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV09, ADC_PAIR_1));
+  adc_rearm();
+}
+
+TARGET_RAM_CODE uint16_t adc_slice_result(uint16_t n) { return target_read16(RESULT(SEQ2_FIRST_RESULT + n)); }
 
 // Sum of every other result: one channel of `pairs` successive pairs.
 TARGET_RAM_CODE static uint16_t sum_of(uint16_t first_result, uint16_t pairs) {
@@ -65,7 +83,7 @@ TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
   window->end_b = sum_of(SEQ2_FIRST_RESULT + 1u, HAL_ADC_END_SAMPLES);
   window->link = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES));
   window->aux = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES + 1u));
-  reset_sequencers();
+  adc_rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
 }

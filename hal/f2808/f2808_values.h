@@ -28,6 +28,10 @@
 #define CMPCTL_IMMEDIATE 1u
 #define AQ_CLEAR 1u
 #define AQ_SET 2u
+#define AQSFRC_IMMEDIATE 3u  // AQCSFRC acts without a shadow
+#define AQCSFRC_NONE 0u
+#define AQCSFRC_LOW 1u
+#define AQCSFRC_HIGH 2u
 #define DBCTL_OUT_MODE_BOTH 3u
 #define DBCTL_POLSEL_HIGH_COMPLEMENTARY 2u
 #define DBCTL_IN_MODE_A 0u

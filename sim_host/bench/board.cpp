@@ -54,6 +54,7 @@ void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
   if (module >= 3) return;
   upper_[module] = a;
   lower_[module] = b;
+  probe_.edge(t, module, a, b);
   drive_leg(t, module);
 }
 
@@ -61,6 +62,7 @@ std::uint16_t Board::adc_sample(Tick t, int channel) {
   const PlantTimer timer(*this);
   switch (channel) {
     case kChannelCurrentA:
+      probe_.sample(t);
       return plant_.adc_code(t, plant::AdcInput::kCurrentA);
     case kChannelCurrentB:
       return plant_.adc_code(t, plant::AdcInput::kCurrentB);
@@ -108,6 +110,12 @@ void Board::align(Tick t) {
 }
 
 void Board::call(Tick t) {
+  if (t >= next_call_) start_period(t);
+  // Behind the listener, which may arm the probe for this very tick.
+  if (t >= probe_.next()) probe_.look(t, plant_, upper_, lower_);
+}
+
+void Board::start_period(Tick t) {
   watch_enable(t);
   watch_current(t);
   if (!aligned_) {

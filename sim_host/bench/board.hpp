@@ -7,8 +7,10 @@
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 
+#include <algorithm>
 #include <array>
 
+#include "sim_host/bench/waveform.hpp"
 #include "sim_host/chip/chip.hpp"
 #include "sim_host/plant/plant.hpp"
 
@@ -38,6 +40,7 @@ class Board : public chip::World {
   void attach(chip::Chip& chip) { chip_ = &chip; }
 
   plant::Plant& plant() { return plant_; }
+  WaveformProbe& probe() { return probe_; }
   bool gates_enabled() const { return enabled_; }
   std::uint64_t trips() const { return trips_; }
 
@@ -49,12 +52,13 @@ class Board : public chip::World {
   bool pin_level(Tick t, int pin) override;
   void on_output_pin(Tick t, int pin, bool level) override;
   std::int64_t encoder_edges(Tick t) override;
-  Tick next_call() const override { return next_call_; }
+  Tick next_call() const override { return std::min(next_call_, probe_.next()); }
   void call(Tick t) override;
 
  private:
   class PlantTimer;
   void time_periods();
+  void start_period(Tick t);
   void align(Tick t);
   void watch_enable(Tick t);
   void watch_current(Tick t);
@@ -62,6 +66,7 @@ class Board : public chip::World {
 
   plant::Plant plant_;
   PeriodListener& listener_;
+  WaveformProbe probe_;
   chip::Chip* chip_ = nullptr;
   std::array<bool, 3> upper_{};
   std::array<bool, 3> lower_{};

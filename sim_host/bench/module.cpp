@@ -59,8 +59,19 @@ nb::dict signals_of(RunResult& result) {
   return signals;
 }
 
+nb::dict waveform_of(RunResult& result) {
+  nb::dict tables;
+  for (auto& [name, table] : result.waveform) {
+    nb::dict columns_of;
+    for (auto& [column, values] : table) columns_of[column.c_str()] = array(std::move(values));
+    tables[name.c_str()] = columns_of;
+  }
+  return tables;
+}
+
 struct PythonResult {
   nb::dict signals;
+  nb::dict waveform;
   bool completed;
   std::string reason;
   std::vector<std::pair<double, std::string>> faults;
@@ -80,7 +91,8 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
                            const std::map<std::string, double>& parameters,
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
-                           int record_every, std::uint64_t seed, const nb::object& progress) {
+                           int record_every, const std::tuple<double, double, int>& waveform, std::uint64_t seed,
+                           const nb::object& progress) {
   if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
   RunRequest request;
   request.setup = setup_from(plant, seed);
@@ -90,13 +102,14 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
   request.duration = duration;
   request.max_start = max_start;
   request.record_every = record_every;
+  request.waveform = {std::get<0>(waveform), std::get<1>(waveform), std::get<2>(waveform)};
   request.progress = progress_of(progress);
   RunResult result;
   {
     nb::gil_scoped_release release;
     result = run(request);
   }
-  return {signals_of(result), result.completed, result.reason, result.faults, result.stats};
+  return {signals_of(result), waveform_of(result), result.completed, result.reason, result.faults, result.stats};
 }
 
 nb::dict replay_in_python(const nb::dict& plant, const std::vector<std::tuple<Tick, int, bool, bool>>& edges,
@@ -183,13 +196,14 @@ NB_MODULE(_core, m) {
   m.doc() = "The virtual drive: firmware, virtual F2808 and plant in one process.";
   nb::class_<PythonResult>(m, "RunResult")
       .def_ro("signals", &PythonResult::signals)
+      .def_ro("waveform", &PythonResult::waveform)
       .def_ro("completed", &PythonResult::completed)
       .def_ro("reason", &PythonResult::reason)
       .def_ro("faults", &PythonResult::faults)
       .def_ro("stats", &PythonResult::stats);
   m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
         nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
-        nb::arg("seed"), nb::arg("progress").none(), "One run of the virtual drive; see core.py.");
+        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), "One run of the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");

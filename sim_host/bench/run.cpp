@@ -133,7 +133,11 @@ class Director : public PeriodListener {
     for (const auto& [time, torque] : request_.load)
       points.push_back({t + std::llround(time / kSecondsPerTick), torque});
     board_->plant().set_load(points);
+    const WaveformRequest& w = request_.waveform;
+    board_->probe().arm(t, t + periods(w.begin), t + periods(w.end), w.raster);
   }
+
+  static Tick periods(double seconds) { return std::llround(seconds / kSecondsPerTick / kPeriod) * kPeriod; }
 
   void give_commands(Tick t) {
     const double now = (t - origin_) * kSecondsPerTick;
@@ -172,6 +176,8 @@ void check_request(const RunRequest& r) {
   if (!(r.max_start > 0.0 && r.max_start <= 60.0))
     throw std::invalid_argument("max_start must be above 0 and up to 60 s");
   if (r.record_every < 1) throw std::invalid_argument("record_every must be at least 1");
+  if (r.waveform.begin < 0.0 || r.waveform.raster < 1)
+    throw std::invalid_argument("a waveform must not begin before 0 s, and its raster must be at least 1 tick");
 }
 
 // Runs to the end of the start procedure, then for the duration. False when the run broke off; a fault ends it.
@@ -219,6 +225,7 @@ RunResult run(const RunRequest& request) {
                     std::to_string(short_circuit->tick);
   }
   result.values = director.take_record();
+  result.waveform = board.probe().take();
   const chip::Statistics& s = chip.statistics();
   result.stats = {{"wall_seconds", wall},
                   {"simulated_seconds", chip.now() * kSecondsPerTick},

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim_host/bench/setup.hpp"
+#include "sim_host/bench/waveform.hpp"
 
 namespace stillspin::bench {
 
@@ -30,6 +31,7 @@ struct RunRequest {
   double duration = 1.0;                        // s, 0..3600
   double max_start = 2.0;                       // s from power-on to the end of the start procedure
   int record_every = 1;                         // PWM periods per record
+  WaveformRequest waveform;                     // a stretch to look into
   std::function<bool(double)> progress;         // share done; false stops the run
 };
 
@@ -47,6 +49,7 @@ struct RunResult {
   std::string reason;
   std::vector<std::pair<double, std::string>> faults;
   std::map<std::string, double> stats;
+  Waveform waveform;
 };
 
 /// Throws std::invalid_argument for what cannot be run (unknown parameter or command, value out of range).

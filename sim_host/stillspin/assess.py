@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stillspin import figures, records
+from stillspin import figures, metrics, records
 from stillspin.execute import Outcome
 from stillspin.scenario import Plot, Scenario
 
@@ -48,13 +48,18 @@ def assess(
         profile: name, for the goals.
         draw: whether to draw.
     """
-    recorded = {outcome.run: records.read(directory / outcome.file).signals for outcome in outcomes if outcome.file}
+    read = {outcome.run: records.read(directory / outcome.file) for outcome in outcomes if outcome.file}
+    recorded = {name: record.signals for name, record in read.items()}
+    looked = {outcome.run: records.read_waveform(directory / outcome.waveform) for outcome in outcomes if outcome.waveform}
+    extras = {
+        name: metrics.Extras(looked.get(name, {}), record.about.get("machine", {})) for name, record in read.items()
+    }
     counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
-    measured = figures.evaluate(scenario, counting, profile)
+    measured = figures.evaluate(scenario, counting, profile, extras)
     drawings = []
     if draw and recorded:
         from stillspin import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
 
         chosen = scenario.plots or (Plot("", _PANELS, tuple(recorded), None),)
-        drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded)) for plot in chosen]
+        drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded, extras)) for plot in chosen]
     return ScenarioResult(scenario, list(outcomes), measured, drawings)

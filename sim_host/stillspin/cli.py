@@ -15,7 +15,19 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from stillspin import __version__, campaign, core, execute, output, profile, report, resources, scenario_file, tables
+from stillspin import (
+    __version__,
+    campaign,
+    core,
+    execute,
+    output,
+    profile,
+    report,
+    resources,
+    scenario_file,
+    scheme,
+    tables,
+)
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
 from stillspin.progress import Bar
@@ -76,11 +88,15 @@ class Options:
     out: Path
     jobs: int
     draw: bool
+    paper_scheme: bool = False
 
 
 def _carry_out(ids: Iterable[str], options: Options) -> None:
     """Run the scenarios, write the results, print what came out, and end the process when a run broke off."""
     scenarios = [scenario_file.load(identifier) for identifier in ids]
+    if options.paper_scheme:
+        other = scheme.paper()
+        scenarios += [other.variant(scenario) for scenario in scenarios if other.applies(scenario)]
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(options.profile, schema, known)
@@ -90,11 +106,13 @@ def _carry_out(ids: Iterable[str], options: Options) -> None:
     with output.fresh_directory(options.out) as directory:
         plan = campaign.Plan(scenarios, jobs, directory / output.RUNS, chosen.name, options.draw)
         with Bar(Console(stderr=True)) as bar:
-            results = campaign.run_all(plan, options.jobs, bar)
-        report.write(directory, results, settings)
-    tables.summary(results)
+            results, paper = scheme.separate(campaign.run_all(plan, options.jobs, bar))
+        report.write(directory, results, settings, paper)
+    tables.summary(results, paper)
     total = report.tally(results)
-    print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
+    lost = f"; the paper scheme lost {report.tally(list(paper.values())).broken} runs" if paper else ""
+    words = f"{total.met} of {total.goals} goals met, {total.broken} runs broken off{lost}"
+    print(f"{words}; see {options.out / report.PAGE}")
     broken = [outcome for result in results for outcome in result.broken]
     for outcome in broken:
         print(f"stillspin: {outcome.scenario}, run {outcome.run}: broken off: {outcome.broken}", file=sys.stderr)
@@ -137,10 +155,18 @@ def reproduce(
             help="Runs at a time [default: one per processor].",
         ),
     ] = None,
+    paper_scheme: Annotated[
+        bool,
+        typer.Option(
+            "--paper-scheme/--no-paper-scheme",
+            help="Run what is about the position error with the paper's position scheme, too.",
+        ),
+    ] = True,
 ) -> None:
     """Run scenarios in parallel and write report.html and metrics.json."""
     chosen = dict.fromkeys(scenario_file.find(identifier).stem for identifier in scenarios or scenario_file.ids())
-    _carry_out(chosen, Options(profile_name, seed, [], out, jobs or len(os.sched_getaffinity(0)), draw=True))
+    workers = jobs or len(os.sched_getaffinity(0))
+    _carry_out(chosen, Options(profile_name, seed, [], out, workers, draw=True, paper_scheme=paper_scheme))
 
 
 @app.command(name="list")

@@ -21,13 +21,18 @@ Signals = dict[str, npt.NDArray[Any]]
 Command = tuple[float, str, float]
 LoadPoint = tuple[float, float]
 GateEdge = tuple[int, int, bool, bool]  # tick, leg, upper, lower
+Waveform = dict[str, Signals]
+Look = tuple[float, float, int]
+"""A stretch of a run to look into: from, to (s), and ticks of 10 ns between two looks at the currents."""
 Progress = Callable[[float], bool]
 
 
 class NativeResult(Protocol):
-    """What a run gives back. Arrays have one element per record, all the same length."""
+    """What a run gives back. Signals have one element per record, all the same length; those of a table of the waveform
+    (`raster`, `edges`, `samples`) have one length, too."""
 
     signals: Mapping[str, npt.NDArray[Any]]
+    waveform: Mapping[str, Mapping[str, npt.NDArray[Any]]]
     completed: bool
     reason: str
     faults: Sequence[tuple[float, str]]
@@ -48,6 +53,7 @@ class NativeCore(Protocol):
         duration: float,
         max_start: float,
         record_every: int,
+        waveform: Look,
         seed: int,
         progress: Progress | None,
     ) -> NativeResult:

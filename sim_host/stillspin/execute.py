@@ -43,12 +43,14 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended. `broken`: why it does not count, None when it does; `file`: None when nothing was recorded."""
+    """How a run ended. `broken`: why it does not count, None when it does; `file`: None when nothing was recorded;
+    `waveform`: the file of the stretch that was looked into."""
 
     scenario: str
     run: str
     broken: str | None
     file: str | None
+    waveform: str | None = None
     stats: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -109,12 +111,37 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "changes": settings.changes.words,
         "motor": scenario.motor,
         "plant": plant,
+        "machine": _machine(plant, known.schema),
         "parameters": parameters,
         "load": run.load,
         "duration": run.duration,
     }
     file = f"{scenario.id}-{run.name}.parquet"
     return Job(scenario.id, run, scenario.motor, plant, parameters, settings.seed, file, about, known.units)
+
+
+def _machine(plant: Plant, schema: core.Schema) -> dict[str, float]:
+    """The true machine that a plant describes, in SI units; the resistance includes that of one device."""
+
+    def entry(section: str, key: str) -> float:
+        return float(plant.get(section, {}).get(key, schema[section][key].default))
+
+    def true(key: str) -> float:
+        return entry("machine", key) * (1.0 + entry("parameter_error", key))
+
+    def device(key: str) -> float:
+        return (entry("inverter", f"switch_{key}") + entry("inverter", f"diode_{key}")) / 2.0
+
+    saturates = bool(entry("machine", "saturation"))
+    cross = entry("machine", "cross_inductance") * (1.0 + entry("parameter_error", "inductance_q"))
+    return {
+        "resistance": true("resistance") + device("resistance"),
+        "device_drop": device("threshold"),
+        "inductance_d": true("inductance_d"),
+        "inductance_q": true("inductance_q"),
+        "cross_saturation": cross / entry("machine", "rated_peak_current") if saturates else 0.0,
+        "knee": 2.0 * entry("machine", "rated_peak_current") if saturates else 0.0,
+    }
 
 
 def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> None:
@@ -146,6 +173,7 @@ def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None)
             duration=run.duration,
             max_start=run.max_start,
             record_every=run.record_every,
+            waveform=run.waveform or (0.0, 0.0, 1),
             seed=job.seed,
             progress=progress,
         )
@@ -154,9 +182,18 @@ def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None)
     broken = _broken(result, run)
     about = {**job.about, "broken": broken, "faults": [list(fault) for fault in result.faults]}
     records.write(directory / job.file, result.signals, about, job.units)
-    return Outcome(
-        job.scenario, run.name, broken, job.file, {name: float(value) for name, value in result.stats.items()}
-    )
+    looked = _write_waveform(directory, job, result)
+    stats = {name: float(value) for name, value in result.stats.items()}
+    return Outcome(job.scenario, run.name, broken, job.file, looked, stats)
+
+
+def _write_waveform(directory: Path, job: Job, result: NativeResult) -> str | None:
+    """The name of the file, None when there was nothing to look into."""
+    if job.run.waveform is None or not result.waveform["raster"]["time"].size:
+        return None
+    name = job.file.replace(".parquet", ".waveform.parquet")
+    records.write_waveform(directory / name, result.waveform, job.about)
+    return name
 
 
 def _one_line(error: Exception) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from stillspin import metrics
 from stillspin.core import Signals
+from stillspin.metrics import Extras
 from stillspin.scenario import Figure, Reached, Run, Scenario
 
 
@@ -58,22 +59,28 @@ def _window_problem(signals: Signals, run: Run, check: Reached) -> str | None:
     )
 
 
-def evaluate(scenario: Scenario, recorded: Mapping[str, Signals], profile: str) -> list[Result]:
+def evaluate(
+    scenario: Scenario, recorded: Mapping[str, Signals], profile: str, extras: Mapping[str, Extras] | None = None
+) -> list[Result]:
     """All figures of a scenario.
 
     Args:
         scenario: what to measure.
         recorded: signals of every run that counts; a figure that needs another one has no value.
         profile: for the goals.
+        extras: what else is known of the runs.
     """
+    known = extras or {}
     results: dict[str, Result] = {}
     for figure in scenario.figures:
-        value, note = _ratio(figure, results) if figure.of else _largest(figure, scenario, recorded)
+        value, note = _ratio(figure, results) if figure.of else _largest(figure, scenario, recorded, known)
         results[figure.name] = _result(figure, value, note, profile, len(scenario.runs))
     return list(results.values())
 
 
-def _largest(figure: Figure, scenario: Scenario, recorded: Mapping[str, Signals]) -> tuple[float | None, str]:
+def _largest(
+    figure: Figure, scenario: Scenario, recorded: Mapping[str, Signals], extras: Mapping[str, Extras]
+) -> tuple[float | None, str]:
     """The largest value over runs and windows, and a word on why there is none."""
     missing = [name for name in figure.runs if name not in recorded]
     if missing:
@@ -83,7 +90,8 @@ def _largest(figure: Figure, scenario: Scenario, recorded: Mapping[str, Signals]
     for name in figure.runs:
         for window in figure.windows:
             try:
-                values.append(function(metrics.cut(recorded[name], scenario.run(name), window)))
+                piece = metrics.cut(recorded[name], scenario.run(name), window, extras.get(name, metrics.NOTHING_ELSE))
+                values.append(function(piece))
             except ValueError as error:
                 return None, f"run {name}: {error}"
     largest = max(values) if all(map(math.isfinite, values)) else math.inf

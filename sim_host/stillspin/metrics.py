@@ -11,14 +11,15 @@ as a settling time that the window does not see the end of, are infinite.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from stillspin.core import Signals
+from stillspin import deviation_sweep, waveforms
+from stillspin.core import Signals, Waveform
 from stillspin.scenario import Run, Window
 
 Floats = npt.NDArray[np.float64]
@@ -33,6 +34,22 @@ LAST_SECOND = 1.0
 
 
 @dataclass(frozen=True)
+class Extras:
+    """What is known of a run beside its records.
+
+    Attributes:
+        waveform: the stretch that was looked into, empty where there was none.
+        machine: true data of machine and devices, see deviation_sweep.py.
+    """
+
+    waveform: Waveform = field(default_factory=dict)
+    machine: Mapping[str, float] = field(default_factory=dict)
+
+
+NOTHING_ELSE = Extras()
+
+
+@dataclass(frozen=True)
 class Piece:
     """What a metric sees: the records of one window, and what was commanded in it.
 
@@ -41,12 +58,14 @@ class Piece:
         command: commanded speed (rpm) at each record.
         initial: commanded speed (rpm) just before the window: where a step comes from.
         target: commanded speed (rpm) at the end of the window: where it goes to.
+        extras: what else is known of the run; its waveform is cut to the window.
     """
 
     signals: Signals
     command: Floats
     initial: float
     target: float
+    extras: Extras = NOTHING_ELSE
 
     @property
     def time(self) -> Floats:
@@ -63,8 +82,8 @@ class Piece:
         return self._part(self.time >= self.time[-1] - seconds)
 
     def _part(self, mask: npt.NDArray[np.bool_]) -> Piece:
-        return Piece(
-            {name: data[mask] for name, data in self.signals.items()}, self.command[mask], self.initial, self.target
+        return replace(
+            self, signals={name: data[mask] for name, data in self.signals.items()}, command=self.command[mask]
         )
 
 
@@ -73,7 +92,7 @@ def as_floats(data: npt.NDArray[Any]) -> Floats:
     return np.asarray(data, dtype=np.float64)
 
 
-def cut(signals: Signals, run: Run, window: Window) -> Piece:
+def cut(signals: Signals, run: Run, window: Window, extras: Extras = NOTHING_ELSE) -> Piece:
     """The part of a run in a window.
 
     Args:
@@ -81,6 +100,7 @@ def cut(signals: Signals, run: Run, window: Window) -> Piece:
         run: for its commands.
         window: first and last time (s); a record at the first belongs to it, one at the last does not (there the next
             command begins).
+        extras: what else is known of the run.
 
     Raises:
         ValueError: the record does not cover the window.
@@ -95,7 +115,8 @@ def cut(signals: Signals, run: Run, window: Window) -> Piece:
     inside = {name: data[mask] for name, data in signals.items()}
     before = run.speed_command(np.array([np.nextafter(first, -np.inf)]))[0]
     command = run.speed_command(time[mask])
-    return Piece(inside, command, float(before), float(command[-1]))
+    looked = replace(extras, waveform=waveforms.cut(extras.waveform, window))
+    return Piece(inside, command, float(before), float(command[-1]), looked)
 
 
 def wrap_degrees(radians: Floats) -> Floats:
@@ -214,6 +235,65 @@ def current_peak(piece: Piece) -> float:
     return max(float(np.max(np.abs(piece.signals[name]))) for name in ("i_a", "i_b", "i_c"))
 
 
+def thd(piece: Piece) -> float:
+    """All of the phase current up to 50 kHz but its fundamental and DC, rms in percent of the fundamental."""
+    return 100.0 * waveforms.spectrum(_looked(piece, "raster")).distortion
+
+
+def switching_frequency(piece: Piece) -> float:
+    """Mean over the legs of how often the upper gate is switched on, seen at the pins, kHz."""
+    time = _looked(piece, "raster")["time"]
+    return waveforms.switching_frequency(_looked(piece, "edges"), float(time[-1] - time[0])) * 1e-3
+
+
+def pattern_voltage_error(piece: Piece) -> float:
+    """Largest departure of a period's mean phase voltage at the gates from what was asked, ticks of 10 ns."""
+    _looked(piece, "edges")
+    return float(np.max(np.abs(waveforms.voltage_errors(piece.extras.waveform, piece.signals))))
+
+
+def pattern_mismatch(piece: Piece) -> float:
+    """Share of the periods with two short vectors that do not extend and compensate both, percent."""
+    _looked(piece, "edges")
+    found = [waveforms.is_extended(pattern) for pattern in waveforms.patterns(piece.extras.waveform)]
+    judged = [good for good in found if good is not None]
+    return 100.0 * judged.count(False) / len(judged) if judged else float("inf")
+
+
+def _looked(piece: Piece, table: str) -> Signals:
+    """A table of the waveform."""
+    found = piece.extras.waveform.get(table, {})
+    if not found or found["time"].size < 2:
+        raise ValueError("the run was not looked into here")
+    return found
+
+
+def sweep(piece: Piece) -> deviation_sweep.Sweep:
+    """The q-axis deviation over the angle error."""
+    return deviation_sweep.sweep(position_error(piece.signals), piece.signals, piece.extras.machine)
+
+
+def deviation_gain_error(piece: Piece) -> float:
+    """Fitted gain of the q-axis current deviation against the one derived from the true machine, percent."""
+    return 100.0 * abs(sweep(piece).gain - 1.0)
+
+
+def deviation_distortion(piece: Piece) -> float:
+    """What of the q-axis current deviation is no sine of twice the angle error, rms in percent of the sine's rms."""
+    found = sweep(piece)
+    rest = float(np.mean(np.square(found.deviation - found.sine)))
+    return 100.0 * float(np.sqrt(rest / np.mean(np.square(found.sine))))
+
+
+def deviation_wrong_polarity(piece: Piece) -> float:
+    """Share of the angle errors at which deviation over Kq has not the sign of the error, percent."""
+    found = sweep(piece)
+    current = float(np.mean(piece.signals["i_d_ref"]))
+    kq = deviation_sweep.gain(current, piece.extras.machine)
+    clear = (np.abs(found.error) > 10.0) & (np.abs(found.error) < 80.0)  # between them the sine is no smaller than 0.34
+    return 100.0 * float(np.mean(found.deviation[clear] / kq * found.error[clear] < 0.0))
+
+
 @dataclass(frozen=True)
 class Kind:
     """A kind of figure: its function, its unit and its definition in a line."""
@@ -243,5 +323,12 @@ KINDS: dict[str, Kind] = {
     "tracking_error_peak": Kind(tracking_error_peak, "rpm"),
     "radius_deviation": Kind(radius_deviation, "%"),
     "current_peak": Kind(current_peak, "A"),
+    "thd": Kind(thd, "%"),
+    "switching_frequency": Kind(switching_frequency, "kHz"),
+    "pattern_voltage_error": Kind(pattern_voltage_error, "ticks"),
+    "pattern_mismatch": Kind(pattern_mismatch, "%"),
+    "deviation_gain_error": Kind(deviation_gain_error, "%"),
+    "deviation_distortion": Kind(deviation_distortion, "%"),
+    "deviation_wrong_polarity": Kind(deviation_wrong_polarity, "%"),
 }
 """Every kind of figure that a scenario file can ask for; besides these there is `ratio` of two other figures."""

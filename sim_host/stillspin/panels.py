@@ -118,5 +118,9 @@ PANELS: dict[str, Panel] = {
     "weight": Panel("share of ZVV", (Line("weight", _signal("weight"), "true"),)),
     "link": Panel("DC link (V)", (Line("measured", _signal("v_dc"), "true"),)),
     "trajectory": Panel("$i_β$ (A)", ()),
+    "deviation_sweep": Panel("q-axis current deviation (A/s)", ()),
+    "spectrum": Panel("% of the fundamental", ()),
+    "gates": Panel("gates", ()),
+    "error_over_speed": Panel("position error (° el)", ()),
 }
-"""Every panel. `trajectory` is drawn apart: i_β over i_α, one square per run."""
+"""Every panel. Those without lines fill a drawing of their own, see special_plots.py."""

@@ -6,10 +6,9 @@ Long records are thinned to the extremes of as many slices as the page has colum
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import matplotlib as mpl
 
@@ -23,75 +22,28 @@ from matplotlib.figure import Figure as Canvas
 
 from stillspin import metrics
 from stillspin.core import Signals
-from stillspin.metrics import Floats
+from stillspin.metrics import Extras, Floats
 from stillspin.panels import PANELS, Panel
 from stillspin.scenario import Plot, Scenario, Window
+from stillspin.special_plots import SPECIAL, Shown
+from stillspin.style import COLOURS, COLUMNS, PANEL_HEIGHT, ROLES, RUN_COLOURS, STYLE, WIDTH
 
-WIDTH = 9.2
-PANEL_HEIGHT = 1.85
-COLUMNS = 1100
-"""Slices a line is thinned to; each keeps its smallest and its largest value."""
-
-# Distinguishable with the common colour blindnesses (after Okabe and Ito).
-COLOURS = {
-    "true": "#0b5fa5",
-    "estimate": "#e07b00",
-    "reference": "#3a3a3a",
-    "setpoint": "#9aa3ad",
-    "error": "#b3243b",
-    "q": "#0b5fa5",
-    "d": "#1b8a5a",
-    "a": "#0b5fa5",
-    "b": "#e07b00",
-    "c": "#1b8a5a",
-}
-RUN_COLOURS = ["#0b5fa5", "#e07b00", "#1b8a5a", "#b3243b", "#7a4fb0", "#8a6d1b", "#1aa3b8", "#5c5c5c"]
-
-# An estimate lies as a pale band under the true line, so that both are seen where they agree.
-ROLES: dict[str, Any] = {
-    "true": {"zorder": 3},
-    "reference": {"zorder": 4, "linestyle": (0, (4, 2)), "linewidth": 1.0},
-    "setpoint": {"zorder": 1.5, "linewidth": 2.2},
-    "estimate": {"zorder": 2, "linewidth": 2.6, "alpha": 0.6},
-}
-
-STYLE: Any = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib: the same drawing on every machine
-    "font.size": 10.5,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#888888",
-    "axes.linewidth": 0.8,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.7,
-    "axes.axisbelow": True,
-    "axes.labelcolor": "#333333",
-    "xtick.color": "#555555",
-    "ytick.color": "#555555",
-    "legend.frameon": False,
-    "legend.fontsize": 9.5,
-    "lines.linewidth": 1.1,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "stillspin",  # the same run gives the same bytes
-    "path.simplify": True,
-    "path.simplify_threshold": 0.3,
-}
-
-
-def draw(plot: Plot, scenario: Scenario, recorded: Mapping[str, Signals]) -> str:
+def draw(
+    plot: Plot, scenario: Scenario, recorded: Mapping[str, Signals], extras: Mapping[str, Extras] | None = None
+) -> str:
     """A plot as SVG text.
 
     Args:
         plot: what to show.
         scenario: to which the plot belongs.
         recorded: signals by run; runs of the plot that have none in its window are left out.
+        extras: what else is known of the runs.
     """
     parts = {name: _visible(recorded[name], plot.window) for name in plot.runs if name in recorded}
     shown = {name: part for name, part in parts.items() if part["time"].size > 1}
     with mpl.rc_context(STYLE):
-        square = "trajectory" in plot.panels
-        canvas = _trajectories(shown, scenario) if square else _stack(plot, scenario, shown)
+        special = SPECIAL.get(plot.panels[0])
+        canvas = special(Shown(scenario, shown, extras or {})) if special else _stack(plot, scenario, shown)
         text = io.StringIO()
         canvas.savefig(text, format="svg", metadata={"Date": None, "Creator": "stillspin"})
         plt.close(canvas)
@@ -217,26 +169,3 @@ def thinned(time: Floats, values: Floats, columns: int = COLUMNS) -> tuple[Float
         keep.extend(first + place for place in sorted(ends))
     index: npt.NDArray[np.int64] = np.array(keep, dtype=np.int64)
     return time[index], values[index]
-
-
-def _trajectories(shown: Mapping[str, Signals], scenario: Scenario) -> Canvas:
-    """The current vector's path in the stationary frame, one square per run, all to the same scale."""
-    count = max(1, len(shown))
-    canvas, grid = plt.subplots(1, count, squeeze=False, figsize=(WIDTH, WIDTH / 2.3), layout="constrained")
-    paths = {name: metrics.current_vector(signals) for name, signals in shown.items()}
-    limit = 1.08 * max((float(np.max(np.hypot(*path))) for path in paths.values()), default=1.0)
-    for axes, (name, (alpha, beta)) in zip(_flat(grid), paths.items(), strict=False):
-        axes.plot(alpha, beta, color=COLOURS["true"], linewidth=0.6)
-        mean = float(np.mean(np.hypot(alpha, beta)))
-        turn = np.linspace(0.0, 2.0 * np.pi, 200)
-        axes.plot(
-            mean * np.cos(turn), mean * np.sin(turn), color=COLOURS["reference"], linestyle=(0, (4, 2)), linewidth=0.9
-        )
-        axes.set(xlabel="$i_α$ (A)", ylabel="$i_β$ (A)", title=scenario.run(name).title or name, aspect="equal")
-        axes.set_xlim(-limit, limit)
-        axes.set_ylim(-limit, limit)
-    return canvas
-
-
-def _flat(grid: Any) -> Sequence[Axes]:
-    return list(grid.ravel())

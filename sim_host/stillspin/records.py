@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from stillspin.core import Signals
+from stillspin.core import Signals, Waveform
 
 _KEY = b"stillspin"
 
@@ -46,6 +46,27 @@ def write(path: Path, signals: Mapping[str, Any], about: Mapping[str, Any], unit
     schema = pa.schema(fields, metadata={_KEY: json.dumps(about, sort_keys=True)})
     table = pa.table([pa.array(data) for data in columns.values()], schema=schema)
     pq.write_table(table, path, compression="zstd")
+
+
+def write_waveform(path: Path, waveform: Mapping[str, Mapping[str, Any]], about: Mapping[str, Any]) -> None:
+    """Write the stretch of a run that was looked into: one row, a column `table.name` for each list of values."""
+    lists = {
+        f"{table}.{name}": pa.array([_stored(name, np.asarray(data))])
+        for table, columns in waveform.items()
+        for name, data in columns.items()
+    }
+    stored = pa.table(lists).replace_schema_metadata({_KEY: json.dumps(about, sort_keys=True)})
+    pq.write_table(stored, path, compression="zstd")
+
+
+def read_waveform(path: Path) -> Waveform:
+    """Read what `write_waveform` wrote: table -> name -> values."""
+    stored = pq.read_table(path)
+    waveform: Waveform = {}
+    for column in stored.column_names:
+        table, _, name = column.partition(".")
+        waveform.setdefault(table, {})[name] = stored.column(column)[0].values.to_numpy()
+    return waveform
 
 
 def _stored(name: str, data: Any) -> Any:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from stillspin import scheme
 from stillspin.assess import ScenarioResult
 from stillspin.execute import Settings
 from stillspin.figures import Result
@@ -73,26 +74,47 @@ def unit_text(unit: str) -> str:
     return {"deg el": "° el", "N m": "N·m"}.get(unit, unit)
 
 
-def metrics(results: Sequence[ScenarioResult], settings: Settings) -> dict[str, Any]:
+def metrics(
+    results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]
+) -> dict[str, Any]:
     """The content of `metrics.json`. It depends on nothing but the profile, the seed and the sources."""
-    return {
+    content: dict[str, Any] = {
         "profile": settings.profile.name,
         "seed": settings.seed,
         "revision": settings.revision,
-        "scenarios": {
-            result.scenario.id: {figure.name: figure.as_json() for figure in result.figures} for result in results
-        },
+        "scenarios": {result.scenario.id: _figures(result) for result in results},
     }
+    if paper:
+        content["paper_scheme"] = {identifier: _figures(result) for identifier, result in paper.items()}
+        content["paper_scheme_lost"] = {
+            identifier: {outcome.run: outcome.broken for outcome in result.broken}
+            for identifier, result in paper.items()
+            if result.broken
+        }
+    return content
 
 
-def write(directory: Path, results: Sequence[ScenarioResult], settings: Settings) -> None:
-    """Write `metrics.json` and `report.html` into a directory."""
-    text = json.dumps(metrics(results, settings), indent=2, ensure_ascii=False, allow_nan=False)
+def _figures(result: ScenarioResult) -> dict[str, object]:
+    return {figure.name: figure.as_json() for figure in result.figures}
+
+
+def write(
+    directory: Path, results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]
+) -> None:
+    """Write `metrics.json` and `report.html` into a directory.
+
+    Args:
+        directory: existing.
+        results: of the drive.
+        settings: what all runs had in common.
+        paper: results with the paper's scheme, by scenario; empty where it was not run.
+    """
+    text = json.dumps(metrics(results, settings, paper), indent=2, ensure_ascii=False, allow_nan=False)
     (directory / MARK).write_text(text + "\n", encoding="utf-8")
-    (directory / PAGE).write_text(html(results, settings), encoding="utf-8")
+    (directory / PAGE).write_text(html(results, settings, paper), encoding="utf-8")
 
 
-def html(results: Sequence[ScenarioResult], settings: Settings) -> str:
+def html(results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]) -> str:
     """The page."""
     environment = Environment(
         loader=PackageLoader("stillspin", "templates"),
@@ -104,8 +126,12 @@ def html(results: Sequence[ScenarioResult], settings: Settings) -> str:
     environment.filters.update(number=number, unit=unit_text, verdict=verdict, image=_image, slug=_slug)
     return environment.get_template("report.html.j2").render(
         results=results,
+        paper=paper,
+        scheme=scheme.paper(),
+        columns=_columns(paper),
         tallies={result.scenario.id: tally([result]) for result in results},
         total=tally(results),
+        lost=tally(list(paper.values())).broken,
         profile=settings.profile,
         seed=settings.seed,
         revision=settings.revision,
@@ -114,6 +140,13 @@ def html(results: Sequence[ScenarioResult], settings: Settings) -> str:
         plant_rows=_plant_rows(settings.profile),
         runs_directory=RUNS,
     )
+
+
+def _columns(paper: Mapping[str, ScenarioResult]) -> dict[str, dict[str, Result]]:
+    """Scenario -> figure -> what the paper's scheme reaches."""
+    return {
+        identifier: {figure.name: figure for figure in result.figures} for identifier, result in paper.items()
+    }
 
 
 def _plant_rows(profile: Profile) -> list[tuple[str, str]]:

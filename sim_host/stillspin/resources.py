@@ -8,7 +8,7 @@ PACKAGE = Path(__file__).resolve().parent
 
 
 def directory(name: str) -> Path:
-    """The directory `name` ("profiles" or "scenarios") that ships with this package.
+    """The directory `name` ("profiles", "scenarios" or "schemes") that ships with this package.
 
     Raises:
         FileNotFoundError: the installation is damaged.

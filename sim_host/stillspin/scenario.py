@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from stillspin.core import Command, LoadPoint, Plant
+from stillspin.core import Command, LoadPoint, Look, Plant
 
 Window = tuple[float, float]
 
@@ -35,6 +35,7 @@ class Run:
         parameters: firmware parameters that this run sets, only what the scenario compares; words are choices.
         plant: entries of the plant that this run needs, such as a locked shaft.
         record_every: PWM periods per record.
+        waveform: the stretch that is looked into, None for none.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Run:
     plant: Plant
     reached: tuple[Reached, ...]
     record_every: int = 1
+    waveform: Look | None = None
 
     def speed_command(self, time: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """The commanded speed (rpm) at each time (s): the last command given, 0 before the first."""

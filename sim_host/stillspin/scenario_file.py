@@ -1,7 +1,8 @@
 """Reads and checks scenario files. Every complaint names the file, the place, the value and what is allowed.
 
 Shorthands of the format: `[defaults]` holds what the runs have in common; `reference` in a run draws a moving speed
-command (a sine, or straight lines through points) as set points every `interval` seconds.
+command (a sine, or straight lines through points) as set points every `interval` seconds, or with `what` another command
+such as `set:encoder_trim`. `waveform` in a run asks for what happens inside the periods of a short stretch.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from stillspin import metrics, panels, resources, toml_table
-from stillspin.core import Command, Plant
+from stillspin.core import Command, Look, Plant
 from stillspin.errors import InputError, did_you_mean
 from stillspin.scenario import Figure, Goal, Plot, Reached, Run, Scenario, Window
 from stillspin.toml_table import Table
@@ -142,11 +143,23 @@ def _run(table: Table) -> Run:
         plant=_plant(table.table("plant")),
         reached=tuple(_reached(reached, duration) for reached in table.tables("reached")),
         record_every=int(table.number("record_every", 1, minimum=1)),
+        waveform=_look(table, duration),
     )
     if not run.reached:
         raise InputError(f"{table.where}: 'reached' is missing: a run counts only if the shaft did what was commanded")
     table.finish()
     return run
+
+
+def _look(table: Table, duration: float) -> Look | None:
+    """The stretch that is looked into."""
+    if not table.has("waveform"):
+        return None
+    look = table.table("waveform")
+    first, last = _window(look, "window", look.raw("window"), duration)
+    raster = int(look.number("raster", 100, minimum=1))
+    look.finish()
+    return first, last, raster
 
 
 def _parameters(table: Table) -> dict[str, float | str]:
@@ -179,11 +192,12 @@ def _reached(table: Table, duration: float) -> Reached:
 
 
 def _reference(table: Table) -> list[Command]:
-    """Set points of a moving speed command."""
+    """Set points of a moving command, the speed where it does not say which."""
     if not table.has("reference"):
         return []
     drawing = table.table("reference")
     shape = drawing.text("shape")
+    what = drawing.text("what", "speed_ref_rpm")
     interval = drawing.number("interval", 0.001, minimum=1e-4)
     if shape == "sine":
         start, stop = drawing.number("start", minimum=0.0), drawing.number("stop", minimum=0.0)
@@ -199,7 +213,7 @@ def _reference(table: Table) -> list[Command]:
     else:
         raise drawing.fail("shape", "must be 'sine' or 'points'")
     drawing.finish()
-    return [(float(t), "speed_ref_rpm", float(n)) for t, n in zip(time.round(9), speed.round(9), strict=True)]
+    return [(float(t), what, float(n)) for t, n in zip(time.round(9), speed.round(9), strict=True)]
 
 
 def _goal(table: Table) -> Goal:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from rich.console import Console
 from rich.table import Table
@@ -14,7 +14,7 @@ from stillspin.core import Entry
 from stillspin.scenario import Scenario
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
-_RIGHT = {"value", "paper", "goal", "runs", "default", "number"}
+_RIGHT = {"value", "paper", "goal", "runs", "default", "number", "paper scheme"}
 
 
 def _table(*headings: str) -> Table:
@@ -30,17 +30,23 @@ def _print(table: Table) -> None:
     Console(width=None if console.is_terminal else 200).print(table)
 
 
-def summary(results: Iterable[ScenarioResult]) -> None:
-    """Every figure of merit."""
-    table = _table("scenario", "figure", "value", "unit", "paper", "goal", "")
+def summary(results: Iterable[ScenarioResult], other: Mapping[str, ScenarioResult]) -> None:
+    """Every figure of merit, and beside it what the paper's scheme reaches, where it was run."""
+    table = _table("scenario", "figure", "value", "unit", "paper", "goal", "", *(["paper scheme"] if other else []))
     for result in results:
+        beside = {figure.name: figure.value for figure in other[result.scenario.id].figures} if result.scenario.id in other else {}
         for figure in result.figures:
             value, paper, goal = (report.number(item) for item in (figure.value, figure.paper, figure.goal))
             word = report.verdict(figure)
             shown = Text(word, style=_COLOURS[word])
             unit = report.unit_text(figure.unit)
-            table.add_row(result.scenario.id, figure.name, value, unit, paper, goal, shown)
+            second = ["" if figure.name not in beside else _or_lost(beside[figure.name])] if other else []
+            table.add_row(result.scenario.id, figure.name, value, unit, paper, goal, shown, *second)
     _print(table)
+
+
+def _or_lost(value: float | None) -> str:
+    return "lost" if value is None else report.number(value)
 
 
 def scenarios(items: Iterable[Scenario]) -> None:

@@ -18,12 +18,19 @@ _SCHEMA = {
     "machine": {
         "pole_pairs": ("", 1, 50, 4),
         "resistance": ("Ohm", 1e-4, 100.0, 0.32),
+        "inductance_d": ("H", 1e-6, 1.0, 0.0049),
+        "inductance_q": ("H", 1e-6, 1.0, 0.0078),
+        "rated_peak_current": ("A", 0.1, 1000.0, 10.9),
         "saturation": ("", None, None, True),
         "cross_inductance": ("H", -0.01, 0.01, 1.18e-4),
         "emf_harmonic_5": ("", 0.0, 0.3, 0.02),
         "emf_harmonic_7": ("", 0.0, 0.3, 0.01),
     },
-    "mechanics": {"inertia": ("kg m2", 1e-6, 100.0, 0.00455), "cogging_torque": ("N m", 0.0, 10.0, 0.1)},
+    "mechanics": {
+        "inertia": ("kg m2", 1e-6, 100.0, 0.00455),
+        "cogging_torque": ("N m", 0.0, 10.0, 0.1),
+        "locked": ("", None, None, False),
+    },
     "inverter": {
         "switch_threshold": ("V", 0.0, 10.0, 1.0),
         "switch_resistance": ("Ohm", 0.0, 10.0, 0.04),
@@ -81,7 +88,8 @@ _PARAMETERS = [
 SIGNALS = {
     "time": "s", "true_angle": "rad", "est_angle": "rad", "true_speed": "rpm", "est_speed": "rpm", "speed_ref": "rpm",
     "torque": "N m", "load_torque": "N m", "i_a": "A", "i_b": "A", "i_c": "A", "true_i_d": "A", "true_i_q": "A",
-    "i_d": "A", "i_q": "A", "i_d_ref": "A", "i_q_ref": "A", "v_d": "V", "v_q": "V", "v_dc": "V", "angle_zvv": "rad",
+    "i_d": "A", "i_q": "A", "i_d_ref": "A", "i_q_ref": "A", "v_d": "V", "v_q": "V", "v_alpha": "V", "v_beta": "V",
+    "v_link": "V", "deviation_q": "A/s", "v_dc": "V", "angle_zvv": "rad",
     "angle_avv": "rad", "weight": "", "load_estimate": "N m", "state": "", "fault": "", "limit": "",
 }  # fmt: skip
 
@@ -137,7 +145,7 @@ def _lag(values, constant):
     return out
 
 
-def run(*, plant, motor, parameters, commands, load, duration, max_start, record_every, seed, progress):
+def run(*, plant, motor, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress):
     began = clock.perf_counter()
     for share in (0.25, 0.5, 0.75, 1.0):
         if progress is not None and not progress(share):
@@ -168,7 +176,8 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
         "speed_ref": reference, "torque": lag, "load_torque": torque,
         "i_a": phases[0], "i_b": phases[1], "i_c": phases[2],
         "true_i_d": zero, "true_i_q": current, "i_d": 0.01 * noise, "i_q": current + 0.01 * noise, "i_d_ref": zero,
-        "i_q_ref": current, "v_d": zero, "v_q": speed * 0.067, "v_dc": zero + 300.0,
+        "i_q_ref": current, "v_d": zero, "v_q": speed * 0.067, "v_alpha": zero, "v_beta": zero,
+        "v_link": zero + 300.0, "deviation_q": zero, "v_dc": zero + 300.0,
         "angle_zvv": used, "angle_avv": used,
         "weight": np.clip((100.0 - np.abs(speed)) / 40.0, 0.0, 1.0), "load_estimate": lag,
         "state": np.full(time.size, 4), "fault": np.zeros(time.size, int), "limit": np.zeros(time.size, int),

@@ -19,7 +19,7 @@ def recorded(duration=1.0, first=-0.05):
         "load_torque",
         "load_estimate",
     )
-    names += ("true_i_d", "true_i_q", "i_d_ref", "i_q_ref", "i_a", "i_b", "i_c", "weight", "v_dc")
+    names += ("true_i_d", "true_i_q", "i_d_ref", "i_q_ref", "i_a", "i_b", "i_c", "weight", "v_dc", "deviation_q")
     return {"time": time, **{name: np.sin(20.0 * time + number) for number, name in enumerate(names)}}
 
 

@@ -1,0 +1,92 @@
+#include "hal/f2808/adc_sequences.h"
+#include "hal/f2808/f2808_values.h"
+#include "hal/f2808/pie.h"
+#include "hal/f2808/pwm_modules.h"
+#include "hal/f2808/reg_access.h"
+#include "hal/f2808/registers.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_slices.h"
+
+#define CLOCK_MODULE PWM_FIRST_WINDOW_MODULE  // its time base counts the slices
+#define TRIGGER_TICK 10u                      // of the slice
+
+// At once and not from the shadow: what was meant for this period must not come any more.
+static void write_compare_now(uint16_t module, uint16_t a, uint16_t b) {
+  const uint32_t epwm = EPWM_BASE(module);
+  target_write16(epwm + EPWM_CMPCTL, REG_FIELD(EPWM_CMPCTL_SHDWAMODE, CMPCTL_IMMEDIATE) |
+                                         REG_FIELD(EPWM_CMPCTL_SHDWBMODE, CMPCTL_IMMEDIATE));
+  target_write16(epwm + EPWM_CMPA_CMPA, a);
+  target_write16(epwm + EPWM_CMPB, b);
+  target_write16(epwm + EPWM_CMPCTL, REG_FIELD(EPWM_CMPCTL_SHDWAMODE, CMPCTL_SHADOW) |
+                                         REG_FIELD(EPWM_CMPCTL_SHDWBMODE, CMPCTL_SHADOW) |
+                                         REG_FIELD(EPWM_CMPCTL_LOADAMODE, CMPCTL_LOAD_ZERO) |
+                                         REG_FIELD(EPWM_CMPCTL_LOADBMODE, CMPCTL_LOAD_ZERO));
+  target_write16(epwm + EPWM_CMPA_CMPA, a);
+  target_write16(epwm + EPWM_CMPB, b);
+}
+
+static void stop_bursts(void) {
+  for (uint16_t window = 0u; window < HAL_PWM_WINDOWS; window++) {
+    write_compare_now((uint16_t)(PWM_FIRST_WINDOW_MODULE + window), HAL_PWM_NONE, HAL_PWM_NONE);
+  }
+}
+
+// The master's synchronisation puts the counter right at the next period start.
+static void set_clock(uint16_t slice_ticks) {
+  const uint32_t epwm = EPWM_BASE(CLOCK_MODULE);
+  target_write16(epwm + EPWM_TBPRD, (uint16_t)(slice_ticks - 1u));
+  target_write16(epwm + EPWM_TBCTR, 0u);
+}
+
+TARGET_RAM_CODE static void force(uint16_t leg, uint16_t action) {
+  target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_AQCSFRC, REG_FIELD(EPWM_AQCSFRC_CSFA, action));
+}
+
+static void force_at_once(void) {
+  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
+    target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_AQSFRC,
+                   REG_FIELD(EPWM_AQSFRC_RLDCSF, AQSFRC_IMMEDIATE));
+  }
+}
+
+bool hal_slices_begin(uint16_t slice_ticks) {
+  if (slice_ticks < HAL_SLICE_MIN_TICKS || HAL_PWM_PERIOD_TICKS % slice_ticks != 0u) {
+    return false;
+  }
+  const uint16_t state = hal_irq_disable();
+  stop_bursts();
+  force_at_once();
+  hal_slice_set_legs(0u);
+  adc_sequence_slices();
+  set_clock(slice_ticks);
+  write_compare_now(CLOCK_MODULE, HAL_PWM_NONE, TRIGGER_TICK);
+  hal_irq_restore(state);
+  return true;
+}
+
+void hal_slices_end(void) {
+  const uint16_t state = hal_irq_disable();
+  stop_bursts();
+  set_clock(HAL_PWM_PERIOD_TICKS);
+  adc_sequence_windows();
+  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
+    write_compare_now((uint16_t)(PWM_FIRST_LEG_MODULE + leg), HAL_PWM_NONE, HAL_PWM_NONE);
+    force(leg, AQCSFRC_NONE);
+  }
+  hal_irq_restore(state);
+}
+
+TARGET_RAM_CODE void hal_slice_read(hal_slice_t* slice) {
+  slice->current_a = adc_slice_result(0u);
+  slice->current_b = adc_slice_result(1u);
+  slice->link = adc_slice_result(2u);
+  adc_rearm();
+  target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
+  pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
+}
+
+TARGET_RAM_CODE void hal_slice_set_legs(uint16_t state) {
+  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
+    force(leg, ((state >> leg) & 1u) != 0u ? AQCSFRC_HIGH : AQCSFRC_LOW);
+  }
+}

@@ -1,0 +1,190 @@
+"""Drawings that are no panels over time: trajectories, spectra, gate signals, sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Canvas
+
+from stillspin import deviation_sweep, metrics, speed_profile, waveforms
+from stillspin.core import Signals
+from stillspin.metrics import Extras
+from stillspin.scenario import Scenario
+from stillspin.style import COLOURS, RUN_COLOURS, WIDTH
+
+_DASHED = (0, (4, 2))
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What is drawn: records by run, cut to the plot's window, and what else is known of the runs."""
+
+    scenario: Scenario
+    records: Mapping[str, Signals]
+    extras: Mapping[str, Extras]
+
+    def title(self, name: str) -> str:
+        """The run in words."""
+        return self.scenario.run(name).title or name
+
+    def looked(self) -> dict[str, Extras]:
+        """The runs that were looked into."""
+        known = {name: self.extras[name] for name in self.records if name in self.extras}
+        return {name: extras for name, extras in known.items() if extras.waveform}
+
+
+def trajectories(shown: Shown) -> Canvas:
+    """The current vector's path in the stationary frame, one square per run, all to the same scale."""
+    count = max(1, len(shown.records))
+    canvas, grid = plt.subplots(1, count, squeeze=False, figsize=(WIDTH, WIDTH / 2.3), layout="constrained")
+    paths = {name: metrics.current_vector(signals) for name, signals in shown.records.items()}
+    limit = 1.08 * max((float(np.max(np.hypot(*path))) for path in paths.values()), default=1.0)
+    for axes, (name, (alpha, beta)) in zip(_flat(grid), paths.items(), strict=False):
+        axes.plot(alpha, beta, color=COLOURS["true"], linewidth=0.6)
+        mean = float(np.mean(np.hypot(alpha, beta)))
+        turn = np.linspace(0.0, 2.0 * np.pi, 200)
+        axes.plot(
+            mean * np.cos(turn), mean * np.sin(turn), color=COLOURS["reference"], linestyle=_DASHED, linewidth=0.9
+        )
+        axes.set(xlabel="$i_α$ (A)", ylabel="$i_β$ (A)", title=shown.title(name), aspect="equal")
+        axes.set_xlim(-limit, limit)
+        axes.set_ylim(-limit, limit)
+    return canvas
+
+
+def _flat(grid: Any) -> list[Axes]:
+    return list(grid.ravel())
+
+
+def sweeps(shown: Shown) -> Canvas:
+    """The q-axis current deviation over the angle error; dashed: derived from the true machine."""
+    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
+    for number, (name, signals) in enumerate(shown.records.items()):
+        colour = RUN_COLOURS[number % len(RUN_COLOURS)]
+        machine = shown.extras.get(name, metrics.NOTHING_ELSE).machine
+        try:
+            found = deviation_sweep.sweep(metrics.position_error(signals), signals, machine)
+        except ValueError:
+            continue
+        axes.plot(found.error, found.deviation, "o", markersize=3.5, color=colour, label=shown.title(name))
+        axes.plot(found.error, found.sine, color=colour, linewidth=0.9)
+        if found.derived.size:
+            axes.plot(found.error, found.derived, color=colour, linestyle=_DASHED, linewidth=0.9)
+    axes.axhline(0.0, color="#888888", linewidth=0.8, zorder=1)
+    axes.axvline(0.0, color="#888888", linewidth=0.8, zorder=1)
+    axes.set(xlabel="position error (° el)", ylabel="q-axis current deviation (A/s)")
+    axes.set_xticks(np.arange(-90.0, 91.0, 30.0))
+    _legend(axes)
+    return canvas
+
+
+def spectra(shown: Shown) -> Canvas:
+    """Phase current up to 50 kHz in percent of its fundamental, and three electrical periods of it beside."""
+    looked = shown.looked()
+    rows = max(1, len(looked))
+    canvas, grid = plt.subplots(
+        rows, 2, squeeze=False, figsize=(WIDTH, 2.3 * rows), layout="constrained", sharey="col", width_ratios=[1.0, 1.6]
+    )
+    for (left, right), (name, extras) in zip(grid, looked.items(), strict=False):
+        raster = extras.waveform["raster"]
+        left.set(ylabel="$i_a$ (A)", title=shown.title(name))
+        right.set(ylabel="% of the fundamental", title="spectrum, mean of the three phases")
+        try:
+            found = waveforms.spectrum(raster)
+        except ValueError:
+            continue
+        period = 1.0 / found.frequency[found.fundamental]
+        time = raster["time"] - raster["time"][0]
+        early = time < 2.0 * period
+        left.plot(1e3 * time[early][::2], raster["i_a"][early][::2], color=COLOURS["a"], linewidth=0.6)
+        inside = found.frequency <= waveforms.HIGHEST
+        share = 100.0 * np.sqrt(found.power[inside] / np.max(found.power))
+        right.semilogy(1e-3 * found.frequency[inside], share, color=COLOURS["true"], linewidth=0.5)
+        right.set_ylim(1e-3, 150.0)
+    for axes, word in zip(grid[-1], ("time (ms)", "frequency (kHz)"), strict=True):
+        axes.set_xlabel(word)
+    return canvas
+
+
+def gates(shown: Shown) -> Canvas:
+    """One period between the vectors 110 and 010: gate signals, switching states, phase current and its samples."""
+    looked = shown.looked()
+    columns = max(1, len(looked))
+    canvas, grid = plt.subplots(
+        2, columns, squeeze=False, figsize=(WIDTH, 4.2), layout="constrained", sharex=True, height_ratios=[1.0, 1.6]
+    )
+    for column, (name, extras) in enumerate(looked.items()):
+        pattern = waveforms.sector_two(extras.waveform)
+        grid[0, column].set_title(shown.title(name))
+        if pattern is not None:
+            _current(grid[0, column], extras, pattern)
+            _gate_signals(grid[1, column], extras, pattern)
+    return canvas
+
+
+def _current(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> None:
+    window = (pattern.start * 1e-8, (pattern.start + waveforms.PERIOD) * 1e-8)
+    part = waveforms.cut(extras.waveform, window)
+    time = 1e6 * (part["raster"]["time"] - window[0])
+    axes.plot(time, part["raster"]["i_a"], color=COLOURS["a"])
+    at = 1e6 * (part["samples"]["time"] - window[0])
+    axes.plot(at, np.interp(at, time, part["raster"]["i_a"]), "|", markersize=9, color=COLOURS["error"])
+    axes.set_ylabel("$i_a$ (A), samples")
+
+
+def _gate_signals(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> None:
+    for leg, word in enumerate("abc"):
+        for offset, pin in ((0.45, "upper"), (0.0, "lower")):
+            edges = extras.waveform["edges"]
+            mine = edges["leg"] == leg
+            time = 1e6 * edges["time"][mine] - 1e-2 * pattern.start
+            level = edges[pin][mine]
+            before = np.searchsorted(time, 0.0, side="right") - 1
+            inside = (time > 0.0) & (time < 100.0)
+            steps = np.concatenate([[0.0], time[inside], [100.0]])
+            values = np.concatenate([[level[max(0, before)]], level[inside], [level[inside][-1] if inside.any() else 0]])
+            base = 2.0 - leg + offset
+            axes.step(steps, base + 0.36 * values, where="post", color=COLOURS[word], linewidth=1.2)
+    for state, first, last in pattern.states:
+        axes.axvspan(first / 100.0, last / 100.0, color="#e8eef5" if state in {"000", "111"} else "#fdf1e2", zorder=0)
+        if last - first > 500:
+            axes.text((first + last) / 200.0, 2.98, state, ha="center", va="bottom", fontsize=8.5)
+    axes.set(xlabel="time in the period (µs)", yticks=[0.4, 1.4, 2.4], ylim=(-0.1, 3.25), xlim=(0.0, 100.0))
+    axes.set_yticklabels(["c", "b", "a"])
+    axes.set_ylabel("upper, lower gate")
+    axes.grid(visible=False)
+
+
+def errors_over_speed(shown: Shown) -> Canvas:
+    """Position error over speed: peak (line) and rms (dashed) of every stretch of constant command."""
+    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
+    for number, (name, signals) in enumerate(shown.records.items()):
+        colour = RUN_COLOURS[number % len(RUN_COLOURS)]
+        holds = speed_profile.holds(signals, shown.scenario.run(name))
+        speed = [hold.speed for hold in holds]
+        axes.plot(speed, [hold.peak for hold in holds], "o-", markersize=3.5, color=colour, label=shown.title(name))
+        axes.plot(speed, [hold.rms for hold in holds], linestyle=_DASHED, color=colour, linewidth=0.9)
+    axes.set(xlabel="speed (rpm)", ylabel="position error (° el): peak; dashed rms")
+    axes.set_ylim(bottom=0.0)
+    _legend(axes)
+    return canvas
+
+
+def _legend(axes: Axes) -> None:
+    if len(axes.get_legend_handles_labels()[1]) > 0:
+        axes.legend(loc="best")
+
+
+SPECIAL: dict[str, Callable[[Shown], Canvas]] = {
+    "trajectory": trajectories,
+    "deviation_sweep": sweeps,
+    "spectrum": spectra,
+    "gates": gates,
+    "error_over_speed": errors_over_speed,
+}
+"""Panels that fill a drawing of their own."""
