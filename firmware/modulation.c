@@ -15,7 +15,7 @@ static excitation_t excitation(const drive_t* d) {
   if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
   if (parameters.position_source != 1) return EXCITATION_ALTERNATING;
   const int32_t enter = d->config.blend.low_bpp / 4 * 3;
-  return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_CENTRED : EXCITATION_EXTENDED;
+  return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.

@@ -32,8 +32,9 @@ class ScenarioResult:
 
     @property
     def broken(self) -> list[Outcome]:
-        """The runs that do not count."""
-        return [outcome for outcome in self.outcomes if outcome.broken]
+        """The runs that do not count, but for those that may be lost."""
+        broken = [outcome for outcome in self.outcomes if outcome.broken]
+        return [outcome for outcome in broken if not self.scenario.run(outcome.run).may_be_lost]
 
 
 def assess(

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stillspin import deviation_sweep, waveforms
+from stillspin import deviation_sweep, speed_profile, waveforms
 from stillspin.core import Signals, Waveform
 from stillspin.scenario import Run, Window
 
@@ -235,6 +235,12 @@ def current_peak(piece: Piece) -> float:
     return max(float(np.max(np.abs(piece.signals[name]))) for name in ("i_a", "i_b", "i_c"))
 
 
+def hold_position_error_peak(piece: Piece) -> float:
+    """Largest position error while the speed reference is held, degrees el."""
+    holds = speed_profile.holds(piece.signals, position_error(piece.signals))
+    return max((hold.peak for hold in holds), default=float("inf"))
+
+
 def thd(piece: Piece) -> float:
     """All of the phase current up to 50 kHz but its fundamental and DC, rms in percent of the fundamental."""
     return 100.0 * waveforms.spectrum(_looked(piece, "raster")).distortion
@@ -323,6 +329,7 @@ KINDS: dict[str, Kind] = {
     "tracking_error_peak": Kind(tracking_error_peak, "rpm"),
     "radius_deviation": Kind(radius_deviation, "%"),
     "current_peak": Kind(current_peak, "A"),
+    "hold_position_error_peak": Kind(hold_position_error_peak, "deg el"),
     "thd": Kind(thd, "%"),
     "switching_frequency": Kind(switching_frequency, "kHz"),
     "pattern_voltage_error": Kind(pattern_voltage_error, "ticks"),

@@ -36,6 +36,7 @@ class Run:
         plant: entries of the plant that this run needs, such as a locked shaft.
         record_every: PWM periods per record.
         waveform: the stretch that is looked into, None for none.
+        may_be_lost: what it shows includes that the shaft is lost; that does not count as broken off.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Run:
     reached: tuple[Reached, ...]
     record_every: int = 1
     waveform: Look | None = None
+    may_be_lost: bool = False
 
     def speed_command(self, time: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """The commanded speed (rpm) at each time (s): the last command given, 0 before the first."""

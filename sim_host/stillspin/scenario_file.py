@@ -144,11 +144,19 @@ def _run(table: Table) -> Run:
         reached=tuple(_reached(reached, duration) for reached in table.tables("reached")),
         record_every=int(table.number("record_every", 1, minimum=1)),
         waveform=_look(table, duration),
+        may_be_lost=_switch(table, "may_be_lost"),
     )
     if not run.reached:
         raise InputError(f"{table.where}: 'reached' is missing: a run counts only if the shaft did what was commanded")
     table.finish()
     return run
+
+
+def _switch(table: Table, key: str) -> bool:
+    value = table.raw(key, False)
+    if not isinstance(value, bool):
+        raise table.fail(key, "must be true or false")
+    return value
 
 
 def _look(table: Table, duration: float) -> Look | None:

@@ -36,9 +36,11 @@ class Scheme:
     def variant(self, scenario: Scenario) -> Scenario:
         """The scenario with this scheme, under an id of its own."""
         runs = tuple(replace(run, parameters={**run.parameters, **self.parameters}) for run in scenario.runs)
-        names = tuple(run.name for run in runs)
-        plot = Plot(f"The same with the {self.title}", ("speed", "position_error"), names, None)
-        return replace(scenario, id=scenario.id + _MARK, runs=runs, plots=(plot,))
+        # The scenario's own plots say which runs go together.
+        views = dict.fromkeys((plot.runs, plot.window) for plot in scenario.plots)
+        title = f"The same with the {self.title}"
+        plots = tuple(Plot(title, ("speed", "position_error"), names, window) for names, window in views)
+        return replace(scenario, id=scenario.id + _MARK, runs=runs, plots=plots)
 
 
 def paper() -> Scheme:

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
+from matplotlib.ticker import ScalarFormatter
 
 from stillspin import deviation_sweep, metrics, speed_profile, waveforms
 from stillspin.core import Signals
@@ -161,16 +162,22 @@ def _gate_signals(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> Non
 
 
 def errors_over_speed(shown: Shown) -> Canvas:
-    """Position error over speed: peak (line) and rms (dashed) of every stretch of constant command."""
+    """Position error over the speed command while it is held: peak, rms dashed; a cross where the shaft did not follow."""
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
-        holds = speed_profile.holds(signals, shown.scenario.run(name))
-        speed = [hold.speed for hold in holds]
+        holds = speed_profile.holds(signals, metrics.position_error(signals))
+        speed = [hold.reference for hold in holds]
         axes.plot(speed, [hold.peak for hold in holds], "o-", markersize=3.5, color=colour, label=shown.title(name))
         axes.plot(speed, [hold.rms for hold in holds], linestyle=_DASHED, color=colour, linewidth=0.9)
-    axes.set(xlabel="speed (rpm)", ylabel="position error (° el): peak; dashed rms")
-    axes.set_ylim(bottom=0.0)
+        lost = [hold for hold in holds if not hold.followed]
+        axes.plot([hold.reference for hold in lost], [hold.peak for hold in lost], "x", color=COLOURS["error"], zorder=4)
+    axes.set_xscale("symlog", linthresh=10.0, linscale=0.5)
+    axes.set_xticks([0, 5, 10, 30, 60, 100, 300, 600, 1000, 3000])
+    axes.get_xaxis().set_major_formatter(ScalarFormatter())
+    axes.set(xlabel="speed command (rpm)", ylabel="position error (° el): peak; dashed rms")
+    if axes.dataLim.height > 0.0:  # an empty drawing has no logarithms
+        axes.set_yscale("log")
     _legend(axes)
     return canvas
 

@@ -1,41 +1,55 @@
-"""Position error by speed: what the error is while the command stays where it is."""
+"""Position error by speed: what it is while the speed reference stays where it is."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from stillspin import metrics
 from stillspin.core import Signals
-from stillspin.scenario import Run
 
-SETTLE = 0.2
-"""s after a change of the command that are left out."""
+Floats = npt.NDArray[np.float64]
+
+SETTLE = 0.3
+"""s after the reference has stopped moving that are left out."""
+
+SHORTEST = 0.4
+"""s that a stretch must last beyond that."""
 
 
 @dataclass(frozen=True)
 class Hold:
-    """A stretch of constant command: mean true speed (rpm), peak and rms of the position error (degrees el.)."""
+    """A stretch of constant reference (rpm): mean true speed (rpm), peak and rms of the position error (degrees el.)."""
 
+    reference: float
     speed: float
     peak: float
     rms: float
 
+    @property
+    def followed(self) -> bool:
+        """Whether the shaft turned as it was told: within 15 rpm, above 600 rpm within 2.5 %."""
+        return abs(self.speed - self.reference) <= max(15.0, 0.025 * abs(self.reference))
 
-def holds(signals: Signals, run: Run) -> list[Hold]:
-    """The stretches, in their order; of a run that broke off those that it finished."""
-    time = metrics.as_floats(signals["time"])
-    speed = metrics.as_floats(signals["true_speed"])
-    error = metrics.position_error(signals)
-    corners = [at for at, what, _ in run.commands if what == "speed_ref_rpm"] + [run.duration]
+
+def holds(signals: Signals, error: Floats) -> list[Hold]:
+    """The stretches, in their order; of a run that broke off those that it finished.
+
+    Args:
+        signals: with `time`, `true_speed` and `speed_ref`.
+        error: position error of every record, degrees el.
+    """
+    time = np.asarray(signals["time"], dtype=np.float64)
+    reference = np.asarray(signals["speed_ref"], dtype=np.float64)
+    speed = np.asarray(signals["true_speed"], dtype=np.float64)
+    corners = np.flatnonzero(np.diff(reference) != 0.0) + 1
     found = []
-    for first, last in zip(corners[:-1], corners[1:], strict=True):
-        inside = (time >= first + SETTLE) & (time < last)
-        if last > time[-1] + 0.01 or not np.any(inside):
+    for first, last in zip([0, *corners.tolist()], [*corners.tolist(), time.size], strict=True):
+        inside = np.flatnonzero(time[first:last] >= time[first] + SETTLE) + first
+        if not inside.size or time[inside[-1]] - time[inside[0]] < SHORTEST:
             continue
         part = error[inside]
-        found.append(
-            Hold(float(np.mean(speed[inside])), float(np.max(np.abs(part))), float(np.sqrt(np.mean(np.square(part)))))
-        )
+        peak, rms = float(np.max(np.abs(part))), float(np.sqrt(np.mean(np.square(part))))
+        found.append(Hold(float(reference[inside[-1]]), float(np.mean(speed[inside])), peak, rms))
     return found

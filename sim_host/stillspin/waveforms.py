@@ -138,10 +138,10 @@ class Pattern:
 def patterns(waveform: Waveform) -> list[Pattern]:
     """Every whole period of the stretch, which starts with one."""
     time = waveform["raster"]["time"]
-    if not time.size:
+    if time.size < 2:
         return []
     first = round(float(time[0]) * 1e8)
-    last = round(float(time[-1]) * 1e8) + 1
+    last = round(float(2.0 * time[-1] - time[-2]) * 1e8)
     legs = [levels(waveform["edges"], leg) for leg in range(3)]
     return [_pattern(start, legs) for start in range(first, last - PERIOD + 1, PERIOD)]
 

@@ -107,4 +107,32 @@ TEST(Zvv, NothingToSeeWithoutCurrentOrZeroVector) {
   EXPECT_GT(s.speed_bpp, 0);  // towards the rotor
 }
 
+// At rest D = (Ld - Lq) / (Ld Lq) (R i_d + drop) sin(2 error) / 2: the drop of the devices along the d-axis acts like
+// R i_d, what they take along the q-axis has been taken off.
+TEST(Zvv, DeviationIsASineOfTwiceTheErrorWithAndWithoutDrops) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  for (const double drop : {0.0, 0.9}) {
+    for (int degree = -85; degree <= 85; degree += 5) {
+      const double error = degree * kDegree;
+      const double used = 0.8 - error;
+      const Vector volts = Vector{-drop, 0.0}.turned(used);
+      const Input in(model, {window_at(m, 0.8, 0.0, Vector{5.0, 0.0}.turned(used), volts, 5000, 6000)});
+      std::int32_t deviation = 0;
+      ASSERT_TRUE(zvv_deviation_q20(in.get(), bam(used), 0, &deviation));
+      const double kq = (m.ld - m.lq) / (m.ld * m.lq) * (m.rs * 5.0 + drop);
+      // A per second, from A per period; the slope is read to 1e-6 A per period, 0.01 A/s, a few times over
+      EXPECT_NEAR(real(deviation, 20) / kPeriod, 0.5 * kq * std::sin(2.0 * error), 0.1) << degree << ", " << drop;
+    }
+  }
+}
+
+TEST(Zvv, NoDeviationWithoutAZeroVector) {
+  const machine_model_t model = model_of(Motor{});
+  const Input active(model, alternating(Motor{}, 0, 0.8, 0.0, {5, 0}));
+  std::int32_t deviation = 77;
+  EXPECT_FALSE(zvv_deviation_q20(active.get(), bam(0.8), 0, &deviation));
+  EXPECT_EQ(deviation, 77);
+}
+
 }  // namespace

@@ -45,6 +45,14 @@ void hal_adc_read_window(hal_adc_window_t* window) {
   board.adc.pop_front();
 }
 
+bool hal_slices_begin(std::uint16_t ticks) {
+  board.slice_ticks = ticks;
+  return true;
+}
+void hal_slices_end(void) { board.slice_ticks = 0; }
+void hal_slice_read(hal_slice_t* slice) { *slice = board.slice; }
+void hal_slice_set_legs(std::uint16_t state) { board.legs = state; }
+
 std::uint16_t hal_irq_disable(void) { return 0; }
 void hal_irq_restore(std::uint16_t) {}
 std::uint16_t hal_irq_unexpected_count(void) { return 0; }

@@ -9,6 +9,7 @@
 
 #include "hal/hal_adc.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_slices.h"
 #include "tests/control/quantities.hpp"
 
 extern "C" {
@@ -28,6 +29,9 @@ struct FakeBoard {
   hal_pwm_frame_t frame = {};
   std::deque<hal_adc_window_t> adc;  // what hal_adc_read_window gives next
   std::uint32_t encoder = 0;
+  std::uint16_t slice_ticks = 0;  // 0: pulses
+  std::uint16_t legs = 0;
+  hal_slice_t slice = {2048, 2048, 2731};  // no current, 300 V
 };
 extern FakeBoard board;
 

@@ -12,7 +12,29 @@ Firmware fw;
 
 namespace {
 
+// A level pattern that goes round: one leg after the other.
+void slice_function() {
+  hal_slice_t slice;
+  hal_slice_read(&slice);
+  hal_slice_set_legs(static_cast<std::uint16_t>(1u << (fw.slices.size() % 3)));
+  fw.slices.push_back(slice);
+  hal_profile_step(fw.window_cycles);
+  fw.slice_ends.push_back(hal_pwm_period_tick());
+}
+
+void choose_slices() {
+  if (fw.slice_ticks != 0 && !fw.sliced) fw.sliced = hal_slices_begin(fw.slice_ticks);
+  if (fw.slice_ticks == 0 && fw.sliced) {
+    hal_slices_end();
+    fw.sliced = false;
+  }
+}
+
 void window_function() {
+  if (fw.sliced) {
+    slice_function();
+    return;
+  }
   hal_adc_window_t window;
   hal_adc_read_window(&window);
   fw.windows.push_back(window);
@@ -28,8 +50,9 @@ void control_function() {
   hal_profile_step(fw.control_cycles);
   while (hal_pwm_period_tick() < fw.write_at_tick) {
   }
+  choose_slices();
   const std::uint32_t before = hal_time_cycles();
-  fw.in_time.push_back(hal_pwm_write(&fw.frame, fw.deadline));
+  if (!fw.sliced) fw.in_time.push_back(hal_pwm_write(&fw.frame, fw.deadline));
   fw.write_ticks.push_back(static_cast<std::uint16_t>(hal_time_cycles() - before));
   fw.encoder_count = hal_encoder_count();
   hal_safety_toggle_enable();

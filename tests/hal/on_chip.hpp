@@ -12,6 +12,7 @@
 #include "hal/hal_adc.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_slices.h"
 #include "sim_host/chip/chip.hpp"
 #include "tests/hal/bench_world.hpp"
 
@@ -35,6 +36,7 @@ struct Firmware {
   bool retry_gates;
   bool watchdog;
   bool service_watchdog;
+  std::uint16_t slice_ticks;  // slices in place of windows; 0: none
 
   bool init_ok;
   bool gates_ok;
@@ -46,6 +48,9 @@ struct Firmware {
   bool control_running;
   int preemptions;
   std::uint32_t encoder_count;
+  bool sliced;
+  std::vector<hal_slice_t> slices;
+  std::vector<std::uint16_t> slice_ends;  // TBCTR at the end of the slice interrupt
 };
 extern Firmware fw;
 

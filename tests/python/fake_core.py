@@ -78,11 +78,20 @@ _PARAMETERS = [
     (22, "turn_off_delay", "us", 2, 0.0, 2.0, 0.6, "STOPPED", "turn-off delay"),
     (23, "device_drop", "V", 3, 0.0, 5.0, 0.95, "STOPPED", "on-state drop of a device"),
     (24, "device_resistance", "ohm", 4, 0.0, 1.0, 0.035, "STOPPED", "on-state resistance of a device"),
-    (40, "excitation", "", 0, 0.0, 3.0, 3.0, "STOPPED", "pulse pattern"),
+    (40, "excitation", "", 0, 0.0, 4.0, 3.0, "STOPPED", "pulse pattern"),
+    (42, "window_minimum", "us", 2, 5.0, 30.0, 18.0, "ALWAYS", "shortest extended vector"),
+    (43, "window_maximum", "us", 2, 5.0, 40.0, 30.0, "ALWAYS", "longest extended vector"),
+    (45, "settle_time", "us", 2, 4.0, 25.0, 10.5, "ALWAYS", "from an edge to the first sample"),
     (60, "position_source", "", 0, 0.0, 4.0, 2.0, "STOPPED", "where the angle comes from"),
     (68, "observer_windows", "", 0, 0.0, 1.0, 1.0, "ALWAYS", "windows of the observer"),
+    (71, "id_low_speed", "A", 2, -10.0, 10.0, 0.0, "ALWAYS", "d-axis current below the blend"),
     (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
     (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),
+    (103, "polarity_check", "", 0, 0.0, 1.0, 1.0, "STOPPED", "test the polarity of the magnet at start"),
+    (170, "encoder_trim", "deg", 2, -180.0, 180.0, 0.0, "ALWAYS", "added to the angle of the encoder"),
+    (171, "current_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 PI, 1 hysteresis"),
+    (173, "hysteresis_frequency", "kHz", 2, 0.0, 25.0, 10.0, "ALWAYS", "switching frequency"),
+    (174, "slice_time", "us", 2, 5.0, 20.0, 5.0, "STOPPED", "interval of the decisions"),
 ]
 
 SIGNALS = {
@@ -92,6 +101,9 @@ SIGNALS = {
     "v_link": "V", "deviation_q": "A/s", "v_dc": "V", "angle_zvv": "rad",
     "angle_avv": "rad", "weight": "", "load_estimate": "N m", "state": "", "fault": "", "limit": "",
 }  # fmt: skip
+
+
+_LOOKED_AT_NOTHING = {"raster": {"time": np.zeros(0)}}
 
 
 def plant_schema():
@@ -150,7 +162,7 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
     for share in (0.25, 0.5, 0.75, 1.0):
         if progress is not None and not progress(share):
             return SimpleNamespace(
-                signals={"time": np.zeros(0)}, completed=False, reason="stopped", faults=[], stats={}
+                signals={"time": np.zeros(0)}, waveform=_LOOKED_AT_NOTHING, completed=False, reason="stopped", faults=[], stats={}
             )
     time = np.arange(-0.05, duration + SAMPLE / 2, SAMPLE)
     at = np.array([-1.0] + [row[0] for row in commands if row[1] == "speed_ref_rpm"])
@@ -185,6 +197,7 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
     short = plant.get("inverter", {}).get("dead_short", False)
     return SimpleNamespace(
         signals={name: column[:: int(record_every)] for name, column in data.items()},
+        waveform=_LOOKED_AT_NOTHING,
         completed=not short,
         reason="over-current at 0.100 s" if short else "",
         faults=[(0.1, "over-current")] if short else [],

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import fake_core
-from stillspin import cli, report, scenario_file
+from stillspin import cli, report, scenario_file, scheme
 from stillspin.figures import Result
 
 
@@ -32,11 +32,14 @@ def page(results):
 
 def test_metrics_have_exactly_the_agreed_shape(results):
     metrics = json.loads((results / "metrics.json").read_text(encoding="utf-8"))
-    assert list(metrics) == ["profile", "seed", "revision", "scenarios"]
+    assert list(metrics) == ["profile", "seed", "revision", "scenarios", "paper_scheme", "paper_scheme_lost"]
     assert (metrics["profile"], metrics["seed"]) == ("ideal", 9)
     assert metrics["revision"]
     assert list(metrics["scenarios"]) == ["A10", "A14", "A18c"]
-    for identifier, figures in metrics["scenarios"].items():
+    # A14 compares position sources itself.
+    assert list(metrics["paper_scheme"]) == ["A10", "A18c"]
+    assert metrics["paper_scheme_lost"] == {}
+    for identifier, figures in [*metrics["scenarios"].items(), *metrics["paper_scheme"].items()]:
         assert list(figures) == [figure.name for figure in scenario_file.load(identifier).figures]
         for name, figure in figures.items():
             assert re.fullmatch(r"[a-z0-9_]+", name)
@@ -64,7 +67,9 @@ def test_every_link_to_a_record_leads_somewhere(results, page):
 def test_the_page_says_what_it_is_about(page):
     for word in ("ideal", "seed of the noise", report.PARAMETER_NOTE, "Fig. 18c", "simulated s per s", "0.2"):
         assert word in page
-    assert page.count("<img") == sum(len(scenario_file.load(name).plots) for name in ("A10", "A14", "A18c"))
+    own = [scenario_file.load(name) for name in ("A10", "A14", "A18c")]
+    variants = [scheme.paper().variant(scenario) for scenario in own if scheme.paper().applies(scenario)]
+    assert page.count("<img") == sum(len(scenario.plots) for scenario in [*own, *variants])
 
 
 def test_what_comes_from_files_is_escaped(tmp_path, core, monkeypatch):

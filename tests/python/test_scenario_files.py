@@ -202,7 +202,7 @@ def test_a_file_that_is_not_text_is_refused(tmp_path):
         scenario_file.read(path)
 
 
-@pytest.mark.parametrize(("given", "near"), [("A18d", "A18"), ("a1o", "A1"), ("", "known: A10")])
+@pytest.mark.parametrize(("given", "near"), [("A18d", "A18"), ("a1o", "A1"), ("", "known: A09, A10")])
 def test_unknown_scenarios_are_refused_with_what_there_is(given, near):
     with pytest.raises(InputError, match=near):
         scenario_file.load(given)

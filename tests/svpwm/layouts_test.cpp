@@ -1,4 +1,4 @@
-// The centred and the extended layout: means, valid pulses, the order of vectors, the promised lengths.
+// The centred, the extended and the long-zero layout: means, valid pulses, the order of vectors, the promised lengths.
 
 #include "tests/svpwm/period.hpp"
 
@@ -53,6 +53,22 @@ TEST(Centred, ShortestPulseSurvivesAtTheLimit) {
     for (const double length : {longest_vector(angle, kLink) - 1e-3, 400.0}) {
       expect_valid(centred(Vector{length, 0.0}.turned(angle)));
     }
+  }
+}
+
+TEST(LongZero, MeanVoltagePulsesAndOneZeroVectorInOnePiece) {
+  Random random(78);
+  for (int n = 0; n < 3000; ++n) {
+    const double link = random.between(40.0, 420.0);
+    const Vector v = any_voltage(random, link, 0.94);
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    svpwm_pulses_t p;
+    svpwm_long_zero(&t, &p);
+    ASSERT_NO_FATAL_FAILURE(expect_valid(p));
+    ASSERT_NO_FATAL_FAILURE(expect_mean(p, v, link)) << v.x << ", " << v.y;
+    // 111 is no longer than the shortest pulse: all the rest of the zero vector is 000, behind the last edge
+    ASSERT_EQ(lasts(p, 7), SVPWM_PULSE_MIN_TICKS);
+    for (int leg = 0; leg < 3; ++leg) ASSERT_EQ(p.rise[leg], SVPWM_FIRST_TICK);
   }
 }
 
