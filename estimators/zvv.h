@@ -3,8 +3,8 @@
 //   D = s_q + (R i_q + lambda w^)/Lq,   Kq = R (Ld - Lq) i_d* / (Ld Lq),   angle error = D / Kq, then PI -> speed ->
 //   angle.
 //
-// The drop of the devices is taken off D in the q-axis; along the d-axis it acts like R i_d* and belongs to Kq (at 3 A it
-// is as large).
+// The drop of the devices is taken off D in the q-axis; along the d-axis it acts like R i_d* and belongs to Kq (at 3 A
+// it is as large).
 //
 // It needs i_d* != 0. Only the integral part of the speed goes into D: with the whole PI output fed back one step later
 // the loop is unstable unless Kp < Lq |Kq| / lambda, about 6 rad/s on the paper's motor. What the paper drops of the
@@ -32,8 +32,9 @@ typedef struct {
 
 void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp);
 
-/// D (22) without a loop behind it: the mean over the zero vectors among the windows, A per period, Q20, in the frame of
-/// this angle (at the start of the running period) and speed. False, with nothing written, when there is no such window.
+/// D (22) without a loop behind it: the mean over the zero vectors among the windows, A per period, Q20, in the frame
+/// of this angle (at the start of the running period) and speed. False, with nothing written, when there is no such
+/// window.
 bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t* deviation_q20);
 
 estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in);

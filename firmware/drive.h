@@ -154,8 +154,8 @@ void drive_modulate(drive_t* d);         // modulation.c
 void drive_publish(drive_t* d);          // drive_api.c
 
 // Hysteresis in the place of current control and modulation (hysteresis.c).
-bool drive_hysteresis(drive_t* d);            // switches it on and off with the state; true while it is on
-void drive_hysteresis_samples(drive_t* d);    // in the place of the windows
+bool drive_hysteresis(drive_t* d);             // switches it on and off with the state; true while it is on
+void drive_hysteresis_samples(drive_t* d);     // in the place of the windows
 void drive_hysteresis_slice(hysteresis_t* h);  // the slice interrupt
 
 void drive_control_interrupt(void);

@@ -9,10 +9,10 @@
 #include "hal/hal_pwm.h"
 #include "hal/hal_slices.h"
 
-#define ADAPT_PERIODS 100u       // 10 ms between two corrections of the band
-#define BAND_MIN_Q20 20972L      // 20 mA: two codes
-#define BAND_MAX_Q20 5242880L    // 5 A
-#define ADAPT_SHARE_Q15 4096L    // an eighth of the relative error of the frequency at a time
+#define ADAPT_PERIODS 100u     // 10 ms between two corrections of the band
+#define BAND_MIN_Q20 20972L    // 20 mA: two codes
+#define BAND_MAX_Q20 5242880L  // 5 A
+#define ADAPT_SHARE_Q15 4096L  // an eighth of the relative error of the frequency at a time
 
 static uint16_t slice_ticks(void) { return (uint16_t)q_shr_round(parameters.slice_time * 100, 16); }
 
@@ -71,8 +71,7 @@ void drive_hysteresis_samples(drive_t* d) {
   const int32_t a_q20 = q_mul(taken.sum_a_q8 / (int32_t)taken.slices, per_code_q30, 18);
   const int32_t b_q20 = q_mul(taken.sum_b_q8 / (int32_t)taken.slices, per_code_q30, 18);
   // The mean of the period before, whose middle lies half a period behind the angle of its start.
-  const rotation_t r =
-      frame_rotation(d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2));
+  const rotation_t r = frame_rotation(d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2));
   d->control.measured_q20 = frame_park(frame_clarke2(a_q20, b_q20), r);
   d->samples.link_q16 += q_shr((int32_t)taken.link_code * d->config.volts_per_code_q16 - d->samples.link_q16, 3);
   if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_raise(d, FAULT_CURRENT_LIMIT);
@@ -87,11 +86,13 @@ static void adapt(hysteresis_t* h) {
   // Three legs, 10 ms: 30 rises per kHz.
   const int32_t wanted = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
   const int32_t error_q15 = q_clamp(q_div((int32_t)rises - wanted, wanted, 15), -32767L, 32767L);
-  h->band_q20 = q_clamp(h->band_q20 + q_mul(q_mul(h->band_q20, error_q15, 15), ADAPT_SHARE_Q15, 15), BAND_MIN_Q20,
-                        BAND_MAX_Q20);
+  h->band_q20 =
+      q_clamp(h->band_q20 + q_mul(q_mul(h->band_q20, error_q15, 15), ADAPT_SHARE_Q15, 15), BAND_MIN_Q20, BAND_MAX_Q20);
 }
 
-static int32_t to_codes_q8(const drive_t* d, int32_t amps_q20) { return q_mul(amps_q20, d->config.codes_per_amp_q16, 28); }
+static int32_t to_codes_q8(const drive_t* d, int32_t amps_q20) {
+  return q_mul(amps_q20, d->config.codes_per_amp_q16, 28);
+}
 
 static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
   const abc_t i = frame_inverse_clarke(frame_inverse_park(d->control.reference_q20, frame_rotation(angle_bam)));

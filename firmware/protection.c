@@ -29,8 +29,8 @@ static bool over_current(const drive_t* d) {
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
 static bool encoder_beside_avv(void) {
-  return parameters.position_source == 0 && parameters.current_law == 0 && parameters.excitation != EXCITATION_CENTRED &&
-         parameters.excitation != EXCITATION_LONG_ZERO;
+  return parameters.position_source == 0 && parameters.current_law == 0 &&
+         parameters.excitation != EXCITATION_CENTRED && parameters.excitation != EXCITATION_LONG_ZERO;
 }
 
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.

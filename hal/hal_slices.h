@@ -1,6 +1,6 @@
-// Slices: the other way to run the legs. In place of a pulse per leg and period each leg's level is set directly, from an
-// interrupt that comes every few microseconds with fresh currents. For control laws that decide sample by sample, such
-// as hysteresis control.
+// Slices: the other way to run the legs. In place of a pulse per leg and period each leg's level is set directly, from
+// an interrupt that comes every few microseconds with fresh currents. For control laws that decide sample by sample,
+// such as hysteresis control.
 //
 // The period of hal_pwm.h and its control interrupt go on; hal_pwm_write must not be called meanwhile. The slice
 // interrupt takes the place of the window interrupt: it is the same function, and must call hal_slice_read first. A

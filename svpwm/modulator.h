@@ -8,8 +8,8 @@
 #include "svpwm/windows.h"
 
 typedef enum {
-  EXCITATION_CENTRED = 0,     // plain SVPWM
-  EXCITATION_EXTENDED = 1,    // two active vectors and a zero vector of at least T_min each
+  EXCITATION_CENTRED = 0,      // plain SVPWM
+  EXCITATION_EXTENDED = 1,     // two active vectors and a zero vector of at least T_min each
   EXCITATION_ALTERNATING = 2,  // two long opposite vectors while the voltage allows, extended above
   EXCITATION_LONG_ZERO = 4     // all pulses as short as they can be, then one zero vector: what ZVV alone runs on best
 } excitation_t;

@@ -46,8 +46,8 @@ void hal_adc_init(void) {
 }
 
 static void set_lengths(uint16_t pairs2) {
-  target_write16(REG_ADCMAXCONV, REG_FIELD(ADCMAXCONV_MAX_CONV1, PAIRS_IN_BURST - 1u) |
-                                     REG_FIELD(ADCMAXCONV_MAX_CONV2, pairs2 - 1u));
+  target_write16(REG_ADCMAXCONV,
+                 REG_FIELD(ADCMAXCONV_MAX_CONV1, PAIRS_IN_BURST - 1u) | REG_FIELD(ADCMAXCONV_MAX_CONV2, pairs2 - 1u));
 }
 
 void adc_sequence_windows(void) {

@@ -18,8 +18,8 @@ void WaveformProbe::look(Tick t, plant::Plant& plant, const std::array<bool, 3>&
   if (t == begin_) {
     for (int leg = 0; leg < 3; leg++) edge(t, leg, upper[leg], lower[leg]);
   }
-  const double row[] = {seconds(t),       s.current[0],     s.current[1],     s.current[2],
-                        s.angle_e,        s.leg_voltage[0], s.leg_voltage[1], s.leg_voltage[2]};
+  const double row[] = {seconds(t), s.current[0],     s.current[1],     s.current[2],
+                        s.angle_e,  s.leg_voltage[0], s.leg_voltage[1], s.leg_voltage[2]};
   for (std::size_t k = 0; k < raster_columns_.size(); k++) raster_columns_[k].push_back(row[k]);
   next_ = t + raster_ < end_ ? t + raster_ : std::numeric_limits<Tick>::max();
 }

@@ -51,7 +51,9 @@ def assess(
     """
     read = {outcome.run: records.read(directory / outcome.file) for outcome in outcomes if outcome.file}
     recorded = {name: record.signals for name, record in read.items()}
-    looked = {outcome.run: records.read_waveform(directory / outcome.waveform) for outcome in outcomes if outcome.waveform}
+    looked = {
+        outcome.run: records.read_waveform(directory / outcome.waveform) for outcome in outcomes if outcome.waveform
+    }
     extras = {
         name: metrics.Extras(looked.get(name, {}), record.about.get("machine", {})) for name, record in read.items()
     }

@@ -28,8 +28,11 @@ Progress = Callable[[float], bool]
 
 
 class NativeResult(Protocol):
-    """What a run gives back. Signals have one element per record, all the same length; those of a table of the waveform
-    (`raster`, `edges`, `samples`) have one length, too."""
+    """What a run gives back.
+
+    Signals have one element per record, all the same length. The columns of a table of the waveform (`raster`, `edges`,
+    `samples`) are equally long.
+    """
 
     signals: Mapping[str, npt.NDArray[Any]]
     waveform: Mapping[str, Mapping[str, npt.NDArray[Any]]]

@@ -1,4 +1,4 @@
-"""The q-axis current deviation over a deliberate angle error (Fig. 9 of the paper), against what the machine's data give.
+"""The q-axis current deviation over a deliberate angle error (Fig. 9 of the paper), against what the machine gives.
 
 At rest and with i_q = 0, eqs (20) to (24) give D = Kq ½ sin 2θ̃ with Kq = R (Ld − Lq) i_d* / (Ld Lq), θ̃ the true minus
 the used angle. Two more things are known of a real drive, and are in the derived curve: the devices' drops, which act
@@ -67,8 +67,9 @@ def sweep(error: Floats, signals: Signals, machine: Mapping[str, float]) -> Swee
         raise ValueError(f"the angle error does not sweep ±{REACH:g}°")
 
     def mean(values: npt.NDArray[Any]) -> Floats:
-        total: Floats = np.bincount(place[inside], np.asarray(values, np.float64)[inside], edges.size - 1)
-        return total / count
+        total = np.bincount(place[inside], np.asarray(values, np.float64)[inside], edges.size - 1)
+        means: Floats = total / count
+        return means
 
     middle, deviation = mean(error), mean(signals["deviation_q"])
     twice = np.sin(np.radians(2.0 * middle))

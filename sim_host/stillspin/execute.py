@@ -43,8 +43,13 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended. `broken`: why it does not count, None when it does; `file`: None when nothing was recorded;
-    `waveform`: the file of the stretch that was looked into."""
+    """How a run ended.
+
+    Attributes:
+        broken: why it does not count, None when it does.
+        file: None when nothing was recorded.
+        waveform: the file of the stretch that was looked into.
+    """
 
     scenario: str
     run: str

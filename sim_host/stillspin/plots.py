@@ -28,6 +28,7 @@ from stillspin.scenario import Plot, Scenario, Window
 from stillspin.special_plots import SPECIAL, Shown
 from stillspin.style import COLOURS, COLUMNS, PANEL_HEIGHT, ROLES, RUN_COLOURS, STYLE, WIDTH
 
+
 def draw(
     plot: Plot, scenario: Scenario, recorded: Mapping[str, Signals], extras: Mapping[str, Extras] | None = None
 ) -> str:

@@ -144,9 +144,7 @@ def html(results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[s
 
 def _columns(paper: Mapping[str, ScenarioResult]) -> dict[str, dict[str, Result]]:
     """Scenario -> figure -> what the paper's scheme reaches."""
-    return {
-        identifier: {figure.name: figure for figure in result.figures} for identifier, result in paper.items()
-    }
+    return {identifier: {figure.name: figure for figure in result.figures} for identifier, result in paper.items()}
 
 
 def _plant_rows(profile: Profile) -> list[tuple[str, str]]:

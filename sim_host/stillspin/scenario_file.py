@@ -1,8 +1,8 @@
 """Reads and checks scenario files. Every complaint names the file, the place, the value and what is allowed.
 
 Shorthands of the format: `[defaults]` holds what the runs have in common; `reference` in a run draws a moving speed
-command (a sine, or straight lines through points) as set points every `interval` seconds, or with `what` another command
-such as `set:encoder_trim`. `waveform` in a run asks for what happens inside the periods of a short stretch.
+command (a sine, or straight lines through points) as set points every `interval` seconds, or with `what` another
+command such as `set:encoder_trim`. `waveform` in a run asks for what happens inside the periods of a short stretch.
 """
 
 from __future__ import annotations

@@ -55,7 +55,5 @@ def paper() -> Scheme:
 def separate(results: Sequence[ScenarioResult]) -> tuple[list[ScenarioResult], dict[str, ScenarioResult]]:
     """The drive's own results, and those of the variants by the id of the scenario that they vary."""
     own = [result for result in results if not result.scenario.id.endswith(_MARK)]
-    other = {
-        result.scenario.id.removesuffix(_MARK): result for result in results if result.scenario.id.endswith(_MARK)
-    }
+    other = {result.scenario.id.removesuffix(_MARK): result for result in results if result.scenario.id.endswith(_MARK)}
     return own, other

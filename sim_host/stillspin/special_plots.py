@@ -148,7 +148,9 @@ def _gate_signals(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> Non
             before = np.searchsorted(time, 0.0, side="right") - 1
             inside = (time > 0.0) & (time < 100.0)
             steps = np.concatenate([[0.0], time[inside], [100.0]])
-            values = np.concatenate([[level[max(0, before)]], level[inside], [level[inside][-1] if inside.any() else 0]])
+            values = np.concatenate(
+                [[level[max(0, before)]], level[inside], [level[inside][-1] if inside.any() else 0]]
+            )
             base = 2.0 - leg + offset
             axes.step(steps, base + 0.36 * values, where="post", color=COLOURS[word], linewidth=1.2)
     for state, first, last in pattern.states:
@@ -162,7 +164,7 @@ def _gate_signals(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> Non
 
 
 def errors_over_speed(shown: Shown) -> Canvas:
-    """Position error over the speed command while it is held: peak, rms dashed; a cross where the shaft did not follow."""
+    """Position error over the speed command while held: peak, rms dashed; a cross where the shaft did not follow."""
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
@@ -171,7 +173,9 @@ def errors_over_speed(shown: Shown) -> Canvas:
         axes.plot(speed, [hold.peak for hold in holds], "o-", markersize=3.5, color=colour, label=shown.title(name))
         axes.plot(speed, [hold.rms for hold in holds], linestyle=_DASHED, color=colour, linewidth=0.9)
         lost = [hold for hold in holds if not hold.followed]
-        axes.plot([hold.reference for hold in lost], [hold.peak for hold in lost], "x", color=COLOURS["error"], zorder=4)
+        axes.plot(
+            [hold.reference for hold in lost], [hold.peak for hold in lost], "x", color=COLOURS["error"], zorder=4
+        )
     axes.set_xscale("symlog", linthresh=10.0, linscale=0.5)
     axes.set_xticks([0, 5, 10, 30, 60, 100, 300, 600, 1000, 3000])
     axes.get_xaxis().set_major_formatter(ScalarFormatter())

@@ -20,7 +20,7 @@ SHORTEST = 0.4
 
 @dataclass(frozen=True)
 class Hold:
-    """A stretch of constant reference (rpm): mean true speed (rpm), peak and rms of the position error (degrees el.)."""
+    """A stretch of constant reference (rpm): mean true speed (rpm), peak and rms of the position error (° el.)."""
 
     reference: float
     speed: float

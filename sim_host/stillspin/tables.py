@@ -34,7 +34,11 @@ def summary(results: Iterable[ScenarioResult], other: Mapping[str, ScenarioResul
     """Every figure of merit, and beside it what the paper's scheme reaches, where it was run."""
     table = _table("scenario", "figure", "value", "unit", "paper", "goal", "", *(["paper scheme"] if other else []))
     for result in results:
-        beside = {figure.name: figure.value for figure in other[result.scenario.id].figures} if result.scenario.id in other else {}
+        beside = (
+            {figure.name: figure.value for figure in other[result.scenario.id].figures}
+            if result.scenario.id in other
+            else {}
+        )
         for figure in result.figures:
             value, paper, goal = (report.number(item) for item in (figure.value, figure.paper, figure.goal))
             word = report.verdict(figure)

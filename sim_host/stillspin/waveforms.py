@@ -1,7 +1,7 @@
-"""What happens inside PWM periods: gate patterns, switching frequency and spectrum of the stretch that was looked into.
+"""What happens inside PWM periods: gate patterns, switching frequency and spectrum of a stretch of a run.
 
-A waveform has three tables: `raster` (true phase currents, angle and leg voltages at even times), `edges` (levels of the
-two gate pins of a leg, one row for each change) and `samples` (instants at which the ADC held the phase currents).
+A waveform has three tables: `raster` (true phase currents, angle and leg voltages at even times), `edges` (levels of
+the two gate pins of a leg, one row for each change) and `samples` (instants at which the ADC held the phase currents).
 """
 
 from __future__ import annotations
@@ -84,8 +84,9 @@ def spectrum(raster: Signals) -> Spectrum:
     step = float(np.mean(np.diff(raster["time"][:count])))
     window = np.hanning(count + 1)[:count]
     lines = [np.fft.rfft(window * np.asarray(raster[name][:count], np.float64)) for name in ("i_a", "i_b", "i_c")]
-    power = np.mean([np.square(2.0 * np.abs(line) / np.sum(window)) for line in lines], axis=0)
-    return Spectrum(np.fft.rfftfreq(count, step), power, turns)
+    squares = [np.square(2.0 * np.abs(line) / np.sum(window)) for line in lines]
+    power: Floats = np.mean(squares, axis=0, dtype=np.float64)
+    return Spectrum(np.asarray(np.fft.rfftfreq(count, step), np.float64), power, turns)
 
 
 def switching_frequency(edges: Signals, seconds: float) -> float:

@@ -162,7 +162,12 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
     for share in (0.25, 0.5, 0.75, 1.0):
         if progress is not None and not progress(share):
             return SimpleNamespace(
-                signals={"time": np.zeros(0)}, waveform=_LOOKED_AT_NOTHING, completed=False, reason="stopped", faults=[], stats={}
+                signals={"time": np.zeros(0)},
+                waveform=_LOOKED_AT_NOTHING,
+                completed=False,
+                reason="stopped",
+                faults=[],
+                stats={},
             )
     time = np.arange(-0.05, duration + SAMPLE / 2, SAMPLE)
     at = np.array([-1.0] + [row[0] for row in commands if row[1] == "speed_ref_rpm"])
