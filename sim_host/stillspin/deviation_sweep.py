@@ -1,9 +1,10 @@
 """The q-axis current deviation over a deliberate angle error (Fig. 9 of the paper), against what the machine gives.
 
 At rest and with i_q = 0, eqs (20) to (24) give D = Kq ½ sin 2θ̃ with Kq = R (Ld − Lq) i_d* / (Ld Lq), θ̃ the true minus
-the used angle. Two more things are known of a real drive, and are in the derived curve: the devices' drops, which act
-on the motor during a zero vector, too (D takes off their q-axis part, as the drive does), and the saturation by that
-part of i_d* that lies in the true q-axis (plant/machine.hpp has the map).
+the used angle. Two more things act in a real drive. The devices' drops act on the motor during a zero vector like R i
+does; the drive takes off what they do in the q-axis near zero error, and the rest is taken off here, with the true
+drops. And that part of i_d* which lies in the true q-axis saturates: this is in the derived curve (plant/machine.hpp
+has the map).
 """
 
 from __future__ import annotations
@@ -32,12 +33,14 @@ class Sweep:
     """Mean deviation by angle error.
 
     Attributes:
-        error: mean error in each bin, degrees el.; deviation: mean D in it, A/s.
-        derived: what the true machine's data give there, A/s; empty without them.
+        error: mean error in each bin, degrees el.
+        raw: mean D in it as the drive has it, A/s; deviation: the same with the drops taken off.
+        derived: what the true machine gives there without drops, A/s; empty without its data.
         sine: the part of the deviation that goes with sin 2θ̃, A/s.
     """
 
     error: Floats
+    raw: Floats
     deviation: Floats
     derived: Floats
     sine: Floats
@@ -71,10 +74,13 @@ def sweep(error: Floats, signals: Signals, machine: Mapping[str, float]) -> Swee
         means: Floats = total / count
         return means
 
-    middle, deviation = mean(error), mean(signals["deviation_q"])
+    middle, raw = mean(error), mean(signals["deviation_q"])
+    deviation, known = raw, np.zeros(0)
+    if machine:
+        known = mean(derived(np.radians(error), signals, {**machine, "device_drop": 0.0}))
+        deviation = raw - mean(derived(np.radians(error), signals, machine)) + known
     twice = np.sin(np.radians(2.0 * middle))
-    known = mean(derived(np.radians(error), signals, machine)) if machine else np.zeros(0)
-    return Sweep(middle, deviation, known, float(deviation @ twice / (twice @ twice)) * twice)
+    return Sweep(middle, raw, deviation, known, float(deviation @ twice / (twice @ twice)) * twice)
 
 
 def derived(error: Floats, signals: Signals, machine: Mapping[str, float]) -> Floats:
@@ -114,7 +120,6 @@ def _slope(current: Complex, volts: Complex, machine: Mapping[str, float]) -> Co
 
 
 def gain(current: float, machine: Mapping[str, float]) -> float:
-    """Kq (24) of the true machine, A/s per rad; the drop adds 4/π of that of one device to R i_d* in the mean."""
+    """Kq (24) of the true machine, A/s per rad."""
     ld, lq = machine["inductance_d"], machine["inductance_q"]
-    volts = machine["resistance"] * current + 4.0 / np.pi * machine["device_drop"] * np.sign(current)
-    return float(volts * (ld - lq) / (ld * lq))
+    return machine["resistance"] * current * (ld - lq) / (ld * lq)

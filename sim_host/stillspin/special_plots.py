@@ -63,7 +63,7 @@ def _flat(grid: Any) -> list[Axes]:
 
 
 def sweeps(shown: Shown) -> Canvas:
-    """The q-axis current deviation over the angle error; dashed: derived from the true machine."""
+    """The q-axis current deviation over the angle error, faint with the drops; dashed: derived from the true machine."""
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
@@ -73,6 +73,7 @@ def sweeps(shown: Shown) -> Canvas:
         except ValueError:
             continue
         axes.plot(found.error, found.deviation, "o", markersize=3.5, color=colour, label=shown.title(name))
+        axes.plot(found.error, found.raw, ".", markersize=4.0, color=colour, alpha=0.35)
         axes.plot(found.error, found.sine, color=colour, linewidth=0.9)
         if found.derived.size:
             axes.plot(found.error, found.derived, color=colour, linestyle=_DASHED, linewidth=0.9)

@@ -78,6 +78,7 @@ _PARAMETERS = [
     (22, "turn_off_delay", "us", 2, 0.0, 2.0, 0.6, "STOPPED", "turn-off delay"),
     (23, "device_drop", "V", 3, 0.0, 5.0, 0.95, "STOPPED", "on-state drop of a device"),
     (24, "device_resistance", "ohm", 4, 0.0, 1.0, 0.035, "STOPPED", "on-state resistance of a device"),
+    (25, "drop_band", "A", 2, 0.01, 2.0, 0.2, "ALWAYS", "current below which its sign is not trusted"),
     (40, "excitation", "", 0, 0.0, 4.0, 3.0, "STOPPED", "pulse pattern"),
     (42, "window_minimum", "us", 2, 5.0, 30.0, 18.0, "ALWAYS", "shortest extended vector"),
     (43, "window_maximum", "us", 2, 5.0, 40.0, 30.0, "ALWAYS", "longest extended vector"),

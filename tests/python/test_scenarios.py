@@ -22,6 +22,15 @@ Figures = dict[str, dict[str, dict[str, float | None]]]
 
 # scenario, figure: smallest and largest value that is credible
 IDEAL = {
+    ("A09", "id_3_deviation_gain_error"): (0.0, 5.0),
+    ("A09", "id_minus_5_deviation_gain_error"): (0.0, 5.0),
+    ("A09", "deviation_distortion"): (1.0, 20.0),
+    ("A09", "deviation_wrong_polarity"): (0.0, 0.0),
+    ("A12", "svpwm_thd"): (5.0, 25.0),
+    ("A12", "hysteresis_thd"): (5.0, 25.0),  # lower than with SVPWM: no dead time, and vectors extended to 20 us
+    ("A12", "switching_frequency_ratio"): (0.98, 1.02),
+    ("A13", "pattern_mismatch"): (0.0, 0.0),
+    ("A13", "pattern_voltage_error"): (0.1, 1.0),
     ("A10", "position_error_peak"): (0.01, 0.5),
     ("A10", "speed_ripple"): (0.05, 1.0),
     ("A11", "position_error_peak"): (0.01, 1.0),
@@ -38,6 +47,18 @@ IDEAL = {
     ("A18c", "loaded_3000_position_error_peak"): (0.1, 3.0),
 }
 BENCH = {
+    ("A09", "id_3_deviation_gain_error"): (0.0, 5.0),
+    ("A09", "id_5_deviation_gain_error"): (0.0, 5.0),
+    ("A09", "id_8_deviation_gain_error"): (0.0, 5.0),
+    ("A09", "id_minus_5_deviation_gain_error"): (0.0, 5.0),
+    ("A09", "deviation_distortion"): (2.0, 20.0),
+    ("A09", "deviation_wrong_polarity"): (0.0, 0.0),
+    ("A12", "svpwm_thd"): (5.0, 25.0),
+    ("A12", "svpwm_thd"): (5.0, 25.0),
+    ("A12", "hysteresis_thd"): (5.0, 25.0),  # lower than with SVPWM: no dead time, and vectors extended to 20 us
+    ("A12", "switching_frequency_ratio"): (0.98, 1.02),
+    ("A13", "pattern_mismatch"): (0.0, 0.0),
+    ("A13", "pattern_voltage_error"): (0.1, 1.0),
     ("A10", "position_error_peak"): (0.1, 2.0),
     ("A10", "position_error_rms"): (0.05, 0.6),
     ("A11", "step_position_error_peak"): (0.3, 6.0),
@@ -61,7 +82,7 @@ def campaign(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     """All scenarios with bounds, once in each profile."""
     out = tmp_path_factory.mktemp("campaign") / request.param
     ids = sorted({scenario for scenario, _ in IDEAL})
-    done = stillspin("reproduce", *ids, "--profile", request.param, "--out", str(out))
+    done = stillspin("reproduce", *ids, "--profile", request.param, "--no-paper-scheme", "--out", str(out))
     assert done.returncode == 0, f"a run broke off:\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
     metrics = json.loads((out / "metrics.json").read_text())
     assert metrics["profile"] == request.param
@@ -120,6 +141,7 @@ def standstill(parameters: dict[str, float]) -> tuple[float, float]:
         duration=2.0,
         max_start=2.0,
         record_every=10,
+        waveform=(0.0, 0.0, 1),
         seed=1,
         progress=None,
     )

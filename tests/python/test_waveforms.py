@@ -119,9 +119,19 @@ def test_without_drops_and_saturation_the_deviation_is_kq_half_sine(amps):
 
 def test_the_fitted_gain_is_that_of_the_deviation():
     machine = {**MACHINE, "device_drop": 0.95, "cross_saturation": 1e-5, "knee": 21.8}
-    assert deviation_sweep.sweep(*swept(machine, 1.07), machine).gain == pytest.approx(1.07)
+    error, signals = swept({**machine, "device_drop": 0.0}, 1.07)
+    assert deviation_sweep.sweep(error, signals, {**machine, "device_drop": 0.0}).gain == pytest.approx(1.07)
+    assert deviation_sweep.sweep(*swept(machine), machine).gain == pytest.approx(1.0)
     # forgetting the drops shows
     assert deviation_sweep.sweep(*swept(machine), MACHINE).gain > 1.3
+
+
+def test_what_the_drops_do_is_taken_off():
+    machine = {**MACHINE, "device_drop": 0.95}
+    found = deviation_sweep.sweep(*swept(machine), machine)
+    assert found.deviation == pytest.approx(found.derived)
+    assert found.deviation == pytest.approx(found.sine, abs=1.0)  # the bins are not quite even
+    assert np.ptp(found.raw) > 1.3 * np.ptp(found.deviation)
 
 
 def test_a_sweep_that_does_not_go_round_has_no_gain():
