@@ -54,8 +54,7 @@ BENCH = {
     ("A09", "deviation_distortion"): (2.0, 20.0),
     ("A09", "deviation_wrong_polarity"): (0.0, 0.0),
     ("A12", "svpwm_thd"): (5.0, 25.0),
-    ("A12", "svpwm_thd"): (5.0, 25.0),
-    ("A12", "hysteresis_thd"): (5.0, 25.0),  # lower than with SVPWM: no dead time, and vectors extended to 20 us
+    ("A12", "thd_ratio"): (0.5, 1.0),
     ("A12", "switching_frequency_ratio"): (0.98, 1.02),
     ("A13", "pattern_mismatch"): (0.0, 0.0),
     ("A13", "pattern_voltage_error"): (0.1, 1.0),
