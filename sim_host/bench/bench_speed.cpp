@@ -1,5 +1,6 @@
 // Simulated seconds per wall second of the whole virtual drive in profile `bench`, all events on, for both integrators.
-// With a speed in rpm as argument: one short run at that speed and nothing else, for instruction counting.
+// With a speed in rpm as argument: one short run at that speed and nothing else, for instruction counting; a second
+// argument 0 or 1 chooses ERKStep or the fast path (default).
 
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +25,7 @@ RunRequest bench_request(double solver) {
 
 int main(int argc, char** argv) {
   if (argc > 1) {
-    RunRequest r = bench_request(1);
+    RunRequest r = bench_request(argc > 2 ? std::atof(argv[2]) : 1.0);
     r.commands = {{0.0, "speed_ref_rpm", std::atof(argv[1])}};
     r.duration = 0.5;
     const RunResult result = run(r);

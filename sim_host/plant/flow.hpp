@@ -11,11 +11,21 @@ namespace stillspin::plant {
 
 /// Start of a segment, with the slopes there (every user needs them, so they are computed once).
 struct SegmentStart {
-  State y{};        // y[kAngle] = 0
-  State slope{};    // dy/dt
+  State y;          // y[kAngle] = 0
+  State slope;      // dy/dt
   Pair flux;        // Vs
   Pair flux_slope;  // V
 };
+
+/// Cubic Hermite polynomial through the start and a state `end` after h seconds, at s of them.
+inline State hermite(const SegmentStart& start, const State& end, const State& end_slope, double h, double s) {
+  const double x = s / h;
+  const double w1 = x * x * (3.0 - 2.0 * x);
+  const double w0 = 1.0 - w1;
+  const double s0 = s * (1.0 - x) * (1.0 - x);
+  const double s1 = s * x * (x - 1.0);
+  return w0 * start.y + w1 * end + s0 * start.slope + s1 * end_slope;
+}
 
 struct Advance {
   double reached = 0.0;  // s from the start, > 0 unless an event is due at once
@@ -23,7 +33,7 @@ struct Advance {
   Fired fired{};     // which event functions have reached zero
   bool far = false;  // no event function came near zero on the way
   bool has_end_slope = false;
-  State end_slope{};  // dy/dt at the end, when the method has it (to its own order)
+  State end_slope = State::Zero();  // dy/dt at the end, when the method has it (to its own order)
 };
 
 /// Events are located from brackets on this grid of time since the start of the segment, not from wherever the look

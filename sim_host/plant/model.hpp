@@ -10,6 +10,7 @@
 #ifndef STILLSPIN_SIM_HOST_PLANT_MODEL_HPP
 #define STILLSPIN_SIM_HOST_PLANT_MODEL_HPP
 
+#include <Eigen/Core>
 #include <array>
 
 #include "sim_host/plant/bridge.hpp"
@@ -18,7 +19,7 @@
 namespace stillspin::plant {
 
 enum StateIndex : int { kId, kIq, kSpeed, kAngle, kLink, kStates };
-using State = std::array<double, kStates>;
+using State = Eigen::Matrix<double, kStates, 1>;
 
 /// Event functions: each must stay >= 0. Two per leg, then the shaft, then the brake.
 inline constexpr int kShaftEvent = 6;

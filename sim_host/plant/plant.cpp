@@ -70,7 +70,7 @@ struct Plant::Impl {
 
   // What has already been evaluated at the present.
   bool has_present = false, has_filtered = false, has_ringing = false;
-  State present_state{};
+  State present_state;
   AlphaBeta present_filtered, present_ringing;
 };
 

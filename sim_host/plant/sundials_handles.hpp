@@ -5,7 +5,6 @@
 
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -35,19 +34,6 @@ class Context {
 
  private:
   SUNContext handle_ = nullptr;
-};
-
-class Vector {
- public:
-  Vector(long length, SUNContext context) : handle_(sundials_made(N_VNew_Serial(length, context), "N_VNew_Serial")) {}
-  ~Vector() { N_VDestroy(handle_); }
-  Vector(const Vector&) = delete;
-  Vector& operator=(const Vector&) = delete;
-  operator N_Vector() const { return handle_; }
-  double* data() const { return N_VGetArrayPointer(handle_); }
-
- private:
-  N_Vector handle_;
 };
 
 /// The memory of one solver; `kFree` is its *Free function.

@@ -90,16 +90,7 @@ State Trajectory::at_offset(double s) const {
     model_.derive(h, end_, step_.end_slope);
     end_slope_known_ = true;
   }
-  const double x = s / h;
-  const double w1 = x * x * (3.0 - 2.0 * x);
-  const double w0 = 1.0 - w1;
-  const double s0 = s * (1.0 - x) * (1.0 - x);
-  const double s1 = s * x * (x - 1.0);
-  State y;
-  for (int n = 0; n < kStates; ++n) {
-    y[n] = w0 * start_.y[n] + w1 * end_[n] + s0 * start_.slope[n] + s1 * step_.end_slope[n];
-  }
-  return y;
+  return hermite(start_, end_, step_.end_slope, h, s);
 }
 
 void Trajectory::commit() {

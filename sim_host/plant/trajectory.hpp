@@ -79,7 +79,7 @@ class Trajectory {
   int since_set_ = 0;    // segments since the rotations were set anew
 
   SegmentStart start_;
-  State end_{};
+  State end_;
   mutable Advance step_;  // its end slope may be evaluated late
   Tick end_tick_ = 0;     // of a segment without event
   bool started_ = false;
