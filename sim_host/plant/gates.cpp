@@ -10,6 +10,18 @@ void Gates::set(Tick t, int leg, bool upper, bool lower) {
   find_next();
 }
 
+Tick Gates::next(int leg, bool leaving) const {
+  const Device& carrying = devices_[2 * leg + (leaving ? 0 : 1)];
+  const Device& other = devices_[2 * leg + (leaving ? 1 : 0)];
+  Tick result = carrying.pending.empty() ? kNever : carrying.pending.front().tick;
+  if (!carrying.on) return result;
+  if (other.on) return next_;
+  for (const Change& change : other.pending) {
+    if (change.on) return std::min(result, change.tick);
+  }
+  return result;
+}
+
 void Gates::set_device(Device& device, Tick t, bool on) {
   if (on == device.input) return;
   device.input = on;

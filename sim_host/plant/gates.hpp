@@ -25,6 +25,11 @@ class Gates {
   /// When the next device changes.
   Tick next() const { return next_; }
 
+  /// When next a device changes through which a leg carries its current: the upper one of a current that leaves the leg
+  /// (else its lower diode conducts, whatever the lower device does), the lower one of a current that enters it. So is
+  /// a change that makes both devices conduct.
+  Tick next(int leg, bool leaving) const;
+
   /// Lets all changes up to t happen; the legs whose devices have changed.
   std::array<bool, 3> apply(Tick t);
 

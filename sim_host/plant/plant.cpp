@@ -45,6 +45,10 @@ struct Plant::Impl {
   void integrate_to(Tick t);
   void settle(Tick t);
   void edges(Tick t);
+  Tick next_edge() const;
+  void start_segment(Tick t);
+  void look_ahead(Tick edge);
+  void pass_edges();
   void commit();
   template <typename Change>
   void transition(const Fired& fired, Change change);
@@ -83,33 +87,50 @@ void Plant::Impl::move_to(Tick t) {
   now = t;
 }
 
+/// The next edge at which a segment must end: half of the gates' edges change nothing, because the diode of the other
+/// device carries the current before and after.
+Tick Plant::Impl::next_edge() const {
+  const Model& model = trajectory.model();
+  if (gates.next() >= load_end || model.clamp != Clamp::kNone) return std::min(gates.next(), load_end);
+  Tick next = load_end;
+  for (int k = 0; k < 3; ++k) {
+    next = std::min(next, model.legs[k].perfect ? gates.next() : gates.next(k, model.direction[k] > 0));
+  }
+  return next;
+}
+
 /// Until a segment covers t. An edge at t itself is left for later, since nothing but the leg voltage shows it.
 void Plant::Impl::integrate_to(Tick t) {
   for (;;) {
-    const Tick next = std::min(gates.next(), load_end);
-    if (next <= trajectory.tick()) {
-      edges(next);
-      continue;
-    }
-    const Tick end = std::min(next, trajectory.tick() + config.solver.max_segment);
-    if (trajectory.ahead() && trajectory.ends_after(end)) {
-      ++stats.discarded;
-      trajectory.look_ahead(end);
-    } else if (!trajectory.ahead()) {
-      trajectory.look_ahead(end);
-    }
+    start_segment(kNever);
+    look_ahead(next_edge());
     if (trajectory.covers(t)) return;
     commit();
   }
 }
 
-/// Past all edges before t, but no further: the next gate command may come at t.
+/// Past all edges before t that change something, but no further: the next gate command may come at t.
 void Plant::Impl::settle(Tick t) {
-  for (Tick next = gates.next(); next < t; next = gates.next()) {
-    integrate_to(next);
-    if (!trajectory.at(next)) commit();
-    edges(next);
+  for (start_segment(t); next_edge() < t; start_segment(t)) {
+    look_ahead(next_edge());
+    commit();
   }
+}
+
+/// Edges that are due where it starts, if before t.
+void Plant::Impl::start_segment(Tick t) {
+  for (;;) {
+    const Tick due = std::min(gates.next(), load_end);
+    if (due > trajectory.tick() || due >= t) return;
+    edges(due);
+  }
+}
+
+void Plant::Impl::look_ahead(Tick edge) {
+  const Tick end = std::min(edge, trajectory.tick() + config.solver.max_segment);
+  if (trajectory.ahead() && !trajectory.ends_after(end)) return;
+  stats.discarded += trajectory.ahead();
+  trajectory.look_ahead(end);
 }
 
 void Plant::Impl::edges(Tick t) {
@@ -129,6 +150,15 @@ void Plant::Impl::edges(Tick t) {
   transition({}, change);
 }
 
+/// Edges inside the segment just committed: they change nothing but what a later event will find.
+void Plant::Impl::pass_edges() {
+  if (gates.next() >= trajectory.tick()) return;
+  const std::array<bool, 3> changed = gates.apply(trajectory.tick() - 1);
+  for (int k = 0; k < 3; ++k) {
+    if (changed[k]) set_leg(k);
+  }
+}
+
 void Plant::Impl::set_leg(int k) {
   const bool both = gates.upper(k) && gates.lower(k);
   trajectory.model().legs[k] = Leg::make(config.inverter, gates.upper(k) && !both, gates.lower(k) && !both, open[k]);
@@ -146,13 +176,20 @@ void Plant::Impl::transition(const Fired& fired, Change change) {
   sensors.excite(trajectory.tick(), trajectory.fraction(), step);
 }
 
+/// An event decides anew which legs conduct and has to know all edges before it: the segment then ends at the first of
+/// them. (Not before: until the event is past, an edge that prevents it may still come.)
 void Plant::Impl::commit() {
+  if (trajectory.has_event() && trajectory.ends_after(gates.next())) {
+    ++stats.discarded;
+    trajectory.look_ahead(gates.next());
+  }
   if (config.solver.ledger) ledger.book(trajectory, trajectory.length());
   const AlphaBeta i0 = trajectory.start_current(), d0 = trajectory.start_slope();
   const double h = trajectory.length();
   const bool has_event = trajectory.has_event();
   const Fired fired = trajectory.fired();
   trajectory.commit();
+  pass_edges();
   const AlphaBeta i1 = trajectory.start_current();
   sensors.commit(i0, d0, i1, h);
   peak = std::max(peak, largest(i1));
