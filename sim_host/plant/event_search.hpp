@@ -14,13 +14,14 @@ namespace stillspin::plant {
 class SteppingFlow : public Flow {
  public:
   void advance(const Model& model, const SegmentStart& start, double h, State& end, Advance& result) final;
+  void locate(const Model& model, const SegmentStart& start, State& end, Advance& result) final;
 
  protected:
   /// State and slope h seconds (> 0) after the start; the slope may be of lower order.
   virtual void step(const Model& model, const SegmentStart& start, double h, State& end, State& end_slope) = 0;
 
  private:
-  void locate(const Model& model, const SegmentStart& start, double h, State& end, Advance& result);
+  double g_start_ = 0.0;  // the lowest event function at the start of the segment that crosses
 };
 
 }  // namespace stillspin::plant

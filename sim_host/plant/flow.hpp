@@ -27,11 +27,14 @@ inline State hermite(const SegmentStart& start, const State& end, const State& e
   return w0 * start.y + w1 * end + s0 * start.slope + s1 * end_slope;
 }
 
+inline constexpr double kNowhere = -1.0;
+
 struct Advance {
   double reached = 0.0;  // s from the start, > 0 unless an event is due at once
   bool event = false;
-  Fired fired{};     // which event functions have reached zero
-  bool far = false;  // no event function came near zero on the way
+  double crossing = kNowhere;  // s: about where an event happens on the way; locate() finds it
+  Fired fired{};               // which event functions have reached zero
+  bool far = false;            // no event function came near zero on the way
   bool has_end_slope = false;
   State end_slope = State::Zero();  // dy/dt at the end, when the method has it (to its own order)
 };
@@ -44,8 +47,12 @@ class Flow {
  public:
   virtual ~Flow() = default;
 
-  /// From `start` over at most `h` seconds (> 0) to `end`. May stop short of h without an event.
+  /// From `start` over at most `h` seconds (> 0) to `end`. May stop short of h without an event; may leave a crossing
+  /// for later, because a new edge before it often makes it void.
   virtual void advance(const Model& model, const SegmentStart& start, double h, State& end, Advance& result) = 0;
+
+  /// After advance() with a crossing: the event.
+  virtual void locate(const Model&, const SegmentStart&, State&, Advance&) {}
 };
 
 std::unique_ptr<Flow> make_runge_kutta();

@@ -10,16 +10,12 @@ void Gates::set(Tick t, int leg, bool upper, bool lower) {
   find_next();
 }
 
-Tick Gates::next(int leg, bool leaving) const {
-  const Device& carrying = devices_[2 * leg + (leaving ? 0 : 1)];
-  const Device& other = devices_[2 * leg + (leaving ? 1 : 0)];
-  Tick result = carrying.pending.empty() ? kNever : carrying.pending.front().tick;
-  if (!carrying.on) return result;
+Tick Gates::next_of_both(const Device& carrying, const Device& other) const {
   if (other.on) return next_;
   for (const Change& change : other.pending) {
-    if (change.on) return std::min(result, change.tick);
+    if (change.on) return std::min(carrying.next, change.tick);
   }
-  return result;
+  return carrying.next;
 }
 
 void Gates::set_device(Device& device, Tick t, bool on) {
@@ -31,15 +27,17 @@ void Gates::set_device(Device& device, Tick t, bool on) {
   } else {
     device.pending.push_back({effect, on});
   }
+  find_next(device);
 }
 
 std::array<bool, 3> Gates::apply(Tick t) {
   std::array<bool, 3> changed{};
   for (int n = 0; n < 6; ++n) {
     Device& device = devices_[n];
-    while (!device.pending.empty() && device.pending.front().tick <= t) {
+    while (device.next <= t) {
       device.on = device.pending.front().on;
-      device.pending.pop_front();
+      device.pending.erase(device.pending.begin());
+      find_next(device);
       changed[n / 2] = true;
     }
   }
@@ -49,9 +47,7 @@ std::array<bool, 3> Gates::apply(Tick t) {
 
 void Gates::find_next() {
   next_ = kNever;
-  for (const Device& device : devices_) {
-    if (!device.pending.empty()) next_ = std::min(next_, device.pending.front().tick);
-  }
+  for (const Device& device : devices_) next_ = std::min(next_, device.next);
 }
 
 }  // namespace stillspin::plant

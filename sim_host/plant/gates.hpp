@@ -7,8 +7,8 @@
 #define STILLSPIN_SIM_HOST_PLANT_GATES_HPP
 
 #include <array>
-#include <deque>
 #include <limits>
+#include <vector>
 
 #include "sim_host/plant/config.hpp"
 
@@ -28,7 +28,12 @@ class Gates {
   /// When next a device changes through which a leg carries its current: the upper one of a current that leaves the leg
   /// (else its lower diode conducts, whatever the lower device does), the lower one of a current that enters it. So is
   /// a change that makes both devices conduct.
-  Tick next(int leg, bool leaving) const;
+  Tick next(int leg, bool leaving) const {
+    const Device& carrying = devices_[2 * leg + (leaving ? 0 : 1)];
+    const Device& other = devices_[2 * leg + (leaving ? 1 : 0)];
+    if (carrying.on) return next_of_both(carrying, other);
+    return carrying.next;
+  }
 
   /// Lets all changes up to t happen; the legs whose devices have changed.
   std::array<bool, 3> apply(Tick t);
@@ -44,9 +49,12 @@ class Gates {
   struct Device {
     bool input = false;
     bool on = false;
-    std::deque<Change> pending;
+    Tick next = kNever;           // the first pending change
+    std::vector<Change> pending;  // seldom more than one
   };
 
+  static void find_next(Device& device) { device.next = device.pending.empty() ? kNever : device.pending.front().tick; }
+  Tick next_of_both(const Device& carrying, const Device& other) const;
   void set_device(Device& device, Tick t, bool on);
   void find_next();
 

@@ -62,6 +62,9 @@ class Model {
 
   void events(double t, const State& y, Events& g) const;
 
+  /// The lowest of them.
+  double lowest_event(double t, const State& y) const;
+
   /// True when currents are the only thing that events can come from, and none can have reached zero: each starts
   /// further from it than it can have moved with the slopes at both ends.
   bool far_from_events(const State& y, const State& slope, const State& end_slope, double h) const;

@@ -70,7 +70,8 @@ struct Plant::Impl {
   std::optional<ShootThrough> shoot_through;
   PlantStats stats;
   Tick now = 0;
-  double peak = 0.0;  // A, over committed segments since last asked
+  bool looked_ahead = false;  // with all edges known so far
+  double peak = 0.0;          // A, over committed segments since last asked
 
   // What has already been evaluated at the present.
   bool has_present = false, has_filtered = false, has_ringing = false;
@@ -101,9 +102,12 @@ Tick Plant::Impl::next_edge() const {
 
 /// Until a segment covers t. An edge at t itself is left for later, since nothing but the leg voltage shows it.
 void Plant::Impl::integrate_to(Tick t) {
-  for (;;) {
+  while (!(looked_ahead && trajectory.covers(t))) {
     start_segment(kNever);
     look_ahead(next_edge());
+    looked_ahead = true;
+    if (trajectory.covers(t)) return;
+    trajectory.locate();
     if (trajectory.covers(t)) return;
     commit();
   }
@@ -171,6 +175,7 @@ void Plant::Impl::transition(const Fired& fired, Change change) {
   change();
   trajectory.model().resolve(trajectory.state(), fired);
   trajectory.restart();
+  looked_ahead = false;
   std::array<double, 3> step = trajectory.leg_voltages();
   for (int k = 0; k < 3; ++k) step[k] -= before[k];
   sensors.excite(trajectory.tick(), trajectory.fraction(), step);
@@ -179,9 +184,12 @@ void Plant::Impl::transition(const Fired& fired, Change change) {
 /// An event decides anew which legs conduct and has to know all edges before it: the segment then ends at the first of
 /// them. (Not before: until the event is past, an edge that prevents it may still come.)
 void Plant::Impl::commit() {
+  looked_ahead = false;
+  trajectory.locate();
   if (trajectory.has_event() && trajectory.ends_after(gates.next())) {
     ++stats.discarded;
     trajectory.look_ahead(gates.next());
+    trajectory.locate();
   }
   if (config.solver.ledger) ledger.book(trajectory, trajectory.length());
   const AlphaBeta i0 = trajectory.start_current(), d0 = trajectory.start_slope();
@@ -243,6 +251,7 @@ void Plant::set_gate(Tick t, int leg, bool upper, bool lower) {
   impl_->move_to(t);
   impl_->settle(t);
   impl_->gates.set(t, leg, upper, lower);
+  impl_->looked_ahead = false;
 }
 
 void Plant::advance(Tick t) {
@@ -326,6 +335,7 @@ void Plant::set_load(std::vector<LoadPoint> points) {
   impl_->cut();
   impl_->load.set(std::move(points));
   impl_->load_end = impl_->now;  // an edge: the new piece begins here
+  impl_->looked_ahead = false;
 }
 
 void Plant::set_locked(bool locked) {

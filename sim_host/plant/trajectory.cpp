@@ -38,7 +38,7 @@ void Trajectory::look_ahead(Tick end) {
   if (!started_) begin();
   const double h = time_to(end);
   flow_->advance(model_, start_, h, end_, step_);
-  if (!step_.event && !step_.far) {
+  if (!step_.event && !step_.far && !crosses()) {
     const double dip = grazing_instant();
     if (dip > 0.0) {
       // Stop at the lowest point: there the event function is negative, so that the flow finds the first crossing.
@@ -47,9 +47,15 @@ void Trajectory::look_ahead(Tick end) {
     }
   }
   // Short of the end: an event of nothing, so that the segment may end inside a tick.
-  if (step_.reached < h) step_.event = true;
+  if (step_.reached < h && !crosses()) step_.event = true;
   end_tick_ = end;
   ahead_ = true;
+  end_slope_known_ = step_.has_end_slope;
+}
+
+void Trajectory::locate() {
+  if (!crosses()) return;
+  flow_->locate(model_, start_, end_, step_);
   end_slope_known_ = step_.has_end_slope;
 }
 

@@ -40,8 +40,17 @@ class Trajectory {
 
   // The segment looked ahead.
   bool ahead() const { return ahead_; }
-  bool ends_after(Tick t) const { return step_.event ? step_.reached > time_to(t) : end_tick_ > t; }
-  bool covers(Tick t) const { return ahead_ && (step_.event ? step_.reached >= time_to(t) : end_tick_ >= t); }
+  bool ends_after(Tick t) const {
+    if (crosses()) return step_.crossing + kEventCell > time_to(t);
+    return step_.event ? step_.reached > time_to(t) : end_tick_ > t;
+  }
+  bool covers(Tick t) const {
+    if (crosses()) return step_.crossing - kEventCell > time_to(t);
+    return step_.event ? step_.reached >= time_to(t) : end_tick_ >= t;
+  }
+  /// An event lies ahead of which only the estimate is known: locate() before commit().
+  bool crosses() const { return step_.crossing != kNowhere; }
+  void locate();
   void look_ahead(Tick end);
   double length() const { return step_.reached; }
   bool has_event() const { return step_.event; }
