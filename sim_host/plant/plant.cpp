@@ -27,8 +27,8 @@ void check_index(const char* what, int index) {
 
 /// Largest magnitude of the three phase values.
 double largest(const AlphaBeta& x) {
-  const double half = 0.5 * x.alpha, turn = 0.5 * kSqrt3 * x.beta;
-  return std::max(std::fabs(x.alpha), std::max(std::fabs(turn - half), std::fabs(turn + half)));
+  const std::array<double, 3> i = phases(x);
+  return std::max(std::fabs(i[0]), std::max(std::fabs(i[1]), std::fabs(i[2])));
 }
 
 }  // namespace
@@ -55,8 +55,7 @@ struct Plant::Impl {
   void cut();
   void set_leg(int k);
   const State& present();
-  const AlphaBeta& filtered();
-  const AlphaBeta& ringing();
+  const std::array<double, 3>& sensed();
 
   PlantConfig config;
   Trajectory trajectory;
@@ -74,9 +73,9 @@ struct Plant::Impl {
   double peak = 0.0;          // A, over committed segments since last asked
 
   // What has already been evaluated at the present.
-  bool has_present = false, has_filtered = false, has_ringing = false;
+  bool has_present = false, has_sensed = false;
   State present_state;
-  AlphaBeta present_filtered, present_ringing;
+  std::array<double, 3> present_sensed;
 };
 
 void Plant::Impl::move_to(Tick t) {
@@ -84,7 +83,7 @@ void Plant::Impl::move_to(Tick t) {
     throw std::invalid_argument("plant: time went back from tick " + std::to_string(now) + " to tick " +
                                 std::to_string(t));
   }
-  if (t != now) has_present = has_filtered = has_ringing = false;
+  if (t != now) has_present = has_sensed = false;
   now = t;
 }
 
@@ -214,7 +213,7 @@ void Plant::Impl::cut() {
     if (trajectory.ends_after(now)) trajectory.look_ahead(now);
     commit();
   }
-  has_present = has_filtered = has_ringing = false;
+  has_present = has_sensed = false;
 }
 
 const State& Plant::Impl::present() {
@@ -224,21 +223,15 @@ const State& Plant::Impl::present() {
   return present_state;
 }
 
-const AlphaBeta& Plant::Impl::filtered() {
-  const State& y = present();
-  if (!has_filtered) {
-    present_filtered = sensors.filtered(trajectory.start_current(), trajectory.start_slope(), trajectory.current(y),
-                                        trajectory.offset(now));
-  }
-  has_filtered = true;
-  return present_filtered;
-}
-
-const AlphaBeta& Plant::Impl::ringing() {
-  present();
-  if (!has_ringing) present_ringing = sensors.ringing(now);
-  has_ringing = true;
-  return present_ringing;
+/// What the current sensors see at the present, before their gains and offsets.
+const std::array<double, 3>& Plant::Impl::sensed() {
+  if (has_sensed) return present_sensed;
+  const AlphaBeta i = trajectory.current(present());
+  present_sensed =
+      phases(sensors.filtered(trajectory.start_current(), trajectory.start_slope(), i, trajectory.offset(now)) +
+             sensors.ringing(now));
+  has_sensed = true;
+  return present_sensed;
 }
 
 Plant::Plant(const PlantConfig& config) : impl_(std::make_unique<Impl>(config)) {}
@@ -263,7 +256,7 @@ Tick Plant::now() const { return impl_->now; }
 
 double Plant::current_sensor(int phase) const {
   check_index("phase", phase);
-  return impl_->sensors.reading(phase, impl_->now, impl_->filtered(), impl_->ringing());
+  return impl_->sensors.reading(phase, impl_->now, impl_->sensed()[phase]);
 }
 
 std::uint16_t Plant::adc_code(Tick t, AdcInput input) {

@@ -9,12 +9,6 @@ constexpr double kForgotten = 40.0;      // time constants after which nothing i
 constexpr double kWholeTick = 1e-9;      // ticks: rounding of seconds
 constexpr double kShortParabola = 1e-9;  // s: a shorter segment is a straight line (curvature would be rounding)
 
-double phase_value(int phase, const AlphaBeta& x) {
-  if (phase == 0) return x.alpha;
-  const double turn = 0.5 * kSqrt3 * x.beta;
-  return phase == 1 ? turn - 0.5 * x.alpha : -turn - 0.5 * x.alpha;
-}
-
 }  // namespace
 
 Sensors::Sensors(const PlantConfig& c, const AlphaBeta& initial)
@@ -48,13 +42,10 @@ AlphaBeta Sensors::filtered(const AlphaBeta& i0, const AlphaBeta& d0, const Alph
   if (!(s > 0.0)) return filtered_;
   const double left = forgetting(s);
   const double per_square = s > kShortParabola ? 2.0 / (s * s) : 0.0;
-  const auto one = [&](double y0, double u0, double v0, double u1) {
-    const double c = (u1 - u0 - v0 * s) * per_square;
-    const double at_start = u0 - tau_ * v0 + tau_ * tau_ * c;
-    const double at_end = u1 - tau_ * (v0 + c * s) + tau_ * tau_ * c;
-    return at_end + (y0 - at_start) * left;
-  };
-  return {one(filtered_.alpha, i0.alpha, d0.alpha, i1.alpha), one(filtered_.beta, i0.beta, d0.beta, i1.beta)};
+  const AlphaBeta bend = (i1 - i0 - d0 * s) * per_square;
+  const AlphaBeta at_start = i0 - tau_ * d0 + tau_ * tau_ * bend;
+  const AlphaBeta at_end = i1 - tau_ * (d0 + bend * s) + tau_ * tau_ * bend;
+  return at_end + (filtered_ - at_start) * left;
 }
 
 Sensors::Phasor Sensors::decay(double seconds) const {
@@ -98,14 +89,13 @@ void Sensors::excite(Tick t, double fraction, const std::array<double, 3>& step)
 
 AlphaBeta Sensors::ringing(Tick t) const {
   Phasor factor;
-  if (ring_scale_ == 0.0 || !decay(t - ring_tick_, &factor)) return {};
+  if (ring_scale_ == 0.0 || !decay(t - ring_tick_, &factor)) return AlphaBeta::Zero();
   return {product(ring_alpha_, factor).im, product(ring_beta_, factor).im};
 }
 
-double Sensors::reading(int phase, Tick t, const AlphaBeta& filtered, const AlphaBeta& ringing) const {
+double Sensors::reading(int phase, Tick t, double current) const {
   const Failure& f = failures_[phase];
   if (f.stuck) return f.stuck_at;
-  const double current = phase_value(phase, filtered) + phase_value(phase, ringing);
   double reading = f.gain * config_.gain[phase] * current + config_.offset[phase];
   if (f.drift != 0.0) reading += f.drift * static_cast<double>(t - f.drift_from) * kSecondsPerTick;
   return reading;

@@ -35,8 +35,8 @@ class Sensors {
   /// Ringing at t, which is not before the last edge.
   AlphaBeta ringing(Tick t) const;
 
-  /// Reading of `phase` (A) at t for the filtered current and the ringing.
-  double reading(int phase, Tick t, const AlphaBeta& filtered, const AlphaBeta& ringing) const;
+  /// Reading of `phase` (A) at t for its current, filtered and with ringing.
+  double reading(int phase, Tick t, double current) const;
 
   void stick(int phase, double value);
   void drift(int phase, Tick from, double per_second);

@@ -68,17 +68,13 @@ double Trajectory::grazing_instant() {
   const AlphaBeta i0 = start_current(), d0 = start_slope();
   for (int k = 0; k < 3; ++k) {
     if (model_.direction[k] == 0 || model_.legs[k].perfect) continue;
-    const double ka = k == 0 ? 1.0 : -0.5;
-    const double kb = k == 0 ? 0.0 : k == 1 ? 0.5 * kSqrt3 : -0.5 * kSqrt3;
-    const double sign = model_.direction[k];
-    const double g0 = sign * (ka * i0.alpha + kb * i0.beta);
-    const double s0 = sign * (ka * d0.alpha + kb * d0.beta);
+    const AlphaBeta axis = model_.direction[k] * stator_axis(k);
+    const double g0 = axis.dot(i0), s0 = axis.dot(d0);
     if (s0 >= 0.0 || g0 + s0 * h >= 0.0) continue;  // convex curves lie above their tangent
     double lowest = 0.0, where = 0.0;
     for (int n = 1; n < 16; ++n) {
       const double x = h * n / 16.0;
-      const AlphaBeta i = current(at_offset(x));
-      const double g = sign * (ka * i.alpha + kb * i.beta);
+      const double g = axis.dot(current(at_offset(x)));
       if (g < lowest) {
         lowest = g;
         where = x;

@@ -14,10 +14,19 @@
 
 namespace stillspin::plant {
 
-struct AlphaBeta {
-  double alpha = 0.0;
-  double beta = 0.0;
-};
+using AlphaBeta = Eigen::Vector2d;
+
+/// Values of phases a, b, c.
+inline std::array<double, 3> phases(const AlphaBeta& x) {
+  const double half = 0.5 * x[0], turn = 0.5 * kSqrt3 * x[1];
+  return {x[0], turn - half, -turn - half};
+}
+
+/// Axis of phase 0..2 in stator coordinates: its dot product with a vector is the phase value.
+inline AlphaBeta stator_axis(int phase) {
+  if (phase == 0) return {1.0, 0.0};
+  return {-0.5, phase == 1 ? 0.5 * kSqrt3 : -0.5 * kSqrt3};
+}
 
 class Trajectory {
  public:
