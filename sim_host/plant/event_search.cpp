@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMissed = 1e-10;  // A or V: an event function this far below zero has crossed
 constexpr double kFound = 0.1 * kMissed;
-constexpr double kEstimate = 1e-7;   // A or V
+constexpr double kEstimate = 1e-6;   // A or V
 constexpr double kAtZero = 1e-9;     // A or V: reached together with the first one
 constexpr double kShortest = 1e-15;  // s: below this a bracket is a point
 

@@ -51,16 +51,19 @@ void Model::float_legs(double link_voltage, const Rotation& e, const Pair& held,
   for (double& x : v) x += star;
 }
 
-void Model::derive(double t, const State& y, const Pair& psi, State& dy, Pair& dflux) const {
-  const Rotation e = turned(base, y[kAngle]);
-  if (clamp == Clamp::kNone) return core<0, false>(t, y, e, psi, dy, dflux, nullptr);
-  if (clamp == Clamp::kAll) return core<3, false>(t, y, e, psi, dy, dflux, nullptr);
-  core<1, false>(t, y, e, psi, dy, dflux, nullptr);
+void Model::derive_at_start(const State& y, const Pair& psi, State& dy, Pair& dflux) const {
+  if (clamp == Clamp::kNone) return core<0, false>(0.0, y, base, psi, dy, dflux, nullptr);
+  if (clamp == Clamp::kAll) return core<3, false>(0.0, y, base, psi, dy, dflux, nullptr);
+  core<1, false>(0.0, y, base, psi, dy, dflux, nullptr);
 }
 
 void Model::derive(double t, const State& y, State& dy) const {
   Pair ignored;
-  derive(t, y, flux(y), dy, ignored);
+  const Pair psi = flux(y);
+  const Rotation e = turned(base, y[kAngle]);
+  if (clamp == Clamp::kNone) return core<0, false>(t, y, e, psi, dy, ignored, nullptr);
+  if (clamp == Clamp::kAll) return core<3, false>(t, y, e, psi, dy, ignored, nullptr);
+  core<1, false>(t, y, e, psi, dy, ignored, nullptr);
 }
 
 void Model::derive(double t, const State& y, State& dy, Probe& probe) const {

@@ -58,7 +58,8 @@ class Model {
   /// clamped legs (0, 1, 3), both known to the caller.
   template <int kClamped>
   void derive(double t, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux) const;
-  void derive(double t, const State& y, const Pair& flux, State& dy, Pair& dflux) const;
+  /// Same at the start of the segment, where the rotor is at `base`.
+  void derive_at_start(const State& y, const Pair& flux, State& dy, Pair& dflux) const;
 
   void events(double t, const State& y, Events& g) const;
 

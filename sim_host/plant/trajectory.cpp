@@ -30,7 +30,7 @@ Trajectory::Trajectory(const PlantConfig& c)
 void Trajectory::begin() {
   model_.anchor = model_.machine.anchor_near(start_.y[kIq], model_.anchor);
   start_.flux = model_.flux(start_.y);
-  model_.derive(0.0, start_.y, start_.flux, start_.slope, start_.flux_slope);
+  model_.derive_at_start(start_.y, start_.flux, start_.slope, start_.flux_slope);
   started_ = true;
 }
 
