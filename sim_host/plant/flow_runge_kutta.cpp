@@ -18,9 +18,9 @@ class RungeKutta final : public SteppingFlow {
   }
 
   template <int kClamped>
-  static void stages(const Model& model, const SegmentStart& s, double h, State& end, State& k4) {
+  static void stages(const Model& model, const SegmentStart& s, double h, State& end, State& end_slope) {
     const double half = 0.5 * h;
-    State k2, k3;
+    State k2, k3, k4;
     Pair f2, f3, f4;
     const State y2 = s.y + half * s.slope;
     const Rotation e2 = turned(model.base, y2[kAngle]);
@@ -31,6 +31,7 @@ class RungeKutta final : public SteppingFlow {
     const State y4 = s.y + h * k3;
     const Rotation e4 = turned(model.base, y4[kAngle]);
     model.derive<kClamped>(h, y4, e4, moved(s.flux, h, f3), k4, f4);
+    end_slope = k4;
     end = s.y + h * (1.0 / 6.0) * ((s.slope + k4) + 2.0 * (k2 + k3));
   }
 
