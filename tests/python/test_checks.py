@@ -1,5 +1,6 @@
 """The checks of toolchain/checks catch what they are for: each is given planted violations and clean counterparts."""
 
+import re
 import shutil
 import subprocess
 import sys
@@ -202,6 +203,6 @@ def test_every_dependency_is_explained() -> None:
     rows = (ROOT / "toolchain/debian-packages.txt").read_text(encoding="utf-8").splitlines()
     debian = [row.split("|")[1].strip() for row in rows if not row.startswith("#")]
     requirements = (ROOT / "toolchain/requirements.in").read_text(encoding="utf-8").splitlines()
-    python = [line.split(">")[0].strip() for line in requirements if not line.startswith("#")]
+    python = [re.split(r"[^\w-]", line)[0] for line in requirements if not line.startswith("#")]
     assert debian and python
     assert [name for name in debian + python if f"`{name}`" not in book] == []
