@@ -62,13 +62,19 @@ def seen(drive):
     return [*currents, machine.tau_M, shaft.meas_speed(), shaft.meas_position()]
 
 
+def voltage_side(drive, leg, on, off):
+    """1 when the leg lies on the positive rail. With both switches off a diode carries on: whose, the current says."""
+    return int(on) if on != off else int(drive.machine.meas_currents()[leg] < 0.0)
+
+
 def published(plant, start, edges, points, at):
     """Column -> values at the ticks `at`.
 
     Args:
         plant: the entries of the plant; an ideal one, motulator knows no other.
         start: i_d, i_q (A), speed (rad/s) and angle (rad mechanical) at the first tick of `at`.
-        edges: (tick, leg, upper, lower) in the order of time, of which one switch of a leg conducts.
+        edges: (tick, leg, upper, lower) in the order of time. motulator has no diodes: while both switches of a leg are
+            off its current is taken to keep its sign.
         points: (tick, N m), the load, linear in between; two at one tick are a jump.
         at: ticks in the order of time.
     """
@@ -79,8 +85,8 @@ def published(plant, start, edges, points, at):
         if begin in looks:
             rows.append(seen(drive))
         while ahead and ahead[0][0] <= begin:
-            _, leg, on, _ = ahead.popleft()
-            upper[leg] = int(on)
+            _, leg, on, off = ahead.popleft()
+            upper[leg] = voltage_side(drive, leg, on, off)
         drive.converter.inp.q_cs = abc2complex(upper)
         if end is not None:
             integrate(drive, points, begin, end)
