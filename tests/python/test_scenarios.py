@@ -51,7 +51,7 @@ BENCH = {
     ("A09", "id_5_deviation_gain_error"): (0.0, 5.0),
     ("A09", "id_8_deviation_gain_error"): (0.0, 5.0),
     ("A09", "id_minus_5_deviation_gain_error"): (0.0, 5.0),
-    ("A09", "deviation_distortion"): (2.0, 20.0),
+    ("A09", "deviation_distortion"): (2.0, 25.0),
     ("A09", "deviation_wrong_polarity"): (0.0, 0.0),
     ("A12", "svpwm_thd"): (5.0, 25.0),
     ("A12", "thd_ratio"): (0.5, 1.0),
