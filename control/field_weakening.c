@@ -1,9 +1,6 @@
 #include "control/field_weakening.h"
 
-void field_weakening_reset(field_weakening_t* s) {
-  s->trim_q20 = 0;
-  s->current_q20 = 0;
-}
+void field_weakening_reset(field_weakening_t* s) { s->trim_q20 = 0; }
 
 // Flux that the voltage limit allows at this speed, V s Q28; saturates at low speed.
 static int32_t flux_limit_q28(const field_weakening_input_t* in, const machine_model_t* m) {
@@ -26,6 +23,5 @@ int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t
   const int32_t trim = q_add_sat(s->trim_q20, q_mul_sat(left, in->trim_gain_q20, 16));
   // The trim may take back no more than the feed-forward gives, and add no more than the limit leaves.
   s->trim_q20 = q_clamp(trim, -in->current_limit_q20, (forward < 0) ? -forward : 0);
-  s->current_q20 = q_clamp(q_add_sat(forward, s->trim_q20), -in->current_limit_q20, 0);
-  return s->current_q20;
+  return q_clamp(q_add_sat(forward, s->trim_q20), -in->current_limit_q20, 0);
 }

@@ -11,8 +11,7 @@
 #include "control/machine_model.h"
 
 typedef struct {
-  int32_t trim_q20;     // integrator, A
-  int32_t current_q20;  // last output, A, at most 0
+  int32_t trim_q20;  // integrator, A
 } field_weakening_t;
 
 typedef struct {

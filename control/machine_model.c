@@ -5,12 +5,11 @@
 #define RATIO_END_Q24 2097152000L  // 125
 #define K0_END_Q20 2097152000L     // 2000 A per period
 
-static bool in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <= hi; }
-
 static bool parameters_valid(const machine_parameters_t* p) {
-  return in_range(p->rs_q24, 16777L, 838860800L) && in_range(p->ld_q30, 21474L, 536870912L) &&
-         in_range(p->lq_q30, p->ld_q30, 536870912L) && in_range(p->flux_q28, 268435L, 268435456L) &&
-         in_range(p->inertia_q24, 168L, 16777216L) && in_range(p->pole_pairs, 1, 20) && in_range(p->period_us, 20, 500);
+  return q_in_range(p->rs_q24, 16777L, 838860800L) && q_in_range(p->ld_q30, 21474L, 536870912L) &&
+         q_in_range(p->lq_q30, p->ld_q30, 536870912L) && q_in_range(p->flux_q28, 268435L, 268435456L) &&
+         q_in_range(p->inertia_q24, 168L, 16777216L) && q_in_range(p->pole_pairs, 1, 20) &&
+         q_in_range(p->period_us, 20, 500);
 }
 
 // T in seconds as Q30 is period_us * 2^30 / 1e6.

@@ -2,13 +2,11 @@
 
 #define ONE_Q30 1073741824L
 
-static bool in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <= hi; }
-
 static bool config_valid(const speed_controller_config_t* c) {
-  return in_range(c->friction_q24, 0, 16777216L) && in_range(c->inertia_q24, 168L, 16777216L) &&
-         in_range(c->step_periods, 1, 100) && in_range(c->alpha_q8, 256L, 25600000L) &&
-         in_range(c->trajectory_ms_q8, 512L, 51200L) && in_range(c->pi_bandwidth_q8, 256L, 51200L) &&
-         in_range(c->pi_damping_q12, 1228L, 12288L);
+  return q_in_range(c->friction_q24, 0, 16777216L) && q_in_range(c->inertia_q24, 168L, 16777216L) &&
+         q_in_range(c->step_periods, 1, 100) && q_in_range(c->alpha_q8, 256L, 25600000L) &&
+         q_in_range(c->trajectory_ms_q8, 512L, 51200L) && q_in_range(c->pi_bandwidth_q8, 256L, 51200L) &&
+         q_in_range(c->pi_damping_q12, 1228L, 12288L);
 }
 
 // exp(-x) and (1 - exp(-x)) / x for 0 <= x < 1, Q30, by their series: exact where B Ts / J is tiny.

@@ -10,9 +10,10 @@
 #include <stdbool.h>
 
 #include "control/machine_model.h"
+#include "hal/qmath/period.h"
 
 #define ESTIMATOR_WINDOWS 3
-#define ESTIMATOR_PERIOD_TICKS 10000
+#define ESTIMATOR_PERIOD_TICKS PERIOD_TICKS
 
 /// One window: the current deviation under a constant voltage vector.
 typedef struct {

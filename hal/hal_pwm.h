@@ -14,18 +14,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hal/qmath/period.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 #define HAL_PWM_LEGS 3u
 #define HAL_PWM_WINDOWS 3u
-#define HAL_PWM_PERIOD_TICKS 10000u        // 100 us
-#define HAL_PWM_LAST_TICK 9999u            // the last tick of a period at which an edge or a burst can be
-#define HAL_PWM_NONE 0xFFFFu               // as a rise tick: no pulse; as a burst tick: no burst
-#define HAL_PWM_DEAD_BAND_MIN_TICKS 1u     // 10 ns; the power stage asks for far more
-#define HAL_PWM_DEAD_BAND_MAX_TICKS 1023u  // 10.23 us
-#define HAL_PWM_WRITE_TICKS 120u           // hal_pwm_write takes no longer than this from its look at the counter
+#define HAL_PWM_PERIOD_TICKS ((uint16_t)PERIOD_TICKS)
+#define HAL_PWM_LAST_TICK (PERIOD_TICKS - 1u)  // the last tick of a period at which an edge or a burst can be
+#define HAL_PWM_NONE 0xFFFFu                   // as a rise tick: no pulse; as a burst tick: no burst
+#define HAL_PWM_DEAD_BAND_MIN_TICKS 1u         // 10 ns; the power stage asks for far more
+#define HAL_PWM_DEAD_BAND_MAX_TICKS 1023u      // 10.23 us
+#define HAL_PWM_WRITE_TICKS 120u               // hal_pwm_write takes no longer than this from its look at the counter
 
 // One period, ticks of 10 ns from the period start.
 typedef struct {

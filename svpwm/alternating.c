@@ -1,8 +1,5 @@
 #include "svpwm/alternating.h"
 
-static int16_t max16(int16_t a, int16_t b) { return (a > b) ? a : b; }
-static int16_t min16(int16_t a, int16_t b) { return (a < b) ? a : b; }
-
 // A pulse of `length` at the beginning or at the end of the room.
 static void place(svpwm_pulses_t* p, uint16_t leg, int16_t length, bool at_begin) {
   p->rise[leg] = at_begin ? SVPWM_FIRST_TICK : (int16_t)(SVPWM_LAST_TICK - length);
@@ -18,7 +15,7 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
   const uint16_t x = s->leg;
   const uint16_t y = (uint16_t)((x + 1u) % SVPWM_LEGS);
   const uint16_t z = (uint16_t)((x + 2u) % SVPWM_LEGS);
-  const int16_t pair = max16(t->leg[y], t->leg[z]);
+  const int16_t pair = q_max16(t->leg[y], t->leg[z]);
   // The common part that makes the lengths of the two pulses add up to twice the mean.
   const int16_t common = (int16_t)(pulse_ticks - (t->leg[x] + pair) / 2);
   place(pulses, x, (int16_t)(common + t->leg[x]), !s->pair_first);
@@ -28,7 +25,7 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
 }
 
 bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks) {
-  const int16_t high = max16(t->leg[0], max16(t->leg[1], t->leg[2]));
-  const int16_t low = min16(t->leg[0], min16(t->leg[1], t->leg[2]));
+  const int16_t high = q_max16(t->leg[0], q_max16(t->leg[1], t->leg[2]));
+  const int16_t low = q_min16(t->leg[0], q_min16(t->leg[1], t->leg[2]));
   return (int16_t)(high - low) < pulse_ticks / 10 * 7;
 }

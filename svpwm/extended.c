@@ -12,8 +12,6 @@ typedef struct {
   int16_t length;         // m + A + B
 } layout_t;
 
-static int16_t max16(int16_t a, int16_t b) { return (a > b) ? a : b; }
-
 static order_t sort_legs(const int16_t leg[SVPWM_LEGS]) {
   order_t o = {0, 1, 2};
   uint16_t swap;
@@ -37,12 +35,12 @@ static order_t sort_legs(const int16_t leg[SVPWM_LEGS]) {
 
 static layout_t layout_for(int16_t t1, int16_t t2, int16_t window) {
   layout_t l;
-  l.first = max16(t1, window);
-  l.second = max16(t2, window);
+  l.first = q_max16(t1, window);
+  l.second = q_max16(t2, window);
   // hi and mid must still be on when lo rises, or the second vector would be cut short.
   const int16_t keep_hi = (int16_t)(l.first + l.second - t1 - t2);
   const int16_t keep_mid = (int16_t)(l.second - t2);
-  l.low_on = max16(SVPWM_PULSE_MIN_TICKS, max16(keep_hi, keep_mid));
+  l.low_on = q_max16(SVPWM_PULSE_MIN_TICKS, q_max16(keep_hi, keep_mid));
   l.length = (int16_t)(l.low_on + l.first + l.second);
   return l;
 }
@@ -84,7 +82,7 @@ void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
   // The common part puts the largest and the smallest on-time at equal distance from half the room, as far as the
   // shortest pulse allows.
   const int16_t even = (int16_t)(SVPWM_ROOM_TICKS / 2 - (t->leg[o.hi] + t->leg[o.lo]) / 2);
-  const int16_t common = max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[o.lo]));
+  const int16_t common = q_max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[o.lo]));
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
     const int16_t on = (int16_t)(common + t->leg[k]);
     pulses->rise[k] = (int16_t)(middle - on / 2);

@@ -1,13 +1,11 @@
 #include "svpwm/modulator.h"
 
-static bool in_range(int16_t x, int16_t lo, int16_t hi) { return x >= lo && x <= hi; }
-
 bool modulator_config_valid(const modulator_config_t* c) {
-  return in_range(c->pulse_ticks, 1500, 4700) && in_range(c->extended.window_min_ticks, 500, 3000) &&
-         in_range(c->extended.window_max_ticks, c->extended.window_min_ticks, 4000) &&
-         in_range(c->extended.zero_ticks, 0, 5000) && in_range(c->sampling.settle_ticks, 400, 2500) &&
-         in_range(c->sampling.burst_ticks, 50, 500) && in_range(c->sampling.span_min_ticks, 100, 2000) &&
-         in_range(c->sampling.last_tick, 5000, 9800);
+  return q_in_range(c->pulse_ticks, 1500, 4700) && q_in_range(c->extended.window_min_ticks, 500, 3000) &&
+         q_in_range(c->extended.window_max_ticks, c->extended.window_min_ticks, 4000) &&
+         q_in_range(c->extended.zero_ticks, 0, 5000) && q_in_range(c->sampling.settle_ticks, 400, 2500) &&
+         q_in_range(c->sampling.burst_ticks, 50, 500) && q_in_range(c->sampling.span_min_ticks, 100, 2000) &&
+         q_in_range(c->sampling.last_tick, 5000, 9800);
 }
 
 void modulator_reset(modulator_t* s) {

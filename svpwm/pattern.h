@@ -12,8 +12,9 @@
 #include <stdbool.h>
 
 #include "control/frame.h"
+#include "hal/qmath/period.h"
 
-#define SVPWM_PERIOD_TICKS 10000
+#define SVPWM_PERIOD_TICKS PERIOD_TICKS
 #define SVPWM_LEGS 3
 #define SVPWM_WINDOWS 3
 

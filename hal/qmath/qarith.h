@@ -32,6 +32,10 @@ static inline int32_t q_max(int32_t a, int32_t b) { return (a > b) ? a : b; }
 
 static inline int32_t q_min(int32_t a, int32_t b) { return (a < b) ? a : b; }
 
+static inline int16_t q_max16(int16_t a, int16_t b) { return (a > b) ? a : b; }
+
+static inline int16_t q_min16(int16_t a, int16_t b) { return (a < b) ? a : b; }
+
 // x limited to lo..hi. Not valid for lo > hi.
 static inline int32_t q_clamp(int32_t x, int32_t lo, int32_t hi) {
   if (x < lo) {
@@ -39,6 +43,9 @@ static inline int32_t q_clamp(int32_t x, int32_t lo, int32_t hi) {
   }
   return (x > hi) ? hi : x;
 }
+
+// True for lo <= x <= hi.
+static inline bool q_in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <= hi; }
 
 // x limited to the range of int32_t.
 static inline int32_t q_sat64(int64_t x) {
