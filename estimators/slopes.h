@@ -6,11 +6,15 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t offset_a_q8, offset_b_q8;    // ADC codes at zero current
   int32_t amps_per_code_q30;           // mean of the two sensors
-  int32_t mismatch_q30;                // g: sensor a reads 1 + g, sensor b 1 - g
   int16_t start_samples, end_samples;  // conversions in each sum
 } slopes_config_t;
+
+/// What is found of the sensors while the drive lives: offsets by the calibration, mismatch by sensor_match.h.
+typedef struct {
+  int32_t offset_a_q8, offset_b_q8;  // ADC codes at zero current
+  int32_t mismatch_q30;              // g: sensor a reads 1 + g, sensor b 1 - g
+} slopes_trim_t;
 
 /// Sums of codes of phases a and b in the bursts at the beginning and the end of a window.
 typedef struct {
@@ -18,6 +22,7 @@ typedef struct {
 } slopes_sums_t;
 
 /// Fills slope_q20 and current_q20 of the window; span_ticks must be set and positive.
-void slopes_evaluate(const slopes_config_t* c, const slopes_sums_t* sums, estimator_window_t* w);
+void slopes_evaluate(const slopes_config_t* c, const slopes_trim_t* trim, const slopes_sums_t* sums,
+                     estimator_window_t* w);
 
 #endif

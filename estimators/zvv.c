@@ -59,14 +59,14 @@ static void correct(zvv_t* s, const zvv_config_t* c, int32_t error_bam) {
   s->speed_bpp = q_shr(s->integral_q8bpp, 8) + q_mul(error_bam, c->kp_q30, 30);
 }
 
-estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in) {
+estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in, int32_t id_reference_q20) {
   const machine_model_t* m = in->model;
   seen_t mean = {s->deviation_q20, 0};
   s->angle_bam += (uint32_t)s->speed_bpp;
   const bool seen = mean_deviation(in, s->angle_bam, s->speed_bpp, q_shr(s->integral_q8bpp, 8), &mean);
   s->deviation_q20 = mean.deviation_q20;
   // Kq in A per period and rad (24). What the devices take along the d-axis acts like R i_d.
-  const int32_t volts_q16 = q_mul(m->rs_q24, c->id_reference_q20, 28) + mean.volts_q16;
+  const int32_t volts_q16 = q_mul(m->rs_q24, id_reference_q20, 28) + mean.volts_q16;
   const int32_t kq_q20 = -q_mul(m->yd_q30 - m->yq_q30, volts_q16, 26);
   const bool usable = seen && kq_q20 != 0;
   if (usable) {

@@ -18,9 +18,8 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t kp_q30;            // Kp * T, per period
-  int32_t ki_q40;            // Ki * T^2, per period^2
-  int32_t id_reference_q20;  // i_d* in use, A
+  int32_t kp_q30;  // Kp * T, per period
+  int32_t ki_q40;  // Ki * T^2, per period^2
 } zvv_config_t;
 
 typedef struct {
@@ -37,6 +36,7 @@ void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp);
 /// window.
 bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t* deviation_q20);
 
-estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in);
+/// id_reference_q20: i_d* in use, A.
+estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in, int32_t id_reference_q20);
 
 #endif

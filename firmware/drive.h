@@ -28,7 +28,8 @@
 #define DRIVE_PERIODS_PER_MS 10
 #define ADAPTATION_TURN 5u  // periods in which every adaptation has its turn
 
-/// Derived from the parameters, see drive_config.c.
+/// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
+/// level replaces it as a whole.
 typedef struct {
   machine_model_t nameplate;
   modulator_config_t modulator;
@@ -113,6 +114,7 @@ typedef struct {
   uint16_t polarity_tries;
   polarity_t polarity;
   machine_model_t model;  // nameplate, at the working point and with what was learnt
+  slopes_trim_t trim;     // current offsets, mismatch of the sensors
   drive_config_t config;
   bool config_valid;
   drive_samples_t samples;

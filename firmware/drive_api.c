@@ -4,7 +4,6 @@
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "firmware/sampling.h"
-#include "hal/hal_adc.h"
 
 drive_t drive;
 
@@ -13,10 +12,8 @@ void drive_reset(void) {
   drive = empty;
   sampling_reset();
   parameters_reset();
-  drive.config.slopes.start_samples = HAL_ADC_START_SAMPLES;
-  drive.config.slopes.end_samples = HAL_ADC_END_SAMPLES;
-  drive.config.slopes.offset_a_q8 = 2048L * 256L;
-  drive.config.slopes.offset_b_q8 = 2048L * 256L;
+  drive.trim.offset_a_q8 = 2048L * 256L;
+  drive.trim.offset_b_q8 = 2048L * 256L;
   drive.config_valid = drive_config_load(&drive.config);
   drive.model = drive.config.nameplate;
   drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);

@@ -66,7 +66,10 @@ static bool load_modulation(drive_config_t* c) {
   c->dead_time.released_ticks = ticks(p->turn_off_delay);
   c->dead_time.band_q20 = p->drop_band;
   c->dead_time.drop_q16 = p->device_drop;
-  return modulator_config_valid(&c->modulator) && c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
+  // Between two windows lie the edge and its settling at least; the window before must have been read by then.
+  const int32_t gap_ticks = c->modulator.sampling.settle_ticks + (int32_t)HAL_ADC_BURST_TICKS;
+  return modulator_config_valid(&c->modulator) && gap_ticks >= (int32_t)HAL_ADC_WINDOW_GAP_TICKS &&
+         c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
          c->dead_time.blocked_ticks <= SVPWM_FIRST_TICK - 20;
 }
 
@@ -114,12 +117,15 @@ static bool load_position(drive_config_t* c) {
   c->encoder_trim_bam = (uint32_t)q_mul(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->codes_per_amp_q16 = q_div(65536L, c->slopes.amps_per_code_q30, 30);
+  c->slopes.start_samples = HAL_ADC_START_SAMPLES;
+  c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return blend_design(&c->blend, low, high);
 }
 
 bool drive_config_load(drive_config_t* c) {
-  drive_config_t fresh = *c;
+  static const drive_config_t empty = {0};
+  drive_config_t fresh = empty;
   if (!load_machine(&fresh) || !load_modulation(&fresh) || !load_control(&fresh) || !load_position(&fresh))
     return false;
   *c = fresh;

@@ -123,8 +123,8 @@ static void begin(drive_t* d) {
   hysteresis_t* const h = &d->hysteresis;
   static const hysteresis_t fresh = {0};
   *h = fresh;
-  h->offset_a_q8 = d->config.slopes.offset_a_q8;
-  h->offset_b_q8 = d->config.slopes.offset_b_q8;
+  h->offset_a_q8 = d->trim.offset_a_q8;
+  h->offset_b_q8 = d->trim.offset_b_q8;
   h->band_q20 = parameters.hysteresis_band;
   refer(d);
   h->running = hal_slices_begin(slice_ticks());

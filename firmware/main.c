@@ -18,14 +18,17 @@ static uint16_t dead_band_ticks(void) {
   return (uint16_t)q_max(ticks, (int32_t)HAL_PWM_DEAD_BAND_MIN_TICKS);
 }
 
-// A changed parameter becomes effective as a whole, between two control interrupts.
+// A changed parameter becomes effective as a whole, between two control interrupts. Only this level writes the
+// configuration, so it may be read here without a lock; a start that is asked for meanwhile waits for the request to be
+// taken back.
 static void reload(void) {
   static drive_config_t fresh;
-  drive.request.reload = false;
   fresh = drive.config;
-  drive.config_valid = parameter_conflict() == NULL && drive_config_load(&fresh);
+  const bool valid = parameter_conflict() == NULL && drive_config_load(&fresh);
   const uint16_t state = hal_irq_disable();
-  if (drive.config_valid) drive.config = fresh;
+  drive.request.reload = false;
+  drive.config_valid = valid;
+  if (valid) drive.config = fresh;
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);

@@ -23,7 +23,7 @@ static void adapt(drive_t* d, const regression_t* r) {
     case 1:
       if (!d->modulation.state.is_alternating) break;
       sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
-      d->config.slopes.mismatch_q30 = d->position.sensors.mismatch_q30;
+      d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
       break;
     case 2:
       if (d->state == DRIVE_RUN || d->state == DRIVE_STOP)
@@ -62,8 +62,7 @@ static estimator_output_t source_observer_avv(drive_t* d, const estimator_input_
 
 static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) {
   (void)step_avv(d, in);
-  d->config.zvv.id_reference_q20 = d->control.reference_q20.d;
-  d->position.low = zvv_step(&d->position.zvv, &d->config.zvv, in);
+  d->position.low = zvv_step(&d->position.zvv, &d->config.zvv, in, d->control.reference_q20.d);
   d->position.deviation_q20 = d->position.zvv.deviation_q20;
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }

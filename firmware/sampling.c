@@ -67,7 +67,7 @@ static void evaluate(drive_t* d, const svpwm_window_t* w, const hal_adc_window_t
   out->span_ticks = (int16_t)(end - begin);
   out->middle_tick = (int16_t)((begin + end) / 2);
   out->zero_vector = svpwm_is_zero_vector(w->state);
-  slopes_evaluate(&d->config.slopes, &sums, out);
+  slopes_evaluate(&d->config.slopes, &d->trim, &sums, out);
   out->voltage_q16 = window_voltage(d, w, out->current_q20);
 }
 

@@ -14,7 +14,7 @@ void drive_enter(drive_t* d, drive_state_t state) {
 }
 
 static void calibrate(drive_t* d) {
-  slopes_config_t* const c = &d->config.slopes;
+  slopes_trim_t* const c = &d->trim;
   if (d->periods > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
   if (d->samples.count == 0u) return;
   c->offset_a_q8 += q_shr(d->samples.raw_a_q8 - c->offset_a_q8, 4);

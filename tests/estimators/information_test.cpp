@@ -31,7 +31,8 @@ estimator_window_t sampled(const Motor& motor, const Window& w, double theta, do
     for (int k = 0; k < 4; ++k) s += code(amps, random);
     return static_cast<std::uint16_t>(s);
   };
-  const slopes_config_t c = {2048 * 256, 2048 * 256, raw(kAmpsPerCode, 30), 0, 4, 4};
+  const slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 4};
+  const slopes_trim_t trim = {2048 * 256, 2048 * 256, 0};
   slopes_sums_t sums;
   sums.start_a = sum(current - half, 0);
   sums.start_b = sum(current - half, 1);
@@ -42,7 +43,7 @@ estimator_window_t sampled(const Motor& motor, const Window& w, double theta, do
   e.middle_tick = static_cast<std::int16_t>(w.middle);
   e.span_ticks = static_cast<std::int16_t>(w.span);
   e.zero_vector = w.state == 0 || w.state == 7;
-  slopes_evaluate(&c, &sums, &e);
+  slopes_evaluate(&c, &trim, &sums, &e);
   return e;
 }
 

@@ -13,11 +13,10 @@ namespace {
 using namespace stillspin::test;
 using namespace stillspin::test::seen;
 
-zvv_config_t config(double kp, double ki, double id) {
+zvv_config_t config(double kp, double ki) {
   zvv_config_t c;
   c.kp_q30 = raw(kp * kPeriod, 30);
   c.ki_q40 = raw(ki * kPeriod * kPeriod, 40);
-  c.id_reference_q20 = raw(id, 20);
   return c;
 }
 
@@ -47,7 +46,7 @@ struct Course {
 
 Course run(double start, double theta, double kp, double ki, double id, double seconds) {
   const machine_model_t model = model_of(Motor{});
-  const zvv_config_t c = config(kp, ki, id);
+  const zvv_config_t c = config(kp, ki);
   zvv_t s = {};
   zvv_preset(&s, bam(theta - start), 0);
   Loop loop{theta - start};
@@ -57,7 +56,7 @@ Course run(double start, double theta, double kp, double ki, double id, double s
     // the observer turns by its speed before it looks; the current is where it will be
     const std::uint32_t next = s.angle_bam + static_cast<std::uint32_t>(s.speed_bpp);
     const Input in(model, zero_window(theta, rad(next), id));
-    (void)zvv_step(&s, &c, in.get());
+    (void)zvv_step(&s, &c, in.get(), raw(id, 20));
     loop.step(theta, kp, ki, id, loop_speed);
     r.error = wrapped(theta - rad(s.angle_bam));
     r.peak = std::max(r.peak, std::fabs(r.error));
@@ -94,16 +93,15 @@ TEST(Zvv, NothingToSeeWithoutCurrentOrZeroVector) {
   const machine_model_t model = model_of(Motor{});
   zvv_t s = {};
   zvv_preset(&s, bam(0.5), 0);
-  const zvv_config_t off = config(4.0, 4.0, 0.0);
+  const zvv_config_t c = config(4.0, 4.0);
   const Input still(model, zero_window(0.8, 0.5, 0.0));
-  EXPECT_EQ(zvv_step(&s, &off, still.get()).quality_q15, 0);
-  const zvv_config_t on = config(4.0, 4.0, 5.0);
+  EXPECT_EQ(zvv_step(&s, &c, still.get(), 0).quality_q15, 0);
   const Input active(model, alternating(Motor{}, 0, 0.8, 0.0, {5, 0}));
-  EXPECT_EQ(zvv_step(&s, &on, active.get()).quality_q15, 0);
+  EXPECT_EQ(zvv_step(&s, &c, active.get(), raw(5.0, 20)).quality_q15, 0);
   EXPECT_EQ(s.angle_bam, bam(0.5));
   EXPECT_EQ(s.speed_bpp, 0);
   const Input seen(model, zero_window(0.8, 0.5, 5.0));
-  EXPECT_EQ(zvv_step(&s, &on, seen.get()).quality_q15, 32767);
+  EXPECT_EQ(zvv_step(&s, &c, seen.get(), raw(5.0, 20)).quality_q15, 32767);
   EXPECT_GT(s.speed_bpp, 0);  // towards the rotor
 }
 

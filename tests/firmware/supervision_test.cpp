@@ -22,8 +22,8 @@ TEST_F(Drive, CalibrationTakesTheOffsets) {
   for (int n = 0; n < 400; ++n) period(w);
   ASSERT_EQ(drive.state, DRIVE_READY);
   // a first-order mean of 16 periods over 256; floor(x / 16) stops up to 15 short
-  EXPECT_NEAR(real(drive.config.slopes.offset_a_q8, 8), 2048.0 + 25.0 / 4.0, 16.0 / 256);
-  EXPECT_NEAR(real(drive.config.slopes.offset_b_q8, 8), 2048.0 - 13.0 / 4.0, 16.0 / 256);
+  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048.0 + 25.0 / 4.0, 16.0 / 256);
+  EXPECT_NEAR(real(drive.trim.offset_b_q8, 8), 2048.0 - 13.0 / 4.0, 16.0 / 256);
 }
 
 TEST_F(Drive, AnImplausibleOffsetIsAFault) {
