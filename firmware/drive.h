@@ -17,6 +17,7 @@
 #include "estimators/polarity.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
+#include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
 #include "estimators/zvv.h"
 #include "firmware/drive_api.h"
@@ -41,6 +42,7 @@ typedef struct {
   deviation_observer_config_t observer;
   blend_config_t blend;
   slopes_config_t slopes;
+  synchronism_config_t synchronism;
   int32_t volts_per_code_q16;
   int32_t codes_per_amp_q16;  // ADC codes
   int32_t bpp_per_rpm_q8;
@@ -81,12 +83,13 @@ typedef struct {
   speed_controller_t speed;
   field_weakening_t weakening;
   ramp_t ramp;
-  dq_t reference_q20;  // current reference
-  dq_t measured_q20;   // mean current of the last period
-  dq_t command_q16;    // voltage command
-  int32_t target_bpp;  // speed asked for
-  bool closed;         // current loop closed
-  bool speed_ready;    // the speed controller could be set up
+  dq_t reference_q20;      // current reference
+  dq_t measured_q20;       // mean current of the last period
+  dq_t command_q16;        // voltage command
+  int32_t wanted_rpm_q16;  // speed asked for, mechanical
+  int32_t target_bpp;      // the same, electrical
+  bool closed;             // current loop closed
+  bool speed_ready;        // the speed controller could be set up
 } drive_control_t;
 
 typedef struct {
@@ -98,10 +101,12 @@ typedef struct {
 
 typedef struct {
   uint16_t missing, overrun, diverged_periods;
+  uint32_t stopping_periods;  // in STOP with the reference at zero
+  synchronism_t synchronism;
 } drive_supervision_t;
 
 typedef struct {
-  bool start, stop, reset, reload;
+  bool start, stop, coast, reset, reload;
 } drive_request_t;
 
 typedef struct {
@@ -135,7 +140,7 @@ bool drive_config_load(drive_config_t* c);
 bool drive_is_energised(void);
 void drive_parameters_changed(void);
 
-/// Latches a fault and opens the power stage.
+/// Latches a fault and opens the power stage. The speed command is forgotten.
 void drive_raise(drive_t* d, drive_fault_t fault);
 
 /// Enters a state and starts counting its periods.

@@ -31,9 +31,12 @@ void drive_command_start(void) { drive.request.start = true; }
 
 void drive_command_stop(void) { drive.request.stop = true; }
 
+void drive_command_coast(void) { drive.request.coast = true; }
+
 void drive_command_reset(void) { drive.request.reset = true; }
 
 void drive_command_speed(int32_t rpm_q16) {
+  drive.control.wanted_rpm_q16 = rpm_q16;
   const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
   drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
 }

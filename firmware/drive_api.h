@@ -27,13 +27,15 @@ typedef enum {
   FAULT_CURRENT_LIMIT = 2,  // a sampled phase beyond trip_current
   FAULT_LINK_LOW = 3,
   FAULT_LINK_HIGH = 4,
-  FAULT_OVERRUN = 5,     // the control interrupt missed its period repeatedly
-  FAULT_NO_SAMPLES = 6,  // the ADC was not triggered
-  FAULT_DIVERGENCE = 7,  // the estimators disagree, or the speed is not plausible
-  FAULT_POLARITY = 8,    // the polarity of the magnet could not be told
-  FAULT_OFFSET = 9,      // a current offset is implausible
-  FAULT_PARAMETER = 10,  // parameters not usable together, or an interrupt that nobody expects
-  FAULT_GATES_OFF = 11   // the gates were switched off behind the drive's back
+  FAULT_OVERRUN = 5,       // the control interrupt missed its period repeatedly
+  FAULT_NO_SAMPLES = 6,    // the ADC was not triggered
+  FAULT_DIVERGENCE = 7,    // the estimators disagree, or the speed is not plausible
+  FAULT_POLARITY = 8,      // the polarity of the magnet could not be told
+  FAULT_OFFSET = 9,        // a current offset is implausible
+  FAULT_PARAMETER = 10,    // parameters not usable together, or an interrupt that nobody expects
+  FAULT_GATES_OFF = 11,    // the gates were switched off behind the drive's back
+  FAULT_SYNCHRONISM = 12,  // the angle in use does not fit the machine any more
+  FAULT_STOP = 13          // standstill not reached within stop_time
 } drive_fault_t;
 
 typedef enum { LIMIT_CURRENT = 1, LIMIT_VOLTAGE = 2, LIMIT_WEAKENING = 4, LIMIT_OVERRUN = 8 } drive_limit_t;
@@ -69,8 +71,12 @@ int32_t parameter_get(uint16_t id);
 const char* parameter_conflict(void);
 
 void drive_command_start(void);
+/// Speed to zero along the ramp, then gates off; a start procedure is broken off at once.
 void drive_command_stop(void);
-/// Mechanical speed reference, rpm Q16; clamped to the speed limit.
+/// Gates off with the next control interrupt, whatever the speed: the shaft runs out. READY follows.
+void drive_command_coast(void);
+/// Mechanical speed reference, rpm Q16; clamped to the speed limit. Taken in every state and kept through stop and
+/// start, so it may be given before the start; a fault puts it to zero.
 void drive_command_speed(int32_t rpm_q16);
 /// Clears a latched fault; the drive calibrates its offsets again and is READY.
 void drive_command_reset(void);

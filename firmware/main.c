@@ -29,6 +29,7 @@ static void reload(void) {
   drive.request.reload = false;
   drive.config_valid = valid;
   if (valid) drive.config = fresh;
+  drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);

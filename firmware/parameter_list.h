@@ -99,8 +99,15 @@ PARAMETER(122, ldq_4, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual induct
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of the polarity test")
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
-PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 20, ALWAYS, "for how long")
+PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 10, ALWAYS, "for how long")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED, "test the polarity of the magnet at start")
+PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
+          "for standstill after a stop has brought the reference to zero, then the drive faults")
+PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
+          "EMF error that is borne at any speed, see synchronism_time")
+PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
+PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 5, ALWAYS,
+          "for which a larger EMF error, or estimators a quarter turn apart, is a loss of synchronism")
 
 // Encoder as reference, hysteresis control
 PARAMETER(170, encoder_trim, "deg", 16, 2, -18000, 18000, 0, ALWAYS,

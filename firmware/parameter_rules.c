@@ -9,6 +9,12 @@
 #define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
 #define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
 
+// Peak line-to-line EMF at the speed limit, V Q16: sqrt(3) lambda w.
+static int32_t largest_emf_q16(const parameters_t* p) {
+  const int32_t volts_q16 = q_mul_sat(p->magnet_flux, p->speed_limit * p->pole_pairs, 20);
+  return q_mul(volts_q16, 194755224L, 30);  // sqrt(3) 2 pi / 60
+}
+
 const char* parameter_conflict(void) {
   static drive_config_t trial;
   const parameters_t* const p = &parameters;
@@ -23,6 +29,9 @@ const char* parameter_conflict(void) {
   if (p->trip_current > p->current_full_scale / 100 * 97)
     return "trip_current must be below 97 % of current_full_scale";
   if (p->link_maximum > p->link_full_scale / 100 * 97) return "link_maximum must be below 97 % of link_full_scale";
+  // A fault switches the gates off at any speed; the diodes then charge the link up to the EMF.
+  if (largest_emf_q16(p) > p->link_maximum)
+    return "speed_limit is too high: with the gates off the EMF would charge the link beyond link_maximum";
   if (p->weakening_limit > p->current_limit) return "weakening_limit must not exceed current_limit";
   if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16)
     return "window_minimum must be settle_time + 4.5 us or more";

@@ -15,6 +15,8 @@ void drive_raise(drive_t* d, drive_fault_t fault) {
   d->state = DRIVE_FAULT;
   d->periods = 0;
   d->control.closed = false;
+  d->control.wanted_rpm_q16 = 0;
+  d->control.target_bpp = 0;
   hal_safety_fault_lamp(true);
 }
 
@@ -33,17 +35,37 @@ static bool encoder_beside_avv(void) {
          parameters.excitation != EXCITATION_CENTRED && parameters.excitation != EXCITATION_LONG_ZERO;
 }
 
+// How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
+static int32_t disagreement(const drive_t* d) {
+  const drive_position_t* const p = &d->position;
+  const bool both = parameters.position_source == 2 || encoder_beside_avv() ||
+                    (parameters.position_source == 1 && p->blend.region == BLEND_BOTH);
+  if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
+  return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
+}
+
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
 static bool diverged(drive_t* d) {
   const int32_t limit_bam = q_mul(parameters.divergence_limit, 11930465L, 16);
   const int32_t speed_limit = q_mul_sat(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
-  const int32_t apart = q_abs_sat(angle_diff_bam(d->position.low.angle_bam, d->position.high.angle_bam));
-  const bool both = parameters.position_source == 2 || encoder_beside_avv() ||
-                    (parameters.position_source == 1 && d->position.blend.region == BLEND_BOTH);
-  const bool wrong = (both && apart > limit_bam) || q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
+  const bool wrong = disagreement(d) > limit_bam || q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
   d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + 1u) : 0u;
   return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
 }
+
+// An angle error that is asked for is none.
+static bool lost_synchronism(drive_t* d) {
+  if (parameters.position_source == 0 && parameters.encoder_trim != 0) return false;
+  estimator_input_t in;
+  in.model = &d->model;
+  in.windows = d->samples.windows;
+  in.window_count = d->samples.count;
+  in.torque_accel_q8 = 0;
+  return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, d->position.used.angle_bam,
+                          d->position.used.speed_bpp, disagreement(d));
+}
+
+static bool is_running(const drive_t* d) { return d->state == DRIVE_RUN || d->state == DRIVE_STOP; }
 
 static drive_fault_t check(drive_t* d) {
   if (hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
@@ -53,7 +75,8 @@ static drive_fault_t check(drive_t* d) {
   if (over_current(d)) return FAULT_CURRENT_LIMIT;
   if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
   if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
-  if ((d->state == DRIVE_RUN || d->state == DRIVE_STOP) && diverged(d)) return FAULT_DIVERGENCE;
+  if (is_running(d) && lost_synchronism(d)) return FAULT_SYNCHRONISM;
+  if (is_running(d) && diverged(d)) return FAULT_DIVERGENCE;
   return FAULT_NONE;
 }
 

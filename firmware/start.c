@@ -15,7 +15,7 @@ void drive_begin_start(drive_t* d) {
     drive_raise(d, FAULT_PARAMETER);
     return;
   }
-  static const drive_supervision_t healthy = {0, 0, 0};
+  static const drive_supervision_t healthy = {0};
   d->supervision = healthy;
   d->polarity_tries = 0;
   d->model = d->config.nameplate;
@@ -24,7 +24,6 @@ void drive_begin_start(drive_t* d) {
   modulator_reset(&d->modulation.state);
   field_weakening_reset(&d->control.weakening);
   d->control.ramp.value = 0;
-  d->control.target_bpp = 0;
   d->control.reference_q20.d = 0;
   d->control.reference_q20.q = 0;
   d->polarity.result = POLARITY_PENDING;

@@ -1,6 +1,7 @@
 // The states of the drive: boot, offset calibration, ready, start, run, stop, fault.
 
 #include "firmware/drive.h"
+#include "firmware/parameters.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 
@@ -29,27 +30,39 @@ static void calibrate(drive_t* d) {
   }
 }
 
-static void stop(drive_t* d) {
-  const int32_t still = q_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
-  if (d->control.ramp.value != 0 || q_abs_sat(d->position.used.speed_bpp) > still) return;
+// Opens the power stage at once and goes back to READY.
+static void coast(drive_t* d) {
   hal_pwm_gates_off();
   d->control.closed = false;
   drive_enter(d, DRIVE_READY);
 }
 
-// Opens the power stage at once and goes back to READY.
-static void abandon_start(drive_t* d) {
-  hal_pwm_gates_off();
-  d->control.closed = false;
-  drive_enter(d, DRIVE_READY);
+static void stop(drive_t* d) {
+  drive_supervision_t* const v = &d->supervision;
+  const int32_t still = q_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
+  if (d->control.ramp.value != 0) return;
+  v->stopping_periods++;
+  if (q_abs_sat(d->position.used.speed_bpp) <= still) {
+    coast(d);
+  } else if (v->stopping_periods > (uint32_t)parameters.stop_time * DRIVE_PERIODS_PER_MS) {
+    drive_raise(d, FAULT_STOP);
+  }
+}
+
+static void begin_stop(drive_t* d) {
+  d->supervision.stopping_periods = 0;
+  drive_enter(d, DRIVE_STOP);
 }
 
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
+  if (r->coast && drive_is_energised()) coast(d);
+  if (r->coast) r->start = false;
+  r->coast = false;
   if (r->reload) return;  // first the changed parameters, then the start
-  if (d->state == DRIVE_START && r->stop) abandon_start(d);
+  if (d->state == DRIVE_START && r->stop) coast(d);
   if (d->state == DRIVE_READY && r->start) drive_begin_start(d);
-  if (d->state == DRIVE_RUN && r->stop) drive_enter(d, DRIVE_STOP);
+  if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
   if (d->state == DRIVE_FAULT && r->reset) {
     d->fault = FAULT_NONE;
     hal_safety_fault_lamp(false);

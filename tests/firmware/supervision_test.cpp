@@ -153,13 +153,116 @@ TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
   const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
   int n = 0;
   while (drive.state == DRIVE_RUN && n < 2 * allowed) {
-    // the encoder says one thing, AVV is held a quarter turn away
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x40000000u;
+    // the encoder says one thing, AVV is held 70 degrees away: beyond divergence_limit, less than a quarter turn
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x31C71C72u;
     period();
     n++;
   }
   expect_fault(FAULT_DIVERGENCE);
   EXPECT_NEAR(n, allowed, 3);
+}
+
+TEST_F(Drive, EstimatorsAQuarterTurnApartAreALossOfSynchronism) {
+  make_run();
+  const int allowed = parameters.synchronism_time * DRIVE_PERIODS_PER_MS;
+  int n = 0;
+  while (drive.state == DRIVE_RUN && n < 2 * allowed) {
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x60000000u;
+    period();
+    n++;
+  }
+  expect_fault(FAULT_SYNCHRONISM);
+  EXPECT_NEAR(n, allowed, 3);
+}
+
+// An encoder that runs at 600 rpm over windows of a shaft at rest: there is one estimator, and no second opinion.
+TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
+  make_run();
+  int n = 0;
+  while (drive.state == DRIVE_RUN && n < 400) {
+    board.encoder = (board.encoder + 4u) & 4095u;
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+    period();
+    n++;
+  }
+  expect_fault(FAULT_SYNCHRONISM);
+}
+
+TEST_F(Drive, CoastOpensThePowerStageAtOnceAtAnySpeed) {
+  make_run();
+  drive.position.encoder.speed_bpp = raw(0.01, 32);
+  drive_command_coast();
+  period();
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_FALSE(drive.control.closed);
+}
+
+TEST_F(Drive, CoastBreaksAStartOffAndOutlastsIt) {
+  make_ready();
+  drive_command_start();
+  periods(20);
+  ASSERT_EQ(drive.state, DRIVE_START);
+  drive_command_coast();
+  drive_command_start();  // in the same period: the gates stay off
+  periods(3);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Drive, CoastDoesNotWaitForParameters) {
+  make_run();
+  drive.request.reload = true;  // the background level never gets to it
+  drive_command_coast();
+  period();
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Drive, StopThatDoesNotReachStandstillFaults) {
+  parameters.stop_time = 50;
+  make_run();
+  drive.config.synchronism.bad_periods = 1000000;  // these windows are no machine's
+  drive_command_stop();
+  int n = 0;
+  while (drive.state != DRIVE_FAULT && drive.state != DRIVE_READY && n < 2000) {
+    // an encoder that goes on at 5 rpm, above the 2 rpm that count as rest
+    drive.position.encoder.speed_bpp = raw(5.0 / 60.0 * 4.0 * kPeriod, 32);
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+    period();
+    n++;
+  }
+  expect_fault(FAULT_STOP);
+  EXPECT_NEAR(n, 50 * DRIVE_PERIODS_PER_MS, 15);  // the ramp is at zero from the start; a millisecond of the speed task
+}
+
+TEST_F(Drive, ASpeedCommandBeforeTheStartIsKept) {
+  make_ready();
+  drive_command_speed(raw(300.0, 16));
+  make_run();
+  drive.config.synchronism.bad_periods = 1000000;  // these windows are no machine's
+  periods(20);
+  EXPECT_GT(drive.control.ramp.value, 0);
+  EXPECT_NEAR(rad_per_s(drive.control.target_bpp) / kTurn * 60.0 / 4.0, 300.0, 0.01);
+}
+
+TEST_F(Drive, AFaultPutsTheSpeedCommandToZero) {
+  make_run();
+  drive_command_speed(raw(300.0, 16));
+  board.tripped_by_pin = true;
+  period();
+  EXPECT_EQ(drive.control.target_bpp, 0);
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+}
+
+// The gates must be safe to open at the highest speed: sqrt(3) * 0.16 Vs * 4 * 2 pi / 60 = 0.1161 V per rpm.
+TEST_F(Drive, SpeedLimitWhoseEmfExceedsTheLinkIsAConflict) {
+  EXPECT_EQ(parameter_conflict(), nullptr);
+  parameters.speed_limit = raw(3617.0, 8);  // 419.9 V of 420
+  EXPECT_EQ(parameter_conflict(), nullptr);
+  parameters.speed_limit = raw(3619.0, 8);  // 420.1 V
+  ASSERT_NE(parameter_conflict(), nullptr);
+  EXPECT_NE(std::string(parameter_conflict()).find("speed_limit"), std::string::npos);
 }
 
 TEST_F(Drive, FaultStaysUntilTheReset) {

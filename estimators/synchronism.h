@@ -1,0 +1,40 @@
+// Loss of synchronism: does the angle in use still fit the machine?
+//
+// Whatever estimator an angle comes from, the windows must obey the voltage equation in the frame of that angle. The
+// residual of the mean window of a period (deviation.h), times L/T, is an EMF error in volts, expected less true:
+//   e = w lambda (-sin d, 1 - cos d) + saliency terms     for a frame that is ahead by d and turns with the shaft,
+// |e| = w lambda at d = 60 degrees, 1.4 w lambda at 90 and 2 w lambda with the polarity reversed; an angle that stands
+// or slips gives the EMF of one of the two speeds. It is compared with floor + share |w^ lambda|. The floor stands for
+// what is wrong at any speed (drops, resistance, noise of short windows), the share for wrong flux and link voltage.
+// Saliency cannot say this: it repeats every half turn.
+//
+// Beside it counts the disagreement of two estimators beyond a quarter turn: one of them is then lost.
+//
+// Not seen: a reversed polarity without speed. It shows as soon as current moves the shaft the wrong way, from
+// w lambda = floor / (2 - share) on.
+
+#ifndef STILLSPIN_ESTIMATORS_SYNCHRONISM_H
+#define STILLSPIN_ESTIMATORS_SYNCHRONISM_H
+
+#include "estimators/estimator.h"
+
+typedef struct {
+  int32_t floor_q16;    // V
+  int32_t share_q15;    // of the EMF that the speed lets expect, 0..1
+  int32_t bad_periods;  // this many bad periods are a loss; eight good ones make up for a bad one; up to 10000
+} synchronism_config_t;
+
+typedef struct {
+  dq_t error_q16;     // EMF error, first-order mean over 4 periods, V
+  int32_t limit_q16;  // what it may be now, V
+  int32_t doubt;      // eight a bad period, less one a good one
+} synchronism_t;
+
+void synchronism_reset(synchronism_t* s);
+
+/// One period: the angle and speed in use at its start, and how far two estimators are apart (0 where there is one).
+/// Returns true when synchronism is lost. A period without windows changes nothing.
+bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in, uint32_t angle_bam,
+                      int32_t speed_bpp, int32_t apart_bam);
+
+#endif

@@ -1,0 +1,160 @@
+// Loss of synchronism: what an angle that does not fit leaves over of the voltage equation, and for how long it is
+// borne.
+
+#include <gtest/gtest.h>
+
+#include "tests/estimators/machine_windows.hpp"
+
+extern "C" {
+#include "estimators/synchronism.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+using namespace stillspin::test::seen;
+
+constexpr double kFloor = 4.0;  // V
+constexpr double kShare = 0.6;
+constexpr int kBad = 50;  // periods
+const synchronism_config_t kConfig = {raw(kFloor, 16), raw(kShare, 15), kBad};
+const Motor kMotor;
+
+/// A shaft that turns, seen in a frame that is ahead by `off` and believes in `believed` (rad/s).
+struct Scene {
+  machine_model_t model = model_of(kMotor);
+  synchronism_t s{};
+  double theta = 0.4;
+  int period = 0;
+
+  Scene() { synchronism_reset(&s); }
+
+  bool step(double w, double off, double believed, Vector i_dq = {0.0, 3.0}, double apart = 0.0) {
+    theta += w * kPeriod;
+    const Input in(model, alternating(kMotor, period++, theta, w, i_dq.turned(theta)));
+    return synchronism_step(&s, &kConfig, in.get(), bam(theta + off), bpp(believed), bam(apart));
+  }
+
+  /// Periods until the loss, `most` when there is none.
+  int until_lost(double w, double off, double believed, int most = 1000) {
+    int n = 0;
+    while (n < most && !step(w, off, believed)) ++n;
+    return n;
+  }
+
+  Vector error() const { return {real(s.error_q16.d, 16), real(s.error_q16.q, 16)}; }
+};
+
+double electrical(double rpm) { return rpm / 60.0 * kMotor.pole_pairs * kTurn; }
+
+TEST(Synchronism, TheTrueAngleLeavesNothing) {
+  for (const double rpm : {-3000.0, -60.0, 0.0, 60.0, 1000.0, 3000.0}) {
+    Scene scene;
+    const double w = electrical(rpm);
+    for (int n = 0; n < 200; ++n) ASSERT_FALSE(scene.step(w, 0.0, w, {-2.0, 6.0}));
+    // The mean window turns the two by up to 25 us * w from each other: 1.8 degrees of some 100 V at 3000 rpm.
+    EXPECT_LT(scene.error().length(), 0.1 + 0.005 * std::fabs(w)) << rpm;
+  }
+}
+
+// A reversed polarity: the whole EMF comes out against what is expected, and is missed twice. The windows' own saliency
+// is the same from the other side.
+TEST(Synchronism, HalfATurnIsTwiceTheEmf) {
+  for (const double rpm : {-1000.0, 120.0, 600.0}) {
+    Scene scene;
+    const double w = electrical(rpm);
+    for (int n = 0; n < 60; ++n) (void)scene.step(w, kPi, w, {0.0, 0.0});
+    EXPECT_NEAR(scene.error().y, 2.0 * w * kMotor.flux, 0.1 + 0.01 * std::fabs(w * kMotor.flux)) << rpm;
+  }
+}
+
+TEST(Synchronism, IsLostWhenItIsLost) {
+  struct Case {
+    double rpm, off, believed_rpm;
+  };
+  const Case cases[] = {
+      {60.0, kPi, 60.0},       {-60.0, kPi, -60.0},           // 8.0 V against 6.4
+      {300.0, kPi / 2, 300.0}, {-3000.0, -kPi / 2, -3000.0},  // a quarter turn
+      {1000.0, 0.0, 0.0},      {0.0, 0.0, 1000.0},            // one of the two stands
+      {600.0, 0.0, -600.0},
+  };
+  for (const Case& c : cases) {
+    Scene scene;
+    const int periods = scene.until_lost(electrical(c.rpm), c.off, electrical(c.believed_rpm));
+    EXPECT_GE(periods, kBad) << c.rpm;
+    // the first-order mean of 4 periods has passed the limit after ln(8.0 / 1.6) of them at the slowest here; what
+    // slips makes some periods good
+    EXPECT_LE(periods, kBad + 20) << c.rpm << " rpm, " << c.off;
+  }
+}
+
+TEST(Synchronism, AnErrorOfThirtyDegreesIsNoLoss) {
+  for (const double rpm : {60.0, 300.0, 1000.0, -3000.0}) {
+    Scene scene;
+    const double w = electrical(rpm);
+    EXPECT_EQ(scene.until_lost(w, 30.0 * kDegree, w), 1000) << rpm;
+  }
+}
+
+TEST(Synchronism, ReversedPolarityAtRestCannotBeSeen) {
+  Scene scene;
+  EXPECT_EQ(scene.until_lost(0.0, kPi, 0.0), 1000);
+  // w lambda = floor / (2 - share): 2.9 V, 43 rpm
+  EXPECT_LT(Scene().until_lost(electrical(50.0), kPi, electrical(50.0)), 100);
+}
+
+TEST(Synchronism, EstimatorsAQuarterTurnApartAreALoss) {
+  Scene scene;
+  for (int n = 0; n < kBad; ++n) ASSERT_FALSE(scene.step(0.0, 0.0, 0.0, {0.0, 0.0}, 91.0 * kDegree)) << n;
+  EXPECT_TRUE(scene.step(0.0, 0.0, 0.0, {0.0, 0.0}, 91.0 * kDegree));
+  for (int n = 0; n < 500; ++n) ASSERT_FALSE(Scene().step(0.0, 0.0, 0.0, {0.0, 0.0}, -89.0 * kDegree));
+}
+
+// Eight good periods make up for a bad one, so that a loss that shows again and again is found.
+TEST(Synchronism, GoodPeriodsAreForgivenSlowly) {
+  Scene scene;
+  const auto bad = [&] { return scene.step(0.0, 0.0, 0.0, {0.0, 0.0}, kPi); };
+  const auto good = [&] { return scene.step(0.0, 0.0, 0.0, {0.0, 0.0}, 0.0); };
+  for (int n = 0; n < 40; ++n) ASSERT_FALSE(bad());
+  for (int n = 0; n < 80; ++n) ASSERT_FALSE(good());
+  for (int n = 0; n < 20; ++n) ASSERT_FALSE(bad()) << n;
+  EXPECT_TRUE(bad());
+}
+
+TEST(Synchronism, WithoutWindowsNothingChanges) {
+  Scene scene;
+  for (int n = 0; n < 30; ++n) (void)scene.step(electrical(600.0), kPi, electrical(600.0));
+  const synchronism_t before = scene.s;
+  const Input none(scene.model, {});
+  EXPECT_FALSE(synchronism_step(&scene.s, &kConfig, none.get(), 0, 0, 0));
+  EXPECT_EQ(scene.s.doubt, before.doubt);
+  EXPECT_EQ(scene.s.error_q16.q, before.error_q16.q);
+}
+
+// Whatever the windows say, the numbers stay inside their formats.
+TEST(Synchronism, BearsAnyWindow) {
+  Random random(91);
+  const machine_model_t model = model_of(kMotor);
+  synchronism_t s;
+  synchronism_reset(&s);
+  for (int n = 0; n < 20000; ++n) {
+    std::vector<Window> windows(static_cast<std::size_t>(random.below(4)));
+    for (Window& w : windows) {
+      w.slope = random.direction(random.between(0.0, 40.0));
+      w.current = random.direction(random.between(0.0, 20.0));
+      w.voltage = random.direction(random.between(0.0, 280.0));
+      w.middle = random.below(10000);
+      w.span = 300 + random.below(3000);
+    }
+    const Input in(model, windows);
+    (void)synchronism_step(&s, &kConfig, in.get(), bam(random.between(-kPi, kPi)), bpp(random.between(-1900.0, 1900.0)),
+                           bam(random.between(-kPi, kPi)));
+    ASSERT_GE(s.doubt, 0);
+    ASSERT_GE(s.limit_q16, 0);
+    // slopes of 40 A a period stand for 3.1 kV
+    ASSERT_LT(std::fabs(real(s.error_q16.d, 16)), 5000.0);
+    ASSERT_LT(std::fabs(real(s.error_q16.q, 16)), 5000.0);
+  }
+}
+
+}  // namespace
