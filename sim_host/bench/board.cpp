@@ -1,5 +1,6 @@
 #include "sim_host/bench/board.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "hal/f2808/registers.h"
@@ -48,6 +49,7 @@ Board::Board(const plant::PlantConfig& config, PeriodListener& listener) : plant
 void Board::drive_leg(Tick t, int leg) {
   const PlantTimer timer(*this);
   plant_.set_gate(t, leg, enabled_ && upper_[leg], enabled_ && lower_[leg]);
+  compare(t, plant_.peak_current());
 }
 
 void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
@@ -60,6 +62,7 @@ void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
 
 std::uint16_t Board::adc_sample(Tick t, int channel) {
   const PlantTimer timer(*this);
+  compare(t, plant_.peak_current());
   switch (channel) {
     case kChannelCurrentA:
       probe_.sample(t);
@@ -67,7 +70,6 @@ std::uint16_t Board::adc_sample(Tick t, int channel) {
     case kChannelCurrentB:
       return plant_.adc_code(t, plant::AdcInput::kCurrentB);
     case kChannelLink:
-      watch_current(t);
       return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
     case kChannelAuxiliary:
       return plant_.adc_code(t, plant::AdcInput::kTemperature);
@@ -76,9 +78,11 @@ std::uint16_t Board::adc_sample(Tick t, int channel) {
   }
 }
 
-// The comparator is looked at with every window's last sample and at every period start.
-void Board::watch_current(Tick t) {
-  if (plant_.take_peak_current(t) <= kComparatorAmps) return;
+// The comparator sees the true current at the end of every step of the plant: edges, zero crossings, and four times a
+// period at least.
+void Board::compare(Tick t, double amps) {
+  if (amps <= kComparatorAmps) return;
+  (void)plant_.take_peak_current(t);
   if (t >= tripped_until_) trips_++;
   tripped_until_ = t + kComparatorHold;
   chip_->pins_changed();
@@ -105,26 +109,44 @@ std::int64_t Board::encoder_edges(Tick t) { return plant_.encoder_count(t); }
 void Board::align(Tick t) {
   const bool running = (chip_->inspect(REG_PCLKCR0) & PCLKCR0_TBCLKSYNC_MASK) != 0;
   const Tick counter = chip_->inspect(EPWM_BASE(1) + EPWM_TBCTR);
-  next_call_ = t + kPeriod - (running ? counter : 0);
+  next_period_ = next_call_ = t + kPeriod - (running ? counter : 0);
   aligned_ = running;
 }
 
 void Board::call(Tick t) {
-  if (t >= next_call_) start_period(t);
+  if (t >= next_call_) look(t);
   // Behind the listener, which may arm the probe for this very tick.
   if (t >= probe_.next()) probe_.look(t, plant_, upper_, lower_);
 }
 
-void Board::start_period(Tick t) {
-  watch_enable(t);
-  watch_current(t);
+void Board::look(Tick t) {
+  compare(t, plant_.take_peak_current(t));
+  if (t < next_period_) {
+    call_between(t);
+  } else {
+    watch_enable(t);
+    begin_period(t);
+  }
+}
+
+void Board::begin_period(Tick t) {
   if (!aligned_) {
     align(t);
     return;
   }
-  next_call_ = t + kPeriod;
+  next_period_ = t + kPeriod;
+  if (interrupt_delay_ > 0) chip_->hold_interrupts(true);
+  release_ = t + interrupt_delay_;
+  call_between(t);
   time_periods();
   listener_.on_period(t);
+}
+
+// Looks at the current when nothing else does, and lets a held interrupt go.
+void Board::call_between(Tick t) {
+  if (release_ <= t) chip_->hold_interrupts(false);
+  next_call_ = std::min(t + kWatch, next_period_);
+  if (release_ > t) next_call_ = std::min(next_call_, release_);
 }
 
 }  // namespace stillspin::bench

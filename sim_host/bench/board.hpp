@@ -2,7 +2,7 @@
 //
 // Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
 // been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
-// over-current input (GPIO12, TZ1, low active) when a phase current has exceeded 19 A, and holds it for 10 us.
+// over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 19 A, and holds it for 10 us.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
@@ -22,6 +22,7 @@ inline constexpr double kComparatorAmps = 19.0;
 inline constexpr Tick kComparatorHold = 1'000;
 inline constexpr Tick kEnableTimeout = 500'000;
 inline constexpr Tick kPeriod = 10'000;
+inline constexpr Tick kWatch = 2'500;
 inline constexpr int kPinOverCurrent = 12;
 inline constexpr int kPinEnable = 34;
 
@@ -41,6 +42,11 @@ class Board : public chip::World {
 
   plant::Plant& plant() { return plant_; }
   WaveformProbe& probe() { return probe_; }
+  /// Faults of the chip's surroundings: conversions that are not triggered, interrupts taken late in every period
+  /// (ticks below a period; 0 is in time).
+  void lose_triggers(bool on) { chip_->block_adc_triggers(on); }
+  void delay_interrupts(Tick ticks) { interrupt_delay_ = ticks; }
+
   bool gates_enabled() const { return enabled_; }
   std::uint64_t trips() const { return trips_; }
 
@@ -58,10 +64,12 @@ class Board : public chip::World {
  private:
   class PlantTimer;
   void time_periods();
-  void start_period(Tick t);
   void align(Tick t);
   void watch_enable(Tick t);
-  void watch_current(Tick t);
+  void look(Tick t);
+  void begin_period(Tick t);
+  void call_between(Tick t);
+  void compare(Tick t, double amps);
   void drive_leg(Tick t, int leg);
 
   plant::Plant plant_;
@@ -71,6 +79,9 @@ class Board : public chip::World {
   std::array<bool, 3> upper_{};
   std::array<bool, 3> lower_{};
   Tick next_call_ = 0;
+  Tick next_period_ = 0;
+  Tick interrupt_delay_ = 0;
+  Tick release_ = 0;
   Tick last_toggle_ = -kEnableTimeout;
   Tick tripped_until_ = -1;
   std::uint64_t trips_ = 0;

@@ -23,14 +23,17 @@ using stillspin::plant::Tick;
 
 namespace {
 
-double number(const std::string& where, nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) {
-    const std::string word = nb::cast<std::string>(value);
-    const auto& known = solver_choices();
-    const auto found = std::find(known.begin(), known.end(), word);
-    if (found == known.end()) throw std::invalid_argument(where + " = '" + word + "': not a choice");
-    return static_cast<double>(found - known.begin());
+double chosen(const std::string& section, const std::string& key, const std::string& word) {
+  for (const Entry& e : entries()) {
+    if (section != e.section || key != e.key || e.choices == nullptr) continue;
+    const auto found = std::find(e.choices->begin(), e.choices->end(), word);
+    if (found != e.choices->end()) return static_cast<double>(found - e.choices->begin());
   }
+  throw std::invalid_argument(section + "." + key + " = '" + word + "': not a choice");
+}
+
+double number(const std::string& section, const std::string& key, nb::handle value) {
+  if (nb::isinstance<nb::str>(value)) return chosen(section, key, nb::cast<std::string>(value));
   return nb::cast<double>(value);
 }
 
@@ -40,7 +43,7 @@ Setup setup_from(const nb::dict& plant, std::uint64_t seed) {
     for (const auto& [key, value] : nb::cast<nb::dict>(keys)) {
       const std::string s = nb::cast<std::string>(section);
       const std::string k = nb::cast<std::string>(key);
-      set_entry(setup, s, k, number(s + "." + k, value));
+      set_entry(setup, s, k, number(s, k, value));
     }
   }
   setup.nominal.adc.seed = seed;
@@ -168,7 +171,7 @@ nb::object default_of(const Entry& e) {
     case EntryKind::kWhole:
       return nb::int_(static_cast<long>(value));
     case EntryKind::kChoice:
-      return nb::str(solver_choices()[static_cast<std::size_t>(value)].c_str());
+      return nb::str((*e.choices)[static_cast<std::size_t>(value)].c_str());
     default:
       return nb::float_(value);
   }
@@ -184,7 +187,7 @@ nb::dict schema() {
     row["maximum"] = e.maximum;
     row["default"] = default_of(e);
     row["help"] = e.help;
-    if (e.kind == EntryKind::kChoice) row["choices"] = solver_choices();
+    if (e.kind == EntryKind::kChoice) row["choices"] = *e.choices;
     nb::cast<nb::dict>(sections[e.section])[e.key] = row;
   }
   return sections;

@@ -42,6 +42,10 @@ const char* fault_name(std::int32_t fault) {
       return "parameters do not fit together";
     case FAULT_GATES_OFF:
       return "gates switched off unexpectedly";
+    case FAULT_SYNCHRONISM:
+      return "loss of synchronism";
+    case FAULT_STOP:
+      return "standstill not reached within stop_time";
     default:
       return "unknown fault";
   }
@@ -69,6 +73,7 @@ class Director : public PeriodListener {
       : request_(request),
         result_(result),
         recorder_(request.record_every),
+        faults_(request.setup.fault),
         parameters_(raw_parameters(request.parameters)) {
     recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
     for (const Command& c : request.commands) check(c);
@@ -86,7 +91,7 @@ class Director : public PeriodListener {
     watch_fault(t, s);
     board_->plant().advance(t);
     if (!running()) prepare(t, s);
-    if (running()) give_commands(t);
+    if (running()) act(t);
     if (running()) recorder_.begin_row(t * kSecondsPerTick, board_->plant().state());
   }
 
@@ -95,9 +100,10 @@ class Director : public PeriodListener {
     unsigned id = 0;
     if (c.what.rfind("set:", 0) == 0) {
       (void)parameter_raw(c.what.substr(4), c.value, id);
-    } else if (c.what != "speed_ref_rpm" && c.what != "start" && c.what != "stop" && c.what != "reset") {
+    } else if (c.what != "speed_ref_rpm" && c.what != "start" && c.what != "stop" && c.what != "coast" &&
+               c.what != "reset") {
       throw std::invalid_argument("there is no command '" + c.what +
-                                  "': speed_ref_rpm, start, stop, reset or set:<parameter>");
+                                  "': speed_ref_rpm, start, stop, coast, reset or set:<parameter>");
     }
   }
 
@@ -139,8 +145,14 @@ class Director : public PeriodListener {
 
   static Tick periods(double seconds) { return std::llround(seconds / kSecondsPerTick / kPeriod) * kPeriod; }
 
-  void give_commands(Tick t) {
+  void act(Tick t) {
     const double now = (t - origin_) * kSecondsPerTick;
+    faults_.step(now, *board_);
+    give_commands(now);
+    if (request_.on_period) request_.on_period(now);
+  }
+
+  void give_commands(double now) {
     while (next_command_ < request_.commands.size() && request_.commands[next_command_].time <= now + 1e-9) {
       give(request_.commands[next_command_++]);
     }
@@ -150,6 +162,7 @@ class Director : public PeriodListener {
     if (c.what == "speed_ref_rpm") drive_command_speed(static_cast<std::int32_t>(std::lround(c.value * 65536.0)));
     if (c.what == "start") drive_command_start();
     if (c.what == "stop") drive_command_stop();
+    if (c.what == "coast") drive_command_coast();
     if (c.what == "reset") drive_command_reset();
     if (c.what.rfind("set:", 0) == 0) {
       RawParameter p{};
@@ -161,6 +174,7 @@ class Director : public PeriodListener {
   const RunRequest& request_;
   RunResult& result_;
   Recorder recorder_;
+  FaultPlayer faults_;
   std::vector<RawParameter> parameters_;
   Board* board_ = nullptr;
   Tick origin_ = -1;

@@ -19,7 +19,7 @@ namespace stillspin::bench {
 
 struct Command {
   double time;       // s
-  std::string what;  // "speed_ref_rpm", "start", "stop", "reset", "set:<parameter>"
+  std::string what;  // "speed_ref_rpm", "start", "stop", "coast", "reset", "set:<parameter>"
   double value;
 };
 
@@ -33,6 +33,7 @@ struct RunRequest {
   int record_every = 1;                         // PWM periods per record
   WaveformRequest waveform;                     // a stretch to look into
   std::function<bool(double)> progress;         // share done; false stops the run
+  std::function<void(double)> on_period;        // for tests: time since the start, before each control interrupt
 };
 
 /// A recorded column and what it is.

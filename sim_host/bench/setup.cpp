@@ -6,12 +6,20 @@
 namespace stillspin::bench {
 namespace {
 
-#define ENTRY(section, key, unit, kind, minimum, maximum, field, help)                              \
-  Entry {                                                                                           \
-    #section, #key, unit, EntryKind::kind, minimum, maximum,                                        \
-        [](const Setup& s) { return static_cast<double>(s.field); },                                \
-        [](Setup& s, double v) { s.field = static_cast<std::decay_t<decltype(s.field)>>(v); }, help \
+const std::vector<std::string> kSolvers = {"erkstep", "rk4", "reference"};
+const std::vector<std::string> kPhases = {"none", "a", "b", "c"};
+
+#define ROW(section, key, unit, kind, minimum, maximum, field, help, choices)                                \
+  Entry {                                                                                                    \
+    #section, #key, unit, EntryKind::kind, minimum, maximum,                                                 \
+        [](const Setup& s) { return static_cast<double>(s.field); },                                         \
+        [](Setup& s, double v) { s.field = static_cast<std::decay_t<decltype(s.field)>>(v); }, help, choices \
   }
+#define ENTRY(section, key, unit, kind, minimum, maximum, field, help) \
+  ROW(section, key, unit, kind, minimum, maximum, field, help, nullptr)
+#define CHOICE(section, key, words, field, help) \
+  ROW(section, key, "", kChoice, 0, static_cast<double>((words).size() - 1), field, help, &(words))
+#define AT(key, help) ENTRY(fault, key, "s", kNumber, 0, 3600, fault.key, help)
 
 const std::vector<Entry> kEntries = {
     ENTRY(machine, pole_pairs, "", kWhole, 1, 50, nominal.machine.pole_pairs, "pole pairs"),
@@ -77,22 +85,39 @@ const std::vector<Entry> kEntries = {
     ENTRY(parameter_error, inductance_q, "", kNumber, -0.9, 5, error.inductance_q, "true minus nominal"),
     ENTRY(parameter_error, magnet_flux, "", kNumber, -0.9, 5, error.magnet_flux, "true minus nominal"),
     ENTRY(parameter_error, inertia, "", kNumber, -0.9, 5, error.inertia, "true minus nominal"),
-    ENTRY(solver, method, "", kChoice, 0, 2, solver,
-          "erkstep: ARKODE, adaptive; rk4: fixed steps, fast; reference: CVODE"),
+    CHOICE(fault, open_phase, kPhases, fault.open_phase, "a motor wire breaks"),
+    AT(open_phase_at, "when, from the end of the start"),
+    CHOICE(fault, stuck_sensor, kPhases, fault.stuck_sensor, "a current sensor sticks"),
+    AT(stuck_sensor_at, "when, from the end of the start"),
+    ENTRY(fault, stuck_sensor_value, "A", kNumber, -1000, 1000, fault.stuck_sensor_value, "what it then reads"),
+    CHOICE(fault, drift_sensor, kPhases, fault.drift_sensor, "a current sensor's offset runs away"),
+    AT(drift_sensor_at, "from when, from the end of the start"),
+    ENTRY(fault, drift_sensor_rate, "A/s", kNumber, -1e4, 1e4, fault.drift_sensor_rate, "how fast"),
+    CHOICE(fault, gain_sensor, kPhases, fault.gain_sensor, "a current sensor's gain jumps"),
+    AT(gain_sensor_at, "when, from the end of the start"),
+    ENTRY(fault, gain_sensor_factor, "", kNumber, -10, 10, fault.gain_sensor_factor, "by this factor"),
+    ENTRY(fault, link_sag, "", kNumber, 0, 2, fault.link_sag, "factor on the source voltage; 1 is none"),
+    AT(link_sag_at, "when, from the end of the start"),
+    ENTRY(fault, link_sag_time, "s", kNumber, 0, 3600, fault.link_sag_time, "for how long"),
+    AT(lost_triggers_at, "from when the ADC is not triggered, from the end of the start"),
+    ENTRY(fault, lost_triggers_time, "s", kNumber, 0, 3600, fault.lost_triggers_time, "for how long; 0 is never"),
+    ENTRY(fault, late_interrupts, "us", kNumber, 0, 95, fault.late_interrupts,
+          "interrupts are held off for this long in every period; 0 is none"),
+    AT(late_interrupts_at, "from when, from the end of the start"),
+    ENTRY(fault, late_interrupts_time, "s", kNumber, 0, 3600, fault.late_interrupts_time, "for how long"),
+    CHOICE(solver, method, kSolvers, solver, "erkstep: ARKODE, adaptive; rk4: fixed steps, fast; reference: CVODE"),
     ENTRY(solver, relative_tolerance, "", kNumber, 1e-13, 1e-3, nominal.solver.relative_tolerance, "of erkstep"),
     ENTRY(solver, max_segment, "10ns", kWhole, 1, 10000, nominal.solver.max_segment, "longest step between events"),
 };
 
+#undef AT
+#undef CHOICE
 #undef ENTRY
+#undef ROW
 
 }  // namespace
 
 const std::vector<Entry>& entries() { return kEntries; }
-
-const std::vector<std::string>& solver_choices() {
-  static const std::vector<std::string> choices = {"erkstep", "rk4", "reference"};
-  return choices;
-}
 
 void set_entry(Setup& setup, const std::string& section, const std::string& key, double value) {
   for (const Entry& e : kEntries) {
@@ -116,8 +141,8 @@ plant::PlantConfig Setup::plant() const {
   c.machine.cross_inductance *= 1.0 + error.inductance_q;
   c.machine.magnet_flux *= 1.0 + error.magnet_flux;
   c.mechanics.inertia *= 1.0 + error.inertia;
-  constexpr plant::Solver kSolvers[] = {plant::Solver::kErkStep, plant::Solver::kRungeKutta, plant::Solver::kReference};
-  c.solver.solver = kSolvers[static_cast<int>(solver)];
+  constexpr plant::Solver kMethods[] = {plant::Solver::kErkStep, plant::Solver::kRungeKutta, plant::Solver::kReference};
+  c.solver.solver = kMethods[static_cast<int>(solver)];
   c.validate();
   return c;
 }

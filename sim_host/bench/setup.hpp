@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_host/bench/fault_plan.hpp"
 #include "sim_host/plant/config.hpp"
 
 namespace stillspin::bench {
@@ -25,6 +26,7 @@ struct ParameterError {
 struct Setup {
   plant::PlantConfig nominal = plant::PlantConfig::ideal();
   ParameterError error;
+  FaultPlan fault;
   double solver = 0;  // index into the choices of solver.method: SUNDIALS unless the fast integrator is asked for
 
   /// The plant with the true parameters, validated (std::invalid_argument names entry, value and range).
@@ -43,13 +45,11 @@ struct Entry {
   double (*get)(const Setup&);
   void (*set)(Setup&, double);
   const char* help;
+  const std::vector<std::string>* choices;  // words for the values of a kChoice entry, else null
 };
 
 /// All entries, grouped by section.
 const std::vector<Entry>& entries();
-
-/// Words for the values of a kChoice entry.
-const std::vector<std::string>& solver_choices();
 
 /// Sets one entry; throws std::invalid_argument when it does not exist or the value is out of range.
 void set_entry(Setup& setup, const std::string& section, const std::string& key, double value);

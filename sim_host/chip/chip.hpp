@@ -78,6 +78,10 @@ class Chip {
   /// Erratum of silicon revisions 0, A, B: in simultaneous sampling ADCINBn reads high by ADCINAn / 256. Off at first.
   void set_adc_crosstalk(bool on);
 
+  /// Faults. The ADC does not see the ePWM's triggers; the CPU takes no interrupt, as while other code masks them.
+  void block_adc_triggers(bool on);
+  void hold_interrupts(bool on);
+
   /// Whether the CPU is asleep in target_idle.
   bool is_idle() const;
 

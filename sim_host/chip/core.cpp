@@ -272,7 +272,7 @@ void Core::raise_interrupt(unsigned vector, Tick) {
 }
 
 void Core::start_of_conversion(bool soca, Tick t) {
-  if (!system_.adc_clock()) return;
+  if (!system_.adc_clock() || adc_blocked_) return;
   adc_.start_of_conversion(soca, t);
   set_due(kAdc, adc_.next_event());
 }

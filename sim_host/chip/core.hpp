@@ -44,6 +44,8 @@ class Core final : public ChipServices {
   Tick now() const { return now_; }
   Statistics statistics() const;
   void set_adc_crosstalk(bool on) { adc_.set_crosstalk(on); }
+  void block_adc_triggers(bool on) { adc_blocked_ = on; }
+  void hold_interrupts(bool on) { interrupts_.set_held(on); }
   const std::string& error() const { return error_; }
   void pins_changed() { pins_dirty_ = world_touched_ = true; }
   bool is_idle() const { return idle_; }
@@ -182,6 +184,7 @@ class Core final : public ChipServices {
 
   unsigned depth_ = 0;  // nested interrupts
   unsigned trips_ = 0;
+  bool adc_blocked_ = false;
   std::int64_t encoder_held_ = 0;
   Tick release_ = 0;  // end of the reset pulse
   bool reset_requested_ = false;

@@ -27,7 +27,7 @@ class Interrupts {
   /// A peripheral's pulse: latches the flag of a PIE channel or of INT13/INT14. False for a vector that is neither.
   bool raise(unsigned vector);
 
-  bool deliverable() const { return !masked_ && requested(); }
+  bool deliverable() const { return !masked_ && !held_ && requested(); }
   bool requested() const { return (ifr_ & ier_) != 0; }
 
   /// What the CPU does at an interrupt entry: takes the highest-priority enabled request, clears its IFR and IER bits,
@@ -46,6 +46,8 @@ class Interrupts {
 
   bool masked() const { return masked_; }
   void set_masked(bool masked) { masked_ = masked; }
+  /// From outside, as if other code had masked them.
+  void set_held(bool held) { held_ = held; }
   std::uint16_t ier() const { return ier_; }
   void set_ier(std::uint16_t mask) { ier_ = mask; }
   std::uint16_t ifr() const { return ifr_; }
@@ -66,6 +68,7 @@ class Interrupts {
   unsigned fetch(unsigned line, bool& spurious);
 
   bool masked_ = true;  // INTM
+  bool held_ = false;
   std::uint16_t ifr_ = 0;
   std::uint16_t ier_ = 0;
   std::uint16_t ctrl_ = 0;

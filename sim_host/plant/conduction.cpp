@@ -79,6 +79,10 @@ void Model::resolve_legs(State& y, const Fired& fired) {
   set_clamp();
   if (idle == 0) return;
   if (idle > 1 || small > 1) {
+    // With two legs at zero so is the third; what rounding leaves could have the wrong sign for the legs that now
+    // conduct, and end them again at once.
+    y[kId] = 0.0;
+    y[kIq] = 0.0;
     decide_all(y, tolerance);
   } else {
     project(y);

@@ -324,6 +324,8 @@ double Plant::take_peak_current(Tick t) {
   return result;
 }
 
+double Plant::peak_current() const { return impl_->peak; }
+
 void Plant::set_load(std::vector<LoadPoint> points) {
   impl_->cut();
   impl_->load.set(std::move(points));

@@ -116,6 +116,9 @@ class Plant {
   /// Advances to t; highest |phase current| (true, A) since the last call: what an over-current comparator has seen.
   double take_peak_current(Tick t);
 
+  /// Highest |phase current| at the ends of the steps since the last take_peak_current; costs nothing.
+  double peak_current() const;
+
   /// Load torque from the present on; constant before the first and after the last point; empty = none.
   void set_load(std::vector<LoadPoint> points);
   /// Clamps the shaft where it is, or frees it, at the present.

@@ -153,8 +153,8 @@ def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> No
     for _, what, value in run.commands:
         if what.startswith("set:"):
             core.parameter(known, what.removeprefix("set:"), value, f"{where}: {what}")
-        elif what not in {"speed_ref_rpm", "start", "stop", "reset"}:
-            known_words = "speed_ref_rpm, start, stop, reset, set:<parameter>"
+        elif what not in {"speed_ref_rpm", "start", "stop", "coast", "reset"}:
+            known_words = "speed_ref_rpm, start, stop, coast, reset, set:<parameter>"
             raise InputError(f"{where}: unknown command '{what}'; known: {known_words}")
 
 

@@ -53,20 +53,34 @@ TEST_F(BoardTest, OverCurrentSwitchesThePinsOffThroughTheTripZone) {
   EXPECT_FALSE(rig.any_pin_high());
   EXPECT_EQ(rig.current_a(), 0.0);  // the diodes have taken the energy back to the link
   EXPECT_GT(rig.peak, kComparatorAmps);
-  // The comparator is looked at once a window and once a period: the current goes on for at most a period, by no more
-  // than 23.2 V * 100 us / 4.9 mH = 0.5 A; half a period's ripple is as much again.
-  EXPECT_LT(rig.peak, kComparatorAmps + 1.0);
+  // The current rises while leg a is on alone, 6 us before and 6 us after the legs b and c. The comparator sees it at
+  // the edge that ends such a time: beyond its level by 200 V * 6 us / 4.9 mH = 0.25 A at most.
+  EXPECT_LT(rig.peak, kComparatorAmps + 0.25);
 }
 
-// The current rises in the pulses in the middle of the period and is seen with the burst after them. The pins follow at
-// once, not when somebody looks again: within that burst of 1.32 us.
+// The pins follow in the tick in which the comparator fires, not when somebody looks again: at the edges that end the
+// times in which the current rises, which are those of leg b and c (4500) and of leg a (6100) with their dead bands.
 TEST_F(BoardTest, TripActsInTheTickInWhichTheComparatorFires) {
   energise(kOverload);
   rig.run_for(kOverloadTime);
   ASSERT_GE(rig.board.trips(), 1u);
   const Tick into_period = (rig.last_edge - rig.starts.front().tick) % kPeriod;
-  EXPECT_GE(into_period, kRigBurst);
-  EXPECT_LE(into_period, kRigBurst + 132);
+  const bool at_first = into_period >= 4500 && into_period <= 4500 + 2 * kRigDeadBand;
+  const bool at_second = into_period >= 6100 && into_period <= 6100 + 2 * kRigDeadBand;
+  EXPECT_TRUE(at_first || at_second) << into_period;
+}
+
+// Nothing switches and nothing is sampled: the board looks at the current by itself, four times a period.
+TEST_F(BoardTest, ComparatorLooksBetweenEdgesToo) {
+  rig.run_until(kRigReady);
+  rig_firmware.frame = pulses_along_a(7000, 20);
+  rig_firmware.frame.burst_start_tick[0] = HAL_PWM_NONE;
+  rig_firmware.frame.burst_end_tick[0] = HAL_PWM_NONE;
+  rig_firmware.gates_on = true;
+  rig.run_for(40 * kPeriod);
+  EXPECT_TRUE(rig_firmware.tripped_by_pin);
+  // 200 V * 25 us / 4.9 mH: one look later at the most
+  EXPECT_LT(rig.peak, kComparatorAmps + 1.03);
 }
 
 TEST_F(BoardTest, PinsStayOffAfterTheTripUntilTheFirmwareClearsIt) {
