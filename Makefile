@@ -15,7 +15,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench docs lint format lock clean
+.PHONY: help setup build test demo bench loss docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -41,6 +41,9 @@ demo: build ## reproduce the main figures of the first paper and write out/demo/
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
 	@bash toolchain/bench.sh $(BUILD)
+
+loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
+	@$(BUILD)/tests/bench/stillspin_loss_campaign
 
 docs: setup ## build the book into site/
 	@$(PYTHON) -m mkdocs build --quiet --strict --config-file toolchain/mkdocs.yml

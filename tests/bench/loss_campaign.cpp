@@ -1,28 +1,52 @@
-// Loses synchronism on purpose in many ways and prints what came of it, one line a run, tab-separated: the case, ms
-// from the cause to the loss, ms from the loss to the fault, ms beyond 90 degrees, speed at the end, the fault's words.
-// Argument --fast: a part of the campaign.
+// Loses synchronism on purpose in many ways and prints what came of it: a line a run, tab-separated, then the worst
+// times from the loss to the fault by speed. Argument --fast: the default position source in one direction only.
 
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <map>
 
 #include "tests/bench/loss.hpp"
 
 using namespace stillspin::bench;
 
+namespace {
+
+struct Worst {
+  int runs = 0, lost = 0, unnoticed = 0;
+  double ms = 0.0;
+};
+
+void print(const LossCase& c, const Loss& l) {
+  std::printf("%s\t%s\t%s\t", words(c).c_str(), l.ran ? "yes" : "no", l.lost ? "yes" : "no");
+  std::printf("%.1f\t%.1f\t%.1f\t%.0f\t%s\n", 1e3 * l.lost_after, l.faulted_after < 0.0 ? -1.0 : 1e3 * l.faulted_after,
+              1e3 * l.lost_for, l.end_rpm, l.end.c_str());
+  std::fflush(stdout);
+}
+
+void count(const Loss& l, Worst& w) {
+  w.runs++;
+  if (!l.lost) return;
+  w.lost++;
+  w.unnoticed += l.faulted_after < 0.0;
+  w.ms = std::max(w.ms, 1e3 * (l.faulted_after < 0.0 ? l.lost_for : l.faulted_after));
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   const bool fast = argc > 1 && std::strcmp(argv[1], "--fast") == 0;
-  double worst = 0.0;
-  double ratio = 0.0;
+  std::map<double, Worst> by_speed;
+  Worst hidden;
+  std::printf("cause\trpm\tload Nm\tsource\tran\tlost\tlost after ms\tfault after ms\tlost for ms\tend rpm\tend\n");
   for (const LossCase& c : loss_cases(fast)) {
     const Loss l = run_case(c);
-    std::printf("%s\t%d\t%d\t%.1f\t%.1f\t%.1f\t%.0f\t%.2f\t%s\n", words(c).c_str(), l.ran, l.lost,
-                l.lost ? 1e3 * l.lost_after : -1.0, l.faulted_after >= 0 ? 1e3 * l.faulted_after : -1.0,
-                1e3 * l.lost_for, l.speed_at_fault, l.worst_ratio, l.fault.c_str());
-    std::fflush(stdout);
-    if (l.lost) worst = std::max(worst, l.faulted_after >= 0 ? l.faulted_after : l.lost_for);
-    ratio = std::max(ratio, l.worst_ratio);
+    print(c, l);
+    count(l, c.hidden() ? hidden : by_speed[std::fabs(c.rpm)]);
   }
-  std::printf("worst\t%.1f\nratio\t%.2f\n", 1e3 * worst, ratio);
+  std::printf("\nrpm\truns\tlost\tunnoticed\tworst ms\n");
+  for (const auto& [rpm, w] : by_speed) std::printf("%.0f\t%d\t%d\t%d\t%.1f\n", rpm, w.runs, w.lost, w.unnoticed, w.ms);
+  std::printf("reversed at rest without torque\t%d\t%d\t%d\t%.1f\n", hidden.runs, hidden.lost, hidden.unnoticed,
+              hidden.ms);
   return 0;
 }
