@@ -22,6 +22,7 @@ typedef struct {
   int32_t floor_q16;    // V
   int32_t share_q15;    // of the EMF that the speed lets expect, 0..1
   int32_t bad_periods;  // this many bad periods are a loss; eight good ones make up for a bad one; up to 10000
+  int32_t volts_d_q16, volts_q_q16;  // L/T, V per (A per period), set by synchronism_design
 } synchronism_config_t;
 
 typedef struct {
@@ -29,6 +30,9 @@ typedef struct {
   int32_t limit_q16;  // what it may be now, V
   int32_t doubt;      // eight a bad period, less one a good one
 } synchronism_t;
+
+/// Derives the constants of the machine; the first three members are set by hand.
+void synchronism_design(synchronism_config_t* c, const machine_model_t* m);
 
 void synchronism_reset(synchronism_t* s);
 
