@@ -3,16 +3,35 @@
 // Admittance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for, Q30.
 static int32_t error_q30(int32_t residual_q16, int32_t spread_q8) { return q_div(residual_q16, spread_q8, 22); }
 
+typedef struct {
+  int32_t mean_q30, half_q30;
+} admittance_t;
+
+// Y0 and 1/2 dY at no current as the parameters have them.
+static admittance_t nominal(const machine_model_t* m) {
+  const machine_point_t* const p = &m->map.points[0];
+  const admittance_t y = {p->ydd_q30 / 2 + p->yqq_q30 / 2, (p->ydd_q30 - p->yqq_q30) / 2};
+  return y;
+}
+
+static void bound(machine_trim_t* t, const admittance_t* y) {
+  t->mean_q30 = q_clamp(t->mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
+  // Both admittances stay positive, whatever the windows say.
+  const int32_t half_max = q_min(q_shl_sat(y->half_q30, 1), (y->mean_q30 + t->mean_q30) / 10 * 9);
+  t->half_q30 = q_clamp(t->half_q30, q_min(y->half_q30 / 3, half_max) - y->half_q30, half_max - y->half_q30);
+}
+
 void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30) {
   if (r->information <= 0) return;
-  const machine_point_t* const p = &m->map.points[0];
-  const int32_t mean = p->ydd_q30 / 2 + p->yqq_q30 / 2;
-  const int32_t half = (p->ydd_q30 - p->yqq_q30) / 2;
-  machine_trim_t* const t = &m->trim;
-  t->mean_q30 += q_mul(error_q30(r->along_q16, r->spread_q8), share_q30, 30);
-  t->half_q30 += q_mul(error_q30(r->mirror_q16, r->spread_q8), share_q30, 30);
-  t->mean_q30 = q_clamp(t->mean_q30, -mean / 4, mean / 2);
-  // Both admittances stay positive, whatever the windows say.
-  const int32_t half_max = q_min(q_shl_sat(half, 1), (mean + t->mean_q30) / 10 * 9);
-  t->half_q30 = q_clamp(t->half_q30, q_min(half / 3, half_max) - half, half_max - half);
+  const admittance_t y = nominal(m);
+  m->trim.mean_q30 += q_mul(error_q30(r->along_q16, r->spread_q8), share_q30, 30);
+  m->trim.half_q30 += q_mul(error_q30(r->mirror_q16, r->spread_q8), share_q30, 30);
+  bound(&m->trim, &y);
+}
+
+void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
+  const admittance_t y = nominal(m);
+  m->trim.mean_q30 = q_sub_sat(mean_q30, y.mean_q30);
+  m->trim.half_q30 = q_sub_sat(half_q30, y.half_q30);
+  bound(&m->trim, &y);
 }

@@ -14,4 +14,7 @@
 /// into account with its next move to a working point.
 void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
 
+/// Takes Y0 T and 1/2 dY T at no current that were found otherwise, within the same bounds.
+void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
+
 #endif

@@ -8,7 +8,8 @@
 // axis that the windows see by as much as the shaft moves.
 //
 // A segment lasts 40 periods; the whole test 560 (56 ms at 10 kHz). A response below a quarter of what the inertia lets
-// expect is ambiguous (blocked shaft, far too large inertia, noise).
+// expect is ambiguous (blocked shaft, far too large inertia, noise), and so is one below four times its standard error,
+// which the scatter of the angle tells.
 
 #ifndef STILLSPIN_ESTIMATORS_POLARITY_H
 #define STILLSPIN_ESTIMATORS_POLARITY_H
@@ -26,6 +27,9 @@ typedef struct {
   int32_t current_q20;   // amplitude, A
   int32_t expected_bam;  // response if the model is right
   int32_t response_bam;  // sum so far
+  int32_t rough_bam;     // sum of the differences between neighbouring angles in the pauses, 2^-8
+  uint32_t last_bam;     // the angle before
+  int32_t sigma_q8;      // response over its standard error
   uint32_t origin_bam;   // angle at the beginning
   polarity_result_t result;
 } polarity_t;

@@ -1,0 +1,28 @@
+// Polarity of the magnet from the back-EMF, once the shaft turns: a check, not an estimator.
+//
+// In the rotor frame v_q - R i_q - L_q di_q/dt - w L_d i_d = w lambda. With a speed that follows the saliency, and so
+// is right whichever way round the magnet is, a wrong polarity lets the left-hand side come out with the wrong sign.
+// Both sides are filtered over 32 periods; the answer counts above an EMF of 10 V (130 rpm on motor A), where drops,
+// dead time and resistance cannot turn the sign, and after 5 ms.
+
+#ifndef STILLSPIN_ESTIMATORS_EMF_SIGN_H
+#define STILLSPIN_ESTIMATORS_EMF_SIGN_H
+
+#include "control/machine_model.h"
+
+typedef enum { EMF_SIGN_OPEN = 0, EMF_SIGN_RIGHT = 1, EMF_SIGN_REVERSED = 2 } emf_sign_result_t;
+
+typedef struct {
+  int32_t seen_q16;         // filtered EMF in the direction of rotation, V
+  int32_t expected_q16;     // filtered |w| lambda, V
+  int32_t last_iq_q20;      // A
+  uint16_t clear, against;  // periods in which the sign has been right, wrong
+} emf_sign_t;
+
+void emf_sign_reset(emf_sign_t* s);
+
+/// One period: voltage command and measured current in the rotor frame, speed by the saliency.
+emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, dq_t voltage_q16, dq_t current_q20,
+                                int32_t speed_bpp);
+
+#endif

@@ -1,0 +1,75 @@
+// The back-EMF's sign on voltages of a machine in steady state and while its current changes.
+
+#include <gtest/gtest.h>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "estimators/emf_sign.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+// Periods until there is an answer; -1 when there is none within `periods`.
+int answer_after(emf_sign_result_t answer, double rpm, bool wrong, double iq, int periods = 400) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const double w = m.electrical(rpm);
+  const double flux = wrong ? -m.flux : m.flux;
+  emf_sign_t s;
+  emf_sign_reset(&s);
+  for (int n = 0; n < periods; ++n) {
+    const Vector v = {-w * m.lq * iq, m.rs * iq + w * flux};
+    if (emf_sign_step(&s, &model, raw_dq(v, 16), raw_dq({0.0, iq}, 20), bpp(w)) == answer) return n;
+  }
+  return -1;
+}
+
+TEST(EmfSign, RightIsNeverReversed) {
+  for (const double rpm : {-3000.0, -300.0, -150.0, 0.0, 150.0, 300.0, 3000.0}) {
+    for (const double iq : {-14.0, 0.0, 14.0}) {
+      EXPECT_EQ(answer_after(EMF_SIGN_REVERSED, rpm, false, iq), -1) << rpm << ", " << iq;
+    }
+  }
+}
+
+TEST(EmfSign, TheAnswerComesWithinFifteenMilliseconds) {
+  for (const double rpm : {-3000.0, -200.0, 200.0, 3000.0}) {
+    for (const double iq : {-10.0, 0.0, 10.0}) {
+      for (const bool wrong : {false, true}) {
+        const int n = answer_after(wrong ? EMF_SIGN_REVERSED : EMF_SIGN_RIGHT, rpm, wrong, iq);
+        EXPECT_GE(n, 50) << rpm << ", " << iq;  // never in a moment
+        EXPECT_LE(n, 150) << rpm << ", " << iq;
+        EXPECT_EQ(answer_after(wrong ? EMF_SIGN_RIGHT : EMF_SIGN_REVERSED, rpm, wrong, iq), -1);
+      }
+    }
+  }
+}
+
+TEST(EmfSign, BelowTenVoltsItDoesNotAnswer) {
+  for (const bool wrong : {false, true}) {
+    EXPECT_EQ(answer_after(EMF_SIGN_REVERSED, 100.0, wrong, 0.0), -1);  // 6.7 V
+    EXPECT_EQ(answer_after(EMF_SIGN_RIGHT, 100.0, wrong, 0.0), -1);
+  }
+}
+
+// Reversals of the full current in a millisecond, both ways: the inductance's voltage is ten times the EMF.
+TEST(EmfSign, ChangesOfTheCurrentDoNotCount) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const double w = m.electrical(160.0);
+  emf_sign_t s;
+  emf_sign_reset(&s);
+  double iq = -14.0;
+  for (int n = 0; n < 2000; ++n) {
+    const int phase = n % 100;
+    const double slope = phase < 10 ? 2.8 : phase >= 50 && phase < 60 ? -2.8 : 0.0;  // A per period
+    iq += slope;
+    const Vector v = {-w * m.lq * iq, m.rs * iq + m.lq * slope / kPeriod + w * m.flux};
+    EXPECT_NE(emf_sign_step(&s, &model, raw_dq(v, 16), raw_dq({0.0, iq}, 20), bpp(w)), EMF_SIGN_REVERSED) << n;
+  }
+}
+
+}  // namespace

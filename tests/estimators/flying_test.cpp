@@ -1,0 +1,127 @@
+// Short circuits of a turning machine, integrated from the stationary-frame equation.
+
+#include <gtest/gtest.h>
+
+#include "tests/estimators/machine_windows.hpp"
+
+extern "C" {
+#include "estimators/flying.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+using namespace stillspin::test::seen;
+
+struct Shaft {
+  Motor motor;
+  double theta, w;  // rad, rad/s, at time 0
+};
+
+constexpr double kStep = 1e-6;
+constexpr int kMiddles[] = {2150, 5450, 8350};
+
+// A short circuit from `start` (s) on, its windows of `periods` periods from the next one on.
+flying_emf_t pulse(const Shaft& s, const machine_model_t& model, double start, int periods, Vector i = {0, 0}) {
+  flying_pulse_t p;
+  flying_begin(&p);
+  const double lead = 0.42e-4;  // the gates come on in the middle of a period
+  double t = start;
+  for (int n = 0; n < periods; ++n) {
+    for (const int middle : kMiddles) {
+      const double until = start + lead + (n + middle * 1e-4) * kPeriod;
+      for (; t < until; t += kStep) i = i + current_derivative(s.motor, s.theta + s.w * t, s.w, i, {0, 0}) * kStep;
+      estimator_window_t w = {};
+      w.current_q20 = raw_ab(i, 20);
+      w.middle_tick = static_cast<std::int16_t>(middle);
+      flying_add(&p, &model, &w, static_cast<std::int32_t>(std::lround(t * 1e8)));
+    }
+  }
+  return flying_evaluate(&p, &model);
+}
+
+struct Found {
+  bool clear;
+  double angle_error, speed;  // degrees, rad/s
+};
+
+Found catch_it(const Shaft& s, const machine_model_t& model, int periods) {
+  const flying_emf_t first = pulse(s, model, 1e-3, periods);
+  const int pause = flying_pause(&first, &model, 6, 600);
+  const flying_emf_t second = pulse(s, model, 1e-3 + (periods + 1 + pause) * kPeriod, periods);
+  flying_rotor_t r;
+  const bool clear = flying_resolve(&first, &second, &model, &r);
+  const double truth = s.theta + s.w * r.tick * 1e-8;
+  return {clear, wrapped(rad(r.angle_bam) - truth) / kDegree, rad_per_s(r.speed_bpp)};
+}
+
+// Left are resistance and the second order of the turn within a pulse.
+TEST(Flying, AngleDirectionAndSpeedFromSixtyToThreeThousandRpm) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  for (const double rpm : {60.0, 200.0, 1000.0, 3000.0}) {
+    for (const double sign : {1.0, -1.0}) {
+      for (int k = 0; k < 12; ++k) {
+        const Shaft s = {m, k * 30.0 * kDegree, sign * m.electrical(rpm)};
+        const Found f = catch_it(s, model, rpm > 500.0 ? 1 : 6);
+        EXPECT_TRUE(f.clear) << sign * rpm;
+        EXPECT_NEAR(f.angle_error, 0.0, 2.0) << sign * rpm << " at " << k * 30;
+        EXPECT_NEAR(f.speed / s.w, 1.0, 0.03) << sign * rpm << " at " << k * 30;
+      }
+    }
+  }
+}
+
+TEST(Flying, ParametersThirtyPercentOff) {
+  const machine_model_t model = model_of(Motor{});
+  for (const double inductance : {0.7, 1.3}) {
+    for (const double flux : {0.7, 1.3}) {
+      Motor m;
+      m.ld *= inductance;
+      m.lq *= inductance;
+      m.flux *= flux;
+      m.rs *= inductance;
+      for (const double rpm : {-3000.0, -100.0, 100.0, 3000.0}) {
+        const Shaft s = {m, 0.7, m.electrical(rpm)};
+        const Found f = catch_it(s, model, std::fabs(rpm) > 500.0 ? 1 : 6);
+        EXPECT_TRUE(f.clear) << rpm;
+        EXPECT_NEAR(f.angle_error, 0.0, 5.0) << rpm;
+        EXPECT_NEAR(f.speed / s.w, 1.0, 0.05) << rpm;
+      }
+    }
+  }
+}
+
+TEST(Flying, TheSizeOfTheEmf) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const Shaft s = {m, 0.3, m.electrical(500.0)};
+  const flying_emf_t e = pulse(s, model, 0.0, 3);
+  EXPECT_NEAR(real(e.size_q16, 16), m.flux * s.w, 0.03 * m.flux * s.w);  // resistance and turn, to first order
+}
+
+TEST(Flying, AStandingShaftHasNone) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const flying_emf_t e = pulse({m, 0.3, 0.0}, model, 0.0, 12);
+  EXPECT_EQ(e.size_q16, 0);
+  EXPECT_EQ(flying_pause(&e, &model, 6, 600), 600);
+}
+
+// A turn that the size of the EMF does not explain: two pulses that saw different things.
+TEST(Flying, ATurnThatDoesNotFitIsRefused) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const flying_emf_t first = {bam(0.0), raw(60.0, 16), 0, 0};
+  flying_rotor_t r;
+  const double w = 60.0 / m.flux;                                        // 375 rad/s
+  const std::int32_t apart = static_cast<std::int32_t>(1.0 / w / 1e-8);  // one radian
+  flying_emf_t second = {bam(1.0), raw(60.0, 16), apart, 0};
+  EXPECT_TRUE(flying_resolve(&first, &second, &model, &r));
+  second.direction_bam = bam(0.1);  // hardly any
+  EXPECT_FALSE(flying_resolve(&first, &second, &model, &r));
+  second.direction_bam = bam(3.0);  // three times as much
+  EXPECT_FALSE(flying_resolve(&first, &second, &model, &r));
+}
+
+}  // namespace
