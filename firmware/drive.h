@@ -14,14 +14,16 @@
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
-#include "estimators/polarity.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
 #include "estimators/zvv.h"
 #include "firmware/drive_api.h"
+#include "firmware/hold.h"
 #include "firmware/hysteresis.h"
+#include "firmware/polarity_watch.h"
+#include "firmware/start.h"
 #include "svpwm/dead_time.h"
 #include "svpwm/modulator.h"
 
@@ -53,6 +55,7 @@ typedef struct {
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
   uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
+  saturation_slopes_t saturation;
 } drive_config_t;
 
 /// What the control interrupt knows about the last period.
@@ -116,8 +119,9 @@ typedef struct {
   uint32_t periods;      // since the state was entered
   uint16_t millisecond;  // period inside the millisecond
   uint16_t heartbeat;    // counts control interrupts, for the watchdog
-  uint16_t polarity_tries;
-  polarity_t polarity;
+  drive_start_t start;
+  hold_t hold;
+  polarity_watch_t watch;
   machine_model_t model;  // nameplate, at the working point and with what was learnt
   slopes_trim_t trim;     // current offsets, mismatch of the sensors
   drive_config_t config;
@@ -146,9 +150,36 @@ void drive_raise(drive_t* d, drive_fault_t fault);
 /// Enters a state and starts counting its periods.
 void drive_enter(drive_t* d, drive_state_t state);
 
-// The state START (start.c).
+// The state START: start.c, and flying_start.c for a shaft that turns.
 void drive_begin_start(drive_t* d);
 void drive_start(drive_t* d);
+void start_enter(drive_t* d, start_phase_t phase);
+void start_power(drive_t* d, bool on);
+void start_listen(drive_t* d, uint16_t pause);
+void start_find_axis(drive_t* d);
+void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+void start_step_listen(drive_t* d);
+void start_step_pulse(drive_t* d);
+void start_step_catch(drive_t* d);
+const svpwm_pattern_t* start_short_circuit(void);
+
+/// True while what is sampled does not belong to a power stage that is on and to a known pattern.
+static inline bool drive_is_blind(const drive_t* d) {
+  return d->state == DRIVE_START && (!d->start.powered || d->start.blind > 0u);
+}
+
+/// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
+void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+bool polarity_watch_step(drive_t* d);
+
+/// Holds the shaft for hold_time from now (hold.c).
+void hold_begin(drive_t* d);
+
+/// One period; false when it is over and the speed controller has the torque current.
+bool hold_step(drive_t* d);
+
+/// Field weakening of this instant, into the d-axis reference.
+void drive_weaken_field(drive_t* d);  // speed_task.c
 
 // The steps of the control interrupt, in their order.
 void drive_read_samples(drive_t* d);     // sampling.c

@@ -18,7 +18,7 @@ void drive_reset(void) {
   drive.model = drive.config.nameplate;
   drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
   modulator_reset(&drive.modulation.state);
-  position_preset(&drive, 0);
+  position_preset(&drive, 0, 0);
 }
 
 bool drive_is_energised(void) {
@@ -70,4 +70,6 @@ void drive_publish(drive_t* d) {
   s->link_voltage = d->samples.link_q16;
   s->load_torque = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 24);
   s->windows = d->samples.count;
+  s->start_phase = (int32_t)d->start.phase;
+  s->polarity_sigma = d->start.sigma_q8;
 }

@@ -30,7 +30,7 @@ typedef enum {
   FAULT_OVERRUN = 5,       // the control interrupt missed its period repeatedly
   FAULT_NO_SAMPLES = 6,    // the ADC was not triggered
   FAULT_DIVERGENCE = 7,    // the estimators disagree, or the speed is not plausible
-  FAULT_POLARITY = 8,      // the polarity of the magnet could not be told
+  FAULT_POLARITY = 8,      // the polarity of the magnet could not be told, or the back-EMF contradicts it
   FAULT_OFFSET = 9,        // a current offset is implausible
   FAULT_PARAMETER = 10,    // parameters not usable together, or an interrupt that nobody expects
   FAULT_GATES_OFF = 11,    // the gates were switched off behind the drive's back

@@ -119,6 +119,9 @@ static bool load_position(drive_config_t* c) {
   c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
   c->drift_share_q30 = share_per_turn_q30(p->drift_time);
   c->encoder_trim_bam = (uint32_t)q_mul(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  // dLqq/di_d = dLdq/di_q, the slope of the map's first segment, over Lq. The other one comes in percent, Q24.
+  c->saturation.q_q30 = q_div(q_div(p->ldq_1, p->inductance_q, 30), p->map_current / 4, 20);
+  c->saturation.d_q30 = q_mul(p->saturation_d, 687194767L, 30);
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->codes_per_amp_q16 = q_div(65536L, c->slopes.amps_per_code_q30, 30);
   c->slopes.start_samples = HAL_ADC_START_SAMPLES;

@@ -44,6 +44,12 @@ static void write_frame(drive_t* d, const svpwm_pattern_t* p, const svpwm_pulses
 void drive_modulate(drive_t* d) {
   if (drive_hysteresis(d)) return;
   drive_control_t* const c = &d->control;
+  if (d->state == DRIVE_START && d->start.shorted) {
+    const svpwm_pattern_t* const p = start_short_circuit();
+    hal_profile_step(CYCLES_MODULATE);
+    write_frame(d, p, &p->pulses);
+    return;
+  }
   const rotation_t r = frame_rotation(angle_at_action(d));
   const ab_t current_q20 = frame_inverse_park(c->measured_q20, r);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);

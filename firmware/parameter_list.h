@@ -100,7 +100,8 @@ PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
 PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 10, ALWAYS, "for how long")
-PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED, "test the polarity of the magnet at start")
+PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED,
+          "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
 PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
           "for standstill after a stop has brought the reference to zero, then the drive faults")
 PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
@@ -108,6 +109,14 @@ PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
 PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
 PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 5, ALWAYS,
           "for which a larger EMF error, or estimators a quarter turn apart, is a loss of synchronism")
+
+// The start
+PARAMETER(150, flying_start, "", 0, 0, 0, 1, 1, STOPPED, "look for a turning shaft before the start")
+PARAMETER(151, start_current, "A", 20, 2, 20, 1600, 1000, STOPPED,
+          "d-axis current that tells the polarity by saturation")
+PARAMETER(152, saturation_d, "%/A", 24, 3, -10000, 10000, 0, STOPPED, "change of the incremental Ldd per ampere of i_d")
+PARAMETER(153, hold_time, "ms", 0, 0, 0, 5000, 0, STOPPED,
+          "for how long after the start a standing shaft is held stiffly, for a brake to open; needs the map")
 
 // Encoder as reference, hysteresis control
 PARAMETER(170, encoder_trim, "deg", 16, 2, -18000, 18000, 0, ALWAYS,

@@ -94,7 +94,7 @@ static const position_source_t sources[] = {source_encoder, source_paper, source
 static void measure_current(drive_t* d) {
   const drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
-  if (s->count == 0u) return;
+  if (s->count == 0u || drive_is_blind(d)) return;
   for (uint16_t k = 0; k < s->count; k++) {
     const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)s->windows[k].middle_tick) * 107374;
     const uint32_t angle =
@@ -117,27 +117,27 @@ void drive_estimate(drive_t* d) {
   estimator_input_t in;
   in.model = &d->model;
   in.windows = d->samples.windows;
-  in.window_count = d->samples.count;
+  in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
   d->position.used = starting ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
 }
 
-void position_preset(drive_t* d, uint32_t angle_bam) {
+void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   drive_position_t* const p = &d->position;
-  avv_preset(&p->avv, angle_bam, 0, 0);
-  deviation_observer_preset(&p->observer, angle_bam, 0, 0);
-  zvv_preset(&p->zvv, angle_bam, 0);
+  avv_preset(&p->avv, angle_bam, speed_bpp, 0);
+  deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
+  zvv_preset(&p->zvv, angle_bam, speed_bpp);
   blend_reset(&p->blend);
-  const estimator_output_t still = {angle_bam, 0, 0, 0};
-  p->low = still;
-  p->high = still;
-  p->used = still;
+  const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
+  p->low = now;
+  p->high = now;
+  p->used = now;
 }
 
-void position_align_encoder(drive_t* d, uint32_t angle_bam) {
+void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   d->position.encoder_offset_bam = angle_bam - encoder_angle(d);
-  tracking_observer_preset(&d->position.encoder, angle_bam, 0, 0);
+  tracking_observer_preset(&d->position.encoder, angle_bam, speed_bpp, 0);
 }
 
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {

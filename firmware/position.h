@@ -5,11 +5,11 @@
 
 #include "firmware/drive.h"
 
-/// Lets every estimator start from this angle, at rest.
-void position_preset(drive_t* d, uint32_t angle_bam);
+/// Lets every estimator start from this angle and speed.
+void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
 /// Makes the encoder's present count mean this angle. Reads the encoder.
-void position_align_encoder(drive_t* d, uint32_t angle_bam);
+void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
 /// Electrical angle of an encoder count whose zero lies on phase a.
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);

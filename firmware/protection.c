@@ -69,12 +69,14 @@ static bool is_running(const drive_t* d) { return d->state == DRIVE_RUN || d->st
 
 static drive_fault_t check(drive_t* d) {
   if (hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
-  if (hal_pwm_is_tripped()) return FAULT_GATES_OFF;
+  const bool meant_off = d->state == DRIVE_START && !d->start.powered;
+  if (hal_pwm_is_tripped() && !meant_off) return FAULT_GATES_OFF;
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
   if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
   if (over_current(d)) return FAULT_CURRENT_LIMIT;
   if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
   if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
+  if (polarity_watch_step(d)) return FAULT_POLARITY;
   if (is_running(d) && lost_synchronism(d)) return FAULT_SYNCHRONISM;
   if (is_running(d) && diverged(d)) return FAULT_DIVERGENCE;
   return FAULT_NONE;

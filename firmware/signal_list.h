@@ -23,3 +23,5 @@ SIGNAL(deviation_q, "A/s", 8, "q-axis current deviation under zero vectors, D of
 SIGNAL(link_voltage, "V", 16, "DC-link voltage")
 SIGNAL(load_torque, "Nm", 16, "estimated load torque")
 SIGNAL(windows, "", 0, "windows sampled in the last period")
+SIGNAL(start_phase, "", 0, "phase of the start, start_phase_t")
+SIGNAL(polarity_sigma, "", 8, "confidence in the polarity found at the start, standard errors")

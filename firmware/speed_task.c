@@ -8,7 +8,7 @@ static int32_t voltage_limit(const drive_t* d) {
   return q_mul(q_mul(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30), share_q30, 30);
 }
 
-static void weaken_field(drive_t* d) {
+void drive_weaken_field(drive_t* d) {
   drive_control_t* const c = &d->control;
   field_weakening_input_t in;
   in.speed_bpp = d->position.used.speed_bpp;
@@ -39,21 +39,32 @@ static int32_t current_room(const drive_t* d) {
   return (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
 }
 
+static void step_ramp(drive_t* d, speed_controller_input_t* in) {
+  drive_control_t* const c = &d->control;
+  in->reference_bpp = c->ramp.value;
+  ramp_step(&c->ramp, (d->state == DRIVE_STOP) ? 0 : c->target_bpp, d->config.ramp_step_bpp);
+  in->reference_step_bpp = (d->config.ramp_step_bpp == 0) ? 0 : c->ramp.step;
+  if (d->config.ramp_step_bpp == 0) in->reference_bpp = c->ramp.value;
+}
+
 void drive_control_speed(drive_t* d) {
   drive_control_t* const c = &d->control;
+  const bool held = hold_step(d);
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
   if (d->millisecond != 0u) return;
   d->limits = 0;
+  const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
+  if (d->state == DRIVE_RUN || d->state == DRIVE_STOP || caught) drive_weaken_field(d);
   if (d->state != DRIVE_RUN && d->state != DRIVE_STOP) return;
-  weaken_field(d);
   speed_controller_input_t in;
-  in.reference_bpp = c->ramp.value;
-  ramp_step(&c->ramp, (d->state == DRIVE_STOP) ? 0 : c->target_bpp, d->config.ramp_step_bpp);
-  in.reference_step_bpp = (d->config.ramp_step_bpp == 0) ? 0 : c->ramp.step;
-  if (d->config.ramp_step_bpp == 0) in.reference_bpp = c->ramp.value;
+  step_ramp(d, &in);
   in.speed_bpp = d->position.used.speed_bpp;
   in.load_current_q20 = load_current(d);
   in.limit_q20 = current_room(d);
+  if (held) {
+    speed_controller_preset(&c->speed, q_sub_sat(c->reference_q20.q, in.load_current_q20));
+    return;
+  }
   c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)parameters.speed_law, &in);
   if (q_abs_sat(c->reference_q20.q) >= in.limit_q20) d->limits |= LIMIT_CURRENT;
 }

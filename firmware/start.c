@@ -1,4 +1,6 @@
-// The start: finds the rotor's axis with the power stage on, then the polarity of the magnet, and hands over to RUN.
+// The start: the sequence, and the start of a shaft that stands. See start.h.
+
+#include "firmware/start.h"
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
@@ -6,9 +8,38 @@
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 
-#define SETTLE_PERIODS 200u  // for the angle to be found with the power stage on
-#define CLOSED_PERIODS 100u  // for the current loop to settle at zero
-#define POLARITY_TRIES 3u
+#define AXIS_SKIP 4u         // periods for the alternating layout to be what is sampled
+#define AXIS_TIMEOUT 200u    // periods
+#define SETTLE_PERIODS 100u  // for the current loop to settle at zero, and the angle
+#define LISTEN_FIRST 4u      // periods until the short circuit is what the modulator gives
+#define CALM_PERIODS 100u    // without current after a test, for the angle and for what is learnt of a standing shaft
+#define SATURATION_TRIES 3u
+#define MOTION_TRIES 3u
+#define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
+
+void start_enter(drive_t* d, start_phase_t phase) {
+  d->start.phase = phase;
+  d->start.tick = 0;
+}
+
+void start_power(drive_t* d, bool on) {
+  d->start.powered = on;
+  d->start.blind = 2;  // this period and the next have begun with the gates off
+  if (!on) {
+    hal_pwm_gates_off();
+  } else if (!hal_pwm_gates_on()) {
+    drive_raise(d, FAULT_OVER_CURRENT);
+  }
+}
+
+static void reset_control(drive_t* d) {
+  d->control.closed = false;
+  modulator_reset(&d->modulation.state);
+  field_weakening_reset(&d->control.weakening);
+  d->control.ramp.value = 0;
+  d->control.reference_q20.d = 0;
+  d->control.reference_q20.q = 0;
+}
 
 void drive_begin_start(drive_t* d) {
   if (!d->config_valid || !d->control.speed_ready || hal_irq_unexpected_count() != 0u) {
@@ -16,65 +47,146 @@ void drive_begin_start(drive_t* d) {
     return;
   }
   static const drive_supervision_t healthy = {0};
+  static const drive_start_t fresh = {0};
   d->supervision = healthy;
-  d->polarity_tries = 0;
+  d->start = fresh;
   d->model = d->config.nameplate;
   sensor_match_reset(&d->position.sensors);
-  position_preset(d, 0);
-  modulator_reset(&d->modulation.state);
-  field_weakening_reset(&d->control.weakening);
-  d->control.ramp.value = 0;
-  d->control.reference_q20.d = 0;
-  d->control.reference_q20.q = 0;
-  d->polarity.result = POLARITY_PENDING;
-  d->polarity.tick = POLARITY_LENGTH;
+  position_preset(d, 0, 0);
+  reset_control(d);
   drive_enter(d, DRIVE_START);
-  if (!hal_pwm_gates_on()) drive_raise(d, FAULT_OVER_CURRENT);
+  if (parameters.flying_start != 0) {
+    start_listen(d, LISTEN_FIRST);
+  } else {
+    start_find_axis(d);
+  }
 }
 
-static void begin_run(drive_t* d, uint32_t angle_bam) {
-  position_preset(d, angle_bam);
-  position_align_encoder(d, angle_bam);
+void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
+  position_preset(d, angle_bam, speed_bpp);
+  position_align_encoder(d, angle_bam, speed_bpp);
   speed_controller_preset(&d->control.speed, 0);
+  d->hold.left = 0;
+  polarity_watch_begin(d, angle_bam, speed_bpp);
+  d->control.ramp.value = speed_bpp;
   d->control.reference_q20.q = 0;
   drive_enter(d, DRIVE_RUN);
 }
 
-static void try_polarity(drive_t* d) {
-  const int32_t current = q_min(parameters.polarity_current << d->polarity_tries, parameters.current_limit);
-  const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
-  polarity_begin(&d->polarity, d->position.avv.observer.angle_bam, current,
-                 q_mul_sat(torque_q16, d->model.accel_q12, 20));
-  d->polarity_tries++;
+void start_find_axis(drive_t* d) {
+  d->start.shorted = false;
+  d->control.closed = false;
+  position_preset(d, 0, 0);
+  axis_begin(&d->start.axis);
+  if (!d->start.powered) start_power(d, true);
+  if (d->state == DRIVE_START) start_enter(d, START_AXIS);
 }
 
-static void judge_polarity(drive_t* d) {
+static void step_axis(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+  const bool complete = s->tick >= AXIS_SKIP && axis_add(&s->axis, &d->position.avv.regression);
+  position_preset(d, 0, 0);  // the regressions must be made at one and the same angle
+  if (!complete) return;
+  const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
+  admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
+  position_preset(d, (uint32_t)axis.angle_bam, 0);
+  d->control.closed = true;
+  start_enter(d, START_SETTLE);
+}
+
+// AVV's speed where it is more than noise.
+static int32_t present_speed(const drive_t* d) {
+  const int32_t speed = d->position.avv.observer.speed_bpp;
+  const int32_t least = q_mul_sat(TURNING_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
+  return (q_abs_sat(speed) > least) ? speed : 0;
+}
+
+// The angle is AVV's, or half a turn away.
+static void decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
   const uint32_t angle = d->position.avv.observer.angle_bam;
-  if (d->polarity.result == POLARITY_RIGHT) {
-    begin_run(d, angle);
-  } else if (d->polarity.result == POLARITY_WRONG) {
-    begin_run(d, angle + ANGLE_BAM_HALF_TURN);
-  } else if (d->polarity_tries >= POLARITY_TRIES) {
-    drive_raise(d, FAULT_POLARITY);
+  const int32_t speed = present_speed(d);
+  d->start.sigma_q8 = sigma_q8;
+  start_run(d, (result == POLARITY_WRONG) ? angle + ANGLE_BAM_HALF_TURN : angle, speed);
+  if (speed == 0) hold_begin(d);
+}
+
+static void try_motion(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  if (s->phase != START_MOTION) s->tries = 0;
+  const int32_t current = q_min(parameters.polarity_current << s->tries, parameters.current_limit);
+  const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
+  polarity_begin(&s->motion, d->position.avv.observer.angle_bam, current,
+                 q_mul_sat(torque_q16, d->model.accel_q12, 20));
+  start_enter(d, START_MOTION);
+}
+
+// Twice with the same current, the second time together with the first; then with half as much again.
+static void try_saturation(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  if (s->phase != START_SATURATION) s->tries = 0;
+  const int32_t more = (s->tries >= 2u) ? parameters.start_current / 2 : 0;
+  const int32_t current = q_min(parameters.start_current + more, parameters.current_limit);
+  if (s->tries == 1u) {
+    saturation_again(&s->saturation);
+    start_enter(d, START_SATURATION);
+    return;
+  }
+  if (!saturation_is_visible(&d->model, &d->config.saturation, current)) {
+    try_motion(d);
+    return;
+  }
+  saturation_begin(&s->saturation, &d->model, &d->config.saturation, current);
+  start_enter(d, START_SATURATION);
+}
+
+static void step_settle(drive_t* d) {
+  if (d->start.tick < SETTLE_PERIODS) return;
+  if (parameters.polarity_check == 0) {
+    decided(d, POLARITY_RIGHT, 0);
   } else {
-    try_polarity(d);
+    try_saturation(d);
+  }
+}
+
+static void step_saturation(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  saturation_t* const test = &s->saturation;
+  d->control.reference_q20.d = saturation_step(test, &d->position.avv.regression, &d->model);
+  if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS) return;
+  s->tries++;
+  if (test->result != POLARITY_AMBIGUOUS) {
+    decided(d, test->result, test->sigma_q8);
+  } else if (s->tries < SATURATION_TRIES) {
+    try_saturation(d);
+  } else {
+    try_motion(d);
+  }
+}
+
+static void step_motion(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
+  d->control.reference_q20.q = polarity_step(&s->motion, raw);
+  if (s->motion.result == POLARITY_PENDING) return;
+  s->tries++;
+  if (s->motion.result != POLARITY_AMBIGUOUS) {
+    decided(d, s->motion.result, s->motion.sigma_q8);
+  } else if (s->tries < MOTION_TRIES) {
+    try_motion(d);
+  } else {
+    s->sigma_q8 = s->motion.sigma_q8;
+    drive_raise(d, FAULT_POLARITY);
   }
 }
 
 void drive_start(drive_t* d) {
-  d->control.closed = d->periods > SETTLE_PERIODS;
-  if (d->periods < SETTLE_PERIODS + CLOSED_PERIODS) return;
-  if (parameters.polarity_check == 0) {
-    begin_run(d, d->position.avv.observer.angle_bam);
-    return;
-  }
-  const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
-  if (d->polarity.tick < POLARITY_LENGTH) d->control.reference_q20.q = polarity_step(&d->polarity, raw);
-  if (d->polarity.tick < POLARITY_LENGTH) return;
-  d->control.reference_q20.q = 0;
-  if (d->polarity_tries == 0u) {
-    try_polarity(d);
-  } else {
-    judge_polarity(d);
-  }
+  typedef void (*step_t)(drive_t*);
+  static const step_t steps[] = {start_step_listen, start_step_pulse, start_step_catch, step_axis,
+                                 step_settle,       step_saturation,  step_motion};
+  drive_start_t* const s = &d->start;
+  s->tick++;
+  s->clock += ESTIMATOR_PERIOD_TICKS;
+  steps[s->phase](d);
+  if (s->blind > 0u) s->blind--;
 }

@@ -95,7 +95,7 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
                            int record_every, const std::tuple<double, double, int>& waveform, std::uint64_t seed,
-                           const nb::object& progress) {
+                           const nb::object& progress, bool record_start) {
   if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
   RunRequest request;
   request.setup = setup_from(plant, seed);
@@ -106,6 +106,7 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
   request.max_start = max_start;
   request.record_every = record_every;
   request.waveform = {std::get<0>(waveform), std::get<1>(waveform), std::get<2>(waveform)};
+  request.record_start = record_start;
   request.progress = progress_of(progress);
   RunResult result;
   {
@@ -206,7 +207,8 @@ NB_MODULE(_core, m) {
       .def_ro("stats", &PythonResult::stats);
   m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
         nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
-        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), "One run of the virtual drive; see core.py.");
+        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false,
+        "One run of the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");

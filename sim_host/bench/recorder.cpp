@@ -61,6 +61,9 @@ const Column kColumns[] = {
      [](const Row& r) { return scaled(r.f.load_torque, 16); }},
     {{"state", "", "state of the drive"}, [](const Row& r) { return static_cast<double>(r.f.state); }},
     {{"fault", "", "latched fault"}, [](const Row& r) { return static_cast<double>(r.f.fault); }},
+    {{"start_phase", "", "phase of the start"}, [](const Row& r) { return static_cast<double>(r.f.start_phase); }},
+    {{"polarity_sigma", "", "confidence in the polarity found at the start, standard errors"},
+     [](const Row& r) { return scaled(r.f.polarity_sigma, 8); }},
     {{"limit", "", "active limits, bits"}, [](const Row& r) { return static_cast<double>(r.f.limit); }},
 };
 
@@ -89,12 +92,17 @@ void Recorder::begin_row(double time, const plant::PlantState& state) {
   state_ = state;
 }
 
-void Recorder::finish_row(const drive_signals_t& signals, double origin) {
+void Recorder::finish_row(const drive_signals_t& signals) {
   if (!open_) return;
   open_ = false;
-  const Row row{time_ - origin, state_, signals};
+  const Row row{time_, state_, signals};
   std::size_t k = 0;
   for (const Column& c : kColumns) values_[k++].push_back(c.value(row));
+}
+
+std::vector<std::vector<double>> Recorder::take(double origin) {
+  for (double& time : values_.front()) time -= origin;
+  return std::move(values_);
 }
 
 }  // namespace stillspin::bench

@@ -21,12 +21,13 @@ class Recorder {
   void reserve(std::size_t rows);
 
   /// Completes the row of the period before with the firmware's signals.
-  void finish_row(const drive_signals_t& signals, double origin);
+  void finish_row(const drive_signals_t& signals);
 
   /// Begins a row with the plant's present state.
   void begin_row(double time, const plant::PlantState& state);
 
-  std::vector<std::vector<double>> take() { return std::move(values_); }
+  /// The record, with times counted from `origin` (s).
+  std::vector<std::vector<double>> take(double origin);
 
  private:
   int every_;

@@ -35,7 +35,7 @@ const char* fault_name(std::int32_t fault) {
     case FAULT_DIVERGENCE:
       return "estimators diverged or speed not plausible";
     case FAULT_POLARITY:
-      return "polarity of the magnet ambiguous";
+      return "polarity of the magnet ambiguous, or contradicted by the back-EMF";
     case FAULT_OFFSET:
       return "current offset implausible";
     case FAULT_PARAMETER:
@@ -66,6 +66,21 @@ std::vector<RawParameter> raw_parameters(const std::map<std::string, double>& wa
   return list;
 }
 
+// How far the shaft turns during the start procedure, degrees mechanical.
+class Travel {
+ public:
+  void from(double angle) { origin_ = angle; }
+  void to(double angle) {
+    last = (angle - origin_) * 180.0 / 3.14159265358979323846;
+    forward = std::max(forward, last);
+    backward = std::max(backward, -last);
+  }
+  double forward = 0.0, backward = 0.0, last = 0.0;
+
+ private:
+  double origin_ = 0.0;
+};
+
 // Follows the drive from period to period: gives the commands, keeps the record.
 class Director : public PeriodListener {
  public:
@@ -79,20 +94,29 @@ class Director : public PeriodListener {
     for (const Command& c : request.commands) check(c);
   }
 
-  void attach(Board& board) { board_ = &board; }
+  void attach(Board& board) {
+    board_ = &board;
+    if (request_.setup.brake_until_run) board.plant().set_locked(true);
+  }
   Tick origin() const { return origin_; }
   bool running() const { return origin_ >= 0; }
   bool broken() const { return !result_.reason.empty(); }
-  std::vector<std::vector<double>> take_record() { return recorder_.take(); }
+  std::vector<std::vector<double>> take_record() {
+    return recorder_.take((running() ? origin_ : asked_) * kSecondsPerTick);
+  }
+  const Travel& travel() const { return travel_; }
 
   void on_period(Tick t) override {
     const drive_signals_t& s = *drive_signals();
-    if (running()) recorder_.finish_row(s, origin_ * kSecondsPerTick);
+    recorder_.finish_row(s);
     watch_fault(t, s);
     board_->plant().advance(t);
     if (!running()) prepare(t, s);
     if (running()) act(t);
-    if (running()) recorder_.begin_row(t * kSecondsPerTick, board_->plant().state());
+    if (!started_) return;
+    const plant::PlantState state = board_->plant().state();
+    if (!running()) travel_.to(state.angle_m);
+    if (running() || request_.record_start) recorder_.begin_row(t * kSecondsPerTick, state);
   }
 
  private:
@@ -123,6 +147,8 @@ class Director : public PeriodListener {
     } else if (configured_ && !started_ && t >= kEarliestStart) {
       drive_command_start();
       started_ = true;
+      asked_ = t;
+      travel_.from(board_->plant().state().angle_m);
     } else if (started_ && s.state == DRIVE_RUN) {
       begin(t);
     }
@@ -141,6 +167,7 @@ class Director : public PeriodListener {
     board_->plant().set_load(points);
     const WaveformRequest& w = request_.waveform;
     board_->probe().arm(t, t + periods(w.begin), t + periods(w.end), w.raster);
+    if (request_.setup.brake_until_run) board_->plant().set_locked(request_.setup.nominal.mechanics.locked);
   }
 
   static Tick periods(double seconds) { return std::llround(seconds / kSecondsPerTick / kPeriod) * kPeriod; }
@@ -178,6 +205,8 @@ class Director : public PeriodListener {
   std::vector<RawParameter> parameters_;
   Board* board_ = nullptr;
   Tick origin_ = -1;
+  Tick asked_ = 0;  // when the start was asked for
+  Travel travel_;
   std::size_t next_command_ = 0;
   std::int32_t last_fault_ = FAULT_NONE;
   bool configured_ = false;
@@ -223,9 +252,9 @@ RunResult run(const RunRequest& request) {
   RunResult result;
   Director director(request, result);
   Board board(request.setup.plant(), director);
-  director.attach(board);
   chip::Chip chip(board, firmware_main);
   board.attach(chip);
+  director.attach(board);
   const auto begin = std::chrono::steady_clock::now();
   try {
     result.completed = play(request, chip, director, result);
@@ -244,6 +273,9 @@ RunResult run(const RunRequest& request) {
   result.stats = {{"wall_seconds", wall},
                   {"simulated_seconds", chip.now() * kSecondsPerTick},
                   {"start_seconds", director.running() ? director.origin() * kSecondsPerTick : 0.0},
+                  {"start_travel_forward", director.travel().forward},
+                  {"start_travel_backward", director.travel().backward},
+                  {"start_travel", director.travel().last},
                   {"register_accesses", double(s.reads + s.writes)},
                   {"interrupts", double(s.interrupts)},
                   {"lost_writes", double(s.protected_writes_lost + s.gated_accesses)},

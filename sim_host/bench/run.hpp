@@ -32,6 +32,7 @@ struct RunRequest {
   double max_start = 2.0;                       // s from power-on to the end of the start procedure
   int record_every = 1;                         // PWM periods per record
   WaveformRequest waveform;                     // a stretch to look into
+  bool record_start = false;                    // also record the start procedure, at negative times
   std::function<bool(double)> progress;         // share done; false stops the run
   std::function<void(double)> on_period;        // for tests: time since the start, before each control interrupt
 };

@@ -42,6 +42,8 @@ const std::vector<Entry> kEntries = {
     ENTRY(mechanics, cogging_torque, "Nm", kNumber, 0, 10, nominal.mechanics.cogging_torque,
           "cogging, six per pole pair"),
     ENTRY(mechanics, locked, "", kSwitch, 0, 1, nominal.mechanics.locked, "the rotor cannot turn"),
+    ENTRY(mechanics, brake_until_run, "", kSwitch, 0, 1, brake_until_run,
+          "a holding brake that opens at the end of the start procedure"),
     ENTRY(inverter, switch_threshold, "V", kNumber, 0, 10, nominal.inverter.switch_threshold, "switch on-state drop"),
     ENTRY(inverter, switch_resistance, "ohm", kNumber, 0, 10, nominal.inverter.switch_resistance, "and its slope"),
     ENTRY(inverter, diode_threshold, "V", kNumber, 0, 10, nominal.inverter.diode_threshold, "diode on-state drop"),

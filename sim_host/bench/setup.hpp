@@ -27,6 +27,7 @@ struct Setup {
   plant::PlantConfig nominal = plant::PlantConfig::ideal();
   ParameterError error;
   FaultPlan fault;
+  bool brake_until_run = false;  // a holding brake that opens when the drive has finished its start procedure
   double solver = 0;  // index into the choices of solver.method: SUNDIALS unless the fast integrator is asked for
 
   /// The plant with the true parameters, validated (std::invalid_argument names entry, value and range).

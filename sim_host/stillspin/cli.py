@@ -26,11 +26,13 @@ from stillspin import (
     resources,
     scenario_file,
     scheme,
+    startup,
+    startup_report,
     tables,
 )
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
-from stillspin.progress import Bar
+from stillspin.progress import Bar, Counter
 from stillspin.revision import revision
 
 app = typer.Typer(
@@ -167,6 +169,37 @@ def reproduce(
     chosen = dict.fromkeys(scenario_file.find(identifier).stem for identifier in scenarios or scenario_file.ids())
     workers = jobs or len(os.sched_getaffinity(0))
     _carry_out(chosen, Options(profile_name, seed, [], out, workers, draw=True, paper_scheme=paper_scheme))
+
+
+@app.command(name="startup-matrix")
+def startup_matrix(
+    *,
+    profile_name: ProfileOption = "bench",
+    seeds: Annotated[
+        int, typer.Option("--seeds", metavar="N", parser=_whole("--seeds", 1, 100), help="Noise seeds of each case.")
+    ] = 3,
+    quick: Annotated[bool, typer.Option("--quick", help="A representative few, in seconds.")] = False,
+    way: Annotated[
+        list[str] | None, typer.Option("--way", metavar="WAY", help="Only brake, free or flying. Repeatable.")
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-startup"),
+    jobs: Annotated[
+        int | None,
+        typer.Option("--jobs", "-j", metavar="N", parser=_whole("--jobs", 1, 256), help="Runs at a time."),
+    ] = None,
+) -> None:
+    """Start from every angle, under loads and parameter errors, standing and turning; status 1 when one fails."""
+    common, linear = startup.bench(profile_name)
+    todo = startup.chosen(startup.cases(seeds, quick, linear), way or [])
+    with output.fresh_directory(out) as directory:
+        with Counter(Console(stderr=True), len(todo)) as counter:
+            outcomes = startup.run_all(common, todo, jobs or len(os.sched_getaffinity(0)), counter.one_more)
+        startup_report.write(directory, outcomes, profile_name)
+    tables.startup(startup_report.rows(outcomes))
+    failed = [outcome for outcome in outcomes if outcome.problem]
+    print(f"{len(outcomes) - len(failed)} of {len(outcomes)} starts are good; see {out}")
+    if failed:
+        raise typer.Exit(BROKEN)
 
 
 @app.command(name="list")

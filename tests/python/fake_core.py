@@ -100,7 +100,8 @@ SIGNALS = {
     "torque": "N m", "load_torque": "N m", "i_a": "A", "i_b": "A", "i_c": "A", "true_i_d": "A", "true_i_q": "A",
     "i_d": "A", "i_q": "A", "i_d_ref": "A", "i_q_ref": "A", "v_d": "V", "v_q": "V", "v_alpha": "V", "v_beta": "V",
     "v_link": "V", "deviation_q": "A/s", "v_dc": "V", "angle_zvv": "rad",
-    "angle_avv": "rad", "weight": "", "load_estimate": "N m", "state": "", "fault": "", "limit": "",
+    "angle_avv": "rad", "weight": "", "load_estimate": "N m", "state": "", "fault": "",
+    "start_phase": "", "polarity_sigma": "", "limit": "",
 }  # fmt: skip
 
 
@@ -198,7 +199,9 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
         "v_link": zero + 300.0, "deviation_q": zero, "v_dc": zero + 300.0,
         "angle_zvv": used, "angle_avv": used,
         "weight": np.clip((100.0 - np.abs(speed)) / 40.0, 0.0, 1.0), "load_estimate": lag,
-        "state": np.full(time.size, 4), "fault": np.zeros(time.size, int), "limit": np.zeros(time.size, int),
+        "state": np.full(time.size, 4), "fault": np.zeros(time.size, int),
+        "start_phase": np.full(time.size, 5), "polarity_sigma": np.full(time.size, 10.0),
+        "limit": np.zeros(time.size, int),
     }  # fmt: skip
     short = plant.get("inverter", {}).get("dead_short", False)
     return SimpleNamespace(

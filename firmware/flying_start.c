@@ -1,0 +1,108 @@
+// The start of a shaft that turns: two short circuits tell angle, polarity and speed, then the current loop is closed
+// at that speed and watched for a moment before the drive runs.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/position.h"
+
+#define PULSE_MAX 12u         // periods of a short circuit that hardly drives a current
+#define PAUSE_MIN 6           // for the current to die away
+#define PAUSE_MAX 600         // 60 ms: 60 degrees at the slowest EMF that counts
+#define PAIRS_MAX 4u          // pairs of pulses before giving up
+#define STANDING_Q16 196608L  // 3 V: 45 rpm on motor A, beyond what drops and noise can fake
+#define CATCH_PERIODS 120u
+#define STRAY_MAX_BAM 178956971L  // 15 degrees
+
+// All lower devices on for the whole period, and three windows in it.
+static const svpwm_pattern_t short_circuit = {
+    {{-1, -1, -1}, {-1, -1, -1}}, {{0, 3300, 0}, {3300, 6600, 0}, {6600, 10000, 0}}, 3};
+
+const svpwm_pattern_t* start_short_circuit(void) { return &short_circuit; }
+
+void start_listen(drive_t* d, uint16_t pause) {
+  start_power(d, false);
+  d->start.shorted = true;
+  d->control.closed = false;
+  d->start.pause = pause;
+  start_enter(d, START_LISTEN);
+}
+
+void start_step_listen(drive_t* d) {
+  if (d->start.tick < d->start.pause) return;
+  flying_begin(&d->start.pulse);
+  start_enter(d, START_PULSE);
+  start_power(d, true);
+}
+
+// The rotor's state, carried on from the second pulse to the running period.
+static void close_loop(drive_t* d, const flying_rotor_t* rotor) {
+  const int32_t periods_q16 = q_div(d->start.clock - rotor->tick, ESTIMATOR_PERIOD_TICKS, 16);
+  const uint32_t angle = rotor->angle_bam + (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
+  position_preset(d, angle, rotor->speed_bpp);
+  d->start.sigma_q8 = rotor->sigma_q8;
+  d->start.shorted = false;
+  d->start.stray = 0;
+  d->control.closed = true;
+  field_weakening_reset(&d->control.weakening);
+  drive_weaken_field(d);
+  start_enter(d, START_CATCH);
+}
+
+static void judge_pair(drive_t* d, const flying_emf_t* second) {
+  drive_start_t* const s = &d->start;
+  flying_rotor_t rotor;
+  if (flying_resolve(&s->first, second, &d->model, &rotor)) {
+    close_loop(d, &rotor);
+  } else if (s->tries + 1u >= PAIRS_MAX) {
+    drive_raise(d, FAULT_POLARITY);
+  } else {
+    s->tries++;
+    s->pulses = 0;
+    start_listen(d, PAUSE_MIN);
+  }
+}
+
+static void end_pulse(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  const flying_emf_t e = flying_evaluate(&s->pulse, &d->model);
+  if (e.size_q16 < STANDING_Q16) {
+    start_find_axis(d);
+    return;
+  }
+  start_power(d, false);
+  s->pulses++;
+  if (s->pulses == 1u) {
+    s->first = e;
+    start_listen(d, (uint16_t)flying_pause(&e, &d->model, PAUSE_MIN, PAUSE_MAX));
+  } else {
+    judge_pair(d, &e);
+  }
+}
+
+void start_step_pulse(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  if (s->blind > 0u) return;
+  for (uint16_t k = 0; k < d->samples.count; k++) {
+    const estimator_window_t* const w = &d->samples.windows[k];
+    flying_add(&s->pulse, &d->model, w, s->clock - ESTIMATOR_PERIOD_TICKS + w->middle_tick);
+  }
+  const bool enough = flying_current(&s->pulse) > parameters.current_limit / 8;
+  if (s->pulse.windows >= 2u && (enough || s->tick >= PULSE_MAX)) end_pulse(d);
+}
+
+// The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
+void start_step_catch(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  if (!s->powered) start_power(d, true);
+  s->stray += q_shr(d->position.avv.error_bam - s->stray, 4);
+  if (s->tick < CATCH_PERIODS) return;
+  if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
+    start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
+  } else if (s->tries + 1u >= PAIRS_MAX) {
+    drive_raise(d, FAULT_POLARITY);
+  } else {
+    s->tries++;
+    s->pulses = 0;
+    start_listen(d, PAUSE_MIN);
+  }
+}

@@ -1,0 +1,46 @@
+// The start: from READY to RUN.
+//
+// First the drive listens whether the shaft turns (two short circuits, flying_start.c). If it does, angle, polarity and
+// speed come from the back-EMF and the drive runs on at that speed. If it stands, the axis comes from the saliency, the
+// polarity from saturation where the machine's slopes are known and large enough, else from a small motion. What stays
+// ambiguous is tried again with more current and then is a fault.
+
+#ifndef STILLSPIN_FIRMWARE_START_H
+#define STILLSPIN_FIRMWARE_START_H
+
+#include "estimators/axis.h"
+#include "estimators/emf_sign.h"
+#include "estimators/flying.h"
+#include "estimators/polarity.h"
+#include "estimators/saturation.h"
+
+typedef enum {
+  START_LISTEN = 0,      // gates off, the short circuit is prepared
+  START_PULSE = 1,       // gates on, short circuit
+  START_CATCH = 2,       // the rotor turns: current loop closed, estimators following
+  START_AXIS = 3,        // zero mean voltage, the axis is found
+  START_SETTLE = 4,      // current loop closed at zero
+  START_SATURATION = 5,  // polarity by saturation
+  START_MOTION = 6       // polarity by motion
+} start_phase_t;
+
+typedef struct {
+  start_phase_t phase;
+  uint16_t tick;   // periods since the phase was entered
+  uint16_t pause;  // periods to listen before the next pulse
+  uint16_t tries;  // of the present phase
+  uint16_t pulses;
+  uint16_t blind;  // periods until the windows belong to a power stage that is on
+  bool powered;    // the start has the gates on
+  bool shorted;    // the modulator holds all lower devices on
+  int32_t clock;   // tick at which the running period began, from the start of START
+  int32_t stray;   // filtered angle error while catching, binary angle
+  flying_pulse_t pulse;
+  flying_emf_t first;
+  axis_t axis;
+  saturation_t saturation;
+  polarity_t motion;
+  int32_t sigma_q8;  // confidence in the polarity, standard errors
+} drive_start_t;
+
+#endif
