@@ -63,7 +63,7 @@ def _flat(grid: Any) -> list[Axes]:
 
 
 def sweeps(shown: Shown) -> Canvas:
-    """The q-axis current deviation over the angle error, faint with the drops; dashed: derived from the true machine."""
+    """The q-axis current deviation over the angle error, faint: with the drops; dashed: derived from the machine."""
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
