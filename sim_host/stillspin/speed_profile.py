@@ -29,8 +29,8 @@ class Hold:
 
     @property
     def followed(self) -> bool:
-        """Whether the shaft turned as it was told: within 15 rpm, above 600 rpm within 2.5 %."""
-        return abs(self.speed - self.reference) <= max(15.0, 0.025 * abs(self.reference))
+        """Whether the shaft turned as it was told: in the mean within 3 rpm, above 120 rpm within 2.5 %."""
+        return abs(self.speed - self.reference) <= max(3.0, 0.025 * abs(self.reference))
 
 
 def holds(signals: Signals, error: Floats) -> list[Hold]:
