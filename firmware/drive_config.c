@@ -8,6 +8,7 @@
 #define CRAWL_MIN_RPM_Q16 65536L       // where cogging is learnt
 #define CRAWL_MAX_RPM_Q16 655360L
 #define COGGING_MAX_Q20 1048576L    // 1 N m
+#define EDGE_BAND_Q20 524288L       // half an ampere of ripple may be predicted wrong
 #define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
@@ -65,6 +66,7 @@ static bool load_modulation(drive_config_t* c) {
   c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
   c->dead_time.released_ticks = ticks(p->turn_off_delay);
   c->dead_time.band_q20 = p->drop_band;
+  c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + p->drop_band;
   c->dead_time.drop_q16 = p->device_drop;
   // Between two windows lie the edge and its settling at least; the window before must have been read by then.
   const int32_t gap_ticks = c->modulator.sampling.settle_ticks + (int32_t)HAL_ADC_BURST_TICKS;

@@ -65,8 +65,10 @@ void drive_modulate(drive_t* d) {
     current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
     d->limits |= LIMIT_VOLTAGE;
   }
-  dead_time_compensate(&d->config.dead_time, &pattern.pulses, current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2,
-                       d->samples.link_q16, &command);
+  const dead_time_edges_t uncertain =
+      dead_time_compensate(&d->config.dead_time, &pattern.pulses, current_q20,
+                           d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16, &command);
+  dead_time_guard_windows(&d->config.dead_time, &d->config.modulator.sampling, &command, uncertain, &pattern);
   hal_profile_step(CYCLES_MODULATE);
   write_frame(d, &pattern, &command);
 }

@@ -25,14 +25,54 @@ static int32_t current_at(const svpwm_pulses_t* p, uint16_t leg, int16_t tick, a
   return (leg == 0u) ? phases.a : (leg == 1u) ? phases.b : phases.c;
 }
 
-void dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
-                          int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command) {
+static dead_time_edges_t edge_bit(bool uncertain, uint16_t bit) {
+  return uncertain ? (dead_time_edges_t)(1u << bit) : 0u;
+}
+
+dead_time_edges_t dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
+                                       int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command) {
+  dead_time_edges_t uncertain = 0;
   for (uint16_t leg = 0; leg < SVPWM_LEGS; leg++) {
     const int32_t at_rise = current_at(wanted, leg, wanted->rise[leg], current_q20, admittance_q30, link_q16);
     const int32_t at_fall = current_at(wanted, leg, wanted->fall[leg], current_q20, admittance_q30, link_q16);
     command->rise[leg] = (int16_t)(wanted->rise[leg] - delay_ticks(c, sign_q15(at_rise, c->band_q20)));
     command->fall[leg] = (int16_t)(wanted->fall[leg] - delay_ticks(c, -sign_q15(at_fall, c->band_q20)));
+    uncertain |= edge_bit(q_abs_sat(at_rise) < c->edge_band_q20, leg);
+    uncertain |= edge_bit(q_abs_sat(at_fall) < c->edge_band_q20, (uint16_t)(SVPWM_LEGS + leg));
   }
+  return uncertain;
+}
+
+// Takes one edge into account: wanted at the motor at `wanted`, commanded at `command`.
+static void guard(const dead_time_config_t* c, int16_t wanted, int16_t command, svpwm_window_t* w) {
+  if (wanted == w->begin) w->begin = q_max16(w->begin, (int16_t)(command + c->blocked_ticks));
+  if (wanted == w->end) w->end = q_min16(w->end, (int16_t)(command + c->released_ticks));
+}
+
+static svpwm_window_t guarded(const dead_time_config_t* c, const svpwm_pulses_t* wanted, const svpwm_pulses_t* command,
+                              dead_time_edges_t uncertain, svpwm_window_t window) {
+  svpwm_window_t w = window;
+  for (uint16_t leg = 0; leg < SVPWM_LEGS; leg++) {
+    svpwm_window_t edge = window;
+    if (((uint32_t)uncertain >> leg & 1u) != 0u) guard(c, wanted->rise[leg], command->rise[leg], &edge);
+    if (((uint32_t)uncertain >> (SVPWM_LEGS + leg) & 1u) != 0u) guard(c, wanted->fall[leg], command->fall[leg], &edge);
+    w.begin = q_max16(w.begin, edge.begin);
+    w.end = q_min16(w.end, edge.end);
+  }
+  return w;
+}
+
+void dead_time_guard_windows(const dead_time_config_t* c, const sampling_config_t* sampling,
+                             const svpwm_pulses_t* command, dead_time_edges_t uncertain, svpwm_pattern_t* pattern) {
+  if (uncertain == 0u) return;
+  uint16_t count = 0;
+  for (uint16_t k = 0; k < pattern->window_count; k++) {
+    const svpwm_window_t w = guarded(c, &pattern->pulses, command, uncertain, pattern->windows[k]);
+    if (svpwm_burst_end(sampling, &w) - svpwm_burst_start(sampling, &w) < sampling->span_min_ticks) continue;
+    pattern->windows[count] = w;
+    count++;
+  }
+  pattern->window_count = count;
 }
 
 ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
