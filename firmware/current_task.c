@@ -12,4 +12,5 @@ void drive_control_current(drive_t* d) {
   }
   c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
                                            c->measured_q20, d->position.used.speed_bpp);
+  c->command_q16.q += c->feed_q16;
 }

@@ -19,6 +19,7 @@
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
 #include "estimators/zvv.h"
+#include "firmware/commissioning.h"
 #include "firmware/drive_api.h"
 #include "firmware/hold.h"
 #include "firmware/hysteresis.h"
@@ -63,8 +64,9 @@ typedef struct {
   estimator_window_t windows[ESTIMATOR_WINDOWS];
   ab_t ripple_q16[ESTIMATOR_WINDOWS];  // ripple flux at the middle of each window, V period
   uint16_t count;
-  int32_t raw_a_q8, raw_b_q8;  // mean codes of the first burst
-  int32_t link_q16;            // filtered DC-link voltage, V
+  int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
+  int32_t raw_a_q8, raw_b_q8;               // mean codes of the first burst
+  int32_t link_q16;                         // filtered DC-link voltage, V
 } drive_samples_t;
 
 /// Angle and speed in use and the estimators behind them.
@@ -89,6 +91,7 @@ typedef struct {
   dq_t reference_q20;      // current reference
   dq_t measured_q20;       // mean current of the last period
   dq_t command_q16;        // voltage command
+  int32_t feed_q16;        // q-axis voltage for a change of the reference that is known beforehand
   int32_t wanted_rpm_q16;  // speed asked for, mechanical
   int32_t target_bpp;      // the same, electrical
   bool closed;             // current loop closed
@@ -109,7 +112,7 @@ typedef struct {
 } drive_supervision_t;
 
 typedef struct {
-  bool start, stop, coast, reset, reload;
+  bool start, stop, coast, reset, reload, commission;
 } drive_request_t;
 
 typedef struct {
@@ -134,6 +137,7 @@ typedef struct {
   drive_supervision_t supervision;
   drive_request_t request;
   drive_signals_t signals;
+  commissioning_t commissioning;
 } drive_t;
 
 extern drive_t drive;
@@ -144,6 +148,9 @@ bool drive_config_load(drive_config_t* c);
 bool drive_is_energised(void);
 void drive_parameters_changed(void);
 
+/// True where the speed control and the chosen position source are at work.
+bool drive_is_turning(const drive_t* d);
+
 /// Latches a fault and opens the power stage. The speed command is forgotten.
 void drive_raise(drive_t* d, drive_fault_t fault);
 
@@ -151,6 +158,8 @@ void drive_raise(drive_t* d, drive_fault_t fault);
 void drive_enter(drive_t* d, drive_state_t state);
 
 // The state START: start.c, and flying_start.c for a shaft that turns.
+/// Lets the position sources and the speed control start from this angle and speed.
+void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 void drive_begin_start(drive_t* d);
 void drive_start(drive_t* d);
 void start_enter(drive_t* d, start_phase_t phase);
@@ -180,6 +189,20 @@ bool hold_step(drive_t* d);
 
 /// Field weakening of this instant, into the d-axis reference.
 void drive_weaken_field(drive_t* d);  // speed_task.c
+
+// The state COMMISSION (commissioning.c) and its phases, each in its own file: one period; true at the phase's end.
+void commissioning_begin(drive_t* d);
+void commissioning_step(drive_t* d);
+void commissioning_abort(drive_t* d);
+void commissioning_service(drive_t* d);                   // background level: evaluation
+bool commissioning_turn(drive_t* d);                      // commissioning_hold.c
+bool commissioning_climb(drive_t* d);                     // commissioning_staircase.c
+bool commissioning_map(drive_t* d);                       // commissioning_map.c
+bool commissioning_spin(drive_t* d);                      // commissioning_spin.c
+void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
+void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
+/// The period's two opposite windows against the model, in the frame of the angle in use; false when there are none.
+bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);
 
 // The steps of the control interrupt, in their order.
 void drive_read_samples(drive_t* d);     // sampling.c

@@ -22,7 +22,13 @@ void drive_reset(void) {
 }
 
 bool drive_is_energised(void) {
-  return drive.state == DRIVE_START || drive.state == DRIVE_RUN || drive.state == DRIVE_STOP;
+  const bool commissioning = drive.state == DRIVE_COMMISSION && drive.commissioning.phase != COMMISSIONING_EVALUATE;
+  return drive.state == DRIVE_START || drive.state == DRIVE_RUN || drive.state == DRIVE_STOP || commissioning;
+}
+
+bool drive_is_turning(const drive_t* d) {
+  const bool spinning = d->state == DRIVE_COMMISSION && d->commissioning.turning;
+  return d->state == DRIVE_RUN || d->state == DRIVE_STOP || spinning;
 }
 
 void drive_parameters_changed(void) { drive.request.reload = true; }

@@ -56,6 +56,7 @@ void firmware_main(void) {
   uint16_t seen = drive.heartbeat;
   for (;;) {
     hal_idle();
+    commissioning_service(&drive);
     if (drive.request.reload) reload();
     // The watchdog is served for a control interrupt that lives, not for a background loop that does.
     if (drive.heartbeat != seen && hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {

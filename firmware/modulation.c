@@ -11,7 +11,7 @@
 
 // The paper's scheme wants long zero vectors at low speed and extended active ones from below the blend on.
 static excitation_t excitation(const drive_t* d) {
-  if (d->state == DRIVE_START) return EXCITATION_ALTERNATING;
+  if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
   if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
   if (parameters.position_source != 1) return EXCITATION_ALTERNATING;
   const int32_t enter = d->config.blend.low_bpp / 4 * 3;

@@ -95,6 +95,11 @@ PARAMETER(120, ldq_2, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual induct
 PARAMETER(121, ldq_3, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 3/4 of map_current")
 PARAMETER(122, ldq_4, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at map_current")
 
+// Commissioning
+PARAMETER(130, sensor_mismatch, "%", 16, 3, -5000, 5000, 0, STOPPED,
+          "gain of current sensor a above the mean of both, that of b as much below")
+PARAMETER(131, spin_speed, "rpm", 8, 0, 300, 2000, 600, STOPPED, "speed of the commissioning's spin")
+
 // Start and supervision
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of the polarity test")
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,

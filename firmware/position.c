@@ -26,7 +26,7 @@ static void adapt(drive_t* d, const regression_t* r) {
       d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
       break;
     case 2:
-      if (d->state == DRIVE_RUN || d->state == DRIVE_STOP)
+      if (drive_is_turning(d))
         voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
       break;
     default:
@@ -36,8 +36,18 @@ static void adapt(drive_t* d, const regression_t* r) {
 
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
+  if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return d->position.high;
   if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) adapt(d, &d->position.avv.regression);
   return d->position.high;
+}
+
+// Commissioning at standstill: AVV alone, or no measurement at all and the angle by the torque.
+static estimator_output_t step_commissioning(drive_t* d, const estimator_input_t* in) {
+  if (!d->commissioning.predicting) return step_avv(d, in);
+  tracking_observer_t* const o = &d->position.avv.observer;
+  tracking_observer_predict(o, q_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
+  const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
+  return out;
 }
 
 static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in) {
@@ -112,7 +122,8 @@ static void measure_current(drive_t* d) {
 void drive_estimate(drive_t* d) {
   measure_current(d);
   machine_model_move(&d->model, d->control.measured_q20.q);
-  const bool starting = d->state != DRIVE_RUN && d->state != DRIVE_STOP;
+  const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
+  const bool starting = !measuring && !drive_is_turning(d);
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
@@ -120,6 +131,10 @@ void drive_estimate(drive_t* d) {
   in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
+  if (measuring) {
+    d->position.used = step_commissioning(d, &in);
+    return;
+  }
   d->position.used = starting ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
 }
 

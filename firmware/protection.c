@@ -65,8 +65,6 @@ static bool lost_synchronism(drive_t* d) {
                           d->position.used.speed_bpp, disagreement(d));
 }
 
-static bool is_running(const drive_t* d) { return d->state == DRIVE_RUN || d->state == DRIVE_STOP; }
-
 static drive_fault_t check(drive_t* d) {
   if (hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
   const bool meant_off = d->state == DRIVE_START && !d->start.powered;
@@ -77,8 +75,8 @@ static drive_fault_t check(drive_t* d) {
   if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
   if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
   if (polarity_watch_step(d)) return FAULT_POLARITY;
-  if (is_running(d) && lost_synchronism(d)) return FAULT_SYNCHRONISM;
-  if (is_running(d) && diverged(d)) return FAULT_DIVERGENCE;
+  if (drive_is_turning(d) && lost_synchronism(d)) return FAULT_SYNCHRONISM;
+  if (drive_is_turning(d) && diverged(d)) return FAULT_DIVERGENCE;
   return FAULT_NONE;
 }
 

@@ -71,8 +71,7 @@ static void evaluate(drive_t* d, const svpwm_window_t* w, const hal_adc_window_t
   out->voltage_q16 = window_voltage(d, w, out->current_q20);
 }
 
-static void filter_link(drive_t* d, const hal_adc_window_t* raw) {
-  const int32_t volts_q16 = (int32_t)raw->link * d->config.volts_per_code_q16;
+static void filter_link(drive_t* d, int32_t volts_q16) {
   d->samples.link_q16 += (d->samples.link_q16 == 0) ? volts_q16 : q_shr(volts_q16 - d->samples.link_q16, 3);
 }
 
@@ -91,7 +90,8 @@ void drive_read_samples(drive_t* d) {
   s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   for (uint16_t k = 0; k < p->window_count; k++) {
-    filter_link(d, &b->windows[k]);
+    s->link_end_q16[k] = (int32_t)b->windows[k].link * d->config.volts_per_code_q16;
+    filter_link(d, s->link_end_q16[k]);
     evaluate(d, &p->windows[k], &b->windows[k], &s->windows[k]);
     s->ripple_q16[k] = svpwm_ripple_q16(&p->pulses, s->windows[k].middle_tick, s->link_q16);
   }

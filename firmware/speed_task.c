@@ -54,8 +54,8 @@ void drive_control_speed(drive_t* d) {
   if (d->millisecond != 0u) return;
   d->limits = 0;
   const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
-  if (d->state == DRIVE_RUN || d->state == DRIVE_STOP || caught) drive_weaken_field(d);
-  if (d->state != DRIVE_RUN && d->state != DRIVE_STOP) return;
+  if (drive_is_turning(d) || caught) drive_weaken_field(d);
+  if (!drive_is_turning(d)) return;
   speed_controller_input_t in;
   step_ramp(d, &in);
   in.speed_bpp = d->position.used.speed_bpp;

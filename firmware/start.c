@@ -39,6 +39,7 @@ static void reset_control(drive_t* d) {
   d->control.ramp.value = 0;
   d->control.reference_q20.d = 0;
   d->control.reference_q20.q = 0;
+  d->control.feed_q16 = 0;
 }
 
 void drive_begin_start(drive_t* d) {
@@ -51,7 +52,8 @@ void drive_begin_start(drive_t* d) {
   d->supervision = healthy;
   d->start = fresh;
   d->model = d->config.nameplate;
-  sensor_match_reset(&d->position.sensors);
+  d->position.sensors.mismatch_q30 = q_mul(parameters.sensor_mismatch, 167772L, 10);  // percent, Q16
+  d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
   position_preset(d, 0, 0);
   reset_control(d);
   drive_enter(d, DRIVE_START);
@@ -62,7 +64,7 @@ void drive_begin_start(drive_t* d) {
   }
 }
 
-void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
+void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   position_preset(d, angle_bam, speed_bpp);
   position_align_encoder(d, angle_bam, speed_bpp);
   speed_controller_preset(&d->control.speed, 0);
@@ -70,7 +72,18 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   polarity_watch_begin(d, angle_bam, speed_bpp);
   d->control.ramp.value = speed_bpp;
   d->control.reference_q20.q = 0;
-  drive_enter(d, DRIVE_RUN);
+}
+
+// A commissioning wants a shaft that stands; one that turns is brought to rest instead.
+static drive_state_t state_behind(const drive_t* d, int32_t speed_bpp) {
+  if (!d->commissioning.requested) return DRIVE_RUN;
+  return (speed_bpp == 0) ? DRIVE_COMMISSION : DRIVE_STOP;
+}
+
+void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
+  drive_hand_over(d, angle_bam, speed_bpp);
+  drive_enter(d, state_behind(d, speed_bpp));
+  if (d->state == DRIVE_STOP) commissioning_abort(d);
 }
 
 void start_find_axis(drive_t* d) {
@@ -108,7 +121,7 @@ static void decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
   const int32_t speed = present_speed(d);
   d->start.sigma_q8 = sigma_q8;
   start_run(d, (result == POLARITY_WRONG) ? angle + ANGLE_BAM_HALF_TURN : angle, speed);
-  if (speed == 0) hold_begin(d);
+  if (d->state == DRIVE_RUN && speed == 0) hold_begin(d);
 }
 
 static void try_motion(drive_t* d) {

@@ -34,6 +34,7 @@ static void calibrate(drive_t* d) {
 static void coast(drive_t* d) {
   hal_pwm_gates_off();
   d->control.closed = false;
+  commissioning_abort(d);
   drive_enter(d, DRIVE_READY);
 }
 
@@ -54,14 +55,30 @@ static void begin_stop(drive_t* d) {
   drive_enter(d, DRIVE_STOP);
 }
 
+// A start or a commissioning that is not wanted any more: stops the shaft where it turns, else opens the power stage.
+static void break_off(drive_t* d) {
+  const bool turning = drive_is_turning(d);
+  commissioning_abort(d);
+  if (turning) {
+    begin_stop(d);
+  } else {
+    coast(d);
+  }
+}
+
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
   if (r->coast && drive_is_energised()) coast(d);
   if (r->coast) r->start = false;
   r->coast = false;
   if (r->reload) return;  // first the changed parameters, then the start
-  if (d->state == DRIVE_START && r->stop) coast(d);
-  if (d->state == DRIVE_READY && r->start) drive_begin_start(d);
+  if ((d->state == DRIVE_START || d->state == DRIVE_COMMISSION) && r->stop) break_off(d);
+  if (d->state == DRIVE_READY && r->start) {
+    d->commissioning.requested = false;
+    drive_begin_start(d);
+  } else if (d->state == DRIVE_READY && r->commission) {
+    commissioning_begin(d);
+  }
   if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
   if (d->state == DRIVE_FAULT && r->reset) {
     d->fault = FAULT_NONE;
@@ -71,6 +88,7 @@ static void take_requests(drive_t* d) {
   r->start = false;
   r->stop = false;
   r->reset = false;
+  r->commission = false;
 }
 
 void drive_sequence(drive_t* d) {
@@ -89,6 +107,9 @@ void drive_sequence(drive_t* d) {
       break;
     case DRIVE_STOP:
       stop(d);
+      break;
+    case DRIVE_COMMISSION:
+      commissioning_step(d);
       break;
     default:
       break;

@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "firmware/drive_api.h"
+#include "sim_host/bench/commission.hpp"
 #include "sim_host/bench/replay.hpp"
 #include "sim_host/bench/run.hpp"
 
@@ -133,6 +134,50 @@ nb::dict replay_in_python(const nb::dict& plant, const std::vector<std::tuple<Ti
   return result;
 }
 
+struct PythonCommissioning {
+  nb::list values;
+  bool completed;
+  std::string reason;
+  std::map<std::string, double> stats;
+};
+
+nb::list identified_rows(const CommissionResult& result) {
+  nb::list rows;
+  for (const Identified& v : result.values) {
+    nb::dict row;
+    row["name"] = v.name;
+    row["unit"] = v.unit;
+    row["decimals"] = v.decimals;
+    row["before"] = v.before;
+    row["value"] = v.value;
+    row["used"] = v.used;
+    row["words"] = v.words;
+    rows.append(row);
+  }
+  return rows;
+}
+
+PythonCommissioning commission_in_python(const nb::dict& plant, const std::string& motor,
+                                         const std::map<std::string, double>& parameters, double limit,
+                                         std::uint64_t seed, const nb::object& progress) {
+  if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
+  CommissionRequest request;
+  request.setup = setup_from(plant, seed);
+  request.parameters = parameters;
+  request.limit = limit;
+  request.progress = [progress](double share, const std::string& phase) {
+    nb::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    return progress.is_none() || nb::cast<bool>(progress(share, phase));
+  };
+  CommissionResult result;
+  {
+    nb::gil_scoped_release release;
+    result = commission(request);
+  }
+  return {identified_rows(result), result.completed, result.reason, result.stats};
+}
+
 nb::list parameter_rows() {
   nb::list rows;
   for (std::uint16_t k = 0; k < parameter_count(); k++) {
@@ -209,6 +254,14 @@ NB_MODULE(_core, m) {
         nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
         nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false,
         "One run of the virtual drive; see core.py.");
+  nb::class_<PythonCommissioning>(m, "CommissioningResult")
+      .def_ro("values", &PythonCommissioning::values)
+      .def_ro("completed", &PythonCommissioning::completed)
+      .def_ro("reason", &PythonCommissioning::reason)
+      .def_ro("stats", &PythonCommissioning::stats);
+  m.def("commission", &commission_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
+        nb::arg("limit"), nb::arg("seed"), nb::arg("progress").none(),
+        "The firmware's commissioning on the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");

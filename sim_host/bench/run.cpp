@@ -16,41 +16,6 @@ constexpr double kSecondsPerTick = 1e-8;
 constexpr Tick kChunk = 1'000'000;          // between looks at progress
 constexpr Tick kEarliestStart = 5'000'000;  // 50 ms after power-on
 
-const char* fault_name(std::int32_t fault) {
-  switch (fault) {
-    case FAULT_NONE:
-      return "none";
-    case FAULT_OVER_CURRENT:
-      return "over-current comparator";
-    case FAULT_CURRENT_LIMIT:
-      return "sampled current beyond trip_current";
-    case FAULT_LINK_LOW:
-      return "DC link below link_minimum";
-    case FAULT_LINK_HIGH:
-      return "DC link above link_maximum";
-    case FAULT_OVERRUN:
-      return "control interrupt overrun";
-    case FAULT_NO_SAMPLES:
-      return "no samples from the ADC";
-    case FAULT_DIVERGENCE:
-      return "estimators diverged or speed not plausible";
-    case FAULT_POLARITY:
-      return "polarity of the magnet ambiguous, or contradicted by the back-EMF";
-    case FAULT_OFFSET:
-      return "current offset implausible";
-    case FAULT_PARAMETER:
-      return "parameters do not fit together";
-    case FAULT_GATES_OFF:
-      return "gates switched off unexpectedly";
-    case FAULT_SYNCHRONISM:
-      return "loss of synchronism";
-    case FAULT_STOP:
-      return "standstill not reached within stop_time";
-    default:
-      return "unknown fault";
-  }
-}
-
 struct RawParameter {
   unsigned id;
   std::int32_t raw;
@@ -246,6 +211,41 @@ bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunRe
 }
 
 }  // namespace
+
+const char* fault_name(std::int32_t fault) {
+  switch (fault) {
+    case FAULT_NONE:
+      return "none";
+    case FAULT_OVER_CURRENT:
+      return "over-current comparator";
+    case FAULT_CURRENT_LIMIT:
+      return "sampled current beyond trip_current";
+    case FAULT_LINK_LOW:
+      return "DC link below link_minimum";
+    case FAULT_LINK_HIGH:
+      return "DC link above link_maximum";
+    case FAULT_OVERRUN:
+      return "control interrupt overrun";
+    case FAULT_NO_SAMPLES:
+      return "no samples from the ADC";
+    case FAULT_DIVERGENCE:
+      return "estimators diverged or speed not plausible";
+    case FAULT_POLARITY:
+      return "polarity of the magnet ambiguous, or contradicted by the back-EMF";
+    case FAULT_OFFSET:
+      return "current offset implausible";
+    case FAULT_PARAMETER:
+      return "parameters do not fit together";
+    case FAULT_GATES_OFF:
+      return "gates switched off unexpectedly";
+    case FAULT_SYNCHRONISM:
+      return "loss of synchronism";
+    case FAULT_STOP:
+      return "standstill not reached within stop_time";
+    default:
+      return "unknown fault";
+  }
+}
 
 RunResult run(const RunRequest& request) {
   check_request(request);

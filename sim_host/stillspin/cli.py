@@ -1,6 +1,7 @@
 """The command line `stillspin`.
 
-Exit status: 0 when every run ran, whatever its figures; 1 when a run broke off; 2 for bad input, said in one line.
+Exit status: 0 when every run ran, whatever its figures; 1 when a run broke off or a commissioning left a value open; 2
+for bad input, said in one line.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,7 @@ from rich.console import Console
 from stillspin import (
     __version__,
     campaign,
+    commission,
     core,
     execute,
     output,
@@ -32,7 +34,7 @@ from stillspin import (
 )
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
-from stillspin.progress import Bar, Counter
+from stillspin.progress import Bar, Counter, PhaseBar
 from stillspin.revision import revision
 
 app = typer.Typer(
@@ -80,6 +82,12 @@ ChangeOption = Annotated[
 ]
 
 
+ParamsOption = Annotated[
+    Path | None,
+    typer.Option("--params", metavar="FILE", help="Firmware parameters, such as `commission` writes them."),
+]
+
+
 @dataclass(frozen=True)
 class Options:
     """What `run` and `reproduce` have in common."""
@@ -91,6 +99,7 @@ class Options:
     jobs: int
     draw: bool
     paper_scheme: bool = False
+    params: Path | None = None
 
 
 def _carry_out(ids: Iterable[str], options: Options) -> None:
@@ -103,6 +112,9 @@ def _carry_out(ids: Iterable[str], options: Options) -> None:
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(options.profile, schema, known)
     changes = profile.changes(options.changes, schema, known)
+    if options.params:
+        chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(options.params, known)})
+        changes.words.append(f"--params {options.params.name}")
     settings = execute.Settings(chosen, changes, options.seed, revision())
     jobs = [job for scenario in scenarios for job in execute.prepare(scenario, settings, native)]
     with output.fresh_directory(options.out) as directory:
@@ -129,6 +141,7 @@ def run(
     profile_name: ProfileOption = "bench",
     seed: SeedOption = 1,
     change: ChangeOption = None,
+    params: ParamsOption = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-SCENARIO].")
     ] = None,
@@ -137,7 +150,7 @@ def run(
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
     identifier = scenario_file.find(scenario).stem
     where = out or Path(f"results-{identifier}")
-    _carry_out([identifier], Options(profile_name, seed, change or [], where, jobs=1, draw=not no_plots))
+    _carry_out([identifier], Options(profile_name, seed, change or [], where, 1, not no_plots, params))
 
 
 @app.command()
@@ -146,6 +159,7 @@ def reproduce(
     scenarios: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: all].")] = None,
     profile_name: ProfileOption = "bench",
     seed: SeedOption = 1,
+    params: ParamsOption = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
     jobs: Annotated[
         int | None,
@@ -168,7 +182,36 @@ def reproduce(
     """Run scenarios in parallel and write report.html and metrics.json."""
     chosen = dict.fromkeys(scenario_file.find(identifier).stem for identifier in scenarios or scenario_file.ids())
     workers = jobs or len(os.sched_getaffinity(0))
-    _carry_out(chosen, Options(profile_name, seed, [], out, workers, draw=True, paper_scheme=paper_scheme))
+    options = Options(profile_name, seed, [], out, workers, draw=True, paper_scheme=paper_scheme, params=params)
+    _carry_out(chosen, options)
+
+
+@app.command(name="commission")
+def commission_(
+    *,
+    profile_name: ProfileOption = "bench",
+    seed: SeedOption = 1,
+    change: ChangeOption = None,
+    out: Annotated[Path, typer.Option("--out", "-o", help="The parameter file to write.")] = Path("params.toml"),
+) -> None:
+    """Let the drive find out about machine and inverter; write what it found for `run --params`."""
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(profile_name, schema, known)
+    changes = profile.changes(change or [], schema, known)
+    commission.check_target(out)
+    with PhaseBar(Console(stderr=True)) as bar:
+        result = commission.run(native, chosen, changes, seed, bar.show)
+    tables.commissioning(result)
+    about = [f"Commissioned in profile {chosen.name}, seed {seed}, stillspin {__version__} ({revision()})."]
+    about += [f"Changed beforehand: {', '.join(changes.words)}."] if changes.words else []
+    commission.write(out, result, about)
+    found = len(result.values) - len(result.refused)
+    print(f"{found} of {len(result.values)} values found in {result.duration:.1f} s of the drive's time; see {out}")
+    for value in result.refused:
+        print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)
+    if result.refused:
+        raise typer.Exit(BROKEN)
 
 
 @app.command(name="startup-matrix")

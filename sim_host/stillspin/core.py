@@ -42,6 +42,15 @@ class NativeResult(Protocol):
     stats: Mapping[str, float]
 
 
+class NativeCommissioning(Protocol):
+    """What a commissioning gives back: a row per identified parameter (commission.Value has the keys)."""
+
+    values: Sequence[Mapping[str, Any]]
+    completed: bool
+    reason: str
+    stats: Mapping[str, float]
+
+
 class NativeCore(Protocol):
     """The functions of `stillspin._core`."""
 
@@ -61,6 +70,19 @@ class NativeCore(Protocol):
         progress: Progress | None,
     ) -> NativeResult:
         """One run. Times in s from the end of the start procedure; progress gets the share done, false stops."""
+        ...
+
+    def commission(
+        self,
+        *,
+        plant: Plant,
+        motor: str,
+        parameters: dict[str, float],
+        limit: float,
+        seed: int,
+        progress: Callable[[float, str], bool] | None,
+    ) -> NativeCommissioning:
+        """The firmware's commissioning. `limit`: simulated s; progress gets share and phase, false stops."""
         ...
 
     def parameters(self) -> list[dict[str, Any]]:

@@ -101,3 +101,28 @@ class Bar(Watcher):
             return
         done = max(self._shares, float(self._done)) + _ASSESSING * self._drawn
         self._progress.update(self._task, completed=done, description=f"{self._done} of {self._runs} runs")
+
+
+class PhaseBar:
+    """One bar over one piece of work that says which phase it is in."""
+
+    def __init__(self, console: Console) -> None:
+        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
+        self._progress = Progress(
+            *columns, TimeElapsedColumn(), console=console, transient=True, disable=not console.is_terminal
+        )
+        self._task = self._progress.add_task("", total=1.0)
+
+    def __enter__(self) -> PhaseBar:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def show(self, share: float, phase: str) -> bool:
+        """How far it is; always true, which means: go on."""
+        self._progress.update(self._task, completed=share, description=phase)
+        return True

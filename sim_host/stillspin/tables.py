@@ -8,14 +8,14 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from stillspin import report
+from stillspin import commission, report
 from stillspin.assess import ScenarioResult
 from stillspin.core import Entry
 from stillspin.scenario import Scenario
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {
-    *("value", "paper", "goal", "runs", "default", "number", "paper scheme"),
+    *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme"),
     *("starts", "failed", "backward", "sigma", "angle"),
 }
 
@@ -54,6 +54,15 @@ def summary(results: Iterable[ScenarioResult], other: Mapping[str, ScenarioResul
 
 def _or_lost(value: float | None) -> str:
     return "lost" if value is None else report.number(value)
+
+
+def commissioning(result: commission.Result) -> None:
+    """Every identified value and what became of it."""
+    table = _table("parameter", "before", "found", "unit", "")
+    for value in result.values:
+        before, found = (f"{number:.{value.decimals + 1}f}" for number in (value.before, value.value))
+        table.add_row(value.name, before, found, value.unit, Text(value.words, style="green" if value.used else "red"))
+    _print(table)
 
 
 def scenarios(items: Iterable[Scenario]) -> None:

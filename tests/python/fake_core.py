@@ -213,3 +213,28 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
         faults=[(0.1, "over-current")] if short else [],
         stats={"wall_seconds": clock.perf_counter() - began, "simulated_seconds": duration + 0.05, "plant_share": 0.5},
     )
+
+
+def commission(*, plant, motor, parameters, limit, seed, progress):
+    """The friction is refused when it is told as 9, and nothing is found with a dead short."""
+    for share in (0.0, 0.5, 1.0):
+        if progress is not None and not progress(share, "a phase"):
+            return SimpleNamespace(values=[], completed=False, reason="stopped", stats={})
+    short = plant.get("inverter", {}).get("dead_short", False)
+    open_ = parameters.get("friction") == 9.0
+    words = "too far from the value given before" if open_ else "plausible, in use"
+    row = {"name": "friction", "unit": "Nms", "decimals": 5, "before": 0.003, "value": 0.004, "used": not open_}
+    ramp = {
+        "name": "speed_ramp",
+        "unit": "rpm/s",
+        "decimals": 0,
+        "before": 3000.0,
+        "value": 2000.0 + seed,
+        "used": True,
+    }
+    return SimpleNamespace(
+        values=[] if short else [{**row, "words": words}, {**ramp, "words": "plausible, in use"}],
+        completed=not short,
+        reason="fault: over-current comparator" if short else "",
+        stats={"wall_seconds": 1.0, "simulated_seconds": 40.05, "commissioning_seconds": 40.0},
+    )

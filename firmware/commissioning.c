@@ -1,0 +1,129 @@
+#include "firmware/commissioning.h"
+
+#include "firmware/commissioning_result.h"
+#include "firmware/drive.h"
+#include "hal/hal_pwm.h"
+
+#define LONGER_TICKS 500
+#define SAMPLING_MIN_TICKS 450  // two bursts and the shortest useful time between them
+
+static commissioning_report_t report;
+
+typedef struct {
+  bool (*step)(drive_t* d);
+  int16_t share;  // per mille of the whole
+} phase_t;
+
+static bool at_once(drive_t* d) {
+  (void)d;
+  return true;
+}
+
+static const phase_t phases[] = {{at_once, 0},
+                                 {commissioning_turn, 20},
+                                 {commissioning_climb, 180},
+                                 {commissioning_spin, 150},
+                                 {commissioning_map, 650}};
+
+// The sensors' ringing after an edge is a tenth of a degree at the usual settle time; here that counts. The parameters
+// put it back: every end of a commissioning lets them be loaded again.
+static void settle_longer(drive_t* d) {
+  sampling_config_t* const c = &d->config.modulator.sampling;
+  const int16_t most = (int16_t)(d->config.modulator.pulse_ticks / 20 * 13 - SAMPLING_MIN_TICKS);
+  c->settle_ticks = (int16_t)q_min(c->settle_ticks + LONGER_TICKS, q_max(c->settle_ticks, most));
+}
+
+void commissioning_begin(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  c->outcome = COMMISSIONING_RUNNING;
+  c->phase = COMMISSIONING_IDLE;
+  c->tick = 0;
+  c->requested = true;
+  c->evaluate = false;
+  c->solve_motion = false;
+  c->adapting = true;
+  c->predicting = false;
+  c->turning = false;
+  settle_longer(d);
+  drive_begin_start(d);
+}
+
+void commissioning_abort(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  if (c->outcome != COMMISSIONING_RUNNING) return;
+  c->outcome = COMMISSIONING_ABORTED;
+  c->requested = false;
+  c->phase = COMMISSIONING_IDLE;
+  drive_parameters_changed();
+}
+
+static void next_phase(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  c->phase = (commissioning_phase_t)((uint16_t)c->phase + 1u);
+  c->tick = 0;
+  c->adapting = c->phase == COMMISSIONING_TURN;
+  if (c->phase == COMMISSIONING_MAP) c->mismatch_q30 = d->trim.mismatch_q30;
+  if (c->phase != COMMISSIONING_EVALUATE) return;
+  hal_pwm_gates_off();
+  d->control.closed = false;
+  c->turning = false;
+  c->requested = false;
+  c->evaluate = true;
+}
+
+void commissioning_step(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  if (c->phase == COMMISSIONING_EVALUATE) {
+    if (!c->evaluate) drive_enter(d, DRIVE_READY);
+    return;
+  }
+  const bool done = phases[c->phase].step(d);
+  c->tick++;
+  if (done) next_phase(d);
+}
+
+void commissioning_service(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  if (c->outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT) {
+    c->outcome = COMMISSIONING_FAILED;
+    c->requested = false;
+    c->phase = COMMISSIONING_IDLE;
+    drive_parameters_changed();
+  }
+  if (c->solve_motion) {
+    commissioning_solve_motion(c);
+    c->solve_motion = false;
+  }
+  if (!c->evaluate) return;
+  c->outcome = commissioning_conclude(c, &report);
+  c->evaluate = false;
+}
+
+void drive_command_commission(void) { drive.request.commission = true; }
+
+commissioning_outcome_t drive_commissioning_outcome(void) { return drive.commissioning.outcome; }
+
+commissioning_phase_t drive_commissioning_phase(void) { return drive.commissioning.phase; }
+
+// Share of the phase that is done, per mille.
+static int32_t within_phase(const commissioning_t* c) {
+  if (c->phase == COMMISSIONING_STAIRCASE) return (int32_t)c->staircase.index * 1000 / (int32_t)STAIRCASE_LEVELS;
+  if (c->phase == COMMISSIONING_MAP) return (int32_t)c->map.level * 1000 / (int32_t)MAP_LEVELS;
+  if (c->phase == COMMISSIONING_SPIN) return (int32_t)c->spin.leg * 250;
+  return 0;
+}
+
+int32_t drive_commissioning_progress(void) {
+  const commissioning_t* const c = &drive.commissioning;
+  if (c->phase == COMMISSIONING_EVALUATE) return 1000;
+  int32_t before = 0;
+  for (uint16_t k = 0; k < (uint16_t)c->phase; k++) before += phases[k].share;
+  return before + within_phase(c) * phases[c->phase].share / 1000;
+}
+
+uint16_t drive_commissioning_count(void) { return report.count; }
+
+commissioning_result_t drive_commissioning_result(uint16_t index) {
+  static const commissioning_result_t none = {0, 0, 0, VERDICT_NOT_MEASURED};
+  return (index < report.count) ? report.list[index] : none;
+}

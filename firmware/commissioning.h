@@ -1,0 +1,96 @@
+// Commissioning: what the drive finds out about the machine and the inverter it is connected to.
+//
+// After the ordinary start (axis and polarity) the state DRIVE_COMMISSION goes through the phases below, first at
+// standstill with the shaft held in place by its own control, at last in a short spin. The interrupt only keeps sums;
+// when the gates are off again the background level turns them into parameters, checks each for plausibility and writes
+// those that pass. What each phase measures and how it is evaluated stands at the head of its file; docs/commissioning.
+//
+// Cost: some 300 instructions per period beyond those of the start, about 900 words of sums.
+
+#ifndef STILLSPIN_FIRMWARE_COMMISSIONING_H
+#define STILLSPIN_FIRMWARE_COMMISSIONING_H
+
+#include "firmware/commissioning_tensor.h"
+#include "firmware/drive_api.h"
+
+#define STAIRCASE_LEVELS 14u
+#define MAP_LEVELS 4u
+#define MAP_GROUPS 4u
+#define SPIN_STATIONS 3u
+#define SPIN_RAMPS 2u
+
+/// One level of the DC staircase. Sums over periods and over windows; currents and voltages Q20.
+typedef struct {
+  int64_t current, factor, command;  // per period
+  int64_t window_current, window_factor, residual, sag;
+  int32_t periods, windows;
+  int32_t link_q16;
+} staircase_level_t;
+
+typedef struct {
+  staircase_level_t level[STAIRCASE_LEVELS];
+  uint16_t index;
+  int32_t tick;
+} staircase_t;
+
+/// Periods of one sign of the torque in one kind of train (group: 2 * mirrored train + negative sign).
+typedef struct {
+  tensor_sums_t tensor;
+  int64_t position;  // predicted displacement, binary angle
+  int64_t current;   // i_q, Q20
+} map_group_t;
+
+typedef struct {
+  map_group_t group[MAP_LEVELS][MAP_GROUPS];
+  uint16_t level;
+  uint16_t train;   // trains begun at this level
+  int32_t tick;     // in the train, or in the pause after it
+  int32_t segment;  // length of a segment, periods
+  bool pause;
+  int32_t plan[2];   // i_q reference: that of now, and the one before it
+  int32_t speed_q8;  // predicted motion in this train: binary angle per period
+  int32_t position_bam;
+} map_t;
+
+/// Means at a steady speed.
+typedef struct {
+  int64_t speed, voltage_q, current_q, current_d;
+  int32_t periods;
+} spin_station_t;
+
+/// Between two stations.
+typedef struct {
+  int64_t speed, current_q;
+  int32_t periods;
+} spin_ramp_t;
+
+typedef struct {
+  spin_station_t station[SPIN_STATIONS];
+  spin_ramp_t ramp[SPIN_RAMPS];
+  uint16_t leg;
+  int32_t tick;
+} spin_t;
+
+typedef struct {
+  commissioning_phase_t phase;
+  commissioning_outcome_t outcome;
+  int32_t tick;           // periods in this phase
+  bool requested;         // the start that is under way leads here
+  bool adapting;          // the model follows the windows
+  bool predicting;        // the angle runs ahead on the torque alone
+  bool turning;           // speed control is active
+  bool solve_motion;      // the background level owes acceleration and torque constant from the spin
+  bool evaluate;          // the sums are complete and the gates are off
+  uint32_t target_bam;    // where the shaft is held
+  uint32_t goal_bam;      // and where it is to be taken
+  int32_t torque_q24;     // 3/2 p flux and
+  int32_t accel_q12;      // acceleration per torque, as the spin found them (machine_model.h)
+  int32_t mismatch_q30;   // of the current sensors, as taken off the samples meanwhile
+  machine_model_t model;  // the one whose slopes were taken off the sums
+  tensor_sums_t unsaturated;
+  staircase_t staircase;
+  map_t map;
+  spin_t spin;
+} commissioning_t;
+
+#endif

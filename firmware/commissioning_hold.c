@@ -1,0 +1,67 @@
+// Holds the shaft in place while currents are measured, and takes it to a favourable place first.
+//
+// A free shaft would follow cogging, loads and every error of the angle, and with negative i_d the stator's field even
+// pushes it away. So the position is controlled by i_q, from AVV's angle and speed: a second-order law of 60 rad/s, far
+// below the observer's bandwidth, with the observer's load fed forward. The torque is known because the polarity is.
+//
+// The place is the nearest multiple of 60 degrees electrical, at most 7.5 degrees mechanical away with four pole pairs:
+// with i_d there, no phase carries less than half of it, so no phase current changes its sign within the ripple.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+
+#define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
+#define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us
+#define SIXTH_BAM 715827883L
+#define TURN_STEP_BAM 238609L  // 0.02 degrees electrical per period
+#define SETTLE_PERIODS 6000
+#define SLOPE_STEPS 64  // periods for the current limit
+
+void commissioning_set_d(drive_t* d, int32_t level_q20) {
+  const int32_t step = parameters.current_limit / SLOPE_STEPS;
+  dq_t* const r = &d->control.reference_q20;
+  r->d += q_clamp(level_q20 - r->d, -step, step);
+}
+
+void commissioning_hold(drive_t* d) {
+  const estimator_output_t* const p = &d->position.used;
+  const int32_t error_bam = angle_diff_bam(d->commissioning.target_bam, p->angle_bam);
+  const int32_t wanted_q8 =
+      q_sub_sat(q_mul_sat(error_bam, STIFFNESS_Q30, 22), q_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
+  const int32_t torque_q20 = q_mul_sat(q_add_sat(wanted_q8, p->load_accel_q8), d->config.torque_per_accel_q24, 20);
+  const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
+  const int32_t limit = parameters.current_limit / 4;
+  d->control.reference_q20.q = q_clamp(current, -limit, limit);
+}
+
+bool commissioning_turn(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  if (c->tick == 0) {
+    c->target_bam = d->position.used.angle_bam;
+    const int32_t sixths = (int32_t)q_div((int32_t)(c->target_bam / 2u), SIXTH_BAM / 2, 0);
+    c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
+  }
+  const int32_t left = angle_diff_bam(c->goal_bam, c->target_bam);
+  c->target_bam += (uint32_t)q_clamp(left, -TURN_STEP_BAM, TURN_STEP_BAM);
+  commissioning_hold(d);
+  if (c->tick < SETTLE_PERIODS) return false;
+  c->model = d->model;
+  machine_model_move(&c->model, 0);
+  return true;
+}
+
+// Windows under opposite vectors, as the alternating layout has them: what is common to both is then not the link.
+static bool opposite(const estimator_window_t* a, const estimator_window_t* b) {
+  const int32_t apart_q16 = 10L * 65536L;
+  return q_abs_sat(a->voltage_q16.alpha + b->voltage_q16.alpha) < apart_q16 &&
+         q_abs_sat(a->voltage_q16.beta + b->voltage_q16.beta) < apart_q16;
+}
+
+bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {
+  const estimator_window_t* const w = d->samples.windows;
+  if (d->samples.count != 2u || !opposite(&w[0], &w[1])) return false;
+  const estimator_output_t* const p = &d->position.used;
+  *first = deviation_evaluate(&d->commissioning.model, &w[0], p->angle_bam, p->speed_bpp);
+  *second = deviation_evaluate(&d->commissioning.model, &w[1], p->angle_bam, p->speed_bpp);
+  return true;
+}

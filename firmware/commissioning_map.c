@@ -1,0 +1,157 @@
+// The machine under torque current: incremental inductances and the turn of the saliency axis at four levels of i_q.
+//
+// The shaft is free, so the torque comes in trains that put it back: four segments + - - + of i_q, and the mirror image
+// - + + - at the next turn. Position and speed are those of the beginning again at the end of each. Within a train the
+// angle is not corrected, it runs ahead on the torque: the windows are looked at in the frame of the *predicted* angle.
+// Four groups of periods are summed, sign of i_q times kind of train; each gives a tensor and so the direction of its
+// saliency axis in that frame. Within one kind of train,
+//   axis(+) - axis(-) = 2 turn + share * (displacement(+) - displacement(-))
+// with the groups' mean displacement; constants and whatever moves evenly fall out. `turn` is cross-saturation, `share`
+// what the prediction is wrong by. The two cannot be told apart this way, for the displacement follows the sign; so the
+// spin comes first, and flux over inertia, which is all the prediction needs, is known to a few parts in a thousand.
+// What still shows between the two kinds of train is a check of it.
+//
+// A segment is as long as it takes to move by about 6 degrees electrical; the current's ramps make it more. The first
+// part of every segment, in which the current still settles, is left out, the same part everywhere so that the groups'
+// instants lie symmetrically. The angle is not corrected again before the current is gone, for its turn would be taken
+// for motion. Between trains the shaft is held for 60 ms.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+
+#define EXCURSION_BAM 71582788L  // 6 degrees
+#define SEGMENTS 4
+#define SEGMENT_MIN 40
+#define SEGMENT_MAX 90
+#define SETTLE_PERIODS 20
+#define PAUSE_PERIODS 600
+#define STILL_PERIODS 300
+#define WANTED_PERIODS 4000  // in each group at the first level, fewer above: the turn grows
+#define PLACES 8u
+#define PLACE_BAM 536870912uL  // 45 degrees
+#define MOVE_PERIODS 300
+#define SLOPE_STEPS 12  // periods for the current limit
+
+static const int16_t signs[SEGMENTS] = {1, -1, -1, 1};
+
+static int32_t level_q20(uint16_t level) {
+  return parameters.current_limit / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
+}
+
+// Periods in which a reversal of the current settles.
+static int32_t blank(uint16_t level) {
+  return (2 * SLOPE_STEPS * ((int32_t)level + 1)) / (int32_t)MAP_LEVELS + SETTLE_PERIODS;
+}
+
+static void begin_train(drive_t* d) {
+  map_t* const m = &d->commissioning.map;
+  const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), level_q20(m->level), 28);
+  const int32_t accel_q8 = q_max(q_mul_sat(torque_q16, d->model.accel_q12, 20), 1);
+  const int32_t square = q_div(EXCURSION_BAM, accel_q8, 8);
+  m->segment = q_clamp((int32_t)q_sqrt32((uint32_t)square), SEGMENT_MIN, SEGMENT_MAX);
+  m->segment = q_max(m->segment, blank(m->level) + 14);
+  m->pause = false;
+  m->tick = 0;
+  m->speed_q8 = 0;
+  m->position_bam = 0;
+  m->train++;
+  d->commissioning.predicting = true;
+}
+
+// Follows what the current of the last period did to the shaft.
+static void predict(const drive_t* d, map_t* m) {
+  const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
+  m->speed_q8 = q_add_sat(m->speed_q8, q_mul_sat(torque_q16, d->model.accel_q12, 20));
+  m->position_bam += q_shr(m->speed_q8, 8);
+}
+
+static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
+  deviation_t first;
+  deviation_t second;
+  if (!commissioning_pair(d, &first, &second)) return;
+  const uint16_t mirrored = (uint16_t)(m->train % 2u);
+  const bool negative = (signs[segment] < 0) != (mirrored != 0u);
+  map_group_t* const g = &m->group[m->level][2u * mirrored + (negative ? 1u : 0u)];
+  tensor_add(&g->tensor, &first, &second);
+  g->position += m->position_bam;
+  g->current += d->control.measured_q20.q;
+}
+
+// The second of two equal segments need not settle.
+static bool usable(const map_t* m, uint16_t segment) {
+  const int32_t inside = m->tick - (int32_t)segment * m->segment;
+  return segment == 2u || inside >= blank(m->level);
+}
+
+// The current follows the plan two periods later: the plan's slope goes to the voltage at once, its value to the
+// controller with that delay. So the integrator has nothing to do and the current does not overshoot.
+static void follow(drive_t* d, map_t* m, int32_t target_q20) {
+  const int32_t step = parameters.current_limit / SLOPE_STEPS;
+  const int32_t change = q_clamp(target_q20 - m->plan[0], -step, step);
+  d->control.reference_q20.q = m->plan[1];
+  m->plan[1] = m->plan[0];
+  m->plan[0] += change;
+  d->control.feed_q16 = q_div(change, d->model.yq_q30, 26);
+}
+
+static void run_train(drive_t* d, map_t* m) {
+  const uint16_t segment = (uint16_t)(m->tick / m->segment);
+  const bool tail = segment >= SEGMENTS;
+  predict(d, m);
+  if (!tail && usable(m, segment)) add_period(d, m, segment);
+  const int32_t sign = tail ? 0 : ((m->train % 2u) != 0u) ? -signs[segment] : signs[segment];
+  follow(d, m, sign * level_q20(m->level));
+  m->tick++;
+  if (m->tick < SEGMENTS * m->segment + blank(m->level)) return;
+  m->pause = true;
+  m->tick = 0;
+  d->commissioning.predicting = false;
+}
+
+static bool level_complete(const map_t* m) {
+  if (m->train % (2u * PLACES) != 0u) return false;
+  for (uint16_t k = 0; k < MAP_GROUPS; k++) {
+    if (m->group[m->level][k].tensor.count < WANTED_PERIODS / ((int32_t)m->level + 1)) return m->train >= 600u;
+  }
+  return true;
+}
+
+// Before every second train the shaft moves on by 45 degrees electrical: over eight places cogging averages out, and so
+// does a mismatch of the sensors that changes with the current (the converter's bend).
+static void move_on(drive_t* d, const map_t* m) {
+  if (m->train % 2u == 0u && m->tick < MOVE_PERIODS) d->commissioning.target_bam += PLACE_BAM / MOVE_PERIODS;
+}
+
+// The last part of a pause, at rest, is the map's point without current.
+static void add_pause(drive_t* d) {
+  deviation_t first;
+  deviation_t second;
+  if (commissioning_pair(d, &first, &second)) tensor_add(&d->commissioning.unsaturated, &first, &second);
+}
+
+bool commissioning_map(drive_t* d) {
+  map_t* const m = &d->commissioning.map;
+  if (d->commissioning.tick == 0) {
+    static const map_t empty = {0};
+    *m = empty;
+    m->pause = true;
+    d->commissioning.target_bam = d->position.used.angle_bam;
+    tensor_reset(&d->commissioning.unsaturated);
+  }
+  if (!m->pause) {
+    run_train(d, m);
+    return false;
+  }
+  const int32_t length = (m->train % 2u == 0u) ? MOVE_PERIODS + PAUSE_PERIODS : PAUSE_PERIODS;
+  move_on(d, m);
+  commissioning_hold(d);
+  if (m->tick > length - STILL_PERIODS) add_pause(d);
+  if (m->tick++ < length) return false;
+  if (level_complete(m)) {
+    m->level++;
+    m->train = 0;
+  }
+  if (m->level >= MAP_LEVELS) return true;
+  begin_train(d);
+  return false;
+}

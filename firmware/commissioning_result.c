@@ -1,0 +1,219 @@
+#include "firmware/commissioning_result.h"
+
+#include <stddef.h>
+
+#include "firmware/parameters.h"
+
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,
+enum {
+#include "firmware/parameter_list.h"
+  ID_NONE = 0
+};
+#undef PARAMETER
+
+#define RMS_MAX_Q16 16384L          // 0.25 V: what a level may lie off the fitted line
+#define DROP_CHANGE_MAX_Q16 98304L  // 1.5 V
+#define EDGE_CHANGE_MAX_Q16 65536L  // 1 us
+#define TURN_MAX_BAM 357913941L     // 30 degrees: beyond that next to no saliency is left
+#define CURRENT_SHARE 10            // a level's current is met within a tenth
+
+static commissioning_verdict_t worst(commissioning_verdict_t a, commissioning_verdict_t b) {
+  return (a != VERDICT_USED) ? a : b;
+}
+
+// Within a factor of the value so far, which comes from the nameplate.
+static commissioning_verdict_t near(int32_t value, int32_t before, int32_t factor) {
+  return (value / factor > before || value < before / factor) ? VERDICT_NAMEPLATE : VERDICT_USED;
+}
+
+static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
+  return (q_abs_sat(a - b) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
+}
+
+static const parameter_info_t* info_of(uint16_t id) {
+  for (uint16_t k = 0; k < parameter_count(); k++) {
+    if (parameter_info(k)->id == id) return parameter_info(k);
+  }
+  return NULL;
+}
+
+static void offer(commissioning_report_t* r, uint16_t id, int32_t value, commissioning_verdict_t verdict) {
+  const parameter_info_t* const info = info_of(id);
+  if (info == NULL || r->count >= COMMISSIONING_RESULTS) return;
+  const bool inside = value >= info->minimum && value <= info->maximum;
+  commissioning_result_t* const out = &r->list[r->count++];
+  out->id = id;
+  out->before = parameter_get(id);
+  out->value = value;
+  out->verdict = worst(verdict, inside ? VERDICT_USED : VERDICT_RANGE);
+}
+
+static commissioning_verdict_t judge_staircase(const staircase_values_t* v, commissioning_report_t* r) {
+  const parameters_t* const p = &parameters;
+  const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
+  const commissioning_verdict_t straight = (v->command_rms_q16 > RMS_MAX_Q16) ? VERDICT_SPREAD : VERDICT_USED;
+  const commissioning_verdict_t quiet = (v->window_rms_q16 > RMS_MAX_Q16) ? VERDICT_SPREAD : VERDICT_USED;
+  const int32_t winding = v->resistance_q24 - p->device_resistance;
+  const commissioning_verdict_t resistance = worst(worst(measured, straight), near(winding, p->stator_resistance, 3));
+  offer(r, ID_stator_resistance, winding, resistance);
+  const bool big_drop = q_abs_sat(v->drop_error_q16) > DROP_CHANGE_MAX_Q16;
+  const commissioning_verdict_t drop = worst(worst(measured, quiet), big_drop ? VERDICT_NAMEPLATE : VERDICT_USED);
+  offer(r, ID_device_drop, p->device_drop + v->drop_error_q16, drop);
+  // Volts over the link are a share of the period of 100 us.
+  const int32_t edge_q16 = q_mul_sat(q_div(v->edge_error_q16, v->link_q16, 16), 100L * 65536L, 16);
+  const bool big_edge = q_abs_sat(edge_q16) > EDGE_CHANGE_MAX_Q16;
+  const commissioning_verdict_t edge = worst(worst(resistance, drop), big_edge ? VERDICT_NAMEPLATE : VERDICT_USED);
+  offer(r, ID_turn_on_delay, p->turn_on_delay + edge_q16, edge);
+  return resistance;
+}
+
+static commissioning_verdict_t judge_unsaturated(const map_values_t* v, int32_t mismatch_q30,
+                                                 commissioning_report_t* r) {
+  const parameters_t* const p = &parameters;
+  const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
+  const commissioning_verdict_t order = (v->lqq_q20 < v->ldd_q20) ? VERDICT_NOT_PHYSICAL : VERDICT_USED;
+  const commissioning_verdict_t both = worst(measured, order);
+  const commissioning_verdict_t d = worst(both, near(v->ldd_q20, p->inductance_d, 2));
+  const commissioning_verdict_t q = worst(both, near(v->lqq_q20, p->inductance_q, 2));
+  offer(r, ID_inductance_d, v->ldd_q20, worst(d, (q == VERDICT_USED) ? d : VERDICT_DEPENDS));
+  offer(r, ID_inductance_q, v->lqq_q20, worst(q, (d == VERDICT_USED) ? q : VERDICT_DEPENDS));
+  offer(r, ID_sensor_mismatch, q_mul_sat(mismatch_q30, 100L, 14), measured);  // percent, Q16
+  return worst(d, q);
+}
+
+static int32_t level_q20(uint16_t level) {
+  return parameters.current_limit / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
+}
+
+static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_t level,
+                        commissioning_verdict_t unsaturated, commissioning_report_t* r) {
+  const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
+  const commissioning_verdict_t current = agree(level_q20(level), v->current_q20, CURRENT_SHARE);
+  const bool singular = v->ldd_q20 <= 0 || v->lqq_q20 <= 0 || q_abs_sat(v->turn_bam) > TURN_MAX_BAM;
+  commissioning_verdict_t all = worst(measured, singular ? VERDICT_NOT_PHYSICAL : VERDICT_USED);
+  all = worst(all, (current == VERDICT_USED) ? current : VERDICT_NOT_MEASURED);
+  all = worst(all, (unsaturated == VERDICT_USED) ? unsaturated : VERDICT_DEPENDS);
+  const int32_t percent_d_q16 = q_mul_sat(q_div(v->ldd_q20, zero->ldd_q20, 24), 100L * 65536L, 24);
+  const int32_t percent_q_q16 = q_mul_sat(q_div(v->lqq_q20, zero->lqq_q20, 24), 100L * 65536L, 24);
+  offer(r, (uint16_t)(ID_lqq_1 + level), percent_q_q16, all);
+  offer(r, (uint16_t)(ID_ldd_1 + level), percent_d_q16, all);
+  offer(r, (uint16_t)(ID_ldq_1 + level), v->ldq_q20, all);
+}
+
+static void judge_map(const commissioning_t* c, const map_values_t* zero, commissioning_verdict_t unsaturated,
+                      commissioning_report_t* r) {
+  offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
+  map_values_t level[MAP_LEVELS];
+  int32_t ldq_q20[MAP_LEVELS];
+  map_values_t below = *zero;
+  for (uint16_t k = 0; k < MAP_LEVELS; k++) {
+    level[k] = map_solve(c->map.group[k], &c->model);
+    const map_values_t measured = level[k];
+    map_refer(&level[k], &below, level_q20(k));
+    ldq_q20[k] = level[k].ldq_q20;
+    below = measured;
+  }
+  const bool smooth = map_smooth(ldq_q20);
+  for (uint16_t k = 0; k < MAP_LEVELS; k++) {
+    level[k].ldq_q20 = ldq_q20[k];
+    judge_level(&level[k], zero, k, unsaturated, r);
+    if (!smooth) r->list[r->count - 1u].verdict = worst(r->list[r->count - 1u].verdict, VERDICT_SPREAD);
+  }
+}
+
+void commissioning_solve_motion(commissioning_t* c) {
+  const spin_values_t v = spin_solve(&c->spin, c->model.rs_q24, c->model.pole_pairs);
+  const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
+  c->torque_q24 = c->model.torque_q24;
+  c->accel_q12 = c->model.accel_q12;
+  if (!v.valid || v.flux_q28 <= 0 || near(v.flux_q28, c->model.flux_q28, 2) != VERDICT_USED) return;
+  if (inertia_q24 <= 0 || near(inertia_q24, parameters.inertia, 20) != VERDICT_USED) return;
+  c->torque_q24 = q_mul_sat(c->model.torque_q24, q_div(v.flux_q28, c->model.flux_q28, 24), 24);
+  c->accel_q12 = q_mul_sat(c->model.accel_q12, q_div(parameters.inertia, inertia_q24, 24), 24);
+}
+
+// Flux over inertia, from how far the torque trains moved the shaft, is a second way to the inertia.
+static int32_t inertia_from_trains(const commissioning_t* c, const spin_values_t* v) {
+  const map_values_t top = map_solve(c->map.group[MAP_LEVELS - 1u], &c->model);
+  const int32_t moved_q24 = q_max(16777216L + top.share_q24, 1);
+  return q_div(v->inertia_up_q24 / 2 + v->inertia_down_q24 / 2, moved_q24, 24);
+}
+
+static void judge_spin(const commissioning_t* c, commissioning_verdict_t resistance, commissioning_report_t* r) {
+  const parameters_t* const p = &parameters;
+  const int32_t winding = (resistance == VERDICT_USED) ? r->list[0].value : p->stator_resistance;
+  const spin_values_t v = spin_solve(&c->spin, winding + p->device_resistance, c->model.pole_pairs);
+  const commissioning_verdict_t measured = v.valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
+  commissioning_verdict_t flux = worst(measured, agree(v.flux_q28, v.flux_low_q28, 10));
+  flux = worst(flux, (v.flux_q28 <= 0) ? VERDICT_NOT_PHYSICAL : near(v.flux_q28, p->magnet_flux, 2));
+  offer(r, ID_magnet_flux, v.flux_q28, flux);
+  const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
+  commissioning_verdict_t inertia = worst(measured, agree(v.inertia_up_q24, v.inertia_down_q24, 5));
+  inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, &v), 4));
+  inertia = worst(inertia, (inertia_q24 <= 0) ? VERDICT_NOT_PHYSICAL : near(inertia_q24, p->inertia, 20));
+  inertia = worst(inertia, (flux == VERDICT_USED) ? flux : VERDICT_DEPENDS);
+  offer(r, ID_inertia, inertia_q24, inertia);
+  offer(r, ID_friction, v.friction_q24, worst(inertia, (v.friction_q24 < 0) ? VERDICT_NOT_PHYSICAL : VERDICT_USED));
+}
+
+// Currents that are measured wrong spoil everything.
+static void judge_sensors(commissioning_report_t* r) {
+  commissioning_verdict_t sensors = VERDICT_USED;
+  for (uint16_t k = 0; k < r->count; k++) {
+    if (r->list[k].id == ID_sensor_mismatch) sensors = r->list[k].verdict;
+  }
+  if (sensors == VERDICT_USED) return;
+  for (uint16_t k = 0; k < r->count; k++) r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+}
+
+// Values that pass one by one may still not fit together; then none of them is used.
+static void write(commissioning_report_t* r) {
+  for (uint16_t k = 0; k < r->count; k++) {
+    if (r->list[k].verdict == VERDICT_USED) (void)parameter_set(r->list[k].id, r->list[k].value);
+  }
+  if (parameter_conflict() == NULL) return;
+  for (uint16_t k = 0; k < r->count; k++) {
+    (void)parameter_set(r->list[k].id, r->list[k].before);
+    r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+  }
+}
+
+commissioning_outcome_t commissioning_conclude(const commissioning_t* c, commissioning_report_t* report) {
+  report->count = 0;
+  const staircase_values_t stairs = staircase_solve(&c->staircase, &c->model);
+  const map_values_t zero = unsaturated_solve(&c->unsaturated, &c->model);
+  const int32_t mismatch_q30 = c->mismatch_q30 + unsaturated_mismatch_q30(&c->unsaturated, &c->model);
+  const commissioning_verdict_t resistance = judge_staircase(&stairs, report);
+  const commissioning_verdict_t unsaturated = judge_unsaturated(&zero, mismatch_q30, report);
+  judge_map(c, &zero, unsaturated, report);
+  judge_spin(c, resistance, report);
+  judge_sensors(report);
+  write(report);
+  for (uint16_t k = 0; k < report->count; k++) {
+    if (report->list[k].verdict != VERDICT_USED) return COMMISSIONING_PARTLY;
+  }
+  return COMMISSIONING_DONE;
+}
+
+const char* drive_commissioning_verdict_words(commissioning_verdict_t verdict) {
+  static const char* const words[] = {
+      "plausible, in use",
+      "not measured: too few usable periods, or the current did not reach its level",
+      "the points scatter too much around the fitted line: current too small, shaft not at rest, or a loose contact",
+      "too far from the value given before: check nameplate, connection and current range",
+      "two ways of measuring it disagree: load on the shaft, or a wrong pole pair number",
+      "outside of the parameter's range",
+      "no machine has this: check the order of the phases and the current sensors",
+      "rests on another value that was refused"};
+  return (verdict <= VERDICT_DEPENDS) ? words[verdict] : "";
+}
+
+const char* drive_commissioning_phase_words(commissioning_phase_t phase) {
+  static const char* const words[] = {"offsets, axis and polarity",
+                                      "turning to a favourable angle",
+                                      "DC staircase: resistance, drop, dead time",
+                                      "spin: flux linkage, inertia, friction",
+                                      "inductances under torque current",
+                                      "evaluation"};
+  return (phase <= COMMISSIONING_EVALUATE) ? words[phase] : "";
+}

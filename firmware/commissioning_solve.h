@@ -1,0 +1,56 @@
+// From the sums of a commissioning to physical values, at the background level. No state, no parameters: sums in,
+// values out, so that tests can feed them sums of a made-up machine.
+
+#ifndef STILLSPIN_FIRMWARE_COMMISSIONING_SOLVE_H
+#define STILLSPIN_FIRMWARE_COMMISSIONING_SOLVE_H
+
+#include "firmware/commissioning.h"
+
+typedef struct {
+  bool valid;
+  int32_t resistance_q24;                   // winding and devices, ohm
+  int32_t drop_error_q16;                   // true device drop less the assumed one, V
+  int32_t edge_error_q16;                   // voltage lost at the edges beyond what the assumed delays explain, V
+  int32_t command_rms_q16, window_rms_q16;  // what the two fits leave over, V
+  int32_t link_q16;                         // mean DC link, V
+} staircase_values_t;
+
+/// Inductances in mH, Q20.
+typedef struct {
+  bool valid;
+  int32_t ldd_q20, lqq_q20, ldq_q20;
+  int32_t turn_bam;     // of the saliency axis at +i_q
+  int32_t share_q24;    // by which the shaft moved more than predicted, as a share
+  int32_t current_q20;  // mean |i_q|, A
+} map_values_t;
+
+typedef struct {
+  bool valid;
+  int32_t flux_q28;                          // Vs
+  int32_t flux_low_q28;                      // from the low speed alone: what offsets are worth
+  int32_t friction_q24;                      // N m s
+  int32_t inertia_up_q24, inertia_down_q24;  // kg m^2
+} spin_values_t;
+
+/// m: the model whose slopes were taken off; its resistance includes the devices'.
+staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* m);
+
+/// Without current: ldq and turn are zero.
+map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m);
+
+map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_t* m);
+
+/// Mutual inductances at the four levels, mH Q20, as an odd function a i + b i^3 of the current, which they are in any
+/// machine at i_d = 0. Replaces them by the fitted ones and returns true when those lie within a tenth of the largest.
+bool map_smooth(int32_t ldq_q20[MAP_LEVELS]);
+
+/// Moves a level's inductances to the current that was meant, along the line from the level below.
+void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20);
+
+/// resistance_q24: of winding and devices, ohm.
+spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t pole_pairs);
+
+/// Mismatch g of the current sensors beyond the one already taken off, Q30.
+int32_t unsaturated_mismatch_q30(const tensor_sums_t* s, const machine_model_t* m);
+
+#endif

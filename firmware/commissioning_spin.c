@@ -1,0 +1,94 @@
+// A spin: flux linkage from the EMF, inertia from the torque it takes to change the speed, friction from steady speeds.
+//
+// Steady low, ramp up, steady high, ramp down, steady low again, stop. The differences between the steady speeds are
+// free of what does not turn: drops, dead time, offsets. The ramps begin and end at steady speed, so that lags of the
+// estimators do not count: inertia is the momentum that went in, less friction, over the change of speed.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/position.h"
+
+#define SETTLE_PERIODS 4000
+#define STATION_PERIODS 10000
+#define STILL_PERIODS 3000
+#define RAMP_PERIODS 3000  // for the whole speed
+
+typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
+
+static void add_station(const drive_t* d, spin_station_t* s) {
+  s->speed += d->position.used.speed_bpp;
+  s->voltage_q += d->control.command_q16.q;
+  s->current_q += d->control.measured_q20.q;
+  s->current_d += d->control.measured_q20.d;
+  s->periods++;
+}
+
+static void add_ramp(const drive_t* d, spin_ramp_t* s) {
+  s->speed += d->position.used.speed_bpp;
+  s->current_q += d->control.measured_q20.q;
+  s->periods++;
+}
+
+static int32_t target_rpm_q16(uint16_t leg) {
+  const int32_t high_q16 = q_shl_sat(q_min(parameters.spin_speed, parameters.speed_limit), 8);
+  if (leg == (uint16_t)LEG_STOP) return 0;
+  return (leg == (uint16_t)LEG_UP) ? high_q16 : high_q16 / 3;
+}
+
+static void enter_leg(drive_t* d, uint16_t leg) {
+  d->commissioning.spin.leg = leg;
+  d->commissioning.spin.tick = 0;
+}
+
+static void begin(drive_t* d) {
+  static const spin_t empty = {0};
+  d->commissioning.spin = empty;
+  d->commissioning.turning = true;
+  d->commissioning.adapting = true;
+  drive_hand_over(d, d->position.used.angle_bam, 0);
+  d->control.target_bpp = 0;
+  enter_leg(d, (uint16_t)LEG_FIRST);
+}
+
+// Moves the speed reference towards the leg's; true when it is there. The drive's own ramp may be slower still.
+static bool approach(drive_t* d) {
+  const int32_t high = q_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
+  const int32_t goal = q_mul_sat(target_rpm_q16(d->commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
+  int32_t* const target = &d->control.target_bpp;
+  *target += q_clamp(goal - *target, -(high / RAMP_PERIODS), high / RAMP_PERIODS);
+  return *target == goal && d->control.ramp.value == goal;
+}
+
+// Back to holding the shaft, with the motion that the background level makes of the sums.
+static bool hand_back(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  if (c->turning) {
+    c->turning = false;
+    c->solve_motion = true;
+    position_preset(d, d->position.used.angle_bam, 0);
+    d->control.reference_q20.d = 0;
+    c->target_bam = d->position.used.angle_bam;
+  }
+  commissioning_hold(d);
+  if (c->solve_motion) return false;
+  d->model.torque_q24 = c->torque_q24;
+  d->model.accel_q12 = c->accel_q12;
+  return true;
+}
+
+bool commissioning_spin(drive_t* d) {
+  spin_t* const s = &d->commissioning.spin;
+  if (d->commissioning.tick == 0) begin(d);
+  if (!d->commissioning.turning) return hand_back(d);
+  const bool arrived = approach(d);
+  if (s->leg == (uint16_t)LEG_STOP) {
+    s->tick += arrived ? 1 : 0;
+    return s->tick > STILL_PERIODS && hand_back(d);
+  }
+  const bool settling = s->tick < SETTLE_PERIODS;
+  if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
+  if (!settling) add_station(d, &s->station[s->leg]);
+  s->tick += arrived ? 1 : 0;
+  if (s->tick >= SETTLE_PERIODS + STATION_PERIODS) enter_leg(d, (uint16_t)(s->leg + 1u));
+  return false;
+}

@@ -1,0 +1,103 @@
+// DC staircase along the d-axis: stator resistance, device drop and the error of the assumed dead time.
+//
+// i_d makes no torque, so the shaft stays. At each level two independent equations hold for the d-axis, with the drop's
+// direction factor F (what 1 V in every phase, signed with its current, gives along d; 1.33 at a multiple of 60 deg):
+//   the voltage command:  v = R i + (drop error + dead-time error * Vdc / T) F     because the command passes the edges
+//   the windows:          -residual / Yd = (R - R model) i + (drop error) F        because they see no edge
+// "Error" is what is missing in the drive's own compensation (svpwm/dead_time.h), whose form is thus the form of the
+// fit. The command's mean is quiet: it gives R. The windows' mean is noisy but free of the edges: it gives the drop.
+// The pair of windows is under opposite vectors, so the mean link voltage and the error of Yd fall out of the sum. What
+// does not is the link's sag: it falls under one vector and rises under the other, and a window is not in the middle of
+// its vector. The link samples at the ends of the two windows tell by how much.
+//
+// Levels: seven from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase
+// has at least half of i_d, so that is twice the ripple and a fifth to spare). First with i_d > 0, then with i_d < 0;
+// the latter not beyond the field-weakening limit, for the magnets' sake. Resistance of winding and of devices cannot
+// be told apart this way: the devices' is kept as it was given.
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+
+#define SIDE (STAIRCASE_LEVELS / 2u)
+#define SETTLE_PERIODS 600
+#define LEVEL_PERIODS 8400  // a multiple of the six periods in which the excitation comes round
+
+// Peak to peak on the d-axis: two thirds of the link for the length of a pulse.
+static int32_t ripple_q20(const drive_t* d) {
+  const int32_t swing_q20 = q_mul(d->samples.link_q16, d->commissioning.model.yd_q30, 26);
+  return swing_q20 / 3 * 2 / 100 * (d->config.modulator.pulse_ticks / 100);
+}
+
+static int32_t level_q20(const drive_t* d, uint16_t index) {
+  const int32_t limit = parameters.current_limit;
+  const bool weakening = index >= SIDE;
+  const int32_t most = weakening ? q_clamp(parameters.weakening_limit, limit / 2, limit) : limit;
+  const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
+  if (least > most / 4 * 3) return 0;  // no room for a line: nothing will be found
+  const int32_t step = (most - least) / (int32_t)(SIDE - 1u);
+  return (weakening ? -1 : 1) * (least + step * (int32_t)(index % SIDE));
+}
+
+// What one volt of drop in every phase gives along the d-axis, Q20.
+static int32_t factor_q20(const drive_t* d, ab_t current_q20, rotation_t r) {
+  dead_time_config_t one_volt = d->config.dead_time;
+  one_volt.drop_q16 = 65536;
+  return frame_park(dead_time_drop_q16(&one_volt, current_q20), r).d * 16;
+}
+
+static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
+  const dq_t i = d->control.measured_q20;
+  l->current += i.d;
+  l->command += (int64_t)d->control.command_q16.d * 16;
+  l->factor += factor_q20(d, frame_inverse_park(i, r), r);
+  l->periods++;
+}
+
+// Difference of the link between the middles of the two windows, from that between their ends, as a voltage along d.
+static int32_t sag_q20(const drive_t* d, const deviation_t w[2]) {
+  const estimator_window_t* const e = d->samples.windows;
+  const svpwm_window_t* const p = d->modulation.sampled.windows;
+  const int32_t length = p[0].end - p[0].begin;
+  const int32_t middles = e[0].middle_tick - p[0].begin + e[1].middle_tick - p[1].begin;
+  const int32_t ends = middles + (e[0].span_ticks + e[1].span_ticks) / 2;
+  const int32_t at_ends_q16 = d->samples.link_end_q16[0] - d->samples.link_end_q16[1];
+  const int32_t at_middles_q16 = q_mul(at_ends_q16, q_div(middles - length, ends - length, 24), 24);
+  const int32_t share_q24 = q_div(w[0].voltage_q16.d / 2 - w[1].voltage_q16.d / 2, d->samples.link_q16, 24);
+  return q_mul(at_middles_q16, share_q24, 20);
+}
+
+static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
+  deviation_t w[2];
+  if (!commissioning_pair(d, &w[0], &w[1])) return;
+  for (uint16_t k = 0; k < 2u; k++) {
+    l->window_current += w[k].current_q20.d;
+    l->window_factor += factor_q20(d, d->samples.windows[k].current_q20, r);
+    l->residual += w[k].residual_q20.d;
+    l->windows++;
+  }
+  l->sag += sag_q20(d, w);
+}
+
+bool commissioning_climb(drive_t* d) {
+  commissioning_t* const c = &d->commissioning;
+  staircase_t* const s = &c->staircase;
+  if (c->tick == 0) {
+    static const staircase_t empty = {0};
+    *s = empty;
+  }
+  commissioning_hold(d);
+  const bool done = s->index >= STAIRCASE_LEVELS;
+  commissioning_set_d(d, done ? 0 : level_q20(d, s->index));
+  if (done) return d->control.reference_q20.d == 0 && s->tick++ > SETTLE_PERIODS;
+  staircase_level_t* const l = &s->level[s->index];
+  if (s->tick++ >= SETTLE_PERIODS) {
+    const rotation_t r = frame_rotation(d->position.used.angle_bam);
+    add_period(d, l, r);
+    add_windows(d, l, r);
+  }
+  if (s->tick < SETTLE_PERIODS + LEVEL_PERIODS) return false;
+  l->link_q16 = d->samples.link_q16;
+  s->index++;
+  s->tick = 0;
+  return false;
+}

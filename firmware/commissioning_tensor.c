@@ -1,0 +1,56 @@
+#include "firmware/commissioning_tensor.h"
+
+#include "firmware/commissioning_fit.h"
+
+#define TENTH_Q20 104858L         // 100 us in ms: mH = ms / (A per V and period)
+#define SPREAD_MIN_Q28 26843546L  // determinant of the normalised sums: a tenth of that of evenly spread vectors
+
+void tensor_reset(tensor_sums_t* s) {
+  static const tensor_sums_t none = {0, 0, 0, 0, 0, 0, 0, 0};
+  *s = none;
+}
+
+void tensor_add(tensor_sums_t* s, const deviation_t* first, const deviation_t* second) {
+  const dq_t v = {q_shr(first->voltage_q16.d - second->voltage_q16.d, 10),
+                  q_shr(first->voltage_q16.q - second->voltage_q16.q, 10)};
+  const dq_t r = {first->residual_q20.d - second->residual_q20.d, first->residual_q20.q - second->residual_q20.q};
+  s->vv_dd += (int64_t)v.d * v.d;
+  s->vv_dq += (int64_t)v.d * v.q;
+  s->vv_qq += (int64_t)v.q * v.q;
+  s->sv_dd += (int64_t)r.d * v.d;
+  s->sv_dq += (int64_t)r.d * v.q;
+  s->sv_qd += (int64_t)r.q * v.d;
+  s->sv_qq += (int64_t)r.q * v.q;
+  s->count++;
+}
+
+// One row of the quotient: (d, q) times the inverse of [a b; b c].
+static dq_t row(int64_t sd, int64_t sq, int64_t mean, dq_t abc_d, int32_t c_q28, int32_t det_q28) {
+  const int32_t e_d = fit_ratio(sd, mean, 16);
+  const int32_t e_q = fit_ratio(sq, mean, 16);
+  const dq_t top = {q_mul(e_d, c_q28, 28) - q_mul(e_q, abc_d.q, 28), q_mul(e_q, abc_d.d, 28) - q_mul(e_d, abc_d.q, 28)};
+  const dq_t y = {q_div(top.d, det_q28, 28), q_div(top.q, det_q28, 28)};
+  return y;
+}
+
+bool tensor_solve(const tensor_sums_t* s, const machine_model_t* m, tensor_axes_t* out) {
+  const int64_t mean = q_shr64(s->vv_dd + s->vv_qq, 1);
+  if (s->count == 0 || mean <= 0) return false;
+  const dq_t ab_q28 = {fit_ratio(s->vv_dd, mean, 28), fit_ratio(s->vv_dq, mean, 28)};
+  const int32_t c_q28 = fit_ratio(s->vv_qq, mean, 28);
+  const int32_t det_q28 = q_mul(ab_q28.d, c_q28, 28) - q_mul(ab_q28.q, ab_q28.q, 28);
+  if (det_q28 < SPREAD_MIN_Q28) return false;
+  dq_t slope_d = row(s->sv_dd, s->sv_dq, mean, ab_q28, c_q28, det_q28);
+  dq_t slope_q = row(s->sv_qd, s->sv_qq, mean, ab_q28, c_q28, det_q28);
+  slope_d.d += m->yd_q30;
+  slope_q.q += m->yq_q30;
+  const int32_t difference = slope_d.d - slope_q.q;
+  const int32_t twice_cross = slope_d.q + slope_q.d;
+  out->mean_q30 = (slope_d.d + slope_q.q) / 2;
+  out->half_q30 = q_hypot(difference, twice_cross) / 2;
+  out->axis_bam = (int32_t)q_atan2(twice_cross, difference) / 2;
+  out->across_q30 = (slope_q.d - slope_d.q) / 2;
+  return true;
+}
+
+int32_t tensor_inductance_q20(int32_t y_q30) { return q_div(TENTH_Q20, y_q30, 30); }

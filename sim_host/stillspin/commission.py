@@ -1,0 +1,125 @@
+"""Commissioning: the firmware's own identification of machine and inverter, and the file of what it found."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from stillspin import core, toml_table
+from stillspin.core import Entry, NativeCore
+from stillspin.errors import CampaignError, InputError
+from stillspin.profile import Changes, Profile, merged
+
+LIMIT = 180.0
+"""Simulated seconds after which a commissioning is given up."""
+
+
+@dataclass(frozen=True)
+class Value:
+    """One identified firmware parameter, in the unit of the parameter table."""
+
+    name: str
+    unit: str
+    decimals: int
+    before: float
+    value: float
+    used: bool
+    words: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a commissioning found. `duration`: seconds of the drive's time."""
+
+    values: tuple[Value, ...]
+    duration: float
+
+    @property
+    def refused(self) -> tuple[Value, ...]:
+        """Values that the drive did not believe."""
+        return tuple(value for value in self.values if not value.used)
+
+
+def run(
+    native: NativeCore, profile: Profile, changes: Changes, seed: int, progress: Callable[[float, str], bool] | None
+) -> Result:
+    """Commission the virtual drive.
+
+    Args:
+        native: the native module.
+        profile: the plant, and what the drive is told of it beforehand.
+        changes: of either.
+        seed: of the noise.
+        progress: gets the share done (0 … 1) and the phase in words; false breaks off.
+
+    Raises:
+        InputError: parameters that do not fit together.
+        CampaignError: it broke off, with the reason.
+    """
+    parameters = {**profile.parameters, **changes.parameters}
+    try:
+        native.check_parameters(parameters)
+        result = native.commission(
+            plant=merged(profile.plant, changes.plant),
+            motor="A",
+            parameters=parameters,
+            limit=LIMIT,
+            seed=seed,
+            progress=progress,
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    if not result.completed:
+        raise CampaignError(f"the commissioning broke off: {result.reason}")
+    rows = tuple(Value(**{key: row[key] for key in Value.__annotations__}) for row in result.values)
+    return Result(rows, float(result.stats["commissioning_seconds"]))
+
+
+def write(path: Path, result: Result, about: Sequence[str]) -> None:
+    """Write the values in use as a parameter file; it appears whole or not at all.
+
+    Args:
+        path: the file, replaced when it exists.
+        result: what was found.
+        about: lines of comment at its head.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    lines = [f"# {line}" for line in about]
+    lines += ["", "[parameters]"]
+    for value in result.values:
+        if value.used:
+            unit = f"  # {value.unit}" if value.unit else ""
+            lines.append(f"{value.name} = {value.value:.{value.decimals + 2}f}{unit}")
+    try:
+        with tempfile.NamedTemporaryFile("w", dir=path.absolute().parent, delete=False, encoding="utf-8") as file:
+            file.write("\n".join(lines) + "\n")
+        Path(file.name).chmod(0o644)
+        Path(file.name).replace(path)
+    except OSError as error:
+        raise InputError(f"--out {path}: cannot be written ({error.strerror})") from error
+
+
+def check_target(path: Path) -> None:
+    """Complain about a place that cannot be written before the work is done rather than after it."""
+    if path.is_dir():
+        raise InputError(f"--out {path}: is a directory, must be a file")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"--out {path}: there is no directory {path.parent}")
+
+
+def load(path: Path, known: Mapping[str, Entry]) -> dict[str, float]:
+    """Firmware parameters from a parameter file.
+
+    Raises:
+        InputError: not found, not TOML, an unknown parameter or a value that it does not take.
+    """
+    table = toml_table.read(path)
+    values = table.table("parameters").items()
+    table.finish()
+    if not values:
+        raise InputError(f"{path}: has no [parameters]")
+    return {name: core.parameter(known, name, value, f"{path}: {name}") for name, value in values.items()}

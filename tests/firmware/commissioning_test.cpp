@@ -1,0 +1,107 @@
+// The command: where it may be given, how it is broken off, and what becomes of the parameters then.
+
+#include <cstring>
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/commissioning_result.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+class Commissioning : public Drive {
+ protected:
+  void begin() {
+    parameters.polarity_check = 0;  // it needs a machine behind it
+    make_ready();
+    drive_command_commission();
+    periods(350);
+    ASSERT_EQ(drive.state, DRIVE_COMMISSION);
+  }
+};
+
+TEST_F(Commissioning, FollowsTheStart) {
+  parameters.polarity_check = 0;
+  make_ready();
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_NONE);
+  drive_command_commission();
+  periods(2);
+  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
+  periods(350);
+  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_TURN);
+  EXPECT_TRUE(board.gates_on);
+  EXPECT_EQ(parameter_set(2, parameter_get(2)), SET_RUNNING) << "no stopped parameter under way";
+}
+
+TEST_F(Commissioning, IsTakenInReadyOnly) {
+  make_run();
+  drive_command_commission();
+  periods(20);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_NONE);
+}
+
+TEST_F(Commissioning, AStartIsStillAStart) {
+  begin();
+  drive_command_stop();
+  periods(5);
+  drive.request.reload = false;  // the background level's part
+  drive_command_start();
+  periods(350);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
+TEST_F(Commissioning, AStopBreaksItOffAndChangesNothing) {
+  begin();
+  const parameters_t before = parameters;
+  const std::int16_t settle = drive.config.modulator.sampling.settle_ticks;
+  drive_command_stop();
+  periods(3);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
+  EXPECT_EQ(std::memcmp(&before, &parameters, sizeof before), 0);
+  EXPECT_TRUE(drive.request.reload) << "the configuration it changed for itself must come back";
+  ASSERT_TRUE(drive_config_load(&drive.config));
+  EXPECT_LT(drive.config.modulator.sampling.settle_ticks, settle);
+}
+
+TEST_F(Commissioning, AFaultEndsIt) {
+  begin();
+  board.pin_low = true;
+  board.tripped_by_pin = true;
+  periods(2);
+  commissioning_service(&drive);
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_FAILED);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Commissioning, SumsThatAreEmptyChangeNothing) {
+  commissioning_report_t report;
+  const parameters_t before = parameters;
+  drive.commissioning.model = drive.config.nameplate;
+  EXPECT_EQ(commissioning_conclude(&drive.commissioning, &report), COMMISSIONING_PARTLY);
+  EXPECT_GT(report.count, 20);
+  for (int k = 0; k < report.count; ++k) {
+    const commissioning_result_t& r = report.list[k];
+    EXPECT_TRUE(r.verdict != VERDICT_USED || r.value == r.before) << r.id;
+  }
+  EXPECT_EQ(std::memcmp(&before, &parameters, sizeof before), 0);
+}
+
+TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
+  for (int k = VERDICT_USED; k <= VERDICT_DEPENDS; ++k) {
+    EXPECT_GT(std::strlen(drive_commissioning_verdict_words(static_cast<commissioning_verdict_t>(k))), 10u);
+  }
+  for (int k = COMMISSIONING_IDLE; k <= COMMISSIONING_EVALUATE; ++k) {
+    EXPECT_GT(std::strlen(drive_commissioning_phase_words(static_cast<commissioning_phase_t>(k))), 5u);
+  }
+}
+
+}  // namespace
