@@ -26,8 +26,7 @@ static void adapt(drive_t* d, const regression_t* r) {
       d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
       break;
     case 2:
-      if (drive_is_turning(d))
-        voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
+      if (drive_is_turning(d)) voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
       break;
     default:
       break;

@@ -150,7 +150,7 @@ def run(
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
     identifier = scenario_file.find(scenario).stem
     where = out or Path(f"results-{identifier}")
-    _carry_out([identifier], Options(profile_name, seed, change or [], where, 1, not no_plots, params))
+    _carry_out([identifier], Options(profile_name, seed, change or [], where, 1, not no_plots, params=params))
 
 
 @app.command()
