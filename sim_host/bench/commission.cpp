@@ -95,6 +95,7 @@ std::string play(const CommissionRequest& request, chip::Chip& chip, const Commi
   if (drive.refused()) return "the drive refused a parameter";
   const commissioning_outcome_t outcome = drive_commissioning_outcome();
   if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) return "";
+  if (outcome == COMMISSIONING_ABORTED) return "the shaft was turning; it has been brought to rest, try again";
   return std::string("fault: ") + fault_name(drive.fault());
 }
 

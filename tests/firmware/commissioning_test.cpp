@@ -14,25 +14,23 @@ using namespace stillspin::test;
 
 class Commissioning : public Drive {
  protected:
+  /// In the start; its end is told to the drive, for it needs a machine behind it.
   void begin() {
-    parameters.polarity_check = 0;  // it needs a machine behind it
+    parameters.flying_start = 0;
     make_ready();
     drive_command_commission();
-    periods(350);
-    ASSERT_EQ(drive.state, DRIVE_COMMISSION);
+    periods(10);
+    ASSERT_EQ(drive.state, DRIVE_START);
+    start_run(&drive, 0, 0);
+    periods(5);
   }
 };
 
 TEST_F(Commissioning, FollowsTheStart) {
-  parameters.polarity_check = 0;
-  make_ready();
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_NONE);
-  drive_command_commission();
-  periods(2);
-  EXPECT_EQ(drive.state, DRIVE_START);
-  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
-  periods(350);
+  begin();
   EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
   EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_TURN);
   EXPECT_TRUE(board.gates_on);
   EXPECT_EQ(parameter_set(2, parameter_get(2)), SET_RUNNING) << "no stopped parameter under way";
@@ -52,8 +50,19 @@ TEST_F(Commissioning, AStartIsStillAStart) {
   periods(5);
   drive.request.reload = false;  // the background level's part
   drive_command_start();
-  periods(350);
+  periods(10);
+  start_run(&drive, 0, 0);
   EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
+TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
+  parameters.flying_start = 0;
+  make_ready();
+  drive_command_commission();
+  periods(10);
+  start_run(&drive, 0, 4000000);  // 140 rpm
+  EXPECT_EQ(drive.state, DRIVE_STOP);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
 }
 
 TEST_F(Commissioning, AStopBreaksItOffAndChangesNothing) {
