@@ -6,6 +6,7 @@
 #define DOUBT_PER_BAD 8L  // a good period takes back an eighth of what a bad one adds
 #define APART_LIMIT_BAM 1073741824L
 #define ONE_Q30 1073741824L
+#define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 
 void synchronism_reset(synchronism_t* s) {
   static const synchronism_t fresh = {{0, 0}, 0, 0};
@@ -36,16 +37,24 @@ static bool mean_window(const estimator_input_t* in, estimator_window_t* mean) {
     middle_q15 += q_shr(share_q30, 15) * w->middle_tick;
   }
   mean->middle_tick = (int16_t)q_shr(middle_q15, 15);
+  mean->span_ticks = (int16_t)q_min(total, PERIOD_TICKS);
   return true;
 }
 
 static void follow(int32_t* mean, int32_t x) { *mean += q_shr_round(q_sub_sat(x, *mean), MEAN_SHIFT); }
 
+// A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
+// a current is clamped at zero: hence the square.
+static int32_t floor_q16(const synchronism_config_t* c, int16_t span_ticks) {
+  const int32_t ratio_q8 = q_max(LONG_TICKS * 256 / span_ticks, 256);
+  return q_mul_sat(c->floor_q16, q_mul(ratio_q8, ratio_q8, 8), 8);
+}
+
 static void watch_emf(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m, const deviation_t* d) {
   follow(&s->error_q16.d, q_mul_sat(d->residual_q20.d, c->volts_d_q16, 20));
   follow(&s->error_q16.q, q_mul_sat(d->residual_q20.q, c->volts_q_q16, 20));
   const int32_t emf_q16 = q_abs_sat(q_mul_sat(m->emf_q16, d->w_q30, 30));
-  s->limit_q16 = q_add_sat(c->floor_q16, q_mul(emf_q16, c->share_q15, 15));
+  s->limit_q16 = q_mul(emf_q16, c->share_q15, 15);
 }
 
 static bool exceeds(const synchronism_t* s) {
@@ -65,6 +74,7 @@ bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const est
   if (!mean_window(in, &mean)) return false;
   const deviation_t d = deviation_evaluate(in->model, &mean, angle_bam, speed_bpp);
   watch_emf(s, c, in->model, &d);
+  s->limit_q16 = q_add_sat(s->limit_q16, floor_q16(c, mean.span_ticks));
   const bool bad = exceeds(s) || q_abs_sat(apart_bam) > APART_LIMIT_BAM;
   s->doubt = bad ? s->doubt + DOUBT_PER_BAD : q_max(s->doubt - 1, 0);
   return s->doubt > c->bad_periods * DOUBT_PER_BAD;

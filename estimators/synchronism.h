@@ -5,8 +5,8 @@
 //   e = w lambda (-sin d, 1 - cos d) + saliency terms     for a frame that is ahead by d and turns with the shaft,
 // |e| = w lambda at d = 60 degrees, 1.4 w lambda at 90 and 2 w lambda with the polarity reversed; an angle that stands
 // or slips gives the EMF of one of the two speeds. It is compared with floor + share |w^ lambda|. The floor stands for
-// what is wrong at any speed (drops, resistance, noise of short windows), the share for wrong flux and link voltage.
-// Saliency cannot say this: it repeats every half turn.
+// what is wrong at any speed (drops, resistance, and the converter: it grows where the windows are shorter than half a
+// period together), the share for wrong flux and link voltage. Saliency cannot say this: it repeats every half turn.
 //
 // Beside it counts the disagreement of two estimators beyond a quarter turn: one of them is then lost.
 //

@@ -104,7 +104,7 @@ PARAMETER(131, spin_speed, "rpm", 8, 0, 300, 2000, 600, STOPPED, "speed of the c
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of the polarity test")
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
-PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 10, ALWAYS, "for how long")
+PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 20, ALWAYS, "for how long")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED,
           "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
 PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,

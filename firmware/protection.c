@@ -61,8 +61,10 @@ static bool lost_synchronism(drive_t* d) {
   in.windows = d->samples.windows;
   in.window_count = d->samples.count;
   in.torque_accel_q8 = 0;
+  // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
+  const int32_t apart_bam = (parameters.position_source == 0) ? 0 : disagreement(d);
   return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, d->position.used.angle_bam,
-                          d->position.used.speed_bpp, disagreement(d));
+                          d->position.used.speed_bpp, apart_bam);
 }
 
 static drive_fault_t check(drive_t* d) {

@@ -162,19 +162,6 @@ TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
   EXPECT_NEAR(n, allowed, 3);
 }
 
-TEST_F(Drive, EstimatorsAQuarterTurnApartAreALossOfSynchronism) {
-  make_run();
-  const int allowed = parameters.synchronism_time * DRIVE_PERIODS_PER_MS;
-  int n = 0;
-  while (drive.state == DRIVE_RUN && n < 2 * allowed) {
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x60000000u;
-    period();
-    n++;
-  }
-  expect_fault(FAULT_SYNCHRONISM);
-  EXPECT_NEAR(n, allowed, 3);
-}
-
 // An encoder that runs at 600 rpm over windows of a shaft at rest: there is one estimator, and no second opinion.
 TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
   make_run();
