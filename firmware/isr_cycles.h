@@ -11,8 +11,7 @@
 #define CYCLES_READ_SLICES 400u  // no windows to evaluate
 #define CYCLES_ESTIMATE 4500u
 #define CYCLES_ESTIMATE_BLIND 900u  // without windows: the observers only predict
-#define CYCLES_SUPERVISE 900u
-#define CYCLES_SUPERVISE_BLIND 100u
+#define CYCLES_SUPERVISE 100u  // without the synchronism check, some 800 with three windows: see docs/architecture.md
 #define CYCLES_CONTROL 500u
 #define CYCLES_MODULATE 2200u
 #define CYCLES_REFER 550u  // references of the hysteresis
