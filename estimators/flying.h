@@ -7,11 +7,10 @@
 // do not say: a second pulse does, after a pause in which the rotor should turn by some 60 degrees. The sense of that
 // turn is the direction, its size over the time the speed, and e = w lambda q fixes the polarity as well.
 //
-// Ends of a pulse are the first and the last window that belong to it (their current is a mean of conversions), the
-// direction of the chord is that of the EMF midway, but for the current on the q-axis that the turning saliency moves
-// to the d-axis: w (Lq/Ld - 1) i_q, which turns it against the rotation by (Lq/Ld - 1) i_q / (y_q lambda/T). Times are
-// ticks from any origin. Speeds up to 150 degrees between the pulses; a first size that is wrong by a factor of 2.5 is
-// tolerated.
+// Ends of a pulse are the first burst of its first window and the last one of its last; the direction of the chord is
+// that of the EMF midway, but for the current on the q-axis that the turning saliency moves to the d-axis: w (Lq/Ld -
+// 1) i_q, which turns it against the rotation by (Lq/Ld - 1) i_q / (y_q lambda/T). Times are ticks from any origin.
+// Speeds up to 150 degrees between the pulses; a first size that is wrong by a factor of 2.5 is tolerated.
 
 #ifndef STILLSPIN_ESTIMATORS_FLYING_H
 #define STILLSPIN_ESTIMATORS_FLYING_H
@@ -49,7 +48,7 @@ void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_win
 /// Largest component of the current at the end of the pulse, A Q20.
 int32_t flying_current(const flying_pulse_t* s);
 
-/// Needs two windows or more.
+/// Needs a window or more.
 flying_emf_t flying_evaluate(const flying_pulse_t* s, const machine_model_t* m);
 
 /// Periods in which a rotor with this EMF turns by 60 degrees, between least and most.

@@ -180,6 +180,7 @@ static inline bool drive_is_blind(const drive_t* d) {
 /// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
 void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 bool polarity_watch_step(drive_t* d);
+bool polarity_watch_suspects(const drive_t* d);
 
 /// Holds the shaft for hold_time from now (hold.c).
 void hold_begin(drive_t* d);

@@ -10,7 +10,8 @@
 #define PAUSE_MAX 600         // 60 ms: 60 degrees at the slowest EMF that counts
 #define PAIRS_MAX 4u          // pairs of pulses before giving up
 #define STANDING_Q16 196608L  // 3 V: 45 rpm on motor A, beyond what drops and noise can fake
-#define CATCH_PERIODS 120u
+#define CATCH_PERIODS 140u
+#define ON_TICKS 200              // from the gates' command to the devices
 #define STRAY_MAX_BAM 178956971L  // 15 degrees
 
 // All lower devices on for the whole period, and three windows in it.
@@ -39,6 +40,9 @@ static void close_loop(drive_t* d, const flying_rotor_t* rotor) {
   const int32_t periods_q16 = q_div(d->start.clock - rotor->tick, ESTIMATOR_PERIOD_TICKS, 16);
   const uint32_t angle = rotor->angle_bam + (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
   position_preset(d, angle, rotor->speed_bpp);
+  d->start.angle_bam = angle;
+  d->start.speed_bpp = rotor->speed_bpp;
+  axis_begin(&d->start.axis);
   d->start.sigma_q8 = rotor->sigma_q8;
   d->start.shorted = false;
   d->start.stray = 0;
@@ -81,19 +85,37 @@ static void end_pulse(drive_t* d) {
 
 void start_step_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
-  if (s->blind > 0u) return;
+  if (s->tick == 0u) return;
   for (uint16_t k = 0; k < d->samples.count; k++) {
     const estimator_window_t* const w = &d->samples.windows[k];
-    flying_add(&s->pulse, &d->model, w, s->clock - ESTIMATOR_PERIOD_TICKS + w->middle_tick);
+    // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
+    const bool early = s->blind > 0u && w->middle_tick - w->span_ticks / 2 < s->on_tick + ON_TICKS;
+    if (!early) flying_add(&s->pulse, &d->model, w, s->clock - ESTIMATOR_PERIOD_TICKS + w->middle_tick);
   }
-  const bool enough = flying_current(&s->pulse) > parameters.current_limit / 8;
-  if (s->pulse.windows >= 2u && (enough || s->tick >= PULSE_MAX)) end_pulse(d);
+  const bool enough = flying_current(&s->pulse) > parameters.current_limit / 16;
+  if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) end_pulse(d);
+}
+
+// The first periods go to the axis and the admittances, in the frame that turns with the rotor as the back-EMF has it.
+static bool learn(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  s->angle_bam += (uint32_t)s->speed_bpp;
+  if (s->axis.count >= AXIS_PERIODS) return true;
+  const bool complete = !drive_is_blind(d) && axis_add(&s->axis, &d->position.avv.regression);
+  if (complete) {
+    const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
+    admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
+    s->angle_bam += (uint32_t)q_clamp(axis.angle_bam, -STRAY_MAX_BAM, STRAY_MAX_BAM);
+  }
+  position_preset(d, s->angle_bam, s->speed_bpp);
+  return false;
 }
 
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
 void start_step_catch(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (!s->powered) start_power(d, true);
+  if (!learn(d)) return;
   s->stray += q_shr(d->position.avv.error_bam - s->stray, 4);
   if (s->tick < CATCH_PERIODS) return;
   if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {

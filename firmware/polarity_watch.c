@@ -2,7 +2,8 @@
 //
 // The speed it is compared with comes from an observer of its own that follows the axis of the saliency and knows
 // nothing of magnet and torque: the deviation observer takes a back-EMF of the wrong sign for a speed, and would turn
-// itself the right way round at some hundred rpm in the wrong direction. Once confirmed the watch is over.
+// itself the right way round at some hundred rpm in the wrong direction. Once confirmed the watch is over. The check of
+// synchronism may be faster; then the sign seen so far tells which fault it is.
 
 #include "firmware/polarity_watch.h"
 
@@ -44,4 +45,9 @@ bool polarity_watch_step(drive_t* d) {
                                                on_axis(d->control.measured_q20, r), w->axis.speed_bpp);
   if (sign != EMF_SIGN_OPEN) w->open = false;
   return sign == EMF_SIGN_REVERSED;
+}
+
+bool polarity_watch_suspects(const drive_t* d) {
+  const emf_sign_t* const sign = &d->watch.sign;
+  return d->watch.open && sign->seen_q16 < -sign->expected_q16 / 4;
 }

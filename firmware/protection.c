@@ -77,7 +77,9 @@ static drive_fault_t check(drive_t* d) {
   if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
   if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
   if (polarity_watch_step(d)) return FAULT_POLARITY;
-  if (drive_is_turning(d) && lost_synchronism(d)) return FAULT_SYNCHRONISM;
+  if (drive_is_turning(d) && lost_synchronism(d)) {
+    return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
+  }
   if (drive_is_turning(d) && diverged(d)) return FAULT_DIVERGENCE;
   return FAULT_NONE;
 }

@@ -27,7 +27,9 @@ void start_power(drive_t* d, bool on) {
   d->start.blind = 2;  // this period and the next have begun with the gates off
   if (!on) {
     hal_pwm_gates_off();
-  } else if (!hal_pwm_gates_on()) {
+  } else if (hal_pwm_gates_on()) {
+    d->start.on_tick = (int32_t)hal_pwm_period_tick();
+  } else {
     drive_raise(d, FAULT_OVER_CURRENT);
   }
 }

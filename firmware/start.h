@@ -30,11 +30,14 @@ typedef struct {
   uint16_t pause;  // periods to listen before the next pulse
   uint16_t tries;  // of the present phase
   uint16_t pulses;
-  uint16_t blind;  // periods until the windows belong to a power stage that is on
-  bool powered;    // the start has the gates on
-  bool shorted;    // the modulator holds all lower devices on
-  int32_t clock;   // tick at which the running period began, from the start of START
-  int32_t stray;   // filtered angle error while catching, binary angle
+  uint16_t blind;      // periods until the windows belong to a power stage that is on
+  bool powered;        // the start has the gates on
+  bool shorted;        // the modulator holds all lower devices on
+  int32_t on_tick;     // of the period in which the gates came on
+  uint32_t angle_bam;  // of a caught rotor by its back-EMF, carried on
+  int32_t speed_bpp;
+  int32_t clock;  // tick at which the running period began, from the start of START
+  int32_t stray;  // filtered angle error while catching, binary angle
   flying_pulse_t pulse;
   flying_emf_t first;
   axis_t axis;
