@@ -25,6 +25,7 @@
 #define LOAD_SHARE_Q30 673720360L      // 0.00245 of it off the load's acceleration, Q8
 #define FILTER_Q30 429496730L          // 0.4 of the change of the current reference per period
 #define SLEW_Q20 314573L               // at most 0.3 A per period: some 20 V, within the alternating layout
+#define OFFSET_SHIFT 5                 // 3 ms: longer, an error of the resistance would feed itself through the torque
 #define BPP_PER_RAD 683565276L         // 2^32 / 2 pi
 
 // 400 rad/s * T with the windows that the alternating layout has at rest, 50 rad/s with short ones.
@@ -54,6 +55,7 @@ static void observe(drive_t* d) {
   tracking_observer_t* const o = &h->avv.observer;
   const int32_t error_bpp = q_sub_sat(emf_speed(&d->model, &h->avv.regression), h->offset_bpp);
   o->speed_bpp += q_mul(error_bpp, SPEED_SHARE_Q30, 30);
+  h->offset_bpp += q_shr_round(error_bpp, OFFSET_SHIFT);
   o->load_accel_q8 = q_sub_sat(o->load_accel_q8, q_mul(error_bpp, LOAD_SHARE_Q30, 30));
 }
 

@@ -100,6 +100,31 @@ TEST(Flying, TheSizeOfTheEmf) {
   EXPECT_NEAR(real(e.size_q16, 16), m.flux * s.w, 0.03 * m.flux * s.w);  // resistance and turn, to first order
 }
 
+// At high speed one window is all that a pulse has: its bursts are its ends.
+TEST(Flying, OneWindowIsEnough) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const Shaft s = {m, 0.8, m.electrical(3000.0)};
+  Vector i = {0, 0};
+  for (double t = 0.0; t < 0.3e-4; t += kStep) i = i + current_derivative(m, s.theta + s.w * t, s.w, i, {0, 0}) * kStep;
+  const double span = 0.2e-4, middle = 0.3e-4;
+  const Vector slope = current_derivative(m, s.theta + s.w * middle, s.w, i, {0, 0});
+  estimator_window_t w = {};
+  w.current_q20 = raw_ab(i, 20);
+  w.slope_q20 = raw_ab(slope * kPeriod, 20);
+  w.span_ticks = 2000;
+  flying_pulse_t p;
+  flying_begin(&p);
+  flying_add(&p, &model, &w, 3000);
+  EXPECT_NEAR(real(flying_current(&p), 20),
+              std::max(std::fabs(i.x + slope.x * span / 2), std::fabs(i.y + slope.y * span / 2)), 1e-4);
+  const flying_emf_t e = flying_evaluate(&p, &model);
+  EXPECT_EQ(e.tick, 3000);
+  EXPECT_NEAR(real(e.size_q16, 16), m.flux * s.w, 0.02 * m.flux * s.w);
+  const double emf_angle = s.theta + s.w * middle + kPi / 2 - rad(e.lag_bam);
+  EXPECT_NEAR(wrapped(rad(e.direction_bam) - emf_angle) / kDegree, 0.0, 0.5);
+}
+
 TEST(Flying, AStandingShaftHasNone) {
   const Motor m;
   const machine_model_t model = model_of(m);
