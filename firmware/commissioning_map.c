@@ -14,7 +14,7 @@
 // A segment is as long as it takes to move by about 6 degrees electrical; the current's ramps make it more. The first
 // part of every segment, in which the current still settles, is left out, the same part everywhere so that the groups'
 // instants lie symmetrically. The angle is not corrected again before the current is gone, for its turn would be taken
-// for motion. Between trains the shaft is held for 60 ms.
+// for motion. Between trains the shaft is held for 40 ms.
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
@@ -24,9 +24,9 @@
 #define SEGMENT_MIN 40
 #define SEGMENT_MAX 90
 #define SETTLE_PERIODS 20
-#define PAUSE_PERIODS 600
-#define STILL_PERIODS 300
-#define WANTED_PERIODS 4000  // in each group at the first level, fewer above: the turn grows
+#define PAUSE_PERIODS 400
+#define STILL_PERIODS 200
+#define WANTED_PERIODS 8000  // in each group at the first level, fewer above: the turn grows
 #define PLACES 8u
 #define PLACE_BAM 536870912uL  // 45 degrees
 #define MOVE_PERIODS 300

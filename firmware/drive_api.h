@@ -82,7 +82,7 @@ void drive_command_speed(int32_t rpm_q16);
 /// Clears a latched fault; the drive calibrates its offsets again and is READY.
 void drive_command_reset(void);
 
-// Commissioning. It takes about a minute, turns the shaft, and ends in READY.
+// Commissioning. It takes a minute and a half, turns the shaft, and ends in READY.
 
 typedef enum {
   COMMISSIONING_IDLE = 0,
