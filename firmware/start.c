@@ -76,15 +76,15 @@ void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   d->control.reference_q20.q = 0;
 }
 
-// A commissioning wants a shaft that stands; one that turns is brought to rest instead.
-static drive_state_t state_behind(const drive_t* d, int32_t speed_bpp) {
+// A commissioning wants a shaft that stands; one that was caught turning is brought to rest instead.
+static drive_state_t state_behind(const drive_t* d) {
   if (!d->commissioning.requested) return DRIVE_RUN;
-  return (speed_bpp == 0) ? DRIVE_COMMISSION : DRIVE_STOP;
+  return (d->start.phase == START_CATCH) ? DRIVE_STOP : DRIVE_COMMISSION;
 }
 
 void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   drive_hand_over(d, angle_bam, speed_bpp);
-  drive_enter(d, state_behind(d, speed_bpp));
+  drive_enter(d, state_behind(d));
   if (d->state == DRIVE_STOP) commissioning_abort(d);
 }
 

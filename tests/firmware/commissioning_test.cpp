@@ -60,6 +60,7 @@ TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
   make_ready();
   drive_command_commission();
   periods(10);
+  drive.start.phase = START_CATCH;
   start_run(&drive, 0, 4000000);  // 140 rpm
   EXPECT_EQ(drive.state, DRIVE_STOP);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
