@@ -19,11 +19,21 @@ void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   emf_sign_reset(&w->sign);
 }
 
+static const regression_t* regression_in_use(const drive_t* d) {
+  return (parameters.position_source == 4) ? &d->position.observer.regression : &d->position.avv.regression;
+}
+
 // The axis that this period's windows have shown.
 static uint32_t axis_seen(const drive_t* d) {
   const drive_position_t* const p = &d->position;
   if (parameters.position_source != 4) return p->avv.observer.angle_bam + (uint32_t)p->avv.error_bam;
   return p->observer.angle_bam + (uint32_t)avv_angle_error(&p->observer.regression, &d->model);
+}
+
+// While the current is large or the windows do not show the axis.
+static bool is_blind(const drive_t* d) {
+  return q_abs_sat(d->control.measured_q20.q) > parameters.current_limit / 2 ||
+         (d->samples.count > 0u && regression_in_use(d)->information == 0);
 }
 
 // From the frame in use to the watch's own: an angle in use that is off must not look like a magnet that is reversed.
@@ -36,6 +46,10 @@ static dq_t on_axis(dq_t x, rotation_t r) {
 bool polarity_watch_step(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
   if (!w->open || d->state != DRIVE_RUN) return false;
+  if (is_blind(d)) {
+    polarity_watch_begin(d, d->position.used.angle_bam, d->position.used.speed_bpp);
+    return false;
+  }
   tracking_observer_predict(&w->axis, 0);
   // The axis is known up to half a turn.
   const int32_t off = angle_diff_bam(axis_seen(d) * 2u, w->axis.angle_bam * 2u) / 2;

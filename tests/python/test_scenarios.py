@@ -152,7 +152,8 @@ def standstill(parameters: dict[str, float]) -> tuple[float, float]:
 
 def test_the_papers_zvv_holds_standstill_with_positive_d_current_only() -> None:
     """Physics, section 3: with i_d* > 0 the q-axis form is stable, with i_d* < 0 it is not at these gains."""
-    paper = {"position_source": 1.0, "speed_trajectory": 100.0, "divergence_limit": 90.0, "divergence_time": 1000.0}
+    late = {"divergence_limit": 90.0, "divergence_time": 1000.0, "synchronism_time": 1000.0}
+    paper = {"position_source": 1.0, "speed_trajectory": 100.0, **late}
     error, speed = standstill({**paper, "id_low_speed": 5.0})
     assert error < 2.0
     assert speed < 4.0
