@@ -51,7 +51,7 @@ PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "trackin
 PARAMETER(65, adapt_time, "ms", 8, 0, 20, 30000, 150, ALWAYS,
           "time constant of the adaptation of admittances and sensors; 30000 is off")
 PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms error of a current difference over a window")
-PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 60, ALWAYS, "load change per 10 ms that the observer expects")
+PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 100, ALWAYS, "load change per 10 ms that the observer expects")
 PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,
           "the same at a crawl, while nothing shows that the load changes")
 PARAMETER(77, observer_load_step, "Nm", 20, 2, 1, 10000, 200, ALWAYS,
