@@ -6,7 +6,7 @@ void field_weakening_reset(field_weakening_t* s) { s->trim_q20 = 0; }
 static int32_t flux_limit_q28(const field_weakening_input_t* in, const machine_model_t* m) {
   const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(in->speed_bpp));
   const int32_t volts_per_flux_q16 = q_mul_sat(w_q30, m->periods_per_second, 14);  // w/T as Q16 rad/s
-  return q_div(in->voltage_limit_q16, volts_per_flux_q16, 28);
+  return q_over(in->voltage_limit_q16, q_invert(volts_per_flux_q16), 28);
 }
 
 static int32_t feed_forward_q20(const field_weakening_input_t* in, const machine_model_t* m) {
@@ -14,7 +14,7 @@ static int32_t feed_forward_q20(const field_weakening_input_t* in, const machine
   const int32_t cross = q_mul(m->lq_q30, in->iq_q20, 22);
   const int64_t room = (int64_t)limit * limit - (int64_t)cross * cross;
   const int32_t axis = (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
-  return q_div(axis - m->flux_q28, m->ld_q30, 22);
+  return q_over(axis - m->flux_q28, q_invert(m->ld_q30), 22);
 }
 
 int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {

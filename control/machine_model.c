@@ -17,21 +17,20 @@ static int32_t period_q30(int32_t period_us) { return q_div(period_us, 1000000L,
 
 // k0 = -Y J psi0 with psi0 = psi(0, i_q) - L i_q: Y J L (0, i_q) is what K has already counted.
 static void place_flux(machine_model_t* m, int32_t iq_q20) {
-  const dq_t turned = {m->psi_q_q16, -m->psi_d_q16};  // -J psi
-  dq_t k0 = {q_add_sat(q_mul_sat(m->yd_q30, turned.d, 26), q_mul_sat(m->ydq_q30, turned.q, 26)),
-             q_add_sat(q_mul_sat(m->ydq_q30, turned.d, 26), q_mul_sat(m->yq_q30, turned.q, 26))};
   // h at (0, i_q) is -Y J psi + J (0, i_q): K there is taken off again.
-  k0.d = q_sub_sat(k0.d, q_add_sat(iq_q20, q_mul_sat(m->k_dq_q24, iq_q20, 24)));
-  k0.q = q_add_sat(k0.q, q_mul_sat(m->k_dd_q24, iq_q20, 24));
+  const int32_t own_d = q_add_sat(iq_q20, q_mul_sat(m->k_dq_q24, iq_q20, 24));
+  const int32_t own_q = q_mul_sat(m->k_dd_q24, iq_q20, 24);
+  const dq_t k0 = {q_sub_sat(q_mul_sub_sat(m->yd_q30, m->psi_q_q16, m->ydq_q30, m->psi_d_q16, 26), own_d),
+                   q_add_sat(q_mul_sub_sat(m->ydq_q30, m->psi_q_q16, m->yq_q30, m->psi_d_q16, 26), own_q)};
   m->k0_q20 = k0;
 }
 
 // K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
 static void turn_with_admittance(machine_model_t* m) {
-  const int32_t t_q24 = q_div(m->ydq_q30, m->yq_q30, 24);
-  const int32_t r_q24 = q_div(m->yd_q30, m->yq_q30, 24);
+  const int32_t t_q24 = q_over(m->ydq_q30, m->per_yq, 24);
+  const int32_t r_q24 = q_over(m->yd_q30, m->per_yq, 24);
   const int32_t t2_q24 = q_mul(t_q24, t_q24, 24);
-  const int32_t per_det_q24 = q_div(ONE_Q24, r_q24 - t2_q24, 24);
+  const int32_t per_det_q24 = q_over(ONE_Q24, q_invert(r_q24 - t2_q24), 24);
   const int32_t g_q24 = q_mul_sat(q_add_sat(r_q24, ONE_Q24), per_det_q24, 24);
   m->k_dd_q24 = -q_mul_sat(t_q24, g_q24, 24);
   m->k_dq_q24 = r_q24 - ONE_Q24 + q_mul_sat(t2_q24, g_q24, 24);
@@ -43,10 +42,11 @@ void machine_model_move(machine_model_t* m, int32_t iq_q20) {
   m->yd_q30 = p.ydd_q30 + m->trim.mean_q30 + m->trim.half_q30;
   m->yq_q30 = p.yqq_q30 + m->trim.mean_q30 - m->trim.half_q30;
   m->ydq_q30 = p.ydq_q30;
+  m->per_yq = q_invert(m->yq_q30);
   m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
   m->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
   // An inductance that differs from the table's differs in its flux as well.
-  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_div(p.yqq_q30, m->yq_q30, 24), 24);
+  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_over(p.yqq_q30, m->per_yq, 24), 24);
   turn_with_admittance(m);
   place_flux(m, iq_q20);
 }

@@ -50,6 +50,7 @@ typedef struct {
   // At the working point, see machine_model_move.
   int32_t rs_q24;                        // ohm
   int32_t yd_q30, yq_q30, ydq_q30;       // Y
+  q_inverse_t per_yq;                    // of yq_q30
   int32_t k_dd_q24, k_dq_q24, k_qd_q24;  // K; K_qq = -K_dd
   dq_t k0_q20;                           // A per period and (rad per period)
   int32_t psi_d_q16, psi_q_q16;          // psi/T at i_d = 0, V per (rad per period)
@@ -63,20 +64,21 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 /// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).
 bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map);
 
-/// Moves the working point to a torque current and takes the trim into account. Once per period: three divisions.
+/// Moves the working point to a torque current and takes the trim into account. Once per period: two
+/// reciprocals.
 void machine_model_move(machine_model_t* m, int32_t iq_q20);
 
 /// Y x, Q20, of a voltage in V Q16.
 static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {
-  const dq_t s = {q_mul(m->yd_q30, v_q16.d, 26) + q_mul(m->ydq_q30, v_q16.q, 26),
-                  q_mul(m->ydq_q30, v_q16.d, 26) + q_mul(m->yq_q30, v_q16.q, 26)};
+  const dq_t s = {q_mul_add(m->yd_q30, v_q16.d, m->ydq_q30, v_q16.q, 26),
+                  q_mul_add(m->ydq_q30, v_q16.d, m->yq_q30, v_q16.q, 26)};
   return s;
 }
 
 /// h = K i + k0: what the slope changes with the speed, A per period and (rad per period), Q20.
 static inline dq_t machine_turn_q20(const machine_model_t* m, dq_t i_q20) {
-  const dq_t h = {q_mul(m->k_dd_q24, i_q20.d, 24) + q_mul(m->k_dq_q24, i_q20.q, 24) + m->k0_q20.d,
-                  q_mul(m->k_qd_q24, i_q20.d, 24) - q_mul(m->k_dd_q24, i_q20.q, 24) + m->k0_q20.q};
+  const dq_t h = {q_mul_add(m->k_dd_q24, i_q20.d, m->k_dq_q24, i_q20.q, 24) + m->k0_q20.d,
+                  q_mul_sub(m->k_qd_q24, i_q20.d, m->k_dd_q24, i_q20.q, 24) + m->k0_q20.q};
   return h;
 }
 

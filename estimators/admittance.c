@@ -1,8 +1,5 @@
 #include "estimators/admittance.h"
 
-// Admittance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for, Q30.
-static int32_t error_q30(int32_t residual_q16, int32_t spread_q8) { return q_div(residual_q16, spread_q8, 22); }
-
 typedef struct {
   int32_t mean_q30, half_q30;
 } admittance_t;
@@ -24,8 +21,10 @@ static void bound(machine_trim_t* t, const admittance_t* y) {
 void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30) {
   if (r->information <= 0) return;
   const admittance_t y = nominal(m);
-  m->trim.mean_q30 += q_mul(error_q30(r->along_q16, r->spread_q8), share_q30, 30);
-  m->trim.half_q30 += q_mul(error_q30(r->mirror_q16, r->spread_q8), share_q30, 30);
+  // Admittance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for.
+  const q_inverse_t per_spread = q_invert(r->spread_q8);
+  m->trim.mean_q30 += q_mul(q_over(r->along_q16, per_spread, 22), share_q30, 30);
+  m->trim.half_q30 += q_mul(q_over(r->mirror_q16, per_spread, 22), share_q30, 30);
   bound(&m->trim, &y);
 }
 

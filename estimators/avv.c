@@ -12,14 +12,29 @@ void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_ac
 // Half the turn of the saliency from where the model has it: eq (41) in the observed frame. The model's saliency is
 // (h, c) = ((ydd - yqq)/2, ydq), the measured one (h + mirror, c + cross) per spread; their quotient needs no second
 // arc tangent.
-int32_t avv_angle_error(const regression_t* r, const machine_model_t* m) {
+typedef struct {
+  int32_t sine, cosine;  // of twice the error, any common size
+} doubled_t;
+
+static doubled_t doubled_error(const regression_t* r, const machine_model_t* m) {
   const int32_t h_q30 = (m->yd_q30 - m->yq_q30) / 2;
   const int32_t c_q30 = m->ydq_q30;
   const int32_t along_q16 = q_add_sat(q_mul_sat(h_q30, r->spread_q8, 22), r->mirror_q16);
   const int32_t across_q16 = q_add_sat(q_mul_sat(c_q30, r->spread_q8, 22), r->cross_q16);
-  const int32_t sine = q_sub_sat(q_mul_sat(across_q16, h_q30, 20), q_mul_sat(along_q16, c_q30, 20));
-  const int32_t cosine = q_add_sat(q_mul_sat(along_q16, h_q30, 20), q_mul_sat(across_q16, c_q30, 20));
-  return (int32_t)q_atan2(sine, cosine) / 2;
+  const doubled_t e = {q_mul_sub_sat(across_q16, h_q30, along_q16, c_q30, 20),
+                       q_mul_add_sat(along_q16, h_q30, across_q16, c_q30, 20)};
+  return e;
+}
+
+int32_t avv_angle_error(const regression_t* r, const machine_model_t* m) {
+  const doubled_t e = doubled_error(r, m);
+  return (int32_t)q_atan2(e.sine, e.cosine) / 2;
+}
+
+// tan(2 * 15 degrees) = 1/sqrt(3).
+bool avv_angle_is_near(const regression_t* r, const machine_model_t* m) {
+  const doubled_t e = doubled_error(r, m);
+  return q_abs_sat(e.sine) <= q_mul(e.cosine, FRAME_SQRT3_INV_Q30, 30);
 }
 
 // Information in powers of two, with two bits of fraction.

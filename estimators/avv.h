@@ -30,6 +30,9 @@ void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_ac
 /// Angle error that a regression tells, binary angle; valid for any error below a quarter turn.
 int32_t avv_angle_error(const regression_t* r, const machine_model_t* m);
 
+/// True while that error is 15 degrees or less, without the arc tangent.
+bool avv_angle_is_near(const regression_t* r, const machine_model_t* m);
+
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
 
 #endif

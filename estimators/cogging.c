@@ -7,7 +7,7 @@ int32_t cogging_load(cogging_t* s, const cogging_config_t* c, uint32_t angle_bam
   s->now_q8 = 0;
   if (!s->active) return 0;
   s->wave = frame_rotation((uint32_t)c->order * angle_bam);
-  s->now_q8 = q_mul(s->cos_q8, s->wave.cos_q30, 30) + q_mul(s->sin_q8, s->wave.sin_q30, 30);
+  s->now_q8 = q_mul_add(s->cos_q8, s->wave.cos_q30, s->sin_q8, s->wave.sin_q30, 30);
   return s->now_q8;
 }
 

@@ -25,6 +25,17 @@ static inline uint32_t deviation_angle_at(uint32_t angle_bam, int32_t speed_bpp,
   return angle_bam - (uint32_t)q_mul(speed_bpp, before_q30, 30);
 }
 
+/// A window in the frame of an angle.
+static inline estimator_frame_t deviation_frame(const estimator_window_t* w, uint32_t angle_bam) {
+  const rotation_t r = frame_rotation(angle_bam);
+  const estimator_frame_t f = {r, frame_park(w->current_q20, r)};
+  return f;
+}
+
+/// w_q30: speed of the frame, rad per period.
+deviation_t deviation_in_frame(const machine_model_t* m, const estimator_window_t* w, const estimator_frame_t* f,
+                               int32_t w_q30);
+
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp);
 

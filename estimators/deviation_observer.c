@@ -8,7 +8,8 @@
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define VARIANCE_MAX (512L * ONE_Q20)
-#define SCORE_MAX (48L * ONE_Q20)  // residuals beyond 48 sigma count as 48
+#define SCORE_MAX (48L * ONE_Q20)   // residuals beyond 48 sigma count as 48
+#define GAIN_MAX (1024L * ONE_Q20)  // six squares stay in 64 bits
 #define ONE_Q30 1073741823L
 #define ALERT_SHIFT 9u              // an alert fades within 51 ms
 #define ALERT_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
@@ -41,6 +42,7 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
   c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
   c->crawl_bpp = q_clamp(t->crawl_bpp, 1, INT32_MAX / 4);
+  c->per_crawl = q_invert(2 * c->crawl_bpp);
 }
 
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
@@ -55,7 +57,7 @@ void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int3
 // 1 at a crawl, 0 from three times that speed.
 static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_observer_config_t* c) {
   const int32_t above = q_abs_sat(s->speed_bpp) - c->crawl_bpp;
-  return ONE_Q30 - q_min(q_div(q_max(above, 0), 2 * c->crawl_bpp, 30), ONE_Q30);
+  return ONE_Q30 - q_min(q_over(q_max(above, 0), c->per_crawl, 30), ONE_Q30);
 }
 
 // The mean of white scores over 32 periods has 1/63 of their power: four standard deviations are a quarter of its root.
@@ -106,43 +108,55 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
   s->p_sl += q_shr_round(s->p_ll, 6);
 }
 
-// One scalar measurement: sensitivities and residual, all divided by the noise.
-static void collect(information_t* n, int32_t g_a_q20, int32_t g_s_q20, int32_t e_q20) {
-  const int32_t e = q_clamp(e_q20, -SCORE_MAX, SCORE_MAX);
-  n->aa = q_add_sat(n->aa, q_mul_sat(g_a_q20, g_a_q20, 16));
-  n->as = q_add_sat(n->as, q_mul_sat(g_a_q20, g_s_q20, 16));
-  n->ss = q_add_sat(n->ss, q_mul_sat(g_s_q20, g_s_q20, 16));
-  n->a = q_add_sat(n->a, q_mul_sat(g_a_q20, e, 20));
-  n->s = q_add_sat(n->s, q_mul_sat(g_s_q20, e, 20));
+// Information and score while the windows add to it: whole products.
+typedef struct {
+  int64_t aa, as, ss, a, s;  // Q40
+} sums_t;
+
+static int32_t limited(int32_t x, int32_t scale_q20, unsigned shift, int32_t end) {
+  const int64_t y = q_mul64(x, scale_q20, shift);
+  if (y > end) return end;
+  return (y < -end) ? -end : (int32_t)y;
 }
 
-static void collect_window(information_t* n, const deviation_observer_config_t* c, const machine_model_t* m,
+// One scalar measurement: sensitivities and residual, all divided by the noise.
+static void collect(sums_t* n, int32_t g_a_q20, int32_t g_s_q20, int32_t e_q20) {
+  n->aa = q_mac(n->aa, g_a_q20, g_a_q20);
+  n->as = q_mac(n->as, g_a_q20, g_s_q20);
+  n->ss = q_mac(n->ss, g_s_q20, g_s_q20);
+  n->a = q_mac(n->a, g_a_q20, e_q20);
+  n->s = q_mac(n->s, g_s_q20, e_q20);
+}
+
+static void collect_window(sums_t* n, const deviation_observer_config_t* c, const machine_model_t* m,
                            const estimator_window_t* w, const deviation_t* d) {
   const dq_t h_a = deviation_angle_sensitivity(m, d);
   const dq_t h_s = d->turn_q20;
   // span / N / sigma turns a slope into a current difference in units of its noise.
-  const int32_t scale_q20 = q_mul_sat(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
-  collect(n, q_mul_sat(h_a.d, scale_q20, 26), q_mul_sat(h_s.d, scale_q20, 32),
-          q_mul_sat(d->residual_q20.d, scale_q20, 20));
-  collect(n, q_mul_sat(h_a.q, scale_q20, 26), q_mul_sat(h_s.q, scale_q20, 32),
-          q_mul_sat(d->residual_q20.q, scale_q20, 20));
+  const int32_t scale_q20 = q_mul(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
+  collect(n, limited(h_a.d, scale_q20, 26, GAIN_MAX), limited(h_s.d, scale_q20, 32, GAIN_MAX),
+          limited(d->residual_q20.d, scale_q20, 20, SCORE_MAX));
+  collect(n, limited(h_a.q, scale_q20, 26, GAIN_MAX), limited(h_s.q, scale_q20, 32, GAIN_MAX),
+          limited(d->residual_q20.q, scale_q20, 20, SCORE_MAX));
+}
+
+static information_t information_of(const sums_t* n) {
+  const information_t i = {q_sat64(q_shr64(n->aa, 16)), q_sat64(q_shr64(n->as, 16)), q_sat64(q_shr64(n->ss, 16)),
+                           q_sat64(q_shr64(n->a, 20)), q_sat64(q_shr64(n->s, 20))};
+  return i;
 }
 
 // (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16.
 static gain_t times_information(const information_t* n, int32_t x_a_q20, int32_t x_s_q20) {
-  const gain_t g = {q_add_sat(q_mul_sat(n->aa, x_a_q20, 28), q_mul_sat(n->as, x_s_q20, 28)),
-                    q_add_sat(q_mul_sat(n->as, x_a_q20, 28), q_mul_sat(n->ss, x_s_q20, 28))};
+  const gain_t g = {q_mul_add(n->aa, x_a_q20, n->as, x_s_q20, 28), q_mul_add(n->as, x_a_q20, n->ss, x_s_q20, 28)};
   return g;
 }
 
 // Row of P (1 + I P)^-1, Q20; inverse: the four elements of (1 + I P)^-1, Q24.
 static gain_t gain_row(const int32_t inverse[4], int32_t p_a, int32_t p_s) {
-  const gain_t k = {q_mul(p_a, inverse[0], 24) + q_mul(p_s, inverse[2], 24),
-                    q_mul(p_a, inverse[1], 24) + q_mul(p_s, inverse[3], 24)};
+  const gain_t k = {q_mul_add(p_a, inverse[0], p_s, inverse[2], 24), q_mul_add(p_a, inverse[1], p_s, inverse[3], 24)};
   return k;
 }
-
-static int32_t reduced(int32_t p, gain_t k, gain_t g) { return p - q_mul(k.a, g.a, 16) - q_mul(k.s, g.s, 16); }
 
 static int32_t positive(int32_t variance) { return q_max(variance, 16); }
 
@@ -157,9 +171,7 @@ static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2)
   *variance = VARIANCE_MAX;
 }
 
-static int32_t scored(gain_t k, const information_t* n) {
-  return q_add_sat(q_mul_sat(k.a, n->a, 20), q_mul_sat(k.s, n->s, 20));
-}
+static int32_t scored(gain_t k, const information_t* n) { return q_mul_add_sat(k.a, n->a, k.s, n->s, 20); }
 
 static void update(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
   const gain_t ga = times_information(n, s->p_aa, s->p_as);
@@ -168,8 +180,8 @@ static void update(deviation_observer_t* s, const deviation_observer_config_t* c
   // 1 + I P = [1 + ga.a, gs.a; ga.s, 1 + gs.s], Q16.
   const int32_t m_aa = q_add_sat(ga.a, 65536L);
   const int32_t m_ss = q_add_sat(gs.s, 65536L);
-  const int32_t det_q12 = q_max(q_sub_sat(q_mul_sat(m_aa, m_ss, 20), q_mul_sat(gs.a, ga.s, 20)), 4096);
-  const int32_t per_det_q30 = q_div(4096, det_q12, 30);
+  const int32_t det_q12 = q_max(q_mul_sub_sat(m_aa, m_ss, gs.a, ga.s, 20), 4096);
+  const int32_t per_det_q30 = q_over(4096, q_invert(det_q12), 30);
   const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), -q_mul_sat(gs.a, per_det_q30, 22),
                               -q_mul_sat(ga.s, per_det_q30, 22), q_mul_sat(m_aa, per_det_q30, 22)};
   const gain_t ka = gain_row(inverse, s->p_aa, s->p_as);
@@ -180,12 +192,13 @@ static void update(deviation_observer_t* s, const deviation_observer_config_t* c
   const int32_t load_q8 = -q_mul_sat(scored(kl, n), ACCEL_Q8_PER_UNIT, 20);
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
   cogging_learn(&s->cogging, &c->cogging, s->speed_bpp, load_q8);
-  s->p_sl = reduced(s->p_sl, ks, gl);
-  s->p_ll = positive(reduced(s->p_ll, kl, gl));
-  s->p_al = reduced(s->p_al, ka, gl);
-  s->p_as = reduced(s->p_as, ka, gs);
-  s->p_ss = positive(reduced(s->p_ss, ks, gs));
-  s->p_aa = positive(reduced(s->p_aa, ka, ga));
+  // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
+  s->p_ll = positive(s->p_ll - q_mul_add(kl.a, gl.a, kl.s, gl.s, 16));
+  s->p_aa = positive(ka.a);
+  s->p_as = ka.s;
+  s->p_ss = positive(ks.s);
+  s->p_al = kl.a;
+  s->p_sl = kl.s;
   limit(&s->p_aa, &s->p_as, &s->p_al);
   limit(&s->p_ss, &s->p_as, &s->p_sl);
   limit(&s->p_ll, &s->p_al, &s->p_sl);
@@ -203,17 +216,26 @@ static void bound(information_t* n) {
   n->s = q_mul(n->s, share_q30, 30);
 }
 
+static estimator_frame_t frame_of(const deviation_observer_t* s, const estimator_input_t* in, uint16_t k) {
+  if (in->frames != 0) return in->frames[k];
+  const estimator_window_t* const w = &in->windows[k];
+  return deviation_frame(w, deviation_angle_at(s->angle_bam, s->speed_bpp, w->middle_tick));
+}
+
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in) {
-  information_t n = {0, 0, 0, 0, 0};
+  sums_t sums = {0, 0, 0, 0, 0};
   deviation_t d[ESTIMATOR_WINDOWS];
   predict(s, c, in->torque_accel_q8);
+  const int32_t w_q30 = machine_speed_rad_q30(s->speed_bpp);
   for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    d[k] = deviation_evaluate(in->model, w, s->angle_bam, s->speed_bpp);
-    if (!c->zero_vectors_only || w->zero_vector) collect_window(&n, c, in->model, w, &d[k]);
+    const estimator_frame_t f = frame_of(s, in, k);
+    d[k] = deviation_in_frame(in->model, w, &f, w_q30);
+    if (!c->zero_vectors_only || w->zero_vector) collect_window(&sums, c, in->model, w, &d[k]);
   }
   regression_evaluate(&s->regression, d, in);
+  information_t n = information_of(&sums);
   bound(&n);
   admit_load_change(s, c, &n);
   update(s, c, &n);

@@ -35,6 +35,7 @@ typedef struct {
   int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes
   int32_t load_step_q20;         // variance of a step of the load
   int32_t crawl_bpp;             // at least 1
+  q_inverse_t per_crawl;         // of twice crawl_bpp
   cogging_config_t cogging;
   bool zero_vectors_only;
 } deviation_observer_config_t;

@@ -13,8 +13,8 @@ static int32_t emf_q16(emf_sign_t* s, const machine_model_t* m, dq_t v_q16, dq_t
   const int32_t change_q20 = i_q20.q - s->last_iq_q20;
   s->last_iq_q20 = i_q20.q;
   // psi / T of the d-axis current, V per (rad per period).
-  const int32_t flux_q16 = q_div(i_q20.d, m->yd_q30, 26);
-  const int32_t drops_q16 = q_add_sat(q_mul(m->rs_q24, i_q20.q, 28), q_div(change_q20, m->yq_q30, 26));
+  const int32_t flux_q16 = q_over(i_q20.d, q_invert(m->yd_q30), 26);
+  const int32_t drops_q16 = q_add_sat(q_mul(m->rs_q24, i_q20.q, 28), q_over(change_q20, m->per_yq, 26));
   return q_sub_sat(q_sub_sat(v_q16.q, drops_q16), q_mul_sat(flux_q16, w_q30, 30));
 }
 

@@ -25,11 +25,20 @@ typedef struct {
   bool zero_vector;
 } estimator_window_t;
 
+/// A window in a rotor frame.
+typedef struct {
+  rotation_t rotation;  // of the frame at the window's middle
+  dq_t current_q20;     // current there, A
+} estimator_frame_t;
+
 typedef struct {
   const machine_model_t* model;
   const estimator_window_t* windows;
   uint16_t window_count;    // 0..ESTIMATOR_WINDOWS
   int32_t torque_accel_q8;  // acceleration by the air-gap torque of the measured current
+  // The windows in a frame that runs on evenly from the estimator's last angle, where they are known, or null. From the
+  // predicted angle it differs by half the change of speed over a period at most, 1e-4 rad.
+  const estimator_frame_t* frames;
 } estimator_input_t;
 
 typedef struct {

@@ -5,47 +5,95 @@
 // Information weight of a window: the square of its span.
 static int32_t weight_of(const estimator_window_t* w) { return q_shr((int32_t)w->span_ticks * w->span_ticks, 12); }
 
-static dq_t weighted(dq_t x, int32_t share_q30) {
-  const dq_t y = {q_mul(x.d, share_q30, 30), q_mul(x.q, share_q30, 30)};
-  return y;
+// Sums of whole products over the windows; they are rounded once.
+typedef struct {
+  int64_t d, q;
+} sum_t;
+
+static void add(sum_t* sum, dq_t x, int32_t share_q30) {
+  sum->d = q_mac(sum->d, x.d, share_q30);
+  sum->q = q_mac(sum->q, x.q, share_q30);
 }
 
-static void add(dq_t* sum, dq_t x) {
-  sum->d += x.d;
-  sum->q += x.q;
+static dq_t mean_of(const sum_t* sum) {
+  const int64_t half = (int64_t)1 << 29;
+  const dq_t mean = {(int32_t)q_shr64(sum->d + half, 30), (int32_t)q_shr64(sum->q + half, 30)};
+  return mean;
 }
 
-static void project(regression_t* r, const deviation_t* d, dq_t mean_voltage_q16, int32_t share_q30) {
+// 1 / total, Q30; what is left of the rounding is far below the noise.
+static int32_t per_total_q30(int32_t total) {
+  return (int32_t)((1073741824uL + (uint32_t)total / 2u) / (uint32_t)total);
+}
+
+static void average(regression_t* r, const deviation_t d[], const estimator_input_t* in, const int32_t share_q30[],
+                    dq_t* voltage_q16) {
+  sum_t voltage = {0, 0};
+  sum_t residual = {0, 0};
+  sum_t current = {0, 0};
+  for (uint16_t k = 0; k < in->window_count; k++) {
+    add(&voltage, d[k].voltage_q16, share_q30[k]);
+    add(&residual, d[k].residual_q20, share_q30[k]);
+    add(&current, d[k].current_q20, share_q30[k]);
+  }
+  *voltage_q16 = mean_of(&voltage);
+  r->mean_q20 = mean_of(&residual);
+  r->current_q20 = mean_of(&current);
+}
+
+// The residuals' differences (columns) against those of the voltages.
+typedef struct {
+  sum_t by_d, by_q;
+  int64_t spread;
+} projection_t;
+
+static void project(projection_t* p, const regression_t* r, const deviation_t* d, dq_t mean_voltage_q16,
+                    int32_t share_q30) {
   // Differences of voltage as Q14: 400 V and more fit into the products.
   const dq_t dv = {q_shr(d->voltage_q16.d - mean_voltage_q16.d, 2), q_shr(d->voltage_q16.q - mean_voltage_q16.q, 2)};
   const dq_t ds = {d->residual_q20.d - r->mean_q20.d, d->residual_q20.q - r->mean_q20.q};
-  const dq_t part = weighted(dv, share_q30);
-  r->spread_q8 += q_mul(part.d, dv.d, 20) + q_mul(part.q, dv.q, 20);
-  const int32_t vd_sd = q_mul_sat(part.d, ds.d, 18);
-  const int32_t vq_sq = q_mul_sat(part.q, ds.q, 18);
-  const int32_t vq_sd = q_mul_sat(part.q, ds.d, 18);
-  const int32_t vd_sq = q_mul_sat(part.d, ds.q, 18);
-  r->along_q16 += q_add_sat(vd_sd, vq_sq);
-  r->mirror_q16 += q_sub_sat(vd_sd, vq_sq);
-  r->cross_q16 += q_add_sat(vd_sq, vq_sd);
-  r->curl_q16 += q_sub_sat(vd_sq, vq_sd);
+  const dq_t part = {q_mul(dv.d, share_q30, 30), q_mul(dv.q, share_q30, 30)};
+  p->spread = q_mac(q_mac(p->spread, part.d, dv.d), part.q, dv.q);
+  add(&p->by_d, ds, part.d);
+  add(&p->by_q, ds, part.q);
+}
+
+static void resolve(regression_t* r, const projection_t* p) {
+  r->spread_q8 = q_sat64(q_shr64(p->spread, 20));
+  r->along_q16 = q_sat64(q_shr64(p->by_d.d + p->by_q.q, 18));
+  r->mirror_q16 = q_sat64(q_shr64(p->by_d.d - p->by_q.q, 18));
+  r->cross_q16 = q_sat64(q_shr64(p->by_d.q + p->by_q.d, 18));
+  r->curl_q16 = q_sat64(q_shr64(p->by_d.q - p->by_q.d, 18));
+}
+
+// The mean by spans alone (synchronism.h says why).
+static dq_t even_mean(const deviation_t d[], const estimator_input_t* in, int32_t per_span_q30) {
+  sum_t even = {0, 0};
+  for (uint16_t k = 0; k < in->window_count; k++)
+    add(&even, d[k].residual_q20, in->windows[k].span_ticks * per_span_q30);
+  return mean_of(&even);
 }
 
 void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in) {
-  static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}, {0, 0}};
+  static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}, {0, 0}, {0, 0}, 0};
   int32_t share_q30[ESTIMATOR_WINDOWS];
   int32_t total = 0;
-  dq_t voltage = {0, 0};
+  int32_t span = 0;
+  dq_t voltage_q16;
+  projection_t p = {{0, 0}, {0, 0}, 0};
   *r = empty;
-  for (uint16_t k = 0; k < in->window_count; k++) total += weight_of(&in->windows[k]);
-  if (total <= 0) return;
-  const int32_t per_weight_q30 = q_div(1, total, 30);
   for (uint16_t k = 0; k < in->window_count; k++) {
-    share_q30[k] = weight_of(&in->windows[k]) * per_weight_q30;
-    add(&voltage, weighted(d[k].voltage_q16, share_q30[k]));
-    add(&r->mean_q20, weighted(d[k].residual_q20, share_q30[k]));
-    add(&r->current_q20, weighted(d[k].current_q20, share_q30[k]));
+    share_q30[k] = weight_of(&in->windows[k]);
+    total += share_q30[k];
+    span += in->windows[k].span_ticks;
   }
-  for (uint16_t k = 0; k < in->window_count; k++) project(r, &d[k], voltage, share_q30[k]);
+  if (total <= 0) return;
+  const int32_t per_weight_q30 = per_total_q30(total);
+  for (uint16_t k = 0; k < in->window_count; k++) share_q30[k] *= per_weight_q30;
+  average(r, d, in, share_q30, &voltage_q16);
+  r->span_ticks = span;
+  r->even_q20 = even_mean(d, in, per_total_q30(span));
+  for (uint16_t k = 0; k < in->window_count; k++) project(&p, r, &d[k], voltage_q16, share_q30[k]);
+  resolve(r, &p);
   if (r->spread_q8 >= SPREAD_MIN_Q8) r->information = q_mul_sat(r->spread_q8, total, 8);
 }

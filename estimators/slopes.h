@@ -7,7 +7,7 @@
 
 typedef struct {
   int32_t amps_per_code_q30;           // mean of the two sensors
-  int16_t start_samples, end_samples;  // conversions in each sum
+  int16_t start_samples, end_samples;  // conversions in each sum, 1..4
 } slopes_config_t;
 
 /// What is found of the sensors while the drive lives: offsets by the calibration, mismatch by sensor_match.h.

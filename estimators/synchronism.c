@@ -45,16 +45,17 @@ static void follow(int32_t* mean, int32_t x) { *mean += q_shr_round(q_sub_sat(x,
 
 // A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
 // a current is clamped at zero: hence the square.
-static int32_t floor_q16(const synchronism_config_t* c, int16_t span_ticks) {
+static int32_t floor_q16(const synchronism_config_t* c, int32_t span_ticks) {
   const int32_t ratio_q8 = q_max(LONG_TICKS * 256 / span_ticks, 256);
   return q_mul_sat(c->floor_q16, q_mul(ratio_q8, ratio_q8, 8), 8);
 }
 
-static void watch_emf(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m, const deviation_t* d) {
-  follow(&s->error_q16.d, q_mul_sat(d->residual_q20.d, c->volts_d_q16, 20));
-  follow(&s->error_q16.q, q_mul_sat(d->residual_q20.q, c->volts_q_q16, 20));
-  const int32_t emf_q16 = q_abs_sat(q_mul_sat(m->emf_q16, d->w_q30, 30));
-  s->limit_q16 = q_mul(emf_q16, c->share_q15, 15);
+static void watch_emf(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
+                      const synchronism_seen_t* seen) {
+  follow(&s->error_q16.d, q_mul_sat(seen->residual_q20.d, c->volts_d_q16, 20));
+  follow(&s->error_q16.q, q_mul_sat(seen->residual_q20.q, c->volts_q_q16, 20));
+  const int32_t emf_q16 = q_abs_sat(q_mul_sat(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp), 30));
+  s->limit_q16 = q_add_sat(floor_q16(c, seen->span_ticks), q_mul(emf_q16, c->share_q15, 15));
 }
 
 static bool exceeds(const synchronism_t* s) {
@@ -68,14 +69,20 @@ void synchronism_design(synchronism_config_t* c, const machine_model_t* m) {
   c->volts_q_q16 = q_mul_sat(m->lq_q30, m->periods_per_second, 14);
 }
 
+bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
+                       const synchronism_seen_t* seen, int32_t apart_bam) {
+  if (seen->span_ticks <= 0) return false;
+  watch_emf(s, c, m, seen);
+  const bool bad = exceeds(s) || q_abs_sat(apart_bam) > APART_LIMIT_BAM;
+  s->doubt = bad ? s->doubt + DOUBT_PER_BAD : q_max(s->doubt - 1, 0);
+  return s->doubt > c->bad_periods * DOUBT_PER_BAD;
+}
+
 bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in, uint32_t angle_bam,
                       int32_t speed_bpp, int32_t apart_bam) {
   estimator_window_t mean;
   if (!mean_window(in, &mean)) return false;
   const deviation_t d = deviation_evaluate(in->model, &mean, angle_bam, speed_bpp);
-  watch_emf(s, c, in->model, &d);
-  s->limit_q16 = q_add_sat(s->limit_q16, floor_q16(c, mean.span_ticks));
-  const bool bad = exceeds(s) || q_abs_sat(apart_bam) > APART_LIMIT_BAM;
-  s->doubt = bad ? s->doubt + DOUBT_PER_BAD : q_max(s->doubt - 1, 0);
-  return s->doubt > c->bad_periods * DOUBT_PER_BAD;
+  const synchronism_seen_t seen = {d.residual_q20, mean.span_ticks, speed_bpp};
+  return synchronism_judge(s, c, in->model, &seen, apart_bam);
 }

@@ -41,4 +41,16 @@ void synchronism_reset(synchronism_t* s);
 bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in, uint32_t angle_bam,
                       int32_t speed_bpp, int32_t apart_bam);
 
+/// What an estimator that has evaluated the windows already knows of them (regression.h), in its own frame before it
+/// has corrected itself.
+typedef struct {
+  dq_t residual_q20;   // mean by spans, A per period
+  int32_t span_ticks;  // of all windows, 0 where there are none
+  int32_t speed_bpp;   // in use
+} synchronism_seen_t;
+
+/// The same with that instead of the windows.
+bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
+                       const synchronism_seen_t* seen, int32_t apart_bam);
+
 #endif

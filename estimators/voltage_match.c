@@ -11,10 +11,11 @@ void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30
   const int32_t w_q16 = q_mul(w_q30, SPEED_UNITS * 65536L, 30);
   const int32_t still_q16 = q_add_sat(q_mul_sat(i_q16, i_q16, 16), FLOOR_Q16);
   const int32_t power_q16 = q_add_sat(still_q16, q_mul_sat(w_q16, w_q16, 16));
-  const int32_t e_q16 = q_div(r->mean_q20.q, m->yq_q30, 26);  // V
-  const int32_t step_q22 = q_mul_sat(q_div(e_q16, power_q16, 16), share_q30, 24);
+  const int32_t e_q16 = q_over(r->mean_q20.q, m->per_yq, 26);  // V
+  const q_inverse_t per_power = q_invert(power_q16);
+  const int32_t step_q22 = q_mul_sat(q_over(e_q16, per_power, 16), share_q30, 24);
   // What the back-EMF leaves at speed is not the resistance's: it learns with its part of the power only.
-  const int32_t slow_q22 = q_mul(step_q22, q_div(still_q16, power_q16, 30), 30);
+  const int32_t slow_q22 = q_mul(step_q22, q_over(still_q16, per_power, 30), 30);
   t->rs_q24 -= q_mul_sat(slow_q22, i_q16, 16);  // a volt is 1/4 ohm
   t->psi_q16 -= q_mul_sat(q_mul_sat(step_q22, w_q16, 16), SPEED_UNITS, 6);
   t->rs_q24 = q_clamp(t->rs_q24, -m->nominal_rs_q24 / 2, m->nominal_rs_q24);

@@ -15,7 +15,7 @@ void drive_control_interrupt(void) {
   hal_profile_step(windows ? CYCLES_ESTIMATE : CYCLES_ESTIMATE_BLIND);
   drive_protect(d);
   drive_sequence(d);
-  hal_profile_step(CYCLES_SUPERVISE);
+  hal_profile_step(windows ? CYCLES_SUPERVISE : CYCLES_SUPERVISE_BLIND);
   drive_control_speed(d);
   drive_control_current(d);
   hal_profile_step(CYCLES_CONTROL);

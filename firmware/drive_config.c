@@ -68,6 +68,7 @@ static bool load_modulation(drive_config_t* c) {
   c->dead_time.band_q20 = p->drop_band;
   c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + p->drop_band;
   c->dead_time.drop_q16 = p->device_drop;
+  dead_time_design(&c->dead_time);
   // Between two windows lie the edge and its settling at least; the window before must have been read by then.
   const int32_t gap_ticks = c->modulator.sampling.settle_ticks + (int32_t)HAL_ADC_BURST_TICKS;
   return modulator_config_valid(&c->modulator) && gap_ticks >= (int32_t)HAL_ADC_WINDOW_GAP_TICKS &&

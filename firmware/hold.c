@@ -42,14 +42,14 @@ void hold_begin(drive_t* d) {
 // Speed that the back-EMF tells, less the one at which the regression was made, binary angle per period.
 static int32_t emf_speed(const machine_model_t* m, const regression_t* r) {
   const int32_t per_rad_q20 = q_mul_sat(m->yq_q30, m->emf_q16, 26);
-  return -q_mul_sat(q_div(r->mean_q20.q, per_rad_q20, 30), BPP_PER_RAD, 30);
+  return -q_mul_sat(q_over(r->mean_q20.q, q_invert(per_rad_q20), 30), BPP_PER_RAD, 30);
 }
 
 static void observe(drive_t* d) {
   hold_t* const h = &d->hold;
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   const estimator_input_t in = {&d->model, d->samples.windows, d->samples.count,
-                                q_mul_sat(torque_q16, d->model.accel_q12, 20)};
+                                q_mul_sat(torque_q16, d->model.accel_q12, 20), 0};
   (void)avv_step(&h->avv, &observer_config, &in);
   if (h->avv.regression.information <= 0) return;
   tracking_observer_t* const o = &h->avv.observer;
@@ -85,7 +85,8 @@ bool hold_step(drive_t* d) {
   observe(d);
   h->reference_bam += (uint32_t)d->control.ramp.value;
   const int32_t torque_q20 = q_mul_sat(wanted_accel_q8(d), d->config.torque_per_accel_q24, 20);
-  const int32_t current_q20 = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
+  const q_inverse_t per_newton_metre = q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d));
+  const int32_t current_q20 = q_over(torque_q20, per_newton_metre, 24);
   const int32_t limited_q20 = q_clamp(current_q20, -parameters.current_limit, parameters.current_limit);
   const int32_t change_q20 = q_mul(limited_q20 - d->control.reference_q20.q, FILTER_Q30, 30);
   d->control.reference_q20.q += q_clamp(change_q20, -SLEW_Q20, SLEW_Q20);

@@ -8,6 +8,8 @@
 
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
+static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
+
 typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_input_t* in);
 
 // What the regression tells of machine and sensors is taken over slowly, one thing per period in turn. The turn has
@@ -58,7 +60,7 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
 static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
-  if (q_abs_sat(avv_angle_error(r, &d->model)) < ADAPT_ERROR_MAX_BAM) adapt(d, r);
+  if (avv_angle_is_near(r, &d->model)) adapt(d, r);
   d->position.high = out;
   return out;
 }
@@ -101,21 +103,32 @@ static const position_source_t sources[] = {source_encoder, source_paper, source
                                             source_observer};
 
 static void measure_current(drive_t* d) {
-  const drive_samples_t* const s = &d->samples;
+  drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
+  dq_t ripple_q16 = {0, 0};
   if (s->count == 0u || drive_is_blind(d)) return;
   for (uint16_t k = 0; k < s->count; k++) {
     const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)s->windows[k].middle_tick) * 107374;
     const uint32_t angle =
         d->position.used.angle_bam + (uint32_t)q_mul(d->position.used.speed_bpp, 1073741824L - before_q30, 30);
-    const rotation_t r = frame_rotation(angle);
-    const dq_t i = frame_park(s->windows[k].current_q20, r);
-    const dq_t flux_q16 = frame_park(s->ripple_q16[k], r);
-    sum.d += i.d - q_mul(d->model.yd_q30, flux_q16.d, 26);
-    sum.q += i.q - q_mul(d->model.yq_q30, flux_q16.q, 26);
+    s->frames[k] = deviation_frame(&s->windows[k], angle);
+    const dq_t i = s->frames[k].current_q20;
+    const dq_t flux_q16 = frame_park(s->ripple_q16[k], s->frames[k].rotation);
+    sum.d += i.d;
+    sum.q += i.q;
+    ripple_q16.d += flux_q16.d;
+    ripple_q16.q += flux_q16.q;
   }
-  d->control.measured_q20.d = sum.d / (int32_t)s->count;
-  d->control.measured_q20.q = sum.q / (int32_t)s->count;
+  const int32_t per_count_q30 = per_windows_q30[s->count];
+  d->control.measured_q20.d = q_mul(sum.d - q_mul(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30);
+  d->control.measured_q20.q = q_mul(sum.q - q_mul(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);
+}
+
+// True where the frame in use is the observer's own.
+static bool observer_in_use(const drive_t* d) {
+  const drive_position_t* const p = &d->position;
+  return parameters.position_source == 4 && p->observer.angle_bam == p->used.angle_bam &&
+         p->observer.speed_bpp == p->used.speed_bpp;
 }
 
 void drive_estimate(drive_t* d) {
@@ -131,9 +144,11 @@ void drive_estimate(drive_t* d) {
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
   if (measuring) {
+    in.frames = 0;
     d->position.used = step_commissioning(d, &in);
     return;
   }
+  in.frames = (!starting && observer_in_use(d)) ? d->samples.frames : 0;
   d->position.used = starting ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
 }
 

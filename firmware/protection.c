@@ -56,6 +56,12 @@ static bool diverged(drive_t* d) {
 // An angle error that is asked for is none.
 static bool lost_synchronism(drive_t* d) {
   if (parameters.position_source == 0 && parameters.encoder_trim != 0) return false;
+  if (parameters.position_source == 4) {
+    const regression_t* const r = &d->position.observer.regression;
+    const synchronism_seen_t seen = {r->even_q20, (d->samples.count > 0u) ? r->span_ticks : 0,
+                                     d->position.used.speed_bpp};
+    return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen, 0);
+  }
   estimator_input_t in;
   in.model = &d->model;
   in.windows = d->samples.windows;
@@ -63,6 +69,7 @@ static bool lost_synchronism(drive_t* d) {
   in.torque_accel_q8 = 0;
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
   const int32_t apart_bam = (parameters.position_source == 0) ? 0 : disagreement(d);
+  in.frames = 0;
   return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, d->position.used.angle_bam,
                           d->position.used.speed_bpp, apart_bam);
 }

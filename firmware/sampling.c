@@ -12,6 +12,9 @@
 #include "hal/hal_profile.h"
 #include "svpwm/ripple.h"
 
+#define THIRD 357913941L  // Q30
+#define SIDE FRAME_SQRT3_INV_Q30
+
 static sampling_buffer_t sampling_buffers[2];
 static uint16_t sampling_filling;
 
@@ -42,17 +45,12 @@ const sampling_buffer_t* sampling_swap(void) {
   return &sampling_buffers[full];
 }
 
-// Active vectors: Clarke of the switching state, Q30.
-static ab_t state_vector_q30(uint16_t state) {
-  const abc_t legs = {((state & 1u) != 0u) ? 1073741824L : 0, ((state & 2u) != 0u) ? 1073741824L : 0,
-                      ((state & 4u) != 0u) ? 1073741824L : 0};
-  const abc_t third = {legs.a / 3, legs.b / 3, legs.c / 3};
-  const ab_t v = {2 * third.a - third.b - third.c, q_mul(legs.b - legs.c, FRAME_SQRT3_INV_Q30, 30)};
-  return v;
-}
+// Clarke of the eight switching states: thirds and 1/sqrt(3), Q30.
+static const ab_t state_vector_q30[8] = {{0, 0},          {2 * THIRD, 0}, {-THIRD, SIDE},  {THIRD, SIDE},
+                                         {-THIRD, -SIDE}, {THIRD, -SIDE}, {-2 * THIRD, 0}, {0, 0}};
 
 static ab_t window_voltage(const drive_t* d, const svpwm_window_t* w, ab_t current_q20) {
-  const ab_t vector = state_vector_q30(w->state);
+  const ab_t vector = state_vector_q30[w->state & 7u];
   const ab_t drop = dead_time_drop_q16(&d->config.dead_time, current_q20);
   const ab_t v = {q_mul(d->samples.link_q16, vector.alpha, 30) - drop.alpha,
                   q_mul(d->samples.link_q16, vector.beta, 30) - drop.beta};

@@ -30,7 +30,7 @@ static int32_t load_current(const drive_t* d) {
   const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 20);
   const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
   const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
-  return q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
+  return q_over(torque_q20, q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d)), 24);
 }
 
 static int32_t current_room(const drive_t* d) {

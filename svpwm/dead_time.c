@@ -3,10 +3,10 @@
 #include "svpwm/ripple.h"
 
 // Sign of a current as -1..1, Q15, linear inside the band.
-static int32_t sign_q15(int32_t current_q20, int32_t band_q20) {
-  if (current_q20 >= band_q20) return 32767L;
-  if (current_q20 <= -band_q20) return -32767L;
-  return q_div(current_q20, band_q20, 15);
+static int32_t sign_q15(const dead_time_config_t* c, int32_t current_q20) {
+  if (current_q20 >= c->band_q20) return 32767L;
+  if (current_q20 <= -c->band_q20) return -32767L;
+  return q_mul(current_q20, c->per_band_q29, 29);
 }
 
 // Delay of an edge, ticks; `sign` is positive where the current blocks the edge.
@@ -16,13 +16,10 @@ static int16_t delay_ticks(const dead_time_config_t* c, int32_t blocking_q15) {
   return (int16_t)q_shr_round(middle * (int32_t)32768 + half_range * blocking_q15, 16);
 }
 
-static int32_t current_at(const svpwm_pulses_t* p, uint16_t leg, int16_t tick, ab_t mean_q20, int32_t admittance_q30,
-                          int32_t link_q16) {
-  const ab_t flux_q16 = svpwm_ripple_q16(p, tick, link_q16);
-  const ab_t i_q20 = {mean_q20.alpha + q_mul(flux_q16.alpha, admittance_q30, 26),
-                      mean_q20.beta + q_mul(flux_q16.beta, admittance_q30, 26)};
-  const abc_t phases = frame_inverse_clarke(i_q20);
-  return (leg == 0u) ? phases.a : (leg == 1u) ? phases.b : phases.c;
+void dead_time_design(dead_time_config_t* c) {
+  c->per_band_q29 = q_div(32768L, c->band_q20, 29);
+  c->third_drop_q24 = q_div(c->drop_q16, 3, 8);
+  c->side_drop_q24 = q_mul(c->drop_q16, FRAME_SQRT3_INV_Q30, 22);
 }
 
 static dead_time_edges_t edge_bit(bool uncertain, uint16_t bit) {
@@ -31,12 +28,16 @@ static dead_time_edges_t edge_bit(bool uncertain, uint16_t bit) {
 
 dead_time_edges_t dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
                                        int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command) {
+  const abc_t mean = frame_inverse_clarke(current_q20);
+  const int32_t mean_q20[SVPWM_LEGS] = {mean.a, mean.b, mean.c};
   dead_time_edges_t uncertain = 0;
+  svpwm_edges_t ripple;
+  svpwm_edge_ripple_q20(wanted, admittance_q30, link_q16, &ripple);
   for (uint16_t leg = 0; leg < SVPWM_LEGS; leg++) {
-    const int32_t at_rise = current_at(wanted, leg, wanted->rise[leg], current_q20, admittance_q30, link_q16);
-    const int32_t at_fall = current_at(wanted, leg, wanted->fall[leg], current_q20, admittance_q30, link_q16);
-    command->rise[leg] = (int16_t)(wanted->rise[leg] - delay_ticks(c, sign_q15(at_rise, c->band_q20)));
-    command->fall[leg] = (int16_t)(wanted->fall[leg] - delay_ticks(c, -sign_q15(at_fall, c->band_q20)));
+    const int32_t at_rise = mean_q20[leg] + ripple.rise_q20[leg];
+    const int32_t at_fall = mean_q20[leg] + ripple.fall_q20[leg];
+    command->rise[leg] = (int16_t)(wanted->rise[leg] - delay_ticks(c, sign_q15(c, at_rise)));
+    command->fall[leg] = (int16_t)(wanted->fall[leg] - delay_ticks(c, -sign_q15(c, at_fall)));
     uncertain |= edge_bit(q_abs_sat(at_rise) < c->edge_band_q20, leg);
     uncertain |= edge_bit(q_abs_sat(at_fall) < c->edge_band_q20, (uint16_t)(SVPWM_LEGS + leg));
   }
@@ -77,8 +78,9 @@ void dead_time_guard_windows(const dead_time_config_t* c, const sampling_config_
 
 ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
   const abc_t i = frame_inverse_clarke(current_q20);
-  const abc_t drop = {q_mul(sign_q15(i.a, c->band_q20), c->drop_q16, 15),
-                      q_mul(sign_q15(i.b, c->band_q20), c->drop_q16, 15),
-                      q_mul(sign_q15(i.c, c->band_q20), c->drop_q16, 15)};
-  return frame_clarke3(drop);
+  const int32_t a = sign_q15(c, i.a);
+  const int32_t b = sign_q15(c, i.b);
+  const int32_t s = sign_q15(c, i.c);
+  const ab_t drop = {q_mul(2 * a - b - s, c->third_drop_q24, 23), q_mul(b - s, c->side_drop_q24, 23)};
+  return drop;
 }

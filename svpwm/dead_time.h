@@ -17,10 +17,14 @@ typedef struct {
   int32_t edge_band_q20;   // error that a predicted current at an edge may have, A
   int32_t band_q20;        // current below which the sign is not trusted, A, 0.01..2
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
+  int32_t per_band_q29, third_drop_q24, side_drop_q24;  // of band and drop, set by dead_time_design
 } dead_time_config_t;
 
 /// Edges whose sign of the current is not certain: bit `leg` a rising one, bit 3 + `leg` a falling one.
 typedef uint16_t dead_time_edges_t;
+
+/// Derives the constants; the first five members are set by hand.
+void dead_time_design(dead_time_config_t* c);
 
 /// Commands that make the motor see the pattern's edges. current_q20: mean phase currents in that period, alpha-beta,
 /// A; admittance_q30: mean T/L, A per V and period; link_q16: DC link, V. Returns the edges where the current is below

@@ -7,7 +7,7 @@ static int32_t smallest(abc_t x) { return q_min(x.a, q_min(x.b, x.c)); }
 
 svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16) {
   svpwm_on_time_t t;
-  const int32_t ticks_per_volt_q20 = q_div(SVPWM_PERIOD_TICKS, q_max(link_q16, LINK_MIN_Q16), 31) * 32L;
+  const int32_t ticks_per_volt_q20 = q_over(SVPWM_PERIOD_TICKS, q_invert(q_max(link_q16, LINK_MIN_Q16)), 36);
   abc_t v = frame_inverse_clarke(voltage_q16);
   t.realised_q16 = voltage_q16;
   const int32_t spread_q4 = q_mul_sat(largest(v) - smallest(v), ticks_per_volt_q20, 32);

@@ -2,24 +2,35 @@
 
 #define EDGES (2u * SVPWM_LEGS)
 
-typedef struct {
-  int16_t tick;
-  uint16_t leg_bit;
-} edge_t;
+// An edge as its tick and, in the three bits below, the leg that changes: sorted as one number.
+static uint32_t edge_of(int16_t tick, uint16_t leg) { return ((uint32_t)(uint16_t)tick << 3) | (1uL << leg); }
 
-static void sort_edges(const svpwm_pulses_t* p, edge_t edges[EDGES]) {
-  uint16_t count = 0;
-  for (uint16_t k = 0; k < EDGES; k++) {
-    const uint16_t leg = (uint16_t)(k >> 1);
-    const edge_t e = {((k & 1u) != 0u) ? p->fall[leg] : p->rise[leg], (uint16_t)(1u << leg)};
-    uint16_t n = count;
-    while (n > 0u && edges[n - 1u].tick > e.tick) {
-      edges[n] = edges[n - 1u];
-      n--;
-    }
-    edges[n] = e;
-    count++;
+static void put_in_order(uint32_t* a, uint32_t* b) {
+  const uint32_t low = (*a < *b) ? *a : *b;
+  *b = (*a < *b) ? *b : *a;
+  *a = low;
+}
+
+static void sort_three(uint32_t e[3]) {
+  put_in_order(&e[1], &e[2]);
+  put_in_order(&e[0], &e[2]);
+  put_in_order(&e[0], &e[1]);
+}
+
+// Sorting network: twelve comparisons for six numbers, whatever their order.
+static void sort_edges(const svpwm_pulses_t* p, uint32_t e[EDGES]) {
+  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
+    e[k] = edge_of(p->rise[k], k);
+    e[k + SVPWM_LEGS] = edge_of(p->fall[k], k);
   }
+  sort_three(&e[0]);
+  sort_three(&e[3]);
+  put_in_order(&e[2], &e[5]);
+  put_in_order(&e[0], &e[3]);
+  put_in_order(&e[1], &e[4]);
+  put_in_order(&e[2], &e[4]);
+  put_in_order(&e[1], &e[3]);
+  put_in_order(&e[2], &e[3]);
 }
 
 static int16_t span(const sampling_config_t* c, const svpwm_window_t* w) {
@@ -36,14 +47,19 @@ static void drop_shortest(const sampling_config_t* c, svpwm_window_t w[], uint16
 }
 
 void svpwm_find_windows(const sampling_config_t* c, svpwm_pattern_t* pattern) {
-  edge_t edges[EDGES];
+  const int16_t shortest = (int16_t)(c->settle_ticks + c->burst_ticks + c->span_min_ticks);
+  uint32_t edges[EDGES + 1u];
   svpwm_window_t found[SVPWM_WINDOWS + 1];
-  svpwm_window_t w = {0, 0, 0};
+  int16_t begin = 0;
+  uint16_t state = 0;
   uint16_t count = 0;
   sort_edges(&pattern->pulses, edges);
+  edges[EDGES] = (uint32_t)SVPWM_PERIOD_TICKS << 3;
   for (uint16_t k = 0; k <= EDGES; k++) {
-    w.end = (k < EDGES) ? edges[k].tick : SVPWM_PERIOD_TICKS;
-    if (span(c, &w) >= c->span_min_ticks) {
+    const int16_t end = (int16_t)(edges[k] >> 3);
+    const svpwm_window_t w = {begin, end, state};
+    // Most intervals are short; the period's end cuts some of the others.
+    if (end - begin >= shortest && span(c, &w) >= c->span_min_ticks) {
       found[count] = w;
       count++;
       if (count > SVPWM_WINDOWS) {
@@ -51,8 +67,8 @@ void svpwm_find_windows(const sampling_config_t* c, svpwm_pattern_t* pattern) {
         count = SVPWM_WINDOWS;
       }
     }
-    w.begin = w.end;
-    if (k < EDGES) w.state ^= edges[k].leg_bit;
+    begin = end;
+    state ^= (uint16_t)(edges[k] & 7u);
   }
   pattern->window_count = count;
   for (uint16_t k = 0; k < count; k++) pattern->windows[k] = found[k];

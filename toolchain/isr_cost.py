@@ -68,7 +68,10 @@ def main() -> int:
         return 1
     total = 0.0
     for folder in FOLDERS:
-        rows = {Path(f).name: c / interrupts for f, c in cost.items() if folder_of(f) == folder}
+        rows: dict[str, float] = defaultdict(float)  # a compiler cache may name one file by several paths
+        for file, instructions in cost.items():
+            if folder_of(file) == folder:
+                rows[Path(file).name] += instructions / interrupts
         if not rows:
             continue
         largest = ", ".join(f"{n} {c:.0f}" for n, c in sorted(rows.items(), key=lambda r: -r[1])[:4])

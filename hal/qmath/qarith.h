@@ -87,8 +87,30 @@ static inline int64_t q_mul64(int32_t a, int32_t b, unsigned shift) {
 // round(a * b / 2^shift), halves up, shift = 1..62. The caller guarantees that the result fits 32 bits.
 static inline int32_t q_mul(int32_t a, int32_t b, unsigned shift) { return (int32_t)q_mul64(a, b, shift); }
 
+// sum + a * b: whole products are added up and rounded once. The caller guarantees that the sum fits 64 bits.
+static inline int64_t q_mac(int64_t sum, int32_t a, int32_t b) { return sum + (int64_t)a * b; }
+
+// round((a * b + c * d) / 2^shift), halves up, shift = 1..62: two products and one rounding. The caller guarantees that
+// the result fits 32 bits and the sum, rounding included, 64: a quarter of the range in one of each pair is enough.
+static inline int32_t q_mul_add(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
+  return (int32_t)q_shr64((int64_t)a * b + (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift);
+}
+
+// round((a * b - c * d) / 2^shift), the same for a difference.
+static inline int32_t q_mul_sub(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
+  return (int32_t)q_shr64((int64_t)a * b - (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift);
+}
+
 // round(a * b / 2^shift), halves up, saturated, shift = 1..62.
 static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift) { return q_sat64(q_mul64(a, b, shift)); }
+
+// The same two sums of products, saturated.
+static inline int32_t q_mul_add_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
+  return q_sat64(q_shr64((int64_t)a * b + (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift));
+}
+static inline int32_t q_mul_sub_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
+  return q_sat64(q_shr64((int64_t)a * b - (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift));
+}
 
 // floor(a * b / 2^32): the upper word of the product, one instruction where a function needs no rounding.
 static inline int32_t q_mul_hi(int32_t a, int32_t b) { return (int32_t)q_shr64((int64_t)a * b, 32); }

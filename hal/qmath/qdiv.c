@@ -96,3 +96,10 @@ int32_t q_div(int32_t num, int32_t den, unsigned shift) {
   }
   return negative ? -(int32_t)magnitude : (int32_t)magnitude;
 }
+
+q_inverse_t q_invert(int32_t divisor) {
+  const uint32_t positive = (divisor > 0) ? (uint32_t)divisor : 1u;
+  const unsigned zeros = q_clz32(positive);
+  const q_inverse_t inverse = {(int32_t)(q_reciprocal_q31(positive << zeros) >> 1), 62u - zeros};
+  return inverse;
+}

@@ -82,6 +82,25 @@ TEST(QArith, Product) {
   for (int i = 0; i < 500000; ++i) check_product(random(), random(), 1 + random.below(62));
 }
 
+TEST(QArith, TwoProductsAreRoundedOnce) {
+  RandomInt32 random(7);
+  for (int n = 0; n < 200000; ++n) {
+    const std::int32_t a = random() / 2, b = random(), c = random() / 2, d = random();
+    const unsigned shift = 1 + static_cast<unsigned>(n) % 62;
+    const Wide sum = round_shift(Wide{a} * b + Wide{c} * d, shift);
+    const Wide difference = round_shift(Wide{a} * b - Wide{c} * d, shift);
+    ASSERT_EQ(q_mul_add_sat(a, b, c, d, shift), saturate(sum)) << n;
+    ASSERT_EQ(q_mul_sub_sat(a, b, c, d, shift), saturate(difference)) << n;
+    if (fits(sum)) {
+      ASSERT_EQ(q_mul_add(a, b, c, d, shift), saturate(sum)) << n;
+    }
+    if (fits(difference)) {
+      ASSERT_EQ(q_mul_sub(a, b, c, d, shift), saturate(difference)) << n;
+    }
+    ASSERT_TRUE(Wide{q_mac(std::int64_t{a} * b, c, d)} == Wide{a} * b + Wide{c} * d) << n;
+  }
+}
+
 TEST(QArith, ProductRoundsHalvesUp) {
   EXPECT_EQ(q_mul(3, 1, 1), 2);    // 1.5
   EXPECT_EQ(q_mul(-3, 1, 1), -1);  // -1.5

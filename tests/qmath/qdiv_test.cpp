@@ -59,6 +59,29 @@ TEST(QDiv, ReciprocalIsBelowAndWithinTwoLsb) {
   EXPECT_GT(worst.error(), 1.0);  // this bound is sharp; a smaller error would mean that one step is enough
 }
 
+// Below by less than 2^-28 of the quotient, besides half an LSB of rounding; a divisor that is too small saturates.
+TEST(QDiv, InverseOfADivisorThatIsShared) {
+  RandomInt32 random(8);
+  Worst worst("q_over [2^-28]");
+  for (int n = 0; n < 300000; ++n) {
+    const std::int32_t den = std::max(1, random() & INT32_MAX);
+    const std::int32_t num = random();
+    const unsigned shift = static_cast<unsigned>(n) % 31;
+    const long double exact = static_cast<long double>(num) * (1u << shift) / den;
+    const std::int32_t got = q_over(num, q_invert(den), shift);
+    if (std::fabs(exact) >= 2147483647.0L) {
+      ASSERT_LT(std::fabs(got - std::clamp(exact, -2147483648.0L, 2147483647.0L)), 9.0L) << num << " / " << den;
+      continue;
+    }
+    const long double below = std::fabs(exact) - std::fabs(static_cast<long double>(got));
+    ASSERT_GE(below, -0.5L) << num << " * 2^" << shift << " / " << den;
+    const long double relative = (below - 0.5L) / std::max(std::fabs(exact), 1.0L) * 268435456.0L;
+    worst.add(static_cast<double>(std::max(relative, 0.0L)), num, den);
+  }
+  EXPECT_LT(worst.error(), 1.0);
+  EXPECT_EQ(q_over(1, q_invert(0), 30), q_over(1, q_invert(1), 30));
+}
+
 TEST(QDiv, ZeroDivisorSaturatesWithTheSignOfTheNumerator) {
   EXPECT_EQ(q_div(0, 0, 10), 0);
   EXPECT_EQ(q_div(1, 0, 0), INT32_MAX);

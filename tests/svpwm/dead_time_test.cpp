@@ -15,8 +15,16 @@ constexpr double kDeadTicks = 200.0, kTurnOn = 30.0, kTurnOff = 60.0;
 constexpr double kLink = 300.0;
 
 dead_time_config_t config() {
-  return {static_cast<std::int16_t>(kDeadTicks + kTurnOn), static_cast<std::int16_t>(kTurnOff), raw(0.7, 20),
-          raw(0.2, 20), raw(0.95, 16)};
+  dead_time_config_t c = {static_cast<std::int16_t>(kDeadTicks + kTurnOn),
+                          static_cast<std::int16_t>(kTurnOff),
+                          raw(0.7, 20),
+                          raw(0.2, 20),
+                          raw(0.95, 16),
+                          0,
+                          0,
+                          0};
+  dead_time_design(&c);
+  return c;
 }
 
 /// When the leg's voltage really changes. The commanded edge switches one device off at once and the other on after the
