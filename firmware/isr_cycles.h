@@ -3,9 +3,9 @@
 // Estimates, no measurement of the compiler's code: operations counted in every period of runs at 5, 80, 600 and 2000
 // rpm with the default position source, and of each step its worst period of all. A 32 x 32 bit product with rounding
 // counts 13 cycles, two of them with one rounding 20, one that is only added up 8, an upper half 6, a saturation 8, a
-// reciprocal 70 and a 32 bit division 60, operands fetched; to the modulation come 800 for placing and sorting edges.
+// reciprocal 70 and a 32 bit division 60, operands fetched; to the modulation come 1000 for placing and sorting edges.
 // All worst steps in one period need three windows, the millisecond's tasks and a polarity that is not confirmed yet:
-// 8600; the mean over a run is 6800. Not in it: position source 2 or a hold, which evaluate the windows twice. They
+// 8800; the mean over a run is 6900. Not in it: position source 2 or a hold, which evaluate the windows twice. They
 // make a compare value that is written too late be seen too late.
 
 #ifndef STILLSPIN_FIRMWARE_ISR_CYCLES_H
@@ -18,7 +18,7 @@
 #define CYCLES_SUPERVISE 850u
 #define CYCLES_SUPERVISE_BLIND 100u
 #define CYCLES_CONTROL 850u
-#define CYCLES_MODULATE 1350u
+#define CYCLES_MODULATE 1550u
 #define CYCLES_REFER 550u  // references of the hysteresis
 #define CYCLES_WINDOW 60u
 #define CYCLES_SLICE 120u
