@@ -15,6 +15,16 @@ static int32_t largest_emf_q16(const parameters_t* p) {
   return q_mul(volts_q16, 194755224L, 30);  // sqrt(3) 2 pi / 60
 }
 
+// Lqq below Ldd at one of the map's points.
+static bool map_is_crossed(const parameters_t* p) {
+  const int32_t lqq[] = {p->lqq_1, p->lqq_2, p->lqq_3, p->lqq_4};
+  const int32_t ldd[] = {p->ldd_1, p->ldd_2, p->ldd_3, p->ldd_4};
+  for (uint16_t k = 0; k < 4u; k++) {
+    if ((int64_t)lqq[k] * p->inductance_q < (int64_t)ldd[k] * p->inductance_d) return true;
+  }
+  return false;
+}
+
 const char* parameter_conflict(void) {
   static drive_config_t trial;
   const parameters_t* const p = &parameters;
@@ -41,10 +51,13 @@ const char* parameter_conflict(void) {
     return "position_source 1 needs id_low_speed of 1 A or more";
   if ((p->excitation == 0 || p->excitation == 4) && (p->position_source == 2 || p->position_source == 3))
     return "excitation 0 and 4 have no active vectors for AVV";
+  if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3) return "hold_time needs excitation 2 or 3";
+  if (map_is_crossed(p)) return "lqq_1 .. lqq_4 of inductance_q must not be less than ldd_1 .. ldd_4 of inductance_d";
   if (p->current_law == 1 && p->position_source != 0) return "current_law 1 needs position_source 0";
   if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
     return "100 us must be a whole number of slice_time";
   trial = drive.config;
-  return drive_config_load(&trial) ? NULL
-                                   : "the machine's parameters are too extreme together: inertia, flux, inductances";
+  return drive_config_load(&trial)
+             ? NULL
+             : "the machine's parameters are too extreme together: inertia, flux, inductances, map";
 }

@@ -278,4 +278,36 @@ TEST_F(Drive, SpeedReferenceIsClampedToTheLimit) {
   }
 }
 
+TEST_F(Drive, AHoldWantsTheAlternatingLayout) {
+  parameters.hold_time = 100;
+  EXPECT_EQ(parameter_conflict(), nullptr);
+  for (const int excitation : {0, 1, 4}) {
+    parameters.excitation = excitation;
+    ASSERT_NE(parameter_conflict(), nullptr) << excitation;
+    EXPECT_NE(std::string(parameter_conflict()).find("hold_time"), std::string::npos);
+  }
+}
+
+TEST_F(Drive, AMapWithoutSaliencyIsNamed) {
+  parameters.lqq_4 = raw(60.0, 16);
+  ASSERT_NE(parameter_conflict(), nullptr);
+  EXPECT_NE(std::string(parameter_conflict()).find("lqq"), std::string::npos);
+  parameters.lqq_4 = raw(65.0, 16);
+  EXPECT_EQ(parameter_conflict(), nullptr);
+}
+
+TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
+  make_run();
+  drive.state = DRIVE_START;
+  drive.start = {};
+  drive.start.powered = true;
+  drive.start.phase = START_CATCH;
+  for (int n = 0; n < 300; ++n) {
+    drive.position.avv.regression.information = 0;
+    drive.start.axis.count = 0;
+    period();
+  }
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+}
+
 }  // namespace
