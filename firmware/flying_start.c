@@ -11,6 +11,7 @@
 #define PAIRS_MAX 4u          // pairs of pulses before giving up
 #define STANDING_Q16 196608L  // 3 V: 45 rpm on motor A, beyond what drops and noise can fake
 #define CATCH_PERIODS 140u
+#define LEARN_TIMEOUT 200u        // periods for windows that show the axis
 #define ON_TICKS 200              // from the gates' command to the devices
 #define STRAY_MAX_BAM 178956971L  // 15 degrees
 
@@ -85,7 +86,6 @@ static void end_pulse(drive_t* d) {
 
 void start_step_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
-  if (s->tick == 0u) return;
   for (uint16_t k = 0; k < d->samples.count; k++) {
     const estimator_window_t* const w = &d->samples.windows[k];
     // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
@@ -115,7 +115,10 @@ static bool learn(drive_t* d) {
 void start_step_catch(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (!s->powered) start_power(d, true);
-  if (!learn(d)) return;
+  if (!learn(d)) {
+    if (s->tick > LEARN_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+    return;
+  }
   s->stray += q_shr(d->position.avv.error_bam - s->stray, 4);
   if (s->tick < CATCH_PERIODS) return;
   if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
