@@ -155,8 +155,12 @@ typedef struct {
   int32_t speed, voltage_q16, current_q20;
 } steady_t;
 
-static steady_t steady(const spin_station_t* s) {
-  const steady_t m = {fit_ratio(s->speed, s->periods, 0), fit_ratio(s->voltage_q, s->periods, 0),
+// The voltage without that of the d-axis current.
+static steady_t steady(const spin_station_t* s, int32_t ld_q30) {
+  const int32_t flux_q28 = q_mul_sat(ld_q30, fit_ratio(s->current_d, s->periods, 0), 22);
+  const int32_t speed = fit_ratio(s->speed, s->periods, 0);
+  const int32_t armature_q16 = fit_ratio((int64_t)flux_q28 * speed, BPP_PER_RAD_Q12, 0);
+  const steady_t m = {speed, q_sub_sat(fit_ratio(s->voltage_q, s->periods, 0), armature_q16),
                       fit_ratio(s->current_q, s->periods, 0)};
   return m;
 }
@@ -175,14 +179,14 @@ static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const stea
   return fit_ratio(impulse_q16 * BPP_PER_ACCEL_Q16 * pole_pairs, change, -8);
 }
 
-spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t pole_pairs) {
+spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30, int32_t pole_pairs) {
   spin_values_t v = {false, 0, 0, 0, 0, 0};
   for (uint16_t k = 0; k < SPIN_STATIONS; k++) {
     if (s->station[k].periods == 0) return v;
   }
-  const steady_t low = steady(&s->station[0]);
-  const steady_t high = steady(&s->station[1]);
-  const steady_t end = steady(&s->station[2]);
+  const steady_t low = steady(&s->station[0], ld_q30);
+  const steady_t high = steady(&s->station[1], ld_q30);
+  const steady_t end = steady(&s->station[2], ld_q30);
   const int32_t change = high.speed - low.speed;
   if (change <= 0 || s->ramp[0].periods == 0 || s->ramp[1].periods == 0) return v;
   const int32_t current_q20 = high.current_q20 - low.current_q20;

@@ -47,8 +47,8 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS]);
 /// Moves a level's inductances to the current that was meant, along the line from the level below.
 void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20);
 
-/// resistance_q24: of winding and devices, ohm.
-spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t pole_pairs);
+/// resistance_q24: of winding and devices, ohm; ld_q30: H, for the voltage of what field weakening there was.
+spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30, int32_t pole_pairs);
 
 /// Mismatch g of the current sensors beyond the one already taken off, Q30.
 int32_t unsaturated_mismatch_q30(const tensor_sums_t* s, const machine_model_t* m);

@@ -6,6 +6,7 @@
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
 
+#define SOURCE_OBSERVER 4
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
@@ -148,8 +149,10 @@ void drive_estimate(drive_t* d) {
     d->position.used = step_commissioning(d, &in);
     return;
   }
+  // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
+  const int32_t source = (d->state == DRIVE_COMMISSION) ? SOURCE_OBSERVER : parameters.position_source;
   in.frames = (!starting && observer_in_use(d)) ? d->samples.frames : 0;
-  d->position.used = starting ? step_avv(d, &in) : sources[parameters.position_source](d, &in);
+  d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
 }
 
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {

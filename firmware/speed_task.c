@@ -18,7 +18,9 @@ void drive_weaken_field(drive_t* d) {
   in.current_limit_q20 = parameters.weakening_limit;
   in.trim_gain_q20 = parameters.weakening_gain;
   const int32_t weakening = field_weakening_step(&c->weakening, &in, &d->model);
-  const int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
+  // A commissioning takes its spin for one without i_d.
+  const bool none = d->position.blend.region == BLEND_HIGH || d->state == DRIVE_COMMISSION;
+  const int32_t bias = none ? 0 : parameters.id_low_speed;
   c->reference_q20.d = q_clamp(q_add_sat(weakening, bias), -parameters.current_limit, parameters.current_limit);
   if (weakening < 0) d->limits |= LIMIT_WEAKENING;
 }

@@ -205,7 +205,7 @@ spin_t spun(double flux, double inertia, double friction, double resistance) {
 
 TEST(CommissioningSpin, FluxInertiaFrictionDespiteAnOffsetOfTheVoltage) {
   const spin_t s = spun(0.1552, 0.00546, 0.003, 0.387);
-  const spin_values_t v = spin_solve(&s, fixed(0.387, 24), 4);
+  const spin_values_t v = spin_solve(&s, fixed(0.387, 24), fixed(0.0049, 30), 4);
   ASSERT_TRUE(v.valid);
   EXPECT_NEAR(real(v.flux_q28, 28), 0.1552, 1e-5);
   EXPECT_NEAR(real(v.inertia_up_q24, 24), 0.00546, 5e-6);  // an LSB of 6e-8, the torque's of 1e-6
@@ -215,10 +215,18 @@ TEST(CommissioningSpin, FluxInertiaFrictionDespiteAnOffsetOfTheVoltage) {
   EXPECT_NEAR(real(v.flux_low_q28, 28), 0.1552 + 0.3 / 80.0, 1e-4);
 }
 
+TEST(CommissioningSpin, FieldWeakeningIsNoFlux) {
+  spin_t s = spun(0.1552, 0.00546, 0.003, 0.387);
+  s.station[1].current_d = 5000LL * fixed(-3.0, 20);
+  s.station[1].voltage_q -= 5000LL * fixed(0.0049 * 3.0 * 4 * 60.0, 16);
+  const spin_values_t v = spin_solve(&s, fixed(0.387, 24), fixed(0.0049, 30), 4);
+  EXPECT_NEAR(real(v.flux_q28, 28), 0.1552, 1e-5);
+}
+
 TEST(CommissioningSpin, AShaftThatDidNotTurnIsNotValid) {
   spin_t s = spun(0.1552, 0.00546, 0.003, 0.387);
   s.station[1].speed = s.station[0].speed;
-  EXPECT_FALSE(spin_solve(&s, fixed(0.387, 24), 4).valid);
+  EXPECT_FALSE(spin_solve(&s, fixed(0.387, 24), fixed(0.0049, 30), 4).valid);
 }
 
 }  // namespace
