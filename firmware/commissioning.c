@@ -96,6 +96,7 @@ void commissioning_service(drive_t* d) {
   }
   if (!c->evaluate) return;
   c->outcome = commissioning_conclude(c, &report);
+  drive_parameters_changed();  // also when nothing was written: settle_longer has to be undone
   c->evaluate = false;
 }
 

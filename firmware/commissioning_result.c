@@ -100,8 +100,17 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
   offer(r, (uint16_t)(ID_ldq_1 + level), v->ldq_q20, all);
 }
 
+// The levels are shares of the map's last current: with another one than before, all of them or none.
+static void keep_map_together(commissioning_report_t* r, uint16_t first) {
+  bool complete = true;
+  for (uint16_t k = first; k < r->count; k++) complete = complete && r->list[k].verdict == VERDICT_USED;
+  if (complete || r->list[first].value == r->list[first].before) return;
+  for (uint16_t k = first; k < r->count; k++) r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+}
+
 static void judge_map(const commissioning_t* c, const map_values_t* zero, commissioning_verdict_t unsaturated,
                       commissioning_report_t* r) {
+  const uint16_t first = r->count;
   offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
   map_values_t level[MAP_LEVELS];
   int32_t ldq_q20[MAP_LEVELS];
@@ -119,10 +128,11 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
     judge_level(&level[k], zero, k, unsaturated, r);
     if (!smooth) r->list[r->count - 1u].verdict = worst(r->list[r->count - 1u].verdict, VERDICT_SPREAD);
   }
+  keep_map_together(r, first);
 }
 
 void commissioning_solve_motion(commissioning_t* c) {
-  const spin_values_t v = spin_solve(&c->spin, c->model.rs_q24, c->model.pole_pairs);
+  const spin_values_t v = spin_solve(&c->spin, c->model.rs_q24, c->model.ld_q30, c->model.pole_pairs);
   const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
   c->torque_q24 = c->model.torque_q24;
   c->accel_q12 = c->model.accel_q12;
@@ -142,7 +152,7 @@ static int32_t inertia_from_trains(const commissioning_t* c, const spin_values_t
 static void judge_spin(const commissioning_t* c, commissioning_verdict_t resistance, commissioning_report_t* r) {
   const parameters_t* const p = &parameters;
   const int32_t winding = (resistance == VERDICT_USED) ? r->list[0].value : p->stator_resistance;
-  const spin_values_t v = spin_solve(&c->spin, winding + p->device_resistance, c->model.pole_pairs);
+  const spin_values_t v = spin_solve(&c->spin, winding + p->device_resistance, c->model.ld_q30, c->model.pole_pairs);
   const commissioning_verdict_t measured = v.valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   commissioning_verdict_t flux = worst(measured, agree(v.flux_q28, v.flux_low_q28, 10));
   flux = worst(flux, (v.flux_q28 <= 0) ? VERDICT_NOT_PHYSICAL : near(v.flux_q28, p->magnet_flux, 2));

@@ -57,6 +57,8 @@ static void begin_stop(drive_t* d) {
 
 // A start or a commissioning that is not wanted any more: stops the shaft where it turns, else opens the power stage.
 static void break_off(drive_t* d) {
+  // The gates are off already, and the background level is about to write what was found.
+  if (d->state == DRIVE_COMMISSION && d->commissioning.phase == COMMISSIONING_EVALUATE) return;
   const bool turning = drive_is_turning(d);
   commissioning_abort(d);
   if (turning) {

@@ -105,6 +105,50 @@ TEST_F(Commissioning, SumsThatAreEmptyChangeNothing) {
   EXPECT_EQ(std::memcmp(&before, &parameters, sizeof before), 0);
 }
 
+// At no current the machine is as the model has it, at the levels nothing came in.
+TEST_F(Commissioning, AMapCurrentWithoutItsLevelsIsNotUsed) {
+  commissioning_report_t report;
+  commissioning_t& c = drive.commissioning;
+  parameters.current_limit = raw(8.0, 20);
+  const std::int32_t before = parameters.map_current;
+  c.model = drive.config.nameplate;
+  c.unsaturated.vv_dd = c.unsaturated.vv_qq = 1 << 30;
+  c.unsaturated.count = 100;
+  EXPECT_EQ(commissioning_conclude(&c, &report), COMMISSIONING_PARTLY);
+  EXPECT_EQ(parameters.map_current, before);
+}
+
+TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
+  begin();
+  drive.commissioning.phase = COMMISSIONING_EVALUATE;
+  drive.commissioning.evaluate = true;
+  drive.request.reload = false;
+  drive.commissioning.model = drive.config.nameplate;
+  commissioning_service(&drive);
+  EXPECT_TRUE(drive.request.reload) << "nothing was measured, yet the longer settling has to go";
+}
+
+TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
+  begin();
+  drive.commissioning.phase = COMMISSIONING_EVALUATE;
+  drive.commissioning.evaluate = true;
+  drive_command_stop();
+  periods(3);
+  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
+}
+
+TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
+  begin();
+  drive.commissioning.turning = true;
+  drive.control.target_bpp = 12345;
+  drive_command_speed(1000L * 65536L);
+  EXPECT_EQ(drive.control.target_bpp, 12345);
+  drive.commissioning.turning = false;
+  drive_command_speed(1000L * 65536L);
+  EXPECT_GT(drive.control.target_bpp, 12345);
+}
+
 TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   for (int k = VERDICT_USED; k <= VERDICT_DEPENDS; ++k) {
     EXPECT_GT(std::strlen(drive_commissioning_verdict_words(static_cast<commissioning_verdict_t>(k))), 10u);
