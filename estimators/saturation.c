@@ -57,7 +57,7 @@ static int32_t projected_q30(const saturation_t* s, const regression_t* r, const
 
 static void judge(saturation_t* s) {
   const int32_t passes = s->passes;
-  const int32_t change = s->change_q30 / (ROUNDS_A_SIDE * passes);
+  const int32_t change = s->change_q30 / passes;
   // A difference of two rounds has twice the variance of one; the change is that of two means of ROUNDS_A_SIDE rounds.
   const uint64_t variance = s->scatter / ((uint64_t)(DIFFERENCES * ROUNDS_A_SIDE) * (uint64_t)(passes * passes));
   const uint64_t floor = (uint64_t)s->floor_q30 * (uint64_t)s->floor_q30;
@@ -70,14 +70,14 @@ static void judge(saturation_t* s) {
 }
 
 static void end_round(saturation_t* s, int16_t round, int32_t sign) {
-  const int32_t mean = s->round_q30 / SATURATION_ROUND;
+  const int32_t mean = s->round_q30;
   if (round > 0) {
     const int64_t step = (int64_t)mean - s->last_q30;
     s->scatter += (uint64_t)(step * step);
   }
   s->last_q30 = mean;
   s->round_q30 = 0;
-  s->change_q30 += sign * mean;
+  s->change_q30 += sign * (mean / ROUNDS_A_SIDE);
 }
 
 int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_model_t* m) {
@@ -88,7 +88,8 @@ int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_mo
   const int32_t slew = s->current_q20 / 20;  // a jump would leave the alternating layout
   s->reference_q20 += q_clamp(sign * s->current_q20 - s->reference_q20, -slew, slew);
   if (inside >= 0) {
-    s->round_q30 += (r->information > 0) ? projected_q30(s, r, m) : s->last_q30;
+    // Shares of the mean and not a sum: the admittances of a machine with little inductance fill the format.
+    s->round_q30 += ((r->information > 0) ? projected_q30(s, r, m) : s->last_q30) / SATURATION_ROUND;
     if (inside % SATURATION_ROUND == SATURATION_ROUND - 1) end_round(s, (int16_t)(inside / SATURATION_ROUND), sign);
   }
   s->tick++;

@@ -40,9 +40,9 @@ typedef struct {
   int32_t unit_q_q30;     //
   int32_t expected_q30;   // its size, A per V and period
   int32_t floor_q30;      // error that does not average out
-  int32_t round_q30;      // sum over the present round
+  int32_t round_q30;      // mean over the present round, in the making
   int32_t last_q30;       // mean of the round before
-  int32_t change_q30;     // sum over the rounds, with the sign of the current
+  int32_t change_q30;     // change of the means, summed over the passes
   uint64_t scatter;       // sum of squared differences between neighbouring rounds of a segment
   int32_t score_q15;      // change seen over change expected
   int32_t sigma_q8;       // change seen over its standard error

@@ -27,13 +27,17 @@ struct Conditions {
   bool wrong_way_round = false;
   double noise = kNoise;
   double inductance = 1.0;  // true over nominal
+  double scale = 1.0;       // of the machine as a whole
 };
 
 saturation_slopes_t slopes_of(const Slopes& s) { return {raw(s.d, 30), raw(s.q, 30)}; }
 
 saturation_t run(const Conditions& c, std::uint64_t seed = 1) {
   Random random(seed);
-  const machine_model_t model = model_of(Motor{});
+  Motor nominal;
+  nominal.ld *= c.scale;
+  nominal.lq *= c.scale;
+  const machine_model_t model = model_of(nominal);
   const double theta = 1.2;
   const double guess = theta + (c.wrong_way_round ? kPi : 0.0);
   avv_t avv = {};
@@ -44,7 +48,7 @@ saturation_t run(const Conditions& c, std::uint64_t seed = 1) {
   double id = 0.0;
   for (int n = 0; s.result == POLARITY_PENDING; ++n) {
     if (n > SATURATION_LENGTH) throw "no end";
-    Motor m;
+    Motor m = nominal;
     m.ld *= c.inductance * (1.0 + c.truth.d * id * (c.wrong_way_round ? -1.0 : 1.0));
     m.lq *= c.inductance * (1.0 + c.truth.q * id * (c.wrong_way_round ? -1.0 : 1.0));
     const Vector i = Vector{id, 0.0}.turned(guess);
@@ -70,6 +74,17 @@ TEST(Saturation, RightAndWrong) {
   const saturation_t wrong = run(c);
   EXPECT_EQ(wrong.result, POLARITY_WRONG);
   EXPECT_NEAR(score(wrong), -1.0, 0.03);
+}
+
+// 0.2 mH: admittances of half an ampere per volt and period, at the end of the format.
+TEST(Saturation, WithLittleInductance) {
+  Conditions c;
+  c.noise = 0.0;
+  c.scale = 0.04;
+  c.truth = c.told = {-0.005, 0.0};
+  EXPECT_EQ(run(c).result, POLARITY_RIGHT);
+  c.wrong_way_round = true;
+  EXPECT_EQ(run(c).result, POLARITY_WRONG);
 }
 
 TEST(Saturation, ThroughNoiseAndWithItsConfidenceStated) {
