@@ -308,6 +308,8 @@ TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
     period();
   }
   EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_LT(drive.supervision.missing, 5) << "windows there were";
 }
 
 }  // namespace
