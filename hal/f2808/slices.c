@@ -87,6 +87,6 @@ TARGET_RAM_CODE void hal_slice_read(hal_slice_t* slice) {
 
 TARGET_RAM_CODE void hal_slice_set_legs(uint16_t state) {
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
-    force(leg, ((state >> leg) & 1u) != 0u ? AQCSFRC_HIGH : AQCSFRC_LOW);
+    force(leg, ((uint16_t)(state >> leg) & 1u) != 0u ? AQCSFRC_HIGH : AQCSFRC_LOW);
   }
 }
