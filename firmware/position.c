@@ -128,7 +128,7 @@ static void measure_current(drive_t* d) {
 // True where the frame in use is the observer's own.
 static bool observer_in_use(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  return parameters.position_source == 4 && p->observer.angle_bam == p->used.angle_bam &&
+  return parameters.position_source == SOURCE_OBSERVER && p->observer.angle_bam == p->used.angle_bam &&
          p->observer.speed_bpp == p->used.speed_bpp;
 }
 
