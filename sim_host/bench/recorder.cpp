@@ -12,6 +12,7 @@ struct Row {
   double time;
   const plant::PlantState& p;
   const drive_signals_t& f;
+  const Information& told;
 };
 
 double scaled(std::int32_t raw, int q) { return std::ldexp(static_cast<double>(raw), -q); }
@@ -65,6 +66,11 @@ const Column kColumns[] = {
     {{"polarity_sigma", "", "confidence in the polarity found at the start, standard errors"},
      [](const Row& r) { return scaled(r.f.polarity_sigma, 8); }},
     {{"limit", "", "active limits, bits"}, [](const Row& r) { return static_cast<double>(r.f.limit); }},
+    {{"told_angle", "1/rad^2", "Fisher information of the last period's windows about the electrical angle"},
+     [](const Row& r) { return r.told.angle; }},
+    {{"told_cross", "s/rad^2", "the same about angle and electrical speed together"},
+     [](const Row& r) { return r.told.cross; }},
+    {{"told_speed", "s^2/rad^2", "the same about the electrical speed"}, [](const Row& r) { return r.told.speed; }},
 };
 
 }  // namespace
@@ -78,7 +84,8 @@ const std::vector<ColumnInfo>& columns() {
   return list;
 }
 
-Recorder::Recorder(int every) : every_(every), values_(columns().size()) {}
+Recorder::Recorder(int every, const plant::PlantConfig& config)
+    : information_(config), every_(every), values_(columns().size()) {}
 
 void Recorder::reserve(std::size_t rows) {
   for (auto& column : values_) column.reserve(rows);
@@ -92,10 +99,11 @@ void Recorder::begin_row(double time, const plant::PlantState& state) {
   state_ = state;
 }
 
-void Recorder::finish_row(const drive_signals_t& signals) {
+void Recorder::finish_row(const drive_signals_t& signals, const drive_samples_t& samples) {
   if (!open_) return;
   open_ = false;
-  const Row row{time_, state_, signals};
+  const Information told = information_(state_, samples);
+  const Row row{time_, state_, signals, told};
   std::size_t k = 0;
   for (const Column& c : kColumns) values_[k++].push_back(c.value(row));
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/drive_api.h"
+#include "sim_host/bench/information.hpp"
 #include "sim_host/bench/run.hpp"
 #include "sim_host/plant/plant.hpp"
 
@@ -16,12 +17,12 @@ namespace stillspin::bench {
 
 class Recorder {
  public:
-  explicit Recorder(int every);
+  Recorder(int every, const plant::PlantConfig& config);
 
   void reserve(std::size_t rows);
 
-  /// Completes the row of the period before with the firmware's signals.
-  void finish_row(const drive_signals_t& signals);
+  /// Completes the row of the period before with the firmware's signals and what its windows told.
+  void finish_row(const drive_signals_t& signals, const drive_samples_t& samples);
 
   /// Begins a row with the plant's present state.
   void begin_row(double time, const plant::PlantState& state);
@@ -30,6 +31,7 @@ class Recorder {
   std::vector<std::vector<double>> take(double origin);
 
  private:
+  WindowInformation information_;
   int every_;
   int skipped_ = 0;
   bool open_ = false;

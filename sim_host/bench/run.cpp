@@ -52,7 +52,7 @@ class Director : public PeriodListener {
   Director(const RunRequest& request, RunResult& result)
       : request_(request),
         result_(result),
-        recorder_(request.record_every),
+        recorder_(request.record_every, request.setup.plant()),
         faults_(request.setup.fault),
         parameters_(raw_parameters(request.parameters)) {
     recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
@@ -73,7 +73,7 @@ class Director : public PeriodListener {
 
   void on_period(Tick t) override {
     const drive_signals_t& s = *drive_signals();
-    recorder_.finish_row(s);
+    recorder_.finish_row(s, drive.samples);
     watch_fault(t, s);
     board_->plant().advance(t);
     if (!running()) prepare(t, s);
