@@ -55,7 +55,8 @@ def assess(
         outcome.run: records.read_waveform(directory / outcome.waveform) for outcome in outcomes if outcome.waveform
     }
     extras = {
-        name: metrics.Extras(looked.get(name, {}), record.about.get("machine", {})) for name, record in read.items()
+        name: metrics.Extras(looked.get(name, {}), record.about.get("machine", {}), record.about.get("observer", {}))
+        for name, record in read.items()
     }
     counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
     measured = figures.evaluate(scenario, counting, profile, extras)

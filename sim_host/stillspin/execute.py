@@ -15,6 +15,9 @@ from stillspin.errors import InputError
 from stillspin.profile import Changes, Profile, merged
 from stillspin.scenario import Run, Scenario
 
+_OBSERVER = ("observer_load_rate", "observer_load_quiet")
+"""Parameters that a record tells whether or not they were changed: what the observer expects of the load."""
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -117,6 +120,7 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "motor": scenario.motor,
         "plant": plant,
         "machine": _machine(plant, known.schema),
+        "observer": {name: parameters.get(name, known.parameters[name].default) for name in _OBSERVER},
         "parameters": parameters,
         "load": run.load,
         "duration": run.duration,
@@ -140,6 +144,8 @@ def _machine(plant: Plant, schema: core.Schema) -> dict[str, float]:
     saturates = bool(entry("machine", "saturation"))
     cross = entry("machine", "cross_inductance") * (1.0 + entry("parameter_error", "inductance_q"))
     return {
+        "pole_pairs": entry("machine", "pole_pairs"),
+        "inertia": entry("mechanics", "inertia") * (1.0 + entry("parameter_error", "inertia")),
         "resistance": true("resistance") + device("resistance"),
         "device_drop": device("threshold"),
         "inductance_d": true("inductance_d"),

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stillspin import deviation_sweep, speed_profile, waveforms
+from stillspin import bound, deviation_sweep, speed_profile, waveforms
 from stillspin.core import Signals, Waveform
 from stillspin.scenario import Run, Window
 
@@ -39,11 +39,13 @@ class Extras:
 
     Attributes:
         waveform: the stretch that was looked into, empty where there was none.
-        machine: true data of machine and devices, see deviation_sweep.py.
+        machine: true data of machine and devices, see deviation_sweep.py and bound.py.
+        observer: firmware parameters of the observer, see bound.py.
     """
 
     waveform: Waveform = field(default_factory=dict)
     machine: Mapping[str, float] = field(default_factory=dict)
+    observer: Mapping[str, float] = field(default_factory=dict)
 
 
 NOTHING_ELSE = Extras()
@@ -241,6 +243,14 @@ def hold_position_error_peak(piece: Piece) -> float:
     return max((hold.peak for hold in holds), default=float("inf"))
 
 
+def hold_bound_ratio(piece: Piece) -> float:
+    """Rms position error while the speed reference is held over the Cramér-Rao bound of its windows."""
+    least = bound.angle_bound(piece.signals, bound.Expected.of(piece.extras.machine, piece.extras.observer))
+    held = speed_profile.holds(piece.signals, position_error(piece.signals))
+    possible = speed_profile.holds(piece.signals, least)
+    return max((hold.rms / best.rms for hold, best in zip(held, possible, strict=True)), default=float("inf"))
+
+
 def thd(piece: Piece) -> float:
     """All of the phase current up to 50 kHz but its fundamental and DC, rms in percent of the fundamental."""
     return 100.0 * waveforms.spectrum(_looked(piece, "raster")).distortion
@@ -330,6 +340,7 @@ KINDS: dict[str, Kind] = {
     "radius_deviation": Kind(radius_deviation, "%"),
     "current_peak": Kind(current_peak, "A"),
     "hold_position_error_peak": Kind(hold_position_error_peak, "deg el"),
+    "hold_bound_ratio": Kind(hold_bound_ratio, "× bound"),
     "thd": Kind(thd, "%"),
     "switching_frequency": Kind(switching_frequency, "kHz"),
     "pattern_voltage_error": Kind(pattern_voltage_error, "ticks"),

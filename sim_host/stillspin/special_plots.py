@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import ScalarFormatter
 
-from stillspin import deviation_sweep, metrics, speed_profile, waveforms
+from stillspin import bound, deviation_sweep, metrics, speed_profile, waveforms
 from stillspin.core import Signals
 from stillspin.metrics import Extras
 from stillspin.scenario import Scenario
@@ -165,7 +165,10 @@ def _gate_signals(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> Non
 
 
 def errors_over_speed(shown: Shown) -> Canvas:
-    """Position error over the speed command while held: peak, rms dashed; a cross where the shaft did not follow."""
+    """Position error over the speed command while held: peak, rms dashed; a cross where the shaft did not follow.
+
+    Below them the Cramér-Rao bound of the rms error, from the windows of the scenario's first run.
+    """
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
@@ -177,14 +180,33 @@ def errors_over_speed(shown: Shown) -> Canvas:
         axes.plot(
             [hold.reference for hold in lost], [hold.peak for hold in lost], "x", color=COLOURS["error"], zorder=4
         )
+    _bound(axes, shown)
     axes.set_xscale("symlog", linthresh=10.0, linscale=0.5)
     axes.set_xticks([0, 5, 10, 30, 60, 100, 300, 600, 1000, 3000])
     axes.get_xaxis().set_major_formatter(ScalarFormatter())
     axes.set(xlabel="speed command (rpm)", ylabel="position error (° el): peak; dashed rms")
     if axes.dataLim.height > 0.0:  # an empty drawing has no logarithms
         axes.set_yscale("log")
-    _legend(axes)
+    if len(axes.get_legend_handles_labels()[1]) > 0:
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)  # the lines leave no room inside
     return canvas
+
+
+def _bound(axes: Axes, shown: Shown) -> None:
+    for name, signals in list(shown.records.items())[:1]:
+        extras = shown.extras.get(name, metrics.NOTHING_ELSE)
+        try:
+            least = bound.angle_bound(signals, bound.Expected.of(extras.machine, extras.observer))
+        except ValueError:
+            continue
+        holds = speed_profile.holds(signals, least)
+        axes.plot(
+            [hold.reference for hold in holds],
+            [hold.rms for hold in holds],
+            "k-",
+            linewidth=1.4,
+            label="least rms: Cramér-Rao bound",
+        )
 
 
 def _legend(axes: Axes) -> None:

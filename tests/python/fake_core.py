@@ -84,6 +84,8 @@ _PARAMETERS = [
     (43, "window_maximum", "us", 2, 5.0, 40.0, 30.0, "ALWAYS", "longest extended vector"),
     (45, "settle_time", "us", 2, 4.0, 25.0, 10.5, "ALWAYS", "from an edge to the first sample"),
     (60, "position_source", "", 0, 0.0, 4.0, 2.0, "STOPPED", "where the angle comes from"),
+    (67, "observer_load_rate", "Nm", 2, 0.01, 100.0, 0.6, "ALWAYS", "load change per 10 ms"),
+    (75, "observer_load_quiet", "Nm", 2, 0.01, 100.0, 0.05, "ALWAYS", "load change per 10 ms at a crawl"),
     (68, "observer_windows", "", 0, 0.0, 1.0, 1.0, "ALWAYS", "windows of the observer"),
     (71, "id_low_speed", "A", 2, -10.0, 10.0, 0.0, "ALWAYS", "d-axis current below the blend"),
     (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
@@ -103,6 +105,7 @@ SIGNALS = {
     "v_link": "V", "deviation_q": "A/s", "v_dc": "V", "angle_zvv": "rad",
     "angle_avv": "rad", "weight": "", "load_estimate": "N m", "state": "", "fault": "",
     "start_phase": "", "polarity_sigma": "", "limit": "",
+    "told_angle": "1/rad^2", "told_cross": "s/rad^2", "told_speed": "s^2/rad^2",
 }  # fmt: skip
 
 
@@ -203,6 +206,7 @@ def run(*, plant, motor, parameters, commands, load, duration, max_start, record
         "state": np.full(time.size, 4), "fault": np.zeros(time.size, int),
         "start_phase": np.full(time.size, 5), "polarity_sigma": np.full(time.size, 10.0),
         "limit": np.zeros(time.size, int),
+        "told_angle": zero + 1e4, "told_cross": zero, "told_speed": zero + 0.01,
     }  # fmt: skip
     short = plant.get("inverter", {}).get("dead_short", False)
     return SimpleNamespace(
