@@ -47,7 +47,9 @@ bool polarity_watch_step(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
   if (!w->open || d->state != DRIVE_RUN) return false;
   if (is_blind(d)) {
-    polarity_watch_begin(d, d->position.used.angle_bam, d->position.used.speed_bpp);
+    tracking_observer_preset(&w->axis, d->position.used.angle_bam, d->position.used.speed_bpp, 0);
+    w->sign.clear = 0;
+    w->sign.against = 0;
     return false;
   }
   tracking_observer_predict(&w->axis, 0);

