@@ -73,7 +73,7 @@ static int32_t predictive_step(speed_controller_t* s, const speed_controller_inp
   // (53): the current that would reach the target in one step, minus the one that flows, times k b.
   const int32_t deadbeat = amps_q20(s->amps_per_bpp, q_sub_sat(target_change, own_change));
   const int32_t own = s->current_q20 + q_mul(q_sub_sat(deadbeat, s->current_q20), s->share_q30, 30);
-  const int32_t total = q_clamp(q_add_sat(own, in->load_current_q20), -in->limit_q20, in->limit_q20);
+  const int32_t total = q_clamp(q_add_sat(own, in->load_current_q20), in->lowest_q20, in->highest_q20);
   s->current_q20 = q_sub_sat(total, in->load_current_q20);
   return total;
 }
@@ -83,7 +83,7 @@ static int32_t pi_law_step(speed_controller_t* s, const speed_controller_input_t
   const int32_t proportional = amps_q20(s->pi_kp, error);
   const int32_t integral = q_add_sat(s->integral_q20, amps_q20(s->pi_ki, error));
   const int32_t asked = q_add_sat(proportional, integral);
-  const int32_t given = q_clamp(asked, -in->limit_q20, in->limit_q20);
+  const int32_t given = q_clamp(asked, in->lowest_q20, in->highest_q20);
   // Hold the integrator while the limit is reached and the error would drive it further.
   if (given == asked || (asked > given) != (error > 0)) s->integral_q20 = integral;
   return given;

@@ -44,11 +44,11 @@ typedef struct {
 } speed_controller_t;
 
 typedef struct {
-  int32_t reference_bpp;       // w*(n)
-  int32_t reference_step_bpp;  // w*(n+1) - w*(n), the ramp
-  int32_t speed_bpp;           // measured or estimated
-  int32_t load_current_q20;    // current that balances the estimated load, A
-  int32_t limit_q20;           // largest |i_q| allowed now, A
+  int32_t reference_bpp;            // w*(n)
+  int32_t reference_step_bpp;       // w*(n+1) - w*(n), the ramp
+  int32_t speed_bpp;                // measured or estimated
+  int32_t load_current_q20;         // current that balances the estimated load, A
+  int32_t lowest_q20, highest_q20;  // i_q allowed now, A: up to zero, from zero
 } speed_controller_input_t;
 
 /// Derives the gains. Returns false when a value is out of range, or the rotor so heavy or light that an ampere changes
@@ -58,7 +58,7 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
 /// Makes the next step start from this current, e.g. at a change of mode.
 void speed_controller_preset(speed_controller_t* s, int32_t current_q20);
 
-/// One step of the chosen law; returns i_q*, A Q20, within the limit.
+/// One step of the chosen law; returns i_q*, A Q20, within the limits.
 int32_t speed_controller_step(speed_controller_t* s, speed_law_t law, const speed_controller_input_t* in);
 
 #endif

@@ -41,6 +41,7 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
   c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
+  c->moving_step_q20 = t->steps_at_speed ? 4 * q_min(c->load_step_q20, VARIANCE_MAX / 8) : 0;
   c->crawl_bpp = q_clamp(t->crawl_bpp, 1, INT32_MAX / 4);
   c->per_crawl = q_invert(2 * c->crawl_bpp);
 }
@@ -84,9 +85,10 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
   const bool lean = scores_lean(s, n);
   const int32_t crawl_q30 = crawl_share_q30(s, c);
   s->alert_q30 -= q_shr_round(s->alert_q30, ALERT_SHIFT);
-  if (lean && crawl_q30 > 0 && s->alert_q30 < ALERT_AGAIN_Q30) {
+  const int32_t step_q20 = c->moving_step_q20 + q_mul(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
+  if (lean && step_q20 > 0 && s->alert_q30 < ALERT_AGAIN_Q30) {
     s->alert_q30 = ONE_Q30;
-    admit_load_step(s, q_mul(c->load_step_q20, crawl_q30, 30));
+    admit_load_step(s, step_q20);
   }
   const int32_t quiet_q30 = crawl_q30 - q_mul(crawl_q30, s->alert_q30, 30);
   s->p_ll += c->load_noise_q20 - q_mul(c->load_noise_q20 - c->load_noise_quiet_q20, quiet_q30, 30);

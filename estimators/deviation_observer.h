@@ -27,13 +27,15 @@ typedef struct {
   int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes
   int32_t load_step_q20;        // step of the load to look out for at a crawl, N m
   int32_t crawl_bpp;            // electrical speed up to which it is a crawl, 1 or more
+  bool steps_at_speed;          // look out for twice the step above it: needs the map of the saturation
 } deviation_observer_tuning_t;
 
 typedef struct {
   int32_t inverse_noise_q20;     // 1 / rms error of a current difference, 1/A, 1..1000
   int32_t load_noise_q20;        // variance that the load gains per period, own units
   int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes
-  int32_t load_step_q20;         // variance of a step of the load
+  int32_t load_step_q20;         // variance of a step of the load, at a crawl
+  int32_t moving_step_q20;       // from three times its speed on; 0 looks out for none
   int32_t crawl_bpp;             // at least 1
   q_inverse_t per_crawl;         // of twice crawl_bpp
   cogging_config_t cogging;

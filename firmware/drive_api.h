@@ -39,7 +39,13 @@ typedef enum {
   FAULT_STOP = 13          // standstill not reached within stop_time
 } drive_fault_t;
 
-typedef enum { LIMIT_CURRENT = 1, LIMIT_VOLTAGE = 2, LIMIT_WEAKENING = 4, LIMIT_OVERRUN = 8 } drive_limit_t;
+typedef enum {
+  LIMIT_CURRENT = 1,
+  LIMIT_VOLTAGE = 2,
+  LIMIT_WEAKENING = 4,
+  LIMIT_OVERRUN = 8,
+  LIMIT_BRAKING = 16  // the DC link takes no more
+} drive_limit_t;
 
 #define SIGNAL(name, unit, q, meaning) int32_t name;
 typedef struct {

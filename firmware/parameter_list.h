@@ -55,7 +55,7 @@ PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 100, ALWAYS, "load chan
 PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,
           "the same at a crawl, while nothing shows that the load changes")
 PARAMETER(77, observer_load_step, "Nm", 20, 2, 1, 10000, 200, ALWAYS,
-          "step of the load that it looks out for at a crawl")
+          "step of the load that it looks out for at a crawl; twice of it at speed where the map is known")
 PARAMETER(76, cogging_order, "", 0, 0, 0, 60, 6, ALWAYS, "waves of cogging per electrical turn; 0 learns none")
 PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
@@ -114,6 +114,8 @@ PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
 PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
 PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 5, ALWAYS,
           "for which a larger EMF error, or estimators a quarter turn apart, is a loss of synchronism")
+PARAMETER(164, link_regulation, "V", 16, 1, 100, 15000, 4050, ALWAYS,
+          "DC-link voltage from which braking is reduced, to nothing at two thirds of the way to link_maximum")
 
 // The start
 PARAMETER(150, flying_start, "", 0, 0, 0, 1, 1, STOPPED, "look for a turning shaft before the start")

@@ -32,6 +32,8 @@ const char* parameter_conflict(void) {
   if (p->blend_high <= p->blend_low) return "blend_high must be above blend_low";
   if (p->window_maximum < p->window_minimum) return "window_maximum must be at least window_minimum";
   if (p->link_maximum <= p->link_minimum) return "link_maximum must be above link_minimum";
+  if (p->link_regulation <= p->link_minimum || p->link_regulation > p->link_maximum - 65536L)
+    return "link_regulation must be above link_minimum, and 1 V or more below link_maximum";
   if (p->dead_time + p->turn_on_delay < p->turn_off_delay)
     return "turn_off_delay must not exceed dead_time + turn_on_delay";
   if (p->dead_time + p->turn_on_delay > EDGE_SHIFT_MAX_Q16) return "dead_time + turn_on_delay must not exceed 2.4 us";

@@ -1,5 +1,6 @@
 // Speed control and field weakening, once a millisecond on a tick of the control interrupt.
 
+#include "control/brake_limit.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
@@ -41,12 +42,48 @@ static int32_t current_room(const drive_t* d) {
   return (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
 }
 
+static int32_t braking_room(const drive_t* d, int32_t room_q20) {
+  brake_limit_input_t in;
+  in.link_q16 = d->samples.link_q16;
+  in.start_q16 = parameters.link_regulation;
+  // The rest of the way to the fault is for noise and for the delay of the loop.
+  in.end_q16 = parameters.link_regulation + (parameters.link_maximum - parameters.link_regulation) / 3 * 2;
+  in.emf_q16 = q_mul_sat(q_abs_sat(machine_speed_rad_q30(d->position.used.speed_bpp)), d->model.emf_q16, 30);
+  in.drop_q16 = q_mul_sat(d->model.nominal_rs_q24, parameters.current_limit, 28);
+  return brake_limit_q20(&in, room_q20);
+}
+
+// Braking is what acts against the rotation.
+static void limit_current(drive_t* d, speed_controller_input_t* in) {
+  const int32_t room = current_room(d);
+  const int32_t braking = braking_room(d, room);
+  in->lowest_q20 = (in->speed_bpp > 0) ? -braking : -room;
+  in->highest_q20 = (in->speed_bpp < 0) ? braking : room;
+}
+
+// A shaft that may not be braked as fast as the ramp falls would be left behind by it, and be braked on when it has
+// long been told to speed up again: the ramp waits.
+static bool ramp_waits(const drive_t* d, int32_t target_bpp) {
+  if ((d->limits & LIMIT_BRAKING) == 0) return false;
+  const int32_t value = d->control.ramp.value;
+  return (d->position.used.speed_bpp > 0) ? target_bpp < value : target_bpp > value;
+}
+
 static void step_ramp(drive_t* d, speed_controller_input_t* in) {
   drive_control_t* const c = &d->control;
+  const int32_t target = (d->state == DRIVE_STOP) ? 0 : c->target_bpp;
   in->reference_bpp = c->ramp.value;
-  ramp_step(&c->ramp, (d->state == DRIVE_STOP) ? 0 : c->target_bpp, d->config.ramp_step_bpp);
+  ramp_step(&c->ramp, ramp_waits(d, target) ? c->ramp.value : target, d->config.ramp_step_bpp);
   in->reference_step_bpp = (d->config.ramp_step_bpp == 0) ? 0 : c->ramp.step;
   if (d->config.ramp_step_bpp == 0) in->reference_bpp = c->ramp.value;
+}
+
+static void note_limits(drive_t* d, const speed_controller_input_t* in) {
+  const int32_t iq_q20 = d->control.reference_q20.q;
+  const int32_t room = q_max(in->highest_q20, -in->lowest_q20);
+  if (q_abs_sat(iq_q20) >= room) d->limits |= LIMIT_CURRENT;
+  const bool at_end = iq_q20 <= in->lowest_q20 || iq_q20 >= in->highest_q20;
+  if (at_end && q_abs_sat(iq_q20) < room) d->limits |= LIMIT_BRAKING;
 }
 
 void drive_control_speed(drive_t* d) {
@@ -54,19 +91,20 @@ void drive_control_speed(drive_t* d) {
   const bool held = hold_step(d);
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
   if (d->millisecond != 0u) return;
-  d->limits = 0;
+  d->limits &= LIMIT_BRAKING;  // of the last millisecond, for the ramp
   const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
   if (drive_is_turning(d) || caught) drive_weaken_field(d);
   if (!drive_is_turning(d)) return;
   speed_controller_input_t in;
   step_ramp(d, &in);
+  d->limits &= ~(int32_t)LIMIT_BRAKING;
   in.speed_bpp = d->position.used.speed_bpp;
   in.load_current_q20 = load_current(d);
-  in.limit_q20 = current_room(d);
+  limit_current(d, &in);
   if (held) {
     speed_controller_preset(&c->speed, q_sub_sat(c->reference_q20.q, in.load_current_q20));
     return;
   }
   c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)parameters.speed_law, &in);
-  if (q_abs_sat(c->reference_q20.q) >= in.limit_q20) d->limits |= LIMIT_CURRENT;
+  note_limits(d, &in);
 }

@@ -156,7 +156,9 @@ def run(
 @app.command()
 def reproduce(
     *,
-    scenarios: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: all].")] = None,
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: all but those on demand].")
+    ] = None,
     profile_name: ProfileOption = "bench",
     seed: SeedOption = 1,
     params: ParamsOption = None,
@@ -180,7 +182,7 @@ def reproduce(
     ] = True,
 ) -> None:
     """Run scenarios in parallel and write report.html and metrics.json."""
-    chosen = dict.fromkeys(scenario_file.find(identifier).stem for identifier in scenarios or scenario_file.ids())
+    chosen = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or scenario_file.campaign_ids())
     workers = jobs or len(os.sched_getaffinity(0))
     options = Options(profile_name, seed, [], out, workers, draw=True, paper_scheme=paper_scheme, params=params)
     _carry_out(chosen, options)

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stillspin import bound, deviation_sweep, speed_profile, waveforms
+from stillspin import bound, deviation_sweep, ripple, speed_profile, waveforms
 from stillspin.core import Signals, Waveform
 from stillspin.scenario import Run, Window
 
@@ -153,6 +153,11 @@ def speed_error(piece: Piece) -> float:
     return abs(float(np.mean(last.speed - last.command)))
 
 
+def mean_speed_error(piece: Piece) -> float:
+    """Magnitude of the mean of true minus commanded speed over the whole window, rpm: do the turns agree."""
+    return abs(float(np.mean(piece.speed - piece.command)))
+
+
 def speed_error_share(piece: Piece) -> float:
     """The speed error in percent of the commanded speed at the end."""
     return 100.0 * speed_error(piece) / abs(piece.target) if piece.target else float("inf")
@@ -237,6 +242,11 @@ def current_peak(piece: Piece) -> float:
     return max(float(np.max(np.abs(piece.signals[name]))) for name in ("i_a", "i_b", "i_c"))
 
 
+def link_peak(piece: Piece) -> float:
+    """Highest true voltage of the DC link in the window, V."""
+    return float(np.max(piece.signals["v_dc"]))
+
+
 def hold_position_error_peak(piece: Piece) -> float:
     """Largest position error while the speed reference is held, degrees el."""
     holds = speed_profile.holds(piece.signals, position_error(piece.signals))
@@ -254,6 +264,31 @@ def hold_bound_ratio(piece: Piece) -> float:
 def thd(piece: Piece) -> float:
     """All of the phase current up to 50 kHz but its fundamental and DC, rms in percent of the fundamental."""
     return 100.0 * waveforms.spectrum(_looked(piece, "raster")).distortion
+
+
+def ripple_rms(piece: Piece) -> float:
+    """Rms of the phase currents above 1 kHz, mean of the phases, A."""
+    return ripple.rms(_looked(piece, "raster"), ripple.LOWEST, ripple.HIGHEST)
+
+
+def ripple_peak_to_peak(piece: Piece) -> float:
+    """Largest peak-to-peak of a phase current within one PWM period, A."""
+    return ripple.peak_to_peak(_looked(piece, "raster"))
+
+
+def ripple_subharmonic(piece: Piece) -> float:
+    """Rms of the phase currents from 1 kHz to below the switching frequency (9.5 kHz), A."""
+    return ripple.rms(_looked(piece, "raster"), ripple.LOWEST, ripple.SUBHARMONIC)
+
+
+def ripple_audible(piece: Piece) -> float:
+    """Rms of the phase currents from 1 kHz to 16 kHz, A."""
+    return ripple.rms(_looked(piece, "raster"), ripple.LOWEST, ripple.AUDIBLE)
+
+
+def ripple_copper_loss(piece: Piece) -> float:
+    """Loss of the ripple in the DC resistance of the three phases and their devices, W; no skin effect, no iron."""
+    return 3.0 * float(piece.extras.machine["resistance"]) * ripple_rms(piece) ** 2
 
 
 def switching_frequency(piece: Piece) -> float:
@@ -328,6 +363,7 @@ KINDS: dict[str, Kind] = {
     "position_error_rms": Kind(position_error_rms, "deg el"),
     "speed_ripple": Kind(speed_ripple, "rpm"),
     "speed_error": Kind(speed_error, "rpm"),
+    "mean_speed_error": Kind(mean_speed_error, "rpm"),
     "speed_error_share": Kind(speed_error_share, "%"),
     "overshoot": Kind(overshoot, "%"),
     "settling_time": Kind(settling_time, "s"),
@@ -339,9 +375,15 @@ KINDS: dict[str, Kind] = {
     "tracking_error_peak": Kind(tracking_error_peak, "rpm"),
     "radius_deviation": Kind(radius_deviation, "%"),
     "current_peak": Kind(current_peak, "A"),
+    "link_peak": Kind(link_peak, "V"),
     "hold_position_error_peak": Kind(hold_position_error_peak, "deg el"),
     "hold_bound_ratio": Kind(hold_bound_ratio, "× bound"),
     "thd": Kind(thd, "%"),
+    "ripple_rms": Kind(ripple_rms, "A"),
+    "ripple_peak_to_peak": Kind(ripple_peak_to_peak, "A"),
+    "ripple_subharmonic": Kind(ripple_subharmonic, "A"),
+    "ripple_audible": Kind(ripple_audible, "A"),
+    "ripple_copper_loss": Kind(ripple_copper_loss, "W"),
     "switching_frequency": Kind(switching_frequency, "kHz"),
     "pattern_voltage_error": Kind(pattern_voltage_error, "ticks"),
     "pattern_mismatch": Kind(pattern_mismatch, "%"),

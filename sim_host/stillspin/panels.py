@@ -120,6 +120,7 @@ PANELS: dict[str, Panel] = {
     "trajectory": Panel("$i_β$ (A)", ()),
     "deviation_sweep": Panel("q-axis current deviation (A/s)", ()),
     "spectrum": Panel("% of the fundamental", ()),
+    "ripple": Panel("A rms", ()),
     "gates": Panel("gates", ()),
     "error_over_speed": Panel("position error (° el)", ()),
 }

@@ -100,7 +100,10 @@ class Plot:
 
 @dataclass(frozen=True)
 class Scenario:
-    """A figure of the paper as an experiment on the virtual drive."""
+    """A figure of the paper as an experiment on the virtual drive, or one of our own.
+
+    `on_demand`: it takes long, and runs only where it is named.
+    """
 
     id: str
     title: str
@@ -111,6 +114,7 @@ class Scenario:
     runs: tuple[Run, ...]
     figures: tuple[Figure, ...]
     plots: tuple[Plot, ...]
+    on_demand: bool = False
 
     def run(self, name: str) -> Run:
         """The run of that name."""

@@ -29,6 +29,11 @@ def ids() -> list[str]:
     return resources.names("scenarios")
 
 
+def campaign_ids() -> list[str]:
+    """Ids of the scenarios that run where none is named."""
+    return [name for name in ids() if not load(name).on_demand]
+
+
 def find(identifier: str) -> Path:
     """The file of a scenario; upper and lower case are the same.
 
@@ -80,6 +85,7 @@ def read(path: Path) -> Scenario:
         runs=runs,
         figures=figures,
         plots=tuple(_plot(plot, names) for plot in table.tables("plots")),
+        on_demand=_switch(table, "on_demand"),
     )
     paper.finish()
     table.finish()

@@ -12,13 +12,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import ScalarFormatter
 
-from stillspin import bound, deviation_sweep, metrics, speed_profile, waveforms
+from stillspin import bound, deviation_sweep, metrics, ripple, speed_profile, waveforms
 from stillspin.core import Signals
 from stillspin.metrics import Extras
 from stillspin.scenario import Scenario
 from stillspin.style import COLOURS, RUN_COLOURS, WIDTH
 
 _DASHED = (0, (4, 2))
+_RIPPLE_END = 42e3  # Hz, of its drawing
 
 
 @dataclass(frozen=True)
@@ -164,6 +165,29 @@ def _gate_signals(axes: Axes, extras: Extras, pattern: waveforms.Pattern) -> Non
     axes.grid(visible=False)
 
 
+def ripples(shown: Shown) -> Canvas:
+    """Twelve periods of a phase current about its mean, and the spectrum of the ripple beside; shaded: audible."""
+    looked = shown.looked()
+    rows = max(1, len(looked))
+    canvas, grid = plt.subplots(
+        rows, 2, squeeze=False, figsize=(WIDTH, 1.7 * rows), layout="constrained", sharex="col", sharey="col"
+    )
+    for (left, right), (name, extras) in zip(grid, looked.items(), strict=False):
+        raster = extras.waveform["raster"]
+        time = raster["time"] - raster["time"][0]
+        early = time < 12.0 * ripple.PERIOD
+        left.plot(1e3 * time[early], raster["i_a"][early] - np.mean(raster["i_a"][early]), color=COLOURS["a"])
+        left.set(ylabel="$i_a$ − mean (A)", title=shown.title(name))
+        frequency, squares = ripple.spectrum(raster)
+        inside = (frequency > ripple.LOWEST) & (frequency < _RIPPLE_END)
+        right.semilogy(1e-3 * frequency[inside], np.sqrt(squares[inside] / 3.0), color=COLOURS["true"], linewidth=0.5)
+        right.axvspan(0.0, 1e-3 * ripple.AUDIBLE, color="#fdf1e2", zorder=0)
+        right.set(ylabel="A rms per line", ylim=(1e-4, 1.0), xlim=(0.0, 1e-3 * _RIPPLE_END))
+    grid[-1, 0].set_xlabel("time (ms)")
+    grid[-1, 1].set_xlabel("frequency (kHz)")
+    return canvas
+
+
 def errors_over_speed(shown: Shown) -> Canvas:
     """Position error over the speed command while held: peak, rms dashed; a cross where the shaft did not follow.
 
@@ -218,6 +242,7 @@ SPECIAL: dict[str, Callable[[Shown], Canvas]] = {
     "trajectory": trajectories,
     "deviation_sweep": sweeps,
     "spectrum": spectra,
+    "ripple": ripples,
     "gates": gates,
     "error_over_speed": errors_over_speed,
 }

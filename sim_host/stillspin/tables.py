@@ -67,10 +67,14 @@ def commissioning(result: commission.Result) -> None:
 
 def scenarios(items: Iterable[Scenario]) -> None:
     """What can be run."""
-    table = _table("id", "motor", "runs", "scenario", "paper")
+    table = _table("id", "motor", "runs", "scenario", "paper", "")
     for item in items:
-        table.add_row(item.id, item.motor, str(len(item.runs)), item.title, item.paper_figure)
+        table.add_row(item.id, item.motor, str(len(item.runs)), item.title, item.paper_figure, _when(item))
     _print(table)
+
+
+def _when(item: Scenario) -> str:
+    return "on demand" if item.on_demand else ""
 
 
 def parameters(entries: Iterable[Entry]) -> None:

@@ -180,7 +180,8 @@ TEST(SpeedController, OneStepOfThePredictiveLaw) {
     const double limit = random.between(1.0, 14.0);
     speed_controller_preset(&s, raw(before, 20));
     const auto to_bpp = [&](double mechanical) { return raw(mechanical * d.bpp_per_rad_s(), 0); };
-    const speed_controller_input_t in = {to_bpp(reference), to_bpp(ramp), to_bpp(w), raw(load, 20), raw(limit, 20)};
+    const speed_controller_input_t in = {to_bpp(reference), to_bpp(ramp),    to_bpp(w),
+                                         raw(load, 20),     raw(-limit, 20), raw(limit, 20)};
     const double target = w + ramp + (reference - w) * -std::expm1(-d.step() / d.trajectory);
     const double own = before + share / b * (target - d.decay() * w - b * before);
     const double expected = std::max(-limit, std::min(limit, own + load));

@@ -60,7 +60,8 @@ std::vector<double> run(const Conditions& run_with) {
     in.speed_bpp = bpp(shaft.w * nominal.pole_pairs);
     const bool compensated = run_with.load_known && run_with.law == SPEED_PREDICTIVE;
     in.load_current_q20 = compensated ? raw(shaft.load / nominal.torque_constant(), 20) : 0;
-    in.limit_q20 = raw(run_with.limit, 20);
+    in.lowest_q20 = raw(-run_with.limit, 20);
+    in.highest_q20 = raw(run_with.limit, 20);
     shaft.step(real(speed_controller_step(&s, run_with.law, &in), 20));
     rpm.push_back(shaft.w / kTurn * 60.0);
   }

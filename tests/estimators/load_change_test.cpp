@@ -16,8 +16,8 @@ constexpr double kNoise = 8e-3;  // A rms of a current difference over a window,
 class Shaft {
  public:
   explicit Shaft(double rpm, std::uint64_t seed = 400) : random_(seed), model_(model_of(motor_)) {
-    const deviation_observer_tuning_t tuning = {raw(0.1, 20), raw(0.6, 20), raw(0.05, 20), raw(2.0, 20),
-                                                bpp(motor_.electrical(10.0))};
+    const deviation_observer_tuning_t tuning = {
+        raw(0.1, 20), raw(0.6, 20), raw(0.05, 20), raw(2.0, 20), bpp(motor_.electrical(10.0)), true};
     deviation_observer_design(&config_, &model_, &tuning);
     config_.cogging = {6, bpp(motor_.electrical(1.0)), bpp(motor_.electrical(10.0)), accel_q8(1e4)};
     speed_ = reference_ = motor_.electrical(rpm);
@@ -25,6 +25,7 @@ class Shaft {
   }
 
   void without_cogging() { config_.cogging.order = 0; }
+  void without_steps_at_speed() { config_.moving_step_q20 = 0; }
   void without_quiet() { config_.load_noise_quiet_q20 = config_.load_noise_q20; }
   void load(double nm) { load_ = nm; }
   void cogging(double nm, double phase) { cogging_ = nm, phase_ = phase; }
@@ -96,6 +97,19 @@ TEST(LoadChange, AStepIsFollowedAsIfItHadBeenExpected) {
   // a jump of 5 N m turns the shaft by 2.5 degrees electrical in 4.5 ms, about the time in which four standard
   // deviations have gathered; with the quiet filter alone it would be lost (a quarter turn)
   EXPECT_LT(s.worst(), 8.0);
+}
+
+TEST(LoadChange, AStepAtSpeedTurnsTheAngleLess) {
+  Shaft s(60.0), sleepy(60.0);
+  sleepy.without_steps_at_speed();
+  for (Shaft* shaft : {&s, &sleepy}) {
+    shaft->run(0.5);
+    shaft->forget();
+    shaft->load(8.0);
+    shaft->run(0.1);
+  }
+  EXPECT_NEAR(s.believed_nm(), 8.0, 0.8);
+  EXPECT_LT(s.worst(), 0.7 * sleepy.worst());
 }
 
 TEST(LoadChange, NoFalseAlarmInNoise) {

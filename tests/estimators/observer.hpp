@@ -13,7 +13,7 @@ namespace stillspin::test {
 
 inline void design_plain(deviation_observer_config_t* c, const machine_model_t* m, std::int32_t noise_q20,
                          std::int32_t load_rate_q20) {
-  const deviation_observer_tuning_t tuning = {noise_q20, load_rate_q20, load_rate_q20, 0, 1};
+  const deviation_observer_tuning_t tuning = {noise_q20, load_rate_q20, load_rate_q20, 0, 1, false};
   deviation_observer_design(c, m, &tuning);
   c->cogging = {};
 }

@@ -252,6 +252,16 @@ TEST_F(Drive, SpeedLimitWhoseEmfExceedsTheLinkIsAConflict) {
   EXPECT_NE(std::string(parameter_conflict()).find("speed_limit"), std::string::npos);
 }
 
+TEST_F(Drive, LinkRegulationLiesBetweenTheFaults) {
+  for (const double volts : {150.0, 419.5, 430.0}) {
+    parameters.link_regulation = raw(volts, 16);
+    ASSERT_NE(parameter_conflict(), nullptr) << volts;
+    EXPECT_NE(std::string(parameter_conflict()).find("link_regulation"), std::string::npos);
+  }
+  parameters.link_regulation = raw(419.0, 16);
+  EXPECT_EQ(parameter_conflict(), nullptr);
+}
+
 TEST_F(Drive, FaultStaysUntilTheReset) {
   make_run();
   board.tripped_by_pin = true;

@@ -67,9 +67,9 @@ _SCHEMA = {
     "parameter_error": dict.fromkeys(
         ("resistance", "inductance_d", "inductance_q", "magnet_flux", "inertia"), ("", -0.9, 9.0, 0.0)
     ),
-    "solver": {"method": ("", None, None, "runge_kutta")},
+    "solver": {"method": ("", None, None, "rk4")},
 }
-_CHOICES = {"solver.method": ["runge_kutta", "erk_step", "reference"]}
+_CHOICES = {"solver.method": ["rk4", "erkstep", "reference"]}
 
 _PARAMETERS = [
     (7, "friction", "Nms", 5, 0.0, 500.0, 0.003, "STOPPED", "viscous friction"),
@@ -80,6 +80,9 @@ _PARAMETERS = [
     (24, "device_resistance", "ohm", 4, 0.0, 1.0, 0.035, "STOPPED", "on-state resistance of a device"),
     (25, "drop_band", "A", 2, 0.01, 2.0, 0.2, "ALWAYS", "current below which its sign is not trusted"),
     (40, "excitation", "", 0, 0.0, 4.0, 3.0, "STOPPED", "pulse pattern"),
+    (6, "inertia", "kgm2", 6, 0.0001, 0.5, 0.00455, "STOPPED", "inertia of rotor and load"),
+    (41, "pulse_time", "us", 2, 15.0, 47.0, 42.0, "ALWAYS", "mean pulse of the alternating layout"),
+    (164, "link_regulation", "V", 1, 10.0, 1500.0, 405.0, "ALWAYS", "DC-link voltage from which braking is reduced"),
     (42, "window_minimum", "us", 2, 5.0, 30.0, 18.0, "ALWAYS", "shortest extended vector"),
     (43, "window_maximum", "us", 2, 5.0, 40.0, 30.0, "ALWAYS", "longest extended vector"),
     (45, "settle_time", "us", 2, 4.0, 25.0, 10.5, "ALWAYS", "from an edge to the first sample"),

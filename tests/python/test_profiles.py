@@ -73,7 +73,7 @@ def test_a_profile_can_be_a_file(tmp_path):
         ("[sensor]\ncount = 2.5\n", "whole number"),
         ("[link]\nstiff = 1\n", "true or false"),
         ("[solver]\nmethod = 3\n", "must be text"),
-        ("[solver]\nmethod = 'erk'\n", "known: erk_step, reference, runge_kutta"),
+        ("[solver]\nmethod = 'erk'\n", "known: erkstep, reference, rk4"),
         ("noise = 1\n", "unknown key 'noise'"),
         ("description = 1\n", "must be text"),
         ("[parameters]\nspeed_rmp = 1\n", "did you mean 'speed_ramp'"),
@@ -104,11 +104,11 @@ def test_later_plants_win_entry_by_entry():
 
 
 def test_set_tells_plant_entries_from_parameters():
-    both = changed("adc.noise=0.5", "speed_ramp = 1e3", "link.stiff=True", "solver.method=erk_step", "sensor.count=3")
+    both = changed("adc.noise=0.5", "speed_ramp = 1e3", "link.stiff=True", "solver.method=erkstep", "sensor.count=3")
     assert both.plant == {
         "adc": {"noise": 0.5},
         "link": {"stiff": True},
-        "solver": {"method": "erk_step"},
+        "solver": {"method": "erkstep"},
         "sensor": {"count": 3},
     }
     assert both.parameters == {"speed_ramp": 1000.0}
