@@ -13,6 +13,7 @@
 #define ONE_Q30 1073741823L
 #define ALERT_SHIFT 9u              // an alert fades within 51 ms
 #define ALERT_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
+#define ALERT_OVER_Q30 53687091L    // at speed after 150 ms: what leans for ever is the model, not the load
 #define LEAN_MIN 40                 // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
@@ -86,7 +87,8 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
   const int32_t crawl_q30 = crawl_share_q30(s, c);
   s->alert_q30 -= q_shr_round(s->alert_q30, ALERT_SHIFT);
   const int32_t step_q20 = c->moving_step_q20 + q_mul(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
-  if (lean && step_q20 > 0 && s->alert_q30 < ALERT_AGAIN_Q30) {
+  const int32_t again_q30 = (crawl_q30 > 0) ? ALERT_AGAIN_Q30 : ALERT_OVER_Q30;
+  if (lean && step_q20 > 0 && s->alert_q30 < again_q30) {
     s->alert_q30 = ONE_Q30;
     admit_load_step(s, step_q20);
   }

@@ -65,7 +65,7 @@ BENCH = {
     ("A15", "steady_position_error_peak"): (0.2, 2.0),
     ("A16", "position_error_peak"): (0.5, 4.0),
     ("A18b", "dip"): (10.0, 60.0),
-    ("A18c", "loaded_3000_position_error_peak"): (0.5, 6.0),
+    ("A18c", "loaded_3000_position_error_peak"): (0.2, 6.0),
     ("A18c", "loaded_3000_speed_error_share"): (0.0, 2.0),
 }
 
