@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "tests/bench/drive_runs.hpp"
 
@@ -23,13 +25,13 @@ RunRequest looking() {
   return r;
 }
 
-const std::vector<double>& values(const RunResult& result, const std::string& table, const std::string& name) {
+const std::vector<double>& values(const RunResult& result, std::string_view table, std::string_view name) {
   for (const auto& [known, columns_of] : result.waveform) {
     for (const auto& [column_name, data] : columns_of) {
       if (known == table && column_name == name) return data;
     }
   }
-  throw std::out_of_range(table + "." + name);
+  throw std::out_of_range(std::string(table) + "." + std::string(name));
 }
 
 TEST(Waveform, LookingChangesNothing) {
