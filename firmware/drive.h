@@ -19,12 +19,12 @@
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
 #include "estimators/zvv.h"
-#include "firmware/commissioning.h"
+#include "firmware/commissioning/commissioning.h"
 #include "firmware/drive_api.h"
-#include "firmware/hold.h"
 #include "firmware/hysteresis.h"
-#include "firmware/polarity_watch.h"
-#include "firmware/start.h"
+#include "firmware/start/hold.h"
+#include "firmware/start/polarity_watch.h"
+#include "firmware/start/start.h"
 #include "svpwm/dead_time.h"
 #include "svpwm/modulator.h"
 
@@ -56,6 +56,7 @@ typedef struct {
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
   uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
+  int32_t sensor_mismatch_q30;   // of the current sensors, as a share
   saturation_slopes_t saturation;
 } drive_config_t;
 
@@ -158,7 +159,7 @@ void drive_raise(drive_t* d, drive_fault_t fault);
 /// Enters a state and starts counting its periods.
 void drive_enter(drive_t* d, drive_state_t state);
 
-// The state START: start.c, and flying_start.c for a shaft that turns.
+// The state START: start/standing.c, and start/flying.c for a shaft that turns.
 /// Lets the position sources and the speed control start from this angle and speed.
 void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 void drive_begin_start(drive_t* d);
@@ -183,7 +184,7 @@ void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 bool polarity_watch_step(drive_t* d);
 bool polarity_watch_suspects(const drive_t* d);
 
-/// Holds the shaft for hold_time from now (hold.c).
+/// Holds the shaft for hold_time from now (start/hold.c).
 void hold_begin(drive_t* d);
 
 /// One period; false when it is over and the speed controller has the torque current.
@@ -192,15 +193,16 @@ bool hold_step(drive_t* d);
 /// Field weakening of this instant, into the d-axis reference.
 void drive_weaken_field(drive_t* d);  // speed_task.c
 
-// The state COMMISSION (commissioning.c) and its phases, each in its own file: one period; true at the phase's end.
+// The state COMMISSION (commissioning/sequence.c) and its phases, each in its own file: one period; true at the phase's
+// end.
 void commissioning_begin(drive_t* d);
 void commissioning_step(drive_t* d);
 void commissioning_abort(drive_t* d);
 void commissioning_service(drive_t* d);                   // background level: evaluation
-bool commissioning_turn(drive_t* d);                      // commissioning_hold.c
-bool commissioning_climb(drive_t* d);                     // commissioning_staircase.c
-bool commissioning_map(drive_t* d);                       // commissioning_map.c
-bool commissioning_spin(drive_t* d);                      // commissioning_spin.c
+bool commissioning_turn(drive_t* d);                      // commissioning/hold.c
+bool commissioning_climb(drive_t* d);                     // commissioning/staircase.c
+bool commissioning_map(drive_t* d);                       // commissioning/map.c
+bool commissioning_spin(drive_t* d);                      // commissioning/spin.c
 void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
 /// The period's two opposite windows against the model, in the frame of the angle in use; false when there are none.

@@ -132,6 +132,7 @@ static bool load_position(drive_config_t* c) {
   c->saturation.d_q30 = q_mul(p->saturation_d, 687194767L, 30);
   c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->codes_per_amp_q16 = q_div(65536L, c->slopes.amps_per_code_q30, 30);
+  c->sensor_mismatch_q30 = q_mul(p->sensor_mismatch, 167772L, 10);  // percent, Q16
   c->slopes.start_samples = HAL_ADC_START_SAMPLES;
   c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);

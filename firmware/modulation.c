@@ -13,7 +13,7 @@
 static excitation_t excitation(const drive_t* d) {
   if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
   if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
-  if (parameters.position_source != 1) return EXCITATION_ALTERNATING;
+  if (parameters.position_source != POSITION_PAPER) return EXCITATION_ALTERNATING;
   const int32_t enter = d->config.blend.low_bpp / 4 * 3;
   return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }

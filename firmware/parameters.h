@@ -14,6 +14,18 @@ typedef struct {
 
 extern parameters_t parameters;
 
+/// Values of the parameter position_source.
+enum {
+  POSITION_ENCODER = 0,
+  POSITION_PAPER = 1,         // ZVV and AVV, blended
+  POSITION_OBSERVER_AVV = 2,  // the observer at low speed, AVV above
+  POSITION_AVV = 3,
+  POSITION_OBSERVER = 4
+};
+
+/// Values of the parameter current_law.
+enum { CURRENT_LAW_PI = 0, CURRENT_LAW_HYSTERESIS = 1 };
+
 /// Puts every parameter to its default.
 void parameters_reset(void);
 

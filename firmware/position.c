@@ -6,12 +6,11 @@
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
 
-#define SOURCE_OBSERVER 4
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
-typedef estimator_output_t (*position_source_t)(drive_t* d, const estimator_input_t* in);
+typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t* in);
 
 // What the regression tells of machine and sensors is taken over slowly, one thing per period in turn. The turn has
 // five places because five has no factor in common with the six periods in which the alternating layout repeats: each
@@ -100,8 +99,7 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
   return out;
 }
 
-static const position_source_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv,
-                                            source_observer};
+static const source_step_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv, source_observer};
 
 static void measure_current(drive_t* d) {
   drive_samples_t* const s = &d->samples;
@@ -128,7 +126,7 @@ static void measure_current(drive_t* d) {
 // True where the frame in use is the observer's own.
 static bool observer_in_use(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  return parameters.position_source == SOURCE_OBSERVER && p->observer.angle_bam == p->used.angle_bam &&
+  return parameters.position_source == POSITION_OBSERVER && p->observer.angle_bam == p->used.angle_bam &&
          p->observer.speed_bpp == p->used.speed_bpp;
 }
 
@@ -150,7 +148,7 @@ void drive_estimate(drive_t* d) {
     return;
   }
   // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
-  const int32_t source = (d->state == DRIVE_COMMISSION) ? SOURCE_OBSERVER : parameters.position_source;
+  const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
   in.frames = (!starting && observer_in_use(d)) ? d->samples.frames : 0;
   d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
 }

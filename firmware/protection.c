@@ -31,15 +31,15 @@ static bool over_current(const drive_t* d) {
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
 static bool encoder_beside_avv(void) {
-  return parameters.position_source == 0 && parameters.current_law == 0 &&
+  return parameters.position_source == POSITION_ENCODER && parameters.current_law == CURRENT_LAW_PI &&
          parameters.excitation != EXCITATION_CENTRED && parameters.excitation != EXCITATION_LONG_ZERO;
 }
 
 // How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
 static int32_t disagreement(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  const bool both = parameters.position_source == 2 || encoder_beside_avv() ||
-                    (parameters.position_source == 1 && p->blend.region == BLEND_BOTH);
+  const bool both = parameters.position_source == POSITION_OBSERVER_AVV || encoder_beside_avv() ||
+                    (parameters.position_source == POSITION_PAPER && p->blend.region == BLEND_BOTH);
   if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
   return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
 }
@@ -55,8 +55,8 @@ static bool diverged(drive_t* d) {
 
 // An angle error that is asked for is none.
 static bool lost_synchronism(drive_t* d) {
-  if (parameters.position_source == 0 && parameters.encoder_trim != 0) return false;
-  if (parameters.position_source == 4) {
+  if (parameters.position_source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
+  if (parameters.position_source == POSITION_OBSERVER) {
     const regression_t* const r = &d->position.observer.regression;
     const synchronism_seen_t seen = {r->even_q20, (d->samples.count > 0u) ? r->span_ticks : 0,
                                      d->position.used.speed_bpp};
@@ -68,7 +68,7 @@ static bool lost_synchronism(drive_t* d) {
   in.window_count = d->samples.count;
   in.torque_accel_q8 = 0;
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
-  const int32_t apart_bam = (parameters.position_source == 0) ? 0 : disagreement(d);
+  const int32_t apart_bam = (parameters.position_source == POSITION_ENCODER) ? 0 : disagreement(d);
   in.frames = 0;
   return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, d->position.used.angle_bam,
                           d->position.used.speed_bpp, apart_bam);

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import TracebackType
+from typing import Self
 
 from rich.console import Console
 from rich.progress import (
@@ -33,15 +34,13 @@ def _columns() -> tuple[ProgressColumn, ...]:
     )
 
 
-class Counter:
-    """A bar over so many equal things."""
+class _Drawn:
+    """A rich bar that is drawn from entering to leaving, and only where somebody looks: not in a log file."""
 
-    def __init__(self, console: Console, total: int) -> None:
-        self._progress = Progress(*_columns(), console=console, transient=True, disable=not console.is_terminal)
-        self._task = self._progress.add_task("", total=total)
-        self._total, self._done = total, 0
+    def __init__(self, console: Console, *columns: ProgressColumn) -> None:
+        self._progress = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
 
-    def __enter__(self) -> Counter:
+    def __enter__(self) -> Self:
         self._progress.start()
         return self
 
@@ -49,6 +48,15 @@ class Counter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._progress.stop()
+
+
+class Counter(_Drawn):
+    """A bar over so many equal things."""
+
+    def __init__(self, console: Console, total: int) -> None:
+        super().__init__(console, *_columns())
+        self._task = self._progress.add_task("", total=total)
+        self._total, self._done = total, 0
 
     def one_more(self, _: object) -> None:
         """One of them is done."""
@@ -56,24 +64,14 @@ class Counter:
         self._progress.update(self._task, completed=self._done, description=f"{self._done} of {self._total} runs")
 
 
-class Bar(Watcher):
+class Bar(_Drawn, Watcher):
     """One bar over everything: runs by their share done, then figures and plots."""
 
     def __init__(self, console: Console) -> None:
-        # Nothing is drawn where nobody looks, such as in a log file.
-        self._progress = Progress(*_columns(), console=console, transient=True, disable=not console.is_terminal)
+        super().__init__(console, *_columns())
         self._task: TaskID | None = None
         self._runs = self._done = self._drawn = 0
         self._shares = 0.0
-
-    def __enter__(self) -> Bar:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._progress.stop()
 
     def total(self, runs: int, scenarios: int) -> None:
         """How much there is to do."""
@@ -103,24 +101,12 @@ class Bar(Watcher):
         self._progress.update(self._task, completed=done, description=f"{self._done} of {self._runs} runs")
 
 
-class PhaseBar:
+class PhaseBar(_Drawn):
     """One bar over one piece of work that says which phase it is in."""
 
     def __init__(self, console: Console) -> None:
-        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
-        self._progress = Progress(
-            *columns, TimeElapsedColumn(), console=console, transient=True, disable=not console.is_terminal
-        )
+        super().__init__(console, *_columns()[:-1])  # phases are too unequal to say how long the rest takes
         self._task = self._progress.add_task("", total=1.0)
-
-    def __enter__(self) -> PhaseBar:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._progress.stop()
 
     def show(self, share: float, phase: str) -> bool:
         """How far it is; always true, which means: go on."""

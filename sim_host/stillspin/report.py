@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from stillspin.output import MARK, RUNS
 from stillspin.profile import Profile
 
 PAGE = "report.html"
+PAPER = "paper.json"
 
 PARAMETER_NOTE = "nominal parameters (from the nameplate)"
 """On which parameters the firmware ran: there is no commissioning yet that would find better ones."""
@@ -74,24 +75,27 @@ def unit_text(unit: str) -> str:
     return {"deg el": "° el", "N m": "N·m"}.get(unit, unit)
 
 
-def metrics(
-    results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]
-) -> dict[str, Any]:
+def metrics(results: Sequence[ScenarioResult], settings: Settings) -> dict[str, Any]:
     """The content of `metrics.json`. It depends on nothing but the profile, the seed and the sources."""
-    content: dict[str, Any] = {
+    return {
         "profile": settings.profile.name,
         "seed": settings.seed,
         "revision": settings.revision,
         "scenarios": {result.scenario.id: _figures(result) for result in results},
     }
-    if paper:
-        content["paper_scheme"] = {identifier: _figures(result) for identifier, result in paper.items()}
-        content["paper_scheme_lost"] = {
-            identifier: {outcome.run: outcome.broken for outcome in result.broken}
-            for identifier, result in paper.items()
-            if result.broken
-        }
-    return content
+
+
+def _lost(paper: Iterable[ScenarioResult]) -> dict[str, dict[str, str | None]]:
+    """Runs that the paper's scheme lost, and why."""
+    return {
+        result.scenario.id: {outcome.run: outcome.broken for outcome in result.broken}
+        for result in paper
+        if result.broken
+    }
+
+
+def _write_json(path: Path, content: Mapping[str, Any]) -> None:
+    path.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _figures(result: ScenarioResult) -> dict[str, object]:
@@ -101,7 +105,7 @@ def _figures(result: ScenarioResult) -> dict[str, object]:
 def write(
     directory: Path, results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]
 ) -> None:
-    """Write `metrics.json` and `report.html` into a directory.
+    """Write `metrics.json`, `report.html` and, where there is one, `paper.json` into a directory.
 
     Args:
         directory: existing.
@@ -109,8 +113,10 @@ def write(
         settings: what all runs had in common.
         paper: results with the paper's scheme, by scenario; empty where it was not run.
     """
-    text = json.dumps(metrics(results, settings, paper), indent=2, ensure_ascii=False, allow_nan=False)
-    (directory / MARK).write_text(text + "\n", encoding="utf-8")
+    if paper:
+        compared = list(paper.values())
+        _write_json(directory / PAPER, {**metrics(compared, settings), "lost": _lost(compared)})
+    _write_json(directory / MARK, metrics(results, settings))
     (directory / PAGE).write_text(html(results, settings, paper), encoding="utf-8")
 
 

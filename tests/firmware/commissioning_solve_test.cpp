@@ -5,7 +5,7 @@
 #include <cmath>
 
 extern "C" {
-#include "firmware/commissioning_solve.h"
+#include "firmware/commissioning/solve.h"
 }
 
 namespace {

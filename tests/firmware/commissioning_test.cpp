@@ -5,7 +5,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/commissioning_result.h"
+#include "firmware/commissioning/result.h"
 }
 
 namespace {

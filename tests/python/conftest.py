@@ -7,8 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import fake_core
+from stillspin import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
@@ -19,6 +21,17 @@ def core(monkeypatch):
     """The fake native module in place of the real one, whether or not that is built."""
     monkeypatch.setitem(sys.modules, "stillspin._core", fake_core)
     return fake_core
+
+
+@pytest.fixture
+def call(core, tmp_path, monkeypatch):
+    """Calls the command line in an empty directory, with the fake native module."""
+    monkeypatch.chdir(tmp_path)
+
+    def invoke(*arguments):
+        return CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
+
+    return invoke
 
 
 @pytest.fixture(scope="session")

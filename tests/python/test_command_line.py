@@ -12,17 +12,6 @@ from typer.testing import CliRunner
 from stillspin import cli, output, records
 
 
-@pytest.fixture
-def call(core, tmp_path, monkeypatch):
-    """Calls the command line in an empty directory, with the fake native module."""
-    monkeypatch.chdir(tmp_path)
-
-    def invoke(*arguments):
-        return CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
-
-    return invoke
-
-
 def left_over(directory):
     return sorted(path.name for path in directory.iterdir())
 

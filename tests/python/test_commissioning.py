@@ -11,21 +11,9 @@ import sys
 import tomllib
 
 import pytest
-from typer.testing import CliRunner
 
-from stillspin import cli, commission, core, profile
+from stillspin import commission, core, profile
 from stillspin.errors import InputError
-
-
-@pytest.fixture
-def call(core, tmp_path, monkeypatch):
-    """Calls the command line in an empty directory, with the fake native module."""
-    monkeypatch.chdir(tmp_path)
-
-    def invoke(*arguments):
-        return CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
-
-    return invoke
 
 
 def test_it_writes_what_it_found(call, tmp_path):

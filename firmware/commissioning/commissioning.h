@@ -7,10 +7,10 @@
 //
 // Cost: at standstill the position sources but AVV are idle, which is more than the sums take; 1400 words.
 
-#ifndef STILLSPIN_FIRMWARE_COMMISSIONING_H
-#define STILLSPIN_FIRMWARE_COMMISSIONING_H
+#ifndef STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
+#define STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
 
-#include "firmware/commissioning_tensor.h"
+#include "estimators/admittance_tensor.h"
 #include "firmware/drive_api.h"
 
 #define STAIRCASE_LEVELS 14u

@@ -14,7 +14,7 @@
 // the windows as long as they are: without that limit noise makes voltage, voltage shortens windows, and short windows
 // make more noise.
 
-#include "firmware/hold.h"
+#include "firmware/start/hold.h"
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
@@ -34,7 +34,7 @@ static const avv_config_t observer_config = {5368709L, 42949673L};
 void hold_begin(drive_t* d) {
   hold_t* const h = &d->hold;
   // The paper's scheme wants other windows at standstill.
-  h->left = (parameters.position_source == 1) ? 0u : (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS;
+  h->left = (parameters.position_source == POSITION_PAPER) ? 0u : (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS;
   h->reference_bam = d->position.used.angle_bam;
   avv_preset(&h->avv, d->position.used.angle_bam, 0, 0);
 }

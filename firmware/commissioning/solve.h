@@ -4,7 +4,7 @@
 #ifndef STILLSPIN_FIRMWARE_COMMISSIONING_SOLVE_H
 #define STILLSPIN_FIRMWARE_COMMISSIONING_SOLVE_H
 
-#include "firmware/commissioning.h"
+#include "firmware/commissioning/commissioning.h"
 
 typedef struct {
   bool valid;

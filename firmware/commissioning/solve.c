@@ -1,6 +1,6 @@
-#include "firmware/commissioning_solve.h"
+#include "firmware/commissioning/solve.h"
 
-#include "firmware/commissioning_fit.h"
+#include "estimators/fit.h"
 
 #define SQRT3_Q28 464943848L
 // 2^32 T / 2 pi with T = 100 us: binary angle per period of 1 rad/s.

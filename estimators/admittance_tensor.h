@@ -5,8 +5,8 @@
 // many periods give Y = (sum ds dv')(sum dv dv')^-1 exactly, whichever directions dv took. The symmetric part is the
 // machine; the antisymmetric one is the mismatch of the two current sensors (sensor_match.h).
 
-#ifndef STILLSPIN_FIRMWARE_COMMISSIONING_TENSOR_H
-#define STILLSPIN_FIRMWARE_COMMISSIONING_TENSOR_H
+#ifndef STILLSPIN_ESTIMATORS_ADMITTANCE_TENSOR_H
+#define STILLSPIN_ESTIMATORS_ADMITTANCE_TENSOR_H
 
 #include "estimators/deviation.h"
 

@@ -1,12 +1,12 @@
 // The start: from READY to RUN.
 //
-// First the drive listens whether the shaft turns (two short circuits, flying_start.c). If it does, angle, polarity and
+// First the drive listens whether the shaft turns (two short circuits, flying.c). If it does, angle, polarity and
 // speed come from the back-EMF and the drive runs on at that speed. If it stands, the axis comes from the saliency, the
 // polarity from saturation where the machine's slopes are known and large enough, else from a small motion. What stays
 // ambiguous is tried again with more current and then is a fault.
 
-#ifndef STILLSPIN_FIRMWARE_START_H
-#define STILLSPIN_FIRMWARE_START_H
+#ifndef STILLSPIN_FIRMWARE_START_START_H
+#define STILLSPIN_FIRMWARE_START_START_H
 
 #include "estimators/axis.h"
 #include "estimators/emf_sign.h"

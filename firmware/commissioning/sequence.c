@@ -1,6 +1,5 @@
-#include "firmware/commissioning.h"
-
-#include "firmware/commissioning_result.h"
+#include "firmware/commissioning/commissioning.h"
+#include "firmware/commissioning/result.h"
 #include "firmware/drive.h"
 #include "hal/hal_pwm.h"
 

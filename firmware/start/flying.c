@@ -53,17 +53,24 @@ static void close_loop(drive_t* d, const flying_rotor_t* rotor) {
   start_enter(d, START_CATCH);
 }
 
+static void try_again(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  s->tries++;
+  s->pulses = 0;
+  if (s->tries < PAIRS_MAX) {
+    start_listen(d, PAUSE_MIN);
+  } else {
+    drive_raise(d, FAULT_POLARITY);
+  }
+}
+
 static void judge_pair(drive_t* d, const flying_emf_t* second) {
   drive_start_t* const s = &d->start;
   flying_rotor_t rotor;
   if (flying_resolve(&s->first, second, &d->model, &rotor)) {
     close_loop(d, &rotor);
-  } else if (s->tries + 1u >= PAIRS_MAX) {
-    drive_raise(d, FAULT_POLARITY);
   } else {
-    s->tries++;
-    s->pulses = 0;
-    start_listen(d, PAUSE_MIN);
+    try_again(d);
   }
 }
 
@@ -123,11 +130,7 @@ void start_step_catch(drive_t* d) {
   if (s->tick < CATCH_PERIODS) return;
   if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
     start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
-  } else if (s->tries + 1u >= PAIRS_MAX) {
-    drive_raise(d, FAULT_POLARITY);
   } else {
-    s->tries++;
-    s->pulses = 0;
-    start_listen(d, PAUSE_MIN);
+    try_again(d);
   }
 }

@@ -1,10 +1,9 @@
 // The start: the sequence, and the start of a shaft that stands. See start.h.
 
-#include "firmware/start.h"
-
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 #include "firmware/position.h"
+#include "firmware/start/start.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 
@@ -54,8 +53,8 @@ void drive_begin_start(drive_t* d) {
   d->supervision = healthy;
   d->start = fresh;
   d->model = d->config.nameplate;
-  d->position.sensors.mismatch_q30 = q_mul(parameters.sensor_mismatch, 167772L, 10);  // percent, Q16
-  d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
+  d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
+  d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;
   position_preset(d, 0, 0);
   reset_control(d);
   drive_enter(d, DRIVE_START);
@@ -99,7 +98,10 @@ void start_find_axis(drive_t* d) {
 
 static void step_axis(drive_t* d) {
   drive_start_t* const s = &d->start;
-  if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+  if (s->tick > AXIS_TIMEOUT) {
+    drive_raise(d, FAULT_NO_SAMPLES);
+    return;
+  }
   const bool complete = s->tick >= AXIS_SKIP && axis_add(&s->axis, &d->position.avv.regression);
   position_preset(d, 0, 0);  // the regressions must be made at one and the same angle
   if (!complete) return;

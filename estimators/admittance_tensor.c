@@ -1,6 +1,6 @@
-#include "firmware/commissioning_tensor.h"
+#include "estimators/admittance_tensor.h"
 
-#include "firmware/commissioning_fit.h"
+#include "estimators/fit.h"
 
 #define TENTH_Q20 104858L         // 100 us in ms: mH = ms / (A per V and period)
 #define SPREAD_MIN_Q28 26843546L  // determinant of the normalised sums: a tenth of that of evenly spread vectors

@@ -1,4 +1,4 @@
-#include "firmware/commissioning_fit.h"
+#include "estimators/fit.h"
 
 // A 64-bit magnitude as 31 bits and a power of two.
 static int16_t normalise(uint64_t* x) {

@@ -1,7 +1,7 @@
 // Holding the shaft while a brake opens, see hold.c.
 
-#ifndef STILLSPIN_FIRMWARE_HOLD_H
-#define STILLSPIN_FIRMWARE_HOLD_H
+#ifndef STILLSPIN_FIRMWARE_START_HOLD_H
+#define STILLSPIN_FIRMWARE_START_HOLD_H
 
 #include "estimators/avv.h"
 

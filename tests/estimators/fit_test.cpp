@@ -7,7 +7,7 @@
 #include <random>
 
 extern "C" {
-#include "firmware/commissioning_fit.h"
+#include "estimators/fit.h"
 }
 
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware/commissioning_result.h"
+#include "firmware/commissioning/result.h"
 
 #include <stddef.h>
 

@@ -1,11 +1,11 @@
-// Least squares in integers for the commissioning: quotients of 64-bit sums and a fit with two regressors.
+// Least squares in integers: quotients of 64-bit sums and a fit with two regressors.
 //
 // The sums of a measurement run over thousands of periods in the interrupt; the background level makes quotients of
 // them. There is no 64-bit division: numerator and denominator are brought to 31 bits each on their own, so a quotient
 // has a relative error below 2^-29 and is then rounded to its format. Cost: about 400 instructions a quotient.
 
-#ifndef STILLSPIN_FIRMWARE_COMMISSIONING_FIT_H
-#define STILLSPIN_FIRMWARE_COMMISSIONING_FIT_H
+#ifndef STILLSPIN_ESTIMATORS_FIT_H
+#define STILLSPIN_ESTIMATORS_FIT_H
 
 #include "hal/qmath/qmath.h"
 
