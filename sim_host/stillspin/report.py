@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -75,21 +75,21 @@ def unit_text(unit: str) -> str:
     return {"deg el": "° el", "N m": "N·m"}.get(unit, unit)
 
 
-def metrics(results: Sequence[ScenarioResult], settings: Settings) -> dict[str, Any]:
-    """The content of `metrics.json`. It depends on nothing but the profile, the seed and the sources."""
+def metrics(results: Mapping[str, ScenarioResult], settings: Settings) -> dict[str, Any]:
+    """The content of `metrics.json`, results by scenario. It depends on nothing but the profile, seed and sources."""
     return {
         "profile": settings.profile.name,
         "seed": settings.seed,
         "revision": settings.revision,
-        "scenarios": {result.scenario.id: _figures(result) for result in results},
+        "scenarios": {identifier: _figures(result) for identifier, result in results.items()},
     }
 
 
-def _lost(paper: Iterable[ScenarioResult]) -> dict[str, dict[str, str | None]]:
+def _lost(paper: Mapping[str, ScenarioResult]) -> dict[str, dict[str, str | None]]:
     """Runs that the paper's scheme lost, and why."""
     return {
-        result.scenario.id: {outcome.run: outcome.broken for outcome in result.broken}
-        for result in paper
+        identifier: {outcome.run: outcome.broken for outcome in result.broken}
+        for identifier, result in paper.items()
         if result.broken
     }
 
@@ -114,9 +114,8 @@ def write(
         paper: results with the paper's scheme, by scenario; empty where it was not run.
     """
     if paper:
-        compared = list(paper.values())
-        _write_json(directory / PAPER, {**metrics(compared, settings), "lost": _lost(compared)})
-    _write_json(directory / MARK, metrics(results, settings))
+        _write_json(directory / PAPER, {**metrics(paper, settings), "lost": _lost(paper)})
+    _write_json(directory / MARK, metrics({result.scenario.id: result for result in results}, settings))
     (directory / PAGE).write_text(html(results, settings, paper), encoding="utf-8")
 
 
