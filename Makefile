@@ -32,9 +32,9 @@ build: setup ## compile firmware, virtual chip, plant and Python module into bui
 test: build ## run every check, the C++ tests and the Python tests
 	@bash toolchain/run-tests.sh $(PRESET)
 
-demo: build ## reproduce the main figures of the first paper and write out/demo/report.html
+demo: build ## commission the drive, reproduce the main figures of the first paper, write out/demo/report.html
 	@rm -rf $(DEMO_OUT)
-	@status=0; .venv/bin/stillspin reproduce $(DEMO) --no-paper-scheme --out $(DEMO_OUT) || status=$$?; \
+	@status=0; .venv/bin/stillspin reproduce $(DEMO) --no-paper-scheme --no-nameplate --out $(DEMO_OUT) || status=$$?; \
 	if [[ -f $(DEMO_OUT)/report.html ]]; then bash toolchain/show.sh $(DEMO_OUT)/report.html; fi; \
 	exit $$status  # 1 when a run broke off: the report says which and why
 

@@ -8,9 +8,7 @@ from pathlib import Path
 
 from stillspin import figures, metrics, records
 from stillspin.execute import Outcome
-from stillspin.scenario import Plot, Scenario
-
-_PANELS = ("speed", "position_error", "torque", "currents")
+from stillspin.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -31,10 +29,14 @@ class ScenarioResult:
     drawings: list[Drawing]
 
     @property
+    def lost(self) -> list[Outcome]:
+        """The runs that do not count."""
+        return [outcome for outcome in self.outcomes if outcome.broken]
+
+    @property
     def broken(self) -> list[Outcome]:
-        """The runs that do not count, but for those that may be lost."""
-        broken = [outcome for outcome in self.outcomes if outcome.broken]
-        return [outcome for outcome in broken if not self.scenario.run(outcome.run).may_be_lost]
+        """The same, but for those that the scenario allows to be lost."""
+        return [outcome for outcome in self.lost if not self.scenario.run(outcome.run).may_be_lost]
 
 
 def assess(
@@ -61,9 +63,8 @@ def assess(
     counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
     measured = figures.evaluate(scenario, counting, profile, extras)
     drawings = []
-    if draw and recorded:
+    if draw and recorded and scenario.plots:
         from stillspin import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
 
-        chosen = scenario.plots or (Plot("", _PANELS, tuple(recorded), None),)
-        drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded, extras)) for plot in chosen]
+        drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded, extras)) for plot in scenario.plots]
     return ScenarioResult(scenario, list(outcomes), measured, drawings)

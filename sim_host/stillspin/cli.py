@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -18,7 +17,6 @@ from rich.console import Console
 
 from stillspin import (
     __version__,
-    campaign,
     commission,
     core,
     execute,
@@ -27,14 +25,14 @@ from stillspin import (
     report,
     resources,
     scenario_file,
-    scheme,
     startup,
     startup_report,
     tables,
 )
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
-from stillspin.progress import Bar, Counter, PhaseBar
+from stillspin.progress import Counter, PhaseBar
+from stillspin.reproduction import Options, carry_out, write_found
 from stillspin.revision import revision
 
 app = typer.Typer(
@@ -88,49 +86,34 @@ ParamsOption = Annotated[
 ]
 
 
-@dataclass(frozen=True)
-class Options:
-    """What `run` and `reproduce` have in common."""
-
-    profile: str
-    seed: int
-    changes: list[str]
-    out: Path
-    jobs: int
-    draw: bool
-    paper_scheme: bool = False
-    params: Path | None = None
+JobsOption = Annotated[
+    int | None,
+    typer.Option(
+        "--jobs",
+        "-j",
+        metavar="N",
+        parser=_whole("--jobs", 1, 256),
+        help="Runs at a time [default: one per processor].",
+    ),
+]
 
 
 def _carry_out(ids: Iterable[str], options: Options) -> None:
-    """Run the scenarios, write the results, print what came out, and end the process when a run broke off."""
-    scenarios = [scenario_file.load(identifier) for identifier in ids]
-    if options.paper_scheme:
-        other = scheme.paper()
-        scenarios += [other.variant(scenario) for scenario in scenarios if other.applies(scenario)]
-    native = core.load()
-    schema, known = core.plant_schema(native), core.parameters(native)
-    chosen = profile.load(options.profile, schema, known)
-    changes = profile.changes(options.changes, schema, known)
-    if options.params:
-        chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(options.params, known)})
-        changes.words.append(f"--params {options.params.name}")
-    settings = execute.Settings(chosen, changes, options.seed, revision())
-    jobs = [job for scenario in scenarios for job in execute.prepare(scenario, settings, native)]
-    with output.fresh_directory(options.out) as directory:
-        plan = campaign.Plan(scenarios, jobs, directory / output.RUNS, chosen.name, options.draw)
-        with Bar(Console(stderr=True)) as bar:
-            results, paper = scheme.separate(campaign.run_all(plan, options.jobs, bar))
-        report.write(directory, results, settings, paper)
-    tables.summary(results, paper)
-    total = report.tally(results)
-    lost = f"; the paper scheme lost {report.tally(list(paper.values())).broken} runs" if paper else ""
-    words = f"{total.met} of {total.goals} goals met, {total.broken} runs broken off{lost}"
-    print(f"{words}; see {options.out / report.PAGE}")
-    broken = [outcome for result in results for outcome in result.broken]
+    """Run scenarios, print what came out, and end the process when a run broke off."""
+    done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
+    tables.summary(done.results, done.beside)
+    total = report.tally(done.results)
+    print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
+    for item in done.beside:
+        beside = report.tally(list(item.results.values()))
+        lost = sum(len(result.lost) for result in item.results.values())
+        print(f"{item.variant.title}: {beside.met} of {beside.goals} goals met, {lost} runs lost")
+    for words in done.refused:
+        print(f"stillspin: {words}", file=sys.stderr)
+    broken = [outcome for result in done.results for outcome in result.broken]
     for outcome in broken:
         print(f"stillspin: {outcome.scenario}, run {outcome.run}: broken off: {outcome.broken}", file=sys.stderr)
-    if broken:
+    if broken or done.refused:
         raise typer.Exit(BROKEN)
 
 
@@ -150,7 +133,7 @@ def run(
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
     identifier = scenario_file.find(scenario).stem
     where = out or Path(f"results-{identifier}")
-    _carry_out([identifier], Options(profile_name, seed, change or [], where, 1, not no_plots, params=params))
+    _carry_out([identifier], Options(profile_name, seed, where, change or [], draw=not no_plots, params=params))
 
 
 @app.command()
@@ -163,16 +146,18 @@ def reproduce(
     seed: SeedOption = 1,
     params: ParamsOption = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
-    jobs: Annotated[
-        int | None,
+    jobs: JobsOption = None,
+    commission_first: Annotated[
+        bool,
         typer.Option(
-            "--jobs",
-            "-j",
-            metavar="N",
-            parser=_whole("--jobs", 1, 256),
-            help="Runs at a time [default: one per processor].",
+            "--commission/--no-commission",
+            help="Let the drive measure machine and inverter first where the profile differs from the nameplate.",
         ),
-    ] = None,
+    ] = True,
+    nameplate: Annotated[
+        bool,
+        typer.Option("--nameplate/--no-nameplate", help="Run everything on the nameplate's parameters, too."),
+    ] = True,
     paper_scheme: Annotated[
         bool,
         typer.Option(
@@ -181,10 +166,19 @@ def reproduce(
         ),
     ] = True,
 ) -> None:
-    """Run scenarios in parallel and write report.html and metrics.json."""
+    """Commission the drive, run scenarios in parallel and write report.html and metrics.json."""
     chosen = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or scenario_file.campaign_ids())
     workers = jobs or len(os.sched_getaffinity(0))
-    options = Options(profile_name, seed, [], out, workers, draw=True, paper_scheme=paper_scheme, params=params)
+    options = Options(
+        profile_name,
+        seed,
+        out,
+        jobs=workers,
+        params=params,
+        commission=commission_first,
+        paper_scheme=paper_scheme,
+        nameplate=nameplate,
+    )
     _carry_out(chosen, options)
 
 
@@ -205,9 +199,7 @@ def commission_(
     with PhaseBar(Console(stderr=True)) as bar:
         result = commission.run(native, chosen, changes, seed, bar.show)
     tables.commissioning(result)
-    about = [f"Commissioned in profile {chosen.name}, seed {seed}, stillspin {__version__} ({revision()})."]
-    about += [f"Changed beforehand: {', '.join(changes.words)}."] if changes.words else []
-    commission.write(out, result, about)
+    write_found(out, result, execute.Settings(chosen, changes, seed, revision()))
     found = len(result.values) - len(result.refused)
     print(f"{found} of {len(result.values)} values found in {result.duration:.1f} s of the drive's time; see {out}")
     for value in result.refused:
@@ -228,10 +220,7 @@ def startup_matrix(
         list[str] | None, typer.Option("--way", metavar="WAY", help="Only brake, free or flying. Repeatable.")
     ] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-startup"),
-    jobs: Annotated[
-        int | None,
-        typer.Option("--jobs", "-j", metavar="N", parser=_whole("--jobs", 1, 256), help="Runs at a time."),
-    ] = None,
+    jobs: JobsOption = None,
 ) -> None:
     """Start from every angle, under loads and parameter errors, standing and turning; status 1 when one fails."""
     common, linear = startup.bench(profile_name)

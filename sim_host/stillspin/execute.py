@@ -21,12 +21,13 @@ _OBSERVER = ("observer_load_rate", "observer_load_quiet")
 
 @dataclass(frozen=True)
 class Settings:
-    """What all runs of a campaign have in common."""
+    """What all runs of a campaign have in common. `parameters_from`: where the firmware's parameters come from."""
 
     profile: Profile
     changes: Changes
     seed: int
     revision: str
+    parameters_from: str = "the nameplate"
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,7 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "seed": settings.seed,
         "revision": settings.revision,
         "changes": settings.changes.words,
+        "parameters_from": settings.parameters_from,
         "motor": scenario.motor,
         "plant": plant,
         "machine": _machine(plant, known.schema),

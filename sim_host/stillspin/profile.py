@@ -20,12 +20,16 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 @dataclass(frozen=True)
 class Profile:
-    """A named plant. It holds only the entries and firmware parameters that the profile states."""
+    """A named plant. It holds only the entries and firmware parameters that the profile states.
+
+    `commission`: the machine differs from its nameplate, so that a campaign lets the drive measure it first.
+    """
 
     name: str
     description: str
     plant: core.Plant
     parameters: dict[str, float] = field(default_factory=dict)
+    commission: bool = False
 
 
 @dataclass
@@ -70,20 +74,21 @@ def load(name_or_path: str, schema: core.Schema, known: Mapping[str, core.Entry]
     path = find(name_or_path)
     table = toml_table.read(path)
     description = table.text("description", "").strip()
+    commission = table.switch("commission")
     parameters = {
         name: core.parameter(known, name, value, f"{path}: parameters.{name}")
         for name, value in table.table("parameters").items().items()
     }
     plant: core.Plant = {}
     for section, keys in table.items().items():
-        if section not in {"description", "parameters"}:
+        if section not in {"description", "commission", "parameters"}:
             plant[section] = _section(section, keys, schema, path)
-    return Profile(path.stem, description, plant, parameters)
+    return Profile(path.stem, description, plant, parameters, commission)
 
 
 def _section(section: str, keys: object, schema: core.Schema, path: Path) -> dict[str, core.Value]:
     if not isinstance(keys, dict):
-        known = ["description", "parameters", *schema]
+        known = ["description", "commission", "parameters", *schema]
         raise InputError(f"{path}: unknown key '{section}'{did_you_mean(section, known)}")
     core.section_known(schema, section, str(path))
     return {

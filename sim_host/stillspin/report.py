@@ -11,18 +11,14 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from stillspin import scheme
 from stillspin.assess import ScenarioResult
 from stillspin.execute import Settings
 from stillspin.figures import Result
 from stillspin.output import MARK, RUNS
 from stillspin.profile import Profile
+from stillspin.variant import Beside
 
 PAGE = "report.html"
-PAPER = "paper.json"
-
-PARAMETER_NOTE = "nominal parameters (from the nameplate)"
-"""On which parameters the firmware ran: there is no commissioning yet that would find better ones."""
 
 
 @dataclass(frozen=True)
@@ -85,12 +81,12 @@ def metrics(results: Mapping[str, ScenarioResult], settings: Settings) -> dict[s
     }
 
 
-def _lost(paper: Mapping[str, ScenarioResult]) -> dict[str, dict[str, str | None]]:
-    """Runs that the paper's scheme lost, and why."""
+def _lost(results: Mapping[str, ScenarioResult]) -> dict[str, dict[str, str | None]]:
+    """Runs that were lost, and why."""
     return {
-        identifier: {outcome.run: outcome.broken for outcome in result.broken}
-        for identifier, result in paper.items()
-        if result.broken
+        identifier: {outcome.run: outcome.broken for outcome in result.lost}
+        for identifier, result in results.items()
+        if result.lost
     }
 
 
@@ -102,24 +98,23 @@ def _figures(result: ScenarioResult) -> dict[str, object]:
     return {figure.name: figure.as_json() for figure in result.figures}
 
 
-def write(
-    directory: Path, results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]
-) -> None:
-    """Write `metrics.json`, `report.html` and, where there is one, `paper.json` into a directory.
+def write(directory: Path, results: Sequence[ScenarioResult], settings: Settings, beside: Sequence[Beside]) -> None:
+    """Write `metrics.json`, `report.html` and a file like `metrics.json` for each variant into a directory.
 
     Args:
         directory: existing.
         results: of the drive.
         settings: what all runs had in common.
-        paper: results with the paper's scheme, by scenario; empty where it was not run.
+        beside: what the variants reach.
     """
-    if paper:
-        _write_json(directory / PAPER, {**metrics(paper, settings), "lost": _lost(paper)})
+    for item in beside:
+        content = {**metrics(item.results, item.variant.settings(settings)), "lost": _lost(item.results)}
+        _write_json(directory / f"{item.variant.mark}.json", content)
     _write_json(directory / MARK, metrics({result.scenario.id: result for result in results}, settings))
-    (directory / PAGE).write_text(html(results, settings, paper), encoding="utf-8")
+    (directory / PAGE).write_text(html(results, settings, beside), encoding="utf-8")
 
 
-def html(results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[str, ScenarioResult]) -> str:
+def html(results: Sequence[ScenarioResult], settings: Settings, beside: Sequence[Beside]) -> str:
     """The page."""
     environment = Environment(
         loader=PackageLoader("stillspin", "templates"),
@@ -131,25 +126,27 @@ def html(results: Sequence[ScenarioResult], settings: Settings, paper: Mapping[s
     environment.filters.update(number=number, unit=unit_text, verdict=verdict, image=_image, slug=_slug)
     return environment.get_template("report.html.j2").render(
         results=results,
-        paper=paper,
-        scheme=scheme.paper(),
-        columns=_columns(paper),
+        beside=[_Column(item) for item in beside],
         tallies={result.scenario.id: tally([result]) for result in results},
         total=tally(results),
-        lost=tally(list(paper.values())).broken,
-        profile=settings.profile,
-        seed=settings.seed,
-        revision=settings.revision,
-        changes=settings.changes.words,
-        parameter_note=PARAMETER_NOTE,
+        settings=settings,
         plant_rows=_plant_rows(settings.profile),
         runs_directory=RUNS,
     )
 
 
-def _columns(paper: Mapping[str, ScenarioResult]) -> dict[str, dict[str, Result]]:
-    """Scenario -> figure -> what the paper's scheme reaches."""
-    return {identifier: {figure.name: figure for figure in result.figures} for identifier, result in paper.items()}
+class _Column:
+    """A variant as the page shows it."""
+
+    def __init__(self, item: Beside) -> None:
+        self.variant = item.variant
+        self.results = item.results
+        self.total = tally(list(item.results.values()))
+        self.lost = sum(len(result.lost) for result in item.results.values())
+
+    def value(self, identifier: str, figure: Result) -> float | None:
+        """What the variant reaches; None where it was lost."""
+        return next(other.value for other in self.results[identifier].figures if other.name == figure.name)
 
 
 def _plant_rows(profile: Profile) -> list[tuple[str, str]]:

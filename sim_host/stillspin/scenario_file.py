@@ -21,6 +21,9 @@ from stillspin.scenario import Figure, Goal, Plot, Reached, Run, Scenario, Windo
 from stillspin.toml_table import Table
 
 _NAME = re.compile(r"[a-z0-9_]+")
+_PANELS = ("speed", "position_error", "torque", "currents")
+"""Drawn of a scenario that does not say what to draw."""
+
 _MOTORS = ("A", "B")
 
 
@@ -84,8 +87,8 @@ def read(path: Path) -> Scenario:
         paper_says=paper.text("says", ""),
         runs=runs,
         figures=figures,
-        plots=tuple(_plot(plot, names) for plot in table.tables("plots")),
-        on_demand=_switch(table, "on_demand"),
+        plots=tuple(_plot(plot, names) for plot in table.tables("plots")) or (Plot("", _PANELS, tuple(names), None),),
+        on_demand=table.switch("on_demand"),
     )
     paper.finish()
     table.finish()
@@ -150,19 +153,12 @@ def _run(table: Table) -> Run:
         reached=tuple(_reached(reached, duration) for reached in table.tables("reached")),
         record_every=int(table.number("record_every", 1, minimum=1)),
         waveform=_look(table, duration),
-        may_be_lost=_switch(table, "may_be_lost"),
+        may_be_lost=table.switch("may_be_lost"),
     )
     if not run.reached:
         raise InputError(f"{table.where}: 'reached' is missing: a run counts only if the shaft did what was commanded")
     table.finish()
     return run
-
-
-def _switch(table: Table, key: str) -> bool:
-    value = table.raw(key, False)
-    if not isinstance(value, bool):
-        raise table.fail(key, "must be true or false")
-    return value
 
 
 def _look(table: Table, duration: float) -> Look | None:

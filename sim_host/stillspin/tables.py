@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -12,10 +12,11 @@ from stillspin import commission, report
 from stillspin.assess import ScenarioResult
 from stillspin.core import Entry
 from stillspin.scenario import Scenario
+from stillspin.variant import Beside
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {
-    *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme"),
+    *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
     *("starts", "failed", "backward", "sigma", "angle"),
 }
 
@@ -33,26 +34,26 @@ def _print(table: Table) -> None:
     Console(width=None if console.is_terminal else 200).print(table)
 
 
-def summary(results: Iterable[ScenarioResult], other: Mapping[str, ScenarioResult]) -> None:
-    """Every figure of merit, and beside it what the paper's scheme reaches, where it was run."""
-    table = _table("scenario", "figure", "value", "unit", "paper", "goal", "", *(["paper scheme"] if other else []))
+def summary(results: Iterable[ScenarioResult], beside: Sequence[Beside]) -> None:
+    """Every figure of merit, and beside it what the variants reach, where they were run."""
+    headings = ("scenario", "figure", "value", "unit", "paper", "goal", "")
+    table = _table(*headings, *(item.variant.title for item in beside))
     for result in results:
-        beside = (
-            {figure.name: figure.value for figure in other[result.scenario.id].figures}
-            if result.scenario.id in other
-            else {}
-        )
         for figure in result.figures:
             value, paper, goal = (report.number(item) for item in (figure.value, figure.paper, figure.goal))
             word = report.verdict(figure)
             shown = Text(word, style=_COLOURS[word])
             unit = report.unit_text(figure.unit)
-            second = ["" if figure.name not in beside else _or_lost(beside[figure.name])] if other else []
-            table.add_row(result.scenario.id, figure.name, value, unit, paper, goal, shown, *second)
+            others = [_reached(item.results.get(result.scenario.id), figure.name) for item in beside]
+            table.add_row(result.scenario.id, figure.name, value, unit, paper, goal, shown, *others)
     _print(table)
 
 
-def _or_lost(value: float | None) -> str:
+def _reached(result: ScenarioResult | None, name: str) -> str:
+    """What a variant reaches: nothing where it was not run."""
+    if result is None:
+        return ""
+    value = next(figure.value for figure in result.figures if figure.name == name)
     return "lost" if value is None else report.number(value)
 
 

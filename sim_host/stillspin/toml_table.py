@@ -68,6 +68,13 @@ class Table:
             raise self.fail(key, f"must be at least {minimum:g}")
         return number
 
+    def switch(self, key: str) -> bool:
+        """True or false; false where nothing is said."""
+        value = self.raw(key, False)
+        if not isinstance(value, bool):
+            raise self.fail(key, "must be true or false")
+        return value
+
     def optional_number(self, key: str) -> float | None:
         """A finite number, or None when it is not given."""
         return self.number(key) if self.has(key) else None

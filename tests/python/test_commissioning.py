@@ -12,8 +12,35 @@ import tomllib
 
 import pytest
 
-from stillspin import commission, core, profile
+from stillspin import commission, core, profile, records
 from stillspin.errors import InputError
+
+
+def test_a_campaign_commissions_first_and_shows_the_nameplate_beside(call, tmp_path):
+    result = call("reproduce", "A10", "--seed", 7, "--jobs", 1, "--no-paper-scheme", "--out", "r")
+    assert result.exit_code == 0, result.stderr
+    assert "nameplate: " in result.stdout
+    read = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "r").iterdir() if path.is_file()}
+    assert sorted(read) == ["metrics.json", "nameplate.json", "params.toml", "report.html"]
+    assert tomllib.loads(read["params.toml"])["parameters"] == {"friction": 0.004, "speed_ramp": 2007.0}
+    assert list(json.loads(read["nameplate.json"])["scenarios"]) == ["A10"]
+    assert "commissioning on this plant" in read["report.html"]
+    told = {
+        name: records.read(tmp_path / "r" / "runs" / f"A10{name}-creep.parquet").about["parameters"].get("speed_ramp")
+        for name in ("", "-nameplate")
+    }
+    assert told == {"": 2007.0, "-nameplate": None}
+
+
+def test_a_campaign_takes_what_it_is_given_instead(call, tmp_path):
+    (tmp_path / "mine.toml").write_text("[parameters]\nspeed_ramp = 1234\n", encoding="utf-8")
+    words = ("--jobs", 1, "--no-paper-scheme", "--no-nameplate")
+    assert call("reproduce", "A10", *words, "--params", "mine.toml", "--out", "r").exit_code == 0
+    assert call("reproduce", "A10", *words, "--no-commission", "--out", "s").exit_code == 0
+    for name, origin in (("r", "mine.toml"), ("s", "the nameplate")):
+        assert sorted(path.name for path in (tmp_path / name).iterdir()) == ["metrics.json", "report.html", "runs"]
+        about = records.read(tmp_path / name / "runs" / "A10-creep.parquet").about
+        assert about["parameters_from"] == origin
 
 
 def test_it_writes_what_it_found(call, tmp_path):

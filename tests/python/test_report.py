@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import fake_core
-from stillspin import cli, report, scenario_file, scheme
+from stillspin import cli, report, scenario_file, variant
 from stillspin.figures import Result
 
 
@@ -67,10 +67,10 @@ def test_every_link_to_a_record_leads_somewhere(results, page):
 
 
 def test_the_page_says_what_it_is_about(page):
-    for word in ("ideal", "seed of the noise", report.PARAMETER_NOTE, "Fig. 18c", "simulated s per s", "0.2"):
+    for word in ("ideal", "seed of the noise", "the nameplate", "Fig. 18c", "simulated s per s", "0.2"):
         assert word in page
     own = [scenario_file.load(name) for name in ("A10", "A14", "A18c")]
-    variants = [scheme.paper().variant(scenario) for scenario in own if scheme.paper().applies(scenario)]
+    variants = [variant.paper().scenario(scenario) for scenario in own if variant.paper().applies(scenario)]
     assert page.count("<img") == sum(len(scenario.plots) for scenario in [*own, *variants])
 
 

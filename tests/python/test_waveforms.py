@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stillspin import deviation_sweep, metrics, scenario_file, scheme, speed_profile, waveforms
+from stillspin import deviation_sweep, metrics, scenario_file, speed_profile, variant, waveforms
 
 DEAD = 200  # ticks of dead band
 MACHINE = {
@@ -150,13 +150,13 @@ def test_holds_are_where_the_reference_stays():
 
 
 def test_the_papers_scheme_runs_where_the_position_is_judged_and_its_source_left_open():
-    paper = scheme.paper()
+    paper = variant.paper()
     applies = {name for name in scenario_file.ids() if paper.applies(scenario_file.load(name))}
     assert {"A10", "A11", "A15", "A16", "A17"} <= applies
     assert not applies & {"A09", "A12", "A13", "A14", "A19", "S01"}
-    variant = paper.variant(scenario_file.load("A10"))
-    assert variant.runs[0].parameters["position_source"] == 1
-    assert variant.figures == scenario_file.load("A10").figures
+    other = paper.scenario(scenario_file.load("A10"))
+    assert other.runs[0].parameters["position_source"] == 1
+    assert other.figures == scenario_file.load("A10").figures
 
 
 def test_a_run_that_was_not_looked_into_has_no_waveform_figures():

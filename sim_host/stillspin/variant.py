@@ -1,0 +1,127 @@
+"""Other ways to run the scenarios, shown beside the drive's own results on the same plant with the same noise.
+
+One is the drive on the parameters of the nameplate, where its own results are on commissioned ones. The others are
+other people's ways to find the position (`schemes/*.toml`).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from stillspin import resources, toml_table
+from stillspin.assess import ScenarioResult
+from stillspin.execute import Settings
+from stillspin.profile import Profile
+from stillspin.scenario import Plot, Scenario
+
+
+@dataclass(frozen=True)
+class Variant(ABC):
+    """A way to run scenarios.
+
+    Attributes:
+        mark: a word for file names; title: in a word or two; description: what differs and what does not.
+    """
+
+    mark: str
+    title: str
+    description: str
+
+    @abstractmethod
+    def applies(self, scenario: Scenario) -> bool:
+        """Whether it makes a difference to the scenario that is worth a look."""
+
+    @abstractmethod
+    def scenario(self, scenario: Scenario) -> Scenario:
+        """The scenario in this way, under an id of its own."""
+
+    def settings(self, settings: Settings) -> Settings:
+        """What its runs have in common."""
+        return settings
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A variant and what came of it, by the id of the scenario that it varies."""
+
+    variant: Variant
+    results: dict[str, ScenarioResult]
+
+
+@dataclass(frozen=True)
+class Nameplate(Variant):
+    """The drive on the profile's own parameters: those of the nameplate and the board."""
+
+    profile: Profile
+
+    def applies(self, scenario: Scenario) -> bool:
+        """Everywhere."""
+        return True
+
+    def scenario(self, scenario: Scenario) -> Scenario:
+        """The same, not drawn."""
+        return replace(scenario, id=f"{scenario.id}-{self.mark}", plots=())
+
+    def settings(self, settings: Settings) -> Settings:
+        """The same with the profile's own parameters."""
+        return replace(settings, profile=self.profile, parameters_from="the nameplate")
+
+
+def nameplate(profile: Profile) -> Nameplate:
+    """The drive as it is before commissioning."""
+    words = "The same drive before commissioning, on what the nameplates of machine and inverter say."
+    return Nameplate("nameplate", "nameplate", words, profile)
+
+
+@dataclass(frozen=True)
+class Scheme(Variant):
+    """Firmware parameters that make the drive find the position in another way.
+
+    Attributes:
+        motor: for which it is meant.
+        parameters: numbers or names of choices.
+    """
+
+    motor: str
+    parameters: dict[str, float | str]
+
+    def applies(self, scenario: Scenario) -> bool:
+        """Whether the scenario is about the position error and leaves the position source open."""
+        judged = any(figure.kind.startswith("position_error") for figure in scenario.figures)
+        own = any("position_source" in run.parameters for run in scenario.runs)
+        return judged and not own and scenario.motor == self.motor
+
+    def scenario(self, scenario: Scenario) -> Scenario:
+        """The scenario with this scheme."""
+        runs = tuple(replace(run, parameters={**run.parameters, **self.parameters}) for run in scenario.runs)
+        # The scenario's own plots say which runs go together.
+        views = dict.fromkeys((plot.runs, plot.window) for plot in scenario.plots)
+        title = f"The same with the {self.title}"
+        plots = tuple(Plot(title, ("speed", "position_error"), names, window) for names, window in views)
+        return replace(scenario, id=f"{scenario.id}-{self.mark}", runs=runs, plots=plots)
+
+
+def paper() -> Scheme:
+    """The scheme of the paper."""
+    table = toml_table.read(resources.directory("schemes") / "paper.toml")
+    values = table.table("parameters").items()
+    description = table.text("description").strip()
+    scheme = Scheme("paper", table.text("title"), description, table.text("motor"), values)
+    table.finish()
+    return scheme
+
+
+def separate(
+    results: Sequence[ScenarioResult], variants: Sequence[Variant]
+) -> tuple[list[ScenarioResult], list[Beside]]:
+    """The drive's own results, and those of each variant."""
+
+    def of(variant: Variant) -> dict[str, ScenarioResult]:
+        end = f"-{variant.mark}"
+        return {r.scenario.id.removesuffix(end): r for r in results if r.scenario.id.endswith(end)}
+
+    beside = [Beside(variant, of(variant)) for variant in variants]
+    varied = {result.scenario.id for item in beside for result in item.results.values()}
+    return [result for result in results if result.scenario.id not in varied], beside
