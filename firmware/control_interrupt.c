@@ -4,6 +4,7 @@
 #include "firmware/isr_cycles.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
+#include "hal/hal_sci.h"
 
 void drive_control_interrupt(void) {
   drive_t* const d = &drive;
@@ -21,5 +22,7 @@ void drive_control_interrupt(void) {
   hal_profile_step(CYCLES_CONTROL);
   drive_modulate(d);
   drive_publish(d);
+  hal_sci_service();
+  hal_profile_step(CYCLES_SERIAL);
   hal_irq_control_end();
 }

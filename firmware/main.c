@@ -10,7 +10,10 @@
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
+#include "hal/hal_sci.h"
 #include "hal/hal_time.h"
+
+#define SERIAL_BAUD 115200uL
 
 // The dead band of the gate signals, ticks; the power stage's own minimum is the parameter's business.
 static uint16_t dead_band_ticks(void) {
@@ -49,6 +52,7 @@ void firmware_main(void) {
   drive.config_valid = hal_pwm_init(dead_band_ticks()) && drive.config_valid;
   hal_adc_init();
   hal_encoder_init((uint32_t)parameters.encoder_counts);
+  (void)hal_sci_init(SERIAL_BAUD);
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);
   hal_watchdog_start();
   hal_irq_enable();

@@ -1,4 +1,4 @@
-// Clocks of the chip: CPU and PWM 100 MHz from a 20 MHz crystal, ADC 12.5 MHz, low-speed peripherals 25 MHz.
+// Clocks of the chip: CPU and PWM 100 MHz from a 20 MHz crystal, ADC 12.5 MHz, low-speed peripherals 50 MHz.
 
 #ifndef STILLSPIN_HAL_HAL_CLOCK_H
 #define STILLSPIN_HAL_HAL_CLOCK_H

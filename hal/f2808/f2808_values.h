@@ -6,7 +6,7 @@
 // ---- Clocks --------------------------------------------------------------------------------------------
 #define PLLCR_DIV_TIMES_5 10u  // SYSCLKOUT = OSCCLK * DIV / 2
 #define HISPCP_DIVIDE_BY_8 4u  // 0: /1, n: /2n
-#define LOSPCP_DIVIDE_BY_4 2u
+#define LOSPCP_DIVIDE_BY_2 1u
 #define WDCR_WDCHK_KEY 5u         // any other value resets the chip at once
 #define WDCR_WDPS_DIVIDE_BY_4 3u  // n: /2^(n - 1)
 #define WDKEY_FIRST 0x55u
@@ -57,9 +57,13 @@
 #define QEPCTL_PCRM_MAXIMUM 1u
 #define QEPCTL_FREE_RUN 2u
 
+// ---- Serial port ---------------------------------------------------------------------------------------
+#define SCICHAR_8_BITS 7u
+#define SCI_FIFO_LEVEL_NEVER 31u  // the FIFO has 16 words
+
 // ---- Pins ----------------------------------------------------------------------------------------------
 #define GPIO_MUX_GPIO 0u
-#define GPIO_MUX_FIRST 1u  // the first peripheral function: ePWM on GPIO0..11, TZ on 12..15, eQEP1 on 20..23
+#define GPIO_MUX_FIRST 1u  // the first peripheral function: ePWM on GPIO0..11, TZ on 12..15, eQEP1 on 20..23, SCI-A on 28, 29
 #define GPIO_QUALIFY_6_SAMPLES 2u
 #define GPIO_QUALIFY_NONE 3u     // asynchronous
 #define GPACTRL_QUALPRD2_LSB 16  // sampling period of GPIO16..23 is 2n SYSCLKOUT

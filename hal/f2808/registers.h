@@ -785,6 +785,118 @@
 #define EQEP_QCTMRLAT 0x1Fu  // capture timer latch
 #define EQEP_QCPRDLAT 0x20u  // capture period latch
 
+// ---- Serial port A, B ----------------------------------------------------------------------------------
+#define SCI_BASE(n) ((uint32_t)(0x7050uL + 0x700uL * (uint32_t)((n) - 1u)))  // 1 is SCI-A, 2 is SCI-B
+#define SCI_CCR 0x00u  // frame format
+#define SCI_CCR_SCICHAR_LSB 0
+#define SCI_CCR_SCICHAR_MASK 0x0007u
+#define SCI_CCR_ADDRIDLE_MODE_LSB 3
+#define SCI_CCR_ADDRIDLE_MODE_MASK 0x0008u
+#define SCI_CCR_LOOPBKENA_LSB 4
+#define SCI_CCR_LOOPBKENA_MASK 0x0010u
+#define SCI_CCR_PARITYENA_LSB 5
+#define SCI_CCR_PARITYENA_MASK 0x0020u
+#define SCI_CCR_PARITY_LSB 6
+#define SCI_CCR_PARITY_MASK 0x0040u
+#define SCI_CCR_STOPBITS_LSB 7
+#define SCI_CCR_STOPBITS_MASK 0x0080u
+#define SCI_CTL1 0x01u  // RX/TX enables and reset
+#define SCI_CTL1_RXENA_LSB 0
+#define SCI_CTL1_RXENA_MASK 0x0001u
+#define SCI_CTL1_TXENA_LSB 1
+#define SCI_CTL1_TXENA_MASK 0x0002u
+#define SCI_CTL1_SLEEP_LSB 2
+#define SCI_CTL1_SLEEP_MASK 0x0004u
+#define SCI_CTL1_TXWAKE_LSB 3
+#define SCI_CTL1_TXWAKE_MASK 0x0008u
+#define SCI_CTL1_SWRESET_LSB 5
+#define SCI_CTL1_SWRESET_MASK 0x0020u
+#define SCI_CTL1_RXERRINTENA_LSB 6
+#define SCI_CTL1_RXERRINTENA_MASK 0x0040u
+#define SCI_HBAUD 0x02u  // baud divisor high byte
+#define SCI_LBAUD 0x03u  // baud divisor low byte
+#define SCI_CTL2 0x04u  // TX status, RX/TX interrupt enables
+#define SCI_CTL2_TXINTENA_LSB 0
+#define SCI_CTL2_TXINTENA_MASK 0x0001u
+#define SCI_CTL2_RXBKINTENA_LSB 1
+#define SCI_CTL2_RXBKINTENA_MASK 0x0002u
+#define SCI_CTL2_TXEMPTY_LSB 6
+#define SCI_CTL2_TXEMPTY_MASK 0x0040u
+#define SCI_CTL2_TXRDY_LSB 7
+#define SCI_CTL2_TXRDY_MASK 0x0080u
+#define SCI_RXST 0x05u  // receiver status
+#define SCI_RXST_RXWAKE_LSB 1
+#define SCI_RXST_RXWAKE_MASK 0x0002u
+#define SCI_RXST_PE_LSB 2
+#define SCI_RXST_PE_MASK 0x0004u
+#define SCI_RXST_OE_LSB 3
+#define SCI_RXST_OE_MASK 0x0008u
+#define SCI_RXST_FE_LSB 4
+#define SCI_RXST_FE_MASK 0x0010u
+#define SCI_RXST_BRKDT_LSB 5
+#define SCI_RXST_BRKDT_MASK 0x0020u
+#define SCI_RXST_RXRDY_LSB 6
+#define SCI_RXST_RXRDY_MASK 0x0040u
+#define SCI_RXST_RXERROR_LSB 7
+#define SCI_RXST_RXERROR_MASK 0x0080u
+#define SCI_RXEMU 0x06u  // receive data, emulation read
+#define SCI_RXBUF 0x07u  // receive data
+#define SCI_RXBUF_RXDT_LSB 0
+#define SCI_RXBUF_RXDT_MASK 0x00FFu
+#define SCI_RXBUF_SCIFFPE_LSB 14
+#define SCI_RXBUF_SCIFFPE_MASK 0x4000u
+#define SCI_RXBUF_SCIFFFE_LSB 15
+#define SCI_RXBUF_SCIFFFE_MASK 0x8000u
+#define SCI_TXBUF 0x09u  // transmit data
+#define SCI_FFTX 0x0Au  // transmit FIFO control
+#define SCI_FFTX_TXFFIL_LSB 0
+#define SCI_FFTX_TXFFIL_MASK 0x001Fu
+#define SCI_FFTX_TXFFIENA_LSB 5
+#define SCI_FFTX_TXFFIENA_MASK 0x0020u
+#define SCI_FFTX_TXFFINTCLR_LSB 6
+#define SCI_FFTX_TXFFINTCLR_MASK 0x0040u
+#define SCI_FFTX_TXFFINT_LSB 7
+#define SCI_FFTX_TXFFINT_MASK 0x0080u
+#define SCI_FFTX_TXFFST_LSB 8
+#define SCI_FFTX_TXFFST_MASK 0x1F00u
+#define SCI_FFTX_TXFIFOXRESET_LSB 13
+#define SCI_FFTX_TXFIFOXRESET_MASK 0x2000u
+#define SCI_FFTX_SCIFFENA_LSB 14
+#define SCI_FFTX_SCIFFENA_MASK 0x4000u
+#define SCI_FFTX_SCIRST_LSB 15
+#define SCI_FFTX_SCIRST_MASK 0x8000u
+#define SCI_FFRX 0x0Bu  // receive FIFO control
+#define SCI_FFRX_RXFFIL_LSB 0
+#define SCI_FFRX_RXFFIL_MASK 0x001Fu
+#define SCI_FFRX_RXFFIENA_LSB 5
+#define SCI_FFRX_RXFFIENA_MASK 0x0020u
+#define SCI_FFRX_RXFFINTCLR_LSB 6
+#define SCI_FFRX_RXFFINTCLR_MASK 0x0040u
+#define SCI_FFRX_RXFFINT_LSB 7
+#define SCI_FFRX_RXFFINT_MASK 0x0080u
+#define SCI_FFRX_RXFFST_LSB 8
+#define SCI_FFRX_RXFFST_MASK 0x1F00u
+#define SCI_FFRX_RXFIFORESET_LSB 13
+#define SCI_FFRX_RXFIFORESET_MASK 0x2000u
+#define SCI_FFRX_RXFFOVRCLR_LSB 14
+#define SCI_FFRX_RXFFOVRCLR_MASK 0x4000u
+#define SCI_FFRX_RXFFOVF_LSB 15
+#define SCI_FFRX_RXFFOVF_MASK 0x8000u
+#define SCI_FFCT 0x0Cu  // autobaud and FIFO delay
+#define SCI_FFCT_FFTXDLY_LSB 0
+#define SCI_FFCT_FFTXDLY_MASK 0x00FFu
+#define SCI_FFCT_CDC_LSB 13
+#define SCI_FFCT_CDC_MASK 0x2000u
+#define SCI_FFCT_ABDCLR_LSB 14
+#define SCI_FFCT_ABDCLR_MASK 0x4000u
+#define SCI_FFCT_ABD_LSB 15
+#define SCI_FFCT_ABD_MASK 0x8000u
+#define SCI_PRI 0x0Fu  // emulation suspend behaviour
+#define SCI_PRI_FREE_LSB 3
+#define SCI_PRI_FREE_MASK 0x0008u
+#define SCI_PRI_SOFT_LSB 4
+#define SCI_PRI_SOFT_MASK 0x0010u
+
 // ---- External interrupts -----------------------------------------------------------------------------
 #define REG_XINT1CR 0x7070uL  // XINT1 control
 #define XINT1CR_ENABLE_LSB 0

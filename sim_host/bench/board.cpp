@@ -88,7 +88,10 @@ void Board::compare(Tick t, double amps) {
   chip_->pins_changed();
 }
 
-bool Board::pin_level(Tick t, int pin) { return pin != kPinOverCurrent || t >= tripped_until_; }
+bool Board::pin_level(Tick t, int pin) {
+  if (pin == kPinSerialIn) return serial_.level(t);
+  return pin != kPinOverCurrent || t >= tripped_until_;
+}
 
 void Board::on_output_pin(Tick t, int pin, bool /*level*/) {
   if (pin != kPinEnable) return;

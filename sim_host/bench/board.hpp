@@ -3,6 +3,7 @@
 // Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
 // been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
 // over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 19 A, and holds it for 10 us.
+// The serial port (GPIO28, 29) has a line with a far end.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
@@ -12,6 +13,7 @@
 
 #include "sim_host/bench/waveform.hpp"
 #include "sim_host/chip/chip.hpp"
+#include "sim_host/devices/serial_line.hpp"
 #include "sim_host/plant/plant.hpp"
 
 namespace stillspin::bench {
@@ -24,6 +26,7 @@ inline constexpr Tick kEnableTimeout = 500'000;
 inline constexpr Tick kPeriod = 10'000;
 inline constexpr Tick kWatch = 2'500;
 inline constexpr int kPinOverCurrent = 12;
+inline constexpr int kPinSerialIn = 28;
 inline constexpr int kPinEnable = 34;
 
 /// Told at the start of every PWM period, before the control interrupt runs.
@@ -42,6 +45,7 @@ class Board : public chip::World {
 
   plant::Plant& plant() { return plant_; }
   WaveformProbe& probe() { return probe_; }
+  devices::SerialLine& serial() { return serial_; }
   /// Faults of the chip's surroundings: conversions that are not triggered, interrupts taken late in every period
   /// (ticks below a period; 0 is in time).
   void lose_triggers(bool on) { chip_->block_adc_triggers(on); }
@@ -58,6 +62,8 @@ class Board : public chip::World {
   bool pin_level(Tick t, int pin) override;
   void on_output_pin(Tick t, int pin, bool level) override;
   std::int64_t encoder_edges(Tick t) override;
+  Tick serial_reaches(Tick t, bool level) override { return serial_.reaches(t, level); }
+  void on_serial_frame(Tick, const chip::SerialFrame& frame) override { serial_.receive(frame); }
   Tick next_call() const override { return std::min(next_call_, probe_.next()); }
   void call(Tick t) override;
 
@@ -75,6 +81,7 @@ class Board : public chip::World {
   plant::Plant plant_;
   PeriodListener& listener_;
   WaveformProbe probe_;
+  devices::SerialLine serial_;
   chip::Chip* chip_ = nullptr;
   std::array<bool, 3> upper_{};
   std::array<bool, 3> lower_{};

@@ -24,6 +24,7 @@ enum class Device : std::uint8_t {
   kPie,
   kEPwm,
   kEQep1,
+  kSci,
   kGpio,
   kSystem,
   kAdc
@@ -49,6 +50,7 @@ constexpr PageTable make_page_table() {
   table.set(REG_PIECTRL, Device::kPie);
   for (unsigned n = 1; n <= 6; ++n) table.set(EPWM_BASE(n), Device::kEPwm);
   table.set(EQEP_BASE(1), Device::kEQep1);
+  table.set(SCI_BASE(1), Device::kSci);
   table.set(REG_GPACTRL, Device::kGpio);
   table.set(REG_GPADAT, Device::kGpio);
   table.set(kSystemFrame, Device::kSystem);
@@ -64,6 +66,8 @@ Device device_at(std::uint32_t address) {
 }
 
 std::uint16_t offset_in_page(std::uint32_t address) { return static_cast<std::uint16_t>(address & kPageMask); }
+// SCI-A shares its page with SPI-A and the external interrupts.
+bool is_sci(std::uint32_t address) { return address - SCI_BASE(1) <= SCI_PRI; }
 int epwm_module(std::uint32_t address) { return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift); }
 
 // Identification: part number of the F2808, revision C (the last one that the errata SPRZ171 name).
@@ -179,6 +183,8 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return gpio_.read(static_cast<std::uint16_t>(address - kGpioFrame), now_);
     case Device::kEQep1:
       return gate_stops(system_.eqep_clock(1), address) ? 0 : eqep1_.read(offset_in_page(address), now_);
+    case Device::kSci:
+      return read_sci(address);
     case Device::kSystem:
       return read_system(offset_in_page(address));
     case Device::kFlash:
@@ -196,6 +202,14 @@ std::uint16_t Core::read_epwm(std::uint32_t address) {
   const int module = epwm_module(address);
   if (gate_stops(system_.epwm_clock(module), address)) return 0;
   return epwm_.read(module, offset_in_page(address), now_);
+}
+
+std::uint16_t Core::read_sci(std::uint32_t address) {
+  if (!is_sci(address)) {
+    note_unmodelled(address);
+    return 0;
+  }
+  return gate_stops(system_.sci_clock(), address) ? 0 : sci_.read(static_cast<std::uint16_t>(address - SCI_BASE(1)), now_);
 }
 
 std::uint16_t Core::read_system(std::uint16_t offset) const {
@@ -247,6 +261,9 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
     case Device::kEQep1:
       write_eqep1(address, value);
       return;
+    case Device::kSci:
+      write_sci(address, value);
+      return;
     case Device::kSystem:
       if (!protection_stops(address)) write_system(offset_in_page(address), value);
       return;
@@ -283,6 +300,16 @@ void Core::write_eqep1(std::uint32_t address, std::uint16_t value) {
   if (gate_stops(system_.eqep_clock(1), address)) return;
   eqep1_.write(offset_in_page(address), value, now_);
   set_due(kEQep1, eqep1_.next_event());
+}
+
+void Core::write_sci(std::uint32_t address, std::uint16_t value) {
+  if (!is_sci(address)) {
+    note_unmodelled(address);
+    return;
+  }
+  if (gate_stops(system_.sci_clock(), address)) return;
+  sci_.write(static_cast<std::uint16_t>(address - SCI_BASE(1)), value, now_);
+  set_due(kSci, sci_.next_event());
 }
 
 void Core::write_gpio(std::uint32_t address, std::uint16_t value) {

@@ -31,7 +31,8 @@ Core::Core(World& world, Chip::Firmware firmware)
       gpio_(world),
       epwm_(*this),
       adc_(*this),
-      eqep1_(*this, 1) {
+      eqep1_(*this, 1),
+      sci_(*this) {
   due_.fill(kNever);
   reset(0, false);
 }
@@ -53,6 +54,7 @@ void Core::reset(Tick t, bool by_watchdog) {
   due_[kEPwm] = epwm_.next_event();
   due_[kAdc] = adc_.next_event();
   due_[kEQep1] = eqep1_.next_event();
+  due_[kSci] = sci_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kWatchdog] = watchdog_.next_event();
   find_rest();
@@ -66,6 +68,7 @@ void Core::reset_peripherals(Tick t) {
   epwm_.set_trip_pins(trips_ = 0, t);
   adc_.reset(t);
   eqep1_.reset(t);
+  sci_.reset(t);
   timers_.reset(release_);
 }
 
@@ -85,7 +88,7 @@ void Core::run_until(Tick t) {
   find_rest();
   find_next();
   const CurrentScope scope(this);
-  if (pins_dirty_) update_trips();
+  look_at_pins();  // the host may have written on the serial line
   resume_firmware();
 }
 
@@ -137,7 +140,7 @@ void Core::fail_with_current_exception() {
 
 void Core::find_rest() {
   rest_source_ = kWorldCall;
-  for (const Source source : {kSystem, kEQep1, kTimers, kWatchdog}) {
+  for (const Source source : {kSystem, kEQep1, kSci, kTimers, kWatchdog}) {
     if (due_[source] < due_[rest_source_]) rest_source_ = source;
   }
 }
@@ -201,6 +204,10 @@ void Core::run_event(Source source) {
       eqep1_.run_event(now_);
       set_due(kEQep1, eqep1_.next_event());
       break;
+    case kSci:
+      sci_.run_event(now_);
+      set_due(kSci, sci_.next_event());
+      break;
     case kTimers:
       timers_.run_event(now_);
       set_due(kTimers, timers_.next_event());
@@ -227,7 +234,13 @@ void Core::run_watchdog() {
 void Core::after_world() {
   world_touched_ = false;
   set_due(kWorldCall, world_.next_call());
-  if (pins_dirty_) update_trips();
+  if (pins_dirty_) look_at_pins();
+}
+
+void Core::look_at_pins() {
+  update_trips();
+  sci_.line_changed(now_);
+  set_due(kSci, sci_.next_event());
 }
 
 void Core::update_trips() {
@@ -246,6 +259,7 @@ void Core::apply(unsigned effects) {
     epwm_.clocks_changed(now_);
     adc_.clocks_changed(now_);
     eqep1_.clocks_changed(now_);
+    sci_.clocks_changed(now_);
     timers_.clocks_changed(now_);
     check_flash_waits();
   }
@@ -253,6 +267,7 @@ void Core::apply(unsigned effects) {
   due_[kEPwm] = epwm_.next_event();
   due_[kAdc] = adc_.next_event();
   due_[kEQep1] = eqep1_.next_event();
+  due_[kSci] = sci_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kSystem] = system_.next_event();
   find_rest();
@@ -285,6 +300,17 @@ void Core::pwm_outputs(int module, bool a, bool b, Tick t) {
 std::uint16_t Core::sample(int channel, Tick t) {
   world_touched_ = true;
   return world_.adc_sample(t, channel);
+}
+
+Tick Core::serial_reaches(Tick t, bool level) {
+  if (!gpio_.serial_in_routed()) return level ? t : kNever;
+  return world_.serial_reaches(t, level);
+}
+
+void Core::serial_frame(const SerialFrame& frame, Tick t) {
+  if (!gpio_.serial_out_routed()) return;
+  world_.on_serial_frame(t, frame);
+  world_touched_ = true;
 }
 
 std::int64_t Core::encoder_edges(Tick t) {

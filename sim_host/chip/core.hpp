@@ -24,6 +24,7 @@
 #include "sim_host/chip/gpio.hpp"
 #include "sim_host/chip/interrupts.hpp"
 #include "sim_host/chip/peripheral.hpp"
+#include "sim_host/chip/sci.hpp"
 #include "sim_host/chip/system_control.hpp"
 #include "sim_host/chip/watchdog.hpp"
 
@@ -71,16 +72,20 @@ class Core final : public ChipServices {
   void pwm_outputs(int module, bool a, bool b, Tick t) override;
   std::uint16_t sample(int channel, Tick t) override;
   std::int64_t encoder_edges(Tick t) override;
+  Tick serial_reaches(Tick t, bool level) override;
+  void serial_frame(const SerialFrame& frame, Tick t) override;
   Tick sysclk_period() const override { return system_.sysclk_period(); }
   unsigned hspclk_divider() const override { return system_.hspclk_divider(); }
+  unsigned lspclk_divider() const override { return system_.lspclk_divider(); }
   bool epwm_clock(int module) const override { return system_.epwm_clock(module); }
   bool adc_clock() const override { return system_.adc_clock(); }
   bool eqep_clock(int instance) const override { return system_.eqep_clock(instance); }
+  bool sci_clock() const override { return system_.sci_clock(); }
   void model_error(const char* text, std::int64_t value) override;
 
  private:
   // In the order in which they run at one tick.
-  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kTimers, kWatchdog, kSources };
+  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kSci, kTimers, kWatchdog, kSources };
 
   // Life cycle (core.cpp).
   static void firmware_entry(void* core);
@@ -108,6 +113,7 @@ class Core final : public ChipServices {
   void run_world();
   void run_watchdog();
   void after_world();
+  void look_at_pins();
   void update_trips();
   void apply(unsigned system_effects);
   // Notes when a source next wants to run and keeps the earliest at hand; at one tick the lower source goes first.
@@ -153,6 +159,8 @@ class Core final : public ChipServices {
   void write_flash(std::uint32_t address, std::uint16_t value);
   void write_adc(std::uint32_t address, std::uint16_t value);
   void write_eqep1(std::uint32_t address, std::uint16_t value);
+  void write_sci(std::uint32_t address, std::uint16_t value);
+  std::uint16_t read_sci(std::uint32_t address);
 
   // Touched at every access: kept together.
   Tick now_ = 0;
@@ -181,6 +189,7 @@ class Core final : public ChipServices {
   EPwmBank epwm_;
   Adc adc_;
   EQep eqep1_;
+  Sci sci_;
 
   unsigned depth_ = 0;  // nested interrupts
   unsigned trips_ = 0;

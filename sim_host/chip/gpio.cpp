@@ -25,6 +25,9 @@ constexpr TripRoute kTripRoutes[] = {{12, 1, 1}, {13, 1, 2}, {14, 1, 3}, {15, 1,
 constexpr unsigned kEncoderPinA = 20;
 constexpr unsigned kEncoderPinB = 21;
 constexpr unsigned kFunctionEncoder = 1;
+constexpr unsigned kSerialPinIn = 28;
+constexpr unsigned kSerialPinOut = 29;
+constexpr unsigned kFunctionSerial = 1;
 
 // GPAMUX1 holds pins 0-15 in two words, GPAMUX2 16-31, GPBMUX1 32-34.
 unsigned mux_word(unsigned pin) {
@@ -119,6 +122,8 @@ void Gpio::update_routes() {
   trips_routed_ = false;
   for (const TripRoute& route : kTripRoutes) trips_routed_ |= function(route.pin) == route.function;
   encoder_routed_ = function(kEncoderPinA) == kFunctionEncoder && function(kEncoderPinB) == kFunctionEncoder;
+  serial_in_routed_ = function(kSerialPinIn) == kFunctionSerial;
+  serial_out_routed_ = function(kSerialPinOut) == kFunctionSerial;
 }
 
 void Gpio::drive(Tick t) {

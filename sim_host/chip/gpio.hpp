@@ -34,6 +34,8 @@ class Gpio {
   unsigned active_trips(Tick t);
   bool trips_routed() const { return trips_routed_; }
   bool encoder_routed() const { return encoder_routed_; }
+  bool serial_in_routed() const { return serial_in_routed_; }
+  bool serial_out_routed() const { return serial_out_routed_; }
 
  private:
   static constexpr unsigned kPins = 35;
@@ -60,6 +62,8 @@ class Gpio {
   unsigned pwm_pins_ = 0;  // what the world knows
   bool trips_routed_ = false;
   bool encoder_routed_ = false;
+  bool serial_in_routed_ = false;
+  bool serial_out_routed_ = false;
 };
 
 inline constexpr std::uint32_t kGpioFrame = 0x6F80;

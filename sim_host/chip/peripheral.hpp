@@ -7,8 +7,8 @@
 // What the core guarantees
 //  * t never decreases from one call to the next, over all functions of one peripheral.
 //  * Events come in order of time, each at its exact tick: before an access or any other call at t is made, every event
-//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, CPU timers,
-//    watchdog. So a start of conversion reaches the ADC in the tick in which the ePWM made it.
+//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, SCI, CPU
+//    timers, watchdog. So a start of conversion reaches the ADC in the tick in which the ePWM made it.
 //  * Peripherals see only accesses that the bus lets through: EALLOW protection and clock gating (PCLKCR0/1) are the
 //    core's business, so are the access times. Unknown offsets may arrive: read 0, ignore writes.
 //  * A 32-bit access arrives as two 16-bit calls at one tick, low word (even offset) first.
@@ -25,7 +25,7 @@
 //
 // Classes that the core instantiates (one constructor argument, the services):
 //    epwm.hpp: EPwmBank(ChipServices&)      adc.hpp: Adc(ChipServices&)      eqep.hpp: EQep(ChipServices&, int
-//    instance 1..2)
+//    instance 1..2)      sci.hpp: Sci(ChipServices&)
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_PERIPHERAL_HPP
 #define STILLSPIN_SIM_HOST_CHIP_PERIPHERAL_HPP
@@ -58,16 +58,26 @@ class ChipServices {
   /// the pins are not routed. The index pulse lies at every multiple of the counts per turn.
   virtual std::int64_t encoder_edges(Tick t) = 0;
 
+  /// World::serial_reaches for the pin that SCIRXDA is routed to; a line that is routed to none rests.
+  virtual Tick serial_reaches(Tick t, bool level) = 0;
+
+  /// A frame that SCITXDA has sent. The core tells the world when the pin is routed.
+  virtual void serial_frame(const SerialFrame& frame, Tick t) = 0;
+
   /// SYSCLKOUT period in ticks of 10 ns (1 at 100 MHz, 10 after reset).
   virtual Tick sysclk_period() const = 0;
 
   /// HSPCLK = SYSCLKOUT / this (1, 2, 4 .. 14): the ADC's clock source.
   virtual unsigned hspclk_divider() const = 0;
 
+  /// LSPCLK = SYSCLKOUT / this (1, 2, 4 .. 14): the serial port's clock source.
+  virtual unsigned lspclk_divider() const = 0;
+
   /// Clock gates of PCLKCR0/1, for peripherals whose counters must stand still while gated.
   virtual bool epwm_clock(int module) const = 0;  // 0..5
   virtual bool adc_clock() const = 0;
   virtual bool eqep_clock(int instance) const = 0;  // 1..2
+  virtual bool sci_clock() const = 0;
 
   /// The model cannot go on (or would go on wrongly): text is a literal, value is what was seen.
   virtual void model_error(const char* text, std::int64_t value) = 0;
@@ -93,7 +103,7 @@ class Peripheral {
   virtual Tick next_event() const = 0;
   virtual void run_event(Tick t) = 0;
 
-  /// SYSCLKOUT, HSPCLK or a clock gate changed at t: settle counters with the old clock (remember it!), ask the
+  /// SYSCLKOUT, HSPCLK, LSPCLK or a clock gate changed at t: settle counters with the old clock (remember it!), ask the
   /// services for the new one and go on from there.
   virtual void clocks_changed(Tick t) = 0;
 };
@@ -104,6 +114,9 @@ inline constexpr std::uint16_t kAdcMirrorOffset = 0x100;
 //
 // class Adc final : public Peripheral
 //    void start_of_conversion(bool soca, Tick t);      // the pulse that the ePWM bank sent through the services
+//
+// class Sci final : public Peripheral
+//    void line_changed(Tick t);                        // serial_reaches may have a new answer
 //
 // class EPwmBank final                                  // all six modules: the sync chain ties them together
 //    void reset(Tick t);

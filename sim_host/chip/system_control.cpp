@@ -91,7 +91,7 @@ unsigned SystemControl::write(std::uint16_t offset, std::uint16_t value, Tick t)
       return kClocks;
     case offset_of(REG_LOSPCP):
       lospcp_ = value & LOSPCP_LSPCLK_MASK;
-      return kNothing;
+      return kClocks;
     case offset_of(REG_PCLKCR0):
       gates0_ = value & kGates0Mask;
       return kClocks | kTimeBase;

@@ -35,9 +35,11 @@ class SystemControl {
 
   Tick sysclk_period() const { return period_; }
   unsigned hspclk_divider() const { return hispcp_ == 0 ? 1u : 2u * hispcp_; }
+  unsigned lspclk_divider() const { return lospcp_ == 0 ? 1u : 2u * lospcp_; }
   bool adc_clock() const { return (gates0_ & PCLKCR0_ADCENCLK_MASK) != 0; }
   bool epwm_clock(int module) const { return (gates1_ >> module & 1u) != 0; }
   bool eqep_clock(int instance) const;
+  bool sci_clock() const { return (gates0_ & PCLKCR0_SCIAENCLK_MASK) != 0; }
   bool time_base_clock() const;
   bool low_power_mode_selected() const;
 

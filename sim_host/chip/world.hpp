@@ -15,6 +15,14 @@ using Tick = std::int64_t;  // 10 ns
 inline constexpr Tick kTicksPerSecond = 100'000'000;
 inline constexpr Tick kNever = std::numeric_limits<Tick>::max();
 
+/// What an asynchronous transmitter has put on its line: level of bit k (0 is the start bit) is bit k of `levels`.
+struct SerialFrame {
+  Tick begin;
+  Tick bit;  // ticks a bit lasts
+  unsigned bits;
+  unsigned levels;
+};
+
 class World {
  public:
   virtual ~World() = default;
@@ -34,6 +42,15 @@ class World {
 
   /// Quadrature edges counted since power-on by the encoder on eQEP1 (signed), and the count at the last index pulse.
   virtual std::int64_t encoder_edges(Tick t) = 0;
+
+  /// The line at the serial port's receiver (SCIRXDA): the first tick at or after t at which it has this level, kNever
+  /// when it keeps the other one for all that is known. A line at rest is high. The port asks about the past (the frame
+  /// that has just ended), but never for an earlier t than before. What the world adds to the line later lies in the
+  /// future; the chip looks again after World::call, at the start of each run and after Chip::pins_changed.
+  virtual Tick serial_reaches(Tick t, bool level) { return level ? t : kNever; }
+
+  /// The serial port's transmitter (SCITXDA) has completed a frame.
+  virtual void on_serial_frame(Tick /*t*/, const SerialFrame& /*frame*/) {}
 
   /// When the world next wants to be called on its own account (kNever when not), and that call.
   virtual Tick next_call() const = 0;

@@ -45,9 +45,12 @@ class RecordingServices final : public ChipServices {
   std::function<std::uint16_t(int, Tick)> code = [](int channel, Tick) {
     return static_cast<std::uint16_t>(100 + channel);
   };
+  std::vector<Stamped<SerialFrame>> frames;
+  std::function<Tick(Tick, bool)> line = [](Tick t, bool level) { return level ? t : kNever; };
   std::int64_t encoder = 0;
   Tick sysclk = 1;
   unsigned hspclk = 1;
+  unsigned lspclk = 1;
   bool clocked = true;
 
   void raise_interrupt(unsigned vector, Tick t) override { interrupts.push_back({vector, t}); }
@@ -58,11 +61,15 @@ class RecordingServices final : public ChipServices {
     return code(channel, t);
   }
   std::int64_t encoder_edges(Tick) override { return encoder; }
+  Tick serial_reaches(Tick t, bool level) override { return line(t, level); }
+  void serial_frame(const SerialFrame& frame, Tick t) override { frames.push_back({frame, t}); }
   Tick sysclk_period() const override { return sysclk; }
   unsigned hspclk_divider() const override { return hspclk; }
+  unsigned lspclk_divider() const override { return lspclk; }
   bool epwm_clock(int) const override { return clocked; }
   bool adc_clock() const override { return clocked; }
   bool eqep_clock(int) const override { return clocked; }
+  bool sci_clock() const override { return clocked; }
   void model_error(const char* text, std::int64_t) override { errors.emplace_back(text); }
 
   void forget() {

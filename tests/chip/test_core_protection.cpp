@@ -91,7 +91,7 @@ TEST_F(Protection, GatedPeripheralLosesWritesAndReadsZero) {
 
 TEST_F(Protection, AddressesWithoutModelAreCounted) {
   run([] {
-    seen[0] = target_read16(0x7050);  // SCI-A
+    seen[0] = target_read16(0x7040);  // SPI-A
     target_write16(0x123456, 1);
     sleep_for_ever();
   });

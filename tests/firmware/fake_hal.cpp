@@ -5,6 +5,7 @@
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_safety.h"
+#include "hal/hal_sci.h"
 #include "hal/hal_time.h"
 
 namespace stillspin::test {
@@ -62,4 +63,27 @@ void hal_irq_control_end(void) {}
 void hal_safety_toggle_enable(void) { board.enable_toggles++; }
 void hal_safety_fault_lamp(bool on) { board.lamp = on; }
 std::uint32_t hal_encoder_count(void) { return board.encoder; }
+
+bool hal_sci_init(std::uint32_t baud) {
+  if (baud == 0 || baud > HAL_SCI_MAX_BAUD) return false;
+  board.baud = baud;
+  return true;
+}
+void hal_sci_service(void) { board.serial_services++; }
+std::uint16_t hal_sci_read(std::uint16_t* octets, std::uint16_t room) {
+  std::uint16_t taken = 0;
+  for (; taken < room && !board.serial_in.empty(); ++taken) {
+    octets[taken] = board.serial_in.front();
+    board.serial_in.pop_front();
+  }
+  return taken;
+}
+std::uint16_t hal_sci_write(const std::uint16_t* octets, std::uint16_t count) {
+  const std::uint16_t put = count < board.serial_room ? count : board.serial_room;
+  board.serial_out.insert(board.serial_out.end(), octets, octets + put);
+  board.serial_room = static_cast<std::uint16_t>(board.serial_room - put);
+  return put;
+}
+std::uint16_t hal_sci_room(void) { return board.serial_room; }
+hal_sci_errors_t hal_sci_errors(void) { return {}; }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_host/chip/world.hpp"
+#include "sim_host/devices/serial_line.hpp"
 
 namespace stillspin::test {
 
@@ -33,6 +34,7 @@ class BenchWorld final : public chip::World {
   chip::Tick over_current_from = chip::kNever;  // the comparator pulls GPIO12 low in this span
   chip::Tick over_current_to = chip::kNever;
   std::int64_t edges_per_100_us = 0;
+  devices::SerialLine serial;
 
   void on_pwm_pins(chip::Tick t, int module, bool a, bool b) override { pins.push_back(Pins{t, module, a, b}); }
 
@@ -46,10 +48,14 @@ class BenchWorld final : public chip::World {
   }
 
   bool pin_level(chip::Tick t, int pin) override {
+    if (pin == 28) return serial.level(t);
     return !(pin == 12 && t >= over_current_from && t < over_current_to);
   }
   void on_output_pin(chip::Tick t, int pin, bool level) override { outputs.push_back(Output{t, pin, level}); }
   std::int64_t encoder_edges(chip::Tick t) override { return edges_per_100_us * (t / 10000); }
+
+  chip::Tick serial_reaches(chip::Tick t, bool level) override { return serial.reaches(t, level); }
+  void on_serial_frame(chip::Tick, const chip::SerialFrame& frame) override { serial.receive(frame); }
 
   chip::Tick next_call() const override {
     return over_current_from > called_ ? over_current_from : over_current_to > called_ ? over_current_to : chip::kNever;

@@ -71,7 +71,8 @@ TEST_F(Clock, peripherals_have_clocks_and_pwm_counters_stand_still) {
   EXPECT_EQ(bus.words[REG_PCLKCR0] & PCLKCR0_TBCLKSYNC_MASK, 0u);
   EXPECT_EQ(bus.words[REG_PCLKCR1], 0x403Fu) << "ePWM1..6 and eQEP1";
   EXPECT_EQ(bus.words[REG_HISPCP], 4u) << "ADC clock 12.5 MHz";
-  EXPECT_EQ(bus.words[REG_LOSPCP], 2u) << "25 MHz";
+  EXPECT_EQ(bus.words[REG_LOSPCP], 1u) << "50 MHz";
+  EXPECT_EQ(bus.words[REG_PCLKCR0] & PCLKCR0_SCIAENCLK_MASK, PCLKCR0_SCIAENCLK_MASK);
 }
 
 }  // namespace stillspin::test

@@ -42,7 +42,7 @@ FakeBus::FakeBus() : previous_(the_bus) {
 FakeBus::~FakeBus() { the_bus = previous_; }
 
 void FakeBus::power_all() {
-  words[REG_PCLKCR0] = PCLKCR0_ADCENCLK_MASK;
+  words[REG_PCLKCR0] = PCLKCR0_ADCENCLK_MASK | PCLKCR0_SCIAENCLK_MASK;
   words[REG_PCLKCR1] = 0xFFFF;
   steps.clear();
 }
@@ -110,6 +110,9 @@ void FakeBus::watch_rules(std::uint32_t address) {
   const std::uint32_t module = epwm ? (address - EPWM_BASE(1)) / kEPwmFrame : 0;
   if (epwm && (words[REG_PCLKCR1] & (1u << module)) == 0) {
     violations.push_back(std::string("ePWM written without a clock: ") + where);
+  }
+  if (in(address, SCI_BASE(1), SCI_BASE(1) + SCI_PRI) && (words[REG_PCLKCR0] & PCLKCR0_SCIAENCLK_MASK) == 0) {
+    violations.push_back(std::string("SCI-A written without a clock: ") + where);
   }
   if (in(address, EQEP_BASE(1), kEQep1End - 1) && (words[REG_PCLKCR1] & PCLKCR1_EQEP1ENCLK_MASK) == 0) {
     violations.push_back(std::string("eQEP1 written without a clock: ") + where);
