@@ -2,6 +2,7 @@
 
 #include "firmware/drive.h"
 #include "firmware/isr_cycles.h"
+#include "firmware/scope/scope.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_sci.h"
@@ -22,6 +23,7 @@ void drive_control_interrupt(void) {
   hal_profile_step(CYCLES_CONTROL);
   drive_modulate(d);
   drive_publish(d);
+  scope_step(d->time_ms);
   hal_sci_service();
   hal_profile_step(CYCLES_SERIAL);
   hal_irq_control_end();

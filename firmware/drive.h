@@ -123,6 +123,7 @@ typedef struct {
   int32_t limits;
   uint32_t periods;      // since the state was entered
   uint16_t millisecond;  // period inside the millisecond
+  uint32_t time_ms;      // control interrupts since power-on, in ms; wraps after 49 days
   uint16_t heartbeat;    // counts control interrupts, for the watchdog
   drive_start_t start;
   hold_t hold;

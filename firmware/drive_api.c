@@ -4,6 +4,7 @@
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "firmware/sampling.h"
+#include "firmware/scope/scope.h"
 
 drive_t drive;
 
@@ -11,6 +12,7 @@ void drive_reset(void) {
   static const drive_t empty = {0};
   drive = empty;
   sampling_reset();
+  scope_reset();
   parameters_reset();
   drive.trim.offset_a_q8 = 2048L * 256L;
   drive.trim.offset_b_q8 = 2048L * 256L;

@@ -91,6 +91,7 @@ void drive_control_speed(drive_t* d) {
   const bool held = hold_step(d);
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
   if (d->millisecond != 0u) return;
+  d->time_ms++;
   d->limits &= LIMIT_BRAKING;  // of the last millisecond, for the ramp
   const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
   if (drive_is_turning(d) || caught) drive_weaken_field(d);

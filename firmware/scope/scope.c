@@ -1,0 +1,171 @@
+#include "firmware/scope/scope.h"
+
+#include "firmware/drive.h"
+#include "firmware/isr_cycles.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_profile.h"
+
+#define RING_MASK (SCOPE_DEPTH - 1u)
+
+#define SIGNAL(name, unit, q, meaning) &drive.signals.name,
+static const int32_t* const signals[] = {
+#include "firmware/signal_list.h"
+};
+#undef SIGNAL
+
+#define SIGNALS ((uint16_t)(sizeof signals / sizeof signals[0]))
+
+// The background level changes set-up and ring only while `state` is IDLE or DONE, when the interrupt leaves them
+// alone; so the state is written first at an end and last at a start.
+static volatile scope_state_t state;
+static scope_setup_t setup_in_force;
+static int16_t ring[SCOPE_CHANNELS][SCOPE_DEPTH];
+static uint16_t head;      // the next record
+static uint16_t recorded;  // 0..SCOPE_DEPTH
+static uint16_t wait;      // control interrupts to the next record
+static uint16_t left;      // records still to come, when TRIGGERED
+static uint16_t mark;      // the trigger's record; SCOPE_NOWHERE
+static uint32_t mark_time_ms;
+static int32_t previous;  // of the trigger signal
+static bool fresh;        // there is no previous value yet
+static bool fired;        // since the last record
+static uint16_t unread;   // AUTO: a bit for each channel whose last word has not been read
+
+uint16_t scope_signals(void) { return SIGNALS; }
+
+static bool is_running(void) { return state == SCOPE_FILLING || state == SCOPE_ARMED || state == SCOPE_TRIGGERED; }
+
+static void forget_records(void) {
+  head = 0;
+  recorded = 0;
+  mark = SCOPE_NOWHERE;
+  mark_time_ms = 0;
+}
+
+void scope_reset(void) {
+  static const scope_setup_t none = {0};
+  state = SCOPE_IDLE;
+  setup_in_force = none;
+  forget_records();
+}
+
+static bool is_valid(const scope_setup_t* s) {
+  if (s->decimation < 1u || s->pretrigger >= SCOPE_DEPTH || s->trigger >= SIGNALS) return false;
+  if (s->mode > SCOPE_AUTO || s->edge > SCOPE_BELOW) return false;
+  if (s->count < 1u || s->count > SCOPE_CHANNELS) return false;
+  for (uint16_t k = 0; k < s->count; k++) {
+    if (s->channel[k].signal >= SIGNALS || s->channel[k].shift > SCOPE_SHIFT_MAX) return false;
+  }
+  return true;
+}
+
+bool scope_setup(const scope_setup_t* setup) {
+  if (!is_valid(setup)) return false;
+  state = SCOPE_IDLE;
+  setup_in_force = *setup;
+  forget_records();
+  return true;
+}
+
+const scope_setup_t* scope_setup_in_force(void) { return &setup_in_force; }
+
+bool scope_arm(void) {
+  if (setup_in_force.count == 0u) return false;
+  state = SCOPE_IDLE;
+  forget_records();
+  wait = 1;
+  fresh = true;
+  fired = false;
+  unread = (uint16_t)((1u << setup_in_force.count) - 1u);
+  state = SCOPE_FILLING;
+  return true;
+}
+
+void scope_stop(void) {
+  const uint16_t interrupts = hal_irq_disable();
+  if (is_running()) state = SCOPE_IDLE;
+  hal_irq_restore(interrupts);
+  unread = 0;
+}
+
+static uint16_t oldest(void) { return (uint16_t)((head - recorded) & RING_MASK); }
+
+scope_status_t scope_status(void) {
+  const uint16_t interrupts = hal_irq_disable();
+  scope_status_t s = {state, recorded, SCOPE_NOWHERE, mark_time_ms};
+  if (mark != SCOPE_NOWHERE) s.trigger_at = (uint16_t)((mark - oldest()) & RING_MASK);
+  hal_irq_restore(interrupts);
+  return s;
+}
+
+// The last word of a channel has been read: the next capture, when that was the last channel.
+static void note_read_to_the_end(uint16_t channel) {
+  if (setup_in_force.mode != SCOPE_AUTO || state != SCOPE_DONE || unread == 0u) return;
+  unread = (uint16_t)(unread & ~(1u << channel));
+  if (unread == 0u) (void)scope_arm();
+}
+
+uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t count) {
+  if (is_running() || channel >= setup_in_force.count || offset >= recorded) return 0;
+  const uint16_t there = (uint16_t)(recorded - offset);
+  const uint16_t given = (count < there) ? count : there;
+  uint16_t at = (uint16_t)(oldest() + offset);
+  for (uint16_t k = 0; k < given; k++, at++) words[k] = ring[channel][at & RING_MASK];
+  if (given == there) note_read_to_the_end(channel);
+  return given;
+}
+
+// ---- control interrupt level ---------------------------------------------------------------------------------------
+
+static bool is_met(int32_t value) {
+  const bool above = value >= setup_in_force.level;
+  const bool was_above = fresh ? above : (previous >= setup_in_force.level);
+  switch (setup_in_force.edge) {
+    case SCOPE_RISING:
+      return above && !was_above;
+    case SCOPE_FALLING:
+      return !above && was_above;
+    case SCOPE_EITHER:
+      return above != was_above;
+    case SCOPE_ABOVE:
+      return above;
+    case SCOPE_BELOW:
+      return !above;
+    default:
+      return true;
+  }
+}
+
+static void watch_trigger(void) {
+  const int32_t value = *signals[setup_in_force.trigger];
+  if (state == SCOPE_FILLING && recorded >= setup_in_force.pretrigger) state = SCOPE_ARMED;
+  if (state == SCOPE_ARMED && is_met(value)) fired = true;
+  previous = value;
+  fresh = false;
+}
+
+static void record(void) {
+  for (uint16_t k = 0; k < setup_in_force.count; k++) {
+    const scope_channel_t* const c = &setup_in_force.channel[k];
+    ring[k][head] = (int16_t)q_clamp(q_shr(*signals[c->signal], c->shift), INT16_MIN, INT16_MAX);
+  }
+  head = (uint16_t)((head + 1u) & RING_MASK);
+  if (recorded < SCOPE_DEPTH) recorded++;
+}
+
+void scope_step(uint32_t time_ms) {
+  if (!is_running()) return;
+  hal_profile_step(CYCLES_SCOPE);
+  watch_trigger();
+  if (--wait > 0u) return;
+  wait = setup_in_force.decimation;
+  const uint16_t here = head;
+  record();
+  if (state == SCOPE_ARMED && fired) {
+    mark = here;
+    mark_time_ms = time_ms;
+    left = (uint16_t)(SCOPE_DEPTH - setup_in_force.pretrigger);
+    state = SCOPE_TRIGGERED;
+  }
+  if (state == SCOPE_TRIGGERED && --left == 0u) state = SCOPE_DONE;
+}

@@ -1,0 +1,68 @@
+// Parameter store: the parameters in a memory that keeps them without power (hal/hal_nvm.h).
+//
+// Two slots, written in turn; the newer valid one counts. A save never touches the slot that is valid, so wherever the
+// power fails either the old or the new set is read next time, as a whole (firmware/store/slot.h has the format).
+// Values go by the stable number of their parameter and are rescaled when its format has changed; a value outside of
+// its range is refused, its default stays in force; numbers that this firmware does not know are kept and written back,
+// so that going back to an older firmware and forth again loses nothing.
+//
+// store_service does all the work, in the background level and in short slices; it never waits. At power-on it reads
+// while the drive stays in BOOT. Defaults are in force whenever no whole and consistent set could be read, and `state`
+// says why. A save takes the values of the moment in which it is asked for.
+
+#ifndef STILLSPIN_FIRMWARE_STORE_STORE_H
+#define STILLSPIN_FIRMWARE_STORE_STORE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum {
+  STORE_EMPTY = 0,     // a new memory: defaults
+  STORE_LOADED = 1,    // the values are in force as they were saved
+  STORE_DAMAGED = 2,   // something is there, and no slot of it is valid: defaults
+  STORE_MIGRATED = 3,  // loaded, and some were rescaled or refused, see store_report
+  STORE_SAVING = 4,
+  STORE_SAVED = 5,
+  STORE_FAILED = 6,    // a save was broken off: the set saved before is still there
+  STORE_READING = 7,   // at power-on or on command
+  STORE_ABSENT = 8,    // no memory answers: defaults
+  STORE_CONFLICT = 9,  // the saved values do not fit together (parameter_conflict): defaults
+  STORE_FOREIGN = 10   // written in a format of the future: defaults
+} store_state_t;
+
+/// What was found at the last loading or written at the last saving.
+typedef struct {
+  uint16_t slot;           // 0, 1
+  uint32_t sequence;       // how many times this memory has been written; its wear
+  uint16_t values;         // in the slot
+  uint16_t rescaled;       // format changed
+  uint16_t refused;        // outside of the range: default
+  uint16_t first_refused;  // number of the first of them, 0 for none
+  uint16_t unknown;        // kept for another firmware
+} store_report_t;
+
+/// Power-on state: READING.
+void store_reset(void);
+
+/// Background level.
+void store_service(void);
+
+/// Begins to save, load. False while either is under way; a load also while the power stage is on.
+bool store_save(void);
+bool store_load(void);
+
+/// Puts every parameter to its default, in force but not saved. False while the power stage is on or the store is busy.
+bool store_defaults(void);
+
+store_state_t store_state(void);
+bool store_is_busy(void);
+
+/// Share of a save or load that is done, 0..100; 100 when none is under way.
+uint16_t store_progress(void);
+
+const store_report_t* store_report(void);
+
+/// One sentence.
+const char* store_words(store_state_t state);
+
+#endif
