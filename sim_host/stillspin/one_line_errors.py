@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
 from stillspin.errors import CampaignError, InputError
+from stillspin.link.errors import DriveError
 
 BROKEN = 1
 BAD_INPUT = 2
@@ -19,8 +20,8 @@ INTERRUPTED = 130
 class OneLineErrors(TyperGroup):
     """A group of commands that says what was wrong in one line.
 
-    Exit status: 2 for bad input (also the command line's own complaints), 1 when the runs could not be carried out,
-    130 when interrupted.
+    Exit status: 2 for bad input (also the command line's own complaints), 1 when the runs could not be carried out or
+    the drive did not do what was asked, 130 when interrupted.
     """
 
     def main(
@@ -41,7 +42,7 @@ class OneLineErrors(TyperGroup):
             status = _complain(str(error), BAD_INPUT)
         except TyperException as error:
             status = _complain(error.format_message(), error.exit_code)
-        except CampaignError as error:
+        except (CampaignError, DriveError) as error:
             status = _complain(str(error), BROKEN)
         if standalone_mode:
             sys.exit(status if isinstance(status, int) else 0)

@@ -1,0 +1,134 @@
+"""Reads the table from a drive, and keeps it on disk by its CRC so that the next time takes no second."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import struct
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from stillspin.drive.protocol import VERSION, Request
+from stillspin.drive.table import Parameter, Signal, Table
+from stillspin.link.errors import DriveError
+
+Ask = Callable[[Request, bytes], bytes]
+_ALWAYS = 1
+_FORMAT = 1
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What a drive says of itself."""
+
+    parameters: int
+    signals: int
+    faults: int
+    crc: int
+    version: str
+
+
+def identity(ask: Ask) -> Identity:
+    """Who is there.
+
+    Raises:
+        DriveError: it speaks another version of the protocol.
+    """
+    body = ask(Request.IDENTITY, b"")
+    head = unpack("<HHHHI", body)
+    protocol, parameters, signals, faults, crc = head
+    if protocol != VERSION:
+        raise DriveError(f"the drive speaks version {protocol} of the protocol, this client version {VERSION}")
+    version = body[struct.calcsize("<HHHHI") :].decode("ascii", "replace").rstrip("\0")
+    return Identity(parameters, signals, faults, crc, version)
+
+
+def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = None) -> Table:
+    """The drive's table, from the disk when it has been read before.
+
+    Args:
+        ask: asks the drive.
+        who: what it said of itself.
+        progress: called with the share read.
+    """
+    known = _load(who)
+    if known:
+        return known
+    total = who.parameters + who.signals
+    parameters, signals = [], []
+    for index in range(total):
+        if index < who.parameters:
+            parameters.append(_parameter(index, ask(Request.PARAMETER_INFO, struct.pack("<H", index))))
+        else:
+            number = index - who.parameters
+            signals.append(_signal(number, ask(Request.SIGNAL_INFO, struct.pack("<H", number))))
+        if progress:
+            progress((index + 1) / total)
+    found = Table(who.version, who.crc, who.faults, tuple(parameters), tuple(signals))
+    _save(found)
+    return found
+
+
+def unpack(form: str, body: bytes) -> tuple[Any, ...]:
+    """The numbers at the beginning of an answer.
+
+    Raises:
+        DriveError: it is too short.
+    """
+    if len(body) < struct.calcsize(form):
+        raise DriveError(f"an answer of {len(body)} octets is too short: client and firmware do not fit together")
+    return struct.unpack_from(form, body)
+
+
+def _words(octets: bytes, count: int) -> list[str]:
+    words = octets.decode("ascii", "replace").rstrip("\0").split("\0")
+    return (words + [""] * count)[:count]
+
+
+def _parameter(index: int, body: bytes) -> Parameter:
+    form = "<HBBBBiii"
+    number, q, decimals, access, flags, minimum, maximum, initial = unpack(form, body)
+    name, unit, meaning = _words(body[struct.calcsize(form) :], 3)
+    always = access == _ALWAYS
+    return Parameter(index, number, name, unit, q, decimals, always, flags, minimum, maximum, initial, meaning)
+
+
+def _signal(index: int, body: bytes) -> Signal:
+    (q,) = unpack("<B", body)
+    name, unit, meaning = _words(body[1:], 3)
+    return Signal(index, name, unit, q, meaning)
+
+
+def _file(crc: int) -> Path:
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return Path(base) / "stillspin" / f"table-{crc:08x}.json"
+
+
+def _load(who: Identity) -> Table | None:
+    try:
+        data = json.loads(_file(who.crc).read_text(encoding="utf-8"))
+        if data.pop("format") != _FORMAT:
+            return None
+        parameters = tuple(Parameter(**entry) for entry in data["parameters"])
+        signals = tuple(Signal(**entry) for entry in data["signals"])
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return None
+    if (len(parameters), len(signals)) != (who.parameters, who.signals):
+        return None
+    return Table(who.version, who.crc, who.faults, parameters, signals)
+
+
+def _save(found: Table) -> None:
+    """A table that cannot be kept is read again the next time."""
+    path = _file(found.crc)
+    data = {"format": _FORMAT, "version": found.version}
+    data |= {"parameters": [asdict(entry) for entry in found.parameters]}
+    data |= {"signals": [asdict(entry) for entry in found.signals]}
+    with contextlib.suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial = path.with_suffix(f".{os.getpid()}")
+        partial.write_text(json.dumps(data), encoding="utf-8")
+        partial.replace(path)

@@ -1,0 +1,356 @@
+"""The drive as an object. Values are in the units that the drive's table states; angles in turns."""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+from stillspin.drive import describe, protocol, scope, values
+from stillspin.drive.commissioning import Report, follow
+from stillspin.drive.describe import unpack
+from stillspin.drive.protocol import GUARDED, Command, Request, Words
+from stillspin.drive.requester import Requester, wait_until
+from stillspin.drive.state import ENERGISED, FAULT, RUN, Fault, RawFault, RawStatus, Status, rpm
+from stillspin.drive.stream import Stream
+from stillspin.drive.table import Table
+from stillspin.errors import InputError
+from stillspin.link import address
+from stillspin.link.errors import DriveError, NoAnswerError, RefusedError
+from stillspin.link.transport import Transport
+
+_LIMIT_BITS = 16
+_SPEED_MAX = 2.0**15
+_SIGNALS_MOST = 16
+_KEEP_ALIVE = 0.05
+
+
+class Drive:
+    """One drive. Every method may be called from any thread; use it as a context, so that the port is given back."""
+
+    def __init__(
+        self,
+        transport: Transport,
+        *,
+        timeout: float = 0.6,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Take over an open transport and read the drive's table.
+
+        Args:
+            transport: is closed with the drive.
+            timeout: s to wait for each answer.
+            progress: gets the share of the table that has been read.
+        """
+        self.link = Requester(transport, timeout)
+        self._words: dict[tuple[int, int], str] = {}
+        try:
+            self.identity = describe.identity(self._ask)
+            self.table: Table = describe.table(self._ask, self.identity, progress)
+        except BaseException:
+            self.link.close()
+            raise
+
+    @classmethod
+    def open(cls, where: str, *, timeout: float = 0.6, progress: Callable[[float], None] | None = None) -> Drive:
+        """The drive at an address such as serial:///dev/ttyUSB0?baud=115200 or can:slcan:/dev/ttyACM0?node=1.
+
+        Raises:
+            InputError: no address.
+            DriveError: nothing can be opened there, or nothing answers.
+        """
+        return cls(address.connect(where), timeout=timeout, progress=progress)
+
+    def __enter__(self) -> Drive:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give the port back. The drive goes on with what it does."""
+        self.link.close()
+
+    @property
+    def version(self) -> str:
+        """Of the firmware."""
+        return self.identity.version
+
+    # Parameters
+
+    def get(self, name: str) -> float:
+        """The value of a parameter."""
+        parameter = self.table.parameter(name)
+        (raw,) = unpack("<i", self._ask(Request.PARAMETER_GET, struct.pack("<H", parameter.id)))
+        return parameter.to_user(raw)
+
+    def set(self, name: str, value: float | str) -> float:
+        """Change a parameter until the drive is switched off; `save` keeps it.
+
+        Args:
+            name: of the parameter.
+            value: in its unit; text may have the unit behind the number.
+
+        Returns:
+            The value that is in effect.
+
+        Raises:
+            InputError: no such parameter, no number, or out of range.
+            RefusedError: the drive says why not.
+        """
+        parameter = self.table.parameter(name)
+        wanted = parameter.to_raw(value)
+        try:
+            body = self._ask(Request.PARAMETER_SET, struct.pack("<Hi", parameter.id, wanted))
+        except RefusedError as error:
+            raise RefusedError(values.prefixed(name, str(error)), error.status) from error
+        (raw,) = unpack("<i", body)
+        return parameter.to_user(raw)
+
+    def parameters(self) -> dict[str, float]:
+        """The values of all parameters, by name."""
+        return {name: self.table.parameter(name).to_user(raw) for name, raw in self.raw_parameters().items()}
+
+    def raw_parameters(self) -> dict[str, int]:
+        """All parameters as the drive holds them."""
+        return values.read_all(self._ask, self.table)
+
+    # Commands
+
+    def start(self, speed: float | None = None, *, guarded: bool = False) -> None:
+        """Energise the motor.
+
+        Args:
+            speed: rpm, set beforehand; otherwise the one in force.
+            guarded: the drive stops by itself when nothing is heard from this client for its `link_timeout`.
+
+        Raises:
+            RefusedError: it is not ready, or its parameters do not fit together.
+        """
+        if speed is not None:
+            self.ref(speed)
+        self.command(Command.START, GUARDED if guarded else 0)
+
+    def stop(self) -> None:
+        """Speed to zero along the ramp, then power stage off."""
+        self.command(Command.STOP)
+
+    def coast(self) -> None:
+        """Power stage off at once; the shaft runs out."""
+        self.command(Command.COAST)
+
+    def reset(self) -> None:
+        """Clear a latched fault."""
+        self.command(Command.RESET)
+
+    def ref(self, speed: float) -> None:
+        """Speed reference, rpm; the drive clamps it to its speed limit."""
+        if not abs(speed) < _SPEED_MAX:
+            raise InputError(f"speed {speed:g} rpm is out of range; above -{_SPEED_MAX:g} and below {_SPEED_MAX:g} rpm")
+        self.command(Command.SPEED, round(speed * 2**16))
+
+    def save(self) -> None:
+        """Keep the present parameters in the drive's store; returns when they are there.
+
+        Raises:
+            DriveError: they are not.
+        """
+        values.save(self)
+
+    def defaults(self) -> None:
+        """Every parameter to its default; not kept until `save`."""
+        self.command(Command.DEFAULTS)
+
+    def load(self) -> None:
+        """Every parameter as the store has it."""
+        self.command(Command.LOAD)
+
+    def command(self, code: Command, argument: int = 0) -> None:
+        """Any command; see the protocol."""
+        repeat = code in protocol.REPEATABLE_COMMANDS
+        self.link.request(Request.COMMAND, struct.pack("<Bi", code, argument), repeat=repeat)
+
+    @contextmanager
+    def running(self, speed: float, *, timeout: float = 10.0) -> Iterator[None]:
+        """The motor runs while the context lasts, and no longer: guarded by the link, stopped at its end.
+
+        Args:
+            speed: rpm.
+            timeout: s for the start, and for the stop.
+
+        Raises:
+            DriveError: it does not start, or ends in a fault.
+        """
+        self.start(speed, guarded=True)
+        with self.kept_alive():
+            try:
+                self.wait_for_run(timeout)
+                yield
+            finally:
+                if not self.link.lost:
+                    self.stop()
+                    wait_until(lambda: self.raw_status().state not in ENERGISED, timeout)
+
+    @contextmanager
+    def kept_alive(self, interval: float = _KEEP_ALIVE) -> Iterator[None]:
+        """Lets the drive hear from this client regularly, as a guarded start wants it."""
+        end = threading.Event()
+
+        def tell() -> None:
+            while not end.wait(interval):
+                try:
+                    self.raw_status()
+                except NoAnswerError:
+                    continue
+                except DriveError:
+                    return
+
+        thread = threading.Thread(target=tell, name="stillspin keep-alive", daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            end.set()
+            thread.join()
+
+    def wait_for_run(self, timeout: float = 10.0) -> None:
+        """Wait until the start procedure is over and the motor runs.
+
+        Raises:
+            DriveError: a fault, or not in time.
+        """
+        wait_until(lambda: self.raw_status().state in {RUN, FAULT}, timeout)
+        status = self.status()
+        if status.raw.state != RUN:
+            raise DriveError(f"the motor does not run: {status.fault or f'the drive is {status.state}'}")
+
+    # Inspection
+
+    def raw_status(self) -> RawStatus:
+        """The numbers behind `status`."""
+        return RawStatus.unpack(self._ask(Request.STATUS, b""))
+
+    def status(self) -> Status:
+        """What the drive does now."""
+        return self.describe_status(self.raw_status())
+
+    def describe_status(self, raw: RawStatus) -> Status:
+        """A status in users' units and words."""
+        bits = [bit for bit in range(_LIMIT_BITS) if raw.limits >> bit & 1]
+        return Status(
+            time=raw.time_ms / 1e3,
+            state=self.words(Words.STATE, raw.state),
+            fault=self.words(Words.FAULT, raw.fault) if raw.fault else "",
+            limits=tuple(self.words(Words.LIMIT, bit) for bit in bits),
+            speed=rpm(raw.speed_q16),
+            reference=rpm(raw.reference_q16),
+            store=self.words(Words.STORE, raw.store),
+            raw=raw,
+        )
+
+    def faults(self) -> list[Fault]:
+        """The drive's fault memory, newest first."""
+        found: list[Fault] = []
+        for age in range(self.identity.faults or 0xFF):
+            try:
+                raw = RawFault.unpack(self._ask(Request.FAULT, struct.pack("<B", age)))
+            except RefusedError:  # nothing that old
+                break
+            if age >= raw.total:
+                break
+            cause, state = self.words(Words.FAULT, raw.code), self.words(Words.STATE, raw.state)
+            found.append(Fault.from_raw(raw, cause, state))
+        return found
+
+    def signals(self, *names: str) -> dict[str, float]:
+        """Signals of one and the same control interrupt, at most 16; by name."""
+        chosen = self.table.chosen(names)
+        if not 1 <= len(chosen) <= _SIGNALS_MOST:
+            raise InputError(f"{len(chosen)} signals at once; 1 … {_SIGNALS_MOST} are possible")
+        numbers = struct.pack(f"<{len(chosen)}H", *(signal.index for signal in chosen))
+        raw = unpack(f"<{len(chosen)}i", self._ask(Request.SIGNALS, numbers))
+        return {signal.name: signal.to_user(value) for signal, value in zip(chosen, raw, strict=True)}
+
+    def words(self, kind: Words, code: int) -> str:
+        """The drive's words for a code."""
+        if (kind, code) not in self._words:
+            try:
+                body = self._ask(Request.WORDS, struct.pack("<BB", kind, code))
+                self._words[kind, code] = body.decode("ascii", "replace").rstrip("\0")
+            except RefusedError:
+                self._words[kind, code] = f"{kind.name.lower()} {code}"
+        return self._words[kind, code]
+
+    def stream(self, signals: Sequence[str], period: float = 0.02) -> Stream:
+        """Up to eight signals every `period` seconds; iterate over it."""
+        return Stream(self.link, self.table.chosen(signals), period)
+
+    # Scope
+
+    def scope_arm(self, setup: scope.Setup) -> None:
+        """Start a capture."""
+        self._ask(Request.SCOPE_SETUP, scope.encode(setup, self.table))
+        self.link.request(Request.SCOPE_ARM, repeat=False)
+
+    def scope_state(self) -> scope.ScopeState:
+        """Where the capture stands."""
+        state, recorded, at, time_ms = unpack("<BHHI", self._ask(Request.SCOPE_STATE, b""))
+        return scope.ScopeState(state, recorded, at, time_ms / 1e3)
+
+    def scope_stop(self) -> None:
+        """End a capture; what has been recorded can be read."""
+        self._ask(Request.SCOPE_STOP, b"")
+
+    def scope_read(self, setup: scope.Setup) -> scope.Capture:
+        """Fetch a capture that is done or stopped."""
+        state = self.scope_state()
+        words = [values.read_channel(self._ask, number, state.recorded) for number in range(len(setup.channels))]
+        return scope.decode(setup, state, words, self.table)
+
+    def capture(
+        self,
+        *channels: str | scope.Channel,
+        trigger: scope.Trigger | None = None,
+        decimation: int = 1,
+        pretrigger: float = 0.25,
+        timeout: float = 10.0,
+    ) -> scope.Capture:
+        """Record up to four signals around a trigger.
+
+        Args:
+            channels: names of signals, or Channels with a full scale.
+            trigger: at once without one.
+            decimation: control interrupts (100 µs) per record.
+            pretrigger: share of the records before the trigger.
+            timeout: s to wait for the trigger.
+
+        Raises:
+            DriveError: no trigger came.
+        """
+        chosen = tuple(scope.Channel(item) if isinstance(item, str) else item for item in channels)
+        setup = scope.Setup(
+            chosen, trigger or scope.Trigger(chosen[0].signal if chosen else ""), decimation, pretrigger
+        )
+        self.scope_arm(setup)
+        if not wait_until(lambda: self.scope_state().done, timeout + setup.duration):
+            self.scope_stop()
+            raise DriveError(f"the scope has seen no trigger within {timeout:g} s")
+        return self.scope_read(setup)
+
+    # Commissioning
+
+    def commission(self, progress: Callable[[float, str], bool] | None = None) -> Report:
+        """Let the drive measure machine and inverter. It takes about a minute and a half and turns the shaft.
+
+        Args:
+            progress: gets the share done and the phase in words; false stops it.
+
+        Raises:
+            DriveError: it was stopped, or ended in a fault.
+        """
+        self.command(Command.COMMISSION)
+        return follow(self, progress)
+
+    def _ask(self, kind: Request, body: bytes) -> bytes:
+        return self.link.request(kind, body, repeat=kind in protocol.REPEATABLE)

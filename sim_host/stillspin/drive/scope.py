@@ -1,0 +1,158 @@
+"""The drive's captured scope: set-up, what comes back, and how 32-bit signals are made to fit 16-bit records."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from stillspin.drive.protocol import CONTROL_PERIOD
+from stillspin.drive.table import Signal, Table
+from stillspin.errors import InputError, did_you_mean
+
+MOST = 4
+DEPTH = 1024
+"""Records that the drive keeps."""
+CHUNK = 100
+"""Records per Request.SCOPE_READ."""
+EDGES = {"rising": 0, "falling": 1, "either": 2, "now": 3, "above": 4, "below": 5}
+IDLE, FILLING, ARMED, TRIGGERED, DONE = range(5)
+NOWHERE = 0xFFFF
+_WORD = 2**15
+_SHIFT_MAX = 31
+# Full scale per unit when nothing else is asked for: above everything that the default limits let a drive reach.
+_FULL_SCALE = {"A": 32.0, "V": 512.0, "rpm": 8192.0, "turn": 0.5, "Nm": 64.0}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A signal to record."""
+
+    signal: str
+    full_scale: float | None = None
+    """Largest magnitude to be told apart, in the signal's unit; a smaller one gives a finer resolution."""
+
+
+@dataclass(frozen=True)
+class Trigger:
+    """When to record."""
+
+    signal: str = "speed"
+    level: float = 0.0
+    """In the signal's unit."""
+    edge: str = "now"
+    """One of EDGES; `now` triggers at once, `above` and `below` need no edge."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A capture as it is asked for."""
+
+    channels: Sequence[Channel]
+    trigger: Trigger = field(default_factory=Trigger)
+    decimation: int = 1
+    """Control interrupts (100 µs) per record."""
+    pretrigger: float = 0.25
+    """Share of the records before the trigger."""
+    repeat: bool = False
+
+    @property
+    def duration(self) -> float:
+        """Seconds that a whole capture covers."""
+        return DEPTH * self.decimation * CONTROL_PERIOD
+
+
+@dataclass(frozen=True)
+class ScopeState:
+    """Where a capture stands."""
+
+    state: int
+    recorded: int
+    trigger_at: int
+    trigger_time: float
+    """Seconds since the drive was switched on."""
+
+    @property
+    def done(self) -> bool:
+        """Whether it can be read."""
+        return self.state == DONE
+
+
+@dataclass(frozen=True)
+class Capture:
+    """What the scope recorded; all arrays have one element per record."""
+
+    time: npt.NDArray[np.float64]
+    """Seconds from the trigger; negative before it."""
+    signals: Mapping[str, npt.NDArray[np.float64]]
+    """In users' units."""
+    units: Mapping[str, str]
+    clipped: tuple[str, ...]
+    """Signals that went beyond their full scale."""
+    trigger: Trigger
+    trigger_time: float
+    """Seconds since the drive was switched on."""
+    interval: float
+    """Seconds between two records."""
+    version: str
+    """Of the firmware."""
+
+
+def shift(signal: Signal, full_scale: float | None) -> int:
+    """Bits to drop so that ±`full_scale` fits a 16-bit record."""
+    scale = full_scale if full_scale is not None else _FULL_SCALE.get(signal.unit)
+    if scale is None:  # numbers of states, bits, shares: as they are, down to 16 bits
+        return max(0, signal.q + 1 - 15)
+    if not scale > 0:
+        raise InputError(f"full scale of {signal.name}: {scale:g} must be above 0")
+    bits = 0
+    while bits < _SHIFT_MAX and scale * 2**signal.q > (_WORD << bits):
+        bits += 1
+    return bits
+
+
+def encode(setup: Setup, table: Table) -> bytes:
+    """The body of Request.SCOPE_SETUP.
+
+    Raises:
+        InputError: what is asked for is not possible; in words.
+    """
+    if not 1 <= len(setup.channels) <= MOST:
+        raise InputError(f"a scope of {len(setup.channels)} channels; 1 … {MOST} are possible")
+    if not 1 <= setup.decimation <= 0xFFFF:
+        raise InputError(f"decimation {setup.decimation}: must be 1 … 65535")
+    if not 0 <= setup.pretrigger < 1:
+        raise InputError(f"pre-trigger share {setup.pretrigger:g}: must be 0 or more and below 1")
+    edge = EDGES.get(setup.trigger.edge)
+    if edge is None:
+        raise InputError(f"no trigger edge '{setup.trigger.edge}'{did_you_mean(setup.trigger.edge, EDGES)}")
+    signal = table.signal(setup.trigger.signal)
+    before = min(DEPTH - 1, round(setup.pretrigger * DEPTH))
+    head = (setup.decimation, before, setup.repeat, edge, signal.index, signal.to_raw(setup.trigger.level))
+    body = struct.pack("<HHBBHiB", *head, len(setup.channels))
+    for channel in setup.channels:
+        chosen = table.signal(channel.signal)
+        body += struct.pack("<HB", chosen.index, shift(chosen, channel.full_scale))
+    return body
+
+
+def decode(setup: Setup, state: ScopeState, words: Sequence[npt.NDArray[np.int16]], table: Table) -> Capture:
+    """What was recorded, in users' units."""
+    signals, units, clipped = {}, {}, []
+    for channel, raw in zip(setup.channels, words, strict=True):
+        signal = table.signal(channel.signal)
+        bits = shift(signal, channel.full_scale)
+        half = 0.5 if bits else 0.0  # dropping bits rounds down, half a step on average
+        signals[signal.name] = (raw.astype(np.float64) + half) * 2.0 ** (bits - signal.q)
+        units[signal.name] = signal.unit
+        if raw.size and (raw.max() == _WORD - 1 or raw.min() == -_WORD) and bits + 16 < 32:
+            clipped.append(signal.name)
+    interval = setup.decimation * CONTROL_PERIOD
+    at = 0 if state.trigger_at == NOWHERE else state.trigger_at
+    count = min((int(raw.size) for raw in words), default=0)
+    time = (np.arange(count, dtype=np.float64) - at) * interval
+    signals = {name: values[:count] for name, values in signals.items()}
+    return Capture(time, signals, units, tuple(clipped), setup.trigger, state.trigger_time, interval, table.version)

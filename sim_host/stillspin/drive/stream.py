@@ -1,0 +1,112 @@
+"""The slow stream: up to eight signals every few milliseconds, with a count of what was lost on the way."""
+
+from __future__ import annotations
+
+import queue
+import struct
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+from stillspin.drive.protocol import STREAM_EVENT, Request
+from stillspin.drive.requester import Requester
+from stillspin.drive.table import Signal
+from stillspin.errors import InputError
+from stillspin.link.records import Record
+
+MOST = 8
+_WAITING = 20000
+_POLL = 0.2
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The signals of one control interrupt."""
+
+    time: float
+    """Seconds since the drive was switched on."""
+    values: tuple[float, ...]
+    """In the signals' units and order."""
+
+
+class Stream:
+    """Iterate over it for samples; use it as a context, or close it, to make the drive stop sending."""
+
+    def __init__(self, requester: Requester, signals: Sequence[Signal], period: float) -> None:
+        """Start the stream.
+
+        Args:
+            requester: the drive.
+            signals: 1 to 8.
+            period: s between samples, 1 ms and more.
+
+        Raises:
+            InputError: too many signals, or a period out of range.
+        """
+        if not 1 <= len(signals) <= MOST:
+            raise InputError(f"a stream of {len(signals)} signals; 1 … {MOST} are possible")
+        period_ms = round(period * 1e3)
+        if not 1 <= period_ms <= 0xFFFF:
+            raise InputError(f"a stream every {period:g} s; 0.001 … 65.535 s are possible")
+        self.signals = tuple(signals)
+        self.lost = 0
+        """Samples that did not arrive."""
+        self._requester = requester
+        self._samples: queue.Queue[Sample] = queue.Queue(_WAITING)
+        self._counter: int | None = None
+        self._form = f"<I{len(signals)}i"
+        self._stack = ExitStack()
+        self._stack.enter_context(requester.listening(event=self._take))
+        numbers = struct.pack(f"<H{len(signals)}H", period_ms, *(signal.index for signal in signals))
+        try:
+            requester.request(Request.STREAM, numbers, repeat=True)
+        except BaseException:
+            self._stack.close()
+            raise
+        self._stack.callback(self._stop)
+
+    def __enter__(self) -> Stream:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __iter__(self) -> Iterator[Sample]:
+        while True:
+            sample = self.next(_POLL)
+            if sample is not None:
+                yield sample
+
+    def next(self, timeout: float) -> Sample | None:
+        """The next sample, or None when none comes within `timeout` seconds.
+
+        Raises:
+            LinkError: the way to the drive is lost.
+        """
+        try:
+            return self._samples.get(timeout=timeout)
+        except queue.Empty:
+            if self._requester.lost:
+                raise self._requester.lost from None
+            return None
+
+    def close(self) -> None:
+        """Make the drive stop sending."""
+        self._stack.close()
+
+    def _stop(self) -> None:
+        if not self._requester.lost:
+            self._requester.request(Request.STREAM, struct.pack("<H", 0), repeat=True)
+
+    def _take(self, record: Record) -> None:
+        if record.kind != STREAM_EVENT or len(record.body) != struct.calcsize(self._form):
+            return
+        if self._counter is not None:
+            self.lost += (record.tag - self._counter - 1) % 256
+        self._counter = record.tag
+        time_ms, *raw = struct.unpack(self._form, record.body)
+        values = tuple(signal.to_user(value) for signal, value in zip(self.signals, raw, strict=True))
+        try:
+            self._samples.put_nowait(Sample(time_ms / 1e3, values))
+        except queue.Full:
+            self.lost += 1

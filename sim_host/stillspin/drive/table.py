@@ -1,0 +1,167 @@
+"""The drive's own table of parameters and signals: names, units, formats, ranges, as it tells them itself."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from stillspin.errors import InputError, did_you_mean
+
+TURN = "turn"
+"""Unit of the signals that are binary angles."""
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter as the drive describes it. Raw values have `q` fractional bits."""
+
+    index: int
+    id: int
+    name: str
+    unit: str
+    q: int
+    decimals: int
+    always: bool
+    """Whether it may be changed while the motor is energised."""
+    flags: int
+    minimum_raw: int
+    maximum_raw: int
+    initial_raw: int
+    meaning: str
+
+    @property
+    def minimum(self) -> float:
+        """Smallest value, in `unit`."""
+        return self.to_user(self.minimum_raw)
+
+    @property
+    def maximum(self) -> float:
+        """Largest value, in `unit`."""
+        return self.to_user(self.maximum_raw)
+
+    @property
+    def initial(self) -> float:
+        """Default, in `unit`."""
+        return self.to_user(self.initial_raw)
+
+    @property
+    def range_text(self) -> str:
+        """Range and unit, for people."""
+        low, high = self._number(self.minimum_raw), self._number(self.maximum_raw)
+        return f"{low} … {high} {self.unit}".rstrip()
+
+    def to_user(self, raw: int) -> float:
+        """The value in `unit`, to the table's decimals."""
+        return round(raw / (1 << self.q), self.decimals)
+
+    def text(self, raw: int) -> str:
+        """The value with its unit, for people."""
+        return f"{self._number(raw)} {self.unit}".rstrip()
+
+    def _number(self, raw: int) -> str:
+        return f"{raw / (1 << self.q):.{self.decimals}f}"
+
+    def to_raw(self, value: float | str) -> int:
+        """The raw value of a value in `unit`; text may have the unit behind the number.
+
+        Raises:
+            InputError: no number, another unit, or out of range; in words.
+        """
+        number = self._parse(value) if isinstance(value, str) else float(value)
+        if not math.isfinite(number):
+            raise InputError(f"{self.name}: {value} is no number; {self.range_text}")
+        raw = math.floor(number * (1 << self.q) + 0.5)
+        if not self.minimum_raw <= raw <= self.maximum_raw:
+            given = f"{number:g} {self.unit}".rstrip()
+            raise InputError(f"{self.name}: {given} is out of range; {self.range_text}")
+        return raw
+
+    def _parse(self, text: str) -> float:
+        match = _NUMBER.fullmatch(text)
+        if not match:
+            raise InputError(f"{self.name}: '{text}' is no number; {self.range_text}")
+        number, unit = match.groups()
+        if unit and unit != self.unit:
+            wanted = f"is in {self.unit}" if self.unit else "has no unit"
+            raise InputError(f"{self.name} {wanted}, not in {unit}")
+        return float(number)
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal as the drive describes it: one value per control interrupt, `q` fractional bits."""
+
+    index: int
+    name: str
+    unit: str
+    q: int
+    meaning: str
+
+    def to_user(self, raw: int) -> float:
+        """The value in `unit`; angles are −0.5 … 0.5 turn."""
+        return float(raw / (1 << self.q))
+
+    def to_raw(self, value: float) -> int:
+        """The raw value next to `value`.
+
+        Raises:
+            InputError: it does not fit into 32 bits.
+        """
+        raw = round(value * (1 << self.q))
+        if not -(2**31) <= raw < 2**31:
+            limit = 2.0 ** (31 - self.q)
+            raise InputError(f"{self.name}: {value:g} is out of range; {-limit:g} … {limit:g} {self.unit}".rstrip())
+        return raw
+
+
+@dataclass(frozen=True)
+class Table:
+    """All parameters and signals of one firmware."""
+
+    version: str
+    crc: int
+    """Of everything below, as the drive reckons it: the same number, the same table."""
+    faults: int
+    """Entries of the drive's fault memory."""
+    parameters: tuple[Parameter, ...]
+    signals: tuple[Signal, ...] = field(default=())
+
+    @cached_property
+    def _parameters(self) -> dict[str, Parameter]:
+        return {parameter.name: parameter for parameter in self.parameters}
+
+    @cached_property
+    def _signals(self) -> dict[str, Signal]:
+        return {signal.name: signal for signal in self.signals}
+
+    def parameter(self, name: str) -> Parameter:
+        """The parameter of that name.
+
+        Raises:
+            InputError: there is none; names what is near.
+        """
+        if name not in self._parameters:
+            raise InputError(f"no parameter '{name}'{did_you_mean(name, self._parameters)}")
+        return self._parameters[name]
+
+    def has_parameter(self, name: str) -> bool:
+        """Whether the drive has a parameter of that name."""
+        return name in self._parameters
+
+    def signal(self, name: str) -> Signal:
+        """The signal of that name.
+
+        Raises:
+            InputError: there is none; names what is near.
+        """
+        if name not in self._signals:
+            raise InputError(f"no signal '{name}'{did_you_mean(name, self._signals)}")
+        return self._signals[name]
+
+    def chosen(self, names: Iterable[str]) -> list[Signal]:
+        """The signals of these names, in their order."""
+        return [self.signal(name) for name in names]

@@ -1,0 +1,68 @@
+"""Bulk reading from a drive, and waiting for its store."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from stillspin.drive.describe import Ask, unpack
+from stillspin.drive.protocol import Command, Request, Words
+from stillspin.drive.requester import wait_until
+from stillspin.drive.scope import CHUNK
+from stillspin.drive.table import Table
+from stillspin.link.errors import DriveError
+
+if TYPE_CHECKING:
+    from stillspin.drive.drive import Drive
+
+_READ_MOST = 32
+_SAVE_TIMEOUT = 10.0
+STORE_SAVING, STORE_SAVED, STORE_FAILED = 4, 5, 6
+"""States of the store, firmware/store/store.h."""
+
+
+def prefixed(name: str, words: str) -> str:
+    """What the drive says about a parameter, with its name in front unless it is there."""
+    return words if words.startswith(name) else f"{name}: {words}"
+
+
+def read_all(ask: Ask, table: Table) -> dict[str, int]:
+    """The raw values of all parameters, by name."""
+    names: Mapping[int, str] = {parameter.id: parameter.name for parameter in table.parameters}
+    found: dict[str, int] = {}
+    for first in range(0, len(names), _READ_MOST):
+        count = min(_READ_MOST, len(names) - first)
+        body = ask(Request.PARAMETER_READ, struct.pack("<HB", first, count))
+        flat = unpack("<" + "Hi" * count, body)
+        found |= {names[number]: raw for number, raw in zip(flat[::2], flat[1::2], strict=True)}
+    return found
+
+
+def read_channel(ask: Ask, channel: int, count: int) -> npt.NDArray[np.int16]:
+    """The records of one channel of the scope."""
+    words = bytearray()
+    while len(words) < 2 * count:
+        at = len(words) // 2
+        body = ask(Request.SCOPE_READ, struct.pack("<BHB", channel, at, min(CHUNK, count - at)))
+        if not body:
+            break
+        words += body
+    return np.frombuffer(bytes(words), dtype="<i2").astype(np.int16)
+
+
+def save(drive: Drive) -> None:
+    """Ask for it, and wait until the store has it.
+
+    Raises:
+        DriveError: it has not.
+    """
+    drive.command(Command.SAVE)
+    if not wait_until(lambda: drive.raw_status().store != STORE_SAVING, _SAVE_TIMEOUT, 0.05):
+        raise DriveError("the drive is still saving")
+    state = drive.raw_status().store
+    if state != STORE_SAVED:
+        raise DriveError(f"not saved: {drive.words(Words.STORE, state)}")

@@ -1,0 +1,50 @@
+"""What carries records: the interface of the serial port, the CAN bus and the virtual board."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from stillspin.link.records import Record
+from stillspin.link.splitter import Item
+
+
+class Transport(Protocol):
+    """A way to one drive. One thread receives, any thread sends."""
+
+    @property
+    def name(self) -> str:
+        """For people: the port, the bus and node."""
+        ...
+
+    @property
+    def has_console(self) -> bool:
+        """Whether text goes through it, too."""
+        ...
+
+    def send(self, record: Record) -> None:
+        """Hand a record over.
+
+        Raises:
+            LinkError: the way is lost.
+        """
+        ...
+
+    def send_text(self, octets: bytes) -> None:
+        """Hand console text over.
+
+        Raises:
+            LinkError: the way is lost, or has no console.
+        """
+        ...
+
+    def receive(self, timeout: float) -> list[Item]:
+        """What has come, in order; waits up to `timeout` seconds for something.
+
+        Raises:
+            LinkError: the way is lost.
+        """
+        ...
+
+    def close(self) -> None:
+        """Give the port back. May be called twice."""
+        ...

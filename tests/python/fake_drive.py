@@ -1,0 +1,330 @@
+"""A small drive on a pseudo-terminal: the record protocol and a line of console, without firmware or motor.
+
+It is for what a client must get right whatever is at the other end: time-outs, repetition, damage, refusals. What the
+real firmware does is tested against the virtual board.
+"""
+
+import contextlib
+import os
+import pty
+import struct
+import threading
+import time
+import tty
+import zlib
+
+from stillspin.link.records import Record, to_wire
+from stillspin.link.splitter import Splitter, Text
+
+# id, name, unit, q, decimals, minimum, maximum, initial, always, meaning; values in the unit
+PARAMETERS = [
+    (1, "motor_poles", "", 0, 0, 1, 20, 4, False, "pole pairs"),
+    (6, "current_limit", "A", 20, 2, 0.1, 16, 14, True, "largest current"),
+    (8, "speed_limit", "rpm", 8, 0, 100, 4000, 3300, False, "largest speed"),
+    (86, "speed_ramp", "rpm/s", 8, 0, 0, 100000, 3000, True, "slope of the speed reference, 0 for a step"),
+    (98, "link_maximum", "V", 16, 1, 10, 450, 420, False, "DC link beyond which the drive faults"),
+    (200, "link_timeout", "ms", 0, 0, 50, 10000, 300, True, "silence after which a guarded drive stops"),
+    (101, "ratio", "%", 16, 2, -50, 50, 0, True, ""),
+]
+SIGNALS = [
+    ("state", "", 0, "state of the drive"),
+    ("angle", "turn", 32, "electrical angle"),
+    ("speed", "rpm", 16, "mechanical speed"),
+    ("speed_reference", "rpm", 16, "speed reference after the ramp"),
+    ("current_d", "A", 20, "measured d-axis current"),
+    ("current_q", "A", 20, "measured q-axis current"),
+    ("link_voltage", "V", 16, "DC-link voltage"),
+]
+STATES = ["boot", "calibrate", "ready", "start", "run", "stop", "fault", "commission"]
+WORDS = {
+    0: STATES,
+    1: ["none", "over-current: the comparator opened the gates", "a phase current beyond trip_current"],
+    2: ["current", "voltage", "weakening"],
+    3: ["used", "too few samples"],
+    4: ["idle", "turning", "staircase"],
+    5: ["empty", "loaded", "damaged", "migrated", "saving", "saved", "failed"],
+}
+OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT = range(8)
+READY, RUN, FAULT, COMMISSION = 2, 4, 6, 7
+DEPTH = 1024
+
+
+class RefusalError(Exception):
+    def __init__(self, status, text=""):
+        self.status, self.text = status, text
+
+
+def raw(value, q):
+    return round(value * 2**q)
+
+
+class FakeDrive:
+    """`port` is the pseudo-terminal to open."""
+
+    def __init__(self, version="fake 1.0"):
+        self.version = version
+        self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
+        self.state, self.fault, self.store = READY, 0, 1
+        self.speed = self.reference = self.set_point = 0.0
+        self.guarded = False
+        self.faults = []
+        self.asked = []  # types of the requests answered, in order
+        self.swallow = []  # types of requests of which the next one gets no answer
+        self.corrupt = []  # types of requests of which the next answer arrives damaged
+        self.start_fault = 0  # what the next start ends in
+        self.chatter = b""  # said before the next answer
+        self.typed = b""
+        self.setup = None
+        self.stream = None
+        self.outcome, self.progress = 0, 0
+        self._counter = 0
+        self._begin = self._last = self._heard = self._sent = time.monotonic()
+        self._master, slave = pty.openpty()
+        tty.setraw(slave)
+        self.port = os.ttyname(slave)
+        self._slave = slave
+        self._splitter = Splitter()
+        self._lock = threading.Lock()
+        self._end = threading.Event()
+        os.set_blocking(self._master, False)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self):
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.unplug()
+
+    def unplug(self):
+        if not self._end.is_set():
+            self._end.set()
+            self._thread.join()
+            os.close(self._master)
+            os.close(self._slave)
+
+    def raise_fault(self, code):
+        with self._lock:
+            self._fail(code)
+
+    def _fail(self, code):
+        self.faults.insert(0, (self._now_ms(), code, self.state, self.speed))
+        self.state, self.fault, self.guarded = FAULT, code, False
+
+    def say(self, octets):
+        self._write(octets)
+
+    def _now_ms(self):
+        return int((time.monotonic() - self._begin) * 1000)
+
+    def _write(self, octets):
+        while octets:
+            with contextlib.suppress(BlockingIOError):
+                octets = octets[os.write(self._master, octets) :]
+
+    def _run(self):
+        while not self._end.is_set():
+            try:
+                octets = os.read(self._master, 4096)
+            except (BlockingIOError, OSError):
+                octets = b""
+                time.sleep(0.001)
+            for item in self._splitter.feed(octets, time.monotonic()):
+                if isinstance(item, Text):
+                    self._console(item.octets)
+                elif isinstance(item, Record):
+                    self._heard = time.monotonic()
+                    self._answer(item)
+            with self._lock:
+                self._move()
+
+    def _console(self, octets):
+        self.typed += octets
+        while b"\r" in self.typed:
+            line, _, self.typed = self.typed.partition(b"\r")
+            self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
+
+    def _move(self):
+        now = time.monotonic()
+        step, self._last = now - self._last, now
+        ramp = self.values[86] / 2**8 * step
+        target = self.set_point if self.state == RUN else 0.0
+        self.reference += max(-ramp, min(ramp, target - self.reference))
+        self.speed += (self.reference - self.speed) * min(1.0, step * 50)
+        if self.state == 5 and abs(self.speed) < 2:
+            self.state = READY
+        if self.state == COMMISSION:
+            self.progress = min(1000, self.progress + int(step * 4000) + 1)
+            if self.progress == 1000:
+                self.state, self.outcome = READY, 3
+        if self.guarded and self.state == RUN and now - self._heard > self.values[200] / 1000:
+            self.state = 5
+        self._tell()
+
+    def _tell(self):
+        now = time.monotonic()
+        if self.stream and now - self._sent >= self.stream[0]:
+            self._sent = now
+            numbers = self._signals(self.stream[1])
+            body = struct.pack(f"<I{len(numbers)}i", self._now_ms(), *numbers)
+            self._counter = (self._counter + 1) % 256
+            self._write(to_wire(Record(0x40, self._counter, body)))
+
+    def _signals(self, indices):
+        values = {"state": self.state, "speed": self.speed, "speed_reference": self.reference, "link_voltage": 310.0}
+        values |= {"angle": -0.25, "current_d": -1.5, "current_q": 2.0 if self.state == RUN else 0.0}
+        if any(index >= len(SIGNALS) for index in indices):
+            raise RefusalError(UNKNOWN)
+        return [raw(values[SIGNALS[index][0]], SIGNALS[index][2]) for index in indices]
+
+    def _answer(self, record):
+        if record.kind in self.swallow:
+            self.swallow.remove(record.kind)
+            return
+        with self._lock:
+            try:
+                body = bytes((OK,)) + self._request(record.kind, record.body)
+            except RefusalError as error:
+                body = bytes((error.status,)) + error.text.encode()
+            except struct.error:
+                body = bytes((LENGTH,))
+        self.asked.append(record.kind)
+        wire = to_wire(Record(record.kind | 0x80, record.tag, body))
+        if record.kind in self.corrupt:
+            self.corrupt.remove(record.kind)
+            wire = wire[:2] + bytes((wire[2] ^ 1 or 2,)) + wire[3:]
+        chatter, self.chatter = self.chatter, b""
+        self._write(chatter + wire)
+
+    def _request(self, kind, body):
+        handler = getattr(self, f"_on_{kind:02x}", None)
+        if handler is None:
+            raise RefusalError(UNKNOWN)
+        return handler(body)
+
+    def _on_01(self, _):
+        crc = zlib.crc32(repr((PARAMETERS, SIGNALS, self.version)).encode())
+        return struct.pack("<HHHHI", 1, len(PARAMETERS), len(SIGNALS), 16, crc) + self.version.encode()
+
+    def _on_02(self, body):
+        (index,) = struct.unpack("<H", body)
+        number, name, unit, q, decimals, low, high, initial, always, meaning = PARAMETERS[index]
+        numbers = (raw(low, q), raw(high, q), raw(initial, q))
+        return struct.pack("<HBBBBiii", number, q, decimals, always, 0, *numbers) + b"\0".join(
+            word.encode() for word in (name, unit, meaning)
+        )
+
+    def _on_03(self, body):
+        name, unit, q, meaning = SIGNALS[struct.unpack("<H", body)[0]]
+        return struct.pack("<B", q) + b"\0".join(word.encode() for word in (name, unit, meaning))
+
+    def _on_04(self, body):
+        first, count = struct.unpack("<HB", body)
+        numbers = [entry[0] for entry in PARAMETERS[first : first + count]]
+        return b"".join(struct.pack("<Hi", number, self.values[number]) for number in numbers)
+
+    def _on_05(self, body):
+        (number,) = struct.unpack("<H", body)
+        if number not in self.values:
+            raise RefusalError(UNKNOWN)
+        return struct.pack("<i", self.values[number])
+
+    def _on_06(self, body):
+        number, value = struct.unpack("<Hi", body)
+        entry = next((entry for entry in PARAMETERS if entry[0] == number), None)
+        if entry is None:
+            raise RefusalError(UNKNOWN)
+        if not raw(entry[5], entry[3]) <= value <= raw(entry[6], entry[3]):
+            raise RefusalError(RANGE, f"{entry[1]} is out of range")
+        if self.state == RUN and not entry[8]:
+            raise RefusalError(RUNNING)
+        if number == 98 and value < raw(50, 16):
+            raise RefusalError(CONFLICT, "link_maximum is below the link's voltage")
+        self.values[number] = value
+        return struct.pack("<i", value)
+
+    def _on_07(self, body):
+        code, argument = struct.unpack("<Bi", body)
+        if code == 1 and self.state != READY:
+            raise RefusalError(STATE)
+        if code == 1:
+            self.state, self.guarded = RUN, bool(argument & 1)
+            if self.start_fault:
+                self._fail(self.start_fault)
+        elif code == 2 and self.state in (RUN, COMMISSION):
+            self.outcome = 4 if self.state == COMMISSION else self.outcome
+            self.state = 5
+        elif code == 3 and self.state != FAULT:
+            self.state, self.reference = READY, 0.0
+        elif code == 4:
+            self.state, self.fault = READY, 0
+        elif code == 5:
+            self.set_point = argument / 2**16
+        elif code == 6:
+            self.state, self.outcome, self.progress = COMMISSION, 1, 0
+        elif code == 7:
+            self.store = 5
+        elif code == 8:
+            self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
+        return b""
+
+    def _on_08(self, _):
+        speeds = (raw(self.speed, 16), raw(self.reference, 16))
+        last = (self.outcome, 2 if self.state == COMMISSION else 0, self.progress, self.guarded)
+        limits = 1 if self.state == RUN else 0
+        return struct.pack(
+            "<IBBHiiBBBBHB", self._now_ms(), self.state, self.fault, limits, *speeds, self.store, 0, *last
+        )
+
+    def _on_09(self, body):
+        indices = struct.unpack(f"<{len(body) // 2}H", body)
+        return struct.pack(f"<{len(indices)}i", *self._signals(indices))
+
+    def _on_0a(self, body):
+        (age,) = struct.unpack("<B", body)
+        if age >= len(self.faults):
+            raise RefusalError(RANGE)
+        at, code, state, speed = self.faults[age]
+        numbers = (raw(speed, 16), raw(310, 16), raw(-1, 20), raw(3, 20))
+        return struct.pack("<HIBBiiii", len(self.faults), at, code, state, *numbers)
+
+    def _on_0b(self, body):
+        kind, code = struct.unpack("<BB", body)
+        if kind not in WORDS or code >= len(WORDS[kind]):
+            raise RefusalError(UNKNOWN)
+        return WORDS[kind][code].encode()
+
+    def _on_10(self, body):
+        head = struct.unpack_from("<HHBBHiB", body)
+        channels = [struct.unpack_from("<HB", body, 13 + 3 * at) for at in range(head[6])]
+        self.setup = (*head, channels)
+        return b""
+
+    def _on_11(self, _):
+        if not self.setup:
+            raise RefusalError(STATE)
+        return b""
+
+    def _on_12(self, _):
+        return struct.pack("<BHHI", 4, DEPTH, self.setup[1], self._now_ms())
+
+    def _on_13(self, body):
+        channel, offset, count = struct.unpack("<BHB", body)
+        signal, shift = self.setup[7][channel]
+        (value,) = self._signals([signal])
+        words = [max(-32768, min(32767, (value >> shift) + at - self.setup[1])) for at in range(offset, offset + count)]
+        return struct.pack(f"<{count}h", *words)
+
+    def _on_14(self, _):
+        return b""
+
+    def _on_15(self, body):
+        period, *indices = struct.unpack(f"<{len(body) // 2}H", body)
+        self._signals(indices)
+        self.stream = (period / 1000, indices) if period else None
+        return b""
+
+    def _on_16(self, body):
+        (index,) = struct.unpack("<H", body)
+        rows = [(6, raw(14, 20), raw(13.5, 20), 0), (8, raw(3300, 8), raw(5000, 8), 1)]
+        return struct.pack("<HHiiB", len(rows), *rows[index])

@@ -1,0 +1,270 @@
+"""The drive as an object, against the small drive of fake_drive.py on a pseudo-terminal."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from fake_drive import PARAMETERS, FakeDrive
+from stillspin.drive import Channel, Drive, Trigger, scope
+from stillspin.drive.protocol import Request
+from stillspin.drive.requester import wait_until
+from stillspin.errors import InputError
+from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    with FakeDrive() as fake:
+        yield fake
+
+
+@pytest.fixture
+def drive(fake):
+    with Drive.open(f"serial://{fake.port}", timeout=0.3) as drive:
+        yield drive
+
+
+def test_the_table_is_read_once_and_kept_by_its_crc(fake):
+    shares = []
+    with Drive.open(fake.port, progress=shares.append) as drive:
+        first = drive.table
+    assert shares[-1] == 1.0
+    fake.asked.clear()
+    with Drive.open(fake.port) as drive:
+        assert drive.table == first
+    assert fake.asked == [Request.IDENTITY]
+    fake.version = "fake 1.1"
+    with Drive.open(fake.port) as drive:
+        assert drive.table.version == "fake 1.1"
+    assert fake.asked.count(Request.PARAMETER_INFO) == len(PARAMETERS)
+
+
+@pytest.mark.parametrize(
+    "damage", ["", "{}", "[]", '{"format": 1}', '{"format": 1, "parameters": [{}], "signals": []}']
+)
+def test_a_damaged_table_on_disk_is_read_again(fake, tmp_path, damage):
+    with Drive.open(fake.port) as drive:
+        first = drive.table
+    (file,) = (tmp_path / "cache" / "stillspin").iterdir()
+    file.write_text(damage)
+    with Drive.open(fake.port) as drive:
+        assert drive.table == first
+
+
+def test_values_are_in_the_units_of_the_table(drive):
+    assert drive.get("current_limit") == 14.0
+    assert drive.set("current_limit", 2.5) == 2.5
+    assert drive.set("speed_ramp", "1000 rpm/s") == 1000.0
+    assert drive.parameters()["speed_ramp"] == 1000.0
+    parameter = drive.table.parameter("current_limit")
+    assert (parameter.minimum, parameter.maximum, parameter.initial) == (0.1, 16.0, 14.0)
+    assert parameter.text(parameter.initial_raw) == "14.00 A"
+    assert set(drive.parameters()) == {entry[1] for entry in PARAMETERS}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("curent_limit", 1, "no parameter 'curent_limit'; did you mean 'current_limit'"),
+        ("current_limit", 17, "current_limit: 17 A is out of range; 0.10 … 16.00 A"),
+        ("current_limit", "12 V", "current_limit is in A, not in V"),
+        ("motor_poles", "4 A", "motor_poles has no unit, not in A"),
+        ("current_limit", "much", "'much' is no number"),
+        ("current_limit", float("nan"), "nan is no number"),
+    ],
+)
+def test_what_is_wrong_with_a_value_is_said_before_it_is_sent(fake, drive, name, value, said):
+    fake.asked.clear()
+    with pytest.raises(InputError, match=said):
+        drive.set(name, value)
+    assert fake.asked == []
+
+
+def test_the_drive_says_why_it_refuses(drive):
+    with pytest.raises(RefusedError, match=r"^link_maximum is below the link's voltage$"):
+        drive.set("link_maximum", 20)
+    drive.start(100)
+    with pytest.raises(RefusedError, match="motor_poles: not while the motor is energised"):
+        drive.set("motor_poles", 3)
+    with pytest.raises(RefusedError, match="not in this state"):
+        drive.start()
+
+
+def test_status_signals_and_words(drive):
+    status = drive.status()
+    assert (status.state, status.fault, status.limits, status.store) == ("ready", "", (), "loaded")
+    drive.set("speed_ramp", 100000)
+    drive.start(600)
+    assert wait_until(lambda: drive.status().speed > 590, 2)
+    status = drive.status()
+    assert (status.state, status.limits, status.reference) == ("run", ("current",), 600.0)
+    assert drive.signals("current_q", "angle") == {"current_q": 2.0, "angle": -0.25}
+    drive.stop()
+    assert wait_until(lambda: not drive.status().energised, 2)
+
+
+def test_faults_in_words_newest_first(fake, drive):
+    fake.raise_fault(1)
+    fake.raise_fault(2)
+    newest, oldest = drive.faults()
+    assert newest.cause == "a phase current beyond trip_current"
+    assert oldest.cause.startswith("over-current")
+    assert (newest.link_voltage, newest.current_d, newest.current_q) == (310.0, -1.0, 3.0)
+    assert drive.status().fault == newest.cause
+    drive.reset()
+    assert drive.status().fault == ""
+
+
+def test_a_question_without_an_answer_is_repeated_with_its_tag(fake, drive):
+    fake.swallow += [Request.PARAMETER_GET] * 2
+    assert drive.get("current_limit") == 14.0
+    assert drive.link.counts.repeated == 2
+    fake.corrupt += [Request.PARAMETER_GET]
+    assert drive.get("current_limit") == 14.0
+    assert drive.link.counts.damaged == 1
+
+
+def test_what_must_not_happen_twice_is_not_repeated(fake, drive):
+    fake.swallow += [Request.COMMAND]
+    with pytest.raises(NoAnswerError, match="not known"):
+        drive.reset()
+    assert fake.swallow == []
+    drive.stop()
+    fake.swallow += [Request.COMMAND]
+    drive.stop()  # may be said twice
+
+
+def test_silence_is_said(fake):
+    with Drive.open(fake.port, timeout=0.05) as drive:
+        fake.swallow += [Request.STATUS] * 4
+        with pytest.raises(NoAnswerError, match=f"no answer from the drive on serial port {fake.port}$"):
+            drive.status()
+
+
+def test_text_among_answers_goes_to_who_listens(fake, drive):
+    heard = []
+    with drive.link.listening(text=heard.append):
+        fake.chatter = b"boot 1.0\r\n"
+        drive.get("current_limit")
+    assert b"".join(heard) == b"boot 1.0\r\n"
+
+
+def test_a_port_is_for_one_client(fake, drive):
+    with pytest.raises(LinkError, match="in use by another program"):
+        Drive.open(fake.port)
+
+
+def test_an_unplugged_drive_is_said_at_once(fake, drive):
+    fake.unplug()
+    begin = time.monotonic()
+    with pytest.raises(LinkError, match="lost"):
+        for _ in range(10):
+            drive.status()
+    assert time.monotonic() - begin < 2
+
+
+def test_many_threads_get_their_own_answers(drive):
+    wrong = []
+
+    def ask(name, value):
+        wrong.extend(name for _ in range(40) if drive.get(name) != value)
+
+    threads = [threading.Thread(target=ask, args=pair) for pair in (("current_limit", 14.0), ("speed_limit", 3300.0))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert wrong == []
+
+
+def test_a_guarded_motor_stops_when_the_client_is_silent(fake, drive):
+    drive.set("link_timeout", 100)
+    drive.start(300, guarded=True)
+    assert fake.state == 4
+    assert wait_until(lambda: fake.state != 4, 2)
+
+
+def test_running_is_guarded_and_ends_with_the_context(fake, drive):
+    drive.set("link_timeout", 200)
+    drive.set("speed_ramp", 20000)
+    with drive.running(300):
+        time.sleep(0.5)
+        assert fake.state == 4
+        assert fake.guarded
+    assert fake.state == 2
+
+
+def test_running_says_which_fault_ended_it(fake, drive):
+    fake.start_fault = 1
+    with pytest.raises(DriveError, match="the motor does not run: over-current"), drive.running(300):
+        pytest.fail("it did not start")
+
+
+def test_a_stream_counts_what_is_lost(fake, drive):
+    with drive.stream(["speed", "link_voltage"], period=0.005) as stream:
+        first = stream.next(2)
+        assert first.values[1] == 310.0
+        fake._counter = (fake._counter + 3) % 256
+        times = [next(iter(stream)).time for _ in range(20)]
+    assert stream.lost == 3
+    assert times == sorted(times)
+    assert wait_until(lambda: fake.stream is None, 1)
+
+
+def test_a_stream_of_too_much_is_refused(drive):
+    with pytest.raises(InputError, match="9 signals; 1 … 8"):
+        drive.stream(["speed"] * 9)
+    with pytest.raises(InputError, match=r"0.001 … 65.535 s"):
+        drive.stream(["speed"], 100)
+
+
+def test_a_capture_has_units_and_time_from_the_trigger(drive):
+    capture = drive.capture("speed", Channel("current_d", 4.0), trigger=Trigger("speed", 10, "rising"), decimation=2)
+    assert capture.time.size == scope.DEPTH
+    assert capture.time[256] == 0.0
+    assert capture.interval == pytest.approx(2e-4)
+    # The fake counts records; its value at the trigger is the signal's, less than a step of 4 A / 2^15 away.
+    assert capture.signals["current_d"][256] == pytest.approx(-1.5, abs=4 / 2**15)
+    step = np.diff(capture.signals["current_d"])
+    assert np.allclose(step, 4 / 2**15)
+    assert capture.units == {"speed": "rpm", "current_d": "A"}
+    assert capture.clipped == ()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"trigger": Trigger("speed", 0, "up")}, "no trigger edge 'up'; known: above, below, either"),
+        ({"trigger": Trigger("speed", 40000)}, "speed: 40000 is out of range; -32768 … 32768 rpm"),
+        ({"decimation": 0}, "decimation 0: must be 1 … 65535"),
+        ({"pretrigger": 1.0}, "must be 0 or more and below 1"),
+    ],
+)
+def test_what_is_wrong_with_a_capture_is_said(drive, options, said):
+    with pytest.raises(InputError, match=said):
+        drive.capture("speed", **options)
+
+
+def test_a_commissioning_is_followed_to_its_results(drive):
+    phases = []
+    report = drive.commission(lambda share, phase: phases.append((share, phase)) or True)
+    assert not report.complete
+    assert phases[0][1] == "staircase"
+    assert [(value.name, value.value, value.used) for value in report.values] == [
+        ("current_limit", 13.5, True),
+        ("speed_limit", 5000.0, False),
+    ]
+    assert report.values[1].words == "too few samples"
+
+
+def test_a_commissioning_can_be_stopped(drive):
+    with pytest.raises(DriveError, match="was stopped"):
+        drive.commission(lambda share, phase: False)
+
+
+def test_save_waits_for_the_store(fake, drive):
+    drive.save()
+    assert drive.status().store == "saved"
