@@ -1,0 +1,86 @@
+// The inside of the plant: which edges, events and looks end a segment, and what happens there. Not for users of the
+// plant, see plant.hpp.
+//
+// Split over plant_engine.cpp (time, edges, events), plant_changes.cpp (load, lock, faults) and plant.cpp (looks).
+
+#ifndef STILLSPIN_SIM_HOST_PLANT_PLANT_ENGINE_HPP
+#define STILLSPIN_SIM_HOST_PLANT_PLANT_ENGINE_HPP
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_host/plant/adc.hpp"
+#include "sim_host/plant/gates.hpp"
+#include "sim_host/plant/ledger.hpp"
+#include "sim_host/plant/load_profile.hpp"
+#include "sim_host/plant/plant.hpp"
+#include "sim_host/plant/sensors.hpp"
+#include "sim_host/plant/trajectory.hpp"
+
+namespace stillspin::plant {
+
+/// Throws std::invalid_argument for an index that is none of a phase or a leg.
+void check_index(const char* what, int index);
+
+/// Largest magnitude of the three phase values.
+inline double largest(const AlphaBeta& x) {
+  const std::array<double, 3> i = phases(x);
+  return std::max(std::fabs(i[0]), std::max(std::fabs(i[1]), std::fabs(i[2])));
+}
+
+struct Plant::Impl {
+  explicit Impl(const PlantConfig& c);  // validates
+
+  void move_to(Tick t);
+  void integrate_to(Tick t);
+  void settle(Tick t);
+  void edges(Tick t);
+  Tick next_edge() const;
+  void start_segment(Tick t);
+  void look_ahead(Tick edge);
+  void pass_edges();
+  void commit();
+  template <typename Change>
+  void transition(const Fired& fired, Change change);
+  void cut();
+  void set_leg(int k);
+  const State& present();
+  const std::array<double, 3>& sensed();
+
+  PlantConfig config;
+  Trajectory trajectory;
+  Gates gates;
+  LoadProfile load;
+  Tick load_end = kNever;
+  Sensors sensors;
+  Adc adc;
+  Ledger ledger;
+  std::array<bool, 3> open{};
+  std::optional<ShootThrough> shoot_through;
+  PlantStats stats;
+  Tick now = 0;
+  bool looked_ahead = false;  // with all edges known so far
+  double peak = 0.0;          // A, over committed segments since last asked
+
+  // What has already been evaluated at the present.
+  bool has_present = false, has_sensed = false;
+  State present_state;
+  std::array<double, 3> present_sensed;
+};
+
+/// Something changes at the start of the current segment; leg voltages that jump by it make the sensors ring.
+template <typename Change>
+inline void Plant::Impl::transition(const Fired& fired, Change change) {
+  const std::array<double, 3> before = trajectory.leg_voltages();
+  change();
+  trajectory.model().resolve(trajectory.state(), fired);
+  trajectory.restart();
+  looked_ahead = false;
+  std::array<double, 3> step = trajectory.leg_voltages();
+  for (int k = 0; k < 3; ++k) step[k] -= before[k];
+  sensors.excite(trajectory.tick(), trajectory.fraction(), step);
+}
+
+}  // namespace stillspin::plant
+
+#endif
