@@ -6,6 +6,7 @@
 #ifndef STILLSPIN_SIM_HOST_PLANT_ADC_HPP
 #define STILLSPIN_SIM_HOST_PLANT_ADC_HPP
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -18,12 +19,24 @@ class Adc {
  public:
   explicit Adc(const AdcConfig& config);
 
-  std::uint16_t current(int phase, double amperes);
-  std::uint16_t link_voltage(double volts);
+  std::uint16_t current(int phase, double amperes) {
+    return convert(kMiddle + codes_per_ampere_ * amperes, noise_[phase]);
+  }
+  std::uint16_t link_voltage(double volts) { return convert(codes_per_volt_ * volts, noise_[3]); }
   std::uint16_t temperature() const { return static_cast<std::uint16_t>(config_.temperature_code); }
 
  private:
-  std::uint16_t convert(double code, Noise& noise) const;
+  static constexpr double kMiddle = 2048.0;
+  static constexpr double kLast = 4095.0;
+
+  static double clipped(double code) { return std::min(std::max(code, 0.0), kLast); }
+
+  std::uint16_t convert(double code, Noise& noise) const {
+    const double x = (clipped(code) - kMiddle) / kMiddle;
+    code += config_.inl * (0.7 * (4.0 * x * x - 3.0) * x + 0.3 * (2.0 * x * x - 1.0));
+    if (config_.noise > 0.0) code += config_.noise * noise.gaussian();
+    return static_cast<std::uint16_t>(static_cast<int>(clipped(code) + 0.5));
+  }
 
   AdcConfig config_;
   double codes_per_ampere_;
