@@ -18,13 +18,30 @@ struct SegmentStart {
 };
 
 /// Cubic Hermite polynomial through the start and a state `end` after h seconds, at s of them.
+class Hermite {
+ public:
+  Hermite(double h, double s) {
+    const double x = s / h;
+    end_ = x * x * (3.0 - 2.0 * x);
+    start_ = 1.0 - end_;
+    start_slope_ = s * (1.0 - x) * (1.0 - x);
+    end_slope_ = s * x * (x - 1.0);
+  }
+
+  State operator()(const SegmentStart& start, const State& end, const State& end_slope) const {
+    return start_ * start.y + end_ * end + start_slope_ * start.slope + end_slope_ * end_slope;
+  }
+  /// One of its numbers alone.
+  double operator()(const SegmentStart& start, const State& end, const State& end_slope, StateIndex n) const {
+    return start_ * start.y[n] + end_ * end[n] + start_slope_ * start.slope[n] + end_slope_ * end_slope[n];
+  }
+
+ private:
+  double start_, end_, start_slope_, end_slope_;  // weights
+};
+
 inline State hermite(const SegmentStart& start, const State& end, const State& end_slope, double h, double s) {
-  const double x = s / h;
-  const double w1 = x * x * (3.0 - 2.0 * x);
-  const double w0 = 1.0 - w1;
-  const double s0 = s * (1.0 - x) * (1.0 - x);
-  const double s1 = s * x * (x - 1.0);
-  return w0 * start.y + w1 * end + s0 * start.slope + s1 * end_slope;
+  return Hermite(h, s)(start, end, end_slope);
 }
 
 inline constexpr double kNowhere = -1.0;

@@ -42,9 +42,9 @@ std::uint16_t Plant::adc_code(Tick t, AdcInput input) {
     case AdcInput::kCurrentC:
       return impl_->config.sensor.count < 3 ? std::uint16_t{0} : impl_->adc.current(2, current_sensor(2));
     case AdcInput::kLinkVoltage: {
-      const State& y = impl_->present();
+      impl_->integrate_to(t);
       const Trajectory& trajectory = impl_->trajectory;
-      return impl_->adc.link_voltage(trajectory.model().link_voltage(trajectory.offset(t), y));
+      return impl_->adc.link_voltage(trajectory.link_voltage_at_offset(trajectory.offset(t)));
     }
     case AdcInput::kTemperature:
       break;

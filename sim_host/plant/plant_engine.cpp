@@ -126,7 +126,7 @@ void Plant::Impl::commit() {
     trajectory.locate();
   }
   if (config.solver.ledger) ledger.book(trajectory, trajectory.length());
-  const AlphaBeta i0 = trajectory.start_current(), d0 = trajectory.start_slope();
+  const AlphaBeta i0 = trajectory.origin_current(), d0 = trajectory.origin_slope();
   const double h = trajectory.length();
   const bool has_event = trajectory.has_event();
   const Fired fired = trajectory.fired();
@@ -158,15 +158,13 @@ const State& Plant::Impl::present() {
   return present_state;
 }
 
-/// What the current sensors see at the present, before their gains and offsets.
-const std::array<double, 3>& Plant::Impl::sensed() {
-  if (has_sensed) return present_sensed;
-  const AlphaBeta i = trajectory.current(present());
-  present_sensed =
-      phases(sensors.filtered(trajectory.start_current(), trajectory.start_slope(), i, trajectory.offset(now)) +
-             sensors.ringing(now));
+void Plant::Impl::sense() {
+  integrate_to(now);
+  const double s = trajectory.offset(now);
+  present_sensed = phases(sensors.filtered(trajectory.origin_current(), trajectory.origin_slope(),
+                                           trajectory.current_at_offset(s), s) +
+                          sensors.ringing(now));
   has_sensed = true;
-  return present_sensed;
 }
 
 }  // namespace stillspin::plant

@@ -45,7 +45,12 @@ struct Plant::Impl {
   void cut();
   void set_leg(int k);
   const State& present();
-  const std::array<double, 3>& sensed();
+  void sense();
+  /// What the current sensors see at the present, before their gains and offsets.
+  const std::array<double, 3>& sensed() {
+    if (!has_sensed) sense();
+    return present_sensed;
+  }
 
   PlantConfig config;
   Trajectory trajectory;

@@ -16,12 +16,14 @@ Sensors::Sensors(const PlantConfig& c, const AlphaBeta& initial)
       tau_(c.sensor.bandwidth > 0.0 ? 1.0 / (2.0 * kPi * c.sensor.bandwidth) : 0.0),
       inverse_tau_(2.0 * kPi * c.sensor.bandwidth),
       ring_scale_(1.5 * c.sensor.ring_amplitude / c.link.source_voltage),
+      ring_end_(static_cast<Tick>(kForgotten * c.sensor.ring_decay / kSecondsPerTick)),
       filtered_(initial) {
-  for (int n = 0; n < kFine; ++n) fine_[n] = decay(n * kSecondsPerTick);
-  for (int n = 0; n < kCoarse; ++n) coarse_[n] = decay(n * kFine * kSecondsPerTick);
-  for (int n = 0; n < kFine; ++n) fine_filter_[n] = exponential(-n * kSecondsPerTick * inverse_tau_);
-  for (int n = 0; n < kCoarse; ++n) {
-    coarse_filter_[n] = n == 0 ? 1.0 : coarse_filter_[n - 1] * exponential(-kFine * kSecondsPerTick * inverse_tau_);
+  const double coarse = kFine * kSecondsPerTick;
+  for (unsigned n = 0; n < kFine; ++n) fine_[n] = decay(n * kSecondsPerTick);
+  for (unsigned n = 0; n < kCoarse; ++n) coarse_[n] = decay(n * kFine * kSecondsPerTick);
+  for (unsigned n = 0; n < kFine; ++n) fine_filter_[n] = exponential(-(n * kSecondsPerTick) * inverse_tau_);
+  for (unsigned n = 0; n < kCoarse; ++n) {
+    coarse_filter_[n] = n == 0 ? 1.0 : coarse_filter_[n - 1] * exponential(-coarse * inverse_tau_);
   }
 }
 
@@ -30,8 +32,8 @@ double Sensors::forgetting(double seconds) const {
   const double scaled = seconds * inverse_tau_;
   if (scaled > kForgotten) return 0.0;
   const double ticks = seconds * 1e8;
-  const int whole = static_cast<int>(ticks + 0.5);
-  if (whole < kFine * kCoarse && std::fabs(ticks - whole) < kWholeTick) {
+  const auto whole = static_cast<unsigned>(static_cast<int>(ticks + 0.5));
+  if (whole < kFine * kCoarse && std::fabs(ticks - static_cast<int>(whole)) < kWholeTick) {
     return coarse_filter_[whole / kFine] * fine_filter_[whole % kFine];
   }
   return exponential(-scaled);
@@ -54,24 +56,20 @@ Sensors::Phasor Sensors::decay(double seconds) const {
   return {size * turn.c, size * turn.s};
 }
 
-bool Sensors::decay(Tick ticks, Phasor* factor) const {
-  if (static_cast<double>(ticks) * kSecondsPerTick > kForgotten * config_.ring_decay) return false;
-  if (ticks < kFine) {
-    *factor = fine_[static_cast<std::size_t>(ticks)];
-  } else if (ticks < kFine * kCoarse) {
-    *factor = product(coarse_[static_cast<std::size_t>(ticks / kFine)], fine_[static_cast<std::size_t>(ticks % kFine)]);
-  } else {
-    *factor = decay(static_cast<double>(ticks) * kSecondsPerTick);
-  }
-  return true;
+/// Over at most ring_end_.
+Sensors::Phasor Sensors::decay(Tick ticks) const {
+  const auto n = static_cast<std::size_t>(ticks);
+  if (n < kFine) return fine_[n];
+  if (n < kFine * kCoarse) return product(coarse_[n / kFine], fine_[n % kFine]);
+  return decay(static_cast<double>(ticks) * kSecondsPerTick);
 }
 
 void Sensors::excite(Tick t, double fraction, const std::array<double, 3>& step) {
   if (ring_scale_ == 0.0) return;
   // Phasors live on whole ticks: an edge inside a tick is booked on the next one, already that much older.
   const Tick tick = fraction > 0.0 ? t + 1 : t;
-  Phasor factor;
-  if (decay(tick - ring_tick_, &factor)) {
+  if (tick - ring_tick_ <= ring_end_) {
+    const Phasor factor = decay(tick - ring_tick_);
     ring_alpha_ = product(ring_alpha_, factor);
     ring_beta_ = product(ring_beta_, factor);
   } else {
@@ -88,8 +86,8 @@ void Sensors::excite(Tick t, double fraction, const std::array<double, 3>& step)
 }
 
 AlphaBeta Sensors::ringing(Tick t) const {
-  Phasor factor;
-  if (ring_scale_ == 0.0 || !decay(t - ring_tick_, &factor)) return AlphaBeta::Zero();
+  if (ring_scale_ == 0.0 || t - ring_tick_ > ring_end_) return AlphaBeta::Zero();
+  const Phasor factor = decay(t - ring_tick_);
   return {product(ring_alpha_, factor).im, product(ring_beta_, factor).im};
 }
 

@@ -61,17 +61,18 @@ class Sensors {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
   }
   Phasor decay(double seconds) const;
-  bool decay(Tick ticks, Phasor* factor) const;
+  Phasor decay(Tick ticks) const;
 
   SensorConfig config_;
   double tau_;          // s, 0 = ideal
   double inverse_tau_;  // 1/s
   double ring_scale_;   // A/V
+  Tick ring_end_;       // ticks after which nothing is left of a ringing
   AlphaBeta filtered_;
   Phasor ring_alpha_, ring_beta_;
   Tick ring_tick_ = 0;
-  static constexpr int kFine = 64;
-  static constexpr int kCoarse = 128;
+  static constexpr unsigned kFine = 64;
+  static constexpr unsigned kCoarse = 128;
   std::array<Phasor, kFine> fine_;      // decay over 0..63 ticks
   std::array<Phasor, kCoarse> coarse_;  // decay over 0, 64, 128, ... ticks
   std::array<double, kFine> fine_filter_;

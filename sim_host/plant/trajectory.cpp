@@ -31,6 +31,8 @@ void Trajectory::begin() {
   model_.anchor = model_.machine.anchor_near(start_.y[kIq], model_.anchor);
   start_.flux = model_.flux(start_.y);
   model_.derive_at_start(start_.y, start_.flux, start_.slope, start_.flux_slope);
+  origin_current_ = start_current();
+  origin_slope_ = start_slope();
   started_ = true;
 }
 
@@ -65,7 +67,7 @@ double Trajectory::grazing_instant() {
   end_slope_known_ = step_.has_end_slope;
   if (model_.clamp == Clamp::kAll) return 0.0;
   const double h = step_.reached;
-  const AlphaBeta i0 = start_current(), d0 = start_slope();
+  const AlphaBeta &i0 = origin_current_, &d0 = origin_slope_;
   for (int k = 0; k < 3; ++k) {
     if (model_.direction[k] == 0 || model_.legs[k].perfect) continue;
     const AlphaBeta axis = model_.direction[k] * stator_axis(k);
@@ -85,14 +87,32 @@ double Trajectory::grazing_instant() {
   return 0.0;
 }
 
-State Trajectory::at_offset(double s) const {
-  const double h = step_.reached;
-  if (s >= h) return end_;
+const State& Trajectory::end_slope() const {
   if (!end_slope_known_) {
-    model_.derive(h, end_, step_.end_slope);
+    model_.derive(step_.reached, end_, step_.end_slope);
     end_slope_known_ = true;
   }
-  return hermite(start_, end_, step_.end_slope, h, s);
+  return step_.end_slope;
+}
+
+State Trajectory::at_offset(double s) const {
+  const double h = step_.reached;
+  return s >= h ? end_ : hermite(start_, end_, end_slope(), h, s);
+}
+
+AlphaBeta Trajectory::current_at_offset(double s) const {
+  const double h = step_.reached;
+  if (s >= h) return current(end_);
+  const State& slope = end_slope();
+  const Hermite at(h, s);
+  const Rotation e = turned(model_.base, at(start_, end_, slope, kAngle));
+  return stator(e, at(start_, end_, slope, kId), at(start_, end_, slope, kIq));
+}
+
+double Trajectory::link_voltage_at_offset(double s) const {
+  const double h = step_.reached;
+  if (model_.link.stiff || s >= h) return model_.link_voltage(s, end_);
+  return Hermite(h, s)(start_, end_, end_slope(), kLink);
 }
 
 void Trajectory::commit() {

@@ -67,12 +67,13 @@ class Trajectory {
   /// s from the start, within the segment.
   double offset(Tick t) const { return std::min(std::max(time_to(t), 0.0), step_.reached); }
   State at_offset(double s) const;
+  /// The same of the current alone, and of the link voltage alone.
+  AlphaBeta current_at_offset(double s) const;
+  double link_voltage_at_offset(double s) const;
+  /// Current where the segment looked ahead starts, and its slope.
+  const AlphaBeta& origin_current() const { return origin_current_; }
+  const AlphaBeta& origin_slope() const { return origin_slope_; }
   AlphaBeta start_current() const { return stator(model_.base, start_.y[kId], start_.y[kIq]); }
-  AlphaBeta start_slope() const {  // A/s
-    const double electrical = start_.slope[kAngle];
-    return stator(model_.base, start_.slope[kId] - electrical * start_.y[kIq],
-                  start_.slope[kIq] + electrical * start_.y[kId]);
-  }
   AlphaBeta current(const State& y) const { return stator(turned(model_.base, y[kAngle]), y[kId], y[kIq]); }
 
   /// Makes the segment's end the start of the next one. The model still has the modes of before.
@@ -82,6 +83,12 @@ class Trajectory {
 
  private:
   static AlphaBeta stator(const Rotation& e, double d, double q) { return {e.c * d - e.s * q, e.s * d + e.c * q}; }
+  AlphaBeta start_slope() const {  // A/s
+    const double electrical = start_.slope[kAngle];
+    return stator(model_.base, start_.slope[kId] - electrical * start_.y[kIq],
+                  start_.slope[kIq] + electrical * start_.y[kId]);
+  }
+  const State& end_slope() const;
   void begin();
   void turn_bases(double angle);
   double time_to(Tick t) const { return static_cast<double>(t - tick_) * kSecondsPerTick - fraction_; }
@@ -97,6 +104,7 @@ class Trajectory {
   int since_set_ = 0;    // segments since the rotations were set anew
 
   SegmentStart start_;
+  AlphaBeta origin_current_, origin_slope_;
   State end_;
   mutable Advance step_;  // its end slope may be evaluated late
   Tick end_tick_ = 0;     // of a segment without event
