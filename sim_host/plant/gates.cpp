@@ -1,25 +1,18 @@
 #include "sim_host/plant/gates.hpp"
 
-#include <algorithm>
-
 namespace stillspin::plant {
 
-void Gates::set(Tick t, int leg, bool upper, bool lower) {
-  set_device(devices_[2 * leg], t, upper);
-  set_device(devices_[2 * leg + 1], t, lower);
-  find_next();
-}
-
-Tick Gates::next_of_both(const Device& carrying, const Device& other) const {
-  if (other.on) return next_;
-  for (const Change& change : other.pending) {
-    if (change.on) return std::min(carrying.next, change.tick);
+Tick Gates::next_of_both(int carrying, int other) const {
+  if (devices_[other].on) return next_;
+  for (const Change& change : devices_[other].pending) {
+    if (change.on) return std::min(due_[carrying], change.tick);
   }
-  return carrying.next;
+  return due_[carrying];
 }
 
-void Gates::set_device(Device& device, Tick t, bool on) {
-  if (on == device.input) return;
+/// The input of a device changes.
+void Gates::set_device(int n, Tick t, bool on) {
+  Device& device = devices_[n];
   device.input = on;
   const Tick effect = t + (on ? on_delay_ : off_delay_);
   if (!device.pending.empty() && effect <= device.pending.back().tick) {
@@ -27,27 +20,18 @@ void Gates::set_device(Device& device, Tick t, bool on) {
   } else {
     device.pending.push_back({effect, on});
   }
-  find_next(device);
-}
-
-std::array<bool, 3> Gates::apply(Tick t) {
-  std::array<bool, 3> changed{};
-  for (int n = 0; n < 6; ++n) {
-    Device& device = devices_[n];
-    while (device.next <= t) {
-      device.on = device.pending.front().on;
-      device.pending.erase(device.pending.begin());
-      find_next(device);
-      changed[n / 2] = true;
-    }
-  }
+  find_due(n);
   find_next();
-  return changed;
 }
 
-void Gates::find_next() {
-  next_ = kNever;
-  for (const Device& device : devices_) next_ = std::min(next_, device.next);
+/// Lets all changes of a device up to t happen.
+void Gates::pass(int n, Tick t) {
+  Device& device = devices_[n];
+  while (due_[n] <= t) {
+    device.on = device.pending.front().on;
+    device.pending.erase(device.pending.begin());
+    find_due(n);
+  }
 }
 
 }  // namespace stillspin::plant

@@ -6,6 +6,7 @@
 #ifndef STILLSPIN_SIM_HOST_PLANT_GATES_HPP
 #define STILLSPIN_SIM_HOST_PLANT_GATES_HPP
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
@@ -20,7 +21,10 @@ class Gates {
  public:
   Gates(Tick turn_on_delay, Tick turn_off_delay) : on_delay_(turn_on_delay), off_delay_(turn_off_delay) {}
 
-  void set(Tick t, int leg, bool upper, bool lower);
+  void set(Tick t, int leg, bool upper, bool lower) {
+    if (upper != devices_[2 * leg].input) set_device(2 * leg, t, upper);
+    if (lower != devices_[2 * leg + 1].input) set_device(2 * leg + 1, t, lower);
+  }
 
   /// When the next device changes.
   Tick next() const { return next_; }
@@ -29,14 +33,21 @@ class Gates {
   /// (else its lower diode conducts, whatever the lower device does), the lower one of a current that enters it. So is
   /// a change that makes both devices conduct.
   Tick next(int leg, bool leaving) const {
-    const Device& carrying = devices_[2 * leg + (leaving ? 0 : 1)];
-    const Device& other = devices_[2 * leg + (leaving ? 1 : 0)];
-    if (carrying.on) return next_of_both(carrying, other);
-    return carrying.next;
+    const int carrying = 2 * leg + (leaving ? 0 : 1);
+    return devices_[carrying].on ? next_of_both(carrying, 4 * leg + 1 - carrying) : due_[carrying];
   }
 
   /// Lets all changes up to t happen; the legs whose devices have changed.
-  std::array<bool, 3> apply(Tick t);
+  std::array<bool, 3> apply(Tick t) {
+    std::array<bool, 3> changed{};
+    for (int n = 0; n < 6; ++n) {
+      if (due_[n] > t) continue;
+      pass(n, t);
+      changed[n / 2] = true;
+    }
+    find_next();
+    return changed;
+  }
 
   bool upper(int leg) const { return devices_[2 * leg].on; }
   bool lower(int leg) const { return devices_[2 * leg + 1].on; }
@@ -49,16 +60,20 @@ class Gates {
   struct Device {
     bool input = false;
     bool on = false;
-    Tick next = kNever;           // the first pending change
     std::vector<Change> pending;  // seldom more than one
   };
 
-  static void find_next(Device& device) { device.next = device.pending.empty() ? kNever : device.pending.front().tick; }
-  Tick next_of_both(const Device& carrying, const Device& other) const;
-  void set_device(Device& device, Tick t, bool on);
-  void find_next();
+  Tick next_of_both(int carrying, int other) const;
+  void set_device(int n, Tick t, bool on);
+  void pass(int n, Tick t);
+  void find_due(int n) { due_[n] = devices_[n].pending.empty() ? kNever : devices_[n].pending.front().tick; }
+  void find_next() {
+    const Tick a = std::min(due_[0], due_[1]), b = std::min(due_[2], due_[3]), c = std::min(due_[4], due_[5]);
+    next_ = std::min(a, std::min(b, c));
+  }
 
   std::array<Device, 6> devices_;
+  std::array<Tick, 6> due_{kNever, kNever, kNever, kNever, kNever, kNever};  // first pending change of each device
   Tick on_delay_;
   Tick off_delay_;
   Tick next_ = kNever;

@@ -63,6 +63,12 @@ class Machine {
     return {lambda + ld * id + 0.5 * k * iq * iq, main + k * id * iq};
   }
 
+  /// The same where `at` is the very point.
+  Pair flux_at(double id, double iq, const Anchor& at) const {
+    const double main = inverse_knee > 0.0 ? knee * lq * at.arc : lq * iq;
+    return {lambda + ld * id + 0.5 * k * iq * iq, main + k * id * iq};
+  }
+
   /// Inverse of the incremental inductance matrix times `u`; determinant_sign <= 0 outside of the map's validity.
   Pair slope(double id, double iq, const Pair& u, double* determinant_sign) const {
     const double x = iq * inverse_knee;

@@ -24,15 +24,16 @@ Plant::Impl::Impl(const PlantConfig& c)
       trajectory(c),
       gates(c.inverter.turn_on_delay, c.inverter.turn_off_delay),
       sensors(c, trajectory.start_current()),
-      adc(c.adc) {}
-
-void Plant::Impl::move_to(Tick t) {
-  if (t < now) {
-    throw std::invalid_argument("plant: time went back from tick " + std::to_string(now) + " to tick " +
-                                std::to_string(t));
+      adc(c.adc) {
+  for (const bool cut : {false, true}) {
+    legs[cut] = {Leg::make(c.inverter, false, false, cut), Leg::make(c.inverter, false, true, cut),
+                 Leg::make(c.inverter, true, false, cut)};
   }
-  if (t != now) has_present = has_sensed = false;
-  now = t;
+}
+
+void Plant::Impl::refuse(Tick t) const {
+  throw std::invalid_argument("plant: time went back from tick " + std::to_string(now) + " to tick " +
+                              std::to_string(t));
 }
 
 /// The next edge at which a segment must end: half of the gates' edges change nothing, because the diode of the other
@@ -47,9 +48,8 @@ Tick Plant::Impl::next_edge() const {
   return next;
 }
 
-/// Until a segment covers t. An edge at t itself is left for later, since nothing but the leg voltage shows it.
-void Plant::Impl::integrate_to(Tick t) {
-  while (!(looked_ahead && trajectory.covers(t))) {
+void Plant::Impl::integrate_on(Tick t) {
+  do {
     start_segment(kNever);
     look_ahead(next_edge());
     looked_ahead = true;
@@ -57,13 +57,15 @@ void Plant::Impl::integrate_to(Tick t) {
     trajectory.locate();
     if (trajectory.covers(t)) return;
     commit();
-  }
+  } while (!(looked_ahead && trajectory.covers(t)));
 }
 
 /// Past all edges before t that change something, but no further: the next gate command may come at t.
 void Plant::Impl::settle(Tick t) {
-  for (start_segment(t); next_edge() < t; start_segment(t)) {
-    look_ahead(next_edge());
+  for (start_segment(t); std::min(gates.next(), load_end) < t; start_segment(t)) {
+    const Tick next = next_edge();
+    if (next >= t) return;
+    look_ahead(next);
     commit();
   }
 }
@@ -110,9 +112,10 @@ void Plant::Impl::pass_edges() {
   }
 }
 
+/// Both devices on (shoot-through): as if both were off.
 void Plant::Impl::set_leg(int k) {
-  const bool both = gates.upper(k) && gates.lower(k);
-  trajectory.model().legs[k] = Leg::make(config.inverter, gates.upper(k) && !both, gates.lower(k) && !both, open[k]);
+  const bool upper = gates.upper(k), lower = gates.lower(k);
+  trajectory.model().legs[k] = legs[open[k]][upper != lower ? 1 + upper : 0];
 }
 
 /// An event decides anew which legs conduct and has to know all edges before it: the segment then ends at the first of

@@ -31,8 +31,18 @@ inline double largest(const AlphaBeta& x) {
 struct Plant::Impl {
   explicit Impl(const PlantConfig& c);  // validates
 
-  void move_to(Tick t);
-  void integrate_to(Tick t);
+  void move_to(Tick t) {
+    if (t == now) return;
+    if (t < now) refuse(t);
+    has_present = has_sensed = false;
+    now = t;
+  }
+  /// Until a segment covers t. An edge at t itself is left for later, since nothing but the leg voltage shows it.
+  void integrate_to(Tick t) {
+    if (!looked_ahead || !trajectory.covers(t)) integrate_on(t);
+  }
+  [[noreturn]] void refuse(Tick t) const;
+  void integrate_on(Tick t);
   void settle(Tick t);
   void edges(Tick t);
   Tick next_edge() const;
@@ -61,6 +71,7 @@ struct Plant::Impl {
   Adc adc;
   Ledger ledger;
   std::array<bool, 3> open{};
+  std::array<std::array<Leg, 3>, 2> legs;  // [wire cut][both off, lower on, upper on]
   std::optional<ShootThrough> shoot_through;
   PlantStats stats;
   Tick now = 0;

@@ -29,7 +29,7 @@ Trajectory::Trajectory(const PlantConfig& c)
 
 void Trajectory::begin() {
   model_.anchor = model_.machine.anchor_near(start_.y[kIq], model_.anchor);
-  start_.flux = model_.flux(start_.y);
+  start_.flux = model_.machine.flux_at(start_.y[kId], start_.y[kIq], model_.anchor);
   model_.derive_at_start(start_.y, start_.flux, start_.slope, start_.flux_slope);
   origin_current_ = start_current();
   origin_slope_ = start_slope();
