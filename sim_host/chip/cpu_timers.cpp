@@ -30,14 +30,19 @@ bool CpuTimers::Timer::running() const { return (control & CPUTIMER_TCR_TSS_MASK
 
 std::int64_t CpuTimers::Timer::counted(Tick t, Tick clock) const {
   if (!running()) return cycles;
-  const std::int64_t elapsed = (t - since) / clock;
+  const std::int64_t elapsed = clock == 1 ? t - since : (t - since) / clock;  // 100 MHz spares the division
   if (elapsed <= cycles) return cycles - elapsed;
   const std::int64_t span = wrap();
   return span - 1 - (elapsed - cycles - 1) % span;
 }
 
 std::uint32_t CpuTimers::Timer::count(Tick t, Tick clock) const {
-  return static_cast<std::uint32_t>(counted(t, clock) / (std::int64_t{prescale} + 1));
+  const std::int64_t left = counted(t, clock);
+  return static_cast<std::uint32_t>(prescale == 0 ? left : left / (std::int64_t{prescale} + 1));
+}
+
+std::uint32_t CpuTimers::Timer::psc(Tick t, Tick clock) const {
+  return static_cast<std::uint32_t>(counted(t, clock) % (std::int64_t{prescale} + 1));
 }
 
 void CpuTimers::Timer::settle(Tick t, Tick clock) {
@@ -98,7 +103,6 @@ void CpuTimers::clocks_changed(Tick t) {
 std::uint16_t CpuTimers::read(std::uint16_t offset, Tick t) {
   if (offset >= kTimerSpan * timers_.size()) return 0;
   const Timer& timer = timers_[offset / kTimerSpan];
-  const auto psc = static_cast<std::uint32_t>(timer.counted(t, clock_) % (std::int64_t{timer.prescale} + 1));
   switch (offset % kTimerSpan) {
     case CPUTIMER_TIM_LSW:
       return low_of(timer.count(t, clock_));
@@ -111,9 +115,9 @@ std::uint16_t CpuTimers::read(std::uint16_t offset, Tick t) {
     case CPUTIMER_TCR:
       return static_cast<std::uint16_t>(timer.control | (timer.flag ? CPUTIMER_TCR_TIF_MASK : 0));
     case CPUTIMER_TPR:
-      return byte_pair(psc, timer.prescale, 0);
+      return byte_pair(timer.psc(t, clock_), timer.prescale, 0);
     case CPUTIMER_TPRH:
-      return byte_pair(psc, timer.prescale, 8);
+      return byte_pair(timer.psc(t, clock_), timer.prescale, 8);
     default:
       return 0;
   }

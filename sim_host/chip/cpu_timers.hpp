@@ -40,7 +40,8 @@ class CpuTimers final : public Peripheral {
     bool running() const;
     std::int64_t wrap() const { return (std::int64_t{period} + 1) * (std::int64_t{prescale} + 1); }
     std::int64_t counted(Tick t, Tick clock) const;
-    std::uint32_t count(Tick t, Tick clock) const;
+    std::uint32_t count(Tick t, Tick clock) const;  // TIM
+    std::uint32_t psc(Tick t, Tick clock) const;
     void settle(Tick t, Tick clock);
     void load(std::uint32_t tim, std::uint32_t psc);
     void plan(Tick clock);

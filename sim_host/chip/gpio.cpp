@@ -22,6 +22,11 @@ struct TripRoute {
 };
 constexpr TripRoute kTripRoutes[] = {{12, 1, 1}, {13, 1, 2}, {14, 1, 3}, {15, 1, 4},
                                      {16, 3, 5}, {28, 3, 5}, {17, 3, 6}, {29, 3, 6}};
+unsigned trip_of(unsigned pin) {
+  const TripRoute* route = kTripRoutes;
+  while (route->pin != pin) ++route;
+  return route->trip;
+}
 constexpr unsigned kEncoderPinA = 20;
 constexpr unsigned kEncoderPinB = 21;
 constexpr unsigned kFunctionEncoder = 1;
@@ -119,8 +124,10 @@ void Gpio::update_routes() {
     if (function(pin) == kFunctionGpio && is_output(pin)) outputs_ |= std::uint64_t{1} << pin;
     if (pin < kPwmPins && function(pin) == kFunctionPwm) pwm_routed_ |= 1u << pin;
   }
-  trips_routed_ = false;
-  for (const TripRoute& route : kTripRoutes) trips_routed_ |= function(route.pin) == route.function;
+  trip_pins_ = 0;
+  for (const TripRoute& route : kTripRoutes) {
+    if (function(route.pin) == route.function) trip_pins_ |= std::uint64_t{1} << route.pin;
+  }
   encoder_routed_ = function(kEncoderPinA) == kFunctionEncoder && function(kEncoderPinB) == kFunctionEncoder;
   serial_in_routed_ = function(kSerialPinIn) == kFunctionSerial;
   serial_out_routed_ = function(kSerialPinOut) == kFunctionSerial;
@@ -158,9 +165,9 @@ void Gpio::drive_pwm(int module, Tick t) {
 
 unsigned Gpio::active_trips(Tick t) {
   unsigned active = 0;
-  for (const TripRoute& route : kTripRoutes) {
-    if (function(route.pin) != route.function) continue;
-    if (!world_.pin_level(t, static_cast<int>(route.pin))) active |= 1u << (route.trip - 1);
+  for (std::uint64_t left = trip_pins_; left != 0; left &= left - 1) {
+    const int pin = __builtin_ctzll(left);
+    if (!world_.pin_level(t, pin)) active |= 1u << (trip_of(static_cast<unsigned>(pin)) - 1);
   }
   return active;
 }

@@ -32,7 +32,7 @@ class Gpio {
 
   /// TZ1..TZ6 that are routed to a pin which is low now: bit n-1 for TZn.
   unsigned active_trips(Tick t);
-  bool trips_routed() const { return trips_routed_; }
+  bool trips_routed() const { return trip_pins_ != 0; }
   bool encoder_routed() const { return encoder_routed_; }
   bool serial_in_routed() const { return serial_in_routed_; }
   bool serial_out_routed() const { return serial_out_routed_; }
@@ -60,7 +60,7 @@ class Gpio {
   unsigned pwm_levels_ = 0;                    // ePWM outputs, bit 2m for A of module m, 2m+1 for B
   unsigned pwm_routed_ = 0;
   unsigned pwm_pins_ = 0;  // what the world knows
-  bool trips_routed_ = false;
+  std::uint64_t trip_pins_ = 0;  // pins that are routed to a trip zone
   bool encoder_routed_ = false;
   bool serial_in_routed_ = false;
   bool serial_out_routed_ = false;
