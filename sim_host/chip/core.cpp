@@ -149,7 +149,7 @@ void Core::find_rest() {
 void Core::advance(Tick target) {
   for (;;) {
     const Tick stop = std::min(target, limit_);
-    run_events(stop);
+    run_events(stop, [] { return false; });
     if (stop_) leave_firmware();
     now_ = stop;
     if (stop == target) return;
@@ -157,24 +157,28 @@ void Core::advance(Tick target) {
   }
 }
 
-// Lets time pass to the next event, but not beyond `target`. May return earlier, after a stop: the host may have
-// changed the world, so the caller looks again.
-void Core::wait_for_event(Tick target) {
-  const Tick goal = std::min(target, std::max(next_event_, now_));
-  if (goal > limit_) {
-    advance(limit_);
-    coroutine_.suspend();
-    return;
-  }
-  run_events(goal);
+// Lets time pass to `target`, or to the tick after which an enabled interrupt is requested (`taken`: can be taken). May
+// return earlier, after a stop: the host may have changed the world, so the caller looks again.
+void Core::wait_for_interrupt(Tick target, bool taken) {
+  const Tick goal = std::min(target, limit_);
+  const bool awake =
+      run_events(goal, [&] { return taken ? interrupts_.deliverable() : interrupts_.requested(); });
   if (stop_) leave_firmware();
+  if (awake) return;
   now_ = goal;
+  if (goal < target) coroutine_.suspend();
 }
 
-void Core::run_events(Tick last) {
+// Everything that is due up to `last`; true when `wake` said between two ticks that something else comes first.
+template <typename Wake>
+bool Core::run_events(Tick last, Wake wake) {
   try {
-    while (next_event_ <= last && !stop_) {
-      now_ = std::max(now_, next_event_);
+    while (!stop_) {
+      if (next_event_ > now_) {
+        if (wake()) return true;
+        if (next_event_ > last) return false;
+        now_ = next_event_;
+      }
       ++statistics_.events;
       run_event(next_source_);
       if (world_touched_) after_world();
@@ -182,6 +186,7 @@ void Core::run_events(Tick last) {
   } catch (...) {
     fail_with_current_exception();
   }
+  return false;
 }
 
 void Core::run_event(Source source) {

@@ -107,8 +107,9 @@ class Core final : public ChipServices {
     }
   }
   void advance(Tick target);
-  void wait_for_event(Tick target);
-  void run_events(Tick last);
+  void wait_for_interrupt(Tick target, bool taken);
+  template <typename Wake>
+  bool run_events(Tick last, Wake wake);
   void run_event(Source source);
   void run_world();
   void run_watchdog();

@@ -72,7 +72,7 @@ void Core::idle() {
   const std::uint64_t taken = statistics_.interrupts;
   const Tick begin = now_;
   idle_ = true;
-  while (!interrupts_.requested()) wait_for_event(kNever);
+  while (!interrupts_.requested()) wait_for_interrupt(kNever, false);
   idle_ = false;
   statistics_.idle_ticks += now_ - begin;
   if (taken == statistics_.interrupts) finish_access();
@@ -86,7 +86,7 @@ void Core::elapse(std::uint16_t cycles) {
       now_ += remaining;
       break;
     }
-    wait_for_event(begin + remaining);
+    wait_for_interrupt(begin + remaining, true);
     remaining -= now_ - begin;
     if (interrupts_.deliverable()) take_interrupts();
   }
