@@ -13,7 +13,7 @@ namespace {
 constexpr int kSeq1 = 0;
 constexpr int kSeq2 = 1;
 constexpr int kNone = -1;
-constexpr std::uint16_t kFullScaleCode = 4095;
+constexpr int kFullScaleCode = 4095;
 constexpr int kCrosstalkDivisor = 256;
 
 constexpr unsigned kFlag[2] = {ADCST_INT_SEQ1_MASK, ADCST_INT_SEQ2_MASK};
@@ -116,16 +116,11 @@ std::uint16_t Adc::convert(int channel, Tick t) {
   return static_cast<std::uint16_t>(powered(t) ? code : 0);
 }
 
-void Adc::queue_result(std::uint8_t index, std::uint16_t code, Tick ready) {
-  if (in_flight_end_ == kMaxInFlight) {
-    services_.model_error("more ADC conversions in one sequence than the sequencer has", in_flight_end_);
-    return;
-  }
+void Adc::queue_result(int index, int code, Tick ready) {
   // 9-bit two's complement offset, added before the result is stored.
   const int trim = (offset_trim_ & 0x0FF) - (offset_trim_ & 0x100);
-  const int trimmed = std::clamp(code + trim, 0, static_cast<int>(kFullScaleCode));
-  first_ready_ = std::min(first_ready_, ready);
-  in_flight_[in_flight_end_++] = Conversion{ready, static_cast<std::uint16_t>(trimmed), index};
+  const int trimmed = std::min(std::max(code + trim, 0), kFullScaleCode);
+  in_flight_[in_flight_end_++] = Conversion{ready, static_cast<std::uint16_t>(trimmed), static_cast<std::uint8_t>(index)};
 }
 
 /// Results that are ready at t become visible.
@@ -151,27 +146,29 @@ void Adc::drop_results() {
 
 void Adc::hold(Tick t) {
   AdcSequencer& seq = sequencers_[active_];
-  const int conv = seq.conv();
-  const int channel = (channel_select_[conv / 4] >> (4 * (conv % 4))) & 0xF;
-  const int result = seq.result(timing_.simultaneous);
-  if (timing_.simultaneous) {
-    const std::uint16_t a = convert(channel & 7, t);
-    std::uint16_t b = convert((channel & 7) + 8, t);
-    if (crosstalk_) {
-      b = static_cast<std::uint16_t>(std::min(b + a / kCrosstalkDivisor, static_cast<int>(kFullScaleCode)));
-    }
-    queue_result(static_cast<std::uint8_t>(result), a, t + timing_.hold_to_a);
-    queue_result(static_cast<std::uint8_t>(result + 1), b, t + timing_.hold_to_b);
-  } else {
-    queue_result(static_cast<std::uint8_t>(result), convert(channel, t), t + timing_.hold_to_a);
+  const bool pair = timing_.simultaneous;
+  if (in_flight_end_ + 2 > kMaxInFlight) {
+    services_.model_error("more ADC conversions in one sequence than the sequencer has", in_flight_end_);
+    return;
   }
-  seq.advance(timing_.simultaneous);
+  const auto conv = static_cast<unsigned>(seq.conv());
+  const int channel = channel_select_[conv / 4] >> (4 * (conv % 4)) & (pair ? 0x7 : 0xF);
+  const int result = seq.result(pair);
+  if (in_flight_end_ == 0) first_ready_ = t + timing_.hold_to_a;
+  const int a = convert(channel, t);
+  queue_result(result, a, t + timing_.hold_to_a);
+  if (pair) {
+    const int b = convert(channel + 8, t);
+    queue_result(result + 1, crosstalk_ ? std::min(b + a / kCrosstalkDivisor, kFullScaleCode) : b,
+                 t + timing_.hold_to_b);
+  }
+  seq.advance(pair);
   if (remaining_ > 0) {
     --remaining_;
     next_event_ = t + timing_.hold_to_hold;
   } else {
     all_held_ = true;
-    next_event_ = t + (timing_.simultaneous ? timing_.hold_to_b : timing_.hold_to_a);
+    next_event_ = t + (pair ? timing_.hold_to_b : timing_.hold_to_a);
   }
 }
 

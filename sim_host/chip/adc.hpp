@@ -84,7 +84,7 @@ class Adc final : public Peripheral {
   void reset_sequencer(int n, Tick t);
   void set_interrupt_flag(int n, Tick t);
   std::uint16_t convert(int channel, Tick t);
-  void queue_result(std::uint8_t index, std::uint16_t code, Tick ready);
+  void queue_result(int index, int code, Tick ready);
   void store_results(Tick t);
   void drop_results();
   Timing timing() const;
