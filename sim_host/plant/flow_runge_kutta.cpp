@@ -12,25 +12,29 @@ namespace {
 class RungeKutta final : public SteppingFlow {
  private:
   void step(const Model& model, const SegmentStart& s, double h, State& end, State& end_slope) override {
-    if (model.clamp == Clamp::kNone) return stages<0>(model, s, h, end, end_slope);
-    if (model.clamp == Clamp::kAll) return stages<3>(model, s, h, end, end_slope);
-    stages<1>(model, s, h, end, end_slope);
+    if (model.clamp == Clamp::kNone) {
+      if (model.usual()) return stages<0, true>(model, s, h, end, end_slope);
+      return stages<0, false>(model, s, h, end, end_slope);
+    }
+    if (model.clamp == Clamp::kAll) return stages<3, false>(model, s, h, end, end_slope);
+    stages<1, false>(model, s, h, end, end_slope);
   }
 
-  template <int kClamped>
+  template <int kClamped, bool kUsual>
   static void stages(const Model& model, const SegmentStart& s, double h, State& end, State& end_slope) {
     const double half = 0.5 * h;
+    const double source = model.source_voltage(half);
     State k2, k3, k4;
     Pair f2, f3, f4;
     const State y2 = s.y + half * s.slope;
     const Rotation e2 = turned(model.base, y2[kAngle]);
-    model.derive<kClamped>(half, y2, e2, moved(s.flux, half, s.flux_slope), k2, f2);
+    model.derive<kClamped, kUsual>(half, source, y2, e2, moved(s.flux, half, s.flux_slope), k2, f2);
     const State y3 = s.y + half * k2;
     const Rotation e3 = nudged(e2, y3[kAngle] - y2[kAngle]);
-    model.derive<kClamped>(half, y3, e3, moved(s.flux, half, f2), k3, f3);
+    model.derive<kClamped, kUsual>(half, source, y3, e3, moved(s.flux, half, f2), k3, f3);
     const State y4 = s.y + h * k3;
     const Rotation e4 = turned(model.base, y4[kAngle]);
-    model.derive<kClamped>(h, y4, e4, moved(s.flux, h, f3), k4, f4);
+    model.derive<kClamped, kUsual>(h, model.source_voltage(h), y4, e4, moved(s.flux, h, f3), k4, f4);
     end_slope = k4;
     end = s.y + h * (1.0 / 6.0) * ((s.slope + k4) + 2.0 * (k2 + k3));
   }

@@ -32,6 +32,7 @@ class Machine {
  public:
   explicit Machine(const MachineConfig& c)
       : pole_pairs(c.pole_pairs),
+        torque_factor(1.5 * c.pole_pairs),
         resistance(c.resistance),
         ld(c.inductance_d),
         lq(c.inductance_q),
@@ -86,7 +87,7 @@ class Machine {
 
   /// N m, without cogging.
   double torque(double id, double iq, const Pair& psi, const Pair& h) const {
-    return 1.5 * pole_pairs * (psi.d * iq - psi.q * id + id * h.d + iq * h.q);
+    return torque_factor * (psi.d * iq - psi.q * id + id * h.d + iq * h.q);
   }
 
   /// Energy of the field above that at zero current, J.
@@ -96,7 +97,8 @@ class Machine {
     return 1.5 * (0.5 * ld * id * id + k * id * iq * iq + main);
   }
 
-  int pole_pairs;
+  double pole_pairs;
+  double torque_factor;  // 3/2 pole pairs
   double resistance, ld, lq, lambda;
   double k;             // H/A
   double knee;          // A

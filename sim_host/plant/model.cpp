@@ -52,27 +52,33 @@ void Model::float_legs(double link_voltage, const Rotation& e, const Pair& held,
 }
 
 void Model::derive_at_start(const State& y, const Pair& psi, State& dy, Pair& dflux) const {
-  if (clamp == Clamp::kNone) return core<0, false>(0.0, y, base, psi, dy, dflux, nullptr);
-  if (clamp == Clamp::kAll) return core<3, false>(0.0, y, base, psi, dy, dflux, nullptr);
-  core<1, false>(0.0, y, base, psi, dy, dflux, nullptr);
+  const double v = source_voltage(0.0);
+  if (clamp == Clamp::kNone) {
+    if (usual()) return core<0, true, false>(0.0, v, y, base, psi, dy, dflux, nullptr);
+    return core<0, false, false>(0.0, v, y, base, psi, dy, dflux, nullptr);
+  }
+  if (clamp == Clamp::kAll) return core<3, false, false>(0.0, v, y, base, psi, dy, dflux, nullptr);
+  core<1, false, false>(0.0, v, y, base, psi, dy, dflux, nullptr);
 }
 
 void Model::derive(double t, const State& y, State& dy) const {
   Pair ignored;
   const Pair psi = flux(y);
   const Rotation e = turned(base, y[kAngle]);
-  if (clamp == Clamp::kNone) return core<0, false>(t, y, e, psi, dy, ignored, nullptr);
-  if (clamp == Clamp::kAll) return core<3, false>(t, y, e, psi, dy, ignored, nullptr);
-  core<1, false>(t, y, e, psi, dy, ignored, nullptr);
+  const double v = source_voltage(t);
+  if (clamp == Clamp::kNone) return core<0, false, false>(t, v, y, e, psi, dy, ignored, nullptr);
+  if (clamp == Clamp::kAll) return core<3, false, false>(t, v, y, e, psi, dy, ignored, nullptr);
+  core<1, false, false>(t, v, y, e, psi, dy, ignored, nullptr);
 }
 
 void Model::derive(double t, const State& y, State& dy, Probe& probe) const {
   Pair ignored;
   const Pair psi = flux(y);
   const Rotation e = turned(base, y[kAngle]);
-  if (clamp == Clamp::kNone) return core<0, true>(t, y, e, psi, dy, ignored, &probe);
-  if (clamp == Clamp::kAll) return core<3, true>(t, y, e, psi, dy, ignored, &probe);
-  core<1, true>(t, y, e, psi, dy, ignored, &probe);
+  const double v = source_voltage(t);
+  if (clamp == Clamp::kNone) return core<0, false, true>(t, v, y, e, psi, dy, ignored, &probe);
+  if (clamp == Clamp::kAll) return core<3, false, true>(t, v, y, e, psi, dy, ignored, &probe);
+  core<1, false, true>(t, v, y, e, psi, dy, ignored, &probe);
 }
 
 double Model::link_voltage(double t, const State& y) const { return link.stiff ? source_voltage(t) : y[kLink]; }

@@ -54,10 +54,11 @@ class Model {
   void derive(double t, const State& y, State& dy, Probe& probe) const;
 
   /// Same with the flux given instead of computed, and its slope returned: a Runge-Kutta step that carries the flux
-  /// along needs no arc tangent in its stages. The template: `e` is the rotor position at y, and kClamped the number of
-  /// clamped legs (0, 1, 3), both known to the caller.
-  template <int kClamped>
-  void derive(double t, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux) const;
+  /// along needs no arc tangent in its stages. The template: `e` is the rotor position at y, `source` the source's
+  /// voltage at t, kClamped the number of clamped legs (0, 1, 3), kUsual whether usual(): all known to the caller.
+  template <int kClamped, bool kUsual>
+  void derive(double t, double source, const State& y, const Rotation& e, const Pair& flux, State& dy,
+              Pair& dflux) const;
   /// Same at the start of the segment, where the rotor is at `base`.
   void derive_at_start(const State& y, const Pair& flux, State& dy, Pair& dflux) const;
 
@@ -69,6 +70,10 @@ class Model {
   /// True when currents are the only thing that events can come from, and none can have reached zero: each starts
   /// further from it than it can have moved with the slopes at both ends.
   bool far_from_events(const State& y, const State& slope, const State& end_slope, double h) const;
+
+  /// The usual case, in which a right-hand side has nothing to ask: harmonics or cogging, no friction but the viscous
+  /// one, a capacitor in the link, a source that also sinks, no brake.
+  bool usual() const { return sixth_ && shaft == Shaft::kFree && !link.stiff && !link.rectifier && !brake; }
 
   std::array<double, 3> currents(const State& y) const;
   double source_voltage(double t) const;
@@ -110,8 +115,10 @@ class Model {
  private:
   using Phases = std::array<double, 3>;
 
-  template <int kClamped, bool kProbe>
-  void core(double t, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux, Probe* probe) const;
+  template <int kClamped, bool kUsual, bool kProbe>
+  void core(double t, double source, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux,
+            Probe* probe) const;
+  double rippled_voltage(double t) const;
   double clamp_leg(int leg, const Rotation& e, double electrical_speed, const State& y, Pair& u) const;
   void float_legs(double link_voltage, const Rotation& e, const Pair& held, Phases& v) const;
   void leg_events(double t, const State& y, Events& g) const;

@@ -9,8 +9,10 @@
 namespace stillspin::plant {
 
 inline double Model::source_voltage(double t) const {
-  const double v = sag * link.source_voltage;
-  if (link.ripple == 0.0) return v;
+  return link.ripple == 0.0 ? sag * link.source_voltage : rippled_voltage(t);
+}
+
+inline double Model::rippled_voltage(double t) const {
   const double x = ripple_speed_ * t;
   const double q = x * x;
   double sine;
@@ -19,7 +21,7 @@ inline double Model::source_voltage(double t) const {
   } else {
     sine = turned(ripple_base, x).s;
   }
-  return v * (1.0 + link.ripple * sine);
+  return sag * link.source_voltage * (1.0 + link.ripple * sine);
 }
 
 /// Voltage of the clamped leg such that its current stays zero: axis . di/dt + w (d axis/d theta) . i = 0. `u` is what
@@ -35,17 +37,16 @@ inline double Model::clamp_leg(int leg, const Rotation& e, double electrical_spe
   return v;
 }
 
-template <int kClamped, bool kProbe>
-[[gnu::always_inline]] inline void Model::core(double t, const State& y, const Rotation& e, const Pair& psi, State& dy,
-                                               Pair& dflux, Probe* probe) const {
+template <int kClamped, bool kUsual, bool kProbe>
+[[gnu::always_inline]] inline void Model::core(double t, double source, const State& y, const Rotation& e,
+                                               const Pair& psi, State& dy, Pair& dflux, Probe* probe) const {
   const double id = y[kId], iq = y[kIq];
   const double speed = y[kSpeed];
   const double electrical = machine.pole_pairs * speed;
-  const double source = source_voltage(t);
-  const double link_voltage = link.stiff ? source : y[kLink];
+  const double link_voltage = !kUsual && link.stiff ? source : y[kLink];
   Pair h;
   double cogging = 0.0;
-  if (sixth_) {
+  if (kUsual || sixth_) {
     const Rotation six = sixfold(e);
     h = machine.harmonic(six);
     cogging = mechanics.cogging_torque * six.s;
@@ -79,18 +80,18 @@ template <int kClamped, bool kProbe>
   const double torque = machine.torque(id, iq, psi, h);
   const double applied = load(t);
   double acceleration = 0.0;
-  if (shaft == Shaft::kFree || shaft == Shaft::kTurning) {
+  if (kUsual || shaft == Shaft::kFree || shaft == Shaft::kTurning) {
     double total = torque + cogging - applied - mechanics.viscous_friction * speed;
-    if (shaft == Shaft::kTurning) total -= turning * mechanics.coulomb_friction;
+    if (!kUsual && shaft == Shaft::kTurning) total -= turning * mechanics.coulomb_friction;
     acceleration = total * inverse_inertia_;
   }
   double source_current = rail;
   double link_slope = 0.0;
-  if (!link.stiff) {
+  if (kUsual || !link.stiff) {
     source_current = (source - link_voltage) * inverse_source_resistance_;
-    if (link.rectifier && source_current < 0.0) source_current = 0.0;
+    if (!kUsual && link.rectifier && source_current < 0.0) source_current = 0.0;
     double out = rail;
-    if (brake) out += link_voltage / link.brake_resistance;
+    if (!kUsual && brake) out += link_voltage / link.brake_resistance;
     link_slope = (source_current - out) * inverse_capacitance_;
   }
   dy = {slope.d, slope.q, acceleration, electrical, link_slope};
@@ -105,10 +106,10 @@ template <int kClamped, bool kProbe>
   }
 }
 
-template <int kClamped>
-[[gnu::always_inline]] inline void Model::derive(double t, const State& y, const Rotation& e, const Pair& psi,
-                                                 State& dy, Pair& dflux) const {
-  core<kClamped, false>(t, y, e, psi, dy, dflux, nullptr);
+template <int kClamped, bool kUsual>
+[[gnu::always_inline]] inline void Model::derive(double t, double source, const State& y, const Rotation& e,
+                                                 const Pair& psi, State& dy, Pair& dflux) const {
+  core<kClamped, kUsual, false>(t, source, y, e, psi, dy, dflux, nullptr);
 }
 
 }  // namespace stillspin::plant
