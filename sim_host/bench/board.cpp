@@ -80,8 +80,7 @@ std::uint16_t Board::adc_sample(Tick t, int channel) {
 
 // The comparator sees the true current at the end of every step of the plant: edges, zero crossings, and four times a
 // period at least.
-void Board::compare(Tick t, double amps) {
-  if (amps <= kComparatorAmps) return;
+void Board::trip(Tick t) {
   (void)plant_.take_peak_current(t);
   if (t >= tripped_until_) trips_++;
   tripped_until_ = t + kComparatorHold;

@@ -75,7 +75,10 @@ class Board : public chip::World {
   void look(Tick t);
   void begin_period(Tick t);
   void call_between(Tick t);
-  void compare(Tick t, double amps);
+  void compare(Tick t, double amps) {
+    if (!(amps <= kComparatorAmps)) trip(t);
+  }
+  void trip(Tick t);
   void drive_leg(Tick t, int leg);
 
   plant::Plant plant_;

@@ -91,12 +91,12 @@ void Recorder::reserve(std::size_t rows) {
   for (auto& column : values_) column.reserve(rows);
 }
 
-void Recorder::begin_row(double time, const plant::PlantState& state) {
+void Recorder::begin_row(double time, const plant::Plant& plant) {
   open_ = skipped_ == 0;
   skipped_ = (skipped_ + 1) % every_;
   if (!open_) return;
   time_ = time;
-  state_ = state;
+  state_ = plant.state();
 }
 
 void Recorder::finish_row(const drive_signals_t& signals, const drive_samples_t& samples) {

@@ -24,8 +24,8 @@ class Recorder {
   /// Completes the row of the period before with the firmware's signals and what its windows told.
   void finish_row(const drive_signals_t& signals, const drive_samples_t& samples);
 
-  /// Begins a row with the plant's present state.
-  void begin_row(double time, const plant::PlantState& state);
+  /// Begins a row with the plant's present state, if one is due.
+  void begin_row(double time, const plant::Plant& plant);
 
   /// The record, with times counted from `origin` (s).
   std::vector<std::vector<double>> take(double origin);

@@ -79,9 +79,8 @@ class Director : public PeriodListener {
     if (!running()) prepare(t, s);
     if (running()) act(t);
     if (!started_) return;
-    const plant::PlantState state = board_->plant().state();
-    if (!running()) travel_.to(state.angle_m);
-    if (running() || request_.record_start) recorder_.begin_row(t * kSecondsPerTick, state);
+    if (!running()) travel_.to(board_->plant().state().angle_m);
+    if (running() || request_.record_start) recorder_.begin_row(t * kSecondsPerTick, board_->plant());
   }
 
  private:
