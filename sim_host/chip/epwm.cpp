@@ -32,9 +32,8 @@ void EPwmBank::send_sync(int source, Tick t) {
   }
 }
 
-/// After a call to a module: its interrupts, pins and next event.
-void EPwmBank::carry_out(int module, unsigned effects, Tick t) {
-  next_[module] = modules_[module].next_event();
+/// What a call to a module brought about: its interrupts and pins.
+void EPwmBank::tell(int module, unsigned effects, Tick t) {
   if ((effects & kEffectInterrupt) != 0) {
     services_.raise_interrupt(VECTOR_EPWM1_INT + static_cast<unsigned>(module), t);
   }
@@ -95,8 +94,12 @@ void EPwmBank::write(int module, std::uint16_t offset, std::uint16_t value, Tick
   if (offset == EPWM_PCCTL && bit_set(value, EPWM_PCCTL_CHPEN_MASK)) {
     services_.model_error("the ePWM chopper (PCCTL.CHPEN) is not modelled", value);
   }
+  const Tick before = next_[module];
   const unsigned effects = modules_[module].write(offset, value, t);
   carry_out(module, effects, t);
+  if (effects == 0 && next_[module] == before) {
+    return;  // most writes go to a shadow
+  }
   if ((effects & kEffectSyncOut) != 0) {
     send_sync(module, t);
   }

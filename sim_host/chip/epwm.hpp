@@ -40,7 +40,14 @@ class EPwmBank final {
   void set_trip_pins(unsigned active_mask, Tick t);
 
  private:
-  void carry_out(int module, unsigned effects, Tick t);
+  /// After a call to a module.
+  void carry_out(int module, unsigned effects, Tick t) {
+    next_[module] = modules_[module].next_event();
+    if ((effects & (kEffectInterrupt | kEffectTripInterrupt | kEffectPins)) != 0) {
+      tell(module, effects, t);
+    }
+  }
+  void tell(int module, unsigned effects, Tick t);
   void publish(int module, Tick t);
   void send_sync(int source, Tick t);
   void refresh_next_event();

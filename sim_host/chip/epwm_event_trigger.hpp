@@ -29,7 +29,7 @@ class EventTrigger {
                                       (count_[1] << EPWM_ETPS_SOCACNT_LSB) | (count_[2] << EPWM_ETPS_SOCBCNT_LSB));
   }
 
-  unsigned used_events() const { return event_[0] | event_[1] | event_[2]; }
+  unsigned used_events() const { return used_; }
 
   Pulses write_select(std::uint16_t value) {
     select_ = value;
@@ -78,6 +78,7 @@ class EventTrigger {
       period_[i] = static_cast<std::uint8_t>((prescale_ >> kPeriodLsb[i]) & 3u);
       event_[i] = period_[i] != 0 ? kEvent[(select_ >> kSelectLsb[i]) & 7u] : 0u;
     }
+    used_ = event_[0] | event_[1] | event_[2];
   }
 
   void advance(int i, bool event) {
@@ -104,6 +105,7 @@ class EventTrigger {
   std::uint8_t count_[3] = {0, 0, 0};
   std::uint8_t period_[3] = {0, 0, 0};
   unsigned event_[3] = {0, 0, 0};
+  unsigned used_ = 0;
 };
 
 }  // namespace stillspin::chip

@@ -241,6 +241,9 @@ void TimeBase::poke(Tick t) {
 }
 
 unsigned TimeBase::take_stop(Tick t) {
+  if (running_ && outside_ == Outside::no && !first_clock_ && period_ != 0) {
+    return take_usual_stop(t);
+  }
   if (outside_ == Outside::to_wrap && !first_clock_) {
     reached_max_ = true;
     locate(0, true, t);
@@ -259,6 +262,24 @@ unsigned TimeBase::take_stop(Tick t) {
     }
   }
   next_stop_ = tick_of_next_stop();
+  return events;
+}
+
+/// The counter runs between zero and its period: what happens here and where it stops next, in one pass.
+unsigned TimeBase::take_usual_stop(Tick t) {
+  const std::int32_t end = length();
+  const std::int32_t reached = anchor_phase_ + counts_since_anchor(t);
+  const std::int32_t here = reached >= end ? reached - end : reached;
+  unsigned events = here == 0 ? kCountZero : 0u;
+  std::int32_t nearest = end;
+  for (int i = 0; i < stop_count_; ++i) {
+    const std::int32_t p = stops_[i].phase;
+    events |= p == here ? stops_[i].event : 0u;
+    nearest = (p > here && p < nearest) ? p : nearest;
+  }
+  anchor_phase_ = here;
+  anchor_ = t;
+  next_stop_ = t + static_cast<Tick>(nearest - here) * clock_period_;
   return events;
 }
 

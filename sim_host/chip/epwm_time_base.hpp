@@ -104,6 +104,7 @@ class TimeBase {
   void add_stop(std::int32_t p, unsigned event);
   void rebuild_stops();
   Tick tick_of_next_stop() const;
+  unsigned take_usual_stop(Tick t);
 
   CountMode mode_ = CountMode::stopped;
   bool running_ = false;
