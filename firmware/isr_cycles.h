@@ -20,7 +20,7 @@
 #define CYCLES_CONTROL 850u
 #define CYCLES_MODULATE 1550u
 #define CYCLES_SERIAL 120u  // two octets each way
-#define CYCLES_REFER 550u  // references of the hysteresis
+#define CYCLES_REFER 550u   // references of the hysteresis
 #define CYCLES_WINDOW 60u
 #define CYCLES_SLICE 120u
 #define CYCLES_SCOPE 150u  // while it records: four channels and the trigger

@@ -787,7 +787,7 @@
 
 // ---- Serial port A, B ----------------------------------------------------------------------------------
 #define SCI_BASE(n) ((uint32_t)(0x7050uL + 0x700uL * (uint32_t)((n) - 1u)))  // 1 is SCI-A, 2 is SCI-B
-#define SCI_CCR 0x00u  // frame format
+#define SCI_CCR 0x00u                                                        // frame format
 #define SCI_CCR_SCICHAR_LSB 0
 #define SCI_CCR_SCICHAR_MASK 0x0007u
 #define SCI_CCR_ADDRIDLE_MODE_LSB 3
@@ -815,7 +815,7 @@
 #define SCI_CTL1_RXERRINTENA_MASK 0x0040u
 #define SCI_HBAUD 0x02u  // baud divisor high byte
 #define SCI_LBAUD 0x03u  // baud divisor low byte
-#define SCI_CTL2 0x04u  // TX status, RX/TX interrupt enables
+#define SCI_CTL2 0x04u   // TX status, RX/TX interrupt enables
 #define SCI_CTL2_TXINTENA_LSB 0
 #define SCI_CTL2_TXINTENA_MASK 0x0001u
 #define SCI_CTL2_RXBKINTENA_LSB 1
@@ -848,7 +848,7 @@
 #define SCI_RXBUF_SCIFFFE_LSB 15
 #define SCI_RXBUF_SCIFFFE_MASK 0x8000u
 #define SCI_TXBUF 0x09u  // transmit data
-#define SCI_FFTX 0x0Au  // transmit FIFO control
+#define SCI_FFTX 0x0Au   // transmit FIFO control
 #define SCI_FFTX_TXFFIL_LSB 0
 #define SCI_FFTX_TXFFIL_MASK 0x001Fu
 #define SCI_FFTX_TXFFIENA_LSB 5

@@ -120,7 +120,8 @@ void Adc::queue_result(int index, int code, Tick ready) {
   // 9-bit two's complement offset, added before the result is stored.
   const int trim = (offset_trim_ & 0x0FF) - (offset_trim_ & 0x100);
   const int trimmed = std::min(std::max(code + trim, 0), kFullScaleCode);
-  in_flight_[in_flight_end_++] = Conversion{ready, static_cast<std::uint16_t>(trimmed), static_cast<std::uint8_t>(index)};
+  in_flight_[in_flight_end_++] =
+      Conversion{ready, static_cast<std::uint16_t>(trimmed), static_cast<std::uint8_t>(index)};
 }
 
 /// Results that are ready at t become visible.

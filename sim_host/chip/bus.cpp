@@ -209,7 +209,8 @@ std::uint16_t Core::read_sci(std::uint32_t address) {
     note_unmodelled(address);
     return 0;
   }
-  return gate_stops(system_.sci_clock(), address) ? 0 : sci_.read(static_cast<std::uint16_t>(address - SCI_BASE(1)), now_);
+  return gate_stops(system_.sci_clock(), address) ? 0
+                                                  : sci_.read(static_cast<std::uint16_t>(address - SCI_BASE(1)), now_);
 }
 
 std::uint16_t Core::read_system(std::uint16_t offset) const {

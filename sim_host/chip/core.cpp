@@ -161,8 +161,7 @@ void Core::advance(Tick target) {
 // return earlier, after a stop: the host may have changed the world, so the caller looks again.
 void Core::wait_for_interrupt(Tick target, bool taken) {
   const Tick goal = std::min(target, limit_);
-  const bool awake =
-      run_events(goal, [&] { return taken ? interrupts_.deliverable() : interrupts_.requested(); });
+  const bool awake = run_events(goal, [&] { return taken ? interrupts_.deliverable() : interrupts_.requested(); });
   if (stop_) leave_firmware();
   if (awake) return;
   now_ = goal;

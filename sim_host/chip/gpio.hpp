@@ -59,7 +59,7 @@ class Gpio {
   std::uint64_t driven_ = 0;                   // levels of those, as the world knows them
   unsigned pwm_levels_ = 0;                    // ePWM outputs, bit 2m for A of module m, 2m+1 for B
   unsigned pwm_routed_ = 0;
-  unsigned pwm_pins_ = 0;  // what the world knows
+  unsigned pwm_pins_ = 0;        // what the world knows
   std::uint64_t trip_pins_ = 0;  // pins that are routed to a trip zone
   bool encoder_routed_ = false;
   bool serial_in_routed_ = false;

@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint16_t kTransmitFifoReset = 0xA000;
 constexpr std::uint16_t kReceiveFifoReset = 0x201F;
 
-constexpr unsigned kControl1Kept = SCI_CTL1_RXENA_MASK | SCI_CTL1_TXENA_MASK | SCI_CTL1_SWRESET_MASK |
-                                   SCI_CTL1_RXERRINTENA_MASK;
+constexpr unsigned kControl1Kept =
+    SCI_CTL1_RXENA_MASK | SCI_CTL1_TXENA_MASK | SCI_CTL1_SWRESET_MASK | SCI_CTL1_RXERRINTENA_MASK;
 constexpr unsigned kTransmitFifoKept = SCI_FFTX_TXFFIL_MASK | SCI_FFTX_TXFFIENA_MASK | SCI_FFTX_TXFIFOXRESET_MASK |
                                        SCI_FFTX_SCIFFENA_MASK | SCI_FFTX_SCIRST_MASK;
 constexpr unsigned kReceiveFifoKept = SCI_FFRX_RXFFIL_MASK | SCI_FFRX_RXFFIENA_MASK | SCI_FFRX_RXFIFORESET_MASK;
@@ -142,8 +142,7 @@ std::uint16_t Sci::read_buffer() {
 
 std::uint16_t Sci::receive_status() const {
   const bool ready = fifo_mode() ? !received_.empty() : receive_ready_;
-  return word(errors_ | (ready ? SCI_RXST_RXRDY_MASK : 0u) |
-              (bit_set(errors_, kErrors) ? SCI_RXST_RXERROR_MASK : 0u));
+  return word(errors_ | (ready ? SCI_RXST_RXRDY_MASK : 0u) | (bit_set(errors_, kErrors) ? SCI_RXST_RXERROR_MASK : 0u));
 }
 
 // ---- transmitting ------------------------------------------------------------------------------------

@@ -88,8 +88,8 @@ class Sci final : public Peripheral {
   bool receive_ready_ = false;
   std::uint16_t transmit_buffer_ = 0;
   bool transmit_full_ = false;
-  SerialFrame frame_{};       // in the shift register
-  Tick frame_end_ = kNever;   // of it, with the delay that follows
+  SerialFrame frame_{};      // in the shift register
+  Tick frame_end_ = kNever;  // of it, with the delay that follows
   std::uint16_t frame_data_ = 0;
 };
 

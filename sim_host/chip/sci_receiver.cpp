@@ -33,9 +33,7 @@ void SciReceiver::wait_for_start(Tick t) {
   next_event_ = services_.serial_reaches(t, false);
 }
 
-void SciReceiver::wait_for_rise(Tick t) {
-  next_event_ = std::min(services_.serial_reaches(t, true), break_at_);
-}
+void SciReceiver::wait_for_rise(Tick t) { next_event_ = std::min(services_.serial_reaches(t, true), break_at_); }
 
 void SciReceiver::line_changed(Tick t) {
   if (state_ == State::kIdle) wait_for_start(t);

@@ -74,8 +74,8 @@ class SciReceiver {
   SciFormat format_;
   SciCharacter character_;
   State state_ = State::kOff;
-  Tick start_ = 0;        // of the frame
-  Tick break_at_ = 0;     // when a line that is still low is a break
+  Tick start_ = 0;     // of the frame
+  Tick break_at_ = 0;  // when a line that is still low is a break
   Tick next_event_ = kNever;
 };
 

@@ -39,7 +39,8 @@ Tick SerialLine::in_stretch(const Stretch& s, Tick t, bool level) {
 
 void SerialLine::append(unsigned levels, unsigned bits, double bit, Tick t) {
   double begin = static_cast<double>(t);
-  if (!stretches_.empty()) begin = std::max(begin, stretches_.back().begin + stretches_.back().bits * stretches_.back().bit);
+  if (!stretches_.empty())
+    begin = std::max(begin, stretches_.back().begin + stretches_.back().bits * stretches_.back().bit);
   stretches_.push_back({begin, bit, bits, levels});
 }
 

@@ -164,9 +164,9 @@ const State& Plant::Impl::present() {
 void Plant::Impl::sense() {
   integrate_to(now);
   const double s = trajectory.offset(now);
-  present_sensed = phases(sensors.filtered(trajectory.origin_current(), trajectory.origin_slope(),
-                                           trajectory.current_at_offset(s), s) +
-                          sensors.ringing(now));
+  present_sensed = phases(
+      sensors.filtered(trajectory.origin_current(), trajectory.origin_slope(), trajectory.current_at_offset(s), s) +
+      sensors.ringing(now));
   has_sensed = true;
 }
 

@@ -31,7 +31,7 @@ struct FakeBoard {
   std::uint32_t encoder = 0;
   std::uint16_t slice_ticks = 0;  // 0: pulses
   std::uint16_t legs = 0;
-  hal_slice_t slice = {2048, 2048, 2731};  // no current, 300 V
+  hal_slice_t slice = {2048, 2048, 2731};           // no current, 300 V
   std::deque<std::uint16_t> serial_in, serial_out;  // octets for the firmware, and from it
   std::uint16_t serial_room = 512;                  // of the transmit ring, taken octets deducted
   std::uint32_t baud = 0;

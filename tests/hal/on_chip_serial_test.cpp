@@ -30,9 +30,9 @@ struct Image {
   bool echo = true;
   bool port_ok = false;
   bool reads = true;
-  std::vector<std::uint16_t> to_send;            // by the background, beside the echo
-  std::vector<std::uint16_t> got;                // while nothing is echoed
-  std::vector<std::uint32_t> entries;            // cycle count at the start of each control interrupt
+  std::vector<std::uint16_t> to_send;              // by the background, beside the echo
+  std::vector<std::uint16_t> got;                  // while nothing is echoed
+  std::vector<std::uint32_t> entries;              // cycle count at the start of each control interrupt
   std::vector<std::uint32_t> longest = {0u, ~0u};  // run time of hal_sci_service: most, least
 };
 Image image;
