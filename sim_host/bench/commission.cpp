@@ -7,6 +7,7 @@
 
 #include "firmware/drive_api.h"
 #include "sim_host/bench/board.hpp"
+#include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"
 
 namespace stillspin::bench {
@@ -104,6 +105,7 @@ std::string play(const CommissionRequest& request, chip::Chip& chip, const Commi
 CommissionResult commission(const CommissionRequest& request) {
   if (!(request.limit > 0.0 && request.limit <= 3600.0))
     throw std::invalid_argument("limit must be above 0 and up to 3600 s");
+  const FirmwareLease lease;
   CommissionResult result;
   Commissioner drive(request);
   Board board(request.setup.plant(), drive);

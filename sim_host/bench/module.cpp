@@ -9,12 +9,12 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "firmware/drive_api.h"
 #include "sim_host/bench/commission.hpp"
+#include "sim_host/bench/module_setup.hpp"
 #include "sim_host/bench/replay.hpp"
 #include "sim_host/bench/run.hpp"
 
@@ -23,33 +23,6 @@ using namespace stillspin::bench;
 using stillspin::plant::Tick;
 
 namespace {
-
-double chosen(const std::string& section, const std::string& key, const std::string& word) {
-  for (const Entry& e : entries()) {
-    if (section != e.section || key != e.key || e.choices == nullptr) continue;
-    const auto found = std::find(e.choices->begin(), e.choices->end(), word);
-    if (found != e.choices->end()) return static_cast<double>(found - e.choices->begin());
-  }
-  throw std::invalid_argument(section + "." + key + " = '" + word + "': not a choice");
-}
-
-double number(const std::string& section, const std::string& key, nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) return chosen(section, key, nb::cast<std::string>(value));
-  return nb::cast<double>(value);
-}
-
-Setup setup_from(const nb::dict& plant, std::uint64_t seed) {
-  Setup setup;
-  for (const auto& [section, keys] : plant) {
-    for (const auto& [key, value] : nb::cast<nb::dict>(keys)) {
-      const std::string s = nb::cast<std::string>(section);
-      const std::string k = nb::cast<std::string>(key);
-      set_entry(setup, s, k, number(s, k, value));
-    }
-  }
-  setup.nominal.adc.seed = seed;
-  return setup;
-}
 
 nb::object array(std::vector<double> values) {
   auto* data = new std::vector<double>(std::move(values));
@@ -97,7 +70,7 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
                            int record_every, const std::tuple<double, double, int>& waveform, std::uint64_t seed,
                            const nb::object& progress, bool record_start) {
-  if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
+  check_motor(motor);
   RunRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -160,7 +133,7 @@ nb::list identified_rows(const CommissionResult& result) {
 PythonCommissioning commission_in_python(const nb::dict& plant, const std::string& motor,
                                          const std::map<std::string, double>& parameters, double limit,
                                          std::uint64_t seed, const nb::object& progress) {
-  if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
+  check_motor(motor);
   CommissionRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -269,4 +242,5 @@ NB_MODULE(_core, m) {
   m.def("plant_schema", &schema, "Section -> key -> unit, minimum, maximum, default, help of the plant.");
   m.def("replay", &replay_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("edges"), nb::arg("load"), nb::arg("at"),
         "The plant alone under a given sequence of gate edges; see core.py.");
+  bind_virtual_board(m);
 }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "firmware/drive_api.h"
+#include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"
 
 namespace stillspin::bench {
@@ -30,6 +31,7 @@ std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) 
 }
 
 void check_parameters(const std::map<std::string, double>& parameters) {
+  const FirmwareLease lease;
   drive_reset();
   for (const auto& [name, value] : parameters) {
     unsigned id = 0;

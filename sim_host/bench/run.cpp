@@ -7,6 +7,7 @@
 
 #include "firmware/drive_api.h"
 #include "sim_host/bench/board.hpp"
+#include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/recorder.hpp"
 
 namespace stillspin::bench {
@@ -248,6 +249,7 @@ const char* fault_name(std::int32_t fault) {
 
 RunResult run(const RunRequest& request) {
   check_request(request);
+  const FirmwareLease lease;
   RunResult result;
   Director director(request, result);
   Board board(request.setup.plant(), director);

@@ -114,6 +114,7 @@ bool SerialLine::level(Tick t) const {
 
 // Samples the middle of each bit at the far end's rate, from the falling edge of the start bit.
 void SerialLine::receive(const chip::SerialFrame& frame) {
+  chip_rate_ = static_cast<double>(chip::kTicksPerSecond) / static_cast<double>(frame.bit);
   const double ratio = static_cast<double>(chip::kTicksPerSecond) / rate_ / static_cast<double>(frame.bit);
   const auto sample = [&](unsigned index) {
     const auto bit = static_cast<unsigned>((index + 0.5) * ratio);

@@ -46,6 +46,8 @@ class SerialLine {
   /// When everything that was handed over will have left; t when it has.
   Tick sent_until(Tick t) const;
   const Counts& counts() const { return counts_; }
+  /// Bit rate of the last frame from the chip, 0 before the first.
+  double chip_rate() const { return chip_rate_; }
 
   // ---- the chip's end, see chip::World
   Tick reaches(Tick t, bool level);
@@ -70,6 +72,7 @@ class SerialLine {
   static Tick in_stretch(const Stretch& stretch, Tick t, bool level);
 
   double rate_ = 115200.0;
+  double chip_rate_ = 0.0;
   double flips_ = 0.0;
   std::mt19937_64 random_;
   std::deque<Stretch> stretches_;  // those that have not ended when last asked, in order

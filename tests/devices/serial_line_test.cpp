@@ -82,6 +82,7 @@ TEST_F(SerialLineTest, FramesFromTheChipArrive) {
   EXPECT_EQ(line.take(), (std::vector<std::uint8_t>{'h', 'i'}));
   EXPECT_TRUE(line.take().empty());
   EXPECT_EQ(line.counts().received, 2u);
+  EXPECT_NEAR(line.chip_rate(), 1e8 / 1010, 1e-6);
 }
 
 TEST_F(SerialLineTest, RateUpToFourPercentOffIsRead) {

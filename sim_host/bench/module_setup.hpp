@@ -1,0 +1,26 @@
+// What the parts of the Python module share: a plant from Python's nested dicts.
+
+#ifndef STILLSPIN_SIM_HOST_BENCH_MODULE_SETUP_HPP
+#define STILLSPIN_SIM_HOST_BENCH_MODULE_SETUP_HPP
+
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+#include <string>
+
+#include "sim_host/bench/setup.hpp"
+
+namespace stillspin::bench {
+
+/// Section -> key -> number, switch or word, and the noise's seed; std::invalid_argument for what does not exist.
+Setup setup_from(const nanobind::dict& plant, std::uint64_t seed);
+
+/// Throws std::invalid_argument when there is no such motor.
+void check_motor(const std::string& motor);
+
+/// The class VirtualBoard.
+void bind_virtual_board(nanobind::module_& module);
+
+}  // namespace stillspin::bench
+
+#endif

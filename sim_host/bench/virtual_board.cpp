@@ -1,0 +1,98 @@
+#include "sim_host/bench/virtual_board.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "firmware/drive_api.h"
+#include "sim_host/bench/run.hpp"
+
+namespace stillspin::bench {
+namespace {
+
+constexpr double kSecondsPerTick = 1e-8;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRpmPerRads = 30.0 / kPi;
+constexpr double kLargestLoad = 1e4;
+
+bool is_default(std::uint16_t id) {
+  for (std::uint16_t k = 0; k < parameter_count(); k++) {
+    const parameter_info_t& info = *parameter_info(k);
+    if (info.id == id) return parameter_get(id) == info.initial;
+  }
+  return false;
+}
+
+}  // namespace
+
+VirtualBoard::VirtualBoard(const BoardRequest& request)
+    : brake_until_run_(request.setup.brake_until_run),
+      locked_(request.setup.nominal.mechanics.locked),
+      faults_(request.setup.fault),
+      board_(request.setup.plant(), *this),
+      chip_(board_, firmware_main) {
+  for (const auto& [name, value] : request.parameters) {
+    unsigned id = 0;
+    const std::int32_t raw = parameter_raw(name, value, id);
+    parameters_.push_back({static_cast<std::uint16_t>(id), raw});
+  }
+  board_.attach(chip_);
+  if (brake_until_run_) board_.plant().set_locked(true);
+}
+
+void VirtualBoard::advance(Tick ticks) {
+  if (ticks < 0) throw std::invalid_argument("time does not go back: ticks must not be negative");
+  chip_.run_until(chip_.now() + ticks);
+  if (const auto fault = board_.plant().shoot_through()) {
+    throw std::runtime_error("both devices of leg " + std::to_string(fault->leg) + " conducted at tick " +
+                             std::to_string(fault->tick));
+  }
+}
+
+void VirtualBoard::on_period(Tick t) {
+  const drive_signals_t& s = *drive_signals();
+  const std::uint64_t resets = chip_.statistics().resets;
+  if (resets != resets_) told_ = false;
+  resets_ = resets;
+  if (!told_ && s.state == DRIVE_READY) tell_parameters();
+  if (first_run_ < 0 && s.state == DRIVE_RUN) {
+    first_run_ = t;
+    board_.plant().advance(t);
+    if (brake_until_run_) board_.plant().set_locked(locked_);
+  }
+  if (first_run_ >= 0) faults_.step(static_cast<double>(t - first_run_) * kSecondsPerTick, board_);
+}
+
+void VirtualBoard::tell_parameters() {
+  told_ = true;
+  for (const Told& p : parameters_) {
+    if (is_default(p.id)) (void)parameter_set(p.id, p.raw);
+  }
+}
+
+void VirtualBoard::set_load(double torque) {
+  if (!(std::fabs(torque) <= kLargestLoad)) throw std::invalid_argument("a load torque must be -1e4 to 1e4 N m");
+  board_.plant().advance(chip_.now());
+  board_.plant().set_load({{chip_.now(), torque}});
+}
+
+std::vector<Quantity> VirtualBoard::truth() {
+  board_.plant().advance(chip_.now());
+  const plant::PlantState s = board_.plant().state();
+  return {{"angle", "rad", s.angle_m},       {"speed", "rpm", s.speed_m * kRpmPerRads},
+          {"torque", "Nm", s.torque},        {"load_torque", "Nm", s.load},
+          {"i_a", "A", s.current[0]},        {"i_b", "A", s.current[1]},
+          {"i_c", "A", s.current[2]},        {"i_d", "A", s.current_d},
+          {"i_q", "A", s.current_q},         {"electrical_angle", "rad", s.angle_e},
+          {"link_voltage", "V", s.link_voltage}};
+}
+
+std::vector<Quantity> VirtualBoard::signals() {
+  const drive_signals_t& s = *drive_signals();
+  return {
+#define SIGNAL(name, unit, q, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
+#include "firmware/signal_list.h"
+#undef SIGNAL
+  };
+}
+
+}  // namespace stillspin::bench

@@ -1,0 +1,90 @@
+// The board as a thing on the desk: it has a supply, plugs and a shaft, and its time goes on only when it is told so.
+//
+//     VirtualBoard desk(request);
+//     desk.serial().send(octets, desk.now());
+//     desk.advance(100'000);                       // a millisecond
+//     desk.serial().take();
+//
+// What is handed over at the plugs between two calls of advance takes effect at the tick at which the board stands, so
+// a sequence of calls gives the same run each time. A watchdog reset is part of the run; what the real chip could not
+// survive makes advance throw std::runtime_error, then and ever after.
+
+#ifndef STILLSPIN_SIM_HOST_BENCH_VIRTUAL_BOARD_HPP
+#define STILLSPIN_SIM_HOST_BENCH_VIRTUAL_BOARD_HPP
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim_host/bench/board.hpp"
+#include "sim_host/bench/fault_plan.hpp"
+#include "sim_host/bench/firmware_lease.hpp"
+#include "sim_host/bench/setup.hpp"
+
+namespace stillspin::bench {
+
+struct BoardRequest {
+  Setup setup;
+  /// Firmware parameters of a board that nobody has set up, in the table's units: told to the drive when it is first
+  /// ready after power-on or a reset, where a parameter still has its default.
+  std::map<std::string, double> parameters;
+};
+
+/// A true or a measured quantity of the present.
+struct Quantity {
+  const char* name;
+  const char* unit;
+  double value;
+};
+
+class VirtualBoard final : private PeriodListener {
+ public:
+  /// Powers the board. Throws std::invalid_argument for an impossible request, std::logic_error when another virtual
+  /// drive runs in this process.
+  explicit VirtualBoard(const BoardRequest& request);
+
+  /// Lets this many ticks of 10 ns pass; not negative.
+  void advance(Tick ticks);
+  Tick now() const { return chip_.now(); }
+
+  // ---- plugs
+  devices::SerialLine& serial() { return board_.serial(); }
+
+  // ---- shaft
+  /// Load torque from now on, N m, -1e4..1e4; positive opposes positive rotation.
+  void set_load(double torque);
+  /// The true machine: angle and speed of the shaft, currents, torques, DC link.
+  std::vector<Quantity> truth();
+
+  // ---- inspection, without an effect on the run
+  /// The firmware's signals as of its last control interrupt, scaled; angles in turns.
+  static std::vector<Quantity> signals();
+  chip::Statistics statistics() const { return chip_.statistics(); }
+  std::uint64_t trips() const { return board_.trips(); }
+  std::uint16_t inspect(std::uint32_t address) { return chip_.inspect(address); }
+
+ private:
+  struct Told {
+    std::uint16_t id;
+    std::int32_t raw;
+  };
+
+  void on_period(Tick t) override;
+  void tell_parameters();
+
+  FirmwareLease lease_;
+  std::vector<Told> parameters_;
+  bool brake_until_run_;
+  bool locked_;
+  FaultPlayer faults_;
+  Board board_;
+  chip::Chip chip_;
+  bool told_ = false;
+  std::uint64_t resets_ = 0;
+  Tick first_run_ = -1;
+};
+
+}  // namespace stillspin::bench
+
+#endif
