@@ -57,6 +57,26 @@ void Model::resolve(State& y, const Fired& fired) {
   if (fired[kBrakeEvent]) brake = !brake;
 }
 
+bool Model::switch_legs(State& y, const std::array<bool, 3>& changed, std::array<double, 3>& jump) {
+  if (clamp != Clamp::kNone) return false;
+  const Phases i = phase_currents(base, y[kId], y[kIq]);
+  for (int k = 0; k < 3; ++k) {
+    const bool decided = (direction[k] > 0 ? i[k] : -i[k]) >= kZeroCurrent;
+    if (!decided || legs[k].perfect || legs[k].open) return false;
+  }
+  const double v = link_voltage(0.0, y);
+  for (int k = 0; k < 3; ++k) {
+    jump[k] = 0.0;
+    if (!changed[k]) continue;
+    const double before = line_[k].voltage(v, i[k]);
+    line_[k] = direction[k] > 0 ? legs[k].low : legs[k].high;
+    jump[k] = line_[k].voltage(v, i[k]) - before;
+  }
+  bridge_ = Bridge::make(line_);
+  resolve_shaft(y, false);
+  return true;
+}
+
 void Model::resolve_legs(State& y, const Fired& fired) {
   const Phases i = phase_currents(base, y[kId], y[kIq]);
   int idle = 0, small = 0, last = 0;

@@ -17,9 +17,19 @@ constexpr double kShortest = 1e-15;  // s: below this a bracket is a point
 class Curve {
  public:
   Curve(const Model& model, const SegmentStart& start, const State& end, const State& end_slope, double h)
-      : model_(model), start_(start), end_(end), end_slope_(end_slope), h_(h) {}
+      : model_(model),
+        start_(start),
+        end_(end),
+        end_slope_(end_slope),
+        h_(h),
+        currents_alone_(model.watches_currents_alone()) {}
 
-  double at(double s) const { return model_.lowest_event(s, hermite(start_, end_, end_slope_, h_, s)); }
+  double at(double s) const {
+    const Hermite y(h_, s);
+    if (!currents_alone_) return model_.lowest_event(s, y(start_, end_, end_slope_));
+    const Rotation e = turned(model_.base, y(start_, end_, end_slope_, kAngle));
+    return model_.lowest_current(e, y(start_, end_, end_slope_, kId), y(start_, end_, end_slope_, kIq));
+  }
 
   struct Bracket {
     double low, g_low;    // nothing negative
@@ -72,8 +82,10 @@ class Curve {
 
   const Model& model_;
   const SegmentStart& start_;
-  State end_, end_slope_;
+  const State& end_;
+  const State& end_slope_;
   double h_;
+  bool currents_alone_;
 };
 
 }  // namespace

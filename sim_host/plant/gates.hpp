@@ -34,7 +34,9 @@ class Gates {
   /// a change that makes both devices conduct.
   Tick next(int leg, bool leaving) const {
     const int carrying = 2 * leg + (leaving ? 0 : 1);
-    return devices_[carrying].on ? next_of_both(carrying, 4 * leg + 1 - carrying) : due_[carrying];
+    const int other = 4 * leg + 1 - carrying;
+    if (!devices_[carrying].on || (!devices_[other].on && due_[other] == kNever)) return due_[carrying];
+    return next_of_both(carrying, other);
   }
 
   /// Lets all changes up to t happen; the legs whose devices have changed.

@@ -144,22 +144,14 @@ void Model::events(double t, const State& y, Events& g) const {
 }
 
 double Model::lowest_event(double t, const State& y) const {
-  const bool only_currents = clamp == Clamp::kNone && (shaft == Shaft::kFree || shaft == Shaft::kLocked);
-  if (!only_currents || link.brake_chopper) {
-    Events g;
-    events(t, y, g);
-    return *std::min_element(g.begin(), g.end());
-  }
-  const Phases i = phase_currents(turned(base, y[kAngle]), y[kId], y[kIq]);
-  double lowest = kInactive;
-  for (int k = 0; k < 3; ++k) {
-    if (!legs[k].perfect) lowest = std::min(lowest, direction[k] * i[k]);
-  }
-  return lowest;
+  if (watches_currents_alone()) return lowest_current(turned(base, y[kAngle]), y[kId], y[kIq]);
+  Events g;
+  events(t, y, g);
+  return *std::min_element(g.begin(), g.end());
 }
 
 bool Model::far_from_events(const State& y, const State& slope, const State& end_slope, double h) const {
-  if (clamp != Clamp::kNone || shaft == Shaft::kTurning || shaft == Shaft::kStuck || link.brake_chopper) return false;
+  if (!watches_currents_alone()) return false;
   const double d = std::max(std::fabs(slope[kId]), std::fabs(end_slope[kId]));
   const double q = std::max(std::fabs(slope[kIq]), std::fabs(end_slope[kIq]));
   const double turning_by = std::max(std::fabs(slope[kAngle]), std::fabs(end_slope[kAngle]));

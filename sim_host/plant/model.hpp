@@ -67,6 +67,13 @@ class Model {
   /// The lowest of them.
   double lowest_event(double t, const State& y) const;
 
+  /// True when all legs conduct and nothing but their currents is watched; then the lowest event function is this, of
+  /// rotor currents at rotor position e.
+  bool watches_currents_alone() const {
+    return clamp == Clamp::kNone && (shaft == Shaft::kFree || shaft == Shaft::kLocked) && !link.brake_chopper;
+  }
+  double lowest_current(const Rotation& e, double id, double iq) const;
+
   /// True when currents are the only thing that events can come from, and none can have reached zero: each starts
   /// further from it than it can have moved with the slopes at both ends.
   bool far_from_events(const State& y, const State& slope, const State& end_slope, double h) const;
@@ -83,6 +90,10 @@ class Model {
   /// leaves zero only to the side to which it is driven; `fired` = the event functions that reached zero (none at a
   /// gate edge). Needs y[kAngle] = 0. Projects y onto the zero currents.
   void resolve(State& y, const Fired& fired);
+
+  /// The same at a gate edge of the legs `changed` that leaves nothing to choose: false when something is, else `jump`
+  /// says by how much the leg voltages change.
+  bool switch_legs(State& y, const std::array<bool, 3>& changed, std::array<double, 3>& jump);
 
   /// Sets y so that the currents of legs that do not conduct are exactly zero.
   void project(State& y) const;
@@ -156,6 +167,16 @@ inline Pair phase_axis(const Rotation& e, int phase) {
   if (phase == 0) return {e.c, -e.s};
   const double turn = phase == 1 ? 0.5 * kSqrt3 : -0.5 * kSqrt3;
   return {-0.5 * e.c + turn * e.s, 0.5 * e.s + turn * e.c};
+}
+
+inline double Model::lowest_current(const Rotation& e, double id, double iq) const {
+  const Phases i = phase_currents(e, id, iq);
+  double lowest = kInactive;
+  for (int k = 0; k < 3; ++k) {
+    const double g = direction[k] > 0 ? i[k] : -i[k];
+    if (!legs[k].perfect && g < lowest) lowest = g;
+  }
+  return lowest;
 }
 
 }  // namespace stillspin::plant

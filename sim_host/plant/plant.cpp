@@ -29,27 +29,20 @@ Tick Plant::now() const { return impl_->now; }
 
 double Plant::current_sensor(int phase) const {
   check_index("phase", phase);
-  return impl_->sensors.reading(phase, impl_->now, impl_->sensed()[phase]);
+  return impl_->reading(phase);
 }
 
 std::uint16_t Plant::adc_code(Tick t, AdcInput input) {
-  impl_->move_to(t);
-  switch (input) {
-    case AdcInput::kCurrentA:
-      return impl_->adc.current(0, current_sensor(0));
-    case AdcInput::kCurrentB:
-      return impl_->adc.current(1, current_sensor(1));
-    case AdcInput::kCurrentC:
-      return impl_->config.sensor.count < 3 ? std::uint16_t{0} : impl_->adc.current(2, current_sensor(2));
-    case AdcInput::kLinkVoltage: {
-      impl_->integrate_to(t);
-      const Trajectory& trajectory = impl_->trajectory;
-      return impl_->adc.link_voltage(trajectory.link_voltage_at_offset(trajectory.offset(t)));
-    }
-    case AdcInput::kTemperature:
-      break;
+  Impl& plant = *impl_;
+  plant.move_to(t);
+  if (input == AdcInput::kTemperature) return plant.adc.temperature();
+  if (input == AdcInput::kLinkVoltage) {
+    plant.integrate_to(t);
+    return plant.adc.link_voltage(plant.trajectory.link_voltage_at_offset(plant.trajectory.offset(t)));
   }
-  return impl_->adc.temperature();
+  const int phase = static_cast<int>(input) - static_cast<int>(AdcInput::kCurrentA);
+  if (phase >= plant.config.sensor.count) return 0;
+  return plant.adc.current(phase, plant.reading(phase));
 }
 
 PlantState Plant::state() const {

@@ -100,7 +100,11 @@ void Plant::Impl::edges(Tick t) {
       if (changed[k]) set_leg(k);
     }
   };
-  transition({}, change);
+  if (trajectory.model().clamp != Clamp::kNone) return transition({}, change);
+  change();  // does not touch the voltages of legs that conduct
+  std::array<double, 3> jump;
+  if (!trajectory.model().switch_legs(trajectory.state(), changed, jump)) return transition({}, [] {});
+  renew(jump);
 }
 
 /// Edges inside the segment just committed: they change nothing but what a later event will find.

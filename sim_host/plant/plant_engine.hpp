@@ -41,6 +41,7 @@ struct Plant::Impl {
   void integrate_to(Tick t) {
     if (!looked_ahead || !trajectory.covers(t)) integrate_on(t);
   }
+  double reading(int phase) { return sensors.reading(phase, now, sensed()[phase]); }
   [[noreturn]] void refuse(Tick t) const;
   void integrate_on(Tick t);
   void settle(Tick t);
@@ -52,6 +53,12 @@ struct Plant::Impl {
   void commit();
   template <typename Change>
   void transition(const Fired& fired, Change change);
+  /// The segment has to be begun anew, after a jump of the leg voltages.
+  void renew(const std::array<double, 3>& jump) {
+    trajectory.restart();
+    looked_ahead = false;
+    sensors.excite(trajectory.tick(), trajectory.fraction(), jump);
+  }
   void cut();
   void set_leg(int k);
   const State& present();
@@ -90,11 +97,9 @@ inline void Plant::Impl::transition(const Fired& fired, Change change) {
   const std::array<double, 3> before = trajectory.leg_voltages();
   change();
   trajectory.model().resolve(trajectory.state(), fired);
-  trajectory.restart();
-  looked_ahead = false;
-  std::array<double, 3> step = trajectory.leg_voltages();
-  for (int k = 0; k < 3; ++k) step[k] -= before[k];
-  sensors.excite(trajectory.tick(), trajectory.fraction(), step);
+  std::array<double, 3> jump = trajectory.leg_voltages();
+  for (int k = 0; k < 3; ++k) jump[k] -= before[k];
+  renew(jump);
 }
 
 }  // namespace stillspin::plant

@@ -18,6 +18,7 @@ Sensors::Sensors(const PlantConfig& c, const AlphaBeta& initial)
       ring_scale_(1.5 * c.sensor.ring_amplitude / c.link.source_voltage),
       ring_end_(static_cast<Tick>(kForgotten * c.sensor.ring_decay / kSecondsPerTick)),
       filtered_(initial) {
+  repair();
   const double coarse = kFine * kSecondsPerTick;
   for (unsigned n = 0; n < kFine; ++n) fine_[n] = decay(n * kSecondsPerTick);
   for (unsigned n = 0; n < kCoarse; ++n) coarse_[n] = decay(n * kFine * kSecondsPerTick);
@@ -91,26 +92,29 @@ AlphaBeta Sensors::ringing(Tick t) const {
   return {product(ring_alpha_, factor).im, product(ring_beta_, factor).im};
 }
 
-double Sensors::reading(int phase, Tick t, double current) const {
-  const Failure& f = failures_[phase];
-  if (f.stuck) return f.stuck_at;
-  double reading = f.gain * config_.gain[phase] * current + config_.offset[phase];
-  if (f.drift != 0.0) reading += f.drift * static_cast<double>(t - f.drift_from) * kSecondsPerTick;
+double Sensors::failing(int phase, Tick t, double current) const {
+  const Output& o = outputs_[phase];
+  if (o.stuck) return o.stuck_at;
+  double reading = o.gain * current + o.offset;
+  if (o.drift != 0.0) reading += o.drift * static_cast<double>(t - o.drift_from) * kSecondsPerTick;
   return reading;
 }
 
 void Sensors::stick(int phase, double value) {
-  failures_[phase].stuck = true;
-  failures_[phase].stuck_at = value;
+  outputs_[phase].faulty = outputs_[phase].stuck = true;
+  outputs_[phase].stuck_at = value;
 }
 
 void Sensors::drift(int phase, Tick from, double per_second) {
-  failures_[phase].drift = per_second;
-  failures_[phase].drift_from = from;
+  outputs_[phase].faulty = true;
+  outputs_[phase].drift = per_second;
+  outputs_[phase].drift_from = from;
 }
 
-void Sensors::scale(int phase, double factor) { failures_[phase].gain *= factor; }
+void Sensors::scale(int phase, double factor) { outputs_[phase].gain *= factor; }
 
-void Sensors::repair() { failures_ = {}; }
+void Sensors::repair() {
+  for (int k = 0; k < 3; ++k) outputs_[k] = Output{config_.gain[k], config_.offset[k]};
+}
 
 }  // namespace stillspin::plant

@@ -36,7 +36,10 @@ class Sensors {
   AlphaBeta ringing(Tick t) const;
 
   /// Reading of `phase` (A) at t for its current, filtered and with ringing.
-  double reading(int phase, Tick t, double current) const;
+  double reading(int phase, Tick t, double current) const {
+    const Output& o = outputs_[phase];
+    return o.faulty ? failing(phase, t, current) : o.gain * current + o.offset;
+  }
 
   void stick(int phase, double value);
   void drift(int phase, Tick from, double per_second);
@@ -44,18 +47,21 @@ class Sensors {
   void repair();
 
  private:
-  struct Failure {
+  struct Output {
+    double gain = 1.0;         // A/A
+    double offset = 0.0;       // A
+    bool faulty = false;       // the rest matters
     bool stuck = false;
     double stuck_at = 0.0;  // A
     double drift = 0.0;     // A/s
     Tick drift_from = 0;
-    double gain = 1.0;
   };
   struct Phasor {
     double re = 0.0;
     double im = 0.0;
   };
 
+  double failing(int phase, Tick t, double current) const;
   double forgetting(double seconds) const;
   static Phasor product(const Phasor& a, const Phasor& b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
@@ -77,7 +83,7 @@ class Sensors {
   std::array<Phasor, kCoarse> coarse_;  // decay over 0, 64, 128, ... ticks
   std::array<double, kFine> fine_filter_;
   std::array<double, kCoarse> coarse_filter_;
-  std::array<Failure, 3> failures_;
+  std::array<Output, 3> outputs_;
 };
 
 }  // namespace stillspin::plant
