@@ -24,14 +24,9 @@ void WaveformProbe::look(Tick t, plant::Plant& plant, const std::array<bool, 3>&
   next_ = t + raster_ < end_ ? t + raster_ : std::numeric_limits<Tick>::max();
 }
 
-void WaveformProbe::edge(Tick t, int leg, bool upper, bool lower) {
-  if (!sees(t)) return;
+void WaveformProbe::keep_edge(Tick t, int leg, bool upper, bool lower) {
   const double row[] = {seconds(t), static_cast<double>(leg), upper ? 1.0 : 0.0, lower ? 1.0 : 0.0};
   for (std::size_t k = 0; k < edges_.size(); k++) edges_[k].push_back(row[k]);
-}
-
-void WaveformProbe::sample(Tick t) {
-  if (sees(t)) samples_.push_back(seconds(t));
 }
 
 Waveform WaveformProbe::take() {

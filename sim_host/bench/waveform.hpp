@@ -41,13 +41,18 @@ class WaveformProbe {
   /// Looks at the plant and at the level of the six gate pins.
   void look(Tick t, plant::Plant& plant, const std::array<bool, 3>& upper, const std::array<bool, 3>& lower);
 
-  void edge(Tick t, int leg, bool upper, bool lower);
-  void sample(Tick t);
+  void edge(Tick t, int leg, bool upper, bool lower) {
+    if (sees(t)) keep_edge(t, leg, upper, lower);
+  }
+  void sample(Tick t) {
+    if (sees(t)) samples_.push_back(seconds(t));
+  }
 
   Waveform take();
 
  private:
   bool sees(Tick t) const { return t >= begin_ && t < end_; }
+  void keep_edge(Tick t, int leg, bool upper, bool lower);
   double seconds(Tick t) const { return static_cast<double>(t - origin_) * 1e-8; }
 
   Tick origin_ = 0;
