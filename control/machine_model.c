@@ -37,11 +37,20 @@ static void turn_with_admittance(machine_model_t* m) {
   m->k_qd_q24 = ONE_Q24 - q_mul_sat(ONE_Q24 + t2_q24, per_det_q24, 24);
 }
 
+void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
+  machine_trim_t* const t = &m->trim;
+  t->mean_q30 = mean_q30;
+  t->half_q30 = half_q30;
+  t->ydd_q24 = q_over(mean_q30 + half_q30, m->per_ydd0, 24);
+  t->yqq_q24 = q_over(mean_q30 - half_q30, m->per_yqq0, 24);
+  t->ydq_q24 = q_over(half_q30, m->per_half0, 24);
+}
+
 void machine_model_move(machine_model_t* m, int32_t iq_q20) {
   const machine_point_t p = machine_map_at(&m->map, iq_q20);
-  m->yd_q30 = p.ydd_q30 + m->trim.mean_q30 + m->trim.half_q30;
-  m->yq_q30 = p.yqq_q30 + m->trim.mean_q30 - m->trim.half_q30;
-  m->ydq_q30 = p.ydq_q30;
+  m->yd_q30 = p.ydd_q30 + q_mul(p.ydd_q30, m->trim.ydd_q24, 24);
+  m->yq_q30 = p.yqq_q30 + q_mul(p.yqq_q30, m->trim.yqq_q24, 24);
+  m->ydq_q30 = p.ydq_q30 + q_mul(p.ydq_q30, m->trim.ydq_q24, 24);
   m->per_yq = q_invert(m->yq_q30);
   m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
   m->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
@@ -55,6 +64,10 @@ bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* 
   machine_map_t fresh;
   if (!machine_map_init(&fresh, map, m->period_q30, m->emf_q16)) return false;
   m->map = fresh;
+  const machine_point_t* const p = &fresh.points[0];
+  m->per_ydd0 = q_invert(p->ydd_q30);
+  m->per_yqq0 = q_invert(p->yqq_q30);
+  m->per_half0 = q_invert(q_max((p->ydd_q30 - p->yqq_q30) / 2, 1));
   machine_model_move(m, 0);
   return true;
 }
@@ -82,7 +95,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
-  static const machine_trim_t none = {0, 0, 0, 0};
+  static const machine_trim_t none = {0, 0, 0, 0, 0, 0, 0};
   m->trim = none;
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;

@@ -29,9 +29,10 @@ typedef struct {
 
 /// What the drive learns while it runs, added to what the parameters say.
 typedef struct {
-  int32_t mean_q30, half_q30;  // of the admittances: (ydd + yqq)/2 and (ydd - yqq)/2
-  int32_t rs_q24;              // of the resistance, ohm
-  int32_t psi_q16;             // of the magnet's flux/T, V per (rad per period)
+  int32_t mean_q30, half_q30;         // of (ydd + yqq)/2 and (ydd - yqq)/2 at no current
+  int32_t ydd_q24, yqq_q24, ydq_q24;  // the same as shares of the map, machine_model_trim
+  int32_t rs_q24;                     // of the resistance, ohm
+  int32_t psi_q16;                    // of the magnet's flux/T, V per (rad per period)
 } machine_trim_t;
 
 typedef struct {
@@ -46,6 +47,7 @@ typedef struct {
   int32_t periods_per_second;  // 1/T
   int32_t period_q30;          // T, s
   machine_map_t map;
+  q_inverse_t per_ydd0, per_yqq0, per_half0;  // of the map at no current: ydd, yqq, (ydd - yqq)/2
   machine_trim_t trim;
   // At the working point, see machine_model_move.
   int32_t rs_q24;                        // ohm
@@ -63,6 +65,10 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
 /// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).
 bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map);
+
+/// What the admittances at no current have more than the map. All of the map changes in proportion: inductances that
+/// differ do so saturated as well, and the axis of the saliency turns to where the map has it.
+void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 
 /// Moves the working point to a torque current and takes the trim into account. Once per period: two
 /// reciprocals.

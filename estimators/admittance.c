@@ -11,11 +11,12 @@ static admittance_t nominal(const machine_model_t* m) {
   return y;
 }
 
-static void bound(machine_trim_t* t, const admittance_t* y) {
-  t->mean_q30 = q_clamp(t->mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
+static void trim(machine_model_t* m, const admittance_t* y, int32_t mean_q30, int32_t half_q30) {
+  const int32_t mean = q_clamp(mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
   // Both admittances stay positive, whatever the windows say.
-  const int32_t half_max = q_min(q_shl_sat(y->half_q30, 1), (y->mean_q30 + t->mean_q30) / 10 * 9);
-  t->half_q30 = q_clamp(t->half_q30, q_min(y->half_q30 / 3, half_max) - y->half_q30, half_max - y->half_q30);
+  const int32_t half_max = q_min(q_shl_sat(y->half_q30, 1), (y->mean_q30 + mean) / 10 * 9);
+  const int32_t half_min = q_min(y->half_q30 / 3, half_max);
+  machine_model_trim(m, mean, q_clamp(half_q30, half_min - y->half_q30, half_max - y->half_q30));
 }
 
 void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30) {
@@ -23,14 +24,12 @@ void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q3
   const admittance_t y = nominal(m);
   // Admittance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for.
   const q_inverse_t per_spread = q_invert(r->spread_q8);
-  m->trim.mean_q30 += q_mul(q_over(r->along_q16, per_spread, 22), share_q30, 30);
-  m->trim.half_q30 += q_mul(q_over(r->mirror_q16, per_spread, 22), share_q30, 30);
-  bound(&m->trim, &y);
+  const int32_t mean_q30 = m->trim.mean_q30 + q_mul(q_over(r->along_q16, per_spread, 22), share_q30, 30);
+  const int32_t half_q30 = m->trim.half_q30 + q_mul(q_over(r->mirror_q16, per_spread, 22), share_q30, 30);
+  trim(m, &y, mean_q30, half_q30);
 }
 
 void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   const admittance_t y = nominal(m);
-  m->trim.mean_q30 = q_sub_sat(mean_q30, y.mean_q30);
-  m->trim.half_q30 = q_sub_sat(half_q30, y.half_q30);
-  bound(&m->trim, &y);
+  trim(m, &y, q_sub_sat(mean_q30, y.mean_q30), q_sub_sat(half_q30, y.half_q30));
 }

@@ -161,8 +161,8 @@ TEST(MachineModel, RejectsMachinesWhoseConstantsDoNotFit) {
 TEST(MachineModel, TheTrimMovesTheSaliency) {
   machine_model_t m = stillspin::test::model_of(Motor{});
   const double yd = 0.025, yq = 0.011;
-  m.trim.mean_q30 = raw(0.5 * (yd + yq), 30) - m.yd_q30 / 2 - m.yq_q30 / 2;
-  m.trim.half_q30 = raw(0.5 * (yd - yq), 30) - m.yd_q30 / 2 + m.yq_q30 / 2;
+  machine_model_trim(&m, raw(0.5 * (yd + yq), 30) - m.yd_q30 / 2 - m.yq_q30 / 2,
+                     raw(0.5 * (yd - yq), 30) - m.yd_q30 / 2 + m.yq_q30 / 2);
   machine_model_move(&m, raw(3.0, 20));
   EXPECT_NEAR(real(m.yd_q30, 30), yd, 4e-9);
   EXPECT_NEAR(real(m.yq_q30, 30), yq, 4e-9);
