@@ -6,6 +6,7 @@
 #define DOUBT_PER_BAD 8L  // a good period takes back an eighth of what a bad one adds
 #define APART_LIMIT_BAM 1073741824L
 #define ONE_Q30 1073741824L
+#define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 
 void synchronism_reset(synchronism_t* s) {
@@ -52,8 +53,10 @@ static int32_t floor_q16(const synchronism_config_t* c, int32_t span_ticks) {
 
 static void watch_emf(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                       const synchronism_seen_t* seen) {
-  follow(&s->error_q16.d, q_mul_sat(seen->residual_q20.d, c->volts_d_q16, 20));
-  follow(&s->error_q16.q, q_mul_sat(seen->residual_q20.q, c->volts_q_q16, 20));
+  // 1 - K_qd is yq/yd but for the square of the tilt.
+  const int32_t d_q16 = q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24);
+  follow(&s->error_q16.d, d_q16);
+  follow(&s->error_q16.q, q_over(seen->residual_q20.q, m->per_yq, 26));
   const int32_t emf_q16 = q_abs_sat(q_mul_sat(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp), 30));
   s->limit_q16 = q_add_sat(floor_q16(c, seen->span_ticks), q_mul(emf_q16, c->share_q15, 15));
 }
@@ -62,11 +65,6 @@ static bool exceeds(const synchronism_t* s) {
   const int64_t d = (int64_t)s->error_q16.d * s->error_q16.d;
   const int64_t q = (int64_t)s->error_q16.q * s->error_q16.q;
   return q_shr64(d, 1) + q_shr64(q, 1) > q_shr64((int64_t)s->limit_q16 * s->limit_q16, 1);
-}
-
-void synchronism_design(synchronism_config_t* c, const machine_model_t* m) {
-  c->volts_d_q16 = q_mul_sat(m->ld_q30, m->periods_per_second, 14);
-  c->volts_q_q16 = q_mul_sat(m->lq_q30, m->periods_per_second, 14);
 }
 
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,

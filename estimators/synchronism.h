@@ -1,7 +1,8 @@
 // Loss of synchronism: does the angle in use still fit the machine?
 //
 // Whatever estimator an angle comes from, the windows must obey the voltage equation in the frame of that angle. The
-// residual of the mean window of a period (deviation.h), times L/T, is an EMF error in volts, expected less true:
+// residual of the mean window of a period (deviation.h), times the L/T of the working point, is an EMF error in volts,
+// expected less true:
 //   e = w lambda (-sin d, 1 - cos d) + saliency terms     for a frame that is ahead by d and turns with the shaft,
 // |e| = w lambda at d = 60 degrees, 1.4 w lambda at 90 and 2 w lambda with the polarity reversed; an angle that stands
 // or slips gives the EMF of one of the two speeds. It is compared with floor + share |w^ lambda|. The floor stands for
@@ -22,7 +23,6 @@ typedef struct {
   int32_t floor_q16;    // V
   int32_t share_q15;    // of the EMF that the speed lets expect, 0..1
   int32_t bad_periods;  // this many bad periods are a loss; eight good ones make up for a bad one; up to 10000
-  int32_t volts_d_q16, volts_q_q16;  // L/T, V per (A per period), set by synchronism_design
 } synchronism_config_t;
 
 typedef struct {
@@ -30,9 +30,6 @@ typedef struct {
   int32_t limit_q16;  // what it may be now, V
   int32_t doubt;      // eight a bad period, less one a good one
 } synchronism_t;
-
-/// Derives the constants of the machine; the first three members are set by hand.
-void synchronism_design(synchronism_config_t* c, const machine_model_t* m);
 
 void synchronism_reset(synchronism_t* s);
 

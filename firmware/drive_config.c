@@ -121,7 +121,6 @@ static bool load_position(drive_config_t* c) {
   c->synchronism.floor_q16 = p->synchronism_floor;
   c->synchronism.share_q15 = q_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
-  synchronism_design(&c->synchronism, &c->nameplate);
   const int32_t low = q_mul_sat(p->blend_low, c->bpp_per_rpm_q8, 24);
   const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
   c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);

@@ -19,13 +19,7 @@ constexpr double kShare = 0.6;
 constexpr int kBad = 50;  // periods
 const Motor kMotor;
 
-synchronism_config_t config() {
-  synchronism_config_t c = {raw(kFloor, 16), raw(kShare, 15), kBad, 0, 0};
-  const machine_model_t model = model_of(kMotor);
-  synchronism_design(&c, &model);
-  return c;
-}
-const synchronism_config_t kConfig = config();
+const synchronism_config_t kConfig = {raw(kFloor, 16), raw(kShare, 15), kBad};
 
 /// A shaft that turns, seen in a frame that is ahead by `off` and believes in `believed` (rad/s).
 struct Scene {
