@@ -41,6 +41,21 @@ void gpio_make_output(uint16_t pin, bool level) {
   target_edis();
 }
 
+void gpio_make_open_drain(uint16_t pin) {
+  gpio_write(pin, false);
+  gpio_pull_low(pin, false);
+  target_eallow();
+  set_pair_of_bits(pin, REG_GPAMUX1, GPIO_MUX_GPIO);
+  target_edis();
+}
+
+// By its direction: the output latch is low.
+void gpio_pull_low(uint16_t pin, bool low) {
+  target_eallow();
+  reg32_change(control_register(pin, REG_GPADIR), bit_of(pin), low ? bit_of(pin) : 0uL);
+  target_edis();
+}
+
 void gpio_write(uint16_t pin, bool level) {
   target_write32(data_register(pin, level ? REG_GPASET : REG_GPACLEAR), bit_of(pin));
 }

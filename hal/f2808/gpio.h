@@ -13,6 +13,10 @@ void gpio_give_to_peripheral(uint16_t pin, uint16_t mux, uint16_t qualification,
 // Makes the pin an output that starts with the given level.
 void gpio_make_output(uint16_t pin, bool level);
 
+// Makes the pin one that pulls its line low or lets it go, and begins with letting go.
+void gpio_make_open_drain(uint16_t pin);
+void gpio_pull_low(uint16_t pin, bool low);
+
 void gpio_write(uint16_t pin, bool level);
 void gpio_toggle(uint16_t pin);
 

@@ -897,6 +897,119 @@
 #define SCI_PRI_SOFT_LSB 4
 #define SCI_PRI_SOFT_MASK 0x0010u
 
+// ---- I2C --------------------------------------------------------------------------------------------------
+#define I2C_BASE 0x7900uL  // I2C-A, the only one
+#define I2C_OAR 0x00u      // own address
+#define I2C_IER 0x01u      // interrupt enables
+#define I2C_IER_AL_LSB 0
+#define I2C_IER_AL_MASK 0x0001u
+#define I2C_IER_NACK_LSB 1
+#define I2C_IER_NACK_MASK 0x0002u
+#define I2C_IER_ARDY_LSB 2
+#define I2C_IER_ARDY_MASK 0x0004u
+#define I2C_IER_RRDY_LSB 3
+#define I2C_IER_RRDY_MASK 0x0008u
+#define I2C_IER_XRDY_LSB 4
+#define I2C_IER_XRDY_MASK 0x0010u
+#define I2C_IER_SCD_LSB 5
+#define I2C_IER_SCD_MASK 0x0020u
+#define I2C_IER_AAS_LSB 6
+#define I2C_IER_AAS_MASK 0x0040u
+#define I2C_STR 0x02u  // status
+#define I2C_STR_AL_LSB 0
+#define I2C_STR_AL_MASK 0x0001u
+#define I2C_STR_NACK_LSB 1
+#define I2C_STR_NACK_MASK 0x0002u
+#define I2C_STR_ARDY_LSB 2
+#define I2C_STR_ARDY_MASK 0x0004u
+#define I2C_STR_RRDY_LSB 3
+#define I2C_STR_RRDY_MASK 0x0008u
+#define I2C_STR_XRDY_LSB 4
+#define I2C_STR_XRDY_MASK 0x0010u
+#define I2C_STR_SCD_LSB 5
+#define I2C_STR_SCD_MASK 0x0020u
+#define I2C_STR_AD0_LSB 8
+#define I2C_STR_AD0_MASK 0x0100u
+#define I2C_STR_AAS_LSB 9
+#define I2C_STR_AAS_MASK 0x0200u
+#define I2C_STR_XSMT_LSB 10
+#define I2C_STR_XSMT_MASK 0x0400u
+#define I2C_STR_RSFULL_LSB 11
+#define I2C_STR_RSFULL_MASK 0x0800u
+#define I2C_STR_BB_LSB 12
+#define I2C_STR_BB_MASK 0x1000u
+#define I2C_STR_NACKSNT_LSB 13
+#define I2C_STR_NACKSNT_MASK 0x2000u
+#define I2C_STR_SDIR_LSB 14
+#define I2C_STR_SDIR_MASK 0x4000u
+#define I2C_CLKL 0x03u  // low-time divider
+#define I2C_CLKH 0x04u  // high-time divider
+#define I2C_CNT 0x05u   // byte count
+#define I2C_DRR 0x06u   // receive data
+#define I2C_SAR 0x07u   // slave address
+#define I2C_DXR 0x08u   // transmit data
+#define I2C_MDR 0x09u   // mode
+#define I2C_MDR_BC_LSB 0
+#define I2C_MDR_BC_MASK 0x0007u
+#define I2C_MDR_FDF_LSB 3
+#define I2C_MDR_FDF_MASK 0x0008u
+#define I2C_MDR_STB_LSB 4
+#define I2C_MDR_STB_MASK 0x0010u
+#define I2C_MDR_IRS_LSB 5
+#define I2C_MDR_IRS_MASK 0x0020u
+#define I2C_MDR_DLB_LSB 6
+#define I2C_MDR_DLB_MASK 0x0040u
+#define I2C_MDR_RM_LSB 7
+#define I2C_MDR_RM_MASK 0x0080u
+#define I2C_MDR_XA_LSB 8
+#define I2C_MDR_XA_MASK 0x0100u
+#define I2C_MDR_TRX_LSB 9
+#define I2C_MDR_TRX_MASK 0x0200u
+#define I2C_MDR_MST_LSB 10
+#define I2C_MDR_MST_MASK 0x0400u
+#define I2C_MDR_STP_LSB 11
+#define I2C_MDR_STP_MASK 0x0800u
+#define I2C_MDR_STT_LSB 13
+#define I2C_MDR_STT_MASK 0x2000u
+#define I2C_MDR_FREE_LSB 14
+#define I2C_MDR_FREE_MASK 0x4000u
+#define I2C_MDR_NACKMOD_LSB 15
+#define I2C_MDR_NACKMOD_MASK 0x8000u
+#define I2C_ISRC 0x0Au  // interrupt source code
+#define I2C_ISRC_INTCODE_LSB 0
+#define I2C_ISRC_INTCODE_MASK 0x0007u
+#define I2C_PSC 0x0Cu  // module clock prescale
+#define I2C_PSC_IPSC_LSB 0
+#define I2C_PSC_IPSC_MASK 0x00FFu
+#define I2C_FFTX 0x20u  // transmit FIFO
+#define I2C_FFTX_TXFFIL_LSB 0
+#define I2C_FFTX_TXFFIL_MASK 0x001Fu
+#define I2C_FFTX_TXFFIENA_LSB 5
+#define I2C_FFTX_TXFFIENA_MASK 0x0020u
+#define I2C_FFTX_TXFFINTCLR_LSB 6
+#define I2C_FFTX_TXFFINTCLR_MASK 0x0040u
+#define I2C_FFTX_TXFFINT_LSB 7
+#define I2C_FFTX_TXFFINT_MASK 0x0080u
+#define I2C_FFTX_TXFFST_LSB 8
+#define I2C_FFTX_TXFFST_MASK 0x1F00u
+#define I2C_FFTX_TXFFRST_LSB 13
+#define I2C_FFTX_TXFFRST_MASK 0x2000u
+#define I2C_FFTX_FFEN_LSB 14
+#define I2C_FFTX_FFEN_MASK 0x4000u
+#define I2C_FFRX 0x21u  // receive FIFO
+#define I2C_FFRX_RXFFIL_LSB 0
+#define I2C_FFRX_RXFFIL_MASK 0x001Fu
+#define I2C_FFRX_RXFFIENA_LSB 5
+#define I2C_FFRX_RXFFIENA_MASK 0x0020u
+#define I2C_FFRX_RXFFINTCLR_LSB 6
+#define I2C_FFRX_RXFFINTCLR_MASK 0x0040u
+#define I2C_FFRX_RXFFINT_LSB 7
+#define I2C_FFRX_RXFFINT_MASK 0x0080u
+#define I2C_FFRX_RXFFST_LSB 8
+#define I2C_FFRX_RXFFST_MASK 0x1F00u
+#define I2C_FFRX_RXFFRST_LSB 13
+#define I2C_FFRX_RXFFRST_MASK 0x2000u
+
 // ---- External interrupts -----------------------------------------------------------------------------
 #define REG_XINT1CR 0x7070uL  // XINT1 control
 #define XINT1CR_ENABLE_LSB 0

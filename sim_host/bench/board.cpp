@@ -88,8 +88,24 @@ void Board::trip(Tick t) {
 }
 
 bool Board::pin_level(Tick t, int pin) {
-  if (pin == kPinSerialIn) return serial_.level(t);
-  return pin != kPinOverCurrent || t >= tripped_until_;
+  switch (pin) {
+    case kPinOverCurrent:
+      return t >= tripped_until_;
+    case kPinSerialIn:
+      return serial_.level(t);
+    case kPinSda:
+      return sda_ && (eeprom_ == nullptr || eeprom_->lets_sda_go());
+    case kPinScl:
+      return scl_;
+    default:
+      return true;
+  }
+}
+
+void Board::on_i2c_pins(Tick t, bool sda, bool scl) {
+  sda_ = sda;
+  scl_ = scl;
+  if (eeprom_ != nullptr) eeprom_->drive(t, sda, scl);
 }
 
 void Board::on_output_pin(Tick t, int pin, bool /*level*/) {

@@ -3,7 +3,8 @@
 // Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
 // been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
 // over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 19 A, and holds it for 10 us.
-// The serial port (GPIO28, 29) has a line with a far end.
+// The serial port (GPIO28, 29) has a line with a far end. An EEPROM may be
+// fitted on the I2C lines (GPIO32 SDA, GPIO33 SCL), which are pulled up.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
@@ -13,6 +14,7 @@
 
 #include "sim_host/bench/waveform.hpp"
 #include "sim_host/chip/chip.hpp"
+#include "sim_host/devices/eeprom.hpp"
 #include "sim_host/devices/serial_line.hpp"
 #include "sim_host/plant/plant.hpp"
 
@@ -27,6 +29,8 @@ inline constexpr Tick kPeriod = 10'000;
 inline constexpr Tick kWatch = 2'500;
 inline constexpr int kPinOverCurrent = 12;
 inline constexpr int kPinSerialIn = 28;
+inline constexpr int kPinSda = 32;
+inline constexpr int kPinScl = 33;
 inline constexpr int kPinEnable = 34;
 
 /// Told at the start of every PWM period, before the control interrupt runs.
@@ -42,6 +46,9 @@ class Board : public chip::World {
 
   /// The chip that sits on the board; needed before it runs.
   void attach(chip::Chip& chip) { chip_ = &chip; }
+
+  /// Before the chip runs; the board does not own it.
+  void fit(devices::Eeprom& eeprom) { eeprom_ = &eeprom; }
 
   plant::Plant& plant() { return plant_; }
   WaveformProbe& probe() { return probe_; }
@@ -61,6 +68,7 @@ class Board : public chip::World {
   std::uint16_t adc_sample(Tick t, int channel) override;
   bool pin_level(Tick t, int pin) override;
   void on_output_pin(Tick t, int pin, bool level) override;
+  void on_i2c_pins(Tick t, bool sda, bool scl) override;
   std::int64_t encoder_edges(Tick t) override;
   Tick serial_reaches(Tick t, bool level) override { return serial_.reaches(t, level); }
   void on_serial_frame(Tick, const chip::SerialFrame& frame) override { serial_.receive(frame); }
@@ -86,6 +94,8 @@ class Board : public chip::World {
   WaveformProbe probe_;
   devices::SerialLine serial_;
   chip::Chip* chip_ = nullptr;
+  devices::Eeprom* eeprom_ = nullptr;
+  bool sda_ = true, scl_ = true;  // the chip lets go of the I2C lines
   std::array<bool, 3> upper_{};
   std::array<bool, 3> lower_{};
   Tick next_call_ = 0;

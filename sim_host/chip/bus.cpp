@@ -27,7 +27,8 @@ enum class Device : std::uint8_t {
   kSci,
   kGpio,
   kSystem,
-  kAdc
+  kAdc,
+  kI2c
 };
 
 constexpr unsigned kPageShift = 6;
@@ -55,6 +56,7 @@ constexpr PageTable make_page_table() {
   table.set(REG_GPADAT, Device::kGpio);
   table.set(kSystemFrame, Device::kSystem);
   table.set(kAdcFrame, Device::kAdc);
+  table.set(I2C_BASE, Device::kI2c);
   return table;
 }
 
@@ -187,6 +189,8 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return read_sci(address);
     case Device::kSystem:
       return read_system(offset_in_page(address));
+    case Device::kI2c:
+      return read_i2c(address);
     case Device::kFlash:
       return flash_.read(address);
     case Device::kIdentity:
@@ -211,6 +215,14 @@ std::uint16_t Core::read_sci(std::uint32_t address) {
   }
   return gate_stops(system_.sci_clock(), address) ? 0
                                                   : sci_.read(static_cast<std::uint16_t>(address - SCI_BASE(1)), now_);
+}
+
+// Taking a received octet lets the next one begin.
+std::uint16_t Core::read_i2c(std::uint32_t address) {
+  if (gate_stops(system_.i2c_clock(), address)) return 0;
+  const std::uint16_t value = i2c_.read(offset_in_page(address), now_);
+  set_due(kI2c, i2c_.next_event());
+  return value;
 }
 
 std::uint16_t Core::read_system(std::uint16_t offset) const {
@@ -265,6 +277,9 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
     case Device::kSci:
       write_sci(address, value);
       return;
+    case Device::kI2c:
+      write_i2c(address, value);
+      return;
     case Device::kSystem:
       if (!protection_stops(address)) write_system(offset_in_page(address), value);
       return;
@@ -311,6 +326,12 @@ void Core::write_sci(std::uint32_t address, std::uint16_t value) {
   if (gate_stops(system_.sci_clock(), address)) return;
   sci_.write(static_cast<std::uint16_t>(address - SCI_BASE(1)), value, now_);
   set_due(kSci, sci_.next_event());
+}
+
+void Core::write_i2c(std::uint32_t address, std::uint16_t value) {
+  if (gate_stops(system_.i2c_clock(), address)) return;
+  i2c_.write(offset_in_page(address), value, now_);
+  set_due(kI2c, i2c_.next_event());
 }
 
 void Core::write_gpio(std::uint32_t address, std::uint16_t value) {

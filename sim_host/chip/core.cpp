@@ -32,7 +32,8 @@ Core::Core(World& world, Chip::Firmware firmware)
       epwm_(*this),
       adc_(*this),
       eqep1_(*this, 1),
-      sci_(*this) {
+      sci_(*this),
+      i2c_(*this) {
   due_.fill(kNever);
   reset(0, false);
 }
@@ -55,6 +56,7 @@ void Core::reset(Tick t, bool by_watchdog) {
   due_[kAdc] = adc_.next_event();
   due_[kEQep1] = eqep1_.next_event();
   due_[kSci] = sci_.next_event();
+  due_[kI2c] = i2c_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kWatchdog] = watchdog_.next_event();
   find_rest();
@@ -69,6 +71,7 @@ void Core::reset_peripherals(Tick t) {
   adc_.reset(t);
   eqep1_.reset(t);
   sci_.reset(t);
+  i2c_.reset(t);
   timers_.reset(release_);
 }
 
@@ -140,7 +143,7 @@ void Core::fail_with_current_exception() {
 
 void Core::find_rest() {
   rest_source_ = kWorldCall;
-  for (const Source source : {kSystem, kEQep1, kSci, kTimers, kWatchdog}) {
+  for (const Source source : {kSystem, kEQep1, kSci, kI2c, kTimers, kWatchdog}) {
     if (due_[source] < due_[rest_source_]) rest_source_ = source;
   }
 }
@@ -212,6 +215,10 @@ void Core::run_event(Source source) {
       sci_.run_event(now_);
       set_due(kSci, sci_.next_event());
       break;
+    case kI2c:
+      i2c_.run_event(now_);
+      set_due(kI2c, i2c_.next_event());
+      break;
     case kTimers:
       timers_.run_event(now_);
       set_due(kTimers, timers_.next_event());
@@ -264,6 +271,7 @@ void Core::apply(unsigned effects) {
     adc_.clocks_changed(now_);
     eqep1_.clocks_changed(now_);
     sci_.clocks_changed(now_);
+    i2c_.clocks_changed(now_);
     timers_.clocks_changed(now_);
     check_flash_waits();
   }
@@ -272,6 +280,7 @@ void Core::apply(unsigned effects) {
   due_[kAdc] = adc_.next_event();
   due_[kEQep1] = eqep1_.next_event();
   due_[kSci] = sci_.next_event();
+  due_[kI2c] = i2c_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kSystem] = system_.next_event();
   find_rest();
@@ -314,6 +323,11 @@ Tick Core::serial_reaches(Tick t, bool level) {
 void Core::serial_frame(const SerialFrame& frame, Tick t) {
   if (!gpio_.serial_out_routed()) return;
   world_.on_serial_frame(t, frame);
+  world_touched_ = true;
+}
+
+void Core::i2c_pins(bool sda, bool scl, Tick t) {
+  gpio_.i2c_outputs(sda, scl, t);
   world_touched_ = true;
 }
 

@@ -22,6 +22,7 @@
 #include "sim_host/chip/eqep.hpp"
 #include "sim_host/chip/flash_control.hpp"
 #include "sim_host/chip/gpio.hpp"
+#include "sim_host/chip/i2c.hpp"
 #include "sim_host/chip/interrupts.hpp"
 #include "sim_host/chip/peripheral.hpp"
 #include "sim_host/chip/sci.hpp"
@@ -74,6 +75,9 @@ class Core final : public ChipServices {
   std::int64_t encoder_edges(Tick t) override;
   Tick serial_reaches(Tick t, bool level) override;
   void serial_frame(const SerialFrame& frame, Tick t) override;
+  void i2c_pins(bool sda, bool scl, Tick t) override;
+  bool sda_level(Tick t) override { return gpio_.sda_level(t); }
+  bool scl_level(Tick t) override { return gpio_.scl_level(t); }
   Tick sysclk_period() const override { return system_.sysclk_period(); }
   unsigned hspclk_divider() const override { return system_.hspclk_divider(); }
   unsigned lspclk_divider() const override { return system_.lspclk_divider(); }
@@ -81,11 +85,12 @@ class Core final : public ChipServices {
   bool adc_clock() const override { return system_.adc_clock(); }
   bool eqep_clock(int instance) const override { return system_.eqep_clock(instance); }
   bool sci_clock() const override { return system_.sci_clock(); }
+  bool i2c_clock() const override { return system_.i2c_clock(); }
   void model_error(const char* text, std::int64_t value) override;
 
  private:
   // In the order in which they run at one tick.
-  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kSci, kTimers, kWatchdog, kSources };
+  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kSci, kI2c, kTimers, kWatchdog, kSources };
 
   // Life cycle (core.cpp).
   static void firmware_entry(void* core);
@@ -162,6 +167,8 @@ class Core final : public ChipServices {
   void write_eqep1(std::uint32_t address, std::uint16_t value);
   void write_sci(std::uint32_t address, std::uint16_t value);
   std::uint16_t read_sci(std::uint32_t address);
+  void write_i2c(std::uint32_t address, std::uint16_t value);
+  std::uint16_t read_i2c(std::uint32_t address);
 
   // Touched at every access: kept together.
   Tick now_ = 0;
@@ -191,6 +198,7 @@ class Core final : public ChipServices {
   Adc adc_;
   EQep eqep1_;
   Sci sci_;
+  I2c i2c_;
 
   unsigned depth_ = 0;  // nested interrupts
   unsigned trips_ = 0;

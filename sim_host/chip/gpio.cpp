@@ -33,6 +33,7 @@ constexpr unsigned kFunctionEncoder = 1;
 constexpr unsigned kSerialPinIn = 28;
 constexpr unsigned kSerialPinOut = 29;
 constexpr unsigned kFunctionSerial = 1;
+constexpr unsigned kFunctionI2c = 1;
 
 // GPAMUX1 holds pins 0-15 in two words, GPAMUX2 16-31, GPBMUX1 32-34.
 unsigned mux_word(unsigned pin) {
@@ -142,6 +143,32 @@ void Gpio::drive(Tick t) {
     driven_ ^= std::uint64_t{1} << pin;
     world_.on_output_pin(t, static_cast<int>(pin), (levels >> pin & 1u) != 0);
   }
+  drive_i2c(t);
+}
+
+void Gpio::i2c_outputs(bool sda, bool scl, Tick t) {
+  i2c_sda_ = sda;
+  i2c_scl_ = scl;
+  drive_i2c(t);
+}
+
+bool Gpio::line_level(unsigned pin, Tick t) {
+  return function(pin) != kFunctionI2c || world_.pin_level(t, static_cast<int>(pin));
+}
+
+// As a general purpose output that is low the pin pulls its line, too.
+bool Gpio::lets_go(unsigned pin, bool module) const {
+  if (function(pin) == kFunctionI2c) return module;
+  return (outputs_ >> pin & 1u) == 0 || (latch_[pin / 16] >> pin % 16 & 1u) != 0;
+}
+
+void Gpio::drive_i2c(Tick t) {
+  const bool sda = lets_go(kPinSda, i2c_sda_);
+  const bool scl = lets_go(kPinScl, i2c_scl_);
+  if (sda == line_sda_ && scl == line_scl_) return;
+  line_sda_ = sda;
+  line_scl_ = scl;
+  world_.on_i2c_pins(t, sda, scl);
 }
 
 void Gpio::drive_pwm_pins(Tick t) {

@@ -2,7 +2,8 @@
 //
 // A pin belongs to the function that its two mux bits name. As GPIO it is an input (the world's level) or an output
 // (the latch's). ePWM outputs reach the world only when routed to their pins; trip inputs and the encoder only count
-// when routed. A pin that nobody drives is low to the world, as the board's pull-down makes it. Not modelled: input
+// when routed. A pin that nobody drives is low to the world, as the board's pull-down makes it; the two I2C lines,
+// which are pulled up and only pulled low by the chip, go to the world by a call of their own. Not modelled: input
 // qualification (a level is seen at once), pull-ups, XINT selection, wake-up selection (stored). Source: SPRU712
 // (GPIO); gpio mux table of the data manual SPRS230.
 
@@ -30,6 +31,11 @@ class Gpio {
   /// Output of an ePWM module (0..5), on its way to the pins GPIO2m and GPIO2m+1.
   void pwm_outputs(int module, bool a, bool b, Tick t);
 
+  /// What the I2C module does with its lines: true lets go.
+  void i2c_outputs(bool sda, bool scl, Tick t);
+  bool sda_level(Tick t) { return line_level(kPinSda, t); }
+  bool scl_level(Tick t) { return line_level(kPinScl, t); }
+
   /// TZ1..TZ6 that are routed to a pin which is low now: bit n-1 for TZn.
   unsigned active_trips(Tick t);
   bool trips_routed() const { return trip_pins_ != 0; }
@@ -40,6 +46,8 @@ class Gpio {
  private:
   static constexpr unsigned kPins = 35;
   static constexpr unsigned kPwmPins = 12;
+  static constexpr unsigned kPinSda = 32;
+  static constexpr unsigned kPinScl = 33;
 
   unsigned function(unsigned pin) const;
   bool is_output(unsigned pin) const;
@@ -48,6 +56,9 @@ class Gpio {
   void write_latch(std::uint16_t offset, std::uint16_t value);
   void update_routes();
   void drive(Tick t);
+  bool line_level(unsigned pin, Tick t);
+  bool lets_go(unsigned pin, bool module) const;
+  void drive_i2c(Tick t);
   void drive_pwm_pins(Tick t);
   void drive_pwm(int module, Tick t);
 
@@ -61,6 +72,8 @@ class Gpio {
   unsigned pwm_routed_ = 0;
   unsigned pwm_pins_ = 0;        // what the world knows
   std::uint64_t trip_pins_ = 0;  // pins that are routed to a trip zone
+  bool i2c_sda_ = true, i2c_scl_ = true;    // what the module does
+  bool line_sda_ = true, line_scl_ = true;  // and the pins, as the world knows it
   bool encoder_routed_ = false;
   bool serial_in_routed_ = false;
   bool serial_out_routed_ = false;

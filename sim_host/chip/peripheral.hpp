@@ -7,15 +7,16 @@
 // What the core guarantees
 //  * t never decreases from one call to the next, over all functions of one peripheral.
 //  * Events come in order of time, each at its exact tick: before an access or any other call at t is made, every event
-//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, SCI, CPU
+//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, SCI, I2C, CPU
 //    timers, watchdog. So a start of conversion reaches the ADC in the tick in which the ePWM made it.
 //  * Peripherals see only accesses that the bus lets through: EALLOW protection and clock gating (PCLKCR0/1) are the
 //    core's business, so are the access times. Unknown offsets may arrive: read 0, ignore writes.
 //  * A 32-bit access arrives as two 16-bit calls at one tick, low word (even offset) first.
 //
 // What the core expects
-//  * next_event() is cheap and may change only inside calls made to that very peripheral other than read() (the core
-//    caches it and asks again after each of them). kNever when nothing is due; never less than the latest call's tick.
+//  * next_event() is cheap and may change only inside calls made to that very peripheral other than read(); I2C's
+//    read() may, as an octet that is taken lets the next one begin. (The core caches it and asks again after each of
+//    them.) kNever when nothing is due; never less than the latest call's tick.
 //  * run_event(t) is called with t == next_event() and handles everything due at t. If something new comes due at t,
 //    leave it in next_event(): run_event(t) is called again.
 //  * Nothing throws: there are C frames of the firmware below. An impossible situation goes to model_error(), which
@@ -25,7 +26,7 @@
 //
 // Classes that the core instantiates (one constructor argument, the services):
 //    epwm.hpp: EPwmBank(ChipServices&)      adc.hpp: Adc(ChipServices&)      eqep.hpp: EQep(ChipServices&, int
-//    instance 1..2)      sci.hpp: Sci(ChipServices&)
+//    instance 1..2)      sci.hpp: Sci(ChipServices&)      i2c.hpp: I2c(ChipServices&)
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_PERIPHERAL_HPP
 #define STILLSPIN_SIM_HOST_CHIP_PERIPHERAL_HPP
@@ -64,6 +65,12 @@ class ChipServices {
   /// A frame that SCITXDA has sent. The core tells the world when the pin is routed.
   virtual void serial_frame(const SerialFrame& frame, Tick t) = 0;
 
+  /// I2C: what the module does with its lines (true lets go, false pulls low; call only on change), and the lines
+  /// themselves. Pins that are not routed to it read high.
+  virtual void i2c_pins(bool sda, bool scl, Tick t) = 0;
+  virtual bool sda_level(Tick t) = 0;
+  virtual bool scl_level(Tick t) = 0;
+
   /// SYSCLKOUT period in ticks of 10 ns (1 at 100 MHz, 10 after reset).
   virtual Tick sysclk_period() const = 0;
 
@@ -78,6 +85,7 @@ class ChipServices {
   virtual bool adc_clock() const = 0;
   virtual bool eqep_clock(int instance) const = 0;  // 1..2
   virtual bool sci_clock() const = 0;
+  virtual bool i2c_clock() const = 0;
 
   /// The model cannot go on (or would go on wrongly): text is a literal, value is what was seen.
   virtual void model_error(const char* text, std::int64_t value) = 0;

@@ -40,6 +40,7 @@ class SystemControl {
   bool epwm_clock(int module) const { return (gates1_ >> module & 1u) != 0; }
   bool eqep_clock(int instance) const;
   bool sci_clock() const { return (gates0_ & PCLKCR0_SCIAENCLK_MASK) != 0; }
+  bool i2c_clock() const { return (gates0_ & PCLKCR0_I2CAENCLK_MASK) != 0; }
   bool time_base_clock() const;
   bool low_power_mode_selected() const;
 

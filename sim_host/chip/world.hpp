@@ -40,6 +40,10 @@ class World {
   /// A pin used as a general purpose output changed.
   virtual void on_output_pin(Tick t, int pin, bool level) = 0;
 
+  /// What the chip does with the I2C pins (GPIO32 SDA, GPIO33 SCL), as I2C or as general purpose pins: true lets the
+  /// line go, false pulls it low. pin_level gives the lines themselves.
+  virtual void on_i2c_pins(Tick /*t*/, bool /*sda*/, bool /*scl*/) {}
+
   /// Quadrature edges counted since power-on by the encoder on eQEP1 (signed), and the count at the last index pulse.
   virtual std::int64_t encoder_edges(Tick t) = 0;
 

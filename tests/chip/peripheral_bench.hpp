@@ -47,6 +47,8 @@ class RecordingServices final : public ChipServices {
   };
   std::vector<Stamped<SerialFrame>> frames;
   std::function<Tick(Tick, bool)> line = [](Tick t, bool level) { return level ? t : kNever; };
+  std::function<void(Tick, bool, bool)> on_i2c;  // SDA, SCL let go
+  std::function<bool(Tick)> sda_line, scl_line;  // levels; high when not given
   std::int64_t encoder = 0;
   Tick sysclk = 1;
   unsigned hspclk = 1;
@@ -63,6 +65,11 @@ class RecordingServices final : public ChipServices {
   std::int64_t encoder_edges(Tick) override { return encoder; }
   Tick serial_reaches(Tick t, bool level) override { return line(t, level); }
   void serial_frame(const SerialFrame& frame, Tick t) override { frames.push_back({frame, t}); }
+  void i2c_pins(bool sda, bool scl, Tick t) override {
+    if (on_i2c) on_i2c(t, sda, scl);
+  }
+  bool sda_level(Tick t) override { return sda_line ? sda_line(t) : true; }
+  bool scl_level(Tick t) override { return scl_line ? scl_line(t) : true; }
   Tick sysclk_period() const override { return sysclk; }
   unsigned hspclk_divider() const override { return hspclk; }
   unsigned lspclk_divider() const override { return lspclk; }
@@ -70,6 +77,7 @@ class RecordingServices final : public ChipServices {
   bool adc_clock() const override { return clocked; }
   bool eqep_clock(int) const override { return clocked; }
   bool sci_clock() const override { return clocked; }
+  bool i2c_clock() const override { return clocked; }
   void model_error(const char* text, std::int64_t) override { errors.emplace_back(text); }
 
   void forget() {
