@@ -95,16 +95,20 @@ void bind_virtual_board(nb::module_& m) {
       .def_prop_ro("now", [](Self self) { return self.board().now(); })
       .def("serial_write", &serial_write, nb::arg("octets"))
       .def("serial_read", &serial_read)
-      .def("serial_break", [](Self self, double bits) { self.board().serial().send_break(bits, self.board().now()); },
-           nb::arg("bits"))
-      .def("serial_noise",
-           [](Self self, double flips, std::uint64_t seed) { self.board().serial().set_noise(flips, seed); },
-           nb::arg("flips_per_bit"), nb::arg("seed"))
-      .def_prop_rw("serial_rate", [](Self self) { return self.board().serial().rate(); },
-                   [](Self self, double rate) { self.board().serial().set_rate(rate); })
+      .def(
+          "serial_break", [](Self self, double bits) { self.board().serial().send_break(bits, self.board().now()); },
+          nb::arg("bits"))
+      .def(
+          "serial_noise",
+          [](Self self, double flips, std::uint64_t seed) { self.board().serial().set_noise(flips, seed); },
+          nb::arg("flips_per_bit"), nb::arg("seed"))
+      .def_prop_rw(
+          "serial_rate", [](Self self) { return self.board().serial().rate(); },
+          [](Self self, double rate) { self.board().serial().set_rate(rate); })
       .def_prop_ro("serial_pending", &serial_pending)
       .def("serial_counts", &serial_counts)
-      .def("set_load", [](Self self, double torque) { self.board().set_load(torque); }, nb::arg("torque"))
+      .def(
+          "set_load", [](Self self, double torque) { self.board().set_load(torque); }, nb::arg("torque"))
       .def("truth", [](Self self) { return dict_of(self.board().truth()); })
       .def("signals", [](Self self) { return (void)self.board(), dict_of(VirtualBoard::signals()); })
       .def("statistics", &statistics);

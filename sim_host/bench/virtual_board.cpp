@@ -78,11 +78,16 @@ void VirtualBoard::set_load(double torque) {
 std::vector<Quantity> VirtualBoard::truth() {
   board_.plant().advance(chip_.now());
   const plant::PlantState s = board_.plant().state();
-  return {{"angle", "rad", s.angle_m},       {"speed", "rpm", s.speed_m * kRpmPerRads},
-          {"torque", "Nm", s.torque},        {"load_torque", "Nm", s.load},
-          {"i_a", "A", s.current[0]},        {"i_b", "A", s.current[1]},
-          {"i_c", "A", s.current[2]},        {"i_d", "A", s.current_d},
-          {"i_q", "A", s.current_q},         {"electrical_angle", "rad", s.angle_e},
+  return {{"angle", "rad", s.angle_m},
+          {"speed", "rpm", s.speed_m * kRpmPerRads},
+          {"torque", "Nm", s.torque},
+          {"load_torque", "Nm", s.load},
+          {"i_a", "A", s.current[0]},
+          {"i_b", "A", s.current[1]},
+          {"i_c", "A", s.current[2]},
+          {"i_d", "A", s.current_d},
+          {"i_q", "A", s.current_q},
+          {"electrical_angle", "rad", s.angle_e},
           {"link_voltage", "V", s.link_voltage}};
 }
 

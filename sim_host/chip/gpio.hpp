@@ -70,8 +70,8 @@ class Gpio {
   std::uint64_t driven_ = 0;                   // levels of those, as the world knows them
   unsigned pwm_levels_ = 0;                    // ePWM outputs, bit 2m for A of module m, 2m+1 for B
   unsigned pwm_routed_ = 0;
-  unsigned pwm_pins_ = 0;        // what the world knows
-  std::uint64_t trip_pins_ = 0;  // pins that are routed to a trip zone
+  unsigned pwm_pins_ = 0;                   // what the world knows
+  std::uint64_t trip_pins_ = 0;             // pins that are routed to a trip zone
   bool i2c_sda_ = true, i2c_scl_ = true;    // what the module does
   bool line_sda_ = true, line_scl_ = true;  // and the pins, as the world knows it
   bool encoder_routed_ = false;

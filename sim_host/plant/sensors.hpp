@@ -48,9 +48,9 @@ class Sensors {
 
  private:
   struct Output {
-    double gain = 1.0;         // A/A
-    double offset = 0.0;       // A
-    bool faulty = false;       // the rest matters
+    double gain = 1.0;    // A/A
+    double offset = 0.0;  // A
+    bool faulty = false;  // the rest matters
     bool stuck = false;
     double stuck_at = 0.0;  // A
     double drift = 0.0;     // A/s

@@ -1,7 +1,7 @@
 """The command line `stillspin`.
 
-Exit status: 0 when every run ran, whatever its figures; 1 when a run broke off or a commissioning left a value open; 2
-for bad input, said in one line.
+Exit status: 0 when every run ran, whatever its figures; 1 when a run broke off, a commissioning left a value open, or a
+drive did not do what was asked; 2 for bad input, said in one line.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from rich.console import Console
 
 from stillspin import (
     __version__,
+    commands,
     commission,
     core,
     execute,
@@ -244,15 +245,12 @@ def list_() -> None:
 
 
 @app.command()
-def params() -> None:
-    """The firmware's parameters: number, name, range, default, meaning."""
-    tables.parameters(core.parameters(core.load()).values())
-
-
-@app.command()
 def version() -> None:
     """The version, and the revision of the sources."""
     print(f"stillspin {__version__} ({revision()})")
+
+
+commands.register(app)
 
 
 def main() -> None:

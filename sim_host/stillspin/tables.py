@@ -11,11 +11,14 @@ from rich.text import Text
 from stillspin import commission, report
 from stillspin.assess import ScenarioResult
 from stillspin.core import Entry
+from stillspin.drive.scope import Capture
+from stillspin.drive.table import Parameter
 from stillspin.scenario import Scenario
 from stillspin.variant import Beside
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {
+    *("least", "mean", "greatest"),
     *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
     *("starts", "failed", "backward", "sigma", "angle"),
 }
@@ -84,6 +87,28 @@ def parameters(entries: Iterable[Entry]) -> None:
     for entry in entries:
         default = f"{entry.default:.{entry.decimals}f}"
         table.add_row(str(entry.number), entry.name, default, entry.range_text, entry.access, Text(entry.help))
+    _print(table)
+
+
+def differences(rows: Iterable[tuple[Parameter, float | None, float | None]], one: str, other: str) -> None:
+    """Parameters with two values each."""
+    rows = list(rows)
+    if not rows:
+        return
+    table = _table("parameter", one, other, "unit", "meaning")
+    for parameter, first, second in rows:
+        shown = ("–" if value is None else f"{value:.{parameter.decimals}f}" for value in (first, second))
+        table.add_row(parameter.name, *shown, parameter.unit, Text(parameter.meaning))
+    _print(table)
+
+
+def capture(result: Capture) -> None:
+    """What was captured, a row per signal."""
+    table = _table("signal", "least", "mean", "greatest", "unit", "")
+    for name, values in result.signals.items():
+        numbers = (f"{number:.4g}" for number in (values.min(), values.mean(), values.max())) if values.size else "–––"
+        words = Text("beyond its full scale", style="red") if name in result.clipped else Text("")
+        table.add_row(name, *numbers, result.units[name], words)
     _print(table)
 
 

@@ -10,7 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 import fake_core
+from fake_drive import FakeDrive
 from stillspin import cli
+from stillspin.drive import Drive
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
@@ -21,6 +23,22 @@ def core(monkeypatch):
     """The fake native module in place of the real one, whether or not that is built."""
     monkeypatch.setitem(sys.modules, "stillspin._core", fake_core)
     return fake_core
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    """A small drive on a pseudo-terminal, and a place of its own for what clients keep of it."""
+    for variable in ("XDG_CACHE_HOME", "XDG_STATE_HOME"):
+        monkeypatch.setenv(variable, str(tmp_path / "home"))
+    with FakeDrive() as fake:
+        yield fake
+
+
+@pytest.fixture
+def drive(fake):
+    """The client of that drive."""
+    with Drive.open(f"serial://{fake.port}", timeout=0.3) as drive:
+        yield drive
 
 
 @pytest.fixture

@@ -6,25 +6,12 @@ import time
 import numpy as np
 import pytest
 
-from fake_drive import PARAMETERS, FakeDrive
+from fake_drive import PARAMETERS
 from stillspin.drive import Channel, Drive, Trigger, scope
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
-
-
-@pytest.fixture
-def fake(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    with FakeDrive() as fake:
-        yield fake
-
-
-@pytest.fixture
-def drive(fake):
-    with Drive.open(f"serial://{fake.port}", timeout=0.3) as drive:
-        yield drive
 
 
 def test_the_table_is_read_once_and_kept_by_its_crc(fake):
@@ -48,7 +35,7 @@ def test_the_table_is_read_once_and_kept_by_its_crc(fake):
 def test_a_damaged_table_on_disk_is_read_again(fake, tmp_path, damage):
     with Drive.open(fake.port) as drive:
         first = drive.table
-    (file,) = (tmp_path / "cache" / "stillspin").iterdir()
+    (file,) = (tmp_path / "home" / "stillspin").iterdir()
     file.write_text(damage)
     with Drive.open(fake.port) as drive:
         assert drive.table == first

@@ -55,8 +55,15 @@ class Parameter:
         return f"{low} … {high} {self.unit}".rstrip()
 
     def to_user(self, raw: int) -> float:
-        """The value in `unit`, to the table's decimals."""
-        return round(raw / (1 << self.q), self.decimals)
+        """The value in `unit`: the shortest number, of the table's decimals or more, that is this raw value again."""
+        exact = raw / (1 << self.q)
+        decimals = self.decimals
+        while self._raw(round(exact, decimals)) != raw:
+            decimals += 1
+        return round(exact, decimals)
+
+    def _raw(self, number: float) -> int:
+        return math.floor(number * (1 << self.q) + 0.5)
 
     def text(self, raw: int) -> str:
         """The value with its unit, for people."""
@@ -74,7 +81,7 @@ class Parameter:
         number = self._parse(value) if isinstance(value, str) else float(value)
         if not math.isfinite(number):
             raise InputError(f"{self.name}: {value} is no number; {self.range_text}")
-        raw = math.floor(number * (1 << self.q) + 0.5)
+        raw = self._raw(number)
         if not self.minimum_raw <= raw <= self.maximum_raw:
             given = f"{number:g} {self.unit}".rstrip()
             raise InputError(f"{self.name}: {given} is out of range; {self.range_text}")

@@ -1,0 +1,15 @@
+"""The commands of `stillspin` that talk to a drive."""
+
+from __future__ import annotations
+
+import typer
+
+from stillspin.commands import console, monitor, params, scope
+
+
+def register(app: typer.Typer) -> None:
+    """Add them to the command line."""
+    app.add_typer(params.app, name="params")
+    app.command(name="console")(console.console)
+    app.command(name="scope")(scope.scope)
+    app.command(name="monitor")(monitor.monitor)

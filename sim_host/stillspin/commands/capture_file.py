@@ -1,0 +1,121 @@
+"""Captures as files: Parquet, CSV, MF4, and a drawing; the ending of the name says which."""
+
+from __future__ import annotations
+
+import csv
+import io
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from stillspin import mdf, records
+from stillspin.drive.scope import Capture
+from stillspin.errors import InputError
+from stillspin.style import PANEL_HEIGHT, RUN_COLOURS, STYLE, WIDTH
+
+_DRAWINGS = (".svg", ".png", ".pdf")
+
+
+def check(path: Path) -> None:
+    """Complain about a name or a place before the capture is made rather than after it.
+
+    Raises:
+        InputError: an ending that means nothing here, or no such directory.
+    """
+    if path.suffix.lower() not in WRITERS:
+        raise InputError(f"{path}: the ending must be one of {', '.join(WRITERS)}")
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise InputError(f"{path}: cannot be written (no such directory)")
+
+
+def write(path: Path, capture: Capture) -> None:
+    """Write a capture; the file appears whole or not at all.
+
+    Raises:
+        InputError: see `check`; or it cannot be written.
+    """
+    check(path)
+    suffix = path.suffix.lower()
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.absolute().parent, suffix=suffix, delete=False) as file:
+            partial = Path(file.name)
+        WRITERS[suffix](partial, capture)
+        partial.chmod(0o644)
+        partial.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+
+
+def about(capture: Capture) -> dict[str, Any]:
+    """What is known of a capture beside its values."""
+    return {
+        "firmware": capture.version,
+        "trigger": {
+            "signal": capture.trigger.signal,
+            "level": capture.trigger.level,
+            "edge": capture.trigger.edge,
+            "time": capture.trigger_time,
+        },
+        "interval": capture.interval,
+        "clipped": list(capture.clipped),
+    }
+
+
+def _parquet(path: Path, capture: Capture) -> None:
+    records.write(path, {"time": capture.time, **capture.signals}, about(capture), {"time": "s", **capture.units})
+
+
+def _csv(path: Path, capture: Capture) -> None:
+    """Units are in the headings; time in s from the trigger."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["time [s]", *(_heading(capture, name) for name in capture.signals)])
+    for index, time in enumerate(capture.time):
+        writer.writerow([f"{time:.6f}", *(f"{values[index]:.7g}" for values in capture.signals.values())])
+    path.write_text(out.getvalue(), encoding="utf-8")
+
+
+def _heading(capture: Capture, name: str) -> str:
+    return f"{name} [{capture.units[name]}]" if capture.units[name] else name
+
+
+def _mf4(path: Path, capture: Capture) -> None:
+    comment = f"stillspin, firmware {capture.version}; time 0 is the trigger"
+    mdf.write(path, capture.time, capture.signals, capture.units, comment)
+
+
+def draw(capture: Capture) -> Figure:
+    """One panel for each unit, the trigger as a line through all."""
+    units = list(dict.fromkeys(capture.units.values()))
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, PANEL_HEIGHT * max(2, len(units)) + 0.5), layout="constrained")
+        panels = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, unit in zip(panels, units, strict=True):
+            names = [name for name in capture.signals if capture.units[name] == unit]
+            for name in names:
+                colour = RUN_COLOURS[list(capture.signals).index(name)]
+                panel.plot(capture.time * 1e3, capture.signals[name], color=colour, label=name)
+            panel.axvline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
+            panel.set_ylabel(unit)
+            panel.legend(loc="upper right", ncols=len(names))
+        panels[-1].set_xlabel("time from the trigger, ms")
+    return figure
+
+
+def _drawing(path: Path, capture: Capture) -> None:
+    figure = draw(capture)
+    with mpl.rc_context(STYLE):
+        figure.savefig(path, dpi=110)
+
+
+WRITERS: dict[str, Callable[[Path, Capture], None]] = {
+    ".parquet": _parquet,
+    ".csv": _csv,
+    ".mf4": _mf4,
+    **dict.fromkeys(_DRAWINGS, _drawing),
+}
+"""What there is for which ending."""

@@ -1,0 +1,61 @@
+"""Completion of the console's commands, from the drive's own table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from prompt_toolkit.completion import CompleteEvent, Completer, Completion
+from prompt_toolkit.document import Document
+
+from stillspin.drive.table import Table
+
+COMMANDS = {
+    "help": "what the console understands",
+    "list": "parameters whose name or meaning has a word in it",
+    "get": "the value of a parameter",
+    "set": "change a parameter",
+    "start": "energise the motor",
+    "stop": "speed to zero, then power stage off",
+    "coast": "power stage off at once",
+    "ref": "speed reference",
+    "status": "what the drive does",
+    "signals": "values of one control interrupt",
+    "faults": "fault history",
+    "reset": "clear a fault",
+    "save": "keep the parameters",
+    "load": "parameters from the store",
+    "defaults": "every parameter to its default",
+    "scope": "captured scope",
+    "commission": "measure machine and inverter",
+    "version": "of the firmware",
+}
+_OF_PARAMETERS = {"get", "set", "list"}
+_OF_SIGNALS = {"scope", "signals", "stream"}
+
+
+class Words(Completer):
+    """The first word is a command, the next ones are parameters or signals."""
+
+    def __init__(self, table: Table) -> None:
+        self._table = table
+
+    def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Completion]:
+        """See prompt_toolkit."""
+        words = document.text_before_cursor.split(" ")
+        for name, meta in self._candidates(words):
+            if name.startswith(words[-1]):
+                yield Completion(name, -len(words[-1]), display_meta=meta)
+
+    def _candidates(self, words: list[str]) -> Iterable[tuple[str, str]]:
+        command, position = words[0], len(words)
+        if position == 1:
+            yield from COMMANDS.items()
+        elif command in _OF_PARAMETERS and position == 2:
+            for parameter in self._table.parameters:
+                yield parameter.name, f"{parameter.range_text}; {parameter.meaning}"
+        elif command in _OF_SIGNALS:
+            for signal in self._table.signals:
+                yield signal.name, f"{signal.unit + '; ' if signal.unit else ''}{signal.meaning}"
+        elif command == "set" and position == 3 and self._table.has_parameter(words[1]):
+            parameter = self._table.parameter(words[1])
+            yield parameter.text(parameter.initial_raw), f"default; {parameter.range_text}"

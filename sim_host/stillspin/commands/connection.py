@@ -1,0 +1,48 @@
+"""The option that says where the drive is, and opening it with a word about what takes time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn
+
+from stillspin.drive import Drive
+from stillspin.errors import InputError
+
+DriveOption = Annotated[
+    str,
+    typer.Option(
+        "--drive",
+        "-d",
+        metavar="ADDRESS",
+        envvar="STILLSPIN_DRIVE",
+        help="Where the drive is: serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0?node=1.",
+    ),
+]
+
+
+def wanted(where: str) -> str:
+    """The address, which must be given.
+
+    Raises:
+        InputError: it is not.
+    """
+    if not where:
+        raise InputError("which drive? --drive serial:///dev/ttyUSB0 or the variable STILLSPIN_DRIVE says where it is")
+    return where
+
+
+@contextmanager
+def opened(where: str) -> Iterator[Drive]:
+    """The drive at an address, with a bar on stderr while its table is read for the first time."""
+    columns = (TextColumn("reading the drive's table"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
+    screen = Console(stderr=True)
+    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
+        task = bar.add_task("", total=1.0, visible=False)
+        drive = Drive.open(wanted(where), progress=lambda share: bar.update(task, completed=share, visible=True))
+    with drive:
+        yield drive

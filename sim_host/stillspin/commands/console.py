@@ -1,0 +1,132 @@
+"""`stillspin console`: the drive's own console with history, and completion from the drive's own table."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from prompt_toolkit import PromptSession
+from prompt_toolkit.auto_suggest import AutoSuggestFromHistory
+from prompt_toolkit.history import FileHistory, History, InMemoryHistory
+from prompt_toolkit.patch_stdout import patch_stdout
+
+from stillspin.commands.completion import Words
+from stillspin.commands.connection import DriveOption, opened
+from stillspin.commands.transcript import Transcript
+from stillspin.drive import Drive
+from stillspin.link.errors import DriveError, LinkError
+
+_END = b"\r"
+_QUIET = 0.3
+_ANSWER = 3.0
+_REFRESH = 0.5
+_LEAVE = {"exit", "quit"}
+
+
+def console(
+    *,
+    where: DriveOption = "",
+    command: Annotated[list[str] | None, typer.Option("--command", "-c", help="Say this and end. Repeatable.")] = None,
+) -> None:
+    """Talk to the drive; Tab completes, Ctrl-D leaves."""
+    with opened(where) as drive:
+        if not drive.link.transport.has_console:
+            raise LinkError(f"{drive.link.transport.name}: the console is on the serial port only")
+        if command or not sys.stdin.isatty():
+            for line in command or sys.stdin:
+                say(drive, line.rstrip("\n"))
+        else:
+            _talk(drive)
+
+
+def say(drive: Drive, line: str) -> None:
+    """Send a line and print what the drive answers."""
+    transcript = Transcript()
+    heard = threading.Event()
+
+    def take(octets: bytes) -> None:
+        for text in transcript.feed(octets):
+            print(text, flush=True)
+        heard.set()
+
+    transcript.expect(line)
+    with drive.link.listening(text=take):
+        drive.link.transport.send_text(line.encode("ascii", "replace") + _END)
+        end = time.monotonic() + _ANSWER
+        if not heard.wait(_ANSWER):
+            raise DriveError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
+        while not transcript.answered and heard.wait(_QUIET) and time.monotonic() < end:
+            heard.clear()
+    if transcript.rest:
+        print(transcript.rest)
+
+
+def _talk(drive: Drive) -> None:
+    transcript = Transcript()
+    stop = threading.Event()
+    session: PromptSession[str] = PromptSession(
+        "stillspin> ",
+        history=_history(),
+        auto_suggest=AutoSuggestFromHistory(),
+        completer=Words(drive.table),
+        complete_while_typing=False,
+    )
+    bar = _Bar(drive, session, stop)
+
+    def show(octets: bytes) -> None:
+        for text in transcript.feed(octets):
+            print(text)
+
+    thread = threading.Thread(target=bar.run, daemon=True)
+    thread.start()
+    print(f"{drive.version} on {drive.link.transport.name}; help lists what it understands, Ctrl-D leaves")
+    with patch_stdout(), drive.link.listening(text=show):
+        try:
+            while (line := session.prompt(bottom_toolbar=bar.text).strip()) not in _LEAVE:
+                transcript.expect(line)
+                drive.link.transport.send_text(line.encode("ascii", "replace") + _END)
+        except EOFError:
+            pass
+        except KeyboardInterrupt:
+            print("left; the drive goes on with what it does")
+        finally:
+            stop.set()
+    if drive.link.lost:
+        raise drive.link.lost
+
+
+class _Bar:
+    """The line at the bottom: what the drive does, asked for in records while the text goes on."""
+
+    def __init__(self, drive: Drive, session: PromptSession[str], stop: threading.Event) -> None:
+        self._drive, self._session, self._stop = drive, session, stop
+        self._text = ""
+
+    def text(self) -> str:
+        return self._text
+
+    def run(self) -> None:
+        while not self._stop.wait(_REFRESH):
+            try:
+                status = self._drive.status()
+            except DriveError as error:
+                self._text = f" {error}"
+            else:
+                what = f"{status.state}: {status.fault}" if status.fault else status.state
+                self._text = f" {what} | {status.speed:.1f} rpm, reference {status.reference:.1f} rpm"
+            self._session.app.invalidate()
+
+
+def _history() -> History:
+    base = os.environ.get("XDG_STATE_HOME") or str(Path.home() / ".local" / "state")
+    path = Path(base) / "stillspin" / "console-history"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return InMemoryHistory()
+    return FileHistory(path)

@@ -1,0 +1,90 @@
+"""Parameter files: TOML with a table [parameters], as `run --params` reads and `commission` writes them."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from stillspin import toml_table
+from stillspin.drive.table import Parameter, Table
+from stillspin.errors import InputError
+
+
+def text(values: Mapping[str, float], table: Table, about: Sequence[str]) -> str:
+    """A parameter file.
+
+    Args:
+        values: by name, in the table's units.
+        table: of the drive, for units and meanings.
+        about: lines of comment at its head.
+    """
+    lines = [*(f"# {line}" for line in about), "", "[parameters]"]
+    for name, value in values.items():
+        parameter = table.parameter(name)
+        unit = f"{parameter.unit}; " if parameter.unit else ""
+        lines.append(f"{name} = {number(parameter, value)}  # {unit}{parameter.meaning}".rstrip(" #;"))
+    return "\n".join(lines) + "\n"
+
+
+def number(parameter: Parameter, value: float) -> str:
+    """A value with all digits that make it this value, and at least the table's decimals."""
+    short = f"{value:.{parameter.decimals}f}"
+    return short if float(short) == value else repr(value)
+
+
+def write(path: Path, content: str) -> None:
+    """Write a file that appears whole or not at all.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    try:
+        with tempfile.NamedTemporaryFile("w", dir=path.absolute().parent, delete=False, encoding="utf-8") as file:
+            file.write(content)
+        Path(file.name).chmod(0o644)
+        Path(file.name).replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+
+
+def read(path: Path, table: Table) -> dict[str, float]:
+    """The values of a file, every one checked against the drive's table.
+
+    Raises:
+        InputError: unreadable, an unknown parameter, or a value that it does not take.
+    """
+    document = toml_table.read(path)
+    values = document.table("parameters").items()
+    document.finish()
+    if not values:
+        raise InputError(f"{path}: has no [parameters]")
+    found = {}
+    for name, value in values.items():
+        try:
+            parameter = table.parameter(name)
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise InputError(f"{name}: {value!r} is no number; {parameter.range_text}")
+            found[name] = parameter.to_user(parameter.to_raw(value))
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
+    return found
+
+
+Difference = tuple[Parameter, float | None, float | None]
+
+
+def differences(
+    one: Mapping[str, float], other: Mapping[str, float], table: Table, names: Iterable[str] | None = None
+) -> list[Difference]:
+    """What differs between two sets; None where a set says nothing.
+
+    Args:
+        one: by name.
+        other: by name.
+        table: of the drive.
+        names: only these.
+    """
+    chosen = dict.fromkeys(names if names is not None else [*one, *other])
+    rows = [(table.parameter(name), one.get(name), other.get(name)) for name in chosen]
+    return [row for row in rows if row[1] != row[2]]

@@ -1,0 +1,59 @@
+"""`stillspin scope`: capture up to four signals at the rate of the control interrupt, write them, draw them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from stillspin import tables
+from stillspin.commands import capture_file
+from stillspin.commands.connection import DriveOption, opened
+from stillspin.drive.scope import Channel, Trigger
+from stillspin.errors import InputError
+
+
+def scope(
+    *,
+    signals: Annotated[
+        list[str], typer.Argument(metavar="SIGNAL...", help="1 to 4 signals; SIGNAL=20 sets the full scale to ±20.")
+    ],
+    where: DriveOption = "",
+    trigger: Annotated[str, typer.Option("--trigger", "-t", help="Signal of the trigger [default: the first].")] = "",
+    level: Annotated[float, typer.Option("--level", "-l", help="Level of the trigger, in the signal's unit.")] = 0.0,
+    edge: Annotated[str, typer.Option("--edge", "-e", help="rising, falling, either, above, below, or now.")] = "",
+    decimation: Annotated[int, typer.Option("--decimation", help="Control interrupts (100 µs) per record.")] = 1,
+    pretrigger: Annotated[float, typer.Option("--pretrigger", help="Percent of records before the trigger.")] = 25.0,
+    timeout: Annotated[float, typer.Option("--timeout", help="Seconds to wait for the trigger.")] = 30.0,
+    out: Annotated[
+        list[Path] | None,
+        typer.Option("--out", "-o", help="File to write: .parquet, .csv, .mf4, .svg, .png or .pdf. Repeatable."),
+    ] = None,
+) -> None:
+    """Capture signals around a trigger: 1024 records of up to four, at up to 10 kHz."""
+    files = out or [Path("capture.parquet"), Path("capture.svg")]
+    for file in files:
+        capture_file.check(file)
+    channels = [_channel(text) for text in signals]
+    chosen = edge or ("rising" if trigger else "now")
+    wanted = Trigger(trigger or channels[0].signal, level, chosen)
+    with opened(where) as drive, Console(stderr=True).status("waiting for the trigger"):
+        capture = drive.capture(
+            *channels, trigger=wanted, decimation=decimation, pretrigger=pretrigger / 100, timeout=timeout
+        )
+    for file in files:
+        capture_file.write(file, capture)
+    tables.capture(capture)
+    print(f"{capture.time.size} records every {capture.interval * 1e3:g} ms; see {', '.join(map(str, files))}")
+
+
+def _channel(text: str) -> Channel:
+    name, equals, scale = text.partition("=")
+    if not equals:
+        return Channel(name)
+    try:
+        return Channel(name, float(scale))
+    except ValueError:
+        raise InputError(f"{text}: the full scale must be a number") from None

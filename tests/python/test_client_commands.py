@@ -1,0 +1,264 @@
+"""The commands that talk to a drive: parameter files, captures as files, the live plot, the console."""
+
+import csv
+import fcntl
+import json
+import os
+import pty
+import struct
+import subprocess
+import sys
+import termios
+import time
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from prompt_toolkit.document import Document
+
+from stillspin import mdf
+from stillspin.commands import braille, capture_file
+from stillspin.commands.completion import Words
+from stillspin.commands.transcript import Transcript
+from stillspin.drive import Capture, Trigger
+from stillspin.errors import InputError
+
+
+@pytest.fixture
+def ask(call, fake):
+    """Calls the command line for the small drive."""
+    return lambda *arguments: call(*arguments, "--drive", fake.port)
+
+
+def test_a_dump_is_loaded_without_a_change(ask, fake, tmp_path):
+    fake.values[6] = 14_680_065  # a raw value that no number of two decimals gives
+    assert ask("params", "dump", "all.toml").stdout == "7 parameters; see all.toml\n"
+    assert "speed_ramp = 3000  # rpm/s; slope of the speed reference" in (tmp_path / "all.toml").read_text()
+    before = dict(fake.values)
+    result = ask("params", "load", "all.toml")
+    assert result.stdout == "0 of 7 parameters changed\n"
+    assert fake.values == before
+    assert ask("params", "diff", "all.toml").stdout == "0 of 7 parameters differ\n"
+
+
+def test_what_differs_is_shown_and_loaded(ask, fake, tmp_path):
+    (tmp_path / "some.toml").write_text("[parameters]\nspeed_ramp = 500\nmotor_poles = 4\n")
+    result = ask("params", "diff", "some.toml")
+    assert "speed_ramp" in result.stdout
+    assert "1 of 2 parameters differ" in result.stdout
+    result = ask("params", "load", "some.toml", "--save")
+    assert "1 of 2 parameters changed, saved" in result.stdout, result.stderr
+    assert fake.values[86] == 500 * 2**8
+    assert fake.store == 5
+    assert "speed_ramp = 500" in ask("params", "dump", "--changed").stdout
+    assert "1 of 7 parameters differ" in ask("params", "diff", "defaults").stdout
+
+
+def test_nothing_is_sent_of_a_file_that_is_wrong(ask, fake, tmp_path):
+    (tmp_path / "bad.toml").write_text("[parameters]\nspeed_ramp = 500\ncurrent_limit = 99\n")
+    result = ask("params", "load", "bad.toml")
+    assert result.exit_code == 2
+    assert "bad.toml: current_limit: 99 A is out of range; 0.10 … 16.00 A" in result.stderr
+    assert fake.values[86] == 3000 * 2**8
+
+
+def test_what_the_drive_refuses_is_said_and_not_saved(ask, fake, tmp_path):
+    (tmp_path / "low.toml").write_text("[parameters]\nlink_maximum = 20\nspeed_ramp = 500\n")
+    result = ask("params", "load", "low.toml", "--save")
+    assert result.exit_code == 1
+    assert "link_maximum is below the link's voltage" in result.stderr
+    assert "1 values were refused; nothing was saved" in result.stderr
+    assert (fake.values[86], fake.store) == (500 * 2**8, 1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "said"),
+    [
+        (("params", "dump"), 2, "which drive? --drive serial:///dev/ttyUSB0"),
+        (("params", "dump", "--drive", "/dev/none"), 1, "there is no serial port /dev/none"),
+        (("params", "dump", "--drive", "usb:x"), 2, "must be like serial:///dev/ttyUSB0"),
+        (("scope", "speed", "--out", "x.xls"), 2, "x.xls: the ending must be one of .parquet, .csv, .mf4"),
+        (("scope", "speed=fast"), 2, "the full scale must be a number"),
+        (("monitor", "--duration", "-1"), 2, "must be 0 or more"),
+    ],
+)
+def test_what_is_wrong_is_one_line(call, tmp_path, arguments, status, said):
+    result = call(*arguments)
+    assert (result.exit_code, result.stderr.count("\n")) == (status, 1)
+    assert said in result.stderr
+
+
+def test_a_capture_is_written_in_every_form(ask, tmp_path):
+    files = [f"capture{ending}" for ending in capture_file.WRITERS]
+    options = [part for file in files for part in ("--out", file)]
+    result = ask("scope", "speed", "current_d=4", "--trigger", "speed", "--level", 5, *options)
+    assert result.exit_code == 0, result.stderr
+    assert "1024 records every 0.1 ms" in result.stdout
+    table = pq.read_table(tmp_path / "capture.parquet")
+    assert table.column_names == ["time", "speed", "current_d"]
+    assert json.loads(table.schema.metadata[b"stillspin"])["trigger"]["level"] == 5.0
+    rows = list(csv.reader((tmp_path / "capture.csv").open()))
+    assert rows[0] == ["time [s]", "speed [rpm]", "current_d [A]"]
+    assert len(rows) == 1025
+    assert float(rows[257][0]) == 0.0
+    assert (tmp_path / "capture.png").read_bytes().startswith(b"\x89PNG")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*files, "home"])
+
+
+def example():
+    time_axis = np.arange(5) * 1e-4
+    values = {"speed": np.arange(5.0), "current_q": -np.arange(5.0)}
+    units = {"speed": "rpm", "current_q": "A"}
+    return Capture(time_axis, values, units, ("speed",), Trigger("speed", 1.0, "rising"), 2.5, 1e-4, "1.0")
+
+
+def links(octets, at):
+    (count,) = struct.unpack_from("<Q", octets, at + 16)
+    return (
+        octets[at : at + 4].decode(),
+        struct.unpack_from(f"<{count}Q", octets, at + 24),
+        octets[at + 24 + 8 * count :],
+    )
+
+
+def text(octets, at):
+    mark, _, data = links(octets, at)
+    assert mark == "##TX"
+    return data[: data.index(0)].decode()
+
+
+def test_an_mf4_file_is_the_tree_that_the_standard_draws(tmp_path):
+    """Read with nothing but the standard's layout: header, data group, channel group, channels, data."""
+    capture = example()
+    mdf.write(tmp_path / "x.mf4", capture.time, capture.signals, capture.units, "about")
+    octets = (tmp_path / "x.mf4").read_bytes()
+    assert octets[:16] == b"MDF     4.10    "
+    mark, header, _ = links(octets, 64)
+    assert mark == "##HD"
+    assert text(octets, header[5]) == "about"
+    _, group, _ = links(octets, header[0])
+    mark, channel_group, sizes = links(octets, group[1])
+    assert mark == "##CG"
+    _, cycles, _, _, width = struct.unpack_from("<QQHH4xI", sizes)
+    mark, _, data = links(octets, group[2])
+    table = np.frombuffer(data[: cycles * width], "<f8").reshape(cycles, -1)
+    at, names = channel_group[1], []
+    while at:
+        _, channel, about = links(octets, at)
+        kind, _, data_type, _, offset, bits = struct.unpack_from("<4BII", about)
+        assert (data_type, bits) == (4, 64)
+        name = text(octets, channel[2])
+        unit = text(octets, channel[6])
+        expected = capture.time if name == "time" else capture.signals[name]
+        assert kind == (2 if name == "time" else 0)
+        assert unit == ("s" if name == "time" else capture.units[name])
+        assert np.array_equal(table[:, offset // 8], expected)
+        names.append(name)
+        at = channel[0]
+    assert names == ["time", "speed", "current_q"]
+
+
+def test_an_mf4_file_is_read_by_asammdf(tmp_path):
+    asammdf = pytest.importorskip("asammdf", reason="asammdf is not installed; it is no dependency")
+    capture = example()
+    mdf.write(tmp_path / "x.mf4", capture.time, capture.signals, capture.units, "about")
+    with asammdf.MDF(tmp_path / "x.mf4") as file:
+        signal = file.get("current_q")
+    assert np.array_equal(signal.samples, capture.signals["current_q"])
+    assert np.array_equal(signal.timestamps, capture.time)
+    assert signal.unit == "A"
+
+
+def test_a_place_that_cannot_be_written_is_said_before_the_capture(tmp_path):
+    with pytest.raises(InputError, match="no such directory"):
+        capture_file.check(tmp_path / "none" / "x.csv")
+
+
+def test_monitor_prints_numbers_where_nobody_looks(ask):
+    result = ask("monitor", "speed", "link_voltage", "--period", 5, "--duration", 0.4)
+    lines = result.stdout.splitlines()
+    assert lines[0] == "time [s]\tspeed [rpm]\tlink_voltage [V]"
+    assert len(lines) > 10
+    assert all(line.endswith("\t310") for line in lines[1:])
+
+
+def terminal(arguments, environment, seconds, size=(30, 100)):
+    """What a program draws on a terminal of that size."""
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "stillspin", *arguments], stdin=slave, stdout=slave, stderr=slave, env=environment
+    )
+    os.close(slave)
+    os.set_blocking(master, False)
+    seen, end = b"", time.monotonic() + seconds
+    while process.poll() is None and time.monotonic() < end:
+        try:
+            seen += os.read(master, 65536)
+        except (BlockingIOError, OSError):
+            time.sleep(0.02)
+    process.terminate()
+    process.wait()
+    os.close(master)
+    return seen.decode(errors="replace")
+
+
+def test_monitor_draws_lines_in_a_terminal(fake):
+    environment = {**os.environ, "TERM": "xterm-256color"}
+    seen = terminal(["monitor", "speed", "current_d", "--drive", fake.port, "--duration", "1.5"], environment, 20)
+    assert "ready" in seen
+    assert "current_d -1.5 A" in seen
+    assert any(0x2800 < ord(character) < 0x2900 for character in seen)
+
+
+def dots(rows):
+    return {
+        (2 * column + dx, 4 * line + dy)
+        for line, row in enumerate(rows)
+        for column, (character, _) in enumerate(row)
+        for dy, masks in enumerate(braille._DOTS)
+        for dx, mask in enumerate(masks)
+        if (ord(character) - 0x2800) & mask
+    }
+
+
+def test_a_line_of_dots_goes_through_its_values():
+    assert dots(braille.plot([[0.0, 1.0, 2.0, 3.0]], 0, 3, 2, 1)) == {(0, 3), (1, 2), (2, 1), (3, 0)}
+    assert dots(braille.plot([[0.0, 3.0]], 0, 3, 2, 1)) == {(2, 3), (3, 2), (3, 1), (3, 0)}
+    assert dots(braille.plot([[float("nan")] * 4], 0, 3, 2, 1)) == set()
+
+
+@given(st.floats(-1e9, 1e9), st.floats(0, 1e9))
+def test_a_nice_range_holds_its_values(low, span):
+    down, up = braille.nice_range(low, low + span)
+    assert down <= low
+    assert up >= low + span
+    assert up > down
+
+
+def test_the_console_says_a_line_and_prints_the_answer(ask):
+    result = ask("console", "--command", "get speed_ramp")
+    assert result.stdout == "heard get speed_ramp\n", result.stderr
+
+
+def test_a_transcript_is_without_echo_prompt_and_escapes():
+    transcript = Transcript()
+    transcript.expect("get x")
+    assert transcript.feed(b"get x\r\nx = 1 rpm\r\n\x1b[2K\r> ") == ["x = 1 rpm"]
+    assert transcript.answered
+    assert transcript.feed(b"gt\b \bet y\r\nfault: over-") == ["get y"]
+    assert transcript.feed(b"current\r\n") == ["fault: over-current"]
+
+
+def completions(table, text):
+    return [c.text for c in Words(table).get_completions(Document(text), None)]
+
+
+def test_completion_knows_the_drives_own_names(drive):
+    assert completions(drive.table, "st") == ["start", "stop", "status"]
+    assert completions(drive.table, "get speed_") == ["speed_limit", "speed_ramp"]
+    assert completions(drive.table, "set speed_ramp ") == ["3000 rpm/s"]
+    assert completions(drive.table, "scope current_d cur") == ["current_d", "current_q"]
+    assert completions(drive.table, "set nothing ") == []
