@@ -4,6 +4,7 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_adc.h"
+#include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 
 #define POWER_UP_CYCLES (5000uL * HAL_TIME_CYCLES_PER_US)
@@ -76,14 +77,30 @@ TARGET_RAM_CODE static uint16_t sum_of(uint16_t first_result, uint16_t pairs) {
   return sum;
 }
 
-TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
-  window->start_a = sum_of(0u, HAL_ADC_START_SAMPLES);
-  window->start_b = sum_of(1u, HAL_ADC_START_SAMPLES);
-  window->end_a = sum_of(SEQ2_FIRST_RESULT, HAL_ADC_END_SAMPLES);
-  window->end_b = sum_of(SEQ2_FIRST_RESULT + 1u, HAL_ADC_END_SAMPLES);
-  window->link = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES));
-  window->aux = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES + 1u));
+TARGET_RAM_CODE static void take_results(uint16_t* results) {
+  results[0] = sum_of(0u, HAL_ADC_START_SAMPLES);
+  results[1] = sum_of(1u, HAL_ADC_START_SAMPLES);
+  results[2] = sum_of(SEQ2_FIRST_RESULT, HAL_ADC_END_SAMPLES);
+  results[3] = sum_of(SEQ2_FIRST_RESULT + 1u, HAL_ADC_END_SAMPLES);
+  results[4] = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES));
+  results[5] = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES + 1u));
   adc_rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
+  tape_note_results(results, TAPE_RESULTS);
+}
+
+TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
+  uint16_t results[TAPE_RESULTS];
+  if (tape_plays()) {
+    tape_take_results(results, TAPE_RESULTS);
+  } else {
+    take_results(results);
+  }
+  window->start_a = results[0];
+  window->start_b = results[1];
+  window->end_a = results[2];
+  window->end_b = results[3];
+  window->link = results[4];
+  window->aux = results[5];
 }

@@ -6,6 +6,7 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_irq.h"
+#include "hal/hal_tape.h"
 
 #define CONTROL_GROUP PIE_GROUP(VECTOR_EPWM1_INT)
 #define WINDOW_GROUP PIE_GROUP(VECTOR_SEQ2INT)
@@ -93,13 +94,25 @@ TARGET_RAM_CODE void hal_irq_control_end(void) {
   pie_acknowledge(CONTROL_GROUP);
 }
 
-// By IER, whose value can be read and put back; INTM cannot be read.
-TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
+TARGET_RAM_CODE uint16_t irq_hold(void) {
   const uint16_t state = target_read_ier();
   target_write_ier(0u);
   return state;
 }
 
-TARGET_RAM_CODE void hal_irq_restore(uint16_t state) { target_write_ier(state); }
+TARGET_RAM_CODE void irq_release(uint16_t state) { target_write_ier(state); }
 
-uint16_t hal_irq_unexpected_count(void) { return unexpected_count; }
+TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
+  tape_call();
+  return irq_hold();
+}
+
+TARGET_RAM_CODE void hal_irq_restore(uint16_t state) {
+  tape_call();
+  irq_release(state);
+}
+
+uint16_t hal_irq_unexpected_count(void) {
+  tape_call();
+  return tape_plays() ? tape_take() : tape_note(unexpected_count);
+}

@@ -1,11 +1,14 @@
+#include <stddef.h>
+
 #include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
-#include "hal/hal_irq.h"
+#include "hal/f2808/pie.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_tape.h"
 
 static void set_time_base_clock(uint16_t running) {
   target_eallow();
@@ -47,6 +50,17 @@ static void set_up_compare(uint16_t module) {
                                          REG_FIELD(EPWM_CMPCTL_LOADAMODE, CMPCTL_LOAD_ZERO) |
                                          REG_FIELD(EPWM_CMPCTL_LOADBMODE, CMPCTL_LOAD_ZERO));
   write_compare(epwm, HAL_PWM_NONE, HAL_PWM_NONE);
+}
+
+static bool is_tripped(uint16_t module) { return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK); }
+
+static bool is_any_leg_tripped(void) {
+  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
+    if (is_tripped((uint16_t)(PWM_FIRST_LEG_MODULE + leg))) {
+      return true;
+    }
+  }
+  return false;
 }
 
 static bool dead_band_is_valid(uint16_t ticks) {
@@ -123,8 +137,8 @@ bool hal_pwm_init(uint16_t dead_band_ticks) {
   return true;
 }
 
-bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
-  if (!dead_band_is_valid(dead_band_ticks) || !hal_pwm_is_tripped()) {
+static bool set_dead_band(uint16_t dead_band_ticks) {
+  if (!dead_band_is_valid(dead_band_ticks) || !is_any_leg_tripped()) {
     return false;
   }
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
@@ -133,18 +147,28 @@ bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
   return true;
 }
 
-TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
+bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
+  tape_tell(TAPE_DEAD_BAND, &dead_band_ticks, 1u);
+  return tape_plays() ? tape_take() != 0u : tape_note(set_dead_band(dead_band_ticks) ? 1u : 0u) != 0u;
+}
+
+TARGET_RAM_CODE static uint16_t period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
+
+TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) {
+  tape_call();
+  return tape_plays() ? tape_take() : tape_note(period_tick());
+}
 
 // False too when the next period has begun before its control interrupt could come: the counter then looks early. Such
 // a period start waits in the event counter. It is read after the time, so that none slips in between.
 TARGET_RAM_CODE static bool is_in_time(uint16_t deadline_tick) {
-  const bool early = hal_pwm_period_tick() <= deadline_tick;
+  const bool early = period_tick() <= deadline_tick;
   return early && !reg_any(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_ETPS, EPWM_ETPS_INTCNT_MASK);
 }
 
-TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+TARGET_RAM_CODE static bool write_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
   // An interrupt between the look at the counter and the last write could carry the writes across the period start.
-  const uint16_t state = hal_irq_disable();
+  const uint16_t state = irq_hold();
   const bool in_time = is_in_time(deadline_tick);
   if (in_time) {
     for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
@@ -155,13 +179,35 @@ TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadli
                     frame->burst_end_tick[window]);
     }
   }
-  hal_irq_restore(state);
+  irq_release(state);
   return in_time;
 }
 
-static bool is_tripped(uint16_t module) { return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK); }
+static void tell_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+  uint16_t words[2u * (HAL_PWM_LEGS + HAL_PWM_WINDOWS) + 1u];
+  uint16_t n = 0u;
+  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
+    words[n++] = frame->rise_tick[leg];
+    words[n++] = frame->fall_tick[leg];
+  }
+  for (uint16_t window = 0u; window < HAL_PWM_WINDOWS; window++) {
+    words[n++] = frame->burst_start_tick[window];
+    words[n++] = frame->burst_end_tick[window];
+  }
+  words[n++] = deadline_tick;
+  tape_tell(TAPE_FRAME, words, n);
+}
 
-bool hal_pwm_gates_on(void) {
+TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+  tape_call();
+  if (tape_is_off()) {
+    return write_frame(frame, deadline_tick);
+  }
+  tell_frame(frame, deadline_tick);
+  return tape_plays() ? tape_take() != 0u : tape_note(write_frame(frame, deadline_tick) ? 1u : 0u) != 0u;
+}
+
+static bool gates_on(void) {
   if (!gpio_read(BOARD_PIN_OVER_CURRENT)) {
     return false;  // clearing the latch now would switch the gates on for as long as it takes to trip again
   }
@@ -171,10 +217,19 @@ bool hal_pwm_gates_on(void) {
     target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_TZCLR, EPWM_TZCLR_OST_MASK);
   }
   target_edis();
-  return !hal_pwm_is_tripped();
+  return !is_any_leg_tripped();
 }
 
+bool hal_pwm_gates_on(void) {
+  tape_call();
+  tape_tell(TAPE_GATES_ON, NULL, 0u);
+  return tape_plays() ? tape_take() != 0u : tape_note(gates_on() ? 1u : 0u) != 0u;
+}
+
+// Also while a tape plays: switching off is never wrong.
 TARGET_RAM_CODE void hal_pwm_gates_off(void) {
+  tape_call();
+  tape_tell(TAPE_GATES_OFF, NULL, 0u);
   target_eallow();
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
     target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_TZFRC, EPWM_TZFRC_OST_MASK);
@@ -183,12 +238,11 @@ TARGET_RAM_CODE void hal_pwm_gates_off(void) {
 }
 
 bool hal_pwm_is_tripped(void) {
-  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
-    if (is_tripped((uint16_t)(PWM_FIRST_LEG_MODULE + leg))) {
-      return true;
-    }
-  }
-  return false;
+  tape_call();
+  return tape_plays() ? tape_take() != 0u : tape_note(is_any_leg_tripped() ? 1u : 0u) != 0u;
 }
 
-bool hal_pwm_was_tripped_by_pin(void) { return is_tripped(PWM_TRIP_WITNESS_MODULE); }
+bool hal_pwm_was_tripped_by_pin(void) {
+  tape_call();
+  return tape_plays() ? tape_take() != 0u : tape_note(is_tripped(PWM_TRIP_WITNESS_MODULE) ? 1u : 0u) != 0u;
+}

@@ -1,3 +1,5 @@
+#include <stddef.h>
+
 #include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
@@ -5,6 +7,7 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_safety.h"
+#include "hal/hal_tape.h"
 
 void hal_safety_init(void) {
   gpio_make_output(BOARD_PIN_GATE_ENABLE, false);
@@ -19,6 +22,17 @@ void hal_safety_init(void) {
   target_edis();
 }
 
-void hal_safety_toggle_enable(void) { gpio_toggle(BOARD_PIN_GATE_ENABLE); }
+void hal_safety_toggle_enable(void) {
+  tape_call();
+  tape_tell(TAPE_ENABLE, NULL, 0u);
+  if (!tape_plays()) {
+    gpio_toggle(BOARD_PIN_GATE_ENABLE);
+  }
+}
 
-void hal_safety_fault_lamp(bool lit) { gpio_write(BOARD_PIN_FAULT_LAMP, lit); }
+void hal_safety_fault_lamp(bool lit) {
+  const uint16_t word = lit ? 1u : 0u;
+  tape_call();
+  tape_tell(TAPE_LAMP, &word, 1u);
+  gpio_write(BOARD_PIN_FAULT_LAMP, lit);
+}

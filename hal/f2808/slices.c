@@ -4,10 +4,11 @@
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
-#include "hal/hal_irq.h"
 #include "hal/hal_slices.h"
+#include "hal/hal_tape.h"
 
 #define CLOCK_MODULE PWM_FIRST_WINDOW_MODULE  // its time base counts the slices
+#define SLICE_RESULTS 3u
 #define TRIGGER_TICK 10u                      // of the slice
 
 // At once and not from the shadow: what was meant for this period must not come any more.
@@ -49,23 +50,35 @@ static void force_at_once(void) {
   }
 }
 
-bool hal_slices_begin(uint16_t slice_ticks) {
+TARGET_RAM_CODE static void set_legs(uint16_t state) {
+  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
+    force(leg, ((uint16_t)(state >> leg) & 1u) != 0u ? AQCSFRC_HIGH : AQCSFRC_LOW);
+  }
+}
+
+static bool begin(uint16_t slice_ticks) {
   if (slice_ticks < HAL_SLICE_MIN_TICKS || HAL_PWM_PERIOD_TICKS % slice_ticks != 0u) {
     return false;
   }
-  const uint16_t state = hal_irq_disable();
+  const uint16_t state = irq_hold();
   stop_bursts();
   force_at_once();
-  hal_slice_set_legs(0u);
+  set_legs(0u);
   adc_sequence_slices();
   set_clock(slice_ticks);
   write_compare_now(CLOCK_MODULE, HAL_PWM_NONE, TRIGGER_TICK);
-  hal_irq_restore(state);
+  irq_release(state);
   return true;
 }
 
-void hal_slices_end(void) {
-  const uint16_t state = hal_irq_disable();
+bool hal_slices_begin(uint16_t slice_ticks) {
+  tape_call();
+  tape_tell(TAPE_SLICES, &slice_ticks, 1u);
+  return tape_plays() ? tape_take() != 0u : tape_note(begin(slice_ticks) ? 1u : 0u) != 0u;
+}
+
+static void end(void) {
+  const uint16_t state = irq_hold();
   stop_bursts();
   set_clock(HAL_PWM_PERIOD_TICKS);
   adc_sequence_windows();
@@ -73,20 +86,43 @@ void hal_slices_end(void) {
     write_compare_now((uint16_t)(PWM_FIRST_LEG_MODULE + leg), HAL_PWM_NONE, HAL_PWM_NONE);
     force(leg, AQCSFRC_NONE);
   }
-  hal_irq_restore(state);
+  irq_release(state);
 }
 
-TARGET_RAM_CODE void hal_slice_read(hal_slice_t* slice) {
-  slice->current_a = adc_slice_result(0u);
-  slice->current_b = adc_slice_result(1u);
-  slice->link = adc_slice_result(2u);
+void hal_slices_end(void) {
+  const uint16_t none = 0u;
+  tape_call();
+  tape_tell(TAPE_SLICES, &none, 1u);
+  if (!tape_plays()) {
+    end();
+  }
+}
+
+TARGET_RAM_CODE static void take_results(uint16_t* results) {
+  for (uint16_t n = 0u; n < SLICE_RESULTS; n++) {
+    results[n] = adc_slice_result(n);
+  }
   adc_rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
+  tape_note_results(results, SLICE_RESULTS);
+}
+
+TARGET_RAM_CODE void hal_slice_read(hal_slice_t* slice) {
+  uint16_t results[SLICE_RESULTS];
+  if (tape_plays()) {
+    tape_take_results(results, SLICE_RESULTS);
+  } else {
+    take_results(results);
+  }
+  slice->current_a = results[0];
+  slice->current_b = results[1];
+  slice->link = results[2];
 }
 
 TARGET_RAM_CODE void hal_slice_set_legs(uint16_t state) {
-  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
-    force(leg, ((uint16_t)(state >> leg) & 1u) != 0u ? AQCSFRC_HIGH : AQCSFRC_LOW);
+  tape_tell(TAPE_LEGS, &state, 1u);
+  if (!tape_plays()) {
+    set_legs(state);
   }
 }

@@ -1,0 +1,102 @@
+// What the hardware tells the drive, on a tape: recorded here, played elsewhere.
+//
+// A period of the drive is a function of its state and of what the HAL returned in it. While a tape records, the HAL's
+// functions work as ever and what they return and are told is noted. While it plays, they reach no register: they
+// return what is on the tape, and what they are told is noted again, to be compared. So the interrupts of a drive can be
+// stepped on a board whose power stage and sensors are elsewhere, in a simulation, and be compared word by word with
+// another execution of the same C files. The gates cannot be switched on while a tape plays.
+//
+// Interrupts that came while the control step ran are put back at the same call of the HAL. Only the control step's own
+// calls are counted for that; what comes behind it is played behind it.
+
+#ifndef STILLSPIN_HAL_HAL_TAPE_H
+#define STILLSPIN_HAL_HAL_TAPE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TAPE_INPUTS 24u     // words that the HAL returns in a period
+#define TAPE_OUTPUTS 48u    // words that it is told
+#define TAPE_WINDOWS 20u    // window or slice interrupts in a period
+#define TAPE_RESULTS 6u     // words of one of them
+#define TAPE_BEHIND 0xFFFFu // `call` of a window that came behind the control step
+
+typedef enum { TAPE_OFF = 0, TAPE_RECORDS = 1, TAPE_PLAYS = 2 } tape_mode_t;
+
+typedef struct {
+  uint16_t call;  // hooked calls of the control step before it
+  uint16_t results[TAPE_RESULTS];
+} tape_window_t;
+
+/// One period.
+typedef struct {
+  uint16_t input_count, output_count, window_count;
+  uint16_t inputs[TAPE_INPUTS];
+  uint16_t outputs[TAPE_OUTPUTS];
+  tape_window_t windows[TAPE_WINDOWS];
+} tape_period_t;
+
+typedef struct {
+  tape_mode_t mode;
+  bool stepping, stepped;  // the control step runs; has run
+  uint16_t call;           // its hooked calls so far
+  uint16_t input, window;  // played so far
+  bool torn;               // the tape was too short or too long for what the drive did
+  void (*interrupt)(void); // the window interrupt, played
+  tape_period_t period;
+} hal_tape_t;
+
+extern hal_tape_t hal_tape;
+
+/// Mode and an empty period. interrupt: what a window that is played calls.
+void hal_tape_start(tape_mode_t mode, void (*interrupt)(void));
+
+/// A new, empty period; when it plays the caller fills it in.
+void hal_tape_next_period(void);
+
+/// Around the control step.
+void hal_tape_step_begin(void);
+void hal_tape_step_end(void);
+
+/// Windows not yet played are played; false when the period on the tape was not the one that ran.
+bool hal_tape_finish_period(void);
+
+// For the drivers.
+
+static inline bool tape_is_off(void) { return hal_tape.mode == TAPE_OFF; }
+static inline bool tape_plays(void) { return hal_tape.mode == TAPE_PLAYS; }
+
+/// First line of a hooked call: lets the interrupts come that came here.
+void tape_call(void);
+
+/// A word that the HAL returns: played, or noted and handed through.
+uint16_t tape_take(void);
+uint16_t tape_note(uint16_t value);
+
+/// What the HAL is told: what, and the words that belong to it.
+typedef enum {
+  TAPE_FRAME = 1,  // hal_pwm_write: rise, fall of the legs, bursts of the windows, deadline
+  TAPE_GATES_ON = 2,
+  TAPE_GATES_OFF = 3,
+  TAPE_DEAD_BAND = 4,
+  TAPE_ENABLE = 5,  // the gate enable line toggled
+  TAPE_LAMP = 6,
+  TAPE_SLICES = 7,  // slice time, 0 for windows again
+  TAPE_LEGS = 8
+} tape_told_t;
+
+void tape_tell(tape_told_t what, const uint16_t* words, uint16_t count);
+
+/// Results of a window interrupt: played, or noted.
+void tape_take_results(uint16_t* results, uint16_t count);
+void tape_note_results(const uint16_t* results, uint16_t count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
