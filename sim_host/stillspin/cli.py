@@ -30,6 +30,7 @@ from stillspin import (
     startup_report,
     tables,
 )
+from stillspin.board import serve
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
 from stillspin.progress import Counter, PhaseBar
@@ -207,6 +208,37 @@ def commission_(
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)
     if result.refused:
         raise typer.Exit(BROKEN)
+
+
+@app.command(name="board")
+def board_(
+    *,
+    profile_name: ProfileOption = "bench",
+    seed: SeedOption = 1,
+    change: ChangeOption = None,
+    params: ParamsOption = None,
+    speed: Annotated[
+        float, typer.Option("--speed", min=0.0, metavar="N", help="Times real time; 0 is as fast as possible.")
+    ] = 1.0,
+    serial_link: Annotated[
+        Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
+    ] = None,
+    load: Annotated[float, typer.Option("--load", metavar="NM", help="Load torque on the shaft.")] = 0.0,
+    end: Annotated[
+        float | None, typer.Option("--for", min=0.0, metavar="SECONDS", help="Switch off after so much of its time.")
+    ] = None,
+) -> None:
+    """Put the virtual drive on the desk: its serial port is a pseudo-terminal, its time is real time."""
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(profile_name, schema, known)
+    changes = profile.changes(change or [], schema, known)
+    if params:
+        changes.parameters = {**commission.load(params, known), **changes.parameters}
+        changes.words.append(f"--params {params.name}")
+    title = f"profile {chosen.name}, seed {seed}" + "".join(f", {words}" for words in changes.words)
+    board = serve.power(native, chosen, changes, seed)
+    serve.serve(board, serve.Options(speed, serial_link, load, end), title)
 
 
 @app.command(name="startup-matrix")

@@ -51,6 +51,70 @@ class NativeCommissioning(Protocol):
     stats: Mapping[str, float]
 
 
+class NativeBoard(Protocol):
+    """A virtual board on the desk. Its time passes in `advance` alone; what is handed over takes effect at `now`.
+
+    One at a time in a process, and no other virtual drive beside it. `close` frees the process for the next.
+    """
+
+    @property
+    def now(self) -> int:
+        """Ticks of 10 ns since it was powered."""
+        ...
+
+    serial_rate: float
+    """Bit rate of the far end of the serial line, bit/s."""
+
+    @property
+    def serial_pending(self) -> int:
+        """Ticks until the last octet that was handed over will have left."""
+        ...
+
+    def advance(self, ticks: int) -> None:
+        """Let time pass. RuntimeError when the chip cannot go on."""
+        ...
+
+    def serial_write(self, octets: bytes) -> None:
+        """Send octets to the drive, from now on, one after the other at `serial_rate`."""
+        ...
+
+    def serial_read(self) -> bytes:
+        """What the drive has sent since the last call."""
+        ...
+
+    def serial_break(self, bits: float) -> None:
+        """Hold the line low for so many bit times."""
+        ...
+
+    def serial_noise(self, flips_per_bit: float, seed: int) -> None:
+        """Turn over that share of the bits that are sent from now on."""
+        ...
+
+    def serial_counts(self) -> dict[str, float]:
+        """Octets sent and received, framing errors at the far end, the drive's bit rate (0: nothing came yet)."""
+        ...
+
+    def set_load(self, torque: float) -> None:
+        """Load torque from now on, N m; positive opposes positive rotation."""
+        ...
+
+    def truth(self) -> dict[str, float]:
+        """The true machine: angle (rad), speed (rpm), torque and load_torque (N m), currents (A), link_voltage (V)."""
+        ...
+
+    def signals(self) -> dict[str, float]:
+        """The firmware's signals as of its last control interrupt; angles in turns."""
+        ...
+
+    def statistics(self) -> dict[str, int]:
+        """Interrupts, resets, trips of the comparator, lost writes, idle ticks since it was powered."""
+        ...
+
+    def close(self) -> None:
+        """Switch it off. May be called twice."""
+        ...
+
+
 class NativeCore(Protocol):
     """The functions of `stillspin._core`."""
 
@@ -83,6 +147,12 @@ class NativeCore(Protocol):
         progress: Callable[[float, str], bool] | None,
     ) -> NativeCommissioning:
         """The firmware's commissioning. `limit`: simulated s; progress gets share and phase, false stops."""
+        ...
+
+    def VirtualBoard(  # noqa: N802 - a class of the module
+        self, *, plant: Plant, motor: str, parameters: dict[str, float], seed: int
+    ) -> NativeBoard:
+        """A board that has just been powered; `parameters` as of a drive that nobody has set up otherwise."""
         ...
 
     def parameters(self) -> list[dict[str, Any]]:

@@ -1,0 +1,76 @@
+"""The desk: a virtual board, what is plugged into it, and the slices in which its time passes."""
+
+from __future__ import annotations
+
+from stillspin.board.pseudo_terminal import PseudoTerminal
+from stillspin.core import NativeBoard
+from stillspin.errors import CampaignError
+
+TICKS_PER_SECOND = 100_000_000
+SLICE = 0.002
+"""Simulated seconds between two looks at the plugs."""
+_QUEUE = 0.01
+"""Seconds of octets that wait on the line before a program that writes is held back."""
+_MISMATCH = 0.03
+_RATES = range(10, 10_000_001)
+
+
+class Desk:
+    """One board with its serial port plugged into a pseudo-terminal."""
+
+    def __init__(self, board: NativeBoard, port: PseudoTerminal) -> None:
+        self.board = board
+        self.port = port
+        self.octets_in = 0
+        self.octets_out = 0
+
+    @property
+    def time(self) -> float:
+        """Seconds since the board was powered."""
+        return self.board.now / TICKS_PER_SECOND
+
+    def step(self, seconds: float) -> None:
+        """Hand over what has been written, let time pass, hand back what the drive has sent.
+
+        Args:
+            seconds: simulated; at most SLICE, so that octets do not lie about.
+
+        Raises:
+            CampaignError: the board cannot go on.
+        """
+        self._hand_over()
+        try:
+            self.board.advance(round(min(seconds, SLICE) * TICKS_PER_SECOND))
+        except RuntimeError as error:
+            raise CampaignError(f"the virtual board stopped: {error}") from error
+        self._hand_back()
+
+    @property
+    def wrong_rate(self) -> tuple[int, int] | None:
+        """The bit rates of program and drive, when they do not fit together."""
+        drive = self.board.serial_counts()["drive_rate"]
+        if not self.port.is_open or drive == 0.0:
+            return None
+        rate = self.port.rate
+        return (rate, round(drive)) if abs(rate / drive - 1.0) > _MISMATCH else None
+
+    def close(self) -> None:
+        """Switch the board off and unplug it."""
+        self.board.close()
+        self.port.close()
+
+    def _hand_over(self) -> None:
+        rate = self.port.rate
+        if rate in _RATES and rate != self.board.serial_rate:
+            self.board.serial_rate = rate
+        if self.board.serial_pending > _QUEUE * TICKS_PER_SECOND:
+            return
+        octets = self.port.read(max(int(_QUEUE * self.board.serial_rate / 10), 1))
+        if octets:
+            self.octets_in += len(octets)
+            self.board.serial_write(octets)
+
+    def _hand_back(self) -> None:
+        octets = self.board.serial_read()
+        self.octets_out += len(octets)
+        self.port.write(octets)

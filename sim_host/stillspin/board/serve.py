@@ -1,0 +1,125 @@
+"""Running the virtual board until somebody stops it."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+
+from rich.console import Console
+
+from stillspin import core
+from stillspin.board.desk import SLICE, Desk
+from stillspin.board.pacer import Pacer
+from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
+from stillspin.board.show import Show
+from stillspin.errors import InputError
+from stillspin.profile import Changes, Profile, merged
+
+_PAUSE = 0.05  # s of wall time; the longest sleep
+_FAST: core.Plant = {"solver": {"method": "rk4"}}
+"""Unless profile or user say otherwise: real time matters more here than the last digit."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to run the board.
+
+    `speed`: times real time, 0 as fast as possible. `load`: Nm. `end`: simulated seconds after which it stops.
+    """
+
+    speed: float = 1.0
+    link: Path | None = None
+    load: float = 0.0
+    end: float | None = None
+
+
+def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int) -> core.NativeBoard:
+    """A virtual board that has just been switched on.
+
+    Raises:
+        InputError: a plant or parameters that cannot be.
+    """
+    parameters = {**chosen.parameters, **changes.parameters}
+    try:
+        native.check_parameters(parameters)
+        return native.VirtualBoard(
+            plant=merged(_FAST, chosen.plant, changes.plant), motor="A", parameters=parameters, seed=seed
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error
+
+
+def serve(board: core.NativeBoard, options: Options, title: str) -> None:
+    """Plug the board in, say how to connect, and run it until SIGINT, SIGTERM or its end.
+
+    Raises:
+        InputError: the link cannot be made, or an impossible load.
+        CampaignError: the board cannot go on.
+    """
+    try:
+        board.set_load(options.load)
+        desk = Desk(board, PseudoTerminal(options.link))
+    except ValueError as error:
+        board.close()
+        raise InputError(f"--load {options.load:g}: {error}") from error
+    except InputError:
+        board.close()
+        raise
+    try:
+        _say_how_to_connect(desk, title)
+        pacer = Pacer(options.speed)
+        with _stopped_by_signals() as stop, Show(Console(stderr=True), desk, pacer, options.speed) as show:
+            began = time.monotonic()
+            _loop(desk, pacer, show, stop, options.end)
+            wall = time.monotonic() - began
+        ran = desk.time
+    finally:
+        desk.close()
+    print(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time")
+
+
+@dataclass
+class _Stop:
+    """Set by a signal."""
+
+    wanted: bool = False
+
+
+@contextmanager
+def _stopped_by_signals() -> Iterator[_Stop]:
+    """SIGINT and SIGTERM ask for an orderly end."""
+    stop = _Stop()
+
+    def ask(_number: int, _frame: FrameType | None) -> None:
+        stop.wanted = True
+
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _loop(desk: Desk, pacer: Pacer, show: Show, stop: _Stop, end: float | None) -> None:
+    while not stop.wanted and (end is None or desk.time < end):
+        due = pacer.due(desk.time)
+        if due >= SLICE:
+            desk.step(SLICE)
+        else:
+            time.sleep(min(pacer.wall(SLICE - due), _PAUSE))
+        show.look()
+
+
+def _say_how_to_connect(desk: Desk, title: str) -> None:
+    name = desk.port.name
+    device = f" ({desk.port.device})" if name != desk.port.device else ""
+    print(f"virtual board: {title}")
+    print(f"serial port:   {name}{device}, {DEFAULT_RATE} bit/s, 8 data bits, no parity, 1 stop bit")
+    print(f"connect:       stillspin console --drive {name}, or any terminal program")
+    print("switch off:    Ctrl-C", flush=True)
