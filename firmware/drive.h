@@ -148,13 +148,15 @@ extern drive_t drive;
 /// Rebuilds the configuration from the parameters; false, with the old one kept, when they do not fit together.
 bool drive_config_load(drive_config_t* c);
 
-bool drive_is_energised(void);
 void drive_parameters_changed(void);
 
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);
 
-/// Latches a fault and opens the power stage. The speed command is forgotten.
+/// Mechanical speed, rpm Q16, of an electrical one.
+int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp);
+
+/// Latches a fault with its circumstances (fault_history.h) and opens the power stage. The speed command is forgotten.
 void drive_raise(drive_t* d, drive_fault_t fault);
 
 /// Enters a state and starts counting its periods.

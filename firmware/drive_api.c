@@ -1,6 +1,8 @@
 // Commands, inspection and the drive's own memory.
 
 #include "firmware/drive.h"
+#include "firmware/fault_history.h"
+#include "firmware/link/link.h"
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "firmware/sampling.h"
@@ -13,6 +15,8 @@ void drive_reset(void) {
   drive = empty;
   sampling_reset();
   scope_reset();
+  fault_history_reset();
+  link_reset();
   parameters_reset();
   drive.trim.offset_a_q8 = 2048L * 256L;
   drive.trim.offset_b_q8 = 2048L * 256L;
@@ -37,9 +41,21 @@ void drive_parameters_changed(void) { drive.request.reload = true; }
 
 void drive_command_start(void) { drive.request.start = true; }
 
-void drive_command_stop(void) { drive.request.stop = true; }
+// What was asked for before and not carried out yet is not wanted any more: it must not outlive the stop that follows.
+static void forget_starts(void) {
+  drive.request.start = false;
+  drive.request.commission = false;
+}
 
-void drive_command_coast(void) { drive.request.coast = true; }
+void drive_command_stop(void) {
+  forget_starts();
+  drive.request.stop = true;
+}
+
+void drive_command_coast(void) {
+  forget_starts();
+  drive.request.coast = true;
+}
 
 void drive_command_reset(void) { drive.request.reset = true; }
 
@@ -52,7 +68,11 @@ void drive_command_speed(int32_t rpm_q16) {
 
 const drive_signals_t* drive_signals(void) { return &drive.signals; }
 
-static int32_t rpm_q16(const drive_t* d, int32_t speed_bpp) {
+uint32_t drive_time_ms(void) { return drive.time_ms; }
+
+drive_state_t drive_state(void) { return drive.state; }
+
+int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp) {
   return q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24);
 }
 
@@ -62,11 +82,11 @@ void drive_publish(drive_t* d) {
   s->fault = (int32_t)d->fault;
   s->limit = d->limits;
   s->angle = (int32_t)d->position.used.angle_bam;
-  s->speed = rpm_q16(d, d->position.used.speed_bpp);
+  s->speed = drive_rpm_q16(d, d->position.used.speed_bpp);
   s->angle_low = (int32_t)d->position.low.angle_bam;
   s->angle_avv = (int32_t)d->position.high.angle_bam;
   s->weight = d->position.blend.share_q15;
-  s->speed_reference = rpm_q16(d, d->control.ramp.value);
+  s->speed_reference = drive_rpm_q16(d, d->control.ramp.value);
   s->current_d = d->control.measured_q20.d;
   s->current_q = d->control.measured_q20.q;
   s->current_d_reference = d->control.reference_q20.d;

@@ -22,22 +22,11 @@ typedef enum {
   DRIVE_COMMISSION = 7  // measures machine and inverter
 } drive_state_t;
 
+#define FAULT(number, name, words, remedy) FAULT_##name = (number),
 typedef enum {
-  FAULT_NONE = 0,
-  FAULT_OVER_CURRENT = 1,   // comparator, through the trip zone
-  FAULT_CURRENT_LIMIT = 2,  // a sampled phase beyond trip_current
-  FAULT_LINK_LOW = 3,
-  FAULT_LINK_HIGH = 4,
-  FAULT_OVERRUN = 5,       // the control interrupt missed its period repeatedly
-  FAULT_NO_SAMPLES = 6,    // the ADC was not triggered
-  FAULT_DIVERGENCE = 7,    // the estimators disagree, or the speed is not plausible
-  FAULT_POLARITY = 8,      // the polarity of the magnet could not be told, or the back-EMF contradicts it
-  FAULT_OFFSET = 9,        // a current offset is implausible
-  FAULT_PARAMETER = 10,    // parameters not usable together, or an interrupt that nobody expects
-  FAULT_GATES_OFF = 11,    // the gates were switched off behind the drive's back
-  FAULT_SYNCHRONISM = 12,  // the angle in use does not fit the machine any more
-  FAULT_STOP = 13          // standstill not reached within stop_time
+#include "firmware/fault_list.h"
 } drive_fault_t;
+#undef FAULT
 
 typedef enum {
   LIMIT_CURRENT = 1,
@@ -53,8 +42,27 @@ typedef struct {
 } drive_signals_t;
 #undef SIGNAL
 
-/// A consistent copy is not needed on the bench: call it between interrupts.
+/// For whoever is called between interrupts, as the bench is.
 const drive_signals_t* drive_signals(void);
+/// Copies signals, given by their places in signal_list.h, as one control interrupt left them, without holding the next
+/// one up; a place that does not exist gives 0. Returns drive_time_ms of that interrupt.
+uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
+
+typedef struct {
+  const char* name;
+  const char* unit;
+  uint16_t q;
+  const char* meaning;
+} signal_info_t;
+
+uint16_t signal_count(void);
+/// NULL behind the last one.
+const signal_info_t* signal_info(uint16_t place);
+
+/// Since power-on, by the control interrupt; wraps after 49 days.
+uint32_t drive_time_ms(void);
+drive_state_t drive_state(void);
+bool drive_is_energised(void);
 
 typedef enum { PARAMETER_STOPPED = 0, PARAMETER_ALWAYS = 1 } parameter_access_t;
 typedef enum { SET_OK = 0, SET_UNKNOWN = 1, SET_RANGE = 2, SET_RUNNING = 3 } parameter_result_t;
@@ -72,6 +80,8 @@ typedef struct {
 
 uint16_t parameter_count(void);
 const parameter_info_t* parameter_info(uint16_t index);
+/// By its number; NULL when there is none.
+const parameter_info_t* parameter_by_id(uint16_t id);
 parameter_result_t parameter_set(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
 /// Why the present parameters cannot be used together, one sentence; NULL when they can.
@@ -132,12 +142,9 @@ commissioning_outcome_t drive_commissioning_outcome(void);
 commissioning_phase_t drive_commissioning_phase(void);
 /// Share done, 0..1000.
 int32_t drive_commissioning_progress(void);
+/// None but when the outcome is DONE or PARTLY.
 uint16_t drive_commissioning_count(void);
-/// Valid when the outcome is DONE or PARTLY.
 commissioning_result_t drive_commissioning_result(uint16_t index);
-/// A verdict and a phase in words.
-const char* drive_commissioning_verdict_words(commissioning_verdict_t verdict);
-const char* drive_commissioning_phase_words(commissioning_phase_t phase);
 
 /// Power-on state: clears the drive and puts every parameter to its default. firmware_main does it first.
 void drive_reset(void);

@@ -2,7 +2,9 @@
 
 #include <stddef.h>
 
+#include "firmware/console/console.h"
 #include "firmware/drive.h"
+#include "firmware/link/link.h"
 #include "firmware/parameters.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_clock.h"
@@ -62,6 +64,8 @@ void firmware_main(void) {
     hal_idle();
     commissioning_service(&drive);
     if (drive.request.reload) reload();
+    link_service();
+    console_service();
     // The watchdog is served for a control interrupt that lives, not for a background loop that does.
     if (drive.heartbeat != seen && hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {
       served = hal_time_cycles();

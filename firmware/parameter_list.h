@@ -135,3 +135,10 @@ PARAMETER(173, hysteresis_frequency, "kHz", 16, 2, 0, 2500, 1000, ALWAYS,
           "mean switching frequency that the hysteresis adapts to; 0 keeps the band")
 PARAMETER(174, slice_time, "us", 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
+
+// Serial port
+PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
+          "rate of the serial port from the next power-on on, once it is saved")
+PARAMETER(201, link_timeout, "ms", 0, 0, 50, 60000, 1000, ALWAYS,
+          "without a record from the port that started the drive with the guard, then link_reaction")
+PARAMETER(202, link_reaction, "", 0, 0, 1, 2, 1, ALWAYS, "when the guard hears nothing: 1 stop, 2 coast")

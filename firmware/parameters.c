@@ -55,6 +55,8 @@ static uint16_t index_of(uint16_t id) {
   return k;
 }
 
+const parameter_info_t* parameter_by_id(uint16_t id) { return parameter_info(index_of(id)); }
+
 parameter_result_t parameter_set(uint16_t id, int32_t raw) {
   const uint16_t k = index_of(id);
   if (k >= COUNT) return SET_UNKNOWN;

@@ -1,6 +1,7 @@
 // What opens the power stage: looked at in every period, before anything is commanded.
 
 #include "firmware/drive.h"
+#include "firmware/fault_history.h"
 #include "firmware/parameters.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
@@ -8,9 +9,22 @@
 #define MISSING_MAX 5u   // periods without samples
 #define OVERRUN_MAX 10u  // periods repeated because the interrupt was late
 
+static void note(const drive_t* d, drive_fault_t fault) {
+  fault_record_t r;
+  r.time_ms = d->time_ms;
+  r.fault = fault;
+  r.state = d->state;
+  r.speed_q16 = drive_rpm_q16(d, d->position.used.speed_bpp);
+  r.link_q16 = d->samples.link_q16;
+  r.current_d_q20 = d->control.measured_q20.d;
+  r.current_q_q20 = d->control.measured_q20.q;
+  fault_history_add(&r);
+}
+
 void drive_raise(drive_t* d, drive_fault_t fault) {
   hal_pwm_gates_off();
   if (d->state == DRIVE_FAULT) return;
+  note(d, fault);
   d->fault = fault;
   d->state = DRIVE_FAULT;
   d->periods = 0;

@@ -204,26 +204,3 @@ commissioning_outcome_t commissioning_conclude(const commissioning_t* c, commiss
   }
   return COMMISSIONING_DONE;
 }
-
-const char* drive_commissioning_verdict_words(commissioning_verdict_t verdict) {
-  static const char* const words[] = {
-      "plausible, in use",
-      "not measured: too few usable periods, or the current did not reach its level",
-      "the points scatter too much around the fitted line: current too small, shaft not at rest, or a loose contact",
-      "too far from the value given before: check nameplate, connection and current range",
-      "two ways of measuring it disagree: load on the shaft, or a wrong pole pair number",
-      "outside of the parameter's range",
-      "no machine has this: check the order of the phases and the current sensors",
-      "rests on another value that was refused"};
-  return (verdict <= VERDICT_DEPENDS) ? words[verdict] : "";
-}
-
-const char* drive_commissioning_phase_words(commissioning_phase_t phase) {
-  static const char* const words[] = {"offsets, axis and polarity",
-                                      "turning to a favourable angle",
-                                      "DC staircase: resistance, drop, dead time",
-                                      "spin: flux linkage, inertia, friction",
-                                      "inductances under torque current",
-                                      "evaluation"};
-  return (phase <= COMMISSIONING_EVALUATE) ? words[phase] : "";
-}

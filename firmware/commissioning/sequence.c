@@ -121,9 +121,12 @@ int32_t drive_commissioning_progress(void) {
   return before + within_phase(c) * phases[c->phase].share / 1000;
 }
 
-uint16_t drive_commissioning_count(void) { return report.count; }
+uint16_t drive_commissioning_count(void) {
+  const commissioning_outcome_t outcome = drive.commissioning.outcome;
+  return (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) ? report.count : 0u;
+}
 
 commissioning_result_t drive_commissioning_result(uint16_t index) {
   static const commissioning_result_t none = {0, 0, 0, VERDICT_NOT_MEASURED};
-  return (index < report.count) ? report.list[index] : none;
+  return (index < drive_commissioning_count()) ? report.list[index] : none;
 }

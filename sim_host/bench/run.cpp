@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "firmware/drive_api.h"
+#include "firmware/words.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/recorder.hpp"
@@ -101,8 +102,10 @@ class Director : public PeriodListener {
     last_fault_ = s.fault;
     if (s.fault == FAULT_NONE) return;
     const double at = (t - (running() ? origin_ : 0)) * kSecondsPerTick;
-    result_.faults.emplace_back(at, fault_name(s.fault));
-    if (!running()) result_.reason = std::string("fault during the start: ") + fault_name(s.fault);
+    result_.faults.emplace_back(at, words(WORDS_FAULT, static_cast<std::uint16_t>(s.fault)));
+    if (!running())
+      result_.reason =
+          std::string("fault during the start: ") + words(WORDS_FAULT, static_cast<std::uint16_t>(s.fault));
   }
 
   void prepare(Tick t, const drive_signals_t& s) {
@@ -211,41 +214,6 @@ bool play(const RunRequest& request, chip::Chip& chip, Director& director, RunRe
 }
 
 }  // namespace
-
-const char* fault_name(std::int32_t fault) {
-  switch (fault) {
-    case FAULT_NONE:
-      return "none";
-    case FAULT_OVER_CURRENT:
-      return "over-current comparator";
-    case FAULT_CURRENT_LIMIT:
-      return "sampled current beyond trip_current";
-    case FAULT_LINK_LOW:
-      return "DC link below link_minimum";
-    case FAULT_LINK_HIGH:
-      return "DC link above link_maximum";
-    case FAULT_OVERRUN:
-      return "control interrupt overrun";
-    case FAULT_NO_SAMPLES:
-      return "no samples from the ADC";
-    case FAULT_DIVERGENCE:
-      return "estimators diverged or speed not plausible";
-    case FAULT_POLARITY:
-      return "polarity of the magnet ambiguous, or contradicted by the back-EMF";
-    case FAULT_OFFSET:
-      return "current offset implausible";
-    case FAULT_PARAMETER:
-      return "parameters do not fit together";
-    case FAULT_GATES_OFF:
-      return "gates switched off unexpectedly";
-    case FAULT_SYNCHRONISM:
-      return "loss of synchronism";
-    case FAULT_STOP:
-      return "standstill not reached within stop_time";
-    default:
-      return "unknown fault";
-  }
-}
 
 RunResult run(const RunRequest& request) {
   check_request(request);

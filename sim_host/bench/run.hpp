@@ -64,9 +64,6 @@ void check_parameters(const std::map<std::string, double>& parameters);
 /// Raw value of a firmware parameter from user units; throws std::invalid_argument with value, range and unit.
 std::int32_t parameter_raw(const std::string& name, double value, unsigned& id);
 
-/// A fault of the drive (drive_fault_t) in words.
-const char* fault_name(std::int32_t fault);
-
 }  // namespace stillspin::bench
 
 #endif

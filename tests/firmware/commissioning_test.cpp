@@ -6,6 +6,7 @@
 
 extern "C" {
 #include "firmware/commissioning/result.h"
+#include "firmware/words.h"
 }
 
 namespace {
@@ -151,10 +152,10 @@ TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
 
 TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   for (int k = VERDICT_USED; k <= VERDICT_DEPENDS; ++k) {
-    EXPECT_GT(std::strlen(drive_commissioning_verdict_words(static_cast<commissioning_verdict_t>(k))), 10u);
+    EXPECT_GT(std::strlen(words(WORDS_VERDICT, static_cast<std::uint16_t>(k))), 10u);
   }
   for (int k = COMMISSIONING_IDLE; k <= COMMISSIONING_EVALUATE; ++k) {
-    EXPECT_GT(std::strlen(drive_commissioning_phase_words(static_cast<commissioning_phase_t>(k))), 5u);
+    EXPECT_GT(std::strlen(words(WORDS_PHASE, static_cast<std::uint16_t>(k))), 5u);
   }
 }
 

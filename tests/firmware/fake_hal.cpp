@@ -85,5 +85,5 @@ std::uint16_t hal_sci_write(const std::uint16_t* octets, std::uint16_t count) {
   return put;
 }
 std::uint16_t hal_sci_room(void) { return board.serial_room; }
-hal_sci_errors_t hal_sci_errors(void) { return {}; }
+hal_sci_errors_t hal_sci_errors(void) { return board.serial_errors; }
 }

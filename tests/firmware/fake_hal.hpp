@@ -9,6 +9,7 @@
 
 #include "hal/hal_adc.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_sci.h"
 #include "hal/hal_slices.h"
 #include "tests/control/quantities.hpp"
 
@@ -36,6 +37,7 @@ struct FakeBoard {
   std::uint16_t serial_room = 512;                  // of the transmit ring, taken octets deducted
   std::uint32_t baud = 0;
   int serial_services = 0;
+  hal_sci_errors_t serial_errors = {};
 };
 extern FakeBoard board;
 

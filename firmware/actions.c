@@ -1,0 +1,124 @@
+#include "firmware/actions.h"
+
+#include <stddef.h>
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/text.h"
+#include "firmware/words.h"
+
+// Why the drive cannot begin anything now; OK when it can.
+static answer_status_t check_ready(octet_writer_t* why) {
+  const char* const conflict = parameter_conflict();
+  switch (drive.state) {
+    case DRIVE_READY:
+      if (conflict == NULL) return ANSWER_OK;
+      put_text(why, conflict);
+      return ANSWER_CONFLICT;
+    case DRIVE_FAULT:
+      put_text(why, "a fault is latched, reset it first: ");
+      put_text(why, words(WORDS_FAULT, (uint16_t)drive.fault));
+      return ANSWER_STATE;
+    case DRIVE_BOOT:
+    case DRIVE_CALIBRATE:
+      put_text(why, "the drive is not ready yet: ");
+      break;
+    default:
+      put_text(why, "the drive is busy, stop it first: ");
+      break;
+  }
+  put_text(why, words(WORDS_STATE, (uint16_t)drive.state));
+  return ANSWER_STATE;
+}
+
+answer_status_t action_start(guard_t guard, octet_writer_t* why) {
+  const answer_status_t status = check_ready(why);
+  if (status != ANSWER_OK) return status;
+  guard_begin(guard);
+  drive_command_start();
+  return ANSWER_OK;
+}
+
+answer_status_t action_commission(guard_t guard, octet_writer_t* why) {
+  const answer_status_t status = check_ready(why);
+  if (status != ANSWER_OK) return status;
+  guard_begin(guard);
+  drive_command_commission();
+  return ANSWER_OK;
+}
+
+void action_stop(void) { drive_command_stop(); }
+
+void action_coast(void) { drive_command_coast(); }
+
+answer_status_t action_reset(octet_writer_t* why) {
+  if (drive.state != DRIVE_FAULT) {
+    put_text(why, "no fault is latched");
+    return ANSWER_STATE;
+  }
+  drive_command_reset();
+  return ANSWER_OK;
+}
+
+answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
+  const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
+  if (q_abs_sat(rpm_q16) <= limit_q16) {
+    drive_command_speed(rpm_q16);
+    return ANSWER_OK;
+  }
+  put_fixed(why, rpm_q16, 16, 1);
+  put_text(why, " rpm is beyond speed_limit, ");
+  put_fixed(why, limit_q16, 16, 0);
+  put_text(why, " rpm: nothing changed");
+  return ANSWER_RANGE;
+}
+
+void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
+  put_fixed(w, raw, parameter->q, parameter->decimals);
+  if (parameter->unit[0] == '\0') return;
+  put_u8(w, ' ');
+  put_text(w, parameter->unit);
+}
+
+// With one decimal more where the table's are too few to show what is wrong.
+static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
+  put_text(why, p->name);
+  put_text(why, " = ");
+  put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
+  put_text(why, " is outside of ");
+  put_fixed(why, p->minimum, p->q, p->decimals);
+  put_text(why, " .. ");
+  put_value(why, p, p->maximum);
+  put_text(why, ": nothing changed");
+  return ANSWER_RANGE;
+}
+
+// The value is in the table already, `before` was.
+static answer_status_t check_conflict(const parameter_info_t* p, int32_t before, octet_writer_t* why) {
+  const char* const conflict = parameter_conflict();
+  if (conflict == NULL) return ANSWER_OK;
+  if (drive_is_energised()) {
+    (void)parameter_set(p->id, before);
+    put_text(why, "not taken while the drive runs: ");
+  } else {
+    put_text(why, "taken, but the drive does not start with it: ");
+  }
+  put_text(why, conflict);
+  return ANSWER_CONFLICT;
+}
+
+answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why) {
+  const int32_t before = parameter_get(parameter->id);
+  switch (parameter_set(parameter->id, raw)) {
+    case SET_OK:
+      return check_conflict(parameter, before, why);
+    case SET_RANGE:
+      return refuse_range(parameter, raw, why);
+    case SET_RUNNING:
+      put_text(why, parameter->name);
+      put_text(why, " may not change while the power stage is on: stop the drive first");
+      return ANSWER_RUNNING;
+    default:
+      return ANSWER_UNKNOWN;
+  }
+}

@@ -1,0 +1,77 @@
+// The console's commands: a table of names, arguments and help, and the functions behind it in commands_*.c.
+
+#ifndef STILLSPIN_FIRMWARE_CONSOLE_COMMANDS_H
+#define STILLSPIN_FIRMWARE_CONSOLE_COMMANDS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/console/editor.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/// A word of the command line; it stays where it is until the command's job is through.
+typedef struct {
+  const uint16_t* text;
+  uint16_t count;
+} word_t;
+
+#define COMMAND_WORDS 16u
+
+typedef struct {
+  word_t word[COMMAND_WORDS];  // behind the command's own
+  uint16_t count;
+  bool too_many;
+} words_of_line_t;
+
+typedef struct {
+  const char* name;
+  const char* arguments;
+  const char* help;
+  void (*function)(const words_of_line_t* a);
+} command_t;
+
+/// NULL behind the last one.
+const command_t* command_info(uint16_t index);
+
+/// Carries a line out, or says why not. The line stays unchanged until its job is through.
+void command_obey(const editor_line_t* line);
+
+/// Whether the line stops the motor, whatever else it says.
+bool command_makes_safe(const editor_line_t* line);
+
+/// True when word k is there and is this one.
+bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
+
+void command_help(const words_of_line_t* a);
+
+// commands_parameters.c
+void command_list(const words_of_line_t* a);
+void command_get(const words_of_line_t* a);
+void command_set(const words_of_line_t* a);
+
+// commands_drive.c
+void command_start(const words_of_line_t* a);
+void command_stop(const words_of_line_t* a);
+void command_coast(const words_of_line_t* a);
+void command_reset(const words_of_line_t* a);
+void command_ref(const words_of_line_t* a);
+void command_commission(const words_of_line_t* a);
+
+// commands_look.c
+void command_status(const words_of_line_t* a);
+void command_faults(const words_of_line_t* a);
+void command_signals(const words_of_line_t* a);
+void command_watch(const words_of_line_t* a);
+void command_version(const words_of_line_t* a);
+
+// commands_scope.c
+void command_scope(const words_of_line_t* a);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

@@ -1,0 +1,155 @@
+// start, stop, coast, ref, reset, commission.
+
+#include <stddef.h>
+
+#include "firmware/actions.h"
+#include "firmware/console/commands.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/drive.h"
+#include "firmware/text.h"
+#include "firmware/words.h"
+
+#define START_PATIENCE_MS 5000u
+
+static uint32_t asked_ms;
+
+static bool no_arguments(const words_of_line_t* a) {
+  if (a->count == 0u) return true;
+  line_of("this command stands alone: nothing done");
+  return false;
+}
+
+static bool wait_for_run(uint16_t step) {
+  const uint32_t waited = drive_time_ms() - asked_ms;
+  (void)step;
+  if (drive.state == DRIVE_FAULT) return false;  // which the console tells unasked
+  if (drive.state == DRIVE_RUN) {
+    octet_writer_t* const w = line_begin();
+    put_text(w, "running after ");
+    put_unsigned(w, waited);
+    put_text(w, " ms");
+    line_end();
+    return false;
+  }
+  if (waited < START_PATIENCE_MS) return true;
+  line_of("not running yet: see 'status'");
+  return false;
+}
+
+void command_start(const words_of_line_t* a) {
+  if (!no_arguments(a)) return;
+  octet_writer_t* const w = line_begin();
+  if (action_start(GUARD_NONE, w) != ANSWER_OK) {
+    line_end();
+    return;
+  }
+  asked_ms = drive_time_ms();
+  console_run(wait_for_run, true);
+}
+
+// Whatever else the line says: it stops.
+void command_stop(const words_of_line_t* a) {
+  (void)a;
+  const bool on = drive_is_energised();
+  action_stop();
+  line_of(on ? "stopping" : "the power stage is off");
+}
+
+void command_coast(const words_of_line_t* a) {
+  (void)a;
+  action_coast();
+  line_of("power stage off");
+}
+
+static void show_reference(void) {
+  octet_writer_t* const w = line_begin();
+  put_text(w, "ref ");
+  put_fixed(w, drive.control.wanted_rpm_q16, 16, 2);
+  put_text(w, " rpm");
+  line_end();
+}
+
+// "600 rpm", "600rpm" or "600".
+static bool read_speed(const words_of_line_t* a, int32_t* rpm_q16) {
+  decimal_t number;
+  const word_t* const value = &a->word[0];
+  const uint16_t length = text_number(value->text, value->count, &number);
+  const uint16_t left = (uint16_t)(value->count - length);
+  if (length == 0u || a->count > 2u) return false;
+  if (left > 0u && (a->count > 1u || !text_equals("rpm", &value->text[length], left))) return false;
+  if (a->count == 2u && !word_is(a, 1, "rpm")) return false;
+  *rpm_q16 = decimal_raw(&number, 16);
+  return true;
+}
+
+void command_ref(const words_of_line_t* a) {
+  int32_t rpm_q16;
+  if (a->count == 0u) {
+    show_reference();
+  } else if (!read_speed(a, &rpm_q16)) {
+    line_of("ref takes a speed in rpm, for example: ref 600 rpm. Nothing changed");
+  } else {
+    octet_writer_t* const w = line_begin();
+    if (action_speed(rpm_q16, w) == ANSWER_OK) {
+      show_reference();
+    } else {
+      line_end();
+    }
+  }
+}
+
+void command_reset(const words_of_line_t* a) {
+  if (!no_arguments(a)) return;
+  octet_writer_t* const w = line_begin();
+  if (action_reset(w) == ANSWER_OK) put_text(w, "cleared; the current offsets are calibrated again");
+  line_end();
+}
+
+static void show_commissioning(void) {
+  const commissioning_outcome_t outcome = drive_commissioning_outcome();
+  octet_writer_t* const w = line_begin();
+  put_text(w, "commissioning: ");
+  put_text(w, words(WORDS_COMMISSIONING, (uint16_t)outcome));
+  if (outcome == COMMISSIONING_RUNNING) {
+    put_text(w, ", ");
+    put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
+    put_text(w, " %: ");
+    put_text(w, words(WORDS_PHASE, (uint16_t)drive_commissioning_phase()));
+  }
+  line_end();
+}
+
+static bool list_results(uint16_t step) {
+  if (step >= drive_commissioning_count()) return false;
+  const commissioning_result_t r = drive_commissioning_result(step);
+  const parameter_info_t* const p = parameter_by_id(r.id);
+  if (p == NULL) return true;
+  octet_writer_t* const w = line_begin();
+  put_text(w, p->name);
+  put_spaces_to(w, 22);
+  put_fixed(w, r.before, p->q, p->decimals);
+  put_text(w, " -> ");
+  put_value(w, p, r.value);
+  put_spaces_to(w, 50);
+  put_text(w, words(WORDS_VERDICT, (uint16_t)r.verdict));
+  line_end();
+  return true;
+}
+
+void command_commission(const words_of_line_t* a) {
+  if (a->count == 0u) {
+    show_commissioning();
+  } else if (word_is(a, 0, "start")) {
+    octet_writer_t* const w = line_begin();
+    if (action_commission(GUARD_NONE, w) == ANSWER_OK)
+      put_text(w, "commissioning: the shaft will turn; 'stop' ends it");
+    line_end();
+  } else if (!word_is(a, 0, "results")) {
+    line_of("commission, commission start or commission results");
+  } else if (drive_commissioning_count() == 0u) {
+    line_of("nothing has been measured since power-on");
+  } else {
+    console_run(list_results, false);
+  }
+}

@@ -1,0 +1,240 @@
+// status, watch, faults, signals, version.
+
+#include <stddef.h>
+
+#include "firmware/console/commands.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/console/suggest.h"
+#include "firmware/drive.h"
+#include "firmware/fault_history.h"
+#include "firmware/link/link.h"
+#include "firmware/text.h"
+#include "firmware/version.h"
+#include "firmware/words.h"
+
+#define COLUMN 12u
+#define WATCH_MS 500u
+#define WATCH_SIGNALS 4u
+
+static void put_limits(octet_writer_t* w, int32_t limits) {
+  const char* separator = "";
+  for (uint16_t bit = 0; words_or_null(WORDS_LIMIT, bit) != NULL; bit++) {
+    if ((q_shr(limits, bit) & 1) == 0) continue;
+    put_text(w, separator);
+    put_text(w, words(WORDS_LIMIT, bit));
+    separator = ", ";
+  }
+  if (separator[0] == '\0') put_text(w, "none");
+}
+
+static void put_speeds(octet_writer_t* w) {
+  put_fixed(w, drive_signals()->speed, 16, 1);
+  put_text(w, " rpm of ");
+  put_fixed(w, drive.control.wanted_rpm_q16, 16, 1);
+  put_text(w, " rpm");
+}
+
+static void status_state(octet_writer_t* w) {
+  put_text(w, words(WORDS_STATE, (uint16_t)drive.state));
+  if (drive.state == DRIVE_START) {
+    put_text(w, ": ");
+    put_text(w, words(WORDS_START, (uint16_t)drive_signals()->start_phase));
+  } else if (drive.state == DRIVE_COMMISSION) {
+    put_text(w, ": ");
+    put_text(w, words(WORDS_PHASE, (uint16_t)drive_commissioning_phase()));
+  }
+}
+
+static void status_current(octet_writer_t* w) {
+  put_text(w, "d ");
+  put_fixed(w, drive_signals()->current_d, 20, 2);
+  put_text(w, " A, q ");
+  put_fixed(w, drive_signals()->current_q, 20, 2);
+  put_text(w, " A");
+}
+
+static void status_link(octet_writer_t* w) {
+  put_fixed(w, drive_signals()->link_voltage, 16, 1);
+  put_text(w, " V");
+}
+
+static void status_limits(octet_writer_t* w) { put_limits(w, drive_signals()->limit); }
+
+static void status_fault(octet_writer_t* w) {
+  const uint16_t fault = (uint16_t)drive.fault;
+  put_text(w, words(WORDS_FAULT, fault));
+  if (fault == FAULT_NONE) return;
+  put_text(w, ". ");
+  put_text(w, words(WORDS_REMEDY, fault));
+}
+
+static void status_parameters(octet_writer_t* w) {
+  const char* const conflict = parameter_conflict();
+  put_text(w, (conflict == NULL) ? "fit together" : conflict);
+}
+
+static void status_port(octet_writer_t* w) {
+  const link_errors_t e = link_errors();
+  put_unsigned(w, (uint32_t)e.port.framing + e.port.overrun + e.port.breaks + e.port.lost);
+  put_text(w, " disturbances, ");
+  put_unsigned(w, (uint32_t)e.records.damaged + e.records.too_long + e.records.broken_off);
+  put_text(w, " damaged records, ");
+  put_unsigned(w, e.events_dropped);
+  put_text(w, " events dropped");
+}
+
+static const struct {
+  const char* title;
+  void (*put)(octet_writer_t* w);
+} status_lines[] = {{"state", status_state},           {"speed", put_speeds},     {"current", status_current},
+                    {"DC link", status_link},          {"limits", status_limits}, {"fault", status_fault},
+                    {"parameters", status_parameters}, {"serial", status_port}};
+
+#define STATUS_LINES ((uint16_t)(sizeof status_lines / sizeof status_lines[0]))
+
+static bool show_status(uint16_t step) {
+  octet_writer_t* const w = line_begin();
+  put_text(w, status_lines[step].title);
+  put_spaces_to(w, COLUMN);
+  status_lines[step].put(w);
+  line_end();
+  return step + 1u < STATUS_LINES;
+}
+
+void command_status(const words_of_line_t* a) {
+  (void)a;
+  console_run(show_status, false);
+}
+
+static uint16_t watched[WATCH_SIGNALS];
+static uint16_t watched_count;
+static uint32_t shown_ms;
+
+static void put_watched(octet_writer_t* w) {
+  for (uint16_t k = 0; k < watched_count; k++) {
+    if (k > 0u) put_text(w, "   ");
+    put_text(w, signal_info(watched[k])->name);
+    put_u8(w, ' ');
+    put_signal(w, watched[k]);
+  }
+}
+
+static void put_overview(octet_writer_t* w) {
+  status_state(w);
+  put_text(w, "   ");
+  put_speeds(w);
+  put_text(w, "   ");
+  status_current(w);
+  put_text(w, "   ");
+  status_link(w);
+  if (drive_signals()->limit == 0) return;
+  put_text(w, "   ");
+  put_limits(w, drive_signals()->limit);
+}
+
+static bool watch(uint16_t step) {
+  if (step > 0u && drive_time_ms() - shown_ms < WATCH_MS) return true;
+  shown_ms = drive_time_ms();
+  octet_writer_t* const w = line_begin();
+  if (watched_count > 0u) {
+    put_watched(w);
+  } else {
+    put_overview(w);
+  }
+  line_end();
+  return true;
+}
+
+void command_watch(const words_of_line_t* a) {
+  watched_count = 0;
+  if (a->count > WATCH_SIGNALS) {
+    line_of("watch shows at most four signals");
+    return;
+  }
+  for (uint16_t k = 0; k < a->count; k++) {
+    watched[k] = signal_find(&a->word[k]);
+    if (watched[k] == SIGNAL_NONE) {
+      suggest("signal", &a->word[k], suggest_signal);
+      return;
+    }
+  }
+  watched_count = a->count;
+  console_run(watch, true);
+}
+
+static void put_fault(octet_writer_t* w, const fault_record_t* f) {
+  put_unsigned(w, f->time_ms / 1000u);
+  put_u8(w, '.');
+  put_unsigned(w, f->time_ms / 100u % 10u);
+  put_unsigned(w, f->time_ms / 10u % 10u);
+  put_unsigned(w, f->time_ms % 10u);
+  put_text(w, " s  ");
+  put_text(w, words(WORDS_FAULT, (uint16_t)f->fault));
+  put_text(w, ", ");
+  put_text(w, words(WORDS_STATE, (uint16_t)f->state));
+  put_text(w, " at ");
+  put_fixed(w, f->speed_q16, 16, 1);
+  put_text(w, " rpm, link ");
+  put_fixed(w, f->link_q16, 16, 1);
+  put_text(w, " V, d ");
+  put_fixed(w, f->current_d_q20, 20, 2);
+  put_text(w, " A, q ");
+  put_fixed(w, f->current_q_q20, 20, 2);
+  put_text(w, " A");
+}
+
+static bool list_faults(uint16_t step) {
+  fault_record_t f;
+  octet_writer_t* const w = line_begin();
+  if (step == 0u) {
+    put_unsigned(w, fault_history_total());
+    put_text(w, " since power-on, which was ");
+    put_unsigned(w, drive_time_ms() / 1000u);
+    put_text(w, " s ago; the newest first");
+  } else if (fault_history_read((uint16_t)(step - 1u), &f)) {
+    put_fault(w, &f);
+  } else {
+    return false;
+  }
+  line_end();
+  return true;
+}
+
+void command_faults(const words_of_line_t* a) {
+  (void)a;
+  if (fault_history_total() == 0u) {
+    line_of("no fault since power-on");
+  } else {
+    console_run(list_faults, false);
+  }
+}
+
+static word_t pattern;
+
+static bool list_signals(uint16_t step) {
+  const signal_info_t* const s = signal_info(step);
+  if (s == NULL) return false;
+  if (!text_occurs(s->name, pattern.text, pattern.count) && !text_occurs(s->meaning, pattern.text, pattern.count))
+    return true;
+  put_signal_row(line_begin(), step);
+  line_end();
+  return true;
+}
+
+void command_signals(const words_of_line_t* a) {
+  pattern.text = NULL;
+  pattern.count = 0;
+  if (a->count > 0u) pattern = a->word[0];
+  console_run(list_signals, false);
+}
+
+void command_version(const words_of_line_t* a) {
+  (void)a;
+  octet_writer_t* const w = line_begin();
+  put_text(w, FIRMWARE_NAME);
+  put_text(w, ", protocol ");
+  put_unsigned(w, LINK_PROTOCOL);
+  line_end();
+}

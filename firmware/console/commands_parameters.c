@@ -1,0 +1,152 @@
+// list, get, set.
+
+#include <stddef.h>
+
+#include "firmware/actions.h"
+#include "firmware/console/commands.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/console/suggest.h"
+#include "firmware/text.h"
+
+#define COLUMN_VALUE 23u
+#define COLUMN_MEANING 42u
+
+static word_t pattern;
+
+static void put_row(const parameter_info_t* p) {
+  const int32_t raw = parameter_get(p->id);
+  octet_writer_t* const w = line_begin();
+  put_text(w, p->name);
+  put_spaces_to(w, COLUMN_VALUE - 1u);
+  put_u8(w, (raw == p->initial) ? ' ' : '*');
+  put_value(w, p, raw);
+  put_spaces_to(w, COLUMN_MEANING);
+  put_text(w, p->meaning);
+  line_end();
+}
+
+static bool list_one(uint16_t step) {
+  const parameter_info_t* const p = parameter_info(step);
+  if (p == NULL) return false;
+  if (text_occurs(p->name, pattern.text, pattern.count) || text_occurs(p->meaning, pattern.text, pattern.count)) {
+    put_row(p);
+  }
+  return true;
+}
+
+void command_list(const words_of_line_t* a) {
+  pattern.text = NULL;
+  pattern.count = 0;
+  if (a->count > 0u) pattern = a->word[0];
+  console_run(list_one, false);
+}
+
+static const parameter_info_t* find(const word_t* name) {
+  for (uint16_t k = 0; k < parameter_count(); k++) {
+    const parameter_info_t* const p = parameter_info(k);
+    if (text_equals(p->name, name->text, name->count)) return p;
+  }
+  return NULL;
+}
+
+static const parameter_info_t* described;
+
+static bool describe(uint16_t step) {
+  const parameter_info_t* const p = described;
+  octet_writer_t* const w = line_begin();
+  if (step == 0u) {
+    put_text(w, p->name);
+    put_text(w, " = ");
+    put_value(w, p, parameter_get(p->id));
+  } else if (step == 1u) {
+    put_text(w, "  ");
+    put_fixed(w, p->minimum, p->q, p->decimals);
+    put_text(w, " .. ");
+    put_value(w, p, p->maximum);
+    put_text(w, ", default ");
+    put_fixed(w, p->initial, p->q, p->decimals);
+    put_text(w, ", number ");
+    put_unsigned(w, p->id);
+    if (p->access == PARAMETER_STOPPED) put_text(w, "; only while the power stage is off");
+  } else {
+    put_text(w, "  ");
+    put_text(w, p->meaning);
+  }
+  line_end();
+  return step < 2u;
+}
+
+void command_get(const words_of_line_t* a) {
+  if (a->count != 1u) {
+    line_of("get name: one parameter or signal; 'list' and 'signals' show their names");
+    return;
+  }
+  described = find(&a->word[0]);
+  if (described != NULL) {
+    console_run(describe, false);
+    return;
+  }
+  const uint16_t place = signal_find(&a->word[0]);
+  if (place == SIGNAL_NONE) {
+    suggest("parameter", &a->word[0], suggest_parameter);
+    return;
+  }
+  put_signal_row(line_begin(), place);
+  line_end();
+}
+
+// The unit may stand behind the number or by itself.
+static bool unit_fits(const words_of_line_t* a, uint16_t number_length, const char* unit) {
+  const word_t* const value = &a->word[1];
+  const uint16_t* const behind = &value->text[number_length];
+  const uint16_t left = (uint16_t)(value->count - number_length);
+  if (left > 0u) return a->count == 2u && text_equals(unit, behind, left);
+  return a->count == 2u || word_is(a, 2, unit);
+}
+
+static void refuse_unit(const parameter_info_t* p) {
+  octet_writer_t* const w = line_begin();
+  put_text(w, p->name);
+  if (p->unit[0] == '\0') {
+    put_text(w, " has no unit");
+  } else {
+    put_text(w, " is in ");
+    put_text(w, p->unit);
+  }
+  put_text(w, ": nothing changed");
+  line_end();
+}
+
+static void change(const parameter_info_t* p, int32_t raw) {
+  octet_writer_t* const w = line_begin();
+  const answer_status_t status = action_set(p, raw, w);
+  if (status == ANSWER_OK) {
+    put_text(w, p->name);
+    put_text(w, " = ");
+    put_value(w, p, parameter_get(p->id));
+  }
+  line_end();
+}
+
+void command_set(const words_of_line_t* a) {
+  decimal_t number;
+  if (a->count < 2u || a->count > 3u) {
+    line_of("set name value [unit]: for example, set speed_ramp 300 rpm/s");
+    return;
+  }
+  const parameter_info_t* const p = find(&a->word[0]);
+  if (p == NULL) {
+    suggest("parameter", &a->word[0], suggest_parameter);
+    return;
+  }
+  const uint16_t length = text_number(a->word[1].text, a->word[1].count, &number);
+  if (length == 0u) {
+    line_of("the value is not a number: nothing changed");
+  } else if (!unit_fits(a, length, p->unit)) {
+    refuse_unit(p);
+  } else {
+    change(p, decimal_raw(&number, p->q));
+  }
+}

@@ -1,0 +1,254 @@
+// scope: set-up, state and a coarse print. Whole captures go over the link's records.
+
+#include <stddef.h>
+
+#include "firmware/console/commands.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/console/suggest.h"
+#include "firmware/scope/scope.h"
+#include "firmware/text.h"
+#include "firmware/words.h"
+#include "hal/qmath/qmath.h"
+
+static const char* const edges[] = {"rising", "falling", "either", "now", "above", "below"};
+#define EDGES ((uint16_t)(sizeof edges / sizeof edges[0]))
+
+// Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
+static uint16_t shift_of(const signal_info_t* s) {
+  static const struct {
+    const char* unit;
+    uint16_t whole;
+  } reach[] = {{"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
+  uint16_t whole = 15;
+  for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
+    const char* const unit = reach[k].unit;
+    uint16_t n = 0;
+    while (unit[n] != '\0' && unit[n] == s->unit[n]) n++;
+    if (unit[n] == s->unit[n]) whole = reach[k].whole;
+  }
+  const uint16_t kept = (uint16_t)(15u - whole);  // fractional bits that a word keeps
+  if (s->unit[0] == '\0') return (s->q > 8u) ? (uint16_t)(s->q - 8u) : 0u;
+  return (s->q > kept) ? (uint16_t)(s->q - kept) : 0u;
+}
+
+static scope_setup_t draft(void) {
+  scope_setup_t s = *scope_setup_in_force();
+  if (s.count > 0u) return s;
+  s.decimation = 1;
+  s.pretrigger = SCOPE_DEPTH / 4u;
+  s.mode = SCOPE_SINGLE;
+  s.edge = SCOPE_AT_ONCE;
+  s.trigger = 0;
+  s.level = 0;
+  return s;
+}
+
+static void apply(const scope_setup_t* s) {
+  if (s->count == 0u) {
+    line_of("first: scope channels <signal> ..");
+  } else if (scope_setup(s)) {
+    line_of("set; 'scope arm' begins");
+  } else {
+    line_of("outside of its range: nothing changed; see 'help scope'");
+  }
+}
+
+static void set_channels(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count < 2u || a->count > 1u + SCOPE_CHANNELS) {
+    line_of("scope channels takes one to four signals; 'signals' shows their names");
+    return;
+  }
+  s.count = (uint16_t)(a->count - 1u);
+  for (uint16_t k = 0; k < s.count; k++) {
+    const uint16_t place = signal_find(&a->word[k + 1u]);
+    if (place == SIGNAL_NONE) {
+      suggest("signal", &a->word[k + 1u], suggest_signal);
+      return;
+    }
+    s.channel[k].signal = place;
+    s.channel[k].shift = shift_of(signal_info(place));
+  }
+  apply(&s);
+}
+
+static void set_trigger(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  decimal_t level;
+  if (a->count == 2u && word_is(a, 1, edges[SCOPE_AT_ONCE])) {
+    s.edge = SCOPE_AT_ONCE;
+    apply(&s);
+    return;
+  }
+  uint16_t edge = 0;
+  while (edge < EDGES && !word_is(a, 2, edges[edge])) edge++;
+  const bool complete = a->count >= 4u && edge < EDGES && edge != SCOPE_AT_ONCE;
+  if (!complete || text_number(a->word[3].text, a->word[3].count, &level) != a->word[3].count) {
+    line_of("scope trigger <signal> rising|falling|either|above|below <level>, or scope trigger now");
+    return;
+  }
+  s.trigger = signal_find(&a->word[1]);
+  if (s.trigger == SIGNAL_NONE) {
+    suggest("signal", &a->word[1], suggest_signal);
+    return;
+  }
+  if (a->count > 5u || (a->count == 5u && !word_is(a, 4, signal_info(s.trigger)->unit))) {
+    line_of("the level is in the signal's unit: nothing changed");
+    return;
+  }
+  s.edge = (scope_edge_t)edge;
+  s.level = decimal_raw(&level, signal_info(s.trigger)->q);
+  apply(&s);
+}
+
+// A whole number 0..65535 behind the sub-command.
+static bool whole(const words_of_line_t* a, uint16_t* value) {
+  decimal_t n;
+  if (a->count != 2u || text_number(a->word[1].text, a->word[1].count, &n) != a->word[1].count) return false;
+  if (n.decimals != 0u || n.digits < 0 || n.digits > 65535L) return false;
+  *value = (uint16_t)n.digits;
+  return true;
+}
+
+static void set_number(const words_of_line_t* a, bool every) {
+  scope_setup_t s = draft();
+  if (!whole(a, every ? &s.decimation : &s.pretrigger)) {
+    line_of("a whole number is missing: nothing changed");
+    return;
+  }
+  apply(&s);
+}
+
+static void set_mode(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count != 2u || (!word_is(a, 1, "single") && !word_is(a, 1, "auto"))) {
+    line_of("scope mode single, or scope mode auto");
+    return;
+  }
+  s.mode = word_is(a, 1, "auto") ? SCOPE_AUTO : SCOPE_SINGLE;
+  apply(&s);
+}
+
+static void put_state(octet_writer_t* w) {
+  const scope_status_t status = scope_status();
+  put_text(w, "scope: ");
+  put_text(w, words(WORDS_SCOPE, (uint16_t)status.state));
+  put_text(w, ", ");
+  put_unsigned(w, status.recorded);
+  put_text(w, " records");
+  if (status.trigger_at == SCOPE_NOWHERE) return;
+  put_text(w, ", trigger in record ");
+  put_unsigned(w, status.trigger_at);
+  put_text(w, " at ");
+  put_unsigned(w, status.trigger_time_ms);
+  put_text(w, " ms");
+}
+
+static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
+  put_text(w, "trigger ");
+  if (s->edge != SCOPE_AT_ONCE) {
+    const signal_info_t* const signal = signal_info(s->trigger);
+    put_text(w, signal->name);
+    put_u8(w, ' ');
+    put_text(w, edges[s->edge]);
+    put_u8(w, ' ');
+    put_fixed(w, s->level, signal->q, signal_decimals(signal));
+    put_u8(w, ' ');
+    put_text(w, signal->unit);
+  } else {
+    put_text(w, "now");
+  }
+  put_text(w, ", every ");
+  put_unsigned(w, s->decimation);
+  put_text(w, ", before ");
+  put_unsigned(w, s->pretrigger);
+  put_text(w, (s->mode == SCOPE_AUTO) ? ", mode auto" : ", mode single");
+}
+
+static void put_channels(octet_writer_t* w, const scope_setup_t* s) {
+  put_text(w, "channels");
+  for (uint16_t k = 0; k < s->count; k++) {
+    put_u8(w, ' ');
+    put_text(w, signal_info(s->channel[k].signal)->name);
+  }
+}
+
+static bool show(uint16_t step) {
+  const scope_setup_t* const s = scope_setup_in_force();
+  octet_writer_t* const w = line_begin();
+  if (step == 0u) {
+    put_state(w);
+  } else if (step == 1u) {
+    put_channels(w, s);
+  } else {
+    put_trigger(w, s);
+  }
+  line_end();
+  return s->count > 0u && step < 2u;
+}
+
+static uint16_t stride;
+
+static void put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
+  put_unsigned(w, at);
+  put_spaces_to(w, 6);
+  for (uint16_t k = 0; k < s->count; k++) {
+    const signal_info_t* const signal = signal_info(s->channel[k].signal);
+    int16_t value;
+    if (scope_read(k, at, &value, 1) == 0u) value = 0;
+    const uint16_t shift = s->channel[k].shift;
+    const bool fits = shift <= signal->q;
+    put_fixed(w, fits ? value : q_shl_sat(value, shift - signal->q), fits ? (uint16_t)(signal->q - shift) : 0u,
+              signal_decimals(signal));
+    put_spaces_to(w, (uint16_t)(6u + 12u * (k + 1u)));
+  }
+}
+
+static bool print(uint16_t step) {
+  const scope_setup_t* const s = scope_setup_in_force();
+  const uint32_t at = (uint32_t)step * stride;
+  octet_writer_t* const w = line_begin();
+  if (at >= scope_status().recorded) return false;
+  put_record(w, s, (uint16_t)at);
+  line_end();
+  return true;
+}
+
+static void begin_print(const words_of_line_t* a) {
+  const scope_state_t state = scope_status().state;
+  stride = 16;
+  if (a->count > 1u && (!whole(a, &stride) || stride == 0u)) {
+    line_of("scope print <one record in so many>");
+  } else if (state != SCOPE_DONE && state != SCOPE_IDLE) {
+    line_of("the scope still records: 'scope stop' ends it");
+  } else if (scope_status().recorded == 0u) {
+    line_of("nothing has been recorded");
+  } else {
+    console_run(print, false);
+  }
+}
+
+void command_scope(const words_of_line_t* a) {
+  if (a->count == 0u) {
+    console_run(show, false);
+  } else if (word_is(a, 0, "channels")) {
+    set_channels(a);
+  } else if (word_is(a, 0, "trigger")) {
+    set_trigger(a);
+  } else if (word_is(a, 0, "every") || word_is(a, 0, "before")) {
+    set_number(a, word_is(a, 0, "every"));
+  } else if (word_is(a, 0, "mode")) {
+    set_mode(a);
+  } else if (word_is(a, 0, "arm")) {
+    line_of(scope_arm() ? "armed" : "first: scope channels <signal> ..");
+  } else if (word_is(a, 0, "stop")) {
+    scope_stop();
+    line_of("stopped");
+  } else if (word_is(a, 0, "print")) {
+    begin_print(a);
+  } else {
+    line_of("scope has no such part: see 'help scope'");
+  }
+}

@@ -1,0 +1,148 @@
+#include "firmware/console/console.h"
+
+#include <stddef.h>
+
+#include "firmware/actions.h"
+#include "firmware/console/commands.h"
+#include "firmware/console/editor.h"
+#include "firmware/console/output.h"
+#include "firmware/fault_history.h"
+#include "firmware/link/record.h"
+#include "firmware/words.h"
+#include "hal/hal_sci.h"
+
+#define KEPT 64u                                      // characters typed ahead; a power of two
+#define ROOM (OUTPUT_LINE + RECORD_ENCODED_MAX + 2u)  // a line, and the answer to a record beside it
+#define CTRL_C 0x03u
+
+static editor_t editor;
+static editor_line_t command;  // the one that is being answered
+static console_job_t* job;
+static uint16_t step;
+static bool ends_by_key;
+static uint16_t kept[KEPT];
+static uint16_t kept_first, kept_count;
+static bool someone_types;
+static uint16_t faults_told;
+static uint16_t errors_before;  // of the port, when the line began
+
+void console_reset(void) {
+  editor_reset(&editor);
+  job = NULL;
+  kept_first = 0;
+  kept_count = 0;
+  someone_types = false;
+  faults_told = 0;
+  errors_before = 0;
+}
+
+void console_give_way(void) { someone_types = false; }
+
+void console_run(console_job_t* new_job, bool until_key) {
+  job = new_job;
+  step = 0;
+  ends_by_key = until_key;
+}
+
+static void prompt(void) {
+  put_text(line_begin(), EDITOR_PROMPT);
+  line_flush();
+}
+
+static void end_job(void) {
+  job = NULL;
+  prompt();
+}
+
+static uint16_t port_errors(void) {
+  const hal_sci_errors_t e = hal_sci_errors();
+  return (uint16_t)(e.framing + e.overrun + e.breaks + e.lost);
+}
+
+// What a disturbed line says may be something else than what was sent. Only what makes the drive safe is done all the
+// same.
+static void obey(void) {
+  const bool damaged = editor.disturbed || port_errors() != errors_before;
+  command = editor.line;
+  if (editor.too_long) {
+    line_of("a line has at most 80 characters: nothing done");
+  } else if (damaged && !command_makes_safe(&command)) {
+    line_of("the line was disturbed on its way: nothing done, send it again");
+  } else {
+    command_obey(&command);
+  }
+}
+
+static void edit(uint16_t octet) {
+  if (editor.line.count == 0u) errors_before = port_errors();
+  const editor_event_t event = editor_octet(&editor, octet, line_begin());
+  line_flush();
+  if (event == EDITOR_DONE) {
+    obey();
+    editor_next(&editor);
+  }
+  if (event != EDITOR_NOTHING && job == NULL) prompt();
+}
+
+bool console_takes(void) { return kept_count < KEPT; }
+
+static void keep(uint16_t octet) {
+  kept[(uint16_t)(kept_first + kept_count) & (KEPT - 1u)] = octet;
+  kept_count++;
+}
+
+static void break_off(void) {
+  kept_count = 0;
+  line_of("^C");
+  end_job();
+}
+
+void console_octet(uint16_t octet) {
+  someone_types = true;
+  if (job != NULL && octet == CTRL_C) {
+    break_off();
+    return;
+  }
+  if (job != NULL && ends_by_key) end_job();
+  if (job == NULL && kept_count == 0u) {
+    edit(octet);
+    return;
+  }
+  keep(octet);
+  if (job == NULL || console_takes()) return;
+  line_of("more input than can be kept: the answer ends here");
+  end_job();
+}
+
+// Someone who watches the terminal wants to know why the motor stops.
+static void tell_faults(void) {
+  fault_record_t fault;
+  const uint16_t total = fault_history_total();
+  if (total == faults_told) return;
+  faults_told = total;
+  if (!someone_types || !fault_history_read(0, &fault)) return;
+  octet_writer_t* const w = line_begin();
+  put_text(w, "\r\n! fault: ");
+  put_text(w, words(WORDS_FAULT, (uint16_t)fault.fault));
+  line_end();
+  if (job == NULL) {
+    editor_show(&editor, line_begin());
+    line_flush();
+  }
+}
+
+void console_service(void) {
+  if (hal_sci_room() < ROOM) return;
+  if (job != NULL) {
+    console_job_t* const running = job;
+    const bool goes_on = running(step++);
+    if (!goes_on && job == running) end_job();
+  } else if (kept_count > 0u) {
+    const uint16_t octet = kept[kept_first];
+    kept_first = (uint16_t)(kept_first + 1u) & (KEPT - 1u);
+    kept_count--;
+    edit(octet);
+  } else {
+    tell_faults();
+  }
+}

@@ -1,0 +1,27 @@
+#include "firmware/console/output.h"
+
+#include "hal/hal_sci.h"
+
+#define RESERVED 5u  // three points and the line's end
+
+static uint16_t block[OUTPUT_LINE];
+static octet_writer_t line;
+
+octet_writer_t* line_begin(void) {
+  line = octet_writer(block, OUTPUT_LINE - RESERVED);
+  return &line;
+}
+
+void line_flush(void) { (void)hal_sci_write(block, line.count); }
+
+void line_end(void) {
+  line.room = OUTPUT_LINE;
+  if (line.full) put_text(&line, "...");
+  put_text(&line, "\r\n");
+  line_flush();
+}
+
+void line_of(const char* text) {
+  put_text(line_begin(), text);
+  line_end();
+}

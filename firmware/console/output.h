@@ -1,0 +1,33 @@
+// Lines of the console on their way out. A line is put together in one block and goes into the port's ring as a whole,
+// so that no record comes in between; whoever writes one has been called with room for it.
+
+#ifndef STILLSPIN_FIRMWARE_CONSOLE_OUTPUT_H
+#define STILLSPIN_FIRMWARE_CONSOLE_OUTPUT_H
+
+#include <stdint.h>
+
+#include "firmware/link/octets.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+#define OUTPUT_LINE 208u  // characters, with the line's end
+
+/// An empty line to write into; there is only one.
+octet_writer_t* line_begin(void);
+
+/// Sends the line with a line end; what did not fit is missing, and three points say so.
+void line_end(void);
+
+/// Sends what is in the line as it is.
+void line_flush(void);
+
+/// A line of one text.
+void line_of(const char* text);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

@@ -1,0 +1,35 @@
+#include "firmware/console/signal_text.h"
+
+#include "firmware/text.h"
+
+uint16_t signal_find(const word_t* name) {
+  for (uint16_t k = 0; k < signal_count(); k++) {
+    if (text_equals(signal_info(k)->name, name->text, name->count)) return k;
+  }
+  return SIGNAL_NONE;
+}
+
+uint16_t signal_decimals(const signal_info_t* s) {
+  if (s->q == 0u) return 0;
+  if (s->q <= 8u) return 1;
+  if (s->q <= 16u) return 2;
+  return (s->q <= 20u) ? 3u : 4u;
+}
+
+void put_signal(octet_writer_t* w, uint16_t place) {
+  const signal_info_t* const s = signal_info(place);
+  int32_t raw;
+  (void)drive_signals_copy(&place, 1, &raw);
+  put_fixed(w, raw, s->q, signal_decimals(s));
+  if (s->unit[0] == '\0') return;
+  put_u8(w, ' ');
+  put_text(w, s->unit);
+}
+
+void put_signal_row(octet_writer_t* w, uint16_t place) {
+  put_text(w, signal_info(place)->name);
+  put_spaces_to(w, 22);
+  put_signal(w, place);
+  put_spaces_to(w, 40);
+  put_text(w, signal_info(place)->meaning);
+}

@@ -1,0 +1,24 @@
+// Signals in lines of the console.
+
+#ifndef STILLSPIN_FIRMWARE_CONSOLE_SIGNAL_TEXT_H
+#define STILLSPIN_FIRMWARE_CONSOLE_SIGNAL_TEXT_H
+
+#include "firmware/console/commands.h"
+#include "firmware/drive_api.h"
+#include "firmware/link/octets.h"
+
+#define SIGNAL_NONE 0xFFFFu
+
+/// Place of a signal in the table; SIGNAL_NONE when there is none of that name.
+uint16_t signal_find(const word_t* name);
+
+/// As many decimals as its format is worth.
+uint16_t signal_decimals(const signal_info_t* s);
+
+/// Its value now, with its unit.
+void put_signal(octet_writer_t* w, uint16_t place);
+
+/// Name, value and meaning.
+void put_signal_row(octet_writer_t* w, uint16_t place);
+
+#endif

@@ -1,0 +1,97 @@
+#include "firmware/console/suggest.h"
+
+#include <stddef.h>
+
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/drive_api.h"
+#include "firmware/text.h"
+
+#define NAMES_A_STEP 4u
+#define MOST 4u
+#define SHORTEST_PART 2u
+
+static const char* kind_of;
+static word_t wanted;
+static suggest_names_t* names_of;
+static const char* near[MOST];
+static uint16_t found;
+
+const char* suggest_parameter(uint16_t index) {
+  const parameter_info_t* const p = parameter_info(index);
+  return (p != NULL) ? p->name : NULL;
+}
+
+const char* suggest_signal(uint16_t index) {
+  const signal_info_t* const s = signal_info(index);
+  return (s != NULL) ? s->name : NULL;
+}
+
+const char* suggest_command(uint16_t index) {
+  const command_t* const c = command_info(index);
+  return (c != NULL) ? c->name : NULL;
+}
+
+static uint16_t length(const char* name) {
+  uint16_t n = 0;
+  while (name[n] != '\0') n++;
+  return n;
+}
+
+// What follows the first difference, with one character of the longer one left out, or one of each, or two exchanged.
+static bool is_one_edit_away(const char* name, const word_t* word) {
+  const uint16_t n = length(name);
+  const uint16_t m = word->count;
+  uint16_t k = 0;
+  while (k < n && k < m && text_begins(&name[k], &word->text[k], 1)) k++;
+  const uint16_t* const rest = &word->text[k];
+  const uint16_t left = (uint16_t)(m - k);
+  if (n == m + 1u) return text_equals(&name[k + 1u], rest, left);
+  if (m == n + 1u) return text_equals(&name[k], rest + 1, (uint16_t)(left - 1u));
+  if (m != n || left == 0u) return false;
+  if (text_equals(&name[k + 1u], rest + 1, (uint16_t)(left - 1u))) return true;
+  return left >= 2u && text_begins(&name[k], rest + 1, 1) && text_begins(&name[k + 1u], rest, 1) &&
+         text_equals(&name[k + 2u], rest + 2, (uint16_t)(left - 2u));
+}
+
+bool suggest_is_near(const char* name, const word_t* word) {
+  const uint16_t n = length(name);
+  const bool begins_it = n >= SHORTEST_PART && n < word->count && text_begins(name, word->text, n);
+  const bool contains_it = word->count >= SHORTEST_PART && text_occurs(name, word->text, word->count);
+  return begins_it || contains_it || is_one_edit_away(name, word);
+}
+
+static void say(void) {
+  octet_writer_t* const w = line_begin();
+  put_text(w, "there is no ");
+  put_text(w, kind_of);
+  put_text(w, " '");
+  for (uint16_t k = 0; k < wanted.count; k++) put_u8(w, wanted.text[k]);
+  put_u8(w, '\'');
+  for (uint16_t k = 0; k < found; k++) {
+    put_text(w, (k == 0u) ? ": did you mean " : ", ");
+    put_text(w, near[k]);
+  }
+  if (found > 0u) put_u8(w, '?');
+  line_end();
+}
+
+static bool look(uint16_t step) {
+  for (uint16_t k = 0; k < NAMES_A_STEP; k++) {
+    const char* const name = names_of((uint16_t)(step * NAMES_A_STEP + k));
+    if (name == NULL || found == MOST) {
+      say();
+      return false;
+    }
+    if (suggest_is_near(name, &wanted)) near[found++] = name;
+  }
+  return true;
+}
+
+void suggest(const char* kind, const word_t* word, suggest_names_t* names) {
+  kind_of = kind;
+  wanted = *word;
+  names_of = names;
+  found = 0;
+  console_run(look, false);
+}

@@ -1,0 +1,48 @@
+#include "firmware/link/guard.h"
+
+#include "firmware/drive_api.h"
+#include "firmware/parameters.h"
+
+static guard_t guarded;
+static uint32_t heard_ms;
+static bool energised;  // the start has been carried out
+static bool stopped;
+
+void guard_reset(void) {
+  guarded = GUARD_NONE;
+  energised = false;
+  stopped = false;
+}
+
+void guard_begin(guard_t port) {
+  guarded = port;
+  heard_ms = drive_time_ms();
+  energised = false;
+  stopped = false;
+}
+
+void guard_heard(guard_t port) {
+  if (port == guarded) heard_ms = drive_time_ms();
+}
+
+void guard_service(void) {
+  if (guarded == GUARD_NONE) return;
+  const bool now = drive_is_energised();
+  if ((energised && !now) || drive_state() == DRIVE_FAULT) {
+    guarded = GUARD_NONE;
+    return;
+  }
+  energised = now;
+  if (drive_time_ms() - heard_ms < (uint32_t)parameters.link_timeout) return;
+  guarded = GUARD_NONE;
+  stopped = energised;
+  if (parameters.link_reaction == LINK_REACTION_COAST) {
+    drive_command_coast();
+  } else {
+    drive_command_stop();
+  }
+}
+
+bool guard_is_on(void) { return guarded != GUARD_NONE; }
+
+bool guard_has_stopped(void) { return stopped; }

@@ -1,0 +1,90 @@
+#include "firmware/link/link.h"
+
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/drive_api.h"
+#include "firmware/link/guard.h"
+#include "firmware/link/requests.h"
+#include "firmware/link/stream.h"
+
+#define OCTETS_A_ROUND 8u  // 115200 Bd bring little more than one in a period
+#define WIRE_MAX (RECORD_ENCODED_MAX + 2u)
+
+static splitter_t splitter;
+static uint16_t text_at, text_end;  // text in the splitter's block that the console has not had yet
+static uint16_t record[RECORD_MAX];
+static uint16_t wire[WIRE_MAX];
+
+void link_reset(void) {
+  guard_reset();
+  splitter_reset(&splitter);
+  text_at = 0;
+  text_end = 0;
+  requests_reset();
+  stream_reset();
+  console_reset();
+}
+
+// False when less than `beside` octets would be left free.
+static bool send(uint16_t count, uint16_t beside) {
+  const uint16_t octets = record_to_wire(record, count, wire);
+  if (hal_sci_room() < octets + beside) return false;
+  (void)hal_sci_write(wire, octets);
+  return true;
+}
+
+// Only into a ring that is all but empty, so that a stream too fast for the port leaves room for all else; the port's
+// FIFO keeps the wire busy meanwhile.
+static void send_event(void) {
+  const uint16_t count = stream_event(record);
+  if (count > 0u && !send(count, WIRE_MAX + OUTPUT_LINE)) stream_dropped();
+}
+
+static void answer(void) {
+  const uint16_t count = request_answer(GUARD_SERIAL, splitter.octets, splitter.count, record);
+  if (count > 0u) (void)send(count, 0);  // take_octet has seen to the room
+}
+
+static void sort(int16_t found) {
+  if (found == SPLITTER_RECORD) {
+    console_give_way();
+    answer();
+  } else {
+    text_at = 0;
+    text_end = (uint16_t)found;
+  }
+}
+
+// One octet or character further; false when there is none, or no room for what it may bring about.
+static bool take_octet(void) {
+  uint16_t octet;
+  if (hal_sci_room() < WIRE_MAX) return false;
+  if (text_at < text_end) {
+    if (!console_takes()) return false;
+    console_octet(splitter.octets[text_at++]);
+    return true;
+  }
+  if (hal_sci_read(&octet, 1) == 0u) {
+    sort(splitter_rest(&splitter, drive_time_ms()));
+    return false;
+  }
+  const int16_t found = splitter_octet(&splitter, octet, drive_time_ms());
+  sort(found);
+  return found != SPLITTER_RECORD;
+}
+
+void link_service(void) {
+  guard_service();
+  requests_service();
+  send_event();
+  uint16_t left = OCTETS_A_ROUND;
+  while (left > 0u && take_octet()) left--;
+}
+
+link_errors_t link_errors(void) {
+  link_errors_t e;
+  e.records = splitter.errors;
+  e.port = hal_sci_errors();
+  e.events_dropped = stream_lost();
+  return e;
+}

@@ -1,0 +1,64 @@
+#include "firmware/link/requests.h"
+
+#include <stddef.h>
+
+#include "firmware/link/request_handlers.h"
+
+typedef struct {
+  uint16_t type;
+  uint16_t shortest, longest;  // body, octets
+  request_handler_t* handler;
+} entry_t;
+
+static const entry_t entries[] = {
+    {REQUEST_IDENTITY, 0, 0, request_identity},
+    {REQUEST_PARAMETER_INFO, 2, 2, request_parameter_info},
+    {REQUEST_SIGNAL_INFO, 2, 2, request_signal_info},
+    {REQUEST_PARAMETER_READ, 3, 3, request_parameter_read},
+    {REQUEST_PARAMETER_GET, 2, 2, request_parameter_get},
+    {REQUEST_PARAMETER_SET, 6, 6, request_parameter_set},
+    {REQUEST_COMMAND, 5, 5, request_command},
+    {REQUEST_STATUS, 0, 0, request_status},
+    {REQUEST_SIGNALS, 2, 32, request_signals},
+    {REQUEST_FAULT, 1, 1, request_fault},
+    {REQUEST_WORDS, 2, 2, request_words},
+    {REQUEST_LINK, 0, 0, request_link},
+    {REQUEST_SCOPE_SETUP, 16, 25, request_scope_setup},
+    {REQUEST_SCOPE_ARM, 0, 0, request_scope_arm},
+    {REQUEST_SCOPE_STATE, 0, 0, request_scope_state},
+    {REQUEST_SCOPE_READ, 4, 4, request_scope_read},
+    {REQUEST_SCOPE_STOP, 0, 0, request_scope_stop},
+    {REQUEST_STREAM, 2, 18, request_stream},
+    {REQUEST_COMMISSION_RESULT, 2, 2, request_commission_result},
+};
+
+#define ENTRIES (sizeof entries / sizeof entries[0])
+
+static const entry_t* find(uint16_t type) {
+  for (uint16_t k = 0; k < ENTRIES; k++) {
+    if (entries[k].type == type) return &entries[k];
+  }
+  return NULL;
+}
+
+static answer_status_t handle(request_t* r, uint16_t type) {
+  const entry_t* const entry = find(type);
+  if (entry == NULL) return ANSWER_UNKNOWN;
+  if (r->body.count < entry->shortest || r->body.count > entry->longest) return ANSWER_LENGTH;
+  return entry->handler(r);
+}
+
+uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
+  if (count < 2u) return 0;
+  const uint16_t type = request[0] & 0xFFu;
+  if ((type & RECORD_ANSWER) != 0u) return 0;  // an answer that comes back must not be answered
+  guard_heard(port);
+  request_t r;
+  r.port = port;
+  r.body = octet_reader(&request[2], (uint16_t)(count - 2u));
+  r.answer = octet_writer(&answer[3], RECORD_BODY_MAX);
+  answer[0] = type | RECORD_ANSWER;
+  answer[1] = request[1] & 0xFFu;
+  answer[2] = (uint16_t)handle(&r, type);
+  return (uint16_t)(r.answer.count + 3u);
+}

@@ -1,0 +1,35 @@
+// Values of the parameters.
+
+#include <stddef.h>
+
+#include "firmware/link/request_handlers.h"
+
+#define READ_MAX 32u
+
+answer_status_t request_parameter_read(request_t* r) {
+  const uint16_t first = take_u16(&r->body);
+  const uint16_t count = take_u8(&r->body);
+  if (count > READ_MAX || first >= parameter_count()) return ANSWER_RANGE;
+  for (uint16_t k = 0; k < count; k++) {
+    const parameter_info_t* const p = parameter_info((uint16_t)(first + k));
+    if (p == NULL) break;
+    put_u16(&r->answer, p->id);
+    put_i32(&r->answer, parameter_get(p->id));
+  }
+  return ANSWER_OK;
+}
+
+answer_status_t request_parameter_get(request_t* r) {
+  const uint16_t id = take_u16(&r->body);
+  if (parameter_by_id(id) == NULL) return ANSWER_UNKNOWN;
+  put_i32(&r->answer, parameter_get(id));
+  return ANSWER_OK;
+}
+
+answer_status_t request_parameter_set(request_t* r) {
+  const parameter_info_t* const p = parameter_by_id(take_u16(&r->body));
+  if (p == NULL) return ANSWER_UNKNOWN;
+  const answer_status_t status = action_set(p, take_i32(&r->body), &r->answer);
+  if (status == ANSWER_OK) put_i32(&r->answer, parameter_get(p->id));
+  return status;
+}

@@ -1,0 +1,125 @@
+// What the drive has: parameters, signals and words, so that no host keeps a list of its own.
+
+#include <stddef.h>
+
+#include "firmware/link/crc.h"
+#include "firmware/link/request_handlers.h"
+#include "firmware/link/requests.h"
+#include "firmware/version.h"
+#include "firmware/words.h"
+
+static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
+  put_u16(w, p->id);
+  put_u8(w, p->q);
+  put_u8(w, p->decimals);
+  put_u8(w, (uint16_t)p->access);
+  put_u8(w, 0);  // flags, for later
+  put_i32(w, p->minimum);
+  put_i32(w, p->maximum);
+  put_i32(w, p->initial);
+  put_text(w, p->name);
+  put_u8(w, 0);
+  put_text(w, p->unit);
+  put_u8(w, 0);
+  put_text(w, p->meaning);
+}
+
+static void put_signal(octet_writer_t* w, const signal_info_t* s) {
+  put_u8(w, s->q);
+  put_text(w, s->name);
+  put_u8(w, 0);
+  put_text(w, s->unit);
+  put_u8(w, 0);
+  put_text(w, s->meaning);
+}
+
+// The tables' check sum, taken piece by piece: all parameters as put_parameter gives them, all signals, all words.
+static struct {
+  uint32_t crc;
+  bool in_words;  // the tables are through
+  uint16_t kind;  // of words
+  uint16_t at;    // in the words of a kind, or in parameters and signals counted through
+  bool complete;
+} sum;
+
+void requests_reset(void) {
+  sum.crc = CRC32_BEGIN;
+  sum.in_words = false;
+  sum.kind = 0;
+  sum.at = 0;
+  sum.complete = false;
+}
+
+static void add(const octet_writer_t* piece) {
+  for (uint16_t k = 0; k < piece->count; k++) sum.crc = crc32_add(sum.crc, piece->octets[k]);
+}
+
+static void next_words(octet_writer_t* piece) {
+  const char* const text = words_or_null(sum.kind, sum.at);
+  if (text != NULL) {
+    put_text(piece, text);
+    sum.at++;
+    return;
+  }
+  sum.at = 0;
+  sum.kind++;
+  sum.complete = sum.kind == WORDS_KINDS;
+}
+
+void requests_service(void) {
+  if (sum.complete) return;
+  static uint16_t block[RECORD_BODY_MAX];
+  octet_writer_t piece = octet_writer(block, RECORD_BODY_MAX);
+  if (sum.in_words) {
+    next_words(&piece);
+  } else if (sum.at < parameter_count()) {
+    put_parameter(&piece, parameter_info(sum.at++));
+  } else {
+    put_signal(&piece, signal_info((uint16_t)(sum.at++ - parameter_count())));
+    if (sum.at == parameter_count() + signal_count()) {
+      sum.in_words = true;
+      sum.at = 0;
+    }
+  }
+  add(&piece);
+}
+
+static uint16_t faults(void) {
+  uint16_t count = 0;
+  while (words_or_null(WORDS_FAULT, count) != NULL) count++;
+  return count;
+}
+
+answer_status_t request_identity(request_t* r) {
+  if (!sum.complete) return ANSWER_BUSY;
+  put_u16(&r->answer, LINK_PROTOCOL);
+  put_u16(&r->answer, parameter_count());
+  put_u16(&r->answer, signal_count());
+  put_u16(&r->answer, faults());
+  put_u32(&r->answer, crc32_end(sum.crc));
+  put_text(&r->answer, FIRMWARE_NAME);
+  return ANSWER_OK;
+}
+
+answer_status_t request_parameter_info(request_t* r) {
+  const parameter_info_t* const p = parameter_info(take_u16(&r->body));
+  if (p == NULL) return ANSWER_RANGE;
+  put_parameter(&r->answer, p);
+  return ANSWER_OK;
+}
+
+answer_status_t request_signal_info(request_t* r) {
+  const signal_info_t* const s = signal_info(take_u16(&r->body));
+  if (s == NULL) return ANSWER_RANGE;
+  put_signal(&r->answer, s);
+  return ANSWER_OK;
+}
+
+answer_status_t request_words(request_t* r) {
+  const uint16_t kind = take_u8(&r->body);
+  if (kind >= WORDS_KINDS) return ANSWER_UNKNOWN;
+  const char* const text = words_or_null(kind, take_u8(&r->body));
+  if (text == NULL) return ANSWER_RANGE;
+  put_text(&r->answer, text);
+  return ANSWER_OK;
+}

@@ -1,0 +1,37 @@
+// The stream: some signals once every few milliseconds, as events on the serial port.
+//
+// An event that finds no room in the port's ring, or whose time has passed meanwhile, is dropped and counted; its
+// counter is used up, so that the host sees the gap. Nothing ever waits for the port.
+
+#ifndef STILLSPIN_FIRMWARE_LINK_STREAM_H
+#define STILLSPIN_FIRMWARE_LINK_STREAM_H
+
+#include <stdint.h>
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+#define STREAM_SIGNALS 8u
+#define EVENT_STREAM 0x40u
+
+void stream_reset(void);
+
+/// Signals by their places in signal_list.h; period 0 ends the stream.
+void stream_setup(uint16_t period_ms, const uint16_t* places, uint16_t count);
+
+/// The record that is due, without its CRC, into `record` (room for RECORD_MAX). Returns its octets; 0 when none is
+/// due.
+uint16_t stream_event(uint16_t* record);
+
+/// To be told when an event found no room.
+void stream_dropped(void);
+
+/// Events dropped since the stream was set up; stays at 65535.
+uint16_t stream_lost(void);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

@@ -1,0 +1,118 @@
+#include "firmware/text.h"
+
+#include "hal/qmath/qmath.h"
+
+static const int32_t ten[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L, 10000000L, 100000000L, 1000000000L};
+
+// `digits` of them at least.
+static void put_digits(octet_writer_t* w, uint32_t value, uint16_t digits) {
+  uint16_t reversed[10];
+  uint16_t count = 0;
+  while (value > 0u || count < digits) {
+    reversed[count++] = (uint16_t)('0' + value % 10u);
+    value /= 10u;
+  }
+  while (count > 0u) put_u8(w, reversed[--count]);
+}
+
+void put_unsigned(octet_writer_t* w, uint32_t value) { put_digits(w, value, 1); }
+
+void put_signed(octet_writer_t* w, int32_t value) {
+  if (value < 0) put_u8(w, '-');
+  put_unsigned(w, q_abs_u32(value));
+}
+
+void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals) {
+  const uint32_t magnitude = q_abs_u32(raw);
+  uint32_t whole = (uint32_t)((uint64_t)magnitude >> q);
+  const uint64_t rest = magnitude - ((uint64_t)whole << q);
+  const uint64_t half = (q > 0u) ? (uint64_t)1 << (q - 1u) : 0u;
+  uint32_t fraction = (uint32_t)((rest * (uint32_t)ten[decimals] + half) >> q);
+  if (fraction >= (uint32_t)ten[decimals]) {
+    fraction = 0;
+    whole++;
+  }
+  if (raw < 0 && (whole | fraction) != 0u) put_u8(w, '-');
+  put_unsigned(w, whole);
+  if (decimals == 0u) return;
+  put_u8(w, '.');
+  put_digits(w, fraction, decimals);
+}
+
+void put_spaces_to(octet_writer_t* w, uint16_t column) {
+  do {
+    put_u8(w, ' ');
+  } while (w->count < column && !w->full);
+}
+
+static bool is_digit(uint16_t c) { return c >= '0' && c <= '9'; }
+
+// One digit more; false when it does not fit.
+static bool append(decimal_t* number, uint16_t c) {
+  const int32_t digit = (int32_t)c - '0';
+  if (number->digits > (INT32_MAX - digit) / 10) return false;
+  number->digits = number->digits * 10 + digit;
+  return true;
+}
+
+uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
+  uint16_t at = 0;
+  uint16_t seen = 0;
+  bool behind_point = false;
+  bool fits = true;
+  bool cut = false;
+  const bool negative = count > 0u && text[0] == '-';
+  number->digits = 0;
+  number->decimals = 0;
+  if (count > 0u && (text[0] == '-' || text[0] == '+')) at++;
+  for (; at < count; at++) {
+    if (!behind_point && (text[at] == '.' || text[at] == ',')) {
+      behind_point = true;
+      continue;
+    }
+    if (!is_digit(text[at])) break;
+    seen++;
+    if (!behind_point) {
+      fits = fits && append(number, text[at]);
+    } else if (!cut && number->decimals < TEXT_DECIMALS_MAX && append(number, text[at])) {
+      number->decimals++;
+    } else {
+      cut = true;
+    }
+  }
+  if (!fits) {
+    number->digits = INT32_MAX;
+    number->decimals = 0;
+  }
+  if (negative) number->digits = -number->digits;
+  return (seen > 0u) ? at : 0u;
+}
+
+int32_t decimal_raw(const decimal_t* number, uint16_t q) {
+  if (q < 32u) return q_div(number->digits, ten[number->decimals], q);
+  return q_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
+}
+
+static uint16_t small(uint16_t c) { return (c >= 'A' && c <= 'Z') ? (uint16_t)(c + 32u) : c; }
+
+// How many characters of the beginning are the same.
+static uint16_t common(const char* string, const uint16_t* text, uint16_t count) {
+  uint16_t k = 0;
+  while (k < count && string[k] != '\0' && small((uint16_t)string[k]) == small(text[k])) k++;
+  return k;
+}
+
+bool text_begins(const char* string, const uint16_t* text, uint16_t count) {
+  return common(string, text, count) == count;
+}
+
+bool text_equals(const char* string, const uint16_t* text, uint16_t count) {
+  return common(string, text, count) == count && string[count] == '\0';
+}
+
+bool text_occurs(const char* string, const uint16_t* text, uint16_t count) {
+  for (; *string != '\0'; string++) {
+    if (text_begins(string, text, count)) return true;
+  }
+  return count == 0u;
+}

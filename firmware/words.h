@@ -1,0 +1,40 @@
+// What the drive's numbers mean, in the user's words: states, faults, limits, verdicts and phases. Every list exists
+// once, here or in fault_list.h; console, link, bench and host tools read it.
+
+#ifndef STILLSPIN_FIRMWARE_WORDS_H
+#define STILLSPIN_FIRMWARE_WORDS_H
+
+#include <stdint.h>
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/// The numbers are those of the link's request WORDS: stable.
+typedef enum {
+  WORDS_STATE = 0,          // drive_state_t
+  WORDS_FAULT = 1,          // drive_fault_t: the cause
+  WORDS_LIMIT = 2,          // number of the bit in drive_limit_t
+  WORDS_VERDICT = 3,        // commissioning_verdict_t
+  WORDS_PHASE = 4,          // commissioning_phase_t
+  WORDS_STORE = 5,          // store_state_t
+  WORDS_STATUS = 6,         // answer_status_t
+  WORDS_START = 7,          // start_phase_t
+  WORDS_REMEDY = 8,         // drive_fault_t: what to do about it
+  WORDS_COMMISSIONING = 9,  // commissioning_outcome_t
+  WORDS_SCOPE = 10          // scope_state_t
+} words_kind_t;
+
+#define WORDS_KINDS 11u
+
+/// NULL when there is no such kind or code.
+const char* words_or_null(uint16_t kind, uint16_t code);
+
+/// The same for a code that comes from the drive itself; "?" when it has no words.
+const char* words(words_kind_t kind, uint16_t code);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

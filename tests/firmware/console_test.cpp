@@ -1,0 +1,412 @@
+// What a person sees in a terminal.
+
+#include <cstring>
+
+#include "tests/firmware/terminal.hpp"
+
+extern "C" {
+#include "firmware/console/commands.h"
+#include "firmware/console/output.h"
+#include "firmware/console/suggest.h"
+#include "firmware/scope/scope.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+class Console : public Terminal {
+ protected:
+  bool has(const std::string& where, const std::string& what) { return where.find(what) != std::string::npos; }
+};
+
+TEST_F(Console, EveryCommandIsExplained) {
+  const std::string help = command("help");
+  int rows = 0;
+  for (std::uint16_t k = 0; command_info(k) != nullptr; ++k, ++rows) {
+    EXPECT_TRUE(has(help, std::string("\n") + command_info(k)->name + " ") || help.rfind(command_info(k)->name, 0) == 0)
+        << command_info(k)->name;
+    EXPECT_TRUE(has(command(std::string("help ") + command_info(k)->name), command_info(k)->help));
+  }
+  EXPECT_GE(rows, 16);
+  EXPECT_TRUE(has(command("help scope"), "scope trigger"));
+  EXPECT_FALSE(has(command("help set"), "scope"));
+}
+
+TEST_F(Console, GetAndSet) {
+  EXPECT_EQ(command("set speed_ramp 250 rpm/s"), "speed_ramp = 250 rpm/s\r\n");
+  EXPECT_EQ(parameters.speed_ramp, 250 * 256);
+  EXPECT_EQ(command("SET Speed_Ramp 300rpm/s"), "speed_ramp = 300 rpm/s\r\n");
+  EXPECT_EQ(command("set stator_resistance .41"), "stator_resistance = 0.4100 ohm\r\n");
+  EXPECT_EQ(command("set ldq_1 -0.5 mH"), "ldq_1 = -0.5000 mH\r\n");
+  EXPECT_EQ(command("get speed_limit"),
+            "speed_limit = 3300 rpm\r\n  10 .. 6000 rpm, default 3300, number 9; only while the power stage is off\r\n"
+            "  largest speed reference\r\n");
+  EXPECT_TRUE(has(command("get link_voltage"), "DC-link voltage")) << "signals too";
+}
+
+TEST_F(Console, WhatIsRefusedIsExplained) {
+  EXPECT_EQ(command("set speed_limit 7000 rpm"),
+            "speed_limit = 7000.0 is outside of 10 .. 6000 rpm: nothing changed\r\n");
+  EXPECT_EQ(command("set speed_limit 7 krpm"), "speed_limit is in rpm: nothing changed\r\n");
+  EXPECT_EQ(command("set speed_limit 7krpm"), "speed_limit is in rpm: nothing changed\r\n");
+  EXPECT_EQ(command("set pole_pairs 3 A"), "pole_pairs has no unit: nothing changed\r\n");
+  EXPECT_EQ(command("set speed_limit fast"), "the value is not a number: nothing changed\r\n");
+  EXPECT_TRUE(has(command("set speed_limit"), "set name value [unit]"));
+  EXPECT_TRUE(has(command("set speed_limit 1 2 3"), "set name value [unit]"));
+  EXPECT_EQ(parameters.speed_limit, 3300 * 256);
+  drive.state = DRIVE_RUN;
+  EXPECT_EQ(command("set speed_limit 1000"),
+            "speed_limit may not change while the power stage is on: stop the drive first\r\n");
+}
+
+TEST_F(Console, DidYouMean) {
+  EXPECT_EQ(command("strat"), "there is no command 'strat': did you mean start?\r\n");
+  EXPECT_EQ(command("get speed_lmit"), "there is no parameter 'speed_lmit': did you mean speed_limit?\r\n");
+  EXPECT_EQ(command("get ldq"), "there is no parameter 'ldq': did you mean ldq_1, ldq_2, ldq_3, ldq_4?\r\n");
+  EXPECT_EQ(command("watch sped"), "there is no signal 'sped': did you mean speed?\r\n");
+  EXPECT_EQ(command("xyzzy"), "there is no command 'xyzzy'\r\n");
+}
+
+TEST(Suggest, OneEditOrAPart) {
+  const auto near = [](const char* name, const std::string& text) {
+    const Octets o(text.begin(), text.end());
+    const word_t word = {o.data(), static_cast<std::uint16_t>(o.size())};
+    return suggest_is_near(name, &word);
+  };
+  for (const char* s : {"stop", "sto", "stopp", "stpo", "stap", "tsop", "xstop", "top", "STOP"}) {
+    EXPECT_TRUE(near("stop", s)) << s;
+  }
+  for (const char* s : {"", "s", "start", "spot", "xyz", "stpp0"}) EXPECT_FALSE(near("stop", s)) << s;
+  EXPECT_TRUE(near("speed_limit", "limit"));
+}
+
+TEST_F(Console, List) {
+  const std::string all = command("list", 30000);
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    EXPECT_TRUE(has(all, parameter_info(k)->name));
+    EXPECT_TRUE(has(all, parameter_info(k)->meaning)) << "whole";
+  }
+  EXPECT_FALSE(has(all, "..."));
+  EXPECT_FALSE(has(all, "*"));
+  const std::string some = command("list brake");
+  EXPECT_TRUE(has(some, "hold_time")) << "meanings are looked through, too";
+  EXPECT_FALSE(has(some, "speed_limit"));
+  parameters.hold_time = 100;
+  EXPECT_TRUE(has(command("list brake"), "*100 ms"));
+}
+
+TEST_F(Console, StartRefStop) {
+  EXPECT_TRUE(has(command("start"), "not ready yet"));
+  drive.state = DRIVE_READY;
+  EXPECT_EQ(command("ref 600 rpm"), "ref 600.00 rpm\r\n");
+  EXPECT_EQ(command("ref -50rpm"), "ref -50.00 rpm\r\n");
+  EXPECT_EQ(command("ref"), "ref -50.00 rpm\r\n");
+  EXPECT_TRUE(has(command("ref 9000"), "beyond speed_limit, 3300 rpm"));
+  EXPECT_TRUE(has(command("ref 60 Hz"), "Nothing changed"));
+  EXPECT_TRUE(has(command("ref 60 rpm now"), "Nothing changed"));
+  EXPECT_TRUE(has(command("start now"), "nothing done"));
+  EXPECT_FALSE(drive.request.start);
+  send("start\r");
+  run(300);
+  EXPECT_TRUE(drive.request.start);
+  text.clear();
+  drive.state = DRIVE_RUN;
+  run(100);
+  EXPECT_TRUE(has(text, "running after 3")) << text;
+  EXPECT_EQ(command("stop at once please"), "stopping\r\n");
+  EXPECT_TRUE(drive.request.stop);
+  drive.state = DRIVE_READY;
+  EXPECT_EQ(command("stop"), "the power stage is off\r\n");
+  EXPECT_EQ(command("coast"), "power stage off\r\n");
+}
+
+TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
+  drive.state = DRIVE_READY;
+  send("start\rstop\r");
+  run(500);
+  EXPECT_TRUE(drive.request.stop);
+  EXPECT_FALSE(drive.request.start);
+}
+
+TEST_F(Console, StatusAndFaults) {
+  EXPECT_EQ(command("faults"), "no fault since power-on\r\n");
+  EXPECT_EQ(command("reset"), "no fault is latched\r\n");
+  drive.state = DRIVE_RUN;
+  drive.time_ms += 12000;
+  drive_raise(&drive, FAULT_SYNCHRONISM);
+  const std::string faults = command("faults");
+  EXPECT_TRUE(has(faults, "1 since power-on, which was 12 s ago")) << faults;
+  EXPECT_TRUE(has(faults, " s  loss of synchronism, running at 0.0 rpm, link ")) << faults;
+  const std::string status = command("status");
+  EXPECT_TRUE(has(status, "state       fault\r\n")) << status;
+  EXPECT_TRUE(has(status, "fault       loss of synchronism. less load")) << status;
+  EXPECT_TRUE(has(status, "parameters  fit together"));
+  EXPECT_TRUE(has(command("start"), "reset it first: loss of synchronism"));
+  EXPECT_TRUE(has(command("reset"), "cleared"));
+}
+
+TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
+  drive.state = DRIVE_RUN;
+  drive_raise(&drive, FAULT_STOP);
+  run(100);
+  EXPECT_EQ(text, "") << "nobody is there";
+  send("sta");
+  run(100);
+  text.clear();
+  drive.state = DRIVE_RUN;
+  drive_raise(&drive, FAULT_LINK_LOW);
+  run(300);
+  EXPECT_TRUE(has(text, "! fault: DC link below link_minimum\r\n")) << text;
+  EXPECT_TRUE(has(text, "\r> sta")) << "what has been typed is still there";
+  (void)ask(REQUEST_STATUS);
+  text.clear();
+  drive.state = DRIVE_RUN;
+  drive_raise(&drive, FAULT_LINK_HIGH);
+  run(300);
+  EXPECT_EQ(text, "") << "a machine is there";
+}
+
+TEST_F(Console, Signals) {
+  const std::string all = command("signals", 10000);
+  for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, signal_info(k)->name));
+  drive.signals.speed = 600 * 65536 + 32768;
+  EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
+}
+
+TEST_F(Console, WatchGoesOnUntilAKey) {
+  drive.state = DRIVE_RUN;
+  send("watch\r");
+  run(16000);
+  EXPECT_TRUE(has(text, "running   0.0 rpm of 0.0 rpm"));
+  send("stop\r");
+  run(300);
+  EXPECT_TRUE(drive.request.stop) << "the key that ends it belongs to the next command";
+  text.clear();
+  run(10000);
+  EXPECT_EQ(text, "");
+}
+
+TEST_F(Console, Commissioning) {
+  EXPECT_EQ(command("commission"), "commissioning: not yet\r\n");
+  EXPECT_EQ(command("commission results"), "nothing has been measured since power-on\r\n");
+  EXPECT_TRUE(has(command("commission now"), "commission start"));
+  EXPECT_TRUE(has(command("commission start"), "not ready"));
+  drive.state = DRIVE_READY;
+  EXPECT_TRUE(has(command("commission start"), "the shaft will turn"));
+  EXPECT_TRUE(drive.request.commission);
+}
+
+TEST_F(Console, TheScopeFromWordsToNumbers) {
+  EXPECT_TRUE(has(command("scope arm"), "first: scope channels"));
+  EXPECT_TRUE(has(command("scope trigger now"), "first: scope channels"));
+  EXPECT_TRUE(has(command("scope channels speed current_q angle"), "set"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm"), "set"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope trigger speed up 100"), "rising|falling"));
+  EXPECT_TRUE(has(command("scope every 2"), "set"));
+  EXPECT_TRUE(has(command("scope every 0"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope before 10"), "set"));
+  EXPECT_TRUE(has(command("scope before 2000"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope mode single"), "set"));
+  EXPECT_TRUE(has(command("scope"),
+                  "channels speed current_q angle\r\n"
+                  "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
+  EXPECT_TRUE(has(command("scope arm"), "armed"));
+  for (int k = 0; k < 3000; ++k) {
+    drive.signals.speed = k * 65536;
+    drive.signals.current_q = -5 * (1 << 20);
+    drive.signals.angle = 1 << 30;
+    scope_step(static_cast<std::uint32_t>(k));
+  }
+  EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));
+  const std::string rows = command("scope print 5", 60000);
+  EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
+  EXPECT_TRUE(has(rows, "-5.000      0.2500"));
+  EXPECT_TRUE(has(command("scope stop"), "stopped"));
+}
+
+TEST_F(Console, Version) { EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n"); }
+
+TEST_F(Console, CtrlCEndsALongAnswerAndTheLine) {
+  send("list\r");
+  run(400);
+  send("\x03");
+  run(400);
+  text.clear();
+  run(2000);
+  EXPECT_EQ(text, "");
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n");
+  send("set speed_ramp 1\x03");
+  run(200);
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n");
+}
+
+TEST_F(Console, WhatIsTypedAheadIsNotLost) {
+  send("list\rversion\rref 70\r");
+  run(30000);
+  EXPECT_TRUE(has(text, "protocol 1"));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 70 * 65536);
+}
+
+TEST_F(Console, MoreThanCanBeKeptEndsTheAnswerAndIsNotLostEither) {
+  std::string lines = "list\r";
+  for (int k = 0; k < 40; ++k) lines += "version\r";
+  lines += "ref 70\r";
+  send(lines);
+  run(60000);
+  EXPECT_TRUE(has(text, "more input than can be kept"));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 70 * 65536);
+}
+
+TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
+  send("list\r");
+  run(200);
+  const Answer a = ask(REQUEST_STATUS);
+  EXPECT_TRUE(a.came());
+  run(20000);
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) EXPECT_TRUE(has(text, parameter_info(k)->meaning));
+}
+
+TEST_F(Console, ADisturbedLineIsNotObeyed) {
+  drive.state = DRIVE_RUN;
+  send("set speed_ramp 1");
+  run(50);
+  board.serial_errors.framing++;
+  send("000\r");
+  run(500);
+  EXPECT_TRUE(has(text, "the line was disturbed on its way"));
+  EXPECT_EQ(parameters.speed_ramp, 3000 * 256);
+  send(
+      "ref \xC3\xA4"
+      "50\r");
+  run(300);
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  send("st\xFFop\r");
+  run(300);
+  EXPECT_TRUE(drive.request.stop) << "but to stop is always right";
+  EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n") << "the next line is another one";
+}
+
+TEST_F(Console, ALineThatIsTooLongIsRefused) {
+  EXPECT_TRUE(has(command("ref 50" + std::string(80, ' ')), "at most 80 characters: nothing done"));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+}
+
+// Lines never come out in pieces: whatever the room, whole lines or none.
+TEST_F(Console, NothingIsWrittenWithoutRoomForAllOfIt) {
+  board.serial_room = 100;
+  send("version\r");
+  for (int k = 0; k < 300; ++k) {
+    link_service();
+    console_service();
+  }
+  EXPECT_TRUE(board.serial_out.empty());
+  EXPECT_FALSE(board.serial_in.empty());
+  EXPECT_EQ(board.serial_room, 100);
+}
+
+/// An editor by itself; what the terminal shows is worked out from the echo.
+class Editor : public testing::Test {
+ protected:
+  void SetUp() override { editor_reset(&e); }
+
+  std::string type(const std::string& keys) {
+    std::string done;
+    for (const char c : keys) {
+      Octets block(EDITOR_ECHO_MAX);
+      octet_writer_t echo = octet_writer(block.data(), EDITOR_ECHO_MAX);
+      const editor_event_t event = editor_octet(&e, static_cast<std::uint8_t>(c), &echo);
+      EXPECT_FALSE(echo.full);
+      for (int k = 0; k < echo.count; ++k) show(static_cast<char>(block[std::size_t(k)]));
+      if (event == EDITOR_NOTHING) continue;
+      done += (event == EDITOR_DONE) ? std::string(e.line.text, e.line.text + e.line.count) + "|" : "^|";
+      editor_next(&e);
+      screen = "> ";
+      column = 2;
+    }
+    return done;
+  }
+
+  void show(char c) {
+    if (escape > 0) {
+      if (--escape == 0 && c == 'K') screen.resize(column);
+    } else if (c == '\x1B') {
+      escape = 2;
+    } else if (c == '\b') {
+      column--;
+    } else if (c == '\r') {
+      column = 0;
+    } else if (c >= ' ') {
+      screen.resize(std::max(screen.size(), column + 1), ' ');
+      screen[column++] = c;
+    }
+  }
+
+  editor_t e;
+  std::string screen = "> ";
+  std::size_t column = 2;
+  int escape = 0;
+};
+
+TEST_F(Editor, LinesAndTheirEnds) { EXPECT_EQ(type("a\rb\nc\r\nd\r\r\n"), "a|b|c|d||"); }
+
+TEST_F(Editor, KeysMoveAndChange) {
+  type("helo\x1B[D\x1B[Dl");
+  EXPECT_EQ(screen, "> hello");
+  EXPECT_EQ(column, 5u);
+  type("\x1B[H>\x1B[F<");
+  EXPECT_EQ(screen, "> >hello<");
+  type("\b\x7F");
+  EXPECT_EQ(screen.substr(0, 8), "> >hell ");
+  EXPECT_EQ(column, 7u);
+  type("\x01\x1B[3~");
+  EXPECT_EQ(screen, "> hell");
+  EXPECT_EQ(type("\x05p\r"), "hellp|");
+  type("abc\x15");
+  EXPECT_EQ(screen, "> ");
+  EXPECT_EQ(type("\r"), "|");
+}
+
+TEST_F(Editor, TheTerminalShowsTheLineWhateverIsTyped) {
+  const char* const keys[] = {"a",      "b",      "\b",     "\x1B[C",  "\x1B[D", "\x1B[A",
+                              "\x1B[B", "\x1B[H", "\x1B[F", "\x1B[3~", "xy",     "\x15"};
+  unsigned random = 1;
+  for (int k = 0; k < 20000; ++k) {
+    random = random * 1664525u + 1013904223u;
+    type((random >> 16) % 97 == 0 ? "\r" : keys[(random >> 16) % 12]);
+    std::string shown = screen;
+    shown.resize(std::max<std::size_t>(2, shown.find_last_not_of(' ') + 1));
+    ASSERT_EQ(shown, "> " + std::string(e.line.text, e.line.text + e.line.count));
+    ASSERT_EQ(column, 2u + e.cursor);
+  }
+}
+
+TEST_F(Editor, HistoryOfTheLastFourLines) {
+  type("one\rtwo\rtwo\rthree\rfour\rfive\r");
+  EXPECT_EQ(type("\x1B[A\x1B[A\x1B[A\r"), "three|");
+  EXPECT_EQ(type("\x1B[A\x1B[A\x1B[A\x1B[A\x1B[A\x1B[A\r"), "three|") << "now the oldest";
+  EXPECT_EQ(type("\x1B[A\x1B[B\r"), "|");
+}
+
+TEST_F(Editor, NoiseIsIgnored) {
+  EXPECT_EQ(type("\xFF\x01\x02\x04s\x0Ft\x1Bxop\r"), "stop|") << "an escape that begins nothing takes one character";
+}
+
+TEST_F(Editor, CtrlC) {
+  EXPECT_EQ(type("abc\x03"
+                 "d\r"),
+            "^|d|");
+}
+
+TEST_F(Editor, TheEndOfALine) {
+  type(std::string(EDITOR_LINE, 'x'));
+  EXPECT_FALSE(e.too_long);
+  type("\x1B[Dy");
+  EXPECT_TRUE(e.too_long);
+  EXPECT_EQ(e.line.count, EDITOR_LINE);
+  type("\r");
+  EXPECT_FALSE(e.too_long);
+}
+
+}  // namespace

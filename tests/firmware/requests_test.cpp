@@ -1,0 +1,411 @@
+// What machines ask over the link, and what they are told.
+
+#include <cstring>
+#include <set>
+
+#include "tests/firmware/terminal.hpp"
+
+extern "C" {
+#include "firmware/fault_history.h"
+#include "firmware/link/crc.h"
+#include "firmware/scope/scope.h"
+#include "firmware/version.h"
+#include "firmware/words.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+enum { OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT };
+
+class Requests : public Terminal {
+ protected:
+  Answer give(unsigned code, std::int32_t argument = 0) {
+    return ask(REQUEST_COMMAND, little(code, 1) + little(static_cast<std::uint32_t>(argument), 4));
+  }
+  Answer set(std::uint16_t id, std::int32_t raw) {
+    return ask(REQUEST_PARAMETER_SET, little(id, 2) + little(static_cast<std::uint32_t>(raw), 4));
+  }
+};
+
+TEST_F(Requests, Identity) {
+  const Answer a = ask(REQUEST_IDENTITY);
+  ASSERT_TRUE(a.came());
+  EXPECT_EQ(a.status(), OK);
+  EXPECT_EQ(a.number(0, 2), LINK_PROTOCOL);
+  EXPECT_EQ(a.number(2, 2), parameter_count());
+  EXPECT_EQ(a.number(4, 2), signal_count());
+  EXPECT_EQ(a.number(6, 2), FAULT_STOP + 1u);
+  EXPECT_EQ(a.text(12), FIRMWARE_NAME);
+  EXPECT_EQ(std::string(FIRMWARE_VERSION), STILLSPIN_VERSION) << "of CMakeLists.txt";
+}
+
+// A host keeps the tables by this number: it must be that of the tables as they are told.
+TEST_F(Requests, TheTablesSumIsThatOfWhatIsTold) {
+  std::uint32_t crc = CRC32_BEGIN;
+  const auto add = [&](const Answer& a) {
+    for (std::size_t k = 3; k < a.octets.size(); ++k) crc = crc32_add(crc, a.octets[k]);
+  };
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) add(ask(REQUEST_PARAMETER_INFO, little(k, 2)));
+  for (std::uint16_t k = 0; k < signal_count(); ++k) add(ask(REQUEST_SIGNAL_INFO, little(k, 2)));
+  for (std::uint16_t kind = 0; kind < WORDS_KINDS; ++kind) {
+    for (std::uint16_t code = 0;; ++code) {
+      const Answer a = ask(REQUEST_WORDS, {kind, code});
+      if (a.status() != OK) break;
+      add(a);
+    }
+  }
+  EXPECT_EQ(ask(REQUEST_IDENTITY).number(8, 4), crc32_end(crc));
+}
+
+TEST_F(Requests, IdentityIsBusyUntilTheSumIsThere) {
+  requests_reset();
+  std::uint16_t answer[RECORD_MAX];
+  const std::uint16_t request[] = {REQUEST_IDENTITY, 7};
+  ASSERT_EQ(request_answer(GUARD_BUS, request, 2, answer), 3);
+  EXPECT_EQ(answer[2], BUSY);
+}
+
+TEST_F(Requests, EveryParameterTellsAllOfItself) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    const parameter_info_t& p = *parameter_info(k);
+    const Answer a = ask(REQUEST_PARAMETER_INFO, little(k, 2));
+    ASSERT_EQ(a.status(), OK);
+    EXPECT_EQ(a.number(0, 2), p.id);
+    EXPECT_EQ(a.number(2, 1), p.q);
+    EXPECT_EQ(a.number(3, 1), p.decimals);
+    EXPECT_EQ(a.number(4, 1), static_cast<unsigned>(p.access));
+    EXPECT_EQ(static_cast<std::int32_t>(a.number(6, 4)), p.minimum);
+    EXPECT_EQ(static_cast<std::int32_t>(a.number(10, 4)), p.maximum);
+    EXPECT_EQ(static_cast<std::int32_t>(a.number(14, 4)), p.initial);
+    const std::string words = std::string(p.name) + '\0' + p.unit + '\0' + p.meaning;
+    EXPECT_EQ(a.text(18), words) << "whole: nothing is cut off";
+  }
+  EXPECT_EQ(ask(REQUEST_PARAMETER_INFO, little(parameter_count(), 2)).status(), RANGE);
+  const Answer s = ask(REQUEST_SIGNAL_INFO, little(3, 2));
+  EXPECT_EQ(s.number(0, 1), 32u);
+  EXPECT_EQ(s.text(1).substr(0, 11), std::string("angle\0turn\0", 11));
+}
+
+TEST_F(Requests, ReadGetAndSet) {
+  std::set<std::uint32_t> ids;
+  for (std::uint16_t at = 0; at < parameter_count(); at = static_cast<std::uint16_t>(at + 32)) {
+    const Answer a = ask(REQUEST_PARAMETER_READ, little(at, 2) + little(32, 1));
+    ASSERT_EQ(a.status(), OK);
+    for (std::size_t k = 0; k < a.body(); k += 6) {
+      ids.insert(a.number(k, 2));
+      EXPECT_EQ(static_cast<std::int32_t>(a.number(k + 2, 4)),
+                parameter_get(static_cast<std::uint16_t>(a.number(k, 2))));
+    }
+  }
+  EXPECT_EQ(ids.size(), parameter_count());
+  EXPECT_EQ(ask(REQUEST_PARAMETER_READ, little(0, 2) + little(33, 1)).status(), RANGE);
+  EXPECT_EQ(set(86, 500 * 256).number(0, 4), 500u * 256u);
+  EXPECT_EQ(ask(REQUEST_PARAMETER_GET, little(86, 2)).number(0, 4), 500u * 256u);
+  EXPECT_TRUE(drive.request.reload);
+  EXPECT_EQ(ask(REQUEST_PARAMETER_GET, little(19, 2)).status(), UNKNOWN);
+  EXPECT_EQ(set(19, 0).status(), UNKNOWN);
+}
+
+TEST_F(Requests, ARefusalSaysWhy) {
+  const Answer range = set(9, 7000 * 256);
+  EXPECT_EQ(range.status(), RANGE);
+  EXPECT_EQ(range.text(), "speed_limit = 7000.0 is outside of 10 .. 6000 rpm: nothing changed");
+  EXPECT_EQ(parameter_get(9), 3300 * 256);
+  drive.state = DRIVE_RUN;
+  const Answer running = set(9, 1000 * 256);
+  EXPECT_EQ(running.status(), RUNNING);
+  EXPECT_EQ(running.text(), "speed_limit may not change while the power stage is on: stop the drive first");
+  EXPECT_EQ(parameter_get(9), 3300 * 256);
+}
+
+// Two parameters that must fit can only be changed one after the other.
+TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
+  const Answer rest = set(42, 40 * 65536 / 10 * 10 / 16);  // window_minimum 2.5 us: below settle_time + 4.5 us
+  EXPECT_EQ(rest.status(), RANGE) << "a range comes first";
+  const std::int32_t long_window = 30 * 65536;
+  const Answer taken = set(43, 10 * 65536);  // window_maximum below window_minimum
+  EXPECT_EQ(taken.status(), CONFLICT);
+  EXPECT_EQ(taken.text(),
+            "taken, but the drive does not start with it: window_maximum must be at least window_minimum");
+  EXPECT_EQ(parameter_get(43), 10 * 65536);
+  drive.state = DRIVE_READY;
+  EXPECT_EQ(give(COMMAND_START).status(), CONFLICT);
+  EXPECT_FALSE(drive.request.start);
+  EXPECT_EQ(set(43, long_window).status(), OK);
+  drive.state = DRIVE_RUN;
+  const Answer refused = set(43, 10 * 65536);
+  EXPECT_EQ(refused.status(), CONFLICT);
+  EXPECT_EQ(refused.text().substr(0, 30), "not taken while the drive runs");
+  EXPECT_EQ(parameter_get(43), long_window);
+}
+
+TEST_F(Requests, Commands) {
+  EXPECT_EQ(give(COMMAND_START).status(), STATE) << "not calibrated yet";
+  drive.state = DRIVE_READY;
+  EXPECT_EQ(give(COMMAND_SPEED, 600 * 65536).status(), OK);
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 600 * 65536);
+  const Answer fast = give(COMMAND_SPEED, 4000 * 65536);
+  EXPECT_EQ(fast.status(), RANGE);
+  EXPECT_EQ(fast.text(), "4000.0 rpm is beyond speed_limit, 3300 rpm: nothing changed");
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 600 * 65536);
+  EXPECT_EQ(give(COMMAND_START).status(), OK);
+  EXPECT_TRUE(drive.request.start);
+  EXPECT_EQ(give(COMMAND_STOP).status(), OK);
+  EXPECT_TRUE(drive.request.stop);
+  EXPECT_FALSE(drive.request.start) << "a start that was not carried out yet must not outlive the stop";
+  EXPECT_EQ(give(COMMAND_COMMISSION).status(), OK);
+  EXPECT_EQ(give(COMMAND_COAST).status(), OK);
+  EXPECT_FALSE(drive.request.commission);
+  EXPECT_EQ(give(COMMAND_RESET).status(), STATE);
+  drive.state = DRIVE_FAULT;
+  drive.fault = FAULT_STOP;
+  EXPECT_EQ(give(COMMAND_START).text(), "a fault is latched, reset it first: standstill not reached within stop_time");
+  EXPECT_EQ(give(COMMAND_RESET).status(), OK);
+  EXPECT_TRUE(drive.request.reset);
+  EXPECT_EQ(give(77).status(), UNKNOWN);
+}
+
+TEST_F(Requests, StatusAndSignals) {
+  drive.state = DRIVE_RUN;
+  drive.signals.speed = -123 * 65536;
+  drive.signals.speed_reference = 600 * 65536;
+  drive.signals.limit = LIMIT_VOLTAGE | LIMIT_BRAKING;
+  const Answer a = ask(REQUEST_STATUS);
+  ASSERT_EQ(a.body(), 23u);
+  EXPECT_NEAR(a.number(0, 4), drive.time_ms, 45);
+  EXPECT_EQ(a.number(4, 1), static_cast<unsigned>(DRIVE_RUN));
+  EXPECT_EQ(a.number(6, 2), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
+  EXPECT_EQ(static_cast<std::int32_t>(a.number(8, 4)), -123 * 65536);
+  EXPECT_EQ(a.number(12, 4), 600u * 65536u);
+  const Answer s = ask(REQUEST_SIGNALS, little(4, 2) + little(2, 2));
+  ASSERT_EQ(s.body(), 8u);
+  EXPECT_EQ(static_cast<std::int32_t>(s.number(0, 4)), -123 * 65536);
+  EXPECT_EQ(s.number(4, 4), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
+  EXPECT_EQ(ask(REQUEST_SIGNALS, little(signal_count(), 2)).status(), RANGE);
+  EXPECT_EQ(ask(REQUEST_SIGNALS, Octets(34, 0)).status(), LENGTH);
+  EXPECT_EQ(ask(REQUEST_SIGNALS, Octets(3, 0)).status(), LENGTH);
+}
+
+TEST_F(Requests, FaultsWithTheirCircumstances) {
+  EXPECT_EQ(ask(REQUEST_FAULT, {0}).status(), RANGE);
+  make_run();
+  board.tripped_by_pin = true;
+  drive.position.used.speed_bpp = q_mul(drive.config.bpp_per_rpm_q8, 600 * 256, 16);
+  drive.control.measured_q20.q = 3 << 20;
+  const std::uint32_t then = drive.time_ms;
+  drive_raise(&drive, FAULT_OVER_CURRENT);
+  drive_raise(&drive, FAULT_STOP);  // one that comes on top is none of its own
+  const Answer a = ask(REQUEST_FAULT, {0});
+  EXPECT_EQ(a.number(0, 2), 1u);
+  EXPECT_EQ(a.number(2, 4), then);
+  EXPECT_EQ(a.number(6, 1), static_cast<unsigned>(FAULT_OVER_CURRENT));
+  EXPECT_EQ(a.number(7, 1), static_cast<unsigned>(DRIVE_RUN));
+  EXPECT_NEAR(real(static_cast<std::int32_t>(a.number(8, 4)), 16), 600.0, 0.01);
+  EXPECT_NEAR(real(static_cast<std::int32_t>(a.number(12, 4)), 16), 300.0, 1.0);
+  EXPECT_EQ(static_cast<std::int32_t>(a.number(20, 4)), 3 << 20);
+}
+
+TEST_F(Requests, TheHistoryKeepsTheLastSixteen) {
+  for (int k = 0; k < 20; ++k) {
+    drive.state = DRIVE_READY;
+    drive.time_ms = static_cast<std::uint32_t>(100 + k);
+    drive_raise(&drive, FAULT_OFFSET);
+  }
+  EXPECT_EQ(fault_history_total(), 20);
+  fault_record_t r;
+  ASSERT_TRUE(fault_history_read(0, &r));
+  EXPECT_EQ(r.time_ms, 119u);
+  ASSERT_TRUE(fault_history_read(15, &r));
+  EXPECT_EQ(r.time_ms, 104u);
+  EXPECT_FALSE(fault_history_read(16, &r));
+}
+
+TEST_F(Requests, WordsForEverything) {
+  const auto last = [&](std::uint16_t kind) {
+    std::uint16_t code = 0;
+    while (words_or_null(kind, code) != nullptr) code++;
+    return code - 1;
+  };
+  EXPECT_EQ(last(WORDS_STATE), DRIVE_COMMISSION);
+  EXPECT_EQ(last(WORDS_FAULT), FAULT_STOP);
+  EXPECT_EQ(last(WORDS_REMEDY), FAULT_STOP);
+  EXPECT_EQ(1 << last(WORDS_LIMIT), LIMIT_BRAKING);
+  EXPECT_EQ(last(WORDS_VERDICT), VERDICT_DEPENDS);
+  EXPECT_EQ(last(WORDS_PHASE), COMMISSIONING_EVALUATE);
+  EXPECT_EQ(last(WORDS_STATUS), CONFLICT);
+  EXPECT_EQ(last(WORDS_START), START_MOTION);
+  EXPECT_EQ(last(WORDS_COMMISSIONING), COMMISSIONING_FAILED);
+  EXPECT_EQ(last(WORDS_SCOPE), SCOPE_DONE);
+  EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 12}).text(), "loss of synchronism");
+  EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 99}).status(), RANGE);
+  EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_KINDS, 0}).status(), UNKNOWN);
+}
+
+TEST_F(Requests, WrongLengthsAndTypes) {
+  EXPECT_EQ(ask(REQUEST_STATUS, {1}).status(), LENGTH);
+  EXPECT_EQ(ask(REQUEST_PARAMETER_SET, little(9, 2)).status(), LENGTH);
+  EXPECT_EQ(ask(0x3F).status(), UNKNOWN);
+  EXPECT_EQ(ask(0x00).status(), UNKNOWN);
+  EXPECT_FALSE(ask(0x88).came()) << "an answer that comes back must not be answered";
+}
+
+TEST_F(Requests, LinkErrorsAreCounted) {
+  send(Octets{0, 9, 9, 9, 0});
+  board.serial_errors.framing = 3;
+  const Answer a = ask(REQUEST_LINK);
+  EXPECT_EQ(a.number(0, 2), 1u);
+  EXPECT_EQ(a.number(6, 2), 3u);
+}
+
+Octets scope_setup_body(std::uint16_t edge, Octets channels) {
+  return little(2, 2) + little(4, 2) + little(0, 1) + little(edge, 1) + little(4, 2) + little(100u << 16, 4) +
+         little(static_cast<std::uint32_t>(channels.size() / 3), 1) + channels;
+}
+
+TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
+  EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), STATE);
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, {4, 0, 16, 0, 0, 0})).status(), OK);
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(9, {4, 0, 16})).status(), RANGE);
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, {200, 0, 16})).status(), RANGE);
+  Octets wrong = scope_setup_body(SCOPE_RISING, {4, 0, 16});
+  wrong[12] = 2;
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, wrong).status(), LENGTH);
+  EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
+  for (int k = 0; k < 3000; ++k) {
+    drive.signals.speed = k * 65536;
+    scope_step(static_cast<std::uint32_t>(k));
+  }
+  const Answer state = ask(REQUEST_SCOPE_STATE);
+  EXPECT_EQ(state.number(0, 1), static_cast<unsigned>(SCOPE_DONE));
+  EXPECT_EQ(state.number(1, 2), SCOPE_DEPTH);
+  EXPECT_EQ(state.number(3, 2), 4u);
+  const Answer data = ask(REQUEST_SCOPE_READ, {0, 4, 0, 100});
+  ASSERT_EQ(data.body(), 200u);
+  EXPECT_NEAR(data.number(0, 2), 100, 1);
+  EXPECT_EQ(data.number(2, 2), data.number(0, 2) + 2);
+  EXPECT_EQ(ask(REQUEST_SCOPE_READ, {0, 4, 0, 101}).status(), RANGE);
+  EXPECT_EQ(ask(REQUEST_SCOPE_READ, {3, 4, 0, 1}).body(), 0u) << "a channel that is not set up";
+  EXPECT_EQ(ask(REQUEST_SCOPE_STOP).status(), OK);
+}
+
+TEST_F(Requests, AStreamComesAtItsPeriod) {
+  drive.signals.speed = 77;
+  EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(4, 2) + little(0, 2)).status(), OK);
+  records.clear();
+  run(2000);  // 200 ms
+  ASSERT_EQ(records.size(), 10u);
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    ASSERT_EQ(records[k].size(), 2u + 4u + 8u);
+    EXPECT_EQ(records[k][0], EVENT_STREAM);
+    EXPECT_EQ(records[k][1], records[k - 1][1] + 1);
+    EXPECT_EQ(records[k][2], (records[k - 1][2] + 20) & 0xFF);
+    EXPECT_EQ(records[k][6], 77);
+  }
+  EXPECT_EQ(ask(REQUEST_STREAM, little(0, 2)).status(), OK);
+  records.clear();
+  run(500);
+  EXPECT_TRUE(records.empty());
+}
+
+TEST_F(Requests, AStreamWithoutRoomDropsAndCounts) {
+  EXPECT_EQ(ask(REQUEST_STREAM, little(1, 2) + Octets(16, 0)).status(), OK);  // 45 octets a ms, 12 go through
+  run(5000);
+  const Answer a = ask(REQUEST_LINK);
+  ASSERT_TRUE(a.came()) << "requests are answered beside it";
+  EXPECT_GT(a.number(14, 2), 300u);
+  std::set<int> steps;
+  std::vector<int> counters;
+  for (const Octets& r : records) {
+    if (r[0] == EVENT_STREAM) counters.push_back(r[1]);
+  }
+  for (std::size_t k = 1; k < counters.size(); ++k) steps.insert((counters[k] - counters[k - 1]) & 0xFF);
+  EXPECT_GT(*steps.rbegin(), 1) << "the gap can be seen";
+  EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2)).status(), LENGTH);
+  EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2) + little(signal_count(), 2)).status(), RANGE);
+}
+
+TEST_F(Requests, TheBusHasNoStream) {
+  std::uint16_t answer[RECORD_MAX];
+  const std::uint16_t request[] = {REQUEST_STREAM, 7, 10, 0, 4, 0};
+  EXPECT_GT(request_answer(GUARD_BUS, request, 6, answer), 3);
+  EXPECT_EQ(answer[2], STATE);
+}
+
+class Guard : public Requests {
+ protected:
+  void SetUp() override {
+    Requests::SetUp();
+    drive.state = DRIVE_READY;
+    parameters.link_timeout = 200;
+  }
+  void start(std::int32_t argument) {
+    ASSERT_EQ(give(COMMAND_START, argument).status(), OK);
+    drive.request.start = false;
+    drive.state = DRIVE_RUN;
+  }
+};
+
+TEST_F(Guard, SilenceStopsTheDrive) {
+  start(1);
+  for (int k = 0; k < 8; ++k) {
+    run(1000);
+    EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
+  }
+  EXPECT_FALSE(drive.request.stop);
+  run(1500);
+  EXPECT_FALSE(drive.request.stop);
+  run(600);
+  EXPECT_TRUE(drive.request.stop);
+  EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 2u) << "and it says so";
+}
+
+TEST_F(Guard, ItCanBeToldToCoast) {
+  parameters.link_reaction = LINK_REACTION_COAST;
+  start(1);
+  run(2500);
+  EXPECT_TRUE(drive.request.coast);
+  EXPECT_FALSE(drive.request.stop);
+}
+
+TEST_F(Guard, WithoutItSilenceIsNothing) {
+  start(0);
+  run(5000);
+  EXPECT_FALSE(drive.request.stop || drive.request.coast);
+}
+
+TEST_F(Guard, OnlyThePortThatStartedCounts) {
+  start(1);
+  std::uint16_t answer[RECORD_MAX];
+  const std::uint16_t request[] = {REQUEST_STATUS, 7};
+  for (int k = 0; k < 30; ++k) {
+    run(100);
+    (void)request_answer(GUARD_BUS, request, 2, answer);
+    send("\r");  // nor does text
+  }
+  EXPECT_TRUE(drive.request.stop);
+}
+
+TEST_F(Guard, ItEndsWithThePowerStage) {
+  start(1);
+  run(10);
+  drive.state = DRIVE_READY;
+  run(10);
+  drive.state = DRIVE_RUN;  // started by someone else, without it
+  run(5000);
+  EXPECT_FALSE(drive.request.stop);
+}
+
+TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
+  drive_reset();
+  drive.time_ms = 5;
+  drive.signals.speed = 6;
+  const std::uint16_t places[] = {4, 60000};
+  std::int32_t values[2] = {-1, -1};
+  EXPECT_EQ(drive_signals_copy(places, 2, values), 5u);
+  EXPECT_EQ(values[0], 6);
+  EXPECT_EQ(values[1], 0);
+}
+
+}  // namespace
