@@ -33,10 +33,9 @@ class Gates {
   /// (else its lower diode conducts, whatever the lower device does), the lower one of a current that enters it. So is
   /// a change that makes both devices conduct.
   Tick next(int leg, bool leaving) const {
-    const int carrying = 2 * leg + (leaving ? 0 : 1);
-    const int other = 4 * leg + 1 - carrying;
-    if (!devices_[carrying].on || (!devices_[other].on && due_[other] == kNever)) return due_[carrying];
-    return next_of_both(carrying, other);
+    const int carrying = 2 * leg + (leaving ? 0 : 1), other = 4 * leg + 1 - carrying;
+    if (!devices_[carrying].on) return due_[carrying];
+    return devices_[other].on ? next_ : std::min(due_[carrying], due_[other]);
   }
 
   /// Lets all changes up to t happen; the legs whose devices have changed.
@@ -55,20 +54,24 @@ class Gates {
   bool lower(int leg) const { return devices_[2 * leg + 1].on; }
 
  private:
-  struct Change {
-    Tick tick;
-    bool on;
-  };
   struct Device {
     bool input = false;
     bool on = false;
-    std::vector<Change> pending;  // seldom more than one
+    std::vector<Tick> later;  // changes behind the first; each turns the device round. Seldom any
   };
 
-  Tick next_of_both(int carrying, int other) const;
-  void set_device(int n, Tick t, bool on);
+  void set_device(int n, Tick t, bool on) {
+    devices_[n].input = on;
+    const Tick effect = t + (on ? on_delay_ : off_delay_);
+    if (due_[n] == kNever) {
+      due_[n] = effect;
+      next_ = std::min(next_, effect);
+    } else {
+      queue(n, effect);
+    }
+  }
+  void queue(int n, Tick effect);
   void pass(int n, Tick t);
-  void find_due(int n) { due_[n] = devices_[n].pending.empty() ? kNever : devices_[n].pending.front().tick; }
   void find_next() {
     const Tick a = std::min(due_[0], due_[1]), b = std::min(due_[2], due_[3]), c = std::min(due_[4], due_[5]);
     next_ = std::min(a, std::min(b, c));

@@ -67,12 +67,12 @@ double Trajectory::grazing_instant() {
   end_slope_known_ = step_.has_end_slope;
   if (model_.clamp == Clamp::kAll) return 0.0;
   const double h = step_.reached;
-  const AlphaBeta &i0 = origin_current_, &d0 = origin_slope_;
+  const std::array<double, 3> i0 = phases(origin_current_), d0 = phases(origin_slope_);
   for (int k = 0; k < 3; ++k) {
-    if (model_.direction[k] == 0 || model_.legs[k].perfect) continue;
+    const double g0 = model_.direction[k] * i0[k], s0 = model_.direction[k] * d0[k];
+    // Convex curves lie above their tangent. One that does not fall, or not as far as zero: nothing to look for.
+    if (g0 + std::min(s0, 0.0) * h >= 0.0 || model_.legs[k].perfect) continue;
     const AlphaBeta axis = model_.direction[k] * stator_axis(k);
-    const double g0 = axis.dot(i0), s0 = axis.dot(d0);
-    if (s0 >= 0.0 || g0 + s0 * h >= 0.0) continue;  // convex curves lie above their tangent
     double lowest = 0.0, where = 0.0;
     for (int n = 1; n < 16; ++n) {
       const double x = h * n / 16.0;
