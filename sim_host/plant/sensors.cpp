@@ -3,14 +3,6 @@
 #include <cmath>
 
 namespace stillspin::plant {
-namespace {
-
-constexpr double kForgotten = 40.0;      // time constants after which nothing is left (4e-18)
-constexpr double kWholeTick = 1e-9;      // ticks: rounding of seconds
-constexpr double kShortParabola = 1e-9;  // s: a shorter segment is a straight line (curvature would be rounding)
-
-}  // namespace
-
 Sensors::Sensors(const PlantConfig& c, const AlphaBeta& initial)
     : config_(c.sensor),
       tau_(c.sensor.bandwidth > 0.0 ? 1.0 / (2.0 * kPi * c.sensor.bandwidth) : 0.0),
@@ -28,27 +20,9 @@ Sensors::Sensors(const PlantConfig& c, const AlphaBeta& initial)
   }
 }
 
-/// exp(-seconds/tau): from the tables for whole ticks up to their end, which is most of the time.
-double Sensors::forgetting(double seconds) const {
+double Sensors::forgetting_between(double seconds) const {
   const double scaled = seconds * inverse_tau_;
-  if (scaled > kForgotten) return 0.0;
-  const double ticks = seconds * 1e8;
-  const auto whole = static_cast<unsigned>(static_cast<int>(ticks + 0.5));
-  if (whole < kFine * kCoarse && std::fabs(ticks - static_cast<int>(whole)) < kWholeTick) {
-    return coarse_filter_[whole / kFine] * fine_filter_[whole % kFine];
-  }
-  return exponential(-scaled);
-}
-
-AlphaBeta Sensors::filtered(const AlphaBeta& i0, const AlphaBeta& d0, const AlphaBeta& i1, double s) const {
-  if (tau_ == 0.0) return i1;
-  if (!(s > 0.0)) return filtered_;
-  const double left = forgetting(s);
-  const double per_square = s > kShortParabola ? 2.0 / (s * s) : 0.0;
-  const AlphaBeta bend = (i1 - i0 - d0 * s) * per_square;
-  const AlphaBeta at_start = i0 - tau_ * d0 + tau_ * tau_ * bend;
-  const AlphaBeta at_end = i1 - tau_ * (d0 + bend * s) + tau_ * tau_ * bend;
-  return at_end + (filtered_ - at_start) * left;
+  return scaled > kForgotten ? 0.0 : exponential(-scaled);
 }
 
 Sensors::Phasor Sensors::decay(double seconds) const {
@@ -87,7 +61,7 @@ void Sensors::excite(Tick t, double fraction, const std::array<double, 3>& step)
 }
 
 AlphaBeta Sensors::ringing(Tick t) const {
-  if (ring_scale_ == 0.0 || t - ring_tick_ > ring_end_) return AlphaBeta::Zero();
+  if (ring_scale_ == 0.0 || t - ring_tick_ > ring_end_) return {};
   const Phasor factor = decay(t - ring_tick_);
   return {product(ring_alpha_, factor).im, product(ring_beta_, factor).im};
 }

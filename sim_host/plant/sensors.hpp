@@ -11,6 +11,7 @@
 #define STILLSPIN_SIM_HOST_PLANT_SENSORS_HPP
 
 #include <array>
+#include <cmath>
 
 #include "sim_host/plant/portable_math.hpp"
 #include "sim_host/plant/trajectory.hpp"
@@ -27,7 +28,16 @@ class Sensors {
   }
 
   /// Filter output at i1, s seconds after the start of a segment.
-  AlphaBeta filtered(const AlphaBeta& i0, const AlphaBeta& d0, const AlphaBeta& i1, double s) const;
+  AlphaBeta filtered(const AlphaBeta& i0, const AlphaBeta& d0, const AlphaBeta& i1, double s) const {
+    if (tau_ == 0.0) return i1;
+    if (!(s > 0.0)) return filtered_;
+    const double left = forgetting(s);
+    const double per_square = s > kShortParabola ? 2.0 / (s * s) : 0.0;
+    const AlphaBeta bend = per_square * (i1 - i0 - s * d0);
+    const AlphaBeta at_start = i0 - tau_ * d0 + tau_ * tau_ * bend;
+    const AlphaBeta at_end = i1 - tau_ * (d0 + s * bend) + tau_ * tau_ * bend;
+    return at_end + left * (filtered_ - at_start);
+  }
 
   /// Leg voltages jumped by `step` V at `fraction` s after tick t.
   void excite(Tick t, double fraction, const std::array<double, 3>& step);
@@ -62,7 +72,16 @@ class Sensors {
   };
 
   double failing(int phase, Tick t, double current) const;
-  double forgetting(double seconds) const;
+  /// exp(-seconds/tau): from the tables for whole ticks up to their end, which is most of the time.
+  double forgetting(double seconds) const {
+    const double ticks = seconds * 1e8;
+    const auto whole = static_cast<unsigned>(static_cast<int>(ticks + 0.5));
+    if (whole < kFine * kCoarse && std::fabs(ticks - static_cast<int>(whole)) < kWholeTick) {
+      return seconds * inverse_tau_ > kForgotten ? 0.0 : coarse_filter_[whole / kFine] * fine_filter_[whole % kFine];
+    }
+    return forgetting_between(seconds);
+  }
+  double forgetting_between(double seconds) const;
   static Phasor product(const Phasor& a, const Phasor& b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
   }
@@ -77,6 +96,9 @@ class Sensors {
   AlphaBeta filtered_;
   Phasor ring_alpha_, ring_beta_;
   Tick ring_tick_ = 0;
+  static constexpr double kForgotten = 40.0;      // time constants after which nothing is left (4e-18)
+  static constexpr double kWholeTick = 1e-9;      // ticks: rounding of seconds
+  static constexpr double kShortParabola = 1e-9;  // s: a shorter segment is a straight line (else mere rounding)
   static constexpr unsigned kFine = 64;
   static constexpr unsigned kCoarse = 128;
   std::array<Phasor, kFine> fine_;      // decay over 0..63 ticks

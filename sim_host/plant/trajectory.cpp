@@ -87,26 +87,14 @@ double Trajectory::grazing_instant() {
   return 0.0;
 }
 
-const State& Trajectory::end_slope() const {
-  if (!end_slope_known_) {
-    model_.derive(step_.reached, end_, step_.end_slope);
-    end_slope_known_ = true;
-  }
-  return step_.end_slope;
+void Trajectory::find_end_slope() const {
+  model_.derive(step_.reached, end_, step_.end_slope);
+  end_slope_known_ = true;
 }
 
 State Trajectory::at_offset(double s) const {
   const double h = step_.reached;
   return s >= h ? end_ : hermite(start_, end_, end_slope(), h, s);
-}
-
-AlphaBeta Trajectory::current_at_offset(double s) const {
-  const double h = step_.reached;
-  if (s >= h) return current(end_);
-  const State& slope = end_slope();
-  const Hermite at(h, s);
-  const Rotation e = turned(model_.base, at(start_, end_, slope, kAngle));
-  return stator(e, at(start_, end_, slope, kId), at(start_, end_, slope, kIq));
 }
 
 double Trajectory::link_voltage_at_offset(double s) const {

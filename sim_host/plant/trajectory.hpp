@@ -14,12 +14,22 @@
 
 namespace stillspin::plant {
 
-using AlphaBeta = Eigen::Vector2d;
+/// A vector in stator coordinates. Two plain numbers: a vector of Eigen's would be written in halves and read at once,
+/// for which the processor has to wait.
+struct AlphaBeta {
+  double alpha = 0.0;
+  double beta = 0.0;
+
+  double dot(const AlphaBeta& o) const { return alpha * o.alpha + beta * o.beta; }
+  friend AlphaBeta operator+(const AlphaBeta& a, const AlphaBeta& b) { return {a.alpha + b.alpha, a.beta + b.beta}; }
+  friend AlphaBeta operator-(const AlphaBeta& a, const AlphaBeta& b) { return {a.alpha - b.alpha, a.beta - b.beta}; }
+  friend AlphaBeta operator*(double k, const AlphaBeta& a) { return {k * a.alpha, k * a.beta}; }
+};
 
 /// Values of phases a, b, c.
 inline std::array<double, 3> phases(const AlphaBeta& x) {
-  const double half = 0.5 * x[0], turn = 0.5 * kSqrt3 * x[1];
-  return {x[0], turn - half, -turn - half};
+  const double half = 0.5 * x.alpha, turn = 0.5 * kSqrt3 * x.beta;
+  return {x.alpha, turn - half, -turn - half};
 }
 
 /// Axis of phase 0..2 in stator coordinates: its dot product with a vector is the phase value.
@@ -68,7 +78,14 @@ class Trajectory {
   double offset(Tick t) const { return std::min(std::max(time_to(t), 0.0), step_.reached); }
   State at_offset(double s) const;
   /// The same of the current alone, and of the link voltage alone.
-  AlphaBeta current_at_offset(double s) const;
+  AlphaBeta current_at_offset(double s) const {
+    const double h = step_.reached;
+    if (s >= h) return current(end_);
+    const State& slope = end_slope();
+    const Hermite at(h, s);
+    const Rotation e = turned(model_.base, at(start_, end_, slope, kAngle));
+    return stator(e, at(start_, end_, slope, kId), at(start_, end_, slope, kIq));
+  }
   double link_voltage_at_offset(double s) const;
   /// Current where the segment looked ahead starts, and its slope.
   const AlphaBeta& origin_current() const { return origin_current_; }
@@ -88,7 +105,11 @@ class Trajectory {
     return stator(model_.base, start_.slope[kId] - electrical * start_.y[kIq],
                   start_.slope[kIq] + electrical * start_.y[kId]);
   }
-  const State& end_slope() const;
+  const State& end_slope() const {
+    if (!end_slope_known_) find_end_slope();
+    return step_.end_slope;
+  }
+  void find_end_slope() const;
   void begin();
   void turn_bases(double angle);
   double time_to(Tick t) const { return static_cast<double>(t - tick_) * kSecondsPerTick - fraction_; }
