@@ -70,8 +70,8 @@ double Trajectory::grazing_instant() {
   const std::array<double, 3> i0 = phases(origin_current_), d0 = phases(origin_slope_);
   for (int k = 0; k < 3; ++k) {
     const double g0 = model_.direction[k] * i0[k], s0 = model_.direction[k] * d0[k];
-    // Convex curves lie above their tangent. One that does not fall, or not as far as zero: nothing to look for.
-    if (g0 + std::min(s0, 0.0) * h >= 0.0 || model_.legs[k].perfect) continue;
+    // Convex curves lie above their tangent: one that does not fall, or not as far as zero, has nothing to look for.
+    if (int{s0 >= 0.0} | int{g0 + s0 * h >= 0.0} | int{model_.legs[k].perfect}) continue;  // one branch
     const AlphaBeta axis = model_.direction[k] * stator_axis(k);
     double lowest = 0.0, where = 0.0;
     for (int n = 1; n < 16; ++n) {
