@@ -27,12 +27,15 @@ typedef struct {
   int32_t period_us;    // PWM period, microseconds, 20..500
 } machine_parameters_t;
 
+#define MACHINE_PSI_HASTE_Q30 10737418L  // 1/100
+
 /// What the drive learns while it runs, added to what the parameters say.
 typedef struct {
   int32_t mean_q30, half_q30;         // of (ydd + yqq)/2 and (ydd - yqq)/2 at no current
   int32_t ydd_q24, yqq_q24, ydq_q24;  // the same as shares of the map, machine_model_trim
   int32_t rs_q24;                     // of the resistance, ohm
   int32_t psi_q16;                    // of the magnet's flux/T, V per (rad per period)
+  int32_t psi_haste_q30;  // share of its error taken over in a step while it is not known well
 } machine_trim_t;
 
 typedef struct {

@@ -22,9 +22,9 @@
 #define CONTROL_STEP_Q30 21474836L     // 200 rad/s * T
 #define CONTROL_SQUARE_Q40 439804651L  // its square
 #define SPEED_SHARE_Q30 75161928L      // 0.07 of the speed's error per period
-#define LOAD_SHARE_Q30 673720360L      // 0.00245 of it off the load's acceleration, Q8
+#define LOAD_SHARE_Q30 842150450L      // 0.00306 of it off the load's acceleration, Q8
 #define FILTER_Q30 429496730L          // 0.4 of the change of the current reference per period
-#define SLEW_Q20 314573L               // at most 0.3 A per period: some 20 V, within the alternating layout
+#define SLEW_Q20 367002L               // at most 0.35 A per period: some 25 V, within the alternating layout
 #define OFFSET_SHIFT 5                 // 3 ms: longer, an error of the resistance would feed itself through the torque
 #define BPP_PER_RAD 683565276L         // 2^32 / 2 pi
 
