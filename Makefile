@@ -15,11 +15,11 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench loss docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost loss docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
 
 setup: ## install what is missing: Debian packages, Python packages in .venv
 	@bash toolchain/setup.sh
@@ -41,6 +41,9 @@ demo: build ## commission the drive, reproduce the main figures of the first pap
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
 	@bash toolchain/bench.sh $(BUILD)
+
+isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
+	@$(PYTHON) toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

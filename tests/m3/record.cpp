@@ -1,0 +1,210 @@
+// Records a run of the virtual drive at the boundary of hal/f2808/target.h, for replay.c.
+//
+// Usage: stillspin_isr_record FILE RPM LOAD [NAME=VALUE]...     a start, then RPM, then LOAD (N m) as a step; NAME is a
+// firmware parameter. The linker puts the functions here in the place of the target's and of the commands
+// (-Wl,--wrap).
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "firmware/drive_api.h"
+#include "hal/f2808/target.h"
+#include "sim_host/bench/run.hpp"
+#include "tests/m3/trace.h"
+
+namespace {
+
+constexpr unsigned kVectors = 128;
+
+std::FILE* file = nullptr;
+bool inside_chip = false;  // the firmware is inside an access: who calls it now is the host
+std::array<target_isr_t, kVectors> vectors{};
+
+void log(trace_kind_t kind, std::uint32_t address = 0, std::uint32_t value = 0) {
+  const trace_record_t r = {static_cast<std::uint32_t>(kind) << 24 | address, value};
+  if (std::fwrite(&r, sizeof r, 1, file) != 1) std::abort();
+}
+
+class Access {
+ public:
+  explicit Access(bool inside = true) : before_(inside_chip) { inside_chip = inside; }
+  ~Access() { inside_chip = before_; }
+  Access(const Access&) = delete;
+  Access& operator=(const Access&) = delete;
+
+ private:
+  bool before_;
+};
+
+template <std::size_t vector>
+void interrupt() {
+  const Access outside(false);
+  log(TRACE_INTERRUPT, vector);
+  vectors[vector]();
+  const auto* signals = reinterpret_cast<const std::int32_t*>(drive_signals());
+  log(TRACE_RETURN, vector, trace_hash(signals, sizeof(drive_signals_t) / sizeof(std::int32_t)));
+}
+
+template <std::size_t... vector>
+constexpr std::array<target_isr_t, kVectors> make_interrupts(std::index_sequence<vector...>) {
+  return {interrupt<vector>...};
+}
+constexpr auto interrupts = make_interrupts(std::make_index_sequence<kVectors>());
+
+}  // namespace
+
+// The names are the linker's.
+// NOLINTBEGIN
+#define WRAP_CPU(name)          \
+  void __real_##name(void);     \
+  void __wrap_##name(void) {    \
+    {                           \
+      const Access access;      \
+      __real_##name();          \
+    }                           \
+    log(TRACE_CPU);             \
+  }
+#define WRAP_READ(name, type, kind)                     \
+  type __real_##name(std::uint32_t address);            \
+  type __wrap_##name(std::uint32_t address) {           \
+    type value;                                         \
+    {                                                   \
+      const Access access;                              \
+      value = __real_##name(address);                   \
+    }                                                   \
+    log(kind, address, value);                          \
+    return value;                                       \
+  }
+#define WRAP_WRITE(name, type, kind)                          \
+  void __real_##name(std::uint32_t address, type value);      \
+  void __wrap_##name(std::uint32_t address, type value) {     \
+    {                                                         \
+      const Access access;                                    \
+      __real_##name(address, value);                          \
+    }                                                         \
+    log(kind, address, value);                                \
+  }
+#define WRAP_VALUE(name, kind)                    \
+  void __real_##name(std::uint16_t value);        \
+  void __wrap_##name(std::uint16_t value) {       \
+    {                                             \
+      const Access access;                        \
+      __real_##name(value);                       \
+    }                                             \
+    log(kind, 0, value);                          \
+  }
+#define WRAP_COMMAND(name, kind)     \
+  void __real_##name(void);          \
+  void __wrap_##name(void) {         \
+    if (inside_chip) log(kind);      \
+    __real_##name();                 \
+  }
+
+extern "C" {
+
+WRAP_READ(target_read16, std::uint16_t, TRACE_READ16)
+WRAP_READ(target_read32, std::uint32_t, TRACE_READ32)
+WRAP_WRITE(target_write16, std::uint16_t, TRACE_WRITE16)
+WRAP_WRITE(target_write32, std::uint32_t, TRACE_WRITE32)
+WRAP_CPU(target_eallow)
+WRAP_CPU(target_edis)
+WRAP_CPU(target_enable_interrupts)
+WRAP_CPU(target_disable_interrupts)
+WRAP_CPU(target_clear_ifr)
+WRAP_VALUE(target_write_ier, TRACE_WRITE_IER)
+WRAP_VALUE(target_elapse, TRACE_ELAPSE)
+WRAP_COMMAND(drive_command_start, TRACE_COMMAND_START)
+WRAP_COMMAND(drive_command_stop, TRACE_COMMAND_STOP)
+
+std::uint16_t __real_target_read_ier(void);
+std::uint16_t __wrap_target_read_ier(void) {
+  std::uint16_t value;
+  {
+    const Access access;
+    value = __real_target_read_ier();
+  }
+  log(TRACE_READ_IER, 0, value);
+  return value;
+}
+
+void __real_target_set_vector(std::uint16_t vector, target_isr_t isr);
+void __wrap_target_set_vector(std::uint16_t vector, target_isr_t isr) {
+  vectors.at(vector) = isr;
+  {
+    const Access access;
+    __real_target_set_vector(vector, interrupts[vector]);
+  }
+  log(TRACE_SET_VECTOR, vector);
+}
+
+void __real_target_idle(void);
+void __wrap_target_idle(void) {
+  {
+    const Access access;
+    __real_target_idle();
+  }
+  log(TRACE_IDLE);
+}
+
+void __real_drive_command_speed(std::int32_t rpm_q16);
+void __wrap_drive_command_speed(std::int32_t rpm_q16) {
+  if (inside_chip) log(TRACE_COMMAND_SPEED, 0, static_cast<std::uint32_t>(rpm_q16));
+  __real_drive_command_speed(rpm_q16);
+}
+
+parameter_result_t __real_parameter_set(std::uint16_t id, std::int32_t raw);
+parameter_result_t __wrap_parameter_set(std::uint16_t id, std::int32_t raw) {
+  if (inside_chip) log(TRACE_PARAMETER, id, static_cast<std::uint32_t>(raw));
+  return __real_parameter_set(id, raw);
+}
+
+}  // extern "C"
+// NOLINTEND
+
+namespace {
+
+stillspin::bench::RunRequest request_of(int argc, char** argv) {
+  stillspin::bench::RunRequest r;
+  const double rpm = std::atof(argv[2]);
+  r.setup.nominal = stillspin::plant::PlantConfig();  // the inverter of profile bench
+  r.setup.solver = 1;
+  r.parameters["speed_ramp"] = 15000.0;
+  r.commands = {{0.0, "speed_ref_rpm", rpm}};
+  const double settled = 0.1 + rpm / 10000.0;
+  r.load = {{settled, 0.0}, {settled + 0.005, std::atof(argv[3])}};
+  r.duration = settled + 0.25;
+  for (int k = 4; k < argc; k++) {
+    const std::string word = argv[k];
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) throw std::invalid_argument(word + ": not NAME=VALUE");
+    r.parameters[word.substr(0, equals)] = std::atof(word.c_str() + equals + 1);
+  }
+  return r;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) {
+    std::fprintf(stderr, "usage: %s FILE RPM LOAD [NAME=VALUE]...\n", argv[0]);
+    return 2;
+  }
+  file = std::fopen(argv[1], "wb");
+  if (file == nullptr) {
+    std::perror(argv[1]);
+    return 1;
+  }
+  try {
+    const stillspin::bench::RunResult result = run(request_of(argc, argv));
+    if (!result.completed) throw std::runtime_error(result.reason);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
+  }
+  log(TRACE_END);
+  return std::fclose(file) == 0 ? 0 : 1;
+}

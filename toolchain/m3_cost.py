@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""Instructions of the control interrupt on a Cortex-M3, counted in QEMU, and the same results bit for bit.
+
+Usage: toolchain/m3_cost.py RECORDER OUT     (make isr-cost)
+
+Runs of the virtual drive are recorded natively at the drive's register accesses and replayed on an emulated
+Cortex-M3 that runs the whole firmware (tests/m3). A replay that does anything else than the native run, and a count
+above toolchain/m3_budget.txt, is a failure. The table is printed and written to OUT/table.md.
+"""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BUDGET = ROOT / "toolchain" / "m3_budget.txt"
+COMPILER = "arm-none-eabi-gcc"
+EMULATOR = "qemu-system-arm"
+FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware")
+CPU = ("-mcpu=cortex-m3", "-mthumb")
+FLAGS = (*CPU, "-O2", "-g", "-std=c99", "-Wall", "-Wextra", "-Werror", "-I.")
+STEPS = ("samples", "estimate", "supervise", "control", "modulate", "hand_over", "all")
+PAPER = ("position_source=1", "id_low_speed=5", "window_minimum=20", "window_maximum=20", "synchronism_time=1000")
+SOURCES = {"observer": (), "paper": PAPER}
+# Speed in rpm, load step in N m.
+RUNS = {
+    "observer": ((0, 5), (60, 8), (600, 8), (2000, 5), (3000, 1)),
+    "paper": ((20, 2), (60, 2), (600, 5), (2000, 5), (3000, 1)),
+}
+
+
+@dataclass
+class Cost:
+    """Periods, mean and worst instructions of one step."""
+
+    periods: int
+    mean: float
+    worst: int
+
+
+Table = dict[str, Cost]  # by phase and step
+
+
+def missing_tools() -> list[str]:
+    """What is not installed, as Debian packages."""
+    packages = []
+    if shutil.which(COMPILER) is None:
+        packages.append("gcc-arm-none-eabi libnewlib-arm-none-eabi")
+    if shutil.which(EMULATOR) is None:
+        packages.append("qemu-system-arm")
+    return packages
+
+
+def build(out: Path) -> Path:
+    """The firmware with the replaying target as an image for the emulator."""
+    sources = sorted(path.relative_to(ROOT) for folder in FOLDERS for path in (ROOT / folder).rglob("*.c"))
+    sources += [Path("tests/m3/replay.c"), Path("tests/m3/startup.c")]
+    ccache = [tool] if (tool := shutil.which("ccache")) else []
+
+    def compile_one(source: Path) -> Path:
+        target = out / source.as_posix().replace("/", "_").replace(".c", ".o")
+        subprocess.run([*ccache, COMPILER, *FLAGS, "-c", source.as_posix(), "-o", target], cwd=ROOT, check=True)
+        return target
+
+    with ThreadPoolExecutor(2) as pool:
+        objects = list(pool.map(compile_one, sources))
+
+    def start_file(name: str) -> str:
+        found = subprocess.run([COMPILER, *CPU, f"-print-file-name={name}"], capture_output=True, text=True, check=True)
+        return found.stdout.strip()
+
+    image = out / "replay.elf"
+    link = [COMPILER, *CPU, "-T", "tests/m3/m3.ld", "-nostartfiles", "--specs=rdimon.specs"]
+    first = [start_file("crti.o"), start_file("rdimon-crt0.o")]
+    subprocess.run([*link, *first, *objects, start_file("crtn.o"), "-o", image], cwd=ROOT, check=True)
+    return image
+
+
+def replay(image: Path, trace: Path) -> Table:
+    """The counts of one run; an error where it is not the native one."""
+    semihosting = f"enable=on,target=native,arg=replay,arg={trace}"
+    machine = ["-M", "mps2-an385", "-nographic", "-monitor", "none", "-serial", "none"]
+    clock = ["-icount", "shift=8,sleep=off"]
+    command = [EMULATOR, *machine, *clock, "-semihosting-config", semihosting, "-kernel", str(image)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    if run.returncode != 0:
+        raise SystemExit(f"isr-cost: {trace.name}: {run.stdout}{run.stderr}")
+    table = {}
+    for line in run.stdout.splitlines():
+        words = line.split()
+        if len(words) == 6:
+            table[f"{words[0]} {words[1]}"] = Cost(int(words[2]), float(words[3]), int(words[4]))
+    return table
+
+
+def record(recorder: Path, out: Path, source: str, rpm: float, load: float) -> Path:
+    """Records one run natively."""
+    trace = out / f"{source}-{rpm:g}.trace"
+    subprocess.run([recorder, trace, str(rpm), str(load), *SOURCES[source]], check=True)
+    return trace
+
+
+def joined(tables: Iterable[Table]) -> Table:
+    """All runs as one: worst of all, mean over all."""
+    total: Table = {}
+    for table in tables:
+        for key, cost in table.items():
+            before = total.get(key, Cost(0, 0.0, 0))
+            periods = before.periods + cost.periods
+            mean = (before.mean * before.periods + cost.mean * cost.periods) / periods
+            total[key] = Cost(periods, mean, max(before.worst, cost.worst))
+    return total
+
+
+def pair(cost: Cost | None) -> str:
+    """Mean and worst of a cell."""
+    return f"{cost.mean:.0f} | {cost.worst}" if cost else "  | "
+
+
+def rows_of(results: dict[str, dict[float, Table]]) -> list[str]:
+    """The published table."""
+    totals = {source: joined(runs.values()) for source, runs in results.items()}
+    lines = ["| | observer: mean | worst | paper: mean | worst |", "|---|---|---|---|---|"]
+
+    def row(name: str, tables: dict[str, Table], key: str) -> None:
+        cells = " | ".join(pair(tables[source].get(key)) for source in SOURCES)
+        lines.append(f"| {name} | {cells} |")
+
+    for step in STEPS:
+        row("**all**" if step == "all" else step.replace("_", " "), totals, f"turning {step}")
+    row("a window's own interrupt", totals, "turning window")
+    row("all, during the start", totals, "starting all")
+    lines += ["", "| at rpm | observer: mean | worst | paper: mean | worst |", "|---|---|---|---|---|"]
+    for rpm in sorted({rpm for runs in results.values() for rpm in runs}):
+        row(f"{rpm:g}", {source: runs.get(rpm, {}) for source, runs in results.items()}, "turning all")
+    return lines
+
+
+def over_budget(results: dict[str, dict[float, Table]]) -> list[str]:
+    """What costs more than the budget allows."""
+    complaints = []
+    for line in BUDGET.read_text().splitlines():
+        words = line.partition("#")[0].split()
+        if not words:
+            continue
+        source, phase, limit = words[0], words[1], int(words[2])
+        worst = joined(results[source].values())[f"{phase} all"].worst
+        if worst > limit:
+            complaints.append(f"{source}, {phase}: {worst} instructions, budget {limit}")
+    return complaints
+
+
+def main() -> int:
+    """Build, record, replay, print."""
+    recorder, out = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    missing = missing_tools()
+    if missing:
+        print(f"isr-cost: not installed: {' '.join(missing)}; once: sudo apt-get install {' '.join(missing)}")
+        return 1
+    out.mkdir(parents=True, exist_ok=True)
+    image = build(out)
+    results: dict[str, dict[float, Table]] = {source: {} for source in SOURCES}
+    for source, runs in RUNS.items():
+        for rpm, load in runs:
+            trace = record(recorder, out, source, rpm, load)
+            results[source][rpm] = replay(image, trace)
+            trace.unlink()
+    lines = rows_of(results)
+    (out / "table.md").write_text("\n".join(lines) + "\n")
+    print("\n".join(lines))
+    print("\nevery run the same on the Cortex-M3 as natively, bit for bit")
+    complaints = over_budget(results)
+    for complaint in complaints:
+        print(f"isr-cost: {complaint}")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
