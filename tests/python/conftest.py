@@ -7,12 +7,15 @@ import sys
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import sync_playwright
 from typer.testing import CliRunner
 
 import fake_core
+from browser import CHROMIUM
 from fake_drive import FakeDrive
 from stillspin import cli
 from stillspin.drive import Drive
+from stillspin.tune.server import Server
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
@@ -39,6 +42,37 @@ def drive(fake):
     """The client of that drive."""
     with Drive.open(f"serial://{fake.port}", timeout=0.3) as drive:
         yield drive
+
+
+@pytest.fixture
+def server(drive):
+    """The page's server for that drive."""
+    with Server(drive) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """The browser that is installed."""
+    with sync_playwright() as playwright:
+        # No sandbox: it does not start where the tests run as root; the only page opened is this project's.
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(chromium):
+    """A page that must not complain."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 860})
+    opened = context.new_page()
+    complaints = []
+    opened.on("pageerror", lambda error: complaints.append(str(error)))
+    opened.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    opened.set_default_timeout(15_000)
+    yield opened
+    context.close()
+    assert complaints == []
 
 
 @pytest.fixture

@@ -6,18 +6,21 @@ import contextlib
 import json
 import os
 import struct
+import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from stillspin.drive.protocol import VERSION, Request
+from stillspin.drive.protocol import VERSION, Request, StatusCode
 from stillspin.drive.table import Parameter, Signal, Table
-from stillspin.link.errors import DriveError
+from stillspin.link.errors import DriveError, RefusedError
 
 Ask = Callable[[Request, bytes], bytes]
 _ALWAYS = 1
 _FORMAT = 1
+_BOOT = 10.0
+_AGAIN = 0.1
 
 
 @dataclass(frozen=True)
@@ -32,12 +35,20 @@ class Identity:
 
 
 def identity(ask: Ask) -> Identity:
-    """Who is there.
+    """Who is there. A drive that has just been switched on is still reckoning the CRC of its table.
 
     Raises:
         DriveError: it speaks another version of the protocol.
     """
-    body = ask(Request.IDENTITY, b"")
+    end = time.monotonic() + _BOOT
+    while True:
+        try:
+            body = ask(Request.IDENTITY, b"")
+            break
+        except RefusedError as error:
+            if error.status != StatusCode.BUSY or time.monotonic() > end:
+                raise
+            time.sleep(_AGAIN)
     head = unpack("<HHHHI", body)
     protocol, parameters, signals, faults, crc = head
     if protocol != VERSION:

@@ -242,6 +242,7 @@ class Drive:
             time=raw.time_ms / 1e3,
             state=self.words(Words.STATE, raw.state),
             fault=self.words(Words.FAULT, raw.fault) if raw.fault else "",
+            remedy=self.words(Words.REMEDY, raw.fault) if raw.fault else "",
             limits=tuple(self.words(Words.LIMIT, bit) for bit in bits),
             speed=rpm(raw.speed_q16),
             reference=rpm(raw.reference_q16),
@@ -252,15 +253,15 @@ class Drive:
     def faults(self) -> list[Fault]:
         """The drive's fault memory, newest first."""
         found: list[Fault] = []
-        for age in range(self.identity.faults or 0xFF):
+        for age in range(0x100):
             try:
                 raw = RawFault.unpack(self._ask(Request.FAULT, struct.pack("<B", age)))
             except RefusedError:  # nothing that old
                 break
             if age >= raw.total:
                 break
-            cause, state = self.words(Words.FAULT, raw.code), self.words(Words.STATE, raw.state)
-            found.append(Fault.from_raw(raw, cause, state))
+            kinds = ((Words.FAULT, raw.code), (Words.STATE, raw.state), (Words.REMEDY, raw.code))
+            found.append(Fault.from_raw(raw, *(self.words(*kind) for kind in kinds)))
         return found
 
     def signals(self, *names: str) -> dict[str, float]:
@@ -279,7 +280,7 @@ class Drive:
                 body = self._ask(Request.WORDS, struct.pack("<BB", kind, code))
                 self._words[kind, code] = body.decode("ascii", "replace").rstrip("\0")
             except RefusedError:
-                self._words[kind, code] = f"{kind.name.lower()} {code}"
+                self._words[kind, code] = "" if kind == Words.REMEDY else f"{kind.name.lower()} {code}"
         return self._words[kind, code]
 
     def stream(self, signals: Sequence[str], period: float = 0.02) -> Stream:

@@ -23,6 +23,7 @@ class Request(IntEnum):
     SIGNALS = 0x09
     FAULT = 0x0A
     WORDS = 0x0B
+    LINK = 0x0C
     SCOPE_SETUP = 0x10
     SCOPE_ARM = 0x11
     SCOPE_STATE = 0x12
@@ -77,12 +78,17 @@ class Words(IntEnum):
     STORE = 5
     STATUS = 6
     START = 7
+    REMEDY = 8
+    """What to do about a fault."""
+    COMMISSIONING = 9
+    SCOPE = 10
 
 
 REPEATABLE = frozenset(
     {
         *(Request.IDENTITY, Request.PARAMETER_INFO, Request.SIGNAL_INFO, Request.PARAMETER_READ),
         *(Request.PARAMETER_GET, Request.PARAMETER_SET, Request.STATUS, Request.SIGNALS, Request.FAULT, Request.WORDS),
+        Request.LINK,
         *(Request.SCOPE_SETUP, Request.SCOPE_STATE, Request.SCOPE_READ, Request.SCOPE_STOP, Request.STREAM),
         Request.COMMISSION_RESULT,
     }

@@ -49,6 +49,8 @@ class Status:
     state: str
     fault: str
     """Empty when there is none."""
+    remedy: str
+    """What to do about it."""
     limits: tuple[str, ...]
     """What holds the drive back."""
     speed: float
@@ -93,6 +95,8 @@ class Fault:
     cause: str
     state: str
     """What the drive was doing."""
+    remedy: str
+    """What to do about it; empty when the drive does not say."""
     speed: float
     """rpm"""
     link_voltage: float
@@ -104,12 +108,11 @@ class Fault:
     code: int
 
     @classmethod
-    def from_raw(cls, raw: RawFault, cause: str, state: str) -> Fault:
+    def from_raw(cls, raw: RawFault, cause: str, state: str, remedy: str) -> Fault:
         """In users' units, with the words for code and state."""
         currents = (raw.current_d_q20 / _Q20, raw.current_q_q20 / _Q20)
-        return cls(
-            raw.time_ms / 1e3, cause, state, raw.speed_q16 / _Q16, raw.link_voltage_q16 / _Q16, *currents, raw.code
-        )
+        speed, link = raw.speed_q16 / _Q16, raw.link_voltage_q16 / _Q16
+        return cls(raw.time_ms / 1e3, cause, state, remedy, speed, link, *currents, raw.code)
 
 
 def rpm(q16: int) -> float:

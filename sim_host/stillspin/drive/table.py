@@ -133,7 +133,7 @@ class Table:
     crc: int
     """Of everything below, as the drive reckons it: the same number, the same table."""
     faults: int
-    """Entries of the drive's fault memory."""
+    """Causes of faults that the drive knows."""
     parameters: tuple[Parameter, ...]
     signals: tuple[Signal, ...] = field(default=())
 

@@ -1,0 +1,184 @@
+"""What the page may ask for, by name. Every action gets a workbench, who asks, and the page's arguments."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+from stillspin.drive import commissioning, scope
+from stillspin.drive.protocol import Words
+from stillspin.drive.table import Parameter
+from stillspin.errors import InputError
+from stillspin.link.errors import DriveError
+from stillspin.tune.groups import group_of
+from stillspin.tune.workbench import Message, Workbench
+
+_POLL = 0.05
+_LONGEST = 600.0
+
+
+def describe(bench: Workbench) -> Message:
+    """Everything that does not change: the drive's table, for a page that has just been opened."""
+    table = bench.drive.table
+    return {
+        "t": "hello",
+        "version": bench.drive.version,
+        "where": bench.drive.link.transport.name,
+        "parameters": [_parameter(entry) for entry in table.parameters],
+        "signals": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in table.signals],
+        "values": bench.drive.parameters(),
+        "plotted": bench.plotted,
+        "edges": list(scope.EDGES),
+        "depth": scope.DEPTH,
+    }
+
+
+def _parameter(entry: Parameter) -> Message:
+    return {
+        "name": entry.name,
+        "id": entry.id,
+        "group": group_of(entry.id),
+        "unit": entry.unit,
+        "decimals": entry.decimals,
+        "minimum": entry.minimum,
+        "maximum": entry.maximum,
+        "initial": entry.initial,
+        "always": entry.always,
+        "meaning": entry.meaning,
+        "range": entry.range_text,
+    }
+
+
+def _set(bench: Workbench, _: str, given: Message) -> Any:
+    return bench.drive.set(_text(given, "name"), _text(given, "value"))
+
+
+def _values(bench: Workbench, _: str, __: Message) -> Any:
+    return bench.drive.parameters()
+
+
+def _start(bench: Workbench, who: str, given: Message) -> Any:
+    bench.start(who, _number(given, "speed"))
+
+
+def _stop(bench: Workbench, _: str, __: Message) -> Any:
+    bench.stop()
+
+
+def _coast(bench: Workbench, _: str, __: Message) -> Any:
+    bench.coast()
+
+
+def _reset(bench: Workbench, _: str, __: Message) -> Any:
+    bench.drive.reset()
+
+
+def _ref(bench: Workbench, _: str, given: Message) -> Any:
+    bench.drive.ref(_number(given, "speed"))
+
+
+def _save(bench: Workbench, _: str, __: Message) -> Any:
+    bench.drive.save()
+    return bench.drive.status().store
+
+
+def _defaults(bench: Workbench, _: str, __: Message) -> Any:
+    bench.drive.defaults()
+    return bench.drive.parameters()
+
+
+def _faults(bench: Workbench, _: str, __: Message) -> Any:
+    return [asdict(fault) for fault in bench.drive.faults()]
+
+
+def _plot(bench: Workbench, _: str, given: Message) -> Any:
+    names = given.get("signals")
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise InputError("signals: must be a list of names")
+    bench.plot(names)
+
+
+def _commission(bench: Workbench, who: str, _: Message) -> Any:
+    bench.commission(who)
+
+
+def _phase(bench: Workbench, _: str, given: Message) -> Any:
+    return bench.drive.words(Words.PHASE, int(_number(given, "phase")))
+
+
+def _results(bench: Workbench, _: str, __: Message) -> Any:
+    return [asdict(value) for value in commissioning.results(bench.drive)]
+
+
+def _scope_stop(bench: Workbench, _: str, __: Message) -> Any:
+    bench.drive.scope_stop()
+
+
+def _capture(bench: Workbench, _: str, given: Message) -> Any:
+    """Arm, wait until it is done or somebody stops it, read."""
+    setup = _setup(given)
+    bench.drive.scope_arm(setup)
+    end = time.monotonic() + _LONGEST
+    state = bench.drive.scope_state()
+    while state.state not in {scope.DONE, scope.IDLE}:
+        if time.monotonic() > end:
+            bench.drive.scope_stop()
+            raise DriveError(f"no trigger within {_LONGEST:g} s")
+        time.sleep(_POLL)
+        state = bench.drive.scope_state()
+    if state.state == scope.IDLE:
+        raise DriveError("the capture was stopped before its trigger")
+    capture = bench.drive.scope_read(setup)
+    return {
+        "time": capture.time.tolist(),
+        "signals": {name: values.tolist() for name, values in capture.signals.items()},
+        "units": dict(capture.units),
+        "clipped": list(capture.clipped),
+        "interval": capture.interval,
+        "at": capture.trigger_time,
+    }
+
+
+def _setup(given: Message) -> scope.Setup:
+    names = given.get("signals")
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise InputError("signals: must be a list of names")
+    trigger = scope.Trigger(_text(given, "trigger"), _number(given, "level"), _text(given, "edge"))
+    channels = [scope.Channel(name) for name in names]
+    return scope.Setup(channels, trigger, int(_number(given, "decimation")), _number(given, "pretrigger"))
+
+
+def _text(given: Message, key: str) -> str:
+    value = given.get(key)
+    if not isinstance(value, str):
+        raise InputError(f"{key}: must be text")
+    return value
+
+
+def _number(given: Message, key: str) -> float:
+    value = given.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{key}: must be a number")
+    return float(value)
+
+
+ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {
+    "set": _set,
+    "values": _values,
+    "start": _start,
+    "stop": _stop,
+    "coast": _coast,
+    "reset": _reset,
+    "ref": _ref,
+    "save": _save,
+    "defaults": _defaults,
+    "faults": _faults,
+    "plot": _plot,
+    "commission": _commission,
+    "phase": _phase,
+    "results": _results,
+    "capture": _capture,
+    "scope_stop": _scope_stop,
+}

@@ -1,0 +1,106 @@
+// The commissioning, in three steps: what to see to, measuring, what was found.
+
+import { by, make, number, withUnit } from "./dom.js";
+
+const [RUNNING, DONE, PARTLY, ABORTED] = [1, 2, 3, 4];
+const PLATE = ["pole_pairs", "current_limit", "speed_limit", "stator_resistance", "inductance_d", "inductance_q", "magnet_flux"];
+
+export class Commissioning {
+  constructor(link, run, parameters, fail) {
+    Object.assign(this, { link, run, parameters, fail, outcome: 0, phase: null });
+    link.on("hello", (hello) => this.begin(hello));
+    link.on("status", (status) => this.follow(status));
+  }
+
+  begin({ parameters, values }) {
+    this.table = parameters;
+    this.values = values;
+    this.prepare();
+  }
+
+  steps(active, ...content) {
+    const titles = ["Before", "Measuring", "Result"];
+    const list = make("ol", { class: "steps" }, ...titles.map((title, at) => make("li", { class: at === active ? "now" : "" }, title)));
+    by("wizard").replaceChildren(list, ...content);
+  }
+
+  prepare() {
+    const items = PLATE.map((name) => this.table.find((parameter) => parameter.name === name)).filter(Boolean);
+    const plate = items.map((parameter) =>
+      make("tr", {}, make("td", {}, parameter.name), make("td", { class: "figure" }, number(this.value(parameter.name), parameter.decimals)),
+        make("td", {}, parameter.unit), make("td", { class: "hint" }, parameter.meaning)),
+    );
+    const spin = this.table.find((parameter) => parameter.name === "spin_speed");
+    const speed = spin ? ` It turns at up to ${number(this.value("spin_speed"), 0)} ${spin.unit}.` : "";
+    const boxes = [
+      "The shaft is free to turn, nothing is coupled to it, nobody can touch it.",
+      "The values of the nameplate below are those of this motor.",
+      "I can switch the power off by hand.",
+    ].map((text) => make("label", { class: "check" }, make("input", { type: "checkbox" }), ` ${text}`));
+    const start = make("button", { id: "commission", disabled: true, onclick: () => this.start() }, "Measure");
+    const look = () => (start.disabled = !boxes.every((label) => label.firstChild.checked));
+    for (const box of boxes) box.onchange = look;
+    this.steps(0,
+      make("p", {}, `The drive measures machine and inverter by itself, in about a minute and a half.${speed} `,
+        "The motor goes on while this page is open and in front, and stops when it is not."),
+      make("div", { class: "list" }, ...boxes),
+      make("table", { class: "narrow" }, make("tbody", {}, ...plate)),
+      make("div", { class: "bar" }, start),
+    );
+  }
+
+  value(name) {
+    return this.parameters.rows?.get(name)?.value ?? this.values[name];
+  }
+
+  start() {
+    by("keep").checked = true;
+    this.bar = make("progress", { max: 1, value: 0 });
+    this.words = make("p", { class: "calm" }, "starting");
+    this.phase = null;
+    this.steps(1, this.words, this.bar,
+      make("div", { class: "bar" }, make("button", { id: "abort", onclick: () => this.run.stop("stop") }, "Stop measuring")));
+    this.measuring = true;
+    this.run.hold("commission");
+  }
+
+  async follow({ commissioning, fault }) {
+    const before = this.outcome;
+    this.outcome = commissioning.outcome;
+    if (this.measuring && commissioning.outcome === RUNNING) this.progress(commissioning);
+    if (before !== RUNNING || commissioning.outcome === RUNNING || !this.measuring) return;
+    this.measuring = false;
+    by("keep").checked = false;
+    if ([DONE, PARTLY].includes(commissioning.outcome)) await this.result(commissioning.outcome);
+    else this.broken(commissioning.outcome === ABORTED ? "It was stopped; the parameters are as before." : `It ended in a fault: ${fault}`);
+  }
+
+  async progress({ progress, phase }) {
+    this.bar.value = progress;
+    if (phase === this.phase) return;
+    this.phase = phase;
+    const words = await this.link.ask("phase", { phase }).catch(() => "");
+    this.words.textContent = words;
+  }
+
+  broken(words) {
+    this.steps(2, make("p", {}, words), make("div", { class: "bar" }, make("button", { onclick: () => this.prepare() }, "Once more")));
+  }
+
+  async result(outcome) {
+    const values = await this.link.ask("results").catch(() => []);
+    const rows = values.map((value) => {
+      const decimals = (this.table.find((parameter) => parameter.name === value.name)?.decimals ?? 2) + 1;
+      const show = (figure) => withUnit(number(figure, decimals), value.unit);
+      return make("tr", { class: value.used ? "" : "refused" }, make("td", {}, value.name), make("td", { class: "figure" }, show(value.before)),
+        make("td", { class: "figure" }, show(value.value)), make("td", {}, value.words));
+    });
+    const head = make("tr", {}, ...["Parameter", "Before", "Found", ""].map((title, at) => make("th", { class: at === 1 || at === 2 ? "figure" : "" }, title)));
+    const words = outcome === DONE ? "Every value is plausible and in use." : "Some values are not plausible; those keep their old value.";
+    this.steps(2, make("p", {}, `${words} They are kept when they are saved.`),
+      make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)),
+      make("div", { class: "bar" }, make("button", { id: "keep-results", onclick: () => this.parameters.save() }, "Save in the drive"),
+        make("button", { class: "plain", onclick: () => this.prepare() }, "Once more")));
+    this.parameters.refresh().catch(this.fail);
+  }
+}

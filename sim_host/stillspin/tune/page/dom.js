@@ -1,0 +1,31 @@
+// Small helpers for the page.
+
+export const by = (id) => document.getElementById(id);
+
+/** An element: make("p", {class: "x", onclick: f}, "text", child, …). */
+export function make(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [key, value] of Object.entries(properties)) {
+    if (key === "class") element.className = value;
+    else if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+    else if (key.startsWith("data-") || key.startsWith("aria-")) element.setAttribute(key, value);
+    else element[key] = value;
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** A number for people: four digits, a real minus sign. */
+export function number(value, decimals = null) {
+  const text = decimals === null ? String(Number(value.toPrecision(4))) : value.toFixed(decimals);
+  return text.replace("-", "−");
+}
+
+/** Seconds in words that a person says. */
+export function span(seconds) {
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);

@@ -1,0 +1,86 @@
+// Live signals: a rolling window, one panel for each unit.
+
+import { by, make, number } from "./dom.js";
+import { panels } from "./plot.js";
+
+const MOST = 8;
+const KEPT = 90; // s
+
+export class Live {
+  constructor(link) {
+    this.link = link;
+    this.frozen = false;
+    this.dirty = false;
+    link.on("hello", (hello) => this.choices(hello));
+    link.on("plotted", ({ signals }) => this.begin(signals));
+    link.on("samples", (message) => this.add(message));
+    by("freeze").onclick = () => this.freeze();
+    const draw = () => {
+      if (this.dirty && !this.frozen && !by("live").hidden) this.draw();
+      requestAnimationFrame(draw);
+    };
+    draw();
+  }
+
+  choices({ signals, plotted }) {
+    this.table = signals;
+    by("signals").replaceChildren(
+      ...signals.map(({ name, unit, meaning }) => {
+        const box = make("input", { type: "checkbox", value: name, checked: plotted.includes(name) });
+        box.onchange = () => this.choose();
+        return make("label", { class: "check", title: meaning }, box, ` ${name} `, make("em", {}, unit));
+      }),
+    );
+    this.begin(plotted);
+  }
+
+  choose() {
+    const boxes = [...by("signals").querySelectorAll("input")];
+    const names = boxes.filter((box) => box.checked).map((box) => box.value);
+    for (const box of boxes) box.disabled = !box.checked && names.length >= MOST;
+    if (names.length) this.link.ask("plot", { signals: names }).catch(() => {});
+  }
+
+  begin(names) {
+    this.names = names;
+    this.time = [];
+    this.values = names.map(() => []);
+    const signals = names.map((name) => this.table.find((signal) => signal.name === name));
+    this.panels = panels(by("plots"), signals, make);
+  }
+
+  add({ time, values, lost }) {
+    if (!this.panels || values.length !== this.values.length) return;
+    this.time.push(...time);
+    values.forEach((column, at) => this.values[at].push(...column));
+    const old = this.time.findIndex((at) => at > this.time[this.time.length - 1] - KEPT);
+    if (old > 500) {
+      this.time.splice(0, old);
+      for (const column of this.values) column.splice(0, old);
+    }
+    by("stream-lost").textContent = lost ? `${lost} samples lost on the way` : "";
+    this.dirty = true;
+  }
+
+  freeze() {
+    this.frozen = !this.frozen;
+    by("freeze").textContent = this.frozen ? "Go on" : "Freeze";
+  }
+
+  draw() {
+    this.dirty = false;
+    const last = this.time.length - 1;
+    if (last < 0) return;
+    const now = this.time[last];
+    const from = -Number(by("window").value);
+    const first = Math.max(0, this.time.findIndex((time) => time - now >= from) - 1);
+    const x = this.time.slice(first).map((time) => time - now);
+    for (const panel of this.panels) {
+      const series = panel.members.map(({ name, at, colour }) => ({ name, colour, x, y: this.values[at].slice(first) }));
+      panel.plot.show({ from, to: 0, series });
+      panel.members.forEach(({ at }, place) => {
+        panel.values[place].textContent = number(this.values[at][last]);
+      });
+    }
+  }
+}

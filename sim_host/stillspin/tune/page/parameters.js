@@ -1,0 +1,115 @@
+// The parameter tree: headings, values with unit and range, errors in the drive's words.
+
+import { by, make } from "./dom.js";
+
+export class Parameters {
+  constructor(link, fail) {
+    this.link = link;
+    this.fail = fail;
+    link.on("hello", (hello) => this.build(hello));
+    by("search").oninput = () => this.filter();
+    by("changed").onchange = () => this.filter();
+    by("save").onclick = () => this.save();
+    by("defaults").onclick = () => this.defaults();
+  }
+
+  build({ parameters, values }) {
+    this.rows = new Map();
+    const groups = [...new Set(parameters.map((parameter) => parameter.group))];
+    by("tree").replaceChildren(
+      ...groups.map((group) => {
+        const own = parameters.filter((parameter) => parameter.group === group);
+        const count = make("small");
+        const rows = own.map((parameter) => this.row(parameter));
+        return make("details", { open: true, class: "group" }, make("summary", {}, group, " ", count), ...rows);
+      }),
+    );
+    this.take(values);
+  }
+
+  row(parameter) {
+    const { name, unit, range, meaning, always, initial, decimals } = parameter;
+    const input = make("input", { type: "text", inputMode: "decimal", spellcheck: false, "aria-label": name });
+    if (!always) input.setAttribute("data-stopped", "");
+    const error = make("div", { class: "error", hidden: true });
+    const back = make("button", { class: "back", title: `Default: ${initial.toFixed(decimals)} ${unit}` }, "↺");
+    if (!always) back.setAttribute("data-stopped", "");
+    const element = make(
+      "div",
+      { class: "parameter", "data-name": name },
+      make("div", { class: "name" }, name, always ? null : make("i", { title: "Not while the motor is energised" }, " ◦")),
+      make("div", { class: "value" }, input, make("em", {}, unit), back),
+      make("div", { class: "range" }, range),
+      make("div", { class: "meaning" }, meaning, error),
+    );
+    const row = { parameter, input, error, element, value: initial };
+    input.onkeydown = (event) => {
+      if (event.key === "Enter") this.change(row, input.value);
+      if (event.key === "Escape") this.put(row, row.value);
+    };
+    input.onchange = () => this.change(row, input.value);
+    back.onclick = () => this.change(row, String(initial));
+    this.rows.set(name, row);
+    return element;
+  }
+
+  take(values) {
+    for (const [name, value] of Object.entries(values)) this.put(this.rows.get(name), value);
+    this.filter();
+  }
+
+  put(row, value) {
+    row.value = value;
+    row.input.value = value.toFixed(row.parameter.decimals);
+    row.error.hidden = true;
+    row.element.classList.toggle("changed", value !== row.parameter.initial);
+  }
+
+  async change(row, text) {
+    if (text === row.value.toFixed(row.parameter.decimals)) return this.put(row, row.value);
+    try {
+      this.put(row, await this.link.ask("set", { name: row.parameter.name, value: text }));
+      by("store-note").textContent = "Changes are in effect; they are kept when they are saved.";
+    } catch (error) {
+      row.error.textContent = error.message;
+      row.error.hidden = false;
+    }
+    return null;
+  }
+
+  filter() {
+    const word = by("search").value.trim().toLowerCase();
+    for (const { element, parameter } of this.rows.values()) {
+      const fits = `${parameter.name} ${parameter.meaning}`.toLowerCase().includes(word);
+      element.hidden = !fits || (by("changed").checked && !element.classList.contains("changed"));
+    }
+    for (const group of by("tree").children) {
+      const shown = [...group.querySelectorAll(".parameter")].filter((element) => !element.hidden).length;
+      group.hidden = shown === 0;
+      group.querySelector("small").textContent = shown;
+    }
+  }
+
+  async save() {
+    by("store-note").textContent = "saving …";
+    try {
+      by("store-note").textContent = await this.link.ask("save");
+    } catch (error) {
+      by("store-note").textContent = "";
+      this.fail(error);
+    }
+  }
+
+  async defaults() {
+    if (!confirm("Put every parameter to its default? What is saved in the drive stays until you save.")) return;
+    try {
+      this.take(await this.link.ask("defaults"));
+    } catch (error) {
+      this.fail(error);
+    }
+  }
+
+  async refresh() {
+    this.take(await this.link.ask("values"));
+  }
+}

@@ -1,0 +1,172 @@
+// Lines over time on a canvas: axes with round numbers, a reading under the pointer, a mark at zero.
+
+const MARGIN = { left: 62, right: 12, top: 8, bottom: 22 };
+
+/** Up to `count` round numbers in low … high. */
+export function ticks(low, high, count) {
+  const span = high - low;
+  if (!(span > 0)) return [low];
+  const power = 10 ** Math.floor(Math.log10(span / count));
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((size) => span / size <= count);
+  const found = [];
+  for (let at = Math.ceil(low / step - 1e-9); at * step <= high + step * 1e-9; at++) found.push(at * step);
+  return found;
+}
+
+/** A range around values with some air, never empty. */
+export function padded(low, high) {
+  if (!Number.isFinite(low)) return [-1, 1];
+  const air = Math.max((high - low) * 0.08, Math.abs(high) * 1e-3, 1e-3);
+  return [low - air, high + air];
+}
+
+const short = (value) => String(Number(value.toPrecision(6))).replace("-", "−");
+
+export class Plot {
+  /** series: [{name, x, y, colour}] with colour a CSS variable's name. */
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.pointer = null;
+    this.content = null;
+    canvas.addEventListener("pointermove", (event) => this.point(event.offsetX));
+    canvas.addEventListener("pointerleave", () => this.point(null));
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  point(x) {
+    this.pointer = x;
+    this.draw();
+  }
+
+  show(content) {
+    this.content = content;
+    this.draw();
+  }
+
+  colour(name) {
+    return getComputedStyle(this.canvas).getPropertyValue(name).trim();
+  }
+
+  draw() {
+    const { canvas, content } = this;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (!content || !width) return;
+    const scale = window.devicePixelRatio || 1;
+    canvas.width = width * scale;
+    canvas.height = height * scale;
+    const pen = canvas.getContext("2d");
+    pen.scale(scale, scale);
+    pen.font = "11px system-ui, sans-serif";
+    const [low, high] = this.range(content);
+    const x = (value) =>
+      MARGIN.left + ((value - content.from) / (content.to - content.from)) * (width - MARGIN.left - MARGIN.right);
+    const y = (value) => MARGIN.top + ((high - value) / (high - low)) * (height - MARGIN.top - MARGIN.bottom);
+    this.axes(pen, content, [low, high], x, y, width, height);
+    pen.save();
+    pen.beginPath();
+    pen.rect(MARGIN.left, 0, width - MARGIN.left - MARGIN.right, height - MARGIN.bottom + 1);
+    pen.clip();
+    for (const line of content.series) this.line(pen, line, content, x, y);
+    pen.restore();
+    this.read(pen, content, x, y, width, height);
+  }
+
+  range(content) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const { x, y } of content.series) {
+      for (let at = 0; at < y.length; at++) {
+        if (x[at] < content.from) continue;
+        if (y[at] < low) low = y[at];
+        if (y[at] > high) high = y[at];
+      }
+    }
+    return padded(low, high);
+  }
+
+  axes(pen, content, [low, high], x, y, width, height) {
+    pen.strokeStyle = this.colour("--grid");
+    pen.fillStyle = this.colour("--quiet");
+    pen.lineWidth = 1;
+    pen.textAlign = "right";
+    pen.textBaseline = "middle";
+    for (const value of ticks(low, high, Math.max(2, Math.floor(height / 32)))) {
+      this.stroke(pen, MARGIN.left, y(value), width - MARGIN.right, y(value));
+      pen.fillText(short(value), MARGIN.left - 6, y(value));
+    }
+    pen.textAlign = "center";
+    pen.textBaseline = "top";
+    for (const value of ticks(content.from, content.to, Math.max(2, Math.floor(width / 90)))) {
+      this.stroke(pen, x(value), MARGIN.top, x(value), height - MARGIN.bottom);
+      pen.fillText(short(value), x(value), height - MARGIN.bottom + 6);
+    }
+    if (content.mark === undefined) return;
+    pen.strokeStyle = this.colour("--quiet");
+    this.stroke(pen, x(content.mark), MARGIN.top, x(content.mark), height - MARGIN.bottom);
+  }
+
+  stroke(pen, x0, y0, x1, y1) {
+    pen.beginPath();
+    pen.moveTo(Math.round(x0) + 0.5, Math.round(y0) + 0.5);
+    pen.lineTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
+    pen.stroke();
+  }
+
+  line(pen, { x: times, y: values, colour }, content, x, y) {
+    pen.strokeStyle = this.colour(colour);
+    pen.lineWidth = 1.6;
+    pen.lineJoin = "round";
+    pen.beginPath();
+    for (let at = 0; at < values.length; at++) pen.lineTo(x(times[at]), y(values[at]));
+    pen.stroke();
+  }
+
+  /** The values under the pointer. */
+  read(pen, content, x, y, width, height) {
+    if (this.pointer === null || this.pointer < MARGIN.left) return;
+    const part = (this.pointer - MARGIN.left) / (width - MARGIN.left - MARGIN.right);
+    const time = content.from + part * (content.to - content.from);
+    pen.strokeStyle = this.colour("--quiet");
+    this.stroke(pen, this.pointer, MARGIN.top, this.pointer, height - MARGIN.bottom);
+    pen.textBaseline = "top";
+    pen.textAlign = part > 0.6 ? "right" : "left";
+    let row = MARGIN.top;
+    for (const line of content.series) {
+      const at = nearest(line.x, time);
+      if (at < 0) continue;
+      pen.fillStyle = this.colour(line.colour);
+      pen.fillText(`${line.name} ${short(line.y[at])}`, this.pointer + (part > 0.6 ? -8 : 8), row);
+      row += 14;
+    }
+  }
+}
+
+function nearest(times, time) {
+  let [low, high] = [0, times.length - 1];
+  if (high < 0) return -1;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] < time) low = middle + 1;
+    else high = middle;
+  }
+  return low > 0 && time - times[low - 1] < times[low] - time ? low - 1 : low;
+}
+
+/** Panels that share a time axis, one for each unit, in `home`. Signals: [{name, unit}]. */
+export function panels(home, signals, make) {
+  const units = [...new Set(signals.map((signal) => signal.unit))];
+  home.replaceChildren();
+  return units.map((unit) => {
+    const members = signals.map((signal, at) => ({ ...signal, at, colour: `--line-${(at % 8) + 1}` }));
+    const own = members.filter((signal) => signal.unit === unit);
+    const values = own.map((signal) => {
+      const key = make("i", { class: "key" });
+      key.style.background = `var(${signal.colour})`;
+      const value = make("b", { "data-value": signal.name });
+      return { value, item: make("span", { class: "legend" }, key, `${signal.name} `, value) };
+    });
+    const canvas = make("canvas");
+    const head = make("div", { class: "legends" }, ...values.map(({ item }) => item), make("em", {}, unit));
+    home.append(make("div", { class: "panel" }, head, canvas));
+    return { unit, members: own, values: values.map(({ value }) => value), plot: new Plot(canvas) };
+  });
+}

@@ -1,0 +1,145 @@
+// Running the motor: only while somebody holds it.
+//
+// "Hold" is the button, the space bar, or, with the box ticked, the page itself as long as it is in front. While it
+// lasts the page says so ten times a second; the server stops the motor when it does not hear that.
+
+import { by, number, span } from "./dom.js";
+
+const BEAT = 100; // ms
+const [READY, FAULT] = [2, 6];
+
+export class Run {
+  constructor(link, fail) {
+    this.link = link;
+    this.fail = fail;
+    this.status = null;
+    this.beat = null;
+    link.on("hello", (hello) => this.limits(hello));
+    link.on("status", (status) => this.show(status));
+    link.on("closed", () => this.release());
+    this.buttons();
+    this.keys();
+    document.addEventListener("visibilitychange", () => document.hidden && this.release());
+    window.addEventListener("pagehide", () => this.release());
+    window.addEventListener("blur", () => !by("keep").checked && this.release());
+  }
+
+  get held() {
+    return this.beat !== null;
+  }
+
+  limits({ parameters, values }) {
+    const limit = values.speed_limit ?? 3000;
+    by("slider").min = -limit;
+    by("slider").max = limit;
+    by("reference").min = -limit;
+    by("reference").max = limit;
+  }
+
+  buttons() {
+    const hold = by("hold");
+    hold.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0 || hold.disabled) return;
+      if (by("keep").checked) return this.held ? this.release() : this.start();
+      hold.setPointerCapture(event.pointerId);
+      this.start();
+    });
+    for (const kind of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      hold.addEventListener(kind, () => !by("keep").checked && this.release());
+    }
+    hold.addEventListener("contextmenu", (event) => event.preventDefault());
+    by("stop").onclick = () => this.stop("stop");
+    by("coast").onclick = () => this.stop("coast");
+    by("reset").onclick = () => this.link.ask("reset").catch(this.fail);
+    by("keep").onchange = () => this.release();
+    by("reference").onchange = () => this.refer(Number(by("reference").value));
+    by("slider").oninput = () => this.refer(Number(by("slider").value));
+  }
+
+  keys() {
+    const typing = (event) => event.target.closest("input:not([type=range]):not([type=checkbox]), select, textarea");
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.stop("stop");
+      if (event.key !== " " || typing(event)) return;
+      event.preventDefault();
+      if (!event.repeat && !this.held && this.ready) this.start();
+    });
+    document.addEventListener("keyup", (event) => {
+      if (event.key !== " " || typing(event)) return;
+      event.preventDefault();
+      if (!by("keep").checked) this.release();
+    });
+  }
+
+  get ready() {
+    return this.status?.number === READY;
+  }
+
+  start() {
+    this.hold("start", { speed: Number(by("reference").value) });
+  }
+
+  /** Asks for something that runs the motor, and holds it. */
+  hold(what, given = {}) {
+    if (this.held || document.hidden) return;
+    this.energised = false;
+    this.beat = setInterval(() => this.link.say({ t: "hold" }), BEAT);
+    document.body.classList.add("held");
+    this.link.ask(what, given).catch((error) => {
+      this.release();
+      this.fail(error);
+    });
+  }
+
+  release() {
+    if (!this.held) return;
+    this.letGo();
+    this.link.say({ t: "release" });
+  }
+
+  letGo() {
+    clearInterval(this.beat);
+    this.beat = null;
+    document.body.classList.remove("held");
+  }
+
+  stop(how) {
+    if (this.held) this.letGo();
+    this.link.ask(how).catch(this.fail);
+  }
+
+  refer(speed) {
+    by("reference").value = speed;
+    by("slider").value = speed;
+    this.wanted = speed;
+    if (this.referring) return;
+    this.referring = this.link
+      .ask("ref", { speed })
+      .catch(this.fail)
+      .finally(() => {
+        this.referring = null;
+        if (this.wanted !== speed) this.refer(this.wanted);
+      });
+  }
+
+  show(status) {
+    this.status = status;
+    if (this.held && this.energised && !status.energised) this.letGo(); // it has stopped by itself
+    this.energised = status.energised;
+    const state = by("state");
+    state.textContent = status.state;
+    state.className = `pill ${status.number === FAULT ? "bad" : status.energised ? "on" : ""}`;
+    by("speed").textContent = number(status.speed, 1);
+    by("now-reference").textContent = `${number(status.reference, 1)} rpm`;
+    by("limits").textContent = status.limits.join(", ") || "nothing";
+    by("store").textContent = status.store;
+    by("time").textContent = span(status.time);
+    by("fault").hidden = !status.fault;
+    by("fault-words").textContent = status.fault;
+    by("fault-remedy").textContent = status.remedy;
+    const keep = by("keep").checked;
+    by("hold").disabled = !(this.held || this.ready);
+    by("hold").textContent = this.held ? (keep ? "Running: press to stop" : "Running: let go to stop") : keep ? "Start" : "Hold to run";
+    for (const element of document.querySelectorAll("[data-stopped]")) element.disabled = status.energised;
+  }
+}

@@ -1,0 +1,123 @@
+// The captured scope: set-up, waiting for the trigger, the picture, a file.
+
+import { by, make } from "./dom.js";
+import { panels } from "./plot.js";
+
+const CHANNELS = 4;
+const PERIOD = 1e-4; // s, of the control interrupt
+const FIRST = ["speed", "current_d", "current_q", ""];
+const EDGES = {
+  now: "at once",
+  rising: "rises through",
+  falling: "falls through",
+  either: "crosses",
+  above: "is at or above",
+  below: "is below",
+};
+
+export class Scope {
+  constructor(link, fail) {
+    this.link = link;
+    this.fail = fail;
+    this.capture = null;
+    link.on("hello", (hello) => this.build(hello));
+    by("setup").onsubmit = (event) => event.preventDefault();
+    by("capture").onclick = () => this.run();
+    by("capture-stop").onclick = () => link.ask("scope_stop").catch(fail);
+    by("download").onclick = () => this.download();
+  }
+
+  build({ signals, edges, depth }) {
+    this.depth = depth;
+    this.signals = signals;
+    const names = signals.map((signal) => signal.name);
+    const options = (list, chosen) => list.map((name) => make("option", { value: name, selected: name === chosen }, name || "–"));
+    this.channels = FIRST.slice(0, CHANNELS).map((name, at) =>
+      make("select", { "aria-label": `Channel ${at + 1}`, "data-channel": at }, ...options(["", ...names], name)),
+    );
+    this.trigger = make("select", { id: "trigger" }, ...options(names, "speed"));
+    this.edge = make(
+      "select",
+      { id: "edge" },
+      ...edges.map((edge) => make("option", { value: edge, selected: edge === "rising" }, EDGES[edge] ?? edge)),
+    );
+    this.level = make("input", { id: "level", type: "number", step: "any", value: 100 });
+    this.unit = make("em");
+    this.decimation = make("input", { id: "decimation", type: "number", min: 1, max: 65535, value: 4 });
+    this.before = make("input", { id: "before", type: "number", min: 0, max: 99, value: 25 });
+    this.length = make("span", { class: "hint" });
+    const field = (text, ...parts) => make("label", { class: "field" }, text, make("span", { class: "with-unit" }, ...parts));
+    by("setup").replaceChildren(
+      ...this.channels.map((select, at) => field(`Channel ${at + 1}`, select)),
+      field("Trigger when", this.trigger),
+      field("", this.edge),
+      field("Level", this.level, this.unit),
+      field("A record every", this.decimation, make("em", {}, "× 0.1 ms")),
+      field("Before the trigger", this.before, make("em", {}, "%")),
+      this.length,
+    );
+    by("setup").onchange = () => this.explain();
+    this.explain();
+  }
+
+  explain() {
+    const chosen = this.signals.find((signal) => signal.name === this.trigger.value);
+    this.unit.textContent = chosen?.unit ?? "";
+    const now = this.edge.value === "now";
+    this.level.disabled = this.trigger.disabled = now;
+    const seconds = this.depth * PERIOD * Number(this.decimation.value);
+    this.length.textContent = `${this.depth} records, ${Number((seconds * 1e3).toPrecision(4))} ms`;
+  }
+
+  async run() {
+    const names = [...new Set(this.channels.map((select) => select.value).filter(Boolean))];
+    const given = {
+      signals: names,
+      trigger: this.trigger.value,
+      level: Number(this.level.value),
+      edge: this.edge.value,
+      decimation: Number(this.decimation.value),
+      pretrigger: Number(this.before.value) / 100,
+    };
+    this.busy(true, "waiting for the trigger …");
+    try {
+      this.capture = await this.link.ask("capture", given);
+      this.show();
+    } catch (error) {
+      this.busy(false, "");
+      this.fail(error);
+    }
+  }
+
+  busy(on, words) {
+    by("capture").disabled = on;
+    by("capture-stop").disabled = !on;
+    by("scope-note").textContent = words;
+  }
+
+  show() {
+    const { time, signals, units, clipped, interval } = this.capture;
+    const beyond = clipped.length ? `; beyond full scale: ${clipped.join(", ")}` : "";
+    this.busy(false, `${time.length} records every ${Number((interval * 1e3).toPrecision(4))} ms${beyond}`);
+    by("download").disabled = false;
+    const list = Object.keys(signals).map((name) => ({ name, unit: units[name] }));
+    const x = time.map((seconds) => seconds * 1e3);
+    const built = panels(by("captured"), list, make);
+    for (const panel of built) {
+      const series = panel.members.map(({ name, colour }) => ({ name, colour, x, y: signals[name] }));
+      panel.plot.show({ from: x[0], to: x[x.length - 1], mark: 0, series });
+    }
+    by("captured").append(make("p", { class: "hint" }, "Time in ms from the trigger."));
+  }
+
+  download() {
+    const { time, signals, units } = this.capture;
+    const names = Object.keys(signals);
+    const head = ["time [s]", ...names.map((name) => (units[name] ? `${name} [${units[name]}]` : name))];
+    const rows = time.map((seconds, at) => [seconds.toFixed(6), ...names.map((name) => signals[name][at])].join(","));
+    const file = new Blob([`${head.join(",")}\n${rows.join("\n")}\n`], { type: "text/csv" });
+    const anchor = make("a", { href: URL.createObjectURL(file), download: "capture.csv" });
+    anchor.click();
+    URL.revokeObjectURL(anchor.href);
+  }
+}

@@ -1,0 +1,169 @@
+"""The page as a person sees it, in the Chromium that is installed, with the small drive of fake_drive.py behind it."""
+
+import time
+
+import pytest
+
+from browser import needs_chromium
+from stillspin.drive.requester import wait_until
+
+READY, RUN = 2, 4
+
+
+@pytest.fixture
+def tuned(page, server):
+    page.goto(server.address)
+    page.wait_for_selector("#state:has-text('ready')")
+    return page
+
+
+def hold(tuned):
+    box = tuned.locator("#hold").bounding_box()
+    tuned.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    tuned.mouse.down()
+
+
+@needs_chromium
+def test_the_token_leaves_the_address_line_and_a_reload_works(tuned, server):
+    assert tuned.url == f"http://127.0.0.1:{server.guard.port}/"
+    tuned.reload()
+    tuned.wait_for_selector("#state:has-text('ready')")
+
+
+@needs_chromium
+def test_holding_the_button_runs_the_motor(tuned, fake):
+    tuned.fill("#reference", "300")
+    tuned.press("#reference", "Enter")
+    hold(tuned)
+    tuned.wait_for_selector("#state:has-text('run')")
+    assert wait_until(lambda: float(tuned.inner_text("#speed")) > 290, 5)
+    time.sleep(1.0)
+    assert fake.state == RUN
+    tuned.mouse.up()
+    tuned.wait_for_selector("#state:has-text('ready')")
+
+
+@needs_chromium
+def test_the_space_bar_and_escape(tuned, fake):
+    tuned.keyboard.down(" ")
+    tuned.wait_for_selector("#state:has-text('run')")
+    tuned.keyboard.up(" ")
+    tuned.wait_for_selector("#state:has-text('ready')")
+    tuned.check("#keep")
+    tuned.click("#hold")
+    time.sleep(1.0)
+    assert fake.state == RUN
+    tuned.keyboard.press("Escape")
+    tuned.wait_for_selector("#state:has-text('ready')")
+    tuned.fill("#reference", "10")
+    tuned.press("#reference", " ")  # a space in a field is a space
+    assert fake.state == READY
+
+
+@needs_chromium
+def test_a_page_that_is_hidden_or_closed_stops_the_motor(tuned, fake):
+    tuned.check("#keep")
+    tuned.click("#hold")
+    tuned.wait_for_selector("#state:has-text('run')")
+    tuned.evaluate(
+        """() => {
+            Object.defineProperty(document, 'hidden', {get: () => true});
+            document.dispatchEvent(new Event('visibilitychange'));
+        }"""
+    )
+    assert wait_until(lambda: fake.state != RUN, 1)
+    assert wait_until(lambda: fake.state == READY, 2)
+    tuned.reload()
+    tuned.wait_for_selector("#state:has-text('ready')")
+    tuned.check("#keep")
+    tuned.click("#hold")
+    tuned.wait_for_selector("#state:has-text('run')")
+    tuned.goto("about:blank")
+    assert wait_until(lambda: fake.state != RUN, 1)
+
+
+@needs_chromium
+def test_a_page_that_hangs_stops_the_motor(tuned, fake):
+    tuned.check("#keep")
+    tuned.click("#hold")
+    tuned.wait_for_selector("#state:has-text('run')")
+    tuned.evaluate("() => { const end = Date.now() + 1500; while (Date.now() < end); }")
+    assert fake.state != RUN
+
+
+@needs_chromium
+def test_parameters_are_searched_changed_and_refused_in_words(tuned, fake):
+    tuned.click("[data-tab=parameters]")
+    tuned.fill("#search", "ramp")
+    assert tuned.locator(".parameter:visible").count() == 1
+    field = tuned.locator("[data-name=speed_ramp] input")
+    field.fill("500")
+    field.press("Enter")
+    tuned.wait_for_selector("[data-name=speed_ramp].changed")
+    assert fake.values[86] == 500 * 2**8
+    field.fill("200000")
+    field.press("Enter")
+    error = tuned.wait_for_selector("[data-name=speed_ramp] .error:visible")
+    assert error.inner_text() == "speed_ramp: 200000 rpm/s is out of range; 0 … 100000 rpm/s"
+
+
+@needs_chromium
+def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
+    tuned.click("[data-tab=scope]")
+    tuned.click("#capture")
+    tuned.wait_for_selector("#captured canvas")
+    assert "1024 records every 0.4 ms" in tuned.inner_text("#scope-note")
+    with tuned.expect_download() as download:
+        tuned.click("#download")
+    assert download.value.path().read_text().startswith("time [s],speed [rpm],current_d [A],current_q [A]\n")
+    tuned.click("[data-tab=commissioning]")
+    assert tuned.locator("#commission").is_disabled()
+    for box in tuned.locator("#wizard input").all():
+        box.check()
+    tuned.click("#commission")
+    tuned.wait_for_selector("#wizard :text('too few samples')")
+    fake.raise_fault(1)
+    tuned.wait_for_selector("#fault-words:has-text('over-current')")
+    tuned.click("[data-tab=faults]")
+    assert "over-current: the comparator opened the gates" in tuned.inner_text("#history")
+    tuned.click("#reset")
+    tuned.wait_for_selector("#state:has-text('ready')")
+
+
+@needs_chromium
+def test_an_unplugged_drive_is_said(tuned, fake):
+    fake.unplug()
+    tuned.wait_for_selector("#lost:visible")
+    assert "is lost" in tuned.inner_text("#lost")
+
+
+@needs_chromium
+def test_another_site_in_the_same_browser_gets_nothing(tuned, server):
+    """With the page's cookie in the jar: not as a script, a fetch, a frame, nor as a live connection."""
+    other = tuned.context.new_page()
+    other.route(
+        "http://evil.example/", lambda route: route.fulfill(body="<title>evil</title>", content_type="text/html")
+    )
+    other.goto("http://evil.example/")
+    outcome = other.evaluate(
+        """async (own) => {
+            const load = (make) => new Promise((resolve) => {
+                const element = make();
+                element.onload = () => resolve('loaded');
+                element.onerror = () => resolve('refused');
+                document.body.append(element);
+            });
+            const code = {src: own + 'page/app.js'};
+            const script = await load(() => Object.assign(document.createElement('script'), code));
+            const socket = await new Promise((resolve) => {
+                const live = new WebSocket(own.replace('http', 'ws') + 'live');
+                live.onopen = () => resolve('opened');
+                live.onerror = () => resolve('refused');
+            });
+            const text = await fetch(own, {credentials: 'include'}).then((answer) => answer.text(), () => 'refused');
+            return {script, socket, text};
+        }""",
+        f"http://127.0.0.1:{server.guard.port}/",
+    )
+    assert outcome == {"script": "refused", "socket": "refused", "text": "refused"}
+    other.close()
