@@ -9,9 +9,11 @@
 #define BOARD_PIN_ENCODER_A 20u
 #define BOARD_PIN_ENCODER_B 21u
 #define BOARD_PIN_ENCODER_INDEX 23u
+#define BOARD_PIN_FAULT_LAMP 27u
 #define BOARD_PIN_SERIAL_IN 28u   // SCI-A
 #define BOARD_PIN_SERIAL_OUT 29u  // also a boot-mode pin: keep loads light while the chip comes out of reset
-#define BOARD_PIN_FAULT_LAMP 31u
+#define BOARD_PIN_CAN_RECEIVE 30u
+#define BOARD_PIN_CAN_TRANSMIT 31u
 #define BOARD_PIN_SDA 32u
 #define BOARD_PIN_SCL 33u
 #define BOARD_PIN_GATE_ENABLE 34u  // kept alive by toggling

@@ -1010,6 +1010,9 @@
 #define I2C_FFRX_RXFFRST_LSB 13
 #define I2C_FFRX_RXFFRST_MASK 0x2000u
 
+// ---- Controller area network A -----------------------------------------------------------------------
+#include "hal/f2808/registers_can.h"
+
 // ---- External interrupts -----------------------------------------------------------------------------
 #define REG_XINT1CR 0x7070uL  // XINT1 control
 #define XINT1CR_ENABLE_LSB 0

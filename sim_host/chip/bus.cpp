@@ -28,7 +28,8 @@ enum class Device : std::uint8_t {
   kGpio,
   kSystem,
   kAdc,
-  kI2c
+  kI2c,
+  kCan
 };
 
 constexpr unsigned kPageShift = 6;
@@ -36,6 +37,7 @@ constexpr std::uint32_t kPageMask = 0x3F;
 constexpr std::uint32_t kPageCount = 0x8000 >> kPageShift;
 constexpr std::uint32_t kAdcFrame = 0x7100;
 constexpr std::uint32_t kMirrorWords = 16;
+constexpr std::uint32_t kCanEnd = 0x6200;
 
 struct PageTable {
   Device device[kPageCount] = {};
@@ -57,6 +59,7 @@ constexpr PageTable make_page_table() {
   table.set(kSystemFrame, Device::kSystem);
   table.set(kAdcFrame, Device::kAdc);
   table.set(I2C_BASE, Device::kI2c);
+  for (std::uint32_t address = REG_CANME; address < kCanEnd; address += kPageMask + 1) table.set(address, Device::kCan);
   return table;
 }
 
@@ -121,8 +124,12 @@ std::uint32_t Core::read32(std::uint32_t address) {
   ++statistics_.reads;
   std::uint32_t value = 0;
   try {
-    value = bus_read(address);
-    value |= static_cast<std::uint32_t>(bus_read(address + 1)) << 16;
+    if (device_at(address) == Device::kCan) {
+      value = read_can32(address);
+    } else {
+      value = bus_read(address);
+      value |= static_cast<std::uint32_t>(bus_read(address + 1)) << 16;
+    }
     if (world_touched_) after_world();
   } catch (...) {
     fail_with_current_exception();
@@ -135,8 +142,12 @@ void Core::write32(std::uint32_t address, std::uint32_t value) {
   spend(kWriteCycles * halves(address));
   ++statistics_.writes;
   try {
-    bus_write(address, static_cast<std::uint16_t>(value & 0xFFFFu));
-    bus_write(address + 1, static_cast<std::uint16_t>(value >> 16));
+    if (device_at(address) == Device::kCan) {
+      write_can(address, value, true);
+    } else {
+      bus_write(address, static_cast<std::uint16_t>(value & 0xFFFFu));
+      bus_write(address + 1, static_cast<std::uint16_t>(value >> 16));
+    }
     if (world_touched_) after_world();
   } catch (...) {
     fail_with_current_exception();
@@ -187,6 +198,8 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return gate_stops(system_.eqep_clock(1), address) ? 0 : eqep1_.read(offset_in_page(address), now_);
     case Device::kSci:
       return read_sci(address);
+    case Device::kCan:
+      return read_can16(address);
     case Device::kSystem:
       return read_system(offset_in_page(address));
     case Device::kI2c:
@@ -246,7 +259,9 @@ std::uint16_t Core::read_identity(std::uint32_t address) const {
 
 std::uint16_t Core::inspect(std::uint32_t address) {
   const Statistics before = statistics_;
-  const std::uint16_t value = bus_read(address);
+  const bool wide = device_at(address) == Device::kCan;
+  const std::uint16_t value =
+      wide ? static_cast<std::uint16_t>(read_can32(address & ~1u) >> 16 * (address & 1u)) : bus_read(address);
   statistics_ = before;
   return value;
 }
@@ -279,6 +294,9 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
       return;
     case Device::kI2c:
       write_i2c(address, value);
+      return;
+    case Device::kCan:
+      write_can(address, value, false);
       return;
     case Device::kSystem:
       if (!protection_stops(address)) write_system(offset_in_page(address), value);
@@ -340,7 +358,10 @@ void Core::write_gpio(std::uint32_t address, std::uint16_t value) {
   if (protected_register && protection_stops(address)) return;
   gpio_.write(offset, value, now_);
   world_touched_ = true;
-  if (protected_register) pins_dirty_ = true;  // trip inputs may have been routed
+  if (!protected_register) return;
+  pins_dirty_ = true;  // trip inputs may have been routed
+  ecan_.set_routed(gpio_.can_routed(), now_);
+  set_due(kECanA, ecan_.next_event());
 }
 
 void Core::write_flash(std::uint32_t address, std::uint16_t value) {

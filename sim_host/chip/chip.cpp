@@ -15,6 +15,7 @@ void Chip::pins_changed() { core_->pins_changed(); }
 void Chip::set_adc_crosstalk(bool on) { core_->set_adc_crosstalk(on); }
 void Chip::block_adc_triggers(bool on) { core_->block_adc_triggers(on); }
 void Chip::hold_interrupts(bool on) { core_->hold_interrupts(on); }
+void Chip::stop_can_transmission() { core_->stop_can_transmission(); }
 bool Chip::is_idle() const { return core_->is_idle(); }
 std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
 

@@ -51,6 +51,8 @@ struct Statistics {
   std::uint64_t conversions_delayed = 0;  // the trigger found the converter busy and waited
   std::uint64_t conversions_lost = 0;     // the trigger found another one waiting
   std::uint64_t conversions_aborted = 0;  // ended by a sequencer reset
+
+  std::uint64_t narrow_can_accesses = 0;  // to control registers that take 32-bit accesses only
 };
 
 class Chip {
@@ -77,6 +79,9 @@ class Chip {
 
   /// Erratum of silicon revisions 0, A, B: in simultaneous sampling ADCINBn reads high by ADCINAn / 256. Off at first.
   void set_adc_crosstalk(bool on);
+
+  /// Erratum: eCAN-A sends nothing from now on, until its CCR bit has been set and cleared.
+  void stop_can_transmission();
 
   /// Faults. The ADC does not see the ePWM's triggers; the CPU takes no interrupt, as while other code masks them.
   void block_adc_triggers(bool on);

@@ -33,7 +33,8 @@ Core::Core(World& world, Chip::Firmware firmware)
       adc_(*this),
       eqep1_(*this, 1),
       sci_(*this),
-      i2c_(*this) {
+      i2c_(*this),
+      ecan_(*this, world.can_line()) {
   due_.fill(kNever);
   reset(0, false);
 }
@@ -57,6 +58,7 @@ void Core::reset(Tick t, bool by_watchdog) {
   due_[kEQep1] = eqep1_.next_event();
   due_[kSci] = sci_.next_event();
   due_[kI2c] = i2c_.next_event();
+  due_[kECanA] = ecan_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kWatchdog] = watchdog_.next_event();
   find_rest();
@@ -72,6 +74,8 @@ void Core::reset_peripherals(Tick t) {
   eqep1_.reset(t);
   sci_.reset(t);
   i2c_.reset(t);
+  ecan_.reset(t);
+  ecan_.set_routed(false, t);
   timers_.reset(release_);
 }
 
@@ -88,6 +92,7 @@ void Core::run_until(Tick t) {
   check_outcome();
   limit_ = t;
   due_[kWorldCall] = world_.next_call();
+  due_[kECanA] = ecan_.next_event();
   find_rest();
   find_next();
   const CurrentScope scope(this);
@@ -113,6 +118,7 @@ Statistics Core::statistics() const {
   statistics.conversions_delayed = adc_.statistics().delayed_triggers;
   statistics.conversions_lost = adc_.statistics().lost_triggers;
   statistics.conversions_aborted = adc_.statistics().aborted;
+  statistics.narrow_can_accesses = ecan_.narrow_accesses();
   return statistics;
 }
 
@@ -143,7 +149,7 @@ void Core::fail_with_current_exception() {
 
 void Core::find_rest() {
   rest_source_ = kWorldCall;
-  for (const Source source : {kSystem, kEQep1, kSci, kI2c, kTimers, kWatchdog}) {
+  for (const Source source : {kSystem, kEQep1, kSci, kI2c, kECanA, kTimers, kWatchdog}) {
     if (due_[source] < due_[rest_source_]) rest_source_ = source;
   }
 }
@@ -219,6 +225,10 @@ void Core::run_event(Source source) {
       i2c_.run_event(now_);
       set_due(kI2c, i2c_.next_event());
       break;
+    case kECanA:
+      ecan_.run_event(now_);
+      world_touched_ = true;
+      break;
     case kTimers:
       timers_.run_event(now_);
       set_due(kTimers, timers_.next_event());
@@ -245,6 +255,7 @@ void Core::run_watchdog() {
 void Core::after_world() {
   world_touched_ = false;
   set_due(kWorldCall, world_.next_call());
+  set_due(kECanA, ecan_.next_event());  // the bus is part of the world
   if (pins_dirty_) look_at_pins();
 }
 
@@ -272,6 +283,7 @@ void Core::apply(unsigned effects) {
     eqep1_.clocks_changed(now_);
     sci_.clocks_changed(now_);
     i2c_.clocks_changed(now_);
+    ecan_.clocks_changed(now_);
     timers_.clocks_changed(now_);
     check_flash_waits();
   }
@@ -281,10 +293,16 @@ void Core::apply(unsigned effects) {
   due_[kEQep1] = eqep1_.next_event();
   due_[kSci] = sci_.next_event();
   due_[kI2c] = i2c_.next_event();
+  due_[kECanA] = ecan_.next_event();
   due_[kTimers] = timers_.next_event();
   due_[kSystem] = system_.next_event();
   find_rest();
   find_next();
+}
+
+void Core::stop_can_transmission() {
+  ecan_.stop_transmission(now_);
+  set_due(kECanA, ecan_.next_event());
 }
 
 void Core::check_flash_waits() {

@@ -18,6 +18,7 @@
 #include "sim_host/chip/chip.hpp"
 #include "sim_host/chip/coroutine.hpp"
 #include "sim_host/chip/cpu_timers.hpp"
+#include "sim_host/chip/ecan.hpp"
 #include "sim_host/chip/epwm.hpp"
 #include "sim_host/chip/eqep.hpp"
 #include "sim_host/chip/flash_control.hpp"
@@ -50,6 +51,7 @@ class Core final : public ChipServices {
   void hold_interrupts(bool on) { interrupts_.set_held(on); }
   const std::string& error() const { return error_; }
   void pins_changed() { pins_dirty_ = world_touched_ = true; }
+  void stop_can_transmission();
   bool is_idle() const { return idle_; }
   std::uint16_t inspect(std::uint32_t address);
 
@@ -90,7 +92,7 @@ class Core final : public ChipServices {
 
  private:
   // In the order in which they run at one tick.
-  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kSci, kI2c, kTimers, kWatchdog, kSources };
+  enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kSci, kI2c, kECanA, kTimers, kWatchdog, kSources };
 
   // Life cycle (core.cpp).
   static void firmware_entry(void* core);
@@ -169,6 +171,9 @@ class Core final : public ChipServices {
   std::uint16_t read_sci(std::uint32_t address);
   void write_i2c(std::uint32_t address, std::uint16_t value);
   std::uint16_t read_i2c(std::uint32_t address);
+  std::uint16_t read_can16(std::uint32_t address);
+  std::uint32_t read_can32(std::uint32_t address);
+  void write_can(std::uint32_t address, std::uint32_t value, bool wide);
 
   // Touched at every access: kept together.
   Tick now_ = 0;
@@ -199,6 +204,7 @@ class Core final : public ChipServices {
   EQep eqep1_;
   Sci sci_;
   I2c i2c_;
+  ECan ecan_;
 
   unsigned depth_ = 0;  // nested interrupts
   unsigned trips_ = 0;

@@ -34,6 +34,9 @@ constexpr unsigned kSerialPinIn = 28;
 constexpr unsigned kSerialPinOut = 29;
 constexpr unsigned kFunctionSerial = 1;
 constexpr unsigned kFunctionI2c = 1;
+constexpr unsigned kCanReceivePin = 30;
+constexpr unsigned kCanTransmitPin = 31;
+constexpr unsigned kFunctionCan = 1;
 
 // GPAMUX1 holds pins 0-15 in two words, GPAMUX2 16-31, GPBMUX1 32-34.
 unsigned mux_word(unsigned pin) {
@@ -132,6 +135,7 @@ void Gpio::update_routes() {
   encoder_routed_ = function(kEncoderPinA) == kFunctionEncoder && function(kEncoderPinB) == kFunctionEncoder;
   serial_in_routed_ = function(kSerialPinIn) == kFunctionSerial;
   serial_out_routed_ = function(kSerialPinOut) == kFunctionSerial;
+  can_routed_ = function(kCanReceivePin) == kFunctionCan && function(kCanTransmitPin) == kFunctionCan;
 }
 
 void Gpio::drive(Tick t) {

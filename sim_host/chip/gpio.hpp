@@ -42,6 +42,8 @@ class Gpio {
   bool encoder_routed() const { return encoder_routed_; }
   bool serial_in_routed() const { return serial_in_routed_; }
   bool serial_out_routed() const { return serial_out_routed_; }
+  /// Both pins of eCAN-A.
+  bool can_routed() const { return can_routed_; }
 
  private:
   static constexpr unsigned kPins = 35;
@@ -77,6 +79,7 @@ class Gpio {
   bool encoder_routed_ = false;
   bool serial_in_routed_ = false;
   bool serial_out_routed_ = false;
+  bool can_routed_ = false;
 };
 
 inline constexpr std::uint32_t kGpioFrame = 0x6F80;

@@ -7,7 +7,7 @@
 // What the core guarantees
 //  * t never decreases from one call to the next, over all functions of one peripheral.
 //  * Events come in order of time, each at its exact tick: before an access or any other call at t is made, every event
-//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, SCI, I2C, CPU
+//    due at or before t has been run. At one tick the order is: world, PLL, ePWM, ADC, eQEP, SCI, I2C, eCAN, CPU
 //    timers, watchdog. So a start of conversion reaches the ADC in the tick in which the ePWM made it.
 //  * Peripherals see only accesses that the bus lets through: EALLOW protection and clock gating (PCLKCR0/1) are the
 //    core's business, so are the access times. Unknown offsets may arrive: read 0, ignore writes.

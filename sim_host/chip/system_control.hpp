@@ -37,6 +37,7 @@ class SystemControl {
   unsigned hspclk_divider() const { return hispcp_ == 0 ? 1u : 2u * hispcp_; }
   unsigned lspclk_divider() const { return lospcp_ == 0 ? 1u : 2u * lospcp_; }
   bool adc_clock() const { return (gates0_ & PCLKCR0_ADCENCLK_MASK) != 0; }
+  bool can_clock() const { return (gates0_ & PCLKCR0_ECANAENCLK_MASK) != 0; }
   bool epwm_clock(int module) const { return (gates1_ >> module & 1u) != 0; }
   bool eqep_clock(int instance) const;
   bool sci_clock() const { return (gates0_ & PCLKCR0_SCIAENCLK_MASK) != 0; }

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "sim_host/chip/can_line.hpp"
+
 namespace stillspin::chip {
 
 using Tick = std::int64_t;  // 10 ns
@@ -55,6 +57,9 @@ class World {
 
   /// The serial port's transmitter (SCITXDA) has completed a frame.
   virtual void on_serial_frame(Tick /*t*/, const SerialFrame& /*frame*/) {}
+
+  /// The bus behind the pins of eCAN-A (GPIO30, 31), nullptr for none. Asked once; it lives as long as the chip.
+  virtual CanLine* can_line() { return nullptr; }
 
   /// When the world next wants to be called on its own account (kNever when not), and that call.
   virtual Tick next_call() const = 0;

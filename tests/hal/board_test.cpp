@@ -10,7 +10,7 @@
 namespace stillspin::test {
 
 namespace {
-constexpr std::uint32_t kLamp = 1u << 31;
+constexpr std::uint32_t kLamp = 1u << 27;
 constexpr std::uint32_t kEnable = 1u << 2;  // GPIO34 in port B
 constexpr std::uint32_t kTrip = 1u << 12;
 

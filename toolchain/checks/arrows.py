@@ -39,7 +39,7 @@ MAY_INCLUDE: dict[str, tuple[str, ...]] = {
     "hal/f2808": ("hal/qmath", "hal"),
     # The virtual chip knows the registers and not the firmware; the plant knows neither.
     "sim_host/chip": _SEAM,
-    "sim_host/devices": ("sim_host/chip/world.hpp",),
+    "sim_host/devices": ("sim_host/chip/world.hpp", "sim_host/chip/can_line.hpp"),
     "sim_host/plant": ("sim_host/chip/world.hpp",),
     # The bench joins them. It looks into the firmware to read, so that a test can tell what the drive thought.
     "sim_host/bench": ("sim_host/chip", "sim_host/devices", "sim_host/plant", "firmware", *_SEAM),
