@@ -1,4 +1,4 @@
-// The control interrupt: once per PWM period, at its start. It reads like the block diagram.
+// The control interrupt: once per PWM period, at its start. Its step reads like the block diagram.
 
 #include "firmware/drive.h"
 #include "firmware/isr_cycles.h"
@@ -6,10 +6,9 @@
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_sci.h"
+#include "hal/hal_tape.h"
 
-void drive_control_interrupt(void) {
-  drive_t* const d = &drive;
-  hal_irq_control_begin();
+void drive_control_step(drive_t* d) {
   drive_read_samples(d);
   const bool windows = d->samples.count > 0u;
   hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);
@@ -24,6 +23,13 @@ void drive_control_interrupt(void) {
   drive_modulate(d);
   drive_publish(d);
   scope_step(d->time_ms);
+}
+
+void drive_control_interrupt(void) {
+  hal_irq_control_begin();
+  hal_tape_step_begin();
+  drive_control_step(&drive);
+  hal_tape_step_end();
   hal_sci_service();
   hal_profile_step(CYCLES_SERIAL);
   hal_irq_control_end();

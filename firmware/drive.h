@@ -226,6 +226,15 @@ bool drive_hysteresis(drive_t* d);             // switches it on and off with th
 void drive_hysteresis_samples(drive_t* d);     // in the place of the windows
 void drive_hysteresis_slice(hysteresis_t* h);  // the slice interrupt
 
+/// What the control interrupt does in a period, between its begin and its end (control_interrupt.c).
+void drive_control_step(drive_t* d);
+
+/// Background level, once behind every interrupt (background.c).
+void background_step(drive_t* d);
+
+/// The dead band of the gate signals by the parameter; the power stage's own minimum is the parameter's business.
+uint16_t drive_dead_band_ticks(void);
+
 void drive_control_interrupt(void);
 void drive_window_interrupt(void);
 

@@ -2,7 +2,6 @@
 
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
-#include "firmware/link/link.h"
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "firmware/sampling.h"
@@ -16,7 +15,6 @@ void drive_reset(void) {
   sampling_reset();
   scope_reset();
   fault_history_reset();
-  link_reset();
   parameters_reset();
   drive.trim.offset_a_q8 = 2048L * 256L;
   drive.trim.offset_b_q8 = 2048L * 256L;

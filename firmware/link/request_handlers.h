@@ -22,6 +22,8 @@ request_handler_t request_parameter_read, request_parameter_get, request_paramet
 // requests_drive.c
 request_handler_t request_command, request_status, request_signals, request_fault, request_link,
     request_commission_result;
+// requests_hil.c
+request_handler_t request_hil_enter, request_hil_step, request_hil_leave;
 // requests_scope.c
 request_handler_t request_scope_setup, request_scope_arm, request_scope_state, request_scope_read, request_scope_stop,
     request_stream;

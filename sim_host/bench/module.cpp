@@ -64,12 +64,24 @@ std::function<bool(double)> progress_of(const nb::object& callback) {
   };
 }
 
+nb::bytes bytes_of(const Octets& octets) { return nb::bytes(octets.data(), octets.size()); }
+
+TapeSink tape_sink_of(const nb::object& sink) {
+  if (sink.is_none()) return {};
+  return [sink](const TapedPeriod& period) {
+    nb::gil_scoped_acquire gil;
+    nb::list requests;
+    for (const Octets& request : period.requests) requests.append(bytes_of(request));
+    return nb::cast<bool>(sink(requests, bytes_of(period.step), bytes_of(period.answer)));
+  };
+}
+
 PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
                            const std::map<std::string, double>& parameters,
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
                            int record_every, const std::tuple<double, double, int>& waveform, std::uint64_t seed,
-                           const nb::object& progress, bool record_start) {
+                           const nb::object& progress, bool record_start, const nb::object& tape) {
   check_motor(motor);
   RunRequest request;
   request.setup = setup_from(plant, seed);
@@ -82,6 +94,7 @@ PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
   request.waveform = {std::get<0>(waveform), std::get<1>(waveform), std::get<2>(waveform)};
   request.record_start = record_start;
   request.progress = progress_of(progress);
+  request.tape = tape_sink_of(tape);
   RunResult result;
   {
     nb::gil_scoped_release release;
@@ -225,7 +238,7 @@ NB_MODULE(_core, m) {
       .def_ro("stats", &PythonResult::stats);
   m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
         nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
-        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false,
+        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false, nb::arg("tape") = nb::none(),
         "One run of the virtual drive; see core.py.");
   nb::class_<PythonCommissioning>(m, "CommissioningResult")
       .def_ro("values", &PythonCommissioning::values)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "firmware/drive_api.h"
+#include "firmware/link/requests.h"
 #include "firmware/words.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
@@ -56,6 +57,7 @@ class Director : public PeriodListener {
         result_(result),
         recorder_(request.record_every, request.setup.plant()),
         faults_(request.setup.fault),
+        tap_(request.tape),
         parameters_(raw_parameters(request.parameters)) {
     recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
     for (const Command& c : request.commands) check(c);
@@ -74,6 +76,7 @@ class Director : public PeriodListener {
   const Travel& travel() const { return travel_; }
 
   void on_period(Tick t) override {
+    if (!tap_.turn() && result_.reason.empty()) result_.reason = "stopped by the one who takes the tape";
     const drive_signals_t& s = *drive_signals();
     recorder_.finish_row(s, drive.samples);
     watch_fault(t, s);
@@ -113,7 +116,7 @@ class Director : public PeriodListener {
       for (const RawParameter& p : parameters_) set(p);
       configured_ = true;
     } else if (configured_ && !started_ && t >= kEarliestStart) {
-      drive_command_start();
+      give({0.0, "start", 0.0});
       started_ = true;
       asked_ = t;
       travel_.from(board_->plant().state().angle_m);
@@ -123,6 +126,7 @@ class Director : public PeriodListener {
   }
 
   void set(const RawParameter& p) {
+    tap_.note_parameter(p.id, p.raw);
     const parameter_result_t r = parameter_set(static_cast<std::uint16_t>(p.id), p.raw);
     if (r != SET_OK) result_.reason = "the drive refused parameter " + std::to_string(p.id);
   }
@@ -154,11 +158,15 @@ class Director : public PeriodListener {
   }
 
   void give(const Command& c) {
-    if (c.what == "speed_ref_rpm") drive_command_speed(static_cast<std::int32_t>(std::lround(c.value * 65536.0)));
-    if (c.what == "start") drive_command_start();
-    if (c.what == "stop") drive_command_stop();
-    if (c.what == "coast") drive_command_coast();
-    if (c.what == "reset") drive_command_reset();
+    if (c.what == "speed_ref_rpm") {
+      const auto rpm_q16 = static_cast<std::int32_t>(std::lround(c.value * 65536.0));
+      tap_.note_command(COMMAND_SPEED, rpm_q16);
+      drive_command_speed(rpm_q16);
+    }
+    if (c.what == "start") tell(COMMAND_START, drive_command_start);
+    if (c.what == "stop") tell(COMMAND_STOP, drive_command_stop);
+    if (c.what == "coast") tell(COMMAND_COAST, drive_command_coast);
+    if (c.what == "reset") tell(COMMAND_RESET, drive_command_reset);
     if (c.what.rfind("set:", 0) == 0) {
       RawParameter p{};
       p.raw = parameter_raw(c.what.substr(4), c.value, p.id);
@@ -166,10 +174,16 @@ class Director : public PeriodListener {
     }
   }
 
+  void tell(unsigned code, void (*command)()) {
+    tap_.note_command(code, 0);
+    command();
+  }
+
   const RunRequest& request_;
   RunResult& result_;
   Recorder recorder_;
   FaultPlayer faults_;
+  TapeTap tap_;
   std::vector<RawParameter> parameters_;
   Board* board_ = nullptr;
   Tick origin_ = -1;

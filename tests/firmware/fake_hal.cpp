@@ -54,6 +54,8 @@ void hal_slices_end(void) { board.slice_ticks = 0; }
 void hal_slice_read(hal_slice_t* slice) { *slice = board.slice; }
 void hal_slice_set_legs(std::uint16_t state) { board.legs = state; }
 
+void hal_irq_install(hal_isr_t, hal_isr_t) {}
+void hal_irq_enable(void) {}
 std::uint16_t hal_irq_disable(void) { return 0; }
 void hal_irq_restore(std::uint16_t) {}
 std::uint16_t hal_irq_unexpected_count(void) { return 0; }
@@ -62,6 +64,7 @@ void hal_irq_control_begin(void) {}
 void hal_irq_control_end(void) {}
 void hal_safety_toggle_enable(void) { board.enable_toggles++; }
 void hal_safety_fault_lamp(bool on) { board.lamp = on; }
+void hal_encoder_init(std::uint32_t) {}
 std::uint32_t hal_encoder_count(void) { return board.encoder; }
 
 bool hal_sci_init(std::uint32_t baud) {

@@ -42,7 +42,7 @@ MAY_INCLUDE: dict[str, tuple[str, ...]] = {
     "sim_host/devices": ("sim_host/chip/world.hpp", "sim_host/chip/can_line.hpp"),
     "sim_host/plant": ("sim_host/chip/world.hpp",),
     # The bench joins them. It looks into the firmware to read, so that a test can tell what the drive thought.
-    "sim_host/bench": ("sim_host/chip", "sim_host/devices", "sim_host/plant", "firmware", *_SEAM),
+    "sim_host/bench": ("sim_host/chip", "sim_host/devices", "sim_host/plant", "firmware", "hal/hal_tape.h", *_SEAM),
 }
 
 # C code of the drive has no C library: only headers that a freestanding compiler brings.

@@ -1,0 +1,47 @@
+// What a run's hardware told the drive in every period, and what the drive made of it, as records for a board
+// (firmware/hil/hil.h): the same periods can be stepped there and must give the same answers.
+
+#ifndef STILLSPIN_SIM_HOST_BENCH_TAPE_TAP_HPP
+#define STILLSPIN_SIM_HOST_BENCH_TAPE_TAP_HPP
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace stillspin::bench {
+
+using Octets = std::vector<std::uint8_t>;
+
+struct TapedPeriod {
+  std::vector<Octets> requests;  // type and body of what is asked of the drive before the step, in order
+  Octets step;                   // body of the step's request
+  Octets answer;                 // body of the answer that it must have
+};
+
+/// Called behind every period from power-on; false ends the run.
+using TapeSink = std::function<bool(const TapedPeriod&)>;
+
+class TapeTap {
+ public:
+  /// Without a sink everything here does nothing.
+  explicit TapeTap(TapeSink sink);
+  ~TapeTap();
+  TapeTap(const TapeTap&) = delete;
+  TapeTap& operator=(const TapeTap&) = delete;
+
+  /// At every period's start, before anything is asked of the drive in it. False when the sink wants no more.
+  bool turn();
+
+  void note_command(unsigned code, std::int32_t argument);
+  void note_parameter(unsigned id, std::int32_t raw);
+
+ private:
+  TapeSink sink_;
+  TapedPeriod period_;
+  std::uint16_t sequence_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace stillspin::bench
+
+#endif
