@@ -126,9 +126,6 @@ void Adc::queue_result(int index, int code, Tick ready) {
 
 /// Results that are ready at t become visible.
 void Adc::store_results(Tick t) {
-  if (first_ready_ > t) {
-    return;
-  }
   for (; first_in_flight_ < in_flight_end_ && in_flight_[first_in_flight_].ready <= t; ++first_in_flight_) {
     results_[in_flight_[first_in_flight_].index] = in_flight_[first_in_flight_].code;
   }
@@ -356,12 +353,10 @@ std::uint16_t Adc::read(std::uint16_t offset, Tick t) {
   constexpr std::uint16_t kResult0 = static_cast<std::uint16_t>(REG_ADCRESULT0 - REG_ADCTRL1);
   constexpr int kLeftShift = 4;
   if (offset >= kAdcMirrorOffset && offset < kAdcMirrorOffset + 16) {
-    store_results(t);
-    return results_[offset - kAdcMirrorOffset];
+    return result(offset - kAdcMirrorOffset, t);
   }
   if (offset >= kResult0 && offset < kResult0 + 16) {
-    store_results(t);
-    return static_cast<std::uint16_t>(results_[offset - kResult0] << kLeftShift);
+    return static_cast<std::uint16_t>(result(offset - kResult0, t) << kLeftShift);
   }
   const std::uint32_t address = REG_ADCTRL1 + offset;
   switch (address) {

@@ -50,6 +50,12 @@ class Adc final : public Peripheral {
   void run_event(Tick t) override;
   void clocks_changed(Tick t) override;
 
+  /// RESULTn, right-justified, as a read at t finds it.
+  std::uint16_t result(unsigned n, Tick t) {
+    if (first_ready_ <= t) store_results(t);
+    return results_[n];
+  }
+
   /// The pulse that the ePWM bank sent: SOCA (true) or SOCB.
   void start_of_conversion(bool soca, Tick t);
 

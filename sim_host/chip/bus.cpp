@@ -91,6 +91,12 @@ bool epwm_register_protected(std::uint16_t offset) {
 
 }  // namespace
 
+// Most reads are of results of the ADC.
+inline std::uint16_t Core::read_word(std::uint32_t address) {
+  const std::uint32_t result = address - REG_MIRROR_ADCRESULT0;
+  return result < kMirrorWords && system_.adc_clock() ? adc_.result(result, now_) : bus_read(address);
+}
+
 // ---- the four accesses ---------------------------------------------------------------------------------
 
 std::uint16_t Core::read16(std::uint32_t address) {
@@ -98,7 +104,7 @@ std::uint16_t Core::read16(std::uint32_t address) {
   ++statistics_.reads;
   std::uint16_t value = 0;
   try {
-    value = bus_read(address);
+    value = read_word(address);
     if (world_touched_) after_world();
   } catch (...) {
     fail_with_current_exception();
@@ -127,8 +133,8 @@ std::uint32_t Core::read32(std::uint32_t address) {
     if (device_at(address) == Device::kCan) {
       value = read_can32(address);
     } else {
-      value = bus_read(address);
-      value |= static_cast<std::uint32_t>(bus_read(address + 1)) << 16;
+      value = read_word(address);
+      value |= static_cast<std::uint32_t>(read_word(address + 1)) << 16;
     }
     if (world_touched_) after_world();
   } catch (...) {
@@ -186,7 +192,7 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return gate_stops(system_.adc_clock(), address) ? 0 : adc_.read(offset_in_page(address), now_);
     case Device::kAdcMirror:
       if (address - REG_MIRROR_ADCRESULT0 >= kMirrorWords || gate_stops(system_.adc_clock(), address)) return 0;
-      return adc_.read(static_cast<std::uint16_t>(kAdcMirrorOffset + offset_in_page(address)), now_);
+      return adc_.result(offset_in_page(address), now_);
     case Device::kPie:
       return address < REG_PIECTRL ? 0 : interrupts_.read(static_cast<std::uint16_t>(address - REG_PIECTRL));
     case Device::kTimers:

@@ -153,6 +153,7 @@ class Core final : public ChipServices {
   void take_interrupt();
 
   // Bus (bus.cpp).
+  std::uint16_t read_word(std::uint32_t address);
   std::uint16_t bus_read(std::uint32_t address);
   void bus_write(std::uint32_t address, std::uint16_t value);
   bool protection_stops(std::uint32_t address);
