@@ -76,6 +76,25 @@ void check(const Design& wanted) {
 
 TEST(SpeedController, CoefficientsOfMotorA) { check(Design{}); }
 
+// What the gains are scaled to is what they would have been with that inertia from the beginning.
+TEST(SpeedController, ScaledGainsAreThoseOfAnotherInertia) {
+  for (const double ratio : {0.5, 0.8, 1.0, 2.0}) {
+    Design told, other;
+    other.motor.inertia = told.motor.inertia / ratio;
+    const machine_model_t m = model_of(told.motor), n = model_of(other.motor);
+    const speed_controller_config_t c = told.config(), e = other.config();
+    speed_controller_t s, exact;
+    ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+    ASSERT_TRUE(speed_controller_init(&exact, &e, &n));
+    speed_controller_scale(&s, raw(0.6, 24));  // no matter what it was before
+    speed_controller_scale(&s, raw(ratio, 24));
+    EXPECT_NEAR(static_cast<double>(s.gains.amps_per_bpp) / exact.gains.amps_per_bpp, 1.0, 1e-3) << ratio;
+    EXPECT_NEAR(real(s.gains.share_q30, 30), real(exact.gains.share_q30, 30), 1e-3) << ratio;
+    EXPECT_NEAR(static_cast<double>(s.gains.pi_kp) / exact.gains.pi_kp, 1.0, 2e-3) << ratio;
+    EXPECT_NEAR(static_cast<double>(s.gains.pi_ki) / exact.gains.pi_ki, 1.0, 2e-3) << ratio;
+  }
+}
+
 TEST(SpeedController, CoefficientsOfRandomDrives) {
   Random random(40);
   int used = 0;
