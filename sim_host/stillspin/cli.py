@@ -20,6 +20,7 @@ from stillspin import (
     commands,
     commission,
     core,
+    drift,
     execute,
     output,
     profile,
@@ -182,6 +183,34 @@ def reproduce(
         nameplate=nameplate,
     )
     _carry_out(chosen, options)
+
+
+@app.command(name="drift")
+def drift_(
+    *,
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: those of the list].")
+    ] = None,
+    profile_name: ProfileOption = "bench",
+    seed: SeedOption = 1,
+    params: ParamsOption = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this drift, by its mark. Repeatable.")
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results-drift"),
+    jobs: JobsOption = None,
+) -> None:
+    """Commission the drive, then change the plant behind its back; status 1 where twice a goal is missed."""
+    listed, drifts = drift.load(core.plant_schema(core.load()))
+    ids = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or listed)
+    workers = jobs or len(os.sched_getaffinity(0))
+    chosen = drift.chosen(drifts, only or [])
+    options = Options(profile_name, seed, out, jobs=workers, params=params, commission=True, others=chosen)
+    done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
+    short = tables.drift(done.results, done.beside)
+    print(f"{short} figures miss the goal of a plant that has drifted; see {out / report.PAGE}")
+    if short or done.refused:
+        raise typer.Exit(BROKEN)
 
 
 @app.command(name="commission")

@@ -30,7 +30,7 @@ class Options:
         jobs: runs at a time; draw: whether to draw.
         params: a parameter file for the drive; None for none.
         commission: whether the drive measures itself first, where the profile is for it and there is no `params`.
-        paper_scheme, nameplate: the variants beside.
+        paper_scheme, nameplate: the variants beside; others: and some more.
     """
 
     profile: str
@@ -43,6 +43,7 @@ class Options:
     commission: bool = False
     paper_scheme: bool = False
     nameplate: bool = False
+    others: Sequence[Variant] = ()
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,7 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
             variants.append(variant.nameplate(own))
         if options.paper_scheme:
             variants.append(variant.paper())
+        variants += options.others
         todo = [(scenario, settings) for scenario in scenarios]
         todo += [(v.scenario(s), v.settings(settings)) for v in variants for s in scenarios if v.applies(s)]
         jobs = [job for scenario, each in todo for job in execute.prepare(scenario, each, native)]

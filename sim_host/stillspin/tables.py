@@ -13,6 +13,7 @@ from stillspin.assess import ScenarioResult
 from stillspin.core import Entry
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
+from stillspin.figures import Result
 from stillspin.scenario import Scenario
 from stillspin.variant import Beside
 
@@ -56,7 +57,33 @@ def _reached(result: ScenarioResult | None, name: str) -> str:
     """What a variant reaches: nothing where it was not run."""
     if result is None:
         return ""
-    value = next(figure.value for figure in result.figures if figure.name == name)
+    return _or_lost(_figure(result, name).value)
+
+
+def drift(results: Iterable[ScenarioResult], beside: Sequence[Beside]) -> int:
+    """Every figure with a goal, as commissioned and on each plant that has drifted; how many of these fall short."""
+    table = _table("scenario", "figure", "unit", "goal there", "commissioned", *(item.variant.title for item in beside))
+    short = 0
+    for result in results:
+        for figure in result.figures:
+            if figure.goal is None:
+                continue
+            others = [_figure(item.results[result.scenario.id], figure.name) for item in beside]
+            short += sum(not other.met for other in others)
+            cells = [Text(_or_lost(other.value), style="" if other.met else "red") for other in others]
+            goal = others[0].goal if others else None
+            unit = report.unit_text(figure.unit)
+            own = _or_lost(figure.value)
+            table.add_row(result.scenario.id, figure.name, unit, report.number(goal), own, *cells)
+    _print(table)
+    return short
+
+
+def _figure(result: ScenarioResult, name: str) -> Result:
+    return next(figure for figure in result.figures if figure.name == name)
+
+
+def _or_lost(value: float | None) -> str:
     return "lost" if value is None else report.number(value)
 
 

@@ -1,0 +1,113 @@
+"""What has changed since the drive was commissioned, as variants of a campaign (`schemes/drift.toml`).
+
+Each drift multiplies some of what the plant really is; the drive keeps its parameters. The scenarios are the same, and
+their goals as many times as large as the list says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from stillspin import core, resources, toml_table
+from stillspin.errors import InputError
+from stillspin.execute import Settings
+from stillspin.profile import merged
+from stillspin.scenario import Goal, Scenario
+from stillspin.variant import Variant
+
+_ERROR = "parameter_error"
+
+
+@dataclass(frozen=True)
+class Drift(Variant):
+    """One thing that has changed.
+
+    Attributes:
+        factors: of entries of the plant, by section; goals: what the goals are multiplied by.
+        schema: of the plant.
+    """
+
+    factors: dict[str, dict[str, float]]
+    goals: float
+    schema: core.Schema
+
+    def applies(self, scenario: Scenario) -> bool:
+        """Everywhere: the list says which scenarios are run."""
+        return True
+
+    def scenario(self, scenario: Scenario) -> Scenario:
+        """The same with larger goals, not drawn."""
+        figures = tuple(replace(figure, goal=_times(figure.goal, self.goals)) for figure in scenario.figures)
+        return replace(scenario, id=f"{scenario.id}-{self.mark}", figures=figures, plots=())
+
+    def settings(self, settings: Settings) -> Settings:
+        """The same on the plant that has changed."""
+        plant = merged(settings.profile.plant, settings.changes.plant)
+        changed = merged(settings.profile.plant, self.plant(plant))
+        changes = replace(settings.changes, words=[*settings.changes.words, self.title], plant={})
+        return replace(settings, profile=replace(settings.profile, plant=changed), changes=changes)
+
+    def plant(self, plant: core.Plant) -> core.Plant:
+        """The plant's entries that differ. Where the plant states an error of its own, that takes the change."""
+
+        def entry(section: str, key: str) -> float:
+            return float(plant.get(section, {}).get(key, self.schema[section][key].default))
+
+        result: core.Plant = merged(plant)
+        for section, keys in self.factors.items():
+            for key, factor in keys.items():
+                if key in self.schema[_ERROR]:
+                    error = (1.0 + entry(_ERROR, key)) * factor - 1.0
+                    where, name, value = _ERROR, key, error
+                else:
+                    where, name, value = section, key, entry(section, key) * factor
+                result.setdefault(where, {})[name] = core.plant_entry(self.schema, where, name, value, self.title)
+        return result
+
+
+def _times(goal: Goal, factor: float) -> Goal:
+    default = None if goal.default is None else goal.default * factor
+    return Goal(default, {name: value * factor for name, value in goal.profiles.items()})
+
+
+def load(schema: core.Schema) -> tuple[list[str], list[Drift]]:
+    """The ids of the scenarios to run, and the drifts.
+
+    Raises:
+        InputError: the list is wrong.
+    """
+    table = toml_table.read(resources.directory("schemes") / "drift.toml")
+    scenarios = table.texts("scenarios")
+    goals = table.number("goal_factor", minimum=1.0)
+    drifts = [_drift(row, goals, schema) for row in table.tables("drifts")]
+    table.finish()
+    return scenarios, drifts
+
+
+def _drift(table: toml_table.Table, goals: float, schema: core.Schema) -> Drift:
+    title, mark = table.text("title"), table.text("mark")
+    factors: dict[str, dict[str, float]] = {}
+    for section, keys in table.table("factor").items().items():
+        core.section_known(schema, section, table.where)
+        for key, value in keys.items():
+            factor = toml_table.as_number(value)
+            if key not in schema[section] or factor is None or factor <= 0.0:
+                raise InputError(f"{table.where}: factor.{section}.{key}: must be a plant entry and a number above 0")
+            factors.setdefault(section, {})[key] = factor
+    table.finish()
+    words = f"The same drive, commissioned before: {title}."
+    return Drift(mark, title, words, factors, goals, schema)
+
+
+def chosen(drifts: Sequence[Drift], marks: Sequence[str]) -> list[Drift]:
+    """The drifts of some marks, or all.
+
+    Raises:
+        InputError: there is no such drift.
+    """
+    known = {drift.mark: drift for drift in drifts}
+    for mark in marks:
+        if mark not in known:
+            raise InputError(f"--only '{mark}': there is no such drift; known: {', '.join(known)}")
+    return [known[mark] for mark in marks] if marks else list(drifts)
