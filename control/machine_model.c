@@ -100,9 +100,15 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;
   m->accel_q12 = q_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
+  m->torque_per_accel_q24 = q_div(1048576L, m->accel_q12, 24);
   // A constant at the end of its format is not the machine's.
   return m->accel_q12 < INT32_MAX && m->emf_q16 < EMF_END_Q16 && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 &&
          m->k0_q20.q > -K0_END_Q20;
+}
+
+void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24) {
+  m->accel_q12 = q_mul_sat(told->accel_q12, ratio_q24, 24);
+  m->torque_per_accel_q24 = q_over(told->torque_per_accel_q24, q_invert(ratio_q24), 24);
 }
 
 dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {

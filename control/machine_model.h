@@ -35,17 +35,18 @@ typedef struct {
   int32_t ydd_q24, yqq_q24, ydq_q24;  // the same as shares of the map, machine_model_trim
   int32_t rs_q24;                     // of the resistance, ohm
   int32_t psi_q16;                    // of the magnet's flux/T, V per (rad per period)
-  int32_t psi_haste_q30;  // share of its error taken over in a step while it is not known well
+  int32_t psi_haste_q30;              // share of its error taken over in a step while it is not known well
 } machine_trim_t;
 
 typedef struct {
-  int32_t nominal_rs_q24;  // ohm
-  int32_t ld_q30, lq_q30;  // H, at no current
-  int32_t flux_q28;        // V s
-  int32_t emf_q16;         // lambda/T: V per (rad per period)
-  int32_t torque_q24;      // 3/2 p lambda, N m per A of i_q at i_d = 0
-  int32_t reluctance_q24;  // 3/2 p (Ld - Lq), N m per A^2
-  int32_t accel_q12;       // electrical acceleration per torque, binary angle per period^2 and N m
+  int32_t nominal_rs_q24;        // ohm
+  int32_t ld_q30, lq_q30;        // H, at no current
+  int32_t flux_q28;              // V s
+  int32_t emf_q16;               // lambda/T: V per (rad per period)
+  int32_t torque_q24;            // 3/2 p lambda, N m per A of i_q at i_d = 0
+  int32_t reluctance_q24;        // 3/2 p (Ld - Lq), N m per A^2
+  int32_t accel_q12;             // electrical acceleration per torque, binary angle per period^2 and N m
+  int32_t torque_per_accel_q24;  // and back: N m (Q16) per acceleration (Q8), Q24
   int32_t pole_pairs;
   int32_t periods_per_second;  // 1/T
   int32_t period_q30;          // T, s
@@ -72,6 +73,9 @@ bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* 
 /// What the admittances at no current have more than the map. All of the map changes in proportion: inductances that
 /// differ do so saturated as well, and the axis of the saliency turns to where the map has it.
 void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
+
+/// Takes an acceleration per torque that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.
+void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24);
 
 /// Moves the working point to a torque current and takes the trim into account. Once per period: two
 /// reciprocals.

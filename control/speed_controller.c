@@ -39,23 +39,35 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
   // b: acceleration per N m (Q12 bpp per period) * Kt (Q24) * periods, to Q8 bpp per A.
   const int32_t accel_per_amp_q8 = q_mul_sat(m->accel_q12, m->torque_q24, 28);
   s->response_q8 = q_mul_sat(q_sat64((int64_t)accel_per_amp_q8 * c->step_periods), mean_decay_q30(x_q30), 30);
-  s->amps_per_bpp = q_div(16777216L, s->response_q8, 24);
+  s->gains.amps_per_bpp = q_div(16777216L, s->response_q8, 24);
   // A rotor so heavy, or so light, that the gains do not fit.
-  if (s->amps_per_bpp == INT32_MAX || accel_per_amp_q8 > INT32_MAX / c->step_periods) return false;
+  if (s->gains.amps_per_bpp == INT32_MAX || accel_per_amp_q8 > INT32_MAX / c->step_periods) return false;
   // alpha b^2 with b in rad/s (mechanical) per A: b = Kt Ts / J.
   const int32_t b_q24 = q_mul_sat(q_div(m->torque_q24, c->inertia_q24, 16), step_q30, 22);
   const int32_t weight_q16 = q_mul_sat(q_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
-  s->share_q30 = ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30);
+  s->gains.share_q30 = ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30);
   const int32_t ratio_q30 = q_div(c->step_periods * 1000L, q_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
   if (ratio_q30 >= ONE_Q30 / 2) return false;
   s->approach_q30 = ONE_Q30 - exp_minus_q30(ratio_q30);
   // Pole assignment: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, written with b = Kt Ts / J.
   const int32_t wn_ts_q24 = q_mul_sat(c->pi_bandwidth_q8, step_q30, 14);
-  s->pi_kp = q_mul_sat(s->amps_per_bpp, q_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
-  s->pi_ki = q_mul_sat(s->amps_per_bpp, q_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
-  if (s->pi_kp == INT32_MAX) return false;
+  s->gains.pi_kp = q_mul_sat(s->gains.amps_per_bpp, q_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
+  s->gains.pi_ki = q_mul_sat(s->gains.amps_per_bpp, q_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
+  if (s->gains.pi_kp == INT32_MAX) return false;
+  s->told = s->gains;
   speed_controller_preset(s, 0);
   return true;
+}
+
+// k b is w / (1 + w) with w = alpha b^2.
+void speed_controller_scale(speed_controller_t* s, int32_t ratio_q24) {
+  const q_inverse_t per_ratio = q_invert(ratio_q24);
+  const int32_t rest_q24 = q_shr(ONE_Q30 - s->told.share_q30, 6);
+  const int32_t weight_q24 = q_mul(q_mul(q_shr(s->told.share_q30, 6), ratio_q24, 24), ratio_q24, 24);
+  s->gains.share_q30 = q_over(weight_q24, q_invert(weight_q24 + rest_q24), 30);
+  s->gains.amps_per_bpp = q_over(s->told.amps_per_bpp, per_ratio, 24);
+  s->gains.pi_kp = q_over(s->told.pi_kp, per_ratio, 24);
+  s->gains.pi_ki = q_over(s->told.pi_ki, per_ratio, 24);
 }
 
 void speed_controller_preset(speed_controller_t* s, int32_t current_q20) {
@@ -71,8 +83,8 @@ static int32_t predictive_step(speed_controller_t* s, const speed_controller_inp
   const int32_t target_change = q_add_sat(in->reference_step_bpp, q_mul(distance, s->approach_q30, 30));
   const int32_t own_change = q_mul(in->speed_bpp, s->decay_q30 - ONE_Q30, 30);
   // (53): the current that would reach the target in one step, minus the one that flows, times k b.
-  const int32_t deadbeat = amps_q20(s->amps_per_bpp, q_sub_sat(target_change, own_change));
-  const int32_t own = s->current_q20 + q_mul(q_sub_sat(deadbeat, s->current_q20), s->share_q30, 30);
+  const int32_t deadbeat = amps_q20(s->gains.amps_per_bpp, q_sub_sat(target_change, own_change));
+  const int32_t own = s->current_q20 + q_mul(q_sub_sat(deadbeat, s->current_q20), s->gains.share_q30, 30);
   const int32_t total = q_clamp(q_add_sat(own, in->load_current_q20), in->lowest_q20, in->highest_q20);
   s->current_q20 = q_sub_sat(total, in->load_current_q20);
   return total;
@@ -80,8 +92,8 @@ static int32_t predictive_step(speed_controller_t* s, const speed_controller_inp
 
 static int32_t pi_law_step(speed_controller_t* s, const speed_controller_input_t* in) {
   const int32_t error = q_sub_sat(in->reference_bpp, in->speed_bpp);
-  const int32_t proportional = amps_q20(s->pi_kp, error);
-  const int32_t integral = q_add_sat(s->integral_q20, amps_q20(s->pi_ki, error));
+  const int32_t proportional = amps_q20(s->gains.pi_kp, error);
+  const int32_t integral = q_add_sat(s->integral_q20, amps_q20(s->gains.pi_ki, error));
   const int32_t asked = q_add_sat(proportional, integral);
   const int32_t given = q_clamp(asked, in->lowest_q20, in->highest_q20);
   // Hold the integrator while the limit is reached and the error would drive it further.

@@ -32,13 +32,19 @@ typedef struct {
   int32_t pi_damping_q12;    // its damping, 0.3..3
 } speed_controller_config_t;
 
+/// What depends on the acceleration per ampere.
+typedef struct {
+  int32_t share_q30;     // k b, 0..1
+  int32_t amps_per_bpp;  // 1/b, A per bpp, Q40
+  int32_t pi_kp, pi_ki;  // A per bpp, Q40
+} speed_gains_t;
+
 typedef struct {
   int32_t decay_q30;     // a
   int32_t response_q8;   // b, bpp per A
-  int32_t share_q30;     // k b, 0..1
-  int32_t amps_per_bpp;  // 1/b, A per bpp, Q40
   int32_t approach_q30;  // 1 - exp(-Ts / trajectory)
-  int32_t pi_kp, pi_ki;  // A per bpp, Q40
+  speed_gains_t gains;
+  speed_gains_t told;    // of the parameters
   int32_t current_q20;   // i(n-1) of the predictive law
   int32_t integral_q20;  // of the PI law
 } speed_controller_t;
@@ -54,6 +60,9 @@ typedef struct {
 /// Derives the gains. Returns false when a value is out of range, or the rotor so heavy or light that an ampere changes
 /// the speed by less than 512 or more than 8 million bpp in a step.
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m);
+
+/// Gains for an acceleration per ampere that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.
+void speed_controller_scale(speed_controller_t* s, int32_t ratio_q24);
 
 /// Makes the next step start from this current, e.g. at a change of mode.
 void speed_controller_preset(speed_controller_t* s, int32_t current_q20);

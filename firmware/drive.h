@@ -14,6 +14,7 @@
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
+#include "estimators/inertia_match.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
@@ -52,7 +53,6 @@ typedef struct {
   int32_t rpm_per_bpp_q40;
   int32_t adapt_share_q30;       // per turn, of admittances and sensor match
   int32_t drift_share_q30;       // of resistance and flux
-  int32_t torque_per_accel_q24;  // N m (Q16) per electrical acceleration (Q8), Q24
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
   uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
@@ -82,6 +82,7 @@ typedef struct {
   tracking_observer_t encoder;
   uint16_t adaptation;          // whose turn it is
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
+  int32_t torque_accel_q8;      // acceleration of the torque of the measured current
   int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
 } drive_position_t;
 
@@ -128,6 +129,7 @@ typedef struct {
   drive_start_t start;
   hold_t hold;
   polarity_watch_t watch;
+  inertia_match_t inertia;
   machine_model_t model;  // nameplate, at the working point and with what was learnt
   slopes_trim_t trim;     // current offsets, mismatch of the sensors
   drive_config_t config;
@@ -192,6 +194,9 @@ void hold_begin(drive_t* d);
 
 /// One period; false when it is over and the speed controller has the torque current.
 bool hold_step(drive_t* d);
+
+/// Learns the inertia; once a millisecond (inertia_task.c).
+void drive_match_inertia(drive_t* d);
 
 /// Field weakening of this instant, into the d-axis reference.
 void drive_weaken_field(drive_t* d);  // speed_task.c

@@ -95,7 +95,7 @@ void drive_publish(drive_t* d) {
   s->voltage_beta = d->modulation.asked_q16.beta;
   s->deviation_q = q_mul_sat(d->position.deviation_q20, 10000L, 12);  // per period to per second, Q20 to Q8
   s->link_voltage = d->samples.link_q16;
-  s->load_torque = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 24);
+  s->load_torque = q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 24);
   s->windows = d->samples.count;
   s->start_phase = (int32_t)d->start.phase;
   s->polarity_sigma = d->start.sigma_q8;

@@ -49,7 +49,6 @@ static bool load_machine(drive_config_t* c) {
   // rpm to binary angle per period: pole pairs / 60 s * T * 2^32 = 7158.2788 per pole pair.
   c->bpp_per_rpm_q8 = p->pole_pairs * 1832519L;
   c->rpm_per_bpp_q40 = q_div(16777216L, c->bpp_per_rpm_q8, 24);
-  c->torque_per_accel_q24 = q_div(1048576L, c->nameplate.accel_q12, 24);
   return true;
 }
 

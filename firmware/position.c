@@ -142,6 +142,8 @@ void drive_estimate(drive_t* d) {
   in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
+  d->position.torque_accel_q8 = in.torque_accel_q8;
+  inertia_match_add(&d->inertia, in.torque_accel_q8);
   if (measuring) {
     in.frames = 0;
     d->position.used = step_commissioning(d, &in);

@@ -30,7 +30,7 @@ void drive_weaken_field(drive_t* d) {
 // has it too, so it is taken off here.
 static int32_t load_current(const drive_t* d) {
   const int32_t speed = d->position.used.speed_bpp;
-  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->config.torque_per_accel_q24, 20);
+  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 20);
   const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
   const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
   return q_over(torque_q20, q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d)), 24);
@@ -90,6 +90,7 @@ void drive_control_speed(drive_t* d) {
   drive_control_t* const c = &d->control;
   const bool held = hold_step(d);
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
+  if (d->millisecond == DRIVE_PERIODS_PER_MS / 2) drive_match_inertia(d);
   if (d->millisecond != 0u) return;
   d->time_ms++;
   d->limits &= LIMIT_BRAKING;  // of the last millisecond, for the ramp

@@ -28,7 +28,7 @@ void commissioning_hold(drive_t* d) {
   const int32_t error_bam = angle_diff_bam(d->commissioning.target_bam, p->angle_bam);
   const int32_t wanted_q8 =
       q_sub_sat(q_mul_sat(error_bam, STIFFNESS_Q30, 22), q_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
-  const int32_t torque_q20 = q_mul_sat(q_add_sat(wanted_q8, p->load_accel_q8), d->config.torque_per_accel_q24, 20);
+  const int32_t torque_q20 = q_mul_sat(q_add_sat(wanted_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
   const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
   const int32_t limit = parameters.current_limit / 4;
   d->control.reference_q20.q = q_clamp(current, -limit, limit);

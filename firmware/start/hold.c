@@ -84,7 +84,7 @@ bool hold_step(drive_t* d) {
   h->left--;
   observe(d);
   h->reference_bam += (uint32_t)d->control.ramp.value;
-  const int32_t torque_q20 = q_mul_sat(wanted_accel_q8(d), d->config.torque_per_accel_q24, 20);
+  const int32_t torque_q20 = q_mul_sat(wanted_accel_q8(d), d->model.torque_per_accel_q24, 20);
   const q_inverse_t per_newton_metre = q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d));
   const int32_t current_q20 = q_over(torque_q20, per_newton_metre, 24);
   const int32_t limited_q20 = q_clamp(current_q20, -parameters.current_limit, parameters.current_limit);

@@ -53,6 +53,8 @@ void drive_begin_start(drive_t* d) {
   d->supervision = healthy;
   d->start = fresh;
   d->model = d->config.nameplate;
+  inertia_match_reset(&d->inertia);
+  speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
   d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
   d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;
   position_preset(d, 0, 0);

@@ -56,12 +56,12 @@ void check(const Design& wanted) {
   // the machine's constants: acceleration to 4e-5 and half an LSB of Q12 per pole pair, torque constant to 1e-6
   const double relative = 6e-5 + 0.6 * d.motor.pole_pairs / m.accel_q12 + real(1, 24) * 20 / real(m.torque_q24, 24);
   ASSERT_NEAR(real(s.response_q8, 8), b_bpp, 0.01 + b_bpp * relative);
-  ASSERT_NEAR(real(s.amps_per_bpp, 40) * b_bpp, 1.0, relative + 1e-5 + 0.5 / s.amps_per_bpp);
+  ASSERT_NEAR(real(s.gains.amps_per_bpp, 40) * b_bpp, 1.0, relative + 1e-5 + 0.5 / s.gains.amps_per_bpp);
   // (54): k b = alpha b^2 / (alpha b^2 + 1). The controller takes b without the small factor of (49): B Ts / 2 J of it.
   const double weight = d.alpha * std::min(b * b, 128.0);  // 128: the end of the format, k b is 0.99 there
   const double exact = weight / (weight + 1.0);
   const double x = d.motor.friction * d.step() / d.motor.inertia;
-  ASSERT_NEAR(real(s.share_q30, 30), exact, 2e-4 + (x + 2e-3) * exact * (1.0 - exact) + 2e-5 / (weight + 1.0));
+  ASSERT_NEAR(real(s.gains.share_q30, 30), exact, 2e-4 + (x + 2e-3) * exact * (1.0 - exact) + 2e-5 / (weight + 1.0));
   ASSERT_NEAR(real(s.approach_q30, 30), -std::expm1(-d.step() / d.trajectory), 1e-3);
   // PI: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, in A per bpp
   const double j_kt = d.motor.inertia / d.motor.torque_constant() / d.bpp_per_rad_s();
@@ -70,8 +70,9 @@ void check(const Design& wanted) {
   // the bandwidth has 8 fractional bits, and (wn Ts)^2 24
   const double wn_relative = 1.0 / 512.0 / d.bandwidth + 1e-3;
   const double square = d.bandwidth * d.bandwidth * d.step() * d.step();
-  ASSERT_NEAR(real(s.pi_kp, 40), kp, real(2, 40) + kp * (wn_relative + x + relative));
-  ASSERT_NEAR(real(s.pi_ki, 40), ki, real(2, 40) + ki * (2.0 * wn_relative + x + relative + real(1, 24) / square));
+  ASSERT_NEAR(real(s.gains.pi_kp, 40), kp, real(2, 40) + kp * (wn_relative + x + relative));
+  ASSERT_NEAR(real(s.gains.pi_ki, 40), ki,
+              real(2, 40) + ki * (2.0 * wn_relative + x + relative + real(1, 24) / square));
 }
 
 TEST(SpeedController, CoefficientsOfMotorA) { check(Design{}); }

@@ -149,8 +149,8 @@ TEST(PiLoop, PolesAreWhereTheyWereAssigned) {
       speed_controller_t s;
       ASSERT_TRUE(speed_controller_init(&s, &c, &m));
       const double b = real(s.response_q8, 8);
-      const double p1 = b * (real(s.pi_kp, 40) + real(s.pi_ki, 40)) - 2.0;
-      const double p0 = 1.0 - b * real(s.pi_kp, 40);
+      const double p1 = b * (real(s.gains.pi_kp, 40) + real(s.gains.pi_ki, 40)) - 2.0;
+      const double p0 = 1.0 - b * real(s.gains.pi_kp, 40);
       const double magnitude = std::sqrt(p0);
       const double angle = std::acos(-p1 / (2.0 * magnitude));
       const double sigma = -std::log(magnitude) / 1e-3;

@@ -75,7 +75,7 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.adapt_share_q30, 30), ADAPTATION_TURN * kPeriod / 150e-3, 1e-8);
   const double newton_metres =
       m.inertia / m.pole_pairs * kTurn / std::ldexp(kPeriod * kPeriod, 32);  // per bpp a period
-  EXPECT_NEAR(real(c.torque_per_accel_q24, 24) / (256.0 * newton_metres), 1.0, 1e-3);
+  EXPECT_NEAR(real(c.nameplate.torque_per_accel_q24, 24) / (256.0 * newton_metres), 1.0, 1e-3);
   // torque per speed: B times mechanical rad/s per bpp
   EXPECT_NEAR(real(c.friction_per_bpp_q40, 40) / (m.friction / m.pole_pairs * kTurn / std::ldexp(kPeriod, 32)), 1.0,
               1e-3);
