@@ -24,8 +24,9 @@ Model::Model(const PlantConfig& c)
   if (mechanics.locked) shaft = Shaft::kLocked;
 }
 
-std::array<double, 3> Model::currents(const State& y) const {
-  auto i = phase_currents(turned(base, y[kAngle]), y[kId], y[kIq]);
+/// At rotor position e, with clamped currents at zero to the last bit.
+std::array<double, 3> Model::currents(const Rotation& e, const State& y) const {
+  auto i = phase_currents(e, y[kId], y[kIq]);
   if (clamp == Clamp::kNone) return i;
   if (clamp == Clamp::kAll) return {0.0, 0.0, 0.0};
   const int k = static_cast<int>(clamp);

@@ -82,7 +82,7 @@ class Model {
   /// one, a capacitor in the link, a source that also sinks, no brake.
   bool usual() const { return sixth_ && shaft == Shaft::kFree && !link.stiff && !link.rectifier && !brake; }
 
-  std::array<double, 3> currents(const State& y) const;
+  std::array<double, 3> currents(const State& y) const { return currents(turned(base, y[kAngle]), y); }
   double source_voltage(double t) const;
   double load(double t) const { return load_start + load_slope * t; }
 
@@ -130,6 +130,7 @@ class Model {
   void core(double t, double source, const State& y, const Rotation& e, const Pair& flux, State& dy, Pair& dflux,
             Probe* probe) const;
   double rippled_voltage(double t) const;
+  Phases currents(const Rotation& e, const State& y) const;
   double clamp_leg(int leg, const Rotation& e, double electrical_speed, const State& y, Pair& u) const;
   void float_legs(double link_voltage, const Rotation& e, const Pair& held, Phases& v) const;
   void leg_events(double t, const State& y, Events& g) const;

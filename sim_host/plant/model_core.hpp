@@ -97,7 +97,7 @@ template <int kClamped, bool kUsual, bool kProbe>
   dy = {slope.d, slope.q, acceleration, electrical, link_slope};
   dflux = u;
   if (kProbe) {
-    const Phases i = currents(y);
+    const Phases i = currents(e, y);
     Phases v;
     for (int k = 0; k < 3; ++k) v[k] = line_[k].voltage(link_voltage, i[k]);
     if (kClamped == 1) v[static_cast<int>(clamp)] = clamped_voltage;
