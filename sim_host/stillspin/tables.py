@@ -19,7 +19,6 @@ from stillspin.variant import Beside
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {
-    *("least", "mean", "greatest"),
     *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
     *("starts", "failed", "backward", "sigma", "angle"),
 }
