@@ -2,10 +2,12 @@
 
 #include <stddef.h>
 
+#include "firmware/can/node.h"
 #include "firmware/console/console.h"
 #include "firmware/drive.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
+#include "firmware/link/requests.h"
 #include "firmware/parameters.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_clock.h"
@@ -17,6 +19,12 @@
 #include "hal/hal_time.h"
 
 #define SERIAL_BAUD 115200uL
+
+// Requests come over the bus as they come over the serial port.
+static uint16_t answer_bus(const uint16_t* request, uint16_t count, uint16_t* answer) {
+  guard_heard(GUARD_BUS);
+  return request_answer(GUARD_BUS, request, count, answer);
+}
 
 void firmware_main(void) {
   drive_reset();
@@ -34,6 +42,7 @@ void firmware_main(void) {
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);
   hal_watchdog_start();
   hal_irq_enable();
+  can_node_reset(answer_bus);
   uint32_t served = hal_time_cycles();
   uint16_t seen = hil_heartbeat(drive.heartbeat);
   for (;;) {
@@ -41,6 +50,7 @@ void firmware_main(void) {
     if (!hil_is_active()) background_step(&drive);
     link_service();
     console_service();
+    can_node_service();
     // The watchdog is served for a control interrupt that lives, not for a background loop that does.
     const uint16_t heartbeat = hil_heartbeat(drive.heartbeat);
     if (heartbeat != seen && hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {

@@ -143,3 +143,16 @@ PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
 PARAMETER(201, link_timeout, "ms", 0, 0, 50, 60000, 1000, ALWAYS,
           "without a record from the port that started the drive with the guard, then link_reaction")
 PARAMETER(202, link_reaction, "", 0, 0, 1, 2, 1, ALWAYS, "when the guard hears nothing: 1 stop, 2 coast")
+
+// CAN bus
+PARAMETER(220, can_node, "", 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus, added to the messages' identifiers")
+PARAMETER(221, can_rate, "kbit/s", 0, 0, 0, 1000, 500, STOPPED,
+          "1000, 500, 250, 125, 100, 50, 20 or 10; the bus is off with 0 and with what cannot be made")
+PARAMETER(222, can_timeout, "ms", 0, 0, 10, 10000, 200, ALWAYS,
+          "without a command on the bus that started the drive, then can_reaction")
+PARAMETER(223, can_reaction, "", 0, 0, 0, 2, 1, ALWAYS, "when commands stay away: 0 nothing, 1 stop, 2 coast")
+PARAMETER(224, can_status_period, "ms", 0, 0, 0, 10000, 10, ALWAYS, "between two STATUS messages; 0 sends none")
+PARAMETER(225, can_telemetry_period, "ms", 0, 0, 0, 10000, 20, ALWAYS,
+          "between two TELEMETRY_1 and TELEMETRY_2; 0 sends none")
+PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS,
+          "from bus-off to the attempt to be on the bus again")

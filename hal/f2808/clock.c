@@ -56,8 +56,8 @@ static void start_peripheral_clocks(void) {
   REG_SET_FIELD(REG_HISPCP, HISPCP_HSPCLK, HISPCP_DIVIDE_BY_8);  // 12.5 MHz, which is ADCCLK undivided
   REG_SET_FIELD(REG_LOSPCP, LOSPCP_LSPCLK, LOSPCP_DIVIDE_BY_2);  // 50 MHz: the usual serial rates within 0.5 %
   // TBCLKSYNC stays 0: all PWM counters start together when they have been set up.
-  target_write16(REG_PCLKCR0, PCLKCR0_ADCENCLK_MASK | PCLKCR0_I2CAENCLK_MASK | PCLKCR0_SCIAENCLK_MASK |
-                                  PCLKCR0_ECANAENCLK_MASK);
+  target_write16(REG_PCLKCR0,
+                 PCLKCR0_ADCENCLK_MASK | PCLKCR0_I2CAENCLK_MASK | PCLKCR0_SCIAENCLK_MASK | PCLKCR0_ECANAENCLK_MASK);
   target_write16(REG_PCLKCR1, PCLKCR1_EPWM1ENCLK_MASK | PCLKCR1_EPWM2ENCLK_MASK | PCLKCR1_EPWM3ENCLK_MASK |
                                   PCLKCR1_EPWM4ENCLK_MASK | PCLKCR1_EPWM5ENCLK_MASK | PCLKCR1_EPWM6ENCLK_MASK |
                                   PCLKCR1_EQEP1ENCLK_MASK);

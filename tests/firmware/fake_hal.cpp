@@ -1,5 +1,6 @@
 #include "tests/firmware/fake_hal.hpp"
 
+#include "hal/hal_can.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
@@ -66,6 +67,32 @@ void hal_safety_toggle_enable(void) { board.enable_toggles++; }
 void hal_safety_fault_lamp(bool on) { board.lamp = on; }
 void hal_encoder_init(std::uint32_t) {}
 std::uint32_t hal_encoder_count(void) { return board.encoder; }
+
+bool hal_can_init(std::uint32_t bitrate, const hal_can_group_t* groups, std::uint16_t count) {
+  board.can_groups.assign(groups, groups + count);
+  board.can_rate = bitrate;
+  return bitrate != 0;
+}
+void hal_can_off(void) { board.can_rate = 0; }
+void hal_can_service(void) {}
+bool hal_can_receive(std::uint16_t group, hal_can_frame_t* frame) {
+  std::deque<hal_can_frame_t>& waiting = board.can_in[group];
+  if (waiting.empty()) return false;
+  *frame = waiting.front();
+  waiting.pop_front();
+  return true;
+}
+bool hal_can_send(const hal_can_frame_t* frame, std::uint16_t) {
+  if (!board.can_drains && board.can_out.size() >= board.can_room) return false;
+  board.can_out.push_back(*frame);
+  return true;
+}
+void hal_can_cancel(std::uint16_t) { board.can_cancels++; }
+std::uint16_t hal_can_waiting(std::uint16_t) {
+  return board.can_drains ? 0 : static_cast<std::uint16_t>(board.can_out.size());
+}
+hal_can_status_t hal_can_status(void) { return board.can_status; }
+void hal_can_recover(void) { board.can_recoveries++; }
 
 bool hal_sci_init(std::uint32_t baud) {
   if (baud == 0 || baud > HAL_SCI_MAX_BAUD) return false;

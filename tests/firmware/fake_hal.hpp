@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <vector>
 
 #include "hal/hal_adc.h"
+#include "hal/hal_can.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_sci.h"
 #include "hal/hal_slices.h"
@@ -38,6 +40,13 @@ struct FakeBoard {
   std::uint32_t baud = 0;
   int serial_services = 0;
   hal_sci_errors_t serial_errors = {};
+  std::deque<hal_can_frame_t> can_in[HAL_CAN_GROUPS_MAX], can_out;
+  std::vector<hal_can_group_t> can_groups;
+  std::uint32_t can_rate = 0;  // 0: off
+  std::size_t can_room = 16;   // mailboxes for can_out
+  bool can_drains = true;      // what is sent leaves its mailbox at once
+  hal_can_status_t can_status = {HAL_CAN_ACTIVE, 0, 0, 0, 0, 0};
+  int can_recoveries = 0, can_cancels = 0;
 };
 extern FakeBoard board;
 

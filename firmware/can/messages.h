@@ -1,0 +1,80 @@
+// Messages of the bus as numbers in frames, by the table in message_list.h.
+//
+// A field is a place of some bits in up to eight octets, held one in a word. Values are whole steps of the field; what
+// does not fit is clamped to the nearest that does, and a field with more than 16 bits takes what an int32_t holds.
+
+#ifndef STILLSPIN_FIRMWARE_CAN_MESSAGES_H
+#define STILLSPIN_FIRMWARE_CAN_MESSAGES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/hal_can.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+#define CAN_NODE_MAX 31u
+
+#define CAN_MESSAGE(message, base, octets, sender, meaning) CAN_##message,
+#define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning)
+typedef enum {
+#include "firmware/can/message_list.h"
+  CAN_MESSAGES
+} can_message_t;
+#undef CAN_MESSAGE
+#undef CAN_FIELD
+
+#define CAN_MESSAGE(message, base, octets, sender, meaning)
+#define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning) CAN_##message##_##field,
+typedef enum {
+#include "firmware/can/message_list.h"
+  CAN_FIELDS
+} can_field_t;
+#undef CAN_MESSAGE
+#undef CAN_FIELD
+
+typedef enum { CAN_SENDER_HOST, CAN_SENDER_DRIVE } can_sender_t;
+
+typedef struct {
+  const char* name;
+  uint32_t base;
+  uint16_t octets;
+  can_sender_t sender;
+  const char* meaning;
+} can_message_info_t;
+
+typedef struct {
+  can_message_t message;
+  const char* name;
+  uint16_t first, bits;
+  bool is_signed;
+  uint16_t per_unit;
+  const char* unit;
+  const char* meaning;
+} can_field_info_t;
+
+/// NULL behind the last one.
+const can_message_info_t* can_message_info(uint16_t message);
+const can_field_info_t* can_field_info(uint16_t field);
+
+/// An empty message of a node (1..31): identifier, length, zeros.
+hal_can_frame_t can_frame(can_message_t message, uint16_t node);
+
+/// Writes a field of the frame's message.
+void can_put(hal_can_frame_t* frame, can_field_t field, int32_t value);
+int32_t can_get(const hal_can_frame_t* frame, can_field_t field);
+
+/// Steps of the field that a value with q fractional bits (1..24) is, to the nearest.
+int32_t can_steps(can_field_t field, int32_t value, uint16_t q);
+
+/// CRC-8 SAE J1850 (polynomial 0x1D, begins with 0xFF, inverted at the end, "123456789" gives 0x4B) over the identifier,
+/// low octet first, and the first `count` octets of data: a frame with another's identifier does not pass.
+uint16_t can_crc8(const hal_can_frame_t* frame, uint16_t count);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

@@ -1,0 +1,233 @@
+// The command from the bus: what counts, what starts the drive, what happens when it stays away.
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/can/command.h"
+#include "firmware/can/messages.h"
+}
+
+namespace stillspin::test {
+namespace {
+
+constexpr std::uint16_t kNode = 1;
+
+class CanCommand : public Drive {
+ protected:
+  can_command_t command = {};
+  std::uint16_t alive = 0;
+
+  void SetUp() override {
+    Drive::SetUp();
+    can_command_reset(&command);
+    parameters.position_source = 0;
+    parameters.polarity_check = 0;
+  }
+  hal_can_frame_t frame(std::int32_t mode, std::int32_t speed = 0, bool clear = false) {
+    hal_can_frame_t f = can_frame(CAN_COMMAND, kNode);
+    can_put(&f, CAN_COMMAND_MODE, mode);
+    can_put(&f, CAN_COMMAND_SPEED, speed);
+    can_put(&f, CAN_COMMAND_CLEAR_FAULT, clear ? 1 : 0);
+    can_put(&f, CAN_COMMAND_ALIVE, alive = (alive + 1) % 16);
+    can_put(&f, CAN_COMMAND_CRC, can_crc8(&f, 3));
+    return f;
+  }
+  void take(const hal_can_frame_t& f) { can_command_take(&command, &f, drive.time_ms); }
+  void pass(int ms) {
+    for (int k = 0; k < ms; ++k) {
+      periods(10);
+      can_command_service(&command, drive.time_ms);
+    }
+  }
+  /// A command every 10 ms for as long.
+  void say(std::int32_t mode, std::int32_t speed, int ms) {
+    for (int k = 0; k < ms; k += 10) {
+      take(frame(mode, speed));
+      pass(10);
+    }
+  }
+  void make_running_by_bus() {
+    make_ready();
+    say(CAN_MODE_OFF, 0, 20);
+    say(CAN_MODE_RUN, 0, 60);
+    ASSERT_EQ(drive.state, DRIVE_RUN);
+    ASSERT_TRUE(command.commanding);
+  }
+};
+
+TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
+  make_running_by_bus();
+  take(frame(CAN_MODE_RUN, 400));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 100 << 16) << "400 quarters of a revolution per minute";
+  take(frame(CAN_MODE_RUN, -400));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, -100 * 65536);
+  take(frame(CAN_MODE_STOP));
+  EXPECT_TRUE(drive.request.stop);
+}
+
+TEST_F(CanCommand, OffOpensTheGates) {
+  make_running_by_bus();
+  say(CAN_MODE_OFF, 0, 10);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_FALSE(command.commanding);
+}
+
+TEST_F(CanCommand, AModeThatDoesNotExistIsOff) {
+  make_running_by_bus();
+  say(3, 0, 10);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+TEST_F(CanCommand, RunFromTheFirstMessageOnStartsNothing) {
+  make_ready();
+  say(CAN_MODE_RUN, 400, 500);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  say(CAN_MODE_STOP, 0, 20);
+  say(CAN_MODE_RUN, 0, 60);
+  EXPECT_EQ(drive.state, DRIVE_RUN) << "a change to run starts";
+}
+
+TEST_F(CanCommand, RunIsKeptUntilTheDriveIsReady) {
+  periods(10);
+  ASSERT_EQ(drive.state, DRIVE_CALIBRATE);
+  take(frame(CAN_MODE_OFF));
+  say(CAN_MODE_RUN, 0, 120);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
+TEST_F(CanCommand, DamagedRepeatedAndForeignCommandsDoNotCount) {
+  make_running_by_bus();
+  const std::uint16_t bad = command.bad;
+  hal_can_frame_t f = frame(CAN_MODE_STOP);
+  f.data[1] ^= 1;
+  take(f);
+  f = frame(CAN_MODE_STOP);
+  take(f);
+  const auto heard = command.heard_ms;
+  drive.request.stop = false;
+  pass(5);
+  take(f);
+  EXPECT_EQ(command.heard_ms, heard) << "the same message again";
+  f = frame(CAN_MODE_STOP);
+  f.id++;
+  take(f);
+  f = frame(CAN_MODE_STOP);
+  f.length = 8;
+  take(f);
+  EXPECT_EQ(command.bad - bad, 4);
+}
+
+TEST_F(CanCommand, GapsOfTheAliveCounterAreCounted) {
+  make_ready();
+  take(frame(CAN_MODE_OFF));
+  take(frame(CAN_MODE_OFF));
+  EXPECT_EQ(command.gaps, 0);
+  alive = (alive + 3) % 16;
+  take(frame(CAN_MODE_OFF));
+  EXPECT_EQ(command.gaps, 3);
+  EXPECT_EQ(command.bad, 0);
+}
+
+TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {
+  const drive_state_t after[] = {DRIVE_RUN, DRIVE_STOP, DRIVE_READY};
+  for (int reaction = 0; reaction <= 2; ++reaction) {
+    board = FakeBoard{};
+    drive_reset();
+    SetUp();
+    parameters.can_reaction = reaction;
+    parameters.can_timeout = 50;
+    make_running_by_bus();
+    drive.control.ramp.value = 50'000'000;  // it is turning: a stop takes a while
+    pass(39);
+    EXPECT_EQ(drive.state, DRIVE_RUN);
+    EXPECT_FALSE(command.timed_out);
+    pass(3);
+    EXPECT_TRUE(command.timed_out);
+    EXPECT_EQ(drive.state, after[reaction]) << "reaction " << reaction;
+  }
+}
+
+TEST_F(CanCommand, CommandsThatComeBackDoNotStartItAgain) {
+  parameters.can_reaction = CAN_REACTION_COAST;
+  make_running_by_bus();
+  pass(300);
+  ASSERT_EQ(drive.state, DRIVE_READY);
+  say(CAN_MODE_RUN, 0, 300);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(command.timed_out);
+  say(CAN_MODE_OFF, 0, 20);
+  say(CAN_MODE_RUN, 0, 60);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
+TEST_F(CanCommand, SilenceWhileOffDoesNotMakeTheNextRunAStart) {
+  make_ready();
+  say(CAN_MODE_OFF, 0, 20);
+  pass(300);
+  ASSERT_TRUE(command.timed_out);
+  say(CAN_MODE_RUN, 0, 100);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+TEST_F(CanCommand, AFaultIsClearedByARisingBitAndTheDriveDoesNotStartByItself) {
+  make_running_by_bus();
+  board.tripped_by_pin = true;
+  board.gates_on = false;
+  periods(2);
+  ASSERT_EQ(drive.state, DRIVE_FAULT);
+  board.tripped_by_pin = false;
+  say(CAN_MODE_RUN, 0, 50);
+  EXPECT_FALSE(command.commanding);
+  take(frame(CAN_MODE_RUN, 0, true));
+  pass(10);
+  EXPECT_NE(drive.state, DRIVE_FAULT);
+  say(CAN_MODE_RUN, 0, 150);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+TEST_F(CanCommand, ARunGivenDuringAFaultIsForgotten) {
+  make_running_by_bus();
+  board.tripped_by_pin = true;
+  board.gates_on = false;
+  periods(2);
+  board.tripped_by_pin = false;
+  say(CAN_MODE_OFF, 0, 20);
+  say(CAN_MODE_RUN, 0, 20);
+  drive_command_reset();  // somebody else clears it
+  say(CAN_MODE_RUN, 0, 150);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+TEST_F(CanCommand, ADriveThatSomebodyElseStartedIsNotStoppedBySilence) {
+  make_ready();
+  say(CAN_MODE_OFF, 0, 20);
+  drive_command_start();
+  pass(400);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_TRUE(command.timed_out);
+  say(CAN_MODE_OFF, 0, 20);
+  EXPECT_EQ(drive.state, DRIVE_RUN) << "no change of mode";
+  say(CAN_MODE_STOP, 0, 10);
+  EXPECT_NE(drive.state, DRIVE_RUN) << "a change to stop is meant";
+}
+
+TEST_F(CanCommand, AnotherStopEndsTheBusCommand) {
+  make_running_by_bus();
+  drive_command_coast();
+  say(CAN_MODE_RUN, 0, 200);
+  EXPECT_FALSE(command.commanding);
+  EXPECT_EQ(drive.state, DRIVE_READY) << "and the next run message does not start it again";
+}
+
+TEST_F(CanCommand, TheClockMayWrap) {
+  drive.time_ms = 0xFFFFFF00u;
+  make_running_by_bus();
+  say(CAN_MODE_RUN, 0, 500);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  pass(250);
+  EXPECT_TRUE(command.timed_out);
+}
+
+}  // namespace
+}  // namespace stillspin::test

@@ -1,0 +1,279 @@
+// The drive as a node of the bus: what it sends and when, parameters, records, recovery, arbitrary frames.
+
+#include <map>
+#include <random>
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/actions.h"
+#include "firmware/can/command.h"
+#include "firmware/can/messages.h"
+#include "firmware/can/node.h"
+#include "firmware/can/segments.h"
+}
+
+namespace stillspin::test {
+namespace {
+
+enum { kCommandGroup, kParameterGroup, kRecordGroup };
+
+std::vector<std::uint16_t> last_request;
+std::uint16_t answer_octets = 20;
+
+extern "C" std::uint16_t answer(const std::uint16_t* request, std::uint16_t count, std::uint16_t* out) {
+  last_request.assign(request, request + count);
+  for (std::uint16_t k = 0; k < answer_octets; ++k) out[k] = (k * 3) & 0xFF;
+  return answer_octets;
+}
+
+class CanNode : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    last_request.clear();
+    answer_octets = 20;
+    can_node_reset(answer);
+  }
+  void pass(int ms) {
+    for (int k = 0; k < ms; ++k) {
+      for (int n = 0; n < 10; ++n) {
+        period();
+        can_node_service();
+      }
+    }
+  }
+  std::map<std::uint32_t, std::vector<hal_can_frame_t>> take_sent() {
+    std::map<std::uint32_t, std::vector<hal_can_frame_t>> sent;
+    for (const hal_can_frame_t& f : board.can_out) sent[f.id].push_back(f);
+    board.can_out.clear();
+    return sent;
+  }
+  static std::vector<hal_can_frame_t> pieces(const std::vector<std::uint16_t>& record) {
+    segment_splitter_t s = {};
+    std::copy(record.begin(), record.end(), s.octets);
+    segment_split_begin(&s, static_cast<std::uint16_t>(record.size()), 0);
+    std::vector<hal_can_frame_t> frames;
+    hal_can_frame_t frame = can_frame(CAN_RECORD_REQUEST, 1);
+    for (; segment_split_peek(&s, &frame); segment_split_advance(&s, 0)) frames.push_back(frame);
+    return frames;
+  }
+  static hal_can_frame_t parameter(std::int32_t operation, std::int32_t id, std::int32_t raw) {
+    hal_can_frame_t f = can_frame(CAN_PARAMETER_REQUEST, 1);
+    can_put(&f, CAN_PARAMETER_REQUEST_OPERATION, operation);
+    can_put(&f, CAN_PARAMETER_REQUEST_ID, id);
+    can_put(&f, CAN_PARAMETER_REQUEST_RAW, raw);
+    return f;
+  }
+  hal_can_frame_t answer_to(const hal_can_frame_t& request) {
+    board.can_out.clear();
+    board.can_in[kParameterGroup].push_back(request);
+    can_node_service();
+    const auto sent = take_sent()[0x381];
+    EXPECT_EQ(sent.size(), 1u);
+    return sent.empty() ? hal_can_frame_t{} : sent[0];
+  }
+};
+
+TEST_F(CanNode, ListensToItsNumberAtItsRate) {
+  parameters.can_node = 5;
+  parameters.can_rate = 250;
+  can_node_service();
+  EXPECT_EQ(board.can_rate, 250'000u);
+  ASSERT_EQ(board.can_groups.size(), 3u);
+  EXPECT_EQ(board.can_groups[kCommandGroup].id, 0x105u);
+  EXPECT_EQ(board.can_groups[kRecordGroup].id, 0x405u);
+  EXPECT_EQ(board.can_groups[kCommandGroup].mask, 0x7FFu);
+  parameters.can_node = 6;
+  can_node_service();
+  EXPECT_EQ(board.can_groups[kCommandGroup].id, 0x106u) << "a changed number takes effect at once";
+  parameters.can_rate = 0;
+  can_node_service();
+  EXPECT_EQ(board.can_rate, 0u);
+}
+
+TEST_F(CanNode, SendsItsPeriodicMessagesInTime) {
+  pass(1001);
+  auto sent = take_sent();
+  EXPECT_NEAR(double(sent[0x181].size()), 100, 1);
+  EXPECT_NEAR(double(sent[0x201].size()), 50, 1);
+  EXPECT_EQ(sent[0x201].size(), sent[0x281].size());
+  EXPECT_EQ(sent[0x501].size(), 1u);
+  for (std::size_t k = 1; k < sent[0x181].size(); ++k) {
+    const auto step = can_get(&sent[0x181][k], CAN_STATUS_ALIVE) - can_get(&sent[0x181][k - 1], CAN_STATUS_ALIVE);
+    ASSERT_EQ((step + 16) % 16, 1);
+  }
+  parameters.can_status_period = 0;
+  parameters.can_telemetry_period = 100;
+  pass(1000);
+  sent = take_sent();
+  EXPECT_EQ(sent.count(0x181), 0u);
+  EXPECT_NEAR(double(sent[0x201].size()), 10, 1);
+}
+
+TEST_F(CanNode, StatusAndTelemetrySayWhatTheSignalsSay) {
+  make_run();
+  drive_command_speed(100 << 16);
+  pass(200);
+  board.can_out.clear();
+  period();
+  parameters.can_status_period = parameters.can_telemetry_period = 1;
+  pass(3);
+  auto sent = take_sent();
+  const hal_can_frame_t status = sent[0x181].back();
+  EXPECT_EQ(can_get(&status, CAN_STATUS_STATE), DRIVE_RUN);
+  EXPECT_EQ(can_get(&status, CAN_STATUS_ENERGISED), 1);
+  EXPECT_EQ(can_get(&status, CAN_STATUS_COMMANDED), 0);
+  EXPECT_NEAR(can_get(&status, CAN_STATUS_REFERENCE) / 4.0, drive.signals.speed_reference / 65536.0, 2.0);
+  const hal_can_frame_t telemetry = sent[0x201].back();
+  EXPECT_NEAR(can_get(&telemetry, CAN_TELEMETRY_1_LINK_VOLTAGE) / 100.0, 300.0, 1.0);
+}
+
+TEST_F(CanNode, AMessageThatCannotLeaveIsLeftOutAndNotQueued) {
+  pass(100);
+  board.can_out.clear();
+  board.can_drains = false;
+  pass(500);
+  EXPECT_LE(board.can_out.size(), 4u) << "one of each kind waits in its mailbox";
+}
+
+TEST_F(CanNode, ParametersAreReadAndWrittenByNumber) {
+  can_node_service();
+  hal_can_frame_t r = answer_to(parameter(0, 222, 0));
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_OK);
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_RAW), 200);
+  r = answer_to(parameter(1, 222, 300));
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_OK);
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_RAW), 300);
+  EXPECT_EQ(parameters.can_timeout, 300);
+  r = answer_to(parameter(1, 222, -1));
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RANGE);
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_RAW), 300) << "what is in effect";
+  r = answer_to(parameter(0, 9999, 0));
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_UNKNOWN);
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_ID), 9999);
+  r = answer_to(parameter(7, 222, 0));
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RANGE);
+  make_run();
+  r = answer_to(parameter(1, 220, 2));
+  EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RUNNING);
+}
+
+TEST_F(CanNode, ARecordIsAnsweredInPieces) {
+  std::vector<std::uint16_t> request(100);
+  for (std::size_t k = 0; k < request.size(); ++k) request[k] = k & 0xFF;
+  answer_octets = RECORD_MAX - 2;
+  for (const auto& piece : pieces(request)) {
+    board.can_in[kRecordGroup].push_back(piece);
+    if (board.can_in[kRecordGroup].size() == 3) pass(1);
+  }
+  pass(5);
+  EXPECT_EQ(last_request, request);
+  segment_joiner_t joiner = {};
+  bool whole = false;
+  for (const auto& frame : take_sent()[0x481]) whole = segment_join(&joiner, &frame, 0);
+  EXPECT_TRUE(whole);
+  EXPECT_EQ(joiner.count, answer_octets);
+}
+
+TEST_F(CanNode, TheNextRequestWaitsForTheAnswerBefore) {
+  answer_octets = 100;
+  for (int n = 0; n < 3; ++n) {
+    for (const auto& piece : pieces({1, static_cast<std::uint16_t>(n)})) board.can_in[kRecordGroup].push_back(piece);
+  }
+  pass(10);
+  segment_joiner_t joiner = {};
+  int records = 0;
+  for (const auto& frame : take_sent()[0x481]) records += segment_join(&joiner, &frame, 0) ? 1 : 0;
+  EXPECT_EQ(records, 3);
+  EXPECT_EQ(joiner.dropped, 0u);
+}
+
+TEST_F(CanNode, AnAnswerThatNobodyTakesIsDropped) {
+  answer_octets = 200;
+  pass(5);
+  board.can_out.clear();
+  board.can_drains = false;
+  board.can_room = 8;
+  for (const auto& piece : pieces({1, 2})) board.can_in[kRecordGroup].push_back(piece);
+  pass(SEGMENTS_REST_MS + 10);
+  EXPECT_GE(board.can_cancels, 1);
+  board.can_drains = true;
+  board.can_out.clear();
+  pass(5);
+  EXPECT_EQ(take_sent().count(0x481), 0u) << "what is left of it does not follow later";
+}
+
+TEST_F(CanNode, BusOffIsLeftAfterAWhileAndAgain) {
+  parameters.can_recovery = 100;
+  pass(5);
+  board.can_status.state = HAL_CAN_BUS_OFF;
+  pass(99);
+  EXPECT_EQ(board.can_recoveries, 0);
+  pass(3);
+  EXPECT_EQ(board.can_recoveries, 1);
+  pass(100);
+  EXPECT_EQ(board.can_recoveries, 2) << "still off: once more";
+  board.can_status.state = HAL_CAN_ACTIVE;
+  pass(500);
+  EXPECT_EQ(board.can_recoveries, 2);
+}
+
+TEST_F(CanNode, DiagnosticTellsWhatWentWrong) {
+  pass(5);
+  board.can_status.lost = 3;
+  board.can_status.bus_offs = 300;
+  hal_can_frame_t bad = can_frame(CAN_COMMAND, 1);
+  board.can_in[kCommandGroup].assign(4, bad);
+  pass(1000);
+  const hal_can_frame_t d = take_sent()[0x501].back();
+  EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_BAD_COMMANDS), 4);
+  EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_LOST_FRAMES), 3);
+  EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_BUS_OFFS), 255);
+}
+
+// Whatever came, the drive obeys the next proper commands.
+TEST_F(CanNode, AnyFramesLeaveTheDriveControllable) {
+  parameters.position_source = 0;
+  parameters.polarity_check = 0;
+  pass(40);
+  std::mt19937 random(11);
+  for (int round = 0; round < 20'000; ++round) {
+    hal_can_frame_t f = {};
+    const std::uint32_t group = random() % 3;
+    f.id = (group == 0 ? 0x101u : group == 1 ? 0x301u : 0x401u);
+    f.length = static_cast<std::uint16_t>(random() % 9);
+    for (auto& octet : f.data) octet = random() & 0xFF;
+    if (group == kParameterGroup && f.data[0] == 1) f.data[0] = 0;  // not to write parameters at random
+    board.can_in[group].push_back(f);
+    period();
+    can_node_service();
+    if (board.can_out.size() > 100) board.can_out.clear();
+  }
+  for (auto& queue : board.can_in) queue.clear();
+  std::uint16_t alive = 0;
+  const auto say = [&](std::int32_t mode, int times) {
+    for (int k = 0; k < times; ++k) {
+      hal_can_frame_t f = can_frame(CAN_COMMAND, 1);
+      can_put(&f, CAN_COMMAND_MODE, mode);
+      can_put(&f, CAN_COMMAND_ALIVE, alive = (alive + 1) % 16);
+      can_put(&f, CAN_COMMAND_CRC, can_crc8(&f, 3));
+      board.can_in[kCommandGroup].push_back(f);
+      pass(10);
+    }
+  };
+  say(CAN_MODE_OFF, 10);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  say(CAN_MODE_RUN, 6);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  say(CAN_MODE_OFF, 2);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  answer_octets = 20;
+  board.can_out.clear();
+  for (const auto& piece : pieces({8, 1})) board.can_in[kRecordGroup].push_back(piece);
+  pass(2);
+  EXPECT_EQ(take_sent()[0x481].size(), 4u);
+}
+
+}  // namespace
+}  // namespace stillspin::test

@@ -1,0 +1,130 @@
+// Records in pieces: whole, broken, and arbitrary frames.
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+extern "C" {
+#include "firmware/can/segments.h"
+}
+
+namespace stillspin::test {
+namespace {
+
+std::vector<hal_can_frame_t> pieces_of(const std::vector<std::uint16_t>& record) {
+  segment_splitter_t s = {};
+  std::copy(record.begin(), record.end(), s.octets);
+  segment_split_begin(&s, static_cast<std::uint16_t>(record.size()), 0);
+  std::vector<hal_can_frame_t> frames;
+  hal_can_frame_t frame = {};
+  while (segment_split_peek(&s, &frame)) {
+    frames.push_back(frame);
+    segment_split_advance(&s, 0);
+  }
+  EXPECT_EQ(s.count, 0u);
+  return frames;
+}
+
+std::vector<std::uint16_t> record_of(unsigned octets, unsigned seed = 1) {
+  std::vector<std::uint16_t> record;
+  for (unsigned k = 0; k < octets; ++k) record.push_back(static_cast<std::uint16_t>((seed + 7) * (k + 3) & 0xFF));
+  return record;
+}
+
+class CanSegments : public ::testing::Test {
+ protected:
+  segment_joiner_t joiner = {};
+
+  /// What comes out, one after the other.
+  std::vector<std::vector<std::uint16_t>> join(const std::vector<hal_can_frame_t>& frames, std::uint32_t now = 0) {
+    std::vector<std::vector<std::uint16_t>> records;
+    for (const hal_can_frame_t& frame : frames) {
+      if (segment_join(&joiner, &frame, now)) records.emplace_back(joiner.octets, joiner.octets + joiner.count);
+    }
+    return records;
+  }
+};
+
+TEST_F(CanSegments, EveryLengthArrivesAsItWas) {
+  for (unsigned octets = 2; octets <= RECORD_MAX - 2; ++octets) {
+    const auto record = record_of(octets, octets);
+    const auto frames = pieces_of(record);
+    EXPECT_EQ(frames.size(), (octets + 2 + 6) / 7);
+    const auto records = join(frames);
+    ASSERT_EQ(records.size(), 1u) << octets;
+    EXPECT_EQ(records[0], record);
+  }
+  EXPECT_EQ(joiner.dropped, 0u);
+}
+
+TEST_F(CanSegments, MissingRepeatedAndExchangedPiecesDropTheRecordAndNoMore) {
+  const auto good = pieces_of(record_of(60, 5));
+  for (std::size_t k = 0; k + 1 < good.size(); ++k) {
+    for (int fault = 0; fault < 3; ++fault) {
+      joiner = {};
+      auto frames = good;
+      if (fault == 0) frames.erase(frames.begin() + static_cast<long>(k));
+      if (fault == 1) frames.insert(frames.begin() + static_cast<long>(k), frames[k]);
+      if (fault == 2) std::swap(frames[k], frames[k + 1]);
+      const auto broken = join(frames);
+      if (fault == 1 && k == 0) {
+        EXPECT_EQ(broken.size(), 1u) << "a first piece begins anew";
+      } else {
+        EXPECT_TRUE(broken.empty()) << "fault " << fault << " at " << k;
+      }
+      EXPECT_EQ(join(good).size(), 1u) << "the next record arrives";
+    }
+  }
+}
+
+TEST_F(CanSegments, ADamagedOctetIsFoundByTheRecordsCheckSum) {
+  const auto good = pieces_of(record_of(30));
+  for (std::size_t k = 0; k < good.size(); ++k) {
+    auto frames = good;
+    frames[k].data[1] ^= 0x10;
+    EXPECT_TRUE(join(frames).empty());
+  }
+  EXPECT_EQ(joiner.dropped, good.size());
+}
+
+TEST_F(CanSegments, AnUnfinishedRecordIsForgotten) {
+  auto frames = pieces_of(record_of(30));
+  const auto last = frames.back();
+  frames.pop_back();
+  EXPECT_TRUE(join(frames, 1000).empty());
+  segment_join_rest(&joiner, 1000 + SEGMENTS_REST_MS);
+  EXPECT_EQ(joiner.dropped, 0u);
+  segment_join_rest(&joiner, 1001 + SEGMENTS_REST_MS);
+  EXPECT_EQ(joiner.dropped, 1u);
+  EXPECT_TRUE(join({last}).empty());
+}
+
+TEST_F(CanSegments, AnEndlessRecordIsDropped) {
+  hal_can_frame_t frame = {0, false, 8, {SEGMENT_FIRST}};
+  for (unsigned k = 0; k < 200; ++k) {
+    EXPECT_FALSE(segment_join(&joiner, &frame, 0));
+    frame.data[0] = (k + 1) & SEGMENT_NUMBER;
+    ASSERT_LE(joiner.count, RECORD_MAX);
+  }
+  EXPECT_EQ(joiner.dropped, 1u);
+}
+
+TEST_F(CanSegments, AnyFramesLeaveItReadyForARecord) {
+  std::mt19937 random(7);
+  const auto good = pieces_of(record_of(100));
+  for (int round = 0; round < 2'000; ++round) {
+    std::vector<hal_can_frame_t> noise(random() % 60);
+    for (hal_can_frame_t& frame : noise) {
+      frame.length = static_cast<std::uint16_t>(random() % 9);
+      for (auto& octet : frame.data) octet = random() & 0xFF;
+      if (random() % 2 == 0) frame.data[0] = random() % 4;  // looks like a piece
+    }
+    (void)join(noise);
+    ASSERT_LE(joiner.count, RECORD_MAX);
+    ASSERT_EQ(join(good).size(), 1u);
+  }
+}
+
+}  // namespace
+}  // namespace stillspin::test
