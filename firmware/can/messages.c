@@ -64,7 +64,7 @@ int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
     steps |= (uint32_t)(frame->data[at >> 3] >> (at & 7u) & 1u) << k;
   }
   const bool negative = f->is_signed && (steps >> (f->bits - 1u) & 1uL) != 0uL;
-  if (negative && f->bits < 32u) steps |= ~((1uL << f->bits) - 1u);
+  if (negative && f->bits < 32u) steps |= (uint32_t)~((1uL << f->bits) - 1uL);
   return (int32_t)steps;
 }
 
