@@ -154,5 +154,4 @@ PARAMETER(223, can_reaction, "", 0, 0, 0, 2, 1, ALWAYS, "when commands stay away
 PARAMETER(224, can_status_period, "ms", 0, 0, 0, 10000, 10, ALWAYS, "between two STATUS messages; 0 sends none")
 PARAMETER(225, can_telemetry_period, "ms", 0, 0, 0, 10000, 20, ALWAYS,
           "between two TELEMETRY_1 and TELEMETRY_2; 0 sends none")
-PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS,
-          "from bus-off to the attempt to be on the bus again")
+PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS, "from bus-off to the attempt to be on the bus again")

@@ -24,16 +24,16 @@ typedef enum { CAN_MODE_OFF = 0, CAN_MODE_STOP = 1, CAN_MODE_RUN = 2 } can_mode_
 typedef enum { CAN_REACTION_NONE = 0, CAN_REACTION_STOP = 1, CAN_REACTION_COAST = 2 } can_reaction_t;
 
 typedef struct {
-  bool heard;           // a command has counted since power-on
-  uint16_t alive;       // of the last one
-  int32_t mode;         // of the last one
-  bool clear_fault;     // of the last one
-  bool armed;           // the next RUN starts
-  bool commanding;      // the drive was started by the bus
-  bool timed_out;       // until a command counts again
+  bool heard;        // a command has counted since power-on
+  uint16_t alive;    // of the last one
+  int32_t mode;      // of the last one
+  bool clear_fault;  // of the last one
+  bool armed;        // the next RUN starts
+  bool commanding;   // the drive was started by the bus
+  bool timed_out;    // until a command counts again
   uint32_t heard_ms;
-  uint16_t bad;         // commands that did not count; stays at 65535, like the next
-  uint16_t gaps;        // commands that never came, by the alive counter
+  uint16_t bad;   // commands that did not count; stays at 65535, like the next
+  uint16_t gaps;  // commands that never came, by the alive counter
 } can_command_t;
 
 void can_command_reset(can_command_t* c);

@@ -64,7 +64,8 @@ CAN_FIELD(RECORD_RESPONSE, FIRST, 7, 1, UNSIGNED, 1, "", "the record begins with
 
 CAN_MESSAGE(DIAGNOSTIC, 0x500, 8, DRIVE, "once a second: what went wrong on the bus since power-on")
 CAN_FIELD(DIAGNOSTIC, BAD_COMMANDS, 0, 16, UNSIGNED, 1, "", "wrong length or CRC, or the alive counter stood still")
-CAN_FIELD(DIAGNOSTIC, LOST_FRAMES, 16, 16, UNSIGNED, 1, "", "received and overwritten, gaps of the alive counter, pieces missing")
+CAN_FIELD(DIAGNOSTIC, LOST_FRAMES, 16, 16, UNSIGNED, 1, "",
+          "received and overwritten, gaps of the alive counter, pieces missing")
 CAN_FIELD(DIAGNOSTIC, BUS_OFFS, 32, 8, UNSIGNED, 1, "", "times bus-off, stays at 255")
 CAN_FIELD(DIAGNOSTIC, RESTARTS, 40, 8, UNSIGNED, 1, "", "transmissions that had to be restarted, stays at 255")
 CAN_FIELD(DIAGNOSTIC, TRANSMIT_ERRORS, 48, 8, UNSIGNED, 1, "", "the controller's error counter now")

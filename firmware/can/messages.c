@@ -28,9 +28,7 @@ const can_message_info_t* can_message_info(uint16_t message) {
   return message < (uint16_t)CAN_MESSAGES ? &messages[message] : NULL;
 }
 
-const can_field_info_t* can_field_info(uint16_t field) {
-  return field < (uint16_t)CAN_FIELDS ? &fields[field] : NULL;
-}
+const can_field_info_t* can_field_info(uint16_t field) { return field < (uint16_t)CAN_FIELDS ? &fields[field] : NULL; }
 
 hal_can_frame_t can_frame(can_message_t message, uint16_t node) {
   hal_can_frame_t frame = {0uL, false, 0u, {0u}};
@@ -41,7 +39,7 @@ hal_can_frame_t can_frame(can_message_t message, uint16_t node) {
 
 static int32_t clamp_to(const can_field_info_t* f, int32_t value) {
   if (f->bits >= 32u) return value;
-  const int32_t span = (int32_t)(1uL << (f->is_signed ? f->bits - 1u : f->bits));
+  const int32_t span = (int32_t)((uint32_t)1u << (f->is_signed ? f->bits - 1u : f->bits));
   return q_clamp(value, f->is_signed ? -span : 0, span - 1);
 }
 
@@ -64,7 +62,7 @@ int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
     steps |= (uint32_t)(frame->data[at >> 3] >> (at & 7u) & 1u) << k;
   }
   const bool negative = f->is_signed && (steps >> (f->bits - 1u) & 1uL) != 0uL;
-  if (negative && f->bits < 32u) steps |= (uint32_t)~((1uL << f->bits) - 1uL);
+  if (negative && f->bits < 32u) steps |= ~(((uint32_t)1u << f->bits) - 1u);
   return (int32_t)steps;
 }
 

@@ -69,8 +69,8 @@ int32_t can_get(const hal_can_frame_t* frame, can_field_t field);
 /// Steps of the field that a value with q fractional bits (1..24) is, to the nearest.
 int32_t can_steps(can_field_t field, int32_t value, uint16_t q);
 
-/// CRC-8 SAE J1850 (polynomial 0x1D, begins with 0xFF, inverted at the end, "123456789" gives 0x4B) over the identifier,
-/// low octet first, and the first `count` octets of data: a frame with another's identifier does not pass.
+/// CRC-8 SAE J1850 (polynomial 0x1D, begins with 0xFF, inverted at the end, "123456789" gives 0x4B) over the
+/// identifier, low octet first, and the first `count` octets of data: a frame with another's identifier does not pass.
 uint16_t can_crc8(const hal_can_frame_t* frame, uint16_t count);
 
 #if defined(__cplusplus)

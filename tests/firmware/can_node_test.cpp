@@ -35,10 +35,20 @@ class CanNode : public Drive {
     answer_octets = 20;
     can_node_reset(answer);
   }
+  /// What is learnt of windows without a machine behind them would soon be a fault.
+  static void forget_windows() {
+    if (!drive_is_energised() || drive.state == DRIVE_START) return;
+    position_preset(&drive, 0, 0);
+    position_align_encoder(&drive, 0, 0);
+    sensor_match_reset(&drive.position.sensors);
+    drive.trim.mismatch_q30 = 0;
+    drive.supervision = drive_supervision_t{};
+  }
   void pass(int ms) {
     for (int k = 0; k < ms; ++k) {
       for (int n = 0; n < 10; ++n) {
         period();
+        forget_windows();
         can_node_service();
       }
     }
@@ -69,7 +79,8 @@ class CanNode : public Drive {
     board.can_out.clear();
     board.can_in[kParameterGroup].push_back(request);
     can_node_service();
-    const auto sent = take_sent()[0x381];
+    auto all = take_sent();
+    const auto& sent = all[0x381];
     EXPECT_EQ(sent.size(), 1u);
     return sent.empty() ? hal_can_frame_t{} : sent[0];
   }
@@ -113,8 +124,7 @@ TEST_F(CanNode, SendsItsPeriodicMessagesInTime) {
 
 TEST_F(CanNode, StatusAndTelemetrySayWhatTheSignalsSay) {
   make_run();
-  drive_command_speed(100 << 16);
-  pass(200);
+  pass(20);
   board.can_out.clear();
   period();
   parameters.can_status_period = parameters.can_telemetry_period = 1;
@@ -154,6 +164,7 @@ TEST_F(CanNode, ParametersAreReadAndWrittenByNumber) {
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_ID), 9999);
   r = answer_to(parameter(7, 222, 0));
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RANGE);
+  drive.request.reload = false;  // main.c's work
   make_run();
   r = answer_to(parameter(1, 220, 2));
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RUNNING);
@@ -171,7 +182,8 @@ TEST_F(CanNode, ARecordIsAnsweredInPieces) {
   EXPECT_EQ(last_request, request);
   segment_joiner_t joiner = {};
   bool whole = false;
-  for (const auto& frame : take_sent()[0x481]) whole = segment_join(&joiner, &frame, 0);
+  auto sent = take_sent();
+  for (const auto& frame : sent[0x481]) whole = segment_join(&joiner, &frame, 0);
   EXPECT_TRUE(whole);
   EXPECT_EQ(joiner.count, answer_octets);
 }
@@ -184,7 +196,8 @@ TEST_F(CanNode, TheNextRequestWaitsForTheAnswerBefore) {
   pass(10);
   segment_joiner_t joiner = {};
   int records = 0;
-  for (const auto& frame : take_sent()[0x481]) records += segment_join(&joiner, &frame, 0) ? 1 : 0;
+  auto sent = take_sent();
+  for (const auto& frame : sent[0x481]) records += segment_join(&joiner, &frame, 0) ? 1 : 0;
   EXPECT_EQ(records, 3);
   EXPECT_EQ(joiner.dropped, 0u);
 }
