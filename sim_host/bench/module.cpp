@@ -72,7 +72,7 @@ TapeSink tape_sink_of(const nb::object& sink) {
     nb::gil_scoped_acquire gil;
     nb::list requests;
     for (const Octets& request : period.requests) requests.append(bytes_of(request));
-    return nb::cast<bool>(sink(requests, bytes_of(period.step), bytes_of(period.answer)));
+    return nb::cast<bool>(sink(requests, bytes_of(period.step), bytes_of(period.answer), bytes_of(period.signals)));
   };
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "firmware/drive_api.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/requests.h"
 #include "hal/hal_tape.h"
@@ -60,6 +61,15 @@ Octets answer_of(const tape_period_t& p, std::uint16_t sequence) {
   return answer;
 }
 
+Octets signals_now() {
+  const drive_signals_t& s = *drive_signals();
+  Octets octets;
+#define SIGNAL(name, unit, q, meaning) put32(octets, static_cast<std::uint32_t>(s.name));
+#include "firmware/signal_list.h"
+#undef SIGNAL
+  return octets;
+}
+
 }  // namespace
 
 TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {
@@ -77,6 +87,7 @@ bool TapeTap::turn() {
     if (!hal_tape_finish_period()) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
     period_.step = step_of(hal_tape.period, sequence_);
     period_.answer = answer_of(hal_tape.period, sequence_);
+    period_.signals = signals_now();
     more = sink_(period_);
     sequence_++;
     period_ = TapedPeriod();

@@ -16,6 +16,7 @@ struct TapedPeriod {
   std::vector<Octets> requests;  // type and body of what is asked of the drive before the step, in order
   Octets step;                   // body of the step's request
   Octets answer;                 // body of the answer that it must have
+  Octets signals;                // raw i32 of every signal of the drive behind it
 };
 
 /// Called behind every period from power-on; false ends the run.

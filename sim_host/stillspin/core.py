@@ -25,6 +25,9 @@ Waveform = dict[str, Signals]
 Look = tuple[float, float, int]
 """A stretch of a run to look into: from, to (s), and ticks of 10 ns between two looks at the currents."""
 Progress = Callable[[float], bool]
+Tape = Callable[[list[bytes], bytes, bytes, bytes], bool]
+"""Gets every period from power-on: requests before it (type and body), body of the step, body of the answer that it must
+have, raw signals (i32) behind it. False ends the run."""
 
 
 class NativeResult(Protocol):
@@ -132,6 +135,7 @@ class NativeCore(Protocol):
         waveform: Look,
         seed: int,
         progress: Progress | None,
+        tape: Tape | None = None,
     ) -> NativeResult:
         """One run. Times in s from the end of the start procedure; progress gets the share done, false stops."""
         ...

@@ -31,6 +31,9 @@ class Request(IntEnum):
     SCOPE_STOP = 0x14
     STREAM = 0x15
     COMMISSION_RESULT = 0x16
+    HIL_ENTER = 0x20
+    HIL_STEP = 0x21
+    HIL_LEAVE = 0x22
 
 
 STREAM_EVENT = 0x40
