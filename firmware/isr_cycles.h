@@ -5,8 +5,9 @@
 // counts 13 cycles, two of them with one rounding 20, one that is only added up 8, an upper half 6, a saturation 8, a
 // reciprocal 70 and a 32 bit division 60, operands fetched; to the modulation come 1000 for placing and sorting edges.
 // All worst steps in one period need three windows, the millisecond's tasks and a polarity that is not confirmed yet:
-// 8800; the mean over a run is 6900. Not in it: position source 2 or a hold, which evaluate the windows twice. They
-// make a compare value that is written too late be seen too late.
+// 8800; the mean over a run is 6900. Not in it: position source 2 or a hold, which evaluate the windows twice, and what
+// follows when the compare values are written, serial port and scope. They make a compare value that is written too
+// late be seen too late.
 
 #ifndef STILLSPIN_FIRMWARE_ISR_CYCLES_H
 #define STILLSPIN_FIRMWARE_ISR_CYCLES_H

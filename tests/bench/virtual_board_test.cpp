@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
 
 #include "firmware/drive_api.h"
 #include "hal/hal_sci.h"
@@ -95,18 +96,27 @@ TEST(VirtualBoard, LoadBrakesTheShaft) {
   EXPECT_THROW(board.set_load(1e6), std::invalid_argument);
 }
 
-// Not one value of the machine differs, whatever comes in: the port is served behind what the pulses wait for.
+std::vector<std::uint8_t> octets_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// 130 ms of octets with errors, a break, and then a question whose answer fills the line the other way for 0.4 s.
+void flood_line(devices::SerialLine& line, Tick now) {
+  line.set_noise(0.02, 7);
+  line.send(std::vector<std::uint8_t>(1500, 0xA5), now);
+  line.send_break(40, now);
+  line.set_noise(0.0, 7);
+  line.send(octets_of("\x03\rlist\r"), now + 150 * kMillisecond);
+}
+
+// Not one value of the machine differs, whatever comes in and goes out: the port is served behind what the pulses wait
+// for, and what the octets mean is looked at in the background.
 TEST(VirtualBoard, SerialFloodDoesNotTouchTheControl) {
   std::vector<std::vector<Quantity>> quiet;
   for (const bool flood : {false, true}) {
     VirtualBoard board(request());
     start_running(board);
-    if (flood) {
-      board.serial().set_noise(0.02, 7);
-      board.serial().send(std::vector<std::uint8_t>(3000, 0xA5), board.now());
-      board.serial().send_break(40, board.now());
-    }
-    for (int k = 0; k < 250; ++k) {
+    board.serial().take();
+    if (flood) flood_line(board.serial(), board.now());
+    for (int k = 0; k < 400; ++k) {
       board.advance(kMillisecond);
       const std::vector<Quantity> now = board.truth();
       if (!flood) {
@@ -119,6 +129,10 @@ TEST(VirtualBoard, SerialFloodDoesNotTouchTheControl) {
     }
     const hal_sci_errors_t e = hal_sci_errors();
     EXPECT_EQ(e.framing > 0, flood);
+    EXPECT_EQ(e.breaks, flood ? 1u : 0u);
+    if (flood) {
+      EXPECT_GT(board.serial().take().size(), 2600u) << "0.25 s of a full line are 2890 octets";
+    }
     EXPECT_EQ(board.statistics().resets, 0u);
   }
 }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -11,12 +13,14 @@ from collections import deque
 
 import pytest
 import serial
+from rich.console import Console
 from typer.testing import CliRunner
 
 from stillspin import cli
 from stillspin.board.desk import SLICE, TICKS_PER_SECOND, Desk
 from stillspin.board.pacer import LAG, Pacer
 from stillspin.board.pseudo_terminal import BACKLOG, PseudoTerminal
+from stillspin.board.show import Show
 from stillspin.errors import CampaignError, InputError
 
 
@@ -209,6 +213,12 @@ class EchoBoard:
     def serial_counts(self):
         return {"drive_rate": 115740.7}
 
+    def signals(self):
+        return {"state": 4.0}
+
+    def truth(self):
+        return {"speed": 599.5, "load_torque": 2.0}
+
     def close(self):
         self.closed = True
 
@@ -256,6 +266,40 @@ def test_board_that_cannot_go_on_says_why(desk):
     desk.board.broken = True
     with pytest.raises(CampaignError, match="nested too deeply"):
         desk.step(SLICE)
+
+
+# ---- what it says
+
+
+class SlowPacer:
+    ratio, late = 0.42, True
+
+
+def _shown(desk, pacer, **terminal):
+    out = io.StringIO()
+    with Show(Console(file=out, width=160, **terminal), desk, pacer, 1.0) as show:
+        for _ in range(3):
+            show.look()
+    return out.getvalue()
+
+
+def test_status_line_tells_time_pace_state_shaft_and_port(desk, port):
+    with _open(port.name):
+        desk.step(SLICE)
+        line = Show(Console(file=io.StringIO()), desk, SlowPacer(), 1.0).line()
+    for words in ("0.0 s", "0.42 × real time", "running", "599.5 rpm", "2.00 Nm", "open at 115200 bit/s"):
+        assert words in line
+    assert "not open" in Show(Console(file=io.StringIO()), desk, SlowPacer(), 1.0).line()
+    assert "running" in _shown(desk, SlowPacer(), force_terminal=True)
+
+
+def test_warnings_come_once_and_also_without_a_terminal(desk, port):
+    with _open(port.name, 9600):
+        desk.step(SLICE)
+        words = _shown(desk, SlowPacer())
+    assert words.count("does not keep up: 0.42 × real time instead of 1 ×") == 1
+    assert words.count("the terminal is set to 9600 bit/s and the drive to 115741") == 1
+    assert "rpm" not in words, "the line is for those who look at it"
 
 
 # ---- the process
@@ -307,12 +351,12 @@ def test_process_ends_orderly_when_asked(start, number):
 def test_process_keeps_real_time(start):
     process, _ = start("--for", "3")
     _until_ready(process)
-    began = time.monotonic()
-    _, err = process.communicate(timeout=60)
-    took = time.monotonic() - began
+    out, err = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert took >= 2.9
-    assert took <= 4.0 or "does not keep up" in err
+    # Its own figure: what the system takes to end a process is not the board's pace.
+    ratio = float(re.search(r"after 3\.0 s of the drive's time, (\S+) × real time", out)[1])
+    assert ratio <= 1.01
+    assert ratio >= 0.9 or "does not keep up" in err
 
 
 def test_machine_that_cannot_keep_up_is_named(start):
