@@ -72,9 +72,7 @@ Octets signals_now() {
 
 }  // namespace
 
-TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {
-  if (sink_) hal_tape_start(TAPE_RECORDS, nullptr);
-}
+TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {}
 
 TapeTap::~TapeTap() {
   if (sink_) hal_tape_start(TAPE_OFF, nullptr);
@@ -82,6 +80,8 @@ TapeTap::~TapeTap() {
 
 bool TapeTap::turn() {
   if (!sink_) return true;
+  // A step that has not run yet, or that is late and still running, belongs to the period that ends with it.
+  if (begun_ && !hal_tape.stepped) return true;
   bool more = true;
   if (begun_) {
     if (!hal_tape_finish_period()) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
@@ -92,6 +92,8 @@ bool TapeTap::turn() {
     sequence_++;
     period_ = TapedPeriod();
   }
+  // The firmware has come up by its first period, and has cleared the tape for itself.
+  if (!begun_) hal_tape_start(TAPE_RECORDS, nullptr);
   begun_ = true;
   hal_tape_next_period();
   return more;
