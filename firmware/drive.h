@@ -134,6 +134,7 @@ typedef struct {
   slopes_trim_t trim;     // current offsets, mismatch of the sensors
   drive_config_t config;
   bool config_valid;
+  bool loading;  // the store is being read: BOOT goes on
   drive_samples_t samples;
   drive_position_t position;
   drive_control_t control;

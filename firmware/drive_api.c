@@ -6,6 +6,7 @@
 #include "firmware/position.h"
 #include "firmware/sampling.h"
 #include "firmware/scope/scope.h"
+#include "firmware/store/store.h"
 
 drive_t drive;
 
@@ -15,6 +16,7 @@ void drive_reset(void) {
   sampling_reset();
   scope_reset();
   fault_history_reset();
+  store_reset();
   parameters_reset();
   drive.trim.offset_a_q8 = 2048L * 256L;
   drive.trim.offset_b_q8 = 2048L * 256L;

@@ -9,10 +9,12 @@
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
 #include "firmware/parameters.h"
+#include "firmware/store/store.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
+#include "hal/hal_nvm.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 #include "hal/hal_sci.h"
@@ -25,6 +27,23 @@ static uint16_t answer_bus(const uint16_t* request, uint16_t count, uint16_t* an
   return request_answer(GUARD_BUS, request, count, answer);
 }
 
+// What was saved is in force, and so is the configuration that goes with it.
+static void end_loading(void) {
+  if (!store_is_busy() && !drive.request.reload) drive.loading = false;
+}
+
+// The converter needs 5 ms to come up; meanwhile it shows whether there is a memory with parameters in it. The drive
+// stays in BOOT until they have been read.
+static void start_converter_and_store(void) {
+  hal_adc_power_up();
+  (void)hal_nvm_init();  // a bus that hangs is the first job's business
+  drive.loading = true;
+  store_begin();
+  while (!hal_adc_is_up()) store_service();
+  hal_adc_set_up();
+  end_loading();
+}
+
 void firmware_main(void) {
   drive_reset();
   link_reset();
@@ -35,7 +54,7 @@ void firmware_main(void) {
   hal_time_init();
   hal_safety_init();
   drive.config_valid = hal_pwm_init(drive_dead_band_ticks()) && drive.config_valid;
-  hal_adc_init();
+  start_converter_and_store();
   hal_encoder_init((uint32_t)parameters.encoder_counts);
   (void)hal_sci_init(SERIAL_BAUD);
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);
@@ -46,7 +65,9 @@ void firmware_main(void) {
   uint16_t seen = hil_heartbeat(drive.heartbeat);
   for (;;) {
     hal_idle();
+    store_service();
     if (!hil_is_active()) background_step(&drive);
+    end_loading();
     link_service();
     console_service();
     can_node_service();

@@ -99,7 +99,7 @@ void drive_sequence(drive_t* d) {
   hal_safety_toggle_enable();
   switch (d->state) {
     case DRIVE_BOOT:
-      drive_enter(d, DRIVE_CALIBRATE);
+      if (!d->loading) drive_enter(d, DRIVE_CALIBRATE);
       break;
     case DRIVE_CALIBRATE:
       calibrate(d);

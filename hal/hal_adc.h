@@ -14,6 +14,7 @@
 #ifndef STILLSPIN_HAL_HAL_ADC_H
 #define STILLSPIN_HAL_HAL_ADC_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -49,6 +50,11 @@ typedef struct {
 
 // Powers the converter up (5 ms, polled) and arms both sequencers. Needs hal_clock_init and hal_time_init.
 void hal_adc_init(void);
+
+// The same in parts, for those who have something to do meanwhile: begin, look until it is up, arm.
+void hal_adc_power_up(void);
+bool hal_adc_is_up(void);
+void hal_adc_set_up(void);
 
 // For the window interrupt: takes the results, makes both sequencers ready for the next window and acknowledges the
 // interrupt. Must be done before the next window's first burst starts.

@@ -6,9 +6,15 @@
 // its range is refused, its default stays in force; numbers that this firmware does not know are kept and written back,
 // so that going back to an older firmware and forth again loses nothing.
 //
-// store_service does all the work, in the background level and in short slices; it never waits. At power-on it reads
-// while the drive stays in BOOT. Defaults are in force whenever no whole and consistent set could be read, and `state`
-// says why. A save takes the values of the moment in which it is asked for.
+// store_service does all the work, in the background level and in short slices (below 2000 cycles, but for the exchange
+// of a whole set, which checks it like a changed parameter does); it never waits. At power-on it reads while the drive
+// stays in BOOT. When no whole and consistent set could be read the values in force stay, which are the defaults at
+// power-on, and `state` says why. A save takes the values of the moment in which it is asked for, reads back what it
+// has written, and only then makes it valid.
+//
+// Duration with 86 parameters, measured on the virtual chip: a load 20 ms, of which 5 pass while the converter powers
+// up, a save 0.11 s. Wear: a save writes each page of one of the slots once, its first page twice, and the slots take
+// turns.
 
 #ifndef STILLSPIN_FIRMWARE_STORE_STORE_H
 #define STILLSPIN_FIRMWARE_STORE_STORE_H
@@ -17,31 +23,36 @@
 #include <stdint.h>
 
 typedef enum {
-  STORE_EMPTY = 0,     // a new memory: defaults
+  STORE_EMPTY = 0,     // a new memory
   STORE_LOADED = 1,    // the values are in force as they were saved
-  STORE_DAMAGED = 2,   // something is there, and no slot of it is valid: defaults
-  STORE_MIGRATED = 3,  // loaded, and some were rescaled or refused, see store_report
+  STORE_DAMAGED = 2,   // something is there, and no slot of it is valid
+  STORE_MIGRATED = 3,  // loaded, from another firmware: see store_report
   STORE_SAVING = 4,
   STORE_SAVED = 5,
   STORE_FAILED = 6,    // a save was broken off: the set saved before is still there
   STORE_READING = 7,   // at power-on or on command
-  STORE_ABSENT = 8,    // no memory answers: defaults
-  STORE_CONFLICT = 9,  // the saved values do not fit together (parameter_conflict): defaults
-  STORE_FOREIGN = 10   // written in a format of the future: defaults
+  STORE_ABSENT = 8,    // no memory answers
+  STORE_CONFLICT = 9,  // the saved values do not fit together (parameter_conflict)
+  STORE_FOREIGN = 10   // written in a format of the future
 } store_state_t;
 
 /// What was found at the last loading or written at the last saving.
 typedef struct {
-  uint16_t slot;           // 0, 1
-  uint32_t sequence;       // how many times this memory has been written; its wear
+  uint16_t slot;           // 0, 1; SLOTS when none is valid
+  uint32_t sequence;       // how many times this memory has been written: its wear
   uint16_t values;         // in the slot
-  uint16_t rescaled;       // format changed
+  uint16_t rescaled;       // the parameter's format has changed
   uint16_t refused;        // outside of the range: default
   uint16_t first_refused;  // number of the first of them, 0 for none
+  uint16_t missing;        // parameters that the slot does not have: default
   uint16_t unknown;        // kept for another firmware
+  uint16_t damaged;        // slots in which something is that is not valid
 } store_report_t;
 
-/// Power-on state: READING.
+/// Power-on state: begins to read. The memory must be set up.
+void store_begin(void);
+
+/// As without a memory: EMPTY, nothing under way.
 void store_reset(void);
 
 /// Background level.

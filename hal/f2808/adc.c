@@ -18,15 +18,22 @@
 
 #define CONTROL2 ((uint16_t)(ADCTRL2_EPWM_SOCA_SEQ1_MASK | ADCTRL2_EPWM_SOCB_SEQ2_MASK | ADCTRL2_INT_ENA_SEQ2_MASK))
 
-static void power_up(void) {
+static uint32_t powered_at;  // cycles
+
+void hal_adc_power_up(void) {
+  target_write16(REG_ADCTRL1, ADCTRL1_RESET_MASK);
+  TARGET_NOP();  // the reset takes two cycles
+  TARGET_NOP();
   // Bandgap, reference and converter may come up together on this chip; then the references need 5 ms.
   target_write16(REG_ADCTRL3, REG_FIELD(ADCTRL3_ADCBGRFDN, ADCTRL3_BANDGAP_ON) | ADCTRL3_ADCPWDN_MASK |
                                   REG_FIELD(ADCTRL3_ADCCLKPS, 0u) |
                                   REG_FIELD(ADCTRL3_SMODE_SEL, ADCTRL3_SMODE_SIMULTANEOUS));
-  const uint32_t start = hal_time_cycles();
-  while (hal_time_cycles() - start < POWER_UP_CYCLES) {
-    target_elapse(POLL_CYCLES);
-  }
+  powered_at = hal_time_cycles();
+}
+
+bool hal_adc_is_up(void) {
+  target_elapse(POLL_CYCLES);
+  return hal_time_cycles() - powered_at >= POWER_UP_CYCLES;
 }
 
 TARGET_RAM_CODE void adc_rearm(void) {
@@ -34,10 +41,13 @@ TARGET_RAM_CODE void adc_rearm(void) {
 }
 
 void hal_adc_init(void) {
-  target_write16(REG_ADCTRL1, ADCTRL1_RESET_MASK);
-  TARGET_NOP();  // the reset takes two cycles
-  TARGET_NOP();
-  power_up();
+  hal_adc_power_up();
+  while (!hal_adc_is_up()) {
+  }
+  hal_adc_set_up();
+}
+
+void hal_adc_set_up(void) {
   // Two sequencers, one run a trigger, no clock divider, shortest sample window: everything 0.
   target_write16(REG_ADCTRL1, 0u);
   target_write16(REG_ADCCHSELSEQ1,

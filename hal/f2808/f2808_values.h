@@ -63,7 +63,7 @@
 
 // ---- Pins ----------------------------------------------------------------------------------------------
 #define GPIO_MUX_GPIO 0u
-#define GPIO_MUX_FIRST 1u  // ePWM on GPIO0..11, TZ 12..15, eQEP1 20..23, SCI-A 28 and 29, eCAN-A 30 and 31
+#define GPIO_MUX_FIRST 1u  // ePWM on GPIO0..11, TZ 12..15, eQEP1 20..23, SCI-A 28, 29, eCAN-A 30, 31, I2C-A 32, 33
 #define GPIO_QUALIFY_6_SAMPLES 2u
 #define GPIO_QUALIFY_NONE 3u     // asynchronous
 #define GPACTRL_QUALPRD2_LSB 16  // sampling period of GPIO16..23 is 2n SYSCLKOUT

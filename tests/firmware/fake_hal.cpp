@@ -4,6 +4,7 @@
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
+#include "hal/hal_nvm.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_safety.h"
 #include "hal/hal_sci.h"
@@ -41,7 +42,9 @@ std::uint16_t hal_pwm_period_tick(void) { return 0; }
 bool hal_pwm_is_tripped(void) { return !board.gates_on; }
 bool hal_pwm_was_tripped_by_pin(void) { return board.tripped_by_pin; }
 
-void hal_adc_init(void) {}
+void hal_adc_power_up(void) {}
+bool hal_adc_is_up(void) { return true; }
+void hal_adc_set_up(void) {}
 void hal_adc_read_window(hal_adc_window_t* window) {
   *window = board.adc.front();
   board.adc.pop_front();

@@ -1,0 +1,185 @@
+#include "firmware/store/store.h"
+
+#include <stddef.h>
+
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/store/slot.h"
+#include "firmware/store/survey.h"
+#include "firmware/store/values.h"
+#include "firmware/store/writer.h"
+
+typedef enum { WORK_NONE, WORK_LOAD, WORK_SURVEY, WORK_WRITE } work_t;
+
+static work_t work;
+static bool begun;  // false: asked for, store_service begins
+static store_state_t state;
+static store_report_t report;
+
+store_state_t store_state(void) { return state; }
+
+bool store_is_busy(void) { return work != WORK_NONE; }
+
+const store_report_t* store_report(void) { return &report; }
+
+uint16_t store_progress(void) {
+  switch (work) {
+    case WORK_LOAD:
+      return survey_progress();
+    case WORK_SURVEY:
+      return (uint16_t)(survey_progress() / 10u);
+    case WORK_WRITE:
+      return (uint16_t)(10u + 9u * writer_progress() / 10u);
+    default:
+      return 100;
+  }
+}
+
+void store_reset(void) {
+  static const store_report_t nothing = {0};
+  work = WORK_NONE;
+  state = STORE_EMPTY;
+  report = nothing;
+  report.slot = SLOTS;
+}
+
+static void begin(work_t what, store_state_t meanwhile) {
+  work = what;
+  state = meanwhile;
+  begun = false;
+}
+
+void store_begin(void) {
+  begin(WORK_LOAD, STORE_READING);
+  store_service();
+}
+
+bool store_load(void) {
+  if (store_is_busy() || drive_is_energised()) return false;
+  begin(WORK_LOAD, STORE_READING);
+  return true;
+}
+
+bool store_save(void) {
+  if (store_is_busy()) return false;
+  values_copy();
+  begin(WORK_SURVEY, STORE_SAVING);
+  return true;
+}
+
+bool store_defaults(void) {
+  if (store_is_busy()) return false;
+  drive_parameters_changed();  // no start from here on until the background has taken the change
+  if (drive_is_energised()) return false;
+  parameters_reset();
+  return true;
+}
+
+static void end(store_state_t result) {
+  work = WORK_NONE;
+  state = result;
+}
+
+// The staged set into force, as a whole or not at all.
+static store_state_t take_over(void) {
+  drive_parameters_changed();  // first: no start from here on until the background has taken the change
+  if (drive_is_energised()) return STORE_FAILED;
+  values_swap();
+  if (parameter_conflict() != NULL) {
+    values_swap();
+    return STORE_CONFLICT;
+  }
+  const bool other_firmware = report.rescaled > 0u || report.refused > 0u || report.missing > 0u || report.unknown > 0u;
+  return other_firmware ? STORE_MIGRATED : STORE_LOADED;
+}
+
+static void load(void) {
+  const survey_result_t result = survey_step();
+  if (result == SURVEY_GOES_ON) return;
+  report = *survey_report();
+  switch (result) {
+    case SURVEY_FOUND:
+      end(take_over());
+      break;
+    case SURVEY_EMPTY:
+      end(STORE_EMPTY);
+      break;
+    case SURVEY_DAMAGED:
+      end(STORE_DAMAGED);
+      break;
+    case SURVEY_FOREIGN:
+      end(STORE_FOREIGN);
+      break;
+    default:
+      end(STORE_ABSENT);
+      break;
+  }
+}
+
+// Which slot may be written, and what of the other one must be kept.
+static void survey(void) {
+  const survey_result_t result = survey_step();
+  if (result == SURVEY_GOES_ON) return;
+  if (result == SURVEY_FAILED || !writer_begin(survey_report())) {
+    end(STORE_FAILED);
+  } else {
+    work = WORK_WRITE;
+  }
+}
+
+static void save(void) {
+  const writer_result_t result = writer_step();
+  if (result == WRITER_GOES_ON) return;
+  if (result == WRITER_DONE) report = writer_report();
+  end((result == WRITER_DONE) ? STORE_SAVED : STORE_FAILED);
+}
+
+void store_service(void) {
+  if (store_is_busy() && !begun) {
+    begun = true;
+    survey_begin(work == WORK_LOAD);
+    return;
+  }
+  switch (work) {
+    case WORK_LOAD:
+      load();
+      break;
+    case WORK_SURVEY:
+      survey();
+      break;
+    case WORK_WRITE:
+      save();
+      break;
+    default:
+      break;
+  }
+}
+
+const char* store_words(store_state_t s) {
+  switch (s) {
+    case STORE_EMPTY:
+      return "nothing has been saved yet: defaults are in force";
+    case STORE_LOADED:
+      return "the saved values are in force";
+    case STORE_DAMAGED:
+      return "what was saved is damaged and not used: defaults are in force";
+    case STORE_MIGRATED:
+      return "the values saved by another firmware are in force; save to keep them in this one's form";
+    case STORE_SAVING:
+      return "saving";
+    case STORE_SAVED:
+      return "the values have been saved";
+    case STORE_FAILED:
+      return "that failed: what was saved before is still there";
+    case STORE_READING:
+      return "reading";
+    case STORE_ABSENT:
+      return "the memory does not answer: defaults are in force, nothing can be saved";
+    case STORE_CONFLICT:
+      return "the saved values do not fit together and are not used: defaults are in force";
+    case STORE_FOREIGN:
+      return "a newer firmware has saved in a form that this one does not know: defaults are in force";
+    default:
+      return "";
+  }
+}

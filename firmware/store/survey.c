@@ -1,0 +1,134 @@
+#include "firmware/store/survey.h"
+
+#include <stddef.h>
+
+#include "firmware/parameters.h"
+#include "firmware/store/reader.h"
+#include "firmware/store/slot.h"
+#include "firmware/store/values.h"
+#include "hal/hal_nvm.h"
+
+#define ENTRIES_IN_A_STEP 4u  // some 1000 cycles
+
+typedef enum { LOOK_AT_HEADERS, CHECK_SLOT } stage_t;
+
+static bool staging;
+static stage_t stage;
+static uint16_t slot;  // whose header is being read, or which is being checked
+static uint16_t octets[SLOT_HEADER];
+static slot_header_t headers[SLOTS];
+static bool candidate[SLOTS];
+static bool any_valid, any_foreign;
+static store_report_t report;
+
+const store_report_t* survey_report(void) { return &report; }
+
+uint16_t survey_progress(void) { return (stage == CHECK_SLOT) ? reader_progress() : 0u; }
+
+static void read_header(uint16_t of) {
+  slot = of;
+  (void)hal_nvm_read((uint16_t)(of * SLOT_SIZE), octets, SLOT_HEADER);
+}
+
+void survey_begin(bool stage_values) {
+  static const store_report_t nothing = {0};
+  staging = stage_values;
+  stage = LOOK_AT_HEADERS;
+  any_valid = false;
+  any_foreign = false;
+  report = nothing;
+  report.slot = SLOTS;
+  read_header(0);
+}
+
+static survey_result_t conclude(void) {
+  if (report.slot < SLOTS) return SURVEY_FOUND;
+  if (any_foreign) return SURVEY_FOREIGN;
+  return (report.damaged > 0u) ? SURVEY_DAMAGED : SURVEY_EMPTY;
+}
+
+// The newest slot that has not been checked yet.
+static survey_result_t check_next(void) {
+  slot = SLOTS;
+  for (uint16_t k = 0; k < SLOTS; k++) {
+    if (!candidate[k]) continue;
+    if (slot == SLOTS || slot_is_newer(headers[k].sequence, headers[slot].sequence)) slot = k;
+  }
+  if (slot == SLOTS) return conclude();
+  candidate[slot] = false;
+  stage = CHECK_SLOT;
+  report.values = report.rescaled = report.refused = report.first_refused = report.unknown = 0;
+  if (staging) values_reset();
+  reader_begin(slot);
+  return SURVEY_GOES_ON;
+}
+
+static survey_result_t take_header(void) {
+  headers[slot] = slot_unpack_header(octets);
+  candidate[slot] = slot_is_plausible(&headers[slot]);
+  if (!candidate[slot] && !slot_is_blank(octets)) report.damaged++;
+  if (slot + 1u == SLOTS) return check_next();
+  read_header((uint16_t)(slot + 1u));
+  return SURVEY_GOES_ON;
+}
+
+static void take_entry(const slot_entry_t* entry) {
+  report.values++;
+  if (!staging) {
+    if (!values_know(entry->id)) report.unknown++;
+    return;
+  }
+  switch (values_put(entry)) {
+    case VALUE_RESCALED:
+      report.rescaled++;
+      break;
+    case VALUE_REFUSED:
+      if (report.refused == 0u) report.first_refused = entry->id;
+      report.refused++;
+      break;
+    case VALUE_UNKNOWN:
+      report.unknown++;
+      break;
+    default:
+      break;
+  }
+}
+
+// A valid slot: the one to take, unless another firmware's format keeps it from being read.
+static survey_result_t take_slot(void) {
+  if (!any_valid) report.sequence = headers[slot].sequence;
+  any_valid = true;
+  if (headers[slot].version != SLOT_VERSION) {
+    any_foreign = true;
+    return check_next();
+  }
+  report.slot = slot;
+  report.missing = (uint16_t)(parameter_count() + report.unknown - report.values);
+  return conclude();
+}
+
+survey_result_t survey_step(void) {
+  if (stage == LOOK_AT_HEADERS) {
+    const hal_nvm_state_t state = hal_nvm_step();
+    if (state == NVM_BUSY) return SURVEY_GOES_ON;
+    return (state == NVM_DONE) ? take_header() : SURVEY_FAILED;
+  }
+  slot_entry_t entry;
+  reader_result_t result = reader_step(&entry);
+  for (uint16_t k = 1; result == READER_ENTRY; k++) {
+    take_entry(&entry);
+    if (k == ENTRIES_IN_A_STEP) return SURVEY_GOES_ON;
+    result = reader_step(&entry);
+  }
+  switch (result) {
+    case READER_VALID:
+      return take_slot();
+    case READER_BAD:
+      report.damaged++;
+      return check_next();
+    case READER_FAILED:
+      return SURVEY_FAILED;
+    default:
+      return SURVEY_GOES_ON;
+  }
+}

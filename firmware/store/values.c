@@ -1,0 +1,79 @@
+#include "firmware/store/values.h"
+
+#include <stddef.h>
+
+#include "firmware/parameters.h"
+#include "hal/qmath/qarith.h"
+
+#define Q_MAX 31u  // fractional bits of a 32-bit number
+
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) offsetof(parameters_t, name),
+static const size_t offsets[] = {
+#include "firmware/parameter_list.h"
+};
+#undef PARAMETER
+
+static parameters_t set;
+static uint16_t guess;  // where the next number is likely to be: a slot has them in the table's order
+
+static int32_t* value(parameters_t* of, uint16_t index) { return (int32_t*)(void*)((char*)of + offsets[index]); }
+
+// Index of a parameter, parameter_count() when there is none.
+static uint16_t find(uint16_t id) {
+  const uint16_t count = parameter_count();
+  for (uint16_t k = 0; k < count; k++) {
+    const uint16_t index = (uint16_t)((guess + k) % count);
+    if (parameter_info(index)->id != id) continue;
+    guess = (uint16_t)((index + 1u) % count);
+    return index;
+  }
+  return count;
+}
+
+void values_reset(void) {
+  guess = 0;
+  for (uint16_t k = 0; k < parameter_count(); k++) *value(&set, k) = parameter_info(k)->initial;
+}
+
+void values_copy(void) {
+  guess = 0;
+  set = parameters;
+}
+
+bool values_know(uint16_t id) { return find(id) < parameter_count(); }
+
+// raw with `from` fractional bits as one with `to`; exact halves upward.
+static int64_t rescaled(int32_t raw, uint16_t from, uint16_t to) {
+  if (to >= from) return (int64_t)raw * (int64_t)(1uLL << (to - from));
+  const uint16_t down = (uint16_t)(from - to);
+  return q_shr64(raw + (int64_t)(1uLL << (down - 1u)), down);
+}
+
+value_fate_t values_put(const slot_entry_t* entry) {
+  const uint16_t index = find(entry->id);
+  if (index >= parameter_count()) return VALUE_UNKNOWN;
+  const parameter_info_t* const info = parameter_info(index);
+  if (entry->q > Q_MAX) return VALUE_REFUSED;
+  int64_t raw = rescaled(entry->raw, entry->q, info->q);
+  // A limit in the coarser of two formats may be one step beyond that in the finer one.
+  int64_t slack = (entry->q == info->q) ? 0 : 1;
+  if (info->q > entry->q) slack = (int64_t)(1uLL << (info->q - entry->q));
+  if (raw < info->minimum - slack || raw > info->maximum + slack) return VALUE_REFUSED;
+  raw = (raw < info->minimum) ? info->minimum : raw;
+  *value(&set, index) = (raw > info->maximum) ? info->maximum : (int32_t)raw;
+  return (entry->q == info->q) ? VALUE_TAKEN : VALUE_RESCALED;
+}
+
+slot_entry_t values_entry(uint16_t index) {
+  const parameter_info_t* const info = parameter_info(index);
+  const slot_entry_t entry = {info->id, info->q, *value(&set, index)};
+  return entry;
+}
+
+void values_swap(void) {
+  for (uint16_t k = 0; k < parameter_count(); k++) {
+    const int32_t kept = *value(&parameters, k);
+    *value(&parameters, k) = *value(&set, k);
+    *value(&set, k) = kept;
+  }
+}
