@@ -8,6 +8,7 @@ SHELL := /bin/bash
 PRESET := release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
+RUNS ?= 1000000
 PYTHON := .venv/bin/python
 DEMO := A10 A15 A16 A18a A18b A18c
 DEMO_OUT := out/demo
@@ -15,7 +16,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost loss docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -47,6 +48,9 @@ isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QE
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign
+
+fuzz: setup ## search for octets on the serial port that break the firmware, RUNS of them (1000000)
+	@bash toolchain/fuzz.sh $(RUNS)
 
 docs: setup ## build the book into site/
 	@$(PYTHON) -m mkdocs build --quiet --strict --config-file toolchain/mkdocs.yml

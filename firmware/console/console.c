@@ -14,6 +14,8 @@
 #define KEPT 64u                                      // characters typed ahead; a power of two
 #define ROOM (OUTPUT_LINE + RECORD_ENCODED_MAX + 2u)  // a line, and the answer to a record beside it
 #define CTRL_C 0x03u
+#define LINE_FEED 0x0Au
+#define RETURN 0x0Du
 
 static editor_t editor;
 static editor_line_t command;  // the one that is being answered
@@ -97,6 +99,32 @@ static void break_off(void) {
   end_job();
 }
 
+// Whether what was typed ahead ends with a line that stops the motor.
+static bool asks_to_stop(void) {
+  static editor_line_t last;
+  last.count = 0;
+  for (uint16_t k = 0; k + 1u < kept_count; k++) {
+    const uint16_t octet = kept[(uint16_t)(kept_first + k) & (KEPT - 1u)];
+    if (octet == RETURN || octet == LINE_FEED) {
+      last.count = 0;
+    } else {
+      last.text[last.count++] = octet;
+    }
+  }
+  if (!command_makes_safe(&last)) return false;
+  command = last;
+  return true;
+}
+
+// To stop does not wait for the end of a long answer.
+static void stop_at_once(void) {
+  job = NULL;
+  kept_count = 0;
+  line_of("the answer and what was typed ahead end here");
+  command_obey(&command);
+  prompt();
+}
+
 void console_octet(uint16_t octet) {
   someone_types = true;
   if (job != NULL && octet == CTRL_C) {
@@ -109,6 +137,10 @@ void console_octet(uint16_t octet) {
     return;
   }
   keep(octet);
+  if ((octet == RETURN || octet == LINE_FEED) && asks_to_stop()) {
+    stop_at_once();
+    return;
+  }
   if (job == NULL || console_takes()) return;
   line_of("more input than can be kept: the answer ends here");
   end_job();

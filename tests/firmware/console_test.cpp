@@ -249,6 +249,18 @@ TEST_F(Console, WhatIsTypedAheadIsNotLost) {
   EXPECT_EQ(drive.control.wanted_rpm_q16, 70 * 65536);
 }
 
+TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
+  drive.state = DRIVE_RUN;
+  send("list\rref 70\r");
+  run(200);
+  send("stop\r\n");
+  run(100);
+  EXPECT_TRUE(drive.request.stop);
+  run(30000);
+  EXPECT_TRUE(has(text, "the answer and what was typed ahead end here\r\nstopping\r\n> "));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "and that was said";
+}
+
 TEST_F(Console, MoreThanCanBeKeptEndsTheAnswerAndIsNotLostEither) {
   std::string lines = "list\r";
   for (int k = 0; k < 40; ++k) lines += "version\r";
