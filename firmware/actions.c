@@ -4,6 +4,7 @@
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
+#include "firmware/store/store.h"
 #include "firmware/text.h"
 #include "firmware/words.h"
 
@@ -122,3 +123,20 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
       return ANSWER_UNKNOWN;
   }
 }
+
+// Why the store did not begin.
+static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
+  if (needs_rest && drive_is_energised()) {
+    put_text(why, "not while the power stage is on: stop the drive first");
+    return ANSWER_RUNNING;
+  }
+  put_text(why, "the store is busy: ");
+  put_text(why, words(WORDS_STORE, (uint16_t)store_state()));
+  return ANSWER_BUSY;
+}
+
+answer_status_t action_save(octet_writer_t* why) { return store_save() ? ANSWER_OK : refuse_store(false, why); }
+
+answer_status_t action_load(octet_writer_t* why) { return store_load() ? ANSWER_OK : refuse_store(true, why); }
+
+answer_status_t action_defaults(octet_writer_t* why) { return store_defaults() ? ANSWER_OK : refuse_store(true, why); }

@@ -43,6 +43,13 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why);
 /// the others may follow; while the drive runs it is not.
 answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why);
 
+/// Begin to keep the present parameters, and to take those that are kept; store_state tells what becomes of it.
+answer_status_t action_save(octet_writer_t* why);
+answer_status_t action_load(octet_writer_t* why);
+
+/// Every parameter to its default; what is kept stays as it is.
+answer_status_t action_defaults(octet_writer_t* why);
+
 /// A value with its unit, as the table has its decimals.
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);
 

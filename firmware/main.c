@@ -29,7 +29,9 @@ static uint16_t answer_bus(const uint16_t* request, uint16_t count, uint16_t* an
 
 // What was saved is in force, and so is the configuration that goes with it.
 static void end_loading(void) {
-  if (!store_is_busy() && !drive.request.reload) drive.loading = false;
+  if (!drive.loading || store_is_busy() || drive.request.reload) return;
+  drive.loading = false;
+  if (parameters.baud_rate != (int32_t)SERIAL_BAUD) (void)hal_sci_init((uint32_t)parameters.baud_rate);
 }
 
 // The converter needs 5 ms to come up; meanwhile it shows whether there is a memory with parameters in it. The drive
@@ -54,9 +56,9 @@ void firmware_main(void) {
   hal_time_init();
   hal_safety_init();
   drive.config_valid = hal_pwm_init(drive_dead_band_ticks()) && drive.config_valid;
+  (void)hal_sci_init(SERIAL_BAUD);  // until the saved rate is known, and when it cannot be made
   start_converter_and_store();
   hal_encoder_init((uint32_t)parameters.encoder_counts);
-  (void)hal_sci_init(SERIAL_BAUD);
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);
   hal_watchdog_start();
   hal_irq_enable();

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "firmware/store/store.h"
+
 static const char* const states[] = {
     "boot", "calibrating the current offsets", "ready", "starting", "running", "stopping", "fault", "commissioning"};
 
@@ -74,6 +76,7 @@ static const struct {
                         LIST(statuses), LIST(starts), LIST(remedies), LIST(outcomes), LIST(scopes)};
 
 const char* words_or_null(uint16_t kind, uint16_t code) {
+  if (kind == WORDS_STORE) return (code <= STORE_FOREIGN) ? store_words((store_state_t)code) : NULL;
   return (kind < WORDS_KINDS && code < kinds[kind].count) ? kinds[kind].words[code] : NULL;
 }
 

@@ -1,5 +1,5 @@
 // What the drive's numbers mean, in the user's words: states, faults, limits, verdicts and phases. Every list exists
-// once, here or in fault_list.h; console, link, bench and host tools read it.
+// once, here, in fault_list.h or in store/store.c; console, link, bench and host tools read it.
 
 #ifndef STILLSPIN_FIRMWARE_WORDS_H
 #define STILLSPIN_FIRMWARE_WORDS_H

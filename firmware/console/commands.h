@@ -67,6 +67,11 @@ void command_signals(const words_of_line_t* a);
 void command_watch(const words_of_line_t* a);
 void command_version(const words_of_line_t* a);
 
+// commands_store.c
+void command_save(const words_of_line_t* a);
+void command_load(const words_of_line_t* a);
+void command_defaults(const words_of_line_t* a);
+
 // commands_scope.c
 void command_scope(const words_of_line_t* a);
 

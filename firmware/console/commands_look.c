@@ -10,6 +10,7 @@
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
 #include "firmware/link/link.h"
+#include "firmware/store/store.h"
 #include "firmware/text.h"
 #include "firmware/version.h"
 #include "firmware/words.h"
@@ -75,6 +76,12 @@ static void status_parameters(octet_writer_t* w) {
   put_text(w, (conflict == NULL) ? "fit together" : conflict);
 }
 
+static void status_store(octet_writer_t* w) {
+  put_text(w, words(WORDS_STORE, (uint16_t)store_state()));
+  put_text(w, "; saves so far ");
+  put_unsigned(w, store_report()->sequence);
+}
+
 static void status_port(octet_writer_t* w) {
   const link_errors_t e = link_errors();
   put_unsigned(w, (uint32_t)e.port.framing + e.port.overrun + e.port.breaks + e.port.lost);
@@ -90,7 +97,7 @@ static const struct {
   void (*put)(octet_writer_t* w);
 } status_lines[] = {{"state", status_state},           {"speed", put_speeds},     {"current", status_current},
                     {"DC link", status_link},          {"limits", status_limits}, {"fault", status_fault},
-                    {"parameters", status_parameters}, {"serial", status_port}};
+                    {"parameters", status_parameters}, {"store", status_store},   {"serial", status_port}};
 
 #define STATUS_LINES ((uint16_t)(sizeof status_lines / sizeof status_lines[0]))
 

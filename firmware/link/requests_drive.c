@@ -5,6 +5,7 @@
 #include "firmware/link/link.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/requests.h"
+#include "firmware/store/store.h"
 
 answer_status_t request_command(request_t* r) {
   const uint16_t code = take_u8(&r->body);
@@ -25,6 +26,12 @@ answer_status_t request_command(request_t* r) {
       return action_speed(argument, &r->answer);
     case COMMAND_COMMISSION:
       return action_commission(guard, &r->answer);
+    case COMMAND_SAVE:
+      return action_save(&r->answer);
+    case COMMAND_DEFAULTS:
+      return action_defaults(&r->answer);
+    case COMMAND_LOAD:
+      return action_load(&r->answer);
     default:
       return ANSWER_UNKNOWN;
   }
@@ -40,8 +47,8 @@ answer_status_t request_status(request_t* r) {
   put_u16(w, (uint16_t)drive_signals()->limit);
   put_i32(w, drive_signals()->speed);
   put_i32(w, drive_signals()->speed_reference);
-  put_u8(w, 0);    // store
-  put_u8(w, 100);  // and how far it is
+  put_u8(w, (uint16_t)store_state());
+  put_u8(w, store_progress());
   put_u8(w, (uint16_t)drive_commissioning_outcome());
   put_u8(w, (uint16_t)drive_commissioning_phase());
   put_u16(w, (uint16_t)drive_commissioning_progress());

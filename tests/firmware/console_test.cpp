@@ -226,6 +226,27 @@ TEST_F(Console, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(command("scope stop"), "stopped"));
 }
 
+TEST_F(Console, SaveLoadDefaults) {
+  EXPECT_TRUE(has(command("status"), "nothing has been saved yet"));
+  (void)command("set speed_ramp 250");
+  EXPECT_TRUE(has(command("save", 20000), "the values have been saved"));
+  EXPECT_TRUE(has(command("status"), "saves so far 1"));
+  EXPECT_TRUE(has(command("defaults"), "at its default"));
+  EXPECT_EQ(parameters.speed_ramp, 3000 * 256);
+  EXPECT_TRUE(has(command("load", 20000), "the saved values are in force"));
+  EXPECT_EQ(parameters.speed_ramp, 250 * 256);
+  drive.state = DRIVE_RUN;
+  EXPECT_TRUE(has(command("load"), "stop the drive first"));
+  EXPECT_TRUE(has(command("defaults"), "stop the drive first"));
+  EXPECT_TRUE(has(command("save", 20000), "the values have been saved")) << "while it runs, too";
+}
+
+TEST_F(Console, AMemoryThatDoesNotAnswerIsTold) {
+  nvm.absent = true;
+  const std::string said = command("save", 40000);
+  EXPECT_TRUE(has(said, "fail") || has(said, "does not answer")) << said;
+}
+
 TEST_F(Console, Version) { EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n"); }
 
 TEST_F(Console, CtrlCEndsALongAnswerAndTheLine) {

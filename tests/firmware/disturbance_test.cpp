@@ -25,9 +25,10 @@ TEST(Disturbance, AnyOctets) {
 
 TEST(Disturbance, WordsAndRecordsInAnyOrder) {
   std::mt19937 random(12);
-  const char* const words[] = {"list\r",  "help ", "set ", "speed_ramp ", "get ",        "start\r", "stop\r", "ref ",
-                               "600 ",    "rpm\r", "\r",   "watch\r",     "faults\r",    "\x03",    "scope ", "channels speed\r",
-                               "trigger", " now",  "arm ", "print 1\r",   "commission ", "\x1B[A",  "-1.5",   "status\r"};
+  const char* const words[] = {
+      "list\r",  "help ", "set ", "speed_ramp ", "get ",        "start\r", "stop\r", "ref ",
+      "600 ",    "rpm\r", "\r",   "watch\r",     "faults\r",    "\x03",    "scope ", "channels speed\r",
+      "trigger", " now",  "arm ", "print 1\r",   "commission ", "\x1B[A",  "-1.5",   "status\r"};
   for (int trial = 0; trial < 300; ++trial) {
     std::vector<std::uint8_t> octets;
     for (unsigned n = random() % 60; n > 0; --n) {
@@ -36,7 +37,8 @@ TEST(Disturbance, WordsAndRecordsInAnyOrder) {
       if (random() % 3 == 0) {
         const auto length = static_cast<std::uint8_t>(2 + random() % 20);
         octets.insert(octets.end(), {0xFD, length, static_cast<std::uint8_t>(random() % 0x18)});
-        for (int k = 1; k < length; ++k) octets.push_back(static_cast<std::uint8_t>(random() % 4 ? random() % 16 : random()));
+        for (int k = 1; k < length; ++k)
+          octets.push_back(static_cast<std::uint8_t>(random() % 4 ? random() % 16 : random()));
       }
       if (random() % 5 == 0) octets.insert(octets.end(), {0xFE, static_cast<std::uint8_t>(random() % 120)});
       if (random() % 9 == 0) octets.insert(octets.end(), {0xFC, static_cast<std::uint8_t>(random())});

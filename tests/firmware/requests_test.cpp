@@ -167,6 +167,27 @@ TEST_F(Requests, Commands) {
   EXPECT_EQ(give(77).status(), UNKNOWN);
 }
 
+TEST_F(Requests, TheStore) {
+  EXPECT_EQ(set(86, 500 * 256).status(), OK);
+  EXPECT_EQ(give(COMMAND_SAVE).status(), OK);
+  run(20000);
+  EXPECT_EQ(ask(REQUEST_STATUS).number(16, 1), static_cast<unsigned>(STORE_SAVED));
+  EXPECT_EQ(give(COMMAND_DEFAULTS).status(), OK);
+  EXPECT_EQ(parameter_get(86), 3000 * 256);
+  EXPECT_EQ(give(COMMAND_LOAD).status(), OK);
+  run(20000);
+  EXPECT_EQ(parameter_get(86), 500 * 256);
+  ASSERT_TRUE(store_save());
+  std::uint16_t answer[RECORD_MAX];
+  const std::uint16_t save[] = {REQUEST_COMMAND, 1, COMMAND_SAVE, 0, 0, 0, 0};
+  (void)request_answer(GUARD_SERIAL, save, 7, answer);
+  EXPECT_EQ(answer[2], BUSY);
+  run(20000);
+  drive.state = DRIVE_RUN;
+  EXPECT_EQ(give(COMMAND_LOAD).status(), RUNNING);
+  EXPECT_EQ(give(COMMAND_DEFAULTS).status(), RUNNING);
+}
+
 TEST_F(Requests, StatusAndSignals) {
   drive.state = DRIVE_RUN;
   drive.signals.speed = -123 * 65536;
@@ -238,6 +259,7 @@ TEST_F(Requests, WordsForEverything) {
   EXPECT_EQ(last(WORDS_START), START_MOTION);
   EXPECT_EQ(last(WORDS_COMMISSIONING), COMMISSIONING_FAILED);
   EXPECT_EQ(last(WORDS_SCOPE), SCOPE_DONE);
+  EXPECT_EQ(last(WORDS_STORE), STORE_FOREIGN);
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 12}).text(), "loss of synchronism");
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 99}).status(), RANGE);
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_KINDS, 0}).status(), UNKNOWN);

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "tests/firmware/fake_hal.hpp"
+#include "tests/firmware/fake_nvm.hpp"
 
 extern "C" {
 #include "firmware/console/console.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/stream.h"
+#include "firmware/store/store.h"
 }
 
 namespace stillspin::test {
@@ -54,6 +56,7 @@ class Terminal : public Drive {
   void SetUp() override {
     Drive::SetUp();
     link_reset();
+    nvm = FakeNvm{};
     splitter_reset(&far_);
     run(300);  // the tables' check sum
   }
@@ -66,6 +69,7 @@ class Terminal : public Drive {
         board.serial_room = static_cast<std::uint16_t>(std::min<int>(HAL_SCI_TRANSMIT_RING, board.serial_room + 12));
       }
       drive.heartbeat++;
+      store_service();
       link_service();
       console_service();
       collect();

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "tests/firmware/fake_hal.hpp"
+#include "tests/firmware/fake_nvm.hpp"
 
 extern "C" {
 #include "firmware/console/console.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
+#include "firmware/store/store.h"
 }
 
 namespace stillspin::test {
@@ -22,6 +24,7 @@ class Player {
  public:
   Player() {
     board = FakeBoard{};
+    if (nvm.octets > 0) nvm = FakeNvm{};
     drive_reset();
     link_reset();
     splitter_reset(&far_);
@@ -130,6 +133,7 @@ class Player {
         if (obeying_) obey();
       }
       board.serial_room = static_cast<std::uint16_t>(std::min<int>(HAL_SCI_TRANSMIT_RING, board.serial_room + kDrain));
+      store_service();
       link_service();
       console_service();
       listen();

@@ -1,0 +1,57 @@
+// save, load, defaults.
+
+#include "firmware/actions.h"
+#include "firmware/console/commands.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/store/store.h"
+#include "firmware/text.h"
+#include "firmware/words.h"
+
+static void put_report(octet_writer_t* w) {
+  const store_report_t* const r = store_report();
+  if (r->refused == 0u) return;
+  const parameter_info_t* const first = parameter_by_id(r->first_refused);
+  put_text(w, "; ");
+  put_unsigned(w, r->refused);
+  put_text(w, " outside of their range, now at their default");
+  if (first == 0) return;
+  put_text(w, ": ");
+  put_text(w, first->name);
+  if (r->refused > 1u) put_text(w, " ..");
+}
+
+static bool wait_for_store(uint16_t step) {
+  (void)step;
+  if (store_is_busy()) return true;
+  octet_writer_t* const w = line_begin();
+  put_text(w, words(WORDS_STORE, (uint16_t)store_state()));
+  put_report(w);
+  line_end();
+  return false;
+}
+
+static void await(answer_status_t status) {
+  if (status == ANSWER_OK) {
+    console_run(wait_for_store, false);
+  } else {
+    line_end();
+  }
+}
+
+void command_save(const words_of_line_t* a) {
+  (void)a;
+  await(action_save(line_begin()));
+}
+
+void command_load(const words_of_line_t* a) {
+  (void)a;
+  await(action_load(line_begin()));
+}
+
+void command_defaults(const words_of_line_t* a) {
+  (void)a;
+  octet_writer_t* const w = line_begin();
+  if (action_defaults(w) == ANSWER_OK) put_text(w, "every parameter is at its default; 'save' keeps that");
+  line_end();
+}
