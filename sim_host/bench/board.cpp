@@ -44,7 +44,8 @@ void Board::time_periods() {
   if (timing_) period_begin_ns_ = now_ns();
 }
 
-Board::Board(const plant::PlantConfig& config, PeriodListener& listener) : plant_(config), listener_(listener) {}
+Board::Board(const plant::PlantConfig& config, PeriodListener& listener, devices::CanBus* can)
+    : plant_(config), listener_(listener), can_(can) {}
 
 void Board::drive_leg(Tick t, int leg) {
   const PlantTimer timer(*this);
@@ -132,6 +133,7 @@ void Board::align(Tick t) {
 }
 
 void Board::call(Tick t) {
+  if (can_ != nullptr && t >= can_->next_event()) can_->run_event(t);  // nothing of the plant's concern
   if (t >= next_call_) look(t);
   // Behind the listener, which may arm the probe for this very tick.
   if (t >= probe_.next()) probe_.look(t, plant_, upper_, lower_);

@@ -3,7 +3,7 @@
 // Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
 // been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
 // over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 19 A, and holds it for 10 us.
-// The serial port (GPIO28, 29) has a line with a far end. An EEPROM may be
+// The serial port (GPIO28, 29) has a line with a far end; a CAN bus may hang on GPIO30 and 31. An EEPROM may be
 // fitted on the I2C lines (GPIO32 SDA, GPIO33 SCL), which are pulled up.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
@@ -14,6 +14,7 @@
 
 #include "sim_host/bench/waveform.hpp"
 #include "sim_host/chip/chip.hpp"
+#include "sim_host/devices/can_bus.hpp"
 #include "sim_host/devices/eeprom.hpp"
 #include "sim_host/devices/serial_line.hpp"
 #include "sim_host/plant/plant.hpp"
@@ -42,7 +43,8 @@ class PeriodListener {
 
 class Board : public chip::World {
  public:
-  Board(const plant::PlantConfig& config, PeriodListener& listener);
+  /// `can` may be nullptr: no transceiver is fitted. It must outlive the chip.
+  Board(const plant::PlantConfig& config, PeriodListener& listener, devices::CanBus* can = nullptr);
 
   /// The chip that sits on the board; needed before it runs.
   void attach(chip::Chip& chip) { chip_ = &chip; }
@@ -72,7 +74,11 @@ class Board : public chip::World {
   std::int64_t encoder_edges(Tick t) override;
   Tick serial_reaches(Tick t, bool level) override { return serial_.reaches(t, level); }
   void on_serial_frame(Tick, const chip::SerialFrame& frame) override { serial_.receive(frame); }
-  Tick next_call() const override { return std::min(next_call_, probe_.next()); }
+  chip::CanLine* can_line() override { return can_; }
+  Tick next_call() const override {
+    const Tick own = std::min(next_call_, probe_.next());
+    return can_ == nullptr ? own : std::min(own, can_->next_event());
+  }
   void call(Tick t) override;
 
  private:
@@ -93,6 +99,7 @@ class Board : public chip::World {
   PeriodListener& listener_;
   WaveformProbe probe_;
   devices::SerialLine serial_;
+  devices::CanBus* can_;
   chip::Chip* chip_ = nullptr;
   devices::Eeprom* eeprom_ = nullptr;
   bool sda_ = true, scl_ = true;  // the chip lets go of the I2C lines

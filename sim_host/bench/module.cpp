@@ -256,4 +256,5 @@ NB_MODULE(_core, m) {
   m.def("replay", &replay_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("edges"), nb::arg("load"), nb::arg("at"),
         "The plant alone under a given sequence of gate edges; see core.py.");
   bind_virtual_board(m);
+  bind_can_messages(m);
 }

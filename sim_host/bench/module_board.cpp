@@ -2,10 +2,15 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <tuple>
 
 #include "sim_host/bench/module_setup.hpp"
 #include "sim_host/bench/virtual_board.hpp"
@@ -65,6 +70,75 @@ nb::dict serial_counts(const PythonBoard& self) {
   return counts;
 }
 
+// ---- the other node on the CAN bus: a frame is (identifier, extended, remote, length, data)
+
+using PythonFrame = std::tuple<std::uint32_t, bool, bool, unsigned, nb::bytes>;
+
+chip::CanFrame frame_from(const PythonFrame& given) {
+  const auto& [id, extended, remote, length, data] = given;
+  if (id > (extended ? 0x1FFFFFFFu : 0x7FFu) || length > 8 || data.size() > length) {
+    throw std::invalid_argument("a CAN frame has an identifier of 11 or 29 bits and up to 8 octets");
+  }
+  chip::CanFrame frame;
+  frame.id = id;
+  frame.extended = extended;
+  frame.remote = remote;
+  frame.length = static_cast<std::uint8_t>(length);
+  const auto* const first = static_cast<const std::uint8_t*>(data.data());
+  std::copy(first, first + data.size(), frame.data.begin());
+  return frame;
+}
+
+void can_write(const PythonBoard& self, const PythonFrame& frame) {
+  self.board().can_host().send(frame_from(frame), self.board().now());
+}
+
+nb::list can_read(const PythonBoard& self) {
+  nb::list frames;
+  for (const auto& heard : self.board().can_host().take_heard(self.board().now())) {
+    const chip::CanFrame& f = heard.frame;
+    const std::size_t octets = f.remote ? 0 : f.length;
+    const nb::bytes data(reinterpret_cast<const char*>(f.data.data()), octets);
+    frames.append(nb::make_tuple(heard.t, f.id, f.extended, f.remote, static_cast<unsigned>(f.length), data));
+  }
+  return frames;
+}
+
+void can_open(const PythonBoard& self, std::uint32_t rate, bool listen_only) {
+  if (rate > 1'000'000) throw std::invalid_argument("a CAN bus has at most 1 Mbit/s");
+  self.board().can_host().set_listening_only(listen_only);
+  self.board().can_host().set_bit_rate(rate, self.board().now());
+}
+
+void can_flood(const PythonBoard& self, const std::optional<PythonFrame>& frame) {
+  VirtualBoard& board = self.board();
+  if (frame) {
+    board.can_host().flood(frame_from(*frame), board.now());
+  } else {
+    board.can_host().stop_flood(board.now());
+  }
+}
+
+void can_plug(const PythonBoard& self, bool plugged) {
+  VirtualBoard& board = self.board();
+  board.can_bus().set_plugged(board.can_host(), plugged, board.now());
+}
+
+nb::dict can_counts(const PythonBoard& self) {
+  const devices::CanHost& host = self.board().can_host();
+  const devices::CanBus& bus = self.board().can_bus();
+  nb::dict counts;
+  counts["sent"] = host.sent();
+  counts["waiting"] = host.waiting();
+  counts["transmit_errors"] = host.errors().transmit();
+  counts["receive_errors"] = host.errors().receive();
+  counts["bus_offs"] = host.bus_offs();
+  counts["frames"] = bus.frames();
+  counts["broken_frames"] = bus.broken_frames();
+  counts["busy_ticks"] = bus.busy_ticks();
+  return counts;
+}
+
 nb::dict dict_of(const std::vector<Quantity>& quantities) {
   nb::dict values;
   for (const Quantity& q : quantities) values[q.name] = q.value;
@@ -107,6 +181,12 @@ void bind_virtual_board(nb::module_& m) {
           [](Self self, double rate) { self.board().serial().set_rate(rate); })
       .def_prop_ro("serial_pending", &serial_pending)
       .def("serial_counts", &serial_counts)
+      .def("can_open", &can_open, nb::arg("rate"), nb::arg("listen_only") = false)
+      .def("can_write", &can_write, nb::arg("frame"))
+      .def("can_read", &can_read)
+      .def("can_counts", &can_counts)
+      .def("can_flood", &can_flood, nb::arg("frame").none())
+      .def("can_plug", &can_plug, nb::arg("plugged"))
       .def(
           "set_load", [](Self self, double torque) { self.board().set_load(torque); }, nb::arg("torque"))
       .def("truth", [](Self self) { return dict_of(self.board().truth()); })

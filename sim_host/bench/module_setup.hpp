@@ -21,6 +21,9 @@ void check_motor(const std::string& motor);
 /// The class VirtualBoard.
 void bind_virtual_board(nanobind::module_& module);
 
+/// The messages of the drive's CAN bus: table, packing and unpacking.
+void bind_can_messages(nanobind::module_& module);
+
 }  // namespace stillspin::bench
 
 #endif

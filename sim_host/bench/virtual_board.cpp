@@ -28,7 +28,7 @@ VirtualBoard::VirtualBoard(const BoardRequest& request)
     : brake_until_run_(request.setup.brake_until_run),
       locked_(request.setup.nominal.mechanics.locked),
       faults_(request.setup.fault),
-      board_(request.setup.plant(), *this),
+      board_(request.setup.plant(), *this, &can_bus_),
       chip_(board_, firmware_main) {
   for (const auto& [name, value] : request.parameters) {
     unsigned id = 0;

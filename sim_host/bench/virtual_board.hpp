@@ -21,6 +21,7 @@
 #include "sim_host/bench/fault_plan.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/setup.hpp"
+#include "sim_host/devices/can_host.hpp"
 
 namespace stillspin::bench {
 
@@ -50,6 +51,9 @@ class VirtualBoard final : private PeriodListener {
 
   // ---- plugs
   devices::SerialLine& serial() { return board_.serial(); }
+  /// The other node on the CAN bus; off until it has a bit rate. Unplugged, the drive is alone.
+  devices::CanHost& can_host() { return can_host_; }
+  devices::CanBus& can_bus() { return can_bus_; }
 
   // ---- shaft
   /// Load torque from now on, N m, -1e4..1e4; positive opposes positive rotation.
@@ -78,6 +82,8 @@ class VirtualBoard final : private PeriodListener {
   bool brake_until_run_;
   bool locked_;
   FaultPlayer faults_;
+  devices::CanBus can_bus_;
+  devices::CanHost can_host_{can_bus_, 0};
   Board board_;
   chip::Chip chip_;
   bool told_ = false;

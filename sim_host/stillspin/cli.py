@@ -252,6 +252,13 @@ def board_(
     serial_link: Annotated[
         Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
     ] = None,
+    can_link: Annotated[
+        Path | None,
+        typer.Option("--can-link", metavar="PATH", help="A name for the SLCAN adapter that stays the same."),
+    ] = None,
+    socketcan: Annotated[
+        str | None, typer.Option("--socketcan", metavar="NAME", help="A CAN interface of the kernel, no SLCAN adapter.")
+    ] = None,
     load: Annotated[float, typer.Option("--load", metavar="NM", help="Load torque on the shaft.")] = 0.0,
     end: Annotated[
         float | None, typer.Option("--for", min=0.0, metavar="SECONDS", help="Switch off after so much of its time.")
@@ -267,7 +274,7 @@ def board_(
         changes.words.append(f"--params {params.name}")
     title = f"profile {chosen.name}, seed {seed}" + "".join(f", {words}" for words in changes.words)
     board = serve.power(native, chosen, changes, seed)
-    serve.serve(board, serve.Options(speed, serial_link, load, end), title)
+    serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end), title)
 
 
 @app.command(name="startup-matrix")

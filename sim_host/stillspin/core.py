@@ -97,6 +97,30 @@ class NativeBoard(Protocol):
         """Octets sent and received, framing errors at the far end, the drive's bit rate (0: nothing came yet)."""
         ...
 
+    def can_open(self, rate: int, listen_only: bool = False) -> None:
+        """Join the CAN bus as its other node at `rate` bit/s; 0 leaves it and drops what waits."""
+        ...
+
+    def can_write(self, frame: tuple[int, bool, bool, int, bytes]) -> None:
+        """Send a frame: identifier, extended, remote, length, data. ValueError for one that cannot be."""
+        ...
+
+    def can_read(self) -> list[tuple[int, int, bool, bool, int, bytes]]:
+        """Frames that were heard since the last call, each behind the tick of its last bit."""
+        ...
+
+    def can_counts(self) -> dict[str, int]:
+        """Frames sent and waiting, error counters and bus-offs of this node; frames and busy ticks of the bus."""
+        ...
+
+    def can_flood(self, frame: tuple[int, bool, bool, int, bytes] | None) -> None:
+        """Send this frame whenever nothing else waits; None ends it."""
+        ...
+
+    def can_plug(self, plugged: bool) -> None:
+        """Unplugged, the drive is alone on its bus."""
+        ...
+
     def set_load(self, torque: float) -> None:
         """Load torque from now on, N m; positive opposes positive rotation."""
         ...

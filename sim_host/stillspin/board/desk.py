@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from stillspin.board.can_plug import CanPlug
 from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.core import NativeBoard
 from stillspin.errors import CampaignError
@@ -16,11 +17,12 @@ _RATES = range(10, 10_000_001)
 
 
 class Desk:
-    """One board with its serial port plugged into a pseudo-terminal."""
+    """One board with its serial port plugged into a pseudo-terminal, and perhaps something on its CAN connector."""
 
-    def __init__(self, board: NativeBoard, port: PseudoTerminal) -> None:
+    def __init__(self, board: NativeBoard, port: PseudoTerminal, can: CanPlug | None = None) -> None:
         self.board = board
         self.port = port
+        self.can = can
         self.octets_in = 0
         self.octets_out = 0
 
@@ -39,11 +41,15 @@ class Desk:
             CampaignError: the board cannot go on.
         """
         self._hand_over()
+        if self.can:
+            self.can.hand_over()
         try:
             self.board.advance(round(min(seconds, SLICE) * TICKS_PER_SECOND))
         except RuntimeError as error:
             raise CampaignError(f"the virtual board stopped: {error}") from error
         self._hand_back()
+        if self.can:
+            self.can.hand_back()
 
     @property
     def wrong_rate(self) -> tuple[int, int] | None:
@@ -58,6 +64,8 @@ class Desk:
         """Switch the board off and unplug it."""
         self.board.close()
         self.port.close()
+        if self.can:
+            self.can.close()
 
     def _hand_over(self) -> None:
         rate = self.port.rate

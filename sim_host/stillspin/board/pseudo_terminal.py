@@ -134,12 +134,12 @@ class PseudoTerminal:
         if link is None:
             return
         if link.exists() and not link.is_symlink():
-            raise InputError(f"--serial-link {link}: is there already and no symbolic link; name another place")
+            raise InputError(f"{link}: is there already and no symbolic link; name another place")
         try:
             with tempfile.TemporaryDirectory(prefix=f".{link.name}-", dir=link.absolute().parent) as beside:
                 fresh = Path(beside) / link.name
                 fresh.symlink_to(self.device)
                 fresh.replace(link)
         except OSError as error:
-            raise InputError(f"--serial-link {link}: cannot be made ({error.strerror})") from error
+            raise InputError(f"{link}: cannot be made ({error.strerror})") from error
         self._link = link

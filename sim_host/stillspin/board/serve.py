@@ -13,11 +13,13 @@ from types import FrameType
 from rich.console import Console
 
 from stillspin import core
+from stillspin.board.can_plug import CanPlug, SlcanPlug, SocketcanPlug
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
 from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
 from stillspin.board.show import Show
 from stillspin.errors import InputError
+from stillspin.link.can_bus import DEFAULT_BITRATE
 from stillspin.profile import Changes, Profile, merged
 
 _PAUSE = 0.05  # s of wall time; the longest sleep
@@ -29,11 +31,14 @@ _FAST: core.Plant = {"solver": {"method": "rk4"}}
 class Options:
     """How to run the board.
 
-    `speed`: times real time, 0 as fast as possible. `load`: Nm. `end`: simulated seconds after which it stops.
+    `speed`: times real time, 0 as fast as possible. `load`: Nm. `socketcan`: an interface of the
+    kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops.
     """
 
     speed: float = 1.0
     link: Path | None = None
+    can_link: Path | None = None
+    socketcan: str | None = None
     load: float = 0.0
     end: float | None = None
 
@@ -63,7 +68,7 @@ def serve(board: core.NativeBoard, options: Options, title: str) -> None:
     """
     try:
         board.set_load(options.load)
-        desk = Desk(board, PseudoTerminal(options.link))
+        desk = _plug_in(board, options)
     except ValueError as error:
         board.close()
         raise InputError(f"--load {options.load:g}: {error}") from error
@@ -81,6 +86,19 @@ def serve(board: core.NativeBoard, options: Options, title: str) -> None:
     finally:
         desk.close()
     print(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time")
+
+
+def _plug_in(board: core.NativeBoard, options: Options) -> Desk:
+    plug: CanPlug = (
+        SocketcanPlug(board, options.socketcan)
+        if options.socketcan
+        else SlcanPlug(board, PseudoTerminal(options.can_link))
+    )
+    try:
+        return Desk(board, PseudoTerminal(options.link), plug)
+    except InputError:
+        plug.close()
+        raise
 
 
 @dataclass
@@ -121,5 +139,8 @@ def _say_how_to_connect(desk: Desk, title: str) -> None:
     device = f" ({desk.port.device})" if name != desk.port.device else ""
     print(f"virtual board: {title}")
     print(f"serial port:   {name}{device}, {DEFAULT_RATE} bit/s, 8 data bits, no parity, 1 stop bit")
+    if desk.can:
+        kind = "SLCAN adapter" if isinstance(desk.can, SlcanPlug) else "SocketCAN interface"
+        print(f"CAN:           {desk.can.name}, {kind}; the drive is node 1 at {DEFAULT_BITRATE // 1000} kbit/s")
     print(f"connect:       stillspin console --drive {name}, or any terminal program")
     print("switch off:    Ctrl-C", flush=True)
