@@ -22,7 +22,7 @@ PARAMETERS = [
     (6, "current_limit", "A", 20, 2, 0.1, 16, 14, True, "largest current"),
     (8, "speed_limit", "rpm", 8, 0, 100, 4000, 3300, False, "largest speed"),
     (86, "speed_ramp", "rpm/s", 8, 0, 0, 100000, 3000, True, "slope of the speed reference, 0 for a step"),
-    (98, "link_maximum", "V", 16, 1, 10, 450, 420, False, "DC link beyond which the drive faults"),
+    (98, "link_maximum", "V", 16, 1, 10, 450, 420, True, "DC link beyond which the drive faults"),
     (200, "link_timeout", "ms", 0, 0, 50, 10000, 300, True, "silence after which a guarded drive stops"),
     (101, "ratio", "%", 16, 2, -50, 50, 0, True, ""),
 ]
@@ -71,6 +71,7 @@ class FakeDrive:
         self.asked = []  # types of the requests answered, in order
         self.swallow = []  # types of requests of which the next one gets no answer
         self.corrupt = []  # types of requests of which the next answer arrives damaged
+        self.stubborn = 0  # number of the parameter that cannot be set
         self.start_fault = 0  # what the next start ends in
         self.chatter = b""  # said before the next answer
         self.typed = b""
@@ -238,9 +239,13 @@ class FakeDrive:
             raise RefusalError(RANGE, f"{entry[1]} is out of range")
         if self.state == RUN and not entry[8]:
             raise RefusalError(RUNNING)
-        if number == 98 and value < raw(50, 16):
-            raise RefusalError(CONFLICT, "link_maximum is below the link's voltage")
+        if number == 98 and value < raw(50, 16) and self.state == RUN:
+            raise RefusalError(CONFLICT, "not taken while the drive runs: link_maximum is too low")
         self.values[number] = value
+        if self.values[98] < raw(50, 16):
+            raise RefusalError(CONFLICT, "taken, but the drive does not start with it: link_maximum is too low")
+        if self.stubborn == number:
+            raise RefusalError(BUSY)
         return struct.pack("<i", value)
 
     def _on_07(self, body):

@@ -65,12 +65,26 @@ def test_nothing_is_sent_of_a_file_that_is_wrong(ask, fake, tmp_path):
 
 
 def test_what_the_drive_refuses_is_said_and_not_saved(ask, fake, tmp_path):
-    (tmp_path / "low.toml").write_text("[parameters]\nlink_maximum = 20\nspeed_ramp = 500\n")
-    result = ask("params", "load", "low.toml", "--save")
+    (tmp_path / "x.toml").write_text("[parameters]\nspeed_limit = 1000\nspeed_ramp = 500\n")
+    fake.stubborn = 8
+    fake.values[8] = 0
+    result = ask("params", "load", "x.toml", "--save")
     assert result.exit_code == 1
-    assert "link_maximum is below the link's voltage" in result.stderr
-    assert "1 values were refused; nothing was saved" in result.stderr
+    assert "speed_limit: the drive is busy" in result.stderr
+    assert "the drive does not take all of x.toml; nothing was saved" in result.stderr
     assert (fake.values[86], fake.store) == (500 * 2**8, 1)
+
+
+def test_a_conflict_that_the_next_values_resolve_is_none(ask, fake, tmp_path):
+    fake.values[98] = 20 * 2**16
+    (tmp_path / "x.toml").write_text("[parameters]\nspeed_ramp = 500\nlink_maximum = 300\n")
+    assert "2 of 2 parameters changed" in ask("params", "load", "x.toml").stdout
+    (tmp_path / "x.toml").write_text("[parameters]\nlink_maximum = 20\nspeed_ramp = 600\n")
+    result = ask("params", "load", "x.toml", "--save")
+    assert result.exit_code == 1
+    assert "2 of 2 parameters changed\n" in result.stdout
+    assert "does not start with it: link_maximum is too low" in result.stderr
+    assert fake.store == 1
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fake_drive import PARAMETERS
-from stillspin.drive import Channel, Drive, Trigger, scope
+from stillspin.drive import Channel, ConflictWarning, Drive, Trigger, scope
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
@@ -71,13 +71,21 @@ def test_what_is_wrong_with_a_value_is_said_before_it_is_sent(fake, drive, name,
 
 
 def test_the_drive_says_why_it_refuses(drive):
-    with pytest.raises(RefusedError, match=r"^link_maximum is below the link's voltage$"):
-        drive.set("link_maximum", 20)
     drive.start(100)
+    with pytest.raises(RefusedError, match=r"^link_maximum: not taken while the drive runs"):
+        drive.set("link_maximum", 20)
+    assert drive.get("link_maximum") == 420.0
     with pytest.raises(RefusedError, match="motor_poles: not while the motor is energised"):
         drive.set("motor_poles", 3)
     with pytest.raises(RefusedError, match="not in this state"):
         drive.start()
+
+
+def test_a_value_that_does_not_go_with_the_others_is_taken_with_a_warning(drive):
+    with pytest.warns(ConflictWarning, match="the drive does not start with it: link_maximum is too low"):
+        assert drive.set("link_maximum", 20) == 20.0
+    assert drive.get("link_maximum") == 20.0
+    assert drive.change("link_maximum", 300).conflict == ""
 
 
 def test_status_signals_and_words(drive):

@@ -175,6 +175,8 @@ def test_any_frames_leave_the_joiner_usable(frames, record):
         ("serial:///dev/ttyUSB0?baud=57600", "/dev/ttyUSB0", {"baud": 57600}),
         ("serial://COM3", "COM3", {"baud": 115200}),
         ("can:slcan:/dev/ttyACM0?node=3", "/dev/ttyACM0", {"node": 3, "bitrate": 500000}),
+        ("virtual:", "bench", {"speed": 1}),
+        ("virtual:ideal?speed=0", "ideal", {"speed": 0}),
         ("can:socketcan:can0?bitrate=1000000", "can0", {"node": 1, "bitrate": 1000000}),
     ],
 )

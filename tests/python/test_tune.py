@@ -153,7 +153,7 @@ def test_the_page_learns_the_table_and_changes_a_parameter(server, fake):
         assert {entry["name"] for entry in hello["parameters"]} == set(hello["values"])
         ramp = next(entry for entry in hello["parameters"] if entry["name"] == "speed_ramp")
         assert (ramp["unit"], ramp["group"], ramp["maximum"]) == ("rpm/s", "Control", 100000)
-        assert (await page.ask("set", name="speed_ramp", value="500"))["result"] == 500
+        assert (await page.ask("set", name="speed_ramp", value="500"))["result"] == {"value": 500, "conflict": ""}
         reply = await page.ask("set", name="current_limit", value="99")
         assert reply["error"] == "current_limit: 99 A is out of range; 0.10 … 16.00 A"
         samples = await page.hear("samples")

@@ -64,4 +64,6 @@ def nice_range(low: float, high: float) -> tuple[float, float]:
     span = max(high - low, 1e-6 * max(abs(low), abs(high)), 1e-3)
     step = 10.0 ** math.floor(math.log10(span))
     step = next(step * factor for factor in (0.2, 0.5, 1, 2, 5) if span / (step * factor) <= 5)
-    return (math.floor(low / step) * step, math.ceil(high / step + 1e-9) * step)
+    down, up = math.floor(low / step) * step, math.ceil(high / step) * step
+    # The products are rounded, so either end may have come to lie inside, or both at the same place.
+    return (down - step if down > low else down, up + step if up < high or up <= down else up)

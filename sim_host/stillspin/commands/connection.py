@@ -20,7 +20,7 @@ DriveOption = Annotated[
         "-d",
         metavar="ADDRESS",
         envvar="STILLSPIN_DRIVE",
-        help="Where the drive is: serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0?node=1.",
+        help="serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0, or virtual: for none.",
     ),
 ]
 
@@ -32,7 +32,9 @@ def wanted(where: str) -> str:
         InputError: it is not.
     """
     if not where:
-        raise InputError("which drive? --drive serial:///dev/ttyUSB0 or the variable STILLSPIN_DRIVE says where it is")
+        raise InputError(
+            "which drive? --drive serial:///dev/ttyUSB0 or the variable STILLSPIN_DRIVE says it; virtual: is one"
+        )
     return where
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -13,8 +12,7 @@ from stillspin import core, tables
 from stillspin.commands import parameter_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.parameter_file import Difference
-from stillspin.drive import Drive, Parameter
-from stillspin.errors import InputError
+from stillspin.drive import Drive
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.one_line_errors import OneLineErrors
 
@@ -89,40 +87,36 @@ def load(
     with opened(where) as drive:
         wanted = parameter_file.read(file, drive.table)
         rows = parameter_file.differences(drive.parameters(), wanted, drive.table, wanted)
-        refused = transfer(drive, rows)
+        complaints = transfer(drive, rows)
         tables.differences(rows, "before", str(file))
-        if not refused and save:
+        if not complaints and save:
             drive.save()
-    kept = ", saved" if save and not refused else ""
-    print(f"{len(rows) - len(refused)} of {len(wanted)} parameters changed{kept}")
-    for words in refused:
+        after = drive.parameters()
+    changed = sum(after[parameter.name] == value for parameter, _, value in rows)
+    print(f"{changed} of {len(wanted)} parameters changed{', saved' if save and not complaints else ''}")
+    for words in complaints:
         print(f"stillspin: {words}", file=sys.stderr)
-    if refused:
-        raise DriveError(f"{len(refused)} values were refused{'; nothing was saved' if save else ''}")
+    if complaints:
+        raise DriveError(f"the drive does not take all of {file}{'; nothing was saved' if save else ''}")
 
 
-def transfer(drive: Drive, rows: list[Difference], progress: Callable[[Parameter], None] | None = None) -> list[str]:
+def transfer(drive: Drive, rows: list[Difference]) -> list[str]:
     """Change parameters one by one. What does not fit yet is tried again when the others are in.
 
     Returns:
-        What the drive says about those that it refused.
+        What the drive says about those that it refused, or about the whole when it would not start with it.
     """
-    waiting, refused = rows, ["at least one round"]
-    while refused:
-        again, refused = [], []
-        for row in waiting:
-            parameter, _, value = row
-            if value is None:
-                raise InputError(f"{parameter.name}: no value")
+    waiting = [(parameter.name, value) for parameter, _, value in rows if value is not None]
+    while True:
+        again, refused, conflict = [], [], ""
+        for name, value in waiting:
             try:
-                drive.set(parameter.name, value)
+                conflict = drive.change(name, value).conflict
             except RefusedError as error:
-                again.append(row)
+                again.append((name, value))
                 refused.append(str(error))
-                continue
-            if progress:
-                progress(parameter)
+        if not again:
+            return [conflict] if conflict else []
         if len(again) == len(waiting):
-            break
+            return refused
         waiting = again
-    return refused

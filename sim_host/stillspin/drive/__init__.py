@@ -13,10 +13,12 @@ from stillspin.drive.scope import Capture, Channel, Trigger
 from stillspin.drive.state import Fault, Status
 from stillspin.drive.stream import Sample, Stream
 from stillspin.drive.table import Parameter, Signal, Table
+from stillspin.drive.values import ConflictWarning
 
 __all__ = [
     "Capture",
     "Channel",
+    "ConflictWarning",
     "Drive",
     "Fault",
     "Parameter",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
@@ -15,10 +16,12 @@ from stillspin.drive.requester import Requester, wait_until
 from stillspin.drive.state import ENERGISED, FAULT, RUN, Fault, RawFault, RawStatus, Status, rpm
 from stillspin.drive.stream import Stream
 from stillspin.drive.table import Table
+from stillspin.drive.values import ConflictWarning
 from stillspin.errors import InputError
 from stillspin.link import address
 from stillspin.link.errors import DriveError, NoAnswerError, RefusedError
 from stillspin.link.transport import Transport
+from stillspin.link.virtual import VirtualTransport
 
 _LIMIT_BITS = 16
 _SPEED_MAX = 2.0**15
@@ -62,6 +65,20 @@ class Drive:
         """
         return cls(address.connect(where), timeout=timeout, progress=progress)
 
+    @classmethod
+    def virtual(
+        cls, profile: str = "bench", changes: list[str] | None = None, *, speed: float = 1.0, seed: int = 1
+    ) -> Drive:
+        """A virtual board in this process; `drive.link.transport` has its shaft (set_load, truth).
+
+        Args:
+            profile: the plant, a name from `stillspin list` or a TOML file.
+            changes: as `run --set` takes them.
+            speed: times real time; 0 is as fast as possible.
+            seed: of the noise.
+        """
+        return cls(VirtualTransport(profile, changes, speed=speed, seed=seed), timeout=2.0)
+
     def __enter__(self) -> Drive:
         return self
 
@@ -93,20 +110,21 @@ class Drive:
             value: in its unit; text may have the unit behind the number.
 
         Returns:
-            The value that is in effect.
+            The value that is in effect. A value that does not go together with the others, so that the drive would
+            not start, is taken with a ConflictWarning: the next ones may put it right.
 
         Raises:
             InputError: no such parameter, no number, or out of range.
             RefusedError: the drive says why not.
         """
-        parameter = self.table.parameter(name)
-        wanted = parameter.to_raw(value)
-        try:
-            body = self._ask(Request.PARAMETER_SET, struct.pack("<Hi", parameter.id, wanted))
-        except RefusedError as error:
-            raise RefusedError(values.prefixed(name, str(error)), error.status) from error
-        (raw,) = unpack("<i", body)
-        return parameter.to_user(raw)
+        change = self.change(name, value)
+        if change.conflict:
+            warnings.warn(change.conflict, ConflictWarning, stacklevel=2)
+        return change.value
+
+    def change(self, name: str, value: float | str) -> values.Change:
+        """As `set`, with the drive's words about a conflict instead of a warning."""
+        return values.change(self._ask, self.table.parameter(name), value)
 
     def parameters(self) -> dict[str, float]:
         """The values of all parameters, by name."""
@@ -145,7 +163,11 @@ class Drive:
         self.command(Command.RESET)
 
     def ref(self, speed: float) -> None:
-        """Speed reference, rpm; the drive clamps it to its speed limit."""
+        """Speed reference, rpm.
+
+        Raises:
+            RefusedError: beyond the drive's speed_limit.
+        """
         if not abs(speed) < _SPEED_MAX:
             raise InputError(f"speed {speed:g} rpm is out of range; above -{_SPEED_MAX:g} and below {_SPEED_MAX:g} rpm")
         self.command(Command.SPEED, round(speed * 2**16))

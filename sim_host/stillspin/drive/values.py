@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from stillspin.drive.describe import Ask, unpack
-from stillspin.drive.protocol import Command, Request, Words
+from stillspin.drive.protocol import Command, Request, StatusCode, Words
 from stillspin.drive.requester import wait_until
 from stillspin.drive.scope import CHUNK
-from stillspin.drive.table import Table
-from stillspin.link.errors import DriveError
+from stillspin.drive.table import Parameter, Table
+from stillspin.link.errors import DriveError, RefusedError
 
 if TYPE_CHECKING:
     from stillspin.drive.drive import Drive
@@ -25,7 +26,44 @@ STORE_SAVING, STORE_SAVED, STORE_FAILED = 4, 5, 6
 """States of the store, firmware/store/store.h."""
 
 
-def prefixed(name: str, words: str) -> str:
+class ConflictWarning(UserWarning):
+    """A parameter was changed, and the drive would not start with what it has now."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A parameter that has been changed."""
+
+    value: float
+    """In effect, in the parameter's unit."""
+    conflict: str
+    """Why the drive would not start now, in its words; empty when it would."""
+
+
+def change(ask: Ask, parameter: Parameter, value: float | str) -> Change:
+    """Change a parameter.
+
+    Raises:
+        InputError: no number, or out of range.
+        RefusedError: the drive says why not.
+    """
+    wanted = parameter.to_raw(value)
+    conflict = ""
+    try:
+        body = ask(Request.PARAMETER_SET, struct.pack("<Hi", parameter.id, wanted))
+    except RefusedError as error:
+        conflict = _prefixed(parameter.name, str(error))
+        refused = RefusedError(conflict, error.status)
+        if error.status != StatusCode.CONFLICT:
+            raise refused from error
+        body = ask(Request.PARAMETER_GET, struct.pack("<H", parameter.id))
+        if unpack("<i", body)[0] != wanted:  # a drive that runs does not take it
+            raise refused from error
+    (raw,) = unpack("<i", body)
+    return Change(parameter.to_user(raw), conflict)
+
+
+def _prefixed(name: str, words: str) -> str:
     """What the drive says about a parameter, with its name in front unless it is there."""
     return words if words.startswith(name) else f"{name}: {words}"
 

@@ -15,8 +15,9 @@ from stillspin.errors import InputError, did_you_mean
 from stillspin.link.can_bus import DEFAULT_BITRATE, NODES, CanTransport
 from stillspin.link.serial_port import DEFAULT_BAUD, SerialTransport
 from stillspin.link.transport import Transport
+from stillspin.link.virtual import VirtualTransport
 
-_FORMS = "serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1 or can:socketcan:can0?node=1"
+_FORMS = "serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0?node=1 or virtual:"
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Address:
     """An address taken apart."""
 
     kind: str
-    """serial or can"""
+    """serial, can or virtual"""
     channel: str
     interface: str = ""
     options: Mapping[str, int] = field(default_factory=dict)
@@ -52,6 +53,8 @@ def parse(text: str) -> Address:
         if options["node"] not in NODES:
             raise InputError(f"address '{text}': node must be {NODES[0]} … {NODES[-1]}")
         return Address("can", channel, interface, options)
+    if scheme == "virtual":
+        return Address("virtual", body.removeprefix("virtual:") or "bench", options=_options(text, query, {"speed": 1}))
     return _bad(text)
 
 
@@ -65,6 +68,8 @@ def connect(text: str) -> Transport:
     address = parse(text)
     if address.kind == "serial":
         return SerialTransport(address.channel, address.options["baud"])
+    if address.kind == "virtual":
+        return VirtualTransport(address.channel, speed=address.options["speed"])
     return CanTransport(address.interface, address.channel, address.options["node"], address.options["bitrate"])
 
 

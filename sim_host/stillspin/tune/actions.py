@@ -52,7 +52,7 @@ def _parameter(entry: Parameter) -> Message:
 
 
 def _set(bench: Workbench, _: str, given: Message) -> Any:
-    return bench.drive.set(_text(given, "name"), _text(given, "value"))
+    return asdict(bench.drive.change(_text(given, "name"), _text(given, "value")))
 
 
 def _values(bench: Workbench, _: str, __: Message) -> Any:
@@ -121,14 +121,16 @@ def _capture(bench: Workbench, _: str, given: Message) -> Any:
     setup = _setup(given)
     bench.drive.scope_arm(setup)
     end = time.monotonic() + _LONGEST
-    state = bench.drive.scope_state()
-    while state.state not in {scope.DONE, scope.IDLE}:
+    told = -1
+    while (state := bench.drive.scope_state().state) not in {scope.DONE, scope.IDLE}:
         if time.monotonic() > end:
             bench.drive.scope_stop()
             raise DriveError(f"no trigger within {_LONGEST:g} s")
+        if state != told:
+            bench.tell({"t": "scope", "armed": state == scope.ARMED, "text": bench.drive.words(Words.SCOPE, state)})
+            told = state
         time.sleep(_POLL)
-        state = bench.drive.scope_state()
-    if state.state == scope.IDLE:
+    if state == scope.IDLE:
         raise DriveError("the capture was stopped before its trigger")
     capture = bench.drive.scope_read(setup)
     return {

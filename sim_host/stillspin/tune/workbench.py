@@ -29,7 +29,7 @@ class Workbench:
     def __init__(self, drive: Drive, tell: Tell, patience: float = PATIENCE) -> None:
         self.drive = drive
         self.dead_man = DeadMan(patience)
-        self._tell = tell
+        self.tell = tell
         self._end = threading.Event()
         self._plotted = list(dict.fromkeys(self._known(_DEFAULT)))
         self._replot = threading.Event()
@@ -80,7 +80,7 @@ class Workbench:
         """`who` has let go: the motor stops if it was his."""
         if self.dead_man.release(who):
             self.stop()
-            self._tell({"t": "note", "text": why})
+            self.tell({"t": "note", "text": why})
 
     def stop(self) -> None:
         """Stop, whoever holds it."""
@@ -118,14 +118,14 @@ class Workbench:
             try:
                 if self.dead_man.expired():
                     self.drive.stop()
-                    self._tell({"t": "note", "text": "stopped: nothing was heard from the page"})
+                    self.tell({"t": "note", "text": "stopped: nothing was heard from the page"})
                 self._last = status_message(self.drive.status())
-                self._tell(self._last)
+                self.tell(self._last)
             except LinkError as error:
-                self._tell({"t": "lost", "text": str(error)})
+                self.tell({"t": "lost", "text": str(error)})
                 return
             except DriveError as error:
-                self._tell({"t": "note", "text": str(error)})
+                self.tell({"t": "note", "text": str(error)})
 
     def _pump(self) -> None:
         while not self._end.is_set():
@@ -135,12 +135,12 @@ class Workbench:
                 return
             try:
                 with self.drive.stream(names, _STREAM) as stream:
-                    self._tell({"t": "plotted", "signals": names})
+                    self.tell({"t": "plotted", "signals": names})
                     self._forward(stream)
             except LinkError:
                 return
             except DriveError as error:
-                self._tell({"t": "note", "text": str(error)})
+                self.tell({"t": "note", "text": str(error)})
                 self._end.wait(1.0)
 
     def _forward(self, stream: Stream) -> None:
@@ -155,7 +155,7 @@ class Workbench:
             now = time.monotonic()
             if rows and now - sent >= _BATCH:
                 columns = [list(column) for column in zip(*rows, strict=True)]
-                self._tell({"t": "samples", "time": times, "values": columns, "lost": stream.lost})
+                self.tell({"t": "samples", "time": times, "values": columns, "lost": stream.lost})
                 times, rows, sent = [], [], now
 
     def _known(self, names: list[str]) -> list[str]:

@@ -68,13 +68,19 @@ export class Parameters {
   async change(row, text) {
     if (text === row.value.toFixed(row.parameter.decimals)) return this.put(row, row.value);
     try {
-      this.put(row, await this.link.ask("set", { name: row.parameter.name, value: text }));
+      const { value, conflict } = await this.link.ask("set", { name: row.parameter.name, value: text });
+      this.put(row, value);
+      this.complain(row, conflict);
       by("store-note").textContent = "Changes are in effect; they are kept when they are saved.";
     } catch (error) {
-      row.error.textContent = error.message;
-      row.error.hidden = false;
+      this.complain(row, error.message);
     }
     return null;
+  }
+
+  complain(row, words) {
+    row.error.textContent = words;
+    row.error.hidden = !words;
   }
 
   filter() {

@@ -21,6 +21,7 @@ export class Scope {
     this.fail = fail;
     this.capture = null;
     link.on("hello", (hello) => this.build(hello));
+    link.on("scope", ({ text, armed }) => this.follow(text, armed));
     by("setup").onsubmit = (event) => event.preventDefault();
     by("capture").onclick = () => this.run();
     by("capture-stop").onclick = () => link.ask("scope_stop").catch(fail);
@@ -79,7 +80,7 @@ export class Scope {
       decimation: Number(this.decimation.value),
       pretrigger: Number(this.before.value) / 100,
     };
-    this.busy(true, "waiting for the trigger …");
+    this.busy(true, "preparing");
     try {
       this.capture = await this.link.ask("capture", given);
       this.show();
@@ -89,10 +90,17 @@ export class Scope {
     }
   }
 
+  follow(text, armed) {
+    if (!by("capture").disabled) return;
+    by("scope-note").textContent = text;
+    by("scope-note").classList.toggle("armed", armed);
+  }
+
   busy(on, words) {
     by("capture").disabled = on;
     by("capture-stop").disabled = !on;
     by("scope-note").textContent = words;
+    by("scope-note").classList.remove("armed");
   }
 
   show() {

@@ -1,0 +1,160 @@
+"""The client and the firmware: pyserial on a pseudo-terminal, behind it the virtual board in real time."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from desk import board, needs_board
+from typer.testing import CliRunner
+
+from stillspin import cli, core
+from stillspin.drive import Channel, Drive, Trigger
+from stillspin.drive.requester import wait_until
+from stillspin.errors import InputError
+from stillspin.link.errors import DriveError, RefusedError
+from stillspin.link.records import Record, to_wire
+
+pytestmark = needs_board
+SLOW = 20
+"""Seconds for what the drive does in one or two: the machine may be busy and the board slower than real time."""
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("desk")
+    with board(directory, "--profile", "ideal") as port:
+        yield port
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    for variable in ("XDG_CACHE_HOME", "XDG_STATE_HOME"):
+        monkeypatch.setenv(variable, str(tmp_path / "home"))
+
+
+@pytest.fixture
+def desk(port, home):
+    """The client; leaves the drive ready and its parameters as they were."""
+    with Drive.open(port, timeout=2.0) as desk:
+        before = desk.parameters()
+        yield desk
+        desk.stop()
+        if desk.status().fault:
+            desk.reset()
+        assert wait_until(lambda: desk.status().state == "ready", SLOW)
+        for name, value in desk.parameters().items():
+            if value != before[name]:
+                desk.set(name, before[name])
+
+
+def test_the_table_is_the_firmwares_own(desk):
+    listed = core.load().parameters()
+    assert [entry["name"] for entry in listed] == [parameter.name for parameter in desk.table.parameters]
+    for entry, parameter in zip(listed, desk.table.parameters, strict=True):
+        assert parameter.initial == pytest.approx(entry["default"], abs=10.0**-parameter.decimals / 2)
+        assert parameter.unit == entry["unit"]
+    assert "speed" in {signal.name for signal in desk.table.signals}
+
+
+def test_the_motor_starts_and_the_speed_follows(desk):
+    desk.set("speed_ramp", 6000)
+    with desk.running(300, timeout=SLOW):
+        assert wait_until(lambda: abs(desk.status().speed - 300) < 6, SLOW)
+        desk.ref(-200)
+        assert wait_until(lambda: abs(desk.status().speed + 200) < 6, SLOW)
+        with pytest.raises(RefusedError, match="pole_pairs"):
+            desk.set("pole_pairs", 3)
+    assert not desk.status().energised
+
+
+def test_a_triggered_capture_shows_the_step_where_it_says(desk):
+    desk.set("speed_ramp", 3000)
+    with desk.running(100, timeout=SLOW):
+        assert wait_until(lambda: abs(desk.status().speed - 100) < 5, SLOW)
+        threading.Timer(0.3, desk.ref, (500,)).start()
+        trigger = Trigger("speed_reference", 300, "rising")
+        capture = desk.capture("speed_reference", Channel("current_q", 8), trigger=trigger, decimation=2, timeout=SLOW)
+    reference = capture.signals["speed_reference"]
+    at = int(np.flatnonzero(capture.time == 0.0)[0])
+    step = 8192 / 2**15
+    assert reference[at] >= 300 - step
+    assert reference[at - 1] < 300 + step
+    # 3000 rpm/s: 0.6 rpm in each record of 0.2 ms, until the reference is reached.
+    rising = (capture.time > -0.05) & (capture.time < 0.05)
+    slope = np.polyfit(capture.time[rising], reference[rising], 1)[0]
+    assert slope == pytest.approx(3000, rel=0.01)
+    assert capture.clipped == ()
+
+
+def test_a_stream_comes_regularly_and_whole(desk):
+    with desk.stream(["speed", "link_voltage"], period=0.01) as stream:
+        samples = [stream.next(SLOW) for _ in range(100)]
+    times = np.array([sample.time for sample in samples])
+    assert np.allclose(np.diff(times), 0.01, atol=0.0015)
+    assert stream.lost == 0
+    assert all(250 < sample.values[1] < 400 for sample in samples)
+
+
+def test_a_fault_is_told_in_words(desk):
+    desk.set("link_minimum", 350)  # the link has 300
+    with pytest.raises(DriveError, match=r"the motor does not run: .*below link_minimum"):
+        desk.start(300)
+        desk.wait_for_run(SLOW)
+    newest = desk.faults()[0]
+    assert newest.cause == desk.status().fault
+    assert "supply" in newest.remedy
+    assert 250 < newest.link_voltage < 400
+    desk.reset()
+    assert wait_until(lambda: desk.status().state == "ready", SLOW)
+
+
+def test_the_drive_stops_by_itself_when_a_guarded_client_is_silent(desk):
+    desk.set("link_timeout", 200)
+    desk.start(100, guarded=True)
+    with desk.kept_alive():
+        desk.wait_for_run(SLOW)
+    time.sleep(1.5)
+    assert wait_until(lambda: not desk.status().energised, SLOW)
+    assert desk.raw_status().link & 2
+
+
+def test_noise_and_half_records_leave_the_drive_controllable(desk):
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        desk.link.transport.send_text(rng.bytes(200))
+        desk.link.transport.send_text(to_wire(Record(7, 1, b"\x01\0\0\0\0"))[: int(rng.integers(1, 8))])
+    time.sleep(0.3)  # what has begun is given up after 0.1 s
+    assert desk.get("speed_limit") == desk.table.parameter("speed_limit").initial
+    assert not desk.status().energised
+
+
+def test_the_console_answers_among_records(desk, port):
+    heard = []
+    with desk.link.listening(text=heard.append):
+        desk.link.transport.send_text(b"\x03\rget speed_ramp\r")
+        for _ in range(20):
+            desk.status()
+        assert wait_until(lambda: b"rpm/s" in b"".join(heard), SLOW)
+    assert desk.link.counts.damaged == 0
+
+
+def test_the_commands(port, home, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        result = CliRunner().invoke(cli.app, [*arguments, "--drive", port])
+        assert result.exit_code == 0, result.stderr
+        return result.stdout
+
+    assert "speed_limit" in call("console", "--command", "get speed_limit")
+    dumped = call("params", "dump", "all.toml")
+    assert "parameters; see all.toml" in dumped
+    assert call("params", "load", "all.toml").startswith("0 of ")
+    assert "1024 records every 0.1 ms" in call("scope", "current_d", "current_q", "--out", "x.csv")
+    assert len(call("monitor", "speed", "--duration", "1").splitlines()) > 5
+
+
+def test_bad_values_are_refused_before_they_are_sent(desk):
+    with pytest.raises(InputError, match=r"speed_limit: .* is out of range; "):
+        desk.set("speed_limit", 1e6)

@@ -1,0 +1,112 @@
+"""The page, the client and the firmware together: what a person does with a motor, in a headless browser.
+
+The picture of each step goes to the directory that the variable STILLSPIN_PICTURES names, for the book.
+"""
+
+import os
+from pathlib import Path
+
+import pytest
+from desk import board, needs_board
+
+from browser import needs_chromium
+from stillspin.drive import Drive
+from stillspin.drive.requester import wait_until
+from stillspin.tune.server import Server
+
+pytestmark = [needs_chromium, needs_board]
+SLOW = 30
+
+
+@pytest.fixture
+def tuned(tmp_path, monkeypatch, page):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    with board(tmp_path, "--profile", "ideal") as port, Drive.open(port, timeout=2.0) as drive, Server(drive) as server:
+        page.set_default_timeout(1000 * SLOW)
+        page.goto(server.address)
+        page.wait_for_selector("#state:has-text('ready')")
+        yield page
+
+
+def picture(page, name):
+    directory = os.environ.get("STILLSPIN_PICTURES")
+    if directory:
+        page.screenshot(path=Path(directory) / f"tune-{name}.png")
+
+
+def speed(page):
+    return float(page.inner_text("#speed").replace("−", "-"))
+
+
+def refer(page, rpm):
+    page.fill("#reference", str(rpm))
+    page.press("#reference", "Enter")
+
+
+def change(page, name, value):
+    page.click("[data-tab=parameters]")
+    field = page.locator(f"[data-name={name}] input")
+    field.fill(str(value))
+    field.press("Enter")
+    page.wait_for_selector(f"[data-name={name}].changed")
+
+
+def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
+    # Start, and see the speed follow the reference.
+    refer(tuned, 300)
+    tuned.check("#keep")
+    tuned.click("#hold")
+    tuned.wait_for_selector("#state:has-text('running')")
+    assert wait_until(lambda: abs(speed(tuned) - 300) < 6, SLOW)
+
+    # Change a parameter, and see the speed follow it: with a slower ramp it takes seconds.
+    change(tuned, "speed_ramp", 200)
+    tuned.click("[data-tab=live]")
+    refer(tuned, 600)
+    assert not wait_until(lambda: speed(tuned) > 590, 0.8)
+    assert wait_until(lambda: abs(speed(tuned) - 600) < 8, SLOW)
+    change(tuned, "speed_ramp", 6000)
+
+    # Capture a step, triggered by the speed.
+    tuned.click("[data-tab=scope]")
+    tuned.fill("#level", "800")
+    tuned.locator("#level").blur()
+    tuned.click("#capture")
+    tuned.wait_for_selector("#scope-note.armed")  # the part before the trigger is recorded
+    refer(tuned, 1000)
+    tuned.wait_for_selector("#captured canvas")
+    assert "1024 records every 0.4 ms" in tuned.inner_text("#scope-note")
+    picture(tuned, "scope")
+    tuned.click("[data-tab=live]")
+    refer(tuned, 400)
+    assert wait_until(lambda: abs(speed(tuned) - 400) < 8, SLOW)
+    picture(tuned, "live")
+
+    # What may not change while it runs says why.
+    tuned.click("[data-tab=parameters]")
+    assert tuned.locator("[data-name=pole_pairs] input").is_disabled()
+    picture(tuned, "parameters")
+    tuned.keyboard.press("Escape")
+    tuned.wait_for_selector("#state:has-text('ready')")
+
+    # A fault, in words, with what to do.
+    change(tuned, "link_minimum", 350)
+    tuned.click("#hold")
+    tuned.wait_for_selector("#fault-words:has-text('DC link below link_minimum')")
+    tuned.click("[data-tab=faults]")
+    tuned.wait_for_selector("#history:has-text('DC link below link_minimum')")
+    assert "check the supply" in tuned.inner_text("#history")
+    picture(tuned, "fault")
+
+
+def test_a_page_that_is_closed_stops_the_real_firmware(tuned):
+    refer(tuned, 300)
+    tuned.check("#keep")
+    tuned.click("#hold")
+    tuned.wait_for_selector("#state:has-text('running')")
+    other = tuned.context.new_page()
+    address = tuned.url
+    tuned.close()
+    other.goto(address)
+    other.wait_for_selector("#state:has-text('ready')", timeout=1000 * SLOW)
+    other.close()
