@@ -14,7 +14,8 @@ static int32_t feed_forward_q20(const field_weakening_input_t* in, const machine
   const int32_t cross = q_mul(m->lq_q30, in->iq_q20, 22);
   const int64_t room = (int64_t)limit * limit - (int64_t)cross * cross;
   const int32_t axis = (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
-  return q_over(axis - m->flux_q28, q_invert(m->ld_q30), 22);
+  const int32_t flux_q28 = m->flux_q28 + q_mul(m->trim.psi_q16, m->period_q30, 18);
+  return q_over(axis - flux_q28, q_invert(m->ld_q30), 22);
 }
 
 int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {

@@ -89,8 +89,9 @@ static bool lost_synchronism(drive_t* d) {
 }
 
 static drive_fault_t check(drive_t* d) {
-  if (hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
+  // With the gates off a fast shaft may drive a current through the diodes; switching them on forgets that.
   const bool meant_off = d->state == DRIVE_START && !d->start.powered;
+  if (!meant_off && hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
   if (hal_pwm_is_tripped() && !meant_off) return FAULT_GATES_OFF;
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
   if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;

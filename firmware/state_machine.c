@@ -8,22 +8,34 @@
 #define CALIBRATE_PERIODS 256u
 #define SAMPLES_TIMEOUT 2000u
 #define OFFSET_MAX_Q8 (100L * 256L)  // codes off the middle: about 1 A on a 20 A range
+#define UNREST_MAX_Q8 (10L * 256L)   // mean deviation from the offset, codes: ten times the converter's noise
+#define UNREST_TIMEOUT 100000u       // 10 s
 
 void drive_enter(drive_t* d, drive_state_t state) {
   d->state = state;
   d->periods = 0;
 }
 
+// A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
+// shaft, and with the EMF below the link it ends.
+static bool current_flows(drive_t* d) {
+  const int32_t off_q8 =
+      q_abs_sat(d->samples.raw_a_q8 - d->trim.offset_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->trim.offset_b_q8);
+  d->unrest_q8 += q_shr(off_q8 - d->unrest_q8, 5);
+  return d->unrest_q8 > UNREST_MAX_Q8;
+}
+
 static void calibrate(drive_t* d) {
   slopes_trim_t* const c = &d->trim;
-  if (d->periods > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+  if (d->supervision.missing > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
   if (d->samples.count == 0u) return;
   c->offset_a_q8 += q_shr(d->samples.raw_a_q8 - c->offset_a_q8, 4);
   c->offset_b_q8 += q_shr(d->samples.raw_b_q8 - c->offset_b_q8, 4);
-  if (d->periods < CALIBRATE_PERIODS) return;
+  const bool flows = current_flows(d);
+  if (d->periods < CALIBRATE_PERIODS || (flows && d->periods < UNREST_TIMEOUT)) return;
   const bool plausible = q_abs_sat(c->offset_a_q8 - 2048L * 256L) < OFFSET_MAX_Q8 &&
                          q_abs_sat(c->offset_b_q8 - 2048L * 256L) < OFFSET_MAX_Q8;
-  if (plausible) {
+  if (plausible && !flows) {
     drive_enter(d, DRIVE_READY);
   } else {
     drive_raise(d, FAULT_OFFSET);

@@ -5,11 +5,12 @@
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 
-#define PULSE_MAX 12u         // periods of a short circuit that hardly drives a current
-#define PAUSE_MIN 6           // for the current to die away
-#define PAUSE_MAX 600         // 60 ms: 60 degrees at the slowest EMF that counts
-#define PAIRS_MAX 4u          // pairs of pulses before giving up
-#define STANDING_Q16 196608L  // 3 V: 45 rpm on motor A, beyond what drops and noise can fake
+#define PULSE_MAX 12u          // periods of a short circuit that hardly drives a current
+#define PAUSE_MIN 6            // for the current to die away
+#define PAUSE_MAX 600          // 60 ms: 60 degrees at the slowest EMF that counts
+#define PAIRS_MAX 4u           // pairs of pulses before giving up
+#define STANDING_Q16 196608L   // 3 V: 45 rpm on motor A, beyond what drops and noise can fake
+#define FLUX_EMF_Q16 2621440L  // 40 V
 #define CATCH_PERIODS 140u
 #define LEARN_TIMEOUT 200u        // periods for windows that show the axis
 #define ON_TICKS 200              // from the gates' command to the devices
@@ -36,6 +37,21 @@ void start_step_listen(drive_t* d) {
   start_power(d, true);
 }
 
+// The flux that the pulses saw, where it is an eighth or more off what was told; a small EMF is mostly error. It takes
+// the admittance of the model as it is by now: a machine of other inductances looks like one of another flux.
+static void take_flux(drive_t* d) {
+  machine_model_t* const m = &d->model;
+  const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(d->start.speed_bpp));
+  m->trim.psi_q16 = 0;
+  if (d->start.emf_q16 < FLUX_EMF_Q16 || w_q30 == 0) return;
+  const int32_t told_q30 = m->map.points[0].yqq_q30;
+  const int32_t now_q30 = told_q30 + q_mul(told_q30, m->trim.yqq_q24, 24);
+  const int32_t emf_q16 = q_mul_sat(d->start.emf_q16, q_div(told_q30, now_q30, 24), 24);
+  const int32_t off_q16 = q_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
+  if (q_abs_sat(off_q16) < m->emf_q16 / 8) return;
+  m->trim.psi_q16 = q_clamp(off_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
+}
+
 // The rotor's state, carried on from the second pulse to the running period.
 static void close_loop(drive_t* d, const flying_rotor_t* rotor) {
   const int32_t periods_q16 = q_div(d->start.clock - rotor->tick, ESTIMATOR_PERIOD_TICKS, 16);
@@ -43,6 +59,7 @@ static void close_loop(drive_t* d, const flying_rotor_t* rotor) {
   position_preset(d, angle, rotor->speed_bpp);
   d->start.angle_bam = angle;
   d->start.speed_bpp = rotor->speed_bpp;
+  take_flux(d);
   axis_begin(&d->start.axis);
   d->start.sigma_q8 = rotor->sigma_q8;
   d->start.shorted = false;
@@ -67,6 +84,7 @@ static void try_again(drive_t* d) {
 static void judge_pair(drive_t* d, const flying_emf_t* second) {
   drive_start_t* const s = &d->start;
   flying_rotor_t rotor;
+  s->emf_q16 = second->size_q16;
   if (flying_resolve(&s->first, second, &d->model, &rotor)) {
     close_loop(d, &rotor);
   } else {
@@ -112,6 +130,7 @@ static bool learn(drive_t* d) {
   if (complete) {
     const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
     admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
+    take_flux(d);
     s->angle_bam += (uint32_t)q_clamp(axis.angle_bam, -STRAY_MAX_BAM, STRAY_MAX_BAM);
   }
   position_preset(d, s->angle_bam, s->speed_bpp);

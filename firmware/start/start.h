@@ -36,8 +36,9 @@ typedef struct {
   int32_t on_tick;     // of the period in which the gates came on
   uint32_t angle_bam;  // of a caught rotor by its back-EMF, carried on
   int32_t speed_bpp;
-  int32_t clock;  // tick at which the running period began, from the start of START
-  int32_t stray;  // filtered angle error while catching, binary angle
+  int32_t emf_q16;  // of the second pulse, V
+  int32_t clock;    // tick at which the running period began, from the start of START
+  int32_t stray;    // filtered angle error while catching, binary angle
   flying_pulse_t pulse;
   flying_emf_t first;
   axis_t axis;

@@ -138,6 +138,26 @@ def saturation_map(plant: Plant, schema: Schema) -> dict[str, float]:
     return known
 
 
+def sustained(common: Bench, case: Case) -> float:
+    """The speed (rpm) that the machine of a case can hold without load: its EMF, weakened as far as the drive may."""
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+
+    def nominal(section: str, key: str) -> float:
+        return float(common.plant.get(section, {}).get(key, schema[section][key].default))
+
+    def true(key: str) -> float:
+        return nominal("machine", key) * (1.0 + ERRORS[case.error].get(key, 0.0))
+
+    def told(name: str) -> float:
+        return float(common.parameters.get(name, known[name].default))
+
+    voltage = nominal("link", "source_voltage") / math.sqrt(3.0) * told("voltage_use") / 100.0
+    flux = true("magnet_flux") - true("inductance_d") * told("weakening_limit")
+    fastest = voltage / max(flux, 1e-3) / nominal("machine", "pole_pairs")
+    return fastest * 30.0 / math.pi
+
+
 def run(common: Bench, case: Case) -> Outcome:
     """One start, judged."""
     held = case.way == "brake"
@@ -149,7 +169,10 @@ def run(common: Bench, case: Case) -> Outcome:
         own["mechanics"] |= {"coulomb_friction": _DRY_FRICTION, "stiction": _DRY_FRICTION}
     if case.error != "none":
         own["parameter_error"] = {**dict.fromkeys(_NAMES, 0.0), **ERRORS[case.error]}
-    target = case.speed if case.way == "flying" else case.direction * COMMAND
+    fastest = sustained(common, case)
+    target = (
+        math.copysign(min(abs(case.speed), fastest), case.speed) if case.way == "flying" else case.direction * COMMAND
+    )
     at = 0.0 if case.way == "flying" else _COMMAND_AT
     result = core.load().run(
         plant=profile.merged(common.plant, own),
