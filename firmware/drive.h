@@ -200,6 +200,9 @@ bool hold_step(drive_t* d);
 /// Learns the inertia; once a millisecond (inertia_task.c).
 void drive_match_inertia(drive_t* d);
 
+/// Torque current that the limit leaves beside the reference of i_d, A.
+int32_t drive_current_room(const drive_t* d);
+
 /// Field weakening of this instant, into the d-axis reference.
 void drive_weaken_field(drive_t* d);  // speed_task.c
 

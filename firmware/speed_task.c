@@ -36,7 +36,7 @@ static int32_t load_current(const drive_t* d) {
   return q_over(torque_q20, q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d)), 24);
 }
 
-static int32_t current_room(const drive_t* d) {
+int32_t drive_current_room(const drive_t* d) {
   const int32_t limit = parameters.current_limit;
   const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
   return (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
@@ -55,7 +55,7 @@ static int32_t braking_room(const drive_t* d, int32_t room_q20) {
 
 // Braking is what acts against the rotation.
 static void limit_current(drive_t* d, speed_controller_input_t* in) {
-  const int32_t room = current_room(d);
+  const int32_t room = drive_current_room(d);
   const int32_t braking = braking_room(d, room);
   in->lowest_q20 = (in->speed_bpp > 0) ? -braking : -room;
   in->highest_q20 = (in->speed_bpp < 0) ? braking : room;
