@@ -132,6 +132,7 @@ typedef struct {
   inertia_match_t inertia;
   machine_model_t model;  // nameplate, at the working point and with what was learnt
   slopes_trim_t trim;     // current offsets, mismatch of the sensors
+  uint32_t calm_at;       // period in which the currents will have been at rest for long enough
   int32_t unrest_q8;      // mean deviation of the currents from their offsets while these are found, codes
   drive_config_t config;
   bool config_valid;

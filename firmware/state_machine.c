@@ -12,6 +12,7 @@
 #define UNREST_TIMEOUT 100000u       // 10 s
 
 void drive_enter(drive_t* d, drive_state_t state) {
+  d->calm_at = 0;
   d->state = state;
   d->periods = 0;
 }
@@ -32,10 +33,12 @@ static void calibrate(drive_t* d) {
   c->offset_a_q8 += q_shr(d->samples.raw_a_q8 - c->offset_a_q8, 4);
   c->offset_b_q8 += q_shr(d->samples.raw_b_q8 - c->offset_b_q8, 4);
   const bool flows = current_flows(d);
-  if (d->periods < CALIBRATE_PERIODS || (flows && d->periods < UNREST_TIMEOUT)) return;
+  if (flows) d->calm_at = d->periods + CALIBRATE_PERIODS;
+  const bool calm = d->periods >= d->calm_at;
+  if (d->periods < CALIBRATE_PERIODS || (!calm && d->periods < UNREST_TIMEOUT)) return;
   const bool plausible = q_abs_sat(c->offset_a_q8 - 2048L * 256L) < OFFSET_MAX_Q8 &&
                          q_abs_sat(c->offset_b_q8 - 2048L * 256L) < OFFSET_MAX_Q8;
-  if (plausible && !flows) {
+  if (plausible && calm) {
     drive_enter(d, DRIVE_READY);
   } else {
     drive_raise(d, FAULT_OFFSET);
