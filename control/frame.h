@@ -40,30 +40,31 @@ static inline rotation_t frame_rotation(uint32_t angle_bam) {
 
 /// Two measured phases of a star-connected machine (a + b + c = 0).
 static inline ab_t frame_clarke2(int32_t a, int32_t b) {
-  ab_t v = {a, q_mul(a + 2 * b, FRAME_SQRT3_INV_Q30, 30)};
+  ab_t v = {a, q_mul_floor(a + 2 * b, FRAME_SQRT3_INV_Q30, 30)};
   return v;
 }
 
 /// Three phase quantities with any common part, e.g. leg voltages.
 static inline ab_t frame_clarke3(abc_t x) {
-  ab_t v = {(2 * x.a - x.b - x.c) / 3, q_mul(x.b - x.c, FRAME_SQRT3_INV_Q30, 30)};
+  ab_t v = {(2 * x.a - x.b - x.c) / 3, q_mul_floor(x.b - x.c, FRAME_SQRT3_INV_Q30, 30)};
   return v;
 }
 
 static inline abc_t frame_inverse_clarke(ab_t v) {
   const int32_t half = v.alpha / 2;
-  const int32_t side = q_mul(v.beta, FRAME_SQRT3_HALF_Q30, 30);
+  const int32_t side = q_mul_floor(v.beta, FRAME_SQRT3_HALF_Q30, 30);
   abc_t x = {v.alpha, side - half, -side - half};
   return x;
 }
 
 static inline dq_t frame_park(ab_t v, rotation_t r) {
-  dq_t w = {q_mul_add(v.alpha, r.cos_q30, v.beta, r.sin_q30, 30), q_mul_sub(v.beta, r.cos_q30, v.alpha, r.sin_q30, 30)};
+  dq_t w = {q_mul_add_floor(v.alpha, r.cos_q30, v.beta, r.sin_q30, 30),
+            q_mul_sub_floor(v.beta, r.cos_q30, v.alpha, r.sin_q30, 30)};
   return w;
 }
 
 static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
-  ab_t v = {q_mul_sub(w.d, r.cos_q30, w.q, r.sin_q30, 30), q_mul_add(w.d, r.sin_q30, w.q, r.cos_q30, 30)};
+  ab_t v = {q_mul_sub_floor(w.d, r.cos_q30, w.q, r.sin_q30, 30), q_mul_add_floor(w.d, r.sin_q30, w.q, r.cos_q30, 30)};
   return v;
 }
 

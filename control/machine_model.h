@@ -83,21 +83,21 @@ void machine_model_move(machine_model_t* m, int32_t iq_q20);
 
 /// Y x, Q20, of a voltage in V Q16.
 static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {
-  const dq_t s = {q_mul_add(m->yd_q30, v_q16.d, m->ydq_q30, v_q16.q, 26),
-                  q_mul_add(m->ydq_q30, v_q16.d, m->yq_q30, v_q16.q, 26)};
+  const dq_t s = {q_mul_add_floor(m->yd_q30, v_q16.d, m->ydq_q30, v_q16.q, 26),
+                  q_mul_add_floor(m->ydq_q30, v_q16.d, m->yq_q30, v_q16.q, 26)};
   return s;
 }
 
 /// h = K i + k0: what the slope changes with the speed, A per period and (rad per period), Q20.
 static inline dq_t machine_turn_q20(const machine_model_t* m, dq_t i_q20) {
-  const dq_t h = {q_mul_add(m->k_dd_q24, i_q20.d, m->k_dq_q24, i_q20.q, 24) + m->k0_q20.d,
-                  q_mul_sub(m->k_qd_q24, i_q20.d, m->k_dd_q24, i_q20.q, 24) + m->k0_q20.q};
+  const dq_t h = {q_mul_add_floor(m->k_dd_q24, i_q20.d, m->k_dq_q24, i_q20.q, 24) + m->k0_q20.d,
+                  q_mul_sub_floor(m->k_qd_q24, i_q20.d, m->k_dd_q24, i_q20.q, 24) + m->k0_q20.q};
   return h;
 }
 
 /// Electrical speed in rad per period, Q30, from binary angle per period (|speed| below 1.9 rad per period).
 static inline int32_t machine_speed_rad_q30(int32_t speed_bpp) {
-  return q_mul(speed_bpp, 1686629713L, 30);  // 2 pi / 4
+  return q_mul_floor(speed_bpp, 1686629713L, 30);  // 2 pi / 4
 }
 
 /// Voltage induced by the rotation, V Q16, at the working point and a current in A Q20: w (-psi_q, psi_d).

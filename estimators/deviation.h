@@ -22,7 +22,7 @@ typedef struct {
 /// Angle of the estimator in the middle of a window.
 static inline uint32_t deviation_angle_at(uint32_t angle_bam, int32_t speed_bpp, int16_t middle_tick) {
   const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)middle_tick) * 107374;
-  return angle_bam - (uint32_t)q_mul(speed_bpp, before_q30, 30);
+  return angle_bam - (uint32_t)q_mul_floor(speed_bpp, before_q30, 30);
 }
 
 /// A window in the frame of an angle.

@@ -118,9 +118,8 @@ typedef struct {
 } sums_t;
 
 static int32_t limited(int32_t x, int32_t scale_q20, unsigned shift, int32_t end) {
-  const int64_t y = q_mul64(x, scale_q20, shift);
-  if (y > end) return end;
-  return (y < -end) ? -end : (int32_t)y;
+  const int32_t y = q_mul_sat(x, scale_q20, shift);
+  return q_clamp(y, -end, end);
 }
 
 // One scalar measurement: sensitivities and residual, all divided by the noise.
@@ -238,7 +237,11 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
     d[k] = deviation_in_frame(in->model, w, &f, w_q30);
     if (!c->zero_vectors_only || w->zero_vector) collect_window(&sums, c, in->model, w, &d[k]);
   }
-  regression_evaluate(&s->regression, d, in);
+  if (in->regress) {
+    regression_evaluate(&s->regression, d, in);
+  } else {
+    regression_mean(&s->regression, d, in);
+  }
   information_t n = information_of(&sums);
   bound(&n);
   admit_load_change(s, c, &n);

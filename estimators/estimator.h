@@ -36,6 +36,9 @@ typedef struct {
   const estimator_window_t* windows;
   uint16_t window_count;    // 0..ESTIMATOR_WINDOWS
   int32_t torque_accel_q8;  // acceleration by the air-gap torque of the measured current
+  // The windows are regressed on their voltages. The deviation observer alone can leave it (the machine's model then
+  // learns nothing); AVV lives on it.
+  bool regress;
   // The windows in a frame that runs on evenly from the estimator's last angle, where they are known, or null. From the
   // predicted angle it differs by half the change of speed over a period at most, 1e-4 rad.
   const estimator_frame_t* frames;

@@ -52,7 +52,7 @@ static void project(projection_t* p, const regression_t* r, const deviation_t* d
   // Differences of voltage as Q14: 400 V and more fit into the products.
   const dq_t dv = {q_shr(d->voltage_q16.d - mean_voltage_q16.d, 2), q_shr(d->voltage_q16.q - mean_voltage_q16.q, 2)};
   const dq_t ds = {d->residual_q20.d - r->mean_q20.d, d->residual_q20.q - r->mean_q20.q};
-  const dq_t part = {q_mul(dv.d, share_q30, 30), q_mul(dv.q, share_q30, 30)};
+  const dq_t part = {q_mul_floor(dv.d, share_q30, 30), q_mul_floor(dv.q, share_q30, 30)};
   p->spread = q_mac(q_mac(p->spread, part.d, dv.d), part.q, dv.q);
   add(&p->by_d, ds, part.d);
   add(&p->by_q, ds, part.q);
@@ -74,25 +74,32 @@ static dq_t even_mean(const deviation_t d[], const estimator_input_t* in, int32_
   return mean_of(&even);
 }
 
+void regression_mean(regression_t* r, const deviation_t d[], const estimator_input_t* in) {
+  int32_t span = 0;
+  for (uint16_t k = 0; k < in->window_count; k++) span += in->windows[k].span_ticks;
+  r->information = 0;
+  r->span_ticks = span;
+  if (span > 0) r->even_q20 = even_mean(d, in, per_total_q30(span));
+}
+
 void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in) {
   static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}, {0, 0}, {0, 0}, 0};
   int32_t share_q30[ESTIMATOR_WINDOWS];
   int32_t total = 0;
-  int32_t span = 0;
   dq_t voltage_q16;
   projection_t p = {{0, 0}, {0, 0}, 0};
-  *r = empty;
   for (uint16_t k = 0; k < in->window_count; k++) {
     share_q30[k] = weight_of(&in->windows[k]);
     total += share_q30[k];
-    span += in->windows[k].span_ticks;
   }
-  if (total <= 0) return;
+  if (total <= 0) {
+    *r = empty;
+    return;
+  }
   const int32_t per_weight_q30 = per_total_q30(total);
   for (uint16_t k = 0; k < in->window_count; k++) share_q30[k] *= per_weight_q30;
+  regression_mean(r, d, in);
   average(r, d, in, share_q30, &voltage_q16);
-  r->span_ticks = span;
-  r->even_q20 = even_mean(d, in, per_total_q30(span));
   for (uint16_t k = 0; k < in->window_count; k++) project(&p, r, &d[k], voltage_q16, share_q30[k]);
   resolve(r, &p);
   if (r->spread_q8 >= SPREAD_MIN_Q8) r->information = q_mul_sat(r->spread_q8, total, 8);

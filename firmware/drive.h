@@ -31,7 +31,8 @@
 
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
-#define ADAPTATION_TURN 5u  // periods in which every adaptation has its turn
+#define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond; the speed control has the first one
+#define ADAPTATION_TURN 7u         // periods in which every adaptation, and the model, has its turn
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.
@@ -182,6 +183,11 @@ void start_step_pulse(drive_t* d);
 void start_step_catch(drive_t* d);
 const svpwm_pattern_t* start_short_circuit(void);
 
+/// True in a period in which a task of the millisecond will run.
+static inline bool drive_is_busy(const drive_t* d) {
+  return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD - 1u;
+}
+
 /// True while what is sampled does not belong to a power stage that is on and to a known pattern.
 static inline bool drive_is_blind(const drive_t* d) {
   return d->state == DRIVE_START && (!d->start.powered || d->start.blind > 0u);
@@ -191,6 +197,7 @@ static inline bool drive_is_blind(const drive_t* d) {
 void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 bool polarity_watch_step(drive_t* d);
 bool polarity_watch_suspects(const drive_t* d);
+bool polarity_watch_is_awake(const drive_t* d);  // looks at the regression of every period
 
 /// Holds the shaft for hold_time from now (start/hold.c).
 void hold_begin(drive_t* d);

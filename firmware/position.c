@@ -12,22 +12,27 @@ static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 5
 
 typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t* in);
 
-// What the regression tells of machine and sensors is taken over slowly, one thing per period in turn. The turn has
-// five places because five has no factor in common with the six periods in which the alternating layout repeats: each
-// adaptation sees every direction of the voltage.
+// What the regression tells of machine and sensors is taken over slowly, one thing per period in turn; in between the
+// model moves on to the working point. The turn has seven places because seven has no factor in common with the six
+// periods in which the alternating layout repeats, nor with the ten of a millisecond: each adaptation sees every
+// direction of the voltage. The two periods of a millisecond in which other tasks run have an odd and an even number,
+// so that leaving them out favours none.
+typedef enum { TURN_ADMITTANCE = 0, TURN_SENSORS = 2, TURN_VOLTAGE = 4 } turn_t;
+
+static bool adapts_now(const drive_t* d) { return (d->position.adaptation & 1u) == 0u && d->position.adaptation < 6u; }
+
 static void adapt(drive_t* d, const regression_t* r) {
   const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
-  d->position.adaptation = (uint16_t)((d->position.adaptation + 1u) % ADAPTATION_TURN);
   switch (d->position.adaptation) {
-    case 0:
+    case TURN_ADMITTANCE:
       admittance_step(&d->model, r, d->config.adapt_share_q30);
       break;
-    case 1:
+    case TURN_SENSORS:
       if (!d->modulation.state.is_alternating) break;
       sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
       d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
       break;
-    case 2:
+    case TURN_VOLTAGE:
       if (drive_is_turning(d)) voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
       break;
     default:
@@ -38,6 +43,7 @@ static void adapt(drive_t* d, const regression_t* r) {
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return d->position.high;
+  if (drive_is_turning(d) && (drive_is_busy(d) || !adapts_now(d))) return d->position.high;
   if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) adapt(d, &d->position.avv.regression);
   return d->position.high;
 }
@@ -60,7 +66,7 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
 static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
-  if (avv_angle_is_near(r, &d->model)) adapt(d, r);
+  if (in->regress && !drive_is_busy(d) && adapts_now(d) && avv_angle_is_near(r, &d->model)) adapt(d, r);
   d->position.high = out;
   return out;
 }
@@ -130,14 +136,22 @@ static bool observer_in_use(const drive_t* d) {
          p->observer.speed_bpp == p->used.speed_bpp;
 }
 
+// The working point moves slowly beside a period: while the shaft turns, the model follows where nothing else is done.
+static void move_model(drive_t* d) {
+  d->position.adaptation = (uint16_t)((d->position.adaptation + 1u) % ADAPTATION_TURN);
+  if (drive_is_turning(d) && (drive_is_busy(d) || adapts_now(d))) return;
+  machine_model_move(&d->model, d->control.measured_q20.q);
+}
+
 void drive_estimate(drive_t* d) {
   measure_current(d);
-  machine_model_move(&d->model, d->control.measured_q20.q);
+  move_model(d);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
+  in.regress = polarity_watch_is_awake(d) || (!drive_is_busy(d) && adapts_now(d));
   in.windows = d->samples.windows;
   in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.

@@ -83,6 +83,7 @@ static bool lost_synchronism(drive_t* d) {
   in.torque_accel_q8 = 0;
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
   const int32_t apart_bam = (parameters.position_source == POSITION_ENCODER) ? 0 : disagreement(d);
+  in.regress = false;
   in.frames = 0;
   return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, d->position.used.angle_bam,
                           d->position.used.speed_bpp, apart_bam);

@@ -23,6 +23,7 @@ void drive_weaken_field(drive_t* d) {
   const bool none = d->position.blend.region == BLEND_HIGH || d->state == DRIVE_COMMISSION;
   const int32_t bias = none ? 0 : parameters.id_low_speed;
   c->reference_q20.d = q_clamp(q_add_sat(weakening, bias), -parameters.current_limit, parameters.current_limit);
+  d->limits &= ~(int32_t)LIMIT_WEAKENING;
   if (weakening < 0) d->limits |= LIMIT_WEAKENING;
 }
 
@@ -89,13 +90,13 @@ static void note_limits(drive_t* d, const speed_controller_input_t* in) {
 void drive_control_speed(drive_t* d) {
   drive_control_t* const c = &d->control;
   const bool held = hold_step(d);
+  const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
   if (d->millisecond == DRIVE_PERIODS_PER_MS / 2) drive_match_inertia(d);
+  if (d->millisecond == DRIVE_WEAKENING_PERIOD && (drive_is_turning(d) || caught)) drive_weaken_field(d);
   if (d->millisecond != 0u) return;
   d->time_ms++;
-  d->limits &= LIMIT_BRAKING;  // of the last millisecond, for the ramp
-  const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
-  if (drive_is_turning(d) || caught) drive_weaken_field(d);
+  d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
   if (!drive_is_turning(d)) return;
   speed_controller_input_t in;
   step_ramp(d, &in);

@@ -6,7 +6,7 @@
 static int32_t sign_q15(const dead_time_config_t* c, int32_t current_q20) {
   if (current_q20 >= c->band_q20) return 32767L;
   if (current_q20 <= -c->band_q20) return -32767L;
-  return q_mul(current_q20, c->per_band_q29, 29);
+  return q_mul_floor(current_q20, c->per_band_q29, 29);
 }
 
 // Delay of an edge, ticks; `sign` is positive where the current blocks the edge.
@@ -44,21 +44,35 @@ dead_time_edges_t dead_time_compensate(const dead_time_config_t* c, const svpwm_
   return uncertain;
 }
 
-// Takes one edge into account: wanted at the motor at `wanted`, commanded at `command`.
-static void guard(const dead_time_config_t* c, int16_t wanted, int16_t command, svpwm_window_t* w) {
-  if (wanted == w->begin) w->begin = q_max16(w->begin, (int16_t)(command + c->blocked_ticks));
-  if (wanted == w->end) w->end = q_min16(w->end, (int16_t)(command + c->released_ticks));
+// An uncertain edge: where it is wanted at the motor, and where it comes at the latest and at the earliest.
+typedef struct {
+  int16_t wanted, latest, earliest;
+} guard_t;
+
+static uint16_t guards_of(const dead_time_config_t* c, const svpwm_pulses_t* wanted, const svpwm_pulses_t* command,
+                          dead_time_edges_t uncertain, guard_t guards[2 * SVPWM_LEGS]) {
+  uint16_t count = 0;
+  for (uint16_t leg = 0; leg < SVPWM_LEGS; leg++) {
+    if (((uint32_t)uncertain >> leg & 1u) != 0u) {
+      const int16_t at = command->rise[leg];
+      const guard_t g = {wanted->rise[leg], (int16_t)(at + c->blocked_ticks), (int16_t)(at + c->released_ticks)};
+      guards[count++] = g;
+    }
+    if (((uint32_t)uncertain >> (SVPWM_LEGS + leg) & 1u) != 0u) {
+      const int16_t at = command->fall[leg];
+      const guard_t g = {wanted->fall[leg], (int16_t)(at + c->blocked_ticks), (int16_t)(at + c->released_ticks)};
+      guards[count++] = g;
+    }
+  }
+  return count;
 }
 
-static svpwm_window_t guarded(const dead_time_config_t* c, const svpwm_pulses_t* wanted, const svpwm_pulses_t* command,
-                              dead_time_edges_t uncertain, svpwm_window_t window) {
-  svpwm_window_t w = window;
-  for (uint16_t leg = 0; leg < SVPWM_LEGS; leg++) {
-    svpwm_window_t edge = window;
-    if (((uint32_t)uncertain >> leg & 1u) != 0u) guard(c, wanted->rise[leg], command->rise[leg], &edge);
-    if (((uint32_t)uncertain >> (SVPWM_LEGS + leg) & 1u) != 0u) guard(c, wanted->fall[leg], command->fall[leg], &edge);
-    w.begin = q_max16(w.begin, edge.begin);
-    w.end = q_min16(w.end, edge.end);
+static svpwm_window_t guarded(const guard_t guards[], uint16_t count, const svpwm_window_t* window) {
+  svpwm_window_t w = *window;
+  for (uint16_t k = 0; k < count; k++) {
+    const guard_t* const g = &guards[k];
+    if (g->wanted == window->begin) w.begin = q_max16(w.begin, g->latest);
+    if (g->wanted == window->end) w.end = q_min16(w.end, g->earliest);
   }
   return w;
 }
@@ -66,9 +80,11 @@ static svpwm_window_t guarded(const dead_time_config_t* c, const svpwm_pulses_t*
 void dead_time_guard_windows(const dead_time_config_t* c, const sampling_config_t* sampling,
                              const svpwm_pulses_t* command, dead_time_edges_t uncertain, svpwm_pattern_t* pattern) {
   if (uncertain == 0u) return;
+  guard_t guards[2 * SVPWM_LEGS];
+  const uint16_t edges = guards_of(c, &pattern->pulses, command, uncertain, guards);
   uint16_t count = 0;
   for (uint16_t k = 0; k < pattern->window_count; k++) {
-    const svpwm_window_t w = guarded(c, &pattern->pulses, command, uncertain, pattern->windows[k]);
+    const svpwm_window_t w = guarded(guards, edges, &pattern->windows[k]);
     if (svpwm_burst_end(sampling, &w) - svpwm_burst_start(sampling, &w) < sampling->span_min_ticks) continue;
     pattern->windows[count] = w;
     count++;
@@ -81,6 +97,6 @@ ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
   const int32_t a = sign_q15(c, i.a);
   const int32_t b = sign_q15(c, i.b);
   const int32_t s = sign_q15(c, i.c);
-  const ab_t drop = {q_mul(2 * a - b - s, c->third_drop_q24, 23), q_mul(b - s, c->side_drop_q24, 23)};
+  const ab_t drop = {q_mul_floor(2 * a - b - s, c->third_drop_q24, 23), q_mul_floor(b - s, c->side_drop_q24, 23)};
   return drop;
 }

@@ -37,19 +37,25 @@ static int16_t span(const sampling_config_t* c, const svpwm_window_t* w) {
   return (int16_t)(svpwm_burst_end(c, w) - svpwm_burst_start(c, w));
 }
 
-// Drops the shortest window, keeping the order of time.
-static void drop_shortest(const sampling_config_t* c, svpwm_window_t w[], uint16_t count) {
+// Takes a window after the others, in the place of the shortest if there are too many.
+static uint16_t take(const sampling_config_t* c, svpwm_window_t w[], uint16_t count, const svpwm_window_t* fresh) {
   uint16_t shortest = 0;
-  for (uint16_t k = 1; k < count; k++) {
+  if (count < SVPWM_WINDOWS) {
+    w[count] = *fresh;
+    return (uint16_t)(count + 1u);
+  }
+  for (uint16_t k = 1; k < SVPWM_WINDOWS; k++) {
     if (span(c, &w[k]) < span(c, &w[shortest])) shortest = k;
   }
-  for (uint16_t k = shortest; k + 1u < count; k++) w[k] = w[k + 1u];
+  if (span(c, fresh) < span(c, &w[shortest])) return count;
+  for (uint16_t k = shortest; k + 1u < SVPWM_WINDOWS; k++) w[k] = w[k + 1u];
+  w[SVPWM_WINDOWS - 1] = *fresh;
+  return count;
 }
 
 void svpwm_find_windows(const sampling_config_t* c, svpwm_pattern_t* pattern) {
   const int16_t shortest = (int16_t)(c->settle_ticks + c->burst_ticks + c->span_min_ticks);
   uint32_t edges[EDGES + 1u];
-  svpwm_window_t found[SVPWM_WINDOWS + 1];
   int16_t begin = 0;
   uint16_t state = 0;
   uint16_t count = 0;
@@ -57,19 +63,13 @@ void svpwm_find_windows(const sampling_config_t* c, svpwm_pattern_t* pattern) {
   edges[EDGES] = (uint32_t)SVPWM_PERIOD_TICKS << 3;
   for (uint16_t k = 0; k <= EDGES; k++) {
     const int16_t end = (int16_t)(edges[k] >> 3);
-    const svpwm_window_t w = {begin, end, state};
     // Most intervals are short; the period's end cuts some of the others.
-    if (end - begin >= shortest && span(c, &w) >= c->span_min_ticks) {
-      found[count] = w;
-      count++;
-      if (count > SVPWM_WINDOWS) {
-        drop_shortest(c, found, count);
-        count = SVPWM_WINDOWS;
-      }
+    if (end - begin >= shortest) {
+      const svpwm_window_t w = {begin, end, state};
+      if (span(c, &w) >= c->span_min_ticks) count = take(c, pattern->windows, count, &w);
     }
     begin = end;
     state ^= (uint16_t)(edges[k] & 7u);
   }
   pattern->window_count = count;
-  for (uint16_t k = 0; k < count; k++) pattern->windows[k] = found[k];
 }

@@ -59,49 +59,49 @@ constexpr auto interrupts = make_interrupts(std::make_index_sequence<kVectors>()
 
 // The names are the linker's.
 // NOLINTBEGIN
-#define WRAP_CPU(name)          \
-  void __real_##name(void);     \
-  void __wrap_##name(void) {    \
-    {                           \
-      const Access access;      \
-      __real_##name();          \
-    }                           \
-    log(TRACE_CPU);             \
+#define WRAP_CPU(name)       \
+  void __real_##name(void);  \
+  void __wrap_##name(void) { \
+    {                        \
+      const Access access;   \
+      __real_##name();       \
+    }                        \
+    log(TRACE_CPU);          \
   }
-#define WRAP_READ(name, type, kind)                     \
-  type __real_##name(std::uint32_t address);            \
-  type __wrap_##name(std::uint32_t address) {           \
-    type value;                                         \
-    {                                                   \
-      const Access access;                              \
-      value = __real_##name(address);                   \
-    }                                                   \
-    log(kind, address, value);                          \
-    return value;                                       \
+#define WRAP_READ(name, type, kind)           \
+  type __real_##name(std::uint32_t address);  \
+  type __wrap_##name(std::uint32_t address) { \
+    type value;                               \
+    {                                         \
+      const Access access;                    \
+      value = __real_##name(address);         \
+    }                                         \
+    log(kind, address, value);                \
+    return value;                             \
   }
-#define WRAP_WRITE(name, type, kind)                          \
-  void __real_##name(std::uint32_t address, type value);      \
-  void __wrap_##name(std::uint32_t address, type value) {     \
-    {                                                         \
-      const Access access;                                    \
-      __real_##name(address, value);                          \
-    }                                                         \
-    log(kind, address, value);                                \
+#define WRAP_WRITE(name, type, kind)                      \
+  void __real_##name(std::uint32_t address, type value);  \
+  void __wrap_##name(std::uint32_t address, type value) { \
+    {                                                     \
+      const Access access;                                \
+      __real_##name(address, value);                      \
+    }                                                     \
+    log(kind, address, value);                            \
   }
-#define WRAP_VALUE(name, kind)                    \
-  void __real_##name(std::uint16_t value);        \
-  void __wrap_##name(std::uint16_t value) {       \
-    {                                             \
-      const Access access;                        \
-      __real_##name(value);                       \
-    }                                             \
-    log(kind, 0, value);                          \
+#define WRAP_VALUE(name, kind)              \
+  void __real_##name(std::uint16_t value);  \
+  void __wrap_##name(std::uint16_t value) { \
+    {                                       \
+      const Access access;                  \
+      __real_##name(value);                 \
+    }                                       \
+    log(kind, 0, value);                    \
   }
-#define WRAP_COMMAND(name, kind)     \
-  void __real_##name(void);          \
-  void __wrap_##name(void) {         \
-    if (inside_chip) log(kind);      \
-    __real_##name();                 \
+#define WRAP_COMMAND(name, kind) \
+  void __real_##name(void);      \
+  void __wrap_##name(void) {     \
+    if (inside_chip) log(kind);  \
+    __real_##name();             \
   }
 
 extern "C" {

@@ -27,7 +27,7 @@ void firmware_main(void);
 
 #define VECTORS 128
 #define CONTROL_VECTOR 48  // EPWM1_INT
-#define STEPS 6
+#define STEPS 7
 #define BUFFER 1024
 
 static FILE* file;
@@ -101,13 +101,13 @@ static void end_period(void) {
 
 static void print(const char* name, const statistic_t* s) {
   if (s->count == 0u) return;
-  printf("%s %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 "\n", name, s->count, (uint32_t)(s->sum / s->count), s->worst,
-         s->worst_at);
+  printf("%s %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 "\n", name, s->count, (uint32_t)(s->sum / s->count),
+         s->worst, s->worst_at);
 }
 
 static void report(void) {
   static const char* const names[STEPS + 1] = {"samples",  "estimate",  "supervise", "control",
-                                               "modulate", "hand_over", "all"};
+                                               "modulate", "hand_over", "link", "all"};
   for (uint32_t k = 0; k <= STEPS; k++) {
     printf("turning ");
     print(names[k], &turning[k]);
@@ -169,8 +169,7 @@ static void take_interrupt(uint32_t vector) {
   } else if (drive_signals()->state == DRIVE_RUN) {
     add(&windows, instructions(&running));
   }
-  expect(TRACE_RETURN, vector,
-         trace_hash((const int32_t*)drive_signals(), sizeof(drive_signals_t) / sizeof(int32_t)));
+  expect(TRACE_RETURN, vector, trace_hash((const int32_t*)drive_signals(), sizeof(drive_signals_t) / sizeof(int32_t)));
   running = interrupted;
   controlling = preempted;
 }
