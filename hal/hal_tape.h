@@ -2,8 +2,8 @@
 //
 // A period of the drive is a function of its state and of what the HAL returned in it. While a tape records, the HAL's
 // functions work as ever and what they return and are told is noted. While it plays, they reach no register: they
-// return what is on the tape, and what they are told is noted again, to be compared. So the interrupts of a drive can be
-// stepped on a board whose power stage and sensors are elsewhere, in a simulation, and be compared word by word with
+// return what is on the tape, and what they are told is noted again, to be compared. So the interrupts of a drive can
+// be stepped on a board whose power stage and sensors are elsewhere, in a simulation, and be compared word by word with
 // another execution of the same C files. The gates cannot be switched on while a tape plays.
 //
 // Interrupts that came while the control step ran are put back at the same call of the HAL. Only the control step's own
@@ -19,11 +19,11 @@
 extern "C" {
 #endif
 
-#define TAPE_INPUTS 24u     // words that the HAL returns in a period
-#define TAPE_OUTPUTS 48u    // words that it is told
-#define TAPE_WINDOWS 20u    // window or slice interrupts in a period
-#define TAPE_RESULTS 6u     // words of one of them
-#define TAPE_BEHIND 0xFFFFu // `call` of a window that came behind the control step
+#define TAPE_INPUTS 24u      // words that the HAL returns in a period
+#define TAPE_OUTPUTS 48u     // words that it is told
+#define TAPE_WINDOWS 20u     // window or slice interrupts in a period
+#define TAPE_RESULTS 6u      // words of one of them
+#define TAPE_BEHIND 0xFFFFu  // `call` of a window that came behind the control step
 
 typedef enum { TAPE_OFF = 0, TAPE_RECORDS = 1, TAPE_PLAYS = 2 } tape_mode_t;
 
@@ -42,11 +42,11 @@ typedef struct {
 
 typedef struct {
   tape_mode_t mode;
-  bool stepping, stepped;  // the control step runs; has run
-  uint16_t call;           // its hooked calls so far
-  uint16_t input, window;  // played so far
-  bool torn;               // the tape was too short or too long for what the drive did
-  void (*interrupt)(void); // the window interrupt, played
+  bool stepping, stepped;   // the control step runs; has run
+  uint16_t call;            // its hooked calls so far
+  uint16_t input, window;   // played so far
+  bool torn;                // the tape was too short or too long for what the drive did
+  void (*interrupt)(void);  // the window interrupt, played
   tape_period_t period;
 } hal_tape_t;
 

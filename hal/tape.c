@@ -1,6 +1,6 @@
-#include "hal/hal_tape.h"
-
 #include <stddef.h>
+
+#include "hal/hal_tape.h"
 
 hal_tape_t hal_tape;
 

@@ -1,14 +1,15 @@
 // Host in the loop: the control interrupt is stepped by a computer that runs the plant.
 //
 // A board on a desk has neither motor nor power stage, and conversion results cannot be put into a real converter. So
-// from here on the HAL's functions play what a step's record brings (hal/hal_tape.h) and what they are told goes back in
-// its answer, with a check sum over every signal of the drive. The computer executes the same C files on the virtual
+// from here on the HAL's functions play what a step's record brings (hal/hal_tape.h) and what they are told goes back
+// in its answer, with a check sum over every signal of the drive. The computer executes the same C files on the virtual
 // chip and compares: a board that computes otherwise is found in the first period in which it does.
 //
 // Entered only with the power stage off, left only by a reset: while it lasts the gates cannot be switched on. The
 // board's own period interrupt goes on, for the serial port and the watchdog alone.
 //
-//   step:   sequence u16, words of a result u8 (3 slices, 6 windows), windows u8, windows x (call u16, results u16 ...),
+//   step:   sequence u16, words of a result u8 (3 slices, 6 windows), windows u8, windows x (call u16, results u16
+//   ...),
 //           inputs u8, inputs x u16
 //   answer: sequence u16, torn u8, outputs u8, outputs x u16, CRC-32 of the signals u32
 //

@@ -21,8 +21,8 @@ static inline void pie_acknowledge(uint16_t group) {
   TARGET_NOP();
 }
 
-// Holds every interrupt off, by IER: its value can be read and put back, INTM's cannot. hold returns what release has to
-// be given.
+// Holds every interrupt off, by IER: its value can be read and put back, INTM's cannot. hold returns what release has
+// to be given.
 uint16_t irq_hold(void);
 void irq_release(uint16_t state);
 

@@ -3,10 +3,10 @@
 #include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
+#include "hal/f2808/pie.h"
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
-#include "hal/f2808/pie.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_tape.h"
 

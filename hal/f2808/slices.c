@@ -9,7 +9,7 @@
 
 #define CLOCK_MODULE PWM_FIRST_WINDOW_MODULE  // its time base counts the slices
 #define SLICE_RESULTS 3u
-#define TRIGGER_TICK 10u                      // of the slice
+#define TRIGGER_TICK 10u  // of the slice
 
 // At once and not from the shadow: what was meant for this period must not come any more.
 static void write_compare_now(uint16_t module, uint16_t a, uint16_t b) {

@@ -238,8 +238,8 @@ NB_MODULE(_core, m) {
       .def_ro("stats", &PythonResult::stats);
   m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
         nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
-        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false, nb::arg("tape") = nb::none(),
-        "One run of the virtual drive; see core.py.");
+        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false,
+        nb::arg("tape") = nb::none(), "One run of the virtual drive; see core.py.");
   nb::class_<PythonCommissioning>(m, "CommissioningResult")
       .def_ro("values", &PythonCommissioning::values)
       .def_ro("completed", &PythonCommissioning::completed)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -32,8 +32,8 @@ from stillspin import (
     tables,
 )
 from stillspin.board import serve
-from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
+from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption, whole
 from stillspin.progress import Counter, PhaseBar
 from stillspin.reproduction import Options, carry_out, write_found
 from stillspin.revision import revision
@@ -44,61 +44,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     add_completion=False,
 )
-
-
-def _whole(name: str, low: int, high: int) -> Callable[[str], int]:
-    """A parser of whole numbers that says what was given and what is allowed."""
-
-    def parse(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise InputError(f"{name} '{text}': must be a whole number, {low} … {high}")
-        return value
-
-    return parse
-
-
-ProfileOption = Annotated[
-    str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
-]
-SeedOption = Annotated[
-    int,
-    typer.Option(
-        "--seed",
-        metavar="N",
-        parser=_whole("--seed", 0, 2**32 - 1),
-        help="Seed of the noise: the same seed, the same run.",
-    ),
-]
-ChangeOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="Change an entry of the plant (section.entry=value) or a firmware parameter (name=value). Repeatable.",
-    ),
-]
-
-
-ParamsOption = Annotated[
-    Path | None,
-    typer.Option("--params", metavar="FILE", help="Firmware parameters, such as `commission` writes them."),
-]
-
-
-JobsOption = Annotated[
-    int | None,
-    typer.Option(
-        "--jobs",
-        "-j",
-        metavar="N",
-        parser=_whole("--jobs", 1, 256),
-        help="Runs at a time [default: one per processor].",
-    ),
-]
 
 
 def _carry_out(ids: Iterable[str], options: Options) -> None:
@@ -282,7 +227,7 @@ def startup_matrix(
     *,
     profile_name: ProfileOption = "bench",
     seeds: Annotated[
-        int, typer.Option("--seeds", metavar="N", parser=_whole("--seeds", 1, 100), help="Noise seeds of each case.")
+        int, typer.Option("--seeds", metavar="N", parser=whole("--seeds", 1, 100), help="Noise seeds of each case.")
     ] = 3,
     quick: Annotated[bool, typer.Option("--quick", help="A representative few, in seconds.")] = False,
     way: Annotated[

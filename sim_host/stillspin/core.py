@@ -26,8 +26,8 @@ Look = tuple[float, float, int]
 """A stretch of a run to look into: from, to (s), and ticks of 10 ns between two looks at the currents."""
 Progress = Callable[[float], bool]
 Tape = Callable[[list[bytes], bytes, bytes, bytes], bool]
-"""Gets every period from power-on: requests before it (type and body), body of the step, body of the answer that it must
-have, raw signals (i32) behind it. False ends the run."""
+"""Gets every period from power-on: requests before it (type and body), body of the step, body of the answer that it
+must have, raw signals (i32) behind it. False ends the run."""
 
 
 class NativeResult(Protocol):

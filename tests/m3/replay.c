@@ -107,7 +107,7 @@ static void print(const char* name, const statistic_t* s) {
 
 static void report(void) {
   static const char* const names[STEPS + 1] = {"samples",  "estimate",  "supervise", "control",
-                                               "modulate", "hand_over", "link", "all"};
+                                               "modulate", "hand_over", "link",      "all"};
   for (uint32_t k = 0; k <= STEPS; k++) {
     printf("turning ");
     print(names[k], &turning[k]);

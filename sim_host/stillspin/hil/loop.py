@@ -7,7 +7,7 @@ import struct
 import time
 from dataclasses import dataclass
 
-from stillspin.core import NativeCore
+from stillspin.core import NativeCore, Progress
 from stillspin.drive.protocol import Request, StatusCode
 from stillspin.drive.requester import Requester
 from stillspin.errors import CampaignError
@@ -67,14 +67,14 @@ class Loop:
         self._difference: Difference | None = None
         self._error: Exception | None = None
 
-    def run(self, native: NativeCore, job: Job) -> LoopResult:
+    def run(self, native: NativeCore, job: Job, progress: Progress | None = None) -> LoopResult:
         """One run of a scenario on the virtual drive and, period by period, on the board.
 
         Raises:
             CampaignError: the board cannot be put into the loop.
             LinkError: the way to the board is lost.
         """
-        self._enter(native)
+        self._enter()
         hashes = hashlib.sha256(), hashlib.sha256()
         begin = time.perf_counter()
 
@@ -87,7 +87,7 @@ class Loop:
                 if answer != expected:
                     words = self._compare(told.answer(answer), told.answer(expected), signals)
                     self._difference = Difference(self._steps, words)
-            except Exception as error:  # noqa: BLE001 - it is raised again below, where no native frames lie between
+            except Exception as error:
                 self._error = error
             self._steps += 1
             return self._difference is None and self._error is None
@@ -104,7 +104,7 @@ class Loop:
             record_every=run.record_every,
             waveform=(0.0, 0.0, 1),
             seed=job.seed,
-            progress=None,
+            progress=progress,
             tape=step,
         )
         if self._error:
@@ -118,7 +118,7 @@ class Loop:
         """Let the board reset itself."""
         self._requester.request(Request.HIL_LEAVE, repeat=True)
 
-    def _enter(self, native: NativeCore) -> None:
+    def _enter(self) -> None:
         self._steps, self._difference, self._error = 0, None, None
         try:
             self._requester.request(Request.HIL_ENTER, repeat=True)
