@@ -179,6 +179,16 @@ void bind_virtual_board(nb::module_& m) {
       .def_prop_rw(
           "serial_rate", [](Self self) { return self.board().serial().rate(); },
           [](Self self, double rate) { self.board().serial().set_rate(rate); })
+      .def_prop_rw(
+          "eeprom",
+          [](Self self) {
+            const auto& octets = self.board().eeprom();
+            return nb::bytes(octets.data(), octets.size());
+          },
+          [](Self self, nb::bytes octets) {
+            const auto* const first = static_cast<const std::uint8_t*>(octets.data());
+            self.board().set_eeprom({first, first + octets.size()});
+          })
       .def_prop_ro("serial_pending", &serial_pending)
       .def("serial_counts", &serial_counts)
       .def("can_open", &can_open, nb::arg("rate"), nb::arg("listen_only") = false)

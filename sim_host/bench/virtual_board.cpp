@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "firmware/drive_api.h"
 #include "sim_host/bench/run.hpp"
@@ -36,7 +37,17 @@ VirtualBoard::VirtualBoard(const BoardRequest& request)
     parameters_.push_back({static_cast<std::uint16_t>(id), raw});
   }
   board_.attach(chip_);
+  board_.fit(eeprom_);
   if (brake_until_run_) board_.plant().set_locked(true);
+}
+
+void VirtualBoard::set_eeprom(std::vector<std::uint8_t> content) {
+  if (content.size() != devices::Eeprom::kSize) {
+    throw std::invalid_argument("the EEPROM holds " + std::to_string(devices::Eeprom::kSize) + " octets, not " +
+                                std::to_string(content.size()));
+  }
+  if (now() > 0) throw std::logic_error("the EEPROM can only be exchanged before any time has passed");
+  eeprom_.memory() = std::move(content);
 }
 
 void VirtualBoard::advance(Tick ticks) {

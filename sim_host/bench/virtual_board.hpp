@@ -55,6 +55,12 @@ class VirtualBoard final : private PeriodListener {
   devices::CanHost& can_host() { return can_host_; }
   devices::CanBus& can_bus() { return can_bus_; }
 
+  /// What the EEPROM on the board holds, Eeprom::kSize octets; a new one is blank. Another content, as of a board that
+  /// was in use before, can be given before any time has passed: std::invalid_argument for a wrong size,
+  /// std::logic_error later.
+  const std::vector<std::uint8_t>& eeprom() const { return eeprom_.memory(); }
+  void set_eeprom(std::vector<std::uint8_t> content);
+
   // ---- shaft
   /// Load torque from now on, N m, -1e4..1e4; positive opposes positive rotation.
   void set_load(double torque);
@@ -84,6 +90,7 @@ class VirtualBoard final : private PeriodListener {
   FaultPlayer faults_;
   devices::CanBus can_bus_;
   devices::CanHost can_host_{can_bus_, 0};
+  devices::Eeprom eeprom_;
   Board board_;
   chip::Chip chip_;
   bool told_ = false;

@@ -77,6 +77,9 @@ class NativeBoard(Protocol):
         """Let time pass. RuntimeError when the chip cannot go on."""
         ...
 
+    eeprom: bytes
+    """What the board's EEPROM holds, 32768 octets; another content may be given before any time has passed."""
+
     def serial_write(self, octets: bytes) -> None:
         """Send octets to the drive, from now on, one after the other at `serial_rate`."""
         ...

@@ -9,6 +9,7 @@
 #include "firmware/drive_api.h"
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board.hpp"
+#include "sim_host/bench/virtual_board.hpp"
 
 extern "C" {
 #include "firmware/drive.h"
@@ -184,6 +185,27 @@ TEST(BoardStore, ControlIsNotDisturbedByASave) {
   const auto periods = static_cast<std::uint16_t>((board.chip.now() - begin) / kPeriod);
   EXPECT_NEAR(static_cast<std::uint16_t>(drive.heartbeat - before), periods, 1);
   EXPECT_EQ(drive.supervision.overrun, 0);
+}
+
+TEST(VirtualBoardStore, TheEepromOutlivesTheBoard) {
+  std::vector<std::uint8_t> kept;
+  {
+    VirtualBoard desk(BoardRequest{});
+    EXPECT_EQ(desk.eeprom(), std::vector<std::uint8_t>(Eeprom::kSize, 0xFF));
+    desk.advance(60 * kMs);
+    EXPECT_THROW(desk.set_eeprom(desk.eeprom()), std::logic_error);
+    ASSERT_EQ(parameter_set(8, 12 << 20), SET_OK);
+    ASSERT_TRUE(store_save());
+    desk.advance(200 * kMs);
+    EXPECT_EQ(store_state(), STORE_SAVED);
+    kept = desk.eeprom();
+  }
+  VirtualBoard again(BoardRequest{});
+  EXPECT_THROW(again.set_eeprom(std::vector<std::uint8_t>(100)), std::invalid_argument);
+  again.set_eeprom(kept);
+  again.advance(100 * kMs);
+  EXPECT_EQ(store_state(), STORE_LOADED);
+  EXPECT_EQ(parameters.current_limit, 12 << 20);
 }
 
 }  // namespace
