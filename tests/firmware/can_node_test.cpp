@@ -251,7 +251,7 @@ TEST_F(CanNode, AnyFramesLeaveTheDriveControllable) {
   parameters.polarity_check = 0;
   pass(40);
   std::mt19937 random(11);
-  for (int round = 0; round < 20'000; ++round) {
+  for (int round = 0; round < 200'000; ++round) {
     hal_can_frame_t f = {};
     const std::uint32_t group = random() % 3;
     f.id = (group == 0 ? 0x101u : group == 1 ? 0x301u : 0x401u);

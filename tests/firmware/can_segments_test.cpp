@@ -113,7 +113,7 @@ TEST_F(CanSegments, AnEndlessRecordIsDropped) {
 TEST_F(CanSegments, AnyFramesLeaveItReadyForARecord) {
   std::mt19937 random(7);
   const auto good = pieces_of(record_of(100));
-  for (int round = 0; round < 2'000; ++round) {
+  for (int round = 0; round < 20'000; ++round) {
     std::vector<hal_can_frame_t> noise(random() % 60);
     for (hal_can_frame_t& frame : noise) {
       frame.length = static_cast<std::uint16_t>(random() % 9);
