@@ -49,7 +49,7 @@ isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QE
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign
 
-fuzz: setup ## search for octets on the serial port that break the firmware, RUNS of them (1000000)
+fuzz: setup ## search for octets and CAN frames that break the firmware, RUNS of each (1000000)
 	@bash toolchain/fuzz.sh $(RUNS)
 
 docs: setup ## build the book into site/
