@@ -31,7 +31,7 @@ from stillspin import (
     startup_report,
     tables,
 )
-from stillspin.board import serve
+from stillspin.board import power, serve
 from stillspin.one_line_errors import BROKEN, OneLineErrors
 from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption, whole
 from stillspin.progress import Counter, PhaseBar
@@ -218,7 +218,7 @@ def board_(
         changes.parameters = {**commission.load(params, known), **changes.parameters}
         changes.words.append(f"--params {params.name}")
     title = f"profile {chosen.name}, seed {seed}" + "".join(f", {words}" for words in changes.words)
-    board = serve.power(native, chosen, changes, seed)
+    board = power.power(native, chosen, changes, seed)
     serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end), title)
 
 

@@ -5,6 +5,7 @@ The picture of each step goes to the directory that the variable STILLSPIN_PICTU
 
 import os
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from desk import board, needs_board
@@ -21,7 +22,12 @@ SLOW = 30
 @pytest.fixture
 def tuned(tmp_path, monkeypatch, page):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    with board(tmp_path, "--profile", "ideal") as port, Drive.open(port, timeout=2.0) as drive, Server(drive) as server:
+    with (
+        TemporaryDirectory(prefix="desk-") as directory,  # its name is on the pictures
+        board(Path(directory), "--profile", "ideal") as port,
+        Drive.open(port, timeout=2.0) as drive,
+        Server(drive) as server,
+    ):
         page.set_default_timeout(1000 * SLOW)
         page.goto(server.address)
         page.wait_for_selector("#state:has-text('ready')")
@@ -80,6 +86,7 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     tuned.click("[data-tab=live]")
     refer(tuned, 400)
     assert wait_until(lambda: abs(speed(tuned) - 400) < 8, SLOW)
+    tuned.select_option("#window", "5")
     picture(tuned, "live")
 
     # What may not change while it runs says why.
@@ -96,6 +103,7 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     tuned.click("[data-tab=faults]")
     tuned.wait_for_selector("#history:has-text('DC link below link_minimum')")
     assert "check the supply" in tuned.inner_text("#history")
+    tuned.wait_for_selector("#hold:has-text('Start')")  # nothing is held any more
     picture(tuned, "fault")
 
 

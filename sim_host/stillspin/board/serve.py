@@ -20,11 +20,8 @@ from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
 from stillspin.board.show import Show
 from stillspin.errors import InputError
 from stillspin.link.can_bus import DEFAULT_BITRATE
-from stillspin.profile import Changes, Profile, merged
 
 _PAUSE = 0.05  # s of wall time; the longest sleep
-_FAST: core.Plant = {"solver": {"method": "rk4"}}
-"""Unless profile or user say otherwise: real time matters more here than the last digit."""
 
 
 @dataclass(frozen=True)
@@ -41,22 +38,6 @@ class Options:
     socketcan: str | None = None
     load: float = 0.0
     end: float | None = None
-
-
-def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int) -> core.NativeBoard:
-    """A virtual board that has just been switched on.
-
-    Raises:
-        InputError: a plant or parameters that cannot be.
-    """
-    parameters = {**chosen.parameters, **changes.parameters}
-    try:
-        native.check_parameters(parameters)
-        return native.VirtualBoard(
-            plant=merged(_FAST, chosen.plant, changes.plant), motor="A", parameters=parameters, seed=seed
-        )
-    except ValueError as error:
-        raise InputError(str(error)) from error
 
 
 def serve(board: core.NativeBoard, options: Options, title: str) -> None:

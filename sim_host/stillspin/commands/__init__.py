@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from stillspin.commands import console, hil, monitor, params, scope, tune
+from stillspin.commands import can_bus, console, hil, monitor, params, scope, tune
 
 
 def register(app: typer.Typer) -> None:
@@ -13,5 +13,6 @@ def register(app: typer.Typer) -> None:
     app.command(name="console")(console.console)
     app.command(name="scope")(scope.scope)
     app.command(name="monitor")(monitor.monitor)
+    app.command(name="can")(can_bus.bus)
     app.command(name="tune")(tune.tune)
     app.command(name="hil")(hil.hil)

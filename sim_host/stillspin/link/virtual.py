@@ -8,7 +8,7 @@ import time
 from stillspin import core, profile
 from stillspin.board.desk import SLICE, TICKS_PER_SECOND
 from stillspin.board.pacer import Pacer
-from stillspin.board.serve import power
+from stillspin.board.power import power
 from stillspin.errors import InputError
 from stillspin.link.errors import LinkError
 from stillspin.link.records import Record, to_wire

@@ -6,6 +6,7 @@
 import { by, number, span } from "./dom.js";
 
 const BEAT = 100; // ms
+const PATIENCE = 500; // ms, between the answer to a start and the first status with the motor energised
 const [READY, FAULT] = [2, 6];
 
 export class Run {
@@ -83,12 +84,16 @@ export class Run {
   hold(what, given = {}) {
     if (this.held || document.hidden) return;
     this.energised = false;
+    this.begun = 0;
     this.beat = setInterval(() => this.link.say({ t: "hold" }), BEAT);
     document.body.classList.add("held");
-    this.link.ask(what, given).catch((error) => {
-      this.release();
-      this.fail(error);
-    });
+    this.link
+      .ask(what, given)
+      .then(() => (this.begun = Date.now()))
+      .catch((error) => {
+        this.release();
+        this.fail(error);
+      });
   }
 
   release() {
@@ -124,8 +129,9 @@ export class Run {
 
   show(status) {
     this.status = status;
-    if (this.held && this.energised && !status.energised) this.letGo(); // it has stopped by itself
-    this.energised = status.energised;
+    this.energised ||= status.energised;
+    const over = this.begun && !status.energised && (this.energised || Date.now() - this.begun > PATIENCE);
+    if (this.held && over) this.release(); // it has stopped by itself, or never began
     const state = by("state");
     state.textContent = status.state;
     state.className = `pill ${status.number === FAULT ? "bad" : status.energised ? "on" : ""}`;
@@ -135,7 +141,7 @@ export class Run {
     by("store").textContent = status.store;
     by("time").textContent = span(status.time);
     by("fault").hidden = !status.fault;
-    by("fault-words").textContent = status.fault;
+    by("fault-words").textContent = status.remedy ? `${status.fault}:` : status.fault;
     by("fault-remedy").textContent = status.remedy;
     const keep = by("keep").checked;
     by("hold").disabled = !(this.held || this.ready);

@@ -1,0 +1,26 @@
+"""Switching a virtual board on."""
+
+from __future__ import annotations
+
+from stillspin import core
+from stillspin.errors import InputError
+from stillspin.profile import Changes, Profile, merged
+
+_FAST: core.Plant = {"solver": {"method": "rk4"}}
+"""Unless profile or user say otherwise: real time matters more here than the last digit."""
+
+
+def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int) -> core.NativeBoard:
+    """A virtual board that has just been switched on.
+
+    Raises:
+        InputError: a plant or parameters that cannot be.
+    """
+    parameters = {**chosen.parameters, **changes.parameters}
+    try:
+        native.check_parameters(parameters)
+        return native.VirtualBoard(
+            plant=merged(_FAST, chosen.plant, changes.plant), motor="A", parameters=parameters, seed=seed
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error

@@ -1,0 +1,106 @@
+"""`stillspin can`: what is on the bus, decoded with the drive's DBC."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import can
+import cantools
+import typer
+from cantools.database import Database
+from cantools.database.errors import Error as DatabaseError
+
+from stillspin.errors import InputError
+from stillspin.link import address
+from stillspin.link.can_bus import NODES, open_bus
+
+_DBC = Path(__file__).resolve().parent.parent / "can" / "stillspin.dbc"
+_NODE_MASK = 0x7F
+"""An identifier is a base, a multiple of 0x80, plus the node."""
+_WAIT = 0.2
+
+
+def bus(
+    *,
+    where: Annotated[
+        str,
+        typer.Argument(metavar="ADDRESS", help="can:slcan:/dev/ttyACM0 or can:socketcan:can0; node= shows one alone."),
+    ],
+    dbc: Annotated[Path, typer.Option("--dbc", help="Another description of the bus.")] = _DBC,
+    duration: Annotated[float, typer.Option("--duration", metavar="S", help="End after so many seconds.")] = 0.0,
+    changes: Annotated[bool, typer.Option("--changes", help="Only messages whose content has changed.")] = False,
+) -> None:
+    """Show every message of the bus with its signals, until Ctrl-C."""
+    wanted = address.parse(where)
+    if wanted.kind != "can":
+        raise InputError(f"address '{where}': must be a CAN bus, such as can:slcan:/dev/ttyACM0")
+    only = wanted.options["node"] if "node=" in where else None
+    decoder = Decoder(load(dbc))
+    end = time.monotonic() + duration if duration else math.inf
+    opened = open_bus(wanted.interface, wanted.channel, wanted.options["bitrate"])
+    seen: dict[int, bytes] = {}
+    try:
+        while time.monotonic() < end:
+            message = opened.recv(_WAIT)
+            if message is None or (only is not None and message.arbitration_id & _NODE_MASK != only):
+                continue
+            data = bytes(message.data)
+            if not (changes and seen.get(message.arbitration_id) == data):
+                print(decoder.line(message), flush=True)
+            seen[message.arbitration_id] = data
+    except KeyboardInterrupt:
+        pass
+    finally:
+        opened.shutdown()
+
+
+def load(path: Path) -> Database:
+    """A description of a bus.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        database = cantools.database.load_file(path)
+    except (OSError, ValueError, DatabaseError) as error:
+        raise InputError(f"--dbc {path}: cannot be read ({' '.join(str(error).split())})") from error
+    if not isinstance(database, Database):
+        raise InputError(f"--dbc {path}: describes no CAN bus")
+    return database
+
+
+class Decoder:
+    """Messages in words. The description is for one node; the others' identifiers differ in the node alone."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+        self._bases = {message.frame_id & ~_NODE_MASK: message for message in database.messages}
+
+    def line(self, message: can.Message) -> str:
+        """A line for a message: time, node, name, signals with units."""
+        identifier, data = message.arbitration_id, bytes(message.data)
+        node = identifier & _NODE_MASK
+        known = self._bases.get(identifier & ~_NODE_MASK)
+        head = f"{message.timestamp:.3f}  {identifier:03X}"
+        if message.is_error_frame:
+            return f"{head}  error frame"
+        if known is None or message.is_extended_id or node not in NODES:
+            return f"{head}  {data.hex(' ')}"
+        try:
+            values = known.decode(data, decode_choices=True)
+        except (DatabaseError, ValueError):
+            return f"{head}  node {node}  {known.name}  {data.hex(' ')} (not as the description says)"
+        units = {signal.name: signal.unit or "" for signal in known.signals}
+        return f"{head}  node {node}  {known.name}  {_signals(values, units)}"
+
+
+def _signals(values: Any, units: Mapping[str, str]) -> str:
+    return "  ".join(f"{name} {_number(value)} {units[name]}".rstrip() for name, value in values.items())
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,90 @@
+"""`stillspin can` on a bus in memory, and records over it."""
+
+import threading
+
+import can
+import pytest
+
+from stillspin.commands.can_bus import _DBC, Decoder, load
+from stillspin.errors import InputError
+from stillspin.link.can_bus import REQUEST, RESPONSE, CanTransport
+from stillspin.link.errors import LinkError
+from stillspin.link.records import Record
+from stillspin.link.segments import Joiner, split
+
+
+@pytest.fixture
+def other():
+    """The other end of a bus in memory."""
+    with can.Bus(interface="virtual", channel="desk") as bus:
+        yield bus
+
+
+def message(identifier, data=b"", **options):
+    return can.Message(arbitration_id=identifier, data=data, is_extended_id=False, timestamp=1.5, **options)
+
+
+def test_every_message_of_the_description_is_decoded_for_every_node():
+    database = load(_DBC)
+    decoder = Decoder(database)
+    for described in database.messages:
+        for node in (1, 31):
+            line = decoder.line(message((described.frame_id & ~0x7F) + node, bytes(described.length)))
+            assert line.startswith(f"1.500  {(described.frame_id & ~0x7F) + node:03X}  node {node}  {described.name}  ")
+            assert all(f"{signal.name} " in line for signal in described.signals if not signal.is_multiplexer)
+
+
+@pytest.mark.parametrize(
+    ("frame", "line"),
+    [
+        (message(0x7FF, b"\x01\x02"), "1.500  7FF  01 02"),
+        (message(0x181, b"\x01"), "1.500  181  node 1  STATUS  01 (not as the description says)"),
+        (message(0x181, is_error_frame=True), "1.500  181  error frame"),
+    ],
+)
+def test_what_the_description_does_not_know_is_shown_as_it_is(frame, line):
+    assert Decoder(load(_DBC)).line(frame) == line
+
+
+def test_a_description_that_cannot_be_read_is_said(tmp_path):
+    (tmp_path / "x.dbc").write_text("nonsense")
+    with pytest.raises(InputError, match="cannot be read"):
+        load(tmp_path / "x.dbc")
+
+
+def test_the_command_shows_the_bus(call, other):
+    timer = threading.Timer(0.3, other.send, (message(0x182, bytes(8)),))
+    timer.start()
+    result = call("can", "can:virtual:desk?node=2", "--duration", "1")
+    assert result.exit_code == 0, result.stderr
+    assert "182  node 2  STATUS  " in result.stdout
+    assert "must be a CAN bus" in call("can", "/dev/ttyUSB0").stderr
+
+
+def test_records_go_over_the_bus_in_pieces(other):
+    transport = CanTransport("virtual", "desk", node=3)
+    record = Record(0x06, 9, bytes(range(60)))
+    transport.send(record)
+    joiner, got = Joiner(), None
+    while got is None:
+        frame = other.recv(1)
+        assert frame.arbitration_id == REQUEST + 3
+        got = joiner.feed(bytes(frame.data))
+    assert got == record
+    for node in (4, 3):  # the first is somebody else's
+        for data in split(Record(0x86, 9, bytes(node))):
+            other.send(message(RESPONSE + node, data))
+    items = []
+    while not items:
+        items = transport.receive(1.0)
+    assert items == [Record(0x86, 9, bytes(3))]
+    with pytest.raises(LinkError, match="console is on the serial port"):
+        transport.send_text(b"help\r")
+    transport.close()
+
+
+def test_an_adapter_that_is_not_there_is_said():
+    with pytest.raises(LinkError, match="there is no serial port /dev/none"):
+        CanTransport("slcan", "/dev/none", 1)
+    with pytest.raises(LinkError, match=r"there is no CAN interface can99"):
+        CanTransport("socketcan", "can99", 1)
