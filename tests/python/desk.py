@@ -20,14 +20,15 @@ needs_board = pytest.mark.skipif(
 
 @contextmanager
 def board(directory, *options):
-    """The name of the port of a board that runs until the context ends."""
-    link = directory / "drive"
-    command = [sys.executable, "-m", "stillspin", "board", "--serial-link", str(link), *options]
+    """The name of the port of a board that runs until the context ends; `can` beside it is its SLCAN adapter."""
+    link, adapter = directory / "drive", directory / "can"
+    links = ["--serial-link", str(link), "--can-link", str(adapter)]
+    command = [sys.executable, "-m", "stillspin", "board", *links, *options]
     log = (directory / "board.log").open("w")
     process = subprocess.Popen(command, stdout=log, stderr=log, env=os.environ)
     try:
         end = time.monotonic() + _PATIENCE
-        while not link.exists():
+        while not (link.exists() and adapter.exists()):
             assert process.poll() is None, (directory / "board.log").read_text()
             assert time.monotonic() < end
             time.sleep(0.05)

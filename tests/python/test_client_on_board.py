@@ -2,6 +2,7 @@
 
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -45,7 +46,7 @@ def desk(port, home):
         assert wait_until(lambda: desk.status().state == "ready", SLOW)
         for name, value in desk.parameters().items():
             if value != before[name]:
-                desk.set(name, before[name])
+                desk.change(name, before[name])
 
 
 def test_the_table_is_the_firmwares_own(desk):
@@ -158,3 +159,34 @@ def test_the_commands(port, home, tmp_path, monkeypatch):
 def test_bad_values_are_refused_before_they_are_sent(desk):
     with pytest.raises(InputError, match=r"speed_limit: .* is out of range; "):
         desk.set("speed_limit", 1e6)
+
+
+def test_defaults_are_the_tables(desk):
+    desk.set("speed_ramp", 1234)
+    desk.defaults()
+    assert wait_until(lambda: desk.get("speed_ramp") == desk.table.parameter("speed_ramp").initial, SLOW)
+
+
+def test_over_can_the_same_drive_does_the_same(desk, port):
+    """Two clients at once, one on each way; records in pieces through a real SLCAN end of python-can."""
+    with Drive.open(f"can:slcan:{Path(port).parent / 'can'}?node=1", timeout=2.0) as other:
+        assert other.table == desk.table
+        other.set("speed_ramp", 6000)
+        assert desk.get("speed_ramp") == 6000
+        with other.running(300, timeout=SLOW):
+            assert wait_until(lambda: abs(desk.status().speed - 300) < 6, SLOW)
+            with other.stream(["speed"], period=0.02) as stream:
+                samples = [stream.next(SLOW) for _ in range(10)]
+            assert all(abs(sample.values[0] - 300) < 10 for sample in samples)
+            capture = other.capture("speed", "current_q", timeout=SLOW)
+            assert np.all(np.abs(capture.signals["speed"] - 300) < 10)
+        assert not desk.status().energised
+        assert other.link.counts.damaged == 0
+
+
+def test_the_bus_is_shown_in_words(port, home):
+    where = f"can:slcan:{Path(port).parent / 'can'}?node=1"
+    result = CliRunner().invoke(cli.app, ["can", where, "--duration", "1"])
+    assert result.exit_code == 0, result.stderr
+    assert "181  node 1  STATUS  " in result.stdout
+    assert "201  node 1  TELEMETRY_1  " in result.stdout

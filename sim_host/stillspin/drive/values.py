@@ -103,4 +103,4 @@ def save(drive: Drive) -> None:
         raise DriveError("the drive is still saving")
     state = drive.raw_status().store
     if state != STORE_SAVED:
-        raise DriveError(f"not saved: {drive.words(Words.STORE, state)}")
+        raise DriveError(f"not saved; {drive.words(Words.STORE, state)}")
