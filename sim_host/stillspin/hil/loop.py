@@ -79,6 +79,8 @@ class Loop:
         begin = time.perf_counter()
 
         def step(requests: list[bytes], body: bytes, expected: bytes, signals: bytes) -> bool:
+            if self._difference or self._error:
+                return False  # the run goes on for some periods before it is broken off
             try:
                 self._ask(requests)
                 answer = self._requester.request(Request.HIL_STEP, body, repeat=True)
