@@ -11,7 +11,6 @@
 #include "firmware/parameters.h"
 
 #define BANDWIDTH_STEP_Q30 21474836L  // 200 rad/s * T
-#define EMF_AWAKE_Q16 327680L         // 5 V, half of what the sign is read from
 
 void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   polarity_watch_t* const w = &d->watch;
@@ -45,11 +44,7 @@ static dq_t on_axis(dq_t x, rotation_t r) {
   return own;
 }
 
-// At a crawl there is no back-EMF to look at.
-bool polarity_watch_is_awake(const drive_t* d) {
-  const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
-  return d->watch.open && d->state == DRIVE_RUN && q_abs_sat(q_mul_sat(d->model.emf_q16, w_q30, 30)) > EMF_AWAKE_Q16;
-}
+bool polarity_watch_is_awake(const drive_t* d) { return d->watch.open && d->state == DRIVE_RUN; }
 
 bool polarity_watch_step(drive_t* d) {
   polarity_watch_t* const w = &d->watch;

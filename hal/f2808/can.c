@@ -104,6 +104,7 @@ bool hal_can_init(uint32_t bitrate, const hal_can_group_t* groups, uint16_t grou
   }
   can.configured = false;
   can.bus_off = false;
+  can.lost = can.bus_offs = can.restarts = 0u;
   forget_waiting();
   gpio_give_to_peripheral(BOARD_PIN_CAN_RECEIVE, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
   gpio_give_to_peripheral(BOARD_PIN_CAN_TRANSMIT, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
