@@ -204,6 +204,10 @@ def board_(
     socketcan: Annotated[
         str | None, typer.Option("--socketcan", metavar="NAME", help="A CAN interface of the kernel, no SLCAN adapter.")
     ] = None,
+    eeprom: Annotated[
+        Path | None,
+        typer.Option("--eeprom", metavar="FILE", help="Keeps what the drive saves from one start to the next."),
+    ] = None,
     load: Annotated[float, typer.Option("--load", metavar="NM", help="Load torque on the shaft.")] = 0.0,
     end: Annotated[
         float | None, typer.Option("--for", min=0.0, metavar="SECONDS", help="Switch off after so much of its time.")
@@ -219,7 +223,7 @@ def board_(
         changes.words.append(f"--params {params.name}")
     title = f"profile {chosen.name}, seed {seed}" + "".join(f", {words}" for words in changes.words)
     board = power.power(native, chosen, changes, seed)
-    serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end), title)
+    serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom), title)
 
 
 @app.command(name="startup-matrix")

@@ -13,6 +13,7 @@ from types import FrameType
 from rich.console import Console
 
 from stillspin import core
+from stillspin.board import eeprom_file
 from stillspin.board.can_plug import CanPlug, SlcanPlug, SocketcanPlug
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
@@ -29,7 +30,8 @@ class Options:
     """How to run the board.
 
     `speed`: times real time, 0 as fast as possible. `load`: Nm. `socketcan`: an interface of the
-    kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops.
+    kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops. `eeprom`: the file
+    that keeps the content of the EEPROM; a new memory without.
     """
 
     speed: float = 1.0
@@ -38,6 +40,7 @@ class Options:
     socketcan: str | None = None
     load: float = 0.0
     end: float | None = None
+    eeprom: Path | None = None
 
 
 def serve(board: core.NativeBoard, options: Options, title: str) -> None:
@@ -48,6 +51,8 @@ def serve(board: core.NativeBoard, options: Options, title: str) -> None:
         CampaignError: the board cannot go on.
     """
     try:
+        if options.eeprom:
+            eeprom_file.insert(board, options.eeprom)
         board.set_load(options.load)
         desk = _plug_in(board, options)
     except ValueError as error:
@@ -65,6 +70,8 @@ def serve(board: core.NativeBoard, options: Options, title: str) -> None:
             wall = time.monotonic() - began
         ran = desk.time
     finally:
+        if options.eeprom:
+            eeprom_file.keep(board, options.eeprom)
         desk.close()
     print(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time")
 
