@@ -58,6 +58,7 @@ typedef struct {
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
   uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
   int32_t sensor_mismatch_q30;   // of the current sensors, as a share
+  bool mapped;                   // the turn of the saliency axis with the current is known
   saturation_slopes_t saturation;
 } drive_config_t;
 

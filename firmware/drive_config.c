@@ -104,13 +104,13 @@ static bool load_position(drive_config_t* c) {
   c->zvv.kp_q30 = bandwidth_step_q30(p->zvv_proportional);
   c->zvv.ki_q40 = q_mul(p->zvv_integral, 11258999L, 18);  // rad/s^2 Q8 * T^2 as Q40
   // Without the map the angle turns with the current, and a load that is followed fast closes a loop over that.
-  const bool mapped = (p->ldq_1 | p->ldq_2 | p->ldq_3 | p->ldq_4) != 0;
+  c->mapped = (p->ldq_1 | p->ldq_2 | p->ldq_3 | p->ldq_4) != 0;
   const deviation_observer_tuning_t observer = {q_mul(p->observer_noise, 1073741824L, 18) / 1000,
                                                 p->observer_load_rate,
                                                 p->observer_load_quiet,
                                                 p->observer_load_step,
                                                 q_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
-                                                mapped};
+                                                c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
   c->observer.cogging.slow_bpp = q_mul(CRAWL_MIN_RPM_Q16, c->bpp_per_rpm_q8, 24);

@@ -29,8 +29,10 @@ static void hand_on(drive_t* d, int32_t factor_q24) {
   }
 }
 
+// Without the map a large current turns the angle, and the torque is less than the current says: that would be taken
+// for inertia.
 void drive_match_inertia(drive_t* d) {
-  if (parameters.inertia_adapt == 0 || parameters.position_source != POSITION_OBSERVER) return;
+  if (parameters.inertia_adapt == 0 || !d->config.mapped || parameters.position_source != POSITION_OBSERVER) return;
   if (d->state != DRIVE_RUN) {
     d->inertia.quiet_ms = 0;
     d->inertia.phase = INERTIA_REST;

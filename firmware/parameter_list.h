@@ -65,7 +65,8 @@ PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS,
           "d-axis current below the blend, makes the ZVV deviation observable")
 PARAMETER(74, drift_time, "ms", 8, 0, 50, 30000, 2000, ALWAYS,
           "time constant of the adaptation of resistance and flux; 30000 is off")
-PARAMETER(78, inertia_adapt, "", 0, 0, 0, 1, 1, ALWAYS, "learn the inertia from run-ups under a large torque")
+PARAMETER(78, inertia_adapt, "", 0, 0, 0, 1, 1, ALWAYS,
+          "learn the inertia from run-ups under a large torque; needs the map")
 PARAMETER(73, encoder_counts, "", 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
 // Control

@@ -61,7 +61,10 @@ parameter_result_t parameter_set(uint16_t id, int32_t raw) {
   const uint16_t k = index_of(id);
   if (k >= COUNT) return SET_UNKNOWN;
   if (raw < table[k].minimum || raw > table[k].maximum) return SET_RANGE;
-  if (table[k].access == PARAMETER_STOPPED && drive_is_energised()) return SET_RUNNING;
+  if (table[k].access == PARAMETER_STOPPED) {
+    drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
+    if (drive_is_energised()) return SET_RUNNING;
+  }
   *values[k] = raw;
   drive_parameters_changed();
   return SET_OK;

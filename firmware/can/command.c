@@ -30,14 +30,21 @@ static bool counts(can_command_t* c, const hal_can_frame_t* frame) {
   return true;
 }
 
+// Also with the power stage off: a start that has not been taken yet is forgotten.
 static void begin_to_stop(void) {
-  if (drive_is_energised() && drive.state != DRIVE_STOP) drive_command_stop();
+  if (drive.state != DRIVE_STOP) drive_command_stop();
+}
+
+// A run that was asked for while the drive was at fault, or while somebody else had it running, is not for later.
+static void disarm_where_foreign(can_command_t* c) {
+  if (drive.state == DRIVE_FAULT || (!c->commanding && drive_is_energised())) c->armed = false;
 }
 
 static void run(can_command_t* c, int32_t speed_steps) {
-  if (drive.state == DRIVE_FAULT) c->armed = false;
+  disarm_where_foreign(c);
   const bool starts = c->armed && drive.state == DRIVE_READY;
-  if (starts || c->commanding) drive_command_speed(speed_steps * RPM_Q16_PER_STEP);
+  const bool running = c->commanding && drive.state != DRIVE_FAULT;
+  if (starts || running) drive_command_speed(speed_steps * RPM_Q16_PER_STEP);
   if (!starts) return;
   c->armed = false;
   c->commanding = true;
@@ -91,6 +98,7 @@ static void follow_drive(can_command_t* c) {
 
 void can_command_service(can_command_t* c, uint32_t now_ms) {
   follow_drive(c);
+  disarm_where_foreign(c);
   if (!c->heard || c->timed_out) return;
   if (now_ms - c->heard_ms < (uint32_t)parameters.can_timeout) return;
   c->timed_out = true;

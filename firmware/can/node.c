@@ -8,6 +8,7 @@
 #include "firmware/can/segments.h"
 #include "firmware/can/telemetry.h"
 #include "firmware/drive.h"
+#include "firmware/hil/hil.h"
 #include "firmware/parameters.h"
 #include "hal/hal_profile.h"
 
@@ -218,17 +219,20 @@ void can_node_service(void) {
   const uint32_t now_ms = drive.time_ms;
   hal_can_frame_t frame;
   hal_profile_step(CYCLES_ROUND);
-  follow_parameters();
+  // With the host in the loop the drive and its parameters are a simulation's: the bus carries records and knows
+  // nothing of the rest.
+  const bool own_drive = !hil_is_active();
+  if (own_drive) follow_parameters();
   hal_can_service();
   watch_bus(now_ms);
-  if (hal_can_receive(GROUP_COMMAND, &frame)) {
+  if (hal_can_receive(GROUP_COMMAND, &frame) && own_drive) {
     can_command_take(&self.command, &frame, now_ms);
     hal_profile_step(CYCLES_MESSAGE);
   }
-  can_command_service(&self.command, now_ms);
+  if (own_drive) can_command_service(&self.command, now_ms);
   answer_parameter();
   read_record(now_ms);
   answer_record(now_ms);
   write_record(now_ms);
-  send_periodic(now_ms);
+  if (own_drive) send_periodic(now_ms);
 }

@@ -4,6 +4,7 @@
 
 #include "firmware/drive.h"
 #include "firmware/link/crc.h"
+#include "firmware/store/store.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_sci.h"
@@ -52,6 +53,7 @@ static void stop_bursts(void) {
 
 hil_result_t hil_enter(void) {
   if (drive_is_energised() || !(hil.active || hal_pwm_is_tripped())) return HIL_ENERGISED;
+  if (store_is_busy()) return HIL_BUSY;
   hal_tape_start(TAPE_OFF, NULL);
   hal_irq_install(own_interrupt, own_window);
   hal_pwm_gates_off();

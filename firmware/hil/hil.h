@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-typedef enum { HIL_OK = 0, HIL_ENERGISED, HIL_NOT_ACTIVE, HIL_SEQUENCE, HIL_FORMAT } hil_result_t;
+typedef enum { HIL_OK = 0, HIL_ENERGISED, HIL_BUSY, HIL_NOT_ACTIVE, HIL_SEQUENCE, HIL_FORMAT } hil_result_t;
 
 /// Power-on state.
 void hil_reset(void);

@@ -10,6 +10,9 @@ static answer_status_t said(request_t* r, hil_result_t result) {
     case HIL_ENERGISED:
       put_text(&r->answer, "the power stage is on: stop first");
       return ANSWER_RUNNING;
+    case HIL_BUSY:
+      put_text(&r->answer, "parameters are being saved or read: try again");
+      return ANSWER_BUSY;
     case HIL_NOT_ACTIVE:
       put_text(&r->answer, "the host is not in the loop: enter first");
       return ANSWER_STATE;

@@ -160,6 +160,32 @@ TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {
   }
 }
 
+TEST_F(CanCommand, ARunGivenWhileSomebodyElseRunsTheDriveIsNotForLater) {
+  make_run();
+  say(CAN_MODE_OFF, 0, 0);
+  can_command_reset(&command);
+  take(frame(CAN_MODE_STOP));  // heard, and the drive runs on by its own start
+  drive.request.stop = false;
+  say(CAN_MODE_RUN, 0, 30);
+  ASSERT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_FALSE(command.commanding);
+  drive_command_stop();
+  say(CAN_MODE_RUN, 400, 300);
+  EXPECT_EQ(drive.state, DRIVE_READY) << "nobody has asked for a start since";
+}
+
+TEST_F(CanCommand, AStopForgetsAStartThatHasNotBeenTaken) {
+  make_ready();
+  say(CAN_MODE_OFF, 0, 20);
+  drive.request.reload = true;  // holds the start back
+  take(frame(CAN_MODE_RUN));
+  ASSERT_TRUE(drive.request.start);
+  take(frame(CAN_MODE_STOP));
+  drive.request.reload = false;
+  pass(100);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
 TEST_F(CanCommand, CommandsThatComeBackDoNotStartItAgain) {
   parameters.can_reaction = CAN_REACTION_COAST;
   make_running_by_bus();

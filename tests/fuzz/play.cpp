@@ -8,6 +8,7 @@
 
 extern "C" {
 #include "firmware/console/console.h"
+#include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
 #include "firmware/store/store.h"
@@ -26,6 +27,7 @@ class Player {
     board = FakeBoard{};
     if (nvm.octets > 0) nvm = FakeNvm{};
     drive_reset();
+    hil_reset();
     link_reset();
     splitter_reset(&far_);
     drive.state = DRIVE_READY;

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
 from typing import Annotated
@@ -17,6 +17,7 @@ from stillspin.drive.requester import Requester
 from stillspin.execute import Job
 from stillspin.hil import Loop, LoopResult
 from stillspin.link import address
+from stillspin.link.errors import DriveError
 from stillspin.one_line_errors import BROKEN
 from stillspin.options import ChangeOption, ParamsOption, ProfileOption, SeedOption
 from stillspin.progress import PhaseBar
@@ -74,8 +75,11 @@ def _loop(where: str) -> Iterator[Loop]:
     requester = Requester(address.connect(where), _TIMEOUT)
     try:
         loop = Loop(requester)
-        yield loop
-        loop.leave()
+        try:
+            yield loop
+        finally:
+            with suppress(DriveError):  # a board that was never in the loop, or has left it already
+                loop.leave()
     finally:
         requester.close()
 

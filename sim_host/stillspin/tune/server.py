@@ -131,7 +131,7 @@ class Server:
         task.add_done_callback(self._tasks.discard)
 
     async def _let_go(self, who: str, why: str) -> None:
-        with contextlib.suppress(DriveError):  # the drive's own guard stops it, then
+        with contextlib.suppress(DriveError):  # the watch tries again
             await asyncio.to_thread(self.bench.release, who, why)
 
     async def _answer(self, who: str, queue: asyncio.Queue[str], message: Message) -> None:

@@ -31,6 +31,7 @@ class Workbench:
         self.dead_man = DeadMan(patience)
         self.tell = tell
         self._end = threading.Event()
+        self._stop_owed = False
         self._plotted = list(dict.fromkeys(self._known(_DEFAULT)))
         self._replot = threading.Event()
         self._last: Message = {}
@@ -74,7 +75,7 @@ class Workbench:
                 self.stop()  # the command may have arrived although its answer did not
             raise
         if not self.dead_man.is_held_by(who):  # let go while the command was under way
-            self.drive.stop()
+            self._stop()
 
     def release(self, who: str, why: str) -> None:
         """`who` has let go: the motor stops if it was his."""
@@ -85,7 +86,13 @@ class Workbench:
     def stop(self) -> None:
         """Stop, whoever holds it."""
         self.dead_man.release()
+        self._stop()
+
+    def _stop(self) -> None:
+        """Stop; what fails is tried again by the watch, which asks for nothing else until then."""
+        self._stop_owed = True
         self.drive.stop()
+        self._stop_owed = False
 
     def coast(self) -> None:
         """Gates off, whoever holds it."""
@@ -117,7 +124,9 @@ class Workbench:
         while not self._end.wait(_STATUS):
             try:
                 if self.dead_man.expired():
-                    self.drive.stop()
+                    self._stop_owed = True
+                if self._stop_owed:
+                    self._stop()
                     self.tell({"t": "note", "text": "stopped: nothing was heard from the page"})
                 self._last = status_message(self.drive.status())
                 self.tell(self._last)
