@@ -68,9 +68,9 @@ class BusPlayer {
 
   /// Whatever came: the drive can be stopped, a parameter can be read and a record is answered.
   std::string judge() {
+    pass(600);  // what was begun has been forgotten
     // With the host in the loop there is nothing to stop: the power stage cannot come on before the next reset.
     if (hil_is_active()) return board.gates_on ? "the gates are on with the host in the loop" : "";
-    pass(600);  // what was begun has been forgotten
     drive.state = DRIVE_RUN;
     drive.request = {};
     command(CAN_MODE_STOP, 0, false);
