@@ -52,7 +52,8 @@ static void stop_bursts(void) {
 }
 
 hil_result_t hil_enter(void) {
-  if (drive_is_energised() || !(hil.active || hal_pwm_is_tripped())) return HIL_ENERGISED;
+  // In the loop already, the drive only believes that its power stage is on: it may begin anew at any time.
+  if (!hil.active && (drive_is_energised() || !hal_pwm_is_tripped())) return HIL_ENERGISED;
   if (store_is_busy()) return HIL_BUSY;
   hal_tape_start(TAPE_OFF, NULL);
   hal_irq_install(own_interrupt, own_window);

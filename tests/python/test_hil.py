@@ -54,6 +54,8 @@ def test_a_board_computes_what_the_virtual_drive_computes(requester, job):
     assert result.difference is None
     assert result.board == result.native
     assert result.steps > 1500  # the start procedure and the run
+    again = loop.run(core.load(), replace(job, run=replace(job.run, duration=0.01)))  # from a drive that runs
+    assert again.difference is None
     loop.leave()
 
 
