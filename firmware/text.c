@@ -17,11 +17,6 @@ static void put_digits(octet_writer_t* w, uint32_t value, uint16_t digits) {
 
 void put_unsigned(octet_writer_t* w, uint32_t value) { put_digits(w, value, 1); }
 
-void put_signed(octet_writer_t* w, int32_t value) {
-  if (value < 0) put_u8(w, '-');
-  put_unsigned(w, q_abs_u32(value));
-}
-
 void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals) {
   const uint32_t magnitude = q_abs_u32(raw);
   uint32_t whole = (uint32_t)((uint64_t)magnitude >> q);

@@ -19,7 +19,6 @@ extern "C" {
 #define TEXT_DECIMALS_MAX 9u
 
 void put_unsigned(octet_writer_t* w, uint32_t value);
-void put_signed(octet_writer_t* w, int32_t value);
 
 /// raw / 2^q with so many decimals; q = 0..32, decimals = 0..9.
 void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals);

@@ -1,10 +1,11 @@
 // What the hardware tells the drive, on a tape: recorded here, played elsewhere.
 //
 // A period of the drive is a function of its state and of what the HAL returned in it. While a tape records, the HAL's
-// functions work as ever and what they return and are told is noted. While it plays, they reach no register: they
-// return what is on the tape, and what they are told is noted again, to be compared. So the interrupts of a drive can
-// be stepped on a board whose power stage and sensors are elsewhere, in a simulation, and be compared word by word with
-// another execution of the same C files. The gates cannot be switched on while a tape plays.
+// functions work as ever and what they return and are told is noted. While it plays, they reach no register but for
+// switching gates off and the lamp: they return what is on the tape, and what they are told is noted again, to be
+// compared. So the interrupts of a drive can be stepped on a board whose power stage and sensors are elsewhere, in a
+// simulation, and be compared word by word with another execution of the same C files. The gates cannot be switched on
+// while a tape plays.
 //
 // Interrupts that came while the control step ran are put back at the same call of the HAL. Only the control step's own
 // calls are counted for that; what comes behind it is played behind it.

@@ -30,15 +30,8 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
   return (q_abs_sat(a - b) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
 }
 
-static const parameter_info_t* info_of(uint16_t id) {
-  for (uint16_t k = 0; k < parameter_count(); k++) {
-    if (parameter_info(k)->id == id) return parameter_info(k);
-  }
-  return NULL;
-}
-
 static void offer(commissioning_report_t* r, uint16_t id, int32_t value, commissioning_verdict_t verdict) {
-  const parameter_info_t* const info = info_of(id);
+  const parameter_info_t* const info = parameter_by_id(id);
   if (info == NULL || r->count >= COMMISSIONING_RESULTS) return;
   const bool inside = value >= info->minimum && value <= info->maximum;
   commissioning_result_t* const out = &r->list[r->count++];

@@ -59,7 +59,6 @@ hil_result_t hil_enter(void) {
   hal_irq_install(own_interrupt, own_window);
   hal_pwm_gates_off();
   stop_bursts();
-  hal_tape_start(TAPE_PLAYS, drive_window_interrupt);
   drive_reset();
   hil_reset();
   hil.active = true;

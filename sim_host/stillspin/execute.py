@@ -166,6 +166,25 @@ def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> No
             raise InputError(f"{where}: unknown command '{what}'; known: {known_words}")
 
 
+def play(native: NativeCore, job: Job, progress: core.Progress | None, tape: core.Tape | None = None) -> NativeResult:
+    """The run itself; `tape` gets every period of it."""
+    run = job.run
+    return native.run(
+        plant=job.plant,
+        motor=job.motor,
+        parameters=job.parameters,
+        commands=list(run.commands),
+        load=list(run.load),
+        duration=run.duration,
+        max_start=run.max_start,
+        record_every=run.record_every,
+        waveform=run.waveform or (0.0, 0.0, 1),
+        seed=job.seed,
+        progress=progress,
+        tape=tape,
+    )
+
+
 def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None) -> Outcome:
     """Run it and write its record into `directory`. Never raises for what happens inside the run.
 
@@ -177,19 +196,7 @@ def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None)
     native = core.load()
     run = job.run
     try:
-        result = native.run(
-            plant=job.plant,
-            motor=job.motor,
-            parameters=job.parameters,
-            commands=list(run.commands),
-            load=list(run.load),
-            duration=run.duration,
-            max_start=run.max_start,
-            record_every=run.record_every,
-            waveform=run.waveform or (0.0, 0.0, 1),
-            seed=job.seed,
-            progress=progress,
-        )
+        result = play(native, job, progress)
     except (RuntimeError, ValueError, ArithmeticError) as error:
         return Outcome(job.scenario, run.name, _one_line(error), None)
     broken = _broken(result, run)

@@ -166,7 +166,9 @@ def _lag(values, constant):
     return out
 
 
-def run(*, plant, motor, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress):
+def run(
+    *, plant, motor, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress, tape=None
+):
     began = clock.perf_counter()
     for share in (0.25, 0.5, 0.75, 1.0):
         if progress is not None and not progress(share):

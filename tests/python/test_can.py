@@ -309,7 +309,7 @@ def test_python_can_starts_and_stops_the_motor(board):
                         return status
         raise AssertionError(f"never in mode {mode}: {status}")
 
-    board.close()  # another, that waits longer: commands come in this machine's time
+    board.close()  # another, that waits longer: commands come in wall-clock time
     board = native.VirtualBoard(
         plant={"solver": {"method": "rk4"}}, motor="A", parameters={"can_timeout": 5000.0}, seed=1
     )

@@ -11,7 +11,7 @@ from stillspin.core import NativeCore, Progress
 from stillspin.drive.protocol import Request, StatusCode
 from stillspin.drive.requester import Requester
 from stillspin.errors import CampaignError
-from stillspin.execute import Job
+from stillspin.execute import Job, play
 from stillspin.hil import told
 from stillspin.link.errors import RefusedError
 
@@ -94,21 +94,7 @@ class Loop:
             self._steps += 1
             return self._difference is None and self._error is None
 
-        run = job.run
-        result = native.run(
-            plant=job.plant,
-            motor=job.motor,
-            parameters=job.parameters,
-            commands=list(run.commands),
-            load=list(run.load),
-            duration=run.duration,
-            max_start=run.max_start,
-            record_every=run.record_every,
-            waveform=(0.0, 0.0, 1),
-            seed=job.seed,
-            progress=progress,
-            tape=step,
-        )
+        result = play(native, job, progress, step)
         if self._error:
             raise self._error
         seconds = time.perf_counter() - begin
