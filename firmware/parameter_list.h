@@ -15,7 +15,7 @@ PARAMETER(4, inductance_q, "mH", 20, 3, 50, 200000, 7800, STOPPED, "q-axis induc
 PARAMETER(5, magnet_flux, "Vs", 28, 5, 200, 90000, 16000, STOPPED, "magnet flux linkage (peak, amplitude invariant)")
 PARAMETER(6, inertia, "kgm2", 24, 6, 100, 500000, 4550, STOPPED, "inertia of rotor and load")
 PARAMETER(7, friction, "Nms", 24, 5, 0, 50000, 300, STOPPED, "viscous friction")
-PARAMETER(8, current_limit, "A", 20, 2, 50, 1600, 1400, STOPPED, "largest phase current, peak")
+PARAMETER(8, current_limit, "A", 20, 2, 50, 10000, 1400, STOPPED, "largest phase current, peak")
 PARAMETER(9, speed_limit, "rpm", 8, 0, 10, 6000, 3300, STOPPED, "largest speed reference")
 
 // Inverter
@@ -29,7 +29,7 @@ PARAMETER(26, current_full_scale, "A", 20, 2, 100, 20000, 2000, STOPPED, "curren
 PARAMETER(27, link_full_scale, "V", 16, 1, 100, 20000, 4500, STOPPED, "DC-link voltage at ADC code 4096")
 PARAMETER(28, link_minimum, "V", 16, 1, 100, 10000, 1500, STOPPED, "DC-link voltage below which the drive faults")
 PARAMETER(29, link_maximum, "V", 16, 1, 100, 15000, 4200, STOPPED, "DC-link voltage above which the drive faults")
-PARAMETER(30, trip_current, "A", 20, 2, 50, 1950, 1800, STOPPED, "software over-current limit on a sampled phase")
+PARAMETER(30, trip_current, "A", 20, 2, 50, 19400, 1800, STOPPED, "software over-current limit on a sampled phase")
 
 // Excitation
 PARAMETER(40, excitation, "", 0, 0, 0, 4, 3, STOPPED,
@@ -79,7 +79,7 @@ PARAMETER(85, speed_pi_damping, "", 12, 2, 30, 300, 80, STOPPED, "damping of the
 PARAMETER(86, speed_ramp, "rpm/s", 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
 PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
           "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
-PARAMETER(88, weakening_limit, "A", 20, 2, 0, 1600, 1200, STOPPED, "largest field-weakening current")
+PARAMETER(88, weakening_limit, "A", 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, "A/V", 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
 // Saturation: incremental inductances at i_d = 0 and i_q = 1/4 .. 4/4 of map_current
@@ -103,7 +103,7 @@ PARAMETER(130, sensor_mismatch, "%", 16, 3, -5000, 5000, 0, STOPPED,
 PARAMETER(131, spin_speed, "rpm", 8, 0, 300, 2000, 600, STOPPED, "speed of the commissioning's spin")
 
 // Start and supervision
-PARAMETER(100, polarity_current, "A", 20, 2, 20, 1400, 300, STOPPED, "current of the polarity test")
+PARAMETER(100, polarity_current, "A", 20, 2, 20, 10000, 300, STOPPED, "current of the polarity test")
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
 PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 20, ALWAYS, "for how long")
@@ -121,7 +121,7 @@ PARAMETER(164, link_regulation, "V", 16, 1, 100, 15000, 4050, ALWAYS,
 
 // The start
 PARAMETER(150, flying_start, "", 0, 0, 0, 1, 1, STOPPED, "look for a turning shaft before the start")
-PARAMETER(151, start_current, "A", 20, 2, 20, 1600, 1000, STOPPED,
+PARAMETER(151, start_current, "A", 20, 2, 20, 10000, 1000, STOPPED,
           "d-axis current that tells the polarity by saturation")
 PARAMETER(152, saturation_d, "%/A", 24, 3, -10000, 10000, 0, STOPPED, "change of the incremental Ldd per ampere of i_d")
 PARAMETER(153, hold_time, "ms", 0, 0, 0, 5000, 0, STOPPED,

@@ -133,7 +133,7 @@ static void decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
 static void try_motion(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (s->phase != START_MOTION) s->tries = 0;
-  const int32_t current = q_min(parameters.polarity_current << s->tries, parameters.current_limit);
+  const int32_t current = q_min(q_shl_sat(parameters.polarity_current, s->tries), parameters.current_limit);
   const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
   polarity_begin(&s->motion, d->position.avv.observer.angle_bam, current,
                  q_mul_sat(torque_q16, d->model.accel_q12, 20));

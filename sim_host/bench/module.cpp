@@ -76,13 +76,11 @@ TapeSink tape_sink_of(const nb::object& sink) {
   };
 }
 
-PythonResult run_in_python(const nb::dict& plant, const std::string& motor,
-                           const std::map<std::string, double>& parameters,
+PythonResult run_in_python(const nb::dict& plant, const std::map<std::string, double>& parameters,
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
                            int record_every, const std::tuple<double, double, int>& waveform, std::uint64_t seed,
                            const nb::object& progress, bool record_start, const nb::object& tape) {
-  check_motor(motor);
   RunRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -143,10 +141,8 @@ nb::list identified_rows(const CommissionResult& result) {
   return rows;
 }
 
-PythonCommissioning commission_in_python(const nb::dict& plant, const std::string& motor,
-                                         const std::map<std::string, double>& parameters, double limit,
-                                         std::uint64_t seed, const nb::object& progress) {
-  check_motor(motor);
+PythonCommissioning commission_in_python(const nb::dict& plant, const std::map<std::string, double>& parameters,
+                                         double limit, std::uint64_t seed, const nb::object& progress) {
   CommissionRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -236,18 +232,17 @@ NB_MODULE(_core, m) {
       .def_ro("reason", &PythonResult::reason)
       .def_ro("faults", &PythonResult::faults)
       .def_ro("stats", &PythonResult::stats);
-  m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
-        nb::arg("commands"), nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"),
-        nb::arg("waveform"), nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false,
-        nb::arg("tape") = nb::none(), "One run of the virtual drive; see core.py.");
+  m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("commands"),
+        nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"), nb::arg("waveform"),
+        nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false, nb::arg("tape") = nb::none(),
+        "One run of the virtual drive; see core.py.");
   nb::class_<PythonCommissioning>(m, "CommissioningResult")
       .def_ro("values", &PythonCommissioning::values)
       .def_ro("completed", &PythonCommissioning::completed)
       .def_ro("reason", &PythonCommissioning::reason)
       .def_ro("stats", &PythonCommissioning::stats);
-  m.def("commission", &commission_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
-        nb::arg("limit"), nb::arg("seed"), nb::arg("progress").none(),
-        "The firmware's commissioning on the virtual drive; see core.py.");
+  m.def("commission", &commission_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("limit"),
+        nb::arg("seed"), nb::arg("progress").none(), "The firmware's commissioning on the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");

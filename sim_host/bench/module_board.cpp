@@ -30,9 +30,8 @@ struct PythonBoard {
   }
 };
 
-void construct(PythonBoard* self, const nb::dict& plant, const std::string& motor,
-               const std::map<std::string, double>& parameters, std::uint64_t seed) {
-  check_motor(motor);
+void construct(PythonBoard* self, const nb::dict& plant, const std::map<std::string, double>& parameters,
+               std::uint64_t seed) {
   BoardRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -162,8 +161,8 @@ nb::dict statistics(const PythonBoard& self) {
 void bind_virtual_board(nb::module_& m) {
   using Self = const PythonBoard&;
   nb::class_<PythonBoard>(m, "VirtualBoard")
-      .def("__init__", &construct, nb::kw_only(), nb::arg("plant"), nb::arg("motor"), nb::arg("parameters"),
-           nb::arg("seed"), "Power the board; see core.py.")
+      .def("__init__", &construct, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("seed"),
+           "Power the board; see core.py.")
       .def("close", [](PythonBoard& self) { self.held.reset(); })
       .def("advance", &advance, nb::arg("ticks"))
       .def_prop_ro("now", [](Self self) { return self.board().now(); })

@@ -39,8 +39,4 @@ Setup setup_from(const nb::dict& plant, std::uint64_t seed) {
   return setup;
 }
 
-void check_motor(const std::string& motor) {
-  if (motor != "A") throw std::invalid_argument("there is no motor '" + motor + "': A");
-}
-
 }  // namespace stillspin::bench

@@ -15,9 +15,6 @@ namespace stillspin::bench {
 /// Section -> key -> number, switch or word, and the noise's seed; std::invalid_argument for what does not exist.
 Setup setup_from(const nanobind::dict& plant, std::uint64_t seed);
 
-/// Throws std::invalid_argument when there is no such motor.
-void check_motor(const std::string& motor);
-
 /// The class VirtualBoard.
 void bind_virtual_board(nanobind::module_& module);
 

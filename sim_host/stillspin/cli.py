@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -32,11 +33,13 @@ from stillspin import (
     tables,
 )
 from stillspin.board import power, serve
+from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
-from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption, whole
+from stillspin.options import ChangeOption, JobsOption, MotorOption, ParamsOption, ProfileOption, SeedOption, whole
 from stillspin.progress import Counter, PhaseBar
 from stillspin.reproduction import Options, carry_out, write_found
 from stillspin.revision import revision
+from stillspin.scenario import Scenario
 
 app = typer.Typer(
     cls=OneLineErrors,
@@ -46,9 +49,14 @@ app = typer.Typer(
 )
 
 
-def _carry_out(ids: Iterable[str], options: Options) -> None:
+def _on(motor: str | None, scenario: Scenario) -> Scenario:
+    """The scenario on another motor than its own, where one is wanted."""
+    return scenario if motor is None else replace(scenario, motor=motor)
+
+
+def _carry_out(scenarios: Sequence[Scenario], options: Options) -> None:
     """Run scenarios, print what came out, and end the process when a run broke off."""
-    done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
+    done = carry_out(scenarios, options)
     tables.summary(done.results, done.beside)
     total = report.tally(done.results)
     print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
@@ -70,6 +78,9 @@ def run(
     *,
     scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
     profile_name: ProfileOption = "bench",
+    motor: Annotated[
+        str | None, typer.Option("--motor", metavar="NAME", help="Another motor than the scenario's own.")
+    ] = None,
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
@@ -79,18 +90,27 @@ def run(
     no_plots: Annotated[bool, typer.Option("--no-plots", help="Do not draw.")] = False,
 ) -> None:
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
-    identifier = scenario_file.find(scenario).stem
-    where = out or Path(f"results-{identifier}")
-    _carry_out([identifier], Options(profile_name, seed, where, change or [], draw=not no_plots, params=params))
+    chosen = scenario_file.load(scenario)
+    where = out or Path(f"results-{chosen.id}")
+    _carry_out([_on(motor, chosen)], Options(profile_name, seed, where, change or [], draw=not no_plots, params=params))
 
 
 @app.command()
 def reproduce(
     *,
     scenarios: Annotated[
-        list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: all but those on demand].")
+        list[str] | None,
+        typer.Argument(metavar="[ID]...", help="Scenarios [default: all of the motor but those on demand]."),
     ] = None,
     profile_name: ProfileOption = "bench",
+    motor: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--motor",
+            metavar="NAME",
+            help="All scenarios of this motor, repeatable [default: A]; or, with an ID, another one for it.",
+        ),
+    ] = None,
     seed: SeedOption = 1,
     params: ParamsOption = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
@@ -115,7 +135,7 @@ def reproduce(
     ] = True,
 ) -> None:
     """Commission the drive, run scenarios in parallel and write report.html and metrics.json."""
-    chosen = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or scenario_file.campaign_ids())
+    chosen = _chosen(scenarios or [], motor or [])
     workers = jobs or len(os.sched_getaffinity(0))
     options = Options(
         profile_name,
@@ -128,6 +148,19 @@ def reproduce(
         nameplate=nameplate,
     )
     _carry_out(chosen, options)
+
+
+def _chosen(names: Sequence[str], motors: Sequence[str]) -> list[Scenario]:
+    """The scenarios named, on the motor given if there is one; else all that motors have."""
+    if not names:
+        ids = scenario_file.campaign_ids(motors or [resources.DEFAULT_MOTOR])
+        if not ids:
+            raise InputError(f"--motor {', '.join(motors)}: there is no scenario for it; name one to run on it")
+        return [scenario_file.load(name) for name in ids]
+    if len(motors) > 1:
+        raise InputError(f"--motor {', '.join(motors)}: only one where scenarios are named")
+    ids = list(dict.fromkeys(scenario_file.find(name).stem for name in names))
+    return [_on(motors[0] if motors else None, scenario_file.load(name)) for name in ids]
 
 
 @app.command(name="drift")
@@ -162,6 +195,7 @@ def drift_(
 def commission_(
     *,
     profile_name: ProfileOption = "bench",
+    motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
     change: ChangeOption = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="The parameter file to write.")] = Path("params.toml"),
@@ -169,7 +203,7 @@ def commission_(
     """Let the drive find out about machine and inverter; write what it found for `run --params`."""
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
-    chosen = profile.load(profile_name, schema, known)
+    chosen = profile.load(profile_name, schema, known, motor)
     changes = profile.changes(change or [], schema, known)
     commission.check_target(out)
     with PhaseBar(Console(stderr=True)) as bar:
@@ -188,6 +222,7 @@ def commission_(
 def board_(
     *,
     profile_name: ProfileOption = "bench",
+    motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
@@ -216,12 +251,14 @@ def board_(
     """Put the virtual drive on the desk: its serial port is a pseudo-terminal, its time is real time."""
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
-    chosen = profile.load(profile_name, schema, known)
+    chosen = profile.load(profile_name, schema, known, motor)
     changes = profile.changes(change or [], schema, known)
     if params:
         changes.parameters = {**commission.load(params, known), **changes.parameters}
         changes.words.append(f"--params {params.name}")
-    title = f"profile {chosen.name}, seed {seed}" + "".join(f", {words}" for words in changes.words)
+    title = f"motor {chosen.motor}, profile {chosen.name}, seed {seed}" + "".join(
+        f", {words}" for words in changes.words
+    )
     board = power.power(native, chosen, changes, seed)
     serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom), title)
 
@@ -256,9 +293,10 @@ def startup_matrix(
 
 @app.command(name="list")
 def list_() -> None:
-    """The scenarios and the profiles."""
+    """The scenarios, the profiles and the motors."""
     tables.scenarios(scenario_file.load(identifier) for identifier in scenario_file.ids())
     print(f"\nprofiles: {', '.join(resources.names('profiles'))}")
+    print(f"motors: {', '.join(resources.names('motors'))}")
 
 
 @app.command()

@@ -63,7 +63,6 @@ def run(
         native.check_parameters(parameters)
         result = native.commission(
             plant=merged(profile.plant, changes.plant),
-            motor="A",
             parameters=parameters,
             limit=LIMIT,
             seed=seed,

@@ -152,7 +152,6 @@ class NativeCore(Protocol):
         self,
         *,
         plant: Plant,
-        motor: str,
         parameters: dict[str, float],
         commands: list[Command],
         load: list[LoadPoint],
@@ -171,7 +170,6 @@ class NativeCore(Protocol):
         self,
         *,
         plant: Plant,
-        motor: str,
         parameters: dict[str, float],
         limit: float,
         seed: int,
@@ -181,7 +179,7 @@ class NativeCore(Protocol):
         ...
 
     def VirtualBoard(  # noqa: N802 - a class of the module
-        self, *, plant: Plant, motor: str, parameters: dict[str, float], seed: int
+        self, *, plant: Plant, parameters: dict[str, float], seed: int
     ) -> NativeBoard:
         """A board that has just been powered; `parameters` as of a drive that nobody has set up otherwise."""
         ...

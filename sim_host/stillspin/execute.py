@@ -36,7 +36,6 @@ class Job:
 
     scenario: str
     run: Run
-    motor: str
     plant: Plant
     parameters: dict[str, float]
     seed: int
@@ -128,7 +127,7 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "duration": run.duration,
     }
     file = f"{scenario.id}-{run.name}.parquet"
-    return Job(scenario.id, run, scenario.motor, plant, parameters, settings.seed, file, about, known.units)
+    return Job(scenario.id, run, plant, parameters, settings.seed, file, about, known.units)
 
 
 def _machine(plant: Plant, schema: core.Schema) -> dict[str, float]:
@@ -171,7 +170,6 @@ def play(native: NativeCore, job: Job, progress: core.Progress | None, tape: cor
     run = job.run
     return native.run(
         plant=job.plant,
-        motor=job.motor,
         parameters=job.parameters,
         commands=list(run.commands),
         load=list(run.load),

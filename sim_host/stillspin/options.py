@@ -29,6 +29,10 @@ def whole(name: str, low: int, high: int) -> Callable[[str], int]:
 ProfileOption = Annotated[
     str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
 ]
+MotorOption = Annotated[
+    str,
+    typer.Option("--motor", metavar="NAME", help="The machine and its board: a name from `stillspin list`, or a file."),
+]
 SeedOption = Annotated[
     int,
     typer.Option(

@@ -1,8 +1,10 @@
-"""Plant profiles (`profiles/*.toml`) and the changes that `--set` makes to a plant and to firmware parameters.
+"""Motors (`motors/*.toml`), plant profiles (`profiles/*.toml`), and the changes that `--set` makes to both.
 
-A profile's sections and keys are those of the plant, in the plant's units; what it does not mention stays at the
-plant's own default for the motor of the scenario. Its section `parameters` holds firmware parameters that belong to the
-board of that plant, such as the dead time that its gate drivers need.
+A motor says what the machine's nameplate and the board made for it say: inductances, link voltage, measuring ranges. A
+profile says what a real inverter and machine add to that: drops, noise, shares by which the true machine differs. Both
+have the plant's sections and keys in the plant's units, and a section `parameters` of firmware parameters, such as the
+nameplate or the dead time that the gate drivers need. The profile is laid over the motor; what neither mentions stays
+at the plant's own default.
 """
 
 from __future__ import annotations
@@ -20,9 +22,11 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 @dataclass(frozen=True)
 class Profile:
-    """A named plant. It holds only the entries and firmware parameters that the profile states.
+    """A named plant with its motor. It holds only the entries and firmware parameters that the two state.
 
-    `commission`: the machine differs from its nameplate, so that a campaign lets the drive measure it first.
+    Attributes:
+        commission: the machine differs from its nameplate, so that a campaign lets the drive measure it first.
+        motor: its name.
     """
 
     name: str
@@ -30,6 +34,7 @@ class Profile:
     plant: core.Plant
     parameters: dict[str, float] = field(default_factory=dict)
     commission: bool = False
+    motor: str = resources.DEFAULT_MOTOR
 
 
 @dataclass
@@ -41,37 +46,44 @@ class Changes:
     words: list[str] = field(default_factory=list)
 
 
-def find(name_or_path: str) -> Path:
-    """The file of a profile given by name or by path.
+@dataclass(frozen=True)
+class _File:
+    """What a file of a plant says: a profile, or a motor."""
 
-    Raises:
-        InputError: there is no such profile or file.
-    """
-    if name_or_path.endswith(".toml") or "/" in name_or_path:
-        path = Path(name_or_path)
-        if not path.is_file():
-            raise InputError(f"profile '{name_or_path}': there is no such file")
-        return path
-    known = resources.names("profiles")
-    if name_or_path not in known:
-        raise InputError(
-            f"there is no profile '{name_or_path}'{did_you_mean(name_or_path, known)}, or a path to a .toml file"
-        )
-    return resources.directory("profiles") / f"{name_or_path}.toml"
+    name: str
+    description: str
+    plant: core.Plant
+    parameters: dict[str, float]
+    commission: bool
 
 
-def load(name_or_path: str, schema: core.Schema, known: Mapping[str, core.Entry]) -> Profile:
-    """Read and check a profile.
+def load(
+    name_or_path: str, schema: core.Schema, known: Mapping[str, core.Entry], motor: str = resources.DEFAULT_MOTOR
+) -> Profile:
+    """Read and check a profile, and lay it over a motor.
 
     Args:
         name_or_path: "bench", "ideal" or the path of a TOML file.
         schema: what the plant can be told.
         known: the firmware's parameters.
+        motor: "A" or another motor that ships, or the path of a TOML file.
 
     Raises:
         InputError: not found, not TOML, unknown entry, wrong type or out of range.
     """
-    path = find(name_or_path)
+    machine = _read(resources.find("motors", motor), schema, known)
+    effects = _read(resources.find("profiles", name_or_path), schema, known)
+    return Profile(
+        effects.name,
+        effects.description,
+        merged(machine.plant, effects.plant),
+        {**machine.parameters, **effects.parameters},
+        effects.commission,
+        machine.name,
+    )
+
+
+def _read(path: Path, schema: core.Schema, known: Mapping[str, core.Entry]) -> _File:
     table = toml_table.read(path)
     description = table.text("description", "").strip()
     commission = table.switch("commission")
@@ -83,7 +95,7 @@ def load(name_or_path: str, schema: core.Schema, known: Mapping[str, core.Entry]
     for section, keys in table.items().items():
         if section not in {"description", "commission", "parameters"}:
             plant[section] = _section(section, keys, schema, path)
-    return Profile(path.stem, description, plant, parameters, commission)
+    return _File(path.stem, description, plant, parameters, commission)
 
 
 def _section(section: str, keys: object, schema: core.Schema, path: Path) -> dict[str, core.Value]:

@@ -98,23 +98,25 @@ def _figures(result: ScenarioResult) -> dict[str, object]:
     return {figure.name: figure.as_json() for figure in result.figures}
 
 
-def write(directory: Path, results: Sequence[ScenarioResult], settings: Settings, beside: Sequence[Beside]) -> None:
+def write(
+    directory: Path, results: Sequence[ScenarioResult], settings: Sequence[Settings], beside: Sequence[Beside]
+) -> None:
     """Write `metrics.json`, `report.html` and a file like `metrics.json` for each variant into a directory.
 
     Args:
         directory: existing.
         results: of the drive.
-        settings: what all runs had in common.
+        settings: what all runs of a motor had in common, for each motor.
         beside: what the variants reach.
     """
     for item in beside:
-        content = {**metrics(item.results, item.variant.settings(settings)), "lost": _lost(item.results)}
+        content = {**metrics(item.results, item.variant.settings(settings[0])), "lost": _lost(item.results)}
         _write_json(directory / f"{item.variant.mark}.json", content)
-    _write_json(directory / MARK, metrics({result.scenario.id: result for result in results}, settings))
+    _write_json(directory / MARK, metrics({result.scenario.id: result for result in results}, settings[0]))
     (directory / PAGE).write_text(html(results, settings, beside), encoding="utf-8")
 
 
-def html(results: Sequence[ScenarioResult], settings: Settings, beside: Sequence[Beside]) -> str:
+def html(results: Sequence[ScenarioResult], settings: Sequence[Settings], beside: Sequence[Beside]) -> str:
     """The page."""
     environment = Environment(
         loader=PackageLoader("stillspin", "templates"),
@@ -129,8 +131,8 @@ def html(results: Sequence[ScenarioResult], settings: Settings, beside: Sequence
         beside=[_Column(item) for item in beside],
         tallies={result.scenario.id: tally([result]) for result in results},
         total=tally(results),
-        settings=settings,
-        plant_rows=_plant_rows(settings.profile),
+        settings=settings[0],
+        plants=[(each.profile.motor, _plant_rows(each.profile)) for each in settings],
         runs_directory=RUNS,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from rich.console import Console
 from stillspin import __version__, campaign, commission, core, execute, output, profile, report, variant
 from stillspin.assess import ScenarioResult
 from stillspin.core import NativeCore
+from stillspin.errors import InputError
 from stillspin.execute import Settings
 from stillspin.progress import Bar, PhaseBar
 from stillspin.revision import revision
@@ -18,7 +19,7 @@ from stillspin.scenario import Scenario
 from stillspin.variant import Beside, Variant
 
 PARAMS = "params.toml"
-"""What a campaign's commissioning found, beside its results."""
+"""What a campaign's commissioning found, beside its results; with the motor's name where there are several."""
 
 
 @dataclass(frozen=True)
@@ -63,45 +64,58 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
         CampaignError: the commissioning broke off, or a worker died.
     """
     native = core.load()
-    settings, own = _settings(native, options)
+    motors = list(dict.fromkeys(scenario.motor for scenario in scenarios))
+    own = {motor: _own(native, options, motor) for motor in motors}
+    settings = _told(native, own, options)
     screen = Console(stderr=True)
     # What is wrong with the scenarios is said before the drive spends half a minute on measuring itself.
-    _check(scenarios, settings, native)
+    for scenario in scenarios:
+        execute.prepare(scenario, settings[scenario.motor], native)
     with output.fresh_directory(options.out) as directory:
         refused: list[str] = []
-        if options.commission and not options.params and own.commission:
-            settings, refused = _commissioned(native, settings, directory / PARAMS, screen)
-        variants: list[Variant] = []
-        if options.nameplate and settings.profile.parameters != own.parameters:
-            variants.append(variant.nameplate(own))
-        if options.paper_scheme:
-            variants.append(variant.paper())
-        variants += options.others
-        todo = [(scenario, settings) for scenario in scenarios]
-        todo += [(v.scenario(s), v.settings(settings)) for v in variants for s in scenarios if v.applies(s)]
+        for motor in motors:
+            if options.commission and not options.params and own[motor].profile.commission:
+                file = directory / (PARAMS if len(motors) == 1 else f"params-{own[motor].profile.motor}.toml")
+                settings[motor], words = _commissioned(native, settings[motor], file, screen)
+                refused += words
+        variants = _variants(own, settings, options)
+        todo = [(scenario, settings[scenario.motor]) for scenario in scenarios]
+        todo += [(v.scenario(s), v.settings(settings[s.motor])) for v in variants for s in scenarios if v.applies(s)]
         jobs = [job for scenario, each in todo for job in execute.prepare(scenario, each, native)]
         runs = directory / output.RUNS
-        plan = campaign.Plan([scenario for scenario, _ in todo], jobs, runs, own.name, options.draw)
+        name = own[motors[0]].profile.name
+        plan = campaign.Plan([scenario for scenario, _ in todo], jobs, runs, name, options.draw)
         with Bar(screen) as bar:
             results, beside = variant.separate(campaign.run_all(plan, options.jobs, bar), variants)
-        report.write(directory, results, settings, beside)
+        report.write(directory, results, list(settings.values()), beside)
     return Reproduction(results, beside, refused)
 
 
-def _settings(native: NativeCore, options: Options) -> tuple[Settings, profile.Profile]:
-    """Settings with the parameters given, and the profile as it is."""
+def _own(native: NativeCore, options: Options, motor: str) -> Settings:
+    """Settings with the profile on a motor as it is."""
     schema, known = core.plant_schema(native), core.parameters(native)
-    own = profile.load(options.profile, schema, known)
     changes = profile.changes(options.changes, schema, known)
-    settings = Settings(own, changes, options.seed, revision())
-    if options.params:
-        settings = _with_file(settings, options.params, native, options.params.name)
-    return settings, own
+    return Settings(profile.load(options.profile, schema, known, motor), changes, options.seed, revision())
 
 
-def _check(scenarios: Sequence[Scenario], settings: Settings, native: NativeCore) -> None:
-    for scenario in scenarios:
-        execute.prepare(scenario, settings, native)
+def _told(native: NativeCore, own: Mapping[str, Settings], options: Options) -> dict[str, Settings]:
+    """Settings of each motor with the parameters given."""
+    file = options.params
+    if not file:
+        return dict(own)
+    if len(own) > 1:
+        raise InputError(f"--params {file}: is of one motor, and the scenarios are about {', '.join(own)}")
+    return {motor: _with_file(settings, file, native, file.name) for motor, settings in own.items()}
+
+
+def _variants(own: Mapping[str, Settings], settings: Mapping[str, Settings], options: Options) -> list[Variant]:
+    variants: list[Variant] = []
+    plates = {each.profile.motor: each.profile for each in own.values()}
+    if options.nameplate and any(settings[key].profile.parameters != own[key].profile.parameters for key in own):
+        variants.append(variant.nameplate(plates))
+    if options.paper_scheme:
+        variants.append(variant.paper())
+    return [*variants, *options.others]
 
 
 def _commissioned(native: NativeCore, settings: Settings, file: Path, screen: Console) -> tuple[Settings, list[str]]:
@@ -121,7 +135,8 @@ def _with_file(settings: Settings, file: Path, native: NativeCore, origin: str) 
 
 def write_found(file: Path, found: commission.Result, settings: Settings) -> None:
     """The parameter file of a commissioning, with a head that says where it comes from."""
-    name, words = settings.profile.name, settings.changes.words
-    about = [f"Commissioned in profile {name}, seed {settings.seed}, stillspin {__version__} ({settings.revision})."]
+    plant, words = settings.profile, settings.changes.words
+    where = f"Motor {plant.motor}, commissioned in profile {plant.name}, seed {settings.seed}"
+    about = [f"{where}, stillspin {__version__} ({settings.revision})."]
     about += [f"Changed beforehand: {', '.join(words)}."] if words else []
     commission.write(file, found, about)

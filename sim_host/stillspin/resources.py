@@ -1,14 +1,19 @@
-"""Where the scenario and profile files are: inside the installed package, or beside it in the source tree."""
+"""Where the scenario, profile and motor files are: inside the installed package, or beside it in the source tree."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from stillspin.errors import InputError, did_you_mean
+
 PACKAGE = Path(__file__).resolve().parent
+
+DEFAULT_MOTOR = "A"
+"""Where nothing is said. Only the files of the motors know what it is."""
 
 
 def directory(name: str) -> Path:
-    """The directory `name` ("profiles", "scenarios" or "schemes") that ships with this package.
+    """The directory `name` ("motors", "profiles", "scenarios" or "schemes") that ships with this package.
 
     Raises:
         FileNotFoundError: the installation is damaged.
@@ -22,6 +27,30 @@ def directory(name: str) -> Path:
 def names(kind: str) -> list[str]:
     """Names (file stems) of what ships in directory `kind`, in natural order: A9 before A10."""
     return sorted((path.stem for path in directory(kind).glob("*.toml")), key=natural_key)
+
+
+def find(kind: str, name_or_path: str) -> Path:
+    """The file of something that is given by name or by path.
+
+    Args:
+        kind: "profiles" or "motors".
+        name_or_path: one of those that ship, or the path of a TOML file.
+
+    Raises:
+        InputError: there is no such thing or file.
+    """
+    word = kind.removesuffix("s")
+    if name_or_path.endswith(".toml") or "/" in name_or_path:
+        path = Path(name_or_path)
+        if not path.is_file():
+            raise InputError(f"{word} '{name_or_path}': there is no such file")
+        return path
+    known = names(kind)
+    if name_or_path not in known:
+        raise InputError(
+            f"there is no {word} '{name_or_path}'{did_you_mean(name_or_path, known)}, or a path to a .toml file"
+        )
+    return directory(kind) / f"{name_or_path}.toml"
 
 
 def natural_key(name: str) -> tuple[tuple[int, str], ...]:

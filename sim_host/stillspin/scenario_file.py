@@ -8,6 +8,7 @@ command such as `set:encoder_trim`. `waveform` in a run asks for what happens in
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -24,17 +25,15 @@ _NAME = re.compile(r"[a-z0-9_]+")
 _PANELS = ("speed", "position_error", "torque", "currents")
 """Drawn of a scenario that does not say what to draw."""
 
-_MOTORS = ("A", "B")
-
 
 def ids() -> list[str]:
     """Ids of all scenarios that ship with the package."""
     return resources.names("scenarios")
 
 
-def campaign_ids() -> list[str]:
-    """Ids of the scenarios that run where none is named."""
-    return [name for name in ids() if not load(name).on_demand]
+def campaign_ids(motors: Collection[str]) -> list[str]:
+    """Ids of the scenarios that run where none is named: those for one of these motors."""
+    return [scenario.id for scenario in map(load, ids()) if scenario.motor in motors and not scenario.on_demand]
 
 
 def find(identifier: str) -> Path:
@@ -69,8 +68,9 @@ def read(path: Path) -> Scenario:
     if identifier != path.stem:
         raise table.fail("id", f"must be the file's name, '{path.stem}'")
     motor = table.text("motor")
-    if motor not in _MOTORS:
-        raise table.fail("motor", f"must be one of {', '.join(_MOTORS)}")
+    motors = resources.names("motors")
+    if motor not in motors:
+        raise table.fail("motor", f"must be one of {', '.join(motors)}")
     paper = table.table("paper")
     defaults = table.table("defaults").items()
     runs = tuple(_run(_with_defaults(run, defaults)) for run in table.tables("runs"))

@@ -176,7 +176,6 @@ def run(common: Bench, case: Case) -> Outcome:
     at = 0.0 if case.way == "flying" else _COMMAND_AT
     result = core.load().run(
         plant=profile.merged(common.plant, own),
-        motor="A",
         parameters={**common.parameters, "hold_time": _HOLD if held else 0.0},
         commands=[(at, "speed_ref_rpm", target)],
         load=[(0.0, case.load), (1.0, case.load)] if case.load else [],

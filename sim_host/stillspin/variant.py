@@ -7,7 +7,7 @@ other people's ways to find the position (`schemes/*.toml`).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from stillspin import resources, toml_table
@@ -52,9 +52,12 @@ class Beside:
 
 @dataclass(frozen=True)
 class Nameplate(Variant):
-    """The drive on the profile's own parameters: those of the nameplate and the board."""
+    """The drive on the parameters of motor and profile alone: those of the nameplate and the board.
 
-    profile: Profile
+    `profiles`: by motor.
+    """
+
+    profiles: Mapping[str, Profile]
 
     def applies(self, scenario: Scenario) -> bool:
         """Everywhere."""
@@ -66,13 +69,14 @@ class Nameplate(Variant):
 
     def settings(self, settings: Settings) -> Settings:
         """The same with the profile's own parameters."""
-        return replace(settings, profile=self.profile, parameters_from="the nameplate")
+        own = self.profiles[settings.profile.motor]
+        return replace(settings, profile=own, parameters_from="the nameplate")
 
 
-def nameplate(profile: Profile) -> Nameplate:
-    """The drive as it is before commissioning."""
+def nameplate(profiles: Mapping[str, Profile]) -> Nameplate:
+    """The drive as it is before commissioning, by motor."""
     words = "The same drive before commissioning, on what the nameplates of machine and inverter say."
-    return Nameplate("nameplate", "nameplate", words, profile)
+    return Nameplate("nameplate", "nameplate", words, profiles)
 
 
 @dataclass(frozen=True)

@@ -95,7 +95,7 @@ def fake_tree(tmp_path_factory):
     tree = tmp_path_factory.mktemp("tree")
     skipped = shutil.ignore_patterns("_core*", "__pycache__")
     shutil.copytree(PACKAGE, tree / "stillspin", ignore=skipped)
-    for name in ("profiles", "scenarios", "schemes"):
+    for name in ("motors", "profiles", "scenarios", "schemes"):
         shutil.copytree(ROOT / "sim_host" / name, tree / name)
     shutil.copy(Path(fake_core.__file__), tree / "stillspin" / "_core.py")
     return tree

@@ -20,6 +20,7 @@ _SCHEMA = {
         "resistance": ("Ohm", 1e-4, 100.0, 0.32),
         "inductance_d": ("H", 1e-6, 1.0, 0.0049),
         "inductance_q": ("H", 1e-6, 1.0, 0.0078),
+        "magnet_flux": ("Vs", 0.0, 10.0, 0.16),
         "rated_peak_current": ("A", 0.1, 1000.0, 10.9),
         "saturation": ("", None, None, True),
         "cross_inductance": ("H", -0.01, 0.01, 1.18e-4),
@@ -28,6 +29,7 @@ _SCHEMA = {
     },
     "mechanics": {
         "inertia": ("kg m2", 1e-6, 100.0, 0.00455),
+        "viscous_friction": ("N m s", 0.0, 10.0, 0.003),
         "cogging_torque": ("N m", 0.0, 10.0, 0.1),
         "locked": ("", None, None, False),
     },
@@ -49,6 +51,9 @@ _SCHEMA = {
         "ripple_frequency": ("Hz", 0.0, 5000.0, 300.0),
         "rectifier": ("", None, None, False),
         "brake_chopper": ("", None, None, False),
+        "brake_on_voltage": ("V", 1.0, 5000.0, 400.0),
+        "brake_off_voltage": ("V", 1.0, 5000.0, 390.0),
+        "brake_resistance": ("ohm", 0.1, 10000.0, 47.0),
     },
     "sensor": {
         "count": ("", 2, 3, 2),
@@ -60,6 +65,8 @@ _SCHEMA = {
         "ring_decay": ("s", 1e-8, 1e-4, 2e-6),
     },
     "adc": {
+        "current_range": ("A", 0.1, 10000.0, 20.0),
+        "voltage_range": ("V", 1.0, 5000.0, 450.0),
         "voltage_gain": ("V/V", 0.5, 1.5, 1.01),
         "noise": ("LSB", 0.0, 100.0, 1.2),
         "inl": ("LSB", 0.0, 50.0, 1.5),
@@ -72,6 +79,19 @@ _SCHEMA = {
 _CHOICES = {"solver.method": ["rk4", "erkstep", "reference"]}
 
 _PARAMETERS = [
+    (1, "pole_pairs", "", 0, 1.0, 20.0, 4.0, "STOPPED", "pole pairs"),
+    (2, "stator_resistance", "ohm", 4, 0.001, 20.0, 0.32, "STOPPED", "stator resistance of a phase"),
+    (3, "inductance_d", "mH", 3, 0.05, 200.0, 4.9, "STOPPED", "d-axis inductance"),
+    (4, "inductance_q", "mH", 3, 0.05, 200.0, 7.8, "STOPPED", "q-axis inductance"),
+    (5, "magnet_flux", "Vs", 5, 0.002, 0.9, 0.16, "STOPPED", "magnet flux linkage"),
+    (8, "current_limit", "A", 2, 0.5, 100.0, 14.0, "STOPPED", "largest phase current"),
+    (26, "current_full_scale", "A", 2, 1.0, 200.0, 20.0, "STOPPED", "current at ADC code 4096"),
+    (27, "link_full_scale", "V", 1, 10.0, 2000.0, 450.0, "STOPPED", "DC-link voltage at ADC code 4096"),
+    (28, "link_minimum", "V", 1, 10.0, 1000.0, 150.0, "STOPPED", "DC-link voltage below which the drive faults"),
+    (29, "link_maximum", "V", 1, 10.0, 1500.0, 420.0, "STOPPED", "DC-link voltage above which the drive faults"),
+    (30, "trip_current", "A", 2, 0.5, 194.0, 18.0, "STOPPED", "software over-current limit"),
+    (88, "weakening_limit", "A", 2, 0.0, 100.0, 12.0, "STOPPED", "largest field-weakening current"),
+    (110, "map_current", "A", 2, 1.0, 100.0, 14.0, "STOPPED", "i_q of the map's last point"),
     (7, "friction", "Nms", 5, 0.0, 500.0, 0.003, "STOPPED", "viscous friction"),
     (20, "dead_time", "us", 2, 0.0, 5.0, 2.0, "STOPPED", "dead band of the gate signals"),
     (21, "turn_on_delay", "us", 2, 0.0, 2.0, 0.3, "STOPPED", "turn-on delay"),
@@ -166,9 +186,7 @@ def _lag(values, constant):
     return out
 
 
-def run(
-    *, plant, motor, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress, tape=None
-):
+def run(*, plant, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress, tape=None):
     began = clock.perf_counter()
     for share in (0.25, 0.5, 0.75, 1.0):
         if progress is not None and not progress(share):
@@ -224,7 +242,7 @@ def run(
     )
 
 
-def commission(*, plant, motor, parameters, limit, seed, progress):
+def commission(*, plant, parameters, limit, seed, progress):
     """The friction is refused when it is told as 9, and nothing is found with a dead short."""
     for share in (0.0, 0.5, 1.0):
         if progress is not None and not progress(share, "a phase"):

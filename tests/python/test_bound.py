@@ -131,7 +131,6 @@ def efficiency(rpm, rate, parameters):
     plant = {**ideal.plant, "adc": {**ideal.plant["adc"], "noise": 1.2}}
     result = native.run(
         plant=plant,
-        motor="A",
         parameters={**ideal.parameters, **parameters},
         commands=[(0.0, "speed_ref_rpm", rpm)],
         load=wandering(expects[rate], 2.1) if rate else [(0.0, 1.0)],

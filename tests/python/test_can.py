@@ -29,7 +29,7 @@ TABLE = {message["name"]: message for message in native.can_messages()}
 
 @pytest.fixture
 def board():
-    made = native.VirtualBoard(plant={"solver": {"method": "rk4"}}, motor="A", parameters={}, seed=1)
+    made = native.VirtualBoard(plant={"solver": {"method": "rk4"}}, parameters={}, seed=1)
     yield made
     made.close()
 
@@ -310,9 +310,7 @@ def test_python_can_starts_and_stops_the_motor(board):
         raise AssertionError(f"never in mode {mode}: {status}")
 
     board.close()  # another, that waits longer: commands come in wall-clock time
-    board = native.VirtualBoard(
-        plant={"solver": {"method": "rk4"}}, motor="A", parameters={"can_timeout": 5000.0}, seed=1
-    )
+    board = native.VirtualBoard(plant={"solver": {"method": "rk4"}}, parameters={"can_timeout": 5000.0}, seed=1)
     try:
         with _running(board) as desk, _bus(desk) as bus:
             say(bus, 0, 0, lambda s: str(s["STATE"]) == "ready")

@@ -48,7 +48,7 @@ def test_it_writes_what_it_found(call, tmp_path):
     assert result.exit_code == 0, result.stderr
     assert "2 of 2 values found in 40.0 s" in result.stdout
     text = (tmp_path / "found.toml").read_text(encoding="utf-8")
-    assert text.startswith("# Commissioned in profile bench, seed 7")
+    assert text.startswith("# Motor A, commissioned in profile bench, seed 7")
     assert tomllib.loads(text) == {"parameters": {"friction": 0.004, "speed_ramp": 2007.0}}
 
 

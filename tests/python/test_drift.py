@@ -72,7 +72,6 @@ def step(adapt: int, inertia: float) -> float:
     changes = profile.changes([f"parameter_error.inertia={inertia - 1.0}", "solver.method=rk4"], schema, entries)
     result = native.run(
         plant=profile.merged(ideal.plant, changes.plant),
-        motor="A",
         parameters={**ideal.parameters, "speed_ramp": 0.0, "inertia_adapt": float(adapt), "ldq_1": SLIGHT},
         commands=[(0.1, "speed_ref_rpm", 600.0)],
         load=[],

@@ -163,7 +163,6 @@ def test_a_run_of_the_drive_agrees_with_motulator(native, ideal):
     duration, load = 0.05, [(0.0, 0.0), (0.03, 0.0), (0.03, 2.0)]
     result = native.run(
         plant=ideal,
-        motor="A",
         parameters=profile.load("ideal", core.plant_schema(native), core.parameters(native)).parameters,
         commands=[(0.01, "speed_ref_rpm", 300.0)],
         load=load,

@@ -58,7 +58,7 @@ def test_the_ideal_firmware_knows_that_there_is_nothing_to_compensate():
 
 def test_a_profile_can_be_a_file(tmp_path):
     loaded = profile.load(written(tmp_path, "[adc]\nnoise = 3\n[parameters]\nspeed_ramp = 100\n"), SCHEMA, KNOWN)
-    assert (loaded.name, loaded.plant, loaded.parameters) == ("mine", {"adc": {"noise": 3.0}}, {"speed_ramp": 100.0})
+    assert (loaded.name, loaded.plant["adc"]["noise"], loaded.parameters) == ("mine", 3.0, {"speed_ramp": 100.0})
 
 
 @pytest.mark.parametrize(

@@ -179,7 +179,6 @@ def standstill(parameters: dict[str, float]) -> tuple[float, float]:
     plant = profile.load("ideal", core.plant_schema(native), core.parameters(native))
     result = native.run(
         plant=plant.plant,
-        motor="A",
         parameters={**plant.parameters, **parameters},
         commands=[],
         load=[],

@@ -83,7 +83,6 @@ def run_reversed(speed: float) -> core.NativeResult:
     wrong = {name: -value if name.startswith("ldq") else value for name, value in common.parameters.items()}
     return core.load().run(
         plant=common.plant,
-        motor="A",
         parameters=wrong,
         commands=[(0.0, "speed_ref_rpm", speed)],
         load=[],

@@ -19,8 +19,6 @@ def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int)
     parameters = {**chosen.parameters, **changes.parameters}
     try:
         native.check_parameters(parameters)
-        return native.VirtualBoard(
-            plant=merged(_FAST, chosen.plant, changes.plant), motor="A", parameters=parameters, seed=seed
-        )
+        return native.VirtualBoard(plant=merged(_FAST, chosen.plant, changes.plant), parameters=parameters, seed=seed)
     except ValueError as error:
         raise InputError(str(error)) from error

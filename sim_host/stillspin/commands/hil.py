@@ -14,7 +14,6 @@ from rich.console import Console
 from stillspin import commission, core, execute, profile, scenario_file
 from stillspin.commands.connection import DriveOption, wanted
 from stillspin.drive.requester import Requester
-from stillspin.execute import Job
 from stillspin.hil import Loop, LoopResult
 from stillspin.link import address
 from stillspin.link.errors import DriveError
@@ -41,7 +40,13 @@ def hil(
     The board's power stage stays off; it leaves this mode by a reset, which the end of the command brings about.
     """
     native = core.load()
-    jobs = _jobs(scenarios, only or [], _settings(native, profile_name, seed, change or [], params), native)
+    todo = [scenario_file.load(name) for name in scenarios]
+    settings = {
+        motor: _settings(native, (profile_name, motor), seed, change or [], params)
+        for motor in {scenario.motor for scenario in todo}
+    }
+    jobs = [job for scenario in todo for job in execute.prepare(scenario, settings[scenario.motor], native)]
+    jobs = [job for job in jobs if not only or job.run.name in only]
     agreed = True
     with _loop(wanted(where)) as loop:
         for job in jobs:
@@ -55,18 +60,15 @@ def hil(
 
 
 def _settings(
-    native: core.NativeCore, profile_name: str, seed: int, change: list[str], params: ParamsOption
+    native: core.NativeCore, plant: tuple[str, str], seed: int, change: list[str], params: ParamsOption
 ) -> execute.Settings:
+    """Settings of a campaign; `plant`: names of profile and motor."""
+    profile_name, motor = plant
     schema, known = core.plant_schema(native), core.parameters(native)
-    chosen = profile.load(profile_name, schema, known)
+    chosen = profile.load(profile_name, schema, known, motor)
     if params:
         chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(params, known)})
     return execute.Settings(chosen, profile.changes(change, schema, known), seed, revision())
-
-
-def _jobs(scenarios: list[str], only: list[str], settings: execute.Settings, native: core.NativeCore) -> list[Job]:
-    jobs = [job for name in scenarios for job in execute.prepare(scenario_file.load(name), settings, native)]
-    return [job for job in jobs if not only or job.run.name in only]
 
 
 @contextmanager

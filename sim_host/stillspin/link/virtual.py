@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-from stillspin import core, profile
+from stillspin import core, profile, resources
 from stillspin.board.desk import SLICE, TICKS_PER_SECOND
 from stillspin.board.pacer import Pacer
 from stillspin.board.power import power
@@ -32,6 +32,7 @@ class VirtualTransport:
         *,
         speed: float = 1.0,
         seed: int = 1,
+        motor: str = resources.DEFAULT_MOTOR,
     ) -> None:
         """Power a board.
 
@@ -40,14 +41,15 @@ class VirtualTransport:
             changes: entries of the plant or firmware parameters, as `run --set` takes them.
             speed: times real time; 0 is as fast as possible.
             seed: of the noise.
+            motor: the machine and its board, a name from `stillspin list` or a TOML file.
 
         Raises:
             InputError: no such plant, or another virtual board in this process.
         """
         native = core.load()
         schema, known = core.plant_schema(native), core.parameters(native)
-        chosen = profile.load(profile_name, schema, known)
-        self.name = f"virtual board, profile {chosen.name}"
+        chosen = profile.load(profile_name, schema, known, motor)
+        self.name = f"virtual board, motor {chosen.motor}, profile {chosen.name}"
         try:
             self._board = power(native, chosen, profile.changes(changes or [], schema, known), seed)
         except RuntimeError as error:

@@ -1,0 +1,112 @@
+"""Motors: what ships is consistent, a profile is laid over it, and the drive of each is told what its plant is."""
+
+import importlib
+import json
+
+import pytest
+
+import fake_core
+from stillspin import core, profile, resources
+from stillspin.errors import InputError
+
+SCHEMA = core.plant_schema(fake_core)
+KNOWN = core.parameters(fake_core)
+MOTORS = resources.names("motors")
+
+TOLD = {
+    "pole_pairs": ("machine", "pole_pairs", 1.0),
+    "stator_resistance": ("machine", "resistance", 1.0),
+    "inductance_d": ("machine", "inductance_d", 1e3),
+    "inductance_q": ("machine", "inductance_q", 1e3),
+    "magnet_flux": ("machine", "magnet_flux", 1.0),
+    "inertia": ("mechanics", "inertia", 1.0),
+    "friction": ("mechanics", "viscous_friction", 1.0),
+    "current_full_scale": ("adc", "current_range", 1.0),
+    "link_full_scale": ("adc", "voltage_range", 1.0),
+}
+"""Firmware parameter -> plant entry, and how many of its units make one of the plant's."""
+
+
+@pytest.fixture(scope="module")
+def native():
+    return importlib.import_module("stillspin._core")
+
+
+@pytest.mark.parametrize("motor", MOTORS)
+def test_the_drive_is_told_the_nameplate_of_its_plant(native, motor):
+    known = core.parameters(native)
+    loaded = profile.load("ideal", core.plant_schema(native), known, motor)
+    for name, (section, key, units) in TOLD.items():
+        told = loaded.parameters.get(name, known[name].default)
+        assert told == pytest.approx(loaded.plant[section][key] * units), name
+
+
+@pytest.mark.parametrize("motor", MOTORS)
+def test_the_firmware_takes_what_it_is_told(native, motor):
+    for name in ("ideal", "bench"):
+        native.check_parameters(
+            profile.load(name, core.plant_schema(native), core.parameters(native), motor).parameters
+        )
+
+
+@pytest.mark.parametrize("motor", MOTORS)
+def test_every_motor_states_the_same(motor):
+    """What one leaves out would be the plant's default, which is another motor."""
+    own = profile.load("ideal", SCHEMA, KNOWN, motor).plant
+    other = profile.load("ideal", SCHEMA, KNOWN, MOTORS[0]).plant
+    assert {section: set(keys) for section, keys in own.items()} == {
+        section: set(keys) for section, keys in other.items()
+    }
+
+
+def test_the_axis_of_every_salient_motor_turns_by_the_same_angle():
+    """Five degrees at rated current, where the incremental Lqq has lost a fifth."""
+    for motor in ("A", "B"):
+        machine = profile.load("bench", SCHEMA, KNOWN, motor).plant["machine"]
+        assert machine["saturation"]
+        saliency = 0.8 * machine["inductance_q"] - machine["inductance_d"]
+        assert 2.0 * machine["cross_inductance"] / saliency == pytest.approx(0.176, abs=0.002)  # tan 10°
+
+
+def test_a_profile_is_laid_over_the_motor(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text("[adc]\ncurrent_range = 60\n[parameters]\ncurrent_full_scale = 60\n", encoding="utf-8")
+    loaded = profile.load(str(path), SCHEMA, KNOWN, "B")
+    assert (loaded.name, loaded.motor) == ("mine", "B")
+    assert loaded.plant["adc"] == {"current_range": 60.0, "voltage_range": 225.0}
+    assert loaded.plant["machine"]["inductance_d"] == 0.76e-3
+    assert (loaded.parameters["current_full_scale"], loaded.parameters["current_limit"]) == (60.0, 25.0)
+
+
+def test_a_motor_can_be_a_file_and_is_checked(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text("[machine]\nresistance = 2.5\n", encoding="utf-8")
+    loaded = profile.load("ideal", SCHEMA, KNOWN, str(path))
+    assert (loaded.motor, loaded.plant["machine"]["resistance"]) == ("small", 2.5)
+    with pytest.raises(InputError, match="there is no motor 'C'"):
+        profile.load("ideal", SCHEMA, KNOWN, "C")
+    path.write_text("[machine]\nresistence = 2.5\n", encoding="utf-8")
+    with pytest.raises(InputError, match="did you mean 'resistance'"):
+        profile.load("ideal", SCHEMA, KNOWN, str(path))
+
+
+def test_a_scenario_runs_on_another_motor(call, tmp_path):
+    assert call("run", "A10", "--motor", "B", "--no-plots", "--out", "r").exit_code == 0
+    page = (tmp_path / "r" / "report.html").read_text(encoding="utf-8")
+    assert "Runs on motor B" in page
+    assert "0.00163" in page
+
+
+def test_a_campaign_keeps_the_motors_apart(call, tmp_path):
+    """Two of one motor in one call and one of the other: each on its own plant, with its own commissioning."""
+    words = ("--jobs", 1, "--no-paper-scheme", "--out", "r")
+    assert call("reproduce", "A10", "--motor", "B", *words).exit_code == 0
+    read = json.loads((tmp_path / "r" / "metrics.json").read_text(encoding="utf-8"))
+    assert list(read["scenarios"]) == ["A10"]
+    assert (tmp_path / "r" / "params.toml").read_text(encoding="utf-8").startswith("# Motor B, commissioned in")
+
+
+def test_what_cannot_be_is_said(call, tmp_path):
+    assert "there is no motor 'C'" in call("run", "A10", "--motor", "C").stderr
+    assert "only one where scenarios are named" in call("reproduce", "A10", "--motor", "A", "--motor", "B").stderr
+    assert "there is no scenario for it" in call("reproduce", "--motor", "C").stderr
