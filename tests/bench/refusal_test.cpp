@@ -44,7 +44,7 @@ std::string refused_command(const std::string& what, double value) {
 TEST(Refusal, UnknownParameter) { expect_words(refused_parameter("curent_limit", 5.0), {"curent_limit"}); }
 
 TEST(Refusal, ParameterOutOfRange) {
-  expect_words(refused_parameter("current_limit", 40.0), {"current_limit", "40", "0.5", "16", "A"});
+  expect_words(refused_parameter("current_limit", 140.0), {"current_limit", "140", "0.5", "100", "A"});
   expect_words(refused_parameter("current_limit", 0.0), {"current_limit"});
   expect_words(refused_parameter("current_limit", std::numeric_limits<double>::quiet_NaN()), {"current_limit"});
   expect_words(refused_parameter("current_limit", std::numeric_limits<double>::infinity()), {"current_limit"});
@@ -52,7 +52,9 @@ TEST(Refusal, ParameterOutOfRange) {
 
 TEST(Refusal, LimitsOfAParameterThemselvesAreTaken) {
   RunRequest request = encoder_request(0.01);
-  request.parameters["current_limit"] = 16.0;
+  request.parameters["current_limit"] = 100.0;
+  request.parameters["trip_current"] = 194.0;
+  request.parameters["current_full_scale"] = 200.0;
   EXPECT_TRUE(run(request).completed);
 }
 
