@@ -11,7 +11,7 @@ namespace {
 
 TEST(BusDisturbance, AnyFrames) {
   std::mt19937 random(13);
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     std::vector<std::uint8_t> octets(random() % 400);
     for (auto& o : octets) o = static_cast<std::uint8_t>(random() % 3 == 0 ? random() : random() % 8);
     ASSERT_EQ(stillspin::test::play_bus(octets.data(), octets.size()), "") << trial;

@@ -16,7 +16,7 @@ std::string judged(const std::vector<std::uint8_t>& octets) { return play(octets
 
 TEST(Disturbance, AnyOctets) {
   std::mt19937 random(11);
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     std::vector<std::uint8_t> octets(random() % 300);
     for (auto& o : octets) o = static_cast<std::uint8_t>(random());
     ASSERT_EQ(judged(octets), "") << trial;
@@ -29,7 +29,7 @@ TEST(Disturbance, WordsAndRecordsInAnyOrder) {
       "list\r",  "help ", "set ", "speed_ramp ", "get ",        "start\r", "stop\r", "ref ",
       "600 ",    "rpm\r", "\r",   "watch\r",     "faults\r",    "\x03",    "scope ", "channels speed\r",
       "trigger", " now",  "arm ", "print 1\r",   "commission ", "\x1B[A",  "-1.5",   "status\r"};
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     std::vector<std::uint8_t> octets;
     for (unsigned n = random() % 60; n > 0; --n) {
       const char* const word = words[random() % std::size(words)];

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/firmware/fake_hal.hpp"
-#include "tests/firmware/fake_nvm.hpp"
+#include "tests/fuzz/fuzz_drive.hpp"
 
 extern "C" {
 #include "firmware/console/console.h"
@@ -18,19 +17,15 @@ namespace stillspin::test {
 namespace {
 
 constexpr std::uint8_t kHappens = 0xFC, kRecord = 0xFD, kTime = 0xFE;
-constexpr int kRoundsPerMs = 4;
-constexpr int kDrain = 3;  // octets that the port sends in a round: 115200 Bd
+constexpr int kRounds = 4;              // of the background level in a step of time
+constexpr int kOctetsPerMs = 12;        // that the port sends: 115200 Bd
+constexpr int kFine = 4, kCoarse = 25;  // steps of 1 ms, then of 25 ms
 
 class Player {
  public:
   Player() {
-    board = FakeBoard{};
-    if (nvm.octets > 0) nvm = FakeNvm{};
-    drive_reset();
-    hil_reset();
-    link_reset();
+    fuzz_power_on();
     splitter_reset(&far_);
-    drive.state = DRIVE_READY;
   }
 
   void play(const std::uint8_t* at, const std::uint8_t* end) {
@@ -44,32 +39,25 @@ class Player {
         send_record({at, stop});
         at = stop;
       } else if (octet == kTime) {
-        rounds(*at++ * kRoundsPerMs);
+        pass(*at++);
       } else if (octet == kHappens) {
         happen(*at++);
       }
     }
-    for (int k = 0; k < 2000 && !board.serial_in.empty(); ++k) rounds(kRoundsPerMs);
+    for (int k = 0; k < 2000 && !board.serial_in.empty(); ++k) step(1);
   }
 
   /// Whatever was sent: after the rest that ends a record, a line stops the drive and a record is answered.
   void judge() {
-    rounds(150 * kRoundsPerMs);
-    drive.state = DRIVE_RUN;
-    drive.request = {};
-    for (const char c : std::string("\r\nstop\r\n")) send(static_cast<std::uint8_t>(c));
-    obeying_ = false;
-    for (int k = 0; k < 4000 && !drive.request.stop; ++k) rounds(1);
-    if (!drive.request.stop) fail("the drive was not stopped");
+    pass(150);
+    if (!hil_is_active()) judge_stop();
+    if (hil_is_active() && board.gates_on) fail("the gates are on with the host in the loop");
     records.clear();
     send_record({REQUEST_STATUS, 0x5A});
-    for (int k = 0; k < 4000 && !answered(); ++k) rounds(1);
+    for (int k = 0; k < 1000 && !answered(); ++k) step(1);
     if (!answered()) fail("a request for the status was not answered");
-    for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-      const parameter_info_t& p = *parameter_info(k);
-      const std::int32_t raw = parameter_get(p.id);
-      if (raw < p.minimum || raw > p.maximum) fail(std::string(p.name) + " is out of its range");
-    }
+    const std::string wrong = fuzz_parameter_out_of_range();
+    if (!wrong.empty()) fail(wrong + " is out of its range");
   }
 
   std::string problem;
@@ -79,15 +67,28 @@ class Player {
     if (problem.empty()) problem = what;
   }
 
+  // The interrupt is held off until the line has been understood, so that nothing else can have stopped the drive.
+  void judge_stop() {
+    fuzz_put_into(DRIVE_RUN);
+    background_step(&drive);
+    drive.request = {};
+    for (const char c : std::string("\r\nstop\r\n")) send(static_cast<std::uint8_t>(c), false);
+    for (int k = 0; k < 1000 && !drive.request.stop; ++k) rounds(1);
+    if (drive.state != DRIVE_RUN) fail("the drive did not run any more");
+    background_step(&drive);  // changed parameters come first
+    fuzz_pass(1);
+    if (drive.state == DRIVE_RUN) fail("the drive was not stopped");
+  }
+
   bool answered() const {
     return std::any_of(records.begin(), records.end(), [](const auto& r) {
       return r.size() == 26 && r[0] == (REQUEST_STATUS | RECORD_ANSWER) && r[1] == 0x5A && r[2] == 0;
     });
   }
 
-  void send(std::uint16_t octet) {
+  void send(std::uint16_t octet, bool time_passes = true) {
     // A real port loses what finds its ring full, and counts it; that is not what is looked for here.
-    while (board.serial_in.size() >= HAL_SCI_RECEIVE_RING) rounds(1);
+    while (board.serial_in.size() >= HAL_SCI_RECEIVE_RING) time_passes ? step(1) : rounds(1);
     board.serial_in.push_back(octet);
   }
 
@@ -102,39 +103,38 @@ class Player {
   void happen(std::uint8_t what) {
     switch (what % 4) {
       case 0:
-        drive_raise(&drive, static_cast<drive_fault_t>(1 + what / 4 % 13));
+        fuzz_fault(what / 4);
         break;
       case 1:
-        drive.state = static_cast<drive_state_t>(what / 4 % 8);
+        fuzz_put_into(static_cast<drive_state_t>(what / 4 % kDriveStates));
         break;
       case 2:
         board.serial_errors.framing++;
         break;
       default:
-        drive.signals.speed = static_cast<std::int32_t>(what * 0x01234567u);
-        drive.signals.limit = what;
+        board.encoder = what * 0x01234567u;
         break;
     }
   }
 
-  // What the control interrupt would make of the requests.
-  void obey() {
-    drive_request_t& r = drive.request;
-    const bool energised = drive_is_energised();
-    if (energised && (r.stop || r.coast)) drive.state = DRIVE_READY;
-    if (!energised && drive.state == DRIVE_READY && r.start) drive.state = DRIVE_RUN;
-    if (drive.state == DRIVE_FAULT && r.reset) drive.state = DRIVE_READY;
-    r = {};
+  void pass(int ms) {
+    for (int k = 0; ms > 0; ++k) {
+      const int now = k < kFine ? 1 : std::min(ms, kCoarse);
+      step(now);
+      ms -= now;
+    }
   }
 
-  void rounds(int count) {
-    for (int k = 0; k < count; ++k) {
-      if (++round_ % kRoundsPerMs == 0) {
-        drive.time_ms++;
-        drive.heartbeat++;
-        if (obeying_) obey();
-      }
-      board.serial_room = static_cast<std::uint16_t>(std::min<int>(HAL_SCI_TRANSMIT_RING, board.serial_room + kDrain));
+  void step(int ms) {
+    fuzz_pass(ms);
+    rounds(ms);
+  }
+
+  // The background level while `ms` of octets go out.
+  void rounds(int ms) {
+    for (int k = 0; k < kRounds; ++k) {
+      const int room = board.serial_room + ms * kOctetsPerMs / kRounds;
+      board.serial_room = static_cast<std::uint16_t>(std::min<int>(HAL_SCI_TRANSMIT_RING, room));
       store_service();
       link_service();
       console_service();
@@ -157,8 +157,6 @@ class Player {
 
   std::vector<std::vector<std::uint16_t>> records;
   splitter_t far_;
-  int round_ = 0;
-  bool obeying_ = true;
 };
 
 }  // namespace

@@ -4,9 +4,9 @@
 // pass:
 //   0xFD n   the next n octets (n modulo 64) are a record: they are sent with the right CRC and COBS
 //   0xFE n   n ms pass
-//   0xFC n   something happens to the drive: a fault, a state, an error of the port, by n
+//   0xFC n   something happens to the drive: a fault, a state, an error of the port, a turn of the encoder, by n
 //
-// The drive's control interrupt is not run; a small model carries the commands out.
+// What carries the commands out is the drive itself (fuzz_drive.hpp).
 
 #ifndef STILLSPIN_TESTS_FUZZ_PLAY_HPP
 #define STILLSPIN_TESTS_FUZZ_PLAY_HPP

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/firmware/fake_hal.hpp"
-#include "tests/firmware/fake_nvm.hpp"
+#include "tests/fuzz/fuzz_drive.hpp"
 
 extern "C" {
 #include "firmware/can/command.h"
@@ -13,10 +12,14 @@ extern "C" {
 #include "firmware/can/segments.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/requests.h"
+#include "firmware/store/store.h"
 }
 
 namespace stillspin::test {
 namespace {
+
+constexpr int kRounds = 4;              // of the background level in a step of time
+constexpr int kFine = 4, kCoarse = 25;  // steps of 1 ms, then of 25 ms
 
 enum { kCommandGroup, kParameterGroup, kRecordGroup };
 
@@ -38,26 +41,26 @@ class Input {
 class BusPlayer {
  public:
   BusPlayer() {
-    board = FakeBoard{};
-    if (nvm.octets > 0) nvm = FakeNvm{};
-    drive_reset();
-    hil_reset();
+    fuzz_power_on();
     can_node_reset(answer_as_bus);
-    drive.state = DRIVE_READY;
-    rounds(1);
+    rounds();
   }
 
   void play(Input in) {
     while (in.more()) {
-      const int step = in.next() % 6;
-      if (step <= kRecordGroup) {
-        send(step, any_frame(in));
-      } else if (step == 3) {
+      const int kind = in.next() % 8;
+      if (kind <= kRecordGroup) {
+        send(kind, any_frame(in));
+      } else if (kind == 3) {
         pass(in.next());
-      } else if (step == 4) {
+      } else if (kind == 4) {
         const std::uint8_t mode = in.next();
         const std::uint8_t speed = in.next();
         command(mode % 4, static_cast<std::int8_t>(speed) * 100, (in.next() & 1) != 0);
+      } else if (kind == 6) {
+        fuzz_put_into(static_cast<drive_state_t>(in.next() % kDriveStates));
+      } else if (kind == 7) {
+        disturb(in.next());
       } else {
         std::vector<std::uint16_t> record;
         for (int left = in.next() % 64; left > 0; --left) record.push_back(in.next());
@@ -68,16 +71,14 @@ class BusPlayer {
 
   /// Whatever came: the drive can be stopped, a parameter can be read and a record is answered.
   std::string judge() {
+    board.can_status.state = HAL_CAN_ACTIVE;
+    board.can_drains = true;
     pass(600);  // what was begun has been forgotten
     // With the host in the loop there is nothing to stop: the power stage cannot come on before the next reset.
     if (hil_is_active()) return board.gates_on ? "the gates are on with the host in the loop" : "";
-    drive.state = DRIVE_RUN;
     drive.request = {};
-    command(CAN_MODE_STOP, 0, false);
-    pass(2);
-    command(CAN_MODE_OFF, 0, false);
-    pass(2);
-    if (drive_is_energised()) return "the drive was not stopped";
+    if (runs_on_after(CAN_MODE_STOP)) return "the drive was not stopped";
+    if (runs_on_after(CAN_MODE_OFF)) return "the drive was not switched off";
     board.can_out.clear();
     hal_can_frame_t f = can_frame(CAN_PARAMETER_REQUEST, node());
     can_put(&f, CAN_PARAMETER_REQUEST_ID, 222);
@@ -86,12 +87,8 @@ class BusPlayer {
     pass(10);
     if (!heard(0x380, 1)) return "a parameter was not answered";
     if (!heard(0x480, 2)) return "a request for the status was not answered";
-    for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-      const parameter_info_t& p = *parameter_info(k);
-      const std::int32_t raw = parameter_get(p.id);
-      if (raw < p.minimum || raw > p.maximum) return std::string(p.name) + " is out of its range";
-    }
-    return "";
+    const std::string wrong = fuzz_parameter_out_of_range();
+    return wrong.empty() ? "" : wrong + " is out of its range";
   }
 
  private:
@@ -108,7 +105,8 @@ class BusPlayer {
     static constexpr can_message_t messages[] = {CAN_COMMAND, CAN_PARAMETER_REQUEST, CAN_RECORD_REQUEST};
     f.id = can_frame(messages[group], node()).id;
     board.can_in[group].push_back(f);
-    while (board.can_in[group].size() > 4) rounds(1);
+    if (board.can_in[group].size() > 4) rounds();
+    if (board.can_in[group].size() > 12) board.can_in[group].pop_back();  // no mailbox is free
   }
 
   void command(std::int32_t mode, std::int32_t speed, bool clear) {
@@ -134,31 +132,44 @@ class BusPlayer {
     return static_cast<std::size_t>(std::count_if(board.can_out.begin(), board.can_out.end(), is)) >= least;
   }
 
-  // What the control interrupt would make of the requests.
-  static void obey() {
-    drive_request_t& r = drive.request;
-    const bool energised = drive_is_energised();
-    if (energised && (r.stop || r.coast)) drive.state = DRIVE_READY;
-    if (!energised && drive.state == DRIVE_READY && r.start) drive.state = DRIVE_RUN;
-    if (drive.state == DRIVE_FAULT && r.reset) drive.state = DRIVE_READY;
-    r = {};
+  // The interrupt is held off until the command has been understood, so that nothing else can have stopped the drive.
+  bool runs_on_after(can_mode_t mode) {
+    fuzz_put_into(DRIVE_RUN);
+    background_step(&drive);
+    command(CAN_MODE_RUN, 0, false);  // a drive that somebody else has started obeys a change of the mode
+    command(mode, 0, false);
+    command(mode, 0, false);  // the alive counter of one of the three may be the last input's
+    rounds();
+    if (drive.state != DRIVE_RUN) return true;
+    background_step(&drive);  // changed parameters come first
+    fuzz_pass(1);
+    return drive.state == DRIVE_RUN;
   }
 
-  void pass(int ms) { rounds(4 * ms); }
-  void rounds(int count) {
-    for (int k = 0; k < count; ++k) {
-      if (++round_ % 4 == 0) {
-        drive.time_ms++;
-        drive.heartbeat++;
-        obey();
-      }
+  void disturb(std::uint8_t what) {
+    board.can_status.state = static_cast<hal_can_state_t>(what % (HAL_CAN_BUS_OFF + 1));
+    board.can_drains = (what & 0x10) == 0;
+    fuzz_fault(what >> 5);
+  }
+
+  void pass(int ms) {
+    for (int k = 0; ms > 0; ++k) {
+      const int now = k < kFine ? 1 : std::min(ms, kCoarse);
+      fuzz_pass(now);
+      rounds();
+      ms -= now;
+    }
+  }
+
+  void rounds() {
+    for (int k = 0; k < kRounds; ++k) {
+      store_service();
       can_node_service();
       if (board.can_out.size() > 200) board.can_out.clear();
     }
   }
 
   std::uint16_t alive_ = 0;
-  int round_ = 0;
 };
 
 }  // namespace

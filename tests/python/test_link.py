@@ -148,6 +148,17 @@ def test_records_come_back_from_pieces(sent):
     assert joiner.damaged == 0
 
 
+def test_a_record_that_never_ends_is_dropped():
+    joiner = Joiner()
+    first, *_ = split(Record(1, 2, bytes(MAX_BODY)))
+    assert joiner.feed(first) is None
+    for number in range(1, 200):  # each with the right number, none the last
+        assert joiner.feed(bytes((number % 64,)) + bytes(7)) is None
+    assert joiner.damaged == 1
+    (whole,) = split(Record(3, 4))
+    assert joiner.feed(whole) == Record(3, 4)
+
+
 @given(records, records, st.data())
 def test_a_lost_piece_costs_one_record_and_is_counted(first, second, data):
     pieces = list(split(first))

@@ -25,6 +25,8 @@ EVENTS = range(0x40, 0x60)
 
 _HEAD = 2
 _CRC = 2
+MAX_PACKED = _HEAD + MAX_BODY + _CRC
+"""Octets of the longest record with its CRC, before COBS."""
 
 
 class RecordError(ValueError):

@@ -1,14 +1,14 @@
 """Records in pieces of seven octets, as CAN frames carry them.
 
 The first octet of a frame: bit 7 in the first piece, bit 6 in the last, and the number of the piece, from 0 to 63.
-A piece that is missing or out of order drops the record; the next first piece begins anew.
+A piece that is missing or out of order drops the record, and so does one too many; the next first piece begins anew.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from stillspin.link.records import Record, RecordError, pack, unpack
+from stillspin.link.records import MAX_PACKED, Record, RecordError, pack, unpack
 
 FIRST = 0x80
 LAST = 0x40
@@ -45,7 +45,7 @@ class Joiner:
             self._octets, self._next = bytearray(), 0
         if self._octets is None:
             return None
-        if head & COUNT != self._next & COUNT:
+        if head & COUNT != self._next & COUNT or len(self._octets) + len(data) - 1 > MAX_PACKED:
             self._drop()
             return None
         self._octets += data[1:]
