@@ -39,9 +39,9 @@ static void write_register(uint16_t offset, uint16_t value) { target_write16(I2C
 static uint16_t read_register(uint16_t offset) { return target_read16(I2C_BASE + offset); }
 
 static void empty_fifos(void) {
-  write_register(I2C_FFTX, I2C_FFTX_FFEN_MASK);
+  write_register(I2C_FFTX, I2C_FFTX_I2CFFEN_MASK);
   write_register(I2C_FFRX, 0u);
-  write_register(I2C_FFTX, I2C_FFTX_FFEN_MASK | I2C_FFTX_TXFFRST_MASK);
+  write_register(I2C_FFTX, I2C_FFTX_I2CFFEN_MASK | I2C_FFTX_TXFFRST_MASK);
   write_register(I2C_FFRX, I2C_FFRX_RXFFRST_MASK);
 }
 

@@ -311,8 +311,9 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
       write_flash(address, value);
       return;
     case Device::kIdentity:
-      protection_stops(address);
-      return;  // nothing there is worth changing
+      if (address != REG_PARTID && address != REG_REVID)
+        protection_stops(address);  // those two cannot be written at all
+      return;                       // nothing there is worth changing
     case Device::kAdcMirror:
       return;  // read-only
     case Device::kNone:

@@ -21,7 +21,7 @@ constexpr unsigned kFifoStored = I2C_FFTX_TXFFIL_MASK | I2C_FFTX_TXFFIENA_MASK |
 
 }  // namespace
 
-unsigned I2c::capacity() const { return bit_set(fifo_transmit_, I2C_FFTX_FFEN_MASK) ? Fifo::kDepth : 1u; }
+unsigned I2c::capacity() const { return bit_set(fifo_transmit_, I2C_FFTX_I2CFFEN_MASK) ? Fifo::kDepth : 1u; }
 
 // ---- flags
 // -----------------------------------------------------------------------------------------------------------
@@ -170,7 +170,7 @@ void I2c::write_mode(std::uint16_t value, Tick t) {
 }
 
 void I2c::write_fifo_transmit(std::uint16_t value, Tick t) {
-  fifo_transmit_ = static_cast<std::uint16_t>(value & (kFifoStored | I2C_FFTX_FFEN_MASK));
+  fifo_transmit_ = static_cast<std::uint16_t>(value & (kFifoStored | I2C_FFTX_I2CFFEN_MASK));
   if (!bit_set(value, I2C_FFTX_TXFFRST_MASK)) to_send_.clear();
   if (bit_set(value, I2C_FFTX_TXFFINTCLR_MASK)) fifo_transmit_flag_ = false;
   note_levels(t);

@@ -109,7 +109,7 @@ class I2cBus : public ::testing::Test {
     run_until(i2c, now);
   }
   void use_fifos() {
-    set(I2C_FFTX, I2C_FFTX_FFEN_MASK | I2C_FFTX_TXFFRST_MASK);
+    set(I2C_FFTX, I2C_FFTX_I2CFFEN_MASK | I2C_FFTX_TXFFRST_MASK);
     set(I2C_FFRX, I2C_FFRX_RXFFRST_MASK);
   }
   void start(unsigned mode, unsigned count, unsigned address = 0x50) {

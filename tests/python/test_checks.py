@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from checks import arrows, conditionals, int16, links  # noqa: E402
+from checks import arrows, conditionals, int16, links, registers  # noqa: E402
 from checks.preprocessor import without_comments  # noqa: E402
 
 
@@ -206,3 +206,46 @@ def test_every_dependency_is_explained() -> None:
     python = [re.split(r"[^\w-]", line)[0] for line in requirements if not line.startswith("#")]
     assert debian and python
     assert [name for name in debian + python if f"`{name}`" not in book] == []
+
+
+def register_house(tmp_path: Path) -> Path:
+    """A tree with the register map and the tables that it is held against."""
+    for path in ("registers.h", "registers_can.h", "f2808_values.h", "board.h"):
+        plant(tmp_path, f"hal/f2808/{path}", (ROOT / "hal/f2808" / path).read_text(encoding="utf-8"))
+    shutil.copytree(ROOT / "toolchain/f2808", tmp_path / "toolchain/f2808")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("file", "right", "wrong", "blamed"),
+    [
+        ("registers.h", "REG_PLLCR 0x7021uL", "REG_PLLCR 0x7022uL", "REG_PLLCR"),
+        ("registers.h", "REG_PLLCR 0x7021uL  // PLL multiplier (EALLOW)", "REG_PLLCR 0x7021uL  //", "REG_PLLCR"),
+        ("registers.h", "0x6800uL + 0x40uL", "0x6800uL + 0x80uL", "EPWM_TBCTL"),
+        ("registers.h", "0x0CE3uL + 2uL", "0x0CE3uL + 1uL", "REG_PIEIFR"),
+        ("registers.h", "EPWM_CMPB 0x0Au", "EPWM_CMPB 0x0Cu", "EPWM_CMPB"),
+        ("registers.h", "ADCTRL2_SOC_SEQ1_LSB 13", "ADCTRL2_SOC_SEQ1_LSB 12", "ADCTRL2_SOC_SEQ1_LSB"),
+        ("registers.h", "EPWM_TZSEL_OSHT1_MASK 0x0100u", "EPWM_TZSEL_OSHT1_MASK 0x0001u", "EPWM_TZSEL_OSHT1_MASK"),
+        ("registers.h", "// port A direction, 1 output (EALLOW, 32)", "// port A direction (EALLOW)", "REG_GPADIR"),
+        ("registers.h", "VECTOR_SEQ2INT 33u", "VECTOR_SEQ2INT 34u", "VECTOR_SEQ2INT"),
+        ("registers.h", "#define VECTOR_TINT2 14u", "#define VECTOR_TIMER2 14u", "VECTOR_TIMER2"),
+        ("registers_can.h", "CANMC_CCR_MASK 0x00001000uL", "CANMC_CCR_MASK 0x00002000uL", "CANMC_CCR_MASK"),
+        ("registers_can.h", "CANGIF_BOIF_MASK 0x00000400uL", "CANGIF_BOIF_MASK 0x00000800uL", "CANGIF_BOIF_MASK"),
+        ("registers_can.h", "0x6104uL + 8uL", "0x6104uL + 4uL", "REG_CANMDL"),
+        ("f2808_values.h", "WDCR_WDCHK_KEY 5u", "WDCR_WDCHK_KEY 6u", "WDCR_WDCHK_KEY"),
+        ("f2808_values.h", "TZCTL_FORCE_LOW 2u", "TZCTL_FORCE_LOW 1u", "TZCTL_FORCE_LOW"),
+        ("f2808_values.h", "0x00FF0000uL", "0x0000FF00uL", "GPACTRL_QUALPRD2_MASK"),
+        ("board.h", "BOARD_PIN_OVER_CURRENT 12u", "BOARD_PIN_OVER_CURRENT 13u", "BOARD_PIN_OVER_CURRENT"),
+    ],
+)
+def test_slip_in_the_register_map_is_caught(tmp_path: Path, file: str, right: str, wrong: str, blamed: str) -> None:
+    house = register_house(tmp_path)
+    text = (house / "hal/f2808" / file).read_text(encoding="utf-8")
+    assert right in text
+    plant(house, f"hal/f2808/{file}", text.replace(right, wrong))
+    findings = registers.check(house)
+    assert findings and any(finding.message.startswith(blamed) for finding in findings)
+
+
+def test_register_map_agrees_with_the_tables(tmp_path: Path) -> None:
+    assert registers.check(register_house(tmp_path)) == []
