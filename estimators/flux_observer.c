@@ -1,0 +1,114 @@
+#include "estimators/flux_observer.h"
+
+#define CUTOFF_LEAST_Q30 107374L
+#define CUTOFF_MOST_Q30 53687091L
+#define BANDWIDTH_MOST_Q30 107374182L
+#define FOLLOW_Q30 536870912L  // k = 1/2: the length follows with w_c/2, offsets decay with w_c/4
+
+static stator_flux_config_t form_of(const flux_observer_config_t* c) {
+  const stator_flux_config_t form = {(c->method == FLUX_PP02) ? STATOR_FLUX_BARE : STATOR_FLUX_COMPENSATED,
+                                     c->cutoff_q30, FOLLOW_Q30};
+  return form;
+}
+
+bool flux_observer_config_valid(const flux_observer_config_t* c, const machine_model_t* m) {
+  const stator_flux_config_t form = form_of(c);
+  flux_machine_t trial;
+  return c->method <= FLUX_ACTIVE && q_in_range(c->cutoff_q30, CUTOFF_LEAST_Q30, CUTOFF_MOST_Q30) &&
+         q_in_range(c->bandwidth_q30, CUTOFF_LEAST_Q30, BANDWIDTH_MOST_Q30) && c->adaptation_periods >= 1u &&
+         c->adaptation_periods <= 1000u && stator_flux_config_valid(&form) &&
+         flux_adaptation_config_valid(&c->adaptation) && flux_machine_init(&trial, m);
+}
+
+void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, const machine_model_t* m) {
+  static const flux_observer_t empty = {.slow_bpp = 0};
+  *s = empty;
+  s->form = form_of(c);
+  s->pause = c->adaptation_periods;
+  flux_adaptation_reset(&s->adaptation);
+  flux_machine_move(&s->machine, m, &s->adaptation.shares);
+}
+
+void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, const estimator_output_t* now,
+                          ab_t current_q20) {
+  const rotation_t r = frame_rotation(now->angle_bam);
+  const dq_t i = frame_park(current_q20, r);
+  const flux_machine_t* const f = &s->machine;
+  // (3), per unit and then as flux/T.
+  const int32_t d_q24 = q_add_sat(FLUX_ONE_Q24, q_mul_sat(i.d, f->ld_per_psi_q30, 26));
+  const int32_t q_q24 = q_mul_sat(i.q, f->lq_per_psi_q30, 26);
+  const dq_t flux_q16 = {q_clamp(q_mul_sat(f->psi_q16, d_q24, 24), -f->bound_q16, f->bound_q16),
+                         q_clamp(q_mul_sat(f->psi_q16, q_q24, 24), -f->bound_q16, f->bound_q16)};
+  s->form = form_of(c);
+  stator_flux_preset(&s->flux, &s->form, frame_inverse_park(flux_q16, r), machine_speed_rad_q30(now->speed_bpp));
+  tracking_observer_preset(&s->observer, now->angle_bam, now->speed_bpp, now->load_accel_q8);
+  s->current_q20 = current_q20;
+  s->slow_bpp = now->speed_bpp;
+  s->slow_rest_q16 = 0;
+  s->error_bam = 0;
+}
+
+// The speed in (34): first order with half the cut-off.
+static void filter_speed(flux_observer_t* s, const flux_observer_config_t* c) {
+  const int32_t share_q31 = c->cutoff_q30;
+  const int64_t step_q31 =
+      (int64_t)(s->observer.speed_bpp - s->slow_bpp) * share_q31 + (int64_t)s->slow_rest_q16 * 32768L;
+  s->slow_bpp += (int32_t)q_shr64(step_q31, 31);
+  s->slow_rest_q16 = (int32_t)q_shr64(step_q31 & 0x7FFFFFFFL, 15);
+}
+
+static void integrate(flux_observer_t* s, const machine_model_t* m, const flux_period_t* p) {
+  // Mean current of the period, as between its ends.
+  const int32_t alpha_q20 = q_shr(s->current_q20.alpha + p->current_q20.alpha, 1);
+  const int32_t beta_q20 = q_shr(s->current_q20.beta + p->current_q20.beta, 1);
+  const ab_t emf_q16 = {q_sub_sat(p->voltage_q16.alpha, q_mul_sat(m->rs_q24, alpha_q20, 28)),
+                        q_sub_sat(p->voltage_q16.beta, q_mul_sat(m->rs_q24, beta_q20, 28))};
+  s->current_q20 = p->current_q20;
+  stator_flux_step(&s->flux, &s->form, emf_q16, s->machine.bound_q16);
+}
+
+static int32_t load_angle(const flux_observer_t* s, const flux_observer_config_t* c, dq_t reference_q20) {
+  const flux_vectors_t* const v = &s->vectors;
+  if (c->method == FLUX_CONV) return flux_load_angle_ft(v);
+  const int32_t square_q24 =
+      (c->method == FLUX_PP02) ? flux_reference_square_q24(&s->machine, reference_q20) : flux_square_q24(v);
+  return flux_load_angle_dq(flux_currents_q24(&s->machine, v, square_q24));
+}
+
+static uint32_t rotor_angle(flux_observer_t* s, const flux_observer_config_t* c, dq_t reference_q20) {
+  const uint32_t flux_bam = flux_stator_angle(&s->vectors);
+  if (c->method == FLUX_ACTIVE) {
+    const uint32_t active_bam = flux_active_angle(&s->vectors);
+    s->load_angle_bam = angle_diff_bam(flux_bam, active_bam);
+    return active_bam;
+  }
+  s->load_angle_bam = load_angle(s, c, reference_q20);
+  return flux_bam - (uint32_t)s->load_angle_bam;
+}
+
+// 0 up to half the cut-off, all from the cut-off on.
+static int32_t quality_q15(const flux_observer_config_t* c, int32_t w_q30) {
+  const int32_t half = c->cutoff_q30 / 2;
+  return q_clamp(q_div(q_abs_sat(w_q30) - half, half, 15), 0, 32767);
+}
+
+estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,
+                                      const flux_period_t* period) {
+  tracking_observer_t* const o = &s->observer;
+  integrate(s, in->model, period);
+  tracking_observer_predict(o, in->torque_accel_q8);
+  const ab_t flux_q16 = stator_flux_q16(&s->flux, &s->form, machine_speed_rad_q30(s->slow_bpp));
+  s->vectors = flux_vectors(&s->machine, flux_q16, period->current_q20);
+  s->error_bam = angle_diff_bam(rotor_angle(s, c, period->reference_q20), o->angle_bam);
+  tracking_observer_correct(o, s->error_bam, c->bandwidth_q30);
+  filter_speed(s, c);
+  s->pause--;
+  if (s->pause == 0u) {
+    s->pause = c->adaptation_periods;
+    flux_adaptation_step(&s->adaptation, &c->adaptation, in->model, &s->machine, &s->vectors, period->measured_q20,
+                         o->speed_bpp);
+  }
+  const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8,
+                                  quality_q15(c, machine_speed_rad_q30(o->speed_bpp))};
+  return out;
+}

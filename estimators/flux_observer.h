@@ -1,0 +1,73 @@
+// Position from the stator flux: the family of Ton, Hsieh and Chen (IEEE Access 2021) as one estimator.
+//
+//   CONV    f-t-axis currents, (13)-(15)
+//   PP-01   estimated d-q currents, (27), (29)-(31), of the flux seen
+//   PP-02   the same of the reference flux (33), the flux by the bare low-pass with (34), (35)
+//   ACTIVE  active flux, (11), (12)
+//
+// Fig. 5 gives the flux of all but PP-02. (32), speed by a derivative and a low-pass, is a tracking observer here, as
+// behind AVV: it gives the load as well, and the drive's own acceleration does not make it lag.
+//
+// The speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. Its gain
+// stays below 1/2 as long as that speed is filtered with half the cut-off of the low-pass; the tracking observer alone,
+// with 150 rad/s against a cut-off of 20 rad/s, would make it unstable.
+//
+// Needs the mean voltage of every period. Below the speed that lets the flux's EMF stand out of what resistance and
+// drops leave (quality_q15 says: 0 below half the cut-off), the integral is not to be trusted.
+
+#ifndef STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
+#define STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
+
+#include "estimators/estimator.h"
+#include "estimators/flux_adaptation.h"
+#include "estimators/stator_flux.h"
+#include "estimators/tracking_observer.h"
+
+typedef enum { FLUX_CONV = 0, FLUX_PP01 = 1, FLUX_PP02 = 2, FLUX_ACTIVE = 3 } flux_method_t;
+
+typedef struct {
+  flux_method_t method;
+  int32_t cutoff_q30;     // w_c T of the low-pass integrator, 1e-4..0.05
+  int32_t bandwidth_q30;  // bandwidth * T of the tracking observer, 1e-4..0.1
+  flux_adaptation_config_t adaptation;
+  uint16_t adaptation_periods;  // between two steps of it, 1..1000
+} flux_observer_config_t;
+
+/// The period that has just ended.
+typedef struct {
+  ab_t voltage_q16;    // mean at the terminals: switching states and DC link, less the devices' drops, V
+  ab_t current_q20;    // at its end, without ripple, A
+  dq_t measured_q20;   // the same in the frame in use
+  dq_t reference_q20;  // the current references that were in force
+} flux_period_t;
+
+typedef struct {
+  flux_machine_t machine;
+  stator_flux_config_t form;
+  stator_flux_t flux;
+  flux_adaptation_t adaptation;
+  tracking_observer_t observer;
+  flux_vectors_t vectors;  // of the last step
+  ab_t current_q20;        // at the end of the last period, A
+  int32_t error_bam;       // last angle seen, less the observed one
+  int32_t load_angle_bam;  // of the last step
+  int32_t slow_bpp;        // filtered speed, for (34)
+  int32_t slow_rest_q16;   // what of it was less than one
+  uint16_t pause;          // periods until the adaptation's next step
+} flux_observer_t;
+
+/// False where a value or the machine is out of range.
+bool flux_observer_config_valid(const flux_observer_config_t* c, const machine_model_t* m);
+
+/// Forgets what was learnt of the machine.
+void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, const machine_model_t* m);
+
+/// Starts with an angle, speed, load and current (stationary frame, A) that are known: the flux is (3).
+void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, const estimator_output_t* now,
+                          ab_t current_q20);
+
+/// One period. Of `in` it takes the model's resistance and nameplate and the torque's acceleration, no windows.
+estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,
+                                      const flux_period_t* period);
+
+#endif
