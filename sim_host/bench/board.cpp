@@ -45,7 +45,7 @@ void Board::time_periods() {
 }
 
 Board::Board(const plant::PlantConfig& config, PeriodListener& listener, devices::CanBus* can)
-    : plant_(config), listener_(listener), can_(can) {}
+    : comparator_amps_(kComparatorShare * config.adc.current_range), plant_(config), listener_(listener), can_(can) {}
 
 void Board::drive_leg(Tick t, int leg) {
   const PlantTimer timer(*this);

@@ -2,7 +2,8 @@
 //
 // Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
 // been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
-// over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 19 A, and holds it for 10 us.
+// over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 95 % of the sensors' range, and
+// holds it for 10 us.
 // The serial port (GPIO28, 29) has a line with a far end; a CAN bus may hang on GPIO30 and 31. An EEPROM may be
 // fitted on the I2C lines (GPIO32 SDA, GPIO33 SCL), which are pulled up.
 
@@ -23,7 +24,7 @@ namespace stillspin::bench {
 
 using chip::Tick;
 
-inline constexpr double kComparatorAmps = 19.0;
+inline constexpr double kComparatorShare = 0.95;  // of the current range: 19 A of 20 A
 inline constexpr Tick kComparatorHold = 1'000;
 inline constexpr Tick kEnableTimeout = 500'000;
 inline constexpr Tick kPeriod = 10'000;
@@ -90,11 +91,12 @@ class Board : public chip::World {
   void begin_period(Tick t);
   void call_between(Tick t);
   void compare(Tick t, double amps) {
-    if (!(amps <= kComparatorAmps)) trip(t);
+    if (!(amps <= comparator_amps_)) trip(t);
   }
   void trip(Tick t);
   void drive_leg(Tick t, int leg);
 
+  double comparator_amps_;
   plant::Plant plant_;
   PeriodListener& listener_;
   WaveformProbe probe_;

@@ -16,6 +16,7 @@ constexpr std::uint16_t kBase = 1000;
 constexpr std::uint16_t kOverload = 2200;  // 23.2 V: 72 A in the end, 19 A after 4.7 ms
 constexpr std::uint16_t kModerate = 1140;  // 2.0 V: 6.25 A in the end
 constexpr double kModerateAmps = 6.25;
+constexpr double kComparatorAmps = 19.0;  // of sensors for 20 A
 constexpr Tick kOverloadTime = 80 * kPeriod;
 
 struct BoardTest : ::testing::Test {
