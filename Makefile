@@ -16,11 +16,11 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check verify loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
 
 setup: ## install what is missing: Debian packages, Python packages in .venv
 	@bash toolchain/setup.sh
@@ -45,6 +45,16 @@ bench: build ## measure how fast the simulation runs
 
 isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
 	@$(PYTHON) toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
+
+image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
+	@mkdir -p build
+	@C2000_CG_ROOT=$(CURDIR)/toolchain/standin cmake --preset f2808 -B build/image-check >build/image-check.log 2>&1 || \
+	{ cat build/image-check.log; exit 1; }
+	@cmake --build build/image-check --parallel $(JOBS) >>build/image-check.log 2>&1 || \
+	{ grep -A 30 -m 1 FAILED build/image-check.log; exit 1; }
+	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
+
+verify: image-check ## the checks that take long, under 30 minutes: the image by stand-in
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from checks import Finding, arrows, conditionals, int16, links, registers
+from checks import Finding, arrows, command_files, conditionals, int16, links, registers
 from checks.preprocessor import SOURCE_FOLDERS, SUFFIXES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -44,6 +44,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "conditionals": conditionals.check,
     "int16": int16.check,
     "registers": registers.check,
+    "linker": command_files.check,
     "links": links.check,
 }
 DESCRIPTIONS = {
@@ -51,6 +52,7 @@ DESCRIPTIONS = {
     "conditionals": "no code that only one build sees",
     "int16": "C compiles with a 16-bit int",
     "registers": "the register map agrees with the tables of the chip",
+    "linker": "the linker command files keep to the memory of the chip",
     "links": "links and paths in the book exist",
     "format": "clang-format",
     "ruff": "Python lint and format",

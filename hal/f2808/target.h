@@ -17,6 +17,8 @@ extern __cregister volatile unsigned int IFR;
 
 #define TARGET_ISR __interrupt                                // an interrupt function: full context, returns by IRET
 #define TARGET_RAM_CODE __attribute__((section("ramfuncs")))  // runs from RAM without wait states
+#define TARGET_IDENTITY __attribute__((section("identity")))  // at the fixed place of the linker command files
+#define TARGET_LINKER_NUMBER(symbol) ((uint32_t)(symbol))     // a number that the linker gives as an address
 #define TARGET_NOP() __asm(" NOP")
 #define TARGET_FLUSH_PIPELINE() __asm(" RPT #7 || NOP")
 
@@ -43,6 +45,8 @@ static inline void target_elapse(uint16_t cycles) { (void)cycles; }
 
 #define TARGET_ISR
 #define TARGET_RAM_CODE
+#define TARGET_IDENTITY
+#define TARGET_LINKER_NUMBER(symbol) ((uint32_t)(uintptr_t)(symbol))
 #define TARGET_NOP() ((void)0)
 #define TARGET_FLUSH_PIPELINE() ((void)0)
 

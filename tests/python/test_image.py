@@ -1,0 +1,142 @@
+"""The image for the DSP without TI's tools: linker command files, boot code, stand-in link, message without cl2000."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+from checks import command_files  # noqa: E402
+from image.boot_code import instruction_words, read_boot_code  # noqa: E402
+from image.command_file import read_command_file  # noqa: E402
+from image.elf import read_object  # noqa: E402
+from image.link import Pile, place  # noqa: E402
+from image.sizes import object_words  # noqa: E402
+from image.stack import build_graph, stack_depth  # noqa: E402
+
+FLASH = "toolchain/c28x/f2808_flash.cmd"
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """A tree with the linker command files and the table of the chip's memory."""
+    for folder in ("toolchain/c28x", "toolchain/f2808"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    return tmp_path
+
+
+def test_linker_command_files_keep_to_the_chip(house: Path) -> None:
+    assert command_files.check(house) == []
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "blamed"),
+    [
+        ("> ENTRY,     PAGE = 0", "> BOOT,      PAGE = 0", "codestart is not at 0x3F7FF6"),
+        ("origin = 0x3F7FF6", "origin = 0x3F7FF8", "passwords"),
+        ("length = 0x003F78 ", "length = 0x004000 ", "BOOT reaches into the passwords"),
+        (".econst   : > APP, ", ".econst   : > PASSWORDS, ", ".econst is placed on PASSWORDS"),
+        (".cinit    : > APP,       PAGE = 0", ".cinit    : > APP, fill = 0, PAGE = 0", "fill"),
+        ("origin = 0x3FB000, length = 0x000FF8", "origin = 0x3FA800, length = 0x0017F8", "share memory"),
+        ("length = 0x000FF8", "length = 0x001000", "last 8 words"),
+        ("length = 0x00BFB8", "length = 0x00CFB8", "share memory"),
+        ("origin = 0x008000", "origin = 0x007000", "outside of memory"),
+        ("--stack_size=0x7F8", "--stack_size=0x900", "stack"),
+        ("origin = 0x000000, length = 0x0007F8", "origin = 0x3FA000, length = 0x0007F8", "stack"),
+        ("RUN_START(_image_globals_start), ", "", "image_globals_start is not made"),
+        ("  identity  : > IDENTITY,  PAGE = 0\n", "", "identity has no place"),
+        ("identity  : > IDENTITY,", "identity  : > NOWHERE,", "range that does not exist"),
+    ],
+)
+def test_slip_in_a_linker_command_file_is_caught(house: Path, right: str, wrong: str, blamed: str) -> None:
+    path = house / FLASH
+    text = path.read_text(encoding="utf-8")
+    assert right in text
+    path.write_text(text.replace(right, wrong), encoding="utf-8")
+    assert blamed in "; ".join(finding.message for finding in command_files.check(house))
+
+
+def test_boot_code_fits_between_entry_and_passwords() -> None:
+    code = read_boot_code(ROOT / "hal/f2808/image/boot.asm")
+    ranges = read_command_file(ROOT / FLASH).ranges
+    assert code.words["codestart"] == ranges["ENTRY"].length == 2
+    assert code.words["appentry"] <= ranges["APP_ENTRY"].length
+    assert code.wanted == {"c_int00", "image_identity", "image_globals_start", "image_globals_size"}
+
+
+def test_boot_code_knows_the_same_mark_and_watchdog_as_the_drive() -> None:
+    boot = (ROOT / "hal/f2808/image/boot.asm").read_text(encoding="utf-8")
+    header = (ROOT / "hal/hal_image.h").read_text(encoding="utf-8")
+    assert "IMAGE_MARK      .set    05AA5h" in boot and "#define HAL_IMAGE_MARK 0x5AA5u" in header
+    registers = (ROOT / "hal/f2808/registers.h").read_text(encoding="utf-8")
+    assert "#define REG_WDCR 0x7029uL" in registers and "MOV     @7029h, #0068h" in boot
+    with pytest.raises(ValueError, match="unknown instruction"):
+        instruction_words("RPT #7")
+
+
+def compiled(tmp_path: Path, code: str) -> Path:
+    """An object as the stand-in makes it."""
+    source, target = tmp_path / "x.c", tmp_path / "x.obj"
+    source.write_text(code, encoding="utf-8")
+    cl2000 = ROOT / "toolchain/standin/bin/cl2000"
+    run = [str(cl2000), "--compile_only", f"--c_file={source}", f"--include_path={ROOT}", f"--output_file={target}"]
+    subprocess.run(run, check=True)
+    return target
+
+
+def test_words_are_those_of_the_c28x(tmp_path: Path) -> None:
+    code = """
+#include <stdint.h>
+uint16_t words[10];
+int32_t longs[10];
+bool flags[10];
+char* pointers[10];
+const char* text(void);
+const char* text(void) { return "twelve chars"; }
+"""
+    words = object_words(read_object(compiled(tmp_path, "#include <stdbool.h>" + code)))
+    assert words[".ebss"] == 10 + 20 + 10 + 20
+    assert words["strings"] == 13
+
+
+def test_undefined_symbol_and_overflow_are_seen(tmp_path: Path) -> None:
+    code = "int nowhere(void);\nint big[7000];\nint f(void);\nint f(void) { return nowhere() + big[0]; }\n"
+    pile = Pile([compiled(tmp_path, code)])
+    assert "nowhere" in pile.missing()
+    _, complaints = place(pile.words(), read_command_file(ROOT / FLASH))
+    assert complaints == ["RAM_DATA takes 14000 words and has 12288"]
+
+
+def test_stack_sees_frames_recursion_and_pointers(tmp_path: Path) -> None:
+    code = """
+#define KEEP __attribute__((noinline))
+void use(volatile int* p);
+void (*hook)(void);
+KEEP void use(volatile int* p) { p[0]++; }
+KEEP static void deep(void) { volatile int room[50]; use(room); }
+KEEP void main_loop(int n);
+KEEP void main_loop(int n) { deep(); if (n > 0) main_loop(n - 1); use(&n); }
+KEEP static void by_pointer(void) { hook(); volatile int x; use(&x); }
+int main(void) { main_loop(3); by_pointer(); return 0; }
+"""
+    objects = [read_object(compiled(tmp_path, code))]
+    graph = build_graph(objects)
+    assert graph.frames["deep"] >= 100 and graph.by_pointer == {"by_pointer"}
+    complaints = "; ".join(stack_depth(objects).complaints)
+    assert "recursion: main_loop > main_loop" in complaints
+    assert "by_pointer calls through a pointer" in complaints
+
+
+def test_missing_compiler_is_said_clearly(tmp_path: Path) -> None:
+    cmake = shutil.which("cmake")
+    assert cmake is not None
+    environment = {key: value for key, value in os.environ.items() if key != "C2000_CG_ROOT"}
+    command = [cmake, "--preset", "f2808", "-B", str(tmp_path)]
+    run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert run.returncode != 0
+    assert "TI's compiler cl2000 is not there" in run.stderr and "C2000_CG_ROOT=" in run.stderr

@@ -1,0 +1,59 @@
+"""TI's linker command files, as far as those of this project go: MEMORY with ranges, SECTIONS with `> RANGE`."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+_RANGE = re.compile(r"^\s*(\w+)\s*:\s*origin\s*=\s*(\w+),\s*length\s*=\s*(\w+)", re.MULTILINE)
+_SECTION = re.compile(r"^\s*([.\w]+)\s*:\s*((?:>|LOAD|=|\w).*(?:\n {6,}.*)*)", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Range:
+    """A piece of memory: first word and number of words."""
+
+    name: str
+    origin: int
+    length: int
+
+    @property
+    def end(self) -> int:
+        """The word behind the last one."""
+        return self.origin + self.length
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a section is kept and, when that is another place, where it runs."""
+
+    section: str
+    load: str
+    run: str
+
+
+@dataclass(frozen=True)
+class CommandFile:
+    """A linker command file."""
+
+    ranges: dict[str, Range]
+    placements: list[Placement]
+    stack_words: int
+    symbols: set[str]  # that the linker defines
+    text: str  # without comments
+
+
+def read_command_file(path: Path) -> CommandFile:
+    """Parses one file."""
+    text = re.sub(r"/\*.*?\*/", " ", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    head, _, sections = text.partition("SECTIONS")
+    ranges = {m[1]: Range(m[1], int(m[2], 0), int(m[3], 0)) for m in _RANGE.finditer(head)}
+    placements = []
+    for match in _SECTION.finditer(sections):
+        words = match[2]
+        load = re.search(r"(?:^>|LOAD\s*=)\s*(\w+)", words)
+        run = re.search(r"RUN\s*=\s*(\w+)", words)
+        if load:
+            placements.append(Placement(match[1], load[1], run[1] if run else load[1]))
+    stack = re.search(r"--stack_size=(\w+)", text)
+    symbols = set(re.findall(r"(?:LOAD_START|RUN_START|SIZE)\(_(\w+)\)", sections))
+    return CommandFile(ranges, placements, int(stack[1], 0) if stack else 0, symbols, text)

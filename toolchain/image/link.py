@@ -1,0 +1,144 @@
+"""The stand-in linker.
+
+Takes objects and a linker command file, says what is missing, where everything goes, whether it fits, and how deep the
+stack gets; leaves a map. Estimates: see sizes.py.
+"""
+
+import re
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from image.boot_code import BootCode, read_boot_code
+from image.command_file import CommandFile, read_command_file
+from image.elf import ObjectFile, read_object
+from image.sizes import RUN_TIME_WORDS, object_words
+from image.stack import Depth, stack_depth
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+BUDGET = ROOT / "toolchain" / "f2808" / "image_budget.txt"
+# What TI's run-time library brings: the C start-up and what a compiler calls for arithmetic or copying.
+RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR")
+
+
+class Pile:
+    """The objects that go into the image."""
+
+    def __init__(self, given: Iterable[Path]) -> None:
+        self.objects: list[ObjectFile] = []
+        self.boot = BootCode()
+        self.archived: list[ObjectFile] = []
+        for path in given:
+            self._take(path)
+        self._resolve()
+
+    def _take(self, path: Path) -> None:
+        data = path.read_bytes()
+        if data[:4] == b"\x7fELF":
+            self.objects.append(read_object(path))
+        elif path.suffix in (".lib", ".a"):
+            self.archived += [read_object(Path(member)) for member in data.decode().split()]
+        else:
+            self.boot = read_boot_code(path)
+
+    def _resolve(self) -> None:
+        """Takes from the archives what is asked for, until nothing more is."""
+        while True:
+            missing = self.missing()
+            found = [obj for obj in self.archived if obj.defined & missing]
+            if not found:
+                return
+            self.objects += found
+            self.archived = [obj for obj in self.archived if obj not in found]
+
+    def missing(self) -> set[str]:
+        """Names that are asked for and not there."""
+        defined = set(self.boot.defined).union(*(obj.defined for obj in self.objects))
+        return set(self.boot.wanted).union(*(obj.wanted for obj in self.objects)) - defined
+
+    def words(self) -> dict[str, int]:
+        """Words by section of the image."""
+        total = dict(self.boot.words)
+        for obj in self.objects:
+            for name, words in object_words(obj).items():
+                total[name] = total.get(name, 0) + words
+        total[".text"] = total.get(".text", 0) + RUN_TIME_WORDS
+        return total
+
+
+def place(words: dict[str, int], file: CommandFile) -> tuple[dict[str, int], list[str]]:
+    """Fill of every range, and what does not fit or has no place."""
+    fill = dict.fromkeys(file.ranges, 0)
+    placed = {placement.section: placement for placement in file.placements}
+    complaints = [f"section {name} has no place" for name in sorted(words) if name not in placed and name != "strings"]
+    for placement in file.placements:
+        size = words.get(placement.section, 0)
+        if placement.section == ".stack":
+            size = file.stack_words
+        fill[placement.load] += size
+        if placement.run != placement.load:
+            fill[placement.run] += size
+    for name, used in fill.items():
+        if used > file.ranges[name].length:
+            complaints.append(f"{name} takes {used} words and has {file.ranges[name].length}")
+    return fill, complaints
+
+
+def budgets(figures: dict[str, int]) -> tuple[list[str], list[str]]:
+    """The published table's rows, and what has grown beyond its limit."""
+    rows, complaints = [], []
+    for line in BUDGET.read_text(encoding="utf-8").splitlines():
+        fields = line.partition("#")[0].split("|")
+        if len(fields) != 4:
+            continue
+        key, what, goal, limit = (field.strip() for field in fields)
+        value = figures[key]
+        met = "met" if value <= int(goal) else "**not met**"
+        rows.append(f"| {what} | {value} | {goal} | {met} |")
+        if value > int(limit):
+            complaints.append(f"{what}: {value}, limit {limit}")
+    return rows, complaints
+
+
+def figures_of(words: dict[str, int], pile: Pile, depth: Depth) -> dict[str, int]:
+    """What the budgets are about."""
+    scope = sum(s.size // 2 for o in pile.objects for s in o.sections if s.name == ".bss.ring" and s.size > 4096)
+    flash = sum(words.get(n, 0) for n in (".text", ".econst", ".cinit", ".pinit", ".switch", "ramfuncs"))
+    return {
+        "ram_code": words.get("ramfuncs", 0),
+        "scope": scope,
+        "globals": words.get(".ebss", 0),
+        "strings": words.get("strings", 0),
+        "constants": words.get(".econst", 0) - words.get("strings", 0),
+        "code": words.get(".text", 0),
+        "flash": flash,
+        "stack": depth.total,
+    }
+
+
+def link(arguments: list[str]) -> int:
+    """Links; 0 when everything is there and no limit is passed. A range that is too small is a limit's business."""
+    paths = [Path(a) for a in arguments if not a.startswith("-")]
+    options = dict(a.partition("=")[::2] for a in arguments if a.startswith("--"))
+    file = read_command_file(next(path for path in paths if path.suffix == ".cmd"))
+    pile = Pile(path for path in paths if path.suffix != ".cmd")
+    missing = sorted(n for n in pile.missing() - file.symbols if not RUN_TIME.fullmatch(n))
+    words, depth = pile.words(), stack_depth(pile.objects)
+    fill, unfit = place(words, file)
+    rows, grown = budgets(figures_of(words, pile, depth))
+    lines = [
+        "| estimated words | now | goal | |",
+        "|---|---|---|---|",
+        *rows,
+        "",
+        "| range | used | of |",
+        "|---|---|---|",
+    ]
+    lines += [f"| {name} | {used} | {file.ranges[name].length} |" for name, used in fill.items()]
+    lines += ["", *(f"does not fit: {complaint}" for complaint in unfit), "", *depth.lines]
+    output = Path(options["--output_file"])
+    output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    output.write_text("no code for the C28x: see the map beside this file\n", encoding="utf-8")
+    for complaint in (*(f"undefined: {name}" for name in missing), *grown, *depth.complaints):
+        print(f"link (stand-in): {complaint}", file=sys.stderr)
+    return 1 if missing or grown or depth.complaints else 0

@@ -1,0 +1,43 @@
+"""Words of the C28x for a Cortex-M3 object's sections.
+
+A byte-sized character has a word there, so a string has as many words as it has bytes here. Everything else in memory
+has half as many words as bytes: 16-bit values one word, 32-bit values and pointers two, as on the C28x; bool is widened
+when compiling; an enumeration is counted with two words where the C28x needs one. Code: as many words as Thumb-2 has
+half words. How close that is to the C28x nobody here knows.
+"""
+
+from image.elf import ObjectFile, Section
+
+RUN_TIME_WORDS = 1500  # TI's library: start-up, 64-bit products and quotients, copying; a guess
+CINIT_OVERHEAD = 3  # words of a .cinit record beside its values
+
+
+def section_of(section: Section) -> str | None:
+    """The name that TI's compiler would use; None for what is not in memory."""
+    if not section.allocated or section.size == 0 or section.name.startswith(".ARM"):
+        return None
+    for prefix, name in ((".text", ".text"), (".rodata", ".econst"), (".data", ".ebss"), (".bss", ".ebss")):
+        if section.name.startswith(prefix):
+            return name
+    return section.name
+
+
+def words_of(section: Section) -> int:
+    """Estimated words."""
+    return section.size if section.is_strings else (section.size + 1) // 2
+
+
+def object_words(obj: ObjectFile) -> dict[str, int]:
+    """Words by section; strings also by themselves."""
+    words: dict[str, int] = {}
+    for section in obj.sections:
+        name = section_of(section)
+        if name is None:
+            continue
+        count = words_of(section)
+        words[name] = words.get(name, 0) + count
+        if section.is_strings:
+            words["strings"] = words.get("strings", 0) + count
+        if section.name.startswith(".data"):
+            words[".cinit"] = words.get(".cinit", 0) + count + CINIT_OVERHEAD
+    return words

@@ -1,0 +1,158 @@
+"""How deep the stack gets, from the call graph of the Cortex-M3 objects and the compiler's frame sizes.
+
+Calls through pointers are not in the objects: toolchain/f2808/indirect_calls.txt says for every function that makes
+one what it may reach, and a function that is missing there, or a recursion, is a finding. The C28x differs: a call
+there takes two words, an interrupt saves what CONTEXT_WORDS says; frames are taken as half their bytes.
+"""
+
+import re
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from image.elf import CALLS, ObjectFile
+
+TABLE = Path(__file__).resolve().parent.parent / "f2808" / "indirect_calls.txt"
+CALL_WORDS = 2
+CONTEXT_WORDS = 48  # 14 by the CPU, the rest is what __interrupt saves at most
+LEVELS = ("main", "control_isr", "window_isr")  # background, and each may be interrupted by the next
+
+
+@dataclass
+class Depth:
+    """The result: words in all, the deepest way of each level, what is wrong."""
+
+    total: int = 0
+    lines: list[str] = field(default_factory=list)
+    complaints: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Graph:
+    """Frames in words and calls, by function; statics of one name are one function, the larger one."""
+
+    frames: dict[str, int] = field(default_factory=dict)
+    calls: dict[str, set[str]] = field(default_factory=dict)
+    by_pointer: set[str] = field(default_factory=set)
+
+
+def _is_indirect(content: bytes, start: int, end: int, marks: list[tuple[int, bool]]) -> bool:
+    """A BLX by register, or a BX that is no return, among a function's instructions.
+
+    `marks`: where constants begin (True) and end (False) in the section, in order.
+    """
+    at = start
+    while at + 1 < end:
+        if next((is_data for place, is_data in reversed(marks) if place <= at), False):
+            at += 2
+            continue
+        (half,) = struct.unpack_from("<H", content, at)
+        if half & 0xFF87 == 0x4780 or (half & 0xFF87 == 0x4700 and half != 0x4770):
+            return True
+        at += 4 if half >> 11 in (0b11101, 0b11110, 0b11111) else 2  # 32-bit instructions begin so
+    return False
+
+
+def _frames(obj: ObjectFile) -> dict[str, int]:
+    usage = obj.path.with_suffix(".su")
+    frames = {}
+    for line in usage.read_text(encoding="utf-8").splitlines() if usage.exists() else ():
+        where, size, kind = line.split("\t")
+        if kind.startswith("static"):
+            frames[where.rpartition(":")[2]] = (int(size) + 1) // 2
+    return frames
+
+
+def build_graph(objects: list[ObjectFile]) -> Graph:
+    """The graph of all objects."""
+    graph = Graph()
+    functions = {symbol.name for obj in objects for symbol in obj.symbols if symbol.is_function}
+    for obj in objects:
+        frames = _frames(obj)
+        for symbol in (s for s in obj.symbols if s.is_function and s.section):
+            section = obj.sections[symbol.section]
+            graph.frames[symbol.name] = max(graph.frames.get(symbol.name, 0), frames.get(symbol.name, 0))
+            inside = range(symbol.value, symbol.value + symbol.size)
+            called = {n for at, kind, n in section.relocations if at in inside and kind in CALLS and n in functions}
+            graph.calls.setdefault(symbol.name, set()).update(called)
+            marks = sorted(
+                (m.value, m.name[1] == "d")
+                for m in obj.symbols
+                if m.name[:2] in ("$d", "$t") and m.section == symbol.section
+            )
+            if _is_indirect(section.content, symbol.value, symbol.value + symbol.size, marks):
+                graph.by_pointer.add(symbol.name)
+    return graph
+
+
+def _table(objects: list[ObjectFile], name: str) -> set[str]:
+    """Every function whose address stands in a constant table."""
+    functions = {symbol.name for obj in objects for symbol in obj.symbols if symbol.is_function}
+    sections = [s for obj in objects for s in obj.sections if s.name == f".rodata.{name}"]
+    return {called for section in sections for _, _, called in section.relocations} & functions
+
+
+def _reached(graph: Graph, objects: list[ObjectFile], word: str) -> set[str]:
+    """The functions that a word of the table of indirect calls stands for."""
+    if word.startswith("@"):
+        return _table(objects, word[1:])
+    return {name for name in graph.frames if re.fullmatch(word, name)}
+
+
+def _add_indirect(graph: Graph, objects: list[ObjectFile], depth: Depth) -> dict[str, tuple[int, str]]:
+    """Completes the graph; returns the callers that may nest: how often, by which function."""
+    known: set[str] = set()
+    nested: dict[str, tuple[int, str]] = {}
+    for line in TABLE.read_text(encoding="utf-8").splitlines():
+        caller, arrow, callees = line.partition("#")[0].partition(" -> ")
+        caller = caller.strip()
+        if not arrow:
+            continue
+        known.add(caller)
+        times = re.fullmatch(r"\s*(\d+) x (\w+)\s*", callees)
+        if times:
+            nested[caller] = (int(times[1]), times[2])
+            continue
+        for word in callees.split():
+            reached = _reached(graph, objects, word)
+            if not reached:
+                depth.complaints.append(f"{TABLE.name}: {word} is no function")
+            graph.calls.setdefault(caller, set()).update(reached)
+    for caller in sorted(graph.by_pointer - known):
+        depth.complaints.append(f"{caller} calls through a pointer: add it to {TABLE.name}")
+    for caller in sorted(known - graph.by_pointer):
+        depth.complaints.append(f"{TABLE.name}: {caller} calls nothing through a pointer")
+    return nested
+
+
+Ways = dict[str, tuple[int, tuple[str, ...]]]
+
+
+def _deepest(graph: Graph, name: str, way: tuple[str, ...], known: Ways, depth: Depth) -> tuple[int, tuple[str, ...]]:
+    """Words with this function and below, and the way there."""
+    if name in known:
+        return known[name]
+    if name in way:
+        depth.complaints.append("recursion: " + " > ".join((*way[way.index(name) :], name)))
+        return 0, ()
+    below = [_deepest(graph, callee, (*way, name), known, depth) for callee in sorted(graph.calls.get(name, ()))]
+    words, path = max(below, default=(0, ()))
+    known[name] = (graph.frames.get(name, 0) + CALL_WORDS + words, (name, *path))
+    return known[name]
+
+
+def stack_depth(objects: list[ObjectFile]) -> Depth:
+    """Background and both interrupts on top of one another."""
+    depth, graph = Depth(), build_graph(objects)
+    for caller, (times, callee) in _add_indirect(graph, objects, depth).items():
+        graph.frames[caller] = graph.frames.get(caller, 0) + times * _deepest(graph, callee, (), {}, depth)[0]
+    known: Ways = {}
+    for level in LEVELS:
+        if level not in graph.frames:
+            depth.complaints.append(f"there is no function {level}")
+            continue
+        words, path = _deepest(graph, level, (), known, depth)
+        depth.total += words + (CONTEXT_WORDS if level != LEVELS[0] else 0)
+        ways = " > ".join(f"{name} {graph.frames.get(name, 0)}" for name in path)
+        depth.lines.append(f"stack of {level}: {words} words: {ways}")
+    return depth
