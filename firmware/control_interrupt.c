@@ -21,7 +21,6 @@ void drive_control_step(drive_t* d) {
   drive_control_current(d);
   hal_profile_step(CYCLES_CONTROL);
   drive_modulate(d);
-  drive_publish(d);
   scope_step(d->time_ms);
 }
 

@@ -146,7 +146,6 @@ typedef struct {
   hysteresis_t hysteresis;
   drive_supervision_t supervision;
   drive_request_t request;
-  drive_signals_t signals;
   commissioning_t commissioning;
 } drive_t;
 
@@ -238,7 +237,6 @@ void drive_sequence(drive_t* d);         // state_machine.c
 void drive_control_speed(drive_t* d);    // speed_task.c
 void drive_control_current(drive_t* d);  // current_task.c
 void drive_modulate(drive_t* d);         // modulation.c
-void drive_publish(drive_t* d);          // drive_api.c
 
 // Hysteresis in the place of current control and modulation (hysteresis.c).
 bool drive_hysteresis(drive_t* d);             // switches it on and off with the state; true while it is on

@@ -66,39 +66,10 @@ void drive_command_speed(int32_t rpm_q16) {
   drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
 }
 
-const drive_signals_t* drive_signals(void) { return &drive.signals; }
-
 uint32_t drive_time_ms(void) { return drive.time_ms; }
 
 drive_state_t drive_state(void) { return drive.state; }
 
 int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp) {
   return q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24);
-}
-
-void drive_publish(drive_t* d) {
-  drive_signals_t* const s = &d->signals;
-  s->state = (int32_t)d->state;
-  s->fault = (int32_t)d->fault;
-  s->limit = d->limits;
-  s->angle = (int32_t)d->position.used.angle_bam;
-  s->speed = drive_rpm_q16(d, d->position.used.speed_bpp);
-  s->angle_low = (int32_t)d->position.low.angle_bam;
-  s->angle_avv = (int32_t)d->position.high.angle_bam;
-  s->weight = d->position.blend.share_q15;
-  s->speed_reference = drive_rpm_q16(d, d->control.ramp.value);
-  s->current_d = d->control.measured_q20.d;
-  s->current_q = d->control.measured_q20.q;
-  s->current_d_reference = d->control.reference_q20.d;
-  s->current_q_reference = d->control.reference_q20.q;
-  s->voltage_d = d->control.command_q16.d;
-  s->voltage_q = d->control.command_q16.q;
-  s->voltage_alpha = d->modulation.asked_q16.alpha;
-  s->voltage_beta = d->modulation.asked_q16.beta;
-  s->deviation_q = q_mul_sat(d->position.deviation_q20, 10000L, 12);  // per period to per second, Q20 to Q8
-  s->link_voltage = d->samples.link_q16;
-  s->load_torque = q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 24);
-  s->windows = d->samples.count;
-  s->start_phase = (int32_t)d->start.phase;
-  s->polarity_sigma = d->start.sigma_q8;
 }

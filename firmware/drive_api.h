@@ -36,16 +36,17 @@ typedef enum {
   LIMIT_BRAKING = 16  // the DC link takes no more
 } drive_limit_t;
 
-#define SIGNAL(name, unit, q, meaning) int32_t name;
+#define SIGNAL(name, unit, q, value, meaning) int32_t name;
 typedef struct {
 #include "firmware/signal_list.h"
 } drive_signals_t;
 #undef SIGNAL
 
-/// For whoever is called between interrupts, as the bench is.
-const drive_signals_t* drive_signals(void);
-/// Copies signals, given by their places in signal_list.h, as one control interrupt left them, without holding the next
-/// one up; a place that does not exist gives 0. Returns drive_time_ms of that interrupt.
+/// All signals, as one control interrupt left them, without holding the next one up.
+drive_signals_t drive_signals(void);
+/// One of them, by its place in signal_list.h, as it is now; a place that does not exist gives 0.
+int32_t drive_signal(uint16_t place);
+/// Some of them, given by their places, as one control interrupt left them. Returns drive_time_ms of that interrupt.
 uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
 
 typedef struct {

@@ -24,6 +24,6 @@
 #define CYCLES_REFER 550u   // references of the hysteresis
 #define CYCLES_WINDOW 60u
 #define CYCLES_SLICE 120u
-#define CYCLES_SCOPE 150u  // while it records: four channels and the trigger
+#define CYCLES_SCOPE 210u  // while it records: four channels and the trigger
 
 #endif

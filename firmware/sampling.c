@@ -30,9 +30,10 @@ void drive_window_interrupt(void) {
     return;
   }
   sampling_buffer_t* const b = &sampling_buffers[sampling_filling];
+  const uint16_t place = b->count;
   hal_adc_window_t spare;
-  hal_adc_read_window((b->count < ESTIMATOR_WINDOWS) ? &b->windows[b->count] : &spare);
-  b->count++;
+  b->count = (uint16_t)(place + 1u);
+  hal_adc_read_window((place < ESTIMATOR_WINDOWS) ? &b->windows[place] : &spare);
   hal_profile_step(CYCLES_WINDOW);
 }
 

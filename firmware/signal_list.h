@@ -1,27 +1,30 @@
-// The drive's signals that tools may look at. SIGNAL(name, unit, q, meaning): an int32_t member of drive_signals_t with
-// q fractional bits; angles are binary angles (unit "turn", q 32). They belong to one run of the control interrupt. No
-// include guard: it is included with different meanings of SIGNAL.
+// The drive's signals that tools may look at. SIGNAL(name, unit, q, value, meaning): `value` is where the drive `d` has
+// it between two runs of the control interrupt (signals.c); an int32_t with q fractional bits; angles are binary angles
+// (unit "turn", q 32). No include guard: it is included with different meanings of SIGNAL.
 
-SIGNAL(state, "", 0, "state of the drive, drive_state_t")
-SIGNAL(fault, "", 0, "latched fault, drive_fault_t")
-SIGNAL(limit, "", 0, "what holds the drive back, bits of drive_limit_t")
-SIGNAL(angle, "turn", 32, "electrical angle in use, at the start of the period")
-SIGNAL(speed, "rpm", 16, "mechanical speed in use")
-SIGNAL(angle_low, "turn", 32, "electrical angle of the low-speed estimator")
-SIGNAL(angle_avv, "turn", 32, "electrical angle of the AVV estimator")
-SIGNAL(weight, "", 15, "share of the low-speed estimator in the blend")
-SIGNAL(speed_reference, "rpm", 16, "speed reference after the ramp")
-SIGNAL(current_d, "A", 20, "measured d-axis current, mean of the period")
-SIGNAL(current_q, "A", 20, "measured q-axis current")
-SIGNAL(current_d_reference, "A", 20, "d-axis current reference")
-SIGNAL(current_q_reference, "A", 20, "q-axis current reference")
-SIGNAL(voltage_d, "V", 16, "d-axis voltage command")
-SIGNAL(voltage_q, "V", 16, "q-axis voltage command")
-SIGNAL(voltage_alpha, "V", 16, "mean voltage asked of the modulator for the next period, drops added")
-SIGNAL(voltage_beta, "V", 16, "its part across phase a")
-SIGNAL(deviation_q, "A/s", 8, "q-axis current deviation under zero vectors, D of the paper; encoder and paper only")
-SIGNAL(link_voltage, "V", 16, "DC-link voltage")
-SIGNAL(load_torque, "Nm", 16, "estimated load torque")
-SIGNAL(windows, "", 0, "windows sampled in the last period")
-SIGNAL(start_phase, "", 0, "phase of the start, start_phase_t")
-SIGNAL(polarity_sigma, "", 8, "confidence in the polarity found at the start, standard errors")
+SIGNAL(state, "", 0, d->state, "state of the drive, drive_state_t")
+SIGNAL(fault, "", 0, d->fault, "latched fault, drive_fault_t")
+SIGNAL(limit, "", 0, d->limits, "what holds the drive back, bits of drive_limit_t")
+SIGNAL(angle, "turn", 32, d->position.used.angle_bam, "electrical angle in use, at the start of the period")
+SIGNAL(speed, "rpm", 16, SIGNAL_RPM(d->position.used.speed_bpp), "mechanical speed in use")
+SIGNAL(angle_low, "turn", 32, d->position.low.angle_bam, "electrical angle of the low-speed estimator")
+SIGNAL(angle_avv, "turn", 32, d->position.high.angle_bam, "electrical angle of the AVV estimator")
+SIGNAL(weight, "", 15, d->position.blend.share_q15, "share of the low-speed estimator in the blend")
+SIGNAL(speed_reference, "rpm", 16, SIGNAL_RPM(d->control.ramp.value), "speed reference after the ramp")
+SIGNAL(current_d, "A", 20, d->control.measured_q20.d, "measured d-axis current, mean of the period")
+SIGNAL(current_q, "A", 20, d->control.measured_q20.q, "measured q-axis current")
+SIGNAL(current_d_reference, "A", 20, d->control.reference_q20.d, "d-axis current reference")
+SIGNAL(current_q_reference, "A", 20, d->control.reference_q20.q, "q-axis current reference")
+SIGNAL(voltage_d, "V", 16, d->control.command_q16.d, "d-axis voltage command")
+SIGNAL(voltage_q, "V", 16, d->control.command_q16.q, "q-axis voltage command")
+SIGNAL(voltage_alpha, "V", 16, d->modulation.asked_q16.alpha,
+       "mean voltage asked of the modulator for the next period, drops added")
+SIGNAL(voltage_beta, "V", 16, d->modulation.asked_q16.beta, "its part across phase a")
+SIGNAL(deviation_q, "A/s", 8, q_mul_sat(d->position.deviation_q20, 10000L, 12),
+       "q-axis current deviation under zero vectors, D of the paper; encoder and paper only")
+SIGNAL(link_voltage, "V", 16, d->samples.link_q16, "DC-link voltage")
+SIGNAL(load_torque, "Nm", 16, q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 24),
+       "estimated load torque")
+SIGNAL(windows, "", 0, d->samples.count, "windows sampled in the last period")
+SIGNAL(start_phase, "", 0, d->start.phase, "phase of the start, start_phase_t")
+SIGNAL(polarity_sigma, "", 8, d->start.sigma_q8, "confidence in the polarity found at the start, standard errors")

@@ -1,17 +1,24 @@
-// The table of the signals, and looking at several of one control interrupt.
+// The table of the signals, and looking at several of one control interrupt. Nothing is copied while nobody looks.
 
 #include <stddef.h>
 
 #include "firmware/drive.h"
 
-#define SIGNAL(name, unit, q, meaning) {#name, unit, q, meaning},
+#define SIGNAL(name, unit, q, value, meaning) {#name, unit, q, meaning},
 static const signal_info_t table[] = {
 #include "firmware/signal_list.h"
 };
 #undef SIGNAL
 
-#define SIGNAL(name, unit, q, meaning) &drive.signals.name,
-static const volatile int32_t* const values[] = {
+// Volatile: to the background level the interrupt changes the drive at any time.
+#define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
+#define SIGNAL(name, unit, q, value, meaning) \
+  static int32_t look_at_##name(const volatile drive_t* d) { return (int32_t)(value); }
+#include "firmware/signal_list.h"
+#undef SIGNAL
+
+#define SIGNAL(name, unit, q, value, meaning) look_at_##name,
+static int32_t (*const looks[])(const volatile drive_t* d) = {
 #include "firmware/signal_list.h"
 };
 #undef SIGNAL
@@ -22,6 +29,8 @@ uint16_t signal_count(void) { return COUNT; }
 
 const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &table[place] : NULL; }
 
+int32_t drive_signal(uint16_t place) { return (place < COUNT) ? looks[place](&drive) : 0; }
+
 // The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
 uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
   const volatile uint16_t* const interrupts = &drive.heartbeat;
@@ -31,7 +40,20 @@ uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* cop
   do {
     seen = *interrupts;
     time_ms = *clock;
-    for (uint16_t k = 0; k < count; k++) copy[k] = (places[k] < COUNT) ? *values[places[k]] : 0;
+    for (uint16_t k = 0; k < count; k++) copy[k] = drive_signal(places[k]);
   } while (seen != *interrupts);
   return time_ms;
+}
+
+drive_signals_t drive_signals(void) {
+  const volatile uint16_t* const interrupts = &drive.heartbeat;
+  drive_signals_t s;
+  uint16_t seen;
+  do {
+    seen = *interrupts;
+#define SIGNAL(name, unit, q, value, meaning) s.name = look_at_##name(&drive);
+#include "firmware/signal_list.h"
+#undef SIGNAL
+  } while (seen != *interrupts);
+  return s;
 }

@@ -60,8 +60,11 @@ void hal_tape_start(tape_mode_t mode, void (*interrupt)(void));
 void hal_tape_next_period(void);
 
 /// Around the control step.
-void hal_tape_step_begin(void);
-void hal_tape_step_end(void);
+static inline void hal_tape_step_begin(void) { hal_tape.stepping = true; }
+static inline void hal_tape_step_end(void) {
+  hal_tape.stepping = false;
+  hal_tape.stepped = true;
+}
 
 /// Windows not yet played are played; false when the period on the tape was not the one that ran.
 bool hal_tape_finish_period(void);
@@ -72,7 +75,10 @@ static inline bool tape_is_off(void) { return hal_tape.mode == TAPE_OFF; }
 static inline bool tape_plays(void) { return hal_tape.mode == TAPE_PLAYS; }
 
 /// First line of a hooked call: lets the interrupts come that came here.
-void tape_call(void);
+void tape_pass_call(void);
+static inline void tape_call(void) {
+  if (!tape_is_off()) tape_pass_call();
+}
 
 /// A word that the HAL returns: played, or noted and handed through.
 uint16_t tape_take(void);

@@ -22,13 +22,6 @@ void hal_tape_next_period(void) {
   hal_tape.period.window_count = 0u;
 }
 
-void hal_tape_step_begin(void) { hal_tape.stepping = true; }
-
-void hal_tape_step_end(void) {
-  hal_tape.stepping = false;
-  hal_tape.stepped = true;
-}
-
 // Plays the windows that came before the present call of the control step; a window makes calls, too.
 static void play_windows(void) {
   hal_tape_t* const t = &hal_tape;
@@ -51,9 +44,9 @@ bool hal_tape_finish_period(void) {
   return !t->torn;
 }
 
-void tape_call(void) {
+void tape_pass_call(void) {
   hal_tape_t* const t = &hal_tape;
-  if (t->mode == TAPE_OFF || !t->stepping) return;
+  if (!t->stepping) return;
   if (t->mode == TAPE_PLAYS) play_windows();
   t->call++;
 }

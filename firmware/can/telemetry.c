@@ -1,31 +1,10 @@
 #include "firmware/can/telemetry.h"
 
 #include "firmware/can/messages.h"
-#include "firmware/drive.h"
-
-#define SIGNAL(name, unit, q, meaning) &drive.signals.name,
-static const volatile int32_t* const places[] = {
-#include "firmware/signal_list.h"
-};
-#undef SIGNAL
-
-// The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
-static drive_signals_t signals_of_one_interrupt(void) {
-  drive_signals_t copy;
-  const volatile uint16_t* const interrupts = &drive.heartbeat;
-  uint16_t seen = 0u;
-  do {
-    uint16_t place = 0u;
-    seen = *interrupts;
-#define SIGNAL(name, unit, q, meaning) copy.name = *places[place++];
-#include "firmware/signal_list.h"
-#undef SIGNAL
-  } while (seen != *interrupts);
-  return copy;
-}
+#include "firmware/drive_api.h"
 
 void telemetry_status(hal_can_frame_t* frame, const can_command_t* command, uint16_t alive) {
-  const drive_signals_t s = signals_of_one_interrupt();
+  const drive_signals_t s = drive_signals();
   can_put(frame, CAN_STATUS_STATE, s.state);
   can_put(frame, CAN_STATUS_COMMANDED, command->commanding ? 1 : 0);
   can_put(frame, CAN_STATUS_TIMED_OUT, command->timed_out ? 1 : 0);
@@ -38,7 +17,7 @@ void telemetry_status(hal_can_frame_t* frame, const can_command_t* command, uint
 }
 
 void telemetry_values(hal_can_frame_t* first, hal_can_frame_t* second) {
-  const drive_signals_t s = signals_of_one_interrupt();
+  const drive_signals_t s = drive_signals();
   can_put(first, CAN_TELEMETRY_1_CURRENT_D, can_steps(CAN_TELEMETRY_1_CURRENT_D, s.current_d, 20u));
   can_put(first, CAN_TELEMETRY_1_CURRENT_Q, can_steps(CAN_TELEMETRY_1_CURRENT_Q, s.current_q, 20u));
   can_put(first, CAN_TELEMETRY_1_LINK_VOLTAGE, can_steps(CAN_TELEMETRY_1_LINK_VOLTAGE, s.link_voltage, 16u));

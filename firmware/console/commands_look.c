@@ -31,7 +31,7 @@ static void put_limits(octet_writer_t* w, int32_t limits) {
 }
 
 static void put_speeds(octet_writer_t* w) {
-  put_fixed(w, drive_signals()->speed, 16, 1);
+  put_fixed(w, drive_signals().speed, 16, 1);
   put_text(w, " rpm of ");
   put_fixed(w, drive.control.wanted_rpm_q16, 16, 1);
   put_text(w, " rpm");
@@ -41,7 +41,7 @@ static void status_state(octet_writer_t* w) {
   put_text(w, words(WORDS_STATE, (uint16_t)drive.state));
   if (drive.state == DRIVE_START) {
     put_text(w, ": ");
-    put_text(w, words(WORDS_START, (uint16_t)drive_signals()->start_phase));
+    put_text(w, words(WORDS_START, (uint16_t)drive_signals().start_phase));
   } else if (drive.state == DRIVE_COMMISSION) {
     put_text(w, ": ");
     put_text(w, words(WORDS_PHASE, (uint16_t)drive_commissioning_phase()));
@@ -50,18 +50,18 @@ static void status_state(octet_writer_t* w) {
 
 static void status_current(octet_writer_t* w) {
   put_text(w, "d ");
-  put_fixed(w, drive_signals()->current_d, 20, 2);
+  put_fixed(w, drive_signals().current_d, 20, 2);
   put_text(w, " A, q ");
-  put_fixed(w, drive_signals()->current_q, 20, 2);
+  put_fixed(w, drive_signals().current_q, 20, 2);
   put_text(w, " A");
 }
 
 static void status_link(octet_writer_t* w) {
-  put_fixed(w, drive_signals()->link_voltage, 16, 1);
+  put_fixed(w, drive_signals().link_voltage, 16, 1);
   put_text(w, " V");
 }
 
-static void status_limits(octet_writer_t* w) { put_limits(w, drive_signals()->limit); }
+static void status_limits(octet_writer_t* w) { put_limits(w, drive_signals().limit); }
 
 static void status_fault(octet_writer_t* w) {
   const uint16_t fault = (uint16_t)drive.fault;
@@ -136,9 +136,9 @@ static void put_overview(octet_writer_t* w) {
   status_current(w);
   put_text(w, "   ");
   status_link(w);
-  if (drive_signals()->limit == 0) return;
+  if (drive_signals().limit == 0) return;
   put_text(w, "   ");
-  put_limits(w, drive_signals()->limit);
+  put_limits(w, drive_signals().limit);
 }
 
 static bool watch(uint16_t step) {

@@ -41,12 +41,13 @@ static uint16_t link_flags(void) { return (uint16_t)((guard_is_on() ? 1u : 0u) |
 
 answer_status_t request_status(request_t* r) {
   octet_writer_t* const w = &r->answer;
+  const drive_signals_t s = drive_signals();
   put_u32(w, drive_time_ms());
   put_u8(w, (uint16_t)drive.state);
   put_u8(w, (uint16_t)drive.fault);
-  put_u16(w, (uint16_t)drive_signals()->limit);
-  put_i32(w, drive_signals()->speed);
-  put_i32(w, drive_signals()->speed_reference);
+  put_u16(w, (uint16_t)s.limit);
+  put_i32(w, s.speed);
+  put_i32(w, s.speed_reference);
   put_u8(w, (uint16_t)store_state());
   put_u8(w, store_progress());
   put_u8(w, (uint16_t)drive_commissioning_outcome());

@@ -1,19 +1,12 @@
 #include "firmware/scope/scope.h"
 
-#include "firmware/drive.h"
+#include "firmware/drive_api.h"
 #include "firmware/isr_cycles.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
+#include "hal/qmath/qmath.h"
 
 #define RING_MASK (SCOPE_DEPTH - 1u)
-
-#define SIGNAL(name, unit, q, meaning) &drive.signals.name,
-static const int32_t* const signals[] = {
-#include "firmware/signal_list.h"
-};
-#undef SIGNAL
-
-#define SIGNALS ((uint16_t)(sizeof signals / sizeof signals[0]))
 
 // The background level changes set-up and ring only while `state` is IDLE or DONE, when the interrupt leaves them
 // alone; so the state is written first at an end and last at a start.
@@ -31,9 +24,10 @@ static bool fresh;        // there is no previous value yet
 static bool fired;        // since the last record
 static uint16_t unread;   // AUTO: a bit for each channel whose last word has not been read
 
-uint16_t scope_signals(void) { return SIGNALS; }
-
-static bool is_running(void) { return state == SCOPE_FILLING || state == SCOPE_ARMED || state == SCOPE_TRIGGERED; }
+static bool is_running(void) {
+  const scope_state_t now = state;
+  return now >= SCOPE_FILLING && now <= SCOPE_TRIGGERED;
+}
 
 static void forget_records(void) {
   head = 0;
@@ -50,11 +44,11 @@ void scope_reset(void) {
 }
 
 static bool is_valid(const scope_setup_t* s) {
-  if (s->decimation < 1u || s->pretrigger >= SCOPE_DEPTH || s->trigger >= SIGNALS) return false;
+  if (s->decimation < 1u || s->pretrigger >= SCOPE_DEPTH || s->trigger >= signal_count()) return false;
   if (s->mode > SCOPE_AUTO || s->edge > SCOPE_BELOW) return false;
   if (s->count < 1u || s->count > SCOPE_CHANNELS) return false;
   for (uint16_t k = 0; k < s->count; k++) {
-    if (s->channel[k].signal >= SIGNALS || s->channel[k].shift > SCOPE_SHIFT_MAX) return false;
+    if (s->channel[k].signal >= signal_count() || s->channel[k].shift > SCOPE_SHIFT_MAX) return false;
   }
   return true;
 }
@@ -137,7 +131,7 @@ static bool is_met(int32_t value) {
 }
 
 static void watch_trigger(void) {
-  const int32_t value = *signals[setup_in_force.trigger];
+  const int32_t value = drive_signal(setup_in_force.trigger);
   if (state == SCOPE_FILLING && recorded >= setup_in_force.pretrigger) state = SCOPE_ARMED;
   if (state == SCOPE_ARMED && is_met(value)) fired = true;
   previous = value;
@@ -147,7 +141,7 @@ static void watch_trigger(void) {
 static void record(void) {
   for (uint16_t k = 0; k < setup_in_force.count; k++) {
     const scope_channel_t* const c = &setup_in_force.channel[k];
-    ring[k][head] = (int16_t)q_clamp(q_shr(*signals[c->signal], c->shift), INT16_MIN, INT16_MAX);
+    ring[k][head] = (int16_t)q_clamp(q_shr(drive_signal(c->signal), c->shift), INT16_MIN, INT16_MAX);
   }
   head = (uint16_t)((head + 1u) & RING_MASK);
   if (recorded < SCOPE_DEPTH) recorded++;

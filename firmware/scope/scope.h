@@ -90,10 +90,7 @@ scope_status_t scope_status(void);
 /// while a capture runs.
 uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t count);
 
-/// Number of signals in signal_list.h.
-uint16_t scope_signals(void);
-
-/// Control interrupt level, behind drive_publish. time_ms: drive_t.time_ms.
+/// Control interrupt level, at its end. time_ms: drive_t.time_ms.
 void scope_step(uint32_t time_ms);
 
 #endif

@@ -94,14 +94,6 @@ TARGET_RAM_CODE void hal_irq_control_end(void) {
   pie_acknowledge(CONTROL_GROUP);
 }
 
-TARGET_RAM_CODE uint16_t irq_hold(void) {
-  const uint16_t state = target_read_ier();
-  target_write_ier(0u);
-  return state;
-}
-
-TARGET_RAM_CODE void irq_release(uint16_t state) { target_write_ier(state); }
-
 TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
   tape_call();
   return irq_hold();

@@ -23,7 +23,11 @@ static inline void pie_acknowledge(uint16_t group) {
 
 // Holds every interrupt off, by IER: its value can be read and put back, INTM's cannot. hold returns what release has
 // to be given.
-uint16_t irq_hold(void);
-void irq_release(uint16_t state);
+static inline uint16_t irq_hold(void) {
+  const uint16_t state = target_read_ier();
+  target_write_ier(0u);
+  return state;
+}
+static inline void irq_release(uint16_t state) { target_write_ier(state); }
 
 #endif

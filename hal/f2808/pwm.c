@@ -33,7 +33,7 @@ static void set_up_time_base(uint16_t module) {
   target_write16(epwm + EPWM_TBCTR, 0u);
 }
 
-TARGET_RAM_CODE static void write_compare(uint32_t epwm, uint16_t a, uint16_t b) {
+static inline void write_compare(uint32_t epwm, uint16_t a, uint16_t b) {
   target_write16(epwm + EPWM_CMPA_CMPA, a);
   target_write16(epwm + EPWM_CMPB, b);
 }
@@ -152,7 +152,7 @@ bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
   return tape_plays() ? tape_take() != 0u : tape_note(set_dead_band(dead_band_ticks) ? 1u : 0u) != 0u;
 }
 
-TARGET_RAM_CODE static uint16_t period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
+static inline uint16_t period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
 
 TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) {
   tape_call();
@@ -161,9 +161,18 @@ TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) {
 
 // False too when the next period has begun before its control interrupt could come: the counter then looks early. Such
 // a period start waits in the event counter. It is read after the time, so that none slips in between.
-TARGET_RAM_CODE static bool is_in_time(uint16_t deadline_tick) {
+static inline bool is_in_time(uint16_t deadline_tick) {
   const bool early = period_tick() <= deadline_tick;
   return early && !reg_any(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_ETPS, EPWM_ETPS_INTCNT_MASK);
+}
+
+static inline void write_leg(const hal_pwm_frame_t* frame, uint16_t leg) {
+  write_compare(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg), frame->rise_tick[leg], frame->fall_tick[leg]);
+}
+
+static inline void write_window(const hal_pwm_frame_t* frame, uint16_t window) {
+  write_compare(EPWM_BASE(PWM_FIRST_WINDOW_MODULE + window), frame->burst_start_tick[window],
+                frame->burst_end_tick[window]);
 }
 
 TARGET_RAM_CODE static bool write_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
@@ -171,13 +180,13 @@ TARGET_RAM_CODE static bool write_frame(const hal_pwm_frame_t* frame, uint16_t d
   const uint16_t state = irq_hold();
   const bool in_time = is_in_time(deadline_tick);
   if (in_time) {
-    for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
-      write_compare(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg), frame->rise_tick[leg], frame->fall_tick[leg]);
-    }
-    for (uint16_t window = 0u; window < HAL_PWM_WINDOWS; window++) {
-      write_compare(EPWM_BASE(PWM_FIRST_WINDOW_MODULE + window), frame->burst_start_tick[window],
-                    frame->burst_end_tick[window]);
-    }
+    // Written out, with addresses that are constants.
+    write_leg(frame, 0u);
+    write_leg(frame, 1u);
+    write_leg(frame, 2u);
+    write_window(frame, 0u);
+    write_window(frame, 1u);
+    write_window(frame, 2u);
   }
   irq_release(state);
   return in_time;

@@ -30,7 +30,7 @@ class Commissioner : public PeriodListener {
   }
 
   void on_period(Tick t) override {
-    const drive_signals_t& s = *drive_signals();
+    const drive_signals_t s = drive_signals();
     fault_ = fault_ == FAULT_NONE ? s.fault : fault_;
     if (s.state == DRIVE_READY && !configured_) {
       for (const auto& [id, raw] : parameters_) refused_ = refused_ || parameter_set(id, raw) != SET_OK;

@@ -77,7 +77,7 @@ class Director : public PeriodListener {
 
   void on_period(Tick t) override {
     if (!tap_.turn() && result_.reason.empty()) result_.reason = "stopped by the one who takes the tape";
-    const drive_signals_t& s = *drive_signals();
+    const drive_signals_t s = drive_signals();
     recorder_.finish_row(s, drive.samples);
     watch_fault(t, s);
     board_->plant().advance(t);

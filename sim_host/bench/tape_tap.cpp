@@ -62,9 +62,9 @@ Octets answer_of(const tape_period_t& p, std::uint16_t sequence) {
 }
 
 Octets signals_now() {
-  const drive_signals_t& s = *drive_signals();
+  const drive_signals_t s = drive_signals();
   Octets octets;
-#define SIGNAL(name, unit, q, meaning) put32(octets, static_cast<std::uint32_t>(s.name));
+#define SIGNAL(name, unit, q, value, meaning) put32(octets, static_cast<std::uint32_t>(s.name));
 #include "firmware/signal_list.h"
 #undef SIGNAL
   return octets;

@@ -60,7 +60,7 @@ void VirtualBoard::advance(Tick ticks) {
 }
 
 void VirtualBoard::on_period(Tick t) {
-  const drive_signals_t& s = *drive_signals();
+  const drive_signals_t s = drive_signals();
   const std::uint64_t resets = chip_.statistics().resets;
   if (resets != resets_) told_ = false;
   resets_ = resets;
@@ -103,9 +103,9 @@ std::vector<Quantity> VirtualBoard::truth() {
 }
 
 std::vector<Quantity> VirtualBoard::signals() {
-  const drive_signals_t& s = *drive_signals();
+  const drive_signals_t s = drive_signals();
   return {
-#define SIGNAL(name, unit, q, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
+#define SIGNAL(name, unit, q, value, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
 #include "firmware/signal_list.h"
 #undef SIGNAL
   };

@@ -60,7 +60,7 @@ class CanDrive : public ::testing::Test {
       desk->advance(20 * kMillisecond);
     }
   }
-  static drive_state_t state() { return static_cast<drive_state_t>(drive_signals()->state); }
+  static drive_state_t state() { return static_cast<drive_state_t>(drive_signals().state); }
   double speed() {
     for (const Quantity& q : desk->truth()) {
       if (std::strcmp(q.name, "speed") == 0) return q.value;
@@ -71,7 +71,7 @@ class CanDrive : public ::testing::Test {
     power();
     say(0, 0, 100);
     say(2, rpm, 1'200);
-    ASSERT_EQ(state(), DRIVE_RUN) << "fault " << drive_signals()->fault;
+    ASSERT_EQ(state(), DRIVE_RUN) << "fault " << drive_signals().fault;
     ASSERT_NEAR(speed(), rpm, 0.1 * rpm + 5.0);
   }
 };
@@ -139,7 +139,7 @@ std::vector<drive_signals_t> record(VirtualBoard& desk, int ms) {
   std::vector<drive_signals_t> signals;
   for (int k = 0; k < ms; k++) {
     desk.advance(kMillisecond);
-    signals.push_back(*drive_signals());
+    signals.push_back(drive_signals());
   }
   return signals;
 }
@@ -157,7 +157,7 @@ TEST_F(CanDrive, AFullBusChangesNoSignalOfTheControl) {
     drive_command_speed(400 << 16);
     drive_command_start();
     runs.push_back(record(*desk, 1'000));
-    ASSERT_EQ(state(), DRIVE_RUN) << "fault " << drive_signals()->fault;
+    ASSERT_EQ(state(), DRIVE_RUN) << "fault " << drive_signals().fault;
     if (load > 0) {
       EXPECT_GT(double(desk->can_bus().busy_ticks()), 0.98 * 1'000 * kMillisecond);
     }
@@ -205,7 +205,7 @@ std::vector<Tick> toggles_with(std::uint32_t flooding_id) {
   drive_command_speed(400 << 16);
   drive_command_start();
   chip.run_until(1'200 * kMillisecond);
-  EXPECT_EQ(drive_signals()->state, DRIVE_RUN);
+  EXPECT_EQ(drive_signals().state, DRIVE_RUN);
   return board.toggles;
 }
 

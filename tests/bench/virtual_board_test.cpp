@@ -34,11 +34,11 @@ BoardRequest request() {
 
 void start_running(VirtualBoard& board) {
   board.advance(kReady);
-  ASSERT_EQ(drive_signals()->state, DRIVE_READY);
+  ASSERT_EQ(drive_signals().state, DRIVE_READY);
   drive_command_speed(300 << 16);
   drive_command_start();
-  for (int k = 0; k < 2000 && drive_signals()->state != DRIVE_RUN; ++k) board.advance(kMillisecond);
-  ASSERT_EQ(drive_signals()->state, DRIVE_RUN);
+  for (int k = 0; k < 2000 && drive_signals().state != DRIVE_RUN; ++k) board.advance(kMillisecond);
+  ASSERT_EQ(drive_signals().state, DRIVE_RUN);
 }
 
 TEST(VirtualBoard, TimePassesOnlyWhenTold) {

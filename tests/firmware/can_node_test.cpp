@@ -134,7 +134,7 @@ TEST_F(CanNode, StatusAndTelemetrySayWhatTheSignalsSay) {
   EXPECT_EQ(can_get(&status, CAN_STATUS_STATE), DRIVE_RUN);
   EXPECT_EQ(can_get(&status, CAN_STATUS_ENERGISED), 1);
   EXPECT_EQ(can_get(&status, CAN_STATUS_COMMANDED), 0);
-  EXPECT_NEAR(can_get(&status, CAN_STATUS_REFERENCE) / 4.0, drive.signals.speed_reference / 65536.0, 2.0);
+  EXPECT_NEAR(can_get(&status, CAN_STATUS_REFERENCE) / 4.0, drive_signals().speed_reference / 65536.0, 2.0);
   const hal_can_frame_t telemetry = sent[0x201].back();
   EXPECT_NEAR(can_get(&telemetry, CAN_TELEMETRY_1_LINK_VOLTAGE) / 100.0, 300.0, 1.0);
 }

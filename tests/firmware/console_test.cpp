@@ -170,7 +170,7 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
 TEST_F(Console, Signals) {
   const std::string all = command("signals", 10000);
   for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, signal_info(k)->name));
-  drive.signals.speed = 600 * 65536 + 32768;
+  drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
   EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
 }
 
@@ -214,9 +214,9 @@ TEST_F(Console, TheScopeFromWordsToNumbers) {
                   "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
   for (int k = 0; k < 3000; ++k) {
-    drive.signals.speed = k * 65536;
-    drive.signals.current_q = -5 * (1 << 20);
-    drive.signals.angle = 1 << 30;
+    drive.position.used.speed_bpp = bpp_of(k);
+    drive.control.measured_q20.q = -5 * (1 << 20);
+    drive.position.used.angle_bam = 1u << 30;
     scope_step(static_cast<std::uint32_t>(k));
   }
   EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));

@@ -59,6 +59,14 @@ inline hal_adc_window_t still_window(double link = 300.0) {
   return w;
 }
 
+/// The lowest electrical speed that is shown as this mechanical one, rpm.
+inline std::int32_t bpp_of(int rpm) {
+  const auto shown = [](std::int32_t bpp) { return drive_rpm_q16(&drive, bpp); };
+  std::int32_t bpp = static_cast<std::int32_t>(static_cast<std::int64_t>(rpm) * drive.config.bpp_per_rpm_q8 / 256) - 4;
+  while (shown(bpp) < rpm * 65536) bpp++;
+  return bpp;
+}
+
 class Drive : public ::testing::Test {
  protected:
   void SetUp() override {

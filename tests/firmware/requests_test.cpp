@@ -190,19 +190,19 @@ TEST_F(Requests, TheStore) {
 
 TEST_F(Requests, StatusAndSignals) {
   drive.state = DRIVE_RUN;
-  drive.signals.speed = -123 * 65536;
-  drive.signals.speed_reference = 600 * 65536;
-  drive.signals.limit = LIMIT_VOLTAGE | LIMIT_BRAKING;
+  drive.position.used.speed_bpp = bpp_of(-123);
+  drive.control.ramp.value = bpp_of(600);
+  drive.limits = LIMIT_VOLTAGE | LIMIT_BRAKING;
   const Answer a = ask(REQUEST_STATUS);
   ASSERT_EQ(a.body(), 23u);
   EXPECT_NEAR(a.number(0, 4), drive.time_ms, 45);
   EXPECT_EQ(a.number(4, 1), static_cast<unsigned>(DRIVE_RUN));
   EXPECT_EQ(a.number(6, 2), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
-  EXPECT_EQ(static_cast<std::int32_t>(a.number(8, 4)), -123 * 65536);
-  EXPECT_EQ(a.number(12, 4), 600u * 65536u);
+  EXPECT_NEAR(static_cast<std::int32_t>(a.number(8, 4)), -123 * 65536, 3);
+  EXPECT_NEAR(a.number(12, 4), 600 * 65536, 3);
   const Answer s = ask(REQUEST_SIGNALS, little(4, 2) + little(2, 2));
   ASSERT_EQ(s.body(), 8u);
-  EXPECT_EQ(static_cast<std::int32_t>(s.number(0, 4)), -123 * 65536);
+  EXPECT_NEAR(static_cast<std::int32_t>(s.number(0, 4)), -123 * 65536, 3);
   EXPECT_EQ(s.number(4, 4), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
   EXPECT_EQ(ask(REQUEST_SIGNALS, little(signal_count(), 2)).status(), RANGE);
   EXPECT_EQ(ask(REQUEST_SIGNALS, Octets(34, 0)).status(), LENGTH);
@@ -296,7 +296,7 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, wrong).status(), LENGTH);
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
   for (int k = 0; k < 3000; ++k) {
-    drive.signals.speed = k * 65536;
+    drive.position.used.speed_bpp = bpp_of(k);
     scope_step(static_cast<std::uint32_t>(k));
   }
   const Answer state = ask(REQUEST_SCOPE_STATE);
@@ -313,8 +313,8 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
 }
 
 TEST_F(Requests, AStreamComesAtItsPeriod) {
-  drive.signals.speed = 77;
-  EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(4, 2) + little(0, 2)).status(), OK);
+  drive.control.measured_q20.d = 77;
+  EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(9, 2) + little(0, 2)).status(), OK);
   records.clear();
   run(2000);  // 200 ms
   ASSERT_EQ(records.size(), 10u);
@@ -422,8 +422,8 @@ TEST_F(Guard, ItEndsWithThePowerStage) {
 TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
   drive_reset();
   drive.time_ms = 5;
-  drive.signals.speed = 6;
-  const std::uint16_t places[] = {4, 60000};
+  drive.control.measured_q20.d = 6;
+  const std::uint16_t places[] = {9, 60000};
   std::int32_t values[2] = {-1, -1};
   EXPECT_EQ(drive_signals_copy(places, 2, values), 5u);
   EXPECT_EQ(values[0], 6);

@@ -11,7 +11,7 @@ namespace {
 using namespace stillspin::test;
 
 enum : std::uint16_t {
-#define SIGNAL(name, unit, q, meaning) signal_##name,
+#define SIGNAL(name, unit, q, value, meaning) signal_##name,
 #include "firmware/signal_list.h"
 #undef SIGNAL
   signal_count
@@ -19,10 +19,10 @@ enum : std::uint16_t {
 
 class Scope : public Drive {
  protected:
-  /// Interrupt number n: `speed` is n, `current_q` what the test says.
+  /// Interrupt number n: `current_d` is n, `current_q` what the test says.
   void interrupt(std::int32_t current = 0) {
-    drive.signals.speed = static_cast<std::int32_t>(n_);
-    drive.signals.current_q = current;
+    drive.control.measured_q20.d = static_cast<std::int32_t>(n_);
+    drive.control.measured_q20.q = current;
     scope_step(n_ / 10u);
     n_++;
   }
@@ -37,7 +37,7 @@ class Scope : public Drive {
     s.trigger = signal_current_q;
     s.level = 100;
     s.count = 1;
-    s.channel[0] = {signal_speed, 0};
+    s.channel[0] = {signal_current_d, 0};
     return s;
   }
 
@@ -65,7 +65,7 @@ class Scope : public Drive {
   std::uint32_t n_ = 0;
 };
 
-TEST_F(Scope, SignalsAreThoseOfTheList) { EXPECT_EQ(scope_signals(), signal_count); }
+TEST_F(Scope, SignalsAreThoseOfTheList) { EXPECT_EQ(::signal_count(), signal_count); }
 
 TEST_F(Scope, DoesNothingBeforeItIsArmed) {
   EXPECT_FALSE(scope_arm()) << "there is no set-up";

@@ -45,8 +45,9 @@ void interrupt() {
   const Access outside(false);
   log(TRACE_INTERRUPT, vector);
   vectors[vector]();
-  const auto* signals = reinterpret_cast<const std::int32_t*>(drive_signals());
-  log(TRACE_RETURN, vector, trace_hash(signals, sizeof(drive_signals_t) / sizeof(std::int32_t)));
+  const drive_signals_t signals = drive_signals();
+  log(TRACE_RETURN, vector,
+      trace_hash(reinterpret_cast<const std::int32_t*>(&signals), sizeof signals / sizeof(std::int32_t)));
 }
 
 template <std::size_t... vector>

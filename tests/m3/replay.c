@@ -88,7 +88,7 @@ static void end_step(void) {
 }
 
 static void end_period(void) {
-  const int32_t state = drive_signals()->state;
+  const int32_t state = drive_signals().state;
   statistic_t* const table = (state == DRIVE_RUN || state == DRIVE_STOP) ? turning : starting;
   uint32_t total = 0;
   end_step();
@@ -166,10 +166,11 @@ static void take_interrupt(uint32_t vector) {
   running.ticks += (mark - SYSTICK_VALUE) & SYSTICK_MASK;
   if (controlling) {
     end_period();
-  } else if (drive_signals()->state == DRIVE_RUN) {
+  } else if (drive_signals().state == DRIVE_RUN) {
     add(&windows, instructions(&running));
   }
-  expect(TRACE_RETURN, vector, trace_hash((const int32_t*)drive_signals(), sizeof(drive_signals_t) / sizeof(int32_t)));
+  const drive_signals_t signals = drive_signals();
+  expect(TRACE_RETURN, vector, trace_hash((const int32_t*)&signals, sizeof signals / sizeof(int32_t)));
   running = interrupted;
   controlling = preempted;
 }
