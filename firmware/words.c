@@ -67,16 +67,23 @@ static const char* const outcomes[] = {"not yet",
 
 static const char* const scopes[] = {"idle", "filling", "armed", "triggered", "done"};
 
+static const char* const buses[] = {"off",
+                                    "waiting for the bus",
+                                    "on the bus",
+                                    "on the bus, with many errors",
+                                    "on the bus, error passive: nobody acknowledges, or its rate is another",
+                                    "bus-off: it tries again after can_recovery"};
+
 #define LIST(list) {(list), (uint16_t)(sizeof(list) / sizeof((list)[0]))}
 
 static const struct {
   const char* const* words;
   uint16_t count;
 } kinds[WORDS_KINDS] = {LIST(states),   LIST(faults), LIST(limits),   LIST(verdicts), LIST(phases), {NULL, 0},
-                        LIST(statuses), LIST(starts), LIST(remedies), LIST(outcomes), LIST(scopes)};
+                        LIST(statuses), LIST(starts), LIST(remedies), LIST(outcomes), LIST(scopes), LIST(buses)};
 
 const char* words_or_null(uint16_t kind, uint16_t code) {
-  if (kind == WORDS_STORE) return (code <= STORE_FOREIGN) ? store_words((store_state_t)code) : NULL;
+  if (kind == WORDS_STORE) return (code <= STORE_OLDER) ? store_words((store_state_t)code) : NULL;
   return (kind < WORDS_KINDS && code < kinds[kind].count) ? kinds[kind].words[code] : NULL;
 }
 

@@ -22,10 +22,11 @@ typedef enum {
   WORDS_START = 7,          // start_phase_t
   WORDS_REMEDY = 8,         // drive_fault_t: what to do about it
   WORDS_COMMISSIONING = 9,  // commissioning_outcome_t
-  WORDS_SCOPE = 10          // scope_state_t
+  WORDS_SCOPE = 10,         // scope_state_t
+  WORDS_CAN = 11            // hal_can_state_t
 } words_kind_t;
 
-#define WORDS_KINDS 11u
+#define WORDS_KINDS 12u
 
 /// NULL when there is no such kind or code.
 const char* words_or_null(uint16_t kind, uint16_t code);

@@ -48,10 +48,8 @@ typedef struct {
   uint16_t aux;      // one code of the auxiliary input: third current or heat-sink temperature, as the board says
 } hal_adc_window_t;
 
-// Powers the converter up (5 ms, polled) and arms both sequencers. Needs hal_clock_init and hal_time_init.
-void hal_adc_init(void);
-
-// The same in parts, for those who have something to do meanwhile: begin, look until it is up, arm.
+// Powers the converter up, which takes 5 ms, and arms both sequencers: begin, look until it is up, arm. Needs
+// hal_clock_init and hal_time_init.
 void hal_adc_power_up(void);
 bool hal_adc_is_up(void);
 void hal_adc_set_up(void);

@@ -9,6 +9,7 @@
 #include "firmware/can/telemetry.h"
 #include "firmware/drive.h"
 #include "firmware/hil/hil.h"
+#include "firmware/link/stream.h"
 #include "firmware/parameters.h"
 #include "hal/hal_profile.h"
 
@@ -117,17 +118,22 @@ static void send_telemetry(void) {
   if (hal_can_send(&first, PRIORITY_TELEMETRY)) (void)hal_can_send(&second, PRIORITY_TELEMETRY);
 }
 
-can_node_errors_t can_node_errors(void) {
-  can_node_errors_t errors;
-  errors.bus = hal_can_status();
-  errors.bad_commands = self.command.bad;
-  const uint32_t lost = (uint32_t)errors.bus.lost + self.command.gaps + self.request.dropped;
-  errors.lost = lost > 0xFFFFuL ? 0xFFFFu : (uint16_t)lost;
-  return errors;
+can_node_state_t can_node_state(void) {
+  can_node_state_t state;
+  state.node = self.node;
+  state.rate_kbit = self.rate_kbit;
+  state.heard = self.command.heard;
+  state.commanding = self.command.commanding;
+  state.timed_out = self.command.timed_out;
+  state.bus = hal_can_status();
+  state.bad_commands = self.command.bad;
+  const uint32_t lost = (uint32_t)state.bus.lost + self.command.gaps + self.request.dropped;
+  state.lost = lost > 0xFFFFuL ? 0xFFFFu : (uint16_t)lost;
+  return state;
 }
 
 static void send_diagnostic(void) {
-  const can_node_errors_t errors = can_node_errors();
+  const can_node_state_t errors = can_node_state();
   hal_can_frame_t frame = can_frame(CAN_DIAGNOSTIC, self.node);
   can_put(&frame, CAN_DIAGNOSTIC_BAD_COMMANDS, (int32_t)errors.bad_commands);
   can_put(&frame, CAN_DIAGNOSTIC_LOST_FRAMES, (int32_t)errors.lost);
@@ -200,6 +206,14 @@ static void answer_record(uint32_t now_ms) {
   if (count != 0u) segment_split_begin(&self.response, count, now_ms);
 }
 
+// Behind every answer, and only when what was sent before has left: a stream too fast for the bus leaves room for all
+// else.
+static void send_event(uint32_t now_ms) {
+  if (self.response.count != 0u || self.request_ready || hal_can_waiting(PRIORITY_RECORD) != 0u) return;
+  const uint16_t count = stream_event(GUARD_BUS, self.response.octets);
+  if (count != 0u) segment_split_begin(&self.response, count, now_ms);
+}
+
 static void write_record(uint32_t now_ms) {
   hal_can_frame_t frame = can_frame(CAN_RECORD_RESPONSE, self.node);
   for (uint16_t k = 0u; k < RECORD_FRAMES_PER_ROUND; k++) {
@@ -210,6 +224,7 @@ static void write_record(uint32_t now_ms) {
   }
   // Nobody takes it: what is left of the answer would be old when somebody does.
   if (self.response.count != 0u && now_ms - self.response.last_ms > SEGMENTS_REST_MS) {
+    if (self.response.octets[0] == EVENT_STREAM) stream_dropped(GUARD_BUS);
     self.response.count = 0u;
     hal_can_cancel(PRIORITY_RECORD);
   }
@@ -222,6 +237,7 @@ void can_node_service(void) {
   // With the host in the loop the drive and its parameters are a simulation's: the bus carries records and knows
   // nothing of the rest.
   const bool own_drive = !hil_is_active();
+  if (drive.loading) return;
   if (own_drive) follow_parameters();
   hal_can_service();
   watch_bus(now_ms);
@@ -233,6 +249,7 @@ void can_node_service(void) {
   answer_parameter();
   read_record(now_ms);
   answer_record(now_ms);
+  send_event(now_ms);
   write_record(now_ms);
   if (own_drive) send_periodic(now_ms);
 }

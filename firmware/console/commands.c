@@ -26,6 +26,7 @@ static const command_t commands[] = {
     {"signals", "[part]", "signals and their values", command_signals},
     {"commission", "[start | results]", "measures machine and inverter; turns the shaft, 90 s", command_commission},
     {"scope", "[channels | trigger | every | before | mode | arm | stop | print]", "captured scope", command_scope},
+    {"can", "", "the CAN node: rate, state, errors, who commands", command_can},
     {"version", "", "of this firmware", command_version},
 };
 

@@ -47,6 +47,8 @@ bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
 
 void command_help(const words_of_line_t* a);
 
+void command_can(const words_of_line_t* a);  // commands_can.c
+
 // commands_parameters.c
 void command_list(const words_of_line_t* a);
 void command_get(const words_of_line_t* a);

@@ -36,8 +36,8 @@ static bool send(uint16_t count, uint16_t beside) {
 // Only into a ring that is all but empty, so that a stream too fast for the port leaves room for all else; the port's
 // FIFO keeps the wire busy meanwhile.
 static void send_event(void) {
-  const uint16_t count = stream_event(record);
-  if (count > 0u && !send(count, WIRE_MAX + OUTPUT_LINE)) stream_dropped();
+  const uint16_t count = stream_event(GUARD_SERIAL, record);
+  if (count > 0u && !send(count, WIRE_MAX + OUTPUT_LINE)) stream_dropped(GUARD_SERIAL);
 }
 
 static void answer(void) {
@@ -85,6 +85,6 @@ link_errors_t link_errors(void) {
   link_errors_t e;
   e.records = splitter.errors;
   e.port = hal_sci_errors();
-  e.events_dropped = stream_lost();
+  e.events_dropped = stream_lost(GUARD_SERIAL);
   return e;
 }

@@ -5,6 +5,7 @@
 #include "firmware/link/link.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/requests.h"
+#include "firmware/link/stream.h"
 #include "firmware/store/store.h"
 
 answer_status_t request_command(request_t* r) {
@@ -98,7 +99,7 @@ answer_status_t request_link(request_t* r) {
   put_u16(w, e.port.overrun);
   put_u16(w, e.port.breaks);
   put_u16(w, e.port.lost);
-  put_u16(w, e.events_dropped);
+  put_u16(w, stream_lost(r->port));
   return ANSWER_OK;
 }
 

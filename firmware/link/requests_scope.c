@@ -67,15 +67,11 @@ answer_status_t request_stream(request_t* r) {
   if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
   const uint16_t period_ms = take_u16(&r->body);
   const uint16_t count = (uint16_t)(octets_left(&r->body) / 2u);
-  if (r->port != GUARD_SERIAL) {
-    put_text(&r->answer, "events are sent on the serial port: ask there");
-    return ANSWER_STATE;
-  }
   for (uint16_t k = 0; k < count; k++) {
     places[k] = take_u16(&r->body);
     if (places[k] >= signal_count()) return ANSWER_RANGE;
   }
   if (period_ms != 0u && count == 0u) return ANSWER_LENGTH;
-  stream_setup(period_ms, places, count);
+  stream_setup(r->port, period_ms, places, count);
   return ANSWER_OK;
 }

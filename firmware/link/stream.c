@@ -4,49 +4,62 @@
 #include "firmware/link/octets.h"
 #include "firmware/link/record.h"
 
-static uint16_t period;  // ms; 0: no stream
-static uint16_t count;
-static uint16_t signals[STREAM_SIGNALS];
-static uint16_t counter;
-static uint16_t lost;
-static uint32_t last_ms;
+typedef struct {
+  uint16_t period;  // ms; 0: no stream
+  uint16_t count;
+  uint16_t signals[STREAM_SIGNALS];
+  uint16_t counter;
+  uint16_t lost;
+  uint32_t last_ms;
+} stream_t;
 
-void stream_reset(void) { period = 0; }
+static stream_t serial, bus;
 
-void stream_setup(uint16_t period_ms, const uint16_t* places, uint16_t number) {
-  period = period_ms;
-  count = number;
-  for (uint16_t k = 0; k < number; k++) signals[k] = places[k];
-  counter = 0;
-  lost = 0;
-  last_ms = drive_time_ms();
+static stream_t* of(guard_t port) { return (port == GUARD_BUS) ? &bus : &serial; }
+
+void stream_reset(void) {
+  static const stream_t none = {0};
+  serial = none;
+  bus = none;
 }
 
-void stream_dropped(void) {
-  if (lost < UINT16_MAX) lost++;
+void stream_setup(guard_t port, uint16_t period_ms, const uint16_t* places, uint16_t number) {
+  stream_t* const s = of(port);
+  s->period = period_ms;
+  s->count = number;
+  for (uint16_t k = 0; k < number; k++) s->signals[k] = places[k];
+  s->counter = 0;
+  s->lost = 0;
+  s->last_ms = drive_time_ms();
 }
 
-uint16_t stream_lost(void) { return lost; }
+void stream_dropped(guard_t port) {
+  stream_t* const s = of(port);
+  if (s->lost < UINT16_MAX) s->lost++;
+}
+
+uint16_t stream_lost(guard_t port) { return of(port)->lost; }
 
 // Those that nobody came for.
-static void skip_missed(uint32_t now) {
-  const uint32_t missed = (now - last_ms) / period;
-  last_ms += missed * period;
-  counter = (uint16_t)(counter + missed);
-  const uint32_t sum = missed + lost;
-  lost = (sum < UINT16_MAX) ? (uint16_t)sum : UINT16_MAX;
+static void skip_missed(stream_t* s, uint32_t now) {
+  const uint32_t missed = (now - s->last_ms) / s->period;
+  s->last_ms += missed * s->period;
+  s->counter = (uint16_t)(s->counter + missed);
+  const uint32_t sum = missed + s->lost;
+  s->lost = (sum < UINT16_MAX) ? (uint16_t)sum : UINT16_MAX;
 }
 
-uint16_t stream_event(uint16_t* record) {
-  if (period == 0u || drive_time_ms() - last_ms < period) return 0;
+uint16_t stream_event(guard_t port, uint16_t* record) {
+  stream_t* const s = of(port);
+  if (s->period == 0u || drive_time_ms() - s->last_ms < s->period) return 0;
   int32_t values[STREAM_SIGNALS];
-  last_ms += period;
-  const uint32_t time_ms = drive_signals_copy(signals, count, values);
-  skip_missed(time_ms);
+  s->last_ms += s->period;
+  const uint32_t time_ms = drive_signals_copy(s->signals, s->count, values);
+  skip_missed(s, time_ms);
   octet_writer_t w = octet_writer(record, RECORD_MAX);
   put_u8(&w, EVENT_STREAM);
-  put_u8(&w, counter++);
+  put_u8(&w, s->counter++);
   put_u32(&w, time_ms);
-  for (uint16_t k = 0; k < count; k++) put_i32(&w, values[k]);
+  for (uint16_t k = 0; k < s->count; k++) put_i32(&w, values[k]);
   return w.count;
 }

@@ -1,12 +1,14 @@
-// The stream: some signals once every few milliseconds, as events on the serial port.
+// The stream: some signals once every few milliseconds, as events on the port that asked for it. Each port has its own.
 //
-// An event that finds no room in the port's ring, or whose time has passed meanwhile, is dropped and counted; its
+// An event that finds no room on its port, or whose time has passed meanwhile, is dropped and counted; its
 // counter is used up, so that the host sees the gap. Nothing ever waits for the port.
 
 #ifndef STILLSPIN_FIRMWARE_LINK_STREAM_H
 #define STILLSPIN_FIRMWARE_LINK_STREAM_H
 
 #include <stdint.h>
+
+#include "firmware/link/guard.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -17,18 +19,18 @@ extern "C" {
 
 void stream_reset(void);
 
-/// Signals by their places in signal_list.h; period 0 ends the stream.
-void stream_setup(uint16_t period_ms, const uint16_t* places, uint16_t count);
+/// `port`: GUARD_SERIAL or GUARD_BUS. Signals by their places in signal_list.h; period 0 ends the stream.
+void stream_setup(guard_t port, uint16_t period_ms, const uint16_t* places, uint16_t count);
 
 /// The record that is due, without its CRC, into `record` (room for RECORD_MAX). Returns its octets; 0 when none is
 /// due.
-uint16_t stream_event(uint16_t* record);
+uint16_t stream_event(guard_t port, uint16_t* record);
 
 /// To be told when an event found no room.
-void stream_dropped(void);
+void stream_dropped(guard_t port);
 
 /// Events dropped since the stream was set up; stays at 65535.
-uint16_t stream_lost(void);
+uint16_t stream_lost(guard_t port);
 
 #if defined(__cplusplus)
 }

@@ -89,6 +89,7 @@ static store_state_t take_over(void) {
     values_swap();
     return STORE_CONFLICT;
   }
+  if (report.older) return STORE_OLDER;
   const bool other_firmware = report.rescaled > 0u || report.refused > 0u || report.missing > 0u || report.unknown > 0u;
   return other_firmware ? STORE_MIGRATED : STORE_LOADED;
 }
@@ -179,6 +180,8 @@ const char* store_words(store_state_t s) {
       return "the saved values do not fit together and are not used: defaults are in force";
     case STORE_FOREIGN:
       return "a newer firmware has saved in a form that this one does not know: defaults are in force";
+    case STORE_OLDER:
+      return "what was saved last cannot be used: the values saved before it are in force; look at them, then save";
     default:
       return "";
   }

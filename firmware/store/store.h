@@ -1,10 +1,11 @@
 // Parameter store: the parameters in a memory that keeps them without power (hal/hal_nvm.h).
 //
-// Two slots, written in turn; the newer valid one counts. A save never touches the slot that is valid, so wherever the
-// power fails either the old or the new set is read next time, as a whole (firmware/store/slot.h has the format).
-// Values go by the stable number of their parameter and are rescaled when its format has changed; a value outside of
-// its range is refused, its default stays in force; numbers that this firmware does not know are kept and written back,
-// so that going back to an older firmware and forth again loses nothing.
+// Two slots, written in turn; the newer valid one counts. A save never touches that one, so wherever the power fails
+// either the old or the new set is read next time, as a whole (firmware/store/slot.h has the format). What cannot be
+// read is read once more before it is given up; when the slot that is given up may have been the newer one, the state
+// says so. Values go by the stable number of their parameter and are rescaled when its format has changed; a value
+// outside of its range is refused, its default stays in force; numbers that this firmware does not know are kept and
+// written back, so that going back to an older firmware and forth again loses nothing.
 //
 // store_service does all the work, in the background level and in short slices (below 2000 cycles, but for the exchange
 // of a whole set, which checks it like a changed parameter does); it never waits. At power-on it reads while the drive
@@ -22,6 +23,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
 typedef enum {
   STORE_EMPTY = 0,     // a new memory
   STORE_LOADED = 1,    // the values are in force as they were saved
@@ -33,12 +38,15 @@ typedef enum {
   STORE_READING = 7,   // at power-on or on command
   STORE_ABSENT = 8,    // no memory answers
   STORE_CONFLICT = 9,  // the saved values do not fit together (parameter_conflict)
-  STORE_FOREIGN = 10   // written in a format of the future
+  STORE_FOREIGN = 10,  // written in a format of the future
+  STORE_OLDER = 11     // loaded, but not what was saved last: that is damaged, broken off or in a format of the future
 } store_state_t;
 
 /// What was found at the last loading or written at the last saving.
 typedef struct {
   uint16_t slot;           // 0, 1; SLOTS when none is valid
+  uint16_t newest;         // the same, also in a format of the future: a save spares it
+  bool older;              // the other slot may have been newer
   uint32_t sequence;       // how many times this memory has been written: its wear
   uint16_t values;         // in the slot
   uint16_t rescaled;       // the parameter's format has changed
@@ -75,5 +83,9 @@ const store_report_t* store_report(void);
 
 /// One sentence.
 const char* store_words(store_state_t state);
+
+#if defined(__cplusplus)
+}
+#endif
 
 #endif

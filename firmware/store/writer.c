@@ -31,7 +31,7 @@ uint16_t writer_progress(void) {
 
 store_report_t writer_report(void) {
   store_report_t report = {0};
-  report.slot = new_slot;
+  report.slot = report.newest = new_slot;
   report.sequence = header.sequence;
   report.values = header.count;
   report.unknown = unknown;
@@ -45,8 +45,9 @@ static void put(uint16_t octets) {
 bool writer_begin(const store_report_t* so_far) {
   if (so_far->unknown > SLOT_ENTRIES_MAX - parameter_count()) return false;
   old_slot = so_far->slot;
-  new_slot = (old_slot == 0u) ? 1u : 0u;
-  unknown = (old_slot < SLOTS) ? so_far->unknown : 0u;
+  // The newest slot is spared, also when another firmware wrote it and this one's own values lie in the other.
+  new_slot = (so_far->newest == 0u) ? 1u : 0u;
+  unknown = (old_slot < SLOTS && old_slot != new_slot) ? so_far->unknown : 0u;
   header.magic = 0xFFFFFFFFuL;
   header.version = SLOT_VERSION;
   header.count = (uint16_t)(parameter_count() + unknown);

@@ -42,13 +42,6 @@ static inline void rearm(void) {
 
 TARGET_RAM_CODE void adc_rearm(void) { rearm(); }
 
-void hal_adc_init(void) {
-  hal_adc_power_up();
-  while (!hal_adc_is_up()) {
-  }
-  hal_adc_set_up();
-}
-
 void hal_adc_set_up(void) {
   // Two sequencers, one run a trigger, no clock divider, shortest sample window: everything 0.
   target_write16(REG_ADCTRL1, 0u);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "firmware/drive_api.h"
+#include "firmware/store/store.h"
 #include "sim_host/bench/run.hpp"
 
 namespace stillspin::bench {
@@ -15,12 +16,10 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kRpmPerRads = 30.0 / kPi;
 constexpr double kLargestLoad = 1e4;
 
-bool is_default(std::uint16_t id) {
-  for (std::uint16_t k = 0; k < parameter_count(); k++) {
-    const parameter_info_t& info = *parameter_info(k);
-    if (info.id == id) return parameter_get(id) == info.initial;
-  }
-  return false;
+// A saved set has every parameter: nothing of it is overruled, also where it says what the default says.
+bool saved_values_are_in_force() {
+  const store_state_t state = store_state();
+  return state == STORE_LOADED || state == STORE_MIGRATED || state == STORE_OLDER;
 }
 
 }  // namespace
@@ -75,9 +74,8 @@ void VirtualBoard::on_period(Tick t) {
 
 void VirtualBoard::tell_parameters() {
   told_ = true;
-  for (const Told& p : parameters_) {
-    if (is_default(p.id)) (void)parameter_set(p.id, p.raw);
-  }
+  if (saved_values_are_in_force()) return;
+  for (const Told& p : parameters_) (void)parameter_set(p.id, p.raw);
 }
 
 void VirtualBoard::set_load(double torque) {

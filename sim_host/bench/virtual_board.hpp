@@ -28,7 +28,7 @@ namespace stillspin::bench {
 struct BoardRequest {
   Setup setup;
   /// Firmware parameters of a board that nobody has set up, in the table's units: told to the drive when it is first
-  /// ready after power-on or a reset, where a parameter still has its default.
+  /// ready after power-on or a reset, unless it has found saved ones in its memory.
   std::map<std::string, double> parameters;
 };
 

@@ -42,7 +42,10 @@ void rig_main() {
     hal_time_init();
     hal_safety_init();
     (void)hal_pwm_init(kDeadBand);
-    hal_adc_init();
+    hal_adc_power_up();
+    while (!hal_adc_is_up()) {
+    }
+    hal_adc_set_up();
     hal_irq_install(rig_control, rig_window);
     hal_irq_enable();
   }

@@ -132,8 +132,9 @@ class StorePower : public ::testing::Test {
     }
     eeprom.power_on();
     Supply again(eeprom);
-    EXPECT_EQ(store_state(), STORE_LOADED);
-    return is_new();
+    const bool renewed = is_new();
+    EXPECT_TRUE(store_state() == STORE_LOADED || (store_state() == STORE_OLDER && !renewed)) << store_state();
+    return renewed;
   }
 
   std::vector<std::uint8_t> before_;

@@ -167,9 +167,10 @@ TEST(BoardStore, ThePowerGoesWhileItSaves) {
     copy.power_on();
     Powered third(&copy);
     third.run_for(100 * kMs);
-    ASSERT_EQ(store_state(), STORE_LOADED) << at;
-    ASSERT_TRUE(parameters.current_limit == 12 << 20 || parameters.current_limit == 13 << 20) << at;
-    renewed += parameters.current_limit == 13 << 20 ? 1 : 0;
+    const bool is_new = parameters.current_limit == 13 << 20;
+    ASSERT_TRUE(is_new || parameters.current_limit == 12 << 20) << at;
+    ASSERT_TRUE(store_state() == STORE_LOADED || (store_state() == STORE_OLDER && !is_new)) << at;
+    renewed += is_new ? 1 : 0;
   }
   EXPECT_GT(renewed, 0);
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "firmware/drive_api.h"
+#include "firmware/store/store.h"
 #include "hal/hal_sci.h"
 #include "sim_host/bench/run.hpp"
 
@@ -68,6 +69,31 @@ TEST(VirtualBoard, ParametersAreToldOnceTheDriveIsReady) {
   board.advance(kReady);
   EXPECT_EQ(parameter_get(static_cast<std::uint16_t>(id)), raw);
   EXPECT_THROW(VirtualBoard({request().setup, {{"no_such", 1.0}}}), std::exception);
+}
+
+// Saved at its default, a value is a saved value like any other.
+TEST(VirtualBoard, WhatIsSavedOverrulesTheProfile) {
+  BoardRequest r = request();
+  r.parameters = {{"speed_ramp", 1234.0}};
+  unsigned id = 0;
+  (void)parameter_raw("speed_ramp", 1234.0, id);
+  const auto ramp = static_cast<std::uint16_t>(id);
+  const std::int32_t initial = parameter_by_id(ramp)->initial;
+  std::vector<std::uint8_t> memory;
+  {
+    VirtualBoard board(r);
+    board.advance(kReady);
+    ASSERT_EQ(parameter_set(ramp, initial), SET_OK);
+    ASSERT_TRUE(store_save());
+    board.advance(300 * kMillisecond);
+    ASSERT_EQ(store_state(), STORE_SAVED);
+    memory = board.eeprom();
+  }
+  VirtualBoard board(r);
+  board.set_eeprom(memory);
+  board.advance(kReady + 40 * kMillisecond);
+  ASSERT_EQ(drive_signals().state, DRIVE_READY);
+  EXPECT_EQ(parameter_get(ramp), initial);
 }
 
 TEST(VirtualBoard, CutsOfTimeDoNotChangeTheRun) {

@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/can/messages.h"
 #include "firmware/can/node.h"
 #include "firmware/can/segments.h"
+#include "firmware/link/stream.h"
 }
 
 namespace stillspin::test {
@@ -243,6 +244,49 @@ TEST_F(CanNode, DiagnosticTellsWhatWentWrong) {
   EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_BAD_COMMANDS), 4);
   EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_LOST_FRAMES), 3);
   EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_BUS_OFFS), 255);
+}
+
+TEST_F(CanNode, IsOffTheBusUntilTheSavedRateIsKnown) {
+  board.can_groups.clear();
+  can_node_reset(answer);
+  drive.loading = true;
+  pass(20);
+  EXPECT_TRUE(board.can_groups.empty()) << "500 kbit/s may be the wrong rate";
+  EXPECT_TRUE(board.can_out.empty());
+  parameters.can_rate = 250;
+  parameters.can_node = 7;
+  drive.loading = false;
+  pass(20);
+  EXPECT_EQ(board.can_rate, 250'000u);
+  EXPECT_TRUE(take_sent().count(0x187) == 1);
+}
+
+TEST_F(CanNode, SendsTheStreamBehindTheAnswers) {
+  parameters.can_status_period = parameters.can_telemetry_period = 0;
+  const std::uint16_t speed_and_link[] = {2, 15};
+  stream_setup(GUARD_BUS, 20, speed_and_link, 2);
+  pass(5);
+  take_sent();
+  pass(200);
+  const std::vector<hal_can_frame_t> frames = take_sent()[0x481];
+  segment_joiner_t joiner;
+  segment_join_reset(&joiner);
+  int events = 0;
+  for (const hal_can_frame_t& f : frames) {
+    if (!segment_join(&joiner, &f, 0)) continue;
+    ASSERT_EQ(joiner.count, 2 + 4 + 8);
+    EXPECT_EQ(joiner.octets[0], EVENT_STREAM);
+    EXPECT_EQ(joiner.octets[1], events++);
+  }
+  EXPECT_EQ(events, 10);
+  EXPECT_EQ(stream_lost(GUARD_BUS), 0);
+  board.can_drains = false;  // unplugged
+  board.can_room = 2;
+  pass(2000);
+  board.can_drains = true;
+  pass(25);
+  EXPECT_GE(stream_lost(GUARD_BUS), 99) << "none of them is lost silently";
+  stream_reset();
 }
 
 // Whatever came, the drive obeys the next proper commands.

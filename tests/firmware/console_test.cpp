@@ -5,6 +5,7 @@
 #include "tests/firmware/terminal.hpp"
 
 extern "C" {
+#include "firmware/can/node.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
@@ -43,6 +44,19 @@ TEST_F(Console, GetAndSet) {
             "speed_limit = 3300 rpm\r\n  10 .. 6000 rpm, default 3300, number 9; only while the power stage is off\r\n"
             "  largest speed reference\r\n");
   EXPECT_TRUE(has(command("get link_voltage"), "DC-link voltage")) << "signals too";
+}
+
+TEST_F(Console, TheBusInWords) {
+  can_node_reset(nullptr);
+  EXPECT_TRUE(has(command("can"), ": on the bus\r\n"));
+  can_node_service();
+  board.can_status = {HAL_CAN_BUS_OFF, 255, 3, 9, 2, 1};
+  EXPECT_EQ(
+      command("can"),
+      "bus         node 1 at 500 kbit/s: bus-off: it tries again after can_recovery\r\n"
+      "errors      255 sending, 3 receiving (96 warn, 256 sending are bus-off); bus-off 2 times, restarted 1 times\r\n"
+      "lost        9 frames or records; 0 commands did not count\r\n"
+      "commands    none has come\r\n");
 }
 
 TEST_F(Console, WhatIsRefusedIsExplained) {

@@ -6,6 +6,9 @@ FakeNvm nvm;
 
 bool FakeNvm::begin(std::uint16_t where, std::uint16_t* in, const std::uint16_t* out, std::uint16_t n) {
   if (state == NVM_BUSY || n == 0 || where + std::size_t{n} > memory.size()) return false;
+  const long job = jobs++;
+  if (job == refused_job) return false;
+  deaf = job == deaf_job;
   state = NVM_BUSY;
   address = where;
   read = in;
@@ -42,10 +45,13 @@ void FakeNvm::write_page() {
 hal_nvm_state_t FakeNvm::step() {
   if (state != NVM_BUSY || left-- > 0) return state;
   state = NVM_FAILED;
-  if (absent || !powered || !pass_octets()) return state;
+  const long first = octets;
+  if (absent || deaf || !powered || !pass_octets()) return state;
   if (write != nullptr) write_page();
   if (!powered) return state;
   for (unsigned k = 0; read != nullptr && k < count; ++k) read[k] = memory[address + k];
+  const long wrong = wrong_at_octet - first;
+  if (read != nullptr && wrong >= 0 && wrong < count) read[wrong] ^= 0x10u;
   state = NVM_DONE;
   return state;
 }

@@ -30,6 +30,11 @@ class FakeNvm {
   std::function<std::uint8_t(unsigned, std::uint8_t, std::uint8_t)> torn;
   bool powered = true;
 
+  /// Octet number n (counted by `octets`) is read wrong; job number n is not acknowledged, or not taken; -1 never.
+  long wrong_at_octet = -1;
+  long jobs = 0;
+  long deaf_job = -1, refused_job = -1;
+
   /// Octets that do not take what is written to them.
   std::vector<unsigned> dead;
 
@@ -43,6 +48,7 @@ class FakeNvm {
   hal_nvm_state_t step();
 
  private:
+  bool deaf = false;  // the job under way
   bool pass_octets();
   void write_page();
 };

@@ -8,6 +8,7 @@
 extern "C" {
 #include "firmware/fault_history.h"
 #include "firmware/link/crc.h"
+#include "firmware/link/stream.h"
 #include "firmware/scope/scope.h"
 #include "firmware/version.h"
 #include "firmware/words.h"
@@ -259,7 +260,8 @@ TEST_F(Requests, WordsForEverything) {
   EXPECT_EQ(last(WORDS_START), START_MOTION);
   EXPECT_EQ(last(WORDS_COMMISSIONING), COMMISSIONING_FAILED);
   EXPECT_EQ(last(WORDS_SCOPE), SCOPE_DONE);
-  EXPECT_EQ(last(WORDS_STORE), STORE_FOREIGN);
+  EXPECT_EQ(last(WORDS_STORE), STORE_OLDER);
+  EXPECT_EQ(last(WORDS_CAN), HAL_CAN_BUS_OFF);
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 12}).text(), "loss of synchronism");
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 99}).status(), RANGE);
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_KINDS, 0}).status(), UNKNOWN);
@@ -348,11 +350,25 @@ TEST_F(Requests, AStreamWithoutRoomDropsAndCounts) {
   EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2) + little(signal_count(), 2)).status(), RANGE);
 }
 
-TEST_F(Requests, TheBusHasNoStream) {
-  std::uint16_t answer[RECORD_MAX];
+// Two clients, each on its port: neither ends nor slows the other's stream, nor gets its events.
+TEST_F(Requests, EachPortHasItsStream) {
+  std::uint16_t answer[RECORD_MAX], event[RECORD_MAX];
   const std::uint16_t request[] = {REQUEST_STREAM, 7, 10, 0, 4, 0};
-  EXPECT_GT(request_answer(GUARD_BUS, request, 6, answer), 3);
-  EXPECT_EQ(answer[2], STATE);
+  EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(4, 2)).status(), OK);
+  EXPECT_EQ(request_answer(GUARD_BUS, request, 6, answer), 3);
+  EXPECT_EQ(answer[2], OK);
+  records.clear();
+  int heard = 0;
+  for (int ms = 0; ms < 200; ++ms) {
+    run(10);
+    if (stream_event(GUARD_BUS, event) == 0) continue;
+    EXPECT_EQ(event[1], heard++);
+  }
+  EXPECT_EQ(heard, 20);
+  EXPECT_EQ(records.size(), 10u);
+  EXPECT_EQ(ask(REQUEST_STREAM, little(0, 2)).status(), OK);
+  run(10);
+  EXPECT_GT(stream_event(GUARD_BUS, event), 0) << "the other one goes on";
 }
 
 class Guard : public Requests {

@@ -38,8 +38,8 @@ class PowerCut : public Store {
   /// True for the new set, false for the old one.
   bool check_what_is_left() {
     const store_state_t state = power_on();
-    EXPECT_EQ(state, STORE_LOADED);
     const Values now = in_force();
+    EXPECT_TRUE(state == STORE_LOADED || (state == STORE_OLDER && now == old_)) << store_words(state);
     EXPECT_TRUE(now == old_ || now == new_) << "a mixed set";
     // And the next save works.
     set_variant(7);
@@ -120,7 +120,8 @@ TEST_F(PowerCut, TwiceInARow) {
       for (const auto& [id, raw] : new_) parameter_set(id, raw);
       nvm.cut_at_page = nvm.pages + second;
       ASSERT_EQ(save(), STORE_FAILED);
-      ASSERT_EQ(power_on(), STORE_LOADED);
+      const store_state_t state = power_on();
+      ASSERT_TRUE(state == STORE_LOADED || state == STORE_OLDER) << store_words(state);
       ASSERT_TRUE(in_force() == after_first || in_force() == new_);
     }
   }
@@ -173,7 +174,8 @@ TEST_F(PowerCut, UnknownNumbersSurviveToo) {
     set_variant(1);
     nvm.cut_at_octet = nvm.octets + at;
     const bool saved = save() == STORE_SAVED;
-    ASSERT_EQ(power_on(), STORE_MIGRATED) << at;
+    const store_state_t state = power_on();
+    ASSERT_TRUE(state == STORE_MIGRATED || (state == STORE_OLDER && !saved)) << at;
     ASSERT_EQ(store_report()->unknown, 40) << at;
     if (saved) break;
   }

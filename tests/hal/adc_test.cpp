@@ -8,11 +8,18 @@ namespace stillspin::test {
 class Adc : public BusTest {
  protected:
   void SetUp() override { bus.power_all(); }
+
+  static void bring_up() {
+    hal_adc_power_up();
+    while (!hal_adc_is_up()) {
+    }
+    hal_adc_set_up();
+  }
 };
 
 TEST_F(Adc, powers_up_and_waits_5_ms_before_anything_else) {
   const std::uint64_t before = bus.cycles;
-  hal_adc_init();
+  bring_up();
   const std::size_t power = bus.first_write(REG_ADCTRL3);
   EXPECT_EQ(bus.steps[power].value, 0x00E1u) << "bandgap, reference, converter; simultaneous; ADCCLK = HSPCLK";
   expect_before(bus.first_write(REG_ADCTRL1, ADCTRL1_RESET_MASK), power, "reset before power-up");
@@ -22,7 +29,7 @@ TEST_F(Adc, powers_up_and_waits_5_ms_before_anything_else) {
 }
 
 TEST_F(Adc, sequences_are_four_current_pairs_and_three_with_the_slow_pair) {
-  hal_adc_init();
+  bring_up();
   EXPECT_EQ(bus.words[REG_ADCMAXCONV], 0x0033u) << "four pairs each";
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ1], 0x0000u) << "A0 with B0, four times";
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3], 0x1000u) << "A0 with B0 three times, then A1 with B1";
@@ -30,7 +37,7 @@ TEST_F(Adc, sequences_are_four_current_pairs_and_three_with_the_slow_pair) {
 }
 
 TEST_F(Adc, triggers_are_armed_last) {
-  hal_adc_init();
+  bring_up();
   const std::size_t arm = bus.first_write(REG_ADCTRL2);
   EXPECT_EQ(arm, bus.last_write_of_all());
   EXPECT_EQ(bus.steps[arm].value, 0x4149u) << "SOCA to SEQ1, SOCB to SEQ2, SEQ2 interrupt, both sequencers reset";

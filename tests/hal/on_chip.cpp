@@ -67,7 +67,10 @@ void image() {
   hal_time_init();
   hal_safety_init();
   fw.init_ok = hal_pwm_init(kDeadBand) && fw.init_ok;
-  hal_adc_init();
+  hal_adc_power_up();
+  while (!hal_adc_is_up()) {
+  }
+  hal_adc_set_up();
   hal_encoder_init(4096);
   hal_irq_install(control_function, window_function);
   if (fw.watchdog) {

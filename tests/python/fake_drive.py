@@ -22,7 +22,7 @@ PARAMETERS = [
     (6, "current_limit", "A", 20, 2, 0.1, 16, 14, True, "largest current"),
     (8, "speed_limit", "rpm", 8, 0, 100, 4000, 3300, False, "largest speed"),
     (86, "speed_ramp", "rpm/s", 8, 0, 0, 100000, 3000, True, "slope of the speed reference, 0 for a step"),
-    (98, "link_maximum", "V", 16, 1, 10, 450, 420, True, "DC link beyond which the drive faults"),
+    (164, "link_regulation", "V", 16, 1, 10, 450, 405, True, "DC link from which braking is reduced"),
     (200, "link_timeout", "ms", 0, 0, 50, 10000, 300, True, "silence after which a guarded drive stops"),
     (101, "ratio", "%", 16, 2, -50, 50, 0, True, ""),
 ]
@@ -44,6 +44,7 @@ WORDS = {
     4: ["idle", "turning", "staircase"],
     5: ["empty", "loaded", "damaged", "migrated", "saving", "saved", "failed"],
 }
+CONFLICT_WORDS = "link_regulation must be above link_minimum"
 OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT = range(8)
 READY, RUN, FAULT, COMMISSION = 2, 4, 6, 7
 DEPTH = 1024
@@ -239,11 +240,13 @@ class FakeDrive:
             raise RefusalError(RANGE, f"{entry[1]} is out of range")
         if self.state == RUN and not entry[8]:
             raise RefusalError(RUNNING)
-        if number == 98 and value < raw(50, 16) and self.state == RUN:
-            raise RefusalError(CONFLICT, "not taken while the drive runs: link_maximum is too low")
+        if number == 164 and value < raw(50, 16) and self.state == RUN:
+            raise RefusalError(CONFLICT, f"not taken while the drive runs: {CONFLICT_WORDS}")
         self.values[number] = value
-        if self.values[98] < raw(50, 16):
-            raise RefusalError(CONFLICT, "taken, but the drive does not start with it: link_maximum is too low")
+        if self.values[164] < raw(50, 16):
+            raise RefusalError(
+                CONFLICT, "taken, but the drive does not start with it: link_regulation must be above link_minimum"
+            )
         if self.stubborn == number:
             raise RefusalError(BUSY)
         return struct.pack("<i", value)

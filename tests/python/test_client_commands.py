@@ -1,6 +1,7 @@
 """The commands that talk to a drive: parameter files, captures as files, the live plot, the console."""
 
 import csv
+import errno
 import fcntl
 import json
 import os
@@ -76,14 +77,14 @@ def test_what_the_drive_refuses_is_said_and_not_saved(ask, fake, tmp_path):
 
 
 def test_a_conflict_that_the_next_values_resolve_is_none(ask, fake, tmp_path):
-    fake.values[98] = 20 * 2**16
-    (tmp_path / "x.toml").write_text("[parameters]\nspeed_ramp = 500\nlink_maximum = 300\n")
+    fake.values[164] = 20 * 2**16
+    (tmp_path / "x.toml").write_text("[parameters]\nspeed_ramp = 500\nlink_regulation = 300\n")
     assert "2 of 2 parameters changed" in ask("params", "load", "x.toml").stdout
-    (tmp_path / "x.toml").write_text("[parameters]\nlink_maximum = 20\nspeed_ramp = 600\n")
+    (tmp_path / "x.toml").write_text("[parameters]\nlink_regulation = 20\nspeed_ramp = 600\n")
     result = ask("params", "load", "x.toml", "--save")
     assert result.exit_code == 1
     assert "2 of 2 parameters changed\n" in result.stdout
-    assert "does not start with it: link_maximum is too low" in result.stderr
+    assert "does not start with it: link_regulation must be above link_minimum" in result.stderr
     assert fake.store == 1
 
 
@@ -183,6 +184,20 @@ def test_an_mf4_file_is_read_by_asammdf(tmp_path):
     assert np.array_equal(signal.samples, capture.signals["current_q"])
     assert np.array_equal(signal.timestamps, capture.time)
     assert signal.unit == "A"
+
+
+def test_a_capture_that_cannot_be_written_leaves_nothing(drive, tmp_path, monkeypatch):
+    capture = drive.capture("speed")
+
+    def full(path, _):
+        path.write_bytes(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setitem(capture_file.WRITERS, ".csv", full)
+    (tmp_path / "captures").mkdir()
+    with pytest.raises(InputError, match=r"x\.csv: cannot be written \(No space left on device\)"):
+        capture_file.write(tmp_path / "captures" / "x.csv", capture)
+    assert list((tmp_path / "captures").iterdir()) == []
 
 
 def test_a_place_that_cannot_be_written_is_said_before_the_capture(tmp_path):

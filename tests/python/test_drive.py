@@ -72,9 +72,9 @@ def test_what_is_wrong_with_a_value_is_said_before_it_is_sent(fake, drive, name,
 
 def test_the_drive_says_why_it_refuses(drive):
     drive.start(100)
-    with pytest.raises(RefusedError, match=r"^link_maximum: not taken while the drive runs"):
-        drive.set("link_maximum", 20)
-    assert drive.get("link_maximum") == 420.0
+    with pytest.raises(RefusedError, match=r"^link_regulation: not taken while the drive runs"):
+        drive.set("link_regulation", 20)
+    assert drive.get("link_regulation") == 405.0
     with pytest.raises(RefusedError, match="motor_poles: not while the motor is energised"):
         drive.set("motor_poles", 3)
     with pytest.raises(RefusedError, match="not in this state"):
@@ -82,10 +82,12 @@ def test_the_drive_says_why_it_refuses(drive):
 
 
 def test_a_value_that_does_not_go_with_the_others_is_taken_with_a_warning(drive):
-    with pytest.warns(ConflictWarning, match="the drive does not start with it: link_maximum is too low"):
-        assert drive.set("link_maximum", 20) == 20.0
-    assert drive.get("link_maximum") == 20.0
-    assert drive.change("link_maximum", 300).conflict == ""
+    with pytest.warns(
+        ConflictWarning, match="the drive does not start with it: link_regulation must be above link_minimum"
+    ):
+        assert drive.set("link_regulation", 20) == 20.0
+    assert drive.get("link_regulation") == 20.0
+    assert drive.change("link_regulation", 300).conflict == ""
 
 
 def test_status_signals_and_words(drive):

@@ -41,11 +41,10 @@ def write(path: Path, capture: Capture) -> None:
     check(path)
     suffix = path.suffix.lower()
     try:
-        with tempfile.NamedTemporaryFile(dir=path.absolute().parent, suffix=suffix, delete=False) as file:
-            partial = Path(file.name)
-        WRITERS[suffix](partial, capture)
-        partial.chmod(0o644)
-        partial.replace(path)
+        with tempfile.TemporaryDirectory(prefix=f".{path.stem}-", dir=path.absolute().parent) as beside:
+            partial = Path(beside) / f"capture{suffix}"
+            WRITERS[suffix](partial, capture)
+            partial.replace(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 

@@ -85,6 +85,8 @@ class Words(IntEnum):
     """What to do about a fault."""
     COMMISSIONING = 9
     SCOPE = 10
+    CAN = 11
+    """State of the drive on the CAN bus."""
 
 
 REPEATABLE = frozenset(

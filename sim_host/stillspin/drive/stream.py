@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import queue
 import struct
-import threading
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-from stillspin.drive.describe import unpack
-from stillspin.drive.protocol import STREAM_EVENT, Request, StatusCode
+from stillspin.drive.protocol import STREAM_EVENT, Request
 from stillspin.drive.requester import Requester
 from stillspin.drive.table import Signal
 from stillspin.errors import InputError
-from stillspin.link.errors import DriveError, NoAnswerError, RefusedError
 from stillspin.link.records import Record
 
 MOST = 8
@@ -65,11 +61,6 @@ class Stream:
         try:
             requester.request(Request.STREAM, numbers, repeat=True)
             self._stack.callback(self._stop)
-        except RefusedError as error:
-            self._stack.close()
-            if error.status != StatusCode.STATE:
-                raise
-            self._poll(period)  # no events on this way: ask
         except BaseException:
             self._stack.close()
             raise
@@ -106,28 +97,6 @@ class Stream:
     def _stop(self) -> None:
         if not self._requester.lost:
             self._requester.request(Request.STREAM, struct.pack("<H", 0), repeat=True)
-
-    def _poll(self, period: float) -> None:
-        """Ask for the signals again and again, where the drive does not send them by itself."""
-        end = threading.Event()
-        numbers = struct.pack(f"<{len(self.signals)}H", *(signal.index for signal in self.signals))
-        start = unpack("<I", self._requester.request(Request.STATUS, repeat=True))[0] / 1e3 - time.monotonic()
-
-        def ask() -> None:
-            while not end.wait(period):
-                try:
-                    body = self._requester.request(Request.SIGNALS, numbers, repeat=False)
-                except NoAnswerError:
-                    self.lost += 1
-                except DriveError:
-                    return
-                else:
-                    self._put(start + time.monotonic(), unpack(self._form[:1] + self._form[2:], body))
-
-        thread = threading.Thread(target=ask, name="stillspin poll", daemon=True)
-        thread.start()
-        self._stack.callback(thread.join)
-        self._stack.callback(end.set)
 
     def _take(self, record: Record) -> None:
         if record.kind != STREAM_EVENT or len(record.body) != struct.calcsize(self._form):
