@@ -3,6 +3,8 @@
 #define CUTOFF_LEAST_Q30 107374L
 #define CUTOFF_MOST_Q30 53687091L
 #define BANDWIDTH_MOST_Q30 107374182L
+#define CUTOFF_SHARE 4
+#define FASTER 8               // at most 0.4 of the difference per period
 #define FOLLOW_Q30 536870912L  // k = 1/2: the length follows with w_c/2, offsets decay with w_c/4
 
 static stator_flux_config_t form_of(const flux_observer_config_t* c) {
@@ -29,6 +31,12 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
   flux_machine_move(&s->machine, m, &s->adaptation.shares);
 }
 
+// w_c is a quarter of the speed, where that is more.
+static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
+  const int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->slow_bpp)) / CUTOFF_SHARE;
+  s->form.cutoff_q30 = q_clamp(share_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
+}
+
 void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, const estimator_output_t* now,
                           ab_t current_q20) {
   const rotation_t r = frame_rotation(now->angle_bam);
@@ -40,21 +48,18 @@ void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, c
   const dq_t flux_q16 = {q_clamp(q_mul_sat(f->psi_q16, d_q24, 24), -f->bound_q16, f->bound_q16),
                          q_clamp(q_mul_sat(f->psi_q16, q_q24, 24), -f->bound_q16, f->bound_q16)};
   s->form = form_of(c);
+  s->slow_bpp = now->speed_bpp;
+  place_cutoff(s, c);
   stator_flux_preset(&s->flux, &s->form, frame_inverse_park(flux_q16, r), machine_speed_rad_q30(now->speed_bpp));
   tracking_observer_preset(&s->observer, now->angle_bam, now->speed_bpp, now->load_accel_q8);
   s->current_q20 = current_q20;
-  s->slow_bpp = now->speed_bpp;
-  s->slow_rest_q16 = 0;
   s->error_bam = 0;
 }
 
-// The speed in (34): first order with half the cut-off.
+// The speed in (34): first order with half the cut-off, and faster where the cut-off follows the speed.
 static void filter_speed(flux_observer_t* s, const flux_observer_config_t* c) {
-  const int32_t share_q31 = c->cutoff_q30;
-  const int64_t step_q31 =
-      (int64_t)(s->observer.speed_bpp - s->slow_bpp) * share_q31 + (int64_t)s->slow_rest_q16 * 32768L;
-  s->slow_bpp += (int32_t)q_shr64(step_q31, 31);
-  s->slow_rest_q16 = (int32_t)q_shr64(step_q31 & 0x7FFFFFFFL, 15);
+  const int32_t share_q31 = c->cutoff_q30 + FASTER * (s->form.cutoff_q30 - c->cutoff_q30);
+  s->slow_bpp += q_mul(s->observer.speed_bpp - s->slow_bpp, share_q31, 31);
 }
 
 static void integrate(flux_observer_t* s, const machine_model_t* m, const flux_period_t* p) {
@@ -95,6 +100,7 @@ static int32_t quality_q15(const flux_observer_config_t* c, int32_t w_q30) {
 estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,
                                       const flux_period_t* period) {
   tracking_observer_t* const o = &s->observer;
+  place_cutoff(s, c);
   integrate(s, in->model, period);
   tracking_observer_predict(o, in->torque_accel_q8);
   const ab_t flux_q16 = stator_flux_q16(&s->flux, &s->form, machine_speed_rad_q30(s->slow_bpp));

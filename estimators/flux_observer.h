@@ -8,9 +8,14 @@
 // Fig. 5 gives the flux of all but PP-02. (32), speed by a derivative and a low-pass, is a tracking observer here, as
 // behind AVV: it gives the load as well, and the drive's own acceleration does not make it lag.
 //
-// The speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. Its gain
-// stays below 1/2 as long as that speed is filtered with half the cut-off of the low-pass; the tracking observer alone,
-// with 150 rad/s against a cut-off of 20 rad/s, would make it unstable.
+// The cut-off is cutoff_q30, or a quarter of the speed where that is more. An offset of the flux turns the angle to and
+// fro once a turn, the speed control answers with a current that stands still in the stationary frame, and dead time
+// and resistance make a voltage of it that feeds the offset: it has to decay faster. Where w_c/w is constant, (34) is
+// right under acceleration as well.
+//
+// Below, the speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. Its
+// gain stays below 1/2 as long as that speed is filtered with half the cut-off; the tracking observer alone, with 100
+// rad/s against a cut-off of 20 rad/s, would make it unstable.
 //
 // Needs the mean voltage of every period. Below the speed that lets the flux's EMF stand out of what resistance and
 // drops leave (quality_q15 says: 0 below half the cut-off), the integral is not to be trusted.
@@ -27,7 +32,7 @@ typedef enum { FLUX_CONV = 0, FLUX_PP01 = 1, FLUX_PP02 = 2, FLUX_ACTIVE = 3 } fl
 
 typedef struct {
   flux_method_t method;
-  int32_t cutoff_q30;     // w_c T of the low-pass integrator, 1e-4..0.05
+  int32_t cutoff_q30;     // w_c T of the low-pass integrator at low speed, 1e-4..0.05
   int32_t bandwidth_q30;  // bandwidth * T of the tracking observer, 1e-4..0.1
   flux_adaptation_config_t adaptation;
   uint16_t adaptation_periods;  // between two steps of it, 1..1000
@@ -52,7 +57,6 @@ typedef struct {
   int32_t error_bam;       // last angle seen, less the observed one
   int32_t load_angle_bam;  // of the last step
   int32_t slow_bpp;        // filtered speed, for (34)
-  int32_t slow_rest_q16;   // what of it was less than one
   uint16_t pause;          // periods until the adaptation's next step
 } flux_observer_t;
 

@@ -14,6 +14,7 @@
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
+#include "estimators/flux_observer.h"
 #include "estimators/inertia_match.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
@@ -46,6 +47,7 @@ typedef struct {
   zvv_config_t zvv;
   deviation_observer_config_t observer;
   blend_config_t blend;
+  flux_observer_config_t flux;
   slopes_config_t slopes;
   synchronism_config_t synchronism;
   int32_t volts_per_code_q16;
@@ -80,6 +82,7 @@ typedef struct {
   deviation_observer_t observer;
   zvv_t zvv;
   blend_t blend;
+  flux_observer_t flux;
   sensor_match_t sensors;
   tracking_observer_t encoder;
   uint16_t adaptation;          // whose turn it is

@@ -1,6 +1,7 @@
 // From the parameters, in the user's units, to the constants of every module.
 
 #include "firmware/drive.h"
+#include "firmware/flux_source.h"
 #include "firmware/parameters.h"
 #include "hal/hal_adc.h"
 
@@ -97,6 +98,13 @@ static int32_t share_per_turn_q30(int32_t time_q8) {
   return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)ADAPTATION_TURN, time_q8 * DRIVE_PERIODS_PER_MS, 30);
 }
 
+static bool load_blend(drive_config_t* c) {
+  const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
+  const int32_t low = flux ? parameters.flux_low : parameters.blend_low;
+  const int32_t high = flux ? parameters.flux_high : parameters.blend_high;
+  return blend_design(&c->blend, q_mul_sat(low, c->bpp_per_rpm_q8, 24), q_mul_sat(high, c->bpp_per_rpm_q8, 24));
+}
+
 static bool load_position(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->avv.bandwidth_short_q30 = bandwidth_step_q30(p->avv_bandwidth_short);
@@ -120,8 +128,6 @@ static bool load_position(drive_config_t* c) {
   c->synchronism.floor_q16 = p->synchronism_floor;
   c->synchronism.share_q15 = q_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
-  const int32_t low = q_mul_sat(p->blend_low, c->bpp_per_rpm_q8, 24);
-  const int32_t high = q_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24);
   c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
   c->drift_share_q30 = share_per_turn_q30(p->drift_time);
   c->encoder_trim_bam = (uint32_t)q_mul(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
@@ -134,7 +140,7 @@ static bool load_position(drive_config_t* c) {
   c->slopes.start_samples = HAL_ADC_START_SAMPLES;
   c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
-  return blend_design(&c->blend, low, high);
+  return load_blend(c) && flux_source_load(c);
 }
 
 bool drive_config_load(drive_config_t* c) {

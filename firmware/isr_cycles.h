@@ -15,6 +15,7 @@
 #define CYCLES_READ_SAMPLES 1150u
 #define CYCLES_READ_SLICES 400u  // no windows to evaluate
 #define CYCLES_ESTIMATE 4450u
+#define CYCLES_ESTIMATE_FLUX 400u   // beside the observer, which leaves its regression for it
 #define CYCLES_ESTIMATE_BLIND 900u  // without windows: the observers only predict
 #define CYCLES_SUPERVISE 850u
 #define CYCLES_SUPERVISE_BLIND 100u

@@ -1,6 +1,7 @@
 // From the voltage command to the compare registers.
 
 #include "firmware/drive.h"
+#include "firmware/flux_source.h"
 #include "firmware/isr_cycles.h"
 #include "firmware/parameters.h"
 #include "hal/hal_profile.h"
@@ -13,6 +14,8 @@
 static excitation_t excitation(const drive_t* d) {
   if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
   if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
+  if (parameters.position_source == POSITION_OBSERVER) return EXCITATION_ALTERNATING;
+  if (parameters.position_source >= POSITION_FLUX_CONV) return flux_source_excitation(d);
   if (parameters.position_source != POSITION_PAPER) return EXCITATION_ALTERNATING;
   const int32_t enter = d->config.blend.low_bpp / 4 * 3;
   return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;

@@ -41,8 +41,9 @@ PARAMETER(44, zero_time, "us", 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept besi
 PARAMETER(45, settle_time, "us", 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
 
 // Position and speed
-PARAMETER(60, position_source, "", 0, 0, 0, 4, 4, STOPPED,
-          "0 encoder, 1 paper (q-axis ZVV and AVV), 2 deviation observer and AVV, 3 AVV alone, 4 observer alone")
+PARAMETER(60, position_source, "", 0, 0, 0, 8, 4, STOPPED,
+          "0 encoder, 1 paper, 2 observer and AVV, 3 AVV alone, 4 observer alone; and flux: 5 CONV, 6 PP-01, 7 PP-02, "
+          "8 active")
 PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED,
           "mechanical speed below which the low-speed estimator is used")
 PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical speed above which AVV is used")
@@ -137,6 +138,17 @@ PARAMETER(173, hysteresis_frequency, "kHz", 16, 2, 0, 2500, 1000, ALWAYS,
           "mean switching frequency that the hysteresis adapts to; 0 keeps the band")
 PARAMETER(174, slice_time, "us", 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
+
+// Position by the stator flux
+PARAMETER(300, flux_cutoff, "rad/s", 8, 1, 20, 2000, 200, STOPPED,
+          "least cut-off of the low-pass that integrates the flux")
+PARAMETER(301, flux_bandwidth, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer behind the stator flux")
+PARAMETER(303, flux_low, "rpm", 16, 1, 10, 20000, 3500, STOPPED,
+          "mechanical speed below which the observer is used, not the stator flux")
+PARAMETER(304, flux_high, "rpm", 16, 1, 20, 30000, 5000, STOPPED,
+          "mechanical speed above which the stator flux is used")
+PARAMETER(302, flux_adapt, "", 0, 0, 0, 3, 1, ALWAYS,
+          "the stator flux learns: 0 nothing, 1 the q-axis inductance by the torque, 2 the magnet's flux, 3 both")
 
 // Serial port
 PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,

@@ -30,6 +30,7 @@ const char* parameter_conflict(void) {
   const parameters_t* const p = &parameters;
   if (p->inductance_q < p->inductance_d) return "inductance_q must be at least inductance_d";
   if (p->blend_high <= p->blend_low) return "blend_high must be above blend_low";
+  if (p->flux_high <= p->flux_low) return "flux_high must be above flux_low";
   if (p->window_maximum < p->window_minimum) return "window_maximum must be at least window_minimum";
   if (p->link_maximum <= p->link_minimum) return "link_maximum must be above link_minimum";
   if (p->link_regulation <= p->link_minimum || p->link_regulation > p->link_maximum - 65536L)

@@ -20,7 +20,9 @@ enum {
   POSITION_PAPER = 1,         // ZVV and AVV, blended
   POSITION_OBSERVER_AVV = 2,  // the observer at low speed, AVV above
   POSITION_AVV = 3,
-  POSITION_OBSERVER = 4
+  POSITION_OBSERVER = 4,
+  POSITION_FLUX_CONV = 5,  // from here on: the observer at low speed, the stator flux above (flux_source.h)
+  POSITION_FLUX_ACTIVE = 8
 };
 
 /// Values of the parameter current_law.

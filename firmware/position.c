@@ -3,6 +3,7 @@
 #include "firmware/position.h"
 
 #include "firmware/drive.h"
+#include "firmware/flux_source.h"
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
 
@@ -105,7 +106,16 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
   return out;
 }
 
-static const source_step_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv, source_observer};
+// The observer below the blend, the stator flux above, both between.
+static estimator_output_t source_flux(drive_t* d, const estimator_input_t* in) {
+  const estimator_input_t given = flux_source_input(d, in);
+  if (flux_source_rests(d)) return flux_source_alone(d, &given);
+  const estimator_output_t low = source_observer(d, &given);
+  return flux_source_beside(d, &given, &low);
+}
+
+static const source_step_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv,   source_observer,
+                                        source_flux,    source_flux,  source_flux,         source_flux};
 
 static void measure_current(drive_t* d) {
   drive_samples_t* const s = &d->samples;
@@ -174,6 +184,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   avv_preset(&p->avv, angle_bam, speed_bpp, 0);
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
+  flux_observer_reset(&p->flux, &d->config.flux, &d->model);
   blend_reset(&p->blend);
   const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
   p->low = now;

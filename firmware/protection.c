@@ -49,11 +49,16 @@ static bool encoder_beside_avv(void) {
          parameters.excitation != EXCITATION_CENTRED && parameters.excitation != EXCITATION_LONG_ZERO;
 }
 
+// Sources whose estimators are both meant to be right only between the ends of the blend.
+static bool blends_by_turns(void) {
+  return parameters.position_source == POSITION_PAPER || parameters.position_source >= POSITION_FLUX_CONV;
+}
+
 // How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
 static int32_t disagreement(const drive_t* d) {
   const drive_position_t* const p = &d->position;
   const bool both = parameters.position_source == POSITION_OBSERVER_AVV || encoder_beside_avv() ||
-                    (parameters.position_source == POSITION_PAPER && p->blend.region == BLEND_BOTH);
+                    (blends_by_turns() && p->blend.region == BLEND_BOTH);
   if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
   return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
 }

@@ -22,6 +22,16 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16) {
   return flux;
 }
 
+ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
+  const int32_t a = p->fall[0] - p->rise[0];
+  const int32_t b = p->fall[1] - p->rise[1];
+  const int32_t c = p->fall[2] - p->rise[2];
+  const int32_t ticks = (int32_t)SVPWM_PERIOD_TICKS;
+  const ab_t v = {q_mul_floor((2 * a - b - c) * ticks, q_mul_floor(link_q16, PER_THIRD_Q58, 28), 30),
+                  q_mul_floor((b - c) * ticks, q_mul_floor(link_q16, PER_SIDE_Q58, 28), 30)};
+  return v;
+}
+
 // Three times a leg less the mean of the three; at its own edges the leg has been high for nothing or all of its pulse.
 void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16, svpwm_edges_t* at) {
   static const uint16_t others[SVPWM_LEGS][2] = {{1, 2}, {0, 2}, {0, 1}};

@@ -15,6 +15,9 @@
 /// Ripple flux at `tick`, V * period, Q16 (multiply by T/L to have amperes).
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16);
 
+/// Mean voltage of a period with these pulses, V Q16.
+ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
+
 /// Ripple current of each phase at its own leg's edges, A Q20.
 typedef struct {
   int32_t rise_q20[SVPWM_LEGS];

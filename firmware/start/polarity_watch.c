@@ -20,14 +20,14 @@ void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
 }
 
 static const regression_t* regression_in_use(const drive_t* d) {
-  return (parameters.position_source == POSITION_OBSERVER) ? &d->position.observer.regression
+  return (parameters.position_source >= POSITION_OBSERVER) ? &d->position.observer.regression
                                                            : &d->position.avv.regression;
 }
 
 // The axis that this period's windows have shown.
 static uint32_t axis_seen(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  if (parameters.position_source != POSITION_OBSERVER) return p->avv.observer.angle_bam + (uint32_t)p->avv.error_bam;
+  if (parameters.position_source < POSITION_OBSERVER) return p->avv.observer.angle_bam + (uint32_t)p->avv.error_bam;
   return p->observer.angle_bam + (uint32_t)avv_angle_error(&p->observer.regression, &d->model);
 }
 

@@ -21,7 +21,7 @@ flux_observer_config_t config(flux_method_t method) {
   flux_observer_config_t c = {};
   c.method = method;
   c.cutoff_q30 = raw(20.0 * kPeriod, 30);
-  c.bandwidth_q30 = raw(150.0 * kPeriod, 30);
+  c.bandwidth_q30 = raw(100.0 * kPeriod, 30);
   c.adaptation = {0, bpp(200.0), raw(0.05, 24), raw(0.1, 30), 0};
   c.adaptation_periods = 100;
   return c;
@@ -119,8 +119,8 @@ TEST(FluxObserver, FindsTheAngleFromAWrongOne) {
   }
 }
 
-// Acceleration of 1000 rpm/s, 419 rad/s^2, from 100 to 2000 rpm and back. (34) is made for steady rotation and uses a
-// speed that is 100 ms old: 42 rad/s of lag is 42 w_c / w^2, half a radian at 40 rad/s, and gone at speed.
+// Acceleration of 1000 rpm/s, 419 rad/s^2, from 200 to 2000 rpm and back, both directions. While w_c is a quarter of
+// the speed (34) is right on the way as well.
 TEST(FluxObserver, FollowsTheRamp) {
   for (const flux_method_t method : kMethods) {
     for (const double sign : {1.0, -1.0}) {

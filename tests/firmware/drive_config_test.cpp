@@ -163,7 +163,9 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
     ASSERT_GE(c.ramp_step_bpp, 0);
     ASSERT_GT(c.observer.inverse_noise_q20, 0);
     ASSERT_GT(c.observer.load_noise_q20, 0);
-    const double low = real(parameters.blend_low, 16) / 60.0 * parameters.pole_pairs * std::ldexp(kPeriod, 32);
+    const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
+    const double low = real(flux ? parameters.flux_low : parameters.blend_low, 16) / 60.0 * parameters.pole_pairs *
+                       std::ldexp(kPeriod, 32);
     ASSERT_NEAR(c.blend.low_bpp / low, 1.0, 1e-4);
   }
   EXPECT_GT(accepted, 100);  // both ways were taken
@@ -188,6 +190,38 @@ TEST_F(DriveConfig, EncoderAngle) {
                   4.0 * count * kTurn * std::ldexp(1.0, -32) + 1e-8);
     }
   }
+}
+
+TEST_F(DriveConfig, TheStatorFluxNeedsAMachineThatItCanBeGiven) {
+  set("inductance_d", 1.5);
+  set("inductance_q", 9.2);  // 6.1 times
+  EXPECT_EQ(parameter_conflict(), nullptr);
+  set("position_source", 7.0);
+  EXPECT_NE(parameter_conflict(), nullptr);
+  set("inductance_q", 7.8);
+  EXPECT_EQ(parameter_conflict(), nullptr);
+  set("flux_low", 600.0);
+  EXPECT_NE(parameter_conflict(), nullptr);
+}
+
+// Hand-over by its own speeds, method by the source, saturation by the map.
+TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
+  set("position_source", 7.0);
+  set("flux_cutoff", 30.0);
+  set("lqq_4", 80.0);
+  set("lqq_2", 90.0);
+  ASSERT_TRUE(drive_config_load(&drive.config));
+  const drive_config_t& c = drive.config;
+  EXPECT_EQ(c.flux.method, FLUX_PP02);
+  EXPECT_NEAR(real(c.flux.cutoff_q30, 30), 30.0 * kPeriod, 1e-8);
+  EXPECT_NEAR(rad_per_s(c.flux.adaptation.lowest_bpp), 600.0, 0.1);
+  EXPECT_NEAR(c.blend.low_bpp / (350.0 * std::ldexp(4.0 / 60.0 * kPeriod, 32)), 1.0, 1e-5);
+  EXPECT_GT(c.flux.adaptation.saturation_q24, 0);
+  EXPECT_EQ(c.flux.adaptation.magnet_q30, 0);
+  set("flux_adapt", 2.0);
+  ASSERT_TRUE(drive_config_load(&drive.config));
+  EXPECT_EQ(c.flux.adaptation.saturation_q24, 0);
+  EXPECT_GT(c.flux.adaptation.magnet_q30, 0);
 }
 
 }  // namespace

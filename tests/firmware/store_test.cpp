@@ -319,7 +319,7 @@ TEST_F(Store, WhatIsOutOfItsRangeIsRefused) {
   image.entries = table();
   for (slot_entry_t& e : image.entries) {
     if (e.id == 8) e.raw = 101 << 20;         // current_limit, at most 100 A
-    if (e.id == 60) e.raw = 5;                // position_source, at most 4
+    if (e.id == 60) e.raw = 9;                // position_source, at most 8
     if (e.id == 25) e = {25, 0, 2147483647};  // does not fit 32 bits any more
     if (e.id == 41) e.q = 32;                 // no format at all
   }

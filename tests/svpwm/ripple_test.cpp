@@ -45,6 +45,26 @@ TEST(Ripple, IsTheIntegralOfTheVoltageLessItsMean) {
   }
 }
 
+TEST(Ripple, MeanVoltageIsThatOfTheStates) {
+  Random random(111);
+  for (int n = 0; n < 200; ++n) {
+    const double link = random.between(50.0, 420.0);
+    svpwm_pulses_t p;
+    for (int leg = 0; leg < 3; ++leg) {
+      p.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
+      p.fall[leg] = static_cast<std::int16_t>(random.between(p.rise[leg] + 1.0, 9960.0));
+    }
+    Vector mean = {0.0, 0.0};
+    for (const std::uint16_t state : states(p)) {
+      const double a = state & 1u, b = (state >> 1) & 1u, c = (state >> 2) & 1u;
+      mean = mean + Vector{(2.0 * a - b - c) / 3.0, (b - c) / std::sqrt(3.0)} * (link * 1e-4);
+    }
+    const Vector seen = real(svpwm_mean_q16(&p, raw(link, 16)), 16);
+    ASSERT_NEAR(seen.x, mean.x, 1e-4) << n;  // Q16 of the link and of the result
+    ASSERT_NEAR(seen.y, mean.y, 1e-4) << n;
+  }
+}
+
 TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
   const svpwm_pulses_t p = {{260, 5760, 5800}, {4500, 9960, 9900}};
   for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {

@@ -1,0 +1,27 @@
+// The stator flux as a position source: joins estimators/flux_observer.h with the drive.
+//
+// Below flux_low the deviation observer has the shaft and the flux is set to what its angle lets expect; between
+// flux_low and flux_high both run, and blend.h hands over; above, the flux runs alone and the observer is carried
+// along with it. Above, the pulses are centred: the flux needs no measuring windows beyond one for the current.
+
+#ifndef STILLSPIN_FIRMWARE_FLUX_SOURCE_H
+#define STILLSPIN_FIRMWARE_FLUX_SOURCE_H
+
+#include "firmware/drive.h"
+
+/// The flux's part of the configuration, from parameters and nameplate. False where it is wanted for a machine that it
+/// cannot be given.
+bool flux_source_load(drive_config_t* c);
+
+/// The estimators' input: between the ends of the blend nothing is learnt of the windows, for want of time.
+estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* in);
+
+/// True where the flux alone has the shaft and nobody else needs the observer.
+bool flux_source_rests(const drive_t* d);
+
+estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in);
+estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low);
+
+excitation_t flux_source_excitation(const drive_t* d);
+
+#endif
