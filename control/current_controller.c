@@ -4,23 +4,28 @@
 #define ERROR_SHIFT 24u
 // Bandwidth over the corner of the integrator.
 #define RESET_RATIO 4
+// Bandwidth times the delay, in parts per million of 2 rad.
+#define PHASE_MAX_PPM 260000L
 
-static pi_config_t design_axis(int32_t inductance_q30, int32_t bandwidth_rads, int32_t period_us) {
+static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30, const current_design_t* d) {
   pi_config_t c;
-  const int32_t step_q24 = q_div(bandwidth_rads * period_us, 1000000L, 24);  // bandwidth * T
-  c.kp_q20 = q_mul(inductance_q30, bandwidth_rads, 10);
-  c.ki_q20 = q_mul(c.kp_q20, step_q24, 24) / RESET_RATIO;
+  const int32_t step_q24 = q_div(d->bandwidth_rads * d->period_us * d->divider, 1000000L, 24);  // a T
+  c.kp_q20 = q_mul(inductance_q30, d->bandwidth_rads, 10);
+  const bool own = d->corner == CURRENT_CORNER_MACHINE;
+  c.ki_q20 = own ? q_mul(m->nominal_rs_q24, step_q24, 28) : q_mul(c.kp_q20, step_q24, 24) / RESET_RATIO;
   c.release_q20 = 4 * q_div(c.ki_q20, c.kp_q20, 20);
   c.error_shift = ERROR_SHIFT;
   return c;
 }
 
-bool current_controller_design(current_controller_config_t* c, const machine_model_t* m, int32_t bandwidth_rads,
-                               int32_t period_us) {
-  const int32_t step_ppm = bandwidth_rads * period_us;  // bandwidth * T in parts per million
-  if (bandwidth_rads < 100 || step_ppm > 260000L) return false;
-  c->d = design_axis(m->ld_q30, bandwidth_rads, period_us);
-  c->q = design_axis(m->lq_q30, bandwidth_rads, period_us);
+bool current_controller_design(current_controller_config_t* c, const machine_model_t* m,
+                               const current_design_t* design) {
+  if (design->divider < 1 || design->divider > 2 || design->bandwidth_rads < 100) return false;
+  // Delay over two periods: (3 + n) / 4.
+  const int32_t phase_ppm = design->bandwidth_rads * design->period_us / 4 * (3 + design->divider);
+  if (phase_ppm > PHASE_MAX_PPM) return false;
+  c->d = design_axis(m, m->ld_q30, design);
+  c->q = design_axis(m, m->lq_q30, design);
   return true;
 }
 

@@ -6,6 +6,13 @@
 // the speed loop. The measurement is taken over the last period and the voltage acts in the middle of the next but one:
 // two periods of delay. a = 1800 rad/s leaves about 55 degrees of phase margin at 10 kHz; more than 2600 rad/s is
 // refused.
+//
+// The controllers may step every n-th period only, the voltage still acting from the next reload on; holding it for n
+// periods adds (n - 1)/2 periods of delay, and the largest bandwidth falls in proportion. Seed paper B steps at 5 kHz
+// with n = 2, and its printed gains are this design with the integrator's corner at R/L and a = 2 pi 1000 rad/s: Kp = a
+// L = 4.775 (d), 10.24 (q, printed 10.116) V/A, Ki = a R = 1099.6 V/(A s). With a full 200 us of delay behind the
+// sample that is unstable (a 200 us > 1). With the voltage at the next reload of 10 kHz, as here, it is stable by 6 %
+// of the gain, overshoots by 97 % and would not bear an inductance that saturates: refused, at most 2080 rad/s is left.
 
 #ifndef STILLSPIN_CONTROL_CURRENT_CONTROLLER_H
 #define STILLSPIN_CONTROL_CURRENT_CONTROLLER_H
@@ -23,9 +30,18 @@ typedef struct {
   pi_state_t d, q;
 } current_controller_t;
 
-/// Gains for a bandwidth in rad/s (100..2600 at a 100 us period). Returns false when the bandwidth is out of range.
-bool current_controller_design(current_controller_config_t* c, const machine_model_t* m, int32_t bandwidth_rads,
-                               int32_t period_us);
+typedef enum { CURRENT_CORNER_QUARTER = 0, CURRENT_CORNER_MACHINE = 1 } current_corner_t;
+
+typedef struct {
+  int32_t bandwidth_rads;   // a, 100..2600 at a step in every period of 100 us
+  int32_t period_us;        // PWM period
+  int32_t divider;          // n: periods per step, 1..2
+  current_corner_t corner;  // of the integrator: a/4, or R/L of the machine
+} current_design_t;
+
+/// Derives the gains. Returns false when the bandwidth is out of range.
+bool current_controller_design(current_controller_config_t* c, const machine_model_t* m,
+                               const current_design_t* design);
 
 void current_controller_reset(current_controller_t* s);
 

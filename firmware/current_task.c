@@ -1,6 +1,7 @@
-// Current control, every period.
+// Current control, every period or every second one (current_divider).
 
 #include "firmware/drive.h"
+#include "firmware/parameters.h"
 
 void drive_control_current(drive_t* d) {
   drive_control_t* const c = &d->control;
@@ -10,6 +11,8 @@ void drive_control_current(drive_t* d) {
     current_controller_reset(&c->current);
     return;
   }
+  // In between, the command stands still in the rotor frame.
+  if (d->millisecond % (uint16_t)parameters.current_divider != 0u) return;
   c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
                                            c->measured_q20, d->position.used.speed_bpp);
   c->command_q16.q += c->feed_q16;

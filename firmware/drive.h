@@ -8,6 +8,7 @@
 
 #include "control/current_controller.h"
 #include "control/field_weakening.h"
+#include "control/mtpa.h"
 #include "control/ramp.h"
 #include "control/speed_controller.h"
 #include "estimators/admittance.h"
@@ -43,6 +44,7 @@ typedef struct {
   dead_time_config_t dead_time;
   current_controller_config_t current;
   speed_controller_config_t speed;
+  mtpa_t mtpa;
   avv_config_t avv;
   zvv_config_t zvv;
   deviation_observer_config_t observer;

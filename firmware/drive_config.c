@@ -88,9 +88,12 @@ static bool load_control(drive_config_t* c) {
   // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
   c->friction_per_bpp_q40 = q_mul_sat(q_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
   c->ramp_step_bpp = q_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
+  const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
+                                    (current_corner_t)p->current_corner};
+  mtpa_design(&c->mtpa, &c->nameplate);
   speed_controller_t trial;
   return speed_controller_init(&trial, &c->speed, &c->nameplate) &&
-         current_controller_design(&c->current, &c->nameplate, p->current_bandwidth, DRIVE_PERIOD_US);
+         current_controller_design(&c->current, &c->nameplate, &current);
 }
 
 // 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.

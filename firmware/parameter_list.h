@@ -83,6 +83,13 @@ PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
 PARAMETER(88, weakening_limit, "A", 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, "A/V", 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
+PARAMETER(330, mtpa, "", 0, 0, 0, 1, 0, ALWAYS,
+          "1 adds the d-axis current that makes the current for a torque the smallest")
+PARAMETER(331, current_divider, "", 0, 0, 1, 2, 1, STOPPED,
+          "PWM periods per step of the current control; 2 allows current_bandwidth up to 2080")
+PARAMETER(332, current_corner, "", 0, 0, 0, 1, 0, STOPPED,
+          "corner of the current controllers' integrator: 0 a quarter of current_bandwidth, 1 the machine's R/L")
+
 // Saturation: incremental inductances at i_d = 0 and i_q = 1/4 .. 4/4 of map_current
 PARAMETER(110, map_current, "A", 20, 2, 100, 10000, 1400, STOPPED, "i_q of the map's last point")
 PARAMETER(111, lqq_1, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 1/4 of map_current")

@@ -22,7 +22,9 @@ void drive_weaken_field(drive_t* d) {
   // A commissioning takes its spin for one without i_d.
   const bool none = d->position.blend.region == BLEND_HIGH || d->state == DRIVE_COMMISSION;
   const int32_t bias = none ? 0 : parameters.id_low_speed;
-  c->reference_q20.d = q_clamp(q_add_sat(weakening, bias), -parameters.current_limit, parameters.current_limit);
+  const int32_t least = (none || parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
+  c->reference_q20.d =
+      q_clamp(q_add_sat(q_min(weakening, least), bias), -parameters.current_limit, parameters.current_limit);
   d->limits &= ~(int32_t)LIMIT_WEAKENING;
   if (weakening < 0) d->limits |= LIMIT_WEAKENING;
 }

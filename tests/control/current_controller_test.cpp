@@ -12,6 +12,12 @@ namespace {
 
 using namespace stillspin::test;
 
+bool designed(current_controller_config_t* c, const machine_model_t& m, std::int32_t bandwidth, int divider = 1,
+              current_corner_t corner = CURRENT_CORNER_QUARTER) {
+  const current_design_t design = {bandwidth, 100, divider, corner};
+  return current_controller_design(c, &m, &design);
+}
+
 TEST(CurrentController, Gains) {
   Random random(30);
   for (int n = 0; n < 2000; ++n) {
@@ -22,7 +28,7 @@ TEST(CurrentController, Gains) {
     const auto bandwidth = static_cast<std::int32_t>(random.between(100.0, 2600.0));
     const machine_model_t m = model_of(motor);
     current_controller_config_t c;
-    ASSERT_TRUE(current_controller_design(&c, &m, bandwidth, 100));
+    ASSERT_TRUE(designed(&c, m, bandwidth));
     const pi_config_t* axes[] = {&c.d, &c.q};
     const double inductances[] = {motor.ld, motor.lq};
     for (int axis = 0; axis < 2; ++axis) {
@@ -40,11 +46,30 @@ TEST(CurrentController, Gains) {
 TEST(CurrentController, RefusesBandwidthsThatTheDelayDoesNotAllow) {
   const machine_model_t m = model_of(Motor{});
   current_controller_config_t c;
-  EXPECT_FALSE(current_controller_design(&c, &m, 99, 100));
-  EXPECT_TRUE(current_controller_design(&c, &m, 100, 100));
-  EXPECT_TRUE(current_controller_design(&c, &m, 2600, 100));
-  EXPECT_FALSE(current_controller_design(&c, &m, 2601, 100));
-  EXPECT_FALSE(current_controller_design(&c, &m, -2000, 100));
+  EXPECT_FALSE(designed(&c, m, 99));
+  EXPECT_TRUE(designed(&c, m, 100));
+  EXPECT_TRUE(designed(&c, m, 2600));
+  EXPECT_FALSE(designed(&c, m, 2601));
+  EXPECT_FALSE(designed(&c, m, -2000));
+  EXPECT_TRUE(designed(&c, m, 2080, 2));
+  EXPECT_FALSE(designed(&c, m, 2081, 2));
+  EXPECT_FALSE(designed(&c, m, 1000, 0));
+  EXPECT_FALSE(designed(&c, m, 1000, 3));
+}
+
+// Paper B prints Kp_d = 4.775, Kp_q = 10.116, Ki = 1099.6: a = 2 pi 1000 rad/s times L and R. The design at a bandwidth
+// that it takes, times what is left out of it. The printed Kp_q is 1.2 % below the rule.
+TEST(CurrentController, PrintedGainsOfPaperB) {
+  Motor b;
+  b.rs = 0.175, b.ld = 0.76e-3, b.lq = 1.63e-3, b.flux = 0.0865;
+  const machine_model_t m = model_of(b);
+  current_controller_config_t c;
+  ASSERT_TRUE(designed(&c, m, 2000, 2, CURRENT_CORNER_MACHINE));
+  const double scale = kTurn * 1000.0 / 2000.0;
+  EXPECT_NEAR(scale * real(c.d.kp_q20, 20), 4.775, 1e-3);
+  EXPECT_NEAR(scale * real(c.q.kp_q20, 20) / 10.116, 1.012, 1e-3);
+  EXPECT_NEAR(scale * real(c.d.ki_q20, 20) / 200e-6, 1099.6, 0.5);
+  EXPECT_EQ(c.d.ki_q20, c.q.ki_q20);
 }
 
 TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
@@ -52,7 +77,7 @@ TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
   const Motor motor;
   machine_model_t m = model_of(motor);
   current_controller_config_t c;
-  ASSERT_TRUE(current_controller_design(&c, &m, 1800, 100));
+  ASSERT_TRUE(designed(&c, m, 1800));
   current_controller_t s;
   current_controller_reset(&s);
   const double a = 1800.0;
@@ -78,7 +103,7 @@ TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
 TEST(CurrentController, RotationalVoltagesAtRest) {
   const machine_model_t m = model_of(Motor{});
   current_controller_config_t c;
-  ASSERT_TRUE(current_controller_design(&c, &m, 1800, 100));
+  ASSERT_TRUE(designed(&c, m, 1800));
   current_controller_t s;
   current_controller_reset(&s);
   const dq_t i = raw_dq({-3.0, 8.0}, 20);

@@ -112,6 +112,7 @@ _PARAMETERS = [
     (75, "observer_load_quiet", "Nm", 2, 0.01, 100.0, 0.05, "ALWAYS", "load change per 10 ms at a crawl"),
     (68, "observer_windows", "", 0, 0.0, 1.0, 1.0, "ALWAYS", "windows of the observer"),
     (71, "id_low_speed", "A", 2, -10.0, 10.0, 0.0, "ALWAYS", "d-axis current below the blend"),
+    (82, "speed_alpha", "A2s2", 0, 1.0, 100000.0, 200.0, "STOPPED", "weight of the predicted speed error"),
     (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
     (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),
     (103, "polarity_check", "", 0, 0.0, 1.0, 1.0, "STOPPED", "test the polarity of the magnet at start"),
