@@ -15,8 +15,7 @@
 #define ALERT_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
 #define ALERT_OVER_Q30 53687091L    // at speed after 150 ms: what leans for ever is the model, not the load
 #define LEAN_MIN 40                 // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
-#define LAG_MAX_Q20 16777216L       // 16 units of time: 102 ms
-#define MEAN_SHIFT 6u
+#define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define INFORMATION_MAX (8L * 16777216L)
@@ -63,13 +62,12 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
   return ONE_Q30 - q_min(q_over(q_max(above, 0), c->per_crawl, 30), ONE_Q30);
 }
 
-// The mean of white scores over 64 periods has 1/127 of their power: five standard deviations are less than half of its
-// root, and noise has them once in ten minutes. The power is measured, not the information's word for it: it holds
-// whatever noise the observer was told.
+// The mean of white scores over 32 periods has 1/63 of their power: four standard deviations are a quarter of its root.
+// The power is measured, not the information's word for it: it holds whatever noise the observer was told.
 static bool scores_lean(deviation_observer_t* s, const information_t* n) {
   s->mean_score_q20 += q_shr_round(n->a - s->mean_score_q20, MEAN_SHIFT);
   s->score_power_q24 += q_shr_round(q_sub_sat(q_mul_sat(n->a, n->a, 16), s->score_power_q24), POWER_SHIFT);
-  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 5 &&
+  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 4 &&
          q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
 }
 
@@ -84,12 +82,6 @@ static void admit_load_step(deviation_observer_t* s, int32_t variance_q20) {
   s->p_aa += q_shr_round(variance_q20, 10);
 }
 
-// Cogging that is not known yet is a load that changes with the angle. An eighth of the variance is a bandwidth lower
-// by the root of two, since that goes with the load's rate to the third.
-static int32_t quiet_noise_q20(const deviation_observer_t* s, const deviation_observer_config_t* c) {
-  return c->load_noise_quiet_q20 - q_mul(c->load_noise_quiet_q20, s->cogging.known_q30, 30) / 8 * 7;
-}
-
 static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
   const bool lean = scores_lean(s, n);
   const int32_t crawl_q30 = crawl_share_q30(s, c);
@@ -101,7 +93,7 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
     admit_load_step(s, step_q20);
   }
   const int32_t quiet_q30 = crawl_q30 - q_mul(crawl_q30, s->alert_q30, 30);
-  s->p_ll += c->load_noise_q20 - q_mul(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30);
+  s->p_ll += c->load_noise_q20 - q_mul(c->load_noise_q20 - c->load_noise_quiet_q20, quiet_q30, 30);
 }
 
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
@@ -184,7 +176,7 @@ static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2)
 
 static int32_t scored(gain_t k, const information_t* n) { return q_mul_add_sat(k.a, n->a, k.s, n->s, 20); }
 
-static void update(deviation_observer_t* s, const information_t* n) {
+static void update(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
   const gain_t ga = times_information(n, s->p_aa, s->p_as);
   const gain_t gs = times_information(n, s->p_as, s->p_ss);
   const gain_t gl = times_information(n, s->p_al, s->p_sl);
@@ -202,6 +194,7 @@ static void update(deviation_observer_t* s, const information_t* n) {
   s->speed_bpp += q_mul_sat(scored(ks, n), BPP_PER_UNIT, 20);
   const int32_t load_q8 = -q_mul_sat(scored(kl, n), ACCEL_Q8_PER_UNIT, 20);
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
+  cogging_learn(&s->cogging, &c->cogging, s->speed_bpp, load_q8);
   // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
   s->p_ll = positive(s->p_ll - q_mul_add(kl.a, gl.a, kl.s, gl.s, 16));
   s->p_aa = positive(ka.a);
@@ -232,16 +225,6 @@ static estimator_frame_t frame_of(const deviation_observer_t* s, const estimator
   return deviation_frame(w, deviation_angle_at(s->angle_bam, s->speed_bpp, w->middle_tick));
 }
 
-// The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their
-// covariances with the angle.
-void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
-  const int32_t lag_q20 = q_min(q_div(q_abs_sat(s->p_as), q_max(q_abs_sat(s->p_al), 1), 20), LAG_MAX_Q20);
-  const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
-  const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
-  const int32_t taken_q8 = cogging_learn(&s->cogging, &c->cogging, &seen);
-  s->load_accel_q8 = q_sub_sat(s->load_accel_q8, taken_q8);
-}
-
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in) {
   sums_t sums = {0, 0, 0, 0, 0};
@@ -262,7 +245,7 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   information_t n = information_of(&sums);
   bound(&n);
   admit_load_change(s, c, &n);
-  update(s, &n);
+  update(s, c, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);
   const int32_t load_q8 = q_add_sat(s->load_accel_q8, s->cogging.now_q8);
   const estimator_output_t out = {s->angle_bam, s->speed_bpp, load_q8, q_max(certainty, 0)};

@@ -9,7 +9,7 @@
 // covariance and one division do for any number of windows: P+ = P (1 + I P)^-1, x+ = x + P+ b.
 //
 // How much the load may change is not known beforehand: a shaft that turns evenly wants a filter that is slow, a load
-// step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond five of its
+// step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond four of its
 // standard deviations is a load that changes.
 //
 // Units: angle 2^-6 rad, speed 2^-12 rad per period, acceleration 2^-18 rad per period^2 (that is: time in units of 64
@@ -24,7 +24,7 @@
 typedef struct {
   int32_t noise_q20;            // rms error of a current difference, A, 0.001..1
   int32_t load_rate_q20;        // load change expected in 10 ms, N m
-  int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes, cogging unknown
+  int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes
   int32_t load_step_q20;        // step of the load to look out for at a crawl, N m
   int32_t crawl_bpp;            // electrical speed up to which it is a crawl, 1 or more
   bool steps_at_speed;          // look out for twice the step above it: needs the map of the saturation
@@ -48,7 +48,7 @@ typedef struct {
   int32_t load_accel_q8;
   int32_t speed_rest_q8;
   int32_t p_aa, p_as, p_al, p_ss, p_sl, p_ll;  // covariance of angle, speed, (minus) load acceleration, Q20
-  int32_t mean_score_q20;                      // of the angle, over 64 periods
+  int32_t mean_score_q20;                      // of the angle, over 32 periods
   int32_t score_power_q24;                     // over 256 periods
   int32_t alert_q30;                           // 1 when the load has just changed, decays
   cogging_t cogging;
@@ -64,8 +64,5 @@ void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int3
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);
-
-/// Once a millisecond, where the shaft turns: learns what of the load repeats with the angle.
-void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c);
 
 #endif

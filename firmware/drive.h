@@ -34,8 +34,7 @@
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
 #define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond; the speed control has the first one
-#define DRIVE_COGGING_PERIOD 7u
-#define ADAPTATION_TURN 7u  // periods in which every adaptation, and the model, has its turn
+#define ADAPTATION_TURN 7u         // periods in which every adaptation, and the model, has its turn
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.

@@ -96,8 +96,6 @@ void drive_control_speed(drive_t* d) {
   d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
   if (d->millisecond == DRIVE_PERIODS_PER_MS / 2) drive_match_inertia(d);
   if (d->millisecond == DRIVE_WEAKENING_PERIOD && (drive_is_turning(d) || caught)) drive_weaken_field(d);
-  if (d->millisecond == DRIVE_COGGING_PERIOD && drive_is_turning(d))
-    deviation_observer_learn(&d->position.observer, &d->config.observer);
   if (d->millisecond != 0u) return;
   d->time_ms++;
   d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
