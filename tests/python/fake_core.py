@@ -106,7 +106,7 @@ _PARAMETERS = [
     (42, "window_minimum", "us", 2, 5.0, 30.0, 18.0, "ALWAYS", "shortest extended vector"),
     (43, "window_maximum", "us", 2, 5.0, 40.0, 30.0, "ALWAYS", "longest extended vector"),
     (45, "settle_time", "us", 2, 4.0, 25.0, 10.5, "ALWAYS", "from an edge to the first sample"),
-    (60, "position_source", "", 0, 0.0, 4.0, 2.0, "STOPPED", "where the angle comes from"),
+    (60, "position_source", "", 0, 0.0, 8.0, 4.0, "STOPPED", "where the angle comes from"),
     (66, "observer_noise", "mA", 1, 1.0, 1000.0, 100.0, "ALWAYS", "rms error of a current difference"),
     (67, "observer_load_rate", "Nm", 2, 0.01, 100.0, 0.6, "ALWAYS", "load change per 10 ms"),
     (75, "observer_load_quiet", "Nm", 2, 0.01, 100.0, 0.05, "ALWAYS", "load change per 10 ms at a crawl"),
