@@ -8,6 +8,7 @@
 
 #include "control/current_controller.h"
 #include "control/field_weakening.h"
+#include "control/if_start.h"
 #include "control/mtpa.h"
 #include "control/ramp.h"
 #include "control/speed_controller.h"
@@ -45,6 +46,7 @@ typedef struct {
   current_controller_config_t current;
   speed_controller_config_t speed;
   mtpa_t mtpa;
+  if_start_config_t turn;
   avv_config_t avv;
   zvv_config_t zvv;
   deviation_observer_config_t observer;
@@ -186,11 +188,22 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 void start_step_listen(drive_t* d);
 void start_step_pulse(drive_t* d);
 void start_step_catch(drive_t* d);
+void start_turn(drive_t* d);  // start/turning.c
+void start_step_turn(drive_t* d);
 const svpwm_pattern_t* start_short_circuit(void);
 
 /// True in a period in which a task of the millisecond will run.
 static inline bool drive_is_busy(const drive_t* d) {
   return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD - 1u;
+}
+
+/// True while the start turns a current vector: the position source runs, and is not used yet.
+static inline bool drive_is_turned(const drive_t* d) { return d->state == DRIVE_START && d->start.phase == START_TURN; }
+
+/// A vector in the frame that the control uses, in the frame of what the position source sees meanwhile.
+static inline dq_t drive_seen(const drive_t* d, dq_t vector) {
+  const ab_t used = {vector.d, vector.q};
+  return frame_park(used, frame_rotation(d->start.seen.angle_bam - d->position.used.angle_bam));
 }
 
 /// True while what is sampled does not belong to a power stage that is on and to a known pattern.

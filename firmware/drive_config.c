@@ -91,8 +91,12 @@ static bool load_control(drive_config_t* c) {
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);
+  const if_start_parameters_t turn = {p->if_current, p->if_align * DRIVE_PERIODS_PER_MS,
+                                      q_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
+                                      q_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
+  const bool turns = if_start_design(&c->turn, &c->nameplate, &turn) || p->start_method == 0;
   speed_controller_t trial;
-  return speed_controller_init(&trial, &c->speed, &c->nameplate) &&
+  return turns && speed_controller_init(&trial, &c->speed, &c->nameplate) &&
          current_controller_design(&c->current, &c->nameplate, &current);
 }
 

@@ -47,9 +47,13 @@ bool flux_source_rests(const drive_t* d) {
 static flux_period_t period_of(const drive_t* d) {
   const uint32_t end_bam = d->position.used.angle_bam + (uint32_t)d->position.used.speed_bpp;
   flux_period_t p;
+  p.current_q20 = frame_inverse_park(d->control.measured_q20, frame_rotation(end_bam));
   p.measured_q20 = d->control.measured_q20;
   p.reference_q20 = d->control.reference_q20;
-  p.current_q20 = frame_inverse_park(p.measured_q20, frame_rotation(end_bam));
+  if (drive_is_turned(d)) {
+    p.measured_q20 = drive_seen(d, p.measured_q20);
+    p.reference_q20 = drive_seen(d, p.reference_q20);
+  }
   const ab_t mean_q16 = svpwm_mean_q16(&d->modulation.sampled.pulses, d->samples.link_q16);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, p.current_q20);
   p.voltage_q16.alpha = mean_q16.alpha - drop_q16.alpha;
@@ -78,13 +82,23 @@ estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
   return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
 }
 
+void flux_source_take(drive_t* d) {
+  d->position.blend.region = BLEND_HIGH;
+  d->position.blend.share_q15 = 0;
+}
+
+void flux_source_follow(drive_t* d, const estimator_output_t* now) {
+  const dq_t i_q20 = d->control.measured_q20;
+  flux_observer_preset(&d->position.flux, &d->config.flux, now,
+                       frame_inverse_park(i_q20, frame_rotation(now->angle_bam)));
+}
+
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {
   drive_position_t* const p = &d->position;
   hal_profile_step(CYCLES_ESTIMATE_FLUX);
   p->high = *low;
   if (p->blend.region == BLEND_LOW && p->blend.share_q15 == INT16_MAX) {
-    const dq_t i_q20 = d->control.measured_q20;
-    flux_observer_preset(&p->flux, &d->config.flux, low, frame_inverse_park(i_q20, frame_rotation(low->angle_bam)));
+    flux_source_follow(d, low);
   } else {
     p->high = step(d, in);
   }

@@ -19,6 +19,12 @@ estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* i
 /// True where the flux alone has the shaft and nobody else needs the observer.
 bool flux_source_rests(const drive_t* d);
 
+/// Gives the shaft to the flux alone, whatever the speed; the blend goes on from there.
+void flux_source_take(drive_t* d);
+
+/// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
+void flux_source_follow(drive_t* d, const estimator_output_t* now);
+
 estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in);
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low);
 

@@ -90,6 +90,18 @@ PARAMETER(331, current_divider, "", 0, 0, 1, 2, 1, STOPPED,
 PARAMETER(332, current_corner, "", 0, 0, 0, 1, 0, STOPPED,
           "corner of the current controllers' integrator: 0 a quarter of current_bandwidth, 1 the machine's R/L")
 
+// I-F start: a current vector that turns open-loop until the position source can take over
+PARAMETER(340, start_method, "", 0, 0, 0, 1, 0, STOPPED,
+          "how a standing shaft is started: 0 by its saliency, 1 turned by a current vector (I-F)")
+PARAMETER(341, if_current, "A", 20, 2, 20, 10000, 800, STOPPED, "length of the current vector")
+PARAMETER(342, if_align, "ms", 0, 0, 10, 5000, 500, STOPPED,
+          "at rest first: a quarter turn behind while it rises, then where it begins")
+PARAMETER(343, if_acceleration, "rpm/s", 8, 0, 10, 100000, 500, STOPPED, "slope of its speed")
+PARAMETER(344, if_speed, "rpm", 8, 0, 10, 6000, 300, STOPPED,
+          "its speed at the end, where the position source takes over")
+PARAMETER(345, if_time, "ms", 0, 0, 100, 10000, 2000, STOPPED,
+          "that the source has to agree with it, then the drive faults")
+
 // Saturation: incremental inductances at i_d = 0 and i_q = 1/4 .. 4/4 of map_current
 PARAMETER(110, map_current, "A", 20, 2, 100, 10000, 1400, STOPPED, "i_q of the map's last point")
 PARAMETER(111, lqq_1, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 1/4 of map_current")

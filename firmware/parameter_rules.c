@@ -61,6 +61,9 @@ const char* parameter_conflict(void) {
     return "current_law 1 needs position_source 0";
   if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
     return "100 us must be a whole number of slice_time";
+  if (p->start_method == 1 && p->position_source == POSITION_ENCODER)
+    return "start_method 1 needs a position_source other than 0: the encoder has no zero yet";
+  if (p->if_current > p->current_limit) return "if_current must not exceed current_limit";
   if (p->current_bandwidth * (3 + p->current_divider) > 10400)
     return "current_bandwidth must not exceed 2080 rad/s with current_divider 2";
   trial = drive.config;

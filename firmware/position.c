@@ -153,6 +153,27 @@ static void move_model(drive_t* d) {
   machine_model_move(&d->model, d->control.measured_q20.q);
 }
 
+// The I-F start: the control uses the vector's frame, and the source looks on. Of the torque it is told what its own
+// angle makes of the current, as later. At rest the angle is the vector's: a saliency has two.
+static void estimate_turned(drive_t* d, estimator_input_t* in) {
+  drive_start_t* const s = &d->start;
+  const dq_t i_q20 = drive_seen(d, d->control.measured_q20);
+  in->torque_accel_q8 = q_mul_sat(machine_torque_q16(&d->model, i_q20), d->model.accel_q12, 20);
+  d->position.torque_accel_q8 = in->torque_accel_q8;
+  in->frames = 0;
+  if (flux_source_rests(d) && !if_start_is_up(&s->turn, &d->config.turn)) {
+    flux_source_follow(d, &d->position.used);
+    s->seen = d->position.used;
+  } else if (s->turn.tick < d->config.turn.align_periods) {
+    position_preset(d, d->position.used.angle_bam, d->position.used.speed_bpp);
+    s->seen = d->position.used;
+  } else {
+    s->seen = sources[parameters.position_source](d, in);
+  }
+  d->position.used.angle_bam = s->turn.angle_bam + (uint32_t)s->turn.speed_bpp;
+  d->position.used.speed_bpp = s->turn.speed_bpp;
+}
+
 void drive_estimate(drive_t* d) {
   measure_current(d);
   move_model(d);
@@ -168,6 +189,10 @@ void drive_estimate(drive_t* d) {
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&d->inertia, in.torque_accel_q8);
+  if (drive_is_turned(d)) {
+    estimate_turned(d, &in);
+    return;
+  }
   if (measuring) {
     in.frames = 0;
     d->position.used = step_commissioning(d, &in);

@@ -95,7 +95,9 @@ void start_find_axis(drive_t* d) {
   position_preset(d, 0, 0);
   axis_begin(&d->start.axis);
   if (!d->start.powered) start_power(d, true);
-  if (d->state == DRIVE_START) start_enter(d, START_AXIS);
+  if (d->state != DRIVE_START) return;
+  start_enter(d, START_AXIS);
+  if (parameters.start_method == 1 && !d->commissioning.requested) start_turn(d);
 }
 
 static void step_axis(drive_t* d) {
@@ -202,7 +204,7 @@ static void step_motion(drive_t* d) {
 void drive_start(drive_t* d) {
   typedef void (*step_t)(drive_t*);
   static const step_t steps[] = {start_step_listen, start_step_pulse, start_step_catch, step_axis,
-                                 step_settle,       step_saturation,  step_motion};
+                                 step_settle,       step_saturation,  step_motion,      start_step_turn};
   drive_start_t* const s = &d->start;
   s->tick++;
   s->clock += ESTIMATOR_PERIOD_TICKS;

@@ -4,10 +4,13 @@
 // speed come from the back-EMF and the drive runs on at that speed. If it stands, the axis comes from the saliency, the
 // polarity from saturation where the machine's slopes are known and large enough, else from a small motion. What stays
 // ambiguous is tried again with more current and then is a fault.
+//
+// With start_method 1 a shaft that stands is turned by a current vector instead (turning.c): that needs no saliency.
 
 #ifndef STILLSPIN_FIRMWARE_START_START_H
 #define STILLSPIN_FIRMWARE_START_START_H
 
+#include "control/if_start.h"
 #include "estimators/axis.h"
 #include "estimators/emf_sign.h"
 #include "estimators/flying.h"
@@ -21,7 +24,8 @@ typedef enum {
   START_AXIS = 3,        // zero mean voltage, the axis is found
   START_SETTLE = 4,      // current loop closed at zero
   START_SATURATION = 5,  // polarity by saturation
-  START_MOTION = 6       // polarity by motion
+  START_MOTION = 6,      // polarity by motion
+  START_TURN = 7         // I-F start: a current vector turns the rotor
 } start_phase_t;
 
 typedef struct {
@@ -44,7 +48,9 @@ typedef struct {
   axis_t axis;
   saturation_t saturation;
   polarity_t motion;
-  int32_t sigma_q8;  // confidence in the polarity, standard errors
+  if_start_t turn;
+  estimator_output_t seen;  // by the position source, while the vector turns
+  int32_t sigma_q8;         // confidence in the polarity, standard errors
 } drive_start_t;
 
 #endif

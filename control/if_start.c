@@ -1,0 +1,85 @@
+#include "control/if_start.h"
+
+#define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
+#define ANGLE_80_DEG 954437177L
+#define SHIFT_MAX_BAM 536870912L  // 45 degrees
+#define FILTER_SHIFT 3u           // 0.8 ms, for what the current control adds to the voltage
+#define MEAN_SHIFT 10u            // 100 ms
+
+bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_start_parameters_t* p) {
+  c->current_q20 = p->current_q20;
+  c->align_periods = p->align_periods;
+  c->step_bpp = q_max(p->step_bpp, 1);
+  c->speed_bpp = p->speed_bpp;
+  c->wait_periods = p->wait_periods;
+  // Acceleration at a right angle, bpp per period: (w0 T)^2 in units of 2 pi / 2^32.
+  const int32_t torque_q16 = q_mul(m->torque_q24, p->current_q20, 28);
+  const int32_t accel_bpp = q_mul_sat(torque_q16, m->accel_q12, 28);
+  c->damping_periods = (int32_t)q_sqrt64((uint64_t)(TURNS_Q32_PER_RAD / q_max(accel_bpp, 1)));
+  // w = v / lambda: rad per period of v over lambda/T, as binary angle.
+  c->per_emf_q4 = q_div(TURNS_Q32_PER_RAD, m->emf_q16, 20);
+  c->resistance_q24 = m->nominal_rs_q24;
+  c->least_q16 = q_max(q_div(p->speed_bpp / 8, c->per_emf_q4, 20), 1);
+  return q_in_range(c->damping_periods, 10, 10000);
+}
+
+static uint32_t quarter_turn_on(uint32_t angle_bam, bool forward) {
+  return forward ? angle_bam + ANGLE_BAM_QUARTER_TURN : angle_bam - ANGLE_BAM_QUARTER_TURN;
+}
+
+void if_start_begin(if_start_t* s, uint32_t angle_bam, bool backward) {
+  static const if_start_t fresh = {0};
+  *s = fresh;
+  s->backward = backward;
+  s->vector_bam = quarter_turn_on(angle_bam, backward);
+  s->angle_bam = s->vector_bam;
+}
+
+// At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
+// other.
+static void step_vector(if_start_t* s, const if_start_config_t* c) {
+  const int32_t half = c->align_periods / 2;
+  s->current_q20 = (s->tick < half) ? c->current_q20 / half * s->tick : c->current_q20;
+  if (s->tick == half) s->vector_bam = quarter_turn_on(s->vector_bam, !s->backward);
+  if (s->tick < c->align_periods) return;
+  const int32_t end = s->backward ? -c->speed_bpp : c->speed_bpp;
+  s->speed_bpp += q_clamp(end - s->speed_bpp, -c->step_bpp, c->step_bpp);
+  s->vector_bam += (uint32_t)s->speed_bpp;
+}
+
+// The EMF along its own mean direction: to first order that is the rotor's speed alone, whatever the lag. Near
+// standstill the direction is that of no lag.
+static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq_t emf_q16) {
+  const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
+  const int32_t q = q_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
+  const int32_t length = q_max(q_hypot(d, q), 1);
+  const int32_t along =
+      q_add_sat(q_mul_sat(q_div(d, length, 28), emf_q16.d, 28), q_mul_sat(q_div(q, length, 28), emf_q16.q, 28));
+  return along;
+}
+
+static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
+  const dq_t emf_q16 = {q_sub_sat(voltage_q16.d, q_mul_sat(c->resistance_q24, s->current_q20, 28)), voltage_q16.q};
+  s->mean_q16.d += q_shr(q_sub_sat(emf_q16.d, s->mean_q16.d), MEAN_SHIFT);
+  s->mean_q16.q += q_shr(q_sub_sat(emf_q16.q, s->mean_q16.q), MEAN_SHIFT);
+  const int32_t seen = q_mul_sat(emf_along_q16(s, c, emf_q16), c->per_emf_q4, 20);
+  s->rotor_bpp += q_shr(q_sub_sat(seen, s->rotor_bpp), FILTER_SHIFT);
+  s->mean_bpp += q_shr(q_sub_sat(s->rotor_bpp, s->mean_bpp), MEAN_SHIFT);
+  const int32_t fast = q_sub_sat(s->rotor_bpp, s->mean_bpp);
+  const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
+  s->angle_bam = s->vector_bam - (uint32_t)shift;
+}
+
+if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,
+                                int32_t seen_bpp) {
+  s->tick++;
+  step_vector(s, c);
+  damp(s, c, voltage_q16);
+  if (!if_start_is_up(s, c)) return IF_START_PENDING;
+  const bool near = q_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
+                    q_abs_sat(q_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;
+  s->agreed = near ? s->agreed + 1 : 0;
+  if (s->agreed >= IF_START_AGREED) return IF_START_TAKEN_OVER;
+  s->waited++;
+  return (s->waited > c->wait_periods) ? IF_START_FAILED : IF_START_PENDING;
+}

@@ -1,0 +1,67 @@
+// I-F start: a current vector of constant length that turns open-loop, first at rest in two places a quarter turn apart
+// (half a turn away from one of them a rotor feels no torque), then along a ramp of its frequency up to the speed at
+// which a position source can take over. Source: Wang, Lu, Blaabjerg, IEEE Trans. Ind.
+// Appl. 48 (2012), which seed paper B uses ([22]). Steps once per PWM period.
+//
+// The vector lies on the d-axis of the frame that is controlled; under load the rotor lags by up to 90 degrees. Rotor
+// and vector are a spring, w0^2 = p Kt I / J, that nothing damps but friction. So the vector is turned back by w~/w0,
+// half of critical damping. w~ is the rotor's speed from the EMF along its mean direction, less the mean of 100 ms:
+// what the lag, L I and the drops make of it stands still, and counts for nothing. The component across the vector
+// alone, w lambda cos(lag), would close a loop over the lag, with a gain of (w/w0) sin(lag).
+//
+// The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
+
+#ifndef STILLSPIN_CONTROL_IF_START_H
+#define STILLSPIN_CONTROL_IF_START_H
+
+#include "control/machine_model.h"
+
+#define IF_START_AGREED 3000  // periods of agreement: an integrated flux has then lost nine tenths of its first error
+
+typedef struct {
+  int32_t current_q20;      // length of the vector, A, up to 100
+  int32_t align_periods;    // at rest, over the first half a quarter turn behind and rising, 2..50000
+  int32_t step_bpp;         // change of its speed per period, at least 1
+  int32_t speed_bpp;        // at the end, positive
+  int32_t wait_periods;     // there, until the source agrees
+  int32_t damping_periods;  // 1 / w0
+  int32_t per_emf_q4;       // bpp per V of EMF
+  int32_t resistance_q24;
+  int32_t least_q16;  // mean EMF, V, below which its direction is not looked at
+} if_start_config_t;
+
+typedef struct {
+  int32_t current_q20, align_periods, step_bpp, speed_bpp, wait_periods;
+} if_start_parameters_t;
+
+typedef enum { IF_START_PENDING = 0, IF_START_TAKEN_OVER = 1, IF_START_FAILED = 2 } if_start_result_t;
+
+typedef struct {
+  int32_t tick;            // periods since the beginning
+  int32_t speed_bpp;       // of the vector
+  uint32_t vector_bam;     // its angle without the damping
+  uint32_t angle_bam;      // of the frame to control in
+  int32_t current_q20;     // i_d to ask for
+  dq_t mean_q16;           // EMF, V, in the frame
+  int32_t rotor_bpp;       // speed of the rotor by the EMF, filtered
+  int32_t mean_bpp;        // its mean
+  int32_t agreed, waited;  // periods
+  bool backward;
+} if_start_t;
+
+/// Derives damping and speed from the machine. False where the spring is slower than 1 s or faster than 10 periods.
+bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_start_parameters_t* p);
+
+/// angle_bam: where the vector points when it begins to turn.
+void if_start_begin(if_start_t* s, uint32_t angle_bam, bool backward);
+
+/// True once the vector has its last speed.
+static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* c) {
+  return q_abs_sat(s->speed_bpp) >= c->speed_bpp;
+}
+
+/// One period. voltage: command in the last one, V; seen: angle and speed of the source.
+if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,
+                                int32_t seen_bpp);
+
+#endif

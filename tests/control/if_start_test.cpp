@@ -1,0 +1,149 @@
+// The I-F start on a shaft in double precision: the vector's current is what it asks for, at once.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tests/control/quantities.hpp"
+
+extern "C" {
+#include "control/if_start.h"
+}
+
+namespace stillspin::test {
+namespace {
+
+Motor motor_b() {
+  Motor m;
+  m.rs = 0.175;
+  m.ld = 0.76e-3;
+  m.lq = 1.63e-3;
+  m.flux = 0.0865;
+  m.inertia = 2e-3;
+  m.friction = 1e-3;
+  return m;
+}
+
+// 8 A, 100 ms at rest, 500 rpm/s up to 300 rpm, 2 s of patience.
+if_start_parameters_t usual() {
+  return {raw(8.0, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 20000};
+}
+
+if_start_config_t designed(const Motor& m, const if_start_parameters_t& p) {
+  const machine_model_t model = model_of(m);
+  if_start_config_t c;
+  EXPECT_TRUE(if_start_design(&c, &model, &p));
+  return c;
+}
+
+struct Shaft {
+  Motor m = motor_b();
+  double angle = 0.0, speed = 0.0, load = 0.0;  // electrical; the load against the motion, N m
+
+  // Voltage in the vector's frame, V.
+  Vector step(double frame, double current) {
+    const double lag = frame - angle;
+    const double torque =
+        1.5 * m.pole_pairs * (m.flux + (m.ld - m.lq) * current * std::cos(lag)) * current * std::sin(lag);
+    const double against = std::clamp(speed, -1.0, 1.0) * load;
+    const double accel = (torque - against - m.friction * speed / m.pole_pairs) * m.pole_pairs / m.inertia;
+    speed += accel * kPeriod;
+    angle += speed * kPeriod;
+    return {m.rs * current + speed * m.flux * std::sin(lag), speed * (m.flux * std::cos(lag) + m.ld * current)};
+  }
+};
+
+struct Turned {
+  if_start_result_t result = IF_START_PENDING;
+  int periods = 0;
+  double swing = 0.0;  // largest departure of the speed from the vector's over the last 100 ms, of it
+  if_start_t state = {};
+};
+
+// Runs until it ends. The source sees the shaft `off` rad beside where it is, at its own speed.
+Turned turn(Shaft& shaft, const if_start_config_t& c, bool backward, double off = 0.0) {
+  Turned t;
+  if_start_begin(&t.state, 0, backward);
+  Vector voltage = {0.0, 0.0};
+  double worst[2] = {0.0, 0.0};
+  while (t.result == IF_START_PENDING && t.periods < 100000) {
+    t.result = if_start_step(&t.state, &c, raw_dq(voltage, 16), bam(shaft.angle + off), bpp(shaft.speed));
+    voltage = shaft.step(rad(t.state.angle_bam), real(t.state.current_q20, 20));
+    if (t.periods % 1000 == 0) worst[0] = std::exchange(worst[1], 0.0);
+    worst[1] = std::max(worst[1], std::fabs(shaft.speed / rad_per_s(t.state.speed_bpp) - 1.0));
+    t.periods++;
+  }
+  t.swing = std::max(worst[0], worst[1]);
+  return t;
+}
+
+TEST(IfStart, TurnsTheShaftFromEveryAngleAndEndsQuietly) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  for (double load : {0.0, 1.0, 3.0}) {
+    for (int k = -11; k <= 12; k++) {
+      for (bool backward : {false, true}) {
+        Shaft shaft;
+        shaft.angle = k * kPi / 12.0;
+        shaft.load = load;
+        const Turned t = turn(shaft, c, backward);
+        EXPECT_EQ(t.result, IF_START_TAKEN_OVER) << "angle " << k << " load " << load;
+        EXPECT_LT(t.swing, 0.02) << "angle " << k << " load " << load;
+        EXPECT_NEAR(shaft.speed, backward ? -125.7 : 125.7, 2.5);
+      }
+    }
+  }
+}
+
+TEST(IfStart, TheSwingDiesByItsDampingAlone) {
+  if_start_config_t c = designed(motor_b(), usual());
+  Shaft damped, bare;
+  damped.m.friction = bare.m.friction = 0.0;
+  damped.angle = bare.angle = 1.0;
+  const Turned with = turn(damped, c, false);
+  c.damping_periods = 0;
+  const Turned without = turn(bare, c, false);
+  EXPECT_LT(with.swing, 0.01);
+  EXPECT_GT(without.swing, 0.1);
+}
+
+TEST(IfStart, TakesTheTimesThatItIsTold) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  Shaft shaft;
+  const Turned t = turn(shaft, c, false);
+  // 1000 at rest, 6000 up the ramp, 3000 of agreement.
+  EXPECT_NEAR(t.periods, 10000, 20);
+  EXPECT_EQ(t.state.current_q20, raw(8.0, 20));
+}
+
+TEST(IfStart, GivesUpWhenTheSourceDoesNotAgree) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  Shaft half_a_turn_off;
+  const Turned reversed = turn(half_a_turn_off, c, false, kPi);
+  EXPECT_EQ(reversed.result, IF_START_FAILED);
+  EXPECT_NEAR(reversed.periods, 27000, 20);
+  // A shaft that the vector does not carry along stands, or is left behind.
+  Shaft blocked;
+  blocked.load = 6.0;
+  EXPECT_EQ(turn(blocked, c, false).result, IF_START_FAILED);
+}
+
+TEST(IfStart, RefusesASpringThatIsTooSlowOrTooFast) {
+  if_start_config_t c;
+  const if_start_parameters_t p = usual();
+  Motor heavy = motor_b();
+  heavy.inertia = 0.5;
+  heavy.flux = 0.002;
+  const machine_model_t slow = model_of(heavy);
+  EXPECT_FALSE(if_start_design(&c, &slow, &p));
+  Motor light = motor_b();
+  light.inertia = 1e-4;
+  light.flux = 0.9;
+  const machine_model_t fast = model_of(light);
+  if_start_parameters_t strong = p;
+  strong.current_q20 = raw(100.0, 20);
+  EXPECT_FALSE(if_start_design(&c, &fast, &strong));
+}
+
+}  // namespace
+}  // namespace stillspin::test
