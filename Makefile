@@ -16,7 +16,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check verify loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check int16 verify loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -54,7 +54,12 @@ image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: 
 	{ grep -A 30 -m 1 FAILED build/image-check.log; exit 1; }
 	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
 
-verify: image-check ## the checks that take long, under 30 minutes: the image by stand-in
+int16: build ## run every scenario's first half second compiled with a 16-bit int and char, bit for bit the native run
+	@bash toolchain/setup.sh build verify
+	@cmake --build --preset $(PRESET) --target stillspin_int16_trap
+	@$(PYTHON) toolchain/int16/compare_runs.py $(BUILD)/tests/int16/stillspin_int16_trap --seconds 0.5
+
+verify: image-check int16 ## the checks that take long, under 30 minutes: image by stand-in, runs with a 16-bit int
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

@@ -57,7 +57,7 @@ static int32_t change(inertia_match_t* s, int32_t factor_q24) {
 }
 
 static int32_t judge(inertia_match_t* s, const inertia_seen_t* in, int32_t periods) {
-  s->mean_q8 = q_mul_sat(s->gained_bpp / ((int32_t)s->ms * periods), 256, 0);
+  s->mean_q8 = q_shl_sat(s->gained_bpp / ((int32_t)s->ms * periods), 8);
   if (q_abs_sat(s->turned) < s->next || (s->turned < 0) != (s->expected < 0)) return ONE_Q24;
   s->next *= 4;
   if (q_abs_sat(s->mean_q8) < in->least_accel_q8) return ONE_Q24;

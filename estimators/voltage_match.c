@@ -2,9 +2,10 @@
 
 #define CURRENT_UNIT_SHIFT 2u  // 4 A count as much
 #define SPEED_UNITS 50L        // as 1/50 rad per period, 480 rpm with four pole pairs
-#define HASTE_MIN_Q16 21845L   // a third of that speed, 160 rpm
-#define HASTE_OVER 8           // the haste is over at eight times the share
-#define FLOOR_Q16 4096L        // (a quarter of a unit)^2: less current and speed than that tell nothing
+#define SPEED_UNITS_Q8 (SPEED_UNITS * 256L)
+#define HASTE_MIN_Q16 21845L  // a third of that speed, 160 rpm
+#define HASTE_OVER 8          // the haste is over at eight times the share
+#define FLOOR_Q16 4096L       // (a quarter of a unit)^2: less current and speed than that tell nothing
 
 // The flux told may be far off: at first its error is taken over as by a mean of all steps, 1/n, with n beginning where
 // the haste does; 1/(n + 1) is 1/n - 1/n^2. The resistance waits. Only with speed is there anything to count.
@@ -13,7 +14,7 @@ static bool hurry(machine_model_t* m, int32_t e_q16, int32_t w_q16, int32_t shar
   const int32_t speed_q16 = q_abs_sat(w_q16);
   if (speed_q16 < HASTE_MIN_Q16 || t->psi_haste_q30 / HASTE_OVER <= share_q30) return false;
   const int32_t along_q16 = (w_q16 < 0) ? -e_q16 : e_q16;
-  const int32_t error_q16 = q_mul_sat(q_over(along_q16, q_invert(speed_q16), 16), SPEED_UNITS, 0);
+  const int32_t error_q16 = q_mul_sat(q_over(along_q16, q_invert(speed_q16), 16), SPEED_UNITS_Q8, 8);
   t->psi_q16 -= q_mul(error_q16, t->psi_haste_q30, 30);
   t->psi_haste_q30 -= q_mul(t->psi_haste_q30, t->psi_haste_q30, 30);
   return true;

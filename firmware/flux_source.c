@@ -33,8 +33,13 @@ bool flux_source_load(drive_config_t* c) {
 }
 
 estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* in) {
-  estimator_input_t given = *in;
+  estimator_input_t given;
+  given.model = in->model;
+  given.windows = in->windows;
+  given.window_count = in->window_count;
+  given.torque_accel_q8 = in->torque_accel_q8;
   given.regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
+  given.frames = in->frames;
   return given;
 }
 

@@ -6,7 +6,8 @@
 #   3. the project's own Python package, editable, from sim_host/.
 #
 # When nothing is missing, nothing is fetched and the network is not touched.
-# Usage: toolchain/setup.sh [build|bench]...   (groups of debian-packages.txt; default: build)
+# Usage: toolchain/setup.sh [build|bench|verify]...   (groups of debian-packages.txt; default: build). `verify` also
+# installs opt and llc of the clang that there is.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -90,16 +91,22 @@ install_wanted() {
   fi
 }
 
+# The package with opt and llc of a clang ("clang-19" or "clang"), if they are wanted and not there.
+missing_llvm() {
+  [[ " ${groups[*]} " == *' verify '* ]] && ! command -v "opt${1#clang}" >/dev/null && echo "llvm${1#clang}"
+}
+
 install_debian_packages() {
-  local need_clang='' package clang
-  bash toolchain/find-clang.sh >/dev/null || need_clang=1
+  local need_clang='' package clang llvm
+  clang=$(bash toolchain/find-clang.sh) || need_clang=1
   if ! command -v dpkg-query >/dev/null; then
     say "not a Debian or Ubuntu machine: the packages of $table are taken to be there"
     [[ -z $need_clang ]] || die "no clang with the msp430 target: install LLVM's clang 14 or newer, then run make again"
     return
   fi
   mapfile -t wanted < <(missing_packages)
-  if ((!${#wanted[@]})) && [[ -z $need_clang ]]; then
+  llvm=$(missing_llvm "$clang") || llvm=''
+  if ((!${#wanted[@]})) && [[ -z $need_clang && -z $llvm ]]; then
     return
   fi
   mkdir -p "$logs"
@@ -115,6 +122,11 @@ install_debian_packages() {
       "install any LLVM clang 14 or newer whose --print-targets names msp430, then run make again"
     say "  $clang: checks the firmware's C with a 16-bit int, as on the DSP"
     wanted+=("$clang")
+    llvm=$(missing_llvm "$clang") || llvm=''
+  fi
+  if [[ -n $llvm ]]; then
+    say "  $llvm: makes code that runs here of C that was compiled with a 16-bit int"
+    wanted+=("$llvm")
   fi
   install_wanted
 }

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Runs scenarios twice, with the native drive and with the one of a 16-bit int, and compares every recorded bit.
+
+Usage: toolchain/int16/compare_runs.py MODULE [--seconds S] [--every N] [--jobs J] [SCENARIO]...
+
+MODULE is the folder of the second native module (build/.../tests/int16/stillspin_int16). All scenarios but those on
+demand unless some are named; of each run the first S seconds behind the start (default: all), every Nth run only. All
+columns, faults, the reason and the counts of accesses and interrupts must be the same. Exit status 1 when one differs.
+"""
+
+import argparse
+import hashlib
+import importlib.util
+import json
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from stillspin import core, execute, profile, resources, scenario_file
+from stillspin.profile import Changes
+
+NOT_COMPARED = ("wall_seconds", "plant_share")
+
+
+def take_module(folder: str) -> None:
+    """Puts a native module in the place of the package's own."""
+    if folder == "native":
+        return
+    path = next(Path(folder).glob("_core*.so"))
+    spec = importlib.util.spec_from_file_location("stillspin._core", path)
+    if spec is None or spec.loader is None:
+        raise SystemExit(f"{path} does not load")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    sys.modules["stillspin._core"] = module
+
+
+def jobs_of(identifier: str) -> list[execute.Job]:
+    """The runs of a scenario on its motor, profile bench, seed 1."""
+    native = core.load()
+    chosen = scenario_file.load(identifier)
+    schema, known = core.plant_schema(native), core.parameters(native)
+    settings = execute.Settings(
+        profile.load("bench", schema, known, chosen.motor), Changes({}, {}, ()), 1, "", "the nameplate"
+    )
+    return execute.prepare(chosen, settings, native)
+
+
+def digest(module: str, identifier: str, index: int, seconds: float) -> dict[str, Any]:
+    """What a run leaves, in short."""
+    take_module(module)
+    job = jobs_of(identifier)[index]
+    job = replace(job, run=replace(job.run, duration=min(job.run.duration, seconds)))
+    try:
+        result = execute.play(core.load(), job, None)
+    except (RuntimeError, ValueError, ArithmeticError) as error:
+        return {"broken": str(error)}
+    left: dict[str, Any] = {
+        name: hashlib.sha256(values.tobytes()).hexdigest() for name, values in sorted(result.signals.items())
+    }
+    left["records"] = len(result.signals["time"])
+    left["faults"] = [list(fault) for fault in result.faults]
+    left["reason"] = result.reason
+    left["stats"] = {name: value for name, value in sorted(result.stats.items()) if name not in NOT_COMPARED}
+    return left
+
+
+def in_process(module: str, identifier: str, index: int, seconds: float) -> dict[str, Any]:
+    """The same in a process of its own: the firmware has static variables."""
+    command = [sys.executable, __file__, "--one", module, identifier, str(index), str(seconds)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        return {"crashed": done.returncode, "said": done.stderr[-400:]}
+    left: dict[str, Any] = json.loads(done.stdout)
+    return left
+
+
+def compare(module: str, identifier: str, index: int, name: str, seconds: float) -> tuple[bool, str]:
+    """One run by both drives."""
+    mine, other = (in_process(which, identifier, index, seconds) for which in ("native", module))
+    different = sorted(key for key in {*mine, *other} if mine.get(key) != other.get(key))
+    if different or "crashed" in mine:
+        told = {key: (mine.get(key), other.get(key)) for key in different if key in ("crashed", "said", "reason")}
+        return False, f"DIFFERS {identifier} {name}: {', '.join(different)} {told or ''}"
+    stats = mine.get("stats", {})
+    how = mine.get("broken") or mine["reason"] or "completed"
+    accesses = stats.get("register_accesses", 0)
+    return True, f"same    {identifier} {name}: {mine.get('records', 0)} records, {accesses:.0f} accesses, {how}"
+
+
+def main() -> int:
+    """Compares what the command line names."""
+    if sys.argv[1] == "--one":
+        module, identifier, index, seconds = sys.argv[2:]
+        print(json.dumps(digest(module, identifier, int(index), float(seconds))))
+        return 0
+    parser = argparse.ArgumentParser(description="The native drive against that of a 16-bit int.")
+    parser.add_argument("module")
+    parser.add_argument("--seconds", type=float, default=1e9)
+    parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("scenarios", nargs="*")
+    options = parser.parse_intermixed_args()
+    ids = options.scenarios or scenario_file.campaign_ids(resources.names("motors"))
+    todo = [(i, k, job.run.name) for i in ids for k, job in enumerate(jobs_of(i))][:: options.every]
+    with ThreadPoolExecutor(options.jobs) as pool:
+        results = []
+        for result in pool.map(lambda t: compare(options.module, *t, options.seconds), todo):
+            print(result[1], flush=True)
+            results.append(result[0])
+    print(f"{sum(results)} of {len(results)} runs the same, bit for bit")
+    return 0 if results and all(results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
