@@ -63,7 +63,8 @@ const char* parameter_conflict(void) {
     return "100 us must be a whole number of slice_time";
   if (p->start_method == 1 && p->position_source == POSITION_ENCODER)
     return "start_method 1 needs a position_source other than 0: the encoder has no zero yet";
-  if (p->if_current > p->current_limit) return "if_current must not exceed current_limit";
+  if (p->start_method == 1 && p->if_current > p->current_limit)
+    return "if_current must not exceed current_limit with start_method 1";
   if (p->current_bandwidth * (3 + p->current_divider) > 10400)
     return "current_bandwidth must not exceed 2080 rad/s with current_divider 2";
   trial = drive.config;
