@@ -18,7 +18,7 @@ static answer_status_t check_ready(octet_writer_t* why) {
       return ANSWER_CONFLICT;
     case DRIVE_FAULT:
       put_text(why, "a fault is latched, reset it first: ");
-      put_text(why, words(WORDS_FAULT, (uint16_t)drive.fault));
+      put_words(why, WORDS_FAULT, (uint16_t)drive.fault);
       return ANSWER_STATE;
     case DRIVE_BOOT:
     case DRIVE_CALIBRATE:
@@ -28,7 +28,7 @@ static answer_status_t check_ready(octet_writer_t* why) {
       put_text(why, "the drive is busy, stop it first: ");
       break;
   }
-  put_text(why, words(WORDS_STATE, (uint16_t)drive.state));
+  put_words(why, WORDS_STATE, (uint16_t)drive.state);
   return ANSWER_STATE;
 }
 
@@ -131,7 +131,7 @@ static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
     return ANSWER_RUNNING;
   }
   put_text(why, "the store is busy: ");
-  put_text(why, words(WORDS_STORE, (uint16_t)store_state()));
+  put_words(why, WORDS_STORE, (uint16_t)store_state());
   return ANSWER_BUSY;
 }
 

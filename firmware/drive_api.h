@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/packed_text.h"
+
 #if defined(__cplusplus)
 extern "C" {
 #endif
@@ -53,7 +55,7 @@ typedef struct {
   const char* name;
   const char* unit;
   uint16_t q;
-  const char* meaning;
+  packed_text_t meaning;
 } signal_info_t;
 
 uint16_t signal_count(void);
@@ -76,7 +78,7 @@ typedef struct {
   uint16_t decimals;
   int32_t minimum, maximum, initial;  // raw, with q fractional bits
   parameter_access_t access;
-  const char* meaning;
+  packed_text_t meaning;
 } parameter_info_t;
 
 uint16_t parameter_count(void);

@@ -27,7 +27,7 @@ parameters_t parameters;
    RAW(maximum, q, TEN_##decimals),                                                        \
    RAW(initial, q, TEN_##decimals),                                                        \
    PARAMETER_##access,                                                                     \
-   meaning},
+   TEXT_PARAMETER_##name},
 static const parameter_info_t table[] = {
 #include "firmware/parameter_list.h"
 };

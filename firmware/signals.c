@@ -4,7 +4,7 @@
 
 #include "firmware/drive.h"
 
-#define SIGNAL(name, unit, q, value, meaning) {#name, unit, q, meaning},
+#define SIGNAL(name, unit, q, value, meaning) {#name, unit, q, TEXT_SIGNAL_##name},
 static const signal_info_t table[] = {
 #include "firmware/signal_list.h"
 };

@@ -88,12 +88,12 @@ int32_t decimal_raw(const decimal_t* number, uint16_t q) {
   return q_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
 }
 
-static uint16_t small(uint16_t c) { return (c >= 'A' && c <= 'Z') ? (uint16_t)(c + 32u) : c; }
+uint16_t text_small(uint16_t c) { return (c >= 'A' && c <= 'Z') ? (uint16_t)(c + 32u) : c; }
 
 // How many characters of the beginning are the same.
 static uint16_t common(const char* string, const uint16_t* text, uint16_t count) {
   uint16_t k = 0;
-  while (k < count && string[k] != '\0' && small((uint16_t)string[k]) == small(text[k])) k++;
+  while (k < count && string[k] != '\0' && text_small((uint16_t)string[k]) == text_small(text[k])) k++;
   return k;
 }
 

@@ -40,6 +40,9 @@ uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 /// Nearest raw value with q fractional bits (0..32), saturated.
 int32_t decimal_raw(const decimal_t* number, uint16_t q);
 
+/// The small letter of a capital; any other character itself.
+uint16_t text_small(uint16_t c);
+
 /// True when the string's beginning is these characters; capitals count as small letters.
 bool text_begins(const char* string, const uint16_t* text, uint16_t count);
 

@@ -1,10 +1,13 @@
 // What the drive's numbers mean, in the user's words: states, faults, limits, verdicts and phases. Every list exists
-// once, here, in fault_list.h or in store/store.c; console, link, bench and host tools read it.
+// once, in word_list.h or in fault_list.h; console, link, bench and host tools read it.
 
 #ifndef STILLSPIN_FIRMWARE_WORDS_H
 #define STILLSPIN_FIRMWARE_WORDS_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include "firmware/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -28,11 +31,11 @@ typedef enum {
 
 #define WORDS_KINDS 12u
 
-/// NULL when there is no such kind or code.
-const char* words_or_null(uint16_t kind, uint16_t code);
+/// Whether there is such a kind, and such a code in it.
+bool words_exist(uint16_t kind, uint16_t code);
 
-/// The same for a code that comes from the drive itself; "?" when it has no words.
-const char* words(words_kind_t kind, uint16_t code);
+/// Writes them out; "?" when there are none.
+void put_words(octet_writer_t* w, words_kind_t kind, uint16_t code);
 
 #if defined(__cplusplus)
 }

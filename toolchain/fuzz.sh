@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # Searches for what breaks the drive or its client: libFuzzer with address and undefined-behaviour sanitizers over the
 # firmware's serial port and CAN bus, a generator over the SLCAN adapter and the client's readers (tests/fuzz).
-# Usage: toolchain/fuzz.sh RUNS, of each of the four. What it finds is left in build/fuzz/found.
+# Usage: toolchain/fuzz.sh RUNS [link] [bus] [client], of each search: two for the client, all when none is named. What
+# it finds is left in build/fuzz/found.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 runs=${1:-1000000}
+which=${*:2}
+which=${which:-link bus client}
 build=build/fuzz
 clang=$(bash toolchain/find-clang.sh)
 mkdir -p "$build/found" "$build/corpus-link" "$build/corpus-bus"
@@ -28,6 +31,11 @@ search() { # target, options
   "$build/tests/fuzz/stillspin_fuzz_$1" -runs="$runs" -max_len=300 -verbosity=0 -print_funcs=0 -print_final_stats=1 \
     -artifact_prefix="$build/found/$1-" "${@:2}" "$build/corpus-$1"
 }
-search link -dict=tests/fuzz/link.dict
-search bus
-.venv/bin/python tests/fuzz/client_fuzz.py "$runs"
+for each in $which; do
+  case $each in
+    link) search link -dict=tests/fuzz/link.dict ;;
+    bus) search bus ;;
+    client) .venv/bin/python tests/fuzz/client_fuzz.py "$runs" ;;
+    *) echo "fuzz: there is no search $each" >&2 && exit 2 ;;
+  esac
+done

@@ -65,16 +65,18 @@ def build(out: Path) -> Path:
     """The firmware with the replaying target as an image for the emulator."""
     sources = sorted(path.relative_to(ROOT) for folder in FOLDERS for path in (ROOT / folder).rglob("*.c"))
     counters = [Path("tests/m3/replay.c"), Path("tests/m3/startup.c")]
+    texts = out / "packed_text_table.c"
+    subprocess.run([sys.executable, ROOT / "toolchain" / "pack_text.py", texts], check=True)
     ccache = [tool] if (tool := shutil.which("ccache")) else []
 
     def compile_one(source: Path) -> Path:
-        target = out / source.as_posix().replace("/", "_").replace(".c", ".o")
+        target = out / source.as_posix().strip("/").replace("/", "_").replace(".c", ".o")
         flags = (*COMMON, *(COUNTER if source in counters else PROGRAM))
         subprocess.run([*ccache, COMPILER, *flags, "-c", source.as_posix(), "-o", target], cwd=ROOT, check=True)
         return target
 
     with ThreadPoolExecutor(2) as pool:
-        objects = list(pool.map(compile_one, sources + counters))
+        objects = list(pool.map(compile_one, [*sources, texts.resolve(), *counters]))
 
     def start_file(name: str) -> str:
         found = subprocess.run([COMPILER, *CPU, f"-print-file-name={name}"], capture_output=True, text=True, check=True)

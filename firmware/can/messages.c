@@ -7,7 +7,7 @@
 #define UNSIGNED false
 #define SIGNED true
 
-#define CAN_MESSAGE(message, base, octets, sender, meaning) {#message, base, octets, CAN_SENDER_##sender, meaning},
+#define CAN_MESSAGE(message, base, octets, sender, meaning) {base, octets},
 #define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning)
 static const can_message_info_t messages[] = {
 #include "firmware/can/message_list.h"
@@ -17,7 +17,7 @@ static const can_message_info_t messages[] = {
 
 #define CAN_MESSAGE(message, base, octets, sender, meaning)
 #define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning) \
-  {CAN_##message, #field, first, bits, sign, per_unit, unit, meaning},
+  {CAN_##message, first, bits, sign, per_unit},
 static const can_field_info_t fields[] = {
 #include "firmware/can/message_list.h"
 };

@@ -35,24 +35,17 @@ typedef enum {
 #undef CAN_MESSAGE
 #undef CAN_FIELD
 
-typedef enum { CAN_SENDER_HOST, CAN_SENDER_DRIVE } can_sender_t;
-
+// What the drive needs of the table; names, senders, units and meanings are for the other end.
 typedef struct {
-  const char* name;
   uint32_t base;
   uint16_t octets;
-  can_sender_t sender;
-  const char* meaning;
 } can_message_info_t;
 
 typedef struct {
   can_message_t message;
-  const char* name;
   uint16_t first, bits;
   bool is_signed;
   uint16_t per_unit;
-  const char* unit;
-  const char* meaning;
 } can_field_info_t;
 
 /// NULL behind the last one.

@@ -7,28 +7,11 @@
 #include "firmware/console/suggest.h"
 #include "firmware/text.h"
 
+#define COMMAND(name, arguments, help) {#name, arguments, TEXT_COMMAND_##name, command_##name},
 static const command_t commands[] = {
-    {"help", "[command]", "the commands, or more of one", command_help},
-    {"list", "[part]", "parameters whose name or meaning contains the part; * is not the default", command_list},
-    {"get", "name", "a parameter or a signal: value, range, meaning", command_get},
-    {"set", "name value [unit]", "changes a parameter", command_set},
-    {"save", "", "keeps the parameters for the next power-on", command_save},
-    {"load", "", "puts the kept parameters in force again", command_load},
-    {"defaults", "", "puts every parameter to its default; not kept until saved", command_defaults},
-    {"start", "", "switches the power stage on and runs", command_start},
-    {"stop", "", "brings the shaft to rest, then switches off", command_stop},
-    {"coast", "", "switches off at once: the shaft runs out", command_coast},
-    {"ref", "[speed [rpm]]", "speed reference; before the start or while it runs", command_ref},
-    {"reset", "", "clears a latched fault", command_reset},
-    {"status", "", "how the drive is", command_status},
-    {"watch", "[signal ..]", "a line twice a second until a key is pressed", command_watch},
-    {"faults", "", "the last faults: when, what, under which circumstances", command_faults},
-    {"signals", "[part]", "signals and their values", command_signals},
-    {"commission", "[start | results]", "measures machine and inverter; turns the shaft, 90 s", command_commission},
-    {"scope", "[channels | trigger | every | before | mode | arm | stop | print]", "captured scope", command_scope},
-    {"can", "", "the CAN node: rate, state, errors, who commands", command_can},
-    {"version", "", "of this firmware", command_version},
+#include "firmware/console/command_list.h"
 };
+#undef COMMAND
 
 #define COMMANDS ((uint16_t)(sizeof commands / sizeof commands[0]))
 
@@ -90,7 +73,7 @@ static void put_command(const command_t* c) {
   put_u8(w, ' ');
   put_text(w, c->arguments);
   put_spaces_to(w, 26);
-  put_text(w, c->help);
+  put_packed(w, c->help);
   line_end();
 }
 
@@ -100,31 +83,12 @@ static bool list_commands(uint16_t step) {
   return step < COMMANDS;
 }
 
-typedef struct {
-  const char* command;
-  const char* text;
-} more_t;
-
-static const more_t more[] = {
-    {"list", "list            all parameters"},
-    {"list", "list current    those with 'current' in name or meaning"},
-    {"set", "set speed_ramp 300 rpm/s"},
-    {"set", "A unit may be left out; a wrong one is refused. Values are in use at once, and gone with the power"},
-    {"set", "unless they are saved. Some may not change while the power stage is on."},
-    {"start", "The drive finds angle and polarity by itself, then runs at the speed of 'ref'."},
-    {"ref", "ref 600 rpm     ref -50"},
-    {"watch", "watch           state, speed, current, DC link"},
-    {"watch", "watch load_torque current_q"},
-    {"commission", "commission start      from 'ready'; the shaft must be free to turn. 'stop' ends it"},
-    {"commission", "commission            how far it is"},
-    {"commission", "commission results    what was measured, and why it is in use or not"},
-    {"scope", "scope channels current_q speed     one to four signals (command signals)"},
-    {"scope", "scope trigger speed rising 100     rising, falling, either, above, below; or: scope trigger now"},
-    {"scope", "scope every 10     one record in so many control interrupts of 100 us"},
-    {"scope", "scope before 256   records before the trigger, of 1024"},
-    {"scope", "scope mode auto    or single"},
-    {"scope", "scope arm, scope stop, scope, scope print 16     print shows one record in so many"},
+// The command that each line of help_list.h is about.
+#define HELP(command, number, text) TEXT_COMMAND_##command,
+static const uint16_t explains[] = {
+#include "firmware/console/help_list.h"
 };
+#undef HELP
 
 static const command_t* explained;
 
@@ -134,15 +98,10 @@ static bool explain(uint16_t step) {
     return true;
   }
   const uint16_t at = (uint16_t)(step - 1u);
-  if (at >= sizeof more / sizeof more[0]) return false;
-  const char* const text = more[at].command;
-  uint16_t length = 0;
-  bool same = true;
-  while (same && text[length] != '\0') {
-    same = text[length] == explained->name[length];
-    length++;
-  }
-  if (same && explained->name[length] == '\0') line_of(more[at].text);
+  if (at >= sizeof explains / sizeof explains[0]) return false;
+  if (explains[at] != (uint16_t)explained->help) return true;
+  put_packed(line_begin(), (packed_text_t)((uint16_t)TEXT_HELP_list_1 + at));
+  line_end();
   return true;
 }
 

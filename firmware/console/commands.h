@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "firmware/console/editor.h"
+#include "firmware/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -29,7 +30,7 @@ typedef struct {
 typedef struct {
   const char* name;
   const char* arguments;
-  const char* help;
+  packed_text_t help;
   void (*function)(const words_of_line_t* a);
 } command_t;
 

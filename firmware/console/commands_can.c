@@ -23,7 +23,7 @@ static void line_bus(octet_writer_t* w) {
     put_text(w, " kbit/s");
   }
   put_text(w, ": ");
-  put_text(w, words(WORDS_CAN, (uint16_t)now.bus.state));
+  put_words(w, WORDS_CAN, (uint16_t)now.bus.state);
 }
 
 static void line_errors(octet_writer_t* w) {

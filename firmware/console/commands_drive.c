@@ -110,12 +110,12 @@ static void show_commissioning(void) {
   const commissioning_outcome_t outcome = drive_commissioning_outcome();
   octet_writer_t* const w = line_begin();
   put_text(w, "commissioning: ");
-  put_text(w, words(WORDS_COMMISSIONING, (uint16_t)outcome));
+  put_words(w, WORDS_COMMISSIONING, (uint16_t)outcome);
   if (outcome == COMMISSIONING_RUNNING) {
     put_text(w, ", ");
     put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
     put_text(w, " %: ");
-    put_text(w, words(WORDS_PHASE, (uint16_t)drive_commissioning_phase()));
+    put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
   }
   line_end();
 }
@@ -132,7 +132,7 @@ static bool list_results(uint16_t step) {
   put_text(w, " -> ");
   put_value(w, p, r.value);
   put_spaces_to(w, 50);
-  put_text(w, words(WORDS_VERDICT, (uint16_t)r.verdict));
+  put_words(w, WORDS_VERDICT, (uint16_t)r.verdict);
   line_end();
   return true;
 }

@@ -21,10 +21,10 @@
 
 static void put_limits(octet_writer_t* w, int32_t limits) {
   const char* separator = "";
-  for (uint16_t bit = 0; words_or_null(WORDS_LIMIT, bit) != NULL; bit++) {
+  for (uint16_t bit = 0; words_exist(WORDS_LIMIT, bit); bit++) {
     if ((q_shr(limits, bit) & 1) == 0) continue;
     put_text(w, separator);
-    put_text(w, words(WORDS_LIMIT, bit));
+    put_words(w, WORDS_LIMIT, bit);
     separator = ", ";
   }
   if (separator[0] == '\0') put_text(w, "none");
@@ -38,13 +38,13 @@ static void put_speeds(octet_writer_t* w) {
 }
 
 static void status_state(octet_writer_t* w) {
-  put_text(w, words(WORDS_STATE, (uint16_t)drive.state));
+  put_words(w, WORDS_STATE, (uint16_t)drive.state);
   if (drive.state == DRIVE_START) {
     put_text(w, ": ");
-    put_text(w, words(WORDS_START, (uint16_t)drive_signals().start_phase));
+    put_words(w, WORDS_START, (uint16_t)drive_signals().start_phase);
   } else if (drive.state == DRIVE_COMMISSION) {
     put_text(w, ": ");
-    put_text(w, words(WORDS_PHASE, (uint16_t)drive_commissioning_phase()));
+    put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
   }
 }
 
@@ -65,10 +65,10 @@ static void status_limits(octet_writer_t* w) { put_limits(w, drive_signals().lim
 
 static void status_fault(octet_writer_t* w) {
   const uint16_t fault = (uint16_t)drive.fault;
-  put_text(w, words(WORDS_FAULT, fault));
+  put_words(w, WORDS_FAULT, fault);
   if (fault == FAULT_NONE) return;
   put_text(w, ". ");
-  put_text(w, words(WORDS_REMEDY, fault));
+  put_words(w, WORDS_REMEDY, fault);
 }
 
 static void status_parameters(octet_writer_t* w) {
@@ -77,7 +77,7 @@ static void status_parameters(octet_writer_t* w) {
 }
 
 static void status_store(octet_writer_t* w) {
-  put_text(w, words(WORDS_STORE, (uint16_t)store_state()));
+  put_words(w, WORDS_STORE, (uint16_t)store_state());
   put_text(w, "; saves so far ");
   put_unsigned(w, store_report()->sequence);
 }
@@ -178,9 +178,9 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   put_unsigned(w, f->time_ms / 10u % 10u);
   put_unsigned(w, f->time_ms % 10u);
   put_text(w, " s  ");
-  put_text(w, words(WORDS_FAULT, (uint16_t)f->fault));
+  put_words(w, WORDS_FAULT, (uint16_t)f->fault);
   put_text(w, ", ");
-  put_text(w, words(WORDS_STATE, (uint16_t)f->state));
+  put_words(w, WORDS_STATE, (uint16_t)f->state);
   put_text(w, " at ");
   put_fixed(w, f->speed_q16, 16, 1);
   put_text(w, " rpm, link ");
@@ -223,7 +223,7 @@ static word_t pattern;
 static bool list_signals(uint16_t step) {
   const signal_info_t* const s = signal_info(step);
   if (s == NULL) return false;
-  if (!text_occurs(s->name, pattern.text, pattern.count) && !text_occurs(s->meaning, pattern.text, pattern.count))
+  if (!text_occurs(s->name, pattern.text, pattern.count) && !packed_occurs(s->meaning, pattern.text, pattern.count))
     return true;
   put_signal_row(line_begin(), step);
   line_end();

@@ -23,14 +23,14 @@ static void put_row(const parameter_info_t* p) {
   put_u8(w, (raw == p->initial) ? ' ' : '*');
   put_value(w, p, raw);
   put_spaces_to(w, COLUMN_MEANING);
-  put_text(w, p->meaning);
+  put_packed(w, p->meaning);
   line_end();
 }
 
 static bool list_one(uint16_t step) {
   const parameter_info_t* const p = parameter_info(step);
   if (p == NULL) return false;
-  if (text_occurs(p->name, pattern.text, pattern.count) || text_occurs(p->meaning, pattern.text, pattern.count)) {
+  if (text_occurs(p->name, pattern.text, pattern.count) || packed_occurs(p->meaning, pattern.text, pattern.count)) {
     put_row(p);
   }
   return true;
@@ -72,7 +72,7 @@ static bool describe(uint16_t step) {
     if (p->access == PARAMETER_STOPPED) put_text(w, "; only while the power stage is off");
   } else {
     put_text(w, "  ");
-    put_text(w, p->meaning);
+    put_packed(w, p->meaning);
   }
   line_end();
   return step < 2u;

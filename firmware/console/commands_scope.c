@@ -134,7 +134,7 @@ static void set_mode(const words_of_line_t* a) {
 static void put_state(octet_writer_t* w) {
   const scope_status_t status = scope_status();
   put_text(w, "scope: ");
-  put_text(w, words(WORDS_SCOPE, (uint16_t)status.state));
+  put_words(w, WORDS_SCOPE, (uint16_t)status.state);
   put_text(w, ", ");
   put_unsigned(w, status.recorded);
   put_text(w, " records");

@@ -25,7 +25,7 @@ static bool wait_for_store(uint16_t step) {
   (void)step;
   if (store_is_busy()) return true;
   octet_writer_t* const w = line_begin();
-  put_text(w, words(WORDS_STORE, (uint16_t)store_state()));
+  put_words(w, WORDS_STORE, (uint16_t)store_state());
   put_report(w);
   line_end();
   return false;

@@ -155,7 +155,7 @@ static void tell_faults(void) {
   if (!someone_types || !fault_history_read(0, &fault)) return;
   octet_writer_t* const w = line_begin();
   put_text(w, "\r\n! fault: ");
-  put_text(w, words(WORDS_FAULT, (uint16_t)fault.fault));
+  put_words(w, WORDS_FAULT, (uint16_t)fault.fault);
   line_end();
   if (job == NULL) {
     editor_show(&editor, line_begin());

@@ -31,5 +31,5 @@ void put_signal_row(octet_writer_t* w, uint16_t place) {
   put_spaces_to(w, 22);
   put_signal(w, place);
   put_spaces_to(w, 40);
-  put_text(w, signal_info(place)->meaning);
+  put_packed(w, signal_info(place)->meaning);
 }

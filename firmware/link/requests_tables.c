@@ -21,7 +21,7 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_u8(w, 0);
   put_text(w, p->unit);
   put_u8(w, 0);
-  put_text(w, p->meaning);
+  put_packed(w, p->meaning);
 }
 
 static void put_signal(octet_writer_t* w, const signal_info_t* s) {
@@ -30,7 +30,7 @@ static void put_signal(octet_writer_t* w, const signal_info_t* s) {
   put_u8(w, 0);
   put_text(w, s->unit);
   put_u8(w, 0);
-  put_text(w, s->meaning);
+  put_packed(w, s->meaning);
 }
 
 // The tables' check sum, taken piece by piece: all parameters as put_parameter gives them, all signals, all words.
@@ -55,10 +55,8 @@ static void add(const octet_writer_t* piece) {
 }
 
 static void next_words(octet_writer_t* piece) {
-  const char* const text = words_or_null(sum.kind, sum.at);
-  if (text != NULL) {
-    put_text(piece, text);
-    sum.at++;
+  if (words_exist(sum.kind, sum.at)) {
+    put_words(piece, (words_kind_t)sum.kind, sum.at++);
     return;
   }
   sum.at = 0;
@@ -86,7 +84,7 @@ void requests_service(void) {
 
 static uint16_t faults(void) {
   uint16_t count = 0;
-  while (words_or_null(WORDS_FAULT, count) != NULL) count++;
+  while (words_exist(WORDS_FAULT, count)) count++;
   return count;
 }
 
@@ -118,8 +116,8 @@ answer_status_t request_signal_info(request_t* r) {
 answer_status_t request_words(request_t* r) {
   const uint16_t kind = take_u8(&r->body);
   if (kind >= WORDS_KINDS) return ANSWER_UNKNOWN;
-  const char* const text = words_or_null(kind, take_u8(&r->body));
-  if (text == NULL) return ANSWER_RANGE;
-  put_text(&r->answer, text);
+  const uint16_t code = take_u8(&r->body);
+  if (!words_exist(kind, code)) return ANSWER_RANGE;
+  put_words(&r->answer, (words_kind_t)kind, code);
   return ANSWER_OK;
 }

@@ -155,34 +155,3 @@ void store_service(void) {
       break;
   }
 }
-
-const char* store_words(store_state_t s) {
-  switch (s) {
-    case STORE_EMPTY:
-      return "nothing has been saved yet: defaults are in force";
-    case STORE_LOADED:
-      return "the saved values are in force";
-    case STORE_DAMAGED:
-      return "what was saved is damaged and not used: defaults are in force";
-    case STORE_MIGRATED:
-      return "the values saved by another firmware are in force; save to keep them in this one's form";
-    case STORE_SAVING:
-      return "saving";
-    case STORE_SAVED:
-      return "the values have been saved";
-    case STORE_FAILED:
-      return "that failed: what was saved before is still there";
-    case STORE_READING:
-      return "reading";
-    case STORE_ABSENT:
-      return "the memory does not answer: defaults are in force, nothing can be saved";
-    case STORE_CONFLICT:
-      return "the saved values do not fit together and are not used: defaults are in force";
-    case STORE_FOREIGN:
-      return "a newer firmware has saved in a form that this one does not know: defaults are in force";
-    case STORE_OLDER:
-      return "what was saved last cannot be used: the values saved before it are in force; look at them, then save";
-    default:
-      return "";
-  }
-}

@@ -81,9 +81,6 @@ uint16_t store_progress(void);
 
 const store_report_t* store_report(void);
 
-/// One sentence.
-const char* store_words(store_state_t state);
-
 #if defined(__cplusplus)
 }
 #endif

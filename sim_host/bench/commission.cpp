@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "firmware/drive_api.h"
-#include "firmware/words.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"
+#include "sim_host/bench/texts.hpp"
 
 namespace stillspin::bench {
 namespace {
@@ -78,7 +78,7 @@ std::vector<Identified> identified() {
     row.before = std::ldexp(r.before, -static_cast<int>(info.q));
     row.value = std::ldexp(r.value, -static_cast<int>(info.q));
     row.used = r.verdict == VERDICT_USED;
-    row.words = words(WORDS_VERDICT, r.verdict);
+    row.words = words_of(WORDS_VERDICT, r.verdict);
     list.push_back(row);
   }
   return list;
@@ -91,14 +91,14 @@ std::string play(const CommissionRequest& request, chip::Chip& chip, const Commi
     chip.run_until(std::min(chip.now() + kChunk, end));
     if (chip.statistics().resets > 0) return "the watchdog reset the chip";
     const double share = drive_commissioning_progress() / 1000.0;
-    const std::string phase = words(WORDS_PHASE, drive_commissioning_phase());
+    const std::string phase = words_of(WORDS_PHASE, drive_commissioning_phase());
     if (request.progress && !request.progress(share, phase)) return "stopped by the user";
   }
   if (drive.refused()) return "the drive refused a parameter";
   const commissioning_outcome_t outcome = drive_commissioning_outcome();
   if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) return "";
   if (outcome == COMMISSIONING_ABORTED) return "the shaft was turning; it has been brought to rest, try again";
-  return std::string("fault: ") + words(WORDS_FAULT, static_cast<std::uint16_t>(drive.fault()));
+  return "fault: " + words_of(WORDS_FAULT, static_cast<std::uint16_t>(drive.fault()));
 }
 
 }  // namespace

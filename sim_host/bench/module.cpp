@@ -17,6 +17,7 @@
 #include "sim_host/bench/module_setup.hpp"
 #include "sim_host/bench/replay.hpp"
 #include "sim_host/bench/run.hpp"
+#include "sim_host/bench/texts.hpp"
 
 namespace nb = nanobind;
 using namespace stillspin::bench;
@@ -173,7 +174,7 @@ nb::list parameter_rows() {
     row["maximum"] = std::ldexp(p->maximum, -p->q);
     row["default"] = std::ldexp(p->initial, -p->q);
     row["access"] = p->access == PARAMETER_ALWAYS ? "always" : "stopped";
-    row["help"] = p->meaning;
+    row["help"] = text_of(p->meaning);
     rows.append(row);
   }
   return rows;

@@ -17,9 +17,33 @@ namespace nb = nanobind;
 namespace stillspin::bench {
 namespace {
 
+// What the drive itself does not need of the table.
+struct Message {
+  const char *name, *sender, *meaning;
+};
+struct Field {
+  const char *name, *unit, *meaning;
+};
+
+#define CAN_MESSAGE(message, base, octets, sender, meaning) {#message, #sender, meaning},
+#define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning)
+constexpr Message kMessages[] = {
+#include "firmware/can/message_list.h"
+};
+#undef CAN_MESSAGE
+#undef CAN_FIELD
+
+#define CAN_MESSAGE(message, base, octets, sender, meaning)
+#define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning) {#field, unit, meaning},
+constexpr Field kFields[] = {
+#include "firmware/can/message_list.h"
+};
+#undef CAN_MESSAGE
+#undef CAN_FIELD
+
 can_message_t message_named(const std::string& name) {
   for (std::uint16_t k = 0; k < CAN_MESSAGES; k++) {
-    if (name == can_message_info(k)->name) return static_cast<can_message_t>(k);
+    if (name == kMessages[k].name) return static_cast<can_message_t>(k);
   }
   throw std::invalid_argument("there is no CAN message " + name);
 }
@@ -30,13 +54,13 @@ nb::list fields_of(can_message_t message) {
     const can_field_info_t& f = *can_field_info(k);
     if (f.message != message) continue;
     nb::dict field;
-    field["name"] = f.name;
+    field["name"] = kFields[k].name;
     field["first"] = f.first;
     field["bits"] = f.bits;
     field["signed"] = f.is_signed;
     field["per_unit"] = f.per_unit;
-    field["unit"] = f.unit;
-    field["meaning"] = f.meaning;
+    field["unit"] = kFields[k].unit;
+    field["meaning"] = kFields[k].meaning;
     fields.append(field);
   }
   return fields;
@@ -47,11 +71,11 @@ nb::list messages() {
   for (std::uint16_t k = 0; k < CAN_MESSAGES; k++) {
     const can_message_info_t& m = *can_message_info(k);
     nb::dict message;
-    message["name"] = m.name;
+    message["name"] = kMessages[k].name;
     message["base"] = m.base;
     message["octets"] = m.octets;
-    message["sender"] = m.sender == CAN_SENDER_HOST ? "HOST" : "DRIVE";
-    message["meaning"] = m.meaning;
+    message["sender"] = kMessages[k].sender;
+    message["meaning"] = kMessages[k].meaning;
     message["fields"] = fields_of(static_cast<can_message_t>(k));
     all.append(message);
   }
@@ -70,7 +94,7 @@ nb::tuple encode(const std::string& name, std::uint16_t node, const std::map<std
   const can_message_t message = message_named(name);
   hal_can_frame_t frame = can_frame(message, node);
   for (std::uint16_t k = 0; k < CAN_FIELDS; k++) {
-    const auto given = steps.find(can_field_info(k)->name);
+    const auto given = steps.find(kFields[k].name);
     if (can_field_info(k)->message != message || given == steps.end()) continue;
     can_put(&frame, static_cast<can_field_t>(k), static_cast<std::int32_t>(given->second));
   }
@@ -85,7 +109,7 @@ nb::dict decode(const std::string& name, const nb::bytes& data) {
   nb::dict steps;
   for (std::uint16_t k = 0; k < CAN_FIELDS; k++) {
     const can_field_info_t& f = *can_field_info(k);
-    if (f.message == message) steps[f.name] = can_get(&frame, static_cast<can_field_t>(k));
+    if (f.message == message) steps[kFields[k].name] = can_get(&frame, static_cast<can_field_t>(k));
   }
   return steps;
 }

@@ -7,10 +7,10 @@
 
 #include "firmware/drive_api.h"
 #include "firmware/link/requests.h"
-#include "firmware/words.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/recorder.hpp"
+#include "sim_host/bench/texts.hpp"
 
 namespace stillspin::bench {
 namespace {
@@ -105,10 +105,9 @@ class Director : public PeriodListener {
     last_fault_ = s.fault;
     if (s.fault == FAULT_NONE) return;
     const double at = (t - (running() ? origin_ : 0)) * kSecondsPerTick;
-    result_.faults.emplace_back(at, words(WORDS_FAULT, static_cast<std::uint16_t>(s.fault)));
+    result_.faults.emplace_back(at, words_of(WORDS_FAULT, static_cast<std::uint16_t>(s.fault)));
     if (!running())
-      result_.reason =
-          std::string("fault during the start: ") + words(WORDS_FAULT, static_cast<std::uint16_t>(s.fault));
+      result_.reason = "fault during the start: " + words_of(WORDS_FAULT, static_cast<std::uint16_t>(s.fault));
   }
 
   void prepare(Tick t, const drive_signals_t& s) {

@@ -18,4 +18,10 @@ TEST(BusDisturbance, AnyFrames) {
   }
 }
 
+// Found by the search: a whole STOP whose alive counter is that of the command that comes next.
+TEST(BusDisturbance, AStopThatIsNoChange) {
+  const std::uint8_t octets[] = {0x04, 0x00, 0x00, 0x00, 0x00, 0x04, 0x2D, 0x24, 0x2D, 0x0C};
+  EXPECT_EQ(stillspin::test::play_bus(octets, sizeof octets), "");
+}
+
 }  // namespace

@@ -19,10 +19,10 @@ TEST(CanMessages, FieldsLieInTheirMessageAndDoNotOverlap) {
   std::uint64_t used[CAN_MESSAGES] = {};
   for (std::uint16_t k = 0; k < CAN_FIELDS; ++k) {
     const can_field_info_t& f = *can_field_info(k);
-    ASSERT_LE(f.first + f.bits, 8 * can_message_info(f.message)->octets) << f.name;
-    EXPECT_EQ(used[f.message] & bits_of(f), 0u) << f.name;
+    ASSERT_LE(f.first + f.bits, 8 * can_message_info(f.message)->octets) << k;
+    EXPECT_EQ(used[f.message] & bits_of(f), 0u) << k;
     used[f.message] |= bits_of(f);
-    EXPECT_GE(f.per_unit, 1u) << f.name;
+    EXPECT_GE(f.per_unit, 1u) << k;
   }
   EXPECT_EQ(can_field_info(CAN_FIELDS), nullptr);
   EXPECT_EQ(can_message_info(CAN_MESSAGES), nullptr);
@@ -47,10 +47,10 @@ TEST(CanMessages, EveryFieldKeepsItsExtremesAndLeavesTheOthersAlone) {
         hal_can_frame_t frame = can_frame(f.message, 1);
         for (auto& octet : frame.data) octet = ground;
         can_put(&frame, field, static_cast<std::int32_t>(value));
-        EXPECT_EQ(can_get(&frame, field), static_cast<std::int32_t>(value)) << f.name;
+        EXPECT_EQ(can_get(&frame, field), static_cast<std::int32_t>(value)) << k;
         std::uint64_t raw = 0;
         for (unsigned n = 0; n < 8; ++n) raw |= std::uint64_t{frame.data[n]} << 8 * n;
-        EXPECT_EQ(raw & ~bits_of(f), (ground != 0 ? ~std::uint64_t{0} : 0) & ~bits_of(f)) << f.name;
+        EXPECT_EQ(raw & ~bits_of(f), (ground != 0 ? ~std::uint64_t{0} : 0) & ~bits_of(f)) << k;
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
@@ -11,6 +12,7 @@ extern "C" {
 
 namespace {
 
+using namespace stillspin;
 using namespace stillspin::test;
 
 class Commissioning : public Drive {
@@ -152,10 +154,10 @@ TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
 
 TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   for (int k = VERDICT_USED; k <= VERDICT_DEPENDS; ++k) {
-    EXPECT_GT(std::strlen(words(WORDS_VERDICT, static_cast<std::uint16_t>(k))), 10u);
+    EXPECT_GT(bench::words_of(WORDS_VERDICT, static_cast<std::uint16_t>(k)).size(), 10u);
   }
   for (int k = COMMISSIONING_IDLE; k <= COMMISSIONING_EVALUATE; ++k) {
-    EXPECT_GT(std::strlen(words(WORDS_PHASE, static_cast<std::uint16_t>(k))), 5u);
+    EXPECT_GT(bench::words_of(WORDS_PHASE, static_cast<std::uint16_t>(k)).size(), 5u);
   }
 }
 

@@ -14,6 +14,7 @@ extern "C" {
 
 namespace {
 
+using namespace stillspin;
 using namespace stillspin::test;
 
 class Console : public Terminal {
@@ -27,7 +28,7 @@ TEST_F(Console, EveryCommandIsExplained) {
   for (std::uint16_t k = 0; command_info(k) != nullptr; ++k, ++rows) {
     EXPECT_TRUE(has(help, std::string("\n") + command_info(k)->name + " ") || help.rfind(command_info(k)->name, 0) == 0)
         << command_info(k)->name;
-    EXPECT_TRUE(has(command(std::string("help ") + command_info(k)->name), command_info(k)->help));
+    EXPECT_TRUE(has(command(std::string("help ") + command_info(k)->name), bench::text_of(command_info(k)->help)));
   }
   EXPECT_GE(rows, 16);
   EXPECT_TRUE(has(command("help scope"), "scope trigger"));
@@ -99,7 +100,7 @@ TEST_F(Console, List) {
   const std::string all = command("list", 30000);
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     EXPECT_TRUE(has(all, parameter_info(k)->name));
-    EXPECT_TRUE(has(all, parameter_info(k)->meaning)) << "whole";
+    EXPECT_TRUE(has(all, bench::text_of(parameter_info(k)->meaning))) << "whole";
   }
   EXPECT_FALSE(has(all, "..."));
   EXPECT_FALSE(has(all, "*"));
@@ -312,7 +313,8 @@ TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
   const Answer a = ask(REQUEST_STATUS);
   EXPECT_TRUE(a.came());
   run(20000);
-  for (std::uint16_t k = 0; k < parameter_count(); ++k) EXPECT_TRUE(has(text, parameter_info(k)->meaning));
+  for (std::uint16_t k = 0; k < parameter_count(); ++k)
+    EXPECT_TRUE(has(text, bench::text_of(parameter_info(k)->meaning)));
 }
 
 TEST_F(Console, ADisturbedLineIsNotObeyed) {

@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+#include "sim_host/bench/texts.hpp"
+
 extern "C" {
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
@@ -61,7 +63,7 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
     EXPECT_EQ(info->q, r.q) << r.name;
     EXPECT_EQ(info->decimals, r.decimals) << r.name;
     EXPECT_EQ(info->access, r.always ? PARAMETER_ALWAYS : PARAMETER_STOPPED) << r.name;
-    EXPECT_GT(std::string(info->meaning).size(), 3u) << r.name;
+    EXPECT_GT(stillspin::bench::text_of(info->meaning).size(), 3u) << r.name;
     const std::pair<std::int32_t, double> pairs[] = {
         {info->minimum, r.minimum}, {info->maximum, r.maximum}, {info->initial, r.initial}};
     for (const auto& [raw, decimal] : pairs) {

@@ -16,6 +16,7 @@ extern "C" {
 
 namespace {
 
+using namespace stillspin;
 using namespace stillspin::test;
 
 enum { OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT };
@@ -80,7 +81,7 @@ TEST_F(Requests, EveryParameterTellsAllOfItself) {
     EXPECT_EQ(static_cast<std::int32_t>(a.number(6, 4)), p.minimum);
     EXPECT_EQ(static_cast<std::int32_t>(a.number(10, 4)), p.maximum);
     EXPECT_EQ(static_cast<std::int32_t>(a.number(14, 4)), p.initial);
-    const std::string words = std::string(p.name) + '\0' + p.unit + '\0' + p.meaning;
+    const std::string words = std::string(p.name) + '\0' + p.unit + '\0' + bench::text_of(p.meaning);
     EXPECT_EQ(a.text(18), words) << "whole: nothing is cut off";
   }
   EXPECT_EQ(ask(REQUEST_PARAMETER_INFO, little(parameter_count(), 2)).status(), RANGE);
@@ -247,7 +248,7 @@ TEST_F(Requests, TheHistoryKeepsTheLastSixteen) {
 TEST_F(Requests, WordsForEverything) {
   const auto last = [&](std::uint16_t kind) {
     std::uint16_t code = 0;
-    while (words_or_null(kind, code) != nullptr) code++;
+    while (words_exist(kind, code)) code++;
     return code - 1;
   };
   EXPECT_EQ(last(WORDS_STATE), DRIVE_COMMISSION);

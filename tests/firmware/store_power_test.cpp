@@ -1,10 +1,12 @@
 // The power fails somewhere in a save: at every octet that goes over the bus, and in every page's write cycle with
 // everything that may be left of the page. Started again, either the old or the new set is in force, as a whole.
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/store_test.hpp"
 
 namespace {
 
+using namespace stillspin;
 using namespace stillspin::test;
 
 class PowerCut : public Store {
@@ -39,7 +41,7 @@ class PowerCut : public Store {
   bool check_what_is_left() {
     const store_state_t state = power_on();
     const Values now = in_force();
-    EXPECT_TRUE(state == STORE_LOADED || (state == STORE_OLDER && now == old_)) << store_words(state);
+    EXPECT_TRUE(state == STORE_LOADED || (state == STORE_OLDER && now == old_)) << bench::words_of(WORDS_STORE, state);
     EXPECT_TRUE(now == old_ || now == new_) << "a mixed set";
     // And the next save works.
     set_variant(7);
@@ -121,7 +123,7 @@ TEST_F(PowerCut, TwiceInARow) {
       nvm.cut_at_page = nvm.pages + second;
       ASSERT_EQ(save(), STORE_FAILED);
       const store_state_t state = power_on();
-      ASSERT_TRUE(state == STORE_LOADED || state == STORE_OLDER) << store_words(state);
+      ASSERT_TRUE(state == STORE_LOADED || state == STORE_OLDER) << bench::words_of(WORDS_STORE, state);
       ASSERT_TRUE(in_force() == after_first || in_force() == new_);
     }
   }

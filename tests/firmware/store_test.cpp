@@ -6,8 +6,11 @@
 #include <cstring>
 #include <set>
 
+#include "sim_host/bench/texts.hpp"
+
 namespace {
 
+using namespace stillspin;
 using namespace stillspin::test;
 
 TEST(Slot, SequenceIsComparedAcrossTheWrap) {
@@ -435,7 +438,7 @@ TEST_F(Store, ValuesThatDoNotFitTogetherAreNotUsed) {
 
 TEST_F(Store, EveryStateHasItsWords) {
   for (int s = STORE_EMPTY; s <= STORE_OLDER; ++s) {
-    EXPECT_GT(std::strlen(store_words(static_cast<store_state_t>(s))), 5u) << s;
+    EXPECT_GT(bench::words_of(WORDS_STORE, static_cast<std::uint16_t>(s)).size(), 5u) << s;
   }
 }
 

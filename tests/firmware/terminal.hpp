@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/fake_hal.hpp"
 #include "tests/firmware/fake_nvm.hpp"
 

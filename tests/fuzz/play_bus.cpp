@@ -136,9 +136,9 @@ class BusPlayer {
   bool runs_on_after(can_mode_t mode) {
     fuzz_put_into(DRIVE_RUN);
     background_step(&drive);
-    command(CAN_MODE_RUN, 0, false);  // a drive that somebody else has started obeys a change of the mode
-    command(mode, 0, false);
-    command(mode, 0, false);  // the alive counter of one of the three may be the last input's
+    // A drive that somebody else has started obeys a change of the mode; each mode twice, because the alive counter of
+    // one of the four may be the last input's.
+    for (const can_mode_t m : {CAN_MODE_RUN, CAN_MODE_RUN, mode, mode}) command(m, 0, false);
     rounds();
     if (drive.state != DRIVE_RUN) return true;
     background_step(&drive);  // changed parameters come first

@@ -9,6 +9,7 @@ half words. How close that is to the C28x nobody here knows.
 from image.elf import ObjectFile, Section
 
 RUN_TIME_WORDS = 1500  # TI's library: start-up, 64-bit products and quotients, copying; a guess
+PACKED_TEXT = ".rodata.packed_"  # what toolchain/pack_text.py makes
 CINIT_OVERHEAD = 3  # words of a .cinit record beside its values
 
 
@@ -36,7 +37,7 @@ def object_words(obj: ObjectFile) -> dict[str, int]:
             continue
         count = words_of(section)
         words[name] = words.get(name, 0) + count
-        if section.is_strings:
+        if section.is_strings or section.name.startswith(PACKED_TEXT):
             words["strings"] = words.get("strings", 0) + count
         if section.name.startswith(".data"):
             words[".cinit"] = words.get(".cinit", 0) + count + CINIT_OVERHEAD

@@ -1,0 +1,23 @@
+// The console's commands. COMMAND(name, arguments, help): command_NAME carries it out (commands.h). No include guard:
+// it is included with different meanings of COMMAND.
+
+COMMAND(help, "[command]", "the commands, or more of one")
+COMMAND(list, "[part]", "parameters whose name or meaning contains the part; * is not the default")
+COMMAND(get, "name", "a parameter or a signal: value, range, meaning")
+COMMAND(set, "name value [unit]", "changes a parameter")
+COMMAND(save, "", "keeps the parameters for the next power-on")
+COMMAND(load, "", "puts the kept parameters in force again")
+COMMAND(defaults, "", "puts every parameter to its default; not kept until saved")
+COMMAND(start, "", "switches the power stage on and runs")
+COMMAND(stop, "", "brings the shaft to rest, then switches off")
+COMMAND(coast, "", "switches off at once: the shaft runs out")
+COMMAND(ref, "[speed [rpm]]", "speed reference; before the start or while it runs")
+COMMAND(reset, "", "clears a latched fault")
+COMMAND(status, "", "how the drive is")
+COMMAND(watch, "[signal ..]", "a line twice a second until a key is pressed")
+COMMAND(faults, "", "the last faults: when, what, under which circumstances")
+COMMAND(signals, "[part]", "signals and their values")
+COMMAND(commission, "[start | results]", "measures machine and inverter; turns the shaft, 90 s")
+COMMAND(scope, "[channels | trigger | every | before | mode | arm | stop | print]", "captured scope")
+COMMAND(can, "", "the CAN node: rate, state, errors, who commands")
+COMMAND(version, "", "of this firmware")

@@ -1,0 +1,21 @@
+// What `help <command>` says beyond the command's own line. HELP(command, number, text): one line. No include guard: it
+// is included with different meanings of HELP.
+
+HELP(list, 1, "list            all parameters")
+HELP(list, 2, "list current    those with 'current' in name or meaning")
+HELP(set, 1, "set speed_ramp 300 rpm/s")
+HELP(set, 2, "A unit may be left out; a wrong one is refused. Values are in use at once, and gone with the power")
+HELP(set, 3, "unless they are saved. Some may not change while the power stage is on.")
+HELP(start, 1, "The drive finds angle and polarity by itself, then runs at the speed of 'ref'.")
+HELP(ref, 1, "ref 600 rpm     ref -50")
+HELP(watch, 1, "watch           state, speed, current, DC link")
+HELP(watch, 2, "watch load_torque current_q")
+HELP(commission, 1, "commission start      from 'ready'; the shaft must be free to turn. 'stop' ends it")
+HELP(commission, 2, "commission            how far it is")
+HELP(commission, 3, "commission results    what was measured, and why it is in use or not")
+HELP(scope, 1, "scope channels current_q speed     one to four signals (command signals)")
+HELP(scope, 2, "scope trigger speed rising 100     rising, falling, either, above, below; or: scope trigger now")
+HELP(scope, 3, "scope every 10     one record in so many control interrupts of 100 us")
+HELP(scope, 4, "scope before 256   records before the trigger, of 1024")
+HELP(scope, 5, "scope mode auto    or single")
+HELP(scope, 6, "scope arm, scope stop, scope, scope print 16     print shows one record in so many")

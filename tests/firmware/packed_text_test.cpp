@@ -1,0 +1,104 @@
+// Every packed text is the one in its list, and the words of every code are those of its row.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "sim_host/bench/texts.hpp"
+
+extern "C" {
+#include "firmware/drive_api.h"
+#include "firmware/text.h"
+}
+
+namespace stillspin::test {
+namespace {
+
+using bench::text_of;
+using bench::words_of;
+
+struct Row {
+  packed_text_t number;
+  std::string text;
+};
+
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
+  {TEXT_PARAMETER_##name, meaning},
+#define SIGNAL(name, unit, q, value, meaning) {TEXT_SIGNAL_##name, meaning},
+#define FAULT(number, name, words, remedy) {TEXT_FAULT_##number, words}, {TEXT_REMEDY_##number, remedy},
+#define WORDS(kind, code, text) {TEXT_##kind##_##code, text},
+#define COMMAND(name, arguments, help) {TEXT_COMMAND_##name, help},
+#define HELP(command, number, text) {TEXT_HELP_##command##_##number, text},
+const Row kRows[] = {
+#include "firmware/console/command_list.h"
+#include "firmware/console/help_list.h"
+#include "firmware/fault_list.h"
+#include "firmware/parameter_list.h"
+#include "firmware/signal_list.h"
+#include "firmware/word_list.h"
+};
+#undef PARAMETER
+#undef SIGNAL
+#undef FAULT
+#undef WORDS
+#undef COMMAND
+#undef HELP
+
+bool occurs(packed_text_t text, const std::string& part) {
+  const std::vector<std::uint16_t> wanted(part.begin(), part.end());
+  return packed_occurs(text, wanted.data(), static_cast<std::uint16_t>(wanted.size()));
+}
+
+TEST(PackedText, EveryTextIsTheOneInItsList) {
+  ASSERT_EQ(std::size(kRows), static_cast<std::size_t>(PACKED_TEXTS));
+  for (const Row& row : kRows) EXPECT_EQ(text_of(row.number), row.text);
+}
+
+TEST(PackedText, PartsAreFound) {
+  for (const Row& row : kRows) {
+    EXPECT_TRUE(occurs(row.number, ""));
+    EXPECT_TRUE(occurs(row.number, row.text));
+    EXPECT_FALSE(occurs(row.number, row.text + "~"));
+    for (std::size_t at = 0; at + 3 < row.text.size(); ++at) EXPECT_TRUE(occurs(row.number, row.text.substr(at, 4)));
+  }
+  EXPECT_TRUE(occurs(TEXT_PARAMETER_stator_resistance, "RESISTANCE of"));
+  EXPECT_FALSE(occurs(TEXT_PARAMETER_stator_resistance, "inductance"));
+}
+
+TEST(PackedText, WhatIsTooLongForTheBlockIsCutOffAndSaysSo) {
+  std::uint16_t block[5] = {0, 0, 0, 0, '#'};
+  octet_writer_t writer = octet_writer(block, 4);
+  put_packed(&writer, TEXT_PARAMETER_inertia);
+  EXPECT_TRUE(writer.full);
+  EXPECT_EQ(writer.count, 4);
+  EXPECT_EQ(block[4], '#');
+}
+
+TEST(Words, AreThoseOfTheirKindAndCode) {
+#define WORDS(kind, code, text) EXPECT_EQ(words_of(WORDS_##kind, code), text);
+#include "firmware/word_list.h"
+#undef WORDS
+#define FAULT(number, name, words, remedy)         \
+  EXPECT_EQ(words_of(WORDS_FAULT, number), words); \
+  EXPECT_EQ(words_of(WORDS_REMEDY, number), remedy);
+#include "firmware/fault_list.h"
+#undef FAULT
+}
+
+TEST(Words, NoneForWhatDoesNotExist) {
+  for (std::uint16_t kind = 0; kind < WORDS_KINDS; ++kind) {
+    std::uint16_t codes = 0;
+    while (words_exist(kind, codes)) codes++;
+    EXPECT_GT(codes, 4) << kind;
+    for (const std::uint16_t code : {int{codes}, 255, 0x7FFF, 0xFFFF}) {
+      EXPECT_FALSE(words_exist(kind, static_cast<std::uint16_t>(code))) << kind;
+      EXPECT_EQ(words_of(static_cast<words_kind_t>(kind), static_cast<std::uint16_t>(code)), "?");
+    }
+  }
+  EXPECT_FALSE(words_exist(WORDS_KINDS, 0));
+  EXPECT_FALSE(words_exist(0xFFFF, 0));
+}
+
+}  // namespace
+}  // namespace stillspin::test

@@ -1,0 +1,57 @@
+"""The packing of the firmware's texts: what is found in the lists, and that it can be unpacked."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+import pack_text  # noqa: E402
+
+
+def unpacked(code: int, pairs: list[tuple[int, int]]) -> str:
+    if code < pack_text.FIRST_PAIR:
+        return chr(code)
+    return "".join(unpacked(half, pairs) for half in pairs[code - pack_text.FIRST_PAIR])
+
+
+def test_arguments_of_a_macro_are_found() -> None:
+    text = 'FAULT(1, A, "no", "")  // FAULT(2, B, "comment", "")\nOTHER(3)\nFAULT(4, f(a, b),\n  "x, (y"\n " z")'
+    assert pack_text.rows(text, "FAULT")[0] == ["1", "A", "no", ""]
+    assert pack_text.rows(text, "FAULT")[-1] == ["4", "f(a,b)", "x, (y z"]
+
+
+def test_every_list_has_its_texts() -> None:
+    texts = pack_text.texts()
+    assert "stator resistance of a phase" in texts
+    assert "loss of synchronism" in texts
+    assert texts.count("") == 1  # the remedy of no fault
+
+
+def test_unpacking_gives_the_texts_back() -> None:
+    texts = pack_text.texts()
+    coded = [[ord(c) for c in text] for text in texts]
+    pairs = pack_text.squeeze(coded)
+    assert ["".join(unpacked(code, pairs) for code in string) for string in coded] == texts
+    assert sum(map(len, coded)) < 0.55 * sum(map(len, texts))
+
+
+def test_pairs_are_not_deeper_than_the_firmware_can_read() -> None:
+    def depth(code: int) -> int:
+        if code < pack_text.FIRST_PAIR:
+            return 0
+        return 1 + max(depth(half) for half in pairs[code - pack_text.FIRST_PAIR])
+
+    pairs = pack_text.squeeze([[ord("a")] * 2000 for _ in range(40)])
+    assert max(depth(pack_text.FIRST_PAIR + k) for k in range(len(pairs))) == pack_text.DEPTH
+
+
+@pytest.mark.parametrize("text", ["10 µs", "line\\n"])
+def test_what_the_console_cannot_show_is_refused(tmp_path: Path, text: str) -> None:
+    for name, _, _ in pack_text.LISTS:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(f'WORDS(STATE, 0, "{text}")\n', encoding="utf-8")
+    with pytest.raises(ValueError, match="plain ASCII"):
+        pack_text.texts(tmp_path)
