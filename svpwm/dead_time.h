@@ -17,7 +17,9 @@ typedef struct {
   int32_t edge_band_q20;   // error that a predicted current at an edge may have, A
   int32_t band_q20;        // current below which the sign is not trusted, A, 0.01..2
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
-  int32_t per_band_q29, third_drop_q24, side_drop_q24;  // of band and drop, set by dead_time_design
+  // Set by dead_time_design.
+  int32_t per_band_q29, third_drop_q24, side_drop_q24;  // of band and drop
+  int16_t blocked_delay_ticks, released_delay_ticks;    // of an edge where the sign is trusted
 } dead_time_config_t;
 
 /// Edges whose sign of the current is not certain: bit `leg` a rising one, bit 3 + `leg` a falling one.

@@ -1,37 +1,10 @@
 #include "svpwm/extended.h"
 
-#define SEARCH_STEPS 6
-
-typedef struct {
-  uint16_t hi, mid, lo;
-} order_t;
-
 typedef struct {
   int16_t first, second;  // A, B
   int16_t low_on;         // m
   int16_t length;         // m + A + B
 } layout_t;
-
-static order_t sort_legs(const int16_t leg[SVPWM_LEGS]) {
-  order_t o = {0, 1, 2};
-  uint16_t swap;
-  if (leg[o.hi] < leg[o.mid]) {
-    swap = o.hi;
-    o.hi = o.mid;
-    o.mid = swap;
-  }
-  if (leg[o.mid] < leg[o.lo]) {
-    swap = o.mid;
-    o.mid = o.lo;
-    o.lo = swap;
-  }
-  if (leg[o.hi] < leg[o.mid]) {
-    swap = o.hi;
-    o.hi = o.mid;
-    o.mid = swap;
-  }
-  return o;
-}
 
 static layout_t layout_for(int16_t t1, int16_t t2, int16_t window) {
   layout_t l;
@@ -46,54 +19,51 @@ static layout_t layout_for(int16_t t1, int16_t t2, int16_t window) {
 }
 
 // The longest window between the limits whose layout fits into `room`; 0 when not even the shortest does.
+//
+// With S = first + second, low_on is the larger of the shortest pulse and S - t1 - t2, so the layout fits as long as S
+// is at most room - shortest pulse and (room + t1 + t2) / 2. S is t1 + t2 up to a window of the shorter of the two,
+// then the longer one and a window, and two windows beyond the longer one.
 static int16_t longest_window(int16_t t1, int16_t t2, int16_t room, const extended_config_t* c) {
-  int16_t good = c->window_min_ticks;
-  int16_t bad = (int16_t)(c->window_max_ticks + 1);
-  if (layout_for(t1, t2, c->window_max_ticks).length <= room) return c->window_max_ticks;
-  if (layout_for(t1, t2, good).length > room) return 0;
-  for (int16_t n = 0; n < SEARCH_STEPS; n++) {
-    const int16_t trial = (int16_t)((good + bad) / 2);
-    if (layout_for(t1, t2, trial).length <= room)
-      good = trial;
-    else
-      bad = trial;
-  }
-  return good;
+  const int16_t most = q_min16((int16_t)(room - SVPWM_PULSE_MIN_TICKS), (int16_t)((room + t1 + t2) / 2));
+  const int16_t longer = q_max16(t1, t2);
+  const int16_t window = (most >= 2 * longer) ? (int16_t)(most / 2) : (int16_t)(most - longer);
+  if (most < t1 + t2 || window < c->window_min_ticks) return 0;
+  return q_min16(window, c->window_max_ticks);
 }
 
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  const order_t o = sort_legs(t->leg);
-  const int16_t t1 = (int16_t)(t->leg[o.hi] - t->leg[o.mid]);
-  const int16_t t2 = (int16_t)(t->leg[o.mid] - t->leg[o.lo]);
+  const int16_t t1 = (int16_t)(t->leg[t->hi] - t->leg[t->mid]);
+  const int16_t t2 = (int16_t)(t->leg[t->mid] - t->leg[t->lo]);
   int16_t window = longest_window(t1, t2, (int16_t)(SVPWM_ROOM_TICKS - c->zero_ticks), c);
   if (window == 0) window = longest_window(t1, t2, SVPWM_ROOM_TICKS, c);
   const layout_t l = layout_for(t1, t2, window);
-  pulses->rise[o.hi] = SVPWM_FIRST_TICK;
-  pulses->rise[o.mid] = (int16_t)(SVPWM_FIRST_TICK + l.first);
-  pulses->rise[o.lo] = (int16_t)(SVPWM_FIRST_TICK + l.first + l.second);
-  pulses->fall[o.hi] = (int16_t)(pulses->rise[o.hi] + t1 + t2 + l.low_on);
-  pulses->fall[o.mid] = (int16_t)(pulses->rise[o.mid] + t2 + l.low_on);
-  pulses->fall[o.lo] = (int16_t)(pulses->rise[o.lo] + l.low_on);
+  pulses->rise[t->hi] = SVPWM_FIRST_TICK;
+  pulses->rise[t->mid] = (int16_t)(SVPWM_FIRST_TICK + l.first);
+  pulses->rise[t->lo] = (int16_t)(SVPWM_FIRST_TICK + l.first + l.second);
+  pulses->fall[t->hi] = (int16_t)(pulses->rise[t->hi] + t1 + t2 + l.low_on);
+  pulses->fall[t->mid] = (int16_t)(pulses->rise[t->mid] + t2 + l.low_on);
+  pulses->fall[t->lo] = (int16_t)(pulses->rise[t->lo] + l.low_on);
+  pulses->order = svpwm_order(t->hi, t->mid, t->lo, t->hi, t->mid, t->lo);
 }
 
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  const order_t o = sort_legs(t->leg);
   const int16_t middle = (SVPWM_FIRST_TICK + SVPWM_LAST_TICK) / 2;
   // The common part puts the largest and the smallest on-time at equal distance from half the room, as far as the
   // shortest pulse allows.
-  const int16_t even = (int16_t)(SVPWM_ROOM_TICKS / 2 - (t->leg[o.hi] + t->leg[o.lo]) / 2);
-  const int16_t common = q_max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[o.lo]));
+  const int16_t even = (int16_t)(SVPWM_ROOM_TICKS / 2 - (t->leg[t->hi] + t->leg[t->lo]) / 2);
+  const int16_t common = q_max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[t->lo]));
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
     const int16_t on = (int16_t)(common + t->leg[k]);
     pulses->rise[k] = (int16_t)(middle - on / 2);
     pulses->fall[k] = (int16_t)(pulses->rise[k] + on);
   }
+  pulses->order = svpwm_order(t->hi, t->mid, t->lo, t->lo, t->mid, t->hi);
 }
 
 void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  const order_t o = sort_legs(t->leg);
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
     pulses->rise[k] = SVPWM_FIRST_TICK;
-    pulses->fall[k] = (int16_t)(SVPWM_FIRST_TICK + SVPWM_PULSE_MIN_TICKS + t->leg[k] - t->leg[o.lo]);
+    pulses->fall[k] = (int16_t)(SVPWM_FIRST_TICK + SVPWM_PULSE_MIN_TICKS + t->leg[k] - t->leg[t->lo]);
   }
+  pulses->order = svpwm_order(t->hi, t->mid, t->lo, t->lo, t->mid, t->hi);
 }

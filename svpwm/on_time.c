@@ -5,6 +5,17 @@
 static int32_t largest(abc_t x) { return q_max(x.a, q_max(x.b, x.c)); }
 static int32_t smallest(abc_t x) { return q_min(x.a, q_min(x.b, x.c)); }
 
+static void sort_legs(svpwm_on_time_t* t) {
+  const bool b_first = t->leg[1] > t->leg[0];
+  const uint16_t longer = b_first ? 1 : 0;
+  const uint16_t shorter = b_first ? 0 : 1;
+  const bool c_first = t->leg[2] > t->leg[longer];
+  const bool c_last = t->leg[2] <= t->leg[shorter];
+  t->hi = c_first ? 2 : longer;
+  t->lo = c_last ? 2 : shorter;
+  t->mid = (uint16_t)(3u - t->hi - t->lo);
+}
+
 svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16) {
   svpwm_on_time_t t;
   const int32_t ticks_per_volt_q20 = q_over(SVPWM_PERIOD_TICKS, q_invert(q_max(link_q16, LINK_MIN_Q16)), 36);
@@ -21,5 +32,6 @@ svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16) {
   t.leg[0] = (int16_t)q_mul(v.a, ticks_per_volt_q20, 36);
   t.leg[1] = (int16_t)q_mul(v.b, ticks_per_volt_q20, 36);
   t.leg[2] = (int16_t)q_mul(v.c, ticks_per_volt_q20, 36);
+  sort_legs(&t);
   return t;
 }

@@ -11,10 +11,11 @@
 #define SVPWM_SPREAD_MAX_TICKS (SVPWM_ROOM_TICKS - SVPWM_PULSE_MIN_TICKS - 1)
 
 typedef struct {
-  int16_t
-      leg[SVPWM_LEGS];  // on-time minus the common part, ticks, each rounded so that differences are exact to a tick
-  ab_t realised_q16;    // the voltage vector that these on-times give, V
-  bool limited;         // the command was longer than what fits and has been shortened in its direction
+  // On-times minus the common part, ticks, each rounded so that differences are exact to a tick.
+  int16_t leg[SVPWM_LEGS];
+  uint16_t hi, mid, lo;  // legs by their on-times, longest first
+  ab_t realised_q16;     // the voltage vector that these on-times give, V
+  bool limited;          // the command was longer than what fits and has been shortened in its direction
 } svpwm_on_time_t;
 
 /// voltage_q16: wanted vector, V; link_q16: DC-link voltage, V, at least 10 V (less is taken as 10 V).

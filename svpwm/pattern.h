@@ -24,10 +24,35 @@
 #define SVPWM_LAST_TICK 9960
 #define SVPWM_ROOM_TICKS (SVPWM_LAST_TICK - SVPWM_FIRST_TICK)
 
+#define SVPWM_EDGES (2u * SVPWM_LEGS)
+
 typedef struct {
   int16_t rise[SVPWM_LEGS];
   int16_t fall[SVPWM_LEGS];
+  uint16_t order;  // of the six edges in time: their legs, two bits each, the first one lowest; a leg rises, then falls
 } svpwm_pulses_t;
+
+/// Every layout knows in which order its edges come, so nobody has to sort them.
+static inline uint16_t svpwm_order(uint16_t e1, uint16_t e2, uint16_t e3, uint16_t e4, uint16_t e5, uint16_t e6) {
+  const uint32_t first = (uint32_t)e1 | (uint32_t)e2 << 2 | (uint32_t)e3 << 4;
+  const uint32_t second = (uint32_t)e4 | (uint32_t)e5 << 2 | (uint32_t)e6 << 4;
+  return (uint16_t)(first | second << 6);
+}
+
+/// A walk along the edges; begins with {order, 0}.
+typedef struct {
+  uint32_t rest;   // the order of those to come
+  uint32_t state;  // of the legs behind the last one
+} svpwm_walk_t;
+
+/// The next edge: its leg, and whether it rises.
+static inline uint16_t svpwm_next_edge(svpwm_walk_t* w, bool* rises) {
+  const uint32_t leg = w->rest & 3u;
+  *rises = (w->state >> leg & 1u) == 0u;
+  w->rest >>= 2;
+  w->state ^= (uint32_t)1u << leg;
+  return (uint16_t)leg;
+}
 
 /// An interval of constant switching state that is long enough to sample in.
 typedef struct {

@@ -32,19 +32,26 @@ ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
   return v;
 }
 
-// Three times a leg less the mean of the three; at its own edges the leg has been high for nothing or all of its pulse.
+// Three times a leg less the sum of the three. A leg has been high for nothing at its rise and for all of its pulse at
+// its fall, so at both only the sum of the times that all legs have been high is needed, which grows along the edges.
 void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16, svpwm_edges_t* at) {
-  static const uint16_t others[SVPWM_LEGS][2] = {{1, 2}, {0, 2}, {0, 1}};
   const int32_t gain_q28 = q_mul_floor(q_mul_floor(link_q16, admittance_q30, 26), PER_THIRD_Q58, 30);
-  const int32_t on[SVPWM_LEGS] = {p->fall[0] - p->rise[0], p->fall[1] - p->rise[1], p->fall[2] - p->rise[2]};
-  const int32_t sum = on[0] + on[1] + on[2];
-  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
-    const uint16_t i = others[k][0];
-    const uint16_t j = others[k][1];
-    const int32_t need = 3 * on[k] - sum;
-    const int32_t rise = -passed(p, i, p->rise[k]) - passed(p, j, p->rise[k]);
-    const int32_t fall = 2 * on[k] - passed(p, i, p->fall[k]) - passed(p, j, p->fall[k]);
-    at->rise_q20[k] = q_mul_floor(rise * (int32_t)SVPWM_PERIOD_TICKS - need * p->rise[k], gain_q28, 28);
-    at->fall_q20[k] = q_mul_floor(fall * (int32_t)SVPWM_PERIOD_TICKS - need * p->fall[k], gain_q28, 28);
+  const int32_t on3[SVPWM_LEGS] = {3 * (p->fall[0] - p->rise[0]), 3 * (p->fall[1] - p->rise[1]),
+                                   3 * (p->fall[2] - p->rise[2])};
+  const int32_t sum = (on3[0] + on3[1] + on3[2]) / 3;
+  svpwm_walk_t walk = {p->order, 0};
+  int32_t passed = 0;
+  int32_t before = 0;
+  int32_t high = 0;
+  for (uint16_t k = 0; k < SVPWM_EDGES; k++) {
+    bool rises;
+    const uint16_t leg = svpwm_next_edge(&walk, &rises);
+    const int32_t tick = rises ? p->rise[leg] : p->fall[leg];
+    const int32_t own = rises ? 0 : on3[leg];
+    passed += high * (tick - before);
+    before = tick;
+    high += rises ? 1 : -1;
+    const int32_t ripple = (own - passed) * (int32_t)SVPWM_PERIOD_TICKS - (on3[leg] - sum) * tick;
+    *(rises ? &at->rise_q20[leg] : &at->fall_q20[leg]) = q_mul_floor(ripple, gain_q28, 28);
   }
 }

@@ -64,6 +64,8 @@ TEST(Alternating, FitsUpToSevenTenthsOfAPulseOfSpread) {
   svpwm_on_time_t t = {};
   t.leg[0] = 1840;
   t.leg[2] = -1099;
+  t.mid = 1;
+  t.lo = 2;
   EXPECT_TRUE(svpwm_alternating_fits(&t, 4200));
   t.leg[2] = -1100;
   EXPECT_FALSE(svpwm_alternating_fits(&t, 4200));

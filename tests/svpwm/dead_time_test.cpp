@@ -22,6 +22,8 @@ dead_time_config_t config() {
                           raw(0.95, 16),
                           0,
                           0,
+                          0,
+                          0,
                           0};
   dead_time_design(&c);
   return c;
@@ -86,7 +88,7 @@ TEST(DeadTime, TheMotorSeesTheWantedEdges) {
 
 TEST(DeadTime, InTheBandTheShiftIsLinear) {
   const dead_time_config_t c = config();
-  const svpwm_pulses_t wanted = {{2000, 2000, 2000}, {7000, 7000, 7000}};  // 000 and 111: no ripple
+  const svpwm_pulses_t wanted = ordered({{2000, 2000, 2000}, {7000, 7000, 7000}, 0});  // 000 and 111: no ripple
   for (double i = -0.2; i <= 0.2; i += 0.02) {
     svpwm_pulses_t command;
     dead_time_compensate(&c, &wanted, raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16), &command);

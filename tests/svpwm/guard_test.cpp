@@ -1,6 +1,6 @@
 // Samples keep off the edges whose instant is not certain.
 
-#include <gtest/gtest.h>
+#include "tests/svpwm/period.hpp"
 
 extern "C" {
 #include "svpwm/dead_time.h"
@@ -16,6 +16,7 @@ dead_time_config_t dead_time() {
   c.released_ticks = kReleased;
   c.band_q20 = 209715;       // 0.2 A
   c.edge_band_q20 = 734003;  // 0.7 A
+  dead_time_design(&c);
   return c;
 }
 
@@ -31,7 +32,7 @@ sampling_config_t sampling() {
 // Leg a alone first, then b and c: the alternating layout.
 svpwm_pattern_t pattern() {
   svpwm_pattern_t p = {};
-  p.pulses = {{260, 5700, 5700}, {4460, 9900, 9900}};
+  p.pulses = stillspin::test::ordered({{260, 5700, 5700}, {4460, 9900, 9900}, 0});
   const sampling_config_t c = sampling();
   svpwm_find_windows(&c, &p);
   return p;

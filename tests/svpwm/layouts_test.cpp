@@ -128,6 +128,7 @@ TEST(Extended, BothVectorsAreAsLongAsFits) {
     const svpwm_pulses_t p = extended(c, v);
     const std::vector<svpwm_window_t> list = intervals(p);
     const Best wanted = best(c, t);
+    const std::array<int, 2> own = {t.leg[t.hi] - t.leg[t.mid], t.leg[t.mid] - t.leg[t.lo]};
     if (wanted.window == 0) {
       none++;
       continue;
@@ -139,9 +140,11 @@ TEST(Extended, BothVectorsAreAsLongAsFits) {
     ASSERT_EQ(__builtin_popcount(list[1].state), 1);
     ASSERT_EQ(__builtin_popcount(list[2].state), 2);
     ASSERT_EQ(list[1].state & list[2].state, list[1].state);
-    // six halvings of 2100 ticks leave 33, the search here steps by 8
-    ASSERT_GE(list[1].end - list[1].begin, wanted.window - 41) << v.x << ", " << v.y;
-    ASSERT_GE(list[2].end - list[2].begin, wanted.window - 41) << v.x << ", " << v.y;
+    ASSERT_GE(list[1].end - list[1].begin, wanted.window) << v.x << ", " << v.y;
+    ASSERT_GE(list[2].end - list[2].begin, wanted.window) << v.x << ", " << v.y;
+    // and not longer than fits: the search here steps by 8
+    const int shorter = std::min(list[1].end - list[1].begin, list[2].end - list[2].begin);
+    ASSERT_LE(shorter, std::max(wanted.window + 7, *std::min_element(own.begin(), own.end()))) << v.x << ", " << v.y;
     if (wanted.with_zero) {
       ASSERT_GE(SVPWM_LAST_TICK - std::max({p.fall[0], p.fall[1], p.fall[2]}), c.zero_ticks);
     }

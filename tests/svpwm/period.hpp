@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -15,6 +16,38 @@ extern "C" {
 }
 
 namespace stillspin::test {
+
+/// The same pulses with the order of their edges, which a layout would know.
+inline svpwm_pulses_t ordered(svpwm_pulses_t p) {
+  std::array<std::pair<int, unsigned>, SVPWM_EDGES> edges;
+  for (unsigned leg = 0; leg < SVPWM_LEGS; ++leg) {
+    edges[2 * leg] = {2 * p.rise[leg], leg};
+    edges[2 * leg + 1] = {2 * p.fall[leg] + 1, leg};  // behind the rises of the same tick
+  }
+  std::sort(edges.begin(), edges.end());
+  p.order = 0;
+  for (unsigned k = 0; k < SVPWM_EDGES; ++k) p.order = static_cast<std::uint16_t>(p.order | edges[k].second << 2 * k);
+  return p;
+}
+
+/// A walk along the order visits all edges, none before another that comes later.
+inline void expect_ordered(const svpwm_pulses_t& p) {
+  svpwm_walk_t walk = {p.order, 0};
+  int before = 0;
+  unsigned risen = 0;
+  for (unsigned k = 0; k < SVPWM_EDGES; ++k) {
+    bool rises = false;
+    const std::uint16_t leg = svpwm_next_edge(&walk, &rises);
+    ASSERT_LT(leg, SVPWM_LEGS);
+    ASSERT_EQ(rises, (risen >> leg & 1u) == 0u);
+    risen |= 1u << leg;
+    const int tick = rises ? p.rise[leg] : p.fall[leg];
+    ASSERT_GE(tick, before) << k;
+    before = tick;
+  }
+  ASSERT_EQ(risen, 7u);
+  ASSERT_EQ(walk.state, 0u);
+}
 
 /// Ticks of a period in which leg k is high, from -rise/fall- as the hardware does it: set at rise, clear at fall.
 inline std::array<std::uint16_t, SVPWM_PERIOD_TICKS> states(const svpwm_pulses_t& p) {
@@ -56,7 +89,7 @@ inline std::array<double, 3> legs_of(Vector v) {
 
 inline int on_time(const svpwm_pulses_t& p, int leg) { return p.fall[leg] - p.rise[leg]; }
 
-/// Each pulse inside the room and long enough for the dead band, as is the gap to the next period's.
+/// Each pulse inside the room and long enough for the dead band, as is the gap to the next period's; edges in order.
 inline void expect_valid(const svpwm_pulses_t& p) {
   for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
     ASSERT_GE(p.rise[leg], SVPWM_FIRST_TICK) << leg;
@@ -64,6 +97,7 @@ inline void expect_valid(const svpwm_pulses_t& p) {
     ASSERT_GE(on_time(p, leg), SVPWM_PULSE_MIN_TICKS) << leg;
     ASSERT_GE(SVPWM_PERIOD_TICKS - on_time(p, leg), SVPWM_PULSE_MIN_TICKS) << leg;
   }
+  ASSERT_NO_FATAL_FAILURE(expect_ordered(p));
 }
 
 /// Line-to-line on-times against the voltage, within one tick.

@@ -66,7 +66,7 @@ TEST(Ripple, MeanVoltageIsThatOfTheStates) {
 }
 
 TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
-  const svpwm_pulses_t p = {{260, 5760, 5800}, {4500, 9960, 9900}};
+  const svpwm_pulses_t p = {{260, 5760, 5800}, {4500, 9960, 9900}, 0};
   for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {
     const Vector flux = real(svpwm_ripple_q16(&p, tick, raw(300.0, 16)), 16);
     EXPECT_NEAR(flux.length(), 0.0, 0.004);  // an eighth of a tick

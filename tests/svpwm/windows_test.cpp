@@ -11,7 +11,7 @@ using namespace stillspin::test;
 
 svpwm_pattern_t pattern_of(const svpwm_pulses_t& pulses, const sampling_config_t& c) {
   svpwm_pattern_t p = {};
-  p.pulses = pulses;
+  p.pulses = ordered(pulses);
   svpwm_find_windows(&c, &p);
   return p;
 }
@@ -86,13 +86,13 @@ TEST(Windows, AreTheLongestOnes) {
 
 TEST(Windows, NoneInPulsesThatAreAllTooShort) {
   const sampling_config_t c = {2500, 140, 2000, 9640};
-  const svpwm_pulses_t pulses = {{1500, 3000, 4500}, {6000, 7500, 9000}};
+  const svpwm_pulses_t pulses = {{1500, 3000, 4500}, {6000, 7500, 9000}, 0};
   EXPECT_EQ(pattern_of(pulses, c).window_count, 0);
 }
 
 TEST(Windows, CoincidentEdgesMakeNoEmptyWindow) {
   const sampling_config_t c = {400, 140, 100, 9640};
-  const svpwm_pulses_t pulses = {{1000, 1000, 1000}, {5000, 5000, 5000}};
+  const svpwm_pulses_t pulses = {{1000, 1000, 1000}, {5000, 5000, 5000}, 0};
   const svpwm_pattern_t p = pattern_of(pulses, c);
   ASSERT_EQ(p.window_count, 3);
   EXPECT_EQ(p.windows[0].state, 0);
