@@ -88,6 +88,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->nominal_rs_q24 = p->rs_q24;
   m->ld_q30 = p->ld_q30;
   m->lq_q30 = p->lq_q30;
+  m->per_ld = q_invert(p->ld_q30);
   m->flux_q28 = p->flux_q28;
   m->pole_pairs = p->pole_pairs;
   m->period_q30 = period_q30(p->period_us);

@@ -41,6 +41,7 @@ typedef struct {
 typedef struct {
   int32_t nominal_rs_q24;        // ohm
   int32_t ld_q30, lq_q30;        // H, at no current
+  q_inverse_t per_ld;            // of ld_q30
   int32_t flux_q28;              // V s
   int32_t emf_q16;               // lambda/T: V per (rad per period)
   int32_t torque_q24;            // 3/2 p lambda, N m per A of i_q at i_d = 0

@@ -34,7 +34,7 @@
 
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
-#define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond; the speed control has the first one
+#define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond, its first part; the speed control has the first one
 #define ADAPTATION_TURN 7u         // periods in which every adaptation, and the model, has its turn
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
@@ -99,6 +99,11 @@ typedef struct {
   current_controller_t current;
   speed_controller_t speed;
   field_weakening_t weakening;
+  field_weakening_input_t weakening_seen;  // and what follows from it, between the periods of the millisecond
+  int64_t weakening_room_q56;
+  int32_t weakening_q20;
+  int32_t room_q20, braking_room_q20;  // torque current that the limits leave, and against the rotation, A
+  q_inverse_t per_torque_constant;     // of N m per A, Q24, at the reference of i_d
   ramp_t ramp;
   dq_t reference_q20;      // current reference
   dq_t measured_q20;       // mean current of the last period
@@ -229,7 +234,8 @@ void drive_match_inertia(drive_t* d);
 /// Torque current that the limit leaves beside the reference of i_d, A.
 int32_t drive_current_room(const drive_t* d);
 
-/// Field weakening of this instant, into the d-axis reference.
+/// Field weakening of this instant, into the d-axis reference; while the shaft turns it takes four periods of the
+/// millisecond.
 void drive_weaken_field(drive_t* d);  // speed_task.c
 
 // The state COMMISSION (commissioning/sequence.c) and its phases, each in its own file: one period; true at the phase's

@@ -9,24 +9,43 @@ static int32_t voltage_limit(const drive_t* d) {
   return q_mul(q_mul(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30), share_q30, 30);
 }
 
-void drive_weaken_field(drive_t* d) {
+static void see_weakening(drive_t* d) {
   drive_control_t* const c = &d->control;
-  field_weakening_input_t in;
-  in.speed_bpp = d->position.used.speed_bpp;
-  in.iq_q20 = c->reference_q20.q;
-  in.voltage_q16 = q_hypot(c->command_q16.d, c->command_q16.q);
-  in.voltage_limit_q16 = voltage_limit(d);
-  in.current_limit_q20 = parameters.weakening_limit;
-  in.trim_gain_q20 = parameters.weakening_gain;
-  const int32_t weakening = field_weakening_step(&c->weakening, &in, &d->model);
+  field_weakening_input_t* const in = &c->weakening_seen;
+  in->speed_bpp = d->position.used.speed_bpp;
+  in->iq_q20 = c->reference_q20.q;
+  in->voltage_q16 = q_hypot(c->command_q16.d, c->command_q16.q);
+  in->voltage_limit_q16 = voltage_limit(d);
+  in->current_limit_q20 = parameters.weakening_limit;
+  in->trim_gain_q20 = parameters.weakening_gain;
+}
+
+static void make_weakening_room(drive_t* d) {
+  d->control.weakening_room_q56 = field_weakening_room_q56(&d->control.weakening_seen, &d->model);
+}
+
+static void follow_weakening(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  c->weakening_q20 = field_weakening_follow(&c->weakening, &c->weakening_seen, c->weakening_room_q56, &d->model);
+}
+
+static void refer_field(drive_t* d) {
+  drive_control_t* const c = &d->control;
   // A commissioning takes its spin for one without i_d.
   const bool none = d->position.blend.region == BLEND_HIGH || d->state == DRIVE_COMMISSION;
   const int32_t bias = none ? 0 : parameters.id_low_speed;
   const int32_t least = (none || parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
   c->reference_q20.d =
-      q_clamp(q_add_sat(q_min(weakening, least), bias), -parameters.current_limit, parameters.current_limit);
+      q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -parameters.current_limit, parameters.current_limit);
   d->limits &= ~(int32_t)LIMIT_WEAKENING;
-  if (weakening < 0) d->limits |= LIMIT_WEAKENING;
+  if (c->weakening_q20 < 0) d->limits |= LIMIT_WEAKENING;
+}
+
+void drive_weaken_field(drive_t* d) {
+  see_weakening(d);
+  make_weakening_room(d);
+  follow_weakening(d);
+  refer_field(d);
 }
 
 // Current that balances the estimated load. The observers see friction as part of the load; the speed law's own model
@@ -36,7 +55,7 @@ static int32_t load_current(const drive_t* d) {
   const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 20);
   const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
   const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
-  return q_over(torque_q20, q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d)), 24);
+  return q_over(torque_q20, d->control.per_torque_constant, 24);
 }
 
 int32_t drive_current_room(const drive_t* d) {
@@ -56,12 +75,19 @@ static int32_t braking_room(const drive_t* d, int32_t room_q20) {
   return brake_limit_q20(&in, room_q20);
 }
 
+static void make_room(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  c->room_q20 = drive_current_room(d);
+  c->per_torque_constant = q_invert(machine_torque_constant_q24(&d->model, c->reference_q20.d));
+}
+
+static void make_braking_room(drive_t* d) { d->control.braking_room_q20 = braking_room(d, d->control.room_q20); }
+
 // Braking is what acts against the rotation.
-static void limit_current(drive_t* d, speed_controller_input_t* in) {
-  const int32_t room = drive_current_room(d);
-  const int32_t braking = braking_room(d, room);
-  in->lowest_q20 = (in->speed_bpp > 0) ? -braking : -room;
-  in->highest_q20 = (in->speed_bpp < 0) ? braking : room;
+static void limit_current(const drive_t* d, speed_controller_input_t* in) {
+  const drive_control_t* const c = &d->control;
+  in->lowest_q20 = (in->speed_bpp > 0) ? -c->braking_room_q20 : -c->room_q20;
+  in->highest_q20 = (in->speed_bpp < 0) ? c->braking_room_q20 : c->room_q20;
 }
 
 // A shaft that may not be braked as fast as the ramp falls would be left behind by it, and be braked on when it has
@@ -89,17 +115,8 @@ static void note_limits(drive_t* d, const speed_controller_input_t* in) {
   if (at_end && q_abs_sat(iq_q20) < room) d->limits |= LIMIT_BRAKING;
 }
 
-void drive_control_speed(drive_t* d) {
+static void step_speed(drive_t* d, bool held) {
   drive_control_t* const c = &d->control;
-  const bool held = hold_step(d);
-  const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
-  d->millisecond = (uint16_t)((d->millisecond + 1u) % DRIVE_PERIODS_PER_MS);
-  if (d->millisecond == DRIVE_PERIODS_PER_MS / 2) drive_match_inertia(d);
-  if (d->millisecond == DRIVE_WEAKENING_PERIOD && (drive_is_turning(d) || caught)) drive_weaken_field(d);
-  if (d->millisecond != 0u) return;
-  d->time_ms++;
-  d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
-  if (!drive_is_turning(d)) return;
   speed_controller_input_t in;
   step_ramp(d, &in);
   d->limits &= ~(int32_t)LIMIT_BRAKING;
@@ -112,4 +129,50 @@ void drive_control_speed(drive_t* d) {
   }
   c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)parameters.speed_law, &in);
   note_limits(d, &in);
+}
+
+static void part_of_weakening(drive_t* d, void (*part)(drive_t* d)) {
+  const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
+  if (drive_is_turning(d) || caught) part(d);
+}
+
+static void begin_millisecond(drive_t* d, bool held) {
+  d->time_ms++;
+  d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
+  if (drive_is_turning(d)) step_speed(d, held);
+}
+
+// What comes once a millisecond has a period of its own for every root and division, so that no period has much of it.
+// The limits of the current follow the reference of i_d, and the speed law them.
+void drive_control_speed(drive_t* d) {
+  const bool held = hold_step(d);
+  d->millisecond = (d->millisecond < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(d->millisecond + 1u) : 0u;
+  switch (d->millisecond) {
+    case 0:
+      begin_millisecond(d, held);
+      break;
+    case DRIVE_WEAKENING_PERIOD:
+      part_of_weakening(d, see_weakening);
+      break;
+    case DRIVE_WEAKENING_PERIOD + 1u:
+      part_of_weakening(d, make_weakening_room);
+      break;
+    case 5:
+      drive_match_inertia(d);
+      break;
+    case 6:
+      part_of_weakening(d, follow_weakening);
+      break;
+    case 7:
+      part_of_weakening(d, refer_field);
+      break;
+    case 8:
+      make_room(d);
+      break;
+    case 9:
+      make_braking_room(d);
+      break;
+    default:
+      break;
+  }
 }
