@@ -37,19 +37,14 @@ bool avv_angle_is_near(const regression_t* r, const machine_model_t* m) {
   return q_abs_sat(e.sine) <= q_mul(e.cosine, FRAME_SQRT3_INV_Q30, 30);
 }
 
-// Information in powers of two, with two bits of fraction.
+// Information (4 or more) in powers of two, with two bits of fraction: the two bits below the highest.
 static int32_t log2_q2(int32_t x) {
-  int32_t whole = 0;
-  int32_t rest = x;
-  while (rest >= 8) {
-    rest = q_shr(rest, 1);
-    whole++;
-  }
-  return (whole + 2) * 4 + (rest - 4);
+  const unsigned below = 29u - q_clz32((uint32_t)x);
+  return (int32_t)(below + 2u) * 4 + q_shr(x, below) - 4;
 }
 
 static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {
-  const int32_t above = q_clamp(log2_q2(information) - 4 * SHORT_LOG2, 0, 4 * (LONG_LOG2 - SHORT_LOG2));
+  const int32_t above = q_clamp(log2_q2(q_max(information, 4)) - 4 * SHORT_LOG2, 0, 4 * (LONG_LOG2 - SHORT_LOG2));
   return c->bandwidth_short_q30 +
          (c->bandwidth_long_q30 - c->bandwidth_short_q30) / (4 * (LONG_LOG2 - SHORT_LOG2)) * above;
 }
@@ -57,9 +52,12 @@ static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in) {
   tracking_observer_predict(&s->observer, in->torque_accel_q8);
   deviation_t d[ESTIMATOR_WINDOWS];
-  for (uint16_t k = 0; k < in->window_count; k++) {
-    d[k] = deviation_evaluate(in->model, &in->windows[k], s->observer.angle_bam, s->observer.speed_bpp);
-  }
+  estimator_frame_t f[ESTIMATOR_WINDOWS];
+  const int32_t speed_bpp = s->observer.speed_bpp;
+  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
+  const deviation_model_t at = deviation_model(in->model, w_q30);
+  deviation_frames(in->windows, in->window_count, deviation_middle(s->observer.angle_bam, speed_bpp), w_q30, f);
+  for (uint16_t k = 0; k < in->window_count; k++) d[k] = deviation_in_frame(&at, &in->windows[k], &f[k]);
   regression_evaluate(&s->regression, d, in);
   if (s->regression.information > 0) {
     s->error_bam = avv_angle_error(&s->regression, in->model);

@@ -1,38 +1,84 @@
 #include "estimators/deviation.h"
 
-deviation_t deviation_in_frame(const machine_model_t* m, const estimator_window_t* w, const estimator_frame_t* f,
-                               int32_t w_q30) {
+#define PER_TICK_Q32 429496L  // 1 / ESTIMATOR_PERIOD_TICKS, rounded down: half a period of ticks stays in 31 bits
+#define ONE_SIXTH_Q32 715827883L
+#define ONE_TWELFTH_Q32 357913941L
+
+// A rotation turned on by an angle below 1 rad: 1 - cos x = x^2/2 (1 - x^2/12), sin x = x (1 - x^2/6).
+static rotation_t turned(rotation_t r, int32_t x_q30) {
+  const int32_t square_q28 = q_mul_hi(x_q30, x_q30);
+  const int32_t fourth_q28 = q_mul_hi(square_q28 * 4, q_mul_hi(square_q28 * 4, ONE_TWELFTH_Q32));
+  const int32_t versine_q30 = (square_q28 - fourth_q28) * 2;
+  const int32_t sine_q30 = x_q30 - q_mul_hi(q_mul_hi(x_q30, square_q28) * 16, ONE_SIXTH_Q32);
+  const int32_t sine_step_q28 = q_mul_sub_floor(r.cos_q30, sine_q30, r.sin_q30, versine_q30, 32);
+  const int32_t cosine_step_q28 = q_mul_add_floor(r.sin_q30, sine_q30, r.cos_q30, versine_q30, 32);
+  const rotation_t next = {r.sin_q30 + sine_step_q28 * 4, r.cos_q30 - cosine_step_q28 * 4};
+  return next;
+}
+
+void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32_t middle_bam, int32_t w_q30,
+                      estimator_frame_t frames[]) {
+  const rotation_t middle = frame_rotation(middle_bam);
+  for (uint16_t k = 0; k < count; k++) {
+    const int32_t after_q32 = (windows[k].middle_tick - ESTIMATOR_PERIOD_TICKS / 2) * PER_TICK_Q32;
+    frames[k].rotation = turned(middle, q_mul_hi(w_q30, after_q32));
+    frames[k].current_q20 = frame_park(windows[k].current_q20, frames[k].rotation);
+  }
+}
+
+// No saturation: the model keeps Y below 2, R below 100 and K below 125 (machine_model.h), and w below 1.9, so that A
+// is below 512.
+deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
+  deviation_model_t at;
+  const int32_t turn_dd_q22 = q_mul_hi(w_q30, m->k_dd_q24);
+  at.y_dd_q26 = q_shr(m->yd_q30, 4);
+  at.y_dq_q26 = q_shr(m->ydq_q30, 4);
+  at.y_qq_q26 = q_shr(m->yq_q30, 4);
+  const int32_t cross_q22 = q_mul_floor(at.y_dq_q26, m->rs_q24, 28);
+  at.a_dd_q22 = q_mul_floor(at.y_dd_q26, m->rs_q24, 28) - turn_dd_q22;
+  at.a_dq_q22 = cross_q22 - q_mul_hi(w_q30, m->k_dq_q24);
+  at.a_qd_q22 = cross_q22 - q_mul_hi(w_q30, m->k_qd_q24);
+  at.a_qq_q22 = q_mul_floor(at.y_qq_q26, m->rs_q24, 28) + turn_dd_q22;
+  at.emf_q20.d = q_mul_floor(w_q30, m->k0_q20.d, 30);
+  at.emf_q20.q = q_mul_floor(w_q30, m->k0_q20.q, 30);
+  return at;
+}
+
+// a x + b y - c u - d v, Q42 to Q20: whole products, rounded once.
+static int32_t of_four(int32_t a, int32_t x, int32_t b, int32_t y, int32_t c, int32_t u, int32_t d, int32_t v) {
+  return (int32_t)q_shr64((int64_t)a * x + (int64_t)b * y - (int64_t)c * u - (int64_t)d * v, 22);
+}
+
+deviation_t deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f) {
   const dq_t slope_q20 = frame_park(w->slope_q20, f->rotation);
-  deviation_t d;
-  d.voltage_q16 = frame_park(w->voltage_q16, f->rotation);
-  d.current_q20 = f->current_q20;
-  d.w_q30 = w_q30;
-  d.drive_q16.d = d.voltage_q16.d - q_mul_floor(m->rs_q24, d.current_q20.d, 28);
-  d.drive_q16.q = d.voltage_q16.q - q_mul_floor(m->rs_q24, d.current_q20.q, 28);
-  d.turn_q20 = machine_turn_q20(m, d.current_q20);
-  const dq_t admitted = machine_admit_q20(m, d.drive_q16);
-  d.residual_q20.d = slope_q20.d - admitted.d - q_mul_floor(d.turn_q20.d, d.w_q30, 30);
-  d.residual_q20.q = slope_q20.q - admitted.q - q_mul_floor(d.turn_q20.q, d.w_q30, 30);
+  const dq_t v = frame_park(w->voltage_q16, f->rotation);
+  const dq_t i = f->current_q20;
+  const dq_t rest = {of_four(at->a_dd_q22, i.d, at->a_dq_q22, i.q, at->y_dd_q26, v.d, at->y_dq_q26, v.q),
+                     of_four(at->a_qd_q22, i.d, at->a_qq_q22, i.q, at->y_dq_q26, v.d, at->y_qq_q26, v.q)};
+  const deviation_t d = {
+      {slope_q20.d + rest.d - at->emf_q20.d, slope_q20.q + rest.q - at->emf_q20.q}, v, f->current_q20};
   return d;
 }
 
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp) {
-  const estimator_frame_t f = deviation_frame(w, deviation_angle_at(angle_bam, speed_bpp, w->middle_tick));
-  return deviation_in_frame(m, w, &f, machine_speed_rad_q30(speed_bpp));
+  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
+  const deviation_model_t at = deviation_model(m, w_q30);
+  estimator_frame_t f;
+  deviation_frames(w, 1, deviation_middle(angle_bam, speed_bpp), w_q30, &f);
+  return deviation_in_frame(&at, w, &f);
 }
 
-dq_t deviation_angle_sensitivity(const machine_model_t* m, const deviation_t* d) {
-  const int32_t saliency_q30 = m->yd_q30 - m->yq_q30;
-  const int32_t tilt_q30 = 2 * m->ydq_q30;
+deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t w_q30, dq_t i) {
   // J K - K J = [-p, q; q, p] with p = K_dq + K_qd, q = 2 K_dd; J k0 = (-k0_q, k0_d).
   const int32_t p_q24 = m->k_dq_q24 + m->k_qd_q24;
   const int32_t q_q24 = 2 * m->k_dd_q24;
-  const dq_t i = d->current_q20;
-  const int32_t turn_d = q_mul_sub_floor(q_q24, i.q, p_q24, i.d, 24) - m->k0_q20.q;
-  const int32_t turn_q = q_mul_add_floor(q_q24, i.d, p_q24, i.q, 24) + m->k0_q20.d;
-  const dq_t u = d->drive_q16;
-  const dq_t h = {q_mul_sub_floor(saliency_q30, u.q, tilt_q30, u.d, 26) + q_mul_floor(turn_d, d->w_q30, 30),
-                  q_mul_add_floor(saliency_q30, u.d, tilt_q30, u.q, 26) + q_mul_floor(turn_q, d->w_q30, 30)};
-  return h;
+  const dq_t turn = {q_mul_sub_floor(q_q24, i.q, p_q24, i.d, 24) - m->k0_q20.q,
+                     q_mul_add_floor(q_q24, i.d, p_q24, i.q, 24) + m->k0_q20.d};
+  const dq_t lost_q16 = {q_mul_floor(m->rs_q24, i.d, 28), q_mul_floor(m->rs_q24, i.q, 28)};
+  deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
+  const dq_t lost = deviation_by_angle(&s, lost_q16);
+  s.rest_q20.d = q_mul_floor(turn.d, w_q30, 30) - lost.d;
+  s.rest_q20.q = q_mul_floor(turn.q, w_q30, 30) - lost.q;
+  return s;
 }

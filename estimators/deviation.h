@@ -3,43 +3,61 @@
 // Residual = measured slope - model slope at the estimated angle and speed; with the true angle theta^ + e the residual
 // is (to first order) h_angle e + h_speed (w - w^). Seed paper eqs (15)-(24) with every term kept; Y, K and h = K i +
 // k0 as in machine_model.h, u = v - R i:
+//   residual = s - Y v + A i - w k0,  A = Y R - w K,
 //   h_angle = (J Y - Y J) u + w (J h - K J i),  h_speed = h.
+// A and w k0 are the same for all windows of a period, and of the sensitivities, which only weight the residuals, the
+// part that the current makes is taken at one current of the period.
 
 #ifndef STILLSPIN_ESTIMATORS_DEVIATION_H
 #define STILLSPIN_ESTIMATORS_DEVIATION_H
 
 #include "estimators/estimator.h"
 
+/// The model at a speed.
+typedef struct {
+  int32_t y_dd_q26, y_dq_q26, y_qq_q26;            // Y, A per V and period
+  int32_t a_dd_q22, a_dq_q22, a_qd_q22, a_qq_q22;  // A, A per period and A
+  dq_t emf_q20;                                    // w k0, A per period
+} deviation_model_t;
+
 typedef struct {
   dq_t residual_q20;  // A per period
   dq_t voltage_q16;   // V
-  dq_t drive_q16;     // V, voltage less the resistance's: u
   dq_t current_q20;   // A
-  dq_t turn_q20;      // h, A per period and (rad per period)
-  int32_t w_q30;      // estimated speed, rad per period
 } deviation_t;
 
-/// Angle of the estimator in the middle of a window.
-static inline uint32_t deviation_angle_at(uint32_t angle_bam, int32_t speed_bpp, int16_t middle_tick) {
-  const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)middle_tick) * 107374;
-  return angle_bam - (uint32_t)q_mul_floor(speed_bpp, before_q30, 30);
+/// What the residuals of a period say about angle and speed.
+typedef struct {
+  int32_t saliency_q30, tilt_q30;  // J Y - Y J = [-tilt, saliency; saliency, tilt]
+  dq_t rest_q20;                   // what of h_angle does not hang on the voltage, A per period and rad
+  dq_t turn_q20;                   // h_speed, A per period and (rad per period)
+} deviation_sensitivity_t;
+
+/// Angle of the estimator in the middle of the period in which the windows lie, from that at its end.
+static inline uint32_t deviation_middle(uint32_t angle_bam, int32_t speed_bpp) {
+  return angle_bam - (uint32_t)q_shr(speed_bpp, 1);
 }
 
-/// A window in the frame of an angle.
-static inline estimator_frame_t deviation_frame(const estimator_window_t* w, uint32_t angle_bam) {
-  const rotation_t r = frame_rotation(angle_bam);
-  const estimator_frame_t f = {r, frame_park(w->current_q20, r)};
-  return f;
-}
+/// The period's windows in the frame that has an angle in the middle of that period and turns evenly; w_q30: its speed,
+/// rad per period, below 1.9. An angle is right to 2e-5 rad up to 0.6 rad per period.
+void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32_t middle_bam, int32_t w_q30,
+                      estimator_frame_t frames[]);
 
-/// w_q30: speed of the frame, rad per period.
-deviation_t deviation_in_frame(const machine_model_t* m, const estimator_window_t* w, const estimator_frame_t* f,
-                               int32_t w_q30);
+deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30);
 
+deviation_t deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f);
+
+/// One window, at the angle of the estimator at the end of its period.
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp);
 
-/// Sensitivity of the residual to the angle, A per period and rad, Q20.
-dq_t deviation_angle_sensitivity(const machine_model_t* m, const deviation_t* d);
+deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t w_q30, dq_t current_q20);
+
+/// h_angle of a window, A per period and rad, Q20.
+static inline dq_t deviation_by_angle(const deviation_sensitivity_t* s, dq_t v_q16) {
+  const dq_t h = {q_mul_sub_floor(s->saliency_q30, v_q16.q, s->tilt_q30, v_q16.d, 26) + s->rest_q20.d,
+                  q_mul_add_floor(s->saliency_q30, v_q16.d, s->tilt_q30, v_q16.q, 26) + s->rest_q20.q};
+  return h;
+}
 
 #endif

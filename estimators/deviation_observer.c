@@ -1,9 +1,9 @@
 #include "estimators/deviation_observer.h"
 
 #define ONE_Q20 1048576L
-#define BAM_PER_UNIT 10680707L     // 2^-6 rad
-#define BPP_PER_UNIT 166886L       // 2^-12 rad per period
-#define ACCEL_Q8_PER_UNIT 667544L  // 2^-18 rad per period^2
+#define BAM_PER_UNIT_Q7 1367130551L  // 2^-6 rad
+#define BPP_PER_UNIT_Q12 683565276L  // 2^-12 rad per period
+#define ACCEL_Q8_PER_UNIT 667544L    // 2^-18 rad per period^2
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
@@ -19,6 +19,9 @@
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define INFORMATION_MAX (8L * 16777216L)
+#define HALF_Q12 2048L
+#define PERIODS_MAX 8L        // the covariance is renewed at the latest
+#define LEFT_PERIODS_MAX 64L  // nobody takes what is left: it begins anew
 
 typedef struct {
   int32_t aa, as, ss;  // Q24
@@ -64,9 +67,12 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 
 // The mean of white scores over 32 periods has 1/63 of their power: four standard deviations are a quarter of its root.
 // The power is measured, not the information's word for it: it holds whatever noise the observer was told.
-static bool scores_lean(deviation_observer_t* s, const information_t* n) {
+static void follow_scores(deviation_observer_t* s, const information_t* n) {
   s->mean_score_q20 += q_shr_round(n->a - s->mean_score_q20, MEAN_SHIFT);
   s->score_power_q24 += q_shr_round(q_sub_sat(q_mul_sat(n->a, n->a, 16), s->score_power_q24), POWER_SHIFT);
+}
+
+static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
   return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 4 &&
          q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
 }
@@ -82,18 +88,18 @@ static void admit_load_step(deviation_observer_t* s, int32_t variance_q20) {
   s->p_aa += q_shr_round(variance_q20, 10);
 }
 
-static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
-  const bool lean = scores_lean(s, n);
+static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
+  const int32_t periods = s->gathered.periods;
   const int32_t crawl_q30 = crawl_share_q30(s, c);
-  s->alert_q30 -= q_shr_round(s->alert_q30, ALERT_SHIFT);
-  const int32_t step_q20 = c->moving_step_q20 + q_mul(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
+  s->alert_q30 -= periods * q_shr_round(s->alert_q30, ALERT_SHIFT);
+  const int32_t step_q20 = c->moving_step_q20 + q_mul_floor(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
   const int32_t again_q30 = (crawl_q30 > 0) ? ALERT_AGAIN_Q30 : ALERT_OVER_Q30;
   if (lean && step_q20 > 0 && s->alert_q30 < again_q30) {
     s->alert_q30 = ONE_Q30;
     admit_load_step(s, step_q20);
   }
-  const int32_t quiet_q30 = crawl_q30 - q_mul(crawl_q30, s->alert_q30, 30);
-  s->p_ll += c->load_noise_q20 - q_mul(c->load_noise_q20 - c->load_noise_quiet_q20, quiet_q30, 30);
+  const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->alert_q30, 30);
+  s->p_ll += periods * (c->load_noise_q20 - q_mul(c->load_noise_q20 - c->load_noise_quiet_q20, quiet_q30, 30));
 }
 
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
@@ -104,12 +110,17 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
   s->angle_bam += (uint32_t)(s->speed_bpp + change / 2);
   s->speed_bpp += change;
   s->speed_rest_q8 = change_q8 - change * 256;
-  // A period is 1/64 of the unit of time.
-  s->p_aa += q_shr_round(2 * s->p_as + q_shr_round(s->p_ss + s->p_al, 6), 6);
-  s->p_as += q_shr_round(s->p_ss + s->p_al, 6);
-  s->p_al += q_shr_round(s->p_sl, 6);
-  s->p_ss += q_shr_round(2 * s->p_sl + q_shr_round(s->p_ll, 6), 6);
-  s->p_sl += q_shr_round(s->p_ll, 6);
+}
+
+// The covariance over the periods since it was last renewed; a period is 1/64 of the unit of time.
+static void predict_covariance(deviation_observer_t* s) {
+  const int32_t time_q32 = s->gathered.periods * 67108864L;
+  const int32_t drawn = q_mul(s->p_ss + s->p_al, time_q32, 32);
+  s->p_aa += q_mul(2 * s->p_as + drawn, time_q32, 32);
+  s->p_as += drawn;
+  s->p_al += q_mul(s->p_sl, time_q32, 32);
+  s->p_ss += q_mul(2 * s->p_sl + q_mul(s->p_ll, time_q32, 32), time_q32, 32);
+  s->p_sl += q_mul(s->p_ll, time_q32, 32);
 }
 
 // Information and score while the windows add to it: whole products.
@@ -117,9 +128,13 @@ typedef struct {
   int64_t aa, as, ss, a, s;  // Q40
 } sums_t;
 
-static int32_t limited(int32_t x, int32_t scale_q20, unsigned shift, int32_t end) {
-  const int32_t y = q_mul_sat(x, scale_q20, shift);
-  return q_clamp(y, -end, end);
+// x * scale_q20 / 2^shift within +-end, end / 2^(32 - shift) a whole number: the upper word tells whether it fits.
+static inline int32_t limited(int32_t x, int32_t scale_q20, unsigned shift, int32_t end) {
+  const int64_t product = (int64_t)x * scale_q20;
+  const int32_t top = (int32_t)q_shr64(product, 32);
+  const int32_t most = q_shr(end, 32u - shift);
+  if (top >= most) return end;
+  return (top < -most) ? -end : (int32_t)q_shr64(product, shift);
 }
 
 // One scalar measurement: sensitivities and residual, all divided by the noise.
@@ -131,15 +146,13 @@ static void collect(sums_t* n, int32_t g_a_q20, int32_t g_s_q20, int32_t e_q20) 
   n->s = q_mac(n->s, g_s_q20, e_q20);
 }
 
-static void collect_window(sums_t* n, const deviation_observer_config_t* c, const machine_model_t* m,
-                           const estimator_window_t* w, const deviation_t* d) {
-  const dq_t h_a = deviation_angle_sensitivity(m, d);
-  const dq_t h_s = d->turn_q20;
-  // span / N / sigma turns a slope into a current difference in units of its noise.
-  const int32_t scale_q20 = q_mul(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
-  collect(n, limited(h_a.d, scale_q20, 26, GAIN_MAX), limited(h_s.d, scale_q20, 32, GAIN_MAX),
+// The sensitivity to the speed needs no limit: below 2^11 A in its format it is, with the least noise, below 2^9 units.
+// scale_q20: span / N / sigma turns a slope into a current difference in units of its noise.
+static void collect_window(sums_t* n, const deviation_sensitivity_t* h, int32_t scale_q20, const deviation_t* d) {
+  const dq_t h_a = deviation_by_angle(h, d->voltage_q16);
+  collect(n, limited(h_a.d, scale_q20, 26, GAIN_MAX), q_mul_hi(h->turn_q20.d, scale_q20),
           limited(d->residual_q20.d, scale_q20, 20, SCORE_MAX));
-  collect(n, limited(h_a.q, scale_q20, 26, GAIN_MAX), limited(h_s.q, scale_q20, 32, GAIN_MAX),
+  collect(n, limited(h_a.q, scale_q20, 26, GAIN_MAX), q_mul_hi(h->turn_q20.q, scale_q20),
           limited(d->residual_q20.q, scale_q20, 20, SCORE_MAX));
 }
 
@@ -149,9 +162,11 @@ static information_t information_of(const sums_t* n) {
   return i;
 }
 
-// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16.
-static gain_t times_information(const information_t* n, int32_t x_a_q20, int32_t x_s_q20) {
-  const gain_t g = {q_mul_add(n->aa, x_a_q20, n->as, x_s_q20, 28), q_mul_add(n->as, x_a_q20, n->ss, x_s_q20, 28)};
+// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^13: the variances are limited to 512 and, with them, the
+// covariances; the information to 8.
+static gain_t times_information(const deviation_gathered_t* n, int32_t x_a_q20, int32_t x_s_q20) {
+  const gain_t g = {q_mul_add_floor(n->aa_q24, x_a_q20, n->as_q24, x_s_q20, 28),
+                    q_mul_add_floor(n->as_q24, x_a_q20, n->ss_q24, x_s_q20, 28)};
   return g;
 }
 
@@ -174,44 +189,57 @@ static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2)
   *variance = VARIANCE_MAX;
 }
 
-static int32_t scored(gain_t k, const information_t* n) { return q_mul_add_sat(k.a, n->a, k.s, n->s, 20); }
-
-static void update(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
+static void renew(deviation_observer_t* s) {
+  deviation_gathered_t* const n = &s->gathered;
   const gain_t ga = times_information(n, s->p_aa, s->p_as);
   const gain_t gs = times_information(n, s->p_as, s->p_ss);
   const gain_t gl = times_information(n, s->p_al, s->p_sl);
   // 1 + I P = [1 + ga.a, gs.a; ga.s, 1 + gs.s], Q16.
-  const int32_t m_aa = q_add_sat(ga.a, 65536L);
-  const int32_t m_ss = q_add_sat(gs.s, 65536L);
+  const int32_t m_aa = ga.a + 65536L;
+  const int32_t m_ss = gs.s + 65536L;
   const int32_t det_q12 = q_max(q_mul_sub_sat(m_aa, m_ss, gs.a, ga.s, 20), 4096);
   const int32_t per_det_q30 = q_over(4096, q_invert(det_q12), 30);
   const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), -q_mul_sat(gs.a, per_det_q30, 22),
                               -q_mul_sat(ga.s, per_det_q30, 22), q_mul_sat(m_aa, per_det_q30, 22)};
   const gain_t ka = gain_row(inverse, s->p_aa, s->p_as);
-  const gain_t ks = gain_row(inverse, s->p_as, s->p_ss);
+  const int32_t p_ss = q_mul_add(s->p_as, inverse[1], s->p_ss, inverse[3], 24);
   const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
-  s->angle_bam += (uint32_t)q_mul_sat(scored(ka, n), BAM_PER_UNIT, 20);
-  s->speed_bpp += q_mul_sat(scored(ks, n), BPP_PER_UNIT, 20);
-  const int32_t load_q8 = -q_mul_sat(scored(kl, n), ACCEL_Q8_PER_UNIT, 20);
-  s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
-  cogging_learn(&s->cogging, &c->cogging, s->speed_bpp, load_q8);
   // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
   s->p_ll = positive(s->p_ll - q_mul_add(kl.a, gl.a, kl.s, gl.s, 16));
   s->p_aa = positive(ka.a);
   s->p_as = ka.s;
-  s->p_ss = positive(ks.s);
+  s->p_ss = positive(p_ss);
   s->p_al = kl.a;
   s->p_sl = kl.s;
   limit(&s->p_aa, &s->p_as, &s->p_al);
   limit(&s->p_ss, &s->p_as, &s->p_sl);
   limit(&s->p_ll, &s->p_al, &s->p_sl);
+  static const deviation_gathered_t none = {0, 0, 0, 0};
+  *n = none;
+}
+
+static int32_t scored(int32_t k_a, int32_t k_s, const information_t* n) {
+  return q_mul_add_sat(k_a, n->a, k_s, n->s, 20);
+}
+
+static void correct(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
+  s->angle_bam += (uint32_t)q_mul_hi(scored(s->p_aa, s->p_as, n), BAM_PER_UNIT_Q7) * 32u;
+  s->speed_bpp += q_mul_hi(scored(s->p_as, s->p_ss, n), BPP_PER_UNIT_Q12);
+  const int32_t load_q8 = -q_mul_sat(scored(s->p_al, s->p_sl, n), ACCEL_Q8_PER_UNIT, 20);
+  s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
+  cogging_learn(&s->cogging, &c->cogging, s->speed_bpp, load_q8);
+}
+
+// The share that takes the larger one back to what the formats hold, or all of it.
+static int32_t share_held_q30(int32_t aa_q24, int32_t ss_q24) {
+  const int32_t largest = q_max(aa_q24, ss_q24);
+  return (largest <= INFORMATION_MAX) ? 1073741824L : q_div(INFORMATION_MAX, largest, 30);
 }
 
 // More information than the formats hold counts as less, all of it alike, or the update would overshoot.
 static void bound(information_t* n) {
-  const int32_t largest = q_max(n->aa, n->ss);
-  if (largest <= INFORMATION_MAX) return;
-  const int32_t share_q30 = q_div(INFORMATION_MAX, largest, 30);
+  const int32_t share_q30 = share_held_q30(n->aa, n->ss);
+  if (share_q30 == 1073741824L) return;
   n->aa = q_mul(n->aa, share_q30, 30);
   n->as = q_mul(n->as, share_q30, 30);
   n->ss = q_mul(n->ss, share_q30, 30);
@@ -219,33 +247,86 @@ static void bound(information_t* n) {
   n->s = q_mul(n->s, share_q30, 30);
 }
 
-static estimator_frame_t frame_of(const deviation_observer_t* s, const estimator_input_t* in, uint16_t k) {
-  if (in->frames != 0) return in->frames[k];
-  const estimator_window_t* const w = &in->windows[k];
-  return deviation_frame(w, deviation_angle_at(s->angle_bam, s->speed_bpp, w->middle_tick));
+static void gather(deviation_gathered_t* g, const information_t* n) {
+  g->aa_q24 += n->aa;
+  g->as_q24 += n->as;
+  g->ss_q24 += n->ss;
+  g->periods++;
+  const int32_t share_q30 = share_held_q30(g->aa_q24, g->ss_q24);
+  if (share_q30 == 1073741824L) return;
+  g->aa_q24 = q_mul(g->aa_q24, share_q30, 30);
+  g->as_q24 = q_mul(g->as_q24, share_q30, 30);
+  g->ss_q24 = q_mul(g->ss_q24, share_q30, 30);
+}
+
+// The trace of P I beyond a half: the gain as it is would correct too much.
+static bool gain_is_old(const deviation_observer_t* s) {
+  const deviation_gathered_t* const g = &s->gathered;
+  return q_mul_hi(s->p_aa, g->aa_q24) + q_mul_hi(s->p_ss, g->ss_q24) > HALF_Q12 || g->periods >= PERIODS_MAX;
+}
+
+static const deviation_left_t none_left = {0, 0, 0, 0};
+
+static void leave(deviation_left_t* left, const estimator_window_t* w, const deviation_t* d) {
+  left->d_q20 = q_mac(left->d_q20, d->residual_q20.d, w->span_ticks);
+  left->q_q20 = q_mac(left->q_q20, d->residual_q20.q, w->span_ticks);
+  left->span_ticks += w->span_ticks;
+}
+
+bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods) {
+  const deviation_left_t left = s->left;
+  s->left = none_left;
+  if (left.span_ticks <= 0) return false;
+  const int32_t per_tick_q30 = 1073741824L / left.span_ticks;
+  residual_q20->d = q_mul_sat(q_sat64(q_shr64(left.d_q20, 14)), per_tick_q30, 16);
+  residual_q20->q = q_mul_sat(q_sat64(q_shr64(left.q_q20, 14)), per_tick_q30, 16);
+  *span_ticks = left.span_ticks / left.periods;
+  *periods = left.periods;
+  return true;
+}
+
+static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
+  sums_t sums = {0, 0, 0, 0, 0};
+  deviation_t d[ESTIMATOR_WINDOWS];
+  estimator_frame_t own[ESTIMATOR_WINDOWS];
+  const estimator_frame_t* f = in->frames;
+  const int32_t w_q30 = machine_speed_rad_q30(s->speed_bpp);
+  if (f == 0) {
+    deviation_frames(in->windows, in->window_count, deviation_middle(s->angle_bam, s->speed_bpp), w_q30, own);
+    f = own;
+  }
+  const deviation_model_t at = deviation_model(in->model, w_q30);
+  const deviation_sensitivity_t h = deviation_sensitivity(in->model, w_q30, f[in->window_count / 2u].current_q20);
+  for (uint16_t k = 0; k < in->window_count; k++) {
+    const estimator_window_t* const w = &in->windows[k];
+    d[k] = deviation_in_frame(&at, w, &f[k]);
+    leave(&s->left, w, &d[k]);
+    const int32_t scale_q20 = q_mul_floor(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
+    if (!c->zero_vectors_only || w->zero_vector) collect_window(&sums, &h, scale_q20, &d[k]);
+  }
+  if (++s->left.periods >= LEFT_PERIODS_MAX) s->left = none_left;
+  if (in->regress) {
+    regression_evaluate(&s->regression, d, in);
+    s->regressed_bam = s->angle_bam;
+  }
+  information_t n = information_of(&sums);
+  bound(&n);
+  return n;
 }
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in) {
-  sums_t sums = {0, 0, 0, 0, 0};
-  deviation_t d[ESTIMATOR_WINDOWS];
+  information_t n = {0, 0, 0, 0, 0};
   predict(s, c, in->torque_accel_q8);
-  const int32_t w_q30 = machine_speed_rad_q30(s->speed_bpp);
-  for (uint16_t k = 0; k < in->window_count; k++) {
-    const estimator_window_t* const w = &in->windows[k];
-    const estimator_frame_t f = frame_of(s, in, k);
-    d[k] = deviation_in_frame(in->model, w, &f, w_q30);
-    if (!c->zero_vectors_only || w->zero_vector) collect_window(&sums, c, in->model, w, &d[k]);
+  if (in->window_count > 0u) n = look(s, c, in);
+  follow_scores(s, &n);
+  gather(&s->gathered, &n);
+  if (in->renew || gain_is_old(s)) {
+    predict_covariance(s);
+    admit_load_change(s, c, scores_lean(s, &n));
+    renew(s);
   }
-  if (in->regress) {
-    regression_evaluate(&s->regression, d, in);
-  } else {
-    regression_mean(&s->regression, d, in);
-  }
-  information_t n = information_of(&sums);
-  bound(&n);
-  admit_load_change(s, c, &n);
-  update(s, c, &n);
+  correct(s, c, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);
   const int32_t load_q8 = q_add_sat(s->load_accel_q8, s->cogging.now_q8);
   const estimator_output_t out = {s->angle_bam, s->speed_bpp, load_q8, q_max(certainty, 0)};

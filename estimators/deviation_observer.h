@@ -6,7 +6,10 @@
 // AVV, and needs no choice between the two.
 //
 // Per period all windows are compressed into a 2 x 2 information matrix and a score, so that one update of the 3 x 3
-// covariance and one division do for any number of windows: P+ = P (1 + I P)^-1, x+ = x + P+ b.
+// covariance and one division do for any number of windows: P+ = P (1 + I P)^-1, x+ = x + P+ b. The states are
+// corrected in every period; the covariance, which changes slowly, need be renewed only every few periods, with the
+// information gathered in between (estimator_input_t: renew). While it is of the size that a period's information
+// makes of it, it is renewed in every period all the same.
 //
 // How much the load may change is not known beforehand: a shaft that turns evenly wants a filter that is slow, a load
 // step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond four of its
@@ -42,6 +45,18 @@ typedef struct {
   bool zero_vectors_only;
 } deviation_observer_config_t;
 
+/// What the observer has left unexplained since somebody last took it (deviation_observer_take_left).
+typedef struct {
+  int64_t d_q20, q_q20;  // sum of the residuals times their spans, A per period and ticks
+  int32_t span_ticks;    // of all windows
+  int32_t periods;
+} deviation_left_t;
+
+typedef struct {
+  int32_t aa_q24, as_q24, ss_q24;
+  int32_t periods;
+} deviation_gathered_t;
+
 typedef struct {
   uint32_t angle_bam;
   int32_t speed_bpp;
@@ -52,7 +67,10 @@ typedef struct {
   int32_t score_power_q24;                     // over 256 periods
   int32_t alert_q30;                           // 1 when the load has just changed, decays
   cogging_t cogging;
-  regression_t regression;  // of the last step, at the angle before it
+  deviation_gathered_t gathered;  // information since the covariance was last renewed
+  deviation_left_t left;
+  regression_t regression;  // of the last step that was to make one
+  uint32_t regressed_bam;   // and the angle that it was made at
 } deviation_observer_t;
 
 /// Makes the configuration; values outside their ranges are taken to the nearest end.
@@ -61,6 +79,10 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
 
 /// Starts with an uncertainty of 10 degrees, 20 rad/s and 3 N m or so.
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);
+
+/// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were
+/// none.
+bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods);
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);

@@ -2,8 +2,8 @@
 //
 // In the rotor frame v_q - R i_q - L_q di_q/dt - w L_d i_d = w lambda. With a speed that follows the saliency, and so
 // is right whichever way round the magnet is, a wrong polarity lets the left-hand side come out with the wrong sign.
-// Both sides are filtered over 32 periods; the answer counts above an EMF of 10 V (130 rpm on motor A), where drops,
-// dead time and resistance cannot turn the sign, and after 5 ms.
+// Both sides are filtered over 32 periods or so; the answer counts above an EMF of 10 V (130 rpm on motor A), where
+// drops, dead time and resistance cannot turn the sign, and after 5 ms.
 
 #ifndef STILLSPIN_ESTIMATORS_EMF_SIGN_H
 #define STILLSPIN_ESTIMATORS_EMF_SIGN_H
@@ -21,8 +21,14 @@ typedef struct {
 
 void emf_sign_reset(emf_sign_t* s);
 
-/// One period: voltage command and measured current in the rotor frame, speed by the saliency.
-emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, dq_t voltage_q16, dq_t current_q20,
-                                int32_t speed_bpp);
+typedef struct {
+  dq_t voltage_q16;   // mean command since the last time, V
+  dq_t current_q20;   // measured, A
+  int32_t speed_bpp;  // by the saliency
+  int32_t periods;    // since the last time, 1..16
+} emf_sign_seen_t;
+
+/// A look in the rotor frame, once in one or several periods.
+emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const emf_sign_seen_t* seen);
 
 #endif

@@ -39,6 +39,9 @@ typedef struct {
   // The windows are regressed on their voltages. The deviation observer alone can leave it (the machine's model then
   // learns nothing); AVV lives on it.
   bool regress;
+  // The deviation observer renews its covariance with what the windows have told since the last time; in between it
+  // corrects with the gain as it is.
+  bool renew;
   // The windows in a frame that runs on evenly from the estimator's last angle, where they are known, or null. From the
   // predicted angle it differs by half the change of speed over a period at most, 1e-4 rad.
   const estimator_frame_t* frames;

@@ -66,24 +66,8 @@ static void resolve(regression_t* r, const projection_t* p) {
   r->curl_q16 = q_sat64(q_shr64(p->by_d.q - p->by_q.d, 18));
 }
 
-// The mean by spans alone (synchronism.h says why).
-static dq_t even_mean(const deviation_t d[], const estimator_input_t* in, int32_t per_span_q30) {
-  sum_t even = {0, 0};
-  for (uint16_t k = 0; k < in->window_count; k++)
-    add(&even, d[k].residual_q20, in->windows[k].span_ticks * per_span_q30);
-  return mean_of(&even);
-}
-
-void regression_mean(regression_t* r, const deviation_t d[], const estimator_input_t* in) {
-  int32_t span = 0;
-  for (uint16_t k = 0; k < in->window_count; k++) span += in->windows[k].span_ticks;
-  r->information = 0;
-  r->span_ticks = span;
-  if (span > 0) r->even_q20 = even_mean(d, in, per_total_q30(span));
-}
-
 void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in) {
-  static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}, {0, 0}, {0, 0}, 0};
+  static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}, {0, 0}};
   int32_t share_q30[ESTIMATOR_WINDOWS];
   int32_t total = 0;
   dq_t voltage_q16;
@@ -98,9 +82,8 @@ void regression_evaluate(regression_t* r, const deviation_t d[], const estimator
   }
   const int32_t per_weight_q30 = per_total_q30(total);
   for (uint16_t k = 0; k < in->window_count; k++) share_q30[k] *= per_weight_q30;
-  regression_mean(r, d, in);
   average(r, d, in, share_q30, &voltage_q16);
   for (uint16_t k = 0; k < in->window_count; k++) project(&p, r, &d[k], voltage_q16, share_q30[k]);
   resolve(r, &p);
-  if (r->spread_q8 >= SPREAD_MIN_Q8) r->information = q_mul_sat(r->spread_q8, total, 8);
+  r->information = (r->spread_q8 >= SPREAD_MIN_Q8) ? q_mul_sat(r->spread_q8, total, 8) : 0;
 }

@@ -20,12 +20,7 @@ typedef struct {
   int32_t information;  // spread times the windows' weight, 0 when there are no two distinct vectors
   dq_t mean_q20;        // weighted mean residual, A per period
   dq_t current_q20;     // weighted mean current, A
-  dq_t even_q20;        // mean residual weighted with the spans, A per period
-  int32_t span_ticks;   // all spans together
 } regression_t;
-
-/// Only even_q20 and span_ticks, the information being none: a fifth of the cost.
-void regression_mean(regression_t* r, const deviation_t d[], const estimator_input_t* in);
 
 /// Regression over the deviations d of the input's windows, all taken at one angle and speed.
 void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in);

@@ -6,8 +6,9 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t amps_per_code_q30;           // mean of the two sensors
+  int32_t amps_per_code_q30;           // mean of the two sensors, up to 1/8 with 4 or more of their product
   int16_t start_samples, end_samples;  // conversions in each sum, 1..4
+  int32_t amps_per_count_q36;          // of their product, set by slopes_design
 } slopes_config_t;
 
 /// What is found of the sensors while the drive lives: offsets by the calibration, mismatch by sensor_match.h.
@@ -21,8 +22,20 @@ typedef struct {
   uint16_t start_a, start_b, end_a, end_b;
 } slopes_sums_t;
 
+/// What is the same for all windows of a period: a count is a code times both numbers of conversions, so that nothing
+/// is divided.
+typedef struct {
+  int32_t gain_a_q36, gain_b_q36;      // A per count
+  int32_t offset_a_q14, offset_b_q14;  // two bursts without current, counts
+  int16_t start_samples, end_samples;
+} slopes_scale_t;
+
+/// Derives the constant; the other members are set by hand.
+void slopes_design(slopes_config_t* c);
+
+slopes_scale_t slopes_scale(const slopes_config_t* c, const slopes_trim_t* trim);
+
 /// Fills slope_q20 and current_q20 of the window; span_ticks must be set and positive.
-void slopes_evaluate(const slopes_config_t* c, const slopes_trim_t* trim, const slopes_sums_t* sums,
-                     estimator_window_t* w);
+void slopes_evaluate(const slopes_scale_t* c, const slopes_sums_t* sums, estimator_window_t* w);
 
 #endif

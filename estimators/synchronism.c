@@ -2,8 +2,8 @@
 
 #include "estimators/deviation.h"
 
-#define MEAN_SHIFT 2
-#define DOUBT_PER_BAD 8L  // a good period takes back an eighth of what a bad one adds
+#define MEAN_SHIFT 2u
+#define DOUBT_PER_BAD 8  // a good period takes back an eighth of what a bad one adds
 #define APART_LIMIT_BAM 1073741824L
 #define ONE_Q30 1073741824L
 #define ONE_Q24 16777216L
@@ -42,7 +42,12 @@ static bool mean_window(const estimator_input_t* in, estimator_window_t* mean) {
   return true;
 }
 
-static void follow(int32_t* mean, int32_t x) { *mean += q_shr_round(q_sub_sat(x, *mean), MEAN_SHIFT); }
+// What stands for several periods counts for about as much as they would have one by one: 3/4 is what four of them
+// take.
+static void follow(int32_t* mean, int32_t x, int32_t periods) {
+  const int32_t quarter = q_shr_round(q_sub_sat(x, *mean), MEAN_SHIFT);
+  *mean += (periods > 2) ? 3 * quarter : quarter;
+}
 
 // A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
 // a current is clamped at zero: hence the square.
@@ -55,8 +60,8 @@ static void watch_emf(synchronism_t* s, const synchronism_config_t* c, const mac
                       const synchronism_seen_t* seen) {
   // 1 - K_qd is yq/yd but for the square of the tilt.
   const int32_t d_q16 = q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24);
-  follow(&s->error_q16.d, d_q16);
-  follow(&s->error_q16.q, q_over(seen->residual_q20.q, m->per_yq, 26));
+  follow(&s->error_q16.d, d_q16, seen->periods);
+  follow(&s->error_q16.q, q_over(seen->residual_q20.q, m->per_yq, 26), seen->periods);
   const int32_t emf_q16 = q_abs_sat(q_mul_sat(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp), 30));
   s->limit_q16 = q_add_sat(floor_q16(c, seen->span_ticks), q_mul(emf_q16, c->share_q15, 15));
 }
@@ -72,15 +77,15 @@ bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const ma
   if (seen->span_ticks <= 0) return false;
   watch_emf(s, c, m, seen);
   const bool bad = exceeds(s) || q_abs_sat(apart_bam) > APART_LIMIT_BAM;
-  s->doubt = bad ? s->doubt + DOUBT_PER_BAD : q_max(s->doubt - 1, 0);
+  s->doubt = bad ? s->doubt + DOUBT_PER_BAD * seen->periods : q_max(s->doubt - seen->periods, 0);
   return s->doubt > c->bad_periods * DOUBT_PER_BAD;
 }
 
-bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in, uint32_t angle_bam,
-                      int32_t speed_bpp, int32_t apart_bam) {
+bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in,
+                      const synchronism_use_t* use) {
   estimator_window_t mean;
   if (!mean_window(in, &mean)) return false;
-  const deviation_t d = deviation_evaluate(in->model, &mean, angle_bam, speed_bpp);
-  const synchronism_seen_t seen = {d.residual_q20, mean.span_ticks, speed_bpp};
-  return synchronism_judge(s, c, in->model, &seen, apart_bam);
+  const deviation_t d = deviation_evaluate(in->model, &mean, use->angle_bam, use->speed_bpp);
+  const synchronism_seen_t seen = {d.residual_q20, mean.span_ticks, use->speed_bpp, use->periods};
+  return synchronism_judge(s, c, in->model, &seen, use->apart_bam);
 }

@@ -26,27 +26,35 @@ typedef struct {
 } synchronism_config_t;
 
 typedef struct {
-  dq_t error_q16;     // EMF error, first-order mean over 4 periods, V
+  dq_t error_q16;     // EMF error, first-order mean over 4 periods or so, V
   int32_t limit_q16;  // what it may be now, V
   int32_t doubt;      // eight a bad period, less one a good one
 } synchronism_t;
 
 void synchronism_reset(synchronism_t* s);
 
-/// One period: the angle and speed in use at its start, and how far two estimators are apart (0 where there is one).
-/// Returns true when synchronism is lost. A period without windows changes nothing.
-bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in, uint32_t angle_bam,
-                      int32_t speed_bpp, int32_t apart_bam);
+typedef struct {
+  uint32_t angle_bam;  // in use, at the end of the windows' period
+  int32_t speed_bpp;
+  int32_t apart_bam;  // how far two estimators are apart, 0 where there is one
+  int32_t periods;    // since the last time, 1..8
+} synchronism_use_t;
 
-/// What an estimator that has evaluated the windows already knows of them (regression.h), in its own frame before it
-/// has corrected itself.
+/// One period's windows; it may be done every few periods. Returns true when synchronism is lost. A period without
+/// windows changes nothing.
+bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in,
+                      const synchronism_use_t* use);
+
+/// What an estimator that has evaluated the windows already knows of them, in its own frame before it has corrected
+/// itself.
 typedef struct {
   dq_t residual_q20;   // mean by spans, A per period
-  int32_t span_ticks;  // of all windows, 0 where there are none
+  int32_t span_ticks;  // of all windows of a period, 0 where there are none
   int32_t speed_bpp;   // in use
+  int32_t periods;     // since the last time, 1..8
 } synchronism_seen_t;
 
-/// The same with that instead of the windows.
+/// The same with that instead of the windows; it may be done every few periods.
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                        const synchronism_seen_t* seen, int32_t apart_bam);
 

@@ -18,15 +18,12 @@ typedef struct {
   int32_t volts_q16;      // what the devices take along the d-axis, V
 } seen_t;
 
-// One window. The frame turns with speed_bpp; emf_bpp is the speed that D takes off.
-static void see(seen_t* sum, const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
-                int32_t speed_bpp, int32_t emf_bpp) {
-  const rotation_t r = frame_rotation(deviation_angle_at(angle_bam, speed_bpp, w->middle_tick));
-  const dq_t slope = frame_park(w->slope_q20, r);
-  const dq_t current = frame_park(w->current_q20, r);
-  const dq_t drop = frame_park(w->voltage_q16, r);
-  const int32_t w_q30 = machine_speed_rad_q30(emf_bpp);
-  const int32_t volts_q16 = q_mul(m->rs_q24, current.q, 28) + q_mul(m->emf_q16, w_q30, 30) - drop.q;
+// One window; emf_q16: w lambda of the speed that D takes off.
+static void see(seen_t* sum, const machine_model_t* m, const estimator_window_t* w, const estimator_frame_t* f,
+                int32_t emf_q16) {
+  const dq_t slope = frame_park(w->slope_q20, f->rotation);
+  const dq_t drop = frame_park(w->voltage_q16, f->rotation);
+  const int32_t volts_q16 = q_mul(m->rs_q24, f->current_q20.q, 28) + emf_q16 - drop.q;
   sum->deviation_q20 += slope.q + q_mul(m->yq_q30, volts_q16, 26);
   sum->volts_q16 -= drop.d;
 }
@@ -35,9 +32,13 @@ static bool mean_deviation(const estimator_input_t* in, uint32_t angle_bam, int3
                            seen_t* mean) {
   seen_t sum = {0, 0};
   int32_t count = 0;
+  estimator_frame_t f[ESTIMATOR_WINDOWS];
+  const int32_t emf_q16 = q_mul(in->model->emf_q16, machine_speed_rad_q30(emf_bpp), 30);
+  deviation_frames(in->windows, in->window_count, deviation_middle(angle_bam, speed_bpp),
+                   machine_speed_rad_q30(speed_bpp), f);
   for (uint16_t k = 0; k < in->window_count; k++) {
     if (!in->windows[k].zero_vector) continue;
-    see(&sum, in->model, &in->windows[k], angle_bam, speed_bpp, emf_bpp);
+    see(&sum, in->model, &in->windows[k], &f[k], emf_q16);
     count++;
   }
   if (count == 0) return false;

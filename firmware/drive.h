@@ -35,7 +35,7 @@
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
 #define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond, its first part; the speed control has the first one
-#define ADAPTATION_TURN 7u         // periods in which every adaptation, and the model, has its turn
+#define ADAPTATION_TURN 7u         // periods in which every adaptation has its turn (position.c)
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.
@@ -89,7 +89,9 @@ typedef struct {
   flux_observer_t flux;
   sensor_match_t sensors;
   tracking_observer_t encoder;
-  uint16_t adaptation;          // whose turn it is
+  uint16_t turn;                // whose turn it is (position.c)
+  bool pausing;                 // nobody's: another task runs
+  bool is_near;                 // what was last regressed is near enough to learn from
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
   int32_t torque_accel_q8;      // acceleration of the torque of the measured current
   int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
@@ -124,6 +126,7 @@ typedef struct {
 
 typedef struct {
   uint16_t missing, overrun, diverged_periods;
+  uint16_t judged_at;         // heartbeat when the angle in use was last judged
   uint32_t stopping_periods;  // in STOP with the reference at zero
   synchronism_t synchronism;
 } drive_supervision_t;
@@ -220,7 +223,7 @@ static inline bool drive_is_blind(const drive_t* d) {
 void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 bool polarity_watch_step(drive_t* d);
 bool polarity_watch_suspects(const drive_t* d);
-bool polarity_watch_is_awake(const drive_t* d);  // looks at the regression of every period
+bool polarity_watch_is_awake(const drive_t* d);
 
 /// Holds the shaft for hold_time from now (start/hold.c).
 void hold_begin(drive_t* d);

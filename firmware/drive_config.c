@@ -146,6 +146,7 @@ static bool load_position(drive_config_t* c) {
   c->sensor_mismatch_q30 = q_mul(p->sensor_mismatch, 167772L, 10);  // percent, Q16
   c->slopes.start_samples = HAL_ADC_START_SAMPLES;
   c->slopes.end_samples = HAL_ADC_END_SAMPLES;
+  slopes_design(&c->slopes);
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
   return load_blend(c) && flux_source_load(c);
 }

@@ -13,39 +13,53 @@ static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 5
 
 typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t* in);
 
-// What the regression tells of machine and sensors is taken over slowly, one thing per period in turn; in between the
-// model moves on to the working point. The turn has seven places because seven has no factor in common with the six
-// periods in which the alternating layout repeats, nor with the ten of a millisecond: each adaptation sees every
-// direction of the voltage. The two periods of a millisecond in which other tasks run have an odd and an even number,
-// so that leaving them out favours none.
-typedef enum { TURN_ADMITTANCE = 0, TURN_SENSORS = 2, TURN_VOLTAGE = 4 } turn_t;
+// What is slow takes turns, so that no period does much of it: the covariance of the observer, the model's move to the
+// working point, and what the regression tells of machine and sensors. The turn has seven places because seven has no
+// factor in common with the six periods in which the alternating layout repeats: each adaptation sees every direction
+// of the voltage. While the shaft turns it stands still in the two periods of a millisecond in which other tasks run.
+typedef enum {
+  TURN_RENEW = 0,  // the covariance; and the synchronism is judged
+  TURN_REGRESS = 1,
+  TURN_MOVE = 2,
+  TURN_RENEW_AGAIN = 3,
+  TURN_LIKENESS = 4,   // admittances and match of the sensors
+  TURN_VOLTAGE = 5,    // resistance and flux
+  TURN_MOVE_AGAIN = 6  // or the polarity's watch
+} turn_t;
 
-static bool adapts_now(const drive_t* d) { return (d->position.adaptation & 1u) == 0u && d->position.adaptation < 6u; }
+static void next_turn(drive_t* d) {
+  drive_position_t* const p = &d->position;
+  p->pausing = drive_is_turning(d) && drive_is_busy(d);
+  if (!p->pausing) p->turn = (uint16_t)((p->turn + 1u) % ADAPTATION_TURN);
+}
 
-static void adapt(drive_t* d, const regression_t* r) {
-  const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
-  switch (d->position.adaptation) {
-    case TURN_ADMITTANCE:
-      admittance_step(&d->model, r, d->config.adapt_share_q30);
-      break;
-    case TURN_SENSORS:
-      if (!d->modulation.state.is_alternating) break;
-      sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
-      d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
-      break;
-    case TURN_VOLTAGE:
-      if (drive_is_turning(d)) voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
-      break;
-    default:
-      break;
+static bool is_turn(const drive_t* d, turn_t turn) { return d->position.turn == turn && !d->position.pausing; }
+
+bool position_judges_now(const drive_t* d) { return is_turn(d, TURN_RENEW) || is_turn(d, TURN_RENEW_AGAIN); }
+
+bool position_has_regressed(const drive_t* d) { return is_turn(d, TURN_REGRESS); }
+
+bool position_watches_now(const drive_t* d) { return is_turn(d, TURN_MOVE_AGAIN); }
+
+// `near`: the windows agree with the angle, so that the regression is linear.
+static void adapt(drive_t* d, const regression_t* r, bool near) {
+  if (is_turn(d, TURN_REGRESS)) d->position.is_near = near;
+  if (!d->position.is_near) return;
+  if (is_turn(d, TURN_LIKENESS)) {
+    admittance_step(&d->model, r, d->config.adapt_share_q30);
+    if (!d->modulation.state.is_alternating) return;
+    sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
+    d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
+  } else if (is_turn(d, TURN_VOLTAGE) && drive_is_turning(d)) {
+    const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
+    voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
   }
 }
 
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return d->position.high;
-  if (drive_is_turning(d) && (drive_is_busy(d) || !adapts_now(d))) return d->position.high;
-  if (q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM) adapt(d, &d->position.avv.regression);
+  adapt(d, &d->position.avv.regression, q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM);
   return d->position.high;
 }
 
@@ -67,7 +81,7 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
 static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
-  if (in->regress && !drive_is_busy(d) && adapts_now(d) && avv_angle_is_near(r, &d->model)) adapt(d, r);
+  adapt(d, r, in->regress && in->window_count > 0u && avv_angle_is_near(r, &d->model));
   d->position.high = out;
   return out;
 }
@@ -122,11 +136,10 @@ static void measure_current(drive_t* d) {
   dq_t sum = {0, 0};
   dq_t ripple_q16 = {0, 0};
   if (s->count == 0u || drive_is_blind(d)) return;
+  const int32_t speed_bpp = d->position.used.speed_bpp;
+  const uint32_t middle_bam = deviation_middle(d->position.used.angle_bam + (uint32_t)speed_bpp, speed_bpp);
+  deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(speed_bpp), s->frames);
   for (uint16_t k = 0; k < s->count; k++) {
-    const int32_t before_q30 = (ESTIMATOR_PERIOD_TICKS - (int32_t)s->windows[k].middle_tick) * 107374;
-    const uint32_t angle =
-        d->position.used.angle_bam + (uint32_t)q_mul(d->position.used.speed_bpp, 1073741824L - before_q30, 30);
-    s->frames[k] = deviation_frame(&s->windows[k], angle);
     const dq_t i = s->frames[k].current_q20;
     const dq_t flux_q16 = frame_park(s->ripple_q16[k], s->frames[k].rotation);
     sum.d += i.d;
@@ -144,13 +157,6 @@ static bool observer_in_use(const drive_t* d) {
   const drive_position_t* const p = &d->position;
   return parameters.position_source == POSITION_OBSERVER && p->observer.angle_bam == p->used.angle_bam &&
          p->observer.speed_bpp == p->used.speed_bpp;
-}
-
-// The working point moves slowly beside a period: while the shaft turns, the model follows where nothing else is done.
-static void move_model(drive_t* d) {
-  d->position.adaptation = (uint16_t)((d->position.adaptation + 1u) % ADAPTATION_TURN);
-  if (drive_is_turning(d) && (drive_is_busy(d) || adapts_now(d))) return;
-  machine_model_move(&d->model, d->control.measured_q20.q);
 }
 
 // The I-F start: the control uses the vector's frame, and the source looks on. Of the torque it is told what its own
@@ -176,13 +182,16 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
 
 void drive_estimate(drive_t* d) {
   measure_current(d);
-  move_model(d);
+  next_turn(d);
+  if (is_turn(d, TURN_MOVE) || (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d)))
+    machine_model_move(&d->model, d->control.measured_q20.q);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
-  in.regress = polarity_watch_is_awake(d) || (!drive_is_busy(d) && adapts_now(d));
+  in.regress = is_turn(d, TURN_REGRESS);
+  in.renew = position_judges_now(d);
   in.windows = d->samples.windows;
   in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.

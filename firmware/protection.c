@@ -3,11 +3,13 @@
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
 #include "firmware/parameters.h"
+#include "firmware/position.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 
 #define MISSING_MAX 5u   // periods without samples
 #define OVERRUN_MAX 10u  // periods repeated because the interrupt was late
+#define JUDGED_PERIODS_MAX 6
 
 static void note(const drive_t* d, drive_fault_t fault) {
   fault_record_t r;
@@ -34,13 +36,12 @@ void drive_raise(drive_t* d, drive_fault_t fault) {
   hal_safety_fault_lamp(true);
 }
 
+// By the latest of the period's windows; within a period the comparator is there.
 static bool over_current(const drive_t* d) {
-  for (uint16_t k = 0; k < d->samples.count; k++) {
-    const abc_t i = frame_inverse_clarke(d->samples.windows[k].current_q20);
-    const int32_t limit = parameters.trip_current;
-    if (q_abs_sat(i.a) > limit || q_abs_sat(i.b) > limit || q_abs_sat(i.c) > limit) return true;
-  }
-  return false;
+  if (d->samples.count == 0u) return false;
+  const abc_t i = frame_inverse_clarke(d->samples.windows[d->samples.count - 1u].current_q20);
+  const int32_t limit = parameters.trip_current;
+  return q_abs_sat(i.a) > limit || q_abs_sat(i.b) > limit || q_abs_sat(i.c) > limit;
 }
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
@@ -64,23 +65,26 @@ static int32_t disagreement(const drive_t* d) {
 }
 
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
-static bool diverged(drive_t* d) {
+static bool diverged(drive_t* d, int32_t periods) {
   const int32_t limit_bam = q_mul(parameters.divergence_limit, 11930465L, 16);
   const int32_t speed_limit = q_mul_sat(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
   const bool wrong = disagreement(d) > limit_bam || q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
-  d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + 1u) : 0u;
+  d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + (uint16_t)periods) : 0u;
   return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
 }
 
+// The observer's residuals since it was last asked.
+static bool observer_lost(drive_t* d) {
+  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, 0};
+  if (!deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods))
+    return false;
+  return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen, 0);
+}
+
 // An angle error that is asked for is none.
-static bool lost_synchronism(drive_t* d) {
+static bool lost_synchronism(drive_t* d, int32_t periods) {
   if (parameters.position_source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
-  if (parameters.position_source == POSITION_OBSERVER) {
-    const regression_t* const r = &d->position.observer.regression;
-    const synchronism_seen_t seen = {r->even_q20, (d->samples.count > 0u) ? r->span_ticks : 0,
-                                     d->position.used.speed_bpp};
-    return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen, 0);
-  }
+  if (parameters.position_source == POSITION_OBSERVER) return observer_lost(d);
   estimator_input_t in;
   in.model = &d->model;
   in.windows = d->samples.windows;
@@ -89,9 +93,25 @@ static bool lost_synchronism(drive_t* d) {
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
   const int32_t apart_bam = (parameters.position_source == POSITION_ENCODER) ? 0 : disagreement(d);
   in.regress = false;
+  in.renew = false;
   in.frames = 0;
-  return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, d->position.used.angle_bam,
-                          d->position.used.speed_bpp, apart_bam);
+  const synchronism_use_t use = {d->position.used.angle_bam, d->position.used.speed_bpp, apart_bam, periods};
+  return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, &use);
+}
+
+// In its turns only, where a period says what the next ones do: the observer's residuals are those of all periods
+// since; alternating pulses give each period windows of its own.
+static bool judges_now(const drive_t* d) {
+  const bool each = parameters.position_source != POSITION_OBSERVER && d->modulation.state.is_alternating;
+  return each || position_judges_now(d);
+}
+
+static drive_fault_t check_position(drive_t* d) {
+  if (!drive_is_turning(d) || !judges_now(d)) return FAULT_NONE;
+  const int32_t periods = q_min((uint16_t)(d->heartbeat - d->supervision.judged_at), JUDGED_PERIODS_MAX);
+  d->supervision.judged_at = d->heartbeat;
+  if (lost_synchronism(d, periods)) return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
+  return diverged(d, periods) ? FAULT_DIVERGENCE : FAULT_NONE;
 }
 
 static drive_fault_t check(drive_t* d) {
@@ -105,11 +125,7 @@ static drive_fault_t check(drive_t* d) {
   if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
   if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
   if (polarity_watch_step(d)) return FAULT_POLARITY;
-  if (drive_is_turning(d) && lost_synchronism(d)) {
-    return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
-  }
-  if (drive_is_turning(d) && diverged(d)) return FAULT_DIVERGENCE;
-  return FAULT_NONE;
+  return check_position(d);
 }
 
 void drive_protect(drive_t* d) {

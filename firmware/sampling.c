@@ -53,20 +53,21 @@ static const ab_t state_vector_q30[8] = {{0, 0},          {2 * THIRD, 0}, {-THIR
 static ab_t window_voltage(const drive_t* d, const svpwm_window_t* w, ab_t current_q20) {
   const ab_t vector = state_vector_q30[w->state & 7u];
   const ab_t drop = dead_time_drop_q16(&d->config.dead_time, current_q20);
-  const ab_t v = {q_mul(d->samples.link_q16, vector.alpha, 30) - drop.alpha,
-                  q_mul(d->samples.link_q16, vector.beta, 30) - drop.beta};
+  const ab_t v = {q_mul_floor(d->samples.link_q16, vector.alpha, 30) - drop.alpha,
+                  q_mul_floor(d->samples.link_q16, vector.beta, 30) - drop.beta};
   return v;
 }
 
-static void evaluate(drive_t* d, const svpwm_window_t* w, const hal_adc_window_t* raw, estimator_window_t* out) {
+static void evaluate(drive_t* d, const slopes_scale_t* scale, const svpwm_window_t* w, const hal_adc_window_t* raw,
+                     estimator_window_t* out) {
   const sampling_config_t* const c = &d->config.modulator.sampling;
   const int16_t begin = (int16_t)(svpwm_burst_start(c, w) + (int16_t)HAL_ADC_START_DELAY_TICKS);
   const int16_t end = (int16_t)(svpwm_burst_end(c, w) + (int16_t)HAL_ADC_END_DELAY_TICKS);
   const slopes_sums_t sums = {raw->start_a, raw->start_b, raw->end_a, raw->end_b};
   out->span_ticks = (int16_t)(end - begin);
-  out->middle_tick = (int16_t)((begin + end) / 2);
+  out->middle_tick = (int16_t)q_shr(begin + end, 1);
   out->zero_vector = svpwm_is_zero_vector(w->state);
-  slopes_evaluate(&d->config.slopes, &d->trim, &sums, out);
+  slopes_evaluate(scale, &sums, out);
   out->voltage_q16 = window_voltage(d, w, out->current_q20);
 }
 
@@ -88,10 +89,11 @@ void drive_read_samples(drive_t* d) {
   if (!complete) return;
   s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+  const slopes_scale_t scale = slopes_scale(&d->config.slopes, &d->trim);
   for (uint16_t k = 0; k < p->window_count; k++) {
     s->link_end_q16[k] = (int32_t)b->windows[k].link * d->config.volts_per_code_q16;
     filter_link(d, s->link_end_q16[k]);
-    evaluate(d, &p->windows[k], &b->windows[k], &s->windows[k]);
+    evaluate(d, &scale, &p->windows[k], &b->windows[k], &s->windows[k]);
     s->ripple_q16[k] = svpwm_ripple_q16(&p->pulses, s->windows[k].middle_tick, s->link_q16);
   }
   s->count = p->window_count;

@@ -49,7 +49,7 @@ static void observe(drive_t* d) {
   hold_t* const h = &d->hold;
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   const estimator_input_t in = {
-      &d->model, d->samples.windows, d->samples.count, q_mul_sat(torque_q16, d->model.accel_q12, 20), true, 0};
+      &d->model, d->samples.windows, d->samples.count, q_mul_sat(torque_q16, d->model.accel_q12, 20), true, false, 0};
   (void)avv_step(&h->avv, &observer_config, &in);
   if (h->avv.regression.information <= 0) return;
   tracking_observer_t* const o = &h->avv.observer;

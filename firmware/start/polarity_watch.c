@@ -4,19 +4,30 @@
 // nothing of magnet and torque: the deviation observer takes a back-EMF of the wrong sign for a speed, and would turn
 // itself the right way round at some hundred rpm in the wrong direction. Once confirmed the watch is over. The check of
 // synchronism may be faster; then the sign seen so far tells which fault it is.
+//
+// The axis is looked at once in a turn of what is slow (position.c), a few periods after the windows were regressed.
 
 #include "firmware/start/polarity_watch.h"
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
+#include "firmware/position.h"
 
-#define BANDWIDTH_STEP_Q30 21474836L  // 200 rad/s * T
+#define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
+#define PERIODS_MAX 16                // since the axis was last looked at
+
+static void forget_voltage(polarity_watch_t* w) {
+  w->voltage_q16.d = 0;
+  w->voltage_q16.q = 0;
+  w->periods = 0;
+}
 
 void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   polarity_watch_t* const w = &d->watch;
   w->open = parameters.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
   emf_sign_reset(&w->sign);
+  forget_voltage(w);
 }
 
 static const regression_t* regression_in_use(const drive_t* d) {
@@ -24,11 +35,16 @@ static const regression_t* regression_in_use(const drive_t* d) {
                                                            : &d->position.avv.regression;
 }
 
-// The axis that this period's windows have shown.
-static uint32_t axis_seen(const drive_t* d) {
+// How far the axis that the windows have shown is ahead of the watch's: AVV's of this period, the observer's when it
+// regressed them last. It is known up to half a turn.
+static int32_t axis_off(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  if (parameters.position_source < POSITION_OBSERVER) return p->avv.observer.angle_bam + (uint32_t)p->avv.error_bam;
-  return p->observer.angle_bam + (uint32_t)avv_angle_error(&p->observer.regression, &d->model);
+  const polarity_watch_t* const w = &d->watch;
+  const bool observed = parameters.position_source >= POSITION_OBSERVER;
+  const uint32_t from = observed ? p->observer.regressed_bam : p->avv.observer.angle_bam;
+  const int32_t error = observed ? avv_angle_error(&p->observer.regression, &d->model) : p->avv.error_bam;
+  const uint32_t own = observed ? w->axis_then_bam : w->axis.angle_bam;
+  return angle_diff_bam((from + (uint32_t)error) * 2u, own * 2u) / 2;
 }
 
 // While the current is large or the windows do not show the axis.
@@ -44,27 +60,53 @@ static dq_t on_axis(dq_t x, rotation_t r) {
   return own;
 }
 
-bool polarity_watch_is_awake(const drive_t* d) { return d->watch.open && d->state == DRIVE_RUN; }
+static void begin_anew(drive_t* d) {
+  polarity_watch_t* const w = &d->watch;
+  tracking_observer_preset(&w->axis, d->position.used.angle_bam, d->position.used.speed_bpp, 0);
+  w->axis_then_bam = w->axis.angle_bam;
+  w->sign.clear = 0;
+  w->sign.against = 0;
+  forget_voltage(w);
+}
+
+// Takes the error that was seen once for every period since the last time.
+static void follow_axis(drive_t* d) {
+  polarity_watch_t* const w = &d->watch;
+  if (d->samples.count == 0u) return;
+  const int32_t most = INT32_MAX / w->periods;
+  tracking_observer_correct(&w->axis, q_clamp(axis_off(d), -most, most) * w->periods, BANDWIDTH_STEP_Q30);
+}
+
+static emf_sign_result_t look(drive_t* d) {
+  polarity_watch_t* const w = &d->watch;
+  const rotation_t r = frame_rotation(d->position.used.angle_bam - w->axis.angle_bam);
+  const dq_t mean_q16 = {w->voltage_q16.d / w->periods, w->voltage_q16.q / w->periods};
+  const emf_sign_seen_t seen = {on_axis(mean_q16, r), on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
+                                w->periods};
+  return emf_sign_step(&w->sign, &d->model, &seen);
+}
 
 bool polarity_watch_step(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
-  if (!w->open || d->state != DRIVE_RUN) return false;
-  if (!polarity_watch_is_awake(d) || is_blind(d)) {
-    tracking_observer_preset(&w->axis, d->position.used.angle_bam, d->position.used.speed_bpp, 0);
-    w->sign.clear = 0;
-    w->sign.against = 0;
+  if (!polarity_watch_is_awake(d)) return false;
+  tracking_observer_predict(&w->axis, 0);
+  w->voltage_q16.d += d->control.command_q16.d;
+  w->voltage_q16.q += d->control.command_q16.q;
+  w->periods++;
+  if (position_has_regressed(d)) w->axis_then_bam = w->axis.angle_bam;
+  if (!position_watches_now(d) && w->periods < PERIODS_MAX) return false;
+  if (is_blind(d)) {
+    begin_anew(d);
     return false;
   }
-  tracking_observer_predict(&w->axis, 0);
-  // The axis is known up to half a turn.
-  const int32_t off = angle_diff_bam(axis_seen(d) * 2u, w->axis.angle_bam * 2u) / 2;
-  if (d->samples.count > 0u) tracking_observer_correct(&w->axis, off, BANDWIDTH_STEP_Q30);
-  const rotation_t r = frame_rotation(d->position.used.angle_bam - w->axis.angle_bam);
-  const emf_sign_result_t sign = emf_sign_step(&w->sign, &d->model, on_axis(d->control.command_q16, r),
-                                               on_axis(d->control.measured_q20, r), w->axis.speed_bpp);
+  follow_axis(d);
+  const emf_sign_result_t sign = look(d);
+  forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;
   return sign == EMF_SIGN_REVERSED;
 }
+
+bool polarity_watch_is_awake(const drive_t* d) { return d->watch.open && d->state == DRIVE_RUN; }
 
 bool polarity_watch_suspects(const drive_t* d) {
   const emf_sign_t* const sign = &d->watch.sign;

@@ -9,7 +9,10 @@
 typedef struct {
   bool open;  // not answered since the start
   tracking_observer_t axis;
+  uint32_t axis_then_bam;  // where it was when the windows were last regressed
   emf_sign_t sign;
+  dq_t voltage_q16;  // sum of the commands since the axis was last looked at, V
+  int32_t periods;   // that long ago
 } polarity_watch_t;
 
 #endif

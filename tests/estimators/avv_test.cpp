@@ -162,12 +162,14 @@ Window through_the_converter(Random& random, Window w, double noise) {
   const Vector half = w.slope * (w.span / 20000.0);
   const Vector begin = w.current - half, end = w.current + half;
   const auto phase_b = [](Vector i) { return 0.5 * (std::sqrt(3.0) * i.y - i.x); };
-  const slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 3};
+  slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 3, 0};
   const slopes_trim_t trim = {2048 * 256, 2048 * 256, 0};
   const slopes_sums_t sums = {burst(random, begin.x, 4, noise), burst(random, phase_b(begin), 4, noise),
                               burst(random, end.x, 3, noise), burst(random, phase_b(end), 3, noise)};
   estimator_window_t out = w.raw();
-  slopes_evaluate(&c, &trim, &sums, &out);
+  slopes_design(&c);
+  const slopes_scale_t scale = slopes_scale(&c, &trim);
+  slopes_evaluate(&scale, &sums, &out);
   w.slope = real(out.slope_q20, 20);
   w.current = real(out.current_q20, 20);
   return w;

@@ -76,7 +76,6 @@ TEST(Deviation, VoltageAndCurrentInTheFrameAtTheWindowsMiddle) {
     ASSERT_NEAR(real(d.voltage_q16.q, 16), v.y, 1e-4);
     ASSERT_NEAR(real(d.current_q20.d, 20), i.x, 1e-5);
     ASSERT_NEAR(real(d.current_q20.q, 20), i.y, 1e-5);
-    ASSERT_NEAR(real(d.w_q30, 30), p.w() * kPeriod, 4e-9);
   }
 }
 
@@ -90,6 +89,7 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
     const Point p = random_point(random);
     const estimator_window_t w = window_at(m, p.theta, p.w(), p.current, p.voltage, p.middle, 2000).raw();
     const deviation_t d = deviation_evaluate(&model, &w, bam(p.theta), p.speed_bpp);
+    const deviation_sensitivity_t h = deviation_sensitivity(&model, machine_speed_rad_q30(p.speed_bpp), d.current_q20);
     const double at = angle_at(p.theta, p.w(), p.middle);
     const auto slope = [&](double theta, double speed) {
       return (current_derivative(m, theta, speed, p.current, p.voltage) * m.period).turned(-at);
@@ -97,8 +97,8 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
     const Vector by_angle = (slope(at + kStep, p.w()) - slope(at - kStep, p.w())) * (0.5 / kStep);
     const double dw = 10.0;  // the slope is linear in the speed: any step will do
     const Vector by_speed = (slope(at, p.w() + dw) - slope(at, p.w() - dw)) * (0.5 / dw / m.period);
-    const Vector h_a = real(deviation_angle_sensitivity(&model, &d), 20);
-    const Vector h_s = real(d.turn_q20, 20);
+    const Vector h_a = real(deviation_by_angle(&h, d.voltage_q16), 20);
+    const Vector h_s = real(h.turn_q20, 20);
     // 1.7e-6 of T as above in both; K is right to a few 1e-7 and is multiplied by 15 A
     ASSERT_NEAR(h_a.x, by_angle.x, 3e-5 + 3e-6 * by_angle.length()) << n;
     ASSERT_NEAR(h_a.y, by_angle.y, 3e-5 + 3e-6 * by_angle.length()) << n;
@@ -107,13 +107,25 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
   }
 }
 
-TEST(Deviation, AngleInTheMiddleOfAWindow) {
-  const std::uint32_t angle = bam(1.0);
-  EXPECT_EQ(deviation_angle_at(angle, 0, 3000), angle);
-  // 3000 rpm, the whole period back: the time is right to 1.7e-6 of the 0.126 rad
-  const std::int32_t speed = bpp(1256.0);
-  EXPECT_NEAR(rad(angle - deviation_angle_at(angle, speed, 0)), 0.1256, 1e-6);
-  EXPECT_NEAR(rad(angle - deviation_angle_at(angle, -speed, 7500)), -0.0314, 1e-6);
+// Frames of several windows, up to a speed of 0.6 rad per period: 9500 rpm on motor A.
+TEST(Deviation, FramesTurnEvenlyThroughThePeriod) {
+  Random random(4);
+  for (int n = 0; n < 20000; ++n) {
+    const double w = random.between(-0.6, 0.6) / kPeriod;
+    const double end = random.between(-kPi, kPi);
+    estimator_window_t windows[ESTIMATOR_WINDOWS] = {};
+    for (estimator_window_t& x : windows) x.middle_tick = static_cast<std::int16_t>(random.below(10001));
+    estimator_frame_t frames[ESTIMATOR_WINDOWS];
+    const std::int32_t speed = bpp(w);
+    deviation_frames(windows, ESTIMATOR_WINDOWS, deviation_middle(bam(end), speed), machine_speed_rad_q30(speed),
+                     frames);
+    for (int k = 0; k < ESTIMATOR_WINDOWS; ++k) {
+      const double at = angle_at(end, w, windows[k].middle_tick);
+      // x^5/120 and x^6/720 of 0.3 rad
+      ASSERT_NEAR(real(frames[k].rotation.sin_q30, 30), std::sin(at), 2.3e-5) << n;
+      ASSERT_NEAR(real(frames[k].rotation.cos_q30, 30), std::cos(at), 2.3e-5) << n;
+    }
+  }
 }
 
 }  // namespace

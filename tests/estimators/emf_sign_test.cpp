@@ -12,17 +12,23 @@ namespace {
 
 using namespace stillspin::test;
 
-// Periods until there is an answer; -1 when there is none within `periods`.
-int answer_after(emf_sign_result_t answer, double rpm, bool wrong, double iq, int periods = 400) {
+emf_sign_result_t step(emf_sign_t& s, const machine_model_t& model, Vector v, Vector i, std::int32_t speed,
+                       std::int32_t periods) {
+  const emf_sign_seen_t seen = {raw_dq(v, 16), raw_dq(i, 20), speed, periods};
+  return emf_sign_step(&s, &model, &seen);
+}
+
+// Periods until there is an answer; -1 when there is none within 400. One look in `every` periods.
+int answer_after(emf_sign_result_t answer, double rpm, bool wrong, double iq, int every = 1) {
   const Motor m;
   const machine_model_t model = model_of(m);
   const double w = m.electrical(rpm);
   const double flux = wrong ? -m.flux : m.flux;
   emf_sign_t s;
   emf_sign_reset(&s);
-  for (int n = 0; n < periods; ++n) {
+  for (int n = 0; n < 400; n += every) {
     const Vector v = {-w * m.lq * iq, m.rs * iq + w * flux};
-    if (emf_sign_step(&s, &model, raw_dq(v, 16), raw_dq({0.0, iq}, 20), bpp(w)) == answer) return n;
+    if (step(s, model, v, {0.0, iq}, bpp(w), every) == answer) return n;
   }
   return -1;
 }
@@ -43,6 +49,9 @@ TEST(EmfSign, TheAnswerComesWithinFifteenMilliseconds) {
         EXPECT_GE(n, 50) << rpm << ", " << iq;  // never in a moment
         EXPECT_LE(n, 150) << rpm << ", " << iq;
         EXPECT_EQ(answer_after(wrong ? EMF_SIGN_RIGHT : EMF_SIGN_REVERSED, rpm, wrong, iq), -1);
+        const int seldom = answer_after(wrong ? EMF_SIGN_REVERSED : EMF_SIGN_RIGHT, rpm, wrong, iq, 8);
+        EXPECT_GE(seldom, 48) << rpm << ", " << iq;  // the seventh look
+        EXPECT_LE(seldom, 150) << rpm << ", " << iq;
       }
     }
   }
@@ -68,7 +77,7 @@ TEST(EmfSign, ChangesOfTheCurrentDoNotCount) {
     const double slope = phase < 10 ? 2.8 : phase >= 50 && phase < 60 ? -2.8 : 0.0;  // A per period
     iq += slope;
     const Vector v = {-w * m.lq * iq, m.rs * iq + m.lq * slope / kPeriod + w * m.flux};
-    EXPECT_NE(emf_sign_step(&s, &model, raw_dq(v, 16), raw_dq({0.0, iq}, 20), bpp(w)), EMF_SIGN_REVERSED) << n;
+    EXPECT_NE(step(s, model, v, {0.0, iq}, bpp(w), 1), EMF_SIGN_REVERSED) << n;
   }
 }
 

@@ -31,7 +31,8 @@ estimator_window_t sampled(const Motor& motor, const Window& w, double theta, do
     for (int k = 0; k < 4; ++k) s += code(amps, random);
     return static_cast<std::uint16_t>(s);
   };
-  const slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 4};
+  slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 4, 0};
+  slopes_design(&c);
   const slopes_trim_t trim = {2048 * 256, 2048 * 256, 0};
   slopes_sums_t sums;
   sums.start_a = sum(current - half, 0);
@@ -43,7 +44,8 @@ estimator_window_t sampled(const Motor& motor, const Window& w, double theta, do
   e.middle_tick = static_cast<std::int16_t>(w.middle);
   e.span_ticks = static_cast<std::int16_t>(w.span);
   e.zero_vector = w.state == 0 || w.state == 7;
-  slopes_evaluate(&c, &trim, &sums, &e);
+  const slopes_scale_t scale = slopes_scale(&c, &trim);
+  slopes_evaluate(&scale, &sums, &e);
   return e;
 }
 
@@ -60,7 +62,8 @@ double sigma(unsigned state, int span, double amps, bool of_speed, std::uint64_t
     const estimator_window_t w = sampled(motor, {state, 5000, span}, theta, 0.0, current, random);
     const deviation_t d = deviation_evaluate(&m, &w, bam(theta), 0);
     const Vector e = real(d.residual_q20, 20);
-    const Vector h = real(of_speed ? d.turn_q20 : deviation_angle_sensitivity(&m, &d), 20);
+    const deviation_sensitivity_t s = deviation_sensitivity(&m, 0, d.current_q20);
+    const Vector h = real(of_speed ? s.turn_q20 : deviation_by_angle(&s, d.voltage_q16), 20);
     const double error = (e.x * h.x + e.y * h.y) / (h.x * h.x + h.y * h.y);
     squares += error * error;
   }

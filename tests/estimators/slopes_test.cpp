@@ -22,10 +22,12 @@ struct Result {
 };
 
 Result evaluate(const slopes_trim_t& t, const slopes_sums_t& sums, int span) {
-  const slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 3};
+  slopes_config_t c = {raw(kAmpsPerCode, 30), 4, 3, 0};
+  slopes_design(&c);
+  const slopes_scale_t scale = slopes_scale(&c, &t);
   estimator_window_t w = {};
   w.span_ticks = static_cast<std::int16_t>(span);
-  slopes_evaluate(&c, &t, &sums, &w);
+  slopes_evaluate(&scale, &sums, &w);
   return {real(w.slope_q20, 20), real(w.current_q20, 20)};
 }
 

@@ -33,7 +33,8 @@ struct Scene {
   bool step(double w, double off, double believed, Vector i_dq = {0.0, 3.0}, double apart = 0.0) {
     theta += w * kPeriod;
     const Input in(model, alternating(kMotor, period++, theta, w, i_dq.turned(theta)));
-    return synchronism_step(&s, &kConfig, in.get(), bam(theta + off), bpp(believed), bam(apart));
+    const synchronism_use_t use = {bam(theta + off), bpp(believed), static_cast<std::int32_t>(bam(apart)), 1};
+    return synchronism_step(&s, &kConfig, in.get(), &use);
   }
 
   /// Periods until the loss, `most` when there is none.
@@ -127,7 +128,8 @@ TEST(Synchronism, WithoutWindowsNothingChanges) {
   for (int n = 0; n < 30; ++n) (void)scene.step(electrical(600.0), kPi, electrical(600.0));
   const synchronism_t before = scene.s;
   const Input none(scene.model, {});
-  EXPECT_FALSE(synchronism_step(&scene.s, &kConfig, none.get(), 0, 0, 0));
+  const synchronism_use_t use = {0, 0, 0, 1};
+  EXPECT_FALSE(synchronism_step(&scene.s, &kConfig, none.get(), &use));
   EXPECT_EQ(scene.s.doubt, before.doubt);
   EXPECT_EQ(scene.s.error_q16.q, before.error_q16.q);
 }
@@ -148,8 +150,9 @@ TEST(Synchronism, BearsAnyWindow) {
       w.span = 300 + random.below(3000);
     }
     const Input in(model, windows);
-    (void)synchronism_step(&s, &kConfig, in.get(), bam(random.between(-kPi, kPi)), bpp(random.between(-1900.0, 1900.0)),
-                           bam(random.between(-kPi, kPi)));
+    const synchronism_use_t use = {bam(random.between(-kPi, kPi)), bpp(random.between(-1900.0, 1900.0)),
+                                   static_cast<std::int32_t>(bam(random.between(-kPi, kPi))), 1 + random.below(6)};
+    (void)synchronism_step(&s, &kConfig, in.get(), &use);
     ASSERT_GE(s.doubt, 0);
     ASSERT_GE(s.limit_q16, 0);
     // slopes of 40 A a period stand for 3.1 kV
