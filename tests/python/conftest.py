@@ -19,6 +19,7 @@ from stillspin.tune.server import Server
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
+PATIENT = 2.5  # s
 
 
 @pytest.fixture
@@ -45,9 +46,10 @@ def drive(fake):
 
 
 @pytest.fixture
-def server(drive):
-    """The page's server for that drive."""
-    with Server(drive) as server:
+def server(drive, fake):
+    """The page's server for that drive; both are more patient than they are by default, for machines that stall."""
+    fake.values[200] = 5000  # link_timeout
+    with Server(drive, patience=PATIENT) as server:
         yield server
 
 

@@ -43,6 +43,7 @@ WORDS = {
     3: ["used", "too few samples"],
     4: ["idle", "turning", "staircase"],
     5: ["empty", "loaded", "damaged", "migrated", "saving", "saved", "failed"],
+    10: ["idle", "filling", "armed", "triggered", "done"],
 }
 CONFLICT_WORDS = "link_regulation must be above link_minimum"
 OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT = range(8)
@@ -77,6 +78,7 @@ class FakeDrive:
         self.chatter = b""  # said before the next answer
         self.typed = b""
         self.setup = None
+        self.scope = 4  # its state: done
         self.stream = None
         self.outcome, self.progress = 0, 0
         self._counter = 0
@@ -314,7 +316,7 @@ class FakeDrive:
         return b""
 
     def _on_12(self, _):
-        return struct.pack("<BHHI", 4, DEPTH, self.setup[1], self._now_ms())
+        return struct.pack("<BHHI", self.scope, DEPTH, self.setup[1], self._now_ms())
 
     def _on_13(self, body):
         channel, offset, count = struct.unpack("<BHB", body)

@@ -3,19 +3,21 @@
 import asyncio
 import http.client
 import json
-import time
+import threading
 from urllib.parse import urlsplit
 
 import aiohttp
 import pytest
 
+from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until
 from stillspin.tune.actions import ACTIONS
-from stillspin.tune.dead_man import DeadMan
+from stillspin.tune.dead_man import PATIENCE, DeadMan
 from stillspin.tune.guard import HEADERS
 from stillspin.tune.server import Server
 
 READY, RUN = 2, 4
+ARMED, DONE = 2, 4
 
 
 def get(server, path, headers=None, method="GET"):
@@ -178,19 +180,34 @@ def test_what_the_server_does_not_know_is_said_and_harms_nothing(server):
     assert set(ACTIONS) >= {"start", "stop", "coast", "set", "capture", "faults", "commission"}
 
 
-def test_the_motor_runs_while_the_page_says_so_and_stops_when_it_is_silent(server, fake):
+@pytest.fixture
+def clock(server):
+    """The dead man's clock, which only the test moves: [s]."""
+    now = [0.0]
+    server.bench.dead_man = DeadMan(PATIENCE, lambda: now[0])
+    return now
+
+
+async def hold(page, server, clock, times):
+    """Say so many times that it is held, half a second of the dead man's clock apart; wait until it is understood."""
+    for _ in range(times):
+        before = server.bench.dead_man.heard
+        clock[0] += 0.5
+        await page.say(t="hold")
+        await asyncio.to_thread(wait_until, lambda before=before: server.bench.dead_man.heard != before, 10)
+
+
+def test_the_motor_runs_while_the_page_says_so_and_stops_when_it_is_silent(server, fake, clock):
     async def conversation(page):
         await page.ask("start", speed=300)
         assert fake.guarded
-        for _ in range(10):
-            await page.say(t="hold")
-            assert fake.state == RUN
-            time.sleep(0.1)
-        silent = time.monotonic()
+        await hold(page, server, clock, 10)
+        assert server.bench.dead_man.heard == clock[0] > 4 * PATIENCE
+        assert not wait_until(lambda: fake.state != RUN, 0.3)  # three rounds of the watch
+        clock[0] += PATIENCE + 0.01
         note = await page.hear("note")
         assert note["text"] == "stopped: nothing was heard from the page"
         assert fake.state != RUN
-        assert time.monotonic() - silent < 1.5
 
     talk(server, conversation)
 
@@ -199,8 +216,8 @@ def test_the_motor_stops_when_the_page_lets_go_or_is_closed(server, fake):
     async def lets_go(page):
         await page.ask("start", speed=300)
         await page.say(t="release")
-        assert wait_until(lambda: fake.state != RUN, 1)
-        assert wait_until(lambda: fake.state == READY, 2)
+        assert wait_until(lambda: fake.state != RUN, 10)
+        assert wait_until(lambda: fake.state == READY, 10)
 
     async def is_closed(page):
         await page.ask("start", speed=300)
@@ -208,26 +225,22 @@ def test_the_motor_stops_when_the_page_lets_go_or_is_closed(server, fake):
 
     talk(server, lets_go)
     talk(server, is_closed)
-    assert wait_until(lambda: fake.state != RUN, 0.5)
+    assert wait_until(lambda: fake.state != RUN, 10)
 
 
-def test_a_page_that_only_looks_does_not_keep_the_motor_running(server, fake):
+def test_a_page_that_only_looks_does_not_keep_the_motor_running(server, fake, clock):
     async def conversation(page):
         await page.ask("start", speed=300)
-
-        async def other(second):
-            for _ in range(10):
-                await second.say(t="hold")
-                time.sleep(0.1)
-
         own = f"http://127.0.0.1:{server.guard.port}"
         async with (
             aiohttp.ClientSession(headers=cookie(server)) as session,
             session.ws_connect(f"{own}/live", origin=own) as socket,
         ):
             second = Page(socket)
-            await other(second)
-            assert fake.state != RUN
+            for _ in range(3):
+                clock[0] += 0.3
+                await second.say(t="hold")
+            assert await asyncio.to_thread(wait_until, lambda: fake.state != RUN, 10)
             assert "error" not in await second.ask("stop")
 
     talk(server, conversation)
@@ -237,13 +250,13 @@ def test_the_motor_stops_with_the_server(drive, fake):
     with Server(drive) as server:
         server.bench.start("somebody", 300)
         assert fake.state == RUN
-    assert wait_until(lambda: fake.state != RUN, 1)
+    assert wait_until(lambda: fake.state != RUN, 10)
 
 
 def test_the_drive_stops_by_itself_when_the_server_is_gone_without_a_word(drive, fake):
     server = Server(drive)
     server.bench.start("somebody", 300)
-    assert wait_until(lambda: fake.state != RUN, 2)  # nobody asks the drive anything: its own guard acts
+    assert wait_until(lambda: fake.state != RUN, 10)  # nobody asks the drive anything: its own guard acts
 
 
 def test_a_start_that_is_refused_holds_nothing(server, fake):
@@ -265,7 +278,53 @@ def test_letting_go_while_the_start_is_under_way_stops(server, fake):
 
     bench.drive.start = slow
     bench.start("somebody", 300)
-    assert wait_until(lambda: fake.state != RUN, 1)
+    assert wait_until(lambda: fake.state != RUN, 10)
+
+
+def test_stop_gets_through_while_every_thread_waits_for_a_capture(server, fake):
+    fake.scope = ARMED  # a trigger that never comes
+    setup = {"signals": ["speed"], "trigger": "speed", "level": 1, "edge": "rising", "decimation": 1, "pretrigger": 0.5}
+
+    async def conversation(page):
+        await page.ask("start", speed=300)
+        for number in range(100, 140):
+            await page.say(t="ask", id=number, what="capture", given=setup)
+        assert "error" not in await page.ask("stop")
+        assert fake.state != RUN
+
+    talk(server, conversation)
+    server.bench.begin_capture()  # the last one ends, too
+
+
+def test_the_next_capture_ends_the_one_before(server, fake):
+    fake.scope = ARMED
+    setup = {"signals": ["speed"], "trigger": "speed", "level": 1, "edge": "rising", "decimation": 1, "pretrigger": 0.5}
+
+    async def conversation(page):
+        await page.say(t="ask", id=77, what="capture", given=setup)
+        await page.hear("scope")
+        await page.say(t="ask", id=78, what="capture", given=setup)
+        reply = await page.hear("reply")
+        assert reply == {"t": "reply", "id": 77, "error": "another capture has been begun"}
+        fake.scope = DONE
+        assert len((await page.hear("reply"))["result"]["time"]) == 1024
+
+    talk(server, conversation)
+
+
+def test_what_is_urgent_is_asked_before_all_that_waits(drive, fake):
+    """Also before the repetition of a question that gets no answer."""
+    fake.swallow += [Request.STATUS] * 2
+    slow = [threading.Thread(target=drive.raw_status) for _ in range(6)]
+    for thread in slow:
+        thread.start()
+    assert wait_until(lambda: len(fake.swallow) == 1, 10)  # the first has been swallowed: it is waited for
+    fake.asked.clear()
+    drive.stop()
+    assert Request.COMMAND in fake.asked[:2]
+    for thread in slow:
+        thread.join(10)
+    assert fake.asked.count(Request.STATUS) == 6
 
 
 def test_the_dead_mans_switch():

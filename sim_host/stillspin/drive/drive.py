@@ -191,7 +191,8 @@ class Drive:
     def command(self, code: Command, argument: int = 0) -> None:
         """Any command; see the protocol."""
         repeat = code in protocol.REPEATABLE_COMMANDS
-        self.link.request(Request.COMMAND, struct.pack("<Bi", code, argument), repeat=repeat)
+        urgent = code in {Command.STOP, Command.COAST}
+        self.link.request(Request.COMMAND, struct.pack("<Bi", code, argument), repeat=repeat, urgent=urgent)
 
     @contextmanager
     def running(self, speed: float, *, timeout: float = 10.0) -> Iterator[None]:

@@ -40,6 +40,32 @@ class Counts:
     unexpected: int = 0
 
 
+class Turns:
+    """Who asks next: what is urgent goes before whatever else waits."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._taken = False
+        self._urgent = 0
+
+    @contextmanager
+    def turn(self, urgent: bool) -> Iterator[None]:
+        """Wait for the turn, and have it while the context lasts."""
+        with self._changed:
+            self._urgent += urgent
+            try:
+                self._changed.wait_for(lambda: not self._taken and (urgent or not self._urgent))
+                self._taken = True
+            finally:
+                self._urgent -= urgent
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._taken = False
+                self._changed.notify_all()
+
+
 class Requester:
     """Asks one question at a time, from any thread; hands events and text to whoever listens.
 
@@ -52,7 +78,7 @@ class Requester:
         self.timeout = timeout
         self.tries = tries
         self._tag = random.randrange(256)  # another client's answers on the same bus are unlikely to have mine
-        self._asking = threading.Lock()
+        self._turns = Turns()
         self._answers: queue.SimpleQueue[Record | LinkError] = queue.SimpleQueue()
         self._wanted: tuple[int, int] | None = None
         self._events: list[Callable[[Record], None]] = []
@@ -62,7 +88,9 @@ class Requester:
         self._thread = threading.Thread(target=self._receive, name="stillspin link", daemon=True)
         self._thread.start()
 
-    def request(self, kind: Request, body: bytes = b"", *, repeat: bool, timeout: float | None = None) -> bytes:
+    def request(
+        self, kind: Request, body: bytes = b"", *, repeat: bool, timeout: float | None = None, urgent: bool = False
+    ) -> bytes:
         """The body of the drive's answer.
 
         Args:
@@ -70,20 +98,21 @@ class Requester:
             body: of the request.
             repeat: ask again when no answer comes.
             timeout: seconds to wait for each answer.
+            urgent: before all that waits, also before the repetition of what was not answered.
 
         Raises:
             RefusedError: the drive says no.
             NoAnswerError: it says nothing.
             LinkError: the way to it is lost.
         """
-        with self._asking:
-            self._tag = (self._tag + 1) % 256
-            record = Record(kind, self._tag, body)
-            for attempt in range(self.tries if repeat else 1):
+        record: Record | None = None
+        for attempt in range(self.tries if repeat else 1):
+            with self._turns.turn(urgent):
+                record = record or self._numbered(kind, body)
                 self.counts.repeated += attempt > 0
                 answer = self._ask(record, timeout or self.timeout)
-                if answer is not None:
-                    return _accepted(answer)
+            if answer is not None:
+                return _accepted(answer)
         again = "" if repeat else "; whether it did what was asked is not known"
         raise NoAnswerError(f"no answer from the drive on {self.transport.name}{again}")
 
@@ -115,6 +144,10 @@ class Requester:
         if threading.current_thread() is not self._thread:
             self._thread.join(_JOIN)
         self.transport.close()
+
+    def _numbered(self, kind: Request, body: bytes) -> Record:
+        self._tag = (self._tag + 1) % 256
+        return Record(kind, self._tag, body)
 
     def _ask(self, record: Record, timeout: float) -> Record | None:
         while not self._answers.empty():

@@ -117,12 +117,15 @@ def _scope_stop(bench: Workbench, _: str, __: Message) -> Any:
 
 
 def _capture(bench: Workbench, _: str, given: Message) -> Any:
-    """Arm, wait until it is done or somebody stops it, read."""
+    """Arm, wait until it is done or somebody stops it, read; the next capture ends this one."""
     setup = _setup(given)
+    number = bench.begin_capture()
     bench.drive.scope_arm(setup)
     end = time.monotonic() + _LONGEST
     told = -1
     while (state := bench.drive.scope_state().state) not in {scope.DONE, scope.IDLE}:
+        if not bench.captures(number):
+            raise DriveError("another capture has been begun")
         if time.monotonic() > end:
             bench.drive.scope_stop()
             raise DriveError(f"no trigger within {_LONGEST:g} s")
@@ -184,3 +187,6 @@ ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {
     "capture": _capture,
     "scope_stop": _scope_stop,
 }
+
+SAFE = frozenset({"stop", "coast"})
+"""What must not wait behind anything else."""

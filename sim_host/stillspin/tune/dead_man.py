@@ -31,6 +31,11 @@ class DeadMan:
             if who == self._holder:
                 self._heard = self._clock()
 
+    @property
+    def heard(self) -> float:
+        """When the holder was heard last, by the clock."""
+        return self._heard
+
     def release(self, who: str | None = None) -> bool:
         """Nobody holds it any more; true when somebody (or `who`) did."""
         with self._lock:

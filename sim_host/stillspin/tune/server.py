@@ -9,6 +9,7 @@ import socket
 import threading
 import uuid
 from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
 
@@ -17,7 +18,7 @@ from aiohttp import WSMsgType, web
 from stillspin.drive import Drive
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
-from stillspin.tune.actions import ACTIONS, describe
+from stillspin.tune.actions import ACTIONS, SAFE, describe
 from stillspin.tune.dead_man import PATIENCE
 from stillspin.tune.guard import Guard
 from stillspin.tune.workbench import Message, Workbench
@@ -46,6 +47,8 @@ class Server:
         self._pages: dict[str, asyncio.Queue[str]] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._loop = asyncio.new_event_loop()
+        # What stops the motor has threads of its own: others may wait for the drive for long.
+        self._safe = ThreadPoolExecutor(4, "stillspin stop")
         self._ready = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="stillspin tune", daemon=True)
 
@@ -77,6 +80,7 @@ class Server:
         finally:
             self._loop.run_until_complete(runner.cleanup())
             self._loop.run_until_complete(_cancel_all())
+            self._safe.shutdown(wait=False)
             self._loop.close()
 
     def _application(self) -> web.Application:
@@ -132,7 +136,7 @@ class Server:
 
     async def _let_go(self, who: str, why: str) -> None:
         with contextlib.suppress(DriveError):  # the watch tries again
-            await asyncio.to_thread(self.bench.release, who, why)
+            await self._loop.run_in_executor(self._safe, self.bench.release, who, why)
 
     async def _answer(self, who: str, queue: asyncio.Queue[str], message: Message) -> None:
         what, number = message.get("what"), message.get("id")
@@ -143,7 +147,8 @@ class Server:
             reply["error"] = "the page asks for something that this server does not know"
         else:
             try:
-                reply["result"] = await asyncio.to_thread(action, self.bench, who, given)
+                pool = self._safe if what in SAFE else None
+                reply["result"] = await self._loop.run_in_executor(pool, action, self.bench, who, given)
             except (DriveError, InputError) as error:
                 reply["error"] = str(error)
         await queue.put(_text(reply))

@@ -35,6 +35,7 @@ class Workbench:
         self._plotted = list(dict.fromkeys(self._known(_DEFAULT)))
         self._replot = threading.Event()
         self._last: Message = {}
+        self._capture = 0
         self._threads = [
             threading.Thread(target=self._watch, name="stillspin watch", daemon=True),
             threading.Thread(target=self._pump, name="stillspin stream", daemon=True),
@@ -106,6 +107,15 @@ class Workbench:
             raise InputError(f"{len(names)} signals; 1 … 8 can be plotted at once")
         self._plotted = list(dict.fromkeys(names))
         self._replot.set()
+
+    def begin_capture(self) -> int:
+        """The number of a new capture; from now on no other is under way."""
+        self._capture += 1
+        return self._capture
+
+    def captures(self, number: int) -> bool:
+        """Whether it is this capture that is under way."""
+        return number == self._capture and not self._end.is_set()
 
     @property
     def plotted(self) -> list[str]:
