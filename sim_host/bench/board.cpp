@@ -57,6 +57,9 @@ void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
   if (module >= 3) return;
   upper_[module] = a;
   lower_[module] = b;
+  const std::uint64_t edge =
+      static_cast<std::uint64_t>(t) << 4 | unsigned(module) << 2 | unsigned(a) << 1 | unsigned(b);
+  gate_edges_ = (gate_edges_ ^ edge) * 0x100000001B3u;
   probe_.edge(t, module, a, b);
   drive_leg(t, module);
 }
@@ -112,6 +115,11 @@ void Board::on_i2c_pins(Tick t, bool sda, bool scl) {
 void Board::on_output_pin(Tick t, int pin, bool /*level*/) {
   if (pin != kPinEnable) return;
   last_toggle_ = t;
+  if (aligned_) {
+    const Tick phase = t - (next_period_ - kPeriod);
+    enable_earliest_ = std::min(enable_earliest_, phase);
+    enable_latest_ = std::max(enable_latest_, phase);
+  }
   watch_enable(t);
 }
 

@@ -64,6 +64,12 @@ class Board : public chip::World {
   bool gates_enabled() const { return enabled_; }
   std::uint64_t trips() const { return trips_; }
 
+  /// What an oscilloscope would see since power-on: a hash over time and levels of every edge of a gate (FNV-1a), and
+  /// the earliest and latest tick of a period at which the control interrupt has toggled the enable line.
+  std::uint64_t gate_edges() const { return gate_edges_; }
+  Tick enable_earliest() const { return enable_earliest_; }
+  Tick enable_latest() const { return enable_latest_; }
+
   /// Share of the computing time that went into the plant, from every 64th period; 0 before the first.
   double plant_share() const { return period_ns_ > 0 ? double(plant_ns_) / double(period_ns_) : 0.0; }
 
@@ -114,6 +120,9 @@ class Board : public chip::World {
   Tick last_toggle_ = -kEnableTimeout;
   Tick tripped_until_ = -1;
   std::uint64_t trips_ = 0;
+  std::uint64_t gate_edges_ = 0xCBF29CE484222325u;
+  Tick enable_earliest_ = kPeriod;
+  Tick enable_latest_ = 0;
   std::uint64_t periods_ = 0;
   std::int64_t period_begin_ns_ = 0;
   std::int64_t period_ns_ = 0;

@@ -150,6 +150,10 @@ nb::dict statistics(const PythonBoard& self) {
   values["interrupts"] = s.interrupts;
   values["resets"] = s.resets;
   values["trips"] = self.board().trips();
+  const Board& pins = self.board().pins();
+  values["gate_edges"] = pins.gate_edges();
+  values["enable_earliest"] = pins.enable_earliest();
+  values["enable_latest"] = pins.enable_latest();
   values["lost_writes"] = s.protected_writes_lost + s.gated_accesses;
   values["unmodelled_accesses"] = s.unmodelled_accesses;
   values["idle_ticks"] = s.idle_ticks;

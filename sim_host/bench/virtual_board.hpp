@@ -72,6 +72,7 @@ class VirtualBoard final : private PeriodListener {
   static std::vector<Quantity> signals();
   chip::Statistics statistics() const { return chip_.statistics(); }
   std::uint64_t trips() const { return board_.trips(); }
+  const Board& pins() const { return board_; }
   std::uint16_t inspect(std::uint32_t address) { return chip_.inspect(address); }
 
  private:
