@@ -5,14 +5,14 @@ void tracking_observer_predict(tracking_observer_t* s, int32_t torque_accel_q8) 
   const int32_t change_q8 = q_add_sat(s->speed_rest_q8, q_sub_sat(torque_accel_q8, s->load_accel_q8));
   const int32_t change = q_shr(change_q8, 8);
   s->speed_rest_q8 = change_q8 - change * 256;
-  s->speed_bpp += change;
-  s->angle_bam += (uint32_t)(before + change / 2);
+  s->speed_bpp = q_add_sat(before, change);
+  s->angle_bam += (uint32_t)before + (uint32_t)(change / 2);
 }
 
 void tracking_observer_correct(tracking_observer_t* s, int32_t error_bam, int32_t bandwidth_step_q30) {
   const int32_t x2_q30 = q_mul(bandwidth_step_q30, bandwidth_step_q30, 30);
   const int32_t x3_q36 = q_mul(x2_q30, bandwidth_step_q30, 24);
   s->angle_bam += (uint32_t)q_mul(error_bam, 3 * bandwidth_step_q30, 30);
-  s->speed_bpp += q_mul(error_bam, 3 * x2_q30, 30);
+  s->speed_bpp = q_add_sat(s->speed_bpp, q_mul(error_bam, 3 * x2_q30, 30));
   s->load_accel_q8 = q_sub_sat(s->load_accel_q8, q_mul(error_bam, x3_q36, 28));
 }

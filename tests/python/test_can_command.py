@@ -53,9 +53,17 @@ def test_a_description_that_cannot_be_read_is_said(tmp_path):
 
 
 def test_the_command_shows_the_bus(call, other):
-    timer = threading.Timer(0.3, other.send, (message(0x182, bytes(8)),))
-    timer.start()
+    done = threading.Event()
+
+    def talk() -> None:
+        while not done.wait(0.05):
+            other.send(message(0x182, bytes(8)))
+
+    talker = threading.Thread(target=talk)
+    talker.start()
     result = call("can", "can:virtual:desk?node=2", "--duration", "1")
+    done.set()
+    talker.join()
     assert result.exit_code == 0, result.stderr
     assert "182  node 2  STATUS  " in result.stdout
     assert "must be a CAN bus" in call("can", "/dev/ttyUSB0").stderr

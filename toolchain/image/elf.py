@@ -83,7 +83,7 @@ def read_object(path: Path) -> ObjectFile:
             name, value, length, info, _, section = struct.unpack_from("<IIIBBH", data, at)
             kind = info & 15
             symbols.append(
-                Symbol(_text(strings, name), value & ~(kind == _FUNCTION), length, section, info >> 4 > 0, kind == 2)
+                Symbol(_text(strings, name), value & ~int(kind == _FUNCTION), length, section, info >> 4 > 0, kind == 2)
             )
     for header in (h for h in headers if h[1] == _REL):
         for at in range(header[4], header[4] + header[5], 8):
