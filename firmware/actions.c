@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/drive.h"
+#include "firmware/hil/hil.h"
 #include "firmware/parameters.h"
 #include "firmware/store/store.h"
 #include "firmware/text.h"
@@ -126,6 +127,10 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
 
 // Why the store did not begin.
 static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
+  if (hil_is_active()) {
+    put_text(why, "not with the host in the loop: these are the parameters of a simulation");
+    return ANSWER_STATE;
+  }
   if (needs_rest && drive_is_energised()) {
     put_text(why, "not while the power stage is on: stop the drive first");
     return ANSWER_RUNNING;
@@ -135,8 +140,14 @@ static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
   return ANSWER_BUSY;
 }
 
-answer_status_t action_save(octet_writer_t* why) { return store_save() ? ANSWER_OK : refuse_store(false, why); }
+answer_status_t action_save(octet_writer_t* why) {
+  return !hil_is_active() && store_save() ? ANSWER_OK : refuse_store(false, why);
+}
 
-answer_status_t action_load(octet_writer_t* why) { return store_load() ? ANSWER_OK : refuse_store(true, why); }
+answer_status_t action_load(octet_writer_t* why) {
+  return !hil_is_active() && store_load() ? ANSWER_OK : refuse_store(true, why);
+}
 
-answer_status_t action_defaults(octet_writer_t* why) { return store_defaults() ? ANSWER_OK : refuse_store(true, why); }
+answer_status_t action_defaults(octet_writer_t* why) {
+  return !hil_is_active() && store_defaults() ? ANSWER_OK : refuse_store(true, why);
+}

@@ -70,6 +70,7 @@ void firmware_main(void) {
     store_service();
     if (!hil_is_active()) background_step(&drive);
     end_loading();
+    hil_service();
     link_service();
     console_service();
     can_node_service();

@@ -7,8 +7,8 @@
 // simulation, and be compared word by word with another execution of the same C files. The gates cannot be switched on
 // while a tape plays.
 //
-// Interrupts that came while the control step ran are put back at the same call of the HAL. Only the control step's own
-// calls are counted for that; what comes behind it is played behind it.
+// Interrupts that came while the control step ran are put back into the same call of the HAL, so that they stand
+// between the same two pieces of the drive's own code. What comes behind the control step is played behind it.
 
 #ifndef STILLSPIN_HAL_HAL_TAPE_H
 #define STILLSPIN_HAL_HAL_TAPE_H
@@ -29,7 +29,7 @@ extern "C" {
 typedef enum { TAPE_OFF = 0, TAPE_RECORDS = 1, TAPE_PLAYS = 2 } tape_mode_t;
 
 typedef struct {
-  uint16_t call;  // hooked calls of the control step before it
+  uint16_t call;  // hooked calls of the period's control step that had begun
   uint16_t results[TAPE_RESULTS];
 } tape_window_t;
 
@@ -44,6 +44,7 @@ typedef struct {
 typedef struct {
   tape_mode_t mode;
   bool stepping, stepped;   // the control step runs; has run
+  bool playing;             // a window is being played
   uint16_t call;            // its hooked calls so far
   uint16_t input, window;   // played so far
   bool torn;                // the tape was too short or too long for what the drive did
@@ -59,8 +60,14 @@ void hal_tape_start(tape_mode_t mode, void (*interrupt)(void));
 /// A new, empty period; when it plays the caller fills it in.
 void hal_tape_next_period(void);
 
-/// Around the control step.
-static inline void hal_tape_step_begin(void) { hal_tape.stepping = true; }
+/// Plays the windows that came by now: those before the step, in a call of it, behind it.
+void tape_play_windows(void);
+
+/// Around the control step. What came before it is played before it, and its calls do not count.
+static inline void hal_tape_step_begin(void) {
+  if (hal_tape.mode == TAPE_PLAYS) tape_play_windows();
+  hal_tape.stepping = true;
+}
 static inline void hal_tape_step_end(void) {
   hal_tape.stepping = false;
   hal_tape.stepped = true;
@@ -74,7 +81,8 @@ bool hal_tape_finish_period(void);
 static inline bool tape_is_off(void) { return hal_tape.mode == TAPE_OFF; }
 static inline bool tape_plays(void) { return hal_tape.mode == TAPE_PLAYS; }
 
-/// First line of a hooked call: lets the interrupts come that came here.
+/// Begins a hooked call, behind what it tells and before anything that takes time: lets the interrupts come that came
+/// in it.
 void tape_pass_call(void);
 static inline void tape_call(void) {
   if (!tape_is_off()) tape_pass_call();

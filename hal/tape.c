@@ -14,6 +14,7 @@ void hal_tape_start(tape_mode_t mode, void (*interrupt)(void)) {
 void hal_tape_next_period(void) {
   hal_tape.call = 0u;
   hal_tape.stepped = false;
+  hal_tape.playing = false;
   hal_tape.input = 0u;
   hal_tape.window = 0u;
   hal_tape.torn = false;
@@ -22,9 +23,12 @@ void hal_tape_next_period(void) {
   hal_tape.period.window_count = 0u;
 }
 
-// Plays the windows that came before the present call of the control step; a window makes calls, too.
-static void play_windows(void) {
+// Plays the windows that came by the end of the present call of the control step. A window makes calls, too, which
+// count and play nothing: one that came behind it, while the same call went on, has the number that is reached then.
+void tape_play_windows(void) {
   hal_tape_t* const t = &hal_tape;
+  if (t->mode != TAPE_PLAYS || t->playing) return;
+  t->playing = true;
   while (t->window < t->period.window_count && (t->stepped || t->period.windows[t->window].call <= t->call)) {
     const uint16_t at = t->window;
     t->interrupt();
@@ -33,22 +37,21 @@ static void play_windows(void) {
       t->window++;
     }
   }
+  t->playing = false;
 }
 
 bool hal_tape_finish_period(void) {
   hal_tape_t* const t = &hal_tape;
-  if (t->mode == TAPE_PLAYS) {
-    play_windows();
-    if (t->input != t->period.input_count) t->torn = true;
-  }
+  tape_play_windows();
+  if (t->mode == TAPE_PLAYS && t->input != t->period.input_count) t->torn = true;
   return !t->torn;
 }
 
 void tape_pass_call(void) {
   hal_tape_t* const t = &hal_tape;
   if (!t->stepping) return;
-  if (t->mode == TAPE_PLAYS) play_windows();
   t->call++;
+  tape_play_windows();
 }
 
 uint16_t tape_take(void) {

@@ -3,14 +3,16 @@
 #include <stddef.h>
 
 #include "firmware/drive.h"
+#include "firmware/hil/delta.h"
 #include "firmware/link/crc.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_sci.h"
 #include "hal/hal_tape.h"
+#include "hal/hal_time.h"
 
-#define ANSWER_MAX (2u + 1u + 1u + 2u * TAPE_OUTPUTS + 4u)
+#define ANSWER_MAX 200u  // 50 words of up to three octets and a mask for eight of them; sequence and check sum
 
 typedef struct {
   bool active, leaving;
@@ -18,6 +20,9 @@ typedef struct {
   uint16_t expected;
   uint16_t answer[ANSWER_MAX];  // of the last step, to be given again
   uint16_t count;
+  uint32_t heard;  // cycles
+  uint16_t step_before[HIL_STEP_WORDS];
+  uint16_t answer_before[HIL_ANSWER_WORDS];
 } hil_t;
 
 static hil_t hil;
@@ -62,6 +67,7 @@ hil_result_t hil_enter(void) {
   drive_reset();
   hil_reset();
   hil.active = true;
+  hil.heard = hal_time_cycles();
   hal_tape_start(TAPE_PLAYS, drive_window_interrupt);
   hal_irq_enable();
   return HIL_OK;
@@ -73,21 +79,32 @@ hil_result_t hil_leave(void) {
   return HIL_OK;
 }
 
-static bool read_windows(octet_reader_t* r, tape_period_t* p) {
-  const uint16_t words = take_u8(r);
-  p->window_count = take_u8(r);
-  if (words > TAPE_RESULTS || p->window_count > TAPE_WINDOWS) return false;
-  for (uint16_t k = 0; k < p->window_count; k++) {
-    p->windows[k].call = take_u16(r);
-    for (uint16_t n = 0; n < words; n++) p->windows[k].results[n] = take_u16(r);
-  }
-  return true;
+void hil_service(void) {
+  if (hil.active && hal_time_cycles() - hil.heard > HIL_REST_S * HAL_TIME_CYCLES_PER_S) hil.leaving = true;
 }
 
-static bool read_inputs(octet_reader_t* r, tape_period_t* p) {
-  p->input_count = take_u8(r);
-  if (p->input_count > TAPE_INPUTS) return false;
-  for (uint16_t k = 0; k < p->input_count; k++) p->inputs[k] = take_u16(r);
+static void fill(tape_period_t* p, const uint16_t* words) {
+  const uint16_t results = words[1];
+  const uint16_t* from = &words[HIL_STEP_SHAPE];
+  p->window_count = words[0];
+  p->input_count = words[2];
+  for (uint16_t k = 0; k < p->input_count; k++) p->inputs[k] = *from++;
+  for (uint16_t k = 0; k < p->window_count; k++) {
+    p->windows[k].call = *from++;
+    for (uint16_t n = 0; n < results; n++) p->windows[k].results[n] = *from++;
+  }
+}
+
+// Only a step that is whole becomes the one before the next.
+static bool read_step(octet_reader_t* r, tape_period_t* p) {
+  static uint16_t words[HIL_STEP_WORDS];  // much for a stack
+  delta_take(r, words, hil.step_before, HIL_STEP_SHAPE);
+  if (words[0] > TAPE_WINDOWS || words[1] > TAPE_RESULTS || words[2] > TAPE_INPUTS) return false;
+  const uint16_t count = (uint16_t)(words[2] + words[0] * (1u + words[1]));
+  delta_take(r, &words[HIL_STEP_SHAPE], &hil.step_before[HIL_STEP_SHAPE], count);
+  if (!octets_fit(r)) return false;
+  for (uint16_t k = 0; k < HIL_STEP_SHAPE + count; k++) hil.step_before[k] = words[k];
+  fill(p, words);
   return true;
 }
 
@@ -98,25 +115,31 @@ static void play(void) {
   background_step(&drive);
 }
 
+void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* p, uint16_t* before) {
+  const uint16_t shape[HIL_ANSWER_SHAPE] = {torn ? 1u : 0u, p->output_count};
+  put_u16(w, sequence);
+  delta_put(w, shape, before, HIL_ANSWER_SHAPE);
+  delta_put(w, p->outputs, &before[HIL_ANSWER_SHAPE], p->output_count);
+  put_u32(w, hil_signals_crc());
+  for (uint16_t k = 0; k < HIL_ANSWER_SHAPE; k++) before[k] = shape[k];
+  for (uint16_t k = 0; k < p->output_count; k++) before[HIL_ANSWER_SHAPE + k] = p->outputs[k];
+}
+
 static void write_answer(bool torn) {
-  const tape_period_t* const p = &hal_tape.period;
   octet_writer_t w = octet_writer(hil.answer, ANSWER_MAX);
-  put_u16(&w, hil.expected);
-  put_u8(&w, torn ? 1u : 0u);
-  put_u8(&w, p->output_count);
-  for (uint16_t k = 0; k < p->output_count; k++) put_u16(&w, p->outputs[k]);
-  put_u32(&w, hil_signals_crc());
+  hil_put_answer(&w, hil.expected, torn, &hal_tape.period, hil.answer_before);
   hil.count = w.count;
 }
 
 hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer) {
   if (!hil.active) return HIL_NOT_ACTIVE;
   const uint16_t sequence = take_u16(step);
+  hil.heard = hal_time_cycles();
   const bool again = hil.count > 0u && sequence == (uint16_t)(hil.expected - 1u);
   if (!again) {
     if (sequence != hil.expected) return HIL_SEQUENCE;
     hal_tape_next_period();
-    if (!read_windows(step, &hal_tape.period) || !read_inputs(step, &hal_tape.period) || !octets_fit(step)) {
+    if (!read_step(step, &hal_tape.period)) {
       hal_tape_next_period();
       return HIL_FORMAT;
     }

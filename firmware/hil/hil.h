@@ -8,12 +8,15 @@
 // Entered only with the power stage off, left only by a reset: while it lasts the gates cannot be switched on. The
 // board's own period interrupt goes on, for the serial port and the watchdog alone.
 //
-//   step:   sequence u16, words of a result u8 (3 slices, 6 windows), windows u8, windows x (call u16, results u16
-//   ...),
-//           inputs u8, inputs x u16
-//   answer: sequence u16, torn u8, outputs u8, outputs x u16, CRC-32 of the signals u32
+//   step:   sequence u16, shape (windows, words of a result: 3 slices, 6 windows; inputs), then in one list the inputs
+//           and of each window call and results
+//   answer: sequence u16, shape (torn, outputs), outputs, CRC-32 of the signals u32
 //
-// A step that is repeated (its answer was lost) is answered again and not carried out again.
+// Shapes and lists are words against those of the step or answer before (firmware/hil/delta.h), which begin as zeros
+// when the loop is entered.
+//
+// A step that is repeated (its answer was lost) is answered again and not carried out again. When none comes for
+// HIL_REST_S the board resets itself: the computer is gone, and a drive in the loop answers to nobody else.
 
 #ifndef STILLSPIN_FIRMWARE_HIL_HIL_H
 #define STILLSPIN_FIRMWARE_HIL_HIL_H
@@ -22,10 +25,18 @@
 #include <stdint.h>
 
 #include "firmware/link/octets.h"
+#include "hal/hal_tape.h"
 
 #if defined(__cplusplus)
 extern "C" {
 #endif
+
+#define HIL_REST_S 10u
+
+#define HIL_STEP_SHAPE 3u
+#define HIL_STEP_WORDS (HIL_STEP_SHAPE + TAPE_INPUTS + TAPE_WINDOWS * (1u + TAPE_RESULTS))
+#define HIL_ANSWER_SHAPE 2u
+#define HIL_ANSWER_WORDS (HIL_ANSWER_SHAPE + TAPE_OUTPUTS)
 
 typedef enum { HIL_OK = 0, HIL_ENERGISED, HIL_BUSY, HIL_NOT_ACTIVE, HIL_SEQUENCE, HIL_FORMAT } hil_result_t;
 
@@ -40,6 +51,13 @@ hil_result_t hil_leave(void);
 
 /// One period.
 hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer);
+
+/// Writes the answer to a step of which `period` has the outputs; before[HIL_ANSWER_WORDS] is of the answer before and
+/// of this one afterwards. For the computer, which must expect the same.
+void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* period, uint16_t* before);
+
+/// Background level, while active: notices that no step comes any more.
+void hil_service(void);
 
 /// Number of the step that is expected next.
 uint16_t hil_expected(void);

@@ -36,6 +36,7 @@ static struct {
   uint32_t group_mailboxes[HAL_CAN_GROUPS_MAX];
   uint16_t group_count;
   uint32_t transmit_mailboxes;
+  uint32_t protected_mailboxes;          // that are not overwritten
   uint32_t waiting[HAL_CAN_PRIORITIES];  // mailboxes handed over and not known to be empty
   uint32_t last_progress;                // cycles
   bool bus_off;
@@ -154,7 +155,8 @@ static void configure(void) {
   for (uint16_t n = 0u; n < HAL_CAN_MAILBOXES; n++) target_write32(REG_CANMSGCTRL(n), 0uL);
   for (uint16_t g = 0u; g < can.group_count; g++) configure_group(g);
   target_write32(REG_CANMD, ~can.transmit_mailboxes);
-  target_write32(REG_CANOPC, protected_mailboxes());
+  can.protected_mailboxes = protected_mailboxes();
+  target_write32(REG_CANOPC, can.protected_mailboxes);
   target_write32(REG_CANTA, ALL_MAILBOXES);
   target_write32(REG_CANAA, ALL_MAILBOXES);
   target_write32(REG_CANRMP, ALL_MAILBOXES);
@@ -247,24 +249,37 @@ static uint32_t pack(const uint16_t* octets) {
   return word;
 }
 
-// The open mailbox may be overwritten while it is read: the flag, cleared before, is then set again.
+// What a mailbox holds; false for a remote request.
+static bool read_content(uint16_t n, hal_can_frame_t* frame) {
+  const uint32_t id = target_read32(REG_CANMSGID(n));
+  const uint32_t control = target_read32(REG_CANMSGCTRL(n));
+  const uint16_t length = (uint16_t)(control & CANMSGCTRL_DLC_MASK);
+  unpack(target_read32(REG_CANMDL(n)), &frame->data[0]);
+  unpack(target_read32(REG_CANMDH(n)), &frame->data[4]);
+  frame->extended = (id & CANMSGID_IDE_MASK) != 0uL;
+  frame->id = frame->extended ? id & CANMSGID_EXTENDED_MASK : (id & CANMSGID_STANDARD_MASK) >> CANMSGID_STANDARD_LSB;
+  frame->length = length > 8u ? 8u : length;
+  return (control & CANMSGCTRL_RTR_MASK) == 0uL;
+}
+
+// A protected mailbox keeps its frame until its flag is cleared, and takes the next one from then on: the flag is
+// cleared behind the reading. The open one may be overwritten while it is read: its flag, cleared before, is then set
+// again.
 static bool read_mailbox(uint16_t n, hal_can_frame_t* frame) {
-  uint32_t control = 0uL;
+  bool is_data = false;
+  if ((can.protected_mailboxes & bit_of(n)) != 0uL) {
+    is_data = read_content(n, frame);
+    target_write32(REG_CANRMP, bit_of(n));
+    return is_data;
+  }
   for (uint16_t reads = 0u; reads < REREADS; reads++) {
     if ((target_read32(REG_CANRML) & bit_of(n)) != 0uL) count(&can.lost);
     target_write32(REG_CANRMP, bit_of(n));
-    const uint32_t id = target_read32(REG_CANMSGID(n));
-    control = target_read32(REG_CANMSGCTRL(n));
-    unpack(target_read32(REG_CANMDL(n)), &frame->data[0]);
-    unpack(target_read32(REG_CANMDH(n)), &frame->data[4]);
-    frame->extended = (id & CANMSGID_IDE_MASK) != 0uL;
-    frame->id = frame->extended ? id & CANMSGID_EXTENDED_MASK : (id & CANMSGID_STANDARD_MASK) >> CANMSGID_STANDARD_LSB;
+    is_data = read_content(n, frame);
     if ((target_read32(REG_CANRMP) & bit_of(n)) == 0uL) break;
     count(&can.lost);
   }
-  const uint16_t length = (uint16_t)(control & CANMSGCTRL_DLC_MASK);
-  frame->length = length > 8u ? 8u : length;
-  return (control & CANMSGCTRL_RTR_MASK) == 0uL;
+  return is_data;
 }
 
 bool hal_can_receive(uint16_t group, hal_can_frame_t* frame) {

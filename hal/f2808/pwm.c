@@ -208,11 +208,11 @@ static void tell_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
 }
 
 TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
-  tape_call();
   if (tape_is_off()) {
     return write_frame(frame, deadline_tick);
   }
   tell_frame(frame, deadline_tick);
+  tape_call();
   return tape_plays() ? tape_take() != 0u : tape_note(write_frame(frame, deadline_tick) ? 1u : 0u) != 0u;
 }
 
@@ -230,15 +230,15 @@ static bool gates_on(void) {
 }
 
 bool hal_pwm_gates_on(void) {
-  tape_call();
   tape_tell(TAPE_GATES_ON, NULL, 0u);
+  tape_call();
   return tape_plays() ? tape_take() != 0u : tape_note(gates_on() ? 1u : 0u) != 0u;
 }
 
 // Also while a tape plays: switching off is never wrong.
 TARGET_RAM_CODE void hal_pwm_gates_off(void) {
-  tape_call();
   tape_tell(TAPE_GATES_OFF, NULL, 0u);
+  tape_call();
   target_eallow();
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
     target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_TZFRC, EPWM_TZFRC_OST_MASK);

@@ -23,8 +23,8 @@ void hal_safety_init(void) {
 }
 
 void hal_safety_toggle_enable(void) {
-  tape_call();
   tape_tell(TAPE_ENABLE, NULL, 0u);
+  tape_call();
   if (!tape_plays()) {
     gpio_toggle(BOARD_PIN_GATE_ENABLE);
   }
@@ -32,7 +32,7 @@ void hal_safety_toggle_enable(void) {
 
 void hal_safety_fault_lamp(bool lit) {
   const uint16_t word = lit ? 1u : 0u;
-  tape_call();
   tape_tell(TAPE_LAMP, &word, 1u);
+  tape_call();
   gpio_write(BOARD_PIN_FAULT_LAMP, lit);
 }

@@ -72,8 +72,8 @@ static bool begin(uint16_t slice_ticks) {
 }
 
 bool hal_slices_begin(uint16_t slice_ticks) {
-  tape_call();
   tape_tell(TAPE_SLICES, &slice_ticks, 1u);
+  tape_call();
   return tape_plays() ? tape_take() != 0u : tape_note(begin(slice_ticks) ? 1u : 0u) != 0u;
 }
 
@@ -91,8 +91,8 @@ static void end(void) {
 
 void hal_slices_end(void) {
   const uint16_t none = 0u;
-  tape_call();
   tape_tell(TAPE_SLICES, &none, 1u);
+  tape_call();
   if (!tape_plays()) {
     end();
   }

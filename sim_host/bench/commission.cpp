@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "firmware/drive_api.h"
+#include "firmware/link/requests.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"
@@ -21,7 +22,7 @@ constexpr Tick kEarliestStart = 5'000'000;
 // Tells the drive its parameters, gives the command and waits for the outcome.
 class Commissioner : public PeriodListener {
  public:
-  explicit Commissioner(const CommissionRequest& request) {
+  explicit Commissioner(const CommissionRequest& request) : tap_(request.tape) {
     for (const auto& [name, value] : request.parameters) {
       unsigned id = 0;
       const std::int32_t raw = parameter_raw(name, value, id);
@@ -30,12 +31,14 @@ class Commissioner : public PeriodListener {
   }
 
   void on_period(Tick t) override {
+    taken_ = tap_.turn() && taken_;
     const drive_signals_t s = drive_signals();
     fault_ = fault_ == FAULT_NONE ? s.fault : fault_;
     if (s.state == DRIVE_READY && !configured_) {
-      for (const auto& [id, raw] : parameters_) refused_ = refused_ || parameter_set(id, raw) != SET_OK;
+      for (const auto& [id, raw] : parameters_) set(id, raw);
       configured_ = true;
     } else if (configured_ && !started_ && t >= kEarliestStart) {
+      tap_.note_command(COMMAND_COMMISSION, 0);
       drive_command_commission();
       started_ = true;
       start_ = t;
@@ -49,10 +52,19 @@ class Commissioner : public PeriodListener {
 
   bool ended() const { return ended_; }
   bool refused() const { return refused_; }
+  /// Whether the one who takes the tape wants more of it.
+  bool taken() const { return taken_; }
   Tick start() const { return start_; }
   std::int32_t fault() const { return fault_; }
 
  private:
+  void set(std::uint16_t id, std::int32_t raw) {
+    tap_.note_parameter(id, raw);
+    refused_ = parameter_set(id, raw) != SET_OK || refused_;
+  }
+
+  TapeTap tap_;
+  bool taken_ = true;
   std::vector<std::pair<std::uint16_t, std::int32_t>> parameters_;
   bool configured_ = false, started_ = false, ended_ = false, refused_ = false;
   Tick start_ = 0;
@@ -89,6 +101,7 @@ std::string play(const CommissionRequest& request, chip::Chip& chip, const Commi
   while (!drive.ended()) {
     if (chip.now() >= end) return "the commissioning took longer than " + std::to_string(request.limit) + " s";
     chip.run_until(std::min(chip.now() + kChunk, end));
+    if (!drive.taken()) return "stopped by the one who takes the tape";
     if (chip.statistics().resets > 0) return "the watchdog reset the chip";
     const double share = drive_commissioning_progress() / 1000.0;
     const std::string phase = words_of(WORDS_PHASE, drive_commissioning_phase());

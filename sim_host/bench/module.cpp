@@ -65,18 +65,6 @@ std::function<bool(double)> progress_of(const nb::object& callback) {
   };
 }
 
-nb::bytes bytes_of(const Octets& octets) { return nb::bytes(octets.data(), octets.size()); }
-
-TapeSink tape_sink_of(const nb::object& sink) {
-  if (sink.is_none()) return {};
-  return [sink](const TapedPeriod& period) {
-    nb::gil_scoped_acquire gil;
-    nb::list requests;
-    for (const Octets& request : period.requests) requests.append(bytes_of(request));
-    return nb::cast<bool>(sink(requests, bytes_of(period.step), bytes_of(period.answer), bytes_of(period.signals)));
-  };
-}
-
 PythonResult run_in_python(const nb::dict& plant, const std::map<std::string, double>& parameters,
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
@@ -143,7 +131,8 @@ nb::list identified_rows(const CommissionResult& result) {
 }
 
 PythonCommissioning commission_in_python(const nb::dict& plant, const std::map<std::string, double>& parameters,
-                                         double limit, std::uint64_t seed, const nb::object& progress) {
+                                         double limit, std::uint64_t seed, const nb::object& progress,
+                                         const nb::object& tape) {
   CommissionRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -153,6 +142,7 @@ PythonCommissioning commission_in_python(const nb::dict& plant, const std::map<s
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     return progress.is_none() || nb::cast<bool>(progress(share, phase));
   };
+  request.tape = tape_sink_of(tape);
   CommissionResult result;
   {
     nb::gil_scoped_release release;
@@ -243,7 +233,8 @@ NB_MODULE(_core, m) {
       .def_ro("reason", &PythonCommissioning::reason)
       .def_ro("stats", &PythonCommissioning::stats);
   m.def("commission", &commission_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("limit"),
-        nb::arg("seed"), nb::arg("progress").none(), "The firmware's commissioning on the virtual drive; see core.py.");
+        nb::arg("seed"), nb::arg("progress").none(), nb::arg("tape") = nb::none(),
+        "The firmware's commissioning on the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");
@@ -252,5 +243,6 @@ NB_MODULE(_core, m) {
   m.def("replay", &replay_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("edges"), nb::arg("load"), nb::arg("at"),
         "The plant alone under a given sequence of gate edges; see core.py.");
   bind_virtual_board(m);
+  bind_step_loop(m);
   bind_can_messages(m);
 }

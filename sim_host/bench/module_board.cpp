@@ -44,6 +44,12 @@ void advance(const PythonBoard& self, Tick ticks) {
   board.advance(ticks);
 }
 
+bool advance_until_heard(const PythonBoard& self, Tick ticks) {
+  VirtualBoard& board = self.board();
+  const nb::gil_scoped_release release;
+  return board.advance_until_heard(ticks);
+}
+
 void serial_write(const PythonBoard& self, const nb::bytes& octets) {
   const auto* const first = static_cast<const std::uint8_t*>(octets.data());
   self.board().serial().send(std::vector<std::uint8_t>(first, first + octets.size()), self.board().now());
@@ -169,6 +175,9 @@ void bind_virtual_board(nb::module_& m) {
            "Power the board; see core.py.")
       .def("close", [](PythonBoard& self) { self.held.reset(); })
       .def("advance", &advance, nb::arg("ticks"))
+      .def("advance_until_heard", &advance_until_heard, nb::arg("ticks"))
+      .def_prop_ro("in_loop", [](Self self) { return (void)self.board(), VirtualBoard::in_loop(); })
+      .def_prop_ro("can_waiting", [](Self self) { return self.board().can_host().waiting(); })
       .def_prop_ro("now", [](Self self) { return self.board().now(); })
       .def("serial_write", &serial_write, nb::arg("octets"))
       .def("serial_read", &serial_read)

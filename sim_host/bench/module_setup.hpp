@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sim_host/bench/setup.hpp"
+#include "sim_host/bench/tape_tap.hpp"
 
 namespace stillspin::bench {
 
@@ -17,6 +18,12 @@ Setup setup_from(const nanobind::dict& plant, std::uint64_t seed);
 
 /// The class VirtualBoard.
 void bind_virtual_board(nanobind::module_& module);
+
+/// The class StepLoop.
+void bind_step_loop(nanobind::module_& module);
+
+/// The taker of a tape that Python means: a StepLoop, or None for no tape.
+TapeSink tape_sink_of(const nanobind::object& loop);
 
 /// The messages of the drive's CAN bus: table, packing and unpacking.
 void bind_can_messages(nanobind::module_& module);

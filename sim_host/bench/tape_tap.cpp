@@ -1,11 +1,14 @@
 #include "sim_host/bench/tape_tap.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
 #include "firmware/drive_api.h"
+#include "firmware/hil/delta.h"
 #include "firmware/hil/hil.h"
+#include "firmware/link/record.h"
 #include "firmware/link/requests.h"
 #include "hal/hal_tape.h"
 
@@ -36,43 +39,56 @@ unsigned words_of(const tape_period_t& p) {
   return kSliceWords;
 }
 
-Octets step_of(const tape_period_t& p, std::uint16_t sequence) {
-  const unsigned words = words_of(p);
-  Octets step;
-  put16(step, sequence);
-  step.push_back(static_cast<std::uint8_t>(words));
-  step.push_back(static_cast<std::uint8_t>(p.window_count));
+// The words of a step in the order of firmware/hil/hil.h.
+Words step_words(const tape_period_t& p) {
+  const unsigned results = words_of(p);
+  Words words{p.window_count, static_cast<std::uint16_t>(results), p.input_count};
+  words.insert(words.end(), p.inputs, p.inputs + p.input_count);
   for (unsigned k = 0; k < p.window_count; k++) {
-    put16(step, p.windows[k].call);
-    for (unsigned n = 0; n < words; n++) put16(step, p.windows[k].results[n]);
+    words.push_back(p.windows[k].call);
+    words.insert(words.end(), p.windows[k].results, p.windows[k].results + results);
   }
-  step.push_back(static_cast<std::uint8_t>(p.input_count));
-  for (unsigned k = 0; k < p.input_count; k++) put16(step, p.inputs[k]);
-  return step;
+  return words;
 }
 
-Octets answer_of(const tape_period_t& p, std::uint16_t sequence) {
-  Octets answer;
-  put16(answer, sequence);
-  answer.push_back(0);  // not torn
-  answer.push_back(static_cast<std::uint8_t>(p.output_count));
-  for (unsigned k = 0; k < p.output_count; k++) put16(answer, p.outputs[k]);
-  put32(answer, hil_signals_crc());
-  return answer;
+// What was written; a record has no room for more.
+Octets octets_of(const octet_writer_t& w) {
+  if (w.full) throw std::runtime_error("a period needs more octets than a record has");
+  return Octets(w.octets, w.octets + w.count);
 }
 
-Octets signals_now() {
-  const drive_signals_t s = drive_signals();
-  Octets octets;
-#define SIGNAL(name, unit, q, value, meaning) put32(octets, static_cast<std::uint32_t>(s.name));
-#include "firmware/signal_list.h"
-#undef SIGNAL
-  return octets;
+Octets step_of(const tape_period_t& p, std::uint16_t sequence, Words& before) {
+  std::array<std::uint16_t, RECORD_BODY_MAX> room;
+  octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
+  const Words words = step_words(p);
+  const auto lists = static_cast<std::uint16_t>(words.size() - HIL_STEP_SHAPE);
+  put_u16(&w, sequence);
+  delta_put(&w, words.data(), before.data(), HIL_STEP_SHAPE);
+  delta_put(&w, words.data() + HIL_STEP_SHAPE, before.data() + HIL_STEP_SHAPE, lists);
+  std::copy(words.begin(), words.end(), before.begin());
+  return octets_of(w);
+}
+
+Octets answer_of(const tape_period_t& p, std::uint16_t sequence, Words& before) {
+  std::array<std::uint16_t, RECORD_BODY_MAX> room;
+  octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
+  hil_put_answer(&w, sequence, false, &p, before.data());
+  return octets_of(w);
 }
 
 }  // namespace
 
-TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {}
+std::vector<std::int32_t> raw_signals() {
+  const drive_signals_t s = drive_signals();
+  return {
+#define SIGNAL(name, unit, q, value, meaning) s.name,
+#include "firmware/signal_list.h"
+#undef SIGNAL
+  };
+}
+
+TapeTap::TapeTap(TapeSink sink)
+    : sink_(std::move(sink)), step_before_(HIL_STEP_WORDS), answer_before_(HIL_ANSWER_WORDS) {}
 
 TapeTap::~TapeTap() {
   if (sink_) hal_tape_start(TAPE_OFF, nullptr);
@@ -84,10 +100,7 @@ bool TapeTap::turn() {
   if (begun_ && !hal_tape.stepped) return true;
   bool more = true;
   if (begun_) {
-    if (!hal_tape_finish_period()) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
-    period_.step = step_of(hal_tape.period, sequence_);
-    period_.answer = answer_of(hal_tape.period, sequence_);
-    period_.signals = signals_now();
+    hand_over_period();
     more = sink_(period_);
     sequence_++;
     period_ = TapedPeriod();
@@ -97,6 +110,14 @@ bool TapeTap::turn() {
   begun_ = true;
   hal_tape_next_period();
   return more;
+}
+
+void TapeTap::hand_over_period() {
+  if (!hal_tape_finish_period()) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
+  const tape_period_t& p = hal_tape.period;
+  period_.step = step_of(p, sequence_, step_before_);
+  period_.answer = answer_of(p, sequence_, answer_before_);
+  period_.outputs.assign(p.outputs, p.outputs + p.output_count);
 }
 
 void TapeTap::note_command(unsigned code, std::int32_t argument) {

@@ -11,16 +11,20 @@
 namespace stillspin::bench {
 
 using Octets = std::vector<std::uint8_t>;
+using Words = std::vector<std::uint16_t>;
 
 struct TapedPeriod {
   std::vector<Octets> requests;  // type and body of what is asked of the drive before the step, in order
   Octets step;                   // body of the step's request
   Octets answer;                 // body of the answer that it must have
-  Octets signals;                // raw i32 of every signal of the drive behind it
+  Words outputs;                 // what the drive told its hardware, as the answer has it
 };
 
 /// Called behind every period from power-on; false ends the run.
 using TapeSink = std::function<bool(const TapedPeriod&)>;
+
+/// The raw value of every signal of the drive, as it stands.
+std::vector<std::int32_t> raw_signals();
 
 class TapeTap {
  public:
@@ -37,9 +41,12 @@ class TapeTap {
   void note_parameter(unsigned id, std::int32_t raw);
 
  private:
+  void hand_over_period();
+
   TapeSink sink_;
   TapedPeriod period_;
   std::uint16_t sequence_ = 0;
+  Words step_before_, answer_before_;
   bool begun_ = false;
 };
 

@@ -1,10 +1,12 @@
 #include "sim_host/bench/virtual_board.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "firmware/drive_api.h"
+#include "firmware/hil/hil.h"
 #include "firmware/store/store.h"
 #include "sim_host/bench/run.hpp"
 
@@ -15,6 +17,7 @@ constexpr double kSecondsPerTick = 1e-8;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRpmPerRads = 30.0 / kPi;
 constexpr double kLargestLoad = 1e4;
+constexpr int kRestPeriods = 3;  // a frame on a bus of 500 kbit/s takes two and a half
 
 // A saved set has every parameter: nothing of it is overruled, also where it says what the default says.
 bool saved_values_are_in_force() {
@@ -57,6 +60,25 @@ void VirtualBoard::advance(Tick ticks) {
                              std::to_string(fault->tick));
   }
 }
+
+bool VirtualBoard::advance_until_heard(Tick ticks) {
+  const Tick end = now() + ticks;
+  std::uint64_t before = heard();
+  int rested = -1;  // periods; none has been heard yet
+  while (now() < end && rested < kRestPeriods) {
+    advance(std::min(kPeriod, end - now()));
+    const std::uint64_t all = heard();
+    if (all != before) {
+      rested = 0;
+    } else if (rested >= 0) {
+      rested++;
+    }
+    before = all;
+  }
+  return rested >= 0;
+}
+
+bool VirtualBoard::in_loop() { return hil_is_active(); }
 
 void VirtualBoard::on_period(Tick t) {
   const drive_signals_t s = drive_signals();

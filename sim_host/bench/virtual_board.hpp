@@ -47,7 +47,12 @@ class VirtualBoard final : private PeriodListener {
 
   /// Lets this many ticks of 10 ns pass; not negative.
   void advance(Tick ticks);
+  /// Lets time pass until the drive has said something at one of its plugs and has rested since for three periods; at
+  /// most so many ticks. False when it has said nothing.
+  bool advance_until_heard(Tick ticks);
   Tick now() const { return chip_.now(); }
+  /// Whether the drive is stepped by a computer (firmware/hil/hil.h).
+  static bool in_loop();
 
   // ---- plugs
   devices::SerialLine& serial() { return board_.serial(); }
@@ -76,6 +81,8 @@ class VirtualBoard final : private PeriodListener {
   std::uint16_t inspect(std::uint32_t address) { return chip_.inspect(address); }
 
  private:
+  std::uint64_t heard() { return serial().counts().received + can_host_.heard(); }
+
   struct Told {
     std::uint16_t id;
     std::int32_t raw;

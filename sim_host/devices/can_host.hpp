@@ -38,6 +38,8 @@ class CanHost final : public CanNode {
 
   /// What was heard since the last call.
   std::vector<Heard> take_heard(Tick t);
+  /// How many frames that would give.
+  std::size_t heard() const { return heard_.size(); }
   std::uint64_t sent() const { return sent_; }
   const chip::CanErrorCounters& errors() const { return errors_; }
   std::uint64_t bus_offs() const { return bus_offs_; }

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin import core, toml_table
-from stillspin.core import Entry, NativeCore
+from stillspin.core import Entry, NativeCommissioning, NativeCore, NativeStepLoop
 from stillspin.errors import CampaignError, InputError
 from stillspin.profile import Changes, Profile, merged
 
@@ -58,22 +58,41 @@ def run(
         InputError: parameters that do not fit together.
         CampaignError: it broke off, with the reason.
     """
-    parameters = {**profile.parameters, **changes.parameters}
-    try:
-        native.check_parameters(parameters)
-        result = native.commission(
-            plant=merged(profile.plant, changes.plant),
-            parameters=parameters,
-            limit=LIMIT,
-            seed=seed,
-            progress=progress,
-        )
-    except ValueError as error:
-        raise InputError(str(error)) from error
+    result = play(native, profile, changes, seed, progress)
     if not result.completed:
         raise CampaignError(f"the commissioning broke off: {result.reason}")
     rows = tuple(Value(**{key: row[key] for key in Value.__annotations__}) for row in result.values)
     return Result(rows, float(result.stats["commissioning_seconds"]))
+
+
+def play(
+    native: NativeCore,
+    profile: Profile,
+    changes: Changes,
+    seed: int,
+    progress: Callable[[float, str], bool] | None,
+    tape: NativeStepLoop | None = None,
+    *,
+    limit: float = LIMIT,
+) -> NativeCommissioning:
+    """The commissioning itself, however it ends within `limit` simulated seconds; `tape` gets every period of it.
+
+    Raises:
+        InputError: parameters that do not fit together.
+    """
+    parameters = {**profile.parameters, **changes.parameters}
+    try:
+        native.check_parameters(parameters)
+        return native.commission(
+            plant=merged(profile.plant, changes.plant),
+            parameters=parameters,
+            limit=limit,
+            seed=seed,
+            progress=progress,
+            tape=tape,
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error
 
 
 def write(path: Path, result: Result, about: Sequence[str]) -> None:

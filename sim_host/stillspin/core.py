@@ -25,9 +25,8 @@ Waveform = dict[str, Signals]
 Look = tuple[float, float, int]
 """A stretch of a run to look into: from, to (s), and ticks of 10 ns between two looks at the currents."""
 Progress = Callable[[float], bool]
-Tape = Callable[[list[bytes], bytes, bytes, bytes], bool]
-"""Gets every period from power-on: requests before it (type and body), body of the step, body of the answer that it
-must have, raw signals (i32) behind it. False ends the run."""
+Ask = Callable[[bytes], bytes]
+"""Gets type and body of a request, gives status and body of its answer; nothing at all ends the run."""
 
 
 class NativeResult(Protocol):
@@ -54,6 +53,50 @@ class NativeCommissioning(Protocol):
     stats: Mapping[str, float]
 
 
+class NativeStepLoop(Protocol):
+    """A board that is stepped through a run: takes the tape of one run or commissioning and compares every answer."""
+
+    @property
+    def steps(self) -> int:
+        """Periods that the board was stepped through."""
+        ...
+
+    @property
+    def mismatch(self) -> tuple[int, bool, list[int], list[int], list[int]] | None:
+        """The first period that differed, which ended the run.
+
+        Its number from power-on, whether the board asked its hardware for something else, the words that the board and
+        the virtual drive told their hardware, and the raw signals of the virtual drive behind it.
+        """
+        ...
+
+    @property
+    def refusal(self) -> tuple[int, bytes] | None:
+        """Status and words of a request that the board refused, which ended the run."""
+        ...
+
+    @property
+    def lost(self) -> str:
+        """Why the way to the board is lost, which ended the run; empty when it is not."""
+        ...
+
+    def take_logs(self) -> tuple[bytes, bytes]:
+        """What board and virtual drive have answered since the last call."""
+        ...
+
+
+class NativeStepLoops(Protocol):
+    """The two ways to a board."""
+
+    def through(self, descriptor: int, node: int) -> NativeStepLoop:
+        """Over an open serial port (node 0), or an open SLCAN adapter to a node of its bus."""
+        ...
+
+    def asking(self, ask: Ask) -> NativeStepLoop:
+        """By a function, for every other way."""
+        ...
+
+
 class NativeBoard(Protocol):
     """A virtual board on the desk. Its time passes in `advance` alone; what is handed over takes effect at `now`.
 
@@ -75,6 +118,20 @@ class NativeBoard(Protocol):
 
     def advance(self, ticks: int) -> None:
         """Let time pass. RuntimeError when the chip cannot go on."""
+        ...
+
+    def advance_until_heard(self, ticks: int) -> bool:
+        """Let time pass until the drive has sent something and rests again, at most `ticks`; false: it sent nothing."""
+        ...
+
+    @property
+    def in_loop(self) -> bool:
+        """Whether the drive is stepped by a computer that runs the plant."""
+        ...
+
+    @property
+    def can_waiting(self) -> int:
+        """Frames that were handed over and wait for the bus."""
         ...
 
     eeprom: bytes
@@ -148,6 +205,11 @@ class NativeBoard(Protocol):
 class NativeCore(Protocol):
     """The functions of `stillspin._core`."""
 
+    @property
+    def StepLoop(self) -> NativeStepLoops:  # noqa: N802 - a class of the module
+        """How a board gets into the loop."""
+        ...
+
     def run(
         self,
         *,
@@ -161,7 +223,7 @@ class NativeCore(Protocol):
         waveform: Look,
         seed: int,
         progress: Progress | None,
-        tape: Tape | None = None,
+        tape: NativeStepLoop | None = None,
     ) -> NativeResult:
         """One run. Times in s from the end of the start procedure; progress gets the share done, false stops."""
         ...
@@ -174,6 +236,7 @@ class NativeCore(Protocol):
         limit: float,
         seed: int,
         progress: Callable[[float, str], bool] | None,
+        tape: NativeStepLoop | None = None,
     ) -> NativeCommissioning:
         """The firmware's commissioning. `limit`: simulated s; progress gets share and phase, false stops."""
         ...

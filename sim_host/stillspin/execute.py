@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from stillspin import core, figures, records
-from stillspin.core import NativeCore, NativeResult, Plant
+from stillspin.core import NativeCore, NativeResult, NativeStepLoop, Plant
 from stillspin.errors import InputError
 from stillspin.profile import Changes, Profile, merged
 from stillspin.scenario import Run, Scenario
@@ -165,7 +165,9 @@ def _check_commands(run: Run, known: Mapping[str, core.Entry], where: str) -> No
             raise InputError(f"{where}: unknown command '{what}'; known: {known_words}")
 
 
-def play(native: NativeCore, job: Job, progress: core.Progress | None, tape: core.Tape | None = None) -> NativeResult:
+def play(
+    native: NativeCore, job: Job, progress: core.Progress | None, tape: NativeStepLoop | None = None
+) -> NativeResult:
     """The run itself; `tape` gets every period of it."""
     run = job.run
     return native.run(

@@ -14,13 +14,14 @@ from stillspin.core import Entry
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
 from stillspin.figures import Result
+from stillspin.hil.results import Row
 from stillspin.scenario import Scenario
 from stillspin.variant import Beside
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {
     *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
-    *("starts", "failed", "backward", "sigma", "angle"),
+    *("starts", "failed", "steps", "steps/s", "backward", "sigma", "angle"),
 }
 
 
@@ -135,6 +136,17 @@ def capture(result: Capture) -> None:
         numbers = (f"{number:.4g}" for number in (values.min(), values.mean(), values.max())) if values.size else "–––"
         words = Text("beyond its full scale", style="red") if name in result.clipped else Text("")
         table.add_row(name, *numbers, result.units[name], words)
+    _print(table)
+
+
+def loop(rows: Iterable[Row]) -> None:
+    """Boards in the loop: what they and the virtual drive came to."""
+    table = _table("scenario", "run", "way", "virtual drive", "board", "", "steps", "steps/s", "first difference")
+    for row in rows:
+        word = Text("identical", style="green") if row.identical else Text("NOT IDENTICAL", style="red")
+        where = f"step {row.step}: {row.words}" if row.step is not None else row.lost
+        hashes = row.native[:12], row.board[:12]
+        table.add_row(row.scenario, row.run, row.link, *hashes, word, str(row.steps), f"{row.rate:.0f}", Text(where))
     _print(table)
 
 

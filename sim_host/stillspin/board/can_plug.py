@@ -21,6 +21,11 @@ class CanPlug(Protocol):
 
     name: str
 
+    @property
+    def listens_to(self) -> int | None:
+        """Descriptor at which the next frame of a program shows; None while there is no program."""
+        ...
+
     def hand_over(self) -> None:
         """What programs have sent goes to the board."""
         ...
@@ -42,6 +47,11 @@ class SlcanPlug:
         self.port = port
         self.adapter = Adapter(board)
         self.name = port.name
+
+    @property
+    def listens_to(self) -> int | None:
+        """See CanPlug."""
+        return self.port.listens_to
 
     def hand_over(self) -> None:
         """See CanPlug. A program that sends faster than the bus is held back."""
@@ -78,9 +88,14 @@ class SocketcanPlug:
             raise InputError(f"--socketcan {channel}: cannot be opened ({' '.join(str(error).split())})") from error
         board.can_open(DEFAULT_BITRATE)
 
+    @property
+    def listens_to(self) -> int | None:
+        """See CanPlug."""
+        return int(self._bus.fileno())
+
     def hand_over(self) -> None:
         """See CanPlug."""
-        while self._board.can_counts()["waiting"] < QUEUE:
+        while self._board.can_waiting < QUEUE:
             message = self._bus.recv(0)
             if message is None:
                 return

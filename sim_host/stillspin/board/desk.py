@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import select
+
 from stillspin.board.can_plug import CanPlug
 from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.core import NativeBoard
@@ -12,6 +14,10 @@ SLICE = 0.002
 """Simulated seconds between two looks at the plugs."""
 _QUEUE = 0.01
 """Seconds of octets that wait on the line before a program that writes is held back."""
+_ANSWER = 0.01
+"""Simulated seconds that a board in the loop may think before the plugs are looked at again."""
+_WAIT = 0.02
+"""Seconds of wall time between two of these looks while nothing comes."""
 _MISMATCH = 0.03
 _RATES = range(10, 10_000_001)
 
@@ -25,6 +31,7 @@ class Desk:
         self.can = can
         self.octets_in = 0
         self.octets_out = 0
+        self._rests = False
 
     @property
     def time(self) -> float:
@@ -41,15 +48,30 @@ class Desk:
             CampaignError: the board cannot go on.
         """
         self._hand_over()
-        if self.can:
-            self.can.hand_over()
         try:
             self.board.advance(round(min(seconds, SLICE) * TICKS_PER_SECOND))
         except RuntimeError as error:
             raise CampaignError(f"the virtual board stopped: {error}") from error
         self._hand_back()
-        if self.can:
-            self.can.hand_back()
+
+    def answer(self) -> None:
+        """For a board in the loop whose time is nobody's: wait for a request, let time pass until it is answered.
+
+        Its time stands still while it waits, but for a moment now and then.
+
+        Raises:
+            CampaignError: the board cannot go on.
+        """
+        if self._rests:
+            self._wait()
+        octets_in = self.octets_in
+        self._hand_over()
+        try:
+            heard = self.board.advance_until_heard(round(_ANSWER * TICKS_PER_SECOND))
+        except RuntimeError as error:
+            raise CampaignError(f"the virtual board stopped: {error}") from error
+        self._rests = heard or self.octets_in == octets_in
+        self._hand_back()
 
     @property
     def wrong_rate(self) -> tuple[int, int] | None:
@@ -67,7 +89,14 @@ class Desk:
         if self.can:
             self.can.close()
 
+    def _wait(self) -> None:
+        """Until a program has sent something, or for a while."""
+        wanted = [plug.listens_to for plug in (self.port, self.can) if plug]
+        select.select([descriptor for descriptor in wanted if descriptor is not None], (), (), _WAIT)
+
     def _hand_over(self) -> None:
+        if self.can:
+            self.can.hand_over()
         rate = self.port.rate
         if rate in _RATES and rate != self.board.serial_rate:
             self.board.serial_rate = rate
@@ -80,5 +109,8 @@ class Desk:
 
     def _hand_back(self) -> None:
         octets = self.board.serial_read()
-        self.octets_out += len(octets)
-        self.port.write(octets)
+        if octets:
+            self.octets_out += len(octets)
+            self.port.write(octets)
+        if self.can:
+            self.can.hand_back()

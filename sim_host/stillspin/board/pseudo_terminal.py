@@ -80,6 +80,11 @@ class PseudoTerminal:
         return self._was_open
 
     @property
+    def listens_to(self) -> int | None:
+        """Descriptor at which the next octets of a program show; None while nobody has the port open."""
+        return self._master if self.is_open else None
+
+    @property
     def rate(self) -> int:
         """The bit rate that the program has set, bit/s; the default where the system does not tell."""
         try:

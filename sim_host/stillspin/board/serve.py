@@ -115,7 +115,9 @@ def _stopped_by_signals() -> Iterator[_Stop]:
 def _loop(desk: Desk, pacer: Pacer, show: Show, stop: _Stop, end: float | None) -> None:
     while not stop.wanted and (end is None or desk.time < end):
         due = pacer.due(desk.time)
-        if due >= SLICE:
+        if pacer.free and desk.board.in_loop:
+            desk.answer()
+        elif due >= SLICE:
             desk.step(SLICE)
         else:
             time.sleep(min(pacer.wall(SLICE - due), _PAUSE))

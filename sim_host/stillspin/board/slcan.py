@@ -60,8 +60,13 @@ class Bus(Protocol):
         """Send (identifier, extended, remote, length, data)."""
         ...
 
+    @property
+    def can_waiting(self) -> int:
+        """Frames that wait."""
+        ...
+
     def can_counts(self) -> dict[str, int]:
-        """Error counters and frames that wait."""
+        """Error counters."""
         ...
 
 
@@ -109,7 +114,7 @@ class Adapter:
     @property
     def has_room(self) -> bool:
         """Whether more commands should be taken from the port."""
-        return not self.is_open or self._bus.can_counts()["waiting"] < QUEUE
+        return not self.is_open or self._bus.can_waiting < QUEUE
 
     def feed(self, octets: bytes) -> bytes:
         """Carry out commands; returns the answers. Whatever comes is answered and never raises."""

@@ -85,8 +85,7 @@ class Requester:
         self._texts: list[Callable[[bytes], None]] = []
         self._lost: LinkError | None = None
         self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._receive, name="stillspin link", daemon=True)
-        self._thread.start()
+        self._thread = self._begin()
 
     def request(
         self, kind: Request, body: bytes = b"", *, repeat: bool, timeout: float | None = None, urgent: bool = False
@@ -117,6 +116,17 @@ class Requester:
         raise NoAnswerError(f"no answer from the drive on {self.transport.name}{again}")
 
     @contextmanager
+    def resting(self) -> Iterator[None]:
+        """Leave the transport to somebody else while the context lasts; questions wait until then."""
+        with self._asking:
+            self._end()
+            try:
+                yield
+            finally:
+                self._closing.clear()
+                self._thread = self._begin()
+
+    @contextmanager
     def listening(
         self, event: Callable[[Record], None] | None = None, text: Callable[[bytes], None] | None = None
     ) -> Iterator[None]:
@@ -140,10 +150,18 @@ class Requester:
 
     def close(self) -> None:
         """End the thread, give the port back."""
+        self._end()
+        self.transport.close()
+
+    def _begin(self) -> threading.Thread:
+        thread = threading.Thread(target=self._receive, name="stillspin link", daemon=True)
+        thread.start()
+        return thread
+
+    def _end(self) -> None:
         self._closing.set()
         if threading.current_thread() is not self._thread:
             self._thread.join(_JOIN)
-        self.transport.close()
 
     def _numbered(self, kind: Request, body: bytes) -> Record:
         self._tag = (self._tag + 1) % 256

@@ -5,18 +5,22 @@ from __future__ import annotations
 import hashlib
 import struct
 import time
+from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 
-from stillspin.core import NativeCore, Progress
-from stillspin.drive.protocol import Request, StatusCode
-from stillspin.drive.requester import Requester
+from stillspin.core import NativeCore, NativeStepLoop, Progress
+from stillspin.drive.protocol import Request
+from stillspin.drive.requester import REASONS, Requester
 from stillspin.errors import CampaignError
-from stillspin.execute import Job, play
 from stillspin.hil import told
-from stillspin.link.errors import RefusedError
+from stillspin.link.errors import DriveError, LinkError, RefusedError
 
 _SIGNALS_AT_ONCE = 16
 _PERIOD = 1e-4  # s
+
+Play = Callable[[NativeCore, Progress, NativeStepLoop], str]
+"""A run on the virtual drive whose tape the loop takes; gives the reason why it broke off, empty when it did not."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,25 @@ class LoopResult:
         return self.steps / self.seconds if self.seconds > 0.0 else 0.0
 
 
+class _Log:
+    """The hashes over what board and virtual drive have said."""
+
+    def __init__(self, loop: NativeStepLoop) -> None:
+        self._loop = loop
+        self._hashes = hashlib.sha256(), hashlib.sha256()
+
+    def take(self) -> None:
+        """Whatever has been said meanwhile."""
+        for hash_, octets in zip(self._hashes, self._loop.take_logs(), strict=True):
+            hash_.update(octets)
+
+    @property
+    def digests(self) -> tuple[str, str]:
+        """Of the board and of the virtual drive."""
+        board, native = (hash_.hexdigest() for hash_ in self._hashes)
+        return board, native
+
+
 class Loop:
     """A board that is stepped by this computer, which runs the plant.
 
@@ -63,73 +86,78 @@ class Loop:
 
     def __init__(self, requester: Requester) -> None:
         self._requester = requester
-        self._steps = 0
-        self._difference: Difference | None = None
-        self._error: Exception | None = None
+        self._error: DriveError | None = None
 
-    def run(self, native: NativeCore, job: Job, progress: Progress | None = None) -> LoopResult:
-        """One run of a scenario on the virtual drive and, period by period, on the board.
+    def run(self, native: NativeCore, play: Play, progress: Progress | None = None) -> LoopResult:
+        """One run on the virtual drive and, period by period, on the board.
 
         Raises:
             CampaignError: the board cannot be put into the loop.
-            LinkError: the way to the board is lost.
+            DriveError: the way to the board is lost, or it refuses what the run asks of it.
         """
         self._enter()
-        hashes = hashlib.sha256(), hashlib.sha256()
+        port = self._requester.transport.port
+        loop = native.StepLoop.through(*port) if port else native.StepLoop.asking(self._ask)
+        log = _Log(loop)
+
+        def look(share: float) -> bool:
+            log.take()
+            return progress is None or progress(share)
+
         begin = time.perf_counter()
-
-        def step(requests: list[bytes], body: bytes, expected: bytes, signals: bytes) -> bool:
-            if self._difference or self._error:
-                return False  # the run goes on for some periods before it is broken off
-            try:
-                self._ask(requests)
-                answer = self._requester.request(Request.HIL_STEP, body, repeat=True)
-                hashes[0].update(answer)
-                hashes[1].update(expected)
-                if answer != expected:
-                    words = self._compare(told.answer(answer), told.answer(expected), signals)
-                    self._difference = Difference(self._steps, words)
-            except Exception as error:
-                self._error = error
-            self._steps += 1
-            return self._difference is None and self._error is None
-
-        result = play(native, job, progress, step)
-        if self._error:
-            raise self._error
+        with self._requester.resting() if port else nullcontext():
+            reason = play(native, look, loop)
         seconds = time.perf_counter() - begin
-        reason = "" if self._difference else result.reason
-        board, ours = (hash_.hexdigest() for hash_ in hashes)
-        return LoopResult(self._steps, seconds, board, ours, self._difference, reason)
+        log.take()
+        self._check(loop)
+        difference = self._difference(loop)
+        return LoopResult(loop.steps, seconds, *log.digests, difference, "" if difference else reason)
 
     def leave(self) -> None:
         """Let the board reset itself."""
         self._requester.request(Request.HIL_LEAVE, repeat=True)
 
     def _enter(self) -> None:
-        self._steps, self._difference, self._error = 0, None, None
+        self._error = None
         try:
             self._requester.request(Request.HIL_ENTER, repeat=True)
         except RefusedError as error:
             raise CampaignError(f"the board does not go into the loop: {error}") from error
 
-    def _ask(self, requests: list[bytes]) -> None:
-        for request in requests:
-            try:
-                self._requester.request(Request(request[0]), request[1:], repeat=True)
-            except RefusedError as error:
-                # With the power stage off a parameter is taken even if it does not go together with the others yet.
-                if error.status != StatusCode.CONFLICT:
-                    raise
+    def _ask(self, request: bytes) -> bytes:
+        """A request by way of the requester."""
+        try:
+            return b"\0" + self._requester.request(Request(request[0]), request[1:], repeat=True)
+        except RefusedError as error:
+            return bytes((error.status,)) + str(error).encode()
+        except DriveError as error:
+            self._error = error
+            return b""
 
-    def _compare(self, board: told.Answer, native: told.Answer, signals: bytes) -> str:
-        """What is different, in words."""
-        if board.torn:
-            return "the board asked its hardware for something else than the virtual drive did"
-        words = told.difference(board, native)
-        if words:
-            return words
-        ours = struct.unpack(f"<{len(signals) // 4}i", signals)
+    def _check(self, loop: NativeStepLoop) -> None:
+        """Whether the run broke off because of the board."""
+        if self._error:
+            raise self._error
+        if loop.lost:
+            raise LinkError(f"{self._requester.transport.name}: {loop.lost}")
+        if loop.refusal:
+            status, words = loop.refusal
+            text = words.decode("ascii", "replace").strip("\0 ")
+            known = {int(code): reason for code, reason in REASONS.items()}
+            raise RefusedError(
+                f"step {loop.steps}: the board refuses: {text or known.get(status, f'status {status}')}", status
+            )
+
+    def _difference(self, loop: NativeStepLoop) -> Difference | None:
+        if loop.mismatch is None:
+            return None
+        step, torn, board, native, signals = loop.mismatch
+        if torn:
+            return Difference(step, "the board asked its hardware for something else than the virtual drive did")
+        return Difference(step, told.difference(board, native) or self._signal(signals))
+
+    def _signal(self, ours: list[int]) -> str:
+        """The first signal that differs, in words."""
         for first in range(0, len(ours), _SIGNALS_AT_ONCE):
             wanted = range(first, min(first + _SIGNALS_AT_ONCE, len(ours)))
             body = self._requester.request(Request.SIGNALS, struct.pack(f"<{len(wanted)}H", *wanted), repeat=True)

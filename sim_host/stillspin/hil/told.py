@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 
 _LEGS = tuple(f"{edge} of leg {leg}" for leg in "abc" for edge in ("rise", "fall"))
@@ -23,34 +21,9 @@ _TOLD: dict[int, tuple[str, tuple[str, ...]]] = {
 """What -> its name, and the names of the words that belong to it."""
 
 
-@dataclass(frozen=True)
-class Answer:
-    """The answer to a step, taken apart. `torn`: the step was not the one that the drive ran."""
-
-    sequence: int
-    torn: bool
-    outputs: tuple[int, ...]
-    signals_crc: int
-
-
-def answer(body: bytes) -> Answer:
-    """Take a step's answer apart.
-
-    Raises:
-        ValueError: it has another shape.
-    """
-    try:
-        sequence, torn, count = struct.unpack_from("<HBB", body)
-        outputs = struct.unpack_from(f"<{count}H", body, 4)
-        (crc,) = struct.unpack_from("<I", body, 4 + 2 * count)
-    except struct.error as error:
-        raise ValueError(f"{len(body)} octets are no answer to a step") from error
-    return Answer(sequence, bool(torn), outputs, crc)
-
-
-def difference(board: Answer, native: Answer) -> str | None:
-    """The first output in which two answers differ, in words; None when the outputs are the same."""
-    for one, other in zip_longest(_named(board.outputs), _named(native.outputs)):
+def difference(board: Sequence[int], native: Sequence[int]) -> str | None:
+    """The first output in which two periods differ, in words; None when the outputs are the same."""
+    for one, other in zip_longest(_named(board), _named(native)):
         if one == other:
             continue
         if one is None or other is None or one[0] != other[0]:
@@ -60,7 +33,7 @@ def difference(board: Answer, native: Answer) -> str | None:
     return None
 
 
-def _named(outputs: tuple[int, ...]) -> Iterator[tuple[str, int | None]]:
+def _named(outputs: Sequence[int]) -> Iterator[tuple[str, int | None]]:
     at = 0
     while at < len(outputs):
         what, words = _TOLD.get(outputs[at], (f"unknown output {outputs[at]}", ()))

@@ -13,7 +13,7 @@ import serial
 from stillspin.link.errors import LinkError
 from stillspin.link.records import Record
 from stillspin.link.segments import Joiner, split
-from stillspin.link.serial_port import explain
+from stillspin.link.serial_port import descriptor_of, explain
 from stillspin.link.splitter import Damaged, Item
 
 DEFAULT_BITRATE = 500_000
@@ -35,6 +35,12 @@ class CanTransport:
         self._joiner = Joiner()
         self._sending = threading.Lock()
         self._bus.set_filters([{"can_id": RESPONSE + node, "can_mask": 0x7FF, "extended": False}])
+
+    @property
+    def port(self) -> tuple[int, int] | None:
+        """See Transport."""
+        port = _serial_port(self._bus)
+        return descriptor_of(port, self._node) if port else None
 
     def send(self, record: Record) -> None:
         """See Transport."""
@@ -103,10 +109,16 @@ def open_bus(interface: str, channel: str, bitrate: int = DEFAULT_BITRATE) -> ca
     return bus
 
 
+def _serial_port(bus: can.BusABC) -> serial.Serial | None:
+    """The port of an SLCAN adapter."""
+    port = getattr(bus, "serialPortOrig", None)
+    return port if isinstance(port, serial.Serial) else None
+
+
 def _hold(bus: can.BusABC) -> None:
     """An adapter's port is for one program: two would each get half of the frames."""
-    port = getattr(bus, "serialPortOrig", None)
-    if isinstance(port, serial.Serial):
+    port = _serial_port(bus)
+    if port:
         try:
             port.exclusive = True
         except (OSError, serial.SerialException):

@@ -29,6 +29,11 @@ class SerialTransport:
         self._splitter = Splitter()
         self._sending = threading.Lock()
 
+    @property
+    def port(self) -> tuple[int, int] | None:
+        """See Transport."""
+        return descriptor_of(self._port, 0)
+
     def send(self, record: Record) -> None:
         """See Transport."""
         self._write(to_wire(record))
@@ -67,6 +72,14 @@ def _open(port: str, baud: int) -> serial.Serial:
         return serial.Serial(port, baud, exclusive=True, timeout=0, write_timeout=_WRITE_TIMEOUT)
     except (OSError, serial.SerialException, ValueError) as error:
         raise LinkError(explain(port, error)) from error
+
+
+def descriptor_of(port: serial.Serial, node: int) -> tuple[int, int] | None:
+    """What Transport.port gives for a serial port; nothing where the system has no descriptors."""
+    try:
+        return port.fileno(), node
+    except (AttributeError, OSError):
+        return None
 
 
 def explain(port: str, error: Exception) -> str:

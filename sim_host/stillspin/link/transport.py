@@ -21,6 +21,11 @@ class Transport(Protocol):
         """Whether text goes through it, too."""
         ...
 
+    @property
+    def port(self) -> tuple[int, int] | None:
+        """File descriptor of the port and node of the CAN bus (0: none) where other code may carry records itself."""
+        ...
+
     def send(self, record: Record) -> None:
         """Hand a record over.
 

@@ -59,6 +59,11 @@ class VirtualTransport:
         self._lock = threading.Lock()
         self._closed = False
 
+    @property
+    def port(self) -> tuple[int, int] | None:
+        """See Transport."""
+        return None
+
     def set_load(self, torque: float) -> None:
         """Load torque on the shaft from now on, N m; positive opposes positive rotation."""
         with self._lock:

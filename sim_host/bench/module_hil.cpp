@@ -1,0 +1,85 @@
+// The class StepLoop of the Python module: a board in the loop; core.py has the contract.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+#include <utility>
+
+#include "sim_host/bench/board_port.hpp"
+#include "sim_host/bench/module_setup.hpp"
+#include "sim_host/bench/step_loop.hpp"
+
+namespace nb = nanobind;
+
+namespace stillspin::bench {
+namespace {
+
+struct PythonLoop {
+  std::shared_ptr<StepLoop> loop;
+};
+
+nb::bytes bytes_of(const Octets& octets) { return nb::bytes(octets.data(), octets.size()); }
+
+Ask ask_through(int descriptor, unsigned node) {
+  auto framing = node > 0 ? slcan_framing(node) : serial_framing();
+  const auto port = std::make_shared<BoardPort>(descriptor, std::move(framing));
+  return [port](const Octets& request) { return port->ask(request); };
+}
+
+Ask ask_python(const nb::object& callable) {
+  return [callable](const Octets& request) {
+    const nb::gil_scoped_acquire gil;
+    try {
+      const auto answer = nb::cast<nb::bytes>(callable(bytes_of(request)));
+      const auto* const first = static_cast<const std::uint8_t*>(answer.data());
+      return Octets(first, first + answer.size());
+    } catch (const nb::python_error& error) {
+      throw PortError(error.what());
+    }
+  };
+}
+
+nb::object mismatch_of(const StepLoop& loop) {
+  if (!loop.mismatch()) return nb::none();
+  const Mismatch& m = *loop.mismatch();
+  return nb::make_tuple(m.step, m.torn, m.board, m.native, m.signals);
+}
+
+nb::object refusal_of(const StepLoop& loop) {
+  if (!loop.refusal()) return nb::none();
+  return nb::make_tuple(loop.refusal()->status, nb::bytes(loop.refusal()->words.data(), loop.refusal()->words.size()));
+}
+
+}  // namespace
+
+TapeSink tape_sink_of(const nb::object& loop) {
+  if (loop.is_none()) return {};
+  const std::shared_ptr<StepLoop> taker = nb::cast<const PythonLoop&>(loop).loop;
+  return [taker](const TapedPeriod& period) { return taker->take(period); };
+}
+
+void bind_step_loop(nb::module_& m) {
+  using Self = const PythonLoop&;
+  nb::class_<PythonLoop>(m, "StepLoop")
+      .def_static(
+          "through",
+          [](int fd, unsigned node) { return PythonLoop{std::make_shared<StepLoop>(ask_through(fd, node))}; },
+          nb::arg("descriptor"), nb::arg("node"))
+      .def_static(
+          "asking", [](const nb::object& ask) { return PythonLoop{std::make_shared<StepLoop>(ask_python(ask))}; },
+          nb::arg("ask"))
+      .def_prop_ro("steps", [](Self self) { return self.loop->steps(); })
+      .def_prop_ro("mismatch", [](Self self) { return mismatch_of(*self.loop); })
+      .def_prop_ro("refusal", [](Self self) { return refusal_of(*self.loop); })
+      .def_prop_ro("lost", [](Self self) { return self.loop->lost(); })
+      .def("take_logs", [](Self self) {
+        const auto [board, native] = self.loop->take_logs();
+        return nb::make_tuple(bytes_of(board), bytes_of(native));
+      });
+}
+
+}  // namespace stillspin::bench

@@ -1,0 +1,69 @@
+// Host in the loop: what a run of the virtual drive does in every period is asked of a board, whose answer must be the
+// same to the last bit. The loop is the taker of the run's tape; the first period that differs ends the run.
+
+#ifndef STILLSPIN_SIM_HOST_BENCH_STEP_LOOP_HPP
+#define STILLSPIN_SIM_HOST_BENCH_STEP_LOOP_HPP
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim_host/bench/tape_tap.hpp"
+
+namespace stillspin::bench {
+
+/// Type and body of a request; gives status and body of its answer, nothing at all to end the run. May throw.
+using Ask = std::function<Octets(const Octets&)>;
+
+/// The first period in which a board did something else.
+struct Mismatch {
+  std::uint64_t step;  // from power-on
+  bool torn;           // the board asked its hardware for something else
+  Words board, native;
+  std::vector<std::int32_t> signals;  // of the virtual drive
+};
+
+/// A request that the board refused: its status and its words.
+struct Refusal {
+  unsigned status;
+  std::string words;
+};
+
+class StepLoop {
+ public:
+  explicit StepLoop(Ask ask);
+
+  /// A period; false ends the run.
+  bool take(const TapedPeriod& period);
+
+  std::uint64_t steps() const { return steps_; }
+  const std::optional<Mismatch>& mismatch() const { return mismatch_; }
+  const std::optional<Refusal>& refusal() const { return refusal_; }
+  /// Why the way to the board is lost, empty when it is not.
+  const std::string& lost() const { return lost_; }
+
+  /// What board and virtual drive have answered since the last call.
+  std::pair<Octets, Octets> take_logs();
+
+ private:
+  bool ended() const { return mismatch_ || refusal_ || !lost_.empty() || stopped_; }
+  std::optional<Octets> accepted(const Octets& request);
+  void compare(const Octets& board, const TapedPeriod& period);
+  bool read_outputs(const Octets& answer, Words& outputs, bool& torn);
+
+  Ask ask_;
+  std::uint64_t steps_ = 0;
+  Words before_;  // of the board's answer, to take the next one apart
+  Octets board_log_, native_log_;
+  std::optional<Mismatch> mismatch_;
+  std::optional<Refusal> refusal_;
+  std::string lost_;
+  bool stopped_ = false;
+};
+
+}  // namespace stillspin::bench
+
+#endif

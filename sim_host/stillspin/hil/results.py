@@ -1,0 +1,116 @@
+"""The results of a board in the loop as a file: renewed behind every run, so that nothing is lost when one breaks off."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from stillspin.errors import InputError
+from stillspin.hil.loop import LoopResult
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run over one way to the board.
+
+    Attributes:
+        link: the way: serial or can.
+        board, native: hashes over everything that the two said.
+        seconds: how long `steps` took.
+        step, words: the first period that differed, where one did.
+        ended: why the run broke off, empty when it did not.
+        lost: why the loop broke off, empty when it did not.
+    """
+
+    scenario: str
+    run: str
+    link: str
+    revision: str
+    board: str = ""
+    native: str = ""
+    steps: int = 0
+    seconds: float = 0.0
+    step: int | None = None
+    words: str = ""
+    ended: str = ""
+    lost: str = ""
+
+    @property
+    def identical(self) -> bool:
+        """Whether board and virtual drive agreed to the end."""
+        return bool(self.board) and self.board == self.native and not self.lost
+
+    @property
+    def rate(self) -> float:
+        """Steps per second."""
+        return self.steps / self.seconds if self.seconds > 0.0 else 0.0
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Which run over which way."""
+        return self.scenario, self.run, self.link
+
+
+def row(scenario: str, run: str, link: str, revision: str, result: LoopResult) -> Row:
+    """A run that came to its end, or to its first difference."""
+    found = result.difference
+    return Row(
+        scenario,
+        run,
+        link,
+        revision,
+        result.board,
+        result.native,
+        result.steps,
+        round(result.seconds, 3),
+        found.step if found else None,
+        found.words if found else "",
+        result.reason,
+    )
+
+
+class Results:
+    """Rows, and the file that has them; a row replaces an earlier one of the same run over the same way."""
+
+    def __init__(self, file: Path | None) -> None:
+        """What the file has already, if there is one.
+
+        Raises:
+            InputError: it holds something else, or cannot be read.
+        """
+        self._file = file
+        self.rows: dict[tuple[str, str, str], Row] = {}
+        if file and file.exists():
+            self._read(file)
+
+    def add(self, new: Row) -> None:
+        """Take a row and renew the file.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        self.rows[new.key] = new
+        if not self._file:
+            return
+        text = json.dumps({"runs": [asdict(item) for item in self.rows.values()]}, indent=1) + "\n"
+        try:
+            with tempfile.NamedTemporaryFile(
+                "w", dir=self._file.absolute().parent, delete=False, encoding="utf-8"
+            ) as beside:
+                beside.write(text)
+            Path(beside.name).chmod(0o644)
+            Path(beside.name).replace(self._file)
+        except OSError as error:
+            raise InputError(f"--json {self._file}: cannot be written ({error.strerror})") from error
+
+    def _read(self, file: Path) -> None:
+        try:
+            stored: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+            for fields in stored["runs"]:
+                item = Row(**fields)
+                self.rows[item.key] = item
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise InputError(f"--json {file}: holds something else than results of stillspin hil") from error

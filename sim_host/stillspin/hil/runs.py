@@ -1,0 +1,84 @@
+"""What a board can be stepped through: the runs of scenarios, and the commissioning."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from stillspin import commission, execute, resources, scenario_file
+from stillspin.core import NativeCore, NativeStepLoop, Progress
+from stillspin.execute import Job, Settings
+from stillspin.hil.loop import Play
+
+ALL = "all"
+COMMISSION = "commission"
+CHECK = 0.2
+"""Seconds of a run behind its start procedure that are enough for a look."""
+_CHECK_COMMISSION = 0.6  # s from power-on
+
+
+@dataclass(frozen=True)
+class LoopRun:
+    """One run of a scenario, or the commissioning, whose `scenario` is called so."""
+
+    scenario: str
+    name: str
+    play: Play
+
+
+SettingsOf = Callable[[str], Settings]
+"""What all runs with one motor have in common."""
+
+
+def named(wanted: Sequence[str], settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
+    """The runs that are meant.
+
+    Args:
+        wanted: scenarios; `commission`; `all` is the commissioning and every scenario, also those on demand.
+        settings: of a motor.
+        native: the native module.
+        check: only the beginning of each.
+
+    Raises:
+        InputError: there is no such scenario, or it asks for what does not exist.
+    """
+    names = [COMMISSION, *scenario_file.ids()] if ALL in wanted else wanted
+    return [run for name in names for run in _runs(name, settings, native, check=check)]
+
+
+def _runs(name: str, settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
+    if name == COMMISSION:
+        chosen = settings(resources.DEFAULT_MOTOR)
+        return [LoopRun(COMMISSION, chosen.profile.name, _commissioning(chosen, check=check))]
+    scenario = scenario_file.load(name)
+    jobs = execute.prepare(scenario, settings(scenario.motor), native)
+    return [LoopRun(job.scenario, job.run.name, _of_job(_shortened(job) if check else job)) for job in jobs]
+
+
+def _shortened(job: Job) -> Job:
+    return replace(job, run=replace(job.run, duration=min(job.run.duration, CHECK), waveform=None))
+
+
+def _of_job(job: Job) -> Play:
+    def play(native: NativeCore, progress: Progress, loop: NativeStepLoop) -> str:
+        return execute.play(native, job, progress, loop).reason
+
+    return play
+
+
+def _commissioning(settings: Settings, *, check: bool) -> Play:
+    limit = _CHECK_COMMISSION if check else commission.LIMIT
+
+    def play(native: NativeCore, progress: Progress, loop: NativeStepLoop) -> str:
+        result = commission.play(
+            native,
+            settings.profile,
+            settings.changes,
+            settings.seed,
+            lambda share, _phase: progress(share),
+            loop,
+            limit=limit,
+        )
+        return "" if check else result.reason
+
+    return play
