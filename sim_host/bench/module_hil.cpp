@@ -1,4 +1,4 @@
-// The class StepLoop of the Python module: a board in the loop; core.py has the contract.
+// The class StepLoop of the Python module: a board in the loop; core_loop.py has the contract.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin import core, toml_table
-from stillspin.core import Entry, NativeCommissioning, NativeCore, NativeStepLoop
+from stillspin.core import Entry, NativeCommissioning, NativeCore
+from stillspin.core_loop import NativeStepLoop
 from stillspin.errors import CampaignError, InputError
 from stillspin.profile import Changes, Profile, merged
 
@@ -71,8 +72,8 @@ def play(
     changes: Changes,
     seed: int,
     progress: Callable[[float, str], bool] | None,
-    tape: NativeStepLoop | None = None,
     *,
+    tape: NativeStepLoop | None = None,
     limit: float = LIMIT,
 ) -> NativeCommissioning:
     """The commissioning itself, however it ends within `limit` simulated seconds; `tape` gets every period of it.

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from stillspin import core, figures, records
-from stillspin.core import NativeCore, NativeResult, NativeStepLoop, Plant
+from stillspin.core import NativeCore, NativeResult, Plant
+from stillspin.core_loop import NativeStepLoop
 from stillspin.errors import InputError
 from stillspin.profile import Changes, Profile, merged
 from stillspin.scenario import Run, Scenario

@@ -66,6 +66,7 @@ std::uint16_t hal_irq_disable(void) { return 0; }
 void hal_irq_restore(std::uint16_t) {}
 std::uint16_t hal_irq_unexpected_count(void) { return 0; }
 void hal_profile_step(std::uint16_t) {}
+std::uint32_t hal_time_cycles() { return 0; }  // no time passes
 void hal_irq_control_begin(void) {}
 void hal_irq_control_end(void) {}
 void hal_safety_toggle_enable(void) { board.enable_toggles++; }

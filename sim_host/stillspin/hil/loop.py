@@ -9,7 +9,8 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
 
-from stillspin.core import NativeCore, NativeStepLoop, Progress
+from stillspin.core import NativeCore, Progress
+from stillspin.core_loop import NativeStepLoop
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import REASONS, Requester
 from stillspin.errors import CampaignError
@@ -136,8 +137,9 @@ class Loop:
 
     def _check(self, loop: NativeStepLoop) -> None:
         """Whether the run broke off because of the board."""
-        if self._error:
-            raise self._error
+        error, self._error = self._error, None
+        if error:
+            raise error
         if loop.lost:
             raise LinkError(f"{self._requester.transport.name}: {loop.lost}")
         if loop.refusal:

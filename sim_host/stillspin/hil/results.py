@@ -1,4 +1,4 @@
-"""The results of a board in the loop as a file: renewed behind every run, so that nothing is lost when one breaks off."""
+"""Results of a board in the loop as a file: renewed behind every run, nothing is lost when one breaks off."""
 
 from __future__ import annotations
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from stillspin import commission, execute, resources, scenario_file
-from stillspin.core import NativeCore, NativeStepLoop, Progress
+from stillspin.core import NativeCore, Progress
+from stillspin.core_loop import NativeStepLoop
 from stillspin.execute import Job, Settings
 from stillspin.hil.loop import Play
 
@@ -14,7 +15,7 @@ ALL = "all"
 COMMISSION = "commission"
 CHECK = 0.2
 """Seconds of a run behind its start procedure that are enough for a look."""
-_CHECK_COMMISSION = 0.6  # s from power-on
+_CHECK_COMMISSION = 0.4  # s from power-on
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def _commissioning(settings: Settings, *, check: bool) -> Play:
             settings.changes,
             settings.seed,
             lambda share, _phase: progress(share),
-            loop,
+            tape=loop,
             limit=limit,
         )
         return "" if check else result.reason

@@ -1,0 +1,115 @@
+// A board in the loop as a computer sees it from outside: what it refuses, when it leaves, and records that come close
+// behind one another.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "firmware/actions.h"
+#include "firmware/link/requests.h"
+#include "sim_host/bench/board_port.hpp"
+#include "sim_host/bench/virtual_board.hpp"
+
+namespace stillspin::bench {
+namespace {
+
+constexpr Tick kMillisecond = 100'000;
+constexpr Tick kSecond = 1000 * kMillisecond;
+
+class Loop : public ::testing::Test {
+ protected:
+  std::unique_ptr<VirtualBoard> desk;
+  std::unique_ptr<Framing> serial = serial_framing();
+  std::uint16_t tag = 0;
+
+  void SetUp() override {
+    BoardRequest request;
+    request.setup.nominal = plant::PlantConfig();
+    request.setup.solver = 1;  // fixed steps
+    request.parameters = {{"can_rate", 1000.0}};
+    desk = std::make_unique<VirtualBoard>(request);
+    desk->advance(100 * kMillisecond);
+  }
+
+  // Status and body of the answer; empty when none comes.
+  Words ask(Words type_and_body) {
+    type_and_body.insert(type_and_body.begin() + 1, ++tag);
+    desk->serial().send(serial->wrap(type_and_body), desk->now());
+    desk->advance(50 * kMillisecond);
+    for (const std::uint8_t octet : desk->serial().take()) {
+      if (!serial->take(octet)) continue;
+      const Words record = serial->record();
+      if (record[1] == (tag & 0xFFu)) return Words(record.begin() + 2, record.end());
+    }
+    return {};
+  }
+  std::uint64_t resets() const { return desk->statistics().resets; }
+};
+
+TEST_F(Loop, IsLeftByAResetWhenNoStepsCome) {
+  ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
+  EXPECT_TRUE(VirtualBoard::in_loop());
+  desk->advance(9 * kSecond);
+  EXPECT_EQ(ask({REQUEST_HIL_STEP, 0, 0, 0}).front(), 0) << "an empty period";
+  desk->advance(9 * kSecond);
+  EXPECT_TRUE(VirtualBoard::in_loop());
+  EXPECT_EQ(resets(), 0u);
+  desk->advance(2 * kSecond);
+  EXPECT_FALSE(VirtualBoard::in_loop());
+  EXPECT_EQ(resets(), 1u);
+}
+
+TEST_F(Loop, ParametersOfASimulationAreNotKept) {
+  ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
+  for (const std::uint16_t code : {COMMAND_SAVE, COMMAND_LOAD, COMMAND_DEFAULTS}) {
+    const Words answer = ask({REQUEST_COMMAND, code, 0, 0, 0, 0});
+    ASSERT_GT(answer.size(), 1u) << code;
+    EXPECT_EQ(answer.front(), ANSWER_STATE) << code;
+    EXPECT_EQ(std::string(answer.begin() + 1, answer.end()).substr(0, 31), "not with the host in the loop: ") << code;
+  }
+  ASSERT_EQ(ask({REQUEST_HIL_LEAVE}), Words{0});
+  desk->advance(200 * kMillisecond);
+  EXPECT_EQ(ask({REQUEST_COMMAND, COMMAND_SAVE, 0, 0, 0, 0}), Words{0});
+}
+
+TEST_F(Loop, OnlyAWholeStepCounts) {
+  ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
+  EXPECT_EQ(ask({REQUEST_HIL_STEP, 0, 0, 7, 21 << 1, 6 << 1, 0}).front(), ANSWER_LENGTH) << "more windows than can be";
+  EXPECT_EQ(ask({REQUEST_HIL_STEP, 0, 0, 4, 2 << 1, 3}).front(), ANSWER_LENGTH) << "cut off";
+  EXPECT_EQ(ask({REQUEST_HIL_STEP, 1, 0, 0}).front(), ANSWER_CONFLICT) << "not the first";
+  EXPECT_EQ(ask({REQUEST_HIL_STEP, 0, 0, 0}).front(), ANSWER_OK);
+}
+
+// Six frames without a gap at 1 Mbit/s, one every 0.1 ms: while one is read the next arrives.
+TEST_F(Loop, LongRecordsOnAFastBusLoseNoFrame) {
+  const std::unique_ptr<Framing> slcan = slcan_framing(1);
+  desk->can_host().set_bit_rate(1'000'000, desk->now());
+  desk->advance(20 * kMillisecond);
+  int answers = 0;
+  constexpr int kRequests = 100;
+  for (int k = 0; k < kRequests; k++) {
+    Words request{REQUEST_SIGNALS, static_cast<std::uint16_t>(k)};
+    for (std::uint16_t signal = 0; signal < 16; signal++) request.insert(request.end(), {signal, 0});
+    const Octets lines = slcan->wrap(request);
+    for (std::size_t at = 0; at < lines.size();) {
+      chip::CanFrame frame;
+      const std::string line(lines.begin() + at, std::find(lines.begin() + at, lines.end(), '\r'));
+      frame.id = static_cast<std::uint32_t>(std::stoul(line.substr(1, 3), nullptr, 16));
+      frame.length = static_cast<std::uint8_t>(line[4] - '0');
+      for (unsigned n = 0; n < frame.length; n++)
+        frame.data[n] = static_cast<std::uint8_t>(std::stoul(line.substr(5 + 2 * n, 2), nullptr, 16));
+      desk->can_host().send(frame, desk->now());
+      at += line.size() + 1;
+    }
+    desk->advance(5 * kMillisecond + 97 * k);  // every phase of the period
+    for (const auto& heard : desk->can_host().take_heard(desk->now())) {
+      if (heard.frame.id == 0x481 && (heard.frame.data[0] & 0x40) != 0) answers++;
+    }
+  }
+  EXPECT_EQ(answers, kRequests);
+}
+
+}  // namespace
+}  // namespace stillspin::bench

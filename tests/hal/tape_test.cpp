@@ -1,0 +1,84 @@
+// The tape: interrupts are put back between the same two pieces of the drive's code as when it was recorded.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "hal/hal_tape.h"
+
+namespace {
+
+std::string order;  // what ran, in turn
+
+// A window interrupt: reads its results, acts, makes a call of its own.
+void window() {
+  std::uint16_t results[TAPE_RESULTS];
+  tape_take_results(results, TAPE_RESULTS);
+  order += static_cast<char>('0' + results[0]);
+  tape_call();
+}
+
+void interrupted_by(std::uint16_t number) {
+  const std::uint16_t results[TAPE_RESULTS] = {number};
+  tape_note_results(results, TAPE_RESULTS);
+  order += static_cast<char>('0' + number);
+  tape_call();
+}
+
+// Three calls with code between them; what comes in them when it is recorded.
+void step(bool records) {
+  hal_tape_step_begin();
+  order += 'a';
+  tape_call();
+  if (records) interrupted_by(2);
+  if (records) interrupted_by(3);
+  order += 'b';
+  tape_tell(TAPE_ENABLE, nullptr, 0u);
+  tape_call();
+  if (records) interrupted_by(4);
+  order += 'c';
+  tape_call();
+  order += 'd';
+  hal_tape_step_end();
+}
+
+class Tape : public ::testing::Test {
+ protected:
+  void SetUp() override { order.clear(); }
+  void TearDown() override { hal_tape_start(TAPE_OFF, nullptr); }
+};
+
+TEST_F(Tape, InterruptsComeBackBetweenTheSamePieces) {
+  hal_tape_start(TAPE_RECORDS, nullptr);
+  interrupted_by(1);
+  step(true);
+  interrupted_by(5);
+  ASSERT_TRUE(hal_tape_finish_period());
+  const std::string recorded = order;
+  EXPECT_EQ(recorded, "1a23b4cd5");
+  const tape_period_t period = hal_tape.period;
+
+  order.clear();
+  hal_tape_start(TAPE_PLAYS, window);
+  hal_tape.period = period;
+  hal_tape.period.output_count = 0;
+  step(false);
+  EXPECT_TRUE(hal_tape_finish_period());
+  EXPECT_EQ(order, recorded);
+}
+
+TEST_F(Tape, AWindowThatNobodyReadsTearsIt) {
+  hal_tape_start(TAPE_PLAYS, [] {});
+  hal_tape.period.window_count = 1;
+  step(false);
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
+TEST_F(Tape, InputsThatAreLeftTearIt) {
+  hal_tape_start(TAPE_PLAYS, window);
+  hal_tape.period.input_count = 1;
+  step(false);
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
+}  // namespace
