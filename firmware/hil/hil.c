@@ -12,17 +12,14 @@
 #include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 
-#define ANSWER_MAX 200u  // 50 words of up to three octets and a mask for eight of them; sequence and check sum
-
 typedef struct {
   bool active, leaving;
+  bool answered, torn;  // a step has been, which may be asked for again; the last one
   volatile uint16_t heartbeat;
   uint16_t expected;
-  uint16_t answer[ANSWER_MAX];  // of the last step, to be given again
-  uint16_t count;
   uint32_t heard;  // cycles
-  uint16_t step_before[HIL_STEP_WORDS];
-  uint16_t answer_before[HIL_ANSWER_WORDS];
+  uint16_t shape[HIL_STEP_SHAPE];  // of the last step, whose words are on the tape
+  hil_answer_t before;             // the answer before the last
 } hil_t;
 
 static hil_t hil;
@@ -56,6 +53,16 @@ static void stop_bursts(void) {
   (void)hal_pwm_write(&none, HAL_PWM_LAST_TICK);
 }
 
+// The words that the first step is told against.
+static void clear_tape(void) {
+  tape_period_t* const p = &hal_tape.period;
+  for (uint16_t k = 0; k < TAPE_INPUTS; k++) p->inputs[k] = 0u;
+  for (uint16_t k = 0; k < TAPE_WINDOWS; k++) {
+    p->windows[k].call = 0u;
+    for (uint16_t n = 0; n < TAPE_RESULTS; n++) p->windows[k].results[n] = 0u;
+  }
+}
+
 hil_result_t hil_enter(void) {
   // In the loop already, the drive only believes that its power stage is on: it may begin anew at any time.
   if (!hil.active && (drive_is_energised() || !hal_pwm_is_tripped())) return HIL_ENERGISED;
@@ -68,6 +75,7 @@ hil_result_t hil_enter(void) {
   hil_reset();
   hil.active = true;
   hil.heard = hal_time_cycles();
+  clear_tape();
   hal_tape_start(TAPE_PLAYS, drive_window_interrupt);
   hal_irq_enable();
   return HIL_OK;
@@ -83,28 +91,36 @@ void hil_service(void) {
   if (hil.active && hal_time_cycles() - hil.heard > HIL_REST_S * HAL_TIME_CYCLES_PER_S) hil.leaving = true;
 }
 
-static void fill(tape_period_t* p, const uint16_t* words) {
-  const uint16_t results = words[1];
-  const uint16_t* from = &words[HIL_STEP_SHAPE];
-  p->window_count = words[0];
-  p->input_count = words[2];
-  for (uint16_t k = 0; k < p->input_count; k++) p->inputs[k] = *from++;
-  for (uint16_t k = 0; k < p->window_count; k++) {
-    p->windows[k].call = *from++;
-    for (uint16_t n = 0; n < results; n++) p->windows[k].results[n] = *from++;
-  }
+static void take_window(octet_reader_t* r, tape_window_t* w, uint16_t results) {
+  uint16_t words[HIL_WINDOW_WORDS] = {w->call};
+  for (uint16_t k = 0; k < results; k++) words[1u + k] = w->results[k];
+  delta_take(r, words, words, (uint16_t)(1u + results));
+  w->call = words[0];
+  for (uint16_t k = 0; k < results; k++) w->results[k] = words[1u + k];
 }
 
-// Only a step that is whole becomes the one before the next.
-static bool read_step(octet_reader_t* r, tape_period_t* p) {
-  static uint16_t words[HIL_STEP_WORDS];  // much for a stack
-  delta_take(r, words, hil.step_before, HIL_STEP_SHAPE);
-  if (words[0] > TAPE_WINDOWS || words[1] > TAPE_RESULTS || words[2] > TAPE_INPUTS) return false;
-  const uint16_t count = (uint16_t)(words[2] + words[0] * (1u + words[1]));
-  delta_take(r, &words[HIL_STEP_SHAPE], &hil.step_before[HIL_STEP_SHAPE], count);
-  if (!octets_fit(r)) return false;
-  for (uint16_t k = 0; k < HIL_STEP_SHAPE + count; k++) hil.step_before[k] = words[k];
-  fill(p, words);
+// Whether what is left is one step of a shape, neither more nor less.
+static bool is_whole(octet_reader_t r, const uint16_t* shape) {
+  uint16_t any[TAPE_INPUTS] = {0};
+  if (shape[0] > TAPE_WINDOWS || shape[1] > TAPE_RESULTS || shape[2] > TAPE_INPUTS) return false;
+  delta_take(&r, any, any, shape[2]);
+  for (uint16_t k = 0; k < shape[0]; k++) delta_take(&r, any, any, (uint16_t)(1u + shape[1]));
+  return octets_fit(&r);
+}
+
+// Onto the tape, which still has the words of the step before. Nothing is changed by a step that is not whole.
+static bool take_step(octet_reader_t* r) {
+  uint16_t shape[HIL_STEP_SHAPE];
+  delta_take(r, shape, hil.shape, HIL_STEP_SHAPE);
+  if (!is_whole(*r, shape)) return false;
+  for (uint16_t k = 0; k < HIL_STEP_SHAPE; k++) hil.shape[k] = shape[k];
+  if (hil.answered) hil_keep_answer(&hil.before, hil.torn, &hal_tape.period);
+  hal_tape_next_period();
+  tape_period_t* const p = &hal_tape.period;
+  p->window_count = shape[0];
+  p->input_count = shape[2];
+  delta_take(r, p->inputs, p->inputs, p->input_count);
+  for (uint16_t k = 0; k < p->window_count; k++) take_window(r, &p->windows[k], shape[1]);
   return true;
 }
 
@@ -115,39 +131,41 @@ static void play(void) {
   background_step(&drive);
 }
 
-void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* p, uint16_t* before) {
-  const uint16_t shape[HIL_ANSWER_SHAPE] = {torn ? 1u : 0u, p->output_count};
+static void shape_of(uint16_t* shape, bool torn, const tape_period_t* p) {
+  shape[0] = torn ? 1u : 0u;
+  shape[1] = p->output_count;
+}
+
+void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* p,
+                    const hil_answer_t* before) {
+  uint16_t shape[HIL_ANSWER_SHAPE];
+  shape_of(shape, torn, p);
   put_u16(w, sequence);
-  delta_put(w, shape, before, HIL_ANSWER_SHAPE);
-  delta_put(w, p->outputs, &before[HIL_ANSWER_SHAPE], p->output_count);
+  delta_put(w, shape, before->shape, HIL_ANSWER_SHAPE);
+  delta_put(w, p->outputs, before->outputs, p->output_count);
   put_u32(w, hil_signals_crc());
-  for (uint16_t k = 0; k < HIL_ANSWER_SHAPE; k++) before[k] = shape[k];
-  for (uint16_t k = 0; k < p->output_count; k++) before[HIL_ANSWER_SHAPE + k] = p->outputs[k];
 }
 
-static void write_answer(bool torn) {
-  octet_writer_t w = octet_writer(hil.answer, ANSWER_MAX);
-  hil_put_answer(&w, hil.expected, torn, &hal_tape.period, hil.answer_before);
-  hil.count = w.count;
+void hil_keep_answer(hil_answer_t* before, bool torn, const tape_period_t* p) {
+  shape_of(before->shape, torn, p);
+  for (uint16_t k = 0; k < p->output_count; k++) before->outputs[k] = p->outputs[k];
 }
 
+// Nothing changes a signal between two steps, so an answer that is asked for again is the same.
 hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer) {
   if (!hil.active) return HIL_NOT_ACTIVE;
   const uint16_t sequence = take_u16(step);
   hil.heard = hal_time_cycles();
-  const bool again = hil.count > 0u && sequence == (uint16_t)(hil.expected - 1u);
+  const bool again = hil.answered && sequence == (uint16_t)(hil.expected - 1u);
   if (!again) {
     if (sequence != hil.expected) return HIL_SEQUENCE;
-    hal_tape_next_period();
-    if (!read_step(step, &hal_tape.period)) {
-      hal_tape_next_period();
-      return HIL_FORMAT;
-    }
+    if (!take_step(step)) return HIL_FORMAT;
     play();
-    write_answer(!hal_tape_finish_period());
+    hil.torn = !hal_tape_finish_period();
+    hil.answered = true;
     hil.expected++;
   }
-  for (uint16_t k = 0; k < hil.count; k++) put_u8(answer, hil.answer[k]);
+  hil_put_answer(answer, sequence, hil.torn, &hal_tape.period, &hil.before);
   return HIL_OK;
 }
 

@@ -8,12 +8,12 @@
 // Entered only with the power stage off, left only by a reset: while it lasts the gates cannot be switched on. The
 // board's own period interrupt goes on, for the serial port and the watchdog alone.
 //
-//   step:   sequence u16, shape (windows, words of a result: 3 slices, 6 windows; inputs), then in one list the inputs
-//           and of each window call and results
+//   step:   sequence u16, shape (windows, words of a result: 3 slices, 6 windows; inputs), inputs, and each window: its
+//           call and its results
 //   answer: sequence u16, shape (torn, outputs), outputs, CRC-32 of the signals u32
 //
-// Shapes and lists are words against those of the step or answer before (firmware/hil/delta.h), which begin as zeros
-// when the loop is entered.
+// Each of these lists is words against those that last stood in the same place, of a step or of an answer
+// (firmware/hil/delta.h); zeros when the loop is entered.
 //
 // A step that is repeated (its answer was lost) is answered again and not carried out again. When none comes for
 // HIL_REST_S the board resets itself: the computer is gone, and a drive in the loop answers to nobody else.
@@ -34,9 +34,14 @@ extern "C" {
 #define HIL_REST_S 10u
 
 #define HIL_STEP_SHAPE 3u
-#define HIL_STEP_WORDS (HIL_STEP_SHAPE + TAPE_INPUTS + TAPE_WINDOWS * (1u + TAPE_RESULTS))
+#define HIL_WINDOW_WORDS (1u + TAPE_RESULTS)
 #define HIL_ANSWER_SHAPE 2u
-#define HIL_ANSWER_WORDS (HIL_ANSWER_SHAPE + TAPE_OUTPUTS)
+
+/// Words of answers, as they last stood in their places.
+typedef struct {
+  uint16_t shape[HIL_ANSWER_SHAPE];
+  uint16_t outputs[TAPE_OUTPUTS];
+} hil_answer_t;
 
 typedef enum { HIL_OK = 0, HIL_ENERGISED, HIL_BUSY, HIL_NOT_ACTIVE, HIL_SEQUENCE, HIL_FORMAT } hil_result_t;
 
@@ -52,9 +57,12 @@ hil_result_t hil_leave(void);
 /// One period.
 hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer);
 
-/// Writes the answer to a step of which `period` has the outputs; before[HIL_ANSWER_WORDS] is of the answer before and
-/// of this one afterwards. For the computer, which must expect the same.
-void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* period, uint16_t* before);
+/// Writes the answer to a step of which `period` has the outputs. For the computer, too, which must expect the same.
+void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* period,
+                    const hil_answer_t* before);
+
+/// That answer becomes the one before the next.
+void hil_keep_answer(hil_answer_t* before, bool torn, const tape_period_t* period);
 
 /// Background level, while active: notices that no step comes any more.
 void hil_service(void);

@@ -12,7 +12,7 @@
 
 namespace stillspin::bench {
 
-StepLoop::StepLoop(Ask ask) : ask_(std::move(ask)), before_(HIL_ANSWER_WORDS) {}
+StepLoop::StepLoop(Ask ask) : ask_(std::move(ask)) {}
 
 bool StepLoop::take(const TapedPeriod& period) {
   if (ended()) return false;  // the run goes on for some periods before it is broken off
@@ -56,16 +56,14 @@ void StepLoop::compare(const Octets& board, const TapedPeriod& period) {
 bool StepLoop::read_outputs(const Octets& answer, Words& outputs, bool& torn) {
   const Words octets(answer.begin(), answer.end());
   octet_reader_t r = octet_reader(octets.data(), static_cast<std::uint16_t>(octets.size()));
-  std::array<std::uint16_t, HIL_ANSWER_WORDS> words;
   (void)take_u16(&r);  // its number
-  delta_take(&r, words.data(), before_.data(), HIL_ANSWER_SHAPE);
-  torn = words[0] != 0;
-  const std::uint16_t count = words[1];
+  delta_take(&r, before_.shape, before_.shape, HIL_ANSWER_SHAPE);
+  torn = before_.shape[0] != 0;
+  const std::uint16_t count = before_.shape[1];
   if (count > TAPE_OUTPUTS) return false;
-  delta_take(&r, &words[HIL_ANSWER_SHAPE], &before_[HIL_ANSWER_SHAPE], count);
+  delta_take(&r, before_.outputs, before_.outputs, count);
   (void)take_u32(&r);  // the check sum
-  std::copy(words.begin(), words.begin() + HIL_ANSWER_SHAPE + count, before_.begin());
-  outputs.assign(words.begin() + HIL_ANSWER_SHAPE, words.begin() + HIL_ANSWER_SHAPE + count);
+  outputs.assign(before_.outputs, before_.outputs + count);
   return octets_fit(&r);
 }
 

@@ -56,7 +56,7 @@ class StepLoop {
 
   Ask ask_;
   std::uint64_t steps_ = 0;
-  Words before_;  // of the board's answer, to take the next one apart
+  hil_answer_t before_{};  // of the board, to take the next one apart
   Octets board_log_, native_log_;
   std::optional<Mismatch> mismatch_;
   std::optional<Refusal> refusal_;

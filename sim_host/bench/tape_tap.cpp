@@ -39,40 +39,40 @@ unsigned words_of(const tape_period_t& p) {
   return kSliceWords;
 }
 
-// The words of a step in the order of firmware/hil/hil.h.
-Words step_words(const tape_period_t& p) {
-  const unsigned results = words_of(p);
-  Words words{p.window_count, static_cast<std::uint16_t>(results), p.input_count};
-  words.insert(words.end(), p.inputs, p.inputs + p.input_count);
-  for (unsigned k = 0; k < p.window_count; k++) {
-    words.push_back(p.windows[k].call);
-    words.insert(words.end(), p.windows[k].results, p.windows[k].results + results);
-  }
-  return words;
-}
-
 // What was written; a record has no room for more.
 Octets octets_of(const octet_writer_t& w) {
   if (w.full) throw std::runtime_error("a period needs more octets than a record has");
   return Octets(w.octets, w.octets + w.count);
 }
 
-Octets step_of(const tape_period_t& p, std::uint16_t sequence, Words& before) {
+// Words against those that stood there, which they then are.
+void put(octet_writer_t& w, const std::uint16_t* words, std::uint16_t* before, std::size_t count) {
+  delta_put(&w, words, before, static_cast<std::uint16_t>(count));
+  std::copy(words, words + count, before);
+}
+
+// In the order of firmware/hil/hil.h.
+Octets step_of(const tape_period_t& p, std::uint16_t sequence, StepWords& before) {
   std::array<std::uint16_t, RECORD_BODY_MAX> room;
   octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
-  const Words words = step_words(p);
-  const auto lists = static_cast<std::uint16_t>(words.size() - HIL_STEP_SHAPE);
+  const unsigned results = words_of(p);
+  const Words shape{p.window_count, static_cast<std::uint16_t>(results), p.input_count};
   put_u16(&w, sequence);
-  delta_put(&w, words.data(), before.data(), HIL_STEP_SHAPE);
-  delta_put(&w, words.data() + HIL_STEP_SHAPE, before.data() + HIL_STEP_SHAPE, lists);
-  std::copy(words.begin(), words.end(), before.begin());
+  put(w, shape.data(), before.shape.data(), shape.size());
+  put(w, p.inputs, before.inputs.data(), p.input_count);
+  for (unsigned k = 0; k < p.window_count; k++) {
+    Words window{p.windows[k].call};
+    window.insert(window.end(), p.windows[k].results, p.windows[k].results + results);
+    put(w, window.data(), before.windows[k].data(), window.size());
+  }
   return octets_of(w);
 }
 
-Octets answer_of(const tape_period_t& p, std::uint16_t sequence, Words& before) {
+Octets answer_of(const tape_period_t& p, std::uint16_t sequence, hil_answer_t& before) {
   std::array<std::uint16_t, RECORD_BODY_MAX> room;
   octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
-  hil_put_answer(&w, sequence, false, &p, before.data());
+  hil_put_answer(&w, sequence, false, &p, &before);
+  hil_keep_answer(&before, false, &p);
   return octets_of(w);
 }
 
@@ -87,8 +87,7 @@ std::vector<std::int32_t> raw_signals() {
   };
 }
 
-TapeTap::TapeTap(TapeSink sink)
-    : sink_(std::move(sink)), step_before_(HIL_STEP_WORDS), answer_before_(HIL_ANSWER_WORDS) {}
+TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {}
 
 TapeTap::~TapeTap() {
   if (sink_) hal_tape_start(TAPE_OFF, nullptr);

@@ -4,9 +4,13 @@
 #ifndef STILLSPIN_SIM_HOST_BENCH_TAPE_TAP_HPP
 #define STILLSPIN_SIM_HOST_BENCH_TAPE_TAP_HPP
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
+
+#include "firmware/hil/hil.h"
+#include "hal/hal_tape.h"
 
 namespace stillspin::bench {
 
@@ -18,6 +22,13 @@ struct TapedPeriod {
   Octets step;                   // body of the step's request
   Octets answer;                 // body of the answer that it must have
   Words outputs;                 // what the drive told its hardware, as the answer has it
+};
+
+/// Words of steps, as they last stood in their places.
+struct StepWords {
+  std::array<std::uint16_t, HIL_STEP_SHAPE> shape{};
+  std::array<std::uint16_t, TAPE_INPUTS> inputs{};
+  std::array<std::array<std::uint16_t, HIL_WINDOW_WORDS>, TAPE_WINDOWS> windows{};
 };
 
 /// Called behind every period from power-on; false ends the run.
@@ -46,7 +57,8 @@ class TapeTap {
   TapeSink sink_;
   TapedPeriod period_;
   std::uint16_t sequence_ = 0;
-  Words step_before_, answer_before_;
+  StepWords step_before_;
+  hil_answer_t answer_before_{};
   bool begun_ = false;
 };
 
