@@ -141,12 +141,15 @@ def capture(result: Capture) -> None:
 
 def loop(rows: Iterable[Row]) -> None:
     """Boards in the loop: what they and the virtual drive came to."""
-    table = _table("scenario", "run", "way", "virtual drive", "board", "", "steps", "steps/s", "first difference")
+    table = _table(
+        "scenario", "run", "extent", "way", "virtual drive", "board", "", "steps", "steps/s", "first difference"
+    )
     for row in rows:
         word = Text("identical", style="green") if row.identical else Text("NOT IDENTICAL", style="red")
         where = f"step {row.step}: {row.words}" if row.step is not None else row.lost
+        what = row.scenario, row.run, "whole" if row.whole else "start", row.link
         hashes = row.native[:12], row.board[:12]
-        table.add_row(row.scenario, row.run, row.link, *hashes, word, str(row.steps), f"{row.rate:.0f}", Text(where))
+        table.add_row(*what, *hashes, word, str(row.steps), f"{row.rate:.0f}", Text(where))
     _print(table)
 
 

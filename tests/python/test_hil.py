@@ -77,7 +77,7 @@ KINDS = {
     "A09": "id_3",  # locked rotor, encoder
     "A12": "hysteresis",  # slices instead of windows, which interrupt the control step
     "S04": "limited",  # a link that moves
-    "commission": "bench",
+    "commission": "motor",
 }
 """One run of every kind that a step has."""
 
@@ -91,6 +91,7 @@ def test_every_kind_of_run_goes_through_the_loop(link, way, tmp_path):
     assert done.exit_code == 0, done.output
     rows = json.loads(file.read_text())["runs"]
     assert {row["scenario"]: row["run"] for row in rows} == KINDS
+    assert not any(row["whole"] for row in rows)
     assert all(row["board"] == row["native"] and row["steps"] > 2000 for row in rows)
 
 
@@ -156,15 +157,17 @@ def test_a_board_that_leaves_the_loop_refuses_its_next_step(requester, play):
 def test_results_are_kept_run_by_run(tmp_path):
     file = tmp_path / "results.json"
     results = Results(file)
-    results.add(Row("A10", "creep", "can", "r1", "aa", "aa", 10, 2.0))
-    results.add(Row("A10", "creep", "serial", "r1", lost="unplugged"))
+    results.add(Row("A10", "creep", "ideal", True, "can", "r1", "aa", "aa", 10, 2.0))
+    results.add(Row("A10", "creep", "ideal", True, "serial", "r1", lost="unplugged"))
     later = Results(file)
-    later.add(Row("A10", "creep", "serial", "r2", "aa", "ab", 10, 2.0, step=9, words="x"))
+    later.add(Row("A10", "creep", "ideal", True, "serial", "r2", "aa", "ab", 10, 2.0, step=9, words="x"))
+    later.add(Row("A10", "creep", "ideal", False, "serial", "r2", "aa", "aa", 5, 2.0))
     kept = Results(file).rows
-    assert kept["A10", "creep", "can"].identical
-    assert kept["A10", "creep", "can"].rate == 5.0
-    assert not kept["A10", "creep", "serial"].identical
-    assert kept["A10", "creep", "serial"].revision == "r2"
+    assert kept["A10", "creep", "ideal", True, "can"].identical
+    assert kept["A10", "creep", "ideal", True, "can"].rate == 5.0
+    assert not kept["A10", "creep", "ideal", True, "serial"].identical
+    assert kept["A10", "creep", "ideal", False, "serial"].identical
+    assert kept["A10", "creep", "ideal", True, "serial"].revision == "r2"
     file.write_text("[]")
     with pytest.raises(InputError, match="something else"):
         Results(file)

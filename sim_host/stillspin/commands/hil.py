@@ -17,7 +17,7 @@ from stillspin.commands.connection import DriveOption, wanted
 from stillspin.drive.requester import Requester
 from stillspin.errors import InputError
 from stillspin.hil import Difference, Loop, runs
-from stillspin.hil.results import Results, Row, row
+from stillspin.hil.results import Results, Row, begun, ended
 from stillspin.hil.runs import LoopRun
 from stillspin.link import address
 from stillspin.link.errors import DriveError, RefusedError
@@ -105,12 +105,13 @@ def _step_through(chosen: list[LoopRun], where: str, results: Results, native: c
     with _loop(where) as loop:
         for run in chosen:
             title = f"{run.scenario} {run.name}"
+            new = begun(run, link, of)
             try:
                 with PhaseBar(Console(stderr=True)) as bar:
                     result = loop.run(native, run.play, partial(bar.show, phase=title))
-                new = row(run.scenario, run.name, link, of, result)
+                new = ended(new, result)
             except DriveError as error:
-                new = Row(run.scenario, run.name, link, of, lost=str(error))
+                new = replace(new, lost=str(error))
                 results.add(new)
                 yield new
                 if isinstance(error, RefusedError):
@@ -136,7 +137,7 @@ def _loop(where: str) -> Iterator[Loop]:
 
 
 def _tell(new: Row) -> Row:
-    title = f"{new.scenario} {new.run}"
+    title = f"{new.scenario} {new.run}" + ("" if new.whole else " (its start)")
     rate = f"{new.steps} steps in {new.seconds:.1f} s ({new.rate:.0f} steps/s)"
     if new.lost:
         print(f"{title}: BROKE OFF: {new.lost}", flush=True)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from stillspin.errors import InputError
 from stillspin.hil.loop import LoopResult
+from stillspin.hil.runs import LoopRun
+
+Key = tuple[str, str, str, bool, str]
 
 
 @dataclass(frozen=True)
@@ -17,6 +20,8 @@ class Row:
     """One run over one way to the board.
 
     Attributes:
+        profile: of the plant.
+        whole: to its end; only its start otherwise.
         link: the way: serial or can.
         board, native: hashes over everything that the two said.
         seconds: how long `steps` took.
@@ -27,6 +32,8 @@ class Row:
 
     scenario: str
     run: str
+    profile: str
+    whole: bool
     link: str
     revision: str
     board: str = ""
@@ -49,26 +56,28 @@ class Row:
         return self.steps / self.seconds if self.seconds > 0.0 else 0.0
 
     @property
-    def key(self) -> tuple[str, str, str]:
+    def key(self) -> Key:
         """Which run over which way."""
-        return self.scenario, self.run, self.link
+        return self.scenario, self.run, self.profile, self.whole, self.link
 
 
-def row(scenario: str, run: str, link: str, revision: str, result: LoopResult) -> Row:
-    """A run that came to its end, or to its first difference."""
+def begun(run: LoopRun, link: str, revision: str) -> Row:
+    """A run of which nothing is known yet."""
+    return Row(run.scenario, run.name, run.profile, run.whole, link, revision)
+
+
+def ended(row: Row, result: LoopResult) -> Row:
+    """The row of a run that came to its end, or to its first difference."""
     found = result.difference
-    return Row(
-        scenario,
-        run,
-        link,
-        revision,
-        result.board,
-        result.native,
-        result.steps,
-        round(result.seconds, 3),
-        found.step if found else None,
-        found.words if found else "",
-        result.reason,
+    return replace(
+        row,
+        board=result.board,
+        native=result.native,
+        steps=result.steps,
+        seconds=round(result.seconds, 3),
+        step=found.step if found else None,
+        words=found.words if found else "",
+        ended=result.reason,
     )
 
 
@@ -82,7 +91,7 @@ class Results:
             InputError: it holds something else, or cannot be read.
         """
         self._file = file
-        self.rows: dict[tuple[str, str, str], Row] = {}
+        self.rows: dict[Key, Row] = {}
         if file and file.exists():
             self._read(file)
 

@@ -20,11 +20,18 @@ _CHECK_COMMISSION = 0.4  # s from power-on
 
 @dataclass(frozen=True)
 class LoopRun:
-    """One run of a scenario, or the commissioning, whose `scenario` is called so."""
+    """One run of a scenario, or the commissioning, whose `scenario` is called so.
+
+    Attributes:
+        profile: of the plant.
+        whole: to its end, not its start alone.
+    """
 
     scenario: str
     name: str
     play: Play
+    profile: str
+    whole: bool
 
 
 SettingsOf = Callable[[str], Settings]
@@ -50,10 +57,16 @@ def named(wanted: Sequence[str], settings: SettingsOf, native: NativeCore, *, ch
 def _runs(name: str, settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
     if name == COMMISSION:
         chosen = settings(resources.DEFAULT_MOTOR)
-        return [LoopRun(COMMISSION, chosen.profile.name, _commissioning(chosen, check=check))]
+        play = _commissioning(chosen, check=check)
+        return [LoopRun(COMMISSION, "motor", play, chosen.profile.name, not check)]
     scenario = scenario_file.load(name)
-    jobs = execute.prepare(scenario, settings(scenario.motor), native)
-    return [LoopRun(job.scenario, job.run.name, _of_job(_shortened(job) if check else job)) for job in jobs]
+    chosen = settings(scenario.motor)
+    jobs = execute.prepare(scenario, chosen, native)
+    profile = chosen.profile.name
+    return [
+        LoopRun(job.scenario, job.run.name, _of_job(_shortened(job) if check else job), profile, not check)
+        for job in jobs
+    ]
 
 
 def _shortened(job: Job) -> Job:
