@@ -31,8 +31,8 @@ static void write_frame(drive_t* d, const svpwm_pattern_t* p, const svpwm_pulses
   const sampling_config_t* const c = &d->config.modulator.sampling;
   hal_pwm_frame_t f;
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
-    f.rise_tick[k] = (uint16_t)command->rise[k];
-    f.fall_tick[k] = (uint16_t)command->fall[k];
+    f.rise_tick[k] = (uint16_t)command->at[k];
+    f.fall_tick[k] = (uint16_t)command->at[svpwm_fall_of(k)];
     const bool used = k < p->window_count;
     f.burst_start_tick[k] = used ? (uint16_t)svpwm_burst_start(c, &p->windows[k]) : HAL_PWM_NONE;
     f.burst_end_tick[k] = used ? (uint16_t)svpwm_burst_end(c, &p->windows[k]) : HAL_PWM_NONE;
@@ -62,16 +62,16 @@ void drive_modulate(drive_t* d) {
   svpwm_pattern_t pattern;
   svpwm_pulses_t command;
   const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d), asked_q16,
-                                                   d->samples.link_q16, &pattern);
+                                                   d->samples.link_q16, &pattern.pulses);
   if (result.limited && c->closed) {
     const ab_t excess_q16 = {asked_q16.alpha - result.realised_q16.alpha, asked_q16.beta - result.realised_q16.beta};
     current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
     d->limits |= LIMIT_VOLTAGE;
   }
-  const dead_time_edges_t uncertain =
-      dead_time_compensate(&d->config.dead_time, &pattern.pulses, current_q20,
-                           d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16, &command);
-  dead_time_guard_windows(&d->config.dead_time, &d->config.modulator.sampling, &command, uncertain, &pattern);
+  svpwm_arrival_t arrival;
+  dead_time_compensate(&d->config.dead_time, &pattern.pulses, current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2,
+                       d->samples.link_q16, &command, &arrival);
+  svpwm_find_windows(&d->config.modulator.sampling, &arrival, &pattern);
   hal_profile_step(CYCLES_MODULATE);
   write_frame(d, &pattern, &command);
 }

@@ -6,13 +6,13 @@ static void advance(alternating_state_t* s) {
 }
 
 static void put_first(svpwm_pulses_t* p, uint16_t leg, int16_t length) {
-  p->rise[leg] = SVPWM_FIRST_TICK;
-  p->fall[leg] = (int16_t)(SVPWM_FIRST_TICK + length);
+  p->at[leg] = SVPWM_FIRST_TICK;
+  p->at[svpwm_fall_of(leg)] = (int16_t)(SVPWM_FIRST_TICK + length);
 }
 
 static void put_last(svpwm_pulses_t* p, uint16_t leg, int16_t length) {
-  p->rise[leg] = (int16_t)(SVPWM_LAST_TICK - length);
-  p->fall[leg] = SVPWM_LAST_TICK;
+  p->at[leg] = (int16_t)(SVPWM_LAST_TICK - length);
+  p->at[svpwm_fall_of(leg)] = SVPWM_LAST_TICK;
 }
 
 // The pulse of x and the longer one of the pair add up to 9401 ticks at most: they do not meet.
@@ -29,12 +29,12 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
     put_first(pulses, longer, on_longer);
     put_first(pulses, shorter, on_shorter);
     put_last(pulses, x, on_x);
-    pulses->order = svpwm_order(longer, shorter, shorter, longer, x, x);
+    pulses->order = svpwm_order(longer, shorter, svpwm_fall_of(shorter), svpwm_fall_of(longer), x, svpwm_fall_of(x));
   } else {
     put_first(pulses, x, on_x);
     put_last(pulses, longer, on_longer);
     put_last(pulses, shorter, on_shorter);
-    pulses->order = svpwm_order(x, x, longer, shorter, longer, shorter);
+    pulses->order = svpwm_order(x, svpwm_fall_of(x), longer, shorter, svpwm_fall_of(longer), svpwm_fall_of(shorter));
   }
   advance(s);
 }

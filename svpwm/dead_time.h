@@ -9,7 +9,7 @@
 #ifndef STILLSPIN_SVPWM_DEAD_TIME_H
 #define STILLSPIN_SVPWM_DEAD_TIME_H
 
-#include "svpwm/windows.h"
+#include "svpwm/pattern.h"
 
 typedef struct {
   int16_t blocked_ticks;   // dead time + turn-on delay, 0..240
@@ -20,24 +20,17 @@ typedef struct {
   // Set by dead_time_design.
   int32_t per_band_q29, third_drop_q24, side_drop_q24;  // of band and drop
   int16_t blocked_delay_ticks, released_delay_ticks;    // of an edge where the sign is trusted
+  int32_t certain_q20;                                  // current from which on it is trusted and certain
 } dead_time_config_t;
-
-/// Edges whose sign of the current is not certain: bit `leg` a rising one, bit 3 + `leg` a falling one.
-typedef uint16_t dead_time_edges_t;
 
 /// Derives the constants; the first five members are set by hand.
 void dead_time_design(dead_time_config_t* c);
 
-/// Commands that make the motor see the pattern's edges. current_q20: mean phase currents in that period, alpha-beta,
-/// A; admittance_q30: mean T/L, A per V and period; link_q16: DC link, V. Returns the edges where the current is below
-/// edge_band: with the other sign than predicted they come up to blocked - released ticks early or late.
-dead_time_edges_t dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
-                                       int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command);
-
-/// Keeps the samples of a pattern off the uncertain edges: a window begins where its edge has come at the latest, and
-/// ends where it can come at the earliest; one that is then too short goes.
-void dead_time_guard_windows(const dead_time_config_t* c, const sampling_config_t* sampling,
-                             const svpwm_pulses_t* command, dead_time_edges_t uncertain, svpwm_pattern_t* pattern);
+/// Commands that make the motor see the wanted edges. current_q20: mean phase currents in that period, alpha-beta, A;
+/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V. An edge where the current is below edge_band is
+/// not certain: with the other sign than predicted it comes up to blocked - released ticks early or late.
+void dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
+                          int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command, svpwm_arrival_t* arrival);
 
 /// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
 ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20);

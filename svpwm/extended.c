@@ -37,13 +37,21 @@ void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_
   int16_t window = longest_window(t1, t2, (int16_t)(SVPWM_ROOM_TICKS - c->zero_ticks), c);
   if (window == 0) window = longest_window(t1, t2, SVPWM_ROOM_TICKS, c);
   const layout_t l = layout_for(t1, t2, window);
-  pulses->rise[t->hi] = SVPWM_FIRST_TICK;
-  pulses->rise[t->mid] = (int16_t)(SVPWM_FIRST_TICK + l.first);
-  pulses->rise[t->lo] = (int16_t)(SVPWM_FIRST_TICK + l.first + l.second);
-  pulses->fall[t->hi] = (int16_t)(pulses->rise[t->hi] + t1 + t2 + l.low_on);
-  pulses->fall[t->mid] = (int16_t)(pulses->rise[t->mid] + t2 + l.low_on);
-  pulses->fall[t->lo] = (int16_t)(pulses->rise[t->lo] + l.low_on);
-  pulses->order = svpwm_order(t->hi, t->mid, t->lo, t->hi, t->mid, t->lo);
+  const int16_t hi = SVPWM_FIRST_TICK;
+  const int16_t mid = (int16_t)(hi + l.first);
+  const int16_t lo = (int16_t)(mid + l.second);
+  pulses->at[t->hi] = hi;
+  pulses->at[t->mid] = mid;
+  pulses->at[t->lo] = lo;
+  pulses->at[svpwm_fall_of(t->hi)] = (int16_t)(hi + t1 + t2 + l.low_on);
+  pulses->at[svpwm_fall_of(t->mid)] = (int16_t)(mid + t2 + l.low_on);
+  pulses->at[svpwm_fall_of(t->lo)] = (int16_t)(lo + l.low_on);
+  pulses->order = svpwm_order(t->hi, t->mid, t->lo, svpwm_fall_of(t->hi), svpwm_fall_of(t->mid), svpwm_fall_of(t->lo));
+}
+
+// All legs begin, then they end, the one that is on longest first and last.
+static uint32_t nested_order(const svpwm_on_time_t* t) {
+  return svpwm_order(t->hi, t->mid, t->lo, svpwm_fall_of(t->lo), svpwm_fall_of(t->mid), svpwm_fall_of(t->hi));
 }
 
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
@@ -54,16 +62,17 @@ void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
   const int16_t common = q_max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[t->lo]));
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
     const int16_t on = (int16_t)(common + t->leg[k]);
-    pulses->rise[k] = (int16_t)(middle - on / 2);
-    pulses->fall[k] = (int16_t)(pulses->rise[k] + on);
+    const int16_t rise = (int16_t)(middle - on / 2);
+    pulses->at[k] = rise;
+    pulses->at[svpwm_fall_of(k)] = (int16_t)(rise + on);
   }
-  pulses->order = svpwm_order(t->hi, t->mid, t->lo, t->lo, t->mid, t->hi);
+  pulses->order = nested_order(t);
 }
 
 void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
-    pulses->rise[k] = SVPWM_FIRST_TICK;
-    pulses->fall[k] = (int16_t)(SVPWM_FIRST_TICK + SVPWM_PULSE_MIN_TICKS + t->leg[k] - t->leg[t->lo]);
+    pulses->at[k] = SVPWM_FIRST_TICK;
+    pulses->at[svpwm_fall_of(k)] = (int16_t)(SVPWM_FIRST_TICK + SVPWM_PULSE_MIN_TICKS + t->leg[k] - t->leg[t->lo]);
   }
-  pulses->order = svpwm_order(t->hi, t->mid, t->lo, t->lo, t->mid, t->hi);
+  pulses->order = nested_order(t);
 }

@@ -1,4 +1,4 @@
-// The modulator: from a voltage vector to a pattern, with the layout that the estimator wants.
+// The modulator: from a voltage vector to three pulses, with the layout that the estimator wants.
 
 #ifndef STILLSPIN_SVPWM_MODULATOR_H
 #define STILLSPIN_SVPWM_MODULATOR_H
@@ -36,6 +36,6 @@ bool modulator_config_valid(const modulator_config_t* c);
 void modulator_reset(modulator_t* s);
 
 modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, excitation_t excitation,
-                                  ab_t voltage_q16, int32_t link_q16, svpwm_pattern_t* pattern);
+                                  ab_t voltage_q16, int32_t link_q16, svpwm_pulses_t* pulses);
 
 #endif

@@ -24,7 +24,7 @@ svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16) {
   const int32_t spread_q4 = q_mul_sat(largest(v) - smallest(v), ticks_per_volt_q20, 32);
   t.limited = spread_q4 > SVPWM_SPREAD_MAX_TICKS * 16L;
   if (t.limited) {
-    const int32_t share_q30 = q_div(SVPWM_SPREAD_MAX_TICKS * 16L, spread_q4, 30);
+    const int32_t share_q30 = q_over(SVPWM_SPREAD_MAX_TICKS * 16L, q_invert(spread_q4), 30);
     t.realised_q16.alpha = q_mul(voltage_q16.alpha, share_q30, 30);
     t.realised_q16.beta = q_mul(voltage_q16.beta, share_q30, 30);
     v = frame_inverse_clarke(t.realised_q16);

@@ -26,37 +26,41 @@
 
 #define SVPWM_EDGES (2u * SVPWM_LEGS)
 
+/// Edges have numbers: leg k rises at edge k and falls at edge SVPWM_LEGS + k.
 typedef struct {
-  int16_t rise[SVPWM_LEGS];
-  int16_t fall[SVPWM_LEGS];
-  uint16_t order;  // of the six edges in time: their legs, two bits each, the first one lowest; a leg rises, then falls
+  int16_t at[SVPWM_EDGES];
+  uint32_t order;  // the edges' numbers in the order of time, four bits each, the first one lowest
 } svpwm_pulses_t;
 
+static inline uint16_t svpwm_fall_of(uint16_t leg) { return (uint16_t)(SVPWM_LEGS + leg); }
+
+/// How long a leg is high.
+static inline int32_t svpwm_on_ticks(const svpwm_pulses_t* p, uint16_t leg) {
+  return p->at[SVPWM_LEGS + leg] - p->at[leg];
+}
+
 /// Every layout knows in which order its edges come, so nobody has to sort them.
-static inline uint16_t svpwm_order(uint16_t e1, uint16_t e2, uint16_t e3, uint16_t e4, uint16_t e5, uint16_t e6) {
-  const uint32_t first = (uint32_t)e1 | (uint32_t)e2 << 2 | (uint32_t)e3 << 4;
-  const uint32_t second = (uint32_t)e4 | (uint32_t)e5 << 2 | (uint32_t)e6 << 4;
-  return (uint16_t)(first | second << 6);
+static inline uint32_t svpwm_order(uint16_t e1, uint16_t e2, uint16_t e3, uint16_t e4, uint16_t e5, uint16_t e6) {
+  return (uint32_t)e1 | (uint32_t)e2 << 4 | (uint32_t)e3 << 8 | (uint32_t)e4 << 12 | (uint32_t)e5 << 16 |
+         (uint32_t)e6 << 20;
 }
 
-/// A walk along the edges; begins with {order, 0}.
+/// A walk along the edges takes them off an order.
+static inline uint32_t svpwm_next_edge(uint32_t* order) {
+  const uint32_t edge = *order & 15u;
+  *order >>= 4;
+  return edge;
+}
+
+/// When edges come at the motor, by their numbers. Both are the instant wanted where that is certain.
 typedef struct {
-  uint32_t rest;   // the order of those to come
-  uint32_t state;  // of the legs behind the last one
-} svpwm_walk_t;
-
-/// The next edge: its leg, and whether it rises.
-static inline uint16_t svpwm_next_edge(svpwm_walk_t* w, bool* rises) {
-  const uint32_t leg = w->rest & 3u;
-  *rises = (w->state >> leg & 1u) == 0u;
-  w->rest >>= 2;
-  w->state ^= (uint32_t)1u << leg;
-  return (uint16_t)leg;
-}
+  int16_t earliest[SVPWM_EDGES];
+  int16_t latest[SVPWM_EDGES];
+} svpwm_arrival_t;
 
 /// An interval of constant switching state that is long enough to sample in.
 typedef struct {
-  int16_t begin, end;  // its edges
+  int16_t begin, end;  // its edges: the first at the latest, the last at the earliest
   uint16_t state;      // bit k: leg k high; 0 and 7 are the zero vectors
 } svpwm_window_t;
 

@@ -5,12 +5,12 @@
 
 // How long a leg has been high at a tick.
 static int32_t passed(const svpwm_pulses_t* p, uint16_t leg, int32_t tick) {
-  return q_clamp(tick - p->rise[leg], 0, p->fall[leg] - p->rise[leg]);
+  return q_clamp(tick - p->at[leg], 0, svpwm_on_ticks(p, leg));
 }
 
 // Ripple of a leg, of the DC-link voltage and 1/N of a tick: N clamp(t - r, 0, f - r) - (f - r) t.
 static int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, int32_t tick) {
-  return passed(p, leg, tick) * (int32_t)SVPWM_PERIOD_TICKS - (p->fall[leg] - p->rise[leg]) * tick;
+  return passed(p, leg, tick) * (int32_t)SVPWM_PERIOD_TICKS - svpwm_on_ticks(p, leg) * tick;
 }
 
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16) {
@@ -23,9 +23,9 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16) {
 }
 
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
-  const int32_t a = p->fall[0] - p->rise[0];
-  const int32_t b = p->fall[1] - p->rise[1];
-  const int32_t c = p->fall[2] - p->rise[2];
+  const int32_t a = svpwm_on_ticks(p, 0);
+  const int32_t b = svpwm_on_ticks(p, 1);
+  const int32_t c = svpwm_on_ticks(p, 2);
   const int32_t ticks = (int32_t)SVPWM_PERIOD_TICKS;
   const ab_t v = {q_mul_floor((2 * a - b - c) * ticks, q_mul_floor(link_q16, PER_THIRD_Q58, 28), 30),
                   q_mul_floor((b - c) * ticks, q_mul_floor(link_q16, PER_SIDE_Q58, 28), 30)};
@@ -34,24 +34,26 @@ ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
 
 // Three times a leg less the sum of the three. A leg has been high for nothing at its rise and for all of its pulse at
 // its fall, so at both only the sum of the times that all legs have been high is needed, which grows along the edges.
-void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16, svpwm_edges_t* at) {
+void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16,
+                           int32_t at_q20[SVPWM_EDGES]) {
   const int32_t gain_q28 = q_mul_floor(q_mul_floor(link_q16, admittance_q30, 26), PER_THIRD_Q58, 30);
-  const int32_t on3[SVPWM_LEGS] = {3 * (p->fall[0] - p->rise[0]), 3 * (p->fall[1] - p->rise[1]),
-                                   3 * (p->fall[2] - p->rise[2])};
-  const int32_t sum = (on3[0] + on3[1] + on3[2]) / 3;
-  svpwm_walk_t walk = {p->order, 0};
+  const int32_t a = svpwm_on_ticks(p, 0);
+  const int32_t b = svpwm_on_ticks(p, 1);
+  const int32_t c = svpwm_on_ticks(p, 2);
+  const int32_t rest[SVPWM_EDGES] = {2 * a - b - c, 2 * b - c - a, 2 * c - a - b,
+                                     2 * a - b - c, 2 * b - c - a, 2 * c - a - b};
+  const int32_t own[SVPWM_EDGES] = {0, 0, 0, 3 * a, 3 * b, 3 * c};
+  static const int32_t step[SVPWM_EDGES] = {1, 1, 1, -1, -1, -1};
+  uint32_t order = p->order;
   int32_t passed = 0;
   int32_t before = 0;
   int32_t high = 0;
   for (uint16_t k = 0; k < SVPWM_EDGES; k++) {
-    bool rises;
-    const uint16_t leg = svpwm_next_edge(&walk, &rises);
-    const int32_t tick = rises ? p->rise[leg] : p->fall[leg];
-    const int32_t own = rises ? 0 : on3[leg];
+    const uint32_t edge = svpwm_next_edge(&order);
+    const int32_t tick = p->at[edge];
     passed += high * (tick - before);
     before = tick;
-    high += rises ? 1 : -1;
-    const int32_t ripple = (own - passed) * (int32_t)SVPWM_PERIOD_TICKS - (on3[leg] - sum) * tick;
-    *(rises ? &at->rise_q20[leg] : &at->fall_q20[leg]) = q_mul_floor(ripple, gain_q28, 28);
+    high += step[edge];
+    at_q20[edge] = q_mul_floor((own[edge] - passed) * (int32_t)SVPWM_PERIOD_TICKS - rest[edge] * tick, gain_q28, 28);
   }
 }

@@ -18,13 +18,9 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16);
 /// Mean voltage of a period with these pulses, V Q16.
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
 
-/// Ripple current of each phase at its own leg's edges, A Q20.
-typedef struct {
-  int32_t rise_q20[SVPWM_LEGS];
-  int32_t fall_q20[SVPWM_LEGS];
-} svpwm_edges_t;
-
-/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together up to 1000 A.
-void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16, svpwm_edges_t* at);
+/// Ripple current of each edge's own phase at that edge, A Q20. admittance_q30: mean T/L, A per V and period; link_q16:
+/// DC link, V; together up to 1000 A.
+void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16,
+                           int32_t at_q20[SVPWM_EDGES]);
 
 #endif

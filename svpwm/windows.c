@@ -22,24 +22,36 @@ static uint16_t take(const sampling_config_t* c, svpwm_window_t w[], uint16_t co
 
 // Most intervals are short; the period's end cuts some of the others.
 static uint16_t look_at(const sampling_config_t* c, svpwm_window_t w[], uint16_t count, const svpwm_window_t* fresh) {
-  if (fresh->end - fresh->begin < c->settle_ticks + c->burst_ticks + c->span_min_ticks) return count;
   return (span(c, fresh) >= c->span_min_ticks) ? take(c, w, count, fresh) : count;
 }
 
-void svpwm_find_windows(const sampling_config_t* c, svpwm_pattern_t* pattern) {
-  const svpwm_pulses_t* const p = &pattern->pulses;
-  svpwm_walk_t walk = {p->order, 0};
+// An edge that may come before the one that has ended the last window.
+static uint16_t shorten(const sampling_config_t* c, svpwm_window_t w[], uint16_t count, int16_t end) {
+  if (count == 0u) return 0;
+  svpwm_window_t* const last = &w[count - 1u];
+  last->end = q_min16(last->end, end);
+  return (span(c, last) >= c->span_min_ticks) ? count : (uint16_t)(count - 1u);
+}
+
+void svpwm_find_windows(const sampling_config_t* c, const svpwm_arrival_t* arrival, svpwm_pattern_t* pattern) {
+  static const uint16_t leg_bit[SVPWM_EDGES] = {1, 2, 4, 1, 2, 4};
+  const int32_t shortest = c->settle_ticks + c->burst_ticks + c->span_min_ticks;
+  uint32_t order = pattern->pulses.order;
   svpwm_window_t w = {0, 0, 0};
+  int16_t ended = 0;
   uint16_t count = 0;
   for (uint16_t k = 0; k < SVPWM_EDGES; k++) {
-    bool rises;
-    w.state = (uint16_t)walk.state;
-    const uint16_t leg = svpwm_next_edge(&walk, &rises);
-    w.end = rises ? p->rise[leg] : p->fall[leg];
-    count = look_at(c, pattern->windows, count, &w);
-    w.begin = w.end;
+    const uint32_t edge = svpwm_next_edge(&order);
+    w.end = arrival->earliest[edge];
+    if (w.end < ended) count = shorten(c, pattern->windows, count, w.end);
+    if (w.end - w.begin >= shortest) {
+      count = look_at(c, pattern->windows, count, &w);
+      ended = w.end;
+    }
+    w.begin = q_max16(w.begin, arrival->latest[edge]);
+    w.state ^= leg_bit[edge];
   }
-  w.state = 0;
   w.end = SVPWM_PERIOD_TICKS;
-  pattern->window_count = look_at(c, pattern->windows, count, &w);
+  if (w.end - w.begin >= shortest) count = look_at(c, pattern->windows, count, &w);
+  pattern->window_count = count;
 }

@@ -13,8 +13,10 @@ typedef struct {
   int16_t last_tick;       // the last burst must have been triggered by here, so that it is read before the period ends
 } sampling_config_t;
 
-/// Fills windows and window_count of the pattern from its pulses: the longest ones, in the order of time.
-void svpwm_find_windows(const sampling_config_t* c, svpwm_pattern_t* pattern);
+/// Fills windows and window_count of the pattern: the longest ones, in the order of time. Samples keep off edges that
+/// are not certain: a window begins when the edges before it have come at the latest, and ends when those behind it can
+/// come at the earliest.
+void svpwm_find_windows(const sampling_config_t* c, const svpwm_arrival_t* arrival, svpwm_pattern_t* pattern);
 
 /// Trigger instants of the two bursts of a window.
 static inline int16_t svpwm_burst_start(const sampling_config_t* c, const svpwm_window_t* w) {

@@ -18,7 +18,7 @@
 
 // All lower devices on for the whole period, and three windows in it.
 static const svpwm_pattern_t short_circuit = {
-    {{-1, -1, -1}, {-1, -1, -1}, 0}, {{0, 3300, 0}, {3300, 6600, 0}, {6600, 10000, 0}}, 3};
+    {{-1, -1, -1, -1, -1, -1}, 0}, {{0, 3300, 0}, {3300, 6600, 0}, {6600, 10000, 0}}, 3};
 
 const svpwm_pattern_t* start_short_circuit(void) { return &short_circuit; }
 

@@ -55,8 +55,8 @@ TEST(Alternating, MeanVoltageAndPulseLengths) {
     ASSERT_GE(lasts(p, static_cast<std::uint16_t>(7u ^ single)), pulse - spread - 1);
     ASSERT_EQ(lasts(p, 7), 0);
     // the room is used to both ends
-    ASSERT_EQ(p.rise[pair_first ? y : x], SVPWM_FIRST_TICK);
-    ASSERT_EQ(p.fall[pair_first ? x : y], SVPWM_LAST_TICK);
+    ASSERT_EQ(rise(p, pair_first ? y : x), SVPWM_FIRST_TICK);
+    ASSERT_EQ(fall(p, pair_first ? x : y), SVPWM_LAST_TICK);
   }
 }
 

@@ -24,6 +24,7 @@ dead_time_config_t config() {
                           0,
                           0,
                           0,
+                          0,
                           0};
   dead_time_design(&c);
   return c;
@@ -45,10 +46,10 @@ svpwm_pulses_t some_pulses(Random& random) {
   modulator_config_t c = default_modulator();
   modulator_t s;
   modulator_reset(&s);
-  svpwm_pattern_t p;
+  svpwm_pulses_t p;
   modulator_step(&s, &c, static_cast<excitation_t>(random.below(3)),
                  raw_ab(random.direction(random.between(0.0, 90.0)), 16), raw(kLink, 16), &p);
-  return p.pulses;
+  return p;
 }
 
 TEST(DeadTime, TheMotorSeesTheWantedEdges) {
@@ -61,11 +62,12 @@ TEST(DeadTime, TheMotorSeesTheWantedEdges) {
     const svpwm_pulses_t wanted = some_pulses(random);
     const Vector mean = random.direction(random.between(0.0, 12.0));
     svpwm_pulses_t command;
-    dead_time_compensate(&c, &wanted, raw_ab(mean, 20), raw(y, 30), raw(kLink, 16), &command);
+    svpwm_arrival_t arrival;
+    dead_time_compensate(&c, &wanted, raw_ab(mean, 20), raw(y, 30), raw(kLink, 16), &command, &arrival);
     for (int leg = 0; leg < 3; ++leg) {
       for (const bool rising : {true, false}) {
-        const std::int16_t edge = rising ? wanted.rise[leg] : wanted.fall[leg];
-        const std::int16_t sent = rising ? command.rise[leg] : command.fall[leg];
+        const std::int16_t edge = wanted.at[rising ? leg : SVPWM_LEGS + leg];
+        const std::int16_t sent = command.at[rising ? leg : SVPWM_LEGS + leg];
         // what counts is the current at the edge: mean and ripple
         const Vector flux = real(svpwm_ripple_q16(&wanted, edge, raw(kLink, 16)), 16);
         const double current = phase(mean + flux * y, leg);
@@ -88,14 +90,15 @@ TEST(DeadTime, TheMotorSeesTheWantedEdges) {
 
 TEST(DeadTime, InTheBandTheShiftIsLinear) {
   const dead_time_config_t c = config();
-  const svpwm_pulses_t wanted = ordered({{2000, 2000, 2000}, {7000, 7000, 7000}, 0});  // 000 and 111: no ripple
+  const svpwm_pulses_t wanted = ordered({{2000, 2000, 2000, 7000, 7000, 7000}, 0});  // 000 and 111: no ripple
   for (double i = -0.2; i <= 0.2; i += 0.02) {
     svpwm_pulses_t command;
-    dead_time_compensate(&c, &wanted, raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16), &command);
+    svpwm_arrival_t arrival;
+    dead_time_compensate(&c, &wanted, raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16), &command, &arrival);
     const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
     const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
-    EXPECT_NEAR(wanted.rise[0] - command.rise[0], middle + half * i / 0.2, 0.51) << i;
-    EXPECT_NEAR(wanted.fall[0] - command.fall[0], middle - half * i / 0.2, 0.51) << i;
+    EXPECT_NEAR(wanted.at[0] - command.at[0], middle + half * i / 0.2, 0.51) << i;
+    EXPECT_NEAR(wanted.at[3] - command.at[3], middle - half * i / 0.2, 0.51) << i;
   }
 }
 

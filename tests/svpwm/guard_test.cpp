@@ -8,6 +8,8 @@ extern "C" {
 
 namespace {
 
+using namespace stillspin::test;
+
 constexpr std::int16_t kBlocked = 230, kReleased = 60;
 
 dead_time_config_t dead_time() {
@@ -30,82 +32,102 @@ sampling_config_t sampling() {
 }
 
 // Leg a alone first, then b and c: the alternating layout.
-svpwm_pattern_t pattern() {
-  svpwm_pattern_t p = {};
-  p.pulses = stillspin::test::ordered({{260, 5700, 5700}, {4460, 9900, 9900}, 0});
-  const sampling_config_t c = sampling();
-  svpwm_find_windows(&c, &p);
-  return p;
-}
+svpwm_pulses_t alternating() { return ordered({{260, 5700, 5700, 4460, 9900, 9900}, 0}); }
 
 ab_t phases(double a, double b) {
   return frame_clarke2(static_cast<std::int32_t>(a * 1048576), static_cast<std::int32_t>(b * 1048576));
 }
 
-dead_time_edges_t compensate(const svpwm_pattern_t& p, ab_t current, svpwm_pulses_t* command) {
+svpwm_pulses_t command_of(const svpwm_pulses_t& wanted, ab_t current, svpwm_arrival_t* arrival) {
   const dead_time_config_t c = dead_time();
-  return dead_time_compensate(&c, &p.pulses, current, 17179869L, 300L * 65536L, command);  // 0.016 A per V
+  svpwm_pulses_t command;
+  dead_time_compensate(&c, &wanted, current, 17179869L, 300L * 65536L, &command, arrival);  // 0.016 A per V
+  return command;
+}
+
+svpwm_pattern_t guarded(const sampling_config_t& s, const svpwm_pulses_t& wanted, const svpwm_arrival_t& arrival) {
+  svpwm_pattern_t p = {};
+  p.pulses = wanted;
+  svpwm_find_windows(&s, &arrival, &p);
+  return p;
 }
 
 TEST(Guard, CertainEdgesLeaveTheWindowsAlone) {
-  svpwm_pattern_t p = pattern();
-  const svpwm_pattern_t before = p;
-  svpwm_pulses_t command;
-  const dead_time_edges_t uncertain = compensate(p, phases(8.0, -4.0), &command);
-  EXPECT_EQ(uncertain, 0);
-  const dead_time_config_t c = dead_time();
-  const sampling_config_t s = sampling();
-  dead_time_guard_windows(&c, &s, &command, uncertain, &p);
-  ASSERT_EQ(p.window_count, before.window_count);
-  for (int k = 0; k < p.window_count; ++k) {
-    EXPECT_EQ(p.windows[k].begin, before.windows[k].begin);
-    EXPECT_EQ(p.windows[k].end, before.windows[k].end);
+  const svpwm_pulses_t wanted = alternating();
+  svpwm_arrival_t arrival;
+  command_of(wanted, phases(8.0, -4.0), &arrival);
+  for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) {
+    EXPECT_EQ(arrival.earliest[edge], wanted.at[edge]);
+    EXPECT_EQ(arrival.latest[edge], wanted.at[edge]);
   }
+  const svpwm_pattern_t p = guarded(sampling(), wanted, arrival);
+  ASSERT_EQ(p.window_count, 2);
+  EXPECT_EQ(p.windows[0].begin, 260);
+  EXPECT_EQ(p.windows[0].end, 4460);
+  EXPECT_EQ(p.windows[1].begin, 5700);
+  EXPECT_EQ(p.windows[1].end, 9900);
 }
 
 // Whatever the sign of the current turns out to be, the motor's edge is outside of the samples.
-TEST(Guard, WhateverTheSignTheSamplesAreInsideTheWindow) {
-  int guarded = 0;
-  for (double a = -3.0; a <= 3.0; a += 0.05) {
-    for (double b = -3.0; b <= 3.0; b += 0.25) {
-      svpwm_pattern_t p = pattern();
-      const svpwm_pulses_t wanted = p.pulses;
-      svpwm_pulses_t command;
-      const dead_time_edges_t uncertain = compensate(p, phases(a, b), &command);
-      const dead_time_config_t c = dead_time();
-      const sampling_config_t s = sampling();
-      dead_time_guard_windows(&c, &s, &command, uncertain, &p);
-      guarded += uncertain != 0;
-      for (int k = 0; k < p.window_count; ++k) {
-        const int first = svpwm_burst_start(&s, &p.windows[k]), last = svpwm_burst_end(&s, &p.windows[k]);
-        ASSERT_GE(last - first, s.span_min_ticks);
-        for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
-          for (const bool fall : {false, true}) {
-            const int at = fall ? wanted.fall[leg] : wanted.rise[leg];
-            const int sent = fall ? command.fall[leg] : command.rise[leg];
-            const bool open = (uncertain >> (leg + (fall ? SVPWM_LEGS : 0)) & 1) != 0;
-            const int early = open ? sent + kReleased : at, late = open ? sent + kBlocked : at;
-            const bool before = late + s.settle_ticks <= first, after = early >= last + s.burst_ticks;
-            ASSERT_TRUE(before || after) << "leg " << leg << " at " << a << ", " << b << " A";
-          }
-        }
-      }
+void expect_clear(const svpwm_pattern_t& p, const svpwm_pulses_t& command, const svpwm_arrival_t& arrival) {
+  const sampling_config_t s = sampling();
+  for (int k = 0; k < p.window_count; ++k) {
+    const int first = svpwm_burst_start(&s, &p.windows[k]), last = svpwm_burst_end(&s, &p.windows[k]);
+    ASSERT_GE(last - first, s.span_min_ticks);
+    for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) {
+      const bool open = arrival.earliest[edge] != arrival.latest[edge];
+      const int early = open ? command.at[edge] + kReleased : p.pulses.at[edge];
+      const int late = open ? command.at[edge] + kBlocked : p.pulses.at[edge];
+      const bool before = late + s.settle_ticks <= first, after = early >= last + s.burst_ticks;
+      ASSERT_TRUE(before || after) << "edge " << edge << ", window " << k;
     }
   }
-  EXPECT_GT(guarded, 500);
+}
+
+TEST(Guard, WhateverTheSignTheSamplesAreInsideTheWindow) {
+  int guarded_edges = 0;
+  const svpwm_pulses_t wanted = alternating();
+  for (double a = -3.0; a <= 3.0; a += 0.05) {
+    for (double b = -3.0; b <= 3.0; b += 0.25) {
+      svpwm_arrival_t arrival;
+      const svpwm_pulses_t command = command_of(wanted, phases(a, b), &arrival);
+      for (unsigned k = 0; k < SVPWM_EDGES; ++k) guarded_edges += arrival.earliest[k] != arrival.latest[k];
+      const svpwm_pattern_t p = guarded(sampling(), wanted, arrival);
+      ASSERT_GE(p.window_count, 2);
+      ASSERT_NO_FATAL_FAILURE(expect_clear(p, command, arrival)) << a << ", " << b << " A";
+    }
+  }
+  EXPECT_GT(guarded_edges, 500);
+}
+
+// Edges of one instant, each of which may be the first or the last; and any others.
+TEST(Guard, SamplesKeepOffEdgesThatMayChangePlaces) {
+  Random random(140);
+  int open = 0;
+  for (int n = 0; n < 3000; ++n) {
+    svpwm_pulses_t wanted;
+    for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
+      wanted.at[leg] = static_cast<std::int16_t>(260 + 100 * random.below(60));
+      wanted.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(wanted.at[leg] + 300 + 100 * random.below(30));
+    }
+    wanted = ordered(wanted);
+    svpwm_arrival_t arrival;
+    const svpwm_pulses_t command = command_of(wanted, phases(random.between(-2.0, 2.0), 0.3), &arrival);
+    const svpwm_pattern_t p = guarded(sampling(), wanted, arrival);
+    open += p.window_count > 0;
+    ASSERT_NO_FATAL_FAILURE(expect_clear(p, command, arrival)) << n;
+  }
+  EXPECT_GT(open, 2000);
 }
 
 TEST(Guard, AWindowThatBecomesTooShortGoes) {
-  svpwm_pattern_t p = pattern();
-  svpwm_pulses_t command;
-  const dead_time_edges_t uncertain = compensate(p, phases(0.0, 0.0), &command);
-  EXPECT_NE(uncertain, 0);
-  const dead_time_config_t c = dead_time();
+  const svpwm_pulses_t wanted = alternating();
   sampling_config_t s = sampling();
-  s.span_min_ticks = 2950;  // the windows are 4200 ticks long: 3020 between the bursts, less what is uncertain
-  const std::uint16_t before = p.window_count;
-  dead_time_guard_windows(&c, &s, &command, uncertain, &p);
-  EXPECT_LT(p.window_count, before);
+  s.span_min_ticks = 2880;  // certain, 3020 and 2890 ticks lie between the bursts
+  EXPECT_EQ(guarded(s, wanted, certain(wanted)).window_count, 2);
+  svpwm_arrival_t arrival;
+  command_of(wanted, phases(0.0, 0.0), &arrival);
+  EXPECT_LT(guarded(s, wanted, arrival).window_count, 2);
 }
 
 }  // namespace

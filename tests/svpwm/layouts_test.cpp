@@ -37,7 +37,7 @@ TEST(Centred, PulsesShareTheirMiddleAndZeroVectorsAreEqual) {
   Random random(71);
   for (int n = 0; n < 500; ++n) {
     const svpwm_pulses_t p = centred(any_voltage(random, kLink, 0.94));
-    for (int leg = 1; leg < 3; ++leg) ASSERT_NEAR(p.rise[leg] + p.fall[leg], p.rise[0] + p.fall[0], 1);
+    for (int leg = 1; leg < 3; ++leg) ASSERT_NEAR(rise(p, leg) + fall(p, leg), rise(p, 0) + fall(p, 0), 1);
     // 000 is split between the two ends of the period, which are not equally long
     const int zeros = lasts(p, 0) - (SVPWM_PERIOD_TICKS - SVPWM_ROOM_TICKS);
     // near the limit the shortest pulse moves the share
@@ -68,7 +68,7 @@ TEST(LongZero, MeanVoltagePulsesAndOneZeroVectorInOnePiece) {
     ASSERT_NO_FATAL_FAILURE(expect_mean(p, v, link)) << v.x << ", " << v.y;
     // 111 is no longer than the shortest pulse: all the rest of the zero vector is 000, behind the last edge
     ASSERT_EQ(lasts(p, 7), SVPWM_PULSE_MIN_TICKS);
-    for (int leg = 0; leg < 3; ++leg) ASSERT_EQ(p.rise[leg], SVPWM_FIRST_TICK);
+    for (int leg = 0; leg < 3; ++leg) ASSERT_EQ(rise(p, leg), SVPWM_FIRST_TICK);
   }
 }
 
@@ -146,7 +146,7 @@ TEST(Extended, BothVectorsAreAsLongAsFits) {
     const int shorter = std::min(list[1].end - list[1].begin, list[2].end - list[2].begin);
     ASSERT_LE(shorter, std::max(wanted.window + 7, *std::min_element(own.begin(), own.end()))) << v.x << ", " << v.y;
     if (wanted.with_zero) {
-      ASSERT_GE(SVPWM_LAST_TICK - std::max({p.fall[0], p.fall[1], p.fall[2]}), c.zero_ticks);
+      ASSERT_GE(SVPWM_LAST_TICK - std::max({fall(p, 0), fall(p, 1), fall(p, 2)}), c.zero_ticks);
     }
   }
   // every case has occurred

@@ -18,11 +18,11 @@ TEST(Modulator, EveryLayoutGivesTheCommandedMean) {
     const auto excitation = static_cast<excitation_t>(n % 3);
     const double link = random.between(150.0, 420.0);
     const Vector v = any_voltage(random, link, (n % 2 == 0) ? 0.2 : 1.3);
-    svpwm_pattern_t p;
-    const modulator_result_t r = modulator_step(&s, &c, excitation, raw_ab(v, 16), raw(link, 16), &p);
-    ASSERT_NO_FATAL_FAILURE(expect_valid(p.pulses));
+    svpwm_pulses_t pulses;
+    const modulator_result_t r = modulator_step(&s, &c, excitation, raw_ab(v, 16), raw(link, 16), &pulses);
+    ASSERT_NO_FATAL_FAILURE(expect_valid(pulses));
     const Vector realised = real(r.realised_q16, 16);
-    ASSERT_NO_FATAL_FAILURE(expect_mean(p.pulses, realised, link)) << n;
+    ASSERT_NO_FATAL_FAILURE(expect_mean(pulses, realised, link)) << n;
     ASSERT_NEAR((realised - v).length(), 0.0, r.limited ? 1e9 : 2e-5);
     ASSERT_LT(std::fabs(realised.x * v.y - realised.y * v.x), 1e-4 * (1.0 + v.length()));  // its direction is kept
     limited += r.limited ? 1 : 0;
@@ -34,10 +34,10 @@ TEST(Modulator, AlternatingLeavesAtItsLimitAndReturnsWithAFifthToSpare) {
   const modulator_config_t c = default_modulator();
   modulator_t s;
   modulator_reset(&s);
-  svpwm_pattern_t p;
+  svpwm_pulses_t pulses;
   // along phase a the spread is 1.5 v / Vdc: 2940 ticks (0.7 * 4200) are 58.8 V, four fifths of it 47 V
   const auto step = [&](double volts) {
-    modulator_step(&s, &c, EXCITATION_ALTERNATING, raw_ab({volts, 0.0}, 16), raw(kLink, 16), &p);
+    modulator_step(&s, &c, EXCITATION_ALTERNATING, raw_ab({volts, 0.0}, 16), raw(kLink, 16), &pulses);
     return s.is_alternating;
   };
   EXPECT_TRUE(step(58.0));
@@ -53,10 +53,11 @@ TEST(Modulator, AlternatingHasTwoOppositeWindowsOfUsefulLength) {
   modulator_t s;
   modulator_reset(&s);
   for (int n = 0; n < 2000; ++n) {
-    svpwm_pattern_t p;
+    svpwm_pulses_t pulses;
     const Vector v = random.direction(random.between(0.0, 30.0));
-    modulator_step(&s, &c, EXCITATION_ALTERNATING, raw_ab(v, 16), raw(kLink, 16), &p);
+    modulator_step(&s, &c, EXCITATION_ALTERNATING, raw_ab(v, 16), raw(kLink, 16), &pulses);
     ASSERT_TRUE(s.is_alternating);
+    const svpwm_pattern_t p = pattern_of(pulses, c.sampling);
     ASSERT_GE(p.window_count, 2);
     std::uint16_t seen = 0;
     for (int k = 0; k < p.window_count; ++k) {
@@ -75,9 +76,10 @@ TEST(Modulator, ExtendedHasTwoDifferentActiveWindowsWhilePossible) {
   modulator_t s;
   modulator_reset(&s);
   for (int n = 0; n < 3000; ++n) {
-    svpwm_pattern_t p;
+    svpwm_pulses_t pulses;
     const Vector v = random.direction(random.between(0.0, 110.0));
-    modulator_step(&s, &c, EXCITATION_EXTENDED, raw_ab(v, 16), raw(kLink, 16), &p);
+    modulator_step(&s, &c, EXCITATION_EXTENDED, raw_ab(v, 16), raw(kLink, 16), &pulses);
+    const svpwm_pattern_t p = pattern_of(pulses, c.sampling);
     std::vector<std::uint16_t> active;
     for (int k = 0; k < p.window_count; ++k) {
       if (!svpwm_is_zero_vector(p.windows[k].state)) active.push_back(p.windows[k].state);
@@ -91,8 +93,9 @@ TEST(Modulator, CentredHasAZeroWindowAtLowVoltage) {
   const modulator_config_t c = default_modulator();
   modulator_t s;
   modulator_reset(&s);
-  svpwm_pattern_t p;
-  modulator_step(&s, &c, EXCITATION_CENTRED, raw_ab({10.0, 4.0}, 16), raw(kLink, 16), &p);
+  svpwm_pulses_t pulses;
+  modulator_step(&s, &c, EXCITATION_CENTRED, raw_ab({10.0, 4.0}, 16), raw(kLink, 16), &pulses);
+  const svpwm_pattern_t p = pattern_of(pulses, c.sampling);
   bool zero = false;
   for (int k = 0; k < p.window_count; ++k) zero = zero || svpwm_is_zero_vector(p.windows[k].state);
   EXPECT_TRUE(zero);

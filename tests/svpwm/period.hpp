@@ -17,43 +17,60 @@ extern "C" {
 
 namespace stillspin::test {
 
+inline int rise(const svpwm_pulses_t& p, int leg) { return p.at[leg]; }
+inline int fall(const svpwm_pulses_t& p, int leg) { return p.at[SVPWM_LEGS + leg]; }
+
 /// The same pulses with the order of their edges, which a layout would know.
 inline svpwm_pulses_t ordered(svpwm_pulses_t p) {
-  std::array<std::pair<int, unsigned>, SVPWM_EDGES> edges;
-  for (unsigned leg = 0; leg < SVPWM_LEGS; ++leg) {
-    edges[2 * leg] = {2 * p.rise[leg], leg};
-    edges[2 * leg + 1] = {2 * p.fall[leg] + 1, leg};  // behind the rises of the same tick
-  }
+  std::array<std::pair<int, unsigned>, SVPWM_EDGES> edges;  // rises before the falls of the same tick
+  for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) edges[edge] = {p.at[edge], edge};
   std::sort(edges.begin(), edges.end());
   p.order = 0;
-  for (unsigned k = 0; k < SVPWM_EDGES; ++k) p.order = static_cast<std::uint16_t>(p.order | edges[k].second << 2 * k);
+  for (unsigned k = 0; k < SVPWM_EDGES; ++k) p.order |= edges[k].second << 4 * k;
   return p;
 }
 
-/// A walk along the order visits all edges, none before another that comes later.
+/// A walk along the order visits all edges, none before another that comes later; a leg rises before it falls.
 inline void expect_ordered(const svpwm_pulses_t& p) {
-  svpwm_walk_t walk = {p.order, 0};
+  std::uint32_t order = p.order;
   int before = 0;
-  unsigned risen = 0;
+  unsigned seen = 0;
   for (unsigned k = 0; k < SVPWM_EDGES; ++k) {
-    bool rises = false;
-    const std::uint16_t leg = svpwm_next_edge(&walk, &rises);
-    ASSERT_LT(leg, SVPWM_LEGS);
-    ASSERT_EQ(rises, (risen >> leg & 1u) == 0u);
-    risen |= 1u << leg;
-    const int tick = rises ? p.rise[leg] : p.fall[leg];
-    ASSERT_GE(tick, before) << k;
-    before = tick;
+    const std::uint32_t edge = svpwm_next_edge(&order);
+    ASSERT_LT(edge, SVPWM_EDGES);
+    if (edge >= SVPWM_LEGS) {
+      ASSERT_NE(seen >> (edge - SVPWM_LEGS) & 1u, 0u);
+    }
+    seen |= 1u << edge;
+    ASSERT_GE(p.at[edge], before) << k;
+    before = p.at[edge];
   }
-  ASSERT_EQ(risen, 7u);
-  ASSERT_EQ(walk.state, 0u);
+  ASSERT_EQ(seen, 63u);
+  ASSERT_EQ(order, 0u);
+}
+
+/// Every edge comes when it is wanted.
+inline svpwm_arrival_t certain(const svpwm_pulses_t& p) {
+  svpwm_arrival_t a;
+  std::copy_n(p.at, SVPWM_EDGES, a.earliest);
+  std::copy_n(p.at, SVPWM_EDGES, a.latest);
+  return a;
+}
+
+/// A pattern of pulses whose edges are certain.
+inline svpwm_pattern_t pattern_of(const svpwm_pulses_t& pulses, const sampling_config_t& c) {
+  svpwm_pattern_t p = {};
+  p.pulses = pulses;
+  const svpwm_arrival_t arrival = certain(pulses);
+  svpwm_find_windows(&c, &arrival, &p);
+  return p;
 }
 
 /// Ticks of a period in which leg k is high, from -rise/fall- as the hardware does it: set at rise, clear at fall.
 inline std::array<std::uint16_t, SVPWM_PERIOD_TICKS> states(const svpwm_pulses_t& p) {
   std::array<std::uint16_t, SVPWM_PERIOD_TICKS> s{};
   for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
-    for (int tick = p.rise[leg]; tick < p.fall[leg]; ++tick) {
+    for (int tick = rise(p, leg); tick < fall(p, leg); ++tick) {
       if (tick >= 0 && tick < SVPWM_PERIOD_TICKS) s[static_cast<std::size_t>(tick)] |= 1u << leg;
     }
   }
@@ -87,13 +104,13 @@ inline std::array<double, 3> legs_of(Vector v) {
   return {v.x, side - half, -side - half};
 }
 
-inline int on_time(const svpwm_pulses_t& p, int leg) { return p.fall[leg] - p.rise[leg]; }
+inline int on_time(const svpwm_pulses_t& p, int leg) { return svpwm_on_ticks(&p, static_cast<std::uint16_t>(leg)); }
 
 /// Each pulse inside the room and long enough for the dead band, as is the gap to the next period's; edges in order.
 inline void expect_valid(const svpwm_pulses_t& p) {
   for (int leg = 0; leg < SVPWM_LEGS; ++leg) {
-    ASSERT_GE(p.rise[leg], SVPWM_FIRST_TICK) << leg;
-    ASSERT_LE(p.fall[leg], SVPWM_LAST_TICK) << leg;
+    ASSERT_GE(rise(p, leg), SVPWM_FIRST_TICK) << leg;
+    ASSERT_LE(fall(p, leg), SVPWM_LAST_TICK) << leg;
     ASSERT_GE(on_time(p, leg), SVPWM_PULSE_MIN_TICKS) << leg;
     ASSERT_GE(SVPWM_PERIOD_TICKS - on_time(p, leg), SVPWM_PULSE_MIN_TICKS) << leg;
   }

@@ -30,8 +30,8 @@ TEST(Ripple, IsTheIntegralOfTheVoltageLessItsMean) {
     const double link = random.between(50.0, 420.0);
     svpwm_pulses_t p;
     for (int leg = 0; leg < 3; ++leg) {
-      p.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
-      p.fall[leg] = static_cast<std::int16_t>(random.between(p.rise[leg] + 1.0, 9960.0));
+      p.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
+      p.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(p.at[leg] + 1.0, 9960.0));
     }
     const std::vector<Vector> exact = integrated(p, link);
     for (int tick = 0; tick <= 10000; tick += 7) {
@@ -51,8 +51,8 @@ TEST(Ripple, MeanVoltageIsThatOfTheStates) {
     const double link = random.between(50.0, 420.0);
     svpwm_pulses_t p;
     for (int leg = 0; leg < 3; ++leg) {
-      p.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
-      p.fall[leg] = static_cast<std::int16_t>(random.between(p.rise[leg] + 1.0, 9960.0));
+      p.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
+      p.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(p.at[leg] + 1.0, 9960.0));
     }
     Vector mean = {0.0, 0.0};
     for (const std::uint16_t state : states(p)) {
@@ -66,7 +66,7 @@ TEST(Ripple, MeanVoltageIsThatOfTheStates) {
 }
 
 TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
-  const svpwm_pulses_t p = {{260, 5760, 5800}, {4500, 9960, 9900}, 0};
+  const svpwm_pulses_t p = {{260, 5760, 5800, 4500, 9960, 9900}, 0};
   for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {
     const Vector flux = real(svpwm_ripple_q16(&p, tick, raw(300.0, 16)), 16);
     EXPECT_NEAR(flux.length(), 0.0, 0.004);  // an eighth of a tick

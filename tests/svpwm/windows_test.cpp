@@ -9,13 +9,6 @@ namespace {
 
 using namespace stillspin::test;
 
-svpwm_pattern_t pattern_of(const svpwm_pulses_t& pulses, const sampling_config_t& c) {
-  svpwm_pattern_t p = {};
-  p.pulses = ordered(pulses);
-  svpwm_find_windows(&c, &p);
-  return p;
-}
-
 void expect_rules(const svpwm_pattern_t& p, const sampling_config_t& c) {
   ASSERT_LE(p.window_count, SVPWM_WINDOWS);
   const auto s = states(p.pulses);
@@ -46,10 +39,10 @@ TEST(Windows, ObeyTheRulesForRandomPulses) {
                                  static_cast<std::int16_t>(random.between(5000.0, 9800.0))};
     svpwm_pulses_t pulses;
     for (int leg = 0; leg < 3; ++leg) {
-      pulses.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
-      pulses.fall[leg] = static_cast<std::int16_t>(random.between(pulses.rise[leg] + 1.0, 9960.0));
+      pulses.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
+      pulses.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(pulses.at[leg] + 1.0, 9960.0));
     }
-    const svpwm_pattern_t p = pattern_of(pulses, c);
+    const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
     ASSERT_NO_FATAL_FAILURE(expect_rules(p, c)) << n;
     windows += p.window_count;
   }
@@ -63,8 +56,8 @@ TEST(Windows, AreTheLongestOnes) {
   for (int n = 0; n < 1500; ++n) {
     svpwm_pulses_t pulses;
     for (int leg = 0; leg < 3; ++leg) {
-      pulses.rise[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
-      pulses.fall[leg] = static_cast<std::int16_t>(random.between(pulses.rise[leg] + 1.0, 9960.0));
+      pulses.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
+      pulses.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(pulses.at[leg] + 1.0, 9960.0));
     }
     std::vector<int> spans;
     for (const svpwm_window_t& w : intervals(pulses)) {
@@ -74,7 +67,7 @@ TEST(Windows, AreTheLongestOnes) {
     }
     std::sort(spans.rbegin(), spans.rend());
     if (spans.size() > 3) spans.resize(3);
-    const svpwm_pattern_t p = pattern_of(pulses, c);
+    const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
     std::vector<int> found;
     for (int k = 0; k < p.window_count; ++k) {
       found.push_back(svpwm_burst_end(&c, &p.windows[k]) - svpwm_burst_start(&c, &p.windows[k]));
@@ -86,14 +79,14 @@ TEST(Windows, AreTheLongestOnes) {
 
 TEST(Windows, NoneInPulsesThatAreAllTooShort) {
   const sampling_config_t c = {2500, 140, 2000, 9640};
-  const svpwm_pulses_t pulses = {{1500, 3000, 4500}, {6000, 7500, 9000}, 0};
-  EXPECT_EQ(pattern_of(pulses, c).window_count, 0);
+  const svpwm_pulses_t pulses = {{1500, 3000, 4500, 6000, 7500, 9000}, 0};
+  EXPECT_EQ(pattern_of(ordered(pulses), c).window_count, 0);
 }
 
 TEST(Windows, CoincidentEdgesMakeNoEmptyWindow) {
   const sampling_config_t c = {400, 140, 100, 9640};
-  const svpwm_pulses_t pulses = {{1000, 1000, 1000}, {5000, 5000, 5000}, 0};
-  const svpwm_pattern_t p = pattern_of(pulses, c);
+  const svpwm_pulses_t pulses = {{1000, 1000, 1000, 5000, 5000, 5000}, 0};
+  const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
   ASSERT_EQ(p.window_count, 3);
   EXPECT_EQ(p.windows[0].state, 0);
   EXPECT_EQ(p.windows[1].state, 7);
