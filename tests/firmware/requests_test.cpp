@@ -1,9 +1,9 @@
 // What machines ask over the link, and what they are told.
 
+#include "tests/firmware/requests.hpp"
+
 #include <cstring>
 #include <set>
-
-#include "tests/firmware/terminal.hpp"
 
 extern "C" {
 #include "firmware/fault_history.h"
@@ -18,18 +18,6 @@ namespace {
 
 using namespace stillspin;
 using namespace stillspin::test;
-
-enum { OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT };
-
-class Requests : public Terminal {
- protected:
-  Answer give(unsigned code, std::int32_t argument = 0) {
-    return ask(REQUEST_COMMAND, little(code, 1) + little(static_cast<std::uint32_t>(argument), 4));
-  }
-  Answer set(std::uint16_t id, std::int32_t raw) {
-    return ask(REQUEST_PARAMETER_SET, little(id, 2) + little(static_cast<std::uint32_t>(raw), 4));
-  }
-};
 
 TEST_F(Requests, Identity) {
   const Answer a = ask(REQUEST_IDENTITY);
@@ -370,70 +358,6 @@ TEST_F(Requests, EachPortHasItsStream) {
   EXPECT_EQ(ask(REQUEST_STREAM, little(0, 2)).status(), OK);
   run(10);
   EXPECT_GT(stream_event(GUARD_BUS, event), 0) << "the other one goes on";
-}
-
-class Guard : public Requests {
- protected:
-  void SetUp() override {
-    Requests::SetUp();
-    drive.state = DRIVE_READY;
-    parameters.link_timeout = 200;
-  }
-  void start(std::int32_t argument) {
-    ASSERT_EQ(give(COMMAND_START, argument).status(), OK);
-    drive.request.start = false;
-    drive.state = DRIVE_RUN;
-  }
-};
-
-TEST_F(Guard, SilenceStopsTheDrive) {
-  start(1);
-  for (int k = 0; k < 8; ++k) {
-    run(1000);
-    EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
-  }
-  EXPECT_FALSE(drive.request.stop);
-  run(1500);
-  EXPECT_FALSE(drive.request.stop);
-  run(600);
-  EXPECT_TRUE(drive.request.stop);
-  EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 2u) << "and it says so";
-}
-
-TEST_F(Guard, ItCanBeToldToCoast) {
-  parameters.link_reaction = LINK_REACTION_COAST;
-  start(1);
-  run(2500);
-  EXPECT_TRUE(drive.request.coast);
-  EXPECT_FALSE(drive.request.stop);
-}
-
-TEST_F(Guard, WithoutItSilenceIsNothing) {
-  start(0);
-  run(5000);
-  EXPECT_FALSE(drive.request.stop || drive.request.coast);
-}
-
-TEST_F(Guard, OnlyThePortThatStartedCounts) {
-  start(1);
-  std::uint16_t answer[RECORD_MAX];
-  const std::uint16_t request[] = {REQUEST_STATUS, 7};
-  for (int k = 0; k < 30; ++k) {
-    run(100);
-    (void)request_answer(GUARD_BUS, request, 2, answer);
-    send("\r");  // nor does text
-  }
-  EXPECT_TRUE(drive.request.stop);
-}
-
-TEST_F(Guard, ItEndsWithThePowerStage) {
-  start(1);
-  run(10);
-  drive.state = DRIVE_READY;
-  run(10);
-  drive.state = DRIVE_RUN;  // started by someone else, without it
-  run(5000);
-  EXPECT_FALSE(drive.request.stop);
 }
 
 TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
