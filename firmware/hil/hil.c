@@ -17,7 +17,7 @@ typedef struct {
   bool answered, torn;  // a step has been, which may be asked for again; the last one
   volatile uint16_t heartbeat;
   uint16_t expected;
-  uint32_t heard;  // cycles
+  uint32_t heard;                  // cycles
   uint16_t shape[HIL_STEP_SHAPE];  // of the last step, whose words are on the tape
   hil_answer_t before;             // the answer before the last
 } hil_t;
