@@ -118,7 +118,7 @@ class Requester:
     @contextmanager
     def resting(self) -> Iterator[None]:
         """Leave the transport to somebody else while the context lasts; questions wait until then."""
-        with self._asking:
+        with self._turns.turn(urgent=False):
             self._end()
             try:
                 yield
