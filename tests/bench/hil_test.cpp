@@ -2,13 +2,19 @@
 // behind one another.
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "firmware/actions.h"
+#include "firmware/drive_api.h"
 #include "firmware/link/requests.h"
+#include "hal/f2808/registers.h"
 #include "sim_host/bench/board_port.hpp"
 #include "sim_host/bench/virtual_board.hpp"
 
@@ -61,6 +67,34 @@ TEST_F(Loop, IsLeftByAResetWhenNoStepsCome) {
   EXPECT_EQ(resets(), 1u);
 }
 
+TEST_F(Loop, IsNotEnteredWhileThePowerStageIsOn) {
+  ASSERT_EQ(ask({REQUEST_COMMAND, COMMAND_START, 0, 0, 0, 0}), Words{0});
+  desk->advance(20 * kMillisecond);
+  ASSERT_TRUE(drive_is_energised());
+  const Words answer = ask({REQUEST_HIL_ENTER});
+  EXPECT_EQ(answer.front(), ANSWER_RUNNING);
+  EXPECT_FALSE(VirtualBoard::in_loop());
+  EXPECT_TRUE(drive_is_energised()) << "nothing has become of what runs";
+}
+
+// Whatever is asked of it, from a step to a start: only the watchdog ends it.
+TEST_F(Loop, IsLeftByAResetAlone) {
+  ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
+  const std::uint32_t trip_flags = EPWM_BASE(1) + EPWM_TZFLG;
+  for (const std::uint16_t code : {COMMAND_START, COMMAND_STOP, COMMAND_RESET, COMMAND_COAST, COMMAND_COMMISSION}) {
+    (void)ask({REQUEST_COMMAND, code, 0, 0, 0, 0});
+    (void)ask({REQUEST_HIL_ENTER});
+    EXPECT_EQ(ask({REQUEST_HIL_STEP, 0, 0, 0}).front(), ANSWER_OK) << "begun anew";
+    EXPECT_TRUE(VirtualBoard::in_loop()) << code;
+    EXPECT_NE(desk->inspect(trip_flags) & EPWM_TZFLG_OST_MASK, 0) << code;
+  }
+  EXPECT_EQ(resets(), 0u);
+  ASSERT_EQ(ask({REQUEST_HIL_LEAVE}), Words{0});
+  desk->advance(30 * kMillisecond);
+  EXPECT_EQ(resets(), 1u);
+  EXPECT_FALSE(VirtualBoard::in_loop());
+}
+
 TEST_F(Loop, ParametersOfASimulationAreNotKept) {
   ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
   for (const std::uint16_t code : {COMMAND_SAVE, COMMAND_LOAD, COMMAND_DEFAULTS}) {
@@ -109,6 +143,33 @@ TEST_F(Loop, LongRecordsOnAFastBusLoseNoFrame) {
     }
   }
   EXPECT_EQ(answers, kRequests);
+}
+
+// What is said of a port at whose other end nobody answers.
+std::string words_of(const std::function<void(int)>& at_the_other_end) {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return "no pair of sockets";
+  at_the_other_end(ends[1]);
+  std::string words;
+  try {
+    (void)BoardPort(ends[0], serial_framing()).ask({REQUEST_HIL_ENTER});
+  } catch (const PortError& error) {
+    words = error.what();
+  }
+  ::close(ends[0]);
+  return words;
+}
+
+TEST(BoardPort, SaysWhenNoAnswerComes) {
+  int other = -1;
+  EXPECT_EQ(words_of([&](int end) { other = end; }), "the board gives no answer");
+  std::array<char, 64> heard;
+  EXPECT_EQ(::read(other, heard.data(), heard.size()) % 5, 0) << "asked five times";
+  ::close(other);
+}
+
+TEST(BoardPort, SaysWhenThePortIsGone) {
+  EXPECT_EQ(words_of([](int end) { ::shutdown(end, SHUT_WR); }), "the port is lost: it has been closed");
 }
 
 }  // namespace

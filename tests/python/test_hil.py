@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from contextlib import suppress
 from dataclasses import replace
 
@@ -71,6 +72,15 @@ def test_a_board_computes_what_the_virtual_drive_computes(requester, play):
     again = loop.run(core.load(), play(0.01))  # from a drive that runs
     assert again.difference is None
     loop.leave()
+
+
+def test_a_board_that_says_nothing_is_told():
+    board, port = os.openpty()
+    done = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", os.ttyname(port)])
+    os.close(board)
+    os.close(port)
+    assert done.exit_code == 1
+    assert "A10 creep (its start): BROKE OFF: no answer from the drive" in done.output
 
 
 KINDS = {
