@@ -4,6 +4,7 @@ The picture of each step goes to the directory that the variable STILLSPIN_PICTU
 """
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -17,20 +18,28 @@ from stillspin.tune.server import Server
 
 pytestmark = [needs_chromium, needs_board]
 SLOW = 30
+LONG = 240
 
 
-@pytest.fixture
-def tuned(tmp_path, monkeypatch, page):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+@contextmanager
+def opened(page, *options):
+    """The page of a board of its own, and the drive."""
     with (
         TemporaryDirectory(prefix="desk-") as directory,  # its name is on the pictures
-        board(Path(directory), "--profile", "ideal") as port,
+        board(Path(directory), *options) as port,
         Drive.open(port, timeout=2.0) as drive,
         Server(drive) as server,
     ):
         page.set_default_timeout(1000 * SLOW)
         page.goto(server.address)
         page.wait_for_selector("#state:has-text('ready')")
+        yield drive
+
+
+@pytest.fixture
+def tuned(tmp_path, monkeypatch, page):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    with opened(page, "--profile", "ideal"):
         yield page
 
 
@@ -118,3 +127,31 @@ def test_a_page_that_is_closed_stops_the_real_firmware(tuned):
     other.goto(address)
     other.wait_for_selector("#state:has-text('ready')", timeout=1000 * SLOW)
     other.close()
+
+
+def test_the_wizard_measures_the_machine_and_what_it_found_is_kept(tmp_path, monkeypatch, page):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    options = ("--speed", "0", "--eeprom", str(tmp_path / "memory"))
+    with opened(page, *options) as drive:
+        change(page, "link_timeout", 60000)  # of the drive's time, which goes faster than ours
+        change(page, "stator_resistance", 0.25)
+        page.click("[data-tab=commissioning]")
+        assert page.locator("#commission").is_disabled()
+        for box in page.locator("#wizard input").all():
+            box.check()
+        page.click("#commission")
+        page.wait_for_selector("#state:has-text('commissioning')")
+        page.wait_for_selector("#wizard :text('DC staircase')")
+        page.wait_for_selector("#keep-results", timeout=1000 * LONG)
+        assert "Every value is plausible and in use." in page.inner_text("#wizard")
+        row = page.locator("#wizard tr", has_text="stator_resistance").inner_text()
+        assert "0.25" in row
+        assert "plausible, in use" in row
+        picture(page, "commissioning")
+        page.click("#keep-results")
+        page.wait_for_selector("#store:has-text('the values have been saved')")
+        found = drive.parameters()
+        assert abs(found["stator_resistance"] - 0.32) < 0.05
+    with opened(page, *options) as drive:
+        assert drive.parameters() == found
+        assert "the saved values are in force" in page.inner_text("#store")
