@@ -20,7 +20,7 @@ uint16_t drive_dead_band_ticks(void) {
 static void reload(void) {
   static drive_config_t fresh;
   fresh = drive.config;
-  const bool valid = parameter_conflict() == NULL && drive_config_load(&fresh);
+  const bool valid = drive_config_or_conflict(&fresh) == NULL;
   const uint16_t state = hal_irq_disable();
   drive.request.reload = false;
   drive.config_valid = valid;

@@ -168,6 +168,8 @@ extern drive_t drive;
 
 /// Rebuilds the configuration from the parameters; false, with the old one kept, when they do not fit together.
 bool drive_config_load(drive_config_t* c);
+/// The same, if the parameters fit together: NULL, or why they do not, in a sentence (parameter_rules.c).
+const char* drive_config_or_conflict(drive_config_t* c);
 
 void drive_parameters_changed(void);
 

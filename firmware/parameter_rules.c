@@ -25,8 +25,7 @@ static bool map_is_crossed(const parameters_t* p) {
   return false;
 }
 
-const char* parameter_conflict(void) {
-  static drive_config_t trial;
+const char* drive_config_or_conflict(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   if (p->inductance_q < p->inductance_d) return "inductance_q must be at least inductance_d";
   if (p->blend_high <= p->blend_low) return "blend_high must be above blend_low";
@@ -67,8 +66,12 @@ const char* parameter_conflict(void) {
     return "if_current must not exceed current_limit with start_method 1";
   if (p->current_bandwidth * (3 + p->current_divider) > 10400)
     return "current_bandwidth must not exceed 2080 rad/s with current_divider 2";
+  return drive_config_load(c) ? NULL
+                              : "the machine's parameters are too extreme together: inertia, flux, inductances, map";
+}
+
+const char* parameter_conflict(void) {
+  static drive_config_t trial;
   trial = drive.config;
-  return drive_config_load(&trial)
-             ? NULL
-             : "the machine's parameters are too extreme together: inertia, flux, inductances, map";
+  return drive_config_or_conflict(&trial);
 }
