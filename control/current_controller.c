@@ -1,7 +1,5 @@
 #include "control/current_controller.h"
 
-// Q20 error times Q20 gain to Q16 volts.
-#define ERROR_SHIFT 24u
 // Bandwidth over the corner of the integrator.
 #define RESET_RATIO 4
 // Bandwidth times the delay, in parts per million of 2 rad.
@@ -14,7 +12,6 @@ static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30,
   const bool own = d->corner == CURRENT_CORNER_MACHINE;
   c.ki_q20 = own ? q_mul(m->nominal_rs_q24, step_q24, 28) : q_mul(c.kp_q20, step_q24, 24) / RESET_RATIO;
   c.release_q20 = 4 * q_div(c.ki_q20, c.kp_q20, 20);
-  c.error_shift = ERROR_SHIFT;
   return c;
 }
 

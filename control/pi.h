@@ -9,11 +9,13 @@
 
 #include "hal/qmath/qmath.h"
 
+// An error in Q20 (A) times a gain in Q20 is an output in Q16 (V).
+#define PI_ERROR_SHIFT 24u
+
 typedef struct {
-  int32_t kp_q20;        // output per error, both in their own units
-  int32_t ki_q20;        // per step
-  int32_t release_q20;   // share of the excess taken off the integrator per step, 0..1
-  unsigned error_shift;  // output Q = error Q + 20 - error_shift
+  int32_t kp_q20;       // output per error, both in their own units
+  int32_t ki_q20;       // per step
+  int32_t release_q20;  // share of the excess taken off the integrator per step, 0..1
 } pi_config_t;
 
 typedef struct {
@@ -24,8 +26,8 @@ static inline void pi_reset(pi_state_t* s, int32_t output) { s->integral = q_shl
 
 /// One step; returns the output before any limit.
 static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error) {
-  s->integral = q_add_sat(s->integral, q_mul_sat(error, c->ki_q20, c->error_shift - 4u));
-  return q_add_sat(q_mul_sat(error, c->kp_q20, c->error_shift), q_shr_round(s->integral, 4));
+  s->integral = q_add_sat(s->integral, q_mul_sat(error, c->ki_q20, PI_ERROR_SHIFT - 4u));
+  return q_add_sat(q_mul_sat(error, c->kp_q20, PI_ERROR_SHIFT), q_shr_round(s->integral, 4));
 }
 
 /// Tells the controller what became of its output: `excess` = asked minus realised.

@@ -48,12 +48,14 @@ void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int3
   int32_t passed = 0;
   int32_t before = 0;
   int32_t high = 0;
-  for (uint16_t k = 0; k < SVPWM_EDGES; k++) {
+  while (order != 0u) {  // the last edge is a falling one: none of these is 0
     const uint32_t edge = svpwm_next_edge(&order);
     const int32_t tick = p->at[edge];
     passed += high * (tick - before);
     before = tick;
     high += step[edge];
-    at_q20[edge] = q_mul_floor((own[edge] - passed) * (int32_t)SVPWM_PERIOD_TICKS - rest[edge] * tick, gain_q28, 28);
+    // At most N^2; times 16 for the upper word to be that of a shift by 28.
+    const int32_t ripple = (own[edge] - passed) * (int32_t)SVPWM_PERIOD_TICKS - rest[edge] * tick;
+    at_q20[edge] = q_mul_hi(ripple * 16, gain_q28);
   }
 }

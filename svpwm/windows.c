@@ -20,11 +20,6 @@ static uint16_t take(const sampling_config_t* c, svpwm_window_t w[], uint16_t co
   return count;
 }
 
-// Most intervals are short; the period's end cuts some of the others.
-static uint16_t look_at(const sampling_config_t* c, svpwm_window_t w[], uint16_t count, const svpwm_window_t* fresh) {
-  return (span(c, fresh) >= c->span_min_ticks) ? take(c, w, count, fresh) : count;
-}
-
 // An edge that may come before the one that has ended the last window.
 static uint16_t shorten(const sampling_config_t* c, svpwm_window_t w[], uint16_t count, int16_t end) {
   if (count == 0u) return 0;
@@ -33,25 +28,34 @@ static uint16_t shorten(const sampling_config_t* c, svpwm_window_t w[], uint16_t
   return (span(c, last) >= c->span_min_ticks) ? count : (uint16_t)(count - 1u);
 }
 
+// The period's end cuts some.
+static uint16_t look_at(const sampling_config_t* c, svpwm_window_t w[], uint16_t count, int32_t begin, int32_t end,
+                        uint32_t state) {
+  const svpwm_window_t fresh = {(int16_t)begin, (int16_t)end, (uint16_t)state};
+  return (span(c, &fresh) >= c->span_min_ticks) ? take(c, w, count, &fresh) : count;
+}
+
 void svpwm_find_windows(const sampling_config_t* c, const svpwm_arrival_t* arrival, svpwm_pattern_t* pattern) {
   static const uint16_t leg_bit[SVPWM_EDGES] = {1, 2, 4, 1, 2, 4};
   const int32_t shortest = c->settle_ticks + c->burst_ticks + c->span_min_ticks;
   uint32_t order = pattern->pulses.order;
-  svpwm_window_t w = {0, 0, 0};
-  int16_t ended = 0;
+  uint32_t state = 0;
+  int32_t begin = 0;
+  int32_t ended = 0;
   uint16_t count = 0;
-  for (uint16_t k = 0; k < SVPWM_EDGES; k++) {
+  while (order != 0u) {  // the last edge is a falling one: none of these is 0
     const uint32_t edge = svpwm_next_edge(&order);
-    w.end = arrival->earliest[edge];
-    if (w.end < ended) count = shorten(c, pattern->windows, count, w.end);
-    if (w.end - w.begin >= shortest) {
-      count = look_at(c, pattern->windows, count, &w);
-      ended = w.end;
+    const int32_t end = arrival->earliest[edge];
+    if (end < ended) count = shorten(c, pattern->windows, count, (int16_t)end);
+    if (end - begin >= shortest) {  // most intervals are short
+      count = look_at(c, pattern->windows, count, begin, end, state);
+      ended = end;
     }
-    w.begin = q_max16(w.begin, arrival->latest[edge]);
-    w.state ^= leg_bit[edge];
+    begin = q_max(begin, arrival->latest[edge]);
+    state ^= leg_bit[edge];
   }
-  w.end = SVPWM_PERIOD_TICKS;
-  if (w.end - w.begin >= shortest) count = look_at(c, pattern->windows, count, &w);
+  if (SVPWM_PERIOD_TICKS - begin >= shortest) {
+    count = look_at(c, pattern->windows, count, begin, SVPWM_PERIOD_TICKS, 0);
+  }
   pattern->window_count = count;
 }

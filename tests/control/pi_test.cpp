@@ -18,7 +18,7 @@ using stillspin::test::real;
 // Current error Q20 in, voltage Q16 out.
 constexpr pi_config_t config(double kp, double ki, double release) {
   return {static_cast<std::int32_t>(kp * 1048576.0), static_cast<std::int32_t>(ki * 1048576.0),
-          static_cast<std::int32_t>(release * 1048576.0), 24u};
+          static_cast<std::int32_t>(release * 1048576.0)};
 }
 
 TEST(Pi, FollowsTheDoublePrecisionRecursion) {
