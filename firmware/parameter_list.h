@@ -32,8 +32,9 @@ PARAMETER(29, link_maximum, "V", 16, 1, 100, 15000, 4200, STOPPED, "DC-link volt
 PARAMETER(30, trip_current, "A", 20, 2, 50, 19400, 1800, STOPPED, "software over-current limit on a sampled phase")
 
 // Excitation
-PARAMETER(40, excitation, "", 0, 0, 0, 4, 3, STOPPED,
-          "0 centred, 1 extended, 2 alternating, 3 what the position source wants, 4 one long zero vector")
+PARAMETER(
+    40, excitation, "", 0, 0, 0, 5, 3, STOPPED,
+    "0 centred, 1 extended, 2 alternating, 3 as the source wants, 4 long zero vector, 5 as 2, cheapest pair above")
 PARAMETER(41, pulse_time, "us", 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of the alternating layout")
 PARAMETER(42, window_minimum, "us", 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
 PARAMETER(43, window_maximum, "us", 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")

@@ -51,10 +51,11 @@ const char* drive_config_or_conflict(drive_config_t* c) {
     return "0.65 pulse_time must be settle_time + 4.5 us or more";
   if (p->position_source == POSITION_PAPER && q_abs_sat(p->id_low_speed) < 1048576L)
     return "position_source 1 needs id_low_speed of 1 A or more";
-  if ((p->excitation == 0 || p->excitation == 4) &&
+  if ((p->excitation == 0 || p->excitation >= 4) &&
       (p->position_source == POSITION_OBSERVER_AVV || p->position_source == POSITION_AVV))
-    return "excitation 0 and 4 have no active vectors for AVV";
-  if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3) return "hold_time needs excitation 2 or 3";
+    return "excitation 0, 4 and 5 have no two active vectors for AVV";
+  if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
+    return "hold_time needs excitation 2, 3 or 5";
   if (map_is_crossed(p)) return "lqq_1 .. lqq_4 of inductance_q must not be less than ldd_1 .. ldd_4 of inductance_d";
   if (p->current_law == CURRENT_LAW_HYSTERESIS && p->position_source != POSITION_ENCODER)
     return "current_law 1 needs position_source 0";

@@ -19,6 +19,11 @@ typedef struct {
 
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
+/// The pair of vectors that costs least: two of the three (both active ones and 000) are sampled, and the difference of
+/// any two has the same size. So 000, which is there for nothing, and the longer active one, extended where it is
+/// shorter than window_max_ticks; where 000 is shorter than window_min_ticks, both active ones.
+void svpwm_cheapest_pair(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
+
 /// Plain space-vector modulation, pulses centred, no extension.
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 

@@ -23,13 +23,16 @@ static bool alternate(const modulator_t* s, const modulator_config_t* c, const s
 modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, excitation_t excitation,
                                   ab_t voltage_q16, int32_t link_q16, svpwm_pulses_t* pulses) {
   const svpwm_on_time_t t = svpwm_on_time(voltage_q16, link_q16);
-  s->is_alternating = excitation == EXCITATION_ALTERNATING && alternate(s, c, &t);
+  const bool opposite = excitation == EXCITATION_ALTERNATING || excitation == EXCITATION_CHEAPEST;
+  s->is_alternating = opposite && alternate(s, c, &t);
   if (s->is_alternating) {
     svpwm_alternating(&s->alternating, &t, c->pulse_ticks, pulses);
   } else if (excitation == EXCITATION_CENTRED) {
     svpwm_centred(&t, pulses);
   } else if (excitation == EXCITATION_LONG_ZERO) {
     svpwm_long_zero(&t, pulses);
+  } else if (excitation == EXCITATION_CHEAPEST) {
+    svpwm_cheapest_pair(&c->extended, &t, pulses);
   } else {
     svpwm_extended(&c->extended, &t, pulses);
   }

@@ -11,7 +11,8 @@ typedef enum {
   EXCITATION_CENTRED = 0,      // plain SVPWM
   EXCITATION_EXTENDED = 1,     // two active vectors and a zero vector of at least T_min each
   EXCITATION_ALTERNATING = 2,  // two long opposite vectors while the voltage allows, extended above
-  EXCITATION_LONG_ZERO = 4     // all pulses as short as they can be, then one zero vector: what ZVV alone runs on best
+  EXCITATION_LONG_ZERO = 4,    // all pulses as short as they can be, then one zero vector: what ZVV alone runs on best
+  EXCITATION_CHEAPEST = 5      // as alternating, but above its limit the pair that costs least
 } excitation_t;
 
 typedef struct {

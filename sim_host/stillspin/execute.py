@@ -150,6 +150,7 @@ def _machine(plant: Plant, schema: core.Schema) -> dict[str, float]:
         "inertia": entry("mechanics", "inertia") * (1.0 + entry("parameter_error", "inertia")),
         "resistance": true("resistance") + device("resistance"),
         "device_drop": device("threshold"),
+        "flux_linkage": true("magnet_flux"),
         "inductance_d": true("inductance_d"),
         "inductance_q": true("inductance_q"),
         "cross_saturation": cross / entry("machine", "rated_peak_current") if saturates else 0.0,

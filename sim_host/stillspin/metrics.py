@@ -286,6 +286,11 @@ def ripple_audible(piece: Piece) -> float:
     return ripple.rms(_looked(piece, "raster"), ripple.LOWEST, ripple.AUDIBLE)
 
 
+def ripple_torque(piece: Piece) -> float:
+    """Rms of the torque above 1 kHz, from the true currents and angle, N m."""
+    return ripple.torque(_looked(piece, "raster"), piece.extras.machine)
+
+
 def ripple_copper_loss(piece: Piece) -> float:
     """Loss of the ripple in the DC resistance of the three phases and their devices, W; no skin effect, no iron."""
     return 3.0 * float(piece.extras.machine["resistance"]) * ripple_rms(piece) ** 2
@@ -384,6 +389,7 @@ KINDS: dict[str, Kind] = {
     "ripple_subharmonic": Kind(ripple_subharmonic, "A"),
     "ripple_audible": Kind(ripple_audible, "A"),
     "ripple_copper_loss": Kind(ripple_copper_loss, "W"),
+    "ripple_torque": Kind(ripple_torque, "N m"),
     "switching_frequency": Kind(switching_frequency, "kHz"),
     "pattern_voltage_error": Kind(pattern_voltage_error, "ticks"),
     "pattern_mismatch": Kind(pattern_mismatch, "%"),

@@ -6,6 +6,8 @@ has a Hann window; sums over its lines are exact for a stretch that is many time
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 
@@ -31,25 +33,26 @@ PERIOD = 100e-6
 """PWM period, s."""
 
 
+def _squares(time: Floats, signal: Floats) -> tuple[Floats, Floats]:
+    count = int(time.size)
+    step = float(np.mean(np.diff(time))) if count > 1 else 0.0
+    if count * step < 0.02:
+        raise ValueError("the waveform is shorter than the 20 ms that its spectrum needs")
+    window = np.hanning(count + 1)[:count]
+    line = np.fft.rfft(window * (signal - np.mean(signal)))
+    # Mean squares: 2 |X|² / (N sum w²) sums up to the signal's own.
+    squares = 2.0 * np.abs(line) ** 2 / (count * np.sum(window**2))
+    return np.asarray(np.fft.rfftfreq(count, step), np.float64), np.asarray(squares, np.float64)
+
+
 def spectrum(raster: Signals) -> tuple[Floats, Floats]:
     """Line frequencies (Hz) and mean squares (A²) of the phase currents, summed over the phases.
 
     Raises:
         ValueError: the stretch is shorter than 20 ms.
     """
-    time = raster["time"]
-    count = int(time.size)
-    step = float(np.mean(np.diff(time))) if count > 1 else 0.0
-    if count * step < 0.02:
-        raise ValueError("the waveform is shorter than the 20 ms that its spectrum needs")
-    window = np.hanning(count + 1)[:count]
-    total = np.zeros(count // 2 + 1)
-    for name in PHASES:
-        current = np.asarray(raster[name], np.float64)
-        line = np.fft.rfft(window * (current - np.mean(current)))
-        # Mean squares: 2 |X|² / (N sum w²) sums up to the signal's own.
-        total += 2.0 * np.abs(line) ** 2 / (count * np.sum(window**2))
-    return np.asarray(np.fft.rfftfreq(count, step), np.float64), np.asarray(total, np.float64)
+    lines = [_squares(raster["time"], np.asarray(raster[name], np.float64)) for name in PHASES]
+    return lines[0][0], np.asarray(sum(squares for _, squares in lines), np.float64)
 
 
 def rms(raster: Signals, lowest: float, highest: float) -> float:
@@ -57,6 +60,17 @@ def rms(raster: Signals, lowest: float, highest: float) -> float:
     frequency, squares = spectrum(raster)
     inside = (frequency >= lowest) & (frequency <= highest)
     return float(np.sqrt(np.sum(squares[inside]) / 3.0))
+
+
+def torque(raster: Signals, machine: Mapping[str, float]) -> float:
+    """Rms of the torque above 1 kHz, N m: fundamental flux and constant inductances, no harmonics, no saturation."""
+    a, b, c = (np.asarray(raster[name], np.float64) for name in PHASES)
+    turned = (2.0 * a - b - c + 1j * np.sqrt(3.0) * (b - c)) / 3.0 * np.exp(-1j * np.asarray(raster["angle"]))
+    saliency = machine["inductance_d"] - machine["inductance_q"]
+    made = 1.5 * machine["pole_pairs"] * (machine["flux_linkage"] + saliency * turned.real) * turned.imag
+    frequency, squares = _squares(raster["time"], made)
+    inside = (frequency >= LOWEST) & (frequency <= HIGHEST)
+    return float(np.sqrt(np.sum(squares[inside])))
 
 
 def peak_to_peak(raster: Signals) -> float:

@@ -168,6 +168,58 @@ TEST(Extended, TwentyMicrosecondsUpTo110VoltsInEveryDirection) {
   }
 }
 
+svpwm_pulses_t cheapest(const extended_config_t& c, const svpwm_on_time_t& t) {
+  svpwm_pulses_t p;
+  svpwm_cheapest_pair(&c, &t, &p);
+  return p;
+}
+
+TEST(CheapestPair, MeanVoltageAndPulses) {
+  Random random(75);
+  for (int n = 0; n < 20000; ++n) {
+    const double link = random.between(40.0, 420.0);
+    const auto least = static_cast<std::int16_t>(random.between(500.0, 3000.0));
+    const auto most = static_cast<std::int16_t>(random.between(least, 4000.0));
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab(any_voltage(random, link, 1.0), 16), raw(link, 16));
+    const svpwm_pulses_t p = cheapest({least, most, 0}, t);
+    ASSERT_NO_FATAL_FAILURE(expect_valid(p)) << n;
+    ASSERT_NO_FATAL_FAILURE(expect_mean(p, real(t.realised_q16, 16), link)) << n;
+  }
+}
+
+// 000 and the longer of the active vectors are both long, and no pair needs less added to it.
+TEST(CheapestPair, IsLongAndNeedsTheLeastExtension) {
+  Random random(76);
+  const extended_config_t c = {1800, 3000, 0};
+  int zero_pairs = 0, active_pairs = 0, untouched = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab(any_voltage(random, kLink, 1.0), 16), raw(kLink, 16));
+    const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
+    const svpwm_pulses_t p = cheapest(c, t);
+    const std::vector<svpwm_window_t> list = intervals(p);
+    const int added = (on_time(p, t.lo) - SVPWM_PULSE_MIN_TICKS);
+    if (SVPWM_PERIOD_TICKS - SVPWM_FIRST_TICK - SVPWM_PULSE_MIN_TICKS - t1 - t2 < c.window_min_ticks) {
+      active_pairs++;
+      svpwm_pulses_t both;
+      svpwm_extended(&c, &t, &both);
+      for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) ASSERT_EQ(p.at[edge], both.at[edge]);
+      continue;
+    }
+    zero_pairs++;
+    ASSERT_EQ(list.back().state, 0);
+    ASSERT_GE(list.back().end - list.back().begin, c.window_min_ticks) << t1 << ", " << t2;
+    const auto active = static_cast<std::uint16_t>((t1 >= t2) ? 1u << t.hi : 7u ^ (1u << t.lo));
+    const int longer = std::max(t1, t2);
+    ASSERT_GE(lasts(p, active), std::min<int>(longer, c.window_max_ticks));
+    ASSERT_GE(lasts(p, active), (t1 + t2 < 5500) ? c.window_min_ticks : longer) << t1 << ", " << t2;
+    ASSERT_LE(added, std::max(0, c.window_max_ticks - longer));
+    untouched += added <= 0;
+  }
+  EXPECT_GT(zero_pairs, 2000);
+  EXPECT_GT(active_pairs, 200);
+  EXPECT_GT(untouched, 500);
+}
+
 // Fig. 4: extending 100 is compensated by 011, extending 110 by 001, each by exactly as much.
 TEST(Extended, ComplementsGiveBackWhatTheExtensionTook) {
   const extended_config_t c = {2000, 2000, 0};
