@@ -77,8 +77,8 @@ deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t 
                      q_mul_add_floor(q_q24, i.d, p_q24, i.q, 24) + m->k0_q20.d};
   const dq_t lost_q16 = {q_mul_floor(m->rs_q24, i.d, 28), q_mul_floor(m->rs_q24, i.q, 28)};
   deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
-  const dq_t lost = deviation_by_angle(&s, lost_q16);
-  s.rest_q20.d = q_mul_floor(turn.d, w_q30, 30) - lost.d;
-  s.rest_q20.q = q_mul_floor(turn.q, w_q30, 30) - lost.q;
+  const dq_t lost_q18 = deviation_by_angle_q18(&s, lost_q16);
+  s.rest_q18.d = q_mul_hi(turn.d, w_q30) - lost_q18.d;
+  s.rest_q18.q = q_mul_hi(turn.q, w_q30) - lost_q18.q;
   return s;
 }

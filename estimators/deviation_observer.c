@@ -4,12 +4,13 @@
 #define BAM_PER_UNIT_Q7 1367130551L  // 2^-6 rad
 #define BPP_PER_UNIT_Q12 683565276L  // 2^-12 rad per period
 #define ACCEL_Q8_PER_UNIT 667544L    // 2^-18 rad per period^2
+#define PER_UNIT_Q19 1407375L        // 2^32 / (16 N^2), N the period in ticks
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define VARIANCE_MAX (512L * ONE_Q20)
-#define SCORE_MAX (48L * ONE_Q20)   // residuals beyond 48 sigma count as 48
-#define GAIN_MAX (1024L * ONE_Q20)  // six squares stay in 64 bits
+#define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
+#define GAIN_END_Q18 (1024L * 262144L)  // A per period and rad; six squares stay in 64 bits
 #define ONE_Q30 1073741823L
 #define ALERT_SHIFT 9u              // an alert fades within 51 ms
 #define ALERT_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
@@ -41,7 +42,10 @@ static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20
 
 void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
                                const deviation_observer_tuning_t* t) {
-  c->inverse_noise_q20 = q_div(ONE_Q20, q_clamp(t->noise_q20, 1049, ONE_Q20), 20);
+  const int32_t noise_q20 = q_clamp(t->noise_q20, 1049, ONE_Q20);
+  const int32_t inverse_q20 = q_div(ONE_Q20, noise_q20, 20);
+  c->weight_q8 = q_mul(q_mul(inverse_q20, inverse_q20, 30), PER_UNIT_Q19, 21);
+  c->residual_limit_q20 = noise_q20 * OUTLIER;
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
   c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
@@ -123,42 +127,49 @@ static void predict_covariance(deviation_observer_t* s) {
   s->p_sl += q_mul(s->p_ll, time_q32, 32);
 }
 
-// Information and score while the windows add to it: whole products.
+// Information and score while the windows add to them. A window weighs the square of its span, in whole ticks times 16:
+// an upper word of a product with it is 1 / PER_UNIT of a number that is weighed with the square of its share in the
+// period. h_speed is the same for all windows: what belongs to it is multiplied once.
 typedef struct {
-  int64_t aa, as, ss, a, s;  // Q40
+  int64_t aa_q36, a_q38;  // h_angle^2, h_angle e
+  dq_t h_q18, e_q20;      // h_angle, e
+  int32_t weight;         // sum of all weights: the windows of a period do not overlap
 } sums_t;
 
-// x * scale_q20 / 2^shift within +-end, end / 2^(32 - shift) a whole number: the upper word tells whether it fits.
-static inline int32_t limited(int32_t x, int32_t scale_q20, unsigned shift, int32_t end) {
-  const int64_t product = (int64_t)x * scale_q20;
-  const int32_t top = (int32_t)q_shr64(product, 32);
-  const int32_t most = q_shr(end, 32u - shift);
-  if (top >= most) return end;
-  return (top < -most) ? -end : (int32_t)q_shr64(product, shift);
+static int32_t gain_limited(int32_t h_q18) { return q_clamp(h_q18, -GAIN_END_Q18, GAIN_END_Q18 - 1); }
+
+static int32_t residual_limited(const deviation_observer_config_t* c, int32_t e_q20) {
+  return q_clamp(e_q20, -c->residual_limit_q20, c->residual_limit_q20);
 }
 
-// One scalar measurement: sensitivities and residual, all divided by the noise.
-static void collect(sums_t* n, int32_t g_a_q20, int32_t g_s_q20, int32_t e_q20) {
-  n->aa = q_mac(n->aa, g_a_q20, g_a_q20);
-  n->as = q_mac(n->as, g_a_q20, g_s_q20);
-  n->ss = q_mac(n->ss, g_s_q20, g_s_q20);
-  n->a = q_mac(n->a, g_a_q20, e_q20);
-  n->s = q_mac(n->s, g_s_q20, e_q20);
+static inline void collect(sums_t* n, const deviation_observer_config_t* c, const deviation_sensitivity_t* h,
+                           int32_t span, const deviation_t* d) {
+  const int32_t weight = span * span * 16;
+  const dq_t by_angle = deviation_by_angle_q18(h, d->voltage_q16);
+  const dq_t g = {gain_limited(by_angle.d), gain_limited(by_angle.q)};
+  const dq_t e = {residual_limited(c, d->residual_q20.d), residual_limited(c, d->residual_q20.q)};
+  const dq_t wg = {q_mul_hi(g.d, weight), q_mul_hi(g.q, weight)};
+  n->aa_q36 = q_mac(q_mac(n->aa_q36, g.d, wg.d), g.q, wg.q);
+  n->a_q38 = q_mac(q_mac(n->a_q38, e.d, wg.d), e.q, wg.q);
+  n->h_q18.d += wg.d;
+  n->h_q18.q += wg.q;
+  n->e_q20.d += q_mul_hi(e.d, weight);
+  n->e_q20.q += q_mul_hi(e.q, weight);
+  n->weight += weight;
 }
 
-// The sensitivity to the speed needs no limit: below 2^11 A in its format it is, with the least noise, below 2^9 units.
-// scale_q20: span / N / sigma turns a slope into a current difference in units of its noise.
-static void collect_window(sums_t* n, const deviation_sensitivity_t* h, int32_t scale_q20, const deviation_t* d) {
-  const dq_t h_a = deviation_by_angle(h, d->voltage_q16);
-  collect(n, limited(h_a.d, scale_q20, 26, GAIN_MAX), q_mul_hi(h->turn_q20.d, scale_q20),
-          limited(d->residual_q20.d, scale_q20, 20, SCORE_MAX));
-  collect(n, limited(h_a.q, scale_q20, 26, GAIN_MAX), q_mul_hi(h->turn_q20.q, scale_q20),
-          limited(d->residual_q20.q, scale_q20, 20, SCORE_MAX));
+static int32_t per_noise(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
+  return q_mul_sat(q_sat64(q_shr64(sum, shift)), c->weight_q8, 18);
 }
 
-static information_t information_of(const sums_t* n) {
-  const information_t i = {q_sat64(q_shr64(n->aa, 16)), q_sat64(q_shr64(n->as, 16)), q_sat64(q_shr64(n->ss, 16)),
-                           q_sat64(q_shr64(n->a, 20)), q_sat64(q_shr64(n->s, 20))};
+// In units of the states and of the noise: of angle 2^-6 rad, of speed 2^-12 rad per period, in Q24, scores in Q20.
+static information_t information_of(const sums_t* n, const deviation_observer_config_t* c, dq_t h_s) {
+  const dq_t hw = {q_mul_hi(h_s.d, n->weight), q_mul_hi(h_s.q, n->weight)};
+  const int64_t as_q38 = q_mac((int64_t)h_s.d * n->h_q18.d, h_s.q, n->h_q18.q);
+  const int64_t ss_q40 = q_mac((int64_t)h_s.d * hw.d, h_s.q, hw.q);
+  const int64_t s_q40 = q_mac((int64_t)h_s.d * n->e_q20.d, h_s.q, n->e_q20.q);
+  const information_t i = {per_noise(c, n->aa_q36, 14), per_noise(c, as_q38, 22), per_noise(c, ss_q40, 30),
+                           per_noise(c, n->a_q38, 14), per_noise(c, s_q40, 22)};
   return i;
 }
 
@@ -267,12 +278,6 @@ static bool gain_is_old(const deviation_observer_t* s) {
 
 static const deviation_left_t none_left = {0, 0, 0, 0};
 
-static void leave(deviation_left_t* left, const estimator_window_t* w, const deviation_t* d) {
-  left->d_q20 = q_mac(left->d_q20, d->residual_q20.d, w->span_ticks);
-  left->q_q20 = q_mac(left->q_q20, d->residual_q20.q, w->span_ticks);
-  left->span_ticks += w->span_ticks;
-}
-
 bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods) {
   const deviation_left_t left = s->left;
   s->left = none_left;
@@ -286,7 +291,8 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
 }
 
 static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
-  sums_t sums = {0, 0, 0, 0, 0};
+  sums_t sums = {0, 0, {0, 0}, {0, 0}, 0};
+  deviation_left_t left = s->left;
   deviation_t d[ESTIMATOR_WINDOWS];
   estimator_frame_t own[ESTIMATOR_WINDOWS];
   const estimator_frame_t* f = in->frames;
@@ -299,17 +305,19 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
   const deviation_sensitivity_t h = deviation_sensitivity(in->model, w_q30, f[in->window_count / 2u].current_q20);
   for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
+    const int32_t span = w->span_ticks;
     d[k] = deviation_in_frame(&at, w, &f[k]);
-    leave(&s->left, w, &d[k]);
-    const int32_t scale_q20 = q_mul_floor(c->inverse_noise_q20, (int32_t)w->span_ticks * 107374, 30);
-    if (!c->zero_vectors_only || w->zero_vector) collect_window(&sums, &h, scale_q20, &d[k]);
+    left.d_q20 = q_mac(left.d_q20, d[k].residual_q20.d, span);
+    left.q_q20 = q_mac(left.q_q20, d[k].residual_q20.q, span);
+    left.span_ticks += span;
+    if (!c->zero_vectors_only || w->zero_vector) collect(&sums, c, &h, span, &d[k]);
   }
-  if (++s->left.periods >= LEFT_PERIODS_MAX) s->left = none_left;
+  s->left = (++left.periods < LEFT_PERIODS_MAX) ? left : none_left;
   if (in->regress) {
     regression_evaluate(&s->regression, d, in);
     s->regressed_bam = s->angle_bam;
   }
-  information_t n = information_of(&sums);
+  information_t n = information_of(&sums, c, h.turn_q20);
   bound(&n);
   return n;
 }

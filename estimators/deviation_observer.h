@@ -34,7 +34,8 @@ typedef struct {
 } deviation_observer_tuning_t;
 
 typedef struct {
-  int32_t inverse_noise_q20;     // 1 / rms error of a current difference, 1/A, 1..1000
+  int32_t weight_q8;             // of a window as long as the period: 1 / variance, in the unit of the sums, 2.7..2.7e6
+  int32_t residual_limit_q20;    // residuals beyond it count as this, A per period
   int32_t load_noise_q20;        // variance that the load gains per period, own units
   int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes
   int32_t load_step_q20;         // variance of a step of the load, at a crawl

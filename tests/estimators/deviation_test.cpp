@@ -97,7 +97,7 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
     const Vector by_angle = (slope(at + kStep, p.w()) - slope(at - kStep, p.w())) * (0.5 / kStep);
     const double dw = 10.0;  // the slope is linear in the speed: any step will do
     const Vector by_speed = (slope(at, p.w() + dw) - slope(at, p.w() - dw)) * (0.5 / dw / m.period);
-    const Vector h_a = real(deviation_by_angle(&h, d.voltage_q16), 20);
+    const Vector h_a = real(deviation_by_angle_q18(&h, d.voltage_q16), 18);
     const Vector h_s = real(h.turn_q20, 20);
     // 1.7e-6 of T as above in both; K is right to a few 1e-7 and is multiplied by 15 A
     ASSERT_NEAR(h_a.x, by_angle.x, 3e-5 + 3e-6 * by_angle.length()) << n;

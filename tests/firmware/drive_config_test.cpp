@@ -71,7 +71,8 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.avv.bandwidth_short_q30, 30), 100.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.zvv.kp_q30, 30), 4.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.zvv.ki_q40, 40) / (4.0 * kPeriod * kPeriod), 1.0, 1e-4);
-  EXPECT_NEAR(real(c.observer.inverse_noise_q20, 20), 10.0, 0.01);  // 100 mA
+  EXPECT_NEAR(real(c.observer.weight_q8, 8) * 1.6e9 / std::ldexp(1.0, 32), 100.0, 0.01);  // 100 mA
+  EXPECT_NEAR(real(c.observer.residual_limit_q20, 20), 19.2, 0.01);
   EXPECT_NEAR(real(c.adapt_share_q30, 30), ADAPTATION_TURN * kPeriod / 150e-3, 1e-8);
   const double newton_metres =
       m.inertia / m.pole_pairs * kTurn / std::ldexp(kPeriod * kPeriod, 32);  // per bpp a period
@@ -161,7 +162,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
     ASSERT_GE(c.avv.bandwidth_long_q30, c.avv.bandwidth_short_q30);
     ASSERT_GE(c.dead_time.blocked_ticks, c.dead_time.released_ticks);
     ASSERT_GE(c.ramp_step_bpp, 0);
-    ASSERT_GT(c.observer.inverse_noise_q20, 0);
+    ASSERT_GT(c.observer.weight_q8, 0);
     ASSERT_GT(c.observer.load_noise_q20, 0);
     const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
     const double low = real(flux ? parameters.flux_low : parameters.blend_low, 16) / 60.0 * parameters.pole_pairs *
