@@ -71,7 +71,7 @@ typedef struct {
 /// What the control interrupt knows about the last period.
 typedef struct {
   estimator_window_t windows[ESTIMATOR_WINDOWS];
-  ab_t ripple_q16[ESTIMATOR_WINDOWS];           // ripple flux at the middle of each window, V period
+  ab_t ripple_q16;                              // ripple flux at the middles of all windows, added up, V period
   estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame in use
   uint16_t count;
   int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V

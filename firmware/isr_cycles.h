@@ -1,13 +1,11 @@
 // Run time of the steps of the control interrupt on the chip, in cycles of SYSCLKOUT: what the virtual chip lets pass.
 //
-// Estimates, no measurement of the compiler's code: operations counted in every period of runs at 5, 80, 600 and 2000
-// rpm with the default position source, and of each step its worst period of all. A 32 x 32 bit product with rounding
-// counts 13 cycles, two of them with one rounding 20, one that is only added up 8, an upper half 6, a saturation 8, a
-// reciprocal 70 and a 32 bit division 60, operands fetched; to the modulation come 1000 for placing and sorting edges.
-// All worst steps in one period need three windows, the millisecond's tasks and a polarity that is not confirmed yet:
-// 8800; the mean over a run is 6900. Not in it: position source 2 or a hold, which evaluate the windows twice, and what
-// follows when the compare values are written, serial port and scope. They make a compare value that is written too
-// late be seen too late.
+// Estimates, no measurement on the chip. Samples, estimate, supervise, control, modulate and the window's interrupt are
+// the worst periods of their steps counted on a Cortex-M3, times 1.25; `make isr-cost` fails where they are further than
+// a tenth from that (docs/isr-cost.md, toolchain/m3_cost.py). The rest is estimated from operations, in cycles: a 32 x 32
+// bit product with rounding 13, one that is only added up 8, an upper half 6, a saturation 8, a reciprocal 70. Not in it:
+// position source 2 or a hold, which evaluate the windows twice, and what follows when the compare values are written,
+// serial port and scope. They make a compare value that is written too late be seen too late.
 
 #ifndef STILLSPIN_FIRMWARE_ISR_CYCLES_H
 #define STILLSPIN_FIRMWARE_ISR_CYCLES_H

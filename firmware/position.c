@@ -23,8 +23,8 @@ typedef enum {
   TURN_MOVE = 2,
   TURN_RENEW_AGAIN = 3,
   TURN_LIKENESS = 4,   // admittances and match of the sensors
-  TURN_VOLTAGE = 5,    // resistance and flux
-  TURN_MOVE_AGAIN = 6  // or the polarity's watch
+  TURN_VOLTAGE = 5,    // resistance and flux; the polarity's watch looks at the back-EMF
+  TURN_MOVE_AGAIN = 6  // or the polarity's watch follows the axis
 } turn_t;
 
 static void next_turn(drive_t* d) {
@@ -39,7 +39,9 @@ bool position_judges_now(const drive_t* d) { return is_turn(d, TURN_RENEW) || is
 
 bool position_has_regressed(const drive_t* d) { return is_turn(d, TURN_REGRESS); }
 
-bool position_watches_now(const drive_t* d) { return is_turn(d, TURN_MOVE_AGAIN); }
+bool position_follows_axis_now(const drive_t* d) { return is_turn(d, TURN_MOVE_AGAIN); }
+
+bool position_looks_at_emf_now(const drive_t* d) { return is_turn(d, TURN_VOLTAGE); }
 
 // `near`: the windows agree with the angle, so that the regression is linear.
 static void adapt(drive_t* d, const regression_t* r, bool near) {
@@ -134,19 +136,16 @@ static const source_step_t sources[] = {source_encoder, source_paper, source_obs
 static void measure_current(drive_t* d) {
   drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
-  dq_t ripple_q16 = {0, 0};
   if (s->count == 0u || drive_is_blind(d)) return;
   const int32_t speed_bpp = d->position.used.speed_bpp;
   const uint32_t middle_bam = deviation_middle(d->position.used.angle_bam + (uint32_t)speed_bpp, speed_bpp);
   deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(speed_bpp), s->frames);
   for (uint16_t k = 0; k < s->count; k++) {
-    const dq_t i = s->frames[k].current_q20;
-    const dq_t flux_q16 = frame_park(s->ripple_q16[k], s->frames[k].rotation);
-    sum.d += i.d;
-    sum.q += i.q;
-    ripple_q16.d += flux_q16.d;
-    ripple_q16.q += flux_q16.q;
+    sum.d += s->frames[k].current_q20.d;
+    sum.q += s->frames[k].current_q20.q;
   }
+  // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
+  const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
   const int32_t per_count_q30 = per_windows_q30[s->count];
   d->control.measured_q20.d = q_mul(sum.d - q_mul(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30);
   d->control.measured_q20.q = q_mul(sum.q - q_mul(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);

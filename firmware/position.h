@@ -12,10 +12,11 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
 /// In this period the synchronism is judged; the deviation observer has just regressed its windows; the polarity's
-/// watch looks.
+/// watch follows the axis, or looks at the back-EMF.
 bool position_judges_now(const drive_t* d);
 bool position_has_regressed(const drive_t* d);
-bool position_watches_now(const drive_t* d);
+bool position_follows_axis_now(const drive_t* d);
+bool position_looks_at_emf_now(const drive_t* d);
 
 /// Electrical angle of an encoder count whose zero lies on phase a.
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);

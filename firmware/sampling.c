@@ -13,7 +13,6 @@
 #include "svpwm/ripple.h"
 
 #define THIRD 357913941L  // Q30
-#define SIDE FRAME_SQRT3_INV_Q30
 
 static sampling_buffer_t sampling_buffers[2];
 static uint16_t sampling_filling;
@@ -46,33 +45,47 @@ const sampling_buffer_t* sampling_swap(void) {
   return &sampling_buffers[full];
 }
 
-// Clarke of the eight switching states: thirds and 1/sqrt(3), Q30.
-static const ab_t state_vector_q30[8] = {{0, 0},          {2 * THIRD, 0}, {-THIRD, SIDE},  {THIRD, SIDE},
-                                         {-THIRD, -SIDE}, {THIRD, -SIDE}, {-2 * THIRD, 0}, {0, 0}};
+// Clarke of the eight switching states: thirds of the link, and 1/sqrt(3) of it.
+static const int16_t thirds_of_state[8] = {0, 2, -1, 1, -1, 1, -2, 0};
+static const int16_t sides_of_state[8] = {0, 0, 1, 1, -1, -1, 0, 0};
 
-static ab_t window_voltage(const drive_t* d, const svpwm_window_t* w, ab_t current_q20) {
-  const ab_t vector = state_vector_q30[w->state & 7u];
-  const ab_t drop = dead_time_drop_q16(&d->config.dead_time, current_q20);
-  const ab_t v = {q_mul_floor(d->samples.link_q16, vector.alpha, 30) - drop.alpha,
-                  q_mul_floor(d->samples.link_q16, vector.beta, 30) - drop.beta};
-  return v;
+// What is the same for all windows of a period.
+typedef struct {
+  const dead_time_config_t* drops;
+  slopes_scale_t slopes;
+  sampling_config_t bursts;
+  int32_t third_q16, side_q16;  // of the DC link, V
+} scale_t;
+
+static scale_t scale_of(const drive_t* d) {
+  const scale_t s = {&d->config.dead_time, slopes_scale(&d->config.slopes, &d->trim), d->config.modulator.sampling,
+                     q_mul_floor(d->samples.link_q16, THIRD, 30),
+                     q_mul_floor(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30)};
+  return s;
 }
 
-static void evaluate(drive_t* d, const slopes_scale_t* scale, const svpwm_window_t* w, const hal_adc_window_t* raw,
-                     estimator_window_t* out) {
-  const sampling_config_t* const c = &d->config.modulator.sampling;
-  const int16_t begin = (int16_t)(svpwm_burst_start(c, w) + (int16_t)HAL_ADC_START_DELAY_TICKS);
-  const int16_t end = (int16_t)(svpwm_burst_end(c, w) + (int16_t)HAL_ADC_END_DELAY_TICKS);
+static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_window_t* raw, estimator_window_t* out) {
+  const int32_t begin = svpwm_burst_start(&s->bursts, w) + (int32_t)HAL_ADC_START_DELAY_TICKS;
+  const int32_t end = svpwm_burst_end(&s->bursts, w) + (int32_t)HAL_ADC_END_DELAY_TICKS;
   const slopes_sums_t sums = {raw->start_a, raw->start_b, raw->end_a, raw->end_b};
+  const uint16_t state = w->state & 7u;
   out->span_ticks = (int16_t)(end - begin);
   out->middle_tick = (int16_t)q_shr(begin + end, 1);
-  out->zero_vector = svpwm_is_zero_vector(w->state);
-  slopes_evaluate(scale, &sums, out);
-  out->voltage_q16 = window_voltage(d, w, out->current_q20);
+  out->zero_vector = svpwm_is_zero_vector(state);
+  slopes_evaluate(&s->slopes, &sums, out);
+  const ab_t drop = dead_time_drop_q16(s->drops, out->current_q20);
+  out->voltage_q16.alpha = thirds_of_state[state] * s->third_q16 - drop.alpha;
+  out->voltage_q16.beta = sides_of_state[state] * s->side_q16 - drop.beta;
 }
 
-static void filter_link(drive_t* d, int32_t volts_q16) {
-  d->samples.link_q16 += (d->samples.link_q16 == 0) ? volts_q16 : q_shr(volts_q16 - d->samples.link_q16, 3);
+static void follow_link(drive_t* d, const sampling_buffer_t* b) {
+  int32_t link_q16 = d->samples.link_q16;
+  for (uint16_t k = 0; k < b->count; k++) {
+    const int32_t volts_q16 = (int32_t)b->windows[k].link * d->config.volts_per_code_q16;
+    d->samples.link_end_q16[k] = volts_q16;
+    link_q16 += (link_q16 == 0) ? volts_q16 : q_shr(volts_q16 - link_q16, 3);
+  }
+  d->samples.link_q16 = link_q16;
 }
 
 void drive_read_samples(drive_t* d) {
@@ -89,12 +102,13 @@ void drive_read_samples(drive_t* d) {
   if (!complete) return;
   s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
-  const slopes_scale_t scale = slopes_scale(&d->config.slopes, &d->trim);
+  follow_link(d, b);
+  const scale_t scale = scale_of(d);
+  int16_t middles[ESTIMATOR_WINDOWS];
   for (uint16_t k = 0; k < p->window_count; k++) {
-    s->link_end_q16[k] = (int32_t)b->windows[k].link * d->config.volts_per_code_q16;
-    filter_link(d, s->link_end_q16[k]);
-    evaluate(d, &scale, &p->windows[k], &b->windows[k], &s->windows[k]);
-    s->ripple_q16[k] = svpwm_ripple_q16(&p->pulses, s->windows[k].middle_tick, s->link_q16);
+    evaluate(&scale, &p->windows[k], &b->windows[k], &s->windows[k]);
+    middles[k] = s->windows[k].middle_tick;
   }
+  s->ripple_q16 = svpwm_ripple_q16(&p->pulses, middles, p->window_count, s->link_q16);
   s->count = p->window_count;
 }

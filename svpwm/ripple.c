@@ -3,18 +3,21 @@
 #define PER_THIRD_Q58 960767921L  // 2^58 / (3 N^2), N = 10 000 ticks
 #define PER_SIDE_Q58 1664098853L  // 2^58 / (sqrt(3) N^2)
 
-// How long a leg has been high at a tick.
-static int32_t passed(const svpwm_pulses_t* p, uint16_t leg, int32_t tick) {
-  return q_clamp(tick - p->at[leg], 0, svpwm_on_ticks(p, leg));
+// Ripple of a leg, of the DC-link voltage and 1/N of a tick: the sum of N clamp(t - r, 0, f - r) - (f - r) t.
+static int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, const int16_t ticks[], uint16_t count) {
+  const int32_t rise = p->at[leg];
+  const int32_t on = svpwm_on_ticks(p, leg);
+  int32_t passed = 0;
+  int32_t sum = 0;
+  for (uint16_t k = 0; k < count; k++) {
+    passed += q_clamp(ticks[k] - rise, 0, on);
+    sum += ticks[k];
+  }
+  return passed * (int32_t)SVPWM_PERIOD_TICKS - on * sum;
 }
 
-// Ripple of a leg, of the DC-link voltage and 1/N of a tick: N clamp(t - r, 0, f - r) - (f - r) t.
-static int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, int32_t tick) {
-  return passed(p, leg, tick) * (int32_t)SVPWM_PERIOD_TICKS - svpwm_on_ticks(p, leg) * tick;
-}
-
-ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16) {
-  const abc_t legs = {leg_at(p, 0, tick), leg_at(p, 1, tick), leg_at(p, 2, tick)};
+ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16) {
+  const abc_t legs = {leg_at(p, 0, ticks, count), leg_at(p, 1, ticks, count), leg_at(p, 2, ticks, count)};
   const int32_t per_third = q_mul_floor(link_q16, PER_THIRD_Q58, 28);
   const int32_t per_side = q_mul_floor(link_q16, PER_SIDE_Q58, 28);
   const ab_t flux = {q_mul_floor(2 * legs.a - legs.b - legs.c, per_third, 30),

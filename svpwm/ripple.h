@@ -12,8 +12,8 @@
 
 #include "svpwm/pattern.h"
 
-/// Ripple flux at `tick`, V * period, Q16 (multiply by T/L to have amperes).
-ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, int16_t tick, int32_t link_q16);
+/// Ripple flux at some ticks together, up to three, V * period, Q16 (multiply by T/L to have amperes).
+ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16);
 
 /// Mean voltage of a period with these pulses, V Q16.
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);

@@ -5,7 +5,8 @@
 // itself the right way round at some hundred rpm in the wrong direction. Once confirmed the watch is over. The check of
 // synchronism may be faster; then the sign seen so far tells which fault it is.
 //
-// The axis is looked at once in a turn of what is slow (position.c), a few periods after the windows were regressed.
+// Axis and back-EMF are looked at once in a turn of what is slow (position.c), in different periods of it; the axis a
+// few periods after the windows were regressed.
 
 #include "firmware/start/polarity_watch.h"
 
@@ -14,7 +15,6 @@
 #include "firmware/position.h"
 
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
-#define PERIODS_MAX 16                // since the axis was last looked at
 
 static void forget_voltage(polarity_watch_t* w) {
   w->voltage_q16.d = 0;
@@ -26,6 +26,7 @@ void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   polarity_watch_t* const w = &d->watch;
   w->open = parameters.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
+  w->axis_periods = 0;
   emf_sign_reset(&w->sign);
   forget_voltage(w);
 }
@@ -72,9 +73,14 @@ static void begin_anew(drive_t* d) {
 // Takes the error that was seen once for every period since the last time.
 static void follow_axis(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
-  if (d->samples.count == 0u) return;
-  const int32_t most = INT32_MAX / w->periods;
-  tracking_observer_correct(&w->axis, q_clamp(axis_off(d), -most, most) * w->periods, BANDWIDTH_STEP_Q30);
+  const int32_t periods = w->axis_periods;
+  w->axis_periods = 0;
+  if (is_blind(d)) {
+    begin_anew(d);
+  } else if (d->samples.count > 0u) {
+    const int32_t most = INT32_MAX / periods;
+    tracking_observer_correct(&w->axis, q_clamp(axis_off(d), -most, most) * periods, BANDWIDTH_STEP_Q30);
+  }
 }
 
 static emf_sign_result_t look(drive_t* d) {
@@ -93,13 +99,10 @@ bool polarity_watch_step(drive_t* d) {
   w->voltage_q16.d += d->control.command_q16.d;
   w->voltage_q16.q += d->control.command_q16.q;
   w->periods++;
+  w->axis_periods++;
   if (position_has_regressed(d)) w->axis_then_bam = w->axis.angle_bam;
-  if (!position_watches_now(d) && w->periods < PERIODS_MAX) return false;
-  if (is_blind(d)) {
-    begin_anew(d);
-    return false;
-  }
-  follow_axis(d);
+  if (position_follows_axis_now(d)) follow_axis(d);
+  if (!position_looks_at_emf_now(d)) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

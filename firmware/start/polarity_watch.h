@@ -10,8 +10,9 @@ typedef struct {
   bool open;  // not answered since the start
   tracking_observer_t axis;
   uint32_t axis_then_bam;  // where it was when the windows were last regressed
+  int32_t axis_periods;    // since it was last corrected
   emf_sign_t sign;
-  dq_t voltage_q16;  // sum of the commands since the axis was last looked at, V
+  dq_t voltage_q16;  // sum of the commands since the back-EMF was last looked at, V
   int32_t periods;   // that long ago
 } polarity_watch_t;
 

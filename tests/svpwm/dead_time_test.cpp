@@ -69,7 +69,7 @@ TEST(DeadTime, TheMotorSeesTheWantedEdges) {
         const std::int16_t edge = wanted.at[rising ? leg : SVPWM_LEGS + leg];
         const std::int16_t sent = command.at[rising ? leg : SVPWM_LEGS + leg];
         // what counts is the current at the edge: mean and ripple
-        const Vector flux = real(svpwm_ripple_q16(&wanted, edge, raw(kLink, 16)), 16);
+        const Vector flux = real(svpwm_ripple_q16(&wanted, &edge, 1, raw(kLink, 16)), 16);
         const double current = phase(mean + flux * y, leg);
         ASSERT_GE(sent, 1);
         ASSERT_LE(sent, 9999);

@@ -35,13 +35,18 @@ TEST(Ripple, IsTheIntegralOfTheVoltageLessItsMean) {
     }
     const std::vector<Vector> exact = integrated(p, link);
     for (int tick = 0; tick <= 10000; tick += 7) {
-      const Vector flux = real(svpwm_ripple_q16(&p, static_cast<std::int16_t>(tick), raw(link, 16)), 16);
+      const auto at = static_cast<std::int16_t>(tick);
+      const Vector flux = real(svpwm_ripple_q16(&p, &at, 1, raw(link, 16)), 16);
       // Each leg is rounded to 1/32 tick, Clarke cuts off up to 1/16: an eighth of a tick of the link, and 2^-16 V.
       // As a current of motor A that is 0.1 mA.
       const double tolerance = 0.125 * link * 1e-4 + 3e-5;
       ASSERT_NEAR(flux.x, exact[static_cast<std::size_t>(tick)].x, tolerance) << n << ", " << tick;
       ASSERT_NEAR(flux.y, exact[static_cast<std::size_t>(tick)].y, tolerance) << n << ", " << tick;
     }
+    const std::int16_t some[3] = {1400, 5005, 9100};
+    const Vector sum = real(svpwm_ripple_q16(&p, some, 3, raw(link, 16)), 16);
+    ASSERT_NEAR(sum.x, exact[1400].x + exact[5005].x + exact[9100].x, 3 * 0.125 * link * 1e-4 + 3e-5);
+    ASSERT_NEAR(sum.y, exact[1400].y + exact[5005].y + exact[9100].y, 3 * 0.125 * link * 1e-4 + 3e-5);
   }
 }
 
@@ -68,7 +73,7 @@ TEST(Ripple, MeanVoltageIsThatOfTheStates) {
 TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
   const svpwm_pulses_t p = {{260, 5760, 5800, 4500, 9960, 9900}, 0};
   for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {
-    const Vector flux = real(svpwm_ripple_q16(&p, tick, raw(300.0, 16)), 16);
+    const Vector flux = real(svpwm_ripple_q16(&p, &tick, 1, raw(300.0, 16)), 16);
     EXPECT_NEAR(flux.length(), 0.0, 0.004);  // an eighth of a tick
   }
 }
