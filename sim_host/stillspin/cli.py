@@ -23,6 +23,8 @@ from stillspin import (
     core,
     drift,
     execute,
+    explain,
+    explain_report,
     output,
     profile,
     report,
@@ -189,6 +191,38 @@ def drift_(
     print(f"{short} figures miss the goal of a plant that has drifted; see {out / report.PAGE}")
     if short or done.refused:
         raise typer.Exit(BROKEN)
+
+
+@app.command(name="explain")
+def explain_(
+    *,
+    scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
+    profile_name: ProfileOption = "bench",
+    motor: Annotated[
+        str | None, typer.Option("--motor", metavar="NAME", help="Another motor than the scenario's own.")
+    ] = None,
+    seed: SeedOption = 1,
+    params: ParamsOption = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this effect, by its mark. Repeatable.")
+    ] = None,
+    alone: Annotated[
+        bool, typer.Option("--alone/--no-alone", help="Run each effect alone on profile ideal, too.")
+    ] = True,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-explain-SCENARIO].")
+    ] = None,
+    jobs: JobsOption = None,
+) -> None:
+    """Run a scenario without each effect of the plant in turn, and with each alone: which one makes the figures."""
+    chosen = _on(motor, scenario_file.load(scenario))
+    where = out or Path(f"results-explain-{chosen.id}")
+    workers = jobs or len(os.sched_getaffinity(0))
+    found = explain.carry_out(chosen, explain.Options(profile_name, seed, where, workers, params, only or [], alone))
+    tables.explanation(found)
+    for run_name, words in found.broken.items():
+        print(f"stillspin: {chosen.id}, {run_name}: broken off: {words}", file=sys.stderr)
+    print(f"see {where / explain_report.PICTURE} and {where / output.MARK}")
 
 
 @app.command(name="commission")

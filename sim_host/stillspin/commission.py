@@ -29,6 +29,11 @@ class Value:
     used: bool
     words: str
 
+    @property
+    def text(self) -> str:
+        """As a parameter file has it."""
+        return f"{self.value:.{self.decimals + 2}f}"
+
 
 @dataclass(frozen=True)
 class Result:
@@ -41,6 +46,11 @@ class Result:
     def refused(self) -> tuple[Value, ...]:
         """Values that the drive did not believe."""
         return tuple(value for value in self.values if not value.used)
+
+    @property
+    def told(self) -> dict[str, float]:
+        """What the drive is told, with the digits of a parameter file."""
+        return {value.name: float(value.text) for value in self.values if value.used}
 
 
 def run(
@@ -112,7 +122,7 @@ def write(path: Path, result: Result, about: Sequence[str]) -> None:
     for value in result.values:
         if value.used:
             unit = f"  # {value.unit}" if value.unit else ""
-            lines.append(f"{value.name} = {value.value:.{value.decimals + 2}f}{unit}")
+            lines.append(f"{value.name} = {value.text}{unit}")
     try:
         with tempfile.NamedTemporaryFile("w", dir=path.absolute().parent, delete=False, encoding="utf-8") as file:
             file.write("\n".join(lines) + "\n")

@@ -13,6 +13,8 @@ from stillspin.assess import ScenarioResult
 from stillspin.core import Entry
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
+from stillspin.effects import ALONE, WITHOUT
+from stillspin.explain_report import Explanation
 from stillspin.figures import Result
 from stillspin.hil.results import Row
 from stillspin.scenario import Scenario
@@ -21,6 +23,7 @@ from stillspin.variant import Beside
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {
     *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
+    *("without", "alone"),
     *("starts", "failed", "steps", "steps/s", "backward", "sigma", "angle"),
 }
 
@@ -158,4 +161,22 @@ def startup(rows: Iterable[tuple[str, ...]]) -> None:
     table = _table("way", "errors", "load or speed", "starts", "failed", "backward", "angle", "sigma", "first failure")
     for row in rows:
         table.add_row(*row)
+    _print(table)
+
+
+def explanation(found: Explanation) -> None:
+    """A figure after the other: its value without each effect and with it alone, the dominating one marked."""
+    table = _table("figure", "unit", "goal", "effect", "without", "alone", "")
+    for figure in found.figures:
+        goal, unit = report.number(figure.goal), report.unit_text(figure.unit)
+        word = report.verdict(figure)
+        shown = Text(word, style=_COLOURS[word])
+        ideal = report.number(found.value(ALONE, None, figure.name)) if found.alone else ""
+        table.add_row(figure.name, unit, goal, "nothing switched", report.number(figure.value), ideal, shown)
+        best = found.dominating(figure)
+        for effect in found.effects:
+            without = report.number(found.value(WITHOUT, effect, figure.name))
+            alone = report.number(found.value(ALONE, effect, figure.name)) if found.alone and not effect.exact else ""
+            mark = Text("dominates", style="bold") if effect is best else Text("")
+            table.add_row("", "", "", effect.title, without, alone, mark)
     _print(table)
