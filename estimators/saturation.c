@@ -80,6 +80,19 @@ static void end_round(saturation_t* s, int16_t round, int32_t sign) {
   s->change_q30 += sign * (mean / ROUNDS_A_SIDE);
 }
 
+int32_t saturation_resistance_q24(const saturation_t* s, const machine_model_t* m) {
+  if (s->missing_count == 0) return 0;
+  const int32_t volts_q16 = q_div(s->missing_q20 / s->missing_count, m->yd_q30, 26);
+  return -q_div(volts_q16, s->current_q20, 28);
+}
+
+// Sums over all passes, at most 8 of 144 periods.
+static void add_missing(saturation_t* s, const regression_t* r, int32_t sign) {
+  if (r->information <= 0) return;
+  s->missing_q20 = q_add_sat(s->missing_q20, sign * r->mean_q20.d);
+  s->missing_count++;
+}
+
 int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_model_t* m) {
   if (s->tick >= SATURATION_LENGTH) return 0;
   const int16_t segment = s->tick / SATURATION_SEGMENT;
@@ -88,6 +101,7 @@ int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_mo
   const int32_t slew = s->current_q20 / 20;  // a jump would leave the alternating layout
   s->reference_q20 += q_clamp(sign * s->current_q20 - s->reference_q20, -slew, slew);
   if (inside >= 0) {
+    add_missing(s, r, sign);
     // Shares of the mean and not a sum: the admittances of a machine with little inductance fill the format.
     s->round_q30 += ((r->information > 0) ? projected_q30(s, r, m) : s->last_q30) / SATURATION_ROUND;
     if (inside % SATURATION_ROUND == SATURATION_ROUND - 1) end_round(s, (int16_t)(inside / SATURATION_ROUND), sign);

@@ -11,6 +11,8 @@
 // not average out (bent ADC, ringing, drops). Below SATURATION_SIGMA_MIN, or with a score that fits neither answer, the
 // result is ambiguous. 324 periods, 32 ms at 10 kHz. Not usable when the machine is linear or its slopes are not known:
 // saturation_is_visible says so beforehand.
+//
+// The same currents of both signs, once steady, also tell the resistance: what is left of the mean residual along them.
 
 #ifndef STILLSPIN_ESTIMATORS_SATURATION_H
 #define STILLSPIN_ESTIMATORS_SATURATION_H
@@ -43,6 +45,8 @@ typedef struct {
   int32_t round_q30;      // mean over the present round, in the making
   int32_t last_q30;       // mean of the round before
   int32_t change_q30;     // change of the means, summed over the passes
+  int32_t missing_q20;    // mean residuals in the sense of the current, summed, A per period
+  int16_t missing_count;  //
   uint64_t scatter;       // sum of squared differences between neighbouring rounds of a segment
   int32_t score_q15;      // change seen over change expected
   int32_t sigma_q8;       // change seen over its standard error
@@ -57,6 +61,9 @@ void saturation_begin(saturation_t* s, const machine_model_t* m, const saturatio
 
 /// Repeats the pattern and adds to what the passes before have shown; at most 8 passes.
 void saturation_again(saturation_t* s);
+
+/// What the windows say that the resistance is more than the model has it, ohm Q24; 0 when they said nothing.
+int32_t saturation_resistance_q24(const saturation_t* s, const machine_model_t* m);
 
 /// One period: takes the regression made with model m, returns the d-axis current to command, A Q20.
 int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_model_t* m);

@@ -26,6 +26,11 @@ static void bound(machine_model_t* m) {
   t->psi_q16 = q_clamp(t->psi_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
 }
 
+void voltage_match_resistance(machine_model_t* m, int32_t more_q24) {
+  m->trim.rs_q24 = q_add_sat(m->trim.rs_q24, more_q24);
+  bound(m);
+}
+
 void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30, int32_t share_q30) {
   machine_trim_t* const t = &m->trim;
   if (share_q30 == 0) return;

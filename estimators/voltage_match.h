@@ -11,6 +11,9 @@
 
 #include "estimators/regression.h"
 
+/// Adds to what the model's trim has of the resistance.
+void voltage_match_resistance(machine_model_t* m, int32_t more_q24);
+
 /// Moves the model's trim; share_q30: part of the error taken over per period, 0 for none.
 void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30, int32_t share_q30);
 

@@ -49,7 +49,7 @@ typedef struct {
   if_start_config_t turn;
   avv_config_t avv;
   zvv_config_t zvv;
-  deviation_observer_config_t observer;
+  deviation_observer_config_t observer, hold_observer;
   blend_config_t blend;
   flux_observer_config_t flux;
   slopes_config_t slopes;
@@ -229,6 +229,7 @@ bool polarity_watch_is_awake(const drive_t* d);
 
 /// Holds the shaft for hold_time from now (start/hold.c).
 void hold_begin(drive_t* d);
+bool hold_is_on(const drive_t* d);
 
 /// One period; false when it is over and the speed controller has the torque current.
 bool hold_step(drive_t* d);

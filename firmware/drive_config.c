@@ -112,6 +112,18 @@ static bool load_blend(drive_config_t* c) {
   return blend_design(&c->blend, q_mul_sat(low, c->bpp_per_rpm_q8, 24), q_mul_sat(high, c->bpp_per_rpm_q8, 24));
 }
 
+// While the shaft is held the load is followed at once, five times as fast as at a crawl, and no step looked for.
+static void load_hold_observer(drive_config_t* c, const deviation_observer_tuning_t* usual) {
+  deviation_observer_tuning_t t = *usual;
+  t.noise_q20 = usual->noise_q20 / 10 * 3;
+  t.load_rate_q20 = q_shl_sat(usual->load_rate_q20, 1);
+  t.load_rate_quiet_q20 = t.load_rate_q20;
+  t.load_step_q20 = 0;
+  t.steps_at_speed = false;
+  c->hold_observer = c->observer;
+  deviation_observer_design(&c->hold_observer, &c->nameplate, &t);
+}
+
 static bool load_position(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->avv.bandwidth_short_q30 = bandwidth_step_q30(p->avv_bandwidth_short);
@@ -132,6 +144,7 @@ static bool load_position(drive_config_t* c) {
   c->observer.cogging.fast_bpp = c->observer.crawl_bpp;
   c->observer.cogging.bound_q8 = q_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24);
   c->observer.zero_vectors_only = p->observer_windows == 0;
+  load_hold_observer(c, &observer);
   c->synchronism.floor_q16 = p->synchronism_floor;
   c->synchronism.share_q15 = q_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;

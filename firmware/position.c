@@ -17,6 +17,7 @@ typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t*
 // working point, and what the regression tells of machine and sensors. The turn has seven places because seven has no
 // factor in common with the six periods in which the alternating layout repeats: each adaptation sees every direction
 // of the voltage. While the shaft turns it stands still in the two periods of a millisecond in which other tasks run.
+// While a shaft is held the current moves fast, and covariance and working point follow in every period.
 typedef enum {
   TURN_RENEW = 0,  // the covariance; and the synchronism is judged
   TURN_REGRESS = 1,
@@ -75,7 +76,8 @@ static estimator_output_t step_commissioning(drive_t* d, const estimator_input_t
 }
 
 static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in) {
-  d->position.low = deviation_observer_step(&d->position.observer, &d->config.observer, in);
+  const deviation_observer_config_t* const c = hold_is_on(d) ? &d->config.hold_observer : &d->config.observer;
+  d->position.low = deviation_observer_step(&d->position.observer, c, in);
   return d->position.low;
 }
 
@@ -182,7 +184,8 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
 void drive_estimate(drive_t* d) {
   measure_current(d);
   next_turn(d);
-  if (is_turn(d, TURN_MOVE) || (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d)))
+  const bool held = hold_is_on(d);
+  if (held || is_turn(d, TURN_MOVE) || (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d)))
     machine_model_move(&d->model, d->control.measured_q20.q);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);
@@ -190,7 +193,7 @@ void drive_estimate(drive_t* d) {
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
-  in.renew = position_judges_now(d);
+  in.renew = held || position_judges_now(d);
   in.windows = d->samples.windows;
   in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.

@@ -12,6 +12,7 @@
 #define SETTLE_PERIODS 100u  // for the current loop to settle at zero, and the angle
 #define LISTEN_FIRST 4u      // periods until the short circuit is what the modulator gives
 #define CALM_PERIODS 100u    // without current after a test, for the angle and for what is learnt of a standing shaft
+#define RESISTANCE_SHARE 16  // less than a sixteenth off is left alone
 #define SATURATION_TRIES 3u
 #define MOTION_TRIES 3u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
@@ -170,6 +171,12 @@ static void step_settle(drive_t* d) {
   }
 }
 
+// A winding that is much colder or warmer than when it was measured: what follows may stand under load at once.
+static void take_resistance(drive_t* d) {
+  const int32_t more_q24 = saturation_resistance_q24(&d->start.saturation, &d->model);
+  if (q_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
+}
+
 static void step_saturation(drive_t* d) {
   drive_start_t* const s = &d->start;
   saturation_t* const test = &s->saturation;
@@ -177,6 +184,7 @@ static void step_saturation(drive_t* d) {
   if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS) return;
   s->tries++;
   if (test->result != POLARITY_AMBIGUOUS) {
+    take_resistance(d);
     decided(d, test->result, test->sigma_q8);
   } else if (s->tries < SATURATION_TRIES) {
     try_saturation(d);

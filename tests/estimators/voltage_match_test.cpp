@@ -61,6 +61,21 @@ TEST(VoltageMatch, ResistanceUnderLoadAtStandstill) {
   }
 }
 
+TEST(VoltageMatch, ResistanceSeenBeforehandIsTakenWithinBounds) {
+  machine_model_t m = model_of(Motor{});
+  const double nominal = real(m.rs_q24, 24);
+  voltage_match_resistance(&m, raw(0.05, 24));
+  voltage_match_resistance(&m, raw(0.03, 24));
+  machine_model_move(&m, 0);
+  EXPECT_NEAR(real(m.rs_q24, 24), nominal + 0.08, 1e-6);
+  voltage_match_resistance(&m, raw(50.0, 24));
+  machine_model_move(&m, 0);
+  EXPECT_NEAR(real(m.rs_q24, 24), 2.0 * nominal, 1e-6);
+  voltage_match_resistance(&m, raw(-50.0, 24));
+  machine_model_move(&m, 0);
+  EXPECT_NEAR(real(m.rs_q24, 24), 0.5 * nominal, 1e-6);
+}
+
 TEST(VoltageMatch, FluxAtSpeed) {
   for (const double factor : {0.85, 1.1}) {
     Motor truth;
