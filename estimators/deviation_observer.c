@@ -12,10 +12,12 @@
 #define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
 #define GAIN_END_Q18 (1024L * 262144L)  // A per period and rad; six squares stay in 64 bits
 #define ONE_Q30 1073741823L
-#define ALERT_SHIFT 9u              // an alert fades within 51 ms
-#define ALERT_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
-#define ALERT_OVER_Q30 53687091L    // at speed after 150 ms: what leans for ever is the model, not the load
-#define LEAN_MIN 40                 // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define ALERT_SHIFT 9u                  // an alert fades within 51 ms
+#define ALERT_AGAIN_Q30 858993459L      // and may be repeated after 11 ms
+#define ALERT_OVER_Q30 53687091L        // at speed after 150 ms: what leans for ever is the model, not the load
+#define LEAN_MIN 40                     // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define LAG_MAX_Q20 16777216L           // 16 units of time: 102 ms
+#define LEARN_VARIANCE (32L * ONE_Q20)  // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
@@ -69,15 +71,16 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
   return ONE_Q30 - q_min(q_over(q_max(above, 0), c->per_crawl, 30), ONE_Q30);
 }
 
-// The mean of white scores over 32 periods has 1/63 of their power: four standard deviations are a quarter of its root.
-// The power is measured, not the information's word for it: it holds whatever noise the observer was told.
+// The mean of white scores over 32 periods has 1/63 of their power: five standard deviations are 0.63 of its root, and
+// noise has them once in five minutes. A longer mean would see smaller loads, and 5 N m a millisecond later. The power
+// is measured, not the information's word for it: it holds whatever noise the observer was told.
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
   s->mean_score_q20 += q_shr_round(n->a - s->mean_score_q20, MEAN_SHIFT);
   s->score_power_q24 += q_shr_round(q_sub_sat(q_mul_sat(n->a, n->a, 16), s->score_power_q24), POWER_SHIFT);
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
-  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 4 &&
+  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 5 * 2 &&
          q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
 }
 
@@ -92,6 +95,12 @@ static void admit_load_step(deviation_observer_t* s, int32_t variance_q20) {
   s->p_aa += q_shr_round(variance_q20, 10);
 }
 
+// Cogging that is not known yet is a load that changes with the angle. An eighth of the variance is a bandwidth lower
+// by the root of two, since that goes with the load's rate to the third.
+static int32_t quiet_noise_q20(const deviation_observer_t* s, const deviation_observer_config_t* c) {
+  return c->load_noise_quiet_q20 - q_mul(c->load_noise_quiet_q20, s->cogging.known_q30, 30) / 8 * 7;
+}
+
 static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
   const int32_t periods = s->gathered.periods;
   const int32_t crawl_q30 = crawl_share_q30(s, c);
@@ -103,7 +112,7 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
     admit_load_step(s, step_q20);
   }
   const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->alert_q30, 30);
-  s->p_ll += periods * (c->load_noise_q20 - q_mul(c->load_noise_q20 - c->load_noise_quiet_q20, quiet_q30, 30));
+  s->p_ll += periods * (c->load_noise_q20 - q_mul(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30));
 }
 
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
@@ -233,12 +242,11 @@ static int32_t scored(int32_t k_a, int32_t k_s, const information_t* n) {
   return q_mul_add_sat(k_a, n->a, k_s, n->s, 20);
 }
 
-static void correct(deviation_observer_t* s, const deviation_observer_config_t* c, const information_t* n) {
+static void correct(deviation_observer_t* s, const information_t* n) {
   s->angle_bam += (uint32_t)q_mul_hi(scored(s->p_aa, s->p_as, n), BAM_PER_UNIT_Q7) * 32u;
   s->speed_bpp += q_mul_hi(scored(s->p_as, s->p_ss, n), BPP_PER_UNIT_Q12);
   const int32_t load_q8 = -q_mul_sat(scored(s->p_al, s->p_sl, n), ACCEL_Q8_PER_UNIT, 20);
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
-  cogging_learn(&s->cogging, &c->cogging, s->speed_bpp, load_q8);
 }
 
 // The share that takes the larger one back to what the formats hold, or all of it.
@@ -274,6 +282,12 @@ static void gather(deviation_gathered_t* g, const information_t* n) {
 static bool gain_is_old(const deviation_observer_t* s) {
   const deviation_gathered_t* const g = &s->gathered;
   return q_mul_hi(s->p_aa, g->aa_q24) + q_mul_hi(s->p_ss, g->ss_q24) > HALF_Q12 || g->periods >= PERIODS_MAX;
+}
+
+// A load that steps is not waited with, nor is what it does to the covariance in the 11 ms behind it.
+static bool load_is_new(const deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
+  const bool looks_out = c->moving_step_q20 > 0 || q_abs_sat(s->speed_bpp) <= c->crawl_bpp;
+  return s->alert_q30 > ALERT_AGAIN_Q30 || (lean && looks_out && s->alert_q30 < ALERT_OVER_Q30);
 }
 
 static const deviation_left_t none_left = {0, 0, 0, 0};
@@ -322,6 +336,17 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
   return n;
 }
 
+// The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their
+// covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
+void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
+  if (s->p_aa > LEARN_VARIANCE) return;
+  const int32_t lag_q20 = q_min(q_div(q_abs_sat(s->p_as), q_max(q_abs_sat(s->p_al), 1), 20), LAG_MAX_Q20);
+  const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
+  const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
+  const int32_t taken_q8 = cogging_learn(&s->cogging, &c->cogging, &seen);
+  s->load_accel_q8 = q_sub_sat(s->load_accel_q8, taken_q8);
+}
+
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in) {
   information_t n = {0, 0, 0, 0, 0};
@@ -329,12 +354,13 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   if (in->window_count > 0u) n = look(s, c, in);
   follow_scores(s, &n);
   gather(&s->gathered, &n);
-  if (in->renew || gain_is_old(s)) {
+  const bool lean = scores_lean(s, &n);
+  if (in->renew || gain_is_old(s) || load_is_new(s, c, lean)) {
     predict_covariance(s);
-    admit_load_change(s, c, scores_lean(s, &n));
+    admit_load_change(s, c, lean);
     renew(s);
   }
-  correct(s, c, &n);
+  correct(s, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);
   const int32_t load_q8 = q_add_sat(s->load_accel_q8, s->cogging.now_q8);
   const estimator_output_t out = {s->angle_bam, s->speed_bpp, load_q8, q_max(certainty, 0)};

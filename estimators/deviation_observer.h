@@ -12,7 +12,7 @@
 // makes of it, it is renewed in every period all the same.
 //
 // How much the load may change is not known beforehand: a shaft that turns evenly wants a filter that is slow, a load
-// step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond four of its
+// step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond five of its
 // standard deviations is a load that changes.
 //
 // Units: angle 2^-6 rad, speed 2^-12 rad per period, acceleration 2^-18 rad per period^2 (that is: time in units of 64
@@ -27,7 +27,7 @@
 typedef struct {
   int32_t noise_q20;            // rms error of a current difference, A, 0.001..1
   int32_t load_rate_q20;        // load change expected in 10 ms, N m
-  int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes
+  int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes, cogging unknown
   int32_t load_step_q20;        // step of the load to look out for at a crawl, N m
   int32_t crawl_bpp;            // electrical speed up to which it is a crawl, 1 or more
   bool steps_at_speed;          // look out for twice the step above it: needs the map of the saturation
@@ -87,5 +87,8 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);
+
+/// Once a millisecond, where the shaft turns: learns what of the load repeats with the angle, where the angle is known.
+void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c);
 
 #endif

@@ -6,11 +6,10 @@
 #include "hal/hal_adc.h"
 
 #define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
-#define CRAWL_MIN_RPM_Q16 65536L       // where cogging is learnt
-#define CRAWL_MAX_RPM_Q16 655360L
-#define COGGING_MAX_Q20 1048576L    // 1 N m
-#define EDGE_BAND_Q20 524288L       // half an ampere of ripple may be predicted wrong
-#define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
+#define CRAWL_MAX_RPM_Q16 655360L      // where cogging is learnt
+#define COGGING_MAX_Q20 1048576L       // 1 N m
+#define EDGE_BAND_Q20 524288L          // half an ampere of ripple may be predicted wrong
+#define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
@@ -135,12 +134,11 @@ static bool load_position(drive_config_t* c) {
   const deviation_observer_tuning_t observer = {q_mul(p->observer_noise, 1073741824L, 18) / 1000,
                                                 p->observer_load_rate,
                                                 p->observer_load_quiet,
-                                                p->observer_load_step,
+                                                c->mapped ? p->observer_load_step : p->observer_load_step / 4 * 3,
                                                 q_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
                                                 c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
-  c->observer.cogging.slow_bpp = q_mul(CRAWL_MIN_RPM_Q16, c->bpp_per_rpm_q8, 24);
   c->observer.cogging.fast_bpp = c->observer.crawl_bpp;
   c->observer.cogging.bound_q8 = q_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24);
   c->observer.zero_vectors_only = p->observer_windows == 0;

@@ -151,6 +151,9 @@ void drive_control_speed(drive_t* d) {
     case 0:
       begin_millisecond(d, held);
       break;
+    case 1:
+      if (drive_is_turning(d)) deviation_observer_learn(&d->position.observer, &d->config.observer);
+      break;
     case DRIVE_WEAKENING_PERIOD:
       part_of_weakening(d, see_weakening);
       break;

@@ -49,11 +49,10 @@ bool hold_step(drive_t* d) {
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
   const int32_t torque_q20 = q_mul_sat(wanted_accel_q8(d), d->model.torque_per_accel_q24, 20);
-  const q_inverse_t per_newton_metre = q_invert(machine_torque_constant_q24(&d->model, d->control.reference_q20.d));
-  const int32_t current_q20 = q_over(torque_q20, per_newton_metre, 24);
-  const int32_t room_q20 = drive_current_room(d);
-  const int32_t limited_q20 = q_clamp(current_q20, -room_q20, room_q20);
-  const int32_t change_q20 = q_mul(limited_q20 - d->control.reference_q20.q, FILTER_Q30, 30);
-  d->control.reference_q20.q += q_clamp(change_q20, -SLEW_Q20, SLEW_Q20);
+  drive_control_t* const c = &d->control;
+  const int32_t current_q20 = q_over(torque_q20, c->per_torque_constant, 24);
+  const int32_t limited_q20 = q_clamp(current_q20, -c->room_q20, c->room_q20);
+  const int32_t change_q20 = q_mul(limited_q20 - c->reference_q20.q, FILTER_Q30, 30);
+  c->reference_q20.q += q_clamp(change_q20, -SLEW_Q20, SLEW_Q20);
   return true;
 }
