@@ -17,7 +17,7 @@
 #define ALERT_OVER_Q30 53687091L        // at speed after 150 ms: what leans for ever is the model, not the load
 #define LEAN_MIN 40                     // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
 #define LAG_MAX_Q20 16777216L           // 16 units of time: 102 ms
-#define LEARN_VARIANCE (32L * ONE_Q20)  // 5 degrees
+#define KNOWN_VARIANCE (32L * ONE_Q20)  // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
@@ -278,10 +278,12 @@ static void gather(deviation_gathered_t* g, const information_t* n) {
   g->ss_q24 = q_mul(g->ss_q24, share_q30, 30);
 }
 
-// The trace of P I beyond a half: the gain as it is would correct too much.
+// The trace of P I beyond a half: the gain as it is would correct too much. Nor is an angle waited with that is not
+// known: with zero vectors alone at rest it would drift by 6 degrees in 2 s instead of one.
 static bool gain_is_old(const deviation_observer_t* s) {
   const deviation_gathered_t* const g = &s->gathered;
-  return q_mul_hi(s->p_aa, g->aa_q24) + q_mul_hi(s->p_ss, g->ss_q24) > HALF_Q12 || g->periods >= PERIODS_MAX;
+  return q_mul_hi(s->p_aa, g->aa_q24) + q_mul_hi(s->p_ss, g->ss_q24) > HALF_Q12 || s->p_aa > KNOWN_VARIANCE ||
+         g->periods >= PERIODS_MAX;
 }
 
 // A load that steps is not waited with, nor is what it does to the covariance in the 11 ms behind it.
@@ -339,7 +341,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their
 // covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
-  if (s->p_aa > LEARN_VARIANCE) return;
+  if (s->p_aa > KNOWN_VARIANCE) return;
   const int32_t lag_q20 = q_min(q_div(q_abs_sat(s->p_as), q_max(q_abs_sat(s->p_al), 1), 20), LAG_MAX_Q20);
   const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
   const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
