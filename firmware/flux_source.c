@@ -15,11 +15,15 @@
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
 
+static flux_method_t method_of(const parameters_t* p) {
+  if (p->position_source >= POSITION_FLUX_CONV) return (flux_method_t)(p->position_source - POSITION_FLUX_CONV);
+  return (p->flux_beside > 0) ? (flux_method_t)(p->flux_beside - 1) : FLUX_CONV;
+}
+
 bool flux_source_load(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   flux_observer_config_t* const f = &c->flux;
-  f->method =
-      (p->position_source < POSITION_FLUX_CONV) ? FLUX_CONV : (flux_method_t)(p->position_source - POSITION_FLUX_CONV);
+  f->method = method_of(p);
   f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
   f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
   f->adaptation_periods = ADAPTATION_PERIODS;
@@ -29,7 +33,8 @@ bool flux_source_load(drive_config_t* c) {
   f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
   f->adaptation.current_q24 = CURRENT_LEAST_Q24;
   f->adaptation.lowest_bpp = q_mul(f->cutoff_q30 * LEARNING_CUTOFFS, BPP_PER_RAD_Q30, 30);
-  return p->position_source < POSITION_FLUX_CONV || flux_observer_config_valid(f, &c->nameplate);
+  const bool wanted = p->position_source >= POSITION_FLUX_CONV || p->flux_beside > 0;
+  return !wanted || flux_observer_config_valid(f, &c->nameplate);
 }
 
 estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* in) {
@@ -108,6 +113,13 @@ estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, c
     p->high = step(d, in);
   }
   return blend_step(&p->blend, &d->config.blend, low, &p->high);
+}
+
+estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
+  const int32_t least_bpp = q_mul_sat(parameters.flux_low, d->config.bpp_per_rpm_q8, 24);
+  if (q_abs_sat(truth->speed_bpp) >= least_bpp) return step(d, in);
+  flux_source_follow(d, truth);
+  return *truth;
 }
 
 excitation_t flux_source_excitation(const drive_t* d) {

@@ -28,6 +28,9 @@ void flux_source_follow(drive_t* d, const estimator_output_t* now);
 estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in);
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low);
 
+/// flux_beside: a method beside a source that is right, from flux_low on; what the method says.
+estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth);
+
 excitation_t flux_source_excitation(const drive_t* d);
 
 #endif

@@ -170,6 +170,9 @@ PARAMETER(304, flux_high, "rpm", 16, 1, 20, 30000, 5000, STOPPED,
 PARAMETER(302, flux_adapt, "", 0, 0, 0, 3, 1, ALWAYS,
           "the stator flux learns: 0 nothing, 1 the q-axis inductance by the torque, 2 the magnet's flux, 3 both")
 
+PARAMETER(305, flux_beside, "", 0, 0, 0, 4, 0, STOPPED,
+          "a stator-flux method beside position_source 0, looking on: 0 none, 1 CONV, 2 PP-01, 3 PP-02, 4 active")
+
 // Serial port
 PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
           "rate of the serial port from the next power-on on, once it is saved")

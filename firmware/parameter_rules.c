@@ -61,6 +61,7 @@ const char* drive_config_or_conflict(drive_config_t* c) {
     return "current_law 1 needs position_source 0";
   if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
     return "100 us must be a whole number of slice_time";
+  if (p->flux_beside > 0 && p->position_source != POSITION_ENCODER) return "flux_beside needs position_source 0";
   if (p->start_method == 1 && p->position_source == POSITION_ENCODER)
     return "start_method 1 needs a position_source other than 0: the encoder has no zero yet";
   if (p->start_method == 1 && p->if_current > p->current_limit)

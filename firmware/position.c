@@ -116,7 +116,11 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
                             d->config.avv.bandwidth_long_q30);
   estimator_output_t out = {d->position.encoder.angle_bam, d->position.encoder.speed_bpp,
                             d->position.encoder.load_accel_q8, 32767};
-  (void)step_avv(d, in);
+  if (parameters.flux_beside > 0) {
+    d->position.high = flux_source_look_on(d, in, &out);
+  } else {
+    (void)step_avv(d, in);
+  }
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += d->config.encoder_trim_bam;

@@ -47,7 +47,8 @@ static bool over_current(const drive_t* d) {
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
 static bool encoder_beside_avv(void) {
   return parameters.position_source == POSITION_ENCODER && parameters.current_law == CURRENT_LAW_PI &&
-         parameters.excitation != EXCITATION_CENTRED && parameters.excitation < EXCITATION_LONG_ZERO;
+         parameters.flux_beside == 0 && parameters.excitation != EXCITATION_CENTRED &&
+         parameters.excitation < EXCITATION_LONG_ZERO;
 }
 
 // Sources whose estimators are both meant to be right only between the ends of the blend.

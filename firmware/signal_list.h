@@ -28,3 +28,5 @@ SIGNAL(load_torque, "Nm", 16, q_mul_sat(d->position.used.load_accel_q8, d->model
 SIGNAL(windows, "", 0, d->samples.count, "windows sampled in the last period")
 SIGNAL(start_phase, "", 0, d->start.phase, "phase of the start, start_phase_t")
 SIGNAL(polarity_sigma, "", 8, d->start.sigma_q8, "confidence in the polarity found at the start, standard errors")
+SIGNAL(load_angle, "turn", 32, d->position.flux.load_angle_bam, "of the stator flux before the rotor's, as estimated")
+SIGNAL(magnet_flux, "mVs", 16, d->position.flux.machine.psi_q16 / 10, "magnet flux as the stator-flux sources have it")

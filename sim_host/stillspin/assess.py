@@ -61,7 +61,8 @@ def assess(
         for name, record in read.items()
     }
     counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
-    measured = figures.evaluate(scenario, counting, profile, extras)
+    lost = {name: signals for name, signals in recorded.items() if name not in counting}
+    measured = figures.evaluate(scenario, counting, profile, extras, lost)
     drawings = []
     if draw and recorded and scenario.plots:
         from stillspin import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it

@@ -153,6 +153,8 @@ def _machine(plant: Plant, schema: core.Schema) -> dict[str, float]:
         "flux_linkage": true("magnet_flux"),
         "inductance_d": true("inductance_d"),
         "inductance_q": true("inductance_q"),
+        "magnet_flux": true("magnet_flux"),
+        **{f"nameplate_{key}": entry("machine", key) for key in ("inductance_d", "inductance_q", "magnet_flux")},
         "cross_saturation": cross / entry("machine", "rated_peak_current") if saturates else 0.0,
         "knee": 2.0 * entry("machine", "rated_peak_current") if saturates else 0.0,
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,7 +60,11 @@ def _window_problem(signals: Signals, run: Run, check: Reached) -> str | None:
 
 
 def evaluate(
-    scenario: Scenario, recorded: Mapping[str, Signals], profile: str, extras: Mapping[str, Extras] | None = None
+    scenario: Scenario,
+    recorded: Mapping[str, Signals],
+    profile: str,
+    extras: Mapping[str, Extras] | None = None,
+    lost: Mapping[str, Signals] | None = None,
 ) -> list[Result]:
     """All figures of a scenario.
 
@@ -69,13 +73,38 @@ def evaluate(
         recorded: signals of every run that counts; a figure that needs another one has no value.
         profile: for the goals.
         extras: what else is known of the runs.
+        lost: runs that do not count; some kinds of figures are about how far they got.
     """
     known = extras or {}
     results: dict[str, Result] = {}
     for figure in scenario.figures:
-        value, note = _ratio(figure, results) if figure.of else _largest(figure, scenario, recorded, known)
+        value, note = (
+            _ratio(figure, results) if figure.of else _of_figure(figure, scenario, recorded, lost or {}, known)
+        )
         results[figure.name] = _result(figure, value, note, profile, len(scenario.runs))
     return list(results.values())
+
+
+def _of_figure(
+    figure: Figure,
+    scenario: Scenario,
+    recorded: Mapping[str, Signals],
+    lost: Mapping[str, Signals],
+    extras: Mapping[str, Extras],
+) -> tuple[float | None, str]:
+    if not metrics.KINDS[figure.kind].of_lost or not any(name in lost for name in figure.runs):
+        return _largest(figure, scenario, recorded, extras)
+    ends = [_last_corner(lost[name]) for name in figure.runs if name in lost]
+    windows = tuple((first, min(last, *ends)) for first, last in figure.windows)
+    if any(first >= last for first, last in windows):
+        return None, "lost at once"
+    return _largest(replace(figure, windows=windows), scenario, {**recorded, **lost}, extras)
+
+
+def _last_corner(signals: Signals) -> float:
+    """When the speed reference last changed: what was held from then on was not held to its end."""
+    moved = np.flatnonzero(np.diff(signals["speed_ref"]) != 0.0)
+    return float(signals["time"][moved[-1] + 1]) if moved.size else 0.0
 
 
 def _largest(

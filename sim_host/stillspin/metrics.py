@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stillspin import bound, deviation_sweep, ripple, speed_profile, waveforms
+from stillspin import bound, deviation_sweep, flux_metrics, ripple, speed_profile, waveforms
 from stillspin.core import Signals, Waveform
 from stillspin.scenario import Run, Window
 
@@ -352,10 +352,11 @@ def deviation_wrong_polarity(piece: Piece) -> float:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of figure: its function, its unit and its definition in a line."""
+    """A kind of figure: function, unit and a definition in a line. `of_lost`: runs that are lost count too."""
 
     function: Callable[[Piece], float]
     unit: str
+    of_lost: bool = False
 
     @property
     def help(self) -> str:
@@ -396,5 +397,9 @@ KINDS: dict[str, Kind] = {
     "deviation_gain_error": Kind(deviation_gain_error, "%"),
     "deviation_distortion": Kind(deviation_distortion, "%"),
     "deviation_wrong_polarity": Kind(deviation_wrong_polarity, "%"),
+    **{
+        name: Kind(function, unit, name in flux_metrics.OF_LOST)
+        for name, (function, unit) in flux_metrics.KINDS.items()
+    },
 }
 """Every kind of figure that a scenario file can ask for; besides these there is `ratio` of two other figures."""

@@ -70,6 +70,16 @@ def _deviation(signals: Signals, run: Run) -> Floats:
     return metrics.as_floats(signals["true_speed"]) - _command(signals, run)
 
 
+def _beside_error(signals: Signals, run: Run) -> Floats:
+    return metrics.wrap_degrees(metrics.as_floats(signals["true_angle"]) - metrics.as_floats(signals["angle_avv"]))
+
+
+def _load_angle_error(signals: Signals, run: Run) -> Floats:
+    return metrics.wrap_degrees(
+        metrics.as_floats(signals["true_load_angle"]) - metrics.as_floats(signals["load_angle"])
+    )
+
+
 PANELS: dict[str, Panel] = {
     "speed": Panel(
         "speed (rpm)",
@@ -90,6 +100,17 @@ PANELS: dict[str, Panel] = {
         "shaft travel (° el)",
         (Line("true", _travel("true_angle"), "true"), Line("used", _travel("est_angle"), "estimate")),
     ),
+    "beside_error": Panel(
+        "position error of the method beside (° el)", (Line("true − beside", _beside_error, "error"),), symmetric=True
+    ),
+    "load_angle": Panel(
+        "load angle (° el)",
+        (Line("true", _wrapped("true_load_angle"), "true"), Line("estimated", _wrapped("load_angle"), "estimate")),
+    ),
+    "load_angle_error": Panel(
+        "load-angle error (° el)", (Line("true − estimated", _load_angle_error, "error"),), symmetric=True
+    ),
+    "magnet_flux": Panel("magnet flux learnt (mVs)", (Line("learnt", _signal("magnet_flux", 1e3), "estimate"),)),
     "torque": Panel(
         "torque (N m)",
         (
@@ -123,5 +144,7 @@ PANELS: dict[str, Panel] = {
     "ripple": Panel("A rms", ()),
     "gates": Panel("gates", ()),
     "error_over_speed": Panel("position error (° el)", ()),
+    "flux_limit": Panel("stator flux (Vs)", ()),
+    "error_map": Panel("position error (° el)", ()),
 }
 """Every panel. Those without lines fill a drawing of their own, see special_plots.py."""

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import ScalarFormatter
 
-from stillspin import bound, deviation_sweep, metrics, ripple, speed_profile, waveforms
+from stillspin import bound, deviation_sweep, flux_metrics, metrics, ripple, speed_profile, waveforms
 from stillspin.core import Signals
 from stillspin.metrics import Extras
 from stillspin.scenario import Scenario
@@ -233,6 +233,48 @@ def _bound(axes: Axes, shown: Shown) -> None:
         )
 
 
+def flux_limits(shown: Shown) -> Canvas:
+    """Stator flux over the current: of the firmware's references, and the limit up to which (27) has a root."""
+    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
+    for number, (name, signals) in enumerate(shown.records.items()):
+        piece = metrics.Piece(signals, np.zeros(0), 0.0, 0.0, shown.extras.get(name, metrics.NOTHING_ELSE))
+        current, flux, limit = flux_metrics.limit_flux(piece)
+        order = np.argsort(current)
+        if number == 0:
+            axes.plot(current[order], limit[order], "k-", label="limit (23)")
+        axes.plot(
+            current, flux, ".", markersize=2.0, color=RUN_COLOURS[number % len(RUN_COLOURS)], label=shown.title(name)
+        )
+    axes.set(xlabel="current (A)", ylabel="stator flux (Vs)")
+    _legend(axes)
+    return canvas
+
+
+def error_maps(shown: Shown) -> Canvas:
+    """Peak position error while a speed is held, a row per speed and a column per run; empty: not held."""
+    found = {
+        name: speed_profile.holds(signals, metrics.position_error(signals)) for name, signals in shown.records.items()
+    }
+    speeds = sorted({hold.reference for held in found.values() for hold in held})
+    peaks = np.full((len(speeds), max(1, len(found))), np.nan)
+    for column, held in enumerate(found.values()):
+        for hold in held:
+            if hold.followed:
+                peaks[speeds.index(hold.reference), column] = hold.peak
+    canvas, axes = plt.subplots(figsize=(WIDTH, 1.6 + 0.42 * len(speeds)), layout="constrained")
+    image = axes.imshow(
+        np.clip(peaks, 0.1, None), norm="log", cmap="YlOrRd", aspect="auto", origin="lower", vmin=0.2, vmax=30.0
+    )
+    for (row, column), peak in np.ndenumerate(peaks):
+        axes.text(column, row, "–" if np.isnan(peak) else f"{peak:.1f}", ha="center", va="center", fontsize=7)
+    axes.set_yticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
+    axes.set_xticks(range(len(found)), [shown.title(name) for name in found], rotation=60, ha="right", fontsize=7.5)
+    axes.set_ylabel("speed (rpm)")
+    axes.grid(visible=False)
+    canvas.colorbar(image, label="position error, peak (° el)")
+    return canvas
+
+
 def _legend(axes: Axes) -> None:
     if len(axes.get_legend_handles_labels()[1]) > 0:
         axes.legend(loc="best")
@@ -245,5 +287,7 @@ SPECIAL: dict[str, Callable[[Shown], Canvas]] = {
     "ripple": ripples,
     "gates": gates,
     "error_over_speed": errors_over_speed,
+    "flux_limit": flux_limits,
+    "error_map": error_maps,
 }
 """Panels that fill a drawing of their own."""
