@@ -9,6 +9,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import ScalarFormatter
 
@@ -19,6 +20,7 @@ from stillspin.scenario import Scenario
 from stillspin.style import COLOURS, RUN_COLOURS, WIDTH
 
 _DASHED = (0, (4, 2))
+_MAPPED = (0.2, 30.0)  # ° el., the ends of a map's colours
 _RIPPLE_END = 42e3  # Hz, of its drawing
 
 
@@ -237,7 +239,10 @@ def flux_limits(shown: Shown) -> Canvas:
     """Stator flux over the current: of the firmware's references, and the limit up to which (27) has a root."""
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
-        piece = metrics.Piece(signals, np.zeros(0), 0.0, 0.0, shown.extras.get(name, metrics.NOTHING_ELSE))
+        extras = shown.extras.get(name, metrics.NOTHING_ELSE)
+        if not extras.machine:
+            continue
+        piece = metrics.Piece(signals, np.zeros(0), 0.0, 0.0, extras)
         current, flux, limit = flux_metrics.limit_flux(piece)
         order = np.argsort(current)
         if number == 0:
@@ -262,9 +267,10 @@ def error_maps(shown: Shown) -> Canvas:
             if hold.followed:
                 peaks[speeds.index(hold.reference), column] = hold.peak
     canvas, axes = plt.subplots(figsize=(WIDTH, 1.6 + 0.42 * len(speeds)), layout="constrained")
-    image = axes.imshow(
-        np.clip(peaks, 0.1, None), norm="log", cmap="YlOrRd", aspect="auto", origin="lower", vmin=0.2, vmax=30.0
-    )
+    if not speeds:
+        return canvas
+    shade = np.clip(peaks, *_MAPPED)
+    image = axes.imshow(shade, norm=LogNorm(*_MAPPED), cmap="YlOrRd", aspect="auto", origin="lower")
     for (row, column), peak in np.ndenumerate(peaks):
         axes.text(column, row, "–" if np.isnan(peak) else f"{peak:.1f}", ha="center", va="center", fontsize=7)
     axes.set_yticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])

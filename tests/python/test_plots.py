@@ -19,6 +19,7 @@ def recorded(duration=1.0, first=-0.05):
         "load_torque",
         "load_estimate",
     )
+    names += ("angle_avv", "true_load_angle", "load_angle", "magnet_flux")
     names += ("true_i_d", "true_i_q", "i_d_ref", "i_q_ref", "i_a", "i_b", "i_c", "weight", "v_dc", "deviation_q")
     return {"time": time, **{name: np.sin(20.0 * time + number) for number, name in enumerate(names)}}
 
@@ -69,3 +70,15 @@ def test_every_panel_draws_one_run_and_several(panel, runs):
 def test_a_run_that_ended_before_the_window_is_left_out(panel, records):
     plot = Plot("", (panel,), ("predictive", "pi"), (0.5, 0.9))
     assert "</svg>" in plots.draw(plot, scenario_file.load("A18a"), records)
+
+
+def test_a_map_shows_what_was_held():
+    time = np.arange(0.0, 2.6, 1e-3)
+    reference = np.where(time < 1.3, 100.0, 50.0)
+    still = {"time": time, "speed_ref": reference, "true_speed": reference, "true_angle": 0.0 * time}
+    good = {**still, "est_angle": 0.0 * time + np.radians(7.5)}
+    left_behind = {**good, "true_speed": np.where(time < 1.3, 100.0, 0.0)}
+    plot = Plot("", ("error_map",), ("predictive", "pi"), None)
+    svg = plots.draw(plot, scenario_file.load("A18a"), {"predictive": good, "pi": left_behind})
+    assert svg.count("<!-- 7.5 -->") == 3
+    assert svg.count("<!-- – -->") == 1
