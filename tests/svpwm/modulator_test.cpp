@@ -7,6 +7,8 @@ namespace {
 using namespace stillspin::test;
 
 constexpr double kLink = 300.0;
+constexpr std::array kLayouts = {EXCITATION_CENTRED, EXCITATION_EXTENDED, EXCITATION_ALTERNATING, EXCITATION_LONG_ZERO,
+                                 EXCITATION_CHEAPEST};
 
 TEST(Modulator, EveryLayoutGivesTheCommandedMean) {
   Random random(100);
@@ -15,7 +17,7 @@ TEST(Modulator, EveryLayoutGivesTheCommandedMean) {
   modulator_reset(&s);
   int limited = 0;
   for (int n = 0; n < 30000; ++n) {
-    const auto excitation = static_cast<excitation_t>(n % 3);
+    const excitation_t excitation = kLayouts[static_cast<std::size_t>(n) % kLayouts.size()];
     const double link = random.between(150.0, 420.0);
     const Vector v = any_voltage(random, link, (n % 2 == 0) ? 0.2 : 1.3);
     svpwm_pulses_t pulses;
