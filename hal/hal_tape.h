@@ -48,13 +48,14 @@ typedef struct {
   uint16_t call;            // its hooked calls so far
   uint16_t input, window;   // played so far
   bool torn;                // the tape was too short or too long for what the drive did
-  void (*interrupt)(void);  // the window interrupt, played
+  void (*interrupt)(void);  // the window interrupt, played; while it records: takes the step that is on the tape
   tape_period_t period;
 } hal_tape_t;
 
 extern hal_tape_t hal_tape;
 
-/// Mode and an empty period. interrupt: what a window that is played calls.
+/// Mode and an empty period. interrupt: what a window that is played calls; while it records, who takes a step from the
+/// tape when the next one begins, and turns to a new period.
 void hal_tape_start(tape_mode_t mode, void (*interrupt)(void));
 
 /// A new, empty period; when it plays the caller fills it in.
@@ -63,9 +64,13 @@ void hal_tape_next_period(void);
 /// Plays the windows that came by now: those before the step, in a call of it, behind it.
 void tape_play_windows(void);
 
-/// Around the control step. What came before it is played before it, and its calls do not count.
+/// Before the control step: windows that came before it are played, and their calls do not count. While it records, a
+/// step that is still on the tape has to be taken from it first: the interrupt was so late that none has begun since.
+void tape_begin_step(void);
+
+/// Around the control step.
 static inline void hal_tape_step_begin(void) {
-  if (hal_tape.mode == TAPE_PLAYS) tape_play_windows();
+  if (hal_tape.mode != TAPE_OFF) tape_begin_step();
   hal_tape.stepping = true;
 }
 static inline void hal_tape_step_end(void) {

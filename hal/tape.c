@@ -40,6 +40,12 @@ void tape_play_windows(void) {
   t->playing = false;
 }
 
+void tape_begin_step(void) {
+  const hal_tape_t* const t = &hal_tape;
+  if (t->mode == TAPE_RECORDS && t->stepped) t->interrupt();
+  tape_play_windows();
+}
+
 bool hal_tape_finish_period(void) {
   hal_tape_t* const t = &hal_tape;
   tape_play_windows();

@@ -48,7 +48,7 @@ void StepLoop::compare(const Octets& board, const TapedPeriod& period) {
   Words outputs;
   bool torn = false;
   const bool whole = read_outputs(board, outputs, torn);
-  if (board != period.answer) mismatch_ = Mismatch{steps_, torn || !whole, outputs, period.outputs, raw_signals()};
+  if (board != period.answer) mismatch_ = Mismatch{steps_, torn || !whole, outputs, period.outputs, period.signals};
   steps_++;
 }
 

@@ -76,8 +76,7 @@ Octets answer_of(const tape_period_t& p, std::uint16_t sequence, hil_answer_t& b
   return octets_of(w);
 }
 
-}  // namespace
-
+// The raw value of every signal of the drive, as it stands.
 std::vector<std::int32_t> raw_signals() {
   const drive_signals_t s = drive_signals();
   return {
@@ -87,43 +86,66 @@ std::vector<std::int32_t> raw_signals() {
   };
 }
 
+}  // namespace
+
+TapeTap* TapeTap::recording_ = nullptr;
+
 TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {}
 
 TapeTap::~TapeTap() {
-  if (sink_) hal_tape_start(TAPE_OFF, nullptr);
+  if (!sink_) return;
+  hal_tape_start(TAPE_OFF, nullptr);
+  recording_ = nullptr;
 }
 
 bool TapeTap::turn() {
   if (!sink_) return true;
-  // A step that has not run yet, or that is late and still running, belongs to the period that ends with it.
-  if (begun_ && !hal_tape.stepped) return true;
-  bool more = true;
-  if (begun_) {
-    hand_over_period();
-    more = sink_(period_);
-    sequence_++;
-    period_ = TapedPeriod();
-  }
   // The firmware has come up by its first period, and has cleared the tape for itself.
-  if (!begun_) hal_tape_start(TAPE_RECORDS, nullptr);
-  begun_ = true;
-  hal_tape_next_period();
-  return more;
+  if (!begun_) {
+    begun_ = true;
+    recording_ = this;
+    hal_tape_start(TAPE_RECORDS, take_late_step);
+  }
+  // A step that has not run yet, or that is late and still running, belongs to the period that ends with it.
+  if (hal_tape.stepped) take_period();
+  return hand_over();
 }
 
-void TapeTap::hand_over_period() {
-  if (!hal_tape_finish_period()) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
+// Called by the drive as its next step begins: no period has begun since the one before has ended.
+// Nothing may be thrown through it.
+void TapeTap::take_late_step() {
+  try {
+    recording_->take_period();
+  } catch (const std::runtime_error&) {
+    recording_->torn_ = true;
+  }
+}
+
+void TapeTap::take_period() {
+  if (!hal_tape_finish_period()) torn_ = true;
   const tape_period_t& p = hal_tape.period;
   period_.step = step_of(p, sequence_, step_before_);
   period_.answer = answer_of(p, sequence_, answer_before_);
   period_.outputs.assign(p.outputs, p.outputs + p.output_count);
+  period_.signals = raw_signals();
+  taken_.push_back(std::exchange(period_, std::exchange(next_, {})));
+  sequence_++;
+  hal_tape_next_period();
+}
+
+bool TapeTap::hand_over() {
+  if (torn_) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
+  bool more = true;
+  for (const TapedPeriod& period : taken_) more = more && sink_(period);
+  taken_.clear();
+  return more;
 }
 
 void TapeTap::note_command(unsigned code, std::int32_t argument) {
   if (!sink_) return;
   Octets request{REQUEST_COMMAND, static_cast<std::uint8_t>(code)};
   put32(request, static_cast<std::uint32_t>(argument));
-  period_.requests.push_back(std::move(request));
+  ask(std::move(request));
 }
 
 void TapeTap::note_parameter(unsigned id, std::int32_t raw) {
@@ -131,7 +153,13 @@ void TapeTap::note_parameter(unsigned id, std::int32_t raw) {
   Octets request{REQUEST_PARAMETER_SET};
   put16(request, id);
   put32(request, static_cast<std::uint32_t>(raw));
-  period_.requests.push_back(std::move(request));
+  ask(std::move(request));
+}
+
+// What is asked while a late step still runs is for the one behind it.
+void TapeTap::ask(Octets request) {
+  TapedPeriod& period = hal_tape.stepping ? next_ : period_;
+  period.requests.push_back(std::move(request));
 }
 
 }  // namespace stillspin::bench

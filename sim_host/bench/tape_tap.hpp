@@ -18,10 +18,11 @@ using Octets = std::vector<std::uint8_t>;
 using Words = std::vector<std::uint16_t>;
 
 struct TapedPeriod {
-  std::vector<Octets> requests;  // type and body of what is asked of the drive before the step, in order
-  Octets step;                   // body of the step's request
-  Octets answer;                 // body of the answer that it must have
-  Words outputs;                 // what the drive told its hardware, as the answer has it
+  std::vector<Octets> requests;       // type and body of what is asked of the drive before the step, in order
+  Octets step;                        // body of the step's request
+  Octets answer;                      // body of the answer that it must have
+  Words outputs;                      // what the drive told its hardware, as the answer has it
+  std::vector<std::int32_t> signals;  // raw, behind the step
 };
 
 /// Words of steps, as they last stood in their places.
@@ -33,9 +34,6 @@ struct StepWords {
 
 /// Called behind every period from power-on; false ends the run.
 using TapeSink = std::function<bool(const TapedPeriod&)>;
-
-/// The raw value of every signal of the drive, as it stands.
-std::vector<std::int32_t> raw_signals();
 
 class TapeTap {
  public:
@@ -52,14 +50,20 @@ class TapeTap {
   void note_parameter(unsigned id, std::int32_t raw);
 
  private:
-  void hand_over_period();
+  static void take_late_step();
+  void take_period();
+  void ask(Octets request);
+  bool hand_over();
+
+  static TapeTap* recording_;  // whose tape the firmware's is
 
   TapeSink sink_;
-  TapedPeriod period_;
+  TapedPeriod period_, next_;
+  std::vector<TapedPeriod> taken_;  // and not handed over yet
   std::uint16_t sequence_ = 0;
   StepWords step_before_;
   hil_answer_t answer_before_{};
-  bool begun_ = false;
+  bool begun_ = false, torn_ = false;
 };
 
 }  // namespace stillspin::bench

@@ -67,6 +67,21 @@ TEST_F(Tape, InterruptsComeBackBetweenTheSamePieces) {
   EXPECT_EQ(order, recorded);
 }
 
+int taken = 0;  // steps
+
+TEST_F(Tape, AStepIsTakenFromItBeforeTheNextBegins) {
+  taken = 0;
+  hal_tape_start(TAPE_RECORDS, [] {
+    taken++;
+    hal_tape_next_period();
+  });
+  step(false);
+  EXPECT_EQ(taken, 0);
+  step(false);
+  EXPECT_EQ(taken, 1);
+  EXPECT_EQ(hal_tape.period.output_count, 1) << "of the second alone";
+}
+
 TEST_F(Tape, AWindowThatNobodyReadsTearsIt) {
   hal_tape_start(TAPE_PLAYS, [] {});
   hal_tape.period.window_count = 1;

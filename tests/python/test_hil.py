@@ -74,6 +74,17 @@ def test_a_board_computes_what_the_virtual_drive_computes(requester, play):
     loop.leave()
 
 
+def test_an_interrupt_may_end_in_the_next_period(requester, settings):
+    late = {"late_interrupts": 95.0, "late_interrupts_at": 0.01, "late_interrupts_time": 0.001}
+    late_plant = profile.Changes({"solver": {"method": "rk4"}, "fault": late})
+    job = execute.prepare(scenario_file.load("A10"), replace(settings, changes=late_plant), core.load())[0]
+    short = replace(job, run=replace(job.run, duration=0.02))
+    result = Loop(requester).run(core.load(), lambda *loop: execute.play(loop[0], short, *loop[1:]).reason)
+    assert result.difference is None
+    assert result.board == result.native
+    assert result.reason == "fault: control interrupt overrun"
+
+
 def test_a_board_that_says_nothing_is_told():
     board, port = os.openpty()
     done = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", os.ttyname(port)])
