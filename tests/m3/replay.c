@@ -87,8 +87,8 @@ static void end_step(void) {
   running.accesses = 0;
 }
 
-static void end_period(void) {
-  const int32_t state = drive_signals().state;
+// A period belongs to the state in which it began.
+static void end_period(int32_t state) {
   statistic_t* const table = (state == DRIVE_RUN || state == DRIVE_STOP) ? turning : starting;
   uint32_t total = 0;
   end_step();
@@ -156,6 +156,7 @@ static void expect(trace_kind_t kind, uint32_t address, uint32_t value) {
 static void take_interrupt(uint32_t vector) {
   const span_t interrupted = running;
   const bool preempted = controlling;
+  const int32_t state = drive_signals().state;
   consume();
   running.ticks = 0;
   running.accesses = 0;
@@ -165,7 +166,7 @@ static void take_interrupt(uint32_t vector) {
   vectors[vector]();
   running.ticks += (mark - SYSTICK_VALUE) & SYSTICK_MASK;
   if (controlling) {
-    end_period();
+    end_period(state);
   } else if (drive_signals().state == DRIVE_RUN) {
     add(&windows, instructions(&running));
   }
