@@ -99,7 +99,7 @@ _PARAMETERS = [
     (23, "device_drop", "V", 3, 0.0, 5.0, 0.95, "STOPPED", "on-state drop of a device"),
     (24, "device_resistance", "ohm", 4, 0.0, 1.0, 0.035, "STOPPED", "on-state resistance of a device"),
     (25, "drop_band", "A", 2, 0.01, 2.0, 0.2, "ALWAYS", "current below which its sign is not trusted"),
-    (40, "excitation", "", 0, 0.0, 4.0, 3.0, "STOPPED", "pulse pattern"),
+    (40, "excitation", "", 0, 0.0, 5.0, 3.0, "STOPPED", "pulse pattern"),
     (6, "inertia", "kgm2", 6, 0.0001, 0.5, 0.00455, "STOPPED", "inertia of rotor and load"),
     (41, "pulse_time", "us", 2, 15.0, 47.0, 42.0, "ALWAYS", "mean pulse of the alternating layout"),
     (164, "link_regulation", "V", 1, 10.0, 1500.0, 405.0, "ALWAYS", "DC-link voltage from which braking is reduced"),
@@ -268,7 +268,7 @@ def run(*, plant, parameters, commands, load, duration, max_start, record_every,
     )
 
 
-def commission(*, plant, parameters, limit, seed, progress):
+def commission(*, plant, parameters, limit, seed, progress, tape=None):
     """The friction is refused when it is told as 9, and nothing is found with a dead short."""
     for share in (0.0, 0.5, 1.0):
         if progress is not None and not progress(share, "a phase"):
