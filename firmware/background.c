@@ -7,6 +7,7 @@
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_tape.h"
 
 // The dead band of the gate signals, ticks; the power stage's own minimum is the parameter's business.
 uint16_t drive_dead_band_ticks(void) {
@@ -22,6 +23,7 @@ static void reload(void) {
   fresh = drive.config;
   const bool valid = drive_config_or_conflict(&fresh) == NULL;
   const uint16_t state = hal_irq_disable();
+  hal_tape_work_begin(TAPE_RELOADED);
   drive.request.reload = false;
   drive.config_valid = valid;
   if (valid) drive.config = fresh;
@@ -32,10 +34,11 @@ static void reload(void) {
     hal_encoder_init((uint32_t)parameters.encoder_counts);
     if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());
   }
+  hal_tape_work_end();
   hal_irq_restore(state);
 }
 
 void background_step(drive_t* d) {
   commissioning_service(d);
-  if (d->request.reload) reload();
+  if (d->request.reload && hal_tape_has_work(TAPE_RELOADED)) reload();
 }

@@ -9,6 +9,10 @@
 //
 // Interrupts that came while the control step ran are put back into the same call of the HAL, so that they stand
 // between the same two pieces of the drive's own code. What comes behind the control step is played behind it.
+//
+// The background level gets to its work when interrupts and other services let it, in the period of the step that asked
+// for it or in a later one. So each piece of it that the control step depends on has a word on the tape, and is done
+// behind the same step when it is played.
 
 #ifndef STILLSPIN_HAL_HAL_TAPE_H
 #define STILLSPIN_HAL_HAL_TAPE_H
@@ -45,6 +49,7 @@ typedef struct {
   tape_mode_t mode;
   bool stepping, stepped;   // the control step runs; has run
   bool playing;             // a window is being played
+  bool working;             // a piece of the background's work has begun and not ended
   uint16_t call;            // its hooked calls so far
   uint16_t input, window;   // played so far
   bool torn;                // the tape was too short or too long for what the drive did
@@ -77,6 +82,20 @@ static inline void hal_tape_step_end(void) {
   hal_tape.stepping = false;
   hal_tape.stepped = true;
 }
+
+/// Pieces of the background's work.
+typedef enum {
+  TAPE_RELOADED = 1,  // the configuration was made of changed parameters
+  TAPE_EVALUATED = 2  // the commissioning went on
+} tape_work_t;
+
+/// Whether a piece that is wanted may be done now: always, but while the tape plays where it was done.
+bool hal_tape_has_work(tape_work_t work);
+
+/// Around a piece. While it records, its period ends behind it: nobody may take a period from the tape in between, and
+/// no control step may begin.
+void hal_tape_work_begin(tape_work_t work);
+static inline void hal_tape_work_end(void) { hal_tape.working = false; }
 
 /// Windows not yet played are played; false when the period on the tape was not the one that ran.
 bool hal_tape_finish_period(void);

@@ -8,6 +8,7 @@ void hal_tape_start(tape_mode_t mode, void (*interrupt)(void)) {
   hal_tape.mode = mode;
   hal_tape.interrupt = interrupt;
   hal_tape.stepping = false;
+  hal_tape.working = false;
   hal_tape_next_period();
 }
 
@@ -44,6 +45,21 @@ void tape_begin_step(void) {
   const hal_tape_t* const t = &hal_tape;
   if (t->mode == TAPE_RECORDS && t->stepped) t->interrupt();
   tape_play_windows();
+}
+
+bool hal_tape_has_work(tape_work_t work) {
+  const hal_tape_t* const t = &hal_tape;
+  if (t->mode != TAPE_PLAYS) return true;
+  return t->input < t->period.input_count && t->period.inputs[t->input] == (uint16_t)work;
+}
+
+void hal_tape_work_begin(tape_work_t work) {
+  hal_tape.working = true;
+  if (tape_plays()) {
+    (void)tape_take();
+  } else {
+    (void)tape_note((uint16_t)work);
+  }
 }
 
 bool hal_tape_finish_period(void) {

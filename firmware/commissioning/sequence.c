@@ -2,6 +2,7 @@
 #include "firmware/commissioning/result.h"
 #include "firmware/drive.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_tape.h"
 
 #define LONGER_TICKS 500
 #define SAMPLING_MIN_TICKS 450  // two bursts and the shortest useful time between them
@@ -81,9 +82,13 @@ void commissioning_step(drive_t* d) {
   if (done) next_phase(d);
 }
 
-void commissioning_service(drive_t* d) {
+static bool has_failed(const drive_t* d) {
+  return d->commissioning.outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT;
+}
+
+static void serve(drive_t* d) {
   commissioning_t* const c = &d->commissioning;
-  if (c->outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT) {
+  if (has_failed(d)) {
     c->outcome = COMMISSIONING_FAILED;
     c->requested = false;
     c->phase = COMMISSIONING_IDLE;
@@ -97,6 +102,14 @@ void commissioning_service(drive_t* d) {
   c->outcome = commissioning_conclude(c, &report);
   drive_parameters_changed();  // also when nothing was written: settle_longer has to be undone
   c->evaluate = false;
+}
+
+void commissioning_service(drive_t* d) {
+  const bool wanted = has_failed(d) || d->commissioning.solve_motion || d->commissioning.evaluate;
+  if (!wanted || !hal_tape_has_work(TAPE_EVALUATED)) return;
+  hal_tape_work_begin(TAPE_EVALUATED);
+  serve(d);
+  hal_tape_work_end();
 }
 
 void drive_command_commission(void) { drive.request.commission = true; }

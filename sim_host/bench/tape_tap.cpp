@@ -107,7 +107,8 @@ bool TapeTap::turn() {
     hal_tape_start(TAPE_RECORDS, take_late_step);
   }
   // A step that has not run yet, or that is late and still running, belongs to the period that ends with it.
-  if (hal_tape.stepped) take_period();
+  // So does work of the background that this period's start came into: it is whole when the next step begins.
+  if (hal_tape.stepped && !hal_tape.working) take_period();
   return hand_over();
 }
 
@@ -156,9 +157,9 @@ void TapeTap::note_parameter(unsigned id, std::int32_t raw) {
   ask(std::move(request));
 }
 
-// What is asked while a late step still runs is for the one behind it.
+// What is asked while a step runs, or is still on the tape, is for the one behind it.
 void TapeTap::ask(Octets request) {
-  TapedPeriod& period = hal_tape.stepping ? next_ : period_;
+  TapedPeriod& period = hal_tape.stepping || hal_tape.stepped ? next_ : period_;
   period.requests.push_back(std::move(request));
 }
 

@@ -82,6 +82,40 @@ TEST_F(Tape, AStepIsTakenFromItBeforeTheNextBegins) {
   EXPECT_EQ(hal_tape.period.output_count, 1) << "of the second alone";
 }
 
+// Work of the background that is asked for by a step and done behind that one or the next.
+TEST_F(Tape, WorkIsDoneBehindTheStepThatItWasDoneBehind) {
+  hal_tape_start(TAPE_RECORDS, nullptr);
+  step(false);
+  ASSERT_TRUE(hal_tape_finish_period());
+  const tape_period_t without = hal_tape.period;
+  hal_tape_next_period();
+  step(false);
+  EXPECT_TRUE(hal_tape_has_work(TAPE_RELOADED));
+  hal_tape_work_begin(TAPE_RELOADED);
+  EXPECT_TRUE(hal_tape.working);
+  EXPECT_EQ(tape_note(7u), 7u);
+  hal_tape_work_end();
+  EXPECT_FALSE(hal_tape.working);
+  ASSERT_TRUE(hal_tape_finish_period());
+  const tape_period_t with = hal_tape.period;
+
+  hal_tape_start(TAPE_PLAYS, window);
+  hal_tape.period = without;
+  step(false);
+  EXPECT_FALSE(hal_tape_has_work(TAPE_RELOADED));
+  EXPECT_TRUE(hal_tape_finish_period());
+  hal_tape_next_period();
+  hal_tape.period = with;
+  step(false);
+  EXPECT_FALSE(hal_tape_has_work(TAPE_EVALUATED)) << "another piece";
+  ASSERT_TRUE(hal_tape_has_work(TAPE_RELOADED));
+  hal_tape_work_begin(TAPE_RELOADED);
+  EXPECT_EQ(tape_take(), 7u);
+  hal_tape_work_end();
+  EXPECT_FALSE(hal_tape_has_work(TAPE_RELOADED)) << "once";
+  EXPECT_TRUE(hal_tape_finish_period());
+}
+
 TEST_F(Tape, AWindowThatNobodyReadsTearsIt) {
   hal_tape_start(TAPE_PLAYS, [] {});
   hal_tape.period.window_count = 1;
