@@ -22,7 +22,7 @@
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define INFORMATION_MAX (8L * 16777216L)
-#define HALF_Q12 2048L
+#define HALF_Q9 256L
 #define PERIODS_MAX 8L        // the covariance is renewed at the latest
 #define LEFT_PERIODS_MAX 64L  // nobody takes what is left: it begins anew
 
@@ -182,11 +182,12 @@ static information_t information_of(const sums_t* n, const deviation_observer_co
   return i;
 }
 
-// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^13: the variances are limited to 512 and, with them, the
-// covariances; the information to 8.
+// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^14: the variances are limited to 512 and, with them, the
+// covariances; the information of a period to 8, and that of the periods before makes up half a variance at most
+// (gain_is_old), or what 512 units of speed or load make of one in 8 periods.
 static gain_t times_information(const deviation_gathered_t* n, int32_t x_a_q20, int32_t x_s_q20) {
-  const gain_t g = {q_mul_add_floor(n->aa_q24, x_a_q20, n->as_q24, x_s_q20, 28),
-                    q_mul_add_floor(n->as_q24, x_a_q20, n->ss_q24, x_s_q20, 28)};
+  const gain_t g = {q_mul_add_floor(n->aa_q21, x_a_q20, n->as_q21, x_s_q20, 25),
+                    q_mul_add_floor(n->as_q21, x_a_q20, n->ss_q21, x_s_q20, 25)};
   return g;
 }
 
@@ -249,16 +250,11 @@ static void correct(deviation_observer_t* s, const information_t* n) {
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
 }
 
-// The share that takes the larger one back to what the formats hold, or all of it.
-static int32_t share_held_q30(int32_t aa_q24, int32_t ss_q24) {
-  const int32_t largest = q_max(aa_q24, ss_q24);
-  return (largest <= INFORMATION_MAX) ? 1073741824L : q_div(INFORMATION_MAX, largest, 30);
-}
-
 // More information than the formats hold counts as less, all of it alike, or the update would overshoot.
 static void bound(information_t* n) {
-  const int32_t share_q30 = share_held_q30(n->aa, n->ss);
-  if (share_q30 == 1073741824L) return;
+  const int32_t largest = q_max(n->aa, n->ss);
+  if (largest <= INFORMATION_MAX) return;
+  const int32_t share_q30 = q_div(INFORMATION_MAX, largest, 30);
   n->aa = q_mul(n->aa, share_q30, 30);
   n->as = q_mul(n->as, share_q30, 30);
   n->ss = q_mul(n->ss, share_q30, 30);
@@ -266,23 +262,19 @@ static void bound(information_t* n) {
   n->s = q_mul(n->s, share_q30, 30);
 }
 
+// Eight periods of as much information as a period may have: 64 of them stay in 31 bits.
 static void gather(deviation_gathered_t* g, const information_t* n) {
-  g->aa_q24 += n->aa;
-  g->as_q24 += n->as;
-  g->ss_q24 += n->ss;
+  g->aa_q21 += q_shr_round(n->aa, 3);
+  g->as_q21 += q_shr_round(n->as, 3);
+  g->ss_q21 += q_shr_round(n->ss, 3);
   g->periods++;
-  const int32_t share_q30 = share_held_q30(g->aa_q24, g->ss_q24);
-  if (share_q30 == 1073741824L) return;
-  g->aa_q24 = q_mul(g->aa_q24, share_q30, 30);
-  g->as_q24 = q_mul(g->as_q24, share_q30, 30);
-  g->ss_q24 = q_mul(g->ss_q24, share_q30, 30);
 }
 
 // The trace of P I beyond a half: the gain as it is would correct too much. Nor is an angle waited with that is not
 // known: with zero vectors alone at rest it would drift by 6 degrees in 2 s instead of one.
 static bool gain_is_old(const deviation_observer_t* s) {
   const deviation_gathered_t* const g = &s->gathered;
-  return q_mul_hi(s->p_aa, g->aa_q24) + q_mul_hi(s->p_ss, g->ss_q24) > HALF_Q12 || s->p_aa > KNOWN_VARIANCE ||
+  return q_mul_hi(s->p_aa, g->aa_q21) + q_mul_hi(s->p_ss, g->ss_q21) > HALF_Q9 || s->p_aa > KNOWN_VARIANCE ||
          g->periods >= PERIODS_MAX;
 }
 

@@ -54,7 +54,7 @@ typedef struct {
 } deviation_left_t;
 
 typedef struct {
-  int32_t aa_q24, as_q24, ss_q24;
+  int32_t aa_q21, as_q21, ss_q21;
   int32_t periods;
 } deviation_gathered_t;
 

@@ -172,6 +172,52 @@ TEST(DeviationFilter, AgreesWithDoublePrecisionOverALongRandomRun) {
   EXPECT_LT(ratio_high, 1.01);
 }
 
+/// Mean of the angle's variance just after the covariance was renewed, own units, at a speed, renewed every so often;
+/// and of what a period tells of the angle then.
+struct Renewed {
+  double variance, information;
+};
+
+Renewed renewed_every(int periods, double amps, double speed) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  deviation_observer_config_t c;
+  design_plain(&c, &m, raw(0.005, 20), raw(0.6, 20));
+  c.zero_vectors_only = false;
+  deviation_observer_t s;
+  double theta = 0.0;
+  deviation_observer_preset(&s, bam(theta), bpp(speed), 0);
+  Renewed seen = {0.0, 0.0};
+  const int begin = 2100, end = 4200;
+  for (int n = 0; n < end; ++n) {
+    theta += speed * kPeriod;
+    std::vector<estimator_window_t> windows;
+    for (const Window& w : alternating_windows(n)) {
+      windows.push_back(observed(motor, w, theta, speed, Vector{0.0, amps}.turned(theta)));
+    }
+    estimator_input_t in = input_of(m, windows);
+    in.renew = n % periods == 0;
+    deviation_observer_step(&s, &c, &in);
+    if (n < begin) continue;
+    if (n % periods == 0) seen.variance += real(s.p_aa, 20) * periods / (end - begin);
+    if (n % periods != 0) seen.information += real(s.gathered.aa_q21, 21) / s.gathered.periods / (end - begin);
+  }
+  return seen;
+}
+
+// What is gathered over a turn is all of it, also where each period tells as much as a period may. It counts as told
+// at its end, so that the variance then is the bottom of a sawtooth, up to a quarter below what it is with small steps.
+TEST(DeviationFilter, ARareRenewalKnowsWhatAllPeriodsTold) {
+  for (const double speed : {100.0, 400.0, 1250.0}) {
+    const double each = renewed_every(1, 3.0, speed).variance;
+    const Renewed rare = renewed_every(7, 3.0, speed);
+    std::printf("  %.0f rad/s: %.2f a period, variance %.4f, renewed rarely %.4f\n", speed,
+                rare.information * 7.0 / 6.0, each, rare.variance);
+    EXPECT_GT(rare.variance / each, 0.75) << speed;
+    EXPECT_LT(rare.variance / each, 1.0) << speed;
+  }
+}
+
 // No window at all, then zero vectors without current, each for seconds: the uncertainty must stop growing before it
 // overflows, and the filter must come back at once.
 TEST(DeviationFilter, WaitsWithoutInformation) {
@@ -206,7 +252,9 @@ TEST(DeviationFilter, WaitsWithoutInformation) {
 }
 
 // Garbage from the converter must neither wrap nor break the filter for good.
-TEST(DeviationFilter, SurvivesAnyWindow) {
+class AnyWindow : public testing::TestWithParam<int> {};
+
+TEST_P(AnyWindow, IsSurvived) {
   Random random(231);
   const Motor motor;
   const machine_model_t m = model_of(motor);
@@ -228,7 +276,8 @@ TEST(DeviationFilter, SurvivesAnyWindow) {
     }
     // the speed is kept where the drive's own supervision would have stopped it
     if (std::abs(s.speed_bpp) > bpp(4000.0)) s.speed_bpp /= 2;
-    const estimator_input_t in = input_of(m, windows, static_cast<std::int32_t>(random.between(-1e6, 1e6)));
+    estimator_input_t in = input_of(m, windows, static_cast<std::int32_t>(random.between(-1e6, 1e6)));
+    in.renew = n % GetParam() == 0;
     deviation_observer_step(&s, &c, &in);
     ASSERT_GT(s.p_aa, 0);
     ASSERT_GT(s.p_ss, 0);
@@ -243,5 +292,7 @@ TEST(DeviationFilter, SurvivesAnyWindow) {
   }
   EXPECT_NEAR(rad(s.angle_bam) / kDegree, 0.0, 0.05);
 }
+
+INSTANTIATE_TEST_SUITE_P(RenewedInEveryPeriodAndRarely, AnyWindow, testing::Values(1, 7));
 
 }  // namespace
