@@ -25,7 +25,7 @@ typedef struct {
   dq_t voltage_q16;   // mean command since the last time, V
   dq_t current_q20;   // measured, A
   int32_t speed_bpp;  // by the saliency
-  int32_t periods;    // since the last time, 1..16
+  int32_t periods;    // since the last time, 1..32
 } emf_sign_seen_t;
 
 /// A look in the rotor frame, once in one or several periods.

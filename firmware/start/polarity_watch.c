@@ -6,7 +6,8 @@
 // synchronism may be faster; then the sign seen so far tells which fault it is.
 //
 // Axis and back-EMF are looked at once in a turn of what is slow (position.c), in different periods of it; the axis a
-// few periods after the windows were regressed.
+// few periods after the windows were regressed. Without an axis the back-EMF says nothing: what had been seen of it
+// until then stays.
 
 #include "firmware/start/polarity_watch.h"
 
@@ -27,6 +28,7 @@ void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   w->open = parameters.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
   w->axis_periods = 0;
+  w->blind = false;
   emf_sign_reset(&w->sign);
   forget_voltage(w);
 }
@@ -61,12 +63,14 @@ static dq_t on_axis(dq_t x, rotation_t r) {
   return own;
 }
 
+// The axis is the one in use for now, and the change of the current counts from here.
 static void begin_anew(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
   tracking_observer_preset(&w->axis, d->position.used.angle_bam, d->position.used.speed_bpp, 0);
   w->axis_then_bam = w->axis.angle_bam;
   w->sign.clear = 0;
   w->sign.against = 0;
+  w->sign.last_iq_q20 = d->control.measured_q20.q;
   forget_voltage(w);
 }
 
@@ -75,7 +79,8 @@ static void follow_axis(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
   const int32_t periods = w->axis_periods;
   w->axis_periods = 0;
-  if (is_blind(d)) {
+  w->blind = is_blind(d);
+  if (w->blind) {
     begin_anew(d);
   } else if (d->samples.count > 0u) {
     const int32_t most = INT32_MAX / periods;
@@ -102,7 +107,7 @@ bool polarity_watch_step(drive_t* d) {
   w->axis_periods++;
   if (position_has_regressed(d)) w->axis_then_bam = w->axis.angle_bam;
   if (position_follows_axis_now(d)) follow_axis(d);
-  if (!position_looks_at_emf_now(d)) return false;
+  if (!position_looks_at_emf_now(d) || w->blind) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;
