@@ -8,6 +8,7 @@
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
+#define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
 #define VARIANCE_MAX (512L * ONE_Q20)
 #define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
 #define GAIN_END_Q18 (1024L * 262144L)  // A per period and rad; six squares stay in 64 bits
@@ -63,6 +64,13 @@ void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int3
   s->angle_bam = angle_bam;
   s->speed_bpp = speed_bpp;
   s->load_accel_q8 = load_accel_q8;
+}
+
+void deviation_observer_stands(deviation_observer_t* s) {
+  s->speed_bpp = 0;
+  s->p_ss = STANDING_VARIANCE;
+  s->p_as = 0;
+  s->p_sl = 0;
 }
 
 // 1 at a crawl, 0 from three times that speed.

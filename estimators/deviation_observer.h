@@ -81,6 +81,10 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
 /// Starts with an uncertainty of 10 degrees, 20 rad/s and 3 N m or so.
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);
 
+/// Says that the shaft has stood until now, and that a load may fall on it: what is seen of the speed from here on is
+/// the load's doing, and not taken for one that it had before.
+void deviation_observer_stands(deviation_observer_t* s);
+
 /// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were
 /// none.
 bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods);

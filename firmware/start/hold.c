@@ -29,6 +29,7 @@ void hold_begin(drive_t* d) {
   hold_t* const h = &d->hold;
   h->left = has_observer() ? (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS : 0u;
   h->reference_bam = d->position.used.angle_bam;
+  if (h->left > 0u) deviation_observer_stands(&d->position.observer);
 }
 
 bool hold_is_on(const drive_t* d) { return d->hold.left > 0u && d->state == DRIVE_RUN; }
