@@ -13,12 +13,14 @@
 #define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
 #define GAIN_END_Q18 (1024L * 262144L)  // A per period and rad; six squares stay in 64 bits
 #define ONE_Q30 1073741823L
-#define ALERT_SHIFT 9u                  // an alert fades within 51 ms
-#define ALERT_AGAIN_Q30 858993459L      // and may be repeated after 11 ms
-#define ALERT_OVER_Q30 53687091L        // at speed after 150 ms: what leans for ever is the model, not the load
-#define LEAN_MIN 40                     // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
-#define LAG_MAX_Q20 16777216L           // 16 units of time: 102 ms
-#define KNOWN_VARIANCE (32L * ONE_Q20)  // 5 degrees
+#define ALERT_SHIFT 9u                    // an alert fades within 51 ms
+#define ALERT_AGAIN_Q30 858993459L        // and may be repeated after 11 ms
+#define ALERT_OVER_Q30 53687091L          // at speed after 150 ms: what leans for ever is the model, not the load
+#define LEAN_MIN 40                       // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define STEP_AGE_Q30 268435456L           // 16 periods
+#define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
+#define LAG_MAX_Q20 16777216L             // 16 units of time: 102 ms
+#define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
@@ -53,6 +55,8 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
   c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
   c->moving_step_q20 = t->steps_at_speed ? 4 * q_min(c->load_step_q20, VARIANCE_MAX / 8) : 0;
+  // Where the map is missing the angle seen turns with the current that answers the load, and the step is noticed late.
+  c->step_age_q30 = t->steps_at_speed ? STEP_AGE_Q30 : STEP_AGE_UNMAPPED_Q30;
   c->crawl_bpp = q_clamp(t->crawl_bpp, 1, INT32_MAX / 4);
   c->per_crawl = q_invert(2 * c->crawl_bpp);
 }
@@ -92,15 +96,18 @@ static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
          q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
 }
 
-// A step is noticed when it has already turned the shaft: a load that changed a quarter of the unit of time (16
-// periods) ago has left speed and angle behind as well, and the covariance says by how much.
-static void admit_load_step(deviation_observer_t* s, int32_t variance_q20) {
+// A step is noticed when it has already turned the shaft: a load that changed some time ago has left speed and angle
+// behind as well, all of them in proportion, and the covariance says by how much.
+static void admit_load_step(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t variance_q20) {
+  const int32_t sl_q20 = q_mul(variance_q20, c->step_age_q30, 30);
+  const int32_t ss_q20 = q_mul(sl_q20, c->step_age_q30, 30);
+  const int32_t as_q20 = q_mul(ss_q20, c->step_age_q30, 31);
   s->p_ll += variance_q20;
-  s->p_sl += q_shr_round(variance_q20, 2);
-  s->p_ss += q_shr_round(variance_q20, 4);
-  s->p_al += q_shr_round(variance_q20, 5);
-  s->p_as += q_shr_round(variance_q20, 7);
-  s->p_aa += q_shr_round(variance_q20, 10);
+  s->p_sl += sl_q20;
+  s->p_ss += ss_q20;
+  s->p_al += ss_q20 / 2;
+  s->p_as += as_q20;
+  s->p_aa += q_mul(as_q20, c->step_age_q30, 31);
 }
 
 // Cogging that is not known yet is a load that changes with the angle. An eighth of the variance is a bandwidth lower
@@ -117,7 +124,7 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
   const int32_t again_q30 = (crawl_q30 > 0) ? ALERT_AGAIN_Q30 : ALERT_OVER_Q30;
   if (lean && step_q20 > 0 && s->alert_q30 < again_q30) {
     s->alert_q30 = ONE_Q30;
-    admit_load_step(s, step_q20);
+    admit_load_step(s, c, step_q20);
   }
   const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->alert_q30, 30);
   s->p_ll += periods * (c->load_noise_q20 - q_mul(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30));
