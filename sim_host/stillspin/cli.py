@@ -37,7 +37,17 @@ from stillspin import (
 from stillspin.board import power, serve
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
-from stillspin.options import ChangeOption, JobsOption, MotorOption, ParamsOption, ProfileOption, SeedOption, whole
+from stillspin.options import (
+    ChangeOption,
+    JobsOption,
+    MotorOption,
+    OtherMotorOption,
+    ParamsOption,
+    ProfileOption,
+    SeedOption,
+    by_mark,
+    whole,
+)
 from stillspin.progress import Counter, PhaseBar
 from stillspin.reproduction import Options, carry_out, write_found
 from stillspin.revision import revision
@@ -80,9 +90,7 @@ def run(
     *,
     scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
     profile_name: ProfileOption = "bench",
-    motor: Annotated[
-        str | None, typer.Option("--motor", metavar="NAME", help="Another motor than the scenario's own.")
-    ] = None,
+    motor: OtherMotorOption = None,
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
@@ -184,7 +192,7 @@ def drift_(
     listed, drifts = drift.load(core.plant_schema(core.load()))
     ids = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or listed)
     workers = jobs or len(os.sched_getaffinity(0))
-    chosen = drift.chosen(drifts, only or [])
+    chosen = by_mark(drifts, only or [], "drift")
     options = Options(profile_name, seed, out, jobs=workers, params=params, commission=True, others=chosen)
     done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
     short = tables.drift(done.results, done.beside)
@@ -198,9 +206,7 @@ def explain_(
     *,
     scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
     profile_name: ProfileOption = "bench",
-    motor: Annotated[
-        str | None, typer.Option("--motor", metavar="NAME", help="Another motor than the scenario's own.")
-    ] = None,
+    motor: OtherMotorOption = None,
     seed: SeedOption = 1,
     params: ParamsOption = None,
     only: Annotated[

@@ -6,7 +6,6 @@ their goals as many times as large as the list says.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from stillspin import core, resources, toml_table
@@ -98,16 +97,3 @@ def _drift(table: toml_table.Table, goals: float, schema: core.Schema) -> Drift:
     table.finish()
     words = f"The same drive, commissioned before: {title}."
     return Drift(mark, title, words, factors, goals, schema)
-
-
-def chosen(drifts: Sequence[Drift], marks: Sequence[str]) -> list[Drift]:
-    """The drifts of some marks, or all.
-
-    Raises:
-        InputError: there is no such drift.
-    """
-    known = {drift.mark: drift for drift in drifts}
-    for mark in marks:
-        if mark not in known:
-            raise InputError(f"--only '{mark}': there is no such drift; known: {', '.join(known)}")
-    return [known[mark] for mark in marks] if marks else list(drifts)

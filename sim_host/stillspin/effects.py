@@ -170,16 +170,3 @@ def _entries(table: toml_table.Table, name: str, schema: core.Schema) -> tuple[t
             raise InputError(f"{table.where}: {name}: section '{section}' has no entry '{key}'")
         result.append((section, key))
     return tuple(result)
-
-
-def chosen(effects: Sequence[Effect], marks: Sequence[str]) -> list[Effect]:
-    """The effects of some marks, or all.
-
-    Raises:
-        InputError: there is no such effect.
-    """
-    known = {effect.mark: effect for effect in effects}
-    for mark in marks:
-        if mark not in known:
-            raise InputError(f"--only '{mark}': there is no such effect; known: {', '.join(known)}")
-    return [known[mark] for mark in marks] if marks else list(effects)

@@ -20,6 +20,7 @@ from stillspin.assess import ScenarioResult
 from stillspin.effects import ALONE, WITHOUT, Case, Effect, Worlds
 from stillspin.execute import Settings
 from stillspin.explain_report import Explanation
+from stillspin.options import by_mark
 from stillspin.progress import Bar
 from stillspin.revision import revision
 from stillspin.scenario import Scenario
@@ -61,7 +62,7 @@ def carry_out(scenario: Scenario, options: Options) -> Explanation:
         schema,
         known,
     )
-    listed = [item for item in effects.chosen(effects.load(schema, known), options.only) if worlds.differs(item)]
+    listed = [item for item in by_mark(effects.load(schema, known), options.only, "effect") if worlds.differs(item)]
     told = commission.load(options.params, known) if options.params else None
     execute.prepare(scenario, _settings(worlds.own, options.seed, told or {}), native)  # complains at once
     cases = _cases(worlds, listed, told, options)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Protocol, TypeVar
 
 import typer
 
 from stillspin.errors import InputError
+
+Choice = TypeVar("Choice", bound="Marked")
 
 
 def whole(name: str, low: int, high: int) -> Callable[[str], int]:
@@ -26,12 +28,36 @@ def whole(name: str, low: int, high: int) -> Callable[[str], int]:
     return parse
 
 
+class Marked(Protocol):
+    """What `--only` chooses by a mark."""
+
+    @property
+    def mark(self) -> str:
+        """Unique among its kind."""
+
+
+def by_mark(items: Sequence[Choice], marks: Sequence[str], kind: str) -> list[Choice]:
+    """The items of some marks, or all.
+
+    Raises:
+        InputError: there is no such item; `kind` is the word for it.
+    """
+    known = {item.mark: item for item in items}
+    for mark in marks:
+        if mark not in known:
+            raise InputError(f"--only '{mark}': there is no such {kind}; known: {', '.join(known)}")
+    return [known[mark] for mark in marks] if marks else list(items)
+
+
 ProfileOption = Annotated[
     str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
 ]
 MotorOption = Annotated[
     str,
     typer.Option("--motor", metavar="NAME", help="The machine and its board: a name from `stillspin list`, or a file."),
+]
+OtherMotorOption = Annotated[
+    str | None, typer.Option("--motor", metavar="NAME", help="Another motor than the scenario's own.")
 ]
 SeedOption = Annotated[
     int,

@@ -11,6 +11,7 @@ import pytest
 from stillspin import core, drift, profile, scenario_file
 from stillspin.errors import InputError
 from stillspin.execute import Settings
+from stillspin.options import by_mark
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
@@ -55,9 +56,9 @@ def test_goals_are_doubled_and_the_drive_keeps_its_parameters() -> None:
 
 def test_a_drift_that_does_not_exist_is_said() -> None:
     drifts = drift.load(known()[0])[1]
-    assert [item.mark for item in drift.chosen(drifts, ["flux"])] == ["flux"]
+    assert [item.mark for item in by_mark(drifts, ["flux"], "drift")] == ["flux"]
     with pytest.raises(InputError, match="resistance"):
-        drift.chosen(drifts, ["rust"])
+        by_mark(drifts, ["rust"], "drift")
 
 
 SLIGHT = 0.001

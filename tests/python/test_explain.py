@@ -14,6 +14,7 @@ from stillspin.errors import InputError
 from stillspin.execute import Settings, prepare
 from stillspin.explain_report import Explanation, content
 from stillspin.figures import Result
+from stillspin.options import by_mark
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
@@ -86,7 +87,7 @@ def test_the_exact_parameters_are_the_plants() -> None:
 
 def test_an_effect_that_does_not_exist_is_said() -> None:
     with pytest.raises(InputError, match="adc-noise"):
-        effects.chosen(list(listed(worlds()).values()), ["gremlins"])
+        by_mark(list(listed(worlds()).values()), ["gremlins"], "effect")
 
 
 def made_up(values: dict[str, float]) -> Explanation:
