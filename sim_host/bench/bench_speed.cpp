@@ -1,8 +1,10 @@
 // Simulated seconds per wall second of the whole virtual drive in profile `bench`, all events on, recorded once a
-// millisecond, for both integrators.
+// millisecond, for both integrators: the best of several runs of the same bytes, since whatever else the machine does
+// can only slow a run down.
 // With a speed in rpm as argument: one short run at that speed and nothing else, for instruction counting; a second
 // argument 0 or 1 chooses ERKStep or the fast path (default).
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -23,6 +25,23 @@ RunRequest bench_request(double solver) {
   return r;
 }
 
+constexpr int REPEATS = 9;
+
+double speed(const RunResult& result) {
+  return result.stats.at("simulated_seconds") / result.stats.at("wall_seconds");
+}
+
+RunResult fastest(int solver) {
+  RunResult best = run(bench_request(solver));
+  for (int k = 1; k < REPEATS; k++) {
+    RunResult next = run(bench_request(solver));
+    if (speed(next) > speed(best)) {
+      std::swap(best, next);
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,12 +56,12 @@ int main(int argc, char** argv) {
   const char* names[] = {"ERKStep", "fast fixed step"};
   double ratios[2] = {};
   for (int k = 0; k < 2; k++) {
-    RunResult r = run(bench_request(k));
-    ratios[k] = r.stats["simulated_seconds"] / r.stats["wall_seconds"];
+    RunResult r = fastest(k);
+    ratios[k] = speed(r);
     std::printf(
-        "%-16s %6.2f simulated seconds per second, %2.0f %% of it plant  (%s, %.0f register accesses and %.1f "
-        "interrupts per period)\n",
-        names[k], ratios[k], 100.0 * r.stats["plant_share"], r.completed ? "completed" : r.reason.c_str(),
+        "%-16s %6.2f simulated seconds per second, %2.0f %% of it plant  (best of %d, %s, %.0f register accesses "
+        "and %.1f interrupts per period)\n",
+        names[k], ratios[k], 100.0 * r.stats["plant_share"], REPEATS, r.completed ? "completed" : r.reason.c_str(),
         r.stats["register_accesses"] / (r.stats["simulated_seconds"] * 1e4),
         r.stats["interrupts"] / (r.stats["simulated_seconds"] * 1e4));
   }
