@@ -43,26 +43,26 @@ bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int
   return true;
 }
 
-static int32_t between(int32_t a, int32_t b, int32_t share_q26) { return a + q_mul(b - a, share_q26, 26); }
+static int32_t between(int32_t a, int32_t b, int32_t share_q24) { return a + q_mul(b - a, share_q24, 24); }
 
 // As a straight line beyond b as well.
-static int32_t beyond(int32_t a, int32_t b, int32_t share_q26) {
-  return q_add_sat(a, q_mul_sat(q_sub_sat(b, a), share_q26, 26));
+static int32_t beyond(int32_t a, int32_t b, int32_t share_q24) {
+  return q_add_sat(a, q_mul_sat(q_sub_sat(b, a), share_q24, 24));
 }
 
 machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
-  const int32_t at_q26 = q_mul_sat(q_abs_sat(iq_q20), map->per_segment_q26, 20);
-  const uint16_t k = (uint16_t)q_min(q_shr(at_q26, 26), MACHINE_MAP_SEGMENTS - 1);
+  const int32_t at_q24 = q_mul_sat(q_abs_sat(iq_q20), map->per_segment_q26, 22);
+  const uint16_t k = (uint16_t)q_min(q_shr(at_q24, 24), MACHINE_MAP_SEGMENTS - 1);
   const machine_point_t* const a = &map->points[k];
   const machine_point_t* const b = a + 1;
-  const int32_t beyond_q26 = at_q26 - (int32_t)(k * 67108864L);
-  const int32_t share_q26 = q_min(beyond_q26, 67108864L);
+  const int32_t beyond_q24 = at_q24 - (int32_t)(k * 16777216L);
+  const int32_t share_q24 = q_min(beyond_q24, 16777216L);
   machine_point_t p;
-  p.ydd_q30 = between(a->ydd_q30, b->ydd_q30, share_q26);
-  p.yqq_q30 = between(a->yqq_q30, b->yqq_q30, share_q26);
-  p.ydq_q30 = between(a->ydq_q30, b->ydq_q30, share_q26);
-  p.psi_d_q16 = beyond(a->psi_d_q16, b->psi_d_q16, beyond_q26);
-  p.psi_q_q16 = beyond(a->psi_q_q16, b->psi_q_q16, beyond_q26);
+  p.ydd_q30 = between(a->ydd_q30, b->ydd_q30, share_q24);
+  p.yqq_q30 = between(a->yqq_q30, b->yqq_q30, share_q24);
+  p.ydq_q30 = between(a->ydq_q30, b->ydq_q30, share_q24);
+  p.psi_d_q16 = beyond(a->psi_d_q16, b->psi_d_q16, beyond_q24);
+  p.psi_q_q16 = beyond(a->psi_q_q16, b->psi_q_q16, beyond_q24);
   if (iq_q20 < 0) {
     p.ydq_q30 = -p.ydq_q30;
     p.psi_q_q16 = -p.psi_q_q16;

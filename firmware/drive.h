@@ -10,6 +10,7 @@
 #include "control/field_weakening.h"
 #include "control/if_start.h"
 #include "control/mtpa.h"
+#include "control/position_hold.h"
 #include "control/ramp.h"
 #include "control/speed_controller.h"
 #include "estimators/admittance.h"
@@ -62,6 +63,8 @@ typedef struct {
   int32_t drift_share_q30;       // of resistance and flux
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
+  int32_t hold_gain_q30;         // of the position hold, per period
+  int32_t hold_below_bpp;        // slower than this counts as at rest
   uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
   int32_t sensor_mismatch_q30;   // of the current sensors, as a share
   bool mapped;                   // the turn of the saliency axis with the current is known
@@ -107,6 +110,7 @@ typedef struct {
   int32_t room_q20, braking_room_q20;  // torque current that the limits leave, and against the rotation, A
   q_inverse_t per_torque_constant;     // of N m per A, Q24, at the reference of i_d
   ramp_t ramp;
+  position_hold_t place;   // kept at a reference of zero
   dq_t reference_q20;      // current reference
   dq_t measured_q20;       // mean current of the last period
   dq_t command_q16;        // voltage command

@@ -7,6 +7,7 @@
 
 #define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
 #define CRAWL_MAX_RPM_Q16 655360L      // where cogging is learnt
+#define HOLD_BELOW_RPM_Q16 1310720L    // 20 rpm
 #define COGGING_MAX_Q20 1048576L       // 1 N m
 #define EDGE_BAND_Q20 524288L          // half an ampere of ripple may be predicted wrong
 #define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
@@ -87,6 +88,8 @@ static bool load_control(drive_config_t* c) {
   // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
   c->friction_per_bpp_q40 = q_mul_sat(q_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
   c->ramp_step_bpp = q_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
+  c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
+  c->hold_below_bpp = q_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);

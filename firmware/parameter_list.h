@@ -79,6 +79,8 @@ PARAMETER(83, speed_trajectory, "ms", 8, 1, 20, 2000, 70, STOPPED, "time constan
 PARAMETER(84, speed_pi_bandwidth, "rad/s", 8, 1, 10, 2000, 200, STOPPED, "natural frequency of the PI speed loop")
 PARAMETER(85, speed_pi_damping, "", 12, 2, 30, 300, 80, STOPPED, "damping of the PI speed loop")
 PARAMETER(86, speed_ramp, "rpm/s", 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
+PARAMETER(90, position_hold, "1/s", 8, 1, 0, 200, 50, ALWAYS,
+          "how fast the shaft is brought back to where it stood, at a speed reference of zero; 0 lets it creep")
 PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
           "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
 PARAMETER(88, weakening_limit, "A", 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")

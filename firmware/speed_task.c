@@ -98,6 +98,18 @@ static bool ramp_waits(const drive_t* d, int32_t target_bpp) {
   return (d->position.used.speed_bpp > 0) ? target_bpp < value : target_bpp > value;
 }
 
+// At a reference of zero the place is kept, not only the speed.
+static int32_t hold_place(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const bool at_zero = d->state == DRIVE_RUN && c->target_bpp == 0 && c->ramp.value == 0;
+  const bool slow = q_abs_sat(d->position.used.speed_bpp) < d->config.hold_below_bpp;
+  if (!at_zero || !(slow || c->place.holding)) {
+    position_hold_release(&c->place);
+    return 0;
+  }
+  return position_hold_step(&c->place, d->position.used.angle_bam, d->config.hold_gain_q30);
+}
+
 static void step_ramp(drive_t* d, speed_controller_input_t* in) {
   drive_control_t* const c = &d->control;
   const int32_t target = (d->state == DRIVE_STOP) ? 0 : c->target_bpp;
@@ -119,6 +131,7 @@ static void step_speed(drive_t* d, bool held) {
   drive_control_t* const c = &d->control;
   speed_controller_input_t in;
   step_ramp(d, &in);
+  in.reference_bpp = q_add_sat(in.reference_bpp, hold_place(d));
   d->limits &= ~(int32_t)LIMIT_BRAKING;
   in.speed_bpp = d->position.used.speed_bpp;
   in.load_current_q20 = load_current(d);

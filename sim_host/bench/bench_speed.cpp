@@ -27,9 +27,7 @@ RunRequest bench_request(double solver) {
 
 constexpr int REPEATS = 9;
 
-double speed(const RunResult& result) {
-  return result.stats.at("simulated_seconds") / result.stats.at("wall_seconds");
-}
+double speed(const RunResult& result) { return result.stats.at("simulated_seconds") / result.stats.at("wall_seconds"); }
 
 RunResult fastest(int solver) {
   RunResult best = run(bench_request(solver));

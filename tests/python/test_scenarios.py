@@ -67,7 +67,7 @@ BENCH = {
     ("A11", "ramp_position_error_peak"): (0.5, 3.0),
     ("A11", "step_position_error_peak"): (1.0, 6.0),
     ("A11", "step_recovered_position_error_peak"): (0.1, 1.5),
-    ("A11", "held_position_drift"): (0.5, 20.5),  # short: the shaft creeps over a hump of the cogging
+    ("A11", "held_position_drift"): (0.2, 12.0),
     ("A15", "transition_position_error_peak"): (0.2, 3.0),
     ("A15", "steady_position_error_peak"): (0.2, 1.5),
     ("A16", "position_error_peak"): (0.2, 2.5),
