@@ -129,7 +129,7 @@ PARAMETER(131, spin_speed, "rpm", 8, 0, 300, 2000, 600, STOPPED, "speed of the c
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 10000, 300, STOPPED, "current of the polarity test")
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
-PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 20, ALWAYS, "for how long")
+PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 15, ALWAYS, "for how long")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED,
           "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
 PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
@@ -137,7 +137,7 @@ PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
 PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
           "EMF error that is borne at any speed, see synchronism_time")
 PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
-PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 5, ALWAYS,
+PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 3, ALWAYS,
           "for which a larger EMF error, or estimators a quarter turn apart, is a loss of synchronism")
 PARAMETER(164, link_regulation, "V", 16, 1, 100, 15000, 4050, ALWAYS,
           "DC-link voltage from which braking is reduced, to nothing at two thirds of the way to link_maximum")

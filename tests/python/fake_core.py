@@ -116,7 +116,7 @@ _PARAMETERS = [
     (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
     (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),
     (103, "polarity_check", "", 0, 0.0, 1.0, 1.0, "STOPPED", "test the polarity of the magnet at start"),
-    (163, "synchronism_time", "ms", 0, 1.0, 1000.0, 5.0, "ALWAYS", "how long a loss of synchronism lasts"),
+    (163, "synchronism_time", "ms", 0, 1.0, 1000.0, 3.0, "ALWAYS", "how long a loss of synchronism lasts"),
     (170, "encoder_trim", "deg", 2, -180.0, 180.0, 0.0, "ALWAYS", "added to the angle of the encoder"),
     (171, "current_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 PI, 1 hysteresis"),
     (173, "hysteresis_frequency", "kHz", 2, 0.0, 25.0, 10.0, "ALWAYS", "switching frequency"),
