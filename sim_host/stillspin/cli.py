@@ -16,25 +16,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from stillspin import (
-    __version__,
-    commands,
-    commission,
-    core,
-    drift,
-    execute,
-    explain,
-    explain_report,
-    output,
-    profile,
-    report,
-    resources,
-    scenario_file,
-    startup,
-    startup_report,
-    tables,
-)
+from stillspin import __version__, commands, core, resources
 from stillspin.board import power, serve
+from stillspin.cases import drift, profile, scenario_file
+from stillspin.cases.scenario import Scenario
 from stillspin.errors import InputError
 from stillspin.one_line_errors import BROKEN, OneLineErrors
 from stillspin.options import (
@@ -48,10 +33,12 @@ from stillspin.options import (
     by_mark,
     whole,
 )
-from stillspin.progress import Counter, PhaseBar
-from stillspin.reproduction import Options, carry_out, write_found
+from stillspin.report import explain_report, output, startup_report, tables
+from stillspin.report import page as report
+from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
-from stillspin.scenario import Scenario
+from stillspin.runs import commission, execute, explain, startup
+from stillspin.runs.reproduction import Options, carry_out, write_found
 
 app = typer.Typer(
     cls=OneLineErrors,

@@ -115,6 +115,7 @@ _PARAMETERS = [
     (82, "speed_alpha", "A2s2", 0, 1.0, 100000.0, 200.0, "STOPPED", "weight of the predicted speed error"),
     (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
     (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),
+    (90, "position_hold", "1/s", 1, 0.0, 20.0, 5.0, "ALWAYS", "how fast the shaft is brought back"),
     (103, "polarity_check", "", 0, 0.0, 1.0, 1.0, "STOPPED", "test the polarity of the magnet at start"),
     (163, "synchronism_time", "ms", 0, 1.0, 1000.0, 3.0, "ALWAYS", "how long a loss of synchronism lasts"),
     (170, "encoder_trim", "deg", 2, -180.0, 180.0, 0.0, "ALWAYS", "added to the angle of the encoder"),

@@ -5,7 +5,10 @@ import importlib
 import numpy as np
 import pytest
 
-from stillspin import bound, core, metrics, profile, scenario_file, special_plots, speed_profile
+from stillspin import core
+from stillspin.cases import profile, scenario_file
+from stillspin.measure import bound, metrics, pieces, speed_profile
+from stillspin.report import special_plots
 
 ACCELERATION = 4 / 0.00455  # rad/s² per N m, motor A
 EXPECTED = bound.Expected(ACCELERATION, rate=0.6, quiet=0.05)
@@ -88,7 +91,7 @@ def held_at_twice_the_bound():
     }
 
 
-EXTRAS = metrics.Extras(
+EXTRAS = pieces.Extras(
     machine={"pole_pairs": 4.0, "inertia": 0.00455},
     observer={"observer_load_rate": 0.6, "observer_load_quiet": 0.05},
 )
@@ -96,7 +99,7 @@ EXTRAS = metrics.Extras(
 
 def test_the_figure_is_the_error_over_the_bound():
     signals = held_at_twice_the_bound()
-    piece = metrics.Piece(signals, signals["speed_ref"], 1000.0, 1000.0, EXTRAS)
+    piece = pieces.Piece(signals, signals["speed_ref"], 1000.0, 1000.0, EXTRAS)
     assert metrics.KINDS["hold_bound_ratio"].function(piece) == pytest.approx(2.0)
 
 

@@ -9,7 +9,9 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
-from stillspin import cli, output, records
+from stillspin import cli
+from stillspin.report import output
+from stillspin.runs import records
 
 
 def left_over(directory):

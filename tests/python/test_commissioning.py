@@ -12,8 +12,10 @@ import tomllib
 
 import pytest
 
-from stillspin import commission, core, profile, records
+from stillspin import core
+from stillspin.cases import profile
 from stillspin.errors import InputError
+from stillspin.runs import commission, records
 
 
 def test_a_campaign_commissions_first_and_shows_the_nameplate_beside(call, tmp_path):

@@ -8,10 +8,11 @@ import sys
 import numpy as np
 import pytest
 
-from stillspin import core, drift, profile, scenario_file
+from stillspin import core
+from stillspin.cases import drift, profile, scenario_file
 from stillspin.errors import InputError
-from stillspin.execute import Settings
 from stillspin.options import by_mark
+from stillspin.runs.execute import Settings
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -7,14 +7,16 @@ from dataclasses import replace
 
 import pytest
 
-from stillspin import core, effects, explain, profile, scenario_file
-from stillspin.assess import ScenarioResult
-from stillspin.effects import ALONE, WITHOUT, Effect, Worlds
+from stillspin import core
+from stillspin.cases import effects, profile, scenario_file
+from stillspin.cases.effects import ALONE, WITHOUT, Effect, Worlds
 from stillspin.errors import InputError
-from stillspin.execute import Settings, prepare
-from stillspin.explain_report import Explanation, content
-from stillspin.figures import Result
+from stillspin.measure.figures import Result
 from stillspin.options import by_mark
+from stillspin.report.explain_report import Explanation, content
+from stillspin.runs import explain
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.execute import Settings, prepare
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stillspin import figures
-from stillspin.scenario import Figure, Goal, Reached, Run, Scenario
+from stillspin.cases.scenario import Figure, Goal, Reached, Run, Scenario
+from stillspin.measure import figures
 
 TIME = np.arange(-0.05, 2.0005, 1e-3)
 

@@ -5,7 +5,9 @@ import importlib
 import numpy as np
 import pytest
 
-from stillspin import core, metrics, profile
+from stillspin import core
+from stillspin.cases import profile
+from stillspin.measure import metrics, pieces
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
@@ -35,14 +37,14 @@ def run(**parameters):
 @pytest.mark.parametrize("method", [1, 2, 3, 4])
 def test_it_sees_the_shaft_and_nobody_uses_it(method):
     signals = run(flux_beside=method)
-    beside = metrics.wrap_degrees(signals["true_angle"] - signals["angle_avv"])
-    load = metrics.wrap_degrees(signals["true_load_angle"] - signals["load_angle"])
+    beside = pieces.wrap_degrees(signals["true_angle"] - signals["angle_avv"])
+    load = pieces.wrap_degrees(signals["true_load_angle"] - signals["load_angle"])
     assert 1e-4 < np.max(np.abs(beside)) < 0.5
     assert np.max(np.abs(load)) < 0.5
     assert np.degrees(np.mean(signals["load_angle"])) > 5.0
     # A drive that is told a wrong inductance: the method beside is off, what is used is not.
     wrong = run(flux_beside=method, inductance_q=2.2)
-    beside = metrics.wrap_degrees(wrong["true_angle"] - wrong["angle_avv"])
+    beside = pieces.wrap_degrees(wrong["true_angle"] - wrong["angle_avv"])
     assert np.min(np.abs(beside)) > 2.0
     assert np.max(np.abs(metrics.position_error(wrong))) < 1.2  # the alignment of the encoder at the start
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stillspin import figures, flux_metrics, metrics
-from stillspin.metrics import Extras, Piece
-from stillspin.scenario import Figure, Goal, Run, Scenario
+from stillspin.cases.scenario import Figure, Goal, Run, Scenario
+from stillspin.measure import figures, flux_metrics, metrics
+from stillspin.measure.pieces import Extras, Piece
 
 TIME = np.arange(0.0, 4.0, 0.001)
 MACHINE = {

@@ -11,7 +11,8 @@ import pytest
 from desk import board as board_process
 from typer.testing import CliRunner
 
-from stillspin import core, execute, profile, scenario_file
+from stillspin import core
+from stillspin.cases import profile, scenario_file
 from stillspin.cli import app
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import Requester
@@ -20,6 +21,7 @@ from stillspin.hil import Loop, runs, told
 from stillspin.hil.results import Results, Row
 from stillspin.link import address
 from stillspin.link.errors import LinkError, NoAnswerError, RefusedError
+from stillspin.runs import execute
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -5,7 +5,9 @@ import importlib
 import numpy as np
 import pytest
 
-from stillspin import core, metrics, profile
+from stillspin import core
+from stillspin.cases import profile
+from stillspin.measure import metrics
 
 native = pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -7,8 +7,8 @@ signal's change in that time, and a time is known to one sample.
 import numpy as np
 import pytest
 
-from stillspin import metrics
-from stillspin.scenario import Reached, Run
+from stillspin.cases.scenario import Reached, Run
+from stillspin.measure import metrics, pieces
 
 SAMPLE = 1e-4
 DURATION = 3.0
@@ -26,7 +26,7 @@ def piece(window=(0.0, DURATION), commands=((0.0, 600.0),), **signals):
     data = {"time": time}
     for name, value in signals.items():
         data[name] = value(time) if callable(value) else np.full(time.shape, float(value))
-    return metrics.cut(data, a_run(*commands), window)
+    return pieces.cut(data, a_run(*commands), window)
 
 
 def angles(true, used):
@@ -217,7 +217,7 @@ def test_a_window_beyond_the_record_is_an_error():
     time = np.arange(0.0, 1.0, SAMPLE)
     signals = {"time": time, "true_speed": np.zeros(time.shape)}
     with pytest.raises(ValueError, match="does not cover"):
-        metrics.cut(signals, a_run((0.0, 1.0)), (0.5, 1.1))
+        pieces.cut(signals, a_run((0.0, 1.0)), (0.5, 1.1))
 
 
 def test_a_command_at_the_very_end_of_a_window_belongs_to_what_follows():

@@ -6,7 +6,8 @@ import json
 import pytest
 
 import fake_core
-from stillspin import core, profile, resources
+from stillspin import core, resources
+from stillspin.cases import profile
 from stillspin.errors import InputError
 
 SCHEMA = core.plant_schema(fake_core)

@@ -14,7 +14,8 @@ from motulator.common.utils import complex2abc
 
 import motulator_oracle
 from motulator_oracle import CURRENTS, TICK
-from stillspin import core, profile
+from stillspin import core
+from stillspin.cases import profile
 
 PERIOD = 10_000  # ticks: 10 kHz
 PERIODS = 2_000

@@ -8,8 +8,10 @@ import importlib
 import pytest
 
 import fake_core
-from stillspin import core, execute, profile, scenario_file
+from stillspin import core
+from stillspin.cases import profile, scenario_file
 from stillspin.core import Entry
+from stillspin.runs import execute
 
 FAKE_ONLY = {"inverter.dead_short"}  # makes the fake fail on purpose
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from stillspin import panels, plots, scenario_file
-from stillspin.scenario import Plot
+from stillspin.cases import scenario_file
+from stillspin.cases.scenario import Plot
+from stillspin.report import panels, plots
 
 
 def recorded(duration=1.0, first=-0.05):

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fake_core
-from stillspin import core, profile
+from stillspin import core
+from stillspin.cases import profile
 from stillspin.errors import InputError
 
 SCHEMA = core.plant_schema(fake_core)

@@ -8,8 +8,10 @@ import pytest
 from typer.testing import CliRunner
 
 import fake_core
-from stillspin import cli, report, scenario_file, variant
-from stillspin.figures import Result
+from stillspin import cli
+from stillspin.cases import scenario_file, variant
+from stillspin.measure.figures import Result
+from stillspin.report import page as report
 
 
 @pytest.fixture(scope="module")

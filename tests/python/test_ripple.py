@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from stillspin import ripple
 from stillspin.core import Signals
+from stillspin.measure import ripple
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import fake_core
-from stillspin import execute, figures, profile, scenario_file
+from stillspin.cases import profile, scenario_file
 from stillspin.errors import InputError
+from stillspin.measure import figures
+from stillspin.runs import execute
 
 # Scenario, figure, the paper's number, the goal in `bench`, the goal in `ideal`: the project's commitments. A change of
 # any of them is a decision, not a slip; the same numbers stand in the book.

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stillspin import core, profile
+from stillspin import core
+from stillspin.cases import profile
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from stillspin import core, startup
+from stillspin import core
 from stillspin.errors import InputError
+from stillspin.runs import startup
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from stillspin import deviation_sweep, metrics, scenario_file, speed_profile, variant, waveforms
+from stillspin.cases import scenario_file, variant
+from stillspin.measure import deviation_sweep, metrics, pieces, speed_profile, waveforms
 
 DEAD = 200  # ticks of dead band
 MACHINE = {
@@ -160,6 +161,6 @@ def test_the_papers_scheme_runs_where_the_position_is_judged_and_its_source_left
 
 
 def test_a_run_that_was_not_looked_into_has_no_waveform_figures():
-    piece = metrics.Piece({"time": np.zeros(2)}, np.zeros(2), 0.0, 0.0)
+    piece = pieces.Piece({"time": np.zeros(2)}, np.zeros(2), 0.0, 0.0)
     with pytest.raises(ValueError, match="not looked into"):
         metrics.thd(piece)

@@ -19,8 +19,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stillspin import core, execute, profile, resources, scenario_file
-from stillspin.profile import Changes
+from stillspin import core, resources
+from stillspin.cases import profile, scenario_file
+from stillspin.cases.profile import Changes
+from stillspin.runs import execute
 
 NOT_COMPARED = ("wall_seconds", "plant_share")
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from stillspin import core
+from stillspin.cases.profile import Changes, Profile, merged
 from stillspin.errors import InputError
-from stillspin.profile import Changes, Profile, merged
 
 _FAST: core.Plant = {"solver": {"method": "rk4"}}
 """Unless profile or user say otherwise: real time matters more here than the last digit."""

@@ -12,10 +12,11 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from stillspin import mdf, records
+from stillspin import mdf
 from stillspin.drive.scope import Capture
 from stillspin.errors import InputError
-from stillspin.style import PANEL_HEIGHT, RUN_COLOURS, STYLE, WIDTH
+from stillspin.report.style import PANEL_HEIGHT, RUN_COLOURS, STYLE, WIDTH
+from stillspin.runs import records
 
 _DRAWINGS = (".svg", ".png", ".pdf")
 

@@ -12,7 +12,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from stillspin import commission, core, execute, profile, tables
+from stillspin import core
+from stillspin.cases import profile
 from stillspin.commands.connection import DriveOption, wanted
 from stillspin.drive.requester import Requester
 from stillspin.errors import InputError
@@ -23,8 +24,10 @@ from stillspin.link import address
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.one_line_errors import BROKEN
 from stillspin.options import ChangeOption, ParamsOption, ProfileOption, SeedOption
-from stillspin.progress import PhaseBar
+from stillspin.report import tables
+from stillspin.report.progress import PhaseBar
 from stillspin.revision import revision
+from stillspin.runs import commission, execute
 
 _TIMEOUT = 1.0  # s; a step of a slow bus takes tens of milliseconds
 

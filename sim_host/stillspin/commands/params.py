@@ -8,13 +8,14 @@ from typing import Annotated
 
 import typer
 
-from stillspin import core, tables
+from stillspin import core
 from stillspin.commands import parameter_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.parameter_file import Difference
 from stillspin.drive import Drive
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.one_line_errors import OneLineErrors
+from stillspin.report import tables
 
 DEFAULTS = "defaults"
 DRIVE = "drive"

@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from stillspin import tables
 from stillspin.commands import capture_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.drive.scope import Channel, Trigger
 from stillspin.errors import InputError
+from stillspin.report import tables
 
 
 def scope(

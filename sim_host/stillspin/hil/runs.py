@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from stillspin import commission, execute, resources, scenario_file
+from stillspin import resources
+from stillspin.cases import scenario_file
 from stillspin.core import NativeCore, Progress
 from stillspin.core_loop import NativeStepLoop
-from stillspin.execute import Job, Settings
 from stillspin.hil.loop import Play
+from stillspin.runs import commission, execute
+from stillspin.runs.execute import Job, Settings
 
 ALL = "all"
 COMMISSION = "commission"

@@ -5,10 +5,11 @@ from __future__ import annotations
 import threading
 import time
 
-from stillspin import core, profile, resources
+from stillspin import core, resources
 from stillspin.board.desk import SLICE, TICKS_PER_SECOND
 from stillspin.board.pacer import Pacer
 from stillspin.board.power import power
+from stillspin.cases import profile
 from stillspin.errors import InputError
 from stillspin.link.errors import LinkError
 from stillspin.link.records import Record, to_wire

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stillspin import figures, metrics, records
-from stillspin.execute import Outcome
-from stillspin.scenario import Scenario
+from stillspin.cases.scenario import Scenario
+from stillspin.measure import figures, pieces
+from stillspin.runs import records
+from stillspin.runs.execute import Outcome
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def assess(
         outcome.run: records.read_waveform(directory / outcome.waveform) for outcome in outcomes if outcome.waveform
     }
     extras = {
-        name: metrics.Extras(looked.get(name, {}), record.about.get("machine", {}), record.about.get("observer", {}))
+        name: pieces.Extras(looked.get(name, {}), record.about.get("machine", {}), record.about.get("observer", {}))
         for name, record in read.items()
     }
     counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
@@ -65,7 +66,7 @@ def assess(
     measured = figures.evaluate(scenario, counting, profile, extras, lost)
     drawings = []
     if draw and recorded and scenario.plots:
-        from stillspin import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
+        from stillspin.report import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
 
         drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded, extras)) for plot in scenario.plots]
     return ScenarioResult(scenario, list(outcomes), measured, drawings)

@@ -11,10 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from stillspin import resources, toml_table
-from stillspin.assess import ScenarioResult
-from stillspin.execute import Settings
-from stillspin.profile import Profile
-from stillspin.scenario import Plot, Scenario
+from stillspin.cases.profile import Profile
+from stillspin.cases.scenario import Plot, Scenario
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.execute import Settings
 
 
 @dataclass(frozen=True)

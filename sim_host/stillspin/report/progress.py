@@ -17,9 +17,9 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from stillspin.campaign import Watcher
-from stillspin.execute import Outcome
-from stillspin.scenario import Scenario
+from stillspin.cases.scenario import Scenario
+from stillspin.runs.campaign import Watcher
+from stillspin.runs.execute import Outcome
 
 _ASSESSING = 0.1  # evaluating and drawing a scenario, in units of one run
 

@@ -13,11 +13,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import ScalarFormatter
 
-from stillspin import bound, deviation_sweep, flux_metrics, metrics, ripple, speed_profile, waveforms
+from stillspin.cases.scenario import Scenario
 from stillspin.core import Signals
-from stillspin.metrics import Extras
-from stillspin.scenario import Scenario
-from stillspin.style import COLOURS, RUN_COLOURS, WIDTH
+from stillspin.measure import bound, deviation_sweep, flux_metrics, metrics, pieces, ripple, speed_profile, waveforms
+from stillspin.measure.pieces import Extras
+from stillspin.report.style import COLOURS, RUN_COLOURS, WIDTH
 
 _DASHED = (0, (4, 2))
 _MAPPED = (0.2, 30.0)  # ° el., the ends of a map's colours
@@ -70,7 +70,7 @@ def sweeps(shown: Shown) -> Canvas:
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
-        machine = shown.extras.get(name, metrics.NOTHING_ELSE).machine
+        machine = shown.extras.get(name, pieces.NOTHING_ELSE).machine
         try:
             found = deviation_sweep.sweep(metrics.position_error(signals), signals, machine)
         except ValueError:
@@ -220,7 +220,7 @@ def errors_over_speed(shown: Shown) -> Canvas:
 
 def _bound(axes: Axes, shown: Shown) -> None:
     for name, signals in list(shown.records.items())[:1]:
-        extras = shown.extras.get(name, metrics.NOTHING_ELSE)
+        extras = shown.extras.get(name, pieces.NOTHING_ELSE)
         try:
             least = bound.angle_bound(signals, bound.Expected.of(extras.machine, extras.observer))
         except ValueError:
@@ -239,10 +239,10 @@ def flux_limits(shown: Shown) -> Canvas:
     """Stator flux over the current: of the firmware's references, and the limit up to which (27) has a root."""
     canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
     for number, (name, signals) in enumerate(shown.records.items()):
-        extras = shown.extras.get(name, metrics.NOTHING_ELSE)
+        extras = shown.extras.get(name, pieces.NOTHING_ELSE)
         if not extras.machine:
             continue
-        piece = metrics.Piece(signals, np.zeros(0), 0.0, 0.0, extras)
+        piece = pieces.Piece(signals, np.zeros(0), 0.0, 0.0, extras)
         current, flux, limit = flux_metrics.limit_flux(piece)
         order = np.argsort(current)
         if number == 0:

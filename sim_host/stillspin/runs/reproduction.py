@@ -8,15 +8,19 @@ from pathlib import Path
 
 from rich.console import Console
 
-from stillspin import __version__, campaign, commission, core, execute, output, profile, report, variant
-from stillspin.assess import ScenarioResult
+from stillspin import __version__, core
+from stillspin.cases import profile, variant
+from stillspin.cases.scenario import Scenario
+from stillspin.cases.variant import Beside, Variant
 from stillspin.core import NativeCore
 from stillspin.errors import InputError
-from stillspin.execute import Settings
-from stillspin.progress import Bar, PhaseBar
+from stillspin.report import output
+from stillspin.report import page as report
+from stillspin.report.progress import Bar, PhaseBar
 from stillspin.revision import revision
-from stillspin.scenario import Scenario
-from stillspin.variant import Beside, Variant
+from stillspin.runs import campaign, commission, execute
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.execute import Settings
 
 PARAMS = "params.toml"
 """What a campaign's commissioning found, beside its results; with the motor's name where there are several."""

@@ -15,15 +15,18 @@ from pathlib import Path
 
 from rich.console import Console
 
-from stillspin import campaign, commission, core, effects, execute, explain_report, output, profile
-from stillspin.assess import ScenarioResult
-from stillspin.effects import ALONE, WITHOUT, Case, Effect, Worlds
-from stillspin.execute import Settings
-from stillspin.explain_report import Explanation
+from stillspin import core
+from stillspin.cases import effects, profile
+from stillspin.cases.effects import ALONE, WITHOUT, Case, Effect, Worlds
+from stillspin.cases.scenario import Scenario
 from stillspin.options import by_mark
-from stillspin.progress import Bar
+from stillspin.report import explain_report, output
+from stillspin.report.explain_report import Explanation
+from stillspin.report.progress import Bar
 from stillspin.revision import revision
-from stillspin.scenario import Scenario
+from stillspin.runs import campaign, commission, execute
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.execute import Settings
 
 IDEAL = "ideal"
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stillspin import metrics
+from stillspin.cases.scenario import Figure, Reached, Run, Scenario
 from stillspin.core import Signals
-from stillspin.metrics import Extras
-from stillspin.scenario import Figure, Reached, Run, Scenario
+from stillspin.measure import metrics, pieces
+from stillspin.measure.pieces import Extras
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def shaft_problem(signals: Signals, run: Run) -> str | None:
 def _window_problem(signals: Signals, run: Run, check: Reached) -> str | None:
     first, last = check.window
     try:
-        piece = metrics.cut(signals, run, check.window)
+        piece = pieces.cut(signals, run, check.window)
     except ValueError as error:
         return str(error)
     wanted = piece.command if check.speed is None else np.full(piece.time.shape, check.speed)
@@ -119,7 +119,7 @@ def _largest(
     for name in figure.runs:
         for window in figure.windows:
             try:
-                piece = metrics.cut(recorded[name], scenario.run(name), window, extras.get(name, metrics.NOTHING_ELSE))
+                piece = pieces.cut(recorded[name], scenario.run(name), window, extras.get(name, pieces.NOTHING_ELSE))
                 values.append(function(piece))
             except ValueError as error:
                 return None, f"run {name}: {error}"

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin import core, toml_table
+from stillspin.cases.profile import Changes, Profile, merged
 from stillspin.core import Entry, NativeCommissioning, NativeCore
 from stillspin.core_loop import NativeStepLoop
 from stillspin.errors import CampaignError, InputError
-from stillspin.profile import Changes, Profile, merged
 
 LIMIT = 180.0
 """Simulated seconds after which a commissioning is given up."""

@@ -8,17 +8,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from stillspin import speed_profile
-
-if TYPE_CHECKING:
-    from stillspin.metrics import Piece
-
-Floats = npt.NDArray[np.float64]
+from stillspin.measure import speed_profile
+from stillspin.measure.pieces import Floats, Piece, as_floats
 
 LOST = 45.0
 """° el.: beyond it a position is none; the torque of a current has lost a third, and soon changes its sign."""
@@ -30,7 +24,7 @@ def _wrapped(radians: Floats) -> Floats:
 
 
 def _signal(piece: Piece, name: str) -> Floats:
-    return np.asarray(piece.signals[name], dtype=np.float64)
+    return as_floats(piece.signals[name])
 
 
 def _angle_error(piece: Piece, name: str) -> Floats:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stillspin import metrics
+from stillspin.cases.scenario import Run
 from stillspin.core import Signals
-from stillspin.metrics import Floats
-from stillspin.scenario import Run
+from stillspin.measure import metrics, pieces
+from stillspin.measure.pieces import Floats
 
 Compute = Callable[[Signals, Run], Floats]
 
@@ -38,11 +38,11 @@ class Panel:
 
 
 def _signal(name: str, scale: float = 1.0) -> Compute:
-    return lambda signals, run: scale * metrics.as_floats(signals[name])
+    return lambda signals, run: scale * pieces.as_floats(signals[name])
 
 
 def _command(signals: Signals, run: Run) -> Floats:
-    return run.speed_command(metrics.as_floats(signals["time"]))
+    return run.speed_command(pieces.as_floats(signals["time"]))
 
 
 def _error(signals: Signals, run: Run) -> Floats:
@@ -50,15 +50,15 @@ def _error(signals: Signals, run: Run) -> Floats:
 
 
 def _wrapped(name: str) -> Compute:
-    return lambda signals, run: metrics.wrap_degrees(metrics.as_floats(signals[name]))
+    return lambda signals, run: pieces.wrap_degrees(pieces.as_floats(signals[name]))
 
 
 def _travel(name: str) -> Compute:
     """Angle in degrees, unwrapped, counted from the first true angle shown: for a shaft that should stand still."""
 
     def compute(signals: Signals, run: Run) -> Floats:
-        start = metrics.as_floats(signals["true_angle"])[:1]
-        angle = metrics.as_floats(signals[name])
+        start = pieces.as_floats(signals["true_angle"])[:1]
+        angle = pieces.as_floats(signals[name])
         first = start + np.remainder(angle[:1] - start + np.pi, 2.0 * np.pi) - np.pi
         unwrapped: Floats = np.degrees(np.unwrap(angle) - angle[:1] + first - start)
         return unwrapped
@@ -67,17 +67,15 @@ def _travel(name: str) -> Compute:
 
 
 def _deviation(signals: Signals, run: Run) -> Floats:
-    return metrics.as_floats(signals["true_speed"]) - _command(signals, run)
+    return pieces.as_floats(signals["true_speed"]) - _command(signals, run)
 
 
 def _beside_error(signals: Signals, run: Run) -> Floats:
-    return metrics.wrap_degrees(metrics.as_floats(signals["true_angle"]) - metrics.as_floats(signals["angle_avv"]))
+    return pieces.wrap_degrees(pieces.as_floats(signals["true_angle"]) - pieces.as_floats(signals["angle_avv"]))
 
 
 def _load_angle_error(signals: Signals, run: Run) -> Floats:
-    return metrics.wrap_degrees(
-        metrics.as_floats(signals["true_load_angle"]) - metrics.as_floats(signals["load_angle"])
-    )
+    return pieces.wrap_degrees(pieces.as_floats(signals["true_load_angle"]) - pieces.as_floats(signals["load_angle"]))
 
 
 PANELS: dict[str, Panel] = {

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stillspin import output
-from stillspin.assess import ScenarioResult
-from stillspin.effects import ALONE, WITHOUT, Effect
-from stillspin.execute import Settings
-from stillspin.figures import Result
-from stillspin.scenario import Scenario
+from stillspin.cases.effects import ALONE, WITHOUT, Effect
+from stillspin.cases.scenario import Scenario
+from stillspin.measure.figures import Result
+from stillspin.report import output
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.execute import Settings
 
 PICTURE = "explain.svg"
 
@@ -103,6 +103,6 @@ def write(directory: Path, found: Explanation, settings: Settings) -> None:
 
 
 def _drawn(found: Explanation) -> str:
-    from stillspin import explain_plot  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
+    from stillspin.report import explain_plot  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
 
     return explain_plot.draw(found)

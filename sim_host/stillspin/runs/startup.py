@@ -17,10 +17,11 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from stillspin import core, profile
+from stillspin import core
+from stillspin.cases import profile
 from stillspin.core import NativeResult, Plant, Schema
 from stillspin.errors import InputError, did_you_mean
-from stillspin.metrics import Floats
+from stillspin.measure.pieces import Floats
 
 WAYS = ("brake", "free", "flying")
 RATED_TORQUE = 11.0  # N m

@@ -14,10 +14,10 @@ mpl.use("Agg")  # before pyplot: no display is needed
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from stillspin import output
+from stillspin.report import output
+from stillspin.report.style import COLOURS, STYLE, WIDTH
 from stillspin.revision import revision
-from stillspin.startup import BACKWARD_LIMIT, WAYS, Case, Outcome
-from stillspin.style import COLOURS, STYLE, WIDTH
+from stillspin.runs.startup import BACKWARD_LIMIT, WAYS, Case, Outcome
 
 _TITLES = {"brake": "held by a brake until RUN", "free": "free shaft", "flying": "turning shaft"}
 

@@ -11,12 +11,12 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from stillspin.assess import ScenarioResult
-from stillspin.execute import Settings
-from stillspin.figures import Result
-from stillspin.output import MARK, RUNS
-from stillspin.profile import Profile
-from stillspin.variant import Beside
+from stillspin.cases.profile import Profile
+from stillspin.cases.variant import Beside
+from stillspin.measure.figures import Result
+from stillspin.report.output import MARK, RUNS
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.execute import Settings
 
 PAGE = "report.html"
 
@@ -119,7 +119,7 @@ def write(
 def html(results: Sequence[ScenarioResult], settings: Sequence[Settings], beside: Sequence[Beside]) -> str:
     """The page."""
     environment = Environment(
-        loader=PackageLoader("stillspin", "templates"),
+        loader=PackageLoader("stillspin.report", "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stillspin.assess import ScenarioResult, assess
+from stillspin.cases.scenario import Scenario
 from stillspin.errors import CampaignError
-from stillspin.execute import Job, Outcome, execute
-from stillspin.scenario import Scenario
+from stillspin.runs.assess import ScenarioResult, assess
+from stillspin.runs.execute import Job, Outcome, execute
 
 _POLL = 0.1  # s between two looks at the progress of the workers
 

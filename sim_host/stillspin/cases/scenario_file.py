@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from stillspin import metrics, panels, resources, toml_table
+from stillspin import resources, toml_table
+from stillspin.cases.scenario import Figure, Goal, Plot, Reached, Run, Scenario, Window
 from stillspin.core import Command, Look, Plant
 from stillspin.errors import InputError, did_you_mean
-from stillspin.scenario import Figure, Goal, Plot, Reached, Run, Scenario, Window
+from stillspin.measure import metrics
+from stillspin.report import panels
 from stillspin.toml_table import Table
 
 _NAME = re.compile(r"[a-z0-9_]+")

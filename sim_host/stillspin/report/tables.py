@@ -8,17 +8,18 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from stillspin import commission, report
-from stillspin.assess import ScenarioResult
+from stillspin.cases.effects import ALONE, WITHOUT
+from stillspin.cases.scenario import Scenario
+from stillspin.cases.variant import Beside
 from stillspin.core import Entry
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
-from stillspin.effects import ALONE, WITHOUT
-from stillspin.explain_report import Explanation
-from stillspin.figures import Result
 from stillspin.hil.results import Row
-from stillspin.scenario import Scenario
-from stillspin.variant import Beside
+from stillspin.measure.figures import Result
+from stillspin.report import page as report
+from stillspin.report.explain_report import Explanation
+from stillspin.runs import commission
+from stillspin.runs.assess import ScenarioResult
 
 _COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
 _RIGHT = {

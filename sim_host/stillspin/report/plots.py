@@ -20,13 +20,13 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
-from stillspin import metrics
+from stillspin.cases.scenario import Plot, Scenario, Window
 from stillspin.core import Signals
-from stillspin.metrics import Extras, Floats
-from stillspin.panels import PANELS, Panel
-from stillspin.scenario import Plot, Scenario, Window
-from stillspin.special_plots import SPECIAL, Shown
-from stillspin.style import COLOURS, COLUMNS, PANEL_HEIGHT, ROLES, RUN_COLOURS, STYLE, WIDTH
+from stillspin.measure import pieces
+from stillspin.measure.pieces import Extras, Floats
+from stillspin.report.panels import PANELS, Panel
+from stillspin.report.special_plots import SPECIAL, Shown
+from stillspin.report.style import COLOURS, COLUMNS, PANEL_HEIGHT, ROLES, RUN_COLOURS, STYLE, WIDTH
 
 
 def draw(
@@ -69,7 +69,7 @@ def _stack(plot: Plot, scenario: Scenario, shown: Mapping[str, Signals]) -> Canv
 
 def _panel(axes: Axes, panel: Panel, plot: Plot, scenario: Scenario, shown: Mapping[str, Signals]) -> None:
     for number, (name, part) in enumerate(shown.items()):
-        time = metrics.as_floats(part["time"])
+        time = pieces.as_floats(part["time"])
         run = scenario.run(name)
         if len(shown) == 1:
             for line in panel.lines:
@@ -118,7 +118,7 @@ def _shared(axes: Axes, panel: Panel, scenario: Scenario, shown: Mapping[str, Si
     reference = next((line for line in panel.lines if line.role == "reference"), None)
     if reference is None or len(commands) > 1:
         return
-    points = metrics.as_floats(part["time"]), reference.compute(part, scenario.run(name))
+    points = pieces.as_floats(part["time"]), reference.compute(part, scenario.run(name))
     _line(axes, panel, points, _Look(reference.label, COLOURS["reference"], "reference"))
 
 

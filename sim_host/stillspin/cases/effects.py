@@ -10,11 +10,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from stillspin import core, resources, toml_table
+from stillspin.cases.profile import Profile, merged
+from stillspin.cases.scenario import Scenario
 from stillspin.core import Plant, Value
 from stillspin.errors import InputError
-from stillspin.execute import Settings
-from stillspin.profile import Profile, merged
-from stillspin.scenario import Scenario
+from stillspin.runs.execute import Settings
 
 WITHOUT, ALONE = "without", "alone"
 

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from stillspin import core, figures, records
+from stillspin import core
+from stillspin.cases.profile import Changes, Profile, merged
+from stillspin.cases.scenario import Run, Scenario
 from stillspin.core import NativeCore, NativeResult, Plant
 from stillspin.core_loop import NativeStepLoop
 from stillspin.errors import InputError
-from stillspin.profile import Changes, Profile, merged
-from stillspin.scenario import Run, Scenario
+from stillspin.measure import figures
+from stillspin.runs import records
 
 _OBSERVER = ("observer_load_rate", "observer_load_quiet")
 """Parameters that a record tells whether or not they were changed: what the observer expects of the load."""

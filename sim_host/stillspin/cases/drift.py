@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from stillspin import core, resources, toml_table
+from stillspin.cases.profile import merged
+from stillspin.cases.scenario import Goal, Scenario
+from stillspin.cases.variant import Variant
 from stillspin.errors import InputError
-from stillspin.execute import Settings
-from stillspin.profile import merged
-from stillspin.scenario import Goal, Scenario
-from stillspin.variant import Variant
+from stillspin.runs.execute import Settings
 
 _ERROR = "parameter_error"
 

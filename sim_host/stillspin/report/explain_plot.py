@@ -12,11 +12,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from stillspin.effects import ALONE, WITHOUT
-from stillspin.explain_report import Explanation
-from stillspin.figures import Result
-from stillspin.report import unit_text
-from stillspin.style import COLOURS, STYLE, WIDTH
+from stillspin.cases.effects import ALONE, WITHOUT
+from stillspin.measure.figures import Result
+from stillspin.report.explain_report import Explanation
+from stillspin.report.page import unit_text
+from stillspin.report.style import COLOURS, STYLE, WIDTH
 
 _ROW = 0.3  # in of height for an effect
 
