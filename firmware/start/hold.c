@@ -17,8 +17,8 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define CONTROL_STEP_Q30 21474836L     // 200 rad/s * T
-#define CONTROL_SQUARE_Q40 439804651L  // its square
+#define CONTROL_STEP_Q30 22548578L     // 210 rad/s * T
+#define CONTROL_SQUARE_Q40 484884628L  // its square
 #define FILTER_Q30 751619277L          // 0.7 of the change of the current reference per period
 #define SLEW_Q20 367002L               // at most 0.35 A per period: some 25 V, within the alternating layout
 
