@@ -39,20 +39,25 @@ bool may_come_again(int error) { return error == EAGAIN || error == EWOULDBLOCK 
 BoardPort::BoardPort(int descriptor, std::unique_ptr<Framing> framing)
     : descriptor_(descriptor), framing_(std::move(framing)) {}
 
-Octets BoardPort::ask(const Octets& request) {
+void BoardPort::send(const Octets& request) {
   tag_++;
-  Words record{request.front(), tag_};
+  type_ = request.front();
+  Words record{type_, tag_};
   record.insert(record.end(), request.begin() + 1, request.end());
-  const Octets wire = framing_->wrap(record);
-  Octets answer;
-  for (int k = 0; k < kTries; k++) {
-    send(wire);
-    if (receive(request.front(), kPatienceMs, answer)) return answer;
-  }
-  throw PortError("the board gives no answer");
+  wire_ = framing_->wrap(record);
+  write(wire_);
 }
 
-void BoardPort::send(const Octets& octets) const {
+Octets BoardPort::receive() {
+  Octets answer;
+  for (int k = 1; !wait_for_answer(kPatienceMs, answer); k++) {
+    if (k == kTries) throw PortError("the board gives no answer");
+    write(wire_);
+  }
+  return answer;
+}
+
+void BoardPort::write(const Octets& octets) const {
   std::size_t sent = 0;
   while (sent < octets.size()) {
     const ssize_t n = ::write(descriptor_, octets.data() + sent, octets.size() - sent);
@@ -66,28 +71,32 @@ void BoardPort::send(const Octets& octets) const {
   }
 }
 
-bool BoardPort::receive(std::uint8_t type, int patience_ms, Octets& answer) {
+bool BoardPort::wait_for_answer(int patience_ms, Octets& answer) {
   const std::int64_t end = now_ms() + patience_ms;
-  while (!look(type, answer)) {
-    if (!wait_for(descriptor_, POLLIN, static_cast<int>(end - now_ms()))) {
-      if (now_ms() >= end) return false;
-      continue;
+  while (!look(answer)) {
+    if (wait_for(descriptor_, POLLIN, static_cast<int>(end - now_ms()))) {
+      read();
+    } else if (now_ms() >= end) {
+      return false;
     }
-    heard_.resize(kRead);
-    const ssize_t n = ::read(descriptor_, heard_.data(), kRead);
-    if (n == 0 || (n < 0 && !may_come_again(errno))) throw PortError("the port is lost: it has been closed");
-    heard_.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
-    at_ = 0;
   }
   return true;
 }
 
+void BoardPort::read() {
+  heard_.resize(kRead);
+  at_ = 0;
+  const ssize_t n = ::read(descriptor_, heard_.data(), kRead);
+  if (n == 0 || (n < 0 && !may_come_again(errno))) throw PortError("the port is lost: it has been closed");
+  heard_.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+}
+
 // Looks for the answer in what has been heard; other records, of an earlier question or unasked, are passed over.
-bool BoardPort::look(std::uint8_t type, Octets& answer) {
+bool BoardPort::look(Octets& answer) {
   while (at_ < heard_.size()) {
     if (!framing_->take(heard_[at_++])) continue;
     const Words record = framing_->record();
-    if (record.size() < 3 || record[0] != (type | RECORD_ANSWER) || record[1] != tag_) continue;
+    if (record.size() < 3 || record[0] != (type_ | RECORD_ANSWER) || record[1] != tag_) continue;
     answer.assign(record.begin() + 2, record.end());
     return true;
   }

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim_host/bench/tape_tap.hpp"
+#include "sim_host/bench/step_loop.hpp"
 
 namespace stillspin::bench {
 
@@ -39,21 +39,24 @@ std::unique_ptr<Framing> serial_framing();
 /// In pieces (firmware/can/segments.h) to a node 1..31, each a frame of the adapter's ASCII protocol.
 std::unique_ptr<Framing> slcan_framing(unsigned node);
 
-class BoardPort {
+class BoardPort final : public Way {
  public:
   BoardPort(int descriptor, std::unique_ptr<Framing> framing);
 
-  /// Type and body of a request; gives status and body of its answer. A request whose answer does not come is repeated.
-  /// Throws PortError.
-  Octets ask(const Octets& request);
+  /// See Way. A request whose answer does not come is repeated. Throw PortError.
+  void send(const Octets& request) override;
+  Octets receive() override;
 
  private:
-  void send(const Octets& octets) const;
-  bool receive(std::uint8_t type, int patience_ms, Octets& answer);
-  bool look(std::uint8_t type, Octets& answer);
+  void write(const Octets& octets) const;
+  bool wait_for_answer(int patience_ms, Octets& answer);
+  void read();
+  bool look(Octets& answer);
 
   int descriptor_;
   std::unique_ptr<Framing> framing_;
+  std::uint8_t type_ = 0;  // of the request
+  Octets wire_;            // as it went out
   std::vector<std::uint8_t> heard_;
   std::size_t at_ = 0;
   std::uint8_t tag_ = 0;

@@ -24,24 +24,32 @@ struct PythonLoop {
 
 nb::bytes bytes_of(const Octets& octets) { return nb::bytes(octets.data(), octets.size()); }
 
-Ask ask_through(int descriptor, unsigned node) {
-  auto framing = node > 0 ? slcan_framing(node) : serial_framing();
-  const auto port = std::make_shared<BoardPort>(descriptor, std::move(framing));
-  return [port](const Octets& request) { return port->ask(request); };
+std::unique_ptr<Way> way_through(int descriptor, unsigned node) {
+  return std::make_unique<BoardPort>(descriptor, node > 0 ? slcan_framing(node) : serial_framing());
 }
 
-Ask ask_python(const nb::object& callable) {
-  return [callable](const Octets& request) {
+// A function that takes a request and gives its answer.
+class PythonWay final : public Way {
+ public:
+  explicit PythonWay(nb::object ask) : ask_(std::move(ask)) {}
+
+  void send(const Octets& request) override {
     const nb::gil_scoped_acquire gil;
     try {
-      const auto answer = nb::cast<nb::bytes>(callable(bytes_of(request)));
+      const auto answer = nb::cast<nb::bytes>(ask_(bytes_of(request)));
       const auto* const first = static_cast<const std::uint8_t*>(answer.data());
-      return Octets(first, first + answer.size());
+      answer_.assign(first, first + answer.size());
     } catch (const nb::python_error& error) {
       throw PortError(error.what());
     }
-  };
-}
+  }
+
+  Octets receive() override { return answer_; }
+
+ private:
+  nb::object ask_;
+  Octets answer_;
+};
 
 nb::object mismatch_of(const StepLoop& loop) {
   if (!loop.mismatch()) return nb::none();
@@ -67,15 +75,20 @@ void bind_step_loop(nb::module_& m) {
   nb::class_<PythonLoop>(m, "StepLoop")
       .def_static(
           "through",
-          [](int fd, unsigned node) { return PythonLoop{std::make_shared<StepLoop>(ask_through(fd, node))}; },
+          [](int fd, unsigned node) { return PythonLoop{std::make_shared<StepLoop>(way_through(fd, node))}; },
           nb::arg("descriptor"), nb::arg("node"))
       .def_static(
-          "asking", [](const nb::object& ask) { return PythonLoop{std::make_shared<StepLoop>(ask_python(ask))}; },
+          "asking", [](const nb::object& ask) { return PythonLoop{std::make_shared<StepLoop>(std::make_unique<PythonWay>(ask))}; },
           nb::arg("ask"))
       .def_prop_ro("steps", [](Self self) { return self.loop->steps(); })
       .def_prop_ro("mismatch", [](Self self) { return mismatch_of(*self.loop); })
       .def_prop_ro("refusal", [](Self self) { return refusal_of(*self.loop); })
       .def_prop_ro("lost", [](Self self) { return self.loop->lost(); })
+      .def("finish",
+           [](Self self) {
+             const nb::gil_scoped_release release;
+             self.loop->finish();
+           })
       .def("take_logs", [](Self self) {
         const auto [board, native] = self.loop->take_logs();
         return nb::make_tuple(bytes_of(board), bytes_of(native));

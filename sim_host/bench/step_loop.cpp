@@ -12,31 +12,55 @@
 
 namespace stillspin::bench {
 
-StepLoop::StepLoop(Ask ask) : ask_(std::move(ask)) {}
+StepLoop::StepLoop(std::unique_ptr<Way> way) : way_(std::move(way)) {}
 
 bool StepLoop::take(const TapedPeriod& period) {
   if (ended()) return false;  // the run goes on for some periods before it is broken off
   try {
-    for (const Octets& request : period.requests) {
-      if (!accepted(request)) return false;
-    }
-    Octets step(1 + period.step.size(), REQUEST_HIL_STEP);
-    std::copy(period.step.begin(), period.step.end(), step.begin() + 1);
-    if (const auto answer = accepted(step)) compare(*answer, period);
+    receive();
+    if (!ended()) send(period);
   } catch (const std::exception& error) {
     lost_ = error.what();
   }
   return !ended();
 }
 
-// The answer's body. With the power stage off a parameter is taken even if it does not go together with the others yet.
+void StepLoop::finish() {
+  try {
+    if (!ended()) receive();
+  } catch (const std::exception& error) {
+    lost_ = error.what();
+  }
+}
+
+void StepLoop::send(const TapedPeriod& period) {
+  for (const Octets& request : period.requests) {
+    if (!accepted(request)) return;
+  }
+  Octets step(1 + period.step.size(), REQUEST_HIL_STEP);
+  std::copy(period.step.begin(), period.step.end(), step.begin() + 1);
+  way_->send(step);
+  sent_ = period;
+}
+
+void StepLoop::receive() {
+  if (!sent_) return;
+  const TapedPeriod period = *std::exchange(sent_, std::nullopt);
+  if (const auto answer = accepted(REQUEST_HIL_STEP, way_->receive())) compare(*answer, period);
+}
+
 std::optional<Octets> StepLoop::accepted(const Octets& request) {
-  const Octets answer = ask_(request);
+  way_->send(request);
+  return accepted(request.front(), way_->receive());
+}
+
+// The answer's body. With the power stage off a parameter is taken even if it does not go together with the others yet.
+std::optional<Octets> StepLoop::accepted(std::uint8_t type, const Octets& answer) {
   if (answer.empty()) {
     stopped_ = true;
     return std::nullopt;
   }
-  const bool kept = request.front() == REQUEST_PARAMETER_SET && answer.front() == ANSWER_CONFLICT;
+  const bool kept = type == REQUEST_PARAMETER_SET && answer.front() == ANSWER_CONFLICT;
   if (answer.front() == ANSWER_OK || kept) return Octets(answer.begin() + 1, answer.end());
   refusal_ = Refusal{answer.front(), std::string(answer.begin() + 1, answer.end())};
   return std::nullopt;

@@ -5,7 +5,7 @@
 #define STILLSPIN_SIM_HOST_BENCH_STEP_LOOP_HPP
 
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,8 +15,15 @@
 
 namespace stillspin::bench {
 
-/// Type and body of a request; gives status and body of its answer, nothing at all to end the run. May throw.
-using Ask = std::function<Octets(const Octets&)>;
+/// A way to a board. Both calls may throw.
+class Way {
+ public:
+  virtual ~Way() = default;
+  /// Type and body of a request; its answer is received before the next one is sent.
+  virtual void send(const Octets& request) = 0;
+  /// Status and body of the answer, nothing at all to end the run.
+  virtual Octets receive() = 0;
+};
 
 /// The first period in which a board did something else.
 struct Mismatch {
@@ -34,10 +41,14 @@ struct Refusal {
 
 class StepLoop {
  public:
-  explicit StepLoop(Ask ask);
+  explicit StepLoop(std::unique_ptr<Way> way);
 
-  /// A period; false ends the run.
+  /// A period; false ends the run. The board computes it while the virtual drive computes the next one: its answer is
+  /// looked at in the next call.
   bool take(const TapedPeriod& period);
+
+  /// Looks at the answer to the last period; needed behind every run.
+  void finish();
 
   std::uint64_t steps() const { return steps_; }
   const std::optional<Mismatch>& mismatch() const { return mismatch_; }
@@ -50,11 +61,15 @@ class StepLoop {
 
  private:
   bool ended() const { return mismatch_ || refusal_ || !lost_.empty() || stopped_; }
+  void send(const TapedPeriod& period);
+  void receive();
   std::optional<Octets> accepted(const Octets& request);
+  std::optional<Octets> accepted(std::uint8_t type, const Octets& answer);
   void compare(const Octets& board, const TapedPeriod& period);
   bool read_outputs(const Octets& answer, Words& outputs, bool& torn);
 
-  Ask ask_;
+  std::unique_ptr<Way> way_;
+  std::optional<TapedPeriod> sent_;  // the period whose answer has not been looked at
   std::uint64_t steps_ = 0;
   hil_answer_t before_{};  // of the board, to take the next one apart
   Octets board_log_, native_log_;

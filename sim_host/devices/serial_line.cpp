@@ -8,7 +8,6 @@
 namespace stillspin::devices {
 namespace {
 
-constexpr unsigned kFrameBits = 10;  // start, eight data bits, stop
 constexpr unsigned kStopBit = 9;
 constexpr double kMinimumRate = 10.0;
 constexpr double kMaximumRate = 10e6;
@@ -17,7 +16,11 @@ constexpr double kMaximumRate = 10e6;
 
 // ---- stretches -----------------------------------------------------------------------------------------
 
-Tick SerialLine::Stretch::edge(unsigned index) const { return static_cast<Tick>(std::ceil(begin + index * bit)); }
+// The receiver asks for edges at every one of its samples and whenever the pins may have changed.
+SerialLine::Stretch::Stretch(double from, double length, unsigned count, unsigned bit_levels)
+    : begin(from), bit(length), bits(count), levels(bit_levels) {
+  for (unsigned k = 0; k <= bits; ++k) edges[k] = static_cast<Tick>(std::ceil(begin + k * bit));
+}
 
 bool SerialLine::Stretch::level(Tick t) const {
   if (t < edge(0) || t >= end()) return true;
@@ -41,7 +44,7 @@ void SerialLine::append(unsigned levels, unsigned bits, double bit, Tick t) {
   double begin = static_cast<double>(t);
   if (!stretches_.empty())
     begin = std::max(begin, stretches_.back().begin + stretches_.back().bits * stretches_.back().bit);
-  stretches_.push_back({begin, bit, bits, levels});
+  stretches_.emplace_back(begin, bit, bits, levels);
 }
 
 // ---- the far end ---------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #ifndef STILLSPIN_SIM_HOST_DEVICES_SERIAL_LINE_HPP
 #define STILLSPIN_SIM_HOST_DEVICES_SERIAL_LINE_HPP
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -55,15 +56,19 @@ class SerialLine {
   void receive(const chip::SerialFrame& frame);
 
  private:
+  static constexpr unsigned kFrameBits = 10;  // start, eight data bits, stop
+
   // A stretch of bits of one length; the line rests high between stretches.
   struct Stretch {
     double begin;
     double bit;  // ticks
     unsigned bits;
     unsigned levels;
+    std::array<Tick, kFrameBits + 1> edges;  // the first tick of each bit; last the end
 
-    Tick edge(unsigned index) const;
-    Tick end() const { return edge(bits); }
+    Stretch(double begin, double bit, unsigned bits, unsigned levels);
+    Tick edge(unsigned index) const { return edges[index]; }
+    Tick end() const { return edges[bits]; }
     bool level(Tick t) const;
   };
 

@@ -36,6 +36,10 @@ class NativeStepLoop(Protocol):
         """Why the way to the board is lost, which ended the run; empty when it is not."""
         ...
 
+    def finish(self) -> None:
+        """Compare the answer to the last period, which is looked at behind every other with the next one."""
+        ...
+
     def take_logs(self) -> tuple[bytes, bytes]:
         """What board and virtual drive have answered since the last call."""
         ...

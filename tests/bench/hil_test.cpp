@@ -152,7 +152,9 @@ std::string words_of(const std::function<void(int)>& at_the_other_end) {
   at_the_other_end(ends[1]);
   std::string words;
   try {
-    (void)BoardPort(ends[0], serial_framing()).ask({REQUEST_HIL_ENTER});
+    BoardPort port(ends[0], serial_framing());
+    port.send({REQUEST_HIL_ENTER});
+    (void)port.receive();
   } catch (const PortError& error) {
     words = error.what();
   }

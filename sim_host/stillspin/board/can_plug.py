@@ -47,6 +47,7 @@ class SlcanPlug:
         self.port = port
         self.adapter = Adapter(board)
         self.name = port.name
+        self._answers = b""  # of the adapter, which go to the program with the frames of the slice
 
     @property
     def listens_to(self) -> int | None:
@@ -58,13 +59,15 @@ class SlcanPlug:
         if self.adapter.has_room:
             octets = self.port.read(_AT_ONCE)
             if octets:
-                self.port.write(self.adapter.feed(octets))
+                self._answers += self.adapter.feed(octets)
 
     def hand_back(self) -> None:
         """See CanPlug."""
-        frames = b"".join(self.adapter.frame(Frame(*heard)) for heard in self._board.can_read())
-        if frames:
-            self.port.write(frames)
+        octets, self._answers = self._answers, b""
+        for heard in self._board.can_read():
+            octets += self.adapter.frame(Frame(*heard))
+        if octets:
+            self.port.write(octets)
 
     def close(self) -> None:
         """See CanPlug."""

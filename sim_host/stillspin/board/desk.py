@@ -9,6 +9,8 @@ from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.core import NativeBoard
 from stillspin.errors import CampaignError
 
+Plug = PseudoTerminal | CanPlug
+
 TICKS_PER_SECOND = 100_000_000
 SLICE = 0.002
 """Simulated seconds between two looks at the plugs."""
@@ -62,10 +64,9 @@ class Desk:
         Raises:
             CampaignError: the board cannot go on.
         """
-        if self._rests:
-            self._wait()
+        ready = self._wait() if self._rests else None
         octets_in = self.octets_in
-        self._hand_over()
+        self._hand_over(ready)
         try:
             heard = self.board.advance_until_heard(round(_ANSWER * TICKS_PER_SECOND))
         except RuntimeError as error:
@@ -89,14 +90,20 @@ class Desk:
         if self.can:
             self.can.close()
 
-    def _wait(self) -> None:
-        """Until a program has sent something, or for a while."""
-        wanted = [plug.listens_to for plug in (self.port, self.can) if plug]
-        select.select([descriptor for descriptor in wanted if descriptor is not None], (), (), _WAIT)
+    def _wait(self) -> list[Plug]:
+        """Until a program has sent something, or for a while; the plugs at which it has."""
+        wanted = {plug.listens_to: plug for plug in (self.port, self.can) if plug}
+        ready, _, _ = select.select([descriptor for descriptor in wanted if descriptor is not None], (), (), _WAIT)
+        return [wanted[descriptor] for descriptor in ready]
 
-    def _hand_over(self) -> None:
-        if self.can:
+    def _hand_over(self, ready: list[Plug] | None = None) -> None:
+        """What waits at these plugs, or at both."""
+        if self.can and (ready is None or self.can in ready):
             self.can.hand_over()
+        if ready is None or self.port in ready:
+            self._hand_over_serial()
+
+    def _hand_over_serial(self) -> None:
         rate = self.port.rate
         if rate in _RATES and rate != self.board.serial_rate:
             self.board.serial_rate = rate

@@ -119,13 +119,11 @@ class Adapter:
     def feed(self, octets: bytes) -> bytes:
         """Carry out commands; returns the answers. Whatever comes is answered and never raises."""
         answers = bytearray()
-        for octet in octets:
-            if octet == 0x0D:
-                answers += self._finish()
-            elif octet != 0x0A and len(self._line) < _LONGEST:
-                self._line.append(octet)
-            elif octet != 0x0A:
-                self._too_long = True
+        *lines, rest = octets.translate(None, b"\n").split(b"\r")
+        for line in lines:
+            self._append(line)
+            answers += self._finish()
+        self._append(rest)
         return bytes(answers)
 
     def frame(self, frame: Frame) -> bytes:
@@ -137,6 +135,12 @@ class Adapter:
         data = "" if frame.remote else frame.data.hex().upper()
         stamp = f"{frame.tick // _TICKS_PER_MS % _WRAP_MS:04X}" if self._stamps else ""
         return f"{kind}{identifier}{frame.length}{data}{stamp}\r".encode()
+
+    def _append(self, octets: bytes) -> None:
+        self._line += octets
+        if len(self._line) > _LONGEST:
+            del self._line[_LONGEST:]
+            self._too_long = True
 
     def _finish(self) -> bytes:
         line, self._line = self._line.decode("latin-1"), bytearray()

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import replace
+import os
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -13,23 +12,20 @@ import typer
 from rich.console import Console
 
 from stillspin import core
-from stillspin.cases import profile
 from stillspin.commands.connection import DriveOption, wanted
-from stillspin.drive.requester import Requester
 from stillspin.errors import InputError
-from stillspin.hil import Difference, Loop, runs
-from stillspin.hil.results import Results, Row, begun, ended
+from stillspin.hil import Difference, campaign, runs
+from stillspin.hil.campaign import Wish
+from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.link import address
-from stillspin.link.errors import DriveError, RefusedError
 from stillspin.one_line_errors import BROKEN
-from stillspin.options import ChangeOption, ParamsOption, ProfileOption, SeedOption
+from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption
 from stillspin.report import tables
-from stillspin.report.progress import PhaseBar
+from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
-from stillspin.runs import commission, execute
 
-_TIMEOUT = 1.0  # s; a step of a slow bus takes tens of milliseconds
+_VIRTUAL = "virtual"
 
 
 def hil(
@@ -38,11 +34,20 @@ def hil(
         list[str], typer.Argument(metavar="ID...", help="Scenarios, such as A10; commission; all for everything.")
     ],
     port: Annotated[
-        str, typer.Option("--port", metavar="PORT", help="The board's serial port: /dev/ttyUSB0, or with ?baud=390625.")
+        str,
+        typer.Option(
+            "--port",
+            metavar="PORT",
+            help="The board's serial port: /dev/ttyUSB0, or with ?baud=390625; virtual for boards of its own.",
+        ),
     ] = "",
     can: Annotated[
         str,
-        typer.Option("--can", metavar="ADAPTER", help="An SLCAN adapter: /dev/ttyACM0?node=1; or socketcan:can0."),
+        typer.Option(
+            "--can",
+            metavar="ADAPTER",
+            help="An SLCAN adapter: /dev/ttyACM0?node=1; socketcan:can0; virtual for boards of its own.",
+        ),
     ] = "",
     where: DriveOption = "",
     check: Annotated[
@@ -51,27 +56,37 @@ def hil(
     file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Keep the results here, beside what it has already.")
     ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Leave out what FILE has as identical, of these sources.")
+    ] = False,
     profile_name: ProfileOption = "bench",
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
+    jobs: JobsOption = None,
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
 
     The board's power stage stays off; it leaves this mode by a reset, which the end of the command brings about.
+    Virtual boards do as many runs at a time as --jobs says, a real one does one.
     Exit status: 0 when every run is identical, 1 when one is not, 2 for bad input.
     """
-    native = core.load()
-
-    def settings(motor: str) -> execute.Settings:
-        return _settings(native, (profile_name, motor), seed, change or [], params)
-
-    chosen = [run for run in runs.named(scenarios, settings, native, check=check) if not only or run.name in only]
-    if not chosen:
+    of = revision()
+    wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params, of)
+    everything = wish.runs(core.load())
+    if not everything:
         raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios)}")
     results = Results(file)
-    done = [_tell(new) for new in _step_through(chosen, _address(port, can, where), results, native)]
+    board = _address(port, can, where)
+    kind = _kind(board)
+    chosen = [number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))]
+    rows = (
+        _on_virtual(wish, chosen, kind, jobs or len(os.sched_getaffinity(0)))
+        if board.partition(":")[0] == _VIRTUAL
+        else _on_one([everything[number] for number in chosen], board, of, jobs)
+    )
+    done = [_tell(new, results) for new in rows]
     if len(done) > 1:
         tables.loop(done)
     if not all(new.identical for new in done):
@@ -82,6 +97,8 @@ def _address(port: str, can: str, where: str) -> str:
     """The one address that is meant."""
     if (port != "") + (can != "") > 1:
         raise InputError("--port and --can: only one of them, there is one board")
+    if _VIRTUAL in {port, can}:
+        return f"{_VIRTUAL}:{'serial' if port else 'can'}"
     if port:
         return port if port.startswith("serial:") else f"serial://{port}"
     if can:
@@ -90,56 +107,37 @@ def _address(port: str, can: str, where: str) -> str:
     return wanted(where)
 
 
-def _settings(
-    native: core.NativeCore, plant: tuple[str, str], seed: int, change: list[str], params: ParamsOption
-) -> execute.Settings:
-    """Settings of a campaign; `plant`: names of profile and motor."""
-    profile_name, motor = plant
-    schema, known = core.plant_schema(native), core.parameters(native)
-    chosen = profile.load(profile_name, schema, known, motor)
-    if params:
-        chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(params, known)})
-    return execute.Settings(chosen, profile.changes(change, schema, known), seed, revision())
+def _kind(board: str) -> str:
+    """The way to it: serial or can."""
+    virtual, _, kind = board.partition(":")
+    if virtual == _VIRTUAL:
+        return kind or "serial"
+    return address.parse(board).kind
 
 
-def _step_through(chosen: list[LoopRun], where: str, results: Results, native: core.NativeCore) -> Iterator[Row]:
-    """The runs one after the other; what is lost with the board ends them behind a row that says so."""
-    of, link = revision(), address.parse(where).kind
-    with _loop(where) as loop:
-        for run in chosen:
-            title = f"{run.scenario} {run.name}"
-            new = begun(run, link, of)
-            try:
-                with PhaseBar(Console(stderr=True)) as bar:
-                    result = loop.run(native, run.play, partial(bar.show, phase=title))
-                new = ended(new, result)
-            except DriveError as error:
-                new = replace(new, lost=str(error))
-                results.add(new)
-                yield new
-                if isinstance(error, RefusedError):
-                    continue
-                return
-            results.add(new)
-            yield new
+def _is_done(results: Results, run: LoopRun, kind: str, of: str) -> bool:
+    row = results.rows.get(begun(run, kind, of).key)
+    return row is not None and row.identical and row.revision == of
 
 
-@contextmanager
-def _loop(where: str) -> Iterator[Loop]:
-    """A board in the loop, which is let go at the end."""
-    requester = Requester(address.connect(where), _TIMEOUT)
-    try:
-        loop = Loop(requester)
-        try:
-            yield loop
-        finally:
-            with suppress(DriveError):  # a board that was never in the loop, or has left it already
-                loop.leave()
-    finally:
-        requester.close()
+def _on_one(chosen: Sequence[LoopRun], board: str, of: str, jobs: int | None) -> Iterator[Row]:
+    if jobs not in {None, 1}:
+        raise InputError(f"--jobs {jobs}: a board does one run at a time")
+    with PhaseBar(Console(stderr=True)) as bar:
+        yield from campaign.on_one(chosen, board, of, lambda run: partial(bar.show, phase=f"{run.scenario} {run.name}"))
 
 
-def _tell(new: Row) -> Row:
+def _on_virtual(wish: Wish, chosen: Sequence[int], kind: str, jobs: int) -> Iterator[Row]:
+    if not chosen:
+        return
+    with Counter(Console(stderr=True), len(chosen)) as counter:
+        for row in campaign.on_virtual(wish, chosen, kind, min(jobs, len(chosen))):
+            counter.one_more(row)
+            yield row
+
+
+def _tell(new: Row, results: Results) -> Row:
+    results.add(new)
     title = f"{new.scenario} {new.run}" + ("" if new.whole else " (its start)")
     rate = f"{new.steps} steps in {new.seconds:.1f} s ({new.rate:.0f} steps/s)"
     if new.lost:

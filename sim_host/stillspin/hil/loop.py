@@ -108,6 +108,7 @@ class Loop:
         begin = time.perf_counter()
         with self._requester.resting() if port else nullcontext():
             reason = play(native, look, loop)
+            loop.finish()
         seconds = time.perf_counter() - begin
         log.take()
         self._check(loop)

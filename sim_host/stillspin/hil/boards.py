@@ -1,0 +1,101 @@
+"""Virtual boards for the loop alone: a process each, whose port and bus are as fast as those of a real board can be."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from stillspin.drive import Drive
+from stillspin.errors import CampaignError
+from stillspin.link.errors import DriveError
+
+BAUD = 390_625
+"""bit/s; the drive's divider makes it exactly, that of an FT232 within 0.8 %."""
+BITRATE = 1_000_000
+KINDS = "serial", "can"
+
+_PATIENCE = 60.0  # s; a busy machine takes long to start a process
+_POLL = 0.05
+
+
+@contextmanager
+def boards(kind: str, count: int) -> Iterator[list[str]]:
+    """Addresses of so many boards, which run until the context ends.
+
+    Args:
+        kind: serial or can, the way to them.
+        count: how many.
+
+    Raises:
+        CampaignError: one of them does not start.
+    """
+    with tempfile.TemporaryDirectory(prefix="stillspin-hil-") as root:
+        memory = _memory(Path(root))
+        started: list[_Board] = []
+        try:
+            for number in range(count):
+                started.append(_Board(Path(root) / str(number), memory))
+            yield [board.wait(kind) for board in started]
+        finally:
+            for board in started:
+                board.end()
+
+
+def _memory(root: Path) -> Path:
+    """The content of the memory of a board that has been told its rates: it takes the port's at its next start."""
+    board = _Board(root / "first", None)
+    try:
+        with Drive.open(board.wait("serial", 115_200), timeout=5.0) as drive:
+            drive.set("baud_rate", BAUD)
+            drive.set("can_rate", BITRATE // 1000)
+            drive.save()
+    except DriveError as error:
+        raise CampaignError(f"a virtual board cannot be set up: {error}") from error
+    finally:
+        board.end()
+    return board.memory
+
+
+class _Board:
+    """One process."""
+
+    def __init__(self, directory: Path, memory: Path | None) -> None:
+        directory.mkdir()
+        self.memory = directory / "memory"
+        if memory:
+            shutil.copyfile(memory, self.memory)
+        self._serial, self._can = directory / "serial", directory / "can"
+        self._log = directory / "log"
+        plugs = ["--serial-link", str(self._serial), "--can-link", str(self._can), "--eeprom", str(self.memory)]
+        with self._log.open("w") as log:
+            self._process = subprocess.Popen(_command("--speed", "0", *plugs), stdout=log, stderr=log)
+
+    def wait(self, kind: str, baud: int = BAUD) -> str:
+        """Its address, as soon as it has one.
+
+        Raises:
+            CampaignError: it has ended.
+        """
+        end = time.monotonic() + _PATIENCE
+        while not (self._serial.exists() and self._can.exists()):
+            if self._process.poll() is not None or time.monotonic() > end:
+                raise CampaignError(f"a virtual board does not start: {self._log.read_text().strip()}")
+            time.sleep(_POLL)
+        return (
+            f"serial://{self._serial}?baud={baud}" if kind == "serial" else f"can:slcan:{self._can}?bitrate={BITRATE}"
+        )
+
+    def end(self) -> None:
+        """Switch it off; returns when its memory is a file."""
+        self._process.terminate()
+        self._process.wait(_PATIENCE)
+
+
+def _command(*options: str) -> Sequence[str]:
+    return sys.executable, "-m", "stillspin", "board", *options
