@@ -56,6 +56,7 @@ class Board : public chip::World {
   plant::Plant& plant() { return plant_; }
   WaveformProbe& probe() { return probe_; }
   devices::SerialLine& serial() { return serial_; }
+  const devices::SerialLine& serial() const { return serial_; }
   /// Faults of the chip's surroundings: conversions that are not triggered, interrupts taken late in every period
   /// (ticks below a period; 0 is in time).
   void lose_triggers(bool on) { chip_->block_adc_triggers(on); }

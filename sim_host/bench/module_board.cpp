@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "sim_host/bench/loop_plugs.hpp"
 #include "sim_host/bench/module_setup.hpp"
 #include "sim_host/bench/virtual_board.hpp"
 
@@ -48,6 +49,18 @@ bool advance_until_heard(const PythonBoard& self, Tick ticks) {
   VirtualBoard& board = self.board();
   const nb::gil_scoped_release release;
   return board.advance_until_heard(ticks);
+}
+
+// Of a board in the loop, as bytes and numbers: see LoopPlugs.
+nb::tuple serve_loop(const PythonBoard& self, int serial, int can, int milliseconds) {
+  VirtualBoard& board = self.board();
+  LoopPlugs::Served s;
+  {
+    const nb::gil_scoped_release release;
+    s = LoopPlugs(board, serial, can).serve(milliseconds);
+  }
+  const auto bytes = [](const LoopPlugs::Octets& octets) { return nb::bytes(octets.data(), octets.size()); };
+  return nb::make_tuple(s.serial_in, s.serial_out, bytes(s.for_adapter), bytes(s.serial_left), bytes(s.can_left));
 }
 
 void serial_write(const PythonBoard& self, const nb::bytes& octets) {
@@ -176,6 +189,7 @@ void bind_virtual_board(nb::module_& m) {
       .def("close", [](PythonBoard& self) { self.held.reset(); })
       .def("advance", &advance, nb::arg("ticks"))
       .def("advance_until_heard", &advance_until_heard, nb::arg("ticks"))
+      .def("serve_loop", &serve_loop, nb::arg("serial"), nb::arg("can"), nb::arg("milliseconds"))
       .def_prop_ro("in_loop", [](Self self) { return (void)self.board(), VirtualBoard::in_loop(); })
       .def_prop_ro("can_waiting", [](Self self) { return self.board().can_host().waiting(); })
       .def_prop_ro("now", [](Self self) { return self.board().now(); })

@@ -17,7 +17,8 @@ constexpr double kSecondsPerTick = 1e-8;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRpmPerRads = 30.0 / kPi;
 constexpr double kLargestLoad = 1e4;
-constexpr int kRestPeriods = 3;  // a frame on a bus of 500 kbit/s takes two and a half
+constexpr Tick kSerialBits = 10;
+constexpr Tick kFrameBits = 135;  // the longest frame with stuff bits and intermission
 
 // A saved set has every parameter: nothing of it is overruled, also where it says what the default says.
 bool saved_values_are_in_force() {
@@ -63,9 +64,10 @@ void VirtualBoard::advance(Tick ticks) {
 
 bool VirtualBoard::advance_until_heard(Tick ticks) {
   const Tick end = now() + ticks;
+  const Tick rest = rest_periods();
   std::uint64_t before = heard();
-  int rested = -1;  // periods; none has been heard yet
-  while (now() < end && rested < kRestPeriods) {
+  Tick rested = -1;  // periods; none has been heard yet
+  while (now() < end && rested < rest) {
     advance(std::min(kPeriod, end - now()));
     const std::uint64_t all = heard();
     if (all != before) {
@@ -76,6 +78,14 @@ bool VirtualBoard::advance_until_heard(Tick ticks) {
     before = all;
   }
   return rested >= 0;
+}
+
+// Periods that pass without anything new while the drive sends: of a frame on the bus, of an octet of the port. It fills
+// its rings and mailboxes in every period.
+Tick VirtualBoard::rest_periods() const {
+  const Tick frame = kFrameBits * can_host_.can_bit_time();
+  const Tick octet = static_cast<Tick>(kSerialBits * static_cast<double>(chip::kTicksPerSecond) / board_.serial().rate());
+  return 1 + std::max(frame, octet) / kPeriod;
 }
 
 bool VirtualBoard::in_loop() { return hil_is_active(); }

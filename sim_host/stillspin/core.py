@@ -79,6 +79,22 @@ class NativeBoard(Protocol):
         """Let time pass until the drive has sent something and rests again, at most `ticks`; false: it sent nothing."""
         ...
 
+    def serve_loop(self, serial: int, can: int, milliseconds: int) -> tuple[int, int, bytes, bytes, bytes]:
+        """Of a board in the loop whose time is nobody's: pass requests and answers on, and let time pass between them.
+
+        Ends early when it leaves the loop or something else has to be looked at.
+
+        Args:
+            serial: descriptor that does not block, -1 when nobody has the port open.
+            can: the same of the SLCAN adapter, whose channel must be open, without time stamps, between two commands.
+            milliseconds: how long.
+
+        Returns:
+            Octets in and out at the serial port; what the adapter has to look at itself; what the program at the port
+            and the one at the adapter did not take.
+        """
+        ...
+
     @property
     def in_loop(self) -> bool:
         """Whether the drive is stepped by a computer that runs the plant."""

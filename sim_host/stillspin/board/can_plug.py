@@ -26,8 +26,20 @@ class CanPlug(Protocol):
         """Descriptor at which the next frame of a program shows; None while there is no program."""
         ...
 
+    @property
+    def plain(self) -> int | None:
+        """Descriptor of a port at which nothing but plain frames and their lines pass, for native code; None: another.
+
+        -1 while it has to be looked at here first.
+        """
+        ...
+
     def hand_over(self) -> None:
         """What programs have sent goes to the board."""
+        ...
+
+    def pass_on(self, commands: bytes, left: bytes) -> None:
+        """What native code leaves over at that port: commands for the adapter, octets for the program."""
         ...
 
     def hand_back(self) -> None:
@@ -53,6 +65,16 @@ class SlcanPlug:
     def listens_to(self) -> int | None:
         """See CanPlug."""
         return self.port.listens_to
+
+    @property
+    def plain(self) -> int | None:
+        """See CanPlug."""
+        listens_to = self.port.listens_to
+        return listens_to if listens_to is not None and self.adapter.is_plain else -1
+
+    def pass_on(self, commands: bytes, left: bytes) -> None:
+        """See CanPlug."""
+        self.port.write(left + self.adapter.feed(commands))
 
     def hand_over(self) -> None:
         """See CanPlug. A program that sends faster than the bus is held back."""
@@ -95,6 +117,14 @@ class SocketcanPlug:
     def listens_to(self) -> int | None:
         """See CanPlug."""
         return int(self._bus.fileno())
+
+    @property
+    def plain(self) -> int | None:
+        """See CanPlug."""
+        return None
+
+    def pass_on(self, commands: bytes, left: bytes) -> None:
+        """See CanPlug."""
 
     def hand_over(self) -> None:
         """See CanPlug."""

@@ -23,7 +23,6 @@ from stillspin.errors import InputError
 from stillspin.link.can_bus import DEFAULT_BITRATE
 
 _PAUSE = 0.05  # s of wall time; the longest sleep
-_ANSWERS = 50  # of a board in the loop between two looks at the clock
 
 
 @dataclass(frozen=True)
@@ -117,19 +116,12 @@ def _loop(desk: Desk, pacer: Pacer, show: Show, stop: _Stop, end: float | None) 
     while not stop.wanted and (end is None or desk.time < end):
         due = pacer.due(desk.time)
         if pacer.free and desk.board.in_loop:
-            _answer(desk, stop)
+            desk.answer()
         elif due >= SLICE:
             desk.step(SLICE)
         else:
             time.sleep(min(pacer.wall(SLICE - due), _PAUSE))
         show.look()
-
-
-def _answer(desk: Desk, stop: _Stop) -> None:
-    for _ in range(_ANSWERS):
-        desk.answer()
-        if stop.wanted or not desk.board.in_loop:
-            return
 
 
 def _say_how_to_connect(desk: Desk, title: str) -> None:

@@ -116,6 +116,11 @@ class Adapter:
         """Whether more commands should be taken from the port."""
         return not self.is_open or self._bus.can_waiting < QUEUE
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether the next octet begins a command, and a frame is a line without a time stamp."""
+        return self.is_open and not (self._listens or self._stamps or self._line or self._too_long)
+
     def feed(self, octets: bytes) -> bytes:
         """Carry out commands; returns the answers. Whatever comes is answered and never raises."""
         answers = bytearray()

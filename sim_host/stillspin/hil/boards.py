@@ -8,12 +8,14 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Self
 
 from stillspin.drive import Drive
 from stillspin.errors import CampaignError
 from stillspin.link.errors import DriveError
+from stillspin.link.serial_port import DEFAULT_BAUD
 
 BAUD = 390_625
 """bit/s; the drive's divider makes it exactly, that of an FT232 within 0.8 %."""
@@ -35,30 +37,25 @@ def boards(kind: str, count: int) -> Iterator[list[str]]:
     Raises:
         CampaignError: one of them does not start.
     """
-    with tempfile.TemporaryDirectory(prefix="stillspin-hil-") as root:
-        memory = _memory(Path(root))
-        started: list[_Board] = []
-        try:
-            for number in range(count):
-                started.append(_Board(Path(root) / str(number), memory))
-            yield [board.wait(kind) for board in started]
-        finally:
-            for board in started:
-                board.end()
+    with tempfile.TemporaryDirectory(prefix="stillspin-hil-") as directory, ExitStack() as started:
+        root = Path(directory)
+        memory = _memory(root)
+        running = [started.enter_context(_Board(root / str(number), memory)) for number in range(count)]
+        yield [board.wait(kind) for board in running]
 
 
 def _memory(root: Path) -> Path:
     """The content of the memory of a board that has been told its rates: it takes the port's at its next start."""
-    board = _Board(root / "first", None)
     try:
-        with Drive.open(board.wait("serial", 115_200), timeout=5.0) as drive:
+        with (
+            _Board(root / "first", None) as board,
+            Drive.open(board.wait("serial", DEFAULT_BAUD), timeout=5.0) as drive,
+        ):
             drive.set("baud_rate", BAUD)
             drive.set("can_rate", BITRATE // 1000)
             drive.save()
     except DriveError as error:
         raise CampaignError(f"a virtual board cannot be set up: {error}") from error
-    finally:
-        board.end()
     return board.memory
 
 
@@ -87,11 +84,14 @@ class _Board:
             if self._process.poll() is not None or time.monotonic() > end:
                 raise CampaignError(f"a virtual board does not start: {self._log.read_text().strip()}")
             time.sleep(_POLL)
-        return (
-            f"serial://{self._serial}?baud={baud}" if kind == "serial" else f"can:slcan:{self._can}?bitrate={BITRATE}"
-        )
+        if kind == "serial":
+            return f"serial://{self._serial}?baud={baud}"
+        return f"can:slcan:{self._can}?bitrate={BITRATE}"
 
-    def end(self) -> None:
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
         """Switch it off; returns when its memory is a file."""
         self._process.terminate()
         self._process.wait(_PATIENCE)

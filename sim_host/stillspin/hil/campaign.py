@@ -97,33 +97,46 @@ def on_virtual(wish: Wish, chosen: Sequence[int], kind: str, jobs: int) -> Itera
         free = context.Queue()
         for where in addresses:
             free.put(where)
-        with ProcessPoolExecutor(jobs, context, _begin_worker, (wish, free)) as pool:
+        stop = context.Value("b", 0, lock=False)
+        with ProcessPoolExecutor(jobs, context, _begin_worker, (wish, free, stop)) as pool:
             try:
                 for done in as_completed([pool.submit(_work, number) for number in chosen]):
                     yield done.result()
             except BrokenProcessPool as error:
                 raise CampaignError("a worker process died (out of memory?); try fewer with --jobs") from error
             finally:
-                pool.shutdown(wait=False, cancel_futures=True)
+                stop.value = 1  # for what still runs, after an interrupt
+                pool.shutdown(cancel_futures=True)
 
 
 # ---- in a worker, which has one board for all its runs
 
-_worker: Any = None
+
+class _Worker:
+    def __init__(self, wish: Wish, where: str, stop: Any) -> None:
+        self._native = core.load()
+        self._revision = wish.revision
+        self._runs = wish.runs(self._native)
+        self._kind = address.parse(where).kind
+        self._loop = Loop(_requester(where))
+        self._stop = stop
+
+    def step_through(self, number: int) -> Row:
+        run = self._runs[number]
+        row = begun(run, self._kind, self._revision)
+        return _step_through(self._loop, run, row, self._native, lambda _share: not self._stop.value)[0]
 
 
-def _begin_worker(wish: Wish, free: Any) -> None:
-    global _worker
-    native = core.load()
-    where = free.get()
-    _worker = native, wish, wish.runs(native), address.parse(where).kind, Loop(_requester(where))
+_worker: list[_Worker] = []
+"""The one of this process: what reaches a worker only through its start is kept in a global."""
+
+
+def _begin_worker(wish: Wish, free: Any, stop: Any) -> None:
+    _worker.append(_Worker(wish, free.get(), stop))
 
 
 def _work(number: int) -> Row:
-    native, wish, chosen, kind, loop = _worker
-    run = chosen[number]
-    row, _ = _step_through(loop, run, begun(run, kind, wish.revision), native, lambda _share: True)
-    return row
+    return _worker[0].step_through(number)
 
 
 # ---- both
