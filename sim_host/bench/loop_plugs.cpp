@@ -13,10 +13,10 @@ namespace stillspin::bench {
 namespace {
 
 constexpr int kWaitMs = 20;
-constexpr Tick kAnswer = 1'000'000;     // that a board may think before the plugs are looked at again
-constexpr std::size_t kAtOnce = 256;    // octets of the serial port, which the drive's ring holds
+constexpr Tick kAnswer = 1'000'000;      // that a board may think before the plugs are looked at again
+constexpr std::size_t kAtOnce = 256;     // octets of the serial port, which the drive's ring holds
 constexpr std::size_t kCanAtOnce = 512;  // octets of the adapter: some twenty frames
-constexpr std::size_t kQueue = 32;      // frames that may wait for the bus
+constexpr std::size_t kQueue = 32;       // frames that may wait for the bus
 
 using Clock = std::chrono::steady_clock;
 

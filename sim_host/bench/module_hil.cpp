@@ -78,7 +78,10 @@ void bind_step_loop(nb::module_& m) {
           [](int fd, unsigned node) { return PythonLoop{std::make_shared<StepLoop>(way_through(fd, node))}; },
           nb::arg("descriptor"), nb::arg("node"))
       .def_static(
-          "asking", [](const nb::object& ask) { return PythonLoop{std::make_shared<StepLoop>(std::make_unique<PythonWay>(ask))}; },
+          "asking",
+          [](const nb::object& ask) {
+            return PythonLoop{std::make_shared<StepLoop>(std::make_unique<PythonWay>(ask))};
+          },
           nb::arg("ask"))
       .def_prop_ro("steps", [](Self self) { return self.loop->steps(); })
       .def_prop_ro("mismatch", [](Self self) { return mismatch_of(*self.loop); })

@@ -4,7 +4,7 @@ namespace stillspin::bench {
 namespace {
 
 constexpr char kHex[] = "0123456789ABCDEF";
-constexpr std::size_t kIdentifier = 3;         // digits
+constexpr std::size_t kIdentifier = 3;          // digits
 constexpr std::size_t kHead = 2 + kIdentifier;  // t, identifier, length
 constexpr int kHighestIdentifier = 0x7FF;
 constexpr int kMostOctets = 8;

@@ -80,11 +80,12 @@ bool VirtualBoard::advance_until_heard(Tick ticks) {
   return rested >= 0;
 }
 
-// Periods that pass without anything new while the drive sends: of a frame on the bus, of an octet of the port. It fills
-// its rings and mailboxes in every period.
+// Periods that pass without anything new while the drive sends: of a frame on the bus, of an octet of the port. It
+// fills its rings and mailboxes in every period.
 Tick VirtualBoard::rest_periods() const {
   const Tick frame = kFrameBits * can_host_.can_bit_time();
-  const Tick octet = static_cast<Tick>(kSerialBits * static_cast<double>(chip::kTicksPerSecond) / board_.serial().rate());
+  const Tick octet =
+      static_cast<Tick>(kSerialBits * static_cast<double>(chip::kTicksPerSecond) / board_.serial().rate());
   return 1 + std::max(frame, octet) / kPeriod;
 }
 

@@ -47,8 +47,8 @@ class VirtualBoard final : private PeriodListener {
 
   /// Lets this many ticks of 10 ns pass; not negative.
   void advance(Tick ticks);
-  /// Lets time pass until the drive has said something at one of its plugs and has rested since for longer than an octet
-  /// or a frame takes; at most so many ticks. False when it has said nothing.
+  /// Lets time pass until the drive has said something at one of its plugs and has rested since for longer than an
+  /// octet or a frame takes; at most so many ticks. False when it has said nothing.
   bool advance_until_heard(Tick ticks);
   Tick now() const { return chip_.now(); }
   /// Whether the drive is stepped by a computer (firmware/hil/hil.h).
