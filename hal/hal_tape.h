@@ -10,9 +10,10 @@
 // Interrupts that came while the control step ran are put back into the same call of the HAL, so that they stand
 // between the same two pieces of the drive's own code. What comes behind the control step is played behind it.
 //
-// The background level gets to its work when interrupts and other services let it, in the period of the step that asked
-// for it or in a later one. So each piece of it that the control step depends on has a word on the tape, and is done
-// behind the same step when it is played.
+// The background level gets to its work when interrupts and other services let it: behind the step that asked for it or
+// behind a later one, or even before a step whose interrupt is late. So each piece of it that the control step depends
+// on has a word on the tape, and is done on the same side of the same step, between the same windows, when it is
+// played.
 
 #ifndef STILLSPIN_HAL_HAL_TAPE_H
 #define STILLSPIN_HAL_HAL_TAPE_H
@@ -28,6 +29,7 @@ extern "C" {
 #define TAPE_OUTPUTS 48u     // words that it is told
 #define TAPE_WINDOWS 20u     // window or slice interrupts in a period
 #define TAPE_RESULTS 6u      // words of one of them
+#define TAPE_WORKS 4u        // pieces of the background's work in a period
 #define TAPE_BEHIND 0xFFFFu  // `call` of a window that came behind the control step
 
 typedef enum { TAPE_OFF = 0, TAPE_RECORDS = 1, TAPE_PLAYS = 2 } tape_mode_t;
@@ -39,21 +41,23 @@ typedef struct {
 
 /// One period.
 typedef struct {
-  uint16_t input_count, output_count, window_count;
+  uint16_t input_count, output_count, window_count, work_count;
   uint16_t inputs[TAPE_INPUTS];
   uint16_t outputs[TAPE_OUTPUTS];
   tape_window_t windows[TAPE_WINDOWS];
+  uint16_t works[TAPE_WORKS];  // bits 0..2 which piece, bit 3 before the step, from bit 4 windows that came before it
 } tape_period_t;
 
 typedef struct {
   tape_mode_t mode;
-  bool stepping, stepped;   // the control step runs; has run
-  bool playing;             // a window is being played
-  bool working;             // a piece of the background's work has begun and not ended
-  uint16_t call;            // its hooked calls so far
-  uint16_t input, window;   // played so far
-  bool torn;                // the tape was too short or too long for what the drive did
-  void (*interrupt)(void);  // the window interrupt, played; while it records: takes the step that is on the tape
+  bool stepping, stepped;  // the control step runs; has run
+  bool playing;            // a window is being played
+  bool working;            // a piece of the background's work has begun and not ended
+  bool ended;              // the period has, while its step or a piece of work went on: what comes next is not its own
+  uint16_t call;           // its hooked calls so far
+  uint16_t input, window, work;  // played so far
+  bool torn;                     // the tape was too short or too long for what the drive did
+  void (*interrupt)(void);       // the window interrupt, played; while it records: takes the step that is on the tape
   tape_period_t period;
 } hal_tape_t;
 
@@ -92,10 +96,13 @@ typedef enum {
 /// Whether a piece that is wanted may be done now: always, but while the tape plays where it was done.
 bool hal_tape_has_work(tape_work_t work);
 
-/// Around a piece. While it records, its period ends behind it: nobody may take a period from the tape in between, and
-/// no control step may begin.
+/// Around a piece. While it records nobody may take a period from the tape in between, and no control step may begin.
 void hal_tape_work_begin(tape_work_t work);
-static inline void hal_tape_work_end(void) { hal_tape.working = false; }
+void hal_tape_work_end(void);
+
+/// While it records, at the end of a period: whether its step is on the tape and nothing of it goes on. Otherwise it
+/// has to be taken as soon as that is so, which the tape sees to.
+bool hal_tape_end_period(void);
 
 /// Windows not yet played are played; false when the period on the tape was not the one that ran.
 bool hal_tape_finish_period(void);

@@ -2,6 +2,11 @@
 
 #include "hal/hal_tape.h"
 
+// A word of the background's work.
+#define WORK_EARLY 8u
+#define WORK_WHICH 15u
+#define WORK_WINDOWS_LSB 4u
+
 hal_tape_t hal_tape;
 
 void hal_tape_start(tape_mode_t mode, void (*interrupt)(void)) {
@@ -16,12 +21,24 @@ void hal_tape_next_period(void) {
   hal_tape.call = 0u;
   hal_tape.stepped = false;
   hal_tape.playing = false;
+  hal_tape.ended = false;
   hal_tape.input = 0u;
   hal_tape.window = 0u;
+  hal_tape.work = 0u;
   hal_tape.torn = false;
   hal_tape.period.input_count = 0u;
   hal_tape.period.output_count = 0u;
   hal_tape.period.window_count = 0u;
+  hal_tape.period.work_count = 0u;
+}
+
+static void play_window(hal_tape_t* t) {
+  const uint16_t at = t->window;
+  t->interrupt();
+  if (t->window == at) {
+    t->torn = true;  // it did not read its results
+    t->window++;
+  }
 }
 
 // Plays the windows that came by the end of the present call of the control step. A window makes calls, too, which
@@ -31,12 +48,7 @@ void tape_play_windows(void) {
   if (t->mode != TAPE_PLAYS || t->playing) return;
   t->playing = true;
   while (t->window < t->period.window_count && (t->stepped || t->period.windows[t->window].call <= t->call)) {
-    const uint16_t at = t->window;
-    t->interrupt();
-    if (t->window == at) {
-      t->torn = true;  // it did not read its results
-      t->window++;
-    }
+    play_window(t);
   }
   t->playing = false;
 }
@@ -47,25 +59,60 @@ void tape_begin_step(void) {
   tape_play_windows();
 }
 
+static uint16_t word_of(tape_work_t work) { return (uint16_t)((uint16_t)work | (hal_tape.stepped ? 0u : WORK_EARLY)); }
+
 bool hal_tape_has_work(tape_work_t work) {
   const hal_tape_t* const t = &hal_tape;
   if (t->mode != TAPE_PLAYS) return true;
-  return t->input < t->period.input_count && t->period.inputs[t->input] == (uint16_t)work;
+  return t->work < t->period.work_count && (t->period.works[t->work] & WORK_WHICH) == word_of(work);
+}
+
+static void note_work(uint16_t word) {
+  tape_period_t* const p = &hal_tape.period;
+  if (p->work_count < TAPE_WORKS) {
+    p->works[p->work_count++] = (uint16_t)(word | p->window_count << WORK_WINDOWS_LSB);
+  } else {
+    hal_tape.torn = true;
+  }
+}
+
+// The windows that came before it.
+static void play_work(hal_tape_t* t) {
+  const uint16_t windows = (uint16_t)(t->period.works[t->work++] >> WORK_WINDOWS_LSB);
+  t->playing = true;
+  while (t->window < windows && t->window < t->period.window_count) play_window(t);
+  t->playing = false;
+}
+
+static void take_ended_period(void) {
+  const hal_tape_t* const t = &hal_tape;
+  if (t->mode == TAPE_RECORDS && t->ended && t->stepped) t->interrupt();
 }
 
 void hal_tape_work_begin(tape_work_t work) {
+  take_ended_period();
   hal_tape.working = true;
-  if (tape_plays()) {
-    (void)tape_take();
-  } else {
-    (void)tape_note((uint16_t)work);
-  }
+  if (hal_tape.mode == TAPE_RECORDS) note_work(word_of(work));
+  if (tape_plays()) play_work(&hal_tape);
+}
+
+void hal_tape_work_end(void) {
+  hal_tape.working = false;
+  take_ended_period();
+}
+
+bool hal_tape_end_period(void) {
+  hal_tape_t* const t = &hal_tape;
+  const bool whole = t->stepped && !t->working;
+  t->ended = !whole && (t->stepping || t->stepped);
+  return whole;
 }
 
 bool hal_tape_finish_period(void) {
   hal_tape_t* const t = &hal_tape;
   tape_play_windows();
-  if (t->mode == TAPE_PLAYS && t->input != t->period.input_count) t->torn = true;
+  const bool left = t->input != t->period.input_count || t->work != t->period.work_count;
+  if (t->mode == TAPE_PLAYS && left) t->torn = true;
   return !t->torn;
 }
 

@@ -57,6 +57,7 @@ static void stop_bursts(void) {
 static void clear_tape(void) {
   tape_period_t* const p = &hal_tape.period;
   for (uint16_t k = 0; k < TAPE_INPUTS; k++) p->inputs[k] = 0u;
+  for (uint16_t k = 0; k < TAPE_WORKS; k++) p->works[k] = 0u;
   for (uint16_t k = 0; k < TAPE_WINDOWS; k++) {
     p->windows[k].call = 0u;
     for (uint16_t n = 0; n < TAPE_RESULTS; n++) p->windows[k].results[n] = 0u;
@@ -103,6 +104,8 @@ static void take_window(octet_reader_t* r, tape_window_t* w, uint16_t results) {
 static bool is_whole(octet_reader_t r, const uint16_t* shape) {
   uint16_t any[TAPE_INPUTS] = {0};
   if (shape[0] > TAPE_WINDOWS || shape[1] > TAPE_RESULTS || shape[2] > TAPE_INPUTS) return false;
+  if (shape[3] > TAPE_WORKS) return false;
+  delta_take(&r, any, any, shape[3]);
   delta_take(&r, any, any, shape[2]);
   for (uint16_t k = 0; k < shape[0]; k++) delta_take(&r, any, any, (uint16_t)(1u + shape[1]));
   return octets_fit(&r);
@@ -119,16 +122,28 @@ static bool take_step(octet_reader_t* r) {
   tape_period_t* const p = &hal_tape.period;
   p->window_count = shape[0];
   p->input_count = shape[2];
+  p->work_count = shape[3];
+  delta_take(r, p->works, p->works, p->work_count);
   delta_take(r, p->inputs, p->inputs, p->input_count);
   for (uint16_t k = 0; k < p->window_count; k++) take_window(r, &p->windows[k], shape[1]);
   return true;
 }
 
+// As long as the tape has work that was done on this side of the step.
+static void play_work(void) {
+  uint16_t done;
+  do {
+    done = hal_tape.work;
+    background_step(&drive);
+  } while (hal_tape.work != done);
+}
+
 static void play(void) {
+  play_work();
   hal_tape_step_begin();
   drive_control_step(&drive);
   hal_tape_step_end();
-  background_step(&drive);
+  play_work();
 }
 
 static void shape_of(uint16_t* shape, bool torn, const tape_period_t* p) {

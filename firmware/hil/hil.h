@@ -8,8 +8,9 @@
 // Entered only with the power stage off, left only by a reset: while it lasts the gates cannot be switched on. The
 // board's own period interrupt goes on, for the serial port and the watchdog alone.
 //
-//   step:   sequence u16, shape (windows, words of a result: 3 slices, 6 windows; inputs), inputs, and each window: its
-//           call and its results
+//   step:   sequence u16, shape (windows, words of a result: 3 slices, 6 windows; inputs; works), works, inputs, and
+//   each
+//           window: its call and its results
 //   answer: sequence u16, shape (torn, outputs), outputs, CRC-32 of the signals u32
 //
 // Each of these lists is words against those that last stood in the same place, of a step or of an answer
@@ -33,7 +34,7 @@ extern "C" {
 
 #define HIL_REST_S 10u
 
-#define HIL_STEP_SHAPE 3u
+#define HIL_STEP_SHAPE 4u
 #define HIL_WINDOW_WORDS (1u + TAPE_RESULTS)
 #define HIL_ANSWER_SHAPE 2u
 

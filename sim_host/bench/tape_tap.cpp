@@ -56,9 +56,10 @@ Octets step_of(const tape_period_t& p, std::uint16_t sequence, StepWords& before
   std::array<std::uint16_t, RECORD_BODY_MAX> room;
   octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
   const unsigned results = words_of(p);
-  const Words shape{p.window_count, static_cast<std::uint16_t>(results), p.input_count};
+  const Words shape{p.window_count, static_cast<std::uint16_t>(results), p.input_count, p.work_count};
   put_u16(&w, sequence);
   put(w, shape.data(), before.shape.data(), shape.size());
+  put(w, p.works, before.works.data(), p.work_count);
   put(w, p.inputs, before.inputs.data(), p.input_count);
   for (unsigned k = 0; k < p.window_count; k++) {
     Words window{p.windows[k].call};
@@ -104,17 +105,17 @@ bool TapeTap::turn() {
   if (!begun_) {
     begun_ = true;
     recording_ = this;
-    hal_tape_start(TAPE_RECORDS, take_late_step);
+    hal_tape_start(TAPE_RECORDS, take_late_period);
   }
   // A step that has not run yet, or that is late and still running, belongs to the period that ends with it.
-  // So does work of the background that this period's start came into: it is whole when the next step begins.
-  if (hal_tape.stepped && !hal_tape.working) take_period();
+  // So does work of the background that this period's start came into.
+  if (hal_tape_end_period()) take_period();
   return hand_over();
 }
 
-// Called by the drive as its next step begins: no period has begun since the one before has ended.
+// Called by the drive before it does what belongs to the next period.
 // Nothing may be thrown through it.
-void TapeTap::take_late_step() {
+void TapeTap::take_late_period() {
   try {
     recording_->take_period();
   } catch (const std::runtime_error&) {

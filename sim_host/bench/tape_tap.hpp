@@ -28,6 +28,7 @@ struct TapedPeriod {
 /// Words of steps, as they last stood in their places.
 struct StepWords {
   std::array<std::uint16_t, HIL_STEP_SHAPE> shape{};
+  std::array<std::uint16_t, TAPE_WORKS> works{};
   std::array<std::uint16_t, TAPE_INPUTS> inputs{};
   std::array<std::array<std::uint16_t, HIL_WINDOW_WORDS>, TAPE_WINDOWS> windows{};
 };
@@ -50,7 +51,7 @@ class TapeTap {
   void note_parameter(unsigned id, std::int32_t raw);
 
  private:
-  static void take_late_step();
+  static void take_late_period();
   void take_period();
   void ask(Octets request);
   bool hand_over();

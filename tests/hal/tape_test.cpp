@@ -116,6 +116,94 @@ TEST_F(Tape, WorkIsDoneBehindTheStepThatItWasDoneBehind) {
   EXPECT_TRUE(hal_tape_finish_period());
 }
 
+void work(char name) {
+  hal_tape_work_begin(TAPE_RELOADED);
+  order += name;
+  hal_tape_work_end();
+}
+
+void play_work(char name) {
+  if (hal_tape_has_work(TAPE_RELOADED)) work(name);
+}
+
+// An interrupt that is late leaves the background level the beginning of its period.
+TEST_F(Tape, WorkIsDoneOnTheSameSideOfTheStepBetweenTheSameWindows) {
+  hal_tape_start(TAPE_RECORDS, nullptr);
+  interrupted_by(1);
+  work('X');
+  step(true);
+  interrupted_by(5);
+  work('Y');
+  interrupted_by(6);
+  ASSERT_TRUE(hal_tape_finish_period());
+  const std::string recorded = order;
+  EXPECT_EQ(recorded, "1Xa23b4cd5Y6");
+  const tape_period_t period = hal_tape.period;
+
+  order.clear();
+  hal_tape_start(TAPE_PLAYS, window);
+  hal_tape.period = period;
+  hal_tape.period.output_count = 0;
+  play_work('X');
+  EXPECT_FALSE(hal_tape_has_work(TAPE_RELOADED)) << "the next is behind the step";
+  step(false);
+  play_work('Y');
+  EXPECT_FALSE(hal_tape_has_work(TAPE_RELOADED));
+  EXPECT_TRUE(hal_tape_finish_period());
+  EXPECT_EQ(order, recorded);
+}
+
+TEST_F(Tape, WorkThatIsLeftTearsIt) {
+  hal_tape_start(TAPE_PLAYS, window);
+  hal_tape.period.work_count = 1;
+  hal_tape.period.works[0] = TAPE_RELOADED;
+  step(false);
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
+TEST_F(Tape, MoreWorkThanItHoldsTearsIt) {
+  hal_tape_start(TAPE_RECORDS, nullptr);
+  step(false);
+  for (unsigned k = 0; k < TAPE_WORKS; k++) work('X');
+  EXPECT_TRUE(hal_tape_finish_period());
+  work('X');
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
+// What is asked of the drive as a period ends is for the next step, and so is the work that it brings about.
+TEST_F(Tape, APeriodThatEndsInItsStepIsTakenBeforeWork) {
+  taken = 0;
+  hal_tape_start(TAPE_RECORDS, [] {
+    taken++;
+    hal_tape_next_period();
+  });
+  EXPECT_FALSE(hal_tape_end_period()) << "there is no step on it";
+  hal_tape_step_begin();
+  EXPECT_FALSE(hal_tape_end_period());
+  hal_tape_step_end();
+  EXPECT_EQ(taken, 0);
+  work('X');
+  EXPECT_EQ(taken, 1);
+  ASSERT_EQ(hal_tape.period.work_count, 1) << "of the next";
+  step(false);
+  EXPECT_TRUE(hal_tape_end_period());
+}
+
+TEST_F(Tape, APeriodThatEndsInWorkIsTakenBehindIt) {
+  taken = 0;
+  hal_tape_start(TAPE_RECORDS, [] {
+    taken += 10 * hal_tape.period.work_count + 1;
+    hal_tape_next_period();
+  });
+  step(false);
+  hal_tape_work_begin(TAPE_RELOADED);
+  EXPECT_FALSE(hal_tape_end_period());
+  EXPECT_EQ(taken, 0);
+  hal_tape_work_end();
+  EXPECT_EQ(taken, 11) << "with the work";
+  EXPECT_EQ(hal_tape.period.work_count, 0);
+}
+
 TEST_F(Tape, AWindowThatNobodyReadsTearsIt) {
   hal_tape_start(TAPE_PLAYS, [] {});
   hal_tape.period.window_count = 1;

@@ -87,6 +87,19 @@ def test_an_interrupt_may_end_in_the_next_period(requester, settings):
     assert result.reason == "fault: control interrupt overrun"
 
 
+@pytest.mark.parametrize("late", [10.0, 95.0])
+def test_parameters_may_change_while_interrupts_are_late(requester, settings, late):
+    faults = {"late_interrupts": late, "late_interrupts_at": 0.01, "late_interrupts_time": 0.02}
+    plant = profile.Changes({"solver": {"method": "rk4"}, "fault": faults})
+    job = execute.prepare(scenario_file.load("A10"), replace(settings, changes=plant), core.load())[0]
+    changes = tuple((0.0051 + 0.0007 * k, "set:speed_ramp", 900.0 + k) for k in range(36))
+    short = replace(job, run=replace(job.run, duration=0.04, commands=tuple(sorted((*job.run.commands, *changes)))))
+    result = Loop(requester).run(core.load(), lambda *loop: execute.play(loop[0], short, *loop[1:]).reason)
+    assert result.difference is None
+    assert result.board == result.native
+    assert result.steps > 1200
+
+
 def test_a_board_that_says_nothing_is_told():
     board, port = os.openpty()
     done = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", os.ttyname(port)])
@@ -137,7 +150,7 @@ class Falsified:
     """A requester on whose way to the board the sum of current a in the first window of one step is another one."""
 
     def __init__(self, requester, step):
-        self._requester, self._left, self._shape = requester, step, [0, 0, 0]
+        self._requester, self._left, self._shape = requester, step, [0, 0, 0, 0]
 
     @property
     def transport(self):
@@ -153,11 +166,12 @@ class Falsified:
         return self._requester.request(kind, body, **words)
 
     def _falsify(self, body):
-        shape, at = differences(body, 2, 3)
+        shape, at = differences(body, 2, 4)
         for word, place in shape.items():
             self._shape[word] += body[place] >> 1 ^ -(body[place] & 1)
         if self._left != 0:
             return body
+        _, at = differences(body, at, self._shape[3])
         _, at = differences(body, at, self._shape[2])
         window, _ = differences(body, at, 1 + self._shape[1])
         return body[: window[1]] + bytes([body[window[1]] ^ 2]) + body[window[1] + 1 :]
