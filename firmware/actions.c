@@ -11,7 +11,7 @@
 
 // Why the drive cannot begin anything now; OK when it can.
 static answer_status_t check_ready(octet_writer_t* why) {
-  const char* const conflict = parameter_conflict();
+  const char* const conflict = parameter_conflict_known();
   switch (drive.state) {
     case DRIVE_READY:
       if (conflict == NULL) return ANSWER_OK;

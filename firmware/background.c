@@ -19,14 +19,16 @@ uint16_t drive_dead_band_ticks(void) {
 // configuration, so it may be read here without a lock; a start that is asked for meanwhile waits for the request to be
 // taken back.
 static void reload(void) {
-  static drive_config_t fresh;
-  fresh = drive.config;
-  const bool valid = drive_config_or_conflict(&fresh) == NULL;
+  const char* conflict;
+  const drive_config_t* const fresh = drive_config_made(&conflict);
+  const bool valid = conflict == NULL;
   const uint16_t state = hal_irq_disable();
   hal_tape_work_begin(TAPE_RELOADED);
   drive.request.reload = false;
   drive.config_valid = valid;
-  if (valid) drive.config = fresh;
+  drive.conflict = conflict;
+  drive.conflict_known = true;
+  if (valid) drive.config = *fresh;
   drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;

@@ -157,7 +157,9 @@ typedef struct {
   int32_t unrest_q8;      // mean deviation of the currents from their offsets while these are found, codes
   drive_config_t config;
   bool config_valid;
-  bool loading;  // the store is being read: BOOT goes on
+  bool conflict_known;   // of the parameters that the configuration was made of
+  const char* conflict;  // why they do not fit together, NULL when they do
+  bool loading;          // the store is being read: BOOT goes on
   drive_samples_t samples;
   drive_position_t position;
   drive_control_t control;
@@ -174,6 +176,9 @@ extern drive_t drive;
 bool drive_config_load(drive_config_t* c);
 /// The same, if the parameters fit together: NULL, or why they do not, in a sentence (parameter_rules.c).
 const char* drive_config_or_conflict(drive_config_t* c);
+/// The configuration that the parameters make, until the next call; conflict: NULL, or why it cannot be used.
+/// Background level.
+const drive_config_t* drive_config_made(const char** conflict);
 
 void drive_parameters_changed(void);
 

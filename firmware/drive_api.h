@@ -89,6 +89,8 @@ parameter_result_t parameter_set(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
 /// Why the present parameters cannot be used together, one sentence; NULL when they can.
 const char* parameter_conflict(void);
+/// The same, without a calculation when the background level has made a configuration of them.
+const char* parameter_conflict_known(void);
 
 void drive_command_start(void);
 /// Speed to zero along the ramp, then gates off; a start procedure is broken off at once.

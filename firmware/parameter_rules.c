@@ -72,8 +72,20 @@ const char* drive_config_or_conflict(drive_config_t* c) {
                               : "the machine's parameters are too extreme together: inertia, flux, inductances, map";
 }
 
+const drive_config_t* drive_config_made(const char** conflict) {
+  static drive_config_t made;
+  made = drive.config;
+  *conflict = drive_config_or_conflict(&made);
+  return &made;
+}
+
 const char* parameter_conflict(void) {
-  static drive_config_t trial;
-  trial = drive.config;
-  return drive_config_or_conflict(&trial);
+  const char* conflict;
+  (void)drive_config_made(&conflict);
+  return conflict;
+}
+
+// Whatever changes a parameter asks for a new configuration, which finds out.
+const char* parameter_conflict_known(void) {
+  return (drive.conflict_known && !drive.request.reload) ? drive.conflict : parameter_conflict();
 }

@@ -72,7 +72,7 @@ static void status_fault(octet_writer_t* w) {
 }
 
 static void status_parameters(octet_writer_t* w) {
-  const char* const conflict = parameter_conflict();
+  const char* const conflict = parameter_conflict_known();
   put_text(w, (conflict == NULL) ? "fit together" : conflict);
 }
 
