@@ -77,7 +77,11 @@ def test_a_board_computes_what_the_virtual_drive_computes(requester, play):
 
 
 def test_an_interrupt_may_end_in_the_next_period(requester, settings):
-    late = {"late_interrupts": 95.0, "late_interrupts_at": 0.01, "late_interrupts_time": 0.001}
+    late = {
+        "late_interrupts": 95.0,
+        "late_interrupts_at": 0.01,
+        "late_interrupts_time": 0.001,
+    }
     late_plant = profile.Changes({"solver": {"method": "rk4"}, "fault": late})
     job = execute.prepare(scenario_file.load("A10"), replace(settings, changes=late_plant), core.load())[0]
     short = replace(job, run=replace(job.run, duration=0.02))
@@ -89,11 +93,22 @@ def test_an_interrupt_may_end_in_the_next_period(requester, settings):
 
 @pytest.mark.parametrize("late", [10.0, 95.0])
 def test_parameters_may_change_while_interrupts_are_late(requester, settings, late):
-    faults = {"late_interrupts": late, "late_interrupts_at": 0.01, "late_interrupts_time": 0.02}
+    faults = {
+        "late_interrupts": late,
+        "late_interrupts_at": 0.01,
+        "late_interrupts_time": 0.02,
+    }
     plant = profile.Changes({"solver": {"method": "rk4"}, "fault": faults})
     job = execute.prepare(scenario_file.load("A10"), replace(settings, changes=plant), core.load())[0]
     changes = tuple((0.0051 + 0.0007 * k, "set:speed_ramp", 900.0 + k) for k in range(36))
-    short = replace(job, run=replace(job.run, duration=0.04, commands=tuple(sorted((*job.run.commands, *changes)))))
+    short = replace(
+        job,
+        run=replace(
+            job.run,
+            duration=0.04,
+            commands=tuple(sorted((*job.run.commands, *changes))),
+        ),
+    )
     result = Loop(requester).run(core.load(), lambda *loop: execute.play(loop[0], short, *loop[1:]).reason)
     assert result.difference is None
     assert result.board == result.native
@@ -220,7 +235,22 @@ def test_results_are_kept_run_by_run(tmp_path):
     results.add(Row("A10", "creep", "ideal", True, "can", "r1", "aa", "aa", 10, 2.0))
     results.add(Row("A10", "creep", "ideal", True, "serial", "r1", lost="unplugged"))
     later = Results(file)
-    later.add(Row("A10", "creep", "ideal", True, "serial", "r2", "aa", "ab", 10, 2.0, step=9, words="x"))
+    later.add(
+        Row(
+            "A10",
+            "creep",
+            "ideal",
+            True,
+            "serial",
+            "r2",
+            "aa",
+            "ab",
+            10,
+            2.0,
+            step=9,
+            words="x",
+        )
+    )
     later.add(Row("A10", "creep", "ideal", False, "serial", "r2", "aa", "aa", 5, 2.0))
     kept = Results(file).rows
     assert kept["A10", "creep", "ideal", True, "can"].identical
@@ -236,6 +266,15 @@ def test_results_are_kept_run_by_run(tmp_path):
 def test_all_is_every_scenario_and_the_commissioning(settings):
     names = {run.scenario for run in runs.named(["all"], lambda _motor: settings, core.load(), check=True)}
     assert names == {"commission", *scenario_file.ids()}
+
+
+def test_something_of_everything_comes_first(settings):
+    everything = runs.named(["A12", "A14", "A10"], lambda _motor: settings, core.load(), check=False)
+    order = [everything[number] for number in runs.broad(everything)]
+    assert [run.scenario for run in order] == ["A12", "A14", "A10", "A12", "A14", "A12"]
+    assert {run.name for run in order} == {run.name for run in everything}
+    lengths = [run.length for run in order if run.scenario == "A12"]
+    assert lengths == sorted(lengths)
 
 
 def test_one_board_is_enough():

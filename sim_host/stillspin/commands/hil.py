@@ -80,7 +80,8 @@ def hil(
     results = Results(file)
     board = _address(port, can, where)
     kind = _kind(board)
-    chosen = [number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))]
+    left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
+    chosen = [number for number in runs.broad(everything) if number in left]
     rows = (
         _on_virtual(wish, chosen, kind, jobs or len(os.sched_getaffinity(0)))
         if board.partition(":")[0] == _VIRTUAL

@@ -27,6 +27,7 @@ class LoopRun:
     Attributes:
         profile: of the plant.
         whole: to its end, not its start alone.
+        length: s of the drive's time, some of it.
     """
 
     scenario: str
@@ -34,6 +35,7 @@ class LoopRun:
     play: Play
     profile: str
     whole: bool
+    length: float
 
 
 SettingsOf = Callable[[str], Settings]
@@ -56,19 +58,30 @@ def named(wanted: Sequence[str], settings: SettingsOf, native: NativeCore, *, ch
     return [run for name in names for run in _runs(name, settings, native, check=check)]
 
 
+def broad(chosen: Sequence[LoopRun]) -> list[int]:
+    """Numbers of the runs in another order: of every scenario the shortest, then of every one the next.
+
+    A defect shows early, and what has been compared when it is broken off is something of everything.
+    """
+    by_length: dict[str, list[int]] = {}
+    for number, run in sorted(enumerate(chosen), key=lambda item: item[1].length):
+        by_length.setdefault(run.scenario, []).append(number)
+    rank = {number: place for numbers in by_length.values() for place, number in enumerate(numbers)}
+    return sorted(rank, key=lambda number: (rank[number], number))
+
+
 def _runs(name: str, settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
     if name == COMMISSION:
         chosen = settings(resources.DEFAULT_MOTOR)
         play = _commissioning(chosen, check=check)
-        return [LoopRun(COMMISSION, "motor", play, chosen.profile.name, not check)]
+        length = _CHECK_COMMISSION if check else commission.LIMIT
+        return [LoopRun(COMMISSION, "motor", play, chosen.profile.name, not check, length)]
     scenario = scenario_file.load(name)
     chosen = settings(scenario.motor)
     jobs = execute.prepare(scenario, chosen, native)
     profile = chosen.profile.name
-    return [
-        LoopRun(job.scenario, job.run.name, _of_job(_shortened(job) if check else job), profile, not check)
-        for job in jobs
-    ]
+    taken = [_shortened(job) if check else job for job in jobs]
+    return [LoopRun(job.scenario, job.run.name, _of_job(job), profile, not check, job.run.duration) for job in taken]
 
 
 def _shortened(job: Job) -> Job:
