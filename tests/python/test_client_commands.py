@@ -2,15 +2,9 @@
 
 import csv
 import errno
-import fcntl
 import json
 import os
-import pty
 import struct
-import subprocess
-import sys
-import termios
-import time
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -18,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from prompt_toolkit.document import Document
+from screen import terminal
 
 from stillspin import mdf
 from stillspin.commands import braille, capture_file
@@ -211,27 +206,6 @@ def test_monitor_prints_numbers_where_nobody_looks(ask):
     assert lines[0] == "time [s]\tspeed [rpm]\tlink_voltage [V]"
     assert len(lines) > 10
     assert all(line.endswith("\t310") for line in lines[1:])
-
-
-def terminal(arguments, environment, seconds, size=(30, 100)):
-    """What a program draws on a terminal of that size."""
-    master, slave = pty.openpty()
-    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
-    process = subprocess.Popen(
-        [sys.executable, "-m", "stillspin", *arguments], stdin=slave, stdout=slave, stderr=slave, env=environment
-    )
-    os.close(slave)
-    os.set_blocking(master, False)
-    seen, end = b"", time.monotonic() + seconds
-    while process.poll() is None and time.monotonic() < end:
-        try:
-            seen += os.read(master, 65536)
-        except (BlockingIOError, OSError):
-            time.sleep(0.02)
-    process.terminate()
-    process.wait()
-    os.close(master)
-    return seen.decode(errors="replace")
 
 
 def test_monitor_draws_lines_in_a_terminal(fake):

@@ -1,5 +1,6 @@
 """The client and the firmware: pyserial on a pseudo-terminal, behind it the virtual board in real time."""
 
+import os
 import threading
 import time
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from desk import board, needs_board
+from screen import terminal
 from typer.testing import CliRunner
 
 from stillspin import cli, core
@@ -182,6 +184,25 @@ def test_over_can_the_same_drive_does_the_same(desk, port):
             assert np.all(np.abs(capture.signals["speed"] - 300) < 10)
         assert not desk.status().energised
         assert other.link.counts.damaged == 0
+
+
+def test_monitor_shows_the_same_drive_over_can(port, home):
+    """As numbers, and in a terminal as lines; records in pieces, with the periodic messages of the bus between them."""
+    where = f"can:slcan:{Path(port).parent / 'can'}?node=1"
+    asked = ["monitor", "speed", "link_voltage", "--period", "20", "--drive", where]
+    result = CliRunner().invoke(cli.app, [*asked, "--duration", "4"])
+    assert result.exit_code == 0, result.stderr
+    assert "lost" not in result.stdout
+    title, *rows = result.stdout.splitlines()
+    assert title == "time [s]\tspeed [rpm]\tlink_voltage [V]"
+    values = np.array([[float(number) for number in row.split("\t")] for row in rows])
+    assert len(values) > 20
+    assert np.allclose(np.diff(values[:, 0]), 0.02, atol=0.0015)
+    assert np.all((values[:, 2] > 250) & (values[:, 2] < 400))
+    seen = terminal([*asked, "--duration", "4"], {**os.environ, "TERM": "xterm-256color"}, 60)
+    assert "ready" in seen
+    assert "link_voltage 3" in seen
+    assert any(0x2800 < ord(character) < 0x2900 for character in seen)
 
 
 def test_the_bus_is_shown_in_words(port, home):

@@ -34,14 +34,14 @@ def monitor(
     ] = None,
     where: DriveOption = "",
     period: Annotated[float, typer.Option("--period", metavar="MS", help="Milliseconds between samples.")] = 20.0,
-    duration: Annotated[float, typer.Option("--duration", metavar="S", help="End after so many seconds.")] = 0.0,
+    duration: Annotated[float, typer.Option("--duration", metavar="S", help="End after so many seconds of it.")] = 0.0,
 ) -> None:
     """Show signals live, until Ctrl-C."""
     if duration < 0:
         raise InputError(f"--duration {duration:g}: must be 0 or more")
-    end = time.monotonic() + duration if duration else math.inf
     screen = Console()
     with opened(where) as drive, drive.stream(signals or _DEFAULT, period / 1e3) as stream:
+        end = time.monotonic() + duration if duration else math.inf  # the drive's table may have taken its time
         try:
             if screen.is_terminal:
                 _draw(drive, stream, screen, end)
