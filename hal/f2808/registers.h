@@ -175,6 +175,16 @@
 #define FOTPWAIT_OTPWAIT_LSB 0
 #define FOTPWAIT_OTPWAIT_MASK 0x001Fu
 
+// ---- Code security -----------------------------------------------------------------------------------
+// Passwords that are all ones are no lock: eight reads of them open the chip. All zeros lock it for ever.
+#define REG_KEY(n) (0x0AE0uL + (uint32_t)(n))  // 0..7: compared with the passwords (EALLOW)
+#define REG_CSMSCR 0x0AEFuL                    // security status (EALLOW)
+#define CSMSCR_SECURE_LSB 0
+#define CSMSCR_SECURE_MASK 0x0001u
+#define CSMSCR_FORCESEC_LSB 15
+#define CSMSCR_FORCESEC_MASK 0x8000u
+#define REG_PSWD(n) (0x3F7FF8uL + (uint32_t)(n))  // 0..7: in the flash
+
 // ---- Peripheral interrupt expansion ------------------------------------------------------------------
 #define REG_PIECTRL 0x0CE0uL  // PIE enable, last vector
 #define PIECTRL_ENPIE_LSB 0

@@ -7,18 +7,20 @@ namespace stillspin::chip {
 namespace {
 
 // Cycles of an access. Writes and frame 0 need no wait states; reads of peripheral frames 1 and 2 have two (SPRS230).
-// Frame 2 has a 16-bit bus, a 32-bit access makes two.
+// Frame 2 has a 16-bit bus, a 32-bit access makes two. What lies above is memory (bus_memory.cpp).
 constexpr Tick kWriteCycles = 1;
 constexpr Tick kFrame0ReadCycles = 1;
 constexpr Tick kFrame12ReadCycles = 3;
 constexpr std::uint32_t kFrame1Start = 0x6000;
 constexpr std::uint32_t kFrame2Start = 0x7000;
+constexpr std::uint32_t kFramesEnd = 0x8000;
 
 // Data space below 0x8000 in pages of 64 words: the finest grain at which the F2808's peripherals are laid out.
 enum class Device : std::uint8_t {
   kNone,
   kIdentity,
   kFlash,
+  kSecurity,
   kAdcMirror,
   kTimers,
   kPie,
@@ -48,6 +50,7 @@ constexpr PageTable make_page_table() {
   PageTable table;
   table.set(REG_DEVICECNF, Device::kIdentity);
   table.set(REG_FOPT, Device::kFlash);
+  table.set(REG_KEY(0), Device::kSecurity);
   table.set(REG_MIRROR_ADCRESULT0, Device::kAdcMirror);
   table.set(CPUTIMER_BASE(0), Device::kTimers);
   table.set(REG_PIECTRL, Device::kPie);
@@ -75,12 +78,6 @@ std::uint16_t offset_in_page(std::uint32_t address) { return static_cast<std::ui
 bool is_sci(std::uint32_t address) { return address - SCI_BASE(1) <= SCI_PRI; }
 int epwm_module(std::uint32_t address) { return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift); }
 
-// Identification: part number of the F2808, revision C (the last one that the errata SPRZ171 name).
-constexpr std::uint16_t kPartNumber = 0x003C;
-constexpr std::uint16_t kRevision = 0x0003;
-constexpr std::uint32_t kDeviceConfiguration = DEVICECNF_VMAPS_MASK | DEVICECNF_XRSn_MASK | DEVICECNF_ENPROT_MASK;
-
-Tick read_cycles(std::uint32_t address) { return address < kFrame1Start ? kFrame0ReadCycles : kFrame12ReadCycles; }
 Tick halves(std::uint32_t address) { return address >= kFrame2Start ? 2 : 1; }
 
 bool epwm_register_protected(std::uint16_t offset) {
@@ -90,6 +87,11 @@ bool epwm_register_protected(std::uint16_t offset) {
 }
 
 }  // namespace
+
+inline Tick Core::read_cycles(std::uint32_t address) const {
+  if (address < kFrame1Start) return kFrame0ReadCycles;
+  return address < kFramesEnd ? kFrame12ReadCycles : memory_cycles(address);
+}
 
 // Most reads are of results of the ADC.
 inline std::uint16_t Core::read_word(std::uint32_t address) {
@@ -214,11 +216,12 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return flash_.read(address);
     case Device::kIdentity:
       return read_identity(address);
+    case Device::kSecurity:
+      return memory_.read_security(address);
     case Device::kNone:
       break;
   }
-  note_unmodelled(address);
-  return 0;
+  return read_memory(address);
 }
 
 std::uint16_t Core::read_epwm(std::uint32_t address) {
@@ -248,22 +251,8 @@ std::uint16_t Core::read_system(std::uint16_t offset) const {
   return Watchdog::owns(offset) ? watchdog_.read(offset, now_) : system_.read(offset);
 }
 
-std::uint16_t Core::read_identity(std::uint32_t address) const {
-  switch (address) {
-    case REG_DEVICECNF:
-      return static_cast<std::uint16_t>(kDeviceConfiguration & 0xFFFFu);
-    case REG_DEVICECNF + 1:
-      return static_cast<std::uint16_t>(kDeviceConfiguration >> 16);
-    case REG_PARTID:
-      return kPartNumber;
-    case REG_REVID:
-      return kRevision;
-    default:
-      return 0;
-  }
-}
-
 std::uint16_t Core::inspect(std::uint32_t address) {
+  if (device_at(address) == Device::kNone) return inspect_memory(address);
   const Statistics before = statistics_;
   const bool wide = device_at(address) == Device::kCan;
   const std::uint16_t value =
@@ -316,8 +305,11 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
       return;                       // nothing there is worth changing
     case Device::kAdcMirror:
       return;  // read-only
+    case Device::kSecurity:
+      if (!protection_stops(address)) memory_.write_security(address, value);
+      return;
     case Device::kNone:
-      note_unmodelled(address);
+      write_memory(address, value);
       return;
   }
 }

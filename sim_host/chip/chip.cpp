@@ -1,5 +1,7 @@
 #include "sim_host/chip/chip.hpp"
 
+#include <utility>
+
 #include "sim_host/chip/core.hpp"
 
 namespace stillspin::chip {
@@ -17,6 +19,8 @@ void Chip::block_adc_triggers(bool on) { core_->block_adc_triggers(on); }
 void Chip::hold_interrupts(bool on) { core_->hold_interrupts(on); }
 void Chip::stop_can_transmission() { core_->stop_can_transmission(); }
 bool Chip::is_idle() const { return core_->is_idle(); }
+void Chip::on_jump(Jump jump) { core_->on_jump(std::move(jump)); }
+Memory& Chip::memory() { return core_->memory(); }
 std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
 
 }  // namespace stillspin::chip

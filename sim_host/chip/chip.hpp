@@ -22,6 +22,7 @@
 #define STILLSPIN_SIM_HOST_CHIP_CHIP_HPP
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,7 @@
 namespace stillspin::chip {
 
 class Core;
+class Memory;
 
 /// What happened since power-on. Lost writes are firmware mistakes that the real chip hides.
 struct Statistics {
@@ -58,6 +60,7 @@ struct Statistics {
 class Chip {
  public:
   using Firmware = void (*)();
+  using Jump = std::function<Firmware(std::uint32_t entry)>;
 
   /// `firmware` is the image's entry; it must not return. The world must outlive the chip.
   Chip(World& world, Firmware firmware);
@@ -89,6 +92,13 @@ class Chip {
 
   /// Whether the CPU is asleep in target_idle.
   bool is_idle() const;
+
+  /// For a chip whose firmware is boot_rom: what runs natively in place of the code at an address, which cannot.
+  /// Without an answer (nullptr) the run ends.
+  void on_jump(Jump jump);
+
+  /// RAM, security, and the flash, whose cells outlive resets.
+  Memory& memory();
 
   /// A register's content without an access: no time passes, protection and gates apply. For tests and inspection.
   std::uint16_t inspect(std::uint32_t address);

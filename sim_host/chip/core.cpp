@@ -47,6 +47,7 @@ void Core::reset(Tick t, bool by_watchdog) {
   eallow_ = idle_ = stop_ = reset_requested_ = false;
   depth_ = 0;
   flash_.reset();
+  memory_.reset();
   system_.reset();
   period_ = system_.sysclk_period();
   gpio_.reset(t);

@@ -1,7 +1,8 @@
 // The inside of the virtual chip: time, event order, bus and CPU. Not for users of the chip, see chip.hpp.
 //
-// Split over core.cpp (life cycle, events, services), cpu.cpp (interrupts, IDLE, time), bus.cpp (register accesses) and
-// target.cpp (the firmware's C functions, which reach the core that runs on their thread).
+// Split over core.cpp (life cycle, events, services), cpu.cpp (interrupts, IDLE, time), bus.cpp (register accesses,
+// with bus_can.cpp and bus_memory.cpp) and target.cpp (the firmware's C functions, which reach the core that runs on
+// their thread).
 //
 // The fast path of an access: add its cost to now_, compare with horizon_, decode, test for an interrupt. horizon_ is
 // the last tick that can be reached without an event or the end of the run.
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <exception>
 #include <string>
+#include <utility>
 
 #include "sim_host/chip/adc.hpp"
 #include "sim_host/chip/chip.hpp"
@@ -25,6 +27,7 @@
 #include "sim_host/chip/gpio.hpp"
 #include "sim_host/chip/i2c.hpp"
 #include "sim_host/chip/interrupts.hpp"
+#include "sim_host/chip/memory.hpp"
 #include "sim_host/chip/peripheral.hpp"
 #include "sim_host/chip/sci.hpp"
 #include "sim_host/chip/system_control.hpp"
@@ -41,6 +44,7 @@ class Core final : public ChipServices {
 
   /// Makes `core` the one that the target_* functions of this thread reach; gives back the one before.
   static Core* set_current(Core* core);
+  static Core& running();
 
   // ---- for Chip
   void run_until(Tick t);
@@ -54,6 +58,8 @@ class Core final : public ChipServices {
   void stop_can_transmission();
   bool is_idle() const { return idle_; }
   std::uint16_t inspect(std::uint32_t address);
+  Memory& memory() { return memory_; }
+  void on_jump(Chip::Jump jump) { jump_ = std::move(jump); }
 
   // ---- for the firmware (target_*)
   std::uint16_t read16(std::uint32_t address);
@@ -68,6 +74,10 @@ class Core final : public ChipServices {
   void set_vector(std::uint16_t vector, Isr isr);
   void idle();
   void elapse(std::uint16_t cycles);
+
+  // ---- for what is no firmware but the manufacturer's: boot ROM, flash library
+  void jump(std::uint32_t entry);
+  void pass(Tick ticks);
 
   // ---- for the peripherals
   void raise_interrupt(unsigned vector, Tick t) override;
@@ -175,6 +185,11 @@ class Core final : public ChipServices {
   std::uint16_t read_can16(std::uint32_t address);
   std::uint32_t read_can32(std::uint32_t address);
   void write_can(std::uint32_t address, std::uint32_t value, bool wide);
+  Tick read_cycles(std::uint32_t address) const;
+  Tick memory_cycles(std::uint32_t address) const;
+  std::uint16_t read_memory(std::uint32_t address);
+  void write_memory(std::uint32_t address, std::uint16_t value);
+  std::uint16_t inspect_memory(std::uint32_t address);
 
   // Touched at every access: kept together.
   Tick now_ = 0;
@@ -195,11 +210,13 @@ class Core final : public ChipServices {
 
   World& world_;
   Chip::Firmware firmware_;
+  Chip::Jump jump_;
   SystemControl system_;
   Watchdog watchdog_;
   CpuTimers timers_;
   Gpio gpio_;
   FlashControl flash_;
+  Memory memory_;
   EPwmBank epwm_;
   Adc adc_;
   EQep eqep1_;

@@ -29,6 +29,7 @@ void Sci::reset(Tick t) {
   to_send_.clear();
   receive_buffer_ = transmit_buffer_ = 0;
   receive_ready_ = transmit_full_ = false;
+  measuring_ = rate_locked_ = false;
   frame_end_ = kNever;
   receiver_.stop();
   running_ = false;
@@ -69,9 +70,30 @@ void Sci::adapt(Tick t) {
   }
   if (!running_ || loopback_ || bit_set(errors_, SCI_RXST_BRKDT_MASK)) {
     receiver_.stop();
+  } else if (measuring_) {
+    receiver_.measure(in_use_, services_.lspclk_divider() * services_.sysclk_period(), t);
   } else {
     receiver_.listen(in_use_, t);
   }
+}
+
+// The receiver has found 'A' or 'a' and reads on with its length of a bit.
+void Sci::lock_rate() {
+  measuring_ = false;
+  rate_locked_ = true;
+  const Tick cycle = services_.lspclk_divider() * services_.sysclk_period();
+  baud_ = word(static_cast<unsigned>(std::max(receiver_.format().sample / cycle, Tick{2}) - 1));
+  in_use_ = format();
+}
+
+void Sci::write_autobaud(std::uint16_t value, Tick t) {
+  if (bit_set(value, SCI_FFCT_ABDCLR_MASK)) rate_locked_ = false;
+  const bool measure = bit_set(value, SCI_FFCT_CDC_MASK);
+  if (measure != measuring_) {
+    measuring_ = measure;
+    running_ = !running();  // adapt begins anew
+  }
+  adapt(t);
 }
 
 void Sci::clocks_changed(Tick t) {
@@ -86,6 +108,7 @@ void Sci::run_event(Tick t) {
   if (receiver_.next_event() > t) return;
   switch (receiver_.run_event(t)) {
     case SciReceiver::Outcome::kCharacter:
+      if (measuring_) lock_rate();
       take_character(receiver_.character(), t);
       break;
     case SciReceiver::Outcome::kBreak:
@@ -268,7 +291,7 @@ void Sci::write_register(std::uint16_t offset, std::uint16_t value, Tick t) {
       write_receive_fifo(value);
       break;
     case SCI_FFCT:
-      if (bit_set(value, SCI_FFCT_CDC_MASK)) services_.model_error("SCI: autobaud is not modelled, SCIFFCT", value);
+      write_autobaud(value, t);
       delay_ = value & SCI_FFCT_FFTXDLY_MASK;
       break;
     case SCI_PRI:
@@ -309,7 +332,7 @@ std::uint16_t Sci::read(std::uint16_t offset, Tick /*t*/) {
     case SCI_FFRX:
       return word(receive_fifo_ | received_.count() << SCI_FFRX_RXFFST_LSB);
     case SCI_FFCT:
-      return delay_;
+      return word(delay_ | (measuring_ ? SCI_FFCT_CDC_MASK : 0u) | (rate_locked_ ? SCI_FFCT_ABD_MASK : 0u));
     case SCI_PRI:
       return priority_;
     default:

@@ -6,7 +6,8 @@
 // the level is reached, and again at once when they are cleared while it still is.
 // A break (BRKDT) stops the receiver until SWRESET has been 0. SWRESET also cuts what is being sent; the FIFOs keep
 // their words. The world gets a frame when it is complete.
-// Not modelled: address-bit and idle-line modes, sleep, autobaud (switching them on ends the run), emulation halt; a
+// Autobaud: with CDC set the next 'A' or 'a' sets divider and ABD and arrives as a character.
+// Not modelled: address-bit and idle-line modes, sleep (switching them on ends the run), emulation halt; a
 // clock that changes cuts frames under way; with TXENA off the words in the buffer wait.
 // Source: SPRU051 (SCI), from memory.
 
@@ -42,6 +43,8 @@ class Sci final : public Peripheral {
   bool loopback() const;
   SciFormat format() const;
   void adapt(Tick t);
+  void lock_rate();
+  void write_autobaud(std::uint16_t value, Tick t);
   void write_register(std::uint16_t offset, std::uint16_t value, Tick t);
 
   // Receiving.
@@ -75,11 +78,13 @@ class Sci final : public Peripheral {
   std::uint16_t errors_ = 0;         // SCIRXST without RXRDY and RXERROR
   std::uint16_t transmit_fifo_ = 0;  // SCIFFTX: level, enables, resets, TXFFINT
   std::uint16_t receive_fifo_ = 0;   // SCIFFRX: likewise, RXFFOVF
-  std::uint16_t delay_ = 0;          // SCIFFCT
+  std::uint16_t delay_ = 0;          // SCIFFCT, its delay
   std::uint16_t priority_ = 0;       // SCIPRI, stored
 
   bool running_ = false;  // what the receiver was last told
   bool loopback_ = false;
+  bool measuring_ = false;    // CDC
+  bool rate_locked_ = false;  // ABD
   SciFormat in_use_;
 
   SciFifo received_;

@@ -10,6 +10,7 @@ constexpr Tick kStartSamples = 4;
 constexpr Tick kFirstVote = 4;
 constexpr Tick kLastVote = 6;
 constexpr Tick kBreakBits = 10;
+constexpr Tick kMostCycles = 65536;  // of an eighth of a bit
 
 }  // namespace
 
@@ -23,8 +24,14 @@ void SciReceiver::stop() {
   next_event_ = kNever;
 }
 
+void SciReceiver::measure(const SciFormat& format, Tick cycle, Tick t) {
+  listen(format, t);
+  cycle_ = cycle;
+}
+
 void SciReceiver::listen(const SciFormat& format, Tick t) {
   format_ = format;
+  cycle_ = 0;
   wait_for_start(t);
 }
 
@@ -38,14 +45,18 @@ void SciReceiver::wait_for_rise(Tick t) { next_event_ = std::min(services_.seria
 void SciReceiver::line_changed(Tick t) {
   if (state_ == State::kIdle) wait_for_start(t);
   if (state_ == State::kLow) wait_for_rise(t);
+  if (state_ == State::kMeasure) next_event_ = services_.serial_reaches(t, true);
 }
 
 SciReceiver::Outcome SciReceiver::run_event(Tick t) {
   switch (state_) {
     case State::kIdle:
-      state_ = State::kStart;
       start_ = t;
-      next_event_ = t + kStartSamples * format_.sample;
+      state_ = cycle_ == 0 ? State::kStart : State::kMeasure;
+      next_event_ = cycle_ == 0 ? t + kStartSamples * format_.sample : services_.serial_reaches(t, true);
+      return Outcome::kNothing;
+    case State::kMeasure:
+      take_length(t);
       return Outcome::kNothing;
     case State::kStart:
       check_start(t);
@@ -70,6 +81,22 @@ void SciReceiver::check_start(Tick t) {
     next_event_ = std::max(next_event_, t);
     return;
   }
+  await_frame();
+}
+
+// The first bit has ended at t.
+void SciReceiver::take_length(Tick t) {
+  const Tick unit = kSamplesPerBit * cycle_;
+  const Tick cycles = (t - start_ + unit / 2) / unit;
+  if (cycles < 1 || cycles > kMostCycles) {
+    wait_for_start(t);
+    return;
+  }
+  format_.sample = cycles * cycle_;
+  await_frame();
+}
+
+void SciReceiver::await_frame() {
   state_ = State::kFrame;
   const Tick stop_bit = format_.frame_bits() - format_.stop_bits;
   next_event_ = start_ + (kSamplesPerBit * stop_bit + kLastVote) * format_.sample;
@@ -91,6 +118,11 @@ SciReceiver::Outcome SciReceiver::read_frame(Tick t) {
   }
   if (format_.parity) character_.parity_error = bit(index++) != sci_parity_bit(character_.data, format_.even);
   character_.framing_error = !bit(index);
+  if (cycle_ != 0 && (character_.framing_error || (character_.data | 0x20u) != 'a')) {
+    wait_for_start(t);
+    return Outcome::kNothing;
+  }
+  cycle_ = 0;
   if (!character_.framing_error || level(t)) {
     wait_for_start(t);
   } else {

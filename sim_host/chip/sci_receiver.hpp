@@ -5,6 +5,8 @@
 // late start therefore act as they do on the chip. A first stop bit that reads low is a framing error; when the line
 // stays low for ten more bits it is a break, and the receiver then waits for a reset of the port.
 // The samples are taken when the frame is over: the line is asked about the past, but never backwards.
+// Autobaud: the first low stretch of a character counts as one bit, which it is in 'A' and 'a'; the character is then
+// read with that length, and the rate is locked when it was one of the two. Anything else is passed over.
 // Source: SPRU051 (SCI), from memory.
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_SCI_RECEIVER_HPP
@@ -51,6 +53,10 @@ class SciReceiver {
   void stop();
   /// Wait for a start bit from t on; a line that is low already counts as one.
   void listen(const SciFormat& format, Tick t);
+  /// Wait for 'A' or 'a' at any rate; `cycle` is the period of LSPCLK.
+  void measure(const SciFormat& format, Tick cycle, Tick t);
+  /// Of the character that was taken last.
+  const SciFormat& format() const { return format_; }
   bool listening() const { return state_ != State::kOff; }
   /// The line has been written on: look again when it falls or rises.
   void line_changed(Tick t);
@@ -60,13 +66,15 @@ class SciReceiver {
   const SciCharacter& character() const { return character_; }
 
  private:
-  enum class State { kOff, kIdle, kStart, kFrame, kLow };
+  enum class State { kOff, kIdle, kStart, kMeasure, kFrame, kLow };
 
   bool level(Tick t) const { return services_.serial_reaches(t, true) == t; }
   bool bit(unsigned index) const;
   void wait_for_start(Tick t);
   void wait_for_rise(Tick t);
   void check_start(Tick t);
+  void take_length(Tick t);
+  void await_frame();
   Outcome read_frame(Tick t);
   Outcome end_low(Tick t);
 
@@ -75,6 +83,7 @@ class SciReceiver {
   SciCharacter character_;
   State state_ = State::kOff;
   Tick start_ = 0;     // of the frame
+  Tick cycle_ = 0;     // of LSPCLK while a rate is measured, else 0
   Tick break_at_ = 0;  // when a line that is still low is a break
   Tick next_event_ = kNever;
 };

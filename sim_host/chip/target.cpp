@@ -27,6 +27,8 @@ Core& current() {
 
 }  // namespace
 
+Core& Core::running() { return current(); }
+
 Core* Core::set_current(Core* core) {
   Core* previous = current_core;
   current_core = core;

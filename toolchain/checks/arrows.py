@@ -27,6 +27,7 @@ PARTS = (
 
 # What each part may include besides itself: a part, a single file, or a pattern with a trailing /*.
 _SEAM = ("hal/f2808/registers.h", "hal/f2808/target.h")
+_BENCH_HAL = ("hal/hal_tape.h", "hal/hal_flash.h", "hal/hal_image.h")
 MAY_INCLUDE: dict[str, tuple[str, ...]] = {
     "hal/qmath": (),
     "control": ("hal/qmath",),
@@ -38,11 +39,11 @@ MAY_INCLUDE: dict[str, tuple[str, ...]] = {
     "firmware": ("hal/qmath", "hal", "control", "svpwm", "estimators"),
     "hal/f2808": ("hal/qmath", "hal"),
     # The virtual chip knows the registers and not the firmware; the plant knows neither.
-    "sim_host/chip": _SEAM,
+    "sim_host/chip": (*_SEAM, "hal/f2808/flash_library.h"),
     "sim_host/devices": ("sim_host/chip/world.hpp", "sim_host/chip/can_line.hpp"),
     "sim_host/plant": ("sim_host/chip/world.hpp",),
     # The bench joins them. It looks into the firmware to read, so that a test can tell what the drive thought.
-    "sim_host/bench": ("sim_host/chip", "sim_host/devices", "sim_host/plant", "firmware", "hal/hal_tape.h", *_SEAM),
+    "sim_host/bench": ("sim_host/chip", "sim_host/devices", "sim_host/plant", "firmware", *_BENCH_HAL, *_SEAM),
 }
 
 # C code of the drive has no C library: only headers that a freestanding compiler brings.

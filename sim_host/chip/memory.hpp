@@ -1,0 +1,53 @@
+// Memory beside the registers: SARAM, the flash's cells as the CPU reads them, and the code security module (CSM) that
+// stands before flash, L0 and L1.
+//
+// After a reset the chip is locked. Reading the eight passwords opens it when they are all ones; else the key registers
+// have to hold the same words as the passwords before those are read. All zeros never open. A locked read gives 0, a
+// locked write is lost. A plain write to the flash does nothing.
+// Not modelled: OTP (reads as erased), code that runs from secured memory and may read it (nothing runs from memory
+// here), the emulation logic. Source: SPRU712 (CSM), SPRS230 (memory map).
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_MEMORY_HPP
+#define STILLSPIN_SIM_HOST_CHIP_MEMORY_HPP
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "sim_host/chip/flash_array.hpp"
+
+namespace stillspin::chip {
+
+class Memory {
+ public:
+  /// RAM keeps its contents, security is back.
+  void reset();
+
+  /// A word, when there is memory; what the CPU would get.
+  std::optional<std::uint16_t> read(std::uint32_t address);
+  /// False when there is no memory.
+  bool write(std::uint32_t address, std::uint16_t value);
+
+  std::uint16_t read_security(std::uint32_t address) const;
+  void write_security(std::uint32_t address, std::uint16_t value);
+  bool locked() const { return locked_; }
+
+  FlashArray& flash() { return flash_; }
+  /// A word of RAM as it is, for inspection; nothing where there is none.
+  std::optional<std::uint16_t> ram(std::uint32_t address) const;
+
+ private:
+  static constexpr std::uint32_t kRamWords = 0x800 + 0x4000;  // M0 and M1; L0, L1 and H0
+
+  void look_at_password(unsigned index);
+
+  FlashArray flash_;
+  std::array<std::uint16_t, kRamWords> ram_{};
+  std::array<std::uint16_t, kPasswordWords> keys_{};
+  unsigned passwords_read_ = 0;  // bit n: PSWDn since the last reset or lock
+  bool locked_ = true;
+};
+
+}  // namespace stillspin::chip
+
+#endif
