@@ -48,11 +48,13 @@ isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QE
 
 image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
 	@mkdir -p build
-	@C2000_CG_ROOT=$(CURDIR)/toolchain/standin cmake --preset f2808 -B build/image-check >build/image-check.log 2>&1 || \
+	@C2000_CG_ROOT=$(CURDIR)/toolchain/standin cmake --preset f2808 -B build/image-check \
+	-DF2808_FLASH_API=$(CURDIR)/toolchain/standin/Flash2808_API.lib >build/image-check.log 2>&1 || \
 	{ cat build/image-check.log; exit 1; }
 	@cmake --build build/image-check --parallel $(JOBS) >>build/image-check.log 2>&1 || \
 	{ grep -A 30 -m 1 FAILED build/image-check.log; exit 1; }
 	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
+	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run
 	@bash toolchain/setup.sh build verify

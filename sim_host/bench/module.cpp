@@ -244,5 +244,6 @@ NB_MODULE(_core, m) {
         "The plant alone under a given sequence of gate edges; see core.py.");
   bind_virtual_board(m);
   bind_step_loop(m);
+  bind_loader_board(m);
   bind_can_messages(m);
 }

@@ -25,6 +25,9 @@ void bind_step_loop(nanobind::module_& module);
 /// The taker of a tape that Python means: a StepLoop, or None for no tape.
 TapeSink tape_sink_of(const nanobind::object& loop);
 
+/// The class LoaderBoard.
+void bind_loader_board(nanobind::module_& module);
+
 /// The messages of the drive's CAN bus: table, packing and unpacking.
 void bind_can_messages(nanobind::module_& module);
 

@@ -37,7 +37,7 @@ def test_linker_command_files_keep_to_the_chip(house: Path) -> None:
 @pytest.mark.parametrize(
     ("right", "wrong", "blamed"),
     [
-        ("> ENTRY,     PAGE = 0", "> BOOT,      PAGE = 0", "codestart is not at 0x3F7FF6"),
+        ("> ENTRY,     PAGE = 0", "> BOOT,      PAGE = 0", "codestart is not at 0x3F7FF6, where it is looked for"),
         ("origin = 0x3F7FF6", "origin = 0x3F7FF8", "passwords"),
         ("length = 0x003F78 ", "length = 0x004000 ", "BOOT reaches into the passwords"),
         (".econst   : > APP, ", ".econst   : > PASSWORDS, ", ".econst is placed on PASSWORDS"),

@@ -12,10 +12,12 @@ from image.command_file import CommandFile, Range, read_command_file
 from checks import Finding
 from checks.f2808_tables import read
 
-FILES = ("toolchain/c28x/f2808_flash.cmd", "toolchain/c28x/f2808_ram.cmd")
+FLASH, RAM, KERNEL = (f"toolchain/c28x/f2808_{name}.cmd" for name in ("flash", "ram", "kernel"))
+FILES = (FLASH, RAM, KERNEL)
 UNTOUCHED = ("CSM_RESERVED", "PASSWORDS")
-CODE_ENTRY = {"toolchain/c28x/f2808_flash.cmd": 0x3F7FF6, "toolchain/c28x/f2808_ram.cmd": 0x000000}
-REQUIRED = ("codestart", "boot", "appentry", "identity", ".text", ".cinit", ".econst", "ramfuncs", ".stack", ".ebss")
+CODE_ENTRY = {FLASH: ("codestart", 0x3F7FF6), RAM: ("codestart", 0x000000), KERNEL: ("identity", 0x3FA000)}
+BOOT_CODE = ("codestart", "boot", "appentry")  # of the drive; the boot ROM jumps to the kernel's C start-up
+REQUIRED = (*BOOT_CODE, "identity", ".text", ".cinit", ".econst", "ramfuncs", ".stack", ".ebss")
 SYMBOLS = {
     "image_ram_code_load",
     "image_ram_code_run",
@@ -92,14 +94,16 @@ def _passwords(file: CommandFile) -> list[str]:
 def _entry(path: str, file: CommandFile) -> list[str]:
     complaints = []
     placed = {placement.section: placement for placement in file.placements}
-    complaints += [f"section {name} has no place" for name in REQUIRED if name not in placed]
-    complaints += [f"symbol {name} is not made" for name in sorted(SYMBOLS - file.symbols)]
+    required = [name for name in REQUIRED if path != KERNEL or name not in BOOT_CODE]
+    complaints += [f"section {name} has no place" for name in required if name not in placed]
+    complaints += [f"symbol {name} is not made" for name in sorted(SYMBOLS - file.symbols) if path != KERNEL]
     unknown = [p.section for p in file.placements if p.load not in file.ranges or p.run not in file.ranges]
     complaints += [f"{section} is placed on a range that does not exist" for section in unknown]
-    if unknown or any(name not in placed for name in REQUIRED):
+    if unknown or any(name not in placed for name in required):
         return complaints
-    if file.ranges[placed["codestart"].load].origin != CODE_ENTRY[path]:
-        complaints.append(f"codestart is not at 0x{CODE_ENTRY[path]:06X}, where the boot ROM jumps to")
+    section, origin = CODE_ENTRY[path]
+    if file.ranges[placed[section].load].origin != origin:
+        complaints.append(f"{section} is not at 0x{origin:06X}, where it is looked for")
     stack = file.ranges[placed[".stack"].run]
     if stack.end > _STACK_TOP or file.stack_words > stack.length:
         complaints.append("the stack does not fit its range or lies above what SP reaches")
@@ -130,5 +134,5 @@ def check_file(root: Path, path: str) -> list[Finding]:
 
 
 def check(root: Path) -> list[Finding]:
-    """Findings for both files."""
+    """Findings for all files."""
     return [finding for path in FILES for finding in check_file(root, path)]

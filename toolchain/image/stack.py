@@ -141,18 +141,25 @@ def _deepest(graph: Graph, name: str, way: tuple[str, ...], known: Ways, depth: 
     return known[name]
 
 
-def stack_depth(objects: list[ObjectFile]) -> Depth:
-    """Background and both interrupts on top of one another."""
+def stack_depth(objects: list[ObjectFile], levels: tuple[str, ...] = LEVELS) -> Depth:
+    """The drive's background and both interrupts on top of one another; or another program's levels.
+
+    Of another program no call through a pointer is known.
+    """
     depth, graph = Depth(), build_graph(objects)
-    for caller, (times, callee) in _add_indirect(graph, objects, depth).items():
+    is_drive = levels == LEVELS
+    nested = _add_indirect(graph, objects, depth) if is_drive else {}
+    for caller, (times, callee) in nested.items():
         graph.frames[caller] = graph.frames.get(caller, 0) + times * _deepest(graph, callee, (), {}, depth)[0]
     known: Ways = {}
-    for level in LEVELS:
+    for level in levels:
         if level not in graph.frames:
             depth.complaints.append(f"there is no function {level}")
             continue
         words, path = _deepest(graph, level, (), known, depth)
-        depth.total += words + (CONTEXT_WORDS if level != LEVELS[0] else 0)
+        depth.total += words + (CONTEXT_WORDS if level != levels[0] else 0)
         ways = " > ".join(f"{name} {graph.frames.get(name, 0)}" for name in path)
+        if not is_drive:
+            depth.complaints += [f"{name} calls through a pointer" for name in sorted(graph.by_pointer & set(known))]
         depth.lines.append(f"stack of {level}: {words} words: {ways}")
     return depth
