@@ -13,6 +13,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 import numpy.typing as npt
 
+from stillspin.core_loader import NativeLoader
 from stillspin.core_loop import NativeStepLoop, NativeStepLoops
 from stillspin.errors import InputError, did_you_mean
 
@@ -216,6 +217,12 @@ class NativeCore(Protocol):
         self, *, plant: Plant, parameters: dict[str, float], seed: int
     ) -> NativeBoard:
         """A board that has just been powered; `parameters` as of a drive that nobody has set up otherwise."""
+        ...
+
+    def LoaderBoard(  # noqa: N802 - a class of the module
+        self, *, entry: int, blocks: list[tuple[int, list[int]]]
+    ) -> NativeLoader:
+        """A board in flash boot with an erased flash; the kernel that it knows: entry point, blocks of words."""
         ...
 
     def parameters(self) -> list[dict[str, Any]]:

@@ -64,7 +64,7 @@ def serve(board: core.NativeBoard, options: Options, title: str) -> None:
     try:
         _say_how_to_connect(desk, title)
         pacer = Pacer(options.speed)
-        with _stopped_by_signals() as stop, Show(Console(stderr=True), desk, pacer, options.speed) as show:
+        with stopped_by_signals() as stop, Show(Console(stderr=True), desk, pacer, options.speed) as show:
             began = time.monotonic()
             _loop(desk, pacer, show, stop, options.end)
             wall = time.monotonic() - began
@@ -90,16 +90,16 @@ def _plug_in(board: core.NativeBoard, options: Options) -> Desk:
 
 
 @dataclass
-class _Stop:
+class Stop:
     """Set by a signal."""
 
     wanted: bool = False
 
 
 @contextmanager
-def _stopped_by_signals() -> Iterator[_Stop]:
+def stopped_by_signals() -> Iterator[Stop]:
     """SIGINT and SIGTERM ask for an orderly end."""
-    stop = _Stop()
+    stop = Stop()
 
     def ask(_number: int, _frame: FrameType | None) -> None:
         stop.wanted = True
@@ -112,7 +112,7 @@ def _stopped_by_signals() -> Iterator[_Stop]:
             signal.signal(number, handler)
 
 
-def _loop(desk: Desk, pacer: Pacer, show: Show, stop: _Stop, end: float | None) -> None:
+def _loop(desk: Desk, pacer: Pacer, show: Show, stop: Stop, end: float | None) -> None:
     while not stop.wanted and (end is None or desk.time < end):
         due = pacer.due(desk.time)
         if pacer.free and desk.board.in_loop:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from stillspin.commands import can_bus, console, hil, monitor, params, scope, tune
+from stillspin.commands import can_bus, console, flash, hil, loader, monitor, params, scope, tune
 
 
 def register(app: typer.Typer) -> None:
@@ -16,3 +16,5 @@ def register(app: typer.Typer) -> None:
     app.command(name="can")(can_bus.bus)
     app.command(name="tune")(tune.tune)
     app.command(name="hil")(hil.hil)
+    app.command(name="flash")(flash.flash)
+    app.command(name="loader")(loader.loader)

@@ -1,0 +1,128 @@
+"""`stillspin flash`: the firmware onto the chip, over the serial port."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from stillspin.errors import InputError
+from stillspin.flash import layout
+from stillspin.flash.files import DriveImage, drive_image, kernel_program
+from stillspin.flash.kernel import Info, Kernel
+from stillspin.flash.line import SerialLine
+from stillspin.flash.update import Outcome, Progress, update, verify, words_to_write
+from stillspin.link import address
+from stillspin.link.errors import DriveError
+from stillspin.one_line_errors import BROKEN
+from stillspin.progress import PhaseBar
+
+KERNEL_NAME = "stillspin_flash_kernel.out"
+"""Beside the image, unless --kernel says otherwise."""
+
+
+def flash(
+    *,
+    image_file: Annotated[
+        Path, typer.Argument(metavar="IMAGE", help="COFF (.out), Intel hex or hex2000's boot stream.")
+    ],
+    port: Annotated[
+        str, typer.Option("--port", metavar="PORT", help="The board's serial port, such as /dev/ttyUSB0.")
+    ] = "",
+    kernel_file: Annotated[
+        Path | None,
+        typer.Option("--kernel", metavar="FILE", help=f"The flash kernel [default: {KERNEL_NAME} beside IMAGE]."),
+    ] = None,
+    only_verify: Annotated[
+        bool, typer.Option("--verify", help="Compare and change nothing; 1 when they differ.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Check the files, say what would be done; no port.")
+    ] = False,
+) -> None:
+    """Load the flash kernel by the boot ROM, then erase, write and verify sectors B to D; sector A is never touched.
+
+    The board has to be in serial boot: jumpers set, then a reset. An update that broke off is repeated the same way.
+    Exit status: 0 when the board has the image, 1 when it has not, 2 for bad input.
+    """
+    image = drive_image(image_file)
+    print(f"image:  {image.identity.text}, {image.size} words in sectors B to D")
+    kernel = kernel_program(_kernel_path(image_file, kernel_file))
+    print(f"kernel: {kernel.size} words, {kernel.kind}")
+    if dry_run:
+        _tell_plan(image)
+        return
+    with SerialLine(_port(port)) as line:
+        with PhaseBar(Console(stderr=True)) as bar:
+            action = verify if only_verify else update
+            outcome = action(line, kernel, image, _shown(bar))
+        with suppress(DriveError):
+            Kernel(line).restart()
+    if outcome.before:
+        print(f"before: {_state(outcome.before)}")
+    if only_verify:
+        _tell_comparison(outcome)
+    else:
+        _tell_update(outcome)
+
+
+def _kernel_path(image_file: Path, kernel_file: Path | None) -> Path:
+    if kernel_file:
+        return kernel_file
+    beside = image_file.parent / KERNEL_NAME
+    if not beside.exists():
+        raise InputError(f"there is no flash kernel {beside}; --kernel FILE says where it is (docs/flash.md)")
+    return beside
+
+
+def _port(text: str) -> str:
+    if not text:
+        raise InputError("which port? --port /dev/ttyUSB0 says it")
+    parsed = address.parse(text)
+    if parsed.kind != "serial":
+        raise InputError(f"--port {text}: must be a serial port; the boot ROM's loader has no other way")
+    return parsed.channel
+
+
+def _shown(bar: PhaseBar) -> Progress:
+    def show(phase: str, share: float) -> None:
+        bar.show(share, phase)
+
+    return show
+
+
+def _state(info: Info) -> str:
+    chip = f"{layout.PART_NAME} revision {info.revision}"
+    if info.mark == layout.MARK and info.identity:
+        return f"{chip}, {info.identity.text}"
+    return f"{chip}, no complete image"
+
+
+def _tell_plan(image: DriveImage) -> None:
+    for sector in layout.SECTORS:
+        words = words_to_write(image, sector)
+        print(f"sector {sector.name}: erase, then {words} words")
+    boot = sum(len(block.words) for block in image.boot)
+    print(f"sector A: not written; {boot} words of boot code are compared with the board's")
+    print("dry run: nothing was sent")
+
+
+def _tell_comparison(outcome: Outcome) -> None:
+    if outcome.same:
+        print("the board has this image")
+        return
+    where = f"sectors {', '.join(outcome.erased)} differ" if outcome.erased else "only its mark is missing"
+    print(f"the board has not this image: {where}")
+    raise typer.Exit(BROKEN)
+
+
+def _tell_update(outcome: Outcome) -> None:
+    if outcome.same:
+        print("the board has this image already: nothing was erased or written")
+    else:
+        erased = f"sectors {', '.join(outcome.erased)} erased" if outcome.erased else "nothing erased"
+        print(f"{erased}, {outcome.written} words written and verified, image complete")
+    print("set the jumpers back (GPIO18, GPIO29, GPIO34 high: boot from flash) and reset the board")

@@ -1,0 +1,48 @@
+"""Executables of TI's COFF for the C28x (version 2, target 0x009D), as cl2000 links them: loadable sections alone.
+
+Source: TI's description of its COFF (SPRAAO8), from memory; sizes count words, values are little-endian.
+"""
+
+from __future__ import annotations
+
+import struct
+
+from stillspin.errors import InputError
+from stillspin.flash.program import Block, Program, assemble
+
+MAGIC = b"\xc2\x00"
+_TARGET = 0x009D
+_HEADER = struct.Struct("<HHIIIHHH")
+_OPTIONAL = struct.Struct("<HHIIIIII")
+_SECTION = struct.Struct("<8sIIIIIIIIIHH")
+_EXECUTABLE = 0x0002
+_NOT_LOADED = 0x0001 | 0x0002 | 0x0010 | 0x0080
+"""Dummy sections, those of another load, those that are only copied by a loader, and those without content."""
+
+
+def read(data: bytes, name: str) -> Program:
+    """Read a file.
+
+    Raises:
+        InputError: it is damaged, of another chip, or no executable.
+    """
+    try:
+        return _read(data, name)
+    except struct.error:
+        raise InputError(f"{name}: the COFF file breaks off; copy it again") from None
+
+
+def _read(data: bytes, name: str) -> Program:
+    _, count, _, _, _, optional, flags, target = _HEADER.unpack_from(data)
+    if target != _TARGET:
+        raise InputError(f"{name}: is a COFF file for another processor (0x{target:04X}), not for the C28x (0x009D)")
+    if not flags & _EXECUTABLE or not optional:
+        raise InputError(f"{name}: is a COFF object that has not been linked; give the .out file")
+    entry = _OPTIONAL.unpack_from(data, _HEADER.size)[5]
+    blocks = []
+    for index in range(count):
+        at = _HEADER.size + optional + index * _SECTION.size
+        _, load, _, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
+        if size and raw and not kind & _NOT_LOADED:
+            blocks.append(Block(load, struct.unpack_from(f"<{size}H", data, raw)))
+    return assemble(blocks, entry, "COFF", name)

@@ -1,0 +1,168 @@
+"""Image files and kernel files: reading any format that is known, and refusing what is not meant for this board."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from stillspin.errors import InputError
+from stillspin.flash import boot_stream, coff, intel_hex, layout
+from stillspin.flash.layout import contains
+from stillspin.flash.program import Block, Program
+
+_FORMATS = "an .out file of cl2000 (COFF), Intel hex or a boot stream of hex2000"
+_LARGEST = 8 << 20
+
+
+def read_program(path: Path) -> Program:
+    """Read a file in whatever format it is.
+
+    Raises:
+        InputError: it cannot be read, or is none of them.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    name = str(path)
+    if len(data) > _LARGEST:
+        raise InputError(f"{name}: {len(data)} octets are no program for this chip; give {_FORMATS}")
+    if data.startswith(b"\x7fELF"):
+        raise InputError(
+            f"{name}: is an ELF file; link with --abi=coffabi, as the preset f2808 does, or give Intel hex"
+        )
+    if data.startswith(coff.MAGIC):
+        return coff.read(data, name)
+    if boot_stream.is_binary(data):
+        return boot_stream.from_octets(data, name)
+    if boot_stream.is_text(data):
+        return boot_stream.from_text(data, name)
+    if data.lstrip()[:1] == b":":
+        return intel_hex.read(data, name)
+    raise InputError(f"{name}: is in no format that is known; give {_FORMATS}")
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What an image says of itself (hal/hal_image.h)."""
+
+    version: tuple[int, int, int]
+    revision: int
+    changed: bool
+    tables: int
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        version = ".".join(map(str, self.version))
+        commit = f"commit {self.revision:08x}" if self.revision else "unknown commit"
+        return f"{version} ({commit}{', changed' if self.changed else ''}, tables {self.tables:08x})"
+
+
+def identity_of(words: tuple[int, ...]) -> Identity | None:
+    """The identity in its ten words, whether or not the mark is there; None where there is none."""
+    _, form, major, minor, patch, low, high, changed, tables_low, tables_high = words
+    if form != layout.IDENTITY_FORMAT:
+        return None
+    return Identity((major, minor, patch), high << 16 | low, bool(changed), tables_high << 16 | tables_low)
+
+
+def crc_of(words: tuple[int, ...]) -> int:
+    """CRC-32 over words, low octet first, as the kernel makes it."""
+    return zlib.crc32(struct.pack(f"<{len(words)}H", *words))
+
+
+@dataclass(frozen=True)
+class DriveImage:
+    """A drive for sectors B to D, and the boot code it was linked with."""
+
+    words: tuple[int, ...]
+    """All of layout.UPDATE, with the mark; erased where the file has nothing."""
+    boot: tuple[Block, ...]
+    """What the file has for sector A: compared with the board, never written."""
+    identity: Identity
+    size: int
+    """Words that the file has for the update."""
+
+    def piece(self, words: range, *, sealed: bool = True) -> tuple[int, ...]:
+        """The words of an address range; the mark erased where not sealed."""
+        found = self.words[words.start - layout.UPDATE.start : words.stop - layout.UPDATE.start]
+        if not sealed and layout.IDENTITY in words:
+            at = layout.IDENTITY - words.start
+            found = (*found[:at], layout.ERASED, *found[at + 1 :])
+        return found
+
+
+def _place(block: Block, name: str) -> None:
+    """Refuse what does not lie in the flash, or on what nobody may write."""
+    count = len(block.words)
+    span = f"0x{block.address:06X} to 0x{block.end - 1:06X}"
+    if not contains(layout.FLASH, block.address, count):
+        raise InputError(
+            f"{name}: {span} is not in the flash of a {layout.PART_NAME} (0x3E8000 to 0x3F7FFF): "
+            "linked for RAM or another chip; use toolchain/c28x/f2808_flash.cmd"
+        )
+    for kept, what in ((layout.CSM_RESERVED, "the area reserved for code security"), (layout.PASSWORDS, "passwords")):
+        if block.address < kept.stop and block.end > kept.start:
+            raise InputError(
+                f"{name}: {span} reaches into the {what.removeprefix('the ')}: these words are never written"
+            )
+
+
+def _split(block: Block) -> tuple[Block | None, Block | None]:
+    """The parts of a block in the update's sectors and in sector A."""
+    cut = min(max(layout.SECTOR_A.start - block.address, 0), len(block.words))
+    below, above = block.words[:cut], block.words[cut:]
+    return (
+        Block(block.address, below) if below else None,
+        Block(block.address + cut, above) if above else None,
+    )
+
+
+def drive_image(path: Path) -> DriveImage:
+    """Read an image of the drive.
+
+    Raises:
+        InputError: it cannot be read, or is no image that this board may get.
+    """
+    program, name = read_program(path), str(path)
+    words = [layout.ERASED] * len(layout.UPDATE)
+    boot, size = [], 0
+    for block in program.blocks:
+        _place(block, name)
+        update, above = _split(block)
+        if update:
+            at = update.address - layout.UPDATE.start
+            words[at : at + len(update.words)] = update.words
+            size += len(update.words)
+        if above:
+            boot.append(above)
+    at = layout.IDENTITY - layout.UPDATE.start
+    identity = identity_of(tuple(words[at : at + layout.IDENTITY_WORDS]))
+    if words[at] != layout.MARK or identity is None:
+        raise InputError(
+            f"{name}: is no image of this drive: no mark and identity at 0x{layout.IDENTITY:06X} (hal/hal_image.h)"
+        )
+    return DriveImage(tuple(words), tuple(boot), identity, size)
+
+
+def kernel_program(path: Path) -> Program:
+    """Read the flash kernel, which the boot ROM loads.
+
+    Raises:
+        InputError: it cannot be read, or is no kernel that may be loaded.
+    """
+    program, name = read_program(path), str(path)
+    for block in program.blocks:
+        if not contains(layout.KERNEL_RAM, block.address, len(block.words)):
+            raise InputError(
+                f"{name}: 0x{block.address:06X} to 0x{block.end - 1:06X} is not in the kernel's RAM (H0); "
+                "link it with toolchain/c28x/f2808_kernel.cmd"
+            )
+    if program.word(layout.KERNEL_RAM.start) != layout.KERNEL_MARK:
+        raise InputError(f"{name}: is no flash kernel: there is no mark at 0x{layout.KERNEL_RAM.start:06X}")
+    if program.entry is None or program.word(program.entry) is None:
+        raise InputError(f"{name}: its entry point is not among what it loads")
+    return program

@@ -1,0 +1,48 @@
+"""Where things are on the F2808, in words: hal/hal_flash.h and hal/hal_image.h say the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+FLASH = range(0x3E8000, 0x3F8000)
+UPDATE = range(0x3E8000, 0x3F4000)
+"""Sectors D, C, B: what an update erases and writes."""
+SECTOR_A = range(0x3F4000, 0x3F8000)
+CSM_RESERVED = range(0x3F7F80, 0x3F7FF6)
+BOOT_ENTRY = 0x3F7FF6
+PASSWORDS = range(0x3F7FF8, 0x3F8000)
+SECTOR_WORDS = 0x4000
+ERASED = 0xFFFF
+
+IDENTITY = 0x3E8020
+IDENTITY_WORDS = 10
+MARK = 0x5AA5
+IDENTITY_FORMAT = 1
+
+PART = 0x003C
+PART_NAME = "TMS320F2808"
+
+KERNEL_RAM = range(0x3FA000, 0x3FC000)
+"""H0 by its high address: all that is loaded lies there, so that it can be read back and compared."""
+KERNEL_MARK = 0x464B
+
+
+@dataclass(frozen=True)
+class Sector:
+    """One of the sectors that an update writes; `number` is the kernel's."""
+
+    name: str
+    number: int
+    words: range
+
+
+SECTORS = (
+    Sector("D", 3, range(0x3E8000, 0x3EC000)),
+    Sector("C", 2, range(0x3EC000, 0x3F0000)),
+    Sector("B", 1, range(0x3F0000, 0x3F4000)),
+)
+
+
+def contains(outer: range, address: int, count: int) -> bool:
+    """Whether `count` words from `address` on lie in `outer`."""
+    return outer.start <= address and address + count <= outer.stop

@@ -1,0 +1,62 @@
+"""A program as words at addresses, whatever file it came from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from stillspin.errors import InputError
+
+
+@dataclass(frozen=True)
+class Block:
+    """Words in a row."""
+
+    address: int
+    words: tuple[int, ...]
+
+    @property
+    def end(self) -> int:
+        """The address behind the last word."""
+        return self.address + len(self.words)
+
+
+@dataclass(frozen=True)
+class Program:
+    """Blocks in order of their addresses, neighbours joined; none overlaps another."""
+
+    blocks: tuple[Block, ...]
+    entry: int | None = None
+    kind: str = field(default="", compare=False)
+    """The file's format, for people."""
+
+    @property
+    def size(self) -> int:
+        """Words in all."""
+        return sum(len(block.words) for block in self.blocks)
+
+    def word(self, address: int) -> int | None:
+        """The word at an address, if there is one."""
+        for block in self.blocks:
+            if block.address <= address < block.end:
+                return block.words[address - block.address]
+        return None
+
+
+def assemble(blocks: Iterable[Block], entry: int | None, kind: str, name: str) -> Program:
+    """A program of blocks as a file has them, in any order.
+
+    Raises:
+        InputError: two say something about one word, or there is none; `name` is the file's.
+    """
+    joined: list[Block] = []
+    for block in sorted((block for block in blocks if block.words), key=lambda block: block.address):
+        if joined and joined[-1].end > block.address:
+            raise InputError(f"{name}: says twice what word 0x{block.address:06X} is; the file is damaged")
+        if joined and joined[-1].end == block.address:
+            joined[-1] = Block(joined[-1].address, joined[-1].words + block.words)
+        else:
+            joined.append(block)
+    if not joined:
+        raise InputError(f"{name}: has nothing to load")
+    return Program(tuple(joined), entry, kind)

@@ -1,0 +1,187 @@
+"""The whole way of an image onto a chip: loader, kernel, comparison, erase, write, verify, mark.
+
+Whatever is wrong with files or board is found before the first sector is erased. After that the order makes the board
+safe: the kernel takes the mark away first and puts it back last, and the boot code runs nothing without it. An update
+that broke off is repeated as a whole; sectors that are already right are left alone.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from stillspin.flash import kernel as kernel_requests
+from stillspin.flash import layout, rom
+from stillspin.flash.files import DriveImage, crc_of
+from stillspin.flash.kernel import Info, Kernel
+from stillspin.flash.layout import Sector
+from stillspin.flash.line import Line, drop
+from stillspin.flash.program import Program
+from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
+
+_LETTERS = 10
+_START_WAIT = 0.1
+"""Seconds from the ROM's jump until the kernel hears: the PLL locks in 7 ms."""
+_PROBES = 3
+
+Progress = Callable[[str, float], None]
+"""What is being done, and how much of it, 0 to 1."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How an update or a comparison ended."""
+
+    same: bool
+    """The board had the image before anything was done."""
+    erased: tuple[str, ...] = ()
+    written: int = 0
+    before: Info | None = None
+
+
+def connect(line: Line, program: Program, progress: Progress) -> Kernel:
+    """A kernel that runs and is what the file says, loaded by the boot ROM if it is not there yet.
+
+    Raises:
+        DriveError: neither ROM nor kernel answers, or something on the way is wrong.
+    """
+    line.set_rate(rom.RATE)
+    progress("boot ROM", 0.0)
+    if rom.locks(line, _LETTERS):
+        rom.load(line, program, lambda done, total: progress("loading the kernel", done / total))
+        line.set_rate(kernel_requests.RATE)
+        drop(line, _START_WAIT)
+    else:
+        line.set_rate(kernel_requests.RATE)
+        drop(line)
+    kernel = Kernel(line)
+    _check_kernel(kernel, line, program)
+    return kernel
+
+
+def _check_kernel(kernel: Kernel, line: Line, program: Program) -> None:
+    try:
+        info = kernel.info(_PROBES)
+    except NoAnswerError:
+        raise NoAnswerError(
+            f"{line.name}: neither boot ROM nor flash kernel answers: set the jumpers to serial boot (GPIO18 and "
+            "GPIO29 high, GPIO34 low), reset the board and repeat; after an update that broke off it is needed, too"
+        ) from None
+    if info.protocol != kernel_requests.PROTOCOL:
+        raise LinkError(
+            f"{line.name}: the kernel speaks protocol {info.protocol}, this program {kernel_requests.PROTOCOL}: build "
+            "both from one commit"
+        )
+    for block in program.blocks:
+        if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
+            raise LinkError(
+                f"{line.name}: the kernel in RAM is not the one of the file: reset the board and repeat; the flash was "
+                "not touched"
+            )
+
+
+def check_board(kernel: Kernel, line: Line, image: DriveImage) -> Info:
+    """Refuse a board that may not get this image, before anything is erased.
+
+    Raises:
+        RefusedError: another chip, a locked one, or one whose boot code is missing or another one.
+    """
+    info = kernel.info()
+
+    def refuse(words: str) -> RefusedError:
+        return RefusedError(f"{line.name}: {words}; nothing was erased", kernel_requests.Status.STATE)
+
+    if info.part & 0xFF != layout.PART:
+        raise refuse(f"the chip is no {layout.PART_NAME} (part 0x{info.part & 0xFF:02X}, wanted 0x{layout.PART:02X})")
+    if info.locked:
+        raise refuse("the chip is locked by passwords: open it over JTAG")
+    if not info.has_boot_entry:
+        raise refuse("the board has no boot code in sector A: program it once over JTAG, see docs/flash.md")
+    for block in image.boot:
+        if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
+            raise refuse(
+                f"the image was linked with other boot code than the board has (0x{block.address:06X}), and sector A "
+                "is never written here: program it over JTAG"
+            )
+    return info
+
+
+def differing(kernel: Kernel, image: DriveImage, info: Info) -> list[Sector]:
+    """The sectors that have to be erased, so that all of them can be what they shall be."""
+    sealed = info.mark == layout.MARK
+    wrong = []
+    for sector in layout.SECTORS:
+        want = crc_of(image.piece(sector.words, sealed=sealed))
+        if kernel.crc(sector.words.start, len(sector.words)) != want:
+            wrong.append(sector)
+    first = layout.SECTORS[0]
+    if wrong and sealed and first not in wrong:
+        wrong.insert(0, first)  # its mark goes first, and comes back only on erased words
+    return wrong
+
+
+def pieces(image: DriveImage, sector: Sector) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """What is written into an erased sector: address and words, without what stays erased at their ends."""
+    words = image.piece(sector.words, sealed=False)
+    used = [index for index, word in enumerate(words) if word != layout.ERASED]
+    while used:
+        first, limit = used[0], used[0] + kernel_requests.WORDS_MAX
+        count = bisect_left(used, limit)
+        yield sector.words.start + first, words[first : used[count - 1] + 1]
+        used = used[count:]
+
+
+def words_to_write(image: DriveImage, sector: Sector) -> int:
+    """How many words of a sector are sent to it when it is erased."""
+    return sum(len(words) for _, words in pieces(image, sector))
+
+
+def verify(line: Line, program: Program, image: DriveImage, progress: Progress) -> Outcome:
+    """Compare, and change nothing.
+
+    Raises:
+        DriveError: the board cannot be asked.
+    """
+    kernel = connect(line, program, progress)
+    info = check_board(kernel, line, image)
+    progress("comparing", 0.0)
+    wrong = differing(kernel, image, info)
+    return Outcome(not wrong and info.mark == layout.MARK, tuple(s.name for s in wrong), before=info)
+
+
+def update(line: Line, program: Program, image: DriveImage, progress: Progress) -> Outcome:
+    """Bring an image onto the board, unless it is there already.
+
+    Raises:
+        DriveError: it is not there; the message says what state the board is in, and what to do.
+    """
+    kernel = connect(line, program, progress)
+    info = check_board(kernel, line, image)
+    progress("comparing", 0.0)
+    wrong = differing(kernel, image, info)
+    if not wrong and info.mark == layout.MARK:
+        return Outcome(True, before=info)
+    try:
+        written = _carry_out(kernel, image, wrong, progress)
+    except DriveError as error:
+        raise type(error)(*_with_state(error)) from error
+    return Outcome(False, tuple(sector.name for sector in wrong), written, info)
+
+
+def _carry_out(kernel: Kernel, image: DriveImage, wrong: list[Sector], progress: Progress) -> int:
+    for index, sector in enumerate(wrong):
+        progress(f"erasing sector {sector.name}", index / len(wrong))
+        kernel.erase(sector)
+    todo = [piece for sector in wrong for piece in pieces(image, sector)]
+    for index, (address, words) in enumerate(todo):
+        kernel.write(address, words)
+        progress("writing", (index + 1) / len(todo))
+    progress("verifying", 0.0)
+    kernel.seal(crc_of(image.words))
+    return sum(len(words) for _, words in todo)
+
+
+def _with_state(error: DriveError) -> tuple[object, ...]:
+    words = f"{error}; once a sector is erased the board runs no drive until an update is complete"
+    return (words, error.status) if isinstance(error, RefusedError) else (words,)

@@ -1,0 +1,103 @@
+"""`stillspin flash` as a user has it: a serial port (a pseudo-terminal), a virtual board behind it, files."""
+
+from __future__ import annotations
+
+import os
+import re
+import struct
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+
+import flash_files as make
+import pytest
+from desk import needs_board
+
+from stillspin import cli
+from stillspin.flash.program import Block
+
+pytestmark = needs_board
+
+_PATIENCE = 120
+_SPEED = "10"
+NEW = [*make.image_blocks(2, boot=()), Block(0x3E9000, tuple(range(300)))]
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Image files old and new, the kernel beside them."""
+    (tmp_path / "old.out").write_bytes(make.coff(make.image_blocks(1, boot=())))
+    (tmp_path / "new.hex").write_bytes(make.intel_hex(NEW))
+    (tmp_path / "kernel.txt").write_bytes(make.boot_ascii(make.kernel_blocks(400), make.KERNEL_ENTRY))
+    return tmp_path
+
+
+@contextmanager
+def virtual(files):
+    """A board in serial boot as a process; yields its port."""
+    link, log = files / "port", (files / "loader.log").open("w")
+    command = [sys.executable, "-m", "stillspin", "loader", str(files / "flash.bin")]
+    command += ["--kernel", str(files / "kernel.txt"), "--serial-link", str(link), "--speed", _SPEED]
+    process = subprocess.Popen(command, stdout=log, stderr=log, env=os.environ)
+    try:
+        end = time.monotonic() + _PATIENCE
+        while not link.exists():
+            assert process.poll() is None, (files / "loader.log").read_text()
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        yield str(link)
+    finally:
+        process.terminate()
+        process.wait(_PATIENCE)
+        log.close()
+
+
+@pytest.fixture
+def flash(capsys):
+    """`stillspin flash` with these arguments: exit status, what was said, complaint."""
+
+    def run(*arguments):
+        with pytest.raises(SystemExit) as ended:
+            cli.app(["flash", *map(str, arguments)])
+        said = capsys.readouterr()
+        return ended.value.code, said.out, said.err
+
+    return run
+
+
+def test_a_board_gets_an_image_another_one_and_is_compared(files, flash):
+    kernel = ["--kernel", files / "kernel.txt"]
+    with virtual(files) as port:
+        status, said, complaint = flash(files / "old.out", *kernel, "--port", port)
+        assert (status, complaint) == (0, "")
+        assert "before: TMS320F2808 revision 3, no complete image" in said
+        assert "image complete" in said
+        status, said, _ = flash(files / "new.hex", *kernel, "--port", port, "--verify")
+        assert status == 1
+        assert "the board has not this image: sectors D, C, B differ" in said
+        status, said, _ = flash(files / "new.hex", *kernel, "--port", f"serial://{port}")
+        assert status == 0
+        assert re.search(r"sectors D, C, B erased, \d+ words written and verified", said)
+        assert flash(files / "new.hex", *kernel, "--port", port, "--verify")[0] == 0
+    assert "the chip runs: drive" in (files / "loader.log").read_text()
+    words = struct.unpack("<65536H", (files / "flash.bin").read_bytes())
+    assert list(words[: make.UPDATE_END - make.START]) == make.cells(NEW)[: make.UPDATE_END - make.START]
+
+
+def test_nobody_at_the_port_is_one_line_with_a_remedy(files, flash):
+    master, slave = os.openpty()
+    try:
+        status, _, complaint = flash(files / "old.out", "--kernel", files / "kernel.txt", "--port", os.ttyname(slave))
+    finally:
+        os.close(master)
+        os.close(slave)
+    assert status == 1
+    assert "set the jumpers to serial boot" in complaint
+    assert complaint.count("\n") == 1
+
+
+def test_port_that_is_not_there_is_one_line(files, flash):
+    status, _, complaint = flash(files / "old.out", "--kernel", files / "kernel.txt", "--port", files / "ttyNothing")
+    assert status == 1
+    assert "there is no serial port" in complaint
