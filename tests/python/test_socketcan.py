@@ -15,11 +15,13 @@ import udp_can
 from desk import needs_board
 from typer.testing import CliRunner
 
-from stillspin import cli, core, execute, profile, scenario_file
+from stillspin import cli, core
+from stillspin.cases import profile, scenario_file
 from stillspin.drive import Drive
 from stillspin.drive.requester import Requester
 from stillspin.hil import Loop
 from stillspin.link import address
+from stillspin.runs import execute
 
 pytestmark = needs_board
 WHERE = "can:socketcan:can0?node=1"

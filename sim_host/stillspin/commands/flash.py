@@ -18,7 +18,7 @@ from stillspin.flash.update import Outcome, Progress, update, verify, words_to_w
 from stillspin.link import address
 from stillspin.link.errors import DriveError
 from stillspin.one_line_errors import BROKEN
-from stillspin.progress import PhaseBar
+from stillspin.report.progress import PhaseBar
 
 KERNEL_NAME = "stillspin_flash_kernel.out"
 """Beside the image, unless --kernel says otherwise."""
