@@ -3,7 +3,8 @@
 // PARAMETER(id, name, unit, q, decimals, minimum, maximum, default, access, meaning)
 //   id        stable for ever; a number is never used again
 //   q         fractional bits of the value in the firmware (int32_t)
-//   minimum, maximum, default: whole numbers in units of 10^-decimals, so that every compiler makes the same constant
+//   minimum, maximum, default: whole numbers in units of 10^-decimals, so that every compiler makes the same constant;
+//             those that the board decides are named, see hal/hal_board.h
 //   access    STOPPED: only while the power stage is off; ALWAYS: at any time
 // No include guard: it is included with different meanings of PARAMETER.
 
@@ -19,14 +20,16 @@ PARAMETER(8, current_limit, "A", 20, 2, 50, 10000, 1400, STOPPED, "largest phase
 PARAMETER(9, speed_limit, "rpm", 8, 0, 10, 6000, 3300, STOPPED, "largest speed reference")
 
 // Inverter
-PARAMETER(20, dead_time, "us", 16, 2, 0, 500, 200, STOPPED, "dead band of the gate signals")
-PARAMETER(21, turn_on_delay, "us", 16, 2, 0, 200, 30, STOPPED, "turn-on delay of driver and device")
-PARAMETER(22, turn_off_delay, "us", 16, 2, 0, 200, 60, STOPPED, "turn-off delay of driver and device")
+PARAMETER(20, dead_time, "us", 16, 2, BOARD_DEAD_TIME_LEAST, 500, BOARD_DEAD_TIME, STOPPED,
+          "dead band of the gate signals")
+PARAMETER(21, turn_on_delay, "us", 16, 2, 0, 200, BOARD_TURN_ON_DELAY, STOPPED, "turn-on delay of driver and device")
+PARAMETER(22, turn_off_delay, "us", 16, 2, 0, 200, BOARD_TURN_OFF_DELAY, STOPPED, "turn-off delay of driver and device")
 PARAMETER(23, device_drop, "V", 16, 3, 0, 5000, 950, STOPPED, "on-state drop of a device at small current")
 PARAMETER(24, device_resistance, "ohm", 24, 4, 0, 10000, 350, STOPPED, "on-state resistance of a device")
 PARAMETER(25, drop_band, "A", 20, 2, 1, 200, 20, ALWAYS, "current below which its sign is not trusted")
-PARAMETER(26, current_full_scale, "A", 20, 2, 100, 20000, 2000, STOPPED, "current at ADC code 4096 (zero is 2048)")
-PARAMETER(27, link_full_scale, "V", 16, 1, 100, 20000, 4500, STOPPED, "DC-link voltage at ADC code 4096")
+PARAMETER(26, current_full_scale, "A", 20, 2, 100, 20000, BOARD_CURRENT_RANGE, STOPPED,
+          "current at ADC code 4096 (zero is 2048)")
+PARAMETER(27, link_full_scale, "V", 16, 1, 100, 20000, BOARD_LINK_RANGE, STOPPED, "DC-link voltage at ADC code 4096")
 PARAMETER(28, link_minimum, "V", 16, 1, 100, 10000, 1500, STOPPED, "DC-link voltage below which the drive faults")
 PARAMETER(29, link_maximum, "V", 16, 1, 100, 15000, 4200, STOPPED, "DC-link voltage above which the drive faults")
 PARAMETER(30, trip_current, "A", 20, 2, 50, 19400, 1800, STOPPED, "software over-current limit on a sampled phase")

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/drive.h"
+#include "hal/hal_board.h"
 
 parameters_t parameters;
 

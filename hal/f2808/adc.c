@@ -4,6 +4,7 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_adc.h"
+#include "hal/hal_board.h"
 #include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 
@@ -45,9 +46,10 @@ TARGET_RAM_CODE void adc_rearm(void) { rearm(); }
 void hal_adc_set_up(void) {
   // Two sequencers, one run a trigger, no clock divider, shortest sample window: everything 0.
   target_write16(REG_ADCTRL1, 0u);
-  target_write16(REG_ADCCHSELSEQ1,
-                 REG_FIELD(ADCCHSELSEQ1_CONV00, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ1_CONV01, ADC_PAIR_0) |
-                     REG_FIELD(ADCCHSELSEQ1_CONV02, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ1_CONV03, ADC_PAIR_0));
+  target_write16(REG_ADCCHSELSEQ1, REG_FIELD(ADCCHSELSEQ1_CONV00, BOARD_ADC_CURRENTS) |
+                                       REG_FIELD(ADCCHSELSEQ1_CONV01, BOARD_ADC_CURRENTS) |
+                                       REG_FIELD(ADCCHSELSEQ1_CONV02, BOARD_ADC_CURRENTS) |
+                                       REG_FIELD(ADCCHSELSEQ1_CONV03, BOARD_ADC_CURRENTS));
   adc_sequence_windows();
 }
 
@@ -58,16 +60,17 @@ static void set_lengths(uint16_t pairs2) {
 
 void adc_sequence_windows(void) {
   set_lengths(PAIRS_IN_BURST);
-  target_write16(REG_ADCCHSELSEQ3,
-                 REG_FIELD(ADCCHSELSEQ3_CONV08, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV09, ADC_PAIR_0) |
-                     REG_FIELD(ADCCHSELSEQ3_CONV10, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV11, ADC_PAIR_1));
+  target_write16(REG_ADCCHSELSEQ3, REG_FIELD(ADCCHSELSEQ3_CONV08, BOARD_ADC_CURRENTS) |
+                                       REG_FIELD(ADCCHSELSEQ3_CONV09, BOARD_ADC_CURRENTS) |
+                                       REG_FIELD(ADCCHSELSEQ3_CONV10, BOARD_ADC_CURRENTS) |
+                                       REG_FIELD(ADCCHSELSEQ3_CONV11, BOARD_ADC_SLOW));
   adc_rearm();
 }
 
 void adc_sequence_slices(void) {
   set_lengths(PAIRS_IN_SLICE);
   target_write16(REG_ADCCHSELSEQ3,
-                 REG_FIELD(ADCCHSELSEQ3_CONV08, ADC_PAIR_0) | REG_FIELD(ADCCHSELSEQ3_CONV09, ADC_PAIR_1));
+                 REG_FIELD(ADCCHSELSEQ3_CONV08, BOARD_ADC_CURRENTS) | REG_FIELD(ADCCHSELSEQ3_CONV09, BOARD_ADC_SLOW));
   adc_rearm();
 }
 

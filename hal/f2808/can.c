@@ -2,11 +2,11 @@
 // up, transmits. Control registers see 32-bit accesses alone, and the handshake of configuration is polled from
 // hal_can_service, one look a call. Source: SPRUEU1 (eCAN); SPRZ171 (transmission stops; 16-bit accesses).
 
-#include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 #include "hal/hal_can.h"
 #include "hal/hal_time.h"
 #include "hal/qmath/qdiv.h"

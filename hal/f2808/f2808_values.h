@@ -33,8 +33,10 @@
 #define AQCSFRC_LOW 1u
 #define AQCSFRC_HIGH 2u
 #define DBCTL_OUT_MODE_BOTH 3u
+#define DBCTL_POLSEL_LOW_COMPLEMENTARY 1u
 #define DBCTL_POLSEL_HIGH_COMPLEMENTARY 2u
 #define DBCTL_IN_MODE_A 0u
+#define TZCTL_FORCE_HIGH 1u
 #define TZCTL_FORCE_LOW 2u
 #define ET_ZERO 1u
 #define ET_CMPA_UP 4u
@@ -49,8 +51,6 @@
 // ---- ADC -----------------------------------------------------------------------------------------------
 #define ADCTRL3_BANDGAP_ON 3u
 #define ADCTRL3_SMODE_SIMULTANEOUS 1u
-#define ADC_PAIR_0 0u  // ADCINA0 with ADCINB0
-#define ADC_PAIR_1 1u  // ADCINA1 with ADCINB1
 
 // ---- Encoder -------------------------------------------------------------------------------------------
 #define QDECCTL_QSRC_QUADRATURE 0u

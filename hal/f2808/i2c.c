@@ -2,11 +2,11 @@
 
 #include <stddef.h>
 
-#include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 #include "hal/hal_time.h"
 
 // Module clock 10 MHz; 13 clocks low and 12 high, 5 of each are the module's own.

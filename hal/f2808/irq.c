@@ -55,7 +55,8 @@ void hal_irq_install(hal_isr_t control, hal_isr_t window) {
 
 // How many period starts make an interrupt; writing it also forgets those that have been counted.
 static void count_period_starts(uint16_t events) {
-  target_write16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_ETPS, REG_FIELD(EPWM_ETPS_INTPRD, events));
+  target_write16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_ETPS,
+                 (uint16_t)(REG_FIELD(EPWM_ETPS_INTPRD, events) | PWM_MASTER_BURSTS));
 }
 
 void hal_irq_enable(void) {

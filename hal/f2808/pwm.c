@@ -1,14 +1,17 @@
 #include <stddef.h>
 
-#include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
 #include "hal/f2808/pie.h"
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_tape.h"
+
+#define POLARITY (BOARD_GATE_ON_LEVEL != 0u ? DBCTL_POLSEL_HIGH_COMPLEMENTARY : DBCTL_POLSEL_LOW_COMPLEMENTARY)
+#define TRIP_LEVEL (BOARD_GATE_ON_LEVEL != 0u ? TZCTL_FORCE_LOW : TZCTL_FORCE_HIGH)
 
 static void set_time_base_clock(uint16_t running) {
   target_eallow();
@@ -80,30 +83,36 @@ static void set_up_leg(uint16_t module, uint16_t dead_band_ticks) {
   target_write16(epwm + EPWM_AQCTLB, 0u);
   write_dead_band(epwm, dead_band_ticks);
   target_write16(epwm + EPWM_DBCTL, REG_FIELD(EPWM_DBCTL_OUT_MODE, DBCTL_OUT_MODE_BOTH) |
-                                        REG_FIELD(EPWM_DBCTL_POLSEL, DBCTL_POLSEL_HIGH_COMPLEMENTARY) |
+                                        REG_FIELD(EPWM_DBCTL_POLSEL, POLARITY) |
                                         REG_FIELD(EPWM_DBCTL_IN_MODE, DBCTL_IN_MODE_A));
 }
+
+// A window's first burst starts at compare A, its last one at compare B.
+#define BURST_EVENTS                                                               \
+  ((uint16_t)(REG_FIELD(EPWM_ETSEL_SOCASEL, ET_CMPA_UP) | EPWM_ETSEL_SOCAEN_MASK | \
+              REG_FIELD(EPWM_ETSEL_SOCBSEL, ET_CMPB_UP) | EPWM_ETSEL_SOCBEN_MASK))
 
 static void set_up_window(uint16_t module) {
   const uint32_t epwm = EPWM_BASE(module);
   target_write16(epwm + EPWM_ETPS,
                  REG_FIELD(EPWM_ETPS_SOCAPRD, ET_EVERY_EVENT) | REG_FIELD(EPWM_ETPS_SOCBPRD, ET_EVERY_EVENT));
-  target_write16(epwm + EPWM_ETSEL, REG_FIELD(EPWM_ETSEL_SOCASEL, ET_CMPA_UP) | EPWM_ETSEL_SOCAEN_MASK |
-                                        REG_FIELD(EPWM_ETSEL_SOCBSEL, ET_CMPB_UP) | EPWM_ETSEL_SOCBEN_MASK);
+  target_write16(epwm + EPWM_ETSEL, BURST_EVENTS);
 }
 
-// Only what the interrupt comes from; counting its events is switched on by hal_irq_enable.
+// Only what the interrupt comes from; counting its events is switched on by hal_irq_enable. Where the master starts a
+// window's bursts as well, what set_up_window has chosen stays.
 static void set_up_period_interrupt(void) {
   const uint32_t epwm = EPWM_BASE(PWM_MASTER_MODULE);
-  target_write16(epwm + EPWM_ETPS, REG_FIELD(EPWM_ETPS_INTPRD, ET_NO_EVENT));
-  target_write16(epwm + EPWM_ETSEL, REG_FIELD(EPWM_ETSEL_INTSEL, ET_ZERO) | EPWM_ETSEL_INTEN_MASK);
+  target_write16(epwm + EPWM_ETPS, (uint16_t)(REG_FIELD(EPWM_ETPS_INTPRD, ET_NO_EVENT) | PWM_MASTER_BURSTS));
+  target_write16(epwm + EPWM_ETSEL, (uint16_t)(REG_FIELD(EPWM_ETSEL_INTSEL, ET_ZERO) | EPWM_ETSEL_INTEN_MASK |
+                                               (PWM_MASTER_BURSTS != 0u ? BURST_EVENTS : 0u)));
 }
 
 static void set_trip_action(void) {
   target_eallow();
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
     target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_TZCTL,
-                   REG_FIELD(EPWM_TZCTL_TZA, TZCTL_FORCE_LOW) | REG_FIELD(EPWM_TZCTL_TZB, TZCTL_FORCE_LOW));
+                   REG_FIELD(EPWM_TZCTL_TZA, TRIP_LEVEL) | REG_FIELD(EPWM_TZCTL_TZB, TRIP_LEVEL));
   }
   target_edis();
 }

@@ -1,24 +1,26 @@
 #include <stddef.h>
 
-#include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 #include "hal/hal_safety.h"
 #include "hal/hal_tape.h"
 
+#define TRIP_BY_COMPARATOR ((uint16_t)(EPWM_TZSEL_OSHT1_MASK << (BOARD_TRIP_INPUT - 1u)))
+
 void hal_safety_init(void) {
   gpio_make_output(BOARD_PIN_GATE_ENABLE, false);
-  gpio_make_output(BOARD_PIN_FAULT_LAMP, false);
+  gpio_make_output(BOARD_PIN_FAULT_LAMP, BOARD_LAMP_ON_LEVEL == 0u);
   // Asynchronous: the trip must also work when the clock has stopped, and not wait for samples.
   gpio_give_to_peripheral(BOARD_PIN_OVER_CURRENT, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
   target_eallow();
   for (uint16_t module = PWM_FIRST_LEG_MODULE; module < PWM_FIRST_LEG_MODULE + HAL_PWM_LEGS; module++) {
-    target_write16(EPWM_BASE(module) + EPWM_TZSEL, EPWM_TZSEL_OSHT1_MASK);
+    target_write16(EPWM_BASE(module) + EPWM_TZSEL, TRIP_BY_COMPARATOR);
   }
-  target_write16(EPWM_BASE(PWM_TRIP_WITNESS_MODULE) + EPWM_TZSEL, EPWM_TZSEL_OSHT1_MASK);
+  target_write16(EPWM_BASE(PWM_TRIP_WITNESS_MODULE) + EPWM_TZSEL, TRIP_BY_COMPARATOR);
   target_edis();
 }
 
@@ -34,5 +36,5 @@ void hal_safety_fault_lamp(bool lit) {
   const uint16_t word = lit ? 1u : 0u;
   tape_tell(TAPE_LAMP, &word, 1u);
   tape_call();
-  gpio_write(BOARD_PIN_FAULT_LAMP, lit);
+  gpio_write(BOARD_PIN_FAULT_LAMP, lit == (BOARD_LAMP_ON_LEVEL != 0u));
 }

@@ -1,8 +1,8 @@
-#include "hal/f2808/board.h"
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/gpio.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 #include "hal/hal_sci.h"
 
 #define SCI SCI_BASE(1u)

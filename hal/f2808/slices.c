@@ -7,7 +7,7 @@
 #include "hal/hal_slices.h"
 #include "hal/hal_tape.h"
 
-#define CLOCK_MODULE PWM_FIRST_WINDOW_MODULE  // its time base counts the slices
+#define CLOCK_MODULE PWM_SLICE_MODULE  // its time base counts the slices
 #define SLICE_RESULTS 3u
 #define TRIGGER_TICK 10u  // of the slice
 

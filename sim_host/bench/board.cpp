@@ -4,15 +4,21 @@
 #include <chrono>
 
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 
 namespace stillspin::bench {
 namespace {
 
-// ADC channels of the board: 0..7 are ADCINA0..7, 8..15 are ADCINB0..7.
-constexpr int kChannelCurrentA = 0;
-constexpr int kChannelLink = 1;
-constexpr int kChannelCurrentB = 8;
-constexpr int kChannelAuxiliary = 9;
+// ADC channels: 0..7 are ADCINA0..7, 8..15 are ADCINB0..7.
+constexpr int kChannelsB = 8;
+constexpr int kChannelCurrentA = BOARD_ADC_CURRENTS;
+constexpr int kChannelLink = BOARD_ADC_SLOW;
+constexpr int kChannelCurrentB = kChannelsB + BOARD_ADC_CURRENTS;
+constexpr int kChannelAuxiliary = kChannelsB + BOARD_ADC_SLOW;
+
+constexpr double kComparatorShare = BOARD_COMPARATOR_PERCENT / 100.0;
+constexpr int kFirstLeg = BOARD_FIRST_LEG_MODULE - 1;  // counted from 0
+constexpr bool kOn = BOARD_GATE_ON_LEVEL != 0;
 
 constexpr std::uint64_t kTimedEvery = 64;
 
@@ -22,6 +28,9 @@ std::int64_t now_ns() {
 }
 
 }  // namespace
+
+const Tick kEnableTimeout = 100 * Tick{BOARD_ENABLE_TIME_US};
+const int kPinEnable = BOARD_PIN_GATE_ENABLE;
 
 // Books the time of a plant call, in the periods that are timed.
 class Board::PlantTimer {
@@ -45,7 +54,11 @@ void Board::time_periods() {
 }
 
 Board::Board(const plant::PlantConfig& config, PeriodListener& listener, devices::CanBus* can)
-    : comparator_amps_(kComparatorShare * config.adc.current_range), plant_(config), listener_(listener), can_(can) {}
+    : comparator_amps_(kComparatorShare * config.adc.current_range),
+      plant_(config),
+      listener_(listener),
+      can_(can),
+      last_toggle_(-kEnableTimeout) {}
 
 void Board::drive_leg(Tick t, int leg) {
   const PlantTimer timer(*this);
@@ -54,15 +67,19 @@ void Board::drive_leg(Tick t, int leg) {
 }
 
 void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {
-  if (module >= 3) return;
-  upper_[module] = a;
-  lower_[module] = b;
+  const int leg = module - kFirstLeg;
+  if (leg < 0 || leg > 2) return;
+  const bool upper = a == kOn, lower = b == kOn;
+  upper_[leg] = upper;
+  lower_[leg] = lower;
   const std::uint64_t edge =
-      static_cast<std::uint64_t>(t) << 4 | unsigned(module) << 2 | unsigned(a) << 1 | unsigned(b);
+      static_cast<std::uint64_t>(t) << 4 | unsigned(leg) << 2 | unsigned(upper) << 1 | unsigned(lower);
   gate_edges_ = (gate_edges_ ^ edge) * 0x100000001B3u;
-  probe_.edge(t, module, a, b);
-  drive_leg(t, module);
+  probe_.edge(t, leg, upper, lower);
+  drive_leg(t, leg);
 }
+
+bool Board::pwm_pins_pulled_up() const { return !kOn; }
 
 std::uint16_t Board::adc_sample(Tick t, int channel) {
   const PlantTimer timer(*this);
@@ -93,13 +110,13 @@ void Board::trip(Tick t) {
 
 bool Board::pin_level(Tick t, int pin) {
   switch (pin) {
-    case kPinOverCurrent:
+    case BOARD_PIN_OVER_CURRENT:
       return t >= tripped_until_;
-    case kPinSerialIn:
+    case BOARD_PIN_SERIAL_IN:
       return serial_.level(t);
-    case kPinSda:
+    case BOARD_PIN_SDA:
       return sda_ && (eeprom_ == nullptr || eeprom_->lets_sda_go());
-    case kPinScl:
+    case BOARD_PIN_SCL:
       return scl_;
     default:
       return true;

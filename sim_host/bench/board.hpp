@@ -1,11 +1,11 @@
 // The inverter board: what lies between the chip's pins and the plant.
 //
-// Legs a, b, c hang on ePWM1..3 (A the upper, B the lower gate). The gates pass only while the enable line (GPIO34) has
-// been toggled within the last 5 ms, so that a chip that hangs loses the power stage. A comparator pulls the
-// over-current input (GPIO12, TZ1, low active) when a true phase current has exceeded 95 % of the sensors' range, and
-// holds it for 10 us.
-// The serial port (GPIO28, 29) has a line with a far end; a CAN bus may hang on GPIO30 and 31. An EEPROM may be
-// fitted on the I2C lines (GPIO32 SDA, GPIO33 SCL), which are pulled up.
+// What is soldered where, and which level means what, is that of hal/hal_board.h, the file from which the firmware has
+// it, too. The gates pass only while the enable line has been toggled within the last milliseconds, so that a chip that
+// hangs loses the power stage. A comparator pulls the over-current input low when a true phase current has exceeded its
+// share of the sensors' range, and holds it for 10 us.
+// The serial port has a line with a far end; a CAN bus may hang on its two pins. An EEPROM may be fitted on the I2C
+// lines, which are pulled up.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_HPP
@@ -24,16 +24,11 @@ namespace stillspin::bench {
 
 using chip::Tick;
 
-inline constexpr double kComparatorShare = 0.95;  // of the current range: 19 A of 20 A
 inline constexpr Tick kComparatorHold = 1'000;
-inline constexpr Tick kEnableTimeout = 500'000;
 inline constexpr Tick kPeriod = 10'000;
 inline constexpr Tick kWatch = 2'500;
-inline constexpr int kPinOverCurrent = 12;
-inline constexpr int kPinSerialIn = 28;
-inline constexpr int kPinSda = 32;
-inline constexpr int kPinScl = 33;
-inline constexpr int kPinEnable = 34;
+extern const Tick kEnableTimeout;  // of the board's file
+extern const int kPinEnable;
 
 /// Told at the start of every PWM period, before the control interrupt runs.
 class PeriodListener {
@@ -75,6 +70,7 @@ class Board : public chip::World {
   double plant_share() const { return period_ns_ > 0 ? double(plant_ns_) / double(period_ns_) : 0.0; }
 
   void on_pwm_pins(Tick t, int module, bool a, bool b) override;
+  bool pwm_pins_pulled_up() const override;
   std::uint16_t adc_sample(Tick t, int channel) override;
   bool pin_level(Tick t, int pin) override;
   void on_output_pin(Tick t, int pin, bool level) override;
@@ -118,7 +114,7 @@ class Board : public chip::World {
   Tick next_period_ = 0;
   Tick interrupt_delay_ = 0;
   Tick release_ = 0;
-  Tick last_toggle_ = -kEnableTimeout;
+  Tick last_toggle_;
   Tick tripped_until_ = -1;
   std::uint64_t trips_ = 0;
   std::uint64_t gate_edges_ = 0xCBF29CE484222325u;

@@ -24,6 +24,9 @@ struct ParameterError {
 
 /// A plant with nominal parameters and how far the true ones are from them.
 struct Setup {
+  /// With the ranges of the board in use (board_description.cpp).
+  Setup();
+
   plant::PlantConfig nominal = plant::PlantConfig::ideal();
   ParameterError error;
   FaultPlan fault;

@@ -188,7 +188,7 @@ void Gpio::pwm_outputs(int module, bool a, bool b, Tick t) {
 void Gpio::drive_pwm(int module, Tick t) {
   const unsigned shift = 2 * static_cast<unsigned>(module);
   const unsigned pair = 3u << shift;
-  const unsigned levels = pwm_levels_ & pwm_routed_ & pair;
+  const unsigned levels = ((pwm_levels_ & pwm_routed_) | (pulled_up_ & ~pwm_routed_)) & pair;
   if (levels == (pwm_pins_ & pair)) return;
   pwm_pins_ = (pwm_pins_ & ~pair) | levels;
   world_.on_pwm_pins(t, module, (levels >> shift & 1u) != 0, (levels >> shift & 2u) != 0);

@@ -2,7 +2,7 @@
 //
 // A pin belongs to the function that its two mux bits name. As GPIO it is an input (the world's level) or an output
 // (the latch's). ePWM outputs reach the world only when routed to their pins; trip inputs and the encoder only count
-// when routed. A pin that nobody drives is low to the world, as the board's pull-down makes it; the two I2C lines,
+// when routed. An ePWM pin that nobody drives has the level to which the board pulls it; the two I2C lines,
 // which are pulled up and only pulled low by the chip, go to the world by a call of their own. Not modelled: input
 // qualification (a level is seen at once), pull-ups, XINT selection, wake-up selection (stored). Source: SPRU712
 // (GPIO); gpio mux table of the data manual SPRS230.
@@ -19,7 +19,8 @@ namespace stillspin::chip {
 
 class Gpio {
  public:
-  explicit Gpio(World& world) : world_(world) {}
+  explicit Gpio(World& world)
+      : world_(world), pulled_up_(world.pwm_pins_pulled_up() ? (1u << kPwmPins) - 1u : 0u), pwm_pins_(pulled_up_) {}
 
   void reset(Tick t);
   std::uint16_t read(std::uint16_t offset, Tick t);  // offset from kGpioFrame
@@ -65,6 +66,7 @@ class Gpio {
   void drive_pwm(int module, Tick t);
 
   World& world_;
+  const unsigned pulled_up_;                   // ePWM pins that the board pulls up while nobody drives them
   std::array<std::uint16_t, 0x20> control_{};  // GPACTRL .. GPBPUD
   std::array<std::uint16_t, 0x20> select_{};   // GPIOXINT1SEL .. GPIOLPMSEL
   std::array<std::uint16_t, 4> latch_{};       // pins 0-15, 16-31, 32-47, 48-63
@@ -72,7 +74,7 @@ class Gpio {
   std::uint64_t driven_ = 0;                   // levels of those, as the world knows them
   unsigned pwm_levels_ = 0;                    // ePWM outputs, bit 2m for A of module m, 2m+1 for B
   unsigned pwm_routed_ = 0;
-  unsigned pwm_pins_ = 0;                   // what the world knows
+  unsigned pwm_pins_;                       // what the world knows
   std::uint64_t trip_pins_ = 0;             // pins that are routed to a trip zone
   bool i2c_sda_ = true, i2c_scl_ = true;    // what the module does
   bool line_sda_ = true, line_scl_ = true;  // and the pins, as the world knows it

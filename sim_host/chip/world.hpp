@@ -29,9 +29,10 @@ class World {
  public:
   virtual ~World() = default;
 
-  /// The pins of ePWM1..6 changed: `module` 0..5; levels as seen at the pin. A pin that is not driven (trip zone with
-  /// high impedance, or not muxed to the ePWM) reads low, as the board's pull-down makes it.
+  /// The pins of ePWM1..6 changed: `module` 0..5; levels as seen at the pin. A pin that is not driven (not muxed to the
+  /// ePWM) has the level to which the board pulls it.
   virtual void on_pwm_pins(Tick t, int module, bool a, bool b) = 0;
+  virtual bool pwm_pins_pulled_up() const { return false; }
 
   /// The sample-and-hold of `channel` (0..7 = ADCINA0..7, 8..15 = ADCINB0..7) opens at t: the 12-bit code it will give.
   virtual std::uint16_t adc_sample(Tick t, int channel) = 0;

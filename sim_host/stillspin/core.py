@@ -6,8 +6,13 @@ The lists of plant entries and of firmware parameters come from the native modul
 from __future__ import annotations
 
 import importlib
+import importlib.util
+import os
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
 from typing import Any, Protocol, cast
 
 import numpy as np
@@ -257,13 +262,35 @@ class NativeCore(Protocol):
         ...
 
 
+BOARD = "STILLSPIN_BOARD"
+"""Environment variable: the board, a name of hal/boards/; unset or empty is the usual one."""
+
+
+def _on_board(board: str) -> ModuleType:
+    """The native module of another board than the usual one."""
+    folder = Path(__file__).parent / "boards"
+    known = sorted(path.parent.name for path in folder.glob("*/_core*.so"))
+    if board not in known:
+        raise InputError(f"{BOARD} '{board}': there is no such board; known: {', '.join(known) or 'none is built'}")
+    spec = importlib.util.spec_from_file_location("stillspin._core", next((folder / board).glob("_core*.so")))
+    if spec is None or spec.loader is None:
+        raise ImportError(f"the module of board {board} does not load")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    sys.modules["stillspin._core"] = module
+    return module
+
+
 def load() -> NativeCore:
     """The native module.
 
     Raises:
         InputError: it is not built, or does not load on this machine.
     """
+    board = os.environ.get(BOARD, "")
     try:
+        if board and "stillspin._core" not in sys.modules:
+            return cast(NativeCore, _on_board(board))
         return cast(NativeCore, importlib.import_module("stillspin._core"))
     except ImportError as error:
         raise InputError(

@@ -210,8 +210,9 @@ def test_every_dependency_is_explained() -> None:
 
 def register_house(tmp_path: Path) -> Path:
     """A tree with the register map and the tables that it is held against."""
-    for path in ("registers.h", "registers_can.h", "f2808_values.h", "board.h"):
-        plant(tmp_path, f"hal/f2808/{path}", (ROOT / "hal/f2808" / path).read_text(encoding="utf-8"))
+    maps = [f"hal/f2808/{name}" for name in ("registers.h", "registers_can.h", "f2808_values.h")]
+    for path in [*maps, "hal/boards/bench.h", "hal/boards/ipm.h"]:
+        plant(tmp_path, path, (ROOT / path).read_text(encoding="utf-8"))
     shutil.copytree(ROOT / "toolchain/f2808", tmp_path / "toolchain/f2808")
     return tmp_path
 
@@ -235,7 +236,10 @@ def register_house(tmp_path: Path) -> Path:
         ("f2808_values.h", "WDCR_WDCHK_KEY 5u", "WDCR_WDCHK_KEY 6u", "WDCR_WDCHK_KEY"),
         ("f2808_values.h", "TZCTL_FORCE_LOW 2u", "TZCTL_FORCE_LOW 1u", "TZCTL_FORCE_LOW"),
         ("f2808_values.h", "0x00FF0000uL", "0x0000FF00uL", "GPACTRL_QUALPRD2_MASK"),
-        ("board.h", "BOARD_PIN_OVER_CURRENT 12u", "BOARD_PIN_OVER_CURRENT 13u", "BOARD_PIN_OVER_CURRENT"),
+        ("../boards/bench.h", "BOARD_PIN_OVER_CURRENT 12u", "BOARD_PIN_OVER_CURRENT 14u", "BOARD_PIN_OVER_CURRENT"),
+        ("../boards/bench.h", "BOARD_TRIP_INPUT 1u", "BOARD_TRIP_INPUT 2u", "BOARD_PIN_OVER_CURRENT"),
+        ("../boards/ipm.h", "BOARD_FIRST_LEG_MODULE 4u", "BOARD_FIRST_LEG_MODULE 1u", "BOARD_PIN_FIRST_GATE"),
+        ("../boards/ipm.h", "BOARD_PIN_RELAY 0u", "BOARD_PIN_RELAY 8u", "BOARD_PIN_RELAY"),
     ],
 )
 def test_slip_in_the_register_map_is_caught(tmp_path: Path, file: str, right: str, wrong: str, blamed: str) -> None:

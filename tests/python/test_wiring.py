@@ -15,7 +15,8 @@ def source(path: str) -> str:
 
 
 def pins_of_the_firmware() -> dict[str, int]:
-    found = re.findall(r"#define (BOARD_PIN_\w+) (\d+)u", source("hal/f2808/board.h"))
+    """Those of the usual board."""
+    found = re.findall(r"#define (BOARD_PIN_\w+) (\d+)u", source("hal/boards/bench.h"))
     return {name: int(pin) for name, pin in found}
 
 
@@ -38,7 +39,7 @@ def test_every_pin_is_the_firmware_s() -> None:
 
 
 def test_the_gates_are_six_in_a_row() -> None:
-    assert f"#define BOARD_GATE_PINS {GATES}u" in source("hal/f2808/board.h")
+    assert f"#define BOARD_GATE_PINS {GATES}u" in source("hal/boards/bench.h")
     first = pins_of_the_firmware()["BOARD_PIN_FIRST_GATE"]
     assert f"| GPIO{first} … GPIO{first + GATES - 1} |" in GUIDE
 
@@ -52,18 +53,19 @@ def test_no_pin_has_two_wires() -> None:
 
 
 def test_what_is_measured_where() -> None:
-    """The board's model answers what the firmware's sequences ask; the guide names both halves of the two pairs."""
-    values = source("hal/f2808/f2808_values.h")
-    for pair in (0, 1):
-        assert re.search(rf"#define ADC_PAIR_{pair} {pair}u +// ADCINA{pair} with ADCINB{pair}", values)
-    channels = dict(re.findall(r"constexpr int kChannel(\w+) = (\d+);", source("sim_host/bench/board.cpp")))
-    names = {"CurrentA": "current of phase a", "CurrentB": "current of phase b", "Link": "DC link"}
-    for channel, words in names.items():
-        number = int(channels[channel])
-        row = re.search(rf"^\| ADCIN{'AB'[number // 8]}{number % 8} \| ([^|]*) \|", GUIDE, re.MULTILINE)
-        assert row
-        said = row[1]
-        assert said == words
+    """The guide names both halves of the pairs in the board's file."""
+    pairs = dict(re.findall(r"#define BOARD_ADC_(\w+) (\d)u", source("hal/boards/bench.h")))
+    names = {
+        "A" + pairs["CURRENTS"]: "current of phase a",
+        "B" + pairs["CURRENTS"]: "current of phase b",
+        "A" + pairs["SLOW"]: "DC link",
+        "B" + pairs["SLOW"]: "heat sink's temperature",
+        "A" + pairs["SPEED"]: "DC link once more",
+        "B" + pairs["SPEED"]: "speed command",
+        "A" + pairs["REFERENCE"]: "ground",
+        "B" + pairs["REFERENCE"]: "reference of 1.5 V",
+    }
+    assert dict(re.findall(r"^\| ADCIN(\w\d) \| ([^|]*) \|", GUIDE, re.MULTILINE)) == names
 
 
 @pytest.mark.parametrize(

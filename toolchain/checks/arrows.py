@@ -27,7 +27,7 @@ PARTS = (
 
 # What each part may include besides itself: a part, a single file, or a pattern with a trailing /*.
 _SEAM = ("hal/f2808/registers.h", "hal/f2808/target.h")
-_BENCH_HAL = ("hal/hal_tape.h", "hal/hal_flash.h", "hal/hal_image.h")
+_BENCH_HAL = ("hal/hal_tape.h", "hal/hal_board.h", "hal/hal_flash.h", "hal/hal_image.h")
 MAY_INCLUDE: dict[str, tuple[str, ...]] = {
     "hal/qmath": (),
     "control": ("hal/qmath",),

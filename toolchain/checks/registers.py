@@ -1,8 +1,8 @@
 """The register map against what is known of the chip: addresses, widths, fields, protection, vectors, values, pins.
 
 ``toolchain/f2808/*.csv`` is the chip as public descriptions have it; each row says what it is known from. Every macro
-of the map that drivers and virtual chip share (registers.h, f2808_values.h, board.h in hal/f2808) must be there and
-agree.
+of the map that drivers and virtual chip share (registers.h, f2808_values.h in hal/f2808) must be there and agree, and
+so must the pins of every board (hal/boards/).
 """
 
 import re
@@ -15,6 +15,7 @@ from checks.f2808_tables import Field, Register, read, read_fields, read_registe
 from checks.preprocessor import lines
 
 HAL = "hal/f2808"
+BOARDS = "hal/boards"
 MAPS = (f"{HAL}/registers.h", f"{HAL}/registers_can.h")
 
 # How registers.h names a table's block: prefix, what is cut off the device's own name, base macro of the offsets.
@@ -208,8 +209,9 @@ def check_values(root: Path) -> list[Finding]:
 
 # What the board's pins are connected to inside the chip, by GPIO_MUX_FIRST; the rest are plain pins.
 PIN_FUNCTIONS = {
-    "BOARD_PIN_FIRST_GATE": "EPWM1A",
-    "BOARD_PIN_OVER_CURRENT": "TZ1",
+    "BOARD_PIN_FIRST_GATE": "EPWM{BOARD_FIRST_LEG_MODULE}A",
+    "BOARD_PIN_OVER_CURRENT": "TZ{BOARD_TRIP_INPUT}",
+    "BOARD_PIN_EMERGENCY": "TZ{BOARD_EMERGENCY_TRIP}",
     "BOARD_PIN_ENCODER_A": "EQEP1A",
     "BOARD_PIN_ENCODER_B": "EQEP1B",
     "BOARD_PIN_ENCODER_INDEX": "EQEP1I",
@@ -223,15 +225,25 @@ PIN_FUNCTIONS = {
 
 
 def check_pins(root: Path) -> list[Finding]:
-    """Pins that a peripheral drives must have it as their first function."""
-    path = f"{HAL}/board.h"
+    """Pins that a peripheral drives must have it as their first function, and no pin has two wires."""
     functions = {int(row["pin"]): row["function"] for row in read(root, "pins") if row["mux"] == "1"}
     findings = []
-    for macro in macros(root, path):
-        wanted = PIN_FUNCTIONS.get(macro.name)
-        if wanted is not None and functions.get(macro.value()) != wanted:
-            message = f"{macro.name}: {wanted} is not the first function of GPIO{macro.value()}"
-            findings.append(Finding(path, macro.line, message))
+    for file in sorted((root / BOARDS).glob("*.h")):
+        path = file.relative_to(root).as_posix()
+        numbers = {m.name: m for m in macros(root, path) if re.fullmatch(r"\d+u", m.text)}
+        chosen = {name: m.value() for name, m in numbers.items()}
+        gates = range(chosen["BOARD_PIN_FIRST_GATE"] + 1, chosen["BOARD_PIN_FIRST_GATE"] + chosen["BOARD_GATE_PINS"])
+        wired = list(gates)
+        for name, macro in numbers.items():
+            if not name.startswith("BOARD_PIN_"):
+                continue
+            wanted = PIN_FUNCTIONS.get(name, "").format(**chosen)
+            if wanted and functions.get(macro.value()) != wanted:
+                message = f"{name}: {wanted} is not the first function of GPIO{macro.value()}"
+                findings.append(Finding(path, macro.line, message))
+            if macro.value() in wired:
+                findings.append(Finding(path, macro.line, f"{name}: GPIO{macro.value()} has another wire already"))
+            wired.append(macro.value())
     return findings
 
 
