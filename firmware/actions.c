@@ -4,6 +4,7 @@
 
 #include "firmware/drive.h"
 #include "firmware/hil/hil.h"
+#include "firmware/packed_text.h"
 #include "firmware/parameters.h"
 #include "firmware/store/store.h"
 #include "firmware/text.h"
@@ -11,22 +12,22 @@
 
 // Why the drive cannot begin anything now; OK when it can.
 static answer_status_t check_ready(octet_writer_t* why) {
-  const char* const conflict = parameter_conflict_known();
+  const packed_text_t conflict = parameter_conflict_known();
   switch (drive.state) {
     case DRIVE_READY:
-      if (conflict == NULL) return ANSWER_OK;
-      put_text(why, conflict);
+      if (conflict == PACKED_NONE) return ANSWER_OK;
+      put_packed(why, conflict);
       return ANSWER_CONFLICT;
     case DRIVE_FAULT:
-      put_text(why, "a fault is latched, reset it first: ");
+      put_packed(why, SAY_a_fault_is_latched_reset_it_first);
       put_words(why, WORDS_FAULT, (uint16_t)drive.fault);
       return ANSWER_STATE;
     case DRIVE_BOOT:
     case DRIVE_CALIBRATE:
-      put_text(why, "the drive is not ready yet: ");
+      put_packed(why, SAY_the_drive_is_not_ready_yet);
       break;
     default:
-      put_text(why, "the drive is busy, stop it first: ");
+      put_packed(why, SAY_the_drive_is_busy_stop_it_first);
       break;
   }
   put_words(why, WORDS_STATE, (uint16_t)drive.state);
@@ -55,7 +56,7 @@ void action_coast(void) { drive_command_coast(); }
 
 answer_status_t action_reset(octet_writer_t* why) {
   if (drive.state != DRIVE_FAULT) {
-    put_text(why, "no fault is latched");
+    put_packed(why, SAY_no_fault_is_latched);
     return ANSWER_STATE;
   }
   drive_command_reset();
@@ -69,9 +70,9 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
     return ANSWER_OK;
   }
   put_fixed(why, rpm_q16, 16, 1);
-  put_text(why, " rpm is beyond speed_limit, ");
+  put_packed(why, SAY_rpm_is_beyond_speed_limit);
   put_fixed(why, limit_q16, 16, 0);
-  put_text(why, " rpm: nothing changed");
+  put_packed(why, SAY_rpm_nothing_changed);
   return ANSWER_RANGE;
 }
 
@@ -87,25 +88,25 @@ static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octe
   put_text(why, p->name);
   put_text(why, " = ");
   put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
-  put_text(why, " is outside of ");
+  put_packed(why, SAY_is_outside_of);
   put_fixed(why, p->minimum, p->q, p->decimals);
   put_text(why, " .. ");
   put_value(why, p, p->maximum);
-  put_text(why, ": nothing changed");
+  put_packed(why, SAY_nothing_changed);
   return ANSWER_RANGE;
 }
 
 // The value is in the table already, `before` was.
 static answer_status_t check_conflict(const parameter_info_t* p, int32_t before, octet_writer_t* why) {
-  const char* const conflict = parameter_conflict();
-  if (conflict == NULL) return ANSWER_OK;
+  const packed_text_t conflict = parameter_conflict();
+  if (conflict == PACKED_NONE) return ANSWER_OK;
   if (drive_is_energised()) {
     (void)parameter_set(p->id, before);
-    put_text(why, "not taken while the drive runs: ");
+    put_packed(why, SAY_not_taken_while_the_drive_runs);
   } else {
-    put_text(why, "taken, but the drive does not start with it: ");
+    put_packed(why, SAY_taken_but_the_drive_does_not_start);
   }
-  put_text(why, conflict);
+  put_packed(why, conflict);
   return ANSWER_CONFLICT;
 }
 
@@ -118,7 +119,7 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
       return refuse_range(parameter, raw, why);
     case SET_RUNNING:
       put_text(why, parameter->name);
-      put_text(why, " may not change while the power stage is on: stop the drive first");
+      put_packed(why, SAY_may_not_change_while_the_power_stage);
       return ANSWER_RUNNING;
     default:
       return ANSWER_UNKNOWN;
@@ -128,14 +129,14 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
 // Why the store did not begin.
 static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
   if (hil_is_active()) {
-    put_text(why, "not with the host in the loop: these are the parameters of a simulation");
+    put_packed(why, SAY_not_with_the_host_in_the_loop);
     return ANSWER_STATE;
   }
   if (needs_rest && drive_is_energised()) {
-    put_text(why, "not while the power stage is on: stop the drive first");
+    put_packed(why, SAY_not_while_the_power_stage_is_on);
     return ANSWER_RUNNING;
   }
-  put_text(why, "the store is busy: ");
+  put_packed(why, SAY_the_store_is_busy);
   put_words(why, WORDS_STORE, (uint16_t)store_state());
   return ANSWER_BUSY;
 }

@@ -19,9 +19,9 @@ uint16_t drive_dead_band_ticks(void) {
 // configuration, so it may be read here without a lock; a start that is asked for meanwhile waits for the request to be
 // taken back.
 static void reload(void) {
-  const char* conflict;
-  const drive_config_t* const fresh = drive_config_made(&conflict);
-  const bool valid = conflict == NULL;
+  const drive_config_t* fresh;
+  const packed_text_t conflict = drive_config_or_conflict(&fresh);
+  const bool valid = conflict == PACKED_NONE;
   const uint16_t state = hal_irq_disable();
   hal_tape_work_begin(TAPE_RELOADED);
   drive.request.reload = false;

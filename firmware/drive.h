@@ -158,7 +158,7 @@ typedef struct {
   drive_config_t config;
   bool config_valid;
   bool conflict_known;   // of the parameters that the configuration was made of
-  const char* conflict;  // why they do not fit together, NULL when they do
+  packed_text_t conflict;  // why they do not fit together, or PACKED_NONE
   bool loading;          // the store is being read: BOOT goes on
   drive_samples_t samples;
   drive_position_t position;
@@ -172,13 +172,14 @@ typedef struct {
 
 extern drive_t drive;
 
-/// Rebuilds the configuration from the parameters; false, with the old one kept, when they do not fit together.
+/// Makes a configuration of the parameters, background level only; NULL when they do not fit together. What it points
+/// to is good until the next one is made.
+const drive_config_t* drive_config_make(void);
+/// The same to a place of one's own; false, with the old one kept, when they do not fit together.
 bool drive_config_load(drive_config_t* c);
-/// The same, if the parameters fit together: NULL, or why they do not, in a sentence (parameter_rules.c).
-const char* drive_config_or_conflict(drive_config_t* c);
-/// The configuration that the parameters make, until the next call; conflict: NULL, or why it cannot be used.
-/// Background level.
-const drive_config_t* drive_config_made(const char** conflict);
+/// Makes a configuration if the parameters fit together: PACKED_NONE, or why they do not, in a sentence
+/// (parameter_rules.c).
+packed_text_t drive_config_or_conflict(const drive_config_t** made);
 
 void drive_parameters_changed(void);
 

@@ -1,5 +1,6 @@
 // Commands, inspection and the drive's own memory.
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
 #include "firmware/parameters.h"
@@ -11,8 +12,7 @@
 drive_t drive;
 
 void drive_reset(void) {
-  static const drive_t empty = {0};
-  drive = empty;
+  clear(&drive, sizeof drive);
   sampling_reset();
   scope_reset();
   fault_history_reset();

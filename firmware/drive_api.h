@@ -72,12 +72,12 @@ typedef enum { SET_OK = 0, SET_UNKNOWN = 1, SET_RANGE = 2, SET_RUNNING = 3 } par
 
 typedef struct {
   uint16_t id;
+  uint16_t q : 6;
+  uint16_t decimals : 4;
+  uint16_t access : 2;  // parameter_access_t
   const char* name;
   const char* unit;
-  uint16_t q;
-  uint16_t decimals;
   int32_t minimum, maximum, initial;  // raw, with q fractional bits
-  parameter_access_t access;
   packed_text_t meaning;
 } parameter_info_t;
 
@@ -87,10 +87,10 @@ const parameter_info_t* parameter_info(uint16_t index);
 const parameter_info_t* parameter_by_id(uint16_t id);
 parameter_result_t parameter_set(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
-/// Why the present parameters cannot be used together, one sentence; NULL when they can.
-const char* parameter_conflict(void);
+/// Why the present parameters cannot be used together, one sentence; PACKED_NONE when they can.
+packed_text_t parameter_conflict(void);
 /// The same, without a calculation when the background level has made a configuration of them.
-const char* parameter_conflict_known(void);
+packed_text_t parameter_conflict_known(void);
 
 void drive_command_start(void);
 /// Speed to zero along the ramp, then gates off; a start procedure is broken off at once.

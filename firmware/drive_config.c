@@ -1,5 +1,8 @@
 // From the parameters, in the user's units, to the constants of every module.
 
+#include <stddef.h>
+
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/flux_source.h"
 #include "firmware/parameters.h"
@@ -165,11 +168,16 @@ static bool load_position(drive_config_t* c) {
   return load_blend(c) && flux_source_load(c);
 }
 
+const drive_config_t* drive_config_make(void) {
+  static drive_config_t made;  // too large for the stack; the background level alone makes configurations
+  clear(&made, sizeof made);
+  const bool fits = load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made);
+  return fits ? &made : NULL;
+}
+
 bool drive_config_load(drive_config_t* c) {
-  static const drive_config_t empty = {0};
-  drive_config_t fresh = empty;
-  if (!load_machine(&fresh) || !load_modulation(&fresh) || !load_control(&fresh) || !load_position(&fresh))
-    return false;
-  *c = fresh;
+  const drive_config_t* const made = drive_config_make();
+  if (made == NULL) return false;
+  *c = *made;
   return true;
 }

@@ -1,5 +1,6 @@
 #include "firmware/hysteresis.h"
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/isr_cycles.h"
 #include "firmware/parameters.h"
@@ -121,8 +122,7 @@ static void refer(drive_t* d) {
 
 static void begin(drive_t* d) {
   hysteresis_t* const h = &d->hysteresis;
-  static const hysteresis_t fresh = {0};
-  *h = fresh;
+  clear(h, sizeof *h);
   h->offset_a_q8 = d->trim.offset_a_q8;
   h->offset_b_q8 = d->trim.offset_b_q8;
   h->band_q20 = parameters.hysteresis_band;

@@ -39,8 +39,13 @@ typedef enum {
 #define HELP(command, number, text) TEXT_HELP_##command##_##number,
 #include "firmware/console/help_list.h"
 #undef HELP
+#define PHRASE(name, text) SAY_##name,
+#include "firmware/phrase_list.h"
+#undef PHRASE
   PACKED_TEXTS
 } packed_text_t;
+
+#define PACKED_NONE PACKED_TEXTS  // no text
 
 #define PACKED_DEPTH 8u  // pairs of pairs, at most so deep
 

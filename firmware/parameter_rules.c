@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/drive.h"
+#include "firmware/packed_text.h"
 #include "firmware/parameters.h"
 #include "hal/hal_pwm.h"
 
@@ -25,67 +26,51 @@ static bool map_is_crossed(const parameters_t* p) {
   return false;
 }
 
-const char* drive_config_or_conflict(drive_config_t* c) {
+packed_text_t drive_config_or_conflict(const drive_config_t** made) {
   const parameters_t* const p = &parameters;
-  if (p->inductance_q < p->inductance_d) return "inductance_q must be at least inductance_d";
-  if (p->blend_high <= p->blend_low) return "blend_high must be above blend_low";
-  if (p->flux_high <= p->flux_low) return "flux_high must be above flux_low";
-  if (p->window_maximum < p->window_minimum) return "window_maximum must be at least window_minimum";
-  if (p->link_maximum <= p->link_minimum) return "link_maximum must be above link_minimum";
+  if (p->inductance_q < p->inductance_d) return SAY_inductance_q_must_be_at_least_inductance;
+  if (p->blend_high <= p->blend_low) return SAY_blend_high_must_be_above_blend_low;
+  if (p->flux_high <= p->flux_low) return SAY_flux_high_must_be_above_flux_low;
+  if (p->window_maximum < p->window_minimum) return SAY_window_maximum_must_be_at_least_window;
+  if (p->link_maximum <= p->link_minimum) return SAY_link_maximum_must_be_above_link_minimum;
   if (p->link_regulation <= p->link_minimum || p->link_regulation > p->link_maximum - 65536L)
-    return "link_regulation must be above link_minimum, and 1 V or more below link_maximum";
-  if (p->dead_time + p->turn_on_delay < p->turn_off_delay)
-    return "turn_off_delay must not exceed dead_time + turn_on_delay";
-  if (p->dead_time + p->turn_on_delay > EDGE_SHIFT_MAX_Q16) return "dead_time + turn_on_delay must not exceed 2.4 us";
-  if (p->trip_current < p->current_limit) return "trip_current must be at least current_limit";
-  if (p->trip_current > p->current_full_scale / 100 * 97)
-    return "trip_current must be below 97 % of current_full_scale";
-  if (p->link_maximum > p->link_full_scale / 100 * 97) return "link_maximum must be below 97 % of link_full_scale";
+    return SAY_link_regulation_must_be_above_link_minimum;
+  if (p->dead_time + p->turn_on_delay < p->turn_off_delay) return SAY_turn_off_delay_must_not_exceed_dead;
+  if (p->dead_time + p->turn_on_delay > EDGE_SHIFT_MAX_Q16) return SAY_dead_time_turn_on_delay_must_not;
+  if (p->trip_current < p->current_limit) return SAY_trip_current_must_be_at_least_current;
+  if (p->trip_current > p->current_full_scale / 100 * 97) return SAY_trip_current_must_be_below_97_of;
+  if (p->link_maximum > p->link_full_scale / 100 * 97) return SAY_link_maximum_must_be_below_97_of;
   // A fault switches the gates off at any speed; the diodes then charge the link up to the EMF.
-  if (largest_emf_q16(p) > p->link_maximum)
-    return "speed_limit is too high: with the gates off the EMF would charge the link beyond link_maximum";
-  if (p->weakening_limit > p->current_limit) return "weakening_limit must not exceed current_limit";
-  if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16)
-    return "window_minimum must be settle_time + 4.5 us or more";
-  if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16)
-    return "0.65 pulse_time must be settle_time + 4.5 us or more";
+  if (largest_emf_q16(p) > p->link_maximum) return SAY_speed_limit_is_too_high_with_the;
+  if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
+  if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
+  if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
   if (p->position_source == POSITION_PAPER && q_abs_sat(p->id_low_speed) < 1048576L)
-    return "position_source 1 needs id_low_speed of 1 A or more";
+    return SAY_position_source_1_needs_id_low_speed;
   if ((p->excitation == 0 || p->excitation >= 4) &&
       (p->position_source == POSITION_OBSERVER_AVV || p->position_source == POSITION_AVV))
-    return "excitation 0, 4 and 5 have no two active vectors for AVV";
+    return SAY_excitation_0_4_and_5_have_no;
   if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
-    return "hold_time needs excitation 2, 3 or 5";
-  if (map_is_crossed(p)) return "lqq_1 .. lqq_4 of inductance_q must not be less than ldd_1 .. ldd_4 of inductance_d";
+    return SAY_hold_time_needs_excitation_2_3_or;
+  if (map_is_crossed(p)) return SAY_lqq_1_lqq_4_of_inductance_q;
   if (p->current_law == CURRENT_LAW_HYSTERESIS && p->position_source != POSITION_ENCODER)
-    return "current_law 1 needs position_source 0";
+    return SAY_current_law_1_needs_position_source_0;
   if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
-    return "100 us must be a whole number of slice_time";
-  if (p->flux_beside > 0 && p->position_source != POSITION_ENCODER) return "flux_beside needs position_source 0";
-  if (p->start_method == 1 && p->position_source == POSITION_ENCODER)
-    return "start_method 1 needs a position_source other than 0: the encoder has no zero yet";
-  if (p->start_method == 1 && p->if_current > p->current_limit)
-    return "if_current must not exceed current_limit with start_method 1";
-  if (p->current_bandwidth * (3 + p->current_divider) > 10400)
-    return "current_bandwidth must not exceed 2080 rad/s with current_divider 2";
-  return drive_config_load(c) ? NULL
-                              : "the machine's parameters are too extreme together: inertia, flux, inductances, map";
+    return SAY_100_us_must_be_a_whole_number;
+  if (p->flux_beside > 0 && p->position_source != POSITION_ENCODER) return SAY_flux_beside_needs_position_source_0;
+  if (p->start_method == 1 && p->position_source == POSITION_ENCODER) return SAY_start_method_1_needs_a_position_source;
+  if (p->start_method == 1 && p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
+  if (p->current_bandwidth * (3 + p->current_divider) > 10400) return SAY_current_bandwidth_must_not_exceed_2080_rad;
+  *made = drive_config_make();
+  return (*made != NULL) ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
 }
 
-const drive_config_t* drive_config_made(const char** conflict) {
-  static drive_config_t made;
-  made = drive.config;
-  *conflict = drive_config_or_conflict(&made);
-  return &made;
-}
-
-const char* parameter_conflict(void) {
-  const char* conflict;
-  (void)drive_config_made(&conflict);
-  return conflict;
+packed_text_t parameter_conflict(void) {
+  const drive_config_t* unused;
+  return drive_config_or_conflict(&unused);
 }
 
 // Whatever changes a parameter asks for a new configuration, which finds out.
-const char* parameter_conflict_known(void) {
+packed_text_t parameter_conflict_known(void) {
   return (drive.conflict_known && !drive.request.reload) ? drive.conflict : parameter_conflict();
 }

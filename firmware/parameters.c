@@ -20,14 +20,14 @@ parameters_t parameters;
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   {id,                                                                                     \
-   #name,                                                                                  \
-   unit,                                                                                   \
    q,                                                                                      \
    decimals,                                                                               \
+   PARAMETER_##access,                                                                     \
+   #name,                                                                                  \
+   unit,                                                                                   \
    RAW(minimum, q, TEN_##decimals),                                                        \
    RAW(maximum, q, TEN_##decimals),                                                        \
    RAW(initial, q, TEN_##decimals),                                                        \
-   PARAMETER_##access,                                                                     \
    TEXT_PARAMETER_##name},
 static const parameter_info_t table[] = {
 #include "firmware/parameter_list.h"
@@ -36,14 +36,12 @@ static const parameter_info_t table[] = {
 
 #define COUNT ((uint16_t)(sizeof table / sizeof table[0]))
 
-#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) &parameters.name,
-static int32_t* const values[] = {
-#include "firmware/parameter_list.h"
-};
-#undef PARAMETER
+// The values stand in the table's order: the struct is an array with names.
+typedef char values_are_an_array[(sizeof(parameters_t) == COUNT * sizeof(int32_t)) ? 1 : -1];
+static int32_t* value_of(uint16_t k) { return &((int32_t*)(void*)&parameters)[k]; }
 
 void parameters_reset(void) {
-  for (uint16_t k = 0; k < COUNT; k++) *values[k] = table[k].initial;
+  for (uint16_t k = 0; k < COUNT; k++) *value_of(k) = table[k].initial;
 }
 
 uint16_t parameter_count(void) { return COUNT; }
@@ -66,12 +64,12 @@ parameter_result_t parameter_set(uint16_t id, int32_t raw) {
     drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
     if (drive_is_energised()) return SET_RUNNING;
   }
-  *values[k] = raw;
+  *value_of(k) = raw;
   drive_parameters_changed();
   return SET_OK;
 }
 
 int32_t parameter_get(uint16_t id) {
   const uint16_t k = index_of(id);
-  return (k < COUNT) ? *values[k] : 0;
+  return (k < COUNT) ? *value_of(k) : 0;
 }

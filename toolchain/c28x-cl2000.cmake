@@ -29,8 +29,8 @@ set(CMAKE_AR "${C2000_BIN}/ar2000" CACHE FILEPATH "TI's archiver")
 # about fast branches in flash: they are neither made nor overlooked.
 set(C2000_FLAGS "-v28 -ml --float_support=softlib --abi=coffabi --no_fast_branch --flash_prefetch_warn")
 set(CMAKE_ASM_FLAGS_INIT "${C2000_FLAGS}")
-# -O2 --opt_for_speed=1: the flash is what is short. --relaxed_ansi: asm, __cregister, __interrupt.
+# -O2 --opt_for_speed=0: the flash is what is short; what an interrupt runs has 1 (stillspin_timed). --relaxed_ansi: asm, __cregister, __interrupt.
 set(CMAKE_C_FLAGS_INIT
-  "${C2000_FLAGS} --relaxed_ansi -O2 --opt_for_speed=1 --gen_func_subsections=on --display_error_number --emit_warnings_as_errors -I\"${C2000_TOOLS}/include\"")
+  "${C2000_FLAGS} --relaxed_ansi -O2 --opt_for_speed=0 --gen_func_subsections=on --display_error_number --emit_warnings_as_errors -I\"${C2000_TOOLS}/include\"")
 set(CMAKE_C_FLAGS_RELEASE_INIT "")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--rom_model --warn_sections --reread_libs -i\"${C2000_TOOLS}/lib\" -lrts2800_ml.lib")

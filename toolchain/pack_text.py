@@ -25,6 +25,7 @@ LISTS = (
     ("firmware/word_list.h", "WORDS", 2),
     ("firmware/console/command_list.h", "COMMAND", 2),
     ("firmware/console/help_list.h", "HELP", 2),
+    ("firmware/phrase_list.h", "PHRASE", 1),
 )
 PAIRS = 128
 FIRST_PAIR = 128

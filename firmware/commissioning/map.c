@@ -16,6 +16,7 @@
 // instants lie symmetrically. The angle is not corrected again before the current is gone, for its turn would be taken
 // for motion. Between trains the shaft is held for 40 ms.
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
@@ -132,8 +133,7 @@ static void add_pause(drive_t* d) {
 bool commissioning_map(drive_t* d) {
   map_t* const m = &d->commissioning.map;
   if (d->commissioning.tick == 0) {
-    static const map_t empty = {0};
-    *m = empty;
+    clear(m, sizeof *m);
     m->pause = true;
     d->commissioning.target_bam = d->position.used.angle_bam;
     tensor_reset(&d->commissioning.unsaturated);

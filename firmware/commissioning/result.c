@@ -169,19 +169,7 @@ static void judge_sensors(commissioning_report_t* r) {
   for (uint16_t k = 0; k < r->count; k++) r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
 }
 
-// Values that pass one by one may still not fit together; then none of them is used.
-static void write(commissioning_report_t* r) {
-  for (uint16_t k = 0; k < r->count; k++) {
-    if (r->list[k].verdict == VERDICT_USED) (void)parameter_set(r->list[k].id, r->list[k].value);
-  }
-  if (parameter_conflict() == NULL) return;
-  for (uint16_t k = 0; k < r->count; k++) {
-    (void)parameter_set(r->list[k].id, r->list[k].before);
-    r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
-  }
-}
-
-commissioning_outcome_t commissioning_conclude(const commissioning_t* c, commissioning_report_t* report) {
+void commissioning_judge(const commissioning_t* c, commissioning_report_t* report) {
   report->count = 0;
   const staircase_values_t stairs = staircase_solve(&c->staircase, &c->model);
   const map_values_t zero = unsaturated_solve(&c->unsaturated, &c->model);
@@ -191,6 +179,21 @@ commissioning_outcome_t commissioning_conclude(const commissioning_t* c, commiss
   judge_map(c, &zero, unsaturated, report);
   judge_spin(c, resistance, report);
   judge_sensors(report);
+}
+
+// Values that pass one by one may still not fit together; then none of them is used.
+static void write(commissioning_report_t* r) {
+  for (uint16_t k = 0; k < r->count; k++) {
+    if (r->list[k].verdict == VERDICT_USED) (void)parameter_set(r->list[k].id, r->list[k].value);
+  }
+  if (parameter_conflict() == PACKED_NONE) return;
+  for (uint16_t k = 0; k < r->count; k++) {
+    (void)parameter_set(r->list[k].id, r->list[k].before);
+    r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+  }
+}
+
+commissioning_outcome_t commissioning_use(commissioning_report_t* report) {
   write(report);
   for (uint16_t k = 0; k < report->count; k++) {
     if (report->list[k].verdict != VERDICT_USED) return COMMISSIONING_PARTLY;

@@ -12,9 +12,12 @@ typedef struct {
   uint16_t count;
 } commissioning_report_t;
 
-/// Evaluates the sums, writes the plausible values into the parameters (gates off, background level) and says what
-/// became of each.
-commissioning_outcome_t commissioning_conclude(const commissioning_t* c, commissioning_report_t* report);
+/// Evaluates the sums and says of each value whether it is believed.
+void commissioning_judge(const commissioning_t* c, commissioning_report_t* report);
+
+/// Writes what is believed into the parameters (gates off, background level) and says what became of each. By itself,
+/// because both need much of the stack.
+commissioning_outcome_t commissioning_use(commissioning_report_t* report);
 
 /// After the spin: what the torque trains of the map need for the shaft's motion. Keeps the model's own values where
 /// the spin's are not plausible.

@@ -99,7 +99,8 @@ static void serve(drive_t* d) {
     c->solve_motion = false;
   }
   if (!c->evaluate) return;
-  c->outcome = commissioning_conclude(c, &report);
+  commissioning_judge(c, &report);
+  c->outcome = commissioning_use(&report);
   drive_parameters_changed();  // also when nothing was written: settle_longer has to be undone
   c->evaluate = false;
 }

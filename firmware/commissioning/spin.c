@@ -4,6 +4,7 @@
 // free of what does not turn: drops, dead time, offsets. The ramps begin and end at steady speed, so that lags of the
 // estimators do not count: inertia is the momentum that went in, less friction, over the change of speed.
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 #include "firmware/position.h"
@@ -41,8 +42,7 @@ static void enter_leg(drive_t* d, uint16_t leg) {
 }
 
 static void begin(drive_t* d) {
-  static const spin_t empty = {0};
-  d->commissioning.spin = empty;
+  clear(&d->commissioning.spin, sizeof d->commissioning.spin);
   d->commissioning.turning = true;
   d->commissioning.adapting = true;
   drive_hand_over(d, d->position.used.angle_bam, 0);

@@ -15,6 +15,7 @@
 // the latter not beyond the field-weakening limit, for the magnets' sake. Resistance of winding and of devices cannot
 // be told apart this way: the devices' is kept as it was given.
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
@@ -82,8 +83,7 @@ bool commissioning_climb(drive_t* d) {
   commissioning_t* const c = &d->commissioning;
   staircase_t* const s = &c->staircase;
   if (c->tick == 0) {
-    static const staircase_t empty = {0};
-    *s = empty;
+    clear(s, sizeof *s);
   }
   commissioning_hold(d);
   const bool done = s->index >= STAIRCASE_LEVELS;

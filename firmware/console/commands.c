@@ -5,6 +5,7 @@
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
+#include "firmware/packed_text.h"
 #include "firmware/text.h"
 
 #define COMMAND(name, arguments, help) {#name, arguments, TEXT_COMMAND_##name, command_##name},
@@ -79,7 +80,7 @@ static void put_command(const command_t* c) {
 
 static bool list_commands(uint16_t step) {
   if (step < COMMANDS) put_command(&commands[step]);
-  if (step == COMMANDS) line_of("Ctrl-C ends a long answer; stop and coast always work. More: help <command>");
+  if (step == COMMANDS) line_of(SAY_ctrl_c_ends_a_long_answer_stop);
   return step < COMMANDS;
 }
 

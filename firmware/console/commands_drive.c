@@ -7,6 +7,7 @@
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/drive.h"
+#include "firmware/packed_text.h"
 #include "firmware/text.h"
 #include "firmware/words.h"
 
@@ -16,7 +17,7 @@ static uint32_t asked_ms;
 
 static bool no_arguments(const words_of_line_t* a) {
   if (a->count == 0u) return true;
-  line_of("this command stands alone: nothing done");
+  line_of(SAY_this_command_stands_alone_nothing_done);
   return false;
 }
 
@@ -26,14 +27,14 @@ static bool wait_for_run(uint16_t step) {
   if (drive.state == DRIVE_FAULT) return false;  // which the console tells unasked
   if (drive.state == DRIVE_RUN) {
     octet_writer_t* const w = line_begin();
-    put_text(w, "running after ");
+    put_packed(w, SAY_running_after);
     put_unsigned(w, waited);
-    put_text(w, " ms");
+    put_packed(w, SAY_ms);
     line_end();
     return false;
   }
   if (waited < START_PATIENCE_MS) return true;
-  line_of("not running yet: see 'status'");
+  line_of(SAY_not_running_yet_see_status);
   return false;
 }
 
@@ -53,20 +54,20 @@ void command_stop(const words_of_line_t* a) {
   (void)a;
   const bool on = drive_is_energised();
   action_stop();
-  line_of(on ? "stopping" : "the power stage is off");
+  line_of(on ? SAY_stopping : SAY_the_power_stage_is_off);
 }
 
 void command_coast(const words_of_line_t* a) {
   (void)a;
   action_coast();
-  line_of("power stage off");
+  line_of(SAY_power_stage_off);
 }
 
 static void show_reference(void) {
   octet_writer_t* const w = line_begin();
-  put_text(w, "ref ");
+  put_packed(w, SAY_ref);
   put_fixed(w, drive.control.wanted_rpm_q16, 16, 2);
-  put_text(w, " rpm");
+  put_packed(w, SAY_rpm);
   line_end();
 }
 
@@ -88,7 +89,7 @@ void command_ref(const words_of_line_t* a) {
   if (a->count == 0u) {
     show_reference();
   } else if (!read_speed(a, &rpm_q16)) {
-    line_of("ref takes a speed in rpm, for example: ref 600 rpm. Nothing changed");
+    line_of(SAY_ref_takes_a_speed_in_rpm_for);
   } else {
     octet_writer_t* const w = line_begin();
     if (action_speed(rpm_q16, w) == ANSWER_OK) {
@@ -102,14 +103,14 @@ void command_ref(const words_of_line_t* a) {
 void command_reset(const words_of_line_t* a) {
   if (!no_arguments(a)) return;
   octet_writer_t* const w = line_begin();
-  if (action_reset(w) == ANSWER_OK) put_text(w, "cleared; the current offsets are calibrated again");
+  if (action_reset(w) == ANSWER_OK) put_packed(w, SAY_cleared_the_current_offsets_are_calibrated_a);
   line_end();
 }
 
 static void show_commissioning(void) {
   const commissioning_outcome_t outcome = drive_commissioning_outcome();
   octet_writer_t* const w = line_begin();
-  put_text(w, "commissioning: ");
+  put_packed(w, SAY_commissioning);
   put_words(w, WORDS_COMMISSIONING, (uint16_t)outcome);
   if (outcome == COMMISSIONING_RUNNING) {
     put_text(w, ", ");
@@ -142,13 +143,12 @@ void command_commission(const words_of_line_t* a) {
     show_commissioning();
   } else if (word_is(a, 0, "start")) {
     octet_writer_t* const w = line_begin();
-    if (action_commission(GUARD_NONE, w) == ANSWER_OK)
-      put_text(w, "commissioning: the shaft will turn; 'stop' ends it");
+    if (action_commission(GUARD_NONE, w) == ANSWER_OK) put_packed(w, SAY_commissioning_the_shaft_will_turn_stop_ends);
     line_end();
   } else if (!word_is(a, 0, "results")) {
-    line_of("commission, commission start or commission results");
+    line_of(SAY_commission_commission_start_or_commission_re);
   } else if (drive_commissioning_count() == 0u) {
-    line_of("nothing has been measured since power-on");
+    line_of(SAY_nothing_has_been_measured_since_power_on);
   } else {
     console_run(list_results, false);
   }

@@ -10,6 +10,7 @@
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
 #include "firmware/link/link.h"
+#include "firmware/packed_text.h"
 #include "firmware/store/store.h"
 #include "firmware/text.h"
 #include "firmware/version.h"
@@ -27,14 +28,14 @@ static void put_limits(octet_writer_t* w, int32_t limits) {
     put_words(w, WORDS_LIMIT, bit);
     separator = ", ";
   }
-  if (separator[0] == '\0') put_text(w, "none");
+  if (separator[0] == '\0') put_packed(w, SAY_none);
 }
 
 static void put_speeds(octet_writer_t* w) {
   put_fixed(w, drive_signals().speed, 16, 1);
-  put_text(w, " rpm of ");
+  put_packed(w, SAY_rpm_of);
   put_fixed(w, drive.control.wanted_rpm_q16, 16, 1);
-  put_text(w, " rpm");
+  put_packed(w, SAY_rpm);
 }
 
 static void status_state(octet_writer_t* w) {
@@ -51,7 +52,7 @@ static void status_state(octet_writer_t* w) {
 static void status_current(octet_writer_t* w) {
   put_text(w, "d ");
   put_fixed(w, drive_signals().current_d, 20, 2);
-  put_text(w, " A, q ");
+  put_packed(w, SAY_a_q);
   put_fixed(w, drive_signals().current_q, 20, 2);
   put_text(w, " A");
 }
@@ -72,24 +73,24 @@ static void status_fault(octet_writer_t* w) {
 }
 
 static void status_parameters(octet_writer_t* w) {
-  const char* const conflict = parameter_conflict_known();
-  put_text(w, (conflict == NULL) ? "fit together" : conflict);
+  const packed_text_t conflict = parameter_conflict_known();
+  put_packed(w, (conflict == PACKED_NONE) ? SAY_fit_together : conflict);
 }
 
 static void status_store(octet_writer_t* w) {
   put_words(w, WORDS_STORE, (uint16_t)store_state());
-  put_text(w, "; saves so far ");
+  put_packed(w, SAY_saves_so_far);
   put_unsigned(w, store_report()->sequence);
 }
 
 static void status_port(octet_writer_t* w) {
   const link_errors_t e = link_errors();
   put_unsigned(w, (uint32_t)e.port.framing + e.port.overrun + e.port.breaks + e.port.lost);
-  put_text(w, " disturbances, ");
+  put_packed(w, SAY_disturbances);
   put_unsigned(w, (uint32_t)e.records.damaged + e.records.too_long + e.records.broken_off);
-  put_text(w, " damaged records, ");
+  put_packed(w, SAY_damaged_records);
   put_unsigned(w, e.events_dropped);
-  put_text(w, " events dropped");
+  put_packed(w, SAY_events_dropped);
 }
 
 static const struct {
@@ -157,7 +158,7 @@ static bool watch(uint16_t step) {
 void command_watch(const words_of_line_t* a) {
   watched_count = 0;
   if (a->count > WATCH_SIGNALS) {
-    line_of("watch shows at most four signals");
+    line_of(SAY_watch_shows_at_most_four_signals);
     return;
   }
   for (uint16_t k = 0; k < a->count; k++) {
@@ -177,17 +178,17 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   put_unsigned(w, f->time_ms / 100u % 10u);
   put_unsigned(w, f->time_ms / 10u % 10u);
   put_unsigned(w, f->time_ms % 10u);
-  put_text(w, " s  ");
+  put_packed(w, SAY_s);
   put_words(w, WORDS_FAULT, (uint16_t)f->fault);
   put_text(w, ", ");
   put_words(w, WORDS_STATE, (uint16_t)f->state);
-  put_text(w, " at ");
+  put_packed(w, SAY_at);
   put_fixed(w, f->speed_q16, 16, 1);
-  put_text(w, " rpm, link ");
+  put_packed(w, SAY_rpm_link);
   put_fixed(w, f->link_q16, 16, 1);
-  put_text(w, " V, d ");
+  put_packed(w, SAY_v_d);
   put_fixed(w, f->current_d_q20, 20, 2);
-  put_text(w, " A, q ");
+  put_packed(w, SAY_a_q);
   put_fixed(w, f->current_q_q20, 20, 2);
   put_text(w, " A");
 }
@@ -197,9 +198,9 @@ static bool list_faults(uint16_t step) {
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
     put_unsigned(w, fault_history_total());
-    put_text(w, " since power-on, which was ");
+    put_packed(w, SAY_since_power_on_which_was);
     put_unsigned(w, drive_time_ms() / 1000u);
-    put_text(w, " s ago; the newest first");
+    put_packed(w, SAY_s_ago_the_newest_first);
   } else if (fault_history_read((uint16_t)(step - 1u), &f)) {
     put_fault(w, &f);
   } else {
@@ -212,7 +213,7 @@ static bool list_faults(uint16_t step) {
 void command_faults(const words_of_line_t* a) {
   (void)a;
   if (fault_history_total() == 0u) {
-    line_of("no fault since power-on");
+    line_of(SAY_no_fault_since_power_on);
   } else {
     console_run(list_faults, false);
   }
@@ -241,7 +242,7 @@ void command_version(const words_of_line_t* a) {
   (void)a;
   octet_writer_t* const w = line_begin();
   put_text(w, FIRMWARE_NAME);
-  put_text(w, ", protocol ");
+  put_packed(w, SAY_protocol);
   put_unsigned(w, LINK_PROTOCOL);
   line_end();
 }

@@ -8,6 +8,7 @@
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"
+#include "firmware/packed_text.h"
 #include "firmware/text.h"
 
 #define COLUMN_VALUE 23u
@@ -65,11 +66,11 @@ static bool describe(uint16_t step) {
     put_fixed(w, p->minimum, p->q, p->decimals);
     put_text(w, " .. ");
     put_value(w, p, p->maximum);
-    put_text(w, ", default ");
+    put_packed(w, SAY_default);
     put_fixed(w, p->initial, p->q, p->decimals);
-    put_text(w, ", number ");
+    put_packed(w, SAY_number);
     put_unsigned(w, p->id);
-    if (p->access == PARAMETER_STOPPED) put_text(w, "; only while the power stage is off");
+    if (p->access == PARAMETER_STOPPED) put_packed(w, SAY_only_while_the_power_stage_is_off);
   } else {
     put_text(w, "  ");
     put_packed(w, p->meaning);
@@ -80,7 +81,7 @@ static bool describe(uint16_t step) {
 
 void command_get(const words_of_line_t* a) {
   if (a->count != 1u) {
-    line_of("get name: one parameter or signal; 'list' and 'signals' show their names");
+    line_of(SAY_get_name_one_parameter_or_signal_list);
     return;
   }
   described = find(&a->word[0]);
@@ -110,12 +111,12 @@ static void refuse_unit(const parameter_info_t* p) {
   octet_writer_t* const w = line_begin();
   put_text(w, p->name);
   if (p->unit[0] == '\0') {
-    put_text(w, " has no unit");
+    put_packed(w, SAY_has_no_unit);
   } else {
-    put_text(w, " is in ");
+    put_packed(w, SAY_is_in);
     put_text(w, p->unit);
   }
-  put_text(w, ": nothing changed");
+  put_packed(w, SAY_nothing_changed);
   line_end();
 }
 
@@ -133,7 +134,7 @@ static void change(const parameter_info_t* p, int32_t raw) {
 void command_set(const words_of_line_t* a) {
   decimal_t number;
   if (a->count < 2u || a->count > 3u) {
-    line_of("set name value [unit]: for example, set speed_ramp 300 rpm/s");
+    line_of(SAY_set_name_value_unit_for_example_set);
     return;
   }
   const parameter_info_t* const p = find(&a->word[0]);
@@ -143,7 +144,7 @@ void command_set(const words_of_line_t* a) {
   }
   const uint16_t length = text_number(a->word[1].text, a->word[1].count, &number);
   if (length == 0u) {
-    line_of("the value is not a number: nothing changed");
+    line_of(SAY_the_value_is_not_a_number_nothing);
   } else if (!unit_fits(a, length, p->unit)) {
     refuse_unit(p);
   } else {

@@ -7,6 +7,7 @@
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"
+#include "firmware/packed_text.h"
 #include "firmware/scope/scope.h"
 #include "firmware/text.h"
 #include "firmware/words.h"
@@ -47,18 +48,18 @@ static scope_setup_t draft(void) {
 
 static void apply(const scope_setup_t* s) {
   if (s->count == 0u) {
-    line_of("first: scope channels <signal> ..");
+    line_of(SAY_first_scope_channels_signal);
   } else if (scope_setup(s)) {
-    line_of("set; 'scope arm' begins");
+    line_of(SAY_set_scope_arm_begins);
   } else {
-    line_of("outside of its range: nothing changed; see 'help scope'");
+    line_of(SAY_outside_of_its_range_nothing_changed_see);
   }
 }
 
 static void set_channels(const words_of_line_t* a) {
   scope_setup_t s = draft();
   if (a->count < 2u || a->count > 1u + SCOPE_CHANNELS) {
-    line_of("scope channels takes one to four signals; 'signals' shows their names");
+    line_of(SAY_scope_channels_takes_one_to_four_signals);
     return;
   }
   s.count = (uint16_t)(a->count - 1u);
@@ -86,7 +87,7 @@ static void set_trigger(const words_of_line_t* a) {
   while (edge < EDGES && !word_is(a, 2, edges[edge])) edge++;
   const bool complete = a->count >= 4u && edge < EDGES && edge != SCOPE_AT_ONCE;
   if (!complete || text_number(a->word[3].text, a->word[3].count, &level) != a->word[3].count) {
-    line_of("scope trigger <signal> rising|falling|either|above|below <level>, or scope trigger now");
+    line_of(SAY_scope_trigger_signal_rising_falling_either_a);
     return;
   }
   s.trigger = signal_find(&a->word[1]);
@@ -95,7 +96,7 @@ static void set_trigger(const words_of_line_t* a) {
     return;
   }
   if (a->count > 5u || (a->count == 5u && !word_is(a, 4, signal_info(s.trigger)->unit))) {
-    line_of("the level is in the signal's unit: nothing changed");
+    line_of(SAY_the_level_is_in_the_signal_s);
     return;
   }
   s.edge = (scope_edge_t)edge;
@@ -115,7 +116,7 @@ static bool whole(const words_of_line_t* a, uint16_t* value) {
 static void set_number(const words_of_line_t* a, bool every) {
   scope_setup_t s = draft();
   if (!whole(a, every ? &s.decimation : &s.pretrigger)) {
-    line_of("a whole number is missing: nothing changed");
+    line_of(SAY_a_whole_number_is_missing_nothing_changed);
     return;
   }
   apply(&s);
@@ -124,7 +125,7 @@ static void set_number(const words_of_line_t* a, bool every) {
 static void set_mode(const words_of_line_t* a) {
   scope_setup_t s = draft();
   if (a->count != 2u || (!word_is(a, 1, "single") && !word_is(a, 1, "auto"))) {
-    line_of("scope mode single, or scope mode auto");
+    line_of(SAY_scope_mode_single_or_scope_mode_auto);
     return;
   }
   s.mode = word_is(a, 1, "auto") ? SCOPE_AUTO : SCOPE_SINGLE;
@@ -133,21 +134,21 @@ static void set_mode(const words_of_line_t* a) {
 
 static void put_state(octet_writer_t* w) {
   const scope_status_t status = scope_status();
-  put_text(w, "scope: ");
+  put_packed(w, SAY_scope);
   put_words(w, WORDS_SCOPE, (uint16_t)status.state);
   put_text(w, ", ");
   put_unsigned(w, status.recorded);
-  put_text(w, " records");
+  put_packed(w, SAY_records);
   if (status.trigger_at == SCOPE_NOWHERE) return;
-  put_text(w, ", trigger in record ");
+  put_packed(w, SAY_trigger_in_record);
   put_unsigned(w, status.trigger_at);
-  put_text(w, " at ");
+  put_packed(w, SAY_at);
   put_unsigned(w, status.trigger_time_ms);
-  put_text(w, " ms");
+  put_packed(w, SAY_ms);
 }
 
 static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
-  put_text(w, "trigger ");
+  put_packed(w, SAY_trigger);
   if (s->edge != SCOPE_AT_ONCE) {
     const signal_info_t* const signal = signal_info(s->trigger);
     put_text(w, signal->name);
@@ -158,17 +159,17 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     put_u8(w, ' ');
     put_text(w, signal->unit);
   } else {
-    put_text(w, "now");
+    put_packed(w, SAY_now);
   }
-  put_text(w, ", every ");
+  put_packed(w, SAY_every);
   put_unsigned(w, s->decimation);
-  put_text(w, ", before ");
+  put_packed(w, SAY_before);
   put_unsigned(w, s->pretrigger);
-  put_text(w, (s->mode == SCOPE_AUTO) ? ", mode auto" : ", mode single");
+  put_packed(w, (s->mode == SCOPE_AUTO) ? SAY_mode_auto : SAY_mode_single);
 }
 
 static void put_channels(octet_writer_t* w, const scope_setup_t* s) {
-  put_text(w, "channels");
+  put_packed(w, SAY_channels);
   for (uint16_t k = 0; k < s->count; k++) {
     put_u8(w, ' ');
     put_text(w, signal_info(s->channel[k].signal)->name);
@@ -220,11 +221,11 @@ static void begin_print(const words_of_line_t* a) {
   const scope_state_t state = scope_status().state;
   stride = 16;
   if (a->count > 1u && (!whole(a, &stride) || stride == 0u)) {
-    line_of("scope print <one record in so many>");
+    line_of(SAY_scope_print_one_record_in_so_many);
   } else if (state != SCOPE_DONE && state != SCOPE_IDLE) {
-    line_of("the scope still records: 'scope stop' ends it");
+    line_of(SAY_the_scope_still_records_scope_stop_ends);
   } else if (scope_status().recorded == 0u) {
-    line_of("nothing has been recorded");
+    line_of(SAY_nothing_has_been_recorded);
   } else {
     console_run(print, false);
   }
@@ -242,13 +243,13 @@ void command_scope(const words_of_line_t* a) {
   } else if (word_is(a, 0, "mode")) {
     set_mode(a);
   } else if (word_is(a, 0, "arm")) {
-    line_of(scope_arm() ? "armed" : "first: scope channels <signal> ..");
+    line_of(scope_arm() ? SAY_armed : SAY_first_scope_channels_signal);
   } else if (word_is(a, 0, "stop")) {
     scope_stop();
-    line_of("stopped");
+    line_of(SAY_stopped);
   } else if (word_is(a, 0, "print")) {
     begin_print(a);
   } else {
-    line_of("scope has no such part: see 'help scope'");
+    line_of(SAY_scope_has_no_such_part_see_help);
   }
 }

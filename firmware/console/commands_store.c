@@ -4,6 +4,7 @@
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
+#include "firmware/packed_text.h"
 #include "firmware/store/store.h"
 #include "firmware/text.h"
 #include "firmware/words.h"
@@ -14,7 +15,7 @@ static void put_report(octet_writer_t* w) {
   const parameter_info_t* const first = parameter_by_id(r->first_refused);
   put_text(w, "; ");
   put_unsigned(w, r->refused);
-  put_text(w, " outside of their range, now at their default");
+  put_packed(w, SAY_outside_of_their_range_now_at_their);
   if (first == 0) return;
   put_text(w, ": ");
   put_text(w, first->name);
@@ -52,6 +53,6 @@ void command_load(const words_of_line_t* a) {
 void command_defaults(const words_of_line_t* a) {
   (void)a;
   octet_writer_t* const w = line_begin();
-  if (action_defaults(w) == ANSWER_OK) put_text(w, "every parameter is at its default; 'save' keeps that");
+  if (action_defaults(w) == ANSWER_OK) put_packed(w, SAY_every_parameter_is_at_its_default_save);
   line_end();
 }

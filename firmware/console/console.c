@@ -8,6 +8,7 @@
 #include "firmware/console/output.h"
 #include "firmware/fault_history.h"
 #include "firmware/link/record.h"
+#include "firmware/packed_text.h"
 #include "firmware/words.h"
 #include "hal/hal_sci.h"
 
@@ -67,9 +68,9 @@ static void obey(void) {
   const bool damaged = editor.disturbed || port_errors() != errors_before;
   command = editor.line;
   if (editor.too_long) {
-    line_of("a line has at most 80 characters: nothing done");
+    line_of(SAY_a_line_has_at_most_80_characters);
   } else if (damaged && !command_makes_safe(&command)) {
-    line_of("the line was disturbed on its way: nothing done, send it again");
+    line_of(SAY_the_line_was_disturbed_on_its_way);
   } else {
     command_obey(&command);
   }
@@ -95,7 +96,7 @@ static void keep(uint16_t octet) {
 
 static void break_off(void) {
   kept_count = 0;
-  line_of("^C");
+  line_of(SAY_ctrl_c);
   end_job();
 }
 
@@ -120,7 +121,7 @@ static bool asks_to_stop(void) {
 static void stop_at_once(void) {
   job = NULL;
   kept_count = 0;
-  line_of("the answer and what was typed ahead end here");
+  line_of(SAY_the_answer_and_what_was_typed_ahead);
   command_obey(&command);
   prompt();
 }
@@ -142,7 +143,7 @@ void console_octet(uint16_t octet) {
     return;
   }
   if (job == NULL || console_takes()) return;
-  line_of("more input than can be kept: the answer ends here");
+  line_of(SAY_more_input_than_can_be_kept_the);
   end_job();
 }
 

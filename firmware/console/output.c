@@ -21,7 +21,7 @@ void line_end(void) {
   line_flush();
 }
 
-void line_of(const char* text) {
-  put_text(line_begin(), text);
+void line_of(packed_text_t text) {
+  put_packed(line_begin(), text);
   line_end();
 }

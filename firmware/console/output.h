@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "firmware/link/octets.h"
+#include "firmware/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -24,7 +24,7 @@ void line_end(void);
 void line_flush(void);
 
 /// A line of one text.
-void line_of(const char* text);
+void line_of(packed_text_t text);
 
 #if defined(__cplusplus)
 }

@@ -5,6 +5,7 @@
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/drive_api.h"
+#include "firmware/packed_text.h"
 #include "firmware/text.h"
 
 #define NAMES_A_STEP 4u
@@ -63,13 +64,17 @@ bool suggest_is_near(const char* name, const word_t* word) {
 
 static void say(void) {
   octet_writer_t* const w = line_begin();
-  put_text(w, "there is no ");
+  put_packed(w, SAY_there_is_no);
   put_text(w, kind_of);
   put_text(w, " '");
   for (uint16_t k = 0; k < wanted.count; k++) put_u8(w, wanted.text[k]);
   put_u8(w, '\'');
   for (uint16_t k = 0; k < found; k++) {
-    put_text(w, (k == 0u) ? ": did you mean " : ", ");
+    if (k == 0u) {
+      put_packed(w, SAY_did_you_mean);
+    } else {
+      put_text(w, ", ");
+    }
     put_text(w, near[k]);
   }
   if (found > 0u) put_u8(w, '?');

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/hil/delta.h"
 #include "firmware/link/crc.h"
@@ -25,8 +26,7 @@ typedef struct {
 static hil_t hil;
 
 void hil_reset(void) {
-  static const hil_t empty = {0};
-  hil = empty;
+  clear(&hil, sizeof hil);
   hal_tape_start(TAPE_OFF, NULL);
 }
 

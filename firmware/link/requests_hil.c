@@ -2,19 +2,20 @@
 
 #include "firmware/hil/hil.h"
 #include "firmware/link/request_handlers.h"
+#include "firmware/packed_text.h"
 
 static answer_status_t said(request_t* r, hil_result_t result) {
   switch (result) {
     case HIL_OK:
       return ANSWER_OK;
     case HIL_ENERGISED:
-      put_text(&r->answer, "the power stage is on: stop first");
+      put_packed(&r->answer, SAY_the_power_stage_is_on_stop_first);
       return ANSWER_RUNNING;
     case HIL_BUSY:
-      put_text(&r->answer, "parameters are being saved or read: try again");
+      put_packed(&r->answer, SAY_parameters_are_being_saved_or_read_try);
       return ANSWER_BUSY;
     case HIL_NOT_ACTIVE:
-      put_text(&r->answer, "the host is not in the loop: enter first");
+      put_packed(&r->answer, SAY_the_host_is_not_in_the_loop);
       return ANSWER_STATE;
     case HIL_SEQUENCE:
       put_u16(&r->answer, hil_expected());

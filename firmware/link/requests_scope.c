@@ -2,6 +2,7 @@
 
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/stream.h"
+#include "firmware/packed_text.h"
 #include "firmware/scope/scope.h"
 
 #define CHANNEL_OCTETS 3u
@@ -31,7 +32,7 @@ answer_status_t request_scope_setup(request_t* r) {
 
 answer_status_t request_scope_arm(request_t* r) {
   if (scope_arm()) return ANSWER_OK;
-  put_text(&r->answer, "the scope has no set-up yet");
+  put_packed(&r->answer, SAY_the_scope_has_no_set_up_yet);
   return ANSWER_STATE;
 }
 

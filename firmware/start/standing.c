@@ -1,5 +1,6 @@
 // The start: the sequence, and the start of a shaft that stands. See start.h.
 
+#include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 #include "firmware/position.h"
@@ -49,10 +50,8 @@ void drive_begin_start(drive_t* d) {
     drive_raise(d, FAULT_PARAMETER);
     return;
   }
-  static const drive_supervision_t healthy = {0};
-  static const drive_start_t fresh = {0};
-  d->supervision = healthy;
-  d->start = fresh;
+  clear(&d->supervision, sizeof d->supervision);
+  clear(&d->start, sizeof d->start);
   d->model = d->config.nameplate;
   inertia_match_reset(&d->inertia);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);

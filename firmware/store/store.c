@@ -85,7 +85,7 @@ static store_state_t take_over(void) {
   drive_parameters_changed();  // first: no start from here on until the background has taken the change
   if (drive_is_energised()) return STORE_FAILED;
   values_swap();
-  if (parameter_conflict() != NULL) {
+  if (parameter_conflict() != PACKED_NONE) {
     values_swap();
     return STORE_CONFLICT;
   }

@@ -5,6 +5,7 @@
 #include "firmware/drive_api.h"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"
+#include "sim_host/bench/texts.hpp"
 
 namespace stillspin::bench {
 namespace {
@@ -38,8 +39,8 @@ void check_parameters(const std::map<std::string, double>& parameters) {
     const std::int32_t raw = parameter_raw(name, value, id);
     (void)parameter_set(static_cast<std::uint16_t>(id), raw);
   }
-  const char* const conflict = parameter_conflict();
-  if (conflict != nullptr) throw std::invalid_argument(std::string("firmware parameters: ") + conflict);
+  const packed_text_t conflict = parameter_conflict();
+  if (conflict != PACKED_NONE) throw std::invalid_argument("firmware parameters: " + text_of(conflict));
 }
 
 }  // namespace stillspin::bench

@@ -196,13 +196,13 @@ TEST_F(DriveConfig, EncoderAngle) {
 TEST_F(DriveConfig, TheStatorFluxNeedsAMachineThatItCanBeGiven) {
   set("inductance_d", 1.5);
   set("inductance_q", 9.2);  // 6.1 times
-  EXPECT_EQ(parameter_conflict(), nullptr);
+  EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   set("position_source", 7.0);
-  EXPECT_NE(parameter_conflict(), nullptr);
+  EXPECT_NE(parameter_conflict(), PACKED_NONE);
   set("inductance_q", 7.8);
-  EXPECT_EQ(parameter_conflict(), nullptr);
+  EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   set("flux_low", 600.0);
-  EXPECT_NE(parameter_conflict(), nullptr);
+  EXPECT_NE(parameter_conflict(), PACKED_NONE);
 }
 
 // Hand-over by its own speeds, method by the source, saturation by the map.

@@ -106,13 +106,13 @@ TEST_F(Hysteresis, NoSlicesAreAFault) {
 }
 
 TEST_F(Hysteresis, NeedsTheEncoderAndWholeSlices) {
-  EXPECT_EQ(parameter_conflict(), nullptr);
+  EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   parameters.slice_time = raw(7.0, 16);
-  EXPECT_NE(parameter_conflict(), nullptr);
+  EXPECT_NE(parameter_conflict(), PACKED_NONE);
   parameters.slice_time = raw(10.0, 16);
-  EXPECT_EQ(parameter_conflict(), nullptr);
+  EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   parameters.position_source = 2;
-  EXPECT_NE(parameter_conflict(), nullptr);
+  EXPECT_NE(parameter_conflict(), PACKED_NONE);
 }
 
 }  // namespace

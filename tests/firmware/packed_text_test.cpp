@@ -30,11 +30,13 @@ struct Row {
 #define WORDS(kind, code, text) {TEXT_##kind##_##code, text},
 #define COMMAND(name, arguments, help) {TEXT_COMMAND_##name, help},
 #define HELP(command, number, text) {TEXT_HELP_##command##_##number, text},
+#define PHRASE(name, text) {SAY_##name, text},
 const Row kRows[] = {
 #include "firmware/console/command_list.h"
 #include "firmware/console/help_list.h"
 #include "firmware/fault_list.h"
 #include "firmware/parameter_list.h"
+#include "firmware/phrase_list.h"
 #include "firmware/signal_list.h"
 #include "firmware/word_list.h"
 };
@@ -44,6 +46,7 @@ const Row kRows[] = {
 #undef WORDS
 #undef COMMAND
 #undef HELP
+#undef PHRASE
 
 bool occurs(packed_text_t text, const std::string& part) {
   const std::vector<std::uint16_t> wanted(part.begin(), part.end());

@@ -193,7 +193,7 @@ TEST_F(Store, ValuesThatDoNotFitTogetherAreNotUsed) {
   put(0, image);
   EXPECT_EQ(power_on(), STORE_CONFLICT);
   EXPECT_EQ(in_force(), defaults());
-  EXPECT_EQ(parameter_conflict(), nullptr);
+  EXPECT_EQ(parameter_conflict(), PACKED_NONE);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST_F(Store, EveryParameterIsSaved) {
     const parameter_info_t* const info = parameter_info(k);
     parameters_reset();
     ASSERT_EQ(parameter_set(info->id, info->initial == info->minimum ? info->minimum + 1 : info->initial - 1), SET_OK);
-    if (parameter_conflict() != nullptr) continue;
+    if (parameter_conflict() != PACKED_NONE) continue;
     const Values saved = in_force();
     ASSERT_EQ(save(), STORE_SAVED);
     ASSERT_EQ(power_on(), STORE_LOADED) << info->name;

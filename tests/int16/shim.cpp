@@ -35,7 +35,7 @@ void int16_drive_command_commission(void);
 void int16_drive_command_speed(int32_t rpm_q16);
 short int16_parameter_set(uint16_t id, int32_t raw);
 int32_t int16_parameter_get(uint16_t id);
-const void* int16_parameter_conflict(void);
+short int16_parameter_conflict(void);
 short int16_drive_commissioning_outcome(void);
 short int16_drive_commissioning_phase(void);
 int32_t int16_drive_commissioning_progress(void);
@@ -45,7 +45,7 @@ void int16_commissioning_out(uint16_t index, int32_t* flat);
 
 void __real_drive_reset(void);
 parameter_result_t __real_parameter_set(uint16_t id, int32_t raw);
-const char* __real_parameter_conflict(void);
+packed_text_t __real_parameter_conflict(void);
 
 void __wrap_firmware_main(void) { int16_firmware_main(); }
 
@@ -82,14 +82,14 @@ parameter_result_t __wrap_parameter_set(uint16_t id, int32_t raw) {
 }
 int32_t __wrap_parameter_get(uint16_t id) { return int16_parameter_get(id); }
 
-// The sentence is the native one, so the native drive needs the parameters, too.
-const char* __wrap_parameter_conflict(void) {
+// The native drive has to come to the same, so it needs the parameters, too.
+packed_text_t __wrap_parameter_conflict(void) {
   for (uint16_t k = 0; k < parameter_count(); k++) {
     const parameter_info_t* const info = parameter_info(k);
     if (__real_parameter_set(info->id, int16_parameter_get(info->id)) != SET_OK) differ(info->name);
   }
-  const char* const native = __real_parameter_conflict();
-  if ((native == nullptr) != (int16_parameter_conflict() == nullptr)) differ("parameter_conflict");
+  const packed_text_t native = __real_parameter_conflict();
+  if (native != int16_parameter_conflict()) differ("parameter_conflict");
   return native;
 }
 

@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
 from checks import command_files  # noqa: E402
+from image import stack  # noqa: E402
 from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
@@ -40,7 +41,9 @@ def test_linker_command_files_keep_to_the_chip(house: Path) -> None:
         ("> ENTRY,     PAGE = 0", "> BOOT,      PAGE = 0", "codestart is not at 0x3F7FF6, where it is looked for"),
         ("origin = 0x3F7FF6", "origin = 0x3F7FF8", "passwords"),
         ("length = 0x003F78 ", "length = 0x004000 ", "BOOT reaches into the passwords"),
-        (".econst   : > APP, ", ".econst   : > PASSWORDS, ", ".econst is placed on PASSWORDS"),
+        (".econst   : >> APP | BOOT", ".econst   : > PASSWORDS", ".econst is placed on PASSWORDS"),
+        (".econst   : >> APP | BOOT", ".econst   : >> APP | PASSWORDS", ".econst is placed on PASSWORDS"),
+        (".text     : >> APP | BOOT", ".text     : >> APP | NOWHERE", "range that does not exist"),
         (".cinit    : > APP,       PAGE = 0", ".cinit    : > APP, fill = 0, PAGE = 0", "fill"),
         ("origin = 0x3FB000, length = 0x000FF8", "origin = 0x3FA800, length = 0x0017F8", "share memory"),
         ("length = 0x000FF8", "length = 0x001000", "last 8 words"),
@@ -110,6 +113,44 @@ def test_undefined_symbol_and_overflow_are_seen(tmp_path: Path) -> None:
     assert "nowhere" in pile.missing()
     _, complaints = place(pile.words(), read_command_file(ROOT / FLASH))
     assert complaints == ["RAM_DATA takes 14000 words and has 12288"]
+
+
+def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_boot_code() -> None:
+    file = read_command_file(ROOT / FLASH)
+    app, boot = file.ranges["APP"].length, file.ranges["BOOT"].length
+    fill, complaints = place({"boot": 100, "ramfuncs": 400, ".text": app - 600, ".econst": 1000}, file)
+    assert (fill["APP"], fill["BOOT"], complaints) == (app, 900, [])
+    _, complaints = place({"boot": 100, ".text": app, ".econst": boot}, file)
+    assert complaints == [f"BOOT takes {boot + 100} words and has {boot}"]
+
+
+def test_stack_of_modes_that_exclude_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    code = """
+#define KEEP __attribute__((noinline))
+void use(volatile int* p);
+KEEP void use(volatile int* p) { p[0]++; }
+KEEP static void large(void) { volatile int room[50]; use(room); }
+KEEP static void small(void) { volatile int room[5]; use(room); }
+int (*choice)(void);
+void control_isr(void);
+void window_isr(void);
+void control_isr(void) { large(); }
+void window_isr(void) { small(); }
+int main(void) { small(); large(); return 0; }
+"""
+    objects = [read_object(compiled(tmp_path, code))]
+    table = tmp_path / "calls.txt"
+    monkeypatch.setattr(stack, "TABLE", table)
+
+    def total(lines: str) -> int:
+        table.write_text(lines)
+        return stack_depth(objects).total
+
+    one, other = "[one]\nlarge is not called\n", "[other]\nsmall is not called\n"
+    assert total(one) + 90 <= total(other) < total("")
+    assert total(one + other) == total(other)
+    table.write_text("[one]\nnobody is not called\n")
+    assert "not understood: nobody is not called" in "; ".join(stack_depth(objects).complaints)
 
 
 def test_stack_sees_frames_recursion_and_pointers(tmp_path: Path) -> None:

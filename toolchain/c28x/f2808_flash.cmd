@@ -2,7 +2,8 @@
    `make lint` compares with this file.
 
    Sector A keeps the boot entry and the passwords and is programmed once, over JTAG; sectors B to D hold the drive and
-   are what an update erases. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which
+   are what an update erases. What of code and constants does not fit there goes behind the boot code: such an image is
+   whole, but no update can bring it. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which
    leaves the chip open. Passwords of all zeros would lock it for ever. */
 
 --stack_size=0x7F8
@@ -33,13 +34,13 @@ SECTIONS
   boot      : > BOOT,      PAGE = 0
   appentry  : > APP_ENTRY, PAGE = 0
   identity  : > IDENTITY,  PAGE = 0
-  .text     : > APP,       PAGE = 0
   .cinit    : > APP,       PAGE = 0
   .pinit    : > APP,       PAGE = 0
   .switch   : > APP,       PAGE = 0
-  .econst   : > APP,       PAGE = 0
   ramfuncs  : LOAD = APP, RUN = RAM_CODE, PAGE = 0,
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
+  .text     : >> APP | BOOT, PAGE = 0
+  .econst   : >> APP | BOOT, PAGE = 0
   .stack    : > STACK,     PAGE = 1
   .ebss     : > RAM_DATA,  PAGE = 1, RUN_START(_image_globals_start), SIZE(_image_globals_size)
   .esysmem  : > RAM_DATA,  PAGE = 1

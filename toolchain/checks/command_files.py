@@ -81,7 +81,7 @@ def _misplaced(file: CommandFile, blocks: list[tuple[str, Range]]) -> list[str]:
 
 
 def _passwords(file: CommandFile) -> list[str]:
-    complaints = [f"{p.section} is placed on {p.load}" for p in file.placements if p.load in UNTOUCHED]
+    complaints = [f"{p.section} is placed on {name}" for p in file.placements for name in p.ranges if name in UNTOUCHED]
     if "fill" in file.text:
         complaints.append("a fill may reach the passwords")
     kept = [piece for name, piece in file.ranges.items() if name in UNTOUCHED]
@@ -97,7 +97,7 @@ def _entry(path: str, file: CommandFile) -> list[str]:
     required = [name for name in REQUIRED if path != KERNEL or name not in BOOT_CODE]
     complaints += [f"section {name} has no place" for name in required if name not in placed]
     complaints += [f"symbol {name} is not made" for name in sorted(SYMBOLS - file.symbols) if path != KERNEL]
-    unknown = [p.section for p in file.placements if p.load not in file.ranges or p.run not in file.ranges]
+    unknown = [p.section for p in file.placements if not set(p.ranges) <= set(file.ranges)]
     complaints += [f"{section} is placed on a range that does not exist" for section in unknown]
     if unknown or any(name not in placed for name in required):
         return complaints
@@ -112,7 +112,7 @@ def _entry(path: str, file: CommandFile) -> list[str]:
 
 def _prefetch(file: CommandFile, blocks: list[tuple[str, Range]]) -> list[str]:
     ends = {block.end for block in _joined(blocks, {"ram", "flash"})}
-    code = {p.run for p in file.placements if p.section in (".text", "ramfuncs", "boot")}
+    code = {name for p in file.placements if p.section in (".text", "ramfuncs", "boot") for name in (p.run, p.spill)}
     return [
         f"{name} has code in the last {_PREFETCH} words of a block"
         for name in sorted(code & set(file.ranges))

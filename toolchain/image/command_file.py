@@ -1,4 +1,4 @@
-"""TI's linker command files, as far as those of this project go: MEMORY with ranges, SECTIONS with `> RANGE`."""
+"""TI's linker command files, as far as those here go: MEMORY with ranges, SECTIONS with `> RANGE`, `>> RANGE | RANGE`."""
 
 import re
 from dataclasses import dataclass
@@ -24,11 +24,17 @@ class Range:
 
 @dataclass(frozen=True)
 class Placement:
-    """Where a section is kept and, when that is another place, where it runs."""
+    """Where a section is kept, where it runs when that is another place, and where what does not fit goes."""
 
     section: str
     load: str
     run: str
+    spill: str = ""
+
+    @property
+    def ranges(self) -> tuple[str, ...]:
+        """All ranges that it may take words of."""
+        return tuple(dict.fromkeys(name for name in (self.load, self.run, self.spill) if name))
 
 
 @dataclass(frozen=True)
@@ -50,10 +56,11 @@ def read_command_file(path: Path) -> CommandFile:
     placements = []
     for match in _SECTION.finditer(sections):
         words = match[2]
-        load = re.search(r"(?:^>|LOAD\s*=)\s*(\w+)", words)
+        load = re.search(r"(?:^>>?|LOAD\s*=)\s*(\w+)", words)
+        spill = re.search(r"^>>\s*\w+\s*\|\s*(\w+)", words)
         run = re.search(r"RUN\s*=\s*(\w+)", words)
         if load:
-            placements.append(Placement(match[1], load[1], run[1] if run else load[1]))
+            placements.append(Placement(match[1], load[1], run[1] if run else load[1], spill[1] if spill else ""))
     stack = re.search(r"--stack_size=(\w+)", text)
     symbols = set(re.findall(r"(?:LOAD_START|RUN_START|SIZE)\(_(\w+)\)", sections))
     return CommandFile(ranges, placements, int(stack[1], 0) if stack else 0, symbols, text)

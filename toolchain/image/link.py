@@ -77,7 +77,11 @@ def place(words: dict[str, int], file: CommandFile) -> tuple[dict[str, int], lis
         size = words.get(placement.section, 0)
         if placement.section == ".stack":
             size = file.stack_words
-        fill[placement.load] += size
+        room = max(file.ranges[placement.load].length - fill[placement.load], 0)
+        here = min(size, room) if placement.spill else size
+        fill[placement.load] += here
+        if placement.spill:
+            fill[placement.spill] += size - here
         if placement.run != placement.load:
             fill[placement.run] += size
     for name, used in fill.items():
@@ -114,6 +118,7 @@ def figures_of(words: dict[str, int], pile: Pile, depth: Depth) -> dict[str, int
         "constants": words.get(".econst", 0) - words.get("strings", 0),
         "code": words.get(".text", 0),
         "flash": flash,
+        "update": flash,
         "stack": depth.total,
     }
 
@@ -144,6 +149,9 @@ def link(arguments: list[str]) -> int:
         "|---|---|---|",
     ]
     lines += [f"| {name} | {used} | {file.ranges[name].length} |" for name, used in fill.items()]
+    free = sum(file.ranges[name].length - fill[name] for name in ("APP", "BOOT") if name in fill)
+    code = words.get(".text", 0)
+    lines += ["", f"the chip is full when code takes {(code + free) / code:.2f} words for a half word of Thumb-2"]
     lines += ["", *(f"does not fit: {complaint}" for complaint in unfit), "", *depth.lines]
     output = Path(options["--output_file"])
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,7 +1,8 @@
 """How deep the stack gets, from the call graph of the Cortex-M3 objects and the compiler's frame sizes.
 
 Calls through pointers are not in the objects: toolchain/f2808/indirect_calls.txt says for every function that makes
-one what it may reach, and a function that is missing there, or a recursion, is a finding. The C28x differs: a call
+one what it may reach, and a function that is missing there, or a recursion, is a finding. Where the drive has modes
+that exclude each other, the table says what holds in which, and the deepest counts. The C28x differs: a call
 there takes two words, an interrupt saves what CONTEXT_WORDS says; frames are taken as half their bytes.
 """
 
@@ -16,6 +17,7 @@ TABLE = Path(__file__).resolve().parent.parent / "f2808" / "indirect_calls.txt"
 CALL_WORDS = 2
 CONTEXT_WORDS = 48  # 14 by the CPU, the rest is what __interrupt saves at most
 LEVELS = ("main", "control_isr", "window_isr")  # background, and each may be interrupted by the next
+_MODE = re.compile(r"\[(.+)\]")
 
 
 @dataclass
@@ -99,14 +101,35 @@ def _reached(graph: Graph, objects: list[ObjectFile], word: str) -> set[str]:
     return {name for name in graph.frames if re.fullmatch(word, name)}
 
 
-def _add_indirect(graph: Graph, objects: list[ObjectFile], depth: Depth) -> dict[str, tuple[int, str]]:
+def _modes() -> dict[str, list[str]]:
+    """The table's lines by the mode that they hold in; what stands before the first mode holds in all."""
+    always: list[str] = []
+    modes: dict[str, list[str]] = {}
+    lines = always
+    for line in TABLE.read_text(encoding="utf-8").splitlines():
+        content = line.partition("#")[0].strip()
+        if mode := _MODE.fullmatch(content):
+            lines = modes.setdefault(mode[1], list(always))
+        elif content:
+            lines.append(content)
+    return modes or {"": always}
+
+
+def _add_indirect(
+    graph: Graph, objects: list[ObjectFile], lines: list[str], depth: Depth
+) -> dict[str, tuple[int, str]]:
     """Completes the graph; returns the callers that may nest: how often, by which function."""
     known: set[str] = set()
     nested: dict[str, tuple[int, str]] = {}
-    for line in TABLE.read_text(encoding="utf-8").splitlines():
-        caller, arrow, callees = line.partition("#")[0].partition(" -> ")
+    for line in lines:
+        caller, arrow, callees = line.partition(" -> ")
         caller = caller.strip()
         if not arrow:
+            never = line.removesuffix(" is not called")
+            if never == line or never not in graph.frames:
+                depth.complaints.append(f"{TABLE.name}: not understood: {line}")
+            for below in graph.calls.values():
+                below.discard(never)
             continue
         known.add(caller)
         times = re.fullmatch(r"\s*(\d+) x (\w+)\s*", callees)
@@ -141,16 +164,17 @@ def _deepest(graph: Graph, name: str, way: tuple[str, ...], known: Ways, depth: 
     return known[name]
 
 
-def stack_depth(objects: list[ObjectFile], levels: tuple[str, ...] = LEVELS) -> Depth:
-    """The drive's background and both interrupts on top of one another; or another program's levels.
-
-    Of another program no call through a pointer is known.
-    """
+def _depth_in(mode: str, lines: list[str], objects: list[ObjectFile]) -> Depth:
+    """Background and both interrupts on top of one another, in one mode of the drive."""
     depth, graph = Depth(), build_graph(objects)
-    is_drive = levels == LEVELS
-    nested = _add_indirect(graph, objects, depth) if is_drive else {}
-    for caller, (times, callee) in nested.items():
+    for caller, (times, callee) in _add_indirect(graph, objects, lines, depth).items():
         graph.frames[caller] = graph.frames.get(caller, 0) + times * _deepest(graph, callee, (), {}, depth)[0]
+    _add_levels(graph, LEVELS, f", {mode}" if mode else "", depth)
+    return depth
+
+
+def _add_levels(graph: Graph, levels: tuple[str, ...], where: str, depth: Depth) -> set[str]:
+    """The levels' depths on top of one another; all functions that are reached."""
     known: Ways = {}
     for level in levels:
         if level not in graph.frames:
@@ -159,7 +183,21 @@ def stack_depth(objects: list[ObjectFile], levels: tuple[str, ...] = LEVELS) -> 
         words, path = _deepest(graph, level, (), known, depth)
         depth.total += words + (CONTEXT_WORDS if level != levels[0] else 0)
         ways = " > ".join(f"{name} {graph.frames.get(name, 0)}" for name in path)
-        if not is_drive:
-            depth.complaints += [f"{name} calls through a pointer" for name in sorted(graph.by_pointer & set(known))]
-        depth.lines.append(f"stack of {level}: {words} words: {ways}")
-    return depth
+        depth.lines.append(f"stack of {level}{where}: {words} words: {ways}")
+    return set(known)
+
+
+def stack_depth(objects: list[ObjectFile], levels: tuple[str, ...] = LEVELS) -> Depth:
+    """The deepest of the drive's modes, and the ways of each; or another program's levels on top of one another.
+
+    Of another program no call through a pointer is known.
+    """
+    if levels != LEVELS:
+        depth, graph = Depth(), build_graph(objects)
+        reached = _add_levels(graph, levels, "", depth)
+        depth.complaints += [f"{name} calls through a pointer" for name in sorted(graph.by_pointer & reached)]
+        return depth
+    depths = [_depth_in(mode, lines, objects) for mode, lines in _modes().items()]
+    complaints = dict.fromkeys(complaint for depth in depths for complaint in depth.complaints)
+    shown = [line for depth in depths for line in depth.lines]
+    return Depth(max(depth.total for depth in depths), shown, list(complaints))
