@@ -100,7 +100,7 @@ static bool load_control(drive_config_t* c) {
                                       q_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
                                       q_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
   const bool turns = if_start_design(&c->turn, &c->nameplate, &turn) || p->start_method == 0;
-  speed_controller_t trial;
+  static speed_controller_t trial;  // too large for the stack; the background level alone comes here
   return turns && speed_controller_init(&trial, &c->speed, &c->nameplate) &&
          current_controller_design(&c->current, &c->nameplate, &current);
 }

@@ -149,9 +149,10 @@ def link(arguments: list[str]) -> int:
         "|---|---|---|",
     ]
     lines += [f"| {name} | {used} | {file.ranges[name].length} |" for name, used in fill.items()]
-    free = sum(file.ranges[name].length - fill[name] for name in ("APP", "BOOT") if name in fill)
-    code = words.get(".text", 0)
-    lines += ["", f"the chip is full when code takes {(code + free) / code:.2f} words for a half word of Thumb-2"]
+    code, sectors = words.get(".text", 0), ("APP", "BOOT")
+    if set(sectors) <= set(fill):
+        free = sum(file.ranges[name].length - fill[name] for name in sectors)
+        lines += ["", f"the chip is full when code takes {(code + free) / code:.2f} words for a half word of Thumb-2"]
     lines += ["", *(f"does not fit: {complaint}" for complaint in unfit), "", *depth.lines]
     output = Path(options["--output_file"])
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
