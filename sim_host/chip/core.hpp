@@ -216,7 +216,6 @@ class Core final : public ChipServices {
   CpuTimers timers_;
   Gpio gpio_;
   FlashControl flash_;
-  Memory memory_;
   EPwmBank epwm_;
   Adc adc_;
   EQep eqep1_;
@@ -233,6 +232,7 @@ class Core final : public ChipServices {
   std::string error_;
   std::exception_ptr exception_;
   Coroutine coroutine_;
+  Memory memory_;  // large: behind what every access touches
 };
 
 }  // namespace stillspin::chip

@@ -10,7 +10,7 @@ from desk import needs_board
 
 from stillspin.flash import kernel as kernel_requests
 from stillspin.flash import layout, rom
-from stillspin.flash.files import DriveImage, drive_image, kernel_program
+from stillspin.flash.files import DriveImage, crc_of, drive_image, kernel_program
 from stillspin.flash.kernel import Kernel
 from stillspin.flash.line import drop
 from stillspin.flash.program import Block
@@ -327,21 +327,40 @@ def test_kernel_stands_any_octets_and_records(kernel):
     assert found == kernel.board.first or found[make.IDENTITY - make.START] != make.MARK
 
 
+class NoisyLine(make.BoardLine):
+    """Every seventh request to the kernel is damaged, and every fifth answer."""
+
+    def __init__(self, board):
+        super().__init__(board)
+        self._at_kernel = False
+        self.requests = self.answers = 0
+
+    def set_rate(self, rate):
+        super().set_rate(rate)
+        self._at_kernel = rate == kernel_requests.RATE
+
+    def write(self, octets):
+        self.requests += self._at_kernel
+        damaged = self._at_kernel and self.requests % 7 == 0
+        super().write(octets[:-3] + b"\x55" + octets[-2:] if damaged else octets)
+
+    def read(self, most, timeout):
+        octets = super().read(most, timeout)
+        if self._at_kernel and len(octets) > 4:
+            self.answers += 1
+            if self.answers % 5 == 0:
+                return octets[:3] + bytes((octets[3] ^ 0x10,)) + octets[4:]
+        return octets
+
+
 def test_noise_costs_time_and_nothing_else(new, program):
-    class Noisy(make.BoardLine):
-        """Every seventh request is damaged."""
-
-        count = 0
-
-        def write(self, octets):
-            is_record = octets[:1] == b"\0" and len(octets) > 4 and octets[-1:] == b"\0" and octets[1] != 0
-            self.count += is_record
-            damaged = is_record and self.count % 7 == 0
-            super().write(octets[:-3] + b"\x55" + octets[-2:] if damaged else octets)
-
     with make.board(OLD) as board:
-        update(Noisy(board), program, new, nothing)
+        line = NoisyLine(board)
+        update(line, program, new, nothing)
+        assert line.requests > 14
+        assert line.answers > 10
         assert flash_of(board) == make.cells(NEW)
+        assert board.boots() == "drive"
 
 
 # ---- the cable
@@ -416,6 +435,14 @@ def test_cable_pulled_and_put_back_without_a_reset(new, program):
     assert ends == {"goes on", "reset"}
 
 
+def unheard(board, ask):
+    """A request whose answer nobody waits for."""
+    line = make.CutLine(board, 1 << 30)
+    line.read = lambda _most, _timeout: (_ for _ in ()).throw(LinkError("gone"))
+    with pytest.raises(LinkError):
+        ask(Kernel(line))
+
+
 @pytest.mark.parametrize("share", [0.02, 0.3, 0.5, 0.9])
 @pytest.mark.parametrize("sector", [0, 1, 2])
 def test_power_that_fails_during_an_erase_leaves_a_board_that_waits(new, program, sector, share):
@@ -424,12 +451,43 @@ def test_power_that_fails_during_an_erase_leaves_a_board_that_waits(new, program
         kernel = connect(make.BoardLine(board), program, nothing)
         for done in layout.SECTORS[:sector]:
             kernel.erase(done)
-        line = make.CutLine(board, 1 << 30)
-        line.read = lambda _most, _timeout: (_ for _ in ()).throw(LinkError("gone"))
-        with pytest.raises(LinkError):
-            Kernel(line).erase(layout.SECTORS[sector])
+        unheard(board, lambda kernel: kernel.erase(layout.SECTORS[sector]))
         board.native.advance(round(share * 10 * make.TICKS_PER_SECOND))
         assert check_broken_off(board) == "waiting"
         board.cycle(serial=True)
         update(make.BoardLine(board), program, new, nothing)
         assert flash_of(board) == make.cells(NEW)
+
+
+@pytest.mark.parametrize("milliseconds", [21.0, 22.3, 24.7, 26.9, 40.0])
+def test_power_that_fails_while_words_are_written_leaves_a_board_that_waits(new, program, milliseconds):
+    with make.board(OLD) as board:
+        kernel = connect(make.BoardLine(board), program, nothing)
+        for sector in layout.SECTORS:
+            kernel.erase(sector)
+        erased = flash_of(board)
+        unheard(board, lambda kernel: kernel.write(0x3EC000, tuple(range(112))))
+        board.native.advance(round(milliseconds * make.TICKS_PER_SECOND / 1000))
+        assert flash_of(board) != erased
+        assert check_broken_off(board) == "waiting"
+        board.cycle(serial=True)
+        update(make.BoardLine(board), program, new, nothing)
+        assert flash_of(board) == make.cells(NEW)
+
+
+def test_power_that_fails_while_the_mark_is_written_leaves_all_or_nothing(new, program):
+    unsealed = [Block(make.IDENTITY, (make.ERASED, *NEW[1].words[1:])) if b is NEW[1] else b for b in NEW]
+    marks = set()
+    for microseconds in range(2900, 3000, 8):
+        with make.board(unsealed) as board:
+            connect(make.BoardLine(board), program, nothing)
+            unheard(board, lambda kernel: kernel.seal(crc_of(new.words)))
+            board.native.advance(microseconds * make.TICKS_PER_SECOND // 1_000_000)
+            mark = flash_of(board)[make.IDENTITY - make.START]
+            marks.add(mark)
+            assert check_broken_off(board) == ("drive" if mark == make.MARK else "waiting")
+            board.cycle(serial=True)
+            update(make.BoardLine(board), program, new, nothing)
+            assert flash_of(board) == make.cells(NEW)
+            assert board.boots() == "drive"
+    assert {make.ERASED, make.MARK} < marks, "and something between"

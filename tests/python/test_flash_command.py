@@ -101,3 +101,11 @@ def test_port_that_is_not_there_is_one_line(files, flash):
     status, _, complaint = flash(files / "old.out", "--kernel", files / "kernel.txt", "--port", files / "ttyNothing")
     assert status == 1
     assert "there is no serial port" in complaint
+
+
+def test_flash_file_of_another_size_is_one_line(files, capsys):
+    (files / "flash.bin").write_bytes(b"short")
+    with pytest.raises(SystemExit) as ended:
+        cli.app(["loader", str(files / "flash.bin"), "--kernel", str(files / "kernel.txt")])
+    assert ended.value.code == 2
+    assert "has 5 octets, the flash 131072" in capsys.readouterr().err
