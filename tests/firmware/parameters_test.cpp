@@ -12,6 +12,7 @@
 extern "C" {
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
+#include "hal/hal_board.h"
 }
 
 namespace {
