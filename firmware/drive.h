@@ -157,9 +157,9 @@ typedef struct {
   int32_t unrest_q8;      // mean deviation of the currents from their offsets while these are found, codes
   drive_config_t config;
   bool config_valid;
-  bool conflict_known;   // of the parameters that the configuration was made of
+  bool conflict_known;     // of the parameters that the configuration was made of
   packed_text_t conflict;  // why they do not fit together, or PACKED_NONE
-  bool loading;          // the store is being read: BOOT goes on
+  bool loading;            // the store is being read: BOOT goes on
   drive_samples_t samples;
   drive_position_t position;
   drive_control_t control;

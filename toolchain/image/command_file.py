@@ -1,4 +1,7 @@
-"""TI's linker command files, as far as those here go: MEMORY with ranges, SECTIONS with `> RANGE`, `>> RANGE | RANGE`."""
+"""TI's linker command files, as far as those here go.
+
+MEMORY with ranges; SECTIONS with `> RANGE` and `>> RANGE | RANGE`.
+"""
 
 import re
 from dataclasses import dataclass
