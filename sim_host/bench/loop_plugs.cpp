@@ -37,10 +37,15 @@ LoopPlugs::Served LoopPlugs::serve(int milliseconds) {
   return std::exchange(served_, {});
 }
 
+// Something was handed over that the drive has not got yet.
+bool LoopPlugs::is_on_its_way() {
+  return board_.serial().sent_until(board_.now()) > board_.now() || board_.can_host().waiting() > 0;
+}
+
 // Until a program has sent something, or for a while; false when one of them has gone.
 bool LoopPlugs::wait() {
   pollfd plugs[] = {{serial_, POLLIN, 0}, {can_, POLLIN, 0}};
-  if (::poll(plugs, 2, kWaitMs) < 0) return errno == EINTR;
+  if (::poll(plugs, 2, is_on_its_way() ? 0 : kWaitMs) < 0) return errno == EINTR;
   serial_ready_ = (plugs[0].revents & POLLIN) != 0;
   can_ready_ = (plugs[1].revents & POLLIN) != 0;
   return ((plugs[0].revents | plugs[1].revents) & ~POLLIN) == 0;

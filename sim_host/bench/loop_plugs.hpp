@@ -33,6 +33,7 @@ class LoopPlugs {
   Served serve(int milliseconds);
 
  private:
+  bool is_on_its_way();
   bool wait();
   Octets read(int descriptor);
   void hear_serial();

@@ -16,6 +16,7 @@
 #include "firmware/link/requests.h"
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board_port.hpp"
+#include "sim_host/bench/loop_plugs.hpp"
 #include "sim_host/bench/virtual_board.hpp"
 
 namespace stillspin::bench {
@@ -143,6 +144,105 @@ TEST_F(Loop, LongRecordsOnAFastBusLoseNoFrame) {
     }
   }
   EXPECT_EQ(answers, kRequests);
+}
+
+// ---- the plugs of a board in the loop, served without Python
+
+// A board in the loop, and programs at its port and its adapter.
+class Plugs : public Loop {
+ protected:
+  static constexpr int kLong = 60'000, kShort = 20;  // ms
+
+  std::array<int, 2> port{}, adapter{};
+
+  void SetUp() override {
+    Loop::SetUp();
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, port.data()), 0);
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, adapter.data()), 0);
+    desk->can_host().set_bit_rate(1'000'000, desk->now());
+    desk->advance(20 * kMillisecond);
+    ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
+    (void)desk->can_host().take_heard(desk->now());  // the bus carries records alone from here on
+  }
+  void TearDown() override {
+    for (const int end : {port[0], port[1], adapter[0], adapter[1]}) ::close(end);
+  }
+  LoopPlugs::Served serve(int milliseconds) { return LoopPlugs(*desk, port[0], adapter[0]).serve(milliseconds); }
+  static void type(int end, const Octets& octets) {
+    ASSERT_EQ(::write(end, octets.data(), octets.size()), static_cast<ssize_t>(octets.size()));
+  }
+  static Octets text(const std::string& characters) { return Octets(characters.begin(), characters.end()); }
+  static Octets seen(int end) {
+    Octets octets(4096);
+    const ssize_t n = ::read(end, octets.data(), octets.size());
+    octets.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+    return octets;
+  }
+  // The record that octets of a plug end with.
+  static Words record_in(Framing& framing, const Octets& octets) {
+    for (const std::uint8_t octet : octets) {
+      if (framing.take(octet)) return framing.record();
+    }
+    return {};
+  }
+};
+
+TEST_F(Plugs, StepsPassThroughThePort) {
+  for (std::uint16_t step = 0; step < 3; step++) {
+    const Octets request = serial->wrap({REQUEST_HIL_STEP, 7, step, 0, 0});
+    type(port[1], request);
+    const LoopPlugs::Served served = serve(kShort);
+    EXPECT_EQ(served.serial_in, request.size());
+    const Octets heard = seen(port[1]);
+    EXPECT_EQ(served.serial_out, heard.size());
+    const Words answer = record_in(*serial, heard);
+    ASSERT_GT(answer.size(), 4u);
+    EXPECT_EQ(answer[2], ANSWER_OK);
+    EXPECT_EQ(answer[3], step);
+  }
+}
+
+TEST_F(Plugs, StepsPassThroughTheAdapter) {
+  const std::unique_ptr<Framing> slcan = slcan_framing(1);
+  for (std::uint16_t step = 0; step < 3; step++) {
+    type(adapter[1], slcan->wrap({REQUEST_HIL_STEP, 7, step, 0, 0}));
+    const LoopPlugs::Served served = serve(kShort);
+    EXPECT_TRUE(served.for_adapter.empty());
+    const Octets heard = seen(adapter[1]);
+    ASSERT_GT(heard.size(), 2u);
+    EXPECT_EQ(heard[0], 'z') << "the frame is acknowledged";
+    const Words answer = record_in(*slcan, heard);
+    ASSERT_GT(answer.size(), 4u);
+    EXPECT_EQ(answer[2], ANSWER_OK);
+    EXPECT_EQ(answer[3], step);
+  }
+}
+
+TEST_F(Plugs, WhatIsNoPlainFrameIsTheAdaptersBusiness) {
+  for (const std::string other :
+       {"V", "r4010", "T000004010", "t401", "t40190", "t401112z", "t80110A", "t401100AA", ""}) {
+    type(adapter[1], text("t7FF0\r" + other + "\rt7FF0\rt7"));
+    EXPECT_EQ(serve(kLong).for_adapter, text(other + "\rt7FF0\rt7")) << other;
+    EXPECT_EQ(seen(adapter[1]), text("z\r")) << other;
+  }
+}
+
+TEST_F(Plugs, ALineThatIsNotCompleteIsHandedBack) {
+  type(adapter[1], text("t40"));
+  EXPECT_EQ(serve(kShort).for_adapter, text("t40"));
+}
+
+TEST_F(Plugs, AProgramThatGoesEndsIt) {
+  ::shutdown(port[1], SHUT_RDWR);
+  const LoopPlugs::Served served = serve(kLong);
+  EXPECT_EQ(served.serial_in, 0u);
+  EXPECT_TRUE(VirtualBoard::in_loop());
+}
+
+TEST_F(Plugs, TheEndOfTheLoopEndsIt) {
+  type(port[1], serial->wrap({REQUEST_HIL_LEAVE, 9}));
+  (void)serve(kLong);
+  EXPECT_FALSE(VirtualBoard::in_loop());
 }
 
 // What is said of a port at whose other end nobody answers.

@@ -205,6 +205,25 @@ TEST_F(DriveConfig, TheStatorFluxNeedsAMachineThatItCanBeGiven) {
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
 }
 
+// Whatever was changed since counts at once, and nothing else is calculated again.
+TEST_F(DriveConfig, WhatTheLastConfigurationFoundIsKnown) {
+  EXPECT_EQ(parameter_conflict_known(), nullptr);
+  set("blend_high", 50.0);  // blend_low is 60
+  EXPECT_NE(parameter_conflict_known(), nullptr) << "before a configuration has been made";
+  background_step(&drive);
+  ASSERT_NE(parameter_conflict_known(), nullptr);
+  EXPECT_NE(std::string(parameter_conflict_known()).find("blend_high"), std::string::npos);
+  set("blend_high", 100.0);
+  EXPECT_EQ(parameter_conflict_known(), nullptr);
+  background_step(&drive);
+  EXPECT_EQ(parameter_conflict_known(), nullptr);
+  parameters.blend_high = 0;  // behind its back
+  EXPECT_EQ(parameter_conflict_known(), nullptr) << "taken from the configuration";
+  EXPECT_NE(parameter_conflict(), nullptr);
+  drive_parameters_changed();
+  EXPECT_NE(parameter_conflict_known(), nullptr);
+}
+
 // Hand-over by its own speeds, method by the source, saturation by the map.
 TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
   set("position_source", 7.0);

@@ -277,6 +277,25 @@ def test_something_of_everything_comes_first(settings):
     assert lengths == sorted(lengths)
 
 
+def test_virtual_boards_do_several_runs_at_a_time(tmp_path):
+    file = tmp_path / "results.json"
+
+    def call(*arguments):
+        return CliRunner().invoke(app, ["hil", "A14", "--check", *arguments, "--json", str(file)])
+
+    done = call("--can", "virtual", "--jobs", "2")
+    assert done.exit_code == 0, done.output
+    rows = json.loads(file.read_text())["runs"]
+    assert {(row["run"], row["link"]) for row in rows} == {("avv", "can"), ("zvv", "can")}
+    assert all(row["board"] == row["native"] and row["steps"] > 2000 for row in rows)
+    again = call("--can", "virtual", "--resume")
+    assert again.exit_code == 0, again.output
+    assert again.stdout == ""
+    refused = call("--port", "/dev/none", "--jobs", "2")
+    assert refused.exit_code == 2
+    assert "a board does one run at a time" in refused.stderr
+
+
 def test_one_board_is_enough():
     done = CliRunner().invoke(app, ["hil", "A10", "--port", "/dev/a", "--can", "/dev/b"])
     assert done.exit_code != 0

@@ -59,7 +59,7 @@ def named(wanted: Sequence[str], settings: SettingsOf, native: NativeCore, *, ch
 
 
 def broad(chosen: Sequence[LoopRun]) -> list[int]:
-    """Numbers of the runs in another order: of every scenario the shortest, then of every one the next.
+    """Numbers of the runs in another order: of every scenario the shortest, then of every one the next; short first.
 
     A defect shows early, and what has been compared when it is broken off is something of everything.
     """
@@ -67,7 +67,7 @@ def broad(chosen: Sequence[LoopRun]) -> list[int]:
     for number, run in sorted(enumerate(chosen), key=lambda item: item[1].length):
         by_length.setdefault(run.scenario, []).append(number)
     rank = {number: place for numbers in by_length.values() for place, number in enumerate(numbers)}
-    return sorted(rank, key=lambda number: (rank[number], number))
+    return sorted(rank, key=lambda number: (rank[number], chosen[number].length))
 
 
 def _runs(name: str, settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
