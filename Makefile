@@ -16,7 +16,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 verify loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck verify loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -61,7 +61,17 @@ int16: build ## run every scenario compiled with a 16-bit int and char, bit for 
 	@cmake --build --preset $(PRESET) --target stillspin_int16_trap
 	@$(PYTHON) toolchain/int16/compare_runs.py $(BUILD)/tests/int16/stillspin_int16_trap
 
-verify: image-check int16 ## the checks that take long, under 30 minutes: image by stand-in, runs with a 16-bit int
+vectors: ## run the arithmetic's vectors on AVR, Cortex-M3 and M4 against a model in Python, and with planted defects
+	@bash toolchain/setup.sh build verify
+	@$(PYTHON) toolchain/vectors.py build/vectors
+	@$(PYTHON) toolchain/vectors.py build/vectors --defects
+
+cppcheck: ## read the drive's C with the C28x's widths, and planted defects
+	@bash toolchain/setup.sh build verify
+	@$(PYTHON) toolchain/cppcheck.py
+	@$(PYTHON) toolchain/cppcheck.py --defects
+
+verify: image-check cppcheck vectors int16 ## the checks that take long, under 30 minutes: image, cppcheck, vectors, int16
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

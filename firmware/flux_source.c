@@ -43,6 +43,7 @@ estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* i
   given.windows = in->windows;
   given.window_count = in->window_count;
   given.torque_accel_q8 = in->torque_accel_q8;
+  given.renew = in->renew;
   given.regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
   given.frames = in->frames;
   return given;

@@ -1,7 +1,4 @@
-"""TI's linker command files, as far as those here go.
-
-MEMORY with ranges; SECTIONS with `> RANGE` and `>> RANGE | RANGE`.
-"""
+"""TI's linker command files as far as those here go: MEMORY with ranges, SECTIONS by `> RANGE`, `>> RANGE | RANGE`."""
 
 import re
 from dataclasses import dataclass

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""The arithmetic's and estimators' vectors on several processors, against a model in Python's integers.
+
+Usage: toolchain/vectors.py OUT [--defects]     (make vectors)
+
+tests/vectors makes cases by a generator with a fixed seed and hashes the results: on this computer, on an ATmega1284P
+(avr-gcc and simavr: an int of 16 bits on a real machine), on a Cortex-M3 and an M4 (QEMU). Each has to print what
+tests/vectors/model.py finds from the functions' definitions. With --defects, every defect of DEFECTS is planted into a
+copy of the sources and has to be seen where it says.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests" / "vectors"))
+
+import model  # noqa: E402
+
+FOLDERS = ("hal", "control", "estimators", "tests/vectors", "tests/m3")
+SOURCES = (
+    *("tests/vectors/vectors.c", "hal/qmath/qdiv.c", "hal/qmath/qsqrt.c", "hal/qmath/qtrig.c"),
+    *("estimators/blend.c", "estimators/tracking_observer.c"),
+)
+WARNINGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-I.")
+MCU = "atmega1284p"
+SECONDS = 120
+CASES = model.BLOCKS * model.CASES * len(model.Vectors().groups)
+
+
+def run(command: list[str], tree: Path) -> str:
+    """Its output; an error when it fails."""
+    done = subprocess.run(command, cwd=tree, capture_output=True, text=True, check=False, timeout=SECONDS)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(command[:6])} ..: {done.stdout[-500:]}{done.stderr[-2000:]}")
+    return done.stdout + done.stderr
+
+
+def on_this_computer(tree: Path, out: Path) -> str:
+    """By the computer's own compiler."""
+    run(["gcc", *WARNINGS, *SOURCES, "tests/vectors/main_hosted.c", "-o", str(out)], tree)
+    return run([str(out)], tree)
+
+
+def on_avr(tree: Path, out: Path) -> str:
+    """By avr-gcc; simavr prints every line in colour, with a point for its end, after two lines of its own."""
+    run(["avr-gcc", f"-mmcu={MCU}", *WARNINGS, *SOURCES, "tests/vectors/main_avr.c", "-o", str(out)], tree)
+    printed = re.sub(r"\x1b\[[0-9;]*m", "", run(["simavr", "-m", MCU, "-f", "20000000", str(out)], tree))
+    lines = (line.removesuffix(".") for line in printed.splitlines())
+    return "\n".join(line for line in lines if line and not line.startswith(("Loaded", "UART")))
+
+
+def on_cortex(core: str, machine: str) -> Callable[[Path, Path], str]:
+    """By arm-none-eabi-gcc in QEMU, with semihosting."""
+
+    def play(tree: Path, out: Path) -> str:
+        compiler = ["arm-none-eabi-gcc", f"-mcpu=cortex-{core}", "-mthumb"]
+        crti, crt0, crtn = (
+            run([*compiler, f"-print-file-name={name}"], tree).strip() for name in ("crti.o", "rdimon-crt0.o", "crtn.o")
+        )
+        program = [crti, crt0, *SOURCES, "tests/vectors/main_hosted.c", "tests/m3/startup.c", crtn]
+        link = ["-T", "tests/m3/m3.ld", "-nostartfiles", "--specs=rdimon.specs"]
+        run([*compiler, *WARNINGS, *link, *program, "-o", str(out)], tree)
+        quiet = ["-nographic", "-monitor", "none", "-serial", "none"]
+        semihosting = ["-semihosting-config", "enable=on,target=native"]
+        return run(["qemu-system-arm", "-M", machine, *quiet, *semihosting, "-kernel", str(out)], tree)
+
+    return play
+
+
+TARGETS: dict[str, Callable[[Path, Path], str]] = {
+    "this computer": on_this_computer,
+    "ATmega1284P": on_avr,
+    "Cortex-M3": on_cortex("m3", "mps2-an385"),
+    "Cortex-M4": on_cortex("m4", "mps2-an386"),
+}
+
+
+@dataclass(frozen=True)
+class Defect:
+    """One change of the sources, which groups of cases see it, and where."""
+
+    file: str
+    right: str
+    wrong: str
+    groups: frozenset[str]
+    targets: frozenset[str]
+
+
+ALL = frozenset(TARGETS)
+AVR = frozenset({"ATmega1284P"})
+NOT_AVR = ALL - AVR
+DEFECTS = (
+    Defect("hal/qmath/qarith.h", "q_sat64((int64_t)a + b)", "q_sat64((int32_t)((uint32_t)a + (uint32_t)b))",
+           frozenset({"sums"}), ALL),
+    Defect("hal/qmath/qarith.h", "(int64_t)a * b + ((int64_t)1 << (shift - 1))", "(int64_t)a * b",
+           frozenset({"products", "quotients", "tracking_observer", "blend"}), ALL),
+    Defect("hal/qmath/qtrig.c", "((uint32_t)1 << (SEGMENT_BITS - 1))", "(1u << (SEGMENT_BITS - 1))",
+           frozenset({"angles", "frames"}), AVR),
+    Defect("hal/qmath/qarith.h", "q_shr((int32_t)a * b + 0x4000L, 15)", "q_shr(a * b + 0x4000L, 15)",
+           frozenset({"halves"}), AVR),
+    Defect("hal/qmath/qdiv.c", "(rest >= den - rest) ? 1 : 0", "0", frozenset({"quotients"}), ALL),
+    Defect("hal/qmath/qsqrt.c", "* inverse_q30) >> 54)", "* inverse_q30) >> 55)", frozenset({"roots"}), ALL),
+    Defect("hal/qmath/qsqrt.c", "(rest > root && root != UINT32_MAX)", "((rest >> 16) > (root >> 16))",
+           frozenset({"roots"}), ALL),
+    Defect("hal/qmath/qtrig.c", "= ANGLE_BAM_QUARTER_TURN - angle;", "= ANGLE_BAM_QUARTER_TURN - angle - 1;",
+           frozenset({"angles"}), ALL),
+    Defect("control/frame.h", "q_mul_sub_floor(v.beta, r.cos_q30,", "q_mul_add_floor(v.beta, r.cos_q30,",
+           frozenset({"frames"}), ALL),
+    Defect("estimators/tracking_observer.c", "q_mul(error_bam, 3 * x2_q30, 30)", "q_mul(error_bam, 2 * x2_q30, 30)",
+           frozenset({"tracking_observer"}), ALL),
+    Defect("estimators/blend.c", "s->share_q15 + (s->share_q15 >> 14)", "s->share_q15", frozenset({"blend"}), ALL),
+)  # fmt: skip
+
+
+def wrong_groups(name: str, tree: Path, out: Path, wanted: list[str]) -> set[str]:
+    """Groups whose lines differ from the model's; all of them where the output is not even of its length."""
+    lines = TARGETS[name](tree, out / name.replace(" ", "_")).split("\n")
+    lines = [line for line in lines if line]
+    if len(lines) != len(wanted):
+        return {line.split()[0] for line in wanted}
+    return {right.split()[0] for right, line in zip(wanted, lines, strict=True) if right != line}
+
+
+def missed(defect: Defect, out: Path, wanted: list[str]) -> list[str]:
+    """Where a planted defect is not seen as it should be."""
+    tree = out / "tree"
+    shutil.rmtree(tree, ignore_errors=True)
+    for folder in FOLDERS:
+        shutil.copytree(ROOT / folder, tree / folder)
+    path = tree / defect.file
+    text = path.read_text(encoding="utf-8")
+    if defect.right not in text:
+        return [f"{defect.file} has no {defect.right!r}"]
+    path.write_text(text.replace(defect.right, defect.wrong), encoding="utf-8")
+    complaints = []
+    for name in TARGETS:
+        seen = wrong_groups(name, tree, out, wanted)
+        expected = defect.groups if name in defect.targets else frozenset()
+        if seen != expected:
+            complaints.append(f"{name}: {defect.wrong!r} is seen by {sorted(seen)}, not by {sorted(expected)}")
+    return complaints
+
+
+def main() -> int:
+    """Runs the vectors everywhere, or plants the defects."""
+    out = Path(sys.argv[1]).resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    wanted = list(model.expected())
+    if "--defects" in sys.argv:
+        complaints = [complaint for defect in DEFECTS for complaint in missed(defect, out, wanted)]
+        print(f"vectors: {len(DEFECTS)} defects planted, {len(complaints)} times not seen where they have to be")
+    else:
+        with ThreadPoolExecutor(2) as pool:
+            found = dict(zip(TARGETS, pool.map(lambda n: wrong_groups(n, ROOT, out, wanted), TARGETS), strict=True))
+        complaints = [f"{name}: {', '.join(sorted(groups))} differ" for name, groups in found.items() if groups]
+        print(f"vectors: {CASES} cases on {', '.join(TARGETS)}: {'as the model' if not complaints else 'DIFFERENT'}")
+    for complaint in complaints:
+        print(f"vectors: {complaint}")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
