@@ -7,6 +7,8 @@
 
 #include "tests/control/quantities.hpp"
 
+#include "sim_host/bench/texts.hpp"
+
 extern "C" {
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
@@ -207,21 +209,21 @@ TEST_F(DriveConfig, TheStatorFluxNeedsAMachineThatItCanBeGiven) {
 
 // Whatever was changed since counts at once, and nothing else is calculated again.
 TEST_F(DriveConfig, WhatTheLastConfigurationFoundIsKnown) {
-  EXPECT_EQ(parameter_conflict_known(), nullptr);
+  EXPECT_EQ(parameter_conflict_known(), PACKED_NONE);
   set("blend_high", 50.0);  // blend_low is 60
-  EXPECT_NE(parameter_conflict_known(), nullptr) << "before a configuration has been made";
+  EXPECT_NE(parameter_conflict_known(), PACKED_NONE) << "before a configuration has been made";
   background_step(&drive);
-  ASSERT_NE(parameter_conflict_known(), nullptr);
-  EXPECT_NE(std::string(parameter_conflict_known()).find("blend_high"), std::string::npos);
+  ASSERT_NE(parameter_conflict_known(), PACKED_NONE);
+  EXPECT_NE(stillspin::bench::text_of(parameter_conflict_known()).find("blend_high"), std::string::npos);
   set("blend_high", 100.0);
-  EXPECT_EQ(parameter_conflict_known(), nullptr);
+  EXPECT_EQ(parameter_conflict_known(), PACKED_NONE);
   background_step(&drive);
-  EXPECT_EQ(parameter_conflict_known(), nullptr);
+  EXPECT_EQ(parameter_conflict_known(), PACKED_NONE);
   parameters.blend_high = 0;  // behind its back
-  EXPECT_EQ(parameter_conflict_known(), nullptr) << "taken from the configuration";
-  EXPECT_NE(parameter_conflict(), nullptr);
+  EXPECT_EQ(parameter_conflict_known(), PACKED_NONE) << "taken from the configuration";
+  EXPECT_NE(parameter_conflict(), PACKED_NONE);
   drive_parameters_changed();
-  EXPECT_NE(parameter_conflict_known(), nullptr);
+  EXPECT_NE(parameter_conflict_known(), PACKED_NONE);
 }
 
 // Hand-over by its own speeds, method by the source, saturation by the map.
