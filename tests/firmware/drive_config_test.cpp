@@ -5,9 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/control/quantities.hpp"
-
 #include "sim_host/bench/texts.hpp"
+#include "tests/control/quantities.hpp"
 
 extern "C" {
 #include "firmware/drive.h"
