@@ -1,10 +1,11 @@
 // Records a run of the virtual drive at the boundary of hal/f2808/target.h, for replay.c.
 //
-// Usage: stillspin_isr_record FILE RPM LOAD [NAME=VALUE]...     a start, then RPM, then LOAD (N m) as a step; NAME is a
-// firmware parameter. The linker puts the functions here in the place of the target's and of the commands
-// (-Wl,--wrap).
+// Usage: stillspin_isr_record FILE RPM LOAD SHAFT [NAME=VALUE]...     a start with the shaft at SHAFT (rpm), then RPM,
+// then LOAD (N m) as a step; NAME is a firmware parameter. The linker puts the functions here in the place of the
+// target's and of the commands (-Wl,--wrap).
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -172,13 +173,15 @@ stillspin::bench::RunRequest request_of(int argc, char** argv) {
   stillspin::bench::RunRequest r;
   const double rpm = std::atof(argv[2]);
   r.setup.nominal = stillspin::plant::PlantConfig();  // the inverter of profile bench
+  const double shaft = std::atof(argv[4]);            // rpm
+  r.setup.nominal.initial.speed = shaft * std::acos(-1.0) / 30.0;
   r.setup.solver = 1;
   r.parameters["speed_ramp"] = 15000.0;
   r.commands = {{0.0, "speed_ref_rpm", rpm}};
-  const double settled = 0.1 + rpm / 10000.0;
+  const double settled = 0.1 + std::abs(rpm - shaft) / 10000.0;
   r.load = {{settled, 0.0}, {settled + 0.005, std::atof(argv[3])}};
   r.duration = settled + 0.25;
-  for (int k = 4; k < argc; k++) {
+  for (int k = 5; k < argc; k++) {
     const std::string word = argv[k];
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) throw std::invalid_argument(word + ": not NAME=VALUE");
@@ -190,8 +193,8 @@ stillspin::bench::RunRequest request_of(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) {
-    std::fprintf(stderr, "usage: %s FILE RPM LOAD [NAME=VALUE]...\n", argv[0]);
+  if (argc < 5) {
+    std::fprintf(stderr, "usage: %s FILE RPM LOAD SHAFT [NAME=VALUE]...\n", argv[0]);
     return 2;
   }
   file = std::fopen(argv[1], "wb");
