@@ -30,7 +30,7 @@
 #include "firmware/start/hold.h"
 #include "firmware/start/polarity_watch.h"
 #include "firmware/start/start.h"
-#include "svpwm/dead_time.h"
+#include "svpwm/edges.h"
 #include "svpwm/modulator.h"
 
 #define DRIVE_PERIOD_US 100

@@ -68,10 +68,8 @@ void drive_modulate(drive_t* d) {
     current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
     d->limits |= LIMIT_VOLTAGE;
   }
-  svpwm_arrival_t arrival;
-  dead_time_compensate(&d->config.dead_time, &pattern.pulses, current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2,
-                       d->samples.link_q16, &command, &arrival);
-  svpwm_find_windows(&d->config.modulator.sampling, &arrival, &pattern);
+  const svpwm_carried_t carried = {current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16};
+  svpwm_send(&d->config.dead_time, &d->config.modulator.sampling, &carried, &pattern, &command);
   hal_profile_step(CYCLES_MODULATE);
   write_frame(d, &pattern, &command);
 }

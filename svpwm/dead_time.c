@@ -1,7 +1,5 @@
 #include "svpwm/dead_time.h"
 
-#include "svpwm/ripple.h"
-
 // Sign of a current as -1..1, Q15, linear inside the band.
 static int32_t sign_q15(const dead_time_config_t* c, int32_t current_q20) {
   if (current_q20 >= c->band_q20) return 32767L;
@@ -9,7 +7,7 @@ static int32_t sign_q15(const dead_time_config_t* c, int32_t current_q20) {
   return q_mul_floor(current_q20, c->per_band_q29, 29);
 }
 
-// Delay of an edge, ticks; `sign` is positive where the current blocks the edge.
+// Delay of an edge, ticks; the sign is positive where the current blocks the edge: a rising one with i > 0.
 static int16_t delay_ticks(const dead_time_config_t* c, int32_t blocking_q15) {
   const int32_t middle = c->blocked_ticks + c->released_ticks;
   const int32_t half_range = c->blocked_ticks - c->released_ticks;
@@ -25,39 +23,15 @@ void dead_time_design(dead_time_config_t* c) {
   c->certain_q20 = q_max(c->band_q20, c->edge_band_q20);
 }
 
-// An edge at a current whose sign is not certain, or not trusted; a positive current blocks a rising edge.
-static void send_in_doubt(const dead_time_config_t* c, uint16_t edge, int32_t current_q20, svpwm_pulses_t* command,
-                          svpwm_arrival_t* arrival) {
+int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, int32_t current_q20,
+                                svpwm_arrival_t* arrival) {
   const int32_t sign = sign_q15(c, current_q20);
-  const int16_t wanted = arrival->latest[edge];
-  const int16_t sent = (int16_t)(wanted - delay_ticks(c, (edge < SVPWM_LEGS) ? sign : -sign));
-  command->at[edge] = sent;
-  if (q_abs_sat(current_q20) >= c->edge_band_q20) return;
-  arrival->earliest[edge] = (int16_t)(sent + c->released_ticks);
-  arrival->latest[edge] = (int16_t)(sent + c->blocked_ticks);
-}
-
-void dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
-                          int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command, svpwm_arrival_t* arrival) {
-  const abc_t mean = frame_inverse_clarke(current_q20);
-  const int32_t mean_q20[SVPWM_EDGES] = {mean.a, mean.b, mean.c, mean.a, mean.b, mean.c};
-  const int16_t above[2] = {c->blocked_delay_ticks, c->released_delay_ticks};  // rising, falling edge
-  int32_t ripple_q20[SVPWM_EDGES];
-  svpwm_edge_ripple_q20(wanted, admittance_q30, link_q16, ripple_q20);
-  for (uint16_t edge = 0; edge < SVPWM_EDGES; edge++) {
-    const int16_t at = wanted->at[edge];
-    const int32_t current = mean_q20[edge] + ripple_q20[edge];
-    const bool falls = edge >= SVPWM_LEGS;
-    arrival->earliest[edge] = at;
-    arrival->latest[edge] = at;
-    if (current >= c->certain_q20) {
-      command->at[edge] = (int16_t)(at - above[falls ? 1 : 0]);
-    } else if (current <= -c->certain_q20) {
-      command->at[edge] = (int16_t)(at - above[falls ? 0 : 1]);
-    } else {
-      send_in_doubt(c, edge, current, command, arrival);
-    }
+  const int32_t sent = e->tick - delay_ticks(c, e->falls ? -sign : sign);
+  if (q_abs_sat(current_q20) < c->edge_band_q20) {
+    arrival->earliest = sent + c->released_ticks;
+    arrival->latest = sent + c->blocked_ticks;
   }
+  return sent;
 }
 
 ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {

@@ -9,7 +9,7 @@
 #ifndef STILLSPIN_SVPWM_DEAD_TIME_H
 #define STILLSPIN_SVPWM_DEAD_TIME_H
 
-#include "svpwm/pattern.h"
+#include "svpwm/ripple.h"
 
 typedef struct {
   int16_t blocked_ticks;   // dead time + turn-on delay, 0..240
@@ -26,11 +26,22 @@ typedef struct {
 /// Derives the constants; the first five members are set by hand.
 void dead_time_design(dead_time_config_t* c);
 
-/// Commands that make the motor see the wanted edges. current_q20: mean phase currents in that period, alpha-beta, A;
-/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V. An edge where the current is below edge_band is
-/// not certain: with the other sign than predicted it comes up to blocked - released ticks early or late.
-void dead_time_compensate(const dead_time_config_t* c, const svpwm_pulses_t* wanted, ab_t current_q20,
-                          int32_t admittance_q30, int32_t link_q16, svpwm_pulses_t* command, svpwm_arrival_t* arrival);
+/// An edge at a current whose sign is not certain, or not trusted.
+int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, int32_t current_q20,
+                                svpwm_arrival_t* arrival);
+
+/// The command, in ticks, that makes the motor see an edge where it is wanted; current_q20: of its phase at the edge,
+/// A. With a current below edge_band an edge is not certain: with the other sign than predicted it comes up to blocked
+/// - released ticks early or late.
+static inline int32_t dead_time_send(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, int32_t current_q20,
+                                     svpwm_arrival_t* arrival) {
+  const int32_t blocking = e->falls ? -current_q20 : current_q20;
+  arrival->earliest = e->tick;
+  arrival->latest = e->tick;
+  if (blocking >= c->certain_q20) return e->tick - c->blocked_delay_ticks;
+  if (blocking <= -c->certain_q20) return e->tick - c->released_delay_ticks;
+  return dead_time_send_in_doubt(c, e, current_q20, arrival);
+}
 
 /// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
 ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20);

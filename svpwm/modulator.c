@@ -12,6 +12,7 @@ void modulator_reset(modulator_t* s) {
   s->alternating.leg = 0;
   s->alternating.pair_first = false;
   s->is_alternating = true;
+  s->ticks_per_volt_q20 = 0;
 }
 
 // Leaves the alternating layout at its limit and comes back with a fifth to spare.
@@ -22,7 +23,8 @@ static bool alternate(const modulator_t* s, const modulator_config_t* c, const s
 
 modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, excitation_t excitation,
                                   ab_t voltage_q16, int32_t link_q16, svpwm_pulses_t* pulses) {
-  const svpwm_on_time_t t = svpwm_on_time(voltage_q16, link_q16);
+  s->ticks_per_volt_q20 = svpwm_ticks_per_volt_q20(link_q16, s->ticks_per_volt_q20);
+  const svpwm_on_time_t t = svpwm_on_time(voltage_q16, s->ticks_per_volt_q20);
   const bool opposite = excitation == EXCITATION_ALTERNATING || excitation == EXCITATION_CHEAPEST;
   s->is_alternating = opposite && alternate(s, c, &t);
   if (s->is_alternating) {

@@ -23,7 +23,8 @@ typedef struct {
 
 typedef struct {
   alternating_state_t alternating;
-  bool is_alternating;  // layout of the last period
+  bool is_alternating;         // layout of the last period
+  int32_t ticks_per_volt_q20;  // of its DC link
 } modulator_t;
 
 typedef struct {

@@ -1,6 +1,8 @@
 #include "svpwm/on_time.h"
 
 #define LINK_MIN_Q16 655360L  // 10 V
+#define PERIOD_Q12 40960000L  // ticks
+#define PER_PERIOD_Q44 1759218604L
 
 static int32_t largest(abc_t x) { return q_max(x.a, q_max(x.b, x.c)); }
 static int32_t smallest(abc_t x) { return q_min(x.a, q_min(x.b, x.c)); }
@@ -16,9 +18,15 @@ static void sort_legs(svpwm_on_time_t* t) {
   t->mid = (uint16_t)(3u - t->hi - t->lo);
 }
 
-svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16) {
+int32_t svpwm_ticks_per_volt_q20(int32_t link_q16, int32_t last_q20) {
+  const int32_t volts_q16 = q_max(link_q16, LINK_MIN_Q16);
+  const int32_t off_q12 = q_sat64(PERIOD_Q12 - q_shr64((int64_t)volts_q16 * last_q20, 24));
+  if (q_abs_sat(off_q12) > PERIOD_Q12 / 256) return q_over(SVPWM_PERIOD_TICKS, q_invert(volts_q16), 36);
+  return last_q20 + q_mul_floor(last_q20, q_mul_floor(off_q12, PER_PERIOD_Q44, 25), 31);
+}
+
+svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t ticks_per_volt_q20) {
   svpwm_on_time_t t;
-  const int32_t ticks_per_volt_q20 = q_over(SVPWM_PERIOD_TICKS, q_invert(q_max(link_q16, LINK_MIN_Q16)), 36);
   abc_t v = frame_inverse_clarke(voltage_q16);
   t.realised_q16 = voltage_q16;
   const int32_t spread_q4 = q_mul_sat(largest(v) - smallest(v), ticks_per_volt_q20, 32);

@@ -18,7 +18,12 @@ typedef struct {
   bool limited;          // the command was longer than what fits and has been shortened in its direction
 } svpwm_on_time_t;
 
-/// voltage_q16: wanted vector, V; link_q16: DC-link voltage, V, at least 10 V (less is taken as 10 V).
-svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t link_q16);
+/// Ticks per volt, Q20, of a DC-link voltage in V, at least 10 V (less is taken as 10 V). `last` is the one of the last
+/// period, or 0: where the link has moved by less than 0.4 %, one step of Newton's method makes the new one of it, to
+/// 2e-5.
+int32_t svpwm_ticks_per_volt_q20(int32_t link_q16, int32_t last_q20);
+
+/// voltage_q16: wanted vector, V.
+svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t ticks_per_volt_q20);
 
 #endif

@@ -52,10 +52,9 @@ static inline uint32_t svpwm_next_edge(uint32_t* order) {
   return edge;
 }
 
-/// When edges come at the motor, by their numbers. Both are the instant wanted where that is certain.
+/// When an edge comes at the motor, ticks. Both are the instant wanted where that is certain.
 typedef struct {
-  int16_t earliest[SVPWM_EDGES];
-  int16_t latest[SVPWM_EDGES];
+  int32_t earliest, latest;
 } svpwm_arrival_t;
 
 /// An interval of constant switching state that is long enough to sample in.

@@ -35,30 +35,15 @@ ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
   return v;
 }
 
-// Three times a leg less the sum of the three. A leg has been high for nothing at its rise and for all of its pulse at
-// its fall, so at both only the sum of the times that all legs have been high is needed, which grows along the edges.
-void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16,
-                           int32_t at_q20[SVPWM_EDGES]) {
-  const int32_t gain_q28 = q_mul_floor(q_mul_floor(link_q16, admittance_q30, 26), PER_THIRD_Q58, 30);
+svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16) {
   const int32_t a = svpwm_on_ticks(p, 0);
   const int32_t b = svpwm_on_ticks(p, 1);
   const int32_t c = svpwm_on_ticks(p, 2);
-  const int32_t rest[SVPWM_EDGES] = {2 * a - b - c, 2 * b - c - a, 2 * c - a - b,
-                                     2 * a - b - c, 2 * b - c - a, 2 * c - a - b};
-  const int32_t own[SVPWM_EDGES] = {0, 0, 0, 3 * a, 3 * b, 3 * c};
-  static const int32_t step[SVPWM_EDGES] = {1, 1, 1, -1, -1, -1};
-  uint32_t order = p->order;
-  int32_t passed = 0;
-  int32_t before = 0;
-  int32_t high = 0;
-  while (order != 0u) {  // the last edge is a falling one: none of these is 0
-    const uint32_t edge = svpwm_next_edge(&order);
-    const int32_t tick = p->at[edge];
-    passed += high * (tick - before);
-    before = tick;
-    high += step[edge];
-    // At most N^2; times 16 for the upper word to be that of a shift by 28.
-    const int32_t ripple = (own[edge] - passed) * (int32_t)SVPWM_PERIOD_TICKS - rest[edge] * tick;
-    at_q20[edge] = q_mul_hi(ripple * 16, gain_q28);
-  }
+  const svpwm_ripple_walk_t w = {p,
+                                 p->order,
+                                 {3 * a, 3 * b, 3 * c},
+                                 -(a + b + c),
+                                 0,
+                                 q_mul_floor(q_mul_floor(link_q16, admittance_q30, 26), PER_THIRD_Q58, 30)};
+  return w;
 }

@@ -18,9 +18,43 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t c
 /// Mean voltage of a period with these pulses, V Q16.
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
 
-/// Ripple current of each edge's own phase at that edge, A Q20. admittance_q30: mean T/L, A per V and period; link_q16:
-/// DC link, V; together up to 1000 A.
-void svpwm_edge_ripple_q20(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16,
-                           int32_t at_q20[SVPWM_EDGES]);
+/// A walk along the edges that says the ripple current of each edge's own phase at that edge.
+///
+/// Three times a leg less the sum of the three. A leg has been high for nothing at its rise and for all of its pulse at
+/// its fall, and the sum of all legs is a line t slope + offset between two edges.
+typedef struct {
+  const svpwm_pulses_t* pulses;
+  uint32_t order;           // of the edges that are left
+  int32_t on3[SVPWM_LEGS];  // three times the pulses' lengths, ticks
+  int32_t slope, offset;    // of the sum of the legs, of the DC-link voltage and 1/N of a tick
+  int32_t gain_q28;         // A per ripple
+} svpwm_ripple_walk_t;
+
+typedef struct {
+  uint32_t edge, leg;
+  bool falls;
+  int32_t tick;
+  int32_t ripple_q20;  // A
+} svpwm_ripple_edge_t;
+
+/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together up to 1000 A.
+svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16);
+
+/// The next edge; there is one while `order` is not 0, as the last edge is a falling one.
+static inline svpwm_ripple_edge_t svpwm_ripple_next(svpwm_ripple_walk_t* w) {
+  svpwm_ripple_edge_t e;
+  e.edge = svpwm_next_edge(&w->order);
+  e.falls = e.edge >= SVPWM_LEGS;
+  e.leg = e.falls ? e.edge - SVPWM_LEGS : e.edge;
+  e.tick = w->pulses->at[e.edge];
+  const int32_t change = e.falls ? -SVPWM_PERIOD_TICKS : SVPWM_PERIOD_TICKS;
+  const int32_t own = e.falls ? w->on3[e.leg] * (int32_t)SVPWM_PERIOD_TICKS : 0;
+  const int32_t ripple = own - (w->on3[e.leg] + w->slope) * e.tick - w->offset;
+  w->slope += change;
+  w->offset -= change * e.tick;
+  // At most N^2; times 16 for the upper word to be that of a shift by 28.
+  e.ripple_q20 = q_mul_hi(ripple * 16, w->gain_q28);
+  return e;
+}
 
 #endif

@@ -13,11 +13,6 @@ typedef struct {
   int16_t last_tick;       // the last burst must have been triggered by here, so that it is read before the period ends
 } sampling_config_t;
 
-/// Fills windows and window_count of the pattern: the longest ones, in the order of time. Samples keep off edges that
-/// are not certain: a window begins when the edges before it have come at the latest, and ends when those behind it can
-/// come at the earliest.
-void svpwm_find_windows(const sampling_config_t* c, const svpwm_arrival_t* arrival, svpwm_pattern_t* pattern);
-
 /// Trigger instants of the two bursts of a window.
 static inline int16_t svpwm_burst_start(const sampling_config_t* c, const svpwm_window_t* w) {
   return (int16_t)(w->begin + c->settle_ticks);
@@ -26,5 +21,43 @@ static inline int16_t svpwm_burst_end(const sampling_config_t* c, const svpwm_wi
   const int16_t at_edge = (int16_t)(w->end - c->burst_ticks);
   return (at_edge < c->last_tick) ? at_edge : c->last_tick;
 }
+
+/// A walk along the edges that finds the longest windows, in the order of time. Samples keep off edges that are not
+/// certain: a window begins when the edges before it have come at the latest, and ends when those behind it can come at
+/// the earliest.
+typedef struct {
+  const sampling_config_t* c;
+  svpwm_pattern_t* pattern;
+  int32_t shortest;      // interval worth a look, ticks
+  int32_t begin, ended;  // of the interval, of the last window
+  uint32_t state;
+} svpwm_finder_t;
+
+static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_pattern_t* pattern) {
+  const svpwm_finder_t f = {c, pattern, c->settle_ticks + c->burst_ticks + c->span_min_ticks, 0, 0, 0};
+  pattern->window_count = 0;
+  return f;
+}
+
+/// An edge that may come before the one that has ended the last window, and an interval.
+void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end);
+void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* interval);
+
+static inline void svpwm_finder_end_interval(svpwm_finder_t* f, int32_t end) {
+  if (end - f->begin < f->shortest) return;  // most intervals are short
+  const svpwm_window_t interval = {(int16_t)f->begin, (int16_t)end, (uint16_t)f->state};
+  svpwm_take_window(f->c, f->pattern, &interval);
+  f->ended = end;
+}
+
+static inline void svpwm_finder_pass(svpwm_finder_t* f, uint32_t leg, const svpwm_arrival_t* edge) {
+  if (edge->earliest < f->ended) svpwm_shorten_window(f->c, f->pattern, edge->earliest);
+  svpwm_finder_end_interval(f, edge->earliest);
+  f->begin = q_max(f->begin, edge->latest);
+  f->state ^= 1uL << leg;
+}
+
+/// Behind the last edge: the period's end cuts some.
+static inline void svpwm_finder_finish(svpwm_finder_t* f) { svpwm_finder_end_interval(f, SVPWM_PERIOD_TICKS); }
 
 #endif

@@ -9,7 +9,7 @@ using namespace stillspin::test;
 constexpr double kLink = 300.0;
 
 TEST(Alternating, SixPeriodsGoRoundThePhasesAndTurnTheOrder) {
-  const svpwm_on_time_t t = svpwm_on_time(raw_ab({6.0, -3.0}, 16), raw(kLink, 16));
+  const svpwm_on_time_t t = on_time(raw_ab({6.0, -3.0}, 16), raw(kLink, 16));
   alternating_state_t s = {0, false};
   for (int round = 0; round < 2; ++round) {
     for (int n = 0; n < 6; ++n) {
@@ -34,7 +34,7 @@ TEST(Alternating, MeanVoltageAndPulseLengths) {
     const double link = random.between(40.0, 420.0);
     const auto pulse = static_cast<std::int16_t>(random.between(1500.0, 4700.0));
     const Vector v = any_voltage(random, link, 0.4);
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
     if (!svpwm_alternating_fits(&t, pulse)) continue;
     alternating_state_t s = {static_cast<std::uint16_t>(random.below(3)), random.below(2) != 0};
     const int x = s.leg;

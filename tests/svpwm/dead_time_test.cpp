@@ -61,26 +61,24 @@ TEST(DeadTime, TheMotorSeesTheWantedEdges) {
   for (int n = 0; n < 4000; ++n) {
     const svpwm_pulses_t wanted = some_pulses(random);
     const Vector mean = random.direction(random.between(0.0, 12.0));
-    svpwm_pulses_t command;
-    svpwm_arrival_t arrival;
-    dead_time_compensate(&c, &wanted, raw_ab(mean, 20), raw(y, 30), raw(kLink, 16), &command, &arrival);
+    const svpwm_pulses_t command = sent(c, wanted, {raw_ab(mean, 20), raw(y, 30), raw(kLink, 16)}).command;
     for (int leg = 0; leg < 3; ++leg) {
       for (const bool rising : {true, false}) {
         const std::int16_t edge = wanted.at[rising ? leg : SVPWM_LEGS + leg];
-        const std::int16_t sent = command.at[rising ? leg : SVPWM_LEGS + leg];
+        const std::int16_t at = command.at[rising ? leg : SVPWM_LEGS + leg];
         // what counts is the current at the edge: mean and ripple
         const Vector flux = real(svpwm_ripple_q16(&wanted, &edge, 1, raw(kLink, 16)), 16);
         const double current = phase(mean + flux * y, leg);
-        ASSERT_GE(sent, 1);
-        ASSERT_LE(sent, 9999);
+        ASSERT_GE(at, 1);
+        ASSERT_LE(at, 9999);
         if (std::fabs(current) < 0.202) {
           // inside the band the shift is between the two
-          ASSERT_GE(edge - sent, kTurnOff - 1);
-          ASSERT_LE(edge - sent, kDeadTicks + kTurnOn + 1);
+          ASSERT_GE(edge - at, kTurnOff - 1);
+          ASSERT_LE(edge - at, kDeadTicks + kTurnOn + 1);
           continue;
         }
         (current > 0.0 ? positive : negative)++;
-        ASSERT_NEAR(edge_at_motor(sent, rising, current), edge, 1.0) << current << ", leg " << leg << rising;
+        ASSERT_NEAR(edge_at_motor(at, rising, current), edge, 1.0) << current << ", leg " << leg << rising;
       }
     }
   }
@@ -92,9 +90,7 @@ TEST(DeadTime, InTheBandTheShiftIsLinear) {
   const dead_time_config_t c = config();
   const svpwm_pulses_t wanted = ordered({{2000, 2000, 2000, 7000, 7000, 7000}, 0});  // 000 and 111: no ripple
   for (double i = -0.2; i <= 0.2; i += 0.02) {
-    svpwm_pulses_t command;
-    svpwm_arrival_t arrival;
-    dead_time_compensate(&c, &wanted, raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16), &command, &arrival);
+    const svpwm_pulses_t command = sent(c, wanted, {raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16)}).command;
     const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
     const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
     EXPECT_NEAR(wanted.at[0] - command.at[0], middle + half * i / 0.2, 0.51) << i;

@@ -38,29 +38,25 @@ ab_t phases(double a, double b) {
   return frame_clarke2(static_cast<std::int32_t>(a * 1048576), static_cast<std::int32_t>(b * 1048576));
 }
 
-svpwm_pulses_t command_of(const svpwm_pulses_t& wanted, ab_t current, svpwm_arrival_t* arrival) {
-  const dead_time_config_t c = dead_time();
-  svpwm_pulses_t command;
-  dead_time_compensate(&c, &wanted, current, 17179869L, 300L * 65536L, &command, arrival);  // 0.016 A per V
-  return command;
+Sent sent_at(const svpwm_pulses_t& wanted, ab_t current) {
+  return sent(dead_time(), wanted, {current, 17179869L, 300L * 65536L});  // 0.016 A per V
 }
 
-svpwm_pattern_t guarded(const sampling_config_t& s, const svpwm_pulses_t& wanted, const svpwm_arrival_t& arrival) {
+svpwm_pattern_t guarded(const sampling_config_t& s, const svpwm_pulses_t& wanted, const Arrivals& arrivals) {
   svpwm_pattern_t p = {};
   p.pulses = wanted;
-  svpwm_find_windows(&s, &arrival, &p);
+  find_windows(s, arrivals, &p);
   return p;
 }
 
 TEST(Guard, CertainEdgesLeaveTheWindowsAlone) {
   const svpwm_pulses_t wanted = alternating();
-  svpwm_arrival_t arrival;
-  command_of(wanted, phases(8.0, -4.0), &arrival);
+  const Arrivals arrivals = sent_at(wanted, phases(8.0, -4.0)).arrivals;
   for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) {
-    EXPECT_EQ(arrival.earliest[edge], wanted.at[edge]);
-    EXPECT_EQ(arrival.latest[edge], wanted.at[edge]);
+    EXPECT_EQ(arrivals[edge].earliest, wanted.at[edge]);
+    EXPECT_EQ(arrivals[edge].latest, wanted.at[edge]);
   }
-  const svpwm_pattern_t p = guarded(sampling(), wanted, arrival);
+  const svpwm_pattern_t p = guarded(sampling(), wanted, arrivals);
   ASSERT_EQ(p.window_count, 2);
   EXPECT_EQ(p.windows[0].begin, 260);
   EXPECT_EQ(p.windows[0].end, 4460);
@@ -69,13 +65,13 @@ TEST(Guard, CertainEdgesLeaveTheWindowsAlone) {
 }
 
 // Whatever the sign of the current turns out to be, the motor's edge is outside of the samples.
-void expect_clear(const svpwm_pattern_t& p, const svpwm_pulses_t& command, const svpwm_arrival_t& arrival) {
+void expect_clear(const svpwm_pattern_t& p, const svpwm_pulses_t& command, const Arrivals& arrivals) {
   const sampling_config_t s = sampling();
   for (int k = 0; k < p.window_count; ++k) {
     const int first = svpwm_burst_start(&s, &p.windows[k]), last = svpwm_burst_end(&s, &p.windows[k]);
     ASSERT_GE(last - first, s.span_min_ticks);
     for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) {
-      const bool open = arrival.earliest[edge] != arrival.latest[edge];
+      const bool open = arrivals[edge].earliest != arrivals[edge].latest;
       const int early = open ? command.at[edge] + kReleased : p.pulses.at[edge];
       const int late = open ? command.at[edge] + kBlocked : p.pulses.at[edge];
       const bool before = late + s.settle_ticks <= first, after = early >= last + s.burst_ticks;
@@ -89,12 +85,11 @@ TEST(Guard, WhateverTheSignTheSamplesAreInsideTheWindow) {
   const svpwm_pulses_t wanted = alternating();
   for (double a = -3.0; a <= 3.0; a += 0.05) {
     for (double b = -3.0; b <= 3.0; b += 0.25) {
-      svpwm_arrival_t arrival;
-      const svpwm_pulses_t command = command_of(wanted, phases(a, b), &arrival);
-      for (unsigned k = 0; k < SVPWM_EDGES; ++k) guarded_edges += arrival.earliest[k] != arrival.latest[k];
-      const svpwm_pattern_t p = guarded(sampling(), wanted, arrival);
+      const auto [command, arrivals] = sent_at(wanted, phases(a, b));
+      for (unsigned k = 0; k < SVPWM_EDGES; ++k) guarded_edges += arrivals[k].earliest != arrivals[k].latest;
+      const svpwm_pattern_t p = guarded(sampling(), wanted, arrivals);
       ASSERT_GE(p.window_count, 2);
-      ASSERT_NO_FATAL_FAILURE(expect_clear(p, command, arrival)) << a << ", " << b << " A";
+      ASSERT_NO_FATAL_FAILURE(expect_clear(p, command, arrivals)) << a << ", " << b << " A";
     }
   }
   EXPECT_GT(guarded_edges, 500);
@@ -111,11 +106,10 @@ TEST(Guard, SamplesKeepOffEdgesThatMayChangePlaces) {
       wanted.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(wanted.at[leg] + 300 + 100 * random.below(30));
     }
     wanted = ordered(wanted);
-    svpwm_arrival_t arrival;
-    const svpwm_pulses_t command = command_of(wanted, phases(random.between(-2.0, 2.0), 0.3), &arrival);
-    const svpwm_pattern_t p = guarded(sampling(), wanted, arrival);
+    const auto [command, arrivals] = sent_at(wanted, phases(random.between(-2.0, 2.0), 0.3));
+    const svpwm_pattern_t p = guarded(sampling(), wanted, arrivals);
     open += p.window_count > 0;
-    ASSERT_NO_FATAL_FAILURE(expect_clear(p, command, arrival)) << n;
+    ASSERT_NO_FATAL_FAILURE(expect_clear(p, command, arrivals)) << n;
   }
   EXPECT_GT(open, 2000);
 }
@@ -125,9 +119,8 @@ TEST(Guard, AWindowThatBecomesTooShortGoes) {
   sampling_config_t s = sampling();
   s.span_min_ticks = 2880;  // certain, 3020 and 2890 ticks lie between the bursts
   EXPECT_EQ(guarded(s, wanted, certain(wanted)).window_count, 2);
-  svpwm_arrival_t arrival;
-  command_of(wanted, phases(0.0, 0.0), &arrival);
-  EXPECT_LT(guarded(s, wanted, arrival).window_count, 2);
+  const Arrivals arrivals = sent_at(wanted, phases(0.0, 0.0)).arrivals;
+  EXPECT_LT(guarded(s, wanted, arrivals).window_count, 2);
 }
 
 }  // namespace

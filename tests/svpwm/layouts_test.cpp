@@ -9,14 +9,14 @@ using namespace stillspin::test;
 constexpr double kLink = 300.0;
 
 svpwm_pulses_t extended(const extended_config_t& c, Vector v, double link = kLink) {
-  const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+  const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
   svpwm_pulses_t p;
   svpwm_extended(&c, &t, &p);
   return p;
 }
 
 svpwm_pulses_t centred(Vector v, double link = kLink) {
-  const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+  const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
   svpwm_pulses_t p;
   svpwm_centred(&t, &p);
   return p;
@@ -61,7 +61,7 @@ TEST(LongZero, MeanVoltagePulsesAndOneZeroVectorInOnePiece) {
   for (int n = 0; n < 3000; ++n) {
     const double link = random.between(40.0, 420.0);
     const Vector v = any_voltage(random, link, 0.94);
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
     svpwm_pulses_t p;
     svpwm_long_zero(&t, &p);
     ASSERT_NO_FATAL_FAILURE(expect_valid(p));
@@ -81,7 +81,7 @@ TEST(Extended, MeanVoltageAndPulses) {
     const auto most = static_cast<std::int16_t>(random.between(least, 4000.0));
     const extended_config_t c = {least, most, static_cast<std::int16_t>(random.between(0.0, 5000.0))};
     const svpwm_pulses_t p = extended(c, v, link);
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
     ASSERT_NO_FATAL_FAILURE(expect_valid(p)) << v.x << ", " << v.y;
     ASSERT_NO_FATAL_FAILURE(expect_mean(p, real(t.realised_q16, 16), link)) << v.x << ", " << v.y;
   }
@@ -124,7 +124,7 @@ TEST(Extended, BothVectorsAreAsLongAsFits) {
   int with_zero = 0, without_zero = 0, none = 0;
   for (int n = 0; n < 1500; ++n) {
     const Vector v = any_voltage(random, kLink, 1.0);
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(kLink, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(kLink, 16));
     const svpwm_pulses_t p = extended(c, v);
     const std::vector<svpwm_window_t> list = intervals(p);
     const Best wanted = best(c, t);
@@ -180,7 +180,7 @@ TEST(CheapestPair, MeanVoltageAndPulses) {
     const double link = random.between(40.0, 420.0);
     const auto least = static_cast<std::int16_t>(random.between(500.0, 3000.0));
     const auto most = static_cast<std::int16_t>(random.between(least, 4000.0));
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(any_voltage(random, link, 1.0), 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(any_voltage(random, link, 1.0), 16), raw(link, 16));
     const svpwm_pulses_t p = cheapest({least, most, 0}, t);
     ASSERT_NO_FATAL_FAILURE(expect_valid(p)) << n;
     ASSERT_NO_FATAL_FAILURE(expect_mean(p, real(t.realised_q16, 16), link)) << n;
@@ -193,7 +193,7 @@ TEST(CheapestPair, IsLongAndNeedsTheLeastExtension) {
   const extended_config_t c = {1800, 3000, 0};
   int zero_pairs = 0, active_pairs = 0, untouched = 0;
   for (int n = 0; n < 4000; ++n) {
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(any_voltage(random, kLink, 1.0), 16), raw(kLink, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(any_voltage(random, kLink, 1.0), 16), raw(kLink, 16));
     const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
     const svpwm_pulses_t p = cheapest(c, t);
     const std::vector<svpwm_window_t> list = intervals(p);

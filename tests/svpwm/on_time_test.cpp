@@ -12,7 +12,7 @@ TEST(OnTime, DifferencesAreTheLineToLineVoltages) {
     const double link = random.between(20.0, 900.0);
     const double angle = random.between(-kPi, kPi);
     const Vector v = Vector{0.999 * random.unit() * longest_vector(angle, link), 0.0}.turned(angle);
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
     ASSERT_FALSE(t.limited) << v.x << ", " << v.y << ", " << link;
     const auto legs = legs_of(v);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -31,7 +31,7 @@ TEST(OnTime, LongVectorsKeepTheirDirection) {
     const double angle = random.between(-kPi, kPi);
     const double length = longest_vector(angle, link) * random.between(1.001, 8.0);
     const Vector v = Vector{length, 0.0}.turned(angle);
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(link, 16));
     ASSERT_TRUE(t.limited);
     const Vector realised = real(t.realised_q16, 16);
     // 2^-17 V in each component of at least 11 V: 1e-6 rad; the shortening has 30 bits
@@ -48,15 +48,29 @@ TEST(OnTime, LongVectorsKeepTheirDirection) {
 
 TEST(OnTime, LinkBelowTenVoltsIsTakenAsTen) {
   for (const double link : {-5.0, 0.0, 3.0, 10.0}) {
-    const svpwm_on_time_t t = svpwm_on_time(raw_ab({2.0, 0.0}, 16), raw(link, 16));
+    const svpwm_on_time_t t = on_time(raw_ab({2.0, 0.0}, 16), raw(link, 16));
     EXPECT_EQ(t.leg[0], 2000) << link;
     EXPECT_EQ(t.leg[1], -1000);
     EXPECT_EQ(t.leg[2], -1000);
   }
 }
 
+// A link that moves by up to 0.4 % a period is followed by one step of Newton's method, one that jumps at once.
+TEST(OnTime, TicksPerVoltFollowTheLink) {
+  Random random(132);
+  double link = 320.0;
+  std::int32_t ticks = 0;
+  for (int n = 0; n < 20000; ++n) {
+    link = (n % 500 == 0) ? random.between(12.0, 1500.0) : link * random.between(0.9962, 1.0038);
+    ticks = svpwm_ticks_per_volt_q20(raw(link, 16), ticks);
+    ASSERT_NEAR(real(ticks, 20) * link / 10000.0, 1.0, 2e-5) << link;
+  }
+  for (int n = 0; n < 3; ++n) ticks = svpwm_ticks_per_volt_q20(raw(320.0, 16), ticks);
+  EXPECT_NEAR(real(ticks, 20) * 320.0 / 10000.0, 1.0, 3e-7);
+}
+
 TEST(OnTime, ZeroIsZero) {
-  const svpwm_on_time_t t = svpwm_on_time({0, 0}, raw(300.0, 16));
+  const svpwm_on_time_t t = on_time(ab_t{0, 0}, raw(300.0, 16));
   EXPECT_FALSE(t.limited);
   for (const int leg : t.leg) EXPECT_EQ(leg, 0);
 }

@@ -12,6 +12,7 @@
 #include "tests/control/quantities.hpp"
 
 extern "C" {
+#include "svpwm/edges.h"
 #include "svpwm/modulator.h"
 }
 
@@ -49,20 +50,56 @@ inline void expect_ordered(const svpwm_pulses_t& p) {
   ASSERT_EQ(order, 0u);
 }
 
+/// On-times at a DC-link voltage that nothing is known of.
+inline svpwm_on_time_t on_time(ab_t voltage_q16, std::int32_t link_q16) {
+  return svpwm_on_time(voltage_q16, svpwm_ticks_per_volt_q20(link_q16, 0));
+}
+
+/// When edges come, by their numbers.
+using Arrivals = std::array<svpwm_arrival_t, SVPWM_EDGES>;
+
 /// Every edge comes when it is wanted.
-inline svpwm_arrival_t certain(const svpwm_pulses_t& p) {
-  svpwm_arrival_t a;
-  std::copy_n(p.at, SVPWM_EDGES, a.earliest);
-  std::copy_n(p.at, SVPWM_EDGES, a.latest);
+inline Arrivals certain(const svpwm_pulses_t& p) {
+  Arrivals a;
+  for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) a[edge] = {p.at[edge], p.at[edge]};
   return a;
+}
+
+/// The finder's walk with edges that come then.
+inline void find_windows(const sampling_config_t& c, const Arrivals& arrivals, svpwm_pattern_t* p) {
+  std::uint32_t order = p->pulses.order;
+  svpwm_finder_t finder = svpwm_finder(&c, p);
+  while (order != 0u) {
+    const std::uint32_t edge = svpwm_next_edge(&order);
+    svpwm_finder_pass(&finder, edge % SVPWM_LEGS, &arrivals[edge]);
+  }
+  svpwm_finder_finish(&finder);
+}
+
+/// The compensation of all edges.
+struct Sent {
+  svpwm_pulses_t command;
+  Arrivals arrivals;
+};
+
+inline Sent sent(const dead_time_config_t& c, const svpwm_pulses_t& wanted, const svpwm_carried_t& carried) {
+  const abc_t mean = frame_inverse_clarke(carried.current_q20);
+  const std::array<std::int32_t, SVPWM_LEGS> mean_q20 = {mean.a, mean.b, mean.c};
+  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, carried.admittance_q30, carried.link_q16);
+  Sent s = {};
+  while (walk.order != 0u) {
+    const svpwm_ripple_edge_t e = svpwm_ripple_next(&walk);
+    const std::int32_t current = mean_q20[e.leg] + e.ripple_q20;
+    s.command.at[e.edge] = static_cast<std::int16_t>(dead_time_send(&c, &e, current, &s.arrivals[e.edge]));
+  }
+  return s;
 }
 
 /// A pattern of pulses whose edges are certain.
 inline svpwm_pattern_t pattern_of(const svpwm_pulses_t& pulses, const sampling_config_t& c) {
   svpwm_pattern_t p = {};
   p.pulses = pulses;
-  const svpwm_arrival_t arrival = certain(pulses);
-  svpwm_find_windows(&c, &arrival, &p);
+  find_windows(c, certain(pulses), &p);
   return p;
 }
 

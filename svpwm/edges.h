@@ -1,0 +1,20 @@
+// From the edges that are wanted at the motor to those that are sent, and to the windows between them: one pass.
+
+#ifndef STILLSPIN_SVPWM_EDGES_H
+#define STILLSPIN_SVPWM_EDGES_H
+
+#include "svpwm/dead_time.h"
+#include "svpwm/windows.h"
+
+/// What the legs carry in the period, for the current at an edge.
+typedef struct {
+  ab_t current_q20;        // mean phase currents, alpha-beta, A
+  int32_t admittance_q30;  // mean T/L, A per V and period
+  int32_t link_q16;        // DC link, V
+} svpwm_carried_t;
+
+/// Commands that make the motor see the edges of the pattern's pulses, and the pattern's windows.
+void svpwm_send(const dead_time_config_t* c, const sampling_config_t* sampling, const svpwm_carried_t* carried,
+                svpwm_pattern_t* pattern, svpwm_pulses_t* command);
+
+#endif
