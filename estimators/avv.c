@@ -7,6 +7,7 @@
 void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
   tracking_observer_preset(&s->observer, angle_bam, speed_bpp, load_accel_q8);
   s->error_bam = 0;
+  s->regression.information = 0;
 }
 
 // Half the turn of the saliency from where the model has it: eq (41) in the observed frame. The model's saliency is
@@ -52,11 +53,15 @@ static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in) {
   tracking_observer_predict(&s->observer, in->torque_accel_q8);
   deviation_t d[ESTIMATOR_WINDOWS];
-  estimator_frame_t f[ESTIMATOR_WINDOWS];
+  estimator_frame_t own[ESTIMATOR_WINDOWS];
+  const estimator_frame_t* f = in->frames;
   const int32_t speed_bpp = s->observer.speed_bpp;
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   const deviation_model_t at = deviation_model(in->model, w_q30);
-  deviation_frames(in->windows, in->window_count, deviation_middle(s->observer.angle_bam, speed_bpp), w_q30, f);
+  if (f == 0) {
+    deviation_frames(in->windows, in->window_count, deviation_middle(s->observer.angle_bam, speed_bpp), w_q30, own);
+    f = own;
+  }
   for (uint16_t k = 0; k < in->window_count; k++) d[k] = deviation_in_frame(&at, &in->windows[k], &f[k]);
   regression_evaluate(&s->regression, d, in);
   if (s->regression.information > 0) {

@@ -18,6 +18,10 @@ void blend_reset(blend_t* s) {
   s->disagreement_bam = 0;
 }
 
+bool blend_is_low(const blend_t* s) { return s->region == BLEND_LOW && s->share_q15 == ONE_Q15; }
+
+bool blend_is_high(const blend_t* s) { return s->region == BLEND_HIGH && s->share_q15 == 0; }
+
 static blend_region_t next_region(blend_region_t now, const blend_config_t* c, int32_t speed) {
   const int32_t low = (now == BLEND_LOW) ? c->low_bpp + c->hysteresis_bpp : c->low_bpp;
   const int32_t high = (now == BLEND_HIGH) ? c->high_bpp - c->hysteresis_bpp : c->high_bpp;
@@ -30,6 +34,12 @@ static int32_t wanted_share_q15(const blend_t* s, const blend_config_t* c, int32
   if (s->region == BLEND_LOW) return ONE_Q15;
   if (s->region == BLEND_HIGH) return 0;
   return q_clamp(q_mul_sat(c->high_bpp - speed, c->per_range_q30, 30), 0, ONE_Q15);
+}
+
+void blend_preset(blend_t* s, const blend_config_t* c, int32_t speed_bpp) {
+  blend_reset(s);
+  s->region = next_region(BLEND_BOTH, c, q_abs_sat(speed_bpp));
+  s->share_q15 = wanted_share_q15(s, c, q_abs_sat(speed_bpp));
 }
 
 static int32_t mix(int32_t low, int32_t high, int32_t share_q15) {

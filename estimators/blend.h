@@ -30,6 +30,13 @@ bool blend_design(blend_config_t* c, int32_t low_bpp, int32_t high_bpp);
 
 void blend_reset(blend_t* s);
 
+/// Where the speed is known.
+void blend_preset(blend_t* s, const blend_config_t* c, int32_t speed_bpp);
+
+/// True where the result is the low-speed, or the high-speed, estimator's alone and will be in this step.
+bool blend_is_low(const blend_t* s);
+bool blend_is_high(const blend_t* s);
+
 estimator_output_t blend_step(blend_t* s, const blend_config_t* c, const estimator_output_t* low,
                               const estimator_output_t* high);
 

@@ -31,30 +31,33 @@ void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
   deviation_model_t at;
   const int32_t turn_dd_q22 = q_mul_hi(w_q30, m->k_dd_q24);
-  at.y_dd_q26 = q_shr(m->yd_q30, 4);
-  at.y_dq_q26 = q_shr(m->ydq_q30, 4);
-  at.y_qq_q26 = q_shr(m->yq_q30, 4);
-  const int32_t cross_q22 = q_mul_floor(at.y_dq_q26, m->rs_q24, 28);
-  at.a_dd_q22 = q_mul_floor(at.y_dd_q26, m->rs_q24, 28) - turn_dd_q22;
+  const int32_t y_dd_q26 = q_shr(m->yd_q30, 4);
+  const int32_t y_dq_q26 = q_shr(m->ydq_q30, 4);
+  const int32_t y_qq_q26 = q_shr(m->yq_q30, 4);
+  const int32_t cross_q22 = q_mul_floor(y_dq_q26, m->rs_q24, 28);
+  at.less_dd_q26 = -y_dd_q26;
+  at.less_dq_q26 = -y_dq_q26;
+  at.less_qq_q26 = -y_qq_q26;
+  at.a_dd_q22 = q_mul_floor(y_dd_q26, m->rs_q24, 28) - turn_dd_q22;
   at.a_dq_q22 = cross_q22 - q_mul_hi(w_q30, m->k_dq_q24);
   at.a_qd_q22 = cross_q22 - q_mul_hi(w_q30, m->k_qd_q24);
-  at.a_qq_q22 = q_mul_floor(at.y_qq_q26, m->rs_q24, 28) + turn_dd_q22;
+  at.a_qq_q22 = q_mul_floor(y_qq_q26, m->rs_q24, 28) + turn_dd_q22;
   at.emf_q20.d = q_mul_floor(w_q30, m->k0_q20.d, 30);
   at.emf_q20.q = q_mul_floor(w_q30, m->k0_q20.q, 30);
   return at;
 }
 
-// a x + b y - c u - d v, Q42 to Q20: whole products, rounded once.
+// a x + b y + c u + d v, Q42 to Q20: whole products, rounded once.
 static int32_t of_four(int32_t a, int32_t x, int32_t b, int32_t y, int32_t c, int32_t u, int32_t d, int32_t v) {
-  return (int32_t)q_shr64((int64_t)a * x + (int64_t)b * y - (int64_t)c * u - (int64_t)d * v, 22);
+  return (int32_t)q_shr64((int64_t)a * x + (int64_t)b * y + (int64_t)c * u + (int64_t)d * v, 22);
 }
 
 deviation_t deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f) {
   const dq_t slope_q20 = frame_park(w->slope_q20, f->rotation);
   const dq_t v = frame_park(w->voltage_q16, f->rotation);
   const dq_t i = f->current_q20;
-  const dq_t rest = {of_four(at->a_dd_q22, i.d, at->a_dq_q22, i.q, at->y_dd_q26, v.d, at->y_dq_q26, v.q),
-                     of_four(at->a_qd_q22, i.d, at->a_qq_q22, i.q, at->y_dq_q26, v.d, at->y_qq_q26, v.q)};
+  const dq_t rest = {of_four(at->a_dd_q22, i.d, at->a_dq_q22, i.q, at->less_dd_q26, v.d, at->less_dq_q26, v.q),
+                     of_four(at->a_qd_q22, i.d, at->a_qq_q22, i.q, at->less_dq_q26, v.d, at->less_qq_q26, v.q)};
   const deviation_t d = {
       {slope_q20.d + rest.d - at->emf_q20.d, slope_q20.q + rest.q - at->emf_q20.q}, v, f->current_q20};
   return d;

@@ -15,7 +15,7 @@
 
 /// The model at a speed.
 typedef struct {
-  int32_t y_dd_q26, y_dq_q26, y_qq_q26;            // Y, A per V and period
+  int32_t less_dd_q26, less_dq_q26, less_qq_q26;   // -Y, A per V and period
   int32_t a_dd_q22, a_dq_q22, a_qd_q22, a_qq_q22;  // A, A per period and A
   dq_t emf_q20;                                    // w k0, A per period
 } deviation_model_t;

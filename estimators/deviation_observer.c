@@ -26,7 +26,9 @@
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define INFORMATION_MAX (8L * 16777216L)
 #define HALF_Q9 256L
-#define PERIODS_MAX 8L        // the covariance is renewed at the latest
+#define DUE_Q9 128L
+#define PERIODS_DUE 7L
+#define PERIODS_MAX 12L       // the covariance is renewed at the latest
 #define LEFT_PERIODS_MAX 64L  // nobody takes what is left: it begins anew
 
 typedef struct {
@@ -199,7 +201,7 @@ static information_t information_of(const sums_t* n, const deviation_observer_co
 
 // (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^14: the variances are limited to 512 and, with them, the
 // covariances; the information of a period to 8, and that of the periods before makes up half a variance at most
-// (gain_is_old), or what 512 units of speed or load make of one in 8 periods.
+// (gain_is_old), or what 512 units of speed or load make of one in 12 periods.
 static gain_t times_information(const deviation_gathered_t* n, int32_t x_a_q20, int32_t x_s_q20) {
   const gain_t g = {q_mul_add_floor(n->aa_q21, x_a_q20, n->as_q21, x_s_q20, 25),
                     q_mul_add_floor(n->as_q21, x_a_q20, n->ss_q21, x_s_q20, 25)};
@@ -285,18 +287,29 @@ static void gather(deviation_gathered_t* g, const information_t* n) {
   g->periods++;
 }
 
-// The trace of P I beyond a half: the gain as it is would correct too much. Nor is an angle waited with that is not
-// known: with zero vectors alone at rest it would drift by 6 degrees in 2 s instead of one.
-static bool gain_is_old(const deviation_observer_t* s) {
-  const deviation_gathered_t* const g = &s->gathered;
-  return q_mul_hi(s->p_aa, g->aa_q21) + q_mul_hi(s->p_ss, g->ss_q21) > HALF_Q9 || s->p_aa > KNOWN_VARIANCE ||
-         g->periods >= PERIODS_MAX;
+// Trace of P I.
+static int32_t learnt_q9(const deviation_observer_t* s) {
+  return q_mul_hi(s->p_aa, s->gathered.aa_q21) + q_mul_hi(s->p_ss, s->gathered.ss_q21);
 }
 
-// A load that steps is not waited with, nor is what it does to the covariance in the 11 ms behind it.
-static bool load_is_new(const deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
+// Beyond a half the gain as it is would correct too much. Nor is an angle waited with that is not known: with zero
+// vectors alone at rest it would drift by 6 degrees in 2 s instead of one.
+static bool gain_is_old(const deviation_observer_t* s) {
+  return learnt_q9(s) > HALF_Q9 || s->p_aa > KNOWN_VARIANCE || s->gathered.periods >= PERIODS_MAX;
+}
+
+bool deviation_observer_is_sure(const deviation_observer_t* s) { return s->p_aa <= KNOWN_VARIANCE; }
+
+bool deviation_observer_is_due(const deviation_observer_t* s) {
+  return s->load_is_new || !deviation_observer_is_sure(s) || s->gathered.periods >= PERIODS_DUE ||
+         learnt_q9(s) > DUE_Q9;
+}
+
+// A load that steps is not waited with for long, nor is what it does to the covariance in the 11 ms behind it.
+static void note_load(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
   const bool looks_out = c->moving_step_q20 > 0 || q_abs_sat(s->speed_bpp) <= c->crawl_bpp;
-  return s->alert_q30 > ALERT_AGAIN_Q30 || (lean && looks_out && s->alert_q30 < ALERT_OVER_Q30);
+  s->leaned = s->leaned || (lean && looks_out && s->alert_q30 < ALERT_OVER_Q30);
+  s->load_is_new = s->leaned || s->alert_q30 > ALERT_AGAIN_Q30;
 }
 
 static const deviation_left_t none_left = {0, 0, 0, 0};
@@ -349,7 +362,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
 // covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
   if (s->p_aa > KNOWN_VARIANCE) return;
-  const int32_t lag_q20 = q_min(q_div(q_abs_sat(s->p_as), q_max(q_abs_sat(s->p_al), 1), 20), LAG_MAX_Q20);
+  const int32_t lag_q20 = q_min(q_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
   const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
   const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
   const int32_t taken_q8 = cogging_learn(&s->cogging, &c->cogging, &seen);
@@ -364,10 +377,12 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   follow_scores(s, &n);
   gather(&s->gathered, &n);
   const bool lean = scores_lean(s, &n);
-  if (in->renew || gain_is_old(s) || load_is_new(s, c, lean)) {
+  note_load(s, c, lean);
+  if (in->renew || gain_is_old(s)) {
     predict_covariance(s);
-    admit_load_change(s, c, lean);
+    admit_load_change(s, c, s->leaned);
     renew(s);
+    s->leaned = false;
   }
   correct(s, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);

@@ -8,8 +8,8 @@
 // Per period all windows are compressed into a 2 x 2 information matrix and a score, so that one update of the 3 x 3
 // covariance and one division do for any number of windows: P+ = P (1 + I P)^-1, x+ = x + P+ b. The states are
 // corrected in every period; the covariance, which changes slowly, need be renewed only every few periods, with the
-// information gathered in between (estimator_input_t: renew). While it is of the size that a period's information
-// makes of it, it is renewed in every period all the same.
+// information gathered in between (estimator_input_t: renew). The observer says when it is due. While it is of the size
+// that a period's information makes of it, it is renewed in every period, asked or not.
 //
 // How much the load may change is not known beforehand: a shaft that turns evenly wants a filter that is slow, a load
 // step one that is fast. The scores tell: as long as the model is right they are white; a mean beyond five of its
@@ -68,6 +68,8 @@ typedef struct {
   int32_t mean_score_q20;                      // of the angle, over 32 periods
   int32_t score_power_q24;                     // over 256 periods
   int32_t alert_q30;                           // 1 when the load has just changed, decays
+  bool load_is_new;                            // it has changed within the last 11 ms, or
+  bool leaned;                                 // the scores have said that it may be, and nothing was done about it yet
   cogging_t cogging;
   deviation_gathered_t gathered;  // information since the covariance was last renewed
   deviation_left_t left;
@@ -85,6 +87,10 @@ void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int3
 /// Says that the shaft has stood until now, and that a load may fall on it: what is seen of the speed from here on is
 /// the load's doing, and not taken for one that it had before.
 void deviation_observer_stands(deviation_observer_t* s);
+
+/// True when the covariance should be renewed in one of the next periods; while the angle is known to 5 degrees.
+bool deviation_observer_is_due(const deviation_observer_t* s);
+bool deviation_observer_is_sure(const deviation_observer_t* s);
 
 /// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were
 /// none.

@@ -32,10 +32,14 @@ static bool mean_deviation(const estimator_input_t* in, uint32_t angle_bam, int3
                            seen_t* mean) {
   seen_t sum = {0, 0};
   int32_t count = 0;
-  estimator_frame_t f[ESTIMATOR_WINDOWS];
+  estimator_frame_t own[ESTIMATOR_WINDOWS];
+  const estimator_frame_t* f = in->frames;
   const int32_t emf_q16 = q_mul(in->model->emf_q16, machine_speed_rad_q30(emf_bpp), 30);
-  deviation_frames(in->windows, in->window_count, deviation_middle(angle_bam, speed_bpp),
-                   machine_speed_rad_q30(speed_bpp), f);
+  if (f == 0) {
+    deviation_frames(in->windows, in->window_count, deviation_middle(angle_bam, speed_bpp),
+                     machine_speed_rad_q30(speed_bpp), own);
+    f = own;
+  }
   for (uint16_t k = 0; k < in->window_count; k++) {
     if (!in->windows[k].zero_vector) continue;
     see(&sum, in->model, &in->windows[k], &f[k], emf_q16);

@@ -36,7 +36,7 @@
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
 #define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond, its first part; the speed control has the first one
-#define ADAPTATION_TURN 7u         // periods in which every adaptation has its turn (position.c)
+#define ADAPTATION_TURN 5u         // places in which every adaptation has its turn (position.c)
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.
@@ -92,8 +92,12 @@ typedef struct {
   flux_observer_t flux;
   sensor_match_t sensors;
   tracking_observer_t encoder;
-  uint16_t turn;                // whose turn it is (position.c)
-  bool pausing;                 // nobody's: another task runs
+  uint16_t turn;                // who had the last turn (position.c)
+  uint16_t now;                 // who has it in this period, if anybody
+  uint16_t waited;              // periods since then
+  bool renewing, moving;        // the observer's covariance is renewed; the working point follows before its turn
+  bool judging;                 // the synchronism is judged
+  int32_t moved_q20;            // torque current of the model's working point, A
   bool is_near;                 // what was last regressed is near enough to learn from
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
   int32_t torque_accel_q8;      // acceleration of the torque of the measured current
@@ -212,9 +216,14 @@ void start_turn(drive_t* d);  // start/turning.c
 void start_step_turn(drive_t* d);
 const svpwm_pattern_t* start_short_circuit(void);
 
-/// True in a period in which a task of the millisecond will run.
-static inline bool drive_is_busy(const drive_t* d) {
-  return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD - 1u;
+/// In four periods of the millisecond, until the speed control has its turn in them, that have work of their own (and
+/// of speed_task.c the longer tasks): in two the observer's covariance is renewed, in two the synchronism is judged. Of
+/// the others as many are even as odd.
+static inline bool drive_renews_now(const drive_t* d) {
+  return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 1u;
+}
+static inline bool drive_judges_now(const drive_t* d) {
+  return d->millisecond == DRIVE_WEAKENING_PERIOD - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 4u;
 }
 
 /// True while the start turns a current vector: the position source runs, and is not used yet.

@@ -7,36 +7,59 @@
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
 
+#define MOVE_Q20 131072L                // 0.125 A: so far the working point may have moved
+#define WAITED_MAX 8u                   // periods that the turn gives way to a covariance
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
 typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t* in);
 
-// What is slow takes turns, so that no period does much of it: the covariance of the observer, the model's move to the
-// working point, and what the regression tells of machine and sensors. The turn has seven places because seven has no
-// factor in common with the six periods in which the alternating layout repeats: each adaptation sees every direction
-// of the voltage. While the shaft turns it stands still in the two periods of a millisecond in which other tasks run.
-// While a shaft is held the current moves fast, and covariance and working point follow in every period.
+// What is slow takes turns, so that no period does much of it: the model's move to the working point, and what the
+// regression tells of machine and sensors. The turn has five places because five has no factor in common with the six
+// periods in which the alternating layout repeats, nor with the six of a millisecond that are left to it while the
+// shaft turns, three even and three odd ones: each adaptation sees every direction of the voltage alike. It gives way
+// to a covariance that is due beside its own two periods, and to a working point that has moved. While a shaft is held
+// the current moves fast, and covariance and working point follow in every period.
 typedef enum {
-  TURN_RENEW = 0,  // the covariance; and the synchronism is judged
-  TURN_REGRESS = 1,
-  TURN_MOVE = 2,
-  TURN_RENEW_AGAIN = 3,
-  TURN_LIKENESS = 4,   // admittances and match of the sensors
-  TURN_VOLTAGE = 5,    // resistance and flux; the polarity's watch looks at the back-EMF
-  TURN_MOVE_AGAIN = 6  // or the polarity's watch follows the axis
+  TURN_REGRESS = 0,
+  TURN_MOVE = 1,
+  TURN_LIKENESS = 2,    // admittances and match of the sensors
+  TURN_VOLTAGE = 3,     // resistance and flux; the polarity's watch looks at the back-EMF
+  TURN_MOVE_AGAIN = 4,  // or the polarity's watch follows the axis
+  TURN_OF_OTHERS = 5
 } turn_t;
 
-static void next_turn(drive_t* d) {
-  drive_position_t* const p = &d->position;
-  p->pausing = drive_is_turning(d) && drive_is_busy(d);
-  if (!p->pausing) p->turn = (uint16_t)((p->turn + 1u) % ADAPTATION_TURN);
+// Whether the deviation observer runs at all.
+static bool steps_observer(const drive_t* d) {
+  const bool alone = parameters.position_source == POSITION_PAPER || parameters.position_source == POSITION_AVV ||
+                     parameters.position_source == POSITION_ENCODER;
+  return drive_is_turning(d) && !alone;
 }
 
-static bool is_turn(const drive_t* d, turn_t turn) { return d->position.turn == turn && !d->position.pausing; }
+void position_next_turn(drive_t* d) {
+  drive_position_t* const p = &d->position;
+  const bool turning = drive_is_turning(d);
+  const bool renews = turning && drive_renews_now(d);
+  // In the first millisecond the observer may have to renew its covariance wherever it is.
+  const bool judges = turning && drive_judges_now(d) && d->periods >= DRIVE_PERIODS_PER_MS;
+  const bool due = steps_observer(d) && p->waited < WAITED_MAX && deviation_observer_is_due(&p->observer);
+  const bool moved = q_abs_sat(d->control.measured_q20.q - p->moved_q20) > MOVE_Q20;
+  p->moving = moved && !renews && !judges && (p->renewing || !due);
+  // An angle that is not known is no synchronism to judge.
+  p->renewing = renews || (due && !p->moving && !(judges && deviation_observer_is_sure(&p->observer)));
+  p->judging = judges && !p->renewing;
+  p->now = TURN_OF_OTHERS;
+  p->waited++;
+  if (p->moving || p->renewing || p->judging) return;
+  p->waited = 0;
+  p->turn = (uint16_t)((p->turn + 1u) % ADAPTATION_TURN);
+  p->now = p->turn;
+}
 
-bool position_judges_now(const drive_t* d) { return is_turn(d, TURN_RENEW) || is_turn(d, TURN_RENEW_AGAIN); }
+bool position_judges_now(const drive_t* d) { return d->position.judging; }
+
+static bool is_turn(const drive_t* d, turn_t turn) { return d->position.now == (uint16_t)turn; }
 
 bool position_has_regressed(const drive_t* d) { return is_turn(d, TURN_REGRESS); }
 
@@ -48,14 +71,17 @@ bool position_looks_at_emf_now(const drive_t* d) { return is_turn(d, TURN_VOLTAG
 static void adapt(drive_t* d, const regression_t* r, bool near) {
   if (is_turn(d, TURN_REGRESS)) d->position.is_near = near;
   if (!d->position.is_near) return;
+  // A turn takes 5/3 as long where it pauses in four of ten periods; learning 4/3 as much leaves the angle quieter.
+  const bool turning = drive_is_turning(d);
   if (is_turn(d, TURN_LIKENESS)) {
-    admittance_step(&d->model, r, d->config.adapt_share_q30);
+    const int32_t share_q30 = turning ? d->config.adapt_share_q30 / 3 * 4 : d->config.adapt_share_q30;
+    admittance_step(&d->model, r, share_q30);
     if (!d->modulation.state.is_alternating) return;
-    sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->config.adapt_share_q30);
+    sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
     d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
-  } else if (is_turn(d, TURN_VOLTAGE) && drive_is_turning(d)) {
+  } else if (is_turn(d, TURN_VOLTAGE) && turning) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
-    voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30);
+    voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 3 * 4);
   }
 }
 
@@ -96,11 +122,33 @@ static estimator_output_t source_observer_avv(drive_t* d, const estimator_input_
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
-static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) {
-  (void)step_avv(d, in);
-  d->position.low = zvv_step(&d->position.zvv, &d->config.zvv, in, d->control.reference_q20.d);
+static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
+  const estimator_output_t out = zvv_step(&d->position.zvv, &d->config.zvv, in, d->control.reference_q20.d);
   d->position.deviation_q20 = d->position.zvv.deviation_q20;
-  return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
+  return out;
+}
+
+// Below the blend a period without active windows says nothing to AVV; above it nobody asks ZVV.
+static bool zvv_alone(const drive_t* d) { return blend_is_low(&d->position.blend) && d->samples.count <= 1u; }
+static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blend); }
+
+// The estimator that is not asked stands by at the other's angle.
+static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) {
+  drive_position_t* const p = &d->position;
+  if (zvv_alone(d)) {
+    p->low = step_zvv(d, in);
+    p->high = p->low;
+    avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, 0);
+  } else {
+    (void)step_avv(d, in);
+    if (avv_alone(d)) {
+      p->low = p->high;
+      zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
+    } else {
+      p->low = step_zvv(d, in);
+    }
+  }
+  return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
 }
 
 // The reference encoder: angle from the count and the offset found at the start; a tracking observer makes a speed of
@@ -157,11 +205,22 @@ static void measure_current(drive_t* d) {
   d->control.measured_q20.q = q_mul(sum.q - q_mul(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);
 }
 
-// True where the frame in use is the observer's own.
-static bool observer_in_use(const drive_t* d) {
+// The windows in the frame in use, where that is the own one of the only estimator.
+static const estimator_frame_t* own_frames(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  return parameters.position_source == POSITION_OBSERVER && p->observer.angle_bam == p->used.angle_bam &&
-         p->observer.speed_bpp == p->used.speed_bpp;
+  const int32_t source = parameters.position_source;
+  uint32_t angle_bam = p->observer.angle_bam;
+  int32_t speed_bpp = p->observer.speed_bpp;
+  if (source == POSITION_PAPER && avv_alone(d)) {
+    angle_bam = p->avv.observer.angle_bam;
+    speed_bpp = p->avv.observer.speed_bpp;
+  } else if (source == POSITION_PAPER && zvv_alone(d)) {
+    angle_bam = p->zvv.angle_bam;
+    speed_bpp = p->zvv.speed_bpp;
+  } else if (source != POSITION_OBSERVER) {
+    return 0;
+  }
+  return (angle_bam == p->used.angle_bam && speed_bpp == p->used.speed_bpp) ? d->samples.frames : 0;
 }
 
 // The I-F start: the control uses the vector's frame, and the source looks on. Of the torque it is told what its own
@@ -187,17 +246,19 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
 
 void drive_estimate(drive_t* d) {
   measure_current(d);
-  next_turn(d);
   const bool held = hold_is_on(d);
-  if (held || is_turn(d, TURN_MOVE) || (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d)))
+  if (held || d->position.moving || is_turn(d, TURN_MOVE) ||
+      (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d))) {
+    d->position.moved_q20 = d->control.measured_q20.q;
     machine_model_move(&d->model, d->control.measured_q20.q);
+  }
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
-  in.renew = held || position_judges_now(d);
+  in.renew = held || d->position.renewing;
   in.windows = d->samples.windows;
   in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.
@@ -215,7 +276,7 @@ void drive_estimate(drive_t* d) {
   }
   // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
   const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
-  in.frames = (!starting && observer_in_use(d)) ? d->samples.frames : 0;
+  in.frames = starting ? 0 : own_frames(d);
   d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
 }
 
@@ -226,6 +287,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
   flux_observer_reset(&p->flux, &d->config.flux, &d->model);
   blend_reset(&p->blend);
+  if (parameters.position_source == POSITION_PAPER) blend_preset(&p->blend, &d->config.blend, speed_bpp);
   const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
   p->low = now;
   p->high = now;

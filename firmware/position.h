@@ -11,6 +11,9 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 /// Makes the encoder's present count mean this angle. Reads the encoder.
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
+/// What is slow in this period: decided before it begins, so that nothing else long falls on it.
+void position_next_turn(drive_t* d);
+
 /// In this period the synchronism is judged; the deviation observer has just regressed its windows; the polarity's
 /// watch follows the axis, or looks at the back-EMF.
 bool position_judges_now(const drive_t* d);

@@ -173,11 +173,11 @@ void drive_control_speed(drive_t* d) {
     case DRIVE_WEAKENING_PERIOD + 1u:
       part_of_weakening(d, make_weakening_room);
       break;
-    case 5:
-      drive_match_inertia(d);
+    case DRIVE_WEAKENING_PERIOD + 2u:
+      part_of_weakening(d, follow_weakening);
       break;
     case 6:
-      part_of_weakening(d, follow_weakening);
+      drive_match_inertia(d);
       break;
     case 7:
       part_of_weakening(d, refer_field);

@@ -57,6 +57,20 @@ TEST(Blend, WeightsOfTheRegion) {
   }
 }
 
+// A shaft that was caught turning begins where a settled blend would be at its speed.
+TEST(Blend, BeginsAtAKnownSpeed) {
+  const blend_config_t c = config();
+  for (const double speed : {0.0, 50.0, 80.0, 150.0, -80.0, -600.0}) {
+    blend_t s;
+    blend_preset(&s, &c, rpm(speed));
+    const std::int32_t began = s.share_q15;
+    EXPECT_EQ(blend_is_low(&s), std::fabs(speed) < kLowRpm) << speed;
+    EXPECT_EQ(blend_is_high(&s), std::fabs(speed) > kHighRpm) << speed;
+    settle(&s, c, speed);
+    EXPECT_EQ(s.share_q15, began) << speed;
+  }
+}
+
 TEST(Blend, OneEstimatorAloneOutsideTheRegion) {
   const blend_config_t c = config();
   blend_t s;
