@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/board/functions.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
@@ -29,6 +30,7 @@ static void reload(void) {
   drive.conflict = conflict;
   drive.conflict_known = true;
   if (valid) drive.config = *fresh;
+  drive.control.current_limit_q20 = board_current_limit();
   drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;

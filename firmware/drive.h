@@ -111,6 +111,7 @@ typedef struct {
   field_weakening_input_t weakening_seen;  // and what follows from it, between the periods of the millisecond
   int64_t weakening_room_q56;
   int32_t weakening_q20;
+  int32_t current_limit_q20;           // largest phase current now (board/functions.h)
   int32_t room_q20, braking_room_q20;  // torque current that the limits leave, and against the rotation, A
   q_inverse_t per_torque_constant;     // of N m per A, Q24, at the reference of i_d
   ramp_t ramp;
@@ -212,7 +213,10 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 void start_step_listen(drive_t* d);
 void start_step_pulse(drive_t* d);
 void start_step_catch(drive_t* d);
-void start_turn(drive_t* d);  // start/turning.c
+void start_turn(drive_t* d);    // start/turning.c
+void start_charge(drive_t* d);  // start/charging.c
+void start_step_charge(drive_t* d);
+void start_look(drive_t* d);
 void start_step_turn(drive_t* d);
 const svpwm_pattern_t* start_short_circuit(void);
 

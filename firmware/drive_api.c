@@ -1,5 +1,6 @@
 // Commands, inspection and the drive's own memory.
 
+#include "firmware/board/functions.h"
 #include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
@@ -18,6 +19,8 @@ void drive_reset(void) {
   fault_history_reset();
   store_reset();
   parameters_reset();
+  board_reset();
+  drive.control.current_limit_q20 = board_current_limit();
   drive.trim.offset_a_q8 = 2048L * 256L;
   drive.trim.offset_b_q8 = 2048L * 256L;
   drive.config_valid = drive_config_load(&drive.config);

@@ -21,3 +21,12 @@ FAULT(11, GATES_OFF, "gates switched off unexpectedly", "check the enable line o
 FAULT(12, SYNCHRONISM, "loss of synchronism",
       "less load or a slower speed_ramp; commission the drive; check magnet_flux and stator_resistance")
 FAULT(13, STOP, "standstill not reached within stop_time", "raise stop_time, or look for what drives the shaft")
+FAULT(14, EMERGENCY, "emergency stop", "release it, then reset")
+FAULT(15, PRECHARGE, "DC link not charged, precharge relay open",
+      "check the supply, the precharge resistor and precharge_voltage")
+FAULT(16, TEMPERATURE, "heat sink beyond temperature_limit, or its sensor broken", "let it cool, check fan and sensor")
+FAULT(17, OVERLOAD, "overload: mean square of the current beyond overload_current", "less load; check overload_time")
+FAULT(18, BRAKE_RESISTOR, "brake resistor on for more than brake_share", "brake more slowly; check brake_voltage")
+FAULT(19, GATE_ENABLE, "gate enable does not pass the gates although its line is toggled",
+      "check the circuit behind the enable line and its feedback")
+FAULT(20, SELF_TEST, "self-test failed", "see the command status; a fault of chip or board")

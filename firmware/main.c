@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "firmware/board/functions.h"
+#include "firmware/board/selftest.h"
 #include "firmware/can/node.h"
 #include "firmware/console/console.h"
 #include "firmware/drive.h"
@@ -60,6 +62,7 @@ void firmware_main(void) {
   start_converter_and_store();
   hal_encoder_init((uint32_t)parameters.encoder_counts);
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);
+  selftest_look();
   hal_watchdog_start();
   hal_irq_enable();
   can_node_reset(answer_bus);
@@ -68,7 +71,10 @@ void firmware_main(void) {
   for (;;) {
     hal_idle();
     store_service();
-    if (!hil_is_active()) background_step(&drive);
+    if (!hil_is_active()) {
+      background_step(&drive);
+      board_service();
+    }
     end_loading();
     hil_service();
     link_service();
@@ -76,8 +82,10 @@ void firmware_main(void) {
     can_node_service();
     // The watchdog is served for a control interrupt that lives, not for a background loop that does.
     const uint16_t heartbeat = hil_heartbeat(drive.heartbeat);
-    if (heartbeat != seen && hal_time_cycles() - served > HAL_TIME_CYCLES_PER_US * 1000uL) {
-      served = hal_time_cycles();
+    const uint32_t now = hal_time_cycles();
+    if (heartbeat != seen && now - served > HAL_TIME_CYCLES_PER_US * 1000uL) {
+      selftest_count(now - served);
+      served = now;
       seen = heartbeat;
       hal_watchdog_service();
     }

@@ -196,3 +196,29 @@ PARAMETER(224, can_status_period, "ms", 0, 0, 0, 10000, 10, ALWAYS, "between two
 PARAMETER(225, can_telemetry_period, "ms", 0, 0, 0, 10000, 20, ALWAYS,
           "between two TELEMETRY_1 and TELEMETRY_2; 0 sends none")
 PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS, "from bus-off to the attempt to be on the bus again")
+
+// Functions of the board (board/functions.h)
+PARAMETER(400, bootstrap_time, "ms", 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
+          "lower devices on before the first pulse, for the bootstrap capacitors; 0 where there are none")
+PARAMETER(401, precharge_voltage, "V", 16, 1, 0, 15000, 0, STOPPED,
+          "DC-link voltage at which the precharge relay closes; 0 where there is none")
+PARAMETER(402, precharge_time, "ms", 0, 0, 10, 60000, 2000, ALWAYS, "the DC link may take so long to get there")
+PARAMETER(403, brake_voltage, "V", 16, 1, 0, 15000, 0, STOPPED,
+          "DC-link voltage that switches the brake resistor on; 0 where there is none")
+PARAMETER(404, brake_hysteresis, "V", 16, 1, 10, 1000, 100, ALWAYS, "so far below it is switched off")
+PARAMETER(405, brake_share, "%", 16, 0, 1, 100, 20, ALWAYS, "mean time that it may be on, over 8 s")
+PARAMETER(410, temperature_limit, "C", 8, 0, 0, 130, 0, ALWAYS, "of the heat sink; 0 where it has no sensor")
+PARAMETER(411, temperature_derating, "C", 8, 0, 0, 130, 70, ALWAYS,
+          "from here on the current limit falls, to a half at temperature_limit")
+PARAMETER(412, overload_current, "A", 20, 2, 0, 10000, 0, ALWAYS,
+          "phase current, peak, that may flow for ever; the limit falls to it; 0 watches nothing")
+PARAMETER(413, overload_time, "ms", 0, 0, 100, 600000, 10000, ALWAYS, "time constant of motor and inverter")
+PARAMETER(420, emergency_stop, "", 0, 0, 0, 1, 0, STOPPED, "1: its contact is wired, and switches the gates off")
+PARAMETER(421, gate_feedback, "", 0, 0, 0, 1, 0, STOPPED, "1: the gate enable's output is wired, and watched")
+PARAMETER(430, speed_input, "", 0, 0, 0, 2, 0, STOPPED,
+          "speed and run switch at the board: 0 not used, 1 from 0 V, 2 live zero at 10 %")
+PARAMETER(431, speed_input_dead, "%", 16, 1, 0, 500, 20, ALWAYS, "at the lower end that means standstill")
+PARAMETER(432, speed_input_loss, "", 0, 0, 1, 2, 1, ALWAYS, "when the live zero is lost: 1 stop, 2 coast")
+PARAMETER(433, speed_input_full, "rpm", 8, 0, 10, 6000, 2000, ALWAYS, "speed at the upper end")
+PARAMETER(440, reference_input, "", 0, 0, 0, 1, 0, STOPPED,
+          "1: ground and reference are wired to the converter, for the self-test")

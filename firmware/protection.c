@@ -1,5 +1,6 @@
 // What opens the power stage: looked at in every period, before anything is commanded.
 
+#include "firmware/board/functions.h"
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
 #include "firmware/parameters.h"
@@ -119,7 +120,7 @@ static drive_fault_t check(drive_t* d) {
   // With the gates off a fast shaft may drive a current through the diodes; switching them on forgets that.
   const bool meant_off = d->state == DRIVE_START && !d->start.powered;
   if (!meant_off && hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
-  if (hal_pwm_is_tripped() && !meant_off) return FAULT_GATES_OFF;
+  if (hal_pwm_is_tripped() && !meant_off) return board_why_off();
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
   if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
   if (over_current(d)) return FAULT_CURRENT_LIMIT;

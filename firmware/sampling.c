@@ -45,6 +45,9 @@ const sampling_buffer_t* sampling_swap(void) {
   return &sampling_buffers[full];
 }
 
+// One word: an interrupt in between can do no harm.
+uint16_t sampling_auxiliary(void) { return sampling_buffers[1u - sampling_filling].windows[0].aux; }
+
 // Clarke of the eight switching states: thirds of the link, and 1/sqrt(3) of it.
 static const int16_t thirds_of_state[8] = {0, 2, -1, 1, -1, 1, -2, 0};
 static const int16_t sides_of_state[8] = {0, 0, 1, 1, -1, -1, 0, 0};

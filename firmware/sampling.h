@@ -17,4 +17,7 @@ const sampling_buffer_t* sampling_swap(void);
 /// Empties both.
 void sampling_reset(void);
 
+/// Background level: code of the auxiliary input in the last period's first window.
+uint16_t sampling_auxiliary(void);
+
 #endif

@@ -36,7 +36,7 @@ static void refer_field(drive_t* d) {
   const int32_t bias = none ? 0 : parameters.id_low_speed;
   const int32_t least = (none || parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
   c->reference_q20.d =
-      q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -parameters.current_limit, parameters.current_limit);
+      q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
   d->limits &= ~(int32_t)LIMIT_WEAKENING;
   if (c->weakening_q20 < 0) d->limits |= LIMIT_WEAKENING;
 }
@@ -59,7 +59,7 @@ static int32_t load_current(const drive_t* d) {
 }
 
 int32_t drive_current_room(const drive_t* d) {
-  const int32_t limit = parameters.current_limit;
+  const int32_t limit = d->control.current_limit_q20;
   const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
   return (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
 }

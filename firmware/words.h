@@ -26,10 +26,12 @@ typedef enum {
   WORDS_REMEDY = 8,         // drive_fault_t: what to do about it
   WORDS_COMMISSIONING = 9,  // commissioning_outcome_t
   WORDS_SCOPE = 10,         // scope_state_t
-  WORDS_CAN = 11            // hal_can_state_t
+  WORDS_CAN = 11,           // hal_can_state_t
+  WORDS_BOARD = 12,         // board_words_t
+  WORDS_SELFTEST = 13       // number of the bit in selftest_failure_t, and more (board/selftest.c)
 } words_kind_t;
 
-#define WORDS_KINDS 12u
+#define WORDS_KINDS 14u
 
 /// Whether there is such a kind, and such a code in it.
 bool words_exist(uint16_t kind, uint16_t code);

@@ -54,6 +54,14 @@ void hal_adc_power_up(void);
 bool hal_adc_is_up(void);
 void hal_adc_set_up(void);
 
+// Which pair follows a window's last currents: DC link and auxiliary input, or with `speed` DC link and speed command
+// (hal_board.h). Background level; the results of the next two periods may still be of the other pair.
+void hal_adc_choose_slow(bool speed);
+
+// Converts ground and reference (hal_board.h), before the interrupts come; behind hal_adc_set_up, whose setting it
+// leaves. 0, 0 when the converter does not answer.
+void hal_adc_measure_reference(uint16_t* ground, uint16_t* reference);
+
 // For the window interrupt: takes the results, makes both sequencers ready for the next window and acknowledges the
 // interrupt. Must be done before the next window's first burst starts.
 void hal_adc_read_window(hal_adc_window_t* window);

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "firmware/board/functions.h"
+#include "firmware/board/selftest.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
@@ -98,7 +100,8 @@ static const struct {
   void (*put)(octet_writer_t* w);
 } status_lines[] = {{"state", status_state},           {"speed", put_speeds},     {"current", status_current},
                     {"DC link", status_link},          {"limits", status_limits}, {"fault", status_fault},
-                    {"parameters", status_parameters}, {"store", status_store},   {"serial", status_port}};
+                    {"parameters", status_parameters}, {"board", put_board},      {"self-test", put_selftest},
+                    {"store", status_store},           {"serial", status_port}};
 
 #define STATUS_LINES ((uint16_t)(sizeof status_lines / sizeof status_lines[0]))
 

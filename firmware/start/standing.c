@@ -1,5 +1,6 @@
 // The start: the sequence, and the start of a shaft that stands. See start.h.
 
+#include "firmware/board/functions.h"
 #include "firmware/clear.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
@@ -60,6 +61,17 @@ void drive_begin_start(drive_t* d) {
   position_preset(d, 0, 0);
   reset_control(d);
   drive_enter(d, DRIVE_START);
+  const drive_fault_t refusal = board_refusal();
+  if (refusal != FAULT_NONE) {
+    drive_raise(d, refusal);
+  } else if (parameters.bootstrap_time != 0) {
+    start_charge(d);
+  } else {
+    start_look(d);
+  }
+}
+
+void start_look(drive_t* d) {
   if (parameters.flying_start != 0) {
     start_listen(d, LISTEN_FIRST);
   } else {
@@ -210,8 +222,8 @@ static void step_motion(drive_t* d) {
 
 void drive_start(drive_t* d) {
   typedef void (*step_t)(drive_t*);
-  static const step_t steps[] = {start_step_listen, start_step_pulse, start_step_catch, step_axis,
-                                 step_settle,       step_saturation,  step_motion,      start_step_turn};
+  static const step_t steps[] = {start_step_listen, start_step_pulse, start_step_catch, step_axis,        step_settle,
+                                 step_saturation,   step_motion,      start_step_turn,  start_step_charge};
   drive_start_t* const s = &d->start;
   s->tick++;
   s->clock += ESTIMATOR_PERIOD_TICKS;

@@ -25,7 +25,8 @@ typedef enum {
   START_SETTLE = 4,      // current loop closed at zero
   START_SATURATION = 5,  // polarity by saturation
   START_MOTION = 6,      // polarity by motion
-  START_TURN = 7         // I-F start: a current vector turns the rotor
+  START_TURN = 7,        // I-F start: a current vector turns the rotor
+  START_CHARGE = 8       // all lower devices on: bootstrap capacitors
 } start_phase_t;
 
 typedef struct {
@@ -34,6 +35,7 @@ typedef struct {
   uint16_t pause;  // periods to listen before the next pulse
   uint16_t tries;  // of the present phase
   uint16_t pulses;
+  uint16_t charged;    // periods in which the bootstrap capacitors were charged
   uint16_t blind;      // periods until the windows belong to a power stage that is on
   bool powered;        // the start has the gates on
   bool shorted;        // the modulator holds all lower devices on

@@ -10,6 +10,7 @@
 
 #define POWER_UP_CYCLES (5000uL * HAL_TIME_CYCLES_PER_US)
 #define POLL_CYCLES 10u
+#define POLLS 100u  // of a sequence, which takes 140 cycles
 
 // A pair takes one slot of a sequence and two results, A before B. Sequencer 2 has the upper eight results.
 #define RESULT(n) (REG_MIRROR_ADCRESULT0 + (n))
@@ -65,6 +66,30 @@ void adc_sequence_windows(void) {
                                        REG_FIELD(ADCCHSELSEQ3_CONV10, BOARD_ADC_CURRENTS) |
                                        REG_FIELD(ADCCHSELSEQ3_CONV11, BOARD_ADC_SLOW));
   adc_rearm();
+}
+
+void hal_adc_choose_slow(bool speed) {
+  REG_SET_FIELD(REG_ADCCHSELSEQ3, ADCCHSELSEQ3_CONV11, speed ? BOARD_ADC_SPEED : BOARD_ADC_SLOW);
+}
+
+// One pair, twice, for the first conversion after power-up may be wrong.
+void hal_adc_measure_reference(uint16_t* ground, uint16_t* reference) {
+  *ground = *reference = 0u;
+  target_write16(REG_ADCMAXCONV, 0u);
+  for (uint16_t time = 0u; time < 2u; time++) {
+    REG_SET_FIELD(REG_ADCCHSELSEQ1, ADCCHSELSEQ1_CONV00, BOARD_ADC_REFERENCE);
+    rearm();
+    target_write16(REG_ADCTRL2, ADCTRL2_SOC_SEQ1_MASK);
+    for (uint16_t poll = 0u; poll < POLLS && !reg_any(REG_ADCST, ADCST_INT_SEQ1_MASK); poll++) {
+      target_elapse(POLL_CYCLES);
+    }
+    if (reg_any(REG_ADCST, ADCST_INT_SEQ1_MASK)) {
+      *ground = target_read16(RESULT(0u));
+      *reference = target_read16(RESULT(1u));
+    }
+    target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK);
+  }
+  hal_adc_set_up();
 }
 
 void adc_sequence_slices(void) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_board.h"
@@ -19,6 +20,8 @@ constexpr int kChannelAuxiliary = kChannelsB + BOARD_ADC_SLOW;
 constexpr double kComparatorShare = BOARD_COMPARATOR_PERCENT / 100.0;
 constexpr int kFirstLeg = BOARD_FIRST_LEG_MODULE - 1;  // counted from 0
 constexpr bool kOn = BOARD_GATE_ON_LEVEL != 0;
+
+std::uint16_t code_of(double code) { return static_cast<std::uint16_t>(std::clamp(code + 0.5, 0.0, 4095.0)); }
 
 constexpr std::uint64_t kTimedEvery = 64;
 
@@ -60,9 +63,38 @@ Board::Board(const plant::PlantConfig& config, PeriodListener& listener, devices
       can_(can),
       last_toggle_(-kEnableTimeout) {}
 
+void Board::equip(const BoardOptions& options) {
+  options_ = options;
+  enabled_ = options.enable_stuck;
+  if (options.precharge_resistance > 0.0) plant_.set_precharge(options.precharge_resistance);
+}
+
+void Board::set_inputs(const BoardInputs& inputs) {
+  inputs_ = inputs;
+  chip_->pins_changed();
+}
+
+std::uint64_t Board::lockouts() const {
+  std::uint64_t sum = 0;
+  for (const devices::Bootstrap& supply : bootstrap_) sum += supply.lockouts();
+  return sum;
+}
+
+// The NTC's divider, by the law from which the firmware's table is made.
+std::uint16_t Board::auxiliary_code(Tick t) {
+  constexpr double kKelvin = 273.15;
+  if (inputs_.heat_sink < -kKelvin) return plant_.adc_code(t, plant::AdcInput::kTemperature);
+  const double inverse = 1.0 / (inputs_.heat_sink + kKelvin) - 1.0 / (25.0 + kKelvin);
+  const double ohms = BOARD_NTC_R25 * std::exp(BOARD_NTC_BETA * inverse);
+  return code_of(4096.0 * ohms / (ohms + BOARD_NTC_PULL_UP));
+}
+
 void Board::drive_leg(Tick t, int leg) {
   const PlantTimer timer(*this);
-  plant_.set_gate(t, leg, enabled_ && upper_[leg], enabled_ && lower_[leg]);
+  const bool lower = enabled_ && lower_[leg];
+  bool upper = enabled_ && upper_[leg];
+  if (options_.bootstrap) upper = bootstrap_[static_cast<std::size_t>(leg)].switch_leg(t, upper, lower);
+  plant_.set_gate(t, leg, upper, lower);
   compare(t, plant_.peak_current());
 }
 
@@ -93,7 +125,13 @@ std::uint16_t Board::adc_sample(Tick t, int channel) {
     case kChannelLink:
       return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
     case kChannelAuxiliary:
-      return plant_.adc_code(t, plant::AdcInput::kTemperature);
+      return auxiliary_code(t);
+    case BOARD_ADC_SPEED:
+      return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
+    case kChannelsB + BOARD_ADC_SPEED:
+      return code_of(4096.0 / 3.0 * inputs_.speed_volts);
+    case kChannelsB + BOARD_ADC_REFERENCE:
+      return code_of(BOARD_REFERENCE_CODE + inputs_.reference_codes);
     default:
       return 0;
   }
@@ -112,6 +150,12 @@ bool Board::pin_level(Tick t, int pin) {
   switch (pin) {
     case BOARD_PIN_OVER_CURRENT:
       return t >= tripped_until_;
+    case BOARD_PIN_EMERGENCY:
+      return !inputs_.emergency;
+    case BOARD_PIN_RUN:
+      return !inputs_.run;
+    case BOARD_PIN_GATE_FEEDBACK:
+      return enabled_;
     case BOARD_PIN_SERIAL_IN:
       return serial_.level(t);
     case BOARD_PIN_SDA:
@@ -129,7 +173,16 @@ void Board::on_i2c_pins(Tick t, bool sda, bool scl) {
   if (eeprom_ != nullptr) eeprom_->drive(t, sda, scl);
 }
 
-void Board::on_output_pin(Tick t, int pin, bool /*level*/) {
+void Board::on_output_pin(Tick t, int pin, bool level) {
+  if (pin == BOARD_PIN_RELAY && options_.precharge_resistance > 0.0) {
+    relay_ = level == (BOARD_RELAY_ON_LEVEL != 0);
+    plant_.advance(t);
+    plant_.set_precharge(relay_ ? 0.0 : options_.precharge_resistance);
+  } else if (pin == BOARD_PIN_BRAKE && options_.brake) {
+    brake_ = level == (BOARD_BRAKE_ON_LEVEL != 0);
+    plant_.advance(t);
+    plant_.set_brake(brake_);
+  }
   if (pin != kPinEnable) return;
   last_toggle_ = t;
   if (aligned_) {
@@ -141,7 +194,7 @@ void Board::on_output_pin(Tick t, int pin, bool /*level*/) {
 }
 
 void Board::watch_enable(Tick t) {
-  const bool alive = t - last_toggle_ < kEnableTimeout;
+  const bool alive = options_.enable_stuck || t - last_toggle_ < kEnableTimeout;
   if (alive == enabled_) return;
   enabled_ = alive;
   for (int leg = 0; leg < 3; leg++) drive_leg(t, leg);

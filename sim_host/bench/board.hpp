@@ -13,8 +13,10 @@
 #include <algorithm>
 #include <array>
 
+#include "sim_host/bench/board_options.hpp"
 #include "sim_host/bench/waveform.hpp"
 #include "sim_host/chip/chip.hpp"
+#include "sim_host/devices/bootstrap.hpp"
 #include "sim_host/devices/can_bus.hpp"
 #include "sim_host/devices/eeprom.hpp"
 #include "sim_host/devices/serial_line.hpp"
@@ -47,6 +49,16 @@ class Board : public chip::World {
 
   /// Before the chip runs; the board does not own it.
   void fit(devices::Eeprom& eeprom) { eeprom_ = &eeprom; }
+
+  /// What hangs on it, before any time has passed.
+  void equip(const BoardOptions& options);
+
+  /// From now on.
+  void set_inputs(const BoardInputs& inputs);
+  const BoardInputs& inputs() const { return inputs_; }
+  bool relay_closed() const { return relay_; }
+  bool brake_on() const { return brake_; }
+  std::uint64_t lockouts() const;
 
   plant::Plant& plant() { return plant_; }
   WaveformProbe& probe() { return probe_; }
@@ -99,6 +111,12 @@ class Board : public chip::World {
   void trip(Tick t);
   void drive_leg(Tick t, int leg);
 
+  std::uint16_t auxiliary_code(Tick t);
+
+  BoardOptions options_;
+  BoardInputs inputs_;
+  std::array<devices::Bootstrap, 3> bootstrap_;
+  bool relay_ = false, brake_ = false;
   double comparator_amps_;
   plant::Plant plant_;
   PeriodListener& listener_;

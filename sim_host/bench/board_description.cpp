@@ -8,6 +8,7 @@ namespace stillspin::bench {
 Setup::Setup() {
   nominal.adc.current_range = BOARD_CURRENT_RANGE / 100.0;
   nominal.adc.voltage_range = BOARD_LINK_RANGE / 10.0;
+  board.bootstrap = BOARD_BOOTSTRAP_TIME > 0;
 }
 
 }  // namespace stillspin::bench

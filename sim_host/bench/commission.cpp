@@ -123,6 +123,7 @@ CommissionResult commission(const CommissionRequest& request) {
   CommissionResult result;
   Commissioner drive(request);
   Board board(request.setup.plant(), drive);
+  board.equip(request.setup.board);
   chip::Chip chip(board, firmware_main);
   board.attach(chip);
   const auto begin = std::chrono::steady_clock::now();

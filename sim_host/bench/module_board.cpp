@@ -225,6 +225,10 @@ void bind_virtual_board(nb::module_& m) {
       .def("can_plug", &can_plug, nb::arg("plugged"))
       .def(
           "set_load", [](Self self, double torque) { self.board().set_load(torque); }, nb::arg("torque"))
+      .def(
+          "set_input", [](Self self, const std::string& name, double value) { self.board().set_input(name, value); },
+          nb::arg("name"), nb::arg("value"))
+      .def("outputs", [](Self self) { return dict_of(self.board().outputs()); })
       .def("truth", [](Self self) { return dict_of(self.board().truth()); })
       .def("signals", [](Self self) { return (void)self.board(), dict_of(VirtualBoard::signals()); })
       .def("statistics", &statistics);

@@ -234,6 +234,7 @@ RunResult run(const RunRequest& request) {
   RunResult result;
   Director director(request, result);
   Board board(request.setup.plant(), director);
+  board.equip(request.setup.board);
   chip::Chip chip(board, firmware_main);
   board.attach(chip);
   director.attach(board);

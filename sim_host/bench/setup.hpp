@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_host/bench/board_options.hpp"
 #include "sim_host/bench/fault_plan.hpp"
 #include "sim_host/plant/config.hpp"
 
@@ -30,6 +31,7 @@ struct Setup {
   plant::PlantConfig nominal = plant::PlantConfig::ideal();
   ParameterError error;
   FaultPlan fault;
+  BoardOptions board;
   bool brake_until_run = false;  // a holding brake that opens when the drive has finished its start procedure
   double solver = 0;  // index into the choices of solver.method: SUNDIALS unless the fast integrator is asked for
 

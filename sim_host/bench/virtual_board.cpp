@@ -9,6 +9,7 @@
 #include "firmware/hil/hil.h"
 #include "firmware/store/store.h"
 #include "sim_host/bench/run.hpp"
+#include "sim_host/chip/memory.hpp"
 
 namespace stillspin::bench {
 namespace {
@@ -41,6 +42,7 @@ VirtualBoard::VirtualBoard(const BoardRequest& request)
   }
   board_.attach(chip_);
   board_.fit(eeprom_);
+  board_.equip(request.setup.board);
   if (brake_until_run_) board_.plant().set_locked(true);
 }
 
@@ -115,6 +117,34 @@ void VirtualBoard::set_load(double torque) {
   if (!(std::fabs(torque) <= kLargestLoad)) throw std::invalid_argument("a load torque must be -1e4 to 1e4 N m");
   board_.plant().advance(chip_.now());
   board_.plant().set_load({{chip_.now(), torque}});
+}
+
+void VirtualBoard::set_input(const std::string& name, double value) {
+  BoardInputs inputs = board_.inputs();
+  if (name == "emergency") {
+    inputs.emergency = value != 0.0;
+  } else if (name == "run") {
+    inputs.run = value != 0.0;
+  } else if (name == "speed") {
+    inputs.speed_volts = value;
+  } else if (name == "heat_sink") {
+    inputs.heat_sink = value;
+  } else if (name == "reference") {
+    inputs.reference_codes = value;
+  } else if (name == "broken_ram") {
+    chip_.memory().break_ram(static_cast<std::uint32_t>(value), 1u);
+  } else {
+    throw std::invalid_argument("the board has no input '" + name +
+                                "': emergency, run, speed, heat_sink, reference, broken_ram");
+  }
+  board_.set_inputs(inputs);
+}
+
+std::vector<Quantity> VirtualBoard::outputs() const {
+  return {{"relay", "", board_.relay_closed() ? 1.0 : 0.0},
+          {"brake", "", board_.brake_on() ? 1.0 : 0.0},
+          {"gates_pass", "", board_.gates_enabled() ? 1.0 : 0.0},
+          {"lockouts", "", static_cast<double>(board_.lockouts())}};
 }
 
 std::vector<Quantity> VirtualBoard::truth() {

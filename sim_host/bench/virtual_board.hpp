@@ -66,6 +66,13 @@ class VirtualBoard final : private PeriodListener {
   const std::vector<std::uint8_t>& eeprom() const { return eeprom_.memory(); }
   void set_eeprom(std::vector<std::uint8_t> content);
 
+  // ---- inputs of the board: emergency, run (0, 1), speed (V), heat_sink (degrees C), reference (codes),
+  // broken_ram (address of a word whose lowest bit is stuck at 1)
+  /// From now on; std::invalid_argument for a name that is none.
+  void set_input(const std::string& name, double value);
+  /// What it does: relay, brake, gates_pass (0, 1), and how often an upper driver had no supply.
+  std::vector<Quantity> outputs() const;
+
   // ---- shaft
   /// Load torque from now on, N m, -1e4..1e4; positive opposes positive rotation.
   void set_load(double torque);

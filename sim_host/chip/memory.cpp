@@ -49,7 +49,13 @@ std::optional<std::uint16_t> Memory::read(std::uint32_t address) {
   const std::uint32_t low = fold(address);
   const auto index = ram_index(low);
   if (!index) return std::nullopt;
-  return locked_ && secured(low) ? std::uint16_t{0} : ram_[*index];
+  if (locked_ && secured(low)) return std::uint16_t{0};
+  return *index == broken_ ? static_cast<std::uint16_t>(ram_[*index] | stuck_) : ram_[*index];
+}
+
+void Memory::break_ram(std::uint32_t address, std::uint16_t stuck) {
+  broken_ = ram_index(fold(address)).value_or(kRamWords);
+  stuck_ = stuck;
 }
 
 bool Memory::write(std::uint32_t address, std::uint16_t value) {

@@ -32,6 +32,9 @@ class Memory {
   void write_security(std::uint32_t address, std::uint16_t value);
   bool locked() const { return locked_; }
 
+  /// A word of RAM whose bits in `stuck` read as 1 from now on, whatever is written.
+  void break_ram(std::uint32_t address, std::uint16_t stuck);
+
   FlashArray& flash() { return flash_; }
   /// A word of RAM as it is, for inspection; nothing where there is none.
   std::optional<std::uint16_t> ram(std::uint32_t address) const;
@@ -44,6 +47,8 @@ class Memory {
   FlashArray flash_;
   std::array<std::uint16_t, kRamWords> ram_{};
   std::array<std::uint16_t, kPasswordWords> keys_{};
+  std::uint32_t broken_ = kRamWords;  // index
+  std::uint16_t stuck_ = 0;
   unsigned passwords_read_ = 0;  // bit n: PSWDn since the last reset or lock
   bool locked_ = true;
 };

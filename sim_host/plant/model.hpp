@@ -84,6 +84,7 @@ class Model {
 
   std::array<double, 3> currents(const State& y) const { return currents(turned(base, y[kAngle]), y); }
   double source_voltage(double t) const;
+  void set_source_resistance(double ohms) { inverse_source_resistance_ = 1.0 / ohms; }
   double load(double t) const { return load_start + load_slope * t; }
 
   /// Chooses directions of all legs whose current is zero, clamps, friction and brake after an event, so that a current

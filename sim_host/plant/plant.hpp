@@ -124,6 +124,12 @@ class Plant {
   /// Clamps the shaft where it is, or frees it, at the present.
   void set_locked(bool locked);
 
+  /// Connects the brake resistor to the link, or takes it off, at the present: a board that switches it, in the place
+  /// of the chopper of its own (DcLinkConfig::brake_chopper).
+  void set_brake(bool on);
+  /// Adds so many ohms to the source's resistance from the present on: a precharge resistor.
+  void set_precharge(double ohms);
+
   /// A fault from the present on; several add up. clear_faults() repairs everything.
   void inject(const Fault& fault);
   void clear_faults();

@@ -22,6 +22,17 @@ void Plant::set_locked(bool locked) {
   impl_->transition({}, [] {});
 }
 
+void Plant::set_brake(bool on) {
+  impl_->cut();
+  impl_->transition({}, [&] { impl_->trajectory.model().brake = on; });
+}
+
+void Plant::set_precharge(double ohms) {
+  impl_->cut();
+  const double total = impl_->config.link.source_resistance + ohms;
+  impl_->transition({}, [&] { impl_->trajectory.model().set_source_resistance(total); });
+}
+
 void Plant::inject(const Fault& fault) {
   check_index("fault index", fault.index);
   impl_->cut();

@@ -158,6 +158,17 @@ class NativeBoard(Protocol):
         """Unplugged, the drive is alone on its bus."""
         ...
 
+    def set_input(self, name: str, value: float) -> None:
+        """An input of the board from now on; ValueError for a name that is none.
+
+        emergency, run (0, 1), speed (V), heat_sink (degrees C), reference (codes), broken_ram (address).
+        """
+        ...
+
+    def outputs(self) -> dict[str, float]:
+        """What the board does: relay, brake, gates_pass (0, 1); lockouts of upper drivers without a supply."""
+        ...
+
     def set_load(self, torque: float) -> None:
         """Load torque from now on, N m; positive opposes positive rotation."""
         ...

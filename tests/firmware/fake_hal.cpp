@@ -4,10 +4,12 @@
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
+#include "hal/hal_lines.h"
 #include "hal/hal_nvm.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_safety.h"
 #include "hal/hal_sci.h"
+#include "hal/hal_selftest.h"
 #include "hal/hal_time.h"
 
 namespace stillspin::test {
@@ -45,6 +47,23 @@ bool hal_pwm_was_tripped_by_pin(void) { return board.tripped_by_pin; }
 void hal_adc_power_up(void) {}
 bool hal_adc_is_up(void) { return true; }
 void hal_adc_set_up(void) {}
+void hal_adc_choose_slow(bool) {}
+void hal_adc_measure_reference(std::uint16_t* ground, std::uint16_t* reference) {
+  *ground = 0;
+  *reference = board.reference;
+}
+
+void hal_lines_init(void) {}
+void hal_lines_relay(bool on) { board.relay = on; }
+void hal_lines_brake(bool on) { board.brake = on; }
+void hal_lines_wire_emergency(void) {}
+bool hal_lines_emergency(void) { return board.emergency; }
+bool hal_lines_run(void) { return false; }
+bool hal_lines_gates_pass(void) { return board.gates_pass; }
+
+bool hal_selftest_ram(std::uint16_t pair) { return pair != board.bad_pair; }
+std::uint16_t hal_selftest_watchdog_count(void) { return board.watchdog_count; }
+bool hal_selftest_gates_are_off(void) { return board.gate_pins_off; }
 void hal_adc_read_window(hal_adc_window_t* window) {
   *window = {};
   if (board.adc.empty()) return;  // a window that a host in the loop has invented

@@ -32,6 +32,11 @@ struct FakeBoard {
   hal_pwm_frame_t frame = {};
   std::deque<hal_adc_window_t> adc;  // what hal_adc_read_window gives next
   std::uint32_t encoder = 0;
+  bool relay = false, brake = false, emergency = false, gates_pass = false;
+  bool gate_pins_off = true;
+  int bad_pair = -1;                  // of RAM
+  std::uint16_t watchdog_count = 10;  // at a service
+  std::uint16_t reference = 2048;
   std::uint16_t slice_ticks = 0;  // 0: pulses
   std::uint16_t legs = 0;
   hal_slice_t slice = {2048, 2048, 2731};           // no current, 300 V

@@ -59,7 +59,7 @@ class Terminal : public Drive {
     link_reset();
     nvm = FakeNvm{};
     splitter_reset(&far_);
-    run(300);  // the tables' check sum
+    run(400);  // the tables' check sum
   }
 
   /// Rounds of the background level, ten to a millisecond; the port sends 11 octets in each of those.

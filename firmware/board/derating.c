@@ -1,0 +1,70 @@
+// Heat sink and overload: the current limit falls first, then the drive faults.
+//
+// The mean square of the phase current over the overload's time constant is held against that of the current that may
+// flow for ever (I^2 t: what the winding's copper loss heats). From 0.9 of that current on the limit falls in a
+// straight line to it.
+
+#include "firmware/board/functions.h"
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/sampling.h"
+#include "hal/hal_board.h"
+
+#define TURN 8u           // ms between two looks
+#define SLOW_SETTLES 3u   // ms from the choice of the converter's input to its code
+#define SENSOR_MARGIN 32  // codes beyond the table: a broken wire, a short circuit
+
+static const int16_t ntc[BOARD_NTC_POINTS] = BOARD_NTC_CODES;
+
+// Between the table's points straight lines; the codes fall.
+static int32_t celsius_q8(int32_t code) {
+  uint16_t k = 1;
+  while (k < BOARD_NTC_POINTS - 1u && code < ntc[k]) k++;
+  const int32_t rest = q_div(ntc[k - 1u] - code, ntc[k - 1u] - ntc[k], 8);
+  return (int32_t)BOARD_NTC_FIRST * 256 + (int32_t)BOARD_NTC_STEP * ((int32_t)(k - 1u) * 256 + rest);
+}
+
+// Share left between `from` (all) and `to` (the share at the end).
+static int32_t share_between(int32_t value, int32_t from, int32_t to, int32_t end_q15) {
+  if (value <= from) return BOARD_SHARE_ONE;
+  if (value >= to) return end_q15;
+  return BOARD_SHARE_ONE - q_mul(q_div(value - from, to - from, 15), BOARD_SHARE_ONE - end_q15, 15);
+}
+
+static drive_fault_t follow_heat_sink(int32_t* share_q15) {
+  const int32_t code = (int32_t)sampling_auxiliary();
+  const bool broken = code > ntc[0] + SENSOR_MARGIN || code < ntc[BOARD_NTC_POINTS - 1u] - SENSOR_MARGIN;
+  board.celsius_q8 = celsius_q8(code);
+  if (broken || board.celsius_q8 > parameters.temperature_limit) return FAULT_TEMPERATURE;
+  *share_q15 = share_between(board.celsius_q8, parameters.temperature_derating, parameters.temperature_limit,
+                             BOARD_SHARE_ONE / 2);
+  return FAULT_NONE;
+}
+
+static int32_t square_q16(int32_t amps_q20) {
+  const int32_t a = q_shr(amps_q20, 12);
+  return a * a;
+}
+
+static drive_fault_t follow_overload(int32_t* share_q15) {
+  const dq_t i = drive.control.measured_q20;
+  const int32_t now = drive_is_energised() ? q_add_sat(square_q16(i.d), square_q16(i.q)) : 0;
+  const int32_t ever = square_q16(parameters.overload_current);
+  board.heat_q16 += (now - board.heat_q16) / (int32_t)(parameters.overload_time / (int32_t)TURN);
+  const int32_t end_q15 = q_min(BOARD_SHARE_ONE, q_div(parameters.overload_current, parameters.current_limit, 15));
+  *share_q15 = q_min(*share_q15, share_between(board.heat_q16, ever / 5 * 4, ever, end_q15));
+  return board.heat_q16 > ever / 10 * 11 ? FAULT_OVERLOAD : FAULT_NONE;
+}
+
+drive_fault_t board_follow_heat(void) {
+  if ((board.at_ms & (TURN - 1u)) != 0u) return FAULT_NONE;
+  int32_t share_q15 = BOARD_SHARE_ONE;
+  drive_fault_t fault = FAULT_NONE;
+  if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) fault = follow_heat_sink(&share_q15);
+  if (parameters.overload_current != 0) {
+    const drive_fault_t overload = follow_overload(&share_q15);
+    if (fault == FAULT_NONE) fault = overload;
+  }
+  board.share_q15 = share_q15;
+  return fault;
+}

@@ -1,0 +1,82 @@
+// What the board does beside the gates, in the background: precharge relay, brake resistor, emergency stop, heat sink
+// and overload, gate enable watched, speed command without a host. Each is off until its parameter (400..449) says that
+// it is wired, and costs nothing until then; the control interrupt sees no more of it than the current limit in use.
+//
+// Once a millisecond of the drive's time, the brake resistor in every pass of the background loop. While a computer
+// steps the drive (hil/hil.h) the functions rest.
+
+#ifndef STILLSPIN_FIRMWARE_BOARD_FUNCTIONS_H
+#define STILLSPIN_FIRMWARE_BOARD_FUNCTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/drive_api.h"
+#include "firmware/link/octets.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+#define BOARD_SHARE_ONE ((int32_t)32768)  // Q15
+
+/// What the speed command has come to.
+typedef enum { SPEED_INPUT_OFF = 0, SPEED_INPUT_WAITS = 1, SPEED_INPUT_RUNS = 2, SPEED_INPUT_LOST = 3 } speed_input_t;
+
+/// The words of the functions, WORDS_BOARD.
+typedef enum {
+  BOARD_RELEASED = 0,
+  BOARD_PRESSED = 1,
+  BOARD_CHARGING = 2,
+  BOARD_CHARGED = 3,
+  BOARD_NOT_BRAKING = 4,
+  BOARD_BRAKING = 5,
+  BOARD_INPUT_OFF = 6,  // from here on a speed_input_t
+  BOARD_HEAT_SINK = 10,
+  BOARD_LIMIT_IN_USE = 11
+} board_words_t;
+
+typedef struct {
+  uint32_t at_ms;          // of the last look
+  bool wired, stop_wired;  // outputs, emergency stop set up
+  bool relay, braking;     // as told
+  uint16_t charging_ms;    // the DC link has been on its way for so long
+  uint16_t silent_ms;      // the gates should pass and have not for so long
+  int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
+  int32_t celsius_q8;      // heat sink
+  int32_t heat_q16;        // mean square of the current, A^2
+  int32_t share_q15;       // of the current limit that is left
+  uint16_t code;           // of the speed command
+  uint16_t lost_ms;        // without a signal for so long
+  speed_input_t input;
+  bool asked;  // the switch was closed at the last look
+} board_t;
+
+extern board_t board;
+
+void board_reset(void);
+
+/// Background level, once behind every interrupt.
+void board_service(void);
+
+/// What keeps the drive from starting, FAULT_NONE when nothing does.
+drive_fault_t board_refusal(void);
+
+/// Why the gates are off although nobody has switched them off.
+drive_fault_t board_why_off(void);
+
+/// Largest phase current now: current_limit, or what heat sink and overload leave of it. A, Q20.
+int32_t board_current_limit(void);
+
+/// The functions in use, in words.
+void put_board(octet_writer_t* w);
+
+// The parts, once a millisecond each.
+drive_fault_t board_follow_heat(void);  // derating.c
+void board_follow_speed_input(void);    // speed_input.c
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

@@ -1,0 +1,78 @@
+#include "firmware/board/selftest.h"
+
+#include "firmware/clear.h"
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/text.h"
+#include "firmware/words.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_board.h"
+#include "hal/hal_lines.h"
+#include "hal/hal_selftest.h"
+
+#define PAIRS_A_PASS 16u
+#define SERVICES 100u
+#define REFERENCE_OFF 82  // codes: 2 % of the range
+#define FAILURES 5u
+#define WORD_PASSED 5u
+#define WORD_UNDER_WAY 6u
+#define WORD_FLASH 7u
+
+selftest_t selftest;
+
+void selftest_reset(void) {
+  clear(&selftest, sizeof selftest);
+}
+
+static void judge(bool good, selftest_failure_t failure) {
+  if (!good) selftest.failed |= (uint16_t)failure;
+}
+
+void selftest_look(void) {
+  judge(hal_selftest_gates_are_off(), SELFTEST_GATE_PINS);
+  selftest.passed_early = hal_lines_gates_pass();
+  hal_adc_measure_reference(&selftest.ground, &selftest.reference);
+}
+
+// A service loses half a count on average.
+void selftest_count(uint32_t cycles) {
+  if (selftest.services >= SERVICES) return;
+  selftest.services++;
+  selftest.counts = (uint16_t)(selftest.counts + hal_selftest_watchdog_count());
+  selftest.cycles += cycles;
+  if (selftest.services < SERVICES) return;
+  const int32_t expected = (int32_t)(selftest.cycles / HAL_SELFTEST_WATCHDOG_CYCLES) - (int32_t)(SERVICES / 2u);
+  judge(q_abs_sat((int32_t)selftest.counts - expected) <= expected / 8, SELFTEST_CLOCK);
+}
+
+static void march(void) {
+  for (uint16_t n = 0; n < PAIRS_A_PASS && selftest.pair < HAL_SELFTEST_PAIRS; n++) {
+    judge(hal_selftest_ram(selftest.pair), SELFTEST_RAM);
+    selftest.pair++;
+  }
+}
+
+drive_fault_t selftest_service(void) {
+  if (selftest.pair < HAL_SELFTEST_PAIRS && !drive_is_energised()) march();
+  if (drive.loading) return FAULT_NONE;  // what is wired is not known yet
+  const int32_t off = q_abs_sat((int32_t)selftest.reference - BOARD_REFERENCE_CODE);
+  judge(parameters.reference_input == 0 || (off < REFERENCE_OFF && selftest.ground < (uint16_t)REFERENCE_OFF),
+        SELFTEST_CONVERTER);
+  judge(parameters.gate_feedback == 0 || !selftest.passed_early, SELFTEST_GATE_ENABLE);
+  return selftest.failed == 0u ? FAULT_NONE : FAULT_SELF_TEST;
+}
+
+static void put_item(octet_writer_t* w, uint16_t word) {
+  put_words(w, WORDS_SELFTEST, word);
+  put_text(w, "; ");
+}
+
+void put_selftest(octet_writer_t* w) {
+  for (uint16_t k = 0; k < FAILURES; k++) {
+    if (((uint16_t)(selftest.failed >> k) & 1u) != 0u) put_item(w, k);
+  }
+  const bool done = selftest.pair >= HAL_SELFTEST_PAIRS && selftest.services >= SERVICES;
+  if (!done) put_item(w, WORD_UNDER_WAY);
+  if (done && selftest.failed == 0u) put_item(w, WORD_PASSED);
+  put_words(w, WORDS_SELFTEST, WORD_FLASH);
+}

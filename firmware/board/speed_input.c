@@ -1,0 +1,75 @@
+// A drive without a host: a switch starts and stops it, a voltage is its speed.
+//
+// The converter's last place in a window is the heat sink's input, and three milliseconds in eight the speed command's:
+// both halves of that pair see the DC link, so the drive does not notice. With the live zero (speed_input 2) the range
+// is 10 % to 90 % of 3 V, and what lies beyond 5 % or 95 % is a broken wire or a short circuit. A lost signal stops the
+// drive; it runs again when the switch has been opened and closed. The same clears a fault.
+
+#include "firmware/board/functions.h"
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/sampling.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_lines.h"
+
+#define TURN 8u
+#define CHOOSE_AT 1u  // of the turn; the heat sink is read at 0
+#define READ_AT 4u
+#define LIVE_ZERO 2
+#define LOST_MS 20u
+#define LOW_CODE 205    // 5 %
+#define HIGH_CODE 3891  // 95 %
+#define LIVE_FIRST 410  // 10 %
+#define LIVE_SPAN 3276  // 80 %
+#define SPAN 4095
+
+// The switch decides, the voltage says how fast.
+static void follow_switch(void) {
+  const bool on = hal_lines_run();
+  const bool closed = on && !board.asked, opened = !on && board.asked;
+  board.asked = on;
+  if (!on) board.input = SPEED_INPUT_WAITS;
+  if (opened) drive_command_stop();
+  if (opened && drive.state == DRIVE_FAULT) drive_command_reset();
+  if (!closed || drive.state != DRIVE_READY) return;
+  board.input = SPEED_INPUT_RUNS;
+  drive_command_start();
+}
+
+static void lose(void) {
+  if (board.input == SPEED_INPUT_LOST) return;
+  board.input = SPEED_INPUT_LOST;
+  if (parameters.speed_input_loss == 2) {
+    drive_command_coast();
+  } else {
+    drive_command_stop();
+  }
+}
+
+static void take(int32_t code) {
+  const bool live = parameters.speed_input == LIVE_ZERO;
+  const bool lost = live && (code < LOW_CODE || code > HIGH_CODE);
+  board.lost_ms = lost ? (uint16_t)(board.lost_ms + TURN) : 0u;
+  if (board.lost_ms > LOST_MS) lose();
+  if (lost || board.input != SPEED_INPUT_RUNS) return;
+  const int32_t share_q15 = live ? q_div(code - LIVE_FIRST, LIVE_SPAN, 15) : q_div(code, SPAN, 15);
+  const int32_t dead_q15 = q_mul(parameters.speed_input_dead, 21474836L, 32);
+  const int32_t beyond = q_clamp(share_q15, 0, BOARD_SHARE_ONE) - dead_q15;
+  const int32_t asked = beyond <= 0 ? 0 : q_div(beyond, BOARD_SHARE_ONE - dead_q15, 15);
+  drive_command_speed(q_mul(q_shl_sat(parameters.speed_input_full, 8), asked, 15));
+}
+
+void board_follow_speed_input(void) {
+  if (parameters.speed_input == 0) {
+    board.input = SPEED_INPUT_OFF;
+    board.asked = true;
+    return;
+  }
+  follow_switch();
+  const uint16_t at = (uint16_t)(board.at_ms & (TURN - 1u));
+  if (at == CHOOSE_AT) hal_adc_choose_slow(true);
+  if (at != READ_AT) return;
+  board.code = sampling_auxiliary();
+  hal_adc_choose_slow(false);
+  take((int32_t)board.code);
+}

@@ -1,0 +1,106 @@
+// The self-test at power-up, on a board that the test describes.
+
+#include "firmware/board/selftest.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "firmware/board/functions.h"
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "hal/hal_selftest.h"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+namespace {
+
+constexpr std::uint32_t kService = 11 * HAL_SELFTEST_WATCHDOG_CYCLES - 5000;  // cycles between two services
+
+class SelfTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    board = FakeBoard{};
+    drive_reset();
+  }
+
+  static void whole_ram() {
+    for (unsigned n = 0; n < HAL_SELFTEST_PAIRS; ++n) (void)selftest_service();
+  }
+
+  static void services(int count, std::uint32_t cycles) {
+    for (int n = 0; n < count; ++n) selftest_count(cycles);
+  }
+
+  static std::string words() {
+    std::uint16_t octets[400];
+    octet_writer_t w = octet_writer(octets, 400);
+    put_selftest(&w);
+    return {octets, octets + w.count};
+  }
+};
+
+TEST_F(SelfTest, PassesOnAGoodBoard) {
+  selftest_look();
+  EXPECT_EQ(words(), "under way; flash not tested, the image has no check sum");
+  whole_ram();
+  services(100, kService);
+  EXPECT_EQ(selftest_service(), FAULT_NONE);
+  EXPECT_EQ(words(), "passed; flash not tested, the image has no check sum");
+}
+
+TEST_F(SelfTest, FindsTheFirstAndTheLastPairOfRam) {
+  for (const int pair : {0, int{HAL_SELFTEST_PAIRS} - 1}) {
+    board.bad_pair = pair;
+    drive_reset();
+    whole_ram();
+    EXPECT_EQ(selftest.failed, SELFTEST_RAM) << pair;
+    EXPECT_EQ(selftest_service(), FAULT_SELF_TEST);
+    EXPECT_EQ(board_refusal(), FAULT_SELF_TEST);
+  }
+}
+
+TEST_F(SelfTest, DoesNotTouchTheRamWhileTheDriveRuns) {
+  drive.state = DRIVE_RUN;
+  whole_ram();
+  EXPECT_EQ(selftest.pair, 0);
+}
+
+// A PLL that multiplies by 4 or 6 and not by 5, and a crystal of a tenth.
+TEST_F(SelfTest, FindsAClockThatIsWrong) {
+  for (const double factor : {0.8, 1.2, 10.0}) {
+    drive_reset();
+    services(99, static_cast<std::uint32_t>(kService * factor));
+    EXPECT_EQ(selftest.failed, 0) << "not before it has counted for long enough";
+    services(1, static_cast<std::uint32_t>(kService * factor));
+    EXPECT_EQ(selftest.failed, SELFTEST_CLOCK) << factor;
+  }
+  for (const double factor : {0.97, 1.0, 1.03}) {
+    drive_reset();
+    services(100, static_cast<std::uint32_t>(kService * factor));
+    EXPECT_EQ(selftest.failed, 0) << factor;
+  }
+}
+
+TEST_F(SelfTest, LooksAtGatePinsAlways) {
+  board.gate_pins_off = false;
+  selftest_look();
+  EXPECT_EQ(selftest_service(), FAULT_SELF_TEST);
+  EXPECT_EQ(selftest.failed, SELFTEST_GATE_PINS);
+}
+
+TEST_F(SelfTest, MissesNothingThatIsNotWired) {
+  board.reference = 0;
+  board.gates_pass = true;
+  selftest_look();
+  EXPECT_EQ(selftest_service(), FAULT_NONE);
+  parameters.reference_input = 1;
+  EXPECT_EQ(selftest_service(), FAULT_SELF_TEST);
+  EXPECT_EQ(selftest.failed, SELFTEST_CONVERTER);
+  parameters.gate_feedback = 1;
+  (void)selftest_service();
+  EXPECT_EQ(selftest.failed, SELFTEST_CONVERTER | SELFTEST_GATE_ENABLE);
+}
+
+}  // namespace
+}  // namespace stillspin::test
