@@ -20,9 +20,7 @@
 
 selftest_t selftest;
 
-void selftest_reset(void) {
-  clear(&selftest, sizeof selftest);
-}
+void selftest_reset(void) { clear(&selftest, sizeof selftest); }
 
 static void judge(bool good, selftest_failure_t failure) {
   if (!good) selftest.failed |= (uint16_t)failure;

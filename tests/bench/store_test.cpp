@@ -114,11 +114,13 @@ TEST(BoardStore, SavedParametersAreInForceBeforeTheDriveIsReady) {
   EXPECT_EQ(parameters.current_limit, 12 << 20);
   EXPECT_EQ(drive.config.dead_time.blocked_ticks, 210);
   EXPECT_EQ(again.chip.inspect(EPWM_BASE(1) + EPWM_DBRED), 180);
-  // 22.5 us an octet, and what the steps in the background add to it; 5 ms pass while the converter powers up
+  // 22.5 us an octet, and what the steps in the background add to it, up to a third; 5 ms pass while the converter
+  // powers up
   const double late = again.entered(DRIVE_READY) - bare;
   RecordProperty("load_us", int(1000 * late));
-  EXPECT_GT(late, 0.0225 * 8 * parameter_count() - 5.0);
-  EXPECT_LT(late, 25.0);
+  const double reading = 0.0225 * 8 * parameter_count();
+  EXPECT_GT(late, reading - 5.0);
+  EXPECT_LT(late, reading * 4.0 / 3.0);
 }
 
 TEST(BoardStore, TheMemoryHangsAtPowerOn) {
