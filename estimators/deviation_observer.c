@@ -380,7 +380,7 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   note_load(s, c, lean);
   if (in->renew || gain_is_old(s)) {
     predict_covariance(s);
-    admit_load_change(s, c, s->leaned);
+    admit_load_change(s, c, lean || s->leaned);
     renew(s);
     s->leaned = false;
   }
