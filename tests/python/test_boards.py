@@ -110,3 +110,25 @@ def test_scenarios_reach_their_bounds_on_the_other_board(scenario: str, tmp_path
     goals = [figure["met"] for figure in figures.values() if figure["goal"] is not None]
     assert len(goals) >= 2
     assert all(goals), said
+
+
+FUNCTIONS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from stillspin import core
+core.load()
+from test_board_functions import Desk
+desk = Desk({"gate_feedback": 1.0, "emergency_stop": 1.0, "reference_input": 1.0})
+desk.run(300)
+desk.wait(100)
+print(desk.status("self-test"), desk.output("gates_pass"), desk.output("lockouts"))
+desk.board.set_input("emergency", 1.0)
+desk.wait(1)
+print(desk.state, desk.fault)
+"""
+
+
+def test_functions_and_self_test_find_their_pins_on_the_other_board() -> None:
+    """Bootstrap supplies that are charged, other trip inputs, feedback and references."""
+    said = on(OTHER, "-c", FUNCTIONS, str(ROOT / "tests" / "python")).splitlines()
+    assert said == ["passed; flash not tested, the image has no check sum 1.0 0.0", "6 14"]
