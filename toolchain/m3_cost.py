@@ -50,7 +50,7 @@ SOURCES = {"observer": (), "paper": PAPER}
 # Speed in rpm, load step in N m, speed of the shaft at the start in rpm. The paper's scheme loses a shaft that it has
 # to bring up from standstill; caught at 600 rpm it holds it. At 80 rpm both of its estimators are at work.
 RUNS = {
-    "observer": ((0, 5, 0), (60, 8, 0), (600, 8, 0), (2000, 5, 0), (3000, 1, 0)),
+    "observer": ((0, 5, 0), (60, 5, 0), (600, 8, 0), (2000, 5, 0), (3000, 1, 0)),
     "paper": ((0, 0, 0), (80, 0, 600), (600, 5, 600), (2000, 3, 600), (3000, 1, 600)),
 }
 
