@@ -25,7 +25,7 @@ from stillspin.runs import execute
 
 pytestmark = needs_board
 WHERE = "can:socketcan:can0?node=1"
-_PATIENCE = 60
+_PATIENCE = 300
 
 
 @pytest.fixture

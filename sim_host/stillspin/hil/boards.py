@@ -22,7 +22,7 @@ BAUD = 390_625
 BITRATE = 1_000_000
 KINDS = "serial", "can"
 
-_PATIENCE = 60.0  # s; a busy machine takes long to start a process
+_PATIENCE = 300.0  # s; a machine with much else to do takes long to start a process
 _POLL = 0.05
 
 
