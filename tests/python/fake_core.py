@@ -117,7 +117,7 @@ _PARAMETERS = [
     (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),
     (90, "position_hold", "1/s", 1, 0.0, 20.0, 5.0, "ALWAYS", "how fast the shaft is brought back"),
     (103, "polarity_check", "", 0, 0.0, 1.0, 1.0, "STOPPED", "test the polarity of the magnet at start"),
-    (163, "synchronism_time", "ms", 0, 1.0, 1000.0, 3.0, "ALWAYS", "how long a loss of synchronism lasts"),
+    (163, "synchronism_time", "ms", 0, 1.0, 1000.0, 5.0, "ALWAYS", "how long a loss of synchronism lasts"),
     (170, "encoder_trim", "deg", 2, -180.0, 180.0, 0.0, "ALWAYS", "added to the angle of the encoder"),
     (171, "current_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 PI, 1 hysteresis"),
     (173, "hysteresis_frequency", "kHz", 2, 0.0, 25.0, 10.0, "ALWAYS", "switching frequency"),
