@@ -41,6 +41,7 @@ static void reset_control(drive_t* d) {
   modulator_reset(&d->modulation.state);
   field_weakening_reset(&d->control.weakening);
   d->control.ramp.value = 0;
+  position_hold_release(&d->control.place);
   d->control.reference_q20.d = 0;
   d->control.reference_q20.q = 0;
   d->control.feed_q16 = 0;
