@@ -32,9 +32,9 @@ typedef enum {
 
 // Whether the deviation observer runs at all.
 static bool steps_observer(const drive_t* d) {
-  const bool alone = parameters.position_source == POSITION_PAPER || parameters.position_source == POSITION_AVV ||
-                     parameters.position_source == POSITION_ENCODER;
-  return drive_is_turning(d) && !alone;
+  const bool without = parameters.position_source == POSITION_PAPER || parameters.position_source == POSITION_AVV ||
+                       parameters.position_source == POSITION_ENCODER;
+  return drive_is_turning(d) && !without;
 }
 
 void position_next_turn(drive_t* d) {

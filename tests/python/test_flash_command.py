@@ -5,11 +5,9 @@ from __future__ import annotations
 import os
 import re
 import struct
-import subprocess
-import sys
-import time
 from contextlib import contextmanager
 
+import desk
 import flash_files as make
 import pytest
 from desk import needs_board
@@ -19,7 +17,6 @@ from stillspin.flash.program import Block
 
 pytestmark = needs_board
 
-_PATIENCE = 120
 _SPEED = "10"
 NEW = [*make.image_blocks(2, boot=()), Block(0x3E9000, tuple(range(300)))]
 
@@ -36,21 +33,10 @@ def files(tmp_path):
 @contextmanager
 def virtual(files):
     """A board in serial boot as a process; yields its port."""
-    link, log = files / "port", (files / "loader.log").open("w")
-    command = [sys.executable, "-m", "stillspin", "loader", str(files / "flash.bin")]
-    command += ["--kernel", str(files / "kernel.txt"), "--serial-link", str(link), "--speed", _SPEED]
-    process = subprocess.Popen(command, stdout=log, stderr=log, env=os.environ)
-    try:
-        end = time.monotonic() + _PATIENCE
-        while not link.exists():
-            assert process.poll() is None, (files / "loader.log").read_text()
-            assert time.monotonic() < end
-            time.sleep(0.05)
+    link = files / "port"
+    options = ["--kernel", str(files / "kernel.txt"), "--serial-link", str(link), "--speed", _SPEED]
+    with desk.process(files / "loader.log", (link,), "loader", str(files / "flash.bin"), *options):
         yield str(link)
-    finally:
-        process.terminate()
-        process.wait(_PATIENCE)
-        log.close()
 
 
 @pytest.fixture

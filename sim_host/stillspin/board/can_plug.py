@@ -9,7 +9,7 @@ import can
 
 from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.board.slcan import QUEUE, Adapter, Frame
-from stillspin.core import NativeBoard
+from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
 from stillspin.link.can_bus import DEFAULT_BITRATE
 

@@ -6,7 +6,7 @@ import select
 
 from stillspin.board.can_plug import CanPlug
 from stillspin.board.pseudo_terminal import PseudoTerminal
-from stillspin.core import NativeBoard
+from stillspin.core_board import NativeBoard
 from stillspin.errors import CampaignError
 
 Plug = PseudoTerminal | CanPlug

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from stillspin.core import NativeBoard
+from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
 
 

@@ -12,6 +12,7 @@ from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
 from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.board.serve import stopped_by_signals
+from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
 from stillspin.errors import InputError
 from stillspin.flash import layout
@@ -57,7 +58,7 @@ def serve(file: Path, kernel: Program, link: Path | None, speed: float) -> None:
         board.set_serial_boot(True)
         board.power_cycle()
         # The desk asks nothing else of a board than what this one has, too.
-        desk = Desk(cast(core.NativeBoard, board), PseudoTerminal(link))
+        desk = Desk(cast(NativeBoard, board), PseudoTerminal(link))
     except InputError:
         board.close()
         raise

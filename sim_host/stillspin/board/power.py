@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from stillspin import core
 from stillspin.cases.profile import Changes, Profile, merged
+from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
 
 _FAST: core.Plant = {"solver": {"method": "rk4"}}
 """Unless profile or user say otherwise: real time matters more here than the last digit."""
 
 
-def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int) -> core.NativeBoard:
+def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int) -> NativeBoard:
     """A virtual board that has just been switched on.
 
     Raises:

@@ -12,13 +12,13 @@ from types import FrameType
 
 from rich.console import Console
 
-from stillspin import core
 from stillspin.board import eeprom_file
 from stillspin.board.can_plug import CanPlug, SlcanPlug, SocketcanPlug
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
 from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
 from stillspin.board.show import Show
+from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
 from stillspin.link.can_bus import DEFAULT_BITRATE
 
@@ -43,7 +43,7 @@ class Options:
     eeprom: Path | None = None
 
 
-def serve(board: core.NativeBoard, options: Options, title: str) -> None:
+def serve(board: NativeBoard, options: Options, title: str) -> None:
     """Plug the board in, say how to connect, and run it until SIGINT, SIGTERM or its end.
 
     Raises:
@@ -76,7 +76,7 @@ def serve(board: core.NativeBoard, options: Options, title: str) -> None:
     print(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time")
 
 
-def _plug_in(board: core.NativeBoard, options: Options) -> Desk:
+def _plug_in(board: NativeBoard, options: Options) -> Desk:
     plug: CanPlug = (
         SocketcanPlug(board, options.socketcan)
         if options.socketcan
