@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from checks import Finding, arrows, command_files, conditionals, int16, links, registers
+from checks import Finding, arrows, command_files, conditionals, int16, links, packages, registers
 from checks.preprocessor import SOURCE_FOLDERS, SUFFIXES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -46,6 +46,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "registers": registers.check,
     "linker": command_files.check,
     "links": links.check,
+    "packages": packages.check,
 }
 DESCRIPTIONS = {
     "arrows": "includes point downward",
@@ -54,6 +55,7 @@ DESCRIPTIONS = {
     "registers": "the register map agrees with the tables of the chip",
     "linker": "the linker command files keep to the memory of the chip",
     "links": "links and paths in the book exist",
+    "packages": "every Python package is installed",
     "format": "clang-format",
     "ruff": "Python lint and format",
     "mypy": "Python types, strict",

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from checks import arrows, conditionals, int16, links, registers  # noqa: E402
+from checks import arrows, conditionals, int16, links, packages, registers  # noqa: E402
 from checks.preprocessor import without_comments  # noqa: E402
 
 
@@ -186,6 +186,21 @@ def test_dead_link_and_dead_path_are_caught(tmp_path: Path) -> None:
     plant(tmp_path, "README.md", "[a](docs/index.md)\n![b](docs/images/none.png)\nsee `control/none.c`\n")
     findings = links.check(tmp_path)
     assert [(f.path, f.line) for f in findings] == [("README.md", 2), ("README.md", 3)]
+
+
+def test_package_that_is_not_installed_is_caught(tmp_path: Path) -> None:
+    plant(
+        tmp_path,
+        "sim_host/pyproject.toml",
+        '[tool.setuptools]\npackages = ["stillspin", "stillspin.gone", "stillspin.motors"]\n'
+        '[tool.setuptools.package-dir]\nstillspin = "stillspin"\n"stillspin.motors" = "motors"\n',
+    )
+    plant(tmp_path, "sim_host/stillspin/__init__.py")
+    plant(tmp_path, "sim_host/stillspin/flash/__init__.py")
+    assert [f.message.split()[0:2] for f in packages.check(tmp_path)] == [
+        ["stillspin.flash", "is"],
+        ["package", "stillspin.gone"],
+    ]
 
 
 def test_lock_file_names_no_address() -> None:
