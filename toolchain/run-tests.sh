@@ -9,7 +9,8 @@ failed=()
 
 .venv/bin/python toolchain/check.py || failed+=("checks (make lint)")
 ctest --preset "$preset" --progress || failed+=("C++ tests (ctest --preset $preset)")
-.venv/bin/python -m pytest -q -c sim_host/pyproject.toml --rootdir . -n "$(nproc)" --dist loadfile tests/python || failed+=("Python tests")
+.venv/bin/python -m pytest -q -c sim_host/pyproject.toml --rootdir . \
+  -n "$(nproc)" --dist loadfile --no-loadscope-reorder tests/python || failed+=("Python tests")
 
 if ((${#failed[@]})); then
   printf 'failed: %s\n' "${failed[@]}" >&2

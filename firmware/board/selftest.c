@@ -13,10 +13,10 @@
 #define PAIRS_A_PASS 16u
 #define SERVICES 100u
 #define REFERENCE_OFF 82  // codes: 2 % of the range
-#define FAILURES 5u
-#define WORD_PASSED 5u
-#define WORD_UNDER_WAY 6u
-#define WORD_FLASH 7u
+#define FAILURES 6u
+#define WORD_PASSED 6u
+#define WORD_UNDER_WAY 7u
+#define WORD_NO_SUM 8u
 
 selftest_t selftest;
 
@@ -30,6 +30,7 @@ void selftest_look(void) {
   judge(hal_selftest_gates_are_off(), SELFTEST_GATE_PINS);
   selftest.passed_early = hal_lines_gates_pass();
   hal_adc_measure_reference(&selftest.ground, &selftest.reference);
+  flash_sum_begin(&selftest.flash);
 }
 
 // A service loses half a count on average.
@@ -52,6 +53,8 @@ static void march(void) {
 
 drive_fault_t selftest_service(void) {
   if (selftest.pair < HAL_SELFTEST_PAIRS && !drive_is_energised()) march();
+  flash_sum_service(&selftest.flash);
+  judge(selftest.flash.state != FLASH_SUM_WRONG, SELFTEST_FLASH);
   if (drive.loading) return FAULT_NONE;  // what is wired is not known yet
   const int32_t off = q_abs_sat((int32_t)selftest.reference - BOARD_REFERENCE_CODE);
   judge(parameters.reference_input == 0 || (off < REFERENCE_OFF && selftest.ground < (uint16_t)REFERENCE_OFF),
@@ -60,17 +63,20 @@ drive_fault_t selftest_service(void) {
   return selftest.failed == 0u ? FAULT_NONE : FAULT_SELF_TEST;
 }
 
-static void put_item(octet_writer_t* w, uint16_t word) {
+static void put_item(octet_writer_t* w, uint16_t* items, uint16_t word) {
+  if (*items != 0u) put_text(w, "; ");
   put_words(w, WORDS_SELFTEST, word);
-  put_text(w, "; ");
+  (*items)++;
 }
 
 void put_selftest(octet_writer_t* w) {
+  uint16_t items = 0u;
   for (uint16_t k = 0; k < FAILURES; k++) {
-    if (((uint16_t)(selftest.failed >> k) & 1u) != 0u) put_item(w, k);
+    if (((uint16_t)(selftest.failed >> k) & 1u) != 0u) put_item(w, &items, k);
   }
-  const bool done = selftest.pair >= HAL_SELFTEST_PAIRS && selftest.services >= SERVICES;
-  if (!done) put_item(w, WORD_UNDER_WAY);
-  if (done && selftest.failed == 0u) put_item(w, WORD_PASSED);
-  put_words(w, WORDS_SELFTEST, WORD_FLASH);
+  const bool done = selftest.pair >= HAL_SELFTEST_PAIRS && selftest.services >= SERVICES &&
+                    selftest.flash.state != FLASH_SUM_UNDER_WAY;
+  if (!done) put_item(w, &items, WORD_UNDER_WAY);
+  if (done && selftest.failed == 0u) put_item(w, &items, WORD_PASSED);
+  if (selftest.flash.state == FLASH_SUM_NONE) put_item(w, &items, WORD_NO_SUM);
 }

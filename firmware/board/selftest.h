@@ -5,8 +5,7 @@
 //   converter   ground and reference at its inputs, once before the interrupts come (reference_input)
 //   gate pins   all at their off level, read at the pins, before the gates are ever switched on
 //   gate enable does not pass the gates before it is toggled (gate_feedback)
-//
-// The image has no check sum of the flash that could be tested.
+//   flash       CRC-32 of the image against its own (hal_image.h), 32 words in a pass; an image without is not tested
 
 #ifndef STILLSPIN_FIRMWARE_BOARD_SELFTEST_H
 #define STILLSPIN_FIRMWARE_BOARD_SELFTEST_H
@@ -14,6 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/board/flash_sum.h"
 #include "firmware/drive_api.h"
 #include "firmware/link/octets.h"
 
@@ -27,7 +27,8 @@ typedef enum {
   SELFTEST_CLOCK = 2,
   SELFTEST_CONVERTER = 4,
   SELFTEST_GATE_PINS = 8,
-  SELFTEST_GATE_ENABLE = 16
+  SELFTEST_GATE_ENABLE = 16,
+  SELFTEST_FLASH = 32
 } selftest_failure_t;
 
 typedef struct {
@@ -38,6 +39,7 @@ typedef struct {
   uint32_t cycles;             // of the CPU in them
   uint16_t ground, reference;  // codes
   bool passed_early;           // the gate enable passed the gates before it was toggled
+  flash_sum_t flash;
 } selftest_t;
 
 extern selftest_t selftest;

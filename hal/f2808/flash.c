@@ -27,8 +27,6 @@ uint16_t hal_flash_part(void) { return target_read16(REG_PARTID); }
 
 uint16_t hal_flash_revision(void) { return target_read16(REG_REVID); }
 
-uint16_t hal_flash_read(uint32_t address) { return target_read16(address); }
-
 hal_flash_failure_t hal_flash_failure(void) { return failure; }
 
 void hal_flash_pass(uint16_t cycles) { target_elapse(cycles); }

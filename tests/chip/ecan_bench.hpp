@@ -15,7 +15,7 @@ namespace stillspin::chip::testing {
 // 100 MHz / 10 / (1 + 7 + 2): 1 Mbit/s, a bit is 100 ticks.
 inline constexpr std::uint32_t kTiming =
     9u << CANBTC_BRPREG_LSB | 6u << CANBTC_TSEG1REG_LSB | 1u << CANBTC_TSEG2REG_LSB;
-inline constexpr Tick kBit = 100;
+inline constexpr Tick kCanBit = 100;
 
 class Wire final : public CanLine {
  public:
@@ -53,7 +53,7 @@ class ECanTest : public ::testing::Test {
   }
   void start(std::uint32_t extra = 0) {
     write(REG_CANMC, CANMC_SCB_MASK | extra);
-    pass(11 * kBit);
+    pass(11 * kCanBit);
   }
   void set_up(unsigned n, std::uint32_t id, bool receives, std::uint32_t control = 0) {
     write(REG_CANME, read(REG_CANME) & ~(1u << n));
@@ -74,26 +74,26 @@ class ECanTest : public ::testing::Test {
   }
   void hear(const CanFrame& f) {
     can.can_busy(now, false);
-    pass(50 * kBit);
+    pass(50 * kCanBit);
     can.can_received(f, now);
-    can.can_quiet(now - 8 * kBit, now);
-    pass(3 * kBit);
+    can.can_quiet(now - 8 * kCanBit, now);
+    pass(3 * kCanBit);
   }
   /// A frame of the module's own: sent, or ended by an error.
   void transmit() {
     ASSERT_NE(can.can_offer(), nullptr);
     can.can_busy(now, true);
-    pass(50 * kBit);
+    pass(50 * kCanBit);
     can.can_sent(now);
-    can.can_quiet(now - 8 * kBit, now);
-    pass(3 * kBit);
+    can.can_quiet(now - 8 * kCanBit, now);
+    pass(3 * kCanBit);
   }
   void fail(CanError error, bool mine) {
     can.can_busy(now, mine);
-    pass(30 * kBit);
+    pass(30 * kCanBit);
     can.can_failed(error, mine, now);
-    can.can_quiet(now - 8 * kBit, now);
-    pass(3 * kBit);
+    can.can_quiet(now - 8 * kCanBit, now);
+    pass(3 * kCanBit);
   }
 };
 

@@ -51,7 +51,7 @@ class EdgeLine {
   Tick asked_ = 0;
 };
 
-inline constexpr Tick kBit = 800;  // ticks: BRR 99 with LSPCLK 100 MHz
+inline constexpr Tick kSerialBit = 800;  // ticks: BRR 99 with LSPCLK 100 MHz
 inline constexpr unsigned kOn = SCI_CTL1_RXENA_MASK | SCI_CTL1_TXENA_MASK | SCI_CTL1_SWRESET_MASK;
 inline constexpr unsigned kFifoOn = SCI_FFTX_SCIRST_MASK | SCI_FFTX_SCIFFENA_MASK | SCI_FFTX_TXFIFOXRESET_MASK;
 
@@ -71,7 +71,7 @@ class SciBench : public ::testing::Test {
   unsigned read(std::uint16_t offset) { return sci.read(offset, now); }
   unsigned status() { return read(SCI_RXST); }
 
-  /// 8N1 at kBit a bit, without FIFO; nothing runs yet.
+  /// 8N1 at kSerialBit a bit, without FIFO; nothing runs yet.
   void set_up() {
     write(SCI_CCR, 7);
     write(SCI_HBAUD, 0);

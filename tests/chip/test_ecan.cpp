@@ -14,15 +14,15 @@ TEST_F(ECanTest, starts_in_configuration_and_takes_part_after_eleven_recessive_b
   EXPECT_TRUE(status(CANES_CCE_MASK)) << "CCR is still set";
   write(REG_CANMC, CANMC_SCB_MASK);
   EXPECT_FALSE(status(CANES_CCE_MASK));
-  pass(11 * kBit - 1);
+  pass(11 * kCanBit - 1);
   EXPECT_EQ(can.can_bit_time(), 0);
   pass(1);
-  EXPECT_EQ(can.can_bit_time(), kBit);
+  EXPECT_EQ(can.can_bit_time(), kCanBit);
 }
 
 TEST_F(ECanTest, does_not_leave_configuration_without_a_bit_timing) {
   write(REG_CANMC, CANMC_SCB_MASK);
-  pass(1000 * kBit);
+  pass(1000 * kCanBit);
   EXPECT_TRUE(status(CANES_CCE_MASK));
   write(REG_CANBTC, kTiming);
   EXPECT_FALSE(status(CANES_CCE_MASK));
@@ -40,7 +40,7 @@ TEST_F(ECanTest, configuration_waits_for_the_end_of_a_frame) {
   start();
   can.can_busy(now, false);
   write(REG_CANMC, CANMC_SCB_MASK | CANMC_CCR_MASK);
-  pass(1000 * kBit);
+  pass(1000 * kCanBit);
   EXPECT_FALSE(status(CANES_CCE_MASK)) << "a line that stays dominant never lets it in";
   can.can_quiet(now, now);
   EXPECT_TRUE(status(CANES_CCE_MASK));

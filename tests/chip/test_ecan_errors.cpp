@@ -58,11 +58,11 @@ TEST_F(ECanTest, bus_off_sets_ccr_and_ends_after_128_quiet_times_once_ccr_is_cle
   EXPECT_EQ(can.can_bit_time(), 0);
   EXPECT_TRUE(read(REG_CANMC) & CANMC_CCR_MASK);
   EXPECT_TRUE(status(CANES_CCE_MASK));
-  pass(300 * 11 * kBit);
+  pass(300 * 11 * kCanBit);
   EXPECT_TRUE(status(CANES_BO_MASK)) << "not by itself";
   EXPECT_EQ(read(REG_CANREC), 128u) << "counts the quiet times";
   write(REG_CANMC, CANMC_SCB_MASK);
-  pass(11 * kBit);
+  pass(11 * kCanBit);
   EXPECT_FALSE(status(CANES_BO_MASK));
   EXPECT_EQ(read(REG_CANTEC), 0u);
   EXPECT_NE(can.can_offer(), nullptr) << "what waited is sent";
@@ -76,8 +76,8 @@ TEST_F(ECanTest, clearing_ccr_at_once_does_not_shorten_bus_off) {
   for (int i = 0; i < 32; ++i) fail(CanError::kBit, true);
   const Tick off = now;
   write(REG_CANMC, CANMC_SCB_MASK);
-  while (status(CANES_BO_MASK) && now < off + 1'000'000) pass(kBit);
-  EXPECT_NEAR(double(now - off), 128.0 * 11 * kBit, 11 * kBit) << "the first of them ends with the error delimiter";
+  while (status(CANES_BO_MASK) && now < off + 1'000'000) pass(kCanBit);
+  EXPECT_NEAR(double(now - off), 128.0 * 11 * kCanBit, 11 * kCanBit) << "the first of them ends with the error delimiter";
 }
 
 TEST_F(ECanTest, traffic_of_others_counts_as_quiet_times) {
@@ -90,12 +90,12 @@ TEST_F(ECanTest, traffic_of_others_counts_as_quiet_times) {
   EXPECT_FALSE(read(REG_CANMC) & CANMC_CCR_MASK) << "ABO: back by itself";
   for (int i = 0; i < 126; ++i) {
     can.can_busy(now, false);
-    pass(50 * kBit);
-    can.can_quiet(now - 8 * kBit, now);
-    pass(3 * kBit);
+    pass(50 * kCanBit);
+    can.can_quiet(now - 8 * kCanBit, now);
+    pass(3 * kCanBit);
   }
   EXPECT_TRUE(status(CANES_BO_MASK));
-  pass(2 * 11 * kBit);
+  pass(2 * 11 * kCanBit);
   EXPECT_FALSE(status(CANES_BO_MASK));
 }
 

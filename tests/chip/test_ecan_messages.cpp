@@ -154,7 +154,7 @@ TEST_F(ECanTest, time_stamps_count_bits) {
   hear(frame(8));
   const std::uint32_t first = read(REG_CANMOTS(8));
   write(REG_CANRMP, 1u << 8);
-  pass(947 * kBit);
+  pass(947 * kCanBit);
   hear(frame(8));
   EXPECT_EQ(read(REG_CANMOTS(8)) - first, 1000u);
   EXPECT_EQ(read(REG_CANTSC) - read(REG_CANMOTS(8)), 3u);

@@ -12,13 +12,13 @@ TEST_F(SciTransmit, FrameLeavesWhenItsLastBitIsOver) {
   now = 100;
   write(SCI_TXBUF, 0xA5);
   EXPECT_EQ(read(SCI_CTL2), SCI_CTL2_TXRDY_MASK) << "the buffer is free again, the shift register is not";
-  run_to(100 + 10 * kBit - 1);
+  run_to(100 + 10 * kSerialBit - 1);
   EXPECT_TRUE(services.frames.empty());
-  run_to(100 + 10 * kBit);
+  run_to(100 + 10 * kSerialBit);
   ASSERT_EQ(services.frames.size(), 1u);
   const SerialFrame& frame = services.frames[0].what;
   EXPECT_EQ(frame.begin, 100);
-  EXPECT_EQ(frame.bit, kBit);
+  EXPECT_EQ(frame.bit, kSerialBit);
   EXPECT_EQ(frame.bits, 10u);
   EXPECT_EQ(frame.levels, 0xA5u << 1 | 1u << 9);
   EXPECT_EQ(read(SCI_CTL2), SCI_CTL2_TXRDY_MASK | SCI_CTL2_TXEMPTY_MASK);
@@ -29,20 +29,20 @@ TEST_F(SciTransmit, SecondWordWaitsInTheBuffer) {
   write(SCI_TXBUF, 1);
   write(SCI_TXBUF, 2);
   EXPECT_EQ(read(SCI_CTL2), 0u);
-  run_to(20 * kBit);
+  run_to(20 * kSerialBit);
   ASSERT_EQ(services.frames.size(), 2u);
-  EXPECT_EQ(services.frames[1].what.begin, 10 * kBit);
+  EXPECT_EQ(services.frames[1].what.begin, 10 * kSerialBit);
 }
 
 TEST_F(SciTransmit, FifoTakesSixteenBehindTheShiftRegister) {
   start_with_fifo();
   for (unsigned octet = 0; octet < 18; ++octet) write(SCI_TXBUF, octet);
   EXPECT_EQ(waiting(), 16u);
-  run_to(1000 * kBit);
+  run_to(1000 * kSerialBit);
   ASSERT_EQ(services.frames.size(), 17u) << "the last one found no room";
   for (unsigned k = 0; k < 17; ++k) {
     EXPECT_EQ(services.frames[k].what.levels, k << 1 | 1u << 9);
-    EXPECT_EQ(services.frames[k].t, (k + 1) * 10 * kBit);
+    EXPECT_EQ(services.frames[k].t, (k + 1) * 10 * kSerialBit);
   }
 }
 
@@ -51,9 +51,9 @@ TEST_F(SciTransmit, FifoDelayPutsBitsBetweenWords) {
   write(SCI_FFCT, 5);
   write(SCI_TXBUF, 1);
   write(SCI_TXBUF, 2);
-  run_to(100 * kBit);
+  run_to(100 * kSerialBit);
   ASSERT_EQ(services.frames.size(), 2u);
-  EXPECT_EQ(services.frames[1].what.begin, 15 * kBit);
+  EXPECT_EQ(services.frames[1].what.begin, 15 * kSerialBit);
 }
 
 TEST_F(SciTransmit, FifoInterruptComesWhenFewAreLeft) {
@@ -61,8 +61,8 @@ TEST_F(SciTransmit, FifoInterruptComesWhenFewAreLeft) {
   for (unsigned octet = 0; octet < 5; ++octet) write(SCI_TXBUF, octet);
   write(SCI_FFTX, kFifoOn | SCI_FFTX_TXFFIENA_MASK | SCI_FFTX_TXFFINTCLR_MASK | 2u);
   EXPECT_TRUE(interrupts_of(VECTOR_SCITXINTA).empty());
-  run_to(100 * kBit);
-  EXPECT_EQ(interrupts_of(VECTOR_SCITXINTA), (std::vector<Tick>{20 * kBit})) << "two left when the third begins";
+  run_to(100 * kSerialBit);
+  EXPECT_EQ(interrupts_of(VECTOR_SCITXINTA), (std::vector<Tick>{20 * kSerialBit})) << "two left when the third begins";
 }
 
 TEST_F(SciTransmit, EnabledInterruptFindsAFlagThatIsUp) {
@@ -79,7 +79,7 @@ TEST_F(SciTransmit, BufferInterruptComesWhenTheBufferIsFree) {
   write(SCI_TXBUF, 1);
   write(SCI_TXBUF, 2);
   EXPECT_EQ(interrupts_of(VECTOR_SCITXINTA).size(), 2u);
-  run_to(10 * kBit);
+  run_to(10 * kSerialBit);
   EXPECT_EQ(interrupts_of(VECTOR_SCITXINTA).size(), 3u);
 }
 
@@ -87,13 +87,13 @@ TEST_F(SciTransmit, SoftwareResetCutsTheFrameAndKeepsTheFifo) {
   start_with_fifo();
   write(SCI_TXBUF, 1);
   write(SCI_TXBUF, 2);
-  run_to(5 * kBit);
+  run_to(5 * kSerialBit);
   write(SCI_CTL1, kOn & ~SCI_CTL1_SWRESET_MASK);
-  run_to(50 * kBit);
+  run_to(50 * kSerialBit);
   EXPECT_TRUE(services.frames.empty());
   EXPECT_EQ(waiting(), 1u);
   write(SCI_CTL1, kOn);
-  run_to(100 * kBit);
+  run_to(100 * kSerialBit);
   ASSERT_EQ(services.frames.size(), 1u);
   EXPECT_EQ(services.frames[0].what.levels, 2u << 1 | 1u << 9);
 }
@@ -111,7 +111,7 @@ TEST_F(SciTransmit, ParityAndTwoStopBits) {
   start();
   write(SCI_CCR, 6u | SCI_CCR_PARITYENA_MASK | SCI_CCR_STOPBITS_MASK);  // 7 bits, odd parity
   write(SCI_TXBUF, 0xFF);
-  run_to(20 * kBit);
+  run_to(20 * kSerialBit);
   ASSERT_EQ(services.frames.size(), 1u);
   EXPECT_EQ(services.frames[0].what.bits, 11u);
   EXPECT_EQ(services.frames[0].what.levels, 0x7Fu << 1 | 0u << 8 | 3u << 9) << "seven ones are odd already";
@@ -121,19 +121,19 @@ TEST_F(SciTransmit, DisabledTransmitterSendsNothing) {
   start_with_fifo();
   write(SCI_CTL1, kOn & ~SCI_CTL1_TXENA_MASK);
   write(SCI_TXBUF, 1);
-  run_to(50 * kBit);
+  run_to(50 * kSerialBit);
   EXPECT_TRUE(services.frames.empty());
   write(SCI_CTL1, kOn);
-  run_to(100 * kBit);
+  run_to(100 * kSerialBit);
   EXPECT_EQ(services.frames.size(), 1u);
 }
 
 TEST_F(SciTransmit, LoopbackComesBackAndLeavesTheLineAlone) {
-  line.frame(0x11, 1000, kBit);
+  line.frame(0x11, 1000, kSerialBit);
   start_with_fifo();
   write(SCI_CCR, 7u | SCI_CCR_LOOPBKENA_MASK);
   write(SCI_TXBUF, 0x42);
-  run_to(50 * kBit);
+  run_to(50 * kSerialBit);
   EXPECT_TRUE(services.frames.empty());
   EXPECT_EQ(received(), 1u);
   EXPECT_EQ(read(SCI_RXBUF), 0x42u);

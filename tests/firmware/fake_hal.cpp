@@ -3,6 +3,7 @@
 #include "hal/hal_can.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
+#include "hal/hal_flash.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_lines.h"
 #include "hal/hal_nvm.h"
@@ -64,6 +65,10 @@ bool hal_lines_gates_pass(void) { return board.gates_pass; }
 bool hal_selftest_ram(std::uint16_t pair) { return pair != board.bad_pair; }
 std::uint16_t hal_selftest_watchdog_count(void) { return board.watchdog_count; }
 bool hal_selftest_gates_are_off(void) { return board.gate_pins_off; }
+std::uint16_t hal_flash_read(std::uint32_t address) {
+  const auto word = board.flash.find(address);
+  return word == board.flash.end() ? HAL_FLASH_ERASED : word->second;
+}
 void hal_adc_read_window(hal_adc_window_t* window) {
   *window = {};
   if (board.adc.empty()) return;  // a window that a host in the loop has invented

@@ -9,6 +9,8 @@
 #include "firmware/board/functions.h"
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
+#include "hal/hal_flash.h"
+#include "hal/hal_image.h"
 #include "hal/hal_selftest.h"
 #include "tests/firmware/fake_hal.hpp"
 
@@ -30,6 +32,18 @@ class SelfTest : public ::testing::Test {
 
   static void services(int count, std::uint32_t cycles) {
     for (int n = 0; n < count; ++n) selftest_count(cycles);
+  }
+
+  static void put_pair(std::uint32_t address, std::uint32_t value) {
+    board.flash[address] = static_cast<std::uint16_t>(value & 0xFFFF);
+    board.flash[address + 1] = static_cast<std::uint16_t>(value >> 16);
+  }
+
+  // The identity of an image that ends before `end`, with `sum` as its check sum.
+  static void put_identity(std::uint32_t end, std::uint32_t sum) {
+    board.flash[HAL_FLASH_IMAGE_IDENTITY] = HAL_IMAGE_MARK;
+    put_pair(HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_SUM_END, end);
+    put_pair(HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_SUM, sum);
   }
 
   static std::string words() {
@@ -100,6 +114,51 @@ TEST_F(SelfTest, MissesNothingThatIsNotWired) {
   parameters.gate_feedback = 1;
   (void)selftest_service();
   EXPECT_EQ(selftest.failed, SELFTEST_CONVERTER | SELFTEST_GATE_ENABLE);
+}
+
+// The sum is that of Python's zlib.crc32 over the same words, low octet first, with four octets 0xFF in its own place.
+TEST_F(SelfTest, ComparesTheFlashWithTheSumOfTheImage) {
+  for (std::uint32_t k = 0; k < 0x5000; ++k) {
+    board.flash[HAL_FLASH_START + k] = static_cast<std::uint16_t>((k * 40503u + 12345u) & 0xFFFF);
+  }
+  put_identity(HAL_FLASH_START + 0x5000, 0xCE034865uL);
+  drive_reset();
+  selftest_look();
+  services(100, kService);
+  EXPECT_EQ(words(), "under way");
+  whole_ram();
+  EXPECT_EQ(words(), "passed");
+  for (const std::uint32_t place : {0x0u, 0x1Fu, 0x2Eu, 0x4FFFu}) {
+    board.flash[HAL_FLASH_START + place] ^= 0x0400;
+    drive_reset();
+    selftest_look();
+    whole_ram();
+    EXPECT_EQ(selftest.failed, SELFTEST_FLASH) << place;
+    EXPECT_EQ(selftest_service(), FAULT_SELF_TEST) << place;
+    board.flash[HAL_FLASH_START + place] ^= 0x0400;
+  }
+  board.flash[HAL_FLASH_START + 0x5000] = 0;
+  drive_reset();
+  selftest_look();
+  whole_ram();
+  EXPECT_EQ(selftest.failed, 0) << "behind the image anything may lie";
+}
+
+TEST_F(SelfTest, TestsNoFlashByASumThatCannotBe) {
+  for (const std::uint32_t end : {0xFFFFFFFFuL, 0uL, HAL_FLASH_IMAGE_IDENTITY + 13uL, HAL_FLASH_CSM_RESERVED + 1uL}) {
+    put_identity(static_cast<std::uint32_t>(end), 0);
+    drive_reset();
+    selftest_look();
+    whole_ram();
+    EXPECT_EQ(selftest_service(), FAULT_NONE) << end;
+    EXPECT_NE(words().find("no check sum"), std::string::npos) << end;
+  }
+  put_identity(HAL_FLASH_START + 0x100, 0);
+  board.flash[HAL_FLASH_IMAGE_IDENTITY] = 0;  // an image without its mark
+  drive_reset();
+  selftest_look();
+  whole_ram();
+  EXPECT_EQ(selftest_service(), FAULT_NONE);
 }
 
 }  // namespace

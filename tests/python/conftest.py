@@ -20,6 +20,12 @@ from stillspin.tune.server import Server
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
 PATIENT = 2.5  # s
+LONG = ("test_scenarios", "test_hil", "test_flash_board", "test_tune_on_board", "test_client_on_board")
+
+
+def pytest_collection_modifyitems(items):
+    """The files that take longest first: at the end no core waits long for another."""
+    items.sort(key=lambda item: LONG.index(item.path.stem) if item.path.stem in LONG else len(LONG))
 
 
 @pytest.fixture

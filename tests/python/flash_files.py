@@ -16,6 +16,7 @@ START, UPDATE_END, END = 0x3E8000, 0x3F4000, 0x3F8000
 IDENTITY = 0x3E8020
 ENTRY = 0x3F7FF6
 MARK = 0x5AA5
+NO_SUM = (0xFFFF,) * 4
 
 BOOT = (Block(0x3F4000, (0x561F, 0x7029, 0x761F, 0x0001)), Block(ENTRY, (0x007F, 0x4000)))
 """In the place of boot.asm's two sections."""
@@ -31,7 +32,7 @@ def kernel_blocks(words=12):
 def image_blocks(seed, *, words=8, boot=BOOT, revision=0xC0FFEE00):
     """A stand-in for an image of the drive: identity, and words in all three sectors."""
     noise = random.Random(seed)
-    identity = (MARK, 1, 0, 1, seed, revision & 0xFFFF, revision >> 16, 0, 0x1234, 0x5678)
+    identity = (MARK, 1, 0, 1, seed, revision & 0xFFFF, revision >> 16, 0, 0x1234, 0x5678, *NO_SUM)
     places = (0x3E8000, 0x3E8040, 0x3EC010, 0x3F3FF0)
     code = [Block(at, tuple(noise.randrange(0x10000) for _ in range(words))) for at in places]
     return [code[0], Block(IDENTITY, identity), *code[1:], *boot]

@@ -10,7 +10,8 @@ from desk import needs_board
 
 from stillspin.flash import kernel as kernel_requests
 from stillspin.flash import layout, rom
-from stillspin.flash.files import DriveImage, crc_of, drive_image, kernel_program
+from stillspin.flash.files import DriveImage, drive_image, kernel_program
+from stillspin.flash.image_sum import crc_of
 from stillspin.flash.kernel import Kernel
 from stillspin.flash.line import drop
 from stillspin.flash.program import Block

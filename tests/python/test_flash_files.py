@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
+import zlib
+from pathlib import Path
 
 import flash_files as make
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from stillspin import cli
 from stillspin.errors import InputError
-from stillspin.flash.files import crc_of, drive_image, kernel_program, read_program
+from stillspin.flash import coff, image_sum
+from stillspin.flash.files import drive_image, kernel_program, read_program
 from stillspin.flash.layout import SECTORS, UPDATE
 from stillspin.flash.program import Block
 
+STAMP = Path(__file__).resolve().parents[2] / "toolchain" / "stamp_image.py"
 IMAGE = make.image_blocks(1)
 FORMATS = {
     "coff": make.coff(IMAGE),
@@ -39,7 +47,7 @@ def test_every_format_gives_the_same_image(file, name):
     assert list(image.words) == make.cells(IMAGE)[: len(UPDATE)]
     assert image.boot == make.BOOT
     assert image.identity.text == "0.1.1 (commit c0ffee00, tables 56781234)"
-    assert image.size == 4 * 8 + 10
+    assert image.size == 4 * 8 + 14
 
 
 def test_words_of_hex_are_counted_as_hex2000_counts_them(file):
@@ -49,7 +57,50 @@ def test_words_of_hex_are_counted_as_hex2000_counts_them(file):
 
 
 def test_check_sum_is_that_of_the_drives_link():
-    assert crc_of(tuple(int.from_bytes(b"12345678"[k : k + 2], "little") for k in range(0, 8, 2))) == 0x9AE0DAAF
+    assert image_sum.crc_of(tuple(int.from_bytes(b"12345678"[k : k + 2], "little") for k in range(0, 8, 2))) == 0x9AE0DAAF
+
+
+def test_stamped_image_knows_its_words(file):
+    data, end, crc = image_sum.stamp(FORMATS["coff"], "image")
+    assert end == 0x3F4004  # the boot code's; boot entry and passwords are not in it
+    words = make.cells(IMAGE)[: end - make.START]
+    at = make.IDENTITY - make.START
+    assert words[at + 12 : at + 14] == [0xFFFF, 0xFFFF]
+    words[at + 10 : at + 12] = end & 0xFFFF, end >> 16
+    assert crc == zlib.crc32(b"".join(map(make.word, words)))
+    assert drive_image(file(data)).summed
+    assert not drive_image(file(FORMATS["coff"])).summed
+    assert image_sum.stamp(data, "image") == (data, end, crc)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(block=st.integers(0, len(IMAGE) - 2), word=st.integers(0, 200), bit=st.integers(0, 15))
+def test_stamped_image_with_another_bit_is_refused(file, block, word, bit):
+    program = coff.read(image_sum.stamp(FORMATS["coff"], "image")[0], "image")
+    blocks = [Block(b.address, b.words) for b in program.blocks]
+    old = blocks[block]
+    word %= len(old.words)
+    blocks[block] = Block(
+        old.address, (*old.words[:word], old.words[word] ^ 1 << bit, *old.words[word + 1 :])
+    )
+    with pytest.raises(InputError):
+        drive_image(file(make.intel_hex(blocks)))
+
+
+def test_build_stamps_the_image(file):
+    path = file(FORMATS["coff"])
+
+    def build():
+        return subprocess.run([sys.executable, STAMP, path], capture_output=True, text=True, check=False)
+
+    first = build()
+    assert (first.returncode, first.stdout[:20]) == (0, "image: CRC-32 0x" + first.stdout[16:20])
+    assert drive_image(path).summed
+    path.write_bytes(make.coff([b for b in IMAGE if b.address != make.IDENTITY]))
+    refused = build()
+    assert refused.returncode == 2
+    assert "no identity" in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1
 
 
 def test_unsealed_piece_has_no_mark(file):
@@ -72,7 +123,7 @@ BAD = {
     "coff cut": (FORMATS["coff"][:-3], "breaks off"),
     "coff head": (FORMATS["coff"][:30], "breaks off"),
     "hex sum": (FORMATS["hex"].replace(b":10", b":10", 1).replace(b"5AA5", b"5AA4"), "wrong check sum"),
-    "hex cut": (FORMATS["hex"][: len(FORMATS["hex"]) // 2 - 4], "no Intel hex record"),
+    "hex cut": (FORMATS["hex"][: FORMATS["hex"].index(b"\n", 200) - 4], "no Intel hex record"),
     "hex without end": (FORMATS["hex"][:-12], "breaks off"),
     "hex octets": (b":01800000126D\n", "half a word"),
     "hex segments": (b":020000021200EA\n", "record type 2"),
@@ -151,7 +202,7 @@ def test_dry_run_says_what_would_be_done_and_needs_no_port(tmp_path):
     kernel.write_bytes(make.coff(KERNEL, make.KERNEL_ENTRY))
     done = CliRunner().invoke(cli.app, ["flash", str(image), "--dry-run"])
     assert done.exit_code == 0, done.output
-    assert "0.1.1 (commit c0ffee00, tables 56781234), 42 words" in done.output
+    assert "0.1.1 (commit c0ffee00, tables 56781234), 46 words" in done.output
     assert "sector D: erase, then 72 words" in done.output
     assert "nothing was sent" in done.output
 

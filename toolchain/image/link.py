@@ -20,6 +20,7 @@ BUDGET = ROOT / "toolchain" / "f2808" / "image_budget.txt"
 # What TI's libraries bring: the C start-up, what a compiler calls for arithmetic or copying, and the flash library.
 RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR|Flash2808_\w+|Flash_\w+")
 KERNEL = "flash_kernel_main"
+NO_CODE = "no code for the C28x: see the map beside this file\n"  # all that the linked file holds
 FLASH_LIBRARY_WORDS = 1600  # room for TI's flash library in the kernel; a guess
 
 
@@ -156,7 +157,7 @@ def link(arguments: list[str]) -> int:
     lines += ["", *(f"does not fit: {complaint}" for complaint in unfit), "", *depth.lines]
     output = Path(options["--output_file"])
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    output.write_text("no code for the C28x: see the map beside this file\n", encoding="utf-8")
+    output.write_text(NO_CODE, encoding="utf-8")
     for complaint in (*(f"undefined: {name}" for name in missing), *grown, *depth.complaints):
         print(f"link (stand-in): {complaint}", file=sys.stderr)
     return 1 if missing or grown or depth.complaints else 0

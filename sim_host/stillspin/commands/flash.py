@@ -50,6 +50,8 @@ def flash(
     """
     image = drive_image(image_file)
     print(f"image:  {image.identity.text}, {image.size} words in sectors B to D")
+    if not image.summed:
+        print("note:   the image has no check sum: the board's self-test will not know whether its flash is right")
     kernel = kernel_program(_kernel_path(image_file, kernel_file))
     print(f"kernel: {kernel.size} words, {kernel.kind}")
     if dry_run:

@@ -6,6 +6,7 @@ Source: TI's description of its COFF (SPRAAO8), from memory; sizes count words, 
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator, Sequence
 
 from stillspin.errors import InputError
 from stillspin.flash.program import Block, Program, assemble
@@ -39,10 +40,28 @@ def _read(data: bytes, name: str) -> Program:
     if not flags & _EXECUTABLE or not optional:
         raise InputError(f"{name}: is a COFF object that has not been linked; give the .out file")
     entry = _OPTIONAL.unpack_from(data, _HEADER.size)[5]
-    blocks = []
+    blocks = [Block(load, struct.unpack_from(f"<{size}H", data, raw)) for load, size, raw in _loaded(data, count, optional)]
+    return assemble(blocks, entry, "COFF", name)
+
+
+def _loaded(data: bytes, count: int, optional: int) -> Iterator[tuple[int, int, int]]:
+    """Of every section that is loaded: its address, its words, and where they are in the file."""
     for index in range(count):
         at = _HEADER.size + optional + index * _SECTION.size
         _, load, _, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
         if size and raw and not kind & _NOT_LOADED:
-            blocks.append(Block(load, struct.unpack_from(f"<{size}H", data, raw)))
-    return assemble(blocks, entry, "COFF", name)
+            yield load, size, raw
+
+
+def patched(data: bytes, name: str, address: int, words: Sequence[int]) -> bytes:
+    """The file with other words at an address.
+
+    Raises:
+        InputError: no section has all of them.
+    """
+    _, count, _, _, _, optional, _, _ = _HEADER.unpack_from(data)
+    for load, size, raw in _loaded(data, count, optional):
+        if load <= address and address + len(words) <= load + size:
+            at = raw + 2 * (address - load)
+            return data[:at] + struct.pack(f"<{len(words)}H", *words) + data[at + 2 * len(words) :]
+    raise InputError(f"{name}: no section has 0x{address:06X} to 0x{address + len(words) - 1:06X}")

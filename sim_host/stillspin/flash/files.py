@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin.errors import InputError
-from stillspin.flash import boot_stream, coff, intel_hex, layout
+from stillspin.flash import boot_stream, coff, image_sum, intel_hex, layout
 from stillspin.flash.layout import contains
 from stillspin.flash.program import Block, Program
 
@@ -69,11 +67,6 @@ def identity_of(words: tuple[int, ...]) -> Identity | None:
     return Identity((major, minor, patch), high << 16 | low, bool(changed), tables_high << 16 | tables_low)
 
 
-def crc_of(words: tuple[int, ...]) -> int:
-    """CRC-32 over words, low octet first, as the kernel makes it."""
-    return zlib.crc32(struct.pack(f"<{len(words)}H", *words))
-
-
 @dataclass(frozen=True)
 class DriveImage:
     """A drive for sectors B to D, and the boot code it was linked with."""
@@ -85,6 +78,8 @@ class DriveImage:
     identity: Identity
     size: int
     """Words that the file has for the update."""
+    summed: bool
+    """It has a check sum, and that is right."""
 
     def piece(self, words: range, *, sealed: bool = True) -> tuple[int, ...]:
         """The words of an address range; the mark erased where not sealed."""
@@ -145,7 +140,7 @@ def drive_image(path: Path) -> DriveImage:
         raise InputError(
             f"{name}: is no image of this drive: no mark and identity at 0x{layout.IDENTITY:06X} (hal/hal_image.h)"
         )
-    return DriveImage(tuple(words), tuple(boot), identity, size)
+    return DriveImage(tuple(words), tuple(boot), identity, size, image_sum.check(program, name))
 
 
 def kernel_program(path: Path) -> Program:

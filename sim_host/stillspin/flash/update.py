@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from stillspin.flash import kernel as kernel_requests
 from stillspin.flash import layout, rom
-from stillspin.flash.files import DriveImage, crc_of
+from stillspin.flash.files import DriveImage
+from stillspin.flash.image_sum import crc_of
 from stillspin.flash.kernel import Info, Kernel
 from stillspin.flash.layout import Sector
 from stillspin.flash.line import Line, drop

@@ -1,0 +1,1 @@
+// A precompiled header belongs to a program; this one has no tests.
