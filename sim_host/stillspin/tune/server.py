@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
 
-from aiohttp import WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType, web
 
 from stillspin.drive import Drive
 from stillspin.errors import InputError
@@ -27,6 +27,8 @@ _PAGE = Path(__file__).resolve().parent / "page"
 _HOST = "127.0.0.1"
 _LARGEST = 1 << 16
 _BEAT = 5.0
+_FAREWELL = 1.0
+"""Seconds for a page to answer that the connection ends."""
 _BACKLOG = 400
 """Messages that may wait for a page that does not fetch them."""
 
@@ -45,6 +47,7 @@ class Server:
         self._socket = _listen(port)
         self.guard.port = self._socket.getsockname()[1]
         self._pages: dict[str, asyncio.Queue[str]] = {}
+        self._connections: set[web.WebSocketResponse] = set()
         self._tasks: set[asyncio.Task[None]] = set()
         self._loop = asyncio.new_event_loop()
         # What stops the motor has threads of its own: others may wait for the drive for long.
@@ -88,15 +91,21 @@ class Server:
         application.router.add_get("/", self._index)
         application.router.add_get("/live", self._live)
         application.router.add_static("/page", _PAGE)
+        application.on_shutdown.append(self._say_goodbye)
         return application
+
+    async def _say_goodbye(self, _: web.Application) -> None:
+        """A page that is told goes at once; for one that is not the shutdown waits."""
+        await asyncio.gather(*(page.close(code=WSCloseCode.GOING_AWAY) for page in self._connections))
 
     async def _index(self, _: web.Request) -> web.StreamResponse:
         return web.FileResponse(_PAGE / "index.html")
 
     async def _live(self, request: web.Request) -> web.StreamResponse:
         """One page: what it says goes to the workbench, what the drive says goes to it."""
-        connection = web.WebSocketResponse(heartbeat=_BEAT, max_msg_size=_LARGEST)
+        connection = web.WebSocketResponse(heartbeat=_BEAT, max_msg_size=_LARGEST, timeout=_FAREWELL)
         await connection.prepare(request)
+        self._connections.add(connection)
         who = uuid.uuid4().hex
         queue: asyncio.Queue[str] = asyncio.Queue(_BACKLOG)
         sender = asyncio.create_task(_send(connection, queue))
@@ -110,6 +119,7 @@ class Server:
             await connection.send_str(_text({"t": "lost", "text": str(error)}))
         finally:
             self._pages.pop(who, None)
+            self._connections.discard(connection)
             sender.cancel()
             await self._let_go(who, "stopped: the page was closed")
         return connection
