@@ -19,7 +19,7 @@ extern "C" {
 #define HAL_FLASH_SECTORS 4u             // 0 is A, the uppermost; 3 is D, the lowest
 #define HAL_FLASH_UPDATE_END 0x3F4000uL  // sector A begins
 #define HAL_FLASH_END 0x3F8000uL
-#define HAL_FLASH_CSM_RESERVED 0x3F7F80uL  // nothing is linked from here on but the entry
+#define HAL_FLASH_CSM_RESERVED 0x3F7F80uL    // nothing is linked from here on but the entry
 #define HAL_FLASH_IMAGE_IDENTITY 0x3E8020uL  // hal_image_identity_t of the drive
 #define HAL_FLASH_KERNEL_RAM 0x3FA000uL
 #define HAL_FLASH_KERNEL_MARK 0x464Bu  // the first word there: a host knows the kernel's file by it

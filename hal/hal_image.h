@@ -12,7 +12,7 @@ extern "C" {
 
 // The first word of an image that is complete; an update programs it last.
 #define HAL_IMAGE_MARK 0x5AA5u
-#define HAL_IMAGE_FORMAT 1u  // of hal_image_identity_t: raised when a member changes its meaning
+#define HAL_IMAGE_FORMAT 1u    // of hal_image_identity_t: raised when a member changes its meaning
 #define HAL_IMAGE_SUM_END 10u  // places of members, in words, for who has the flash
 #define HAL_IMAGE_SUM 12u
 
@@ -25,9 +25,9 @@ typedef struct {
   uint16_t revision[2];  // first 32 bits of the commit's name; 0: built from an unknown one
   uint16_t changed;      // 1: there were changes beside the commit
   uint16_t tables[2];    // first 32 bits of the SHA-256 of the lists of parameters, signals and faults
-  // CRC-32 (firmware/link/crc.h) of the words from HAL_FLASH_START to before sum_end, low octet first, where nothing was
-  // linked counted as erased and so the sum itself. The linked file gets both (toolchain/stamp_image.py); until then
-  // they are erased.
+  // CRC-32 (firmware/link/crc.h) of the words from HAL_FLASH_START to before sum_end, low octet first; words that
+  // nothing was linked to count as erased, and so does the sum. The linked file gets both (toolchain/stamp_image.py),
+  // and has ones until then.
   uint16_t sum_end[2];
   uint16_t sum[2];
 } hal_image_identity_t;

@@ -77,7 +77,8 @@ TEST_F(ECanTest, clearing_ccr_at_once_does_not_shorten_bus_off) {
   const Tick off = now;
   write(REG_CANMC, CANMC_SCB_MASK);
   while (status(CANES_BO_MASK) && now < off + 1'000'000) pass(kCanBit);
-  EXPECT_NEAR(double(now - off), 128.0 * 11 * kCanBit, 11 * kCanBit) << "the first of them ends with the error delimiter";
+  EXPECT_NEAR(double(now - off), 128.0 * 11 * kCanBit, 11 * kCanBit)
+      << "the first of them ends with the error delimiter";
 }
 
 TEST_F(ECanTest, traffic_of_others_counts_as_quiet_times) {

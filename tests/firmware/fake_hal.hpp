@@ -35,9 +35,9 @@ struct FakeBoard {
   std::uint32_t encoder = 0;
   bool relay = false, brake = false, emergency = false, gates_pass = false;
   bool gate_pins_off = true;
-  int bad_pair = -1;                  // of RAM
+  int bad_pair = -1;                             // of RAM
   std::map<std::uint32_t, std::uint16_t> flash;  // words by address, erased where there is none
-  std::uint16_t watchdog_count = 10;  // at a service
+  std::uint16_t watchdog_count = 10;             // at a service
   std::uint16_t reference = 2048;
   std::uint16_t slice_ticks = 0;  // 0: pulses
   std::uint16_t legs = 0;

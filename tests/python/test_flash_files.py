@@ -57,7 +57,8 @@ def test_words_of_hex_are_counted_as_hex2000_counts_them(file):
 
 
 def test_check_sum_is_that_of_the_drives_link():
-    assert image_sum.crc_of(tuple(int.from_bytes(b"12345678"[k : k + 2], "little") for k in range(0, 8, 2))) == 0x9AE0DAAF
+    words = (int.from_bytes(b"12345678"[k : k + 2], "little") for k in range(0, 8, 2))
+    assert image_sum.crc_of(words) == 0x9AE0DAAF
 
 
 def test_stamped_image_knows_its_words(file):
@@ -80,9 +81,7 @@ def test_stamped_image_with_another_bit_is_refused(file, block, word, bit):
     blocks = [Block(b.address, b.words) for b in program.blocks]
     old = blocks[block]
     word %= len(old.words)
-    blocks[block] = Block(
-        old.address, (*old.words[:word], old.words[word] ^ 1 << bit, *old.words[word + 1 :])
-    )
+    blocks[block] = Block(old.address, (*old.words[:word], old.words[word] ^ 1 << bit, *old.words[word + 1 :]))
     with pytest.raises(InputError):
         drive_image(file(make.intel_hex(blocks)))
 

@@ -40,7 +40,9 @@ def _read(data: bytes, name: str) -> Program:
     if not flags & _EXECUTABLE or not optional:
         raise InputError(f"{name}: is a COFF object that has not been linked; give the .out file")
     entry = _OPTIONAL.unpack_from(data, _HEADER.size)[5]
-    blocks = [Block(load, struct.unpack_from(f"<{size}H", data, raw)) for load, size, raw in _loaded(data, count, optional)]
+    blocks = [
+        Block(load, struct.unpack_from(f"<{size}H", data, raw)) for load, size, raw in _loaded(data, count, optional)
+    ]
     return assemble(blocks, entry, "COFF", name)
 
 
