@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from function_desk import Desk
 from playwright.sync_api import sync_playwright
 from typer.testing import CliRunner
 
@@ -20,7 +21,7 @@ from stillspin.tune.server import Server
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
 PATIENT = 2.5  # s
-LONG = ("test_scenarios", "test_hil", "test_flash_board", "test_tune_on_board", "test_client_on_board")
+LONG = ("test_scenarios", "test_hil", "test_flash_broken", "test_tune_on_board", "test_client_on_board")
 
 
 def pytest_collection_modifyitems(items):
@@ -33,6 +34,20 @@ def core(monkeypatch):
     """The fake native module in place of the real one, whether or not that is built."""
     monkeypatch.setitem(sys.modules, "stillspin._core", fake_core)
     return fake_core
+
+
+@pytest.fixture
+def power():
+    """Switches on a virtual board in this process, which has room for one at a time; off behind the test."""
+    opened = []
+
+    def switch_on(*arguments, **named):
+        opened.append(Desk(*arguments, **named))
+        return opened[-1]
+
+    yield switch_on
+    for desk in opened:
+        desk.board.close()
 
 
 @pytest.fixture
