@@ -274,6 +274,9 @@ def board_(
     end: Annotated[
         float | None, typer.Option("--for", min=0.0, metavar="SECONDS", help="Switch off after so much of its time.")
     ] = None,
+    parent: Annotated[
+        int | None, typer.Option("--parent", metavar="PID", help="Switch off when this process, its parent, is gone.")
+    ] = None,
 ) -> None:
     """Put the virtual drive on the desk: its serial port is a pseudo-terminal, its time is real time."""
     native = core.load()
@@ -287,7 +290,7 @@ def board_(
         f", {words}" for words in changes.words
     )
     board = power.power(native, chosen, changes, seed)
-    serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom), title)
+    serve.serve(board, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent), title)
 
 
 @app.command(name="startup-matrix")

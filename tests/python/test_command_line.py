@@ -128,7 +128,7 @@ def test_an_interrupt_is_said_and_leaves_nothing(call, core, tmp_path, monkeypat
 
     monkeypatch.setattr(core, "run", interrupted)
     result = call("run", "A10")
-    assert (result.exit_code, result.stderr) == (130, "stillspin: interrupted; nothing was written\n")
+    assert (result.exit_code, result.stderr) == (130, "stillspin: interrupted; what was finished before is kept\n")
     assert left_over(tmp_path) == []
 
 

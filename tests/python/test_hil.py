@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from desk import board as board_process
@@ -15,7 +18,7 @@ from stillspin import core
 from stillspin.cases import profile, scenario_file
 from stillspin.cli import app
 from stillspin.drive.protocol import Request
-from stillspin.drive.requester import Requester
+from stillspin.drive.requester import Requester, wait_until
 from stillspin.errors import InputError
 from stillspin.hil import Loop, runs, told
 from stillspin.hil.results import Results, Row
@@ -294,6 +297,29 @@ def test_virtual_boards_do_several_runs_at_a_time(tmp_path):
     refused = call("--port", "/dev/none", "--jobs", "2")
     assert refused.exit_code == 2
     assert "a board does one run at a time" in refused.stderr
+
+
+def boards_of(directory):
+    """The processes whose files lie there."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            if str(directory).encode() in (process / "cmdline").read_bytes():
+                found.append(process.name)
+    return found
+
+
+def test_whoever_ends_the_campaign_ends_its_boards(tmp_path):
+    command = [sys.executable, "-m", "stillspin", "hil", "A10", "A11", "--can", "virtual", "--jobs", "2"]
+    campaign = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": str(tmp_path)}
+    )
+    assert wait_until(lambda: len(boards_of(tmp_path)) == 2, 60)
+    campaign.terminate()
+    _, said = campaign.communicate(timeout=60)
+    assert campaign.returncode == 130
+    assert said.strip().splitlines()[-1] == "stillspin: interrupted; what was finished before is kept"
+    assert wait_until(lambda: boards_of(tmp_path) == [], 60)
 
 
 def test_one_board_is_enough():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import time
 from collections.abc import Iterator
@@ -31,7 +32,7 @@ class Options:
 
     `speed`: times real time, 0 as fast as possible. `load`: Nm. `socketcan`: an interface of the
     kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops. `eeprom`: the file
-    that keeps the content of the EEPROM; a new memory without.
+    that keeps the content of the EEPROM; a new memory without. `parent`: a process without which it stops.
     """
 
     speed: float = 1.0
@@ -41,6 +42,7 @@ class Options:
     load: float = 0.0
     end: float | None = None
     eeprom: Path | None = None
+    parent: int | None = None
 
 
 def serve(board: NativeBoard, options: Options, title: str) -> None:
@@ -66,6 +68,7 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
         pacer = Pacer(options.speed)
         with stopped_by_signals() as stop, Show(Console(stderr=True), desk, pacer, options.speed) as show:
             began = time.monotonic()
+            stop.parent = options.parent
             _loop(desk, pacer, show, stop, options.end)
             wall = time.monotonic() - began
         ran = desk.time
@@ -91,9 +94,15 @@ def _plug_in(board: NativeBoard, options: Options) -> Desk:
 
 @dataclass
 class Stop:
-    """Set by a signal."""
+    """Set by a signal, or true when the parent is no longer there."""
 
-    wanted: bool = False
+    asked: bool = False
+    parent: int | None = None
+
+    @property
+    def wanted(self) -> bool:
+        """Whether it is time to end."""
+        return self.asked or self.parent not in {None, os.getppid()}
 
 
 @contextmanager
@@ -102,7 +111,7 @@ def stopped_by_signals() -> Iterator[Stop]:
     stop = Stop()
 
     def ask(_number: int, _frame: FrameType | None) -> None:
-        stop.wanted = True
+        stop.asked = True
 
     before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

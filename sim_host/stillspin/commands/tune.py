@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import signal
 import threading
 import webbrowser
-from types import FrameType
 from typing import Annotated
 
 import typer
@@ -33,7 +31,6 @@ def tune(
         print("Whoever has this address can run the motor. Ctrl-C ends the server and stops the motor.", flush=True)
         if browser:
             threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
-        signal.signal(signal.SIGTERM, _end)
         try:
             while not drive.link.lost:
                 threading.Event().wait(_POLL)
@@ -41,8 +38,3 @@ def tune(
             print("stopped")
         if drive.link.lost:
             raise drive.link.lost
-
-
-def _end(_number: int, _frame: FrameType | None) -> None:
-    """An orderly end stops the motor."""
-    raise KeyboardInterrupt

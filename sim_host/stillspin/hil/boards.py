@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -71,7 +72,9 @@ class _Board:
         self._log = directory / "log"
         plugs = ["--serial-link", str(self._serial), "--can-link", str(self._can), "--eeprom", str(self.memory)]
         with self._log.open("w") as log:
-            self._process = subprocess.Popen(_command("--speed", "0", *plugs), stdout=log, stderr=log)
+            # Should this process end before it knows of that one, that one ends by itself.
+            guard = ["--parent", str(os.getpid())]
+            self._process = subprocess.Popen(_command("--speed", "0", *guard, *plugs), stdout=log, stderr=log)
 
     def wait(self, kind: str, baud: int = BAUD) -> str:
         """Its address, as soon as it has one.
