@@ -45,7 +45,8 @@ bool current_controller_design(current_controller_config_t* c, const machine_mod
 
 void current_controller_reset(current_controller_t* s);
 
-/// One step: currents in A Q20, speed in binary angle per period; returns the voltage command in V Q16.
+/// One step: currents in A Q20, speed in binary angle per period; returns the voltage command in V Q16, at most 4096 V
+/// along each axis.
 dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c, const machine_model_t* m,
                              dq_t reference_q20, dq_t measured_q20, int32_t speed_bpp);
 

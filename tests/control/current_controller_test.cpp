@@ -51,6 +51,7 @@ TEST(CurrentController, RefusesBandwidthsThatTheDelayDoesNotAllow) {
   EXPECT_TRUE(designed(&c, m, 2600));
   EXPECT_FALSE(designed(&c, m, 2601));
   EXPECT_FALSE(designed(&c, m, -2000));
+  EXPECT_FALSE(designed(&c, m, 42949673));  // times a period of 100 us more than 32 bits hold
   EXPECT_TRUE(designed(&c, m, 2080, 2));
   EXPECT_FALSE(designed(&c, m, 2081, 2));
   EXPECT_FALSE(designed(&c, m, 1000, 0));
@@ -97,6 +98,24 @@ TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
     // the 1.7e-6 that T is right to: of 300 V that is 5e-4.
     ASSERT_NEAR(real(v.d, 16), expected.x, 1.5e-3) << n;
     ASSERT_NEAR(real(v.q, 16), expected.y, 1.5e-3) << n;
+  }
+}
+
+// A large machine with the largest bandwidth: the controller and the rotation each ask for more volts than 16 bits of
+// integer hold, and their sum must not come out with the other sign.
+TEST(CurrentController, CommandsBeyondTheFormatKeepTheirSign) {
+  Motor motor;
+  motor.ld = 0.2, motor.lq = 0.2, motor.flux = 0.9, motor.inertia = 0.5;
+  machine_model_t m = model_of(motor);
+  current_controller_config_t c;
+  ASSERT_TRUE(designed(&c, m, 2600));
+  for (const double sign : {1.0, -1.0}) {
+    current_controller_t s;
+    current_controller_reset(&s);
+    const dq_t measured = raw_dq({sign * 20.0, 0.0}, 20);
+    const dq_t v = current_controller_step(&s, &c, &m, raw_dq({0.0, sign * 100.0}, 20), measured, bpp(3000.0));
+    EXPECT_EQ(real(v.q, 16), sign * 4096.0);
+    EXPECT_EQ(real(v.d, 16), sign * -4096.0);
   }
 }
 
