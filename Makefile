@@ -16,7 +16,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck verify loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove verify loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -71,7 +71,12 @@ cppcheck: ## read the drive's C with the C28x's widths, and planted defects
 	@$(PYTHON) toolchain/cppcheck.py
 	@$(PYTHON) toolchain/cppcheck.py --defects
 
-verify: image-check cppcheck vectors int16 ## the checks that take long, under 30 minutes: image, cppcheck, vectors, int16
+prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted defects
+	@bash toolchain/setup.sh build verify
+	@$(PYTHON) toolchain/prove.py build/prove
+	@$(PYTHON) toolchain/prove.py build/prove --defects
+
+verify: image-check cppcheck prove vectors int16 ## the checks that take long: image, cppcheck, prove, vectors, int16
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

@@ -10,7 +10,6 @@ copy of the sources and has to be seen where it says.
 """
 
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -22,6 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "vectors"))
 
 import model  # noqa: E402
+import planted  # noqa: E402
 
 FOLDERS = ("hal", "control", "estimators", "tests/vectors", "tests/m3")
 SOURCES = (
@@ -131,15 +131,9 @@ def wrong_groups(name: str, tree: Path, out: Path, wanted: list[str]) -> set[str
 def missed(defect: Defect, out: Path, wanted: list[str]) -> list[str]:
     """Where a planted defect is not seen as it should be."""
     tree = out / "tree"
-    shutil.rmtree(tree, ignore_errors=True)
-    for folder in FOLDERS:
-        shutil.copytree(ROOT / folder, tree / folder)
-    path = tree / defect.file
-    text = path.read_text(encoding="utf-8")
-    if defect.right not in text:
-        return [f"{defect.file} has no {defect.right!r}"]
-    path.write_text(text.replace(defect.right, defect.wrong), encoding="utf-8")
-    complaints = []
+    complaints = planted.plant(tree, FOLDERS, [(defect.file, defect.right, defect.wrong)])
+    if complaints:
+        return complaints
     for name in TARGETS:
         seen = wrong_groups(name, tree, out, wanted)
         expected = defect.groups if name in defect.targets else frozenset()

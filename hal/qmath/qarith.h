@@ -49,7 +49,7 @@ static inline bool q_in_range(int32_t x, int32_t lo, int32_t hi) { return x >= l
 
 // x limited to the range of int32_t.
 static inline int32_t q_sat64(int64_t x) {
-  const int32_t low = (int32_t)(uint32_t)((uint64_t)x & 0xFFFFFFFFuL);
+  const int32_t low = (int32_t)(uint32_t)(uint64_t)x;
   if (low == x) {
     return low;  // one comparison where nothing has to be limited
   }

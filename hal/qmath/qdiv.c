@@ -21,15 +21,15 @@ static const uint16_t reciprocal_seed_q15[128] = {
 unsigned q_clz32(uint32_t x) {
   static const uint16_t zeros_of_nibble[16] = {4u, 3u, 2u, 2u, 1u, 1u, 1u, 1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u};
   unsigned zeros = 0;
-  if ((x & 0xFFFF0000uL) == 0) {
+  if (x < 0x10000uL) {
     zeros += 16;
     x <<= 16;
   }
-  if ((x & 0xFF000000uL) == 0) {
+  if (x < 0x1000000uL) {
     zeros += 8;
     x <<= 8;
   }
-  if ((x & 0xF0000000uL) == 0) {
+  if (x < 0x10000000uL) {
     zeros += 4;
     x <<= 4;
   }

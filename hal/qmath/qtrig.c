@@ -71,7 +71,7 @@ static uint32_t arctangent(uint32_t t_q31) {
   p = q_mul_hi(p, u_q31) + 443664106L;   // Q35
   p = q_mul_hi(p, u_q31) - 324622312L;   // Q34
   p = q_mul_hi(p, u_q31) + 293388565L;   // Q33
-  const uint32_t per_t_q32 = ANGLE_BAM_EIGHTH_TURN + (uint32_t)q_mul_hi(p, INT32_MAX - u_q31);
+  const uint32_t per_t_q32 = ANGLE_BAM_EIGHTH_TURN + (uint32_t)q_mul_hi(p, (int32_t)(0x7FFFFFFFuL - (uint32_t)u_q31));
   return (uint32_t)(((uint64_t)t_q31 * per_t_q32 + ((uint32_t)1 << 30)) >> 31);
 }
 
@@ -79,8 +79,8 @@ angle_bam32_t q_atan2(int32_t y, int32_t x) {
   const uint32_t x_size = q_abs_u32(x);
   const uint32_t y_size = q_abs_u32(y);
   const bool steep = y_size > x_size;
-  const uint32_t longer = steep ? y_size : x_size;
-  const uint32_t shorter = steep ? x_size : y_size;
+  const uint32_t longer = (y_size > x_size) ? y_size : x_size;
+  const uint32_t shorter = (y_size > x_size) ? x_size : y_size;
   const unsigned zeros = q_clz32(longer);
   angle_bam32_t angle;
   if (longer == 0) {

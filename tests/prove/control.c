@@ -1,0 +1,98 @@
+// The controllers with any machine, any gains that their designs give, any current to 512 A, any speed to 1.9 rad per
+// period: step after step.
+
+#include "control/brake_limit.h"
+#include "control/current_controller.h"
+#include "control/field_weakening.h"
+#include "control/if_start.h"
+#include "control/mtpa.h"
+#include "control/position_hold.h"
+#include "control/ramp.h"
+#include "control/speed_controller.h"
+#include "tests/prove/any_machine.h"
+
+static machine_model_t told, model;
+
+static void control_currents(void) {
+  const current_design_t design = {any_from(0, 10000), 100, any_from(0, 3), (current_corner_t)(any_u16 & 1u)};
+  current_controller_config_t c;
+  current_controller_t s;
+  if (!current_controller_design(&c, &model, &design)) return;
+  current_controller_reset(&s);
+  while (any_bool()) {
+    (void)current_controller_step(&s, &c, &model, any_dq(CURRENT_MAX_Q20), any_dq(CURRENT_MAX_Q20), any_speed());
+    if (any_bool()) current_controller_limited(&s, &c, any_dq(VOLTAGE_MAX_Q16 * 4));
+  }
+}
+
+static void control_speed(void) {
+  const speed_controller_config_t c = {any_i32, any_i32, 10, any_i32, any_i32, any_i32, any_i32};
+  speed_controller_t s;
+  if (!speed_controller_init(&s, &c, &model)) return;
+  while (any_bool()) {
+    const int32_t most = any_from(0, CURRENT_MAX_Q20);
+    const speed_controller_input_t in = {
+        any_speed(), any_from(-SPEED_MAX_BPP, SPEED_MAX_BPP), any_speed(), any_i32, -most, most};
+    if (any_bool()) speed_controller_scale(&s, any_from(2097152L, 134217728L));
+    if (any_bool()) speed_controller_preset(&s, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
+    (void)speed_controller_step(&s, any_bool() ? SPEED_PI : SPEED_PREDICTIVE, &in);
+  }
+}
+
+static void weaken_field(void) {
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  while (any_bool()) {
+    const field_weakening_input_t in = {any_speed(),
+                                        any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20),
+                                        any_from(0, INT32_MAX),
+                                        any_from(0, VOLTAGE_MAX_Q16),
+                                        any_from(0, CURRENT_MAX_Q20),
+                                        any_from(0, 104858L)};
+    const int32_t id_q20 = field_weakening_step(&s, &in, &model);
+    //@ assert id_q20 <= 0;
+    //@ assert id_q20 >= -536870912;
+    (void)id_q20;
+  }
+}
+
+static void turn_vector(void) {
+  const if_start_parameters_t p = {any_from(0, CURRENT_MAX_Q20), any_from(100, 50000), any_from(0, SPEED_MAX_BPP),
+                                   any_from(0, SPEED_MAX_BPP), any_from(0, 100000L)};
+  if_start_config_t c;
+  if_start_t s;
+  if (!if_start_design(&c, &model, &p)) return;
+  if_start_begin(&s, any_u32, any_bool());
+  while (any_bool()) (void)if_start_step(&s, &c, any_dq(VOLTAGE_MAX_Q16), any_u32, any_speed());
+}
+
+static void limit_and_hold(void) {
+  position_hold_t h = {false, 0, 0};
+  ramp_t r = {0, 0};
+  mtpa_t m;
+  mtpa_design(&m, &model);
+  while (any_bool()) {
+    if (any_bool()) position_hold_release(&h);
+    (void)position_hold_step(&h, any_u32, any_from(0, 10737418L));
+    (void)ramp_step(&r, any_speed(), any_from(0, INT32_MAX));
+    (void)mtpa_current_q20(&m, any_i32);
+    const brake_limit_input_t in = {any_from(0, VOLTAGE_MAX_Q16), any_from(0, VOLTAGE_MAX_Q16),
+                                    any_from(0, VOLTAGE_MAX_Q16), any_from(0, INT32_MAX), any_from(0, INT32_MAX)};
+    if (in.start_q16 < in.end_q16) (void)brake_limit_q20(&in, any_from(0, CURRENT_MAX_Q20));
+  }
+}
+
+void prove_control(void) {
+  if (!make_any_machine(&told)) return;
+  model = told;
+  while (any_bool()) {
+    machine_model_move(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
+    if (any_bool()) machine_model_scale_inertia(&model, &told, any_from(2097152L, 134217728L));
+    (void)machine_torque_q16(&model, any_dq(CURRENT_MAX_Q20));
+  }
+  control_currents();
+  control_speed();
+  weaken_field();
+  turn_vector();
+  limit_and_hold();
+}

@@ -1,0 +1,135 @@
+// hal/qmath with every argument that its headers admit. What is normalised by its leading zeros is given in slices of
+// one power of two each, so that a reader that knows intervals alone knows them.
+
+#include "tests/prove/any.h"
+
+// Numbers with their highest bit at n - 1; 0 for n = 0.
+static uint32_t magnitude(unsigned n) {
+  if (n == 0u) return 0u;
+  const uint32_t highest = (uint32_t)1 << (n - 1u);
+  return highest + (any_u32 & (highest - 1u));
+}
+
+// The same as a signed number; the only one with 32 bits is the smallest.
+static int32_t positive(unsigned n) { return (n < 32u) ? (int32_t)magnitude(n) : INT32_MIN; }
+
+static int32_t negative(unsigned n) { return (n < 32u) ? -(int32_t)magnitude(n) : INT32_MIN; }
+
+static void arithmetic(void) {
+  const int32_t lo = any_i32;
+  const int32_t hi = any_i32;
+  if (lo <= hi) (void)q_clamp(any_i32, lo, hi);
+  (void)q_in_range(any_i32, any_i32, any_i32);
+  (void)q_max(any_i32, any_i32);
+  (void)q_min(any_i32, any_i32);
+  (void)q_max16(any_i16, any_i16);
+  (void)q_min16(any_i16, any_i16);
+  (void)q_sat64(any_i64);
+  (void)q_add_sat(any_i32, any_i32);
+  (void)q_sub_sat(any_i32, any_i32);
+  (void)q_neg_sat(any_i32);
+  (void)q_abs_sat(any_i32);
+  (void)q_abs_u32(any_i32);
+  (void)q_mul_hi(any_i32, any_i32);
+  (void)q_umul_hi(any_u32, any_u32);
+  (void)q15_sat(any_i32);
+  (void)q15_add_sat(any_i16, any_i16);
+  (void)q15_sub_sat(any_i16, any_i16);
+  (void)q15_mul(any_i16, any_i16);
+  (void)angle_from_rad_q28(any_i32);
+  (void)angle_bam_to_rad_q28(any_i32);
+  (void)angle_to_turn_q15(any_u32);
+  (void)angle_to_turn_q30(any_u32);
+}
+
+// A quarter of the range in one of each pair is enough (qarith.h).
+static int32_t any_quarter(void) { return any_from(INT32_MIN / 4, INT32_MAX / 4); }
+
+static void shifted(unsigned n) {
+  if (n <= 31u) {
+    (void)q_shr(any_i32, n);
+    (void)q_shr_round(any_i32, n);
+    (void)q_shl_sat(any_i32, n);
+  }
+  (void)q_shr64(any_i64, n);
+  if (n < 1u || n > 62u) return;
+  (void)q_mul64(any_i32, any_i32, n);
+  (void)q_mul(any_i32, any_i32, n);
+  (void)q_mul_sat(any_i32, any_i32, n);
+  (void)q_mul_floor(any_i32, any_i32, n);
+  (void)q_mul_add(any_i32, any_quarter(), any_i32, any_quarter(), n);
+  (void)q_mul_sub(any_i32, any_quarter(), any_i32, any_quarter(), n);
+  (void)q_mul_add_floor(any_i32, any_quarter(), any_i32, any_quarter(), n);
+  (void)q_mul_sub_floor(any_i32, any_quarter(), any_i32, any_quarter(), n);
+  (void)q_mul_add_sat(any_i32, any_quarter(), any_i32, any_quarter(), n);
+  (void)q_mul_sub_sat(any_i32, any_quarter(), any_i32, any_quarter(), n);
+}
+
+// The shorter side of a vector is any that is not longer.
+static void of_vectors(unsigned n) {
+  const int32_t most = (n < 32u) ? (int32_t)(((uint32_t)1 << n) - 1u) : INT32_MAX;
+  const int32_t other = (n < 32u) ? any_from(-most, most) : any_i32;
+  (void)q_atan2(other, positive(n));
+  (void)q_atan2(other, negative(n));
+  (void)q_atan2(positive(n), other);
+  (void)q_atan2(negative(n), other);
+}
+
+static void divide(int32_t num, unsigned n) {
+  (void)q_div(num, positive(n), any_u16 & 31u);
+  (void)q_div(num, negative(n), any_u16 & 31u);
+}
+
+static void divided(unsigned n) {
+  (void)q_clz32(magnitude(n));
+  divide(0, n);
+  divide(any_from(1, INT32_MAX), n);
+  divide(any_from(INT32_MIN, -1), n);
+  if (n == 32u) (void)q_reciprocal_q31(magnitude(n));
+  if (n == 0u || n == 32u) {
+    (void)q_invert(any_from(INT32_MIN, 0));
+    return;
+  }
+  const q_inverse_t inverse = q_invert(positive(n));
+  (void)q_over(any_i32, inverse, any_u16 % 31u);
+}
+
+static void of_squares(unsigned n) {
+  (void)q_sqrt64((n == 0u) ? 0u : (uint64_t)magnitude(n) << 32 | any_u32);
+  (void)q_sqrt64(magnitude(n));
+}
+
+// Interval by interval of the sine's table, in every quadrant.
+static void of_angles(uint32_t interval) {
+  int32_t sine;
+  int32_t cosine;
+  q_sincos((interval << 23) + (any_u32 & 0x7FFFFFuL), &sine, &cosine);
+}
+
+// Each is read by itself: what stops one does not hide the others.
+void prove_arithmetic(void) {
+  arithmetic();
+  for (unsigned n = 0; n <= 63u; n++) shifted(n);
+}
+
+void prove_quotients(void) {
+  for (unsigned n = 0; n <= 32u; n++) divided(n);
+}
+
+void prove_roots(void) {
+  for (unsigned n = 0; n <= 32u; n++) of_squares(n);
+}
+
+void prove_vectors(void) {
+  for (unsigned n = 0; n <= 32u; n++) of_vectors(n);
+}
+
+void prove_angles(void) {
+  for (uint32_t interval = 0; interval < 512u; interval++) of_angles(interval);
+}
+
+// With the root's contract for its code.
+void prove_lengths(void) {
+  (void)q_sqrt32(any_u32);
+  (void)q_hypot(any_i32, any_i32);
+}

@@ -1,0 +1,37 @@
+// What the functions of hal/qmath with tables and normalisation need and give, in ACSL: their code is read by itself
+// with any argument (qmath.c), and what calls them is read with these lines in its place.
+
+#ifndef STILLSPIN_TESTS_PROVE_QMATH_RANGES_H
+#define STILLSPIN_TESTS_PROVE_QMATH_RANGES_H
+
+#include <stdint.h>
+
+/*@ assigns \result \from x; ensures \result <= 32; ensures x != 0 ==> \result <= 31; */
+unsigned q_clz32(uint32_t x);
+
+/*@ requires divisor >= 2147483648; assigns \result \from divisor; */
+uint32_t q_reciprocal_q31(uint32_t divisor);
+
+/*@ requires shift <= 31; assigns \result \from num, den, shift;
+    ensures num >= 0 && den > 0 ==> \result >= 0; ensures num <= 0 && den > 0 ==> \result <= 0; */
+int32_t q_div(int32_t num, int32_t den, unsigned shift);
+
+/*@ assigns \result \from x; */
+uint32_t q_sqrt64(uint64_t x);
+
+/*@ assigns \result \from x; */
+uint32_t q_sqrt32(uint32_t x);
+
+/*@ assigns \result \from a, b; ensures 0 <= \result; */
+int32_t q_hypot(int32_t a, int32_t b);
+
+/*@ assigns \result \from y, x; */
+uint32_t q_atan2(int32_t y, int32_t x);
+
+/*@ requires \valid(sin_q30) && \valid(cos_q30);
+    assigns *sin_q30 \from angle_bam; assigns *cos_q30 \from angle_bam;
+    ensures \initialized(sin_q30) && \initialized(cos_q30);
+    ensures -1073741824 <= *sin_q30 <= 1073741824; ensures -1073741824 <= *cos_q30 <= 1073741824; */
+void q_sincos(uint32_t angle_bam, int32_t* sin_q30, int32_t* cos_q30);
+
+#endif

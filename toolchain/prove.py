@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+"""Absence of run-time errors with a 16-bit int, by Frama-C: EVA over the drive's C, WP for the arithmetic's contracts.
+
+Usage: toolchain/prove.py OUT [--defects] [PART ...]     (make prove)
+
+Every part of PARTS has a driver in tests/prove/ that calls the drive's functions with any input that their headers
+admit. EVA follows all of that at once, with intervals, and reports an alarm wherever it cannot exclude an undefined
+operation: overflow of a signed number, division by zero, a shift, an index or a pointer that is out of range, a value
+that was never set. WP proves the contracts of tests/prove/ for functions of PROVED_BY_WP. What neither excludes stands
+in tests/prove/alarms.txt, by part, function and kind: more than that is an error. With --defects, the defects of
+DEFECTS are planted into a copy of the sources and each has to be found in the function where it is.
+"""
+
+import csv
+import os
+import re
+import subprocess
+import sys
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+import planted
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
+KNOWN = "tests/prove/alarms.txt"
+SECONDS = 1500
+RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
+# Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h).
+WITH_CONTRACT = "q_clz32,q_reciprocal_q31,q_div,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos"
+PROVED_BY_WP = (
+    *("q_shr", "q_shr64", "q_shr_round", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
+    *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_mul64", "q_mul", "q_mul_sat", "q_mac", "q_mul_add"),
+    *("q_mul_sub", "q_mul_floor", "q_mul_add_floor", "q_mul_sub_floor", "q_mul_hi", "q_umul_hi", "q15_sat"),
+    *("q15_add_sat", "q15_sub_sat", "q15_mul"),
+)
+OPEN = ("Unknown", "Invalid", "Inconsistent", "Never tried")
+
+Alarm = tuple[str, str]  # function, kind
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is read together."""
+
+    name: str
+    sources: tuple[str, ...]  # the driver, patterns of the drive's files
+    flags: tuple[str, ...]
+    header: str = RANGES
+    given: bool = False  # the functions WITH_CONTRACT are not read
+
+
+def eva(entry: str, *flags: str) -> tuple[str, ...]:
+    """What has EVA read a driver's function."""
+    return ("-main", entry, "-eva", "-eva-no-print", *flags)
+
+
+QMATH = ("tests/prove/qmath.c", "hal/qmath/*.c")
+SLICED = ("arithmetic", "quotients", "roots", "vectors", "angles")
+SLICES = (
+    *("-eva-precision", "1", "-eva-slevel", "100", "-eva-auto-loop-unroll", "600"),
+    *("-eva-split-return-function", "q_clz32:full"),
+)
+READER = (
+    *("-eva-precision", "0", "-eva-auto-loop-unroll", "12", "-eva-slevel", "20", "-eva-split-return", "auto"),
+    *("-eva-use-spec", WITH_CONTRACT),
+)
+PARTS = (
+    *(Part(name, QMATH, eva(f"prove_{name}", *SLICES)) for name in SLICED),
+    Part("lengths", QMATH, eva("prove_lengths", "-eva-precision", "1", "-eva-use-spec", "q_sqrt64")),
+    Part(
+        "svpwm",
+        ("tests/prove/svpwm.c", "svpwm/*.c", "hal/qmath/*.c"),
+        eva("prove_svpwm", *READER),
+        given=True,
+    ),
+    Part(
+        "control",
+        ("tests/prove/control.c", "control/*.c", "hal/qmath/*.c"),
+        eva("prove_control", *READER),
+        given=True,
+    ),
+    Part(
+        "contracts",
+        ("hal/qmath/qdiv.c",),
+        ("-wp", "-wp-rte", "-wp-prover", "z3", "-wp-timeout", "10", "-wp-fct", ",".join(PROVED_BY_WP)),
+        CONTRACTS,
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Defect:
+    """One change of the sources, and the part and function in which it has to show."""
+
+    part: str
+    function: str
+    file: str
+    right: str
+    wrong: str
+
+
+DEFECTS = (
+    Defect("arithmetic", "q15_mul", "hal/qmath/qarith.h", "(int32_t)a * b + 0x4000L", "a * b + 0x4000L"),
+    Defect("arithmetic", "q_neg_sat", "hal/qmath/qarith.h", "(x == INT32_MIN) ? INT32_MAX : -x", "-x"),
+    Defect("quotients", "q_reciprocal_q31", "hal/qmath/qdiv.c", "[(divisor >> 24) - 128]", "[(divisor >> 24) - 127]"),
+    Defect("quotients", "q_invert", "hal/qmath/qdiv.c", "(divisor > 0) ?", "(divisor >= 0) ?"),
+    Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
+    Defect("angles", "sincos_of_quadrant", "hal/qmath/qtrig.c", "sine_q30[node]", "sine_q30[node + 1u]"),
+    Defect("svpwm", "svpwm_mean_q16", "svpwm/ripple.c", "int32_t a = svpwm_on_ticks", "int16_t a = svpwm_on_ticks"),
+    Defect(
+        "control",
+        "command_q16",
+        "control/current_controller.c",
+        "q_add_sat(controlled_q16, rotational_q16)",
+        "controlled_q16 + rotational_q16",
+    ),
+    Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
+    Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),
+    Defect("contracts", "q15_sat", "hal/qmath/qarith.h", "q_clamp(x, INT16_MIN, ", "q_clamp(x, -INT16_MAX, "),
+    Defect("contracts", "q_mul_hi", "hal/qmath/qarith.h", "q_shr64((int64_t)a * b, 32)", "q_shr64((int32_t)a * b, 32)"),
+    Defect("contracts", "q_sub_sat", "hal/qmath/qarith.h", "q_sat64((int64_t)a - b)", "a - b"),
+)
+
+
+@dataclass(frozen=True)
+class Read:
+    """What a part's reading leaves open, and how much of the code it has been through or proved."""
+
+    alarms: Counter[Alarm]
+    words: str
+
+
+def sources_of(part: Part, tree: Path) -> list[str]:
+    """Its files; the flash kernel and the entries of images are programs of their own."""
+    found = (path.relative_to(tree).as_posix() for pattern in part.sources for path in sorted(tree.glob(pattern)))
+    return [name for name in found if "/image/" not in name and "/flash_kernel/" not in name]
+
+
+def summary(part: Part, rows: list[dict[str, str]], said: str) -> str:
+    """How much was read or proved."""
+    reached = re.search(r"(\d+) functions analyzed.*?(\d+) statements reached \(out of (\d+)\)", said, re.DOTALL)
+    if reached:
+        return f"{reached[1]} functions, {reached[2]} of {reached[3]} statements reached"
+    proved = sum(row["status"].startswith("Valid") for row in rows)
+    return f"{len(PROVED_BY_WP)} functions, {proved} properties proved"
+
+
+def plain(function: str) -> str:
+    """The copies of an inline function, one for each file, are one function."""
+    return re.sub(r"_\d+$", "", function)
+
+
+def is_open(part: Part, row: dict[str, str]) -> bool:
+    """Whether that is left open.
+
+    What a function needs is shown where it is called, what it promises where it is read by itself; EVA does not try
+    what it does not reach.
+    """
+    status, kind = row["status"], row["property kind"]
+    given = kind == "postcondition" and part.given and row["function"] in WITH_CONTRACT.split(",")
+    if given or kind == "precondition" or not status.startswith(OPEN) or status.endswith("dead"):
+        return False
+    return status != "Never tried" or (part.header == CONTRACTS and plain(row["function"]) in PROVED_BY_WP)
+
+
+def read(part: Part, tree: Path, out: Path) -> Read:
+    """Lets Frama-C read a part."""
+    table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
+    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 -include {part.header}")
+    command = ["frama-c", *machine, *sources_of(part, tree), *part.flags, "-then", "-report-csv", str(table)]
+    # Frama-C believes PWD more than where it is.
+    home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(out / "why3.conf")}
+    done = subprocess.run(command, cwd=tree, env=home, capture_output=True, text=True, check=False, timeout=SECONDS)
+    log.write_text(done.stdout + done.stderr, encoding="utf-8")
+    if done.returncode != 0:
+        raise RuntimeError(f"frama-c fails, see {log}: {(done.stdout + done.stderr)[-1500:]}")
+    with table.open(encoding="utf-8", newline="") as lines:
+        rows = list(csv.DictReader(lines, delimiter="\t", quoting=csv.QUOTE_NONE))
+    alarms = Counter((plain(row["function"]), row["property kind"]) for row in rows if is_open(part, row))
+    return Read(alarms, summary(part, rows, done.stdout))
+
+
+def known() -> dict[str, Counter[Alarm]]:
+    """The alarms that are known, by part."""
+    found: dict[str, Counter[Alarm]] = {part.name: Counter() for part in PARTS}
+    for line in (ROOT / KNOWN).read_text(encoding="utf-8").splitlines():
+        words = line.split("#")[0].split()
+        if words:
+            found[words[0]][words[1], " ".join(words[2:-1])] = int(words[-1])
+    return found
+
+
+def more_than(alarms: Counter[Alarm], bound: Counter[Alarm]) -> dict[Alarm, int]:
+    """What there is more of than is known."""
+    return {alarm: count for alarm, count in sorted(alarms.items()) if count > bound[alarm]}
+
+
+def check(out: Path, wanted: list[str]) -> int:
+    """Reads the parts; prints a line for each, and what is new."""
+    status, bounds = 0, known()
+    for part in PARTS:
+        if wanted and part.name not in wanted:
+            continue
+        done, bound = read(part, ROOT, out), bounds[part.name]
+        left = f"{done.alarms.total()} left open ({bound.total()} known)"
+        print(f"prove: {part.name}: {done.words}, {left}", flush=True)
+        for (function, kind), count in more_than(done.alarms, bound).items():
+            status = 1
+            print(f"{part.name} {function} {kind} {count}  # known are {bound[function, kind]}")
+    return status
+
+
+def plant(out: Path, wanted: list[str]) -> int:
+    """Plants the defects, those of a part together, and looks where they show."""
+    complaints, bounds, tree, planned = [], known(), out / "tree", 0
+    for part in PARTS:
+        defects = [d for d in DEFECTS if d.part == part.name and (not wanted or d.part in wanted)]
+        if not defects:
+            continue
+        planned += len(defects)
+        complaints += planted.plant(tree, FOLDERS, [(d.file, d.right, d.wrong) for d in defects])
+        seen = {function for function, _ in more_than(read(part, tree, out).alarms, bounds[part.name])}
+        complaints += [f"{d.function}: {d.wrong!r} is not found" for d in defects if d.function not in seen]
+    print(f"prove: {planned} defects planted, {len(complaints)} not found where they are")
+    for complaint in complaints:
+        print(f"prove: {complaint}")
+    return 1 if complaints else 0
+
+
+def main() -> int:
+    """The drive, or the defects."""
+    out = Path(sys.argv[1]).resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    subprocess.run(["why3", "-C", str(out / "why3.conf"), "config", "detect"], capture_output=True, check=True)
+    names = [word for word in sys.argv[2:] if not word.startswith("-")]
+    return plant(out, names) if "--defects" in sys.argv else check(out, names)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
