@@ -16,7 +16,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove verify loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc verify loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -76,7 +76,11 @@ prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted 
 	@$(PYTHON) toolchain/prove.py build/prove
 	@$(PYTHON) toolchain/prove.py build/prove --defects
 
-verify: image-check cppcheck prove vectors int16 ## the checks that take long: image, cppcheck, prove, vectors, int16
+mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC against toolchain/mcdc_budget.txt
+	@bash toolchain/setup.sh build verify
+	@$(PYTHON) toolchain/mcdc.py
+
+verify: image-check cppcheck prove vectors int16 mcdc ## the checks that take long: image, cppcheck, prove, vectors, int16, mcdc
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

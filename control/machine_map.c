@@ -14,7 +14,7 @@ static bool invert(machine_point_t* y, int32_t ldd_q30, int32_t lqq_q30, int32_t
   // Leakage factors as quotients keep the digits: Ldd (1 - Ldq^2 / (Ldd Lqq)).
   const int32_t tilt_d_q30 = q_div(ldq_q30, ldd_q30, 30);
   const int32_t tilt_q_q30 = q_div(ldq_q30, lqq_q30, 30);
-  if (q_abs_sat(tilt_d_q30) >= ONE_Q30 || q_abs_sat(tilt_q_q30) >= ONE_Q30) return false;
+  if (q_abs_sat(tilt_d_q30) >= ONE_Q30) return false;  // Lqq is not the smaller one
   const int32_t left_q30 = ONE_Q30 - q_mul(tilt_d_q30, tilt_q_q30, 30);
   y->ydd_q30 = q_div(period_q30, q_mul(ldd_q30, left_q30, 30), 30);
   y->yqq_q30 = q_div(period_q30, q_mul(lqq_q30, left_q30, 30), 30);

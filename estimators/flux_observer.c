@@ -16,9 +16,8 @@ static stator_flux_config_t form_of(const flux_observer_config_t* c) {
 bool flux_observer_config_valid(const flux_observer_config_t* c, const machine_model_t* m) {
   const stator_flux_config_t form = form_of(c);
   flux_machine_t trial;
-  return c->method <= FLUX_ACTIVE && q_in_range(c->cutoff_q30, CUTOFF_LEAST_Q30, CUTOFF_MOST_Q30) &&
-         q_in_range(c->bandwidth_q30, CUTOFF_LEAST_Q30, BANDWIDTH_MOST_Q30) && c->adaptation_periods >= 1u &&
-         c->adaptation_periods <= 1000u && stator_flux_config_valid(&form) &&
+  return c->method <= FLUX_ACTIVE && q_in_range(c->bandwidth_q30, CUTOFF_LEAST_Q30, BANDWIDTH_MOST_Q30) &&
+         c->adaptation_periods >= 1u && c->adaptation_periods <= 1000u && stator_flux_config_valid(&form) &&
          flux_adaptation_config_valid(&c->adaptation) && flux_machine_init(&trial, m);
 }
 

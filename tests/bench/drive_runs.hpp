@@ -19,6 +19,12 @@ RunRequest noisy_request(double duration, std::uint64_t seed);
 /// A column of the record by its name.
 const std::vector<double>& column(const RunResult& result, std::string_view name);
 
+/// The first value of a column at or behind a time, s.
+double at(const RunResult& result, std::string_view name, double when);
+
+/// Largest position error between two times, degrees el.
+double error_between(const RunResult& result, double begin, double end);
+
 }  // namespace stillspin::bench
 
 #endif

@@ -2,34 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "tests/bench/drive_runs.hpp"
 
 namespace stillspin::bench {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-// Largest position error between two times, degrees el.
-double error_between(const RunResult& result, double begin, double end) {
-  const auto& time = column(result, "time");
-  const auto& truth = column(result, "true_angle");
-  const auto& used = column(result, "est_angle");
-  double worst = 0.0;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    if (time[k] < begin || time[k] > end) continue;
-    worst = std::max(worst, std::fabs(std::remainder(truth[k] - used[k], 2.0 * kPi)) * 180.0 / kPi);
-  }
-  return worst;
-}
-
-double at(const RunResult& result, const char* name, double when) {
-  const auto& time = column(result, "time");
-  const auto k = std::lower_bound(time.begin(), time.end(), when) - time.begin();
-  return column(result, name).at(static_cast<std::size_t>(k));
-}
 
 class FluxSource : public testing::TestWithParam<int> {};
 

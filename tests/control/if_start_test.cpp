@@ -145,5 +145,50 @@ TEST(IfStart, RefusesASpringThatIsTooSlowOrTooFast) {
   EXPECT_FALSE(if_start_design(&c, &fast, &strong));
 }
 
+// A quarter turn behind first, whichever way it will turn, then where it begins.
+TEST(IfStart, ItRisesAQuarterTurnBehind) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  for (const bool backward : {false, true}) {
+    const double way = backward ? -1.0 : 1.0;
+    if_start_t s;
+    if_start_begin(&s, bam(1.0), backward);
+    EXPECT_NEAR(wrapped(rad(s.vector_bam) - (1.0 - way * kPi / 2.0)), 0.0, 1e-6);
+    for (int n = 1; n <= 999; ++n) {
+      (void)if_start_step(&s, &c, {0, 0}, 0, 0);
+      EXPECT_NEAR(real(s.current_q20, 20), 8.0 * std::min(n / 500.0, 1.0), 1e-3);
+      ASSERT_NEAR(wrapped(rad(s.vector_bam) - (n < 500 ? 1.0 - way * kPi / 2.0 : 1.0)), 0.0, 1e-6) << n;
+      ASSERT_EQ(s.speed_bpp, 0);
+    }
+    for (int n = 0; n < 10; ++n) (void)if_start_step(&s, &c, {0, 0}, 0, 0);
+    EXPECT_GT(way * s.speed_bpp, 0.0);
+  }
+}
+
+// Agreement is 80 degrees and a quarter of the speed; 3000 periods of it in a row.
+TEST(IfStart, WhatCountsAsAgreement) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  const struct {
+    double degrees, speed;
+    bool agrees;
+  } cases[] = {{0.0, 1.0, true},    {79.0, 1.0, true},  {-79.0, 1.0, true}, {81.0, 1.0, false},
+               {-81.0, 1.0, false}, {0.0, 0.76, true},  {0.0, 1.24, true},  {0.0, 0.74, false},
+               {0.0, 1.26, false},  {0.0, -1.0, false}, {180.0, 1.0, false}};
+  for (const auto& one : cases) {
+    if_start_t s;
+    if_start_begin(&s, 0, false);
+    while (!if_start_is_up(&s, &c)) (void)if_start_step(&s, &c, {0, 0}, 0, 0);
+    const auto see = [&](double degrees, double speed) {
+      const std::uint32_t next = s.vector_bam + static_cast<std::uint32_t>(s.speed_bpp);
+      return if_start_step(&s, &c, {0, 0}, next - bam(degrees * kDegree),
+                           static_cast<std::int32_t>(speed * c.speed_bpp));
+    };
+    for (int n = 0; n < 5; ++n) ASSERT_EQ(see(0.0, 1.0), IF_START_PENDING);
+    const std::int32_t before = s.agreed;
+    EXPECT_GE(before, 5);
+    (void)see(one.degrees, one.speed);
+    EXPECT_EQ(s.agreed, one.agrees ? before + 1 : 0) << one.degrees << " " << one.speed;
+  }
+}
+
 }  // namespace
 }  // namespace stillspin::test

@@ -182,4 +182,54 @@ TEST(MachineMap, RejectsWhatIsNoMachine) {
   EXPECT_EQ(machine_map_at(&m.map, raw(14.0, 20)).yqq_q30, before.yq_q30);  // the old one is kept
 }
 
+// What the formats do not hold is refused: 32000 V for each axis' flux over a period, and an admittance of nothing.
+TEST(MachineMap, RefusesWhatItsFormatsDoNotHold) {
+  const std::int32_t period = raw(kPeriod, 30);
+  const machine_map_parameters_t good = Saturated{}.table(14.0);
+  machine_map_t map;
+  EXPECT_TRUE(machine_map_init(&map, &good, period, raw(1600.0, 16)));
+  EXPECT_TRUE(machine_map_init(&map, &good, period, raw(31900.0, 16)));
+  EXPECT_FALSE(machine_map_init(&map, &good, period, raw(32001.0, 16)));
+  for (const double current : {60.0, 70.0}) {  // 50 mH at these: 30000 and 35000 V
+    machine_map_parameters_t wide = good;
+    wide.current_q20 = raw(current, 20);
+    for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {
+      wide.lqq_q30[n] = raw(0.05, 30);
+      wide.ldq_q30[n] = 0;
+    }
+    EXPECT_EQ(machine_map_init(&map, &wide, period, raw(1600.0, 16)), current < 65.0) << current;
+  }
+  machine_map_parameters_t slow = good;
+  for (std::int32_t& lqq : slow.lqq_q30) lqq = INT32_MAX;  // 2 H
+  EXPECT_FALSE(machine_map_init(&map, &slow, 0, 0)) << "a period of nothing";
+}
+
+// The mutual inductance must stay below both of the others; Ldd is the smaller one.
+TEST(MachineMap, RefusesACouplingAboveTheInductance) {
+  for (const double share : {0.99, 1.01, -0.99, -1.01}) {
+    machine_map_parameters_t p = Saturated{}.table(14.0);
+    p.ldq_q30[2] = static_cast<std::int32_t>(share * p.ldd_q30[2]);
+    machine_map_t map;
+    EXPECT_EQ(machine_map_init(&map, &p, raw(kPeriod, 30), raw(1600.0, 16)), std::fabs(share) < 1.0) << share;
+  }
+}
+
+// K = J - Y J Y^-1, what the turning frame makes of a current, at couplings far beyond any machine's: every term
+// counts.
+TEST(MachineMap, TheTurningFrameSeesTheWholeCoupling) {
+  for (const double coupling : {2e-5, 1e-4, 2e-4}) {
+    Saturated s;
+    s.k = coupling;
+    machine_model_t m = model_with(s, 14.0);
+    for (const double iq : {-14.0, -7.0, 3.5, 14.0}) {
+      machine_model_move(&m, raw(iq, 20));
+      const double r = static_cast<double>(m.yd_q30) / m.yq_q30, t = static_cast<double>(m.ydq_q30) / m.yq_q30;
+      const double det = r - t * t;
+      EXPECT_NEAR(real(m.k_dd_q24, 24), -t * (r + 1.0) / det, 2e-6) << iq;
+      EXPECT_NEAR(real(m.k_dq_q24, 24), (r * r + t * t) / det - 1.0, 2e-6) << iq;
+      EXPECT_NEAR(real(m.k_qd_q24, 24), 1.0 - (1.0 + t * t) / det, 2e-6) << iq;
+    }
+  }
+}
+
 }  // namespace

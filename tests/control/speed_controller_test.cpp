@@ -213,4 +213,57 @@ TEST(SpeedController, OneStepOfThePredictiveLaw) {
   }
 }
 
+// A trajectory as fast as the controller's own step would be overshot by it.
+TEST(SpeedController, RefusesATrajectoryFasterThanItsStep) {
+  Design d;
+  d.trajectory = 2.5e-3;
+  for (const int periods : {10, 20}) {  // 1 ms and 2 ms
+    d.step_periods = periods;
+    const machine_model_t m = model_of(d.motor);
+    const speed_controller_config_t c = d.config();
+    speed_controller_t s;
+    EXPECT_EQ(speed_controller_init(&s, &c, &m), periods == 10);
+  }
+}
+
+// The proportional gain is 2 zeta wn Ts times the deadbeat's: its format ends at a lighter rotor when that is above 1.
+TEST(SpeedController, RefusesAProportionalGainBeyondItsFormat) {
+  for (const double damping : {1.0, 2.9}) {
+    Design d;
+    d.bandwidth = 199.0;
+    d.damping = damping;
+    d.motor.inertia = 0.48;  // the deadbeat's gain is just below the end
+    const machine_model_t m = model_of(d.motor);
+    const speed_controller_config_t c = d.config();
+    speed_controller_t s;
+    EXPECT_EQ(speed_controller_init(&s, &c, &m), damping < 2.0) << damping;
+  }
+}
+
+// At the limit the integral may not grow, but must come back when the speed has passed its reference.
+TEST(SpeedController, AtTheLimitTheIntegralOnlyComesBack) {
+  const Design d;
+  const machine_model_t m = model_of(d.motor);
+  const speed_controller_config_t c = d.config();
+  speed_controller_t s;
+  ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+  const std::int32_t error = raw(1.0 * d.bpp_per_rad_s(), 0);
+  for (const int sign : {1, -1}) {
+    const std::int32_t wound = sign * raw(9.0, 20);
+    speed_controller_input_t in = {sign * error, 0, 0, 0, raw(-2.0, 20), raw(2.0, 20)};
+    speed_controller_preset(&s, wound);
+    EXPECT_EQ(speed_controller_step(&s, SPEED_PI, &in), sign * raw(2.0, 20));
+    EXPECT_EQ(s.integral_q20, wound) << "grew at the limit";
+    in.reference_bpp = -sign * error;
+    EXPECT_EQ(speed_controller_step(&s, SPEED_PI, &in), sign * raw(2.0, 20));
+    EXPECT_LT(sign * s.integral_q20, sign * wound) << "stays wound up";
+    in.lowest_q20 = raw(-20.0, 20);  // within the limits it follows the error
+    in.highest_q20 = raw(20.0, 20);
+    in.reference_bpp = sign * error;
+    const std::int32_t before = s.integral_q20;
+    (void)speed_controller_step(&s, SPEED_PI, &in);
+    EXPECT_GT(sign * s.integral_q20, sign * before);
+  }
+}
+
 }  // namespace

@@ -189,4 +189,22 @@ TEST(Blend, TheShareMovesAtABoundedRate) {
   EXPECT_EQ(s.share_q15, 0);
 }
 
+// On its way between the two an estimator is still asked though the region is left; alone is who has the whole share.
+TEST(Blend, AloneIsWhoHasTheWholeShare) {
+  blend_t s;
+  blend_reset(&s);
+  EXPECT_TRUE(blend_is_low(&s));
+  EXPECT_FALSE(blend_is_high(&s));
+  s.share_q15 = 32766;
+  EXPECT_FALSE(blend_is_low(&s));
+  s.region = BLEND_HIGH;
+  EXPECT_FALSE(blend_is_high(&s));
+  s.share_q15 = 0;
+  EXPECT_TRUE(blend_is_high(&s));
+  s.region = BLEND_BOTH;
+  EXPECT_FALSE(blend_is_high(&s));
+  s.share_q15 = 32767;
+  EXPECT_FALSE(blend_is_low(&s));
+}
+
 }  // namespace

@@ -215,4 +215,15 @@ TEST(DeviationObserver, UncertaintyGrowsWithoutWindowsAndShrinksWithThem) {
   EXPECT_GT(deviation_observer_step(&s, &config, blind.get()).quality_q15, 30000);
 }
 
+// What was not seen cannot be taken, and what was taken is gone.
+TEST(DeviationObserver, NothingIsLeftBeforeAWindowWasSeen) {
+  deviation_observer_t s = {};
+  dq_t residual = {5, 6};
+  std::int32_t span = 7, periods = 8;
+  EXPECT_FALSE(deviation_observer_take_left(&s, &residual, &span, &periods));
+  EXPECT_EQ(residual.d, 5);
+  EXPECT_EQ(span, 7);
+  EXPECT_EQ(periods, 8);
+}
+
 }  // namespace

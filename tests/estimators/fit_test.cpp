@@ -83,4 +83,11 @@ TEST(FitPlane, RefusesRegressorsThatAreOne) {
   EXPECT_FALSE(fit_plane(p.x, p.f, p.y, 14, &fit));
 }
 
+TEST(FitPlane, RefusesARegressorOfNothing) {
+  Points p = staircase(0.387, 0.05, 0.0);
+  for (int k = 0; k < 14; ++k) p.x[k] = 0;
+  fit_plane_t fit;
+  EXPECT_FALSE(fit_plane(p.x, p.f, p.y, 14, &fit));
+}
+
 }  // namespace

@@ -166,6 +166,27 @@ TEST(FluxAdaptation, RefusesWhatIsOutOfRange) {
   c = config();
   c.saturation_q24 = raw(1.1, 24);
   EXPECT_FALSE(flux_adaptation_config_valid(&c));
+  for (std::int32_t flux_adaptation_config_t::* const share :
+       {&flux_adaptation_config_t::inductance_q30, &flux_adaptation_config_t::magnet_q30}) {
+    for (const std::int32_t value : {0, 1 << 30}) {
+      c = config();
+      c.*share = value;
+      EXPECT_TRUE(flux_adaptation_config_valid(&c));
+      c.*share = (value == 0) ? -1 : value + 1;
+      EXPECT_FALSE(flux_adaptation_config_valid(&c));
+    }
+  }
+}
+
+// A flux of nothing has no direction to look along.
+TEST(FluxAdaptation, WithoutFluxNothingIsSaid) {
+  const machine_model_t model = model_of(Motor{});
+  flux_machine_t f;
+  ASSERT_TRUE(flux_machine_init(&f, &model));
+  const flux_vectors_t v = {};
+  std::int32_t change = 7;
+  EXPECT_FALSE(flux_adaptation_change_q24(&f, &v, {0, raw(5.0, 20)}, 0, &change));
+  EXPECT_EQ(change, 7);
 }
 
 }  // namespace

@@ -192,6 +192,21 @@ TEST(FluxObserver, RefusesWhatIsOutOfRange) {
   c = config(FLUX_PP01);
   c.adaptation.current_q24 = 0;
   EXPECT_FALSE(flux_observer_config_valid(&c, &model));
+  c = config(FLUX_PP01);
+  c.method = static_cast<flux_method_t>(FLUX_ACTIVE + 1);
+  EXPECT_FALSE(flux_observer_config_valid(&c, &model));
+  for (const flux_method_t method : kMethods) {
+    c = config(method);
+    c.cutoff_q30 = 0;
+    EXPECT_FALSE(flux_observer_config_valid(&c, &model));
+    c.cutoff_q30 = raw(0.06, 30);
+    EXPECT_FALSE(flux_observer_config_valid(&c, &model));
+  }
+  c = config(FLUX_PP01);
+  c.adaptation_periods = 1000;
+  EXPECT_TRUE(flux_observer_config_valid(&c, &model));
+  c.adaptation_periods = 1001;
+  EXPECT_FALSE(flux_observer_config_valid(&c, &model));
 }
 
 }  // namespace

@@ -149,4 +149,29 @@ TEST(Flying, ATurnThatDoesNotFitIsRefused) {
   EXPECT_FALSE(flying_resolve(&first, &second, &model, &r));
 }
 
+TEST(Flying, WithoutWindowsNoCurrentIsKnown) {
+  flying_pulse_t p;
+  flying_begin(&p);
+  p.last_q20 = {raw(3.0, 20), 0};  // of another pulse
+  EXPECT_EQ(flying_current(&p), 0);
+}
+
+// The turn between the pulses must fit the EMF's size within 2.5 times, in both directions: else it was not the shaft.
+TEST(Flying, TheTurnMustFitTheEmf) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const double w = 600.0 / 60.0 * m.pole_pairs * kTurn;
+  for (const double factor : {0.35, 0.45, 1.0, 2.2, 2.8}) {
+    flying_emf_t first = pulse({m, 0.3, w}, model, 1e-3, 3);
+    flying_emf_t second = first;
+    const double seconds = 25.0 * kDegree / w;  // turns 25 degrees at its own speed
+    second.tick = first.tick + static_cast<std::int32_t>(std::lround(seconds * 1e8));
+    second.direction_bam = first.direction_bam + bam(25.0 * kDegree * factor);
+    if (25.0 * factor < 15.0) second.tick = first.tick + static_cast<std::int32_t>(std::lround(seconds * 3.0 * 1e8));
+    if (25.0 * factor < 15.0) second.direction_bam = first.direction_bam + bam(75.0 * kDegree * factor);
+    flying_rotor_t r;
+    EXPECT_EQ(flying_resolve(&first, &second, &model, &r), factor > 0.4 && factor < 2.5) << factor;
+  }
+}
+
 }  // namespace

@@ -124,4 +124,23 @@ TEST(InertiaMatch, StaysWithinItsBounds) {
   }
 }
 
+// A shaft that a load holds fast turns not at all: the run-up is given up, and nothing is learnt of it.
+TEST(InertiaMatch, ARunUpThatDoesNotEndIsGivenUp) {
+  Shaft shaft(1.0);
+  shaft.run(50, 0.0);
+  shaft.run(1, 3000.0 * kRpm);
+  EXPECT_EQ(shaft.s.phase, INERTIA_RUN_UP);
+  shaft.run(9000, 3000.0 * kRpm, kFull);
+  EXPECT_NE(shaft.s.phase, INERTIA_RUN_UP);
+  EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
+}
+
+// A shaft that turns against the torque is driven by something else.
+TEST(InertiaMatch, ATurnAgainstTheTorqueIsNoInertia) {
+  Shaft shaft(1.0);
+  shaft.run(50, 0.0);
+  shaft.run(300, 600.0 * kRpm, 1.5 * kFull);
+  EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
+}
+
 }  // namespace

@@ -163,6 +163,9 @@ TEST(StatorFlux, RefusesWhatDoesNotDecay) {
   EXPECT_FALSE(stator_flux_config_valid(&c));
   c.cutoff_q30 = raw(0.06, 30);
   EXPECT_FALSE(stator_flux_config_valid(&c));
+  c.cutoff_q30 = raw(20.0 * kPeriod, 30);
+  c.form = static_cast<stator_flux_form_t>(STATOR_FLUX_BARE + 1);
+  EXPECT_FALSE(stator_flux_config_valid(&c));
 }
 
 }  // namespace

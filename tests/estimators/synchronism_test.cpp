@@ -161,4 +161,16 @@ TEST(Synchronism, BearsAnyWindow) {
   }
 }
 
+// Nothing seen is neither good nor bad.
+TEST(Synchronism, WithoutASpanNothingIsJudged) {
+  const machine_model_t model = model_of(kMotor);
+  synchronism_t s;
+  synchronism_reset(&s);
+  s.doubt = 40;
+  const synchronism_seen_t none = {{raw(9.0, 20), 0}, 0, 0, 5};
+  EXPECT_FALSE(synchronism_judge(&s, &kConfig, &model, &none, 0));
+  EXPECT_EQ(s.doubt, 40);
+  EXPECT_EQ(s.error_q16.d, 0);
+}
+
 }  // namespace

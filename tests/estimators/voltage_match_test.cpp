@@ -104,7 +104,20 @@ TEST(VoltageMatch, BothFromAChangingDrive) {
   EXPECT_NEAR(b.flux(), truth.flux, 0.01 * truth.flux);
 }
 
-TEST(VoltageMatch, NothingWithoutCurrentSpeedOrShare) {
+TEST(VoltageMatch, NothingWithoutAShare) {
+  machine_model_t m = model_of(Motor{});
+  m.trim.rs_q24 = 12345;
+  regression_t r = {};
+  r.current_q20.q = raw(8.0, 20);
+  r.mean_q20.q = raw(0.5, 20);
+  voltage_match_step(&m, &r, raw(0.02, 30), 0);
+  EXPECT_EQ(m.trim.rs_q24, 12345);
+  EXPECT_EQ(m.trim.psi_q16, 0);
+  voltage_match_step(&m, &r, raw(0.02, 30), raw(0.001, 30));
+  EXPECT_NE(m.trim.psi_q16, 0);
+}
+
+TEST(VoltageMatch, NothingWithoutCurrentOrSpeed) {
   Motor truth;
   truth.rs *= 2.0;
   truth.flux *= 0.5;

@@ -48,18 +48,18 @@ bool hal_pwm_was_tripped_by_pin(void) { return board.tripped_by_pin; }
 void hal_adc_power_up(void) {}
 bool hal_adc_is_up(void) { return true; }
 void hal_adc_set_up(void) {}
-void hal_adc_choose_slow(bool) {}
+void hal_adc_choose_slow(bool speed) { board.slow_is_speed = speed; }
 void hal_adc_measure_reference(std::uint16_t* ground, std::uint16_t* reference) {
   *ground = 0;
   *reference = board.reference;
 }
 
-void hal_lines_init(void) {}
+void hal_lines_init(void) { board.lines_wired++; }
 void hal_lines_relay(bool on) { board.relay = on; }
 void hal_lines_brake(bool on) { board.brake = on; }
-void hal_lines_wire_emergency(void) {}
+void hal_lines_wire_emergency(void) { board.emergency_wired++; }
 bool hal_lines_emergency(void) { return board.emergency; }
-bool hal_lines_run(void) { return false; }
+bool hal_lines_run(void) { return board.run; }
 bool hal_lines_gates_pass(void) { return board.gates_pass; }
 
 bool hal_selftest_ram(std::uint16_t pair) { return pair != board.bad_pair; }
@@ -88,7 +88,7 @@ void hal_irq_install(hal_isr_t, hal_isr_t) {}
 void hal_irq_enable(void) {}
 std::uint16_t hal_irq_disable(void) { return 0; }
 void hal_irq_restore(std::uint16_t) {}
-std::uint16_t hal_irq_unexpected_count(void) { return 0; }
+std::uint16_t hal_irq_unexpected_count(void) { return board.unexpected_interrupts; }
 void hal_profile_step(std::uint16_t) {}
 std::uint32_t hal_time_cycles() { return 0; }  // no time passes
 void hal_irq_control_begin(void) {}

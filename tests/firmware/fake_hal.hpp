@@ -33,7 +33,10 @@ struct FakeBoard {
   hal_pwm_frame_t frame = {};
   std::deque<hal_adc_window_t> adc;  // what hal_adc_read_window gives next
   std::uint32_t encoder = 0;
-  bool relay = false, brake = false, emergency = false, gates_pass = false;
+  bool relay = false, brake = false, emergency = false, gates_pass = false, run = false;
+  int lines_wired = 0, emergency_wired = 0;
+  std::uint16_t unexpected_interrupts = 0;
+  bool slow_is_speed = false;  // what the converter's last place reads
   bool gate_pins_off = true;
   int bad_pair = -1;                             // of RAM
   std::map<std::uint32_t, std::uint16_t> flash;  // words by address, erased where there is none

@@ -149,4 +149,8 @@ TEST(QArith, SixteenBits) {
   EXPECT_EQ(q15_sat(-40000), INT16_MIN);
 }
 
+TEST(QArith, AShiftByNothingRoundsNothing) {
+  for (const std::int32_t x : {INT32_MIN, -1, 0, 1, INT32_MAX}) EXPECT_EQ(q_shr_round(x, 0), x);
+}
+
 }  // namespace

@@ -114,4 +114,22 @@ TEST(DeadTime, DropOpposesEachPhaseCurrent) {
   }
 }
 
+// A band wider than the error of the prediction: between the two the sign is certain, and the shift still between.
+TEST(DeadTime, AboveItsErrorACurrentIsCertainThoughNotTrusted) {
+  dead_time_config_t c = config();
+  c.band_q20 = raw(1.5, 20);
+  dead_time_design(&c);
+  const svpwm_ripple_edge_t rise = {0, 0, false, 5000, 0};
+  for (const double amps : {0.69, 0.71, -0.69, -0.71}) {
+    svpwm_arrival_t arrival;
+    const std::int32_t sent = dead_time_send(&c, &rise, raw(amps, 20), &arrival);
+    const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
+    const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
+    EXPECT_NEAR(5000 - sent, middle + half * amps / 1.5, 0.51) << amps;
+    const bool certain = std::fabs(amps) > 0.7;
+    EXPECT_EQ(arrival.earliest, certain ? 5000 : sent + kTurnOff) << amps;
+    EXPECT_EQ(arrival.latest, certain ? 5000 : sent + kDeadTicks + kTurnOn) << amps;
+  }
+}
+
 }  // namespace

@@ -94,4 +94,24 @@ TEST(Windows, CoincidentEdgesMakeNoEmptyWindow) {
   expect_rules(p, c);
 }
 
+// An edge that may come early cuts the last window alone, and only where it lies inside; what is left may be too short.
+TEST(Windows, AnUncertainEdgeShortensTheLastOne) {
+  const sampling_config_t c = default_modulator().sampling;
+  svpwm_pattern_t p = {};
+  svpwm_shorten_window(&c, &p, 100);
+  EXPECT_EQ(p.window_count, 0);
+  const auto shortest = static_cast<std::int16_t>(c.settle_ticks + c.burst_ticks + c.span_min_ticks);
+  p.windows[0] = {0, 3000, 1};
+  p.windows[1] = {4000, 7000, 2};
+  p.window_count = 2;
+  svpwm_shorten_window(&c, &p, 7001);
+  EXPECT_EQ(p.windows[1].end, 7000);
+  svpwm_shorten_window(&c, &p, 4000 + shortest);
+  EXPECT_EQ(p.windows[1].end, 4000 + shortest);
+  EXPECT_EQ(p.windows[0].end, 3000);
+  EXPECT_EQ(p.window_count, 2);
+  svpwm_shorten_window(&c, &p, 4000 + shortest - 1);
+  EXPECT_EQ(p.window_count, 1);
+}
+
 }  // namespace

@@ -1,0 +1,183 @@
+// Every rule that joins parameters: kept at its limit, refused beyond it, and named in words.
+
+#include "sim_host/bench/texts.hpp"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+using stillspin::bench::text_of;
+
+class ParameterRules : public Drive {
+ protected:
+  static void keeps() {
+    const packed_text_t conflict = parameter_conflict();
+    EXPECT_EQ(conflict, PACKED_NONE) << text_of(conflict);
+  }
+  static void refuses(const char* words) {
+    const packed_text_t conflict = parameter_conflict();
+    ASSERT_NE(conflict, PACKED_NONE) << words;
+    EXPECT_NE(text_of(conflict).find(words), std::string::npos) << text_of(conflict);
+  }
+};
+
+// A parameter at the largest (or least) value that a rule lets it have, and one step beyond.
+struct Rule {
+  std::int32_t parameters_t::* parameter;
+  std::int32_t kept, refused;
+  const char* words;
+};
+
+TEST_F(ParameterRules, EachHoldsUpToItsLimit) {
+  const parameters_t p = parameters;
+  const Rule rules[] = {
+      {&parameters_t::inductance_q, p.inductance_d, p.inductance_d - 1, "inductance_q must be"},
+      {&parameters_t::blend_high, p.blend_low + raw(1.0, 16), p.blend_low, "blend_high"},
+      {&parameters_t::flux_high, p.flux_low + 1, p.flux_low, "flux_high"},
+      {&parameters_t::window_maximum, p.window_minimum, p.window_minimum - 1, "window_maximum"},
+      {&parameters_t::link_regulation, p.link_minimum + 1, p.link_minimum, "link_regulation"},
+      {&parameters_t::link_regulation, p.link_maximum - 65536, p.link_maximum - 65535, "link_regulation"},
+      {&parameters_t::turn_off_delay, p.dead_time + p.turn_on_delay, p.dead_time + p.turn_on_delay + 1,
+       "turn_off_delay must not"},
+      {&parameters_t::dead_time, raw(2.4, 16) - p.turn_on_delay - 1, raw(2.4, 16) - p.turn_on_delay + 1, "2.4 us"},
+      {&parameters_t::trip_current, p.current_limit, p.current_limit - 1, "trip_current must be at least"},
+      {&parameters_t::trip_current, p.current_full_scale / 100 * 97, p.current_full_scale / 100 * 97 + 1,
+       "97 % of current_full_scale"},
+      {&parameters_t::link_maximum, p.link_full_scale / 100 * 97, p.link_full_scale / 100 * 97 + 1,
+       "97 % of link_full_scale"},
+      {&parameters_t::weakening_limit, p.current_limit, p.current_limit + 1, "weakening_limit"},
+      {&parameters_t::window_minimum, p.settle_time + raw(4.5, 16), p.settle_time + raw(4.5, 16) - 1,
+       "window_minimum must be settle_time"},
+      {&parameters_t::slice_time, raw(10.0, 16), raw(11.0, 16), "slice_time"},
+  };
+  for (const Rule& rule : rules) {
+    parameters = p;
+    parameters.*rule.parameter = rule.kept;
+    SCOPED_TRACE(rule.words);
+    keeps();
+    parameters.*rule.parameter = rule.refused;
+    refuses(rule.words);
+  }
+}
+
+TEST_F(ParameterRules, LinkMaximumLiesAboveLinkMinimum) {
+  parameters.link_minimum = parameters.link_maximum;
+  parameters.link_regulation = parameters.link_maximum;
+  refuses("link_maximum must be above");
+}
+
+TEST_F(ParameterRules, ThePulseLeavesRoomForItsWindow) {
+  parameters.settle_time = parameters.pulse_time / 20 * 13 - raw(4.5, 16);
+  parameters.window_minimum = parameters.window_maximum = raw(30.0, 16);
+  keeps();
+  parameters.settle_time += raw(0.01, 16);
+  refuses("0.65 pulse_time");
+  parameters.pulse_time = raw(15.0, 16);
+  parameters.settle_time = raw(5.25, 16);
+  keeps();
+  parameters.settle_time += raw(0.01, 16);
+  refuses("0.65 pulse_time");
+}
+
+TEST_F(ParameterRules, ThePapersSchemeNeedsItsCurrentInEitherDirection) {
+  parameters.position_source = POSITION_PAPER;
+  for (const double amps : {0.0, 0.99, -0.99}) {
+    parameters.id_low_speed = raw(amps, 20);
+    refuses("id_low_speed");
+  }
+  for (const double amps : {1.0, -1.0}) {
+    parameters.id_low_speed = raw(amps, 20);
+    keeps();
+  }
+}
+
+TEST_F(ParameterRules, AvvNeedsTwoActiveVectors) {
+  for (const int source : {0, 2, 3, 4}) {
+    for (const int excitation : {0, 1, 2, 3, 4, 5}) {
+      parameters.position_source = source;
+      parameters.excitation = excitation;
+      const bool avv = source == 2 || source == 3;
+      SCOPED_TRACE(testing::Message() << source << " " << excitation);
+      if (avv && (excitation == 0 || excitation >= 4)) {
+        refuses("for AVV");
+      } else {
+        keeps();
+      }
+    }
+  }
+}
+
+TEST_F(ParameterRules, AHoldNeedsOppositeWindows) {
+  for (const int excitation : {0, 1, 2, 3, 4, 5}) {
+    parameters.excitation = excitation;
+    for (const int time : {0, 100}) {
+      parameters.hold_time = time;
+      SCOPED_TRACE(excitation);
+      if (time > 0 && (excitation < 2 || excitation == 4)) {
+        refuses("hold_time");
+      } else {
+        keeps();
+      }
+    }
+  }
+}
+
+TEST_F(ParameterRules, WhatNeedsTheEncoderAndWhatMayNotHaveIt) {
+  for (const int source : {0, 4}) {
+    parameters.position_source = source;
+    SCOPED_TRACE(source);
+    const auto needs_it = [&](const char* words) { source == 0 ? keeps() : refuses(words); };
+    parameters.current_law = 1;
+    needs_it("current_law 1");
+    parameters.current_law = 0;
+    parameters.flux_beside = 1;
+    needs_it("flux_beside");
+    parameters.flux_beside = 0;
+    parameters.start_method = 1;
+    source == 0 ? refuses("start_method 1 needs") : keeps();
+    parameters.start_method = 0;
+  }
+}
+
+TEST_F(ParameterRules, TheVectorsCurrentIsLimitedWhereThereIsOne) {
+  parameters.if_current = parameters.current_limit + 1;
+  keeps();
+  parameters.start_method = 1;
+  refuses("if_current");
+  parameters.if_current = parameters.current_limit;
+  keeps();
+}
+
+TEST_F(ParameterRules, TheCurrentLoopsDelayBoundsItsBandwidth) {
+  for (const int divider : {1, 2}) {
+    parameters.current_divider = divider;
+    parameters.current_bandwidth = 10400 / (3 + divider);
+    keeps();
+    parameters.current_bandwidth++;
+    refuses("current_bandwidth");
+  }
+}
+
+// What no table of two parameters says, the configuration itself finds.
+TEST_F(ParameterRules, AMachineBeyondTheFormatsIsRefused) {
+  const parameters_t p = parameters;
+  const char* const extreme = "too extreme";
+  parameters.inductance_d = raw(0.05, 20);  // 2 T/L: no admittance of this format
+  parameters.inductance_q = raw(0.05, 20);
+  refuses(extreme);
+  parameters = p;
+  parameters.inertia = raw(0.5, 24);
+  parameters.magnet_flux = raw(0.002, 28);
+  refuses(extreme);
+  parameters = p;
+  parameters.start_method = 1;
+  parameters.inertia = raw(1e-4, 24);  // so light under so much current that it swings faster than it can be damped
+  parameters.magnet_flux = raw(0.35, 28);
+  parameters.speed_limit = raw(1000.0, 8);
+  parameters.if_current = parameters.current_limit;
+  refuses(extreme);
+  parameters.start_method = 0;
+  keeps();
+}
+
+}  // namespace

@@ -1,0 +1,278 @@
+// What opens the power stage while the drive runs, each cause alone, and what must not: the conditions that
+// supervision_test.cpp meets only together.
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+hal_adc_window_t window_with(double a, double b) {
+  const auto codes = [](double amps) { return 2048.0 + amps / 20.0 * 2048.0; };
+  hal_adc_window_t w = still_window();
+  w.start_a = static_cast<std::uint16_t>(4 * codes(a));
+  w.end_a = static_cast<std::uint16_t>(3 * codes(a));
+  w.start_b = static_cast<std::uint16_t>(4 * codes(b));
+  w.end_b = static_cast<std::uint16_t>(3 * codes(b));
+  return w;
+}
+
+class Protection : public Drive {
+ protected:
+  /// Periods until the drive leaves RUN, at most `most`, with something held in each.
+  template <typename Hold>
+  int while_running(int most, Hold hold) {
+    int n = 0;
+    for (; n < most && drive.state == DRIVE_RUN; ++n) {
+      hold();
+      period();
+    }
+    return n;
+  }
+  /// These windows are no machine's.
+  static void trust_synchronism() { drive.config.synchronism.bad_periods = 1000000; }
+  static void hold_avv_apart() {
+    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x31C71C72u;
+  }
+};
+
+TEST_F(Protection, EachPhaseTripsInEitherDirection) {
+  for (const auto& [a, b] :
+       {std::pair{18.5, -9.0}, {-18.5, 9.0}, {-9.0, 18.5}, {9.0, -18.5}, {9.4, 9.4}, {-9.4, -9.4}}) {
+    SetUp();
+    make_run();
+    period(window_with(a * 0.95, b * 0.95));
+    EXPECT_EQ(drive.state, DRIVE_RUN) << a;
+    period(window_with(a, b));
+    EXPECT_EQ(drive.fault, FAULT_CURRENT_LIMIT) << a << " " << b;
+    EXPECT_FALSE(board.gates_on);
+  }
+}
+
+TEST_F(Protection, GatesThatGoOffByThemselvesAreNamedByTheirCause) {
+  for (const bool pressed : {false, true}) {
+    SetUp();
+    make_run();
+    parameters.emergency_stop = 1;
+    board.emergency = pressed;
+    board.gates_on = false;  // the hardware, not the comparator
+    period();
+    EXPECT_EQ(drive.state, DRIVE_FAULT);
+    EXPECT_EQ(drive.fault, pressed ? FAULT_EMERGENCY : FAULT_GATES_OFF);
+  }
+}
+
+TEST_F(Protection, ASpeedFarBeyondTheLimitIsDivergence) {
+  for (const double share : {1.45, 1.55}) {
+    SetUp();
+    make_run();
+    trust_synchronism();
+    parameters.position_source = POSITION_AVV;
+    const auto speed = static_cast<std::int32_t>(bpp_of(3300) * share);
+    const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
+    const int n = while_running(2 * allowed, [&] {
+      drive.position.avv.observer.speed_bpp = speed;
+      drive.position.used.speed_bpp = speed;
+    });
+    EXPECT_EQ(drive.state, share > 1.5 ? DRIVE_FAULT : DRIVE_RUN);
+    if (share > 1.5) {
+      EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+      EXPECT_NEAR(n, allowed, 5);
+    }
+  }
+}
+
+// Beside the encoder AVV is a second opinion only where it has active windows and nothing else stands in its place.
+TEST_F(Protection, WhatIsBesideTheEncoderCountsWhereItIsOne) {
+  const struct {
+    std::int32_t parameters_t::* parameter;
+    std::int32_t value;
+    bool counts;
+  } cases[] = {{&parameters_t::excitation, 2, true},  {&parameters_t::excitation, 0, false},
+               {&parameters_t::excitation, 4, false}, {&parameters_t::excitation, 5, false},
+               {&parameters_t::excitation, 1, true},  {&parameters_t::flux_beside, 1, false}};
+  for (const auto& c : cases) {
+    SetUp();
+    make_run();
+    trust_synchronism();
+    parameters.*c.parameter = c.value;
+    const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
+    (void)while_running(3 * allowed, [&] {
+      hold_avv_apart();
+      if (c.parameter == &parameters_t::flux_beside) drive.position.high.quality_q15 = 32767;
+    });
+    EXPECT_EQ(drive.state, c.counts ? DRIVE_FAULT : DRIVE_RUN) << c.value;
+    if (c.counts) {
+      EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+    }
+  }
+}
+
+// A disagreement counts from divergence_limit on, and where it ends the time begins anew.
+TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
+  const auto apart = [](double degrees) {
+    drive.position.avv.observer.angle_bam =
+        drive.position.encoder.angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
+  };
+  make_run();
+  trust_synchronism();
+  const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
+  (void)while_running(3 * allowed, [&] { apart(40.0); });  // AVV is pulled back a little before it is looked at
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  for (int n = 0; n < 3; ++n) {
+    (void)while_running(allowed - 12, [&] { apart(70.0); });
+    ASSERT_EQ(drive.state, DRIVE_RUN);
+    (void)while_running(12, [&] { apart(0.0); });
+  }
+  EXPECT_EQ(drive.supervision.diverged_periods, 0);
+  (void)while_running(3 * allowed, [&] { apart(70.0); });
+  EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+}
+
+// An angle error that is asked for is no loss of synchronism.
+TEST_F(Protection, AnEncoderThatIsTrimmedIsNotJudged) {
+  for (const bool trimmed : {false, true}) {
+    SetUp();
+    make_run();
+    parameters.encoder_trim = trimmed ? raw(30.0, 16) : 0;
+    (void)while_running(400, [] {
+      board.encoder = (board.encoder + 4u) & 4095u;
+      drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+    });
+    EXPECT_EQ(drive.state, trimmed ? DRIVE_RUN : DRIVE_FAULT);
+  }
+}
+
+// The loss of synchronism of a magnet that looked reversed until then is a wrong polarity.
+TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
+  for (const bool open : {false, true}) {
+    SetUp();
+    make_run();
+    (void)while_running(400, [&] {
+      board.encoder = (board.encoder + 4u) & 4095u;
+      drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+      drive.watch.open = open;
+      drive.watch.blind = true;  // it has no say of its own for now
+      drive.watch.sign.expected_q16 = raw(8.0, 16);
+      drive.watch.sign.seen_q16 = raw(-3.0, 16);
+    });
+    EXPECT_EQ(drive.fault, open ? FAULT_POLARITY : FAULT_SYNCHRONISM);
+  }
+}
+
+TEST_F(Protection, TheFaultRecordSaysWhatWas) {
+  make_run();
+  drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};
+  drive.time_ms = 12345;
+  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_raise(&drive, FAULT_OVERRUN);  // the first stays
+  EXPECT_EQ(drive.fault, FAULT_LINK_LOW);
+  EXPECT_EQ(drive.periods, 0u);
+  EXPECT_EQ(drive.control.target_bpp, 0);
+  EXPECT_FALSE(drive.control.closed);
+}
+
+TEST_F(Protection, CalibrationWithoutSamplesIsAFault) {
+  const auto silent = [this] { period(still_window(), drive.modulation.sampled.window_count); };
+  for (int n = 0; n < 1990; ++n) silent();
+  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  for (int n = 0; n < 30; ++n) silent();
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+}
+
+TEST_F(Protection, EitherSensorsOffsetMustBePlausible) {
+  for (const auto& [a, b] : {std::pair{95, 95}, {-95, -95}, {105, 0}, {-105, 0}, {0, 105}, {0, -105}}) {
+    SetUp();
+    hal_adc_window_t w = still_window();
+    w.start_a = static_cast<std::uint16_t>(4 * (2048 + a));
+    w.start_b = static_cast<std::uint16_t>(4 * (2048 + b));
+    for (int n = 0; n < 600; ++n) period(w);
+    const bool good = std::abs(a) < 100 && std::abs(b) < 100;
+    EXPECT_EQ(drive.state, good ? DRIVE_READY : DRIVE_FAULT) << a << " " << b;
+    EXPECT_EQ(drive.fault, good ? FAULT_NONE : FAULT_OFFSET);
+  }
+}
+
+// A current that never ends is no offset: after ten seconds the drive says so.
+TEST_F(Protection, ACurrentThatDoesNotEndIsAFaultAfterTenSeconds) {
+  const auto restless = [this](int n) {
+    hal_adc_window_t w = still_window();
+    w.start_b = static_cast<std::uint16_t>(4 * (2048 + (n / 8 % 2 ? 60 : -60)));
+    period(w);
+  };
+  for (int n = 0; n < 99990; ++n) restless(n);
+  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  for (int n = 0; n < 30; ++n) restless(n);
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, FAULT_OFFSET);
+}
+
+// The same request twice, or one that its state has no use for, does nothing and is not remembered.
+TEST_F(Protection, RequestsThatAStateHasNoUseForAreForgotten) {
+  make_run();
+  drive_command_reset();
+  drive_command_start();
+  drive_command_commission();
+  periods(3);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_FALSE(drive.request.start || drive.request.reset || drive.request.commission || drive.request.stop);
+  drive_command_stop();
+  periods(30);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  drive_command_stop();
+  periods(5);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Protection, AStopBreaksAStartOffAndOpensThePowerStage) {
+  make_ready();
+  drive_command_start();
+  periods(20);
+  ASSERT_EQ(drive.state, DRIVE_START);
+  drive_command_stop();
+  period();
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+}
+
+// A shaft that a commissioning turns is brought to rest; its gates stay on until it stands.
+TEST_F(Protection, AStopInACommissioningsSpinBrakesTheShaft) {
+  make_run();
+  drive.state = DRIVE_COMMISSION;
+  drive.commissioning.outcome = COMMISSIONING_RUNNING;
+  drive.commissioning.phase = COMMISSIONING_SPIN;
+  drive.commissioning.tick = 1;
+  for (const bool turning : {true, false}) {
+    drive.commissioning.turning = turning;
+    drive.state = DRIVE_COMMISSION;
+    drive.commissioning.outcome = COMMISSIONING_RUNNING;
+    drive.commissioning.phase = COMMISSIONING_TURN;
+    board.gates_on = true;
+    drive.request.reload = false;  // the background level has been there
+    drive_command_stop();
+    drive_sequence(&drive);
+    EXPECT_EQ(drive.state, turning ? DRIVE_STOP : DRIVE_READY);
+    EXPECT_EQ(board.gates_on, turning);
+    EXPECT_EQ(drive.commissioning.outcome, COMMISSIONING_ABORTED);
+  }
+}
+
+// With the gates off already and the background level at work a stop has nothing to break off.
+TEST_F(Protection, AStopLetsAnEvaluationEnd) {
+  make_ready();
+  drive.state = DRIVE_COMMISSION;
+  drive.commissioning.outcome = COMMISSIONING_RUNNING;
+  drive.commissioning.phase = COMMISSIONING_EVALUATE;
+  drive.commissioning.evaluate = true;
+  drive_command_stop();
+  drive_sequence(&drive);
+  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(drive.commissioning.outcome, COMMISSIONING_RUNNING);
+  drive.commissioning.evaluate = false;
+  drive_sequence(&drive);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+}  // namespace

@@ -1,0 +1,166 @@
+// A drive without a host: a switch at the board starts and stops it, a voltage is its speed.
+
+#include "firmware/board/functions.h"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+namespace {
+
+class SpeedInput : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    parameters.position_source = 0;
+    parameters.polarity_check = 0;
+    parameters.speed_input = 1;
+    drive_parameters_changed();
+    background_step(&drive);
+    make_ready();
+  }
+
+  /// Turns of eight milliseconds with a switch and a code of the speed command.
+  void turns(int count, bool on, std::uint16_t code) {
+    hal_adc_window_t w = still_window();
+    w.aux = code;
+    board.run = on;
+    for (int ms = 0; ms < 8 * count; ++ms) {
+      for (int n = 0; n < 10; ++n) period(w);
+      board_service();
+      if (drive.state != DRIVE_RUN) continue;
+      drive.config.synchronism.bad_periods = 1000000;  // no machine behind these windows
+      parameters.divergence_time = 1000;
+    }
+  }
+  static double asked_rpm() { return drive.control.wanted_rpm_q16 / 65536.0; }
+};
+
+TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {
+  turns(3, true, 2048);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(asked_rpm(), 0.0);
+  turns(1, false, 2048);
+  EXPECT_EQ(::board.input, SPEED_INPUT_WAITS);
+  turns(1, true, 0);
+  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
+}
+
+TEST_F(SpeedInput, TheConverterIsChosenForThreeMillisecondsInEight) {
+  for (int n = 0; n < 10; ++n) period();
+  while (drive.time_ms % 8 != 0) {
+    for (int n = 0; n < 10; ++n) period();
+    board_service();
+  }
+  for (int ms = 1; ms <= 16; ++ms) {
+    for (int n = 0; n < 10; ++n) period();
+    board_service();
+    const int at = ms % 8;
+    EXPECT_EQ(board.slow_is_speed, at >= 1 && at < 4) << ms;
+  }
+}
+
+TEST_F(SpeedInput, TheVoltageIsTheSpeed) {
+  turns(1, false, 0);
+  turns(1, true, 0);
+  ASSERT_EQ(::board.input, SPEED_INPUT_RUNS);
+  const struct {
+    std::uint16_t code;
+    double rpm;
+  } cases[] = {{0, 0.0}, {82, 0.0}, {2048, 979.8}, {4095, 2000.0}, {1024, 469.5}};  // 2 % at the lower end is nothing
+  for (const auto& c : cases) {
+    turns(1, true, c.code);
+    EXPECT_NEAR(asked_rpm(), c.rpm, 1.5) << c.code;
+  }
+  parameters.speed_input = 2;  // 10 % .. 90 %
+  const struct {
+    std::uint16_t code;
+    double rpm;
+  } live[] = {{410, 0.0}, {300, 0.0}, {2048, 979.6}, {3686, 2000.0}, {3800, 2000.0}};
+  for (const auto& c : live) {
+    turns(1, true, c.code);
+    EXPECT_NEAR(asked_rpm(), c.rpm, 1.5) << c.code;
+  }
+}
+
+TEST_F(SpeedInput, OpeningTheSwitchStops) {
+  turns(1, false, 0);
+  turns(6, true, 0);
+  ASSERT_EQ(drive.state, DRIVE_RUN);
+  turns(2, false, 0);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(SpeedInput, OpeningTheSwitchClearsAFaultAndClosingItDoesNot) {
+  turns(1, false, 0);
+  turns(6, true, 0);
+  drive_raise(&drive, FAULT_LINK_LOW);
+  turns(2, true, 0);
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  turns(8, false, 0);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(drive.fault, FAULT_NONE);
+  drive_raise(&drive, FAULT_LINK_LOW);
+  turns(2, true, 0);
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(::board.input, SPEED_INPUT_WAITS);
+}
+
+// Beyond 5 % and 95 % there is no signal; it may be gone for 20 ms.
+TEST_F(SpeedInput, ALostLiveZeroStopsAndStaysStopped) {
+  parameters.speed_input = 2;
+  for (const std::uint16_t code : {std::uint16_t{204}, std::uint16_t{3892}}) {
+    for (const int reaction : {1, 2}) {
+      parameters.speed_input_loss = reaction;
+      turns(2, false, 410);
+      turns(6, true, 410);
+      ASSERT_EQ(drive.state, DRIVE_RUN);
+      turns(2, true, code);
+      EXPECT_EQ(drive.state, DRIVE_RUN) << "16 ms";
+      EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
+      turns(1, true, 410);
+      turns(2, true, code);
+      EXPECT_EQ(::board.input, SPEED_INPUT_RUNS) << "counted anew";
+      turns(2, true, code);
+      EXPECT_EQ(::board.input, SPEED_INPUT_LOST);
+      EXPECT_EQ(drive.state, DRIVE_READY);
+      EXPECT_FALSE(board.gates_on);
+      turns(3, true, 2048);
+      EXPECT_EQ(drive.state, DRIVE_READY) << "the signal alone does not start it again";
+    }
+  }
+  for (const std::uint16_t code : {std::uint16_t{205}, std::uint16_t{3891}}) {
+    turns(2, false, 410);
+    turns(1, true, 410);
+    turns(5, true, code);
+    EXPECT_EQ(::board.input, SPEED_INPUT_RUNS) << code;
+    turns(8, false, 410);
+  }
+}
+
+TEST_F(SpeedInput, LossCoastsWhereThatIsWanted) {
+  parameters.speed_input = 2;
+  parameters.speed_input_loss = 2;
+  turns(1, false, 410);
+  turns(6, true, 410);
+  ASSERT_EQ(drive.state, DRIVE_RUN);
+  drive.control.ramp.value = raw(0.01, 32);  // a shaft that turns would be brought to rest first
+  const int off = board.gates_off_calls;
+  turns(3, true, 100);
+  EXPECT_GT(board.gates_off_calls, off);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+TEST_F(SpeedInput, NotUsedItCommandsNothing) {
+  parameters.speed_input = 0;
+  turns(1, false, 4000);
+  turns(3, true, 4000);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(::board.input, SPEED_INPUT_OFF);
+  parameters.speed_input = 1;
+  turns(2, true, 4000);
+  EXPECT_EQ(drive.state, DRIVE_READY) << "closed before it was used";
+}
+
+}  // namespace
+}  // namespace stillspin::test

@@ -1,0 +1,111 @@
+// What a start asks for before it closes the power stage, and where it gives up.
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+class StartRefused : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    parameters.position_source = 0;
+    parameters.polarity_check = 0;
+    make_ready();
+  }
+  void expect_refused(drive_fault_t fault) {
+    const int frames_with_gates = board.gates_off_calls;
+    drive_command_start();
+    for (int n = 0; n < 10; ++n) {
+      period();
+      ASSERT_FALSE(board.gates_on) << n;
+    }
+    EXPECT_EQ(drive.state, DRIVE_FAULT);
+    EXPECT_EQ(drive.fault, fault);
+    EXPECT_GT(board.gates_off_calls, frames_with_gates);
+  }
+};
+
+TEST_F(StartRefused, WithASpeedControlThatCouldNotBeSetUp) {
+  drive.control.speed_ready = false;
+  expect_refused(FAULT_PARAMETER);
+}
+
+TEST_F(StartRefused, AfterAnInterruptThatNobodyExpected) {
+  board.unexpected_interrupts = 1;
+  expect_refused(FAULT_PARAMETER);
+}
+
+TEST_F(StartRefused, WhileTheLinkIsNotCharged) {
+  parameters.precharge_voltage = raw(200.0, 16);
+  expect_refused(FAULT_PRECHARGE);
+}
+
+TEST_F(StartRefused, WhileTheEmergencyStopIsPressed) {
+  parameters.emergency_stop = 1;
+  board.emergency = true;
+  expect_refused(FAULT_EMERGENCY);
+}
+
+TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft) {
+  parameters.flying_start = 0;
+  board.pin_low = true;
+  expect_refused(FAULT_OVER_CURRENT);
+  EXPECT_NE(drive.start.phase, START_AXIS);
+}
+
+// Windows that never show the axis: 20 ms, then the drive says so.
+TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
+  parameters.flying_start = 0;
+  drive_command_start();
+  period();
+  ASSERT_EQ(drive.state, DRIVE_START);
+  int n = 0;
+  for (; n < 400 && drive.state == DRIVE_START; ++n) {
+    drive.position.avv.regression.information = 0;
+    drive.start.axis.count = 0;
+    period();
+  }
+  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_NEAR(n, 200, 3);
+  EXPECT_FALSE(board.gates_on);
+}
+
+// All lower devices on for bootstrap_time, from when the gates are on; a current that flows through them is let die
+// away.
+TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
+  parameters.bootstrap_time = raw(5.0, 16);
+  parameters.flying_start = 0;
+  drive_command_start();
+  period();
+  ASSERT_EQ(drive.start.phase, START_CHARGE);
+  EXPECT_FALSE(board.gates_on);
+  int on = 0;
+  for (int n = 0; n < 200 && drive.start.phase == START_CHARGE; ++n) {
+    period();
+    on += board.gates_on ? 1 : 0;
+    EXPECT_TRUE(drive.start.shorted || drive.start.phase != START_CHARGE);
+  }
+  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_NEAR(on, 50, 2);
+}
+
+TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
+  parameters.bootstrap_time = raw(20.0, 16);
+  parameters.flying_start = 0;
+  drive_command_start();
+  while (!board.gates_on) period();
+  hal_adc_window_t w = still_window();
+  w.start_a = 4 * (2048 + 8 * 102);  // 8 A of 14
+  w.end_a = 3 * (2048 + 8 * 102);
+  for (int n = 0; n < 4; ++n) period(w);
+  EXPECT_EQ(drive.start.phase, START_CHARGE);
+  EXPECT_FALSE(board.gates_on);
+  int rest = 0;
+  for (; rest < 100 && !board.gates_on; ++rest) period();
+  EXPECT_NEAR(rest, 20, 4);
+  EXPECT_EQ(drive.start.phase, START_CHARGE) << "only what they were on counts";
+}
+
+}  // namespace
