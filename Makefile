@@ -9,6 +9,7 @@ PRESET := release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 RUNS ?= 1000000
+SAMPLE ?= 60
 PYTHON := .venv/bin/python
 DEMO := A10 A15 A16 A18a A18b A18c
 DEMO_OUT := out/demo
@@ -16,7 +17,7 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc verify loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify loss fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -79,6 +80,10 @@ prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted 
 mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC against toolchain/mcdc_budget.txt
 	@bash toolchain/setup.sh build verify
 	@$(PYTHON) toolchain/mcdc.py
+
+mutants: ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
+	@bash toolchain/setup.sh build verify
+	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
 
 verify: image-check cppcheck prove vectors int16 mcdc ## the checks that take long: image, cppcheck, prove, vectors, int16, mcdc
 

@@ -1,0 +1,251 @@
+#!/usr/bin/env python3
+"""How many small changes of the drive's C the C++ tests notice.
+
+Usage: toolchain/mutants.py [SAMPLE] [near] [PART...]     (make mutants SAMPLE=60; near: the part's own tests alone)
+
+Changes sources of the floors one token or statement at a time (toolchain/mutation/mutate.py), a drawn sample of SAMPLE
+(or `all`) in every part. What does not compile, and what gives the object code of the original or of an earlier mutant
+(-O2), is not a mutant. The others run the part's own tests, and where those pass, the tests above them; one that fails,
+crashes or hangs has noticed. The working tree is not touched; all is in build/mutants, where verdicts are kept, so that
+a run that was broken off goes on. The score, its 95 % interval and every survivor are written to
+build/mutants/report.txt.
+"""
+
+import hashlib
+import json
+import math
+import random
+import shutil
+import sys
+import tempfile
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mutation.board import BUILD, FLOORS, ROOT, Board, code_of, compiled, linked, make_board, passes
+from mutation.board import LEAST_TIME as LEAST
+from mutation.mutate import Mutant, mutants
+
+SEED = 2808
+WORKERS = 2
+VERDICTS = BUILD / "verdicts.jsonl"
+REPORT = BUILD / "report.txt"
+PATIENCE = 4.0  # times what a program takes without a mutant
+
+
+@dataclass(frozen=True)
+class Part:
+    """Sources by patterns, and the programs that test them, the nearest first."""
+
+    sources: tuple[str, ...]
+    programs: tuple[str, ...]
+
+
+PARTS = {
+    "hal/qmath": Part(("hal/qmath/*.c", "hal/qmath/*.h"), ("qmath_test", "control_test", "estimators_test")),
+    "control": Part(("control/*.c", "control/*.h"), ("control_test", "bench_run_test")),
+    "svpwm": Part(("svpwm/*.c", "svpwm/*.h"), ("svpwm_test", "bench_run_test")),
+    "estimators": Part(("estimators/*.c", "estimators/*.h"), ("estimators_test", "firmware_test", "bench_run_test")),
+    # The states and what protects; a header of firmware/ is in every source, and is left out.
+    "firmware": Part(
+        (
+            *(
+                f"firmware/{name}.c"
+                for name in ("state_machine", "protection", "actions", "drive_api", "fault_history")
+            ),
+            *(
+                f"firmware/{name}.c"
+                for name in ("fault_history", "sampling", "control_interrupt", "parameter_rules", "speed_task")
+            ),
+            *("firmware/start/*.c", "firmware/board/*.c", "firmware/commissioning/*.c"),
+        ),
+        ("firmware_test", "bench_run_test"),
+    ),
+}
+
+
+@dataclass
+class Verdicts:
+    """What was found out before, kept in a file."""
+
+    known: dict[str, str] = field(default_factory=dict)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def load(self) -> None:
+        """What an earlier run left; a last line that was cut off is ignored."""
+        for line in VERDICTS.read_text(encoding="utf-8").splitlines() if VERDICTS.exists() else ():
+            try:
+                key, verdict = json.loads(line)
+            except ValueError:
+                continue
+            self.known[key] = verdict
+
+    def note(self, key: str, verdict: str) -> None:
+        """Remembers one, at once."""
+        with self.lock:
+            self.known[key] = verdict
+            with VERDICTS.open("a", encoding="utf-8") as out:
+                out.write(json.dumps([key, verdict]) + "\n")
+
+
+@dataclass
+class Score:
+    """What became of a part's mutants."""
+
+    distinct: int = 0
+    killed: dict[str, int] = field(default_factory=dict)  # by program
+    survivors: list[Mutant] = field(default_factory=list)
+    invalid: int = 0
+    equal: int = 0
+
+    def line(self, name: str) -> str:
+        """As published: Wilson's interval."""
+        killed, n = sum(self.killed.values()), max(self.distinct, 1)
+        p, z2 = killed / n, 1.96**2
+        middle, half = p + z2 / 2 / n, 1.96 * math.sqrt(p * (1 - p) / n + z2 / 4 / n / n)
+        low, high = (100 * (middle + sign * half) / (1 + z2 / n) for sign in (-1, 1))
+        by = ", ".join(f"{program} {count}" for program, count in self.killed.items())
+        dropped = f"{self.invalid} do not compile, {self.equal} change nothing"
+        return f"{name:12} {killed:5d} / {self.distinct:5d} {100 * p:6.1f} %  [{low:.1f}, {high:.1f}]  {by}; {dropped}"
+
+
+class Run:
+    """One run over parts."""
+
+    def __init__(self, board: Board, near: bool) -> None:
+        """With the build of the unchanged tree; near: without the tests above a part."""
+        self.board = board
+        self.near = near
+        self.verdicts = Verdicts()
+        self.verdicts.load()
+        self.plain: dict[str, bytes] = {}  # object code of the original by source
+        self.plain_lock = threading.Lock()
+        self.text: dict[str, str] = {}
+
+    def source(self, file: str) -> str:
+        """A file's text when the run began."""
+        return self.text.setdefault(file, (ROOT / file).read_text(encoding="utf-8"))
+
+    def objects(self, mutant: Mutant, part: Part, place: Path) -> dict[str, Path] | None:
+        """The objects that a mutant changes, by source; None where one does not compile."""
+        source = self.source(mutant.file)
+        made = {}
+        is_header = mutant.file.endswith(".h")
+        home = str(Path(mutant.file).parent)
+        if is_header:
+            (place / mutant.file).parent.mkdir(parents=True)
+            (place / mutant.file).write_text(mutant.applied(source), encoding="utf-8")
+        for use in self.board.uses(mutant.file):
+            if is_header and not use.startswith((f"{home}/", f"tests/{Path(home).name}/")):
+                continue
+            out = place / (use.replace("/", "_") + ".o")
+            text = None if is_header else mutant.applied(source)
+            if not compiled(self.board, use, text, place, out):
+                return None
+            if code_of(out) != self.original(use):
+                made[use] = out
+        return made
+
+    def original(self, source: str) -> bytes:
+        """The object code of an unchanged source."""
+        with self.plain_lock:
+            if source not in self.plain:
+                with tempfile.TemporaryDirectory(dir=BUILD) as name:
+                    out = Path(name) / "plain.o"
+                    text = self.source(source) if source.startswith(FLOORS) else None
+                    if not compiled(self.board, source, text, Path(name), out):
+                        raise SystemExit(f"mutants: {source} does not compile")
+                    self.plain[source] = code_of(out)
+            return self.plain[source]
+
+    def key(self, mutant: Mutant) -> str:
+        """Of the source as it is and of the change."""
+        text = f"{mutant.file}\0{self.source(mutant.file)}\0{mutant.at}\0{mutant.end}\0{mutant.new}"
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def judge(self, mutant: Mutant, part: Part) -> str:
+        """`invalid`, `equal`, `killed PROGRAM`, or `code DIGEST` where nothing noticed."""
+        key = self.key(mutant)
+        known = self.verdicts.known.get(key, "")
+        programs = part.programs[:1] if self.near or mutant.file.endswith(".h") else part.programs
+        state = hashlib.sha256("".join(self.board.programs[name].digest for name in programs).encode()).hexdigest()
+        if known and (not known.startswith("survived") or known == f"survived {state}"):
+            return known
+        place = Path(tempfile.mkdtemp(dir=BUILD))
+        try:
+            verdict = self.run_in(mutant, part, programs, place) or f"survived {state}"
+        finally:
+            shutil.rmtree(place)
+        self.verdicts.note(key, verdict)
+        return verdict
+
+    def run_in(self, mutant: Mutant, part: Part, programs: tuple[str, ...], place: Path) -> str | None:
+        """Compiles, links, runs; None where nothing noticed."""
+        changed = self.objects(mutant, part, place)
+        if changed is None:
+            return "invalid"
+        if not changed:
+            return "equal"
+        for name in programs:
+            out = place / name
+            if not linked(self.board, name, changed, out):
+                return "invalid"
+            if not passes(out, PATIENCE * self.board.programs[name].seconds + LEAST):
+                return f"killed {name}"
+        return None
+
+    def part(self, name: str, sample: int | None) -> Score:
+        """The score of a part."""
+        part = PARTS[name]
+        files = sorted({p.relative_to(ROOT).as_posix() for pattern in part.sources for p in ROOT.glob(pattern)})
+        every = [mutant for file in files for mutant in mutants(file, self.source(file))]
+        random.Random(SEED).shuffle(every)
+        score = Score()
+        while every and (sample is None or score.distinct < sample):
+            count = 64 if sample is None else max(sample - score.distinct, WORKERS)
+            batch, every = every[:count], every[count:]
+            with ThreadPoolExecutor(WORKERS) as pool:
+                for mutant, verdict in zip(batch, pool.map(lambda m: self.judge(m, part), batch), strict=True):
+                    count_in(score, mutant, verdict)
+            print(score.line(name), flush=True)
+        return score
+
+
+def count_in(score: Score, mutant: Mutant, verdict: str) -> None:
+    """Adds one mutant to a score."""
+    if verdict in ("invalid", "equal"):
+        setattr(score, verdict, getattr(score, verdict) + 1)
+        return
+    score.distinct += 1
+    if verdict.startswith("survived"):
+        score.survivors.append(mutant)
+    else:
+        by = verdict.partition(" ")[2]
+        score.killed[by] = score.killed.get(by, 0) + 1
+
+
+def main() -> int:
+    """Draw, judge, print."""
+    words = sys.argv[1:]
+    sample = None if "all" in words else next((int(word) for word in words if word.isdigit()), 60)
+    chosen = [word for word in words if word in PARTS] or list(PARTS)
+    BUILD.mkdir(parents=True, exist_ok=True)
+    near = "near" in words
+    programs = {name for part in chosen for name in PARTS[part].programs[: 1 if near else None]}
+    run = Run(make_board(sorted(programs)), near)
+    for program in run.board.programs.values():
+        print(f"{program.name}: {program.seconds:.1f} s")
+    lines, survivors = [], []
+    for name in chosen:
+        score = run.part(name, sample)
+        lines.append(score.line(name))
+        told = sorted(score.survivors, key=lambda m: (m.file, m.at))
+        survivors += [mutant.told(run.source(mutant.file)) for mutant in told]
+    REPORT.write_text("\n".join([*lines, "", "survivors:", *survivors]) + "\n", encoding="utf-8")
+    print("\n".join(["", *lines, f"survivors: {REPORT.relative_to(ROOT)}"]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Mutants of the drive's C: what is changed, and how it is compiled and run."""
