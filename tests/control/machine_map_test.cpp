@@ -232,4 +232,18 @@ TEST(MachineMap, TheTurningFrameSeesTheWholeCoupling) {
   }
 }
 
+TEST(MachineMap, ItsCurrentIsFromOneToAHundredAmperes) {
+  const struct {
+    std::int32_t current_q20;
+    bool good;
+  } cases[] = {{raw(1.0, 20), true}, {raw(1.0, 20) - 1, false}, {raw(100.0, 20), true}, {raw(100.0, 20) + 1, false}};
+  for (const auto& c : cases) {
+    machine_map_parameters_t p = Saturated{}.table(14.0);
+    for (int n = 0; n < MACHINE_MAP_POINTS; ++n) p.ldq_q30[n] = 0;
+    p.current_q20 = c.current_q20;
+    machine_map_t map;
+    EXPECT_EQ(machine_map_init(&map, &p, raw(kPeriod, 30), raw(1600.0, 16)), c.good) << c.current_q20;
+  }
+}
+
 }  // namespace

@@ -204,4 +204,33 @@ TEST(MachineModel, SpeedInRadPerPeriod) {
   }
 }
 
+// One digit beyond is refused; the digit itself is taken where the rest of the machine fits the formats.
+TEST(MachineModel, RangesEndWhereTheyAreSaidTo) {
+  const struct {
+    Field field;
+    std::int32_t low, high;
+  } ranges[] = {{&machine_parameters_t::rs_q24, 16777, 838860800},
+                {&machine_parameters_t::ld_q30, 21474, 536870912},
+                {&machine_parameters_t::lq_q30, parameters_of(Motor{}).ld_q30, 536870912},
+                {&machine_parameters_t::flux_q28, 268435, 268435456},
+                {&machine_parameters_t::inertia_q24, 168, 16777216},
+                {&machine_parameters_t::pole_pairs, 1, 20},
+                {&machine_parameters_t::period_us, 20, 500}};
+  for (const auto& range : ranges) {
+    for (const std::int32_t beyond : {range.low - 1, range.high + 1}) {
+      machine_parameters_t p = parameters_of(Motor{});
+      p.*range.field = beyond;
+      if (range.field == &machine_parameters_t::ld_q30 && beyond > range.high) p.lq_q30 = 536870912;
+      machine_model_t m;
+      EXPECT_FALSE(machine_model_init(&m, &p)) << beyond;
+    }
+  }
+  for (const std::int32_t rs : {16777, 838860800}) {
+    machine_parameters_t p = parameters_of(Motor{});
+    p.rs_q24 = rs;
+    machine_model_t m;
+    EXPECT_TRUE(machine_model_init(&m, &p)) << rs;
+  }
+}
+
 }  // namespace

@@ -132,4 +132,41 @@ TEST(Modulator, ConfigurationRangesIncludeTheirEndsOnly) {
   }
 }
 
+// Nothing of what went before is left: neither whose turn it is in the alternating layout nor the DC link.
+TEST(Modulator, AfterAResetItBeginsLikeANewOne) {
+  const modulator_config_t c = default_modulator();
+  const ab_t voltage = raw_ab({40.0, 25.0}, 16);
+  modulator_t fresh = {}, used = {};
+  modulator_reset(&fresh);
+  modulator_reset(&used);
+  for (int periods = 1; periods <= 6; ++periods) {
+    svpwm_pulses_t p;
+    for (int n = 0; n < periods; ++n) {
+      (void)modulator_step(&used, &c, EXCITATION_ALTERNATING, raw_ab({-30.0, 80.0}, 16), raw(350.0 - n, 16), &p);
+    }
+    modulator_reset(&used);
+    modulator_t a = fresh, b = used;
+    for (int n = 0; n < 6; ++n) {
+      svpwm_pulses_t of_a, of_b;
+      (void)modulator_step(&a, &c, EXCITATION_ALTERNATING, voltage, raw(300.0, 16), &of_a);
+      (void)modulator_step(&b, &c, EXCITATION_ALTERNATING, voltage, raw(300.0, 16), &of_b);
+      for (int edge = 0; edge < 2 * SVPWM_LEGS; ++edge) ASSERT_EQ(of_a.at[edge], of_b.at[edge]) << periods << " " << n;
+      ASSERT_EQ(a.ticks_per_volt_q20, b.ticks_per_volt_q20);
+    }
+  }
+}
+
+TEST(Modulator, AResetStartsWithTheFirstLegAndPair) {
+  modulator_t s;
+  s.alternating.leg = 2;
+  s.alternating.pair_first = true;
+  s.is_alternating = false;
+  s.ticks_per_volt_q20 = 77;
+  modulator_reset(&s);
+  EXPECT_EQ(s.alternating.leg, 0);
+  EXPECT_FALSE(s.alternating.pair_first);
+  EXPECT_TRUE(s.is_alternating);
+  EXPECT_EQ(s.ticks_per_volt_q20, 0);
+}
+
 }  // namespace
