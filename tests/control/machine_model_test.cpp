@@ -233,4 +233,19 @@ TEST(MachineModel, RangesEndWhereTheyAreSaidTo) {
   }
 }
 
+// An inertia that was learnt makes the model that of another rotor, whatever it was scaled to before.
+TEST(MachineModel, AScaledInertiaIsThatOfAnotherRotor) {
+  const Motor motor;
+  const machine_model_t told = model_of(motor);
+  machine_model_t m = told;
+  for (const double ratio : {0.5, 2.0, 0.7, 1.0}) {
+    Motor other = motor;
+    other.inertia = motor.inertia / ratio;
+    const machine_model_t exact = model_of(other);
+    machine_model_scale_inertia(&m, &told, raw(ratio, 24));
+    EXPECT_NEAR(static_cast<double>(m.accel_q12) / exact.accel_q12, 1.0, 1e-3) << ratio;
+    EXPECT_NEAR(static_cast<double>(m.torque_per_accel_q24) / exact.torque_per_accel_q24, 1.0, 1e-3) << ratio;
+  }
+}
+
 }  // namespace
