@@ -59,12 +59,12 @@ static inline abc_t frame_inverse_clarke(ab_t v) {
 
 static inline dq_t frame_park(ab_t v, rotation_t r) {
   dq_t w = {q_mul_add_floor(v.alpha, r.cos_q30, v.beta, r.sin_q30, 30),
-            q_mul_sub_floor(v.beta, r.cos_q30, v.alpha, r.sin_q30, 30)};
+            q_mul_add_floor(v.beta, r.cos_q30, -v.alpha, r.sin_q30, 30)};
   return w;
 }
 
 static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
-  ab_t v = {q_mul_sub_floor(w.d, r.cos_q30, w.q, r.sin_q30, 30), q_mul_add_floor(w.d, r.sin_q30, w.q, r.cos_q30, 30)};
+  ab_t v = {q_mul_add_floor(w.d, r.cos_q30, -w.q, r.sin_q30, 30), q_mul_add_floor(w.d, r.sin_q30, w.q, r.cos_q30, 30)};
   return v;
 }
 

@@ -26,8 +26,8 @@ static inline void pi_reset(pi_state_t* s, int32_t output) { s->integral = q_shl
 
 /// One step; returns the output before any limit.
 static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error) {
-  s->integral = q_add_sat(s->integral, q_mul_sat(error, c->ki_q20, PI_ERROR_SHIFT - 4u));
-  return q_add_sat(q_mul_sat(error, c->kp_q20, PI_ERROR_SHIFT), q_shr_round(s->integral, 4));
+  s->integral = q_sat64(q_mul64(error, c->ki_q20, PI_ERROR_SHIFT - 4u) + s->integral);
+  return q_sat64(q_mul64(error, c->kp_q20, PI_ERROR_SHIFT) + q_shr_round(s->integral, 4));
 }
 
 /// Tells the controller what became of its output: `excess` = asked minus realised.

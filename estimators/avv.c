@@ -62,7 +62,7 @@ estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_inp
     deviation_frames(in->windows, in->window_count, deviation_middle(s->observer.angle_bam, speed_bpp), w_q30, own);
     f = own;
   }
-  for (uint16_t k = 0; k < in->window_count; k++) d[k] = deviation_in_frame(&at, &in->windows[k], &f[k]);
+  for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &d[k]);
   regression_evaluate(&s->regression, d, in);
   if (s->regression.information > 0) {
     s->error_bam = avv_angle_error(&s->regression, in->model);

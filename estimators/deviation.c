@@ -10,7 +10,7 @@ static rotation_t turned(rotation_t r, int32_t x_q30) {
   const int32_t fourth_q28 = q_mul_hi(square_q28 * 4, q_mul_hi(square_q28 * 4, ONE_TWELFTH_Q32));
   const int32_t versine_q30 = (square_q28 - fourth_q28) * 2;
   const int32_t sine_q30 = x_q30 - q_mul_hi(q_mul_hi(x_q30, square_q28) * 16, ONE_SIXTH_Q32);
-  const int32_t sine_step_q28 = q_mul_sub_floor(r.cos_q30, sine_q30, r.sin_q30, versine_q30, 32);
+  const int32_t sine_step_q28 = q_mul_add_floor(r.cos_q30, sine_q30, r.sin_q30, -versine_q30, 32);
   const int32_t cosine_step_q28 = q_mul_add_floor(r.sin_q30, sine_q30, r.cos_q30, versine_q30, 32);
   const rotation_t next = {r.sin_q30 + sine_step_q28 * 4, r.cos_q30 - cosine_step_q28 * 4};
   return next;
@@ -47,29 +47,15 @@ deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
   return at;
 }
 
-// a x + b y + c u + d v, Q42 to Q20: whole products, rounded once.
-static int32_t of_four(int32_t a, int32_t x, int32_t b, int32_t y, int32_t c, int32_t u, int32_t d, int32_t v) {
-  return (int32_t)q_shr64((int64_t)a * x + (int64_t)b * y + (int64_t)c * u + (int64_t)d * v, 22);
-}
-
-deviation_t deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f) {
-  const dq_t slope_q20 = frame_park(w->slope_q20, f->rotation);
-  const dq_t v = frame_park(w->voltage_q16, f->rotation);
-  const dq_t i = f->current_q20;
-  const dq_t rest = {of_four(at->a_dd_q22, i.d, at->a_dq_q22, i.q, at->less_dd_q26, v.d, at->less_dq_q26, v.q),
-                     of_four(at->a_qd_q22, i.d, at->a_qq_q22, i.q, at->less_dq_q26, v.d, at->less_qq_q26, v.q)};
-  const deviation_t d = {
-      {slope_q20.d + rest.d - at->emf_q20.d, slope_q20.q + rest.q - at->emf_q20.q}, v, f->current_q20};
-  return d;
-}
-
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp) {
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   const deviation_model_t at = deviation_model(m, w_q30);
   estimator_frame_t f;
   deviation_frames(w, 1, deviation_middle(angle_bam, speed_bpp), w_q30, &f);
-  return deviation_in_frame(&at, w, &f);
+  deviation_t d;
+  deviation_in_frame(&at, w, &f, &d);
+  return d;
 }
 
 deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t w_q30, dq_t i) {
@@ -79,7 +65,7 @@ deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t 
   const dq_t turn = {q_mul_sub_floor(q_q24, i.q, p_q24, i.d, 24) - m->k0_q20.q,
                      q_mul_add_floor(q_q24, i.d, p_q24, i.q, 24) + m->k0_q20.d};
   const dq_t lost_q16 = {q_mul_floor(m->rs_q24, i.d, 28), q_mul_floor(m->rs_q24, i.q, 28)};
-  deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
+  deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, -2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
   const dq_t lost_q18 = deviation_by_angle_q18(&s, lost_q16);
   s.rest_q18.d = q_mul_hi(turn.d, w_q30) - lost_q18.d;
   s.rest_q18.q = q_mul_hi(turn.q, w_q30) - lost_q18.q;

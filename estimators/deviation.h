@@ -28,9 +28,9 @@ typedef struct {
 
 /// What the residuals of a period say about angle and speed.
 typedef struct {
-  int32_t saliency_q30, tilt_q30;  // J Y - Y J = [-tilt, saliency; saliency, tilt]
-  dq_t rest_q18;                   // what of h_angle does not hang on the voltage, A per period and rad
-  dq_t turn_q20;                   // h_speed, A per period and (rad per period)
+  int32_t saliency_q30, tilt_q30, less_tilt_q30;  // J Y - Y J = [-tilt, saliency; saliency, tilt]
+  dq_t rest_q18;                                  // what of h_angle does not hang on the voltage, A per period and rad
+  dq_t turn_q20;                                  // h_speed, A per period and (rad per period)
 } deviation_sensitivity_t;
 
 /// Angle of the estimator in the middle of the period in which the windows lie, from that at its end.
@@ -45,7 +45,26 @@ void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32
 
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30);
 
-deviation_t deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f);
+/// a x + b y + c u + d v, Q42 to Q20: whole products, rounded once.
+static inline int32_t deviation_of_four(int32_t a, int32_t x, int32_t b, int32_t y, int32_t c, int32_t u, int32_t d,
+                                        int32_t v) {
+  return (int32_t)q_shr64(q_mac(q_mac(q_mac(q_product(a, x), b, y), c, u), d, v), 22);
+}
+
+static inline void deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w,
+                                      const estimator_frame_t* f, deviation_t* out) {
+  const dq_t s = frame_park(w->slope_q20, f->rotation);
+  const dq_t v = frame_park(w->voltage_q16, f->rotation);
+  const dq_t i = f->current_q20;
+  out->residual_q20.d =
+      s.d - at->emf_q20.d +
+      deviation_of_four(at->a_dd_q22, i.d, at->a_dq_q22, i.q, at->less_dd_q26, v.d, at->less_dq_q26, v.q);
+  out->residual_q20.q =
+      s.q - at->emf_q20.q +
+      deviation_of_four(at->a_qd_q22, i.d, at->a_qq_q22, i.q, at->less_dq_q26, v.d, at->less_qq_q26, v.q);
+  out->voltage_q16 = v;
+  out->current_q20 = i;
+}
 
 /// One window, at the angle of the estimator at the end of its period.
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
@@ -56,7 +75,7 @@ deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t 
 /// h_angle of a window, A per period and rad, Q18: upper words. Voltages below 2000 V.
 static inline dq_t deviation_by_angle_q18(const deviation_sensitivity_t* s, dq_t v_q16) {
   const dq_t v_q20 = {v_q16.d * 16, v_q16.q * 16};
-  const dq_t h = {q_mul_sub_floor(s->saliency_q30, v_q20.q, s->tilt_q30, v_q20.d, 32) + s->rest_q18.d,
+  const dq_t h = {q_mul_add_floor(s->saliency_q30, v_q20.q, s->less_tilt_q30, v_q20.d, 32) + s->rest_q18.d,
                   q_mul_add_floor(s->saliency_q30, v_q20.d, s->tilt_q30, v_q20.q, 32) + s->rest_q18.q};
   return h;
 }

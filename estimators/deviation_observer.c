@@ -10,8 +10,8 @@
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
 #define VARIANCE_MAX (512L * ONE_Q20)
-#define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
-#define GAIN_END_Q18 (1024L * 262144L)  // A per period and rad; six squares stay in 64 bits
+#define OUTLIER 192L             // of what a window as long as the period has for noise: 48 sigma in a quarter of it
+#define GAIN_END_Q18 268435456L  // 1024 A per period and rad; six squares stay in 64 bits
 #define ONE_Q30 1073741823L
 #define ALERT_SHIFT 9u                    // an alert fades within 51 ms
 #define ALERT_AGAIN_Q30 858993459L        // and may be repeated after 11 ms
@@ -89,8 +89,9 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 // noise has them once in five minutes. A longer mean would see smaller loads, and 5 N m a millisecond later. The power
 // is measured, not the information's word for it: it holds whatever noise the observer was told.
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
-  s->mean_score_q20 += q_shr_round(n->a - s->mean_score_q20, MEAN_SHIFT);
-  s->score_power_q24 += q_shr_round(q_sub_sat(q_mul_sat(n->a, n->a, 16), s->score_power_q24), POWER_SHIFT);
+  s->mean_score_q20 += q_shr(n->a - s->mean_score_q20, MEAN_SHIFT);
+  // Neither square nor power is below 0: their difference stays in 31 bits.
+  s->score_power_q24 += q_shr(q_sat64(q_shr64(q_product(n->a, n->a), 16)) - s->score_power_q24, POWER_SHIFT);
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
@@ -162,18 +163,14 @@ typedef struct {
   int32_t weight;         // sum of all weights: the windows of a period do not overlap
 } sums_t;
 
-static int32_t gain_limited(int32_t h_q18) { return q_clamp(h_q18, -GAIN_END_Q18, GAIN_END_Q18 - 1); }
+static int32_t gain_limited(int32_t h_q18) { return q_limit(h_q18, GAIN_END_Q18); }
 
-static int32_t residual_limited(const deviation_observer_config_t* c, int32_t e_q20) {
-  return q_clamp(e_q20, -c->residual_limit_q20, c->residual_limit_q20);
-}
-
-static inline void collect(sums_t* n, const deviation_observer_config_t* c, const deviation_sensitivity_t* h,
-                           int32_t span, const deviation_t* d) {
+static inline void collect(sums_t* n, int32_t limit_q20, const deviation_sensitivity_t* h, int32_t span,
+                           const deviation_t* d) {
   const int32_t weight = span * span * 16;
   const dq_t by_angle = deviation_by_angle_q18(h, d->voltage_q16);
   const dq_t g = {gain_limited(by_angle.d), gain_limited(by_angle.q)};
-  const dq_t e = {residual_limited(c, d->residual_q20.d), residual_limited(c, d->residual_q20.q)};
+  const dq_t e = {q_limit(d->residual_q20.d, limit_q20), q_limit(d->residual_q20.q, limit_q20)};
   const dq_t wg = {q_mul_hi(g.d, weight), q_mul_hi(g.q, weight)};
   n->aa_q36 = q_mac(q_mac(n->aa_q36, g.d, wg.d), g.q, wg.q);
   n->a_q38 = q_mac(q_mac(n->a_q38, e.d, wg.d), e.q, wg.q);
@@ -184,18 +181,38 @@ static inline void collect(sums_t* n, const deviation_observer_config_t* c, cons
   n->weight += weight;
 }
 
+static int32_t per_noise_sat(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
+  return q_sat64(q_shr64(q_product(q_sat64(q_shr64(sum, shift)), c->weight_q8), 18));
+}
+
 static int32_t per_noise(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
-  return q_mul_sat(q_sat64(q_shr64(sum, shift)), c->weight_q8, 18);
+  return q_mul_floor(q_sat64(q_shr64(sum, shift)), c->weight_q8, 18);
+}
+
+// More information than the formats hold counts as less, all of it alike, or the update would overshoot.
+static information_t bounded(const information_t* n) {
+  const int32_t share_q30 = q_div(INFORMATION_MAX, q_max(n->aa, n->ss), 30);
+  const information_t less = {q_mul(n->aa, share_q30, 30), q_mul(n->as, share_q30, 30), q_mul(n->ss, share_q30, 30),
+                              q_mul(n->a, share_q30, 30), q_mul(n->s, share_q30, 30)};
+  return less;
 }
 
 // In units of the states and of the noise: of angle 2^-6 rad, of speed 2^-12 rad per period, in Q24, scores in Q20.
+// Where the information is within its bound, 8, so are the rest: its product aa ss is not below the square of as, and a
+// score not above 272 times the root of it (OUTLIER in both axes).
 static information_t information_of(const sums_t* n, const deviation_observer_config_t* c, dq_t h_s) {
   const dq_t hw = {q_mul_hi(h_s.d, n->weight), q_mul_hi(h_s.q, n->weight)};
-  const int64_t as_q38 = q_mac((int64_t)h_s.d * n->h_q18.d, h_s.q, n->h_q18.q);
-  const int64_t ss_q40 = q_mac((int64_t)h_s.d * hw.d, h_s.q, hw.q);
-  const int64_t s_q40 = q_mac((int64_t)h_s.d * n->e_q20.d, h_s.q, n->e_q20.q);
-  const information_t i = {per_noise(c, n->aa_q36, 14), per_noise(c, as_q38, 22), per_noise(c, ss_q40, 30),
-                           per_noise(c, n->a_q38, 14), per_noise(c, s_q40, 22)};
+  const int64_t as_q38 = q_mac(q_product(h_s.d, n->h_q18.d), h_s.q, n->h_q18.q);
+  const int64_t ss_q40 = q_mac(q_product(h_s.d, hw.d), h_s.q, hw.q);
+  const int64_t s_q40 = q_mac(q_product(h_s.d, n->e_q20.d), h_s.q, n->e_q20.q);
+  const int32_t aa = per_noise_sat(c, n->aa_q36, 14);
+  const int32_t ss = per_noise_sat(c, ss_q40, 30);
+  if (q_max(aa, ss) > INFORMATION_MAX) {
+    const information_t large = {aa, per_noise_sat(c, as_q38, 22), ss, per_noise_sat(c, n->a_q38, 14),
+                                 per_noise_sat(c, s_q40, 22)};
+    return bounded(&large);
+  }
+  const information_t i = {aa, per_noise(c, as_q38, 22), ss, per_noise(c, n->a_q38, 14), per_noise(c, s_q40, 22)};
   return i;
 }
 
@@ -257,26 +274,14 @@ static void renew(deviation_observer_t* s) {
 }
 
 static int32_t scored(int32_t k_a, int32_t k_s, const information_t* n) {
-  return q_mul_add_sat(k_a, n->a, k_s, n->s, 20);
+  return q_sat64(q_shr64(q_mac(q_product(k_a, n->a), k_s, n->s), 20));
 }
 
 static void correct(deviation_observer_t* s, const information_t* n) {
   s->angle_bam += (uint32_t)q_mul_hi(scored(s->p_aa, s->p_as, n), BAM_PER_UNIT_Q7) * 32u;
   s->speed_bpp += q_mul_hi(scored(s->p_as, s->p_ss, n), BPP_PER_UNIT_Q12);
-  const int32_t load_q8 = -q_mul_sat(scored(s->p_al, s->p_sl, n), ACCEL_Q8_PER_UNIT, 20);
+  const int32_t load_q8 = -q_mul_floor(scored(s->p_al, s->p_sl, n), ACCEL_Q8_PER_UNIT, 20);
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
-}
-
-// More information than the formats hold counts as less, all of it alike, or the update would overshoot.
-static void bound(information_t* n) {
-  const int32_t largest = q_max(n->aa, n->ss);
-  if (largest <= INFORMATION_MAX) return;
-  const int32_t share_q30 = q_div(INFORMATION_MAX, largest, 30);
-  n->aa = q_mul(n->aa, share_q30, 30);
-  n->as = q_mul(n->as, share_q30, 30);
-  n->ss = q_mul(n->ss, share_q30, 30);
-  n->a = q_mul(n->a, share_q30, 30);
-  n->s = q_mul(n->s, share_q30, 30);
 }
 
 // Eight periods of as much information as a period may have: 64 of them stay in 31 bits.
@@ -326,9 +331,27 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
   return true;
 }
 
+// What is left counts with the span of its window.
+static void leave(deviation_left_t* left, const estimator_input_t* in, const deviation_t d[]) {
+  int64_t d_q20 = left->d_q20;
+  int64_t q_q20 = left->q_q20;
+  if (++left->periods >= LEFT_PERIODS_MAX) {
+    *left = none_left;
+    return;
+  }
+  for (uint16_t k = 0; k < in->window_count; k++) {
+    const int32_t span = in->windows[k].span_ticks;
+    d_q20 = q_mac(d_q20, d[k].residual_q20.d, span);
+    q_q20 = q_mac(q_q20, d[k].residual_q20.q, span);
+    left->span_ticks += span;
+  }
+  left->d_q20 = d_q20;
+  left->q_q20 = q_q20;
+}
+
+// One loop after the other, so that each has few numbers of its own.
 static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
   sums_t sums = {0, 0, {0, 0}, {0, 0}, 0};
-  deviation_left_t left = s->left;
   deviation_t d[ESTIMATOR_WINDOWS];
   estimator_frame_t own[ESTIMATOR_WINDOWS];
   const estimator_frame_t* f = in->frames;
@@ -338,24 +361,19 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
     f = own;
   }
   const deviation_model_t at = deviation_model(in->model, w_q30);
+  for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &d[k]);
+  leave(&s->left, in, d);
   const deviation_sensitivity_t h = deviation_sensitivity(in->model, w_q30, f[in->window_count / 2u].current_q20);
+  const int32_t limit_q20 = c->residual_limit_q20;
   for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    const int32_t span = w->span_ticks;
-    d[k] = deviation_in_frame(&at, w, &f[k]);
-    left.d_q20 = q_mac(left.d_q20, d[k].residual_q20.d, span);
-    left.q_q20 = q_mac(left.q_q20, d[k].residual_q20.q, span);
-    left.span_ticks += span;
-    if (!c->zero_vectors_only || w->zero_vector) collect(&sums, c, &h, span, &d[k]);
+    if (!c->zero_vectors_only || w->zero_vector) collect(&sums, limit_q20, &h, w->span_ticks, &d[k]);
   }
-  s->left = (++left.periods < LEFT_PERIODS_MAX) ? left : none_left;
   if (in->regress) {
     regression_evaluate(&s->regression, d, in);
     s->regressed_bam = s->angle_bam;
   }
-  information_t n = information_of(&sums, c, h.turn_q20);
-  bound(&n);
-  return n;
+  return information_of(&sums, c, h.turn_q20);
 }
 
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their

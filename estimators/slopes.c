@@ -1,23 +1,34 @@
 #include "estimators/slopes.h"
 
 #define PERIOD_Q17 ((int32_t)1310720000L)  // ESTIMATOR_PERIOD_TICKS
-#define COUNT_Q14 ((int32_t)16384)         // 4095 codes of 4 and 4 conversions stay in 31 bits
+#define CHANGE_Q15 ((int32_t)32768)        // 4095 codes of 4 and 4 conversions stay in 31 bits,
+#define SUM_Q13 ((int32_t)8192)            // and those of both bursts
 
 void slopes_design(slopes_config_t* c) {
   const int32_t n = c->start_samples * c->end_samples;
   c->amps_per_count_q36 = q_div(c->amps_per_code_q30, n, 6);
 }
 
+// Gain and Clarke together: alpha is phase a, beta = (a + 2 b) / sqrt(3).
 slopes_scale_t slopes_scale(const slopes_config_t* c, const slopes_trim_t* trim) {
   const int32_t n = c->start_samples * c->end_samples;
   const int32_t half_q36 = q_mul_floor(c->amps_per_count_q36, trim->mismatch_q30, 30);
-  const slopes_scale_t scale = {c->amps_per_count_q36 - half_q36,
-                                c->amps_per_count_q36 + half_q36,
-                                trim->offset_a_q8 * (2 * n * (COUNT_Q14 / 2 / 256)),
-                                trim->offset_b_q8 * (2 * n * (COUNT_Q14 / 2 / 256)),
+  const int32_t gain_a_q36 = c->amps_per_count_q36 - half_q36;
+  const int32_t gain_b_q36 = c->amps_per_count_q36 + half_q36;
+  const slopes_scale_t scale = {gain_a_q36,
+                                q_mul_floor(gain_a_q36, FRAME_SQRT3_INV_Q30, 30),
+                                q_mul_floor(gain_b_q36, FRAME_SQRT3_INV_Q30, 29),
+                                trim->offset_a_q8 * (2 * n * (SUM_Q13 / 256)),
+                                trim->offset_b_q8 * (2 * n * (SUM_Q13 / 256)),
                                 c->start_samples,
                                 c->end_samples};
   return scale;
+}
+
+// Upper words of the products: counts Q15 make amperes Q19, counts Q13 Q17.
+static int32_t alpha_of(const slopes_scale_t* c, int32_t a) { return q_mul_hi(a, c->alpha_a_q36); }
+static int32_t beta_of(const slopes_scale_t* c, int32_t a, int32_t b) {
+  return q_mul_add_floor(a, c->beta_a_q36, b, c->beta_b_q36, 32);
 }
 
 void slopes_evaluate(const slopes_scale_t* c, const slopes_sums_t* sums, estimator_window_t* w) {
@@ -25,14 +36,16 @@ void slopes_evaluate(const slopes_scale_t* c, const slopes_sums_t* sums, estimat
   const int32_t start_b = (int32_t)sums->start_b * c->end_samples;
   const int32_t end_a = (int32_t)sums->end_a * c->start_samples;
   const int32_t end_b = (int32_t)sums->end_b * c->start_samples;
-  const int32_t per_period_q17 = (PERIOD_Q17 + w->span_ticks / 2) / w->span_ticks;
-  const int32_t change_a_q20 = q_mul_floor((end_a - start_a) * COUNT_Q14, c->gain_a_q36, 30);
-  const int32_t change_b_q20 = q_mul_floor((end_b - start_b) * COUNT_Q14, c->gain_b_q36, 30);
-  // The upper word of the product: the sum of both bursts as counts Q13 makes a current Q18.
-  const int32_t middle_a_q18 = q_mul_hi((start_a + end_a) * (COUNT_Q14 / 2) - c->offset_a_q14, c->gain_a_q36);
-  const int32_t middle_b_q18 = q_mul_hi((start_b + end_b) * (COUNT_Q14 / 2) - c->offset_b_q14, c->gain_b_q36);
-  const ab_t change_q20 = frame_clarke2(change_a_q20, change_b_q20);
-  w->slope_q20.alpha = q_mul_sat(change_q20.alpha, per_period_q17, 17);
-  w->slope_q20.beta = q_mul_sat(change_q20.beta, per_period_q17, 17);
-  w->current_q20 = frame_clarke2(middle_a_q18 * 4, middle_b_q18 * 4);
+  const int32_t per_period_q17 = PERIOD_Q17 / w->span_ticks;
+  const int32_t change_a_q15 = (end_a - start_a) * CHANGE_Q15;
+  const int32_t change_b_q15 = (end_b - start_b) * CHANGE_Q15;
+  const int32_t sum_a_q13 = (end_a + start_a) * SUM_Q13 - c->offset_a_q13;
+  const int32_t sum_b_q13 = (end_b + start_b) * SUM_Q13 - c->offset_b_q13;
+  const int64_t alpha_q36 = q_product(alpha_of(c, change_a_q15), per_period_q17);
+  const int64_t beta_q36 = q_product(beta_of(c, change_a_q15, change_b_q15), per_period_q17);
+  w->slope_q20.alpha = q_sat64(q_shr64(alpha_q36, 16));
+  w->slope_q20.beta = q_sat64(q_shr64(beta_q36, 16));
+  // Both bursts together are twice the current: Q17 of the sum is Q18 of it.
+  w->current_q20.alpha = alpha_of(c, sum_a_q13) * 4;
+  w->current_q20.beta = beta_of(c, sum_a_q13, sum_b_q13) * 4;
 }

@@ -6,7 +6,7 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t amps_per_code_q30;           // mean of the two sensors, up to 1/8 with 4 or more of their product
+  int32_t amps_per_code_q30;           // mean of the two sensors, up to 1/8 with 8 or more of their product
   int16_t start_samples, end_samples;  // conversions in each sum, 1..4
   int32_t amps_per_count_q36;          // of their product, set by slopes_design
 } slopes_config_t;
@@ -25,8 +25,9 @@ typedef struct {
 /// What is the same for all windows of a period: a count is a code times both numbers of conversions, so that nothing
 /// is divided.
 typedef struct {
-  int32_t gain_a_q36, gain_b_q36;      // A per count
-  int32_t offset_a_q14, offset_b_q14;  // two bursts without current, counts
+  int32_t alpha_a_q36;                 // A of alpha per count of phase a
+  int32_t beta_a_q36, beta_b_q36;      // A of beta per count of phases a and b
+  int32_t offset_a_q13, offset_b_q13;  // two bursts without current, counts
   int16_t start_samples, end_samples;
 } slopes_scale_t;
 

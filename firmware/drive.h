@@ -96,6 +96,8 @@ typedef struct {
   uint16_t now;                 // who has it in this period, if anybody
   uint16_t waited;              // periods since then
   bool renewing, moving;        // the observer's covariance is renewed; the working point follows before its turn
+  machine_next_t next;          // the working point that the model moves to in its next place, where it has
+  bool looked;                  // looked for it
   bool judging;                 // the synchronism is judged
   int32_t moved_q20;            // torque current of the model's working point, A
   bool is_near;                 // what was last regressed is near enough to learn from
@@ -224,10 +226,10 @@ const svpwm_pattern_t* start_short_circuit(void);
 /// of speed_task.c the longer tasks): in two the observer's covariance is renewed, in two the synchronism is judged. Of
 /// the others as many are even as odd.
 static inline bool drive_renews_now(const drive_t* d) {
-  return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 1u;
+  return d->millisecond == DRIVE_WEAKENING_PERIOD - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 4u;
 }
 static inline bool drive_judges_now(const drive_t* d) {
-  return d->millisecond == DRIVE_WEAKENING_PERIOD - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 4u;
+  return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 1u;
 }
 
 /// True while the start turns a current vector: the position source runs, and is not used yet.

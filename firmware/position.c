@@ -67,9 +67,7 @@ bool position_follows_axis_now(const drive_t* d) { return is_turn(d, TURN_MOVE_A
 
 bool position_looks_at_emf_now(const drive_t* d) { return is_turn(d, TURN_VOLTAGE); }
 
-// `near`: the windows agree with the angle, so that the regression is linear.
-static void adapt(drive_t* d, const regression_t* r, bool near) {
-  if (is_turn(d, TURN_REGRESS)) d->position.is_near = near;
+static void adapt(drive_t* d, const regression_t* r) {
   if (!d->position.is_near) return;
   // A turn takes 5/3 as long where it pauses in four of ten periods; learning 4/3 as much leaves the angle quieter.
   const bool turning = drive_is_turning(d);
@@ -88,7 +86,8 @@ static void adapt(drive_t* d, const regression_t* r, bool near) {
 static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return d->position.high;
-  adapt(d, &d->position.avv.regression, q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM);
+  if (is_turn(d, TURN_REGRESS)) d->position.is_near = q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM;
+  adapt(d, &d->position.avv.regression);
   return d->position.high;
 }
 
@@ -111,7 +110,10 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
 static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
-  adapt(d, r, in->regress && in->window_count > 0u && avv_angle_is_near(r, &d->model));
+  // Whether the windows agree with the angle, so that the regression is linear, is asked in the place behind it.
+  if (is_turn(d, TURN_REGRESS)) d->position.is_near = in->window_count > 0u;
+  if (is_turn(d, TURN_MOVE)) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
+  adapt(d, r);
   d->position.high = out;
   return out;
 }
@@ -201,8 +203,8 @@ static void measure_current(drive_t* d) {
   // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
   const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
   const int32_t per_count_q30 = per_windows_q30[s->count];
-  d->control.measured_q20.d = q_mul(sum.d - q_mul(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30);
-  d->control.measured_q20.q = q_mul(sum.q - q_mul(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);
+  d->control.measured_q20.d = q_mul_floor(sum.d - q_mul_floor(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30);
+  d->control.measured_q20.q = q_mul_floor(sum.q - q_mul_floor(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);
 }
 
 // The windows in the frame in use, where that is the own one of the only estimator.
@@ -244,13 +246,31 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
   d->position.used.speed_bpp = s->turn.speed_bpp;
 }
 
+static void move_model(drive_t* d) {
+  d->position.looked = false;
+  d->position.moved_q20 = d->control.measured_q20.q;
+  machine_model_move(&d->model, d->position.moved_q20);
+}
+
+// One place of the turn looks where the working point is, the next one goes there.
+static void move_model_by_half(drive_t* d) {
+  drive_position_t* const p = &d->position;
+  if (p->looked) {
+    machine_model_adopt(&d->model, &p->next);
+  } else {
+    p->moved_q20 = d->control.measured_q20.q;
+    machine_model_look(&d->model, p->moved_q20, &p->next);
+  }
+  p->looked = !p->looked;
+}
+
 void drive_estimate(drive_t* d) {
   measure_current(d);
   const bool held = hold_is_on(d);
-  if (held || d->position.moving || is_turn(d, TURN_MOVE) ||
-      (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d))) {
-    d->position.moved_q20 = d->control.measured_q20.q;
-    machine_model_move(&d->model, d->control.measured_q20.q);
+  if (held || d->position.moving) {
+    move_model(d);
+  } else if (is_turn(d, TURN_MOVE) || (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d))) {
+    move_model_by_half(d);
   }
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);

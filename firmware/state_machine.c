@@ -85,6 +85,7 @@ static void break_off(drive_t* d) {
 
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
+  if (!(r->start || r->stop || r->coast || r->reset || r->commission)) return;
   if (r->coast && drive_is_energised()) coast(d);
   if (r->coast) r->start = false;
   r->coast = false;

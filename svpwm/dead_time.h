@@ -19,31 +19,41 @@ typedef struct {
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
   // Set by dead_time_design.
   int32_t per_band_q29, third_drop_q24, side_drop_q24;  // of band and drop
-  int16_t blocked_delay_ticks, released_delay_ticks;    // of an edge where the sign is trusted
-  int32_t certain_q20;                                  // current from which on it is trusted and certain
+  int32_t certain_q20;                                  // current from which on its sign is trusted and certain
 } dead_time_config_t;
 
 /// Derives the constants; the first five members are set by hand.
 void dead_time_design(dead_time_config_t* c);
 
 /// An edge at a current whose sign is not certain, or not trusted.
-int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, int32_t current_q20,
-                                svpwm_arrival_t* arrival);
+int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, svpwm_arrival_t* arrival);
 
-/// The command, in ticks, that makes the motor see an edge where it is wanted; current_q20: of its phase at the edge,
-/// A. With a current below edge_band an edge is not certain: with the other sign than predicted it comes up to blocked
-/// - released ticks early or late.
-static inline int32_t dead_time_send(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, int32_t current_q20,
+/// The command, in ticks, that makes the motor see an edge where it is wanted. With a current below edge_band an edge
+/// is not certain: with the other sign than predicted it comes up to blocked - released ticks early or late.
+static inline int32_t dead_time_send(const dead_time_config_t* c, const svpwm_ripple_edge_t* e,
                                      svpwm_arrival_t* arrival) {
-  const int32_t blocking = e->falls ? -current_q20 : current_q20;
   arrival->earliest = e->tick;
   arrival->latest = e->tick;
-  if (blocking >= c->certain_q20) return e->tick - c->blocked_delay_ticks;
-  if (blocking <= -c->certain_q20) return e->tick - c->released_delay_ticks;
-  return dead_time_send_in_doubt(c, e, current_q20, arrival);
+  if (e->blocking_q20 >= c->certain_q20) return e->tick - c->blocked_ticks;
+  if (e->blocking_q20 <= -c->certain_q20) return e->tick - c->released_ticks;
+  return dead_time_send_in_doubt(c, e, arrival);
+}
+
+/// Sign of a current as -1..1, Q15, linear inside the band.
+static inline int32_t dead_time_sign_q15(const dead_time_config_t* c, int32_t current_q20) {
+  if (current_q20 >= c->band_q20) return 32767L;
+  if (current_q20 <= -c->band_q20) return -32767L;
+  return q_mul_floor(current_q20, c->per_band_q29, 29);
 }
 
 /// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
-ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20);
+static inline ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
+  const abc_t i = frame_inverse_clarke(current_q20);
+  const int32_t x = dead_time_sign_q15(c, i.a);
+  const int32_t y = dead_time_sign_q15(c, i.b);
+  const int32_t z = dead_time_sign_q15(c, i.c);
+  const ab_t drop = {q_mul_floor(2 * x - y - z, c->third_drop_q24, 23), q_mul_floor(y - z, c->side_drop_q24, 23)};
+  return drop;
+}
 
 #endif

@@ -2,14 +2,13 @@
 
 void svpwm_send(const dead_time_config_t* c, const sampling_config_t* sampling, const svpwm_carried_t* carried,
                 svpwm_pattern_t* pattern, svpwm_pulses_t* command) {
-  const abc_t mean = frame_inverse_clarke(carried->current_q20);
-  const int32_t mean_q20[SVPWM_LEGS] = {mean.a, mean.b, mean.c};
-  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&pattern->pulses, carried->admittance_q30, carried->link_q16);
+  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&pattern->pulses, frame_inverse_clarke(carried->current_q20),
+                                               carried->admittance_q30, carried->link_q16);
   svpwm_finder_t finder = svpwm_finder(sampling, pattern);
   while (walk.order != 0u) {
     const svpwm_ripple_edge_t e = svpwm_ripple_next(&walk);
     svpwm_arrival_t arrival;
-    command->at[e.edge] = (int16_t)dead_time_send(c, &e, mean_q20[e.leg] + e.ripple_q20, &arrival);
+    command->at[e.edge] = (int16_t)dead_time_send(c, &e, &arrival);
     svpwm_finder_pass(&finder, e.leg, &arrival);
   }
   svpwm_finder_finish(&finder);

@@ -20,7 +20,7 @@ static void sort_legs(svpwm_on_time_t* t) {
 
 int32_t svpwm_ticks_per_volt_q20(int32_t link_q16, int32_t last_q20) {
   const int32_t volts_q16 = q_max(link_q16, LINK_MIN_Q16);
-  const int32_t off_q12 = q_sat64(PERIOD_Q12 - q_shr64((int64_t)volts_q16 * last_q20, 24));
+  const int32_t off_q12 = q_sat64(PERIOD_Q12 - q_shr64(q_product(volts_q16, last_q20), 24));
   if (q_abs_sat(off_q12) > PERIOD_Q12 / 256) return q_over(SVPWM_PERIOD_TICKS, q_invert(volts_q16), 36);
   return last_q20 + q_mul_floor(last_q20, q_mul_floor(off_q12, PER_PERIOD_Q44, 25), 31);
 }

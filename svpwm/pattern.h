@@ -70,6 +70,6 @@ typedef struct {
 } svpwm_pattern_t;
 
 /// True for the zero vectors 000 and 111.
-static inline bool svpwm_is_zero_vector(uint16_t state) { return state == 0u || state == 7u; }
+static inline bool svpwm_is_zero_vector(uint16_t state) { return ((0x81u >> state) & 1u) != 0u; }
 
 #endif

@@ -3,21 +3,21 @@
 #define PER_THIRD_Q58 960767921L  // 2^58 / (3 N^2), N = 10 000 ticks
 #define PER_SIDE_Q58 1664098853L  // 2^58 / (sqrt(3) N^2)
 
-// Ripple of a leg, of the DC-link voltage and 1/N of a tick: the sum of N clamp(t - r, 0, f - r) - (f - r) t.
-static int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, const int16_t ticks[], uint16_t count) {
+// What of a pulse has passed at a tick.
+static inline int32_t passed(int32_t tick, int32_t rise, int32_t on) { return q_min(q_max(tick - rise, 0), on); }
+
+// Ripple of a leg, of the DC-link voltage and 1/N of a tick: the sum of N clamp(t - r, 0, f - r) - (f - r) t. Nothing
+// has passed at tick 0: it stands for one that is not asked for.
+static inline int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, const int32_t ticks[3]) {
   const int32_t rise = p->at[leg];
   const int32_t on = svpwm_on_ticks(p, leg);
-  int32_t passed = 0;
-  int32_t sum = 0;
-  for (uint16_t k = 0; k < count; k++) {
-    passed += q_clamp(ticks[k] - rise, 0, on);
-    sum += ticks[k];
-  }
-  return passed * (int32_t)SVPWM_PERIOD_TICKS - on * sum;
+  const int32_t high = passed(ticks[0], rise, on) + passed(ticks[1], rise, on) + passed(ticks[2], rise, on);
+  return high * (int32_t)SVPWM_PERIOD_TICKS - on * (ticks[0] + ticks[1] + ticks[2]);
 }
 
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16) {
-  const abc_t legs = {leg_at(p, 0, ticks, count), leg_at(p, 1, ticks, count), leg_at(p, 2, ticks, count)};
+  const int32_t asked[3] = {(count > 0u) ? ticks[0] : 0, (count > 1u) ? ticks[1] : 0, (count > 2u) ? ticks[2] : 0};
+  const abc_t legs = {leg_at(p, 0, asked), leg_at(p, 1, asked), leg_at(p, 2, asked)};
   const int32_t per_third = q_mul_floor(link_q16, PER_THIRD_Q58, 28);
   const int32_t per_side = q_mul_floor(link_q16, PER_SIDE_Q58, 28);
   const ab_t flux = {q_mul_floor(2 * legs.a - legs.b - legs.c, per_third, 30),
@@ -35,13 +35,14 @@ ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
   return v;
 }
 
-svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16) {
+svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t admittance_q30,
+                                      int32_t link_q16) {
   const int32_t a = svpwm_on_ticks(p, 0);
   const int32_t b = svpwm_on_ticks(p, 1);
   const int32_t c = svpwm_on_ticks(p, 2);
   const svpwm_ripple_walk_t w = {p,
                                  p->order,
-                                 {3 * a, 3 * b, 3 * c},
+                                 {{3 * a, mean_q20.a}, {3 * b, mean_q20.b}, {3 * c, mean_q20.c}},
                                  -(a + b + c),
                                  0,
                                  q_mul_floor(q_mul_floor(link_q16, admittance_q30, 26), PER_THIRD_Q58, 30)};

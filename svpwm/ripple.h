@@ -18,42 +18,50 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t c
 /// Mean voltage of a period with these pulses, V Q16.
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
 
-/// A walk along the edges that says the ripple current of each edge's own phase at that edge.
+/// A walk along the edges that says what the own phase of each carries at that edge: its mean current and the ripple.
 ///
 /// Three times a leg less the sum of the three. A leg has been high for nothing at its rise and for all of its pulse at
 /// its fall, and the sum of all legs is a line t slope + offset between two edges.
 typedef struct {
+  int32_t on3;       // three times the pulse's length, ticks
+  int32_t mean_q20;  // mean current, A
+} svpwm_ripple_leg_t;
+
+typedef struct {
   const svpwm_pulses_t* pulses;
-  uint32_t order;           // of the edges that are left
-  int32_t on3[SVPWM_LEGS];  // three times the pulses' lengths, ticks
-  int32_t slope, offset;    // of the sum of the legs, of the DC-link voltage and 1/N of a tick
-  int32_t gain_q28;         // A per ripple
+  uint32_t order;  // of the edges that are left
+  svpwm_ripple_leg_t legs[SVPWM_LEGS];
+  int32_t slope, offset;  // of the sum of the legs, of the DC-link voltage and 1/N of a tick
+  int32_t gain_q28;       // A per ripple
 } svpwm_ripple_walk_t;
 
 typedef struct {
   uint32_t edge, leg;
-  bool falls;
   int32_t tick;
-  int32_t ripple_q20;  // A
+  int32_t blocking_q20;  // current that keeps the edge from coming with its command: out of a leg that rises, A
 } svpwm_ripple_edge_t;
 
-/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together up to 1000 A.
-svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, int32_t admittance_q30, int32_t link_q16);
+/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together up to 1000 A, and as much of mean
+/// current.
+svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t admittance_q30,
+                                      int32_t link_q16);
 
 /// The next edge; there is one while `order` is not 0, as the last edge is a falling one.
 static inline svpwm_ripple_edge_t svpwm_ripple_next(svpwm_ripple_walk_t* w) {
   svpwm_ripple_edge_t e;
   e.edge = svpwm_next_edge(&w->order);
-  e.falls = e.edge >= SVPWM_LEGS;
-  e.leg = e.falls ? e.edge - SVPWM_LEGS : e.edge;
   e.tick = w->pulses->at[e.edge];
-  const int32_t change = e.falls ? -SVPWM_PERIOD_TICKS : SVPWM_PERIOD_TICKS;
-  const int32_t own = e.falls ? w->on3[e.leg] * (int32_t)SVPWM_PERIOD_TICKS : 0;
-  const int32_t ripple = own - (w->on3[e.leg] + w->slope) * e.tick - w->offset;
+  const bool falls = e.edge >= SVPWM_LEGS;
+  e.leg = falls ? e.edge - SVPWM_LEGS : e.edge;
+  const svpwm_ripple_leg_t* const own = &w->legs[e.leg];
+  const int32_t change = falls ? -SVPWM_PERIOD_TICKS : SVPWM_PERIOD_TICKS;
+  const int32_t high = falls ? own->on3 * (int32_t)SVPWM_PERIOD_TICKS : 0;
+  const int32_t ripple = high - (own->on3 + w->slope) * e.tick - w->offset;
   w->slope += change;
   w->offset -= change * e.tick;
   // At most N^2; times 16 for the upper word to be that of a shift by 28.
-  e.ripple_q20 = q_mul_hi(ripple * 16, w->gain_q28);
+  const int32_t current_q20 = own->mean_q20 + q_mul_hi(ripple * 16, w->gain_q28);
+  e.blocking_q20 = falls ? -current_q20 : current_q20;
   return e;
 }
 

@@ -14,12 +14,11 @@ typedef struct {
 } sampling_config_t;
 
 /// Trigger instants of the two bursts of a window.
-static inline int16_t svpwm_burst_start(const sampling_config_t* c, const svpwm_window_t* w) {
-  return (int16_t)(w->begin + c->settle_ticks);
+static inline int32_t svpwm_burst_start(const sampling_config_t* c, const svpwm_window_t* w) {
+  return w->begin + c->settle_ticks;
 }
-static inline int16_t svpwm_burst_end(const sampling_config_t* c, const svpwm_window_t* w) {
-  const int16_t at_edge = (int16_t)(w->end - c->burst_ticks);
-  return (at_edge < c->last_tick) ? at_edge : c->last_tick;
+static inline int32_t svpwm_burst_end(const sampling_config_t* c, const svpwm_window_t* w) {
+  return q_min(w->end - c->burst_ticks, c->last_tick);
 }
 
 /// A walk along the edges that finds the longest windows, in the order of time. Samples keep off edges that are not

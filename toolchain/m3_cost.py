@@ -27,10 +27,12 @@ FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware")
 CPU = ("-mcpu=cortex-m3", "-mthumb")
 # Left on, these passes move the widening of an operand away from its product, and GCC then multiplies 64 by 64 bits.
 PLAIN = ("-fno-tree-pre", "-fno-gcse", "-fno-code-hoisting", "-fno-tree-sink")
+# Scheduled before registers are given out, more values live at once than the Cortex-M3 has registers.
+UNSCHEDULED = ("-fno-schedule-insns",)
 COMMON = (*CPU, "-g", "-std=c99", "-Wall", "-Wextra", "-I.")
 # The firmware as one program, as the DSP's compiler is run. What counts is not part of that program: a register access
 # stays a call of a function that nobody looks into, and the counting itself is the same code whatever the firmware is.
-PROGRAM = ("-O3", *PLAIN, "-flto=auto", "-flto-partition=one")
+PROGRAM = ("-O3", *PLAIN, *UNSCHEDULED, "-flto=auto", "-flto-partition=one")
 COUNTER = ("-O2",)
 # What the virtual chip lets pass (isr_cycles.h) is the worst period of each step, in cycles of the C28x: more than the
 # operations of this code give (0.9 to 1.1 cycles for an instruction of the Cortex-M3), and within this share of it.

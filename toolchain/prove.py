@@ -32,6 +32,7 @@ WITH_CONTRACT = "q_clz32,q_reciprocal_q31,q_div,q_sqrt64,q_sqrt32,q_hypot,q_atan
 PROVED_BY_WP = (
     *("q_shr", "q_shr64", "q_shr_round", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
     *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_mul64", "q_mul", "q_mul_sat", "q_mac", "q_mul_add"),
+    *("q_product",),
     *("q_mul_sub", "q_mul_floor", "q_mul_add_floor", "q_mul_sub_floor", "q_mul_hi", "q_umul_hi", "q15_sat"),
     *("q15_add_sat", "q15_sub_sat", "q15_mul"),
 )
@@ -119,7 +120,9 @@ DEFECTS = (
     Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
     Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),
     Defect("contracts", "q15_sat", "hal/qmath/qarith.h", "q_clamp(x, INT16_MIN, ", "q_clamp(x, -INT16_MAX, "),
-    Defect("contracts", "q_mul_hi", "hal/qmath/qarith.h", "q_shr64((int64_t)a * b, 32)", "q_shr64((int32_t)a * b, 32)"),
+    Defect(
+        "contracts", "q_mul_hi", "hal/qmath/qarith.h", "q_shr64(q_product(a, b), 32)", "q_shr64((int32_t)a * b, 32)"
+    ),
     Defect("contracts", "q_sub_sat", "hal/qmath/qarith.h", "q_sat64((int64_t)a - b)", "a - b"),
 )
 

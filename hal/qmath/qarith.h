@@ -44,6 +44,14 @@ static inline int32_t q_clamp(int32_t x, int32_t lo, int32_t hi) {
   return (x > hi) ? hi : x;
 }
 
+// x limited to -limit..limit, limit = 0..2^30: one comparison where nothing has to be limited.
+static inline int32_t q_limit(int32_t x, int32_t limit) {
+  if ((uint32_t)x + (uint32_t)limit <= 2u * (uint32_t)limit) {
+    return x;
+  }
+  return (x < 0) ? -limit : limit;
+}
+
 // True for lo <= x <= hi.
 static inline bool q_in_range(int32_t x, int32_t lo, int32_t hi) { return x >= lo && x <= hi; }
 
@@ -80,37 +88,40 @@ static inline int32_t q_shl_sat(int32_t x, unsigned n) {
   return (int32_t)((uint32_t)x << n);
 }
 
+// a * b.
+static inline int64_t q_product(int32_t a, int32_t b) { return (int64_t)a * b; }
+
+// sum + a * b: whole products are added up and rounded once. The caller guarantees that the sum fits 64 bits.
+static inline int64_t q_mac(int64_t sum, int32_t a, int32_t b) { return sum + (int64_t)a * b; }
+
 // round(a * b / 2^shift) as 64 bits, halves up, shift = 1..62. Never overflows.
 static inline int64_t q_mul64(int32_t a, int32_t b, unsigned shift) {
-  return q_shr64((int64_t)a * b + ((int64_t)1 << (shift - 1)), shift);
+  return q_shr64(q_product(a, b) + ((int64_t)1 << (shift - 1)), shift);
 }
 
 // round(a * b / 2^shift), halves up, shift = 1..62. The caller guarantees that the result fits 32 bits.
 static inline int32_t q_mul(int32_t a, int32_t b, unsigned shift) { return (int32_t)q_mul64(a, b, shift); }
 
-// sum + a * b: whole products are added up and rounded once. The caller guarantees that the sum fits 64 bits.
-static inline int64_t q_mac(int64_t sum, int32_t a, int32_t b) { return sum + (int64_t)a * b; }
-
 // round((a * b + c * d) / 2^shift), halves up, shift = 1..62: two products and one rounding. The caller guarantees that
 // the result fits 32 bits and the sum, rounding included, 64: a quarter of the range in one of each pair is enough.
 static inline int32_t q_mul_add(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
-  return (int32_t)q_shr64((int64_t)a * b + (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift);
+  return (int32_t)q_shr64(q_mac(q_product(a, b), c, d) + ((int64_t)1 << (shift - 1)), shift);
 }
 
 // round((a * b - c * d) / 2^shift), the same for a difference.
 static inline int32_t q_mul_sub(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
-  return (int32_t)q_shr64((int64_t)a * b - (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift);
+  return (int32_t)q_shr64(q_product(a, b) - q_product(c, d) + ((int64_t)1 << (shift - 1)), shift);
 }
 
 // floor of the same: cheaper by a third, where half an LSB of offset does not count. shift = 1..62.
 static inline int32_t q_mul_floor(int32_t a, int32_t b, unsigned shift) {
-  return (int32_t)q_shr64((int64_t)a * b, shift);
+  return (int32_t)q_shr64(q_product(a, b), shift);
 }
 static inline int32_t q_mul_add_floor(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
-  return (int32_t)q_shr64((int64_t)a * b + (int64_t)c * d, shift);
+  return (int32_t)q_shr64(q_mac(q_product(a, b), c, d), shift);
 }
 static inline int32_t q_mul_sub_floor(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
-  return (int32_t)q_shr64((int64_t)a * b - (int64_t)c * d, shift);
+  return (int32_t)q_shr64(q_product(a, b) - q_product(c, d), shift);
 }
 
 // round(a * b / 2^shift), halves up, saturated, shift = 1..62.
@@ -118,14 +129,14 @@ static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift) { return q
 
 // The same two sums of products, saturated.
 static inline int32_t q_mul_add_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
-  return q_sat64(q_shr64((int64_t)a * b + (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift));
+  return q_sat64(q_shr64(q_mac(q_product(a, b), c, d) + ((int64_t)1 << (shift - 1)), shift));
 }
 static inline int32_t q_mul_sub_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {
-  return q_sat64(q_shr64((int64_t)a * b - (int64_t)c * d + ((int64_t)1 << (shift - 1)), shift));
+  return q_sat64(q_shr64(q_product(a, b) - q_product(c, d) + ((int64_t)1 << (shift - 1)), shift));
 }
 
 // floor(a * b / 2^32): the upper word of the product, one instruction where a function needs no rounding.
-static inline int32_t q_mul_hi(int32_t a, int32_t b) { return (int32_t)q_shr64((int64_t)a * b, 32); }
+static inline int32_t q_mul_hi(int32_t a, int32_t b) { return (int32_t)q_shr64(q_product(a, b), 32); }
 
 // floor(a * b / 2^32) of unsigned numbers.
 static inline uint32_t q_umul_hi(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }

@@ -66,6 +66,9 @@ static inline int32_t q_mul(int32_t a, int32_t b, unsigned shift);
 /*@ requires 1 <= shift <= 62; assigns \nothing; ensures \result == sat32((a * b + (1 << (shift - 1))) >> shift); */
 static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift);
 
+/*@ assigns \nothing; ensures \result == a * b; */
+static inline int64_t q_product(int32_t a, int32_t b);
+
 /*@ requires -9223372036854775808 <= sum + a * b <= 9223372036854775807;
     assigns \nothing; ensures \result == sum + a * b; */
 static inline int64_t q_mac(int64_t sum, int32_t a, int32_t b);

@@ -23,8 +23,6 @@ dead_time_config_t config() {
                           0,
                           0,
                           0,
-                          0,
-                          0,
                           0};
   dead_time_design(&c);
   return c;
@@ -119,10 +117,10 @@ TEST(DeadTime, AboveItsErrorACurrentIsCertainThoughNotTrusted) {
   dead_time_config_t c = config();
   c.band_q20 = raw(1.5, 20);
   dead_time_design(&c);
-  const svpwm_ripple_edge_t rise = {0, 0, false, 5000, 0};
   for (const double amps : {0.69, 0.71, -0.69, -0.71}) {
+    const svpwm_ripple_edge_t rise = {0, 0, 5000, raw(amps, 20)};
     svpwm_arrival_t arrival;
-    const std::int32_t sent = dead_time_send(&c, &rise, raw(amps, 20), &arrival);
+    const std::int32_t sent = dead_time_send(&c, &rise, &arrival);
     const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
     const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
     EXPECT_NEAR(5000 - sent, middle + half * amps / 1.5, 0.51) << amps;
