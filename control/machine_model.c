@@ -46,34 +46,18 @@ void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) 
   t->ydq_q24 = q_over(half_q30, m->per_half0, 24);
 }
 
-void machine_model_look(const machine_model_t* m, int32_t iq_q20, machine_next_t* next) {
-  const machine_point_t p = machine_map_at(&m->map, iq_q20);
-  next->iq_q20 = iq_q20;
-  next->yd_q30 = p.ydd_q30 + q_mul(p.ydd_q30, m->trim.ydd_q24, 24);
-  next->yq_q30 = p.yqq_q30 + q_mul(p.yqq_q30, m->trim.yqq_q24, 24);
-  next->ydq_q30 = p.ydq_q30 + q_mul(p.ydq_q30, m->trim.ydq_q24, 24);
-  next->per_yq = q_invert(next->yq_q30);
-  next->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
-  // An inductance that differs from the table's differs in its flux as well.
-  next->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_over(p.yqq_q30, next->per_yq, 24), 24);
-}
-
-void machine_model_adopt(machine_model_t* m, const machine_next_t* next) {
-  m->yd_q30 = next->yd_q30;
-  m->yq_q30 = next->yq_q30;
-  m->ydq_q30 = next->ydq_q30;
-  m->per_yq = next->per_yq;
-  m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
-  m->psi_d_q16 = next->psi_d_q16;
-  m->psi_q_q16 = next->psi_q_q16;
-  turn_with_admittance(m);
-  place_flux(m, next->iq_q20);
-}
-
 void machine_model_move(machine_model_t* m, int32_t iq_q20) {
-  machine_next_t next;
-  machine_model_look(m, iq_q20, &next);
-  machine_model_adopt(m, &next);
+  const machine_point_t p = machine_map_at(&m->map, iq_q20);
+  m->yd_q30 = p.ydd_q30 + q_mul(p.ydd_q30, m->trim.ydd_q24, 24);
+  m->yq_q30 = p.yqq_q30 + q_mul(p.yqq_q30, m->trim.yqq_q24, 24);
+  m->ydq_q30 = p.ydq_q30 + q_mul(p.ydq_q30, m->trim.ydq_q24, 24);
+  m->per_yq = q_invert(m->yq_q30);
+  m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
+  m->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
+  // An inductance that differs from the table's differs in its flux as well.
+  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_over(p.yqq_q30, m->per_yq, 24), 24);
+  turn_with_admittance(m);
+  place_flux(m, iq_q20);
 }
 
 bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map) {

@@ -78,20 +78,9 @@ void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 /// Takes an acceleration per torque that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24);
 
-/// What a new working point has of its own; the rest of the model follows from it.
-typedef struct {
-  int32_t iq_q20;
-  int32_t yd_q30, yq_q30, ydq_q30;
-  q_inverse_t per_yq;
-  int32_t psi_d_q16, psi_q_q16;
-} machine_next_t;
-
-/// Moves the working point to a torque current and takes the trim into account: two reciprocals.
+/// Moves the working point to a torque current and takes the trim into account. Once per period: two
+/// reciprocals.
 void machine_model_move(machine_model_t* m, int32_t iq_q20);
-
-/// The two halves of it, for a period each: the model changes in the second one alone, and then as a whole.
-void machine_model_look(const machine_model_t* m, int32_t iq_q20, machine_next_t* next);
-void machine_model_adopt(machine_model_t* m, const machine_next_t* next);
 
 /// Y x, Q20, of a voltage in V Q16.
 static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {

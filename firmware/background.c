@@ -34,7 +34,6 @@ static void reload(void) {
   drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
-    drive.position.looked = false;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
     hal_encoder_init((uint32_t)parameters.encoder_counts);
     if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());

@@ -96,8 +96,6 @@ typedef struct {
   uint16_t now;                 // who has it in this period, if anybody
   uint16_t waited;              // periods since then
   bool renewing, moving;        // the observer's covariance is renewed; the working point follows before its turn
-  machine_next_t next;          // the working point that the model moves to in its next place, where it has
-  bool looked;                  // looked for it
   bool judging;                 // the synchronism is judged
   int32_t moved_q20;            // torque current of the model's working point, A
   bool is_near;                 // what was last regressed is near enough to learn from

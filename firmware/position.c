@@ -246,31 +246,13 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
   d->position.used.speed_bpp = s->turn.speed_bpp;
 }
 
-static void move_model(drive_t* d) {
-  d->position.looked = false;
-  d->position.moved_q20 = d->control.measured_q20.q;
-  machine_model_move(&d->model, d->position.moved_q20);
-}
-
-// One place of the turn looks where the working point is, the next one goes there.
-static void move_model_by_half(drive_t* d) {
-  drive_position_t* const p = &d->position;
-  if (p->looked) {
-    machine_model_adopt(&d->model, &p->next);
-  } else {
-    p->moved_q20 = d->control.measured_q20.q;
-    machine_model_look(&d->model, p->moved_q20, &p->next);
-  }
-  p->looked = !p->looked;
-}
-
 void drive_estimate(drive_t* d) {
   measure_current(d);
   const bool held = hold_is_on(d);
-  if (held || d->position.moving) {
-    move_model(d);
-  } else if (is_turn(d, TURN_MOVE) || (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d))) {
-    move_model_by_half(d);
+  if (held || d->position.moving || is_turn(d, TURN_MOVE) ||
+      (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d))) {
+    d->position.moved_q20 = d->control.measured_q20.q;
+    machine_model_move(&d->model, d->control.measured_q20.q);
   }
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);

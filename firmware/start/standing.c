@@ -55,7 +55,6 @@ void drive_begin_start(drive_t* d) {
   clear(&d->supervision, sizeof d->supervision);
   clear(&d->start, sizeof d->start);
   d->model = d->config.nameplate;
-  d->position.looked = false;
   inertia_match_reset(&d->inertia);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
   d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
