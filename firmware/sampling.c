@@ -83,6 +83,7 @@ static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_wi
 
 // An eighth of what each window says more; up to 2000 V, so that the sum stays in 31 bits.
 static void follow_link(drive_t* d, const sampling_buffer_t* b) {
+  if (b->count == 0u) return;
   drive_samples_t* const s = &d->samples;
   const int32_t volts_per_code_q16 = d->config.volts_per_code_q16;
   int32_t more_q16 = 0;
