@@ -20,7 +20,6 @@ from stillspin.tune.server import Server
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
-PATIENT = 2.5  # s
 LONG = ("test_scenarios", "test_hil", "test_flash_broken", "test_tune_on_board", "test_client_on_board")
 
 

@@ -11,6 +11,8 @@ import pytest
 import stillspin
 
 _PATIENCE = 120
+PATIENT = 2.5
+"""Seconds that a page may be silent while it holds a motor: more than by default, for machines that stall."""
 
 needs_board = pytest.mark.skipif(
     not any(Path(stillspin.__file__).parent.glob("_core*.so")), reason="the native module is not built"

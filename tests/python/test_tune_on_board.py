@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from desk import board, needs_board
+from desk import PATIENT, board, needs_board
 
 from browser import needs_chromium
 from stillspin.drive import Drive
@@ -28,7 +28,7 @@ def opened(page, *options):
         TemporaryDirectory(prefix="desk-") as directory,  # its name is on the pictures
         board(Path(directory), *options) as port,
         Drive.open(port, timeout=2.0) as drive,
-        Server(drive) as server,
+        Server(drive, patience=PATIENT) as server,
     ):
         page.set_default_timeout(1000 * SLOW)
         page.goto(server.address)
@@ -39,7 +39,8 @@ def opened(page, *options):
 @pytest.fixture
 def tuned(tmp_path, monkeypatch, page):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    with opened(page, "--profile", "ideal"):
+    with opened(page, "--profile", "ideal") as drive:
+        drive.set("link_timeout", 1000 * SLOW)  # of the drive's time
         yield page
 
 
