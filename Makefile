@@ -17,7 +17,8 @@ DEMO_OUT := out/demo
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify loss fuzz docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify loss \
+	fuzz docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"

@@ -159,8 +159,8 @@ install_python_packages() {
   mkdir -p "$logs"
   say "installing the Python packages of $lock into $venv ($("$python" --version))"
   "$python" -m venv --clear "$venv" >"$logs/pip.log" 2>&1 || die "cannot make $venv; by hand: $python -m venv $venv (see $logs/pip.log)"
-  if ! "$venv/bin/python" -m pip install --disable-pip-version-check --require-hashes --only-binary :all: -r "$lock" \
-    >>"$logs/pip.log" 2>&1; then
+  if ! "$venv/bin/python" -m pip install --disable-pip-version-check --no-compile --require-hashes \
+    --only-binary :all: -r "$lock" >>"$logs/pip.log" 2>&1; then
     die "cannot install the Python packages: $(grep -m 1 '^ERROR' "$logs/pip.log" || echo "see $logs/pip.log"); by hand:" \
       "$venv/bin/python -m pip install --require-hashes -r $lock, then run make again"
   fi

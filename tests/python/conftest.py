@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from desk import PATIENT
 from function_desk import Desk
 from playwright.sync_api import sync_playwright
 from typer.testing import CliRunner

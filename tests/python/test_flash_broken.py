@@ -76,7 +76,7 @@ def broken_off(board, image, cut_at):
         update(line, KERNEL, image, lambda what, _share: phase.__setitem__(0, what))
     if phase[0].startswith("erasing") and line.whole:
         board.native.advance_until_heard(ERASE_WAIT)
-    board.native.advance(make.TICKS_PER_SECOND // 50)
+    board.native.advance(make.TICKS_PER_SECOND // 100)  # words of a request are written within 6 ms
     return phase[0]
 
 

@@ -11,8 +11,6 @@ from stillspin.flash import coff, layout
 from stillspin.flash.layout import contains
 from stillspin.flash.program import Block, Program
 
-_END_AT = layout.IDENTITY + 10
-_SUM_AT = layout.IDENTITY + 12
 _WORDS = 4
 _NONE = 0xFFFFFFFF
 
@@ -36,7 +34,7 @@ def _computed(program: Program, end: int) -> int:
             kept = block.words[: end - block.address]
             at = block.address - layout.FLASH.start
             words[at : at + len(kept)] = kept
-    at = _SUM_AT - layout.FLASH.start
+    at = layout.SUM - layout.FLASH.start
     words[at : at + 2] = (layout.ERASED, layout.ERASED)
     return crc_of(words)
 
@@ -47,12 +45,12 @@ def check(program: Program, name: str) -> bool:
     Raises:
         InputError: it is not the image's; `name` is the file's.
     """
-    end = _pair(program, _END_AT)
+    end = _pair(program, layout.SUM_END)
     if end == _NONE:
         return False
-    if not _SUM_AT + 2 <= end <= layout.CSM_RESERVED.start:
+    if not layout.SUM + 2 <= end <= layout.CSM_RESERVED.start:
         raise InputError(f"{name}: its check sum ends at 0x{end:06X}, outside of the image; the file is damaged")
-    wanted, found = _pair(program, _SUM_AT), _computed(program, end)
+    wanted, found = _pair(program, layout.SUM), _computed(program, end)
     if wanted != found:
         raise InputError(
             f"{name}: its words have the check sum 0x{found:08X}, it says 0x{wanted:08X}; the file is damaged: build "
@@ -69,12 +67,12 @@ def stamp(data: bytes, name: str) -> tuple[bytes, int, int]:
     """
     program = coff.read(data, name)
     used = [min(block.end, layout.CSM_RESERVED.start) for block in program.blocks if _is_covered(block)]
-    if program.word(layout.IDENTITY) != layout.MARK or program.word(_END_AT + _WORDS - 1) is None:
+    if program.word(layout.IDENTITY) != layout.MARK or program.word(layout.SUM_END + _WORDS - 1) is None:
         raise InputError(f"{name}: has no identity with room for a check sum at 0x{layout.IDENTITY:06X}")
     end = max(used)
-    data = coff.patched(data, name, _END_AT, (end & 0xFFFF, end >> 16))
+    data = coff.patched(data, name, layout.SUM_END, (end & 0xFFFF, end >> 16))
     crc = _computed(coff.read(data, name), end)
-    return coff.patched(data, name, _SUM_AT, (crc & 0xFFFF, crc >> 16)), end, crc
+    return coff.patched(data, name, layout.SUM, (crc & 0xFFFF, crc >> 16)), end, crc
 
 
 def _is_covered(block: Block) -> bool:

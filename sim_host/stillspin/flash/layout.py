@@ -16,6 +16,9 @@ ERASED = 0xFFFF
 
 IDENTITY = 0x3E8020
 IDENTITY_WORDS = 10
+SUM_END = IDENTITY + 10
+"""Where the image ends that the check sum covers; two words, as the sum."""
+SUM = IDENTITY + 12
 MARK = 0x5AA5
 IDENTITY_FORMAT = 1
 

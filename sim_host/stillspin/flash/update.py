@@ -7,9 +7,10 @@ that broke off is repeated as a whole; sectors that are already right are left a
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+
+import numpy as np
 
 from stillspin.flash import kernel as kernel_requests
 from stillspin.flash import layout, rom
@@ -125,11 +126,11 @@ def differing(kernel: Kernel, image: DriveImage, info: Info) -> list[Sector]:
 def pieces(image: DriveImage, sector: Sector) -> Iterator[tuple[int, tuple[int, ...]]]:
     """What is written into an erased sector: address and words, without what stays erased at their ends."""
     words = image.piece(sector.words, sealed=False)
-    used = [index for index, word in enumerate(words) if word != layout.ERASED]
-    while used:
-        first, limit = used[0], used[0] + kernel_requests.WORDS_MAX
-        count = bisect_left(used, limit)
-        yield sector.words.start + first, words[first : used[count - 1] + 1]
+    used = np.flatnonzero(np.array(words) != layout.ERASED)
+    while used.size:
+        first = int(used[0])
+        count = int(np.searchsorted(used, first + kernel_requests.WORDS_MAX))
+        yield sector.words.start + first, words[first : int(used[count - 1]) + 1]
         used = used[count:]
 
 
