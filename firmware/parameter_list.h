@@ -122,6 +122,7 @@ PARAMETER(119, ldq_1, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual induct
 PARAMETER(120, ldq_2, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 2/4 of map_current")
 PARAMETER(121, ldq_3, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 3/4 of map_current")
 PARAMETER(122, ldq_4, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at map_current")
+PARAMETER(123, map_known, "", 0, 0, 0, 1, 0, STOPPED, "1: the map is the machine's, also where it is flat")
 
 // Commissioning
 PARAMETER(130, sensor_mismatch, "%", 16, 3, -5000, 5000, 0, STOPPED,

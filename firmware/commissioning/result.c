@@ -97,8 +97,11 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
 static void keep_map_together(commissioning_report_t* r, uint16_t first) {
   bool complete = true;
   for (uint16_t k = first; k < r->count; k++) complete = complete && r->list[k].verdict == VERDICT_USED;
-  if (complete || r->list[first].value == r->list[first].before) return;
-  for (uint16_t k = first; k < r->count; k++) r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+  const bool rescaled = r->list[first].value != r->list[first].before;
+  for (uint16_t k = first; k < r->count && rescaled && !complete; k++) {
+    r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+  }
+  offer(r, ID_map_known, 1, complete ? VERDICT_USED : VERDICT_DEPENDS);
 }
 
 static void judge_map(const commissioning_t* c, const map_values_t* zero, commissioning_verdict_t unsaturated,
@@ -115,7 +118,7 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
     ldq_q20[k] = level[k].ldq_q20;
     below = measured;
   }
-  const bool smooth = map_smooth(ldq_q20);
+  const bool smooth = map_smooth(ldq_q20, zero->lqq_q20 - zero->ldd_q20);
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     level[k].ldq_q20 = ldq_q20[k];
     judge_level(&level[k], zero, k, unsaturated, r);

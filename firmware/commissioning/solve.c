@@ -3,6 +3,7 @@
 #include "estimators/fit.h"
 
 #define SQRT3_Q28 464943848L
+#define AXIS_PARTS 512  // of the saliency: mutual inductance that turns the axis by 0.1 degrees
 // 2^32 T / 2 pi with T = 100 us: binary angle per period of 1 rad/s.
 #define BPP_PER_RAD_Q12 279988337LL  // 68356.5
 #define BPP_PER_RAD_Q4 1093704LL
@@ -95,7 +96,7 @@ map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m)
   return v;
 }
 
-bool map_smooth(int32_t ldq_q20[MAP_LEVELS]) {
+bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
   int32_t linear[MAP_LEVELS];
   int32_t cubic[MAP_LEVELS];
   int32_t value[MAP_LEVELS];
@@ -110,11 +111,12 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS]) {
     largest = q_max(largest, q_abs_sat(ldq_q20[k]));
   }
   if (!fit_plane(linear, cubic, value, MAP_LEVELS, &fit)) return false;
+  const int32_t far_q20 = q_max(largest / 10, saliency_q20 / AXIS_PARTS);
   bool close = true;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     const int32_t n = (int32_t)k + 1;
     value[k] = q_mul(fit.slope_q24, n * (1048576L / 4), 24) + q_mul(fit.offset_q24, n * n * n * (1048576L / 64), 24);
-    close = close && q_abs_sat(value[k] - ldq_q20[k]) <= largest / 10;
+    close = close && q_abs_sat(value[k] - ldq_q20[k]) <= far_q20;
   }
   for (uint16_t k = 0; close && k < MAP_LEVELS; k++) ldq_q20[k] = value[k];
   return close;

@@ -41,8 +41,9 @@ map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m)
 map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_t* m);
 
 /// Mutual inductances at the four levels, mH Q20, as an odd function a i + b i^3 of the current, which they are in any
-/// machine at i_d = 0. Replaces them by the fitted ones and returns true when those lie within a tenth of the largest.
-bool map_smooth(int32_t ldq_q20[MAP_LEVELS]);
+/// machine at i_d = 0. Replaces them by the fitted ones and returns true when those lie within a tenth of the largest,
+/// or within 0.1 degrees of the axis: 1/512 of the saliency, Lq - Ld, mH Q20.
+bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20);
 
 /// Moves a level's inductances to the current that was meant, along the line from the level below.
 void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20);

@@ -121,6 +121,7 @@ TEST_F(Commissioning, AMapCurrentWithoutItsLevelsIsNotUsed) {
   commissioning_judge(&c, &report);
   EXPECT_EQ(commissioning_use(&report), COMMISSIONING_PARTLY);
   EXPECT_EQ(parameters.map_current, before);
+  EXPECT_EQ(parameters.map_known, 0);
 }
 
 TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {

@@ -143,6 +143,7 @@ _PARAMETERS = [
     (120, "ldq_2", "mH", 4, -100.0, 100.0, 0.0, "STOPPED", "the map of the inductances"),
     (121, "ldq_3", "mH", 4, -100.0, 100.0, 0.0, "STOPPED", "the map of the inductances"),
     (122, "ldq_4", "mH", 4, -100.0, 100.0, 0.0, "STOPPED", "the map of the inductances"),
+    (123, "map_known", "", 0, 0.0, 1.0, 0.0, "STOPPED", "1: the map is the machine's"),
     (174, "slice_time", "us", 2, 5.0, 20.0, 5.0, "STOPPED", "interval of the decisions"),
 ]
 

@@ -62,10 +62,6 @@ def test_a_drift_that_does_not_exist_is_said() -> None:
         by_mark(drifts, ["rust"], "drift")
 
 
-SLIGHT = 0.001
-"""mH of cross inductance: a drive that has a map, of a machine that hardly saturates."""
-
-
 def step(adapt: int, inertia: float) -> float:
     """Overshoot (%) of a step to 600 rpm on an ideal plant whose inertia is `inertia` times what the drive was told."""
     native = core.load()
@@ -74,7 +70,7 @@ def step(adapt: int, inertia: float) -> float:
     changes = profile.changes([f"parameter_error.inertia={inertia - 1.0}", "solver.method=rk4"], schema, entries)
     result = native.run(
         plant=profile.merged(ideal.plant, changes.plant),
-        parameters={**ideal.parameters, "speed_ramp": 0.0, "inertia_adapt": float(adapt), "ldq_1": SLIGHT},
+        parameters={**ideal.parameters, "speed_ramp": 0.0, "inertia_adapt": float(adapt)},
         commands=[(0.1, "speed_ref_rpm", 600.0)],
         load=[],
         duration=0.6,

@@ -95,7 +95,7 @@ def commissioning(result: commission.Result) -> None:
     """Every identified value and what became of it."""
     table = _table("parameter", "before", "found", "unit", "")
     for value in result.values:
-        before, found = (f"{number:.{value.decimals + 1}f}" for number in (value.before, value.value))
+        before, found = (f"{number:.{value.places}f}" for number in (value.before, value.value))
         table.add_row(value.name, before, found, value.unit, Text(value.words, style="green" if value.used else "red"))
     _print(table)
 

@@ -32,7 +32,12 @@ class Value:
     @property
     def text(self) -> str:
         """As a parameter file has it."""
-        return f"{self.value:.{self.decimals + 2}f}"
+        return f"{self.value:.{self.places + 1 if self.places else 0}f}"
+
+    @property
+    def places(self) -> int:
+        """Decimals to show: one more than those of its unit, none of what is counted."""
+        return self.decimals + (self.decimals > 0)
 
 
 @dataclass(frozen=True)
