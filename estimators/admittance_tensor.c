@@ -35,7 +35,7 @@ static dq_t row(int64_t sd, int64_t sq, int64_t mean, dq_t abc_d, int32_t c_q28,
 
 bool tensor_solve(const tensor_sums_t* s, const machine_model_t* m, tensor_axes_t* out) {
   const int64_t mean = q_shr64(s->vv_dd + s->vv_qq, 1);
-  if (s->count == 0 || mean <= 0) return false;
+  if (mean <= 0) return false;  // no sums, or pairs without a difference
   const dq_t ab_q28 = {fit_ratio(s->vv_dd, mean, 28), fit_ratio(s->vv_dq, mean, 28)};
   const int32_t c_q28 = fit_ratio(s->vv_qq, mean, 28);
   const int32_t det_q28 = q_mul(ab_q28.d, c_q28, 28) - q_mul(ab_q28.q, ab_q28.q, 28);

@@ -30,7 +30,7 @@ class Shaft {
     for (int n = 0; n < ms; ++n) {
       const double ratio = s.ratio_q24 / kOne;
       const double wanted = (reference - speed_) / 70.0 + load;
-      const double given = std::fmin(std::fmax(wanted, -kFull * truth_), kFull * truth_);
+      const double given = std::fmin(std::fmax(wanted, -limit * truth_), limit * truth_);
       const double told = given / truth_ * ratio;  // as the model in use has it
       for (int k = 0; k < kPeriods; ++k) {
         inertia_match_add(&s, raw(told, 8));
@@ -48,8 +48,10 @@ class Shaft {
     }
   }
   double ratio() const { return s.ratio_q24 / kOne; }
+  double speed() const { return speed_; }
 
   inertia_match_t s{};
+  double limit = kFull;  // of the torque, as the model's acceleration
 
  private:
   double truth_, off_;
@@ -135,11 +137,47 @@ TEST(InertiaMatch, ARunUpThatDoesNotEndIsGivenUp) {
   EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
 }
 
+// The same with a fifteenth of the torque, whose share of a turn stays small: then a second is enough.
+TEST(InertiaMatch, AWeakRunUpIsGivenUpAfterASecond) {
+  Shaft shaft(1.0);
+  shaft.run(50, 0.0);
+  shaft.limit = kFull / 15.0;
+  shaft.run(1001, 3000.0 * kRpm, shaft.limit);
+  EXPECT_EQ(shaft.s.phase, INERTIA_RUN_UP);
+  shaft.run(1, 3000.0 * kRpm, shaft.limit);
+  EXPECT_EQ(shaft.s.phase, INERTIA_SETTLE);
+  EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
+}
+
+// After sixteen turns nothing is left to be judged, however far the speed still is.
+TEST(InertiaMatch, TheLastJudgementEndsTheRunUp) {
+  Shaft shaft(1.0);
+  shaft.run(50, 0.0);
+  shaft.run(165, 6500.0 * kRpm);
+  EXPECT_EQ(shaft.s.phase, INERTIA_SETTLE);
+  EXPECT_LT(shaft.speed(), 4500.0 * kRpm);
+  EXPECT_LT(shaft.s.turned, 32 * INERTIA_SAME_Q24) << "64 turns would end it as well";
+}
+
 // A shaft that turns against the torque is driven by something else.
 TEST(InertiaMatch, ATurnAgainstTheTorqueIsNoInertia) {
   Shaft shaft(1.0);
   shaft.run(50, 0.0);
   shaft.run(300, 600.0 * kRpm, 1.5 * kFull);
+  EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
+}
+
+// Driven so hard that it turns 64 times backward while the torque alone would have turned it less.
+TEST(InertiaMatch, ATurnAgainstTheTorqueEndsTheRunUp) {
+  Shaft shaft(1.0);
+  shaft.run(50, 0.0);
+  shaft.limit = kFull / 2.0;
+  int ms = 0;
+  do shaft.run(1, 600.0 * kRpm, 2.5 * shaft.limit);
+  while (shaft.s.phase == INERTIA_RUN_UP && ++ms < 1000);
+  EXPECT_EQ(shaft.s.phase, INERTIA_SETTLE);
+  EXPECT_LT(shaft.s.turned, -64 * INERTIA_SAME_Q24);
+  EXPECT_LT(shaft.s.expected, 64 * INERTIA_SAME_Q24);
   EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
 }
 

@@ -181,6 +181,21 @@ TEST(Saturation, ALinearMachineIsAmbiguous) {
   }
 }
 
+// A change of the right size says nothing where the rounds scatter as much.
+TEST(Saturation, AChangeThatNoiseCouldHaveMadeIsAmbiguous) {
+  int of_right_size = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Conditions c;
+    c.noise = 8.0 * kNoise;
+    const saturation_t s = run(c, seed);
+    if (real(s.sigma_q8, 8) >= SATURATION_SIGMA_MIN) continue;
+    EXPECT_EQ(s.result, POLARITY_AMBIGUOUS) << seed;
+    const double size = std::fabs(score(s));
+    of_right_size += size > 0.4 && size < 2.9;
+  }
+  EXPECT_GT(of_right_size, 2);
+}
+
 // Four times the change expected is something else than saturation.
 TEST(Saturation, AChangeThatDoesNotFitIsAmbiguous) {
   Conditions c;

@@ -5,6 +5,7 @@
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
+#include "estimators/deviation.h"
 #include "estimators/zvv.h"
 }
 
@@ -123,6 +124,24 @@ TEST(Zvv, DeviationIsASineOfTwiceTheErrorWithAndWithoutDrops) {
       EXPECT_NEAR(real(deviation, 20) / kPeriod, 0.5 * kq * std::sin(2.0 * error), 0.1) << degree << ", " << drop;
     }
   }
+}
+
+// Frames that another estimator has made are used as they are.
+TEST(Zvv, FramesThatAreGivenAreThoseOfTheAngleTheyWereMadeAt) {
+  const machine_model_t model = model_of(Motor{});
+  const double w = 20.0;  // rad/s
+  const Input in(model, {window_at(Motor{}, 0.8, w, Vector{5.0, 1.0}.turned(0.7), {0, 0}, 5000, 6000)});
+  std::int32_t own = 0, given = 0, elsewhere = 0;
+  ASSERT_TRUE(zvv_deviation_q20(in.get(), bam(0.7), bpp(w), &own));
+  estimator_frame_t frame[ESTIMATOR_WINDOWS];
+  estimator_input_t with = *in.get();
+  with.frames = frame;
+  for (const double angle : {0.7, 1.1}) {
+    deviation_frames(with.windows, 1, deviation_middle(bam(angle), bpp(w)), machine_speed_rad_q30(bpp(w)), frame);
+    ASSERT_TRUE(zvv_deviation_q20(&with, bam(0.7), bpp(w), angle == 0.7 ? &given : &elsewhere));
+  }
+  EXPECT_EQ(given, own);
+  EXPECT_NE(elsewhere, own);
 }
 
 TEST(Zvv, NoDeviationWithoutAZeroVector) {

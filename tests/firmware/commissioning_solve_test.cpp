@@ -87,6 +87,8 @@ TEST(CommissioningTensor, OneDirectionIsNotEnough) {
   tensor_axes_t a;
   EXPECT_FALSE(tensor_solve(&s, &m, &a)) << "nothing was added";
   deviation_t w[2] = {};
+  tensor_add(&s, &w[0], &w[1]);
+  EXPECT_FALSE(tensor_solve(&s, &m, &a)) << "no difference";
   w[0].voltage_q16.d = fixed(200.0, 16);
   w[1].voltage_q16.d = -w[0].voltage_q16.d;
   tensor_add(&s, &w[0], &w[1]);
