@@ -56,6 +56,11 @@ static bool load_machine(drive_config_t* c) {
   return true;
 }
 
+// Between two windows lie the edge and its settling at least; the window before must have been read by then.
+#if SAMPLING_SETTLE_MIN_TICKS + HAL_ADC_BURST_TICKS < HAL_ADC_WINDOW_GAP_TICKS
+#error "two windows follow each other faster than the converter is read"
+#endif
+
 static bool load_modulation(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->modulator.pulse_ticks = ticks(p->pulse_time);
@@ -72,10 +77,7 @@ static bool load_modulation(drive_config_t* c) {
   c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + p->drop_band;
   c->dead_time.drop_q16 = p->device_drop;
   dead_time_design(&c->dead_time);
-  // Between two windows lie the edge and its settling at least; the window before must have been read by then.
-  const int32_t gap_ticks = c->modulator.sampling.settle_ticks + (int32_t)HAL_ADC_BURST_TICKS;
-  return modulator_config_valid(&c->modulator) && gap_ticks >= (int32_t)HAL_ADC_WINDOW_GAP_TICKS &&
-         c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
+  return modulator_config_valid(&c->modulator) && c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
          c->dead_time.blocked_ticks <= SVPWM_FIRST_TICK - 20;
 }
 

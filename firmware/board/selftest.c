@@ -10,7 +10,7 @@
 #include "hal/hal_lines.h"
 #include "hal/hal_selftest.h"
 
-#define PAIRS_A_PASS 16u
+#define PAIRS_A_PASS 16u  // divides HAL_SELFTEST_PAIRS
 #define SERVICES 100u
 #define REFERENCE_OFF 82  // codes: 2 % of the range
 #define FAILURES 6u
@@ -45,7 +45,7 @@ void selftest_count(uint32_t cycles) {
 }
 
 static void march(void) {
-  for (uint16_t n = 0; n < PAIRS_A_PASS && selftest.pair < HAL_SELFTEST_PAIRS; n++) {
+  for (uint16_t n = 0; n < PAIRS_A_PASS; n++) {
     judge(hal_selftest_ram(selftest.pair), SELFTEST_RAM);
     selftest.pair++;
   }

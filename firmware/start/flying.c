@@ -43,7 +43,7 @@ static void take_flux(drive_t* d) {
   machine_model_t* const m = &d->model;
   const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(d->start.speed_bpp));
   m->trim.psi_q16 = 0;
-  if (d->start.emf_q16 < FLUX_EMF_Q16 || w_q30 == 0) return;
+  if (d->start.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
   const int32_t told_q30 = m->map.points[0].yqq_q30;
   const int32_t now_q30 = told_q30 + q_mul(told_q30, m->trim.yqq_q24, 24);
   const int32_t emf_q16 = q_mul_sat(d->start.emf_q16, q_div(told_q30, now_q30, 24), 24);

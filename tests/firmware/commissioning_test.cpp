@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "hal/hal_tape.h"
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
@@ -45,6 +46,19 @@ TEST_F(Commissioning, IsTakenInReadyOnly) {
   periods(20);
   EXPECT_EQ(drive.state, DRIVE_RUN);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_NONE);
+}
+
+// It needs the angle of a shaft that stands, whichever way a start would have taken.
+TEST_F(Commissioning, IsNotTurnedByAVector) {
+  for (const bool asked : {true, false}) {
+    SetUp();
+    parameters.start_method = 1;
+    parameters.flying_start = 0;
+    make_ready();
+    asked ? drive_command_commission() : drive_command_start();
+    periods(2);
+    EXPECT_EQ(drive.start.phase, asked ? START_AXIS : START_TURN);
+  }
 }
 
 TEST_F(Commissioning, AStartIsStillAStart) {
@@ -132,6 +146,23 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   drive.commissioning.model = drive.config.nameplate;
   commissioning_service(&drive);
   EXPECT_TRUE(drive.request.reload) << "nothing was measured, yet the longer settling has to go";
+}
+
+// Played from a tape, the background's work is done where it was done, and not before.
+TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
+  begin();
+  drive.commissioning.phase = COMMISSIONING_EVALUATE;
+  drive.commissioning.evaluate = true;
+  drive.commissioning.model = drive.config.nameplate;
+  drive_parameters_changed();
+  hal_tape_start(TAPE_PLAYS, nullptr);
+  background_step(&drive);
+  EXPECT_TRUE(drive.commissioning.evaluate);
+  EXPECT_TRUE(drive.request.reload);
+  hal_tape_start(TAPE_OFF, nullptr);
+  background_step(&drive);
+  EXPECT_FALSE(drive.commissioning.evaluate);
+  EXPECT_FALSE(drive.request.reload);
 }
 
 TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {

@@ -120,6 +120,32 @@ TEST_F(DriveConfig, WindowLimitsTheWrongWayRound) {
 
 // Whatever was in it before: the configuration is a function of the parameters, so nothing found at run time can hide
 // in it and be reverted by a reload.
+// What the table's ranges and its rules refuse before is refused by the configuration itself as well.
+TEST_F(DriveConfig, WhatDoesNotFitIsRefusedWithoutTheTableToo) {
+  drive_config_t c;
+  const auto refused = [&c](auto change) {
+    drive_reset();
+    change(parameters);
+    return !drive_config_load(&c);
+  };
+  EXPECT_FALSE(refused([](parameters_t&) {}));
+  EXPECT_TRUE(refused([](parameters_t& p) { p.settle_time = raw(3.9, 16); })) << "windows come too fast to be read";
+  EXPECT_FALSE(refused([](parameters_t& p) { p.settle_time = raw(4.0, 16); }));
+  const auto edges = [](double dead, double off) {
+    return [=](parameters_t& p) { p.dead_time = raw(dead, 16), p.turn_on_delay = 0, p.turn_off_delay = raw(off, 16); };
+  };
+  EXPECT_TRUE(refused(edges(1.0, 1.1))) << "a device is on before the other one is off";
+  EXPECT_FALSE(refused(edges(1.0, 1.0)));
+  EXPECT_TRUE(refused(edges(2.5, 1.0))) << "no room before the first edge";
+  EXPECT_TRUE(refused([](parameters_t& p) { p.current_bandwidth = 2600, p.current_divider = 2; }));
+  EXPECT_FALSE(refused([](parameters_t& p) { p.current_bandwidth = 2080, p.current_divider = 2; }));
+  const auto inductance = [](double mh) {
+    return [=](parameters_t& p) { p.inductance_d = p.inductance_q = raw(mh, 20); };
+  };
+  EXPECT_TRUE(refused(inductance(0.166))) << "more than 0.6 A per V and period";
+  EXPECT_FALSE(refused(inductance(0.168)));
+}
+
 TEST_F(DriveConfig, ALoadOverwritesTheWholeConfiguration) {
   drive_config_t zeros, ones;
   std::memset(&zeros, 0, sizeof zeros);

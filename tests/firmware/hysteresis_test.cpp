@@ -45,6 +45,22 @@ TEST_F(Hysteresis, RunsFromRunOnAndWritesNoPulses) {
   EXPECT_EQ(drive.state, DRIVE_RUN);
 }
 
+// A shaft that is brought to rest keeps its slices until the gates go off.
+TEST_F(Hysteresis, BringsTheShaftToRest) {
+  drive.position.encoder.speed_bpp = bpp_of(1000);
+  drive_command_stop();
+  drive_control_interrupt();
+  ASSERT_EQ(drive.state, DRIVE_STOP);
+  EXPECT_EQ(board.slice_ticks, 500);
+  for (int n = 0; n < 100 && drive.state == DRIVE_STOP; ++n) {
+    slice();
+    drive.position.encoder.speed_bpp = 0;
+    drive_control_interrupt();
+  }
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(board.slice_ticks, 0);
+}
+
 TEST_F(Hysteresis, EveryLegBringsItsCurrentBack) {
   // 0.4 A of band, no reference. c is what is left of a and b.
   slice(1.0, -0.5);  // a too high, b and c too low

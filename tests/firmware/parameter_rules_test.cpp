@@ -3,6 +3,11 @@
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/actions.h"
+#include "firmware/text.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -20,6 +25,16 @@ class ParameterRules : public Drive {
     EXPECT_NE(text_of(conflict).find(words), std::string::npos) << text_of(conflict);
   }
 };
+
+TEST_F(ParameterRules, AParameterThatIsNotInTheTableIsNotSet) {
+  parameter_info_t strange = *parameter_info(0);
+  strange.id = 65535;
+  std::uint16_t octets[80];
+  octet_writer_t why = octet_writer(octets, 80);
+  EXPECT_EQ(action_set(&strange, 4, &why), ANSWER_UNKNOWN);
+  EXPECT_EQ(why.count, 0);
+  EXPECT_EQ(action_set(parameter_info(0), 4, &why), ANSWER_OK);
+}
 
 // A parameter at the largest (or least) value that a rule lets it have, and one step beyond.
 struct Rule {

@@ -1,6 +1,7 @@
 // What opens the power stage while the drive runs, each cause alone, and what must not: the conditions that
 // supervision_test.cpp meets only together.
 
+#include "firmware/fault_history.h"
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {
@@ -129,6 +130,66 @@ TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
 }
 
+// An estimator that says itself that it knows nothing disagrees with nobody.
+TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
+  for (const auto& [low, high] : {std::pair{32767, 32767}, {0, 32767}, {32767, 0}}) {
+    SetUp();
+    make_run();
+    trust_synchronism();
+    drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+    drive.position.judging = true;
+    drive.position.low.quality_q15 = low;
+    drive.position.high.quality_q15 = high;
+    drive.position.high.angle_bam = drive.position.low.angle_bam + ANGLE_BAM_HALF_TURN;
+    drive_protect(&drive);
+    EXPECT_EQ(drive.fault, (low != 0 && high != 0) ? FAULT_DIVERGENCE : FAULT_NONE) << low << " " << high;
+  }
+}
+
+// What the observer's windows left over is judged once; with no windows since there is nothing to judge.
+TEST_F(Protection, ResidualsAreJudgedOnce) {
+  make_run();
+  parameters.position_source = POSITION_OBSERVER;
+  drive.position.judging = true;
+  drive.config.synchronism.bad_periods = 0;
+  drive.config.synchronism.floor_q16 = 0;
+  drive.config.synchronism.share_q15 = 0;
+  drive_protect(&drive);
+  EXPECT_EQ(drive.state, DRIVE_RUN) << "nothing was seen yet";
+  estimator_window_t w = drive.samples.windows[0];
+  w.slope_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
+  const estimator_input_t in = {&drive.model, &w, 1, 0, false, false, nullptr};
+  for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
+  drive_protect(&drive);
+  EXPECT_EQ(drive.fault, FAULT_SYNCHRONISM);
+}
+
+// A back-EMF of the wrong sign at speed, as the watch itself sees it; of the right sign it ends the watch.
+TEST_F(Protection, AReversedBackEmfIsThePolarity) {
+  for (const bool reversed : {false, true}) {
+    SetUp();
+    make_run();
+    trust_synchronism();
+    const std::int32_t speed = bpp_of(600);  // 40 V
+    drive.watch.open = true;
+    drive.watch.blind = false;
+    drive.position.used.speed_bpp = drive.watch.axis.speed_bpp = speed;
+    drive.watch.axis.angle_bam = drive.position.used.angle_bam;
+    drive.control.measured_q20 = {0, 0};
+    drive.control.command_q16 = {0, raw(reversed ? -40.0 : 40.0, 16)};
+    int n = 0;
+    for (; n < 400 && drive.watch.open && drive.state == DRIVE_RUN; ++n) {
+      drive.position.now = n % 5 == 0 ? 3 : 5;  // the back-EMF's place in the turn, and none
+      drive.position.used.angle_bam += static_cast<std::uint32_t>(speed);
+      drive_protect(&drive);
+    }
+    EXPECT_GT(n, 50);
+    EXPECT_EQ(drive.fault, reversed ? FAULT_POLARITY : FAULT_NONE);
+    EXPECT_EQ(drive.state, reversed ? DRIVE_FAULT : DRIVE_RUN);
+    EXPECT_FALSE(drive.watch.open);
+  }
+}
+
 // An angle error that is asked for is no loss of synchronism.
 TEST_F(Protection, AnEncoderThatIsTrimmedIsNotJudged) {
   for (const bool trimmed : {false, true}) {
@@ -170,6 +231,21 @@ TEST_F(Protection, TheFaultRecordSaysWhatWas) {
   EXPECT_EQ(drive.periods, 0u);
   EXPECT_EQ(drive.control.target_bpp, 0);
   EXPECT_FALSE(drive.control.closed);
+}
+
+// The history counts as far as it can and goes on keeping the last.
+TEST_F(Protection, TheHistorysCountEndsAtItsEnd) {
+  fault_history_reset();
+  fault_record_t r = {};
+  for (std::uint32_t n = 0; n < 65600; ++n) {
+    r.time_ms = n;
+    fault_history_add(&r);
+  }
+  EXPECT_EQ(fault_history_total(), 65535);
+  ASSERT_TRUE(fault_history_read(0, &r));
+  EXPECT_EQ(r.time_ms, 65599u);
+  ASSERT_TRUE(fault_history_read(15, &r));
+  EXPECT_EQ(r.time_ms, 65584u);
 }
 
 TEST_F(Protection, CalibrationWithoutSamplesIsAFault) {

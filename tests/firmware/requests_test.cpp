@@ -172,6 +172,9 @@ TEST_F(Requests, TheStore) {
   const std::uint16_t save[] = {REQUEST_COMMAND, 1, COMMAND_SAVE, 0, 0, 0, 0};
   (void)request_answer(GUARD_SERIAL, save, 7, answer);
   EXPECT_EQ(answer[2], BUSY);
+  const std::uint16_t load[] = {REQUEST_COMMAND, 2, COMMAND_LOAD, 0, 0, 0, 0};
+  (void)request_answer(GUARD_SERIAL, load, 7, answer);
+  EXPECT_EQ(answer[2], BUSY) << "at rest as well";
   run(20000);
   drive.state = DRIVE_RUN;
   EXPECT_EQ(give(COMMAND_LOAD).status(), RUNNING);

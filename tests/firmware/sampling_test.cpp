@@ -44,6 +44,38 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
   }
 }
 
+// An interrupt more than a period has windows counts, and leaves the others' samples alone.
+TEST_F(Drive, AWindowTooManyIsReadAndDropped) {
+  (void)sampling_swap();
+  for (int k = 0; k < 5; ++k) {
+    hal_adc_window_t w = still_window();
+    w.start_a = static_cast<std::uint16_t>(1000 + k);
+    board.adc.push_back(w);
+    drive_window_interrupt();
+  }
+  EXPECT_TRUE(board.adc.empty());
+  const sampling_buffer_t* const full = sampling_swap();
+  EXPECT_EQ(full->count, 5);
+  for (int k = 0; k < ESTIMATOR_WINDOWS; ++k) EXPECT_EQ(full->windows[k].start_a, 1000 + k);
+}
+
+// Without a link no voltage can be had; that limits a control loop only where there is one.
+TEST_F(Drive, ADriveAtRestIsNotLimited) {
+  for (const bool closed : {false, true}) {
+    SetUp();
+    make_ready();
+    drive.control.closed = closed;
+    drive.control.measured_q20 = {raw(3.0, 20), 0};
+    drive.control.command_q16 = {0, 0};
+    drive.config.dead_time.drop_q16 = raw(5.0, 16);  // the modulator reckons with 10 V at least
+    dead_time_design(&drive.config.dead_time);
+    drive.samples.link_q16 = 0;
+    drive.limits = 0;
+    drive_modulate(&drive);
+    EXPECT_EQ(drive.limits & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
+  }
+}
+
 TEST_F(Drive, LinkFilterSettlesOnTheMeasurement) {
   make_ready();
   EXPECT_NEAR(real(drive.samples.link_q16, 16), 300.0, 0.06);  // half a code

@@ -74,6 +74,19 @@ TEST_F(SelfTest, FindsTheFirstAndTheLastPairOfRam) {
   }
 }
 
+TEST_F(SelfTest, SaysWhatIsWrong) {
+  board.bad_pair = 3;
+  board.gate_pins_off = false;
+  selftest_look();
+  whole_ram();
+  const std::string said = words();
+  EXPECT_NE(said.find("RAM"), std::string::npos) << said;
+  EXPECT_NE(said.find("gate"), std::string::npos) << said;
+  services(100, kService);
+  EXPECT_EQ(words().find("passed"), std::string::npos) << words();
+  EXPECT_EQ(words().find("under way"), std::string::npos) << words();
+}
+
 TEST_F(SelfTest, DoesNotTouchTheRamWhileTheDriveRuns) {
   drive.state = DRIVE_RUN;
   whole_ram();
@@ -142,6 +155,19 @@ TEST_F(SelfTest, ComparesTheFlashWithTheSumOfTheImage) {
   selftest_look();
   whole_ram();
   EXPECT_EQ(selftest.failed, 0) << "behind the image anything may lie";
+}
+
+// An image may end anywhere: what comes behind it is not taken along.
+TEST_F(SelfTest, TheSumEndsWithTheImage) {
+  for (std::uint32_t k = 0; k < 0x5100; ++k) {
+    board.flash[HAL_FLASH_START + k] = static_cast<std::uint16_t>((k * 40503u + 12345u) & 0xFFFF);
+  }
+  put_identity(HAL_FLASH_START + 0x5005, 0xE0A8CC14uL);
+  drive_reset();
+  selftest_look();
+  whole_ram();
+  services(100, kService);
+  EXPECT_EQ(words(), "passed");
 }
 
 TEST_F(SelfTest, TestsNoFlashByASumThatCannotBe) {

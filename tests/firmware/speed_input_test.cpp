@@ -151,6 +151,22 @@ TEST_F(SpeedInput, LossCoastsWhereThatIsWanted) {
   EXPECT_EQ(drive.state, DRIVE_READY);
 }
 
+TEST_F(SpeedInput, TheBoardsWordsSayWhatItDoes) {
+  const auto words = [] {
+    std::uint16_t octets[400];
+    octet_writer_t w = octet_writer(octets, 400);
+    put_board(&w);
+    return std::string(octets, octets + w.count);
+  };
+  turns(1, false, 2048);
+  const std::string open = words();
+  turns(6, true, 2048);
+  EXPECT_NE(words(), open);
+  EXPECT_NE(words().find("speed input"), std::string::npos) << words();
+  parameters.speed_input = 0;
+  EXPECT_EQ(words().find("speed input"), std::string::npos) << words();
+}
+
 TEST_F(SpeedInput, NotUsedItCommandsNothing) {
   parameters.speed_input = 0;
   turns(1, false, 4000);

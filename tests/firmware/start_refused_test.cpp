@@ -91,6 +91,18 @@ TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
   EXPECT_NEAR(on, 50, 2);
 }
 
+// A period without samples says nothing of a current; the next one will.
+TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
+  parameters.bootstrap_time = raw(20.0, 16);
+  drive_command_start();
+  while (!board.gates_on) period();
+  for (int n = 0; n < 4; ++n) period(still_window(), drive.modulation.sampled.window_count);
+  EXPECT_EQ(drive.samples.count, 0);
+  EXPECT_EQ(drive.start.phase, START_CHARGE);
+  EXPECT_TRUE(board.gates_on);
+  EXPECT_EQ(drive.start.charged, 4);
+}
+
 TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   parameters.bootstrap_time = raw(20.0, 16);
   parameters.flying_start = 0;

@@ -12,6 +12,17 @@
 
 namespace {
 
+TEST(Text, SpacesEndAtTheColumnOrWithTheBlock) {
+  for (const std::uint16_t room : {6, 20}) {
+    std::uint16_t block[20];
+    octet_writer_t w = octet_writer(block, room);
+    put_text(&w, "abc");
+    put_spaces_to(&w, 9);
+    EXPECT_EQ(std::string(block, block + w.count), std::string("abc      ").substr(0, room));
+    EXPECT_EQ(w.full, room < 9);
+  }
+}
+
 std::string fixed(std::int32_t raw, std::uint16_t q, std::uint16_t decimals) {
   std::uint16_t block[40];
   octet_writer_t w = octet_writer(block, 40);

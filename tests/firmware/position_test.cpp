@@ -1,0 +1,205 @@
+// Which estimators run when, what the idle one does meanwhile, and what of an angle the speed control may use: single
+// steps of a drive that the test has put where it wants it.
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/flux_source.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr std::uint32_t kHere = 0x10000000u, kThere = 0x18000000u;  // 11 degrees apart
+
+class Position : public Drive {
+ protected:
+  /// In RUN with this source, at rest at kHere.
+  void run_with(std::int32_t source) {
+    SetUp();
+    make_ready();
+    parameters.position_source = source;
+    ASSERT_TRUE(drive_config_load(&drive.config));
+    drive.state = DRIVE_RUN;
+    drive.watch.open = false;
+    position_preset(&drive, kHere, 0);
+    see(2);
+  }
+  /// So many windows, the first of them under a zero vector, of a machine at rest without current.
+  static void see(std::uint16_t count) {
+    drive.samples.count = count;
+    for (std::uint16_t k = 0; k < count; ++k) {
+      estimator_window_t w = {};
+      w.middle_tick = static_cast<std::int16_t>(2500 + 5000 * k);
+      w.span_ticks = 3000;
+      w.zero_vector = k == 0;
+      drive.samples.windows[k] = w;
+    }
+  }
+  static void blend(blend_region_t region, double share_of_low) {
+    drive.position.blend.region = region;
+    drive.position.blend.share_q15 = static_cast<std::int32_t>(share_of_low * 32767.0);
+  }
+};
+
+// ZVV alone, both, AVV alone; who does not run stands by where the other one is.
+TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
+  const struct {
+    blend_region_t region;
+    double share;
+    std::uint16_t windows;
+    bool zvv, avv;
+  } cases[] = {{BLEND_LOW, 1.0, 1, true, false}, {BLEND_LOW, 1.0, 2, true, true},  {BLEND_LOW, 0.5, 1, true, true},
+               {BLEND_BOTH, 0.5, 2, true, true}, {BLEND_HIGH, 0.5, 2, true, true}, {BLEND_HIGH, 0.0, 2, false, true}};
+  for (const auto& c : cases) {
+    run_with(POSITION_PAPER);
+    see(c.windows);
+    blend(c.region, c.share);
+    drive_position_t& p = drive.position;
+    p.avv.observer.angle_bam = kThere;
+    drive_estimate(&drive);
+    const double apart = rad(kThere - kHere);  // who runs moves, a thousandth of that
+    EXPECT_NEAR(rad(p.zvv.angle_bam - kHere), c.zvv ? 0.0 : apart, 1e-3 * apart) << c.region << c.share;
+    EXPECT_NEAR(rad(p.avv.observer.angle_bam - kHere), c.avv ? apart : 0.0, 1e-3 * apart) << c.region << c.share;
+    EXPECT_EQ(p.low.angle_bam, p.zvv.angle_bam);
+    EXPECT_EQ(p.high.angle_bam, p.avv.observer.angle_bam);
+  }
+}
+
+// A frame that was made at the angle in use is used again only by the one estimator whose angle that is.
+TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
+  for (const bool same : {true, false}) {
+    run_with(POSITION_PAPER);
+    see(1);
+    blend(BLEND_LOW, 1.0);
+    drive.samples.windows[0].slope_q20 = {raw(0.02, 20), raw(0.01, 20)};
+    if (!same) drive.position.used.angle_bam = kThere;
+    drive_estimate(&drive);
+    const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
+    EXPECT_NEAR(real(drive.position.zvv.deviation_q20, 20), slope.y, 5e-5) << same;
+  }
+}
+
+// The place of a regression that saw nothing teaches nothing.
+TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
+  for (const std::uint16_t windows : {2, 0}) {
+    run_with(POSITION_OBSERVER);
+    see(windows);
+    drive.position.now = 0;  // the turn's first place: the windows are regressed
+    drive.position.is_near = windows == 0;
+    drive_estimate(&drive);
+    EXPECT_EQ(drive.position.is_near, windows > 0);
+  }
+}
+
+// The flux is alone when the blend has come up all the way and the polarity is no question any more.
+TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
+  const struct {
+    blend_region_t region;
+    double share;
+    bool watched, alone;
+  } cases[] = {{BLEND_HIGH, 0.0, false, true},
+               {BLEND_HIGH, 0.25, false, false},
+               {BLEND_HIGH, 0.0, true, false},
+               {BLEND_BOTH, 0.0, false, false},
+               {BLEND_LOW, 1.0, false, false}};
+  for (const auto& c : cases) {
+    run_with(POSITION_FLUX_CONV);
+    blend(c.region, c.share);
+    drive.watch.open = c.watched;
+    EXPECT_EQ(flux_source_rests(&drive), c.alone) << c.region << c.share << c.watched;
+    EXPECT_EQ(flux_source_excitation(&drive), c.alone ? EXCITATION_CENTRED : EXCITATION_ALTERNATING);
+  }
+}
+
+// Above the blend's begin the windows teach nothing, but that the watch of the polarity wants their axis.
+TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
+  estimator_input_t in = {};
+  for (const blend_region_t region : {BLEND_LOW, BLEND_BOTH, BLEND_HIGH}) {
+    for (const bool watched : {false, true}) {
+      for (const bool asked : {false, true}) {
+        run_with(POSITION_FLUX_CONV);
+        blend(region, 0.5);
+        drive.watch.open = watched;
+        in.regress = asked;
+        EXPECT_EQ(flux_source_input(&drive, &in).regress, asked && (region == BLEND_LOW || watched)) << region;
+      }
+    }
+  }
+}
+
+// Below the blend the flux is where the observer's angle lets expect; from its begin on it runs by itself.
+TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
+  for (const double share : {1.0, 0.9}) {
+    run_with(POSITION_FLUX_CONV);
+    const estimator_input_t in = {&drive.model, drive.samples.windows, 2, 0, false, false, nullptr};
+    const estimator_output_t there = {kThere, 0, 0, 32767}, low = {kHere, 0, 0, 32767};
+    flux_source_follow(&drive, &there);
+    blend(BLEND_LOW, share);
+    (void)flux_source_beside(&drive, &in, &low);
+    if (share == 1.0) {
+      EXPECT_EQ(drive.position.high.angle_bam, kHere);
+    } else {
+      EXPECT_NEAR(rad(drive.position.high.angle_bam - kThere), 0.0, 0.01);
+    }
+  }
+}
+
+// A shaft is held in RUN; told to stop it is braked like any other.
+TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
+  run_with(POSITION_OBSERVER);
+  drive.hold.left = 100;
+  EXPECT_TRUE(hold_is_on(&drive));
+  EXPECT_TRUE(hold_step(&drive));
+  EXPECT_EQ(drive.hold.left, 99u);
+  drive.state = DRIVE_STOP;
+  EXPECT_FALSE(hold_is_on(&drive));
+  EXPECT_FALSE(hold_step(&drive));
+  EXPECT_EQ(drive.hold.left, 99u);
+}
+
+// While the link's limit brakes the shaft, a ramp that would brake it more waits, and one that speeds it up does not.
+TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
+  for (const int sign : {1, -1}) {
+    for (const int change : {-1, 1}) {
+      for (const bool limited : {false, true}) {
+        run_with(POSITION_OBSERVER);
+        const std::int32_t now = sign * bpp_of(1000);
+        drive.position.used.speed_bpp = drive.control.ramp.value = now;
+        drive.control.target_bpp = now + sign * change * bpp_of(500);
+        drive.limits = limited ? LIMIT_BRAKING : 0;
+        drive.millisecond = DRIVE_PERIODS_PER_MS - 1;
+        drive_control_speed(&drive);
+        const bool waits = limited && change < 0;
+        EXPECT_EQ(drive.control.ramp.value == now, waits) << sign << change << limited;
+      }
+    }
+  }
+}
+
+// An inertia that a run-up suggested and its end refutes is taken back, and with it the load that the observer made of
+// it; while the shaft runs up the observer gets the speed that the torque should have made.
+TEST_F(Position, TheObserverIsToldOfAnInertiaThatIsTakenBack) {
+  run_with(POSITION_OBSERVER);
+  drive.config.mapped = true;
+  parameters.inertia_adapt = 1;
+  inertia_match_t& s = drive.inertia;
+  s.phase = INERTIA_SETTLE;
+  s.ratio_q24 = raw(0.5, 24);
+  s.before_q24 = raw(1.0, 24);
+  s.ms = s.quiet_ms = 200;
+  s.start_base_q8 = 0;
+  s.base_q8 = s.mean_q8 = raw(4000.0, 8);  // the load came with the run-up and stayed
+  drive.position.torque_accel_q8 = s.base_q8;
+  drive.position.observer.load_accel_q8 = raw(300.0, 8);
+  drive.position.observer.speed_bpp = 777;
+  drive_match_inertia(&drive);
+  EXPECT_EQ(s.phase, INERTIA_REST);
+  EXPECT_EQ(s.ratio_q24, raw(1.0, 24));
+  EXPECT_EQ(drive.position.observer.load_accel_q8, raw(600.0, 8));
+  EXPECT_EQ(drive.position.observer.speed_bpp, 777);
+  EXPECT_EQ(drive.model.accel_q12, drive.config.nameplate.accel_q12);
+}
+
+}  // namespace
