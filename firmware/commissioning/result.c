@@ -1,7 +1,5 @@
 #include "firmware/commissioning/result.h"
 
-#include <stddef.h>
-
 #include "firmware/parameters.h"
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,
@@ -30,9 +28,13 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
   return (q_abs_sat(a - b) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
 }
 
+// What the functions below offer, each once: three of the staircase, three unsaturated, the map, three of the spin.
+#if 3u + 3u + 1u + 3u * MAP_LEVELS + 3u > COMMISSIONING_RESULTS
+#error "a report has no room for its results"
+#endif
+
 static void offer(commissioning_report_t* r, uint16_t id, int32_t value, commissioning_verdict_t verdict) {
   const parameter_info_t* const info = parameter_by_id(id);
-  if (info == NULL || r->count >= COMMISSIONING_RESULTS) return;
   const bool inside = value >= info->minimum && value <= info->maximum;
   commissioning_result_t* const out = &r->list[r->count++];
   out->id = id;
@@ -64,10 +66,8 @@ static commissioning_verdict_t judge_unsaturated(const map_values_t* v, int32_t 
                                                  commissioning_report_t* r) {
   const parameters_t* const p = &parameters;
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
-  const commissioning_verdict_t order = (v->lqq_q20 < v->ldd_q20) ? VERDICT_NOT_PHYSICAL : VERDICT_USED;
-  const commissioning_verdict_t both = worst(measured, order);
-  const commissioning_verdict_t d = worst(both, near(v->ldd_q20, p->inductance_d, 2));
-  const commissioning_verdict_t q = worst(both, near(v->lqq_q20, p->inductance_q, 2));
+  const commissioning_verdict_t d = worst(measured, near(v->ldd_q20, p->inductance_d, 2));
+  const commissioning_verdict_t q = worst(measured, near(v->lqq_q20, p->inductance_q, 2));
   offer(r, ID_inductance_d, v->ldd_q20, worst(d, (q == VERDICT_USED) ? d : VERDICT_DEPENDS));
   offer(r, ID_inductance_q, v->lqq_q20, worst(q, (d == VERDICT_USED) ? q : VERDICT_DEPENDS));
   offer(r, ID_sensor_mismatch, q_mul_sat(mismatch_q30, 100L, 14), measured);  // percent, Q16

@@ -83,7 +83,8 @@ bool commissioning_spin(drive_t* d) {
   const bool arrived = approach(d);
   if (s->leg == (uint16_t)LEG_STOP) {
     s->tick += arrived ? 1 : 0;
-    return s->tick > STILL_PERIODS && hand_back(d);
+    if (s->tick > STILL_PERIODS) (void)hand_back(d);  // the background level comes first
+    return false;
   }
   const bool settling = s->tick < SETTLE_PERIODS;
   if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
