@@ -28,8 +28,9 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
   return (q_abs_sat(a - b) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
 }
 
-// What the functions below offer, each once: three of the staircase, three unsaturated, the map, three of the spin.
-#if 3u + 3u + 1u + 3u * MAP_LEVELS + 3u > COMMISSIONING_RESULTS
+// What the functions below offer, each once: three of the staircase, three unsaturated, the map and that it is known,
+// three of the spin.
+#if 3u + 3u + 1u + 3u * MAP_LEVELS + 1u + 3u > COMMISSIONING_RESULTS
 #error "a report has no room for its results"
 #endif
 

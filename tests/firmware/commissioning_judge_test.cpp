@@ -66,6 +66,7 @@ TEST_F(CommissioningJudge, AMachineThatFitsIsUsedAsAWhole) {
   EXPECT_NEAR(real(parameters.inductance_q, 20), 7.41, 3e-3);
   EXPECT_NEAR(real(parameters.lqq_4, 16), 100.0 * 5.81 / 7.41, 0.1);
   EXPECT_NEAR(real(parameters.ldq_4, 20), 0.16, 1e-3);
+  EXPECT_EQ(parameters.map_known, 1);
   EXPECT_NEAR(real(parameters.magnet_flux, 28), 0.1552, 1e-5);
   EXPECT_NEAR(real(parameters.inertia, 24), 0.00546, 1e-5);
   EXPECT_NEAR(real(parameters.friction, 24), 0.003, 1e-5);
@@ -132,6 +133,15 @@ TEST_F(CommissioningJudge, ATurnThatJumpsFromLevelToLevelIsNone) {
     measured(level, l, 3.5 * level);
   }
   EXPECT_EQ(verdict("ldq_3"), VERDICT_SPREAD);
+  EXPECT_EQ(verdict("map_known"), VERDICT_DEPENDS);
+}
+
+TEST_F(CommissioningJudge, AMapOfAMachineThatDoesNotSaturateIsKnown) {
+  for (int level = 1; level <= 4; ++level) {
+    measured(level, {4.655e-3, 7.41e-3, level % 2 == 0 ? 1e-6 : -1e-6}, 3.5 * level);
+  }
+  EXPECT_EQ(verdict("ldq_3"), VERDICT_USED);
+  EXPECT_EQ(verdict("map_known"), VERDICT_USED);
 }
 
 TEST_F(CommissioningJudge, AFrictionThatDrivesIsNone) {
@@ -245,11 +255,11 @@ TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   EXPECT_EQ(drive_commissioning_count(), 0);
   commissioning_service(&drive);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_PARTLY);
-  ASSERT_EQ(drive_commissioning_count(), 22);
-  EXPECT_NE(drive_commissioning_result(21).id, 0);
-  EXPECT_EQ(drive_commissioning_result(22).id, 0);
+  ASSERT_EQ(drive_commissioning_count(), 23);
+  EXPECT_NE(drive_commissioning_result(22).id, 0);
+  EXPECT_EQ(drive_commissioning_result(23).id, 0);
   c.outcome = COMMISSIONING_DONE;
-  EXPECT_EQ(drive_commissioning_count(), 22);
+  EXPECT_EQ(drive_commissioning_count(), 23);
   c.outcome = COMMISSIONING_ABORTED;
   EXPECT_EQ(drive_commissioning_result(0).id, 0);
 }
