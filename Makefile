@@ -46,6 +46,7 @@ bench: build ## measure how fast the simulation runs
 	@bash toolchain/bench.sh $(BUILD)
 
 isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
+	@bash toolchain/setup.sh build cortex
 	@$(PYTHON) toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
 
 image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
@@ -59,31 +60,30 @@ image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: 
 	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run
-	@bash toolchain/setup.sh build verify
+	@bash toolchain/setup.sh build llvm
 	@cmake --build --preset $(PRESET) --target stillspin_int16_trap
 	@$(PYTHON) toolchain/int16/compare_runs.py $(BUILD)/tests/int16/stillspin_int16_trap
 
 vectors: ## run the arithmetic's vectors on AVR, Cortex-M3 and M4 against a model in Python, and with planted defects
-	@bash toolchain/setup.sh build verify
+	@bash toolchain/setup.sh build avr cortex
 	@$(PYTHON) toolchain/vectors.py build/vectors
 	@$(PYTHON) toolchain/vectors.py build/vectors --defects
 
 cppcheck: ## read the drive's C with the C28x's widths, and planted defects
-	@bash toolchain/setup.sh build verify
+	@bash toolchain/setup.sh build cppcheck
 	@$(PYTHON) toolchain/cppcheck.py
 	@$(PYTHON) toolchain/cppcheck.py --defects
 
 prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted defects
-	@bash toolchain/setup.sh build verify
+	@bash toolchain/setup.sh build prove
 	@$(PYTHON) toolchain/prove.py build/prove
 	@$(PYTHON) toolchain/prove.py build/prove --defects
 
 mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC against toolchain/mcdc_budget.txt
-	@bash toolchain/setup.sh build verify
+	@bash toolchain/setup.sh build llvm
 	@$(PYTHON) toolchain/mcdc.py
 
-mutants: ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
-	@bash toolchain/setup.sh build verify
+mutants: setup ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
 
 verify: image-check cppcheck prove vectors int16 mcdc ## the checks that take long: image, cppcheck, prove, vectors, int16, mcdc

@@ -6,8 +6,8 @@
 #   3. the project's own Python package, editable, from sim_host/.
 #
 # When nothing is missing, nothing is fetched and the network is not touched.
-# Usage: toolchain/setup.sh [build|bench|verify]...   (groups of debian-packages.txt; default: build). `verify` also
-# installs opt and llc of the clang that there is.
+# Usage: toolchain/setup.sh [GROUP]...   (groups of debian-packages.txt; default: build). Group `llvm` is opt, llc and the
+# runtime libraries of the clang that there is.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -91,13 +91,20 @@ install_wanted() {
   fi
 }
 
-# The package with opt and llc of a clang ("clang-19" or "clang"), if they are wanted and not there.
+# What of group llvm is wanted and not there for a clang ("clang-19" or "clang").
 missing_llvm() {
-  [[ " ${groups[*]} " == *' verify '* ]] && ! command -v "opt${1#clang}" >/dev/null && echo "llvm${1#clang}"
+  [[ " ${groups[*]} " == *' llvm '* ]] || return 0
+  command -v "opt${1#clang}" >/dev/null || echo "llvm${1#clang}"
+  local version
+  if version=$("$1" -dumpversion 2>/dev/null); then
+    is_installed "libclang-rt-${version%%.*}-dev" || echo "libclang-rt-${version%%.*}-dev"
+  elif [[ $1 == *-* ]]; then
+    echo "libclang-rt${1#clang}-dev"
+  fi
 }
 
 install_debian_packages() {
-  local need_clang='' package clang llvm
+  local need_clang='' package clang llvm=()
   clang=$(bash toolchain/find-clang.sh) || need_clang=1
   if ! command -v dpkg-query >/dev/null; then
     say "not a Debian or Ubuntu machine: the packages of $table are taken to be there"
@@ -105,8 +112,8 @@ install_debian_packages() {
     return
   fi
   mapfile -t wanted < <(missing_packages)
-  llvm=$(missing_llvm "$clang") || llvm=''
-  if ((!${#wanted[@]})) && [[ -z $need_clang && -z $llvm ]]; then
+  mapfile -t llvm < <([[ -n $need_clang ]] || missing_llvm "$clang")
+  if ((!${#wanted[@]} && !${#llvm[@]})) && [[ -z $need_clang ]]; then
     return
   fi
   mkdir -p "$logs"
@@ -122,12 +129,12 @@ install_debian_packages() {
       "install any LLVM clang 14 or newer whose --print-targets names msp430, then run make again"
     say "  $clang: checks the firmware's C with a 16-bit int, as on the DSP"
     wanted+=("$clang")
-    llvm=$(missing_llvm "$clang") || llvm=''
+    mapfile -t llvm < <(missing_llvm "$clang")
   fi
-  if [[ -n $llvm ]]; then
-    say "  $llvm: makes code that runs here of C that was compiled with a 16-bit int"
-    wanted+=("$llvm")
-  fi
+  for package in ${llvm[@]+"${llvm[@]}"}; do
+    say "  $package: belongs to $clang; runs C that was compiled with a 16-bit int, and counts what the tests cover"
+    wanted+=("$package")
+  done
   install_wanted
 }
 
