@@ -115,7 +115,7 @@ static void step_ramp(drive_t* d, speed_controller_input_t* in) {
   const int32_t target = (d->state == DRIVE_STOP) ? 0 : c->target_bpp;
   in->reference_bpp = c->ramp.value;
   ramp_step(&c->ramp, ramp_waits(d, target) ? c->ramp.value : target, d->config.ramp_step_bpp);
-  in->reference_step_bpp = (d->config.ramp_step_bpp == 0) ? 0 : c->ramp.step;
+  in->reference_step_bpp = c->ramp.step;
   if (d->config.ramp_step_bpp == 0) in->reference_bpp = c->ramp.value;
 }
 

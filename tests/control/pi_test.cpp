@@ -67,7 +67,7 @@ TEST(Pi, ReleasesTowardsTheRealisedOutput) {
 }
 
 TEST(Ramp, MovesAtItsRateStopsAtTheTargetAndTellsItsStep) {
-  ramp_t r = {0, 0};
+  ramp_t r = {0, 0, 0};
   std::int32_t expected = 0;
   for (const std::int32_t target : {1000, -700, 123}) {
     for (int n = 0; n < 100; ++n) {
@@ -81,13 +81,25 @@ TEST(Ramp, MovesAtItsRateStopsAtTheTargetAndTellsItsStep) {
 }
 
 TEST(Ramp, RateZeroJumps) {
-  ramp_t r = {5, 5};
+  ramp_t r = {5, 5, 0};
   EXPECT_EQ(ramp_step(&r, -400, 0), -400);
   EXPECT_EQ(r.step, 0);
 }
 
+TEST(Ramp, TargetsThatMoveByThemselvesHaveASlope) {
+  ramp_t r = {0, 0, 0};
+  const struct {
+    std::int32_t target, step;
+  } calls[] = {{0, 0},     {300, 0}, {300, 0},  {290, 0}, {270, -10}, {255, -15},
+               {240, -15}, {250, 0}, {270, 10}, {270, 0}, {280, 0},   {-290, 0}};
+  for (const auto& [target, step] : calls) {
+    EXPECT_EQ(ramp_step(&r, target, 0), target);
+    EXPECT_EQ(r.step, step) << target;
+  }
+}
+
 TEST(Ramp, CrossesTheWholeRangeWithoutWrapping) {
-  ramp_t r = {INT32_MIN, 0};
+  ramp_t r = {INT32_MIN, 0, 0};
   std::int64_t last = INT32_MIN;
   for (int n = 0; n < 50; ++n) {
     const std::int32_t now = ramp_step(&r, INT32_MAX, 100000000);

@@ -48,7 +48,7 @@ std::vector<double> run(const Conditions& run_with) {
       raw(nominal.friction, 24), raw(nominal.inertia, 24), 10, raw(200.0, 8), raw(8.0, 8), raw(20.0, 8), raw(0.8, 12)};
   speed_controller_t s;
   EXPECT_TRUE(speed_controller_init(&s, &c, &m));
-  ramp_t ramp = {0, 0};
+  ramp_t ramp = {0, 0, 0};
   std::vector<double> rpm;
   for (int n = 0; n < run_with.steps; ++n) {
     shaft.load = (n >= run_with.load_at) ? run_with.load : 0.0;

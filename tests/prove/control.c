@@ -68,7 +68,7 @@ static void turn_vector(void) {
 
 static void limit_and_hold(void) {
   position_hold_t h = {false, 0, 0};
-  ramp_t r = {0, 0};
+  ramp_t r = {0, 0, 0};
   mtpa_t m;
   mtpa_design(&m, &model);
   while (any_bool()) {
