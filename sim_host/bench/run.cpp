@@ -115,6 +115,7 @@ class Director : public PeriodListener {
       for (const RawParameter& p : parameters_) set(p);
       configured_ = true;
     } else if (configured_ && !started_ && t >= kEarliestStart) {
+      give_first_reference();
       give({0.0, "start", 0.0});
       started_ = true;
       asked_ = t;
@@ -148,6 +149,15 @@ class Director : public PeriodListener {
     faults_.step(now, *board_);
     give_commands(now);
     if (request_.on_period) request_.on_period(now);
+  }
+
+  // What the drive is to do first it is told with the start: an I-F start turns the way that the reference says.
+  void give_first_reference() {
+    if (request_.commands.empty()) return;
+    const Command& first = request_.commands.front();
+    if (first.time > 0.0 || first.what != "speed_ref_rpm") return;
+    give(first);
+    next_command_++;
   }
 
   void give_commands(double now) {

@@ -1,7 +1,8 @@
 // One run of the virtual drive: power-on, start, a sequence of commands and loads, and a record of it.
 //
 // The firmware has static state, so one run at a time in a process. Time 0 of commands, loads, record and duration is
-// the moment at which the drive has finished its start procedure.
+// the moment at which the drive has finished its start procedure; a speed reference for time 0 is given with the start
+// already, as a user would: an I-F start turns the way that it says.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_RUN_HPP
 #define STILLSPIN_SIM_HOST_BENCH_RUN_HPP

@@ -150,12 +150,13 @@ TEST_P(Turned, TheSourceTakesOverFromTheVector) {
   const RunResult result = run(request);
   ASSERT_TRUE(result.completed) << result.reason;
   EXPECT_LT(error_between(result, 0.0, 0.6), 6.0);
+  EXPECT_NEAR(at(result, "true_speed", 0.0), GetParam().rpm, 45.0);  // the way it was told to turn, from the start on
   EXPECT_NEAR(at(result, "true_speed", 0.59), GetParam().rpm, 10.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sources, Turned,
                          testing::Values(Turn{4, 300.0, 500.0}, Turn{4, -300.0, 500.0}, Turn{7, 300.0, 40.0},
-                                         Turn{7, 300.0, 700.0}));
+                                         Turn{7, -300.0, 40.0}, Turn{7, 300.0, 700.0}, Turn{7, -300.0, 700.0}));
 
 TEST(Blocked, ABlockedShaftIsAFault) {
   RunRequest request = sensorless(0.1);

@@ -15,17 +15,17 @@ FLUX_ALONE = {"flux_low": 20.0, "flux_high": 40.0}
 BRAKE = {"coulomb_friction": 1.0, "stiction": 1.0}  # N m
 
 
-def start(motor, source, angle, mechanics, duration=1.0, **parameters):
-    """A start in profile `bench` and a second at 300 rpm."""
+def start(motor, source, angle, mechanics, speed=300.0, **parameters):
+    """A start in profile `bench` and a second at this speed, rpm."""
     native = importlib.import_module("stillspin._core")
     loaded = profile.load("bench", core.plant_schema(native), core.parameters(native), motor)
     plant = profile.merged(loaded.plant, {"initial": {"angle": angle}, "mechanics": mechanics})
     return native.run(
         plant=plant,
         parameters={**loaded.parameters, "position_source": source, "start_method": 1, **parameters},
-        commands=[(0.0, "speed_ref_rpm", 300.0)],
+        commands=[(0.0, "speed_ref_rpm", speed)],
         load=[],
-        duration=duration,
+        duration=1.0,
         max_start=5.0,
         record_every=10,
         waveform=(0.0, 0.0, 1),
@@ -34,22 +34,29 @@ def start(motor, source, angle, mechanics, duration=1.0, **parameters):
     )
 
 
-# The deviation observer, PP-02 and, on a machine without saliency, CONV and PP-02.
+# The deviation observer, PP-02 and, on a machine without saliency, CONV and PP-02; both ways.
+@pytest.mark.parametrize("speed", [300.0, -300.0])
 @pytest.mark.parametrize("angle", [0.3, 3.1, -1.6])
 @pytest.mark.parametrize(
     ("motor", "source", "parameters"),
-    [("B", 4, {}), ("B", 7, FLUX_ALONE), ("B-SPM", 5, FLUX_ALONE), ("B-SPM", 7, FLUX_ALONE)],
+    [
+        ("A", 7, FLUX_ALONE),
+        ("B", 4, {}),
+        ("B", 7, FLUX_ALONE),
+        ("B-SPM", 5, FLUX_ALONE),
+        ("B-SPM", 7, FLUX_ALONE),
+    ],
 )
-def test_the_source_takes_over_from_the_vector(motor, source, parameters, angle):
-    result = start(motor, source, angle, BRAKE, **parameters)
+def test_the_source_takes_over_from_the_vector(motor, source, parameters, angle, speed):
+    result = start(motor, source, angle, BRAKE, speed, **parameters)
     assert result.completed, result.reason
     signals = dict(result.signals)
     error = np.abs(metrics.position_error(signals))
-    time, speed = np.asarray(signals["time"]), np.asarray(signals["true_speed"])
+    time, turned = np.asarray(signals["time"]), np.asarray(signals["true_speed"])
     assert np.max(error) < 5.0  # from the first period on that it is used
     assert np.max(error[time > 0.7]) < 1.5
-    assert np.max(np.abs(speed - 300.0)) < 45.0
-    assert np.max(np.abs(speed[time > 0.7] - 300.0)) < 5.0
+    assert np.max(np.abs(turned - speed)) < 45.0
+    assert np.max(np.abs(turned[time > 0.7] - speed)) < 5.0
 
 
 def test_a_blocked_shaft_is_a_fault():
