@@ -123,6 +123,27 @@ TEST(BoardStore, SavedParametersAreInForceBeforeTheDriveIsReady) {
   EXPECT_LT(late, reading * 4.0 / 3.0);
 }
 
+// The usual rate until the saved one is known.
+TEST(BoardStore, ASavedBaudRateIsInForceAsSoonAsItIsRead) {
+  const auto rate = [](Powered& board) {
+    const unsigned divisor = board.chip.inspect(SCI_BASE(1) + SCI_HBAUD) << 8 | board.chip.inspect(SCI_BASE(1) + SCI_LBAUD);
+    return 50e6 / 8.0 / (divisor + 1.0);  // the low-speed clock
+  };
+  Eeprom eeprom;
+  {
+    Powered first(&eeprom);
+    first.run_for(60 * kMs);
+    EXPECT_NEAR(rate(first), 115200.0, 0.02 * 115200.0);
+    ASSERT_EQ(parameter_set(200, 57600), SET_OK);
+    ASSERT_EQ(save(first), STORE_SAVED);
+  }
+  Powered again(&eeprom);
+  again.run_for(10 * kMs);
+  EXPECT_NEAR(rate(again), 115200.0, 0.02 * 115200.0) << "still reading";
+  again.run_for(100 * kMs);
+  EXPECT_NEAR(rate(again), 57600.0, 0.01 * 57600.0);
+}
+
 TEST(BoardStore, TheMemoryHangsAtPowerOn) {
   Eeprom eeprom;
   {

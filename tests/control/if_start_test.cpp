@@ -145,6 +145,24 @@ TEST(IfStart, RefusesASpringThatIsTooSlowOrTooFast) {
   EXPECT_FALSE(if_start_design(&c, &fast, &strong));
 }
 
+// An eighth of the speed's EMF is what the mean counts for near standstill, lambda w / 8; half a raw number of it is
+// the most that is lost. The steps of the speed are one at least.
+TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
+  const Motor m = motor_b();
+  if_start_parameters_t p = usual();
+  const if_start_config_t c = designed(m, p);
+  EXPECT_NEAR(real(c.least_q16, 16), 125.7 * m.flux / 8.0, 1e-4);
+  EXPECT_NEAR(real(c.per_emf_q4, 4) / bpp(1.0 / m.flux), 1.0, 3e-6);
+  // (w0 T)^2 = 1.5 p^2 lambda I / J T^2
+  const double w0 = std::sqrt(1.5 * 16.0 * m.flux * 8.0 / m.inertia);
+  EXPECT_NEAR(c.damping_periods, 1.0 / (w0 * kPeriod), 1.0);
+  p.step_bpp = 0;
+  EXPECT_EQ(designed(m, p).step_bpp, 1);
+  p.step_bpp = 7;
+  EXPECT_EQ(designed(m, p).step_bpp, 7);
+  EXPECT_NE(IF_START_TAKEN_OVER, IF_START_FAILED);
+}
+
 // A quarter turn behind first, whichever way it will turn, then where it begins.
 TEST(IfStart, ItRisesAQuarterTurnBehind) {
   const if_start_config_t c = designed(motor_b(), usual());

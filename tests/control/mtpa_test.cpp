@@ -82,6 +82,27 @@ TEST(Mtpa, WithoutSaliencyThereIsNone) {
   EXPECT_EQ(chosen(spm, 100.0), 0.0);
 }
 
+// What was there before is forgotten, also where there is nothing in its place.
+TEST(Mtpa, AMachineWithoutSaliencyReplacesOneWithIt) {
+  mtpa_t s;
+  Motor motor;
+  for (const double lq : {7.8e-3, 4.9e-3, 4.94e-3}) {
+    motor.lq = lq;
+    const machine_model_t m = model_of(motor);
+    mtpa_design(&s, &m);
+    EXPECT_EQ(mtpa_current_q20(&s, raw(10.0, 20)) < 0, lq > 5e-3);
+  }
+}
+
+// From 200 A on the current along d stays where it is.
+TEST(Mtpa, CurrentsCountUpTo200Amperes) {
+  const Motor motor;
+  const double a = motor.flux / (2.0 * (motor.lq - motor.ld));
+  EXPECT_NEAR(chosen(motor, 199.9), -199.9 * 199.9 / (a + std::hypot(a, 199.9)), 0.002);
+  EXPECT_EQ(chosen(motor, 200.0), chosen(motor, 300.0));
+  EXPECT_LT(chosen(motor, 200.0), chosen(motor, 199.9));
+}
+
 TEST(Mtpa, NeverPositiveAndBoundedWhateverIsAsked) {
   const machine_model_t m = model_of(Motor{});
   mtpa_t s;
