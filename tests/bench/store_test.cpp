@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -10,11 +11,11 @@
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/virtual_board.hpp"
+#include "tests/firmware/slot_of.hpp"
 
 extern "C" {
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
-#include "firmware/store/slot.h"
 #include "firmware/store/store.h"
 }
 
@@ -126,7 +127,8 @@ TEST(BoardStore, SavedParametersAreInForceBeforeTheDriveIsReady) {
 // The usual rate until the saved one is known.
 TEST(BoardStore, ASavedBaudRateIsInForceAsSoonAsItIsRead) {
   const auto rate = [](Powered& board) {
-    const unsigned divisor = board.chip.inspect(SCI_BASE(1) + SCI_HBAUD) << 8 | board.chip.inspect(SCI_BASE(1) + SCI_LBAUD);
+    const unsigned divisor =
+        board.chip.inspect(SCI_BASE(1) + SCI_HBAUD) << 8 | board.chip.inspect(SCI_BASE(1) + SCI_LBAUD);
     return 50e6 / 8.0 / (divisor + 1.0);  // the low-speed clock
   };
   Eeprom eeprom;
@@ -142,6 +144,19 @@ TEST(BoardStore, ASavedBaudRateIsInForceAsSoonAsItIsRead) {
   EXPECT_NEAR(rate(again), 115200.0, 0.02 * 115200.0) << "still reading";
   again.run_for(100 * kMs);
   EXPECT_NEAR(rate(again), 57600.0, 0.01 * 57600.0);
+}
+
+// So little is read before the converter is up: it is in force all the same, and the drive waits for its configuration.
+TEST(BoardStore, AMemoryThatIsReadAtOnceIsInForce) {
+  Eeprom eeprom;
+  const std::vector<std::uint16_t> slot = test::slot_of(SLOT_VERSION, 1, {{20, 16, 117965}});  // dead_time 1.8 us
+  std::copy(slot.begin(), slot.end(), eeprom.memory().begin());
+  Powered board(&eeprom);
+  board.run_for(100 * kMs);
+  EXPECT_EQ(store_state(), STORE_MIGRATED);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(drive.loading);
+  EXPECT_EQ(board.chip.inspect(EPWM_BASE(1) + EPWM_DBRED), 180);
 }
 
 TEST(BoardStore, TheMemoryHangsAtPowerOn) {

@@ -93,6 +93,18 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
   }
 }
 
+// Two places later the regression is asked; what saw nothing then is not asked back.
+TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
+  for (const bool near : {true, false}) {
+    run_with(POSITION_OBSERVER);
+    drive.position.now = 1;
+    drive.position.is_near = near;
+    drive.position.observer.regression = {};
+    drive_estimate(&drive);
+    EXPECT_EQ(drive.position.is_near, near && avv_angle_is_near(&drive.position.observer.regression, &drive.model));
+  }
+}
+
 // The flux is alone when the blend has come up all the way and the polarity is no question any more.
 TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
   const struct {

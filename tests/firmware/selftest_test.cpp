@@ -139,6 +139,8 @@ TEST_F(SelfTest, ComparesTheFlashWithTheSumOfTheImage) {
   selftest_look();
   services(100, kService);
   EXPECT_EQ(words(), "under way");
+  while (selftest.pair < HAL_SELFTEST_PAIRS) (void)selftest_service();
+  EXPECT_EQ(words(), "under way") << "the flash takes longer than the RAM";
   whole_ram();
   EXPECT_EQ(words(), "passed");
   for (const std::uint32_t place : {0x0u, 0x1Fu, 0x2Eu, 0x4FFFu}) {

@@ -7,10 +7,9 @@
 
 #include "tests/firmware/fake_hal.hpp"
 #include "tests/firmware/fake_nvm.hpp"
+#include "tests/firmware/slot_of.hpp"
 
 extern "C" {
-#include "firmware/link/crc.h"
-#include "firmware/store/slot.h"
 #include "firmware/store/store.h"
 #include "firmware/store/values.h"
 }
@@ -93,18 +92,7 @@ class Store : public Drive {
     return entries;
   }
   static void put(unsigned slot, const Image& image) {
-    std::vector<std::uint16_t> octets(SLOT_HEADER);
-    const slot_header_t header = {SLOT_MAGIC, image.version, static_cast<std::uint16_t>(image.entries.size()),
-                                  image.sequence, static_cast<std::uint16_t>(image.entries.size() * SLOT_ENTRY)};
-    slot_pack_header(&header, octets.data());
-    for (const slot_entry_t& entry : image.entries) {
-      octets.resize(octets.size() + SLOT_ENTRY);
-      slot_pack_entry(&entry, octets.data() + octets.size() - SLOT_ENTRY);
-    }
-    const std::uint32_t crc =
-        crc32(octets.data() + SLOT_MAGIC_OCTETS, static_cast<std::uint16_t>(octets.size() - SLOT_MAGIC_OCTETS));
-    octets.resize(octets.size() + SLOT_CHECK);
-    slot_pack_u32(crc, octets.data() + octets.size() - SLOT_CHECK);
+    const std::vector<std::uint16_t> octets = slot_of(image.version, image.sequence, image.entries);
     std::copy(octets.begin(), octets.end(), nvm.memory.begin() + slot * SLOT_SIZE);
   }
   static std::vector<slot_entry_t> entries_of(unsigned slot) {
