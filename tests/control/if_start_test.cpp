@@ -171,6 +171,7 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
     if_start_t s;
     if_start_begin(&s, bam(1.0), backward);
     EXPECT_NEAR(wrapped(rad(s.vector_bam) - (1.0 - way * kPi / 2.0)), 0.0, 1e-6);
+    EXPECT_EQ(s.angle_bam, s.vector_bam);
     for (int n = 1; n <= 999; ++n) {
       (void)if_start_step(&s, &c, {0, 0}, 0, 0);
       EXPECT_NEAR(real(s.current_q20, 20), 8.0 * std::min(n / 500.0, 1.0), 1e-3);

@@ -62,7 +62,10 @@ void check(const Design& wanted) {
   const double exact = weight / (weight + 1.0);
   const double x = d.motor.friction * d.step() / d.motor.inertia;
   ASSERT_NEAR(real(s.gains.share_q30, 30), exact, 2e-4 + (x + 2e-3) * exact * (1.0 - exact) + 2e-5 / (weight + 1.0));
-  ASSERT_NEAR(real(s.approach_q30, 30), -std::expm1(-d.step() / d.trajectory), 1e-3);
+  const double approach = -std::expm1(-d.step() / (real(c.trajectory_ms_q8, 8) * 1e-3));
+  ASSERT_NEAR(real(s.approach_q30, 30) / approach, 1.0, 6e-5);  // the trajectory in whole periods of 2 ms and more
+  ASSERT_EQ(s.current_q20, 0);
+  ASSERT_EQ(s.integral_q20, 0);
   // PI: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, in A per bpp
   const double j_kt = d.motor.inertia / d.motor.torque_constant() / d.bpp_per_rad_s();
   const double kp = 2.0 * d.damping * d.bandwidth * j_kt;
