@@ -2,7 +2,7 @@
 
 A build folder of its own holds the tests as `make build` makes them. A mutant's object is linked before the library
 that has the original, which is then not taken from the library. A changed header is laid over the tree by the include
-path, for the floors' sources that use it and for the tests that include it themselves.
+path, for the floors' sources that use it and for the tests that include it, or by a header of theirs.
 """
 
 import hashlib
@@ -59,15 +59,19 @@ class Board:
     needs: dict[str, set[str]] = field(default_factory=dict)  # a source's files
 
     def uses(self, file: str) -> list[str]:
-        """The floors' sources that a changed file changes, and the tests that include it themselves."""
+        """The floors' sources that a changed file changes, and the tests that include it, or by a header of theirs."""
         if file.endswith(".c"):
             return [file]
         told = f'#include "{file}"'
+
+        def includes(source: str, files: set[str]) -> bool:
+            own = (path for path in (source, *files) if path.startswith("tests/"))
+            return source.startswith("tests/") and any(told in (ROOT / path).read_text("utf-8") for path in own)
+
         return sorted(
             source
             for source, files in self.needs.items()
-            if file in files
-            and (source.startswith(FLOORS) or (source.startswith("tests/") and told in (ROOT / source).read_text()))
+            if file in files and (source.startswith(FLOORS) or includes(source, files))
         )
 
 
