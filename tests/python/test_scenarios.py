@@ -102,6 +102,13 @@ NAMEPLATE = {
     ("A18c", "loaded_3000_position_error_peak"): (0.2, 6.0),
     ("A18c", "loaded_3000_speed_error_share"): (0.0, 2.0),
 }
+# Motor B in profile `ideal`: smallest credible value; the largest is the scenario's own goal.
+IDEAL_B = {
+    ("B18", "pp02_position_error_peak"): 0.005,
+    ("B22", "position_error_peak"): 0.3,
+    ("B23", "minus_10_detection_error"): 0.01,
+    ("B23", "minus_20_detection_error"): 0.01,
+}
 
 
 def stillspin(*words: str) -> subprocess.CompletedProcess[str]:
@@ -143,6 +150,19 @@ def test_figures_lie_within_their_bounds(campaign: Path) -> None:
     assert (campaign / "nameplate.json").exists() != ideal
     if not ideal:
         assert not beyond(figures(campaign / "nameplate.json"), NAMEPLATE)
+
+
+def test_motor_b_meets_its_goals(tmp_path: Path) -> None:
+    """PP-02 at speed under load, what (36) and what (37) learn: the shortest of the scenarios on motor B."""
+    ids = sorted({scenario for scenario, _ in IDEAL_B})
+    words = ["--profile", "ideal", "--no-paper-scheme", "--out", str(tmp_path / "out")]
+    done = stillspin("reproduce", *ids, *words)
+    assert done.returncode == 0, f"a run broke off:\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
+    found = figures(tmp_path / "out" / "metrics.json")
+    goals = {(scenario, name): one["goal"] for scenario, row in found.items() for name, one in row.items()}
+    committed = {key: goal for key, goal in goals.items() if goal is not None}
+    assert committed.keys() == IDEAL_B.keys()  # whatever has a goal has a bound
+    assert not beyond(found, {key: (low, committed[key]) for key, low in IDEAL_B.items()})
 
 
 def test_the_predictive_controller_beats_pi(campaign: Path) -> None:
