@@ -3,6 +3,8 @@
 #define ONE_Q24 ((int32_t)16777216L)
 #define EMF_END_Q16 2097152000L    // 32000 V
 #define RATIO_END_Q24 2097152000L  // 125
+#define T_END_Q24 187904819L       // 11.2: its square is below the largest r
+#define TILT_END_Q24 1056964608L   // 63: of K_dd, which counts twice
 #define K0_END_Q20 2097152000L     // 2000 A per period
 
 static bool parameters_valid(const machine_parameters_t* p) {
@@ -27,13 +29,13 @@ static void place_flux(machine_model_t* m, int32_t iq_q20) {
 
 // K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
 static void turn_with_admittance(machine_model_t* m) {
-  const int32_t t_q24 = q_over(m->ydq_q30, m->per_yq, 24);
+  const int32_t t_q24 = q_limit(q_over(m->ydq_q30, m->per_yq, 24), T_END_Q24);
   const int32_t r_q24 = q_over(m->yd_q30, m->per_yq, 24);
   const int32_t t2_q24 = q_mul(t_q24, t_q24, 24);
   const int32_t per_det_q24 = q_over(ONE_Q24, q_invert(r_q24 - t2_q24), 24);
   const int32_t g_q24 = q_mul_sat(q_add_sat(r_q24, ONE_Q24), per_det_q24, 24);
-  m->k_dd_q24 = -q_mul_sat(t_q24, g_q24, 24);
-  m->k_dq_q24 = r_q24 - ONE_Q24 + q_mul_sat(t2_q24, g_q24, 24);
+  m->k_dd_q24 = -q_limit(q_mul_sat(t_q24, g_q24, 24), TILT_END_Q24);
+  m->k_dq_q24 = q_add_sat(r_q24 - ONE_Q24, q_mul_sat(t2_q24, g_q24, 24));
   m->k_qd_q24 = ONE_Q24 - q_mul_sat(ONE_Q24 + t2_q24, per_det_q24, 24);
 }
 

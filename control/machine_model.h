@@ -27,7 +27,8 @@ typedef struct {
   int32_t period_us;    // PWM period, microseconds, 20..500
 } machine_parameters_t;
 
-#define MACHINE_PSI_HASTE_Q30 10737418L  // 1/100
+#define MACHINE_SPEED_END_BPP 1298773986L  // 1.9 rad per period: the fastest that the model's formats hold
+#define MACHINE_PSI_HASTE_Q30 10737418L    // 1/100
 
 /// What the drive learns while it runs, added to what the parameters say.
 typedef struct {

@@ -1,6 +1,7 @@
 #include "estimators/deviation.h"
 
-#define PER_TICK_Q32 429496L  // 1 / ESTIMATOR_PERIOD_TICKS, rounded down: half a period of ticks stays in 31 bits
+#define PER_TICK_Q32 429496L    // 1 / ESTIMATOR_PERIOD_TICKS, rounded down: half a period of ticks stays in 31 bits
+#define LOST_MAX_Q16 98304000L  // 1500 V over the resistance: more the samples alone can say
 #define ONE_SIXTH_Q32 715827883L
 #define ONE_TWELFTH_Q32 357913941L
 
@@ -64,7 +65,8 @@ deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t 
   const int32_t q_q24 = 2 * m->k_dd_q24;
   const dq_t turn = {q_mul_sub_floor(q_q24, i.q, p_q24, i.d, 24) - m->k0_q20.q,
                      q_mul_add_floor(q_q24, i.d, p_q24, i.q, 24) + m->k0_q20.d};
-  const dq_t lost_q16 = {q_mul_floor(m->rs_q24, i.d, 28), q_mul_floor(m->rs_q24, i.q, 28)};
+  const dq_t lost_q16 = {q_limit(q_mul_floor(m->rs_q24, i.d, 28), LOST_MAX_Q16),
+                         q_limit(q_mul_floor(m->rs_q24, i.q, 28), LOST_MAX_Q16)};
   deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, -2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
   const dq_t lost_q18 = deviation_by_angle_q18(&s, lost_q16);
   s.rest_q18.d = q_mul_hi(turn.d, w_q30) - lost_q18.d;

@@ -68,7 +68,7 @@ void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int3
       .p_aa = ANGLE_VARIANCE, .p_ss = SPEED_VARIANCE, .p_ll = LOAD_VARIANCE, .score_power_q24 = POWER_START};
   *s = uncertain;
   s->angle_bam = angle_bam;
-  s->speed_bpp = speed_bpp;
+  s->speed_bpp = q_limit(speed_bpp, MACHINE_SPEED_END_BPP);
   s->load_accel_q8 = load_accel_q8;
 }
 
@@ -140,7 +140,7 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
   const int32_t change = q_shr(change_q8, 8);
   s->angle_bam += (uint32_t)(s->speed_bpp + change / 2);
   s->speed_bpp += change;
-  s->speed_rest_q8 = change_q8 - change * 256;
+  s->speed_rest_q8 = (int32_t)((uint32_t)change_q8 & 255u);
 }
 
 // The covariance over the periods since it was last renewed; a period is 1/64 of the unit of time.
@@ -225,9 +225,9 @@ static gain_t times_information(const deviation_gathered_t* n, int32_t x_a_q20, 
   return g;
 }
 
-// Row of P (1 + I P)^-1, Q20; inverse: the four elements of (1 + I P)^-1, Q24.
+// Row of P (1 + I P)^-1, Q20; inverse: the four elements of (1 + I P)^-1, Q24, those across with the other sign.
 static gain_t gain_row(const int32_t inverse[4], int32_t p_a, int32_t p_s) {
-  const gain_t k = {q_mul_add(p_a, inverse[0], p_s, inverse[2], 24), q_mul_add(p_a, inverse[1], p_s, inverse[3], 24)};
+  const gain_t k = {q_mul_sub(p_a, inverse[0], p_s, inverse[2], 24), q_mul_sub(p_s, inverse[3], p_a, inverse[1], 24)};
   return k;
 }
 
@@ -254,18 +254,18 @@ static void renew(deviation_observer_t* s) {
   const int32_t m_ss = gs.s + 65536L;
   const int32_t det_q12 = q_max(q_mul_sub_sat(m_aa, m_ss, gs.a, ga.s, 20), 4096);
   const int32_t per_det_q30 = q_over(4096, q_invert(det_q12), 30);
-  const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), -q_mul_sat(gs.a, per_det_q30, 22),
-                              -q_mul_sat(ga.s, per_det_q30, 22), q_mul_sat(m_aa, per_det_q30, 22)};
+  const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), q_mul_sat(gs.a, per_det_q30, 22),
+                              q_mul_sat(ga.s, per_det_q30, 22), q_mul_sat(m_aa, per_det_q30, 22)};
   const gain_t ka = gain_row(inverse, s->p_aa, s->p_as);
-  const int32_t p_ss = q_mul_add(s->p_as, inverse[1], s->p_ss, inverse[3], 24);
+  const int32_t p_ss = q_mul_sub(s->p_ss, inverse[3], s->p_as, inverse[1], 24);
   const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
   // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
-  s->p_ll = positive(s->p_ll - q_mul_add(kl.a, gl.a, kl.s, gl.s, 16));
+  s->p_ll = positive(q_sub_sat(s->p_ll, q_mul_add(kl.a, gl.a, kl.s, gl.s, 16)));
   s->p_aa = positive(ka.a);
-  s->p_as = ka.s;
+  s->p_as = q_limit(ka.s, VARIANCE_MAX);
   s->p_ss = positive(p_ss);
-  s->p_al = kl.a;
-  s->p_sl = kl.s;
+  s->p_al = q_limit(kl.a, VARIANCE_MAX);
+  s->p_sl = q_limit(kl.s, VARIANCE_MAX);
   limit(&s->p_aa, &s->p_as, &s->p_al);
   limit(&s->p_ss, &s->p_as, &s->p_sl);
   limit(&s->p_ll, &s->p_al, &s->p_sl);
@@ -279,7 +279,7 @@ static int32_t scored(int32_t k_a, int32_t k_s, const information_t* n) {
 
 static void correct(deviation_observer_t* s, const information_t* n) {
   s->angle_bam += (uint32_t)q_mul_hi(scored(s->p_aa, s->p_as, n), BAM_PER_UNIT_Q7) * 32u;
-  s->speed_bpp += q_mul_hi(scored(s->p_as, s->p_ss, n), BPP_PER_UNIT_Q12);
+  s->speed_bpp = q_limit(s->speed_bpp + q_mul_hi(scored(s->p_as, s->p_ss, n), BPP_PER_UNIT_Q12), MACHINE_SPEED_END_BPP);
   const int32_t load_q8 = -q_mul_floor(scored(s->p_al, s->p_sl, n), ACCEL_Q8_PER_UNIT, 20);
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
 }

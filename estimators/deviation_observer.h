@@ -61,7 +61,7 @@ typedef struct {
 
 typedef struct {
   uint32_t angle_bam;
-  int32_t speed_bpp;
+  int32_t speed_bpp;  // within 1.9 rad per period
   int32_t load_accel_q8;
   int32_t speed_rest_q8;
   int32_t p_aa, p_as, p_al, p_ss, p_sl, p_ll;  // covariance of angle, speed, (minus) load acceleration, Q20

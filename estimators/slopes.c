@@ -2,6 +2,7 @@
 
 #define PERIOD_Q17 ((int32_t)1310720000L)  // ESTIMATOR_PERIOD_TICKS
 #define CHANGE_Q15 ((int32_t)32768)        // 4095 codes of 4 and 4 conversions stay in 31 bits,
+#define SLOPE_BITS 30u                     // 1024 A per period: a vector of them is turned in 31 bits
 #define SUM_Q13 ((int32_t)8192)            // and those of both bursts
 
 void slopes_design(slopes_config_t* c) {
@@ -43,8 +44,8 @@ void slopes_evaluate(const slopes_scale_t* c, const slopes_sums_t* sums, estimat
   const int32_t sum_b_q13 = (end_b + start_b) * SUM_Q13 - c->offset_b_q13;
   const int64_t alpha_q36 = q_product(alpha_of(c, change_a_q15), per_period_q17);
   const int64_t beta_q36 = q_product(beta_of(c, change_a_q15, change_b_q15), per_period_q17);
-  w->slope_q20.alpha = q_sat64(q_shr64(alpha_q36, 16));
-  w->slope_q20.beta = q_sat64(q_shr64(beta_q36, 16));
+  w->slope_q20.alpha = q_sat_bits(alpha_q36, 16, SLOPE_BITS);
+  w->slope_q20.beta = q_sat_bits(beta_q36, 16, SLOPE_BITS);
   // Both bursts together are twice the current: Q17 of the sum is Q18 of it.
   w->current_q20.alpha = alpha_of(c, sum_a_q13) * 4;
   w->current_q20.beta = beta_of(c, sum_a_q13, sum_b_q13) * 4;

@@ -38,7 +38,7 @@ void stator_flux_preset(stator_flux_t* s, const stator_flux_config_t* c, ab_t fl
 
 // The trapezoidal rule: psi+ - psi = e - w_c T (psi+ + psi)/2. With it the low-pass has the lag of the continuous one.
 static int32_t leaked(int32_t flux_q16, int32_t emf_q16, int32_t half_q30, int32_t keep_q30) {
-  return flux_q16 + q_mul_sat(q_sub_sat(emf_q16, q_mul(flux_q16, half_q30, 29)), keep_q30, 30);
+  return q_add_sat(flux_q16, q_mul_sat(q_sub_sat(emf_q16, q_mul(flux_q16, half_q30, 29)), keep_q30, 30));
 }
 
 static void step_bare(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16) {

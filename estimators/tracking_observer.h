@@ -11,7 +11,7 @@
 
 typedef struct {
   uint32_t angle_bam;
-  int32_t speed_bpp;
+  int32_t speed_bpp;  // within 1.9 rad per period
   int32_t load_accel_q8;
   int32_t speed_rest_q8;  // what of the acceleration was less than one unit of speed
 } tracking_observer_t;

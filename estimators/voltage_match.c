@@ -13,9 +13,9 @@ static bool hurry(machine_model_t* m, int32_t e_q16, int32_t w_q16, int32_t shar
   machine_trim_t* const t = &m->trim;
   const int32_t speed_q16 = q_abs_sat(w_q16);
   if (speed_q16 < HASTE_MIN_Q16 || t->psi_haste_q30 / HASTE_OVER <= share_q30) return false;
-  const int32_t along_q16 = (w_q16 < 0) ? -e_q16 : e_q16;
+  const int32_t along_q16 = (w_q16 < 0) ? q_neg_sat(e_q16) : e_q16;
   const int32_t error_q16 = q_mul_sat(q_over(along_q16, q_invert(speed_q16), 16), SPEED_UNITS_Q8, 8);
-  t->psi_q16 -= q_mul(error_q16, t->psi_haste_q30, 30);
+  t->psi_q16 = q_sub_sat(t->psi_q16, q_mul(error_q16, t->psi_haste_q30, 30));
   t->psi_haste_q30 -= q_mul(t->psi_haste_q30, t->psi_haste_q30, 30);
   return true;
 }
@@ -45,8 +45,8 @@ void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30
     const int32_t step_q22 = q_mul_sat(q_over(e_q16, per_power, 16), share_q30, 24);
     // What the back-EMF leaves at speed is not the resistance's: it learns with its part of the power only.
     const int32_t slow_q22 = q_mul(step_q22, q_over(still_q16, per_power, 30), 30);
-    t->rs_q24 -= q_mul_sat(slow_q22, i_q16, 16);  // a volt is 1/4 ohm
-    t->psi_q16 -= q_mul_sat(q_mul_sat(step_q22, w_q16, 16), SPEED_UNITS, 6);
+    t->rs_q24 = q_sub_sat(t->rs_q24, q_mul_sat(slow_q22, i_q16, 16));  // a volt is 1/4 ohm
+    t->psi_q16 = q_sub_sat(t->psi_q16, q_mul_sat(q_mul_sat(step_q22, w_q16, 16), SPEED_UNITS, 6));
   }
   bound(m);
 }

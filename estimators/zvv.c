@@ -23,8 +23,8 @@ static void see(seen_t* sum, const machine_model_t* m, const estimator_window_t*
                 int32_t emf_q16) {
   const dq_t slope = frame_park(w->slope_q20, f->rotation);
   const dq_t drop = frame_park(w->voltage_q16, f->rotation);
-  const int32_t volts_q16 = q_mul(m->rs_q24, f->current_q20.q, 28) + emf_q16 - drop.q;
-  sum->deviation_q20 += slope.q + q_mul(m->yq_q30, volts_q16, 26);
+  const int32_t volts_q16 = q_sub_sat(q_add_sat(q_mul_sat(m->rs_q24, f->current_q20.q, 28), emf_q16), drop.q);
+  sum->deviation_q20 = q_add_sat(sum->deviation_q20, q_add_sat(slope.q, q_mul_sat(m->yq_q30, volts_q16, 26)));
   sum->volts_q16 -= drop.d;
 }
 
@@ -34,7 +34,7 @@ static bool mean_deviation(const estimator_input_t* in, uint32_t angle_bam, int3
   int32_t count = 0;
   estimator_frame_t own[ESTIMATOR_WINDOWS];
   const estimator_frame_t* f = in->frames;
-  const int32_t emf_q16 = q_mul(in->model->emf_q16, machine_speed_rad_q30(emf_bpp), 30);
+  const int32_t emf_q16 = q_mul_sat(in->model->emf_q16, machine_speed_rad_q30(emf_bpp), 30);
   if (f == 0) {
     deviation_frames(in->windows, in->window_count, deviation_middle(angle_bam, speed_bpp),
                      machine_speed_rad_q30(speed_bpp), own);
@@ -71,8 +71,8 @@ estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_inp
   const bool seen = mean_deviation(in, s->angle_bam, s->speed_bpp, q_shr(s->integral_q8bpp, 8), &mean);
   s->deviation_q20 = mean.deviation_q20;
   // Kq in A per period and rad (24). What the devices take along the d-axis acts like R i_d.
-  const int32_t volts_q16 = q_mul(m->rs_q24, id_reference_q20, 28) + mean.volts_q16;
-  const int32_t kq_q20 = -q_mul(m->yd_q30 - m->yq_q30, volts_q16, 26);
+  const int32_t volts_q16 = q_add_sat(q_mul_sat(m->rs_q24, id_reference_q20, 28), mean.volts_q16);
+  const int32_t kq_q20 = q_neg_sat(q_mul_sat(m->yd_q30 - m->yq_q30, volts_q16, 26));
   const bool usable = seen && kq_q20 != 0;
   if (usable) {
     const int32_t error_rad_q24 = q_clamp(q_div(s->deviation_q20, kq_q20, 24), -16777216L, 16777216L);

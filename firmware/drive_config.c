@@ -9,6 +9,7 @@
 #include "hal/hal_adc.h"
 
 #define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
+#define K0_MAX_Q20 1048576000L         // lambda/L of 1000 A
 #define CRAWL_MAX_RPM_Q16 655360L      // where cogging is learnt
 #define HOLD_BELOW_RPM_Q16 1310720L    // 20 rpm
 #define COGGING_MAX_Q20 1048576L       // 1 N m
@@ -38,6 +39,27 @@ static bool load_map(machine_model_t* m) {
   return machine_model_saturate(m, &map);
 }
 
+// What the estimators make of a point of the map fits their formats; of h (machine_model.h) with the largest current
+// that two sensors show together, twice their full scale.
+static bool point_fits(const machine_model_t* m) {
+  const int32_t k0_q20 = q_max(q_abs_sat(m->k0_q20.d), q_abs_sat(m->k0_q20.q));
+  const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
+  const int32_t k_q24 = q_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
+  const int32_t turn_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
+  return m->yd_q30 <= ADMITTANCE_MAX_Q30 && q_abs_sat(m->ydq_q30) <= ADMITTANCE_MAX_Q30 / 4 * 3 &&
+         k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
+}
+
+static bool fits_formats(machine_model_t* m) {
+  bool fits = true;
+  for (int32_t k = 0; k < MACHINE_MAP_POINTS; k++) {
+    machine_model_move(m, parameters.map_current / MACHINE_MAP_SEGMENTS * k);
+    fits = fits && point_fits(m);
+  }
+  machine_model_move(m, 0);
+  return fits;
+}
+
 static bool load_machine(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   machine_parameters_t m;
@@ -48,8 +70,7 @@ static bool load_machine(drive_config_t* c) {
   m.inertia_q24 = p->inertia;
   m.pole_pairs = p->pole_pairs;
   m.period_us = DRIVE_PERIOD_US;
-  if (!machine_model_init(&c->nameplate, &m) || c->nameplate.yd_q30 > ADMITTANCE_MAX_Q30) return false;
-  if (!load_map(&c->nameplate)) return false;
+  if (!machine_model_init(&c->nameplate, &m) || !load_map(&c->nameplate) || !fits_formats(&c->nameplate)) return false;
   // rpm to binary angle per period: pole pairs / 60 s * T * 2^32 = 7158.2788 per pole pair.
   c->bpp_per_rpm_q8 = p->pole_pairs * 1832519L;
   c->rpm_per_bpp_q40 = q_div(16777216L, c->bpp_per_rpm_q8, 24);

@@ -106,7 +106,7 @@ static void refer(drive_t* d) {
   hysteresis_t* const h = &d->hysteresis;
   const int32_t slices = (int32_t)(HAL_PWM_PERIOD_TICKS / slice_ticks());
   const int32_t speed = d->position.used.speed_bpp;
-  const int32_t passed_q30 = (int32_t)hal_pwm_period_tick() * 107374L;
+  const int32_t passed_q30 = q_min((int32_t)hal_pwm_period_tick(), HAL_PWM_PERIOD_TICKS) * 107374L;
   const uint32_t angle = d->position.used.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
   const abc_t now = reference_codes_q8(d, angle);
   const abc_t then = reference_codes_q8(d, angle + (uint32_t)speed);

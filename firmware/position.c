@@ -282,8 +282,9 @@ void drive_estimate(drive_t* d) {
   d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
 }
 
-void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
+void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   drive_position_t* const p = &d->position;
+  const int32_t speed_bpp = q_limit(seen_bpp, MACHINE_SPEED_END_BPP);
   avv_preset(&p->avv, angle_bam, speed_bpp, 0);
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
@@ -298,7 +299,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
 
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   d->position.encoder_offset_bam = angle_bam - encoder_angle(d);
-  tracking_observer_preset(&d->position.encoder, angle_bam, speed_bpp, 0);
+  tracking_observer_preset(&d->position.encoder, angle_bam, q_limit(speed_bpp, MACHINE_SPEED_END_BPP), 0);
 }
 
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {

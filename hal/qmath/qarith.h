@@ -44,7 +44,7 @@ static inline int32_t q_clamp(int32_t x, int32_t lo, int32_t hi) {
   return (x > hi) ? hi : x;
 }
 
-// x limited to -limit..limit, limit = 0..2^30: one comparison where nothing has to be limited.
+// x limited to -limit..limit, limit = 0..2^31 - 1: one comparison where nothing has to be limited.
 static inline int32_t q_limit(int32_t x, int32_t limit) {
   if ((uint32_t)x + (uint32_t)limit <= 2u * (uint32_t)limit) {
     return x;
@@ -62,6 +62,16 @@ static inline int32_t q_sat64(int64_t x) {
     return low;  // one comparison where nothing has to be limited
   }
   return (x < 0) ? INT32_MIN : INT32_MAX;
+}
+
+// floor(x / 2^n) limited to -2^bits..2^bits - 1: what leaves room for a sum behind it. n + bits = 32..62.
+static inline int32_t q_sat_bits(int64_t x, unsigned n, unsigned bits) {
+  const int32_t above = (int32_t)q_shr64(x, n + bits);
+  if (above == q_shr(above, 31)) {
+    return (int32_t)(uint32_t)((uint64_t)x >> n);  // one comparison where nothing has to be limited
+  }
+  const int32_t end = (int32_t)((uint32_t)1 << bits);
+  return (above < 0) ? -end : end - 1;
 }
 
 static inline int32_t q_add_sat(int32_t a, int32_t b) { return q_sat64((int64_t)a + b); }

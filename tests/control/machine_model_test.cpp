@@ -248,4 +248,21 @@ TEST(MachineModel, AScaledInertiaIsThatOfAnotherRotor) {
   }
 }
 
+// A map whose determinant nearly vanishes: K_dd counts twice in what is made of it (estimators/deviation.c).
+TEST(MachineModel, AnAxisThatTurnsTooFarEndsWithItsFormat) {
+  machine_model_t m = stillspin::test::model_of(Motor{});
+  machine_map_parameters_t map = {};
+  map.current_q20 = raw(14.0, 20);
+  for (int k = 0; k < MACHINE_MAP_POINTS; ++k) {
+    map.ldd_q30[k] = map.lqq_q30[k] = raw(50e-3, 30);
+    map.ldq_q30[k] = (k == 0) ? 0 : raw(49.75e-3, 30);
+  }
+  ASSERT_TRUE(machine_model_saturate(&m, &map));
+  for (const double iq : {14.0, -14.0}) {
+    machine_model_move(&m, raw(iq, 20));
+    EXPECT_NEAR(std::fabs(real(m.k_dd_q24, 24)), 63.0, 1e-6);
+    EXPECT_EQ(m.k_dd_q24 > 0, iq > 0.0);
+  }
+}
+
 }  // namespace

@@ -120,8 +120,8 @@ TEST(Slopes, KnownMismatchIsTakenOff) {
 TEST(Slopes, AnAbsurdSlopeSaturates) {
   const slopes_sums_t s = {0, 0, 3 * 4095, 3 * 4095};
   const Result got = evaluate(trim(), s, 1);  // 40 A in 10 ns
-  EXPECT_NEAR(got.slope.x, 2048.0, 1e-3);
-  EXPECT_NEAR(got.slope.y, 2048.0, 1e-3);
+  EXPECT_NEAR(got.slope.x, 1024.0, 1e-3);
+  EXPECT_NEAR(got.slope.y, 1024.0, 1e-3);
 }
 
 }  // namespace

@@ -118,6 +118,19 @@ TEST_F(DriveConfig, WindowLimitsTheWrongWayRound) {
   EXPECT_TRUE(drive_config_load(&drive.config));
 }
 
+// What the estimators make of a machine has to fit their formats at every point of its map, not at no current alone.
+TEST_F(DriveConfig, AMapWithTooLittleInductanceIsRefused) {
+  set("inductance_d", 0.2);
+  set("inductance_q", 0.4);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+  set("ldd_3", 75.0);  // T/L of 0.67 A per V
+  expect_refused();
+  set("ldd_3", 100.0);
+  set("inductance_q", 0.2);
+  set("ldq_2", 0.195);  // an axis that turns by as much as it can: 2 K beyond 128
+  expect_refused();
+}
+
 // Whatever was in it before: the configuration is a function of the parameters, so nothing found at run time can hide
 // in it and be reverted by a reload.
 // What the table's ranges and its rules refuse before is refused by the configuration itself as well.

@@ -19,6 +19,7 @@ static void arithmetic(void) {
   const int32_t lo = any_i32;
   const int32_t hi = any_i32;
   if (lo <= hi) (void)q_clamp(any_i32, lo, hi);
+  (void)q_limit(any_i32, any_from(0, INT32_MAX));
   (void)q_in_range(any_i32, any_i32, any_i32);
   (void)q_max(any_i32, any_i32);
   (void)q_min(any_i32, any_i32);
@@ -52,6 +53,7 @@ static void shifted(unsigned n) {
     (void)q_shl_sat(any_i32, n);
   }
   (void)q_shr64(any_i64, n);
+  if (n >= 2u && n <= 32u) (void)q_sat_bits(any_i64, n, 30u);
   if (n < 1u || n > 62u) return;
   (void)q_mul64(any_i32, any_i32, n);
   (void)q_mul(any_i32, any_i32, n);

@@ -9,6 +9,13 @@
 /*@ assigns \result \from x; ensures \result <= 32; ensures x != 0 ==> \result <= 31; */
 unsigned q_clz32(uint32_t x);
 
+/*@ requires 0 <= limit; assigns \result \from x, limit; ensures -limit <= \result <= limit; */
+static inline int32_t q_limit(int32_t x, int32_t limit);
+
+/*@ requires bits <= 30 && 32 <= n + bits <= 62; assigns \result \from x, n, bits;
+    ensures -(1 << bits) <= \result < (1 << bits); */
+static inline int32_t q_sat_bits(int64_t x, unsigned n, unsigned bits);
+
 /*@ requires divisor >= 2147483648; assigns \result \from divisor; */
 uint32_t q_reciprocal_q31(uint32_t divisor);
 

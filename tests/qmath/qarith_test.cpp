@@ -120,6 +120,30 @@ TEST(QArith, Saturate64) {
   }
 }
 
+TEST(QArith, SaturateToBits) {
+  for (const unsigned bits : {3u, 29u, 30u}) {
+    const unsigned n = 33u - bits;
+    for (const std::int32_t x : edges()) {
+      const std::int64_t end = std::int64_t{1} << bits;
+      for (const std::int64_t wide : {std::int64_t{x}, std::int64_t{x} << 20, (end << n) - 1, end << n, -(end << n),
+                                      -(end << n) - 1, INT64_MAX, INT64_MIN}) {
+        EXPECT_EQ(q_sat_bits(wide, n, bits), std::clamp<std::int64_t>(wide >> n, -end, end - 1)) << wide;
+      }
+    }
+  }
+}
+
+TEST(QArith, LimitIsAClamp) {
+  for (const std::int32_t x : edges()) {
+    for (const std::int32_t edge : edges()) {
+      const std::int32_t limit = (edge == INT32_MIN) ? INT32_MAX : std::abs(edge);
+      EXPECT_EQ(q_limit(x, limit), std::clamp(x, -limit, limit)) << x << " " << limit;
+      EXPECT_EQ(q_limit(limit, limit), limit);
+      EXPECT_EQ(q_limit(-limit, limit), -limit);
+    }
+  }
+}
+
 TEST(QArith, Clamp) {
   EXPECT_EQ(q_clamp(5, -2, 3), 3);
   EXPECT_EQ(q_clamp(-5, -2, 3), -2);

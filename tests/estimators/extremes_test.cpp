@@ -1,0 +1,109 @@
+// What no machine makes, but samples, torques and parameters can: nothing may wrap into the other sign.
+
+#include <gtest/gtest.h>
+
+#include "tests/estimators/machine_windows.hpp"
+
+extern "C" {
+#include "estimators/deviation_observer.h"
+#include "estimators/stator_flux.h"
+#include "estimators/tracking_observer.h"
+#include "estimators/zvv.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+using namespace stillspin::test::seen;
+
+constexpr std::int32_t kSlopeEnd = (1 << 30) - 1;     // 1024 A per period
+constexpr std::int32_t kResidualEnd = (1 << 29) - 1;  // 512
+
+// The slope of a sensor that jumps from end to end, seen at a speed that makes as much of its own.
+TEST(Extremes, AResidualBeyondItsFormatKeepsItsSign) {
+  const rotation_t ahead = {0, 1 << 30};
+  const estimator_frame_t frame = {ahead, {0, 0}};
+  for (const std::int32_t sign : {1, -1}) {
+    deviation_model_t at = {};
+    at.emf_q20 = {-sign * 1900 * (1 << 20), -sign * 1900 * (1 << 20)};
+    estimator_window_t w = {};
+    w.slope_q20 = {sign * kSlopeEnd, sign * kSlopeEnd};
+    deviation_t d;
+    deviation_in_frame(&at, &w, &frame, &d);
+    EXPECT_NEAR(d.residual_q20.d, sign * kResidualEnd, 1);
+    EXPECT_NEAR(d.residual_q20.q, sign * kResidualEnd, 1);
+  }
+}
+
+// So does what the model makes of a current.
+TEST(Extremes, AResidualOfTheModelAloneKeepsItsSign) {
+  const estimator_frame_t frame = {{0, 1 << 30}, {400 * (1 << 20), 0}};
+  deviation_model_t at = {};
+  at.a_dd_q22 = 20 * (1 << 22);  // 8000 A per period
+  const estimator_window_t w = {};
+  deviation_t d;
+  deviation_in_frame(&at, &w, &frame, &d);
+  EXPECT_EQ(d.residual_q20.d, kResidualEnd);
+}
+
+// Torque without end and no window: 1.9 rad per period are where the model's formats end.
+TEST(Extremes, TheObserversSpeedEndsWhereTheModelDoes) {
+  for (const std::int32_t accel : {INT32_MAX, INT32_MIN}) {
+    const machine_model_t model = model_of(Motor{});
+    deviation_observer_config_t c;
+    const deviation_observer_tuning_t t = {raw(0.1, 20), raw(1.0, 20), raw(0.05, 20), raw(2.0, 20), bpp(40.0), true};
+    deviation_observer_design(&c, &model, &t);
+    c.cogging = {};
+    c.zero_vectors_only = false;
+    deviation_observer_t s;
+    deviation_observer_preset(&s, 0, 0, 0);
+    estimator_input_t in = {};
+    in.model = &model;
+    in.torque_accel_q8 = accel;
+    for (int n = 0; n < 1000; ++n) {
+      (void)deviation_observer_step(&s, &c, &in);
+      ASSERT_LE(std::abs(static_cast<double>(s.speed_bpp)), MACHINE_SPEED_END_BPP) << n;
+      ASSERT_GE(accel > 0 ? s.speed_bpp : -s.speed_bpp, 0) << n;
+    }
+  }
+}
+
+TEST(Extremes, TheTrackingObserversSpeedEndsWhereTheModelDoes) {
+  for (const std::int32_t accel : {INT32_MAX, INT32_MIN}) {
+    tracking_observer_t s;
+    tracking_observer_preset(&s, 0, 0, 0);
+    for (int n = 0; n < 1000; ++n) {
+      tracking_observer_predict(&s, accel);
+      tracking_observer_correct(&s, accel, raw(0.0999, 30));
+      ASSERT_LE(std::abs(static_cast<double>(s.speed_bpp)), MACHINE_SPEED_END_BPP) << n;
+    }
+  }
+}
+
+// The largest flux that is taken for one, and an EMF that a step cannot add to it any more.
+TEST(Extremes, AFluxAtItsEndBeginsAnewAndDoesNotTurnItsSign) {
+  const stator_flux_config_t c = {STATOR_FLUX_BARE, 107374, 1 << 29};
+  constexpr std::int32_t kBound = 1966080000;
+  stator_flux_t s = {{kBound, -kBound}, 0, 0};
+  stator_flux_step(&s, &c, {INT32_MAX, INT32_MIN}, kBound);
+  EXPECT_EQ(s.flux_q16.alpha, 0);
+  EXPECT_EQ(s.flux_q16.beta, 0);
+}
+
+// A back-EMF of 58000 V, which no format holds, is a large one and not one the other way round.
+TEST(Extremes, ZvvsDeviationKeepsItsSign) {
+  machine_model_t model = model_of(Motor{});
+  model.emf_q16 = 2000000000;
+  estimator_window_t w = {};
+  w.span_ticks = 3000;
+  w.zero_vector = true;
+  estimator_input_t in = {};
+  in.model = &model;
+  in.windows = &w;
+  in.window_count = 1;
+  std::int32_t deviation_q20 = 0;
+  ASSERT_TRUE(zvv_deviation_q20(&in, 0, MACHINE_SPEED_END_BPP, &deviation_q20));
+  EXPECT_GT(deviation_q20, 0);
+}
+
+}  // namespace

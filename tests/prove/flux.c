@@ -1,0 +1,46 @@
+// The stator-flux family with any method, cut-off, adaptation, voltages to 2000 V and currents to 512 A, step after
+// step.
+
+#include "estimators/flux_observer.h"
+#include "tests/prove/any_model.h"
+
+static machine_model_t model;
+
+static flux_observer_config_t any_configuration(void) {
+  flux_observer_config_t c;
+  c.method = (flux_method_t)(any_u16 & 3u);
+  c.cutoff_q30 = any_from(107374L, 53687091L);
+  c.bandwidth_q30 = any_from(107374L, 107374182L);
+  c.adaptation_periods = (uint16_t)any_from(1, 1000);
+  c.adaptation.saturation_q24 = any_from(0, FLUX_ONE_Q24);
+  c.adaptation.lowest_bpp = any_from(1, INT32_MAX);
+  c.adaptation.current_q24 = any_from(167772L, FLUX_ONE_Q24);
+  c.adaptation.inductance_q30 = any_from(0, 1073741824L);
+  c.adaptation.magnet_q30 = any_from(0, 1073741824L);
+  return c;
+}
+
+static flux_period_t any_period(void) {
+  const flux_period_t p = {any_ab(VOLTAGE_MAX_Q16), any_ab(CURRENT_MAX_Q20), any_dq(2 * (CURRENT_MAX_Q20 - 1)),
+                           any_dq(CURRENT_MAX_Q20)};
+  return p;
+}
+
+void prove_flux(void) {
+  static flux_observer_t s;
+  any_model(&model);
+  const flux_observer_config_t c = any_configuration();
+  if (!flux_observer_config_valid(&c, &model)) return;
+  flux_observer_reset(&s, &c, &model);
+  (void)flux_adaptation_identify_q24(&model);
+  while (any_bool()) {
+    const estimator_input_t in = {&model, 0, 0, any_i32, false, false, 0};
+    const estimator_output_t now = {any_u32, any_speed(), any_i32, any_from(0, 32767)};
+    const flux_period_t p = any_period();
+    if (any_bool()) flux_observer_preset(&s, &c, &now, any_ab(CURRENT_MAX_Q20));
+    any_working_point(&model);
+    (void)flux_observer_step(&s, &c, &in, &p);
+    //@ assert 4194304 <= s.adaptation.shares.lq_q24 <= 20971520;
+    //@ assert 8388608 <= s.adaptation.shares.psi_q24 <= 20971520;
+  }
+}
