@@ -126,6 +126,19 @@ TEST_F(CommissioningJudge, ALevelsInductancesAreThoseOfAMachine) {
   EXPECT_EQ(verdict("ldq_2"), VERDICT_NOT_PHYSICAL);
 }
 
+// With another last current than before the levels are used together, or none of them.
+TEST_F(CommissioningJudge, AMapOfAnotherScaleIsUsedWhole) {
+  for (const bool rescaled : {false, true}) {
+    parameters.map_current = raw(rescaled ? 10.0 : 14.0, 20);
+    measured(2, saturated(2), 7.0);
+    EXPECT_EQ(verdict("map_current"), VERDICT_USED);
+    EXPECT_EQ(verdict("lqq_1"), VERDICT_USED);
+    measured(2, saturated(2), 5.0);  // not the current that was meant
+    EXPECT_EQ(verdict("lqq_1"), rescaled ? VERDICT_DEPENDS : VERDICT_USED);
+    EXPECT_EQ(verdict("map_current"), rescaled ? VERDICT_DEPENDS : VERDICT_USED);
+  }
+}
+
 TEST_F(CommissioningJudge, ATurnThatJumpsFromLevelToLevelIsNone) {
   for (int level = 1; level <= 4; ++level) {
     Inductances l = saturated(level);
