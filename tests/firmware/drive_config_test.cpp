@@ -125,9 +125,31 @@ TEST_F(DriveConfig, AMapWithTooLittleInductanceIsRefused) {
   EXPECT_TRUE(drive_config_load(&drive.config));
   set("ldd_3", 75.0);  // T/L of 0.67 A per V
   expect_refused();
-  set("ldd_3", 100.0);
-  set("inductance_q", 0.2);
-  set("ldq_2", 0.195);  // an axis that turns by as much as it can: 2 K beyond 128
+}
+
+TEST_F(DriveConfig, AnAxisThatTurnsTooFarIsRefused) {
+  set("inductance_d", 0.9);
+  set("inductance_q", 0.9);
+  set("ldq_2", 0.3);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+  set("ldq_2", 0.81);  // T/L of 0.58 A per V along the axes, 0.53 across
+  expect_refused();
+}
+
+TEST_F(DriveConfig, AMagnetThatDrivesTooMuchCurrentIsRefused) {
+  set("inductance_d", 0.2);
+  set("inductance_q", 0.8);
+  set("magnet_flux", 0.7);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+  set("magnet_flux", 0.9);  // lambda/Lq of 1125 A
+  expect_refused();
+}
+
+TEST_F(DriveConfig, ASaliencyTooLargeForTheSensorsIsRefused) {
+  set("inductance_d", 0.5);
+  set("inductance_q", 5.0);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+  set("current_full_scale", 200.0);
   expect_refused();
 }
 
