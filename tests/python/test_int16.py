@@ -20,6 +20,13 @@ typedef struct {
   char letter;
   int32_t number;
 } pair_t;
+typedef struct {
+  const int32_t* at;
+  int32_t count;
+} walk_t;
+static const int32_t numbers[2] = {7, 9};
+walk_t walk(int32_t count) { const walk_t w = {numbers, count}; return w; }
+int32_t behind_a_pointer(int32_t count) { const walk_t w = walk(count); return w.at[1] + w.count; }
 int32_t product(int16_t a, int16_t b) { return a * b; }
 int32_t shifted(uint16_t a) { return (int32_t)(a << 4); }
 uint16_t complement(uint16_t a) { return (uint16_t)((uint16_t)~a >> 4); }
@@ -50,6 +57,7 @@ def library(tmp_path: Path, *options: str) -> Path:
         ("behind", (ctypes.c_uint16(1), ctypes.c_uint16(2)), ctypes.c_bool, True),
         ("character", (ctypes.c_uint16(0x1FF),), ctypes.c_uint16, 0x1FF),
         ("words", (), ctypes.c_uint16, 2),
+        ("behind_a_pointer", (ctypes.c_int32(5),), ctypes.c_int32, 14),
         ("pair_words", (), ctypes.c_uint16, 4),
         ("literal", (ctypes.c_uint16(1),), ctypes.c_uint16, ord("b")),
         ("complement", (ctypes.c_uint16(0xFFF0),), ctypes.c_uint16, 0),

@@ -20,6 +20,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 FRONT = ("--target=msp430", "-std=c99", "-ffreestanding", "-Wall", "-Wextra", "-Werror")
+_PADDING = re.compile(r"((%\d+) = getelementptr i8, ptr %\d+, i16 \d+.*\n)\s*call void @llvm\.memset.* \2, i8 0, .*\n")
 PREFIX = "int16_"
 LAYOUT = "e-m:e-p270:32:32-p271:32:32-p272:64:64-i64:64-i128:128-f80:128-n8:16:32:64-S128"
 # Undefined behaviour; not the wrap of unsigned numbers, which is meant, nor null and alignment, which need pointers of
@@ -58,6 +59,8 @@ def retarget(code: str) -> str:
     code = re.sub(r"^target datalayout.*$", f'target datalayout = "{LAYOUT}"', code, flags=re.MULTILINE)
     code = re.sub(r"^target triple.*$", 'target triple = "x86_64-pc-linux-gnu"', code, flags=re.MULTILINE)
     code = code.replace(" dso_local", "")
+    # What clears the padding behind a pointer counts the front's bytes, and here they are the pointer's.
+    code = _PADDING.sub(r"\1", code)
     # Who calls or is called natively leaves the upper half of a register as it is.
     code = re.sub(r"\b(zero|sign)ext (?=i16\b)", "", code)
     code = re.sub(r"\b(i16 (?:noundef )?)(?:zero|sign)ext\b ?", r"\1", code)
