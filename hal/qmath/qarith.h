@@ -67,7 +67,7 @@ static inline int32_t q_sat64(int64_t x) {
 // floor(x / 2^n) limited to -2^bits..2^bits - 1: what leaves room for a sum behind it. n + bits = 32..62.
 static inline int32_t q_sat_bits(int64_t x, unsigned n, unsigned bits) {
   const int32_t above = (int32_t)q_shr64(x, n + bits);
-  if (above == q_shr(above, 31)) {
+  if ((uint32_t)above + 1u <= 1u) {
     return (int32_t)(uint32_t)((uint64_t)x >> n);  // one comparison where nothing has to be limited
   }
   const int32_t end = (int32_t)((uint32_t)1 << bits);
