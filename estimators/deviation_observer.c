@@ -1,5 +1,7 @@
 #include "estimators/deviation_observer.h"
 
+#include "estimators/deviation_information.h"
+
 #define ONE_Q20 1048576L
 #define BAM_PER_UNIT_Q7 1367130551L  // 2^-6 rad
 #define BPP_PER_UNIT_Q12 683565276L  // 2^-12 rad per period
@@ -10,8 +12,7 @@
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
 #define VARIANCE_MAX (512L * ONE_Q20)
-#define OUTLIER 192L             // of what a window as long as the period has for noise: 48 sigma in a quarter of it
-#define GAIN_END_Q18 268435456L  // 1024 A per period and rad; six squares stay in 64 bits
+#define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
 #define ONE_Q30 1073741823L
 #define ALERT_SHIFT 9u                    // an alert fades within 51 ms
 #define ALERT_AGAIN_Q30 858993459L        // and may be repeated after 11 ms
@@ -24,17 +25,11 @@
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
-#define INFORMATION_MAX (8L * 16777216L)
 #define HALF_Q9 256L
 #define DUE_Q9 128L
 #define PERIODS_DUE 7L
 #define PERIODS_MAX 12L       // the covariance is renewed at the latest
 #define LEFT_PERIODS_MAX 64L  // nobody takes what is left: it begins anew
-
-typedef struct {
-  int32_t aa, as, ss;  // Q24
-  int32_t a, s;        // score, Q20
-} information_t;
 
 typedef struct {
   int32_t a, s;
@@ -152,68 +147,6 @@ static void predict_covariance(deviation_observer_t* s) {
   s->p_al += q_mul(s->p_sl, time_q32, 32);
   s->p_ss += q_mul(2 * s->p_sl + q_mul(s->p_ll, time_q32, 32), time_q32, 32);
   s->p_sl += q_mul(s->p_ll, time_q32, 32);
-}
-
-// Information and score while the windows add to them. A window weighs the square of its span, in whole ticks times 16:
-// an upper word of a product with it is 1 / PER_UNIT of a number that is weighed with the square of its share in the
-// period. h_speed is the same for all windows: what belongs to it is multiplied once.
-typedef struct {
-  int64_t aa_q36, a_q38;  // h_angle^2, h_angle e
-  dq_t h_q18, e_q20;      // h_angle, e
-  int32_t weight;         // sum of all weights: the windows of a period do not overlap
-} sums_t;
-
-static int32_t gain_limited(int32_t h_q18) { return q_limit(h_q18, GAIN_END_Q18); }
-
-static inline void collect(sums_t* n, int32_t limit_q20, const deviation_sensitivity_t* h, int32_t span,
-                           const deviation_t* d) {
-  const int32_t weight = span * span * 16;
-  const dq_t by_angle = deviation_by_angle_q18(h, d->voltage_q16);
-  const dq_t g = {gain_limited(by_angle.d), gain_limited(by_angle.q)};
-  const dq_t e = {q_limit(d->residual_q20.d, limit_q20), q_limit(d->residual_q20.q, limit_q20)};
-  const dq_t wg = {q_mul_hi(g.d, weight), q_mul_hi(g.q, weight)};
-  n->aa_q36 = q_mac(q_mac(n->aa_q36, g.d, wg.d), g.q, wg.q);
-  n->a_q38 = q_mac(q_mac(n->a_q38, e.d, wg.d), e.q, wg.q);
-  n->h_q18.d += wg.d;
-  n->h_q18.q += wg.q;
-  n->e_q20.d += q_mul_hi(e.d, weight);
-  n->e_q20.q += q_mul_hi(e.q, weight);
-  n->weight += weight;
-}
-
-static int32_t per_noise_sat(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
-  return q_sat64(q_shr64(q_product(q_sat64(q_shr64(sum, shift)), c->weight_q8), 18));
-}
-
-static int32_t per_noise(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
-  return q_mul_floor(q_sat64(q_shr64(sum, shift)), c->weight_q8, 18);
-}
-
-// More information than the formats hold counts as less, all of it alike, or the update would overshoot.
-static information_t bounded(const information_t* n) {
-  const int32_t share_q30 = q_div(INFORMATION_MAX, q_max(n->aa, n->ss), 30);
-  const information_t less = {q_mul(n->aa, share_q30, 30), q_mul(n->as, share_q30, 30), q_mul(n->ss, share_q30, 30),
-                              q_mul(n->a, share_q30, 30), q_mul(n->s, share_q30, 30)};
-  return less;
-}
-
-// In units of the states and of the noise: of angle 2^-6 rad, of speed 2^-12 rad per period, in Q24, scores in Q20.
-// Where the information is within its bound, 8, so are the rest: its product aa ss is not below the square of as, and a
-// score not above 272 times the root of it (OUTLIER in both axes).
-static information_t information_of(const sums_t* n, const deviation_observer_config_t* c, dq_t h_s) {
-  const dq_t hw = {q_mul_hi(h_s.d, n->weight), q_mul_hi(h_s.q, n->weight)};
-  const int64_t as_q38 = q_mac(q_product(h_s.d, n->h_q18.d), h_s.q, n->h_q18.q);
-  const int64_t ss_q40 = q_mac(q_product(h_s.d, hw.d), h_s.q, hw.q);
-  const int64_t s_q40 = q_mac(q_product(h_s.d, n->e_q20.d), h_s.q, n->e_q20.q);
-  const int32_t aa = per_noise_sat(c, n->aa_q36, 14);
-  const int32_t ss = per_noise_sat(c, ss_q40, 30);
-  if (q_max(aa, ss) > INFORMATION_MAX) {
-    const information_t large = {aa, per_noise_sat(c, as_q38, 22), ss, per_noise_sat(c, n->a_q38, 14),
-                                 per_noise_sat(c, s_q40, 22)};
-    return bounded(&large);
-  }
-  const information_t i = {aa, per_noise(c, as_q38, 22), ss, per_noise(c, n->a_q38, 14), per_noise(c, s_q40, 22)};
-  return i;
 }
 
 // (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^14: the variances are limited to 512 and, with them, the
@@ -351,7 +284,7 @@ static void leave(deviation_left_t* left, const estimator_input_t* in, const dev
 
 // One loop after the other, so that each has few numbers of its own.
 static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
-  sums_t sums = {0, 0, {0, 0}, {0, 0}, 0};
+  information_sums_t sums = {0, 0, {0, 0}, {0, 0}, 0};
   deviation_t d[ESTIMATOR_WINDOWS];
   estimator_frame_t own[ESTIMATOR_WINDOWS];
   const estimator_frame_t* f = in->frames;
@@ -367,7 +300,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
   const int32_t limit_q20 = c->residual_limit_q20;
   for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    if (!c->zero_vectors_only || w->zero_vector) collect(&sums, limit_q20, &h, w->span_ticks, &d[k]);
+    if (!c->zero_vectors_only || w->zero_vector) information_collect(&sums, limit_q20, &h, w->span_ticks, &d[k]);
   }
   if (in->regress) {
     regression_evaluate(&s->regression, d, in);
