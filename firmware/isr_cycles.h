@@ -22,7 +22,7 @@
 #define CYCLES_MODULATE 1400u
 #define CYCLES_SERIAL 120u  // two octets each way
 #define CYCLES_REFER 550u   // references of the hysteresis
-#define CYCLES_WINDOW 120u
+#define CYCLES_WINDOW 110u
 #define CYCLES_SLICE 120u
 #define CYCLES_SCOPE 210u  // while it records: four channels and the trigger
 
