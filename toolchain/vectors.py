@@ -99,7 +99,7 @@ NOT_AVR = ALL - AVR
 DEFECTS = (
     Defect("hal/qmath/qarith.h", "q_sat64((int64_t)a + b)", "q_sat64((int32_t)((uint32_t)a + (uint32_t)b))",
            frozenset({"sums"}), ALL),
-    Defect("hal/qmath/qarith.h", "(int64_t)a * b + ((int64_t)1 << (shift - 1))", "(int64_t)a * b",
+    Defect("hal/qmath/qarith.h", "q_product(a, b) + ((int64_t)1 << (shift - 1))", "q_product(a, b)",
            frozenset({"products", "quotients", "tracking_observer", "blend"}), ALL),
     Defect("hal/qmath/qtrig.c", "((uint32_t)1 << (SEGMENT_BITS - 1))", "(1u << (SEGMENT_BITS - 1))",
            frozenset({"angles", "frames"}), AVR),
@@ -111,7 +111,7 @@ DEFECTS = (
            frozenset({"roots"}), ALL),
     Defect("hal/qmath/qtrig.c", "= ANGLE_BAM_QUARTER_TURN - angle;", "= ANGLE_BAM_QUARTER_TURN - angle - 1;",
            frozenset({"angles"}), ALL),
-    Defect("control/frame.h", "q_mul_sub_floor(v.beta, r.cos_q30,", "q_mul_add_floor(v.beta, r.cos_q30,",
+    Defect("control/frame.h", "q_mul_add_floor(v.beta, r.cos_q30, -v.alpha,", "q_mul_add_floor(v.beta, r.cos_q30, v.alpha,",
            frozenset({"frames"}), ALL),
     Defect("estimators/tracking_observer.c", "q_mul(error_bam, 3 * x2_q30, 30)", "q_mul(error_bam, 2 * x2_q30, 30)",
            frozenset({"tracking_observer"}), ALL),
