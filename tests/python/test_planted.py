@@ -1,0 +1,29 @@
+"""The defects that the long checks plant fit the sources as they are: else those checks fail where nobody looks."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+import planted  # noqa: E402
+import prove  # noqa: E402
+import vectors  # noqa: E402
+
+
+@pytest.mark.parametrize("defects", [prove.DEFECTS, vectors.DEFECTS], ids=["prove", "vectors"])
+def test_every_defect_has_its_place(defects: tuple[prove.Defect | vectors.Defect, ...]) -> None:
+    gone = [(d.file, d.right) for d in defects if d.right not in (ROOT / d.file).read_text(encoding="utf-8")]
+    assert gone == []
+
+
+@pytest.mark.parametrize("defects", [prove.DEFECTS, vectors.DEFECTS], ids=["prove", "vectors"])
+def test_every_defect_changes_something(defects: tuple[prove.Defect | vectors.Defect, ...]) -> None:
+    assert [d.right for d in defects if d.right == d.wrong] == []
+
+
+def test_a_defect_without_a_place_is_complained_about(tmp_path: Path) -> None:
+    changes = [("control/frame.h", "no such text", "")]
+    assert planted.plant(tmp_path / "tree", ("control",), changes) == ["control/frame.h has no 'no such text'"]
