@@ -111,7 +111,7 @@ DEFECTS = (
            frozenset({"roots"}), ALL),
     Defect("hal/qmath/qtrig.c", "= ANGLE_BAM_QUARTER_TURN - angle;", "= ANGLE_BAM_QUARTER_TURN - angle - 1;",
            frozenset({"angles"}), ALL),
-    Defect("control/frame.h", "q_mul_add_floor(v.beta, r.cos_q30, -v.alpha,", "q_mul_add_floor(v.beta, r.cos_q30, v.alpha,",
+    Defect("control/frame.h", "v.beta, r.cos_q30, -v.alpha,", "v.beta, r.cos_q30, v.alpha,",
            frozenset({"frames"}), ALL),
     Defect("estimators/tracking_observer.c", "q_mul(error_bam, 3 * x2_q30, 30)", "q_mul(error_bam, 2 * x2_q30, 30)",
            frozenset({"tracking_observer"}), ALL),
