@@ -4,6 +4,8 @@
 #define CUTOFF_MOST_Q30 53687091L
 #define BANDWIDTH_MOST_Q30 107374182L
 #define CUTOFF_SHARE 4
+#define PLACES 32u  // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
+#define PLACE_STEP 13u
 #define FASTER 8               // at most 0.4 of the difference per period
 #define FOLLOW_Q30 536870912L  // k = 1/2: the length follows with w_c/2, offsets decay with w_c/4
 
@@ -96,6 +98,15 @@ static int32_t quality_q15(const flux_observer_config_t* c, int32_t w_q30) {
   return q_clamp(q_div(q_abs_sat(w_q30) - half, half, 15), 0, 32767);
 }
 
+// Not at even intervals: the harmonics of the EMF stand still to who looks once in eight of their periods, as 10 ms are
+// at 2000 rpm on four pole pairs, and would be taken for flux. Places in an order that no speed has.
+static uint16_t next_pause(flux_observer_t* s, const flux_observer_config_t* c) {
+  if (c->adaptation_periods <= PLACES) return c->adaptation_periods;
+  const uint16_t last = s->place;
+  s->place = (uint16_t)((last + PLACE_STEP) % PLACES);
+  return (uint16_t)(c->adaptation_periods + s->place - last);
+}
+
 estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,
                                       const flux_period_t* period) {
   tracking_observer_t* const o = &s->observer;
@@ -109,7 +120,7 @@ estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_co
   filter_speed(s, c);
   s->pause--;
   if (s->pause == 0u) {
-    s->pause = c->adaptation_periods;
+    s->pause = next_pause(s, c);
     flux_adaptation_step(&s->adaptation, &c->adaptation, in->model, &s->machine, &s->vectors, period->measured_q20,
                          o->speed_bpp);
   }

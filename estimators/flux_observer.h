@@ -35,7 +35,7 @@ typedef struct {
   int32_t cutoff_q30;     // w_c T of the low-pass integrator at low speed, 1e-4..0.05
   int32_t bandwidth_q30;  // bandwidth * T of the tracking observer, 1e-4..0.1
   flux_adaptation_config_t adaptation;
-  uint16_t adaptation_periods;  // between two steps of it, 1..1000
+  uint16_t adaptation_periods;  // between two steps of it, 1..1000; in the mean, where more than 32
 } flux_observer_config_t;
 
 /// The period that has just ended.
@@ -58,6 +58,7 @@ typedef struct {
   int32_t load_angle_bam;  // of the last step
   int32_t slow_bpp;        // filtered speed, for (34)
   uint16_t pause;          // periods until the adaptation's next step
+  uint16_t place;          // of the last one, periods behind an even interval
 } flux_observer_t;
 
 /// False where a value or the machine is out of range.
