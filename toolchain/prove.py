@@ -17,6 +17,8 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,9 +28,12 @@ ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
 KNOWN = "tests/prove/alarms.txt"
 SECONDS = 1500
+AT_ONCE = 2
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
-# Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h).
+LINK_RANGES = "tests/prove/link_ranges.h"
+# Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h, link_ranges.h).
 WITH_CONTRACT = "q_clz32,q_reciprocal_q31,q_div,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos"
+OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 PROVED_BY_WP = (
     *("q_shr", "q_shr64", "q_shr_round", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
     *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_mul64", "q_mul", "q_mul_sat", "q_mac", "q_mul_add"),
@@ -52,7 +57,7 @@ class Part:
     sources: tuple[str, ...]  # the driver, patterns of the drive's files
     flags: tuple[str, ...]
     header: str = RANGES
-    given: bool = False  # the functions WITH_CONTRACT are not read
+    given: str = ""  # functions of which the contract is taken, not the code
 
 
 def eva(entry: str, *flags: str) -> tuple[str, ...]:
@@ -66,34 +71,40 @@ SLICES = (
     *("-eva-precision", "1", "-eva-slevel", "100", "-eva-auto-loop-unroll", "600"),
     *("-eva-split-return-function", "q_clz32:full"),
 )
-READER = (
-    *("-eva-precision", "0", "-eva-auto-loop-unroll", "12", "-eva-slevel", "20", "-eva-split-return", "auto"),
-    *("-eva-use-spec", WITH_CONTRACT),
+READER = (*("-eva-precision", "0", "-eva-auto-loop-unroll", "12", "-eva-slevel", "20", "-eva-split-return", "auto"),)
+FRAMING = ("tests/prove/framing.c", "firmware/link/splitter.c", "firmware/link/record.c", "firmware/link/cobs.c")
+FRAMES = (*FRAMING, "firmware/link/crc.c", "firmware/can/segments.c", "hal/qmath/qdiv.c")
+# As many iterations of a loop, each by itself, and as many ways into a function kept apart.
+APART = (
+    *("-eva-precision", "0", "-eva-auto-loop-unroll", "40", "-eva-slevel", "100"),
+    *("-eva-partition-history", "2", "-eva-interprocedural-history"),
 )
 PARTS = (
     *(Part(name, QMATH, eva(f"prove_{name}", *SLICES)) for name in SLICED),
-    Part("lengths", QMATH, eva("prove_lengths", "-eva-precision", "1", "-eva-use-spec", "q_sqrt64")),
+    Part("lengths", QMATH, eva("prove_lengths", "-eva-precision", "1"), given="q_sqrt64"),
     Part(
         "svpwm",
         ("tests/prove/svpwm.c", "svpwm/*.c", "hal/qmath/*.c"),
         eva("prove_svpwm", *READER),
-        given=True,
+        given=WITH_CONTRACT,
     ),
     Part(
         "control",
         ("tests/prove/control.c", "control/*.c", "hal/qmath/*.c"),
         eva("prove_control", *READER),
-        given=True,
+        given=WITH_CONTRACT,
     ),
     *(
         Part(
             name,
             (f"tests/prove/{name}.c", "estimators/*.c", "control/*.c", "hal/qmath/*.c"),
             eva(f"prove_{name}", *READER),
-            given=True,
+            given=WITH_CONTRACT,
         )
         for name in ("estimators", "observer", "flux")
     ),
+    Part("blocks", FRAMES, eva("prove_blocks", "-eva-precision", "0", "-eva-auto-loop-unroll", "300"), LINK_RANGES),
+    Part("framing", FRAMES, eva("prove_framing", *APART), LINK_RANGES, OF_BLOCKS),
     Part(
         "contracts",
         ("hal/qmath/qdiv.c",),
@@ -149,6 +160,11 @@ DEFECTS = (
         "q_sub_sat(length_q24, along_q24)",
         "length_q24 - along_q24",
     ),
+    Defect("blocks", "cobs_decode", "firmware/link/cobs.c", "from = 0; from < count", "from = 0; from <= count"),
+    Defect(
+        "framing", "splitter_octet", "firmware/link/splitter.c", "<= RECORD_ENCODED_MAX)", "<= RECORD_ENCODED_MAX + 1u)"
+    ),
+    Defect("framing", "take", "firmware/can/segments.c", "j->count >= RECORD_MAX", "j->count > RECORD_MAX"),
     Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
     Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),
     Defect("contracts", "q15_sat", "hal/qmath/qarith.h", "q_clamp(x, INT16_MIN, ", "q_clamp(x, -INT16_MAX, "),
@@ -194,8 +210,8 @@ def is_open(part: Part, row: dict[str, str]) -> bool:
     what it does not reach.
     """
     status, kind = row["status"], row["property kind"]
-    promised = (*WITH_CONTRACT.split(","), *SHOWN_BY_TESTS)
-    given = kind == "postcondition" and part.given and plain(row["function"]) in promised
+    promised = (*part.given.split(","), *SHOWN_BY_TESTS)
+    given = kind == "postcondition" and bool(part.given) and plain(row["function"]) in promised
     if given or kind == "precondition" or not status.startswith(OPEN) or status.endswith("dead"):
         return False
     return status != "Never tried" or (part.header == CONTRACTS and plain(row["function"]) in PROVED_BY_WP)
@@ -205,7 +221,8 @@ def read(part: Part, tree: Path, out: Path) -> Read:
     """Lets Frama-C read a part."""
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
     machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 -include {part.header}")
-    command = ["frama-c", *machine, *sources_of(part, tree), *part.flags, "-then", "-report-csv", str(table)]
+    given = ("-eva-use-spec", part.given) if part.given else ()
+    command = ["frama-c", *machine, *sources_of(part, tree), *part.flags, *given, "-then", "-report-csv", str(table)]
     # Frama-C believes PWD more than where it is.
     home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(out / "why3.conf")}
     done = subprocess.run(command, cwd=tree, env=home, capture_output=True, text=True, check=False, timeout=SECONDS)
@@ -233,13 +250,18 @@ def more_than(alarms: Counter[Alarm], bound: Counter[Alarm]) -> dict[Alarm, int]
     return {alarm: count for alarm, count in sorted(alarms.items()) if count > bound[alarm]}
 
 
+def at_once(work: Callable[[Part], Read], parts: list[Part]) -> Iterator[tuple[Part, Read]]:
+    """The parts' readings in their order, two at a time."""
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        yield from zip(parts, pool.map(work, parts), strict=True)
+
+
 def check(out: Path, wanted: list[str]) -> int:
     """Reads the parts; prints a line for each, and what is new."""
     status, bounds = 0, known()
-    for part in PARTS:
-        if wanted and part.name not in wanted:
-            continue
-        done, bound = read(part, ROOT, out), bounds[part.name]
+    parts = [part for part in PARTS if not wanted or part.name in wanted]
+    for part, done in at_once(lambda part: read(part, ROOT, out), parts):
+        bound = bounds[part.name]
         left = f"{done.alarms.total()} left open ({bound.total()} known)"
         print(f"prove: {part.name}: {done.words}, {left}", flush=True)
         for (function, kind), count in more_than(done.alarms, bound).items():
@@ -250,15 +272,16 @@ def check(out: Path, wanted: list[str]) -> int:
 
 def plant(out: Path, wanted: list[str]) -> int:
     """Plants the defects, those of a part together, and looks where they show."""
-    complaints, bounds, tree, planned = [], known(), out / "tree", 0
-    for part in PARTS:
-        defects = [d for d in DEFECTS if d.part == part.name and (not wanted or d.part in wanted)]
-        if not defects:
-            continue
-        planned += len(defects)
-        complaints += planted.plant(tree, FOLDERS, [(d.file, d.right, d.wrong) for d in defects])
-        seen = {function for function, _ in more_than(read(part, tree, out).alarms, bounds[part.name])}
-        complaints += [f"{d.function}: {d.wrong!r} is not found" for d in defects if d.function not in seen]
+    complaints, bounds = [], known()
+    defects = {part.name: [d for d in DEFECTS if d.part == part.name] for part in PARTS}
+    parts = [part for part in PARTS if defects[part.name] and (not wanted or part.name in wanted)]
+    for part in parts:
+        changes = [(d.file, d.right, d.wrong) for d in defects[part.name]]
+        complaints += planted.plant(out / "trees" / part.name, FOLDERS, changes)
+    for part, done in at_once(lambda part: read(part, out / "trees" / part.name, out), parts):
+        seen = {function for function, _ in more_than(done.alarms, bounds[part.name])}
+        complaints += [f"{d.function}: {d.wrong!r} is not found" for d in defects[part.name] if d.function not in seen]
+    planned = sum(len(defects[part.name]) for part in parts)
     print(f"prove: {planned} defects planted, {len(complaints)} not found where they are")
     for complaint in complaints:
         print(f"prove: {complaint}")

@@ -1,5 +1,7 @@
 #include "firmware/link/cobs.h"
 
+#include <stdbool.h>
+
 #define BLOCK_FULL 0xFFu
 
 uint16_t cobs_encode(const uint16_t* from, uint16_t count, uint16_t* to) {
@@ -11,31 +13,33 @@ uint16_t cobs_encode(const uint16_t* from, uint16_t count, uint16_t* to) {
     if (octet != 0u) {
       to[end++] = octet;
       code++;
+      // A full block says nothing of a zero; one at the very end of the data needs no empty block behind it.
+      if (code < BLOCK_FULL || k + 1u == count) continue;
     }
-    // A full block says nothing of a zero; one at the very end of the data needs no empty block behind it.
-    if (octet == 0u || (code == BLOCK_FULL && k + 1u < count)) {
-      to[code_at] = code;
-      code_at = end++;
-      code = 1;
-    }
+    to[code_at] = code;
+    code_at = end++;
+    code = 1;
   }
   to[code_at] = code;
   return end;
 }
 
 uint16_t cobs_decode(uint16_t* octets, uint16_t count) {
-  uint16_t from = 0;
   uint16_t end = 0;
+  uint16_t left = 0;         // of the block
+  bool zero_behind = false;  // of the block before, if there is another
   if (count == 0u) return COBS_MALFORMED;
-  while (from < count) {
-    const uint16_t code = octets[from++] & 0xFFu;
-    if (code == 0u || (uint32_t)from + code - 1u > count) return COBS_MALFORMED;
-    for (uint16_t k = 1; k < code; k++) {
-      const uint16_t octet = octets[from++] & 0xFFu;
-      if (octet == 0u) return COBS_MALFORMED;
+  for (uint16_t from = 0; from < count; from++) {
+    const uint16_t octet = octets[from] & 0xFFu;
+    if (octet == 0u) return COBS_MALFORMED;
+    if (left > 0u) {
       octets[end++] = octet;
+      left--;
+    } else {
+      if (zero_behind) octets[end++] = 0;
+      zero_behind = octet != BLOCK_FULL;
+      left = (uint16_t)(octet - 1u);
     }
-    if (code != BLOCK_FULL && from < count) octets[end++] = 0;
   }
-  return end;
+  return (left == 0u) ? end : COBS_MALFORMED;
 }
