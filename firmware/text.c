@@ -44,9 +44,10 @@ static bool is_digit(uint16_t c) { return c >= '0' && c <= '9'; }
 
 // One digit more; false when it does not fit.
 static bool append(decimal_t* number, uint16_t c) {
-  const int32_t digit = (int32_t)c - '0';
-  if (number->digits > (INT32_MAX - digit) / 10) return false;
-  number->digits = number->digits * 10 + digit;
+  if (number->digits > INT32_MAX / 10) return false;
+  const uint32_t more = (uint32_t)number->digits * 10u + (uint16_t)(c - '0');
+  if (more > (uint32_t)INT32_MAX) return false;
+  number->digits = (int32_t)more;
   return true;
 }
 

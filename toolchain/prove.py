@@ -26,6 +26,7 @@ import planted
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
+PACK, TABLE = "toolchain/pack_text.py", "packed_text_table.c"
 KNOWN = "tests/prove/alarms.txt"
 SECONDS = 1500
 AT_ONCE = 2
@@ -34,6 +35,12 @@ LINK_RANGES = "tests/prove/link_ranges.h"
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h, link_ranges.h).
 WITH_CONTRACT = "q_clz32,q_reciprocal_q31,q_div,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
+OF_NAMES = "text_begins,text_equals,text_occurs"
+OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed"
+OF_TYPING = f"{OF_NAMES},text_number,decimal_raw,packed_occurs,suggest_is_near"
+OF_LINES = "editor_octet,editor_next,editor_show"
+OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
+OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
 PROVED_BY_WP = (
     *("q_shr", "q_shr64", "q_shr_round", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
     *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_mul64", "q_mul", "q_mul_sat", "q_mac", "q_mul_add"),
@@ -72,13 +79,35 @@ SLICES = (
     *("-eva-split-return-function", "q_clz32:full"),
 )
 READER = (*("-eva-precision", "0", "-eva-auto-loop-unroll", "12", "-eva-slevel", "20", "-eva-split-return", "auto"),)
-FRAMING = ("tests/prove/framing.c", "firmware/link/splitter.c", "firmware/link/record.c", "firmware/link/cobs.c")
-FRAMES = (*FRAMING, "firmware/link/crc.c", "firmware/can/segments.c", "hal/qmath/qdiv.c")
+RECORD = "firmware/link/record.c"
+FRAMES = (
+    *("tests/prove/framing.c", "firmware/link/splitter.c", RECORD, "firmware/link/cobs.c"),
+    *("firmware/link/crc.c", "firmware/can/segments.c", "hal/qmath/qdiv.c"),
+)
+TEXTS = (
+    *("firmware/text.c", "firmware/words.c", "firmware/packed_text.c", "firmware/parameters.c", "firmware/signals.c"),
+    *("firmware/link/octets.c", "hal/qmath/qdiv.c"),
+)
+TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
+BESIDE = (
+    *("tests/prove/any_drive.c", "firmware/actions.c", "firmware/fault_history.c", "firmware/scope/scope.c"),
+    *("firmware/link/guard.c", "firmware/link/stream.c", *TEXTS),
+)
+TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
 # As many iterations of a loop, each by itself, and as many ways into a function kept apart.
 APART = (
     *("-eva-precision", "0", "-eva-auto-loop-unroll", "40", "-eva-slevel", "100"),
     *("-eva-partition-history", "2", "-eva-interprocedural-history"),
 )
+NUMBERS = (
+    *("-eva-precision", "0", "-eva-min-loop-unroll", "130", "-eva-slevel", "12", "-eva-split-return", "auto"),
+    *("-eva-slevel-function", "put_digits:60"),
+)
+NAMES = (
+    *("-eva-precision", "0", "-eva-min-loop-unroll", "200", "-eva-slevel", "4", "-eva-split-return", "auto"),
+    *("-eva-slevel-function", "is_one_edit_away:60"),
+)
+ROUNDS = ("-eva-precision", "0", "-eva-auto-loop-unroll", "40", "-eva-slevel", "20", "-eva-split-return", "full")
 PARTS = (
     *(Part(name, QMATH, eva(f"prove_{name}", *SLICES)) for name in SLICED),
     Part("lengths", QMATH, eva("prove_lengths", "-eva-precision", "1"), given="q_sqrt64"),
@@ -102,6 +131,48 @@ PARTS = (
             given=WITH_CONTRACT,
         )
         for name in ("estimators", "observer", "flux")
+    ),
+    Part("packed", TYPED, eva("prove_packed", "-eva-precision", "0", "-eva-min-loop-unroll", "470"), LINK_RANGES),
+    Part("numbers", TYPED, eva("prove_numbers", *NUMBERS), LINK_RANGES, f"{WITH_CONTRACT},put_packed"),
+    Part("names", TYPED, eva("prove_names", *NAMES), LINK_RANGES, WITH_CONTRACT),
+    Part("near", TYPED, eva("prove_near", *NAMES), LINK_RANGES, f"{WITH_CONTRACT},{OF_NAMES}"),
+    Part(
+        "editor",
+        ("tests/prove/editor.c", "firmware/console/editor.c", "firmware/link/octets.c", "hal/qmath/qdiv.c"),
+        eva("prove_editor", "-eva-precision", "0", "-eva-slevel", "20", "-eva-auto-loop-unroll", "10"),
+        LINK_RANGES,
+        "put_text",
+    ),
+    Part(
+        "commands",
+        ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+        eva("prove_commands", *READER),
+        LINK_RANGES,
+        f"{WITH_CONTRACT},{OF_WRITING},{OF_TYPING},{OF_LINES}",
+    ),
+    Part(
+        "requests",
+        (
+            *("tests/prove/requests.c", "firmware/link/requests*.c", "firmware/link/crc.c", "firmware/hil/*.c"),
+            *("firmware/clear.c", "hal/tape.c", *BESIDE),
+        ),
+        eva("prove_requests", *READER),
+        LINK_RANGES,
+        f"{WITH_CONTRACT},{OF_WRITING}",
+    ),
+    Part(
+        "console",
+        ("tests/prove/console.c", "firmware/link/link.c", "firmware/link/splitter.c", RECORD, *TERMINAL, *BESIDE),
+        eva("prove_console", *ROUNDS),
+        LINK_RANGES,
+        f"{WITH_CONTRACT},{OF_WRITING},{OF_LINES},{OF_RECORDS}",
+    ),
+    Part(
+        "node",
+        ("tests/prove/node.c", "firmware/can/*.c", RECORD, *BESIDE),
+        eva("prove_node", *ROUNDS),
+        LINK_RANGES,
+        f"{WITH_CONTRACT},{OF_WRITING},{OF_FRAMES}",
     ),
     Part("blocks", FRAMES, eva("prove_blocks", "-eva-precision", "0", "-eva-auto-loop-unroll", "300"), LINK_RANGES),
     Part("framing", FRAMES, eva("prove_framing", *APART), LINK_RANGES, OF_BLOCKS),
@@ -160,6 +231,18 @@ DEFECTS = (
         "q_sub_sat(length_q24, along_q24)",
         "length_q24 - along_q24",
     ),
+    Defect("packed", "packed_next", "firmware/packed_text.c", "[code - FIRST_PAIR]", "[code - FIRST_PAIR + 1u]"),
+    Defect("numbers", "put_digits", "firmware/text.c", "reversed[10]", "reversed[9]"),
+    Defect("names", "common", "firmware/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
+    Defect(
+        "near", "is_one_edit_away", "firmware/console/suggest.c", "&name[k + 1u], rest, l", "&name[k + 2u], rest, l"
+    ),
+    Defect("editor", "insert", "firmware/console/editor.c", "l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
+    Defect("commands", "set_channels", "firmware/console/commands_scope.c", "a->count > 1u +", "a->count > 2u +"),
+    Defect("requests", "scope_read", "firmware/link/requests_scope.c", "count > READ_MAX", "count > 2u * READ_MAX"),
+    Defect("requests", "delta_take", "firmware/hil/hil.c", "shape[2] > TAPE_INPUTS", "shape[2] > 2u * TAPE_INPUTS"),
+    Defect("console", "keep", "firmware/console/console.c", "kept_count) & (KEPT - 1u)", "kept_count) & KEPT"),
+    Defect("node", "can_put", "firmware/can/messages.c", "&frame->data[at >> 3]", "&frame->data[at >> 2]"),
     Defect("blocks", "cobs_decode", "firmware/link/cobs.c", "from = 0; from < count", "from = 0; from <= count"),
     Defect(
         "framing", "splitter_octet", "firmware/link/splitter.c", "<= RECORD_ENCODED_MAX)", "<= RECORD_ENCODED_MAX + 1u)"
@@ -183,10 +266,10 @@ class Read:
     words: str
 
 
-def sources_of(part: Part, tree: Path) -> list[str]:
-    """Its files; the flash kernel and the entries of images are programs of their own."""
-    found = (path.relative_to(tree).as_posix() for pattern in part.sources for path in sorted(tree.glob(pattern)))
-    return [name for name in found if "/image/" not in name and "/flash_kernel/" not in name]
+def sources_of(part: Part, tree: Path, table: Path) -> list[str]:
+    """Its files, and with the texts the table that the build makes of them."""
+    found = [path.relative_to(tree).as_posix() for pattern in part.sources for path in sorted(tree.glob(pattern))]
+    return [*found, str(table)] if "firmware/packed_text.c" in found else found
 
 
 def summary(part: Part, rows: list[dict[str, str]], said: str) -> str:
@@ -221,8 +304,9 @@ def read(part: Part, tree: Path, out: Path) -> Read:
     """Lets Frama-C read a part."""
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
     machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 -include {part.header}")
+    sources = sources_of(part, tree, out / TABLE)
     given = ("-eva-use-spec", part.given) if part.given else ()
-    command = ["frama-c", *machine, *sources_of(part, tree), *part.flags, *given, "-then", "-report-csv", str(table)]
+    command = ["frama-c", *machine, *sources, *part.flags, *given, "-then", "-report-csv", str(table)]
     # Frama-C believes PWD more than where it is.
     home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(out / "why3.conf")}
     done = subprocess.run(command, cwd=tree, env=home, capture_output=True, text=True, check=False, timeout=SECONDS)
@@ -293,6 +377,7 @@ def main() -> int:
     out = Path(sys.argv[1]).resolve()
     out.mkdir(parents=True, exist_ok=True)
     subprocess.run(["why3", "-C", str(out / "why3.conf"), "config", "detect"], capture_output=True, check=True)
+    subprocess.run([sys.executable, PACK, str(out / TABLE)], cwd=ROOT, check=True)
     names = [word for word in sys.argv[2:] if not word.startswith("-")]
     return plant(out, names) if "--defects" in sys.argv else check(out, names)
 

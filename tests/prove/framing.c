@@ -69,7 +69,7 @@ static void from_the_bus(void) {
 // A piece that is the last one of `count` octets, or one of many.
 static void piece_to_the_bus(uint16_t number, bool last) {
   static segment_splitter_t s;
-  hal_can_frame_t frame;
+  hal_can_frame_t frame = any_frame();
   any_octets(s.octets, RECORD_MAX);
   s.at = (uint16_t)(number * SEGMENT_OCTETS);
   s.count = last ? (uint16_t)(s.at + any_up_to(SEGMENT_OCTETS)) : (uint16_t)any_from(s.at + 8, (int32_t)RECORD_MAX);

@@ -1,0 +1,115 @@
+// The drive, the store and the board's functions with any answer.
+
+#include "tests/prove/any_drive.h"
+
+#include "firmware/board/functions.h"
+#include "firmware/board/selftest.h"
+#include "firmware/fault_history.h"
+#include "firmware/scope/scope.h"
+#include "firmware/store/store.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_profile.h"
+#include "hal/hal_sci.h"
+
+drive_t drive;
+
+static void any_fault(void) {
+  const fault_record_t f = {
+      any_u32, (drive_fault_t)any_up_to(40), (drive_state_t)any_up_to(7), any_i32, any_i32, any_i32, any_i32};
+  fault_history_add(&f);
+}
+
+void any_moment(void) {
+  if (any_bool()) any_fault();
+  drive.state = (drive_state_t)any_up_to(7);
+  drive.fault = (drive_fault_t)any_up_to(40);
+  drive.limits = any_i32;
+  drive.time_ms = any_u32;
+  drive.heartbeat = any_u16;
+  drive.loading = any_bool();
+  drive.start.phase = (start_phase_t)any_up_to(15);
+  drive.start.sigma_q8 = any_i32;
+  drive.config.rpm_per_bpp_q40 = any_i32;
+  drive.model.torque_per_accel_q24 = any_i32;
+  drive.samples.count = any_up_to(ESTIMATOR_WINDOWS);
+  drive.samples.link_q16 = any_i32;
+  drive.position.used.angle_bam = any_u32;
+  drive.position.used.speed_bpp = any_i32;
+  drive.position.used.load_accel_q8 = any_i32;
+  drive.position.low.angle_bam = any_u32;
+  drive.position.high.angle_bam = any_u32;
+  drive.position.blend.share_q15 = any_i32;
+  drive.position.deviation_q20 = any_i32;
+  drive.position.flux.load_angle_bam = any_u32;
+  drive.position.flux.machine.psi_q16 = any_i32;
+  drive.control.ramp.value = any_i32;
+  drive.control.measured_q20.d = any_i32;
+  drive.control.measured_q20.q = any_i32;
+  drive.control.reference_q20.d = any_i32;
+  drive.control.reference_q20.q = any_i32;
+  drive.control.command_q16.d = any_i32;
+  drive.control.command_q16.q = any_i32;
+  drive.control.wanted_rpm_q16 = any_i32;
+  drive.modulation.asked_q16.alpha = any_i32;
+  drive.modulation.asked_q16.beta = any_i32;
+  scope_step(any_u32);
+}
+
+void drive_parameters_changed(void) {}
+void drive_command_start(void) {}
+void drive_command_stop(void) {}
+void drive_command_coast(void) {}
+void drive_command_reset(void) {}
+void drive_command_commission(void) {}
+void drive_command_speed(int32_t rpm_q16) { drive.control.wanted_rpm_q16 = rpm_q16; }
+bool drive_is_energised(void) { return any_bool(); }
+uint32_t drive_time_ms(void) { return any_u32; }
+drive_state_t drive_state(void) { return (drive_state_t)any_up_to(7); }
+
+packed_text_t parameter_conflict(void) { return (packed_text_t)any_up_to((uint16_t)PACKED_NONE); }
+packed_text_t parameter_conflict_known(void) { return (packed_text_t)any_up_to((uint16_t)PACKED_NONE); }
+
+commissioning_outcome_t drive_commissioning_outcome(void) { return (commissioning_outcome_t)any_up_to(5); }
+commissioning_phase_t drive_commissioning_phase(void) { return (commissioning_phase_t)any_up_to(5); }
+int32_t drive_commissioning_progress(void) { return any_from(0, 1000); }
+uint16_t drive_commissioning_count(void) { return any_up_to(30); }
+commissioning_result_t drive_commissioning_result(uint16_t index) {
+  const commissioning_result_t r = {any_u16, any_i32, any_i32, (commissioning_verdict_t)any_up_to(7)};
+  (void)index;
+  return r;
+}
+
+bool store_save(void) { return any_bool(); }
+bool store_load(void) { return any_bool(); }
+bool store_defaults(void) { return any_bool(); }
+bool store_is_busy(void) { return any_bool(); }
+store_state_t store_state(void) { return (store_state_t)any_up_to(11); }
+uint16_t store_progress(void) { return any_up_to(100); }
+const store_report_t* store_report(void) {
+  static store_report_t r;
+  r.sequence = any_u32;
+  r.refused = any_u16;
+  r.first_refused = any_u16;
+  return &r;
+}
+
+void put_board(octet_writer_t* w) { put_packed(w, (packed_text_t)any_up_to((uint16_t)PACKED_TEXTS - 1u)); }
+void put_selftest(octet_writer_t* w) { put_packed(w, (packed_text_t)any_up_to((uint16_t)PACKED_TEXTS - 1u)); }
+
+uint16_t hal_irq_disable(void) { return any_u16; }
+void hal_irq_restore(uint16_t state) { (void)state; }
+void hal_profile_step(uint16_t cycles) { (void)cycles; }
+
+uint16_t hal_sci_write(const uint16_t* octets, uint16_t count) {
+  for (uint16_t k = 0; k < count; k++) any_u16 = octets[k];
+  return any_up_to(count);
+}
+uint16_t hal_sci_read(uint16_t* octets, uint16_t room) {
+  const uint16_t count = any_up_to(room);
+  any_octets(octets, count);
+  return count;
+}
+hal_sci_errors_t hal_sci_errors(void) {
+  const hal_sci_errors_t e = {any_u16, any_u16, any_u16, any_u16};
+  return e;
+}

@@ -1,0 +1,73 @@
+// The console's commands, each with any words behind it, and the lines of their answers until none is left.
+
+#include "firmware/console/commands.h"
+
+#include "firmware/can/node.h"
+#include "firmware/console/console.h"
+#include "firmware/hil/hil.h"
+#include "firmware/link/link.h"
+#include "hal/hal_sci.h"
+#include "tests/prove/any_drive.h"
+
+// Without room nothing happens.
+uint16_t hal_sci_room(void) { return HAL_SCI_TRANSMIT_RING; }
+
+bool hil_is_active(void) { return any_bool(); }
+
+can_node_state_t can_node_state(void) {
+  can_node_state_t s;
+  s.node = any_u16;
+  s.rate_kbit = any_i32;
+  s.heard = any_bool();
+  s.commanding = any_bool();
+  s.timed_out = any_bool();
+  s.bus.state = (hal_can_state_t)any_up_to(5);
+  s.bus.transmit_errors = any_u16;
+  s.bus.receive_errors = any_u16;
+  s.bus.lost = any_u16;
+  s.bus.bus_offs = any_u16;
+  s.bus.restarts = any_u16;
+  s.bad_commands = any_u16;
+  s.lost = any_u16;
+  return s;
+}
+
+link_errors_t link_errors(void) {
+  const link_errors_t e = {{any_u16, any_u16, any_u16}, hal_sci_errors(), any_u16};
+  return e;
+}
+
+static words_of_line_t any_words(void) {
+  static uint16_t typed[EDITOR_LINE];
+  words_of_line_t a;
+  any_octets(typed, EDITOR_LINE);
+  for (uint16_t k = 0; k < COMMAND_WORDS; k++) {
+    a.word[k].text = typed;
+    a.word[k].count = (uint16_t)any_from(1, (int32_t)EDITOR_LINE);
+  }
+  a.count = any_up_to(COMMAND_WORDS);
+  a.too_many = any_bool();
+  return a;
+}
+
+static void one_command(const command_t* c) {
+  const words_of_line_t a = any_words();
+  console_reset();
+  any_moment();
+  c->function(&a);
+  // Lines with a place in a table of their own come first: each by itself.
+  //@ loop unroll 24;
+  for (uint16_t line = 0; line < 24u; line++) {
+    any_moment();
+    console_service();
+  }
+  while (any_bool()) {
+    any_moment();
+    console_service();
+  }
+}
+
+void prove_commands(void) {
+  //@ loop unroll 40;
+  for (uint16_t k = 0; command_info(k) != 0; k++) one_command(command_info(k));
+}

@@ -1,0 +1,102 @@
+// Records from either port: every request with any body, one after the other without end, and what goes out unasked.
+
+#include "firmware/link/requests.h"
+
+#include "firmware/hil/hil.h"
+#include "firmware/link/link.h"
+#include "firmware/link/stream.h"
+#include "firmware/scope/scope.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_sci.h"
+#include "hal/hal_tape.h"
+#include "hal/hal_time.h"
+#include "tests/prove/any_drive.h"
+
+uint16_t hal_sci_room(void) { return any_up_to(HAL_SCI_TRANSMIT_RING); }
+void hal_sci_service(void) {}
+void hal_irq_control_end(void) {}
+void hal_irq_enable(void) {}
+void hal_irq_install(hal_isr_t control, hal_isr_t window) {
+  control();
+  window();
+}
+bool hal_pwm_is_tripped(void) { return any_bool(); }
+void hal_pwm_gates_off(void) {}
+bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+  (void)frame;
+  (void)deadline_tick;
+  return any_bool();
+}
+uint32_t hal_time_cycles(void) { return any_u32; }
+
+link_errors_t link_errors(void) {
+  const link_errors_t e = {{any_u16, any_u16, any_u16}, hal_sci_errors(), any_u16};
+  return e;
+}
+
+void drive_reset(void) { scope_reset(); }
+
+// What the drive asks of the tape while it is stepped, in any order.
+static void ask_the_tape(void) {
+  uint16_t words[TAPE_OUTPUTS];
+  any_octets(words, TAPE_OUTPUTS);
+  while (any_bool()) {
+    (void)tape_note(any_u16);
+    if (tape_plays()) (void)tape_take();
+    tape_tell((tape_told_t)any_up_to(8), words, any_up_to(15));
+  }
+}
+
+// A call of a window that is played plays no other.
+void drive_window_interrupt(void) {
+  uint16_t results[TAPE_RESULTS];
+  if (any_bool()) tape_take_results(results, any_bool() ? TAPE_RESULTS : 3u);
+  ask_the_tape();
+}
+
+void drive_control_step(drive_t* d) {
+  (void)d;
+  while (any_bool()) {
+    tape_call();
+    ask_the_tape();
+  }
+}
+
+void background_step(drive_t* d) {
+  (void)d;
+  if (!hal_tape_has_work(any_bool() ? TAPE_RELOADED : TAPE_EVALUATED)) return;
+  hal_tape_work_begin(TAPE_RELOADED);
+  hal_tape_work_end();
+}
+
+static uint16_t request[RECORD_MAX];
+static uint16_t answer[RECORD_MAX];
+
+static void ask(guard_t port, uint16_t type) {
+  any_octets(request, RECORD_MAX);
+  request[0] = type;
+  (void)request_answer(port, request, any_up_to(RECORD_MAX - 2u), answer);
+}
+
+// One type by itself; those of the others leave what they left before.
+static void one_type(uint16_t type) {
+  while (any_bool()) {
+    any_moment();
+    hil_service();
+    requests_service();
+    ask(any_bool() ? GUARD_SERIAL : GUARD_BUS, type);
+    (void)stream_event(GUARD_SERIAL, answer);
+    (void)stream_event(GUARD_BUS, answer);
+    guard_service();
+  }
+}
+
+void prove_requests(void) {
+  scope_reset();
+  requests_reset();
+  stream_reset();
+  hil_reset();
+  //@ loop unroll 64;
+  for (uint16_t type = 0; type < 0x40u; type++) one_type(type);
+}

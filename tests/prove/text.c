@@ -1,0 +1,102 @@
+// Numbers and words in and out of text: every text of the drive's tables, any characters that somebody typed, any value
+// in any format.
+
+#include "firmware/text.h"
+
+#include "firmware/console/suggest.h"
+#include "firmware/drive_api.h"
+#include "firmware/words.h"
+#include "tests/prove/any.h"
+
+static uint16_t block[240];
+static uint16_t typed[EDITOR_LINE];
+static word_t word;
+
+static octet_writer_t writer(void) { return octet_writer(block, 240); }
+
+static void any_word(void) {
+  for (uint16_t k = 0; k < EDITOR_LINE; k++) typed[k] = any_u16 & 0x7Fu;
+  word.text = typed;
+  word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
+}
+
+static uint16_t length(const char* text) {
+  uint16_t n = 0;
+  while (text[n] != '\0') n++;
+  return n;
+}
+
+// Whatever was typed, compared with one name.
+static void compare(const char* name) {
+  octet_writer_t w = writer();
+  put_text(&w, name);
+  word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
+  (void)text_equals(name, word.text, word.count);
+  (void)text_occurs(name, word.text, word.count);
+}
+
+void prove_names(void) {
+  any_word();
+  for (uint16_t k = 0; k < parameter_count(); k++) compare(parameter_info(k)->name);
+  for (uint16_t k = 0; k < signal_count(); k++) compare(signal_info(k)->name);
+}
+
+// The same with one character wrong, missing or too many.
+static void come_near(const char* name) {
+  const uint16_t n = length(name);
+  word.count = (uint16_t)any_from(0, n - 2);
+  (void)suggest_is_near(name, &word);
+  for (word.count = n - 1u; word.count <= n + 1u; word.count++) (void)suggest_is_near(name, &word);
+  word.count = (uint16_t)any_from(n + 2, (int32_t)EDITOR_LINE);
+  (void)suggest_is_near(name, &word);
+}
+
+void prove_near(void) {
+  any_word();
+  for (uint16_t k = 0; k < parameter_count(); k++) come_near(parameter_info(k)->name);
+  for (uint16_t k = 0; k < signal_count(); k++) come_near(signal_info(k)->name);
+}
+
+static void one_format(uint16_t q, uint16_t decimals) {
+  octet_writer_t w = writer();
+  const decimal_t number = {any_from(-INT32_MAX, INT32_MAX), decimals};
+  put_fixed(&w, any_i32, q, decimals);
+  (void)decimal_raw(&number, q);
+}
+
+static void words_of(uint16_t kind) {
+  octet_writer_t w = writer();
+  for (uint16_t code = 0; code < 128u; code++) put_words(&w, (words_kind_t)kind, code);
+  put_words(&w, (words_kind_t)kind, (uint16_t)any_from(128, 65535L));
+}
+
+// One more octet, however full the block is; all else goes through this.
+static void one_octet(void) {
+  octet_writer_t w = octet_writer(block, 240);
+  w.count = (uint16_t)any_from(0, 240);
+  w.full = any_bool();
+  put_u8(&w, any_u16);
+  //@ assert w.count <= w.room;
+}
+
+void prove_numbers(void) {
+  decimal_t number;
+  one_octet();
+  octet_writer_t w = writer();
+  put_unsigned(&w, any_u32);
+  put_spaces_to(&w, any_u16);
+  any_word();
+  (void)text_number(word.text, word.count, &number);
+  for (uint16_t kind = 0; kind < WORDS_KINDS; kind++) words_of(kind);
+  for (uint16_t q = 0; q <= 32u; q++) {
+    for (uint16_t decimals = 0; decimals <= TEXT_DECIMALS_MAX; decimals++) one_format(q, decimals);
+  }
+}
+
+// Every text, to its end.
+void prove_packed(void) {
+  for (uint16_t text = 0; text < (uint16_t)PACKED_TEXTS; text++) {
+    packed_reader_t r = packed_reader((packed_text_t)text);
+    while (packed_next(&r) != 0u) continue;
+  }
+}
