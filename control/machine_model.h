@@ -90,10 +90,16 @@ static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {
   return s;
 }
 
-/// h = K i + k0: what the slope changes with the speed, A per period and (rad per period), Q20.
+/// What products of K (Q24) and a current (Q20) make with k0, A per period and (rad per period), Q20. A saliency that
+/// was learnt may turn more than the format holds.
+static inline int32_t machine_turned_q20(int64_t of_current_q44, int64_t k0_q20) {
+  return q_sat64(q_shr64(of_current_q44, 24) + k0_q20);
+}
+
+/// h = K i + k0: what the slope changes with the speed.
 static inline dq_t machine_turn_q20(const machine_model_t* m, dq_t i_q20) {
-  const dq_t h = {q_mul_add_floor(m->k_dd_q24, i_q20.d, m->k_dq_q24, i_q20.q, 24) + m->k0_q20.d,
-                  q_mul_sub_floor(m->k_qd_q24, i_q20.d, m->k_dd_q24, i_q20.q, 24) + m->k0_q20.q};
+  const dq_t h = {machine_turned_q20(q_mac(q_product(m->k_dd_q24, i_q20.d), m->k_dq_q24, i_q20.q), m->k0_q20.d),
+                  machine_turned_q20(q_product(m->k_qd_q24, i_q20.d) - q_product(m->k_dd_q24, i_q20.q), m->k0_q20.q)};
   return h;
 }
 

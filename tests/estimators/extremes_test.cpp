@@ -5,6 +5,7 @@
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
+#include "estimators/admittance.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/stator_flux.h"
 #include "estimators/tracking_observer.h"
@@ -44,6 +45,23 @@ TEST(Extremes, AResidualOfTheModelAloneKeepsItsSign) {
   deviation_t d;
   deviation_in_frame(&at, &w, &frame, &d);
   EXPECT_EQ(d.residual_q20.d, kResidualEnd);
+}
+
+// A machine with Lq = 2.7 Ld has sensitivities of 470 A at 200 A; with the largest saliency that may be learnt (Lq = 19
+// Ld) they are beyond 2048 A, where their format ends.
+TEST(Extremes, WhatALearntSaliencyMakesOfALargeCurrentKeepsItsSign) {
+  Motor motor;
+  motor.ld = 5e-3;
+  motor.lq = 13.5e-3;
+  machine_model_t model = model_of(motor);
+  admittance_preset(&model, 0, INT32_MAX);
+  machine_model_move(&model, 0);
+  for (const double sign : {1.0, -1.0}) {
+    const deviation_sensitivity_t along_q = deviation_sensitivity(&model, 0, {0, raw(sign * 200.0, 20)});
+    EXPECT_NEAR(real(along_q.turn_q20.d, 20), sign * 2048.0, 1e-3);
+    const deviation_sensitivity_t along_d = deviation_sensitivity(&model, 1 << 30, {raw(sign * 200.0, 20), 0});
+    EXPECT_NEAR(real(along_d.rest_q18.d, 18), sign * -2048.0, 1.0);  // less what the resistance takes
+  }
 }
 
 // Torque without end and no window: 1.9 rad per period are where the model's formats end.
