@@ -80,7 +80,7 @@ static int32_t settle(inertia_match_t* s) {
   if (s->ms < SETTLE_MS || s->quiet_ms < SETTLE_MS) return ONE_Q24;
   enter(s, INERTIA_REST);
   if (s->ratio_q24 == s->before_q24) return ONE_Q24;
-  const bool same = q_abs_sat(s->base_q8 - s->start_base_q8) <= q_abs_sat(s->mean_q8) / 4;
+  const bool same = q_abs_sat(q_sub_sat(s->base_q8, s->start_base_q8)) <= q_abs_sat(s->mean_q8) / 4;
   return same ? ONE_Q24 : change(s, q_div(s->before_q24, s->ratio_q24, 24));
 }
 
@@ -95,7 +95,7 @@ int32_t inertia_match_step(inertia_match_t* s, const inertia_seen_t* in, int32_t
   if (s->phase == INERTIA_RUN_UP) {
     factor_q24 = run_up(s, in, periods);
   } else {
-    if (s->quiet_ms > 0u) s->base_q8 += q_shr_round(in->torque_accel_q8 - s->base_q8, BASE_SHIFT);
+    if (s->quiet_ms > 0u) s->base_q8 += q_shr_round(q_sub_sat(in->torque_accel_q8, s->base_q8), BASE_SHIFT);
     if (s->phase == INERTIA_SETTLE) factor_q24 = settle(s);
     if (s->phase == INERTIA_REST && moves && rested) begin(s, in);
   }

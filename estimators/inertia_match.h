@@ -54,7 +54,9 @@ void inertia_match_reset(inertia_match_t* s);
 
 /// Every period: the acceleration of its torque.
 static inline void inertia_match_add(inertia_match_t* s, int32_t torque_accel_q8) {
-  if (s->phase == INERTIA_RUN_UP) s->gained_bpp += q_shr(torque_accel_q8 - s->start_base_q8, 8);
+  if (s->phase == INERTIA_RUN_UP) {
+    s->gained_bpp = q_add_sat(s->gained_bpp, q_shr(q_sub_sat(torque_accel_q8, s->start_base_q8), 8));
+  }
 }
 
 /// Every millisecond, `periods` after the last: returns by what factor (Q24) the acceleration per torque is to be

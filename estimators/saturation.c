@@ -2,6 +2,7 @@
 
 #define RELATIVE_MAX_Q30 536870912L  // no inductance is taken to change by more than half
 #define FLOOR_SHARE 650              // of the mean admittance: 0.15 %
+#define STEP_END_Q30 268435456L      // between two rounds, 0.25 A per V and period: the squares of 8 passes fit
 #define SCORE_MIN_Q15 11469L         // 0.35
 #define SCORE_MAX_Q15 98304L         // 3
 #define ROUNDS_A_SIDE (SATURATION_ROUNDS * SATURATION_SEGMENTS / 2)
@@ -50,9 +51,9 @@ void saturation_again(saturation_t* s) {
 
 // What the period says about the admittances, projected on the expected change.
 static int32_t projected_q30(const saturation_t* s, const regression_t* r, const machine_model_t* m) {
-  const int32_t yd_q30 = m->yd_q30 + q_div(q_add_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22);
-  const int32_t yq_q30 = m->yq_q30 + q_div(q_sub_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22);
-  return q_mul(yd_q30, s->unit_d_q30, 30) + q_mul(yq_q30, s->unit_q_q30, 30);
+  const int32_t yd_q30 = q_add_sat(m->yd_q30, q_div(q_add_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
+  const int32_t yq_q30 = q_add_sat(m->yq_q30, q_div(q_sub_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
+  return q_add_sat(q_mul_sat(yd_q30, s->unit_d_q30, 30), q_mul_sat(yq_q30, s->unit_q_q30, 30));
 }
 
 static void judge(saturation_t* s) {
@@ -72,18 +73,18 @@ static void judge(saturation_t* s) {
 static void end_round(saturation_t* s, int16_t round, int32_t sign) {
   const int32_t mean = s->round_q30;
   if (round > 0) {
-    const int64_t step = (int64_t)mean - s->last_q30;
-    s->scatter += (uint64_t)(step * step);
+    const int32_t step = q_limit(q_sub_sat(mean, s->last_q30), STEP_END_Q30);
+    s->scatter += (uint64_t)q_product(step, step);
   }
   s->last_q30 = mean;
   s->round_q30 = 0;
-  s->change_q30 += sign * (mean / ROUNDS_A_SIDE);
+  s->change_q30 = q_add_sat(s->change_q30, sign * (mean / ROUNDS_A_SIDE));
 }
 
 int32_t saturation_resistance_q24(const saturation_t* s, const machine_model_t* m) {
   if (s->missing_count == 0) return 0;
   const int32_t volts_q16 = q_div(s->missing_q20 / s->missing_count, m->yd_q30, 26);
-  return -q_div(volts_q16, s->current_q20, 28);
+  return q_neg_sat(q_div(volts_q16, s->current_q20, 28));
 }
 
 // Sums over all passes, at most 8 of 144 periods.

@@ -7,6 +7,8 @@
 extern "C" {
 #include "estimators/admittance.h"
 #include "estimators/deviation_observer.h"
+#include "estimators/inertia_match.h"
+#include "estimators/saturation.h"
 #include "estimators/stator_flux.h"
 #include "estimators/tracking_observer.h"
 #include "estimators/zvv.h"
@@ -62,6 +64,69 @@ TEST(Extremes, WhatALearntSaliencyMakesOfALargeCurrentKeepsItsSign) {
     const deviation_sensitivity_t along_d = deviation_sensitivity(&model, 1 << 30, {raw(sign * 200.0, 20), 0});
     EXPECT_NEAR(real(along_d.rest_q18.d, 18), sign * -2048.0, 1.0);  // less what the resistance takes
   }
+}
+
+// Admittances of 3 A per V and period, where 2 is the format's end, while the current along the axis is positive; and
+// residuals that make the resistance as far beyond its own.
+TEST(Extremes, WhatASaturationTestSeesBeyondItsFormatKeepsItsSign) {
+  const machine_model_t model = model_of(Motor{});
+  const saturation_slopes_t slopes = {0, raw(0.00139, 30)};
+  for (const std::int32_t sign : {1, -1}) {
+    saturation_t s;
+    saturation_begin(&s, &model, &slopes, raw(1.0, 20));
+    for (int n = 0; n < SATURATION_LENGTH; ++n) {
+      const int segment = n / SATURATION_SEGMENT;
+      regression_t r = {};
+      r.spread_q8 = raw(1000.0, 8);
+      r.along_q16 = (segment == 0 || segment == 3) ? sign * raw(3000.0, 16) : 0;
+      r.information = 1;
+      r.mean_q20.d = (segment == 0 || segment == 3) ? sign * raw(500.0, 20) : sign * raw(-500.0, 20);
+      (void)saturation_step(&s, &r, &model);
+    }
+    EXPECT_LT(real(s.change_q30, 30) * sign, -1.5);  // Lq is to grow with this current, so the admittance to fall
+    EXPECT_LT(real(saturation_resistance_q24(&s, &model), 24) * sign, -127.0);
+  }
+}
+
+// Admittances from one end of their format to the other, round after round, are no certainty.
+TEST(Extremes, TheScatterOfASaturationTestEndsAndDoesNotBeginAnew) {
+  const machine_model_t model = model_of(Motor{});
+  const saturation_slopes_t slopes = {0, raw(0.00139, 30)};
+  saturation_t s;
+  saturation_begin(&s, &model, &slopes, raw(1.0, 20));
+  for (int n = 0; n < SATURATION_LENGTH; ++n) {
+    const int round = (n % SATURATION_SEGMENT - SATURATION_SETTLE + SATURATION_ROUND) / SATURATION_ROUND;
+    regression_t r = {};
+    r.spread_q8 = raw(1000.0, 8);
+    r.along_q16 = raw((round % 2 == 0) ? 3000.0 : -3000.0, 16);
+    r.information = 1;
+    (void)saturation_step(&s, &r, &model);
+  }
+  EXPECT_GT(s.scatter, std::uint64_t{1} << 60);
+  EXPECT_EQ(s.result, POLARITY_AMBIGUOUS);
+}
+
+// An inertia that was told far too small: all torques are accelerations at their format's end. From braking to driving
+// the run-up gains speed, and what is found is taken back when the load has changed.
+TEST(Extremes, ARunUpWithAccelerationsAtTheirEndKeepsItsSign) {
+  inertia_match_t s;
+  inertia_match_reset(&s);
+  inertia_seen_t in = {0, 0, 0, INT32_MIN + 1, 1000, 1000};
+  for (int ms = 0; ms < 200; ++ms) (void)inertia_match_step(&s, &in, 10);
+  EXPECT_LT(s.base_q8, -2000000000);
+  in.torque_accel_q8 = INT32_MAX;
+  in.reference_bpp = 100000;
+  (void)inertia_match_step(&s, &in, 10);
+  ASSERT_EQ(s.phase, INERTIA_RUN_UP);
+  for (int k = 0; k < 300; ++k) {
+    inertia_match_add(&s, in.torque_accel_q8);
+    ASSERT_GT(s.gained_bpp, 0) << k;
+  }
+  in.speed_bpp = in.reference_bpp;
+  s.quiet_ms = 1;
+  for (int ms = 0; ms < 5; ++ms) (void)inertia_match_step(&s, &in, 10);
+  EXPECT_GT(s.base_q8, -2000000000);  // on its way up, and not below its other end
+  EXPECT_LT(s.base_q8, 0);
 }
 
 // Torque without end and no window: 1.9 rad per period are where the model's formats end.

@@ -5,6 +5,7 @@
 #define STILLSPIN_TESTS_PROVE_ANY_WINDOWS_H
 
 #include "estimators/estimator.h"
+#include "estimators/regression.h"
 #include "tests/prove/any_model.h"
 
 #define SPAN_CASES 7
@@ -57,6 +58,19 @@ static inline estimator_input_t any_input(surroundings_t* around, uint16_t of_ca
   in.renew = any_bool();
   in.frames = any_bool() ? around->frames : 0;
   return in;
+}
+
+static inline regression_t any_regression(void) {
+  regression_t r;
+  r.spread_q8 = any_from(0, INT32_MAX);
+  r.along_q16 = any_i32;
+  r.mirror_q16 = any_i32;
+  r.cross_q16 = any_i32;
+  r.curl_q16 = any_i32;
+  r.information = any_from(0, INT32_MAX);
+  r.mean_q20 = any_dq(INT32_MAX);
+  r.current_q20 = any_dq(2 * (CURRENT_MAX_Q20 - 1));
+  return r;
 }
 
 #endif

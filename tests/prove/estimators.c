@@ -78,19 +78,6 @@ static void step_zvv(const estimator_input_t* in) {
   (void)zvv_deviation_q20(in, any_u32, any_speed(), &s.deviation_q20);
 }
 
-static regression_t any_regression(void) {
-  regression_t r;
-  r.spread_q8 = any_from(0, INT32_MAX);
-  r.along_q16 = any_i32;
-  r.mirror_q16 = any_i32;
-  r.cross_q16 = any_i32;
-  r.curl_q16 = any_i32;
-  r.information = any_from(0, INT32_MAX);
-  r.mean_q20 = any_dq(INT32_MAX);
-  r.current_q20 = any_dq(2 * (CURRENT_MAX_Q20 - 1));
-  return r;
-}
-
 static void learn(void) {
   sensor_match_t sensors = {any_from(-53687091L, 53687091L)};
   const regression_t r = any_regression();

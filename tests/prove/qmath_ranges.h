@@ -9,6 +9,10 @@
 /*@ assigns \result \from x; ensures \result <= 32; ensures x != 0 ==> \result <= 31; */
 unsigned q_clz32(uint32_t x);
 
+/*@ assigns \result \from x; ensures -2147483648 <= x <= 2147483647 ==> \result == x;
+    ensures x < 0 ==> \result <= 0; ensures x >= 0 ==> \result >= 0; */
+static inline int32_t q_sat64(int64_t x);
+
 /*@ requires 0 <= limit; assigns \result \from x, limit; ensures -limit <= \result <= limit; */
 static inline int32_t q_limit(int32_t x, int32_t limit);
 
