@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """How many small changes of the drive's C the C++ tests notice.
 
-Usage: toolchain/mutants.py [SAMPLE] [near] [PART...]     (make mutants SAMPLE=60; near: the part's own tests alone)
+Usage: toolchain/mutants.py [SAMPLE] [near] [seed=NUMBER] [PART...]
+
+make mutants SAMPLE=60 does it for all parts. near: the part's own tests alone; seed: another draw.
 
 Changes sources of the floors one token or statement at a time (toolchain/mutation/mutate.py), a drawn sample of SAMPLE
 (or `all`) in every part. What does not compile, and what gives the object code of the original or of an earlier mutant
@@ -108,10 +110,11 @@ class Score:
 class Run:
     """One run over parts."""
 
-    def __init__(self, board: Board, near: bool) -> None:
-        """With the build of the unchanged tree; near: without the tests above a part."""
+    def __init__(self, board: Board, near: bool, seed: int) -> None:
+        """With the build of the unchanged tree; near: without the tests above a part; seed: of the draw."""
         self.board = board
         self.near = near
+        self.seed = seed
         self.verdicts = Verdicts()
         self.verdicts.load()
         self.plain: dict[str, bytes] = {}  # object code of the original by source
@@ -195,7 +198,7 @@ class Run:
         part = PARTS[name]
         files = sorted({p.relative_to(ROOT).as_posix() for pattern in part.sources for p in ROOT.glob(pattern)})
         every = [mutant for file in files for mutant in mutants(file, self.source(file))]
-        random.Random(SEED).shuffle(every)
+        random.Random(self.seed).shuffle(every)
         score = Score()
         while every and (sample is None or score.distinct < sample):
             count = 64 if sample is None else max(sample - score.distinct, WORKERS)
@@ -227,8 +230,9 @@ def main() -> int:
     chosen = [word for word in words if word in PARTS] or list(PARTS)
     BUILD.mkdir(parents=True, exist_ok=True)
     near = "near" in words
+    seed = next((int(word[5:]) for word in words if word.startswith("seed=")), SEED)
     programs = {name for part in chosen for name in PARTS[part].programs[: 1 if near else None]}
-    run = Run(make_board(sorted(programs)), near)
+    run = Run(make_board(sorted(programs)), near, seed)
     for program in run.board.programs.values():
         print(f"{program.name}: {program.seconds:.1f} s")
     lines, survivors = [], []

@@ -35,8 +35,8 @@ int32_t q_div(int32_t num, int32_t den, unsigned shift);
 
 // 1 / divisor: value * 2^-exponent.
 typedef struct {
-  int32_t value;      // 2^29..2^30
-  unsigned exponent;  // 31..62
+  int32_t value;      // 2^30..2^31 - 1
+  unsigned exponent;  // 31..61
 } q_inverse_t;
 
 // The inverse of a positive number; 0 counts as 1.

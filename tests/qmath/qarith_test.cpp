@@ -101,6 +101,27 @@ TEST(QArith, TwoProductsAreRoundedOnce) {
   }
 }
 
+// What is cheaper is the floor of the same sums.
+TEST(QArith, FloorsOfProductsRoundDown) {
+  RandomInt32 random(12);
+  for (int n = 0; n < 200000; ++n) {
+    const std::int32_t a = random() / 2, b = random(), c = random() / 2, d = random();
+    const unsigned shift = 1 + static_cast<unsigned>(n) % 62;
+    const Wide product = floor_shift(Wide{a} * b, shift);
+    const Wide sum = floor_shift(Wide{a} * b + Wide{c} * d, shift);
+    const Wide difference = floor_shift(Wide{a} * b - Wide{c} * d, shift);
+    if (fits(product)) {
+      ASSERT_EQ(q_mul_floor(a, b, shift), saturate(product)) << n;
+    }
+    if (fits(sum)) {
+      ASSERT_EQ(q_mul_add_floor(a, b, c, d, shift), saturate(sum)) << n;
+    }
+    if (fits(difference)) {
+      ASSERT_EQ(q_mul_sub_floor(a, b, c, d, shift), saturate(difference)) << n;
+    }
+  }
+}
+
 TEST(QArith, ProductRoundsHalvesUp) {
   EXPECT_EQ(q_mul(3, 1, 1), 2);    // 1.5
   EXPECT_EQ(q_mul(-3, 1, 1), -1);  // -1.5
@@ -152,6 +173,21 @@ TEST(QArith, Clamp) {
   EXPECT_EQ(q_clamp(7, 4, 4), 4);
 }
 
+// At both ends, beside them, and where lower and upper end are one.
+TEST(QArith, RangesHaveBothTheirEnds) {
+  for (const std::int32_t lo : edges()) {
+    for (const std::int32_t hi : edges()) {
+      if (lo > hi) continue;
+      for (const std::int64_t near : {std::int64_t{lo} - 1, std::int64_t{lo}, std::int64_t{lo} + 1, std::int64_t{hi} - 1,
+                                      std::int64_t{hi}, std::int64_t{hi} + 1}) {
+        const std::int32_t x = saturate(near);
+        ASSERT_EQ(q_in_range(x, lo, hi), lo <= x && x <= hi) << x << " in " << lo << ".." << hi;
+        ASSERT_EQ(q_clamp(x, lo, hi), std::clamp(x, lo, hi)) << x << " in " << lo << ".." << hi;
+      }
+    }
+  }
+}
+
 // Every pair with one argument over all 2^16 values and the other over a stride that is coprime with the word.
 TEST(QArith, SixteenBits) {
   const auto saturate16 = [](std::int64_t x) { return std::clamp<std::int64_t>(x, INT16_MIN, INT16_MAX); };
@@ -166,11 +202,12 @@ TEST(QArith, SixteenBits) {
       mismatches += q15_mul(a16, b16) != saturate16(product);
       mismatches += q15_add_sat(a16, b16) != saturate16(std::int64_t{a} + b);
       mismatches += q15_sub_sat(a16, b16) != saturate16(std::int64_t{a} - b);
+      mismatches += q_max16(a16, b16) != std::max(a, b);
+      mismatches += q_min16(a16, b16) != std::min(a, b);
     }
   }
   EXPECT_EQ(mismatches, 0);
-  EXPECT_EQ(q15_sat(40000), INT16_MAX);
-  EXPECT_EQ(q15_sat(-40000), INT16_MIN);
+  for (const std::int32_t x : edges()) EXPECT_EQ(q15_sat(x), saturate16(x)) << x;
 }
 
 TEST(QArith, AShiftByNothingRoundsNothing) {

@@ -82,6 +82,20 @@ TEST(QDiv, InverseOfADivisorThatIsShared) {
   EXPECT_EQ(q_over(1, q_invert(0), 30), q_over(1, q_invert(1), 30));
 }
 
+// The mantissa keeps 30 bits, whatever the divisor, and the exponent is the one that makes it so.
+TEST(QDiv, InverseHasItsRange) {
+  for (const std::int32_t divisor : edges()) {
+    const q_inverse_t inverse = q_invert(divisor);
+    ASSERT_GE(inverse.value, 1 << 30) << divisor;
+    ASSERT_GE(inverse.exponent, 31u) << divisor;
+    ASSERT_LE(inverse.exponent, 61u) << divisor;
+    const long double one = std::ldexp(static_cast<long double>(inverse.value), -static_cast<int>(inverse.exponent)) *
+                            std::max(divisor, 1);
+    ASSERT_LE(one, 1.0L) << divisor;
+    ASSERT_GT(one, 1.0L - std::ldexp(1.0L, -28)) << divisor;
+  }
+}
+
 TEST(QDiv, ZeroDivisorSaturatesWithTheSignOfTheNumerator) {
   EXPECT_EQ(q_div(0, 0, 10), 0);
   EXPECT_EQ(q_div(1, 0, 0), INT32_MAX);
