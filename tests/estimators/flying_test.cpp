@@ -174,4 +174,42 @@ TEST(Flying, TheTurnMustFitTheEmf) {
   }
 }
 
+// How sure the turn is: in standard deviations of an EMF that is a volt off.
+TEST(Flying, TheTurnIsMeasuredInErrorsOfTheEmf) {
+  const machine_model_t model = model_of(Motor{});
+  flying_rotor_t r;
+  const flying_emf_t small = {bam(0.0), raw(20.0, 16), 0, 0};
+  const flying_emf_t large = {bam(-1.2), raw(60.0, 16), 100000, 0};
+  (void)flying_resolve(&small, &large, &model, &r);
+  EXPECT_NEAR(real(r.sigma_q8, 8), 1.2 * 20.0, 0.05);  // of the smaller EMF, whichever way the shaft turns
+  (void)flying_resolve(&large, &small, &model, &r);
+  EXPECT_NEAR(real(r.sigma_q8, 8), 1.2 * 20.0, 0.05);
+}
+
+// A turn of fifteen degrees or less is no turn.
+TEST(Flying, ATurnOfFifteenDegreesIsTooSmall) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  for (const double degrees : {14.9, 15.1, -14.9, -15.1}) {
+    const double w = 300.0;
+    const auto apart = static_cast<std::int32_t>(std::lround(std::fabs(degrees) * kDegree / w * 1e8));
+    const flying_emf_t first = {bam(0.7), raw(w * m.flux, 16), 0, 0};
+    const flying_emf_t second = {bam(0.7 + degrees * kDegree), raw(w * m.flux, 16), apart, 0};
+    flying_rotor_t r;
+    EXPECT_EQ(flying_resolve(&first, &second, &model, &r), std::fabs(degrees) > 15.0) << degrees;
+    EXPECT_NEAR(rad_per_s(r.speed_bpp), degrees > 0 ? w : -w, 0.1) << degrees;
+  }
+}
+
+// Sixty degrees at the speed that the first pulse tells, within the ends that are asked for.
+TEST(Flying, ThePauseIsASixthOfATurn) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  for (const double w : {20.0, 100.0, 600.0, 4000.0}) {
+    const flying_emf_t e = {0, raw(w * m.flux, 16), 0, 0};
+    const double periods = kPi / 3.0 / w / kPeriod;
+    EXPECT_NEAR(flying_pause(&e, &model, 6, 300), std::clamp(periods, 6.0, 300.0), 1.0) << w;
+  }
+}
+
 }  // namespace

@@ -152,4 +152,62 @@ TEST(Zvv, NoDeviationWithoutAZeroVector) {
   EXPECT_EQ(deviation, 77);
 }
 
+// Two zero vectors behind and between others: D is the mean of theirs, and what the devices take along the d-axis acts
+// like R i_d in what an angle error makes of it.
+TEST(Zvv, ZeroVectorsAmongOthersAreAveragedWithTheirDrops) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const double id = 2.0, error = 4.0 * kDegree;
+  const Vector current = Vector{id, 0.0};
+  std::vector<Window> windows = {window_at(m, error, 0.0, current, state_vector(1), 1500, 2000),
+                                 window_at(m, error, 0.0, current, {-1.0, 0.25}, 5000, 2000),
+                                 window_at(m, error, 0.0, current, {-0.5, 0.75}, 8500, 2000)};
+  const auto see = [&](std::vector<Window> seen, int zero) {
+    std::vector<estimator_window_t> list;
+    for (const Window& w : seen) list.push_back(w.raw());
+    for (std::size_t k = 0; k < list.size(); ++k) list[k].zero_vector = static_cast<int>(k) >= zero;
+    return list;
+  };
+  const std::vector<estimator_window_t> raws = see(windows, 1);
+  const estimator_input_t in = {&model, raws.data(), 3, 0, true, true, nullptr};
+  std::int32_t deviation = 0;
+  ASSERT_TRUE(zvv_deviation_q20(&in, 0, 0, &deviation));
+  double sum = 0.0;
+  for (int k = 1; k < 3; ++k) {
+    const Window& w = windows[static_cast<std::size_t>(k)];
+    sum += w.slope.y + kPeriod / m.lq * (m.rs * w.current.y - w.voltage.y);
+  }
+  EXPECT_NEAR(real(deviation, 20), sum / 2.0, 2e-5);
+
+  // Kq = (Ld - Lq) / (Ld Lq) (R i_d + drop), (24).
+  zvv_t s = {};
+  zvv_preset(&s, 0, 0);
+  const zvv_config_t c = config(4.0, 0.0);
+  const estimator_output_t out = zvv_step(&s, &c, &in, raw(id, 20));
+  const double kq = kPeriod * (1.0 / m.lq - 1.0 / m.ld) * (m.rs * id + 0.75);
+  EXPECT_NEAR(rad_per_s(out.speed_bpp), 4.0 * sum / 2.0 / kq, 0.001 * 4.0 * error);
+  EXPECT_EQ(out.quality_q15, 32767);
+
+  // Only the zero vectors: without one there is nothing, and what was there stays.
+  std::vector<estimator_window_t> none = see(windows, 3);
+  const estimator_input_t blind = {&model, none.data(), 3, 0, true, true, nullptr};
+  std::int32_t untouched = 77;
+  EXPECT_FALSE(zvv_deviation_q20(&blind, 0, 0, &untouched));
+  EXPECT_EQ(untouched, 77);
+  EXPECT_EQ(zvv_step(&s, &c, &blind, raw(id, 20)).quality_q15, 0);
+}
+
+// More than 15 degrees a linearised D does not tell, in either direction.
+TEST(Zvv, AnErrorCountsAsFifteenDegreesAtMost) {
+  const machine_model_t model = model_of(Motor{});
+  for (const double sign : {1.0, -1.0}) {
+    zvv_t s = {};
+    zvv_preset(&s, 0, 0);
+    const zvv_config_t c = config(4.0, 8.0);
+    const Input in(model, zero_window(sign * 40.0 * kDegree, 0.0, 3.0));
+    (void)zvv_step(&s, &c, in.get(), raw(3.0, 20));
+    EXPECT_NEAR(rad_per_s(s.speed_bpp), sign * 15.0 * kDegree * (4.0 + 8.0 * kPeriod), 0.003);
+  }
+}
+
 }  // namespace

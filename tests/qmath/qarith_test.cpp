@@ -178,8 +178,8 @@ TEST(QArith, RangesHaveBothTheirEnds) {
   for (const std::int32_t lo : edges()) {
     for (const std::int32_t hi : edges()) {
       if (lo > hi) continue;
-      for (const std::int64_t near : {std::int64_t{lo} - 1, std::int64_t{lo}, std::int64_t{lo} + 1, std::int64_t{hi} - 1,
-                                      std::int64_t{hi}, std::int64_t{hi} + 1}) {
+      for (const std::int64_t near : {std::int64_t{lo} - 1, std::int64_t{lo}, std::int64_t{lo} + 1,
+                                      std::int64_t{hi} - 1, std::int64_t{hi}, std::int64_t{hi} + 1}) {
         const std::int32_t x = saturate(near);
         ASSERT_EQ(q_in_range(x, lo, hi), lo <= x && x <= hi) << x << " in " << lo << ".." << hi;
         ASSERT_EQ(q_clamp(x, lo, hi), std::clamp(x, lo, hi)) << x << " in " << lo << ".." << hi;

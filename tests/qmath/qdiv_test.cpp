@@ -89,8 +89,8 @@ TEST(QDiv, InverseHasItsRange) {
     ASSERT_GE(inverse.value, 1 << 30) << divisor;
     ASSERT_GE(inverse.exponent, 31u) << divisor;
     ASSERT_LE(inverse.exponent, 61u) << divisor;
-    const long double one = std::ldexp(static_cast<long double>(inverse.value), -static_cast<int>(inverse.exponent)) *
-                            std::max(divisor, 1);
+    const long double one =
+        std::ldexp(static_cast<long double>(inverse.value), -static_cast<int>(inverse.exponent)) * std::max(divisor, 1);
     ASSERT_LE(one, 1.0L) << divisor;
     ASSERT_GT(one, 1.0L - std::ldexp(1.0L, -28)) << divisor;
   }
