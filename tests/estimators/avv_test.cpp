@@ -210,4 +210,20 @@ TEST(Avv, BandwidthBetweenShortAndLongWindows) {
   EXPECT_LT(between, 195.0);
 }
 
+// Between 2^21 and 2^27 of information the bandwidth goes with its logarithm, in quarters of a power of two between
+// which it is straight.
+TEST(Avv, TheBandwidthGoesWithTheLogarithmOfTheInformation) {
+  for (const int span : {250, 400, 700, 1000, 1300, 1700, 2200, 2800, 3500, 4700}) {
+    std::vector<Window> windows = {window_at(Motor{}, 0.5, 0.0, {0, 0}, state_vector(1), 2500, span),
+                                   window_at(Motor{}, 0.5, 0.0, {0, 0}, state_vector(6), 7500, span)};
+    const double e = 5.0 * kDegree;
+    const Estimate m = measure(windows, 0.5 - e);
+    const double pulled = (rad(m.state.observer.angle_bam) - (0.5 - e)) / e / (3.0 * kPeriod);
+    const auto information = static_cast<double>(m.state.regression.information);
+    const int power = std::ilogb(information);
+    const double log2 = power + std::floor((std::ldexp(information, -power) - 1.0) * 4.0) / 4.0;
+    EXPECT_NEAR(pulled, 100.0 + 100.0 * std::clamp((log2 - 21.0) / 6.0, 0.0, 1.0), 0.2) << span;
+  }
+}
+
 }  // namespace

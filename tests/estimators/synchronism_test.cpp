@@ -173,4 +173,85 @@ TEST(Synchronism, WithoutASpanNothingIsJudged) {
   EXPECT_EQ(s.error_q16.d, 0);
 }
 
+// What an estimator hands over instead of the windows: residuals of a machine whose L/T is known.
+synchronism_seen_t seen_of(Vector emf, double believed, std::int32_t span, std::int32_t periods) {
+  const Vector residual = {emf.x * kPeriod / kMotor.ld, emf.y * kPeriod / kMotor.lq};
+  return {raw_dq(residual, 20), span, bpp(believed), periods};
+}
+
+// A quarter of what is new in one period or two, three quarters in more.
+TEST(Synchronism, TheErrorFollowsByPeriods) {
+  for (const auto& [periods, share] : {std::pair{1, 0.25}, {2, 0.25}, {3, 0.75}, {6, 0.75}}) {
+    Scene scene;
+    Vector mean = {0.0, 0.0};
+    for (const Vector emf : {Vector{3.0, -8.0}, {-2.0, 5.0}, {0.0, 1.0}}) {
+      const synchronism_seen_t seen = seen_of(emf, 0.0, 5000, periods);
+      (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
+      mean = mean + (emf - mean) * share;
+      EXPECT_NEAR(scene.error().x, mean.x, 2e-3) << periods;
+      EXPECT_NEAR(scene.error().y, mean.y, 2e-3) << periods;
+    }
+  }
+}
+
+// The floor is meant for windows of half a period; it grows with the square of what they are shorter, and the EMF's
+// share comes on top in either direction.
+TEST(Synchronism, TheLimitGrowsWithShortWindowsAndSpeed) {
+  Scene scene;
+  for (const auto& [span, factor] : {std::pair{9000, 1.0}, {5000, 1.0}, {2500, 4.0}, {1250, 16.0}}) {
+    for (const double w : {0.0, 300.0, -300.0}) {
+      const synchronism_seen_t seen = seen_of({0.0, 0.0}, w, span, 1);
+      (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
+      EXPECT_NEAR(real(scene.s.limit_q16, 16), kFloor * factor + kShare * std::fabs(w) * kMotor.flux, 0.01) << span;
+    }
+  }
+}
+
+// At the limit there is no loss, a little beyond there is one; both axes count.
+TEST(Synchronism, TheLimitIsOfTheWholeVector) {
+  for (const double part : {0.99, 1.01}) {
+    Scene scene;
+    const Vector emf = Vector{0.6, 0.8} * (kFloor * part);
+    const synchronism_seen_t seen = seen_of(emf, 0.0, 5000, 3);
+    for (int n = 0; n < 200; ++n) (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
+    EXPECT_EQ(scene.s.doubt > 0, part > 1.0) << part;
+  }
+}
+
+// Eight for each bad period, one back for each good one, also where several come at once.
+TEST(Synchronism, DoubtCountsThePeriods) {
+  Scene scene;
+  const auto judge = [&](double off, std::int32_t periods) {
+    const synchronism_seen_t seen = seen_of({0.0, 0.0}, 0.0, 5000, periods);
+    return synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, static_cast<std::int32_t>(bam(off)));
+  };
+  EXPECT_FALSE(judge(2.0, 6));
+  EXPECT_EQ(scene.s.doubt, 48);
+  EXPECT_FALSE(judge(0.0, 5));
+  EXPECT_EQ(scene.s.doubt, 43);
+  EXPECT_FALSE(judge(-2.0, 1));
+  EXPECT_EQ(scene.s.doubt, 51);
+  for (int n = 0; n < 10; ++n) EXPECT_FALSE(judge(0.0, 8));
+  EXPECT_EQ(scene.s.doubt, 0);
+  scene.s.doubt = kBad * 8 - 8;
+  EXPECT_FALSE(judge(2.0, 1));
+  EXPECT_TRUE(judge(2.0, 1));
+}
+
+// Unequal windows count by their spans, and as one that lies where they do in the mean.
+TEST(Synchronism, WindowsCountByTheirSpans) {
+  Scene scene;
+  const double theta = 0.3;
+  std::vector<Window> windows = {window_at(kMotor, theta, 0.0, {0, 0}, state_vector(1), 2000, 1000),
+                                 window_at(kMotor, theta, 0.0, {0, 0}, state_vector(6), 7000, 3000)};
+  const Vector left[] = {{0.4, 0.0}, {-0.1, 0.2}};  // A per period along d and q
+  for (std::size_t k = 0; k < 2; ++k) windows[k].slope = windows[k].slope + left[k].turned(theta);
+  const Input in(scene.model, windows);
+  const synchronism_use_t use = {bam(theta), 0, 0, 1};
+  (void)synchronism_step(&scene.s, &kConfig, in.get(), &use);
+  const Vector mean = left[0] * 0.25 + left[1] * 0.75;
+  EXPECT_NEAR(scene.error().x, 0.25 * mean.x * kMotor.ld / kPeriod, 2e-3);
+  EXPECT_NEAR(scene.error().y, 0.25 * mean.y * kMotor.lq / kPeriod, 2e-3);
+}
+
 }  // namespace
