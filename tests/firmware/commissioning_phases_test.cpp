@@ -1,0 +1,388 @@
+// What the commissioning does with the drive in each of its phases, and what it sums up: the shaft and the windows are
+// the test's, so what comes out is known beforehand.
+
+#include <algorithm>
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kLink = 300.0;
+
+class Phases : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    drive.state = DRIVE_COMMISSION;
+    drive.model = drive.config.nameplate;
+    commissioning().model = drive.model;
+    drive.samples.link_q16 = raw(kLink, 16);
+    drive.position.used = {0, 0, 0, 32767};
+    limit_ = real(parameters.current_limit, 20);
+  }
+  static commissioning_t& commissioning() { return drive.commissioning; }
+
+  /// One period of a phase, as the sequence calls it.
+  static bool step(bool (*phase)(drive_t*)) {
+    const bool done = phase(&drive);
+    commissioning().tick++;
+    return done;
+  }
+  /// The period's windows, under opposite vectors along alpha; what they leave over is along d, A per period.
+  static void windows(Vector current, double first, double second) {
+    const machine_model_t& m = drive.model;
+    drive.samples.count = 2;
+    for (int k = 0; k < 2; ++k) {
+      estimator_window_t& w = drive.samples.windows[k];
+      const double volts = (k == 0 ? 1.0 : -1.0) * kLink * 2.0 / 3.0;
+      const double left = k == 0 ? first : second;
+      const double along = real(m.yd_q30, 30) * (volts - real(m.rs_q24, 24) * current.x) + left;
+      const double across = -real(m.yq_q30, 30) * real(m.rs_q24, 24) * current.y;
+      w = {raw_ab({along, across}, 20), raw_ab(current, 20), raw_ab({volts, 0.0}, 16), 0, 2500, false};
+      w.middle_tick = static_cast<std::int16_t>(k == 0 ? 3100 : 7300);
+    }
+    drive.modulation.sampled.windows[0] = {1500, 4500, 1};
+    drive.modulation.sampled.windows[1] = {5500, 8500, 6};
+  }
+  /// Electrical acceleration per torque, rad/s^2 and N m.
+  static double per_torque() { return real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod; }
+  static std::int32_t accel_q8(double rad_per_s2) { return raw(rad_per_s2 * kPeriod * kPeriod / kTurn, 40); }
+
+  double limit_ = 0.0;
+};
+
+// A second-order law of 60 rad/s with the load fed forward, up to a quarter of the largest current.
+TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
+  struct Case {
+    double off, speed, load;
+  };
+  for (const Case& c : {Case{0.2, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 200.0}, {-0.1, 2.0, -300.0}}) {
+    drive.position.used = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
+    commissioning().target_bam = bam(1.0 + c.off);
+    commissioning_hold(&drive);
+    const double accel = 3600.0 * c.off - 120.0 * c.speed + c.load;
+    const double torque_constant = real(machine_torque_constant_q24(&drive.model, 0), 24);
+    EXPECT_NEAR(real(drive.control.reference_q20.q, 20), accel / per_torque() / torque_constant, 2e-3) << c.off;
+  }
+  for (const double sign : {1.0, -1.0}) {
+    drive.position.used = {0, 0, 0, 32767};
+    commissioning().target_bam = bam(sign * 2.0);
+    commissioning_hold(&drive);
+    EXPECT_NEAR(real(drive.control.reference_q20.q, 20), sign * limit_ / 4.0, 1e-5);
+  }
+}
+
+// To the nearest sixth of a turn, 0.02 degrees in a period, and 600 ms in all.
+TEST_F(Phases, TheShaftIsTakenToASixthOfATurn) {
+  for (const auto& [from, to] : {std::pair{0.0, 0.0}, {29.0, 0.0}, {31.0, 60.0}, {-80.0, -60.0}, {179.0, 180.0}}) {
+    commissioning().tick = 0;
+    drive.position.used.angle_bam = bam(from * kDegree);
+    std::uint32_t last = bam(from * kDegree);
+    int n = 1;
+    for (; !step(commissioning_turn); ++n) {
+      const std::int32_t moved = angle_diff_bam(commissioning().target_bam, last);
+      ASSERT_LE(std::fabs(rad(moved)), 0.0201 * kDegree);
+      last = commissioning().target_bam;
+      if (n == 100) {
+        const double way = std::clamp(to - from, -2.0, 2.0);
+        EXPECT_NEAR(wrapped(rad(last) - (from + way) * kDegree) / kDegree, 0.0, 0.01) << from;
+      }
+      ASSERT_LT(n, 10000);
+    }
+    EXPECT_EQ(n, 6001);
+    EXPECT_NEAR(wrapped(rad(commissioning().target_bam) - to * kDegree) / kDegree, 0.0, 1e-4) << from;
+  }
+}
+
+// Only opposite vectors make a pair: what is common to both is then not the link.
+TEST_F(Phases, APairIsUnderOppositeVectors) {
+  deviation_t first, second;
+  windows({2.0, 0.0}, 0.3, -0.2);
+  ASSERT_TRUE(commissioning_pair(&drive, &first, &second));
+  EXPECT_NEAR(real(first.residual_q20.d, 20), 0.3, 1e-4);
+  EXPECT_NEAR(real(second.residual_q20.d, 20), -0.2, 1e-4);
+  drive.samples.count = 3;
+  EXPECT_FALSE(commissioning_pair(&drive, &first, &second));
+  for (const auto& [volts, pair] : {std::pair{9.5, true}, {10.5, false}, {-9.5, true}, {-10.5, false}}) {
+    windows({2.0, 0.0}, 0.0, 0.0);
+    drive.samples.windows[1].voltage_q16.alpha += raw(volts, 16);
+    EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << volts;
+    windows({2.0, 0.0}, 0.0, 0.0);
+    drive.samples.windows[1].voltage_q16.beta += raw(volts, 16);
+    EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << volts;
+  }
+}
+
+// Seven levels of i_d up to the limit and seven below zero up to the field-weakening limit, evenly spaced from where
+// the ripple changes no current's sign on. Each is summed for 0.84 s, 60 ms after it was asked for.
+TEST_F(Phases, TheStaircaseSumsEachLevel) {
+  parameters.weakening_limit = raw(0.8 * limit_, 20);
+  const double ripple = kLink * 2.0 / 3.0 * real(drive.model.yd_q30, 30) * drive.config.modulator.pulse_ticks / 1e4;
+  const auto level = [&](int index) {
+    const double most = index < 7 ? limit_ : 0.8 * limit_;
+    const double least = std::max(0.4 * most, 2.4 * ripple);
+    return (index < 7 ? 1.0 : -1.0) * (least + (most - least) / 6.0 * (index % 7));
+  };
+  drive.control.command_q16 = {raw(1.5, 16), raw(-0.3, 16)};
+  drive.control.reference_q20 = {0, 0};
+  constexpr double kSag = 5e-4;  // V per tick: the link falls under the first vector and rises under the second
+  int n = 0;
+  std::int32_t last = 0;
+  for (; n < 200000; ++n) {
+    const double current = real(drive.control.reference_q20.d, 20);
+    drive.control.measured_q20 = drive.control.reference_q20;
+    windows({current, 0.0}, 0.05, -0.01);
+    drive.samples.link_end_q16[0] = raw(kLink - kSag * (4350 - 1500), 16);
+    drive.samples.link_end_q16[1] = raw(kLink - kSag * 3000 + kSag * (8550 - 5500), 16);
+    if (step(commissioning_climb)) break;
+    ASSERT_LE(std::abs(drive.control.reference_q20.d - last), parameters.current_limit / 64) << n;
+    last = drive.control.reference_q20.d;
+  }
+  EXPECT_NEAR(n, 14 * 9000 + 601 + 64, 64);
+  EXPECT_EQ(drive.control.reference_q20.d, 0) << "the current is gone when it is over";
+  ASSERT_EQ(commissioning().staircase.index, 14);
+  for (int k = 0; k < 14; ++k) {
+    const staircase_level_t& l = commissioning().staircase.level[k];
+    ASSERT_EQ(l.periods, 8400) << k;
+    ASSERT_EQ(l.windows, 2 * 8400) << k;
+    EXPECT_NEAR(real(l.current / l.periods, 20), level(k), 2e-3 * limit_) << k;
+    EXPECT_NEAR(real(l.window_current / l.windows, 20), level(k), 2e-3 * limit_) << k;
+    EXPECT_EQ(l.command, std::int64_t{8400} * raw(1.5, 20)) << k;
+    EXPECT_NEAR(real(l.residual / l.windows, 20), 0.02, 1e-4) << k;
+    // one volt against each current: 1/3 (2 + 1 + 1) along d
+    EXPECT_NEAR(real(l.factor / l.periods, 20), k < 7 ? 4.0 / 3.0 : -4.0 / 3.0, 1e-3) << k;
+    EXPECT_NEAR(real(l.window_factor / l.windows, 20), k < 7 ? 4.0 / 3.0 : -4.0 / 3.0, 1e-3) << k;
+    // Between the windows' middles the link differs by less than between their ends; two thirds of it are along d.
+    const double middles = kSag * (3000 - (3100 - 1500) - (7300 - 5500));
+    EXPECT_NEAR(real(l.sag / 8400, 20), middles * 2.0 / 3.0, 3e-4) << k;
+    EXPECT_EQ(l.link_q16, raw(kLink, 16));
+  }
+}
+
+// With a ripple that leaves no line there is nothing to climb.
+TEST_F(Phases, AStaircaseWithoutRoomStaysAtZero) {
+  parameters.current_limit = parameters.weakening_limit = raw(0.5, 20);
+  for (int n = 0; n < 2000; ++n) {
+    windows({0.0, 0.0}, 0.0, 0.0);
+    (void)step(commissioning_climb);
+    ASSERT_EQ(drive.control.reference_q20.d, 0);
+  }
+}
+
+// The shaft follows its reference at once: three stations of a second, ramps between them, and a stop.
+TEST_F(Phases, TheSpinSumsStationsAndRamps) {
+  drive.position.used = {bam(0.4), bpp(5.0), 0, 32767};
+  const std::int32_t high = bpp_of(600);
+  drive.control.command_q16 = {raw(-3.0, 16), raw(20.0, 16)};
+  drive.control.measured_q20 = {raw(0.25, 20), raw(0.5, 20)};
+  drive.control.reference_q20.d = raw(1.0, 20);
+  int n = 0;
+  std::int32_t last = 0;
+  for (; n < 100000; ++n) {
+    EXPECT_FALSE(step(commissioning_spin));
+    if (!commissioning().turning) break;
+    ASSERT_LE(std::abs(drive.control.target_bpp - last), high / 3000 + 1) << n;
+    last = drive.control.ramp.value = drive.position.used.speed_bpp = drive.control.target_bpp;
+  }
+  // ramps of 0.1, 0.2, 0.2 and 0.1 s, settling and stations, 0.3 s at rest
+  EXPECT_NEAR(n, 1000 + 2000 + 2000 + 1000 + 3 * 14000 + 3000, 20);
+  const spin_t& s = commissioning().spin;
+  for (int k = 0; k < 3; ++k) {
+    const spin_station_t& at = s.station[k];
+    ASSERT_EQ(at.periods, 10000) << k;
+    EXPECT_NEAR(static_cast<double>(at.speed) / at.periods, k == 1 ? high : high / 3, 300.0) << k;
+    EXPECT_EQ(at.voltage_q, std::int64_t{10000} * raw(20.0, 16));
+    EXPECT_EQ(at.current_q, std::int64_t{10000} * raw(0.5, 20));
+    EXPECT_EQ(at.current_d, std::int64_t{10000} * raw(0.25, 20));
+  }
+  for (const spin_ramp_t& ramp : s.ramp) {
+    EXPECT_NEAR(ramp.periods, 2000 + 4000, 5);
+    EXPECT_EQ(ramp.current_q, std::int64_t{ramp.periods} * raw(0.5, 20));
+  }
+  // up: 2000 periods of the mean of both speeds, then 4000 at the higher; down: at the lower
+  EXPECT_NEAR(static_cast<double>(s.ramp[0].speed) / high, 2000.0 * 2.0 / 3.0 + 4000.0, 5.0);
+  EXPECT_NEAR(static_cast<double>(s.ramp[1].speed) / high, 2000.0 * 2.0 / 3.0 + 4000.0 / 3.0, 5.0);
+
+  // Held again where it came to rest, until the background level has made its motion of the sums.
+  EXPECT_TRUE(commissioning().solve_motion);
+  EXPECT_EQ(drive.control.reference_q20.d, 0);
+  EXPECT_EQ(commissioning().target_bam, drive.position.used.angle_bam);
+  EXPECT_FALSE(step(commissioning_spin));
+  commissioning().torque_q24 = 123456;
+  commissioning().accel_q12 = 654321;
+  commissioning().solve_motion = false;
+  EXPECT_TRUE(step(commissioning_spin));
+  EXPECT_EQ(drive.model.torque_q24, 123456);
+  EXPECT_EQ(drive.model.accel_q12, 654321);
+}
+
+// Within the speeds that are allowed, and no faster than the drive's own ramp.
+TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
+  parameters.spin_speed = 900 * 256;
+  parameters.speed_limit = 450 * 256;
+  std::int32_t most = 0;
+  for (int n = 0; n < 60000 && (n == 0 || commissioning().turning); ++n) {
+    (void)step(commissioning_spin);
+    drive.control.ramp.value = drive.position.used.speed_bpp = drive.control.target_bpp;
+    most = std::max(most, drive.control.target_bpp);
+  }
+  EXPECT_NEAR(most, bpp_of(450), 300);
+  SetUp();
+  for (int n = 0; n < 20000; ++n) (void)step(commissioning_spin);  // the ramp does not move
+  EXPECT_EQ(commissioning().spin.leg, 0);
+  EXPECT_EQ(commissioning().spin.tick, 0);
+}
+
+// The map: trains of torque current that put the shaft back, their mirror images, and pauses; at four levels. The shaft
+// turns as the torque that was commanded makes it.
+struct Train {
+  std::vector<double> current;  // reference of i_q in each period, A
+  double farthest = 0.0;        // of the predicted way, rad
+  double end = 0.0;             // of that way
+};
+
+TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
+  const map_t& m = commissioning().map;
+  drive.position.used.angle_bam = bam(0.5);
+  std::vector<Train> trains;
+  std::vector<std::int32_t> feeds, references;
+  std::vector<int> pauses(1, 0), stills;
+  std::size_t length = 0;
+  for (int n = 0; m.level == 0; ++n) {
+    ASSERT_LT(n, 400000);
+    if (!m.pause) length = static_cast<std::size_t>(m.segment);
+    const bool paused = n == 0 || m.pause;
+    const std::int32_t still = commissioning().unsaturated.count;
+    const std::uint32_t held = commissioning().target_bam;
+    if (n > 0) drive.position.used.angle_bam = held;  // the shaft is where it is held
+    drive.control.measured_q20 = {0, drive.control.reference_q20.q};
+    windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
+    ASSERT_FALSE(step(commissioning_map));
+    if (paused) {
+      ++pauses.back();
+      EXPECT_EQ(drive.commissioning.predicting, !m.pause);
+      if (n > 0 && pauses.back() <= 300 && trains.size() % 2 == 0) {
+        EXPECT_NEAR(rad(angle_diff_bam(commissioning().target_bam, held)), 45.0 * kDegree / 300.0, 1e-6);
+      } else if (n > 0) {
+        EXPECT_EQ(commissioning().target_bam, held);
+      }
+      if (m.pause) continue;
+      stills.push_back(commissioning().unsaturated.count);
+      trains.emplace_back();
+      continue;
+    }
+    EXPECT_EQ(commissioning().unsaturated.count, still);
+    Train& t = trains.back();
+    t.current.push_back(real(drive.control.reference_q20.q, 20));
+    t.farthest = std::max(t.farthest, std::fabs(rad(m.position_bam)));
+    if (trains.size() == 1) {
+      feeds.push_back(drive.control.feed_q16);
+      references.push_back(drive.control.reference_q20.q);
+    }
+    if (m.pause) {
+      t.end = rad(m.position_bam);
+      // The ramps of the current leave 6 / n of the way for a segment of n periods; the mirrored train takes it back.
+      EXPECT_NEAR(std::fabs(t.end), 6.0 / m.segment * t.farthest, 0.15 * std::fabs(t.end)) << trains.size();
+      if (trains.size() > 1) {
+        EXPECT_NEAR(t.end, -trains[trains.size() - 2].end, 1e-4 * t.farthest) << trains.size();
+      }
+      EXPECT_NEAR(t.current.back(), 0.0, 1e-5);
+      pauses.push_back(0);
+    }
+  }
+  // Three settled quarters of a train: - + + - first, then + - - +.
+  const double level = limit_ / 4.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double sign = k == 0 ? -1.0 : 1.0;
+    const double signs[] = {sign, -sign, -sign, sign};
+    for (std::size_t part = 0; part < 4; ++part) {
+      EXPECT_NEAR(trains[k].current[(part + 1) * length - 1], signs[part] * level, 1e-5) << k << ", " << part;
+    }
+  }
+  // A slope of the whole current in twelve periods, whose voltage goes ahead of it by two.
+  for (std::size_t n = 1; n < references.size(); ++n) {
+    EXPECT_LE(std::abs(references[n] - references[n - 1]), parameters.current_limit / 12);
+    const double volts = n + 2 < references.size()
+                             ? real(references[n + 2] - references[n + 1], 20) / real(drive.model.yq_q30, 30)
+                             : 0.0;
+    EXPECT_NEAR(real(feeds[n], 16), volts, 1e-3) << n;
+  }
+  // Held for 40 ms, moved on for 30 before every second train; the last 20 are the point without current.
+  for (std::size_t k = 0; k < trains.size(); ++k) {
+    EXPECT_EQ(pauses[k], 401 + (k % 2 == 0 ? 300 : 0)) << k;
+    EXPECT_EQ(stills[k], 200 * static_cast<int>(k + 1)) << k;
+  }
+}
+
+// As many periods of each sign in each kind of train as a level wants, over whole rounds of eight places, without those
+// in which the current settles.
+TEST_F(Phases, TheMapSumsItsGroups) {
+  const map_t& m = commissioning().map;
+  int trains[4] = {}, segments[4] = {};
+  for (int n = 0; !step(commissioning_map); ++n) {
+    ASSERT_LT(n, 2000000);
+    drive.position.used.angle_bam = commissioning().target_bam;
+    if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
+    drive.control.measured_q20 = {0, drive.control.reference_q20.q};
+    windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
+  }
+  for (int level = 0; level < 4; ++level) {
+    // A reversal takes twice the level at a twelfth of the limit a period, and 20 periods to settle.
+    const int blank = 6 * (level + 1) + 20;
+    const int length = segments[level];
+    EXPECT_GE(length, blank + 14) << level;
+    EXPECT_EQ(trains[level] % 16, 0) << level;
+    for (int group = 0; group < 4; ++group) {
+      const map_group_t& g = m.group[level][group];
+      // The signs are + - - +: the second of two equal segments need not settle.
+      const bool outer = group == 0 || group == 3;
+      const int periods = outer ? 2 * (length - blank) : 2 * length - blank;
+      EXPECT_EQ(g.tensor.count, trains[level] / 2 * periods) << level << ", " << group;
+      EXPECT_GE(g.tensor.count, 8000 / (level + 1)) << level;
+      const double sign = group % 2 == 0 ? 1.0 : -1.0;
+      EXPECT_NEAR(real(g.current / g.tensor.count, 20), sign * limit_ * (level + 1) / 4.0, 1e-3) << level << group;
+      // What a train does to the shaft goes the way of its first current, and the mirrored one the other.
+      EXPECT_EQ(g.position > 0, group < 2) << level << ", " << group;
+      EXPECT_NEAR(static_cast<double>(g.position), -static_cast<double>(m.group[level][3 - group].position),
+                  1e-3 * std::fabs(static_cast<double>(g.position)))
+          << level << ", " << group;
+    }
+  }
+}
+
+// A segment is as long as a constant torque takes for six degrees: accel n^2, within what is short and long.
+TEST_F(Phases, ASegmentTakesTheShaftSixDegreesOn) {
+  const map_t& m = commissioning().map;
+  for (const auto& [inertia, length] : {std::pair{1.0, 0}, {0.2, 40}, {100.0, 90}}) {
+    commissioning().tick = 0;
+    drive.model = drive.config.nameplate;
+    drive.model.accel_q12 = static_cast<std::int32_t>(drive.model.accel_q12 / inertia);
+    while (commissioning().tick == 0 || m.pause) (void)step(commissioning_map);
+    const double accel = real(machine_torque_constant_q24(&drive.model, 0), 24) * limit_ / 4.0 * per_torque();
+    const double periods = std::sqrt(6.0 * kDegree / accel) / kPeriod;
+    EXPECT_NEAR(m.segment, length == 0 ? std::clamp(periods, 40.0, 90.0) : length, 1.0) << inertia;
+  }
+}
+
+TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
+  commissioning_t& c = commissioning();
+  const auto progress = [&](commissioning_phase_t phase) {
+    c.phase = phase;
+    return drive_commissioning_progress();
+  };
+  EXPECT_EQ(progress(COMMISSIONING_IDLE), 0);
+  EXPECT_EQ(progress(COMMISSIONING_TURN), 0);
+  EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 20);
+  c.staircase.index = 7;
+  EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 110);
+  c.spin.leg = 2;
+  EXPECT_EQ(progress(COMMISSIONING_SPIN), 275);
+  c.map.level = 1;
+  EXPECT_EQ(progress(COMMISSIONING_MAP), 350 + 162);
+  EXPECT_EQ(progress(COMMISSIONING_EVALUATE), 1000);
+}
+
+}  // namespace
