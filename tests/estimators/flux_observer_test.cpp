@@ -235,4 +235,30 @@ TEST(FluxObserver, RefusesWhatIsOutOfRange) {
   EXPECT_FALSE(flux_observer_config_valid(&c, &model));
 }
 
+// The speed of the phase's correction: first order with half the cut-off; where that follows the speed, with four times
+// what it is above the least one besides.
+TEST(FluxObserver, TheSlowSpeedFollowsByItsCutoff) {
+  const double least = 20.0;
+  for (const double slow : {0.0, 60.0, 100.0, 400.0, -400.0}) {
+    Bench b(Motor{}, Motor{}, config(FLUX_PP02), 0.4, 500.0, {0.0, 3.0});
+    b.s.slow_bpp = bpp(slow);
+    (void)b.step(0.0);
+    const double cutoff = std::fmax(least, std::fabs(slow) / 4.0);
+    const double share = (0.5 * least + 4.0 * (cutoff - least)) * kPeriod;
+    const double before = rad_per_s(bpp(slow));
+    EXPECT_NEAR(rad_per_s(b.s.slow_bpp), before + (rad_per_s(b.s.observer.speed_bpp) - before) * share, 0.01) << slow;
+  }
+}
+
+// All from the cut-off on, nothing below half of it.
+TEST(FluxObserver, QualityRisesFromHalfTheCutoff) {
+  for (const auto& [speed, quality] : {std::pair{8.0, 0.0}, {15.0, 0.5}, {-15.0, 0.5}, {21.0, 1.0}}) {
+    Bench b(Motor{}, Motor{}, config(FLUX_ACTIVE), 0.4, speed, {0.0, 3.0});
+    (void)b.step(0.0);
+    const double seen = std::fabs(rad_per_s(b.s.observer.speed_bpp));
+    EXPECT_NEAR(b.output.quality_q15 / 32768.0, std::clamp(seen / 10.0 - 1.0, 0.0, 1.0), 1e-3) << speed;
+    EXPECT_NEAR(b.output.quality_q15 / 32768.0, quality, 0.2) << speed;
+  }
+}
+
 }  // namespace

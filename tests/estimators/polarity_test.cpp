@@ -139,4 +139,17 @@ TEST(Polarity, NothingIsCommandedAfterTheEnd) {
   EXPECT_EQ(o.state.tick, POLARITY_LENGTH);
 }
 
+// A response of a quarter of what is expected is enough, either way, and the least that is.
+TEST(Polarity, AQuarterOfTheResponseIsEnough) {
+  for (const bool wrong : {false, true}) {
+    for (const double inertia : {3.7, 4.3}) {
+      Conditions c;
+      c.inertia = inertia;
+      c.wrong_way_round = wrong;
+      const polarity_result_t clear = wrong ? POLARITY_WRONG : POLARITY_RIGHT;
+      EXPECT_EQ(run(c).state.result, inertia < 4.0 ? clear : POLARITY_AMBIGUOUS) << inertia;
+    }
+  }
+}
+
 }  // namespace

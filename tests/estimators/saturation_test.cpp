@@ -231,4 +231,38 @@ TEST(Saturation, TheCurrentRunsEvenlyAndEndsAtZero) {
   EXPECT_EQ(saturation_step(&s, &nothing, &model), 0);
 }
 
+// From 0.35 to three times what is expected it is saturation; the score says how much it is.
+TEST(Saturation, TheChangeMustFitWhatIsExpected) {
+  for (const double factor : {0.31, 0.39, 1.0, 2.85, 3.2}) {
+    Conditions c;
+    c.noise = 0.0;
+    c.truth.q = factor * c.told.q;
+    const saturation_t s = run(c);
+    EXPECT_NEAR(score(s), factor, 0.05 * factor) << factor;
+    EXPECT_EQ(s.result, factor > 0.35 && factor < 3.0 ? POLARITY_RIGHT : POLARITY_AMBIGUOUS) << factor;
+  }
+}
+
+// What does not average out, 0.15 % of the mean admittance, is all of the error where there is no noise.
+TEST(Saturation, WithoutNoiseTheFloorIsTheError) {
+  Conditions c;
+  c.noise = 0.0;
+  const saturation_t s = run(c);
+  const machine_model_t model = model_of(Motor{});
+  const double floor = (real(model.yd_q30, 30) + real(model.yq_q30, 30)) / 2.0 / 650.0;
+  EXPECT_NEAR(real(s.sigma_q8, 8), real(s.change_q30, 30) / floor, 0.03 * real(s.sigma_q8, 8));
+}
+
+// Seven times that floor can be told.
+TEST(Saturation, VisibleFromSevenFloorsOn) {
+  const machine_model_t model = model_of(Motor{});
+  const double floor = (real(model.yd_q30, 30) + real(model.yq_q30, 30)) / 2.0 / 650.0;
+  for (const double part : {0.97, 1.03}) {
+    const double change = part * 7.0 * floor;
+    const double slope = change / real(model.yq_q30, 30) / (2.0 * kAmps);
+    const saturation_slopes_t slopes = {0, raw(slope, 30)};
+    EXPECT_EQ(saturation_is_visible(&model, &slopes, raw(kAmps, 20)), part > 1.0) << part;
+  }
+}
+
 }  // namespace
