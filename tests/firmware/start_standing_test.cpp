@@ -1,0 +1,301 @@
+// The start of a shaft that stands, phase by phase: what each asks of the drive and where it goes from there. What the
+// estimators say is the test's.
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kThere = 0.7;  // the axis, rad
+
+class StartStanding : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    parameters.flying_start = 0;
+    make_ready();
+    drive_begin_start(&drive);
+    ASSERT_EQ(drive.start.phase, START_AXIS);
+  }
+  static drive_start_t& start() { return drive.start; }
+
+  /// At the end of a phase, with AVV's angle at hand.
+  static void at(start_phase_t phase, int tick, double speed = 0.0) {
+    start().phase = phase;
+    start().tick = static_cast<std::uint16_t>(tick - 1);
+    drive.position.avv.observer.angle_bam = bam(kThere);
+    drive.position.avv.observer.speed_bpp = bpp(speed);
+    drive.position.avv.error_bam = 0;
+  }
+  /// The test by saturation is over with this result.
+  static void saturation_says(polarity_result_t result) {
+    at(START_SATURATION, SATURATION_LENGTH + 100);
+    start().saturation.tick = SATURATION_LENGTH;
+    start().saturation.result = result;
+    drive_start(&drive);
+  }
+  /// And the one by motion: all its angles have been seen but the last.
+  static void motion_says(double response) {
+    at(START_MOTION, 2);
+    polarity_t& m = start().motion;
+    m.tick = POLARITY_LENGTH - 1;
+    m.response_bam = static_cast<std::int32_t>(response * m.expected_bam);
+    m.rough_bam = 0;
+    drive_start(&drive);
+  }
+  static void expect_runs(double angle) {
+    EXPECT_EQ(drive.state, DRIVE_RUN);
+    EXPECT_NEAR(wrapped(rad(drive.position.used.angle_bam) - angle), 0.0, 1e-6);
+  }
+};
+
+// Nothing of the last run is left, whatever it was.
+TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
+  drive.state = DRIVE_READY;
+  drive_control_t& c = drive.control;
+  c.ramp.value = c.feed_q16 = c.reference_q20.d = c.reference_q20.q = 12345;
+  c.closed = c.place.holding = true;
+  drive.supervision.missing = drive.supervision.overrun = 3;
+  drive.supervision.synchronism.doubt = 99;
+  drive.start.tries = drive.start.pulses = 2;
+  drive.model.trim.rs_q24 = 777;
+  drive.model.accel_q12 /= 2;
+  drive.inertia.ratio_q24 /= 2;
+  drive.config.sensor_mismatch_q30 = 4321;
+  drive_begin_start(&drive);
+  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(c.ramp.value | c.feed_q16 | c.reference_q20.d | c.reference_q20.q, 0);
+  EXPECT_FALSE(c.closed);
+  EXPECT_FALSE(c.place.holding);
+  EXPECT_EQ(drive.supervision.missing + drive.supervision.overrun, 0);
+  EXPECT_EQ(drive.supervision.synchronism.doubt, 0);
+  EXPECT_EQ(drive.start.tries + drive.start.pulses, 0);
+  EXPECT_EQ(drive.model.trim.rs_q24, 0);
+  EXPECT_EQ(drive.model.accel_q12, drive.config.nameplate.accel_q12);
+  EXPECT_EQ(drive.inertia.ratio_q24, INERTIA_SAME_Q24);
+  EXPECT_EQ(drive.position.sensors.mismatch_q30, 4321);
+  EXPECT_EQ(drive.trim.mismatch_q30, 4321);
+  EXPECT_TRUE(board.gates_on);
+}
+
+// From the fourth period on each regression counts, twelve of them, all at an angle of zero. Then the current loop is
+// closed in the frame that was found.
+TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
+  const machine_model_t& m = drive.model;
+  const double half = 0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)), spread = 40000.0;
+  int n = 0;
+  for (; start().phase == START_AXIS && n < 50; ++n) {
+    regression_t& r = drive.position.avv.regression;
+    r = {};
+    r.information = 1000000;
+    r.spread_q8 = raw(spread, 8);
+    r.along_q16 = raw(0.0005 * spread, 16);
+    r.mirror_q16 = raw((std::cos(2.0 * kThere) - 1.0) * half * spread, 16);  // the model has it at zero
+    r.cross_q16 = raw(std::sin(2.0 * kThere) * half * spread, 16);
+    drive_start(&drive);
+    if (start().phase == START_AXIS) {
+      EXPECT_EQ(drive.position.avv.observer.angle_bam, 0u);
+      EXPECT_FALSE(drive.control.closed);
+    }
+  }
+  EXPECT_EQ(n, 3 + 12);
+  EXPECT_EQ(start().phase, START_SETTLE);
+  EXPECT_TRUE(drive.control.closed);
+  EXPECT_NEAR(rad(drive.position.avv.observer.angle_bam), kThere, 1e-4);
+  EXPECT_NEAR(real(m.trim.mean_q30, 30), 0.0005, 1e-6);
+  EXPECT_NEAR(real(m.trim.half_q30, 30), 0.0, 1e-6);
+}
+
+// Without a test of the polarity the drive runs at the angle that the axis gives, a tenth of a millisecond's settling
+// later; a shaft that stands is held from there if that is wanted, one that turns at 20 rpm or more is not.
+TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
+  for (const double rpm : {0.0, 18.0, 22.0, -18.0, -22.0}) {
+    SetUp();
+    parameters.polarity_check = 0;
+    parameters.hold_time = 40;
+    const double speed = Motor{}.electrical(rpm);
+    at(START_SETTLE, 99, speed);
+    drive_start(&drive);
+    EXPECT_EQ(drive.state, DRIVE_START);
+    drive_start(&drive);
+    expect_runs(kThere);
+    const bool turns = std::fabs(rpm) > 20.0;
+    EXPECT_NEAR(rad_per_s(drive.control.ramp.value), turns ? speed : 0.0, 0.01) << rpm;
+    EXPECT_EQ(drive.hold.left, turns ? 0u : 400u) << rpm;
+    EXPECT_EQ(drive.start.sigma_q8, 0);
+  }
+}
+
+TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
+  for (const bool visible : {true, false}) {
+    SetUp();
+    drive.config.saturation = {0, visible ? raw(0.002, 30) : 0};
+    at(START_SETTLE, 100);
+    drive_start(&drive);
+    EXPECT_EQ(start().phase, visible ? START_SATURATION : START_MOTION);
+    EXPECT_EQ(start().tick, 0);
+    EXPECT_EQ(start().tries, 0);
+    EXPECT_EQ(visible ? start().saturation.current_q20 : start().motion.current_q20,
+              visible ? parameters.start_current : parameters.polarity_current);
+  }
+}
+
+// The currents of the tests are those that are commanded: along d without a torque, along q with one.
+TEST_F(StartStanding, TheTestsCommandTheirCurrents) {
+  drive.config.saturation = {0, raw(0.002, 30)};
+  at(START_SETTLE, 100);
+  drive_start(&drive);
+  for (int n = 0; n < 30; ++n) drive_start(&drive);
+  EXPECT_EQ(drive.control.reference_q20.d, parameters.start_current);
+  EXPECT_EQ(drive.control.reference_q20.q, 0);
+  SetUp();
+  drive.config.saturation = {0, 0};
+  at(START_SETTLE, 100);
+  drive_start(&drive);
+  std::int32_t most = 0;
+  for (int n = 0; n < POLARITY_LENGTH / 2; ++n) {
+    drive_start(&drive);
+    most = std::max(most, drive.control.reference_q20.q);
+  }
+  EXPECT_EQ(most, parameters.polarity_current);
+  EXPECT_EQ(drive.control.reference_q20.d, 0);
+  // What it expects is what this current does to the shaft in two patterns.
+  const double torque = real(machine_torque_constant_q24(&drive.model, 0), 24) * real(parameters.polarity_current, 20);
+  const double accel = torque * real(drive.model.accel_q12, 12);
+  EXPECT_NEAR(start().motion.expected_bam, accel * POLARITY_SEGMENT * POLARITY_SEGMENT * 2.0, 1e-3 * accel * 1e3);
+}
+
+// A hundred periods after the test the current is gone; then the half turn is known.
+TEST_F(StartStanding, SaturationDecidesOnceItsCurrentIsGone) {
+  for (const polarity_result_t result : {POLARITY_RIGHT, POLARITY_WRONG}) {
+    SetUp();
+    at(START_SATURATION, SATURATION_LENGTH + 99);
+    start().saturation.tick = SATURATION_LENGTH;
+    start().saturation.result = result;
+    start().saturation.sigma_q8 = 1234;
+    drive_start(&drive);
+    EXPECT_EQ(drive.state, DRIVE_START);
+    drive_start(&drive);
+    expect_runs(result == POLARITY_RIGHT ? kThere : kThere + kPi);
+    EXPECT_EQ(start().sigma_q8, 1234);
+  }
+}
+
+// Twice with the same current, both together; once with half as much again, up to the limit; then by motion.
+TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
+  drive.config.saturation = {0, raw(0.002, 30)};
+  at(START_SETTLE, 100);
+  drive_start(&drive);
+  const std::int32_t current = parameters.start_current;
+  saturation_says(POLARITY_AMBIGUOUS);
+  EXPECT_EQ(start().phase, START_SATURATION);
+  EXPECT_EQ(start().saturation.passes, 2);
+  EXPECT_EQ(start().saturation.current_q20, current);
+  EXPECT_EQ(start().tick, 0);
+  saturation_says(POLARITY_AMBIGUOUS);
+  EXPECT_EQ(start().saturation.passes, 1);
+  EXPECT_EQ(start().saturation.current_q20, std::min(current + current / 2, parameters.current_limit));
+  saturation_says(POLARITY_AMBIGUOUS);
+  EXPECT_EQ(start().phase, START_MOTION);
+  EXPECT_EQ(start().tries, 0);
+}
+
+// Twice the current with each try, up to the limit; after three the polarity is a fault that says how sure it was.
+TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
+  parameters.polarity_current = raw(4.0, 20);
+  parameters.current_limit = raw(14.0, 20);
+  drive.config.saturation = {0, 0};
+  at(START_SETTLE, 100);
+  drive_start(&drive);
+  for (const double amps : {4.0, 8.0, 14.0}) {
+    EXPECT_EQ(drive.state, DRIVE_START);
+    EXPECT_EQ(start().phase, START_MOTION);
+    EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
+    motion_says(0.1);
+  }
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, FAULT_POLARITY);
+  EXPECT_EQ(start().sigma_q8, start().motion.sigma_q8);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(StartStanding, MotionTellsTheHalfTurn) {
+  for (const double response : {1.0, -1.0}) {
+    SetUp();
+    drive.config.saturation = {0, 0};
+    at(START_SETTLE, 100);
+    drive_start(&drive);
+    motion_says(response);
+    expect_runs(response > 0.0 ? kThere : kThere + kPi);
+    EXPECT_EQ(start().sigma_q8, start().motion.sigma_q8);
+  }
+}
+
+// The angle that the motion is seen by is what the windows show, not what the observer has made of it.
+TEST_F(StartStanding, MotionIsSeenByTheRawAngle) {
+  drive.config.saturation = {0, 0};
+  at(START_SETTLE, 100);
+  drive_start(&drive);
+  at(START_MOTION, 2);
+  drive.position.avv.error_bam = 1000000;
+  drive_start(&drive);
+  EXPECT_EQ(start().motion.last_bam, bam(kThere) + 1000000u);
+}
+
+// A winding that differs by a sixteenth or more is taken as seen.
+TEST_F(StartStanding, TheResistanceIsTakenWhereItIsOff) {
+  for (const double share : {0.055, 0.07, -0.055, -0.07}) {
+    SetUp();
+    const machine_model_t& m = drive.model;
+    const double rs = real(m.nominal_rs_q24, 24);
+    saturation_t& s = start().saturation;
+    s.current_q20 = raw(10.0, 20);
+    s.missing_count = 100;
+    s.missing_q20 = -100 * raw(share * rs * 10.0 * real(m.yd_q30, 30), 20);
+    saturation_says(POLARITY_RIGHT);
+    EXPECT_NEAR(real(m.trim.rs_q24, 24), std::fabs(share) > 1.0 / 16.0 ? share * rs : 0.0, 1e-4) << share;
+  }
+}
+
+// The vector turns with its own angle, with the current controllers from rest, and is not watched for its polarity.
+TEST_F(StartStanding, AVectorBeginsFromRest) {
+  for (const bool backward : {false, true}) {
+    SetUp();
+    drive.control.target_bpp = backward ? -1000000 : 1000000;
+    drive.control.current.d.integral = drive.control.current.q.integral = 99;
+    drive.start.seen.angle_bam = 5;
+    drive.watch.open = true;
+    start_turn(&drive);
+    EXPECT_EQ(start().phase, START_TURN);
+    EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
+    EXPECT_EQ(drive.start.seen.angle_bam, 0u);
+    EXPECT_TRUE(drive.control.closed);
+    EXPECT_FALSE(drive.watch.open);
+    EXPECT_EQ(drive.start.turn.backward, backward);
+  }
+}
+
+// What the vector has turned is taken over as the source sees it: angle, speed and the current in its frame; the
+// controllers begin anew in that frame, and nobody holds the shaft.
+TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
+  start_turn(&drive);
+  if_start_t& turn = start().turn;
+  drive.control.current.d.integral = drive.control.current.q.integral = 99;
+  drive.hold.left = 7;
+  for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
+    drive.position.used.angle_bam = turn.vector_bam;
+    start().seen = {turn.vector_bam - bam(0.4), turn.speed_bpp, 0, 32767};
+    drive.control.command_q16 = {0, 0};
+    drive_start(&drive);
+  }
+  ASSERT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(drive.control.ramp.value, drive.config.turn.speed_bpp);
+  EXPECT_EQ(drive.position.used.angle_bam, start().seen.angle_bam);
+  EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
+  EXPECT_EQ(drive.control.reference_q20.d, 0);
+  EXPECT_NEAR(real(drive.control.reference_q20.q, 20), real(turn.current_q20, 20) * std::sin(0.4), 0.05);
+  EXPECT_EQ(drive.hold.left, 0u);
+}
+
+}  // namespace
