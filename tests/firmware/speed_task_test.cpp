@@ -1,0 +1,266 @@
+// Speed control, field weakening and their limits through the ten periods of a millisecond, on a drive that the test
+// has put where it wants it.
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "control/brake_limit.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kLink = 300.0;
+
+class SpeedTask : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    drive.state = DRIVE_RUN;
+    drive.watch.open = false;
+    drive.samples.link_q16 = raw(kLink, 16);
+    drive.control.current_limit_q20 = raw(10.0, 20);
+    drive.control.reference_q20 = {0, 0};
+    drive.control.ramp.value = drive.control.target_bpp = 0;
+    parameters.position_hold = 0;
+    speed(0.0);
+  }
+  /// The period of the millisecond with this number.
+  static void part(int number) {
+    drive.millisecond = static_cast<std::uint16_t>((number + 9) % 10);
+    drive_control_speed(&drive);
+    ASSERT_EQ(drive.millisecond, number);
+  }
+  static void millisecond() {
+    for (int k = 0; k < 10; ++k) part(k);
+  }
+  static void speed(double rad_per_s) { drive.position.used = {0, bpp(rad_per_s), 0, 32767}; }
+  static double iq() { return real(drive.control.reference_q20.q, 20); }
+  static double id() { return real(drive.control.reference_q20.d, 20); }
+  static double torque_constant() { return real(machine_torque_constant_q24(&drive.model, 0), 24); }
+};
+
+// The voltage that the modulator has, by as much of it as may be used: link / sqrt(3).
+TEST_F(SpeedTask, WeakeningSeesWhatTheModulatorHas) {
+  parameters.voltage_use = raw(92.0, 16);
+  parameters.weakening_limit = raw(7.0, 20);
+  parameters.weakening_gain = 1234;
+  drive.control.command_q16 = {raw(-60.0, 16), raw(80.0, 16)};
+  drive.control.reference_q20.q = raw(3.0, 20);
+  speed(500.0);
+  part(DRIVE_WEAKENING_PERIOD);
+  const field_weakening_input_t& in = drive.control.weakening_seen;
+  EXPECT_NEAR(real(in.voltage_limit_q16, 16), kLink / std::sqrt(3.0) * 0.92, 0.01);
+  EXPECT_NEAR(real(in.voltage_q16, 16), 100.0, 0.001);
+  EXPECT_EQ(in.speed_bpp, bpp(500.0));
+  EXPECT_EQ(in.iq_q20, raw(3.0, 20));
+  EXPECT_EQ(in.current_limit_q20, raw(7.0, 20));
+  EXPECT_EQ(in.trim_gain_q20, 1234);
+}
+
+// In START nothing is weakened, but for a shaft that has been caught.
+TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
+  const auto sees = [&](drive_state_t state, start_phase_t phase) {
+    drive.state = state;
+    drive.start.phase = phase;
+    drive.control.weakening_seen.speed_bpp = 0;
+    speed(100.0);
+    part(DRIVE_WEAKENING_PERIOD);
+    return drive.control.weakening_seen.speed_bpp != 0;
+  };
+  EXPECT_TRUE(sees(DRIVE_RUN, START_LISTEN));
+  EXPECT_TRUE(sees(DRIVE_STOP, START_LISTEN));
+  EXPECT_TRUE(sees(DRIVE_START, START_CATCH));
+  EXPECT_FALSE(sees(DRIVE_START, START_SETTLE));
+  EXPECT_FALSE(sees(DRIVE_READY, START_CATCH));
+}
+
+// What weakening and maximum torque per ampere ask for, whichever is more, and what is wanted at low speed on top; both
+// but weakening only where the observer is in use at low speed, and never in a commissioning.
+TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
+  parameters.id_low_speed = raw(1.5, 20);
+  drive.control.reference_q20.q = raw(9.0, 20);
+  const double best = real(mtpa_current_q20(&drive.config.mtpa, raw(9.0, 20)), 20);
+  ASSERT_LT(best, -0.3);
+  struct Case {
+    double weakening;
+    std::int32_t mtpa;
+    blend_region_t region;
+    drive_state_t state;
+    double expected;
+  };
+  const Case cases[] = {{0.0, 0, BLEND_LOW, DRIVE_RUN, 1.5},
+                        {-4.0, 0, BLEND_LOW, DRIVE_RUN, -2.5},
+                        {0.0, 1, BLEND_LOW, DRIVE_RUN, best + 1.5},
+                        {-4.0, 1, BLEND_BOTH, DRIVE_RUN, -2.5},
+                        {best / 2, 1, BLEND_LOW, DRIVE_RUN, best + 1.5},
+                        {-4.0, 1, BLEND_HIGH, DRIVE_RUN, -4.0},
+                        {0.0, 1, BLEND_HIGH, DRIVE_RUN, 0.0},
+                        {0.0, 1, BLEND_LOW, DRIVE_COMMISSION, 0.0},
+                        {-20.0, 0, BLEND_LOW, DRIVE_RUN, -10.0}};
+  for (const Case& c : cases) {
+    parameters.mtpa = c.mtpa;
+    drive.state = c.state;
+    drive.commissioning.turning = true;
+    drive.position.blend.region = c.region;
+    drive.control.weakening_q20 = raw(c.weakening, 20);
+    drive.limits = c.weakening < 0.0 ? 0 : LIMIT_WEAKENING;
+    part(7);
+    EXPECT_NEAR(id(), c.expected, 1e-4) << c.weakening << ", " << c.mtpa << ", " << c.region;
+    EXPECT_EQ((drive.limits & LIMIT_WEAKENING) != 0, c.weakening < 0.0);
+  }
+}
+
+// What the largest current leaves beside i_d.
+TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
+  for (const auto& [d, room] : {std::pair{0.0, 10.0}, {-6.0, 8.0}, {6.0, 8.0}, {-10.0, 0.0}, {-11.0, 0.0}}) {
+    drive.control.reference_q20.d = raw(d, 20);
+    EXPECT_NEAR(real(drive_current_room(&drive), 20), room, 1e-5) << d;
+    part(8);
+    EXPECT_NEAR(real(drive.control.room_q20, 20), room, 1e-5) << d;
+  }
+}
+
+// Braking is limited between link_regulation and two thirds of the way to the fault.
+TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {
+  parameters.link_regulation = raw(400.0, 16);
+  parameters.link_maximum = raw(430.0, 16);
+  parameters.current_limit = raw(10.0, 20);
+  speed(-400.0);
+  for (const double link : {390.0, 405.0, 410.0, 415.0, 425.0}) {
+    drive.samples.link_q16 = raw(link, 16);
+    part(8);
+    part(9);
+    brake_limit_input_t in = {};
+    in.link_q16 = raw(link, 16);
+    in.start_q16 = raw(400.0, 16);
+    in.end_q16 = raw(420.0, 16);
+    in.emf_q16 = raw(400.0 * 1e-4 * real(drive.model.emf_q16, 16), 16);
+    in.drop_q16 = raw(10.0 * real(drive.model.nominal_rs_q24, 24), 16);
+    EXPECT_NEAR(real(drive.control.braking_room_q20, 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01) << link;
+  }
+}
+
+// Against the rotation, and only there, the speed control keeps to that limit, and says so.
+TEST_F(SpeedTask, ABrakingShaftKeepsToItsLimit) {
+  for (const double sign : {1.0, -1.0}) {
+    for (const double change : {1.0, -1.0}) {
+      SetUp();
+      drive.control.room_q20 = raw(8.0, 20);
+      drive.control.braking_room_q20 = raw(2.0, 20);
+      speed(sign * 300.0);
+      drive.control.ramp.value = drive.control.target_bpp = bpp(sign * (300.0 + change * 250.0));
+      for (int n = 0; n < 5; ++n) part(0);
+      const bool brakes = change < 0.0;
+      EXPECT_NEAR(iq(), sign * change * (brakes ? 2.0 : 8.0), 1e-4) << sign << change;
+      EXPECT_EQ((drive.limits & LIMIT_BRAKING) != 0, brakes);
+      EXPECT_EQ((drive.limits & LIMIT_CURRENT) != 0, !brakes);
+    }
+  }
+}
+
+TEST_F(SpeedTask, WithinItsLimitsNoLimitIsSaid) {
+  drive.control.room_q20 = drive.control.braking_room_q20 = raw(8.0, 20);
+  drive.limits = LIMIT_BRAKING | LIMIT_CURRENT | LIMIT_WEAKENING;
+  speed(100.0);
+  drive.control.ramp.value = drive.control.target_bpp = bpp(100.0);
+  part(0);
+  EXPECT_EQ(drive.limits, LIMIT_WEAKENING) << "that one weakening renews itself";
+}
+
+// The load that the observer sees is balanced at once, less what friction is part of it.
+TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
+  const auto current = [&](double w, double load_nm) {
+    SetUp();
+    part(8);
+    part(9);
+    speed(w);
+    drive.control.ramp.value = drive.control.target_bpp = bpp(w);
+    drive.config.friction_per_bpp_q40 = raw(0.002 / 4.0 * kTurn / kPeriod / 4294967296.0, 40);  // 2 mNms, mechanical
+    drive.position.used.load_accel_q8 = static_cast<std::int32_t>(load_nm * real(drive.model.accel_q12, 12) * 256.0);
+    part(0);
+    return iq();
+  };
+  EXPECT_NEAR(current(0.0, 1.0) - current(0.0, 0.0), 1.0 / torque_constant(), 2e-3);
+  EXPECT_NEAR(current(0.0, -2.0) - current(0.0, 0.0), -2.0 / torque_constant(), 4e-3);
+  // The observer's load has the friction in it, and the speed law has its own.
+  const double friction = 0.002 / 4.0 * 200.0;
+  EXPECT_NEAR(current(200.0, 1.0) - current(200.0, 1.0 + friction), -friction / torque_constant(), 2e-3);
+}
+
+// While a start's hold has the torque, the speed law waits where it will go on from: the current less the load's.
+TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
+  parameters.position_source = POSITION_OBSERVER;
+  ASSERT_TRUE(drive_config_load(&drive.config));
+  drive.hold.left = 5;
+  drive.hold.reference_bam = 0;
+  part(8);
+  part(9);
+  drive.control.reference_q20.q = raw(3.0, 20);
+  drive.position.used.load_accel_q8 = static_cast<std::int32_t>(1.2 * real(drive.model.accel_q12, 12) * 256.0);
+  part(0);
+  EXPECT_EQ(drive.hold.left, 2u);
+  EXPECT_NEAR(real(drive.control.speed.current_q20, 20), iq() - 1.2 / torque_constant(), 2e-3);
+  EXPECT_GT(iq(), 2.5);
+}
+
+// A millisecond counts as one, and nothing is controlled while nothing turns.
+TEST_F(SpeedTask, AMillisecondHasTenPeriods) {
+  const std::uint32_t before = drive.time_ms;
+  millisecond();
+  millisecond();
+  EXPECT_EQ(drive.time_ms, before + 2);
+  drive.state = DRIVE_READY;
+  drive.control.ramp.value = 0;
+  drive.control.target_bpp = 1000000;
+  millisecond();
+  EXPECT_EQ(drive.time_ms, before + 3);
+  EXPECT_EQ(drive.control.ramp.value, 0);
+}
+
+// The ramp moves by its step in each millisecond and in STOP to zero; where there is none the reference jumps.
+TEST_F(SpeedTask, TheRampLeadsToItsTarget) {
+  drive.config.ramp_step_bpp = 1000;
+  drive.control.target_bpp = 5000000;
+  part(0);
+  part(0);
+  EXPECT_EQ(drive.control.ramp.value, 2000);
+  drive.state = DRIVE_STOP;
+  part(0);
+  EXPECT_EQ(drive.control.ramp.value, 1000);
+  drive.state = DRIVE_RUN;
+  drive.config.ramp_step_bpp = 0;
+  part(0);
+  EXPECT_EQ(drive.control.ramp.value, 5000000);
+}
+
+// Told to stand, a shaft keeps its place: only in RUN, with the ramp at zero too, and from a speed on that is at rest.
+TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
+  parameters.position_hold = 1280;
+  ASSERT_TRUE(drive_config_load(&drive.config));
+  const auto holds = [&](drive_state_t state, std::int32_t target, std::int32_t ramp, std::int32_t now, bool before) {
+    drive.state = state;
+    drive.control.target_bpp = target;
+    drive.config.ramp_step_bpp = 1;
+    drive.control.ramp.value = ramp;
+    drive.position.used.speed_bpp = now;
+    position_hold_release(&drive.control.place);
+    if (before) (void)position_hold_step(&drive.control.place, 0, drive.config.hold_gain_q30);
+    part(0);
+    return drive.control.place.holding;
+  };
+  const std::int32_t rest = drive.config.hold_below_bpp;
+  ASSERT_GT(rest, 10);
+  EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, 0, false));
+  EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, rest - 1, false));
+  EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, 1 - rest, false));
+  EXPECT_FALSE(holds(DRIVE_RUN, 0, 0, rest, false));
+  EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, 4 * rest, true)) << "a shaft that is pushed away is taken back";
+  EXPECT_FALSE(holds(DRIVE_RUN, 100, 0, 0, true));
+  EXPECT_FALSE(holds(DRIVE_RUN, 0, 100, 0, true));
+  EXPECT_FALSE(holds(DRIVE_STOP, 0, 0, 0, true));
+}
+
+}  // namespace
