@@ -183,22 +183,46 @@ TEST_F(CommissioningJudge, TheMotionIsTheSpinsOrTheNameplates) {
   EXPECT_FALSE(taken(none));
 }
 
-// A half turn that is there in one phase only is no pair of opposite vectors; without a pair a period says nothing.
-TEST_F(CommissioningJudge, APairIsTwoOppositeVectors) {
-  make_ready();
-  drive.commissioning.model = c.model;
-  deviation_t first, second;
-  const auto is_pair = [&](std::uint16_t count, Vector a, Vector b) {
-    drive.samples.count = count;
-    drive.samples.windows[0] = drive.samples.windows[1] = {};
-    drive.samples.windows[0].voltage_q16 = raw_ab(a, 16);
-    drive.samples.windows[1].voltage_q16 = raw_ab(b, 16);
-    return commissioning_pair(&drive, &first, &second);
-  };
-  EXPECT_TRUE(is_pair(2, {200.0, 30.0}, {-195.0, -25.0}));
-  EXPECT_FALSE(is_pair(2, {200.0, 30.0}, {-185.0, -30.0}));
-  EXPECT_FALSE(is_pair(2, {200.0, 30.0}, {-200.0, 30.0}));
-  EXPECT_FALSE(is_pair(3, {200.0, 30.0}, {-200.0, -30.0}));
+// Percent, what was taken off meanwhile and what is seen beyond it.
+TEST_F(CommissioningJudge, TheSensorsMismatchIsPercent) {
+  c.mismatch_q30 = raw(0.012, 30);
+  commissioning_report_t report;
+  commissioning_judge(&c, &report);
+  (void)commissioning_use(&report);
+  EXPECT_NEAR(real(parameters.sensor_mismatch, 16), 1.2, 5e-3);
+}
+
+// How far the trains moved the shaft says of flux over inertia what the spin must bear out within a quarter.
+TEST_F(CommissioningJudge, TheTrainsMustBearTheInertiaOut) {
+  const double predicted = 50000000.0 / 4294967296.0 * kTurn;
+  for (const auto& [share, verdict_then] : {std::pair{0.32, VERDICT_USED},
+                                            {0.35, VERDICT_INCONSISTENT},
+                                            {-0.19, VERDICT_USED},
+                                            {-0.21, VERDICT_INCONSISTENT}}) {
+    for (int k = 0; k < 4; ++k) {
+      map_group_t& g = c.map.group[3][k];
+      tensor_reset(&g.tensor);
+      const Inductances l = saturated(4);
+      const double off = (k < 2 ? 1.0 : -1.0) * share * predicted;  // the axis is ahead of the predicted frame
+      add_pairs(&g.tensor, c.model, {l.dd, l.qq, k % 2 == 0 ? l.dq : -l.dq}, -off, 0.0, 60);
+    }
+    EXPECT_NEAR(real(map_solve(c.map.group[3], &c.model).share_q24, 24), share, 1e-3);
+    EXPECT_EQ(verdict("inertia"), verdict_then) << share;
+  }
+}
+
+// Both ramps within a fifth; flux from one speed alone within a tenth.
+TEST_F(CommissioningJudge, TheSpinMustAgreeWithItself) {
+  for (const auto& [more, agrees] : {std::pair{1.18, true}, {1.23, false}, {0.82, true}, {0.77, false}}) {
+    SetUp();
+    c.spin.ramp[1] = spun(0.1552, 0.00546 * more, 0.003, 0.387).ramp[1];
+    EXPECT_EQ(verdict("inertia") == VERDICT_USED, agrees) << more;
+  }
+  for (const auto& [volts, agrees] : {std::pair{1.1, true}, {1.4, false}, {-1.1, true}, {-1.4, false}}) {
+    SetUp();  // a tenth of 12.4 V at the low speed, of which 0.3 are there already
+    for (spin_station_t& s : c.spin.station) s.voltage_q += 5000LL * raw(volts - 0.3, 16);
+    EXPECT_EQ(verdict("magnet_flux") == VERDICT_USED, agrees) << volts;
+  }
 }
 
 // What a volt of drop in every phase makes along d is summed whatever drop the drive compensates: 4/3 V where the three

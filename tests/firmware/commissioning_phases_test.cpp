@@ -162,16 +162,6 @@ TEST_F(Phases, TheStaircaseSumsEachLevel) {
   }
 }
 
-// With a ripple that leaves no line there is nothing to climb.
-TEST_F(Phases, AStaircaseWithoutRoomStaysAtZero) {
-  parameters.current_limit = parameters.weakening_limit = raw(0.5, 20);
-  for (int n = 0; n < 2000; ++n) {
-    windows({0.0, 0.0}, 0.0, 0.0);
-    (void)step(commissioning_climb);
-    ASSERT_EQ(drive.control.reference_q20.d, 0);
-  }
-}
-
 // The shaft follows its reference at once: three stations of a second, ramps between them, and a stop.
 TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   drive.position.used = {bam(0.4), bpp(5.0), 0, 32767};

@@ -126,6 +126,30 @@ TEST(CommissioningStaircase, ResistanceDropAndEdgesComeApart) {
   EXPECT_LT(real(v.command_rms_q16, 16), 1e-3);
 }
 
+// What is missing under the windows is what they leave over and the link's sag between them; both fits say how far the
+// levels lie off them.
+TEST(CommissioningStaircase, TheSagOfTheLinkIsNoDrop) {
+  const machine_model_t m = nameplate();
+  staircase_t s = climbed(m, 0.387, 0.5, -1.2);
+  for (staircase_level_t& l : s.level) {
+    l.sag = 8400LL * raw(-0.06, 20);
+    l.residual -= 8400LL * raw(0.06 * real(m.yd_q30, 30), 20);
+  }
+  staircase_values_t v = staircase_solve(&s, &m);
+  EXPECT_NEAR(real(v.drop_error_q16, 16), 0.5, 5e-4);
+  EXPECT_NEAR(real(v.edge_error_q16, 16), -1.2, 5e-4);
+  EXPECT_LT(real(v.window_rms_q16, 16), 1e-3);
+  const double off = 0.1;  // to either side in turn
+  for (int k = 0; k < 14; ++k) {
+    const double side = (k / 2) % 2 == 0 ? (k % 2 == 0 ? off : -off) : (k % 2 == 0 ? -off : off);
+    s.level[k].sag += 8400LL * raw(side, 20);
+    s.level[k].command += 4200LL * raw(side, 20);
+  }
+  v = staircase_solve(&s, &m);
+  EXPECT_NEAR(real(v.window_rms_q16, 16), off, 0.05 * off);
+  EXPECT_NEAR(real(v.command_rms_q16, 16), off, 0.1 * off);
+}
+
 // Drops that grow with the current like a resistance cannot be told from one.
 TEST(CommissioningStaircase, ALineThatDropsFollowIsNotValid) {
   const machine_model_t m = nameplate();

@@ -165,6 +165,66 @@ TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   EXPECT_FALSE(drive.request.reload);
 }
 
+// Whatever the last one was broken off in.
+TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
+  parameters.flying_start = 0;
+  make_ready();
+  commissioning_t& c = drive.commissioning;
+  c.turning = c.predicting = c.solve_motion = c.evaluate = true;
+  c.adapting = false;
+  c.phase = COMMISSIONING_SPIN;
+  c.tick = 99;
+  drive_command_commission();
+  period();
+  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_FALSE(c.turning || c.predicting || c.solve_motion || c.evaluate);
+  EXPECT_TRUE(c.adapting && c.requested);
+  EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
+  EXPECT_EQ(c.tick, 0);
+}
+
+// Phase by phase; the model follows the windows while the shaft is turned to its place, and the gates are off at the
+// end.
+TEST_F(Commissioning, PhasesFollowEachOther) {
+  begin();
+  commissioning_t& c = drive.commissioning;
+  EXPECT_TRUE(c.adapting);
+  c.tick = 6000;  // of turning to its place
+  commissioning_step(&drive);
+  EXPECT_EQ(c.phase, COMMISSIONING_STAIRCASE);
+  EXPECT_EQ(c.tick, 0);
+  EXPECT_FALSE(c.adapting);
+  commissioning_step(&drive);
+  EXPECT_EQ(c.tick, 1);
+  c.staircase.index = STAIRCASE_LEVELS;
+  c.staircase.tick = 601;
+  drive.control.reference_q20.d = 0;
+  commissioning_step(&drive);
+  EXPECT_EQ(c.phase, COMMISSIONING_SPIN);
+  c.tick = 1;
+  drive.trim.mismatch_q30 = 4321;
+  commissioning_step(&drive);  // a spin that is over
+  EXPECT_EQ(c.phase, COMMISSIONING_MAP);
+  EXPECT_EQ(c.mismatch_q30, 4321);
+  c.tick = 1;
+  c.map.level = MAP_LEVELS;
+  c.map.pause = true;
+  c.map.tick = 1000;
+  c.map.train = 1;
+  commissioning_step(&drive);
+  EXPECT_EQ(c.phase, COMMISSIONING_EVALUATE);
+  EXPECT_TRUE(c.evaluate);
+  EXPECT_FALSE(c.requested);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_FALSE(drive.control.closed);
+  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  commissioning_step(&drive);
+  EXPECT_EQ(drive.state, DRIVE_COMMISSION) << "the background level is not through yet";
+  c.evaluate = false;
+  commissioning_step(&drive);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
 TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
   begin();
   drive.commissioning.phase = COMMISSIONING_EVALUATE;

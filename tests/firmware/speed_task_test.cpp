@@ -1,6 +1,8 @@
 // Speed control, field weakening and their limits through the ten periods of a millisecond, on a drive that the test
 // has put where it wants it.
 
+#include <algorithm>
+
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
@@ -204,6 +206,34 @@ TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
   EXPECT_EQ(drive.hold.left, 2u);
   EXPECT_NEAR(real(drive.control.speed.current_q20, 20), iq() - 1.2 / torque_constant(), 2e-3);
   EXPECT_GT(iq(), 2.5);
+}
+
+// acceleration = wc^2 (theta* - theta) + 2 wc (w* - w) + load, wc = 210 rad/s, of which seven tenths a period and 0.35
+// A at most; theta* runs on at the reference's speed.
+TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
+  struct Case {
+    double off, slow, load_nm;
+  };
+  for (const Case& c : {Case{0.001, 0.0, 0.0}, {-0.001, 0.0, 0.0}, {0.0, 0.1, 0.0}, {0.0, 0.0, 0.2}, {0.5, 0.0, 0.0}}) {
+    SetUp();
+    parameters.position_source = POSITION_OBSERVER;
+    ASSERT_TRUE(drive_config_load(&drive.config));
+    part(8);
+    part(9);
+    drive.hold.left = 10;
+    drive.hold.reference_bam = bam(0.3 + c.off);
+    const double w = 50.0;
+    drive.control.ramp.value = bpp(w);
+    const double per_nm = real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod;
+    drive.position.used = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
+                           static_cast<std::int32_t>(c.load_nm * real(drive.model.accel_q12, 12) * 256.0), 32767};
+    drive.control.reference_q20.q = raw(0.5, 20);
+    ASSERT_TRUE(hold_step(&drive));
+    const double accel = 210.0 * 210.0 * c.off + 420.0 * c.slow + c.load_nm * per_nm;
+    const double wanted = accel / per_nm / torque_constant();
+    EXPECT_NEAR(iq(), 0.5 + std::clamp(0.7 * (wanted - 0.5), -0.35, 0.35), 2e-3) << c.off << c.slow << c.load_nm;
+    EXPECT_EQ(drive.hold.left, 9u);
+  }
 }
 
 // A millisecond counts as one, and nothing is controlled while nothing turns.

@@ -55,6 +55,34 @@ TEST_F(StartCaught, APairThatFitsGivesTheSpeed) {
   }
 }
 
+// The short circuit lies some time back by then: the rotor is where it has turned to since.
+TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
+  for (const double speed : {300.0, -300.0}) {
+    SetUp();
+    await_pulse();
+    const std::int32_t first = drive.start.clock;
+    see_pulse(0.5, 48.0);
+    await_pulse();
+    constexpr int kAgo = 47000;  // ticks, 4.7 periods
+    drive.start.clock += kAgo;
+    const double turned = speed * (drive.start.clock - kAgo - first) * 1e-8;
+    flying_pulse_t& p = drive.start.pulse;
+    drive.samples.count = 0;
+    p.windows = 2;
+    p.first_tick = drive.start.clock - kAgo - 5000;
+    p.last_tick = drive.start.clock - kAgo + 5000;
+    p.first_q20 = p.last_q20 = raw_ab(Vector{2.0, 0.0}.turned(0.5 + turned), 20);
+    p.drive_q16 = raw_ab(Vector{96.0, 0.0}.turned(0.5 + turned), 16);
+    const double lag = rad(flying_evaluate(&p, &drive.model).lag_bam);
+    start_step_pulse(&drive);
+    ASSERT_EQ(drive.start.phase, START_CATCH);
+    // e = w lambda q, and the turning saliency has turned it against the rotation by the lag
+    const double behind = std::copysign(kPi / 2.0 - lag, speed);
+    const double there = 0.5 + turned - behind + speed * kAgo * 1e-8;
+    EXPECT_NEAR(wrapped(rad(drive.start.angle_bam) - there), 0.0, 2e-3) << speed;
+  }
+}
+
 // A magnet's flux that is an eighth off is taken as seen, up to three eighths; a small EMF says nothing of it.
 TEST_F(StartCaught, AFluxThatIsOffIsTakenFromALargeEmf) {
   const struct {
@@ -112,6 +140,23 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
     EXPECT_EQ(drive.state, follows ? DRIVE_RUN : DRIVE_START) << stray;
     EXPECT_EQ(drive.start.tries, follows ? 0 : 1);
     EXPECT_EQ(board.gates_on, follows);
+  }
+}
+
+// All lower devices on for the whole period, which three windows share.
+TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
+  const svpwm_pattern_t* const p = start_short_circuit();
+  ASSERT_EQ(p->window_count, 3);
+  int at = 0;
+  for (const svpwm_window_t& w : p->windows) {
+    EXPECT_EQ(w.begin, at);
+    EXPECT_GE(w.end - w.begin, 3300);
+    EXPECT_EQ(w.state, 0);
+    at = w.end;
+  }
+  EXPECT_EQ(at, ESTIMATOR_PERIOD_TICKS);
+  for (const std::int16_t edge : p->pulses.at) {
+    EXPECT_LT(edge, 0) << "a leg is never high";
   }
 }
 
