@@ -212,4 +212,20 @@ TEST(Flying, ThePauseIsASixthOfATurn) {
   }
 }
 
+// What the devices and the resistance take is no EMF: with a current that stands still both are all there is.
+TEST(Flying, ResistanceAndDropsAreTakenOff) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  flying_pulse_t p;
+  flying_begin(&p);
+  estimator_window_t w = {};
+  w.current_q20 = raw_ab({6.0, -9.0}, 20);
+  w.voltage_q16 = raw_ab({-1.0, 1.5}, 16);
+  for (int k = 0; k < 3; ++k) flying_add(&p, &model, &w, 2000 + 3000 * k);
+  const flying_emf_t e = flying_evaluate(&p, &model);
+  const Vector expected = {-1.0 - m.rs * 6.0, 1.5 + m.rs * 9.0};
+  EXPECT_NEAR(real(e.size_q16, 16), expected.length(), 1e-3);
+  EXPECT_NEAR(wrapped(rad(e.direction_bam) - std::atan2(expected.y, expected.x)), 0.0, 1e-3);
+}
+
 }  // namespace

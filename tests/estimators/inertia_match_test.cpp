@@ -181,4 +181,16 @@ TEST(InertiaMatch, ATurnAgainstTheTorqueEndsTheRunUp) {
   EXPECT_EQ(shaft.s.ratio_q24, INERTIA_SAME_Q24);
 }
 
+// A run-up counts when the reference had been reached, and at rest, for 20 ms.
+TEST(InertiaMatch, ARunUpNeedsARestBefore) {
+  for (const int ms : {19, 20}) {
+    Shaft shaft(1.0);
+    shaft.run(200, 0.0);
+    shaft.s.quiet_ms = 0;
+    shaft.run(ms, 0.0);
+    shaft.run(1, 600.0 * kRpm);
+    EXPECT_EQ(shaft.s.phase == INERTIA_RUN_UP, ms >= 20) << ms;
+  }
+}
+
 }  // namespace

@@ -152,4 +152,27 @@ TEST(Polarity, AQuarterOfTheResponseIsEnough) {
   }
 }
 
+// How sure the response is comes from the scatter of the angles in the pauses, whatever they do while current flows.
+TEST(Polarity, ItsErrorIsTheScatterInThePauses) {
+  constexpr int kHalf = POLARITY_SEGMENT / 2;
+  const auto sigma = [](double pauses, double between) {
+    polarity_t s;
+    polarity_begin(&s, 0, raw(kAmps, 20), accel_q8(accel_per_amp() * kAmps));
+    double way = 0.0;
+    for (int n = 0; n < POLARITY_LENGTH; ++n) {
+      const int segment = n / POLARITY_SEGMENT % POLARITY_SEGMENTS;
+      const bool pause = (segment == 0 || segment == 3 || segment == 6) && n % POLARITY_SEGMENT >= kHalf;
+      // the middle pause is off by a degree, in the first pattern one way and in the second the other
+      way = segment == 3 ? (n < POLARITY_LENGTH / 2 ? 1.0 : -1.0) * kDegree : 0.0;
+      (void)polarity_step(&s, bam(way + (n % 2 == 0 ? 0.5 : -0.5) * (pause ? pauses : between)));
+    }
+    return real(s.sigma_q8, 8);
+  };
+  const double step = 0.01 * kDegree;
+  // weights 1, 2, 1 of both patterns over means, halved: two degrees; its error 0.34 of the mean step
+  EXPECT_NEAR(sigma(step, 0.0), 2.0 * kDegree / (0.34 * step), 0.1 * 2.0 * kDegree / (0.34 * step));
+  EXPECT_NEAR(sigma(step, 10.0 * step), sigma(step, 0.0), 1e-6 * sigma(step, 0.0));
+  EXPECT_NEAR(sigma(2.0 * step, 0.0), 0.5 * sigma(step, 0.0), 0.02 * sigma(step, 0.0));
+}
+
 }  // namespace
