@@ -23,7 +23,9 @@ FLOORS = ("hal", "control", "svpwm", "estimators", "firmware")
 MEMORY = 4 << 30  # of a test program
 LEAST_TIME = 5.0  # s, before a program counts as hanging
 # Of the whole runs those with the fast integrator, which look at the drive and not at the bench.
-CHOSEN = {"bench_run_test": "Sources/*:Source.*:Limits.*:Each/*:Angles/*:Standing.*:Speeds/*:Blocked.*:Fault.*:Commission.*"}
+CHOSEN = {
+    "bench_run_test": "Sources/*:Source.*:Limits.*:Each/*:Angles/*:Standing.*:Speeds/*:Blocked.*:Fault.*:Commission.*"
+}
 
 
 def said(command: list[str]) -> str:
