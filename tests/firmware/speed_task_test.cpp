@@ -236,6 +236,35 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
   }
 }
 
+// Each root and division has a period of its own.
+TEST_F(SpeedTask, EachPeriodHasItsOwnPart) {
+  constexpr std::int32_t kMark = 77;
+  for (int k = 0; k < 10; ++k) {
+    SetUp();
+    parameters.inertia_adapt = 1;
+    parameters.position_source = POSITION_OBSERVER;
+    drive.config.mapped = true;
+    drive_control_t& c = drive.control;
+    drive.time_ms = kMark;
+    c.weakening_seen.speed_bpp = kMark;
+    c.weakening_room_q56 = kMark;
+    c.weakening_q20 = kMark;
+    drive.inertia.ms = kMark;
+    c.reference_q20.d = kMark;
+    c.room_q20 = raw(3.0, 20);
+    c.braking_room_q20 = kMark;
+    part(k);
+    EXPECT_EQ(drive.time_ms != kMark, k == 0);
+    EXPECT_EQ(c.weakening_seen.speed_bpp != kMark, k == 3);
+    EXPECT_EQ(c.weakening_room_q56 != kMark, k == 4) << k;
+    EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
+    EXPECT_EQ(drive.inertia.ms != kMark, k == 6) << k;
+    EXPECT_EQ(c.reference_q20.d != kMark, k == 7) << k;
+    EXPECT_EQ(c.room_q20 != raw(3.0, 20), k == 8) << k;
+    EXPECT_EQ(c.braking_room_q20 != kMark, k == 9) << k;
+  }
+}
+
 // A millisecond counts as one, and nothing is controlled while nothing turns.
 TEST_F(SpeedTask, AMillisecondHasTenPeriods) {
   const std::uint32_t before = drive.time_ms;
