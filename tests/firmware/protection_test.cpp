@@ -109,6 +109,33 @@ TEST_F(Protection, WhatIsBesideTheEncoderCountsWhereItIsOne) {
   }
 }
 
+// Two sources that take turns must agree where both are in use; the observer and AVV beside it everywhere; a source
+// that is alone has nobody to agree with.
+TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
+  const struct {
+    std::int32_t source;
+    blend_region_t region;
+    bool counts;
+  } cases[] = {{POSITION_PAPER, BLEND_BOTH, true},        {POSITION_PAPER, BLEND_LOW, false},
+               {POSITION_PAPER, BLEND_HIGH, false},       {POSITION_FLUX_CONV, BLEND_BOTH, true},
+               {POSITION_FLUX_CONV, BLEND_HIGH, false},   {POSITION_OBSERVER_AVV, BLEND_LOW, true},
+               {POSITION_OBSERVER_AVV, BLEND_HIGH, true}, {POSITION_AVV, BLEND_BOTH, false}};
+  for (const auto& c : cases) {
+    SetUp();
+    make_run();
+    trust_synchronism();
+    parameters.position_source = c.source;
+    drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+    drive.position.judging = true;
+    drive.modulation.state.is_alternating = true;
+    drive.position.blend.region = c.region;
+    drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
+    drive.position.high.angle_bam = drive.position.low.angle_bam + bam(1.2);
+    drive_protect(&drive);
+    EXPECT_EQ(drive.fault, c.counts ? FAULT_DIVERGENCE : FAULT_NONE) << c.source << " " << c.region;
+  }
+}
+
 // A disagreement counts from divergence_limit on, and where it ends the time begins anew.
 TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   const auto apart = [](double degrees) {

@@ -125,13 +125,22 @@ TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
   }
 }
 
-// Braking is limited between link_regulation and two thirds of the way to the fault.
+// Braking is limited between link_regulation and two thirds of the way to the fault, and near standstill, where the EMF
+// is less than the resistance takes, not at all.
 TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {
   parameters.link_regulation = raw(400.0, 16);
   parameters.link_maximum = raw(430.0, 16);
   parameters.current_limit = raw(10.0, 20);
-  speed(-400.0);
-  for (const double link : {390.0, 405.0, 410.0, 415.0, 425.0}) {
+  for (const auto& [w, link] : {std::pair{-400.0, 390.0},
+                                {-400.0, 405.0},
+                                {-400.0, 410.0},
+                                {-400.0, 415.0},
+                                {-400.0, 425.0},
+                                {5.0, 410.0},
+                                {13.0, 410.0},
+                                {-16.0, 410.0},
+                                {19.0, 410.0}}) {
+    speed(w);
     drive.samples.link_q16 = raw(link, 16);
     part(8);
     part(9);
@@ -139,9 +148,10 @@ TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {
     in.link_q16 = raw(link, 16);
     in.start_q16 = raw(400.0, 16);
     in.end_q16 = raw(420.0, 16);
-    in.emf_q16 = raw(400.0 * 1e-4 * real(drive.model.emf_q16, 16), 16);
+    in.emf_q16 = raw(std::fabs(w) * 1e-4 * real(drive.model.emf_q16, 16), 16);
     in.drop_q16 = raw(10.0 * real(drive.model.nominal_rs_q24, 24), 16);
-    EXPECT_NEAR(real(drive.control.braking_room_q20, 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01) << link;
+    EXPECT_NEAR(real(drive.control.braking_room_q20, 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01)
+        << w << ", " << link;
   }
 }
 
