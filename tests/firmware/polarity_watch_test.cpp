@@ -1,0 +1,129 @@
+// The watch over the polarity: an axis of its own, followed by what the windows show of the saliency.
+
+#include <algorithm>
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/start/polarity_watch.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr std::uint16_t kRegress = 0, kFollow = 4;  // places in the turn of what is slow
+
+class PolarityWatch : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    parameters.polarity_check = 1;
+    make_ready();
+    drive.state = DRIVE_RUN;
+    drive.samples.count = 2;
+    drive.control.measured_q20 = {0, 0};
+    polarity_watch_begin(&drive, bam(0.5), 0);
+    drive.watch.axis_then_bam = bam(0.5);
+  }
+  static void source(std::int32_t source) {
+    parameters.position_source = source;
+    drive.position.avv.regression.information = 1000000;
+    drive.position.avv.error_bam = 0;
+    drive.position.observer.regression = {};
+    drive.position.observer.regression.information = 1000000;
+    drive.position.observer.regression.spread_q8 = raw(40000.0, 8);
+  }
+  static bool step(std::uint16_t place) {
+    drive.position.now = place;
+    return polarity_watch_step(&drive);
+  }
+  static double axis() { return rad(drive.watch.axis.angle_bam); }
+};
+
+// A triple pole at 120 rad/s takes three times 120 T of what the axis is off, once for every period since it last did;
+// the saliency does not know one half turn from the other.
+TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
+  for (const double half : {0.0, kPi}) {
+    for (const double off : {0.1, -0.1, 1.4, -1.4}) {
+      SetUp();
+      source(POSITION_AVV);
+      drive.position.avv.observer.angle_bam = bam(0.5 + 0.75 * off + half);
+      drive.position.avv.error_bam = static_cast<std::int32_t>(bam(0.25 * off));
+      for (int n = 0; n < 4; ++n) EXPECT_FALSE(step(9));
+      EXPECT_FALSE(step(kFollow));
+      const double all = std::clamp(5.0 * off, -kPi, kPi);  // an angle is no more than half a turn
+      EXPECT_NEAR(axis(), 0.5 + 3.0 * 120.0 * kPeriod * all, 1e-4) << off << ", " << half;
+      EXPECT_EQ(drive.watch.axis_periods, 0);
+      EXPECT_FALSE(drive.watch.blind);
+    }
+  }
+}
+
+// The observer's windows were regressed some periods ago: what they showed belongs to where both were then.
+TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
+  source(POSITION_OBSERVER);
+  drive.watch.axis.speed_bpp = bpp(200.0);
+  EXPECT_FALSE(step(kRegress));
+  const double then = 0.5 + 200.0 * kPeriod;
+  EXPECT_NEAR(rad(drive.watch.axis_then_bam), then, 1e-5);
+  drive.position.observer.regressed_bam = bam(then + 0.2);
+  for (int n = 0; n < 2; ++n) EXPECT_FALSE(step(9));
+  EXPECT_FALSE(step(kFollow));
+  EXPECT_NEAR(axis(), 0.5 + 4 * 200.0 * kPeriod + 3.0 * 120.0 * kPeriod * 0.2 * 4.0, 1e-4);
+}
+
+// A large current turns the axis, and windows without an axis do not show it: then it is the one in use, and what had
+// been counted begins anew.
+TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
+  for (const int why : {0, 1, 2, 3}) {
+    SetUp();
+    source(POSITION_AVV);
+    drive.position.used = {bam(-1.0), bpp(70.0), 0, 32767};
+    drive.position.avv.observer.angle_bam = bam(0.5);
+    const double limit = real(parameters.current_limit, 20);
+    if (why == 1) drive.control.measured_q20.q = raw(0.51 * limit, 20);
+    if (why == 2) drive.control.measured_q20.q = raw(-0.51 * limit, 20);
+    if (why == 3) drive.position.avv.regression.information = 0;
+    if (why == 0) drive.control.measured_q20.q = raw(0.49 * limit, 20);
+    drive.watch.sign.clear = drive.watch.sign.against = 9;
+    drive.control.command_q16 = {raw(1.0, 16), raw(2.0, 16)};
+    EXPECT_FALSE(step(9));
+    EXPECT_FALSE(step(kFollow));
+    const bool blind = why != 0;
+    EXPECT_EQ(drive.watch.blind, blind) << why;
+    EXPECT_NEAR(axis(), blind ? -1.0 : 0.5, 1e-3) << why;
+    EXPECT_EQ(drive.watch.sign.clear + drive.watch.sign.against, blind ? 0 : 18);
+    EXPECT_EQ(drive.watch.periods, blind ? 0 : 2);
+    EXPECT_EQ(drive.watch.voltage_q16.q, blind ? 0 : raw(4.0, 16));
+    if (blind) {
+      EXPECT_EQ(drive.watch.sign.last_iq_q20, drive.control.measured_q20.q);
+      EXPECT_EQ(drive.watch.axis.speed_bpp, bpp(70.0));
+    }
+  }
+}
+
+// It sleeps but in RUN, until its question is answered, and where nobody asks it.
+TEST_F(PolarityWatch, IsAwakeInRunUntilItKnows) {
+  EXPECT_TRUE(polarity_watch_is_awake(&drive));
+  drive.state = DRIVE_STOP;
+  EXPECT_FALSE(polarity_watch_is_awake(&drive));
+  drive.state = DRIVE_RUN;
+  parameters.polarity_check = 0;
+  polarity_watch_begin(&drive, 0, 0);
+  EXPECT_FALSE(polarity_watch_is_awake(&drive));
+}
+
+// What has been seen of the back-EMF against the rotation, a quarter of what is expected, is a suspicion.
+TEST_F(PolarityWatch, AQuarterOfTheEmfAgainstTheRotationIsASuspicion) {
+  drive.watch.sign.expected_q16 = raw(20.0, 16);
+  for (const double seen : {-4.9, -5.1, 5.1}) {
+    drive.watch.sign.seen_q16 = raw(seen, 16);
+    EXPECT_EQ(polarity_watch_suspects(&drive), seen < -5.0) << seen;
+  }
+  drive.watch.sign.seen_q16 = raw(-20.0, 16);
+  drive.watch.open = false;
+  EXPECT_FALSE(polarity_watch_suspects(&drive));
+}
+
+}  // namespace
