@@ -375,4 +375,25 @@ TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
   EXPECT_EQ(progress(COMMISSIONING_EVALUATE), 1000);
 }
 
+// A level is complete when each of its groups is, after whole rounds of places; or after so many trains that the pairs
+// of windows will not come.
+TEST_F(Phases, ALevelWantsAllItsGroups) {
+  map_t& m = commissioning().map;
+  for (int few = -1; few < 4; ++few) {
+    for (const int trains : {15, 16, 608}) {
+      m = {};
+      commissioning().tick = 1;
+      for (int k = 0; k < 4; ++k) m.group[0][k].tensor.count = k == few ? 7999 : 8000;
+      m.train = static_cast<std::uint16_t>(trains);
+      m.tick = 1000;
+      m.speed_q8 = m.position_bam = 1234;  // of the last train
+      m.pause = true;
+      ASSERT_FALSE(step(commissioning_map));
+      EXPECT_EQ(m.level, trains == 608 || (trains == 16 && few < 0) ? 1 : 0) << few << ", " << trains;
+      EXPECT_FALSE(m.pause);
+      EXPECT_EQ(m.speed_q8 | m.position_bam | m.tick, 0);
+    }
+  }
+}
+
 }  // namespace

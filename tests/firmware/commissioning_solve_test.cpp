@@ -126,6 +126,15 @@ TEST(CommissioningStaircase, ResistanceDropAndEdgesComeApart) {
   EXPECT_LT(real(v.command_rms_q16, 16), 1e-3);
 }
 
+// Within a tenth of the largest, whatever that is beside the saliency.
+TEST(CommissioningMap, SmoothingForgivesATenthOfTheLargest) {
+  for (const auto& [off, close] : {std::pair{0.015, true}, {0.10, false}}) {
+    std::int32_t mutual[MAP_LEVELS];
+    for (int k = 0; k < 4; ++k) mutual[k] = raw(0.04 * (k + 1) + (k == 1 ? off : 0.0), 20);
+    EXPECT_EQ(map_smooth(mutual, raw(0.1, 20)), close) << off;
+  }
+}
+
 // What is missing under the windows is what they leave over and the link's sag between them; both fits say how far the
 // levels lie off them.
 TEST(CommissioningStaircase, TheSagOfTheLinkIsNoDrop) {

@@ -136,6 +136,22 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
   }
 }
 
+// In degrees, of the electrical turn.
+TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
+  for (const double part : {0.98, 1.02, -0.98, -1.02}) {
+    SetUp();
+    make_run();
+    trust_synchronism();
+    parameters.divergence_limit = raw(50.0, 16);
+    drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+    drive.position.judging = true;
+    drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
+    drive.position.high.angle_bam = drive.position.low.angle_bam + bam(part * 50.0 * kDegree);
+    drive_protect(&drive);
+    EXPECT_EQ(drive.fault, std::fabs(part) > 1.0 ? FAULT_DIVERGENCE : FAULT_NONE) << part;
+  }
+}
+
 // A disagreement counts from divergence_limit on, and where it ends the time begins anew.
 TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   const auto apart = [](double degrees) {

@@ -63,6 +63,18 @@ TEST_F(SelfTest, PassesOnAGoodBoard) {
   EXPECT_EQ(words(), "passed; flash not tested, the image has no check sum");
 }
 
+// It is over when all of it is: neither the RAM nor the clock alone.
+TEST_F(SelfTest, IsUnderWayUntilEachPartIsThrough) {
+  for (const bool ram_first : {true, false}) {
+    drive_reset();
+    selftest_look();
+    ram_first ? whole_ram() : services(100, kService);
+    EXPECT_EQ(words().find("under way"), 0u) << words();
+    ram_first ? services(100, kService) : whole_ram();
+    EXPECT_EQ(words().find("passed"), 0u) << words();
+  }
+}
+
 TEST_F(SelfTest, FindsTheFirstAndTheLastPairOfRam) {
   for (const int pair : {0, int{HAL_SELFTEST_PAIRS} - 1}) {
     board.bad_pair = pair;

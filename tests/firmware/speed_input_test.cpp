@@ -178,5 +178,21 @@ TEST_F(SpeedInput, NotUsedItCommandsNothing) {
   EXPECT_EQ(drive.state, DRIVE_READY) << "closed before it was used";
 }
 
+// A switch that is closed when the input comes into use starts nothing, as at power-on.
+TEST_F(SpeedInput, ASwitchClosedBeforehandStartsNothing) {
+  parameters.speed_input = 0;
+  turns(2, false, 0);
+  parameters.speed_input = 1;
+  turns(2, false, 0);  // it has been seen open,
+  parameters.speed_input = 0;
+  turns(2, true, 0);  // but not when it was closed
+  parameters.speed_input = 1;
+  turns(3, true, 0);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  turns(1, false, 0);
+  turns(6, true, 0);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
 }  // namespace
 }  // namespace stillspin::test

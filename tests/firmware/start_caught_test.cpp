@@ -160,4 +160,29 @@ TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
   }
 }
 
+// Of the period in which the gates came on, only what lies behind that instant belongs to the short circuit; of the
+// others all does.
+TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
+  for (const int blind : {2, 1, 0}) {
+    for (const int on : {1000, 4000, 9000}) {
+      drive.start.phase = START_PULSE;
+      drive.start.tick = 0;
+      drive.start.blind = static_cast<std::uint16_t>(blind);
+      drive.start.on_tick = on;
+      flying_begin(&drive.start.pulse);
+      drive.samples.count = 2;
+      for (int k = 0; k < 2; ++k) {
+        estimator_window_t w = {};
+        w.middle_tick = static_cast<std::int16_t>(2500 + 5000 * k);
+        w.span_ticks = 2000;
+        drive.samples.windows[k] = w;
+      }
+      start_step_pulse(&drive);
+      int expected = 0;  // the devices switch 2 us after they are told
+      for (const int begin : {1500, 6500}) expected += blind == 0 || begin >= on + 200;
+      EXPECT_EQ(drive.start.pulse.windows, expected) << blind << ", " << on;
+    }
+  }
+}
+
 }  // namespace
