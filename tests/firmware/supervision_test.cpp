@@ -238,6 +238,21 @@ TEST_F(Drive, StopThatDoesNotReachStandstillFaults) {
   EXPECT_NEAR(n, 50 * DRIVE_PERIODS_PER_MS, 15);  // the ramp is at zero from the start; a millisecond of the speed task
 }
 
+// At two revolutions per minute or less, in either direction, once the ramp has come down.
+TEST_F(Drive, AStopEndsAtTwoRevolutionsPerMinute) {
+  for (const int tenths : {18, -18, 22, -22}) {
+    SetUp();
+    make_run();
+    drive_command_stop();
+    drive.control.ramp.value = 0;
+    drive.state = DRIVE_STOP;
+    drive.position.used.speed_bpp = bpp_of(1000) / 10000 * tenths;
+    drive_sequence(&drive);
+    EXPECT_EQ(drive.state, std::abs(tenths) < 20 ? DRIVE_READY : DRIVE_STOP) << tenths;
+    EXPECT_EQ(board.gates_on, std::abs(tenths) > 20) << tenths;
+  }
+}
+
 TEST_F(Drive, ASpeedCommandBeforeTheStartIsKept) {
   make_ready();
   drive_command_speed(raw(300.0, 16));
