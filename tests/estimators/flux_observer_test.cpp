@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <vector>
 
 #include "tests/estimators/flux_paper.hpp"
 
@@ -169,6 +170,25 @@ TEST(FluxObserver, MagnetIsFoundWhileRunning) {
     Bench b(m, truth, c, 0.0, 838.0, Vector{0.0, 9.0});
     EXPECT_LT(b.run(20000), 0.002);
     EXPECT_NEAR(real(b.s.adaptation.shares.psi_q24, 24), 0.8, 1e-3);
+  }
+}
+
+// Up to 32 periods the adaptation's steps are even; beyond they are as many in the mean.
+TEST(FluxObserver, AdaptationKeepsItsPeriodsInTheMean) {
+  for (const int periods : {20, 32, 33, 100}) {
+    flux_observer_config_t c = config(FLUX_PP02);
+    c.adaptation_periods = static_cast<std::uint16_t>(periods);
+    Bench b(motor_b(), motor_b(), c, 0.0, 300.0, Vector{0.0, 5.0});
+    std::vector<int> steps;
+    for (int n = 1; steps.size() < 33; ++n) {
+      const int before = b.s.pause;
+      (void)b.step(0.0);
+      if (b.s.pause >= before) steps.push_back(n);
+    }
+    EXPECT_EQ(steps.back() - steps.front(), 32 * periods);
+    int uneven = 0;
+    for (std::size_t k = 1; k < steps.size(); ++k) uneven += (steps[k] - steps[k - 1] != periods) ? 1 : 0;
+    EXPECT_EQ(uneven, (periods <= 32) ? 0 : 32) << periods;
   }
 }
 
