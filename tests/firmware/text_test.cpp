@@ -49,6 +49,18 @@ std::int32_t raw(const std::string& text, std::uint16_t q) {
   return decimal_raw(&d, q);
 }
 
+// Digits that end where a number does, at it and beyond it.
+TEST(Text, NumbersAtTheEndOfTheirFormat) {
+  EXPECT_EQ(number("2147483647").digits, INT32_MAX);
+  EXPECT_EQ(number("2147483648").digits, INT32_MAX) << "too many";
+  EXPECT_EQ(number("-2147483648").digits, -INT32_MAX) << "too many";
+  EXPECT_EQ(number("2147483650").digits, INT32_MAX) << "too many";
+  EXPECT_EQ(number("21474836470").digits, INT32_MAX) << "too many";
+  EXPECT_EQ(number("21474836.48").digits, 214748364) << "a decimal that does not fit is left out";
+  EXPECT_EQ(number("21474836.48").decimals, 1);
+  EXPECT_EQ(number("21474836.47").decimals, 2);
+}
+
 TEST(Text, FixedPointToDecimals) {
   EXPECT_EQ(fixed(0, 16, 2), "0.00");
   EXPECT_EQ(fixed(65536 * 3 / 2, 16, 0), "2");
