@@ -67,6 +67,11 @@ void check(const Motor& asked) {
   // 2867 stands for 2867.08 (3e-5); the quotient is rounded once per pole pair
   const double accel = s.pole_pairs * s.period * s.period / (kTurn * s.inertia) * std::ldexp(1.0, 32);
   expect_close(real(m.accel_q12, 12), accel, (0.5 * s.pole_pairs + 0.5) * std::ldexp(1.0, -12), 4e-5, "acceleration");
+  // N m as Q16 of an acceleration as Q8; a heavy rotor's ends with the format
+  const double torque_per_accel = std::fmin(256.0 / real(m.accel_q12, 12), 128.0);
+  expect_close(real(m.torque_per_accel_q24, 24), torque_per_accel, std::ldexp(1.0, -24), 0.0,
+               "torque per acceleration");
+  EXPECT_EQ(m.pole_pairs, s.pole_pairs);
   EXPECT_EQ(m.periods_per_second, std::lround(1.0 / s.period));
 }
 
