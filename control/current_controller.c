@@ -5,6 +5,7 @@
 // Bandwidth times the delay, in parts per million of 2 rad.
 #define PHASE_MAX_PPM 260000L
 #define BANDWIDTH_MAX 2600
+#define ONE_Q20 1048576L
 // No DC link is above 2000 V: a command of twice that says all, and sums with it stay in their format.
 #define COMMAND_MAX_Q16 268435456L
 
@@ -14,7 +15,7 @@ static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30,
   c.kp_q20 = q_mul(inductance_q30, d->bandwidth_rads, 10);
   const bool own = d->corner == CURRENT_CORNER_MACHINE;
   c.ki_q20 = own ? q_mul(m->nominal_rs_q24, step_q24, 28) : q_mul(c.kp_q20, step_q24, 24) / RESET_RATIO;
-  c.release_q20 = 4 * q_div(c.ki_q20, c.kp_q20, 20);
+  c.release_q20 = 4 * q_limit(q_div(c.ki_q20, c.kp_q20, 20), ONE_Q20 / 4);
   return c;
 }
 

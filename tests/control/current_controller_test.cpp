@@ -73,6 +73,29 @@ TEST(CurrentController, PrintedGainsOfPaperB) {
   EXPECT_EQ(c.d.ki_q20, c.q.ki_q20);
 }
 
+// A winding of more resistance than inductance: with the corner at R/L the integrator would be taken off more than all
+// of the excess, and swing about its limit. The share ends at one.
+TEST(CurrentController, TheReleaseTakesOffAllOfTheExcessAtMost) {
+  for (const double rs : {0.2, 1.0, 30.0}) {
+    Motor motor;
+    motor.rs = rs;
+    motor.ld = motor.lq = 0.3e-3;
+    const machine_model_t m = model_of(motor);
+    current_controller_config_t c;
+    ASSERT_TRUE(designed(&c, m, 2000, 2, CURRENT_CORNER_MACHINE));
+    const double share = std::min(4.0 * rs * 2.0 * kPeriod / motor.ld, 1.0);
+    EXPECT_NEAR(real(c.d.release_q20, 20), share, 1e-4) << rs;
+    EXPECT_NEAR(real(c.q.release_q20, 20), share, 1e-4) << rs;
+    current_controller_t s;
+    current_controller_reset(&s);
+    // A voltage that cannot be given is asked for once; told so again and again, the integrator settles.
+    (void)current_controller_step(&s, &c, &m, raw_dq({10.0, 0.0}, 20), raw_dq({0.0, 0.0}, 20), 0);
+    const std::int32_t charged = s.d.integral;
+    for (int n = 0; n < 100; ++n) current_controller_limited(&s, &c, {q_shr(s.d.integral, 4), 0});
+    EXPECT_LT(std::abs(s.d.integral), charged / 1000 + 16) << rs;
+  }
+}
+
 TEST(CurrentController, FollowsTheDoublePrecisionLaw) {
   Random random(31);
   const Motor motor;
