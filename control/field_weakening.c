@@ -27,7 +27,7 @@ int32_t field_weakening_follow(field_weakening_t* s, const field_weakening_input
   const int32_t left = q_sub_sat(in->voltage_limit_q16, in->voltage_q16);
   const int32_t trim = q_add_sat(s->trim_q20, q_mul_sat(left, in->trim_gain_q20, 16));
   // The trim may take back no more than the feed-forward gives, and add no more than the limit leaves.
-  s->trim_q20 = q_clamp(trim, -in->current_limit_q20, (forward < 0) ? -forward : 0);
+  s->trim_q20 = q_clamp(trim, -in->current_limit_q20, -forward);
   return q_clamp(q_add_sat(forward, s->trim_q20), -in->current_limit_q20, 0);
 }
 

@@ -19,7 +19,7 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_st
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(TURNS_Q32_PER_RAD, m->emf_q16, 20);
   c->resistance_q24 = m->nominal_rs_q24;
-  c->least_q16 = q_max(q_div(p->speed_bpp / 8, c->per_emf_q4, 20), 1);
+  c->least_q16 = q_div(p->speed_bpp / 8, c->per_emf_q4, 20);
   return q_in_range(c->damping_periods, 10, 10000);
 }
 
@@ -43,7 +43,7 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
   if (s->tick == half) s->vector_bam = quarter_turn_on(s->vector_bam, !s->backward);
   if (s->tick < c->align_periods) return;
   const int32_t end = s->backward ? -c->speed_bpp : c->speed_bpp;
-  s->speed_bpp += q_clamp(end - s->speed_bpp, -c->step_bpp, c->step_bpp);
+  s->speed_bpp = q_clamp(end, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
@@ -52,7 +52,7 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
 static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq_t emf_q16) {
   const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
   const int32_t q = q_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
-  const int32_t length = q_max(q_hypot(d, q), 1);
+  const int32_t length = q_hypot(d, q);
   const int32_t along =
       q_add_sat(q_mul_sat(q_div(d, length, 28), emf_q16.d, 28), q_mul_sat(q_div(q, length, 28), emf_q16.q, 28));
   return along;
@@ -60,11 +60,11 @@ static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   const dq_t emf_q16 = {q_sub_sat(voltage_q16.d, q_mul_sat(c->resistance_q24, s->current_q20, 28)), voltage_q16.q};
-  s->mean_q16.d += q_shr(q_sub_sat(emf_q16.d, s->mean_q16.d), MEAN_SHIFT);
-  s->mean_q16.q += q_shr(q_sub_sat(emf_q16.q, s->mean_q16.q), MEAN_SHIFT);
+  s->mean_q16.d = q_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
+  s->mean_q16.q = q_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
   const int32_t seen = q_mul_sat(emf_along_q16(s, c, emf_q16), c->per_emf_q4, 20);
-  s->rotor_bpp += q_shr(q_sub_sat(seen, s->rotor_bpp), FILTER_SHIFT);
-  s->mean_bpp += q_shr(q_sub_sat(s->rotor_bpp, s->mean_bpp), MEAN_SHIFT);
+  s->rotor_bpp = q_follow(s->rotor_bpp, seen, FILTER_SHIFT);
+  s->mean_bpp = q_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = q_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
   s->angle_bam = s->vector_bam - (uint32_t)shift;
@@ -72,7 +72,7 @@ static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
 
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,
                                 int32_t seen_bpp) {
-  s->tick++;
+  s->tick = q_min(s->tick + 1, c->align_periods);
   step_vector(s, c);
   damp(s, c, voltage_q16);
   if (!if_start_is_up(s, c)) return IF_START_PENDING;
@@ -81,5 +81,6 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
   s->agreed = near ? s->agreed + 1 : 0;
   if (s->agreed >= IF_START_AGREED) return IF_START_TAKEN_OVER;
   s->waited++;
-  return (s->waited > c->wait_periods) ? IF_START_FAILED : IF_START_PENDING;
+  if (s->waited > c->wait_periods) return IF_START_FAILED;
+  return IF_START_PENDING;
 }

@@ -21,8 +21,8 @@
 typedef struct {
   int32_t current_q20;      // length of the vector, A, up to 100
   int32_t align_periods;    // at rest, over the first half a quarter turn behind and rising, 2..50000
-  int32_t step_bpp;         // change of its speed per period, at least 1
-  int32_t speed_bpp;        // at the end, positive
+  int32_t step_bpp;         // change of its speed per period, at least 1, up to 1 rad
+  int32_t speed_bpp;        // at the end, positive, up to 1 rad per period
   int32_t wait_periods;     // there, until the source agrees
   int32_t damping_periods;  // 1 / w0
   int32_t per_emf_q4;       // bpp per V of EMF
@@ -37,7 +37,7 @@ typedef struct {
 typedef enum { IF_START_PENDING = 0, IF_START_TAKEN_OVER = 1, IF_START_FAILED = 2 } if_start_result_t;
 
 typedef struct {
-  int32_t tick;            // periods since the beginning
+  int32_t tick;            // periods since the beginning, at most those at rest
   int32_t speed_bpp;       // of the vector
   uint32_t vector_bam;     // its angle without the damping
   uint32_t angle_bam;      // of the frame to control in

@@ -1,6 +1,7 @@
 #include "control/machine_map.h"
 
 #define FLUX_END_Q16 2097152000L  // 32000 V
+#define ONE_Q24 ((int32_t)16777216L)
 #define ONE_Q30 1073741824L
 
 // psi/T gained over a segment: mean inductance times its current, V per (rad per period), Q16.
@@ -13,13 +14,14 @@ static int32_t flux_gain_q16(int32_t l0_q30, int32_t l1_q30, int32_t step_q20, i
 static bool invert(machine_point_t* y, int32_t ldd_q30, int32_t lqq_q30, int32_t ldq_q30, int32_t period_q30) {
   // Leakage factors as quotients keep the digits: Ldd (1 - Ldq^2 / (Ldd Lqq)).
   const int32_t tilt_d_q30 = q_div(ldq_q30, ldd_q30, 30);
-  const int32_t tilt_q_q30 = q_div(ldq_q30, lqq_q30, 30);
-  if (q_abs_sat(tilt_d_q30) >= ONE_Q30) return false;  // Lqq is not the smaller one
+  const int32_t tilt_q_q30 = q_limit(q_div(ldq_q30, lqq_q30, 30), ONE_Q30);
+  if (tilt_d_q30 <= -ONE_Q30 || tilt_d_q30 >= ONE_Q30) return false;  // Lqq is not the smaller one
   const int32_t left_q30 = ONE_Q30 - q_mul(tilt_d_q30, tilt_q_q30, 30);
   y->ydd_q30 = q_div(period_q30, q_mul(ldd_q30, left_q30, 30), 30);
   y->yqq_q30 = q_div(period_q30, q_mul(lqq_q30, left_q30, 30), 30);
-  y->ydq_q30 = -q_mul(y->yqq_q30, tilt_d_q30, 30);
-  return y->ydd_q30 < INT32_MAX && y->yqq_q30 > 0;
+  if (y->ydd_q30 >= ONE_Q30) return false;
+  y->ydq_q30 = q_mul(y->ydd_q30, -tilt_q_q30, 30);
+  return true;
 }
 
 bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int32_t period_q30, int32_t emf_q16) {
@@ -43,8 +45,6 @@ bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int
   return true;
 }
 
-static int32_t between(int32_t a, int32_t b, int32_t share_q24) { return a + q_mul(b - a, share_q24, 24); }
-
 // As a straight line beyond b as well.
 static int32_t beyond(int32_t a, int32_t b, int32_t share_q24) {
   return q_add_sat(a, q_mul_sat(q_sub_sat(b, a), share_q24, 24));
@@ -52,15 +52,15 @@ static int32_t beyond(int32_t a, int32_t b, int32_t share_q24) {
 
 machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
   const int32_t at_q24 = q_mul_sat(q_abs_sat(iq_q20), map->per_segment_q26, 22);
-  const uint16_t k = (uint16_t)q_min(q_shr(at_q24, 24), MACHINE_MAP_SEGMENTS - 1);
+  const uint16_t k = (uint16_t)q_min((int32_t)((uint32_t)at_q24 >> 24), MACHINE_MAP_SEGMENTS - 1);
   const machine_point_t* const a = &map->points[k];
   const machine_point_t* const b = a + 1;
-  const int32_t beyond_q24 = at_q24 - (int32_t)(k * 16777216L);
-  const int32_t share_q24 = q_min(beyond_q24, 16777216L);
+  const int32_t beyond_q24 = at_q24 - (int32_t)k * ONE_Q24;
+  const int32_t share_q24 = (beyond_q24 < ONE_Q24) ? (at_q24 & (ONE_Q24 - 1)) : ONE_Q24;
   machine_point_t p;
-  p.ydd_q30 = between(a->ydd_q30, b->ydd_q30, share_q24);
-  p.yqq_q30 = between(a->yqq_q30, b->yqq_q30, share_q24);
-  p.ydq_q30 = between(a->ydq_q30, b->ydq_q30, share_q24);
+  p.ydd_q30 = q_mix(a->ydd_q30, b->ydd_q30, share_q24, 24);
+  p.yqq_q30 = q_mix(a->yqq_q30, b->yqq_q30, share_q24, 24);
+  p.ydq_q30 = q_mix(a->ydq_q30, b->ydq_q30, share_q24, 24);
   p.psi_d_q16 = beyond(a->psi_d_q16, b->psi_d_q16, beyond_q24);
   p.psi_q_q16 = beyond(a->psi_q_q16, b->psi_q_q16, beyond_q24);
   if (iq_q20 < 0) {

@@ -1,7 +1,6 @@
 #include "control/machine_model.h"
 
 #define ONE_Q24 ((int32_t)16777216L)
-#define EMF_END_Q16 2097152000L    // 32000 V
 #define RATIO_END_Q24 2097152000L  // 125
 #define T_END_Q24 187904819L       // 11.2: its square is below the largest r
 #define TILT_END_Q24 1056964608L   // 63: of K_dd, which counts twice
@@ -69,7 +68,7 @@ bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* 
   const machine_point_t* const p = &fresh.points[0];
   m->per_ydd0 = q_invert(p->ydd_q30);
   m->per_yqq0 = q_invert(p->yqq_q30);
-  m->per_half0 = q_invert(q_max((p->ydd_q30 - p->yqq_q30) / 2, 1));
+  m->per_half0 = q_invert((p->ydd_q30 - p->yqq_q30) / 2);
   machine_model_move(m, 0);
   return true;
 }
@@ -94,7 +93,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->flux_q28 = p->flux_q28;
   m->pole_pairs = p->pole_pairs;
   m->period_q30 = period_q30(p->period_us);
-  m->periods_per_second = q_div(1000000L, p->period_us, 0);
+  m->periods_per_second = (int32_t)((1000000L + p->period_us / 2) / p->period_us);
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
@@ -105,8 +104,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->accel_q12 = q_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
   m->torque_per_accel_q24 = q_div(1048576L, m->accel_q12, 24);
   // A constant at the end of its format is not the machine's.
-  return m->accel_q12 < INT32_MAX && m->emf_q16 < EMF_END_Q16 && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 &&
-         m->k0_q20.q > -K0_END_Q20;
+  return m->accel_q12 < INT32_MAX && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 && m->k0_q20.q > -K0_END_Q20;
 }
 
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24) {
@@ -118,7 +116,7 @@ dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   // L_d i_d / T as V per (rad per period).
   const int32_t armature_q16 = q_mul_sat(q_mul_sat(m->ld_q30, i_q20.d, 22), m->periods_per_second, 12);
-  const dq_t v = {-q_mul(m->psi_q_q16, w_q30, 30), q_mul(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
+  const dq_t v = {q_mul(m->psi_q_q16, -w_q30, 30), q_mul(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
   return v;
 }
 

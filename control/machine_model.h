@@ -65,7 +65,7 @@ typedef struct {
 } machine_model_t;
 
 /// Derives the constants, without saturation. Returns false, leaving the model unusable, when a parameter is outside
-/// its range or a constant outside its format: T/L from 2 A/V, lambda/T from 32000 V, Lq/Ld from 126, lambda/L from
+/// its range or a constant outside its format: T/L from 1 A/V, lambda/T from 32000 V, Lq/Ld from 126, lambda/L from
 /// 2000 A, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 

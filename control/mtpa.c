@@ -4,12 +4,9 @@
 #define CURRENT_MAX_Q20 209715200L
 
 void mtpa_design(mtpa_t* s, const machine_model_t* m) {
-  s->pole_q20 = 0;
-  const int32_t saliency_q30 = m->lq_q30 - m->ld_q30;
-  if (saliency_q30 <= 0) return;
-  // lambda Q28 over 2 (Lq - Ld) Q30, to Q20: 2^21 of the quotient of the raw numbers.
-  const int32_t pole_q20 = q_div(m->flux_q28, saliency_q30, 21);
-  if (pole_q20 <= POLE_MAX_Q20) s->pole_q20 = pole_q20;
+  // lambda Q28 over 2 (Lq - Ld) Q30, to Q20: 2^21 of the quotient of the raw numbers. Without saliency it is infinite.
+  const int32_t pole_q20 = q_div(m->flux_q28, m->lq_q30 - m->ld_q30, 21);
+  s->pole_q20 = (pole_q20 <= POLE_MAX_Q20) ? pole_q20 : 0;
 }
 
 int32_t mtpa_current_q20(const mtpa_t* s, int32_t iq_q20) {

@@ -33,7 +33,9 @@ AT_ONCE = 2
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
 LINK_RANGES = "tests/prove/link_ranges.h"
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h, link_ranges.h).
-WITH_CONTRACT = "q_clz32,q_reciprocal_q31,q_div,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos"
+WITH_CONTRACT = (
+    "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_follow,q_mix,q_limit"
+)
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
 OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed"
@@ -50,7 +52,7 @@ PROVED_BY_WP = (
 )
 # Read where they are called, and their promise taken: intervals do not see it in the one comparison. WP proves that of
 # q_sat64; at the others its prover stops, and tests/qmath tries every edge.
-SHOWN_ELSEWHERE = ("q_sat64", "q_limit", "q_sat_bits")
+SHOWN_ELSEWHERE = ("q_sat64", "q_limit", "q_sat_bits", "q_follow", "q_mix")
 OPEN = ("Unknown", "Invalid", "Inconsistent", "Never tried")
 
 Alarm = tuple[str, str]  # function, kind
@@ -120,7 +122,7 @@ PARTS = (
     Part(
         "control",
         ("tests/prove/control.c", "control/*.c", "hal/qmath/*.c"),
-        eva("prove_control", *READER),
+        eva("prove_control", *READER, "-eva-subdivide-non-linear", "20"),
         given=WITH_CONTRACT,
     ),
     *(

@@ -78,6 +78,9 @@ static inline int32_t q_add_sat(int32_t a, int32_t b) { return q_sat64((int64_t)
 
 static inline int32_t q_sub_sat(int32_t a, int32_t b) { return q_sat64((int64_t)a - b); }
 
+// a + (b - a) / 2^n, n = 1..31: what follows b with a share of the difference lies between the two.
+static inline int32_t q_follow(int32_t a, int32_t b, unsigned n) { return a + q_shr(q_sub_sat(b, a), n); }
+
 // -x, and INT32_MAX for INT32_MIN.
 static inline int32_t q_neg_sat(int32_t x) { return (x == INT32_MIN) ? INT32_MAX : -x; }
 
@@ -136,6 +139,12 @@ static inline int32_t q_mul_sub_floor(int32_t a, int32_t b, int32_t c, int32_t d
 
 // round(a * b / 2^shift), halves up, saturated, shift = 1..62.
 static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift) { return q_sat64(q_mul64(a, b, shift)); }
+
+// a + (b - a) * share / 2^bits, halves up, share = 0..2^bits, bits = 1..30: a mixture of the two lies between them.
+// Their difference must fit 32 bits.
+static inline int32_t q_mix(int32_t a, int32_t b, int32_t share, unsigned bits) {
+  return a + q_mul(b - a, share, bits);
+}
 
 // The same two sums of products, saturated.
 static inline int32_t q_mul_add_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {

@@ -59,6 +59,33 @@ TEST(FieldWeakening, FeedForwardOverTheWholeRange) {
   }
 }
 
+// A magnet that is known to be stronger or weaker needs that much more or less current.
+TEST(FieldWeakening, TheFeedForwardCountsWhatIsLearntOfTheMagnet) {
+  Motor motor;
+  machine_model_t m = model_of(motor);
+  for (const double share : {0.9, 1.1}) {
+    m.trim.psi_q16 = raw((share - 1.0) * motor.flux / kPeriod, 16);
+    Motor exact = motor;
+    exact.flux *= share;
+    field_weakening_t s;
+    field_weakening_reset(&s);
+    const field_weakening_input_t in = input(motor.electrical(3000.0), 2.0, 150.0, 150.0, 30.0, 0.0);
+    EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), analytic(exact, motor.electrical(3000.0), 150.0, 2.0),
+                1e-3);
+  }
+}
+
+// After a reset the current is that of the feed-forward alone, whatever was integrated before.
+TEST(FieldWeakening, AResetForgetsTheTrim) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  field_weakening_t s = {raw(-3.0, 20)};
+  field_weakening_reset(&s);
+  const field_weakening_input_t fits = input(motor.electrical(3000.0), 0.0, 60.0, 60.0, 9.0, 0.01);
+  EXPECT_EQ(field_weakening_step(&s, &fits, &m), raw(-9.0, 20));
+  EXPECT_EQ(s.trim_q20, 0);
+}
+
 TEST(FieldWeakening, NothingBelowTheBaseSpeed) {
   const Motor motor;
   const machine_model_t m = model_of(motor);

@@ -145,6 +145,30 @@ TEST(IfStart, RefusesASpringThatIsTooSlowOrTooFast) {
   EXPECT_FALSE(if_start_design(&c, &fast, &strong));
 }
 
+// 1/w0 in periods: every current from none up to the last, and those next to the ends among them. The heavy shaft's
+// acceleration is a few bpp per period.
+TEST(IfStart, ASpringFromTenToTenThousandPeriods) {
+  Motor heavy = motor_b(), light = motor_b();
+  heavy.inertia = 0.5;
+  heavy.flux = 0.02;
+  light.inertia = 6e-5;
+  light.flux = 0.2;
+  for (const Motor& motor : {heavy, light}) {
+    const machine_model_t m = model_of(motor);
+    bool seen[2] = {false, false};
+    if_start_parameters_t p = usual();
+    for (double current = 100.0; current >= 0.0; current -= (current > 1.0) ? 0.25 : 1.0 / 1024.0) {
+      p.current_q20 = raw(current, 20);
+      if_start_config_t c;
+      const bool taken = if_start_design(&c, &m, &p);
+      ASSERT_EQ(taken, c.damping_periods >= 10 && c.damping_periods <= 10000) << current;
+      seen[0] = seen[0] || c.damping_periods == ((motor.inertia > 0.1) ? 9882 : 10);
+      seen[1] = seen[1] || c.damping_periods == ((motor.inertia > 0.1) ? 10674 : 9);
+    }
+    EXPECT_TRUE(seen[0] && seen[1]);
+  }
+}
+
 // An eighth of the speed's EMF is what the mean counts for near standstill, lambda w / 8; half a raw number of it is
 // the most that is lost. The steps of the speed are one at least.
 TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
@@ -180,6 +204,95 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
     }
     for (int n = 0; n < 10; ++n) (void)if_start_step(&s, &c, {0, 0}, 0, 0);
     EXPECT_GT(way * s.speed_bpp, 0.0);
+  }
+}
+
+// What it sees follows with an eighth of the difference in each period, the mean with 1/1024.
+TEST(IfStart, ItsFiltersHaveTheirTimes) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  if_start_t s;
+  if_start_begin(&s, 0, false);
+  const double emf = 10.0, seen = 10.0 * real(c.per_emf_q4, 4);
+  double rotor = 0.0, mean = 0.0;
+  for (int n = 1; n <= 3000; ++n) {
+    const double drop = motor_b().rs * 8.0 * std::min(n / 500.0, 1.0);
+    (void)if_start_step(&s, &c, raw_dq({drop, emf}, 16), 0, 0);
+    rotor += (seen - rotor) / 8.0;
+    mean += (rotor - mean) / 1024.0;
+    ASSERT_NEAR(s.rotor_bpp, rotor, 2e-4 * seen) << n;
+    ASSERT_NEAR(s.mean_bpp, mean, 2e-4 * seen) << n;
+    const double shift = std::min((rotor - mean) * c.damping_periods / std::ldexp(1.0, 32), 0.125);
+    ASSERT_NEAR(wrapped(rad(s.vector_bam - s.angle_bam)), shift * kTurn, 1e-3) << n;
+  }
+  // The other way, with 45 degrees as well.
+  for (int n = 0; n < 20; ++n) (void)if_start_step(&s, &c, raw_dq({0.0, -200.0}, 16), 0, 0);
+  EXPECT_NEAR(wrapped(rad(s.vector_bam - s.angle_bam)), -45.0 * kDegree, 1e-6);
+}
+
+// Three thousand periods of agreement in a row, and no more of waiting than it is told.
+TEST(IfStart, AgreementAndPatienceAreCountedFromTheLastSpeedOn) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  for (const bool agrees : {false, true}) {
+    if_start_t s;
+    if_start_begin(&s, 0, false);
+    int up = 0;
+    if_start_result_t result = IF_START_PENDING;
+    while (result == IF_START_PENDING) {
+      const std::int32_t next_bpp = std::min(s.speed_bpp + c.step_bpp, c.speed_bpp);
+      const std::uint32_t next = s.vector_bam + static_cast<std::uint32_t>(next_bpp);
+      // a quarter of the speed off is one digit too many, and so are 80 degrees
+      const std::int32_t off = agrees ? 954437176 : 954437177;
+      result = if_start_step(&s, &c, {0, 0}, next - static_cast<std::uint32_t>(off),
+                             agrees ? c.speed_bpp - c.speed_bpp / 4 + 1 : c.speed_bpp);
+      up += if_start_is_up(&s, &c) ? 1 : 0;
+    }
+    EXPECT_EQ(result, agrees ? IF_START_TAKEN_OVER : IF_START_FAILED);
+    EXPECT_EQ(up, agrees ? 3000 : 20001);
+  }
+  if_start_t s;
+  if_start_begin(&s, 0, false);
+  while (!if_start_is_up(&s, &c)) (void)if_start_step(&s, &c, {0, 0}, 0, 0);
+  const std::uint32_t next = s.vector_bam + static_cast<std::uint32_t>(s.speed_bpp);
+  (void)if_start_step(&s, &c, {0, 0}, next, c.speed_bpp - c.speed_bpp / 4);
+  EXPECT_EQ(s.agreed, 0);
+}
+
+// The current rises in whole shares and has its length from the middle of the time at rest on.
+TEST(IfStart, TheCurrentHasItsLengthFromTheMiddleOfTheRestOn) {
+  if_start_parameters_t p = usual();
+  p.current_q20 = raw(8.0, 20) + 499;  // no multiple of the steps
+  const if_start_config_t c = designed(motor_b(), p);
+  if_start_t s;
+  if_start_begin(&s, 0, false);
+  for (int n = 1; n <= 2000; ++n) {
+    (void)if_start_step(&s, &c, {0, 0}, 0, 0);
+    ASSERT_EQ(s.current_q20, (n < 500) ? p.current_q20 / 500 * n : p.current_q20) << n;
+  }
+}
+
+// A rotor that lags steadily shows its speed in the EMF along its mean direction, whatever the lag; near standstill the
+// direction is that of no lag, by what `least` weighs.
+TEST(IfStart, TheEmfAlongItsDirectionIsTheRotorsSpeed) {
+  const Motor m = motor_b();
+  const if_start_config_t c = designed(m, usual());
+  for (const bool backward : {false, true}) {
+    for (const double lag : {-0.9, 0.0, 0.5, 1.2}) {
+      for (const double speed : {20.0, 125.7}) {
+        const double way = backward ? -1.0 : 1.0;
+        if_start_t s;
+        if_start_begin(&s, 0, backward);
+        const Vector emf = {way * speed * m.flux * std::sin(lag), way * speed * m.flux * std::cos(lag)};
+        for (int n = 0; n < 20000; ++n) {
+          const double drop = m.rs * 8.0 * std::min((n + 1) / 500.0, 1.0);
+          (void)if_start_step(&s, &c, raw_dq({emf.x + drop, emf.y}, 16), 0, 0);
+        }
+        const Vector along = {way * emf.x, way * emf.y + real(c.least_q16, 16)};
+        const double seen = (along.x * emf.x + along.y * emf.y) / along.length() / m.flux;
+        // the means end up to 2^10 LSB before what they follow: 0.016 V, of the smallest EMF of 1.7 V
+        EXPECT_NEAR(rad_per_s(s.rotor_bpp), seen, 0.01 * speed) << lag << " " << speed;
+        EXPECT_NEAR(rad_per_s(s.mean_bpp), seen, 0.01 * speed) << lag << " " << speed;
+      }
+    }
   }
 }
 

@@ -204,6 +204,47 @@ TEST(MachineMap, RefusesWhatItsFormatsDoNotHold) {
   EXPECT_FALSE(machine_map_init(&map, &slow, 0, 0)) << "a period of nothing";
 }
 
+// Between its points everything is a straight line, to a digit of the share.
+TEST(MachineMap, StraightLinesBetweenThePoints) {
+  const Saturated s;
+  const machine_model_t m = model_with(s, 14.0);
+  Random random(23);
+  for (int n = 0; n < 2000; ++n) {
+    const std::int32_t iq = raw(random.between(0.0, 13.99), 20);
+    const double at = real(iq, 20) * real(m.map.per_segment_q26, 26);
+    const auto k = static_cast<int>(at);
+    const double share = std::floor((at - k) * 16777216.0) / 16777216.0;
+    const machine_point_t p = machine_map_at(&m.map, iq);
+    const machine_point_t* const a = &m.map.points[k];
+    ASSERT_NEAR(p.ydd_q30, a[0].ydd_q30 + share * (a[1].ydd_q30 - a[0].ydd_q30), 1.0);
+    ASSERT_NEAR(p.yqq_q30, a[0].yqq_q30 + share * (a[1].yqq_q30 - a[0].yqq_q30), 1.0);
+    ASSERT_NEAR(p.ydq_q30, a[0].ydq_q30 + share * (a[1].ydq_q30 - a[0].ydq_q30), 1.0);
+  }
+}
+
+// Below 1 A/V two couplings of opposite sign still have a difference.
+TEST(MachineMap, AdmittancesEndAtOneAmperePerVolt) {
+  for (const double inductance : {99e-6, 101e-6}) {
+    machine_map_parameters_t p = Saturated{}.table(14.0);
+    for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {
+      p.ldd_q30[n] = p.lqq_q30[n] = raw(inductance, 30);
+      p.ldq_q30[n] = 0;
+    }
+    machine_map_t map;
+    EXPECT_EQ(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)), inductance > 100e-6);
+  }
+  machine_map_parameters_t p = Saturated{}.table(14.0);
+  for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {  // L (1 - 0.95^2) makes 0.97 A/V of L = 1.057 mH
+    p.ldd_q30[n] = p.lqq_q30[n] = raw(1.057e-3, 30);
+    p.ldq_q30[n] = raw((n % 2 == 0 ? -0.95 : 0.95) * 1.057e-3, 30);
+  }
+  machine_map_t map;
+  ASSERT_TRUE(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)));
+  EXPECT_NEAR(real(machine_map_at(&map, raw(3.5, 20)).ydq_q30, 30), -0.92, 0.01);
+  EXPECT_NEAR(real(machine_map_at(&map, raw(5.25, 20)).ydq_q30, 30), 0.0, 0.01);
+  EXPECT_NEAR(real(machine_map_at(&map, raw(7.0, 20)).ydq_q30, 30), 0.92, 0.01);
+}
+
 // The mutual inductance must stay below both of the others; Ldd is the smaller one.
 TEST(MachineMap, RefusesACouplingAboveTheInductance) {
   for (const double share : {0.99, 1.01, -0.99, -1.01}) {

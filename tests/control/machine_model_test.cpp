@@ -6,6 +6,7 @@
 
 namespace {
 
+using stillspin::test::kPeriod;
 using stillspin::test::kTurn;
 using stillspin::test::Motor;
 using stillspin::test::parameters_of;
@@ -22,7 +23,7 @@ void expect_close(double got, double exact, double lsb, double relative, const c
 bool fits(const Motor& m) {
   const double y_max = m.period / m.ld;
   const double accel = m.pole_pairs * m.period * m.period / (kTurn * m.inertia) * std::ldexp(1.0, 32);
-  return y_max < 1.99 && m.flux / m.period < 31900.0 && m.lq / m.ld < 126.0 && accel < 524000.0 &&
+  return y_max < 0.99 && m.flux / m.period < 31900.0 && m.lq / m.ld < 126.0 && accel < 524000.0 &&
          m.flux / m.lq < 1990.0 && 4.0 * m.lq / m.period < 31900.0;
 }
 
@@ -107,7 +108,7 @@ TEST(MachineModel, EndsOfTheRanges) {
   check(m);
   m.flux = 1.0;
   check(m);
-  m.ld = m.lq = 51e-6;
+  m.ld = m.lq = 101e-6;
   m.flux = 0.1;
   check(m);
   m.inertia = 1.0;
@@ -156,7 +157,8 @@ TEST(MachineModel, RejectsMachinesWhoseConstantsDoNotFit) {
   salient.ld = 0.4e-3;
   salient.lq = 0.4;
   Motor loose;  // lambda / Lq = 3200 A
-  loose.ld = loose.lq = 50.1e-6;
+  loose.ld = loose.lq = 101e-6;
+  loose.flux = 0.323;
   for (const Motor& motor : {light, fast, strong, salient, loose}) {
     const machine_parameters_t p = parameters_of(motor);
     EXPECT_FALSE(machine_model_init(&m, &p)) << motor.ld << ", " << motor.flux << ", " << motor.inertia;
@@ -230,12 +232,71 @@ TEST(MachineModel, RangesEndWhereTheyAreSaidTo) {
       EXPECT_FALSE(machine_model_init(&m, &p)) << beyond;
     }
   }
-  for (const std::int32_t rs : {16777, 838860800}) {
-    machine_parameters_t p = parameters_of(Motor{});
-    p.rs_q24 = rs;
+}
+
+// The digits themselves, in machines that the formats hold.
+TEST(MachineModel, TheEndsOfTheRangesAreTaken) {
+  const struct {
+    Field field;
+    std::int32_t end, period_us;
+  } ends[] = {{&machine_parameters_t::rs_q24, 16777, 500},    {&machine_parameters_t::rs_q24, 838860800, 500},
+              {&machine_parameters_t::ld_q30, 21500, 20},     {&machine_parameters_t::ld_q30, 10737418, 500},
+              {&machine_parameters_t::lq_q30, 10737418, 500}, {&machine_parameters_t::lq_q30, 536870912, 500},
+              {&machine_parameters_t::flux_q28, 268435, 500}, {&machine_parameters_t::flux_q28, 268435456, 500},
+              {&machine_parameters_t::inertia_q24, 168, 20},  {&machine_parameters_t::inertia_q24, 16777216, 500},
+              {&machine_parameters_t::pole_pairs, 1, 500},    {&machine_parameters_t::pole_pairs, 20, 500},
+              {&machine_parameters_t::period_us, 20, 20},     {&machine_parameters_t::period_us, 500, 500}};
+  for (const auto& one : ends) {
+    machine_parameters_t p = {16777216, 10737418, 10737418, 2684355, 167772, 1, one.period_us};  // 10 mH, 0.01 Vs
+    p.*one.field = one.end;
+    if (one.field == &machine_parameters_t::ld_q30) p.lq_q30 = p.ld_q30;
     machine_model_t m;
-    EXPECT_TRUE(machine_model_init(&m, &p)) << rs;
+    EXPECT_TRUE(machine_model_init(&m, &p)) << one.end;
   }
+  machine_parameters_t p = {16777216, 10737418, 10737418, 2684355, 167, 1, 20};
+  machine_model_t m;
+  EXPECT_FALSE(machine_model_init(&m, &p)) << "lighter than 1e-5 kg m^2";
+}
+
+// Just inside and just outside of what the constants' formats hold.
+TEST(MachineModel, FormatsEndWhereTheyAreSaidTo) {
+  const auto taken = [](const Motor& motor) {
+    const machine_parameters_t p = parameters_of(motor);
+    machine_model_t m;
+    return machine_model_init(&m, &p);
+  };
+  Motor salient;  // Lq / Ld
+  salient.flux = 0.05;
+  salient.ld = 1e-3;
+  salient.lq = 125.5e-3;
+  EXPECT_TRUE(taken(salient));
+  salient.lq = 126.5e-3;
+  EXPECT_FALSE(taken(salient));
+  Motor loose;  // lambda / L, A
+  loose.ld = loose.lq = 200e-6;
+  loose.flux = 0.398;
+  EXPECT_TRUE(taken(loose));
+  loose.flux = 0.402;
+  EXPECT_FALSE(taken(loose));
+  Motor strong;  // lambda / T, V
+  strong.period = 20e-6;
+  strong.flux = 0.638;
+  EXPECT_TRUE(taken(strong));
+  strong.flux = 0.642;
+  EXPECT_FALSE(taken(strong));
+}
+
+// A new model has learnt nothing, whatever was there before.
+TEST(MachineModel, NothingIsLearntAtFirst) {
+  machine_model_t m = model_of(Motor{});
+  m.trim = {1, 2, 3, 4, 5, 6, 7, 8};
+  const machine_parameters_t p = parameters_of(Motor{});
+  ASSERT_TRUE(machine_model_init(&m, &p));
+  const machine_trim_t& t = m.trim;
+  for (const std::int32_t learnt : {t.mean_q30, t.half_q30, t.ydd_q24, t.yqq_q24, t.ydq_q24, t.rs_q24, t.psi_q16}) {
+    EXPECT_EQ(learnt, 0);
+  }
+  EXPECT_NEAR(real(t.psi_haste_q30, 30), 0.01, 1e-9);
 }
 
 // An inertia that was learnt makes the model that of another rotor, whatever it was scaled to before.
@@ -251,6 +312,18 @@ TEST(MachineModel, AScaledInertiaIsThatOfAnotherRotor) {
     EXPECT_NEAR(static_cast<double>(m.accel_q12) / exact.accel_q12, 1.0, 1e-3) << ratio;
     EXPECT_NEAR(static_cast<double>(m.torque_per_accel_q24) / exact.torque_per_accel_q24, 1.0, 1e-3) << ratio;
   }
+}
+
+// What is learnt of resistance and magnet is part of the working point.
+TEST(MachineModel, TheTrimMovesResistanceAndMagnet) {
+  const Motor motor;
+  machine_model_t m = model_of(motor);
+  m.trim.rs_q24 = raw(0.07, 24);
+  m.trim.psi_q16 = raw(-50.0, 16);
+  machine_model_move(&m, raw(5.0, 20));
+  EXPECT_NEAR(real(m.rs_q24, 24), motor.rs + 0.07, 1e-6);
+  EXPECT_NEAR(real(m.psi_d_q16, 16), motor.flux / kPeriod - 50.0, 0.01);
+  EXPECT_NEAR(real(m.k0_q20.q, 20), -(motor.flux - 50.0 * kPeriod) / motor.lq, 1e-3);
 }
 
 // A map whose determinant nearly vanishes: K_dd counts twice in what is made of it (estimators/deviation.c).

@@ -79,6 +79,15 @@ TEST(PositionHold, ANewPlaceIsTakenAfterARelease) {
   EXPECT_EQ(s.angle, 2.0);
 }
 
+TEST(PositionHold, ADisplacementIsForgottenWithTheRelease) {
+  Shaft s;
+  s.run(0.01, 0.0);
+  s.angle = 1.0;
+  EXPECT_LT(s.run(0.001, 0.0), -1.0);
+  position_hold_release(&s.hold);
+  EXPECT_EQ(s.run(0.001, 0.0), 0.0);
+}
+
 TEST(PositionHold, NothingIsLostOfASlowCreepFromStepToStep) {
   Shaft s;
   s.run(0.01, 0.0);

@@ -175,13 +175,62 @@ TEST(SpeedController, RefusesWhatIsOutOfRange) {
       EXPECT_FALSE(speed_controller_init(&s, &config, &m)) << bad;
     }
   }
-  Design sticky;  // B Ts / J = 1.5: the series no longer holds
-  sticky.motor.friction = 0.9;
-  sticky.motor.inertia = 6e-4;
-  const machine_model_t light = model_of(sticky.motor);
-  const speed_controller_config_t config = sticky.config();
-  speed_controller_t s;
-  EXPECT_FALSE(speed_controller_init(&s, &config, &light));
+  for (const double inertia : {6e-4, 1.7e-3}) {  // B Ts / J = 1.5 and 0.53: the series no longer hold
+    Design sticky;
+    sticky.motor.friction = 0.9;
+    sticky.motor.inertia = inertia;
+    const machine_model_t light = model_of(sticky.motor);
+    const speed_controller_config_t config = sticky.config();
+    speed_controller_t s;
+    EXPECT_FALSE(speed_controller_init(&s, &config, &light)) << inertia;
+  }
+}
+
+// Both ends of each range are taken, where the rest leaves them room.
+TEST(SpeedController, RangesEndWhereTheyAreSaidTo) {
+  const machine_model_t m = model_of(Motor{});
+  using Field = std::int32_t speed_controller_config_t::*;
+  const struct {
+    Field field;
+    std::int32_t low, high;
+  } ranges[] = {
+      {&speed_controller_config_t::friction_q24, 0, 16777216},
+      {&speed_controller_config_t::inertia_q24, 168, 16777216},
+      {&speed_controller_config_t::step_periods, 1, 100},
+      {&speed_controller_config_t::alpha_q8, 256, 25600000},
+      {&speed_controller_config_t::trajectory_ms_q8, 512, 51200},
+      {&speed_controller_config_t::pi_bandwidth_q8, 256, 51200},
+      {&speed_controller_config_t::pi_damping_q12, 1228, 12288},
+  };
+  for (const auto& range : ranges) {
+    for (const std::int32_t end : {range.low, range.high}) {
+      Design slow;
+      slow.step_periods = 5;
+      slow.trajectory = 50e-3;
+      speed_controller_config_t config = slow.config();
+      config.*range.field = end;
+      speed_controller_t s;
+      EXPECT_TRUE(speed_controller_init(&s, &config, &m)) << end;
+    }
+  }
+}
+
+// Half of B Ts / J, just below where the series are no longer taken: each of their terms counts.
+TEST(SpeedController, TheSeriesAreGoodToTheirEnd) {
+  Design d;
+  d.motor.friction = 0.98;
+  d.motor.inertia = 0.98e-3 / 0.4995;
+  const machine_model_t m = model_of(d.motor);
+  speed_controller_config_t c = d.config();
+  speed_controller_t with, without;
+  ASSERT_TRUE(speed_controller_init(&with, &c, &m));
+  const double x = 1e-3 * c.friction_q24 / c.inertia_q24;
+  // Ts as Q30 is right to 4.7e-7 of 1 ms, so is x
+  EXPECT_NEAR(real(with.decay_q30, 30), std::exp(-x), 4e-7);
+  c.friction_q24 = 0;
+  ASSERT_TRUE(speed_controller_init(&without, &c, &m));
+  // both are rounded to one of some 10^8
+  EXPECT_NEAR(static_cast<double>(with.response_q8) / without.response_q8, -std::expm1(-x) / x, 4e-7);
 }
 
 // (53), one step, from any state.

@@ -14,8 +14,7 @@
 #define FLUX_END_Q16 2097152000L
 
 static inline q_inverse_t any_inverse(unsigned lowest, unsigned highest) {
-  const q_inverse_t inverse = {any_from(536870912L, 1073741824L),
-                               (unsigned)any_from((int32_t)lowest, (int32_t)highest)};
+  const q_inverse_t inverse = {any_from(1073741824L, INT32_MAX), (unsigned)any_from((int32_t)lowest, (int32_t)highest)};
   return inverse;
 }
 

@@ -11,6 +11,9 @@
 #include "control/speed_controller.h"
 #include "tests/prove/any_machine.h"
 
+#define TURN_MAX_BPP 683565276L  // 1 rad per period
+#define EMF_MAX_Q16 1073741824L
+
 static machine_model_t told, model;
 
 static void control_currents(void) {
@@ -56,14 +59,31 @@ static void weaken_field(void) {
   }
 }
 
-static void turn_vector(void) {
-  const if_start_parameters_t p = {any_from(0, CURRENT_MAX_Q20), any_from(100, 50000), any_from(0, SPEED_MAX_BPP),
-                                   any_from(0, SPEED_MAX_BPP), any_from(0, 100000L)};
+// Any state in which a turn may be.
+static void any_turn(if_start_t* s, const if_start_config_t* c) {
+  s->tick = any_from(0, c->align_periods);
+  s->speed_bpp = any_from(-TURN_MAX_BPP, TURN_MAX_BPP);
+  s->mean_q16 = any_dq(EMF_MAX_Q16);
+  s->rotor_bpp = any_i32;
+  s->mean_bpp = any_i32;
+  s->agreed = any_from(0, IF_START_AGREED - 1);
+  s->waited = any_from(0, c->wait_periods);
+}
+
+// One step from each state leads to such a state again. A time at rest of `periods` to about twice as many: the current
+// rises by a share of it.
+static void turn_vector(int32_t periods) {
+  const if_start_parameters_t p = {any_from(0, 100 * AMPERES_Q20), any_from(periods, 2 * periods),
+                                   any_from(0, TURN_MAX_BPP), any_from(1, TURN_MAX_BPP), any_from(0, 100000L)};
   if_start_config_t c;
   if_start_t s;
   if (!if_start_design(&c, &model, &p)) return;
   if_start_begin(&s, any_u32, any_bool());
-  while (any_bool()) (void)if_start_step(&s, &c, any_dq(VOLTAGE_MAX_Q16), any_u32, any_speed());
+  if (any_bool()) any_turn(&s, &c);
+  if (if_start_step(&s, &c, any_dq(VOLTAGE_MAX_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
+  //@ assert -683565276 <= s.speed_bpp <= 683565276 && 0 <= s.tick <= 65536;
+  //@ assert -1073741824 <= s.mean_q16.d <= 1073741824 && -1073741824 <= s.mean_q16.q <= 1073741824;
+  //@ assert 0 <= s.agreed < 3000 && 0 <= s.waited <= 100000;
 }
 
 static void limit_and_hold(void) {
@@ -93,6 +113,6 @@ void prove_control(void) {
   control_currents();
   control_speed();
   weaken_field();
-  turn_vector();
+  for (int32_t periods = 2; periods <= 32768; periods *= 2) turn_vector(periods);
   limit_and_hold();
 }

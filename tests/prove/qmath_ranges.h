@@ -13,8 +13,18 @@ unsigned q_clz32(uint32_t x);
     ensures x < 0 ==> \result <= 0; ensures x >= 0 ==> \result >= 0; */
 static inline int32_t q_sat64(int64_t x);
 
-/*@ requires 0 <= limit; assigns \result \from x, limit; ensures -limit <= \result <= limit; */
+/*@ requires 0 <= limit; assigns \result \from x, limit; ensures -limit <= \result <= limit;
+    ensures \result <= -1 || 0 <= \result; */
 static inline int32_t q_limit(int32_t x, int32_t limit);
+
+/*@ requires 1 <= n <= 31; assigns \result \from a, b, n;
+    ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
+static inline int32_t q_follow(int32_t a, int32_t b, unsigned n);
+
+/*@ requires -2147483648 <= b - a <= 2147483647 && 1 <= bits <= 30 && 0 <= share <= (1 << bits);
+    assigns \result \from a, b, share, bits; ensures a <= \result || b <= \result;
+    ensures \result <= a || \result <= b; */
+static inline int32_t q_mix(int32_t a, int32_t b, int32_t share, unsigned bits);
 
 /*@ requires bits <= 30 && 32 <= n + bits <= 62; assigns \result \from x, n, bits;
     ensures -(1 << bits) <= \result < (1 << bits); */
@@ -24,10 +34,17 @@ static inline int32_t q_sat_bits(int64_t x, unsigned n, unsigned bits);
 uint32_t q_reciprocal_q31(uint32_t divisor);
 
 /*@ requires shift <= 31; assigns \result \from num, den, shift;
-    ensures num >= 0 && den > 0 ==> \result >= 0; ensures num <= 0 && den > 0 ==> \result <= 0; */
+    ensures num >= 0 && den >= 0 ==> \result >= 0; ensures num <= 0 && den >= 0 ==> \result <= 0; */
 int32_t q_div(int32_t num, int32_t den, unsigned shift);
 
-/*@ assigns \result \from x; */
+#include "hal/qmath/qdiv.h"  // the type, behind what its inline functions promise
+
+/*@ assigns \result \from divisor;
+    ensures 0 <= \result.value && 31 <= \result.exponent <= 61;
+    ensures divisor >= 524288 ==> \result.exponent >= 50; */
+q_inverse_t q_invert(int32_t divisor);
+
+/*@ assigns \result \from x; ensures x <= 4611686014132420609 ==> \result <= 2147483647; */
 uint32_t q_sqrt64(uint64_t x);
 
 /*@ assigns \result \from x; */

@@ -3,6 +3,7 @@
 #include "hal/qmath/qarith.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "tests/qmath/worst.hpp"
 
@@ -161,6 +162,45 @@ TEST(QArith, LimitIsAClamp) {
       EXPECT_EQ(q_limit(x, limit), std::clamp(x, -limit, limit)) << x << " " << limit;
       EXPECT_EQ(q_limit(limit, limit), limit);
       EXPECT_EQ(q_limit(-limit, limit), -limit);
+    }
+  }
+}
+
+// Both ends included: what Frama-C takes for granted where they are called (tests/prove/qmath_ranges.h).
+TEST(QArith, WhatFollowsLiesBetween) {
+  RandomInt32 random(7);
+  std::vector<std::int32_t> values = edges();
+  for (int n = 0; n < 200; ++n) values.push_back(random());
+  for (const std::int32_t a : values) {
+    for (const std::int32_t b : values) {
+      for (unsigned n = 1; n < 32; ++n) {
+        const std::int32_t got = q_follow(a, b, n);
+        ASSERT_LE(std::min(a, b), got) << a << ", " << b << ", " << n;
+        ASSERT_GE(std::max(a, b), got) << a << ", " << b << ", " << n;
+        ASSERT_TRUE(Wide{got} == a + floor_shift(saturate(Wide{b} - a), n)) << a << ", " << b << ", " << n;
+      }
+    }
+  }
+}
+
+TEST(QArith, AMixtureLiesBetween) {
+  RandomInt32 random(8);
+  std::vector<std::int32_t> values = edges();
+  for (int n = 0; n < 100; ++n) values.push_back(random());
+  for (const std::int32_t a : values) {
+    for (const std::int32_t b : values) {
+      if (!fits(Wide{b} - a)) continue;
+      for (const unsigned bits : {1u, 2u, 15u, 24u, 30u}) {
+        const std::int32_t one = std::int32_t{1} << bits;
+        EXPECT_EQ(q_mix(a, b, 0, bits), a);
+        EXPECT_EQ(q_mix(a, b, one, bits), b);
+        for (const std::int32_t share : {1, one / 2, one - 1, random() & (one - 1)}) {
+          const std::int32_t got = q_mix(a, b, share, bits);
+          ASSERT_LE(std::min(a, b), got) << a << ", " << b << ", " << share;
+          ASSERT_GE(std::max(a, b), got) << a << ", " << b << ", " << share;
+          ASSERT_TRUE(Wide{got} == a + round_shift((Wide{b} - a) * share, bits)) << a << ", " << b << ", " << share;
+        }
+      }
     }
   }
 }
