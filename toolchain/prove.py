@@ -36,6 +36,7 @@ LINK_RANGES = "tests/prove/link_ranges.h"
 WITH_CONTRACT = (
     "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_follow,q_mix,q_limit"
 )
+OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
 OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed"
@@ -117,6 +118,19 @@ PARTS = (
         "svpwm",
         ("tests/prove/svpwm.c", "svpwm/*.c", "hal/qmath/*.c"),
         eva("prove_svpwm", *READER),
+        "tests/prove/svpwm_ranges.h",
+        f"{WITH_CONTRACT},{OF_LAYOUTS}",
+    ),
+    Part(
+        "layouts",
+        ("tests/prove/svpwm.c", "svpwm/*.c", "hal/qmath/*.c"),
+        eva("prove_layouts", "-eva-precision", "0", "-eva-min-loop-unroll", "7"),
+        given=WITH_CONTRACT,
+    ),
+    Part(
+        "edges",
+        ("tests/prove/svpwm.c", "svpwm/*.c", "hal/qmath/*.c"),
+        eva("prove_edges", "-eva-precision", "0", "-eva-min-loop-unroll", "6", "-eva-slevel", "60"),
         given=WITH_CONTRACT,
     ),
     Part(
@@ -211,7 +225,11 @@ DEFECTS = (
     Defect("quotients", "q_invert", "hal/qmath/qdiv.c", "(divisor > 0) ?", "(divisor >= 0) ?"),
     Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
     Defect("angles", "sincos_of_quadrant", "hal/qmath/qtrig.c", "sine_q30[node]", "sine_q30[node + 1u]"),
-    Defect("svpwm", "svpwm_mean_q16", "svpwm/ripple.c", "int32_t a = svpwm_on_ticks", "int16_t a = svpwm_on_ticks"),
+    Defect("svpwm", "alternate", "svpwm/modulator.c", "c->pulse_ticks / 5", "c->pulse_ticks * 9"),
+    Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "(room + t1 * t2) / 2"),
+    Defect(
+        "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < SVPWM_WINDOWS", "window_count <= SVPWM_WINDOWS"
+    ),
     Defect(
         "control",
         "command_q16",

@@ -40,22 +40,107 @@ static dead_time_config_t any_dead_time(void) {
   return c;
 }
 
+// What the on-times of the legs are to each other (svpwm/on_time.h; tests/svpwm tries it with every voltage): t1 and t2
+// between the longest, the next and the shortest, SPREAD at most together; what they have in common is none of theirs.
+#define SPREAD (SVPWM_SPREAD_MAX_TICKS + 1)
+#define SLICE 1880
+
+static int16_t leg_from(int32_t lo3, int32_t hi3) { return any_ticks((int16_t)(lo3 / 3 - 2), (int16_t)(hi3 / 3 + 2)); }
+
+// On-times with t1 and t2 in a slice.
+static svpwm_on_time_t any_on_time(uint16_t hi, uint16_t mid, int32_t t1, int32_t t2) {
+  svpwm_on_time_t t;
+  t.hi = hi;
+  t.mid = mid;
+  t.lo = (uint16_t)(3u - hi - mid);
+  t.leg[t.hi] = leg_from(2 * t1 + t2, 2 * t1 + t2 + 3 * SLICE);
+  t.leg[t.mid] = leg_from(t2 - t1 - SLICE, t2 - t1 + SLICE);
+  t.leg[t.lo] = leg_from(-t1 - 2 * t2 - 3 * SLICE, -t1 - 2 * t2);
+  return t;
+}
+
+static modulator_config_t config;
+static dead_time_config_t dead_time;
+
+static void alternate(const svpwm_on_time_t* t, uint16_t x, bool pair_first) {
+  alternating_state_t s = {x, pair_first};
+  svpwm_pulses_t pulses;
+  svpwm_alternating(&s, t, config.pulse_ticks, &pulses);
+}
+
+static void lay_out_all(const svpwm_on_time_t* t) {
+  svpwm_pulses_t pulses;
+  svpwm_centred(t, &pulses);
+  svpwm_long_zero(t, &pulses);
+  svpwm_extended(&config.extended, t, &pulses);
+  svpwm_cheapest_pair(&config.extended, t, &pulses);
+  if (!svpwm_alternating_fits(t, config.pulse_ticks)) return;
+  for (uint16_t x = 0; x < SVPWM_LEGS; x++) {
+    alternate(t, x, false);
+    alternate(t, x, true);
+  }
+}
+
+// Every layout with every pair of on-times, and what is sent of it.
+void prove_layouts(void) {
+  config = any_modulator();
+  dead_time = any_dead_time();
+  if (!modulator_config_valid(&config)) return;
+  for (uint16_t first = 0; first < 6u; first++) {
+    const uint16_t hi = (uint16_t)(first / 2u);
+    const uint16_t mid = (uint16_t)((hi + 1u + first % 2u) % 3u);
+    for (int32_t t1 = 0; t1 <= SPREAD; t1 += SLICE) {
+      for (int32_t t2 = 0; t2 <= SPREAD - t1; t2 += SLICE) {
+        const svpwm_on_time_t t = any_on_time(hi, mid, t1, t2);
+        lay_out_all(&t);
+      }
+    }
+  }
+}
+
+// Any edges of a period, in an order that a layout gives: that they lie in it is what tests/svpwm tries.
+static void send(uint32_t order) {
+  svpwm_pattern_t pattern;
+  svpwm_pulses_t command;
+  for (uint16_t k = 0; k < SVPWM_EDGES; k++) pattern.pulses.at[k] = any_ticks(0, SVPWM_PERIOD_TICKS);
+  pattern.pulses.order = order;
+  const int32_t link_q16 = any_from(0, 2000 * VOLTS_Q16);
+  const svpwm_carried_t carried = {any_vector(512 * AMPERES_Q20), any_from(0, 1073741824L), link_q16};
+  svpwm_send(&dead_time, &config.sampling, &carried, &pattern, &command);
+  (void)svpwm_mean_q16(&pattern.pulses, link_q16);
+  for (uint16_t k = 0; k < pattern.window_count; k++) {
+    (void)svpwm_burst_start(&config.sampling, &pattern.windows[k]);
+    (void)svpwm_burst_end(&config.sampling, &pattern.windows[k]);
+  }
+}
+
+// What is sent of it, and the windows.
+void prove_edges(void) {
+  config = any_modulator();
+  dead_time = any_dead_time();
+  if (!modulator_config_valid(&config)) return;
+  for (uint16_t first = 0; first < 6u; first++) {
+    const uint16_t a = (uint16_t)(first / 2u);
+    const uint16_t b = (uint16_t)((a + 1u + first % 2u) % 3u);
+    const uint16_t c = (uint16_t)(3u - a - b);
+    send(svpwm_order(a, b, c, svpwm_fall_of(a), svpwm_fall_of(b), svpwm_fall_of(c)));
+    send(svpwm_order(a, b, c, svpwm_fall_of(c), svpwm_fall_of(b), svpwm_fall_of(a)));
+    send(svpwm_order(a, b, svpwm_fall_of(b), svpwm_fall_of(a), c, svpwm_fall_of(c)));
+    send(svpwm_order(a, svpwm_fall_of(a), b, c, svpwm_fall_of(b), svpwm_fall_of(c)));
+  }
+}
+
+// The choice among them, period after period.
 void prove_svpwm(void) {
-  const modulator_config_t config = any_modulator();
-  const dead_time_config_t dead_time = any_dead_time();
   modulator_t state;
+  config = any_modulator();
+  dead_time = any_dead_time();
   if (!modulator_config_valid(&config)) return;
   modulator_reset(&state);
   while (any_bool()) {
-    svpwm_pattern_t pattern;
-    svpwm_pulses_t command;
-    const int32_t link_q16 = any_from(0, 2000 * VOLTS_Q16);
-    const ab_t current_q20 = any_vector(512 * AMPERES_Q20);
-    (void)dead_time_drop_q16(&dead_time, current_q20);
-    (void)modulator_step(&state, &config, (excitation_t)(any_u16 % 6u), any_vector(8192 * VOLTS_Q16), link_q16,
-                         &pattern.pulses);
-    const svpwm_carried_t carried = {current_q20, any_from(0, 1073741824L), link_q16};
-    svpwm_send(&dead_time, &config.sampling, &carried, &pattern, &command);
-    (void)svpwm_mean_q16(&pattern.pulses, link_q16);
+    svpwm_pulses_t pulses;
+    (void)dead_time_drop_q16(&dead_time, any_vector(512 * AMPERES_Q20));
+    (void)modulator_step(&state, &config, (excitation_t)(any_u16 % 6u), any_vector(8192 * VOLTS_Q16),
+                         any_from(0, 2000 * VOLTS_Q16), &pulses);
   }
 }

@@ -69,6 +69,25 @@ TEST(OnTime, TicksPerVoltFollowTheLink) {
   EXPECT_NEAR(real(ticks, 20) * 320.0 / 10000.0, 1.0, 3e-7);
 }
 
+// What the layouts take for granted (tests/prove/svpwm.c): sorted legs, a spread that leaves the shortest pulse and
+// gap, and no common part but what rounding makes.
+TEST(OnTime, TheLegsBelongTogetherWithEveryVoltage) {
+  Random random(82);
+  for (int n = 0; n < 200000; ++n) {
+    const double link = random.log_between(1.0, 2000.0);
+    const Vector v = random.direction(random.log_between(1e-4, 8000.0));
+    const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), svpwm_ticks_per_volt_q20(raw(link, 16), 0));
+    ASSERT_EQ((1u << t.hi) | (1u << t.mid) | (1u << t.lo), 7u);
+    const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
+    ASSERT_GE(t1, 0);
+    ASSERT_GE(t2, 0);
+    ASSERT_LE(t1 + t2, SVPWM_SPREAD_MAX_TICKS + 1) << v.x << ", " << v.y << ", " << link;
+    ASSERT_NEAR(t.leg[t.hi], (2.0 * t1 + t2) / 3.0, 1.0);
+    ASSERT_NEAR(t.leg[t.mid], (t2 - t1) / 3.0, 1.0);
+    ASSERT_NEAR(t.leg[t.lo], -(t1 + 2.0 * t2) / 3.0, 1.0);
+  }
+}
+
 TEST(OnTime, ZeroIsZero) {
   const svpwm_on_time_t t = on_time(ab_t{0, 0}, raw(300.0, 16));
   EXPECT_FALSE(t.limited);
