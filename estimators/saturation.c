@@ -100,7 +100,7 @@ int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_mo
   const int16_t inside = (int16_t)(s->tick % SATURATION_SEGMENT - SATURATION_SETTLE);
   const int32_t sign = segment_sign[segment];
   const int32_t slew = s->current_q20 / 20;  // a jump would leave the alternating layout
-  s->reference_q20 += q_clamp(sign * s->current_q20 - s->reference_q20, -slew, slew);
+  s->reference_q20 = q_clamp(sign * s->current_q20, s->reference_q20 - slew, s->reference_q20 + slew);
   if (inside >= 0) {
     add_missing(s, r, sign);
     // Shares of the mean and not a sum: the admittances of a machine with little inductance fill the format.
