@@ -218,7 +218,7 @@ void start_charge(drive_t* d);  // start/charging.c
 void start_step_charge(drive_t* d);
 void start_look(drive_t* d);
 void start_step_turn(drive_t* d);
-const svpwm_pattern_t* start_short_circuit(void);
+svpwm_pattern_t start_short_circuit(const sampling_config_t* c);
 
 /// In four periods of the millisecond, until the speed control has its turn in them, that have work of their own (and
 /// of speed_task.c the longer tasks): in two the observer's covariance is renewed, in two the synchronism is judged. Of

@@ -28,14 +28,13 @@ static uint32_t angle_at_action(const drive_t* d) {
 }
 
 static void write_frame(drive_t* d, const svpwm_pattern_t* p, const svpwm_pulses_t* command) {
-  const sampling_config_t* const c = &d->config.modulator.sampling;
   hal_pwm_frame_t f;
   for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
     f.rise_tick[k] = (uint16_t)command->at[k];
     f.fall_tick[k] = (uint16_t)command->at[svpwm_fall_of(k)];
     const bool used = k < p->window_count;
-    f.burst_start_tick[k] = used ? (uint16_t)svpwm_burst_start(c, &p->windows[k]) : HAL_PWM_NONE;
-    f.burst_end_tick[k] = used ? (uint16_t)svpwm_burst_end(c, &p->windows[k]) : HAL_PWM_NONE;
+    f.burst_start_tick[k] = used ? (uint16_t)p->windows[k].start : HAL_PWM_NONE;
+    f.burst_end_tick[k] = used ? (uint16_t)p->windows[k].end : HAL_PWM_NONE;
   }
   const bool written = hal_pwm_write(&f, DEADLINE_TICK);
   d->supervision.overrun = written ? 0u : (uint16_t)(d->supervision.overrun + 1u);
@@ -48,9 +47,9 @@ void drive_modulate(drive_t* d) {
   if (drive_hysteresis(d)) return;
   drive_control_t* const c = &d->control;
   if (d->state == DRIVE_START && d->start.shorted) {
-    const svpwm_pattern_t* const p = start_short_circuit();
+    const svpwm_pattern_t p = start_short_circuit(&d->config.modulator.sampling);
     hal_profile_step(CYCLES_MODULATE);
-    write_frame(d, p, &p->pulses);
+    write_frame(d, &p, &p.pulses);
     return;
   }
   const rotation_t r = frame_rotation(angle_at_action(d));

@@ -56,20 +56,19 @@ static const int16_t sides_of_state[8] = {0, 0, 1, 1, -1, -1, 0, 0};
 typedef struct {
   const dead_time_config_t* drops;
   slopes_scale_t slopes;
-  sampling_config_t bursts;
   int32_t third_q16, side_q16;  // of the DC link, V
 } scale_t;
 
 static scale_t scale_of(const drive_t* d) {
-  const scale_t s = {&d->config.dead_time, slopes_scale(&d->config.slopes, &d->trim), d->config.modulator.sampling,
+  const scale_t s = {&d->config.dead_time, slopes_scale(&d->config.slopes, &d->trim),
                      q_mul_floor(d->samples.link_q16, THIRD, 30),
                      q_mul_floor(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30)};
   return s;
 }
 
 static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_window_t* raw, estimator_window_t* out) {
-  const int32_t begin = svpwm_burst_start(&s->bursts, w) + (int32_t)HAL_ADC_START_DELAY_TICKS;
-  const int32_t end = svpwm_burst_end(&s->bursts, w) + (int32_t)HAL_ADC_END_DELAY_TICKS;
+  const int32_t begin = w->start + (int32_t)HAL_ADC_START_DELAY_TICKS;
+  const int32_t end = w->end + (int32_t)HAL_ADC_END_DELAY_TICKS;
   const slopes_sums_t sums = {raw->start_a, raw->start_b, raw->end_a, raw->end_b};
   const uint16_t state = w->state & 7u;
   out->span_ticks = (int16_t)(end - begin);

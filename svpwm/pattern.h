@@ -57,9 +57,9 @@ typedef struct {
   int32_t earliest, latest;
 } svpwm_arrival_t;
 
-/// An interval of constant switching state that is long enough to sample in.
+/// Two bursts of conversions in an interval of constant switching state.
 typedef struct {
-  int16_t begin, end;  // its edges: the first at the latest, the last at the earliest
+  int16_t start, end;  // ticks that trigger its two bursts of conversions
   uint16_t state;      // bit k: leg k high; 0 and 7 are the zero vectors
 } svpwm_window_t;
 

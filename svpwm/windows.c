@@ -1,33 +1,32 @@
 #include "svpwm/windows.h"
 
-static int32_t span(const sampling_config_t* c, const svpwm_window_t* w) {
-  return svpwm_burst_end(c, w) - svpwm_burst_start(c, w);
-}
+static int32_t span(const svpwm_window_t* w) { return w->end - w->start; }
 
 // The shortest goes, where there are too many, and the later ones move up.
-static void make_room(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* interval) {
+static void make_room(svpwm_pattern_t* pattern, const svpwm_window_t* window) {
   svpwm_window_t* const w = pattern->windows;
   uint16_t shortest = 0;
   for (uint16_t k = 1; k < SVPWM_WINDOWS; k++) {
-    if (span(c, &w[k]) < span(c, &w[shortest])) shortest = k;
+    if (span(&w[k]) < span(&w[shortest])) shortest = k;
   }
-  if (span(c, interval) < span(c, &w[shortest])) return;
+  if (span(window) < span(&w[shortest])) return;
   for (uint16_t k = shortest; k + 1u < SVPWM_WINDOWS; k++) w[k] = w[k + 1u];
-  w[SVPWM_WINDOWS - 1] = *interval;
+  w[SVPWM_WINDOWS - 1] = *window;
 }
 
-void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* interval) {
-  if (span(c, interval) < c->span_min_ticks) return;
+void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* window) {
+  if (span(window) < c->span_min_ticks) return;
   if (pattern->window_count < SVPWM_WINDOWS) {
-    pattern->windows[pattern->window_count++] = *interval;
+    pattern->windows[pattern->window_count++] = *window;
   } else {
-    make_room(c, pattern, interval);
+    make_room(pattern, window);
   }
 }
 
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end) {
   if (pattern->window_count == 0u) return;
   svpwm_window_t* const last = &pattern->windows[pattern->window_count - 1u];
-  if (end < last->end) last->end = (int16_t)end;
-  if (span(c, last) < c->span_min_ticks) pattern->window_count--;
+  const int32_t last_burst = end - c->burst_ticks;
+  if (last_burst < last->end) last->end = (int16_t)last_burst;
+  if (span(last) < c->span_min_ticks) pattern->window_count--;
 }

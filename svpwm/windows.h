@@ -14,12 +14,12 @@ typedef struct {
   int16_t last_tick;       // the last burst must have been triggered by here, so that it is read before the period ends
 } sampling_config_t;
 
-/// Trigger instants of the two bursts of a window.
-static inline int32_t svpwm_burst_start(const sampling_config_t* c, const svpwm_window_t* w) {
-  return w->begin + c->settle_ticks;
-}
-static inline int32_t svpwm_burst_end(const sampling_config_t* c, const svpwm_window_t* w) {
-  return q_min(w->end - c->burst_ticks, c->last_tick);
+/// The window of an interval: of its edges the first comes at begin at the latest, the last at end at the earliest.
+static inline svpwm_window_t svpwm_window_between(const sampling_config_t* c, int32_t begin, int32_t end,
+                                                  uint32_t state) {
+  const svpwm_window_t w = {(int16_t)(begin + c->settle_ticks), (int16_t)q_min(end - c->burst_ticks, c->last_tick),
+                            (uint16_t)state};
+  return w;
 }
 
 /// A walk along the edges that finds the longest windows, in the order of time. Samples keep off edges that are not
@@ -39,14 +39,14 @@ static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_patt
   return f;
 }
 
-/// An edge that may come before the one that has ended the last window, and an interval.
+/// An edge that may come before the one that has ended the last window; a window that may be worth it.
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end);
-void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* interval);
+void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* window);
 
 static inline void svpwm_finder_end_interval(svpwm_finder_t* f, int32_t end) {
   if (end - f->begin < f->shortest) return;  // most intervals are short
-  const svpwm_window_t interval = {(int16_t)f->begin, (int16_t)end, (uint16_t)f->state};
-  svpwm_take_window(f->c, f->pattern, &interval);
+  const svpwm_window_t window = svpwm_window_between(f->c, f->begin, end, f->state);
+  svpwm_take_window(f->c, f->pattern, &window);
   f->ended = end;
 }
 

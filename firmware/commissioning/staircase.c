@@ -62,8 +62,10 @@ static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
 static int32_t sag_q20(const drive_t* d, const deviation_t w[2]) {
   const estimator_window_t* const e = d->samples.windows;
   const svpwm_window_t* const p = d->modulation.sampled.windows;
-  const int32_t length = p[0].end - p[0].begin;
-  const int32_t middles = e[0].middle_tick - p[0].begin + e[1].middle_tick - p[1].begin;
+  const sampling_config_t* const c = &d->config.modulator.sampling;
+  const int32_t around = c->settle_ticks + c->burst_ticks;
+  const int32_t length = p[0].end - p[0].start + around;
+  const int32_t middles = e[0].middle_tick - p[0].start + e[1].middle_tick - p[1].start + 2 * c->settle_ticks;
   const int32_t ends = middles + (e[0].span_ticks + e[1].span_ticks) / 2;
   const int32_t at_ends_q16 = d->samples.link_end_q16[0] - d->samples.link_end_q16[1];
   const int32_t at_middles_q16 = q_mul(at_ends_q16, q_div(middles - length, ends - length, 24), 24);

@@ -17,10 +17,13 @@
 #define STRAY_MAX_BAM 178956971L  // 15 degrees
 
 // All lower devices on for the whole period, and three windows in it.
-static const svpwm_pattern_t short_circuit = {
-    {{-1, -1, -1, -1, -1, -1}, 0}, {{0, 3300, 0}, {3300, 6600, 0}, {6600, 10000, 0}}, 3};
-
-const svpwm_pattern_t* start_short_circuit(void) { return &short_circuit; }
+svpwm_pattern_t start_short_circuit(const sampling_config_t* c) {
+  const svpwm_pattern_t p = {{{-1, -1, -1, -1, -1, -1}, 0},
+                             {svpwm_window_between(c, 0, 3300, 0), svpwm_window_between(c, 3300, 6600, 0),
+                              svpwm_window_between(c, 6600, SVPWM_PERIOD_TICKS, 0)},
+                             SVPWM_WINDOWS};
+  return p;
+}
 
 void start_listen(drive_t* d, uint16_t pause) {
   start_power(d, false);

@@ -44,8 +44,9 @@ class Phases : public Drive {
       w = {raw_ab({along, across}, 20), raw_ab(current, 20), raw_ab({volts, 0.0}, 16), 0, 2500, false};
       w.middle_tick = static_cast<std::int16_t>(k == 0 ? 3100 : 7300);
     }
-    drive.modulation.sampled.windows[0] = {1500, 4500, 1};
-    drive.modulation.sampled.windows[1] = {5500, 8500, 6};
+    const sampling_config_t& c = drive.config.modulator.sampling;
+    drive.modulation.sampled.windows[0] = svpwm_window_between(&c, 1500, 4500, 1);
+    drive.modulation.sampled.windows[1] = svpwm_window_between(&c, 5500, 8500, 6);
   }
   /// Electrical acceleration per torque, rad/s^2 and N m.
   static double per_torque() { return real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod; }

@@ -24,8 +24,8 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
     for (int k = 0; k < p.window_count; ++k) {
       const estimator_window_t& e = drive.samples.windows[k];
       const svpwm_window_t& from = p.windows[k];
-      const int begin = from.begin + 1050 + static_cast<int>(HAL_ADC_START_DELAY_TICKS);
-      const int end = std::min(from.end - 140, 9640) + static_cast<int>(HAL_ADC_END_DELAY_TICKS);
+      const int begin = from.start + static_cast<int>(HAL_ADC_START_DELAY_TICKS);
+      const int end = from.end + static_cast<int>(HAL_ADC_END_DELAY_TICKS);
       ASSERT_EQ(e.span_ticks, end - begin);
       ASSERT_NEAR(e.middle_tick, 0.5 * (begin + end), 0.5);
       ASSERT_EQ(e.zero_vector, from.state == 0 || from.state == 7);

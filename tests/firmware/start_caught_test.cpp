@@ -145,17 +145,18 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
 
 // All lower devices on for the whole period, which three windows share.
 TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
-  const svpwm_pattern_t* const p = start_short_circuit();
-  ASSERT_EQ(p->window_count, 3);
+  const sampling_config_t& c = drive.config.modulator.sampling;
+  const svpwm_pattern_t p = start_short_circuit(&c);
+  ASSERT_EQ(p.window_count, 3);
   int at = 0;
-  for (const svpwm_window_t& w : p->windows) {
-    EXPECT_EQ(w.begin, at);
-    EXPECT_GE(w.end - w.begin, 3300);
+  for (const svpwm_window_t& w : p.windows) {
+    EXPECT_EQ(w.start, at + c.settle_ticks);
     EXPECT_EQ(w.state, 0);
-    at = w.end;
+    at += 3300;
+    EXPECT_EQ(w.end, std::min<int>(at - c.burst_ticks, c.last_tick));
   }
-  EXPECT_EQ(at, ESTIMATOR_PERIOD_TICKS);
-  for (const std::int16_t edge : p->pulses.at) {
+  EXPECT_GE(p.windows[2].end, 6600 + c.settle_ticks + c.span_min_ticks);
+  for (const std::int16_t edge : p.pulses.at) {
     EXPECT_LT(edge, 0) << "a leg is never high";
   }
 }

@@ -18,7 +18,7 @@ TEST(Alternating, SixPeriodsGoRoundThePhasesAndTurnTheOrder) {
       const auto single = static_cast<std::uint16_t>(1u << (n % 3));
       const auto pair = static_cast<std::uint16_t>(7u ^ single);
       std::vector<std::uint16_t> active;
-      for (const svpwm_window_t& w : intervals(p)) {
+      for (const Interval& w : intervals(p)) {
         if (w.end - w.begin > 2000) active.push_back(w.state);
       }
       const std::vector<std::uint16_t> expected =

@@ -58,17 +58,18 @@ TEST(Guard, CertainEdgesLeaveTheWindowsAlone) {
   }
   const svpwm_pattern_t p = guarded(sampling(), wanted, arrivals);
   ASSERT_EQ(p.window_count, 2);
-  EXPECT_EQ(p.windows[0].begin, 260);
-  EXPECT_EQ(p.windows[0].end, 4460);
-  EXPECT_EQ(p.windows[1].begin, 5700);
-  EXPECT_EQ(p.windows[1].end, 9900);
+  const sampling_config_t s = sampling();
+  EXPECT_EQ(p.windows[0].start, 260 + s.settle_ticks);
+  EXPECT_EQ(p.windows[0].end, 4460 - s.burst_ticks);
+  EXPECT_EQ(p.windows[1].start, 5700 + s.settle_ticks);
+  EXPECT_EQ(p.windows[1].end, std::min<int>(9900 - s.burst_ticks, s.last_tick));
 }
 
 // Whatever the sign of the current turns out to be, the motor's edge is outside of the samples.
 void expect_clear(const svpwm_pattern_t& p, const svpwm_pulses_t& command, const Arrivals& arrivals) {
   const sampling_config_t s = sampling();
   for (int k = 0; k < p.window_count; ++k) {
-    const int first = svpwm_burst_start(&s, &p.windows[k]), last = svpwm_burst_end(&s, &p.windows[k]);
+    const int first = p.windows[k].start, last = p.windows[k].end;
     ASSERT_GE(last - first, s.span_min_ticks);
     for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) {
       const bool open = arrivals[edge].earliest != arrivals[edge].latest;
@@ -107,7 +108,7 @@ void expect_sent(const svpwm_pulses_t& wanted, ab_t current, const Sent& pieces,
   for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) ASSERT_EQ(command.at[edge], pieces.command.at[edge]) << edge;
   ASSERT_EQ(p.window_count, found.window_count);
   for (int k = 0; k < p.window_count; ++k) {
-    ASSERT_EQ(p.windows[k].begin, found.windows[k].begin) << k;
+    ASSERT_EQ(p.windows[k].start, found.windows[k].start) << k;
     ASSERT_EQ(p.windows[k].end, found.windows[k].end) << k;
     ASSERT_EQ(p.windows[k].state, found.windows[k].state) << k;
   }

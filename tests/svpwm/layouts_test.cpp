@@ -126,7 +126,7 @@ TEST(Extended, BothVectorsAreAsLongAsFits) {
     const Vector v = any_voltage(random, kLink, 1.0);
     const svpwm_on_time_t t = on_time(raw_ab(v, 16), raw(kLink, 16));
     const svpwm_pulses_t p = extended(c, v);
-    const std::vector<svpwm_window_t> list = intervals(p);
+    const std::vector<Interval> list = intervals(p);
     const Best wanted = best(c, t);
     const std::array<int, 2> own = {t.leg[t.hi] - t.leg[t.mid], t.leg[t.mid] - t.leg[t.lo]};
     if (wanted.window == 0) {
@@ -161,7 +161,7 @@ TEST(Extended, TwentyMicrosecondsUpTo110VoltsInEveryDirection) {
     for (const double volts : {0.0, 5.0, 60.0, 110.0}) {
       // at a sector's edge 2000 + 2000 + 5000 v / 100 V of 9700 ticks are needed: 114 V
       const svpwm_pulses_t p = extended(c, Vector{volts, 0.0}.turned(degree * kDegree));
-      const std::vector<svpwm_window_t> list = intervals(p);
+      const std::vector<Interval> list = intervals(p);
       ASSERT_GE(list[1].end - list[1].begin, 2000) << degree << ", " << volts;
       ASSERT_GE(list[2].end - list[2].begin, 2000) << degree << ", " << volts;
     }
@@ -196,7 +196,7 @@ TEST(CheapestPair, IsLongAndNeedsTheLeastExtension) {
     const svpwm_on_time_t t = on_time(raw_ab(any_voltage(random, kLink, 1.0), 16), raw(kLink, 16));
     const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
     const svpwm_pulses_t p = cheapest(c, t);
-    const std::vector<svpwm_window_t> list = intervals(p);
+    const std::vector<Interval> list = intervals(p);
     const int added = (on_time(p, t.lo) - SVPWM_PULSE_MIN_TICKS);
     if (SVPWM_PERIOD_TICKS - SVPWM_FIRST_TICK - SVPWM_PULSE_MIN_TICKS - t1 - t2 < c.window_min_ticks) {
       active_pairs++;
@@ -245,7 +245,7 @@ TEST(Extended, PatternOfThePapersFigure13) {
   const Vector v = Vector{25.0, 0.0}.turned(90.0 * kDegree);  // between 110 (60 degrees) and 010 (120 degrees)
   const svpwm_pulses_t p = extended(c, v);
   std::vector<std::uint16_t> order;
-  for (const svpwm_window_t& w : intervals(p)) order.push_back(w.state);
+  for (const Interval& w : intervals(p)) order.push_back(w.state);
   constexpr std::uint16_t kB = 2, kAB = 3, kAC = 5, kC = 4;
   ASSERT_GE(order.size(), 6u);
   EXPECT_EQ(order[1], kB);

@@ -65,7 +65,8 @@ TEST(Modulator, AlternatingHasTwoOppositeWindowsOfUsefulLength) {
     for (int k = 0; k < p.window_count; ++k) {
       const svpwm_window_t& w = p.windows[k];
       if (svpwm_is_zero_vector(w.state)) continue;
-      if (w.end - w.begin < c.pulse_ticks / 2) continue;
+      const int lasts = w.end + c.sampling.burst_ticks - w.start + c.sampling.settle_ticks;
+      if (lasts < c.pulse_ticks / 2) continue;
       seen = static_cast<std::uint16_t>(seen ^ w.state);
     }
     ASSERT_EQ(seen, 7) << n;  // a vector and its complement

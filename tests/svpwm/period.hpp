@@ -112,15 +112,20 @@ inline std::array<std::uint16_t, SVPWM_PERIOD_TICKS> states(const svpwm_pulses_t
   return s;
 }
 
+struct Interval {
+  int begin, end;
+  std::uint16_t state;
+};
+
 /// The intervals of constant state, in the order of time.
-inline std::vector<svpwm_window_t> intervals(const svpwm_pulses_t& p) {
+inline std::vector<Interval> intervals(const svpwm_pulses_t& p) {
   const auto s = states(p);
-  std::vector<svpwm_window_t> list = {{0, 0, s[0]}};
-  for (std::int16_t tick = 0; tick < SVPWM_PERIOD_TICKS; ++tick) {
+  std::vector<Interval> list = {{0, 0, s[0]}};
+  for (int tick = 0; tick < SVPWM_PERIOD_TICKS; ++tick) {
     if (s[static_cast<std::size_t>(tick)] != list.back().state) {
       list.push_back({tick, tick, s[static_cast<std::size_t>(tick)]});
     }
-    list.back().end = static_cast<std::int16_t>(tick + 1);
+    list.back().end = tick + 1;
   }
   return list;
 }
@@ -128,7 +133,7 @@ inline std::vector<svpwm_window_t> intervals(const svpwm_pulses_t& p) {
 /// How long a state lasts in all, ticks.
 inline int lasts(const svpwm_pulses_t& p, std::uint16_t state) {
   int sum = 0;
-  for (const svpwm_window_t& w : intervals(p)) sum += (w.state == state) ? w.end - w.begin : 0;
+  for (const Interval& w : intervals(p)) sum += (w.state == state) ? w.end - w.begin : 0;
   return sum;
 }
 

@@ -14,17 +14,15 @@ void expect_rules(const svpwm_pattern_t& p, const sampling_config_t& c) {
   const auto s = states(p.pulses);
   for (int k = 0; k < p.window_count; ++k) {
     const svpwm_window_t& w = p.windows[k];
-    for (int tick = w.begin; tick < w.end; ++tick) ASSERT_EQ(s[static_cast<std::size_t>(tick)], w.state) << tick;
-    const int start = svpwm_burst_start(&c, &w);
-    const int end = svpwm_burst_end(&c, &w);
-    ASSERT_GE(start, w.begin + c.settle_ticks);
-    ASSERT_GE(start, 1);
-    ASSERT_LE(end + c.burst_ticks, w.end);
-    ASSERT_LE(end, c.last_tick);
-    ASSERT_GE(end - start, c.span_min_ticks);
+    for (int tick = w.start - c.settle_ticks; tick < w.end + c.burst_ticks; ++tick) {
+      ASSERT_EQ(s[static_cast<std::size_t>(tick)], w.state) << tick;
+    }
+    ASSERT_GE(w.start, 1);
+    ASSERT_LE(w.end, c.last_tick);
+    ASSERT_GE(w.end - w.start, c.span_min_ticks);
     if (k > 0) {
       // the previous window must have been converted and read before the sequencers start again
-      const int gap = start - svpwm_burst_end(&c, &p.windows[k - 1]);
+      const int gap = w.start - p.windows[k - 1].end;
       ASSERT_GE(gap, static_cast<int>(HAL_ADC_WINDOW_GAP_TICKS));
     }
   }
@@ -60,7 +58,7 @@ TEST(Windows, AreTheLongestOnes) {
       pulses.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(pulses.at[leg] + 1.0, 9960.0));
     }
     std::vector<int> spans;
-    for (const svpwm_window_t& w : intervals(pulses)) {
+    for (const Interval& w : intervals(pulses)) {
       const int last = std::min<int>(w.end - c.burst_ticks, c.last_tick);
       const int span = last - (w.begin + c.settle_ticks);
       if (span >= c.span_min_ticks) spans.push_back(span);
@@ -70,7 +68,7 @@ TEST(Windows, AreTheLongestOnes) {
     const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
     std::vector<int> found;
     for (int k = 0; k < p.window_count; ++k) {
-      found.push_back(svpwm_burst_end(&c, &p.windows[k]) - svpwm_burst_start(&c, &p.windows[k]));
+      found.push_back(p.windows[k].end - p.windows[k].start);
     }
     std::sort(found.rbegin(), found.rend());
     ASSERT_EQ(found, spans) << n;
@@ -101,14 +99,14 @@ TEST(Windows, AnUncertainEdgeShortensTheLastOne) {
   svpwm_shorten_window(&c, &p, 100);
   EXPECT_EQ(p.window_count, 0);
   const auto shortest = static_cast<std::int16_t>(c.settle_ticks + c.burst_ticks + c.span_min_ticks);
-  p.windows[0] = {0, 3000, 1};
-  p.windows[1] = {4000, 7000, 2};
+  p.windows[0] = svpwm_window_between(&c, 0, 3000, 1);
+  p.windows[1] = svpwm_window_between(&c, 4000, 7000, 2);
   p.window_count = 2;
   svpwm_shorten_window(&c, &p, 7001);
-  EXPECT_EQ(p.windows[1].end, 7000);
+  EXPECT_EQ(p.windows[1].end, 7000 - c.burst_ticks);
   svpwm_shorten_window(&c, &p, 4000 + shortest);
-  EXPECT_EQ(p.windows[1].end, 4000 + shortest);
-  EXPECT_EQ(p.windows[0].end, 3000);
+  EXPECT_EQ(p.windows[1].end, 4000 + shortest - c.burst_ticks);
+  EXPECT_EQ(p.windows[0].end, 3000 - c.burst_ticks);
   EXPECT_EQ(p.window_count, 2);
   svpwm_shorten_window(&c, &p, 4000 + shortest - 1);
   EXPECT_EQ(p.window_count, 1);
