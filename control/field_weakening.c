@@ -9,7 +9,8 @@ static int32_t flux_limit_q28(const field_weakening_input_t* in, const machine_m
   return q_over(in->voltage_limit_q16, q_invert(volts_per_flux_q16), 28);
 }
 
-int64_t field_weakening_room_q56(const field_weakening_input_t* in, const machine_model_t* m) {
+// (V/w)^2 - (Lq iq)^2, (V s)^2.
+static int64_t room_for_axis_q56(const field_weakening_input_t* in, const machine_model_t* m) {
   const int32_t limit = flux_limit_q28(in, m);
   const int32_t cross = q_mul(m->lq_q30, in->iq_q20, 22);
   return (int64_t)limit * limit - (int64_t)cross * cross;
@@ -21,16 +22,11 @@ static int32_t feed_forward_q20(int64_t room_q56, const machine_model_t* m) {
   return q_over(axis - flux_q28, m->per_ld, 22);
 }
 
-int32_t field_weakening_follow(field_weakening_t* s, const field_weakening_input_t* in, int64_t room_q56,
-                               const machine_model_t* m) {
-  const int32_t forward = q_clamp(feed_forward_q20(room_q56, m), -in->current_limit_q20, 0);
+int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {
+  const int32_t forward = q_clamp(feed_forward_q20(room_for_axis_q56(in, m), m), -in->current_limit_q20, 0);
   const int32_t left = q_sub_sat(in->voltage_limit_q16, in->voltage_q16);
   const int32_t trim = q_add_sat(s->trim_q20, q_mul_sat(left, in->trim_gain_q20, 16));
   // The trim may take back no more than the feed-forward gives, and add no more than the limit leaves.
   s->trim_q20 = q_clamp(trim, -in->current_limit_q20, -forward);
   return q_clamp(q_add_sat(forward, s->trim_q20), -in->current_limit_q20, 0);
-}
-
-int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {
-  return field_weakening_follow(s, in, field_weakening_room_q56(in, m), m);
 }

@@ -28,9 +28,4 @@ void field_weakening_reset(field_weakening_t* s);
 /// One step; returns id (A Q20, -limit..0) to be added to the reference.
 int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m);
 
-/// The same in two parts of about the same length, for two periods: (V/w)^2 - (Lq iq)^2, (V s)^2 Q56, and the rest.
-int64_t field_weakening_room_q56(const field_weakening_input_t* in, const machine_model_t* m);
-int32_t field_weakening_follow(field_weakening_t* s, const field_weakening_input_t* in, int64_t room_q56,
-                               const machine_model_t* m);
-
 #endif

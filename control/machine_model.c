@@ -4,6 +4,7 @@
 #define RATIO_END_Q24 2097152000L  // 125
 #define T_END_Q24 187904819L       // 11.2: its square is below the largest r
 #define TILT_END_Q24 1056964608L   // 63: of K_dd, which counts twice
+#define INVERSE_STEPS 12u          // enough for any trim
 #define K0_END_Q20 2097152000L     // 2000 A per period
 
 static bool parameters_valid(const machine_parameters_t* p) {
@@ -17,7 +18,8 @@ static bool parameters_valid(const machine_parameters_t* p) {
 static int32_t period_q30(int32_t period_us) { return q_div(period_us, 1000000L, 30); }
 
 // k0 = -Y J psi0 with psi0 = psi(0, i_q) - L i_q: Y J L (0, i_q) is what K has already counted.
-static void place_flux(machine_model_t* m, int32_t iq_q20) {
+static void place_flux(machine_model_t* m) {
+  const int32_t iq_q20 = m->iq_q20;
   // h at (0, i_q) is -Y J psi + J (0, i_q): K there is taken off again.
   const int32_t own_d = q_add_sat(iq_q20, q_mul_sat(m->k_dq_q24, iq_q20, 24));
   const int32_t own_q = q_mul_sat(m->k_dd_q24, iq_q20, 24);
@@ -28,6 +30,7 @@ static void place_flux(machine_model_t* m, int32_t iq_q20) {
 
 // K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
 static void turn_with_admittance(machine_model_t* m) {
+  m->per_yq = q_invert(m->yq_q30);
   const int32_t t_q24 = q_limit(q_over(m->ydq_q30, m->per_yq, 24), T_END_Q24);
   const int32_t r_q24 = q_over(m->yd_q30, m->per_yq, 24);
   const int32_t t2_q24 = q_mul(t_q24, t_q24, 24);
@@ -38,6 +41,16 @@ static void turn_with_admittance(machine_model_t* m) {
   m->k_qd_q24 = ONE_Q24 - q_mul_sat(ONE_Q24 + t2_q24, per_det_q24, 24);
 }
 
+// 1 / x by Newton's steps from a value near it: one where x moves slowly, as what is learnt does.
+static int32_t inverse_from(int32_t guess_q24, int32_t x_q24) {
+  int32_t product_q24 = 0;
+  for (uint16_t n = 0; n < INVERSE_STEPS && q_abs_sat(product_q24 - ONE_Q24) > ONE_Q24 / 1024; n++) {
+    product_q24 = q_clamp(q_mul_sat(guess_q24, x_q24, 24), 0, ONE_Q24 / 2 * 3);  // from far off it is halved
+    guess_q24 = q_mul_sat(guess_q24, 2 * ONE_Q24 - product_q24, 24);
+  }
+  return guess_q24;
+}
+
 void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   machine_trim_t* const t = &m->trim;
   t->mean_q30 = mean_q30;
@@ -45,20 +58,39 @@ void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) 
   t->ydd_q24 = q_over(mean_q30 + half_q30, m->per_ydd0, 24);
   t->yqq_q24 = q_over(mean_q30 - half_q30, m->per_yqq0, 24);
   t->ydq_q24 = q_over(half_q30, m->per_half0, 24);
+  t->psi_share_q24 = inverse_from(t->psi_share_q24, q_add_sat(ONE_Q24, t->yqq_q24));
 }
 
-void machine_model_move(machine_model_t* m, int32_t iq_q20) {
+static void admit(machine_model_t* m, int32_t iq_q20) {
   const machine_point_t p = machine_map_at(&m->map, iq_q20);
+  m->iq_q20 = iq_q20;
   m->yd_q30 = p.ydd_q30 + q_mul(p.ydd_q30, m->trim.ydd_q24, 24);
   m->yq_q30 = p.yqq_q30 + q_mul(p.yqq_q30, m->trim.yqq_q24, 24);
   m->ydq_q30 = p.ydq_q30 + q_mul(p.ydq_q30, m->trim.ydq_q24, 24);
-  m->per_yq = q_invert(m->yq_q30);
   m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
   m->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
   // An inductance that differs from the table's differs in its flux as well.
-  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, q_over(p.yqq_q30, m->per_yq, 24), 24);
+  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, m->trim.psi_share_q24, 24);
+}
+
+void machine_model_follow(machine_model_t* m, int32_t iq_q20) {
+  admit(m, iq_q20);
+  place_flux(m);
+}
+
+void machine_model_turn(machine_model_t* m) {
+  const int32_t dd_q24 = m->k_dd_q24;
+  const int32_t dq_q24 = m->k_dq_q24;
   turn_with_admittance(m);
-  place_flux(m, iq_q20);
+  // K i + k0 at (0, i_q) stays what it was.
+  m->k0_q20.d = q_sub_sat(m->k0_q20.d, q_mul_sat(q_sub_sat(m->k_dq_q24, dq_q24), m->iq_q20, 24));
+  m->k0_q20.q = q_add_sat(m->k0_q20.q, q_mul_sat(m->k_dd_q24 - dd_q24, m->iq_q20, 24));
+}
+
+void machine_model_move(machine_model_t* m, int32_t iq_q20) {
+  admit(m, iq_q20);
+  turn_with_admittance(m);
+  place_flux(m);
 }
 
 bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map) {
@@ -97,7 +129,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
-  static const machine_trim_t none = {0, 0, 0, 0, 0, 0, 0, MACHINE_PSI_HASTE_Q30};
+  static const machine_trim_t none = {0, 0, 0, 0, 0, ONE_Q24, 0, 0, MACHINE_PSI_HASTE_Q30};
   m->trim = none;
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;

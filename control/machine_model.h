@@ -34,6 +34,7 @@ typedef struct {
 typedef struct {
   int32_t mean_q30, half_q30;         // of (ydd + yqq)/2 and (ydd - yqq)/2 at no current
   int32_t ydd_q24, yqq_q24, ydq_q24;  // the same as shares of the map, machine_model_trim
+  int32_t psi_share_q24;              // of the map's flux along q: its inductance has changed with yqq
   int32_t rs_q24;                     // of the resistance, ohm
   int32_t psi_q16;                    // of the magnet's flux/T, V per (rad per period)
   int32_t psi_haste_q30;              // share of its error taken over in a step while it is not known well
@@ -56,6 +57,7 @@ typedef struct {
   q_inverse_t per_ydd0, per_yqq0, per_half0;  // of the map at no current: ydd, yqq, (ydd - yqq)/2
   machine_trim_t trim;
   // At the working point, see machine_model_move.
+  int32_t iq_q20;                        // A
   int32_t rs_q24;                        // ohm
   int32_t yd_q30, yq_q30, ydq_q30;       // Y
   q_inverse_t per_yq;                    // of yq_q30
@@ -79,9 +81,14 @@ void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 /// Takes an acceleration per torque that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24);
 
-/// Moves the working point to a torque current and takes the trim into account. Once per period: two
-/// reciprocals.
+/// Moves the working point to a torque current and takes the trim into account.
 void machine_model_move(machine_model_t* m, int32_t iq_q20);
+
+/// The same in two parts that need not come together. To follow takes Y and the flux along, and leaves K, which says
+/// how h changes around the working point, as it is. To turn makes K of Y, with two reciprocals. h at the torque
+/// current is right in between.
+void machine_model_follow(machine_model_t* m, int32_t iq_q20);
+void machine_model_turn(machine_model_t* m);
 
 /// Y x, Q20, of a voltage in V Q16.
 static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {

@@ -29,7 +29,7 @@
 #define DUE_Q9 128L
 #define PERIODS_DUE 7L
 #define PERIODS_MAX 12L       // the covariance is renewed at the latest
-#define LEFT_PERIODS_MAX 64L  // nobody takes what is left: it begins anew
+#define LEFT_PERIODS_MAX 16L  // nobody takes what is left: it begins anew
 
 typedef struct {
   int32_t a, s;
@@ -238,9 +238,12 @@ static bool gain_is_old(const deviation_observer_t* s) {
 
 bool deviation_observer_is_sure(const deviation_observer_t* s) { return s->p_aa <= KNOWN_VARIANCE; }
 
+bool deviation_observer_is_pressed(const deviation_observer_t* s) {
+  return !deviation_observer_is_sure(s) || learnt_q9(s) > DUE_Q9;
+}
+
 bool deviation_observer_is_due(const deviation_observer_t* s) {
-  return s->load_is_new || !deviation_observer_is_sure(s) || s->gathered.periods >= PERIODS_DUE ||
-         learnt_q9(s) > DUE_Q9;
+  return s->load_is_new || s->gathered.periods >= PERIODS_DUE || deviation_observer_is_pressed(s);
 }
 
 // A load that steps is not waited with for long, nor is what it does to the covariance in the 11 ms behind it.
@@ -257,8 +260,8 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
   s->left = none_left;
   if (left.span_ticks <= 0) return false;
   const int32_t per_tick_q30 = 1073741824L / left.span_ticks;
-  residual_q20->d = q_mul_sat(q_sat64(q_shr64(left.d_q20, 14)), per_tick_q30, 16);
-  residual_q20->q = q_mul_sat(q_sat64(q_shr64(left.q_q20, 14)), per_tick_q30, 16);
+  residual_q20->d = q_mul_sat(left.d_q4, per_tick_q30, 14);
+  residual_q20->q = q_mul_sat(left.q_q4, per_tick_q30, 14);
   *span_ticks = left.span_ticks / left.periods;
   *periods = left.periods;
   return true;
@@ -266,20 +269,16 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
 
 // What is left counts with the span of its window.
 static void leave(deviation_left_t* left, const estimator_input_t* in, const deviation_t d[]) {
-  int64_t d_q20 = left->d_q20;
-  int64_t q_q20 = left->q_q20;
   if (++left->periods >= LEFT_PERIODS_MAX) {
     *left = none_left;
     return;
   }
   for (uint16_t k = 0; k < in->window_count; k++) {
     const int32_t span = in->windows[k].span_ticks;
-    d_q20 = q_mac(d_q20, d[k].residual_q20.d, span);
-    q_q20 = q_mac(q_q20, d[k].residual_q20.q, span);
+    left->d_q4 += q_mul_hi(d[k].residual_q20.d, span * 65536L);
+    left->q_q4 += q_mul_hi(d[k].residual_q20.q, span * 65536L);
     left->span_ticks += span;
   }
-  left->d_q20 = d_q20;
-  left->q_q20 = q_q20;
 }
 
 // One loop after the other, so that each has few numbers of its own.
@@ -296,17 +295,24 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
   const deviation_model_t at = deviation_model(in->model, w_q30);
   for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &d[k]);
   leave(&s->left, in, d);
-  const deviation_sensitivity_t h = deviation_sensitivity(in->model, w_q30, f[in->window_count / 2u].current_q20);
+  // What the first period says counts only where the sensitivities were asked for beside it.
+  const bool counts = s->is_sensitive || in->refresh;
+  if (in->refresh || !s->is_sensitive) {
+    s->sensitivity = deviation_sensitivity(in->model, w_q30, f[in->window_count / 2u].current_q20);
+    s->is_sensitive = true;
+  }
+  const deviation_sensitivity_t* const h = &s->sensitivity;
   const int32_t limit_q20 = c->residual_limit_q20;
-  for (uint16_t k = 0; k < in->window_count; k++) {
+  const uint16_t counting = counts ? in->window_count : 0u;
+  for (uint16_t k = 0; k < counting; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    if (!c->zero_vectors_only || w->zero_vector) information_collect(&sums, limit_q20, &h, w->span_ticks, &d[k]);
+    if (!c->zero_vectors_only || w->zero_vector) information_collect(&sums, limit_q20, h, w->span_ticks, &d[k]);
   }
   if (in->regress) {
     regression_evaluate(&s->regression, d, in);
     s->regressed_bam = s->angle_bam;
   }
-  return information_of(&sums, c, h.turn_q20);
+  return information_of(&sums, c, h->turn_q20);
 }
 
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their

@@ -49,8 +49,8 @@ typedef struct {
 
 /// What the observer has left unexplained since somebody last took it (deviation_observer_take_left).
 typedef struct {
-  int64_t d_q20, q_q20;  // sum of the residuals times their spans, A per period and ticks
-  int32_t span_ticks;    // of all windows
+  int32_t d_q4, q_q4;  // sum of the residuals times their spans, A per period and ticks; below 2^27 in 16 periods
+  int32_t span_ticks;  // of all windows
   int32_t periods;
 } deviation_left_t;
 
@@ -73,6 +73,8 @@ typedef struct {
   cogging_t cogging;
   deviation_gathered_t gathered;  // information since the covariance was last renewed
   deviation_left_t left;
+  deviation_sensitivity_t sensitivity;  // as last refreshed
+  bool is_sensitive;
   regression_t regression;  // of the last step that was to make one
   uint32_t regressed_bam;   // and the angle that it was made at
 } deviation_observer_t;
@@ -90,6 +92,8 @@ void deviation_observer_stands(deviation_observer_t* s);
 
 /// True when the covariance should be renewed in one of the next periods; while the angle is known to 5 degrees.
 bool deviation_observer_is_due(const deviation_observer_t* s);
+/// True when the next windows may well make it renew the covariance, asked or not.
+bool deviation_observer_is_pressed(const deviation_observer_t* s);
 bool deviation_observer_is_sure(const deviation_observer_t* s);
 
 /// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were

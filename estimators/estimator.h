@@ -42,6 +42,8 @@ typedef struct {
   // The deviation observer renews its covariance with what the windows have told since the last time; in between it
   // corrects with the gain as it is.
   bool renew;
+  // It takes its sensitivities anew: as the model, the speed and the current are now.
+  bool refresh;
   // The windows in a frame that runs on evenly from the estimator's last angle, where they are known, or null. From the
   // predicted angle it differs by half the change of speed over a period at most, 1e-4 rad.
   const estimator_frame_t* frames;

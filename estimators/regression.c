@@ -16,8 +16,7 @@ static void add(sum_t* sum, dq_t x, int32_t share_q30) {
 }
 
 static dq_t mean_of(const sum_t* sum) {
-  const int64_t half = (int64_t)1 << 29;
-  const dq_t mean = {(int32_t)q_shr64(sum->d + half, 30), (int32_t)q_shr64(sum->q + half, 30)};
+  const dq_t mean = {(int32_t)q_shr64(sum->d, 30), (int32_t)q_shr64(sum->q, 30)};
   return mean;
 }
 
@@ -30,15 +29,12 @@ static void average(regression_t* r, const deviation_t d[], const estimator_inpu
                     dq_t* voltage_q16) {
   sum_t voltage = {0, 0};
   sum_t residual = {0, 0};
-  sum_t current = {0, 0};
   for (uint16_t k = 0; k < in->window_count; k++) {
     add(&voltage, d[k].voltage_q16, share_q30[k]);
     add(&residual, d[k].residual_q20, share_q30[k]);
-    add(&current, d[k].current_q20, share_q30[k]);
   }
   *voltage_q16 = mean_of(&voltage);
   r->mean_q20 = mean_of(&residual);
-  r->current_q20 = mean_of(&current);
 }
 
 // The residuals' differences (columns) against those of the voltages.
@@ -67,7 +63,7 @@ static void resolve(regression_t* r, const projection_t* p) {
 }
 
 void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in) {
-  static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}, {0, 0}};
+  static const regression_t empty = {0, 0, 0, 0, 0, 0, {0, 0}};
   int32_t share_q30[ESTIMATOR_WINDOWS];
   int32_t total = 0;
   dq_t voltage_q16;

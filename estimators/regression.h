@@ -19,7 +19,6 @@ typedef struct {
   int32_t curl_q16;     // residual across dv: mismatch of the two current sensors
   int32_t information;  // spread times the windows' weight, 0 when there are no two distinct vectors
   dq_t mean_q20;        // weighted mean residual, A per period
-  dq_t current_q20;     // weighted mean current, A
 } regression_t;
 
 /// Regression over the deviations d of the input's windows, all taken at one angle and speed.

@@ -35,7 +35,7 @@ void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30
   machine_trim_t* const t = &m->trim;
   if (share_q30 == 0) return;
   // Current and speed in their units, Q16.
-  const int32_t i_q16 = q_shr(r->current_q20.q, 4u + CURRENT_UNIT_SHIFT);
+  const int32_t i_q16 = q_shr(m->iq_q20, 4u + CURRENT_UNIT_SHIFT);
   const int32_t w_q16 = q_mul(w_q30, SPEED_UNITS * 65536L, 30);
   const int32_t e_q16 = q_over(r->mean_q20.q, m->per_yq, 26);  // V
   if (!hurry(m, e_q16, w_q16, share_q30)) {

@@ -2,7 +2,6 @@
 
 #include "firmware/drive.h"
 #include "firmware/isr_cycles.h"
-#include "firmware/position.h"
 #include "firmware/scope/scope.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
@@ -10,7 +9,7 @@
 #include "hal/hal_tape.h"
 
 void drive_control_step(drive_t* d) {
-  position_next_turn(d);
+  schedule_next(d);
   drive_read_samples(d);
   const bool windows = d->samples.count > 0u;
   hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);

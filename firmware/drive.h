@@ -27,6 +27,7 @@
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/drive_api.h"
 #include "firmware/hysteresis.h"
+#include "firmware/schedule.h"
 #include "firmware/start/hold.h"
 #include "firmware/start/polarity_watch.h"
 #include "firmware/start/start.h"
@@ -35,8 +36,6 @@
 
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
-#define DRIVE_WEAKENING_PERIOD 3u  // of the millisecond, its first part; the speed control has the first one
-#define ADAPTATION_TURN 5u         // places in which every adaptation has its turn (position.c)
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.
@@ -77,6 +76,7 @@ typedef struct {
   ab_t ripple_q16;                              // ripple flux at the middles of all windows, added up, V period
   estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame in use
   uint16_t count;
+  slopes_scale_t scale;                     // of the sensors, renewed in a turn
   int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
   int32_t raw_a_q8, raw_b_q8;               // mean codes of the first burst
   int32_t link_q16;                         // filtered DC-link voltage, V
@@ -92,12 +92,6 @@ typedef struct {
   flux_observer_t flux;
   sensor_match_t sensors;
   tracking_observer_t encoder;
-  uint16_t turn;                // who had the last turn (position.c)
-  uint16_t now;                 // who has it in this period, if anybody
-  uint16_t waited;              // periods since then
-  bool renewing, moving;        // the observer's covariance is renewed; the working point follows before its turn
-  bool judging;                 // the synchronism is judged
-  int32_t moved_q20;            // torque current of the model's working point, A
   bool is_near;                 // what was last regressed is near enough to learn from
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
   int32_t torque_accel_q8;      // acceleration of the torque of the measured current
@@ -108,8 +102,6 @@ typedef struct {
   current_controller_t current;
   speed_controller_t speed;
   field_weakening_t weakening;
-  field_weakening_input_t weakening_seen;  // and what follows from it, between the periods of the millisecond
-  int64_t weakening_room_q56;
   int32_t weakening_q20;
   int32_t current_limit_q20;           // largest phase current now (board/functions.h)
   int32_t room_q20, braking_room_q20;  // torque current that the limits leave, and against the rotation, A
@@ -148,10 +140,10 @@ typedef struct {
   drive_state_t state;
   drive_fault_t fault;
   int32_t limits;
-  uint32_t periods;      // since the state was entered
-  uint16_t millisecond;  // period inside the millisecond
-  uint32_t time_ms;      // control interrupts since power-on, in ms; wraps after 49 days
-  uint16_t heartbeat;    // counts control interrupts, for the watchdog
+  uint32_t periods;  // since the state was entered
+  schedule_t schedule;
+  uint32_t time_ms;    // control interrupts since power-on, in ms; wraps after 49 days
+  uint16_t heartbeat;  // counts control interrupts, for the watchdog
   drive_start_t start;
   hold_t hold;
   polarity_watch_t watch;
@@ -188,6 +180,9 @@ packed_text_t drive_config_or_conflict(const drive_config_t** made);
 
 void drive_parameters_changed(void);
 
+/// Decides what the period that begins does (schedule.h).
+void schedule_next(drive_t* d);
+
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);
 
@@ -219,16 +214,6 @@ void start_step_charge(drive_t* d);
 void start_look(drive_t* d);
 void start_step_turn(drive_t* d);
 svpwm_pattern_t start_short_circuit(const sampling_config_t* c);
-
-/// In four periods of the millisecond, until the speed control has its turn in them, that have work of their own (and
-/// of speed_task.c the longer tasks): in two the observer's covariance is renewed, in two the synchronism is judged. Of
-/// the others as many are even as odd.
-static inline bool drive_renews_now(const drive_t* d) {
-  return d->millisecond == DRIVE_WEAKENING_PERIOD - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 4u;
-}
-static inline bool drive_judges_now(const drive_t* d) {
-  return d->millisecond == DRIVE_PERIODS_PER_MS - 1u || d->millisecond == DRIVE_WEAKENING_PERIOD + 1u;
-}
 
 /// True while the start turns a current vector: the position source runs, and is not used yet.
 static inline bool drive_is_turned(const drive_t* d) { return d->state == DRIVE_START && d->start.phase == START_TURN; }

@@ -130,7 +130,7 @@ static bool load_control(drive_config_t* c) {
 
 // 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.
 static int32_t share_per_turn_q30(int32_t time_q8) {
-  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)ADAPTATION_TURN, time_q8 * DRIVE_PERIODS_PER_MS, 30);
+  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)TURNS, time_q8 * DRIVE_PERIODS_PER_MS, 30);
 }
 
 static bool load_blend(drive_config_t* c) {

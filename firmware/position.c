@@ -7,79 +7,30 @@
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
 
-#define MOVE_Q20 131072L                // 0.125 A: so far the working point may have moved
-#define WAITED_MAX 8u                   // periods that the turn gives way to a covariance
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
 typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t* in);
 
-// What is slow takes turns, so that no period does much of it: the model's move to the working point, and what the
-// regression tells of machine and sensors. The turn has five places because five has no factor in common with the six
-// periods in which the alternating layout repeats, nor with the six of a millisecond that are left to it while the
-// shaft turns, three even and three odd ones: each adaptation sees every direction of the voltage alike. It gives way
-// to a covariance that is due beside its own two periods, and to a working point that has moved. While a shaft is held
-// the current moves fast, and covariance and working point follow in every period.
-typedef enum {
-  TURN_REGRESS = 0,
-  TURN_MOVE = 1,
-  TURN_LIKENESS = 2,    // admittances and match of the sensors
-  TURN_VOLTAGE = 3,     // resistance and flux; the polarity's watch looks at the back-EMF
-  TURN_MOVE_AGAIN = 4,  // or the polarity's watch follows the axis
-  TURN_OF_OTHERS = 5
-} turn_t;
+static bool is_turn(const drive_t* d, turn_t turn) { return d->schedule.turn == turn; }
 
-// Whether the deviation observer runs at all.
-static bool steps_observer(const drive_t* d) {
-  const bool without = parameters.position_source == POSITION_PAPER || parameters.position_source == POSITION_AVV ||
-                       parameters.position_source == POSITION_ENCODER;
-  return drive_is_turning(d) && !without;
-}
-
-void position_next_turn(drive_t* d) {
-  drive_position_t* const p = &d->position;
-  const bool turning = drive_is_turning(d);
-  const bool renews = turning && drive_renews_now(d);
-  // In the first millisecond the observer may have to renew its covariance wherever it is.
-  const bool judges = turning && drive_judges_now(d) && d->periods >= DRIVE_PERIODS_PER_MS;
-  const bool due = steps_observer(d) && p->waited < WAITED_MAX && deviation_observer_is_due(&p->observer);
-  const bool moved = q_abs_sat(d->control.measured_q20.q - p->moved_q20) > MOVE_Q20;
-  p->moving = moved && !renews && !judges && (p->renewing || !due);
-  // An angle that is not known is no synchronism to judge.
-  p->renewing = renews || (due && !p->moving && !(judges && deviation_observer_is_sure(&p->observer)));
-  p->judging = judges && !p->renewing;
-  p->now = TURN_OF_OTHERS;
-  p->waited++;
-  if (p->moving || p->renewing || p->judging) return;
-  p->waited = 0;
-  p->turn = (uint16_t)((p->turn + 1u) % ADAPTATION_TURN);
-  p->now = p->turn;
-}
-
-bool position_judges_now(const drive_t* d) { return d->position.judging; }
-
-static bool is_turn(const drive_t* d, turn_t turn) { return d->position.now == (uint16_t)turn; }
-
-bool position_has_regressed(const drive_t* d) { return is_turn(d, TURN_REGRESS); }
-
-bool position_follows_axis_now(const drive_t* d) { return is_turn(d, TURN_MOVE_AGAIN); }
-
-bool position_looks_at_emf_now(const drive_t* d) { return is_turn(d, TURN_VOLTAGE); }
+// A period with three windows has no room for both the polarity's watch and what else has the turn.
+static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WINDOWS; }
 
 static void adapt(drive_t* d, const regression_t* r) {
-  if (!d->position.is_near) return;
-  // A turn takes 5/3 as long where it pauses in four of ten periods; learning 4/3 as much leaves the angle quieter.
+  if (!(is_turn(d, TURN_LIKENESS) || is_turn(d, TURN_VOLTAGE)) || !d->position.is_near) return;
+  // A turn takes 5/2 as long where it has four of ten periods; learning 3/2 as much leaves the angle quieter.
   const bool turning = drive_is_turning(d);
   if (is_turn(d, TURN_LIKENESS)) {
-    const int32_t share_q30 = turning ? d->config.adapt_share_q30 / 3 * 4 : d->config.adapt_share_q30;
+    const int32_t share_q30 = turning ? d->config.adapt_share_q30 / 2 * 3 : d->config.adapt_share_q30;
     admittance_step(&d->model, r, share_q30);
     if (!d->modulation.state.is_alternating) return;
     sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
     d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
-  } else if (is_turn(d, TURN_VOLTAGE) && turning) {
+  } else if (is_turn(d, TURN_VOLTAGE) && turning && !(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
-    voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 3 * 4);
+    voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }
 }
 
@@ -112,7 +63,7 @@ static estimator_output_t source_observer(drive_t* d, const estimator_input_t* i
   const regression_t* const r = &d->position.observer.regression;
   // Whether the windows agree with the angle, so that the regression is linear, is asked in the place behind it.
   if (is_turn(d, TURN_REGRESS)) d->position.is_near = in->window_count > 0u;
-  if (is_turn(d, TURN_MOVE)) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
+  if (is_turn(d, TURN_LOOK)) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
   adapt(d, r);
   d->position.high = out;
   return out;
@@ -248,21 +199,19 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
 
 void drive_estimate(drive_t* d) {
   measure_current(d);
-  const bool held = hold_is_on(d);
-  if (held || d->position.moving || is_turn(d, TURN_MOVE) ||
-      (is_turn(d, TURN_MOVE_AGAIN) && !polarity_watch_is_awake(d))) {
-    d->position.moved_q20 = d->control.measured_q20.q;
-    machine_model_move(&d->model, d->control.measured_q20.q);
-  }
+  const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
+  if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
+  if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool starting = !measuring && !drive_is_turning(d);
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
-  in.renew = held || d->position.renewing;
+  in.renew = d->schedule.renews;
+  in.refresh = moves;
   in.windows = d->samples.windows;
-  in.window_count = drive_is_blind(d) ? 0 : d->samples.count;
+  in.window_count = (drive_is_blind(d) || d->schedule.skips) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;

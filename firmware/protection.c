@@ -105,7 +105,7 @@ static bool lost_synchronism(drive_t* d, int32_t periods) {
 // since; alternating pulses give each period windows of its own.
 static bool judges_now(const drive_t* d) {
   const bool each = parameters.position_source != POSITION_OBSERVER && d->modulation.state.is_alternating;
-  return each || position_judges_now(d);
+  return each || d->schedule.judges;
 }
 
 static drive_fault_t check_position(drive_t* d) {

@@ -55,13 +55,12 @@ static const int16_t sides_of_state[8] = {0, 0, 1, 1, -1, -1, 0, 0};
 // What is the same for all windows of a period.
 typedef struct {
   const dead_time_config_t* drops;
-  slopes_scale_t slopes;
+  const slopes_scale_t* slopes;
   int32_t third_q16, side_q16;  // of the DC link, V
 } scale_t;
 
 static scale_t scale_of(const drive_t* d) {
-  const scale_t s = {&d->config.dead_time, slopes_scale(&d->config.slopes, &d->trim),
-                     q_mul_floor(d->samples.link_q16, THIRD, 30),
+  const scale_t s = {&d->config.dead_time, &d->samples.scale, q_mul_floor(d->samples.link_q16, THIRD, 30),
                      q_mul_floor(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30)};
   return s;
 }
@@ -74,7 +73,7 @@ static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_wi
   out->span_ticks = (int16_t)(end - begin);
   out->middle_tick = (int16_t)q_shr(begin + end, 1);
   out->zero_vector = svpwm_is_zero_vector(state);
-  slopes_evaluate(&s->slopes, &sums, out);
+  slopes_evaluate(s->slopes, &sums, out);
   const ab_t drop = dead_time_drop_q16(s->drops, out->current_q20);
   out->voltage_q16.alpha = thirds_of_state[state] * s->third_q16 - drop.alpha;
   out->voltage_q16.beta = sides_of_state[state] * s->side_q16 - drop.beta;
@@ -110,6 +109,7 @@ void drive_read_samples(drive_t* d) {
   s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   follow_link(d, b);
+  if (d->schedule.turn == TURN_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
   const scale_t scale = scale_of(d);
   int16_t middles[ESTIMATOR_WINDOWS];
   for (uint16_t k = 0; k < p->window_count; k++) {

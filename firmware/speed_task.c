@@ -9,24 +9,12 @@ static int32_t voltage_limit(const drive_t* d) {
   return q_mul(q_mul(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30), share_q30, 30);
 }
 
-static void see_weakening(drive_t* d) {
+static void weaken(drive_t* d) {
   drive_control_t* const c = &d->control;
-  field_weakening_input_t* const in = &c->weakening_seen;
-  in->speed_bpp = d->position.used.speed_bpp;
-  in->iq_q20 = c->reference_q20.q;
-  in->voltage_q16 = q_hypot(c->command_q16.d, c->command_q16.q);
-  in->voltage_limit_q16 = voltage_limit(d);
-  in->current_limit_q20 = parameters.weakening_limit;
-  in->trim_gain_q20 = parameters.weakening_gain;
-}
-
-static void make_weakening_room(drive_t* d) {
-  d->control.weakening_room_q56 = field_weakening_room_q56(&d->control.weakening_seen, &d->model);
-}
-
-static void follow_weakening(drive_t* d) {
-  drive_control_t* const c = &d->control;
-  c->weakening_q20 = field_weakening_follow(&c->weakening, &c->weakening_seen, c->weakening_room_q56, &d->model);
+  const field_weakening_input_t in = {
+      d->position.used.speed_bpp, c->reference_q20.q,         q_hypot(c->command_q16.d, c->command_q16.q),
+      voltage_limit(d),           parameters.weakening_limit, parameters.weakening_gain};
+  c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->model);
 }
 
 static void refer_field(drive_t* d) {
@@ -42,9 +30,7 @@ static void refer_field(drive_t* d) {
 }
 
 void drive_weaken_field(drive_t* d) {
-  see_weakening(d);
-  make_weakening_room(d);
-  follow_weakening(d);
+  weaken(d);
   refer_field(d);
 }
 
@@ -75,13 +61,17 @@ static int32_t braking_room(const drive_t* d, int32_t room_q20) {
   return brake_limit_q20(&in, room_q20);
 }
 
-static void make_room(drive_t* d) {
+// Both follow the reference of i_d.
+static void make_torque_constant(drive_t* d) {
   drive_control_t* const c = &d->control;
-  c->room_q20 = drive_current_room(d);
   c->per_torque_constant = q_invert(machine_torque_constant_q24(&d->model, c->reference_q20.d));
 }
 
-static void make_braking_room(drive_t* d) { d->control.braking_room_q20 = braking_room(d, d->control.room_q20); }
+static void make_room(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  c->room_q20 = drive_current_room(d);
+  c->braking_room_q20 = braking_room(d, c->room_q20);
+}
 
 // Braking is what acts against the rotation.
 static void limit_current(const drive_t* d, speed_controller_input_t* in) {
@@ -144,49 +134,33 @@ static void step_speed(drive_t* d, bool held) {
   note_limits(d, &in);
 }
 
-static void part_of_weakening(drive_t* d, void (*part)(drive_t* d)) {
-  const bool caught = d->state == DRIVE_START && d->start.phase == START_CATCH;
-  if (drive_is_turning(d) || caught) part(d);
-}
-
 static void begin_millisecond(drive_t* d, bool held) {
   d->time_ms++;
   d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
   if (drive_is_turning(d)) step_speed(d, held);
 }
 
-// What comes once a millisecond has a period of its own for every root and division, so that no period has much of it.
-// The limits of the current follow the reference of i_d, and the speed law them.
+static bool weakens(const drive_t* d) {
+  return drive_is_turning(d) || (d->state == DRIVE_START && d->start.phase == START_CATCH);
+}
+
 void drive_control_speed(drive_t* d) {
   const bool held = hold_step(d);
-  d->millisecond = (d->millisecond < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(d->millisecond + 1u) : 0u;
-  switch (d->millisecond) {
-    case 0:
+  switch (d->schedule.task) {
+    case TASK_SPEED:
+      if (weakens(d)) refer_field(d);
+      make_room(d);
       begin_millisecond(d, held);
       break;
-    case 1:
-      if (drive_is_turning(d)) deviation_observer_learn(&d->position.observer, &d->config.observer);
+    case TASK_JUDGE_FIRST:
+      if (d->schedule.judges) deviation_observer_learn(&d->position.observer, &d->config.observer);
       break;
-    case DRIVE_WEAKENING_PERIOD:
-      part_of_weakening(d, see_weakening);
+    case TASK_FIELD:
+      if (weakens(d)) weaken(d);
       break;
-    case DRIVE_WEAKENING_PERIOD + 1u:
-      part_of_weakening(d, make_weakening_room);
-      break;
-    case DRIVE_WEAKENING_PERIOD + 2u:
-      part_of_weakening(d, follow_weakening);
-      break;
-    case 6:
+    case TASK_JUDGE:
+      make_torque_constant(d);
       drive_match_inertia(d);
-      break;
-    case 7:
-      part_of_weakening(d, refer_field);
-      break;
-    case 8:
-      make_room(d);
-      break;
-    case 9:
-      make_braking_room(d);
       break;
     default:
       break;

@@ -40,5 +40,5 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
 }
 
 bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks) {
-  return (int16_t)(t->leg[t->hi] - t->leg[t->lo]) < pulse_ticks / 10 * 7;
+  return 10L * (t->leg[t->hi] - t->leg[t->lo]) < 7L * pulse_ticks;
 }

@@ -25,8 +25,25 @@ typedef struct {
 /// Derives the constants; the first five members are set by hand.
 void dead_time_design(dead_time_config_t* c);
 
+/// Delay of an edge, ticks; the current is positive where it blocks the edge.
+static inline int32_t dead_time_delay_ticks(const dead_time_config_t* c, int32_t blocking_q20) {
+  if (blocking_q20 >= c->band_q20) return c->blocked_ticks;
+  if (blocking_q20 <= -c->band_q20) return c->released_ticks;
+  const int32_t middle = c->blocked_ticks + c->released_ticks;
+  const int32_t half_range = c->blocked_ticks - c->released_ticks;
+  return q_shr(middle * (int32_t)32768 + half_range * q_mul_floor(blocking_q20, c->per_band_q29, 29) + 32768L, 16);
+}
+
 /// An edge at a current whose sign is not certain, or not trusted.
-int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e, svpwm_arrival_t* arrival);
+static inline int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e,
+                                              svpwm_arrival_t* arrival) {
+  const int32_t sent = e->tick - dead_time_delay_ticks(c, e->blocking_q20);
+  if (e->blocking_q20 < c->edge_band_q20 && e->blocking_q20 > -c->edge_band_q20) {
+    arrival->earliest = sent + c->released_ticks;
+    arrival->latest = sent + c->blocked_ticks;
+  }
+  return sent;
+}
 
 /// The command, in ticks, that makes the motor see an edge where it is wanted. With a current below edge_band an edge
 /// is not certain: with the other sign than predicted it comes up to blocked - released ticks early or late.
@@ -52,7 +69,8 @@ static inline ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_
   const int32_t x = dead_time_sign_q15(c, i.a);
   const int32_t y = dead_time_sign_q15(c, i.b);
   const int32_t z = dead_time_sign_q15(c, i.c);
-  const ab_t drop = {q_mul_floor(2 * x - y - z, c->third_drop_q24, 23), q_mul_floor(y - z, c->side_drop_q24, 23)};
+  // Q15 times 2^9 and Q24: the upper word is Q16.
+  const ab_t drop = {q_mul_hi((2 * x - y - z) * 512, c->third_drop_q24), q_mul_hi((y - z) * 512, c->side_drop_q24)};
   return drop;
 }
 

@@ -1,5 +1,7 @@
 #include "svpwm/modulator.h"
 
+#define FOUR_FIFTHS_Q15 26214L
+
 bool modulator_config_valid(const modulator_config_t* c) {
   return q_in_range(c->pulse_ticks, 1500, 4700) && q_in_range(c->extended.window_min_ticks, 500, 3000) &&
          q_in_range(c->extended.window_max_ticks, c->extended.window_min_ticks, 4000) &&
@@ -18,7 +20,7 @@ void modulator_reset(modulator_t* s) {
 
 // Leaves the alternating layout at its limit and comes back with a fifth to spare.
 static bool alternate(const modulator_t* s, const modulator_config_t* c, const svpwm_on_time_t* t) {
-  const int16_t pulse = s->is_alternating ? c->pulse_ticks : (int16_t)(c->pulse_ticks - c->pulse_ticks / 5);
+  const int16_t pulse = s->is_alternating ? c->pulse_ticks : (int16_t)q_shr(c->pulse_ticks * FOUR_FIFTHS_Q15, 15);
   return svpwm_alternating_fits(t, pulse);
 }
 

@@ -105,9 +105,9 @@ bool polarity_watch_step(drive_t* d) {
   w->voltage_q16.q += d->control.command_q16.q;
   w->periods++;
   w->axis_periods++;
-  if (position_has_regressed(d)) w->axis_then_bam = w->axis.angle_bam;
-  if (position_follows_axis_now(d)) follow_axis(d);
-  if (!position_looks_at_emf_now(d) || w->blind) return false;
+  if (d->schedule.turn == TURN_REGRESS) w->axis_then_bam = w->axis.angle_bam;
+  if (d->schedule.turn == TURN_LOOK) follow_axis(d);
+  if (d->schedule.turn != TURN_VOLTAGE || w->blind) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

@@ -114,10 +114,10 @@ TEST(Admittance, StaysWithinItsBounds) {
 
 TEST(Admittance, NothingIsLearntFromOneVectorOrWithoutAShare) {
   machine_model_t m = model_of(Motor{});
-  const regression_t blind = {1000, 1000000, 1000000, 0, 0, 0, {0, 0}, {0, 0}};
+  const regression_t blind = {1000, 1000000, 1000000, 0, 0, 0, {0, 0}};
   admittance_step(&m, &blind, kShare);
   EXPECT_EQ(m.trim.mean_q30, 0);
-  const regression_t seen = {10000000, 1000000, 1000000, 0, 0, 1000000, {0, 0}, {0, 0}};
+  const regression_t seen = {10000000, 1000000, 1000000, 0, 0, 1000000, {0, 0}};
   admittance_step(&m, &seen, 0);
   EXPECT_EQ(m.trim.mean_q30, 0);
   EXPECT_EQ(m.trim.half_q30, 0);

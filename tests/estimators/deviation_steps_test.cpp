@@ -31,7 +31,7 @@ class Observer {
   void lean() { state.mean_score_q20 = 100 * kOne; }
   void rest() { state.mean_score_q20 = 0; }
   estimator_output_t step(bool renew = true) {
-    const estimator_input_t blind = {&model, nullptr, 0, 0, false, renew, nullptr};
+    const estimator_input_t blind = {&model, nullptr, 0, 0, false, renew, false, nullptr};
     return deviation_observer_step(&state, &config, &blind);
   }
 

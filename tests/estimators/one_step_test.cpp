@@ -85,8 +85,8 @@ TEST(OneStep, VoltageMatch) {
     m.trim.psi_haste_q30 = 0;
     regression_t r = {};
     const double volts = 0.8;
+    machine_model_follow(&m, raw(amps, 20));
     r.mean_q20.q = raw(volts * real(m.yq_q30, 30), 20);
-    r.current_q20.q = raw(amps, 20);
     voltage_match_step(&m, &r, raw(speed, 30), raw(kShare, 30));
     const double i = amps / 4.0, w = speed * 50.0;
     const double still = i * i + 1.0 / 16.0;
@@ -102,8 +102,8 @@ TEST(OneStep, VoltageMatchInHaste) {
   const machine_model_t told = model_of(Motor{});
   const auto step = [&](machine_model_t* m, double speed, double share) {
     regression_t r = {};
+    machine_model_follow(m, raw(5.0, 20));
     r.mean_q20.q = raw(0.8 * real(m->yq_q30, 30), 20);
-    r.current_q20.q = raw(5.0, 20);
     voltage_match_step(m, &r, raw(speed, 30), raw(share, 30));
   };
   for (const double speed : {0.02, -0.02}) {

@@ -108,7 +108,7 @@ TEST(VoltageMatch, NothingWithoutAShare) {
   machine_model_t m = model_of(Motor{});
   m.trim.rs_q24 = 12345;
   regression_t r = {};
-  r.current_q20.q = raw(8.0, 20);
+  machine_model_follow(&m, raw(8.0, 20));
   r.mean_q20.q = raw(0.5, 20);
   voltage_match_step(&m, &r, raw(0.02, 30), 0);
   EXPECT_EQ(m.trim.rs_q24, 12345);

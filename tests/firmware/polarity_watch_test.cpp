@@ -12,7 +12,7 @@ namespace {
 
 using namespace stillspin::test;
 
-constexpr std::uint16_t kRegress = 0, kFollow = 4;  // places in the turn of what is slow
+constexpr turn_t kRegress = TURN_REGRESS, kFollow = TURN_LOOK, kNone = TURNS;
 
 class PolarityWatch : public Drive {
  protected:
@@ -34,8 +34,8 @@ class PolarityWatch : public Drive {
     drive.position.observer.regression.information = 1000000;
     drive.position.observer.regression.spread_q8 = raw(40000.0, 8);
   }
-  static bool step(std::uint16_t place) {
-    drive.position.now = place;
+  static bool step(turn_t turn) {
+    drive.schedule.turn = turn;
     return polarity_watch_step(&drive);
   }
   static double axis() { return rad(drive.watch.axis.angle_bam); }
@@ -50,7 +50,7 @@ TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
       source(POSITION_AVV);
       drive.position.avv.observer.angle_bam = bam(0.5 + 0.75 * off + half);
       drive.position.avv.error_bam = static_cast<std::int32_t>(bam(0.25 * off));
-      for (int n = 0; n < 4; ++n) EXPECT_FALSE(step(9));
+      for (int n = 0; n < 4; ++n) EXPECT_FALSE(step(kNone));
       EXPECT_FALSE(step(kFollow));
       const double all = std::clamp(5.0 * off, -kPi, kPi);  // an angle is no more than half a turn
       EXPECT_NEAR(axis(), 0.5 + 3.0 * 120.0 * kPeriod * all, 1e-4) << off << ", " << half;
@@ -68,7 +68,7 @@ TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
   const double then = 0.5 + 200.0 * kPeriod;
   EXPECT_NEAR(rad(drive.watch.axis_then_bam), then, 1e-5);
   drive.position.observer.regressed_bam = bam(then + 0.2);
-  for (int n = 0; n < 2; ++n) EXPECT_FALSE(step(9));
+  for (int n = 0; n < 2; ++n) EXPECT_FALSE(step(kNone));
   EXPECT_FALSE(step(kFollow));
   EXPECT_NEAR(axis(), 0.5 + 4 * 200.0 * kPeriod + 3.0 * 120.0 * kPeriod * 0.2 * 4.0, 1e-4);
 }
@@ -88,7 +88,7 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     if (why == 0) drive.control.measured_q20.q = raw(0.49 * limit, 20);
     drive.watch.sign.clear = drive.watch.sign.against = 9;
     drive.control.command_q16 = {raw(1.0, 16), raw(2.0, 16)};
-    EXPECT_FALSE(step(9));
+    EXPECT_FALSE(step(kNone));
     EXPECT_FALSE(step(kFollow));
     const bool blind = why != 0;
     EXPECT_EQ(drive.watch.blind, blind) << why;

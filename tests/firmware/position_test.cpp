@@ -86,18 +86,18 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
   for (const std::uint16_t windows : {2, 0}) {
     run_with(POSITION_OBSERVER);
     see(windows);
-    drive.position.now = 0;  // the turn's first place: the windows are regressed
+    drive.schedule.turn = TURN_REGRESS;
     drive.position.is_near = windows == 0;
     drive_estimate(&drive);
     EXPECT_EQ(drive.position.is_near, windows > 0);
   }
 }
 
-// Two places later the regression is asked; what saw nothing then is not asked back.
+// One place later the regression is asked; what saw nothing then is not asked back.
 TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
   for (const bool near : {true, false}) {
     run_with(POSITION_OBSERVER);
-    drive.position.now = 1;
+    drive.schedule.turn = TURN_LOOK;
     drive.position.is_near = near;
     drive.position.observer.regression = {};
     drive_estimate(&drive);
@@ -145,7 +145,7 @@ TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
 TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
   for (const double share : {1.0, 0.9}) {
     run_with(POSITION_FLUX_CONV);
-    const estimator_input_t in = {&drive.model, drive.samples.windows, 2, 0, false, false, nullptr};
+    const estimator_input_t in = {&drive.model, drive.samples.windows, 2, 0, false, false, false, nullptr};
     const estimator_output_t there = {kThere, 0, 0, 32767}, low = {kHere, 0, 0, 32767};
     flux_source_follow(&drive, &there);
     blend(BLEND_LOW, share);
@@ -181,7 +181,7 @@ TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
         drive.position.used.speed_bpp = drive.control.ramp.value = now;
         drive.control.target_bpp = now + sign * change * bpp_of(500);
         drive.limits = limited ? LIMIT_BRAKING : 0;
-        drive.millisecond = DRIVE_PERIODS_PER_MS - 1;
+        drive.schedule.task = TASK_SPEED;
         drive_control_speed(&drive);
         const bool waits = limited && change < 0;
         EXPECT_EQ(drive.control.ramp.value == now, waits) << sign << change << limited;

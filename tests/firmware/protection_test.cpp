@@ -126,7 +126,7 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
     trust_synchronism();
     parameters.position_source = c.source;
     drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    drive.position.judging = true;
+    drive.schedule.judges = true;
     drive.modulation.state.is_alternating = true;
     drive.position.blend.region = c.region;
     drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
@@ -144,7 +144,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
     trust_synchronism();
     parameters.divergence_limit = raw(50.0, 16);
     drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    drive.position.judging = true;
+    drive.schedule.judges = true;
     drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
     drive.position.high.angle_bam = drive.position.low.angle_bam + bam(part * 50.0 * kDegree);
     drive_protect(&drive);
@@ -180,7 +180,7 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
     make_run();
     trust_synchronism();
     drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    drive.position.judging = true;
+    drive.schedule.judges = true;
     drive.position.low.quality_q15 = low;
     drive.position.high.quality_q15 = high;
     drive.position.high.angle_bam = drive.position.low.angle_bam + ANGLE_BAM_HALF_TURN;
@@ -193,7 +193,7 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
 TEST_F(Protection, ResidualsAreJudgedOnce) {
   make_run();
   parameters.position_source = POSITION_OBSERVER;
-  drive.position.judging = true;
+  drive.schedule.judges = true;
   drive.config.synchronism.bad_periods = 0;
   drive.config.synchronism.floor_q16 = 0;
   drive.config.synchronism.share_q15 = 0;
@@ -201,7 +201,7 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   EXPECT_EQ(drive.state, DRIVE_RUN) << "nothing was seen yet";
   estimator_window_t w = drive.samples.windows[0];
   w.slope_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
-  const estimator_input_t in = {&drive.model, &w, 1, 0, false, false, nullptr};
+  const estimator_input_t in = {&drive.model, &w, 1, 0, false, false, false, nullptr};
   for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
   drive_protect(&drive);
   EXPECT_EQ(drive.fault, FAULT_SYNCHRONISM);
@@ -222,7 +222,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     drive.control.command_q16 = {0, raw(reversed ? -40.0 : 40.0, 16)};
     int n = 0;
     for (; n < 400 && drive.watch.open && drive.state == DRIVE_RUN; ++n) {
-      drive.position.now = n % 5 == 0 ? 3 : 5;  // the back-EMF's place in the turn, and none
+      drive.schedule.turn = n % 5 == 0 ? TURN_VOLTAGE : TURNS;  // the back-EMF's place in the turn, and none
       drive.position.used.angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
     }

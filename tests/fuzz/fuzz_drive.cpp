@@ -116,7 +116,7 @@ void fuzz_fault(unsigned which) {
 void fuzz_pass(int ms) {
   if (hil_is_active()) return;  // its time is the simulation's
   drive.time_ms += static_cast<std::uint32_t>(ms - 1);
-  drive.millisecond = DRIVE_PERIODS_PER_MS - 1u;
+  drive.schedule.period = DRIVE_PERIODS_PER_MS - 1u;
   period();
   background();
 }

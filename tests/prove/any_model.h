@@ -56,6 +56,7 @@ static inline void any_trim(machine_model_t* m) {
   m->trim.ydd_q24 = any_i32;
   m->trim.yqq_q24 = any_i32;
   m->trim.ydq_q24 = any_i32;
+  m->trim.psi_share_q24 = any_i32;
   m->trim.rs_q24 = any_from(-419430400L, 838860800L);
   m->trim.psi_q16 = any_from(-786432000L, 786432000L);
   m->trim.psi_haste_q30 = any_from(0, MACHINE_PSI_HASTE_Q30);
@@ -88,6 +89,7 @@ static inline void any_turn(machine_model_t* m) {
 static inline void any_working_point(machine_model_t* m) {
   any_trim(m);
   m->rs_q24 = any_from(8388L, 704643072L);  // 42 ohm
+  m->iq_q20 = any_from(-2 * CURRENT_MAX_Q20, 2 * CURRENT_MAX_Q20);
   any_admittance(m);
   m->per_yq = any_inverse(31u, 61u);
   any_turn(m);

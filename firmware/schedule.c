@@ -1,0 +1,75 @@
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+
+#define MOVED_Q20 131072L  // 0.125 A: so far from its working point the model may be
+#define WAITED_MAX 3u      // turns in a row that give way
+
+static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_TURN, TASK_RENEW, TASK_TURN,
+                                                   TASK_FIELD, TASK_JUDGE,       TASK_TURN, TASK_RENEW, TASK_TURN};
+
+// Whether the deviation observer runs at all while the shaft turns.
+static bool has_observer(void) {
+  return parameters.position_source != POSITION_PAPER && parameters.position_source != POSITION_AVV &&
+         parameters.position_source != POSITION_ENCODER;
+}
+
+// What cannot wait: working point or covariance, by turns where both want it, the covariance first while the angle is
+// not known. A shaft that is held wants both always.
+static bool take_urgent(drive_t* d, bool observes) {
+  schedule_t* const s = &d->schedule;
+  const bool held = hold_is_on(d);
+  const bool due = held || (observes && deviation_observer_is_due(&d->position.observer));
+  const bool moved = held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
+  if (!moved && (!due || s->renews)) return false;
+  const bool renewal_first = s->moved_last || s->pressed;
+  s->moves = moved && !(due && renewal_first && !s->renews);
+  s->renews = s->renews || !s->moves;
+  s->moved_last = s->moves;
+  return true;
+}
+
+static void take_turn(schedule_t* s) {
+  s->waited = 0;
+  s->last = (uint16_t)((s->last + 1u) % TURNS);
+  s->turn = (turn_t)s->last;
+}
+
+static void turn_or_give_way(drive_t* d, bool observes) {
+  schedule_t* const s = &d->schedule;
+  if (s->waited < WAITED_MAX && take_urgent(d, observes)) {
+    s->waited++;
+  } else {
+    take_turn(s);
+  }
+}
+
+static bool is_judgement(task_t task) { return task == TASK_JUDGE_FIRST || task == TASK_JUDGE; }
+
+static void begin(schedule_t* s) {
+  s->period = (s->period < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(s->period + 1u) : 0u;
+  s->task = tasks[s->period];
+  s->turn = TURNS;
+  s->moves = false;
+  s->renews = false;
+  s->judges = false;
+  s->skips = false;
+}
+
+void schedule_next(drive_t* d) {
+  schedule_t* const s = &d->schedule;
+  const bool turning = drive_is_turning(d);
+  const bool observes = turning && has_observer();
+  begin(s);
+  s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
+  s->pressed = observes && deviation_observer_is_pressed(&d->position.observer);
+  if (!turning || s->task == TASK_TURN) {
+    turn_or_give_way(d, observes);
+  } else {
+    const bool has_room = d->modulation.sampled.window_count < SVPWM_WINDOWS && s->task != TASK_SPEED &&
+                          s->task != TASK_FIELD && s->task != TASK_JUDGE_FIRST;
+    s->renews = s->task == TASK_RENEW;
+    s->judges = is_judgement(s->task) && !s->unsure && d->periods >= DRIVE_PERIODS_PER_MS;
+    s->skips = s->pressed && !s->renews && !has_room;
+    if (has_room) (void)take_urgent(d, observes);
+  }
+}
