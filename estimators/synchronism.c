@@ -2,15 +2,18 @@
 
 #include "estimators/deviation.h"
 
-#define MEAN_SHIFT 2u
 #define DOUBT_PER_BAD 8  // a good period takes back an eighth of what a bad one adds
+#define EXCESS_COUNTS 3  // times what is borne: what the square of an error has beyond that of its limit
+#define SQUARE_SHIFT 22u
+#define LAG 4  // ms that a speed may be known late
+#define LIMIT_MAX 32768000L
 #define APART_LIMIT_BAM 1073741824L
 #define ONE_Q30 1073741824L
 #define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 
 void synchronism_reset(synchronism_t* s) {
-  static const synchronism_t fresh = {{0, 0}, 0, 0};
+  static const synchronism_t fresh = {{0, 0}, 0, 0, 0};
   *s = fresh;
 }
 
@@ -42,11 +45,9 @@ static bool mean_window(const estimator_input_t* in, estimator_window_t* mean) {
   return true;
 }
 
-// What stands for several periods counts for about as much as they would have one by one: 3/4 is what four of them
-// take.
+// A quarter of one period, half of several: these are a millisecond's mean, in which the steps of the current repeat.
 static void follow(int32_t* mean, int32_t x, int32_t periods) {
-  const int32_t quarter = q_shr_round(q_sub_sat(x, *mean), MEAN_SHIFT);
-  *mean += (periods > 2) ? 3 * quarter : quarter;
+  *mean += q_shr_round(q_sub_sat(x, *mean), (periods > 2) ? 1u : 2u);
 }
 
 // A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
@@ -56,28 +57,48 @@ static int32_t floor_q16(const synchronism_config_t* c, int32_t span_ticks) {
   return q_mul_sat(c->floor_q16, q_mul(ratio_q8, ratio_q8, 8), 8);
 }
 
-static void watch_emf(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
-                      const synchronism_seen_t* seen) {
-  // 1 - K_qd is yq/yd but for the square of the tilt.
-  const int32_t d_q16 = q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24);
-  follow(&s->error_q16.d, d_q16, seen->periods);
-  follow(&s->error_q16.q, q_over(seen->residual_q20.q, m->per_yq, 26), seen->periods);
-  const int32_t emf_q16 = q_abs_sat(q_mul_sat(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp), 30));
-  s->limit_q16 = q_add_sat(floor_q16(c, seen->span_ticks), q_mul(emf_q16, c->share_q15, 15));
+// A speed that is known late follows: then it changes against the error. One that is lost goes anywhere.
+static int32_t lag_q16(int32_t change_q16, int32_t error_q16) {
+  if ((change_q16 > 0) == (error_q16 > 0)) return 0;
+  return LAG * q_min(q_abs_sat(change_q16), LIMIT_MAX);
 }
 
-static bool exceeds(const synchronism_t* s) {
-  const int64_t d = (int64_t)s->error_q16.d * s->error_q16.d;
-  const int64_t q = (int64_t)s->error_q16.q * s->error_q16.q;
-  return q_shr64(d, 1) + q_shr64(q, 1) > q_shr64((int64_t)s->limit_q16 * s->limit_q16, 1);
+// What the speed has changed since its mean is what it changes in a millisecond.
+static void follow_limit(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
+                         const synchronism_seen_t* seen, int32_t error_q16) {
+  const int32_t emf_q16 = q_mul_sat(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp), 30);
+  const int32_t share_q16 = q_mul(q_abs_sat(emf_q16), c->share_q15, 15);
+  const int32_t late_q16 = lag_q16(q_sub_sat(emf_q16, s->emf_q16), error_q16);
+  follow(&s->emf_q16, emf_q16, seen->periods);
+  s->limit_q16 = q_min(q_add_sat(floor_q16(c, seen->span_ticks), q_add_sat(share_q16, late_q16)), LIMIT_MAX);
+}
+
+// What is far beyond the limit counts as half as much again: so it takes a while to get there, and no longer to come
+// back.
+static void follow_error(synchronism_t* s, dq_t error_q16, int32_t periods) {
+  const int32_t most_q16 = s->limit_q16 + s->limit_q16 / 2;
+  follow(&s->error_q16.d, q_limit(error_q16.d, most_q16), periods);
+  follow(&s->error_q16.q, q_limit(error_q16.q, most_q16), periods);
+}
+
+// What a period adds: 8 (1 + 3 (e^2 / limit^2 - 1)), nothing up to the limit.
+static int32_t doubt_per_period(const synchronism_t* s) {
+  const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, s->error_q16.q, s->error_q16.q, SQUARE_SHIFT);
+  const int32_t limit = q_mul_floor(s->limit_q16, s->limit_q16, SQUARE_SHIFT);
+  return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / (DOUBT_PER_BAD * EXCESS_COUNTS)) : 0;
 }
 
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                        const synchronism_seen_t* seen, int32_t apart_bam) {
   if (seen->span_ticks <= 0) return false;
-  watch_emf(s, c, m, seen);
-  const bool bad = exceeds(s) || q_abs_sat(apart_bam) > APART_LIMIT_BAM;
-  s->doubt = bad ? s->doubt + DOUBT_PER_BAD * seen->periods : q_max(s->doubt - seen->periods, 0);
+  // 1 - K_qd is yq/yd but for the square of the tilt.
+  const dq_t error_q16 = {q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24),
+                          q_over(seen->residual_q20.q, m->per_yq, 26)};
+  follow_limit(s, c, m, seen, error_q16.q);
+  follow_error(s, error_q16, seen->periods);
+  int32_t per_period = doubt_per_period(s);
+  if (q_abs_sat(apart_bam) > APART_LIMIT_BAM) per_period = q_max(per_period, DOUBT_PER_BAD);
+  s->doubt = (per_period > 0) ? s->doubt + per_period * seen->periods : q_max(s->doubt - seen->periods, 0);
   return s->doubt > c->bad_periods * DOUBT_PER_BAD;
 }
 

@@ -7,7 +7,12 @@
 // |e| = w lambda at d = 60 degrees, 1.4 w lambda at 90 and 2 w lambda with the polarity reversed; an angle that stands
 // or slips gives the EMF of one of the two speeds. It is compared with floor + share |w^ lambda|. The floor stands for
 // what is wrong at any speed (drops, resistance, and the converter: it grows where the windows are shorter than half a
-// period together), the share for wrong flux and link voltage. Saliency cannot say this: it repeats every half turn.
+// period together), the share for wrong flux and link voltage. A speed that a load changes is known late: while it
+// follows, what it changes in 4 ms is borne as well. Saliency cannot say this: it repeats every half turn.
+//
+// Doubt grows the faster the larger the error is, with its square. But what a healthy drive has beyond the limit is
+// short, however large: a current that steps on a saturated machine. Hence the mean, in which what is beyond one and a
+// half limits counts as these: a loss gets there and stays.
 //
 // Beside it counts the disagreement of two estimators beyond a quarter turn: one of them is then lost.
 //
@@ -20,15 +25,17 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t floor_q16;    // V
+  int32_t floor_q16;    // V, 0.5 or more
   int32_t share_q15;    // of the EMF that the speed lets expect, 0..1
-  int32_t bad_periods;  // this many bad periods are a loss; eight good ones make up for a bad one; up to 10000
+  int32_t bad_periods;  // this many periods at the limit are a loss, of larger errors fewer; eight good ones make up
+                        // for one; up to 10000
 } synchronism_config_t;
 
 typedef struct {
-  dq_t error_q16;     // EMF error, first-order mean over 4 periods or so, V
-  int32_t limit_q16;  // what it may be now, V
-  int32_t doubt;      // eight a bad period, less one a good one
+  dq_t error_q16;     // EMF error, first-order mean over 4 periods, or a millisecond where several come at once, V
+  int32_t emf_q16;    // EMF that the speed has let expect, the same mean, V
+  int32_t limit_q16;  // what the error may be now, V, up to 500
+  int32_t doubt;      // eight for a period at the limit, less one for a good one
 } synchronism_t;
 
 void synchronism_reset(synchronism_t* s);
@@ -51,7 +58,7 @@ typedef struct {
   dq_t residual_q20;   // mean by spans, A per period
   int32_t span_ticks;  // of all windows of a period, 0 where there are none
   int32_t speed_bpp;   // in use
-  int32_t periods;     // since the last time, 1..8
+  int32_t periods;     // since the last time, 1..63
 } synchronism_seen_t;
 
 /// The same with that instead of the windows; it may be done every few periods.

@@ -142,7 +142,7 @@ PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
           "EMF error that is borne at any speed, see synchronism_time")
 PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
 PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 5, ALWAYS,
-          "for which a larger EMF error, or estimators a quarter turn apart, is a loss of synchronism")
+          "after which an EMF error at its limit, or estimators a quarter turn apart, is a loss of synchronism")
 PARAMETER(164, link_regulation, "V", 16, 1, 100, 15000, 4050, ALWAYS,
           "DC-link voltage from which braking is reduced, to nothing at two thirds of the way to link_maximum")
 
