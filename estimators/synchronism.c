@@ -85,7 +85,7 @@ static void follow_error(synchronism_t* s, dq_t error_q16, int32_t periods) {
 static int32_t doubt_per_period(const synchronism_t* s) {
   const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, s->error_q16.q, s->error_q16.q, SQUARE_SHIFT);
   const int32_t limit = q_mul_floor(s->limit_q16, s->limit_q16, SQUARE_SHIFT);
-  return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / (DOUBT_PER_BAD * EXCESS_COUNTS)) : 0;
+  return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / (DOUBT_PER_BAD * EXCESS_COUNTS) + 1) : 0;
 }
 
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,

@@ -25,7 +25,7 @@
 #include "estimators/estimator.h"
 
 typedef struct {
-  int32_t floor_q16;    // V, 0.5 or more
+  int32_t floor_q16;    // V; with 0 nothing is seen at rest
   int32_t share_q15;    // of the EMF that the speed lets expect, 0..1
   int32_t bad_periods;  // this many periods at the limit are a loss, of larger errors fewer; eight good ones make up
                         // for one; up to 10000

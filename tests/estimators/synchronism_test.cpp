@@ -266,6 +266,16 @@ TEST(Synchronism, SmallAndLargeLimitsDoubtAlike) {
   }
 }
 
+// Without a floor nothing is borne at rest, and nothing is divided by.
+TEST(Synchronism, ALimitOfNothingIsOne) {
+  Scene scene;
+  const synchronism_config_t c = {0, 0, kBad};
+  scene.s.error_q16 = {raw(1.0, 16), 0};
+  const synchronism_seen_t seen = seen_of({0.0, 0.0}, 0.0, 5000, 1);
+  EXPECT_TRUE(synchronism_judge(&scene.s, &c, &scene.model, &seen, 0));
+  EXPECT_EQ(scene.s.limit_q16, 0);
+}
+
 // A polarity reversed at rest: the shaft runs away, and the error grows by some 0.35 V from one judgement to the next.
 // It is a loss 4 ms behind the limit, not the 5.5 that as many judgements beyond it would take.
 TEST(Synchronism, AnErrorThatGrowsIsALossSooner) {

@@ -195,7 +195,7 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   parameters.position_source = POSITION_OBSERVER;
   drive.schedule.judges = true;
   drive.config.synchronism.bad_periods = 0;
-  drive.config.synchronism.floor_q16 = 0;
+  drive.config.synchronism.floor_q16 = raw(0.5, 16);
   drive.config.synchronism.share_q15 = 0;
   drive_protect(&drive);
   EXPECT_EQ(drive.state, DRIVE_RUN) << "nothing was seen yet";
