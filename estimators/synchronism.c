@@ -7,6 +7,7 @@
 #define SQUARE_SHIFT 22u
 #define LAG 4  // ms that a speed may be known late
 #define LIMIT_MAX 32768000L
+#define EMF_BITS 27u  // 2048 V
 #define APART_LIMIT_BAM 1073741824L
 #define ONE_Q30 1073741824L
 #define ONE_Q24 16777216L
@@ -46,9 +47,8 @@ static bool mean_window(const estimator_input_t* in, estimator_window_t* mean) {
 }
 
 // A quarter of one period, half of several: these are a millisecond's mean, in which the steps of the current repeat.
-static void follow(int32_t* mean, int32_t x, int32_t periods) {
-  *mean += q_shr_round(q_sub_sat(x, *mean), (periods > 2) ? 1u : 2u);
-}
+// Of numbers below 2^30.
+static void follow(int32_t* mean, int32_t x, int32_t periods) { *mean += q_shr(x - *mean, (periods > 2) ? 1u : 2u); }
 
 // A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
 // a current is clamped at zero: hence the square.
@@ -60,17 +60,17 @@ static int32_t floor_q16(const synchronism_config_t* c, int32_t span_ticks) {
 // A speed that is known late follows: then it changes against the error. One that is lost goes anywhere.
 static int32_t lag_q16(int32_t change_q16, int32_t error_q16) {
   if ((change_q16 > 0) == (error_q16 > 0)) return 0;
-  return LAG * q_min(q_abs_sat(change_q16), LIMIT_MAX);
+  return LAG * ((change_q16 > 0) ? change_q16 : -change_q16);
 }
 
 // What the speed has changed since its mean is what it changes in a millisecond.
 static void follow_limit(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                          const synchronism_seen_t* seen, int32_t error_q16) {
-  const int32_t emf_q16 = q_mul_sat(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp), 30);
-  const int32_t share_q16 = q_mul(q_abs_sat(emf_q16), c->share_q15, 15);
-  const int32_t late_q16 = lag_q16(q_sub_sat(emf_q16, s->emf_q16), error_q16);
+  const int32_t emf_q16 = q_sat_bits(q_product(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp)), 30, EMF_BITS);
+  const int32_t moved_q16 =
+      q_mul_floor((emf_q16 > 0) ? emf_q16 : -emf_q16, c->share_q15, 15) + lag_q16(emf_q16 - s->emf_q16, error_q16);
   follow(&s->emf_q16, emf_q16, seen->periods);
-  s->limit_q16 = q_min(q_add_sat(floor_q16(c, seen->span_ticks), q_add_sat(share_q16, late_q16)), LIMIT_MAX);
+  s->limit_q16 = q_min(q_add_sat(floor_q16(c, seen->span_ticks), moved_q16), LIMIT_MAX);
 }
 
 // What is far beyond the limit counts as half as much again: so it takes a while to get there, and no longer to come

@@ -97,7 +97,7 @@ static void judge(const estimator_input_t* in) {
   synchronism_t s;
   s.error_q16.d = any_from(-49152000L, 49152000L);  // one and a half times the largest limit
   s.error_q16.q = any_from(-49152000L, 49152000L);
-  s.emf_q16 = any_i32;
+  s.emf_q16 = any_from(-134217728L, 134217728L);  // 2048 V
   s.limit_q16 = any_i32;
   s.doubt = any_from(0, 1000000000L);
   (void)synchronism_step(&s, &c, in, &use);
