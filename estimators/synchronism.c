@@ -46,9 +46,8 @@ static bool mean_window(const estimator_input_t* in, estimator_window_t* mean) {
   return true;
 }
 
-// A quarter of one period, half of several: these are a millisecond's mean, in which the steps of the current repeat.
 // Of numbers below 2^30.
-static void follow(int32_t* mean, int32_t x, int32_t periods) { *mean += q_shr(x - *mean, (periods > 2) ? 1u : 2u); }
+static void follow(int32_t* mean, int32_t x, unsigned shift) { *mean += q_shr(x - *mean, shift); }
 
 // A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
 // a current is clamped at zero: hence the square.
@@ -59,26 +58,26 @@ static int32_t floor_q16(const synchronism_config_t* c, int32_t span_ticks) {
 
 // A speed that is known late follows: then it changes against the error. One that is lost goes anywhere.
 static int32_t lag_q16(int32_t change_q16, int32_t error_q16) {
-  if ((change_q16 > 0) == (error_q16 > 0)) return 0;
+  if ((change_q16 ^ error_q16) >= 0) return 0;  // of one sign
   return LAG * ((change_q16 > 0) ? change_q16 : -change_q16);
 }
 
 // What the speed has changed since its mean is what it changes in a millisecond.
 static void follow_limit(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
-                         const synchronism_seen_t* seen, int32_t error_q16) {
+                         const synchronism_seen_t* seen, int32_t error_q16, unsigned shift) {
   const int32_t emf_q16 = q_sat_bits(q_product(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp)), 30, EMF_BITS);
   const int32_t moved_q16 =
       q_mul_floor((emf_q16 > 0) ? emf_q16 : -emf_q16, c->share_q15, 15) + lag_q16(emf_q16 - s->emf_q16, error_q16);
-  follow(&s->emf_q16, emf_q16, seen->periods);
+  follow(&s->emf_q16, emf_q16, shift);
   s->limit_q16 = q_min(q_add_sat(floor_q16(c, seen->span_ticks), moved_q16), LIMIT_MAX);
 }
 
 // What is far beyond the limit counts as half as much again: so it takes a while to get there, and no longer to come
 // back.
-static void follow_error(synchronism_t* s, dq_t error_q16, int32_t periods) {
+static void follow_error(synchronism_t* s, dq_t error_q16, unsigned shift) {
   const int32_t most_q16 = s->limit_q16 + s->limit_q16 / 2;
-  follow(&s->error_q16.d, q_limit(error_q16.d, most_q16), periods);
-  follow(&s->error_q16.q, q_limit(error_q16.q, most_q16), periods);
+  follow(&s->error_q16.d, q_limit(error_q16.d, most_q16), shift);
+  follow(&s->error_q16.q, q_limit(error_q16.q, most_q16), shift);
 }
 
 // What a period adds: 8 (1 + 3 (e^2 / limit^2 - 1)), nothing up to the limit.
@@ -91,11 +90,13 @@ static int32_t doubt_per_period(const synchronism_t* s) {
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                        const synchronism_seen_t* seen, int32_t apart_bam) {
   if (seen->span_ticks <= 0) return false;
+  // A quarter of one period, half of several: these are a millisecond's mean, in which the steps of the current repeat.
+  const unsigned shift = (seen->periods > 2) ? 1u : 2u;
   // 1 - K_qd is yq/yd but for the square of the tilt.
   const dq_t error_q16 = {q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24),
                           q_over(seen->residual_q20.q, m->per_yq, 26)};
-  follow_limit(s, c, m, seen, error_q16.q);
-  follow_error(s, error_q16, seen->periods);
+  follow_limit(s, c, m, seen, error_q16.q, shift);
+  follow_error(s, error_q16, shift);
   int32_t per_period = doubt_per_period(s);
   if (q_abs_sat(apart_bam) > APART_LIMIT_BAM) per_period = q_max(per_period, DOUBT_PER_BAD);
   s->doubt = (per_period > 0) ? s->doubt + per_period * seen->periods : q_max(s->doubt - seen->periods, 0);
