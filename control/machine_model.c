@@ -148,7 +148,7 @@ dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   // L_d i_d / T as V per (rad per period).
   const int32_t armature_q16 = q_mul_sat(q_mul_sat(m->ld_q30, i_q20.d, 22), m->periods_per_second, 12);
-  const dq_t v = {q_mul(m->psi_q_q16, -w_q30, 30), q_mul(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
+  const dq_t v = {q_mul_floor(m->psi_q_q16, -w_q30, 30), q_mul_floor(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
   return v;
 }
 

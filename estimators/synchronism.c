@@ -3,7 +3,6 @@
 #include "estimators/deviation.h"
 
 #define DOUBT_PER_BAD 8  // a good period takes back an eighth of what a bad one adds
-#define EXCESS_COUNTS 3  // times what is borne: what the square of an error has beyond that of its limit
 #define SQUARE_SHIFT 22u
 #define LAG 4  // ms that a speed may be known late
 #define LIMIT_MAX 32768000L
@@ -80,11 +79,11 @@ static void follow_error(synchronism_t* s, dq_t error_q16, unsigned shift) {
   follow(&s->error_q16.q, q_limit(error_q16.q, most_q16), shift);
 }
 
-// What a period adds: 8 (1 + 3 (e^2 / limit^2 - 1)), nothing up to the limit.
+// What a period adds: 8 e^2 / limit^2, nothing up to the limit.
 static int32_t doubt_per_period(const synchronism_t* s) {
   const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, s->error_q16.q, s->error_q16.q, SQUARE_SHIFT);
   const int32_t limit = q_mul_floor(s->limit_q16, s->limit_q16, SQUARE_SHIFT);
-  return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / (DOUBT_PER_BAD * EXCESS_COUNTS) + 1) : 0;
+  return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / DOUBT_PER_BAD + 1) : 0;
 }
 
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,

@@ -44,6 +44,7 @@ estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* i
   given.window_count = in->window_count;
   given.torque_accel_q8 = in->torque_accel_q8;
   given.renew = in->renew;
+  given.refresh = in->refresh;
   given.regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
   given.frames = in->frames;
   return given;

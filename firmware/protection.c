@@ -96,6 +96,7 @@ static bool lost_synchronism(drive_t* d, int32_t periods) {
   const int32_t apart_bam = (parameters.position_source == POSITION_ENCODER) ? 0 : disagreement(d);
   in.regress = false;
   in.renew = false;
+  in.refresh = false;
   in.frames = 0;
   const synchronism_use_t use = {d->position.used.angle_bam, d->position.used.speed_bpp, apart_bam, periods};
   return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, &use);

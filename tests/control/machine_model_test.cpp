@@ -289,13 +289,14 @@ TEST(MachineModel, FormatsEndWhereTheyAreSaidTo) {
 // A new model has learnt nothing, whatever was there before.
 TEST(MachineModel, NothingIsLearntAtFirst) {
   machine_model_t m = model_of(Motor{});
-  m.trim = {1, 2, 3, 4, 5, 6, 7, 8};
+  m.trim = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   const machine_parameters_t p = parameters_of(Motor{});
   ASSERT_TRUE(machine_model_init(&m, &p));
   const machine_trim_t& t = m.trim;
   for (const std::int32_t learnt : {t.mean_q30, t.half_q30, t.ydd_q24, t.yqq_q24, t.ydq_q24, t.rs_q24, t.psi_q16}) {
     EXPECT_EQ(learnt, 0);
   }
+  EXPECT_EQ(real(t.psi_share_q24, 24), 1.0);
   EXPECT_NEAR(real(t.psi_haste_q30, 30), 0.01, 1e-9);
 }
 

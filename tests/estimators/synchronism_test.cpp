@@ -244,12 +244,12 @@ std::int32_t doubt_at(double share) {
   return scene.s.doubt;
 }
 
-// 8 (1 + 3 (e^2 / limit^2 - 1)) for each period, rounded down.
+// 8 e^2 / limit^2 for each period, rounded down.
 TEST(Synchronism, DoubtGrowsWithTheSquareOfTheError) {
   EXPECT_EQ(doubt_at(0.995), 0);
   EXPECT_EQ(doubt_at(1.005), 40);
-  EXPECT_EQ(doubt_at(std::sqrt(1.51)), 100);
-  EXPECT_EQ(doubt_at(std::sqrt(2.02)), 160);
+  EXPECT_EQ(doubt_at(std::sqrt(1.51)), 60);
+  EXPECT_EQ(doubt_at(std::sqrt(2.02)), 80);
 }
 
 // A limit as it may be set, and one that short windows make: the squares stay in their format.
@@ -262,7 +262,7 @@ TEST(Synchronism, SmallAndLargeLimitsDoubtAlike) {
     const synchronism_seen_t seen = seen_of(emf, 0.0, span, 1);
     (void)synchronism_judge(&scene.s, &c, &scene.model, &seen, 0);
     EXPECT_NEAR(real(scene.s.limit_q16, 16), top, 0.01);
-    EXPECT_NEAR(scene.s.doubt, 8 * (1 + 3 * 1.1), 3) << limit;  // 256 parts of the square at half a volt
+    EXPECT_NEAR(scene.s.doubt, 8 * 2.1, 1.5) << limit;  // 256 parts of the square at half a volt
   }
 }
 
@@ -305,16 +305,16 @@ TEST(Synchronism, AShortErrorIsBorneHoweverLarge) {
   }
 }
 
-// A load step takes the speed down, and the estimate follows it, 80 rpm behind: such an error is borne, with either
+// A load step takes the speed down, and the estimate follows it, 100 rpm behind: such an error is borne, with either
 // direction of rotation. An estimate that moves with its error does not follow.
 TEST(Synchronism, ASpeedThatFollowsIsBorne) {
   for (const double sign : {1.0, -1.0}) {
     for (const bool follows : {true, false}) {
       Scene scene;
       bool lost = false;
-      for (int n = 0; n < 16; ++n) {
+      for (int n = 0; n < 20; ++n) {
         const double believed = sign * electrical(60.0 - 8.5 * n);
-        const double emf = (follows ? 1.0 : -1.0) * sign * electrical(n < 2 ? 0.0 : 80.0) * kMotor.flux;
+        const double emf = (follows ? 1.0 : -1.0) * sign * electrical(n < 2 ? 0.0 : 100.0) * kMotor.flux;
         const synchronism_seen_t seen = seen_of({0.0, emf}, believed, 5000, 5);
         lost = synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0) || lost;
       }
