@@ -209,7 +209,7 @@ void drive_estimate(drive_t* d) {
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
   in.renew = d->schedule.renews;
-  in.refresh = moves;
+  in.refresh = moves || !drive_is_turning(d);
   in.windows = d->samples.windows;
   in.window_count = (drive_is_blind(d) || d->schedule.skips) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.

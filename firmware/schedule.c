@@ -1,4 +1,5 @@
 #include "firmware/drive.h"
+#include "firmware/flux_source.h"
 #include "firmware/parameters.h"
 
 #define MOVED_Q20 131072L  // 0.125 A: so far from its working point the model may be
@@ -8,9 +9,10 @@ static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST,
                                                    TASK_FIELD, TASK_JUDGE,       TASK_TURN, TASK_RENEW, TASK_TURN};
 
 // Whether the deviation observer runs at all while the shaft turns.
-static bool has_observer(void) {
-  return parameters.position_source != POSITION_PAPER && parameters.position_source != POSITION_AVV &&
-         parameters.position_source != POSITION_ENCODER;
+static bool has_observer(const drive_t* d) {
+  const bool without = parameters.position_source == POSITION_PAPER || parameters.position_source == POSITION_AVV ||
+                       parameters.position_source == POSITION_ENCODER;
+  return !without && !(parameters.position_source >= POSITION_FLUX_CONV && flux_source_rests(d));
 }
 
 // What cannot wait: working point or covariance, by turns where both want it, the covariance first while the angle is
@@ -58,15 +60,15 @@ static void begin(schedule_t* s) {
 void schedule_next(drive_t* d) {
   schedule_t* const s = &d->schedule;
   const bool turning = drive_is_turning(d);
-  const bool observes = turning && has_observer();
+  const bool observes = turning && has_observer(d);
   begin(s);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
   s->pressed = observes && deviation_observer_is_pressed(&d->position.observer);
   if (!turning || s->task == TASK_TURN) {
     turn_or_give_way(d, observes);
   } else {
-    const bool has_room = d->modulation.sampled.window_count < SVPWM_WINDOWS && s->task != TASK_SPEED &&
-                          s->task != TASK_FIELD && s->task != TASK_JUDGE_FIRST;
+    const bool is_short = s->task == TASK_RENEW || s->task == TASK_JUDGE;
+    const bool has_room = hold_is_on(d) || (is_short && d->modulation.sampled.window_count < SVPWM_WINDOWS);
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && d->periods >= DRIVE_PERIODS_PER_MS;
     s->skips = s->pressed && !s->renews && !has_room;
