@@ -3,8 +3,18 @@
 #define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
 #define ANGLE_80_DEG 954437177L
 #define SHIFT_MAX_BAM 536870912L  // 45 degrees
-#define FILTER_SHIFT 3u           // 0.8 ms, for what the current control adds to the voltage
 #define MEAN_SHIFT 10u            // 100 ms
+#define FILTER_LEAST 3u
+#define FILTER_MOST 8u
+
+// Lq I/(lambda w0) in periods, as the next power of two.
+static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
+  const int32_t ratio_q12 = q_div(q_mul_sat(m->lq_q30, c->current_q20, 22), m->flux_q28, 12);
+  const int32_t periods = q_mul_sat(ratio_q12, c->damping_periods, 12);
+  uint16_t n = FILTER_LEAST;
+  while (n < FILTER_MOST && (1L << n) < periods) n++;
+  return n;
+}
 
 bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_start_parameters_t* p) {
   c->current_q20 = p->current_q20;
@@ -16,6 +26,7 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_st
   const int32_t torque_q16 = q_mul(m->torque_q24, p->current_q20, 28);
   const int32_t accel_bpp = q_mul_sat(torque_q16, m->accel_q12, 28);
   c->damping_periods = (int32_t)q_sqrt64((uint64_t)(TURNS_Q32_PER_RAD / q_max(accel_bpp, 1)));
+  c->filter_shift = filter_shift(c, m);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(TURNS_Q32_PER_RAD, m->emf_q16, 20);
   c->resistance_q24 = m->nominal_rs_q24;
@@ -63,7 +74,7 @@ static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   s->mean_q16.d = q_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
   s->mean_q16.q = q_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
   const int32_t seen = q_mul_sat(emf_along_q16(s, c, emf_q16), c->per_emf_q4, 20);
-  s->rotor_bpp = q_follow(s->rotor_bpp, seen, FILTER_SHIFT);
+  s->rotor_bpp = q_follow(s->rotor_bpp, seen, c->filter_shift);
   s->mean_bpp = q_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = q_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);

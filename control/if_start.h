@@ -9,6 +9,10 @@
 // what the lag, L I and the drops make of it stands still, and counts for nothing. The component across the vector
 // alone, w lambda cos(lag), would close a loop over the lag, with a gain of (w/w0) sin(lag).
 //
+// Turning the vector takes voltage, too, L I per rad/s: seen as EMF it closes another loop, s Lq I/(lambda w0), which
+// gains with frequency up to the current control's and swings there. So w~ is filtered over Lq I/(lambda w0) at least;
+// where Lq I is more than half of lambda, that leaves little damping.
+//
 // The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
 
 #ifndef STILLSPIN_CONTROL_IF_START_H
@@ -26,6 +30,7 @@ typedef struct {
   int32_t wait_periods;     // there, until the source agrees
   int32_t damping_periods;  // 1 / w0
   int32_t per_emf_q4;       // bpp per V of EMF
+  uint16_t filter_shift;    // of the rotor's speed: over 2^n periods
   int32_t resistance_q24;
   int32_t least_q16;  // mean EMF, V, below which its direction is not looked at
 } if_start_config_t;

@@ -61,8 +61,7 @@ TEST(CurrentController, RefusesBandwidthsThatTheDelayDoesNotAllow) {
 // Paper B prints Kp_d = 4.775, Kp_q = 10.116, Ki = 1099.6: a = 2 pi 1000 rad/s times L and R. The design at a bandwidth
 // that it takes, times what is left out of it. The printed Kp_q is 1.2 % below the rule.
 TEST(CurrentController, PrintedGainsOfPaperB) {
-  Motor b;
-  b.rs = 0.175, b.ld = 0.76e-3, b.lq = 1.63e-3, b.flux = 0.0865;
+  const Motor b = motor_b();
   const machine_model_t m = model_of(b);
   current_controller_config_t c;
   ASSERT_TRUE(designed(&c, m, 2000, 2, CURRENT_CORNER_MACHINE));

@@ -14,17 +14,6 @@ extern "C" {
 namespace stillspin::test {
 namespace {
 
-Motor motor_b() {
-  Motor m;
-  m.rs = 0.175;
-  m.ld = 0.76e-3;
-  m.lq = 1.63e-3;
-  m.flux = 0.0865;
-  m.inertia = 2e-3;
-  m.friction = 1e-3;
-  return m;
-}
-
 // 8 A, 100 ms at rest, 500 rpm/s up to 300 rpm, 2 s of patience.
 if_start_parameters_t usual() {
   return {raw(8.0, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 20000};
@@ -180,6 +169,8 @@ TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   // (w0 T)^2 = 1.5 p^2 lambda I / J T^2
   const double w0 = std::sqrt(1.5 * 16.0 * m.flux * 8.0 / m.inertia);
   EXPECT_NEAR(c.damping_periods, 1.0 / (w0 * kPeriod), 1.0);
+  // Lq I/(lambda w0) is 1.65 ms, and 32 periods the next power of two.
+  EXPECT_EQ(c.filter_shift, 5);
   p.step_bpp = 0;
   EXPECT_EQ(designed(m, p).step_bpp, 1);
   p.step_bpp = 7;
@@ -207,7 +198,7 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
   }
 }
 
-// What it sees follows with an eighth of the difference in each period, the mean with 1/1024.
+// What it sees follows with a 32nd of the difference in each period, the mean with 1/1024.
 TEST(IfStart, ItsFiltersHaveTheirTimes) {
   const if_start_config_t c = designed(motor_b(), usual());
   if_start_t s;
@@ -217,7 +208,7 @@ TEST(IfStart, ItsFiltersHaveTheirTimes) {
   for (int n = 1; n <= 3000; ++n) {
     const double drop = motor_b().rs * 8.0 * std::min(n / 500.0, 1.0);
     (void)if_start_step(&s, &c, raw_dq({drop, emf}, 16), 0, 0);
-    rotor += (seen - rotor) / 8.0;
+    rotor += (seen - rotor) / std::ldexp(1.0, c.filter_shift);
     mean += (rotor - mean) / 1024.0;
     ASSERT_NEAR(s.rotor_bpp, rotor, 2e-4 * seen) << n;
     ASSERT_NEAR(s.mean_bpp, mean, 2e-4 * seen) << n;

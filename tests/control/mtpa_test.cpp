@@ -67,8 +67,7 @@ TEST(Mtpa, AgreesWithTheRoot) {
 }
 
 TEST(Mtpa, OfMotorB) {
-  Motor b;
-  b.rs = 0.175, b.ld = 0.76e-3, b.lq = 1.63e-3, b.flux = 0.0865;
+  const Motor b = motor_b();
   EXPECT_NEAR(chosen(b, 15.0), -2.2137, 1e-3);  // a = 49.71 A
   EXPECT_EQ(chosen(b, 15.0), chosen(b, -15.0));
   EXPECT_EQ(chosen(b, 0.0), 0.0);

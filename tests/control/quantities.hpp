@@ -65,6 +65,18 @@ struct Motor {
   double torque_constant() const { return 1.5 * pole_pairs * flux; }
 };
 
+/// Motor B, of the stator-flux paper's Table 2.
+inline Motor motor_b() {
+  Motor m;
+  m.rs = 0.175;
+  m.ld = 0.76e-3;
+  m.lq = 1.63e-3;
+  m.flux = 0.0865;
+  m.inertia = 2e-3;
+  m.friction = 1e-3;
+  return m;
+}
+
 inline machine_parameters_t parameters_of(const Motor& m) {
   machine_parameters_t p;
   p.rs_q24 = raw(m.rs, 24);

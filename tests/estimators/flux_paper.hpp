@@ -11,13 +11,7 @@
 
 namespace stillspin::test::flux_paper {
 
-/// Motor B of the paper's Table 2, and the same with a surface magnet.
-inline Motor motor_b() {
-  Motor m;
-  m.rs = 0.175, m.ld = 0.76e-3, m.lq = 1.63e-3, m.flux = 0.0865;
-  m.inertia = 2e-3, m.friction = 1e-3;
-  return m;
-}
+/// Motor B of the paper's Table 2 with a surface magnet.
 inline Motor motor_b_spm() {
   Motor m = motor_b();
   m.ld = 1.2e-3, m.lq = 1.2e-3;
