@@ -3,8 +3,9 @@
 #define CUTOFF_LEAST_Q30 107374L
 #define CUTOFF_MOST_Q30 53687091L
 #define BANDWIDTH_MOST_Q30 107374182L
-#define CUTOFF_SHARE 4
-#define PLACES 32u  // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
+#define BARE_SHARE 4         // w_c is a quarter of the speed,
+#define COMPENSATED_SHARE 2  // or half of it: offsets decay with w/4 and w/8
+#define PLACES 32u           // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
 #define PLACE_STEP 13u
 #define FASTER 8               // at most 0.4 of the difference per period
 #define FOLLOW_Q30 536870912L  // k = 1/2: the length follows with w_c/2, offsets decay with w_c/4
@@ -32,9 +33,10 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
   flux_machine_move(&s->machine, m, &s->adaptation.shares);
 }
 
-// w_c is a quarter of the speed, where that is more.
+// w_c is a share of the speed, where that is more.
 static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
-  const int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->slow_bpp)) / CUTOFF_SHARE;
+  const int32_t share = (s->form.form == STATOR_FLUX_BARE) ? BARE_SHARE : COMPENSATED_SHARE;
+  const int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->slow_bpp)) / share;
   s->form.cutoff_q30 = q_clamp(share_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
 }
 

@@ -8,10 +8,11 @@
 // Fig. 5 gives the flux of all but PP-02. (32), speed by a derivative and a low-pass, is a tracking observer here, as
 // behind AVV: it gives the load as well, and the drive's own acceleration does not make it lag.
 //
-// The cut-off is cutoff_q30, or a quarter of the speed where that is more. An offset of the flux turns the angle to and
-// fro once a turn, the speed control answers with a current that stands still in the stationary frame, and dead time
-// and resistance make a voltage of it that feeds the offset: it has to decay faster. Where w_c/w is constant, (34) is
-// right under acceleration as well.
+// The cut-off is cutoff_q30, or a share of the speed where that is more: half of it with Fig. 5, a quarter for the bare
+// low-pass. An offset of the flux turns the angle to and fro once a turn, the speed control answers with a current that
+// stands still in the stationary frame, and dead time and resistance make a voltage of it that feeds the offset: it has
+// to decay faster, which with these shares it does with w/8 and w/4. Where w_c/w is constant, (34) is right under
+// acceleration as well.
 //
 // Below, the speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. Its
 // gain stays below 1/2 as long as that speed is filtered with half the cut-off; the tracking observer alone, with 100

@@ -124,7 +124,7 @@ TEST(FluxObserver, FindsTheAngleFromAWrongOne) {
   }
 }
 
-// Acceleration of 1000 rpm/s, 419 rad/s^2, from 200 to 2000 rpm and back, both directions. While w_c is a quarter of
+// Acceleration of 1000 rpm/s, 419 rad/s^2, from 200 to 2000 rpm and back, both directions. While w_c is a share of
 // the speed (34) is right on the way as well.
 TEST(FluxObserver, FollowsTheRamp) {
   for (const flux_method_t method : kMethods) {
