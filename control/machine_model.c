@@ -126,6 +126,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->pole_pairs = p->pole_pairs;
   m->period_q30 = period_q30(p->period_us);
   m->periods_per_second = (int32_t)((1000000L + p->period_us / 2) / p->period_us);
+  m->ld_q16 = q_mul_sat(p->ld_q30, m->periods_per_second, 14);
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
@@ -147,14 +148,14 @@ void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told
 dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   // L_d i_d / T as V per (rad per period).
-  const int32_t armature_q16 = q_mul_sat(q_mul_sat(m->ld_q30, i_q20.d, 22), m->periods_per_second, 12);
+  const int32_t armature_q16 = q_mul_sat(m->ld_q16, i_q20.d, 20);
   const dq_t v = {q_mul_floor(m->psi_q_q16, -w_q30, 30), q_mul_floor(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
   return v;
 }
 
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {
   // With a large positive i_d the reluctance would turn the sign; nobody wants to run there, and it is divided by.
-  return q_max(m->torque_q24 + q_mul(m->reluctance_q24, id_q20, 20), m->torque_q24 / 4);
+  return q_max(m->torque_q24 + q_mul_floor(m->reluctance_q24, id_q20, 20), q_shr(m->torque_q24, 2));
 }
 
 int32_t machine_torque_q16(const machine_model_t* m, dq_t current_q20) {

@@ -52,6 +52,7 @@ typedef struct {
   int32_t torque_per_accel_q24;  // and back: N m (Q16) per acceleration (Q8), Q24
   int32_t pole_pairs;
   int32_t periods_per_second;  // 1/T
+  int32_t ld_q16;              // L_d/T, V/A, up to 32767
   int32_t period_q30;          // T, s
   machine_map_t map;
   q_inverse_t per_ydd0, per_yqq0, per_half0;  // of the map at no current: ydd, yqq, (ydd - yqq)/2

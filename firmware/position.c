@@ -21,7 +21,7 @@ static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WIN
 static void adapt(drive_t* d, const regression_t* r) {
   if (!(is_turn(d, TURN_LIKENESS) || is_turn(d, TURN_VOLTAGE)) || !d->position.is_near) return;
   // A turn takes 5/2 as long where it has four of ten periods; learning 3/2 as much leaves the angle quieter.
-  const bool turning = drive_is_turning(d);
+  const bool turning = d->schedule.turning;
   if (is_turn(d, TURN_LIKENESS)) {
     const int32_t share_q30 = turning ? d->config.adapt_share_q30 / 2 * 3 : d->config.adapt_share_q30;
     admittance_step(&d->model, r, share_q30);
@@ -203,13 +203,13 @@ void drive_estimate(drive_t* d) {
   if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
-  const bool starting = !measuring && !drive_is_turning(d);
+  const bool starting = !measuring && !d->schedule.turning;
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
   in.renew = d->schedule.renews;
-  in.refresh = moves || !drive_is_turning(d);
+  in.refresh = moves || !d->schedule.turning;
   in.windows = d->samples.windows;
   in.window_count = (drive_is_blind(d) || d->schedule.skips) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.

@@ -10,22 +10,20 @@ static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST,
 
 // Whether the deviation observer runs at all while the shaft turns.
 static bool has_observer(const drive_t* d) {
-  const bool without = parameters.position_source == POSITION_PAPER || parameters.position_source == POSITION_AVV ||
-                       parameters.position_source == POSITION_ENCODER;
-  return !without && !(parameters.position_source >= POSITION_FLUX_CONV && flux_source_rests(d));
+  const int32_t source = parameters.position_source;
+  if (source >= POSITION_FLUX_CONV) return !flux_source_rests(d);
+  return source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV;
 }
 
-// What cannot wait: working point or covariance, by turns where both want it, the covariance first while the angle is
-// not known. A shaft that is held wants both always.
+// What cannot wait: working point or covariance, by turns where both want it, the covariance first where it would be
+// renewed anyway. A shaft that is held wants its working point always.
 static bool take_urgent(drive_t* d, bool observes) {
   schedule_t* const s = &d->schedule;
-  const bool held = hold_is_on(d);
-  const bool due = held || (observes && deviation_observer_is_due(&d->position.observer));
-  const bool moved = held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
-  if (!moved && (!due || s->renews)) return false;
-  const bool renewal_first = s->moved_last || s->pressed;
-  s->moves = moved && !(due && renewal_first && !s->renews);
-  s->renews = s->renews || !s->moves;
+  const bool due = s->pressed || (observes && !s->held && deviation_observer_is_due(&d->position.observer));
+  const bool moved = s->held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
+  if (!moved && !due) return false;
+  s->moves = moved && !(due && (s->moved_last || s->pressed));
+  s->renews = !s->moves;
   s->moved_last = s->moves;
   return true;
 }
@@ -38,7 +36,7 @@ static void take_turn(schedule_t* s) {
 
 static void turn_or_give_way(drive_t* d, bool observes) {
   schedule_t* const s = &d->schedule;
-  if (s->waited < WAITED_MAX && take_urgent(d, observes)) {
+  if ((s->held || s->waited < WAITED_MAX) && take_urgent(d, observes)) {
     s->waited++;
   } else {
     take_turn(s);
@@ -62,16 +60,16 @@ void schedule_next(drive_t* d) {
   const bool turning = drive_is_turning(d);
   const bool observes = turning && has_observer(d);
   begin(s);
+  s->turning = turning;
+  s->held = hold_is_on(d);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
   s->pressed = observes && deviation_observer_is_pressed(&d->position.observer);
-  if (!turning || s->task == TASK_TURN) {
+  // The synchronism of a shaft that is held is judged once in a millisecond.
+  if (!turning || s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST)) {
     turn_or_give_way(d, observes);
   } else {
-    const bool is_short = s->task == TASK_RENEW || s->task == TASK_JUDGE;
-    const bool has_room = hold_is_on(d) || (is_short && d->modulation.sampled.window_count < SVPWM_WINDOWS);
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && d->periods >= DRIVE_PERIODS_PER_MS;
-    s->skips = s->pressed && !s->renews && !has_room;
-    if (has_room) (void)take_urgent(d, observes);
+    s->skips = s->pressed && !s->renews && (s->judges || !is_judgement(s->task));
   }
 }

@@ -13,9 +13,9 @@
 // direction of the voltage alike.
 //
 // Some things cannot wait: a working point that the torque current has left, and a covariance whose gain gets old or
-// that a load has just changed. A turn gives way to one of them, three times in a row at most, and another task has
-// room for it beside it where the period has two windows and lacks the work of a third. Before the shaft turns every
-// period is a turn.
+// that a load has just changed. A turn gives way to one of them, three times in a row at most. A shaft that is held
+// against a brake that opens learns nothing meanwhile: its working point has every turn, and one judgement besides.
+// Before the shaft turns every period is a turn.
 
 #ifndef STILLSPIN_FIRMWARE_SCHEDULE_H
 #define STILLSPIN_FIRMWARE_SCHEDULE_H
@@ -37,6 +37,8 @@ typedef enum { TASK_SPEED, TASK_JUDGE_FIRST, TASK_JUDGE, TASK_RENEW, TASK_FIELD,
 typedef struct {
   uint16_t period;  // of the millisecond
   task_t task;      // of the period while the shaft turns
+  bool turning;     // the shaft does in this period
+  bool held;        // against what a brake that opens lets fall on it
   turn_t turn;      // whose turn it is in this period, TURNS for nobody's
   uint16_t last;    // who had it last
   uint16_t waited;  // turns that have given way since then

@@ -18,7 +18,7 @@ typedef struct {
   int32_t band_q20;        // current below which the sign is not trusted, A, 0.01..2
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
   // Set by dead_time_design.
-  int32_t per_band_q29, third_drop_q24, side_drop_q24;  // of band and drop
+  int32_t per_band_q29, third_drop_q27, side_drop_q27;  // of band and drop
   int32_t certain_q20;                                  // current from which on its sign is trusted and certain
 } dead_time_config_t;
 
@@ -31,7 +31,7 @@ static inline int32_t dead_time_delay_ticks(const dead_time_config_t* c, int32_t
   if (blocking_q20 <= -c->band_q20) return c->released_ticks;
   const int32_t middle = c->blocked_ticks + c->released_ticks;
   const int32_t half_range = c->blocked_ticks - c->released_ticks;
-  return q_shr(middle * (int32_t)32768 + half_range * q_mul_floor(blocking_q20, c->per_band_q29, 29) + 32768L, 16);
+  return q_shr(middle * (int32_t)32768 + half_range * q_mul_hi(blocking_q20 * 8, c->per_band_q29) + 32768L, 16);
 }
 
 /// An edge at a current whose sign is not certain, or not trusted.
@@ -56,21 +56,21 @@ static inline int32_t dead_time_send(const dead_time_config_t* c, const svpwm_ri
   return dead_time_send_in_doubt(c, e, arrival);
 }
 
-/// Sign of a current as -1..1, Q15, linear inside the band.
-static inline int32_t dead_time_sign_q15(const dead_time_config_t* c, int32_t current_q20) {
-  if (current_q20 >= c->band_q20) return 32767L;
-  if (current_q20 <= -c->band_q20) return -32767L;
-  return q_mul_floor(current_q20, c->per_band_q29, 29);
+/// Sign of a current as -1..1, Q21, linear inside the band.
+static inline int32_t dead_time_sign_q21(const dead_time_config_t* c, int32_t current_q20) {
+  if (current_q20 >= c->band_q20) return 2097152L;
+  if (current_q20 <= -c->band_q20) return -2097152L;
+  return q_mul_hi(current_q20 * 512, c->per_band_q29);
 }
 
 /// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
 static inline ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
   const abc_t i = frame_inverse_clarke(current_q20);
-  const int32_t x = dead_time_sign_q15(c, i.a);
-  const int32_t y = dead_time_sign_q15(c, i.b);
-  const int32_t z = dead_time_sign_q15(c, i.c);
-  // Q15 times 2^9 and Q24: the upper word is Q16.
-  const ab_t drop = {q_mul_hi((2 * x - y - z) * 512, c->third_drop_q24), q_mul_hi((y - z) * 512, c->side_drop_q24)};
+  const int32_t x = dead_time_sign_q21(c, i.a);
+  const int32_t y = dead_time_sign_q21(c, i.b);
+  const int32_t z = dead_time_sign_q21(c, i.c);
+  // Q21 times Q27: the upper word is Q16.
+  const ab_t drop = {q_mul_hi(2 * x - y - z, c->third_drop_q27), q_mul_hi(y - z, c->side_drop_q27)};
   return drop;
 }
 

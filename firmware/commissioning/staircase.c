@@ -19,8 +19,8 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define VOLT_THIRD_Q24 5592405L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
-#define VOLT_SIDE_Q24 9686330L
+#define VOLT_THIRD_Q27 44739243L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
+#define VOLT_SIDE_Q27 77490641L
 
 #define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
@@ -45,8 +45,8 @@ static int32_t level_q20(const drive_t* d, uint16_t index) {
 // What one volt of drop in every phase gives along the d-axis, Q20.
 static int32_t factor_q20(const drive_t* d, ab_t current_q20, rotation_t r) {
   dead_time_config_t one_volt = d->config.dead_time;
-  one_volt.third_drop_q24 = VOLT_THIRD_Q24;
-  one_volt.side_drop_q24 = VOLT_SIDE_Q24;
+  one_volt.third_drop_q27 = VOLT_THIRD_Q27;
+  one_volt.side_drop_q27 = VOLT_SIDE_Q27;
   return frame_park(dead_time_drop_q16(&one_volt, current_q20), r).d * 16;
 }
 

@@ -22,6 +22,7 @@ class Position : public Drive {
     parameters.position_source = source;
     ASSERT_TRUE(drive_config_load(&drive.config));
     drive.state = DRIVE_RUN;
+    drive.schedule.turning = true;
     drive.watch.open = false;
     position_preset(&drive, kHere, 0);
     see(2);

@@ -1,0 +1,192 @@
+// What falls on which period of the millisecond, on a drive that the test has put where it wants it.
+
+#include <vector>
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+class Schedule : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    run_with(POSITION_OBSERVER);
+  }
+  /// In RUN with this source, at a known angle without current, at the end of a millisecond.
+  static void run_with(std::int32_t source) {
+    parameters.position_source = source;
+    ASSERT_TRUE(drive_config_load(&drive.config));
+    drive.state = DRIVE_RUN;
+    drive.watch.open = false;
+    drive.periods = 100;
+    position_preset(&drive, 0, 0);
+    know(0.01);
+    drive.control.measured_q20 = {0, 0};
+    drive.model.iq_q20 = 0;
+    drive.schedule = {};
+    drive.schedule.period = 9;
+    drive.schedule.last = TURN_MOVE;
+  }
+  /// The observer knows its angle to `share` of 5 degrees, with nothing gathered.
+  static void know(double share) {
+    deviation_observer_t& o = drive.position.observer;
+    o.p_aa = raw(32.0 * share, 20);
+    o.gathered = {0, 0, 0, 0};
+    o.load_is_new = false;
+  }
+  static void leave_working_point() { drive.control.measured_q20.q = raw(0.13, 20); }
+
+  /// The next periods.
+  static std::vector<schedule_t> next(int count) {
+    std::vector<schedule_t> all;
+    for (int k = 0; k < count; ++k) {
+      schedule_next(&drive);
+      all.push_back(drive.schedule);
+    }
+    return all;
+  }
+};
+
+TEST_F(Schedule, TurnsGoRoundAndEveryTaskHasItsPeriod) {
+  const std::vector<schedule_t> all = next(50);
+  constexpr task_t kTasks[] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_TURN, TASK_RENEW, TASK_TURN,
+                               TASK_FIELD, TASK_JUDGE,       TASK_TURN, TASK_RENEW, TASK_TURN};
+  int turn = 0;
+  for (int k = 0; k < 50; ++k) {
+    const schedule_t& s = all[static_cast<std::size_t>(k)];
+    EXPECT_EQ(s.period, k % 10);
+    EXPECT_EQ(s.task, kTasks[k % 10]);
+    EXPECT_EQ(s.turn, (s.task == TASK_TURN) ? turn++ % TURNS : static_cast<int>(TURNS)) << k;
+    EXPECT_EQ(s.renews, s.task == TASK_RENEW) << k;
+    EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST) << k;
+    EXPECT_TRUE(s.turning && !s.held && !s.moves && !s.skips) << k;
+  }
+  EXPECT_EQ(turn, 20);
+}
+
+// As the alternating layout repeats after six periods, the regression has to see all of them.
+TEST_F(Schedule, TheRegressionSeesEveryPlaceOfTheAlternatingLayout) {
+  int seen[6] = {};
+  const std::vector<schedule_t> all = next(600);
+  for (int k = 0; k < 600; ++k) seen[k % 6] += all[static_cast<std::size_t>(k)].turn == TURN_REGRESS ? 1 : 0;
+  for (const int count : seen) EXPECT_EQ(count, 8);
+}
+
+TEST_F(Schedule, WhatCannotWaitTakesThreeTurnsInARowAtMost) {
+  for (const bool moved : {true, false}) {
+    SetUp();
+    if (moved) leave_working_point();
+    if (!moved) drive.position.observer.gathered.periods = 7;  // a gain that gets old
+    int given = 0, turns = 0;
+    for (const schedule_t& s : next(40)) {
+      if (s.task != TASK_TURN) {
+        EXPECT_EQ(s.turn, TURNS);
+        EXPECT_FALSE(s.moves);
+        continue;
+      }
+      const bool gives_way = moved ? s.moves : s.renews;
+      EXPECT_EQ(gives_way, s.turn == TURNS);
+      EXPECT_FALSE(moved ? s.renews : s.moves);
+      ++(gives_way ? given : turns);
+    }
+    EXPECT_EQ(given, 12);
+    EXPECT_EQ(turns, 4);
+  }
+}
+
+TEST_F(Schedule, WorkingPointAndCovarianceTakeTurns) {
+  leave_working_point();
+  drive.position.observer.load_is_new = true;
+  bool moved_last = false;
+  int given = 0;
+  for (const schedule_t& s : next(80)) {
+    if (s.task != TASK_TURN || s.turn != TURNS) continue;
+    EXPECT_NE(s.moves, s.renews);
+    EXPECT_TRUE(given == 0 || s.moves != moved_last);
+    ++given;
+    moved_last = s.moves;
+  }
+  EXPECT_EQ(given, 24);
+}
+
+// An eighth of an ampere is near enough.
+TEST_F(Schedule, AWorkingPointNearByCanWait) {
+  for (const double off : {0.12, -0.12}) {
+    drive.control.measured_q20.q = raw(off, 20);
+    for (const schedule_t& s : next(10)) EXPECT_FALSE(s.moves);
+  }
+}
+
+// It renews its covariance with every look at the windows, so that the longest tasks leave these out; nothing is
+// judged.
+TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
+  know(1.1);
+  leave_working_point();
+  for (const schedule_t& s : next(40)) {
+    EXPECT_TRUE(s.unsure && s.pressed);
+    EXPECT_FALSE(s.judges);
+    EXPECT_FALSE(s.moves) << "it renews anyway";
+    EXPECT_EQ(s.skips, s.task == TASK_SPEED || s.task == TASK_FIELD);
+  }
+  // Known, but with much to learn: the same, and the synchronism is judged.
+  know(0.9);
+  drive.position.observer.gathered = {raw(1.0, 21), 0, 0, 1};
+  for (const schedule_t& s : next(10)) {
+    EXPECT_TRUE(s.pressed && !s.unsure);
+    const bool long_task = s.task == TASK_SPEED || s.task == TASK_FIELD;
+    EXPECT_EQ(s.skips, long_task || s.judges);
+    EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST);
+  }
+}
+
+TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {
+  drive.periods = 9;
+  for (const schedule_t& s : next(10)) EXPECT_FALSE(s.judges);
+  drive.periods = 10;
+  EXPECT_TRUE(next(2).back().judges);
+}
+
+TEST_F(Schedule, AHeldShaftMovesItsWorkingPointWithEveryTurn) {
+  drive.hold.left = 1000;
+  drive.position.observer.load_is_new = true;
+  for (const schedule_t& s : next(40)) {
+    EXPECT_TRUE(s.held);
+    EXPECT_EQ(s.turn, TURNS);
+    EXPECT_EQ(s.moves, s.task == TASK_TURN || s.task == TASK_JUDGE_FIRST);
+    EXPECT_EQ(s.renews, s.task == TASK_RENEW);
+    EXPECT_EQ(s.judges, s.task == TASK_JUDGE);
+  }
+}
+
+TEST_F(Schedule, BeforeTheShaftTurnsEveryPeriodIsATurn) {
+  drive.state = DRIVE_START;
+  know(1.1);
+  int turn = 0;
+  for (const schedule_t& s : next(20)) {
+    EXPECT_EQ(s.turn, turn++ % TURNS);
+    EXPECT_FALSE(s.turning || s.unsure || s.pressed || s.renews || s.judges || s.skips);
+  }
+}
+
+// Only where it runs does the deviation observer want anything.
+TEST_F(Schedule, SourcesWithoutTheObserverDoNotWaitForIt) {
+  for (std::int32_t source = POSITION_ENCODER; source <= POSITION_FLUX_ACTIVE; ++source) {
+    for (const bool alone : {false, true}) {
+      run_with(source);
+      know(1.1);
+      drive.position.blend.region = alone ? BLEND_HIGH : BLEND_LOW;
+      drive.position.blend.share_q15 = alone ? 0 : 32767;
+      const bool has =
+          source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV || (source >= POSITION_FLUX_CONV && !alone);
+      for (const schedule_t& s : next(10)) {
+        EXPECT_EQ(s.unsure, has) << source << alone;
+        EXPECT_EQ(s.judges, !has && (s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST)) << source;
+      }
+    }
+  }
+}
+
+}  // namespace
