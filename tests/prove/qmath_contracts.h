@@ -1,7 +1,7 @@
 // What the functions of hal/qmath promise, in ACSL: a declaration with a contract before the definition.
 //
-// make prove has WP prove them (toolchain/prove.py names the functions), and the reading of the floors above takes the
-// contracts of the functions with tables or loops for their code.
+// make prove has WP prove them (toolchain/proof/parts.py names the functions). What the reading of the floors above
+// takes for granted is in qmath_ranges.h.
 
 #ifndef STILLSPIN_TESTS_PROVE_QMATH_CONTRACTS_H
 #define STILLSPIN_TESTS_PROVE_QMATH_CONTRACTS_H

@@ -1,0 +1,85 @@
+"""The defects that are planted, each to be found in the function where it is."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Defect:
+    """One change of the sources, and the part and function in which it has to show."""
+
+    part: str
+    function: str
+    file: str
+    right: str
+    wrong: str
+
+
+DEFECTS = (
+    Defect("arithmetic", "q15_mul", "hal/qmath/qarith.h", "(int32_t)a * b + 0x4000L", "a * b + 0x4000L"),
+    Defect("arithmetic", "q_neg_sat", "hal/qmath/qarith.h", "(x == INT32_MIN) ? INT32_MAX : -x", "-x"),
+    Defect("quotients", "q_reciprocal_q31", "hal/qmath/qdiv.c", "[(divisor >> 24) - 128]", "[(divisor >> 24) - 127]"),
+    Defect("quotients", "q_invert", "hal/qmath/qdiv.c", "(divisor > 0) ?", "(divisor >= 0) ?"),
+    Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
+    Defect("angles", "sincos_of_quadrant", "hal/qmath/qtrig.c", "sine_q30[node]", "sine_q30[node + 1u]"),
+    Defect("svpwm", "alternate", "svpwm/modulator.c", "* FOUR_FIFTHS_Q15", "* 99 * FOUR_FIFTHS_Q15"),
+    Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "(room + t1 * t2) / 2"),
+    Defect(
+        "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < SVPWM_WINDOWS", "window_count <= SVPWM_WINDOWS"
+    ),
+    Defect(
+        "control",
+        "command_q16",
+        "control/current_controller.c",
+        "q_add_sat(controlled_q16, rotational_q16)",
+        "controlled_q16 + rotational_q16",
+    ),
+    Defect(
+        "estimators",
+        "follow_angle",
+        "estimators/tracking_observer.c",
+        "q_clamp(before + change, -SPEED_END_BPP, SPEED_END_BPP)",
+        "before + change",
+    ),
+    Defect("estimators", "hurry", "estimators/voltage_match.c", "q_neg_sat(e_q16)", "-e_q16"),
+    Defect(
+        "observer", "correct", "estimators/deviation_observer.c", "q_limit(s->speed_bpp + ", "q_max(s->speed_bpp + "
+    ),
+    Defect("observer", "prove_observer", "estimators/deviation_observer.c", "q_limit(ka.s, VARIANCE_MAX)", "ka.s"),
+    Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux_q16, q_mul", "(flux_q16 + q_mul"),
+    Defect(
+        "flux",
+        "flux_adaptation_change_q24",
+        "estimators/flux_adaptation.c",
+        "q_sub_sat(length_q24, along_q24)",
+        "length_q24 - along_q24",
+    ),
+    Defect("start", "polarity_step", "estimators/polarity.c", "q_add_sat(s->response_bam, s", "(s->response_bam + s"),
+    Defect(
+        "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
+    ),
+    Defect("commissioning", "fit_plane", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
+    Defect("packed", "packed_next", "firmware/packed_text.c", "[code - FIRST_PAIR]", "[code - FIRST_PAIR + 1u]"),
+    Defect("numbers", "put_digits", "firmware/text.c", "reversed[10]", "reversed[9]"),
+    Defect("names", "common", "firmware/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
+    Defect(
+        "near", "is_one_edit_away", "firmware/console/suggest.c", "&name[k + 1u], rest, l", "&name[k + 2u], rest, l"
+    ),
+    Defect("editor", "insert", "firmware/console/editor.c", "l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
+    Defect("commands", "set_channels", "firmware/console/commands_scope.c", "a->count > 1u +", "a->count > 2u +"),
+    Defect("requests", "scope_read", "firmware/link/requests_scope.c", "count > READ_MAX", "count > 2u * READ_MAX"),
+    Defect("requests", "delta_take", "firmware/hil/hil.c", "shape[2] > TAPE_INPUTS", "shape[2] > 2u * TAPE_INPUTS"),
+    Defect("console", "keep", "firmware/console/console.c", "kept_count) & (KEPT - 1u)", "kept_count) & KEPT"),
+    Defect("node", "can_put", "firmware/can/messages.c", "&frame->data[at >> 3]", "&frame->data[at >> 2]"),
+    Defect("blocks", "cobs_decode", "firmware/link/cobs.c", "from = 0; from < count", "from = 0; from <= count"),
+    Defect(
+        "framing", "splitter_octet", "firmware/link/splitter.c", "<= RECORD_ENCODED_MAX)", "<= RECORD_ENCODED_MAX + 1u)"
+    ),
+    Defect("framing", "take", "firmware/can/segments.c", "j->count >= RECORD_MAX", "j->count > RECORD_MAX"),
+    Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
+    Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),
+    Defect("contracts", "q15_sat", "hal/qmath/qarith.h", "q_clamp(x, INT16_MIN, ", "q_clamp(x, -INT16_MAX, "),
+    Defect(
+        "contracts", "q_mul_hi", "hal/qmath/qarith.h", "q_shr64(q_product(a, b), 32)", "q_shr64((int32_t)a * b, 32)"
+    ),
+    Defect("contracts", "q_sub_sat", "hal/qmath/qarith.h", "q_sat64((int64_t)a - b)", "a - b"),
+)

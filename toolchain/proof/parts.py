@@ -1,0 +1,162 @@
+"""The parts of the drive's C that Frama-C reads together: files, options, and what is taken for granted in them."""
+
+from dataclasses import dataclass
+
+RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
+LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is read together."""
+
+    name: str
+    sources: tuple[str, ...]  # the driver, patterns of the drive's files
+    flags: tuple[str, ...]
+    header: str = RANGES
+    given: str = ""  # functions of which the contract is taken, not the code
+
+
+# Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
+OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_follow,q_mix,q_limit"
+OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
+OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
+OF_NAMES = "text_begins,text_equals,text_occurs"
+OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed"
+OF_TYPING = f"{OF_NAMES},text_number,decimal_raw,packed_occurs,suggest_is_near"
+OF_LINES = "editor_octet,editor_next,editor_show"
+OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
+OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
+PROVED_BY_WP = (
+    *("q_shr", "q_shr64", "q_shr_round", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
+    *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_product", "q_mul64", "q_mul", "q_mul_sat", "q_mac"),
+    *("q_mul_add", "q_mul_sub", "q_mul_floor", "q_mul_add_floor", "q_mul_sub_floor", "q_mul_hi", "q_umul_hi"),
+    *("q15_sat", "q15_add_sat", "q15_sub_sat", "q15_mul"),
+)
+# Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. WP proves that of
+# q_sat64; at the others its prover stops, and tests/qmath tries every edge.
+SHOWN_ELSEWHERE = ("q_sat64", "q_limit", "q_sat_bits", "q_follow", "q_mix")
+
+QMATH = "hal/qmath/*.c"
+SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
+CONTROL = ("control/*.c", QMATH)
+ESTIMATORS = ("estimators/*.c", *CONTROL)
+OCTETS, RECORD, CRC = "firmware/link/octets.c", "firmware/link/record.c", "firmware/link/crc.c"
+FRAMES = (
+    *("tests/prove/framing.c", "firmware/link/splitter.c", RECORD, "firmware/link/cobs.c", CRC),
+    *("firmware/can/segments.c", "hal/qmath/qdiv.c"),
+)
+TEXTS = (
+    *("firmware/text.c", "firmware/words.c", "firmware/packed_text.c", "firmware/parameters.c", "firmware/signals.c"),
+    *(OCTETS, "hal/qmath/qdiv.c"),
+)
+TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
+BESIDE = (
+    *("tests/prove/any_drive.c", "firmware/actions.c", "firmware/fault_history.c", "firmware/scope/scope.c"),
+    *("firmware/link/guard.c", "firmware/link/stream.c", *TEXTS),
+)
+TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
+
+SLICES = (
+    *("-eva-slevel", "100", "-eva-auto-loop-unroll", "600"),
+    *("-eva-split-return-function", "q_clz32:full"),
+)
+READER = ("-eva-auto-loop-unroll", "12", "-eva-slevel", "20", "-eva-split-return", "auto")
+# As many iterations of a loop, each by itself, and as many ways into a function kept apart.
+APART = (
+    *("-eva-auto-loop-unroll", "40", "-eva-slevel", "100"),
+    *("-eva-partition-history", "2", "-eva-interprocedural-history"),
+)
+NUMBERS = (
+    *("-eva-min-loop-unroll", "130", "-eva-slevel", "12", "-eva-split-return", "auto"),
+    *("-eva-slevel-function", "put_digits:60"),
+)
+NAMES = (
+    *("-eva-min-loop-unroll", "200", "-eva-slevel", "4", "-eva-split-return", "auto"),
+    *("-eva-slevel-function", "is_one_edit_away:60"),
+)
+ROUNDS = ("-eva-auto-loop-unroll", "40", "-eva-slevel", "20", "-eva-split-return", "full")
+
+
+def eva(
+    name: str,
+    sources: tuple[str, ...],
+    flags: tuple[str, ...] = (),
+    given: str = "",
+    *,
+    header: str = RANGES,
+    precision: str = "0",
+) -> Part:
+    """What EVA reads from the driver's function `prove_NAME` on."""
+    begin = ("-main", f"prove_{name}", "-eva", "-eva-no-print", "-eva-precision", precision)
+    return Part(name, sources, (*begin, *flags), header, given)
+
+
+def of_qmath(name: str, flags: tuple[str, ...] = SLICES, given: str = "") -> Part:
+    """The arithmetic itself."""
+    return eva(name, ("tests/prove/qmath.c", QMATH), flags, given, precision="1")
+
+
+def of_link(name: str, sources: tuple[str, ...], flags: tuple[str, ...], *given: str) -> Part:
+    """What has to do with texts and records."""
+    return eva(name, sources, flags, ",".join(given), header=LINK_RANGES)
+
+
+PARTS = (
+    *(of_qmath(name) for name in ("arithmetic", "quotients", "roots", "vectors", "angles")),
+    of_qmath("lengths", (), "q_sqrt64"),
+    eva("svpwm", SVPWM, READER, f"{OF_QMATH},{OF_LAYOUTS}", header=LAYOUT_RANGES),
+    eva("layouts", SVPWM, ("-eva-min-loop-unroll", "7"), OF_QMATH),
+    eva("edges", SVPWM, ("-eva-min-loop-unroll", "6", "-eva-slevel", "60"), OF_QMATH),
+    eva("control", ("tests/prove/control.c", *CONTROL), (*READER, "-eva-subdivide-non-linear", "20"), OF_QMATH),
+    *(
+        eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, OF_QMATH)
+        for name in ("estimators", "observer", "flux", "start")
+    ),
+    eva("commissioning", ("tests/prove/start.c", *ESTIMATORS), (*ROUNDS, "-eva-min-loop-unroll", "70"), OF_QMATH),
+    of_link("packed", TYPED, ("-eva-min-loop-unroll", "470")),
+    of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
+    of_link("names", TYPED, NAMES, OF_QMATH),
+    of_link("near", TYPED, NAMES, OF_QMATH, OF_NAMES),
+    of_link(
+        "editor",
+        ("tests/prove/editor.c", "firmware/console/editor.c", OCTETS, "hal/qmath/qdiv.c"),
+        ("-eva-slevel", "20", "-eva-auto-loop-unroll", "10"),
+        "put_text",
+    ),
+    of_link(
+        "commands",
+        ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+        READER,
+        *(OF_QMATH, OF_WRITING, OF_TYPING, OF_LINES),
+    ),
+    of_link(
+        "requests",
+        (
+            *("tests/prove/requests.c", "firmware/link/requests*.c", CRC, "firmware/hil/*.c"),
+            *("firmware/clear.c", "hal/tape.c", *BESIDE),
+        ),
+        READER,
+        *(OF_QMATH, OF_WRITING),
+    ),
+    of_link(
+        "console",
+        ("tests/prove/console.c", "firmware/link/link.c", "firmware/link/splitter.c", RECORD, *TERMINAL, *BESIDE),
+        ROUNDS,
+        *(OF_QMATH, OF_WRITING, OF_LINES, OF_RECORDS),
+    ),
+    of_link(
+        "node",
+        ("tests/prove/node.c", "firmware/can/*.c", RECORD, *BESIDE),
+        ROUNDS,
+        *(OF_QMATH, OF_WRITING, OF_FRAMES),
+    ),
+    of_link("blocks", FRAMES, ("-eva-auto-loop-unroll", "300")),
+    of_link("framing", FRAMES, APART, OF_BLOCKS),
+    Part(
+        "contracts",
+        ("hal/qmath/qdiv.c",),
+        ("-wp", "-wp-rte", "-wp-prover", "z3", "-wp-timeout", "10", "-wp-fct", ",".join(PROVED_BY_WP)),
+        CONTRACTS,
+    ),
+)
