@@ -40,8 +40,18 @@ static dead_time_config_t any_dead_time(void) {
   return c;
 }
 
-// What the on-times of the legs are to each other (svpwm/on_time.h; tests/svpwm tries it with every voltage): t1 and t2
-// between the longest, the next and the shortest, SPREAD at most together; what they have in common is none of theirs.
+static modulator_config_t config;
+static dead_time_config_t dead_time;
+
+static bool configure(void) {
+  config = any_modulator();
+  dead_time = any_dead_time();
+  return modulator_config_valid(&config);
+}
+
+// What the on-times of the legs are to each other (svpwm/on_time.h; tests/svpwm tries it with any voltage and link): t1
+// and t2 between the longest, the next and the shortest, SPREAD at most together; what they have in common is none of
+// theirs.
 #define SPREAD (SVPWM_SPREAD_MAX_TICKS + 1)
 #define SLICE 1880
 
@@ -58,9 +68,6 @@ static svpwm_on_time_t any_on_time(uint16_t hi, uint16_t mid, int32_t t1, int32_
   t.leg[t.lo] = leg_from(-t1 - 2 * t2 - 3 * SLICE, -t1 - 2 * t2);
   return t;
 }
-
-static modulator_config_t config;
-static dead_time_config_t dead_time;
 
 static void alternate(const svpwm_on_time_t* t, uint16_t x, bool pair_first) {
   alternating_state_t s = {x, pair_first};
@@ -81,11 +88,9 @@ static void lay_out_all(const svpwm_on_time_t* t) {
   }
 }
 
-// Every layout with every pair of on-times, and what is sent of it.
+// Every layout with every pair of on-times.
 void prove_layouts(void) {
-  config = any_modulator();
-  dead_time = any_dead_time();
-  if (!modulator_config_valid(&config)) return;
+  if (!configure()) return;
   for (uint16_t first = 0; first < 6u; first++) {
     const uint16_t hi = (uint16_t)(first / 2u);
     const uint16_t mid = (uint16_t)((hi + 1u + first % 2u) % 3u);
@@ -98,7 +103,7 @@ void prove_layouts(void) {
   }
 }
 
-// Any edges of a period, in an order that a layout gives: that they lie in it is what tests/svpwm tries.
+// Any edges of a period, in one order: that they lie in the period is what tests/svpwm tries.
 static void send(uint32_t order) {
   svpwm_pattern_t pattern;
   svpwm_pulses_t command;
@@ -114,11 +119,9 @@ static void send(uint32_t order) {
   }
 }
 
-// What is sent of it, and the windows.
+// What is sent of a period, and its windows, in each of the orders (svpwm_order in svpwm/extended.c and alternating.c).
 void prove_edges(void) {
-  config = any_modulator();
-  dead_time = any_dead_time();
-  if (!modulator_config_valid(&config)) return;
+  if (!configure()) return;
   for (uint16_t first = 0; first < 6u; first++) {
     const uint16_t a = (uint16_t)(first / 2u);
     const uint16_t b = (uint16_t)((a + 1u + first % 2u) % 3u);
@@ -130,12 +133,10 @@ void prove_edges(void) {
   }
 }
 
-// The choice among them, period after period.
+// The choice among the layouts, period after period.
 void prove_svpwm(void) {
   modulator_t state;
-  config = any_modulator();
-  dead_time = any_dead_time();
-  if (!modulator_config_valid(&config)) return;
+  if (!configure()) return;
   modulator_reset(&state);
   while (any_bool()) {
     svpwm_pulses_t pulses;

@@ -28,6 +28,14 @@ std::int32_t saturate(Wide x) {
 
 bool fits(Wide x) { return x == Wide{saturate(x)}; }
 
+std::vector<std::int32_t> edges_and_random(int count, RandomInt32& random) {
+  std::vector<std::int32_t> values = edges();
+  for (int n = 0; n < count; ++n) values.push_back(random());
+  return values;
+}
+
+bool lies_between(std::int32_t x, std::int32_t a, std::int32_t b) { return std::min(a, b) <= x && x <= std::max(a, b); }
+
 void check_product(std::int32_t a, std::int32_t b, unsigned shift) {
   const Wide exact = round_shift(Wide{a} * b, shift);
   ASSERT_EQ(q_mul_sat(a, b, shift), saturate(exact)) << a << " * " << b << " >> " << shift;
@@ -169,14 +177,12 @@ TEST(QArith, LimitIsAClamp) {
 // Both ends included: what Frama-C takes for granted where they are called (tests/prove/qmath_ranges.h).
 TEST(QArith, WhatFollowsLiesBetween) {
   RandomInt32 random(7);
-  std::vector<std::int32_t> values = edges();
-  for (int n = 0; n < 200; ++n) values.push_back(random());
+  const std::vector<std::int32_t> values = edges_and_random(200, random);
   for (const std::int32_t a : values) {
     for (const std::int32_t b : values) {
       for (unsigned n = 1; n < 32; ++n) {
         const std::int32_t got = q_follow(a, b, n);
-        ASSERT_LE(std::min(a, b), got) << a << ", " << b << ", " << n;
-        ASSERT_GE(std::max(a, b), got) << a << ", " << b << ", " << n;
+        ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << n;
         ASSERT_TRUE(Wide{got} == a + floor_shift(saturate(Wide{b} - a), n)) << a << ", " << b << ", " << n;
       }
     }
@@ -185,8 +191,7 @@ TEST(QArith, WhatFollowsLiesBetween) {
 
 TEST(QArith, AMixtureLiesBetween) {
   RandomInt32 random(8);
-  std::vector<std::int32_t> values = edges();
-  for (int n = 0; n < 100; ++n) values.push_back(random());
+  const std::vector<std::int32_t> values = edges_and_random(100, random);
   for (const std::int32_t a : values) {
     for (const std::int32_t b : values) {
       if (!fits(Wide{b} - a)) continue;
@@ -196,8 +201,7 @@ TEST(QArith, AMixtureLiesBetween) {
         EXPECT_EQ(q_mix(a, b, one, bits), b);
         for (const std::int32_t share : {1, one / 2, one - 1, random() & (one - 1)}) {
           const std::int32_t got = q_mix(a, b, share, bits);
-          ASSERT_LE(std::min(a, b), got) << a << ", " << b << ", " << share;
-          ASSERT_GE(std::max(a, b), got) << a << ", " << b << ", " << share;
+          ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << share;
           ASSERT_TRUE(Wide{got} == a + round_shift((Wide{b} - a) * share, bits)) << a << ", " << b << ", " << share;
         }
       }
