@@ -37,6 +37,11 @@ static void arithmetic(void) {
   (void)q15_add_sat(any_i16, any_i16);
   (void)q15_sub_sat(any_i16, any_i16);
   (void)q15_mul(any_i16, any_i16);
+  (void)angle_diff_bam(any_u32, any_u32);
+  (void)angle_add_bam(any_u32, any_i32);
+  (void)angle_times(any_u32, any_u16);
+  (void)angle_from_turn_q15(any_i32);
+  (void)angle_from_turn_q30(any_i32);
   (void)angle_from_rad_q28(any_i32);
   (void)angle_bam_to_rad_q28(any_i32);
   (void)angle_to_turn_q15(any_u32);
@@ -65,6 +70,30 @@ static void shifted(unsigned n) {
   (void)q_mul_sub_floor(any_i32, any_quarter(), any_i32, any_quarter(), n);
   (void)q_mul_add_sat(any_i32, any_quarter(), any_i32, any_quarter(), n);
   (void)q_mul_sub_sat(any_i32, any_quarter(), any_i32, any_quarter(), n);
+}
+
+// A number in slices of its distance to the nearer end of the format, and what it follows, of either sign.
+static void follow(int32_t a, unsigned n) {
+  (void)q_follow(a, any_from(INT32_MIN, -1), n);
+  (void)q_follow(a, any_from(0, INT32_MAX), n);
+}
+
+static void followed(unsigned n) {
+  for (unsigned distance = 0; distance <= 31u; distance++) {
+    follow(INT32_MAX - (int32_t)magnitude(distance), n);
+    follow(INT32_MIN + (int32_t)magnitude(distance), n);
+  }
+}
+
+// Both in half of the range, whose differences fit, and in a slice of it.
+static int32_t any_in_slice(int32_t k) { return INT32_MIN / 2 + k * 0x10000000L + (int32_t)(any_u32 & 0xFFFFFFFuL); }
+
+static void mixed(unsigned n) {
+  for (int32_t a = 0; a < 8; a++) {
+    for (int32_t b = 0; b < 8; b++) {
+      (void)q_mix(any_in_slice(a), any_in_slice(b), any_from(0, (int32_t)((uint32_t)1 << n)), n);
+    }
+  }
 }
 
 // The shorter side of a vector is any that is not longer.
@@ -112,6 +141,8 @@ static void of_angles(uint32_t interval) {
 void prove_arithmetic(void) {
   arithmetic();
   for (unsigned n = 0; n <= 63u; n++) shifted(n);
+  for (unsigned n = 1; n <= 31u; n++) followed(n);
+  for (unsigned n = 1; n <= 30u; n++) mixed(n);
 }
 
 void prove_quotients(void) {

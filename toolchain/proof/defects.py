@@ -17,6 +17,12 @@ class Defect:
 DEFECTS = (
     Defect("arithmetic", "q15_mul", "hal/qmath/qarith.h", "(int32_t)a * b + 0x4000L", "a * b + 0x4000L"),
     Defect("arithmetic", "q_neg_sat", "hal/qmath/qarith.h", "(x == INT32_MIN) ? INT32_MAX : -x", "-x"),
+    Defect(
+        "arithmetic", "q_follow", "hal/qmath/qarith.h", "a + q_shr(q_sub_sat(b, a), n)", "b + q_shr(q_sub_sat(b, a), n)"
+    ),
+    Defect(
+        "arithmetic", "q_mix", "hal/qmath/qarith.h", "a + q_mul(b - a, share, bits)", "b + q_mul(b - a, share, bits)"
+    ),
     Defect("quotients", "q_reciprocal_q31", "hal/qmath/qdiv.c", "[(divisor >> 24) - 128]", "[(divisor >> 24) - 127]"),
     Defect("quotients", "q_invert", "hal/qmath/qdiv.c", "(divisor > 0) ?", "(divisor >= 0) ?"),
     Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
