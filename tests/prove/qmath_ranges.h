@@ -14,7 +14,8 @@ unsigned q_clz32(uint32_t x);
 static inline int32_t q_sat64(int64_t x);
 
 /*@ requires 0 <= limit; assigns \result \from x, limit; ensures -limit <= \result <= limit;
-    ensures \result <= -1 || 0 <= \result; */
+    ensures \result <= -1 || 0 <= \result;  // always: has its signs read apart
+*/
 static inline int32_t q_limit(int32_t x, int32_t limit);
 
 /*@ requires 1 <= n <= 31; assigns \result \from a, b, n;

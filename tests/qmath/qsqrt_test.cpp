@@ -45,6 +45,7 @@ TEST(QSqrt, AroundSquaresAndBoundaries) {
   };
   for (int i = 0; i < 300000; ++i) around((random.bits() >> random.below(30)) | 2u);
   for (std::uint64_t r = UINT32_MAX - 1000; r < UINT32_MAX; ++r) around(r);
+  for (std::uint64_t r = INT32_MAX - 1000; r < INT32_MAX + std::uint64_t{1000}; ++r) around(r);
 }
 
 TEST(QSqrt, RandomOfEveryMagnitude) {

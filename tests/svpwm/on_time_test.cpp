@@ -71,11 +71,11 @@ TEST(OnTime, TicksPerVoltFollowTheLink) {
 
 // What the layouts take for granted (tests/prove/svpwm.c): sorted legs, a spread that leaves the shortest pulse and
 // gap, and no common part but what rounding makes.
-TEST(OnTime, TheLegsBelongTogetherWithEveryVoltage) {
+TEST(OnTime, TheLegsBelongTogetherWithAnyVoltage) {
   Random random(82);
   for (int n = 0; n < 200000; ++n) {
-    const double link = random.log_between(1.0, 2000.0);
-    const Vector v = random.direction(random.log_between(1e-4, 8000.0));
+    const double link = (n % 100 == 0) ? 0.0 : random.log_between(1.0, 2000.0);
+    const Vector v = random.direction(random.log_between(1e-4, 8192.0 * std::sqrt(2.0)));
     const svpwm_on_time_t t = svpwm_on_time(raw_ab(v, 16), svpwm_ticks_per_volt_q20(raw(link, 16), 0));
     ASSERT_EQ((1u << t.hi) | (1u << t.mid) | (1u << t.lo), 7u);
     const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
