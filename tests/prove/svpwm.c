@@ -69,10 +69,12 @@ static svpwm_on_time_t any_on_time(uint16_t hi, uint16_t mid, int32_t t1, int32_
   return t;
 }
 
+// With each x, which leads to such an x again.
 static void alternate(const svpwm_on_time_t* t, uint16_t x, bool pair_first) {
   alternating_state_t s = {x, pair_first};
   svpwm_pulses_t pulses;
   svpwm_alternating(&s, t, config.pulse_ticks, &pulses);
+  //@ assert s.leg < 3;
 }
 
 static void lay_out_all(const svpwm_on_time_t* t) {
