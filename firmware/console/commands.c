@@ -50,14 +50,9 @@ void command_obey(const editor_line_t* line) {
     return;
   }
   words_of_line_t a;
-  a.count = 0;
-  a.too_many = false;
-  for (;;) {
-    const word_t word = next_word(line, &at);
-    if (word.count == 0u) break;
-    a.too_many = a.count == COMMAND_WORDS;
-    if (a.too_many) break;
-    a.word[a.count++] = word;
+  for (a.count = 0; a.count < COMMAND_WORDS; a.count++) {
+    a.word[a.count] = next_word(line, &at);
+    if (a.word[a.count].count == 0u) break;
   }
   command->function(&a);
 }

@@ -22,9 +22,8 @@ typedef struct {
 #define COMMAND_WORDS 16u
 
 typedef struct {
-  word_t word[COMMAND_WORDS];  // behind the command's own
+  word_t word[COMMAND_WORDS];  // behind the command's own; more than any command takes
   uint16_t count;
-  bool too_many;
 } words_of_line_t;
 
 typedef struct {

@@ -122,10 +122,9 @@ static void show_commissioning(void) {
 }
 
 static bool list_results(uint16_t step) {
-  if (step >= drive_commissioning_count()) return false;
   const commissioning_result_t r = drive_commissioning_result(step);
   const parameter_info_t* const p = parameter_by_id(r.id);
-  if (p == NULL) return true;
+  if (p == NULL) return false;  // there is no such result, or none any more
   octet_writer_t* const w = line_begin();
   put_text(w, p->name);
   put_spaces_to(w, 22);

@@ -21,7 +21,7 @@ static uint16_t shift_of(const signal_info_t* s) {
   static const struct {
     const char* unit;
     uint16_t whole;
-  } reach[] = {{"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
+  } reach[] = {{"", 7}, {"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
   uint16_t whole = 15;
   for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
     const char* const unit = reach[k].unit;
@@ -29,9 +29,7 @@ static uint16_t shift_of(const signal_info_t* s) {
     while (unit[n] != '\0' && unit[n] == s->unit[n]) n++;
     if (unit[n] == s->unit[n]) whole = reach[k].whole;
   }
-  const uint16_t kept = (uint16_t)(15u - whole);  // fractional bits that a word keeps
-  if (s->unit[0] == '\0') return (s->q > 8u) ? (uint16_t)(s->q - 8u) : 0u;
-  return (s->q > kept) ? (uint16_t)(s->q - kept) : 0u;
+  return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
 }
 
 static scope_setup_t draft(void) {
@@ -192,27 +190,25 @@ static bool show(uint16_t step) {
 
 static uint16_t stride;
 
-static void put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
+// False when there is no such record, or none any more: the scope was armed again.
+static bool put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
   put_unsigned(w, at);
   put_spaces_to(w, 6);
   for (uint16_t k = 0; k < s->count; k++) {
     const signal_info_t* const signal = signal_info(s->channel[k].signal);
     int16_t value;
-    if (scope_read(k, at, &value, 1) == 0u) value = 0;
+    if (scope_read(k, at, &value, 1) == 0u) return false;
     const uint16_t shift = s->channel[k].shift;
     const bool fits = shift <= signal->q;
     put_fixed(w, fits ? value : q_shl_sat(value, shift - signal->q), fits ? (uint16_t)(signal->q - shift) : 0u,
               signal_decimals(signal));
     put_spaces_to(w, (uint16_t)(6u + 12u * (k + 1u)));
   }
+  return true;
 }
 
 static bool print(uint16_t step) {
-  const scope_setup_t* const s = scope_setup_in_force();
-  const uint32_t at = (uint32_t)step * stride;
-  octet_writer_t* const w = line_begin();
-  if (at >= scope_status().recorded) return false;
-  put_record(w, s, (uint16_t)at);
+  if (!put_record(line_begin(), scope_setup_in_force(), (uint16_t)((uint32_t)step * stride))) return false;
   line_end();
   return true;
 }

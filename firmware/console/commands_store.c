@@ -1,5 +1,7 @@
 // save, load, defaults.
 
+#include <stddef.h>
+
 #include "firmware/actions.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
@@ -11,12 +13,11 @@
 
 static void put_report(octet_writer_t* w) {
   const store_report_t* const r = store_report();
-  if (r->refused == 0u) return;
   const parameter_info_t* const first = parameter_by_id(r->first_refused);
+  if (first == NULL) return;
   put_text(w, "; ");
   put_unsigned(w, r->refused);
   put_packed(w, SAY_outside_of_their_range_now_at_their);
-  if (first == 0) return;
   put_text(w, ": ");
   put_text(w, first->name);
   if (r->refused > 1u) put_text(w, " ..");

@@ -158,18 +158,14 @@ static void tell_faults(void) {
   put_text(w, "\r\n! fault: ");
   put_words(w, WORDS_FAULT, (uint16_t)fault.fault);
   line_end();
-  if (job == NULL) {
-    editor_show(&editor, line_begin());
-    line_flush();
-  }
+  editor_show(&editor, line_begin());
+  line_flush();
 }
 
 void console_service(void) {
   if (hal_sci_room() < ROOM) return;
   if (job != NULL) {
-    console_job_t* const running = job;
-    const bool goes_on = running(step++);
-    if (!goes_on && job == running) end_job();
+    if (!job(step++)) end_job();
   } else if (kept_count > 0u) {
     const uint16_t octet = kept[kept_first];
     kept_first = (uint16_t)(kept_first + 1u) & (KEPT - 1u);

@@ -112,7 +112,7 @@ static void key(editor_t* e, uint16_t final) {
   }
 }
 
-// ESC [ parameters final, or ESC O final.
+// ESC [ parameters final, or ESC O final: printable characters.
 static void escape(editor_t* e, uint16_t octet, octet_writer_t* echo) {
   if (e->escape == ESCAPE_BEGUN) {
     e->escape = (octet == '[' || octet == 'O') ? ESCAPE_SEQUENCE : ESCAPE_NONE;
@@ -123,7 +123,7 @@ static void escape(editor_t* e, uint16_t octet, octet_writer_t* echo) {
     e->parameter = (uint16_t)(octet - '0');
     return;
   }
-  if (octet >= 0x20u && octet < 0x40u) return;
+  if (octet < 0x40u) return;
   e->escape = ESCAPE_NONE;
   key(e, octet);
   editor_show(e, echo);

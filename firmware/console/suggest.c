@@ -49,9 +49,10 @@ static bool is_one_edit_away(const char* name, const word_t* word) {
   const uint16_t left = (uint16_t)(m - k);
   if (n == m + 1u) return text_equals(&name[k + 1u], rest, left);
   if (m == n + 1u) return text_equals(&name[k], rest + 1, (uint16_t)(left - 1u));
-  if (m != n || left == 0u) return false;
+  if (m != n) return false;
+  if (left < 2u) return left == 1u;
   if (text_equals(&name[k + 1u], rest + 1, (uint16_t)(left - 1u))) return true;
-  return left >= 2u && text_begins(&name[k], rest + 1, 1) && text_begins(&name[k + 1u], rest, 1) &&
+  return text_begins(&name[k], rest + 1, 1) && text_begins(&name[k + 1u], rest, 1) &&
          text_equals(&name[k + 2u], rest + 2, (uint16_t)(left - 2u));
 }
 

@@ -71,6 +71,14 @@ TEST_F(Editor, KeysMoveAndChange) {
   EXPECT_EQ(type("\r"), "|");
 }
 
+TEST_F(Editor, KeysThatItDoesNotKnowDoNothing) {
+  type("abc\x1B[H");
+  for (const char* key : {"\x1B[5~", "\x1B[6~", "\x1B[2~", "\x1B[15~", "\x1B[1;5Z"}) type(key);
+  EXPECT_EQ(screen, "> abc");
+  EXPECT_EQ(column, 2u);
+  EXPECT_EQ(type("\x1B[3~\r"), "bc|") << "delete, which ends like them";
+}
+
 TEST_F(Editor, TheTerminalShowsTheLineWhateverIsTyped) {
   const char* const keys[] = {"a",      "b",      "\b",     "\x1B[C",  "\x1B[D", "\x1B[A",
                               "\x1B[B", "\x1B[H", "\x1B[F", "\x1B[3~", "xy",     "\x15"};

@@ -1,26 +1,21 @@
 // What a person sees in a terminal.
 
+#include "tests/firmware/console.hpp"
+
 #include <cstring>
 
-#include "tests/firmware/terminal.hpp"
+#include "tests/firmware/slot_of.hpp"
 
 extern "C" {
-#include "firmware/can/node.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
-#include "firmware/scope/scope.h"
 }
 
 namespace {
 
 using namespace stillspin;
 using namespace stillspin::test;
-
-class Console : public Terminal {
- protected:
-  bool has(const std::string& where, const std::string& what) { return where.find(what) != std::string::npos; }
-};
 
 TEST_F(Console, EveryCommandIsExplained) {
   const std::string help = command("help");
@@ -45,19 +40,6 @@ TEST_F(Console, GetAndSet) {
             "speed_limit = 3300 rpm\r\n  10 .. 6000 rpm, default 3300, number 9; only while the power stage is off\r\n"
             "  largest speed reference\r\n");
   EXPECT_TRUE(has(command("get link_voltage"), "DC-link voltage")) << "signals too";
-}
-
-TEST_F(Console, TheBusInWords) {
-  can_node_reset(nullptr);
-  EXPECT_TRUE(has(command("can"), ": on the bus\r\n"));
-  can_node_service();
-  board.can_status = {HAL_CAN_BUS_OFF, 255, 3, 9, 2, 1};
-  EXPECT_EQ(
-      command("can"),
-      "bus         node 1 at 500 kbit/s: bus-off: it tries again after can_recovery\r\n"
-      "errors      255 sending, 3 receiving (96 warn, 256 sending are bus-off); bus-off 2 times, restarted 1 times\r\n"
-      "lost        9 frames or records; 0 commands did not count\r\n"
-      "commands    none has come\r\n");
 }
 
 TEST_F(Console, WhatIsRefusedIsExplained) {
@@ -94,6 +76,8 @@ TEST(Suggest, OneEditOrAPart) {
   }
   for (const char* s : {"", "s", "start", "spot", "xyz", "stpp0"}) EXPECT_FALSE(near("stop", s)) << s;
   EXPECT_TRUE(near("speed_limit", "limit"));
+  EXPECT_TRUE(near("speed", "speed_limit"));
+  EXPECT_FALSE(near("x", "xyz") || near("x", "x")) << "one letter says nothing";
 }
 
 TEST_F(Console, List) {
@@ -136,29 +120,41 @@ TEST_F(Console, StartRefStop) {
   EXPECT_EQ(command("coast"), "power stage off\r\n");
 }
 
+TEST_F(Console, StartAndResetStandAlone) {
+  drive.state = DRIVE_FAULT;
+  EXPECT_EQ(command("reset now"), "this command stands alone: nothing done\r\n");
+  EXPECT_FALSE(drive.request.reset);
+  EXPECT_TRUE(has(command("reset"), "cleared"));
+  EXPECT_TRUE(drive.request.reset);
+}
+
+// A line has room for more words than a command takes.
+TEST_F(Console, WordsBeyondTheLastAreLeftOut) {
+  std::string words;
+  for (int k = 0; k < 30; ++k) words += " x";
+  EXPECT_EQ(command("stop" + words), "the power stage is off\r\n");
+  EXPECT_TRUE(has(command("set speed_limit 1" + words), "set name value [unit]"));
+  EXPECT_TRUE(has(command("watch" + words), "watch shows at most four signals"));
+}
+
+TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
+  drive.state = DRIVE_READY;
+  send("start\r");
+  run(100);
+  drive.time_ms += 4900;
+  run(500);
+  EXPECT_FALSE(has(text, "not running yet"));
+  run(1000);
+  EXPECT_TRUE(has(text, "not running yet: see 'status'\r\n> ")) << text;
+  EXPECT_TRUE(drive.request.start) << "it may still come";
+}
+
 TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
   drive.state = DRIVE_READY;
   send("start\rstop\r");
   run(500);
   EXPECT_TRUE(drive.request.stop);
   EXPECT_FALSE(drive.request.start);
-}
-
-TEST_F(Console, StatusAndFaults) {
-  EXPECT_EQ(command("faults"), "no fault since power-on\r\n");
-  EXPECT_EQ(command("reset"), "no fault is latched\r\n");
-  drive.state = DRIVE_RUN;
-  drive.time_ms += 12000;
-  drive_raise(&drive, FAULT_SYNCHRONISM);
-  const std::string faults = command("faults");
-  EXPECT_TRUE(has(faults, "1 since power-on, which was 12 s ago")) << faults;
-  EXPECT_TRUE(has(faults, " s  loss of synchronism, running at 0.0 rpm, link ")) << faults;
-  const std::string status = command("status");
-  EXPECT_TRUE(has(status, "state       fault\r\n")) << status;
-  EXPECT_TRUE(has(status, "fault       loss of synchronism. less load")) << status;
-  EXPECT_TRUE(has(status, "parameters  fit together"));
-  EXPECT_TRUE(has(command("start"), "reset it first: loss of synchronism"));
-  EXPECT_TRUE(has(command("reset"), "cleared"));
 }
 
 TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
@@ -182,63 +178,16 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
   EXPECT_EQ(text, "") << "a machine is there";
 }
 
-TEST_F(Console, Signals) {
-  const std::string all = command("signals", 10000);
-  for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, signal_info(k)->name));
-  drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
-  EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
-}
-
-TEST_F(Console, WatchGoesOnUntilAKey) {
+TEST_F(Console, AFaultThatIsForgottenIsNotTold) {
+  send("x");
   drive.state = DRIVE_RUN;
-  send("watch\r");
-  run(16000);
-  EXPECT_TRUE(has(text, "running   0.0 rpm of 0.0 rpm"));
-  send("stop\r");
+  drive_raise(&drive, FAULT_LINK_LOW);
   run(300);
-  EXPECT_TRUE(drive.request.stop) << "the key that ends it belongs to the next command";
+  ASSERT_TRUE(has(text, "! fault"));
   text.clear();
-  run(10000);
+  drive_reset();
+  run(300);
   EXPECT_EQ(text, "");
-}
-
-TEST_F(Console, Commissioning) {
-  EXPECT_EQ(command("commission"), "commissioning: not yet\r\n");
-  EXPECT_EQ(command("commission results"), "nothing has been measured since power-on\r\n");
-  EXPECT_TRUE(has(command("commission now"), "commission start"));
-  EXPECT_TRUE(has(command("commission start"), "not ready"));
-  drive.state = DRIVE_READY;
-  EXPECT_TRUE(has(command("commission start"), "the shaft will turn"));
-  EXPECT_TRUE(drive.request.commission);
-}
-
-TEST_F(Console, TheScopeFromWordsToNumbers) {
-  EXPECT_TRUE(has(command("scope arm"), "first: scope channels"));
-  EXPECT_TRUE(has(command("scope trigger now"), "first: scope channels"));
-  EXPECT_TRUE(has(command("scope channels speed current_q angle"), "set"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm"), "set"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "nothing changed"));
-  EXPECT_TRUE(has(command("scope trigger speed up 100"), "rising|falling"));
-  EXPECT_TRUE(has(command("scope every 2"), "set"));
-  EXPECT_TRUE(has(command("scope every 0"), "nothing changed"));
-  EXPECT_TRUE(has(command("scope before 10"), "set"));
-  EXPECT_TRUE(has(command("scope before 2000"), "nothing changed"));
-  EXPECT_TRUE(has(command("scope mode single"), "set"));
-  EXPECT_TRUE(has(command("scope"),
-                  "channels speed current_q angle\r\n"
-                  "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
-  EXPECT_TRUE(has(command("scope arm"), "armed"));
-  for (int k = 0; k < 3000; ++k) {
-    drive.position.used.speed_bpp = bpp_of(k);
-    drive.control.measured_q20.q = -5 * (1 << 20);
-    drive.position.used.angle_bam = 1u << 30;
-    scope_step(static_cast<std::uint32_t>(k));
-  }
-  EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));
-  const std::string rows = command("scope print 5", 60000);
-  EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
-  EXPECT_TRUE(has(rows, "-5.000      0.2500"));
-  EXPECT_TRUE(has(command("scope stop"), "stopped"));
 }
 
 TEST_F(Console, SaveLoadDefaults) {
@@ -254,6 +203,21 @@ TEST_F(Console, SaveLoadDefaults) {
   EXPECT_TRUE(has(command("load"), "stop the drive first"));
   EXPECT_TRUE(has(command("defaults"), "stop the drive first"));
   EXPECT_TRUE(has(command("save", 20000), "the values have been saved")) << "while it runs, too";
+}
+
+// What a firmware with wider ranges has saved.
+TEST_F(Console, LoadSaysWhichValuesWereRefused) {
+  const auto load = [&](const std::vector<slot_entry_t>& entries) {
+    const Octets slot = slot_of(SLOT_VERSION, 1, entries);
+    std::copy(slot.begin(), slot.end(), nvm.memory.begin());
+    return command("load", 20000);
+  };
+  const std::string migrated =
+      "the values saved by another firmware are in force; save to keep them in this one's form";
+  const slot_entry_t ramp = {86, 8, -1}, limit = {8, 20, INT32_MAX};
+  EXPECT_EQ(load({}), migrated + "\r\n");
+  EXPECT_EQ(load({limit}), migrated + "; 1 outside of their range, now at their default: current_limit\r\n");
+  EXPECT_EQ(load({ramp, limit}), migrated + "; 2 outside of their range, now at their default: speed_ramp ..\r\n");
 }
 
 TEST_F(Console, AMemoryThatDoesNotAnswerIsTold) {
@@ -297,6 +261,20 @@ TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
   EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "and that was said";
 }
 
+// A terminal that ends its lines with a line feed stops the motor as soon as any.
+TEST_F(Console, EitherEndOfALineStopsInTheMiddleOfAnAnswer) {
+  for (const char* end : {"\r", "\n"}) {
+    drive.state = DRIVE_RUN;
+    drive.request.stop = false;
+    send("list\r");
+    run(200);
+    send(std::string("stop") + end);
+    run(100);
+    EXPECT_TRUE(drive.request.stop) << int(end[0]);
+    run(2000);
+  }
+}
+
 TEST_F(Console, MoreThanCanBeKeptEndsTheAnswerAndIsNotLostEither) {
   std::string lines = "list\r";
   for (int k = 0; k < 40; ++k) lines += "version\r";
@@ -334,6 +312,11 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
   send("st\xFFop\r");
   run(300);
   EXPECT_TRUE(drive.request.stop) << "but to stop is always right";
+  send(
+      "co\xFF"
+      "ast\r");
+  run(300);
+  EXPECT_TRUE(drive.request.coast) << "and to switch off";
   EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n") << "the next line is another one";
 }
 
@@ -354,7 +337,5 @@ TEST_F(Console, NothingIsWrittenWithoutRoomForAllOfIt) {
   EXPECT_FALSE(board.serial_in.empty());
   EXPECT_EQ(board.serial_room, 100);
 }
-
-/// An editor by itself; what the terminal shows is worked out from the echo.
 
 }  // namespace

@@ -1,0 +1,182 @@
+// What a person looks at: status, signals, faults, the bus, a commissioning.
+
+#include "tests/firmware/console.hpp"
+
+extern "C" {
+#include "firmware/can/command.h"
+#include "firmware/can/messages.h"
+#include "firmware/can/node.h"
+#include "firmware/console/output.h"
+}
+
+namespace {
+
+using namespace stillspin;
+using namespace stillspin::test;
+
+TEST_F(Console, StatusAndFaults) {
+  EXPECT_EQ(command("faults"), "no fault since power-on\r\n");
+  EXPECT_EQ(command("reset"), "no fault is latched\r\n");
+  drive.state = DRIVE_RUN;
+  drive.time_ms += 12000;
+  drive_raise(&drive, FAULT_SYNCHRONISM);
+  const std::string faults = command("faults");
+  EXPECT_TRUE(has(faults, "1 since power-on, which was 12 s ago")) << faults;
+  EXPECT_TRUE(has(faults, " s  loss of synchronism, running at 0.0 rpm, link ")) << faults;
+  const std::string status = command("status");
+  EXPECT_TRUE(has(status, "state       fault\r\n")) << status;
+  EXPECT_TRUE(has(status, "fault       loss of synchronism. less load")) << status;
+  EXPECT_TRUE(has(status, "parameters  fit together"));
+  EXPECT_TRUE(has(command("start"), "reset it first: loss of synchronism"));
+  EXPECT_TRUE(has(command("reset"), "cleared"));
+}
+
+TEST_F(Console, StatusSaysWhatHoldsTheDriveBack) {
+  EXPECT_TRUE(has(command("status"), "limits      none\r\n"));
+  drive.limits = LIMIT_CURRENT;
+  EXPECT_TRUE(has(command("status"), "limits      current limit\r\n"));
+  drive.limits = LIMIT_VOLTAGE | LIMIT_BRAKING;
+  EXPECT_TRUE(has(command("status"), "limits      voltage limit, braking reduced by the DC link\r\n"));
+}
+
+TEST_F(Console, StatusSaysHowFarAProcedureIs) {
+  drive.state = DRIVE_COMMISSION;
+  drive.commissioning.phase = COMMISSIONING_SPIN;
+  drive.start.phase = START_CHARGE;
+  EXPECT_TRUE(has(command("status"), "state       commissioning: spin: flux linkage, inertia, friction\r\n"));
+  drive.state = DRIVE_START;
+  EXPECT_TRUE(has(command("status"), "state       starting: charging the bootstrap capacitors\r\n"));
+}
+
+TEST_F(Console, StatusSaysWhyParametersDoNotFitTogether) {
+  parameters.if_current = parameters.current_limit + 1;
+  parameters.start_method = 1;
+  drive.request.reload = true;
+  EXPECT_TRUE(has(command("status"), "parameters  if_current must not exceed current_limit with start_method 1\r\n"));
+}
+
+TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {
+  EXPECT_TRUE(has(command("get speed_limit"), "only while the power stage is off"));
+  EXPECT_FALSE(has(command("get pulse_time"), "only while"));
+}
+
+TEST_F(Console, Signals) {
+  const std::string all = command("signals", 10000);
+  for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, signal_info(k)->name));
+  drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
+  EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
+}
+
+TEST_F(Console, WatchGoesOnUntilAKey) {
+  drive.state = DRIVE_RUN;
+  send("watch\r");
+  run(16000);
+  EXPECT_TRUE(has(text, "running   0.0 rpm of 0.0 rpm"));
+  send("stop\r");
+  run(300);
+  EXPECT_TRUE(drive.request.stop) << "the key that ends it belongs to the next command";
+  text.clear();
+  run(10000);
+  EXPECT_EQ(text, "");
+}
+
+TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
+  drive.control.measured_q20 = {1 << 20, -5 * (1 << 20)};
+  EXPECT_EQ(command("watch current_q", 300), "current_q -5.000 A\r\n");
+  EXPECT_TRUE(
+      has(command("watch current_q fault current_d", 300), "current_q -5.000 A   fault 0   current_d 1.000 A\r\n"));
+  EXPECT_FALSE(has(text, "rpm of"));
+}
+
+TEST_F(Console, WatchShowsFourSignalsAtMost) {
+  EXPECT_TRUE(has(command("watch state fault limit speed", 300), "state 0   fault 0   limit 0   speed 0.00 rpm\r\n"));
+  EXPECT_TRUE(has(command("watch state fault limit speed angle", 300), "at most four signals"));
+}
+
+TEST_F(Console, WatchSaysWhatHoldsTheDriveBack) {
+  EXPECT_FALSE(has(command("watch", 300), " V   "));
+  drive.limits = LIMIT_CURRENT | LIMIT_WEAKENING;
+  EXPECT_TRUE(has(command("watch", 300), " V   current limit, field weakening\r\n"));
+}
+
+TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
+  drive.state = DRIVE_COMMISSION;
+  drive.commissioning.phase = COMMISSIONING_STAIRCASE;
+  drive.limits = LIMIT_CURRENT | LIMIT_VOLTAGE | LIMIT_WEAKENING | LIMIT_OVERRUN | LIMIT_BRAKING;
+  const std::string line = command("watch", 300);
+  EXPECT_EQ(line.size(), OUTPUT_LINE);
+  EXPECT_EQ(line.substr(line.size() - 5), "...\r\n");
+  drive.state = DRIVE_RUN;
+  EXPECT_FALSE(has(command("watch", 300), "..."));
+}
+
+TEST_F(Console, Commissioning) {
+  EXPECT_EQ(command("commission"), "commissioning: not yet\r\n");
+  EXPECT_EQ(command("commission results"), "nothing has been measured since power-on\r\n");
+  EXPECT_TRUE(has(command("commission now"), "commission start"));
+  EXPECT_TRUE(has(command("commission start"), "not ready"));
+  drive.state = DRIVE_READY;
+  EXPECT_TRUE(has(command("commission start"), "the shaft will turn"));
+  EXPECT_TRUE(drive.request.commission);
+}
+
+TEST_F(Console, ACommissioningUnderWayIsToldWithItsPhase) {
+  drive.commissioning.outcome = COMMISSIONING_RUNNING;
+  drive.commissioning.phase = COMMISSIONING_EVALUATE;
+  EXPECT_EQ(command("commission"), "commissioning: under way, 100 %: evaluation\r\n");
+  drive.commissioning.outcome = COMMISSIONING_ABORTED;
+  EXPECT_FALSE(has(command("commission"), "evaluation"));
+}
+
+TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {
+  drive.commissioning.evaluate = true;  // and nothing was measured
+  commissioning_service(&drive);
+  ASSERT_EQ(drive.commissioning.outcome, COMMISSIONING_PARTLY);
+  const std::string rows = command("commission results", 20000);
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), drive_commissioning_count());
+  EXPECT_TRUE(has(rows, "\r\nmap_known             0 -> 1   ")) << rows;
+  EXPECT_EQ(rows.rfind("stator_resistance     0.3200 -> -0.0350 ohm ", 0), 0u) << rows;
+  EXPECT_TRUE(has(rows, "not measured: too few usable periods"));
+  send("commission results\r");
+  run(250);
+  drive.commissioning.outcome = COMMISSIONING_RUNNING;
+  text.clear();
+  run(20000);
+  EXPECT_EQ(text, "> ");
+}
+
+TEST_F(Console, TheBusInWords) {
+  can_node_reset(nullptr);
+  EXPECT_TRUE(has(command("can"), ": on the bus\r\n"));
+  can_node_service();
+  board.can_status = {HAL_CAN_BUS_OFF, 255, 3, 9, 2, 1};
+  EXPECT_EQ(
+      command("can"),
+      "bus         node 1 at 500 kbit/s: bus-off: it tries again after can_recovery\r\n"
+      "errors      255 sending, 3 receiving (96 warn, 256 sending are bus-off); bus-off 2 times, restarted 1 times\r\n"
+      "lost        9 frames or records; 0 commands did not count\r\n"
+      "commands    none has come\r\n");
+}
+
+TEST_F(Console, WhoCommandsOverTheBus) {
+  can_node_reset(nullptr);
+  std::uint16_t alive = 0;
+  const auto come = [&](std::int32_t mode) {
+    hal_can_frame_t f = can_frame(CAN_COMMAND, 1);
+    can_put(&f, CAN_COMMAND_MODE, mode);
+    can_put(&f, CAN_COMMAND_ALIVE, ++alive);
+    can_put(&f, CAN_COMMAND_CRC, can_crc8(&f, 3));
+    board.can_in[0].push_back(f);
+    can_node_service();
+  };
+  drive.state = DRIVE_READY;
+  come(CAN_MODE_OFF);
+  EXPECT_TRUE(has(command("can"), "commands    they come; the drive was not started by them\r\n"));
+  come(CAN_MODE_RUN);
+  EXPECT_TRUE(has(command("can"), "commands    they command the drive\r\n"));
+  drive.time_ms += static_cast<std::uint32_t>(parameters.can_timeout);
+  can_node_service();
+  EXPECT_TRUE(has(command("can"), "commands    they stay away (can_timeout)\r\n"));
+}
+
+}  // namespace

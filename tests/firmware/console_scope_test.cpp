@@ -1,0 +1,159 @@
+// The captured scope, set up and printed in a terminal.
+
+#include <sstream>
+
+#include "tests/firmware/console.hpp"
+
+extern "C" {
+#include "firmware/scope/scope.h"
+}
+
+namespace {
+
+using namespace stillspin;
+using namespace stillspin::test;
+
+class ConsoleScope : public Console {
+ protected:
+  void steps(int n) {
+    for (int k = 0; k < n; ++k) scope_step(drive.time_ms);
+  }
+  static std::string first_words(const std::string& rows) {
+    std::istringstream lines(rows);
+    std::string line, words;
+    while (std::getline(lines, line)) words += line.substr(0, line.find(' ') + 1);
+    return words;
+  }
+  /// Of the only channel, as it is set up.
+  std::uint16_t shift_of(const std::string& signal) {
+    EXPECT_TRUE(has(command("scope channels " + signal), "set"));
+    return scope_setup_in_force()->channel[0].shift;
+  }
+};
+
+TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
+  EXPECT_TRUE(has(command("scope arm"), "first: scope channels"));
+  EXPECT_TRUE(has(command("scope trigger now"), "first: scope channels"));
+  EXPECT_TRUE(has(command("scope channels speed current_q angle"), "set"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm"), "set"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope trigger speed up 100"), "rising|falling"));
+  EXPECT_TRUE(has(command("scope every 2"), "set"));
+  EXPECT_TRUE(has(command("scope every 0"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope before 10"), "set"));
+  EXPECT_TRUE(has(command("scope before 2000"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope mode single"), "set"));
+  EXPECT_TRUE(has(command("scope"),
+                  "channels speed current_q angle\r\n"
+                  "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
+  EXPECT_TRUE(has(command("scope arm"), "armed"));
+  for (int k = 0; k < 3000; ++k) {
+    drive.position.used.speed_bpp = bpp_of(k);
+    drive.control.measured_q20.q = -5 * (1 << 20);
+    drive.position.used.angle_bam = 1u << 30;
+    scope_step(static_cast<std::uint32_t>(k));
+  }
+  EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));
+  const std::string rows = command("scope print 5", 60000);
+  EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
+  EXPECT_TRUE(has(rows, "-5.000      0.2500"));
+  EXPECT_TRUE(has(command("scope stop"), "stopped"));
+}
+
+// A record is a word: what a unit reaches decides which bits of a signal it keeps.
+TEST_F(ConsoleScope, ARecordReachesWhatTheQuantityReaches) {
+  EXPECT_EQ(shift_of("current_q"), 20 - 10) << "32 A";
+  EXPECT_EQ(shift_of("link_voltage"), 16 - 6) << "512 V";
+  EXPECT_EQ(shift_of("speed"), 16 - 2) << "8192 rpm";
+  EXPECT_EQ(shift_of("angle"), 32 - 15) << "a turn";
+  EXPECT_EQ(shift_of("weight"), 15 - 8) << "a number without a unit: 128";
+  EXPECT_EQ(shift_of("state"), 0) << "as it is";
+  EXPECT_EQ(shift_of("deviation_q"), 8 + 3) << "262144 A/s: eight of them are one step of the record";
+}
+
+TEST_F(ConsoleScope, AStepOfARecordMayBeMoreThanOne) {
+  EXPECT_TRUE(has(command("scope channels deviation_q"), "set"));
+  EXPECT_TRUE(has(command("scope trigger now"), "set"));
+  EXPECT_TRUE(has(command("scope arm"), "armed"));
+  drive.position.deviation_q20 = -(9 << 20);  // in a period of 100 us
+  steps(2000);
+  EXPECT_TRUE(has(command("scope print 1000", 2000), "\n1000  -90000.0"));
+}
+
+TEST_F(ConsoleScope, OneToFourChannels) {
+  EXPECT_TRUE(has(command("scope channels"), "takes one to four signals"));
+  EXPECT_TRUE(has(command("scope channels state fault limit speed angle"), "takes one to four signals"));
+  EXPECT_EQ(scope_setup_in_force()->count, 0);
+  EXPECT_TRUE(has(command("scope channels state fault limit speed"), "set"));
+  EXPECT_EQ(scope_setup_in_force()->count, 4);
+}
+
+TEST_F(ConsoleScope, ATriggerIsASignalAnEdgeAndALevel) {
+  (void)command("scope channels speed");
+  const std::string wants = "scope trigger <signal> rising|falling";
+  EXPECT_TRUE(has(command("scope trigger speed"), wants));
+  EXPECT_TRUE(has(command("scope trigger speed rising"), wants));
+  EXPECT_TRUE(has(command("scope trigger speed now 100"), wants)) << "now has no level";
+  EXPECT_TRUE(has(command("scope trigger speed rising 100x"), wants));
+  EXPECT_TRUE(has(command("scope trigger sped rising 100"), "there is no signal 'sped': did you mean speed?"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm now"), "the level is in the signal's unit"));
+  EXPECT_EQ(scope_setup_in_force()->edge, SCOPE_AT_ONCE) << "nothing of that was taken";
+  EXPECT_TRUE(has(command("scope trigger speed above 100"), "set")) << "the unit may be left out";
+  EXPECT_EQ(scope_setup_in_force()->edge, SCOPE_ABOVE);
+  EXPECT_EQ(scope_setup_in_force()->level, 100 << 16);
+  EXPECT_TRUE(has(command("scope trigger now"), "set"));
+  EXPECT_TRUE(has(command("scope"), "\r\ntrigger now, every 1,"));
+}
+
+TEST_F(ConsoleScope, NumbersAreWholeAndFitAWord) {
+  (void)command("scope channels speed");
+  EXPECT_TRUE(has(command("scope every 65535"), "set"));
+  for (const char* number : {"", " 2 3", " 2x", " 2.5", " -1", " 65536"}) {
+    EXPECT_TRUE(has(command(std::string("scope every") + number), "a whole number is missing")) << number;
+  }
+  EXPECT_EQ(scope_setup_in_force()->decimation, 65535);
+}
+
+TEST_F(ConsoleScope, OneCaptureOrOneAfterTheOther) {
+  (void)command("scope channels speed");
+  for (const char* mode : {"", " once", " auto auto"}) {
+    EXPECT_TRUE(has(command(std::string("scope mode") + mode), "scope mode single, or scope mode auto")) << mode;
+  }
+  EXPECT_EQ(scope_setup_in_force()->mode, SCOPE_SINGLE);
+  EXPECT_TRUE(has(command("scope mode auto"), "set"));
+  EXPECT_TRUE(has(command("scope"), ", mode auto\r\n"));
+  EXPECT_TRUE(has(command("scope mode single"), "set"));
+  EXPECT_EQ(scope_setup_in_force()->mode, SCOPE_SINGLE);
+}
+
+TEST_F(ConsoleScope, WhatCanBePrinted) {
+  (void)command("scope channels state");
+  EXPECT_EQ(command("scope print"), "nothing has been recorded\r\n");
+  EXPECT_TRUE(has(command("scope arm"), "armed"));
+  steps(20);
+  EXPECT_TRUE(has(command("scope print"), "the scope still records"));
+  EXPECT_TRUE(has(command("scope stop"), "stopped"));
+  EXPECT_EQ(first_words(command("scope print")), "0 16 ") << "what there is of one that was broken off";
+  EXPECT_EQ(first_words(command("scope print 9")), "0 9 18 ");
+  EXPECT_EQ(first_words(command("scope print 65535")), "0 ");
+  EXPECT_TRUE(has(command("scope print 0"), "one record in so many"));
+  EXPECT_TRUE(has(command("scope print few"), "one record in so many"));
+}
+
+// A machine at the other end, or in AUTO mode the reading itself, may arm it meanwhile.
+TEST_F(ConsoleScope, APrintEndsWhenTheScopeIsArmedAgain) {
+  (void)command("scope channels state");
+  drive.state = DRIVE_RUN;
+  (void)command("scope arm");
+  steps(2000);
+  send("scope print 1\r");
+  run(500);
+  EXPECT_TRUE(has(text, "\n2     4 ")) << text;
+  ASSERT_TRUE(scope_arm());
+  steps(1000);
+  text.clear();
+  run(20000);
+  EXPECT_EQ(text, "> ") << "no rows of records that nobody made";
+}
+
+}  // namespace
