@@ -17,43 +17,10 @@
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board_port.hpp"
 #include "sim_host/bench/loop_plugs.hpp"
-#include "sim_host/bench/virtual_board.hpp"
+#include "tests/bench/loop.hpp"
 
 namespace stillspin::bench {
 namespace {
-
-constexpr Tick kMillisecond = 100'000;
-constexpr Tick kSecond = 1000 * kMillisecond;
-
-class Loop : public ::testing::Test {
- protected:
-  std::unique_ptr<VirtualBoard> desk;
-  std::unique_ptr<Framing> serial = serial_framing();
-  std::uint16_t tag = 0;
-
-  void SetUp() override {
-    BoardRequest request;
-    request.setup.nominal = plant::PlantConfig();
-    request.setup.solver = 1;  // fixed steps
-    request.parameters = {{"can_rate", 1000.0}};
-    desk = std::make_unique<VirtualBoard>(request);
-    desk->advance(100 * kMillisecond);
-  }
-
-  // Status and body of the answer; empty when none comes.
-  Words ask(Words type_and_body) {
-    type_and_body.insert(type_and_body.begin() + 1, ++tag);
-    desk->serial().send(serial->wrap(type_and_body), desk->now());
-    desk->advance(50 * kMillisecond);
-    for (const std::uint8_t octet : desk->serial().take()) {
-      if (!serial->take(octet)) continue;
-      const Words record = serial->record();
-      if (record[1] == (tag & 0xFFu)) return Words(record.begin() + 2, record.end());
-    }
-    return {};
-  }
-  std::uint64_t resets() const { return desk->statistics().resets; }
-};
 
 TEST_F(Loop, IsLeftByAResetWhenNoStepsCome) {
   ASSERT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});
