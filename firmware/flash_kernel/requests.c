@@ -31,7 +31,7 @@ static uint16_t write(octet_reader_t* r) {
   uint16_t words[KERNEL_WORDS_MAX];
   const uint32_t address = take_u32(r);
   const uint16_t count = octets_left(r) / 2u;
-  if (r->short_of || count == 0u || count > KERNEL_WORDS_MAX) return KERNEL_LENGTH;
+  if (count == 0u || count > KERNEL_WORDS_MAX) return KERNEL_LENGTH;
   for (uint16_t k = 0u; k < count; k++) words[k] = take_u16(r);
   return octets_fit(r) ? update_write(address, words, count) : (uint16_t)KERNEL_LENGTH;
 }

@@ -30,10 +30,9 @@ static uint16_t status_of(hal_flash_result_t result) {
       return KERNEL_RANGE;
     case HAL_FLASH_LOCKED:
       return KERNEL_LOCKED;
-    case HAL_FLASH_FAILED:
-      break;
+    default:
+      return fail(failure.code, failure.address);
   }
-  return fail(failure.code, failure.address);
 }
 
 // One word that has to be there afterwards.

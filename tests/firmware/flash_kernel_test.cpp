@@ -51,6 +51,7 @@ class FlashKernel : public ::testing::Test {
     answer.resize(kernel_answer(request.data(), static_cast<std::uint16_t>(request.size()), answer.data()));
     return answer;
   }
+  static std::uint16_t status(const std::vector<std::uint16_t>& request) { return ask(request).at(2); }
 };
 
 using Told = std::vector<std::string>;
@@ -177,6 +178,61 @@ TEST_F(FlashKernel, AnswersWhatItDoesNotKnow) {
   EXPECT_EQ(ask({KERNEL_WRITE, 7, 0}), (std::vector<std::uint16_t>{0xB2, 7, KERNEL_LENGTH}));
   EXPECT_EQ(ask({KERNEL_WRITE, 7, 0, 0, 0x3F, 0, 1}), (std::vector<std::uint16_t>{0xB2, 7, KERNEL_LENGTH})) << "half";
   EXPECT_EQ(ask({KERNEL_INFO, 1}).size(), 3u + 7u + 24u);
+}
+
+TEST_F(FlashKernel, RequestsOfAnotherLengthAreRefusedUntouched) {
+  for (const std::uint16_t type : {KERNEL_INFO, KERNEL_ERASE, KERNEL_CHECK, KERNEL_SEAL, KERNEL_RESTART}) {
+    const std::size_t body = type == KERNEL_ERASE ? 1 : type == KERNEL_CHECK ? 8 : type == KERNEL_SEAL ? 4 : 0;
+    std::vector<std::uint16_t> request(2 + body);
+    request[0] = type;
+    EXPECT_NE(status(request), KERNEL_LENGTH) << type;
+    request.push_back(0);
+    EXPECT_EQ(status(request), KERNEL_LENGTH) << type;
+    if (body == 0) continue;
+    request.resize(request.size() - 2);
+    EXPECT_EQ(status(request), KERNEL_LENGTH) << type;
+  }
+  EXPECT_TRUE(flash.told.empty());
+}
+
+TEST_F(FlashKernel, WritesAsManyWordsAtOnceAsItHasRoomFor) {
+  std::vector<std::uint16_t> request{KERNEL_WRITE, 7, 0, 0, 0x3F, 0};
+  request.resize(request.size() + 2 * KERNEL_WORDS_MAX, 0x12);
+  std::vector<std::uint16_t> more = request;
+  more.resize(more.size() + 2, 0x12);
+  EXPECT_EQ(status(more), KERNEL_LENGTH);
+  EXPECT_TRUE(flash.told.empty());
+  EXPECT_EQ(status(request), KERNEL_OK);
+  EXPECT_EQ(flash.at(kBStart + KERNEL_WORDS_MAX - 1), 0x1212);
+  EXPECT_EQ(flash.at(kBStart + KERNEL_WORDS_MAX), HAL_FLASH_ERASED);
+  request.push_back(0x12);
+  EXPECT_EQ(status(request), KERNEL_LENGTH) << "half a word is left";
+}
+
+TEST_F(FlashKernel, TellsTheSumOfWhatIsThere) {
+  flash.at(kBStart) = 0x1234;
+  std::uint32_t crc = 0;
+  ASSERT_TRUE(update_crc(kBStart, 2, &crc));
+  const auto octet = [&](int k) { return static_cast<std::uint16_t>(crc >> (8 * k) & 0xFFu); };
+  EXPECT_EQ(ask({KERNEL_CHECK, 7, 0, 0, 0x3F, 0, 2, 0, 0, 0}),
+            (std::vector<std::uint16_t>{0xB3, 7, KERNEL_OK, octet(0), octet(1), octet(2), octet(3)}));
+  EXPECT_EQ(ask({KERNEL_CHECK, 7, 0, 0x80, 0x3F, 0, 1, 0, 0, 0}), (std::vector<std::uint16_t>{0xB3, 7, KERNEL_RANGE}))
+      << "behind the flash";
+}
+
+TEST_F(FlashKernel, SealsAndRestartsByRequest) {
+  const std::uint32_t crc = crc_with_mark();
+  const auto octet = [&](int k) { return static_cast<std::uint16_t>(crc >> (8 * k) & 0xFFu); };
+  EXPECT_EQ(status({KERNEL_SEAL, 7, octet(0), octet(1), octet(2), octet(3)}), KERNEL_OK);
+  EXPECT_EQ(flash.at(HAL_FLASH_IMAGE_IDENTITY), HAL_IMAGE_MARK);
+  EXPECT_EQ(ask({KERNEL_RESTART, 8}), (std::vector<std::uint16_t>{0xB5, 8, KERNEL_OK}));
+}
+
+TEST_F(FlashKernel, TellsWhetherTheBoardIsLocked) {
+  constexpr std::size_t kLocked = 3 + 6;  // behind protocol, part and revision
+  EXPECT_EQ(ask({KERNEL_INFO, 1}).at(kLocked), 0);
+  flash.locked = true;
+  EXPECT_EQ(ask({KERNEL_INFO, 1}).at(kLocked), 1);
 }
 
 std::string hex(std::uint32_t value, int digits) {
