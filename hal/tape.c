@@ -86,7 +86,7 @@ static void play_work(hal_tape_t* t) {
 
 static void take_ended_period(void) {
   const hal_tape_t* const t = &hal_tape;
-  if (t->mode == TAPE_RECORDS && t->ended && t->stepped) t->interrupt();
+  if (t->mode == TAPE_RECORDS && t->ended) t->interrupt();
 }
 
 void hal_tape_work_begin(tape_work_t work) {

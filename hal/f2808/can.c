@@ -12,10 +12,8 @@
 #include "hal/qmath/qdiv.h"
 
 #define QUANTA_MAX 20u
-#define QUANTA_MIN 8u
-#define PRESCALER_MIN 2u  // 1 would lengthen the information processing time
+#define QUANTA_MIN 10u  // of the rates that 100 MHz can be divided to exactly, none needs fewer
 #define PRESCALER_MAX 256u
-#define JUMP_QUANTA 4u
 #define MASTER_BASE (CANMC_SCB_MASK | CANMC_SUSP_MASK)  // 32 mailboxes, ABO off: the application decides
 #define TPL_STEP 8u
 #define ALL_MAILBOXES 0xFFFFFFFFuL
@@ -53,11 +51,10 @@ static bool find_timing(uint32_t bitrate, uint32_t* timing) {
   for (uint32_t quanta = QUANTA_MAX; quanta >= QUANTA_MIN; quanta--) {
     const uint32_t prescaler = HAL_TIME_CYCLES_PER_S / (bitrate * quanta);
     const bool exact = prescaler * bitrate * quanta == HAL_TIME_CYCLES_PER_S;
-    if (!exact || prescaler < PRESCALER_MIN || prescaler > PRESCALER_MAX) continue;
-    const uint32_t after = quanta / 5u > 2u ? quanta / 5u : 2u;
+    if (!exact || prescaler > PRESCALER_MAX) continue;
+    const uint32_t after = quanta / 5u;  // 2 to 4, and as many to resynchronise by
     const uint32_t before = quanta - 1u - after;
-    const uint32_t jump = after < JUMP_QUANTA ? after : JUMP_QUANTA;
-    *timing = (prescaler - 1u) << CANBTC_BRPREG_LSB | (jump - 1u) << CANBTC_SJWREG_LSB |
+    *timing = (prescaler - 1u) << CANBTC_BRPREG_LSB | (after - 1u) << CANBTC_SJWREG_LSB |
               (before - 1u) << CANBTC_TSEG1REG_LSB | (after - 1u) << CANBTC_TSEG2REG_LSB;
     return true;
   }

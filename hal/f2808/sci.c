@@ -43,7 +43,7 @@ static bool divider_for(uint32_t baud, uint16_t* divider) {
   if (baud == 0uL || baud > HAL_SCI_MAX_BAUD) return false;
   const uint32_t unit = SAMPLES_PER_BIT * baud;
   const uint32_t cycles = (LSPCLK_HZ + unit / 2u) / unit;
-  if (cycles < 2uL || cycles > 65536uL) return false;
+  if (cycles > 65536uL) return false;
   const uint32_t actual = LSPCLK_HZ / (SAMPLES_PER_BIT * cycles);
   const uint32_t off = actual > baud ? actual - baud : baud - actual;
   *divider = (uint16_t)(cycles - 1u);

@@ -87,6 +87,29 @@ TEST_F(Adc, window_is_read_then_rearmed_then_flag_cleared_then_acknowledged) {
   EXPECT_EQ(bus.steps[acknowledge].value, 0x0001u) << "group 1 and no other";
 }
 
+TEST_F(Adc, reference_is_what_the_last_conversion_gave) {
+  bus.words[REG_MIRROR_ADCRESULT0] = 0x012;
+  bus.words[REG_MIRROR_ADCRESULT0 + 1] = 0xABC;
+  std::uint16_t ground = 1, reference = 1;
+  bus.between = [this] { bus.words[REG_ADCST] = ADCST_INT_SEQ1_MASK; };
+  hal_adc_measure_reference(&ground, &reference);
+  bus.between = nullptr;
+  EXPECT_EQ(ground, 0x012);
+  EXPECT_EQ(reference, 0xABC);
+}
+
+// A converter that does not convert: nothing is measured, and the start goes on.
+TEST_F(Adc, reference_is_zero_when_no_conversion_ends) {
+  bus.words[REG_MIRROR_ADCRESULT0] = bus.words[REG_MIRROR_ADCRESULT0 + 1] = 0xABC;
+  std::uint16_t ground = 1, reference = 1;
+  const std::uint64_t before = bus.cycles;
+  hal_adc_measure_reference(&ground, &reference);
+  EXPECT_EQ(ground, 0);
+  EXPECT_EQ(reference, 0);
+  EXPECT_LT(bus.cycles - before, 100'000u) << "within a millisecond";
+  EXPECT_EQ(bus.words[REG_ADCMAXCONV], 0x0033u) << "set up for windows again";
+}
+
 TEST_F(Adc, delays_follow_from_the_converter_clock) {
   constexpr unsigned kAdcClockTicks = 8;  // 12.5 MHz
   EXPECT_EQ(2 * HAL_ADC_HOLD_TICKS, 7 * kAdcClockTicks);

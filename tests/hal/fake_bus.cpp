@@ -1,6 +1,7 @@
 #include "tests/hal/fake_bus.hpp"
 
 #include <cstdio>
+#include <utility>
 
 #include "hal/f2808/registers.h"
 
@@ -137,7 +138,7 @@ void FakeBus::behave(std::uint32_t address, std::uint16_t value) {
 std::uint16_t FakeBus::read16(std::uint32_t address) {
   cycles += kAccessCycles;
   record(Op::kRead, address, 0);
-  return words[address];
+  return spoils ? spoils(words[address]) : words[address];
 }
 
 void FakeBus::write16(std::uint32_t address, std::uint16_t value) {
@@ -145,6 +146,10 @@ void FakeBus::write16(std::uint32_t address, std::uint16_t value) {
   watch_rules(address);
   words[address] = value;
   behave(address, value);
+  if (const std::function<void()> comes = std::exchange(between, nullptr)) {
+    comes();
+    between = comes;
+  }
 }
 
 }  // namespace stillspin::test

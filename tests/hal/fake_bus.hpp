@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -54,6 +55,8 @@ class FakeBus {
   std::uint16_t ier = 0;
   std::uint64_t cycles = 0;
   bool pll_locks = true;
+  std::function<void()> between;                       // comes behind every write, as an interrupt would
+  std::function<std::uint16_t(std::uint16_t)> spoils;  // what becomes of a word that is read
 
   /// Marks everything clocked, as after hal_clock_init, and forgets the steps.
   void power_all();

@@ -65,6 +65,15 @@ TEST_F(Irq, every_other_vector_switches_the_gates_off) {
   EXPECT_EQ(control_calls + window_calls, 0);
 }
 
+TEST_F(Irq, unexpected_interrupts_are_counted_to_the_end_of_a_word) {
+  hal_irq_install(control, window);
+  for (unsigned k = 0; k < 65536; ++k) {
+    bus.vectors[VECTOR_EPWM1_INT + 1]();
+    bus.forget_steps();
+  }
+  EXPECT_EQ(hal_irq_unexpected_count(), 65535u) << "none is no count to come back to";
+}
+
 TEST_F(Irq, old_events_are_cleared_from_the_peripheral_to_the_cpu) {
   hal_irq_enable();
   const std::uint32_t events = EPWM_BASE(1) + EPWM_ETPS;

@@ -1,6 +1,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
+#include "hal/hal_tape.h"
 #include "tests/hal/bus_test.hpp"
 
 namespace stillspin::test {
@@ -156,6 +157,19 @@ TEST_F(Pwm, frame_of_an_overrun_control_interrupt_writes_nothing) {
   EXPECT_FALSE(hal_pwm_write(&frame, 5000));
   EXPECT_EQ(bus.count_writes(), 0u);
   EXPECT_EQ(bus.steps[1].address, EPWM_BASE(1) + EPWM_TBCTR) << "time first: a start in between must be seen";
+}
+
+// A computer that plays the tape must find the drive as late as it was.
+TEST_F(Pwm, a_tape_says_whether_a_frame_was_in_time) {
+  const hal_pwm_frame_t frame = frame_of_distinct_values();
+  for (const bool in_time : {true, false}) {
+    hal_tape_start(TAPE_RECORDS, nullptr);
+    bus.words[EPWM_BASE(1) + EPWM_TBCTR] = in_time ? 5000 : 5001;
+    EXPECT_EQ(hal_pwm_write(&frame, 5000), in_time);
+    ASSERT_EQ(hal_tape.period.input_count, 1);
+    EXPECT_EQ(hal_tape.period.inputs[0], in_time ? 1 : 0);
+    hal_tape_start(TAPE_OFF, nullptr);
+  }
 }
 
 TEST_F(Pwm, interrupts_are_off_from_the_look_at_the_counter_to_the_last_write) {

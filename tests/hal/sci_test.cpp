@@ -59,6 +59,60 @@ TEST_F(Serial, rates_that_cannot_be_met_change_nothing) {
   EXPECT_EQ(bus.count_writes(), 0u);
 }
 
+// The control interrupt may come anywhere in a change of the rate.
+TEST_F(Serial, a_port_that_is_being_set_up_is_left_alone) {
+  ASSERT_TRUE(hal_sci_init(115200));
+  bus.forget_steps();
+  ASSERT_TRUE(hal_sci_init(9600));
+  const std::size_t alone = bus.steps.size();
+  bus.forget_steps();
+  bus.between = hal_sci_service;
+  ASSERT_TRUE(hal_sci_init(9600));
+  bus.between = nullptr;
+  EXPECT_EQ(bus.steps.size(), alone);
+  hal_sci_service();
+  EXPECT_GT(bus.steps.size(), alone) << "and served from then on";
+}
+
+TEST_F(Serial, four_octets_a_period_are_taken) {
+  ASSERT_TRUE(hal_sci_init(115200));
+  std::uint16_t octets[16];
+  const auto taken_of = [&](unsigned waiting) {
+    bus.words[kSci + SCI_FFRX] = static_cast<std::uint16_t>(waiting << SCI_FFRX_RXFFST_LSB);
+    hal_sci_service();
+    return hal_sci_read(octets, 16);
+  };
+  bus.words[kSci + SCI_RXBUF] = 0x5A;
+  EXPECT_EQ(taken_of(0), 0);
+  EXPECT_EQ(taken_of(3), 3);
+  EXPECT_EQ(octets[2], 0x5A);
+  EXPECT_EQ(taken_of(4), 4);
+  EXPECT_EQ(taken_of(16), 4) << "the rest in the next: the interrupt's time is known";
+}
+
+TEST_F(Serial, an_overrun_is_counted_and_its_flag_cleared) {
+  ASSERT_TRUE(hal_sci_init(115200));
+  hal_sci_service();
+  EXPECT_EQ(hal_sci_errors().overrun, 0);
+  bus.words[kSci + SCI_FFRX] = SCI_FFRX_RXFFOVF_MASK;
+  hal_sci_service();
+  EXPECT_EQ(hal_sci_errors().overrun, 1);
+  EXPECT_EQ(bus.words[kSci + SCI_FFRX], 0x201Fu | SCI_FFRX_RXFFOVRCLR_MASK) << "the FIFO goes on";
+}
+
+TEST_F(Serial, errors_are_counted_to_the_end_of_a_word) {
+  ASSERT_TRUE(hal_sci_init(115200));
+  bus.words[kSci + SCI_RXBUF] = SCI_RXBUF_SCIFFFE_MASK;
+  bus.words[kSci + SCI_FFRX] = 1u << SCI_FFRX_RXFFST_LSB;
+  for (unsigned k = 0; k < 65535; ++k) {
+    hal_sci_service();
+    bus.forget_steps();
+  }
+  EXPECT_EQ(hal_sci_errors().framing, 65535);
+  hal_sci_service();
+  EXPECT_EQ(hal_sci_errors().framing, 65535) << "and not from the beginning";
+}
+
 TEST_F(Serial, ring_takes_what_fits) {
   ASSERT_TRUE(hal_sci_init(115200));
   std::uint16_t octets[HAL_SCI_TRANSMIT_RING + 5] = {};

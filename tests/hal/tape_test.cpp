@@ -204,6 +204,44 @@ TEST_F(Tape, APeriodThatEndsInWorkIsTakenBehindIt) {
   EXPECT_EQ(hal_tape.period.work_count, 0);
 }
 
+// A computer's word for where its work was done may be wrong.
+TEST_F(Tape, WorkIsNotPlayedBehindWindowsThatThereAreNot) {
+  hal_tape_start(TAPE_PLAYS, window);
+  hal_tape.period.window_count = 1;
+  hal_tape.period.windows[0].results[0] = 1;
+  hal_tape.period.work_count = 1;
+  hal_tape.period.works[0] = TAPE_RELOADED | 3u << 4;
+  step(false);
+  play_work('X');
+  EXPECT_EQ(order, "1abcdX") << "the one, and the work behind it";
+  EXPECT_TRUE(hal_tape_finish_period());
+}
+
+TEST_F(Tape, ResultsThatThereAreNotAreZeroAndTearIt) {
+  std::uint16_t results[TAPE_RESULTS] = {9, 9};
+  hal_tape_start(TAPE_PLAYS, window);
+  tape_take_results(results, TAPE_RESULTS);
+  EXPECT_EQ(results[0] | results[1], 0);
+  step(false);
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
+TEST_F(Tape, MoreThanItHoldsTearsIt) {
+  const auto whole_with = [](unsigned inputs, unsigned windows) {
+    const std::uint16_t results[] = {1, 2, 3};
+    hal_tape_start(TAPE_RECORDS, nullptr);
+    for (unsigned k = 0; k < inputs; k++) EXPECT_EQ(tape_note(7u), 7u);
+    for (unsigned k = 0; k < windows; k++) tape_note_results(results, 3u);
+    step(false);
+    return hal_tape_finish_period();
+  };
+  EXPECT_TRUE(whole_with(TAPE_INPUTS, TAPE_WINDOWS));
+  EXPECT_EQ(hal_tape.period.windows[TAPE_WINDOWS - 1].results[2], 3);
+  EXPECT_EQ(hal_tape.period.windows[TAPE_WINDOWS - 1].results[3], 0) << "a slice has three";
+  EXPECT_FALSE(whole_with(TAPE_INPUTS + 1, TAPE_WINDOWS));
+  EXPECT_FALSE(whole_with(TAPE_INPUTS, TAPE_WINDOWS + 1));
+}
+
 TEST_F(Tape, AWindowThatNobodyReadsTearsIt) {
   hal_tape_start(TAPE_PLAYS, [] {});
   hal_tape.period.window_count = 1;
