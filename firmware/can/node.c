@@ -209,7 +209,7 @@ static void answer_record(uint32_t now_ms) {
 // Behind every answer, and only when what was sent before has left: a stream too fast for the bus leaves room for all
 // else.
 static void send_event(uint32_t now_ms) {
-  if (self.response.count != 0u || self.request_ready || hal_can_waiting(PRIORITY_RECORD) != 0u) return;
+  if (self.response.count != 0u || hal_can_waiting(PRIORITY_RECORD) != 0u) return;
   const uint16_t count = stream_event(GUARD_BUS, self.response.octets);
   if (count != 0u) segment_split_begin(&self.response, count, now_ms);
 }

@@ -22,7 +22,7 @@ static uint32_t mark_time_ms;
 static int32_t previous;  // of the trigger signal
 static bool fresh;        // there is no previous value yet
 static bool fired;        // since the last record
-static uint16_t unread;   // AUTO: a bit for each channel whose last word has not been read
+static uint16_t unread;   // AUTO: a bit for each channel whose last word has not been read; none behind a stop
 
 static bool is_running(void) {
   const scope_state_t now = state;
@@ -94,7 +94,7 @@ scope_status_t scope_status(void) {
 
 // The last word of a channel has been read: the next capture, when that was the last channel.
 static void note_read_to_the_end(uint16_t channel) {
-  if (setup_in_force.mode != SCOPE_AUTO || state != SCOPE_DONE || unread == 0u) return;
+  if (setup_in_force.mode != SCOPE_AUTO || unread == 0u) return;
   unread = (uint16_t)(unread & ~(1u << channel));
   if (unread == 0u) (void)scope_arm();
 }

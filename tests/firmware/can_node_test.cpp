@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/can/messages.h"
 #include "firmware/can/node.h"
 #include "firmware/can/segments.h"
+#include "firmware/hil/hil.h"
 #include "firmware/link/stream.h"
 }
 
@@ -68,6 +69,12 @@ class CanNode : public Drive {
     hal_can_frame_t frame = can_frame(CAN_RECORD_REQUEST, 1);
     for (; segment_split_peek(&s, &frame); segment_split_advance(&s, 0)) frames.push_back(frame);
     return frames;
+  }
+  static hal_can_frame_t command(std::int32_t alive) {
+    hal_can_frame_t f = can_frame(CAN_COMMAND, 1);
+    can_put(&f, CAN_COMMAND_ALIVE, alive);
+    can_put(&f, CAN_COMMAND_CRC, can_crc8(&f, 3));
+    return f;
   }
   static hal_can_frame_t parameter(std::int32_t operation, std::int32_t id, std::int32_t raw) {
     hal_can_frame_t f = can_frame(CAN_PARAMETER_REQUEST, 1);
@@ -244,6 +251,40 @@ TEST_F(CanNode, DiagnosticTellsWhatWentWrong) {
   EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_BAD_COMMANDS), 4);
   EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_LOST_FRAMES), 3);
   EXPECT_EQ(can_get(&d, CAN_DIAGNOSTIC_BUS_OFFS), 255);
+}
+
+TEST_F(CanNode, WhatIsLostIsCountedToTheEndOfAWord) {
+  board.can_status.lost = 65'535;
+  EXPECT_EQ(can_node_state().lost, 65'535);
+  board.can_in[kCommandGroup] = {command(1), command(4)};
+  can_node_service();
+  can_node_service();
+  EXPECT_EQ(can_node_state().bad_commands, 0);
+  EXPECT_EQ(can_node_state().lost, 65'535) << "with two commands that never came";
+  board.can_status.lost = 3;
+  EXPECT_EQ(can_node_state().lost, 5);
+}
+
+// The bus is heard all the same, so that nothing old waits when it is left.
+TEST_F(CanNode, CommandsAreNotForTheDriveOfAHostInTheLoop) {
+  can_node_service();
+  ASSERT_EQ(hil_enter(), HIL_OK);
+  board.can_in[kCommandGroup] = {command(1)};
+  can_node_service();
+  EXPECT_TRUE(board.can_in[kCommandGroup].empty());
+  EXPECT_FALSE(can_node_state().heard);
+  hil_reset();
+  board.can_in[kCommandGroup] = {command(2)};
+  can_node_service();
+  EXPECT_TRUE(can_node_state().heard);
+}
+
+TEST_F(CanNode, WithNobodyToAnswerRecordsAreLeftUnanswered) {
+  can_node_reset(nullptr);
+  for (const auto& piece : pieces({1, 2, 3})) board.can_in[kRecordGroup].push_back(piece);
+  pass(5);
+  EXPECT_TRUE(board.can_in[kRecordGroup].empty());
+  EXPECT_EQ(take_sent().count(0x481), 0u);
 }
 
 TEST_F(CanNode, IsOffTheBusUntilTheSavedRateIsKnown) {

@@ -35,7 +35,7 @@ void FakeNvm::write_page() {
     const unsigned at = first + k;
     const bool sent = at >= address && at < unsigned{address} + count;
     const std::uint8_t before = memory[at];
-    const std::uint8_t after = sent ? static_cast<std::uint8_t>(write[at - address]) : before;
+    const std::uint8_t after = sent && !write_protected ? static_cast<std::uint8_t>(write[at - address]) : before;
     memory[at] = cut ? torn(k, before, after) : after;
   }
   for (const unsigned at : dead) memory[at] = 0x00;

@@ -17,6 +17,7 @@ class FakeNvm {
   std::vector<std::uint8_t> memory = std::vector<std::uint8_t>(HAL_NVM_SIZE, 0xFF);
   std::vector<unsigned> wear = std::vector<unsigned>(HAL_NVM_SIZE / HAL_NVM_PAGE, 0);
   bool absent = false;
+  bool write_protected = false;
   int latency = 2;  // steps that are BUSY
 
   /// Octets that have gone over the bus, and pages that have been written.

@@ -34,6 +34,16 @@ TEST_F(Guard, SilenceStopsTheDrive) {
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 2u) << "and it says so";
 }
 
+TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
+  ASSERT_EQ(give(COMMAND_START, 1).status(), OK);
+  EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
+  drive.state = DRIVE_FAULT;
+  EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 0u);
+  drive.state = DRIVE_RUN;  // reset and started by somebody else
+  run(3000);
+  EXPECT_FALSE(drive.request.stop);
+}
+
 TEST_F(Guard, ItCanBeToldToCoast) {
   parameters.link_reaction = LINK_REACTION_COAST;
   start(1);

@@ -130,6 +130,14 @@ TEST(Octets, NumbersAreLittleEndianAndEndsAreNoticed) {
   EXPECT_FALSE(octets_fit(&r));
 }
 
+TEST(Record, NoneIsLongerThanItsRoom) {
+  Octets longest(RECORD_MAX + 1u, 7);
+  ASSERT_EQ(record_seal(longest.data(), RECORD_MAX - 2u), RECORD_MAX);
+  EXPECT_EQ(record_open(longest.data(), RECORD_MAX), RECORD_MAX - 2u);
+  ASSERT_EQ(record_seal(longest.data(), RECORD_MAX - 1u), RECORD_MAX + 1u);
+  EXPECT_EQ(record_open(longest.data(), RECORD_MAX + 1u), 0u) << "although its check sum is right";
+}
+
 TEST(Record, OneFlippedBitIsAlwaysNoticed) {
   Octets record = {0x08, 0x21, 1, 2, 3, 0, 0};
   ASSERT_EQ(record_seal(record.data(), 5), 7);
@@ -206,6 +214,11 @@ TEST_F(Splitter, ADamagedRecordIsCountedAndTheNextOneTaken) {
 }
 
 // Whichever octet of two records is lost, at most these two are, and text and records stay what they are.
+TEST_F(Splitter, DamagedRecordsAreCountedToTheEndOfAWord) {
+  for (int k = 0; k < 65536; ++k) feed(Octets{0, 9, 1, 0});
+  EXPECT_EQ(s.errors.damaged, 65535) << "none is no count to come back to";
+}
+
 TEST_F(Splitter, ALostOctetDoesNotTurnRecordsIntoTextForLong) {
   Octets both = wire({0x08, 0x01, 0x33});
   const Octets second = wire({0x08, 0x02, 0x44});

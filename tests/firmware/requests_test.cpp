@@ -8,7 +8,6 @@
 extern "C" {
 #include "firmware/fault_history.h"
 #include "firmware/link/crc.h"
-#include "firmware/link/stream.h"
 #include "firmware/scope/scope.h"
 #include "firmware/version.h"
 #include "firmware/words.h"
@@ -261,12 +260,27 @@ TEST_F(Requests, WordsForEverything) {
   EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_KINDS, 0}).status(), UNKNOWN);
 }
 
+TEST_F(Requests, ResultsOfACommissioning) {
+  EXPECT_EQ(ask(REQUEST_COMMISSION_RESULT, little(0, 2)).octets.size(), 3u + 2u) << "there are none: the number alone";
+  drive.commissioning.evaluate = true;  // and nothing was measured
+  commissioning_service(&drive);
+  const std::uint16_t count = drive_commissioning_count();
+  const Answer last = ask(REQUEST_COMMISSION_RESULT, little(count - 1u, 2));
+  EXPECT_EQ(last.number(0, 2), count);
+  EXPECT_EQ(last.number(2, 2), drive_commissioning_result(count - 1u).id);
+  EXPECT_EQ(last.number(12, 1), static_cast<unsigned>(VERDICT_NOT_MEASURED));
+  EXPECT_EQ(ask(REQUEST_COMMISSION_RESULT, little(count, 2)).body(), 2u);
+}
+
 TEST_F(Requests, WrongLengthsAndTypes) {
   EXPECT_EQ(ask(REQUEST_STATUS, {1}).status(), LENGTH);
   EXPECT_EQ(ask(REQUEST_PARAMETER_SET, little(9, 2)).status(), LENGTH);
   EXPECT_EQ(ask(0x3F).status(), UNKNOWN);
   EXPECT_EQ(ask(0x00).status(), UNKNOWN);
   EXPECT_FALSE(ask(0x88).came()) << "an answer that comes back must not be answered";
+  const std::uint16_t type = REQUEST_STATUS;
+  std::uint16_t answer[RECORD_MAX];
+  EXPECT_EQ(request_answer(GUARD_BUS, &type, 1, answer), 0) << "without a tag there is nothing to answer to";
 }
 
 TEST_F(Requests, LinkErrorsAreCounted) {
@@ -306,63 +320,6 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   EXPECT_EQ(ask(REQUEST_SCOPE_READ, {0, 4, 0, 101}).status(), RANGE);
   EXPECT_EQ(ask(REQUEST_SCOPE_READ, {3, 4, 0, 1}).body(), 0u) << "a channel that is not set up";
   EXPECT_EQ(ask(REQUEST_SCOPE_STOP).status(), OK);
-}
-
-TEST_F(Requests, AStreamComesAtItsPeriod) {
-  drive.control.measured_q20.d = 77;
-  EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(9, 2) + little(0, 2)).status(), OK);
-  records.clear();
-  run(2000);  // 200 ms
-  ASSERT_EQ(records.size(), 10u);
-  for (std::size_t k = 1; k < records.size(); ++k) {
-    ASSERT_EQ(records[k].size(), 2u + 4u + 8u);
-    EXPECT_EQ(records[k][0], EVENT_STREAM);
-    EXPECT_EQ(records[k][1], records[k - 1][1] + 1);
-    EXPECT_EQ(records[k][2], (records[k - 1][2] + 20) & 0xFF);
-    EXPECT_EQ(records[k][6], 77);
-  }
-  EXPECT_EQ(ask(REQUEST_STREAM, little(0, 2)).status(), OK);
-  records.clear();
-  run(500);
-  EXPECT_TRUE(records.empty());
-}
-
-TEST_F(Requests, AStreamWithoutRoomDropsAndCounts) {
-  EXPECT_EQ(ask(REQUEST_STREAM, little(1, 2) + Octets(16, 0)).status(), OK);  // 45 octets a ms, 12 go through
-  run(5000);
-  const Answer a = ask(REQUEST_LINK);
-  ASSERT_TRUE(a.came()) << "requests are answered beside it";
-  EXPECT_GT(a.number(14, 2), 300u);
-  std::set<int> steps;
-  std::vector<int> counters;
-  for (const Octets& r : records) {
-    if (r[0] == EVENT_STREAM) counters.push_back(r[1]);
-  }
-  for (std::size_t k = 1; k < counters.size(); ++k) steps.insert((counters[k] - counters[k - 1]) & 0xFF);
-  EXPECT_GT(*steps.rbegin(), 1) << "the gap can be seen";
-  EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2)).status(), LENGTH);
-  EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2) + little(signal_count(), 2)).status(), RANGE);
-}
-
-// Two clients, each on its port: neither ends nor slows the other's stream, nor gets its events.
-TEST_F(Requests, EachPortHasItsStream) {
-  std::uint16_t answer[RECORD_MAX], event[RECORD_MAX];
-  const std::uint16_t request[] = {REQUEST_STREAM, 7, 10, 0, 4, 0};
-  EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(4, 2)).status(), OK);
-  EXPECT_EQ(request_answer(GUARD_BUS, request, 6, answer), 3);
-  EXPECT_EQ(answer[2], OK);
-  records.clear();
-  int heard = 0;
-  for (int ms = 0; ms < 200; ++ms) {
-    run(10);
-    if (stream_event(GUARD_BUS, event) == 0) continue;
-    EXPECT_EQ(event[1], heard++);
-  }
-  EXPECT_EQ(heard, 20);
-  EXPECT_EQ(records.size(), 10u);
-  EXPECT_EQ(ask(REQUEST_STREAM, little(0, 2)).status(), OK);
-  run(10);
-  EXPECT_GT(stream_event(GUARD_BUS, event), 0) << "the other one goes on";
 }
 
 TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {

@@ -109,6 +109,10 @@ TEST_F(Store, ProgressRisesToTheEnd) {
     EXPECT_LT(last, 100);
     EXPECT_EQ(store_progress(), 100);
   }
+  ASSERT_TRUE(store_load());
+  int half = 0;
+  for (; store_is_busy(); store_service()) half += store_progress() > 30 && store_progress() < 70 ? 1 : 0;
+  EXPECT_GT(half, 10) << "of reading, too";
 }
 
 TEST_F(Store, OneJobAtATimeAndNoLoadWhileRunning) {
@@ -208,13 +212,79 @@ TEST_F(Store, AMemoryThatDoesNotAnswerOnceIsAskedAgain) {
   set_variant(2);
   const Values saved = in_force();
   save();
-  for (int job = 0; job < 4; ++job) {
+  const long before = nvm.jobs;
+  power_on();
+  const long jobs = nvm.jobs - before;
+  for (long job = 0; job < jobs; ++job) {
     nvm.deaf_job = nvm.jobs + job;
     ASSERT_EQ(power_on(), STORE_LOADED) << job;
     ASSERT_EQ(in_force(), saved) << job;
     nvm.refused_job = nvm.jobs + job;
     ASSERT_EQ(power_on(), STORE_LOADED) << job;
+    ASSERT_EQ(in_force(), saved) << job;
   }
+}
+
+// Read again and again, each time otherwise: it is taken as it was read last, and the slot's check decides.
+TEST_F(Store, AHeaderThatIsNeverTwiceTheSameHidesNoSlot) {
+  power_on();
+  set_variant(1);
+  const Values saved = in_force();
+  save();
+  drive_reset();
+  const long first = nvm.jobs;
+  nvm.memory[SLOT_MAGIC_OCTETS] ^= 1;
+  store_begin();
+  while (store_is_busy()) {
+    const long jobs = nvm.jobs;
+    store_service();
+    if (nvm.jobs > jobs && nvm.jobs - first <= 4) nvm.memory[SLOT_MAGIC_OCTETS] ^= 1;
+  }
+  EXPECT_EQ(store_state(), STORE_LOADED);
+  EXPECT_EQ(in_force(), saved);
+}
+
+// Not taken by the driver, at any place of a save: what is in the memory is a whole set.
+TEST_F(Store, AJobThatIsNotTakenSpoilsNoSet) {
+  power_on();
+  set_variant(1);
+  save();
+  set_variant(2);
+  const Values old = in_force();
+  save();
+  set_variant(3);
+  const Values fresh = in_force();
+  const FakeNvm memory = nvm;
+  save();
+  const long jobs = nvm.jobs - memory.jobs;
+  int failed = 0;
+  for (long job = 0; job < jobs; ++job) {
+    nvm = memory;
+    power_on();
+    for (const auto& [id, raw] : fresh) parameter_set(id, raw);
+    nvm.refused_job = nvm.jobs + job;
+    const bool saved = save() == STORE_SAVED;
+    failed += saved ? 0 : 1;
+    power_on();
+    const Values now = in_force();
+    ASSERT_TRUE(now == fresh || (!saved && now == old)) << job;
+  }
+  EXPECT_GT(failed, 20) << "pages, and the read-back";
+}
+
+// Its write-protect pin is high: it acknowledges all, and keeps what it has.
+TEST_F(Store, AMemoryThatIsWriteProtectedIsNoticed) {
+  power_on();
+  for (int n = 1; n <= 3; ++n) {
+    set_variant(n);
+    save();
+  }
+  const Values kept = in_force();
+  nvm.write_protected = true;
+  set_variant(4);
+  EXPECT_EQ(save(), STORE_FAILED);
+  EXPECT_EQ(power_on(), STORE_LOADED);
+  EXPECT_EQ(in_force(), kept);
 }
 
 TEST_F(Store, NoiseIsNotASlot) {
