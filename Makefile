@@ -79,7 +79,7 @@ prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted 
 	@$(PYTHON) toolchain/prove.py build/prove
 	@$(PYTHON) toolchain/prove.py build/prove --defects
 
-mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC against toolchain/mcdc_budget.txt
+mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC of every condition
 	@bash toolchain/setup.sh build llvm
 	@$(PYTHON) toolchain/mcdc.py
 
