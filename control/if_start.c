@@ -92,6 +92,7 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
   s->agreed = near ? s->agreed + 1 : 0;
   if (s->agreed >= IF_START_AGREED) return IF_START_TAKEN_OVER;
   s->waited++;
+  // Two returns, so that the range of what is waited stays known where the step is read (tests/prove/control.c).
   if (s->waited > c->wait_periods) return IF_START_FAILED;
   return IF_START_PENDING;
 }

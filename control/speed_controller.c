@@ -9,26 +9,21 @@ static bool config_valid(const speed_controller_config_t* c) {
          q_in_range(c->pi_damping_q12, 1228L, 12288L);
 }
 
-// exp(-x) and (1 - exp(-x)) / x for 0 <= x < 1, Q30, by their series: exact where B Ts / J is tiny.
-static int32_t exp_minus_q30(int32_t x_q30) {
+// 1 - x/n + x^2/(n (n + 1)) - ... for 0 <= x < 1, Q30: exact where B Ts / J is tiny.
+static int32_t series_q30(int32_t x_q30, int32_t n) {
   int32_t sum = ONE_Q30;
   int32_t term = ONE_Q30;
-  for (int32_t n = 1; n <= 7; n++) {
+  for (; n <= 7; n++) {
     term = -q_mul(term, x_q30, 30) / n;
     sum += term;
   }
   return sum;
 }
 
-static int32_t mean_decay_q30(int32_t x_q30) {
-  int32_t sum = ONE_Q30;
-  int32_t term = ONE_Q30;
-  for (int32_t n = 2; n <= 7; n++) {
-    term = -q_mul(term, x_q30, 30) / n;
-    sum += term;
-  }
-  return sum;
-}
+static int32_t exp_minus_q30(int32_t x_q30) { return series_q30(x_q30, 1); }
+
+// (1 - exp(-x)) / x
+static int32_t mean_decay_q30(int32_t x_q30) { return series_q30(x_q30, 2); }
 
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m) {
   if (!config_valid(c)) return false;

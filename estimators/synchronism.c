@@ -68,7 +68,7 @@ static void follow_limit(synchronism_t* s, const synchronism_config_t* c, const 
   const int32_t moved_q16 =
       q_mul_floor((emf_q16 > 0) ? emf_q16 : -emf_q16, c->share_q15, 15) + lag_q16(emf_q16 - s->emf_q16, error_q16);
   follow(&s->emf_q16, emf_q16, shift);
-  s->limit_q16 = q_min(q_add_sat(floor_q16(c, seen->span_ticks), moved_q16), LIMIT_MAX);
+  s->limit_q16 = q_clamp(q_add_sat(floor_q16(c, seen->span_ticks), moved_q16), 0, LIMIT_MAX);
 }
 
 // What is far beyond the limit counts as half as much again: so it takes a while to get there, and no longer to come

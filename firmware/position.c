@@ -28,7 +28,7 @@ static void adapt(drive_t* d, const regression_t* r) {
     if (!d->modulation.state.is_alternating) return;
     sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
     d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
-  } else if (is_turn(d, TURN_VOLTAGE) && turning && !(polarity_watch_is_awake(d) && is_full(d))) {
+  } else if (turning && !(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
     voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }

@@ -1,6 +1,6 @@
 #include "svpwm/windows.h"
 
-static int32_t span(const svpwm_window_t* w) { return w->end - w->start; }
+static int32_t span(const svpwm_window_t* w) { return (int32_t)w->end - w->start; }
 
 // The shortest goes, where there are too many, and the later ones move up.
 static void make_room(svpwm_pattern_t* pattern, const svpwm_window_t* window) {

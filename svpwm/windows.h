@@ -34,7 +34,7 @@ typedef struct {
 } svpwm_finder_t;
 
 static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_pattern_t* pattern) {
-  const svpwm_finder_t f = {c, pattern, c->settle_ticks + c->burst_ticks + c->span_min_ticks, 0, 0, 0};
+  const svpwm_finder_t f = {c, pattern, (int32_t)c->settle_ticks + c->burst_ticks + c->span_min_ticks, 0, 0, 0};
   pattern->window_count = 0;
   return f;
 }

@@ -155,10 +155,14 @@ def plant(out: Path, wanted: list[str]) -> int:
 def main() -> int:
     """The drive, or the defects."""
     out = Path(sys.argv[1]).resolve()
+    names = [word for word in sys.argv[2:] if not word.startswith("-")]
+    known_names = [part.name for part in PARTS]
+    if unknown := [name for name in names if name not in known_names]:
+        print(f"prove: no part {', '.join(unknown)}; there are {', '.join(known_names)}")
+        return 2
     out.mkdir(parents=True, exist_ok=True)
     subprocess.run(["why3", "-C", str(out / "why3.conf"), "config", "detect"], capture_output=True, check=True)
     subprocess.run([sys.executable, PACK, str(out / TABLE)], cwd=ROOT, check=True)
-    names = [word for word in sys.argv[2:] if not word.startswith("-")]
     return plant(out, names) if "--defects" in sys.argv else check(out, names)
 
 

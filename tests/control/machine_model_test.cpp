@@ -180,6 +180,18 @@ TEST(MachineModel, TheTrimMovesTheSaliency) {
   EXPECT_NEAR(real(m.k0_q20.d, 20), 0.0, 2e-5);
 }
 
+// From one to a hundred in one call; an admittance that is as good as none has the largest share that there is.
+TEST(MachineModel, TheShareOfTheFluxIsFoundFromAfar) {
+  for (const double rest : {1.0, 0.5, 0.1, 0.01, 0.001}) {
+    machine_model_t m = model_of(Motor{});
+    const double less = (rest - 1.0) * real(m.yq_q30, 30);
+    machine_model_trim(&m, raw(0.5 * less, 30), raw(-0.5 * less, 30));
+    const std::int32_t share_q24 = m.trim.psi_share_q24;
+    EXPECT_TRUE((rest > 0.008) ? std::fabs(real(share_q24, 24) * rest - 1.0) < 1e-4 : share_q24 == INT32_MAX)
+        << rest << ": " << real(share_q24, 24);
+  }
+}
+
 TEST(MachineModel, TorqueWithReluctance) {
   Random random(11);
   const Motor motor;

@@ -56,6 +56,7 @@ static inline estimator_input_t any_input(surroundings_t* around, uint16_t of_ca
   in.torque_accel_q8 = any_i32;
   in.regress = any_bool();
   in.renew = any_bool();
+  in.refresh = any_bool();
   in.frames = any_bool() ? around->frames : 0;
   return in;
 }

@@ -115,10 +115,6 @@ static void send(uint32_t order) {
   const svpwm_carried_t carried = {any_vector(512 * AMPERES_Q20), any_from(0, 1073741824L), link_q16};
   svpwm_send(&dead_time, &config.sampling, &carried, &pattern, &command);
   (void)svpwm_mean_q16(&pattern.pulses, link_q16);
-  for (uint16_t k = 0; k < pattern.window_count; k++) {
-    (void)svpwm_burst_start(&config.sampling, &pattern.windows[k]);
-    (void)svpwm_burst_end(&config.sampling, &pattern.windows[k]);
-  }
 }
 
 // What is sent of a period, and its windows, in each of the orders (svpwm_order in svpwm/extended.c and alternating.c).

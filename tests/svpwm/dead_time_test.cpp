@@ -4,6 +4,7 @@
 
 extern "C" {
 #include "svpwm/dead_time.h"
+#include "svpwm/edges.h"
 #include "svpwm/ripple.h"
 }
 
@@ -110,6 +111,33 @@ TEST(DeadTime, DropOpposesEachPhaseCurrent) {
     ASSERT_NEAR(got.x, expected.x, 1.2e-4);
     ASSERT_NEAR(got.y, expected.y, 1.2e-4);
   }
+}
+
+// The same from pulses: every edge that no other presses is shifted along the line.
+TEST(DeadTime, InAWideBandEveryEdgeIsShiftedByItsCurrent) {
+  Random random(121);
+  dead_time_config_t c = config();
+  c.band_q20 = raw(1.5, 20);
+  dead_time_design(&c);
+  const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff), half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
+  const sampling_config_t sampling = default_modulator().sampling;
+  int between = 0;
+  for (int n = 0; n < 500; ++n) {
+    svpwm_pattern_t pattern = {};
+    svpwm_pulses_t command;
+    pattern.pulses = some_pulses(random);
+    const Vector mean = random.direction(random.between(0.0, 3.0));
+    // no ripple: the current of an edge is its leg's mean
+    const svpwm_carried_t carried = {raw_ab(mean, 20), 0, raw(kLink, 16)};
+    svpwm_send(&c, &sampling, &carried, &pattern, &command);
+    for (std::uint16_t edge = 0; edge < SVPWM_EDGES; ++edge) {
+      const double blocking = (edge < SVPWM_LEGS ? 1.0 : -1.0) * phase(mean, edge % SVPWM_LEGS);
+      const double share = std::clamp(blocking / 1.5, -1.0, 1.0);
+      ASSERT_NEAR(pattern.pulses.at[edge] - command.at[edge], middle + half * share, 1.0) << blocking;
+      between += (std::fabs(blocking) > 0.7 && std::fabs(blocking) < 1.5) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(between, 300);
 }
 
 // A band wider than the error of the prediction: between the two the sign is certain, and the shift still between.
