@@ -1,13 +1,12 @@
 #include "estimators/axis.h"
 
-bool axis_add(axis_t* s, const regression_t* r) {
-  if (r->information <= 0) return false;
+void axis_add(axis_t* s, const regression_t* r) {
+  if (r->information <= 0) return;
   s->spread_q8 = q_add_sat(s->spread_q8, r->spread_q8);
   s->along_q16 = q_add_sat(s->along_q16, r->along_q16);
   s->mirror_q16 = q_add_sat(s->mirror_q16, r->mirror_q16);
   s->cross_q16 = q_add_sat(s->cross_q16, r->cross_q16);
   s->count++;
-  return s->count >= AXIS_PERIODS;
 }
 
 axis_result_t axis_evaluate(const axis_t* s, const machine_model_t* m) {

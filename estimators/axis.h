@@ -31,8 +31,10 @@ static inline void axis_begin(axis_t* s) {
   *s = none;
 }
 
-/// Takes the regression of one period, made at always the same angle; true when there are enough.
-bool axis_add(axis_t* s, const regression_t* r);
+/// Takes the regression of one period, made at always the same angle.
+void axis_add(axis_t* s, const regression_t* r);
+
+static inline bool axis_is_complete(const axis_t* s) { return s->count >= AXIS_PERIODS; }
 
 /// m: the model that the regressions were made with.
 axis_result_t axis_evaluate(const axis_t* s, const machine_model_t* m);

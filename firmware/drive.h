@@ -205,6 +205,10 @@ void start_power(drive_t* d, bool on);
 void start_listen(drive_t* d, uint16_t pause);
 void start_find_axis(drive_t* d);
 void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+
+/// Asks for the next period for a decision alone; true in that period, which has room for it.
+bool start_decides(drive_t* d);
+
 void start_step_listen(drive_t* d);
 void start_step_pulse(drive_t* d);
 void start_step_catch(drive_t* d);

@@ -158,13 +158,13 @@ static void measure_current(drive_t* d) {
   d->control.measured_q20.q = q_mul_floor(sum.q - q_mul_floor(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);
 }
 
-// The windows in the frame in use, where that is the own one of the only estimator.
-static const estimator_frame_t* own_frames(const drive_t* d) {
+// The windows in the frame in use, where that is the own one of the only estimator. A start has AVV alone.
+static const estimator_frame_t* own_frames(const drive_t* d, bool starting) {
   const drive_position_t* const p = &d->position;
   const int32_t source = parameters.position_source;
   uint32_t angle_bam = p->observer.angle_bam;
   int32_t speed_bpp = p->observer.speed_bpp;
-  if (source == POSITION_PAPER && avv_alone(d)) {
+  if (starting || (source == POSITION_PAPER && avv_alone(d))) {
     angle_bam = p->avv.observer.angle_bam;
     speed_bpp = p->avv.observer.speed_bpp;
   } else if (source == POSITION_PAPER && zvv_alone(d)) {
@@ -227,23 +227,29 @@ void drive_estimate(drive_t* d) {
   }
   // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
   const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
-  in.frames = starting ? 0 : own_frames(d);
+  in.frames = own_frames(d, starting);
   d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
+}
+
+void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
+  drive_position_t* const p = &d->position;
+  const int32_t speed_bpp = q_limit(seen_bpp, MACHINE_SPEED_END_BPP);
+  const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
+  avv_preset(&p->avv, angle_bam, speed_bpp, 0);
+  p->high = now;
+  p->used = now;
 }
 
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   drive_position_t* const p = &d->position;
-  const int32_t speed_bpp = q_limit(seen_bpp, MACHINE_SPEED_END_BPP);
-  avv_preset(&p->avv, angle_bam, speed_bpp, 0);
+  position_preset_axis(d, angle_bam, seen_bpp);
+  const int32_t speed_bpp = p->used.speed_bpp;
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
   flux_observer_reset(&p->flux, &d->config.flux, &d->model);
   blend_reset(&p->blend);
   if (parameters.position_source == POSITION_PAPER) blend_preset(&p->blend, &d->config.blend, speed_bpp);
-  const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
-  p->low = now;
-  p->high = now;
-  p->used = now;
+  p->low = p->used;
 }
 
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {

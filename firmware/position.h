@@ -5,6 +5,9 @@
 
 #include "firmware/drive.h"
 
+/// Lets AVV start from this angle and speed: a start that looks for the axis has nothing else at work.
+void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+
 /// Lets every estimator start from this angle and speed.
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 

@@ -40,10 +40,18 @@ static void turn_or_give_way(drive_t* d, bool observes) {
     s->waited++;
   } else {
     take_turn(s);
+    s->skips = s->pressed;
   }
 }
 
 static bool is_judgement(task_t task) { return task == TASK_JUDGE_FIRST || task == TASK_JUDGE; }
+
+// Before the shaft turns nothing is judged or renewed; the synchronism of one that is held is judged once in a
+// millisecond.
+static bool is_turn(const schedule_t* s) {
+  if (!s->turning) return s->task != TASK_SPEED && s->task != TASK_FIELD;
+  return s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST);
+}
 
 static void begin(schedule_t* s) {
   s->period = (s->period < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(s->period + 1u) : 0u;
@@ -52,6 +60,7 @@ static void begin(schedule_t* s) {
   s->moves = false;
   s->renews = false;
   s->judges = false;
+  s->decides = false;
   s->skips = false;
 }
 
@@ -63,13 +72,15 @@ void schedule_next(drive_t* d) {
   s->turning = turning;
   s->held = hold_is_on(d);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
-  s->pressed = observes && deviation_observer_is_pressed(&d->position.observer);
-  // The synchronism of a shaft that is held is judged once in a millisecond.
-  if (!turning || s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST)) {
-    turn_or_give_way(d, observes);
+  const bool young = d->periods < DRIVE_PERIODS_PER_MS;
+  s->pressed = observes && (young || deviation_observer_is_pressed(&d->position.observer));
+  if (is_turn(s)) {
+    s->decides = d->state == DRIVE_START && d->start.decides;
+    s->skips = s->decides;
+    if (!s->decides) turn_or_give_way(d, observes);
   } else {
     s->renews = s->task == TASK_RENEW;
-    s->judges = is_judgement(s->task) && !s->unsure && d->periods >= DRIVE_PERIODS_PER_MS;
-    s->skips = s->pressed && !s->renews && (s->judges || !is_judgement(s->task));
+    s->judges = is_judgement(s->task) && !s->unsure && !young;
+    s->skips = s->pressed && !s->renews;
   }
 }

@@ -15,7 +15,8 @@
 // Some things cannot wait: a working point that the torque current has left, and a covariance whose gain gets old or
 // that a load has just changed. A turn gives way to one of them, three times in a row at most. A shaft that is held
 // against a brake that opens learns nothing meanwhile: its working point has every turn, and one judgement besides.
-// Before the shaft turns every period is a turn.
+// Before the shaft turns every period is a turn that has no task of its own. A decision of the start has a period for
+// itself: no turn, and the estimator leaves its windows out.
 
 #ifndef STILLSPIN_FIRMWARE_SCHEDULE_H
 #define STILLSPIN_FIRMWARE_SCHEDULE_H
@@ -47,8 +48,9 @@ typedef struct {
   bool renews;      // the deviation observer renews its covariance
   bool judges;      // the synchronism is judged
   bool unsure;      // the deviation observer does not know the angle yet
-  bool pressed;     // its next windows may make it renew the covariance, asked or not
-  bool skips;       // and as there is no room for that, it leaves them out
+  bool pressed;     // its next windows may make it renew the covariance, asked or not: so in its first millisecond
+  bool decides;     // the start has this period for a decision
+  bool skips;       // there is no room for the windows: the estimators leave them out
 } schedule_t;
 
 #endif

@@ -44,7 +44,7 @@ void start_step_listen(drive_t* d) {
 // the admittance of the model as it is by now: a machine of other inductances looks like one of another flux.
 static void take_flux(drive_t* d) {
   machine_model_t* const m = &d->model;
-  const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(d->start.speed_bpp));
+  const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(d->start.rotor.speed_bpp));
   m->trim.psi_q16 = 0;
   if (d->start.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
   const int32_t told_q30 = m->map.points[0].yqq_q30;
@@ -56,21 +56,20 @@ static void take_flux(drive_t* d) {
 }
 
 // The rotor's state, carried on from the second pulse to the running period.
-static void close_loop(drive_t* d, const flying_rotor_t* rotor) {
+static void close_loop(drive_t* d) {
+  flying_rotor_t* const rotor = &d->start.rotor;
   const int32_t periods_q16 = q_div(d->start.clock - rotor->tick, ESTIMATOR_PERIOD_TICKS, 16);
-  const uint32_t angle = rotor->angle_bam + (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
-  position_preset(d, angle, rotor->speed_bpp);
-  d->start.angle_bam = angle;
-  d->start.speed_bpp = rotor->speed_bpp;
+  rotor->angle_bam += (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
+  position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
   take_flux(d);
   axis_begin(&d->start.axis);
   d->start.sigma_q8 = rotor->sigma_q8;
+  d->start.learnt = false;
   d->start.shorted = false;
   d->start.stray = 0;
   d->control.closed = true;
   field_weakening_reset(&d->control.weakening);
   drive_weaken_field(d);
-  start_enter(d, START_CATCH);
 }
 
 static void try_again(drive_t* d) {
@@ -86,23 +85,22 @@ static void try_again(drive_t* d) {
 
 static void judge_pair(drive_t* d, const flying_emf_t* second) {
   drive_start_t* const s = &d->start;
-  flying_rotor_t rotor;
   s->emf_q16 = second->size_q16;
-  if (flying_resolve(&s->first, second, &d->model, &rotor)) {
-    close_loop(d, &rotor);
+  if (flying_resolve(&s->first, second, &d->model, &s->rotor)) {
+    start_enter(d, START_CATCH);
   } else {
     try_again(d);
   }
 }
 
-static void end_pulse(drive_t* d) {
+// The gates are off again.
+static void judge_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
   const flying_emf_t e = flying_evaluate(&s->pulse, &d->model);
   if (e.size_q16 < STANDING_Q16) {
     start_find_axis(d);
     return;
   }
-  start_power(d, false);
   s->pulses++;
   if (s->pulses == 1u) {
     s->first = e;
@@ -114,6 +112,10 @@ static void end_pulse(drive_t* d) {
 
 void start_step_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
+  if (!s->powered) {
+    judge_pulse(d);
+    return;
+  }
   for (uint16_t k = 0; k < d->samples.count; k++) {
     const estimator_window_t* const w = &d->samples.windows[k];
     // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
@@ -121,35 +123,40 @@ void start_step_pulse(drive_t* d) {
     if (!early) flying_add(&s->pulse, &d->model, w, s->clock - ESTIMATOR_PERIOD_TICKS + w->middle_tick);
   }
   const bool enough = flying_current(&s->pulse) > parameters.current_limit / 16;
-  if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) end_pulse(d);
+  if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) start_power(d, false);
 }
 
 // The first periods go to the axis and the admittances, in the frame that turns with the rotor as the back-EMF has it.
 static bool learn(drive_t* d) {
   drive_start_t* const s = &d->start;
-  s->angle_bam += (uint32_t)s->speed_bpp;
-  if (s->axis.count >= AXIS_PERIODS) return true;
-  const bool complete = !drive_is_blind(d) && axis_add(&s->axis, &d->position.avv.regression);
-  if (complete) {
+  if (s->learnt) return true;
+  s->rotor.angle_bam += (uint32_t)s->rotor.speed_bpp;
+  if (!drive_is_blind(d)) axis_add(&s->axis, &d->position.avv.regression);
+  if (axis_is_complete(&s->axis) && start_decides(d)) {
     const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
     admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
     take_flux(d);
-    s->angle_bam += (uint32_t)q_clamp(axis.angle_bam, -STRAY_MAX_BAM, STRAY_MAX_BAM);
+    s->rotor.angle_bam += (uint32_t)q_clamp(axis.angle_bam, -STRAY_MAX_BAM, STRAY_MAX_BAM);
+    s->learnt = true;
   }
-  position_preset(d, s->angle_bam, s->speed_bpp);
+  position_preset_axis(d, s->rotor.angle_bam, s->rotor.speed_bpp);
   return false;
 }
 
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
 void start_step_catch(drive_t* d) {
   drive_start_t* const s = &d->start;
+  if (s->shorted) {
+    close_loop(d);
+    return;
+  }
   if (!s->powered) start_power(d, true);
   if (!learn(d)) {
     if (s->tick > LEARN_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
     return;
   }
   s->stray += q_shr(d->position.avv.error_bam - s->stray, 4);
-  if (s->tick < CATCH_PERIODS) return;
+  if (s->tick < CATCH_PERIODS || !start_decides(d)) return;
   if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
     start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
   } else {

@@ -36,6 +36,11 @@ void start_power(drive_t* d, bool on) {
   }
 }
 
+bool start_decides(drive_t* d) {
+  d->start.decides = !d->schedule.decides;
+  return d->schedule.decides;
+}
+
 static void reset_control(drive_t* d) {
   d->control.closed = false;
   modulator_reset(&d->modulation.state);
@@ -115,16 +120,16 @@ void start_find_axis(drive_t* d) {
 
 static void step_axis(drive_t* d) {
   drive_start_t* const s = &d->start;
-  if (s->tick > AXIS_TIMEOUT) {
-    drive_raise(d, FAULT_NO_SAMPLES);
+  if (s->tick >= AXIS_SKIP) axis_add(&s->axis, &d->position.avv.regression);
+  position_preset_axis(d, 0, 0);  // the regressions must be made at one and the same angle
+  if (!axis_is_complete(&s->axis)) {
+    if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
     return;
   }
-  const bool complete = s->tick >= AXIS_SKIP && axis_add(&s->axis, &d->position.avv.regression);
-  position_preset(d, 0, 0);  // the regressions must be made at one and the same angle
-  if (!complete) return;
+  if (!start_decides(d)) return;
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
   admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
-  position_preset(d, (uint32_t)axis.angle_bam, 0);
+  position_preset_axis(d, (uint32_t)axis.angle_bam, 0);
   d->control.closed = true;
   start_enter(d, START_SETTLE);
 }
@@ -175,7 +180,7 @@ static void try_saturation(drive_t* d) {
 }
 
 static void step_settle(drive_t* d) {
-  if (d->start.tick < SETTLE_PERIODS) return;
+  if (d->start.tick < SETTLE_PERIODS || !start_decides(d)) return;
   if (parameters.polarity_check == 0) {
     decided(d, POLARITY_RIGHT, 0);
   } else {
@@ -193,7 +198,7 @@ static void step_saturation(drive_t* d) {
   drive_start_t* const s = &d->start;
   saturation_t* const test = &s->saturation;
   d->control.reference_q20.d = saturation_step(test, &d->position.avv.regression, &d->model);
-  if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS) return;
+  if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_decides(d)) return;
   s->tries++;
   if (test->result != POLARITY_AMBIGUOUS) {
     take_resistance(d);
@@ -209,7 +214,7 @@ static void step_motion(drive_t* d) {
   drive_start_t* const s = &d->start;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
   d->control.reference_q20.q = polarity_step(&s->motion, raw);
-  if (s->motion.result == POLARITY_PENDING) return;
+  if (s->motion.result == POLARITY_PENDING || !start_decides(d)) return;
   s->tries++;
   if (s->motion.result != POLARITY_AMBIGUOUS) {
     decided(d, s->motion.result, s->motion.sigma_q8);

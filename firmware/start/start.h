@@ -19,7 +19,7 @@
 
 typedef enum {
   START_LISTEN = 0,      // gates off, the short circuit is prepared
-  START_PULSE = 1,       // gates on, short circuit
+  START_PULSE = 1,       // gates on, short circuit; off again, what it showed
   START_CATCH = 2,       // the rotor turns: current loop closed, estimators following
   START_AXIS = 3,        // zero mean voltage, the axis is found
   START_SETTLE = 4,      // current loop closed at zero
@@ -39,10 +39,11 @@ typedef struct {
   uint16_t blind;      // periods until the windows belong to a power stage that is on
   bool powered;        // the start has the gates on
   bool shorted;        // the modulator holds all lower devices on
+  bool decides;        // the next period is for a decision alone (start_decides)
+  bool learnt;         // axis and admittances of a caught rotor are
   int32_t on_tick;     // of the period in which the gates came on
-  uint32_t angle_bam;  // of a caught rotor by its back-EMF, carried on
-  int32_t speed_bpp;
-  int32_t emf_q16;  // of the second pulse, V
+  flying_rotor_t rotor;  // caught: at the second pulse, then carried on
+  int32_t emf_q16;       // of that pulse, V
   int32_t clock;    // tick at which the running period began, from the start of START
   int32_t stray;    // filtered angle error while catching, binary angle
   flying_pulse_t pulse;

@@ -29,7 +29,8 @@ axis_result_t find(const Motor& truth, const machine_model_t& model, double thet
     const Input in(model, windows);
     avv_preset(&avv, 0, 0, 0);
     (void)avv_step(&avv, &kAvv, in.get());
-    if (axis_add(&axis, &avv.regression)) {
+    axis_add(&axis, &avv.regression);
+    if (axis_is_complete(&axis)) {
       EXPECT_EQ(n, AXIS_PERIODS - 1);
       return axis_evaluate(&axis, &model);
     }
@@ -75,7 +76,8 @@ TEST(Axis, PeriodsWithoutTwoVectorsDoNotCount) {
   axis_t axis;
   axis_begin(&axis);
   const regression_t nothing = {};
-  for (int n = 0; n < 100; ++n) EXPECT_FALSE(axis_add(&axis, &nothing));
+  for (int n = 0; n < 100; ++n) axis_add(&axis, &nothing);
+  EXPECT_FALSE(axis_is_complete(&axis));
   EXPECT_EQ(axis.count, 0);
 }
 

@@ -67,6 +67,46 @@ TEST_F(Schedule, TurnsGoRoundAndEveryTaskHasItsPeriod) {
   EXPECT_EQ(turn, 20);
 }
 
+// A start has no judgements and no renewals: all periods are turns but those of the speed and of the field.
+TEST_F(Schedule, BeforeTheShaftTurnsEveryPeriodIsATurnThatHasNoTask) {
+  drive.state = DRIVE_START;
+  know(1.1);
+  int turn = 0;
+  for (const schedule_t& s : next(40)) {
+    const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;
+    EXPECT_EQ(s.turn, own ? static_cast<int>(TURNS) : turn++ % TURNS);
+    EXPECT_FALSE(s.turning || s.unsure || s.pressed || s.renews || s.judges || s.skips || s.decides);
+  }
+  EXPECT_EQ(turn, 32);
+}
+
+TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
+  for (int before = 0; before < 10; ++before) {
+    SetUp();
+    drive.state = DRIVE_START;
+    leave_working_point();
+    next(before);
+    drive.start.decides = true;
+    schedule_t s = next(1)[0];
+    const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;  // then it waits
+    EXPECT_NE(s.decides, own);
+    if (own) s = next(1)[0];
+    EXPECT_TRUE(s.decides && s.skips);
+    EXPECT_EQ(s.turn, TURNS);
+    EXPECT_FALSE(s.moves || s.renews || s.judges);
+    drive.start.decides = false;
+    EXPECT_FALSE(next(1)[0].decides);
+  }
+}
+
+TEST_F(Schedule, OnlyAStartDecides) {
+  drive.start.decides = true;
+  for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION, DRIVE_FAULT}) {
+    drive.state = state;
+    EXPECT_FALSE(next(1)[0].decides) << state;
+  }
+}
+
 // As the alternating layout repeats after six periods, the regression has to see all of them.
 TEST_F(Schedule, TheRegressionSeesEveryPlaceOfTheAlternatingLayout) {
   int seen[6] = {};
@@ -120,8 +160,8 @@ TEST_F(Schedule, AWorkingPointNearByCanWait) {
   }
 }
 
-// It renews its covariance with every look at the windows, so that the longest tasks leave these out; nothing is
-// judged.
+// It renews its covariance with every look at the windows, so that a period with another task leaves these out; nothing
+// is judged.
 TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   know(1.1);
   leave_working_point();
@@ -129,22 +169,24 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
     EXPECT_TRUE(s.unsure && s.pressed);
     EXPECT_FALSE(s.judges);
     EXPECT_FALSE(s.moves) << "it renews anyway";
-    EXPECT_EQ(s.skips, s.task == TASK_SPEED || s.task == TASK_FIELD);
+    EXPECT_NE(s.skips, s.renews);
   }
   // Known, but with much to learn: the same, and the synchronism is judged.
   know(0.9);
   drive.position.observer.gathered = {raw(1.0, 21), 0, 0, 1};
   for (const schedule_t& s : next(10)) {
     EXPECT_TRUE(s.pressed && !s.unsure);
-    const bool long_task = s.task == TASK_SPEED || s.task == TASK_FIELD;
-    EXPECT_EQ(s.skips, long_task || s.judges);
+    EXPECT_NE(s.skips, s.renews);
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST);
   }
 }
 
 TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {
   drive.periods = 9;
-  for (const schedule_t& s : next(10)) EXPECT_FALSE(s.judges);
+  for (const schedule_t& s : next(10)) {
+    EXPECT_FALSE(s.judges);
+    EXPECT_TRUE(s.pressed && !s.unsure) << "how much its windows will tell is not known yet";
+  }
   drive.periods = 10;
   EXPECT_TRUE(next(2).back().judges);
 }
@@ -158,16 +200,6 @@ TEST_F(Schedule, AHeldShaftMovesItsWorkingPointWithEveryTurn) {
     EXPECT_EQ(s.moves, s.task == TASK_TURN || s.task == TASK_JUDGE_FIRST);
     EXPECT_EQ(s.renews, s.task == TASK_RENEW);
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE);
-  }
-}
-
-TEST_F(Schedule, BeforeTheShaftTurnsEveryPeriodIsATurn) {
-  drive.state = DRIVE_START;
-  know(1.1);
-  int turn = 0;
-  for (const schedule_t& s : next(20)) {
-    EXPECT_EQ(s.turn, turn++ % TURNS);
-    EXPECT_FALSE(s.turning || s.unsure || s.pressed || s.renews || s.judges || s.skips);
   }
 }
 

@@ -20,6 +20,18 @@ class StartStanding : public Drive {
   }
   static drive_start_t& start() { return drive.start; }
 
+  /// A period of the start, and the one that it asks for a decision alone.
+  static void step() {
+    const start_phase_t before = start().phase;
+    drive_start(&drive);
+    drive.schedule.decides = drive.state == DRIVE_START && start().decides;
+    if (!drive.schedule.decides) return;
+    EXPECT_EQ(start().phase, before);
+    drive_start(&drive);
+    EXPECT_FALSE(start().decides);
+    drive.schedule.decides = false;
+  }
+
   /// At the end of a phase, with AVV's angle at hand.
   static void at(start_phase_t phase, int tick, double speed = 0.0) {
     start().phase = phase;
@@ -33,7 +45,7 @@ class StartStanding : public Drive {
     at(START_SATURATION, SATURATION_LENGTH + 100);
     start().saturation.tick = SATURATION_LENGTH;
     start().saturation.result = result;
-    drive_start(&drive);
+    step();
   }
   /// And the one by motion: all its angles have been seen but the last.
   static void motion_says(double response) {
@@ -42,7 +54,7 @@ class StartStanding : public Drive {
     m.tick = POLARITY_LENGTH - 1;
     m.response_bam = static_cast<std::int32_t>(response * m.expected_bam);
     m.rough_bam = 0;
-    drive_start(&drive);
+    step();
   }
   static void expect_runs(double angle) {
     EXPECT_EQ(drive.state, DRIVE_RUN);
@@ -93,7 +105,7 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
     r.along_q16 = raw(0.0005 * spread, 16);
     r.mirror_q16 = raw((std::cos(2.0 * kThere) - 1.0) * half * spread, 16);  // the model has it at zero
     r.cross_q16 = raw(std::sin(2.0 * kThere) * half * spread, 16);
-    drive_start(&drive);
+    step();
     if (start().phase == START_AXIS) {
       EXPECT_EQ(drive.position.avv.observer.angle_bam, 0u);
       EXPECT_FALSE(drive.control.closed);
@@ -116,9 +128,9 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     parameters.hold_time = 40;
     const double speed = Motor{}.electrical(rpm);
     at(START_SETTLE, 99, speed);
-    drive_start(&drive);
+    step();
     EXPECT_EQ(drive.state, DRIVE_START);
-    drive_start(&drive);
+    step();
     expect_runs(kThere);
     const bool turns = std::fabs(rpm) > 20.0;
     EXPECT_NEAR(rad_per_s(drive.control.ramp.value), turns ? speed : 0.0, 0.01) << rpm;
@@ -132,7 +144,7 @@ TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
     SetUp();
     drive.config.saturation = {0, visible ? raw(0.002, 30) : 0};
     at(START_SETTLE, 100);
-    drive_start(&drive);
+    step();
     EXPECT_EQ(start().phase, visible ? START_SATURATION : START_MOTION);
     EXPECT_EQ(start().tick, 0);
     EXPECT_EQ(start().tries, 0);
@@ -145,17 +157,17 @@ TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
 TEST_F(StartStanding, TheTestsCommandTheirCurrents) {
   drive.config.saturation = {0, raw(0.002, 30)};
   at(START_SETTLE, 100);
-  drive_start(&drive);
-  for (int n = 0; n < 30; ++n) drive_start(&drive);
+  step();
+  for (int n = 0; n < 30; ++n) step();
   EXPECT_EQ(drive.control.reference_q20.d, parameters.start_current);
   EXPECT_EQ(drive.control.reference_q20.q, 0);
   SetUp();
   drive.config.saturation = {0, 0};
   at(START_SETTLE, 100);
-  drive_start(&drive);
+  step();
   std::int32_t most = 0;
   for (int n = 0; n < POLARITY_LENGTH / 2; ++n) {
-    drive_start(&drive);
+    step();
     most = std::max(most, drive.control.reference_q20.q);
   }
   EXPECT_EQ(most, parameters.polarity_current);
@@ -174,9 +186,9 @@ TEST_F(StartStanding, SaturationDecidesOnceItsCurrentIsGone) {
     start().saturation.tick = SATURATION_LENGTH;
     start().saturation.result = result;
     start().saturation.sigma_q8 = 1234;
-    drive_start(&drive);
+    step();
     EXPECT_EQ(drive.state, DRIVE_START);
-    drive_start(&drive);
+    step();
     expect_runs(result == POLARITY_RIGHT ? kThere : kThere + kPi);
     EXPECT_EQ(start().sigma_q8, 1234);
   }
@@ -186,7 +198,7 @@ TEST_F(StartStanding, SaturationDecidesOnceItsCurrentIsGone) {
 TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   drive.config.saturation = {0, raw(0.002, 30)};
   at(START_SETTLE, 100);
-  drive_start(&drive);
+  step();
   const std::int32_t current = parameters.start_current;
   saturation_says(POLARITY_AMBIGUOUS);
   EXPECT_EQ(start().phase, START_SATURATION);
@@ -207,7 +219,7 @@ TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   parameters.current_limit = raw(14.0, 20);
   drive.config.saturation = {0, 0};
   at(START_SETTLE, 100);
-  drive_start(&drive);
+  step();
   for (const double amps : {4.0, 8.0, 14.0}) {
     EXPECT_EQ(drive.state, DRIVE_START);
     EXPECT_EQ(start().phase, START_MOTION);
@@ -225,7 +237,7 @@ TEST_F(StartStanding, MotionTellsTheHalfTurn) {
     SetUp();
     drive.config.saturation = {0, 0};
     at(START_SETTLE, 100);
-    drive_start(&drive);
+    step();
     motion_says(response);
     expect_runs(response > 0.0 ? kThere : kThere + kPi);
     EXPECT_EQ(start().sigma_q8, start().motion.sigma_q8);
@@ -236,10 +248,10 @@ TEST_F(StartStanding, MotionTellsTheHalfTurn) {
 TEST_F(StartStanding, MotionIsSeenByTheRawAngle) {
   drive.config.saturation = {0, 0};
   at(START_SETTLE, 100);
-  drive_start(&drive);
+  step();
   at(START_MOTION, 2);
   drive.position.avv.error_bam = 1000000;
-  drive_start(&drive);
+  step();
   EXPECT_EQ(start().motion.last_bam, bam(kThere) + 1000000u);
 }
 
@@ -287,7 +299,7 @@ TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
     drive.position.used.angle_bam = turn.vector_bam;
     start().seen = {turn.vector_bam - bam(0.4), turn.speed_bpp, 0, 32767};
     drive.control.command_q16 = {0, 0};
-    drive_start(&drive);
+    step();
   }
   ASSERT_EQ(drive.state, DRIVE_RUN);
   EXPECT_EQ(drive.control.ramp.value, drive.config.turn.speed_bpp);

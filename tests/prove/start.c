@@ -47,7 +47,8 @@ static void find_axis(void) {
   any_model(&model);
   while (any_bool()) {
     const regression_t r = any_regression();
-    if (axis_add(&s, &r)) (void)axis_evaluate(&s, &model);
+    axis_add(&s, &r);
+    if (axis_is_complete(&s)) (void)axis_evaluate(&s, &model);
   }
 }
 
