@@ -18,17 +18,25 @@ static bool is_turn(const drive_t* d, turn_t turn) { return d->schedule.turn == 
 // A period with three windows has no room for both the polarity's watch and what else has the turn.
 static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WINDOWS; }
 
+static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) {
+  if (!d->modulation.state.is_alternating) return;
+  sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
+  d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
+}
+
+// Resistance and flux are learnt once the drive runs; until then the sensors have that turn.
 static void adapt(drive_t* d, const regression_t* r) {
   if (!(is_turn(d, TURN_LIKENESS) || is_turn(d, TURN_VOLTAGE)) || !d->position.is_near) return;
-  // A turn takes 5/2 as long where it has four of ten periods; learning 3/2 as much leaves the angle quieter.
-  const bool turning = d->schedule.turning;
+  // A turn takes 5/4 as long where it has eight of ten periods, and 5/2 where it has four; there, learning 3/2 as much
+  // leaves the angle quieter.
+  const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);
+  const bool runs = drive_is_turning(d);
   if (is_turn(d, TURN_LIKENESS)) {
-    const int32_t share_q30 = turning ? d->config.adapt_share_q30 / 2 * 3 : d->config.adapt_share_q30;
     admittance_step(&d->model, r, share_q30);
-    if (!d->modulation.state.is_alternating) return;
-    sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
-    d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
-  } else if (turning && !(polarity_watch_is_awake(d) && is_full(d))) {
+    if (runs) match_sensors(d, r, share_q30);
+  } else if (!runs) {
+    match_sensors(d, r, share_q30);
+  } else if (!(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
     voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }
@@ -176,12 +184,15 @@ static const estimator_frame_t* own_frames(const drive_t* d, bool starting) {
   return (angle_bam == p->used.angle_bam && speed_bpp == p->used.speed_bpp) ? d->samples.frames : 0;
 }
 
+static int32_t torque_accel_q8(const drive_t* d, dq_t current_q20) {
+  return q_mul_sat(machine_torque_q16(&d->model, current_q20), d->model.accel_q12, 20);
+}
+
 // The I-F start: the control uses the vector's frame, and the source looks on. Of the torque it is told what its own
 // angle makes of the current, as later. At rest the angle is the vector's: a saliency has two.
 static void estimate_turned(drive_t* d, estimator_input_t* in) {
   drive_start_t* const s = &d->start;
-  const dq_t i_q20 = drive_seen(d, d->control.measured_q20);
-  in->torque_accel_q8 = q_mul_sat(machine_torque_q16(&d->model, i_q20), d->model.accel_q12, 20);
+  in->torque_accel_q8 = torque_accel_q8(d, drive_seen(d, d->control.measured_q20));
   d->position.torque_accel_q8 = in->torque_accel_q8;
   in->frames = 0;
   if (flux_source_rests(d) && !if_start_is_up(&s->turn, &d->config.turn)) {
@@ -203,8 +214,8 @@ void drive_estimate(drive_t* d) {
   if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
+  const bool turned = drive_is_turned(d);
   const bool starting = !measuring && !d->schedule.turning;
-  const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
@@ -213,10 +224,10 @@ void drive_estimate(drive_t* d) {
   in.windows = d->samples.windows;
   in.window_count = (drive_is_blind(d) || d->schedule.skips) ? 0 : d->samples.count;
   // While the polarity is open the sign of the torque is, too.
-  in.torque_accel_q8 = starting ? 0 : q_mul_sat(torque_q16, d->model.accel_q12, 20);
+  in.torque_accel_q8 = (starting || turned) ? 0 : torque_accel_q8(d, d->control.measured_q20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&d->inertia, in.torque_accel_q8);
-  if (drive_is_turned(d)) {
+  if (turned) {
     estimate_turned(d, &in);
     return;
   }

@@ -110,7 +110,7 @@ static bool judges_now(const drive_t* d) {
 }
 
 static drive_fault_t check_position(drive_t* d) {
-  if (!d->schedule.turning || !judges_now(d)) return FAULT_NONE;
+  if (!drive_is_turning(d) || !judges_now(d)) return FAULT_NONE;
   const int32_t periods = q_min((uint16_t)(d->heartbeat - d->supervision.judged_at), JUDGED_PERIODS_MAX);
   d->supervision.judged_at = d->heartbeat;
   if (lost_synchronism(d, periods)) return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;

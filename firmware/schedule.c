@@ -66,10 +66,9 @@ static void begin(schedule_t* s) {
 
 void schedule_next(drive_t* d) {
   schedule_t* const s = &d->schedule;
-  const bool turning = drive_is_turning(d);
-  const bool observes = turning && has_observer(d);
   begin(s);
-  s->turning = turning;
+  s->turning = drive_is_turning(d) || drive_is_turned(d);
+  const bool observes = s->turning && has_observer(d);
   s->held = hold_is_on(d);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
   const bool young = d->periods < DRIVE_PERIODS_PER_MS;
@@ -80,7 +79,7 @@ void schedule_next(drive_t* d) {
     if (!s->decides) turn_or_give_way(d, observes);
   } else {
     s->renews = s->task == TASK_RENEW;
-    s->judges = is_judgement(s->task) && !s->unsure && !young;
+    s->judges = is_judgement(s->task) && !s->unsure && !young && d->state != DRIVE_START;
     s->skips = s->pressed && !s->renews;
   }
 }

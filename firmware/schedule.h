@@ -28,7 +28,7 @@ typedef enum {
   TURN_REGRESS = 0,   // the windows on their voltages
   TURN_LOOK = 1,      // is that near enough to learn from? The model's K, or the polarity's watch follows the axis
   TURN_LIKENESS = 2,  // admittances and match of the sensors
-  TURN_VOLTAGE = 3,   // resistance and flux; the polarity's watch looks at the back-EMF
+  TURN_VOLTAGE = 3,   // resistance and flux, before the drive runs the sensors; the watch looks at the back-EMF
   TURN_MOVE = 4,      // the model moves to the working point
   TURNS = 5           // and none of them
 } turn_t;

@@ -79,7 +79,9 @@ MAPPED = ("map_current=14", "lqq_1=97", "lqq_2=94", "lqq_3=90", "lqq_4=85", "ldq
 RUNS = {
     "observer": (
         *(Run(0, 5), Run(0, 5, 0, "held", HELD), Run(60, 5), Run(600, 8), Run(1200, 5), Run(1500, 5)),
-        *(Run(1500, 5, 1500, "caught"), Run(1500, 5, 0, "mapped", MAPPED), Run(2000, 5), Run(3000, 1)),
+        *(Run(600, 5, 600, "caught"), Run(600, 2, 0, "turned", ("start_method=1",))),
+        *(Run(600, 5, 0, "charged", ("bootstrap_time=15",)), Run(1500, 5, 1500, "caught")),
+        *(Run(1500, 5, 0, "mapped", MAPPED), Run(2000, 5), Run(3000, 1), Run(3000, 1, -3000, "reversed")),
     ),
     "paper": (Run(0, 0), Run(80, 0, 600), Run(600, 5, 600), Run(1500, 3, 600), Run(2000, 3, 600), Run(3000, 1, 600)),
     # At 425 rpm the observer hands over and both are at work; above the flux is alone.

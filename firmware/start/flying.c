@@ -113,7 +113,7 @@ static void judge_pulse(drive_t* d) {
 void start_step_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (!s->powered) {
-    judge_pulse(d);
+    if (start_decides(d)) judge_pulse(d);
     return;
   }
   for (uint16_t k = 0; k < d->samples.count; k++) {

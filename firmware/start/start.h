@@ -35,17 +35,17 @@ typedef struct {
   uint16_t pause;  // periods to listen before the next pulse
   uint16_t tries;  // of the present phase
   uint16_t pulses;
-  uint16_t charged;    // periods in which the bootstrap capacitors were charged
-  uint16_t blind;      // periods until the windows belong to a power stage that is on
-  bool powered;        // the start has the gates on
-  bool shorted;        // the modulator holds all lower devices on
-  bool decides;        // the next period is for a decision alone (start_decides)
-  bool learnt;         // axis and admittances of a caught rotor are
-  int32_t on_tick;     // of the period in which the gates came on
+  uint16_t charged;      // periods in which the bootstrap capacitors were charged
+  uint16_t blind;        // periods until the windows belong to a power stage that is on
+  bool powered;          // the start has the gates on
+  bool shorted;          // the modulator holds all lower devices on
+  bool decides;          // the next period is for a decision alone (start_decides)
+  bool learnt;           // axis and admittances of a caught rotor are
+  int32_t on_tick;       // of the period in which the gates came on
   flying_rotor_t rotor;  // caught: at the second pulse, then carried on
   int32_t emf_q16;       // of that pulse, V
-  int32_t clock;    // tick at which the running period began, from the start of START
-  int32_t stray;    // filtered angle error while catching, binary angle
+  int32_t clock;         // tick at which the running period began, from the start of START
+  int32_t stray;         // filtered angle error while catching, binary angle
   flying_pulse_t pulse;
   flying_emf_t first;
   axis_t axis;

@@ -45,6 +45,6 @@ void start_step_turn(drive_t* d) {
       if_start_step(&s->turn, &d->config.turn, d->control.command_q16, s->seen.angle_bam, s->seen.speed_bpp);
   d->control.reference_q20.d = s->turn.current_q20;
   d->control.reference_q20.q = 0;
-  if (result == IF_START_TAKEN_OVER) take_over(d);
+  if (result == IF_START_TAKEN_OVER && start_decides(d)) take_over(d);
   if (result == IF_START_FAILED) drive_raise(d, FAULT_DIVERGENCE);
 }

@@ -33,6 +33,11 @@ class StartCaught : public Drive {
     start_step_pulse(&drive);
     EXPECT_FALSE(board.gates_on) << "the current dies away";
     start_step_pulse(&drive);
+    EXPECT_TRUE(drive.start.decides) << "in a period for itself";
+    EXPECT_EQ(drive.start.phase, START_PULSE);
+    drive.schedule.decides = true;
+    start_step_pulse(&drive);
+    drive.schedule.decides = false;
     if (drive.start.phase == START_CATCH) start_step_catch(&drive);
   }
   void await_pulse() {
