@@ -63,9 +63,7 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
 static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq_t emf_q16) {
   const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
   const int32_t q = q_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
-  const q_inverse_t per_length = q_invert(q_hypot(d, q));
-  return q_add_sat(q_mul_sat(q_over(d, per_length, 28), emf_q16.d, 28),
-                   q_mul_sat(q_over(q, per_length, 28), emf_q16.q, 28));
+  return q_div(q_mul_add_sat(d, emf_q16.d, q, emf_q16.q, 20), q_hypot(d, q), 20);
 }
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {

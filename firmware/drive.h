@@ -206,6 +206,10 @@ void start_listen(drive_t* d, uint16_t pause);
 void start_find_axis(drive_t* d);
 void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
+/// Takes the period's regression where it is valid. True, in a period for the decision, when the axis is known: the
+/// model has the admittances, and *axis_bam is how far the axis is from where it was looked for. Too late is a fault.
+bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam);
+
 /// Asks for the next period for a decision alone; true in that period, which has room for it.
 bool start_decides(drive_t* d);
 

@@ -37,10 +37,14 @@ static void write_frame(drive_t* d, const svpwm_pattern_t* p, const svpwm_pulses
     f.burst_end_tick[k] = used ? (uint16_t)p->windows[k].end : HAL_PWM_NONE;
   }
   const bool written = hal_pwm_write(&f, DEADLINE_TICK);
-  d->supervision.overrun = written ? 0u : (uint16_t)(d->supervision.overrun + 1u);
   d->modulation.sampled = d->modulation.running;
-  if (written) d->modulation.running = *p;
-  if (!written) d->limits |= LIMIT_OVERRUN;
+  if (written) {
+    d->supervision.overrun = 0;
+    d->modulation.running = *p;
+  } else {
+    d->supervision.overrun++;
+    d->limits |= LIMIT_OVERRUN;
+  }
 }
 
 void drive_modulate(drive_t* d) {

@@ -26,17 +26,16 @@ static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) 
 
 // Resistance and flux are learnt once the drive runs; until then the sensors have that turn.
 static void adapt(drive_t* d, const regression_t* r) {
-  if (!(is_turn(d, TURN_LIKENESS) || is_turn(d, TURN_VOLTAGE)) || !d->position.is_near) return;
+  const bool likeness = is_turn(d, TURN_LIKENESS);
+  if (!(likeness || is_turn(d, TURN_VOLTAGE)) || !d->position.is_near) return;
   // A turn takes 5/4 as long where it has eight of ten periods, and 5/2 where it has four; there, learning 3/2 as much
   // leaves the angle quieter.
   const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);
   const bool runs = drive_is_turning(d);
-  if (is_turn(d, TURN_LIKENESS)) {
-    admittance_step(&d->model, r, share_q30);
-    if (runs) match_sensors(d, r, share_q30);
-  } else if (!runs) {
+  if (likeness) admittance_step(&d->model, r, share_q30);
+  if (likeness == runs) {
     match_sensors(d, r, share_q30);
-  } else if (!(polarity_watch_is_awake(d) && is_full(d))) {
+  } else if (runs && !(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.used.speed_bpp);
     voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }
@@ -151,7 +150,6 @@ static const source_step_t sources[] = {source_encoder, source_paper, source_obs
 static void measure_current(drive_t* d) {
   drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
-  if (s->count == 0u || drive_is_blind(d)) return;
   const int32_t speed_bpp = d->position.used.speed_bpp;
   const uint32_t middle_bam = deviation_middle(d->position.used.angle_bam + (uint32_t)speed_bpp, speed_bpp);
   deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(speed_bpp), s->frames);
@@ -184,16 +182,10 @@ static const estimator_frame_t* own_frames(const drive_t* d, bool starting) {
   return (angle_bam == p->used.angle_bam && speed_bpp == p->used.speed_bpp) ? d->samples.frames : 0;
 }
 
-static int32_t torque_accel_q8(const drive_t* d, dq_t current_q20) {
-  return q_mul_sat(machine_torque_q16(&d->model, current_q20), d->model.accel_q12, 20);
-}
-
-// The I-F start: the control uses the vector's frame, and the source looks on. Of the torque it is told what its own
-// angle makes of the current, as later. At rest the angle is the vector's: a saliency has two.
+// The I-F start: the control uses the vector's frame, and the source looks on. At rest the angle is the vector's: a
+// saliency has two.
 static void estimate_turned(drive_t* d, estimator_input_t* in) {
   drive_start_t* const s = &d->start;
-  in->torque_accel_q8 = torque_accel_q8(d, drive_seen(d, d->control.measured_q20));
-  d->position.torque_accel_q8 = in->torque_accel_q8;
   in->frames = 0;
   if (flux_source_rests(d) && !if_start_is_up(&s->turn, &d->config.turn)) {
     flux_source_follow(d, &d->position.used);
@@ -209,7 +201,8 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
 }
 
 void drive_estimate(drive_t* d) {
-  measure_current(d);
+  const uint16_t count = drive_is_blind(d) ? 0u : d->samples.count;
+  if (count > 0u) measure_current(d);
   const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
   if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
@@ -222,9 +215,11 @@ void drive_estimate(drive_t* d) {
   in.renew = d->schedule.renews;
   in.refresh = moves || !d->schedule.turning;
   in.windows = d->samples.windows;
-  in.window_count = (drive_is_blind(d) || d->schedule.skips) ? 0 : d->samples.count;
-  // While the polarity is open the sign of the torque is, too.
-  in.torque_accel_q8 = (starting || turned) ? 0 : torque_accel_q8(d, d->control.measured_q20);
+  in.window_count = d->schedule.skips ? 0u : count;
+  // While the polarity is open the sign of the torque is, too. A source that looks on is told what its own angle makes
+  // of the current, as later.
+  const dq_t seen_q20 = turned ? drive_seen(d, d->control.measured_q20) : d->control.measured_q20;
+  in.torque_accel_q8 = starting ? 0 : q_mul_sat(machine_torque_q16(&d->model, seen_q20), d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&d->inertia, in.torque_accel_q8);
   if (turned) {
@@ -247,7 +242,6 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   const int32_t speed_bpp = q_limit(seen_bpp, MACHINE_SPEED_END_BPP);
   const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
   avv_preset(&p->avv, angle_bam, speed_bpp, 0);
-  p->high = now;
   p->used = now;
 }
 
@@ -261,6 +255,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   blend_reset(&p->blend);
   if (parameters.position_source == POSITION_PAPER) blend_preset(&p->blend, &d->config.blend, speed_bpp);
   p->low = p->used;
+  p->high = p->used;
 }
 
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {

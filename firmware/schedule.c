@@ -49,7 +49,7 @@ static bool is_judgement(task_t task) { return task == TASK_JUDGE_FIRST || task 
 // Before the shaft turns nothing is judged or renewed; the synchronism of one that is held is judged once in a
 // millisecond.
 static bool is_turn(const schedule_t* s) {
-  if (!s->turning) return s->task != TASK_SPEED && s->task != TASK_FIELD;
+  if (!s->turning) return s->task > TASK_FIELD;
   return s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST);
 }
 

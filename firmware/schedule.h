@@ -33,7 +33,7 @@ typedef enum {
   TURNS = 5           // and none of them
 } turn_t;
 
-typedef enum { TASK_SPEED, TASK_JUDGE_FIRST, TASK_JUDGE, TASK_RENEW, TASK_FIELD, TASK_TURN } task_t;
+typedef enum { TASK_SPEED, TASK_FIELD, TASK_JUDGE_FIRST, TASK_JUDGE, TASK_RENEW, TASK_TURN } task_t;
 
 typedef struct {
   uint16_t period;  // of the millisecond

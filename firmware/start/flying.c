@@ -12,7 +12,6 @@
 #define STANDING_Q16 196608L   // 3 V: 45 rpm on motor A, beyond what drops and noise can fake
 #define FLUX_EMF_Q16 2621440L  // 40 V
 #define CATCH_PERIODS 140u
-#define LEARN_TIMEOUT 200u        // periods for windows that show the axis
 #define ON_TICKS 200              // from the gates' command to the devices
 #define STRAY_MAX_BAM 178956971L  // 15 degrees
 
@@ -127,20 +126,16 @@ void start_step_pulse(drive_t* d) {
 }
 
 // The first periods go to the axis and the admittances, in the frame that turns with the rotor as the back-EMF has it.
-static bool learn(drive_t* d) {
+static void learn(drive_t* d) {
   drive_start_t* const s = &d->start;
-  if (s->learnt) return true;
   s->rotor.angle_bam += (uint32_t)s->rotor.speed_bpp;
-  if (!drive_is_blind(d)) axis_add(&s->axis, &d->position.avv.regression);
-  if (axis_is_complete(&s->axis) && start_decides(d)) {
-    const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
-    admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
+  int32_t axis_bam;
+  s->learnt = start_sees_axis(d, !drive_is_blind(d), &axis_bam);
+  if (s->learnt) {
+    s->rotor.angle_bam += (uint32_t)q_limit(axis_bam, STRAY_MAX_BAM);
     take_flux(d);
-    s->rotor.angle_bam += (uint32_t)q_clamp(axis.angle_bam, -STRAY_MAX_BAM, STRAY_MAX_BAM);
-    s->learnt = true;
   }
   position_preset_axis(d, s->rotor.angle_bam, s->rotor.speed_bpp);
-  return false;
 }
 
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
@@ -151,8 +146,8 @@ void start_step_catch(drive_t* d) {
     return;
   }
   if (!s->powered) start_power(d, true);
-  if (!learn(d)) {
-    if (s->tick > LEARN_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+  if (!s->learnt) {
+    learn(d);
     return;
   }
   s->stray += q_shr(d->position.avv.error_bam - s->stray, 4);

@@ -37,8 +37,9 @@ void start_power(drive_t* d, bool on) {
 }
 
 bool start_decides(drive_t* d) {
-  d->start.decides = !d->schedule.decides;
-  return d->schedule.decides;
+  const bool now = d->schedule.decides;
+  d->start.decides = !now;
+  return now;
 }
 
 static void reset_control(drive_t* d) {
@@ -118,18 +119,25 @@ void start_find_axis(drive_t* d) {
   if (parameters.start_method == 1 && !d->commissioning.requested) start_turn(d);
 }
 
-static void step_axis(drive_t* d) {
+bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
   drive_start_t* const s = &d->start;
-  if (s->tick >= AXIS_SKIP) axis_add(&s->axis, &d->position.avv.regression);
-  position_preset_axis(d, 0, 0);  // the regressions must be made at one and the same angle
+  if (valid) axis_add(&s->axis, &d->position.avv.regression);
   if (!axis_is_complete(&s->axis)) {
     if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
-    return;
+    return false;
   }
-  if (!start_decides(d)) return;
+  if (!start_decides(d)) return false;
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
   admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
-  position_preset_axis(d, (uint32_t)axis.angle_bam, 0);
+  *axis_bam = axis.angle_bam;
+  return true;
+}
+
+static void step_axis(drive_t* d) {
+  int32_t axis_bam = 0;
+  const bool seen = start_sees_axis(d, d->start.tick >= AXIS_SKIP, &axis_bam);
+  position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
+  if (!seen) return;
   d->control.closed = true;
   start_enter(d, START_SETTLE);
 }
