@@ -28,6 +28,9 @@ static bool take_urgent(drive_t* d, bool observes) {
   return true;
 }
 
+// In the first millisecond of a run how much the windows will tell is not known yet.
+static bool is_young(const drive_t* d) { return d->periods < DRIVE_PERIODS_PER_MS; }
+
 static void take_turn(schedule_t* s) {
   s->waited = 0;
   s->last = (uint16_t)((s->last + 1u) % TURNS);
@@ -40,7 +43,7 @@ static void turn_or_give_way(drive_t* d, bool observes) {
     s->waited++;
   } else {
     take_turn(s);
-    s->skips = s->pressed;
+    s->skips = s->pressed && is_young(d);
   }
 }
 
@@ -71,15 +74,14 @@ void schedule_next(drive_t* d) {
   const bool observes = s->turning && has_observer(d);
   s->held = hold_is_on(d);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
-  const bool young = d->periods < DRIVE_PERIODS_PER_MS;
-  s->pressed = observes && (young || deviation_observer_is_pressed(&d->position.observer));
+  s->pressed = observes && (is_young(d) || deviation_observer_is_pressed(&d->position.observer));
   if (is_turn(s)) {
     s->decides = d->state == DRIVE_START && d->start.decides;
     s->skips = s->decides;
     if (!s->decides) turn_or_give_way(d, observes);
   } else {
     s->renews = s->task == TASK_RENEW;
-    s->judges = is_judgement(s->task) && !s->unsure && !young && d->state != DRIVE_START;
-    s->skips = s->pressed && !s->renews;
+    s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
+    s->skips = s->pressed && !s->renews && (is_young(d) || s->judges || !is_judgement(s->task));
   }
 }

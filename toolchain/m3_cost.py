@@ -28,7 +28,7 @@ CPU = ("-mcpu=cortex-m3", "-mthumb")
 # Left on, the first of these passes move the widening of an operand away from its product, and GCC then multiplies 64
 # by 64 bits; the others keep more values alive at once than the Cortex-M3 has registers. Tried one by one and together.
 PLAIN = (
-    *("-fno-tree-pre", "-fno-gcse", "-fno-tree-vrp", "-fno-tree-fre", "-fno-early-inlining"),
+    *("-fno-tree-pre", "-fno-tree-vrp", "-fno-tree-fre", "-fno-early-inlining"),
     *("-fno-schedule-insns", "-fno-schedule-insns2", "-fno-tree-ter", "-fno-ssa-phiopt", "-fno-ipa-cp"),
     *("-fno-if-conversion", "-fno-if-conversion2", "-fno-section-anchors", "-fno-reorder-blocks"),
 )
