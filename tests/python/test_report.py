@@ -105,7 +105,13 @@ def test_numbers_are_written_for_people(value, text):
 
 @pytest.mark.parametrize(
     ("value", "goal", "met", "word"),
-    [(1.0, 2.0, True, "met"), (3.0, 2.0, False, "short"), (None, 2.0, False, "no value"), (1.0, None, None, "")],
+    [
+        (1.0, 2.0, True, "met"),
+        (3.0, 2.0, False, "short"),
+        (None, 2.0, False, "no value"),
+        (1.0, None, None, ""),
+        (None, None, None, ""),  # a dash among the values; nothing was promised
+    ],
 )
 def test_the_verdict_of_a_figure(value, goal, met, word):
     assert report.verdict(Result("x", value, "", None, goal, met)) == word

@@ -49,9 +49,11 @@ def tally(results: Sequence[ScenarioResult]) -> Tally:
 
 def verdict(figure: Result) -> str:
     """`met`, `short`, `no value`, or nothing when there is no goal."""
+    if figure.goal is None:
+        return ""
     if figure.value is None:
         return "no value"
-    return "" if figure.met is None else "met" if figure.met else "short"
+    return "met" if figure.met else "short"
 
 
 def number(value: float | None) -> str:
