@@ -13,12 +13,14 @@ SAMPLE ?= 60
 PYTHON := .venv/bin/python
 DEMO := A10 A15 A16 A18a A18b A18c
 DEMO_OUT := out/demo
+PICTURED := A10 A11 A16 A18b
+PICTURES_OUT := out/pictures
 
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
 .PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify loss \
-	fuzz docs lint format lock clean
+	fuzz pictures docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -93,6 +95,12 @@ loss: build ## lose synchronism on purpose in some 400 runs and print how soon t
 
 fuzz: setup ## search for octets and CAN frames that break the firmware, RUNS of each (1000000)
 	@bash toolchain/fuzz.sh $(RUNS)
+
+pictures: build ## renew the pictures of README and book, docs/images; the page's need a Chromium
+	@rm -rf $(PICTURES_OUT)
+	@.venv/bin/stillspin reproduce $(PICTURED) --no-paper-scheme --no-nameplate --out $(PICTURES_OUT)
+	@$(PYTHON) toolchain/overview.py $(PICTURES_OUT) docs/images/bench.png
+	@STILLSPIN_PICTURES=docs/images $(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_tune_on_board.py
 
 docs: setup ## build the book into site/
 	@$(PYTHON) -m mkdocs build --quiet --strict --config-file toolchain/mkdocs.yml

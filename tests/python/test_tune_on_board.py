@@ -1,10 +1,11 @@
 """The page, the client and the firmware together: what a person does with a motor, in a headless browser.
 
-The picture of each step goes to the directory that the variable STILLSPIN_PICTURES names, for the book.
+The picture of each step goes to the directory that the variable STILLSPIN_PICTURES names, from the root of the
+repository, for the book (make pictures).
 """
 
 import os
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -17,6 +18,7 @@ from stillspin.drive.requester import wait_until
 from stillspin.tune.server import Server
 
 pytestmark = [needs_chromium, needs_board]
+ROOT = Path(__file__).parents[2]
 SLOW = 30
 LONG = 240
 
@@ -25,8 +27,9 @@ LONG = 240
 def opened(page, *options):
     """The page of a board of its own, and the drive."""
     with (
-        TemporaryDirectory(prefix="desk-") as directory,  # its name is on the pictures
-        board(Path(directory), *options) as port,
+        TemporaryDirectory() as directory,
+        chdir(directory),
+        board(Path(), *options) as port,  # whose name is on the pictures
         Drive.open(port, timeout=2.0) as drive,
         Server(drive, patience=PATIENT) as server,
     ):
@@ -47,7 +50,7 @@ def tuned(tmp_path, monkeypatch, page):
 def picture(page, name):
     directory = os.environ.get("STILLSPIN_PICTURES")
     if directory:
-        page.screenshot(path=Path(directory) / f"tune-{name}.png")
+        page.screenshot(path=ROOT / directory / f"tune-{name}.png")
 
 
 def speed(page):
