@@ -56,7 +56,7 @@ machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
   const machine_point_t* const a = &map->points[k];
   const machine_point_t* const b = a + 1;
   const int32_t beyond_q24 = at_q24 - (int32_t)k * ONE_Q24;
-  const int32_t share_q24 = (beyond_q24 < ONE_Q24) ? (at_q24 & (ONE_Q24 - 1)) : ONE_Q24;
+  const int32_t share_q24 = q_clamp(beyond_q24, 0, ONE_Q24);
   machine_point_t p;
   p.ydd_q30 = q_mix(a->ydd_q30, b->ydd_q30, share_q24, 24);
   p.yqq_q30 = q_mix(a->yqq_q30, b->yqq_q30, share_q24, 24);

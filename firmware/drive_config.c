@@ -50,8 +50,15 @@ static bool point_fits(const machine_model_t* m) {
          k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
 }
 
+// So do the torque per ampere and the torque with that current in both axes.
+static bool torque_fits(const machine_model_t* m) {
+  const int32_t half_q20 = parameters.current_full_scale;
+  const int32_t most_q24 = q_sub_sat(m->torque_q24, q_mul_sat(m->reluctance_q24, half_q20, 19));
+  return most_q24 < INT32_MAX && q_mul_sat(most_q24, half_q20, 27) < INT32_MAX;
+}
+
 static bool fits_formats(machine_model_t* m) {
-  bool fits = true;
+  bool fits = torque_fits(m);
   for (int32_t k = 0; k < MACHINE_MAP_POINTS; k++) {
     machine_model_move(m, parameters.map_current / MACHINE_MAP_SEGMENTS * k);
     fits = fits && point_fits(m);

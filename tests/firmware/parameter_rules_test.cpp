@@ -195,4 +195,27 @@ TEST_F(ParameterRules, AMachineBeyondTheFormatsIsRefused) {
   keeps();
 }
 
+// The torque constant ends at 128 N m/A, the torque at 32768 N m, with twice the sensors' full scale on either axis.
+TEST_F(ParameterRules, AReluctanceBeyondTheTorquesFormatsIsRefused) {
+  parameters.inductance_d = raw(60.0, 20);
+  parameters.inductance_q = raw(200.0, 20);
+  parameters.speed_limit = raw(300.0, 8);
+  parameters.current_full_scale = raw(25.0, 20);
+  parameters.pole_pairs = 10;  // 15 * (0.16 + 0.14 * 50) = 107.4 N m/A
+  keeps();
+  parameters.pole_pairs = 12;  // 128.9
+  refuses("too extreme");
+  parameters.pole_pairs = 4;
+  parameters.current_full_scale = raw(130.0, 20);  // 6 * (0.16 + 0.14 * 260) = 219 N m/A
+  refuses("too extreme");
+  parameters.current_full_scale = raw(40.0, 20);
+  keeps();
+  parameters.inductance_d = raw(90.0, 20);
+  parameters.inductance_q = raw(130.0, 20);
+  parameters.current_full_scale = raw(180.0, 20);  // 6 * (0.16 + 0.04 * 360) = 87 N m/A; times 360 A are 31 450 N m
+  keeps();
+  parameters.current_full_scale = raw(190.0, 20);  // 92 N m/A, 35 000 N m
+  refuses("too extreme");
+}
+
 }  // namespace
