@@ -6,14 +6,16 @@
 #define SQUARE_SHIFT 22u
 #define LAG 4  // ms that a speed may be known late
 #define LIMIT_MAX 32768000L
-#define EMF_BITS 27u  // 2048 V
+#define TURNS_END_Q16 21361414L  // 2048 V
+#define HALF_PI_Q30 1686629713L
 #define APART_LIMIT_BAM 1073741824L
 #define ONE_Q30 1073741824L
 #define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
+#define RATIO_END_Q8 46340L
 
 void synchronism_reset(synchronism_t* s) {
-  static const synchronism_t fresh = {{0, 0}, 0, 0, 0};
+  static const synchronism_t fresh = {{0, 0}, 0, 0, 0, 0};
   *s = fresh;
 }
 
@@ -51,37 +53,44 @@ static void follow(int32_t* mean, int32_t x, unsigned shift) { *mean += q_shr(x 
 // A code of the converter is an EMF error that grows as the windows get shorter, and so does the share of them in which
 // a current is clamped at zero: hence the square.
 static int32_t floor_q16(const synchronism_config_t* c, int32_t span_ticks) {
-  const int32_t ratio_q8 = q_max(LONG_TICKS * 256 / span_ticks, 256);
-  return q_mul_sat(c->floor_q16, q_mul(ratio_q8, ratio_q8, 8), 8);
+  const int32_t ratio_q8 = q_clamp(LONG_TICKS * 256 / span_ticks, 256, RATIO_END_Q8);
+  return q_sat64(q_shr64(q_product(c->floor_q16, ratio_q8 * ratio_q8), 16));
 }
+
+static int32_t magnitude(int32_t x) { return (x > 0) ? x : -x; }
 
 // A speed that is known late follows: then it changes against the error. One that is lost goes anywhere.
 static int32_t lag_q16(int32_t change_q16, int32_t error_q16) {
   if ((change_q16 ^ error_q16) >= 0) return 0;  // of one sign
-  return LAG * ((change_q16 > 0) ? change_q16 : -change_q16);
+  return LAG * magnitude(change_q16);
 }
 
 // What the speed has changed since its mean is what it changes in a millisecond.
 static void follow_limit(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                          const synchronism_seen_t* seen, int32_t error_q16, unsigned shift) {
-  const int32_t emf_q16 = q_sat_bits(q_product(m->emf_q16, machine_speed_rad_q30(seen->speed_bpp)), 30, EMF_BITS);
+  const int32_t turns_q16 = q_limit(q_mul_hi(m->emf_q16, seen->speed_bpp), TURNS_END_Q16);
+  const int32_t emf_q16 = q_shr(q_mul_hi(turns_q16 * 32, HALF_PI_Q30), 1);  // 2 pi times as much
   const int32_t moved_q16 =
-      q_mul_floor((emf_q16 > 0) ? emf_q16 : -emf_q16, c->share_q15, 15) + lag_q16(emf_q16 - s->emf_q16, error_q16);
+      q_mul_floor(magnitude(emf_q16), c->share_q15, 15) + lag_q16(emf_q16 - s->emf_q16, error_q16);
   follow(&s->emf_q16, emf_q16, shift);
-  s->limit_q16 = q_clamp(q_add_sat(floor_q16(c, seen->span_ticks), moved_q16), 0, LIMIT_MAX);
+  s->limit_q16 = q_clamp(q_min(floor_q16(c, seen->span_ticks), LIMIT_MAX) + moved_q16, 0, LIMIT_MAX);
 }
 
 // What is far beyond the limit counts as half as much again: so it takes a while to get there, and no longer to come
-// back.
-static void follow_error(synchronism_t* s, dq_t error_q16, unsigned shift) {
+// back. What the frame turns besides comes in V per rad, Q16, and turns: 2 pi is 25/4.
+static void follow_errors(synchronism_t* s, dq_t error_q16, int32_t turned, unsigned shift) {
   const int32_t most_q16 = s->limit_q16 + s->limit_q16 / 2;
+  const int32_t q_q16 = q_limit(error_q16.q, most_q16);
+  const int32_t besides_q16 = q_shr(q_limit(turned, most_q16) * 25, 2);
   follow(&s->error_q16.d, q_limit(error_q16.d, most_q16), shift);
-  follow(&s->error_q16.q, q_limit(error_q16.q, most_q16), shift);
+  follow(&s->error_q16.q, q_q16, shift);
+  follow(&s->turned_q16, q_limit(q_q16 + besides_q16, most_q16), shift);
 }
 
-// What a period adds: 8 e^2 / limit^2, nothing up to the limit.
+// What a period adds: 8 e^2 / limit^2 with the larger of the two errors along q, nothing up to the limit.
 static int32_t doubt_per_period(const synchronism_t* s) {
-  const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, s->error_q16.q, s->error_q16.q, SQUARE_SHIFT);
+  const int32_t q_q16 = q_max(magnitude(s->error_q16.q), magnitude(s->turned_q16));
+  const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, q_q16, q_q16, SQUARE_SHIFT);
   const int32_t limit = q_mul_floor(s->limit_q16, s->limit_q16, SQUARE_SHIFT);
   return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / DOUBT_PER_BAD + 1) : 0;
 }
@@ -95,9 +104,9 @@ bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const ma
   const dq_t error_q16 = {q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24),
                           q_over(seen->residual_q20.q, m->per_yq, 26)};
   follow_limit(s, c, m, seen, error_q16.q, shift);
-  follow_error(s, error_q16, shift);
+  follow_errors(s, error_q16, q_mul_hi(m->emf_q16, seen->ahead_bpp), shift);
   int32_t per_period = doubt_per_period(s);
-  if (q_abs_sat(apart_bam) > APART_LIMIT_BAM) per_period = q_max(per_period, DOUBT_PER_BAD);
+  if (q_limit(apart_bam, APART_LIMIT_BAM) != apart_bam) per_period = q_max(per_period, DOUBT_PER_BAD);
   s->doubt = (per_period > 0) ? s->doubt + per_period * seen->periods : q_max(s->doubt - seen->periods, 0);
   return s->doubt > c->bad_periods * DOUBT_PER_BAD;
 }
@@ -107,6 +116,6 @@ bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const est
   estimator_window_t mean;
   if (!mean_window(in, &mean)) return false;
   const deviation_t d = deviation_evaluate(in->model, &mean, use->angle_bam, use->speed_bpp);
-  const synchronism_seen_t seen = {d.residual_q20, mean.span_ticks, use->speed_bpp, use->periods};
+  const synchronism_seen_t seen = {d.residual_q20, mean.span_ticks, use->speed_bpp, use->ahead_bpp, use->periods};
   return synchronism_judge(s, c, in->model, &seen, use->apart_bam);
 }

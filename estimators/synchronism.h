@@ -10,6 +10,10 @@
 // period together), the share for wrong flux and link voltage. A speed that a load changes is known late: while it
 // follows, what it changes in 4 ms is borne as well. Saliency cannot say this: it repeats every half turn.
 //
+// Expected is the EMF of the speed in use, and in a second error that of the frame's own speed. An observer whose
+// polarity is reversed takes the EMF for a speed and leaves little of it over; but the saliency goes the other way, so
+// it corrects its angle all the time, and its frame turns with the shaft.
+//
 // Doubt grows the faster the larger the error is, with its square. But what a healthy drive has beyond the limit is
 // short, however large: a current that steps on a saturated machine. Hence the mean, in which what is beyond one and a
 // half limits counts as these: a loss gets there and stays.
@@ -32,10 +36,11 @@ typedef struct {
 } synchronism_config_t;
 
 typedef struct {
-  dq_t error_q16;     // EMF error, first-order mean over 4 periods, or a millisecond where several come at once, V
-  int32_t emf_q16;    // EMF that the speed has let expect, the same mean, V
-  int32_t limit_q16;  // what the error may be now, V, up to 500
-  int32_t doubt;      // eight for a period at the limit, less one for a good one
+  dq_t error_q16;      // EMF error, first-order mean over 4 periods, or a millisecond where several come at once, V
+  int32_t turned_q16;  // the same along q with the EMF of the frame's own speed, V
+  int32_t emf_q16;     // EMF that the speed has let expect, the same mean, V
+  int32_t limit_q16;   // what the error may be now, V, up to 500
+  int32_t doubt;       // eight for a period at the limit, less one for a good one
 } synchronism_t;
 
 void synchronism_reset(synchronism_t* s);
@@ -43,6 +48,7 @@ void synchronism_reset(synchronism_t* s);
 typedef struct {
   uint32_t angle_bam;  // in use, at the end of the windows' period
   int32_t speed_bpp;
+  int32_t ahead_bpp;  // how much faster the frame has turned since the last time
   int32_t apart_bam;  // how far two estimators are apart, 0 where there is one
   int32_t periods;    // since the last time, 1..8
 } synchronism_use_t;
@@ -58,6 +64,7 @@ typedef struct {
   dq_t residual_q20;   // mean by spans, A per period
   int32_t span_ticks;  // of all windows of a period, 0 where there are none
   int32_t speed_bpp;   // in use
+  int32_t ahead_bpp;   // how much faster the frame has turned since the last time
   int32_t periods;     // since the last time, 1..63
 } synchronism_seen_t;
 

@@ -128,6 +128,7 @@ typedef struct {
 typedef struct {
   uint16_t missing, overrun, diverged_periods;
   uint16_t judged_at;         // heartbeat when the angle in use was last judged
+  uint32_t judged_bam;        // and that angle
   uint32_t stopping_periods;  // in STOP with the reference at zero
   synchronism_t synchronism;
 } drive_supervision_t;

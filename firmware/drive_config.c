@@ -13,6 +13,7 @@
 #define CRAWL_MAX_RPM_Q16 655360L      // where cogging is learnt
 #define HOLD_BELOW_RPM_Q16 1310720L    // 20 rpm
 #define COGGING_MAX_Q20 1048576L       // 1 N m
+#define RELUCTANCE_END_Q16 1671168L    // 25.5 N m/A with the full scale, half of the largest current
 #define EDGE_BAND_Q20 524288L          // half an ampere of ripple may be predicted wrong
 #define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
 
@@ -50,11 +51,10 @@ static bool point_fits(const machine_model_t* m) {
          k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
 }
 
-// So do the torque per ampere and the torque with that current in both axes.
+// So does the torque per ampere with that current, and the torque with it: the reluctance adds 51 N m/A to the 30 of
+// the largest flux, times 400 A.
 static bool torque_fits(const machine_model_t* m) {
-  const int32_t half_q20 = parameters.current_full_scale;
-  const int32_t most_q24 = q_sub_sat(m->torque_q24, q_mul_sat(m->reluctance_q24, half_q20, 19));
-  return most_q24 < INT32_MAX && q_mul_sat(most_q24, half_q20, 27) < INT32_MAX;
+  return q_shr(m->reluctance_q24, 12) * q_shr(parameters.current_full_scale, 16) > -RELUCTANCE_END_Q16;
 }
 
 static bool fits_formats(machine_model_t* m) {

@@ -10,7 +10,7 @@
 
 #define MISSING_MAX 5u   // periods without samples
 #define OVERRUN_MAX 10u  // periods repeated because the interrupt was late
-#define JUDGED_PERIODS_MAX 6
+#define JUDGED_PERIODS_MAX 6L
 
 static void note(const drive_t* d, drive_fault_t fault) {
   fault_record_t r;
@@ -68,25 +68,26 @@ static int32_t disagreement(const drive_t* d) {
 
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
 static bool diverged(drive_t* d, int32_t periods) {
-  const int32_t limit_bam = q_mul(parameters.divergence_limit, 11930465L, 16);
-  const int32_t speed_limit = q_mul_sat(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
-  const bool wrong = disagreement(d) > limit_bam || q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
+  const int32_t apart_bam = disagreement(d);
+  const int32_t speed_limit = q_mul_floor(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
+  const bool wrong = (apart_bam > 0 && apart_bam > q_mul_floor(parameters.divergence_limit, 11930465L, 16)) ||
+                     q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
   d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + (uint16_t)periods) : 0u;
   return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
 }
 
 // The observer's residuals since it was last asked.
-static bool observer_lost(drive_t* d) {
-  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, 0};
+static bool observer_lost(drive_t* d, int32_t ahead_bpp) {
+  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, ahead_bpp, 0};
   if (!deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods))
     return false;
   return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen, 0);
 }
 
 // An angle error that is asked for is none.
-static bool lost_synchronism(drive_t* d, int32_t periods) {
+static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp) {
   if (parameters.position_source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
-  if (parameters.position_source == POSITION_OBSERVER) return observer_lost(d);
+  if (parameters.position_source == POSITION_OBSERVER) return observer_lost(d, ahead_bpp);
   estimator_input_t in;
   in.model = &d->model;
   in.windows = d->samples.windows;
@@ -98,7 +99,7 @@ static bool lost_synchronism(drive_t* d, int32_t periods) {
   in.renew = false;
   in.refresh = false;
   in.frames = 0;
-  const synchronism_use_t use = {d->position.used.angle_bam, d->position.used.speed_bpp, apart_bam, periods};
+  const synchronism_use_t use = {d->position.used.angle_bam, d->position.used.speed_bpp, ahead_bpp, apart_bam, periods};
   return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, &use);
 }
 
@@ -109,11 +110,21 @@ static bool judges_now(const drive_t* d) {
   return each || d->schedule.judges;
 }
 
+// How much faster the frame in use has turned than its speed says, since it was last judged; 0 when that is long ago.
+static int32_t frame_ahead_bpp(const drive_t* d, int32_t since) {
+  if ((uint32_t)(since - 1) >= JUDGED_PERIODS_MAX) return 0;
+  const uint32_t by_speed_bam = (uint32_t)d->position.used.speed_bpp * (uint32_t)since;
+  return angle_diff_bam(d->position.used.angle_bam, d->supervision.judged_bam + by_speed_bam) / since;
+}
+
 static drive_fault_t check_position(drive_t* d) {
   if (!drive_is_turning(d) || !judges_now(d)) return FAULT_NONE;
-  const int32_t periods = q_min((uint16_t)(d->heartbeat - d->supervision.judged_at), JUDGED_PERIODS_MAX);
+  const int32_t since = (uint16_t)(d->heartbeat - d->supervision.judged_at);
+  const int32_t ahead_bpp = frame_ahead_bpp(d, since);
+  const int32_t periods = q_min(since, JUDGED_PERIODS_MAX);
   d->supervision.judged_at = d->heartbeat;
-  if (lost_synchronism(d, periods)) return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
+  d->supervision.judged_bam = d->position.used.angle_bam;
+  if (lost_synchronism(d, periods, ahead_bpp)) return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
   return diverged(d, periods) ? FAULT_DIVERGENCE : FAULT_NONE;
 }
 

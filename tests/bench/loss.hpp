@@ -23,6 +23,7 @@ struct LossCase {
   double rpm;     // before, signed
   double torque;  // N m, load before
   int source;     // firmware parameter position_source
+  int seed = 1;   // of the noise
 
   /// A polarity that turns over at rest without torque moves nothing, so nothing shows it until noise has.
   bool hidden() const { return cause == Cause::kKick && rpm == 0.0 && torque == 0.0 && std::fabs(value) > 179.0; }

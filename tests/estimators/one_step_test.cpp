@@ -264,9 +264,9 @@ TEST(OneStep, InformationBeyondItsBoundShrinksAlike) {
 }
 
 TEST(OneStep, ResetsLeaveNothing) {
-  synchronism_t s = {{1, 2}, 3, 4, 5};
+  synchronism_t s = {{1, 2}, 3, 4, 5, 6};
   synchronism_reset(&s);
-  EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.emf_q16 | s.limit_q16 | s.doubt, 0);
+  EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.turned_q16 | s.emf_q16 | s.limit_q16 | s.doubt, 0);
 }
 
 }  // namespace

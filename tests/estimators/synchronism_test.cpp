@@ -21,7 +21,7 @@ const Motor kMotor;
 
 const synchronism_config_t kConfig = {raw(kFloor, 16), raw(kShare, 15), kBad};
 
-/// A shaft that turns, seen in a frame that is ahead by `off` and believes in `believed` (rad/s).
+/// A shaft that turns, seen in a frame that turns with it, is ahead by `off` and believes in `believed` (rad/s).
 struct Scene {
   machine_model_t model = model_of(kMotor);
   synchronism_t s{};
@@ -33,7 +33,8 @@ struct Scene {
   bool step(double w, double off, double believed, Vector i_dq = {0.0, 3.0}, double apart = 0.0) {
     theta += w * kPeriod;
     const Input in(model, alternating(kMotor, period++, theta, w, i_dq.turned(theta)));
-    const synchronism_use_t use = {bam(theta + off), bpp(believed), static_cast<std::int32_t>(bam(apart)), 1};
+    const synchronism_use_t use = {bam(theta + off), bpp(believed), bpp(w - believed),
+                                   static_cast<std::int32_t>(bam(apart)), 1};
     return synchronism_step(&s, &kConfig, in.get(), &use);
   }
 
@@ -45,7 +46,15 @@ struct Scene {
   }
 
   Vector error() const { return {real(s.error_q16.d, 16), real(s.error_q16.q, 16)}; }
+  double turned() const { return real(s.turned_q16, 16); }
 };
+
+// What an estimator hands over instead of the windows: residuals of a machine whose L/T is known, in a frame that
+// turns as fast as is believed.
+synchronism_seen_t seen_of(Vector emf, double believed, std::int32_t span, std::int32_t periods) {
+  const Vector residual = {emf.x * kPeriod / kMotor.ld, emf.y * kPeriod / kMotor.lq};
+  return {raw_dq(residual, 20), span, bpp(believed), 0, periods};
+}
 
 double electrical(double rpm) { return rpm / 60.0 * kMotor.pole_pairs * kTurn; }
 
@@ -93,6 +102,52 @@ TEST(Synchronism, IsLostWhenItIsLost) {
   }
 }
 
+// An observer whose polarity is reversed believes in the speed that its EMF says, the opposite one: only that its frame
+// turns the other way shows it.
+TEST(Synchronism, APolarityThatExplainsItsEmfByTheSpeedIsALoss) {
+  for (const double rpm : {60.0, -60.0, 300.0}) {
+    Scene scene;
+    const double w = electrical(rpm);
+    for (int n = 0; n < 20; ++n) (void)scene.step(w, kPi, -w, {0.0, 0.0});
+    EXPECT_LT(scene.error().length(), 0.1 + 0.01 * std::fabs(w)) << rpm;
+    EXPECT_GT(std::fabs(scene.turned()), kFloor + kShare * std::fabs(w) * kMotor.flux) << rpm;
+    EXPECT_LE(scene.until_lost(w, kPi, -w), kBad) << rpm;
+  }
+}
+
+// What the frame turns besides makes an EMF, and counts as one and a half limits at most as well.
+TEST(Synchronism, TheFramesOwnSpeedMakesTheSecondError) {
+  for (const double rpm : {-20.0, 20.0, 50.0}) {
+    Scene scene;
+    const synchronism_seen_t seen = {raw_dq({0.0, 0.0}, 20), 5000, 0, bpp(electrical(rpm)), 5};
+    (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
+    EXPECT_NEAR(scene.error().length(), 0.0, 1e-4);
+    EXPECT_NEAR(scene.turned(), 0.5 * kMotor.flux * electrical(rpm), 0.015) << "2 pi is 25/4";
+  }
+  for (const std::int32_t far : {1 << 29, INT32_MAX, INT32_MIN}) {
+    Scene scene;
+    const synchronism_config_t wide = {raw(100.0, 16), 0, kBad};
+    const synchronism_seen_t seen = {raw_dq({0.0, 0.0}, 20), 300, 0, far, 5};  // a limit of 500 V
+    (void)synchronism_judge(&scene.s, &wide, &scene.model, &seen, 0);
+    EXPECT_NEAR(scene.turned(), std::copysign(0.5 * 750.0, far), 0.1) << far;
+  }
+}
+
+// A load step: the speed in use is 80 rpm late for 4 ms, and the angle is corrected as it follows.
+TEST(Synchronism, AFrameThatKeepsUpAddsNoDoubt) {
+  Scene late;
+  Scene corrected;
+  for (int n = 0; n < 8; ++n) {
+    const double lag = electrical(n < 2 ? 40.0 : 80.0 - 6.0 * n);
+    synchronism_seen_t seen = seen_of({0.0, lag * kMotor.flux}, 0.0, 5000, 5);
+    (void)synchronism_judge(&late.s, &kConfig, &late.model, &seen, 0);
+    seen.ahead_bpp = bpp(-0.9 * lag);
+    (void)synchronism_judge(&corrected.s, &kConfig, &corrected.model, &seen, 0);
+  }
+  EXPECT_EQ(corrected.s.doubt, late.s.doubt);
+  EXPECT_LT(std::fabs(corrected.turned()), 0.3 * corrected.error().length());
+}
+
 TEST(Synchronism, AnErrorOfThirtyDegreesIsNoLoss) {
   for (const double rpm : {60.0, 300.0, 1000.0, -3000.0}) {
     Scene scene;
@@ -131,7 +186,7 @@ TEST(Synchronism, WithoutWindowsNothingChanges) {
   for (int n = 0; n < 30; ++n) (void)scene.step(electrical(600.0), kPi, electrical(600.0));
   const synchronism_t before = scene.s;
   const Input none(scene.model, {});
-  const synchronism_use_t use = {0, 0, 0, 1};
+  const synchronism_use_t use = {0, 0, 0, 0, 1};
   EXPECT_FALSE(synchronism_step(&scene.s, &kConfig, none.get(), &use));
   EXPECT_EQ(scene.s.doubt, before.doubt);
   EXPECT_EQ(scene.s.error_q16.q, before.error_q16.q);
@@ -154,6 +209,7 @@ TEST(Synchronism, BearsAnyWindow) {
     }
     const Input in(model, windows);
     const synchronism_use_t use = {bam(random.between(-kPi, kPi)), bpp(random.between(-1900.0, 1900.0)),
+                                   static_cast<std::int32_t>(bam(random.between(-kPi, kPi))),
                                    static_cast<std::int32_t>(bam(random.between(-kPi, kPi))), 1 + random.below(6)};
     (void)synchronism_step(&s, &kConfig, in.get(), &use);
     ASSERT_GE(s.doubt, 0);
@@ -161,6 +217,7 @@ TEST(Synchronism, BearsAnyWindow) {
     // slopes of 40 A a period stand for 3.1 kV
     ASSERT_LT(std::fabs(real(s.error_q16.d, 16)), 5000.0);
     ASSERT_LT(std::fabs(real(s.error_q16.q, 16)), 5000.0);
+    ASSERT_LT(std::fabs(real(s.turned_q16, 16)), 5000.0);
   }
 }
 
@@ -170,16 +227,10 @@ TEST(Synchronism, WithoutASpanNothingIsJudged) {
   synchronism_t s;
   synchronism_reset(&s);
   s.doubt = 40;
-  const synchronism_seen_t none = {{raw(9.0, 20), 0}, 0, 0, 5};
+  const synchronism_seen_t none = {{raw(9.0, 20), 0}, 0, 0, 0, 5};
   EXPECT_FALSE(synchronism_judge(&s, &kConfig, &model, &none, 0));
   EXPECT_EQ(s.doubt, 40);
   EXPECT_EQ(s.error_q16.d, 0);
-}
-
-// What an estimator hands over instead of the windows: residuals of a machine whose L/T is known.
-synchronism_seen_t seen_of(Vector emf, double believed, std::int32_t span, std::int32_t periods) {
-  const Vector residual = {emf.x * kPeriod / kMotor.ld, emf.y * kPeriod / kMotor.lq};
-  return {raw_dq(residual, 20), span, bpp(believed), periods};
 }
 
 // A quarter of what is new in one period or two, half in more.
@@ -366,7 +417,7 @@ TEST(Synchronism, WindowsCountByTheirSpans) {
   const Vector left[] = {{0.16, 0.0}, {-0.04, 0.08}};  // A per period along d and q
   for (std::size_t k = 0; k < 2; ++k) windows[k].slope = windows[k].slope + left[k].turned(theta);
   const Input in(scene.model, windows);
-  const synchronism_use_t use = {bam(theta), 0, 0, 1};
+  const synchronism_use_t use = {bam(theta), 0, 0, 0, 1};
   (void)synchronism_step(&scene.s, &kConfig, in.get(), &use);
   const Vector mean = left[0] * 0.25 + left[1] * 0.75;
   EXPECT_NEAR(scene.error().x, 0.25 * mean.x * kMotor.ld / kPeriod, 2e-3);

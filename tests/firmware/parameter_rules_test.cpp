@@ -195,27 +195,24 @@ TEST_F(ParameterRules, AMachineBeyondTheFormatsIsRefused) {
   keeps();
 }
 
-// The torque constant ends at 128 N m/A, the torque at 32768 N m, with twice the sensors' full scale on either axis.
+// With twice the sensors' full scale along d the reluctance adds 51 N m/A to a torque constant at most.
 TEST_F(ParameterRules, AReluctanceBeyondTheTorquesFormatsIsRefused) {
   parameters.inductance_d = raw(60.0, 20);
   parameters.inductance_q = raw(200.0, 20);
   parameters.speed_limit = raw(300.0, 8);
   parameters.current_full_scale = raw(25.0, 20);
-  parameters.pole_pairs = 10;  // 15 * (0.16 + 0.14 * 50) = 107.4 N m/A
+  parameters.pole_pairs = 4;  // 6 * 0.14 * 50 = 42 N m/A
   keeps();
-  parameters.pole_pairs = 12;  // 128.9
+  parameters.pole_pairs = 5;  // 52.5
   refuses("too extreme");
   parameters.pole_pairs = 4;
-  parameters.current_full_scale = raw(130.0, 20);  // 6 * (0.16 + 0.14 * 260) = 219 N m/A
-  refuses("too extreme");
-  parameters.current_full_scale = raw(40.0, 20);
+  parameters.current_full_scale = raw(30.0, 20);  // 50.4
   keeps();
-  parameters.inductance_d = raw(90.0, 20);
-  parameters.inductance_q = raw(130.0, 20);
-  parameters.current_full_scale = raw(180.0, 20);  // 6 * (0.16 + 0.04 * 360) = 87 N m/A; times 360 A are 31 450 N m
-  keeps();
-  parameters.current_full_scale = raw(190.0, 20);  // 92 N m/A, 35 000 N m
+  parameters.current_full_scale = raw(31.0, 20);  // 52.1
   refuses("too extreme");
+  parameters.inductance_d = raw(179.5, 20);
+  parameters.current_full_scale = raw(200.0, 20);  // 6 * 0.0205 * 400 = 49.2
+  keeps();
 }
 
 }  // namespace

@@ -207,6 +207,34 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   EXPECT_EQ(drive.fault, FAULT_SYNCHRONISM);
 }
 
+// What the frame in use has turned beside its speed since it was last judged, for each period; unknown when that is
+// longer ago than six.
+TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
+  for (const int since : {1, 5, 6, 7}) {
+    for (const int ahead : {40, -40}) {
+      SetUp();
+      make_run();
+      trust_synchronism();
+      parameters.position_source = POSITION_OBSERVER;
+      drive.position.used.speed_bpp = bpp_of(300);
+      drive.supervision.judged_bam = drive.position.used.angle_bam = 0xFFFFF000u;  // and on past the turn's end
+      drive.supervision.judged_at = drive.heartbeat = 65533u;                      // and the counter's
+      const estimator_window_t still = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
+      const estimator_input_t in = {&drive.model, &still, 1, 0, false, false, false, nullptr};
+      (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
+      synchronism_reset(&drive.supervision.synchronism);
+      drive.heartbeat = static_cast<decltype(drive.heartbeat)>(drive.heartbeat + static_cast<unsigned>(since));
+      drive.position.used.angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
+      drive.schedule.judges = true;
+      drive_protect(&drive);
+      const synchronism_t& s = drive.supervision.synchronism;
+      const double emf = real(drive.model.emf_q16, 16) * std::ldexp(bpp_of(ahead), -32) * kTurn;
+      EXPECT_NEAR(real(s.turned_q16 - s.error_q16.q, 16), since <= 6 ? 0.25 * emf : 0.0, 0.01) << since;
+      EXPECT_EQ(drive.supervision.judged_bam, drive.position.used.angle_bam);
+    }
+  }
+}
+
 // A back-EMF of the wrong sign at speed, as the watch itself sees it; of the right sign it ends the watch.
 TEST_F(Protection, AReversedBackEmfIsThePolarity) {
   for (const bool reversed : {false, true}) {
