@@ -37,15 +37,6 @@ class CanNode : public Drive {
     answer_octets = 20;
     can_node_reset(answer);
   }
-  /// What is learnt of windows without a machine behind them would soon be a fault.
-  static void forget_windows() {
-    if (!drive_is_energised() || drive.state == DRIVE_START) return;
-    position_preset(&drive, 0, 0);
-    position_align_encoder(&drive, 0, 0);
-    sensor_match_reset(&drive.position.sensors);
-    drive.trim.mismatch_q30 = 0;
-    drive.supervision = drive_supervision_t{};
-  }
   void pass(int ms) {
     for (int k = 0; k < ms; ++k) {
       for (int n = 0; n < 10; ++n) {
