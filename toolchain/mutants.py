@@ -54,7 +54,7 @@ PARTS = {
         (
             *("firmware/state_machine.c", "firmware/protection.c", "firmware/fault_history.c", "firmware/actions.c"),
             *("firmware/drive_api.c", "firmware/parameter_rules.c", "firmware/sampling.c", "firmware/speed_task.c"),
-            "firmware/control_interrupt.c",
+            *("firmware/control_interrupt.c", "firmware/schedule.c"),
             *("firmware/start/*.c", "firmware/board/*.c", "firmware/commissioning/*.c"),
         ),
         ("firmware_test", "bench_run_test"),
