@@ -178,6 +178,27 @@ TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   EXPECT_NE(IF_START_TAKEN_OVER, IF_START_FAILED);
 }
 
+// Lq I/(lambda w0), 3 to 8 as the next power of two.
+TEST(IfStart, TheFilterIsAsLongAsTheVectorTakesToTurn) {
+  std::array<bool, 10> seen{};
+  for (const double stretch : {1.0, 4.0, 16.0}) {
+    for (double current = 0.25; current <= 16.0; current *= 1.25) {
+      Motor m = motor_b();
+      m.lq *= stretch;
+      if_start_parameters_t p = usual();
+      p.current_q20 = raw(current, 20);
+      const if_start_config_t c = designed(m, p);
+      const double periods = m.lq * current / m.flux * c.damping_periods;
+      const double power = std::log2(periods);
+      if (std::fabs(periods - std::exp2(std::round(power))) < 0.6) continue;  // whole periods are compared
+      const int shift = std::clamp(static_cast<int>(std::ceil(power)), 3, 8);
+      EXPECT_EQ(c.filter_shift, shift) << stretch << " " << current;
+      seen[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(power)), 2, 9))] = true;
+    }
+  }
+  for (std::size_t n = 2; n <= 9; ++n) EXPECT_TRUE(seen[n]) << n;
+}
+
 // A quarter turn behind first, whichever way it will turn, then where it begins.
 TEST(IfStart, ItRisesAQuarterTurnBehind) {
   const if_start_config_t c = designed(motor_b(), usual());
