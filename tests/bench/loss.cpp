@@ -6,6 +6,7 @@
 
 extern "C" {
 #include "firmware/drive.h"
+#include "firmware/parameters.h"
 }
 
 namespace stillspin::bench {
@@ -135,18 +136,15 @@ void add_causes(std::vector<LossCase>& list, double rpm, double torque, int sour
 
 std::vector<LossCase> loss_cases(bool fast) {
   std::vector<LossCase> list;
-  for (const int source : {2, 0, 3, 4}) {
+  for (const int source : {POSITION_OBSERVER, POSITION_OBSERVER_AVV, POSITION_ENCODER, POSITION_AVV}) {
+    if (fast && source != POSITION_OBSERVER) continue;
     for (const double rpm : {0.0, 60.0, -60.0, 300.0, -300.0, 1000.0, -1000.0, 3000.0, -3000.0}) {
-      // Of the fast part: every speed and cause with the default source, in one direction.
-      if (fast && (source != 2 || rpm < 0.0)) continue;
+      if (fast && rpm < 0.0) continue;
       add_causes(list, rpm, rpm < 0.0 ? -2.0 : 2.0, source);
       if (!fast && std::fabs(rpm) < 100.0) add_causes(list, rpm, 0.0, source);
     }
-  }
-  if (fast) list.push_back({Cause::kKick, 180.0, 0.0, 0.0, 2, 1});
-  // Where noise alone sets the shaft in motion one draw of it says little.
-  for (const int source : {2, 0, 3, 4}) {
-    for (int seed = 2; !fast && seed <= 5; ++seed) list.push_back({Cause::kKick, 180.0, 0.0, 0.0, source, seed});
+    // Where noise alone sets the shaft in motion one draw of it says little.
+    for (int seed = fast ? 1 : 2; seed <= 5; ++seed) list.push_back({Cause::kKick, 180.0, 0.0, 0.0, source, seed});
   }
   return list;
 }

@@ -43,7 +43,7 @@ struct Loss {
 std::string words(const LossCase& c);
 Loss run_case(const LossCase& c);
 
-/// The campaign; `fast`: a part of it that covers every cause.
+/// The campaign; `fast`: the part of it with the default source in one direction, which covers every cause.
 std::vector<LossCase> loss_cases(bool fast);
 
 }  // namespace stillspin::bench

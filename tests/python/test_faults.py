@@ -91,7 +91,9 @@ def test_a_loss_is_a_fault_within_20_ms(campaign: list[dict[str, str]]) -> None:
 
 
 def test_a_polarity_reversed_at_rest_is_noticed_before_the_shaft_runs_away(campaign: list[dict[str, str]]) -> None:
-    (run,) = [run for run in campaign if is_hidden(run)]
-    assert run["end"] == "loss of synchronism"
-    assert abs(float(run["end rpm"])) < 150.0
-    assert 0.0 <= float(run["fault after ms"]) < 20.0
+    hidden = [run for run in campaign if is_hidden(run)]
+    assert len(hidden) == 5  # draws of the noise
+    for run in hidden:
+        assert run["end"].startswith(("loss of synchronism", "polarity of the magnet"))
+        assert abs(float(run["end rpm"])) < 100.0
+        assert 0.0 <= float(run["fault after ms"]) < 18.0  # 17 at the most; 21 by the speed in use alone
