@@ -6,6 +6,7 @@
 
 extern "C" {
 #include "estimators/admittance.h"
+#include "estimators/avv.h"
 #include "estimators/deviation_information.h"
 #include "estimators/flux_adaptation.h"
 #include "estimators/inertia_match.h"
@@ -13,6 +14,7 @@ extern "C" {
 #include "estimators/stator_flux.h"
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
+#include "estimators/zvv.h"
 }
 
 namespace {
@@ -261,6 +263,24 @@ TEST(OneStep, InformationBeyondItsBoundShrinksAlike) {
   EXPECT_NEAR(beyond.as, within.as * share, 16.0 + 1e-4 * std::abs(beyond.as));
   EXPECT_NEAR(beyond.a, within.a * share, 16.0 + 1e-4 * std::abs(beyond.a));
   EXPECT_NEAR(beyond.s, within.s * share, 16.0 + 1e-4 * std::abs(beyond.s));
+}
+
+// An estimator that is preset goes on with the speed that it is given, and has seen nothing.
+TEST(OneStep, PresetsTakeTheSpeedAlong) {
+  zvv_t zvv = {};
+  zvv_preset(&zvv, 0x12345678u, -70000);
+  EXPECT_EQ(zvv.angle_bam, 0x12345678u);
+  EXPECT_EQ(zvv.speed_bpp, -70000);
+  EXPECT_EQ(zvv.integral_q8bpp, -70000 * 256);
+  avv_t avv = {};
+  avv.regression.information = 77;
+  avv.error_bam = 5;
+  avv.observer.speed_rest_q8 = 9;
+  avv_preset(&avv, 0x12345678u, -70000, 40);
+  EXPECT_EQ(avv.observer.angle_bam, 0x12345678u);
+  EXPECT_EQ(avv.observer.speed_bpp, -70000);
+  EXPECT_EQ(avv.observer.load_accel_q8, 40);
+  EXPECT_EQ(avv.error_bam | avv.regression.information | avv.observer.speed_rest_q8, 0);
 }
 
 TEST(OneStep, ResetsLeaveNothing) {

@@ -138,6 +138,11 @@ TEST(VoltageMatch, StaysWithinItsBounds) {
   Bench c(weak, 1000.0, 0.0);
   c.run(6000);
   EXPECT_NEAR(c.flux(), 0.1, 1e-4);
+  Motor strong;
+  strong.flux *= 1.6;
+  Bench d(strong, 1000.0, 0.0);
+  d.run(6000);
+  EXPECT_NEAR(d.flux(), 0.22, 1e-4);
 }
 
 }  // namespace
