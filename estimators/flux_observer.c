@@ -7,7 +7,6 @@
 #define COMPENSATED_SHARE 2  // or half of it: offsets decay with w/4 and w/8
 #define PLACES 32u           // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
 #define PLACE_STEP 13u
-#define FASTER 8               // at most 0.4 of the difference per period
 #define FOLLOW_Q30 536870912L  // k = 1/2: the length follows with w_c/2, offsets decay with w_c/4
 
 static stator_flux_config_t form_of(const flux_observer_config_t* c) {
@@ -25,7 +24,7 @@ bool flux_observer_config_valid(const flux_observer_config_t* c, const machine_m
 }
 
 void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, const machine_model_t* m) {
-  static const flux_observer_t empty = {.slow_bpp = 0};
+  static const flux_observer_t empty = {.pause = 0u};
   *s = empty;
   s->form = form_of(c);
   s->pause = c->adaptation_periods;
@@ -36,7 +35,7 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
 // w_c is a share of the speed, where that is more.
 static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
   const int32_t share = (s->form.form == STATOR_FLUX_BARE) ? BARE_SHARE : COMPENSATED_SHARE;
-  const int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->slow_bpp)) / share;
+  const int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)) / share;
   s->form.cutoff_q30 = q_clamp(share_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
 }
 
@@ -51,18 +50,10 @@ void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, c
   const dq_t flux_q16 = {q_clamp(q_mul_sat(f->psi_q16, d_q24, 24), -f->bound_q16, f->bound_q16),
                          q_clamp(q_mul_sat(f->psi_q16, q_q24, 24), -f->bound_q16, f->bound_q16)};
   s->form = form_of(c);
-  s->slow_bpp = now->speed_bpp;
-  place_cutoff(s, c);
-  stator_flux_preset(&s->flux, &s->form, frame_inverse_park(flux_q16, r), machine_speed_rad_q30(now->speed_bpp));
+  stator_flux_preset(&s->flux, frame_inverse_park(flux_q16, r));
   tracking_observer_preset(&s->observer, now->angle_bam, now->speed_bpp, now->load_accel_q8);
   s->current_q20 = current_q20;
   s->error_bam = 0;
-}
-
-// The speed in (34): first order with half the cut-off, and faster where the cut-off follows the speed.
-static void filter_speed(flux_observer_t* s, const flux_observer_config_t* c) {
-  const int32_t share_q31 = c->cutoff_q30 + FASTER * (s->form.cutoff_q30 - c->cutoff_q30);
-  s->slow_bpp += q_mul(s->observer.speed_bpp - s->slow_bpp, share_q31, 31);
 }
 
 static void integrate(flux_observer_t* s, const machine_model_t* m, const flux_period_t* p) {
@@ -72,7 +63,7 @@ static void integrate(flux_observer_t* s, const machine_model_t* m, const flux_p
   const ab_t emf_q16 = {q_sub_sat(p->voltage_q16.alpha, q_mul_sat(m->rs_q24, alpha_q20, 28)),
                         q_sub_sat(p->voltage_q16.beta, q_mul_sat(m->rs_q24, beta_q20, 28))};
   s->current_q20 = p->current_q20;
-  stator_flux_step(&s->flux, &s->form, emf_q16, s->machine.bound_q16);
+  stator_flux_step(&s->flux, &s->form, emf_q16, s->observer.speed_bpp, s->machine.bound_q16);
 }
 
 static int32_t load_angle(const flux_observer_t* s, const flux_observer_config_t* c, dq_t reference_q20) {
@@ -115,11 +106,10 @@ estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_co
   place_cutoff(s, c);
   integrate(s, in->model, period);
   tracking_observer_predict(o, in->torque_accel_q8);
-  const ab_t flux_q16 = stator_flux_q16(&s->flux, &s->form, machine_speed_rad_q30(s->slow_bpp));
+  const ab_t flux_q16 = stator_flux_q16(&s->flux, &s->form);
   s->vectors = flux_vectors(&s->machine, flux_q16, period->current_q20);
   s->error_bam = angle_diff_bam(rotor_angle(s, c, period->reference_q20), o->angle_bam);
   tracking_observer_correct(o, s->error_bam, c->bandwidth_q30);
-  filter_speed(s, c);
   s->pause--;
   if (s->pause == 0u) {
     s->pause = next_pause(s, c);

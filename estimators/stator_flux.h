@@ -12,7 +12,10 @@
 // and the compensation takes the offset for flux. It must start near the truth.
 //
 // BARE: the low-pass alone. In steady rotation the true flux is (1 - j w_c/w) times its output: the phase (34), whose
-// sign follows the direction, and the magnitude with it. With Fig. 5 in the loop this would correct twice.
+// sign follows the direction, and the magnitude with it. With Fig. 5 in the loop this would correct twice. Here it is
+// that quotient at any time: the same low-pass gets a unit vector that turns with the observed speed, and what it shows
+// of that it shows of the flux. In steady rotation this is (34); where the speed or w_c changes, and through zero, it
+// stays right, where (34) takes the low-pass for settled. Both low-passes have to begin alike.
 //
 // Fluxes are flux/T, V period, Q16; the EMF is the mean of a period, V Q16.
 
@@ -33,21 +36,22 @@ typedef struct {
   ab_t flux_q16;             // of the low-pass
   int32_t length_q16;        // of it
   int32_t compensation_q16;  // psi_c
+  ab_t shown_q28;            // what the bare low-pass shows of a unit vector that turns with the speed
+  uint32_t unit_bam;         // angle of that vector
 } stator_flux_t;
-
-/// Largest w_c/w that (34) is used with.
-#define STATOR_FLUX_LAG_MAX 4
 
 bool stator_flux_config_valid(const stator_flux_config_t* c);
 
-/// Starts with a flux that is known, turning with w_q30 rad per period.
-void stator_flux_preset(stator_flux_t* s, const stator_flux_config_t* c, ab_t flux_q16, int32_t w_q30);
+/// Starts with a flux that is known.
+void stator_flux_preset(stator_flux_t* s, ab_t flux_q16);
 
-/// One period with this mean EMF. Beyond +-bound, eight times the magnet's flux, the integral begins anew.
-void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t bound_q16);
+/// One period with this mean EMF, in which the flux turns by speed_bpp. Beyond +-bound, eight times the magnet's flux,
+/// the integral begins anew.
+void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t speed_bpp,
+                      int32_t bound_q16);
 
-/// The flux at the period's end: of the bare form with (34) at w_q30, rad per period. Below a quarter of the cut-off
-/// the correction stays as it is there.
-ab_t stator_flux_q16(const stator_flux_t* s, const stator_flux_config_t* c, int32_t w_q30);
+/// The flux at the period's end. Of the bare form it is at most 4.1 times the low-pass's output: slower than a quarter
+/// of the cut-off for long, and it is too small.
+ab_t stator_flux_q16(const stator_flux_t* s, const stator_flux_config_t* c);
 
 #endif

@@ -4,6 +4,8 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
+#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
+
 static int32_t voltage_limit(const drive_t* d) {
   const int32_t share_q30 = q_mul(parameters.voltage_use, 10737418L, 16);  // percent to Q30
   return q_mul(q_mul(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30), share_q30, 30);
@@ -17,12 +19,27 @@ static void weaken(drive_t* d) {
   c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->model);
 }
 
+// While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
+// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft; from
+// half the speed on at which the magnet is learnt, and the EMF stands out of that, less and less.
+static int32_t seeing_current(const drive_t* d) {
+  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, d->control.current_limit_q20 / 2);
+  const int32_t end_bpp = d->config.flux.adaptation.lowest_bpp;
+  const int32_t below_q15 = q_div(end_bpp - q_abs_sat(d->position.used.speed_bpp), end_bpp / 2, 15);
+  const int32_t share_q15 = q_clamp(below_q15, 0, INT16_MAX - d->position.blend.share_q15);
+  return q_mul(q_min(q_abs_sat(d->control.reference_q20.q) - least_q20, 0), share_q15, 15);
+}
+
 static void refer_field(drive_t* d) {
   drive_control_t* const c = &d->control;
+  int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
+  int32_t least = (parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
+  if (parameters.position_source >= POSITION_FLUX_CONV) least = q_min(least, seeing_current(d));
   // A commissioning takes its spin for one without i_d.
-  const bool none = d->position.blend.region == BLEND_HIGH || d->state == DRIVE_COMMISSION;
-  const int32_t bias = none ? 0 : parameters.id_low_speed;
-  const int32_t least = (none || parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
+  if (d->state == DRIVE_COMMISSION) {
+    bias = 0;
+    least = 0;
+  }
   c->reference_q20.d =
       q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
   d->limits &= ~(int32_t)LIMIT_WEAKENING;

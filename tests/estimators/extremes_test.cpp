@@ -167,8 +167,9 @@ TEST(Extremes, TheTrackingObserversSpeedEndsWhereTheModelDoes) {
 TEST(Extremes, AFluxAtItsEndBeginsAnewAndDoesNotTurnItsSign) {
   const stator_flux_config_t c = {STATOR_FLUX_BARE, 107374, 1 << 29};
   constexpr std::int32_t kBound = 1966080000;
-  stator_flux_t s = {{kBound, -kBound}, 0, 0};
-  stator_flux_step(&s, &c, {INT32_MAX, INT32_MIN}, kBound);
+  stator_flux_t s = {};
+  s.flux_q16 = {kBound, -kBound};
+  stator_flux_step(&s, &c, {INT32_MAX, INT32_MIN}, 0, kBound);
   EXPECT_EQ(s.flux_q16.alpha, 0);
   EXPECT_EQ(s.flux_q16.beta, 0);
 }

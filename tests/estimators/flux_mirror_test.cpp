@@ -1,7 +1,6 @@
 // Mirror symmetry: a machine seen in a mirror along phase a turns the other way with the same currents and voltages,
 // the component across the mirror negated. Whatever an estimator says of the one it has to say of the other, mirrored:
-// there is no way of turning that an equation may prefer. Random machines, errors and courses, through zero but for
-// PP-02: (34) jumps there from one limit to the other, and a speed of nothing has no sign that could be mirrored.
+// there is no way of turning that an equation may prefer. Random machines, errors and courses, through zero.
 
 #include <gtest/gtest.h>
 
@@ -48,11 +47,11 @@ flux_observer_config_t random_config(Random& random, flux_method_t method) {
 // motoring on one half and generating on the other, have offsets, noise and references that differ from them.
 class Course {
  public:
-  Course(Random& random, bool through_zero)
+  explicit Course(Random& random)
       : random_(random),
         truth_(random_motor(random)),
         mean_(random.between(-900.0, 900.0)),
-        swing_(through_zero ? random.between(0.0, 900.0) : random.between(0.0, 0.8 * std::fabs(mean_))),
+        swing_(random.between(0.0, 900.0)),
         rate_(random.between(1.0, 6.0)),
         i_dq_{random.between(-6.0, 1.0), random.between(-12.0, 12.0)},
         offset_(random.direction(random.between(0.0, 1.0))),
@@ -99,7 +98,7 @@ double sum_of(std::int32_t a, std::int32_t b) { return std::fabs(static_cast<dou
 
 // One course and its mirror image; what of the two does not cancel.
 void compare(Random& random, flux_method_t method, Differences& worst) {
-  Course course(random, method != FLUX_PP02);
+  Course course(random);
   Motor told = course.machine();
   told.flux *= random.between(0.9, 1.1);
   told.rs *= random.between(0.7, 1.3);
@@ -144,7 +143,8 @@ TEST_P(FluxMirror, BothDirectionsMirrorEachOther) {
   EXPECT_LT(worst.angle, 1e-5);
   EXPECT_LT(worst.speed, 1e-3);
   EXPECT_LT(worst.load_angle, 2e-5);
-  EXPECT_LT(worst.torque, 1e-4);
+  // Through zero the bare low-pass is stretched 4.1 times, and its rounding with it.
+  EXPECT_LT(worst.torque, (GetParam() == FLUX_PP02) ? 4.1e-4 : 1e-4);
   EXPECT_LT(worst.learnt, 1e-5);
 }
 

@@ -136,8 +136,8 @@ TEST(OneStep, AFluxBeyondItsBoundBeginsAnew) {
   const std::int32_t bound = raw(800.0, 16);
   for (const Vector flux : {Vector{799.0, 0.0}, {-799.0, 0.0}, {0.0, 799.0}, {0.0, -799.0}}) {
     stator_flux_t s = {};
-    stator_flux_preset(&s, &c, raw_ab(flux, 16), 0);
-    stator_flux_step(&s, &c, raw_ab(flux * 0.2, 16), bound);
+    stator_flux_preset(&s, raw_ab(flux, 16));
+    stator_flux_step(&s, &c, raw_ab(flux * 0.2, 16), 0, bound);
     EXPECT_EQ(s.flux_q16.alpha, 0);
     EXPECT_EQ(s.flux_q16.beta, 0);
     EXPECT_EQ(s.length_q16, 0);
