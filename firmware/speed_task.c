@@ -5,7 +5,7 @@
 #include "firmware/parameters.h"
 
 #define SEEING_SHIFT 4  // 16 ms: the torque current's noise stays out of i_d
-#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
+#define SEEING 3        // times the current whose sign is certain: i_d without torque where the flux sees
 
 static int32_t voltage_limit(const drive_t* d) {
   const int32_t share_q30 = q_mul(parameters.voltage_use, 10737418L, 16);  // percent to Q30
