@@ -82,8 +82,8 @@ TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
   EXPECT_FALSE(sees(DRIVE_READY, START_CATCH));
 }
 
-// What weakening and maximum torque per ampere ask for, whichever is more, and what is wanted at low speed on top; both
-// but weakening only where the observer is in use at low speed, and never in a commissioning.
+// What weakening and maximum torque per ampere ask for, whichever is more, and what is wanted at low speed on top,
+// where the observer is in use there; but weakening none of it in a commissioning.
 TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   parameters.id_low_speed = raw(1.5, 20);
   drive.control.reference_q20.q = raw(9.0, 20);
@@ -102,7 +102,7 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
                         {-4.0, 1, BLEND_BOTH, DRIVE_RUN, -2.5},
                         {best / 2, 1, BLEND_LOW, DRIVE_RUN, best + 1.5},
                         {-4.0, 1, BLEND_HIGH, DRIVE_RUN, -4.0},
-                        {0.0, 1, BLEND_HIGH, DRIVE_RUN, 0.0},
+                        {0.0, 1, BLEND_HIGH, DRIVE_RUN, best},
                         {0.0, 1, BLEND_LOW, DRIVE_COMMISSION, 0.0},
                         {-20.0, 0, BLEND_LOW, DRIVE_RUN, -10.0}};
   for (const Case& c : cases) {
@@ -116,6 +116,39 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
     part(TASK_SPEED);
     EXPECT_NEAR(id(), c.expected, 1e-4) << c.weakening << ", " << c.mtpa << ", " << c.region;
     EXPECT_EQ((drive.limits & LIMIT_WEAKENING) != 0, c.weakening < 0.0);
+  }
+}
+
+// Without torque the flux would be blind: three times the current whose sign is certain flows, less what torque makes
+// flow, at low speed and as far as the flux has the shaft.
+TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
+  struct Case {
+    double iq, speed, limit;
+    std::int16_t share_q15;
+    std::int32_t source;
+    double expected;
+  };
+  const Case cases[] = {
+      {0.0, 10.0, 10.0, 0, 7, -2.1},      {-1.5, -10.0, 10.0, 0, 5, -0.6},      {3.0, 10.0, 10.0, 0, 7, 0.0},
+      {0.0, 300.0, 10.0, 0, 7, -1.05},    {0.0, -500.0, 10.0, 0, 7, 0.0},       {0.0, 10.0, 3.0, 0, 7, -1.5},
+      {0.0, 10.0, 10.0, 16384, 7, -1.05}, {0.0, 10.0, 10.0, INT16_MAX, 7, 0.0}, {0.0, 10.0, 10.0, 0, 4, 0.0}};
+  drive.config.dead_time.certain_q20 = raw(0.7, 20);
+  drive.config.flux.adaptation.lowest_bpp = bpp(400.0);
+  parameters.mtpa = 0;
+  for (const Case& c : cases) {
+    parameters.position_source = c.source;
+    drive.control.current_limit_q20 = raw(c.limit, 20);
+    drive.control.seeing_q20 = 0;
+    drive.position.blend.share_q15 = c.share_q15;
+    speed(c.speed);
+    for (int n = 0; n < 200; ++n) {
+      drive.control.reference_q20.q = raw(c.iq, 20);
+      part(TASK_SPEED);
+      if (n == 0) {
+        EXPECT_NEAR(id(), c.expected / 16.0, 1e-3) << c.iq << ", " << c.speed;
+      }
+    }
+    EXPECT_NEAR(id(), c.expected, 1e-3) << c.iq << ", " << c.speed << ", " << c.share_q15 << ", " << c.source;
   }
 }
 
