@@ -15,18 +15,14 @@ bool stator_flux_config_valid(const stator_flux_config_t* c) {
 
 static int32_t length_of(ab_t v) { return q_hypot(v.alpha, v.beta); }
 
-static ab_t unit_q28(uint32_t angle_bam) {
-  const rotation_t r = frame_rotation(angle_bam);
-  const ab_t unit = {q_shr(r.cos_q30, 2), q_shr(r.sin_q30, 2)};
-  return unit;
-}
-
 void stator_flux_preset(stator_flux_t* s, ab_t flux_q16) {
+  static const ab_t unit = {ONE_Q28, 0};
   s->flux_q16 = flux_q16;
   s->length_q16 = length_of(flux_q16);
   s->compensation_q16 = s->length_q16;
   s->unit_bam = 0;
-  s->shown_q28 = unit_q28(0);
+  s->unit_q28 = unit;
+  s->shown_q28 = unit;
 }
 
 // The trapezoidal rule: psi+ - psi = e - w_c T (psi+ + psi)/2. With it the low-pass has the lag of the continuous one.
@@ -42,10 +38,11 @@ static void leak(ab_t* flux, ab_t emf, int32_t cutoff_q30) {
 }
 
 static void step_bare(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t speed_bpp) {
-  const ab_t from = unit_q28(s->unit_bam);
   s->unit_bam += (uint32_t)speed_bpp;
-  const ab_t to = unit_q28(s->unit_bam);
-  const ab_t turn_q28 = {to.alpha - from.alpha, to.beta - from.beta};
+  const rotation_t r = frame_rotation(s->unit_bam);
+  const ab_t to = {q_shr(r.cos_q30, 2), q_shr(r.sin_q30, 2)};
+  const ab_t turn_q28 = {to.alpha - s->unit_q28.alpha, to.beta - s->unit_q28.beta};
+  s->unit_q28 = to;
   leak(&s->shown_q28, turn_q28, c->cutoff_q30);
   leak(&s->flux_q16, emf_q16, c->cutoff_q30);
 }
@@ -87,7 +84,7 @@ void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_
 // The unit vector over what the low-pass shows of it turns and stretches its output to the flux.
 ab_t stator_flux_q16(const stator_flux_t* s, const stator_flux_config_t* c) {
   if (c->form != STATOR_FLUX_BARE) return s->flux_q16;
-  const ab_t unit = unit_q28(s->unit_bam);
+  const ab_t unit = s->unit_q28;
   const ab_t shown = s->shown_q28;
   const int32_t square_q28 = q_mul_add_sat(shown.alpha, shown.alpha, shown.beta, shown.beta, 28);
   const q_inverse_t per_square = q_invert(q_max(square_q28, LEAST_SQUARE_Q28));
