@@ -73,6 +73,19 @@ TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
   EXPECT_NEAR(axis(), 0.5 + 4 * 200.0 * kPeriod + 3.0 * 120.0 * kPeriod * 0.2 * 4.0, 1e-4);
 }
 
+// Both axes of what was commanded are gathered until the back-EMF is looked at, and then it begins anew.
+TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
+  source(POSITION_OBSERVER);
+  drive.control.command_q16 = {raw(2.0, 16), raw(-5.0, 16)};
+  for (int n = 0; n < 3; ++n) EXPECT_FALSE(step(kNone));
+  EXPECT_EQ(drive.watch.voltage_q16.d, 3 * raw(2.0, 16));
+  EXPECT_EQ(drive.watch.voltage_q16.q, 3 * raw(-5.0, 16));
+  EXPECT_EQ(drive.watch.periods, 3);
+  drive.watch.blind = false;
+  EXPECT_FALSE(step(TURN_VOLTAGE));
+  EXPECT_EQ(drive.watch.voltage_q16.d | drive.watch.voltage_q16.q | drive.watch.periods, 0);
+}
+
 // A large current turns the axis, and windows without an axis do not show it: then it is the one in use, and what had
 // been counted begins anew.
 TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
