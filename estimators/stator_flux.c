@@ -16,13 +16,11 @@ bool stator_flux_config_valid(const stator_flux_config_t* c) {
 static int32_t length_of(ab_t v) { return q_hypot(v.alpha, v.beta); }
 
 void stator_flux_preset(stator_flux_t* s, ab_t flux_q16) {
-  static const ab_t unit = {ONE_Q28, 0};
+  static const ab_t all = {ONE_Q28, 0};
   s->flux_q16 = flux_q16;
   s->length_q16 = length_of(flux_q16);
   s->compensation_q16 = s->length_q16;
-  s->unit_bam = 0;
-  s->unit_q28 = unit;
-  s->shown_q28 = unit;
+  s->shown_q28 = all;
 }
 
 // The trapezoidal rule: psi+ - psi = e - w_c T (psi+ + psi)/2. With it the low-pass has the lag of the continuous one.
@@ -30,21 +28,22 @@ static int32_t leaked(int32_t flux, int32_t emf, int32_t half_q30, int32_t keep_
   return q_add_sat(flux, q_mul_sat(q_sub_sat(emf, q_mul(flux, half_q30, 29)), keep_q30, 30));
 }
 
-static void leak(ab_t* flux, ab_t emf, int32_t cutoff_q30) {
-  const int32_t half_q30 = cutoff_q30 / 2;
-  const int32_t keep_q30 = ONE_Q30 - half_q30 + q_mul(half_q30, half_q30, 30);  // 1 / (1 + x/2) within 2e-5
+static void leak(ab_t* flux, ab_t emf, int32_t half_q30, int32_t keep_q30) {
   flux->alpha = leaked(flux->alpha, emf.alpha, half_q30, keep_q30);
   flux->beta = leaked(flux->beta, emf.beta, half_q30, keep_q30);
 }
 
+// A unit vector that turns by r has the EMF r - 1; in its own frame that is 1 behind the turn and -1 before it.
 static void step_bare(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t speed_bpp) {
-  s->unit_bam += (uint32_t)speed_bpp;
-  const rotation_t r = frame_rotation(s->unit_bam);
-  const ab_t to = {q_shr(r.cos_q30, 2), q_shr(r.sin_q30, 2)};
-  const ab_t turn_q28 = {to.alpha - s->unit_q28.alpha, to.beta - s->unit_q28.beta};
-  s->unit_q28 = to;
-  leak(&s->shown_q28, turn_q28, c->cutoff_q30);
-  leak(&s->flux_q16, emf_q16, c->cutoff_q30);
+  static const ab_t before_q28 = {-ONE_Q28, 0};
+  const int32_t half_q30 = c->cutoff_q30 / 2;
+  const int32_t keep_q30 = ONE_Q30 - half_q30 + q_mul(half_q30, half_q30, 30);  // 1 / (1 + x/2) within 2e-5
+  leak(&s->shown_q28, before_q28, half_q30, keep_q30);
+  const rotation_t r = frame_rotation((uint32_t)speed_bpp);
+  const ab_t was = s->shown_q28;  // turned back with rounding: what is cut off adds up to 1/(w_c T)
+  s->shown_q28.alpha = q_add_sat(q_mul_add_sat(was.alpha, r.cos_q30, was.beta, r.sin_q30, 30), q_shr(keep_q30, 2));
+  s->shown_q28.beta = q_mul_sub_sat(was.beta, r.cos_q30, was.alpha, r.sin_q30, 30);
+  leak(&s->flux_q16, emf_q16, half_q30, keep_q30);
 }
 
 // Over a whole period (e . psi)/|psi| is the change of the length by the EMF: taken as that it is exact at any speed,
@@ -61,7 +60,7 @@ static void step_compensated(stator_flux_t* s, const stator_flux_config_t* c, ab
 }
 
 // A flux that large is none, and clamped it would stay (see the header). From nothing it finds back: the bare one at
-// once, as its unit vector begins from nothing as well.
+// once, as the unit vector begins from nothing as well.
 static void restart_beyond(stator_flux_t* s, int32_t bound_q16) {
   static const ab_t none = {0, 0};
   if (q_abs_sat(s->flux_q16.alpha) <= bound_q16 && q_abs_sat(s->flux_q16.beta) <= bound_q16) return;
@@ -81,16 +80,15 @@ void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_
   restart_beyond(s, bound_q16);
 }
 
-// The unit vector over what the low-pass shows of it turns and stretches its output to the flux.
+// Over what the low-pass shows of the flux its output is the flux.
 ab_t stator_flux_q16(const stator_flux_t* s, const stator_flux_config_t* c) {
   if (c->form != STATOR_FLUX_BARE) return s->flux_q16;
-  const ab_t unit = s->unit_q28;
   const ab_t shown = s->shown_q28;
   const int32_t square_q28 = q_mul_add_sat(shown.alpha, shown.alpha, shown.beta, shown.beta, 28);
   const q_inverse_t per_square = q_invert(q_max(square_q28, LEAST_SQUARE_Q28));
-  const int32_t along_q24 = q_over(q_mul_add_sat(unit.alpha, shown.alpha, unit.beta, shown.beta, 28), per_square, 24);
-  const int32_t across_q24 = q_over(q_mul_sub_sat(unit.beta, shown.alpha, unit.alpha, shown.beta, 28), per_square, 24);
-  const ab_t psi = {q_mul_sub_sat(s->flux_q16.alpha, along_q24, s->flux_q16.beta, across_q24, 24),
-                    q_mul_add_sat(s->flux_q16.beta, along_q24, s->flux_q16.alpha, across_q24, 24)};
+  const int32_t along_q24 = q_over(shown.alpha, per_square, 24);
+  const int32_t across_q24 = q_over(shown.beta, per_square, 24);
+  const ab_t psi = {q_mul_add_sat(s->flux_q16.alpha, along_q24, s->flux_q16.beta, across_q24, 24),
+                    q_mul_sub_sat(s->flux_q16.beta, along_q24, s->flux_q16.alpha, across_q24, 24)};
   return psi;
 }

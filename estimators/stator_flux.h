@@ -36,9 +36,7 @@ typedef struct {
   ab_t flux_q16;             // of the low-pass
   int32_t length_q16;        // of it
   int32_t compensation_q16;  // psi_c
-  ab_t unit_q28;             // a unit vector that turns with the speed
-  ab_t shown_q28;            // what the bare low-pass shows of it
-  uint32_t unit_bam;         // its angle
+  ab_t shown_q28;            // what the bare low-pass shows of a unit vector that turns with the speed, in its frame
 } stator_flux_t;
 
 bool stator_flux_config_valid(const stator_flux_config_t* c);

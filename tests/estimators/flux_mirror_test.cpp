@@ -143,8 +143,7 @@ TEST_P(FluxMirror, BothDirectionsMirrorEachOther) {
   EXPECT_LT(worst.angle, 1e-5);
   EXPECT_LT(worst.speed, 1e-3);
   EXPECT_LT(worst.load_angle, 2e-5);
-  // Through zero the bare low-pass is stretched 4.1 times, and its rounding with it.
-  EXPECT_LT(worst.torque, (GetParam() == FLUX_PP02) ? 4.1e-4 : 1e-4);
+  EXPECT_LT(worst.torque, 1e-4);
   EXPECT_LT(worst.learnt, 1e-5);
 }
 
