@@ -51,7 +51,7 @@ DEFECTS = (
         "observer", "correct", "estimators/deviation_observer.c", "q_limit(s->speed_bpp + ", "q_max(s->speed_bpp + "
     ),
     Defect("observer", "prove_observer", "estimators/deviation_observer.c", "q_limit(ka.s, VARIANCE_MAX)", "ka.s"),
-    Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux_q16, q_mul", "(flux_q16 + q_mul"),
+    Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
     Defect(
         "flux",
         "flux_adaptation_change_q24",
