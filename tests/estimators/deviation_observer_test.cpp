@@ -215,6 +215,27 @@ TEST(DeviationObserver, UncertaintyGrowsWithoutWindowsAndShrinksWithThem) {
   EXPECT_GT(deviation_observer_step(&s, &config, blind.get()).quality_q15, 30000);
 }
 
+// Known well and told nothing, it waits to be asked, for twelve periods.
+TEST(DeviationObserver, TheCovarianceIsRenewedAfterTwelvePeriodsAtTheLatest) {
+  const machine_model_t model = model_of(Motor{});
+  deviation_observer_config_t config = {};
+  design_plain(&config, &model, raw(0.1, 20), raw(0.6, 20));
+  deviation_observer_t s = {};
+  deviation_observer_preset(&s, 0, 0, 0);
+  s.p_aa = raw(1.0, 20);
+  Input blind(model, {});
+  estimator_input_t in = *blind.get();
+  in.renew = false;
+  for (int n = 1; n < 12; ++n) {
+    (void)deviation_observer_step(&s, &config, &in);
+    EXPECT_EQ(s.gathered.periods, n);
+    EXPECT_EQ(s.p_aa, raw(1.0, 20));
+  }
+  (void)deviation_observer_step(&s, &config, &in);
+  EXPECT_EQ(s.gathered.periods, 0);
+  EXPECT_GT(s.p_aa, raw(1.0, 20));
+}
+
 // What was not seen cannot be taken, and what was taken is gone.
 TEST(DeviationObserver, NothingIsLeftBeforeAWindowWasSeen) {
   deviation_observer_t s = {};
