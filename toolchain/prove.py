@@ -154,8 +154,13 @@ def plant(out: Path, wanted: list[str]) -> int:
 
 def main() -> int:
     """The drive, or the defects."""
-    out = Path(sys.argv[1]).resolve()
-    names = [word for word in sys.argv[2:] if not word.startswith("-")]
+    words = [word for word in sys.argv[1:] if not word.startswith("-")]
+    options = [word for word in sys.argv[1:] if word.startswith("-")]
+    if not words or set(options) - {"--defects"}:
+        print(__doc__.strip())
+        return 0 if options == ["--help"] else 2
+    out = Path(words[0]).resolve()
+    names = words[1:]
     known_names = [part.name for part in PARTS]
     if unknown := [name for name in names if name not in known_names]:
         print(f"prove: no part {', '.join(unknown)}; there are {', '.join(known_names)}")
@@ -163,7 +168,7 @@ def main() -> int:
     out.mkdir(parents=True, exist_ok=True)
     subprocess.run(["why3", "-C", str(out / "why3.conf"), "config", "detect"], capture_output=True, check=True)
     subprocess.run([sys.executable, PACK, str(out / TABLE)], cwd=ROOT, check=True)
-    return plant(out, names) if "--defects" in sys.argv else check(out, names)
+    return plant(out, names) if options else check(out, names)
 
 
 if __name__ == "__main__":
