@@ -2,25 +2,32 @@
 //
 // A speed controller that is quiet at standstill lets a load that falls on the shaft turn it by several degrees before
 // it knows the load. For hold_time after the start of a standing shaft the torque therefore comes from a stiff loop,
-//   acceleration = wc^2 (theta* - theta^) + 2 wc (w* - w^) + load^
+//   acceleration = wc^2 (theta* - theta^) + 2 wc (w* - w^ - w') + load^
 // with theta* running at the speed reference. Angle, speed and load are the deviation observer's, told that the load
 // changes fast and that its windows are worth all they measure (drive_config.c, hold_observer). A load step of its own
 // it need not look for.
 //
-// The loop needs a map of the cross-saturation: its angle error of 0.46 degrees per ampere, unknown, would close this
-// loop on itself. The resistance is the one seen at the start: at standstill the speed comes from what resistance and
-// drops leave of the voltage, and a resistance 30 % off makes the speed seen go against the torque. The current
-// reference moves slowly enough for the voltage to leave the windows long.
+// The current reference moves slowly enough for the voltage to leave the windows long, at most s in a period. A current
+// x above what the load wants is gone x/s periods later only, and has made the shaft faster by a(x) (x/s) T/2
+// meanwhile, a(x) its acceleration. w' is seven tenths of that, which is what a magnet 30 % weaker than told makes of
+// it. Without w' the loop comes too late on its way back, and swings up to 4 degrees where the inertia is 30 % less
+// than told or the flux 30 % more. In current 2 wc w' is 0.7 wc T x |x| / s, whatever the motor.
+//
+// The loop needs a map of the cross-saturation: its angle error of 0.46 degrees per ampere, unknown, closes this loop
+// on itself, with a gain of 0.8 on motor A and of 1 from wc = 250 rad/s on. The resistance is the one seen at the
+// start: at standstill the speed comes from what resistance and drops leave of the voltage, and a resistance 30 % off
+// makes the speed seen go against the torque.
 
 #include "firmware/start/hold.h"
 
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define CONTROL_STEP_Q30 22548578L     // 210 rad/s * T
-#define CONTROL_SQUARE_Q40 484884628L  // its square
+#define CONTROL_STEP_Q30 24159191L     // wc T, with 225 rad/s
+#define CONTROL_SQUARE_Q40 556627761L  // its square
 #define FILTER_Q30 751619277L          // 0.7 of the change of the current reference per period
-#define SLEW_Q20 367002L               // at most 0.35 A per period: some 25 V, within the alternating layout
+#define SLEW_Q20 734003L               // s, 0.7 A: some 50 V, within the alternating layout
+#define RETURN_Q30 24159191L           // 0.7 wc T / s, per ampere
 
 // The other sources have no observer that could be fast for a moment.
 static bool has_observer(void) { return parameters.position_source >= POSITION_OBSERVER; }
@@ -34,14 +41,16 @@ void hold_begin(drive_t* d) {
 
 bool hold_is_on(const drive_t* d) { return d->hold.left > 0u && d->state == DRIVE_RUN; }
 
-// Electrical acceleration, binary angle per period^2, Q8.
-static int32_t wanted_accel_q8(const drive_t* d) {
+// Electrical acceleration, binary angle per period^2, Q8, without the load's and w'.
+static int32_t restoring_accel_q8(const drive_t* d) {
   const estimator_output_t* const now = &d->position.used;
   const int32_t behind = angle_diff_bam(d->hold.reference_bam, now->angle_bam);
   const int32_t slow = q_sub_sat(d->control.ramp.value, now->speed_bpp);
-  const int32_t stiff = q_mul_sat(behind, CONTROL_SQUARE_Q40, 32);
-  const int32_t damped = q_mul_sat(slow, 2 * CONTROL_STEP_Q30, 22);
-  return q_add_sat(q_add_sat(stiff, damped), now->load_accel_q8);
+  return q_add_sat(q_mul_sat(behind, CONTROL_SQUARE_Q40, 32), q_mul_sat(slow, 2 * CONTROL_STEP_Q30, 22));
+}
+
+static int32_t current_for_q20(const drive_t* d, int32_t accel_q8) {
+  return q_over(q_mul_sat(accel_q8, d->model.torque_per_accel_q24, 20), d->control.per_torque_constant, 24);
 }
 
 bool hold_step(drive_t* d) {
@@ -49,9 +58,12 @@ bool hold_step(drive_t* d) {
   if (!hold_is_on(d)) return false;
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
-  const int32_t torque_q20 = q_mul_sat(wanted_accel_q8(d), d->model.torque_per_accel_q24, 20);
   drive_control_t* const c = &d->control;
-  const int32_t current_q20 = q_over(torque_q20, c->per_torque_constant, 24);
+  const int32_t load_q20 = current_for_q20(d, d->position.used.load_accel_q8);
+  const int32_t above_q20 = q_sub_sat(c->reference_q20.q, load_q20);
+  const int32_t return_q20 = q_mul_sat(q_mul_sat(above_q20, q_abs_sat(above_q20), 20), RETURN_Q30, 30);
+  const int32_t restoring_q20 = current_for_q20(d, restoring_accel_q8(d));
+  const int32_t current_q20 = q_sub_sat(q_add_sat(restoring_q20, load_q20), return_q20);
   const int32_t limited_q20 = q_clamp(current_q20, -c->room_q20, c->room_q20);
   const int32_t change_q20 = q_mul(limited_q20 - c->reference_q20.q, FILTER_Q30, 30);
   c->reference_q20.q += q_clamp(change_q20, -SLEW_Q20, SLEW_Q20);
