@@ -85,8 +85,12 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 // is measured, not the information's word for it: it holds whatever noise the observer was told.
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
   s->mean_score_q20 += q_shr(n->a - s->mean_score_q20, MEAN_SHIFT);
-  // Neither square nor power is below 0: their difference stays in 31 bits.
-  s->score_power_q24 += q_shr(q_sat64(q_shr64(q_product(n->a, n->a), 16)) - s->score_power_q24, POWER_SHIFT);
+  // Neither square nor power is below 0: their difference stays in 31 bits. What the shift leaves counts later: short
+  // windows have a power of 200 in Q24, half of which would be lost.
+  const int32_t square_q24 = q_sat64(q_shr64(q_product(n->a, n->a), 16));
+  const int32_t change = q_add_sat(square_q24 - s->score_power_q24, s->score_rest);
+  s->score_power_q24 += q_shr(change, POWER_SHIFT);
+  s->score_rest = (int32_t)((uint32_t)change & 255u);
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {

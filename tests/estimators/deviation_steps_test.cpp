@@ -143,6 +143,14 @@ TEST(DeviationSteps, FiveStandardDeviationsAreALean) {
   }
 }
 
+// The power of short windows' scores is small, and a mean of it all the same: over 256 periods.
+TEST(DeviationSteps, ASmallPowerIsAMean) {
+  Observer o;
+  o.state.score_power_q24 = 240;
+  for (int n = 0; n < 256; ++n) (void)o.step();
+  EXPECT_NEAR(o.state.score_power_q24, 240.0 * std::pow(255.0 / 256.0, 256), 2.0);
+}
+
 // While nothing shows that the load changes its variance grows by the quiet rate at a crawl, by the other at speed, and
 // by an eighth of the quiet one where the cogging is known.
 TEST(DeviationSteps, TheLoadsVarianceGrowsByItsRate) {
