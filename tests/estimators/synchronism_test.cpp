@@ -3,58 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/estimators/machine_windows.hpp"
-
-extern "C" {
-#include "estimators/synchronism.h"
-}
+#include "tests/estimators/synchronism_scene.hpp"
 
 namespace {
 
 using namespace stillspin::test;
-using namespace stillspin::test::seen;
-
-constexpr double kFloor = 4.0;  // V
-constexpr double kShare = 0.6;
-constexpr int kBad = 50;  // periods
-const Motor kMotor;
-
-const synchronism_config_t kConfig = {raw(kFloor, 16), raw(kShare, 15), kBad};
-
-/// A shaft that turns, seen in a frame that turns with it, is ahead by `off` and believes in `believed` (rad/s).
-struct Scene {
-  machine_model_t model = model_of(kMotor);
-  synchronism_t s{};
-  double theta = 0.4;
-  int period = 0;
-
-  Scene() { synchronism_reset(&s); }
-
-  bool step(double w, double off, double believed, Vector i_dq = {0.0, 3.0}, double apart = 0.0) {
-    theta += w * kPeriod;
-    const Input in(model, alternating(kMotor, period++, theta, w, i_dq.turned(theta)));
-    const synchronism_use_t use = {bam(theta + off), bpp(believed), bpp(w - believed),
-                                   static_cast<std::int32_t>(bam(apart)), 1};
-    return synchronism_step(&s, &kConfig, in.get(), &use);
-  }
-
-  /// Periods until the loss, `most` when there is none.
-  int until_lost(double w, double off, double believed, int most = 1000) {
-    int n = 0;
-    while (n < most && !step(w, off, believed)) ++n;
-    return n;
-  }
-
-  Vector error() const { return {real(s.error_q16.d, 16), real(s.error_q16.q, 16)}; }
-  double turned() const { return real(s.turned_q16, 16); }
-};
-
-// What an estimator hands over instead of the windows: residuals of a machine whose L/T is known, in a frame that
-// turns as fast as is believed.
-synchronism_seen_t seen_of(Vector emf, double believed, std::int32_t span, std::int32_t periods) {
-  const Vector residual = {emf.x * kPeriod / kMotor.ld, emf.y * kPeriod / kMotor.lq};
-  return {raw_dq(residual, 20), span, bpp(believed), 0, periods};
-}
+using namespace stillspin::test::frames;
 
 double electrical(double rpm) { return rpm / 60.0 * kMotor.pole_pairs * kTurn; }
 
@@ -259,72 +213,6 @@ TEST(Synchronism, AnErrorCountsAsOneAndAHalfLimits) {
       EXPECT_NEAR(scene.error().y, -0.5 * sign * counts, 2e-3) << emf;
     }
   }
-}
-
-// The floor is meant for windows of half a period; it grows with the square of what they are shorter, and the EMF's
-// share comes on top in either direction.
-TEST(Synchronism, TheLimitGrowsWithShortWindowsAndSpeed) {
-  Scene scene;
-  for (const auto& [span, factor] : {std::pair{9000, 1.0}, {5000, 1.0}, {2500, 4.0}, {1250, 16.0}}) {
-    for (const double w : {0.0, 300.0, -300.0}) {
-      const synchronism_seen_t seen = seen_of({0.0, 0.0}, w, span, 5);
-      for (int n = 0; n < 30; ++n) (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
-      EXPECT_NEAR(real(scene.s.limit_q16, 16), kFloor * factor + kShare * std::fabs(w) * kMotor.flux, 0.01) << span;
-    }
-  }
-}
-
-// At the limit there is no loss, a little beyond there is one; both axes count.
-TEST(Synchronism, TheLimitIsOfTheWholeVector) {
-  for (const double part : {0.99, 1.01}) {
-    Scene scene;
-    const Vector emf = Vector{0.6, 0.8} * (kFloor * part);
-    const synchronism_seen_t seen = seen_of(emf, 0.0, 5000, 3);
-    for (int n = 0; n < 200; ++n) (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
-    EXPECT_EQ(scene.s.doubt > 0, part > 1.0) << part;
-  }
-}
-
-/// What one judgement of five periods adds while the error is `share` of the limit at rest.
-std::int32_t doubt_at(double share) {
-  Scene scene;
-  const Vector emf = Vector{-0.6, 0.8} * (kFloor * share);
-  scene.s.error_q16 = raw_dq(emf, 16);
-  const synchronism_seen_t seen = seen_of(emf, 0.0, 5000, 5);
-  (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
-  return scene.s.doubt;
-}
-
-// 8 e^2 / limit^2 for each period, rounded down.
-TEST(Synchronism, DoubtGrowsWithTheSquareOfTheError) {
-  EXPECT_EQ(doubt_at(0.995), 0);
-  EXPECT_EQ(doubt_at(1.005), 40);
-  EXPECT_EQ(doubt_at(std::sqrt(1.51)), 60);
-  EXPECT_EQ(doubt_at(std::sqrt(2.02)), 80);
-}
-
-// A limit as it may be set, and one that short windows make: the squares stay in their format.
-TEST(Synchronism, SmallAndLargeLimitsDoubtAlike) {
-  for (const auto& [limit, span, top] : {std::tuple{0.5, 5000, 0.5}, {100.0, 5000, 100.0}, {100.0, 300, 500.0}}) {
-    Scene scene;
-    const synchronism_config_t c = {raw(limit, 16), 0, kBad};
-    const Vector emf = {0.0, top * std::sqrt(2.1)};
-    scene.s.error_q16 = raw_dq(emf, 16);
-    const synchronism_seen_t seen = seen_of(emf, 0.0, span, 1);
-    (void)synchronism_judge(&scene.s, &c, &scene.model, &seen, 0);
-    EXPECT_NEAR(real(scene.s.limit_q16, 16), top, 0.01);
-    EXPECT_NEAR(scene.s.doubt, 8 * 2.1, 1.5) << limit;  // 256 parts of the square at half a volt
-  }
-}
-
-// Without a floor nothing is borne at rest, and nothing is divided by.
-TEST(Synchronism, ALimitOfNothingIsOne) {
-  Scene scene;
-  const synchronism_config_t c = {0, 0, kBad};
-  scene.s.error_q16 = {raw(1.0, 16), 0};
-  const synchronism_seen_t seen = seen_of({0.0, 0.0}, 0.0, 5000, 1);
-  EXPECT_TRUE(synchronism_judge(&scene.s, &c, &scene.model, &seen, 0));
-  EXPECT_EQ(scene.s.limit_q16, 0);
 }
 
 // A polarity reversed at rest: the shaft runs away, and the error grows by some 0.35 V from one judgement to the next.

@@ -51,6 +51,23 @@ def test_motion_backwards_stays_below_two_degrees(table: list[dict[str, str]]) -
     assert max(float(row["backward_deg"]) for row in table if row["way"] == "brake") > 0.3
 
 
+def test_half_the_rated_load_falls_on_the_shaft_at_every_angle() -> None:
+    """Against the direction, with what makes the hold's loop swing (J -30%, flux +30%) or weak (flux -30%)."""
+    common, _ = startup.bench("bench")
+    todo = [
+        case
+        for case in startup.cases(3, quick=False, linear=False)
+        if case.way == "brake"
+        and case.load == 0.5 * startup.RATED_TORQUE * case.direction
+        and case.error in {"flux -30%", "flux +30%", "J -30%"}
+    ]
+    assert len(todo) == 24 * 2 * 3 * 3
+    outcomes = startup.run_all(common, todo, 2, lambda _: None)
+    assert not [item for item in outcomes if item.problem]
+    swinging = [item.backward for item in outcomes if item.case.error != "flux -30%"]
+    assert max(swinging) < 1.5
+
+
 def test_polarity_is_told_with_confidence(table: list[dict[str, str]]) -> None:
     """Saturation answers from 5 standard errors on; a rotor at 60 rpm turns 60 degrees, 4 times the EMF's error."""
     standing = [float(row["sigma"]) for row in table if row["way"] != "flying"]
