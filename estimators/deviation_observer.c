@@ -24,6 +24,7 @@
 #define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
+#define POWER_REST 255u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define HALF_Q9 256L
 #define DUE_Q9 128L
@@ -88,9 +89,10 @@ static void follow_scores(deviation_observer_t* s, const information_t* n) {
   // Neither square nor power is below 0: their difference stays in 31 bits. What the shift leaves counts later: short
   // windows have a power of 200 in Q24, half of which would be lost.
   const int32_t square_q24 = q_sat64(q_shr64(q_product(n->a, n->a), 16));
-  const int32_t change = q_add_sat(square_q24 - s->score_power_q24, s->score_rest);
-  s->score_power_q24 += q_shr(change, POWER_SHIFT);
-  s->score_rest = (int32_t)((uint32_t)change & 255u);
+  const int32_t change = square_q24 - s->score_power_q24;
+  const uint32_t rest = s->score_rest + ((uint32_t)change & POWER_REST);
+  s->score_power_q24 += q_shr(change, POWER_SHIFT) + (int32_t)(rest >> POWER_SHIFT);
+  s->score_rest = rest & POWER_REST;
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {

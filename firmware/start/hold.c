@@ -36,6 +36,7 @@ void hold_begin(drive_t* d) {
   hold_t* const h = &d->hold;
   h->left = has_observer() ? (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS : 0u;
   h->reference_bam = d->position.used.angle_bam;
+  h->current_per_accel = q_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
   if (h->left > 0u) deviation_observer_stands(&d->position.observer);
 }
 
@@ -49,20 +50,16 @@ static int32_t restoring_accel_q8(const drive_t* d) {
   return q_add_sat(q_mul_sat(behind, CONTROL_SQUARE_Q40, 32), q_mul_sat(slow, 2 * CONTROL_STEP_Q30, 22));
 }
 
-static int32_t current_for_q20(const drive_t* d, int32_t accel_q8) {
-  return q_over(q_mul_sat(accel_q8, d->model.torque_per_accel_q24, 20), d->control.per_torque_constant, 24);
-}
-
 bool hold_step(drive_t* d) {
   hold_t* const h = &d->hold;
   if (!hold_is_on(d)) return false;
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
   drive_control_t* const c = &d->control;
-  const int32_t load_q20 = current_for_q20(d, d->position.used.load_accel_q8);
+  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, h->current_per_accel, 20);
   const int32_t above_q20 = q_sub_sat(c->reference_q20.q, load_q20);
   const int32_t return_q20 = q_mul_sat(q_mul_sat(above_q20, q_abs_sat(above_q20), 20), RETURN_Q30, 30);
-  const int32_t restoring_q20 = current_for_q20(d, restoring_accel_q8(d));
+  const int32_t restoring_q20 = q_mul_sat(restoring_accel_q8(d), h->current_per_accel, 20);
   const int32_t current_q20 = q_sub_sat(q_add_sat(restoring_q20, load_q20), return_q20);
   const int32_t limited_q20 = q_clamp(current_q20, -c->room_q20, c->room_q20);
   const int32_t change_q20 = q_mul(limited_q20 - c->reference_q20.q, FILTER_Q30, 30);

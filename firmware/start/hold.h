@@ -6,8 +6,9 @@
 #include <stdint.h>
 
 typedef struct {
-  uint32_t left;           // periods
-  uint32_t reference_bam;  // electrical angle to be held
+  uint32_t left;              // periods
+  uint32_t reference_bam;     // electrical angle to be held
+  int32_t current_per_accel;  // A (Q20) per acceleration (Q8), Q20
 } hold_t;
 
 #endif

@@ -278,7 +278,8 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     parameters.position_source = POSITION_OBSERVER;
     ASSERT_TRUE(drive_config_load(&drive.config));
     part(TASK_SPEED);
-    drive.hold.left = 10;
+    parameters.hold_time = 1;
+    hold_begin(&drive);
     drive.hold.reference_bam = bam(0.3 + c.off);
     const double w = 50.0;
     drive.control.ramp.value = bpp(w);
