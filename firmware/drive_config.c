@@ -184,7 +184,7 @@ static bool load_position(drive_config_t* c) {
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
   c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
   c->drift_share_q30 = share_per_turn_q30(p->drift_time);
-  c->encoder_trim_bam = (uint32_t)q_mul(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  c->encoder_trim_bam = (uint32_t)q_mul64(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   // dLqq/di_d = dLdq/di_q, the slope of the map's first segment, over Lq. The other one comes in percent, Q24.
   c->saturation.q_q30 = q_div(q_div(p->ldq_1, p->inductance_q, 30), p->map_current / 4, 20);
   c->saturation.d_q30 = q_mul(p->saturation_d, 687194767L, 30);

@@ -52,6 +52,10 @@ DEFECTS = (
     ),
     Defect("observer", "prove_observer", "estimators/deviation_observer.c", "q_limit(ka.s, VARIANCE_MAX)", "ka.s"),
     Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
+    Defect("configuration", "q_mul", "firmware/drive_config.c", "q_mul64(p->encoder_trim", "q_mul(p->encoder_trim"),
+    Defect(
+        "configuration", "load_machine", "firmware/drive_config.c", "pole_pairs * 1832519L", "pole_pairs * 183251900L"
+    ),
     Defect(
         "flux",
         "flux_adaptation_change_q24",

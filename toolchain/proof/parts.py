@@ -41,6 +41,10 @@ QMATH = "hal/qmath/*.c"
 SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
 CONTROL = ("control/*.c", QMATH)
 ESTIMATORS = ("estimators/*.c", *CONTROL)
+CONFIGURATION = (
+    *("tests/prove/configuration.c", "firmware/drive_config.c", "firmware/parameter*.c", "firmware/clear.c"),
+    *("firmware/flux_source.c", "svpwm/*.c", *ESTIMATORS),
+)
 OCTETS, RECORD, CRC = "firmware/link/octets.c", "firmware/link/record.c", "firmware/link/crc.c"
 FRAMES = (
     *("tests/prove/framing.c", "firmware/link/splitter.c", RECORD, "firmware/link/cobs.c", CRC),
@@ -114,6 +118,8 @@ PARTS = (
         for name in ("estimators", "observer", "flux", "start")
     ),
     eva("commissioning", ("tests/prove/start.c", *ESTIMATORS), (*ROUNDS, "-eva-min-loop-unroll", "70"), OF_QMATH),
+    # A constant that does not fit its word would be another number, silently.
+    eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64"),
     of_link("packed", TYPED, ("-eva-min-loop-unroll", "470")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH),
