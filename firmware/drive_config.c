@@ -30,13 +30,15 @@ static int32_t share_of(int32_t inductance_q30, int32_t percent_q16) {
 
 static bool load_map(machine_model_t* m) {
   const parameters_t* const p = &parameters;
-  const machine_map_parameters_t map = {p->map_current,
-                                        {m->ld_q30, share_of(m->ld_q30, p->ldd_1), share_of(m->ld_q30, p->ldd_2),
-                                         share_of(m->ld_q30, p->ldd_3), share_of(m->ld_q30, p->ldd_4)},
-                                        {m->lq_q30, share_of(m->lq_q30, p->lqq_1), share_of(m->lq_q30, p->lqq_2),
-                                         share_of(m->lq_q30, p->lqq_3), share_of(m->lq_q30, p->lqq_4)},
-                                        {0, q_mul(p->ldq_1, MILLIHENRY_Q30, 30), q_mul(p->ldq_2, MILLIHENRY_Q30, 30),
-                                         q_mul(p->ldq_3, MILLIHENRY_Q30, 30), q_mul(p->ldq_4, MILLIHENRY_Q30, 30)}};
+  const int32_t ldd_q16[] = {p->ldd_1, p->ldd_2, p->ldd_3, p->ldd_4};  // percent
+  const int32_t lqq_q16[] = {p->lqq_1, p->lqq_2, p->lqq_3, p->lqq_4};
+  const int32_t ldq_q20[] = {p->ldq_1, p->ldq_2, p->ldq_3, p->ldq_4};  // mH
+  machine_map_parameters_t map = {p->map_current, {m->ld_q30}, {m->lq_q30}, {0}};
+  for (uint16_t k = 0; k < MACHINE_MAP_SEGMENTS; k++) {
+    map.ldd_q30[k + 1u] = share_of(m->ld_q30, ldd_q16[k]);
+    map.lqq_q30[k + 1u] = share_of(m->lq_q30, lqq_q16[k]);
+    map.ldq_q30[k + 1u] = q_mul(ldq_q20[k], MILLIHENRY_Q30, 30);
+  }
   return machine_model_saturate(m, &map);
 }
 
