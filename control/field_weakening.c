@@ -12,7 +12,7 @@ static int32_t flux_limit_q28(const field_weakening_input_t* in, const machine_m
 // (V/w)^2 - (Lq iq)^2, (V s)^2.
 static int64_t room_for_axis_q56(const field_weakening_input_t* in, const machine_model_t* m) {
   const int32_t limit = flux_limit_q28(in, m);
-  const int32_t cross = q_mul(m->lq_q30, in->iq_q20, 22);
+  const int32_t cross = q_mul_sat(m->lq_q30, in->iq_q20, 22);
   return (int64_t)limit * limit - (int64_t)cross * cross;
 }
 

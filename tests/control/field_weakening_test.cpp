@@ -59,6 +59,17 @@ TEST(FieldWeakening, FeedForwardOverTheWholeRange) {
   }
 }
 
+// 80 A through 200 mH make 16 V s, twice what Q28 holds: the whole voltage is gone, and none is left for the magnet.
+TEST(FieldWeakening, AVoltageAcrossBeyondItsFormatLeavesNone) {
+  Motor motor;
+  motor.ld = motor.lq = 0.2;
+  const machine_model_t m = model_of(motor);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  const field_weakening_input_t in = input(motor.electrical(300.0), 80.0, 160.0, 160.0, 12.0, 0.0);
+  EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), -motor.flux / motor.ld, 1e-3);
+}
+
 // A magnet that is known to be stronger or weaker needs that much more or less current.
 TEST(FieldWeakening, TheFeedForwardCountsWhatIsLearntOfTheMagnet) {
   Motor motor;
