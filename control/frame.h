@@ -68,4 +68,12 @@ static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
   return v;
 }
 
+/// A vector of a frame in another one that is ahead of it; one of a frame at this angle in the stationary one.
+dq_t frame_turned(dq_t w, uint32_t ahead_bam);
+ab_t frame_fixed(dq_t w, uint32_t angle_bam);
+
+/// a . b and a cross b of vectors in Q24.
+int32_t frame_dot_q24(ab_t a, ab_t b);
+int32_t frame_cross_q24(ab_t a, ab_t b);
+
 #endif

@@ -46,10 +46,8 @@ bool flux_adaptation_change_q24(const flux_machine_t* f, const flux_vectors_t* v
   const int32_t length_q24 = q_hypot(v->flux_q24.alpha, v->flux_q24.beta);
   if (length_q24 == 0) return false;
   const q_inverse_t per_length = q_invert(length_q24);
-  const ab_t p = v->flux_q24;
-  const ab_t x = v->current_q24;
-  const int32_t along_q24 = q_over(q_mul_add_sat(p.alpha, x.alpha, p.beta, x.beta, 24), per_length, 24);
-  const int32_t across_q24 = q_over(q_mul_sub_sat(p.alpha, x.beta, p.beta, x.alpha, 24), per_length, 24);
+  const int32_t along_q24 = q_over(frame_dot_q24(v->flux_q24, v->current_q24), per_length, 24);
+  const int32_t across_q24 = q_over(frame_cross_q24(v->flux_q24, v->current_q24), per_length, 24);
   if (q_abs_sat(across_q24) < least_current_q24) return false;
   const int32_t d_q24 = q_mul_sat(current_q20.d, f->ld_per_psi_q30, 26);
   const int32_t q_q24 = q_mul_sat(current_q20.q, f->lq_per_psi_q30, 26);

@@ -14,13 +14,9 @@ flux_vectors_t flux_vectors(const flux_machine_t* f, ab_t flux_q16, ab_t current
   return v;
 }
 
-static int32_t dot_q24(ab_t a, ab_t b) { return q_mul_add_sat(a.alpha, b.alpha, a.beta, b.beta, 24); }
+static int32_t cross_q24(const flux_vectors_t* v) { return frame_cross_q24(v->flux_q24, v->current_q24); }
 
-static int32_t cross_q24(const flux_vectors_t* v) {
-  return q_mul_sub_sat(v->flux_q24.alpha, v->current_q24.beta, v->flux_q24.beta, v->current_q24.alpha, 24);
-}
-
-int32_t flux_square_q24(const flux_vectors_t* v) { return dot_q24(v->flux_q24, v->flux_q24); }
+int32_t flux_square_q24(const flux_vectors_t* v) { return frame_dot_q24(v->flux_q24, v->flux_q24); }
 
 int32_t flux_reference_square_q24(const flux_machine_t* f, dq_t current_q20) {
   const int32_t d_q24 = per_unit(q_add_sat(FLUX_ONE_Q24, q_mul_sat(current_q20.d, f->ld_per_psi_q30, 26)));
@@ -42,7 +38,7 @@ uint32_t flux_active_angle(const flux_vectors_t* v) {
 
 int32_t flux_load_angle_ft(const flux_vectors_t* v) {
   // (15) times |p|: no quotient, and nothing to guard.
-  const int32_t along_q24 = q_sub_sat(flux_square_q24(v), dot_q24(v->flux_q24, v->current_q24));
+  const int32_t along_q24 = q_sub_sat(flux_square_q24(v), frame_dot_q24(v->flux_q24, v->current_q24));
   return (int32_t)q_atan2(cross_q24(v), along_q24);
 }
 
@@ -56,7 +52,7 @@ static int32_t along_d_q24(const flux_machine_t* f, int32_t c_q24) {
 }
 
 dq_t flux_currents_q24(const flux_machine_t* f, const flux_vectors_t* v, int32_t square_q24) {
-  const int32_t rest_q24 = q_add_sat(FLUX_ONE_Q24, dot_q24(v->current_q24, v->current_q24));
+  const int32_t rest_q24 = q_add_sat(FLUX_ONE_Q24, frame_dot_q24(v->current_q24, v->current_q24));
   const int32_t y_q24 = along_d_q24(f, q_sub_sat(square_q24, rest_q24));
   const int32_t active_q24 = q_max(q_sub_sat(FLUX_ONE_Q24, q_mul_sat(f->saliency_q24, y_q24, 24)), FLOOR_Q24);
   const dq_t yz = {y_q24, q_div(cross_q24(v), active_q24, 24)};

@@ -88,7 +88,9 @@ static uint32_t rotor_angle(flux_observer_t* s, const flux_observer_config_t* c,
 // 0 up to half the cut-off, all from the cut-off on.
 static int32_t quality_q15(const flux_observer_config_t* c, int32_t w_q30) {
   const int32_t half = c->cutoff_q30 / 2;
-  return q_clamp(q_div(q_abs_sat(w_q30) - half, half, 15), 0, 32767);
+  const int32_t above_q30 = q_abs_sat(w_q30) - half;
+  if (above_q30 <= 0) return 0;
+  return (above_q30 < half) ? q_div(above_q30, half, 15) : 32767;
 }
 
 // Not at even intervals: the harmonics of the EMF stand still to who looks once in eight of their periods, as 10 ms are

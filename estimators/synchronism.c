@@ -25,26 +25,26 @@ static void add(ab_t* sum, ab_t x, int32_t share_q30) {
 }
 
 // All windows as one, weighted with their spans, so that a net voltage of unequal windows stays small: the inductances
-// of a saturated machine are not those of the model. False when there are none.
-static bool mean_window(const estimator_input_t* in, estimator_window_t* mean) {
-  const estimator_window_t empty = {{0, 0}, {0, 0}, {0, 0}, 0, 0, false};
+// of a saturated machine are not those of the model.
+void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const estimator_window_t windows[],
+                      uint16_t count, uint32_t angle_bam) {
+  estimator_window_t mean = {{0, 0}, {0, 0}, {0, 0}, 0, 0, false};
   int32_t total = 0;
   int32_t middle_q15 = 0;
-  for (uint16_t k = 0; k < in->window_count; k++) total += in->windows[k].span_ticks;
-  if (total <= 0) return false;
+  for (uint16_t k = 0; k < count; k++) total += windows[k].span_ticks;
+  seen->span_ticks = q_min(total, PERIOD_TICKS);
+  if (total <= 0) return;
   const int32_t per_tick_q30 = ONE_Q30 / total;
-  *mean = empty;
-  for (uint16_t k = 0; k < in->window_count; k++) {
-    const estimator_window_t* const w = &in->windows[k];
+  for (uint16_t k = 0; k < count; k++) {
+    const estimator_window_t* const w = &windows[k];
     const int32_t share_q30 = w->span_ticks * per_tick_q30;
-    add(&mean->slope_q20, w->slope_q20, share_q30);
-    add(&mean->current_q20, w->current_q20, share_q30);
-    add(&mean->voltage_q16, w->voltage_q16, share_q30);
+    add(&mean.slope_q20, w->slope_q20, share_q30);
+    add(&mean.current_q20, w->current_q20, share_q30);
+    add(&mean.voltage_q16, w->voltage_q16, share_q30);
     middle_q15 += q_shr(share_q30, 15) * w->middle_tick;
   }
-  mean->middle_tick = (int16_t)q_shr(middle_q15, 15);
-  mean->span_ticks = (int16_t)q_min(total, PERIOD_TICKS);
-  return true;
+  mean.middle_tick = (int16_t)q_shr(middle_q15, 15);
+  seen->residual_q20 = deviation_evaluate(m, &mean, angle_bam, seen->speed_bpp).residual_q20;
 }
 
 // Of numbers below 2^30.
@@ -109,13 +109,4 @@ bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const ma
   if (q_limit(apart_bam, APART_LIMIT_BAM) != apart_bam) per_period = q_max(per_period, DOUBT_PER_BAD);
   s->doubt = (per_period > 0) ? s->doubt + per_period * seen->periods : q_max(s->doubt - seen->periods, 0);
   return s->doubt > c->bad_periods * DOUBT_PER_BAD;
-}
-
-bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in,
-                      const synchronism_use_t* use) {
-  estimator_window_t mean;
-  if (!mean_window(in, &mean)) return false;
-  const deviation_t d = deviation_evaluate(in->model, &mean, use->angle_bam, use->speed_bpp);
-  const synchronism_seen_t seen = {d.residual_q20, mean.span_ticks, use->speed_bpp, use->ahead_bpp, use->periods};
-  return synchronism_judge(s, c, in->model, &seen, use->apart_bam);
 }

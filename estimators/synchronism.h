@@ -45,21 +45,7 @@ typedef struct {
 
 void synchronism_reset(synchronism_t* s);
 
-typedef struct {
-  uint32_t angle_bam;  // in use, at the end of the windows' period
-  int32_t speed_bpp;
-  int32_t ahead_bpp;  // how much faster the frame has turned since the last time
-  int32_t apart_bam;  // how far two estimators are apart, 0 where there is one
-  int32_t periods;    // since the last time, 1..8
-} synchronism_use_t;
-
-/// One period's windows; it may be done every few periods. Returns true when synchronism is lost. A period without
-/// windows changes nothing.
-bool synchronism_step(synchronism_t* s, const synchronism_config_t* c, const estimator_input_t* in,
-                      const synchronism_use_t* use);
-
-/// What an estimator that has evaluated the windows already knows of them, in its own frame before it has corrected
-/// itself.
+/// What the windows leave unexplained.
 typedef struct {
   dq_t residual_q20;   // mean by spans, A per period
   int32_t span_ticks;  // of all windows of a period, 0 where there are none
@@ -68,7 +54,13 @@ typedef struct {
   int32_t periods;     // since the last time, 1..63
 } synchronism_seen_t;
 
-/// The same with that instead of the windows; it may be done every few periods.
+/// Residual and span of one period's windows, at an angle at the end of that period and at the speed in use.
+void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const estimator_window_t windows[],
+                      uint16_t count, uint32_t angle_bam);
+
+/// Takes what an estimator or synchronism_look has seen; it may be done every few periods. apart_bam is how far two
+/// estimators are apart, 0 where there is one. Returns true when synchronism is lost. A period without windows changes
+/// nothing.
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                        const synchronism_seen_t* seen, int32_t apart_bam);
 

@@ -32,17 +32,15 @@ static bool mean_deviation(const estimator_input_t* in, uint32_t angle_bam, int3
                            seen_t* mean) {
   seen_t sum = {0, 0};
   int32_t count = 0;
-  estimator_frame_t own[ESTIMATOR_WINDOWS];
-  const estimator_frame_t* f = in->frames;
   const int32_t emf_q16 = q_mul_sat(in->model->emf_q16, machine_speed_rad_q30(emf_bpp), 30);
-  if (f == 0) {
-    deviation_frames(in->windows, in->window_count, deviation_middle(angle_bam, speed_bpp),
-                     machine_speed_rad_q30(speed_bpp), own);
-    f = own;
-  }
   for (uint16_t k = 0; k < in->window_count; k++) {
-    if (!in->windows[k].zero_vector) continue;
-    see(&sum, in->model, &in->windows[k], &f[k], emf_q16);
+    const estimator_window_t* const w = &in->windows[k];
+    estimator_frame_t own;
+    if (!w->zero_vector) continue;
+    if (in->frames == 0) {
+      deviation_frames(w, 1, deviation_middle(angle_bam, speed_bpp), machine_speed_rad_q30(speed_bpp), &own);
+    }
+    see(&sum, in->model, w, (in->frames != 0) ? &in->frames[k] : &own, emf_q16);
     count++;
   }
   if (count == 0) return false;

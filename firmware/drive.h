@@ -74,7 +74,7 @@ typedef struct {
 typedef struct {
   estimator_window_t windows[ESTIMATOR_WINDOWS];
   ab_t ripple_q16;                              // ripple flux at the middles of all windows, added up, V period
-  estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame in use
+  estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
   uint16_t count;
   slopes_scale_t scale;                     // of the sensors, renewed in a turn
   int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
@@ -230,8 +230,7 @@ static inline bool drive_is_turned(const drive_t* d) { return d->state == DRIVE_
 
 /// A vector in the frame that the control uses, in the frame of what the position source sees meanwhile.
 static inline dq_t drive_seen(const drive_t* d, dq_t vector) {
-  const ab_t used = {vector.d, vector.q};
-  return frame_park(used, frame_rotation(d->start.seen.angle_bam - d->position.used.angle_bam));
+  return frame_turned(vector, d->start.seen.angle_bam - d->position.used.angle_bam);
 }
 
 /// True while what is sampled does not belong to a power stage that is on and to a known pattern.

@@ -37,29 +37,17 @@ bool flux_source_load(drive_config_t* c) {
   return !wanted || flux_observer_config_valid(f, &c->nameplate);
 }
 
-estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* in) {
-  estimator_input_t given;
-  given.model = in->model;
-  given.windows = in->windows;
-  given.window_count = in->window_count;
-  given.torque_accel_q8 = in->torque_accel_q8;
-  given.renew = in->renew;
-  given.refresh = in->refresh;
-  given.regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
-  given.frames = in->frames;
-  return given;
+bool flux_source_learns(const drive_t* d) {
+  return d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d);
 }
 
-bool flux_source_rests(const drive_t* d) {
-  const blend_t* const b = &d->position.blend;
-  return b->region == BLEND_HIGH && b->share_q15 == 0 && !polarity_watch_is_awake(d);
-}
+bool flux_source_rests(const drive_t* d) { return blend_is_high(&d->position.blend) && !polarity_watch_is_awake(d); }
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
 static flux_period_t period_of(const drive_t* d) {
   const uint32_t end_bam = d->position.used.angle_bam + (uint32_t)d->position.used.speed_bpp;
   flux_period_t p;
-  p.current_q20 = frame_inverse_park(d->control.measured_q20, frame_rotation(end_bam));
+  p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
   p.measured_q20 = d->control.measured_q20;
   p.reference_q20 = d->control.reference_q20;
   if (drive_is_turned(d)) {
@@ -100,16 +88,14 @@ void flux_source_take(drive_t* d) {
 }
 
 void flux_source_follow(drive_t* d, const estimator_output_t* now) {
-  const dq_t i_q20 = d->control.measured_q20;
-  flux_observer_preset(&d->position.flux, &d->config.flux, now,
-                       frame_inverse_park(i_q20, frame_rotation(now->angle_bam)));
+  flux_observer_preset(&d->position.flux, &d->config.flux, now, frame_fixed(d->control.measured_q20, now->angle_bam));
 }
 
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {
   drive_position_t* const p = &d->position;
   hal_profile_step(CYCLES_ESTIMATE_FLUX);
   p->high = *low;
-  if (p->blend.region == BLEND_LOW && p->blend.share_q15 == INT16_MAX) {
+  if (blend_is_low(&p->blend)) {
     flux_source_follow(d, low);
   } else {
     p->high = step(d, in);

@@ -13,8 +13,8 @@
 /// cannot be given.
 bool flux_source_load(drive_config_t* c);
 
-/// The estimators' input: between the ends of the blend nothing is learnt of the windows, for want of time.
-estimator_input_t flux_source_input(const drive_t* d, const estimator_input_t* in);
+/// Between the ends of the blend nothing is learnt of the windows, for want of time.
+bool flux_source_learns(const drive_t* d);
 
 /// True where the flux alone has the shaft and nobody else needs the observer.
 bool flux_source_rests(const drive_t* d);

@@ -11,7 +11,7 @@
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
-typedef estimator_output_t (*source_step_t)(drive_t* d, const estimator_input_t* in);
+typedef estimator_output_t (*source_step_t)(drive_t* d, estimator_input_t* in);
 
 static bool is_turn(const drive_t* d, turn_t turn) { return d->schedule.turn == turn; }
 
@@ -64,21 +64,24 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
   return d->position.low;
 }
 
+static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) { return step_avv(d, in); }
+
 // One estimator for all speeds; the regression is that of its own deviations.
-static estimator_output_t source_observer(drive_t* d, const estimator_input_t* in) {
+static estimator_output_t source_observer(drive_t* d, estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
   // Whether the windows agree with the angle, so that the regression is linear, is asked in the place behind it.
-  if (is_turn(d, TURN_REGRESS)) d->position.is_near = in->window_count > 0u;
+  if (is_turn(d, TURN_REGRESS)) d->position.is_near = in->regress && in->window_count > 0u;
   if (is_turn(d, TURN_LOOK)) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
   adapt(d, r);
   d->position.high = out;
   return out;
 }
 
-static estimator_output_t source_observer_avv(drive_t* d, const estimator_input_t* in) {
-  (void)step_avv(d, in);
+static estimator_output_t source_observer_avv(drive_t* d, estimator_input_t* in) {
   (void)step_observer(d, in);
+  in->frames = 0;
+  (void)step_avv(d, in);
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
@@ -93,7 +96,7 @@ static bool zvv_alone(const drive_t* d) { return blend_is_low(&d->position.blend
 static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blend); }
 
 // The estimator that is not asked stands by at the other's angle.
-static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) {
+static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
   if (zvv_alone(d)) {
     p->low = step_zvv(d, in);
@@ -105,6 +108,7 @@ static estimator_output_t source_paper(drive_t* d, const estimator_input_t* in) 
       p->low = p->high;
       zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
     } else {
+      in->frames = 0;
       p->low = step_zvv(d, in);
     }
   }
@@ -117,7 +121,7 @@ static uint32_t encoder_angle(const drive_t* d) {
   return position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, parameters.encoder_counts);
 }
 
-static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in) {
+static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   const uint32_t angle = encoder_angle(d) + d->position.encoder_offset_bam;
   tracking_observer_predict(&d->position.encoder, in->torque_accel_q8);
   tracking_observer_correct(&d->position.encoder, angle_diff_bam(angle, d->position.encoder.angle_bam),
@@ -132,27 +136,40 @@ static estimator_output_t source_encoder(drive_t* d, const estimator_input_t* in
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += d->config.encoder_trim_bam;
+  in->frames = 0;
   (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &d->position.deviation_q20);
   return out;
 }
 
 // The observer below the blend, the stator flux above, both between.
-static estimator_output_t source_flux(drive_t* d, const estimator_input_t* in) {
-  const estimator_input_t given = flux_source_input(d, in);
-  if (flux_source_rests(d)) return flux_source_alone(d, &given);
-  const estimator_output_t low = source_observer(d, &given);
-  return flux_source_beside(d, &given, &low);
+static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
+  in->regress = in->regress && flux_source_learns(d);
+  if (flux_source_rests(d)) return flux_source_alone(d, in);
+  const estimator_output_t low = source_observer(d, in);
+  return flux_source_beside(d, in, &low);
 }
 
-static const source_step_t sources[] = {source_encoder, source_paper, source_observer_avv, step_avv,   source_observer,
+static const source_step_t sources[] = {source_encoder, source_paper, source_observer_avv, source_avv, source_observer,
                                         source_flux,    source_flux,  source_flux,         source_flux};
 
-static void measure_current(drive_t* d) {
+// The estimator that looks at the windows first, as it was last.
+static const estimator_output_t* first_of(const drive_t* d, int32_t source) {
+  const drive_position_t* const p = &d->position;
+  const bool low = (source == POSITION_PAPER) ? zvv_alone(d) : source != POSITION_ENCODER && source != POSITION_AVV;
+  return low ? &p->low : &p->high;
+}
+
+// Angle in the middle of the windows' period, of a frame that has run on evenly since.
+static uint32_t middle_of(const estimator_output_t* now) {
+  return deviation_middle(now->angle_bam + (uint32_t)now->speed_bpp, now->speed_bpp);
+}
+
+static void measure_current(drive_t* d, const estimator_output_t* first) {
   drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
-  const int32_t speed_bpp = d->position.used.speed_bpp;
-  const uint32_t middle_bam = deviation_middle(d->position.used.angle_bam + (uint32_t)speed_bpp, speed_bpp);
-  deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(speed_bpp), s->frames);
+  const estimator_output_t* const used = &d->position.used;
+  const uint32_t middle_bam = middle_of(first);
+  deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(first->speed_bpp), s->frames);
   for (uint16_t k = 0; k < s->count; k++) {
     sum.d += s->frames[k].current_q20.d;
     sum.q += s->frames[k].current_q20.q;
@@ -160,33 +177,17 @@ static void measure_current(drive_t* d) {
   // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
   const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
   const int32_t per_count_q30 = per_windows_q30[s->count];
-  d->control.measured_q20.d = q_mul_floor(sum.d - q_mul_floor(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30);
-  d->control.measured_q20.q = q_mul_floor(sum.q - q_mul_floor(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30);
-}
-
-// The windows in the frame in use, where that is the own one of the only estimator. A start has AVV alone.
-static const estimator_frame_t* own_frames(const drive_t* d, bool starting) {
-  const drive_position_t* const p = &d->position;
-  const int32_t source = parameters.position_source;
-  uint32_t angle_bam = p->observer.angle_bam;
-  int32_t speed_bpp = p->observer.speed_bpp;
-  if (starting || (source == POSITION_PAPER && avv_alone(d))) {
-    angle_bam = p->avv.observer.angle_bam;
-    speed_bpp = p->avv.observer.speed_bpp;
-  } else if (source == POSITION_PAPER && zvv_alone(d)) {
-    angle_bam = p->zvv.angle_bam;
-    speed_bpp = p->zvv.speed_bpp;
-  } else if (source != POSITION_OBSERVER) {
-    return 0;
-  }
-  return (angle_bam == p->used.angle_bam && speed_bpp == p->used.speed_bpp) ? d->samples.frames : 0;
+  const dq_t mean_q20 = {q_mul_floor(sum.d - q_mul_floor(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30),
+                         q_mul_floor(sum.q - q_mul_floor(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30)};
+  d->control.measured_q20 = mean_q20;
+  if (first == used || first->angle_bam == used->angle_bam) return;
+  d->control.measured_q20 = frame_turned(mean_q20, middle_of(used) - middle_bam);
 }
 
 // The I-F start: the control uses the vector's frame, and the source looks on. At rest the angle is the vector's: a
 // saliency has two.
 static void estimate_turned(drive_t* d, estimator_input_t* in) {
   drive_start_t* const s = &d->start;
-  in->frames = 0;
   if (flux_source_rests(d) && !if_start_is_up(&s->turn, &d->config.turn)) {
     flux_source_follow(d, &d->position.used);
     s->seen = d->position.used;
@@ -202,13 +203,18 @@ static void estimate_turned(drive_t* d, estimator_input_t* in) {
 
 void drive_estimate(drive_t* d) {
   const uint16_t count = drive_is_blind(d) ? 0u : d->samples.count;
-  if (count > 0u) measure_current(d);
-  const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
-  if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
-  if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
   const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
   const bool turned = drive_is_turned(d);
   const bool starting = !measuring && !d->schedule.turning;
+  // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
+  const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
+  // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone.
+  const bool alone = source == POSITION_OBSERVER || starting || turned || measuring;
+  const estimator_output_t* const first = alone ? &d->position.used : first_of(d, source);
+  if (count > 0u) measure_current(d, first);
+  const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
+  if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
+  if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_turn(d, TURN_REGRESS);
@@ -216,6 +222,7 @@ void drive_estimate(drive_t* d) {
   in.refresh = moves || !d->schedule.turning;
   in.windows = d->samples.windows;
   in.window_count = d->schedule.skips ? 0u : count;
+  in.frames = (turned || measuring) ? 0 : d->samples.frames;
   // While the polarity is open the sign of the torque is, too. A source that looks on is told what its own angle makes
   // of the current, as later.
   const dq_t seen_q20 = turned ? drive_seen(d, d->control.measured_q20) : d->control.measured_q20;
@@ -224,17 +231,11 @@ void drive_estimate(drive_t* d) {
   inertia_match_add(&d->inertia, in.torque_accel_q8);
   if (turned) {
     estimate_turned(d, &in);
-    return;
-  }
-  if (measuring) {
-    in.frames = 0;
+  } else if (measuring) {
     d->position.used = step_commissioning(d, &in);
-    return;
+  } else {
+    d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
   }
-  // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
-  const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
-  in.frames = own_frames(d, starting);
-  d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
 }
 
 void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {

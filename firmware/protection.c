@@ -3,6 +3,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
+#include "firmware/flux_source.h"
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "hal/hal_pwm.h"
@@ -67,8 +68,7 @@ static int32_t disagreement(const drive_t* d) {
 }
 
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
-static bool diverged(drive_t* d, int32_t periods) {
-  const int32_t apart_bam = disagreement(d);
+static bool diverged(drive_t* d, int32_t periods, int32_t apart_bam) {
   const int32_t speed_limit = q_mul_floor(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
   const bool wrong = (apart_bam > 0 && apart_bam > q_mul_floor(parameters.divergence_limit, 11930465L, 16)) ||
                      q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
@@ -76,38 +76,41 @@ static bool diverged(drive_t* d, int32_t periods) {
   return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
 }
 
-// The observer's residuals since it was last asked.
-static bool observer_lost(drive_t* d, int32_t ahead_bpp) {
-  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, ahead_bpp, 0};
-  if (!deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods))
-    return false;
-  return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen, 0);
+// Where the observer looks at the windows, its residuals say how it is: those of all periods since it was last asked.
+static bool is_by_observer(const drive_t* d) {
+  const int32_t source = parameters.position_source;
+  return source == POSITION_OBSERVER || (source >= POSITION_FLUX_CONV && !flux_source_rests(d));
+}
+
+static int32_t span_of(const drive_samples_t* s) {
+  int32_t span_ticks = 0;
+  for (uint16_t k = 0; k < s->count; k++) span_ticks += s->windows[k].span_ticks;
+  return span_ticks;
 }
 
 // An angle error that is asked for is none.
-static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp) {
-  if (parameters.position_source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
-  if (parameters.position_source == POSITION_OBSERVER) return observer_lost(d, ahead_bpp);
-  estimator_input_t in;
-  in.model = &d->model;
-  in.windows = d->samples.windows;
-  in.window_count = d->samples.count;
-  in.torque_accel_q8 = 0;
+static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int32_t apart_bam) {
+  const int32_t source = parameters.position_source;
+  const regression_t* const by_avv = &d->position.avv.regression;
+  if (source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
+  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, ahead_bpp, periods};
+  if (is_by_observer(d)) {
+    (void)deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods);
+  } else if (source == POSITION_PAPER && by_avv->information > 0) {
+    seen.residual_q20 = by_avv->mean_q20;  // AVV has regressed the same windows
+    seen.span_ticks = span_of(&d->samples);
+  } else {
+    synchronism_look(&seen, &d->model, d->samples.windows, d->samples.count, d->position.used.angle_bam);
+  }
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
-  const int32_t apart_bam = (parameters.position_source == POSITION_ENCODER) ? 0 : disagreement(d);
-  in.regress = false;
-  in.renew = false;
-  in.refresh = false;
-  in.frames = 0;
-  const synchronism_use_t use = {d->position.used.angle_bam, d->position.used.speed_bpp, ahead_bpp, apart_bam, periods};
-  return synchronism_step(&d->supervision.synchronism, &d->config.synchronism, &in, &use);
+  return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen,
+                           (source == POSITION_ENCODER) ? 0 : apart_bam);
 }
 
-// In its turns only, where a period says what the next ones do: the observer's residuals are those of all periods
+// In its turns only, where a period says what the next ones do, or the observer's residuals are those of all periods
 // since; alternating pulses give each period windows of its own.
 static bool judges_now(const drive_t* d) {
-  const bool each = parameters.position_source != POSITION_OBSERVER && d->modulation.state.is_alternating;
-  return each || d->schedule.judges;
+  return d->schedule.judges || (d->modulation.state.is_alternating && !is_by_observer(d));
 }
 
 // How much faster the frame in use has turned than its speed says, since it was last judged; 0 when that is long ago.
@@ -118,14 +121,15 @@ static int32_t frame_ahead_bpp(const drive_t* d, int32_t since) {
 }
 
 static drive_fault_t check_position(drive_t* d) {
-  if (!drive_is_turning(d) || !judges_now(d)) return FAULT_NONE;
   const int32_t since = (uint16_t)(d->heartbeat - d->supervision.judged_at);
   const int32_t ahead_bpp = frame_ahead_bpp(d, since);
   const int32_t periods = q_min(since, JUDGED_PERIODS_MAX);
   d->supervision.judged_at = d->heartbeat;
   d->supervision.judged_bam = d->position.used.angle_bam;
-  if (lost_synchronism(d, periods, ahead_bpp)) return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
-  return diverged(d, periods) ? FAULT_DIVERGENCE : FAULT_NONE;
+  const int32_t apart_bam = disagreement(d);
+  if (lost_synchronism(d, periods, ahead_bpp, apart_bam))
+    return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
+  return diverged(d, periods, apart_bam) ? FAULT_DIVERGENCE : FAULT_NONE;
 }
 
 static drive_fault_t check(drive_t* d) {
@@ -139,7 +143,7 @@ static drive_fault_t check(drive_t* d) {
   if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
   if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
   if (polarity_watch_step(d)) return FAULT_POLARITY;
-  return check_position(d);
+  return (drive_is_turning(d) && judges_now(d)) ? check_position(d) : FAULT_NONE;
 }
 
 void drive_protect(drive_t* d) {

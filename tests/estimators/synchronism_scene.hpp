@@ -20,6 +20,14 @@ inline const Motor kMotor;
 
 inline const synchronism_config_t kConfig = {raw(kFloor, 16), raw(kShare, 15), kBad};
 
+/// The period's windows at this angle, judged.
+inline bool step_with(synchronism_t* s, const Input& in, std::uint32_t angle, synchronism_seen_t seen,
+                      std::int32_t apart = 0) {
+  const estimator_input_t* const given = in.get();
+  synchronism_look(&seen, given->model, given->windows, given->window_count, angle);
+  return synchronism_judge(s, &kConfig, given->model, &seen, apart);
+}
+
 /// A shaft that turns, seen in a frame that turns with it, is ahead by `off` and believes in `believed` (rad/s).
 struct Scene {
   machine_model_t model = model_of(kMotor);
@@ -32,9 +40,8 @@ struct Scene {
   bool step(double w, double off, double believed, Vector i_dq = {0.0, 3.0}, double apart = 0.0) {
     theta += w * kPeriod;
     const Input in(model, alternating(kMotor, period++, theta, w, i_dq.turned(theta)));
-    const synchronism_use_t use = {bam(theta + off), bpp(believed), bpp(w - believed),
-                                   static_cast<std::int32_t>(bam(apart)), 1};
-    return synchronism_step(&s, &kConfig, in.get(), &use);
+    const synchronism_seen_t now = {{0, 0}, 0, bpp(believed), bpp(w - believed), 1};
+    return step_with(&s, in, bam(theta + off), now, static_cast<std::int32_t>(bam(apart)));
   }
 
   /// Periods until the loss, `most` when there is none.

@@ -140,8 +140,7 @@ TEST(Synchronism, WithoutWindowsNothingChanges) {
   for (int n = 0; n < 30; ++n) (void)scene.step(electrical(600.0), kPi, electrical(600.0));
   const synchronism_t before = scene.s;
   const Input none(scene.model, {});
-  const synchronism_use_t use = {0, 0, 0, 0, 1};
-  EXPECT_FALSE(synchronism_step(&scene.s, &kConfig, none.get(), &use));
+  EXPECT_FALSE(step_with(&scene.s, none, 0, {{0, 0}, 0, 0, 0, 1}));
   EXPECT_EQ(scene.s.doubt, before.doubt);
   EXPECT_EQ(scene.s.error_q16.q, before.error_q16.q);
 }
@@ -162,10 +161,13 @@ TEST(Synchronism, BearsAnyWindow) {
       w.span = 300 + random.below(3000);
     }
     const Input in(model, windows);
-    const synchronism_use_t use = {bam(random.between(-kPi, kPi)), bpp(random.between(-1900.0, 1900.0)),
-                                   static_cast<std::int32_t>(bam(random.between(-kPi, kPi))),
-                                   static_cast<std::int32_t>(bam(random.between(-kPi, kPi))), 1 + random.below(6)};
-    (void)synchronism_step(&s, &kConfig, in.get(), &use);
+    const synchronism_seen_t now = {{0, 0},
+                                    0,
+                                    bpp(random.between(-1900.0, 1900.0)),
+                                    static_cast<std::int32_t>(bam(random.between(-kPi, kPi))),
+                                    1 + random.below(6)};
+    (void)step_with(&s, in, bam(random.between(-kPi, kPi)), now,
+                    static_cast<std::int32_t>(bam(random.between(-kPi, kPi))));
     ASSERT_GE(s.doubt, 0);
     ASSERT_GE(s.limit_q16, 0);
     // slopes of 40 A a period stand for 3.1 kV
@@ -305,8 +307,7 @@ TEST(Synchronism, WindowsCountByTheirSpans) {
   const Vector left[] = {{0.16, 0.0}, {-0.04, 0.08}};  // A per period along d and q
   for (std::size_t k = 0; k < 2; ++k) windows[k].slope = windows[k].slope + left[k].turned(theta);
   const Input in(scene.model, windows);
-  const synchronism_use_t use = {bam(theta), 0, 0, 0, 1};
-  (void)synchronism_step(&scene.s, &kConfig, in.get(), &use);
+  (void)step_with(&scene.s, in, bam(theta), {{0, 0}, 0, 0, 0, 1});
   const Vector mean = left[0] * 0.25 + left[1] * 0.75;
   EXPECT_NEAR(scene.error().x, 0.25 * mean.x * kMotor.ld / kPeriod, 2e-3);
   EXPECT_NEAR(scene.error().y, 0.25 * mean.y * kMotor.lq / kPeriod, 2e-3);

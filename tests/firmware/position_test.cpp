@@ -68,7 +68,7 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
   }
 }
 
-// A frame that was made at the angle in use is used again only by the one estimator whose angle that is.
+// Windows are looked at in the estimator's own frame, whatever angle is in use.
 TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
   for (const bool same : {true, false}) {
     run_with(POSITION_PAPER);
@@ -128,16 +128,51 @@ TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
 
 // Above the blend's begin the windows teach nothing, but that the watch of the polarity wants their axis.
 TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
-  estimator_input_t in = {};
   for (const blend_region_t region : {BLEND_LOW, BLEND_BOTH, BLEND_HIGH}) {
     for (const bool watched : {false, true}) {
       for (const bool asked : {false, true}) {
         run_with(POSITION_FLUX_CONV);
         blend(region, 0.5);
         drive.watch.open = watched;
-        in.regress = asked;
-        EXPECT_EQ(flux_source_input(&drive, &in).regress, asked && (region == BLEND_LOW || watched)) << region;
+        drive.schedule.turn = asked ? TURN_REGRESS : TURNS;
+        drive.position.is_near = !asked;
+        drive.position.observer.regressed_bam = kThere;
+        drive_estimate(&drive);
+        const bool regressed = asked && (region == BLEND_LOW || watched);
+        EXPECT_EQ(drive.position.observer.regressed_bam != kThere, regressed) << region;
+        EXPECT_EQ(drive.position.is_near, regressed || !asked) << "what was not regressed teaches nothing";
       }
+    }
+  }
+}
+
+// A current that was turned into the frame of who looks at the windows first is the one in the frame in use.
+TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
+  const struct {
+    std::int32_t source;
+    blend_region_t region;
+    double share;
+  } cases[] = {{POSITION_ENCODER, BLEND_LOW, 1.0},       {POSITION_PAPER, BLEND_LOW, 1.0},
+               {POSITION_PAPER, BLEND_HIGH, 0.0},        {POSITION_PAPER, BLEND_BOTH, 0.5},
+               {POSITION_AVV, BLEND_LOW, 1.0},           {POSITION_OBSERVER, BLEND_LOW, 1.0},
+               {POSITION_OBSERVER_AVV, BLEND_BOTH, 0.5}, {POSITION_FLUX_CONV, BLEND_BOTH, 0.5},
+               {POSITION_FLUX_CONV, BLEND_HIGH, 0.0}};
+  for (const auto& c : cases) {
+    for (const bool starting : {false, true}) {
+      run_with(c.source);
+      see(1);
+      blend(c.region, c.share);
+      drive.samples.windows[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
+      drive.samples.ripple_q16 = {0, 0};
+      if (starting) drive.state = DRIVE_START;
+      drive.schedule.turning = !starting;
+      drive.start.powered = true;
+      drive.position.used.angle_bam = kThere;
+      drive.position.high.angle_bam = kHere + 0x01000000u;
+      drive_estimate(&drive);
+      const Vector current = Vector{3.0, 1.0}.turned(-rad(kThere));
+      EXPECT_NEAR(real(drive.control.measured_q20.d, 20), current.x, 1e-5) << c.source << c.region << starting;
+      EXPECT_NEAR(real(drive.control.measured_q20.q, 20), current.y, 1e-5) << c.source << c.region << starting;
     }
   }
 }

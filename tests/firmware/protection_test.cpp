@@ -155,7 +155,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
 // A disagreement counts from divergence_limit on, and where it ends the time begins anew.
 TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   const auto apart = [](double degrees) {
-    drive.position.avv.observer.angle_bam =
+    drive.position.avv.observer.angle_bam = drive.position.high.angle_bam =
         drive.position.encoder.angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
   };
   make_run();
@@ -205,6 +205,53 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
   drive_protect(&drive);
   EXPECT_EQ(drive.fault, FAULT_SYNCHRONISM);
+}
+
+// Beside the flux it is the observer's residuals that are judged, in their turns; alone the flux is judged by windows.
+TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
+  for (const bool alone : {false, true}) {
+    for (const bool asked : {false, true}) {
+      SetUp();
+      make_run();
+      trust_synchronism();
+      parameters.position_source = POSITION_FLUX_CONV;
+      drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
+      drive.position.blend.share_q15 = alone ? 0 : 16384;
+      drive.watch.open = false;
+      drive.schedule.judges = asked;
+      drive.modulation.state.is_alternating = true;
+      drive.position.observer.left = {0, 0, 3000, 1};
+      drive.supervision.judged_at = static_cast<std::uint16_t>(drive.heartbeat - 1u);
+      drive_protect(&drive);
+      EXPECT_EQ(drive.position.observer.left.span_ticks, (!alone && asked) ? 0 : 3000) << alone << asked;
+      EXPECT_EQ(drive.supervision.judged_at == drive.heartbeat, alone || asked) << alone << asked;
+    }
+  }
+}
+
+// What the paper's AVV has made of a period's windows is what is judged, and the windows where it has seen nothing.
+TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
+  for (const bool seen : {true, false}) {
+    SetUp();
+    make_run();
+    parameters.position_source = POSITION_PAPER;
+    drive.config.synchronism.bad_periods = 0;
+    drive.config.synchronism.floor_q16 = raw(0.5, 16);
+    drive.config.synchronism.share_q15 = 0;
+    drive.schedule.judges = true;
+    synchronism_reset(&drive.supervision.synchronism);
+    drive.samples.count = 1;
+    drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
+    drive.position.used.speed_bpp = 0;
+    drive.position.avv.regression = {};
+    drive.position.avv.regression.mean_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
+    drive.position.avv.regression.information = seen ? 1000 : 0;
+    for (int n = 0; n < 8; ++n) {
+      drive.heartbeat++;
+      drive_protect(&drive);
+    }
+    EXPECT_EQ(drive.fault, seen ? FAULT_SYNCHRONISM : FAULT_NONE);
+  }
 }
 
 // What the frame in use has turned beside its speed since it was last judged, for each period; unknown when that is

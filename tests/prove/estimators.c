@@ -93,7 +93,7 @@ static void learn(void) {
 
 static void judge(const estimator_input_t* in) {
   const synchronism_config_t c = {any_from(0, 6553600L), any_from(0, 32768L), any_from(0, 10000)};
-  const synchronism_use_t use = {any_u32, any_speed(), any_i32, any_i32, any_from(1, 63)};
+  synchronism_seen_t seen = {{0, 0}, 0, any_speed(), any_i32, any_from(1, 63)};
   synchronism_t s;
   s.error_q16.d = any_from(-49152000L, 49152000L);  // one and a half times the largest limit
   s.error_q16.q = any_from(-49152000L, 49152000L);
@@ -101,7 +101,8 @@ static void judge(const estimator_input_t* in) {
   s.emf_q16 = any_from(-134217728L, 134217728L);  // 2048 V
   s.limit_q16 = any_i32;
   s.doubt = any_from(0, 1000000000L);
-  (void)synchronism_step(&s, &c, in, &use);
+  synchronism_look(&seen, in->model, in->windows, in->window_count, any_u32);
+  (void)synchronism_judge(&s, &c, in->model, &seen, any_i32);
 }
 
 static void look(uint16_t of_case, uint16_t count) {
