@@ -1,9 +1,6 @@
 #include "control/frame.h"
 
-dq_t frame_turned(dq_t w, uint32_t ahead_bam) {
-  const ab_t own = {w.d, w.q};
-  return frame_park(own, frame_rotation(ahead_bam));
-}
+dq_t frame_turned(ab_t v, uint32_t angle_bam) { return frame_park(v, frame_rotation(angle_bam)); }
 
 ab_t frame_fixed(dq_t w, uint32_t angle_bam) { return frame_inverse_park(w, frame_rotation(angle_bam)); }
 

@@ -68,9 +68,15 @@ static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
   return v;
 }
 
-/// A vector of a frame in another one that is ahead of it; one of a frame at this angle in the stationary one.
-dq_t frame_turned(dq_t w, uint32_t ahead_bam);
+/// A vector of the stationary frame in one at this angle, and back.
+dq_t frame_turned(ab_t v, uint32_t angle_bam);
 ab_t frame_fixed(dq_t w, uint32_t angle_bam);
+
+/// A vector of a frame in another one that is ahead of it.
+static inline dq_t frame_moved(dq_t w, uint32_t ahead_bam) {
+  const ab_t own = {w.d, w.q};
+  return frame_turned(own, ahead_bam);
+}
 
 /// a . b and a cross b of vectors in Q24.
 int32_t frame_dot_q24(ab_t a, ab_t b);

@@ -52,6 +52,7 @@ estimator_output_t blend_step(blend_t* s, const blend_config_t* c, const estimat
   s->region = next_region(s->region, c, speed);
   s->share_q15 = q_clamp(wanted_share_q15(s, c, speed), s->share_q15 - c->rate_q15, s->share_q15 + c->rate_q15);
   s->disagreement_bam = angle_diff_bam(low->angle_bam, high->angle_bam);
+  if (s->share_q15 == 0) return *high;
   estimator_output_t out;
   out.angle_bam = high->angle_bam + (uint32_t)q_mul(s->disagreement_bam, s->share_q15 + (s->share_q15 >> 14), 15);
   out.speed_bpp = mix(low->speed_bpp, high->speed_bpp, s->share_q15);

@@ -19,9 +19,9 @@ static int32_t cross_q24(const flux_vectors_t* v) { return frame_cross_q24(v->fl
 int32_t flux_square_q24(const flux_vectors_t* v) { return frame_dot_q24(v->flux_q24, v->flux_q24); }
 
 int32_t flux_reference_square_q24(const flux_machine_t* f, dq_t current_q20) {
-  const int32_t d_q24 = per_unit(q_add_sat(FLUX_ONE_Q24, q_mul_sat(current_q20.d, f->ld_per_psi_q30, 26)));
-  const int32_t q_q24 = per_unit(q_mul_sat(current_q20.q, f->lq_per_psi_q30, 26));
-  return q_mul_add_sat(d_q24, d_q24, q_q24, q_q24, 24);
+  const ab_t p_q24 = {per_unit(q_add_sat(FLUX_ONE_Q24, q_mul_sat(current_q20.d, f->ld_per_psi_q30, 26))),
+                      per_unit(q_mul_sat(current_q20.q, f->lq_per_psi_q30, 26))};
+  return frame_dot_q24(p_q24, p_q24);
 }
 
 int32_t flux_torque_q16(const flux_machine_t* f, const flux_vectors_t* v) {

@@ -40,19 +40,17 @@ static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
 }
 
 void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, const estimator_output_t* now,
-                          ab_t current_q20) {
-  const rotation_t r = frame_rotation(now->angle_bam);
-  const dq_t i = frame_park(current_q20, r);
+                          dq_t current_q20) {
   const flux_machine_t* const f = &s->machine;
   // (3), per unit and then as flux/T.
-  const int32_t d_q24 = q_add_sat(FLUX_ONE_Q24, q_mul_sat(i.d, f->ld_per_psi_q30, 26));
-  const int32_t q_q24 = q_mul_sat(i.q, f->lq_per_psi_q30, 26);
+  const int32_t d_q24 = q_add_sat(FLUX_ONE_Q24, q_mul_sat(current_q20.d, f->ld_per_psi_q30, 26));
+  const int32_t q_q24 = q_mul_sat(current_q20.q, f->lq_per_psi_q30, 26);
   const dq_t flux_q16 = {q_clamp(q_mul_sat(f->psi_q16, d_q24, 24), -f->bound_q16, f->bound_q16),
                          q_clamp(q_mul_sat(f->psi_q16, q_q24, 24), -f->bound_q16, f->bound_q16)};
   s->form = form_of(c);
-  stator_flux_preset(&s->flux, frame_inverse_park(flux_q16, r));
+  stator_flux_preset(&s->flux, frame_fixed(flux_q16, now->angle_bam));
   tracking_observer_preset(&s->observer, now->angle_bam, now->speed_bpp, now->load_accel_q8);
-  s->current_q20 = current_q20;
+  s->current_q20 = frame_fixed(current_q20, now->angle_bam);
   s->error_bam = 0;
 }
 
@@ -112,8 +110,9 @@ estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_co
   s->vectors = flux_vectors(&s->machine, flux_q16, period->current_q20);
   s->error_bam = angle_diff_bam(rotor_angle(s, c, period->reference_q20), o->angle_bam);
   tracking_observer_correct(o, s->error_bam, c->bandwidth_q30);
-  s->pause--;
-  if (s->pause == 0u) {
+  if (s->pause > 1u) {
+    s->pause--;
+  } else if (!period->is_full) {
     s->pause = next_pause(s, c);
     flux_adaptation_step(&s->adaptation, &c->adaptation, in->model, &s->machine, &s->vectors, period->measured_q20,
                          o->speed_bpp);

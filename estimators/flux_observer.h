@@ -43,6 +43,7 @@ typedef struct {
   ab_t current_q20;    // at its end, without ripple, A
   dq_t measured_q20;   // the same in the frame in use
   dq_t reference_q20;  // the current references that were in force
+  bool is_full;        // no time for the adaptation, which waits
 } flux_period_t;
 
 typedef struct {
@@ -65,9 +66,9 @@ bool flux_observer_config_valid(const flux_observer_config_t* c, const machine_m
 /// Forgets what was learnt of the machine.
 void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, const machine_model_t* m);
 
-/// Starts with an angle, speed, load and current (stationary frame, A) that are known: the flux is (3).
+/// Starts with an angle, speed, load and current (at that angle, A) that are known: the flux is (3).
 void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, const estimator_output_t* now,
-                          ab_t current_q20);
+                          dq_t current_q20);
 
 /// One period. Of `in` it takes the model's resistance and nameplate and the torque's acceleration, no windows.
 estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,

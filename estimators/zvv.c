@@ -2,7 +2,7 @@
 
 #include "estimators/deviation.h"
 
-#define ERROR_LIMIT_BAM 178956970L  // 15 degrees: more than that a linearised D does not tell
+#define ERROR_LIMIT_Q24 4392264L  // 15 degrees: more than that a linearised D does not tell
 #define INTEGRAL_LIMIT 2000000000L
 #define RAD_Q24_TO_BAM 683565276L  // 2^32 / (2 pi), for a product shifted by 24
 
@@ -10,6 +10,7 @@ void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp) {
   s->angle_bam = angle_bam;
   s->speed_bpp = speed_bpp;
   s->integral_q8bpp = q_shl_sat(speed_bpp, 8);
+  s->waited = 0;
 }
 
 // D (22) and its voltage over the windows; both are sums until mean_deviation divides them.
@@ -57,15 +58,20 @@ bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t 
 }
 
 static void correct(zvv_t* s, const zvv_config_t* c, int32_t error_bam) {
-  s->integral_q8bpp =
-      q_clamp(q_add_sat(s->integral_q8bpp, q_mul(error_bam, c->ki_q40, 32)), -INTEGRAL_LIMIT, INTEGRAL_LIMIT);
+  const int32_t step = q_mul(error_bam * s->waited, c->ki_q40, 32);
+  s->integral_q8bpp = q_clamp(q_add_sat(s->integral_q8bpp, step), -INTEGRAL_LIMIT, INTEGRAL_LIMIT);
   s->speed_bpp = q_shr(s->integral_q8bpp, 8) + q_mul(error_bam, c->kp_q30, 30);
+}
+
+void zvv_wait(zvv_t* s) {
+  s->angle_bam += (uint32_t)s->speed_bpp;
+  s->waited = q_min(s->waited + 1, ZVV_PERIODS);
 }
 
 estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in, int32_t id_reference_q20) {
   const machine_model_t* m = in->model;
   seen_t mean = {s->deviation_q20, 0};
-  s->angle_bam += (uint32_t)s->speed_bpp;
+  zvv_wait(s);
   const bool seen = mean_deviation(in, s->angle_bam, s->speed_bpp, q_shr(s->integral_q8bpp, 8), &mean);
   s->deviation_q20 = mean.deviation_q20;
   // Kq in A per period and rad (24). What the devices take along the d-axis acts like R i_d.
@@ -73,8 +79,9 @@ estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_inp
   const int32_t kq_q20 = q_neg_sat(q_mul_sat(m->yd_q30 - m->yq_q30, volts_q16, 26));
   const bool usable = seen && kq_q20 != 0;
   if (usable) {
-    const int32_t error_rad_q24 = q_clamp(q_div(s->deviation_q20, kq_q20, 24), -16777216L, 16777216L);
-    correct(s, c, q_clamp(q_mul(error_rad_q24, RAD_Q24_TO_BAM, 24), -ERROR_LIMIT_BAM, ERROR_LIMIT_BAM));
+    const int32_t error_q24 = q_clamp(q_div(s->deviation_q20, kq_q20, 24), -ERROR_LIMIT_Q24, ERROR_LIMIT_Q24);
+    correct(s, c, q_mul(error_q24, RAD_Q24_TO_BAM, 24));
+    s->waited = 0;
   }
   const estimator_output_t out = {s->angle_bam, s->speed_bpp, 0, usable ? 32767 : 0};
   return out;

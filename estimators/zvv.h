@@ -17,6 +17,8 @@
 
 #include "estimators/estimator.h"
 
+#define ZVV_PERIODS 10  // as many without a zero vector the integral makes good with the next
+
 typedef struct {
   int32_t kp_q30;  // Kp * T, per period
   int32_t ki_q40;  // Ki * T^2, per period^2
@@ -27,6 +29,7 @@ typedef struct {
   int32_t speed_bpp;       // PI output
   int32_t integral_q8bpp;  // integral part, with eight more fractional bits, |speed| below 200 rpm or so
   int32_t deviation_q20;   // last D, A per period
+  int32_t waited;          // periods since it was seen, up to ZVV_PERIODS
 } zvv_t;
 
 void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp);
@@ -35,6 +38,9 @@ void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp);
 /// of this angle (at the start of the running period) and speed. False, with nothing written, when there is no such
 /// window.
 bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t* deviation_q20);
+
+/// A period in which nobody looks: the angle goes on with the speed as it is.
+void zvv_wait(zvv_t* s);
 
 /// id_reference_q20: i_d* in use, A.
 estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in, int32_t id_reference_q20);

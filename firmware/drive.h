@@ -230,7 +230,7 @@ static inline bool drive_is_turned(const drive_t* d) { return d->state == DRIVE_
 
 /// A vector in the frame that the control uses, in the frame of what the position source sees meanwhile.
 static inline dq_t drive_seen(const drive_t* d, dq_t vector) {
-  return frame_turned(vector, d->start.seen.angle_bam - d->position.used.angle_bam);
+  return frame_moved(vector, d->start.seen.angle_bam - d->position.used.angle_bam);
 }
 
 /// True while what is sampled does not belong to a power stage that is on and to a known pattern.

@@ -37,16 +37,13 @@ bool flux_source_load(drive_config_t* c) {
   return !wanted || flux_observer_config_valid(f, &c->nameplate);
 }
 
-bool flux_source_learns(const drive_t* d) {
-  return d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d);
-}
-
 bool flux_source_rests(const drive_t* d) { return blend_is_high(&d->position.blend) && !polarity_watch_is_awake(d); }
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
-static flux_period_t period_of(const drive_t* d) {
+static flux_period_t period_of(const drive_t* d, bool is_full) {
   const uint32_t end_bam = d->position.used.angle_bam + (uint32_t)d->position.used.speed_bpp;
   flux_period_t p;
+  p.is_full = is_full;
   p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
   p.measured_q20 = d->control.measured_q20;
   p.reference_q20 = d->control.reference_q20;
@@ -61,8 +58,8 @@ static flux_period_t period_of(const drive_t* d) {
   return p;
 }
 
-static estimator_output_t step(drive_t* d, const estimator_input_t* in) {
-  const flux_period_t p = period_of(d);
+static estimator_output_t step(drive_t* d, const estimator_input_t* in, bool is_full) {
+  const flux_period_t p = period_of(d, is_full);
   return flux_observer_step(&d->position.flux, &d->config.flux, in, &p);
 }
 
@@ -76,7 +73,7 @@ static void carry_observer(drive_t* d, const estimator_output_t* now) {
 
 estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
   drive_position_t* const p = &d->position;
-  p->high = step(d, in);
+  p->high = step(d, in, false);
   p->low = p->high;
   carry_observer(d, &p->high);
   return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
@@ -88,7 +85,7 @@ void flux_source_take(drive_t* d) {
 }
 
 void flux_source_follow(drive_t* d, const estimator_output_t* now) {
-  flux_observer_preset(&d->position.flux, &d->config.flux, now, frame_fixed(d->control.measured_q20, now->angle_bam));
+  flux_observer_preset(&d->position.flux, &d->config.flux, now, d->control.measured_q20);
 }
 
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {
@@ -98,14 +95,14 @@ estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, c
   if (blend_is_low(&p->blend)) {
     flux_source_follow(d, low);
   } else {
-    p->high = step(d, in);
+    p->high = step(d, in, in->window_count > 0u);
   }
   return blend_step(&p->blend, &d->config.blend, low, &p->high);
 }
 
 estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
   const int32_t least_bpp = q_mul_sat(parameters.flux_low, d->config.bpp_per_rpm_q8, 24);
-  if (q_abs_sat(truth->speed_bpp) >= least_bpp) return step(d, in);
+  if (q_abs_sat(truth->speed_bpp) >= least_bpp) return step(d, in, false);
   flux_source_follow(d, truth);
   return *truth;
 }

@@ -13,9 +13,6 @@
 /// cannot be given.
 bool flux_source_load(drive_config_t* c);
 
-/// Between the ends of the blend nothing is learnt of the windows, for want of time.
-bool flux_source_learns(const drive_t* d);
-
 /// True where the flux alone has the shaft and nobody else needs the observer.
 bool flux_source_rests(const drive_t* d);
 

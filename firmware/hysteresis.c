@@ -72,8 +72,8 @@ void drive_hysteresis_samples(drive_t* d) {
   const int32_t a_q20 = q_mul(taken.sum_a_q8 / (int32_t)taken.slices, per_code_q30, 18);
   const int32_t b_q20 = q_mul(taken.sum_b_q8 / (int32_t)taken.slices, per_code_q30, 18);
   // The mean of the period before, whose middle lies half a period behind the angle of its start.
-  const rotation_t r = frame_rotation(d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2));
-  d->control.measured_q20 = frame_park(frame_clarke2(a_q20, b_q20), r);
+  const uint32_t middle_bam = d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2);
+  d->control.measured_q20 = frame_turned(frame_clarke2(a_q20, b_q20), middle_bam);
   d->samples.link_q16 += q_shr((int32_t)taken.link_code * d->config.volts_per_code_q16 - d->samples.link_q16, 3);
   if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_raise(d, FAULT_CURRENT_LIMIT);
 }

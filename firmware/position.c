@@ -95,6 +95,24 @@ static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
 static bool zvv_alone(const drive_t* d) { return blend_is_low(&d->position.blend) && d->samples.count <= 1u; }
 static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blend); }
 
+// Both at work, and no room for both in a period: ZVV looks at the windows beside speed control and field weakening,
+// AVV in all others.
+static void step_by_turns(drive_t* d, estimator_input_t* in) {
+  drive_position_t* const p = &d->position;
+  const uint16_t count = in->window_count;
+  const bool of_zvv = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
+  if (of_zvv) in->window_count = 0;
+  (void)step_avv(d, in);
+  if (of_zvv) {
+    in->window_count = count;
+    in->frames = 0;
+    p->low = step_zvv(d, in);
+  } else {
+    zvv_wait(&p->zvv);
+    p->low.angle_bam = p->zvv.angle_bam;
+  }
+}
+
 // The estimator that is not asked stands by at the other's angle.
 static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
@@ -102,15 +120,12 @@ static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
     p->low = step_zvv(d, in);
     p->high = p->low;
     avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, 0);
-  } else {
+  } else if (avv_alone(d)) {
     (void)step_avv(d, in);
-    if (avv_alone(d)) {
-      p->low = p->high;
-      zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
-    } else {
-      in->frames = 0;
-      p->low = step_zvv(d, in);
-    }
+    p->low = p->high;
+    zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
+  } else {
+    step_by_turns(d, in);
   }
   return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
 }
@@ -141,9 +156,10 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   return out;
 }
 
-// The observer below the blend, the stator flux above, both between.
+// The observer below the blend, the stator flux above, both between. There nothing is learnt of the windows, for want
+// of time.
 static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
-  in->regress = in->regress && flux_source_learns(d);
+  in->regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
   if (flux_source_rests(d)) return flux_source_alone(d, in);
   const estimator_output_t low = source_observer(d, in);
   return flux_source_beside(d, in, &low);
@@ -181,7 +197,7 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
                          q_mul_floor(sum.q - q_mul_floor(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30)};
   d->control.measured_q20 = mean_q20;
   if (first == used || first->angle_bam == used->angle_bam) return;
-  d->control.measured_q20 = frame_turned(mean_q20, middle_of(used) - middle_bam);
+  d->control.measured_q20 = frame_moved(mean_q20, middle_of(used) - middle_bam);
 }
 
 // The I-F start: the control uses the vector's frame, and the source looks on. At rest the angle is the vector's: a

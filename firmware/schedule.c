@@ -15,6 +15,11 @@ static bool has_observer(const drive_t* d) {
   return source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV;
 }
 
+// Observer and flux both at work: the observer leaves the windows out beside speed control and field weakening.
+static bool is_beside_flux(const drive_t* d) {
+  return parameters.position_source >= POSITION_FLUX_CONV && !blend_is_low(&d->position.blend);
+}
+
 // What cannot wait: working point or covariance, by turns where both want it, the covariance first where it would be
 // renewed anyway. A shaft that is held wants its working point always.
 static bool take_urgent(drive_t* d, bool observes) {
@@ -82,6 +87,8 @@ void schedule_next(drive_t* d) {
   } else {
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
-    s->skips = s->pressed && !s->renews && (is_young(d) || s->judges || !is_judgement(s->task));
+    const bool is_long = !s->renews && !is_judgement(s->task);
+    s->skips = (s->pressed && !s->renews && (is_young(d) || s->judges)) ||
+               (is_long && (s->pressed || (observes && is_beside_flux(d))));
   }
 }

@@ -74,7 +74,7 @@ class Course {
     const Vector after = flux_dq(truth_, next.turned(-theta_)).turned(theta_);
     const Vector volts = (after - before) * (1.0 / kPeriod) + (current_ + next) * (0.5 * truth_.rs) + offset_;
     current_ = next;
-    return {raw_ab(volts, 16), raw_ab(next, 20), raw_dq(i_dq_ + noise, 20), raw_dq(i_dq_ * 1.05, 20)};
+    return {raw_ab(volts, 16), raw_ab(next, 20), raw_dq(i_dq_ + noise, 20), raw_dq(i_dq_ * 1.05, 20), false};
   }
 
  private:
@@ -87,7 +87,8 @@ class Course {
 };
 
 flux_period_t mirrored(const flux_period_t& p) {
-  return {mirrored(p.voltage_q16), mirrored(p.current_q20), mirrored(p.measured_q20), mirrored(p.reference_q20)};
+  return {mirrored(p.voltage_q16), mirrored(p.current_q20), mirrored(p.measured_q20), mirrored(p.reference_q20),
+          p.is_full};
 }
 
 struct Differences {
@@ -109,8 +110,9 @@ void compare(Random& random, flux_method_t method, Differences& worst) {
   flux_observer_reset(&one, &c, &model);
   flux_observer_reset(&other, &c, &model);
   const estimator_output_t now = course.now(), image = mirrored(now);
-  flux_observer_preset(&one, &c, &now, course.current());
-  flux_observer_preset(&other, &c, &image, mirrored(course.current()));
+  const ab_t i = course.current();
+  flux_observer_preset(&one, &c, &now, frame_turned(i, now.angle_bam));
+  flux_observer_preset(&other, &c, &image, frame_turned(mirrored(i), image.angle_bam));
   for (int n = 0; n < 4000; ++n) {
     estimator_input_t in = {};
     in.model = &model;

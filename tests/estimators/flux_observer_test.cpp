@@ -38,7 +38,7 @@ class Bench {
     flux_observer_reset(&s, &config_, &model_);
     current_ = i_ref.turned(theta);
     const estimator_output_t now = {bam(theta), bpp(speed), 0, 32767};
-    flux_observer_preset(&s, &config_, &now, raw_ab(current_, 20));
+    flux_observer_preset(&s, &config_, &now, raw_dq(i_ref, 20));
   }
   void reference(Vector i_ref) { i_ref_ = i_ref; }
   void offset(Vector volts) { offset_ = volts; }
@@ -60,7 +60,7 @@ class Bench {
     estimator_input_t in = {};
     in.model = &model_;
     in.torque_accel_q8 = raw(acceleration * kPeriod * kPeriod / kTurn, 40);
-    const flux_period_t p = {raw_ab(volts, 16), raw_ab(current_, 20), raw_dq(i_ref_, 20), raw_dq(i_ref_, 20)};
+    const flux_period_t p = {raw_ab(volts, 16), raw_ab(current_, 20), raw_dq(i_ref_, 20), raw_dq(i_ref_, 20), false};
     output = flux_observer_step(&s, &config_, &in, &p);
     used_ = rad(output.angle_bam);
     started_ = true;
@@ -111,6 +111,26 @@ TEST(FluxObserver, ExactMachineInBothDirectionsMotoringAndGenerating) {
   }
 }
 
+// The adaptation waits for a period that has time for it, and then for its next one.
+TEST(FluxObserver, TheAdaptationWaitsForTime) {
+  const machine_model_t model = model_of(motor_b());
+  flux_observer_config_t c = config(FLUX_CONV);
+  c.adaptation_periods = 5;
+  flux_observer_t s;
+  flux_observer_reset(&s, &c, &model);
+  estimator_input_t in = {};
+  in.model = &model;
+  flux_period_t p = {};
+  p.is_full = true;
+  for (int n = 0; n < 9; ++n) {
+    (void)flux_observer_step(&s, &c, &in, &p);
+    EXPECT_EQ(s.pause, std::max(4 - n, 1)) << n;
+  }
+  p.is_full = false;
+  (void)flux_observer_step(&s, &c, &in, &p);
+  EXPECT_EQ(s.pause, 5);
+}
+
 // From the reversed side of the compensation's length, and a fifth of a radian off, it finds the angle.
 TEST(FluxObserver, FindsTheAngleFromAWrongOne) {
   for (const flux_method_t method : kMethods) {
@@ -118,7 +138,7 @@ TEST(FluxObserver, FindsTheAngleFromAWrongOne) {
       Bench b(motor_b(), motor_b(), config(method), 1.0, 300.0, Vector{0.0, 5.0});
       const estimator_output_t wrong = {bam(1.0 + off), bpp(300.0), 0, 0};
       const flux_observer_config_t c = config(method);
-      flux_observer_preset(&b.s, &c, &wrong, raw_ab(Vector{0.0, 5.0}.turned(1.0), 20));
+      flux_observer_preset(&b.s, &c, &wrong, raw_dq(Vector{0.0, 5.0}.turned(-off), 20));
       EXPECT_LT(b.run(15000), 0.01) << method << ", " << off;
     }
   }

@@ -90,6 +90,25 @@ TEST(Zvv, NegativeCurrentIsStableUpToItsLimitOnly) {
   EXPECT_GT(run(5.0 * kDegree, 0.3, 4.0, 40.0, -5.0, 9.0).peak / kDegree, 20.0);
 }
 
+// What the integral has missed of periods without a zero vector it makes good with the next, up to ten of them.
+TEST(Zvv, TheIntegralMakesGoodWhatItHasMissed) {
+  const machine_model_t model = model_of(Motor{});
+  const zvv_config_t c = config(4.0, 4.0);
+  const Input seen(model, zero_window(0.52, 0.5, 5.0));
+  const auto integral = [&](int missed) {
+    zvv_t s = {};
+    zvv_preset(&s, bam(0.5), 0);
+    for (int n = 0; n < missed; ++n) zvv_wait(&s);
+    (void)zvv_step(&s, &c, seen.get(), raw(5.0, 20));
+    EXPECT_EQ(s.waited, 0);
+    return static_cast<double>(s.integral_q8bpp);
+  };
+  const double one = integral(0);
+  ASSERT_GT(one, 100.0);
+  for (const int missed : {1, 4, 9}) EXPECT_NEAR(integral(missed), (missed + 1) * one, 10.0) << missed;
+  EXPECT_NEAR(integral(25), 10.0 * one, 10.0);
+}
+
 TEST(Zvv, NothingToSeeWithoutCurrentOrZeroVector) {
   const machine_model_t model = model_of(Motor{});
   zvv_t s = {};

@@ -223,4 +223,26 @@ TEST_F(Schedule, SourcesWithoutTheObserverDoNotWaitForIt) {
   }
 }
 
+// Where observer and flux are both at work the observer leaves its windows out beside the two other long tasks.
+TEST_F(Schedule, BesideTheFluxLongTasksHaveTheirPeriodWithoutWindows) {
+  const struct {
+    std::int32_t source;
+    blend_region_t region;
+    double share;
+    bool skips;
+  } cases[] = {{POSITION_FLUX_CONV, BLEND_LOW, 1.0, false},
+               {POSITION_FLUX_CONV, BLEND_BOTH, 0.5, true},
+               {POSITION_FLUX_CONV, BLEND_HIGH, 0.0, false},
+               {POSITION_OBSERVER_AVV, BLEND_BOTH, 0.5, false},
+               {POSITION_ENCODER, BLEND_BOTH, 0.5, false}};
+  for (const auto& c : cases) {
+    run_with(c.source);
+    drive.position.blend.region = c.region;
+    drive.position.blend.share_q15 = static_cast<std::int32_t>(32767.0 * c.share);
+    for (const schedule_t& s : next(20)) {
+      EXPECT_EQ(s.skips, c.skips && (s.task == TASK_SPEED || s.task == TASK_FIELD)) << c.source << c.region << s.period;
+    }
+  }
+}
+
 }  // namespace

@@ -22,7 +22,7 @@ static flux_observer_config_t any_configuration(void) {
 
 static flux_period_t any_period(void) {
   const flux_period_t p = {any_ab(VOLTAGE_MAX_Q16), any_ab(CURRENT_MAX_Q20), any_dq(2 * (CURRENT_MAX_Q20 - 1)),
-                           any_dq(CURRENT_MAX_Q20)};
+                           any_dq(CURRENT_MAX_Q20), any_bool()};
   return p;
 }
 
@@ -37,7 +37,7 @@ void prove_flux(void) {
     const estimator_input_t in = {&model, 0, 0, any_i32, false, false, false, 0};
     const estimator_output_t now = {any_u32, any_speed(), any_i32, any_from(0, 32767)};
     const flux_period_t p = any_period();
-    if (any_bool()) flux_observer_preset(&s, &c, &now, any_ab(CURRENT_MAX_Q20));
+    if (any_bool()) flux_observer_preset(&s, &c, &now, any_dq(CURRENT_MAX_Q20));
     any_working_point(&model);
     (void)flux_observer_step(&s, &c, &in, &p);
     //@ assert 4194304 <= s.adaptation.shares.lq_q24 <= 20971520;
