@@ -3,6 +3,7 @@
 // log2 of the information of windows that are as short, and as long, as the bandwidths are meant for.
 #define SHORT_LOG2 21
 #define LONG_LOG2 27
+#define ONE_Q22 4194304L
 
 void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
   tracking_observer_preset(&s->observer, angle_bam, speed_bpp, load_accel_q8);
@@ -20,8 +21,8 @@ typedef struct {
 static doubled_t doubled_error(const regression_t* r, const machine_model_t* m) {
   const int32_t h_q30 = (m->yd_q30 - m->yq_q30) / 2;
   const int32_t c_q30 = m->ydq_q30;
-  const int32_t along_q16 = q_add_sat(q_mul_sat(h_q30, r->spread_q8, 22), r->mirror_q16);
-  const int32_t across_q16 = q_add_sat(q_mul_sat(c_q30, r->spread_q8, 22), r->cross_q16);
+  const int32_t along_q16 = q_mul_add_sat(h_q30, r->spread_q8, r->mirror_q16, ONE_Q22, 22);
+  const int32_t across_q16 = q_mul_add_sat(c_q30, r->spread_q8, r->cross_q16, ONE_Q22, 22);
   const doubled_t e = {q_mul_sub_sat(across_q16, h_q30, along_q16, c_q30, 20),
                        q_mul_add_sat(along_q16, h_q30, across_q16, c_q30, 20)};
   return e;

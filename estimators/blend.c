@@ -48,7 +48,8 @@ static int32_t mix(int32_t low, int32_t high, int32_t share_q15) {
 
 estimator_output_t blend_step(blend_t* s, const blend_config_t* c, const estimator_output_t* low,
                               const estimator_output_t* high) {
-  const int32_t speed = q_abs_sat(mix(low->speed_bpp, high->speed_bpp, s->share_q15));
+  const bool is_high = s->share_q15 == 0;
+  const int32_t speed = q_abs_sat(is_high ? high->speed_bpp : mix(low->speed_bpp, high->speed_bpp, s->share_q15));
   s->region = next_region(s->region, c, speed);
   s->share_q15 = q_clamp(wanted_share_q15(s, c, speed), s->share_q15 - c->rate_q15, s->share_q15 + c->rate_q15);
   s->disagreement_bam = angle_diff_bam(low->angle_bam, high->angle_bam);

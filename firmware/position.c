@@ -41,17 +41,21 @@ static void adapt(drive_t* d, const regression_t* r) {
   }
 }
 
-static estimator_output_t step_avv(drive_t* d, const estimator_input_t* in) {
+static void step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
-  if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return d->position.high;
+  if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return;
   if (is_turn(d, TURN_REGRESS)) d->position.is_near = q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM;
   adapt(d, &d->position.avv.regression);
+}
+
+static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) {
+  step_avv(d, in);
   return d->position.high;
 }
 
 // Commissioning at standstill: AVV alone, or no measurement at all and the angle by the torque.
-static estimator_output_t step_commissioning(drive_t* d, const estimator_input_t* in) {
-  if (!d->commissioning.predicting) return step_avv(d, in);
+static estimator_output_t step_commissioning(drive_t* d, estimator_input_t* in) {
+  if (!d->commissioning.predicting) return source_avv(d, in);
   tracking_observer_t* const o = &d->position.avv.observer;
   tracking_observer_predict(o, q_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
   const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
@@ -63,8 +67,6 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
   d->position.low = deviation_observer_step(&d->position.observer, c, in);
   return d->position.low;
 }
-
-static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) { return step_avv(d, in); }
 
 // One estimator for all speeds; the regression is that of its own deviations.
 static estimator_output_t source_observer(drive_t* d, estimator_input_t* in) {
@@ -81,7 +83,7 @@ static estimator_output_t source_observer(drive_t* d, estimator_input_t* in) {
 static estimator_output_t source_observer_avv(drive_t* d, estimator_input_t* in) {
   (void)step_observer(d, in);
   in->frames = 0;
-  (void)step_avv(d, in);
+  step_avv(d, in);
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
@@ -100,9 +102,10 @@ static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blen
 static void step_by_turns(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
   const uint16_t count = in->window_count;
-  const bool of_zvv = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
+  const bool is_long = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
+  const bool of_zvv = is_long != blend_is_low(&p->blend);
   if (of_zvv) in->window_count = 0;
-  (void)step_avv(d, in);
+  step_avv(d, in);
   if (of_zvv) {
     in->window_count = count;
     in->frames = 0;
@@ -121,7 +124,7 @@ static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
     p->high = p->low;
     avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, 0);
   } else if (avv_alone(d)) {
-    (void)step_avv(d, in);
+    step_avv(d, in);
     p->low = p->high;
     zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
   } else {
@@ -137,6 +140,7 @@ static uint32_t encoder_angle(const drive_t* d) {
 }
 
 static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
+  in->frames = 0;
   const uint32_t angle = encoder_angle(d) + d->position.encoder_offset_bam;
   tracking_observer_predict(&d->position.encoder, in->torque_accel_q8);
   tracking_observer_correct(&d->position.encoder, angle_diff_bam(angle, d->position.encoder.angle_bam),
@@ -146,12 +150,11 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   if (parameters.flux_beside > 0) {
     d->position.high = flux_source_look_on(d, in, &out);
   } else {
-    (void)step_avv(d, in);
+    step_avv(d, in);
   }
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += d->config.encoder_trim_bam;
-  in->frames = 0;
   (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &d->position.deviation_q20);
   return out;
 }
@@ -171,7 +174,7 @@ static const source_step_t sources[] = {source_encoder, source_paper, source_obs
 // The estimator that looks at the windows first, as it was last.
 static const estimator_output_t* first_of(const drive_t* d, int32_t source) {
   const drive_position_t* const p = &d->position;
-  const bool low = (source == POSITION_PAPER) ? zvv_alone(d) : source != POSITION_ENCODER && source != POSITION_AVV;
+  const bool low = (source == POSITION_PAPER) ? zvv_alone(d) : source != POSITION_AVV;
   return low ? &p->low : &p->high;
 }
 
@@ -225,7 +228,7 @@ void drive_estimate(drive_t* d) {
   // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
   const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
   // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone.
-  const bool alone = source == POSITION_OBSERVER || starting || turned || measuring;
+  const bool alone = source == POSITION_OBSERVER || source == POSITION_ENCODER || starting || turned || measuring;
   const estimator_output_t* const first = alone ? &d->position.used : first_of(d, source);
   if (count > 0u) measure_current(d, first);
   const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
@@ -250,7 +253,7 @@ void drive_estimate(drive_t* d) {
   } else if (measuring) {
     d->position.used = step_commissioning(d, &in);
   } else {
-    d->position.used = starting ? step_avv(d, &in) : sources[source](d, &in);
+    d->position.used = starting ? source_avv(d, &in) : sources[source](d, &in);
   }
 }
 

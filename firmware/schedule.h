@@ -16,7 +16,8 @@
 // that a load has just changed. A turn gives way to one of them, three times in a row at most. A shaft that is held
 // against a brake that opens learns nothing meanwhile: its working point has every turn, and one judgement besides.
 // Before the shaft turns every period is a turn that has no task of its own. A decision of the start has a period for
-// itself: no turn, and the estimator leaves its windows out.
+// itself: no turn, and the estimator leaves its windows out. So does the observer beside the flux in the periods of
+// speed control and field weakening.
 
 #ifndef STILLSPIN_FIRMWARE_SCHEDULE_H
 #define STILLSPIN_FIRMWARE_SCHEDULE_H

@@ -1,46 +1,46 @@
 #include "svpwm/extended.h"
 
 typedef struct {
-  int16_t first, second;  // A, B
-  int16_t low_on;         // m
+  int32_t first, second;  // A, B
+  int32_t low_on;         // m
 } layout_t;
 
-static layout_t layout_for(int16_t t1, int16_t t2, int16_t window1, int16_t window2) {
+static layout_t layout_for(int32_t t1, int32_t t2, int32_t window1, int32_t window2) {
   layout_t l;
-  l.first = q_max16(t1, window1);
-  l.second = q_max16(t2, window2);
+  l.first = q_max(t1, window1);
+  l.second = q_max(t2, window2);
   // hi and mid must still be on when lo rises, or the second vector would be cut short.
-  const int16_t keep_hi = (int16_t)(l.first + l.second - t1 - t2);
-  const int16_t keep_mid = (int16_t)(l.second - t2);
-  l.low_on = q_max16(SVPWM_PULSE_MIN_TICKS, q_max16(keep_hi, keep_mid));
+  const int32_t keep_mid = l.second - t2;
+  const int32_t keep_hi = l.first - t1 + keep_mid;
+  l.low_on = q_max(SVPWM_PULSE_MIN_TICKS, q_max(keep_hi, keep_mid));
   return l;
 }
 
 // With S = first + second, low_on is the larger of the shortest pulse and S - t1 - t2, so the layout fits as long as S
 // is at most room - shortest pulse and (room + t1 + t2) / 2.
-static int16_t most_of_both(int16_t t1, int16_t t2, int16_t room) {
-  return q_min16((int16_t)(room - SVPWM_PULSE_MIN_TICKS), (int16_t)((room + t1 + t2) / 2));
+static int32_t most_of_both(int32_t t1, int32_t t2, int32_t room) {
+  return q_min(room - SVPWM_PULSE_MIN_TICKS, (room + t1 + t2) / 2);
 }
 
 // The longest window between the limits whose layout fits into `room`; 0 when not even the shortest does.
 //
 // S is t1 + t2 up to a window of the shorter of the two, then the longer one and a window, and two windows beyond the
 // longer one.
-static int16_t longest_window(int16_t t1, int16_t t2, int16_t room, const extended_config_t* c) {
-  const int16_t most = most_of_both(t1, t2, room);
-  const int16_t longer = q_max16(t1, t2);
-  const int16_t window = (most >= 2 * longer) ? (int16_t)(most / 2) : (int16_t)(most - longer);
+static int32_t longest_window(int32_t t1, int32_t t2, int32_t room, const extended_config_t* c) {
+  const int32_t most = most_of_both(t1, t2, room);
+  const int32_t longer = q_max(t1, t2);
+  const int32_t window = (most >= 2 * longer) ? most / 2 : most - longer;
   if (most < t1 + t2 || window < c->window_min_ticks) return 0;
-  return q_min16(window, c->window_max_ticks);
+  return q_min(window, c->window_max_ticks);
 }
 
-static void lay_out(const svpwm_on_time_t* t, int16_t t1, int16_t t2, const layout_t* l, svpwm_pulses_t* pulses) {
-  const int16_t hi = SVPWM_FIRST_TICK;
-  const int16_t mid = (int16_t)(hi + l->first);
-  const int16_t lo = (int16_t)(mid + l->second);
-  pulses->at[t->hi] = hi;
-  pulses->at[t->mid] = mid;
-  pulses->at[t->lo] = lo;
+static void lay_out(const svpwm_on_time_t* t, int32_t t1, int32_t t2, const layout_t* l, svpwm_pulses_t* pulses) {
+  const int32_t hi = SVPWM_FIRST_TICK;
+  const int32_t mid = hi + l->first;
+  const int32_t lo = mid + l->second;
+  pulses->at[t->hi] = (int16_t)hi;
+  pulses->at[t->mid] = (int16_t)mid;
+  pulses->at[t->lo] = (int16_t)lo;
   pulses->at[svpwm_fall_of(t->hi)] = (int16_t)(hi + t1 + t2 + l->low_on);
   pulses->at[svpwm_fall_of(t->mid)] = (int16_t)(mid + t2 + l->low_on);
   pulses->at[svpwm_fall_of(t->lo)] = (int16_t)(lo + l->low_on);
@@ -48,31 +48,31 @@ static void lay_out(const svpwm_on_time_t* t, int16_t t1, int16_t t2, const layo
 }
 
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  const int16_t t1 = (int16_t)(t->leg[t->hi] - t->leg[t->mid]);
-  const int16_t t2 = (int16_t)(t->leg[t->mid] - t->leg[t->lo]);
-  int16_t window = longest_window(t1, t2, (int16_t)(SVPWM_ROOM_TICKS - c->zero_ticks), c);
+  const int32_t t1 = t->leg[t->hi] - t->leg[t->mid];
+  const int32_t t2 = t->leg[t->mid] - t->leg[t->lo];
+  int32_t window = longest_window(t1, t2, SVPWM_ROOM_TICKS - c->zero_ticks, c);
   if (window == 0) window = longest_window(t1, t2, SVPWM_ROOM_TICKS, c);
   const layout_t l = layout_for(t1, t2, window, window);
   lay_out(t, t1, t2, &l, pulses);
 }
 
 // What the zero vector 000 has behind the last edge when nothing is extended.
-static int16_t own_zero(int16_t t1, int16_t t2) {
-  return (int16_t)(SVPWM_PERIOD_TICKS - SVPWM_FIRST_TICK - SVPWM_PULSE_MIN_TICKS - t1 - t2);
+static int32_t own_zero(int32_t t1, int32_t t2) {
+  return SVPWM_PERIOD_TICKS - SVPWM_FIRST_TICK - SVPWM_PULSE_MIN_TICKS - t1 - t2;
 }
 
 void svpwm_cheapest_pair(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  const int16_t t1 = (int16_t)(t->leg[t->hi] - t->leg[t->mid]);
-  const int16_t t2 = (int16_t)(t->leg[t->mid] - t->leg[t->lo]);
+  const int32_t t1 = t->leg[t->hi] - t->leg[t->mid];
+  const int32_t t2 = t->leg[t->mid] - t->leg[t->lo];
   const bool first = t1 >= t2;
   if (own_zero(t1, t2) < c->window_min_ticks) {
     svpwm_extended(c, t, pulses);
     return;
   }
   // As long as the zero vector stays as long as the window, and at most window_maximum.
-  const int16_t room = (int16_t)(SVPWM_ROOM_TICKS - q_min16(own_zero(t1, t2), c->window_max_ticks));
-  const int16_t other = first ? t2 : t1;
-  const int16_t window = q_min16((int16_t)(most_of_both(t1, t2, room) - other), c->window_max_ticks);
+  const int32_t room = SVPWM_ROOM_TICKS - q_min(own_zero(t1, t2), c->window_max_ticks);
+  const int32_t other = first ? t2 : t1;
+  const int32_t window = q_min(most_of_both(t1, t2, room) - other, c->window_max_ticks);
   const layout_t l = layout_for(t1, t2, first ? window : 0, first ? 0 : window);
   lay_out(t, t1, t2, &l, pulses);
 }

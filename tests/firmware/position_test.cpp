@@ -68,22 +68,24 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
   }
 }
 
-// Where the paper's estimators are both at work ZVV has the windows of the periods of speed control and field
-// weakening, AVV those of all others.
+// Where the paper's estimators are both at work one has the windows of the periods of speed control and field
+// weakening, the other, which has more of the shaft, those of all others.
 TEST_F(Position, ThePapersEstimatorsTakeTurns) {
   for (const task_t task : {TASK_SPEED, TASK_FIELD, TASK_JUDGE_FIRST, TASK_RENEW, TASK_TURN}) {
-    run_with(POSITION_PAPER);
-    blend(BLEND_BOTH, 0.5);
-    drive.schedule.task = task;
-    drive.samples.windows[0].slope_q20 = {0, raw(0.02, 20)};
-    drive.samples.windows[1].voltage_q16 = {raw(150.0, 16), 0};
-    drive.position.low.quality_q15 = 12345;
-    drive_estimate(&drive);
-    const bool of_zvv = task == TASK_SPEED || task == TASK_FIELD;
-    EXPECT_EQ(drive.position.zvv.deviation_q20 != 0, of_zvv) << task;
-    EXPECT_EQ(drive.position.low.quality_q15 == 12345, !of_zvv) << task;
-    EXPECT_EQ(drive.position.avv.regression.information > 0, !of_zvv) << task;
-    EXPECT_EQ(drive.position.low.angle_bam, drive.position.zvv.angle_bam) << task;
+    for (const bool below : {false, true}) {
+      run_with(POSITION_PAPER);
+      blend(below ? BLEND_LOW : BLEND_BOTH, below ? 1.0 : 0.5);
+      drive.schedule.task = task;
+      drive.samples.windows[0].slope_q20 = {0, raw(0.02, 20)};
+      drive.samples.windows[1].voltage_q16 = {raw(150.0, 16), 0};
+      drive.position.low.quality_q15 = 12345;
+      drive_estimate(&drive);
+      const bool of_zvv = (task == TASK_SPEED || task == TASK_FIELD) != below;
+      EXPECT_EQ(drive.position.zvv.deviation_q20 != 0, of_zvv) << task;
+      EXPECT_EQ(drive.position.low.quality_q15 == 12345, !of_zvv) << task;
+      EXPECT_EQ(drive.position.avv.regression.information > 0, !of_zvv) << task;
+      EXPECT_EQ(drive.position.low.angle_bam, drive.position.zvv.angle_bam) << task;
+    }
   }
 }
 
