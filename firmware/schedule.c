@@ -48,7 +48,6 @@ static void turn_or_give_way(drive_t* d, bool observes) {
     s->waited++;
   } else {
     take_turn(s);
-    s->skips = s->pressed && is_young(d);
   }
 }
 
@@ -59,6 +58,14 @@ static bool is_judgement(task_t task) { return task == TASK_JUDGE_FIRST || task 
 static bool is_turn(const schedule_t* s) {
   if (!s->turning) return s->task > TASK_FIELD;
   return s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST);
+}
+
+// Whether the observer finds time for the windows, which may make it renew the covariance as well.
+static bool has_room(const drive_t* d) {
+  const schedule_t* const s = &d->schedule;
+  const bool is_long = s->task == TASK_SPEED || s->task == TASK_FIELD;
+  if (is_long && is_beside_flux(d)) return false;
+  return !s->pressed || s->renews || !(is_long || s->judges || is_young(d));
 }
 
 static void begin(schedule_t* s) {
@@ -82,13 +89,10 @@ void schedule_next(drive_t* d) {
   s->pressed = observes && (is_young(d) || deviation_observer_is_pressed(&d->position.observer));
   if (is_turn(s)) {
     s->decides = d->state == DRIVE_START && d->start.decides;
-    s->skips = s->decides;
     if (!s->decides) turn_or_give_way(d, observes);
   } else {
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
-    const bool is_long = !s->renews && !is_judgement(s->task);
-    s->skips = (s->pressed && !s->renews && (is_young(d) || s->judges)) ||
-               (is_long && (s->pressed || (observes && is_beside_flux(d))));
   }
+  s->skips = s->decides || (observes && !has_room(d));
 }
