@@ -105,6 +105,7 @@ TEST(FieldWeakening, NothingBelowTheBaseSpeed) {
   for (const double rpm : {0.0, 1.0, -300.0, 1500.0}) {
     const field_weakening_input_t in = input(motor.electrical(rpm), 5.0, 30.0, 155.0, 12.0, 0.002);
     for (int n = 0; n < 200; ++n) ASSERT_EQ(field_weakening_step(&s, &in, &m), 0) << rpm;
+    EXPECT_EQ(s.trim_q20, 0) << "and nothing to begin with when it is needed";
   }
 }
 

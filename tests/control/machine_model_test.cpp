@@ -168,9 +168,12 @@ TEST(MachineModel, RejectsMachinesWhoseConstantsDoNotFit) {
 TEST(MachineModel, TheTrimMovesTheSaliency) {
   machine_model_t m = stillspin::test::model_of(Motor{});
   const double yd = 0.025, yq = 0.011;
-  machine_model_trim(&m, raw(0.5 * (yd + yq), 30) - m.yd_q30 / 2 - m.yq_q30 / 2,
-                     raw(0.5 * (yd - yq), 30) - m.yd_q30 / 2 + m.yq_q30 / 2);
+  const std::int32_t mean = raw(0.5 * (yd + yq), 30) - m.yd_q30 / 2 - m.yq_q30 / 2;
+  const std::int32_t half = raw(0.5 * (yd - yq), 30) - m.yd_q30 / 2 + m.yq_q30 / 2;
+  machine_model_trim(&m, mean, half);
   machine_model_move(&m, raw(3.0, 20));
+  EXPECT_EQ(m.trim.mean_q30, mean) << "what is learnt next is added to it";
+  EXPECT_EQ(m.trim.half_q30, half);
   EXPECT_NEAR(real(m.yd_q30, 30), yd, 4e-9);
   EXPECT_NEAR(real(m.yq_q30, 30), yq, 4e-9);
   EXPECT_NEAR(real(m.k_dq_q24, 24), yd / yq - 1.0, 2e-6);
@@ -180,9 +183,10 @@ TEST(MachineModel, TheTrimMovesTheSaliency) {
   EXPECT_NEAR(real(m.k0_q20.d, 20), 0.0, 2e-5);
 }
 
-// From one to a hundred in one call; an admittance that is as good as none has the largest share that there is.
+// From one to a hundred, or a fiftieth, in one call; an admittance that is as good as none has the largest share that
+// there is.
 TEST(MachineModel, TheShareOfTheFluxIsFoundFromAfar) {
-  for (const double rest : {1.0, 0.5, 0.1, 0.01, 0.001}) {
+  for (const double rest : {50.0, 10.0, 3.0, 1.0, 0.5, 0.1, 0.01, 0.001}) {
     machine_model_t m = model_of(Motor{});
     const double less = (rest - 1.0) * real(m.yq_q30, 30);
     machine_model_trim(&m, raw(0.5 * less, 30), raw(-0.5 * less, 30));

@@ -81,6 +81,19 @@ TEST(Mtpa, WithoutSaliencyThereIsNone) {
   EXPECT_EQ(chosen(spm, 100.0), 0.0);
 }
 
+// Beyond 1000 A there is no saliency worth it; at 1000 A there still is.
+TEST(Mtpa, AThousandAmperesStillCount) {
+  for (const std::int32_t more : {0, 1}) {
+    machine_model_t m = model_of(Motor{});
+    m.lq_q30 = m.ld_q30 + raw(100e-6, 30);
+    m.flux_q28 = 500 * (m.lq_q30 - m.ld_q30) + more;  // a = lambda / (2 (Lq - Ld)), of Q28 and Q30
+    mtpa_t s;
+    mtpa_design(&s, &m);
+    EXPECT_EQ(s.pole_q20, more == 0 ? raw(1000.0, 20) : 0);
+    EXPECT_EQ(mtpa_current_q20(&s, raw(100.0, 20)) < 0, more == 0);
+  }
+}
+
 // What was there before is forgotten, also where there is nothing in its place.
 TEST(Mtpa, AMachineWithoutSaliencyReplacesOneWithIt) {
   mtpa_t s;
