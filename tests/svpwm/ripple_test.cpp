@@ -47,6 +47,13 @@ TEST(Ripple, IsTheIntegralOfTheVoltageLessItsMean) {
     const Vector sum = real(svpwm_ripple_q16(&p, some, 3, raw(link, 16)), 16);
     ASSERT_NEAR(sum.x, exact[1400].x + exact[5005].x + exact[9100].x, 3 * 0.125 * link * 1e-4 + 3e-5);
     ASSERT_NEAR(sum.y, exact[1400].y + exact[5005].y + exact[9100].y, 3 * 0.125 * link * 1e-4 + 3e-5);
+    // what lies behind those that are asked for does not count
+    const Vector two = real(svpwm_ripple_q16(&p, some, 2, raw(link, 16)), 16);
+    ASSERT_NEAR(two.x, exact[1400].x + exact[5005].x, 2 * 0.125 * link * 1e-4 + 3e-5);
+    ASSERT_NEAR(two.y, exact[1400].y + exact[5005].y, 2 * 0.125 * link * 1e-4 + 3e-5);
+    const ab_t none = svpwm_ripple_q16(&p, some, 0, raw(link, 16));
+    ASSERT_EQ(none.alpha, 0);
+    ASSERT_EQ(none.beta, 0);
   }
 }
 
