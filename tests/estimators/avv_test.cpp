@@ -140,6 +140,28 @@ TEST(Avv, OneVectorTellsNothing) {
   }
 }
 
+// Until there are new windows nothing is known of the axis, whatever was seen before.
+TEST(Avv, APresetForgetsTheLastWindows) {
+  Estimate e = measure(alternating(Motor{}, 0, 0.7, 0.0, {2, 1}), 0.5);
+  ASSERT_GT(e.state.regression.information, 0);
+  ASSERT_NE(e.state.error_bam, 0);
+  avv_preset(&e.state, bam(0.5), 0, 0);
+  EXPECT_EQ(e.state.regression.information, 0);
+  EXPECT_EQ(e.state.error_bam, 0);
+}
+
+// A period without windows leaves nothing of the one before.
+TEST(Avv, ARegressionOverNoWindowsIsEmpty) {
+  const machine_model_t model = model_of(Motor{});
+  const Input none(model, {});
+  regression_t r = {1, 2, 3, 4, 5, 6, {7, 8}};
+  regression_evaluate(&r, nullptr, none.get());
+  for (const std::int32_t part :
+       {r.spread_q8, r.along_q16, r.mirror_q16, r.cross_q16, r.curl_q16, r.information, r.mean_q20.d, r.mean_q20.q}) {
+    EXPECT_EQ(part, 0);
+  }
+}
+
 // The half turn is the observer's own: the windows look the same from the other side.
 TEST(Avv, HalfATurnIsLeftOpen) {
   const auto windows = alternating(Motor{}, 0, 0.7, 0.0, {2, 1});

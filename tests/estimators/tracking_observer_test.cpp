@@ -109,6 +109,19 @@ TEST(TrackingObserver, SmallAccelerationsAddUp) {
   }
 }
 
+// A preset begins with no part of a unit of speed, however close the next one was.
+TEST(TrackingObserver, APresetForgetsThePartsOfAUnit) {
+  tracking_observer_t s;
+  tracking_observer_preset(&s, 0, 0, 0);
+  tracking_observer_predict(&s, 255);
+  ASSERT_EQ(s.speed_bpp, 0);
+  tracking_observer_preset(&s, 0, 0, 0);
+  tracking_observer_predict(&s, 255);
+  EXPECT_EQ(s.speed_bpp, 0);
+  tracking_observer_predict(&s, 1);
+  EXPECT_EQ(s.speed_bpp, 1);
+}
+
 TEST(TrackingObserver, TheWayIsShortestThroughHalfATurn) {
   tracking_observer_t s;
   tracking_observer_preset(&s, bam(kPi - 0.05), 0, 0);

@@ -216,6 +216,23 @@ TEST(Zvv, ZeroVectorsAmongOthersAreAveragedWithTheirDrops) {
   EXPECT_EQ(zvv_step(&s, &c, &blind, raw(id, 20)).quality_q15, 0);
 }
 
+// The speed it begins with lasts until an error moves it.
+TEST(Zvv, APresetsSpeedIsKept) {
+  const machine_model_t model = model_of(Motor{});
+  const zvv_config_t c = config(0.0, 0.0);
+  for (const double speed : {20.0, -20.0}) {
+    zvv_t s = {};
+    zvv_preset(&s, bam(0.5), bpp(speed));
+    for (int n = 1; n <= 3; ++n) {
+      const Input in(model, zero_window(0.8, 0.5, 5.0));
+      const estimator_output_t out = zvv_step(&s, &c, in.get(), raw(5.0, 20));
+      ASSERT_EQ(out.quality_q15, 32767);
+      EXPECT_EQ(out.speed_bpp, bpp(speed));
+      EXPECT_EQ(out.angle_bam, bam(0.5) + static_cast<std::uint32_t>(n * bpp(speed)));
+    }
+  }
+}
+
 // More than 15 degrees a linearised D does not tell, in either direction.
 TEST(Zvv, AnErrorCountsAsFifteenDegreesAtMost) {
   const machine_model_t model = model_of(Motor{});
