@@ -163,6 +163,15 @@ TEST_F(CommissioningJudge, AFrictionThatDrivesIsNone) {
   EXPECT_EQ(verdict("friction"), VERDICT_NOT_PHYSICAL);
 }
 
+// From a twentieth of the nameplate's to twenty times it.
+TEST_F(CommissioningJudge, AnInertiaIsWithinTwentyTimesTheNameplates) {
+  for (const auto& [times, good] : {std::pair{19.6, true}, {20.4, false}, {1.0 / 19.6, true}, {1.0 / 20.4, false}}) {
+    SetUp();
+    c.spin = spun(0.1552, times * real(parameters.inertia, 24), 0.003, 0.387);
+    EXPECT_EQ(verdict("inertia"), good ? VERDICT_USED : VERDICT_NAMEPLATE) << times;
+  }
+}
+
 // Flux over inertia for the trains of the map: what the spin says, where that may be.
 TEST_F(CommissioningJudge, TheMotionIsTheSpinsOrTheNameplates) {
   const auto taken = [this](const spin_t& spin) {

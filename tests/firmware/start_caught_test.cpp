@@ -181,7 +181,7 @@ TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
 // others all does.
 TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
   for (const int blind : {2, 1, 0}) {
-    for (const int on : {1000, 4000, 9000}) {
+    for (const int on : {1000, 1290, 1310, 1500, 4000, 9000}) {
       drive.start.phase = START_PULSE;
       drive.start.powered = true;
       drive.start.tick = 0;

@@ -44,6 +44,24 @@ TEST_F(States, ACurrentThatDoesNotEndIsAFaultAfterTenSeconds) {
   EXPECT_EQ(drive.fault, FAULT_OFFSET);
 }
 
+// Offsets are looked for as long after a fault as at first: a sensor that has drifted meanwhile is followed.
+TEST_F(States, AResetCalibratesAnew) {
+  make_ready();
+  periods(1000);
+  drive_raise(&drive, FAULT_OFFSET);
+  drive_command_reset();
+  hal_adc_window_t w = still_window();
+  w.start_a = static_cast<std::uint16_t>(4 * (2048 + 20));
+  w.end_a = static_cast<std::uint16_t>(3 * (2048 + 20));
+  period(w);
+  ASSERT_EQ(drive.state, DRIVE_CALIBRATE);
+  for (int n = 0; n < 255; ++n) period(w);
+  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  for (int n = 0; n < 250; ++n) period(w);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048 + 20, 0.1);
+}
+
 // The same request twice, or one that its state has no use for, does nothing and is not remembered.
 TEST_F(States, RequestsThatAStateHasNoUseForAreForgotten) {
   make_run();
