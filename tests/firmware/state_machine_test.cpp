@@ -51,15 +51,15 @@ TEST_F(States, AResetCalibratesAnew) {
   drive_raise(&drive, FAULT_OFFSET);
   drive_command_reset();
   hal_adc_window_t w = still_window();
-  w.start_a = static_cast<std::uint16_t>(4 * (2048 + 20));
-  w.end_a = static_cast<std::uint16_t>(3 * (2048 + 20));
+  w.start_a = static_cast<std::uint16_t>(4 * (2048 + 8));
+  w.end_a = static_cast<std::uint16_t>(3 * (2048 + 8));
   period(w);
   ASSERT_EQ(drive.state, DRIVE_CALIBRATE);
   for (int n = 0; n < 255; ++n) period(w);
   EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
   for (int n = 0; n < 250; ++n) period(w);
   EXPECT_EQ(drive.state, DRIVE_READY);
-  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048 + 20, 0.1);
+  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048 + 8, 0.1);
 }
 
 // The same request twice, or one that its state has no use for, does nothing and is not remembered.
