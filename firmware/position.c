@@ -228,7 +228,7 @@ void drive_estimate(drive_t* d) {
   // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
   const int32_t source = (d->state == DRIVE_COMMISSION) ? POSITION_OBSERVER : parameters.position_source;
   // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone.
-  const bool alone = source == POSITION_OBSERVER || source == POSITION_ENCODER || starting || turned || measuring;
+  const bool alone = source == POSITION_OBSERVER || source == POSITION_ENCODER || starting || turned;
   const estimator_output_t* const first = alone ? &d->position.used : first_of(d, source);
   if (count > 0u) measure_current(d, first);
   const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
