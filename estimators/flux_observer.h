@@ -8,7 +8,7 @@
 // Fig. 5 gives the flux of all but PP-02. (32), speed by a derivative and a low-pass, is a tracking observer here, as
 // behind AVV: it gives the load as well, and the drive's own acceleration does not make it lag.
 //
-// The cut-off is cutoff_q30, or a share of the speed where that is more: half of it with Fig. 5, a quarter for the bare
+// The cut-off is a share of the speed, but cutoff_q30 at least: half of it with Fig. 5, a quarter for the bare
 // low-pass. An offset of the flux turns the angle to and fro once a turn, the speed control answers with a current that
 // stands still in the stationary frame, and dead time and resistance make a voltage of it that feeds the offset: it has
 // to decay faster, which with these shares it does with w/8 and w/4.
@@ -16,8 +16,9 @@
 // The speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. From angle
 // to angle it is w_c s / ((s + w_c)^2 + w^2), at most 1/2 at any speed, and the tracking observer's own at most 1.2.
 //
-// Needs the mean voltage of every period. Below the speed that lets the flux's EMF stand out of what resistance and
-// drops leave (quality_q15 says: 0 below half the cut-off), the integral is not to be trusted.
+// Needs the mean voltage of every period. A phase without current makes its voltage itself, within what dead time and
+// drops leave open: below blind_q20 the EMF along it is not the told one, but what the flux makes at the observed
+// speed. Where the cut-off is the least one (quality_q15 is 0 there), the integral is not to be trusted.
 
 #ifndef STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
 #define STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
@@ -31,8 +32,9 @@ typedef enum { FLUX_CONV = 0, FLUX_PP01 = 1, FLUX_PP02 = 2, FLUX_ACTIVE = 3 } fl
 
 typedef struct {
   flux_method_t method;
-  int32_t cutoff_q30;     // w_c T of the low-pass integrator at low speed, 1e-4..0.05
+  int32_t cutoff_q30;     // least w_c T of the low-pass integrator, 1e-4..0.05
   int32_t bandwidth_q30;  // bandwidth * T of the tracking observer, 1e-4..0.1
+  int32_t blind_q20;      // current of a phase below which its voltage is not known, A; 0 for none
   flux_adaptation_config_t adaptation;
   uint16_t adaptation_periods;  // between two steps of it, 1..1000; in the mean, where more than 32
 } flux_observer_config_t;
@@ -52,6 +54,7 @@ typedef struct {
   stator_flux_t flux;
   flux_adaptation_t adaptation;
   tracking_observer_t observer;
+  ab_t flux_q16;           // of the last step, V period
   flux_vectors_t vectors;  // of the last step
   ab_t current_q20;        // at the end of the last period, A
   int32_t error_bam;       // last angle seen, less the observed one
@@ -67,8 +70,7 @@ bool flux_observer_config_valid(const flux_observer_config_t* c, const machine_m
 void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, const machine_model_t* m);
 
 /// Starts with an angle, speed, load and current (at that angle, A) that are known: the flux is (3).
-void flux_observer_preset(flux_observer_t* s, const flux_observer_config_t* c, const estimator_output_t* now,
-                          dq_t current_q20);
+void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_t current_q20);
 
 /// One period. Of `in` it takes the model's resistance and nameplate and the torque's acceleration, no windows.
 estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,

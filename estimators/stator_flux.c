@@ -3,16 +3,6 @@
 #define ONE_Q30 ((int32_t)1073741824L)
 #define ONE_Q28 ((int32_t)268435456L)
 #define LEAST_SQUARE_Q28 (ONE_Q28 / 17)  // w^2/(w^2 + w_c^2) at a quarter of the cut-off
-#define SHARE_END_Q24 69206016L          // 4.125: the root of 17
-#define CUTOFF_LEAST_Q30 107374L
-#define CUTOFF_MOST_Q30 53687091L
-#define FOLLOW_LEAST_Q30 53687091L
-#define FOLLOW_MOST_Q30 1020054733L
-
-bool stator_flux_config_valid(const stator_flux_config_t* c) {
-  return q_in_range(c->cutoff_q30, CUTOFF_LEAST_Q30, CUTOFF_MOST_Q30) &&
-         q_in_range(c->follow_q30, FOLLOW_LEAST_Q30, FOLLOW_MOST_Q30) && c->form <= STATOR_FLUX_BARE;
-}
 
 static int32_t length_of(ab_t v) { return q_hypot(v.alpha, v.beta); }
 
@@ -37,7 +27,7 @@ static void leak(ab_t* flux, ab_t emf, int32_t half_q30, int32_t keep_q30) {
 // A unit vector that turns by r has the EMF r - 1; in its own frame that is 1 behind the turn and -1 before it.
 static void step_bare(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t speed_bpp) {
   static const ab_t before_q28 = {-ONE_Q28, 0};
-  const int32_t half_q30 = c->cutoff_q30 / 2;
+  const int32_t half_q30 = q_shr(c->cutoff_q30, 1);
   const int32_t keep_q30 = ONE_Q30 - half_q30 + q_mul(half_q30, half_q30, 30);  // 1 / (1 + x/2) within 2e-5
   leak(&s->shown_q28, before_q28, half_q30, keep_q30);
   const rotation_t r = frame_rotation((uint32_t)speed_bpp);
@@ -68,7 +58,7 @@ static void restart_beyond(stator_flux_t* s, int32_t bound_q16) {
   s->flux_q16 = none;
   s->shown_q28 = none;
   s->length_q16 = 0;
-  s->compensation_q16 = bound_q16 / 8;
+  s->compensation_q16 = q_shr(bound_q16, 3);
 }
 
 void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t speed_bpp,
@@ -84,11 +74,11 @@ void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_
 // Over what the low-pass shows of the flux its output is the flux.
 ab_t stator_flux_q16(const stator_flux_t* s, const stator_flux_config_t* c) {
   if (c->form != STATOR_FLUX_BARE) return s->flux_q16;
-  const ab_t shown = {q_limit(s->shown_q28.alpha, 2 * ONE_Q28), q_limit(s->shown_q28.beta, 2 * ONE_Q28)};
+  const ab_t shown = s->shown_q28;
   const int32_t square_q28 = q_mul_add_sat(shown.alpha, shown.alpha, shown.beta, shown.beta, 28);
   const q_inverse_t per_square = q_invert(q_max(square_q28, LEAST_SQUARE_Q28));
-  const int32_t along_q24 = q_limit(q_over(shown.alpha, per_square, 24), SHARE_END_Q24);
-  const int32_t across_q24 = q_limit(q_over(shown.beta, per_square, 24), SHARE_END_Q24);
+  const int32_t along_q24 = q_over(shown.alpha, per_square, 24);
+  const int32_t across_q24 = q_over(shown.beta, per_square, 24);
   const ab_t psi = {q_mul_add_sat(s->flux_q16.alpha, along_q24, s->flux_q16.beta, across_q24, 24),
                     q_mul_sub_sat(s->flux_q16.beta, along_q24, s->flux_q16.alpha, across_q24, 24)};
   return psi;

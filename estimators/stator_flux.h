@@ -39,8 +39,6 @@ typedef struct {
   ab_t shown_q28;            // what the bare low-pass shows of a unit vector that turns with the speed, in its frame
 } stator_flux_t;
 
-bool stator_flux_config_valid(const stator_flux_config_t* c);
-
 /// Starts with a flux that is known.
 void stator_flux_preset(stator_flux_t* s, ab_t flux_q16);
 

@@ -103,8 +103,9 @@ static bool load_modulation(drive_config_t* c) {
   c->modulator.sampling.last_tick = 9640;
   c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
   c->dead_time.released_ticks = ticks(p->turn_off_delay);
-  c->dead_time.band_q20 = p->drop_band;
-  c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + p->drop_band;
+  // Half of it is for what the ripple at an edge is wrong by, and the flux has centred pulses without any.
+  c->dead_time.band_q20 = flux_source_is_wanted() ? q_shr(p->drop_band, 1) : p->drop_band;
+  c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + c->dead_time.band_q20;
   c->dead_time.drop_q16 = p->device_drop;
   dead_time_design(&c->dead_time);
   return modulator_config_valid(&c->modulator) && c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&

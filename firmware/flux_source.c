@@ -10,31 +10,33 @@
 #define INDUCTANCE_SHARE_Q30 107374182L  // 0.1: 100 ms
 #define MAGNET_SHARE_Q30 53687091L       // 0.05: 200 ms
 #define CURRENT_LEAST_Q24 838861L        // the torque current makes a twentieth of the magnet's flux
-#define LEARNING_CUTOFFS 20              // the magnet's flux is learnt from 20 w_c on
-#define BPP_PER_RAD_Q30 683565276L       // 2^32 / (2 pi), Q0: binary angle of a rad
+#define LEARNING_BPP 27342611L           // 400 rad/s: the magnet's flux is learnt from there on
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
 
-static flux_method_t method_of(const parameters_t* p) {
-  if (p->position_source >= POSITION_FLUX_CONV) return (flux_method_t)(p->position_source - POSITION_FLUX_CONV);
-  return (p->flux_beside > 0) ? (flux_method_t)(p->flux_beside - 1) : FLUX_CONV;
+// That has the shaft, or looks on; below zero without one.
+static int32_t method(void) {
+  return q_max(parameters.position_source - POSITION_FLUX_CONV, parameters.flux_beside - 1);
 }
+
+bool flux_source_is_wanted(void) { return method() >= 0; }
 
 bool flux_source_load(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   flux_observer_config_t* const f = &c->flux;
-  f->method = method_of(p);
+  f->method = (flux_method_t)q_max(method(), FLUX_CONV);
   f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
   f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
+  // Without dead time every voltage is known.
+  f->blind_q20 = (c->dead_time.blocked_ticks > 0) ? c->dead_time.band_q20 : 0;
   f->adaptation_periods = ADAPTATION_PERIODS;
   f->adaptation.saturation_q24 =
       ((p->flux_adapt & LEARN_INDUCTANCE) != 0) ? flux_adaptation_identify_q24(&c->nameplate) : 0;
   f->adaptation.inductance_q30 = INDUCTANCE_SHARE_Q30;
   f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
   f->adaptation.current_q24 = CURRENT_LEAST_Q24;
-  f->adaptation.lowest_bpp = q_mul(f->cutoff_q30 * LEARNING_CUTOFFS, BPP_PER_RAD_Q30, 30);
-  const bool wanted = p->position_source >= POSITION_FLUX_CONV || p->flux_beside > 0;
-  return !wanted || flux_observer_config_valid(f, &c->nameplate);
+  f->adaptation.lowest_bpp = LEARNING_BPP;
+  return !flux_source_is_wanted() || flux_observer_config_valid(f, &c->nameplate);
 }
 
 bool flux_source_rests(const drive_t* d) { return blend_is_high(&d->position.blend) && !polarity_watch_is_awake(d); }
@@ -85,7 +87,7 @@ void flux_source_take(drive_t* d) {
 }
 
 void flux_source_follow(drive_t* d, const estimator_output_t* now) {
-  flux_observer_preset(&d->position.flux, &d->config.flux, now, d->control.measured_q20);
+  flux_observer_preset(&d->position.flux, now, d->control.measured_q20);
 }
 
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {

@@ -9,6 +9,9 @@
 
 #include "firmware/drive.h"
 
+/// True where a method has the shaft, or looks on.
+bool flux_source_is_wanted(void);
+
 /// The flux's part of the configuration, from parameters and nameplate. False where it is wanted for a machine that it
 /// cannot be given.
 bool flux_source_load(drive_config_t* c);

@@ -21,16 +21,15 @@ static void weaken(drive_t* d) {
 }
 
 // While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
-// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft; from
-// half the speed on at which the magnet is learnt, and the EMF stands out of that, less and less.
+// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft, below
+// the speed at which the magnet is learnt, and the EMF stands out of that.
 static int32_t seeing_current(drive_t* d) {
   drive_control_t* const c = &d->control;
-  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, c->current_limit_q20 / 2);
-  const int32_t end_bpp = d->config.flux.adaptation.lowest_bpp;
-  const int32_t below_q15 = q_div(end_bpp - q_abs_sat(d->position.used.speed_bpp), end_bpp / 2, 15);
-  const int32_t share_q15 = q_clamp(below_q15, 0, INT16_MAX - d->position.blend.share_q15);
-  const int32_t missing_q20 = q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0);
-  c->seeing_q20 = q_follow(c->seeing_q20, q_mul(missing_q20, share_q15, 15), SEEING_SHIFT);
+  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
+  const bool blind =
+      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.used.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
+  const int32_t missing_q20 = blind ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
+  c->seeing_q20 = q_follow(c->seeing_q20, missing_q20, SEEING_SHIFT);
   return -c->seeing_q20;
 }
 

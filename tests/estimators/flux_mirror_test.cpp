@@ -111,8 +111,8 @@ void compare(Random& random, flux_method_t method, Differences& worst) {
   flux_observer_reset(&other, &c, &model);
   const estimator_output_t now = course.now(), image = mirrored(now);
   const ab_t i = course.current();
-  flux_observer_preset(&one, &c, &now, frame_turned(i, now.angle_bam));
-  flux_observer_preset(&other, &c, &image, frame_turned(mirrored(i), image.angle_bam));
+  flux_observer_preset(&one, &now, frame_turned(i, now.angle_bam));
+  flux_observer_preset(&other, &image, frame_turned(mirrored(i), image.angle_bam));
   for (int n = 0; n < 4000; ++n) {
     estimator_input_t in = {};
     in.model = &model;

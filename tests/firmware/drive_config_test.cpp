@@ -296,7 +296,7 @@ TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
   const drive_config_t& c = drive.config;
   EXPECT_EQ(c.flux.method, FLUX_PP02);
   EXPECT_NEAR(real(c.flux.cutoff_q30, 30), 30.0 * kPeriod, 1e-8);
-  EXPECT_NEAR(rad_per_s(c.flux.adaptation.lowest_bpp), 600.0, 0.1);
+  EXPECT_NEAR(rad_per_s(c.flux.adaptation.lowest_bpp), 400.0, 0.1);
   EXPECT_NEAR(c.blend.low_bpp / (350.0 * std::ldexp(4.0 / 60.0 * kPeriod, 32)), 1.0, 1e-5);
   EXPECT_GT(c.flux.adaptation.saturation_q24, 0);
   EXPECT_EQ(c.flux.adaptation.magnet_q30, 0);

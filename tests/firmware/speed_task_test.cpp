@@ -120,7 +120,7 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
 }
 
 // Without torque the flux would be blind: three times the current whose sign is certain flows, less what torque makes
-// flow, at low speed and as far as the flux has the shaft.
+// flow, at low speed and where the flux has the shaft.
 TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
   struct Case {
     double iq, speed, limit;
@@ -129,9 +129,9 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
     double expected;
   };
   const Case cases[] = {
-      {0.0, 10.0, 10.0, 0, 7, -2.1},      {-1.5, -10.0, 10.0, 0, 5, -0.6},      {3.0, 10.0, 10.0, 0, 7, 0.0},
-      {0.0, 300.0, 10.0, 0, 7, -1.05},    {0.0, -500.0, 10.0, 0, 7, 0.0},       {0.0, 10.0, 3.0, 0, 7, -1.5},
-      {0.0, 10.0, 10.0, 16384, 7, -1.05}, {0.0, 10.0, 10.0, INT16_MAX, 7, 0.0}, {0.0, 10.0, 10.0, 0, 4, 0.0}};
+      {0.0, 10.0, 10.0, 0, 7, -2.1},   {-1.5, -10.0, 10.0, 0, 5, -0.6},      {3.0, 10.0, 10.0, 0, 7, 0.0},
+      {0.0, -399.0, 10.0, 0, 7, -2.1}, {0.0, -401.0, 10.0, 0, 7, 0.0},       {0.0, 10.0, 3.0, 0, 7, -1.5},
+      {0.0, 10.0, 10.0, 1, 7, 0.0},    {0.0, 10.0, 10.0, INT16_MAX, 7, 0.0}, {0.0, 10.0, 10.0, 0, 4, 0.0}};
   drive.config.dead_time.certain_q20 = raw(0.7, 20);
   drive.config.flux.adaptation.lowest_bpp = bpp(400.0);
   parameters.mtpa = 0;

@@ -11,6 +11,7 @@ static flux_observer_config_t any_configuration(void) {
   c.method = (flux_method_t)(any_u16 & 3u);
   c.cutoff_q30 = any_from(107374L, 53687091L);
   c.bandwidth_q30 = any_from(107374L, 107374182L);
+  c.blind_q20 = any_from(0, 2097152L);
   c.adaptation_periods = (uint16_t)any_from(1, 1000);
   c.adaptation.saturation_q24 = any_from(0, FLUX_ONE_Q24);
   c.adaptation.lowest_bpp = any_from(1, INT32_MAX);
@@ -37,7 +38,7 @@ void prove_flux(void) {
     const estimator_input_t in = {&model, 0, 0, any_i32, false, false, false, 0};
     const estimator_output_t now = {any_u32, any_speed(), any_i32, any_from(0, 32767)};
     const flux_period_t p = any_period();
-    if (any_bool()) flux_observer_preset(&s, &c, &now, any_dq(CURRENT_MAX_Q20));
+    if (any_bool()) flux_observer_preset(&s, &now, any_dq(CURRENT_MAX_Q20));
     any_working_point(&model);
     (void)flux_observer_step(&s, &c, &in, &p);
     //@ assert 4194304 <= s.adaptation.shares.lq_q24 <= 20971520;
