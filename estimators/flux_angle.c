@@ -6,14 +6,11 @@
 
 static int32_t per_unit(int32_t x) { return q_limit(x, LARGEST_Q24); }
 
-static ab_t scaled(ab_t v, int32_t factor, unsigned shift) {
-  const ab_t u = {per_unit(q_mul_sat(v.alpha, factor, shift)), per_unit(q_mul_sat(v.beta, factor, shift))};
-  return u;
-}
-
 flux_vectors_t flux_vectors(const flux_machine_t* f, ab_t flux_q16, ab_t current_q20) {
-  const flux_vectors_t v = {scaled(flux_q16, f->per_psi.value, f->per_psi.exponent - 24),
-                            scaled(current_q20, f->lq_per_psi_q30, 26)};
+  const flux_vectors_t v = {
+      {per_unit(q_over(flux_q16.alpha, f->per_psi, 24)), per_unit(q_over(flux_q16.beta, f->per_psi, 24))},
+      {per_unit(q_mul_sat(current_q20.alpha, f->lq_per_psi_q30, 26)),
+       per_unit(q_mul_sat(current_q20.beta, f->lq_per_psi_q30, 26))}};
   return v;
 }
 
@@ -29,7 +26,8 @@ int32_t flux_reference_square_q24(const flux_machine_t* f, dq_t current_q20) {
 
 int32_t flux_torque_q16(const flux_machine_t* f, const flux_vectors_t* v) {
   // 3/2 p psi_m (p cross i), and i = x / (L_q / psi_m).
-  return q_mul_sat(cross_q24(v), f->torque_q16, 24);
+  const int32_t current_q20 = q_over(cross_q24(v), q_invert(f->lq_per_psi_q30), 26);
+  return q_mul_sat(current_q20, f->torque_q24, 28);
 }
 
 uint32_t flux_stator_angle(const flux_vectors_t* v) { return q_atan2(v->flux_q24.beta, v->flux_q24.alpha); }

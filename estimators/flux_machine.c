@@ -18,7 +18,7 @@ void flux_machine_move(flux_machine_t* f, const machine_model_t* m, const flux_s
   f->ld_per_psi_q30 = q_over(m->ld_q30, per_flux, 28);
   f->lq_per_psi_q30 = q_over(lq_q30, per_flux, 28);
   f->saliency_q24 = q_over(lq_q30, q_invert(m->ld_q30), 24) - FLUX_ONE_Q24;
-  f->torque_q16 = q_div(q_mul_sat(m->torque_q24, psi_share_q24, 24), f->lq_per_psi_q30, 22);
+  f->torque_q24 = q_mul_sat(m->torque_q24, psi_share_q24, 24);
 }
 
 bool flux_machine_init(flux_machine_t* f, const machine_model_t* m) {

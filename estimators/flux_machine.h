@@ -25,7 +25,7 @@ typedef struct {
   int32_t ld_per_psi_q30;  // L_d / psi_m, 1/A
   int32_t lq_per_psi_q30;  // L_q / psi_m, 1/A
   int32_t saliency_q24;    // L_q / L_d - 1
-  int32_t torque_q16;      // 3/2 p psi_m^2 / L_q, N m
+  int32_t torque_q24;      // 3/2 p psi_m, N m per A
 } flux_machine_t;
 
 /// Nameplate. False, with nothing written, where L_q / psi_m is above 0.5 1/A or L_q / L_d above 6.

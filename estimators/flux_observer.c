@@ -1,15 +1,13 @@
 #include "estimators/flux_observer.h"
 
 #define CUTOFF_LEAST_Q30 107374L
-#define CUTOFF_MOST_Q30 53687091L
+#define CUTOFF_MOST_Q30 16106127L
 #define BANDWIDTH_MOST_Q30 107374182L
-#define BARE_SHIFT 2         // w_c is a quarter of the speed,
-#define COMPENSATED_SHIFT 1  // or half of it: offsets decay with w/4 and w/8
-#define ONE_Q30 1073741824L
-#define SIN_60_Q31 1859775393L
+#define BARE_SHARE_Q30 402653184L         // 3/8: an offset decays with 3/8 w
+#define COMPENSATED_SHARE_Q30 536870912L  // 1/2: with 3/16 w
+#define FOLLOW_Q30 268435456L             // k = 1/4: the length follows with w_c/4, offsets decay with 3/8 w_c
 #define PLACES 32u  // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
 #define PLACE_STEP 13u
-#define FOLLOW_Q30 536870912L  // k = 1/2: the length follows with w_c/2, offsets decay with w_c/4
 
 static stator_flux_config_t form_of(const flux_observer_config_t* c) {
   const stator_flux_config_t form = {(c->method == FLUX_PP02) ? STATOR_FLUX_BARE : STATOR_FLUX_COMPENSATED,
@@ -34,10 +32,9 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
   flux_machine_move(&s->machine, m, &s->adaptation.shares);
 }
 
-// w_c is a share of the speed, where that is more.
 static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
-  const unsigned shift = (s->form.form == STATOR_FLUX_BARE) ? BARE_SHIFT : COMPENSATED_SHIFT;
-  const int32_t share_q30 = q_shr(q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)), shift);
+  int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp));
+  share_q30 = q_mul(share_q30, (s->form.form == STATOR_FLUX_BARE) ? BARE_SHARE_Q30 : COMPENSATED_SHARE_Q30, 30);
   s->form.cutoff_q30 = q_clamp(share_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
 }
 
@@ -54,24 +51,27 @@ void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_
   s->current_q20 = frame_fixed(current_q20, now->angle_bam);
 }
 
-// Half of the vector's part along this phase.
-static int32_t half_along(ab_t v, ab_t phase_q31) {
-  return q_mul_hi(v.alpha, phase_q31.alpha) + q_mul_hi(v.beta, phase_q31.beta);
-}
-
 // A phase without current makes its voltage itself, within what dead time and drops leave open, and nobody measures it:
 // along that phase the EMF is what the flux makes at the speed that is observed.
 static void expect_unseen(const flux_observer_t* s, int32_t blind_q20, ab_t* emf_q16) {
-  static const ab_t phases_q31[] = {{INT32_MAX, 0}, {-ONE_Q30, SIN_60_Q31}, {-ONE_Q30, -SIN_60_Q31}};
+  const abc_t current_q20 = frame_inverse_clarke(s->current_q20);
+  const bool a = q_abs_sat(current_q20.a) < blind_q20;
+  const bool b = q_abs_sat(current_q20.b) < blind_q20;
+  const bool c = q_abs_sat(current_q20.c) < blind_q20;
+  if (!a && !b && !c) return;
   const int32_t turn_q30 = machine_speed_rad_q30(s->observer.speed_bpp);
   const ab_t expected_q16 = {q_mul_sat(s->flux_q16.beta, -turn_q30, 30), q_mul_sat(s->flux_q16.alpha, turn_q30, 30)};
-  for (uint16_t k = 0; k < 3u; k++) {
-    const ab_t phase_q31 = phases_q31[k];
-    if (q_abs_sat(half_along(s->current_q20, phase_q31)) >= q_shr(blind_q20, 1)) continue;
-    const int32_t half_q16 = q_sub_sat(half_along(*emf_q16, phase_q31), half_along(expected_q16, phase_q31));
-    emf_q16->alpha = q_mul_sub_sat(emf_q16->alpha, ONE_Q30, half_q16, phase_q31.alpha, 30);
-    emf_q16->beta = q_mul_sub_sat(emf_q16->beta, ONE_Q30, half_q16, phase_q31.beta, 30);
+  if (a) {
+    emf_q16->alpha = expected_q16.alpha;
+    return;
   }
+  const ab_t half_q16 = {q_shr(expected_q16.alpha, 1) - q_shr(emf_q16->alpha, 1),
+                         q_shr(expected_q16.beta, 1) - q_shr(emf_q16->beta, 1)};
+  const abc_t missing_q16 = frame_inverse_clarke(half_q16);
+  const int32_t along_q16 = b ? missing_q16.b : missing_q16.c;
+  const int32_t across_q16 = q_mul_sat(along_q16, FRAME_SQRT3_HALF_Q30, 29);
+  emf_q16->alpha = q_sub_sat(emf_q16->alpha, along_q16);
+  emf_q16->beta = b ? q_add_sat(emf_q16->beta, across_q16) : q_sub_sat(emf_q16->beta, across_q16);
 }
 
 static void integrate(flux_observer_t* s, const flux_observer_config_t* c, const machine_model_t* m,

@@ -166,7 +166,7 @@ PARAMETER(174, slice_time, "us", 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
 
 // Position by the stator flux
-PARAMETER(300, flux_cutoff, "rad/s", 8, 1, 20, 2000, 20, STOPPED,
+PARAMETER(300, flux_cutoff, "rad/s", 8, 1, 20, 1500, 20, STOPPED,
           "least cut-off of the low-pass that integrates the flux")
 PARAMETER(301, flux_bandwidth, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer behind the stator flux")
 PARAMETER(303, flux_low, "rpm", 16, 1, 10, 20000, 3500, STOPPED,

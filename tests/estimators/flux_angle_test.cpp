@@ -217,7 +217,7 @@ TEST(FluxMachine, SharesMoveIt) {
   EXPECT_NEAR(real(f.lq_per_psi_q30, 30), 0.7 * m.lq / (0.8 * m.flux), 1e-7);
   EXPECT_NEAR(real(f.ld_per_psi_q30, 30), m.ld / (0.8 * m.flux), 1e-7);
   EXPECT_NEAR(real(f.saliency_q24, 24), 0.7 * m.lq / m.ld - 1.0, 1e-6);
-  EXPECT_NEAR(real(f.torque_q16, 16) * real(f.lq_per_psi_q30, 30), 0.8 * m.torque_constant(), 1e-5);
+  EXPECT_NEAR(real(f.torque_q24, 24), 0.8 * m.torque_constant(), 1e-6);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ _PARAMETERS = [
     (170, "encoder_trim", "deg", 2, -180.0, 180.0, 0.0, "ALWAYS", "added to the angle of the encoder"),
     (171, "current_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 PI, 1 hysteresis"),
     (173, "hysteresis_frequency", "kHz", 2, 0.0, 25.0, 10.0, "ALWAYS", "switching frequency"),
-    (300, "flux_cutoff", "rad/s", 1, 2.0, 200.0, 2.0, "STOPPED", "least cut-off"),
+    (300, "flux_cutoff", "rad/s", 1, 2.0, 150.0, 2.0, "STOPPED", "least cut-off"),
     (301, "flux_bandwidth", "rad/s", 0, 10.0, 600.0, 100.0, "ALWAYS", "tracking observer behind the stator flux"),
     (302, "flux_adapt", "", 0, 0.0, 3.0, 1.0, "ALWAYS", "what the stator flux learns"),
     (303, "flux_low", "rpm", 1, 1.0, 2000.0, 350.0, "STOPPED", "below it the observer is used"),
