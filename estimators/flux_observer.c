@@ -3,15 +3,13 @@
 #define CUTOFF_LEAST_Q30 107374L
 #define CUTOFF_MOST_Q30 16106127L
 #define BANDWIDTH_MOST_Q30 107374182L
-#define BARE_SHARE_Q30 402653184L         // 3/8: an offset decays with 3/8 w
-#define COMPENSATED_SHARE_Q30 536870912L  // 1/2: with 3/16 w
-#define FOLLOW_Q30 268435456L             // k = 1/4: the length follows with w_c/4, offsets decay with 3/8 w_c
-#define PLACES 32u  // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
+#define FOLLOW_Q30 268435456L  // k = 1/4: the length follows with w_c/4, offsets decay with 3/8 w_c
+#define PLACES 32u             // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
 #define PLACE_STEP 13u
 
 static stator_flux_config_t form_of(const flux_observer_config_t* c) {
-  const stator_flux_config_t form = {(c->method == FLUX_PP02) ? STATOR_FLUX_BARE : STATOR_FLUX_COMPENSATED,
-                                     c->cutoff_q30, FOLLOW_Q30};
+  const stator_flux_form_t read = c->is_plain ? STATOR_FLUX_PLAIN : STATOR_FLUX_COMPENSATED;
+  const stator_flux_config_t form = {(c->method == FLUX_PP02) ? STATOR_FLUX_BARE : read, c->cutoff_q30, FOLLOW_Q30};
   return form;
 }
 
@@ -33,9 +31,9 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
 }
 
 static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
-  int32_t share_q30 = q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp));
-  share_q30 = q_mul(share_q30, (s->form.form == STATOR_FLUX_BARE) ? BARE_SHARE_Q30 : COMPENSATED_SHARE_Q30, 30);
-  s->form.cutoff_q30 = q_clamp(share_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
+  if (s->form.form == STATOR_FLUX_PLAIN) return;
+  const int32_t half_q30 = q_shr(q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)), 1);
+  s->form.cutoff_q30 = q_clamp(half_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
 }
 
 void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_t current_q20) {

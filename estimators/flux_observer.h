@@ -8,10 +8,10 @@
 // Fig. 5 gives the flux of all but PP-02. (32), speed by a derivative and a low-pass, is a tracking observer here, as
 // behind AVV: it gives the load as well, and the drive's own acceleration does not make it lag.
 //
-// The cut-off is a share of the speed, but cutoff_q30 at least: half of it with Fig. 5, 3/8 for the bare low-pass, up
-// to 0.015. An offset of the flux turns the angle to and fro once a turn, the speed control answers with a current that
-// stands still in the stationary frame, and dead time and resistance make a voltage of it that feeds the offset: it has
-// to decay faster, which with these shares it does with 3/16 w and 3/8 w.
+// The cut-off is half the speed, but cutoff_q30 at least and 0.015 at most. An offset of the flux turns the angle to
+// and fro once a turn, the speed control answers with a current that stands still in the stationary frame, and dead
+// time and resistance make a voltage of it that feeds the offset: it has to decay faster, which it does with 3/16 w by
+// Fig. 5 and with w/2 by the bare low-pass.
 //
 // The speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. From angle
 // to angle it is w_c s / ((s + w_c)^2 + w^2), at most 1/2 at any speed, and the tracking observer's own at most 1.2.
@@ -32,6 +32,7 @@ typedef enum { FLUX_CONV = 0, FLUX_PP01 = 1, FLUX_PP02 = 2, FLUX_ACTIVE = 3 } fl
 
 typedef struct {
   flux_method_t method;
+  bool is_plain;          // all but PP-02 on the low-pass as it is, at cutoff_q30, as the paper has them
   int32_t cutoff_q30;     // least w_c T of the low-pass integrator, 1e-4..0.015
   int32_t bandwidth_q30;  // bandwidth * T of the tracking observer, 1e-4..0.1
   int32_t blind_q20;      // current of a phase below which its voltage is not known, A; 0 for none

@@ -63,10 +63,10 @@ static void restart_beyond(stator_flux_t* s, int32_t bound_q16) {
 
 void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16, int32_t speed_bpp,
                       int32_t bound_q16) {
-  if (c->form == STATOR_FLUX_BARE) {
-    step_bare(s, c, emf_q16, speed_bpp);
-  } else {
+  if (c->form == STATOR_FLUX_COMPENSATED) {
     step_compensated(s, c, emf_q16);
+  } else {
+    step_bare(s, c, emf_q16, speed_bpp);
   }
   restart_beyond(s, bound_q16);
 }

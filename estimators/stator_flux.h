@@ -17,6 +17,8 @@
 // of that it shows of the flux. In steady rotation this is (34); where the speed or w_c changes, and through zero, it
 // stays right, where (34) takes the low-pass for settled. Both low-passes have to begin alike.
 //
+// PLAIN: the low-pass alone and nothing given back, as the paper's text has the flux of CONV and PP-01. For comparison.
+//
 // Fluxes are flux/T, V period, Q16; the EMF is the mean of a period, V Q16.
 
 #ifndef STILLSPIN_ESTIMATORS_STATOR_FLUX_H
@@ -24,7 +26,7 @@
 
 #include "control/frame.h"
 
-typedef enum { STATOR_FLUX_COMPENSATED = 0, STATOR_FLUX_BARE = 1 } stator_flux_form_t;
+typedef enum { STATOR_FLUX_COMPENSATED = 0, STATOR_FLUX_BARE = 1, STATOR_FLUX_PLAIN = 2 } stator_flux_form_t;
 
 typedef struct {
   stator_flux_form_t form;

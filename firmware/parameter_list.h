@@ -179,6 +179,9 @@ PARAMETER(302, flux_adapt, "", 0, 0, 0, 3, 1, ALWAYS,
 PARAMETER(305, flux_beside, "", 0, 0, 0, 4, 0, STOPPED,
           "a stator-flux method beside position_source 0, looking on: 0 none, 1 CONV, 2 PP-01, 3 PP-02, 4 active")
 
+PARAMETER(306, flux_plain, "", 0, 0, 0, 1, 0, STOPPED,
+          "1 CONV, PP-01 and active flux on the low-pass alone at flux_cutoff, uncorrected, to compare")
+
 // Serial port
 PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
           "rate of the serial port from the next power-on on, once it is saved")

@@ -115,6 +115,22 @@ TEST(StatorFlux, BareFormWithPhaseCompensation) {
   EXPECT_LT(worst, 1e-4 * kFlux);
 }
 
+// The low-pass alone leads, and is short.
+TEST(StatorFlux, PlainFormIsTheLowPass) {
+  const stator_flux_config_t c = config(STATOR_FLUX_PLAIN);
+  for (const double w : {-200.0, -20.0, 20.0, 200.0}) {
+    stator_flux_t s = {};
+    const auto truth = [&](double t) { return Vector{kFlux, 0.0}.turned(0.4 + w * t); };
+    stator_flux_preset(&s, raw_flux(truth(0.0)));
+    for (int n = 0; n < 20000; ++n) {
+      stator_flux_step(&s, &c, emf(truth(n * kPeriod), truth((n + 1) * kPeriod)), bpp(w), kBound);
+    }
+    const Vector seen = real_flux(stator_flux_q16(&s, &c));
+    EXPECT_NEAR(wrapped(angle(seen) - angle(truth(2.0))), std::atan(kCutoff / w), 1e-4) << w;
+    EXPECT_NEAR(seen.length(), kFlux / std::hypot(1.0, kCutoff / w), 1e-4 * kFlux) << w;
+  }
+}
+
 // While the speed and the cut-off with it change, and through zero, (34) as printed takes the low-pass for settled.
 TEST(StatorFlux, BareFormIsRightUnderAccelerationAndThroughZero) {
   stator_flux_config_t c = config(STATOR_FLUX_BARE);
