@@ -1,7 +1,8 @@
 #include "estimators/flux_observer.h"
 
 #define CUTOFF_LEAST_Q30 107374L
-#define CUTOFF_MOST_Q30 16106127L
+#define CUTOFF_MOST_Q30 16106127L       // 150 rad/s at 10 kHz
+#define COMPENSATED_MOST_Q30 35433480L  // 330 rad/s, of which an offset decays with 3/8
 #define BANDWIDTH_MOST_Q30 107374182L
 #define FOLLOW_Q30 268435456L  // k = 1/4: the length follows with w_c/4, offsets decay with 3/8 w_c
 #define PLACES 32u             // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
@@ -33,7 +34,8 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
 static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
   if (s->form.form == STATOR_FLUX_PLAIN) return;
   const int32_t half_q30 = q_shr(q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)), 1);
-  s->form.cutoff_q30 = q_clamp(half_q30, c->cutoff_q30, CUTOFF_MOST_Q30);
+  const int32_t most_q30 = (s->form.form == STATOR_FLUX_BARE) ? CUTOFF_MOST_Q30 : COMPENSATED_MOST_Q30;
+  s->form.cutoff_q30 = q_clamp(half_q30, c->cutoff_q30, most_q30);
 }
 
 void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_t current_q20) {
@@ -50,12 +52,14 @@ void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_
 }
 
 // A phase without current makes its voltage itself, within what dead time and drops leave open, and nobody measures it:
-// along that phase the EMF is what the flux makes at the speed that is observed.
-static void expect_unseen(const flux_observer_t* s, int32_t blind_q20, ab_t* emf_q16) {
+// along that phase the EMF is what the flux makes at the speed that is observed. From the speed on at which the magnet
+// is learnt it stands out of that.
+static void expect_unseen(const flux_observer_t* s, const flux_observer_config_t* f, ab_t* emf_q16) {
+  if (q_abs_sat(s->observer.speed_bpp) >= f->adaptation.lowest_bpp) return;
   const abc_t current_q20 = frame_inverse_clarke(s->current_q20);
-  const bool a = q_abs_sat(current_q20.a) < blind_q20;
-  const bool b = q_abs_sat(current_q20.b) < blind_q20;
-  const bool c = q_abs_sat(current_q20.c) < blind_q20;
+  const bool a = q_abs_sat(current_q20.a) < f->blind_q20;
+  const bool b = q_abs_sat(current_q20.b) < f->blind_q20;
+  const bool c = q_abs_sat(current_q20.c) < f->blind_q20;
   if (!a && !b && !c) return;
   const int32_t turn_q30 = machine_speed_rad_q30(s->observer.speed_bpp);
   const ab_t expected_q16 = {q_mul_sat(s->flux_q16.beta, -turn_q30, 30), q_mul_sat(s->flux_q16.alpha, turn_q30, 30)};
@@ -80,7 +84,7 @@ static void integrate(flux_observer_t* s, const flux_observer_config_t* c, const
   ab_t emf_q16 = {q_sub_sat(p->voltage_q16.alpha, q_mul_sat(m->rs_q24, alpha_q20, 28)),
                   q_sub_sat(p->voltage_q16.beta, q_mul_sat(m->rs_q24, beta_q20, 28))};
   s->current_q20 = p->current_q20;
-  expect_unseen(s, c->blind_q20, &emf_q16);
+  expect_unseen(s, c, &emf_q16);
   stator_flux_step(&s->flux, &s->form, emf_q16, s->observer.speed_bpp, s->machine.bound_q16);
 }
 

@@ -8,17 +8,18 @@
 // Fig. 5 gives the flux of all but PP-02. (32), speed by a derivative and a low-pass, is a tracking observer here, as
 // behind AVV: it gives the load as well, and the drive's own acceleration does not make it lag.
 //
-// The cut-off is half the speed, but cutoff_q30 at least and 0.015 at most. An offset of the flux turns the angle to
-// and fro once a turn, the speed control answers with a current that stands still in the stationary frame, and dead
-// time and resistance make a voltage of it that feeds the offset: it has to decay faster, which it does with 3/16 w by
-// Fig. 5 and with w/2 by the bare low-pass.
+// The cut-off is half the speed, but cutoff_q30 at least, and at most 0.033 with Fig. 5 and 0.015 without. An offset of
+// the flux turns the angle to and fro once a turn, the speed control answers with a current that stands still in the
+// stationary frame, and dead time and resistance make a voltage of it that feeds the offset: it has to decay faster,
+// which it does with 3/16 w by Fig. 5 and with w/2 by the bare low-pass.
 //
 // The speed in (34) closes a loop: a speed that is too small corrects too much, which turns the angle back. From angle
 // to angle it is w_c s / ((s + w_c)^2 + w^2), at most 1/2 at any speed, and the tracking observer's own at most 1.2.
 //
 // Needs the mean voltage of every period. A phase without current makes its voltage itself, within what dead time and
-// drops leave open: below blind_q20 the EMF along it is not the told one, but what the flux makes at the observed
-// speed. Where the cut-off is the least one (quality_q15 is 0 there), the integral is not to be trusted.
+// drops leave open: below blind_q20, and below the speed at which the magnet is learnt, the EMF along it is not the
+// told one, but what the flux makes at the observed speed. Where the cut-off is the least one (quality_q15 is 0 there),
+// the integral is not to be trusted.
 
 #ifndef STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
 #define STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
