@@ -67,12 +67,12 @@ static void expect_unseen(const flux_observer_t* s, const flux_observer_config_t
     emf_q16->alpha = expected_q16.alpha;
     return;
   }
-  const ab_t half_q16 = {q_shr(expected_q16.alpha, 1) - q_shr(emf_q16->alpha, 1),
-                         q_shr(expected_q16.beta, 1) - q_shr(emf_q16->beta, 1)};
-  const abc_t missing_q16 = frame_inverse_clarke(half_q16);
+  const ab_t quarter_q16 = {q_shr(expected_q16.alpha, 2) - q_shr(emf_q16->alpha, 2),
+                            q_shr(expected_q16.beta, 2) - q_shr(emf_q16->beta, 2)};
+  const abc_t missing_q16 = frame_inverse_clarke(quarter_q16);
   const int32_t along_q16 = b ? missing_q16.b : missing_q16.c;
-  const int32_t across_q16 = q_mul_sat(along_q16, FRAME_SQRT3_HALF_Q30, 29);
-  emf_q16->alpha = q_sub_sat(emf_q16->alpha, along_q16);
+  const int32_t across_q16 = q_mul_sat(along_q16, FRAME_SQRT3_HALF_Q30, 28);
+  emf_q16->alpha = q_sub_sat(emf_q16->alpha, q_shl_sat(along_q16, 1));
   emf_q16->beta = b ? q_add_sat(emf_q16->beta, across_q16) : q_sub_sat(emf_q16->beta, across_q16);
 }
 

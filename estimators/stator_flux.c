@@ -3,6 +3,7 @@
 #define ONE_Q30 ((int32_t)1073741824L)
 #define ONE_Q28 ((int32_t)268435456L)
 #define LEAST_SQUARE_Q28 (ONE_Q28 / 17)  // w^2/(w^2 + w_c^2) at a quarter of the cut-off
+#define SHARE_END_Q24 69206016L          // 4.125: the root of 17
 
 static int32_t length_of(ab_t v) { return q_hypot(v.alpha, v.beta); }
 
@@ -74,11 +75,11 @@ void stator_flux_step(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_
 // Over what the low-pass shows of the flux its output is the flux.
 ab_t stator_flux_q16(const stator_flux_t* s, const stator_flux_config_t* c) {
   if (c->form != STATOR_FLUX_BARE) return s->flux_q16;
-  const ab_t shown = s->shown_q28;
+  const ab_t shown = {q_limit(s->shown_q28.alpha, 2 * ONE_Q28), q_limit(s->shown_q28.beta, 2 * ONE_Q28)};
   const int32_t square_q28 = q_mul_add_sat(shown.alpha, shown.alpha, shown.beta, shown.beta, 28);
   const q_inverse_t per_square = q_invert(q_max(square_q28, LEAST_SQUARE_Q28));
-  const int32_t along_q24 = q_over(shown.alpha, per_square, 24);
-  const int32_t across_q24 = q_over(shown.beta, per_square, 24);
+  const int32_t along_q24 = q_limit(q_over(shown.alpha, per_square, 24), SHARE_END_Q24);
+  const int32_t across_q24 = q_limit(q_over(shown.beta, per_square, 24), SHARE_END_Q24);
   const ab_t psi = {q_mul_add_sat(s->flux_q16.alpha, along_q24, s->flux_q16.beta, across_q24, 24),
                     q_mul_sub_sat(s->flux_q16.beta, along_q24, s->flux_q16.alpha, across_q24, 24)};
   return psi;

@@ -9,7 +9,8 @@ static machine_model_t model;
 static flux_observer_config_t any_configuration(void) {
   flux_observer_config_t c;
   c.method = (flux_method_t)(any_u16 & 3u);
-  c.cutoff_q30 = any_from(107374L, 53687091L);
+  c.is_plain = any_bool();
+  c.cutoff_q30 = any_from(107374L, 16106127L);
   c.bandwidth_q30 = any_from(107374L, 107374182L);
   c.blind_q20 = any_from(0, 2097152L);
   c.adaptation_periods = (uint16_t)any_from(1, 1000);
