@@ -3,6 +3,7 @@
 #define CUTOFF_LEAST_Q30 107374L
 #define CUTOFF_MOST_Q30 16106127L       // 150 rad/s at 10 kHz
 #define COMPENSATED_MOST_Q30 35433480L  // 330 rad/s, of which an offset decays with 3/8
+#define RISE_Q30 5369L                  // 500 rad/s in a second
 #define BANDWIDTH_MOST_Q30 107374182L
 #define FOLLOW_Q30 268435456L  // k = 1/4: the length follows with w_c/4, offsets decay with 3/8 w_c
 #define PLACES 32u             // 3.2 ms: a period and more of the sixth harmonic from 780 rpm on, with four pole pairs
@@ -31,12 +32,16 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
   flux_machine_move(&s->machine, m, &s->adaptation.shares);
 }
 
+// By Fig. 5 it rises slowly from where it was set back to: what has just changed the flux's length would be forgotten.
 static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
-  if (s->form.form == STATOR_FLUX_PLAIN) return;
   const int32_t half_q30 = q_shr(q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)), 1);
-  const int32_t most_q30 = (s->form.form == STATOR_FLUX_BARE) ? CUTOFF_MOST_Q30 : COMPENSATED_MOST_Q30;
-  s->form.cutoff_q30 = q_clamp(half_q30, c->cutoff_q30, most_q30);
+  int32_t most_q30 = 0;
+  if (s->form.form == STATOR_FLUX_BARE) most_q30 = CUTOFF_MOST_Q30;
+  if (s->form.form == STATOR_FLUX_COMPENSATED) most_q30 = q_min(s->form.cutoff_q30 + RISE_Q30, COMPENSATED_MOST_Q30);
+  s->form.cutoff_q30 = q_max(q_min(half_q30, most_q30), c->cutoff_q30);
 }
+
+void flux_observer_keep(flux_observer_t* s) { s->form.cutoff_q30 = 0; }
 
 void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_t current_q20) {
   const flux_machine_t* const f = &s->machine;
@@ -45,6 +50,7 @@ void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_
   const int32_t q_q24 = q_mul_sat(current_q20.q, f->lq_per_psi_q30, 26);
   const dq_t flux_q16 = {q_limit(q_mul_sat(f->psi_q16, d_q24, 24), f->bound_q16),
                          q_limit(q_mul_sat(f->psi_q16, q_q24, 24), f->bound_q16)};
+  flux_observer_keep(s);
   s->flux_q16 = frame_fixed(flux_q16, now->angle_bam);
   stator_flux_preset(&s->flux, s->flux_q16);
   tracking_observer_preset(&s->observer, now->angle_bam, now->speed_bpp, now->load_accel_q8);
@@ -55,7 +61,7 @@ void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_
 // along that phase the EMF is what the flux makes at the speed that is observed. From the speed on at which the magnet
 // is learnt it stands out of that.
 static void expect_unseen(const flux_observer_t* s, const flux_observer_config_t* f, ab_t* emf_q16) {
-  if (q_abs_sat(s->observer.speed_bpp) >= f->adaptation.lowest_bpp) return;
+  if (s->form.form == STATOR_FLUX_PLAIN || q_abs_sat(s->observer.speed_bpp) >= f->adaptation.lowest_bpp) return;
   const abc_t current_q20 = frame_inverse_clarke(s->current_q20);
   const bool a = q_abs_sat(current_q20.a) < f->blind_q20;
   const bool b = q_abs_sat(current_q20.b) < f->blind_q20;

@@ -74,6 +74,9 @@ void flux_observer_reset(flux_observer_t* s, const flux_observer_config_t* c, co
 /// Starts with an angle, speed, load and current (at that angle, A) that are known: the flux is (3).
 void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_t current_q20);
 
+/// Forgets little for some 100 ms: the current changes at once, and the flux's length with it.
+void flux_observer_keep(flux_observer_t* s);
+
 /// One period. Of `in` it takes the model's resistance and nameplate and the torque's acceleration, no windows.
 estimator_output_t flux_observer_step(flux_observer_t* s, const flux_observer_config_t* c, const estimator_input_t* in,
                                       const flux_period_t* period);

@@ -14,6 +14,7 @@
 #define HOLD_BELOW_RPM_Q16 1310720L    // 20 rpm
 #define COGGING_MAX_Q20 1048576L       // 1 N m
 #define RELUCTANCE_END_Q16 1671168L    // 25.5 N m/A with the full scale, half of the largest current
+#define LEAST_BAND_Q20 10486L          // 0.01 A
 #define EDGE_BAND_Q20 524288L          // half an ampere of ripple may be predicted wrong
 #define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
 
@@ -104,7 +105,7 @@ static bool load_modulation(drive_config_t* c) {
   c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
   c->dead_time.released_ticks = ticks(p->turn_off_delay);
   // Half of it is for what the ripple at an edge is wrong by, and the flux has centred pulses without any.
-  c->dead_time.band_q20 = flux_source_is_wanted() ? q_shr(p->drop_band, 1) : p->drop_band;
+  c->dead_time.band_q20 = flux_source_is_wanted() ? q_max(q_shr(p->drop_band, 1), LEAST_BAND_Q20) : p->drop_band;
   c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + c->dead_time.band_q20;
   c->dead_time.drop_q16 = p->device_drop;
   dead_time_design(&c->dead_time);

@@ -29,7 +29,7 @@ bool flux_source_load(drive_config_t* c) {
   f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
   f->is_plain = p->flux_plain != 0;
   // Without dead time every voltage is known.
-  f->blind_q20 = (c->dead_time.blocked_ticks > 0 && !f->is_plain) ? c->dead_time.band_q20 : 0;
+  f->blind_q20 = (c->dead_time.blocked_ticks > 0) ? c->dead_time.band_q20 : 0;
   f->adaptation_periods = ADAPTATION_PERIODS;
   f->adaptation.saturation_q24 =
       ((p->flux_adapt & LEARN_INDUCTANCE) != 0) ? flux_adaptation_identify_q24(&c->nameplate) : 0;

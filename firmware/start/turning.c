@@ -30,6 +30,7 @@ static void take_over(drive_t* d) {
   const dq_t own_q20 = drive_seen(d, c->reference_q20);
   d->position.used = seen;
   position_align_encoder(d, seen.angle_bam, seen.speed_bpp);
+  flux_observer_keep(&d->position.flux);
   d->hold.left = 0;
   c->ramp.value = seen.speed_bpp;
   c->reference_q20.d = 0;
