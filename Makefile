@@ -19,8 +19,8 @@ PICTURES_OUT := out/pictures
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify loss \
-	fuzz pictures docs lint format lock clean
+.PHONY: help setup build test demo bench isr-cost isr-bound image-check int16 vectors cppcheck prove mcdc mutants verify \
+	loss fuzz pictures docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -50,6 +50,10 @@ bench: build ## measure how fast the simulation runs
 isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
 	@bash toolchain/setup.sh build cortex
 	@$(PYTHON) toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
+
+isr-bound: build ## bound the interrupts' instructions by the longest path through the Cortex-M3's program, checked in runs
+	@bash toolchain/setup.sh build cortex
+	@$(PYTHON) toolchain/m3_bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
 
 image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
 	@mkdir -p build
@@ -88,7 +92,7 @@ mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches,
 mutants: setup ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
 
-verify: image-check cppcheck prove vectors int16 mcdc ## the checks that take long: image, cppcheck, prove, vectors, int16, mcdc
+verify: image-check isr-bound cppcheck prove vectors int16 mcdc ## the checks that take long: these seven
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

@@ -37,7 +37,9 @@ static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
   const int32_t half_q30 = q_shr(q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)), 1);
   int32_t most_q30 = 0;
   if (s->form.form == STATOR_FLUX_BARE) most_q30 = CUTOFF_MOST_Q30;
-  if (s->form.form == STATOR_FLUX_COMPENSATED) most_q30 = q_min(s->form.cutoff_q30 + RISE_Q30, COMPENSATED_MOST_Q30);
+  if (s->form.form == STATOR_FLUX_COMPENSATED) {
+    most_q30 = q_min(s->form.cutoff_q30, COMPENSATED_MOST_Q30 - RISE_Q30) + RISE_Q30;
+  }
   s->form.cutoff_q30 = q_max(q_min(half_q30, most_q30), c->cutoff_q30);
 }
 

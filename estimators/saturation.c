@@ -7,6 +7,10 @@
 #define SCORE_MAX_Q15 98304L         // 3
 #define ROUNDS_A_SIDE (SATURATION_ROUNDS * SATURATION_SEGMENTS / 2)
 #define DIFFERENCES (SATURATION_SEGMENTS * (SATURATION_ROUNDS - 1))
+#define PER_ROOT_Q32 277238947uL  // 1 / sqrt(DIFFERENCES * ROUNDS_A_SIDE)
+#if DIFFERENCES * ROUNDS_A_SIDE != 240
+#error "PER_ROOT_Q32 is that of 240"
+#endif
 
 static const int16_t segment_sign[SATURATION_SEGMENTS] = {1, -1, -1, 1};
 
@@ -60,9 +64,8 @@ static void judge(saturation_t* s) {
   const int32_t passes = s->passes;
   const int32_t change = s->change_q30 / passes;
   // A difference of two rounds has twice the variance of one; the change is that of two means of ROUNDS_A_SIDE rounds.
-  const uint64_t variance = s->scatter / ((uint64_t)(DIFFERENCES * ROUNDS_A_SIDE) * (uint64_t)(passes * passes));
-  const uint64_t floor = (uint64_t)s->floor_q30 * (uint64_t)s->floor_q30;
-  const int32_t error = (int32_t)q_sqrt64(variance + floor);
+  const uint32_t deviation = q_umul_hi(q_sqrt64(s->scatter), PER_ROOT_Q32) / (uint32_t)passes;
+  const int32_t error = q_hypot((int32_t)deviation, s->floor_q30);
   s->score_q15 = q_div(change, s->expected_q30, 15);
   s->sigma_q8 = q_div(q_abs_sat(change), q_max(error, 1), 8);
   const int32_t size = q_abs_sat(s->score_q15);

@@ -140,12 +140,12 @@ def build(out: Path) -> Path:
     return image
 
 
-def replay(image: Path, trace: Path) -> Table:
-    """The counts of one run; an error where it is not the native one."""
+def replay(image: Path, trace: Path, *more: str) -> Table:
+    """The counts of one run, with more options of the emulator; an error where it is not the native one."""
     semihosting = f"enable=on,target=native,arg=replay,arg={trace}"
     machine = ["-M", "mps2-an385", "-nographic", "-monitor", "none", "-serial", "none"]
     clock = ["-icount", "shift=8,sleep=off"]
-    command = [EMULATOR, *machine, *clock, "-semihosting-config", semihosting, "-kernel", str(image)]
+    command = [EMULATOR, *machine, *clock, "-semihosting-config", semihosting, "-kernel", str(image), *more]
     run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     if run.returncode != 0:
         raise SystemExit(f"isr-cost: {trace.name}: {run.stdout}{run.stderr}")

@@ -87,14 +87,24 @@ static void end_step(void) {
   running.accesses = 0;
 }
 
+// Where the emulator's log of what was executed says which periods are which (toolchain/paths/watch.py).
+__attribute__((noinline, noipa)) static void turning_period(void) { __asm volatile(""); }
+__attribute__((noinline, noipa)) static void starting_period(void) { __asm volatile(""); }
+
 // A period belongs to the state in which it began.
 static void end_period(int32_t state) {
-  statistic_t* const table = (state == DRIVE_RUN || state == DRIVE_STOP) ? turning : starting;
+  const bool turns = state == DRIVE_RUN || state == DRIVE_STOP;
+  statistic_t* const table = turns ? turning : starting;
   uint32_t total = 0;
   end_step();
   for (uint32_t k = 0; k < step && k < STEPS; k++) total += step_cost[k];
   periods++;
   if (state < DRIVE_START) return;
+  if (turns) {
+    turning_period();
+  } else {
+    starting_period();
+  }
   for (uint32_t k = 0; k < step && k < STEPS; k++) add(&table[k], step_cost[k]);
   add(&table[STEPS], total);
 }
