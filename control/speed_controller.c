@@ -40,7 +40,7 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
   // alpha b^2 with b in rad/s (mechanical) per A: b = Kt Ts / J.
   const int32_t b_q24 = q_mul_sat(q_div(m->torque_q24, c->inertia_q24, 16), step_q30, 22);
   const int32_t weight_q16 = q_mul_sat(q_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
-  s->gains.share_q30 = ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30);
+  s->gains.share_q30 = q_clamp(ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30), 0, ONE_Q30);
   const int32_t ratio_q30 = q_div(c->step_periods * 1000L, q_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
   if (ratio_q30 >= ONE_Q30 / 2) return false;
   s->approach_q30 = ONE_Q30 - exp_minus_q30(ratio_q30);
@@ -59,7 +59,7 @@ void speed_controller_scale(speed_controller_t* s, int32_t ratio_q24) {
   const q_inverse_t per_ratio = q_invert(ratio_q24);
   const int32_t rest_q24 = q_shr(ONE_Q30 - s->told.share_q30, 6);
   const int32_t weight_q24 = q_mul(q_mul(q_shr(s->told.share_q30, 6), ratio_q24, 24), ratio_q24, 24);
-  s->gains.share_q30 = q_over(weight_q24, q_invert(weight_q24 + rest_q24), 30);
+  s->gains.share_q30 = q_clamp(q_over(weight_q24, q_invert(weight_q24 + rest_q24), 30), 0, ONE_Q30);
   s->gains.amps_per_bpp = q_over(s->told.amps_per_bpp, per_ratio, 24);
   s->gains.pi_kp = q_over(s->told.pi_kp, per_ratio, 24);
   s->gains.pi_ki = q_over(s->told.pi_ki, per_ratio, 24);
@@ -79,7 +79,7 @@ static int32_t predictive_step(speed_controller_t* s, const speed_controller_inp
   const int32_t own_change = q_mul(in->speed_bpp, s->decay_q30 - ONE_Q30, 30);
   // (53): the current that would reach the target in one step, minus the one that flows, times k b.
   const int32_t deadbeat = amps_q20(s->gains.amps_per_bpp, q_sub_sat(target_change, own_change));
-  const int32_t own = s->current_q20 + q_mul(q_sub_sat(deadbeat, s->current_q20), s->gains.share_q30, 30);
+  const int32_t own = q_mix_sat(s->current_q20, deadbeat, s->gains.share_q30, 30);
   const int32_t total = q_clamp(q_add_sat(own, in->load_current_q20), in->lowest_q20, in->highest_q20);
   s->current_q20 = q_sub_sat(total, in->load_current_q20);
   return total;

@@ -14,7 +14,7 @@ static admittance_t nominal(const machine_model_t* m) {
 static void trim(machine_model_t* m, const admittance_t* y, int32_t mean_q30, int32_t half_q30) {
   const int32_t mean = q_clamp(mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
   // Both admittances stay positive, whatever the windows say.
-  const int32_t half_max = q_min(q_shl_sat(y->half_q30, 1), (y->mean_q30 + mean) / 10 * 9);
+  const int32_t half_max = q_min(2 * y->half_q30, (y->mean_q30 + mean) / 10 * 9);
   const int32_t half_min = q_min(y->half_q30 / 3, half_max);
   machine_model_trim(m, mean, q_clamp(half_q30, half_min - y->half_q30, half_max - y->half_q30));
 }

@@ -42,7 +42,7 @@ bool avv_angle_is_near(const regression_t* r, const machine_model_t* m) {
 // Information (4 or more) in powers of two, with two bits of fraction: the two bits below the highest.
 static int32_t log2_q2(int32_t x) {
   const unsigned below = 29u - q_clz32((uint32_t)x);
-  return (int32_t)(below + 2u) * 4 + q_shr(x, below) - 4;
+  return (int32_t)(below + 2u) * 4 + (q_shr(x, below) & 3);
 }
 
 static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {

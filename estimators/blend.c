@@ -43,7 +43,7 @@ void blend_preset(blend_t* s, const blend_config_t* c, int32_t speed_bpp) {
 }
 
 static int32_t mix(int32_t low, int32_t high, int32_t share_q15) {
-  return high + q_mul(q_sub_sat(low, high), share_q15 + (share_q15 >> 14), 15);
+  return q_mix_sat(high, low, share_q15 + (share_q15 >> 14), 15);
 }
 
 estimator_output_t blend_step(blend_t* s, const blend_config_t* c, const estimator_output_t* low,

@@ -16,7 +16,7 @@ int32_t cogging_load(cogging_t* s, const cogging_config_t* c, uint32_t angle_bam
 
 static int32_t moved(int32_t* amplitude_q8, int32_t step_q8, int32_t bound_q8) {
   const int32_t before_q8 = *amplitude_q8;
-  *amplitude_q8 = q_clamp(before_q8 + step_q8, -bound_q8, bound_q8);
+  *amplitude_q8 = q_limit(before_q8 + step_q8, bound_q8);
   return *amplitude_q8 - before_q8;
 }
 
@@ -33,10 +33,10 @@ int32_t cogging_learn(cogging_t* s, const cogging_config_t* c, const cogging_see
   if (!s->active || q_abs_sat((int32_t)(wave_bam - s->stepped_bam)) < STEP_BAM) return 0;
   s->stepped_bam = wave_bam;
   const int32_t swing_q8 = q_sub_sat(in->load_q8, s->mean_q8);
-  s->mean_q8 += q_shr_round(swing_q8, MEAN_SHIFT);
+  s->mean_q8 = q_follow(s->mean_q8, in->load_q8, MEAN_SHIFT);
   // A load that changes by more than cogging can be is something else.
   if (q_abs_sat(in->speed_bpp) > c->fast_bpp || q_abs_sat(swing_q8) > c->bound_q8) return 0;
-  s->known_q30 += q_shr_round(ONE_Q30 - s->known_q30, MEAN_SHIFT);
+  s->known_q30 = q_follow_near(s->known_q30, ONE_Q30, MEAN_SHIFT);
   const rotation_t seen = frame_rotation(wave_bam);
   const int32_t cos_q8 = moved(&s->cos_q8, q_mul(swing_q8, seen.cos_q30, 30 + WAVE_SHIFT), c->bound_q8);
   const int32_t sin_q8 = moved(&s->sin_q8, q_mul(swing_q8, seen.sin_q30, 30 + WAVE_SHIFT), c->bound_q8);

@@ -85,7 +85,7 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 // noise has them once in five minutes. A longer mean would see smaller loads, and 5 N m a millisecond later. The power
 // is measured, not the information's word for it: it holds whatever noise the observer was told.
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
-  s->mean_score_q20 += q_shr(n->a - s->mean_score_q20, MEAN_SHIFT);
+  s->mean_score_q20 = q_follow_near(s->mean_score_q20, n->a, MEAN_SHIFT);
   // Neither square nor power is below 0: their difference stays in 31 bits. What the shift leaves counts later: short
   // windows have a power of 200 in Q24, half of which would be lost.
   const int32_t square_q24 = q_sat64(q_shr64(q_product(n->a, n->a), 16));
@@ -123,7 +123,7 @@ static int32_t quiet_noise_q20(const deviation_observer_t* s, const deviation_ob
 static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
   const int32_t periods = s->gathered.periods;
   const int32_t crawl_q30 = crawl_share_q30(s, c);
-  s->alert_q30 -= periods * q_shr_round(s->alert_q30, ALERT_SHIFT);
+  s->alert_q30 = q_max(s->alert_q30 - periods * q_shr_round(s->alert_q30, ALERT_SHIFT), 0);
   const int32_t step_q20 = c->moving_step_q20 + q_mul_floor(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
   const int32_t again_q30 = (crawl_q30 > 0) ? ALERT_AGAIN_Q30 : ALERT_OVER_Q30;
   if (lean && step_q20 > 0 && s->alert_q30 < again_q30) {
@@ -268,7 +268,7 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
   const int32_t per_tick_q30 = 1073741824L / left.span_ticks;
   residual_q20->d = q_mul_sat(left.d_q4, per_tick_q30, 14);
   residual_q20->q = q_mul_sat(left.q_q4, per_tick_q30, 14);
-  *span_ticks = left.span_ticks / left.periods;
+  *span_ticks = left.span_ticks / q_max(left.periods, 1);
   *periods = left.periods;
   return true;
 }

@@ -27,8 +27,8 @@ emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const e
   const int32_t seen_q16 = (w_q30 < 0) ? q_neg_sat(e_q16) : e_q16;
   const unsigned shift = shift_of(seen->periods);
   const uint16_t periods = (uint16_t)seen->periods;
-  s->seen_q16 += q_shr_round(q_sub_sat(seen_q16, s->seen_q16), shift);
-  s->expected_q16 += q_shr_round(q_mul_sat(m->emf_q16, q_abs_sat(w_q30), 30) - s->expected_q16, shift);
+  s->seen_q16 = q_follow(s->seen_q16, seen_q16, shift);
+  s->expected_q16 = q_follow(s->expected_q16, q_mul_sat(m->emf_q16, q_abs_sat(w_q30), 30), shift);
   const bool large = s->expected_q16 > EMF_MIN_Q16;
   s->clear = (large && s->seen_q16 > s->expected_q16 / 2) ? (uint16_t)(s->clear + periods) : 0u;
   s->against = (large && s->seen_q16 < -s->expected_q16 / 4) ? (uint16_t)(s->against + periods) : 0u;

@@ -38,19 +38,25 @@ int64_t fit_dot(const int32_t* a, const int32_t* b, uint16_t n) {
   return sum;
 }
 
+// What a column leaves of another: within twice what columns may be, so that the squares of FIT_POINTS of them fit.
+static void take_off(int32_t* rest, const int32_t* y, int32_t factor_q24, const int32_t* x, uint16_t n) {
+  for (uint16_t k = 0; k < n; k++)
+    rest[k] = q_sat_bits((int64_t)y[k] * 16777216L - q_product(factor_q24, x[k]), 24, 29);
+}
+
 // The second regressor less what the first explains; then each is fitted on its own.
 bool fit_plane(const int32_t* x, const int32_t* f, const int32_t* y, uint16_t n, fit_plane_t* out) {
   int32_t own[FIT_POINTS];
   int32_t rest[FIT_POINTS];
   const int64_t xx = fit_dot(x, x, n);
   const int32_t shared_q24 = fit_ratio(fit_dot(x, f, n), xx, 24);
-  for (uint16_t k = 0; k < n; k++) own[k] = f[k] - q_mul(shared_q24, x[k], 24);
+  take_off(own, f, shared_q24, x, n);
   const int64_t own_square = fit_dot(own, own, n);
   if (xx == 0 || own_square < q_shr64(fit_dot(f, f, n), 8)) return false;
   out->offset_q24 = fit_ratio(fit_dot(own, y, n), own_square, 24);
-  for (uint16_t k = 0; k < n; k++) rest[k] = y[k] - q_mul(out->offset_q24, f[k], 24);
+  take_off(rest, y, out->offset_q24, f, n);
   out->slope_q24 = fit_ratio(fit_dot(x, rest, n), xx, 24);
-  for (uint16_t k = 0; k < n; k++) rest[k] -= q_mul(out->slope_q24, x[k], 24);
+  take_off(rest, rest, out->slope_q24, x, n);
   out->rms = (int32_t)q_sqrt64((uint64_t)fit_dot(rest, rest, n) / n);
   return true;
 }

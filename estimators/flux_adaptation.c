@@ -61,7 +61,7 @@ void flux_adaptation_step(flux_adaptation_t* s, const flux_adaptation_config_t* 
   flux_shares_t* const to = &s->shares;
   const int32_t lq_q24 = flux_adaptation_lq_q24(c->saturation_q24, flux_torque_q16(f, v));
   int32_t change_q24 = 0;
-  to->lq_q24 = q_clamp(to->lq_q24 + q_mul(lq_q24 - to->lq_q24, c->inductance_q30, 30), SHARE_LEAST_Q24, SHARE_MOST_Q24);
+  to->lq_q24 = q_clamp(q_mix(to->lq_q24, lq_q24, c->inductance_q30, 30), SHARE_LEAST_Q24, SHARE_MOST_Q24);
   if (c->magnet_q30 > 0 && q_abs_sat(speed_bpp) >= c->lowest_bpp &&
       flux_adaptation_change_q24(f, v, current_q20, c->current_q24, &change_q24)) {
     const int32_t step_q24 = q_mul_sat(q_mul_sat(change_q24, to->psi_q24, 24), c->magnet_q30, 30);

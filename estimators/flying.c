@@ -19,8 +19,10 @@ void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_win
   s->last_tick = tick + w->span_ticks / 2;
   s->last_q20.alpha = w->current_q20.alpha + way_q20.alpha;
   s->last_q20.beta = w->current_q20.beta + way_q20.beta;
-  s->drive_q16.alpha += w->voltage_q16.alpha - q_mul(m->rs_q24, w->current_q20.alpha, 28);
-  s->drive_q16.beta += w->voltage_q16.beta - q_mul(m->rs_q24, w->current_q20.beta, 28);
+  const ab_t driving_q16 = {w->voltage_q16.alpha - q_mul(m->rs_q24, w->current_q20.alpha, 28),
+                            w->voltage_q16.beta - q_mul(m->rs_q24, w->current_q20.beta, 28)};
+  s->drive_q16.alpha = q_add_sat(s->drive_q16.alpha, driving_q16.alpha);
+  s->drive_q16.beta = q_add_sat(s->drive_q16.beta, driving_q16.beta);
   s->windows++;
 }
 
@@ -36,7 +38,7 @@ static int32_t component(int32_t drive_q16, int32_t windows, int32_t change_q20,
 
 flying_emf_t flying_evaluate(const flying_pulse_t* s, const machine_model_t* m) {
   const int32_t rate_q20 = q_div(ESTIMATOR_PERIOD_TICKS, s->last_tick - s->first_tick, 20);
-  const int32_t count = (int32_t)s->windows;
+  const int32_t count = q_max((int32_t)s->windows, 1);
   const int32_t alpha =
       component(s->drive_q16.alpha, count, s->last_q20.alpha - s->first_q20.alpha, m->yq_q30, rate_q20);
   const int32_t beta = component(s->drive_q16.beta, count, s->last_q20.beta - s->first_q20.beta, m->yq_q30, rate_q20);

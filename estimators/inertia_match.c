@@ -37,8 +37,8 @@ static void begin(inertia_match_t* s, const inertia_seen_t* in) {
 
 static void integrate(inertia_match_t* s, const inertia_seen_t* in, int32_t periods) {
   const int32_t way = q_shr(angle_diff_bam(in->angle_bam, s->angle_bam), 8);
-  s->turned += way - q_shr(s->speed0_bpp, 8) * periods;
-  s->expected += q_shr(s->last_gained_bpp / 2 + s->gained_bpp / 2, 8) * periods;
+  s->turned = q_add_sat(s->turned, way - q_shr(s->speed0_bpp, 8) * periods);
+  s->expected = q_add_sat(s->expected, q_shr(s->last_gained_bpp / 2 + s->gained_bpp / 2, 8) * periods);
   s->last_gained_bpp = s->gained_bpp;
 }
 
@@ -95,7 +95,7 @@ int32_t inertia_match_step(inertia_match_t* s, const inertia_seen_t* in, int32_t
   if (s->phase == INERTIA_RUN_UP) {
     factor_q24 = run_up(s, in, periods);
   } else {
-    if (s->quiet_ms > 0u) s->base_q8 += q_shr_round(q_sub_sat(in->torque_accel_q8, s->base_q8), BASE_SHIFT);
+    if (s->quiet_ms > 0u) s->base_q8 = q_follow(s->base_q8, in->torque_accel_q8, BASE_SHIFT);
     if (s->phase == INERTIA_SETTLE) factor_q24 = settle(s);
     if (s->phase == INERTIA_REST && moves && rested) begin(s, in);
   }

@@ -16,7 +16,7 @@ static void add(sum_t* sum, dq_t x, int32_t share_q30) {
 }
 
 static dq_t mean_of(const sum_t* sum) {
-  const dq_t mean = {(int32_t)q_shr64(sum->d, 30), (int32_t)q_shr64(sum->q, 30)};
+  const dq_t mean = {q_sat_bits(sum->d, 30, 30), q_sat_bits(sum->q, 30, 30)};
   return mean;
 }
 
@@ -77,7 +77,7 @@ void regression_evaluate(regression_t* r, const deviation_t d[], const estimator
     return;
   }
   const int32_t per_weight_q30 = per_total_q30(total);
-  for (uint16_t k = 0; k < in->window_count; k++) share_q30[k] *= per_weight_q30;
+  for (uint16_t k = 0; k < in->window_count; k++) share_q30[k] = q_share_q30(share_q30[k], per_weight_q30);
   average(r, d, in, share_q30, &voltage_q16);
   for (uint16_t k = 0; k < in->window_count; k++) project(&p, r, &d[k], voltage_q16, share_q30[k]);
   resolve(r, &p);

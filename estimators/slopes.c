@@ -1,13 +1,14 @@
 #include "estimators/slopes.h"
 
-#define PERIOD_Q17 ((int32_t)1310720000L)  // ESTIMATOR_PERIOD_TICKS
-#define CHANGE_Q15 ((int32_t)32768)        // 4095 codes of 4 and 4 conversions stay in 31 bits,
-#define SLOPE_BITS 30u                     // 1024 A per period: a vector of them is turned in 31 bits
-#define SUM_Q13 ((int32_t)8192)            // and those of both bursts
+#define PERIOD_Q17 ((int32_t)1310720000L)         // ESTIMATOR_PERIOD_TICKS
+#define CHANGE_Q15 ((int32_t)32768)               // 4095 codes of 4 and 4 conversions stay in 31 bits,
+#define SLOPE_BITS 30u                            // 1024 A per period: a vector of them is turned in 31 bits
+#define PER_COUNT_END_Q36 ((int32_t)1073741824L)  // 0.125 A per code, eight products of samples
+#define SUM_Q13 ((int32_t)8192)                   // and those of both bursts
 
 void slopes_design(slopes_config_t* c) {
   const int32_t n = c->start_samples * c->end_samples;
-  c->amps_per_count_q36 = q_div(c->amps_per_code_q30, n, 6);
+  c->amps_per_count_q36 = q_min(q_div(c->amps_per_code_q30, n, 6), PER_COUNT_END_Q36);
 }
 
 // Gain and Clarke together: alpha is phase a, beta = (a + 2 b) / sqrt(3).

@@ -3,6 +3,7 @@
 #include "estimators/deviation.h"
 
 #define DOUBT_PER_BAD 8  // a good period takes back an eighth of what a bad one adds
+#define DOUBT_END 1048576L
 #define SQUARE_SHIFT 22u
 #define LAG 4  // ms that a speed may be known late
 #define LIMIT_MAX 32768000L
@@ -37,13 +38,13 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
   const int32_t per_tick_q30 = ONE_Q30 / total;
   for (uint16_t k = 0; k < count; k++) {
     const estimator_window_t* const w = &windows[k];
-    const int32_t share_q30 = w->span_ticks * per_tick_q30;
+    const int32_t share_q30 = q_share_q30(w->span_ticks, per_tick_q30);
     add(&mean.slope_q20, w->slope_q20, share_q30);
     add(&mean.current_q20, w->current_q20, share_q30);
     add(&mean.voltage_q16, w->voltage_q16, share_q30);
     middle_q15 += q_shr(share_q30, 15) * w->middle_tick;
   }
-  mean.middle_tick = (int16_t)q_shr(middle_q15, 15);
+  mean.middle_tick = (int16_t)q_clamp(q_shr(middle_q15, 15), 0, PERIOD_TICKS);
   seen->residual_q20 = deviation_evaluate(m, &mean, angle_bam, seen->speed_bpp).residual_q20;
 }
 
@@ -92,7 +93,7 @@ static int32_t doubt_per_period(const synchronism_t* s) {
   const int32_t q_q16 = q_max(magnitude(s->error_q16.q), magnitude(s->turned_q16));
   const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, q_q16, q_q16, SQUARE_SHIFT);
   const int32_t limit = q_mul_floor(s->limit_q16, s->limit_q16, SQUARE_SHIFT);
-  return (error > limit) ? DOUBT_PER_BAD + (error - limit) / (limit / DOUBT_PER_BAD + 1) : 0;
+  return (error > limit) ? DOUBT_PER_BAD + q_min((error - limit) / (limit / DOUBT_PER_BAD + 1), DOUBT_END) : 0;
 }
 
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,

@@ -62,7 +62,7 @@ def summary(part: Part, rows: list[dict[str, str]], said: str) -> str:
 
 
 def plain(function: str) -> str:
-    """The copies of an inline function, one for each file, are one function."""
+    """The copies of an inline function, one for each file, are one function; so is what they need."""
     return re.sub(r"_\d+$", "", function)
 
 
@@ -95,7 +95,7 @@ def read(part: Part, tree: Path, out: Path) -> Read:
         raise RuntimeError(f"frama-c fails, see {log}: {(done.stdout + done.stderr)[-1500:]}")
     with table.open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t", quoting=csv.QUOTE_NONE))
-    alarms = Counter((plain(row["function"]), row["property kind"]) for row in rows if is_open(part, row))
+    alarms = Counter((plain(row["function"]), plain(row["property kind"])) for row in rows if is_open(part, row))
     return Read(alarms, summary(part, rows, done.stdout))
 
 

@@ -81,6 +81,9 @@ static inline int32_t q_sub_sat(int32_t a, int32_t b) { return q_sat64((int64_t)
 // a + (b - a) / 2^n, n = 1..31: what follows b with a share of the difference lies between the two.
 static inline int32_t q_follow(int32_t a, int32_t b, unsigned n) { return a + q_shr(q_sub_sat(b, a), n); }
 
+// The same of a and b whose difference fits 32 bits.
+static inline int32_t q_follow_near(int32_t a, int32_t b, unsigned n) { return a + q_shr(b - a, n); }
+
 // -x, and INT32_MAX for INT32_MIN.
 static inline int32_t q_neg_sat(int32_t x) { return (x == INT32_MIN) ? INT32_MAX : -x; }
 
@@ -145,6 +148,14 @@ static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift) { return q
 static inline int32_t q_mix(int32_t a, int32_t b, int32_t share, unsigned bits) {
   return a + q_mul(b - a, share, bits);
 }
+
+// The same with a difference that is saturated: the share of more than 2^31 is less than that.
+static inline int32_t q_mix_sat(int32_t a, int32_t b, int32_t share, unsigned bits) {
+  return a + q_mul(q_sub_sat(b, a), share, bits);
+}
+
+// A part of a total, Q30, of the total's reciprocal: a share below one, and half a part more where that was rounded up.
+static inline int32_t q_share_q30(int32_t part, int32_t per_total_q30) { return part * per_total_q30; }
 
 // The same two sums of products, saturated.
 static inline int32_t q_mul_add_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {

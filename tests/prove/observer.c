@@ -12,7 +12,7 @@ static deviation_observer_config_t any_tuning(void) {
   deviation_observer_design(&c, &around.model, &t);
   c.cogging.order = any_from(0, 60);
   c.cogging.fast_bpp = c.crawl_bpp;
-  c.cogging.bound_q8 = any_from(0, INT32_MAX);
+  c.cogging.bound_q8 = any_from(0, COGGING_BOUND_END_Q8);
   c.zero_vectors_only = any_bool();
   return c;
 }

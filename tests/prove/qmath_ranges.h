@@ -6,7 +6,8 @@
 
 #include <stdint.h>
 
-/*@ assigns \result \from x; ensures \result <= 32; ensures x != 0 ==> \result <= 31; */
+/*@ assigns \result \from x; ensures \result <= 32; ensures x != 0 ==> \result <= 31;
+    ensures x >= 4 ==> \result <= 29; */
 unsigned q_clz32(uint32_t x);
 
 /*@ assigns \result \from x; ensures -2147483648 <= x <= 2147483647 ==> \result == x;
@@ -21,6 +22,19 @@ static inline int32_t q_limit(int32_t x, int32_t limit);
 /*@ requires 1 <= n <= 31; assigns \result \from a, b, n;
     ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
 static inline int32_t q_follow(int32_t a, int32_t b, unsigned n);
+
+/*@ requires -2147483648 <= b - a <= 2147483647 && 1 <= n <= 31; assigns \result \from a, b, n;
+    ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
+static inline int32_t q_follow_near(int32_t a, int32_t b, unsigned n);
+
+/*@ requires 1 <= bits <= 30 && 0 <= share <= (1 << bits);
+    assigns \result \from a, b, share, bits; ensures a <= \result || b <= \result;
+    ensures \result <= a || \result <= b; */
+static inline int32_t q_mix_sat(int32_t a, int32_t b, int32_t share, unsigned bits);
+
+/*@ requires 0 <= part <= 32768 && 0 <= part * per_total_q30 <= 1073741824 + part / 2;
+    assigns \result \from part, per_total_q30; ensures 0 <= \result <= 1073758208; */
+static inline int32_t q_share_q30(int32_t part, int32_t per_total_q30);
 
 /*@ requires -2147483648 <= b - a <= 2147483647 && 1 <= bits <= 30 && 0 <= share <= (1 << bits);
     assigns \result \from a, b, share, bits; ensures a <= \result || b <= \result;

@@ -184,6 +184,26 @@ TEST(QArith, WhatFollowsLiesBetween) {
         const std::int32_t got = q_follow(a, b, n);
         ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << n;
         ASSERT_TRUE(Wide{got} == a + floor_shift(saturate(Wide{b} - a), n)) << a << ", " << b << ", " << n;
+        if (!fits(Wide{b} - a)) continue;
+        ASSERT_EQ(q_follow_near(a, b, n), got) << a << ", " << b << ", " << n;
+      }
+    }
+  }
+}
+
+TEST(QArith, AMixtureOfAnyTwoLiesBetween) {
+  RandomInt32 random(9);
+  const std::vector<std::int32_t> values = edges_and_random(100, random);
+  for (const std::int32_t a : values) {
+    for (const std::int32_t b : values) {
+      for (const unsigned bits : {1u, 2u, 15u, 24u, 30u}) {
+        const std::int32_t one = std::int32_t{1} << bits;
+        for (const std::int32_t share : {0, 1, one / 2, one - 1, one, random() & (one - 1)}) {
+          const std::int32_t got = q_mix_sat(a, b, share, bits);
+          ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << share;
+          if (!fits(Wide{b} - a)) continue;
+          ASSERT_EQ(got, q_mix(a, b, share, bits)) << a << ", " << b << ", " << share;
+        }
       }
     }
   }

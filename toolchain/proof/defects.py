@@ -28,6 +28,9 @@ DEFECTS = (
     Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
     Defect("angles", "sincos_of_quadrant", "hal/qmath/qtrig.c", "sine_q30[node]", "sine_q30[node + 1u]"),
     Defect("svpwm", "alternate", "svpwm/modulator.c", "* FOUR_FIFTHS_Q15", "* 99 * FOUR_FIFTHS_Q15"),
+    Defect(
+        "turned", "turned", "estimators/deviation.c", "(square_q28 - fourth_q28) * 2", "(square_q28 - fourth_q28) * 16"
+    ),
     Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "room * t1 * t2 / 2"),
     Defect(
         "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < SVPWM_WINDOWS", "window_count <= SVPWM_WINDOWS"

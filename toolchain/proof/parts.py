@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
 LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
+ROTATION_RANGES = "tests/prove/rotation_ranges.h"
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,8 @@ class Part:
 
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
-OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_follow,q_mix,q_limit"
+OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
+OF_QMATH += ",q_follow,q_follow_near,q_mix,q_mix_sat,q_share_q30"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
@@ -35,7 +37,7 @@ PROVED_BY_WP = (
 )
 # Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. WP proves that of
 # q_sat64; at the others its prover stops, and tests/qmath tries every edge.
-SHOWN_ELSEWHERE = ("q_sat64", "q_limit", "q_sat_bits", "q_follow", "q_mix")
+SHOWN_ELSEWHERE = ("q_sat64", "q_limit", "q_sat_bits", "q_follow", "q_follow_near", "q_mix", "q_mix_sat")
 
 QMATH = "hal/qmath/*.c"
 SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
@@ -114,8 +116,15 @@ PARTS = (
     eva("edges", SVPWM, ("-eva-min-loop-unroll", "6", "-eva-slevel", "60"), OF_QMATH),
     eva("control", ("tests/prove/control.c", *CONTROL), (*READER, "-eva-subdivide-non-linear", "20"), OF_QMATH),
     *(
-        eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, OF_QMATH)
-        for name in ("estimators", "observer", "flux", "start")
+        eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, f"{OF_QMATH},turned", header=ROTATION_RANGES)
+        for name in ("estimators", "observer")
+    ),
+    *(eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, OF_QMATH) for name in ("flux", "start")),
+    eva(
+        "turned",
+        ("tests/prove/turned.c", "control/*.c", QMATH),
+        ("-eva-slevel", "40", "-eva-auto-loop-unroll", "12"),
+        header=ROTATION_RANGES,
     ),
     eva("commissioning", ("tests/prove/start.c", *ESTIMATORS), (*ROUNDS, "-eva-min-loop-unroll", "70"), OF_QMATH),
     # A constant that does not fit its word would be another number, silently.
