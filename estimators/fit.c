@@ -24,11 +24,9 @@ int32_t fit_ratio(int64_t numerator, int64_t denominator, int16_t shift) {
   const int16_t scale = (int16_t)(shift + normalise(&n) - normalise(&d));
   const int32_t limit = negative ? INT32_MIN : INT32_MAX;
   if (d == 0u || scale > 31) return limit;
-  if (scale < -31) return 0;
-  // The quotient of the two mantissas lies between 1/2 and 2.
-  const int32_t mantissa = (int32_t)n;
-  const int32_t quotient = (scale >= 0) ? q_div(mantissa, (int32_t)d, (unsigned)scale)
-                                        : q_shr_round(q_div(mantissa, (int32_t)d, 30), (unsigned)q_min(30 - scale, 31));
+  // The quotient of the two mantissas lies between 1/2 and 2: halved once it may still round to 1.
+  const int32_t small = (scale == -1 && n >= d) ? 1 : 0;
+  const int32_t quotient = (scale >= 0) ? q_div((int32_t)n, (int32_t)d, (unsigned)scale) : small;
   return negative ? q_neg_sat(quotient) : quotient;
 }
 

@@ -19,11 +19,11 @@ TEST(FitRatio, IsTheQuotientRoundedToItsFormat) {
     const auto size = [&] { return static_cast<std::int64_t>(random() >> (64 - bits(random))) + 1; };
     const std::int64_t numerator = (n % 2 == 0 ? 1 : -1) * size();
     const std::int64_t denominator = (n % 3 == 0 ? -1 : 1) * size();
-    for (const std::int16_t shift : {-8, 0, 16, 30}) {
+    for (const std::int16_t shift : {-31, -8, 0, 16, 30, 45, 62}) {
       const double exact = std::ldexp(static_cast<double>(numerator) / static_cast<double>(denominator), shift);
       if (std::fabs(exact) > 2147483647.0) continue;
-      // one LSB of rounding, and mantissas of 30 bits at least
-      const double tolerance = 1.0 + std::fabs(exact) * std::ldexp(1.0, -29);
+      // half an LSB of rounding, and mantissas of 30 bits at least
+      const double tolerance = 0.5 + std::fabs(exact) * std::ldexp(1.0, -29);
       ASSERT_NEAR(fit_ratio(numerator, denominator, shift), exact, tolerance) << numerator << " / " << denominator;
     }
   }
