@@ -249,4 +249,21 @@ TEST(DeviationSteps, WhatIsLeftIsTheMeanBySpans) {
   EXPECT_FALSE(deviation_observer_take_left(&o.state, &residual, &span, &periods));
 }
 
+// Of windows that nobody asks for nothing is kept: after sixteen periods it begins anew.
+TEST(DeviationSteps, WhatNobodyTakesIsForgotten) {
+  const Motor m;
+  const std::vector<Window> windows = {window_at(m, 0.0, 0.0, {1.0, 2.0}, state_vector(1), 2500, 2500),
+                                       window_at(m, 0.0, 0.0, {1.0, 2.0}, state_vector(6), 7500, 2500)};
+  for (const auto& [count, kept] : {std::pair{15, 15}, {16, 0}, {17, 1}}) {
+    Observer o;
+    const Input in(o.model, windows);
+    for (int n = 0; n < count; ++n) (void)deviation_observer_step(&o.state, &o.config, in.get());
+    dq_t residual = {};
+    std::int32_t span = 0, periods = 0;
+    EXPECT_EQ(deviation_observer_take_left(&o.state, &residual, &span, &periods), kept > 0) << count;
+    EXPECT_EQ(periods, kept);
+    EXPECT_EQ(span, kept > 0 ? 5000 : 0);
+  }
+}
+
 }  // namespace

@@ -64,6 +64,21 @@ TEST(EmfSign, BelowTenVoltsItDoesNotAnswer) {
   }
 }
 
+// More than half of the EMF expected is right, more than a quarter of it against the rotation reversed.
+TEST(EmfSign, AnEmfBetweenTheTwoIsNoAnswer) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const double w = m.electrical(600.0);
+  for (const auto& [share, answer] :
+       {std::pair{-0.27, EMF_SIGN_REVERSED}, {-0.23, EMF_SIGN_OPEN}, {0.48, EMF_SIGN_OPEN}, {0.52, EMF_SIGN_RIGHT}}) {
+    emf_sign_t s;
+    emf_sign_reset(&s);
+    emf_sign_result_t last = EMF_SIGN_OPEN;
+    for (int n = 0; n < 1000; ++n) last = step(s, model, {0.0, share * w * m.flux}, {0.0, 0.0}, bpp(w), 1);
+    EXPECT_EQ(last, answer) << share;
+  }
+}
+
 // Reversals of the full current in a millisecond, both ways: the inductance's voltage is ten times the EMF.
 TEST(EmfSign, ChangesOfTheCurrentDoNotCount) {
   const Motor m;

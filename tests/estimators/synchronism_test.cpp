@@ -5,6 +5,10 @@
 
 #include "tests/estimators/synchronism_scene.hpp"
 
+extern "C" {
+#include "estimators/deviation.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -311,6 +315,28 @@ TEST(Synchronism, WindowsCountByTheirSpans) {
   const Vector mean = left[0] * 0.25 + left[1] * 0.75;
   EXPECT_NEAR(scene.error().x, 0.25 * mean.x * kMotor.ld / kPeriod, 2e-3);
   EXPECT_NEAR(scene.error().y, 0.25 * mean.y * kMotor.lq / kPeriod, 2e-3);
+}
+
+// A span that is a power of two divides without a rest: what is looked at is that window and nothing else.
+TEST(Synchronism, AWindowAloneIsItsOwnMean) {
+  const machine_model_t model = model_of(kMotor);
+  Random random(3);
+  for (int n = 0; n < 2000; ++n) {
+    estimator_window_t w = {};
+    w.slope_q20 = raw_ab(random.direction(random.between(0.1, 5.0)), 20);
+    w.current_q20 = raw_ab(random.direction(random.between(0.1, 14.0)), 20);
+    w.voltage_q16 = raw_ab(random.direction(random.between(0.1, 200.0)), 16);
+    w.middle_tick = static_cast<std::int16_t>(2048 + random.below(5000));
+    w.span_ticks = 4096;
+    const std::uint32_t angle = bam(random.between(-kPi, kPi));
+    synchronism_seen_t seen = {};
+    seen.speed_bpp = bpp(random.between(-400.0, 400.0));
+    synchronism_look(&seen, &model, &w, 1, angle);
+    const dq_t alone = deviation_evaluate(&model, &w, angle, seen.speed_bpp).residual_q20;
+    ASSERT_EQ(seen.residual_q20.d, alone.d) << n;
+    ASSERT_EQ(seen.residual_q20.q, alone.q) << n;
+    ASSERT_EQ(seen.span_ticks, 4096);
+  }
 }
 
 }  // namespace
