@@ -72,6 +72,42 @@ TEST_F(CommissioningJudge, AMachineThatFitsIsUsedAsAWhole) {
   EXPECT_NEAR(real(parameters.friction, 24), 0.003, 1e-5);
 }
 
+// The map is kept as shares of the inductances without current, its mutual inductance as it is.
+TEST_F(CommissioningJudge, TheMapIsPercentOfTheUnsaturatedMachine) {
+  const auto at = [](int level) {
+    return Inductances{4.655e-3 - 0.2e-3 * level, saturated(level).qq, 0.04e-3 * level};
+  };
+  for (int level = 1; level <= 4; ++level) measured(level, at(level), 3.5 * level);
+  commissioning_report_t report;
+  commissioning_judge(&c, &report);
+  ASSERT_EQ(commissioning_use(&report), COMMISSIONING_DONE);
+  const std::int32_t ldd[] = {parameters.ldd_1, parameters.ldd_2, parameters.ldd_3, parameters.ldd_4};
+  const std::int32_t lqq[] = {parameters.lqq_1, parameters.lqq_2, parameters.lqq_3, parameters.lqq_4};
+  const std::int32_t ldq[] = {parameters.ldq_1, parameters.ldq_2, parameters.ldq_3, parameters.ldq_4};
+  for (int level = 1; level <= 4; ++level) {
+    EXPECT_NEAR(real(ldd[level - 1], 16), 100.0 * at(level).dd / kUnsaturated.dd, 0.05) << level;
+    EXPECT_NEAR(real(lqq[level - 1], 16), 100.0 * at(level).qq / kUnsaturated.qq, 0.05) << level;
+    EXPECT_NEAR(real(ldq[level - 1], 20), 1e3 * at(level).dq, 1e-3) << level;
+  }
+}
+
+// A flux that is good in itself, with an EMF at the speed limit that the link must not bear: then none is used.
+TEST_F(CommissioningJudge, WhatDoesNotFitTogetherIsNotUsedAtAll) {
+  const parameters_t before = parameters;
+  c.spin = spun(0.25, 0.00546, 0.003, 0.387);
+  commissioning_report_t report;
+  commissioning_judge(&c, &report);
+  for (int k = 0; k < report.count; ++k) ASSERT_EQ(report.list[k].verdict, VERDICT_USED) << report.list[k].id;
+  EXPECT_EQ(commissioning_use(&report), COMMISSIONING_PARTLY);
+  for (int k = 0; k < report.count; ++k) {
+    EXPECT_EQ(report.list[k].verdict, VERDICT_DEPENDS) << report.list[k].id;
+    EXPECT_EQ(parameter_get(report.list[k].id), report.list[k].before) << report.list[k].id;
+  }
+  EXPECT_EQ(parameters.stator_resistance, before.stator_resistance);
+  EXPECT_EQ(parameters.friction, before.friction);
+  EXPECT_EQ(parameter_conflict(), PACKED_NONE);
+}
+
 TEST_F(CommissioningJudge, AResistanceIsWithinThreeTimesTheNameplates) {
   for (const auto& [ohms, good] : {std::pair{0.9, true}, {1.05, false}, {0.15, true}, {0.13, false}}) {
     c.staircase = climbed(c.model, ohms, 0.08, -0.15);

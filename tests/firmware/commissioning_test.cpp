@@ -106,6 +106,9 @@ TEST_F(Commissioning, AFaultEndsIt) {
   commissioning_service(&drive);
   EXPECT_EQ(drive.state, DRIVE_FAULT);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_FAILED);
+  EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_IDLE);
+  EXPECT_FALSE(drive.commissioning.requested) << "no start leads there any more";
+  EXPECT_TRUE(drive.request.reload);
   EXPECT_FALSE(board.gates_on);
 }
 

@@ -50,7 +50,7 @@ bool hal_adc_is_up(void) { return true; }
 void hal_adc_set_up(void) {}
 void hal_adc_choose_slow(bool speed) { board.slow_is_speed = speed; }
 void hal_adc_measure_reference(std::uint16_t* ground, std::uint16_t* reference) {
-  *ground = 0;
+  *ground = board.ground;
   *reference = board.reference;
 }
 

@@ -41,7 +41,7 @@ struct FakeBoard {
   int bad_pair = -1;                             // of RAM
   std::map<std::uint32_t, std::uint16_t> flash;  // words by address, erased where there is none
   std::uint16_t watchdog_count = 10;             // at a service
-  std::uint16_t reference = 2048;
+  std::uint16_t ground = 0, reference = 2048;
   std::uint16_t slice_ticks = 0;  // 0: pulses
   std::uint16_t legs = 0;
   hal_slice_t slice = {2048, 2048, 2731};           // no current, 300 V

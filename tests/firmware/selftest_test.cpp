@@ -150,6 +150,29 @@ TEST_F(SelfTest, MissesNothingThatIsNotWired) {
   EXPECT_EQ(selftest.failed, SELFTEST_CONVERTER | SELFTEST_GATE_ENABLE);
 }
 
+// Where they are wired, ground and the reference are read as what they are within 2 % of the range.
+TEST_F(SelfTest, MeasuresTheReferenceThatIsWired) {
+  struct Case {
+    int ground, reference;
+    bool good;
+  };
+  for (const Case& c : {Case{0, 2048, true},
+                        {0, 2048 + 81, true},
+                        {0, 2048 - 81, true},
+                        {0, 2048 + 82, false},
+                        {0, 2048 - 82, false},
+                        {81, 2048, true},
+                        {82, 2048, false}}) {
+    board.ground = static_cast<std::uint16_t>(c.ground);
+    board.reference = static_cast<std::uint16_t>(c.reference);
+    drive_reset();
+    parameters.reference_input = 1;
+    selftest_look();
+    EXPECT_EQ(selftest_service(), c.good ? FAULT_NONE : FAULT_SELF_TEST) << c.ground << ", " << c.reference;
+    EXPECT_EQ(selftest.failed, c.good ? 0 : SELFTEST_CONVERTER);
+  }
+}
+
 // The sum is that of Python's zlib.crc32 over the same words, low octet first, with four octets 0xFF in its own place.
 TEST_F(SelfTest, ComparesTheFlashWithTheSumOfTheImage) {
   for (std::uint32_t k = 0; k < 0x5000; ++k) {

@@ -355,6 +355,20 @@ TEST_F(SpeedTask, TheRampLeadsToItsTarget) {
   EXPECT_EQ(drive.control.ramp.value, 5000000);
 }
 
+// The law is told where the ramp is and by how much it moves on; where there is none, where it has jumped to.
+TEST_F(SpeedTask, TheLawFollowsTheRampAndJumpsWithoutOne) {
+  for (const std::int32_t step : {20000, 0}) {
+    SetUp();
+    drive.config.ramp_step_bpp = step;
+    drive.control.ramp.value = 300000;
+    drive.control.target_bpp = 500000;
+    speed_controller_t law = drive.control.speed;
+    const speed_controller_input_t in = {step > 0 ? 300000 : 500000, step, 0, 0, raw(-10.0, 20), raw(10.0, 20)};
+    part(TASK_SPEED);
+    EXPECT_EQ(drive.control.reference_q20.q, speed_controller_step(&law, SPEED_PREDICTIVE, &in)) << step;
+  }
+}
+
 // Told to stand, a shaft keeps its place: only in RUN, with the ramp at zero too, and from a speed on that is at rest.
 TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
   parameters.position_hold = 1280;

@@ -126,6 +126,7 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     SetUp();
     parameters.polarity_check = 0;
     parameters.hold_time = 40;
+    drive.hold.left = 7;  // of the last run
     const double speed = Motor{}.electrical(rpm);
     at(START_SETTLE, 99, speed);
     step();
