@@ -76,6 +76,8 @@ TEST(EmfSign, AnEmfBetweenTheTwoIsNoAnswer) {
     emf_sign_result_t last = EMF_SIGN_OPEN;
     for (int n = 0; n < 1000; ++n) last = step(s, model, {0.0, share * w * m.flux}, {0.0, 0.0}, bpp(w), 1);
     EXPECT_EQ(last, answer) << share;
+    EXPECT_EQ(s.clear > 0, answer == EMF_SIGN_RIGHT) << share;
+    EXPECT_EQ(s.against > 0, answer == EMF_SIGN_REVERSED) << share;
   }
 }
 

@@ -29,9 +29,18 @@ TEST(FitRatio, IsTheQuotientRoundedToItsFormat) {
   }
 }
 
+TEST(FitRatio, RoundsAHalfAwayFromZero) {
+  EXPECT_EQ(fit_ratio(1, 2, 0), 1);
+  EXPECT_EQ(fit_ratio(-3, 2, 0), -2);
+  EXPECT_EQ(fit_ratio(-1, 2, 0), -1);
+  EXPECT_EQ(fit_ratio(49, 100, 0), 0);
+  EXPECT_EQ(fit_ratio(100, -3000, 0), 0);
+}
+
 TEST(FitRatio, SaturatesWithTheSign) {
   EXPECT_EQ(fit_ratio(1LL << 60, 1, 0), INT32_MAX);
   EXPECT_EQ(fit_ratio(-(1LL << 60), 1, 0), INT32_MIN);
+  EXPECT_EQ(fit_ratio(-(1LL << 32), 1, 0), INT32_MIN);
   EXPECT_EQ(fit_ratio(5, 0, 0), INT32_MAX);
   EXPECT_EQ(fit_ratio(0, 0, 0), 0);
   EXPECT_EQ(fit_ratio(1, 1LL << 60, 0), 0);

@@ -98,7 +98,10 @@ TEST_F(CommissioningJudge, WhatDoesNotFitTogetherIsNotUsedAtAll) {
   commissioning_report_t report;
   commissioning_judge(&c, &report);
   for (int k = 0; k < report.count; ++k) ASSERT_EQ(report.list[k].verdict, VERDICT_USED) << report.list[k].id;
+  ASSERT_LT(report.count, COMMISSIONING_RESULTS);
+  report.list[report.count] = {0, 0, 0, VERDICT_USED};  // of another commissioning
   EXPECT_EQ(commissioning_use(&report), COMMISSIONING_PARTLY);
+  EXPECT_EQ(report.list[report.count].verdict, VERDICT_USED) << "behind its end";
   for (int k = 0; k < report.count; ++k) {
     EXPECT_EQ(report.list[k].verdict, VERDICT_DEPENDS) << report.list[k].id;
     EXPECT_EQ(parameter_get(report.list[k].id), report.list[k].before) << report.list[k].id;
