@@ -265,6 +265,21 @@ TEST(Saturation, WithoutNoiseTheFloorIsTheError) {
   EXPECT_NEAR(real(s.sigma_q8, 8), real(s.change_q30, 30) / floor, 0.03 * real(s.sigma_q8, 8));
 }
 
+// A difference of two rounds has twice the variance of one, and 12 rounds a side make a mean: of the change's two means
+// and 20 differences, scatter / 20 / 2 * 2 / 12.
+TEST(Saturation, TheErrorIsThatOfTheRoundsScatterAndTheFloor) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Conditions c;
+    c.noise = 4.0 * kNoise;
+    const saturation_t s = run(c, seed);
+    const double scatter = std::ldexp(static_cast<double>(s.scatter), -60) / (20.0 * 12.0);
+    const double passes = s.passes;
+    const double error = std::hypot(std::sqrt(scatter) / passes, real(s.floor_q30, 30));
+    const double sigma = std::fabs(real(s.change_q30, 30)) / passes / error;
+    EXPECT_NEAR(real(s.sigma_q8, 8), sigma, 0.005 * sigma + 0.005) << seed;
+  }
+}
+
 // Seven times that floor can be told.
 TEST(Saturation, VisibleFromSevenFloorsOn) {
   const machine_model_t model = model_of(Motor{});

@@ -70,7 +70,7 @@ DEFECTS = (
     Defect(
         "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
     ),
-    Defect("commissioning", "fit_plane", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
+    Defect("commissioning", "take_off", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
     Defect("packed", "packed_next", "firmware/packed_text.c", "[code - FIRST_PAIR]", "[code - FIRST_PAIR + 1u]"),
     Defect("numbers", "put_digits", "firmware/text.c", "reversed[10]", "reversed[9]"),
     Defect("names", "common", "firmware/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
