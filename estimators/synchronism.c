@@ -2,8 +2,8 @@
 
 #include "estimators/deviation.h"
 
-#define DOUBT_PER_BAD 8  // a good period takes back an eighth of what a bad one adds
-#define DOUBT_END 1048576L
+#define DOUBT_PER_BAD 8     // a good period takes back an eighth of what a bad one adds
+#define DOUBT_END 1048576L  // far beyond any doubt, and as many periods of it stay in 31 bits
 #define SQUARE_SHIFT 22u
 #define LAG 4  // ms that a speed may be known late
 #define LIMIT_MAX 32768000L

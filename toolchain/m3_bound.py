@@ -38,14 +38,7 @@ RUN_TIME = re.compile(r"_.*|(sin|cos|tan|atan2?|sqrt|pow|exp|log|fabs|floor|ceil
 CALLER = 2  # instructions of the replay around an interrupt, which are counted with its last step
 # Of every source and every way to start those runs in which most of the facts can show.
 WATCHED = {
-    "observer": (
-        "0, held",
-        "600",
-        "600, caught",
-        "600, turned",
-        "1500, mapped",
-        "3000, reversed",
-    ),
+    "observer": ("0, held", "600", "600, caught", "600, turned", "1500, mapped", "3000, reversed"),
     "paper": ("80", "2000"),
     "CONV": ("425",),
     "PP-01": ("1000",),
@@ -68,11 +61,11 @@ class Mode:
         return self.steps[-1].cost
 
 
-def bound_of(program: Program, facts: Facts, root: str = CONTROL) -> Mode:
+def bound_of(program: Program, facts: Facts) -> Mode:
     """The longest paths over all kinds of periods of a mode."""
     best = Mode(facts, [], [])
     for kind, left_out in facts.left_out().items():
-        steps = Steps(Bound(program, facts, left_out), root).longest()
+        steps = Steps(Bound(program, facts, left_out), CONTROL).longest()
         if not best.steps:
             best.steps, best.kinds = steps, [kind] * len(steps)
         for k, way in enumerate(steps):
@@ -89,16 +82,29 @@ def names_of(modes: Iterable[Facts]) -> set[str]:
     return found
 
 
+def sources() -> list[Path]:
+    """The drive's C."""
+    return [path for folder in m3_cost.FOLDERS for path in (m3_cost.ROOT / folder).rglob("*.[ch]")]
+
+
+def constants() -> dict[str, int]:
+    """Whole numbers that the source defines, those of two values left out."""
+    values: dict[str, set[int]] = {}
+    for path in sources():
+        for name, value in re.findall(r"^#define (\w+) (\d+)[uUlL]*\b", path.read_text(encoding="utf-8"), re.MULTILINE):
+            values.setdefault(name, set()).add(int(value))
+    return {name: value for name, (value, *others) in values.items() if not others}
+
+
 def definitions(name: str) -> set[str]:
-    """The files that define a function of that name, or one line or function of one of them."""
+    """The files that define a function of that name, FUNCTION or FILE:FUNCTION."""
     file, _, own = name.rpartition(":")
     found = set()
-    for folder in m3_cost.FOLDERS:
-        for path in (m3_cost.ROOT / folder).rglob("*.[ch]"):
-            text = path.read_text(encoding="utf-8") if not file or path.name == file else ""
-            begins = r"static inline [\w *]*" if path.suffix == ".h" else r"[a-zA-Z][\w *]*"
-            if re.search(rf"^{begins}\b{own}\([^;]*?\{{$", text, re.MULTILINE):
-                found.add(path.relative_to(m3_cost.ROOT).as_posix())
+    for path in sources():
+        text = path.read_text(encoding="utf-8") if not file or path.name == file else ""
+        begins = r"static inline [\w *]*" if path.suffix == ".h" else r"[a-zA-Z][\w *]*"
+        if re.search(rf"^{begins}\b{own}\([^;]*?\{{$", text, re.MULTILINE):
+            found.add(path.relative_to(m3_cost.ROOT).as_posix())
     return found
 
 
@@ -122,18 +128,10 @@ def watch(
     image: Path, trace: Path, source: str, regions: Regions, modes: dict[str, Facts]
 ) -> tuple[m3_cost.Table, str]:
     """Replays a run; its counts, and the first period that contradicts the facts."""
-    family = source if source in modes or f"{source} turning" in modes else "flux"
+    family = "flux" if source in m3_cost.FLUX else source
     with tempfile.NamedTemporaryFile(dir=trace.parent, suffix=".log") as log:
-        table = m3_cost.replay(
-            image,
-            trace,
-            "-d",
-            "exec,nochain",
-            "-dfilter",
-            regions.filter(),
-            "-D",
-            log.name,
-        )
+        logging = ("-d", "exec,nochain", "-dfilter", regions.filter(), "-D", log.name)
+        table = m3_cost.replay(image, trace, *logging)
         for count, (mark, run) in enumerate(periods(Path(log.name), regions, (TURNING, STARTING))):
             names = (f"{family} turning",) if mark == TURNING else ALONE
             found = [f"{name}: {against}" for name in names if (against := contradiction(modes[name], run))]
@@ -159,17 +157,11 @@ def longer_than_bound(table: m3_cost.Table, source: str, bounds: dict[str, Mode]
 def rows_of(bounds: dict[str, Mode], window: int) -> list[str]:
     """The published table."""
     steps = [step.replace("_", " ") for step in m3_cost.STEPS]
-    lines = [
-        f"| at most | {' | '.join(steps)} | in |",
-        f"|---{'|---' * len(steps)}|---|",
-    ]
+    lines = [f"| at most | {' | '.join(steps)} | in |", f"|---{'|---' * len(steps)}|---|"]
     for name, mode in bounds.items():
         costs = " | ".join(str(way.cost) for way in mode.steps)
         lines.append(f"| {name} | {costs} | {mode.kinds[-1] or 'any period'} |")
-    return [
-        *lines,
-        f"| a window's own interrupt |{'  |' * (len(steps) - 1)} {window} | any period |",
-    ]
+    return [*lines, f"| a window's own interrupt |{'  |' * (len(steps) - 1)} {window} | any period |"]
 
 
 def explain(name: str, mode: Mode) -> None:
@@ -188,7 +180,7 @@ def main() -> int:
         return 1
     out.mkdir(parents=True, exist_ok=True)
     image = m3_cost.build(out)
-    program, modes = read_program(image), read_facts(FACTS)
+    program, modes = read_program(image), read_facts(FACTS, constants())
     bounds = {name: bound_of(program, facts) for name, facts in modes.items() if facts.most > 0}
     window = Bound(program, modes[ANY], modes[ANY].never).of_function(WINDOW).cost
     lines = rows_of(bounds, window)
@@ -213,10 +205,7 @@ def main() -> int:
         table, against = watch(image, trace, source, regions, modes)
         trace.unlink()
         found = ([against] if against else []) + longer_than_bound(table, source, bounds)
-        print(
-            f"isr-bound: {source}, {run.name} rpm: {len(found)} contradictions to {FACTS.name}",
-            flush=True,
-        )
+        print(f"isr-bound: {source}, {run.name} rpm: {len(found)} contradictions to {FACTS.name}", flush=True)
         return [f"{source}, {run.name} rpm: {complaint}" for complaint in found]
 
     with ThreadPoolExecutor(min(2, os.cpu_count() or 1)) as pool:

@@ -158,7 +158,7 @@ def test_a_loop_with_two_entries_is_refused() -> None:
 
 
 FACTS = """
-loop counts 5       # five
+loop counts ROUNDS  # five
 step ends in interrupt
 [base]
 never a b
@@ -173,15 +173,18 @@ one of tasks, y: e
 def test_facts_add_up(tmp_path: Path) -> None:
     table = tmp_path / "facts.txt"
     table.write_text(FACTS)
-    whole = read_facts(table)["whole"]
+    whole = read_facts(table, {"ROUNDS": 5})["whole"]
     assert whole.loops == {"counts": 5} and whole.step_ends == {"interrupt"} and whole.most == 30
     assert whole.left_out() == {"x": {"a", "b", "e"}, "y": {"a", "b", "c", "d"}}
     table.write_text("loops counts 5\n")
     with pytest.raises(ValueError, match=r"facts.txt: not understood: loops counts 5"):
-        read_facts(table)
+        read_facts(table, {})
+    table.write_text("loop counts ROUNDS\n")
+    with pytest.raises(ValueError, match=r"facts.txt: not understood: loop counts ROUNDS"):
+        read_facts(table, {})
     table.write_text("[whole: none]\n")
     with pytest.raises(ValueError, match=r"there is no mode none above \[whole: none\]"):
-        read_facts(table)
+        read_facts(table, {})
 
 
 def test_a_period_contradicts_what_never_runs_or_excludes_each_other() -> None:

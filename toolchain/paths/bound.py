@@ -56,6 +56,12 @@ class Bound:
         self._ways: dict[str, Way] = {}
         self._loops: dict[str, list[Loop]] = {}
 
+    def loops(self, function: Function) -> list[Loop]:
+        """Its loops, inner ones first."""
+        if function.name not in self._loops:
+            self._loops[function.name] = loops_of(function)
+        return self._loops[function.name]
+
     def rounds(self, function: Function, loop: Loop) -> int:
         """How often it jumps back. ValueError where no fact says so."""
         own = shared(frames for at in loop.body for frames in function.blocks[at].frames)
@@ -116,9 +122,7 @@ class Bound:
     def _weights(self, function: Function, inside: frozenset[str]) -> dict[int, Way]:
         """What each block counts; the head of a loop with all its rounds but the last."""
         weights = {at: self.cost_of(block, function.name, inside=inside) for at, block in function.blocks.items()}
-        if function.name not in self._loops:
-            self._loops[function.name] = loops_of(function)
-        for loop in self._loops[function.name]:
+        for loop in self.loops(function):
             ways = self._longest(function, weights, loop)
             best = IMPOSSIBLE
             for tail in loop.tails:
@@ -151,7 +155,7 @@ class Bound:
 
     def weights_beside(self, function: Function, inside: frozenset[str]) -> dict[int, Way]:
         """What each block counts with all that it calls but `inside`. ValueError where a loop calls one of those."""
-        for loop in loops_of(function):
+        for loop in self.loops(function):
             if any(function.blocks[at].call in inside for at in loop.body):
                 raise ValueError(f"{function.name}: the loop at {loop.head:x} calls what ends a step")
         return self._weights(function, inside)

@@ -1,6 +1,6 @@
 """What the code does not say by itself: the table of loops, of calls through pointers, of what a mode leaves out.
 
-    loop FUNCTION N                 a loop of this function goes round N times at most
+    loop FUNCTION N                 a loop of this function goes round N times at most; N may be a #define of the source
     calls FUNCTION -> A B @TABLE    what it calls through pointers: functions, or all in a table
     step ends in FUNCTION           where it calls target_elapse a step of the interrupt ends
     never A B                       nothing of these functions runs
@@ -15,6 +15,7 @@ A loop belongs to the innermost of them that all of it comes from, a call to the
 """
 
 import re
+from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -51,10 +52,10 @@ class Facts:
             }
         return found
 
-    def take(self, line: str) -> bool:
+    def take(self, line: str, constants: Mapping[str, int]) -> bool:
         """Adds a line; false where it is not understood."""
-        if found := re.fullmatch(r"loop (\S+) (\d+)", line):
-            self.loops[found[1]] = int(found[2])
+        if (found := re.fullmatch(r"loop (\S+) (\w+)", line)) and (found[2].isdigit() or found[2] in constants):
+            self.loops[found[1]] = constants[found[2]] if found[2] in constants else int(found[2])
         elif found := re.fullmatch(r"calls (\S+) -> (.+)", line):
             self.calls[found[1]] = found[2].split()
         elif found := re.fullmatch(r"step ends in (\S+)", line):
@@ -70,8 +71,8 @@ class Facts:
         return True
 
 
-def read_facts(table: Path) -> dict[str, Facts]:
-    """The facts of each mode. ValueError with the line that is not understood."""
+def read_facts(table: Path, constants: Mapping[str, int]) -> dict[str, Facts]:
+    """The facts of each mode, with the source's constants. ValueError with the line that is not understood."""
     modes = {"": Facts()}
     facts = modes[""]
     for line in table.read_text(encoding="utf-8").splitlines():
@@ -82,6 +83,6 @@ def read_facts(table: Path) -> dict[str, Facts]:
                 if other not in modes:
                     raise ValueError(f"{table.name}: there is no mode {other} above {content}")
                 facts.add(modes[other])
-        elif content and not facts.take(content):
+        elif content and not facts.take(content, constants):
             raise ValueError(f"{table.name}: not understood: {content}")
     return modes
