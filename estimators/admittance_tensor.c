@@ -2,26 +2,33 @@
 
 #include "estimators/fit.h"
 
-#define TENTH_Q20 104858L         // 100 us in ms: mH = ms / (A per V and period)
-#define SPREAD_MIN_Q28 26843546L  // determinant of the normalised sums: a tenth of that of evenly spread vectors
+#define TENTH_Q20 104858L              // 100 us in ms: mH = ms / (A per V and period)
+#define SUM_END 4611686018427387903LL  // with one more product of 32-bit numbers it stays in 64 bits
+#define SPREAD_MIN_Q28 26843546L       // determinant of the normalised sums: a tenth of that of evenly spread vectors
 
 void tensor_reset(tensor_sums_t* s) {
   static const tensor_sums_t none = {0, 0, 0, 0, 0, 0, 0, 0};
   *s = none;
 }
 
+// A sum of products that goes no further than its format, which is far beyond what a commissioning adds up.
+static int64_t with(int64_t sum, int32_t a, int32_t b) {
+  const int64_t before = (sum > SUM_END) ? SUM_END : (sum < -SUM_END) ? -SUM_END : sum;
+  return before + (int64_t)a * b;
+}
+
 void tensor_add(tensor_sums_t* s, const deviation_t* first, const deviation_t* second) {
   const dq_t v = {q_shr(first->voltage_q16.d - second->voltage_q16.d, 10),
                   q_shr(first->voltage_q16.q - second->voltage_q16.q, 10)};
   const dq_t r = {first->residual_q20.d - second->residual_q20.d, first->residual_q20.q - second->residual_q20.q};
-  s->vv_dd += (int64_t)v.d * v.d;
-  s->vv_dq += (int64_t)v.d * v.q;
-  s->vv_qq += (int64_t)v.q * v.q;
-  s->sv_dd += (int64_t)r.d * v.d;
-  s->sv_dq += (int64_t)r.d * v.q;
-  s->sv_qd += (int64_t)r.q * v.d;
-  s->sv_qq += (int64_t)r.q * v.q;
-  s->count++;
+  s->vv_dd = with(s->vv_dd, v.d, v.d);
+  s->vv_dq = with(s->vv_dq, v.d, v.q);
+  s->vv_qq = with(s->vv_qq, v.q, v.q);
+  s->sv_dd = with(s->sv_dd, r.d, v.d);
+  s->sv_dq = with(s->sv_dq, r.d, v.q);
+  s->sv_qd = with(s->sv_qd, r.q, v.d);
+  s->sv_qq = with(s->sv_qq, r.q, v.q);
+  s->count = q_add_sat(s->count, 1);
 }
 
 // One row of the quotient: (d, q) times the inverse of [a b; b c].
@@ -34,7 +41,7 @@ static dq_t row(int64_t sd, int64_t sq, int64_t mean, dq_t abc_d, int32_t c_q28,
 }
 
 bool tensor_solve(const tensor_sums_t* s, const machine_model_t* m, tensor_axes_t* out) {
-  const int64_t mean = q_shr64(s->vv_dd + s->vv_qq, 1);
+  const int64_t mean = q_shr64(s->vv_dd, 1) + q_shr64(s->vv_qq, 1);
   if (mean <= 0) return false;  // no sums, or pairs without a difference
   const dq_t ab_q28 = {fit_ratio(s->vv_dd, mean, 28), fit_ratio(s->vv_dq, mean, 28)};
   const int32_t c_q28 = fit_ratio(s->vv_qq, mean, 28);

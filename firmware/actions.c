@@ -78,14 +78,14 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
 
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
   put_fixed(w, raw, parameter->q, parameter->decimals);
-  if (parameter->unit[0] == '\0') return;
+  if (packed_is_empty(parameter->unit)) return;
   put_u8(w, ' ');
-  put_text(w, parameter->unit);
+  put_packed(w, parameter->unit);
 }
 
 // With one decimal more where the table's are too few to show what is wrong.
 static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
-  put_text(why, p->name);
+  put_packed(why, p->name);
   put_text(why, " = ");
   put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
   put_packed(why, SAY_is_outside_of);
@@ -118,7 +118,7 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
     case SET_RANGE:
       return refuse_range(parameter, raw, why);
     case SET_RUNNING:
-      put_text(why, parameter->name);
+      put_packed(why, parameter->name);
       put_packed(why, SAY_may_not_change_while_the_power_stage);
       return ANSWER_RUNNING;
     default:

@@ -52,10 +52,8 @@ int32_t drive_signal(uint16_t place);
 uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
 
 typedef struct {
-  const char* name;
-  const char* unit;
+  packed_text_t name, unit, meaning;
   uint16_t q;
-  packed_text_t meaning;
 } signal_info_t;
 
 uint16_t signal_count(void);
@@ -75,10 +73,8 @@ typedef struct {
   uint16_t q : 6;
   uint16_t decimals : 4;
   uint16_t access : 2;  // parameter_access_t
-  const char* name;
-  const char* unit;
+  packed_text_t name, unit, meaning;
   int32_t minimum, maximum, initial;  // raw, with q fractional bits
-  packed_text_t meaning;
 } parameter_info_t;
 
 uint16_t parameter_count(void);

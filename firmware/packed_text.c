@@ -37,10 +37,38 @@ void put_packed(octet_writer_t* w, packed_text_t text) {
   }
 }
 
+bool packed_is_empty(packed_text_t text) {
+  packed_reader_t r = packed_reader(text);
+  return packed_next(&r) == 0u;
+}
+
+void packed_copy(packed_text_t text, char* string, uint16_t room) {
+  packed_reader_t r = packed_reader(text);
+  uint16_t k = 0;
+  for (uint16_t c = packed_next(&r); c != 0u && k + 1u < room; c = packed_next(&r)) string[k++] = (char)c;
+  string[k] = '\0';
+}
+
+bool packed_is(packed_text_t text, const char* string) {
+  packed_reader_t r = packed_reader(text);
+  uint16_t c = packed_next(&r);
+  for (; c != 0u && c == (uint16_t)*string; string++) c = packed_next(&r);
+  return c == 0u && *string == '\0';
+}
+
+bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count) {
+  packed_reader_t r = packed_reader(text);
+  uint16_t c = packed_next(&r);
+  uint16_t k = 0;
+  for (; c != 0u && k < count && text_small(c) == text_small(wanted[k]); k++) c = packed_next(&r);
+  return c == 0u && k == count;
+}
+
 // Whether the text goes on with these characters.
 static bool goes_on_with(packed_reader_t r, const uint16_t* wanted, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) {
-    if (text_small(packed_next(&r)) != text_small(wanted[k])) return false;
+    const uint16_t c = packed_next(&r);
+    if (c == 0u || text_small(c) != text_small(wanted[k])) return false;
   }
   return true;
 }

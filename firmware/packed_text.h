@@ -1,4 +1,4 @@
-// Texts that are only written out, packed in flash: two octets in a word, an octet above 127 stands for two others.
+// The drive's texts, packed in flash: two octets in a word, an octet above 127 stands for two others.
 //
 // A character of a string takes a whole word of the C28x's memory. toolchain/pack_text.py takes the texts from the
 // lists below, in this order, and packs them to less than a third (byte pair encoding: P. Gage, "A New Algorithm for
@@ -16,8 +16,11 @@
 extern "C" {
 #endif
 
+/// A text's number. Texts that are the same share their octets.
+typedef uint16_t packed_text_t;
+
 /// The texts, by the list that they stand in.
-typedef enum {
+enum {
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_##name,
 #include "firmware/parameter_list.h"
 #undef PARAMETER
@@ -42,8 +45,26 @@ typedef enum {
 #define PHRASE(name, text) SAY_##name,
 #include "firmware/phrase_list.h"
 #undef PHRASE
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_NAME_##name,
+#include "firmware/parameter_list.h"
+#undef PARAMETER
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_UNIT_##name,
+#include "firmware/parameter_list.h"
+#undef PARAMETER
+#define SIGNAL(name, unit, q, value, meaning) TEXT_SIGNAL_NAME_##name,
+#include "firmware/signal_list.h"
+#undef SIGNAL
+#define SIGNAL(name, unit, q, value, meaning) TEXT_SIGNAL_UNIT_##name,
+#include "firmware/signal_list.h"
+#undef SIGNAL
+#define COMMAND(name, arguments, help) TEXT_COMMAND_NAME_##name,
+#include "firmware/console/command_list.h"
+#undef COMMAND
+#define COMMAND(name, arguments, help) TEXT_COMMAND_ARGUMENTS_##name,
+#include "firmware/console/command_list.h"
+#undef COMMAND
   PACKED_TEXTS
-} packed_text_t;
+};
 
 #define PACKED_NONE PACKED_TEXTS  // no text
 
@@ -63,6 +84,17 @@ uint16_t packed_next(packed_reader_t* r);
 
 /// Writes a text out.
 void put_packed(octet_writer_t* w, packed_text_t text);
+
+bool packed_is_empty(packed_text_t text);
+
+/// The text as a string; what is beyond `room` characters, its end among them, is left out. room > 0.
+void packed_copy(packed_text_t text, char* string, uint16_t room);
+
+/// True when the text is that string.
+bool packed_is(packed_text_t text, const char* string);
+
+/// True when the text is these characters and no more; capitals count as small letters.
+bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
 /// True when these characters occur in the text; capitals count as small letters.
 bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);

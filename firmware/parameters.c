@@ -23,12 +23,12 @@ parameters_t parameters;
    q,                                                                                      \
    decimals,                                                                               \
    PARAMETER_##access,                                                                     \
-   #name,                                                                                  \
-   unit,                                                                                   \
+   TEXT_PARAMETER_NAME_##name,                                                             \
+   TEXT_PARAMETER_UNIT_##name,                                                             \
+   TEXT_PARAMETER_##name,                                                                  \
    RAW(minimum, q, TEN_##decimals),                                                        \
    RAW(maximum, q, TEN_##decimals),                                                        \
-   RAW(initial, q, TEN_##decimals),                                                        \
-   TEXT_PARAMETER_##name},
+   RAW(initial, q, TEN_##decimals)},
 static const parameter_info_t table[] = {
 #include "firmware/parameter_list.h"
 };

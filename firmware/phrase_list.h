@@ -93,7 +93,9 @@ PHRASE(a_line_has_at_most_80_characters, "a line has at most 80 characters: noth
 PHRASE(the_line_was_disturbed_on_its_way, "the line was disturbed on its way: nothing done, send it again")
 PHRASE(the_answer_and_what_was_typed_ahead, "the answer and what was typed ahead end here")
 PHRASE(more_input_than_can_be_kept_the, "more input than can be kept: the answer ends here")
-PHRASE(there_is_no, "there is no ")
+PHRASE(there_is_no_command, "there is no command '")  // the next two: in the order of suggest_kind_t
+PHRASE(there_is_no_parameter, "there is no parameter '")
+PHRASE(there_is_no_signal, "there is no signal '")
 PHRASE(the_power_stage_is_on_stop_first, "the power stage is on: stop first")
 PHRASE(parameters_are_being_saved_or_read_try, "parameters are being saved or read: try again")
 PHRASE(the_host_is_not_in_the_loop, "the host is not in the loop: enter first")

@@ -4,7 +4,7 @@
 
 #include "firmware/drive.h"
 
-#define SIGNAL(name, unit, q, value, meaning) {#name, unit, q, TEXT_SIGNAL_##name},
+#define SIGNAL(name, unit, q, value, meaning) {TEXT_SIGNAL_NAME_##name, TEXT_SIGNAL_UNIT_##name, TEXT_SIGNAL_##name, q},
 static const signal_info_t table[] = {
 #include "firmware/signal_list.h"
 };

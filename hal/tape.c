@@ -145,7 +145,7 @@ uint16_t tape_note(uint16_t value) {
 void tape_tell(tape_told_t what, const uint16_t* words, uint16_t count) {
   tape_period_t* const p = &hal_tape.period;
   if (hal_tape.mode == TAPE_OFF) return;
-  if (p->output_count + count >= TAPE_OUTPUTS) {
+  if (p->output_count >= TAPE_OUTPUTS - count) {
     hal_tape.torn = true;
     return;
   }

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Packs the drive's long texts: two octets in a word, and an octet above 127 stands for two others.
+"""Packs the drive's texts: two octets in a word, and an octet above 127 stands for two others.
 
 Usage: toolchain/pack_text.py OUTPUT.c     (the build does it)
 
-A character of a string takes a word of the C28x's flash. What the drive only ever writes out, meanings, causes and
-remedies, words of states and help, is therefore taken from the lists below and packed by pairs that occur often (byte
-pair encoding: P. Gage, "A New Algorithm for Data Compression", C Users Journal 12(2), 1994). The lists stay what
-people read and change; firmware/packed_text.h numbers the texts in the same order.
+A character of a string takes a word of the C28x's flash. What the lists below have, names and units, meanings, causes
+and remedies, words of states and help, is therefore packed by pairs that occur often (byte pair encoding: P. Gage, "A
+New Algorithm for Data Compression", C Users Journal 12(2), 1994). The lists stay what people read and change;
+firmware/packed_text.h numbers the texts in the same order.
 """
 
 import re
@@ -26,6 +26,12 @@ LISTS = (
     ("firmware/console/command_list.h", "COMMAND", 2),
     ("firmware/console/help_list.h", "HELP", 2),
     ("firmware/phrase_list.h", "PHRASE", 1),
+    ("firmware/parameter_list.h", "PARAMETER", 1),
+    ("firmware/parameter_list.h", "PARAMETER", 2),
+    ("firmware/signal_list.h", "SIGNAL", 0),
+    ("firmware/signal_list.h", "SIGNAL", 1),
+    ("firmware/console/command_list.h", "COMMAND", 0),
+    ("firmware/console/command_list.h", "COMMAND", 1),
 )
 PAIRS = 128
 FIRST_PAIR = 128
@@ -98,12 +104,14 @@ def table(name: str, values: list[int]) -> list[str]:
 
 def pack(strings: list[str]) -> str:
     """The C file."""
-    coded = [[ord(c) for c in string] for string in strings]
-    pairs = squeeze(coded)
-    starts, octets = [], []
-    for string in coded:
-        starts.append(len(octets))
-        octets += [*string, 0]
+    coded = {string: [ord(c) for c in string] for string in strings}
+    pairs = squeeze(list(coded.values()))
+    octets: list[int] = []
+    start: dict[str, int] = {}
+    for string, codes in coded.items():
+        start[string] = len(octets)
+        octets += [*codes, 0]
+    starts = [start[string] for string in strings]
     octets += [0] * (len(octets) % 2)
     words = [octets[k] | octets[k + 1] << 8 for k in range(0, len(octets), 2)]
     plain = sum(len(string) + 1 for string in strings)

@@ -8,7 +8,8 @@
 #include "firmware/packed_text.h"
 #include "firmware/text.h"
 
-#define COMMAND(name, arguments, help) {#name, arguments, TEXT_COMMAND_##name, command_##name},
+#define COMMAND(name, arguments, help) \
+  {TEXT_COMMAND_NAME_##name, TEXT_COMMAND_ARGUMENTS_##name, TEXT_COMMAND_##name, command_##name},
 static const command_t commands[] = {
 #include "firmware/console/command_list.h"
 };
@@ -18,15 +19,23 @@ static const command_t commands[] = {
 
 const command_t* command_info(uint16_t index) { return (index < COMMANDS) ? &commands[index] : NULL; }
 
-static const command_t* find(const word_t* word) {
-  for (uint16_t k = 0; k < COMMANDS; k++) {
-    if (text_equals(commands[k].name, word->text, word->count)) return &commands[k];
-  }
-  return NULL;
+// COMMANDS when there is none of that name.
+static uint16_t find(const word_t* word) {
+  uint16_t k = 0;
+  while (k < COMMANDS && !packed_equals(commands[k].name, word->text, word->count)) k++;
+  return k;
 }
 
 bool word_is(const words_of_line_t* a, uint16_t k, const char* name) {
   return k < a->count && text_equals(name, a->word[k].text, a->word[k].count);
+}
+
+bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text) {
+  return k < a->count && packed_equals(text, a->word[k].text, a->word[k].count);
+}
+
+bool word_occurs(const word_t* word, packed_text_t text) {
+  return word->text == NULL || packed_occurs(text, word->text, word->count);
 }
 
 // The word from `at` on, or the next one; moves `at` behind it.
@@ -44,9 +53,9 @@ void command_obey(const editor_line_t* line) {
   uint16_t at = 0;
   const word_t name = next_word(line, &at);
   if (name.count == 0u) return;
-  const command_t* const command = find(&name);
-  if (command == NULL) {
-    suggest("command", &name, suggest_command);
+  const uint16_t command = find(&name);
+  if (command == COMMANDS) {
+    suggest(SUGGEST_COMMAND, &name);
     return;
   }
   words_of_line_t a;
@@ -54,7 +63,7 @@ void command_obey(const editor_line_t* line) {
     a.word[a.count] = next_word(line, &at);
     if (a.word[a.count].count == 0u) break;
   }
-  command->function(&a);
+  commands[command].function(&a);
 }
 
 bool command_makes_safe(const editor_line_t* line) {
@@ -65,9 +74,9 @@ bool command_makes_safe(const editor_line_t* line) {
 
 static void put_command(const command_t* c) {
   octet_writer_t* const w = line_begin();
-  put_text(w, c->name);
+  put_packed(w, c->name);
   put_u8(w, ' ');
-  put_text(w, c->arguments);
+  put_packed(w, c->arguments);
   put_spaces_to(w, 26);
   put_packed(w, c->help);
   line_end();
@@ -81,22 +90,22 @@ static bool list_commands(uint16_t step) {
 
 // The command that each line of help_list.h is about.
 #define HELP(command, number, text) TEXT_COMMAND_##command,
-static const uint16_t explains[] = {
+static const packed_text_t explains[] = {
 #include "firmware/console/help_list.h"
 };
 #undef HELP
 
-static const command_t* explained;
+static uint16_t explained;  // command
 
 static bool explain(uint16_t step) {
   if (step == 0u) {
-    put_command(explained);
+    put_command(&commands[explained]);
     return true;
   }
   const uint16_t at = (uint16_t)(step - 1u);
   if (at >= sizeof explains / sizeof explains[0]) return false;
-  if (explains[at] != (uint16_t)explained->help) return true;
-  put_packed(line_begin(), (packed_text_t)((uint16_t)TEXT_HELP_list_1 + at));
+  if (explains[at] != commands[explained].help) return true;
+  put_packed(line_begin(), (packed_text_t)(TEXT_HELP_list_1 + at));
   line_end();
   return true;
 }
@@ -106,10 +115,11 @@ void command_help(const words_of_line_t* a) {
     console_run(list_commands, false);
     return;
   }
-  explained = find(&a->word[0]);
-  if (explained != NULL) {
+  const uint16_t command = find(&a->word[0]);
+  if (command < COMMANDS) {
+    explained = command;
     console_run(explain, false);
   } else {
-    suggest("command", &a->word[0], suggest_command);
+    suggest(SUGGEST_COMMAND, &a->word[0]);
   }
 }

@@ -27,9 +27,7 @@ typedef struct {
 } words_of_line_t;
 
 typedef struct {
-  const char* name;
-  const char* arguments;
-  packed_text_t help;
+  packed_text_t name, arguments, help;
   void (*function)(const words_of_line_t* a);
 } command_t;
 
@@ -44,6 +42,10 @@ bool command_makes_safe(const editor_line_t* line);
 
 /// True when word k is there and is this one.
 bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
+bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text);
+
+/// True when the word occurs in the text; one that is nowhere (text is NULL) occurs in all of them.
+bool word_occurs(const word_t* word, packed_text_t text);
 
 void command_help(const words_of_line_t* a);
 

@@ -126,7 +126,7 @@ static bool list_results(uint16_t step) {
   const parameter_info_t* const p = parameter_by_id(r.id);
   if (p == NULL) return false;  // there is no such result, or none any more
   octet_writer_t* const w = line_begin();
-  put_text(w, p->name);
+  put_packed(w, p->name);
   put_spaces_to(w, 22);
   put_fixed(w, r.before, p->q, p->decimals);
   put_text(w, " -> ");

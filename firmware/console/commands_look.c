@@ -126,7 +126,7 @@ static uint32_t shown_ms;
 static void put_watched(octet_writer_t* w) {
   for (uint16_t k = 0; k < watched_count; k++) {
     if (k > 0u) put_text(w, "   ");
-    put_text(w, signal_info(watched[k])->name);
+    put_packed(w, signal_info(watched[k])->name);
     put_u8(w, ' ');
     put_signal(w, watched[k]);
   }
@@ -165,11 +165,12 @@ void command_watch(const words_of_line_t* a) {
     return;
   }
   for (uint16_t k = 0; k < a->count; k++) {
-    watched[k] = signal_find(&a->word[k]);
-    if (watched[k] == SIGNAL_NONE) {
-      suggest("signal", &a->word[k], suggest_signal);
+    const uint16_t place = signal_find(&a->word[k]);
+    if (place == SIGNAL_NONE) {
+      suggest(SUGGEST_SIGNAL, &a->word[k]);
       return;
     }
+    watched[k] = place;
   }
   watched_count = a->count;
   console_run(watch, true);
@@ -227,8 +228,7 @@ static word_t pattern;
 static bool list_signals(uint16_t step) {
   const signal_info_t* const s = signal_info(step);
   if (s == NULL) return false;
-  if (!text_occurs(s->name, pattern.text, pattern.count) && !packed_occurs(s->meaning, pattern.text, pattern.count))
-    return true;
+  if (!word_occurs(&pattern, s->name) && !word_occurs(&pattern, s->meaning)) return true;
   put_signal_row(line_begin(), step);
   line_end();
   return true;

@@ -19,7 +19,7 @@ static word_t pattern;
 static void put_row(const parameter_info_t* p) {
   const int32_t raw = parameter_get(p->id);
   octet_writer_t* const w = line_begin();
-  put_text(w, p->name);
+  put_packed(w, p->name);
   put_spaces_to(w, COLUMN_VALUE - 1u);
   put_u8(w, (raw == p->initial) ? ' ' : '*');
   put_value(w, p, raw);
@@ -31,9 +31,7 @@ static void put_row(const parameter_info_t* p) {
 static bool list_one(uint16_t step) {
   const parameter_info_t* const p = parameter_info(step);
   if (p == NULL) return false;
-  if (text_occurs(p->name, pattern.text, pattern.count) || packed_occurs(p->meaning, pattern.text, pattern.count)) {
-    put_row(p);
-  }
+  if (word_occurs(&pattern, p->name) || word_occurs(&pattern, p->meaning)) put_row(p);
   return true;
 }
 
@@ -44,21 +42,21 @@ void command_list(const words_of_line_t* a) {
   console_run(list_one, false);
 }
 
-static const parameter_info_t* find(const word_t* name) {
-  for (uint16_t k = 0; k < parameter_count(); k++) {
-    const parameter_info_t* const p = parameter_info(k);
-    if (text_equals(p->name, name->text, name->count)) return p;
-  }
-  return NULL;
+// Its place in the table; behind the last one when there is none of that name.
+static uint16_t find(const word_t* name) {
+  uint16_t k = 0;
+  while (k < parameter_count() && !packed_equals(parameter_info(k)->name, name->text, name->count)) k++;
+  return k;
 }
 
-static const parameter_info_t* described;
+static uint16_t described;
 
 static bool describe(uint16_t step) {
-  const parameter_info_t* const p = described;
+  const parameter_info_t* const p = parameter_info(described);
+  if (p == NULL) return false;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
-    put_text(w, p->name);
+    put_packed(w, p->name);
     put_text(w, " = ");
     put_value(w, p, parameter_get(p->id));
   } else if (step == 1u) {
@@ -85,13 +83,13 @@ void command_get(const words_of_line_t* a) {
     return;
   }
   described = find(&a->word[0]);
-  if (described != NULL) {
+  if (described < parameter_count()) {
     console_run(describe, false);
     return;
   }
   const uint16_t place = signal_find(&a->word[0]);
   if (place == SIGNAL_NONE) {
-    suggest("parameter", &a->word[0], suggest_parameter);
+    suggest(SUGGEST_PARAMETER, &a->word[0]);
     return;
   }
   put_signal_row(line_begin(), place);
@@ -99,22 +97,22 @@ void command_get(const words_of_line_t* a) {
 }
 
 // The unit may stand behind the number or by itself.
-static bool unit_fits(const words_of_line_t* a, uint16_t number_length, const char* unit) {
+static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_text_t unit) {
   const word_t* const value = &a->word[1];
   const uint16_t* const behind = &value->text[number_length];
   const uint16_t left = (uint16_t)(value->count - number_length);
-  if (left > 0u) return a->count == 2u && text_equals(unit, behind, left);
-  return a->count == 2u || word_is(a, 2, unit);
+  if (left > 0u) return a->count == 2u && packed_equals(unit, behind, left);
+  return a->count == 2u || word_is_packed(a, 2, unit);
 }
 
 static void refuse_unit(const parameter_info_t* p) {
   octet_writer_t* const w = line_begin();
-  put_text(w, p->name);
-  if (p->unit[0] == '\0') {
+  put_packed(w, p->name);
+  if (packed_is_empty(p->unit)) {
     put_packed(w, SAY_has_no_unit);
   } else {
     put_packed(w, SAY_is_in);
-    put_text(w, p->unit);
+    put_packed(w, p->unit);
   }
   put_packed(w, SAY_nothing_changed);
   line_end();
@@ -124,7 +122,7 @@ static void change(const parameter_info_t* p, int32_t raw) {
   octet_writer_t* const w = line_begin();
   const answer_status_t status = action_set(p, raw, w);
   if (status == ANSWER_OK) {
-    put_text(w, p->name);
+    put_packed(w, p->name);
     put_text(w, " = ");
     put_value(w, p, parameter_get(p->id));
   }
@@ -137,9 +135,9 @@ void command_set(const words_of_line_t* a) {
     line_of(SAY_set_name_value_unit_for_example_set);
     return;
   }
-  const parameter_info_t* const p = find(&a->word[0]);
+  const parameter_info_t* const p = parameter_info(find(&a->word[0]));
   if (p == NULL) {
-    suggest("parameter", &a->word[0], suggest_parameter);
+    suggest(SUGGEST_PARAMETER, &a->word[0]);
     return;
   }
   const uint16_t length = text_number(a->word[1].text, a->word[1].count, &number);

@@ -24,10 +24,7 @@ static uint16_t shift_of(const signal_info_t* s) {
   } reach[] = {{"", 7}, {"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
   uint16_t whole = 15;
   for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
-    const char* const unit = reach[k].unit;
-    uint16_t n = 0;
-    while (unit[n] != '\0' && unit[n] == s->unit[n]) n++;
-    if (unit[n] == s->unit[n]) whole = reach[k].whole;
+    if (packed_is(s->unit, reach[k].unit)) whole = reach[k].whole;
   }
   return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
 }
@@ -64,7 +61,7 @@ static void set_channels(const words_of_line_t* a) {
   for (uint16_t k = 0; k < s.count; k++) {
     const uint16_t place = signal_find(&a->word[k + 1u]);
     if (place == SIGNAL_NONE) {
-      suggest("signal", &a->word[k + 1u], suggest_signal);
+      suggest(SUGGEST_SIGNAL, &a->word[k + 1u]);
       return;
     }
     s.channel[k].signal = place;
@@ -90,10 +87,10 @@ static void set_trigger(const words_of_line_t* a) {
   }
   s.trigger = signal_find(&a->word[1]);
   if (s.trigger == SIGNAL_NONE) {
-    suggest("signal", &a->word[1], suggest_signal);
+    suggest(SUGGEST_SIGNAL, &a->word[1]);
     return;
   }
-  if (a->count > 5u || (a->count == 5u && !word_is(a, 4, signal_info(s.trigger)->unit))) {
+  if (a->count > 5u || (a->count == 5u && !word_is_packed(a, 4, signal_info(s.trigger)->unit))) {
     line_of(SAY_the_level_is_in_the_signal_s);
     return;
   }
@@ -149,13 +146,13 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
   put_packed(w, SAY_trigger);
   if (s->edge != SCOPE_AT_ONCE) {
     const signal_info_t* const signal = signal_info(s->trigger);
-    put_text(w, signal->name);
+    put_packed(w, signal->name);
     put_u8(w, ' ');
     put_text(w, edges[s->edge]);
     put_u8(w, ' ');
     put_fixed(w, s->level, signal->q, signal_decimals(signal));
     put_u8(w, ' ');
-    put_text(w, signal->unit);
+    put_packed(w, signal->unit);
   } else {
     put_packed(w, SAY_now);
   }
@@ -170,7 +167,7 @@ static void put_channels(octet_writer_t* w, const scope_setup_t* s) {
   put_packed(w, SAY_channels);
   for (uint16_t k = 0; k < s->count; k++) {
     put_u8(w, ' ');
-    put_text(w, signal_info(s->channel[k].signal)->name);
+    put_packed(w, signal_info(s->channel[k].signal)->name);
   }
 }
 

@@ -19,7 +19,7 @@ static void put_report(octet_writer_t* w) {
   put_unsigned(w, r->refused);
   put_packed(w, SAY_outside_of_their_range_now_at_their);
   put_text(w, ": ");
-  put_text(w, first->name);
+  put_packed(w, first->name);
   if (r->refused > 1u) put_text(w, " ..");
 }
 

@@ -4,7 +4,7 @@
 
 uint16_t signal_find(const word_t* name) {
   for (uint16_t k = 0; k < signal_count(); k++) {
-    if (text_equals(signal_info(k)->name, name->text, name->count)) return k;
+    if (packed_equals(signal_info(k)->name, name->text, name->count)) return k;
   }
   return SIGNAL_NONE;
 }
@@ -21,13 +21,13 @@ void put_signal(octet_writer_t* w, uint16_t place) {
   int32_t raw;
   (void)drive_signals_copy(&place, 1, &raw);
   put_fixed(w, raw, s->q, signal_decimals(s));
-  if (s->unit[0] == '\0') return;
+  if (packed_is_empty(s->unit)) return;
   put_u8(w, ' ');
-  put_text(w, s->unit);
+  put_packed(w, s->unit);
 }
 
 void put_signal_row(octet_writer_t* w, uint16_t place) {
-  put_text(w, signal_info(place)->name);
+  put_packed(w, signal_info(place)->name);
   put_spaces_to(w, 22);
   put_signal(w, place);
   put_spaces_to(w, 40);

@@ -7,7 +7,13 @@
 #include "firmware/drive_api.h"
 #include "firmware/link/octets.h"
 
-#define SIGNAL_NONE 0xFFFFu
+/// The place behind the last one.
+enum {
+  SIGNAL_NONE = 0
+#define SIGNAL(name, unit, q, value, meaning) +1
+#include "firmware/signal_list.h"
+#undef SIGNAL
+};
 
 /// Place of a signal in the table; SIGNAL_NONE when there is none of that name.
 uint16_t signal_find(const word_t* name);

@@ -12,25 +12,23 @@
 #define MOST 4u
 #define SHORTEST_PART 2u
 
-static const char* kind_of;
+static suggest_kind_t kind_of;
 static word_t wanted;
-static suggest_names_t* names_of;
-static const char* near[MOST];
+static packed_text_t near[MOST];
 static uint16_t found;
 
-const char* suggest_parameter(uint16_t index) {
+// PACKED_NONE behind the last one.
+static packed_text_t name_of(uint16_t index) {
+  if (kind_of == SUGGEST_COMMAND) {
+    const command_t* const c = command_info(index);
+    return (c != NULL) ? c->name : PACKED_NONE;
+  }
+  if (kind_of == SUGGEST_SIGNAL) {
+    const signal_info_t* const s = signal_info(index);
+    return (s != NULL) ? s->name : PACKED_NONE;
+  }
   const parameter_info_t* const p = parameter_info(index);
-  return (p != NULL) ? p->name : NULL;
-}
-
-const char* suggest_signal(uint16_t index) {
-  const signal_info_t* const s = signal_info(index);
-  return (s != NULL) ? s->name : NULL;
-}
-
-const char* suggest_command(uint16_t index) {
-  const command_t* const c = command_info(index);
-  return (c != NULL) ? c->name : NULL;
+  return (p != NULL) ? p->name : PACKED_NONE;
 }
 
 static uint16_t length(const char* name) {
@@ -65,9 +63,7 @@ bool suggest_is_near(const char* name, const word_t* word) {
 
 static void say(void) {
   octet_writer_t* const w = line_begin();
-  put_packed(w, SAY_there_is_no);
-  put_text(w, kind_of);
-  put_text(w, " '");
+  put_packed(w, (packed_text_t)(SAY_there_is_no_command + (uint16_t)kind_of));
   for (uint16_t k = 0; k < wanted.count; k++) put_u8(w, wanted.text[k]);
   put_u8(w, '\'');
   for (uint16_t k = 0; k < found; k++) {
@@ -76,7 +72,7 @@ static void say(void) {
     } else {
       put_text(w, ", ");
     }
-    put_text(w, near[k]);
+    put_packed(w, near[k]);
   }
   if (found > 0u) put_u8(w, '?');
   line_end();
@@ -84,20 +80,21 @@ static void say(void) {
 
 static bool look(uint16_t step) {
   for (uint16_t k = 0; k < NAMES_A_STEP; k++) {
-    const char* const name = names_of((uint16_t)(step * NAMES_A_STEP + k));
-    if (name == NULL || found == MOST) {
+    const packed_text_t number = name_of((uint16_t)(step * NAMES_A_STEP + k));
+    if (number == PACKED_NONE || found == MOST) {
       say();
       return false;
     }
-    if (suggest_is_near(name, &wanted)) near[found++] = name;
+    char name[SUGGEST_NAME_ROOM];
+    packed_copy(number, name, SUGGEST_NAME_ROOM);
+    if (suggest_is_near(name, &wanted)) near[found++] = number;
   }
   return true;
 }
 
-void suggest(const char* kind, const word_t* word, suggest_names_t* names) {
+void suggest(suggest_kind_t kind, const word_t* word) {
   kind_of = kind;
   wanted = *word;
-  names_of = names;
   found = 0;
   console_run(look, false);
 }

@@ -12,15 +12,13 @@
 extern "C" {
 #endif
 
-/// Name number `index`, NULL behind the last one.
-typedef const char* suggest_names_t(uint16_t index);
+#define SUGGEST_NAME_ROOM 32u  // characters of the longest name and its end, at least
 
-const char* suggest_parameter(uint16_t index);
-const char* suggest_signal(uint16_t index);
-const char* suggest_command(uint16_t index);
+/// What has names.
+typedef enum { SUGGEST_COMMAND, SUGGEST_PARAMETER, SUGGEST_SIGNAL } suggest_kind_t;
 
 /// Begins the job that says: there is no <kind> '<word>', did you mean ..; names are looked through a few at a time.
-void suggest(const char* kind, const word_t* word, suggest_names_t* names);
+void suggest(suggest_kind_t kind, const word_t* word);
 
 /// True when the two differ by one character that is missing, too many or wrong, or by two exchanged ones, or when the
 /// name contains or begins the word.

@@ -4,8 +4,6 @@
 #define SEVEN_BITS 0x7Fu
 #define MORE 0x80u
 
-static uint16_t least(uint16_t a, uint16_t b) { return a < b ? a : b; }
-
 static void put_difference(octet_writer_t* w, uint16_t difference) {
   const uint16_t sign = (difference & 0x8000u) != 0u ? 0xFFFFu : 0u;
   uint16_t folded = (uint16_t)((((uint32_t)difference << 1) & 0xFFFFuL) ^ sign);
@@ -30,13 +28,13 @@ static uint16_t take_difference(octet_reader_t* r) {
 
 void delta_put(octet_writer_t* w, const uint16_t* words, const uint16_t* before, uint16_t count) {
   for (uint16_t from = 0; from < count; from += GROUP) {
-    const uint16_t end = least((uint16_t)(from + GROUP), count);
     uint16_t changed = 0;
-    for (uint16_t k = from; k < end; k++) {
-      if (words[k] != before[k]) changed = (uint16_t)(changed | (1u << (k - from)));
+    for (uint16_t bit = 0; bit < GROUP; bit++) {
+      const uint16_t k = (uint16_t)(from + bit);
+      if (k < count && words[k] != before[k]) changed = (uint16_t)(changed | (1u << bit));
     }
     put_u8(w, changed);
-    for (uint16_t k = from; k < end; k++) {
+    for (uint16_t k = from; k < count && k < from + GROUP; k++) {
       if (words[k] != before[k]) put_difference(w, (uint16_t)(words[k] - before[k]));
     }
   }
@@ -44,11 +42,11 @@ void delta_put(octet_writer_t* w, const uint16_t* words, const uint16_t* before,
 
 void delta_take(octet_reader_t* r, uint16_t* words, const uint16_t* before, uint16_t count) {
   for (uint16_t from = 0; from < count; from += GROUP) {
-    const uint16_t end = least((uint16_t)(from + GROUP), count);
-    const uint16_t changed = take_u8(r);
-    for (uint16_t k = from; k < end; k++) {
-      const bool differs = ((changed >> (k - from)) & 1u) != 0u;
+    uint16_t changed = take_u8(r);
+    for (uint16_t k = from; k < count && k < from + GROUP; k++) {
+      const bool differs = (changed & 1u) != 0u;
       words[k] = differs ? (uint16_t)(before[k] + take_difference(r)) : before[k];
+      changed >>= 1;
     }
   }
 }

@@ -146,6 +146,10 @@ static void play(void) {
   play_work();
 }
 
+static uint16_t outputs_of(const tape_period_t* p) {
+  return (p->output_count < TAPE_OUTPUTS) ? p->output_count : TAPE_OUTPUTS;
+}
+
 static void shape_of(uint16_t* shape, bool torn, const tape_period_t* p) {
   shape[0] = torn ? 1u : 0u;
   shape[1] = p->output_count;
@@ -157,13 +161,14 @@ void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_
   shape_of(shape, torn, p);
   put_u16(w, sequence);
   delta_put(w, shape, before->shape, HIL_ANSWER_SHAPE);
-  delta_put(w, p->outputs, before->outputs, p->output_count);
+  delta_put(w, p->outputs, before->outputs, outputs_of(p));
   put_u32(w, hil_signals_crc());
 }
 
 void hil_keep_answer(hil_answer_t* before, bool torn, const tape_period_t* p) {
   shape_of(before->shape, torn, p);
-  for (uint16_t k = 0; k < p->output_count; k++) before->outputs[k] = p->outputs[k];
+  const uint16_t count = outputs_of(p);
+  for (uint16_t k = 0; k < count; k++) before->outputs[k] = p->outputs[k];
 }
 
 // Nothing changes a signal between two steps, so an answer that is asked for again is the same.

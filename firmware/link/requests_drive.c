@@ -62,7 +62,7 @@ answer_status_t request_status(request_t* r) {
 
 answer_status_t request_signals(request_t* r) {
   uint16_t places[SIGNALS_MAX] = {0};
-  int32_t values[SIGNALS_MAX];
+  int32_t values[SIGNALS_MAX] = {0};
   if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
   const uint16_t count = r->body.count / 2u;
   for (uint16_t k = 0; k < count; k++) {

@@ -11,7 +11,7 @@
 
 answer_status_t request_scope_setup(request_t* r) {
   octet_reader_t* const b = &r->body;
-  scope_setup_t s;
+  scope_setup_t s = {0};
   s.decimation = take_u16(b);
   s.pretrigger = take_u16(b);
   const uint16_t mode = take_u8(b);
@@ -23,7 +23,7 @@ answer_status_t request_scope_setup(request_t* r) {
   if (mode > SCOPE_AUTO || edge > SCOPE_BELOW) return ANSWER_RANGE;
   s.mode = (scope_mode_t)mode;
   s.edge = (scope_edge_t)edge;
-  for (uint16_t k = 0; k < s.count; k++) {
+  for (uint16_t k = 0; k < s.count && k < SCOPE_CHANNELS; k++) {
     s.channel[k].signal = take_u16(b);
     s.channel[k].shift = take_u8(b);
   }
@@ -47,7 +47,7 @@ answer_status_t request_scope_state(request_t* r) {
 
 // While a capture runs there is nothing to read: the answer is empty.
 answer_status_t request_scope_read(request_t* r) {
-  int16_t words[READ_MAX];
+  int16_t words[READ_MAX] = {0};
   const uint16_t channel = take_u8(&r->body);
   const uint16_t offset = take_u16(&r->body);
   const uint16_t count = take_u8(&r->body);
@@ -64,7 +64,7 @@ answer_status_t request_scope_stop(request_t* r) {
 }
 
 answer_status_t request_stream(request_t* r) {
-  uint16_t places[STREAM_SIGNALS];
+  uint16_t places[STREAM_SIGNALS] = {0};
   if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
   const uint16_t period_ms = take_u16(&r->body);
   const uint16_t count = (uint16_t)(octets_left(&r->body) / 2u);

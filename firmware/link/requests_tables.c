@@ -17,18 +17,18 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_i32(w, p->minimum);
   put_i32(w, p->maximum);
   put_i32(w, p->initial);
-  put_text(w, p->name);
+  put_packed(w, p->name);
   put_u8(w, 0);
-  put_text(w, p->unit);
+  put_packed(w, p->unit);
   put_u8(w, 0);
   put_packed(w, p->meaning);
 }
 
 static void put_signal(octet_writer_t* w, const signal_info_t* s) {
   put_u8(w, s->q);
-  put_text(w, s->name);
+  put_packed(w, s->name);
   put_u8(w, 0);
-  put_text(w, s->unit);
+  put_packed(w, s->unit);
   put_u8(w, 0);
   put_packed(w, s->meaning);
 }
@@ -73,8 +73,10 @@ void requests_service(void) {
   } else if (sum.at < parameter_count()) {
     put_parameter(&piece, parameter_info(sum.at++));
   } else {
-    put_signal(&piece, signal_info((uint16_t)(sum.at++ - parameter_count())));
-    if (sum.at == parameter_count() + signal_count()) {
+    const signal_info_t* const s = signal_info((uint16_t)(sum.at++ - parameter_count()));
+    if (s != NULL) {
+      put_signal(&piece, s);
+    } else {
       sum.in_words = true;
       sum.at = 0;
     }

@@ -52,7 +52,7 @@ static void skip_missed(stream_t* s, uint32_t now) {
 uint16_t stream_event(guard_t port, uint16_t* record) {
   stream_t* const s = of(port);
   if (s->period == 0u || drive_time_ms() - s->last_ms < s->period) return 0;
-  int32_t values[STREAM_SIGNALS];
+  int32_t values[STREAM_SIGNALS] = {0};
   s->last_ms += s->period;
   const uint32_t time_ms = drive_signals_copy(s->signals, s->count, values);
   skip_missed(s, time_ms);

@@ -47,7 +47,7 @@ static bool is_valid(const scope_setup_t* s) {
   if (s->decimation < 1u || s->pretrigger >= SCOPE_DEPTH || s->trigger >= signal_count()) return false;
   if (s->mode > SCOPE_AUTO || s->edge > SCOPE_BELOW) return false;
   if (s->count < 1u || s->count > SCOPE_CHANNELS) return false;
-  for (uint16_t k = 0; k < s->count; k++) {
+  for (uint16_t k = 0; k < SCOPE_CHANNELS; k++) {
     if (s->channel[k].signal >= signal_count() || s->channel[k].shift > SCOPE_SHIFT_MAX) return false;
   }
   return true;

@@ -157,8 +157,8 @@ nb::list parameter_rows() {
     const parameter_info_t* p = parameter_info(k);
     nb::dict row;
     row["id"] = p->id;
-    row["name"] = p->name;
-    row["unit"] = p->unit;
+    row["name"] = text_of(p->name);
+    row["unit"] = text_of(p->unit);
     row["decimals"] = p->decimals;
     row["minimum"] = std::ldexp(p->minimum, -p->q);
     row["maximum"] = std::ldexp(p->maximum, -p->q);

@@ -12,7 +12,7 @@ namespace {
 
 const parameter_info_t* find(const std::string& name) {
   for (std::uint16_t k = 0; k < parameter_count(); k++) {
-    if (name == parameter_info(k)->name) return parameter_info(k);
+    if (name == text_of(parameter_info(k)->name)) return parameter_info(k);
   }
   return nullptr;
 }
@@ -27,7 +27,8 @@ std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) 
   if (std::isfinite(raw) && raw >= info->minimum && raw <= info->maximum) return static_cast<std::int32_t>(raw);
   std::ostringstream text;
   text << "firmware parameter " << name << " = " << value << ": out of range, allowed is "
-       << std::ldexp(info->minimum, -info->q) << " to " << std::ldexp(info->maximum, -info->q) << " " << info->unit;
+       << std::ldexp(info->minimum, -info->q) << " to " << std::ldexp(info->maximum, -info->q) << " "
+       << text_of(info->unit);
   throw std::invalid_argument(text.str());
 }
 

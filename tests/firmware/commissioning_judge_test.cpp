@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/commissioning_sums.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
@@ -48,7 +49,7 @@ class CommissioningJudge : public Drive {
     commissioning_report_t report;
     commissioning_judge(&c, &report);
     for (int k = 0; k < report.count; ++k) {
-      if (name == parameter_by_id(report.list[k].id)->name) return report.list[k].verdict;
+      if (name == stillspin::bench::text_of(parameter_by_id(report.list[k].id)->name)) return report.list[k].verdict;
     }
     ADD_FAILURE() << name;
     return VERDICT_DEPENDS;

@@ -1,5 +1,6 @@
 // What a person looks at: status, signals, faults, the bus, a commissioning.
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/console.hpp"
 
 extern "C" {
@@ -62,7 +63,7 @@ TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {
 
 TEST_F(Console, Signals) {
   const std::string all = command("signals", 10000);
-  for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, signal_info(k)->name));
+  for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, bench::text_of(signal_info(k)->name)));
   drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
   EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
 }

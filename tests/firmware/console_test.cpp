@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/slot_of.hpp"
 
 extern "C" {
@@ -21,9 +22,11 @@ TEST_F(Console, EveryCommandIsExplained) {
   const std::string help = command("help");
   int rows = 0;
   for (std::uint16_t k = 0; command_info(k) != nullptr; ++k, ++rows) {
-    EXPECT_TRUE(has(help, std::string("\n") + command_info(k)->name + " ") || help.rfind(command_info(k)->name, 0) == 0)
-        << command_info(k)->name;
-    EXPECT_TRUE(has(command(std::string("help ") + command_info(k)->name), bench::text_of(command_info(k)->help)));
+    EXPECT_TRUE(has(help, std::string("\n") + bench::text_of(command_info(k)->name) + " ") ||
+                help.rfind(bench::text_of(command_info(k)->name), 0) == 0)
+        << bench::text_of(command_info(k)->name);
+    EXPECT_TRUE(has(command(std::string("help ") + bench::text_of(command_info(k)->name)),
+                    bench::text_of(command_info(k)->help)));
   }
   EXPECT_GE(rows, 16);
   EXPECT_TRUE(has(command("help scope"), "scope trigger"));
@@ -83,7 +86,7 @@ TEST(Suggest, OneEditOrAPart) {
 TEST_F(Console, List) {
   const std::string all = command("list", 30000);
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-    EXPECT_TRUE(has(all, parameter_info(k)->name));
+    EXPECT_TRUE(has(all, bench::text_of(parameter_info(k)->name)));
     EXPECT_TRUE(has(all, bench::text_of(parameter_info(k)->meaning))) << "whole";
   }
   EXPECT_FALSE(has(all, "..."));

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "sim_host/bench/texts.hpp"
 
 extern "C" {
+#include "firmware/console/suggest.h"
 #include "firmware/drive_api.h"
 #include "firmware/text.h"
 }
@@ -24,11 +26,13 @@ struct Row {
 };
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  {TEXT_PARAMETER_##name, meaning},
-#define SIGNAL(name, unit, q, value, meaning) {TEXT_SIGNAL_##name, meaning},
+  {TEXT_PARAMETER_##name, meaning}, {TEXT_PARAMETER_NAME_##name, #name}, {TEXT_PARAMETER_UNIT_##name, unit},
+#define SIGNAL(name, unit, q, value, meaning) \
+  {TEXT_SIGNAL_##name, meaning}, {TEXT_SIGNAL_NAME_##name, #name}, {TEXT_SIGNAL_UNIT_##name, unit},
 #define FAULT(number, name, words, remedy) {TEXT_FAULT_##number, words}, {TEXT_REMEDY_##number, remedy},
 #define WORDS(kind, code, text) {TEXT_##kind##_##code, text},
-#define COMMAND(name, arguments, help) {TEXT_COMMAND_##name, help},
+#define COMMAND(name, arguments, help) \
+  {TEXT_COMMAND_##name, help}, {TEXT_COMMAND_NAME_##name, #name}, {TEXT_COMMAND_ARGUMENTS_##name, arguments},
 #define HELP(command, number, text) {TEXT_HELP_##command##_##number, text},
 #define PHRASE(name, text) {SAY_##name, text},
 const Row kRows[] = {
@@ -56,6 +60,49 @@ bool occurs(packed_text_t text, const std::string& part) {
 TEST(PackedText, EveryTextIsTheOneInItsList) {
   ASSERT_EQ(std::size(kRows), static_cast<std::size_t>(PACKED_TEXTS));
   for (const Row& row : kRows) EXPECT_EQ(text_of(row.number), row.text);
+}
+
+bool equals(packed_text_t text, const std::string& other) {
+  const std::vector<std::uint16_t> wanted(other.begin(), other.end());
+  return packed_equals(text, wanted.data(), static_cast<std::uint16_t>(wanted.size()));
+}
+
+TEST(PackedText, EqualsItselfAlone) {
+  for (const Row& row : kRows) {
+    EXPECT_TRUE(equals(row.number, row.text));
+    EXPECT_FALSE(equals(row.number, row.text + "~"));
+    EXPECT_FALSE(equals(row.number, row.text + std::string(1, '\0'))) << "the end is no character";
+    EXPECT_EQ(packed_is_empty(row.number), row.text.empty());
+    EXPECT_TRUE(packed_is(row.number, row.text.c_str()));
+    EXPECT_FALSE(packed_is(row.number, (row.text + "~").c_str()));
+    if (row.text.empty()) continue;
+    EXPECT_FALSE(equals(row.number, row.text.substr(1)));
+    EXPECT_FALSE(equals(row.number, row.text.substr(0, row.text.size() - 1)));
+    EXPECT_FALSE(packed_is(row.number, row.text.substr(0, row.text.size() - 1).c_str()));
+  }
+  EXPECT_TRUE(equals(TEXT_PARAMETER_UNIT_stator_resistance, "OHM"));
+  EXPECT_FALSE(packed_is(TEXT_PARAMETER_UNIT_stator_resistance, "OHM"));
+}
+
+TEST(PackedText, ACopyIsTheTextAsFarAsThereIsRoom) {
+  for (const Row& row : kRows) {
+    for (const std::uint16_t room : {1, 2, 8, 300}) {
+      std::string copy(room + 1u, '#');
+      packed_copy(row.number, copy.data(), room);
+      const std::size_t kept = std::min<std::size_t>(row.text.size(), room - 1u);
+      EXPECT_EQ(copy.substr(0, kept + 1), row.text.substr(0, kept) + '\0');
+      EXPECT_EQ(copy[room], '#');
+    }
+  }
+}
+
+TEST(PackedText, EveryNameHasRoomWhereNamesAreCompared) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    EXPECT_LT(text_of(parameter_info(k)->name).size(), SUGGEST_NAME_ROOM);
+  }
+  for (std::uint16_t k = 0; k < signal_count(); ++k) {
+    EXPECT_LT(text_of(signal_info(k)->name).size(), SUGGEST_NAME_ROOM);
+  }
 }
 
 TEST(PackedText, PartsAreFound) {

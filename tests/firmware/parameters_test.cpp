@@ -60,7 +60,7 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
     const parameter_info_t* const info = parameter_info(k);
     ASSERT_NE(info, nullptr);
     EXPECT_EQ(info->id, r.id);
-    EXPECT_EQ(info->name, r.name);
+    EXPECT_EQ(stillspin::bench::text_of(info->name), r.name);
     EXPECT_EQ(info->q, r.q) << r.name;
     EXPECT_EQ(info->decimals, r.decimals) << r.name;
     EXPECT_EQ(info->access, r.always ? PARAMETER_ALWAYS : PARAMETER_STOPPED) << r.name;
@@ -79,11 +79,11 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
 TEST_F(Parameters, DefaultsLieInsideTheRanges) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     const parameter_info_t* const info = parameter_info(k);
-    EXPECT_LT(info->minimum, info->maximum) << info->name;
-    EXPECT_LE(info->minimum, info->initial) << info->name;
-    EXPECT_LE(info->initial, info->maximum) << info->name;
-    EXPECT_EQ(parameter_get(info->id), info->initial) << info->name;
-    EXPECT_EQ(*kRows[k].value, info->initial) << info->name;
+    EXPECT_LT(info->minimum, info->maximum) << stillspin::bench::text_of(info->name);
+    EXPECT_LE(info->minimum, info->initial) << stillspin::bench::text_of(info->name);
+    EXPECT_LE(info->initial, info->maximum) << stillspin::bench::text_of(info->name);
+    EXPECT_EQ(parameter_get(info->id), info->initial) << stillspin::bench::text_of(info->name);
+    EXPECT_EQ(*kRows[k].value, info->initial) << stillspin::bench::text_of(info->name);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim_host/bench/texts.hpp"
 #include "tests/firmware/store_test.hpp"
 
 namespace {
@@ -67,7 +68,7 @@ TEST_F(Store, LimitsSurviveAChangeOfFormat) {
         if (std::fabs(exact) > 2147483646.0) continue;
         const slot_entry_t entry = {info->id, q, static_cast<std::int32_t>(std::floor(exact + 0.5))};
         values_reset();
-        ASSERT_NE(values_put(&entry), VALUE_REFUSED) << info->name << " q" << q;
+        ASSERT_NE(values_put(&entry), VALUE_REFUSED) << bench::text_of(info->name) << " q" << q;
         const std::int32_t raw = values_entry(k).raw;
         ASSERT_GE(raw, info->minimum);
         ASSERT_LE(raw, info->maximum);

@@ -8,6 +8,7 @@
 extern "C" {
 #include "firmware/drive.h"
 #include "hal/hal_tape.h"
+#include "sim_host/bench/texts.hpp"
 }
 
 namespace {
@@ -86,7 +87,9 @@ int32_t __wrap_parameter_get(uint16_t id) { return int16_parameter_get(id); }
 packed_text_t __wrap_parameter_conflict(void) {
   for (uint16_t k = 0; k < parameter_count(); k++) {
     const parameter_info_t* const info = parameter_info(k);
-    if (__real_parameter_set(info->id, int16_parameter_get(info->id)) != SET_OK) differ(info->name);
+    if (__real_parameter_set(info->id, int16_parameter_get(info->id)) != SET_OK) {
+      differ(stillspin::bench::text_of(info->name).c_str());
+    }
   }
   const packed_text_t native = __real_parameter_conflict();
   if (native != int16_parameter_conflict()) differ("parameter_conflict");

@@ -66,6 +66,21 @@ void put_packed(octet_writer_t* w, packed_text_t text);
     assigns \result \from text, wanted[0 .. 79], count; ensures \result == 0 || \result == 1; */
 bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
+/*@ requires text < PACKED_TEXTS; assigns \result \from text; ensures \result == 0 || \result == 1; */
+bool packed_is_empty(packed_text_t text);
+
+/*@ requires text < PACKED_TEXTS && \valid_read(string);
+    assigns \result \from text, string[0]; ensures \result == 0 || \result == 1; */
+bool packed_is(packed_text_t text, const char* string);
+
+/*@ requires text < PACKED_TEXTS && room > 0 && \valid(string + (0 .. room - 1));
+    assigns string[0 .. room - 1] \from text; */
+void packed_copy(packed_text_t text, char* string, uint16_t room);
+
+/*@ requires text < PACKED_TEXTS && (count == 0 || \valid_read(wanted + (0 .. count - 1)));
+    assigns \result \from text, wanted[0 .. 79], count; ensures \result == 0 || \result == 1; */
+bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);
+
 /*@ requires \valid(w) && \valid_read(text);
     assigns w->octets[0 .. w->room - 1], w->count, w->full \from w->count, w->room, text[0];
     ensures w->count <= w->room; ensures w->full == 0 || w->full == 1; */

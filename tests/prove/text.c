@@ -27,12 +27,12 @@ static uint16_t length(const char* text) {
 }
 
 // Whatever was typed, compared with one name.
-static void compare(const char* name) {
+static void compare(packed_text_t name) {
   octet_writer_t w = writer();
-  put_text(&w, name);
+  put_packed(&w, name);
   word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
-  (void)text_equals(name, word.text, word.count);
-  (void)text_occurs(name, word.text, word.count);
+  (void)packed_equals(name, word.text, word.count);
+  (void)packed_occurs(name, word.text, word.count);
 }
 
 void prove_names(void) {
@@ -42,7 +42,9 @@ void prove_names(void) {
 }
 
 // The same with one character wrong, missing or too many.
-static void come_near(const char* name) {
+static void come_near(packed_text_t text) {
+  char name[SUGGEST_NAME_ROOM];
+  packed_copy(text, name, SUGGEST_NAME_ROOM);
   const uint16_t n = length(name);
   word.count = (uint16_t)any_from(0, n - 2);
   (void)suggest_is_near(name, &word);

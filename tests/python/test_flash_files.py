@@ -45,7 +45,7 @@ def file(tmp_path):
 def test_every_format_gives_the_same_image(file, name):
     image = drive_image(file(FORMATS[name]))
     assert list(image.words) == make.cells(IMAGE)[: len(UPDATE)]
-    assert image.boot == make.BOOT
+    assert image.resident == make.BOOT
     assert image.identity.text == "0.1.1 (commit c0ffee00, tables 56781234)"
     assert image.size == 4 * 8 + 14
 

@@ -11,6 +11,7 @@ from flash_bench import KERNEL, NEW_IMAGE, OLD, OLD_IMAGE, flash_of, nothing
 
 from stillspin.flash import kernel as kernel_requests
 from stillspin.flash import layout
+from stillspin.flash.files import drive_image
 from stillspin.flash.line import drop
 from stillspin.flash.program import Block
 from stillspin.flash.update import connect, update
@@ -29,7 +30,37 @@ def refused(board, image, blamed):
 def test_image_with_other_boot_code_is_refused():
     boot = (Block(0x3F4000, (0x561F, 0x7029, 0x761F, 0x0002)), make.BOOT[1])
     with make.board(make.image_blocks(1, boot=boot)) as board:
-        refused(board, NEW_IMAGE, "other boot code")
+        refused(board, NEW_IMAGE, "sector A .* is not the board's")
+
+
+def resident_part(seed):
+    noise = random.Random(seed)
+    return Block(0x3F4020, tuple(noise.randrange(0x10000) for _ in range(16200)))
+
+
+def image_with(tmp_path, seed, resident):
+    file = tmp_path / f"{seed}.bin"
+    file.write_bytes(make.boot_binary(make.image_blocks(seed, boot=(*make.BOOT, resident)), 0x3F4000))
+    return drive_image(file)
+
+
+def test_image_whose_resident_part_is_the_boards_is_taken(tmp_path):
+    resident = resident_part(7)
+    with make.board(make.image_blocks(1, boot=(*make.BOOT, resident))) as board:
+        image = image_with(tmp_path, 2, resident)
+        update(make.BoardLine(board), KERNEL, image, nothing)
+        new = flash_of(board)
+        assert new != board.first
+        assert new == make.cells(make.image_blocks(2, boot=(*make.BOOT, resident)))
+
+
+@pytest.mark.parametrize("place", [0, 7777, 16199])
+def test_image_with_one_other_word_in_its_resident_part_is_refused(tmp_path, place):
+    resident = resident_part(7)
+    words = list(resident.words)
+    words[place] ^= 1
+    with make.board(make.image_blocks(1, boot=(*make.BOOT, resident))) as board:
+        refused(board, image_with(tmp_path, 2, Block(resident.address, tuple(words))), "sector A .* is not the board's")
 
 
 def test_board_without_boot_code_is_refused():

@@ -17,6 +17,7 @@ from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
 from image.link import Pile, place  # noqa: E402
+from image.resident import unresident  # noqa: E402
 from image.sizes import object_words  # noqa: E402
 from image.stack import build_graph, stack_depth  # noqa: E402
 
@@ -40,10 +41,10 @@ def test_linker_command_files_keep_to_the_chip(house: Path) -> None:
     [
         ("> ENTRY,     PAGE = 0", "> BOOT,      PAGE = 0", "codestart is not at 0x3F7FF6, where it is looked for"),
         ("origin = 0x3F7FF6", "origin = 0x3F7FF8", "passwords"),
-        ("length = 0x003F78 ", "length = 0x004000 ", "BOOT reaches into the passwords"),
-        (".econst   : >> APP | BOOT", ".econst   : > PASSWORDS", ".econst is placed on PASSWORDS"),
-        (".econst   : >> APP | BOOT", ".econst   : >> APP | PASSWORDS", ".econst is placed on PASSWORDS"),
-        (".text     : >> APP | BOOT", ".text     : >> APP | NOWHERE", "range that does not exist"),
+        ("length = 0x003F58", "length = 0x003F68", "RESIDENT reaches into the passwords"),
+        (".econst   : >> APP | RESIDENT", ".econst   : > PASSWORDS", ".econst is placed on PASSWORDS"),
+        (".econst   : >> APP | RESIDENT", ".econst   : >> APP | PASSWORDS", ".econst is placed on PASSWORDS"),
+        (".text     : >> APP | RESIDENT", ".text     : >> APP | NOWHERE", "range that does not exist"),
         (".cinit    : > APP,       PAGE = 0", ".cinit    : > APP, fill = 0, PAGE = 0", "fill"),
         ("origin = 0x3FB000, length = 0x000FF8", "origin = 0x3FA800, length = 0x0017F8", "share memory"),
         ("length = 0x000FF8", "length = 0x001000", "last 8 words"),
@@ -115,13 +116,66 @@ def test_undefined_symbol_and_overflow_are_seen(tmp_path: Path) -> None:
     assert complaints == ["RAM_DATA takes 14000 words and has 12288"]
 
 
-def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_boot_code() -> None:
+def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_resident_part() -> None:
     file = read_command_file(ROOT / FLASH)
-    app, boot = file.ranges["APP"].length, file.ranges["BOOT"].length
-    fill, complaints = place({"boot": 100, "ramfuncs": 400, ".text": app - 600, ".econst": 1000}, file)
-    assert (fill["APP"], fill["BOOT"], complaints) == (app, 900, [])
-    _, complaints = place({"boot": 100, ".text": app, ".econst": boot}, file)
-    assert complaints == [f"BOOT takes {boot + 100} words and has {boot}"]
+    app, room = file.ranges["APP"].length, file.ranges["RESIDENT"].length
+    fill, complaints = place({"resident": 100, "ramfuncs": 400, ".text": app - 600, ".econst": 1000}, file)
+    assert (fill["APP"], fill["RESIDENT"], complaints) == (app, 900, [])
+    _, complaints = place({"resident": 100, ".text": app, ".econst": room}, file)
+    assert complaints == [f"RESIDENT takes {room + 100} words and has {room}"]
+
+
+def resident(folder: Path, archive: str, code: str) -> tuple[Pile, list[str]]:
+    """An archive of one object, and what of its resident part depends on anything else."""
+    archived = folder / archive
+    archived.write_text(f"{compiled(folder, code)}\n")
+    pile = Pile([archived])
+    pile.objects += pile.archived
+    return pile, unresident(pile.objects, read_command_file(ROOT / FLASH), "resident")
+
+
+def test_resident_part_is_that_of_the_floors_below_the_drive(tmp_path: Path) -> None:
+    code = "int twice(int x);\nint twice(int x) { return 2 * x; }\n"
+    file = read_command_file(ROOT / FLASH)
+    for archive in ("qmath", "svpwm", "control", "estimators"):
+        pile, complaints = resident(tmp_path, f"libstillspin_{archive}.a", code)
+        assert complaints == []
+        assert pile.words(file)["resident"] == sum(object_words(pile.objects[0]).values()) + 591
+        assert pile.words(file)[".text"] == 209  # the C start-up moves with main
+    pile, _ = resident(tmp_path, "libstillspin_firmware.a", code)
+    assert pile.words(file)["resident"] == 591
+    for member, section in (("deviation_observer.c.obj", "observers"), ("deviation.c.obj", "resident")):
+        assert file.section_of("libstillspin_estimators.a", member, ".text") == section
+
+
+@pytest.mark.parametrize(
+    ("code", "moved"),
+    [
+        ("int other(void);\nint f(void);\nint f(void) { return other(); }", "other"),
+        ("int count;\nint f(void);\nint f(void) { return count++; }", "count"),
+        ("static int calls;\nint f(void);\nint f(void) { return calls++; }", "calls"),
+        ("extern const int table[4];\nint f(int k);\nint f(int k) { return table[k]; }", "table"),
+        ("int g(void);\nextern int (*const list[])(void);\nint (*const list[])(void) = {g};", "g"),
+    ],
+)
+def test_resident_part_that_depends_on_what_moves_is_caught(tmp_path: Path, code: str, moved: str) -> None:
+    _, complaints = resident(tmp_path, "libstillspin_control.a", code)
+    assert len(complaints) == 1
+    assert complaints[0].startswith("x.obj is resident and refers to ")
+    assert moved in complaints[0]
+    _, complaints = resident(tmp_path, "libstillspin_firmware.a", code)
+    assert complaints == []
+
+
+def test_resident_part_may_call_itself_read_its_tables_and_divide(tmp_path: Path) -> None:
+    code = """
+static const long table[] = {3, 1, 4, 1, 5};
+__attribute__((noinline)) static long entry(unsigned k) { return table[k % 5u]; }
+long long quotient(long long a, long long b);
+long long quotient(long long a, long long b) { return a / b + entry((unsigned)a); }
+"""
+    _, complaints = resident(tmp_path, "libstillspin_control.a", code)
+    assert complaints == []
 
 
 def test_stack_of_modes_that_exclude_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

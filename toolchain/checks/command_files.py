@@ -112,7 +112,12 @@ def _entry(path: str, file: CommandFile) -> list[str]:
 
 def _prefetch(file: CommandFile, blocks: list[tuple[str, Range]]) -> list[str]:
     ends = {block.end for block in _joined(blocks, {"ram", "flash"})}
-    code = {name for p in file.placements if p.section in (".text", "ramfuncs", "boot") for name in (p.run, p.spill)}
+    code = {
+        name
+        for p in file.placements
+        if p.section in (".text", "ramfuncs", "boot", "observers", "resident")
+        for name in (p.run, p.spill)
+    }
     return [
         f"{name} has code in the last {_PREFETCH} words of a block"
         for name in sorted(code & set(file.ranges))

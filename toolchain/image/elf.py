@@ -41,6 +41,7 @@ class ObjectFile:
     path: Path
     sections: list[Section]
     symbols: list[Symbol]
+    archive: str = ""  # that it is a member of
 
     @property
     def defined(self) -> set[str]:
@@ -57,7 +58,7 @@ def _text(data: bytes, at: int) -> str:
     return data[at : data.index(b"\0", at)].decode()
 
 
-def read_object(path: Path) -> ObjectFile:
+def read_object(path: Path, archive: str = "") -> ObjectFile:
     """Parses one object file."""
     data = path.read_bytes()
     if data[:6] != b"\x7fELF\x01\x01":
@@ -91,4 +92,4 @@ def read_object(path: Path) -> ObjectFile:
             symbol = symbols[info >> 8]
             name = symbol.name or sections[symbol.section].name
             sections[header[7]].relocations.append((place, info & 0xFF, name))
-    return ObjectFile(path, sections, symbols)
+    return ObjectFile(path, sections, symbols, archive)

@@ -12,7 +12,8 @@ from pathlib import Path
 from image.boot_code import BootCode, read_boot_code
 from image.command_file import CommandFile, read_command_file
 from image.elf import ObjectFile, read_object
-from image.sizes import RUN_TIME_WORDS, object_words
+from image.resident import unresident
+from image.sizes import RUN_TIME_LIBRARY, RUN_TIME_WORDS, object_words
 from image.stack import Depth, stack_depth
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -20,6 +21,7 @@ BUDGET = ROOT / "toolchain" / "f2808" / "image_budget.txt"
 # What TI's libraries bring: the C start-up, what a compiler calls for arithmetic or copying, and the flash library.
 RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR|Flash2808_\w+|Flash_\w+")
 KERNEL = "flash_kernel_main"
+RESIDENT = "resident"  # the section that stays in sector A
 NO_CODE = "no code for the C28x: see the map beside this file\n"  # all that the linked file holds
 FLASH_LIBRARY_WORDS = 1600  # room for TI's flash library in the kernel; a guess
 
@@ -40,7 +42,7 @@ class Pile:
         if data[:4] == b"\x7fELF":
             self.objects.append(read_object(path))
         elif path.suffix in (".lib", ".a"):
-            self.archived += [read_object(Path(member)) for member in data.decode().split()]
+            self.archived += [read_object(Path(member), path.name) for member in data.decode().split()]
         else:
             self.boot = read_boot_code(path)
 
@@ -59,13 +61,15 @@ class Pile:
         defined = set(self.boot.defined).union(*(obj.defined for obj in self.objects))
         return set(self.boot.wanted).union(*(obj.wanted for obj in self.objects)) - defined
 
-    def words(self) -> dict[str, int]:
-        """Words by section of the image."""
+    def words(self, file: CommandFile | None = None) -> dict[str, int]:
+        """Words by section of the objects, or by the image's sections that a linker command file puts them into."""
         total = dict(self.boot.words)
-        for obj in self.objects:
-            for name, words in object_words(obj).items():
+        pieces = [(obj.archive, obj.path.name, object_words(obj)) for obj in self.objects]
+        pieces += [(RUN_TIME_LIBRARY, member, {".text": words}) for member, words in RUN_TIME_WORDS.items()]
+        for archive, member, sections in pieces:
+            for section, words in sections.items():
+                name = file.section_of(archive, member, section) if file else section
                 total[name] = total.get(name, 0) + words
-        total[".text"] = total.get(".text", 0) + RUN_TIME_WORDS
         return total
 
 
@@ -107,10 +111,12 @@ def budgets(figures: dict[str, int]) -> tuple[list[str], list[str]]:
     return rows, complaints
 
 
-def figures_of(words: dict[str, int], pile: Pile, depth: Depth) -> dict[str, int]:
+def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Depth) -> dict[str, int]:
     """What the budgets are about."""
+    words = pile.words()
     scope = sum(s.size // 2 for o in pile.objects for s in o.sections if s.name == ".bss.ring" and s.size > 4096)
     flash = sum(words.get(n, 0) for n in (".text", ".econst", ".cinit", ".pinit", ".switch", "ramfuncs"))
+    resident = placed.get(RESIDENT, 0)
     return {
         "ram_code": words.get("ramfuncs", 0),
         "scope": scope,
@@ -119,7 +125,8 @@ def figures_of(words: dict[str, int], pile: Pile, depth: Depth) -> dict[str, int
         "constants": words.get(".econst", 0) - words.get("strings", 0),
         "code": words.get(".text", 0),
         "flash": flash,
-        "update": flash,
+        "resident": resident,
+        "update": flash - min(resident, file.ranges["RESIDENT"].length),
         "stack": depth.total,
     }
 
@@ -131,7 +138,7 @@ def link(arguments: list[str]) -> int:
     file = read_command_file(next(path for path in paths if path.suffix == ".cmd"))
     pile = Pile(path for path in paths if path.suffix != ".cmd")
     missing = sorted(n for n in pile.missing() - file.symbols if not RUN_TIME.fullmatch(n))
-    words = pile.words()
+    words = pile.words(file)
     if any(KERNEL in obj.defined for obj in pile.objects):
         depth = stack_depth(pile.objects, ("main",))
         words[".text"] += FLASH_LIBRARY_WORDS
@@ -140,7 +147,8 @@ def link(arguments: list[str]) -> int:
     else:
         depth = stack_depth(pile.objects)
         fill, unfit = place(words, file)
-        rows, grown = budgets(figures_of(words, pile, depth))
+        rows, grown = budgets(figures_of(pile, words, file, depth))
+        grown += unresident(pile.objects, file, RESIDENT)
     lines = [
         "| estimated words | now | goal | |",
         "|---|---|---|---|",
@@ -150,7 +158,7 @@ def link(arguments: list[str]) -> int:
         "|---|---|---|",
     ]
     lines += [f"| {name} | {used} | {file.ranges[name].length} |" for name, used in fill.items()]
-    code, sectors = words.get(".text", 0), ("APP", "BOOT")
+    code, sectors = pile.words().get(".text", 0), ("APP", "RESIDENT")
     if set(sectors) <= set(fill):
         free = sum(file.ranges[name].length - fill[name] for name in sectors)
         lines += ["", f"the chip is full when code takes {(code + free) / code:.2f} words for a half word of Thumb-2"]

@@ -24,8 +24,8 @@ OF_QMATH += ",q_follow,q_follow_near,q_mix,q_mix_sat,q_share_q30"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
-OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed"
-OF_TYPING = f"{OF_NAMES},text_number,decimal_raw,packed_occurs,suggest_is_near"
+OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed,packed_is_empty"
+OF_TYPING = f"{OF_NAMES},text_number,decimal_raw,packed_occurs,packed_equals,packed_is,packed_copy,suggest_is_near"
 OF_LINES = "editor_octet,editor_next,editor_show"
 OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
 OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
@@ -129,7 +129,7 @@ PARTS = (
     eva("commissioning", ("tests/prove/start.c", *ESTIMATORS), (*ROUNDS, "-eva-min-loop-unroll", "70"), OF_QMATH),
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64"),
-    of_link("packed", TYPED, ("-eva-min-loop-unroll", "470")),
+    of_link("packed", TYPED, ("-eva-min-loop-unroll", "900")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH),
     of_link("near", TYPED, NAMES, OF_QMATH, OF_NAMES),

@@ -107,8 +107,8 @@ def _tell_plan(image: DriveImage) -> None:
     for sector in layout.SECTORS:
         words = words_to_write(image, sector)
         print(f"sector {sector.name}: erase, then {words} words")
-    boot = sum(len(block.words) for block in image.boot)
-    print(f"sector A: not written; {boot} words of boot code are compared with the board's")
+    kept = sum(len(block.words) for block in image.resident)
+    print(f"sector A: not written; {kept} words of boot code and resident part are compared with the board's")
     print("dry run: nothing was sent")
 
 

@@ -69,12 +69,12 @@ def identity_of(words: tuple[int, ...]) -> Identity | None:
 
 @dataclass(frozen=True)
 class DriveImage:
-    """A drive for sectors B to D, and the boot code it was linked with."""
+    """A drive for sectors B to D, and the sector A that it was linked with."""
 
     words: tuple[int, ...]
     """All of layout.UPDATE, with the mark; erased where the file has nothing."""
-    boot: tuple[Block, ...]
-    """What the file has for sector A: compared with the board, never written."""
+    resident: tuple[Block, ...]
+    """What the file has for sector A, boot code and resident part: compared with the board, never written."""
     identity: Identity
     size: int
     """Words that the file has for the update."""
@@ -124,7 +124,7 @@ def drive_image(path: Path) -> DriveImage:
     """
     program, name = read_program(path), str(path)
     words = [layout.ERASED] * len(layout.UPDATE)
-    boot, size = [], 0
+    resident, size = [], 0
     for block in program.blocks:
         _place(block, name)
         update, above = _split(block)
@@ -133,14 +133,14 @@ def drive_image(path: Path) -> DriveImage:
             words[at : at + len(update.words)] = update.words
             size += len(update.words)
         if above:
-            boot.append(above)
+            resident.append(above)
     at = layout.IDENTITY - layout.UPDATE.start
     identity = identity_of(tuple(words[at : at + layout.IDENTITY_WORDS]))
     if words[at] != layout.MARK or identity is None:
         raise InputError(
             f"{name}: is no image of this drive: no mark and identity at 0x{layout.IDENTITY:06X} (hal/hal_image.h)"
         )
-    return DriveImage(tuple(words), tuple(boot), identity, size, image_sum.check(program, name))
+    return DriveImage(tuple(words), tuple(resident), identity, size, image_sum.check(program, name))
 
 
 def kernel_program(path: Path) -> Program:

@@ -87,7 +87,7 @@ def check_board(kernel: Kernel, line: Line, image: DriveImage) -> Info:
     """Refuse a board that may not get this image, before anything is erased.
 
     Raises:
-        RefusedError: another chip, a locked one, or one whose boot code is missing or another one.
+        RefusedError: another chip, a locked one, one without boot code or with another sector A.
     """
     info = kernel.info()
 
@@ -100,11 +100,11 @@ def check_board(kernel: Kernel, line: Line, image: DriveImage) -> Info:
         raise refuse("the chip is locked by passwords: open it over JTAG")
     if not info.has_boot_entry:
         raise refuse("the board has no boot code in sector A: program it once over JTAG, see docs/flash.md")
-    for block in image.boot:
+    for block in image.resident:
         if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
             raise refuse(
-                f"the image was linked with other boot code than the board has (0x{block.address:06X}), and sector A "
-                "is never written here: program it over JTAG"
+                f"the image's sector A (boot code and resident part, from 0x{block.address:06X}) is not the board's, "
+                "and sector A is never written here: program the whole image over JTAG, see docs/flash.md"
             )
     return info
 
