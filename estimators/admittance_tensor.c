@@ -2,32 +2,25 @@
 
 #include "estimators/fit.h"
 
-#define TENTH_Q20 104858L              // 100 us in ms: mH = ms / (A per V and period)
-#define SUM_END 4611686018427387903LL  // with one more product of 32-bit numbers it stays in 64 bits
-#define SPREAD_MIN_Q28 26843546L       // determinant of the normalised sums: a tenth of that of evenly spread vectors
+#define TENTH_Q20 104858L         // 100 us in ms: mH = ms / (A per V and period)
+#define SPREAD_MIN_Q28 26843546L  // determinant of the normalised sums: a tenth of that of evenly spread vectors
 
 void tensor_reset(tensor_sums_t* s) {
   static const tensor_sums_t none = {0, 0, 0, 0, 0, 0, 0, 0};
   *s = none;
 }
 
-// A sum of products that goes no further than its format, which is far beyond what a commissioning adds up.
-static int64_t with(int64_t sum, int32_t a, int32_t b) {
-  const int64_t before = (sum > SUM_END) ? SUM_END : (sum < -SUM_END) ? -SUM_END : sum;
-  return before + (int64_t)a * b;
-}
-
 void tensor_add(tensor_sums_t* s, const deviation_t* first, const deviation_t* second) {
   const dq_t v = {q_shr(first->voltage_q16.d - second->voltage_q16.d, 10),
                   q_shr(first->voltage_q16.q - second->voltage_q16.q, 10)};
   const dq_t r = {first->residual_q20.d - second->residual_q20.d, first->residual_q20.q - second->residual_q20.q};
-  s->vv_dd = with(s->vv_dd, v.d, v.d);
-  s->vv_dq = with(s->vv_dq, v.d, v.q);
-  s->vv_qq = with(s->vv_qq, v.q, v.q);
-  s->sv_dd = with(s->sv_dd, r.d, v.d);
-  s->sv_dq = with(s->sv_dq, r.d, v.q);
-  s->sv_qd = with(s->sv_qd, r.q, v.d);
-  s->sv_qq = with(s->sv_qq, r.q, v.q);
+  s->vv_dd = q_gather(s->vv_dd, q_product(v.d, v.d));
+  s->vv_dq = q_gather(s->vv_dq, q_product(v.d, v.q));
+  s->vv_qq = q_gather(s->vv_qq, q_product(v.q, v.q));
+  s->sv_dd = q_gather(s->sv_dd, q_product(r.d, v.d));
+  s->sv_dq = q_gather(s->sv_dq, q_product(r.d, v.q));
+  s->sv_qd = q_gather(s->sv_qd, q_product(r.q, v.d));
+  s->sv_qq = q_gather(s->sv_qq, q_product(r.q, v.q));
   s->count = q_add_sat(s->count, 1);
 }
 

@@ -23,13 +23,13 @@ static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t b
   return state;
 }
 
-static void gather(hysteresis_t* h, int32_t a, int32_t b, uint16_t link_code) {
+static void gather(hysteresis_sums_t* s, int32_t a, int32_t b, uint16_t link_code) {
   const int32_t largest = q_max(q_max(q_abs_sat(a), q_abs_sat(b)), q_abs_sat(a + b));
-  h->sum_a_q8 += a;
-  h->sum_b_q8 += b;
-  h->peak_q8 = q_max(h->peak_q8, largest);
-  h->link_code = link_code;
-  h->slices++;
+  s->a_q8 += a;
+  s->b_q8 += b;
+  s->peak_q8 = q_max(s->peak_q8, largest);
+  s->link_code = link_code;
+  s->slices++;
 }
 
 static uint16_t risen(uint16_t before, uint16_t now) {
@@ -52,29 +52,29 @@ void drive_hysteresis_slice(hysteresis_t* h) {
   h->state = state;
   h->reference_a_q8 += h->step_a_q8;
   h->reference_b_q8 += h->step_b_q8;
-  gather(h, a, b, now.link);
+  gather(&h->sums, a, b, now.link);
   hal_profile_step(CYCLES_SLICE);
 }
 
 void drive_hysteresis_samples(drive_t* d) {
   hysteresis_t* const h = &d->hysteresis;
   const uint16_t state = hal_irq_disable();
-  const hysteresis_t taken = *h;
-  h->sum_a_q8 = 0;
-  h->sum_b_q8 = 0;
-  h->peak_q8 = 0;
-  h->slices = 0;
+  const hysteresis_sums_t taken = h->sums;
+  h->sums.a_q8 = 0;
+  h->sums.b_q8 = 0;
+  h->sums.peak_q8 = 0;
+  h->sums.slices = 0;
   hal_irq_restore(state);
   d->samples.count = 0;
   d->supervision.missing = (taken.slices > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
   if (taken.slices == 0u) return;
   const int32_t per_code_q30 = d->config.slopes.amps_per_code_q30;
-  const int32_t a_q20 = q_mul(taken.sum_a_q8 / (int32_t)taken.slices, per_code_q30, 18);
-  const int32_t b_q20 = q_mul(taken.sum_b_q8 / (int32_t)taken.slices, per_code_q30, 18);
+  const int32_t a_q20 = q_mul(taken.a_q8 / (int32_t)taken.slices, per_code_q30, 18);
+  const int32_t b_q20 = q_mul(taken.b_q8 / (int32_t)taken.slices, per_code_q30, 18);
   // The mean of the period before, whose middle lies half a period behind the angle of its start.
   const uint32_t middle_bam = d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2);
   d->control.measured_q20 = frame_turned(frame_clarke2(a_q20, b_q20), middle_bam);
-  d->samples.link_q16 += q_shr((int32_t)taken.link_code * d->config.volts_per_code_q16 - d->samples.link_q16, 3);
+  d->samples.link_q16 = q_follow_near(d->samples.link_q16, (int32_t)taken.link_code * d->config.volts_per_code_q16, 3);
   if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_raise(d, FAULT_CURRENT_LIMIT);
 }
 

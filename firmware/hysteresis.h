@@ -13,17 +13,23 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/// Of the slices since the last control interrupt, codes.
+typedef struct {
+  int32_t a_q8, b_q8, peak_q8;
+  uint16_t link_code, slices;
+} hysteresis_sums_t;
+
 typedef struct {
   volatile bool running;
-  uint16_t state;                        // legs, bit k: leg k high
-  int32_t offset_a_q8, offset_b_q8;      // codes at zero current
-  int32_t reference_a_q8, step_a_q8;     // phase a, and its change per slice
-  int32_t reference_b_q8, step_b_q8;     // phase b
-  int32_t band_q8;                       // half width
-  int32_t sum_a_q8, sum_b_q8, peak_q8;   // of the slices since the last control interrupt
-  uint16_t link_code, slices, switched;  // switched: legs that have gone high
-  int32_t band_q20;                      // A
-  uint16_t counted, periods;             // for the adaptation
+  uint16_t state;                     // legs, bit k: leg k high
+  int32_t offset_a_q8, offset_b_q8;   // codes at zero current
+  int32_t reference_a_q8, step_a_q8;  // phase a, and its change per slice
+  int32_t reference_b_q8, step_b_q8;  // phase b
+  int32_t band_q8;                    // half width
+  hysteresis_sums_t sums;
+  uint16_t switched;          // legs that have gone high
+  int32_t band_q20;           // A
+  uint16_t counted, periods;  // for the adaptation
 } hysteresis_t;
 
 #endif

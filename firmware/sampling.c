@@ -79,19 +79,19 @@ static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_wi
   out->voltage_q16.beta = sides_of_state[state] * s->side_q16 - drop.beta;
 }
 
-// An eighth of what each window says more; up to 2000 V, so that the sum stays in 31 bits.
-static void follow_link(drive_t* d, const sampling_buffer_t* b) {
-  if (b->count == 0u) return;
+// Takes over an eighth of what each window says; up to 2000 V, so that the sum stays in 31 bits.
+static void follow_link(drive_t* d, const sampling_buffer_t* b, uint16_t count) {
+  if (count == 0u) return;
   drive_samples_t* const s = &d->samples;
   const int32_t volts_per_code_q16 = d->config.volts_per_code_q16;
-  int32_t more_q16 = 0;
+  int32_t sum_q16 = 0;
   if (s->link_q16 == 0) s->link_q16 = (int32_t)b->windows[0].link * volts_per_code_q16;
-  for (uint16_t k = 0; k < b->count; k++) {
+  for (uint16_t k = 0; k < count; k++) {
     const int32_t volts_q16 = (int32_t)b->windows[k].link * volts_per_code_q16;
     s->link_end_q16[k] = volts_q16;
-    more_q16 += volts_q16 - s->link_q16;
+    sum_q16 += volts_q16;
   }
-  s->link_q16 += q_shr(more_q16, 3);
+  s->link_q16 = q_shr(sum_q16 + (8 - (int32_t)count) * s->link_q16, 3);
 }
 
 void drive_read_samples(drive_t* d) {
@@ -108,7 +108,7 @@ void drive_read_samples(drive_t* d) {
   if (!complete) return;
   s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
   s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
-  follow_link(d, b);
+  follow_link(d, b, p->window_count);
   if (d->schedule.turn == TURN_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
   const scale_t scale = scale_of(d);
   int16_t middles[ESTIMATOR_WINDOWS];

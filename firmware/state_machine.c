@@ -22,7 +22,7 @@ void drive_enter(drive_t* d, drive_state_t state) {
 static bool current_flows(drive_t* d) {
   const int32_t off_q8 =
       q_abs_sat(d->samples.raw_a_q8 - d->trim.offset_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->trim.offset_b_q8);
-  d->unrest_q8 += q_shr(off_q8 - d->unrest_q8, 5);
+  d->unrest_q8 = q_follow_near(d->unrest_q8, off_q8, 5);
   return d->unrest_q8 > UNREST_MAX_Q8;
 }
 
@@ -30,8 +30,8 @@ static void calibrate(drive_t* d) {
   slopes_trim_t* const c = &d->trim;
   if (d->supervision.missing > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
   if (d->samples.count == 0u) return;
-  c->offset_a_q8 += q_shr(d->samples.raw_a_q8 - c->offset_a_q8, 4);
-  c->offset_b_q8 += q_shr(d->samples.raw_b_q8 - c->offset_b_q8, 4);
+  c->offset_a_q8 = q_follow_near(c->offset_a_q8, d->samples.raw_a_q8, 4);
+  c->offset_b_q8 = q_follow_near(c->offset_b_q8, d->samples.raw_b_q8, 4);
   const bool flows = current_flows(d);
   if (flows) d->calm_at = d->periods + CALIBRATE_PERIODS;
   const bool calm = d->periods >= d->calm_at;

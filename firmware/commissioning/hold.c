@@ -20,7 +20,7 @@
 void commissioning_set_d(drive_t* d, int32_t level_q20) {
   const int32_t step = parameters.current_limit / SLOPE_STEPS;
   dq_t* const r = &d->control.reference_q20;
-  r->d += q_clamp(level_q20 - r->d, -step, step);
+  r->d = q_clamp(level_q20, r->d - step, r->d + step);
 }
 
 void commissioning_hold(drive_t* d) {

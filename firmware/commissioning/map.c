@@ -63,7 +63,7 @@ static void begin_train(drive_t* d) {
 static void predict(const drive_t* d, map_t* m) {
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
   m->speed_q8 = q_add_sat(m->speed_q8, q_mul_sat(torque_q16, d->model.accel_q12, 20));
-  m->position_bam += q_shr(m->speed_q8, 8);
+  m->position_bam = q_add_sat(m->position_bam, q_shr(m->speed_q8, 8));
 }
 
 static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
@@ -74,8 +74,8 @@ static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
   const bool negative = (signs[segment] < 0) != (mirrored != 0u);
   map_group_t* const g = &m->group[m->level][2u * mirrored + (negative ? 1u : 0u)];
   tensor_add(&g->tensor, &first, &second);
-  g->position += m->position_bam;
-  g->current += d->control.measured_q20.q;
+  g->position = q_gather(g->position, m->position_bam);
+  g->current = q_gather(g->current, d->control.measured_q20.q);
 }
 
 // The second of two equal segments need not settle.
@@ -88,21 +88,23 @@ static bool usable(const map_t* m, uint16_t segment) {
 // controller with that delay. So the integrator has nothing to do and the current does not overshoot.
 static void follow(drive_t* d, map_t* m, int32_t target_q20) {
   const int32_t step = parameters.current_limit / SLOPE_STEPS;
-  const int32_t change = q_clamp(target_q20 - m->plan[0], -step, step);
+  const int32_t last = m->plan[0];
   d->control.reference_q20.q = m->plan[1];
-  m->plan[1] = m->plan[0];
-  m->plan[0] += change;
-  d->control.feed_q16 = q_div(change, d->model.yq_q30, 26);
+  m->plan[1] = last;
+  m->plan[0] = q_limit(q_clamp(target_q20, last - step, last + step), parameters.current_limit);
+  d->control.feed_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
 }
 
 static void run_train(drive_t* d, map_t* m) {
-  const uint16_t segment = (uint16_t)(m->tick / m->segment);
-  const bool tail = segment >= SEGMENTS;
+  const uint16_t segment = (uint16_t)(m->tick / q_max(m->segment, 1));
+  int32_t sign = 0;
   predict(d, m);
-  if (!tail && usable(m, segment)) add_period(d, m, segment);
-  const int32_t sign = tail ? 0 : ((m->train % 2u) != 0u) ? -signs[segment] : signs[segment];
+  if (segment < SEGMENTS) {
+    if (usable(m, segment)) add_period(d, m, segment);
+    sign = ((m->train % 2u) != 0u) ? -signs[segment] : signs[segment];
+  }
   follow(d, m, sign * level_q20(m->level));
-  m->tick++;
+  m->tick = q_add_sat(m->tick, 1);
   if (m->tick < SEGMENTS * m->segment + blank(m->level)) return;
   m->pause = true;
   m->tick = 0;
@@ -138,6 +140,7 @@ bool commissioning_map(drive_t* d) {
     d->commissioning.target_bam = d->position.used.angle_bam;
     tensor_reset(&d->commissioning.unsaturated);
   }
+  if (m->level >= MAP_LEVELS) return true;
   if (!m->pause) {
     run_train(d, m);
     return false;
@@ -146,7 +149,8 @@ bool commissioning_map(drive_t* d) {
   move_on(d, m);
   commissioning_hold(d);
   if (m->tick > length - STILL_PERIODS) add_pause(d);
-  if (m->tick++ < length) return false;
+  m->tick = q_add_sat(m->tick, 1);
+  if (m->tick <= length) return false;
   if (level_complete(m)) {
     m->level++;
     m->train = 0;

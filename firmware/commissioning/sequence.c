@@ -78,7 +78,7 @@ void commissioning_step(drive_t* d) {
     return;
   }
   const bool done = phases[c->phase].step(d);
-  c->tick++;
+  c->tick = q_add_sat(c->tick, 1);
   if (done) next_phase(d);
 }
 

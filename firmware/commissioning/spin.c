@@ -17,17 +17,17 @@
 typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
 
 static void add_station(const drive_t* d, spin_station_t* s) {
-  s->speed += d->position.used.speed_bpp;
-  s->voltage_q += d->control.command_q16.q;
-  s->current_q += d->control.measured_q20.q;
-  s->current_d += d->control.measured_q20.d;
-  s->periods++;
+  s->speed = q_gather(s->speed, d->position.used.speed_bpp);
+  s->voltage_q = q_gather(s->voltage_q, d->control.command_q16.q);
+  s->current_q = q_gather(s->current_q, d->control.measured_q20.q);
+  s->current_d = q_gather(s->current_d, d->control.measured_q20.d);
+  s->periods = q_add_sat(s->periods, 1);
 }
 
 static void add_ramp(const drive_t* d, spin_ramp_t* s) {
-  s->speed += d->position.used.speed_bpp;
-  s->current_q += d->control.measured_q20.q;
-  s->periods++;
+  s->speed = q_gather(s->speed, d->position.used.speed_bpp);
+  s->current_q = q_gather(s->current_q, d->control.measured_q20.q);
+  s->periods = q_add_sat(s->periods, 1);
 }
 
 static int32_t target_rpm_q16(uint16_t leg) {
@@ -54,8 +54,9 @@ static void begin(drive_t* d) {
 static bool approach(drive_t* d) {
   const int32_t high = q_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
   const int32_t goal = q_mul_sat(target_rpm_q16(d->commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
+  const int32_t step = high / RAMP_PERIODS;
   int32_t* const target = &d->control.target_bpp;
-  *target += q_clamp(goal - *target, -(high / RAMP_PERIODS), high / RAMP_PERIODS);
+  *target = q_clamp(goal, q_sub_sat(*target, step), q_add_sat(*target, step));
   return *target == goal && d->control.ramp.value == goal;
 }
 
@@ -81,15 +82,15 @@ bool commissioning_spin(drive_t* d) {
   if (d->commissioning.tick == 0) begin(d);
   if (!d->commissioning.turning) return hand_back(d);
   const bool arrived = approach(d);
-  if (s->leg == (uint16_t)LEG_STOP) {
-    s->tick += arrived ? 1 : 0;
+  if (s->leg >= (uint16_t)LEG_STOP) {
+    s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
     if (s->tick > STILL_PERIODS) (void)hand_back(d);  // the background level comes first
     return false;
   }
   const bool settling = s->tick < SETTLE_PERIODS;
   if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
   if (!settling) add_station(d, &s->station[s->leg]);
-  s->tick += arrived ? 1 : 0;
+  s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
   if (s->tick >= SETTLE_PERIODS + STATION_PERIODS) enter_leg(d, (uint16_t)(s->leg + 1u));
   return false;
 }

@@ -52,10 +52,10 @@ static int32_t factor_q20(const drive_t* d, ab_t current_q20, rotation_t r) {
 
 static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
   const dq_t i = d->control.measured_q20;
-  l->current += i.d;
-  l->command += (int64_t)d->control.command_q16.d * 16;
-  l->factor += factor_q20(d, frame_inverse_park(i, r), r);
-  l->periods++;
+  l->current = q_gather(l->current, i.d);
+  l->command = q_gather(l->command, (int64_t)d->control.command_q16.d * 16);
+  l->factor = q_gather(l->factor, factor_q20(d, frame_inverse_park(i, r), r));
+  l->periods = q_add_sat(l->periods, 1);
 }
 
 // Difference of the link between the middles of the two windows, from that between their ends, as a voltage along d.
@@ -74,15 +74,15 @@ static int32_t sag_q20(const drive_t* d, const deviation_t w[2]) {
 }
 
 static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
-  deviation_t w[2];
+  deviation_t w[2] = {{{0, 0}, {0, 0}, {0, 0}}, {{0, 0}, {0, 0}, {0, 0}}};
   if (!commissioning_pair(d, &w[0], &w[1])) return;
   for (uint16_t k = 0; k < 2u; k++) {
-    l->window_current += w[k].current_q20.d;
-    l->window_factor += factor_q20(d, d->samples.windows[k].current_q20, r);
-    l->residual += w[k].residual_q20.d;
-    l->windows++;
+    l->window_current = q_gather(l->window_current, w[k].current_q20.d);
+    l->window_factor = q_gather(l->window_factor, factor_q20(d, d->samples.windows[k].current_q20, r));
+    l->residual = q_gather(l->residual, w[k].residual_q20.d);
+    l->windows = q_add_sat(l->windows, 1);
   }
-  l->sag += sag_q20(d, w);
+  l->sag = q_gather(l->sag, sag_q20(d, w));
 }
 
 bool commissioning_climb(drive_t* d) {
@@ -92,11 +92,16 @@ bool commissioning_climb(drive_t* d) {
     clear(s, sizeof *s);
   }
   commissioning_hold(d);
-  const bool done = s->index >= STAIRCASE_LEVELS;
-  commissioning_set_d(d, done ? 0 : level_q20(d, s->index));
-  if (done) return d->control.reference_q20.d == 0 && s->tick++ > SETTLE_PERIODS;
+  if (s->index >= STAIRCASE_LEVELS) {
+    commissioning_set_d(d, 0);
+    if (d->control.reference_q20.d != 0) return false;
+    s->tick = q_add_sat(s->tick, 1);
+    return s->tick > SETTLE_PERIODS + 1;
+  }
+  commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];
-  if (s->tick++ >= SETTLE_PERIODS) {
+  s->tick = q_add_sat(s->tick, 1);
+  if (s->tick > SETTLE_PERIODS) {
     const rotation_t r = frame_rotation(d->position.used.angle_bam);
     add_period(d, l, r);
     add_windows(d, l, r);

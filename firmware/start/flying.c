@@ -129,7 +129,7 @@ void start_step_pulse(drive_t* d) {
 static void learn(drive_t* d) {
   drive_start_t* const s = &d->start;
   s->rotor.angle_bam += (uint32_t)s->rotor.speed_bpp;
-  int32_t axis_bam;
+  int32_t axis_bam = 0;
   s->learnt = start_sees_axis(d, !drive_is_blind(d), &axis_bam);
   if (s->learnt) {
     s->rotor.angle_bam += (uint32_t)q_limit(axis_bam, STRAY_MAX_BAM);
@@ -150,7 +150,7 @@ void start_step_catch(drive_t* d) {
     learn(d);
     return;
   }
-  s->stray += q_shr(d->position.avv.error_bam - s->stray, 4);
+  s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
   if (s->tick < CATCH_PERIODS || !start_decides(d)) return;
   if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
     start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);

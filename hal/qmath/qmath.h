@@ -15,6 +15,7 @@
 #include "hal/qmath/qarith.h"
 #include "hal/qmath/qdiv.h"
 #include "hal/qmath/qsqrt.h"
+#include "hal/qmath/qsum.h"
 #include "hal/qmath/qtrig.h"
 
 #endif

@@ -27,6 +27,34 @@ DEFECTS = (
     Defect("quotients", "q_invert", "hal/qmath/qdiv.c", "(divisor > 0) ?", "(divisor >= 0) ?"),
     Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
     Defect("angles", "sincos_of_quadrant", "hal/qmath/qtrig.c", "sine_q30[node]", "sine_q30[node + 1u]"),
+    Defect(
+        "interrupt",
+        "hal_adc_read_window",
+        "firmware/sampling.c",
+        "(place < ESTIMATOR_WINDOWS)",
+        "(place < ESTIMATOR_WINDOWS + 1u)",
+    ),
+    Defect(
+        "interrupt",
+        "run_train",
+        "firmware/commissioning/map.c",
+        "if (segment < SEGMENTS) {",
+        "if (segment <= SEGMENTS) {",
+    ),
+    Defect(
+        "interrupt",
+        "add_period",
+        "firmware/commissioning/staircase.c",
+        "s->index >= STAIRCASE_LEVELS",
+        "s->index > STAIRCASE_LEVELS",
+    ),
+    Defect(
+        "interrupt",
+        "calibrate",
+        "firmware/state_machine.c",
+        "d->supervision.missing > SAMPLES_TIMEOUT",
+        "SAMPLES_TIMEOUT / d->supervision.missing < 1u",
+    ),
     Defect("svpwm", "alternate", "svpwm/modulator.c", "* FOUR_FIFTHS_Q15", "* 99 * FOUR_FIFTHS_Q15"),
     Defect(
         "turned", "turned", "estimators/deviation.c", "(square_q28 - fourth_q28) * 2", "(square_q28 - fourth_q28) * 16"

@@ -1,10 +1,13 @@
 """The parts of the drive's C that Frama-C reads together: files, options, and what is taken for granted in them."""
 
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
 LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
 ROTATION_RANGES = "tests/prove/rotation_ranges.h"
+INTERRUPT_RANGES = "tests/prove/interrupt_ranges.h"
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,24 @@ BESIDE = (
 )
 TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
 
+# All that the control interrupt runs but what speaks to the chip; and what of that is read by itself.
+INTERRUPT = (
+    *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/scope/scope.c", *ESTIMATORS, "svpwm/*.c"),
+    *(f"firmware/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "position", "flux_source")),
+    *(f"firmware/{name}.c" for name in ("protection", "state_machine", "speed_task", "inertia_task", "current_task")),
+    *(f"firmware/{name}.c" for name in ("modulation", "hysteresis", "signals", "drive_api", "background")),
+    *("firmware/parameters.c", "firmware/fault_history.c"),
+    *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
+    *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),
+)
+
+
+def with_contract(header: str) -> str:
+    """The functions that a header of tests/prove/ has a contract of."""
+    text = (Path(__file__).resolve().parents[2] / header).read_text(encoding="utf-8")
+    return ",".join(re.findall(r"\*/\n[\w ]+?[ *](\w+)\(", text))
+
+
 SLICES = (
     *("-eva-slevel", "100", "-eva-auto-loop-unroll", "600"),
     *("-eva-split-return-function", "q_clz32:full"),
@@ -73,6 +94,7 @@ APART = (
     *("-eva-auto-loop-unroll", "40", "-eva-slevel", "100"),
     *("-eva-partition-history", "2", "-eva-interprocedural-history"),
 )
+WHOLE = ("-eva-auto-loop-unroll", "12", "-eva-widening-delay", "8")
 NUMBERS = (
     *("-eva-min-loop-unroll", "130", "-eva-slevel", "12", "-eva-split-return", "auto"),
     *("-eva-slevel-function", "put_digits:60"),
@@ -127,6 +149,13 @@ PARTS = (
         header=ROTATION_RANGES,
     ),
     eva("commissioning", ("tests/prove/start.c", *ESTIMATORS), (*ROUNDS, "-eva-min-loop-unroll", "70"), OF_QMATH),
+    eva(
+        "interrupt",
+        INTERRUPT,
+        (*WHOLE, "-eva-slevel-function", "parameters_reset:200,follow_link:20"),
+        f"{OF_QMATH},{with_contract(INTERRUPT_RANGES)}",
+        header=INTERRUPT_RANGES,
+    ),
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64"),
     of_link("packed", TYPED, ("-eva-min-loop-unroll", "900")),

@@ -1,0 +1,133 @@
+// The control interrupt and the window interrupts, period after period without end: any codes of the converter, any
+// counts of the encoder, any state of the pins, any wishes of the background level, and any parameters, changed at any
+// time. The floors below are read by themselves (interrupt_ranges.h).
+
+#include <string.h>
+
+#include "firmware/board/selftest.h"
+#include "firmware/clear.h"
+#include "firmware/commissioning/result.h"
+#include "firmware/drive.h"
+#include "firmware/parameters.h"
+#include "firmware/sampling.h"
+#include "firmware/store/store.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_encoder.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_lines.h"
+#include "hal/hal_profile.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_safety.h"
+#include "hal/hal_slices.h"
+#include "hal/hal_tape.h"
+#include "tests/prove/any_config.h"
+
+static uint16_t any_up_to(uint16_t most) { return (uint16_t)any_from(0, most); }
+
+static void any_parameters(void) {
+  int32_t* const values = (int32_t*)(void*)&parameters;
+  //@ loop unroll 200;
+  for (uint16_t k = 0; k < parameter_count(); k++) {
+    values[k] = any_from(parameter_info(k)->minimum, parameter_info(k)->maximum);
+  }
+}
+
+// EVA knows memset as a whole, but octet after octet of a structure as anything.
+void clear(void* at, size_t count) { (void)memset(at, 0, count); }
+
+void hal_adc_read_window(hal_adc_window_t* w) {
+  w->start_a = any_up_to(4u * 4095u);
+  w->start_b = any_up_to(4u * 4095u);
+  w->end_a = any_up_to(3u * 4095u);
+  w->end_b = any_up_to(3u * 4095u);
+  w->link = any_up_to(4095);
+  w->aux = any_up_to(4095);
+}
+
+void hal_slice_read(hal_slice_t* slice) {
+  slice->current_a = any_up_to(4095);
+  slice->current_b = any_up_to(4095);
+  slice->link = any_up_to(4095);
+}
+
+uint32_t hal_encoder_count(void) { return any_u32; }
+uint16_t hal_irq_disable(void) { return any_u16; }
+void hal_irq_restore(uint16_t state) { (void)state; }
+uint16_t hal_irq_unexpected_count(void) { return any_u16; }
+bool hal_lines_emergency(void) { return any_bool(); }
+void hal_profile_step(uint16_t cycles) { (void)cycles; }
+void hal_pwm_gates_off(void) {}
+bool hal_pwm_gates_on(void) { return any_bool(); }
+bool hal_pwm_is_tripped(void) { return any_bool(); }
+bool hal_pwm_was_tripped_by_pin(void) { return any_bool(); }
+uint16_t hal_pwm_period_tick(void) { return any_up_to(HAL_PWM_PERIOD_TICKS); }
+bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+  (void)frame;
+  (void)deadline_tick;
+  return any_bool();
+}
+void hal_safety_fault_lamp(bool lit) { (void)lit; }
+void hal_safety_toggle_enable(void) {}
+void hal_slice_set_legs(uint16_t state) { (void)state; }
+bool hal_slices_begin(uint16_t slice_ticks) {
+  (void)slice_ticks;
+  return any_bool();
+}
+void hal_slices_end(void) {}
+void selftest_reset(void) {}
+void store_reset(void) {}
+void hal_encoder_init(uint32_t counts_per_turn) { (void)counts_per_turn; }
+bool hal_pwm_set_dead_band(uint16_t ticks) { return any_bool(); }
+bool hal_tape_has_work(tape_work_t work) { return true; }
+void hal_tape_work_begin(tape_work_t work) { (void)work; }
+void hal_tape_work_end(void) {}
+
+// The background level's part in the commissioning.
+void commissioning_judge(const commissioning_t* c, commissioning_report_t* report) {
+  (void)c;
+  report->count = 0;
+}
+commissioning_outcome_t commissioning_use(commissioning_report_t* report) {
+  (void)report;
+  any_parameters();
+  return any_bool() ? COMMISSIONING_DONE : COMMISSIONING_PARTLY;
+}
+void commissioning_solve_motion(commissioning_t* c) {
+  c->torque_q24 = any_i32;
+  c->accel_q12 = any_i32;
+}
+
+bool drive_config_load(drive_config_t* c) {
+  any_config(c);
+  return any_bool();
+}
+
+packed_text_t drive_config_or_conflict(const drive_config_t** made) {
+  static drive_config_t fresh;
+  any_config(&fresh);
+  *made = &fresh;
+  return any_bool() ? PACKED_NONE : any_up_to(PACKED_NONE - 1u);
+}
+
+static void one_period(void) {
+  if (any_bool()) any_parameters();
+  if (any_bool()) drive_parameters_changed();
+  if (any_bool()) background_step(&drive);
+  drive.request.start = any_bool();
+  drive.request.stop = any_bool();
+  drive.request.coast = any_bool();
+  drive.request.reset = any_bool();
+  drive.request.commission = any_bool();
+  drive.loading = any_bool();
+  drive.control.wanted_rpm_q16 = any_i32;
+  for (uint16_t k = 0; k < 3u; k++) {
+    if (any_bool()) drive_window_interrupt();
+  }
+  drive_control_step(&drive);
+}
+
+void prove_interrupt(void) {
+  drive_reset();
+  any_parameters();
+  while (any_bool()) one_period();
+}
