@@ -53,7 +53,6 @@ static uint16_t described;
 
 static bool describe(uint16_t step) {
   const parameter_info_t* const p = parameter_info(described);
-  if (p == NULL) return false;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
     put_packed(w, p->name);
@@ -82,8 +81,9 @@ void command_get(const words_of_line_t* a) {
     line_of(SAY_get_name_one_parameter_or_signal_list);
     return;
   }
-  described = find(&a->word[0]);
-  if (described < parameter_count()) {
+  const uint16_t parameter = find(&a->word[0]);
+  if (parameter < parameter_count()) {
+    described = parameter;
     console_run(describe, false);
     return;
   }
@@ -102,7 +102,7 @@ static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_t
   const uint16_t* const behind = &value->text[number_length];
   const uint16_t left = (uint16_t)(value->count - number_length);
   if (left > 0u) return a->count == 2u && packed_equals(unit, behind, left);
-  return a->count == 2u || word_is_packed(a, 2, unit);
+  return word_is_packed(a, 2, unit) || a->count == 2u;
 }
 
 static void refuse_unit(const parameter_info_t* p) {

@@ -146,9 +146,7 @@ static void play(void) {
   play_work();
 }
 
-static uint16_t outputs_of(const tape_period_t* p) {
-  return (p->output_count < TAPE_OUTPUTS) ? p->output_count : TAPE_OUTPUTS;
-}
+static uint16_t outputs_of(const tape_period_t* p) { return (uint16_t)q_min(p->output_count, TAPE_OUTPUTS); }
 
 static void shape_of(uint16_t* shape, bool torn, const tape_period_t* p) {
   shape[0] = torn ? 1u : 0u;

@@ -23,7 +23,8 @@ answer_status_t request_scope_setup(request_t* r) {
   if (mode > SCOPE_AUTO || edge > SCOPE_BELOW) return ANSWER_RANGE;
   s.mode = (scope_mode_t)mode;
   s.edge = (scope_edge_t)edge;
-  for (uint16_t k = 0; k < s.count && k < SCOPE_CHANNELS; k++) {
+  for (uint16_t k = 0; k < SCOPE_CHANNELS; k++) {
+    if (k >= s.count) break;
     s.channel[k].signal = take_u16(b);
     s.channel[k].shift = take_u8(b);
   }

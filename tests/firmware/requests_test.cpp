@@ -296,6 +296,18 @@ Octets scope_setup_body(std::uint16_t edge, Octets channels) {
          little(static_cast<std::uint32_t>(channels.size() / 3), 1) + channels;
 }
 
+TEST_F(Requests, TheScopeTakesAsManyChannelsAsItHas) {
+  Octets channels;
+  for (std::uint16_t k = 0; k < SCOPE_CHANNELS; ++k)
+    channels = channels + Octets{static_cast<std::uint16_t>(k + 3), 0, k};
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, channels)).status(), OK);
+  for (std::uint16_t k = 0; k < SCOPE_CHANNELS; ++k) {
+    EXPECT_EQ(scope_setup_in_force()->channel[k].signal, k + 3);
+    EXPECT_EQ(scope_setup_in_force()->channel[k].shift, k);
+  }
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, channels + Octets{3, 0, 0})).status(), LENGTH);
+}
+
 TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), STATE);
   EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, {4, 0, 16, 0, 0, 0})).status(), OK);
