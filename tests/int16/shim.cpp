@@ -5,10 +5,11 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "sim_host/bench/texts.hpp"
+
 extern "C" {
 #include "firmware/drive.h"
 #include "hal/hal_tape.h"
-#include "sim_host/bench/texts.hpp"
 }
 
 namespace {
