@@ -6,8 +6,6 @@
 #define PHASE_MAX_PPM 260000L
 #define BANDWIDTH_MAX 2600
 #define ONE_Q20 1048576L
-// No DC link is above 2000 V: a command of twice that says all, and sums with it stay in their format.
-#define COMMAND_MAX_Q16 268435456L
 
 static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30, const current_design_t* d) {
   pi_config_t c;
@@ -35,17 +33,12 @@ void current_controller_reset(current_controller_t* s) {
   pi_reset(&s->q, 0);
 }
 
-// Each of the two may be at the end of its format.
-static int32_t command_q16(int32_t controlled_q16, int32_t rotational_q16) {
-  return q_clamp(q_add_sat(controlled_q16, rotational_q16), -COMMAND_MAX_Q16, COMMAND_MAX_Q16);
-}
-
 dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c, const machine_model_t* m,
                              dq_t reference_q20, dq_t measured_q20, int32_t speed_bpp) {
   const dq_t rotational = machine_rotational_voltage_q16(m, measured_q20, speed_bpp);
   dq_t v;
-  v.d = command_q16(pi_step(&s->d, &c->d, reference_q20.d - measured_q20.d), rotational.d);
-  v.q = command_q16(pi_step(&s->q, &c->q, reference_q20.q - measured_q20.q), rotational.q);
+  v.d = pi_step(&s->d, &c->d, reference_q20.d - measured_q20.d, rotational.d, CURRENT_COMMAND_BITS);
+  v.q = pi_step(&s->q, &c->q, reference_q20.q - measured_q20.q, rotational.q, CURRENT_COMMAND_BITS);
   return v;
 }
 

@@ -22,6 +22,10 @@
 #include "control/machine_model.h"
 #include "control/pi.h"
 
+// No DC link is above 2000 V: a command of twice that says all, and sums with it stay in their format.
+#define CURRENT_COMMAND_BITS 28u
+#define CURRENT_COMMAND_END_Q16 268435456L
+
 typedef struct {
   pi_config_t d, q;
 } current_controller_config_t;

@@ -19,7 +19,7 @@ static int64_t room_for_axis_q56(const field_weakening_input_t* in, const machin
 static int32_t feed_forward_q20(int64_t room_q56, const machine_model_t* m) {
   const int32_t axis = (room_q56 > 0) ? (int32_t)q_sqrt64((uint64_t)room_q56) : 0;
   const int32_t flux_q28 = m->flux_q28 + q_mul(m->trim.psi_q16, m->period_q30, 18);
-  return q_over(axis - flux_q28, m->per_ld, 22);
+  return q_over(q_sub_sat(axis, flux_q28), m->per_ld, 22);
 }
 
 int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {

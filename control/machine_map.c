@@ -1,6 +1,8 @@
 #include "control/machine_map.h"
 
-#define FLUX_END_Q16 2097152000L  // 32000 V
+#define FLUX_END_Q16 2097152000L       // 32000 V
+#define ADMITTANCE_END_Q30 644245094L  // 0.6 A/V: the estimators' formats end there
+#define CROSS_END_Q30 483183820L       // 0.45
 #define ONE_Q24 ((int32_t)16777216L)
 #define ONE_Q30 1073741824L
 
@@ -15,12 +17,12 @@ static bool invert(machine_point_t* y, int32_t ldd_q30, int32_t lqq_q30, int32_t
   // Leakage factors as quotients keep the digits: Ldd (1 - Ldq^2 / (Ldd Lqq)).
   const int32_t tilt_d_q30 = q_div(ldq_q30, ldd_q30, 30);
   const int32_t tilt_q_q30 = q_limit(q_div(ldq_q30, lqq_q30, 30), ONE_Q30);
-  if (tilt_d_q30 <= -ONE_Q30 || tilt_d_q30 >= ONE_Q30) return false;  // Lqq is not the smaller one
+  if (tilt_d_q30 <= -ONE_Q30 || tilt_d_q30 >= ONE_Q30) return false;
   const int32_t left_q30 = ONE_Q30 - q_mul(tilt_d_q30, tilt_q_q30, 30);
   y->ydd_q30 = q_div(period_q30, q_mul(ldd_q30, left_q30, 30), 30);
-  y->yqq_q30 = q_div(period_q30, q_mul(lqq_q30, left_q30, 30), 30);
-  if (y->ydd_q30 >= ONE_Q30) return false;
   y->ydq_q30 = q_mul(y->ydd_q30, -tilt_q_q30, 30);
+  if (y->ydd_q30 > ADMITTANCE_END_Q30 || !q_in_range(y->ydq_q30, -CROSS_END_Q30, CROSS_END_Q30)) return false;
+  y->yqq_q30 = q_min(q_div(period_q30, q_mul(lqq_q30, left_q30, 30), 30), y->ydd_q30);  // Lqq is not the smaller one
   return true;
 }
 
@@ -47,7 +49,7 @@ bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int
 
 // As a straight line beyond b as well.
 static int32_t beyond(int32_t a, int32_t b, int32_t share_q24) {
-  return q_add_sat(a, q_mul_sat(q_sub_sat(b, a), share_q24, 24));
+  return q_sat64(q_shr64(q_mac(q_product(a, ONE_Q24 - share_q24), b, share_q24), 24));
 }
 
 machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
@@ -65,7 +67,7 @@ machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
   p.psi_q_q16 = beyond(a->psi_q_q16, b->psi_q_q16, beyond_q24);
   if (iq_q20 < 0) {
     p.ydq_q30 = -p.ydq_q30;
-    p.psi_q_q16 = -p.psi_q_q16;
+    p.psi_q_q16 = q_neg_sat(p.psi_q_q16);
   }
   return p;
 }

@@ -1,14 +1,18 @@
 #include "control/machine_model.h"
 
+#define ONE_Q20 ((int32_t)1048576L)
 #define ONE_Q24 ((int32_t)16777216L)
-#define RATIO_END_Q24 2097152000L  // 125
+#define RATIO_END_Q24 1056964608L  // 63: Lq/Ld less 1
 #define T_END_Q24 187904819L       // 11.2: its square is below the largest r
-#define TILT_END_Q24 1056964608L   // 63: of K_dd, which counts twice
 #define INVERSE_STEPS 12u          // enough for any trim
-#define K0_END_Q20 2097152000L     // 2000 A per period
+#define K0_END_Q20 1048576000L     // 1000 A per period
+#define LEAST_SHARE_Q24 (-ONE_Q24 / 16 * 15)
+#define K_BITS 30u     // 64
+#define TILT_BITS 29u  // 32: K_dd counts twice
+#define K0_BITS 30u    // 1024 A per period
 
 static bool parameters_valid(const machine_parameters_t* p) {
-  return q_in_range(p->rs_q24, 16777L, 838860800L) && q_in_range(p->ld_q30, 21474L, 536870912L) &&
+  return q_in_range(p->rs_q24, 16777L, 838860800L) && q_in_range(p->ld_q30, 35792L, 536870912L) &&
          q_in_range(p->lq_q30, p->ld_q30, 536870912L) && q_in_range(p->flux_q28, 268435L, 268435456L) &&
          q_in_range(p->inertia_q24, 168L, 16777216L) && q_in_range(p->pole_pairs, 1, 20) &&
          q_in_range(p->period_us, 20, 500);
@@ -17,15 +21,16 @@ static bool parameters_valid(const machine_parameters_t* p) {
 // T in seconds as Q30 is period_us * 2^30 / 1e6.
 static int32_t period_q30(int32_t period_us) { return q_div(period_us, 1000000L, 30); }
 
-// k0 = -Y J psi0 with psi0 = psi(0, i_q) - L i_q: Y J L (0, i_q) is what K has already counted.
+// k0 = -Y J psi0 with psi0 = psi(0, i_q) - L i_q: Y J L (0, i_q) is what K has already counted. h at (0, i_q) is
+// -Y J psi + J (0, i_q): K there is taken off again. All of it as Q46, rounded and limited once.
 static void place_flux(machine_model_t* m) {
   const int32_t iq_q20 = m->iq_q20;
-  // h at (0, i_q) is -Y J psi + J (0, i_q): K there is taken off again.
-  const int32_t own_d = q_add_sat(iq_q20, q_mul_sat(m->k_dq_q24, iq_q20, 24));
-  const int32_t own_q = q_mul_sat(m->k_dd_q24, iq_q20, 24);
-  const dq_t k0 = {q_sub_sat(q_mul_sub_sat(m->yd_q30, m->psi_q_q16, m->ydq_q30, m->psi_d_q16, 26), own_d),
-                   q_add_sat(q_mul_sub_sat(m->ydq_q30, m->psi_q_q16, m->yq_q30, m->psi_d_q16, 26), own_q)};
-  m->k0_q20 = k0;
+  const int64_t own_d_q44 = q_product(ONE_Q24 + m->k_dq_q24, iq_q20);
+  const int64_t own_q_q44 = q_product(m->k_dd_q24, iq_q20);
+  const int64_t flux_d_q46 = q_product(m->yd_q30, m->psi_q_q16) - q_product(m->ydq_q30, m->psi_d_q16);
+  const int64_t flux_q_q46 = q_product(m->ydq_q30, m->psi_q_q16) - q_product(m->yq_q30, m->psi_d_q16);
+  m->k0_q20.d = q_sat_bits(flux_d_q46 - own_d_q44 * 4, 26, K0_BITS);
+  m->k0_q20.q = q_sat_bits(flux_q_q46 + own_q_q44 * 4, 26, K0_BITS);
 }
 
 // K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
@@ -36,9 +41,10 @@ static void turn_with_admittance(machine_model_t* m) {
   const int32_t t2_q24 = q_mul(t_q24, t_q24, 24);
   const int32_t per_det_q24 = q_over(ONE_Q24, q_invert(r_q24 - t2_q24), 24);
   const int32_t g_q24 = q_mul_sat(q_add_sat(r_q24, ONE_Q24), per_det_q24, 24);
-  m->k_dd_q24 = -q_limit(q_mul_sat(t_q24, g_q24, 24), TILT_END_Q24);
-  m->k_dq_q24 = q_add_sat(r_q24 - ONE_Q24, q_mul_sat(t2_q24, g_q24, 24));
-  m->k_qd_q24 = ONE_Q24 - q_mul_sat(ONE_Q24 + t2_q24, per_det_q24, 24);
+  const int64_t one_q48 = q_product(ONE_Q24, ONE_Q24);
+  m->k_dd_q24 = -q_sat_bits(q_product(t_q24, g_q24), 24, TILT_BITS);
+  m->k_dq_q24 = q_sat_bits(q_mac(q_product(r_q24 - ONE_Q24, ONE_Q24), t2_q24, g_q24), 24, K_BITS);
+  m->k_qd_q24 = q_sat_bits(one_q48 - q_product(ONE_Q24 + t2_q24, per_det_q24), 24, K_BITS);
 }
 
 // 1 / x by Newton's steps from a value near it: one where x moves slowly, as what is learnt does.
@@ -51,26 +57,31 @@ static int32_t inverse_from(int32_t guess_q24, int32_t x_q24) {
   return guess_q24;
 }
 
+// Of a map below 0.6 A/V: as much again stays in the format, and something is always left.
+static int32_t share_of_map(int32_t more_q30, q_inverse_t per_map) {
+  return q_clamp(q_over(more_q30, per_map, 24), LEAST_SHARE_Q24, ONE_Q24);
+}
+
 void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   machine_trim_t* const t = &m->trim;
   t->mean_q30 = mean_q30;
   t->half_q30 = half_q30;
-  t->ydd_q24 = q_over(mean_q30 + half_q30, m->per_ydd0, 24);
-  t->yqq_q24 = q_over(mean_q30 - half_q30, m->per_yqq0, 24);
-  t->ydq_q24 = q_over(half_q30, m->per_half0, 24);
-  t->psi_share_q24 = inverse_from(t->psi_share_q24, q_add_sat(ONE_Q24, t->yqq_q24));
+  t->ydd_q24 = share_of_map(mean_q30 + half_q30, m->per_ydd0);
+  t->yqq_q24 = share_of_map(mean_q30 - half_q30, m->per_yqq0);
+  t->ydq_q24 = share_of_map(half_q30, m->per_half0);
+  t->psi_share_q24 = inverse_from(t->psi_share_q24, ONE_Q24 + t->yqq_q24);
 }
 
 static void admit(machine_model_t* m, int32_t iq_q20) {
   const machine_point_t p = machine_map_at(&m->map, iq_q20);
   m->iq_q20 = iq_q20;
-  m->yd_q30 = p.ydd_q30 + q_mul(p.ydd_q30, m->trim.ydd_q24, 24);
-  m->yq_q30 = p.yqq_q30 + q_mul(p.yqq_q30, m->trim.yqq_q24, 24);
-  m->ydq_q30 = p.ydq_q30 + q_mul(p.ydq_q30, m->trim.ydq_q24, 24);
+  m->yd_q30 = q_mul(p.ydd_q30, ONE_Q24 + m->trim.ydd_q24, 24);
+  m->yq_q30 = q_mul(p.yqq_q30, ONE_Q24 + m->trim.yqq_q24, 24);
+  m->ydq_q30 = q_mul(p.ydq_q30, ONE_Q24 + m->trim.ydq_q24, 24);
   m->rs_q24 = m->nominal_rs_q24 + m->trim.rs_q24;
-  m->psi_d_q16 = p.psi_d_q16 + m->trim.psi_q16;
+  m->psi_d_q16 = q_add_sat(p.psi_d_q16, m->trim.psi_q16);
   // An inductance that differs from the table's differs in its flux as well.
-  m->psi_q_q16 = q_mul_sat(p.psi_q_q16, m->trim.psi_share_q24, 24);
+  m->psi_q_q16 = q_sat64(q_shr64(q_product(p.psi_q_q16, m->trim.psi_share_q24), 24));
 }
 
 void machine_model_follow(machine_model_t* m, int32_t iq_q20) {
@@ -83,8 +94,10 @@ void machine_model_turn(machine_model_t* m) {
   const int32_t dq_q24 = m->k_dq_q24;
   turn_with_admittance(m);
   // K i + k0 at (0, i_q) stays what it was.
-  m->k0_q20.d = q_sub_sat(m->k0_q20.d, q_mul_sat(q_sub_sat(m->k_dq_q24, dq_q24), m->iq_q20, 24));
-  m->k0_q20.q = q_add_sat(m->k0_q20.q, q_mul_sat(m->k_dd_q24 - dd_q24, m->iq_q20, 24));
+  const int64_t more_d_q44 = q_product(m->k_dq_q24 - dq_q24, m->iq_q20);
+  const int64_t more_q_q44 = q_product(m->k_dd_q24 - dd_q24, m->iq_q20);
+  m->k0_q20.d = q_sat_bits(q_product(m->k0_q20.d, ONE_Q24) - more_d_q44, 24, K0_BITS);
+  m->k0_q20.q = q_sat_bits(q_product(m->k0_q20.q, ONE_Q24) + more_q_q44, 24, K0_BITS);
 }
 
 void machine_model_move(machine_model_t* m, int32_t iq_q20) {
@@ -148,14 +161,15 @@ void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told
 dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   // L_d i_d / T as V per (rad per period).
-  const int32_t armature_q16 = q_mul_sat(m->ld_q16, i_q20.d, 20);
-  const dq_t v = {q_mul_floor(m->psi_q_q16, -w_q30, 30), q_mul_floor(q_add_sat(m->psi_d_q16, armature_q16), w_q30, 30)};
+  const int64_t along_q36 = q_mac(q_product(m->psi_d_q16, ONE_Q20), m->ld_q16, i_q20.d);
+  const dq_t v = {q_mul_floor(m->psi_q_q16, -w_q30, 30), q_mul_floor(q_sat64(q_shr64(along_q36, 20)), w_q30, 30)};
   return v;
 }
 
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {
   // With a large positive i_d the reluctance would turn the sign; nobody wants to run there, and it is divided by.
-  return q_max(m->torque_q24 + q_mul_floor(m->reluctance_q24, id_q20, 20), q_shr(m->torque_q24, 2));
+  const int64_t constant_q44 = q_mac(q_product(m->torque_q24, ONE_Q20), m->reluctance_q24, id_q20);
+  return q_max(q_sat64(q_shr64(constant_q44, 20)), q_shr(m->torque_q24, 2));
 }
 
 int32_t machine_torque_q16(const machine_model_t* m, dq_t current_q20) {

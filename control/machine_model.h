@@ -19,7 +19,7 @@
 /// Physical parameters, all positive.
 typedef struct {
   int32_t rs_q24;       // stator resistance with the devices' on-state resistance, ohm, 0.001..50
-  int32_t ld_q30;       // d-axis inductance at no current, H, 20e-6..0.5
+  int32_t ld_q30;       // d-axis inductance at no current, H, 33.4e-6..0.5
   int32_t lq_q30;       // q-axis inductance at no current, H, ld..0.5
   int32_t flux_q28;     // magnet flux linkage, V s, 0.001..1
   int32_t inertia_q24;  // kg m^2, 1e-5..1
@@ -68,8 +68,8 @@ typedef struct {
 } machine_model_t;
 
 /// Derives the constants, without saturation. Returns false, leaving the model unusable, when a parameter is outside
-/// its range or a constant outside its format: T/L from 1 A/V, lambda/T from 32000 V, Lq/Ld from 126, lambda/L from
-/// 2000 A, too light a rotor.
+/// its range or a constant outside its format: T/L above 0.6 A/V, lambda/T above 32000 V, Lq/Ld from 64, lambda/L from
+/// 1000 A, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
 /// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).
@@ -82,7 +82,7 @@ void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 /// Takes an acceleration per torque that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24);
 
-/// Moves the working point to a torque current and takes the trim into account.
+/// Moves the working point to a torque current, up to 512 A, and takes the trim into account.
 void machine_model_move(machine_model_t* m, int32_t iq_q20);
 
 /// The same in two parts that need not come together. To follow takes Y and the flux along, and leaves K, which says

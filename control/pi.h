@@ -9,8 +9,11 @@
 
 #include "hal/qmath/qmath.h"
 
-// An error in Q20 (A) times a gain in Q20 is an output in Q16 (V).
+// An error in Q20 (A) times a gain in Q20 is an output in Q16 (V) behind a shift by 24; the integral has four more
+// bits.
 #define PI_ERROR_SHIFT 24u
+#define PI_FEED_ONE 16777216L     // 2^24
+#define PI_INTEGRAL_ONE 1048576L  // 2^20
 
 typedef struct {
   int32_t kp_q20;       // output per error, both in their own units
@@ -24,10 +27,12 @@ typedef struct {
 
 static inline void pi_reset(pi_state_t* s, int32_t output) { s->integral = q_shl_sat(output, 4); }
 
-/// One step; returns the output before any limit.
-static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error) {
-  s->integral = q_sat64(q_mul64(error, c->ki_q20, PI_ERROR_SHIFT - 4u) + s->integral);
-  return q_sat64(q_mul64(error, c->kp_q20, PI_ERROR_SHIFT) + q_shr_round(s->integral, 4));
+/// One step; returns the output with what is fed forward, within 2^bits.
+static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error, int32_t feed, unsigned bits) {
+  const int64_t grown = q_mac(q_product(error, c->ki_q20), s->integral, PI_INTEGRAL_ONE) + PI_INTEGRAL_ONE / 2;
+  s->integral = q_sat64(q_shr64(grown, PI_ERROR_SHIFT - 4u));
+  const int64_t held = q_mac(q_product(s->integral, PI_INTEGRAL_ONE), feed, PI_FEED_ONE);
+  return q_sat_bits(q_mac(held, error, c->kp_q20), PI_ERROR_SHIFT, bits);
 }
 
 /// Tells the controller what became of its output: `excess` = asked minus realised.

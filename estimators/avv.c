@@ -3,7 +3,7 @@
 // log2 of the information of windows that are as short, and as long, as the bandwidths are meant for.
 #define SHORT_LOG2 21
 #define LONG_LOG2 27
-#define ONE_Q22 4194304L
+#define STEP_Q22 (4194304L / (4 * (LONG_LOG2 - SHORT_LOG2)))
 
 void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
   tracking_observer_preset(&s->observer, angle_bam, speed_bpp, load_accel_q8);
@@ -21,10 +21,11 @@ typedef struct {
 static doubled_t doubled_error(const regression_t* r, const machine_model_t* m) {
   const int32_t h_q30 = (m->yd_q30 - m->yq_q30) / 2;
   const int32_t c_q30 = m->ydq_q30;
-  const int32_t along_q16 = q_mul_add_sat(h_q30, r->spread_q8, r->mirror_q16, ONE_Q22, 22);
-  const int32_t across_q16 = q_mul_add_sat(c_q30, r->spread_q8, r->cross_q16, ONE_Q22, 22);
-  const doubled_t e = {q_mul_sub_sat(across_q16, h_q30, along_q16, c_q30, 20),
-                       q_mul_add_sat(along_q16, h_q30, across_q16, c_q30, 20)};
+  const int32_t along_q16 = q_sat64(q_shr64(q_product(h_q30, r->spread_q8), 22) + r->mirror_q16);
+  const int32_t across_q16 = q_sat64(q_shr64(q_product(c_q30, r->spread_q8), 22) + r->cross_q16);
+  const int64_t sine_q46 = q_product(across_q16, h_q30) - q_product(along_q16, c_q30);
+  const int64_t cosine_q46 = q_mac(q_product(along_q16, h_q30), across_q16, c_q30);
+  const doubled_t e = {q_sat64(q_shr64(sine_q46, 20)), q_sat64(q_shr64(cosine_q46, 20))};
   return e;
 }
 
@@ -47,8 +48,7 @@ static int32_t log2_q2(int32_t x) {
 
 static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {
   const int32_t above = q_clamp(log2_q2(q_max(information, 4)) - 4 * SHORT_LOG2, 0, 4 * (LONG_LOG2 - SHORT_LOG2));
-  return c->bandwidth_short_q30 +
-         (c->bandwidth_long_q30 - c->bandwidth_short_q30) / (4 * (LONG_LOG2 - SHORT_LOG2)) * above;
+  return q_mix(c->bandwidth_short_q30, c->bandwidth_long_q30, above * STEP_Q22, 22);
 }
 
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in) {

@@ -43,8 +43,8 @@ deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
   at.a_dq_q22 = cross_q22 - q_mul_hi(w_q30, m->k_dq_q24);
   at.a_qd_q22 = cross_q22 - q_mul_hi(w_q30, m->k_qd_q24);
   at.a_qq_q22 = q_mul_floor(y_qq_q26, m->rs_q24, 28) + turn_dd_q22;
-  at.emf_q20.d = q_mul_floor(w_q30, m->k0_q20.d, 30);
-  at.emf_q20.q = q_mul_floor(w_q30, m->k0_q20.q, 30);
+  at.less_emf_q42.d = q_shr64(q_product(-w_q30, m->k0_q20.d), 8);
+  at.less_emf_q42.q = q_shr64(q_product(-w_q30, m->k0_q20.q), 8);
   return at;
 }
 

@@ -17,7 +17,9 @@
 typedef struct {
   int32_t less_dd_q26, less_dq_q26, less_qq_q26;   // -Y, A per V and period
   int32_t a_dd_q22, a_dq_q22, a_qd_q22, a_qq_q22;  // A, A per period and A
-  dq_t emf_q20;                                    // w k0, A per period
+  struct {
+    int64_t d, q;
+  } less_emf_q42;  // -w k0, A per period
 } deviation_model_t;
 
 typedef struct {
@@ -45,16 +47,16 @@ void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32
 
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30);
 
-/// a x + b y + c u + d v, Q42: whole products.
-static inline int64_t deviation_of_four(int32_t a, int32_t x, int32_t b, int32_t y, int32_t c, int32_t u, int32_t d,
-                                        int32_t v) {
-  return q_mac(q_mac(q_mac(q_product(a, x), b, y), c, u), d, v);
+/// sum + a x + b y + c u + d v, Q42: whole products.
+static inline int64_t deviation_of_four(int64_t sum_q42, int32_t a, int32_t x, int32_t b, int32_t y, int32_t c,
+                                        int32_t u, int32_t d, int32_t v) {
+  return q_mac(q_mac(q_mac(q_mac(sum_q42, a, x), b, y), c, u), d, v);
 }
 
-/// Slope less EMF, A per period Q20, and what current and voltage make of it, Q42. Samples that no machine makes have a
+/// A slope, A per period Q20, and what EMF, current and voltage leave of it, Q42. Samples that no machine makes have a
 /// residual of 512 A per period.
-static inline int32_t deviation_between_q20(int32_t slope_q20, int32_t emf_q20, int64_t rest_q42) {
-  return q_sat_bits(q_mac(q_mac(rest_q42, slope_q20, 4194304L), emf_q20, -4194304L), 22, 29u);
+static inline int32_t deviation_left_q20(int32_t slope_q20, int64_t rest_q42) {
+  return q_sat_bits(q_mac(rest_q42, slope_q20, 4194304L), 22, 29u);
 }
 
 static inline void deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w,
@@ -62,12 +64,10 @@ static inline void deviation_in_frame(const deviation_model_t* at, const estimat
   const dq_t s = frame_park(w->slope_q20, f->rotation);
   const dq_t v = frame_park(w->voltage_q16, f->rotation);
   const dq_t i = f->current_q20;
-  out->residual_q20.d = deviation_between_q20(
-      s.d, at->emf_q20.d,
-      deviation_of_four(at->a_dd_q22, i.d, at->a_dq_q22, i.q, at->less_dd_q26, v.d, at->less_dq_q26, v.q));
-  out->residual_q20.q = deviation_between_q20(
-      s.q, at->emf_q20.q,
-      deviation_of_four(at->a_qd_q22, i.d, at->a_qq_q22, i.q, at->less_dq_q26, v.d, at->less_qq_q26, v.q));
+  out->residual_q20.d = deviation_left_q20(s.d, deviation_of_four(at->less_emf_q42.d, at->a_dd_q22, i.d, at->a_dq_q22,
+                                                                  i.q, at->less_dd_q26, v.d, at->less_dq_q26, v.q));
+  out->residual_q20.q = deviation_left_q20(s.q, deviation_of_four(at->less_emf_q42.q, at->a_qd_q22, i.d, at->a_qq_q22,
+                                                                  i.q, at->less_dq_q26, v.d, at->less_qq_q26, v.q));
   out->voltage_q16 = v;
   out->current_q20 = i;
 }

@@ -137,7 +137,7 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
   const int32_t load_q8 =
       q_add_sat(s->load_accel_q8, cogging_load(&s->cogging, &c->cogging, s->angle_bam, s->speed_bpp));
-  const int32_t change_q8 = q_add_sat(s->speed_rest_q8, q_sub_sat(torque_accel_q8, load_q8));
+  const int32_t change_q8 = q_sat64((int64_t)torque_accel_q8 - load_q8 + s->speed_rest_q8);
   const int32_t change = q_shr(change_q8, 8);
   s->angle_bam += (uint32_t)(s->speed_bpp + change / 2);
   s->speed_bpp += change;
@@ -266,8 +266,8 @@ bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, i
   s->left = none_left;
   if (left.span_ticks <= 0) return false;
   const int32_t per_tick_q30 = 1073741824L / left.span_ticks;
-  residual_q20->d = q_mul_sat(left.d_q4, per_tick_q30, 14);
-  residual_q20->q = q_mul_sat(left.q_q4, per_tick_q30, 14);
+  residual_q20->d = q_mul_sat(q_sat64(q_shr64(left.d_q20, 16)), per_tick_q30, 14);
+  residual_q20->q = q_mul_sat(q_sat64(q_shr64(left.q_q20, 16)), per_tick_q30, 14);
   *span_ticks = left.span_ticks / q_max(left.periods, 1);
   *periods = left.periods;
   return true;
@@ -279,12 +279,16 @@ static void leave(deviation_left_t* left, const estimator_input_t* in, const dev
     *left = none_left;
     return;
   }
+  int64_t d_q20 = left->d_q20;
+  int64_t q_q20 = left->q_q20;
   for (uint16_t k = 0; k < in->window_count; k++) {
     const int32_t span = in->windows[k].span_ticks;
-    left->d_q4 += q_mul_hi(d[k].residual_q20.d, span * 65536L);
-    left->q_q4 += q_mul_hi(d[k].residual_q20.q, span * 65536L);
+    d_q20 = q_mac(d_q20, d[k].residual_q20.d, span);
+    q_q20 = q_mac(q_q20, d[k].residual_q20.q, span);
     left->span_ticks += span;
   }
+  left->d_q20 = d_q20;
+  left->q_q20 = q_q20;
 }
 
 // One loop after the other, so that each has few numbers of its own.

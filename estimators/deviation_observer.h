@@ -49,8 +49,8 @@ typedef struct {
 
 /// What the observer has left unexplained since somebody last took it (deviation_observer_take_left).
 typedef struct {
-  int32_t d_q4, q_q4;  // sum of the residuals times their spans, A per period and ticks; below 2^27 in 16 periods
-  int32_t span_ticks;  // of all windows
+  int64_t d_q20, q_q20;  // sum of the residuals times their spans, A per period and ticks
+  int32_t span_ticks;    // of all windows
   int32_t periods;
 } deviation_left_t;
 

@@ -31,7 +31,7 @@ emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const e
   s->expected_q16 = q_follow(s->expected_q16, q_mul_sat(m->emf_q16, q_abs_sat(w_q30), 30), shift);
   const bool large = s->expected_q16 > EMF_MIN_Q16;
   s->clear = (large && s->seen_q16 > s->expected_q16 / 2) ? (uint16_t)(s->clear + periods) : 0u;
-  s->against = (large && s->seen_q16 < -s->expected_q16 / 4) ? (uint16_t)(s->against + periods) : 0u;
+  s->against = (large && s->seen_q16 < -(s->expected_q16 / 4)) ? (uint16_t)(s->against + periods) : 0u;
   if (s->against > PERIODS) return EMF_SIGN_REVERSED;
   return (s->clear > PERIODS) ? EMF_SIGN_RIGHT : EMF_SIGN_OPEN;
 }

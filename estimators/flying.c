@@ -64,7 +64,7 @@ bool flying_resolve(const flying_emf_t* first, const flying_emf_t* second, const
                     flying_rotor_t* rotor) {
   const int32_t turn = angle_diff_bam(second->direction_bam, first->direction_bam);
   const int32_t elapsed = second->tick - first->tick;
-  rotor->speed_bpp = q_mul_sat(turn, q_div(ESTIMATOR_PERIOD_TICKS, elapsed, 30), 30);
+  rotor->speed_bpp = q_limit(q_mul_sat(turn, q_div(ESTIMATOR_PERIOD_TICKS, elapsed, 30), 30), MACHINE_SPEED_END_BPP);
   rotor->tick = second->tick;
   // e = w lambda q: a quarter turn ahead of the magnet for w > 0, behind it for w < 0.
   const uint32_t quarter = ANGLE_BAM_HALF_TURN / 2u;

@@ -45,7 +45,7 @@ static void integrate(inertia_match_t* s, const inertia_seen_t* in, int32_t peri
 // What was integrated becomes what the new ratio lets expect.
 static int32_t change(inertia_match_t* s, int32_t factor_q24) {
   const int32_t next_q24 = q_clamp(q_mul_sat(s->ratio_q24, factor_q24, 24), LOWEST_Q24, HIGHEST_Q24);
-  const int32_t given_q24 = q_div(next_q24, s->ratio_q24, 24);
+  const int32_t given_q24 = q_clamp(q_div(next_q24, s->ratio_q24, 24), ONE_Q24 / 8, 8 * ONE_Q24);
   s->ratio_q24 = next_q24;
   s->base_q8 = q_mul_sat(s->base_q8, given_q24, 24);
   s->start_base_q8 = q_mul_sat(s->start_base_q8, given_q24, 24);

@@ -2,9 +2,10 @@
 
 #define RELATIVE_MAX_Q30 536870912L  // no inductance is taken to change by more than half
 #define FLOOR_SHARE 650              // of the mean admittance: 0.15 %
-#define STEP_END_Q30 268435456L      // between two rounds, 0.25 A per V and period: the squares of 8 passes fit
-#define SCORE_MIN_Q15 11469L         // 0.35
-#define SCORE_MAX_Q15 98304L         // 3
+#define PASSES_MAX 8
+#define STEP_END_Q30 268435456L  // between two rounds, 0.25 A per V and period: the squares of 8 passes fit
+#define SCORE_MIN_Q15 11469L     // 0.35
+#define SCORE_MAX_Q15 98304L     // 3
 #define ROUNDS_A_SIDE (SATURATION_ROUNDS * SATURATION_SEGMENTS / 2)
 #define DIFFERENCES (SATURATION_SEGMENTS * (SATURATION_ROUNDS - 1))
 #define PER_ROOT_Q32 277238947uL  // 1 / sqrt(DIFFERENCES * ROUNDS_A_SIDE)
@@ -49,7 +50,7 @@ void saturation_begin(saturation_t* s, const machine_model_t* m, const saturatio
 
 void saturation_again(saturation_t* s) {
   s->tick = 0;
-  s->passes++;
+  s->passes = q_min16((int16_t)(s->passes + 1), PASSES_MAX);
   s->result = POLARITY_PENDING;
 }
 

@@ -14,22 +14,39 @@
 #define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 #define RATIO_END_Q8 46340L
+#define SLOPE_BITS 30u    // 1024 A per period
+#define CURRENT_BITS 29u  // 512 A
+#define VOLTAGE_BITS 27u  // 2048 V
 
 void synchronism_reset(synchronism_t* s) {
   static const synchronism_t fresh = {{0, 0}, 0, 0, 0, 0};
   *s = fresh;
 }
 
-static void add(ab_t* sum, ab_t x, int32_t share_q30) {
-  sum->alpha += q_mul(x.alpha, share_q30, 30);
-  sum->beta += q_mul(x.beta, share_q30, 30);
+// Sum of whole products, rounded once.
+typedef struct {
+  int64_t alpha, beta;
+} sum_t;
+
+static void add(sum_t* sum, ab_t x, int32_t share_q30) {
+  sum->alpha = q_mac(sum->alpha, x.alpha, share_q30);
+  sum->beta = q_mac(sum->beta, x.beta, share_q30);
+}
+
+static ab_t mean_of(const sum_t* sum, unsigned bits) {
+  const ab_t mean = {q_sat_bits(sum->alpha, 30, bits), q_sat_bits(sum->beta, 30, bits)};
+  return mean;
 }
 
 // All windows as one, weighted with their spans, so that a net voltage of unequal windows stays small: the inductances
-// of a saturated machine are not those of the model.
+// of a saturated machine are not those of the model. One loop after the other, so that each has few numbers of its own.
 void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const estimator_window_t windows[],
                       uint16_t count, uint32_t angle_bam) {
   estimator_window_t mean = {{0, 0}, {0, 0}, {0, 0}, 0, 0, false};
+  int32_t share_q30[ESTIMATOR_WINDOWS];
+  sum_t slope = {0, 0};
+  sum_t current = {0, 0};
+  sum_t voltage = {0, 0};
   int32_t total = 0;
   int32_t middle_q15 = 0;
   for (uint16_t k = 0; k < count; k++) total += windows[k].span_ticks;
@@ -37,14 +54,16 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
   if (total <= 0) return;
   const int32_t per_tick_q30 = ONE_Q30 / total;
   for (uint16_t k = 0; k < count; k++) {
-    const estimator_window_t* const w = &windows[k];
-    const int32_t share_q30 = q_share_q30(w->span_ticks, per_tick_q30);
-    add(&mean.slope_q20, w->slope_q20, share_q30);
-    add(&mean.current_q20, w->current_q20, share_q30);
-    add(&mean.voltage_q16, w->voltage_q16, share_q30);
-    middle_q15 += q_shr(share_q30, 15) * w->middle_tick;
+    share_q30[k] = q_share_q30(windows[k].span_ticks, per_tick_q30);
+    middle_q15 += q_shr(share_q30[k], 15) * windows[k].middle_tick;
   }
   mean.middle_tick = (int16_t)q_clamp(q_shr(middle_q15, 15), 0, PERIOD_TICKS);
+  for (uint16_t k = 0; k < count; k++) add(&slope, windows[k].slope_q20, share_q30[k]);
+  mean.slope_q20 = mean_of(&slope, SLOPE_BITS);
+  for (uint16_t k = 0; k < count; k++) add(&current, windows[k].current_q20, share_q30[k]);
+  mean.current_q20 = mean_of(&current, CURRENT_BITS);
+  for (uint16_t k = 0; k < count; k++) add(&voltage, windows[k].voltage_q16, share_q30[k]);
+  mean.voltage_q16 = mean_of(&voltage, VOLTAGE_BITS);
   seen->residual_q20 = deviation_evaluate(m, &mean, angle_bam, seen->speed_bpp).residual_q20;
 }
 

@@ -4,6 +4,7 @@
 
 #define ERROR_LIMIT_Q24 4392264L  // 15 degrees: more than that a linearised D does not tell
 #define INTEGRAL_LIMIT 2000000000L
+#define ONE_Q26 67108864L
 #define RAD_Q24_TO_BAM 683565276L  // 2^32 / (2 pi), for a product shifted by 24
 
 void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp) {
@@ -24,8 +25,9 @@ static void see(seen_t* sum, const machine_model_t* m, const estimator_window_t*
                 int32_t emf_q16) {
   const dq_t slope = frame_park(w->slope_q20, f->rotation);
   const dq_t drop = frame_park(w->voltage_q16, f->rotation);
-  const int32_t volts_q16 = q_sub_sat(q_add_sat(q_mul_sat(m->rs_q24, f->current_q20.q, 28), emf_q16), drop.q);
-  sum->deviation_q20 = q_add_sat(sum->deviation_q20, q_add_sat(slope.q, q_mul_sat(m->yq_q30, volts_q16, 26)));
+  const int32_t volts_q16 = q_sat64(q_mul64(m->rs_q24, f->current_q20.q, 28) + emf_q16 - drop.q);
+  const int64_t deviation_q46 = q_mac(q_product(m->yq_q30, volts_q16), slope.q, ONE_Q26) + ONE_Q26 / 2;
+  sum->deviation_q20 = q_sat64(q_shr64(deviation_q46, 26) + sum->deviation_q20);
   sum->volts_q16 -= drop.d;
 }
 

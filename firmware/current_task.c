@@ -5,7 +5,7 @@
 
 void drive_control_current(drive_t* d) {
   drive_control_t* const c = &d->control;
-  if (!c->closed || d->hysteresis.running) {
+  if (!c->closed || d->hysteresis.running != 0u) {
     const dq_t none = {0, 0};
     c->command_q16 = none;
     current_controller_reset(&c->current);
@@ -15,5 +15,5 @@ void drive_control_current(drive_t* d) {
   if (d->schedule.period % (uint16_t)parameters.current_divider != 0u) return;
   c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
                                            c->measured_q20, d->position.used.speed_bpp);
-  c->command_q16.q += c->feed_q16;
+  if (c->feed_q16 != 0) c->command_q16.q = q_limit(q_add_sat(c->command_q16.q, c->feed_q16), CURRENT_COMMAND_END_Q16);
 }

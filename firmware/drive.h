@@ -36,6 +36,8 @@
 
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
+#define DRIVE_CURRENT_BITS 29u
+#define DRIVE_CURRENT_END_Q20 536870912L  // 512 A: no two sensors show more
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.
@@ -78,7 +80,7 @@ typedef struct {
   uint16_t count;
   slopes_scale_t scale;                     // of the sensors, renewed in a turn
   int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
-  int32_t raw_a_q8, raw_b_q8;               // mean codes of the first burst
+  int32_t raw_a_q8, raw_b_q8;               // mean codes of the first burst, for the calibration
   int32_t link_q16;                         // filtered DC-link voltage, V
 } drive_samples_t;
 
@@ -123,6 +125,7 @@ typedef struct {
   modulator_t state;
   svpwm_pattern_t sampled;  // pattern of the period whose windows were just read
   svpwm_pattern_t running;  // pattern of the period that has just begun
+  svpwm_pattern_t next;     // pattern in the making
   ab_t asked_q16;           // voltage asked of the modulator, drops of the devices added
 } drive_modulation_t;
 
@@ -150,10 +153,11 @@ typedef struct {
   hold_t hold;
   polarity_watch_t watch;
   inertia_match_t inertia;
-  machine_model_t model;  // nameplate, at the working point and with what was learnt
-  slopes_trim_t trim;     // current offsets, mismatch of the sensors
-  uint32_t calm_at;       // period in which the currents will have been at rest for long enough
-  int32_t unrest_q8;      // mean deviation of the currents from their offsets while these are found, codes
+  machine_model_t model;         // nameplate, at the working point and with what was learnt
+  slopes_trim_t trim;            // current offsets, mismatch of the sensors
+  uint32_t calm_at;              // period in which the currents will have been at rest for long enough
+  int32_t rest_a_q8, rest_b_q8;  // currents at rest while the offsets are found, codes
+  int32_t unrest_q8;             // mean deviation of the currents from their offsets while these are found, codes
   drive_config_t config;
   bool config_valid;
   bool conflict_known;     // of the parameters that the configuration was made of

@@ -21,10 +21,13 @@ void drive_reset(void) {
   parameters_reset();
   board_reset();
   drive.control.current_limit_q20 = board_current_limit();
-  drive.trim.offset_a_q8 = 2048L * 256L;
-  drive.trim.offset_b_q8 = 2048L * 256L;
+  drive.rest_a_q8 = drive.rest_b_q8 = 2048L * 256L;
+  drive.trim.offset_a_q8 = drive.rest_a_q8;
+  drive.trim.offset_b_q8 = drive.rest_b_q8;
   drive.config_valid = drive_config_load(&drive.config);
   drive.model = drive.config.nameplate;
+  drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
+  drive.samples.scale = slopes_scale(&drive.config.slopes, &drive.trim);
   drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
   modulator_reset(&drive.modulation.state);
   position_preset(&drive, 0, 0);

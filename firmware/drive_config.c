@@ -8,15 +8,14 @@
 #include "firmware/parameters.h"
 #include "hal/hal_adc.h"
 
-#define ADMITTANCE_MAX_Q30 644245094L  // T/L of 0.6 A per V: the estimators' formats end there
-#define K0_MAX_Q20 1048576000L         // lambda/L of 1000 A
-#define CRAWL_MAX_RPM_Q16 655360L      // where cogging is learnt
-#define HOLD_BELOW_RPM_Q16 1310720L    // 20 rpm
-#define COGGING_MAX_Q20 1048576L       // 1 N m
-#define RELUCTANCE_END_Q16 1671168L    // 25.5 N m/A with the full scale, half of the largest current
-#define LEAST_BAND_Q20 10486L          // 0.01 A
-#define EDGE_BAND_Q20 524288L          // half an ampere of ripple may be predicted wrong
-#define MILLIHENRY_Q30 1099511628L     // mH (Q20) to H (Q30): 1.024
+#define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
+#define CRAWL_MAX_RPM_Q16 655360L    // where cogging is learnt
+#define HOLD_BELOW_RPM_Q16 1310720L  // 20 rpm
+#define COGGING_MAX_Q20 1048576L     // 1 N m
+#define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
+#define LEAST_BAND_Q20 10486L        // 0.01 A
+#define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
+#define MILLIHENRY_Q30 1099511628L   // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
@@ -43,15 +42,14 @@ static bool load_map(machine_model_t* m) {
   return machine_model_saturate(m, &map);
 }
 
-// What the estimators make of a point of the map fits their formats; of h (machine_model.h) with the largest current
+// What the estimators make of a point of the map fits their formats: of h (machine_model.h) with the largest current
 // that two sensors show together, twice their full scale.
 static bool point_fits(const machine_model_t* m) {
   const int32_t k0_q20 = q_max(q_abs_sat(m->k0_q20.d), q_abs_sat(m->k0_q20.q));
   const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
   const int32_t k_q24 = q_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
   const int32_t turn_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
-  return m->yd_q30 <= ADMITTANCE_MAX_Q30 && q_abs_sat(m->ydq_q30) <= ADMITTANCE_MAX_Q30 / 4 * 3 &&
-         k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
+  return k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
 }
 
 // So does the torque per ampere with that current, and the torque with it: the reluctance adds 51 N m/A to the 30 of

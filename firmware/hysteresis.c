@@ -10,10 +10,13 @@
 #include "hal/hal_pwm.h"
 #include "hal/hal_slices.h"
 
-#define ADAPT_PERIODS 100u     // 10 ms between two corrections of the band
-#define BAND_MIN_Q20 20972L    // 20 mA: two codes
-#define BAND_MAX_Q20 5242880L  // 5 A
-#define ADAPT_SHARE_Q15 4096L  // an eighth of the relative error of the frequency at a time
+#define ADAPT_PERIODS 100u       // 10 ms between two corrections of the band
+#define BAND_MIN_Q20 20972L      // 20 mA: two codes
+#define BAND_MAX_Q20 5242880L    // 5 A
+#define CODE_END_Q8 1048576L     // 4096 codes
+#define CODES_END_Q8 268435456L  // of a reference or a step: far beyond any sensor
+#define SUM_END_Q8 1073741824L   // of a thousand slices
+#define ADAPT_SHARE_Q15 4096L    // an eighth of the relative error of the frequency at a time
 
 static uint16_t slice_ticks(void) { return (uint16_t)q_shr_round(parameters.slice_time * 100, 16); }
 
@@ -25,8 +28,8 @@ static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t b
 
 static void gather(hysteresis_sums_t* s, int32_t a, int32_t b, uint16_t link_code) {
   const int32_t largest = q_max(q_max(q_abs_sat(a), q_abs_sat(b)), q_abs_sat(a + b));
-  s->a_q8 += a;
-  s->b_q8 += b;
+  s->a_q8 = q_limit(s->a_q8 + a, SUM_END_Q8);
+  s->b_q8 = q_limit(s->b_q8 + b, SUM_END_Q8);
   s->peak_q8 = q_max(s->peak_q8, largest);
   s->link_code = link_code;
   s->slices++;
@@ -50,11 +53,13 @@ void drive_hysteresis_slice(hysteresis_t* h) {
   if (state != h->state) hal_slice_set_legs(state);
   h->switched = (uint16_t)(h->switched + risen(h->state, state));
   h->state = state;
-  h->reference_a_q8 += h->step_a_q8;
-  h->reference_b_q8 += h->step_b_q8;
+  h->reference_a_q8 = q_limit(h->reference_a_q8 + h->step_a_q8, CODES_END_Q8);
+  h->reference_b_q8 = q_limit(h->reference_b_q8 + h->step_b_q8, CODES_END_Q8);
   gather(&h->sums, a, b, now.link);
   hal_profile_step(CYCLES_SLICE);
 }
+
+static int32_t mean_code_q8(int32_t sum_q8, uint16_t slices) { return q_limit(sum_q8 / (int32_t)slices, CODE_END_Q8); }
 
 void drive_hysteresis_samples(drive_t* d) {
   hysteresis_t* const h = &d->hysteresis;
@@ -69,11 +74,13 @@ void drive_hysteresis_samples(drive_t* d) {
   d->supervision.missing = (taken.slices > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
   if (taken.slices == 0u) return;
   const int32_t per_code_q30 = d->config.slopes.amps_per_code_q30;
-  const int32_t a_q20 = q_mul(taken.a_q8 / (int32_t)taken.slices, per_code_q30, 18);
-  const int32_t b_q20 = q_mul(taken.b_q8 / (int32_t)taken.slices, per_code_q30, 18);
+  const int32_t a_q20 = q_mul(mean_code_q8(taken.a_q8, taken.slices), per_code_q30, 18);
+  const int32_t b_q20 = q_mul(mean_code_q8(taken.b_q8, taken.slices), per_code_q30, 18);
   // The mean of the period before, whose middle lies half a period behind the angle of its start.
   const uint32_t middle_bam = d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2);
-  d->control.measured_q20 = frame_turned(frame_clarke2(a_q20, b_q20), middle_bam);
+  const dq_t mean_q20 = frame_turned(frame_clarke2(a_q20, b_q20), middle_bam);
+  d->control.measured_q20.d = q_limit(mean_q20.d, DRIVE_CURRENT_END_Q20);
+  d->control.measured_q20.q = q_limit(mean_q20.q, DRIVE_CURRENT_END_Q20);
   d->samples.link_q16 = q_follow_near(d->samples.link_q16, (int32_t)taken.link_code * d->config.volts_per_code_q16, 3);
   if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_raise(d, FAULT_CURRENT_LIMIT);
 }
@@ -92,7 +99,7 @@ static void adapt(hysteresis_t* h) {
 }
 
 static int32_t to_codes_q8(const drive_t* d, int32_t amps_q20) {
-  return q_mul(amps_q20, d->config.codes_per_amp_q16, 28);
+  return q_limit(q_mul_sat(amps_q20, d->config.codes_per_amp_q16, 28), CODES_END_Q8);
 }
 
 static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
@@ -127,19 +134,19 @@ static void begin(drive_t* d) {
   h->offset_b_q8 = d->trim.offset_b_q8;
   h->band_q20 = parameters.hysteresis_band;
   refer(d);
-  h->running = hal_slices_begin(slice_ticks());
+  h->running = hal_slices_begin(slice_ticks()) ? 1u : 0u;
 }
 
 bool drive_hysteresis(drive_t* d) {
   hysteresis_t* const h = &d->hysteresis;
   const bool wanted = parameters.current_law == 1 && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
-  if (wanted && !h->running) begin(d);
-  if (!wanted && h->running) {
+  if (wanted && h->running == 0u) begin(d);
+  if (!wanted && h->running != 0u) {
     hal_slices_end();
-    h->running = false;
+    h->running = 0;
     sampling_reset();
   }
-  if (!h->running) return false;
+  if (h->running == 0u) return false;
   adapt(h);
   refer(d);
   hal_profile_step(CYCLES_REFER);

@@ -20,7 +20,7 @@ typedef struct {
 } hysteresis_sums_t;
 
 typedef struct {
-  volatile bool running;
+  volatile uint16_t running;          // 0 or 1
   uint16_t state;                     // legs, bit k: leg k high
   int32_t offset_a_q8, offset_b_q8;   // codes at zero current
   int32_t reference_a_q8, step_a_q8;  // phase a, and its change per slice

@@ -7,6 +7,7 @@
 #include "firmware/parameters.h"
 #include "hal/hal_encoder.h"
 
+#define ONE_Q26 67108864L
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
@@ -183,6 +184,12 @@ static uint32_t middle_of(const estimator_output_t* now) {
   return deviation_middle(now->angle_bam + (uint32_t)now->speed_bpp, now->speed_bpp);
 }
 
+// Mean of some currents less their ripple, A.
+static int32_t less_ripple_q20(int32_t sum_q20, int64_t ripple_q46, int32_t per_count_q30) {
+  const int32_t left_q14 = (int32_t)q_shr64(q_product(sum_q20, ONE_Q26) - ripple_q46, 32);
+  return q_sat_bits(q_product(left_q14, per_count_q30), 24, DRIVE_CURRENT_BITS);
+}
+
 static void measure_current(drive_t* d, const estimator_output_t* first) {
   drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
@@ -196,11 +203,13 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
   // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
   const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
   const int32_t per_count_q30 = per_windows_q30[s->count];
-  const dq_t mean_q20 = {q_mul_floor(sum.d - q_mul_floor(d->model.yd_q30, ripple_q16.d, 26), per_count_q30, 30),
-                         q_mul_floor(sum.q - q_mul_floor(d->model.yq_q30, ripple_q16.q, 26), per_count_q30, 30)};
+  const dq_t mean_q20 = {less_ripple_q20(sum.d, q_product(d->model.yd_q30, ripple_q16.d), per_count_q30),
+                         less_ripple_q20(sum.q, q_product(d->model.yq_q30, ripple_q16.q), per_count_q30)};
   d->control.measured_q20 = mean_q20;
   if (first == used || first->angle_bam == used->angle_bam) return;
-  d->control.measured_q20 = frame_moved(mean_q20, middle_of(used) - middle_bam);
+  const dq_t moved_q20 = frame_moved(mean_q20, middle_of(used) - middle_bam);
+  d->control.measured_q20.d = q_limit(moved_q20.d, DRIVE_CURRENT_END_Q20);
+  d->control.measured_q20.q = q_limit(moved_q20.q, DRIVE_CURRENT_END_Q20);
 }
 
 // The I-F start: the control uses the vector's frame, and the source looks on. At rest the angle is the vector's: a

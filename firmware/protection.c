@@ -43,7 +43,7 @@ static bool over_current(const drive_t* d) {
   if (d->samples.count == 0u) return false;
   const abc_t i = frame_inverse_clarke(d->samples.windows[d->samples.count - 1u].current_q20);
   const int32_t limit = parameters.trip_current;
-  return q_limit(i.a, limit) != i.a || q_limit(i.b, limit) != i.b || q_limit(i.c, limit) != i.c;
+  return !(q_in_range(i.a, -limit, limit) && q_in_range(i.b, -limit, limit) && q_in_range(i.c, -limit, limit));
 }
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.

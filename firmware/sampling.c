@@ -24,7 +24,7 @@ void sampling_reset(void) {
 }
 
 void drive_window_interrupt(void) {
-  if (drive.hysteresis.running) {
+  if (drive.hysteresis.running != 0u) {
     drive_hysteresis_slice(&drive.hysteresis);
     return;
   }
@@ -70,7 +70,7 @@ static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_wi
   const int32_t end = w->end + (int32_t)HAL_ADC_END_DELAY_TICKS;
   const slopes_sums_t sums = {raw->start_a, raw->start_b, raw->end_a, raw->end_b};
   const uint16_t state = w->state & 7u;
-  out->span_ticks = (int16_t)(end - begin);
+  out->span_ticks = (int16_t)q_max(end - begin, 1);
   out->middle_tick = (int16_t)q_shr(begin + end, 1);
   out->zero_vector = svpwm_is_zero_vector(state);
   slopes_evaluate(s->slopes, &sums, out);
@@ -94,8 +94,13 @@ static void follow_link(drive_t* d, const sampling_buffer_t* b, uint16_t count) 
   s->link_q16 = q_shr(sum_q16 + (8 - (int32_t)count) * s->link_q16, 3);
 }
 
+static void take_raw(drive_samples_t* s, const hal_adc_window_t* w) {
+  s->raw_a_q8 = (int32_t)w->start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+  s->raw_b_q8 = (int32_t)w->start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+}
+
 void drive_read_samples(drive_t* d) {
-  if (d->hysteresis.running) {
+  if (d->hysteresis.running != 0u) {
     drive_hysteresis_samples(d);
     return;
   }
@@ -106,8 +111,7 @@ void drive_read_samples(drive_t* d) {
   const bool complete = b->count == p->window_count;
   d->supervision.missing = (complete && p->window_count > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
   if (!complete) return;
-  s->raw_a_q8 = (int32_t)b->windows[0].start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
-  s->raw_b_q8 = (int32_t)b->windows[0].start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+  if (d->state == DRIVE_CALIBRATE) take_raw(s, &b->windows[0]);
   follow_link(d, b, p->window_count);
   if (d->schedule.turn == TURN_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
   const scale_t scale = scale_of(d);

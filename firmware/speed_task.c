@@ -67,7 +67,7 @@ static int32_t load_current(const drive_t* d) {
 int32_t drive_current_room(const drive_t* d) {
   const int32_t limit = d->control.current_limit_q20;
   const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
-  return (room > 0) ? (int32_t)q_sqrt64((uint64_t)room) : 0;
+  return (room > 0) ? q_min((int32_t)q_sqrt64((uint64_t)room), limit) : 0;
 }
 
 static int32_t braking_room(const drive_t* d, int32_t room_q20) {

@@ -7,7 +7,9 @@
 
 #define CALIBRATE_PERIODS 256u
 #define SAMPLES_TIMEOUT 2000u
-#define OFFSET_MAX_Q8 (100L * 256L)  // codes off the middle: about 1 A on a 20 A range
+#define MIDDLE_Q8 (2048L * 256L)     // codes
+#define OFFSET_MAX_Q8 (100L * 256L)  // off the middle: about 1 A on a 20 A range
+#define OFFSET_END_Q8 (128L * 256L)  // none beyond is ever used: samples stay in their formats
 #define UNREST_MAX_Q8 (10L * 256L)   // mean deviation from the offset, codes: ten times the converter's noise
 #define UNREST_TIMEOUT 100000u       // 10 s
 
@@ -20,24 +22,28 @@ void drive_enter(drive_t* d, drive_state_t state) {
 // A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
 // shaft, and with the EMF below the link it ends.
 static bool current_flows(drive_t* d) {
-  const int32_t off_q8 =
-      q_abs_sat(d->samples.raw_a_q8 - d->trim.offset_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->trim.offset_b_q8);
+  const int32_t off_q8 = q_abs_sat(d->samples.raw_a_q8 - d->rest_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->rest_b_q8);
   d->unrest_q8 = q_follow_near(d->unrest_q8, off_q8, 5);
   return d->unrest_q8 > UNREST_MAX_Q8;
 }
 
+static int32_t usable_offset(int32_t rest_q8) {
+  return q_clamp(rest_q8, MIDDLE_Q8 - OFFSET_END_Q8, MIDDLE_Q8 + OFFSET_END_Q8);
+}
+
 static void calibrate(drive_t* d) {
-  slopes_trim_t* const c = &d->trim;
   if (d->supervision.missing > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
   if (d->samples.count == 0u) return;
-  c->offset_a_q8 = q_follow_near(c->offset_a_q8, d->samples.raw_a_q8, 4);
-  c->offset_b_q8 = q_follow_near(c->offset_b_q8, d->samples.raw_b_q8, 4);
+  d->rest_a_q8 = q_follow_near(d->rest_a_q8, d->samples.raw_a_q8, 4);
+  d->rest_b_q8 = q_follow_near(d->rest_b_q8, d->samples.raw_b_q8, 4);
+  d->trim.offset_a_q8 = usable_offset(d->rest_a_q8);
+  d->trim.offset_b_q8 = usable_offset(d->rest_b_q8);
   const bool flows = current_flows(d);
   if (flows) d->calm_at = d->periods + CALIBRATE_PERIODS;
   const bool calm = d->periods >= d->calm_at;
   if (d->periods < CALIBRATE_PERIODS || (!calm && d->periods < UNREST_TIMEOUT)) return;
-  const bool plausible = q_abs_sat(c->offset_a_q8 - 2048L * 256L) < OFFSET_MAX_Q8 &&
-                         q_abs_sat(c->offset_b_q8 - 2048L * 256L) < OFFSET_MAX_Q8;
+  const bool plausible =
+      q_abs_sat(d->rest_a_q8 - MIDDLE_Q8) < OFFSET_MAX_Q8 && q_abs_sat(d->rest_b_q8 - MIDDLE_Q8) < OFFSET_MAX_Q8;
   if (plausible && calm) {
     drive_enter(d, DRIVE_READY);
   } else {

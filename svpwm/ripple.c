@@ -2,6 +2,7 @@
 
 #define PER_THIRD_Q58 960767921L  // 2^58 / (3 N^2), N = 10 000 ticks
 #define PER_SIDE_Q58 1664098853L  // 2^58 / (sqrt(3) N^2)
+#define LEG_SHIFT 2u              // a sum of four legs stays in 31 bits
 
 // What of a pulse has passed at a tick.
 static inline int32_t passed(int32_t tick, int32_t rise, int32_t on) { return q_min(q_max(tick - rise, 0), on); }
@@ -12,7 +13,7 @@ static inline int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, const int32_
   const int32_t rise = p->at[leg];
   const int32_t on = svpwm_on_ticks(p, leg);
   const int32_t high = passed(ticks[0], rise, on) + passed(ticks[1], rise, on) + passed(ticks[2], rise, on);
-  return high * (int32_t)SVPWM_PERIOD_TICKS - on * (ticks[0] + ticks[1] + ticks[2]);
+  return q_shr(high * (int32_t)SVPWM_PERIOD_TICKS - on * (ticks[0] + ticks[1] + ticks[2]), LEG_SHIFT);
 }
 
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16) {
@@ -20,8 +21,8 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t c
   const abc_t legs = {leg_at(p, 0, asked), leg_at(p, 1, asked), leg_at(p, 2, asked)};
   const int32_t per_third = q_mul_floor(link_q16, PER_THIRD_Q58, 28);
   const int32_t per_side = q_mul_floor(link_q16, PER_SIDE_Q58, 28);
-  const ab_t flux = {q_mul_floor(2 * legs.a - legs.b - legs.c, per_third, 30),
-                     q_mul_floor(legs.b - legs.c, per_side, 30)};
+  const ab_t flux = {q_mul_floor(2 * legs.a - legs.b - legs.c, per_third, 30 - LEG_SHIFT),
+                     q_mul_floor(legs.b - legs.c, per_side, 30 - LEG_SHIFT)};
   return flux;
 }
 

@@ -15,7 +15,7 @@ static void make_room(svpwm_pattern_t* pattern, const svpwm_window_t* window) {
 }
 
 void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* window) {
-  if (span(window) < c->span_min_ticks) return;
+  if (window->end < window->start + c->span_min_ticks) return;
   if (pattern->window_count < SVPWM_WINDOWS) {
     pattern->windows[pattern->window_count++] = *window;
   } else {
@@ -26,7 +26,10 @@ void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, con
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end) {
   if (pattern->window_count == 0u) return;
   svpwm_window_t* const last = &pattern->windows[pattern->window_count - 1u];
-  const int32_t last_burst = end - c->burst_ticks;
-  if (last_burst < last->end) last->end = (int16_t)last_burst;
-  if (span(last) < c->span_min_ticks) pattern->window_count--;
+  const int32_t last_burst = q_min(end - c->burst_ticks, last->end);
+  if (last_burst < last->start + c->span_min_ticks) {
+    pattern->window_count--;
+    return;
+  }
+  last->end = (int16_t)last_burst;
 }

@@ -77,13 +77,14 @@ def is_open(part: Part, row: dict[str, str]) -> bool:
     given = kind == "postcondition" and bool(part.given) and plain(row["function"]) in promised
     if given or kind == "precondition" or not status.startswith(OPEN) or status.endswith("dead"):
         return False
-    return status != "Never tried" or (part.header == CONTRACTS and plain(row["function"]) in PROVED_BY_WP)
+    return status != "Never tried" or (CONTRACTS in part.headers and plain(row["function"]) in PROVED_BY_WP)
 
 
 def read(part: Part, tree: Path, out: Path) -> Read:
     """Lets Frama-C read a part."""
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
-    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 -include {part.header}")
+    included = " ".join(f"-include {header}" for header in part.headers)
+    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 {included}")
     sources = sources_of(part, tree, out / TABLE)
     given = ("-eva-use-spec", part.given) if part.given else ()
     command = ["frama-c", *machine, *sources, *part.flags, *given, "-then", "-report-csv", str(table)]

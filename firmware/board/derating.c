@@ -41,10 +41,8 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
   return FAULT_NONE;
 }
 
-static int32_t square_q16(int32_t amps_q20) {
-  const int32_t a = q_shr(amps_q20, 12);
-  return a * a;
-}
+// Saturated: 181 A.
+static int32_t square_q16(int32_t amps_q20) { return q_mul_sat(amps_q20, amps_q20, 24); }
 
 static drive_fault_t follow_overload(int32_t* share_q15) {
   const dq_t i = drive.control.measured_q20;

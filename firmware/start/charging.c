@@ -28,7 +28,7 @@ void start_step_charge(drive_t* d) {
     return;
   }
   s->charged++;
-  if ((int32_t)s->charged * 65536L >= parameters.bootstrap_time * DRIVE_PERIODS_PER_MS) {
+  if ((int32_t)s->charged >= q_shr(parameters.bootstrap_time * DRIVE_PERIODS_PER_MS + 65535L, 16)) {
     start_look(d);
   } else if (flows(d)) {
     start_power(d, false);

@@ -57,7 +57,7 @@ static void take_flux(drive_t* d) {
 // The rotor's state, carried on from the second pulse to the running period.
 static void close_loop(drive_t* d) {
   flying_rotor_t* const rotor = &d->start.rotor;
-  const int32_t periods_q16 = q_div(d->start.clock - rotor->tick, ESTIMATOR_PERIOD_TICKS, 16);
+  const int32_t periods_q16 = q_div((int32_t)(d->start.clock - (uint32_t)rotor->tick), ESTIMATOR_PERIOD_TICKS, 16);
   rotor->angle_bam += (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
   position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
   take_flux(d);
@@ -109,6 +109,11 @@ static void judge_pulse(drive_t* d) {
   }
 }
 
+// Middle of a window of the last period, on the start's clock; ticks count on behind the end of their format.
+static int32_t tick_of(const drive_start_t* s, const estimator_window_t* w) {
+  return (int32_t)(s->clock - (uint32_t)(ESTIMATOR_PERIOD_TICKS - w->middle_tick));
+}
+
 void start_step_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (!s->powered) {
@@ -119,7 +124,7 @@ void start_step_pulse(drive_t* d) {
     const estimator_window_t* const w = &d->samples.windows[k];
     // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
     const bool early = s->blind > 0u && w->middle_tick - w->span_ticks / 2 < s->on_tick + ON_TICKS;
-    if (!early) flying_add(&s->pulse, &d->model, w, s->clock - ESTIMATOR_PERIOD_TICKS + w->middle_tick);
+    if (!early) flying_add(&s->pulse, &d->model, w, tick_of(s, w));
   }
   const bool enough = flying_current(&s->pulse) > parameters.current_limit / 16;
   if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) start_power(d, false);

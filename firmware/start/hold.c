@@ -23,11 +23,11 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define CONTROL_STEP_Q30 24159191L     // wc T, with 225 rad/s
-#define CONTROL_SQUARE_Q40 556627761L  // its square
-#define FILTER_Q30 751619277L          // 0.7 of the change of the current reference per period
-#define SLEW_Q20 734003L               // s, 0.7 A: some 50 V, within the alternating layout
-#define RETURN_Q30 24159191L           // 0.7 wc T / s, per ampere
+#define CONTROL_STEP_Q30 24159191L  // wc T, with 225 rad/s
+#define CONTROL_SQUARE_Q30 543582L  // its square
+#define FILTER_Q30 751619277L       // 0.7 of the change of the current reference per period
+#define SLEW_Q20 734003L            // s, 0.7 A: some 50 V, within the alternating layout
+#define RETURN_Q30 24159191L        // 0.7 wc T / s, per ampere
 
 // The other sources have no observer that could be fast for a moment.
 static bool has_observer(void) { return parameters.position_source >= POSITION_OBSERVER; }
@@ -47,7 +47,7 @@ static int32_t restoring_accel_q8(const drive_t* d) {
   const estimator_output_t* const now = &d->position.used;
   const int32_t behind = angle_diff_bam(d->hold.reference_bam, now->angle_bam);
   const int32_t slow = q_sub_sat(d->control.ramp.value, now->speed_bpp);
-  return q_add_sat(q_mul_sat(behind, CONTROL_SQUARE_Q40, 32), q_mul_sat(slow, 2 * CONTROL_STEP_Q30, 22));
+  return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
 }
 
 bool hold_step(drive_t* d) {
@@ -56,13 +56,13 @@ bool hold_step(drive_t* d) {
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
   drive_control_t* const c = &d->control;
-  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, h->current_per_accel, 20);
-  const int32_t above_q20 = q_sub_sat(c->reference_q20.q, load_q20);
+  const int64_t load_q40 = q_product(d->position.used.load_accel_q8, h->current_per_accel);
+  const int32_t above_q20 = q_sat64(c->reference_q20.q - q_shr64(load_q40, 20));
   const int32_t return_q20 = q_mul_sat(q_mul_sat(above_q20, q_abs_sat(above_q20), 20), RETURN_Q30, 30);
-  const int32_t restoring_q20 = q_mul_sat(restoring_accel_q8(d), h->current_per_accel, 20);
-  const int32_t current_q20 = q_sub_sat(q_add_sat(restoring_q20, load_q20), return_q20);
+  const int64_t asked_q40 = q_mac(load_q40, restoring_accel_q8(d), h->current_per_accel);
+  const int32_t current_q20 = q_sat64(q_shr64(asked_q40, 20) - return_q20);
   const int32_t limited_q20 = q_clamp(current_q20, -c->room_q20, c->room_q20);
-  const int32_t change_q20 = q_mul(limited_q20 - c->reference_q20.q, FILTER_Q30, 30);
-  c->reference_q20.q += q_clamp(change_q20, -SLEW_Q20, SLEW_Q20);
+  const int32_t wanted_q20 = q_mix(c->reference_q20.q, limited_q20, FILTER_Q30, 30);
+  c->reference_q20.q = q_clamp(wanted_q20, c->reference_q20.q - SLEW_Q20, c->reference_q20.q + SLEW_Q20);
   return true;
 }

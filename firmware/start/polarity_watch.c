@@ -15,11 +15,14 @@
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 
+#define SUM_END_Q12 1073741824L       // of 64 periods of 4096 V
+#define VOLTS_END_Q12 16777216L       // 4096 V
+#define PERIODS_END 10000L            // a second: the turns are much shorter
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
 
 static void forget_voltage(polarity_watch_t* w) {
-  w->voltage_q16.d = 0;
-  w->voltage_q16.q = 0;
+  w->voltage_q12.d = 0;
+  w->voltage_q12.q = 0;
   w->periods = 0;
 }
 
@@ -83,15 +86,18 @@ static void follow_axis(drive_t* d) {
   if (w->blind) {
     begin_anew(d);
   } else if (d->samples.count > 0u) {
-    const int32_t most = INT32_MAX / periods;
-    tracking_observer_correct(&w->axis, q_clamp(axis_off(d), -most, most) * periods, BANDWIDTH_STEP_Q30);
+    tracking_observer_correct(&w->axis, q_sat64(q_product(axis_off(d), periods)), BANDWIDTH_STEP_Q30);
   }
+}
+
+static int32_t mean_volts_q16(int32_t sum_q12, int32_t periods) {
+  return q_limit(sum_q12 / periods, VOLTS_END_Q12) * 16;
 }
 
 static emf_sign_result_t look(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
   const rotation_t r = frame_rotation(d->position.used.angle_bam - w->axis.angle_bam);
-  const dq_t mean_q16 = {w->voltage_q16.d / w->periods, w->voltage_q16.q / w->periods};
+  const dq_t mean_q16 = {mean_volts_q16(w->voltage_q12.d, w->periods), mean_volts_q16(w->voltage_q12.q, w->periods)};
   const emf_sign_seen_t seen = {on_axis(mean_q16, r), on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
                                 w->periods};
   return emf_sign_step(&w->sign, &d->model, &seen);
@@ -101,12 +107,15 @@ bool polarity_watch_step(drive_t* d) {
   polarity_watch_t* const w = &d->watch;
   if (!polarity_watch_is_awake(d)) return false;
   tracking_observer_predict(&w->axis, 0);
-  w->voltage_q16.d += d->control.command_q16.d;
-  w->voltage_q16.q += d->control.command_q16.q;
-  w->periods++;
-  w->axis_periods++;
+  w->voltage_q12.d = q_limit(w->voltage_q12.d + q_shr(d->control.command_q16.d, 4), SUM_END_Q12);
+  w->voltage_q12.q = q_limit(w->voltage_q12.q + q_shr(d->control.command_q16.q, 4), SUM_END_Q12);
+  w->periods = q_min(w->periods + 1, PERIODS_END);
+  w->axis_periods = q_min(w->axis_periods + 1, PERIODS_END);
   if (d->schedule.turn == TURN_REGRESS) w->axis_then_bam = w->axis.angle_bam;
-  if (d->schedule.turn == TURN_LOOK) follow_axis(d);
+  if (d->schedule.turn == TURN_LOOK) {
+    follow_axis(d);
+    return false;
+  }
   if (d->schedule.turn != TURN_VOLTAGE || w->blind) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
@@ -118,5 +127,5 @@ bool polarity_watch_is_awake(const drive_t* d) { return d->watch.open && d->stat
 
 bool polarity_watch_suspects(const drive_t* d) {
   const emf_sign_t* const sign = &d->watch.sign;
-  return d->watch.open && sign->seen_q16 < -sign->expected_q16 / 4;
+  return d->watch.open && sign->seen_q16 < -(sign->expected_q16 / 4);
 }

@@ -13,7 +13,7 @@ typedef struct {
   int32_t axis_periods;    // since it was last corrected
   bool blind;              // it was not seen then
   emf_sign_t sign;
-  dq_t voltage_q16;  // sum of the commands since the back-EMF was last looked at, V
+  dq_t voltage_q12;  // sum of the commands since the back-EMF was last looked at, V
   int32_t periods;   // that long ago
 } polarity_watch_t;
 

@@ -44,7 +44,7 @@ typedef struct {
   int32_t on_tick;       // of the period in which the gates came on
   flying_rotor_t rotor;  // caught: at the second pulse, then carried on
   int32_t emf_q16;       // of that pulse, V
-  int32_t clock;         // tick at which the running period began, from the start of START
+  uint32_t clock;        // tick at which the running period began, from the start of START
   int32_t stray;         // filtered angle error while catching, binary angle
   flying_pulse_t pulse;
   flying_emf_t first;

@@ -222,27 +222,34 @@ TEST(MachineMap, StraightLinesBetweenThePoints) {
   }
 }
 
-// Below 1 A/V two couplings of opposite sign still have a difference.
-TEST(MachineMap, AdmittancesEndAtOneAmperePerVolt) {
-  for (const double inductance : {99e-6, 101e-6}) {
+// 0.6 A/V along the axes, 0.45 across; two couplings of opposite sign have a difference.
+TEST(MachineMap, AdmittancesEndWithTheEstimatorsFormats) {
+  for (const double inductance : {166e-6, 167.5e-6}) {
     machine_map_parameters_t p = Saturated{}.table(14.0);
     for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {
       p.ldd_q30[n] = p.lqq_q30[n] = raw(inductance, 30);
       p.ldq_q30[n] = 0;
     }
     machine_map_t map;
-    EXPECT_EQ(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)), inductance > 100e-6);
+    EXPECT_EQ(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)), inductance > 167e-6);
   }
   machine_map_parameters_t p = Saturated{}.table(14.0);
-  for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {  // L (1 - 0.95^2) makes 0.97 A/V of L = 1.057 mH
-    p.ldd_q30[n] = p.lqq_q30[n] = raw(1.057e-3, 30);
-    p.ldq_q30[n] = raw((n % 2 == 0 ? -0.95 : 0.95) * 1.057e-3, 30);
-  }
+  const auto couple = [&p](double sign, double inductance) {  // L (1 - 0.95^2)
+    for (int n = 0; n < MACHINE_MAP_POINTS; ++n) {
+      p.ldd_q30[n] = p.lqq_q30[n] = raw(inductance, 30);
+      p.ldq_q30[n] = raw((n % 2 == 0 ? -0.95 : 0.95) * sign * inductance, 30);
+    }
+  };
   machine_map_t map;
+  for (const double sign : {1.0, -1.0}) {
+    couple(sign, 2.15e-3);  // 0.48 A/V, 0.453 across
+    EXPECT_FALSE(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)));
+  }
+  couple(1.0, 2.2e-3);  // 0.443
   ASSERT_TRUE(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)));
-  EXPECT_NEAR(real(machine_map_at(&map, raw(3.5, 20)).ydq_q30, 30), -0.92, 0.01);
+  EXPECT_NEAR(real(machine_map_at(&map, raw(3.5, 20)).ydq_q30, 30), -0.443, 0.005);
   EXPECT_NEAR(real(machine_map_at(&map, raw(5.25, 20)).ydq_q30, 30), 0.0, 0.01);
-  EXPECT_NEAR(real(machine_map_at(&map, raw(7.0, 20)).ydq_q30, 30), 0.92, 0.01);
+  EXPECT_NEAR(real(machine_map_at(&map, raw(7.0, 20)).ydq_q30, 30), 0.443, 0.005);
 }
 
 // The mutual inductance must stay below both of the others; Ldd is the smaller one.

@@ -30,11 +30,12 @@ TEST(Pi, FollowsTheDoublePrecisionRecursion) {
   double integral = 12.5;
   for (int n = 0; n < 2000; ++n) {
     const double error = random.between(-5.0, 5.0);
-    const std::int32_t out = pi_step(&s, &c, raw(error, 20));
+    const double fed = random.between(-300.0, 300.0);
+    const std::int32_t out = pi_step(&s, &c, raw(error, 20), raw(fed, 16), 30u);
     integral += ki * error;
     // the integral has 20 fractional bits and is rounded twice a step; 2000 steps wander by less than 50 LSB of them,
-    // the output is rounded to Q16 twice
-    ASSERT_NEAR(real(out, 16), kp * error + integral, 5e-5 + 3.0 / 65536) << n;
+    // the output is rounded to Q16 once
+    ASSERT_NEAR(real(out, 16), kp * error + integral + fed, 5e-5 + 3.0 / 65536) << n;
     const double excess = (n % 3 == 0) ? random.between(-20.0, 20.0) : 0.0;
     pi_limited(&s, &c, raw(excess, 16));
     integral -= release * excess;
@@ -45,7 +46,7 @@ TEST(Pi, SaturatesInsteadOfWrapping) {
   const pi_config_t c = config(2000.0, 1000.0, 1.0);
   pi_state_t s;
   pi_reset(&s, 0);
-  for (int n = 0; n < 1000; ++n) ASSERT_GT(pi_step(&s, &c, raw(1900.0, 20)), 0);
+  for (int n = 0; n < 1000; ++n) ASSERT_GT(pi_step(&s, &c, raw(1900.0, 20), 0, 30u), 0);
   for (int n = 0; n < 1000; ++n) pi_limited(&s, &c, INT32_MIN);
   ASSERT_GT(s.integral, 0);
 }
@@ -58,7 +59,7 @@ TEST(Pi, ReleasesTowardsTheRealisedOutput) {
   const double limit = 50.0;
   double largest = 0.0;
   for (int n = 0; n < 20000; ++n) {
-    const double out = real(pi_step(&s, &c, raw(2.0, 20)), 16);
+    const double out = real(pi_step(&s, &c, raw(2.0, 20), 0, 30u), 16);
     if (out > limit) pi_limited(&s, &c, raw(out - limit, 16));
     largest = std::max(largest, out);
   }

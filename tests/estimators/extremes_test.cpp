@@ -28,7 +28,7 @@ TEST(Extremes, AResidualBeyondItsFormatKeepsItsSign) {
   const estimator_frame_t frame = {ahead, {0, 0}};
   for (const std::int32_t sign : {1, -1}) {
     deviation_model_t at = {};
-    at.emf_q20 = {-sign * 1900 * (1 << 20), -sign * 1900 * (1 << 20)};
+    at.less_emf_q42 = {sign * 1900 * (std::int64_t{1} << 42), sign * 1900 * (std::int64_t{1} << 42)};
     estimator_window_t w = {};
     w.slope_q20 = {sign * kSlopeEnd, sign * kSlopeEnd};
     deviation_t d;

@@ -78,12 +78,12 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   source(POSITION_OBSERVER);
   drive.control.command_q16 = {raw(2.0, 16), raw(-5.0, 16)};
   for (int n = 0; n < 3; ++n) EXPECT_FALSE(step(kNone));
-  EXPECT_EQ(drive.watch.voltage_q16.d, 3 * raw(2.0, 16));
-  EXPECT_EQ(drive.watch.voltage_q16.q, 3 * raw(-5.0, 16));
+  EXPECT_EQ(drive.watch.voltage_q12.d, 3 * raw(2.0, 12));
+  EXPECT_EQ(drive.watch.voltage_q12.q, 3 * raw(-5.0, 12));
   EXPECT_EQ(drive.watch.periods, 3);
   drive.watch.blind = false;
   EXPECT_FALSE(step(TURN_VOLTAGE));
-  EXPECT_EQ(drive.watch.voltage_q16.d | drive.watch.voltage_q16.q | drive.watch.periods, 0);
+  EXPECT_EQ(drive.watch.voltage_q12.d | drive.watch.voltage_q12.q | drive.watch.periods, 0);
 }
 
 // A large current turns the axis, and windows without an axis do not show it: then it is the one in use, and what had
@@ -108,7 +108,7 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     EXPECT_NEAR(axis(), blind ? -1.0 : 0.5, 1e-3) << why;
     EXPECT_EQ(drive.watch.sign.clear + drive.watch.sign.against, blind ? 0 : 18);
     EXPECT_EQ(drive.watch.periods, blind ? 0 : 2);
-    EXPECT_EQ(drive.watch.voltage_q16.q, blind ? 0 : raw(4.0, 16));
+    EXPECT_EQ(drive.watch.voltage_q12.q, blind ? 0 : raw(4.0, 12));
     if (blind) {
       EXPECT_EQ(drive.watch.sign.last_iq_q20, drive.control.measured_q20.q);
       EXPECT_EQ(drive.watch.axis.speed_bpp, bpp(70.0));

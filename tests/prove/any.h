@@ -19,4 +19,6 @@ static inline bool any_bool(void) { return (any_u16 & 1u) != 0u; }
 // Any number from lo to hi.
 static inline int32_t any_from(int32_t lo, int32_t hi) { return q_clamp(any_i32, lo, hi); }
 
+static inline uint16_t any_up_to(uint16_t most) { return (uint16_t)any_from(0, most); }
+
 #endif

@@ -5,26 +5,9 @@
 #define STILLSPIN_TESTS_PROVE_ANY_CONFIG_H
 
 #include "firmware/drive.h"
-#include "tests/prove/any_model.h"
-
-static inline int16_t any_ticks(int16_t lo, int16_t hi) { return (int16_t)any_from(lo, hi); }
-
-static inline void any_modulation(drive_config_t* c) {
-  c->modulator.pulse_ticks = any_ticks(1500, 4700);
-  c->modulator.extended.window_min_ticks = any_ticks(500, 3000);
-  c->modulator.extended.window_max_ticks = any_ticks(500, 4000);
-  c->modulator.extended.zero_ticks = any_ticks(0, 5000);
-  c->modulator.sampling.settle_ticks = any_ticks(400, 2500);
-  c->modulator.sampling.burst_ticks = any_ticks(50, 500);
-  c->modulator.sampling.span_min_ticks = any_ticks(100, 2000);
-  c->modulator.sampling.last_tick = any_ticks(5000, 9800);
-  c->dead_time.blocked_ticks = any_ticks(0, 240);
-  c->dead_time.released_ticks = any_ticks(0, 240);
-  c->dead_time.edge_band_q20 = any_from(0, 4 * AMPERES_Q20);
-  c->dead_time.band_q20 = any_from(AMPERES_Q20 / 100, 2 * AMPERES_Q20);
-  c->dead_time.drop_q16 = any_from(0, 5 * VOLTS_Q16);
-  dead_time_design(&c->dead_time);
-}
+#include "tests/prove/any_flux.h"
+#include "tests/prove/any_modulator.h"
+#include "tests/prove/any_observer.h"
 
 static inline pi_config_t any_gains(void) {
   const pi_config_t c = {any_from(0, INT32_MAX), any_from(0, INT32_MAX), any_from(0, AMPERES_Q20)};
@@ -58,31 +41,6 @@ static inline void any_control(drive_config_t* c) {
   c->hold_below_bpp = any_from(0, SPEED_MAX_BPP / 4);
 }
 
-static inline deviation_observer_config_t any_observer(const machine_model_t* m) {
-  deviation_observer_config_t c;
-  const deviation_observer_tuning_t t = {any_i32, any_i32, any_i32, any_i32, any_i32, any_bool()};
-  deviation_observer_design(&c, m, &t);
-  c.cogging.order = any_from(0, 60);
-  c.cogging.fast_bpp = c.crawl_bpp;
-  c.cogging.bound_q8 = any_from(0, COGGING_BOUND_END_Q8);
-  c.zero_vectors_only = any_bool();
-  return c;
-}
-
-static inline void any_flux(flux_observer_config_t* c) {
-  c->method = (flux_method_t)(any_u16 & 3u);
-  c->is_plain = any_bool();
-  c->cutoff_q30 = any_from(107374L, 16106127L);
-  c->bandwidth_q30 = any_from(107374L, 107374182L);
-  c->blind_q20 = any_from(0, 2 * AMPERES_Q20);
-  c->adaptation_periods = (uint16_t)any_from(1, 1000);
-  c->adaptation.saturation_q24 = any_from(0, 16777216L);
-  c->adaptation.lowest_bpp = any_from(1, INT32_MAX);
-  c->adaptation.current_q24 = any_from(167772L, 16777216L);
-  c->adaptation.inductance_q30 = any_from(0, 1073741824L);
-  c->adaptation.magnet_q30 = any_from(0, 1073741824L);
-}
-
 static inline void any_position(drive_config_t* c) {
   c->avv.bandwidth_short_q30 = any_from(1, 107374182L);
   c->avv.bandwidth_long_q30 = any_from(1, 107374182L);
@@ -97,9 +55,9 @@ static inline void any_position(drive_config_t* c) {
   c->blend.per_range_q30 = any_from(1, 1073741824L);
   any_flux(&c->flux);
   c->slopes.amps_per_code_q30 = any_from(524288L, 104857600L);
-  c->slopes.start_samples = 4;
-  c->slopes.end_samples = 3;
-  slopes_design(&c->slopes);
+  c->slopes.start_samples = START_SAMPLES;
+  c->slopes.end_samples = END_SAMPLES;
+  c->slopes.amps_per_count_q36 = any_from(0, AMPERES_PER_COUNT_MAX_Q36);
   c->synchronism.floor_q16 = any_from(0, 6553600L);
   c->synchronism.share_q15 = any_from(0, 32768L);
   c->synchronism.bad_periods = any_from(0, 10000);
@@ -108,7 +66,8 @@ static inline void any_position(drive_config_t* c) {
 static inline void any_config(drive_config_t* c) {
   any_model(&c->nameplate);
   c->nameplate.ld_q16 = any_from(1, 2147418112L);
-  any_modulation(c);
+  any_modulator(&c->modulator);
+  any_dead_time(&c->dead_time);
   any_control(c);
   any_position(c);
   c->volts_per_code_q16 = any_from(160, 32000);

@@ -10,8 +10,6 @@
 /// To be called wherever a control interrupt may have come.
 void any_moment(void);
 
-static inline uint16_t any_up_to(uint16_t most) { return (uint16_t)any_from(0, (int32_t)most); }
-
 /// Somebody has asked for a stream.
 static inline void any_stream(guard_t port) {
   uint16_t places[STREAM_SIGNALS];

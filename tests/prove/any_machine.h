@@ -5,12 +5,7 @@
 
 #include "control/machine_model.h"
 #include "tests/prove/any.h"
-
-#define VOLTS_Q16 65536L
-#define AMPERES_Q20 1048576L
-#define CURRENT_MAX_Q20 (512 * AMPERES_Q20)
-#define VOLTAGE_MAX_Q16 (2000 * VOLTS_Q16)
-#define SPEED_MAX_BPP 1298773986L  // 1.9 rad per period
+#include "tests/prove/ends.h"
 
 static inline dq_t any_dq(int32_t most) {
   const dq_t v = {any_from(-most, most), any_from(-most, most)};
@@ -25,7 +20,8 @@ static inline ab_t any_ab(int32_t most) {
 static inline int32_t any_speed(void) { return any_from(-SPEED_MAX_BPP, SPEED_MAX_BPP); }
 
 static inline bool make_any_machine(machine_model_t* m) {
-  const machine_parameters_t p = {any_i32, any_i32, any_i32, any_i32, any_i32, any_i32, any_i32};
+  const machine_parameters_t p = {
+      any_from(0, RS_NOMINAL_MAX_Q24), any_i32, any_i32, any_i32, any_i32, any_i32, any_i32};
   machine_map_parameters_t map;
   map.current_q20 = any_i32;
   for (uint16_t k = 0; k < MACHINE_MAP_POINTS; k++) {

@@ -6,15 +6,8 @@
 
 #include "tests/prove/any_machine.h"
 
-#define Y0_END_Q30 644245094L       // 0.6 A per V and period, in the map (firmware/drive_config.c)
-#define Y_END_Q30 1288490189L       // 1.2, with what is learnt
-#define Y_CROSS_END_Q30 966367641L  // 0.9 across
-#define TILT_END_Q24 1056964608L    // 63
-#define K0_END_Q20 1048576000L      // 1000 A per period
-#define FLUX_END_Q16 2097152000L
-
 static inline q_inverse_t any_inverse(unsigned lowest, unsigned highest) {
-  const q_inverse_t inverse = {any_from(1073741824L, INT32_MAX), (unsigned)any_from((int32_t)lowest, (int32_t)highest)};
+  const q_inverse_t inverse = {any_from(0, INT32_MAX), (unsigned)any_from((int32_t)lowest, (int32_t)highest)};
   return inverse;
 }
 
@@ -29,9 +22,9 @@ static inline machine_point_t any_point(void) {
 }
 
 static inline void any_nameplate(machine_model_t* m) {
-  m->nominal_rs_q24 = any_from(16777L, 838860800L);
-  m->ld_q30 = any_from(21474L, 536870912L);
-  m->lq_q30 = any_from(21474L, 536870912L);
+  m->nominal_rs_q24 = any_from(16777L, RS_NOMINAL_MAX_Q24);
+  m->ld_q30 = any_from(35792L, 536870912L);
+  m->lq_q30 = any_from(35792L, 536870912L);
   m->per_ld = any_inverse(45u, 60u);
   m->flux_q28 = any_from(268435L, 268435456L);
   m->emf_q16 = any_from(131072L, FLUX_END_Q16);
@@ -49,16 +42,18 @@ static inline void any_nameplate(machine_model_t* m) {
   m->per_half0 = any_inverse(31u, 61u);
 }
 
+static inline int32_t any_learnt(void) { return any_from(LEAST_SHARE_Q24, 16777216L); }
+
 // What adaptation leaves: admittance.h, voltage_match.h.
 static inline void any_trim(machine_model_t* m) {
   m->trim.mean_q30 = any_from(-Y0_END_Q30 / 4, Y0_END_Q30 / 2);
   m->trim.half_q30 = any_from(-Y0_END_Q30 / 3, Y0_END_Q30 / 2);
-  m->trim.ydd_q24 = any_i32;
-  m->trim.yqq_q24 = any_i32;
-  m->trim.ydq_q24 = any_i32;
+  m->trim.ydd_q24 = any_learnt();
+  m->trim.yqq_q24 = any_learnt();
+  m->trim.ydq_q24 = any_learnt();
   m->trim.psi_share_q24 = any_i32;
-  m->trim.rs_q24 = any_from(-419430400L, 838860800L);
-  m->trim.psi_q16 = any_from(-786432000L, 786432000L);
+  m->trim.rs_q24 = any_from(-RS_NOMINAL_MAX_Q24 / 2, RS_NOMINAL_MAX_Q24);
+  m->trim.psi_q16 = any_from(-TRIM_FLUX_END_Q16, TRIM_FLUX_END_Q16);
   m->trim.psi_haste_q30 = any_from(0, MACHINE_PSI_HASTE_Q30);
 }
 
@@ -68,8 +63,8 @@ static inline void any_admittance(machine_model_t* m) {
   const int32_t smaller_q30 = any_from(1, larger_q30);
   const rotation_t twice = frame_rotation(any_u32);
   const int32_t half_q30 = (larger_q30 - smaller_q30) / 2;
-  m->yd_q30 = q_max(q_add_sat(smaller_q30 + half_q30, q_mul(half_q30, twice.cos_q30, 30)), 1);
-  m->yq_q30 = q_max(q_sub_sat(smaller_q30 + half_q30, q_mul(half_q30, twice.cos_q30, 30)), 1);
+  m->yd_q30 = q_clamp(q_add_sat(smaller_q30 + half_q30, q_mul(half_q30, twice.cos_q30, 30)), 0, Y_END_Q30);
+  m->yq_q30 = q_clamp(q_sub_sat(smaller_q30 + half_q30, q_mul(half_q30, twice.cos_q30, 30)), 0, Y_END_Q30);
   m->ydq_q30 = q_mul(half_q30, twice.sin_q30, 30);
 }
 
@@ -80,21 +75,21 @@ static inline void any_turn(machine_model_t* m) {
   any_current_end_q20 = any_from(AMPERES_Q20, CURRENT_MAX_Q20);
   const int32_t k_end_q24 = q_min(q_div(K0_END_Q20 / 3, any_current_end_q20, 24), TILT_END_Q24);
   m->k_dd_q24 = any_from(-k_end_q24, k_end_q24) / 2;
-  m->k_dq_q24 = any_from(-16777216L, k_end_q24);
-  m->k_qd_q24 = any_from(-k_end_q24, 16777216L);
+  m->k_dq_q24 = any_from(-k_end_q24, k_end_q24);
+  m->k_qd_q24 = any_from(-k_end_q24, k_end_q24);
   m->k0_q20.d = any_from(-K0_END_Q20, K0_END_Q20);
   m->k0_q20.q = any_from(-K0_END_Q20, K0_END_Q20);
 }
 
 static inline void any_working_point(machine_model_t* m) {
   any_trim(m);
-  m->rs_q24 = any_from(8388L, 704643072L);  // 42 ohm
-  m->iq_q20 = any_from(-2 * CURRENT_MAX_Q20, 2 * CURRENT_MAX_Q20);
+  m->rs_q24 = any_from(-RS_NOMINAL_MAX_Q24 / 2, 2 * RS_NOMINAL_MAX_Q24);
+  m->iq_q20 = any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20);
   any_admittance(m);
   m->per_yq = any_inverse(31u, 61u);
   any_turn(m);
-  m->psi_d_q16 = any_from(-FLUX_END_Q16, FLUX_END_Q16);
-  m->psi_q_q16 = any_from(-FLUX_END_Q16, FLUX_END_Q16);
+  m->psi_d_q16 = any_i32;
+  m->psi_q_q16 = any_i32;
 }
 
 static inline void any_model(machine_model_t* m) {

@@ -1,5 +1,5 @@
-// A period's windows with any contents: any slope that fits its format, currents to 256 A, voltages to 1000 V, which is
-// a DC link of 1500 V, and spans that lie in the period one beside the other.
+// A period's windows with any contents: any slope that fits its format, what current two sensors can show, any voltage
+// of a DC link of 2000 V, and spans that lie in the period one beside the other.
 
 #ifndef STILLSPIN_TESTS_PROVE_ANY_WINDOWS_H
 #define STILLSPIN_TESTS_PROVE_ANY_WINDOWS_H
@@ -9,7 +9,6 @@
 #include "tests/prove/any_model.h"
 
 #define SPAN_CASES 7
-#define SLOPE_MAX_Q20 1073741824L  // slopes.h
 
 // At most one of them is longer than half a period, and the longer it is the shorter are the others: in these cases an
 // interval for each says enough of all.
@@ -21,10 +20,17 @@ static inline int16_t any_span(uint16_t window, uint16_t of_case) {
   return (int16_t)(own ? any_from(5001, 7500) : any_from(1, 4999));
 }
 
+// A component of a current, for the sensors that go with the machine.
+static inline int32_t any_up_to_end(int32_t most) {
+  const int32_t end = q_min(most, any_current_end_q20);
+  return any_from(-end, end);
+}
+
 static inline void any_window(estimator_window_t* w, int16_t span_ticks) {
   w->slope_q20 = any_ab(SLOPE_MAX_Q20);
-  w->current_q20 = any_ab(any_current_end_q20 / 2);
-  w->voltage_q16 = any_ab(1000 * VOLTS_Q16);
+  w->current_q20.alpha = any_up_to_end(WINDOW_ALPHA_MAX_Q20);
+  w->current_q20.beta = any_up_to_end(WINDOW_BETA_MAX_Q20);
+  w->voltage_q16 = any_ab(WINDOW_VOLTS_MAX_Q16);
   w->middle_tick = (int16_t)any_from(0, PERIOD_TICKS);
   w->span_ticks = span_ticks;
   w->zero_vector = any_bool();

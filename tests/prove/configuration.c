@@ -2,16 +2,7 @@
 // so the configuration of the whole drive.
 
 #include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "tests/prove/any.h"
-
-static void any_parameters(void) {
-  int32_t* const values = (int32_t*)(void*)&parameters;
-  //@ loop unroll 200;
-  for (uint16_t k = 0; k < parameter_count(); k++) {
-    values[k] = any_from(parameter_info(k)->minimum, parameter_info(k)->maximum);
-  }
-}
+#include "tests/prove/any_parameters.h"
 
 void prove_configuration(void) {
   const drive_config_t* made = 0;

@@ -9,12 +9,27 @@
 #include "control/position_hold.h"
 #include "control/ramp.h"
 #include "control/speed_controller.h"
-#include "tests/prove/any_machine.h"
+#include "tests/prove/any_model.h"
 
-#define TURN_MAX_BPP 683565276L  // 1 rad per period
 #define EMF_MAX_Q16 1073741824L
 
 static machine_model_t told, model;
+
+// Whatever is learnt, at any current: from each state to such a state again.
+static void keep_model(void) {
+  any_model(&told);
+  model = told;
+  while (any_bool()) {
+    if (any_bool()) machine_model_trim(&model, any_from(-Y0_END_Q30, Y0_END_Q30), any_from(-Y0_END_Q30, Y0_END_Q30));
+    model.trim.rs_q24 = any_from(-RS_NOMINAL_MAX_Q24 / 2, RS_NOMINAL_MAX_Q24);
+    model.trim.psi_q16 = any_from(-TRIM_FLUX_END_Q16, TRIM_FLUX_END_Q16);
+    if (any_bool()) machine_model_move(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
+    if (any_bool()) machine_model_follow(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
+    if (any_bool()) machine_model_turn(&model);
+    if (any_bool()) machine_model_scale_inertia(&model, &told, any_from(RATIO_MIN_Q24, RATIO_MAX_Q24));
+    (void)machine_torque_q16(&model, any_dq(CURRENT_MAX_Q20));
+  }
+}
 
 static void control_currents(void) {
   const current_design_t design = {any_from(0, 10000), 100, any_from(0, 3), (current_corner_t)(any_u16 & 1u)};
@@ -30,7 +45,7 @@ static void control_currents(void) {
 
 static void control_speed(void) {
   const speed_controller_config_t c = {any_i32, any_i32, 10, any_i32, any_i32, any_i32, any_i32};
-  speed_controller_t s;
+  static speed_controller_t s;
   if (!speed_controller_init(&s, &c, &model)) return;
   while (any_bool()) {
     const int32_t most = any_from(0, CURRENT_MAX_Q20);
@@ -60,7 +75,7 @@ static void weaken_field(void) {
 }
 
 // Any state in which a turn may be.
-static void any_turn(if_start_t* s, const if_start_config_t* c) {
+static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->tick = any_from(0, c->align_periods);
   s->speed_bpp = any_from(-TURN_MAX_BPP, TURN_MAX_BPP);
   s->mean_q16 = any_dq(EMF_MAX_Q16);
@@ -79,7 +94,7 @@ static void turn_vector(int32_t periods) {
   if_start_t s;
   if (!if_start_design(&c, &model, &p)) return;
   if_start_begin(&s, any_u32, any_bool());
-  if (any_bool()) any_turn(&s, &c);
+  if (any_bool()) any_vector(&s, &c);
   if (if_start_step(&s, &c, any_dq(VOLTAGE_MAX_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
   //@ assert -683565276 <= s.speed_bpp <= 683565276 && 0 <= s.tick <= 65536;
   //@ assert -1073741824 <= s.mean_q16.d <= 1073741824 && -1073741824 <= s.mean_q16.q <= 1073741824;
@@ -103,13 +118,10 @@ static void limit_and_hold(void) {
 }
 
 void prove_control(void) {
+  keep_model();
   if (!make_any_machine(&told)) return;
   model = told;
-  while (any_bool()) {
-    machine_model_move(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
-    if (any_bool()) machine_model_scale_inertia(&model, &told, any_from(2097152L, 134217728L));
-    (void)machine_torque_q16(&model, any_dq(CURRENT_MAX_Q20));
-  }
+  machine_model_move(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
   control_currents();
   control_speed();
   weaken_field();

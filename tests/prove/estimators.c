@@ -45,13 +45,13 @@ static void hand_over(void) {
 }
 
 static void evaluate_slopes(void) {
-  slopes_config_t c = {any_from(0, 134217728L), (int16_t)any_from(1, 4), (int16_t)any_from(1, 4), 0};
-  if (c.start_samples * c.end_samples < 8) return;
-  slopes_design(&c);
-  const slopes_trim_t trim = {any_from(0, 1048320L), any_from(0, 1048320L), any_from(-53687091L, 53687091L)};
+  slopes_config_t c = {0, START_SAMPLES, END_SAMPLES, any_from(0, AMPERES_PER_COUNT_MAX_Q36)};
+  const slopes_trim_t trim = {any_from(OFFSET_MIN_Q8, OFFSET_MAX_Q8), any_from(OFFSET_MIN_Q8, OFFSET_MAX_Q8),
+                              any_from(-MISMATCH_END_Q30, MISMATCH_END_Q30)};
   const slopes_scale_t scale = slopes_scale(&c, &trim);
-  const slopes_sums_t sums = {(uint16_t)any_from(0, 4095L * 4), (uint16_t)any_from(0, 4095L * 4),
-                              (uint16_t)any_from(0, 4095L * 4), (uint16_t)any_from(0, 4095L * 4)};
+  const uint16_t begin = START_SAMPLES * 4095u;
+  const uint16_t end = END_SAMPLES * 4095u;
+  const slopes_sums_t sums = {any_up_to(begin), any_up_to(begin), any_up_to(end), any_up_to(end)};
   estimator_window_t w;
   w.span_ticks = (int16_t)any_from(1, PERIOD_TICKS);
   slopes_evaluate(&scale, &sums, &w);
@@ -99,7 +99,7 @@ static void judge(const estimator_input_t* in) {
   s.error_q16.q = any_from(-49152000L, 49152000L);
   s.turned_q16 = any_from(-49152000L, 49152000L);
   s.emf_q16 = any_from(-134217728L, 134217728L);  // 2048 V
-  s.limit_q16 = any_i32;
+  s.limit_q16 = any_from(0, 32768000L);
   s.doubt = any_from(0, 1000000000L);
   synchronism_look(&seen, in->model, in->windows, in->window_count, any_u32);
   (void)synchronism_judge(&s, &c, in->model, &seen, any_i32);

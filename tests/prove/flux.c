@@ -1,26 +1,9 @@
 // The stator-flux family with any method, cut-off, adaptation, voltages to 2000 V and currents to 512 A, step after
 // step.
 
-#include "estimators/flux_observer.h"
-#include "tests/prove/any_model.h"
+#include "tests/prove/any_flux.h"
 
 static machine_model_t model;
-
-static flux_observer_config_t any_configuration(void) {
-  flux_observer_config_t c;
-  c.method = (flux_method_t)(any_u16 & 3u);
-  c.is_plain = any_bool();
-  c.cutoff_q30 = any_from(107374L, 16106127L);
-  c.bandwidth_q30 = any_from(107374L, 107374182L);
-  c.blind_q20 = any_from(0, 2097152L);
-  c.adaptation_periods = (uint16_t)any_from(1, 1000);
-  c.adaptation.saturation_q24 = any_from(0, FLUX_ONE_Q24);
-  c.adaptation.lowest_bpp = any_from(1, INT32_MAX);
-  c.adaptation.current_q24 = any_from(167772L, FLUX_ONE_Q24);
-  c.adaptation.inductance_q30 = any_from(0, 1073741824L);
-  c.adaptation.magnet_q30 = any_from(0, 1073741824L);
-  return c;
-}
 
 static flux_period_t any_period(void) {
   const flux_period_t p = {any_ab(VOLTAGE_MAX_Q16), any_ab(CURRENT_MAX_Q20), any_dq(2 * (CURRENT_MAX_Q20 - 1)),
@@ -31,7 +14,8 @@ static flux_period_t any_period(void) {
 void prove_flux(void) {
   static flux_observer_t s;
   any_model(&model);
-  const flux_observer_config_t c = any_configuration();
+  flux_observer_config_t c;
+  any_flux(&c);
   if (!flux_observer_config_valid(&c, &model)) return;
   flux_observer_reset(&s, &c, &model);
   (void)flux_adaptation_identify_q24(&model);

@@ -11,8 +11,6 @@
 static uint16_t octets[RECORD_ENCODED_MAX];
 static uint16_t wire[RECORD_ENCODED_MAX + 2u];
 
-static uint16_t any_up_to(uint16_t most) { return (uint16_t)any_from(0, (int32_t)most); }
-
 static void any_octets(uint16_t* to, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) to[k] = any_u16;
 }

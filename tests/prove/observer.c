@@ -1,20 +1,13 @@
 // The deviation observer with any windows, any torque and any tuning, step after step, from any angle, speed and load.
 
-#include "estimators/deviation_observer.h"
+#include "tests/prove/any_observer.h"
 #include "tests/prove/any_windows.h"
 
 static surroundings_t around;
 
 static deviation_observer_config_t any_tuning(void) {
-  static deviation_observer_config_t c;
-  const deviation_observer_tuning_t t = {any_i32, any_i32, any_i32, any_i32, any_i32, any_bool()};
   any_model(&around.model);
-  deviation_observer_design(&c, &around.model, &t);
-  c.cogging.order = any_from(0, 60);
-  c.cogging.fast_bpp = c.crawl_bpp;
-  c.cogging.bound_q8 = any_from(0, COGGING_BOUND_END_Q8);
-  c.zero_vectors_only = any_bool();
-  return c;
+  return any_observer(&around.model);
 }
 
 static void look_back(deviation_observer_t* s) {

@@ -6,24 +6,37 @@
 
 #include "svpwm/alternating.h"
 #include "svpwm/extended.h"
+#include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"  // before what it is about
+
+// -1 is none at all (firmware/start/flying.c).
+#define OF_EDGE(tick) FROM_TO(tick, -1, SVPWM_PERIOD_TICKS)
+#define OF_EDGES(at) \
+  (OF_EDGE((at)[0]) && OF_EDGE((at)[1]) && OF_EDGE((at)[2]) && OF_EDGE((at)[3]) && OF_EDGE((at)[4]) && OF_EDGE((at)[5]))
 
 /*@ assigns \result \from *t, pulse_ticks; ensures \result == 0 || \result == 1; */
 bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks);
 
-/*@ assigns *s \from *s; assigns *pulses \from *s, *t, pulse_ticks; */
+/*@ assigns *s \from *s; assigns *pulses \from *s, *t, pulse_ticks;
+    ensures FROM_TO(s->leg, 0, 2) && FLAG(s->pair_first);
+    ensures \initialized(&pulses->at[0 .. 5]) && \initialized(&pulses->order);
+    ensures OF_EDGES(pulses->at); */
 void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t pulse_ticks, svpwm_pulses_t* pulses);
 
-/*@ assigns *pulses \from *c, *t; */
+/*@ assigns *pulses \from *c, *t;
+    ensures \initialized(&pulses->at[0 .. 5]) && \initialized(&pulses->order); ensures OF_EDGES(pulses->at); */
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
-/*@ assigns *pulses \from *c, *t; */
+/*@ assigns *pulses \from *c, *t;
+    ensures \initialized(&pulses->at[0 .. 5]) && \initialized(&pulses->order); ensures OF_EDGES(pulses->at); */
 void svpwm_cheapest_pair(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
-/*@ assigns *pulses \from *t; */
+/*@ assigns *pulses \from *t;
+    ensures \initialized(&pulses->at[0 .. 5]) && \initialized(&pulses->order); ensures OF_EDGES(pulses->at); */
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
-/*@ assigns *pulses \from *t; */
+/*@ assigns *pulses \from *t;
+    ensures \initialized(&pulses->at[0 .. 5]) && \initialized(&pulses->order); ensures OF_EDGES(pulses->at); */
 void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 #endif

@@ -50,9 +50,12 @@ LISTING = """
      156:\t3001      \tadds\tr0, #1
      158:\tf7ff bfda \tb.w\t110 <chooses>
 
-00000160 <switches>:
+0000015c <switches>:
+     15c:\t2801      \tcmp\tr0, #1
+     15e:\td806      \tbhi.n\t16e <switches+0x12>
      160:\te8df f000 \ttbb\t[pc, r0]
      164:\t0402      \t.short\t0x0402
+     166:\t0303      \t.short\t0x0303
      168:\t4770      \tbx\tlr
      16a:\tbf00      \tnop
      16c:\t3001      \tadds\tr0, #1
@@ -121,7 +124,12 @@ def test_a_function_may_end_within_an_it_block_and_by_a_jump_to_another() -> Non
 
 def test_a_table_of_jumps_is_followed() -> None:
     assert program().function("switches").blocks[0x160].successors == [0x168, 0x16C]
-    assert bound().of_function("switches").cost == 3
+    assert bound().of_function("switches").cost == 2 + 1 + 2
+
+
+def test_a_table_of_jumps_without_an_end_is_not_understood() -> None:
+    with pytest.raises(ValueError, match="160: no comparison before a jump through a table"):
+        program(LISTING.replace("cmp\tr0, #1", "tst\tr0, r1")).function("switches")
 
 
 def test_what_is_called_through_a_pointer_has_to_be_said() -> None:

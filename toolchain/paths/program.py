@@ -181,7 +181,8 @@ class Program:
         start = next(address for address in range(jump.next, jump.next + 4) if address in self._data)
         width = {"tbb": 1, "tbh": 2}.get(jump.name, 4)
         found: set[int] = set()
-        while start + width - 1 in self._data:
+        end = start + width * self._entries_asked_for(code, at)
+        while start + width - 1 in self._data and start < end:
             entry = int.from_bytes((self._data[start + k] for k in range(width)), "little")
             target = entry & ~1 if width == 4 else jump.next + 2 * entry  # addresses, or half words from here
             if target not in inside:
@@ -189,6 +190,15 @@ class Program:
             found.add(target)
             start += width
         return sorted(found)
+
+    @staticmethod
+    def _entries_asked_for(code: list[_Instruction], at: int) -> int:
+        """How many entries the comparison before a jump through a table admits: literals may lie behind the table."""
+        for before in reversed(code[max(at - 4, 0) : at]):
+            compared = re.fullmatch(r"r\d+, #(\d+)\b.*", before.operands)
+            if compared and before.name.startswith("cmp"):
+                return int(compared[1]) + 1
+        raise ValueError(f"not understood at {code[at].address:x}: no comparison before a jump through a table")
 
     def _exits(self, code: list[_Instruction], at: int, inside: range, on: list[int]) -> _Exit | None:
         """Where an instruction leads that does not just go on; on: the next one, where it stands in an IT block."""

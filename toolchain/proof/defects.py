@@ -65,10 +65,10 @@ DEFECTS = (
     ),
     Defect(
         "control",
-        "command_q16",
-        "control/current_controller.c",
-        "q_add_sat(controlled_q16, rotational_q16)",
-        "controlled_q16 + rotational_q16",
+        "machine_torque_constant_q24",
+        "control/machine_model.c",
+        "q_product(m->torque_q24, ONE_Q20)",
+        "(m->torque_q24 * ONE_Q20)",
     ),
     Defect(
         "estimators",

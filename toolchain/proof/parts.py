@@ -6,8 +6,10 @@ from pathlib import Path
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
 LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
-ROTATION_RANGES = "tests/prove/rotation_ranges.h"
-INTERRUPT_RANGES = "tests/prove/interrupt_ranges.h"
+ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
+CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
+ESTIMATORS_RANGES, START_RANGES = "tests/prove/estimators_ranges.h", "tests/prove/start_ranges.h"
+FLOORS = (CONTROL_RANGES, MODULATOR_RANGES, ESTIMATORS_RANGES, START_RANGES)
 
 
 @dataclass(frozen=True)
@@ -17,7 +19,7 @@ class Part:
     name: str
     sources: tuple[str, ...]  # the driver, patterns of the drive's files
     flags: tuple[str, ...]
-    header: str = RANGES
+    headers: tuple[str, ...] = (RANGES,)  # with what functions promise: shown where their code is read
     given: str = ""  # functions of which the contract is taken, not the code
 
 
@@ -25,6 +27,7 @@ class Part:
 OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
 OF_QMATH += ",q_follow,q_follow_near,q_mix,q_mix_sat,q_share_q30"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
+OF_DROPS = "dead_time_sign_q21,dead_time_delay_ticks"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
 OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed,packed_is_empty"
@@ -78,10 +81,11 @@ INTERRUPT = (
 )
 
 
-def with_contract(header: str) -> str:
-    """The functions that a header of tests/prove/ has a contract of."""
-    text = (Path(__file__).resolve().parents[2] / header).read_text(encoding="utf-8")
-    return ",".join(re.findall(r"\*/\n[\w ]+?[ *](\w+)\(", text))
+def with_contract(*headers: str) -> str:
+    """The functions that headers of tests/prove/ have contracts of."""
+    root = Path(__file__).resolve().parents[2]
+    texts = [(root / header).read_text(encoding="utf-8") for header in headers]
+    return ",".join(name for text in texts for name in re.findall(r"\*/\n[\w ]+?[ *](\w+)\(", text))
 
 
 SLICES = (
@@ -112,12 +116,12 @@ def eva(
     flags: tuple[str, ...] = (),
     given: str = "",
     *,
-    header: str = RANGES,
+    headers: tuple[str, ...] = (RANGES,),
     precision: str = "0",
 ) -> Part:
     """What EVA reads from the driver's function `prove_NAME` on."""
     begin = ("-main", f"prove_{name}", "-eva", "-eva-no-print", "-eva-precision", precision)
-    return Part(name, sources, (*begin, *flags), header, given)
+    return Part(name, sources, (*begin, *flags), headers, given)
 
 
 def of_qmath(name: str, flags: tuple[str, ...] = SLICES, given: str = "") -> Part:
@@ -127,37 +131,71 @@ def of_qmath(name: str, flags: tuple[str, ...] = SLICES, given: str = "") -> Par
 
 def of_link(name: str, sources: tuple[str, ...], flags: tuple[str, ...], *given: str) -> Part:
     """What has to do with texts and records."""
-    return eva(name, sources, flags, ",".join(given), header=LINK_RANGES)
+    return eva(name, sources, flags, ",".join(given), headers=(LINK_RANGES,))
 
 
 PARTS = (
     *(of_qmath(name) for name in ("arithmetic", "quotients", "roots", "vectors", "angles")),
     of_qmath("lengths", (), "q_sqrt64"),
-    eva("svpwm", SVPWM, READER, f"{OF_QMATH},{OF_LAYOUTS}", header=LAYOUT_RANGES),
-    eva("layouts", SVPWM, ("-eva-min-loop-unroll", "7"), OF_QMATH),
-    eva("edges", SVPWM, ("-eva-min-loop-unroll", "6", "-eva-slevel", "60"), OF_QMATH),
-    eva("control", ("tests/prove/control.c", *CONTROL), (*READER, "-eva-subdivide-non-linear", "20"), OF_QMATH),
+    eva(
+        "svpwm",
+        SVPWM,
+        READER,
+        f"{OF_QMATH},{OF_LAYOUTS},{OF_DROPS}",
+        headers=(DROP_RANGES, LAYOUT_RANGES, MODULATOR_RANGES),
+    ),
+    eva("drops", ("tests/prove/drops.c", QMATH), SLICES, OF_QMATH, headers=(DROP_RANGES,)),
+    eva("layouts", SVPWM, ("-eva-min-loop-unroll", "7"), OF_QMATH, headers=(LAYOUT_RANGES,)),
+    eva(
+        "edges",
+        SVPWM,
+        ("-eva-min-loop-unroll", "6", "-eva-slevel", "60"),
+        f"{OF_QMATH},{OF_DROPS}",
+        headers=(DROP_RANGES, MODULATOR_RANGES),
+    ),
+    eva(
+        "control",
+        ("tests/prove/control.c", *CONTROL),
+        (*READER, "-eva-subdivide-non-linear", "20"),
+        OF_QMATH,
+        headers=(CONTROL_RANGES,),
+    ),
     *(
-        eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, f"{OF_QMATH},turned", header=ROTATION_RANGES)
+        eva(
+            name,
+            (f"tests/prove/{name}.c", *ESTIMATORS),
+            READER,
+            f"{OF_QMATH},turned",
+            headers=(ROTATION_RANGES, ESTIMATORS_RANGES),
+        )
         for name in ("estimators", "observer")
     ),
-    *(eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, OF_QMATH) for name in ("flux", "start")),
+    *(
+        eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, OF_QMATH, headers=(header,))
+        for name, header in (("flux", ESTIMATORS_RANGES), ("start", START_RANGES))
+    ),
     eva(
         "turned",
         ("tests/prove/turned.c", "control/*.c", QMATH),
         ("-eva-slevel", "40", "-eva-auto-loop-unroll", "12"),
-        header=ROTATION_RANGES,
+        headers=(ROTATION_RANGES,),
     ),
-    eva("commissioning", ("tests/prove/start.c", *ESTIMATORS), (*ROUNDS, "-eva-min-loop-unroll", "70"), OF_QMATH),
+    eva(
+        "commissioning",
+        ("tests/prove/start.c", *ESTIMATORS),
+        (*ROUNDS, "-eva-min-loop-unroll", "70"),
+        OF_QMATH,
+        headers=(START_RANGES,),
+    ),
     eva(
         "interrupt",
         INTERRUPT,
-        (*WHOLE, "-eva-slevel-function", "parameters_reset:200,follow_link:20"),
-        f"{OF_QMATH},{with_contract(INTERRUPT_RANGES)}",
-        header=INTERRUPT_RANGES,
+        (*WHOLE, "-eva-slevel-function", "parameters_reset:200,follow_link:20,drive_read_samples:20"),
+        f"{OF_QMATH},turned,{OF_DROPS},{with_contract(*FLOORS)}",
+        headers=(ROTATION_RANGES, DROP_RANGES, *FLOORS),
     ),
     # A constant that does not fit its word would be another number, silently.
-    eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64"),
+    eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64,q_sat_bits"),
     of_link("packed", TYPED, ("-eva-min-loop-unroll", "900")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH),
@@ -201,6 +239,6 @@ PARTS = (
         "contracts",
         ("hal/qmath/qdiv.c",),
         ("-wp", "-wp-rte", "-wp-prover", "z3", "-wp-timeout", "10", "-wp-fct", ",".join(PROVED_BY_WP)),
-        CONTRACTS,
+        (CONTRACTS,),
     ),
 )
