@@ -134,7 +134,7 @@ static void begin(drive_t* d) {
   h->offset_b_q8 = d->trim.offset_b_q8;
   h->band_q20 = parameters.hysteresis_band;
   refer(d);
-  h->running = hal_slices_begin(slice_ticks()) ? 1u : 0u;
+  h->running = (uint16_t)hal_slices_begin(slice_ticks());
 }
 
 bool drive_hysteresis(drive_t* d) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
@@ -289,6 +291,15 @@ TEST(Saturation, VisibleFromSevenFloorsOn) {
     const double slope = change / real(model.yq_q30, 30) / (2.0 * kAmps);
     const saturation_slopes_t slopes = {0, raw(slope, 30)};
     EXPECT_EQ(saturation_is_visible(&model, &slopes, raw(kAmps, 20)), part > 1.0) << part;
+  }
+}
+
+// The sums hold eight passes, and more are never counted.
+TEST(Saturation, CountsEightPassesAtMost) {
+  saturation_t s = {};
+  for (int n = 1; n <= 10; ++n) {
+    saturation_again(&s);
+    EXPECT_EQ(s.passes, std::min(n, 8));
   }
 }
 
