@@ -78,8 +78,13 @@ DEFECTS = (
         "before + change",
     ),
     Defect("estimators", "hurry", "estimators/voltage_match.c", "q_neg_sat(e_q16)", "-e_q16"),
+    # What a function promises is taken behind it, so it shows there.
     Defect(
-        "observer", "correct", "estimators/deviation_observer.c", "q_limit(s->speed_bpp + ", "q_max(s->speed_bpp + "
+        "observer",
+        "deviation_observer_step",
+        "estimators/deviation_observer.c",
+        "q_limit(s->speed_bpp + ",
+        "q_max(s->speed_bpp + ",
     ),
     Defect("observer", "prove_observer", "estimators/deviation_observer.c", "q_limit(ka.s, VARIANCE_MAX)", "ka.s"),
     Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
