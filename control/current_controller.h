@@ -24,7 +24,7 @@
 
 // No DC link is above 2000 V: a command of twice that says all, and sums with it stay in their format.
 #define CURRENT_COMMAND_BITS 28u
-#define CURRENT_COMMAND_END_Q16 268435456L
+#define CURRENT_COMMAND_END_Q16 ((int32_t)1 << CURRENT_COMMAND_BITS)
 
 typedef struct {
   pi_config_t d, q;

@@ -4,7 +4,7 @@
 #define ONE_Q24 ((int32_t)16777216L)
 #define RATIO_END_Q24 1056964608L  // 63: Lq/Ld less 1
 #define T_END_Q24 187904819L       // 11.2: its square is below the largest r
-#define INVERSE_STEPS 12u          // enough for any trim
+#define INVERSE_STEPS 9u           // enough from any trim to any other
 #define K0_END_Q20 1048576000L     // 1000 A per period
 #define LEAST_SHARE_Q24 (-ONE_Q24 / 16 * 15)
 #define K_BITS 30u     // 64
@@ -22,7 +22,7 @@ static bool parameters_valid(const machine_parameters_t* p) {
 static int32_t period_q30(int32_t period_us) { return q_div(period_us, 1000000L, 30); }
 
 // k0 = -Y J psi0 with psi0 = psi(0, i_q) - L i_q: Y J L (0, i_q) is what K has already counted. h at (0, i_q) is
-// -Y J psi + J (0, i_q): K there is taken off again. All of it as Q46, rounded and limited once.
+// -Y J psi + J (0, i_q): K there is taken off again. All of it as Q46, limited once.
 static void place_flux(machine_model_t* m) {
   const int32_t iq_q20 = m->iq_q20;
   const int64_t own_d_q44 = q_product(ONE_Q24 + m->k_dq_q24, iq_q20);

@@ -1,22 +1,16 @@
 #include "estimators/regression.h"
 
+#include "estimators/window_sum.h"
+
 #define SPREAD_MIN_Q8 (400L * 256L)  // (20 V)^2: less is one and the same vector
 
 // Information weight of a window: the square of its span.
 static int32_t weight_of(const estimator_window_t* w) { return q_shr((int32_t)w->span_ticks * w->span_ticks, 12); }
 
-// Sums of whole products over the windows; they are rounded once.
-typedef struct {
-  int64_t d, q;
-} sum_t;
+static void add(window_sum_t* sum, dq_t x, int32_t share_q30) { window_sum_add(sum, x.d, x.q, share_q30); }
 
-static void add(sum_t* sum, dq_t x, int32_t share_q30) {
-  sum->d = q_mac(sum->d, x.d, share_q30);
-  sum->q = q_mac(sum->q, x.q, share_q30);
-}
-
-static dq_t mean_of(const sum_t* sum) {
-  const dq_t mean = {q_sat_bits(sum->d, 30, 30), q_sat_bits(sum->q, 30, 30)};
+static dq_t mean_of(const window_sum_t* sum) {
+  const dq_t mean = {window_sum_mean(sum->x, 30), window_sum_mean(sum->y, 30)};
   return mean;
 }
 
@@ -27,8 +21,8 @@ static int32_t per_total_q30(int32_t total) {
 
 static void average(regression_t* r, const deviation_t d[], const estimator_input_t* in, const int32_t share_q30[],
                     dq_t* voltage_q16) {
-  sum_t voltage = {0, 0};
-  sum_t residual = {0, 0};
+  window_sum_t voltage = {0, 0};
+  window_sum_t residual = {0, 0};
   for (uint16_t k = 0; k < in->window_count; k++) {
     add(&voltage, d[k].voltage_q16, share_q30[k]);
     add(&residual, d[k].residual_q20, share_q30[k]);
@@ -39,7 +33,7 @@ static void average(regression_t* r, const deviation_t d[], const estimator_inpu
 
 // The residuals' differences (columns) against those of the voltages.
 typedef struct {
-  sum_t by_d, by_q;
+  window_sum_t by_d, by_q;
   int64_t spread;
 } projection_t;
 
@@ -56,10 +50,10 @@ static void project(projection_t* p, const regression_t* r, const deviation_t* d
 
 static void resolve(regression_t* r, const projection_t* p) {
   r->spread_q8 = q_sat64(q_shr64(p->spread, 20));
-  r->along_q16 = q_sat64(q_shr64(p->by_d.d + p->by_q.q, 18));
-  r->mirror_q16 = q_sat64(q_shr64(p->by_d.d - p->by_q.q, 18));
-  r->cross_q16 = q_sat64(q_shr64(p->by_d.q + p->by_q.d, 18));
-  r->curl_q16 = q_sat64(q_shr64(p->by_d.q - p->by_q.d, 18));
+  r->along_q16 = q_sat64(q_shr64(p->by_d.x + p->by_q.y, 18));
+  r->mirror_q16 = q_sat64(q_shr64(p->by_d.x - p->by_q.y, 18));
+  r->cross_q16 = q_sat64(q_shr64(p->by_d.y + p->by_q.x, 18));
+  r->curl_q16 = q_sat64(q_shr64(p->by_d.y - p->by_q.x, 18));
 }
 
 void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in) {

@@ -1,6 +1,7 @@
 #include "estimators/synchronism.h"
 
 #include "estimators/deviation.h"
+#include "estimators/window_sum.h"
 
 #define DOUBT_PER_BAD 8     // a good period takes back an eighth of what a bad one adds
 #define DOUBT_END 1048576L  // far beyond any doubt, and as many periods of it stay in 31 bits
@@ -23,18 +24,10 @@ void synchronism_reset(synchronism_t* s) {
   *s = fresh;
 }
 
-// Sum of whole products, rounded once.
-typedef struct {
-  int64_t alpha, beta;
-} sum_t;
+static void add(window_sum_t* sum, ab_t x, int32_t share_q30) { window_sum_add(sum, x.alpha, x.beta, share_q30); }
 
-static void add(sum_t* sum, ab_t x, int32_t share_q30) {
-  sum->alpha = q_mac(sum->alpha, x.alpha, share_q30);
-  sum->beta = q_mac(sum->beta, x.beta, share_q30);
-}
-
-static ab_t mean_of(const sum_t* sum, unsigned bits) {
-  const ab_t mean = {q_sat_bits(sum->alpha, 30, bits), q_sat_bits(sum->beta, 30, bits)};
+static ab_t mean_of(const window_sum_t* sum, unsigned bits) {
+  const ab_t mean = {window_sum_mean(sum->x, bits), window_sum_mean(sum->y, bits)};
   return mean;
 }
 
@@ -44,9 +37,9 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
                       uint16_t count, uint32_t angle_bam) {
   estimator_window_t mean = {{0, 0}, {0, 0}, {0, 0}, 0, 0, false};
   int32_t share_q30[ESTIMATOR_WINDOWS];
-  sum_t slope = {0, 0};
-  sum_t current = {0, 0};
-  sum_t voltage = {0, 0};
+  window_sum_t slope = {0, 0};
+  window_sum_t current = {0, 0};
+  window_sum_t voltage = {0, 0};
   int32_t total = 0;
   int32_t middle_q15 = 0;
   for (uint16_t k = 0; k < count; k++) total += windows[k].span_ticks;

@@ -36,8 +36,9 @@
 
 #define DRIVE_PERIOD_US 100
 #define DRIVE_PERIODS_PER_MS 10
-#define DRIVE_CURRENT_BITS 29u
-#define DRIVE_CURRENT_END_Q20 536870912L  // 512 A: no two sensors show more
+#define DRIVE_CURRENT_BITS 29u  // 512 A: no two sensors show more
+#define DRIVE_CURRENT_END_Q20 ((int32_t)1 << DRIVE_CURRENT_BITS)
+#define DRIVE_MIDDLE_Q8 (2048L * 256L)  // of the converter's codes: no current
 
 /// Derived from the parameters, see drive_config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.

@@ -21,7 +21,7 @@ void drive_reset(void) {
   parameters_reset();
   board_reset();
   drive.control.current_limit_q20 = board_current_limit();
-  drive.rest_a_q8 = drive.rest_b_q8 = 2048L * 256L;
+  drive.rest_a_q8 = drive.rest_b_q8 = DRIVE_MIDDLE_Q8;
   drive.trim.offset_a_q8 = drive.rest_a_q8;
   drive.trim.offset_b_q8 = drive.rest_b_q8;
   drive.config_valid = drive_config_load(&drive.config);

@@ -7,8 +7,7 @@
 
 #define CALIBRATE_PERIODS 256u
 #define SAMPLES_TIMEOUT 2000u
-#define MIDDLE_Q8 (2048L * 256L)     // codes
-#define OFFSET_MAX_Q8 (100L * 256L)  // off the middle: about 1 A on a 20 A range
+#define OFFSET_MAX_Q8 (100L * 256L)  // codes off the middle: about 1 A on a 20 A range
 #define OFFSET_END_Q8 (128L * 256L)  // none beyond is ever used: samples stay in their formats
 #define UNREST_MAX_Q8 (10L * 256L)   // mean deviation from the offset, codes: ten times the converter's noise
 #define UNREST_TIMEOUT 100000u       // 10 s
@@ -28,7 +27,7 @@ static bool current_flows(drive_t* d) {
 }
 
 static int32_t usable_offset(int32_t rest_q8) {
-  return q_clamp(rest_q8, MIDDLE_Q8 - OFFSET_END_Q8, MIDDLE_Q8 + OFFSET_END_Q8);
+  return q_clamp(rest_q8, DRIVE_MIDDLE_Q8 - OFFSET_END_Q8, DRIVE_MIDDLE_Q8 + OFFSET_END_Q8);
 }
 
 static void calibrate(drive_t* d) {
@@ -42,8 +41,8 @@ static void calibrate(drive_t* d) {
   if (flows) d->calm_at = d->periods + CALIBRATE_PERIODS;
   const bool calm = d->periods >= d->calm_at;
   if (d->periods < CALIBRATE_PERIODS || (!calm && d->periods < UNREST_TIMEOUT)) return;
-  const bool plausible =
-      q_abs_sat(d->rest_a_q8 - MIDDLE_Q8) < OFFSET_MAX_Q8 && q_abs_sat(d->rest_b_q8 - MIDDLE_Q8) < OFFSET_MAX_Q8;
+  const bool plausible = q_abs_sat(d->rest_a_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8 &&
+                         q_abs_sat(d->rest_b_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8;
   if (plausible && calm) {
     drive_enter(d, DRIVE_READY);
   } else {

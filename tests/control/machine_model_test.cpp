@@ -183,15 +183,31 @@ TEST(MachineModel, TheTrimMovesTheSaliency) {
   EXPECT_NEAR(real(m.k0_q20.d, 20), 0.0, 2e-5);
 }
 
+// Inductances learnt without regard to the flux's share.
+void learn(machine_model_t* m, double rest) {
+  const double less = (rest - 1.0) * real(m->map.points[0].yqq_q30, 30);
+  machine_model_trim(m, raw(0.5 * less, 30), raw(-0.5 * less, 30));
+}
+
 // From one to a half, or to sixteen, in one call. What is learnt is at most as much again, and leaves a sixteenth.
 TEST(MachineModel, TheShareOfTheFluxIsFoundFromAfar) {
   for (const double rest : {50.0, 3.0, 2.0, 1.0, 0.5, 0.1, 0.0625, 0.01, 0.001}) {
     machine_model_t m = model_of(Motor{});
-    const double less = (rest - 1.0) * real(m.yq_q30, 30);
-    machine_model_trim(&m, raw(0.5 * less, 30), raw(-0.5 * less, 30));
+    learn(&m, rest);
     const double left = std::clamp(rest, 1.0 / 16.0, 2.0);
     EXPECT_NEAR(1.0 + real(m.trim.yqq_q24, 24), left, 1e-6) << rest;
     EXPECT_NEAR(real(m.trim.psi_share_q24, 24) * left, 1.0, 1e-4) << rest;
+  }
+}
+
+// Between the two ends, the farthest way that there is.
+TEST(MachineModel, TheShareOfTheFluxIsFoundFromOneEndToTheOther) {
+  machine_model_t m = model_of(Motor{});
+  for (int n = 0; n < 40; ++n) {
+    for (const double left : {2.0 - 0.005 * n, 1.0 / 16.0 + 0.0001 * n}) {
+      learn(&m, left);
+      EXPECT_NEAR(real(m.trim.psi_share_q24, 24) * left, 1.0, 1e-4) << left;
+    }
   }
 }
 

@@ -143,6 +143,11 @@ TEST_F(DriveConfig, AMagnetThatDrivesTooMuchCurrentIsRefused) {
   EXPECT_TRUE(drive_config_load(&drive.config));
   set("magnet_flux", 0.9);  // lambda/Lq of 1125 A
   expect_refused();
+  set("magnet_flux", 0.7);
+  set("lqq_4", 90.0);
+  EXPECT_TRUE(drive_config_load(&drive.config));
+  set("lqq_4", 80.0);  // 1094 A at its last point alone
+  expect_refused();
 }
 
 TEST_F(DriveConfig, ASaliencyTooLargeForTheSensorsIsRefused) {

@@ -16,6 +16,7 @@
 #include "estimators/zvv.h"
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"
+
 #define OF_LEARNT(m)                                                                                                 \
   (FROM_TO((m)->trim.mean_q30, -Y0_END_Q30 / 4, Y0_END_Q30 / 2) && WITHIN((m)->trim.half_q30, Y_END_Q30) &&          \
    FROM_TO((m)->trim.ydd_q24, LEAST_SHARE_Q24, 16777216) && FROM_TO((m)->trim.yqq_q24, LEAST_SHARE_Q24, 16777216) && \
@@ -101,8 +102,8 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
                       uint16_t count, uint32_t angle_bam);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(m) && \valid_read(seen);
-    assigns *s, \result \from *s, *c, *m, *seen, apart_bam; ensures FLAG(\result); ensures FROM_TO(s->limit_q16, 0,
-   32768000); */
+    assigns *s, \result \from *s, *c, *m, *seen, apart_bam;
+    ensures FLAG(\result); ensures FROM_TO(s->limit_q16, 0, 32768000); */
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
                        const synchronism_seen_t* seen, int32_t apart_bam);
 

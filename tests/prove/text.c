@@ -26,13 +26,28 @@ static uint16_t length(const char* text) {
   return n;
 }
 
+static char room[SUGGEST_NAME_ROOM];
+
+// A name at the end of its room: what is read behind it lies outside.
+static const char* unpacked(packed_text_t text) {
+  packed_copy(text, room, SUGGEST_NAME_ROOM);
+  const uint16_t n = length(room) + 1u;
+  char* const name = &room[SUGGEST_NAME_ROOM - n];
+  packed_copy(text, name, n);
+  return name;
+}
+
 // Whatever was typed, compared with one name.
-static void compare(packed_text_t name) {
+static void compare(packed_text_t text) {
   octet_writer_t w = writer();
-  put_packed(&w, name);
+  put_packed(&w, text);
+  const char* const name = unpacked(text);
   word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
-  (void)packed_equals(name, word.text, word.count);
-  (void)packed_occurs(name, word.text, word.count);
+  (void)packed_equals(text, word.text, word.count);
+  (void)packed_occurs(text, word.text, word.count);
+  (void)text_begins(name, word.text, word.count);
+  (void)text_equals(name, word.text, word.count);
+  (void)text_occurs(name, word.text, word.count);
 }
 
 void prove_names(void) {
@@ -43,8 +58,7 @@ void prove_names(void) {
 
 // The same with one character wrong, missing or too many.
 static void come_near(packed_text_t text) {
-  char name[SUGGEST_NAME_ROOM];
-  packed_copy(text, name, SUGGEST_NAME_ROOM);
+  const char* const name = unpacked(text);
   const uint16_t n = length(name);
   word.count = (uint16_t)any_from(0, n - 2);
   (void)suggest_is_near(name, &word);
