@@ -68,8 +68,8 @@ deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t 
   const dq_t lost_q16 = {q_limit(q_mul_floor(m->rs_q24, i.d, 28), LOST_MAX_Q16),
                          q_limit(q_mul_floor(m->rs_q24, i.q, 28), LOST_MAX_Q16)};
   deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, -2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
-  const dq_t lost_q18 = deviation_by_angle_q18(&s, lost_q16);
-  s.rest_q18.d = q_mul_hi(turn.d, w_q30) - lost_q18.d;
-  s.rest_q18.q = q_mul_hi(turn.q, w_q30) - lost_q18.q;
+  const dq_t lost_q17 = deviation_by_angle_q17(&s, lost_q16);
+  s.rest_q17.d = q_mul_floor(turn.d, w_q30, 33) - lost_q17.d;
+  s.rest_q17.q = q_mul_floor(turn.q, w_q30, 33) - lost_q17.q;
   return s;
 }

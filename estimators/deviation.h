@@ -31,7 +31,7 @@ typedef struct {
 /// What the residuals of a period say about angle and speed.
 typedef struct {
   int32_t saliency_q30, tilt_q30, less_tilt_q30;  // J Y - Y J = [-tilt, saliency; saliency, tilt]
-  dq_t rest_q18;                                  // what of h_angle does not hang on the voltage, A per period and rad
+  dq_t rest_q17;                                  // what of h_angle does not hang on the voltage, A per period and rad
   dq_t turn_q20;                                  // h_speed, A per period and (rad per period)
 } deviation_sensitivity_t;
 
@@ -78,11 +78,11 @@ deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_
 
 deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t w_q30, dq_t current_q20);
 
-/// h_angle of a window, A per period and rad, Q18: upper words. Voltages below 2000 V.
-static inline dq_t deviation_by_angle_q18(const deviation_sensitivity_t* s, dq_t v_q16) {
-  const dq_t v_q20 = {v_q16.d * 16, v_q16.q * 16};
-  const dq_t h = {q_mul_add_floor(s->saliency_q30, v_q20.q, s->less_tilt_q30, v_q20.d, 32) + s->rest_q18.d,
-                  q_mul_add_floor(s->saliency_q30, v_q20.d, s->tilt_q30, v_q20.q, 32) + s->rest_q18.q};
+/// h_angle of a window, A per period and rad, Q17: upper words. Each component of the voltage below 4096 V.
+static inline dq_t deviation_by_angle_q17(const deviation_sensitivity_t* s, dq_t v_q16) {
+  const dq_t v_q19 = {v_q16.d * 8, v_q16.q * 8};
+  const dq_t h = {q_mul_add_floor(s->saliency_q30, v_q19.q, s->less_tilt_q30, v_q19.d, 32) + s->rest_q17.d,
+                  q_mul_add_floor(s->saliency_q30, v_q19.d, s->tilt_q30, v_q19.q, 32) + s->rest_q17.q};
   return h;
 }
 

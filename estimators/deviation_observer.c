@@ -24,7 +24,6 @@
 #define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
-#define POWER_REST 255u
 #define POWER_START 838861L  // 0.05: nothing leans before the power is known
 #define HALF_Q9 256L
 #define DUE_Q9 128L
@@ -46,8 +45,8 @@ static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20
 void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
                                const deviation_observer_tuning_t* t) {
   const int32_t noise_q20 = q_clamp(t->noise_q20, 1049, ONE_Q20);
-  const int32_t inverse_q20 = q_div(ONE_Q20, noise_q20, 20);
-  c->weight_q8 = q_mul(q_mul(inverse_q20, inverse_q20, 30), PER_UNIT_Q19, 21);
+  const int32_t inverse_q20 = q_min(q_div(ONE_Q20, noise_q20, 20), 1000 * ONE_Q20);
+  c->weight_q8 = q_mul(q_square_sat(inverse_q20, 30), PER_UNIT_Q19, 21);
   c->residual_limit_q20 = noise_q20 * OUTLIER;
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
@@ -85,14 +84,10 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 // noise has them once in five minutes. A longer mean would see smaller loads, and 5 N m a millisecond later. The power
 // is measured, not the information's word for it: it holds whatever noise the observer was told.
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
-  s->mean_score_q20 = q_follow_near(s->mean_score_q20, n->a, MEAN_SHIFT);
+  s->mean_score_q20 = q_follow_halves(s->mean_score_q20, n->a, MEAN_SHIFT);
   // Neither square nor power is below 0: their difference stays in 31 bits. What the shift leaves counts later: short
   // windows have a power of 200 in Q24, half of which would be lost.
-  const int32_t square_q24 = q_sat64(q_shr64(q_product(n->a, n->a), 16));
-  const int32_t change = square_q24 - s->score_power_q24;
-  const uint32_t rest = s->score_rest + ((uint32_t)change & POWER_REST);
-  s->score_power_q24 += q_shr(change, POWER_SHIFT) + (int32_t)(rest >> POWER_SHIFT);
-  s->score_rest = rest & POWER_REST;
+  s->score_power_q24 = q_follow_rest(s->score_power_q24, q_square_sat(n->a, 16), POWER_SHIFT, &s->score_rest);
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
@@ -155,10 +150,14 @@ static void predict_covariance(deviation_observer_t* s) {
   s->p_sl += q_mul(s->p_ll, time_q32, 32);
 }
 
-// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^14: the variances are limited to 512 and, with them, the
-// covariances; the information of a period to 8, and that of the periods before makes up half a variance at most
+typedef struct {
+  int32_t aa_q21, as_q21, ss_q21;
+} known_t;
+
+// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^14: the variances are limited to 512 and, with them,
+// the covariances; the information of a period to 8, and that of the periods before makes up half a variance at most
 // (gain_is_old), or what 512 units of speed or load make of one in 12 periods.
-static gain_t times_information(const deviation_gathered_t* n, int32_t x_a_q20, int32_t x_s_q20) {
+static gain_t times_information(const known_t* n, int32_t x_a_q20, int32_t x_s_q20) {
   const gain_t g = {q_mul_add_floor(n->aa_q21, x_a_q20, n->as_q21, x_s_q20, 25),
                     q_mul_add_floor(n->as_q21, x_a_q20, n->ss_q21, x_s_q20, 25)};
   return g;
@@ -185,12 +184,13 @@ static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2)
 
 static void renew(deviation_observer_t* s) {
   deviation_gathered_t* const n = &s->gathered;
-  const gain_t ga = times_information(n, s->p_aa, s->p_as);
-  const gain_t gs = times_information(n, s->p_as, s->p_ss);
-  const gain_t gl = times_information(n, s->p_al, s->p_sl);
+  const known_t known = {n->aa_q21, q_sat64(q_shr64(n->as_q24, 3)), n->ss_q21};
+  const gain_t ga = times_information(&known, s->p_aa, s->p_as);
+  const gain_t gs = times_information(&known, s->p_as, s->p_ss);
+  const gain_t gl = times_information(&known, s->p_al, s->p_sl);
   // 1 + I P = [1 + ga.a, gs.a; ga.s, 1 + gs.s], Q16.
-  const int32_t m_aa = ga.a + 65536L;
-  const int32_t m_ss = gs.s + 65536L;
+  const int32_t m_aa = q_add_sat(ga.a, 65536L);
+  const int32_t m_ss = q_add_sat(gs.s, 65536L);
   const int32_t det_q12 = q_max(q_mul_sub_sat(m_aa, m_ss, gs.a, ga.s, 20), 4096);
   const int32_t per_det_q30 = q_over(4096, q_invert(det_q12), 30);
   const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), q_mul_sat(gs.a, per_det_q30, 22),
@@ -199,12 +199,12 @@ static void renew(deviation_observer_t* s) {
   const int32_t p_ss = q_mul_sub(s->p_ss, inverse[3], s->p_as, inverse[1], 24);
   const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
   // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
-  s->p_ll = positive(q_sub_sat(s->p_ll, q_mul_add(kl.a, gl.a, kl.s, gl.s, 16)));
   s->p_aa = positive(ka.a);
   s->p_as = q_limit(ka.s, VARIANCE_MAX);
   s->p_ss = positive(p_ss);
   s->p_al = q_limit(kl.a, VARIANCE_MAX);
   s->p_sl = q_limit(kl.s, VARIANCE_MAX);
+  s->p_ll = positive(q_sub_sat(s->p_ll, q_mul_add(s->p_al, gl.a, s->p_sl, gl.s, 16)));
   limit(&s->p_aa, &s->p_as, &s->p_al);
   limit(&s->p_ss, &s->p_as, &s->p_sl);
   limit(&s->p_ll, &s->p_al, &s->p_sl);
@@ -226,9 +226,8 @@ static void correct(deviation_observer_t* s, const information_t* n) {
 // Eight periods of as much information as a period may have: 64 of them stay in 31 bits.
 static void gather(deviation_gathered_t* g, const information_t* n) {
   g->aa_q21 += q_shr_round(n->aa, 3);
-  g->as_q21 += q_shr_round(n->as, 3);
+  g->as_q24 += n->as;  // in 64 bits: that its square is no more than aa ss nobody sees
   g->ss_q21 += q_shr_round(n->ss, 3);
-  g->periods++;
 }
 
 // Trace of P I.
@@ -340,9 +339,12 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
                                            const estimator_input_t* in) {
   information_t n = {0, 0, 0, 0, 0};
   predict(s, c, in->torque_accel_q8);
-  if (in->window_count > 0u) n = look(s, c, in);
+  if (in->window_count > 0u) {
+    n = look(s, c, in);
+    gather(&s->gathered, &n);
+  }
+  s->gathered.periods++;
   follow_scores(s, &n);
-  gather(&s->gathered, &n);
   const bool lean = scores_lean(s, &n);
   note_load(s, c, lean);
   if (in->renew || gain_is_old(s)) {

@@ -55,7 +55,8 @@ typedef struct {
 } deviation_left_t;
 
 typedef struct {
-  int32_t aa_q21, as_q21, ss_q21;
+  int64_t as_q24;
+  int32_t aa_q21, ss_q21;
   int32_t periods;
 } deviation_gathered_t;
 

@@ -78,11 +78,27 @@ static inline int32_t q_add_sat(int32_t a, int32_t b) { return q_sat64((int64_t)
 
 static inline int32_t q_sub_sat(int32_t a, int32_t b) { return q_sat64((int64_t)a - b); }
 
-// a + (b - a) / 2^n, n = 1..31: what follows b with a share of the difference lies between the two.
+// a + (b - a) / 2^n, n = 1..31: what follows b with a share of the difference lies between the two. A difference that
+// is saturated: the share of more than 2^31 is less than that.
 static inline int32_t q_follow(int32_t a, int32_t b, unsigned n) { return a + q_shr(q_sub_sat(b, a), n); }
 
 // The same of a and b whose difference fits 32 bits.
 static inline int32_t q_follow_near(int32_t a, int32_t b, unsigned n) { return a + q_shr(b - a, n); }
+
+// The same of any two by the difference of their halves: cheaper, where a unit of offset does not count.
+static inline int32_t q_follow_halves(int32_t a, int32_t b, unsigned n) {
+  return a + q_shr(q_shr(b, 1) - q_shr(a, 1), n - 1u);
+}
+
+// q_follow_near with what the shift has left, 0..2^n - 1: nothing of a difference is lost. Both are below 2^30;
+// n = 2..24.
+static inline int32_t q_follow_rest(int32_t a, int32_t b, unsigned n, uint32_t* rest) {
+  const int32_t difference = b - a;
+  const uint32_t mask = ((uint32_t)1 << n) - 1u;
+  const uint32_t sum = *rest + ((uint32_t)difference & mask);
+  *rest = sum & mask;
+  return a + (q_shr(difference, n) + (int32_t)(sum >> n));
+}
 
 // -x, and INT32_MAX for INT32_MIN.
 static inline int32_t q_neg_sat(int32_t x) { return (x == INT32_MIN) ? INT32_MAX : -x; }
@@ -103,6 +119,12 @@ static inline int32_t q_shl_sat(int32_t x, unsigned n) {
   }
   return (int32_t)((uint32_t)x << n);
 }
+
+// x^2.
+static inline uint64_t q_square(int32_t x) { return (uint64_t)((int64_t)x * x); }
+
+// x^2 / 2^n, below 2^30, n = 2..32.
+static inline int32_t q_square_sat(int32_t x, unsigned n) { return q_sat_bits((int64_t)x * x, n, 30); }
 
 // a * b.
 static inline int64_t q_product(int32_t a, int32_t b) { return (int64_t)a * b; }
@@ -155,7 +177,9 @@ static inline int32_t q_mix_sat(int32_t a, int32_t b, int32_t share, unsigned bi
 }
 
 // A part of a total, Q30, of the total's reciprocal: a share below one, and half a part more where that was rounded up.
-static inline int32_t q_share_q30(int32_t part, int32_t per_total_q30) { return part * per_total_q30; }
+static inline int32_t q_share_q30(int32_t part, int32_t per_total_q30) {
+  return (int32_t)((uint32_t)part * (uint32_t)per_total_q30);
+}
 
 // The same two sums of products, saturated.
 static inline int32_t q_mul_add_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift) {

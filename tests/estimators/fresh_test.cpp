@@ -119,10 +119,10 @@ TEST(Fresh, DeviationObserver) {
   EXPECT_EQ(s.cogging.cos_q8 | s.cogging.sin_q8 | s.cogging.mean_q8 | s.cogging.now_q8, 0);
   EXPECT_EQ(s.cogging.known_q30 | s.cogging.order | s.cogging.wave.cos_q30 | s.cogging.wave.sin_q30, 0);
   EXPECT_EQ(s.cogging.stepped_bam | s.regressed_bam, 0u);
-  EXPECT_EQ(s.gathered.aa_q21 | s.gathered.as_q21 | s.gathered.ss_q21 | s.gathered.periods, 0);
+  EXPECT_EQ(s.gathered.aa_q21 | s.gathered.as_q24 | s.gathered.ss_q21 | s.gathered.periods, 0);
   EXPECT_EQ(s.left.d_q20 | s.left.q_q20 | s.left.span_ticks | s.left.periods, 0);
   const deviation_sensitivity_t& h = s.sensitivity;
-  EXPECT_EQ(h.saliency_q30 | h.tilt_q30 | h.less_tilt_q30 | h.rest_q18.d | h.rest_q18.q | h.turn_q20.d | h.turn_q20.q,
+  EXPECT_EQ(h.saliency_q30 | h.tilt_q30 | h.less_tilt_q30 | h.rest_q17.d | h.rest_q17.q | h.turn_q20.d | h.turn_q20.q,
             0);
   const regression_t& r = s.regression;
   EXPECT_EQ(r.spread_q8 | r.along_q16 | r.mirror_q16 | r.cross_q16 | r.curl_q16 | r.information, 0);

@@ -173,7 +173,7 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   }
   // Known, but with much to learn: the same, and the synchronism is judged.
   know(0.9);
-  drive.position.observer.gathered = {raw(1.0, 21), 0, 0, 1};
+  drive.position.observer.gathered = {0, raw(1.0, 21), 0, 1};
   for (const schedule_t& s : next(10)) {
     EXPECT_TRUE(s.pressed && !s.unsure);
     const bool long_task = s.task == TASK_SPEED || s.task == TASK_FIELD;

@@ -55,10 +55,16 @@ estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_inp
 bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t* deviation_q20);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in); assigns *s, \result \from *s, *c, indirect:*in;
-    ensures OF_OUTPUT(\result); ensures WITHIN(s->speed_bpp, SPEED_MAX_BPP);
+    ensures OF_OUTPUT(\result); ensures WITHIN(s->speed_bpp, SPEED_MAX_BPP) && FROM_TO(s->speed_rest_q8, 0, 255);
     ensures FLAG(s->load_is_new) && FLAG(s->leaned) && FLAG(s->is_sensitive) && FLAG(s->cogging.active);
     ensures OF_VARIANCE(s->p_aa) && OF_VARIANCE(s->p_ss) && OF_VARIANCE(s->p_ll);
-    ensures FROM_TO(s->gathered.periods, 0, 12) && FROM_TO(s->cogging.known_q30, 0, 1073741824); */
+    ensures WITHIN(s->p_as, VARIANCE_END_Q20) && WITHIN(s->p_al, VARIANCE_END_Q20);
+    ensures WITHIN(s->p_sl, VARIANCE_END_Q20) && FROM_TO(s->cogging.known_q30, 0, 1073741824);
+    ensures FROM_TO(s->score_power_q24, 0, POWER_END_Q24) && s->score_rest <= 255;
+    ensures FROM_TO(s->alert_q30, 0, 1073741824) && FROM_TO(s->gathered.periods, 0, 11);
+    ensures FROM_TO(s->gathered.aa_q21, 0, s->gathered.periods * INFORMATION_END_Q21);
+    ensures FROM_TO(s->gathered.ss_q21, 0, s->gathered.periods * INFORMATION_END_Q21);
+    ensures WITHIN(s->gathered.as_q24, s->gathered.periods * 2147483648LL); */
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);
 

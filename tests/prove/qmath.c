@@ -32,6 +32,8 @@ static void arithmetic(void) {
   (void)q_abs_sat(any_i32);
   (void)q_abs_u32(any_i32);
   (void)q_mul_hi(any_i32, any_i32);
+  (void)q_square(any_from(0, INT32_MAX));
+  (void)q_square(any_from(INT32_MIN, -1));
   (void)q_umul_hi(any_u32, any_u32);
   (void)q15_sat(any_i32);
   (void)q15_add_sat(any_i16, any_i16);
@@ -51,6 +53,12 @@ static void arithmetic(void) {
 // A quarter of the range in one of each pair is enough (qarith.h).
 static int32_t any_quarter(void) { return any_from(INT32_MIN / 4, INT32_MAX / 4); }
 
+// In half of the range, of either sign.
+static void follow_with_rest(unsigned n) {
+  uint32_t rest = any_u32 & (((uint32_t)1 << n) - 1u);
+  (void)q_follow_rest(any_from(-0x40000000L, 0x3FFFFFFFL), any_from(-0x40000000L, 0x3FFFFFFFL), n, &rest);
+}
+
 static void shifted(unsigned n) {
   if (n <= 31u) {
     (void)q_shr(any_i32, n);
@@ -59,6 +67,9 @@ static void shifted(unsigned n) {
   }
   (void)q_shr64(any_i64, n);
   if (n >= 2u && n <= 32u) (void)q_sat_bits(any_i64, n, 30u);
+  if (n >= 2u && n <= 32u) (void)q_square_sat(any_from(0, INT32_MAX), n);
+  if (n >= 2u && n <= 32u) (void)q_square_sat(any_from(INT32_MIN, -1), n);
+  if (n >= 2u && n <= 24u) follow_with_rest(n);
   if (n < 1u || n > 62u) return;
   (void)q_mul64(any_i32, any_i32, n);
   (void)q_mul(any_i32, any_i32, n);
@@ -76,6 +87,8 @@ static void shifted(unsigned n) {
 static void follow(int32_t a, unsigned n) {
   (void)q_follow(a, any_from(INT32_MIN, -1), n);
   (void)q_follow(a, any_from(0, INT32_MAX), n);
+  (void)q_follow_halves(a, any_from(INT32_MIN, -1), n);
+  (void)q_follow_halves(a, any_from(0, INT32_MAX), n);
 }
 
 static void followed(unsigned n) {

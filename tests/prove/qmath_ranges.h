@@ -23,6 +23,10 @@ static inline int32_t q_limit(int32_t x, int32_t limit);
     ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
 static inline int32_t q_follow(int32_t a, int32_t b, unsigned n);
 
+/*@ requires 1 <= n <= 31; assigns \result \from a, b, n;
+    ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
+static inline int32_t q_follow_halves(int32_t a, int32_t b, unsigned n);
+
 /*@ requires -2147483648 <= b - a <= 2147483647 && 1 <= n <= 31; assigns \result \from a, b, n;
     ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
 static inline int32_t q_follow_near(int32_t a, int32_t b, unsigned n);
@@ -32,9 +36,17 @@ static inline int32_t q_follow_near(int32_t a, int32_t b, unsigned n);
     ensures \result <= a || \result <= b; */
 static inline int32_t q_mix_sat(int32_t a, int32_t b, int32_t share, unsigned bits);
 
-/*@ requires 0 <= part <= 32768 && 0 <= part * per_total_q30 <= 1073741824 + part / 2;
-    assigns \result \from part, per_total_q30; ensures 0 <= \result <= 1073758208; */
-static inline int32_t q_share_q30(int32_t part, int32_t per_total_q30);
+/*@ requires -1073741824 <= a < 1073741824 && -1073741824 <= b < 1073741824 && 2 <= n <= 24;
+    requires \valid(rest) && \initialized(rest) && *rest < (1 << n);
+    assigns *rest, \result \from a, b, n, *rest; ensures \initialized(rest); ensures *rest < (1 << n);
+    ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
+static inline int32_t q_follow_rest(int32_t a, int32_t b, unsigned n, uint32_t* rest);
+
+/*@ assigns \result \from x; ensures \result <= 4611686018427387904; */
+static inline uint64_t q_square(int32_t x);
+
+/*@ requires 2 <= n <= 32; assigns \result \from x, n; ensures 0 <= \result < 1073741824; */
+static inline int32_t q_square_sat(int32_t x, unsigned n);
 
 /*@ requires -2147483648 <= b - a <= 2147483647 && 1 <= bits <= 30 && 0 <= share <= (1 << bits);
     assigns \result \from a, b, share, bits; ensures a <= \result || b <= \result;

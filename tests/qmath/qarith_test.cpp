@@ -184,9 +184,47 @@ TEST(QArith, WhatFollowsLiesBetween) {
         const std::int32_t got = q_follow(a, b, n);
         ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << n;
         ASSERT_TRUE(Wide{got} == a + floor_shift(saturate(Wide{b} - a), n)) << a << ", " << b << ", " << n;
+        const Wide halves = floor_shift(Wide{b}, 1) - floor_shift(Wide{a}, 1);
+        const std::int32_t by_halves = q_follow_halves(a, b, n);
+        ASSERT_TRUE(lies_between(by_halves, a, b)) << a << ", " << b << ", " << n;
+        ASSERT_TRUE(Wide{by_halves} == a + floor_shift(halves, n - 1)) << a << ", " << b << ", " << n;
         if (!fits(Wide{b} - a)) continue;
         ASSERT_EQ(q_follow_near(a, b, n), got) << a << ", " << b << ", " << n;
       }
+    }
+  }
+}
+
+// All of the difference is in the number and in what is left, and the number lies between.
+TEST(QArith, WhatFollowsWithARestLosesNothing) {
+  RandomInt32 random(8);
+  const std::vector<std::int32_t> values = edges_and_random(100, random);
+  for (const std::int32_t twice_a : values) {
+    for (const std::int32_t twice_b : values) {
+      const std::int32_t a = twice_a / 2;
+      const std::int32_t b = twice_b / 2;
+      const Wide difference = Wide{b} - a;
+      for (unsigned n = 2; n <= 24; ++n) {
+        const Wide one = Wide{1} << n;
+        for (const Wide before : {Wide{0}, Wide{1}, one / 2, one - 1}) {
+          std::uint32_t rest = static_cast<std::uint32_t>(before);
+          const std::int32_t got = q_follow_rest(a, b, n, &rest);
+          ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << n;
+          ASSERT_LT(rest, one);
+          ASSERT_TRUE(Wide{got} * one + rest == Wide{a} * one + before + difference) << a << ", " << b << ", " << n;
+        }
+      }
+    }
+  }
+}
+
+TEST(QArith, ASquareIsSaturatedAndNeverNegative) {
+  for (const std::int32_t x : edges()) {
+    ASSERT_TRUE(Wide{q_square(x)} == Wide{x} * x) << x;
+    for (unsigned n = 2; n <= 32; ++n) {
+      const std::int32_t got = q_square_sat(x, n);
+      ASSERT_GE(got, 0);
+      ASSERT_TRUE(Wide{got} == std::min(floor_shift(Wide{x} * x, n), Wide{(1 << 30) - 1})) << x << ", " << n;
     }
   }
 }

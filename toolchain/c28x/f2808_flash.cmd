@@ -38,8 +38,8 @@ SECTIONS
   boot      : > BOOT,      PAGE = 0
   appentry  : > APP_ENTRY, PAGE = 0
   identity  : > IDENTITY,  PAGE = 0
-  observers : { libstillspin_estimators.a<deviation_observer*, flux_observer*, flux_adaptation*, synchronism*>(.text)
-                libstillspin_estimators.a<deviation_observer*, flux_observer*, flux_adaptation*, synchronism*>(.econst)
+  observers : { libstillspin_estimators.a<deviation_observer*, flux_observer*, flux_adaptation*>(.text)
+                libstillspin_estimators.a<deviation_observer*, flux_observer*, flux_adaptation*>(.econst)
               } > APP, PAGE = 0
   resident  : { rts2800_ml.lib<l_div*, u_div*, i_div*, ll_*, memcpy*, memset*>(.text)
                 libstillspin_qmath.a<*>(.text) libstillspin_qmath.a<*>(.econst) libstillspin_qmath.a<*>(.switch)

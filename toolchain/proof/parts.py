@@ -25,7 +25,7 @@ class Part:
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
 OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
-OF_QMATH += ",q_follow,q_follow_near,q_mix,q_mix_sat,q_share_q30"
+OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_rest,q_mix,q_mix_sat,q_square,q_square_sat"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_DROPS = "dead_time_sign_q21,dead_time_delay_ticks"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
@@ -164,7 +164,7 @@ PARTS = (
         eva(
             name,
             (f"tests/prove/{name}.c", *ESTIMATORS),
-            READER,
+            (*READER, "-eva-slevel-function", "information_collect:100"),
             f"{OF_QMATH},turned",
             headers=(ROTATION_RANGES, ESTIMATORS_RANGES),
         )
