@@ -32,4 +32,5 @@ void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q3
 void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   const admittance_t y = nominal(m);
   trim(m, &y, q_sub_sat(mean_q30, y.mean_q30), q_sub_sat(half_q30, y.half_q30));
+  machine_model_settle(m);
 }

@@ -44,7 +44,7 @@ int32_t flux_load_angle_ft(const flux_vectors_t* v) {
 
 // y of (27) and (29).
 static int32_t along_d_q24(const flux_machine_t* f, int32_t c_q24) {
-  const int32_t bend_q24 = q_mul_add_sat(f->saliency_q24, f->saliency_q24, 2 * f->saliency_q24, FLUX_ONE_Q24, 24);
+  const int32_t bend_q24 = q_mul_add_sat(f->saliency_q24, f->saliency_q24, f->saliency_q24, 2 * FLUX_ONE_Q24, 24);
   const int64_t radicand_q48 = ONE_Q48 - (int64_t)bend_q24 * c_q24;
   if (radicand_q48 <= 0) return q_div(FLUX_ONE_Q24, bend_q24, 24);
   const int32_t root_q24 = (int32_t)q_sqrt64((uint64_t)radicand_q48);

@@ -43,12 +43,12 @@ static void step_bare(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_
 static void step_compensated(stator_flux_t* s, const stator_flux_config_t* c, ab_t emf_q16) {
   const ab_t moved = {q_add_sat(s->flux_q16.alpha, emf_q16.alpha), q_add_sat(s->flux_q16.beta, emf_q16.beta)};
   const int32_t length = length_of(moved);
-  s->compensation_q16 = q_add_sat(s->compensation_q16, q_mul(length - s->length_q16, c->follow_q30, 30));
+  s->compensation_q16 = q_add_sat(s->compensation_q16, q_mul(q_sub_sat(length, s->length_q16), c->follow_q30, 30));
   const int32_t excess = q_mul_sat(q_sub_sat(length, s->compensation_q16), c->cutoff_q30, 30);
   const int32_t shrink_q30 = q_div(excess, length, 30);
-  s->flux_q16.alpha = moved.alpha - q_mul_sat(moved.alpha, shrink_q30, 30);
-  s->flux_q16.beta = moved.beta - q_mul_sat(moved.beta, shrink_q30, 30);
-  s->length_q16 = length - excess;
+  s->flux_q16.alpha = q_mul_sub_sat(moved.alpha, ONE_Q30, moved.alpha, shrink_q30, 30);
+  s->flux_q16.beta = q_mul_sub_sat(moved.beta, ONE_Q30, moved.beta, shrink_q30, 30);
+  s->length_q16 = q_sub_sat(length, excess);
 }
 
 // A flux that large is none, and clamped it would stay (see the header). From nothing it finds back: the bare one at

@@ -4,12 +4,12 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define SEEING_SHIFT 4  // 16 ms: the torque current's noise stays out of i_d
-#define SEEING 3        // times the current whose sign is certain: i_d without torque where the flux sees
+#define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector of a DC link, V
+#define SEEING_SHIFT 4                     // 16 ms: the torque current's noise stays out of i_d
+#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
 
 static int32_t voltage_limit(const drive_t* d) {
-  const int32_t share_q30 = q_mul(parameters.voltage_use, 10737418L, 16);  // percent to Q30
-  return q_mul(q_mul(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30), share_q30, 30);
+  return q_mul(d->samples.link_q16, q_mul(parameters.voltage_use, PERCENT_OF_SQRT3_INV_Q30, 16), 30);
 }
 
 static void weaken(drive_t* d) {

@@ -144,6 +144,7 @@ TEST(MachineMap, InductancesFoundAtNoCurrentHoldUnderLoad) {
     const double more = 1.0 / share - 1.0;
     const double yd = kPeriod / told.motor.ld, yq = kPeriod / told.motor.lq;
     machine_model_trim(&m, raw(0.5 * (yd + yq) * more, 30), raw(0.5 * (yd - yq) * more, 30));
+    machine_model_settle(&m);
     Random random(22);
     for (int n = 0; n < 1000; ++n) {
       const double iq = 3.5 * (random.below(9) - 4);

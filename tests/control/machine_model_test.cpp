@@ -171,6 +171,7 @@ TEST(MachineModel, TheTrimMovesTheSaliency) {
   const std::int32_t mean = raw(0.5 * (yd + yq), 30) - m.yd_q30 / 2 - m.yq_q30 / 2;
   const std::int32_t half = raw(0.5 * (yd - yq), 30) - m.yd_q30 / 2 + m.yq_q30 / 2;
   machine_model_trim(&m, mean, half);
+  machine_model_settle(&m);
   machine_model_move(&m, raw(3.0, 20));
   EXPECT_EQ(m.trim.mean_q30, mean) << "what is learnt next is added to it";
   EXPECT_EQ(m.trim.half_q30, half);
@@ -187,9 +188,20 @@ TEST(MachineModel, TheTrimMovesTheSaliency) {
 void learn(machine_model_t* m, double rest) {
   const double less = (rest - 1.0) * real(m->map.points[0].yqq_q30, 30);
   machine_model_trim(m, raw(0.5 * less, 30), raw(-0.5 * less, 30));
+  machine_model_settle(m);
 }
 
-// From one to a half, or to sixteen, in one call. What is learnt is at most as much again, and leaves a sixteenth.
+// What is learnt changes by little, and one step is enough for that: it squares what is missing.
+TEST(MachineModel, TheShareOfTheFluxFollowsWhatIsLearnt) {
+  machine_model_t m = model_of(Motor{});
+  for (double left = 1.0; left > 0.1; left *= 0.99) {
+    const double less = (left - 1.0) * real(m.map.points[0].yqq_q30, 30);
+    machine_model_trim(&m, raw(0.5 * less, 30), raw(-0.5 * less, 30));
+    EXPECT_NEAR(real(m.trim.psi_share_q24, 24) * left, 1.0, 1.2e-4) << left;
+  }
+}
+
+// From one to a half, or to sixteen. What is learnt is at most as much again, and leaves a sixteenth.
 TEST(MachineModel, TheShareOfTheFluxIsFoundFromAfar) {
   for (const double rest : {50.0, 3.0, 2.0, 1.0, 0.5, 0.1, 0.0625, 0.01, 0.001}) {
     machine_model_t m = model_of(Motor{});

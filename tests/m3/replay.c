@@ -29,6 +29,8 @@ void firmware_main(void);
 #define CONTROL_VECTOR 48  // EPWM1_INT
 #define STEPS 7
 #define BUFFER 1024
+#define CALIBRATED 16u
+#define APART __attribute__((noinline, noipa))  // called alike from everywhere
 
 static FILE* file;
 static trace_record_t buffer[BUFFER];
@@ -38,9 +40,13 @@ static target_isr_t vectors[VECTORS];
 
 // ---- counting ------------------------------------------------------------------------------------------------------
 
+// What an access is done with. Each takes instructions of its own to enter this file and to leave it.
+typedef enum { WRITES_16, WRITES_32, READS_16, READS_32, PASSES, ELAPSES, WAYS } way_t;
+
 typedef struct {
-  uint32_t ticks;     // of the code outside of this file
-  uint32_t accesses;  // since the ticks were last cleared
+  uint32_t ticks;      // of the code outside of this file, and of entering and leaving it
+  uint32_t own_ticks;  // of entering and leaving, times CALIBRATED
+  uint32_t accesses;   // since the ticks were last cleared
 } span_t;
 
 typedef struct {
@@ -50,7 +56,7 @@ typedef struct {
 
 static span_t running;
 static uint32_t mark;
-static uint32_t overhead_ticks;  // per access, of entering and leaving this file
+static uint32_t own_ticks[WAYS];  // of CALIBRATED accesses
 static bool calibrating;
 static bool controlling;  // the control interrupt is running, and not preempted
 static uint32_t step;
@@ -58,8 +64,9 @@ static uint32_t step_cost[STEPS];
 static uint32_t periods;
 static statistic_t windows, starting[STEPS + 1], turning[STEPS + 1];  // the last one is the whole
 
-static inline __attribute__((always_inline)) void enter(void) {
+static inline __attribute__((always_inline)) void enter(way_t way) {
   running.ticks += (mark - SYSTICK_VALUE) & SYSTICK_MASK;
+  running.own_ticks += own_ticks[way];
   running.accesses++;
 }
 
@@ -67,8 +74,8 @@ static inline __attribute__((always_inline)) void leave(void) { mark = SYSTICK_V
 
 // Instructions of a span: 6.4 ticks each, and one for every access.
 static uint32_t instructions(const span_t* s) {
-  const uint32_t own = s->accesses * overhead_ticks;
-  return ((s->ticks > own ? s->ticks - own : 0u) * 5u + 16u) / 32u + s->accesses;
+  const uint32_t ticks = s->ticks - (s->own_ticks + CALIBRATED / 2u) / CALIBRATED;
+  return (ticks * 5u + 16u) / 32u + s->accesses;
 }
 
 static void add(statistic_t* s, uint32_t cost) {
@@ -80,16 +87,20 @@ static void add(statistic_t* s, uint32_t cost) {
   }
 }
 
+static void begin_span(void) {
+  static const span_t none = {0, 0, 0};
+  running = none;
+}
+
 static void end_step(void) {
   if (step < STEPS) step_cost[step] = instructions(&running);
   step++;
-  running.ticks = 0;
-  running.accesses = 0;
+  begin_span();
 }
 
 // Where the emulator's log of what was executed says which periods are which (toolchain/paths/watch.py).
-__attribute__((noinline, noipa)) static void turning_period(void) { __asm volatile(""); }
-__attribute__((noinline, noipa)) static void starting_period(void) { __asm volatile(""); }
+APART static void turning_period(void) { __asm volatile(""); }
+APART static void starting_period(void) { __asm volatile(""); }
 
 // A period belongs to the state in which it began.
 static void end_period(int32_t state) {
@@ -168,8 +179,7 @@ static void take_interrupt(uint32_t vector) {
   const bool preempted = controlling;
   const int32_t state = drive_signals().state;
   consume();
-  running.ticks = 0;
-  running.accesses = 0;
+  begin_span();
   controlling = vector == CONTROL_VECTOR;
   if (controlling) step = 0;
   leave();
@@ -232,95 +242,108 @@ static uint32_t give(trace_kind_t kind, uint32_t address) {
   return value;
 }
 
-uint16_t target_read16(uint32_t address) {
-  enter();
+APART uint16_t target_read16(uint32_t address) {
+  enter(READS_16);
   const uint32_t value = give(TRACE_READ16, address);
   leave();
   return (uint16_t)value;
 }
 
-uint32_t target_read32(uint32_t address) {
-  enter();
+APART uint32_t target_read32(uint32_t address) {
+  enter(READS_32);
   const uint32_t value = give(TRACE_READ32, address);
   leave();
   return value;
 }
 
-void target_write16(uint32_t address, uint16_t value) {
-  enter();
+APART void target_write16(uint32_t address, uint16_t value) {
+  enter(WRITES_16);
   act(TRACE_WRITE16, address, value);
   leave();
 }
 
-void target_write32(uint32_t address, uint32_t value) {
-  enter();
+APART void target_write32(uint32_t address, uint32_t value) {
+  enter(WRITES_32);
   act(TRACE_WRITE32, address, value);
   leave();
 }
 
 static void pass(void) {
-  enter();
+  enter(PASSES);
   act(TRACE_CPU, 0, 0);
   leave();
 }
 
-void target_eallow(void) { pass(); }
-void target_edis(void) { pass(); }
-void target_enable_interrupts(void) { pass(); }
-void target_disable_interrupts(void) { pass(); }
-void target_clear_ifr(void) { pass(); }
+APART void target_eallow(void) { pass(); }
+APART void target_edis(void) { pass(); }
+APART void target_enable_interrupts(void) { pass(); }
+APART void target_disable_interrupts(void) { pass(); }
+APART void target_clear_ifr(void) { pass(); }
 
-uint16_t target_read_ier(void) {
-  enter();
+APART uint16_t target_read_ier(void) {
+  enter(READS_16);
   const uint32_t value = give(TRACE_READ_IER, 0);
   leave();
   return (uint16_t)value;
 }
 
-void target_write_ier(uint16_t mask) {
-  enter();
+APART void target_write_ier(uint16_t mask) {
+  enter(WRITES_16);
   act(TRACE_WRITE_IER, 0, mask);
   leave();
 }
 
 void target_set_vector(uint16_t vector, target_isr_t isr) {
-  enter();
+  enter(WRITES_16);
   vectors[vector % VECTORS] = isr;
   act(TRACE_SET_VECTOR, vector, 0);
   leave();
 }
 
 void target_idle(void) {
-  enter();
+  enter(PASSES);
   act(TRACE_IDLE, 0, 0);
   leave();
 }
 
 // On the chip it is nothing.
-void target_elapse(uint16_t cycles) {
-  enter();
+APART void target_elapse(uint16_t cycles) {
+  enter(ELAPSES);
   running.accesses--;
-  running.ticks -= (overhead_ticks < running.ticks) ? overhead_ticks : running.ticks;
   act(TRACE_ELAPSE, 0, cycles);
   if (controlling) end_step();
   leave();
 }
 
-// What an access costs that does nothing, two operands counted as the caller's.
+#define FOUR(done) done, done, done, done
+
+// What 16 accesses take, by 32 less 16; their operands are the caller's, an instruction each.
+#define CALIBRATE(way, operands, access)                                  \
+  do {                                                                    \
+    begin_span();                                                         \
+    leave();                                                              \
+    FOUR(FOUR(access));                                                   \
+    enter(ELAPSES);                                                       \
+    const uint32_t once = running.ticks;                                  \
+    begin_span();                                                         \
+    leave();                                                              \
+    FOUR(FOUR(access)), FOUR(FOUR(access));                               \
+    enter(ELAPSES);                                                       \
+    own[way] = running.ticks - once - CALIBRATED * (operands) * 32u / 5u; \
+  } while (0)
+
+// With accesses that do nothing.
 static void calibrate(void) {
+  uint32_t own[WAYS];
   calibrating = true;
-  leave();
-  for (unsigned k = 0; k < 4u; k++) {
-    target_write16(1, 2);
-    target_write16(3, 4);
-    target_write16(5, 6);
-    target_write16(7, 8);
-  }
-  running.ticks += (mark - SYSTICK_VALUE) & SYSTICK_MASK;
-  const uint32_t operands_and_loop = (2u * 16u + 2u * 4u) * 32u / 5u;
-  overhead_ticks = (running.ticks - operands_and_loop) / 16u;
-  running.ticks = 0;
-  running.accesses = 0;
+  CALIBRATE(WRITES_16, 2u, target_write16(1, 2));
+  CALIBRATE(WRITES_32, 2u, target_write32(1, 2));
+  CALIBRATE(READS_16, 1u, (void)target_read16(1));
+  CALIBRATE(READS_32, 1u, (void)target_read32(1));
+  CALIBRATE(PASSES, 0u, target_eallow());
+  CALIBRATE(ELAPSES, 0u, target_elapse(1));  // on the chip it is nothing
+  for (unsigned way = 0; way < WAYS; way++) own_ticks[way] = own[way];
+  begin_span();
   calibrating = false;
 }
 
