@@ -4,7 +4,8 @@
 #define ONE_Q24 ((int32_t)16777216L)
 #define RATIO_END_Q24 1056964608L  // 63: Lq/Ld less 1
 #define T_END_Q24 187904819L       // 11.2: its square is below the largest r
-#define INVERSE_STEPS 8u           // and one, enough from any trim to any other
+#define INVERSE_STEPS 4u           // from twice or half of it
+#define SETTLE_CALLS 2u            // and with that of the trim, from any to any
 #define K0_END_Q20 1048576000L     // 1000 A per period
 #define LEAST_SHARE_Q24 (-ONE_Q24 / 16 * 15)
 #define K_BITS 30u     // 64
@@ -47,10 +48,15 @@ static void turn_with_admittance(machine_model_t* m) {
   m->k_qd_q24 = q_sat_bits(one_q48 - q_product(ONE_Q24 + t2_q24, per_det_q24), 24, K_BITS);
 }
 
-// One step of Newton's towards 1 / x, enough where x moves slowly; from far off the guess is halved.
-static int32_t nearer_inverse(int32_t guess_q24, int32_t x_q24) {
-  const int32_t product_q24 = q_clamp(q_mul_sat(guess_q24, x_q24, 24), 0, ONE_Q24 / 2 * 3);
-  return q_mul_sat(guess_q24, 2 * ONE_Q24 - product_q24, 24);
+// 1 / x by Newton's steps from a value near it: one where x moves slowly, as what is learnt does; from far off the
+// guess is halved or doubled with each.
+static int32_t inverse_from(int32_t guess_q24, int32_t x_q24) {
+  int32_t product_q24 = 0;
+  for (uint16_t n = 0; n < INVERSE_STEPS && q_abs_sat(product_q24 - ONE_Q24) > ONE_Q24 / 1024; n++) {
+    product_q24 = q_clamp(q_mul_sat(guess_q24, x_q24, 24), 0, ONE_Q24 / 2 * 3);
+    guess_q24 = q_mul_sat(guess_q24, 2 * ONE_Q24 - product_q24, 24);
+  }
+  return guess_q24;
 }
 
 // Of a map below 0.6 A/V: as much again stays in the format, and something is always left.
@@ -65,13 +71,13 @@ void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) 
   t->ydd_q24 = share_of_map(mean_q30 + half_q30, m->per_ydd0);
   t->yqq_q24 = share_of_map(mean_q30 - half_q30, m->per_yqq0);
   t->ydq_q24 = share_of_map(half_q30, m->per_half0);
-  t->psi_share_q24 = nearer_inverse(t->psi_share_q24, ONE_Q24 + t->yqq_q24);
+  t->psi_share_q24 = inverse_from(t->psi_share_q24, ONE_Q24 + t->yqq_q24);
 }
 
 void machine_model_settle(machine_model_t* m) {
   machine_trim_t* const t = &m->trim;
-  for (uint16_t n = 0; n < INVERSE_STEPS; n++) {
-    t->psi_share_q24 = nearer_inverse(t->psi_share_q24, ONE_Q24 + t->yqq_q24);
+  for (uint16_t n = 0; n < SETTLE_CALLS; n++) {
+    t->psi_share_q24 = inverse_from(t->psi_share_q24, ONE_Q24 + t->yqq_q24);
   }
 }
 

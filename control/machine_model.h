@@ -77,7 +77,7 @@ bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* 
 
 /// What the admittances at no current have more than the map. All of the map changes in proportion: inductances that
 /// differ do so saturated as well, and the axis of the saliency turns to where the map has it.
-/// They change by little from call to call, or machine_model_settle follows.
+/// Where they change by more than twice or half, machine_model_settle follows.
 void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 
 /// Takes the flux's share all of the way to what the trim makes of it.

@@ -24,7 +24,7 @@
 #define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
-#define POWER_START 838861L  // 0.05: nothing leans before the power is known
+#define POWER_START 419430L  // 0.05: nothing leans before the power is known
 #define HALF_Q9 256L
 #define DUE_Q9 128L
 #define PERIODS_DUE 7L
@@ -60,7 +60,7 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
 
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
   static const deviation_observer_t uncertain = {
-      .p_aa = ANGLE_VARIANCE, .p_ss = SPEED_VARIANCE, .p_ll = LOAD_VARIANCE, .score_power_q24 = POWER_START};
+      .p_aa = ANGLE_VARIANCE, .p_ss = SPEED_VARIANCE, .p_ll = LOAD_VARIANCE, .score_power_q23 = POWER_START};
   *s = uncertain;
   s->angle_bam = angle_bam;
   s->speed_bpp = q_limit(speed_bpp, MACHINE_SPEED_END_BPP);
@@ -86,12 +86,12 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
   s->mean_score_q20 = q_follow_halves(s->mean_score_q20, n->a, MEAN_SHIFT);
   // Neither square nor power is below 0: their difference stays in 31 bits. What the shift leaves counts later: short
-  // windows have a power of 200 in Q24, half of which would be lost.
-  s->score_power_q24 = q_follow_rest(s->score_power_q24, q_square_sat(n->a, 16), POWER_SHIFT, &s->score_rest);
+  // windows have a power of 100 in Q23, all of which would be lost.
+  s->score_power_q23 = q_follow_rest(s->score_power_q23, q_square_sat(n->a, 17), POWER_SHIFT, &s->score_rest);
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
-  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 16) > s->score_power_q24 / 5 * 2 &&
+  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 17) > s->score_power_q23 / 5 * 2 &&
          q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
 }
 
@@ -223,10 +223,11 @@ static void correct(deviation_observer_t* s, const information_t* n) {
   s->load_accel_q8 = q_add_sat(s->load_accel_q8, load_q8);
 }
 
-// Eight periods of as much information as a period may have: 64 of them stay in 31 bits.
+// Eight periods of as much information as a period may have: 64 of them stay in 31 bits. Across it is as bounded, but
+// no interval shows that, and it has 64.
 static void gather(deviation_gathered_t* g, const information_t* n) {
   g->aa_q21 += q_shr_round(n->aa, 3);
-  g->as_q24 += n->as;  // in 64 bits: that its square is no more than aa ss nobody sees
+  g->as_q24 += n->as;
   g->ss_q21 += q_shr_round(n->ss, 3);
 }
 

@@ -67,7 +67,7 @@ typedef struct {
   int32_t speed_rest_q8;
   int32_t p_aa, p_as, p_al, p_ss, p_sl, p_ll;  // covariance of angle, speed, (minus) load acceleration, Q20
   int32_t mean_score_q20;                      // of the angle, over 32 periods
-  int32_t score_power_q24;                     // over 256 periods
+  int32_t score_power_q23;                     // over 256 periods
   uint32_t score_rest;                         // what its shift by 8 has left, 0..255
   int32_t alert_q30;                           // 1 when the load has just changed, decays
   bool load_is_new;                            // it has changed within the last 11 ms, or

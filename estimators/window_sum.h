@@ -1,4 +1,4 @@
-// Weighted sum of a vector over a period's windows: whole products, rounded once.
+// Weighted sum of a vector over a period's windows: whole products, rounded off once, downwards.
 
 #ifndef STILLSPIN_ESTIMATORS_WINDOW_SUM_H
 #define STILLSPIN_ESTIMATORS_WINDOW_SUM_H

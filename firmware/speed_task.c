@@ -4,7 +4,7 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector of a DC link, V
+#define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link
 #define SEEING_SHIFT 4                     // 16 ms: the torque current's noise stays out of i_d
 #define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
 

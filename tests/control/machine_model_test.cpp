@@ -212,6 +212,16 @@ TEST(MachineModel, TheShareOfTheFluxIsFoundFromAfar) {
   }
 }
 
+// A regression that has gone wrong takes what is learnt to its end at once: half or twice is found in one call.
+TEST(MachineModel, TheShareOfTheFluxFollowsAJumpByTwo) {
+  machine_model_t m = model_of(Motor{});
+  for (const double left : {1.5, 0.75, 1.5, 0.8, 0.45, 0.9}) {
+    const double less = (left - 1.0) * real(m.map.points[0].yqq_q30, 30);
+    machine_model_trim(&m, raw(0.5 * less, 30), raw(-0.5 * less, 30));
+    EXPECT_NEAR(real(m.trim.psi_share_q24, 24) * left, 1.0, 1e-4) << left;
+  }
+}
+
 // Between the two ends, the farthest way that there is.
 TEST(MachineModel, TheShareOfTheFluxIsFoundFromOneEndToTheOther) {
   machine_model_t m = model_of(Motor{});

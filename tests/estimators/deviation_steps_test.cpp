@@ -135,7 +135,7 @@ TEST(DeviationSteps, FiveStandardDeviationsAreALean) {
   for (const double share : {0.62, 0.65}) {
     Observer o;
     const double power = 4.0;
-    o.state.score_power_q24 = raw(power, 24);
+    o.state.score_power_q23 = raw(power, 23);
     // what the step itself forgets first: a 32nd of the mean and a 256th of the power
     o.state.mean_score_q20 = raw(share * std::sqrt(power * 255.0 / 256.0) * 32.0 / 31.0, 20);
     (void)o.step(false);
@@ -146,9 +146,9 @@ TEST(DeviationSteps, FiveStandardDeviationsAreALean) {
 // The power of short windows' scores is small, and a mean of it all the same: over 256 periods.
 TEST(DeviationSteps, ASmallPowerIsAMean) {
   Observer o;
-  o.state.score_power_q24 = 240;
+  o.state.score_power_q23 = 240;
   for (int n = 0; n < 256; ++n) (void)o.step();
-  EXPECT_NEAR(o.state.score_power_q24, 240.0 * std::pow(255.0 / 256.0, 256), 2.0);
+  EXPECT_NEAR(o.state.score_power_q23, 240.0 * std::pow(255.0 / 256.0, 256), 2.0);
 }
 
 // While nothing shows that the load changes its variance grows by the quiet rate at a crawl, by the other at speed, and

@@ -112,7 +112,7 @@ TEST(Fresh, DeviationObserver) {
   EXPECT_EQ(s.p_ss, raw(64.0, 20));
   EXPECT_EQ(s.p_ll, raw(64.0, 20));
   EXPECT_EQ(s.p_as | s.p_al | s.p_sl, 0);
-  EXPECT_NEAR(real(s.score_power_q24, 24), 0.05, 1e-6) << "nothing leans before the power is known";
+  EXPECT_NEAR(real(s.score_power_q23, 23), 0.05, 1e-6) << "nothing leans before the power is known";
   EXPECT_EQ(s.mean_score_q20 | s.alert_q30, 0);
   EXPECT_EQ(s.score_rest, 0u);
   EXPECT_FALSE(s.load_is_new || s.leaned || s.is_sensitive || s.cogging.active);

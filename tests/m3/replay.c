@@ -74,7 +74,8 @@ static inline __attribute__((always_inline)) void leave(void) { mark = SYSTICK_V
 
 // Instructions of a span: 6.4 ticks each, and one for every access.
 static uint32_t instructions(const span_t* s) {
-  const uint32_t ticks = s->ticks - (s->own_ticks + CALIBRATED / 2u) / CALIBRATED;
+  const uint32_t own = (s->own_ticks + CALIBRATED / 2u) / CALIBRATED;
+  const uint32_t ticks = (s->ticks > own) ? s->ticks - own : 0u;
   return (ticks * 5u + 16u) / 32u + s->accesses;
 }
 

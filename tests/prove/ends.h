@@ -34,9 +34,9 @@
 #define MISMATCH_END_Q30 53687091L               // sensor_match.h
 #define SIGN_END_Q21 2160066L                    // 1.03: a sign, and what intervals add
 #define VARIANCE_END_Q20 536870912L              // deviation_observer.c
-#define POWER_END_Q24 1073741823L                // of scores
+#define POWER_END_Q23 1073741823L                // of scores
 #define INFORMATION_END_Q21 16777217L            // of a period, deviation_information.h, and a rounding
-#define LEFT_END_Q20 16106127360000LL            // of a period: 512 A times the ticks of three windows
+#define LEFT_END_Q20 16106127352500LL            // of a period: 512 A times the ticks of three windows
 #define RATIO_MIN_Q24 2097152L                   // of the inertia to the one that the parameters say
 #define RATIO_MAX_Q24 134217728L
 

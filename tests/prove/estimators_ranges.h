@@ -60,15 +60,17 @@ bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t 
     ensures OF_VARIANCE(s->p_aa) && OF_VARIANCE(s->p_ss) && OF_VARIANCE(s->p_ll);
     ensures WITHIN(s->p_as, VARIANCE_END_Q20) && WITHIN(s->p_al, VARIANCE_END_Q20);
     ensures WITHIN(s->p_sl, VARIANCE_END_Q20) && FROM_TO(s->cogging.known_q30, 0, 1073741824);
-    ensures FROM_TO(s->score_power_q24, 0, POWER_END_Q24) && s->score_rest <= 255;
+    ensures FROM_TO(s->score_power_q23, 0, POWER_END_Q23) && s->score_rest <= 255;
     ensures FROM_TO(s->alert_q30, 0, 1073741824) && FROM_TO(s->gathered.periods, 0, 11);
     ensures FROM_TO(s->gathered.aa_q21, 0, s->gathered.periods * INFORMATION_END_Q21);
     ensures FROM_TO(s->gathered.ss_q21, 0, s->gathered.periods * INFORMATION_END_Q21);
-    ensures WITHIN(s->gathered.as_q24, s->gathered.periods * 2147483648LL); */
+    ensures FROM_TO(s->gathered.as_q24, s->gathered.periods * -2147483648LL, s->gathered.periods * 2147483647LL);
+    ensures WITHIN(s->cogging.cos_q8, 1073741823) && WITHIN(s->cogging.sin_q8, 1073741823); */
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);
 
 /*@ requires \valid(s) && \valid_read(c); assigns s->cogging, s->load_accel_q8 \from *s, *c;
+    ensures WITHIN(s->cogging.cos_q8, 1073741823) && WITHIN(s->cogging.sin_q8, 1073741823);
     ensures FLAG(s->cogging.active) && FROM_TO(s->cogging.known_q30, 0, 1073741824); */
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c);
 

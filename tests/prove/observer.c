@@ -23,7 +23,7 @@ static void any_covariance(deviation_observer_t* s) {
 
 static void any_scores(deviation_observer_t* s) {
   s->mean_score_q20 = any_i32;
-  s->score_power_q24 = any_from(0, POWER_END_Q24);
+  s->score_power_q23 = any_from(0, POWER_END_Q23);
   s->score_rest = any_up_to(255);
   s->alert_q30 = any_from(0, 1073741824L);
   s->load_is_new = any_bool();
@@ -53,8 +53,8 @@ static deviation_gathered_t any_gathered(int32_t periods) {
 
 static deviation_left_t any_left(int32_t periods) {
   deviation_left_t left;
-  left.d_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_i32;
-  left.q_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_i32;
+  left.d_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_within(INT32_MAX);
+  left.q_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_within(INT32_MAX);
   left.span_ticks = periods * any_from(0, 3 * PERIOD_TICKS);
   left.periods = periods;
   return left;
@@ -67,7 +67,8 @@ static deviation_observer_t any_state(void) {
   any_covariance(&s);
   any_scores(&s);
   any_cogging(&s.cogging);
-  s.sensitivity = deviation_sensitivity(&around.model, machine_speed_rad_q30(any_speed()), any_dq(any_current_end_q20));
+  s.sensitivity =
+      deviation_sensitivity(&around.model, machine_speed_rad_q30(any_speed()), any_dq(any_current_end_q20 / 2 * 3));
   s.is_sensitive = any_bool();
   s.regression = any_regression();
   s.regressed_bam = any_u32;
@@ -105,12 +106,27 @@ static void ask(void) {
   (void)deviation_observer_is_pressed(&s);
   deviation_observer_learn(&s, &tuning);
   deviation_observer_stands(&s);
+  //@ assert OF_VARIANCE(s.p_aa) && OF_VARIANCE(s.p_ss) && OF_VARIANCE(s.p_ll) && WITHIN(s.p_al, VARIANCE_END_Q20);
+  //@ assert WITHIN(s.p_as, VARIANCE_END_Q20) && WITHIN(s.p_sl, VARIANCE_END_Q20);
   (void)deviation_observer_take_left(&s, &residual_q20, &span_ticks, &periods);
+}
+
+// What it begins with is such a state.
+static void begin(void) {
+  deviation_observer_t s;
+  deviation_observer_preset(&s, any_u32, any_speed(), any_i32);
+  //@ assert WITHIN(s.speed_bpp, SPEED_MAX_BPP) && s.speed_rest_q8 == 0 && s.score_rest == 0 && s.alert_q30 == 0;
+  //@ assert OF_VARIANCE(s.p_aa) && OF_VARIANCE(s.p_ss) && OF_VARIANCE(s.p_ll);
+  //@ assert s.p_as == 0 && s.p_al == 0 && s.p_sl == 0 && FROM_TO(s.score_power_q23, 0, POWER_END_Q23);
+  //@ assert s.gathered.periods == 0 && s.gathered.aa_q21 == 0 && s.gathered.as_q24 == 0 && s.gathered.ss_q21 == 0;
+  //@ assert s.left.periods == 0 && s.left.span_ticks == 0 && s.left.d_q20 == 0 && s.left.q_q20 == 0;
+  //@ assert s.cogging.cos_q8 == 0 && s.cogging.sin_q8 == 0 && s.cogging.known_q30 == 0;
 }
 
 void prove_observer(void) {
   for (uint16_t of_case = 0; of_case < SPAN_CASES; of_case++) {
     for (uint16_t count = 0; count <= ESTIMATOR_WINDOWS; count++) step_from_all(of_case, count);
   }
+  begin();
   ask();
 }
