@@ -86,7 +86,13 @@ DEFECTS = (
         "q_limit(s->speed_bpp + ",
         "q_max(s->speed_bpp + ",
     ),
-    Defect("observer", "prove_observer", "estimators/deviation_observer.c", "q_limit(ka.s, VARIANCE_MAX)", "ka.s"),
+    Defect(
+        "observer",
+        "step_from_all",
+        "estimators/deviation_observer.c",
+        "++left->periods >= LEFT_PERIODS_MAX",
+        "++left->periods > LEFT_PERIODS_MAX",
+    ),
     Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
     Defect("configuration", "q_mul", "firmware/drive_config.c", "q_mul64(p->encoder_trim", "q_mul(p->encoder_trim"),
     Defect(
