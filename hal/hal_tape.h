@@ -135,7 +135,7 @@ typedef enum {
   TAPE_LEGS = 8
 } tape_told_t;
 
-/// count: at most TAPE_OUTPUTS.
+/// What does not fit is lost, and the tape torn.
 void tape_tell(tape_told_t what, const uint16_t* words, uint16_t count);
 
 /// Results of a window interrupt: played, or noted.

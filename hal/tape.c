@@ -32,9 +32,13 @@ void hal_tape_next_period(void) {
   hal_tape.period.work_count = 0u;
 }
 
+static void interrupt(const hal_tape_t* t) {
+  if (t->interrupt != NULL) t->interrupt();
+}
+
 static void play_window(hal_tape_t* t) {
   const uint16_t at = t->window;
-  t->interrupt();
+  interrupt(t);
   if (t->window == at) {
     t->torn = true;  // it did not read its results
     t->window++;
@@ -55,7 +59,7 @@ void tape_play_windows(void) {
 
 void tape_begin_step(void) {
   const hal_tape_t* const t = &hal_tape;
-  if (t->mode == TAPE_RECORDS && t->stepped) t->interrupt();
+  if (t->mode == TAPE_RECORDS && t->stepped) interrupt(t);
   tape_play_windows();
 }
 
@@ -78,6 +82,10 @@ static void note_work(uint16_t word) {
 
 // The windows that came before it.
 static void play_work(hal_tape_t* t) {
+  if (t->work >= t->period.work_count) {
+    t->torn = true;
+    return;
+  }
   const uint16_t windows = (uint16_t)(t->period.works[t->work++] >> WORK_WINDOWS_LSB);
   t->playing = true;
   while (t->window < windows && t->window < t->period.window_count) play_window(t);
@@ -86,7 +94,7 @@ static void play_work(hal_tape_t* t) {
 
 static void take_ended_period(void) {
   const hal_tape_t* const t = &hal_tape;
-  if (t->mode == TAPE_RECORDS && t->ended) t->interrupt();
+  if (t->mode == TAPE_RECORDS && t->ended) interrupt(t);
 }
 
 void hal_tape_work_begin(tape_work_t work) {
@@ -142,15 +150,18 @@ uint16_t tape_note(uint16_t value) {
   return value;
 }
 
-void tape_tell(tape_told_t what, const uint16_t* words, uint16_t count) {
-  tape_period_t* const p = &hal_tape.period;
-  if (hal_tape.mode == TAPE_OFF) return;
-  if (p->output_count >= TAPE_OUTPUTS - count) {
+static void tell(tape_period_t* p, uint16_t word) {
+  if (p->output_count < TAPE_OUTPUTS) {
+    p->outputs[p->output_count++] = word;
+  } else {
     hal_tape.torn = true;
-    return;
   }
-  p->outputs[p->output_count++] = (uint16_t)what;
-  for (uint16_t k = 0u; k < count; k++) p->outputs[p->output_count++] = words[k];
+}
+
+void tape_tell(tape_told_t what, const uint16_t* words, uint16_t count) {
+  if (hal_tape.mode == TAPE_OFF) return;
+  tell(&hal_tape.period, (uint16_t)what);
+  for (uint16_t k = 0u; k < count; k++) tell(&hal_tape.period, words[k]);
 }
 
 void tape_take_results(uint16_t* results, uint16_t count) {

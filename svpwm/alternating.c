@@ -5,38 +5,50 @@ static void advance(alternating_state_t* s) {
   if (s->leg == 0u) s->pair_first = !s->pair_first;
 }
 
-static void put_first(svpwm_pulses_t* p, uint16_t leg, int16_t length) {
-  p->at[leg] = SVPWM_FIRST_TICK;
-  p->at[svpwm_fall_of(leg)] = (int16_t)(SVPWM_FIRST_TICK + length);
+typedef struct {
+  uint16_t x, longer, shorter;
+  int32_t on_x, on_longer, on_shorter;
+} lengths_t;
+
+static void put_pair_first(svpwm_pulses_t* p, const lengths_t* l) {
+  svpwm_put_pulse(p, l->longer, SVPWM_FIRST_TICK, l->on_longer);
+  svpwm_put_pulse(p, l->shorter, SVPWM_FIRST_TICK, l->on_shorter);
+  svpwm_put_pulse(p, l->x, SVPWM_LAST_TICK - l->on_x, l->on_x);
+  p->order = svpwm_order(l->longer, l->shorter, svpwm_fall_of(l->shorter), svpwm_fall_of(l->longer), l->x,
+                         svpwm_fall_of(l->x));
 }
 
-static void put_last(svpwm_pulses_t* p, uint16_t leg, int16_t length) {
-  p->at[leg] = (int16_t)(SVPWM_LAST_TICK - length);
-  p->at[svpwm_fall_of(leg)] = SVPWM_LAST_TICK;
+static void put_pair_last(svpwm_pulses_t* p, const lengths_t* l) {
+  svpwm_put_pulse(p, l->x, SVPWM_FIRST_TICK, l->on_x);
+  svpwm_put_pulse(p, l->longer, SVPWM_LAST_TICK - l->on_longer, l->on_longer);
+  svpwm_put_pulse(p, l->shorter, SVPWM_LAST_TICK - l->on_shorter, l->on_shorter);
+  p->order = svpwm_order(l->x, svpwm_fall_of(l->x), l->longer, l->shorter, svpwm_fall_of(l->longer),
+                         svpwm_fall_of(l->shorter));
 }
 
 // The pulse of x and the longer one of the pair add up to 9401 ticks at most: they do not meet.
-void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t pulse_ticks, svpwm_pulses_t* pulses) {
-  const uint16_t x = s->leg;
-  const uint16_t longer = (x == t->hi) ? t->mid : t->hi;
-  const uint16_t shorter = (x == t->lo) ? t->mid : t->lo;
+static lengths_t lengths_with(uint16_t x, const svpwm_on_time_t* t, int16_t pulse_ticks) {
+  lengths_t l;
+  l.x = x;
+  l.longer = (x == t->hi) ? t->mid : t->hi;
+  l.shorter = (x == t->lo) ? t->mid : t->lo;
   // The common part that makes the lengths of the two pulses add up to twice the mean.
-  const int16_t common = (int16_t)(pulse_ticks - (t->leg[x] + t->leg[longer]) / 2);
-  const int16_t on_x = (int16_t)(common + t->leg[x]);
-  const int16_t on_longer = (int16_t)(common + t->leg[longer]);
-  const int16_t on_shorter = (int16_t)(common + t->leg[shorter]);
-  if (s->pair_first) {
-    put_first(pulses, longer, on_longer);
-    put_first(pulses, shorter, on_shorter);
-    put_last(pulses, x, on_x);
-    pulses->order = svpwm_order(longer, shorter, svpwm_fall_of(shorter), svpwm_fall_of(longer), x, svpwm_fall_of(x));
-  } else {
-    put_first(pulses, x, on_x);
-    put_last(pulses, longer, on_longer);
-    put_last(pulses, shorter, on_shorter);
-    pulses->order = svpwm_order(x, svpwm_fall_of(x), longer, shorter, svpwm_fall_of(longer), svpwm_fall_of(shorter));
-  }
+  const int32_t common = pulse_ticks - (t->leg[x] + t->leg[l.longer]) / 2;
+  l.on_x = common + t->leg[x];
+  l.on_longer = common + t->leg[l.longer];
+  l.on_shorter = common + t->leg[l.shorter];
+  return l;
+}
+
+void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t pulse_ticks, svpwm_pulses_t* pulses) {
+  const lengths_t l = lengths_with(s->leg, t, pulse_ticks);
+  const bool pair_first = s->pair_first;
   advance(s);
+  if (pair_first) {
+    put_pair_first(pulses, &l);
+  } else {
+    put_pair_last(pulses, &l);
+  }
 }
 
 bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks) {

@@ -38,12 +38,9 @@ static void lay_out(const svpwm_on_time_t* t, int32_t t1, int32_t t2, const layo
   const int32_t hi = SVPWM_FIRST_TICK;
   const int32_t mid = hi + l->first;
   const int32_t lo = mid + l->second;
-  pulses->at[t->hi] = (int16_t)hi;
-  pulses->at[t->mid] = (int16_t)mid;
-  pulses->at[t->lo] = (int16_t)lo;
-  pulses->at[svpwm_fall_of(t->hi)] = (int16_t)(hi + t1 + t2 + l->low_on);
-  pulses->at[svpwm_fall_of(t->mid)] = (int16_t)(mid + t2 + l->low_on);
-  pulses->at[svpwm_fall_of(t->lo)] = (int16_t)(lo + l->low_on);
+  svpwm_put_pulse(pulses, t->hi, hi, t1 + t2 + l->low_on);
+  svpwm_put_pulse(pulses, t->mid, mid, t2 + l->low_on);
+  svpwm_put_pulse(pulses, t->lo, lo, l->low_on);
   pulses->order = svpwm_order(t->hi, t->mid, t->lo, svpwm_fall_of(t->hi), svpwm_fall_of(t->mid), svpwm_fall_of(t->lo));
 }
 
@@ -82,25 +79,25 @@ static uint32_t nested_order(const svpwm_on_time_t* t) {
   return svpwm_order(t->hi, t->mid, t->lo, svpwm_fall_of(t->lo), svpwm_fall_of(t->mid), svpwm_fall_of(t->hi));
 }
 
+static void put_centred(svpwm_pulses_t* pulses, uint16_t leg, int32_t on) {
+  svpwm_put_pulse(pulses, leg, (SVPWM_FIRST_TICK + SVPWM_LAST_TICK) / 2 - on / 2, on);
+}
+
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  const int16_t middle = (SVPWM_FIRST_TICK + SVPWM_LAST_TICK) / 2;
   // The common part puts the largest and the smallest on-time at equal distance from half the room, as far as the
   // shortest pulse allows.
-  const int16_t even = (int16_t)(SVPWM_ROOM_TICKS / 2 - (t->leg[t->hi] + t->leg[t->lo]) / 2);
-  const int16_t common = q_max16(even, (int16_t)(SVPWM_PULSE_MIN_TICKS - t->leg[t->lo]));
-  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
-    const int16_t on = (int16_t)(common + t->leg[k]);
-    const int16_t rise = (int16_t)(middle - on / 2);
-    pulses->at[k] = rise;
-    pulses->at[svpwm_fall_of(k)] = (int16_t)(rise + on);
-  }
+  const int32_t even = SVPWM_ROOM_TICKS / 2 - (t->leg[t->hi] + t->leg[t->lo]) / 2;
+  const int32_t common = q_max(even, SVPWM_PULSE_MIN_TICKS - t->leg[t->lo]);
+  put_centred(pulses, 0u, common + t->leg[0]);
+  put_centred(pulses, 1u, common + t->leg[1]);
+  put_centred(pulses, 2u, common + t->leg[2]);
   pulses->order = nested_order(t);
 }
 
 void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
-  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
-    pulses->at[k] = SVPWM_FIRST_TICK;
-    pulses->at[svpwm_fall_of(k)] = (int16_t)(SVPWM_FIRST_TICK + SVPWM_PULSE_MIN_TICKS + t->leg[k] - t->leg[t->lo]);
-  }
+  const int32_t common = SVPWM_PULSE_MIN_TICKS - t->leg[t->lo];
+  svpwm_put_pulse(pulses, 0u, SVPWM_FIRST_TICK, common + t->leg[0]);
+  svpwm_put_pulse(pulses, 1u, SVPWM_FIRST_TICK, common + t->leg[1]);
+  svpwm_put_pulse(pulses, 2u, SVPWM_FIRST_TICK, common + t->leg[2]);
   pulses->order = nested_order(t);
 }

@@ -1,6 +1,7 @@
 #include "svpwm/modulator.h"
 
-#define FOUR_FIFTHS_Q15 26214L
+#define FOUR_FIFTHS_Q15 26214u
+#define ONE_Q15 32768u
 
 bool modulator_config_valid(const modulator_config_t* c) {
   return q_in_range(c->pulse_ticks, 1500, 4700) && q_in_range(c->extended.window_min_ticks, 500, 3000) &&
@@ -20,7 +21,8 @@ void modulator_reset(modulator_t* s) {
 
 // Leaves the alternating layout at its limit and comes back with a fifth to spare.
 static bool alternate(const modulator_t* s, const modulator_config_t* c, const svpwm_on_time_t* t) {
-  const int16_t pulse = s->is_alternating ? c->pulse_ticks : (int16_t)q_shr(c->pulse_ticks * FOUR_FIFTHS_Q15, 15);
+  const int16_t pulse =
+      s->is_alternating ? c->pulse_ticks : (int16_t)((uint32_t)c->pulse_ticks * FOUR_FIFTHS_Q15 / ONE_Q15);
   return svpwm_alternating_fits(t, pulse);
 }
 

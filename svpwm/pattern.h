@@ -34,6 +34,12 @@ typedef struct {
 
 static inline uint16_t svpwm_fall_of(uint16_t leg) { return (uint16_t)(SVPWM_LEGS + leg); }
 
+/// A leg is high from a tick on, for so long.
+static inline void svpwm_put_pulse(svpwm_pulses_t* p, uint16_t leg, int32_t rise, int32_t on) {
+  p->at[leg] = (int16_t)rise;
+  p->at[svpwm_fall_of(leg)] = (int16_t)(rise + on);
+}
+
 /// How long a leg is high.
 static inline int32_t svpwm_on_ticks(const svpwm_pulses_t* p, uint16_t leg) {
   return p->at[SVPWM_LEGS + leg] - p->at[leg];

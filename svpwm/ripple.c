@@ -3,6 +3,7 @@
 #define PER_THIRD_Q58 960767921L  // 2^58 / (3 N^2), N = 10 000 ticks
 #define PER_SIDE_Q58 1664098853L  // 2^58 / (sqrt(3) N^2)
 #define LEG_SHIFT 2u              // a sum of four legs stays in 31 bits
+#define AMPERES_BITS 30u          // 1024 A, of which a ripple has a third at most
 
 // What of a pulse has passed at a tick.
 static inline int32_t passed(int32_t tick, int32_t rise, int32_t on) { return q_min(q_max(tick - rise, 0), on); }
@@ -41,11 +42,12 @@ svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, i
   const int32_t a = svpwm_on_ticks(p, 0);
   const int32_t b = svpwm_on_ticks(p, 1);
   const int32_t c = svpwm_on_ticks(p, 2);
+  const int32_t amperes_q20 = q_sat_bits(q_product(link_q16, admittance_q30), 26, AMPERES_BITS);
   const svpwm_ripple_walk_t w = {p,
                                  p->order,
                                  {{3 * a, mean_q20.a}, {3 * b, mean_q20.b}, {3 * c, mean_q20.c}},
                                  -(a + b + c),
                                  0,
-                                 q_mul_floor(q_mul_floor(link_q16, admittance_q30, 26), PER_THIRD_Q58, 30)};
+                                 q_mul_floor(amperes_q20, PER_THIRD_Q58, 30)};
   return w;
 }

@@ -41,8 +41,8 @@ typedef struct {
   int32_t blocking_q20;  // current that keeps the edge from coming with its command: out of a leg that rises, A
 } svpwm_ripple_edge_t;
 
-/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together up to 1000 A, and as much of mean
-/// current.
+/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together taken as 1024 A at most. Mean currents
+/// up to 1400 A.
 svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t admittance_q30,
                                       int32_t link_q16);
 
@@ -59,8 +59,8 @@ static inline svpwm_ripple_edge_t svpwm_ripple_next(svpwm_ripple_walk_t* w) {
   const int32_t ripple = high - (own->on3 + w->slope) * e.tick - w->offset;
   w->slope += change;
   w->offset -= change * e.tick;
-  // At most N^2; times 16 for the upper word to be that of a shift by 28.
-  const int32_t current_q20 = own->mean_q20 + q_mul_hi(ripple * 16, w->gain_q28);
+  // At most N^2, and times 16 for the upper word to be that of a shift by 28; of edges that are none's it would wrap.
+  const int32_t current_q20 = own->mean_q20 + q_mul_hi((int32_t)((uint32_t)ripple * 16u), w->gain_q28);
   e.blocking_q20 = falls ? -current_q20 : current_q20;
   return e;
 }

@@ -6,8 +6,8 @@ Usage: toolchain/prove.py OUT [--defects] [PART ...]     (make prove)
 Every part (toolchain/proof/parts.py) has a driver in tests/prove/ that calls the drive's functions with any input that
 their headers admit. EVA follows all of that at once, with intervals, and reports an alarm wherever it cannot exclude
 an undefined operation: overflow of a signed number, division by zero, a shift, an index or a pointer that is out of
-range, a value that was never set. WP proves the contracts of tests/prove/ for functions of PROVED_BY_WP. What neither
-excludes stands in tests/prove/alarms.txt, by part, function and kind: more than that is an error. With --defects, those
+range, a value that was never set. WP proves contracts of tests/prove/, function by function. What neither excludes
+stands in tests/prove/alarms.txt, by part, function and kind: more than that is an error. With --defects, those
 of toolchain/proof/defects.py are planted into a copy of the sources, and each has to be found in the function where it
 is.
 """
@@ -20,12 +20,12 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import planted
 from proof.defects import DEFECTS
-from proof.parts import CONTRACTS, PARTS, PROVED_BY_WP, SHOWN_ELSEWHERE, Part
+from proof.parts import PARTS, SHOWN_ELSEWHERE, Part
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
@@ -58,7 +58,7 @@ def summary(part: Part, rows: list[dict[str, str]], said: str) -> str:
     if reached:
         return f"{reached[1]} functions, {reached[2]} of {reached[3]} statements reached"
     proved = sum(row["status"].startswith("Valid") for row in rows)
-    return f"{len(PROVED_BY_WP)} functions, {proved} properties proved"
+    return f"{len(part.proved)} functions, {proved} properties proved"
 
 
 def plain(function: str) -> str:
@@ -70,14 +70,16 @@ def is_open(part: Part, row: dict[str, str]) -> bool:
     """Whether that is left open.
 
     What a function needs is shown where it is called, what it promises where it is read by itself; EVA does not try
-    what it does not reach.
+    what it does not reach, and WP nothing but what it is to prove.
     """
-    status, kind = row["status"], row["property kind"]
-    promised = (*part.given.split(","), *SHOWN_ELSEWHERE)
-    given = kind == "postcondition" and bool(part.given) and plain(row["function"]) in promised
-    if given or kind == "precondition" or not status.startswith(OPEN) or status.endswith("dead"):
+    status, kind, function = row["status"], row["property kind"], plain(row["function"])
+    if kind == "precondition" or not status.startswith(OPEN) or status.endswith("dead"):
         return False
-    return status != "Never tried" or (CONTRACTS in part.headers and plain(row["function"]) in PROVED_BY_WP)
+    if part.proved:
+        return function in part.proved
+    related = kind.startswith("precondition of ") and function in part.related
+    given = kind == "postcondition" and function in (*part.given.split(","), *SHOWN_ELSEWHERE) and bool(part.given)
+    return not related and not given and status != "Never tried"
 
 
 def read(part: Part, tree: Path, out: Path) -> Read:
@@ -87,7 +89,8 @@ def read(part: Part, tree: Path, out: Path) -> Read:
     machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 {included}")
     sources = sources_of(part, tree, out / TABLE)
     given = ("-eva-use-spec", part.given) if part.given else ()
-    command = ["frama-c", *machine, *sources, *part.flags, *given, "-then", "-report-csv", str(table)]
+    proved = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
+    command = ["frama-c", *machine, *sources, *part.flags, *given, *proved, "-then", "-report-csv", str(table)]
     # Frama-C believes PWD more than where it is.
     home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(out / "why3.conf")}
     done = subprocess.run(command, cwd=tree, env=home, capture_output=True, text=True, check=False, timeout=SECONDS)
@@ -143,6 +146,10 @@ def plant(out: Path, wanted: list[str]) -> int:
     for part in parts:
         changes = [(d.file, d.right, d.wrong) for d in defects[part.name]]
         complaints += planted.plant(out / "trees" / part.name, FOLDERS, changes)
+    # Of a proof those functions are enough: what is not true is tried until the prover's time is over.
+    parts = [
+        replace(part, proved=tuple(d.function for d in defects[part.name]) if part.proved else ()) for part in parts
+    ]
     for part, done in at_once(lambda part: read(part, out / "trees" / part.name, out), parts):
         seen = {function for function, _ in more_than(done.alarms, bounds[part.name])}
         complaints += [f"{d.function}: {d.wrong!r} is not found" for d in defects[part.name] if d.function not in seen]
@@ -173,4 +180,8 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except (RuntimeError, subprocess.SubprocessError) as error:
+        print(f"prove: {error}")
+        sys.exit(1)

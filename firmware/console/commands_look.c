@@ -24,8 +24,9 @@
 
 static void put_limits(octet_writer_t* w, int32_t limits) {
   const char* separator = "";
-  for (uint16_t bit = 0; words_exist(WORDS_LIMIT, bit); bit++) {
-    if ((q_shr(limits, bit) & 1) == 0) continue;
+  uint32_t left = (uint32_t)limits;
+  for (uint16_t bit = 0; words_exist(WORDS_LIMIT, bit); bit++, left >>= 1) {
+    if ((left & 1u) == 0u) continue;
     put_text(w, separator);
     put_words(w, WORDS_LIMIT, bit);
     separator = ", ";

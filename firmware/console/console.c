@@ -109,7 +109,7 @@ static bool asks_to_stop(void) {
     if (octet == RETURN || octet == LINE_FEED) {
       last.count = 0;
     } else {
-      last.text[last.count++] = octet;
+      last.text[last.count++ & (KEPT - 1u)] = octet;  // there are fewer
     }
   }
   if (!command_makes_safe(&last)) return false;

@@ -1,5 +1,7 @@
 #include "firmware/console/editor.h"
 
+#include "hal/qmath/qmath.h"
+
 #define BELL 0x07u
 #define BACKSPACE 0x08u
 #define LINE_FEED 0x0Au
@@ -169,6 +171,7 @@ static editor_event_t control(editor_t* e, uint16_t octet, octet_writer_t* echo)
 
 editor_event_t editor_octet(editor_t* e, uint16_t octet, octet_writer_t* echo) {
   octet &= 0xFFu;
+  e->cursor = (uint16_t)q_min(e->cursor, e->line.count);
   if (octet == RETURN || octet == LINE_FEED) return finish(e, octet, echo);
   e->after_return = false;
   const bool printable = octet >= 0x20u && octet < DELETE;

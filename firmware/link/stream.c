@@ -56,7 +56,7 @@ uint16_t stream_event(guard_t port, uint16_t* record) {
   s->last_ms += s->period;
   const uint32_t time_ms = drive_signals_copy(s->signals, s->count, values);
   skip_missed(s, time_ms);
-  octet_writer_t w = octet_writer(record, RECORD_MAX);
+  octet_writer_t w = octet_writer(record, RECORD_MAX - 2u);
   put_u8(&w, EVENT_STREAM);
   put_u8(&w, s->counter++);
   put_u32(&w, time_ms);

@@ -54,6 +54,12 @@ class Editor : public testing::Test {
 
 TEST_F(Editor, LinesAndTheirEnds) { EXPECT_EQ(type("a\rb\nc\r\nd\r\r\n"), "a|b|c|d||"); }
 
+TEST_F(Editor, ACursorBehindTheLineIsAtItsEnd) {
+  (void)type("ab");
+  e.cursor = EDITOR_LINE + 1u;
+  EXPECT_EQ(type("c\r"), "abc|");
+}
+
 TEST_F(Editor, KeysMoveAndChange) {
   type("helo\x1B[D\x1B[Dl");
   EXPECT_EQ(screen, "> hello");

@@ -161,6 +161,23 @@ TEST_F(Tape, WorkThatIsLeftTearsIt) {
   EXPECT_FALSE(hal_tape_finish_period());
 }
 
+TEST_F(Tape, WorkThatThereIsNotTearsIt) {
+  hal_tape_start(TAPE_PLAYS, window);
+  step(false);
+  hal_tape_work_begin(TAPE_RELOADED);
+  hal_tape_work_end();
+  EXPECT_EQ(order, "abcd");
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
+TEST_F(Tape, AWindowWithoutAnInterruptTearsIt) {
+  hal_tape_start(TAPE_PLAYS, nullptr);
+  hal_tape.period.window_count = 1u;
+  step(false);
+  EXPECT_EQ(order, "abcd");
+  EXPECT_FALSE(hal_tape_finish_period());
+}
+
 TEST_F(Tape, MoreWorkThanItHoldsTearsIt) {
   hal_tape_start(TAPE_RECORDS, nullptr);
   step(false);

@@ -4,6 +4,7 @@
 
 #include "firmware/can/node.h"
 #include "firmware/console/console.h"
+#include "firmware/console/suggest.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "hal/hal_sci.h"
@@ -66,7 +67,14 @@ static void one_command(const command_t* c) {
   }
 }
 
+// What is looked for among the names is set before anything looks: a word of nobody would stand beside that.
+static void look_for_something(void) {
+  const words_of_line_t a = any_words();
+  suggest(SUGGEST_COMMAND, &a.word[0]);
+}
+
 void prove_commands(void) {
+  look_for_something();
   //@ loop unroll 40;
   for (uint16_t k = 0; command_info(k) != 0; k++) one_command(command_info(k));
 }

@@ -15,7 +15,7 @@ static void any_text(editor_line_t* line) {
 static void any_state(uint16_t count) {
   e.line.count = count;
   for (uint16_t k = 0; k < EDITOR_HISTORY; k++) e.history[k].count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
-  e.cursor = (uint16_t)any_from(0, (int32_t)count);
+  e.cursor = any_u16;
   e.too_long = any_bool();
   e.disturbed = any_bool();
   e.after_return = any_bool();

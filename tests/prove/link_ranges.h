@@ -106,7 +106,8 @@ void put_spaces_to(octet_writer_t* w, uint16_t column);
 /*@ requires \valid(number) && count <= 80 && (count == 0 || \valid_read(text + (0 .. count - 1)));
     assigns *number, \result \from text[0 .. 79], count;
     ensures \initialized(&number->digits) && \initialized(&number->decimals);
-    ensures \result <= 80; ensures number->decimals <= 9; ensures -2147483647 <= number->digits; */
+    ensures \result <= count; ensures \result <= 80; ensures number->decimals <= 9; ensures -2147483647 <=
+   number->digits; */
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 
 /*@ requires \valid_read(number) && number->decimals <= 9 && q <= 32;
@@ -117,12 +118,12 @@ int32_t decimal_raw(const decimal_t* number, uint16_t q);
     assigns \result \from name[0], word->count; ensures \result == 0 || \result == 1; */
 bool suggest_is_near(const char* name, const word_t* word);
 
-/*@ requires \valid(e) && \valid(echo) && e->line.count <= 80 && e->cursor <= e->line.count;
+/*@ requires \valid(e) && \valid(echo) && e->line.count <= 80;
     assigns *e, \result \from *e, octet;
     assigns echo->octets[0 .. echo->room - 1], echo->count, echo->full \from *e, octet, echo->count, echo->room;
     ensures echo->count <= echo->room; ensures echo->full == 0 || echo->full == 1;
     ensures e->too_long == 0 || e->too_long == 1; ensures e->disturbed == 0 || e->disturbed == 1;
-    ensures e->line.count <= 80; ensures e->cursor <= e->line.count; ensures e->recalled <= 4;
+    ensures e->line.count <= 80; ensures e->recalled <= 4;
     ensures e->history[0].count <= 80 && e->history[1].count <= 80 && e->history[2].count <= 80;
     ensures e->history[3].count <= 80; ensures 0 <= \result <= 2; */
 editor_event_t editor_octet(editor_t* e, uint16_t octet, octet_writer_t* echo);

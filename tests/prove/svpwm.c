@@ -18,62 +18,6 @@ static bool configure(void) {
   return modulator_config_valid(&config);
 }
 
-// What the on-times of the legs are to each other (svpwm/on_time.h; tests/svpwm tries it with any voltage and link): t1
-// and t2 between the longest, the next and the shortest, SPREAD at most together; what they have in common is none of
-// theirs.
-#define SPREAD (SVPWM_SPREAD_MAX_TICKS + 1)
-#define SLICE 1880
-
-static int16_t leg_from(int32_t lo3, int32_t hi3) { return any_ticks((int16_t)(lo3 / 3 - 2), (int16_t)(hi3 / 3 + 2)); }
-
-// On-times with t1 and t2 in a slice.
-static svpwm_on_time_t any_on_time(uint16_t hi, uint16_t mid, int32_t t1, int32_t t2) {
-  svpwm_on_time_t t;
-  t.hi = hi;
-  t.mid = mid;
-  t.lo = (uint16_t)(3u - hi - mid);
-  t.leg[t.hi] = leg_from(2 * t1 + t2, 2 * t1 + t2 + 3 * SLICE);
-  t.leg[t.mid] = leg_from(t2 - t1 - SLICE, t2 - t1 + SLICE);
-  t.leg[t.lo] = leg_from(-t1 - 2 * t2 - 3 * SLICE, -t1 - 2 * t2);
-  return t;
-}
-
-// With each x, which leads to such an x again.
-static void alternate(const svpwm_on_time_t* t, uint16_t x, bool pair_first) {
-  alternating_state_t s = {x, pair_first};
-  svpwm_pulses_t pulses;
-  svpwm_alternating(&s, t, config.pulse_ticks, &pulses);
-  //@ assert s.leg < 3;
-}
-
-static void lay_out_all(const svpwm_on_time_t* t) {
-  svpwm_pulses_t pulses;
-  svpwm_centred(t, &pulses);
-  svpwm_long_zero(t, &pulses);
-  svpwm_extended(&config.extended, t, &pulses);
-  svpwm_cheapest_pair(&config.extended, t, &pulses);
-  if (!svpwm_alternating_fits(t, config.pulse_ticks)) return;
-  for (uint16_t x = 0; x < SVPWM_LEGS; x++) {
-    alternate(t, x, false);
-    alternate(t, x, true);
-  }
-}
-
-// Every layout with every pair of on-times.
-void prove_layouts(void) {
-  if (!configure()) return;
-  for (uint16_t first = 0; first < 6u; first++) {
-    const uint16_t hi = (uint16_t)(first / 2u);
-    const uint16_t mid = (uint16_t)((hi + 1u + first % 2u) % 3u);
-    for (int32_t t1 = 0; t1 <= SPREAD; t1 += SLICE) {
-      for (int32_t t2 = 0; t2 <= SPREAD - t1; t2 += SLICE) {
-        const svpwm_on_time_t t = any_on_time(hi, mid, t1, t2);
-        lay_out_all(&t);
-      }
-    }
-  }
-}
-
 // Any edges of a period, in one order: that they lie in the period is what tests/svpwm tries.
 static void send(uint32_t order) {
   static svpwm_pattern_t pattern;

@@ -102,7 +102,7 @@ void prove_numbers(void) {
   put_unsigned(&w, any_u32);
   put_spaces_to(&w, any_u16);
   any_word();
-  (void)text_number(word.text, word.count, &number);
+  for (uint16_t count = 0; count <= EDITOR_LINE; count++) (void)text_number(word.text, count, &number);
   for (uint16_t kind = 0; kind < WORDS_KINDS; kind++) words_of(kind);
   for (uint16_t q = 0; q <= 32u; q++) {
     for (uint16_t decimals = 0; decimals <= TEXT_DECIMALS_MAX; decimals++) one_format(q, decimals);

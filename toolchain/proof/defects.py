@@ -59,7 +59,17 @@ DEFECTS = (
     Defect(
         "turned", "turned", "estimators/deviation.c", "(square_q28 - fourth_q28) * 2", "(square_q28 - fourth_q28) * 16"
     ),
-    Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "room * t1 * t2 / 2"),
+    Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "(room + t1 + t2 + 2) / 2"),
+    Defect(
+        "layouts",
+        "svpwm_centred",
+        "svpwm/extended.c",
+        "q_max(even, SVPWM_PULSE_MIN_TICKS",
+        "q_min(even, SVPWM_PULSE_MIN_TICKS",
+    ),
+    Defect(
+        "words", "read_speed", "firmware/console/commands_drive.c", "(uint16_t)(value->count - length)", "value->count"
+    ),
     Defect(
         "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < SVPWM_WINDOWS", "window_count <= SVPWM_WINDOWS"
     ),

@@ -1,7 +1,7 @@
 """The parts of the drive's C that Frama-C reads together: files, options, and what is taken for granted in them."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
@@ -21,6 +21,10 @@ class Part:
     flags: tuple[str, ...]
     headers: tuple[str, ...] = (RANGES,)  # with what functions promise: shown where their code is read
     given: str = ""  # functions of which the contract is taken, not the code
+    proved: tuple[str, ...] = ()  # functions whose contract WP proves, where EVA reads nothing
+    related: tuple[
+        str, ...
+    ] = ()  # functions where another part's WP proves what is called with numbers that belong together
 
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
@@ -35,11 +39,31 @@ OF_TYPING = f"{OF_NAMES},text_number,decimal_raw,packed_occurs,packed_equals,pac
 OF_LINES = "editor_octet,editor_next,editor_show"
 OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
 OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
-PROVED_BY_WP = (
+CONTRACTS_OF_QMATH = (
     *("q_shr", "q_shr64", "q_shr_round", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
     *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_product", "q_mul64", "q_mul", "q_mul_sat", "q_mac"),
     *("q_mul_add", "q_mul_sub", "q_mul_floor", "q_mul_add_floor", "q_mul_sub_floor", "q_mul_hi", "q_umul_hi"),
     *("q15_sat", "q15_add_sat", "q15_sub_sat", "q15_mul"),
+)
+CONTRACTS_OF_LAYOUTS = (
+    *(
+        "svpwm_put_pulse",
+        "layout_for",
+        "most_of_both",
+        "longest_window",
+        "lay_out",
+        "own_zero",
+        "lengths_with",
+        "advance",
+    ),
+    *(
+        "put_pair_first",
+        "put_pair_last",
+        "modulator_config_valid",
+        "alternate",
+        "modulator_step",
+        *OF_LAYOUTS.split(","),
+    ),
 )
 # Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. WP proves that of
 # q_sat64; at the others its prover stops, and tests/qmath tries every edge.
@@ -101,7 +125,7 @@ APART = (
 WHOLE = ("-eva-auto-loop-unroll", "12", "-eva-widening-delay", "8")
 NUMBERS = (
     *("-eva-min-loop-unroll", "130", "-eva-slevel", "12", "-eva-split-return", "auto"),
-    *("-eva-slevel-function", "put_digits:60"),
+    *("-eva-slevel-function", "put_digits:60,put_spaces_to:300"),
 )
 NAMES = (
     *("-eva-min-loop-unroll", "200", "-eva-slevel", "4", "-eva-split-return", "auto"),
@@ -122,6 +146,13 @@ def eva(
     """What EVA reads from the driver's function `prove_NAME` on."""
     begin = ("-main", f"prove_{name}", "-eva", "-eva-no-print", "-eva-precision", precision)
     return Part(name, sources, (*begin, *flags), headers, given)
+
+
+def wp(
+    name: str, sources: tuple[str, ...], flags: tuple[str, ...], proved: tuple[str, ...], headers: tuple[str, ...]
+) -> Part:
+    """Functions whose contracts WP proves, and that nothing in them goes wrong."""
+    return Part(name, sources, ("-wp", "-wp-rte", "-wp-prover", "z3", *flags), headers, proved=proved)
 
 
 def of_qmath(name: str, flags: tuple[str, ...] = SLICES, given: str = "") -> Part:
@@ -145,7 +176,13 @@ PARTS = (
         headers=(DROP_RANGES, LAYOUT_RANGES, MODULATOR_RANGES),
     ),
     eva("drops", ("tests/prove/drops.c", QMATH), SLICES, OF_QMATH, headers=(DROP_RANGES,)),
-    eva("layouts", SVPWM, ("-eva-min-loop-unroll", "7"), OF_QMATH, headers=(LAYOUT_RANGES,)),
+    wp(
+        "layouts",
+        ("tests/prove/layouts.c",),
+        ("-inline-calls", "svpwm_fall_of,svpwm_order,nested_order,put_centred", "-wp-timeout", "120", "-wp-par", "1"),
+        CONTRACTS_OF_LAYOUTS,
+        (CONTRACTS, LAYOUT_RANGES),
+    ),
     eva(
         "edges",
         SVPWM,
@@ -206,11 +243,21 @@ PARTS = (
         ("-eva-slevel", "20", "-eva-auto-loop-unroll", "10"),
         "put_text",
     ),
-    of_link(
-        "commands",
-        ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
-        READER,
-        *(OF_QMATH, OF_WRITING, OF_TYPING, OF_LINES),
+    replace(
+        of_link(
+            "commands",
+            ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+            READER,
+            *(OF_QMATH, OF_WRITING, OF_TYPING, OF_LINES),
+        ),
+        related=("read_speed", "unit_fits"),
+    ),
+    wp(
+        "words",
+        ("tests/prove/words.c",),
+        ("-wp-timeout", "60"),
+        ("read_speed", "unit_fits", "command_set"),
+        (LINK_RANGES,),
     ),
     of_link(
         "requests",
@@ -224,21 +271,16 @@ PARTS = (
     of_link(
         "console",
         ("tests/prove/console.c", "firmware/link/link.c", "firmware/link/splitter.c", RECORD, *TERMINAL, *BESIDE),
-        ROUNDS,
+        (*ROUNDS, "-eva-slevel-function", "stream_event:300"),
         *(OF_QMATH, OF_WRITING, OF_LINES, OF_RECORDS),
     ),
     of_link(
         "node",
         ("tests/prove/node.c", "firmware/can/*.c", RECORD, *BESIDE),
-        ROUNDS,
+        (*ROUNDS, "-eva-slevel-function", "stream_event:300"),
         *(OF_QMATH, OF_WRITING, OF_FRAMES),
     ),
     of_link("blocks", FRAMES, ("-eva-auto-loop-unroll", "300")),
     of_link("framing", FRAMES, APART, OF_BLOCKS),
-    Part(
-        "contracts",
-        ("hal/qmath/qdiv.c",),
-        ("-wp", "-wp-rte", "-wp-prover", "z3", "-wp-timeout", "10", "-wp-fct", ",".join(PROVED_BY_WP)),
-        (CONTRACTS,),
-    ),
+    wp("contracts", ("hal/qmath/qdiv.c",), ("-wp-timeout", "10"), CONTRACTS_OF_QMATH, (CONTRACTS,)),
 )
