@@ -64,7 +64,8 @@ static inline int32_t q_sat64(int64_t x) {
   return (x < 0) ? INT32_MIN : INT32_MAX;
 }
 
-// floor(x / 2^n) limited to -2^bits..2^bits - 1: what leaves room for a sum behind it. n + bits = 32..62.
+// floor(x / 2^n) limited to -2^bits..2^bits - 1: what leaves room for a sum behind it. n = 2..32,
+// n + bits = 32..62.
 static inline int32_t q_sat_bits(int64_t x, unsigned n, unsigned bits) {
   const int32_t above = (int32_t)q_shr64(x, n + bits);
   if ((uint32_t)above + 1u <= 1u) {

@@ -59,6 +59,35 @@ static void follow_with_rest(unsigned n) {
   (void)q_follow_rest(any_from(-0x40000000L, 0x3FFFFFFFL), any_from(-0x40000000L, 0x3FFFFFFFL), n, &rest);
 }
 
+static void squared_from(int32_t least, int32_t most, unsigned n) {
+  const int32_t x = any_from(least, most);
+  (void)q_square_sat(x, n);
+  (void)q_square_sat(-x, n);
+}
+
+// Slices between numbers whose squares are neighbouring powers of two.
+static void squared(unsigned n) {
+  (void)q_square_sat(0, n);
+  (void)q_square_sat(INT32_MIN, n);
+  squared_from(1, 1, n);
+  for (unsigned k = 1; k <= 30u; k++) {
+    const int32_t middle = (int32_t)(1518500249uL >> (30u - k));  // sqrt(2) 2^k
+    squared_from((int32_t)1 << k, middle, n);
+    squared_from(middle + 1, (int32_t)(((uint32_t)2 << k) - 1u), n);
+  }
+}
+
+// Numbers of 64 bits with their highest bit at k, as much below zero as above.
+static void limited(unsigned n, unsigned bits) {
+  for (unsigned k = 0; k <= 62u; k++) {
+    const int64_t highest = (int64_t)1 << k;
+    const int64_t x = highest + (any_i64 & (highest - 1));
+    (void)q_sat_bits(x, n, bits);
+    (void)q_sat_bits(-1 - x, n, bits);
+  }
+  (void)q_sat_bits(any_from(-1, 0), n, bits);
+}
+
 static void shifted(unsigned n) {
   if (n <= 31u) {
     (void)q_shr(any_i32, n);
@@ -66,9 +95,7 @@ static void shifted(unsigned n) {
     (void)q_shl_sat(any_i32, n);
   }
   (void)q_shr64(any_i64, n);
-  if (n >= 2u && n <= 32u) (void)q_sat_bits(any_i64, n, 30u);
-  if (n >= 2u && n <= 32u) (void)q_square_sat(any_from(0, INT32_MAX), n);
-  if (n >= 2u && n <= 32u) (void)q_square_sat(any_from(INT32_MIN, -1), n);
+  if (n >= 2u && n <= 32u) squared(n);
   if (n >= 2u && n <= 24u) follow_with_rest(n);
   if (n < 1u || n > 62u) return;
   (void)q_mul64(any_i32, any_i32, n);
@@ -156,6 +183,20 @@ void prove_arithmetic(void) {
   for (unsigned n = 0; n <= 63u; n++) shifted(n);
   for (unsigned n = 1; n <= 31u; n++) followed(n);
   for (unsigned n = 1; n <= 30u; n++) mixed(n);
+}
+
+void prove_shifts(void) {
+  for (unsigned n = 0; n <= 31u; n++) {
+    for (unsigned k = 0; k <= 31u; k++) (void)q_shr(positive(k), n);
+    for (unsigned k = 1; k <= 32u; k++) (void)q_shr(negative(k), n);
+  }
+}
+
+// Every number, every shift, every width.
+void prove_limits(void) {
+  for (unsigned bits = 0; bits <= 30u; bits++) {
+    for (unsigned n = 32u - bits; n <= 32u; n++) limited(n, bits);
+  }
 }
 
 void prove_quotients(void) {

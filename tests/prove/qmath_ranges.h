@@ -53,7 +53,7 @@ static inline int32_t q_square_sat(int32_t x, unsigned n);
     ensures \result <= a || \result <= b; */
 static inline int32_t q_mix(int32_t a, int32_t b, int32_t share, unsigned bits);
 
-/*@ requires bits <= 30 && 32 <= n + bits <= 62; assigns \result \from x, n, bits;
+/*@ requires bits <= 30 && 2 <= n <= 32 && 32 <= n + bits <= 62; assigns \result \from x, n, bits;
     ensures -(1 << bits) <= \result < (1 << bits); */
 static inline int32_t q_sat_bits(int64_t x, unsigned n, unsigned bits);
 

@@ -59,6 +59,15 @@ DEFECTS = (
     Defect(
         "turned", "turned", "estimators/deviation.c", "(square_q28 - fourth_q28) * 2", "(square_q28 - fourth_q28) * 16"
     ),
+    Defect("limits", "q_sat_bits", "hal/qmath/qarith.h", "q_shr64(x, n + bits)", "q_shr64(x, n + bits + 1u)"),
+    Defect(
+        "shifts",
+        "q_shr",
+        "hal/qmath/qarith.h",
+        "return x >> n; }\n\n// floor(x / 2^n), n = 0..63",
+        "return (int32_t)((uint32_t)x >> n); }\n\n// floor(x / 2^n), n = 0..63",
+    ),
+    Defect("between", "q_follow", "hal/qmath/qarith.h", "q_shr(q_sub_sat(b, a), n)", "q_shr(q_sub_sat(b, a), n - 1u)"),
     Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "(room + t1 + t2 + 2) / 2"),
     Defect(
         "layouts",

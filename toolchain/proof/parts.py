@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
+SHIFT_RANGES = "tests/prove/shift_ranges.h"
 LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
 ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
@@ -45,6 +46,7 @@ CONTRACTS_OF_QMATH = (
     *("q_mul_add", "q_mul_sub", "q_mul_floor", "q_mul_add_floor", "q_mul_sub_floor", "q_mul_hi", "q_umul_hi"),
     *("q15_sat", "q15_add_sat", "q15_sub_sat", "q15_mul"),
 )
+BETWEEN = ("q_follow", "q_follow_near")
 CONTRACTS_OF_LAYOUTS = (
     *(
         "svpwm_put_pulse",
@@ -65,8 +67,9 @@ CONTRACTS_OF_LAYOUTS = (
         *OF_LAYOUTS.split(","),
     ),
 )
-# Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. WP proves that of
-# q_sat64; at the others its prover stops, and tests/qmath tries every edge.
+# Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. The part contracts
+# proves that of q_sat64, the part between that of q_follow and q_follow_near, the part limits shows that of q_sat_bits;
+# at the others the prover stops, and tests/qmath tries every edge.
 SHOWN_ELSEWHERE = ("q_sat64", "q_limit", "q_sat_bits", "q_follow", "q_follow_near", "q_mix", "q_mix_sat")
 
 QMATH = "hal/qmath/*.c"
@@ -166,8 +169,9 @@ def of_link(name: str, sources: tuple[str, ...], flags: tuple[str, ...], *given:
 
 
 PARTS = (
-    *(of_qmath(name) for name in ("arithmetic", "quotients", "roots", "vectors", "angles")),
+    *(of_qmath(name) for name in ("arithmetic", "limits", "quotients", "roots", "vectors", "angles")),
     of_qmath("lengths", (), "q_sqrt64"),
+    eva("shifts", ("tests/prove/qmath.c", QMATH), SLICES, headers=(SHIFT_RANGES,), precision="1"),
     eva(
         "svpwm",
         SVPWM,
@@ -282,5 +286,6 @@ PARTS = (
     ),
     of_link("blocks", FRAMES, ("-eva-auto-loop-unroll", "300")),
     of_link("framing", FRAMES, APART, OF_BLOCKS),
+    wp("between", ("hal/qmath/qdiv.c",), ("-wp-timeout", "60"), BETWEEN, (CONTRACTS, SHIFT_RANGES, RANGES)),
     wp("contracts", ("hal/qmath/qdiv.c",), ("-wp-timeout", "10"), CONTRACTS_OF_QMATH, (CONTRACTS,)),
 )
