@@ -89,8 +89,8 @@ def read(part: Part, tree: Path, out: Path) -> Read:
     machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 {included}")
     sources = sources_of(part, tree, out / TABLE)
     given = ("-eva-use-spec", part.given) if part.given else ()
-    proved = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
-    command = ["frama-c", *machine, *sources, *part.flags, *given, *proved, "-then", "-report-csv", str(table)]
+    named = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
+    command = ["frama-c", *machine, *sources, *part.flags, *given, *named, "-then", "-report-csv", str(table)]
     # Frama-C believes PWD more than where it is.
     home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(out / "why3.conf")}
     done = subprocess.run(command, cwd=tree, env=home, capture_output=True, text=True, check=False, timeout=SECONDS)
@@ -100,6 +100,8 @@ def read(part: Part, tree: Path, out: Path) -> Read:
     with table.open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t", quoting=csv.QUOTE_NONE))
     alarms = Counter((plain(row["function"]), plain(row["property kind"])) for row in rows if is_open(part, row))
+    proved = {plain(row["function"]) for row in rows if row["status"].startswith("Valid")}
+    alarms.update((function, "nothing proved") for function in part.proved if function not in proved)
     return Read(alarms, summary(part, rows, done.stdout))
 
 

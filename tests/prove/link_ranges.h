@@ -106,8 +106,8 @@ void put_spaces_to(octet_writer_t* w, uint16_t column);
 /*@ requires \valid(number) && count <= 80 && (count == 0 || \valid_read(text + (0 .. count - 1)));
     assigns *number, \result \from text[0 .. 79], count;
     ensures \initialized(&number->digits) && \initialized(&number->decimals);
-    ensures \result <= count; ensures \result <= 80; ensures number->decimals <= 9; ensures -2147483647 <=
-   number->digits; */
+    ensures \result <= count; ensures \result <= 80;
+    ensures number->decimals <= 9; ensures -2147483647 <= number->digits; */
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 
 /*@ requires \valid_read(number) && number->decimals <= 9 && q <= 32;

@@ -18,7 +18,7 @@ static bool configure(void) {
   return modulator_config_valid(&config);
 }
 
-// Any edges of a period, in one order: that they lie in the period is what tests/svpwm tries.
+// Any edges of a period, in one order: that they lie in the period is what layouts.c proves.
 static void send(uint32_t order) {
   static svpwm_pattern_t pattern;
   svpwm_pulses_t command;

@@ -1,5 +1,4 @@
-// The layouts are read by themselves (svpwm.c, part layouts): what chooses among them is read with these lines in their
-// place.
+// The layouts are proved by themselves (layouts.c): what chooses among them is read with these lines in their place.
 
 #ifndef STILLSPIN_TESTS_PROVE_SVPWM_RANGES_H
 #define STILLSPIN_TESTS_PROVE_SVPWM_RANGES_H

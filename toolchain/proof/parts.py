@@ -23,9 +23,7 @@ class Part:
     headers: tuple[str, ...] = (RANGES,)  # with what functions promise: shown where their code is read
     given: str = ""  # functions of which the contract is taken, not the code
     proved: tuple[str, ...] = ()  # functions whose contract WP proves, where EVA reads nothing
-    related: tuple[
-        str, ...
-    ] = ()  # functions where another part's WP proves what is called with numbers that belong together
+    related: tuple[str, ...] = ()  # functions whose calls another part proves: their numbers belong together
 
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
@@ -47,26 +45,9 @@ CONTRACTS_OF_QMATH = (
     *("q15_sat", "q15_add_sat", "q15_sub_sat", "q15_mul"),
 )
 BETWEEN = ("q_follow", "q_follow_near")
-CONTRACTS_OF_LAYOUTS = (
-    *(
-        "svpwm_put_pulse",
-        "layout_for",
-        "most_of_both",
-        "longest_window",
-        "lay_out",
-        "own_zero",
-        "lengths_with",
-        "advance",
-    ),
-    *(
-        "put_pair_first",
-        "put_pair_last",
-        "modulator_config_valid",
-        "alternate",
-        "modulator_step",
-        *OF_LAYOUTS.split(","),
-    ),
-)
+PULSES = "svpwm_put_pulse,layout_for,most_of_both,longest_window,lay_out,own_zero,lengths_with,advance"
+PULSES += ",put_pair_first,put_pair_last,modulator_config_valid,alternate,modulator_step"
+CONTRACTS_OF_LAYOUTS = tuple(f"{PULSES},{OF_LAYOUTS}".split(","))
 # Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. The part contracts
 # proves that of q_sat64, the part between that of q_follow and q_follow_near, the part limits shows that of q_sat_bits;
 # at the others the prover stops, and tests/qmath tries every edge.
@@ -163,9 +144,12 @@ def of_qmath(name: str, flags: tuple[str, ...] = SLICES, given: str = "") -> Par
     return eva(name, ("tests/prove/qmath.c", QMATH), flags, given, precision="1")
 
 
-def of_link(name: str, sources: tuple[str, ...], flags: tuple[str, ...], *given: str) -> Part:
+def of_link(
+    name: str, sources: tuple[str, ...], flags: tuple[str, ...], *given: str, related: tuple[str, ...] = ()
+) -> Part:
     """What has to do with texts and records."""
-    return eva(name, sources, flags, ",".join(given), headers=(LINK_RANGES,))
+    part = eva(name, sources, flags, ",".join(given), headers=(LINK_RANGES,))
+    return replace(part, related=related)
 
 
 PARTS = (
@@ -247,13 +231,11 @@ PARTS = (
         ("-eva-slevel", "20", "-eva-auto-loop-unroll", "10"),
         "put_text",
     ),
-    replace(
-        of_link(
-            "commands",
-            ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
-            READER,
-            *(OF_QMATH, OF_WRITING, OF_TYPING, OF_LINES),
-        ),
+    of_link(
+        "commands",
+        ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+        READER,
+        *(OF_QMATH, OF_WRITING, OF_TYPING, OF_LINES),
         related=("read_speed", "unit_fits"),
     ),
     wp(
