@@ -10,12 +10,17 @@
 
 #define SPAN_CASES 7
 
+static inline uint16_t longest_of(uint16_t of_case) { return (uint16_t)((of_case - 1u) % 3u); }
+
+// Whether a case of so many windows is another than the first.
+static inline bool is_case_of(uint16_t of_case, uint16_t count) { return of_case == 0u || longest_of(of_case) < count; }
+
 // At most one of them is longer than half a period, and the longer it is the shorter are the others: in these cases an
 // interval for each says enough of all.
 static inline int16_t any_span(uint16_t window, uint16_t of_case) {
   if (of_case == 0u) return (int16_t)any_from(1, 5000);
   const bool longer = of_case > 3u;
-  const bool own = window == (uint16_t)((of_case - 1u) % 3u);
+  const bool own = window == longest_of(of_case);
   if (longer) return (int16_t)(own ? any_from(7501, 10000) : any_from(1, 2499));
   return (int16_t)(own ? any_from(5001, 7500) : any_from(1, 4999));
 }

@@ -118,6 +118,8 @@ void prove_estimators(void) {
   evaluate_slopes();
   learn();
   for (uint16_t count = 0; count <= ESTIMATOR_WINDOWS; count++) {
-    for (uint16_t of_case = 0; of_case < SPAN_CASES; of_case++) look(of_case, count);
+    for (uint16_t of_case = 0; of_case < SPAN_CASES; of_case++) {
+      if (is_case_of(of_case, count)) look(of_case, count);
+    }
   }
 }

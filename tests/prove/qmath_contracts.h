@@ -66,7 +66,8 @@ static inline int32_t q_mul(int32_t a, int32_t b, unsigned shift);
 /*@ requires 1 <= shift <= 62; assigns \nothing; ensures \result == sat32((a * b + (1 << (shift - 1))) >> shift); */
 static inline int32_t q_mul_sat(int32_t a, int32_t b, unsigned shift);
 
-/*@ assigns \nothing; ensures \result == a * b; */
+/*@ assigns \nothing; ensures \result == a * b;
+    ensures -4611686018427387904 <= \result <= 4611686018427387904; */
 static inline int64_t q_product(int32_t a, int32_t b);
 
 /*@ requires -9223372036854775808 <= sum + a * b <= 9223372036854775807;

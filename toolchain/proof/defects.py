@@ -67,7 +67,10 @@ DEFECTS = (
         "return x >> n; }\n\n// floor(x / 2^n), n = 0..63",
         "return (int32_t)((uint32_t)x >> n); }\n\n// floor(x / 2^n), n = 0..63",
     ),
-    Defect("between", "q_follow", "hal/qmath/qarith.h", "q_shr(q_sub_sat(b, a), n)", "q_shr(q_sub_sat(b, a), n - 1u)"),
+    Defect(
+        "between", "q_follow", "hal/qmath/qarith.h", "a + q_shr(q_sub_sat(b, a), n)", "a - q_shr(q_sub_sat(b, a), n)"
+    ),
+    Defect("between", "q_limit", "hal/qmath/qarith.h", "<= 2u * (uint32_t)limit)", "<= 2u * (uint32_t)limit + 1u)"),
     Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "(room + t1 + t2 + 2) / 2"),
     Defect(
         "layouts",
