@@ -43,7 +43,7 @@ static bool start_pll(void) {
 // From RAM: code in flash may not run while the flash's own timing changes.
 TARGET_RAM_CODE static void set_flash_timing(void) {
   target_eallow();
-  REG_SET_FIELD(REG_FOPT, FOPT_ENPIPE, 1u);
+  target_write16(REG_FOPT, FOPT_ENPIPE_MASK);
   target_write16(REG_FBANKWAIT, REG_FIELD(FBANKWAIT_PAGEWAIT, FLASH_PAGE_WAIT_STATES) |
                                     REG_FIELD(FBANKWAIT_RANDWAIT, FLASH_RANDOM_WAIT_STATES));
   target_write16(REG_FOTPWAIT, REG_FIELD(FOTPWAIT_OTPWAIT, FLASH_OTP_WAIT_STATES));

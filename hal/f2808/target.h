@@ -15,8 +15,9 @@ typedef void (*target_isr_t)(void);
 extern __cregister volatile unsigned int IER;
 extern __cregister volatile unsigned int IFR;
 
-#define TARGET_ISR __interrupt                                // an interrupt function: full context, returns by IRET
-#define TARGET_RAM_CODE __attribute__((section("ramfuncs")))  // runs from RAM without wait states
+#define TARGET_ISR __interrupt  // an interrupt function: full context, returns by IRET
+#define TARGET_RAM_CODE __attribute__((section("ramfuncs"), noinline))  // runs from RAM without wait states
+#define TARGET_INLINE static inline __attribute__((always_inline))      // so that what runs from RAM stays there
 #define TARGET_IDENTITY __attribute__((section("identity")))  // at the fixed place of the linker command files
 #define TARGET_LINKER_NUMBER(symbol) ((uint32_t)(symbol))     // a number that the linker gives as an address
 #define TARGET_NOP() __asm(" NOP")
@@ -24,22 +25,22 @@ extern __cregister volatile unsigned int IFR;
 
 #define TARGET_VECTOR_TABLE 0x0D00uL  // 128 vectors of two words
 
-static inline uint16_t target_read16(uint32_t address) { return *(volatile uint16_t*)address; }
-static inline void target_write16(uint32_t address, uint16_t value) { *(volatile uint16_t*)address = value; }
-static inline uint32_t target_read32(uint32_t address) { return *(volatile uint32_t*)address; }
-static inline void target_write32(uint32_t address, uint32_t value) { *(volatile uint32_t*)address = value; }
-static inline void target_eallow(void) { __asm(" EALLOW"); }
-static inline void target_edis(void) { __asm(" EDIS"); }
-static inline void target_enable_interrupts(void) { __asm(" CLRC INTM"); }
-static inline void target_disable_interrupts(void) { __asm(" SETC INTM"); }
-static inline uint16_t target_read_ier(void) { return IER; }
-static inline void target_write_ier(uint16_t mask) { IER = mask; }
-static inline void target_clear_ifr(void) { IFR = 0u; }
-static inline void target_set_vector(uint16_t vector, target_isr_t isr) {
+TARGET_INLINE uint16_t target_read16(uint32_t address) { return *(volatile uint16_t*)address; }
+TARGET_INLINE void target_write16(uint32_t address, uint16_t value) { *(volatile uint16_t*)address = value; }
+TARGET_INLINE uint32_t target_read32(uint32_t address) { return *(volatile uint32_t*)address; }
+TARGET_INLINE void target_write32(uint32_t address, uint32_t value) { *(volatile uint32_t*)address = value; }
+TARGET_INLINE void target_eallow(void) { __asm(" EALLOW"); }
+TARGET_INLINE void target_edis(void) { __asm(" EDIS"); }
+TARGET_INLINE void target_enable_interrupts(void) { __asm(" CLRC INTM"); }
+TARGET_INLINE void target_disable_interrupts(void) { __asm(" SETC INTM"); }
+TARGET_INLINE uint16_t target_read_ier(void) { return IER; }
+TARGET_INLINE void target_write_ier(uint16_t mask) { IER = mask; }
+TARGET_INLINE void target_clear_ifr(void) { IFR = 0u; }
+TARGET_INLINE void target_set_vector(uint16_t vector, target_isr_t isr) {
   *(volatile target_isr_t*)(TARGET_VECTOR_TABLE + 2uL * vector) = isr;
 }
-static inline void target_idle(void) { __asm(" IDLE"); }
-static inline void target_elapse(uint16_t cycles) { (void)cycles; }
+TARGET_INLINE void target_idle(void) { __asm(" IDLE"); }
+TARGET_INLINE void target_elapse(uint16_t cycles) { (void)cycles; }
 
 #else
 

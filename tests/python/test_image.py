@@ -17,6 +17,7 @@ from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
 from image.link import Pile, place  # noqa: E402
+from image.ram_code import left_in_flash, marked  # noqa: E402
 from image.resident import unresident  # noqa: E402
 from image.sizes import object_words  # noqa: E402
 from image.stack import build_graph, stack_depth  # noqa: E402
@@ -235,3 +236,24 @@ def test_missing_compiler_is_said_clearly(tmp_path: Path) -> None:
     run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode != 0
     assert "TI's compiler cl2000 is not there" in run.stderr and "C2000_CG_ROOT=" in run.stderr
+
+
+RAM_CODE = """
+#define RAM __attribute__((section("ramfuncs"), noinline))
+void set_flash_timing(void);
+int there(void);
+"""
+
+
+def test_what_is_marked_to_run_from_ram_is_there(tmp_path: Path) -> None:
+    assert {"set_flash_timing", "hal_pwm_write", "hal_irq_disable"} <= marked(ROOT / "hal/f2808")
+    code = RAM_CODE + "RAM void set_flash_timing(void) {}\nint there(void) { return 1; }\n"
+    objects = [read_object(compiled(tmp_path, code))]
+    assert left_in_flash(objects, {"set_flash_timing"}) == []
+    assert left_in_flash(objects, {"there"}) == ["there is to run from RAM and is not in ramfuncs"]
+
+
+def test_what_changes_the_flash_calls_nothing_there(tmp_path: Path) -> None:
+    code = RAM_CODE + "RAM void set_flash_timing(void) { (void)there(); }\n"
+    objects = [read_object(compiled(tmp_path, code))]
+    assert left_in_flash(objects, ()) == ["x.obj changes the flash's timing and refers to there"]
