@@ -53,7 +53,9 @@ static void control_speed(void) {
         any_speed(), any_from(-SPEED_MAX_BPP, SPEED_MAX_BPP), any_speed(), any_i32, -most, most};
     if (any_bool()) speed_controller_scale(&s, any_from(2097152L, 134217728L));
     if (any_bool()) speed_controller_preset(&s, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
-    (void)speed_controller_step(&s, any_bool() ? SPEED_PI : SPEED_PREDICTIVE, &in);
+    const int32_t iq_q20 = speed_controller_step(&s, any_bool() ? SPEED_PI : SPEED_PREDICTIVE, &in);
+    //@ assert -536870912 <= iq_q20 <= 536870912;
+    (void)iq_q20;
   }
 }
 
@@ -68,8 +70,8 @@ static void weaken_field(void) {
                                         any_from(0, CURRENT_MAX_Q20),
                                         any_from(0, 104858L)};
     const int32_t id_q20 = field_weakening_step(&s, &in, &model);
-    //@ assert id_q20 <= 0;
-    //@ assert id_q20 >= -536870912;
+    //@ assert -536870912 <= id_q20 <= 0;
+    //@ assert -536870912 <= s.trim_q20 <= 536870912;
     (void)id_q20;
   }
 }
