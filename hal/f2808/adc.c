@@ -20,7 +20,10 @@
 
 #define CONTROL2 ((uint16_t)(ADCTRL2_EPWM_SOCA_SEQ1_MASK | ADCTRL2_EPWM_SOCB_SEQ2_MASK | ADCTRL2_INT_ENA_SEQ2_MASK))
 
+#define REVISION_C 3u
+
 static uint32_t powered_at;  // cycles
+static bool has_crosstalk;   // silicon before revision C
 
 void hal_adc_power_up(void) {
   target_write16(REG_ADCTRL1, ADCTRL1_RESET_MASK);
@@ -45,6 +48,7 @@ static inline void rearm(void) {
 TARGET_RAM_CODE void adc_rearm(void) { rearm(); }
 
 void hal_adc_set_up(void) {
+  has_crosstalk = target_read16(REG_REVID) < REVISION_C;
   // Two sequencers, one run a trigger, no clock divider, shortest sample window: everything 0.
   target_write16(REG_ADCTRL1, 0u);
   target_write16(REG_ADCCHSELSEQ1, REG_FIELD(ADCCHSELSEQ1_CONV00, BOARD_ADC_CURRENTS) |
@@ -99,7 +103,19 @@ void adc_sequence_slices(void) {
   adc_rearm();
 }
 
-TARGET_RAM_CODE uint16_t adc_slice_result(uint16_t n) { return target_read16(RESULT(SEQ2_FIRST_RESULT + n)); }
+// What the second channel of a pair, or a sum of it, has of its own.
+static inline uint16_t less_crosstalk(uint16_t first, uint16_t second) {
+  const uint16_t share = (uint16_t)(first >> 8);
+  return (share < second) ? (uint16_t)(second - share) : 0u;
+}
+
+TARGET_RAM_CODE uint16_t adc_slice_result(uint16_t n) {
+  const uint16_t result = target_read16(RESULT(SEQ2_FIRST_RESULT + n));
+  if (!has_crosstalk || (n & 1u) == 0u) {
+    return result;
+  }
+  return less_crosstalk(target_read16(RESULT(SEQ2_FIRST_RESULT + n - 1u)), result);
+}
 
 // A pair is read as one 32-bit word, which peripheral frame 0 allows: A in its lower half, B in its upper one. Up to 16
 // pairs add up without a carry from one half into the other. Written out, without a loop: this interrupt comes up to
@@ -129,6 +145,11 @@ static inline void take_results(hal_adc_window_t* window) {
   window->end_b = (uint16_t)(end >> 16);
   window->link = (uint16_t)(slow & 0xFFFFuL);
   window->aux = (uint16_t)(slow >> 16);
+  if (has_crosstalk) {
+    window->start_b = less_crosstalk(window->start_a, window->start_b);
+    window->end_b = less_crosstalk(window->end_a, window->end_b);
+    window->aux = less_crosstalk(window->link, window->aux);
+  }
   rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));

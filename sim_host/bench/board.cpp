@@ -58,10 +58,16 @@ void Board::time_periods() {
 
 Board::Board(const plant::PlantConfig& config, PeriodListener& listener, devices::CanBus* can)
     : comparator_amps_(kComparatorShare * config.adc.current_range),
+      revision_(static_cast<std::uint16_t>(config.adc.revision)),
       plant_(config),
       listener_(listener),
       can_(can),
       last_toggle_(-kEnableTimeout) {}
+
+void Board::attach(chip::Chip& chip) {
+  chip.set_revision(revision_);
+  chip_ = &chip;
+}
 
 void Board::equip(const BoardOptions& options) {
   options_ = options;

@@ -45,7 +45,7 @@ class Board : public chip::World {
   Board(const plant::PlantConfig& config, PeriodListener& listener, devices::CanBus* can = nullptr);
 
   /// The chip that sits on the board; needed before it runs.
-  void attach(chip::Chip& chip) { chip_ = &chip; }
+  void attach(chip::Chip& chip);
 
   /// Before the chip runs; the board does not own it.
   void fit(devices::Eeprom& eeprom) { eeprom_ = &eeprom; }
@@ -118,6 +118,7 @@ class Board : public chip::World {
   std::array<devices::Bootstrap, 3> bootstrap_;
   bool relay_ = false, brake_ = false;
   double comparator_amps_;
+  std::uint16_t revision_;  // of the chip's silicon
   plant::Plant plant_;
   PeriodListener& listener_;
   WaveformProbe probe_;

@@ -79,7 +79,7 @@ const std::vector<Entry> kEntries = {
     ENTRY(adc, voltage_gain, "", kNumber, 0.5, 1.5, nominal.adc.voltage_gain, "gain of the link divider"),
     ENTRY(adc, noise, "LSB", kNumber, 0, 100, nominal.adc.noise, "rms noise of a conversion"),
     ENTRY(adc, inl, "LSB", kNumber, 0, 50, nominal.adc.inl, "integral non-linearity, peak"),
-    ENTRY(adc, crosstalk, "", kSwitch, 0, 1, nominal.adc.crosstalk, "the erratum of silicon before revision C"),
+    ENTRY(adc, revision, "", kWhole, 0, 3, nominal.adc.revision, "of the silicon, 0, A, B, C; crosstalk before C"),
     ENTRY(adc, temperature_code, "", kWhole, 0, 4095, nominal.adc.temperature_code, "code of the heat-sink channel"),
     ENTRY(board, bootstrap, "", kSwitch, 0, 1, board.bootstrap, "upper drivers have bootstrap supplies"),
     ENTRY(board, precharge_resistance, "ohm", kNumber, 0, 1e4, board.precharge_resistance,

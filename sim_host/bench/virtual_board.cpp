@@ -40,7 +40,6 @@ VirtualBoard::VirtualBoard(const BoardRequest& request)
     const std::int32_t raw = parameter_raw(name, value, id);
     parameters_.push_back({static_cast<std::uint16_t>(id), raw});
   }
-  chip_.set_adc_crosstalk(request.setup.nominal.adc.crosstalk);
   board_.attach(chip_);
   board_.fit(eeprom_);
   board_.equip(request.setup.board);

@@ -7,12 +7,15 @@
 namespace stillspin::chip {
 namespace {
 
-// Identification: part number of the F2808, revision C (the last one that the errata SPRZ171 name).
-constexpr std::uint16_t kPartNumber = 0x003C;
-constexpr std::uint16_t kRevision = 0x0003;
+constexpr std::uint16_t kPartNumber = 0x003C;  // of the F2808
 constexpr std::uint32_t kDeviceConfiguration = DEVICECNF_VMAPS_MASK | DEVICECNF_XRSn_MASK | DEVICECNF_ENPROT_MASK;
 
 }  // namespace
+
+void Core::set_revision(std::uint16_t revision) {
+  revision_ = revision;
+  adc_.set_crosstalk(revision < kRevisionC);
+}
 
 std::uint16_t Core::read_identity(std::uint32_t address) const {
   switch (address) {
@@ -23,7 +26,7 @@ std::uint16_t Core::read_identity(std::uint32_t address) const {
     case REG_PARTID:
       return kPartNumber;
     case REG_REVID:
-      return kRevision;
+      return revision_;
     default:
       return 0;
   }

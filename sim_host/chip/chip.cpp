@@ -14,7 +14,7 @@ Tick Chip::now() const { return core_->now(); }
 Statistics Chip::statistics() const { return core_->statistics(); }
 const std::string& Chip::error() const { return core_->error(); }
 void Chip::pins_changed() { core_->pins_changed(); }
-void Chip::set_adc_crosstalk(bool on) { core_->set_adc_crosstalk(on); }
+void Chip::set_revision(std::uint16_t revision) { core_->set_revision(revision); }
 void Chip::block_adc_triggers(bool on) { core_->block_adc_triggers(on); }
 void Chip::hold_interrupts(bool on) { core_->hold_interrupts(on); }
 void Chip::stop_can_transmission() { core_->stop_can_transmission(); }

@@ -80,8 +80,9 @@ class Chip {
   /// callback of the world says so. After World::call it looks anyway.
   void pins_changed();
 
-  /// Erratum of silicon revisions 0, A, B: in simultaneous sampling ADCINBn reads high by ADCINAn / 256. Off at first.
-  void set_adc_crosstalk(bool on);
+  /// The silicon's revision; 0, A, B, C are 0 to 3, and C it is at first. Erratum of those before C: in simultaneous
+  /// sampling ADCINBn reads high by ADCINAn / 256.
+  void set_revision(std::uint16_t revision);
 
   /// Erratum: eCAN-A sends nothing from now on, until its CCR bit has been set and cleared.
   void stop_can_transmission();

@@ -35,6 +35,8 @@
 
 namespace stillspin::chip {
 
+constexpr std::uint16_t kRevisionC = 3;  // the last one that the errata SPRZ171 name
+
 class Core final : public ChipServices {
  public:
   Core(World& world, Chip::Firmware firmware);
@@ -50,7 +52,7 @@ class Core final : public ChipServices {
   void run_until(Tick t);
   Tick now() const { return now_; }
   Statistics statistics() const;
-  void set_adc_crosstalk(bool on) { adc_.set_crosstalk(on); }
+  void set_revision(std::uint16_t revision);
   void block_adc_triggers(bool on) { adc_blocked_ = on; }
   void hold_interrupts(bool on) { interrupts_.set_held(on); }
   const std::string& error() const { return error_; }
@@ -200,6 +202,7 @@ class Core final : public ChipServices {
   bool pins_dirty_ = false;
   bool eallow_ = false;
   bool idle_ = false;
+  std::uint16_t revision_ = kRevisionC;
   Interrupts interrupts_;
   Tick limit_ = 0;
   Tick next_event_ = kNever;

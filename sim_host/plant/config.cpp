@@ -86,6 +86,7 @@ void check_adc(const AdcConfig& a) {
   check("adc.voltage_gain", a.voltage_gain, 0.5, 1.5, "V/V");
   check("adc.noise", a.noise, 0, 100, "LSB");
   check("adc.inl", a.inl, 0, 50, "LSB");
+  check("adc.revision", a.revision, 0, 3, "");
   check("adc.temperature_code", a.temperature_code, 0, 4095, "");
 }
 

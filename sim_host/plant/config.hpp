@@ -84,7 +84,7 @@ struct AdcConfig {
   double noise = 1.2;            // LSB rms, Gaussian, 0..100
   double inl = 1.5;              // LSB peak, smooth over the range, 0..50
   int temperature_code = 1500;   // constant code of the heat-sink channel, 0..4095
-  bool crosstalk = false;        // of silicon before revision C: Bn reads high by An / 256 (Chip::set_adc_crosstalk)
+  int revision = 3;              // of the chip's silicon: 0, A, B, C are 0..3 (Chip::set_revision)
   std::uint64_t seed = 1;        // any; the same seed gives the same codes
 };
 

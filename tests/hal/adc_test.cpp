@@ -3,11 +3,18 @@
 #include "hal/hal_time.h"
 #include "tests/hal/bus_test.hpp"
 
+extern "C" {
+#include "hal/f2808/adc_sequences.h"
+}
+
 namespace stillspin::test {
 
 class Adc : public BusTest {
  protected:
-  void SetUp() override { bus.power_all(); }
+  void SetUp() override {
+    bus.power_all();
+    bus.words[REG_REVID] = 3;  // C, of which codes are taken as they are
+  }
 
   static void bring_up() {
     hal_adc_power_up();
@@ -55,6 +62,27 @@ TEST_F(Adc, results_are_summed_by_channel) {
   EXPECT_EQ(window.end_b, 0x200u + 0x800u + 0x002u) << "results 9, 11, 13";
   EXPECT_EQ(window.link, 0x004u) << "result 14";
   EXPECT_EQ(window.aux, 0x008u) << "result 15";
+}
+
+// SPRZ171: the second channel of a pair reads high by 1/256 of the first one's code.
+TEST_F(Adc, second_channels_are_freed_of_the_crosstalk_before_revision_c) {
+  for (const std::uint16_t revision : {0, 1, 2, 3}) {
+    bus.words[REG_REVID] = revision;
+    bring_up();
+    for (std::uint16_t n = 0; n < 16; ++n) bus.words[REG_MIRROR_ADCRESULT0 + n] = (n % 2 == 0) ? 2560 : 1000;
+    bus.words[REG_MIRROR_ADCRESULT0 + 15] = 4;  // less than its share cannot be read: then nothing is left
+    hal_adc_window_t window = {};
+    hal_adc_read_window(&window);
+    const bool early = revision < 3;
+    EXPECT_EQ(window.start_a, 4 * 2560);
+    EXPECT_EQ(window.start_b, 4 * (early ? 990 : 1000));
+    EXPECT_EQ(window.end_b, 3 * (early ? 990 : 1000));
+    EXPECT_EQ(window.link, 2560);
+    EXPECT_EQ(window.aux, early ? 0 : 4);
+    EXPECT_EQ(adc_slice_result(0), 2560);
+    EXPECT_EQ(adc_slice_result(1), early ? 990 : 1000);
+    EXPECT_EQ(adc_slice_result(2), 2560);
+  }
 }
 
 TEST_F(Adc, full_scale_sums_fit) {
