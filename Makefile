@@ -65,8 +65,9 @@ image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: 
 	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
 	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
 
-int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run
+int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm
+	@$(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_int16.py
 	@cmake --build --preset $(PRESET) --target stillspin_int16_trap
 	@$(PYTHON) toolchain/int16/compare_runs.py $(BUILD)/tests/int16/stillspin_int16_trap
 

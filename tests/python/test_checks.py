@@ -11,6 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
+import pack_text  # noqa: E402
 from checks import arrows, conditionals, int16, links, packages, registers  # noqa: E402
 from checks.preprocessor import without_comments  # noqa: E402
 
@@ -156,7 +157,7 @@ def test_sixteen_bit_fault_is_caught_that_the_host_compiler_accepts(tmp_path: Pa
     assert host is not None
     flags = [flag for flag in int16.FLAGS if flag.startswith(("-W", "-std", "-fsyntax"))]
     assert subprocess.run([host, *flags, str(fault)], check=False).returncode == 0
-    assert [(f.path, f.line) for f in int16.check(tmp_path)] == [("control/x.c", 4)]
+    assert [(f.path, f.line) for f in int16.check_sources(tmp_path)] == [("control/x.c", 4)]
 
 
 @pytest.mark.parametrize(
@@ -170,13 +171,36 @@ def test_sixteen_bit_fault_is_caught_that_the_host_compiler_accepts(tmp_path: Pa
 )
 def test_other_faults_are_caught_with_the_drives_flags(tmp_path: Path, body: str) -> None:
     plant(tmp_path, "firmware/x.c", f"#include <stdint.h>\n{body}\n")
-    assert int16.check(tmp_path)
+    assert int16.check_sources(tmp_path)
 
 
 def test_widened_arithmetic_passes(tmp_path: Path) -> None:
     body = "int32_t f(int16_t a, int16_t b);\nint32_t f(int16_t a, int16_t b) { return (int32_t)a * b; }\n"
     plant(tmp_path, "firmware/x.c", f"#include <stdint.h>\n{body}")
-    assert int16.check(tmp_path) == []
+    assert int16.check_sources(tmp_path) == []
+
+
+def test_fault_in_the_dsps_branch_is_caught(tmp_path: Path) -> None:
+    text = (ROOT / "hal/f2808/target.h").read_text(encoding="utf-8")
+    right, wrong = "return *(volatile uint16_t*)address", "return *(volatile uint32_t*)address"
+    assert right in text
+    plant(tmp_path, "hal/f2808/x.c", '#include "hal/f2808/target.h"\n')
+    plant(tmp_path, "hal/f2808/target.h", text)
+    assert int16.check_sources(tmp_path) == []
+    plant(tmp_path, "hal/f2808/target.h", text.replace(right, wrong))
+    assert [f.path for f in int16.check_sources(tmp_path)] == ["hal/f2808/target.h"]
+
+
+def test_fault_in_what_the_build_makes_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in ("hal", "firmware"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    assert int16.check_generated(tmp_path) == []
+    text = (tmp_path / int16.IDENTITY).read_text(encoding="utf-8")
+    plant(tmp_path, int16.IDENTITY, text.replace("@revision@uL", "@revision@u"))
+    assert {f.path for f in int16.check_generated(tmp_path)} == {int16.IDENTITY}
+    plant(tmp_path, int16.IDENTITY, text)
+    monkeypatch.setattr(pack_text, "FIRST_PAIR", 0x180)
+    assert {f.path for f in int16.check_generated(tmp_path)} == {"firmware/packed_text_table.c"}
 
 
 def test_dead_link_and_dead_path_are_caught(tmp_path: Path) -> None:

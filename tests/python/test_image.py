@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
 from checks import command_files  # noqa: E402
-from image import stack  # noqa: E402
+from image import link, stack  # noqa: E402
 from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
@@ -124,6 +124,31 @@ def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_resident_par
     assert (fill["APP"], fill["RESIDENT"], complaints) == (app, 900, [])
     _, complaints = place({"resident": 100, ".text": app, ".econst": room}, file)
     assert complaints == [f"RESIDENT takes {room + 100} words and has {room}"]
+
+
+@pytest.mark.parametrize(("limit", "complaints"), [(100, []), (99, ["all code: 100, limit 99"])])
+def test_figure_beyond_its_limit_is_caught(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: int, complaints: list[str]
+) -> None:
+    budget = tmp_path / "budget.txt"
+    budget.write_text(f"# key | what | goal | limit\ncode | all code | 100 | {limit}\nstack | stack | 9 | 10\n")
+    monkeypatch.setattr(link, "BUDGET", budget)
+    rows = ["| all code | 100 | 100 | met |", "| stack | 10 | 9 | **not met** |"]
+    assert link.budgets({"code": 100, "stack": 10}) == (rows, complaints)
+
+
+@pytest.mark.parametrize(("limit", "status"), [(9999, 0), (0, 1)])
+def test_link_fails_where_a_figure_is_beyond_its_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: int, status: int
+) -> None:
+    code = "int image_identity;\nvoid control_isr(void);\nvoid control_isr(void) {}\n"
+    code += "void window_isr(void);\nvoid window_isr(void) {}\nint main(void) { return 0; }\n"
+    for module, name, text in ((link, "BUDGET", f"code | code | 1 | {limit}\n"), (stack, "TABLE", "")):
+        plain = tmp_path / name
+        plain.write_text(text)
+        monkeypatch.setattr(module, name, plain)
+    given = [compiled(tmp_path, code), ROOT / "hal/f2808/image/boot.asm", ROOT / FLASH]
+    assert link.link([*map(str, given), f"--output_file={tmp_path / 'x.out'}"]) == status
 
 
 def resident(folder: Path, archive: str, code: str) -> tuple[Pile, list[str]]:

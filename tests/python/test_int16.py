@@ -1,19 +1,28 @@
-"""The way to run the firmware with a 16-bit int and char: it must see what a 64-bit computer does not."""
+"""The way to run the firmware with a 16-bit int and char: it must see what a 64-bit computer does not, and say so."""
 
 import ctypes
+import json
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain/int16"))
+
+import compare_runs  # noqa: E402
+
 COMPILE = ROOT / "toolchain/int16/compile.py"
 CLANG = subprocess.run(["bash", "toolchain/find-clang.sh"], cwd=ROOT, capture_output=True, text=True, check=False)
 OPT = "opt" + CLANG.stdout.strip().removeprefix("clang")
 
-pytestmark = pytest.mark.skipif(shutil.which(OPT) is None, reason=f"no {OPT}; `make int16` installs it")
+compiles = pytest.mark.skipif(shutil.which(OPT) is None, reason=f"no {OPT}; `make int16` installs it")
 
 PLANTED = """
 typedef struct {
@@ -36,6 +45,13 @@ uint16_t words(void) { return (uint16_t)sizeof(int32_t); }
 uint16_t pair_words(void) { return (uint16_t)sizeof(pair_t); }
 uint16_t literal(uint16_t k) { return (uint16_t)"ab"[k]; }
 int32_t quotient(int32_t a, int32_t b) { return a / b; }
+int16_t moved(int16_t a, int16_t by) { return (int16_t)(a << by); }
+int32_t number(uint16_t k) { return numbers[k]; }
+typedef union {
+  uint16_t word;
+  bool flag;
+} word_t;
+uint16_t flag(uint16_t word) { const word_t w = {word}; return w.flag ? 1u : 0u; }
 """
 
 
@@ -49,6 +65,7 @@ def library(tmp_path: Path, *options: str) -> Path:
     return made
 
 
+@compiles
 @pytest.mark.parametrize(
     ("name", "arguments", "result", "expected"),
     [
@@ -78,9 +95,69 @@ def planted(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     return ctypes.CDLL(str(library(tmp_path_factory.mktemp("int16"))))
 
 
-@pytest.mark.parametrize("call", ["product(ctypes.c_int16(300), ctypes.c_int16(300))", "quotient(1, 0)"])
-def test_what_is_undefined_for_a_sixteen_bit_int_ends_the_program(tmp_path: Path, call: str) -> None:
-    made = library(tmp_path, "--trap")
-    good = f"import ctypes; l = ctypes.CDLL({str(made)!r}); assert l.int16_quotient(7, 2) == 3"
-    assert subprocess.run([sys.executable, "-c", good], check=False).returncode == 0
-    assert subprocess.run([sys.executable, "-c", f"{good}; l.int16_{call}"], check=False).returncode < 0
+@pytest.fixture(scope="module")
+def trapping(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The planted code that ends where something is undefined."""
+    return library(tmp_path_factory.mktemp("int16_trap"), "--trap")
+
+
+@compiles
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("product(181, 181)", "product(300, 300)"),
+        ("quotient(7, 2)", "quotient(1, 0)"),
+        ("moved(1, 14)", "moved(1, 16)"),
+        ("number(1)", "number(2)"),
+        ("flag(1)", "flag(2)"),
+    ],
+)
+def test_what_is_undefined_for_a_sixteen_bit_int_ends_the_program(trapping: Path, good: str, bad: str) -> None:
+    def status(call: str) -> int:
+        code = f"import ctypes; ctypes.CDLL({str(trapping)!r}).int16_{call}"
+        return subprocess.run([sys.executable, "-c", code], check=False).returncode
+
+    assert status(good) == 0
+    assert status(bad) == -signal.SIGILL
+
+
+def left(**changed: Any) -> dict[str, Any]:
+    """What a run leaves, as its process says it."""
+    run = {
+        "signals": {"time": np.arange(3.0), "speed": np.zeros(3, np.float32)},
+        "faults": [(0.5, "overcurrent")],
+        "reason": "",
+        "stats": {"register_accesses": 9.0, "wall_seconds": 1.0},
+    }
+    said: dict[str, Any] = json.loads(json.dumps(compare_runs.left_by(SimpleNamespace(**(run | changed)))))
+    return said
+
+
+@pytest.mark.parametrize(
+    ("native", "other", "said"),
+    [
+        (left(), left(stats={"register_accesses": 9.0, "wall_seconds": 2.0}), "same"),
+        ({"broken": "lost"}, {"broken": "lost"}, "same"),
+        (left(), left(signals={"time": np.arange(3.0), "speed": np.array([0, 0, 1e-45], np.float32)}), "speed"),
+        (left(), left(signals={"time": np.arange(3.0)}), "speed"),
+        (left(), left(faults=[(0.5, "overvoltage")]), "faults"),
+        (left(), left(reason="stalled"), "reason"),
+        (left(), left(stats={"register_accesses": 10.0}), "stats"),
+        (left(), {"crashed": -4, "said": ""}, "crashed"),
+        ({"crashed": -4, "said": ""}, {"crashed": -4, "said": ""}, "DIFFERS"),
+        ({"broken": "lost"}, {"broken": "stuck"}, "broken"),
+    ],
+)
+def test_runs_that_differ_in_anything_are_told(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    native: dict[str, Any],
+    other: dict[str, Any],
+    said: str,
+) -> None:
+    monkeypatch.setattr(compare_runs, "jobs_of", lambda _: [SimpleNamespace(run=SimpleNamespace(name="start"))])
+    monkeypatch.setattr(compare_runs, "in_process", lambda module, *_: native if module == "native" else other)
+    monkeypatch.setattr(sys, "argv", ["compare_runs.py", "int16", "A10"])
+    assert compare_runs.main() == (0 if said == "same" else 1)
+    told = capsys.readouterr().out
+    assert told.startswith("same" if said == "same" else "DIFFERS A10 start:") and said in told

@@ -22,6 +22,7 @@ from typing import Any
 from stillspin import core, resources
 from stillspin.cases import profile, scenario_file
 from stillspin.cases.profile import Changes
+from stillspin.core import NativeResult
 from stillspin.runs import execute
 
 NOT_COMPARED = ("wall_seconds", "plant_share")
@@ -60,6 +61,11 @@ def digest(module: str, identifier: str, index: int, seconds: float) -> dict[str
         result = execute.play(core.load(), job, None)
     except (RuntimeError, ValueError, ArithmeticError) as error:
         return {"broken": str(error)}
+    return left_by(result)
+
+
+def left_by(result: NativeResult) -> dict[str, Any]:
+    """The same of a run that did not break."""
     left: dict[str, Any] = {
         name: hashlib.sha256(values.tobytes()).hexdigest() for name, values in sorted(result.signals.items())
     }
