@@ -9,6 +9,7 @@
 #include "hal/hal_board.h"
 #include "hal/hal_lines.h"
 #include "hal/hal_selftest.h"
+#include "hal/hal_time.h"
 
 #define PAIRS_A_PASS 16u  // divides HAL_SELFTEST_PAIRS
 #define SERVICES 100u
@@ -17,6 +18,7 @@
 #define WORD_PASSED 6u
 #define WORD_UNDER_WAY 7u
 #define WORD_NO_SUM 8u
+#define WORD_WATCHDOG 9u
 
 selftest_t selftest;
 
@@ -79,4 +81,5 @@ void put_selftest(octet_writer_t* w) {
   if (!done) put_item(w, &items, WORD_UNDER_WAY);
   if (done && selftest.failed == 0u) put_item(w, &items, WORD_PASSED);
   if (selftest.flash.state == FLASH_SUM_NONE) put_item(w, &items, WORD_NO_SUM);
+  if (hal_watchdog_caused_reset()) put_item(w, &items, WORD_WATCHDOG);
 }

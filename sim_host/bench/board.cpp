@@ -102,6 +102,14 @@ void Board::drive_leg(Tick t, int leg) {
   if (options_.bootstrap) upper = bootstrap_[static_cast<std::size_t>(leg)].switch_leg(t, upper, lower);
   plant_.set_gate(t, leg, upper, lower);
   compare(t, plant_.peak_current());
+  watch_devices(t);
+}
+
+void Board::watch_devices(Tick t) {
+  bool on = false;
+  for (int leg = 0; leg < 3; leg++) on = on || (enabled_ && (upper_[leg] || lower_[leg]));
+  if (device_on_ && !on) devices_off_since_ = t;
+  device_on_ = on;
 }
 
 void Board::on_pwm_pins(Tick t, int module, bool a, bool b) {

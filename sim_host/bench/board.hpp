@@ -65,11 +65,16 @@ class Board : public chip::World {
   devices::SerialLine& serial() { return serial_; }
   const devices::SerialLine& serial() const { return serial_; }
   /// Faults of the chip's surroundings: conversions that are not triggered, interrupts taken late in every period
-  /// (ticks below a period; 0 is in time).
+  /// (ticks below a period; 0 is in time, a period is never).
   void lose_triggers(bool on) { chip_->block_adc_triggers(on); }
   void delay_interrupts(Tick ticks) { interrupt_delay_ = ticks; }
 
   bool gates_enabled() const { return enabled_; }
+  /// Whether a device is told to be on, by its pin and the gate enable; since when none has been; when the chip has
+  /// last toggled the enable line.
+  bool any_device_on() const { return device_on_; }
+  Tick devices_off_since() const { return devices_off_since_; }
+  Tick enable_toggled() const { return last_toggle_; }
   std::uint64_t trips() const { return trips_; }
 
   /// What an oscilloscope would see since power-on: a hash over time and levels of every edge of a gate (FNV-1a), and
@@ -110,6 +115,7 @@ class Board : public chip::World {
   }
   void trip(Tick t);
   void drive_leg(Tick t, int leg);
+  void watch_devices(Tick t);
 
   std::uint16_t auxiliary_code(Tick t);
 
@@ -145,6 +151,8 @@ class Board : public chip::World {
   std::int64_t plant_ns_ = 0;
   bool timing_ = false;
   bool enabled_ = false;
+  bool device_on_ = false;
+  Tick devices_off_since_ = 0;
   bool aligned_ = false;
 };
 

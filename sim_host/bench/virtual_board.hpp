@@ -79,6 +79,9 @@ class VirtualBoard final : private PeriodListener {
   /// The true machine: angle and speed of the shaft, currents, torques, DC link.
   std::vector<Quantity> truth();
 
+  /// Its program fails; what that is, the chip says.
+  void fail(chip::Failure failure) { chip_.fail(failure); }
+
   // ---- inspection, without an effect on the run
   /// The firmware's signals as of its last control interrupt, scaled; angles in turns.
   static std::vector<Quantity> signals();

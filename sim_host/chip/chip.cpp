@@ -17,6 +17,7 @@ void Chip::pins_changed() { core_->pins_changed(); }
 void Chip::set_revision(std::uint16_t revision) { core_->set_revision(revision); }
 void Chip::block_adc_triggers(bool on) { core_->block_adc_triggers(on); }
 void Chip::hold_interrupts(bool on) { core_->hold_interrupts(on); }
+void Chip::fail(Failure failure) { core_->fail(failure); }
 void Chip::stop_can_transmission() { core_->stop_can_transmission(); }
 bool Chip::is_idle() const { return core_->is_idle(); }
 void Chip::on_jump(Jump jump) { core_->on_jump(std::move(jump)); }

@@ -57,6 +57,14 @@ struct Statistics {
   std::uint64_t narrow_can_accesses = 0;  // to control registers that take 32-bit accesses only
 };
 
+/// How a program may fail.
+enum class Failure {
+  kNone,
+  kBackgroundHangs,    // below the interrupts, which are still taken
+  kInterruptHangs,     // one that runs then or comes next does not return
+  kIllegalInstruction  // below the interrupts; that of the instruction leads back to it, over and over
+};
+
 class Chip {
  public:
   using Firmware = void (*)();
@@ -90,6 +98,9 @@ class Chip {
   /// Faults. The ADC does not see the ePWM's triggers; the CPU takes no interrupt, as while other code masks them.
   void block_adc_triggers(bool on);
   void hold_interrupts(bool on);
+
+  /// The program fails at the next place where its code takes time; a reset ends it.
+  void fail(Failure failure);
 
   /// Whether the CPU is asleep in target_idle.
   bool is_idle() const;

@@ -46,6 +46,7 @@ void Core::reset(Tick t, bool by_watchdog) {
   interrupts_.reset();
   eallow_ = idle_ = stop_ = reset_requested_ = false;
   depth_ = 0;
+  failure_ = Failure::kNone;
   flash_.reset();
   memory_.reset();
   system_.reset();

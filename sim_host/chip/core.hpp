@@ -55,6 +55,7 @@ class Core final : public ChipServices {
   void set_revision(std::uint16_t revision);
   void block_adc_triggers(bool on) { adc_blocked_ = on; }
   void hold_interrupts(bool on) { interrupts_.set_held(on); }
+  void fail(Failure failure) { failure_ = failure; }
   const std::string& error() const { return error_; }
   void pins_changed() { pins_dirty_ = world_touched_ = true; }
   void stop_can_transmission();
@@ -163,6 +164,12 @@ class Core final : public ChipServices {
   }
   void take_interrupts();
   void take_interrupt();
+  void run_isr(unsigned vector);
+  void trap(unsigned vector);
+  bool is_failing() const {
+    return failure_ != Failure::kNone && depth_ == (failure_ == Failure::kInterruptHangs ? 1u : 0u);
+  }
+  [[noreturn]] void go_on_failing();
 
   // Bus (bus.cpp).
   std::uint16_t read_word(std::uint32_t address);
@@ -227,6 +234,7 @@ class Core final : public ChipServices {
   ECan ecan_;
 
   unsigned depth_ = 0;  // nested interrupts
+  Failure failure_ = Failure::kNone;
   unsigned trips_ = 0;
   bool adc_blocked_ = false;
   std::int64_t encoder_held_ = 0;

@@ -67,6 +67,7 @@ void Core::set_vector(std::uint16_t vector, Isr isr) {
 void Core::idle() {
   if (system_.low_power_mode_selected())
     model_error("IDLE with a low-power mode selected in LPMCR0 is not modelled", 0);
+  if (is_failing()) go_on_failing();
   spend_instruction();
   finish_access();
   const std::uint64_t taken = statistics_.interrupts;
@@ -79,6 +80,7 @@ void Core::idle() {
 }
 
 void Core::elapse(std::uint16_t cycles) {
+  if (is_failing()) go_on_failing();
   Tick remaining = cycles * period_;
   while (remaining > 0) {
     const Tick begin = now_;
@@ -100,21 +102,46 @@ void Core::take_interrupts() {
 
 void Core::take_interrupt() {
   const Interrupts::Frame frame = interrupts_.enter();
-  const bool eallow = eallow_;
-  eallow_ = false;  // part of ST1: saved and cleared
   ++statistics_.interrupts;
   if (frame.spurious) ++statistics_.spurious_interrupts;
-  const Isr isr = interrupts_.vector(frame.vector);
-  if (!interrupts_.table_enabled()) model_error("interrupt taken with PIECTRL.ENPIE = 0: vector", frame.vector);
-  if (isr == nullptr) model_error("interrupt without a function in its vector (illegal ISR): vector", frame.vector);
-  if (++depth_ > kMaxDepth) model_error("interrupts nested too deeply: vector", frame.vector);
+  run_isr(frame.vector);
+  interrupts_.leave(frame);
+}
+
+void Core::run_isr(unsigned vector) {
+  const bool eallow = eallow_;
+  eallow_ = false;  // part of ST1: saved and cleared
+  const Isr isr = interrupts_.vector(vector);
+  if (!interrupts_.table_enabled()) model_error("interrupt taken with PIECTRL.ENPIE = 0: vector", vector);
+  if (isr == nullptr) model_error("interrupt without a function in its vector (illegal ISR): vector", vector);
+  if (++depth_ > kMaxDepth) model_error("interrupts nested too deeply: vector", vector);
   if (stop_) leave_firmware();
   spend(kEntryCycles + kContextSaveCycles);
   isr();
   spend(kContextRestoreCycles + kReturnCycles);
   --depth_;
-  interrupts_.leave(frame);
   eallow_ = eallow;
+}
+
+// What no mask holds off. Nothing of what waits is taken by it.
+void Core::trap(unsigned vector) {
+  Interrupts::Frame frame;
+  frame.ier = interrupts_.ier();
+  interrupts_.set_masked(true);
+  run_isr(vector);
+  interrupts_.leave(frame);
+}
+
+// What is left of a program that has failed.
+void Core::go_on_failing() {
+  for (;;) {
+    if (failure_ == Failure::kIllegalInstruction) {
+      trap(VECTOR_ILLEGAL);
+    } else {
+      wait_for_interrupt(kNever, true);
+    }
+    if (interrupts_.deliverable()) take_interrupts();
+  }
 }
 
 }  // namespace stillspin::chip

@@ -55,8 +55,8 @@ void Gpio::reset(Tick t) {
   latch_.fill(0);
   control_[offset_of(REG_GPAPUD)] = 0x0FFF;  // the ePWM pins come up without pull-up
   update_routes();
+  drive_pwm_pins(t);  // all in one tick; a line that falls must not let through what goes with it
   drive(t);
-  drive_pwm_pins(t);
 }
 
 bool Gpio::is_protected(std::uint16_t offset) { return offset < kData || offset >= kDataEnd; }

@@ -239,4 +239,63 @@ TEST_F(Dog, BitesInsideAnInterruptToo) {
   EXPECT_EQ(device->statistics().interrupts, 6u);
 }
 
+// Keeps the watchdog quiet below an interrupt that comes for ever.
+std::uint64_t passes, ticks;
+
+void live() {
+  note_start();
+  install(VECTOR_TINT0, [] {
+    target_elapse(10);
+    ++ticks;
+    target_write16(REG_PIEACK, group_bit(1));
+  });
+  enable_pie();
+  target_write_ier(group_bit(1));
+  target_write32(CPUTIMER_BASE(0) + CPUTIMER_PRD, 999);
+  target_write16(CPUTIMER_BASE(0) + CPUTIMER_TCR, CPUTIMER_TCR_TIE_MASK | CPUTIMER_TCR_TRB_MASK);
+  target_enable_interrupts();
+  for (;; ++passes) {
+    target_elapse(1000);
+    write_protected(REG_WDKEY, 0x55);
+    write_protected(REG_WDKEY, 0xAA);
+  }
+}
+
+TEST_F(Dog, EndsAProgramThatFails) {
+  for (const auto failure : {stillspin::chip::Failure::kBackgroundHangs, stillspin::chip::Failure::kInterruptHangs}) {
+    const bool background = failure == stillspin::chip::Failure::kBackgroundHangs;
+    run(live, kOverflow);
+    EXPECT_EQ(resets(), 0u);
+    device->fail(failure);
+    const std::uint64_t passes_then = passes, ticks_then = ticks;
+    device->run_until(2 * kOverflow - 50'000);
+    EXPECT_LE(passes, passes_then + 2) << "until the next interrupt";
+    EXPECT_EQ(ticks > ticks_then + 10, background) << "what comes on top goes on";
+    EXPECT_EQ(resets(), 0u);
+    device->run_until(2 * kOverflow + 20'000);
+    EXPECT_EQ(resets(), 1u);
+    device->run_until(5 * kOverflow);
+    EXPECT_EQ(resets(), 1u) << "it lives again";
+    EXPECT_GT(passes, passes_then + 10);
+  }
+}
+
+TEST_F(Dog, EndsAnIllegalInstructionThatItsInterruptLeadsBackTo) {
+  static std::uint64_t traps;
+  traps = 0;
+  run(
+      [] {
+        install(VECTOR_ILLEGAL, [] { ++traps; });
+        live();
+      },
+      kOverflow);
+  EXPECT_EQ(traps, 0u);
+  const std::uint64_t ticks_then = ticks;
+  device->fail(stillspin::chip::Failure::kIllegalInstruction);
+  device->run_until(2 * kOverflow + 20'000);
+  EXPECT_GT(traps, 100u);
+  EXPECT_GT(ticks, ticks_then + 10) << "in between";
+  EXPECT_EQ(resets(), 1u);
+}
+
 }  // namespace

@@ -65,6 +65,7 @@ bool hal_lines_gates_pass(void) { return board.gates_pass; }
 bool hal_selftest_ram(std::uint16_t pair) { return pair != board.bad_pair; }
 std::uint16_t hal_selftest_watchdog_count(void) { return board.watchdog_count; }
 bool hal_selftest_gates_are_off(void) { return board.gate_pins_off; }
+bool hal_watchdog_caused_reset(void) { return board.reset_by_watchdog; }
 std::uint16_t hal_flash_read(std::uint32_t address) {
   const auto word = board.flash.find(address);
   return word == board.flash.end() ? HAL_FLASH_ERASED : word->second;
@@ -94,7 +95,10 @@ std::uint32_t hal_time_cycles() { return 0; }  // no time passes
 void hal_irq_control_begin(void) {}
 void hal_irq_control_end(void) {}
 void hal_safety_toggle_enable(void) { board.enable_toggles++; }
-void hal_safety_fault_lamp(bool on) { board.lamp = on; }
+void hal_safety_fault_lamp(bool on) {
+  board.lamp = on;
+  board.lit_with_gates_on = board.lit_with_gates_on || (on && board.gates_on);
+}
 void hal_encoder_init(std::uint32_t) {}
 std::uint32_t hal_encoder_count(void) { return board.encoder; }
 

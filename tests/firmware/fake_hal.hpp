@@ -27,6 +27,7 @@ namespace stillspin::test {
 
 struct FakeBoard {
   bool gates_on = false, lamp = false;
+  bool lit_with_gates_on = false;  // the lamp before the gates were off
   bool tripped_by_pin = false, pin_low = false;
   bool late = false;  // hal_pwm_write comes too late
   int gates_off_calls = 0, frames = 0, enable_toggles = 0;
@@ -38,6 +39,7 @@ struct FakeBoard {
   std::uint16_t unexpected_interrupts = 0;
   bool slow_is_speed = false;  // what the converter's last place reads
   bool gate_pins_off = true;
+  bool reset_by_watchdog = false;
   int bad_pair = -1;                             // of RAM
   std::map<std::uint32_t, std::uint16_t> flash;  // words by address, erased where there is none
   std::uint16_t watchdog_count = 10;             // at a service

@@ -339,6 +339,21 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
   }
 }
 
+TEST_F(Protection, EveryFaultOpensTheGatesBeforeAnythingElse) {
+  for (int fault = FAULT_NONE + 1; fault <= FAULT_SELF_TEST; ++fault) {
+    SetUp();
+    make_run();
+    ASSERT_TRUE(board.gates_on);
+    drive_raise(&drive, static_cast<drive_fault_t>(fault));
+    EXPECT_FALSE(board.gates_on) << fault;
+    EXPECT_FALSE(board.lit_with_gates_on) << fault;
+    EXPECT_TRUE(board.lamp) << fault;
+    periods(100);
+    EXPECT_EQ(drive.fault, fault) << "latched";
+    EXPECT_FALSE(board.gates_on) << fault;
+  }
+}
+
 TEST_F(Protection, TheFaultRecordSaysWhatWas) {
   make_run();
   drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};

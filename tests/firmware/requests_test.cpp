@@ -250,7 +250,7 @@ TEST_F(Requests, WordsForEverything) {
   EXPECT_EQ(last(WORDS_STATUS), CONFLICT);
   EXPECT_EQ(last(WORDS_START), START_CHARGE);
   EXPECT_EQ(last(WORDS_BOARD), 11);    // board_words_t
-  EXPECT_EQ(last(WORDS_SELFTEST), 8);  // board/selftest.c
+  EXPECT_EQ(last(WORDS_SELFTEST), 9);  // board/selftest.c
   EXPECT_EQ(last(WORDS_COMMISSIONING), COMMISSIONING_FAILED);
   EXPECT_EQ(last(WORDS_SCOPE), SCOPE_DONE);
   EXPECT_EQ(last(WORDS_STORE), STORE_OLDER);

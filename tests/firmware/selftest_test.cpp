@@ -64,6 +64,13 @@ TEST_F(SelfTest, PassesOnAGoodBoard) {
 }
 
 // It is over when all of it is: neither the RAM nor the clock alone.
+TEST_F(SelfTest, SaysThatTheWatchdogHasResetTheChip) {
+  EXPECT_EQ(words().find("watchdog"), std::string::npos) << words();
+  board.reset_by_watchdog = true;
+  EXPECT_NE(words().find("; reset by the watchdog"), std::string::npos) << words();
+  EXPECT_EQ(selftest_service(), FAULT_NONE) << "it is told and no fault";
+}
+
 TEST_F(SelfTest, IsUnderWayUntilEachPartIsThrough) {
   for (const bool ram_first : {true, false}) {
     drive_reset();
