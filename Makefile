@@ -20,11 +20,11 @@ PICTURES_OUT := out/pictures
 unexport PYTHONPATH PYTHONHOME
 
 .PHONY: help setup build test demo bench isr-cost isr-bound image-check int16 vectors cppcheck prove mcdc mutants verify \
-	loss fuzz pictures docs lint format lock clean
+	loss fuzz fuzz16 pictures docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
 
 setup: ## install what is missing: Debian packages, Python packages in .venv
 	@bash toolchain/setup.sh
@@ -93,13 +93,18 @@ mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches,
 mutants: setup ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
 
-verify: image-check isr-bound cppcheck prove vectors int16 mcdc ## the checks that take long: these seven
+verify: image-check isr-bound cppcheck prove vectors int16 fuzz16 mcdc ## the checks that take long: these eight
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign
 
-fuzz: setup ## search for octets and CAN frames that break the firmware, RUNS of each (1000000)
+fuzz: setup ## search for octets and CAN frames that break the firmware, also with a 16-bit int, RUNS of each (1000000)
+	@bash toolchain/setup.sh build llvm
 	@bash toolchain/fuzz.sh $(RUNS)
+
+fuzz16: setup ## a short search with a 16-bit int, the same every time, and planted defects that it has to find
+	@bash toolchain/setup.sh build llvm
+	@bash toolchain/fuzz.sh 10000 short
 
 pictures: build ## renew the pictures of README and book, docs/images; the page's need a Chromium
 	@rm -rf $(PICTURES_OUT)

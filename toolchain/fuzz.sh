@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # Searches for what breaks the drive or its client: libFuzzer with address and undefined-behaviour sanitizers over the
-# firmware's serial port and CAN bus, a generator over the SLCAN adapter and the client's readers (tests/fuzz).
-# Usage: toolchain/fuzz.sh RUNS [link] [bus] [client], of each search: two for the client, all when none is named. What
-# it finds is left in build/fuzz/found.
+# firmware's serial port and CAN bus, once with this computer's int (link, bus) and once with one of 16 bits (link16,
+# bus16; toolchain/int16), a generator over the SLCAN adapter and the client's readers (tests/fuzz).
+# Usage: toolchain/fuzz.sh RUNS [SEARCH]..., of each search: two for the client, all when none is named. What it finds is
+# left in build/fuzz/found. The search `short` is not among all: that of link16 and bus16 that always takes the same way,
+# and has to find planted defects (toolchain/fuzz16.py).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 runs=${1:-1000000}
 which=${*:2}
-which=${which:-link bus client}
+which=${which:-link bus link16 bus16 client}
 build=build/fuzz
 clang=$(bash toolchain/find-clang.sh)
-mkdir -p "$build/found" "$build/corpus-link" "$build/corpus-bus"
+mkdir -p "$build/found" "$build"/corpus-{link,bus}{,16}
 if ! echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' |
   "${clang/clang/clang++}" -x c++ - -fsanitize=fuzzer -o "$build/probe" 2>"$build/probe.log"; then
   echo "fuzz: $clang has no libFuzzer; by hand: sudo apt-get install libclang-rt-${clang#clang-}-dev" >&2
@@ -23,7 +25,18 @@ flags+=" -fno-sanitize-coverage=trace-cmp -fsanitize-coverage-allowlist=$PWD/tes
 cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DSTILLSPIN_FUZZ=ON -DSTILLSPIN_SIM=OFF \
   -DSTILLSPIN_PYTHON=OFF -DCMAKE_C_COMPILER="$clang" -DCMAKE_CXX_COMPILER="${clang/clang/clang++}" \
   -DCMAKE_C_FLAGS="$flags" -DCMAKE_CXX_FLAGS="$flags" >"$build/configure.log"
-cmake --build "$build" --target stillspin_fuzz_link stillspin_fuzz_bus >"$build/build.log" || { cat "$build/build.log"; exit 1; }
+targets=()
+for each in $which; do
+  case $each in
+    link | bus | link16 | bus16) targets+=("stillspin_fuzz_$each") ;;
+    short) targets+=(stillspin_fuzz_{link,bus}16) ;;
+    client) ;;
+    *) echo "fuzz: there is no search $each" >&2 && exit 2 ;;
+  esac
+done
+if ((${#targets[@]})); then
+  cmake --build "$build" --target "${targets[@]}" >"$build/build.log" || { cat "$build/build.log"; exit 1; }
+fi
 
 export ASAN_OPTIONS=quarantine_size_mb=16
 search() { # target, options
@@ -33,9 +46,9 @@ search() { # target, options
 }
 for each in $which; do
   case $each in
-    link) search link -dict=tests/fuzz/link.dict ;;
-    bus) search bus ;;
+    link*) search "$each" -dict=tests/fuzz/link.dict ;;
+    bus*) search "$each" ;;
     client) .venv/bin/python tests/fuzz/client_fuzz.py "$runs" ;;
-    *) echo "fuzz: there is no search $each" >&2 && exit 2 ;;
+    short) .venv/bin/python toolchain/fuzz16.py "$build/tests/fuzz" "$runs" ;;
   esac
 done

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/fuzz/fuzz_drive.hpp"
+#include "tests/firmware/fake_hal.hpp"
+#include "tests/fuzz/fuzz_board.hpp"
+#include "tests/fuzz/fuzz_drive.h"
 
 extern "C" {
-#include "firmware/console/console.h"
-#include "firmware/hil/hil.h"
-#include "firmware/link/link.h"
+#include "firmware/link/record.h"
 #include "firmware/link/requests.h"
-#include "firmware/store/store.h"
+#include "firmware/link/splitter.h"
 }
 
 namespace stillspin::test {
@@ -50,14 +50,14 @@ class Player {
   /// Whatever was sent: after the rest that ends a record, a line stops the drive and a record is answered.
   void judge() {
     pass(150);
-    if (!hil_is_active()) judge_stop();
-    if (hil_is_active() && board.gates_on) fail("the gates are on with the host in the loop");
+    if (!fuzz_has_host()) judge_stop();
+    if (fuzz_has_host() && board.gates_on) fail("the gates are on with the host in the loop");
     records.clear();
     send_record({REQUEST_STATUS, 0x5A});
     for (int k = 0; k < 1000 && !answered(); ++k) step(1);
     if (!answered()) fail("a request for the status was not answered");
-    const std::string wrong = fuzz_parameter_out_of_range();
-    if (!wrong.empty()) fail(wrong + " is out of its range");
+    const std::string wrong = fuzz_complaint_of_parameters();
+    if (!wrong.empty()) fail(wrong);
   }
 
   std::string problem;
@@ -70,14 +70,14 @@ class Player {
   // The interrupt is held off until the line has been understood, so that nothing else can have stopped the drive.
   void judge_stop() {
     fuzz_put_into(DRIVE_RUN);
-    background_step(&drive);
-    drive.request = {};
+    fuzz_background();
+    fuzz_forget_requests();
     for (const char c : std::string("\r\nstop\r\n")) send(static_cast<std::uint8_t>(c), false);
-    for (int k = 0; k < 1000 && !drive.request.stop; ++k) rounds(1);
-    if (drive.state != DRIVE_RUN) fail("the drive did not run any more");
-    background_step(&drive);  // changed parameters come first
+    for (int k = 0; k < 1000 && !fuzz_is_to_stop(); ++k) rounds(1);
+    if (!fuzz_is_running()) fail("the drive did not run any more");
+    fuzz_background();  // changed parameters come first
     fuzz_pass(1);
-    if (drive.state == DRIVE_RUN) fail("the drive was not stopped");
+    if (fuzz_is_running()) fail("the drive was not stopped");
   }
 
   bool answered() const {
@@ -106,7 +106,7 @@ class Player {
         fuzz_fault(what / 4);
         break;
       case 1:
-        fuzz_put_into(static_cast<drive_state_t>(what / 4 % kDriveStates));
+        fuzz_put_into(what / 4 % FUZZ_STATES);
         break;
       case 2:
         board.serial_errors.framing++;
@@ -126,7 +126,7 @@ class Player {
   }
 
   void step(int ms) {
-    fuzz_pass(ms);
+    fuzz_pass(static_cast<std::uint16_t>(ms));
     rounds(ms);
   }
 
@@ -135,9 +135,7 @@ class Player {
     for (int k = 0; k < kRounds; ++k) {
       const int room = board.serial_room + ms * kOctetsPerMs / kRounds;
       board.serial_room = static_cast<std::uint16_t>(std::min<int>(HAL_SCI_TRANSMIT_RING, room));
-      store_service();
-      link_service();
-      console_service();
+      fuzz_serve_port();
       listen();
     }
   }
@@ -146,7 +144,7 @@ class Player {
     while (!board.serial_out.empty()) {
       const std::uint16_t octet = board.serial_out.front();
       board.serial_out.pop_front();
-      const std::int16_t found = splitter_octet(&far_, octet, drive.time_ms);
+      const std::int16_t found = splitter_octet(&far_, octet, fuzz_time_ms());
       if (found == SPLITTER_RECORD) records.emplace_back(far_.octets, far_.octets + far_.count);
       for (int k = 0; k < found; ++k) {
         if (far_.octets[k] > 0x7E) fail("text that is not ASCII");

@@ -6,7 +6,7 @@
 //   0xFE n   n ms pass
 //   0xFC n   something happens to the drive: a fault, a state, an error of the port, a turn of the encoder, by n
 //
-// What carries the commands out is the drive itself (fuzz_drive.hpp).
+// What carries the commands out is the drive itself (fuzz_drive.h).
 
 #ifndef STILLSPIN_TESTS_FUZZ_PLAY_HPP
 #define STILLSPIN_TESTS_FUZZ_PLAY_HPP

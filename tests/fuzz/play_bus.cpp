@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/fuzz/fuzz_drive.hpp"
+#include "tests/firmware/fake_hal.hpp"
+#include "tests/fuzz/fuzz_board.hpp"
+#include "tests/fuzz/fuzz_drive.h"
 
 extern "C" {
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
-#include "firmware/can/node.h"
 #include "firmware/can/segments.h"
-#include "firmware/hil/hil.h"
 #include "firmware/link/requests.h"
-#include "firmware/store/store.h"
 }
 
 namespace stillspin::test {
@@ -22,10 +21,6 @@ constexpr int kRounds = 4;              // of the background level in a step of 
 constexpr int kFine = 4, kCoarse = 25;  // steps of 1 ms, then of 25 ms
 
 enum { kCommandGroup, kParameterGroup, kRecordGroup };
-
-extern "C" std::uint16_t answer_as_bus(const std::uint16_t* request, std::uint16_t count, std::uint16_t* answer) {
-  return request_answer(GUARD_BUS, request, count, answer);
-}
 
 class Input {
  public:
@@ -42,7 +37,7 @@ class BusPlayer {
  public:
   BusPlayer() {
     fuzz_power_on();
-    can_node_reset(answer_as_bus);
+    fuzz_node_on();
     rounds();
   }
 
@@ -58,7 +53,7 @@ class BusPlayer {
         const std::uint8_t speed = in.next();
         command(mode % 4, static_cast<std::int8_t>(speed) * 100, (in.next() & 1) != 0);
       } else if (kind == 6) {
-        fuzz_put_into(static_cast<drive_state_t>(in.next() % kDriveStates));
+        fuzz_put_into(in.next() % FUZZ_STATES);
       } else if (kind == 7) {
         disturb(in.next());
       } else {
@@ -75,25 +70,22 @@ class BusPlayer {
     board.can_drains = true;
     pass(600);  // what was begun has been forgotten
     // With the host in the loop there is nothing to stop: the power stage cannot come on before the next reset.
-    if (hil_is_active()) return board.gates_on ? "the gates are on with the host in the loop" : "";
-    drive.request = {};
+    if (fuzz_has_host()) return board.gates_on ? "the gates are on with the host in the loop" : "";
+    fuzz_forget_requests();
     if (runs_on_after(CAN_MODE_STOP)) return "the drive was not stopped";
     if (runs_on_after(CAN_MODE_OFF)) return "the drive was not switched off";
     board.can_out.clear();
-    hal_can_frame_t f = can_frame(CAN_PARAMETER_REQUEST, node());
+    hal_can_frame_t f = can_frame(CAN_PARAMETER_REQUEST, fuzz_node());
     can_put(&f, CAN_PARAMETER_REQUEST_ID, 222);
     send(kParameterGroup, f);
     send_record({REQUEST_STATUS, 0x5A});
     pass(10);
     if (!heard(0x380, 1)) return "a parameter was not answered";
     if (!heard(0x480, 2)) return "a request for the status was not answered";
-    const std::string wrong = fuzz_parameter_out_of_range();
-    return wrong.empty() ? "" : wrong + " is out of its range";
+    return fuzz_complaint_of_parameters();
   }
 
  private:
-  static std::uint16_t node() { return static_cast<std::uint16_t>(parameters.can_node); }
-
   static hal_can_frame_t any_frame(Input& in) {
     hal_can_frame_t f = {};
     f.length = static_cast<std::uint16_t>(std::min(in.next() & 0x0F, 8));
@@ -103,14 +95,14 @@ class BusPlayer {
 
   void send(int group, hal_can_frame_t f) {
     static constexpr can_message_t messages[] = {CAN_COMMAND, CAN_PARAMETER_REQUEST, CAN_RECORD_REQUEST};
-    f.id = can_frame(messages[group], node()).id;
+    f.id = can_frame(messages[group], fuzz_node()).id;
     board.can_in[group].push_back(f);
     if (board.can_in[group].size() > 4) rounds();
     if (board.can_in[group].size() > 12) board.can_in[group].pop_back();  // no mailbox is free
   }
 
   void command(std::int32_t mode, std::int32_t speed, bool clear) {
-    hal_can_frame_t f = can_frame(CAN_COMMAND, node());
+    hal_can_frame_t f = can_frame(CAN_COMMAND, fuzz_node());
     can_put(&f, CAN_COMMAND_MODE, mode);
     can_put(&f, CAN_COMMAND_SPEED, speed);
     can_put(&f, CAN_COMMAND_CLEAR_FAULT, clear ? 1 : 0);
@@ -128,22 +120,22 @@ class BusPlayer {
   }
 
   static bool heard(std::uint32_t base, std::size_t least) {
-    const auto is = [&](const hal_can_frame_t& f) { return f.id == base + node(); };
+    const auto is = [&](const hal_can_frame_t& f) { return f.id == base + fuzz_node(); };
     return static_cast<std::size_t>(std::count_if(board.can_out.begin(), board.can_out.end(), is)) >= least;
   }
 
   // The interrupt is held off until the command has been understood, so that nothing else can have stopped the drive.
   bool runs_on_after(can_mode_t mode) {
     fuzz_put_into(DRIVE_RUN);
-    background_step(&drive);
+    fuzz_background();
     // A drive that somebody else has started obeys a change of the mode; each mode twice, because the alive counter of
     // one of the four may be the last input's.
     for (const can_mode_t m : {CAN_MODE_RUN, CAN_MODE_RUN, mode, mode}) command(m, 0, false);
     rounds();
-    if (drive.state != DRIVE_RUN) return true;
-    background_step(&drive);  // changed parameters come first
+    if (!fuzz_is_running()) return true;
+    fuzz_background();  // changed parameters come first
     fuzz_pass(1);
-    return drive.state == DRIVE_RUN;
+    return fuzz_is_running();
   }
 
   void disturb(std::uint8_t what) {
@@ -155,7 +147,7 @@ class BusPlayer {
   void pass(int ms) {
     for (int k = 0; ms > 0; ++k) {
       const int now = k < kFine ? 1 : std::min(ms, kCoarse);
-      fuzz_pass(now);
+      fuzz_pass(static_cast<std::uint16_t>(now));
       rounds();
       ms -= now;
     }
@@ -163,8 +155,7 @@ class BusPlayer {
 
   void rounds() {
     for (int k = 0; k < kRounds; ++k) {
-      store_service();
-      can_node_service();
+      fuzz_serve_bus();
       if (board.can_out.size() > 200) board.can_out.clear();
     }
   }

@@ -9,7 +9,7 @@
 //   6               the drive is put into the state that the next octet names
 //   7               state of the bus, a sender that is stuck, and a fault, by the next octet
 //
-// What carries the commands out is the drive itself (fuzz_drive.hpp).
+// What carries the commands out is the drive itself (fuzz_drive.h).
 
 #ifndef STILLSPIN_TESTS_FUZZ_PLAY_BUS_HPP
 #define STILLSPIN_TESTS_FUZZ_PLAY_BUS_HPP

@@ -36,12 +36,22 @@ typedef struct {
 static const int32_t numbers[2] = {7, 9};
 walk_t walk(int32_t count) { const walk_t w = {numbers, count}; return w; }
 int32_t behind_a_pointer(int32_t count) { const walk_t w = walk(count); return w.at[1] + w.count; }
+static walk_t kept;
+int32_t copied(int32_t count) {
+  walk_t here;
+  here = walk(count);
+  kept = here;
+  return kept.at[1] + kept.count;
+}
 int32_t product(int16_t a, int16_t b) { return a * b; }
 int32_t shifted(uint16_t a) { return (int32_t)(a << 4); }
 uint16_t complement(uint16_t a) { return (uint16_t)((uint16_t)~a >> 4); }
 bool behind(uint16_t now, uint16_t then) { return now - then > 0x8000u; }
 uint16_t character(uint16_t a) { return (uint16_t)(unsigned char)a; }
 uint16_t words(void) { return (uint16_t)sizeof(int32_t); }
+uint16_t bare_words(const pair_t* at) { return (uint16_t)(sizeof *at + sizeof numbers + sizeof at->number); }
+uint16_t place(void) { return (uint16_t)offsetof(pair_t, number); }
+uint16_t entries(void) { return (uint16_t)(sizeof numbers / sizeof numbers[0]); }
 uint16_t pair_words(void) { return (uint16_t)sizeof(pair_t); }
 uint16_t literal(uint16_t k) { return (uint16_t)"ab"[k]; }
 int32_t quotient(int32_t a, int32_t b) { return a / b; }
@@ -75,7 +85,11 @@ def library(tmp_path: Path, *options: str) -> Path:
         ("character", (ctypes.c_uint16(0x1FF),), ctypes.c_uint16, 0x1FF),
         ("words", (), ctypes.c_uint16, 2),
         ("behind_a_pointer", (ctypes.c_int32(5),), ctypes.c_int32, 14),
+        ("copied", (ctypes.c_int32(5),), ctypes.c_int32, 14),
         ("pair_words", (), ctypes.c_uint16, 4),
+        ("bare_words", (ctypes.c_void_p(),), ctypes.c_uint16, 4 + 4 + 2),
+        ("place", (), ctypes.c_uint16, 2),
+        ("entries", (), ctypes.c_uint16, 2),
         ("literal", (ctypes.c_uint16(1),), ctypes.c_uint16, ord("b")),
         ("complement", (ctypes.c_uint16(0xFFF0),), ctypes.c_uint16, 0),
         ("quotient", (ctypes.c_int32(-7), ctypes.c_int32(2)), ctypes.c_int32, -3),

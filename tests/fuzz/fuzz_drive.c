@@ -1,0 +1,163 @@
+#include "tests/fuzz/fuzz_drive.h"
+
+#include "firmware/can/node.h"
+#include "firmware/console/console.h"
+#include "firmware/drive.h"
+#include "firmware/hil/hil.h"
+#include "firmware/link/link.h"
+#include "firmware/link/requests.h"
+#include "firmware/parameters.h"
+#include "firmware/store/store.h"
+
+#define CALIBRATION 400u  // periods that are more than enough
+#define START 350u
+
+static drive_t reached[FUZZ_STATES];
+static bool all_reached;
+
+static void period(void) {
+  for (uint16_t k = 0; k < drive.modulation.sampled.window_count; k++) {
+    fuzz_board_still_window();
+    drive_window_interrupt();
+  }
+  drive_control_interrupt();
+}
+
+void fuzz_background(void) {
+  if (!hil_is_active()) background_step(&drive);
+}
+
+static void periods_until(drive_state_t state, uint16_t most) {
+  for (uint16_t k = 0; k < most && drive.state != state; k++) {
+    period();
+    fuzz_background();
+  }
+}
+
+static void power_on(void) {
+  fuzz_board_power_on();
+  drive_reset();
+  hil_reset();
+  link_reset();
+}
+
+// The machine stands, so the drive runs with an encoder and does not ask which way round its magnet is.
+static void reach_states(void) {
+  power_on();
+  reached[DRIVE_BOOT] = drive;
+  period();
+  reached[DRIVE_CALIBRATE] = drive;
+  periods_until(DRIVE_READY, CALIBRATION);
+  reached[DRIVE_READY] = drive;
+  drive_command_commission();
+  periods_until(DRIVE_COMMISSION, START);
+  reached[DRIVE_COMMISSION] = drive;
+  drive_command_coast();
+  period();
+  parameters.position_source = POSITION_ENCODER;
+  parameters.polarity_check = 0;
+  drive_parameters_changed();
+  fuzz_background();
+  drive_command_speed((int32_t)300 << 16);
+  drive_command_start();
+  periods_until(DRIVE_START, 1);
+  reached[DRIVE_START] = drive;
+  periods_until(DRIVE_RUN, START);
+  for (uint16_t k = 0; k < 20u; k++) period();
+  reached[DRIVE_RUN] = drive;
+  drive_command_stop();
+  period();
+  reached[DRIVE_STOP] = drive;
+  drive_raise(&drive, FAULT_OVER_CURRENT);
+  period();
+  reached[DRIVE_FAULT] = drive;
+  all_reached = true;
+}
+
+void fuzz_power_on(void) {
+  if (!all_reached) reach_states();
+  power_on();
+  drive = reached[DRIVE_READY];
+}
+
+static uint16_t answer_as_bus(const uint16_t* request, uint16_t count, uint16_t* answer) {
+  return request_answer(GUARD_BUS, request, count, answer);
+}
+
+void fuzz_node_on(void) { can_node_reset(answer_as_bus); }
+
+// What goes on whatever the state is.
+typedef struct {
+  uint32_t time_ms;
+  uint16_t heartbeat;
+  drive_request_t request;
+  drive_config_t config;
+  bool config_valid;
+} lasting_t;
+
+void fuzz_put_into(uint16_t state) {
+  if (hil_is_active()) return;  // it is a simulation's drive
+  const lasting_t now = {drive.time_ms, drive.heartbeat, drive.request, drive.config, drive.config_valid};
+  drive = reached[state];
+  drive.time_ms = now.time_ms;
+  drive.heartbeat = now.heartbeat;
+  drive.request = now.request;
+  drive.config = now.config;
+  drive.config_valid = now.config_valid;
+  drive_parameters_changed();
+  fuzz_board_gates(drive_is_energised());
+}
+
+void fuzz_fault(uint16_t which) {
+  static const drive_fault_t faults[] = {
+#define FAULT(number, name, words, remedy) FAULT_##name,
+#include "firmware/fault_list.h"
+#undef FAULT
+  };
+  const drive_fault_t fault = faults[which % (uint16_t)(sizeof faults / sizeof faults[0])];
+  if (fault != FAULT_NONE) drive_raise(&drive, fault);
+}
+
+void fuzz_pass(uint16_t ms) {
+  if (hil_is_active()) return;  // its time is the simulation's
+  drive.time_ms += ms - 1u;
+  drive.schedule.period = DRIVE_PERIODS_PER_MS - 1u;
+  period();
+  fuzz_background();
+}
+
+void fuzz_serve_port(void) {
+  store_service();
+  link_service();
+  console_service();
+}
+
+void fuzz_serve_bus(void) {
+  store_service();
+  can_node_service();
+}
+
+void fuzz_forget_requests(void) {
+  static const drive_request_t none = {false, false, false, false, false, false};
+  drive.request = none;
+}
+
+bool fuzz_is_running(void) { return drive.state == DRIVE_RUN; }
+bool fuzz_is_to_stop(void) { return drive.request.stop; }
+bool fuzz_has_host(void) { return hil_is_active(); }
+uint32_t fuzz_time_ms(void) { return drive.time_ms; }
+uint16_t fuzz_node(void) { return (uint16_t)parameters.can_node; }
+
+static bool is_wrong(uint16_t place, int32_t raw) {
+  const parameter_info_t* const p = parameter_info(place);
+  return raw < p->minimum || raw > p->maximum;
+}
+
+uint16_t fuzz_parameter_out_of_range(void) {
+  uint16_t place = 0;
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
+  if (is_wrong(place++, parameters.name)) return place;
+#include "firmware/parameter_list.h"
+#undef PARAMETER
+  return 0;
+}
