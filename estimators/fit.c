@@ -36,7 +36,7 @@ int64_t fit_dot(const int32_t* a, const int32_t* b, uint16_t n) {
   return sum;
 }
 
-// What a column leaves of another: within twice what columns may be, so that the squares of FIT_POINTS of them fit.
+// What a column leaves of another, within 2^29 as columns are.
 static void take_off(int32_t* rest, const int32_t* y, int32_t factor_q24, const int32_t* x, uint16_t n) {
   for (uint16_t k = 0; k < n; k++)
     rest[k] = q_sat_bits((int64_t)y[k] * 16777216L - q_product(factor_q24, x[k]), 24, 29);

@@ -9,7 +9,8 @@
 
 #include "hal/qmath/qmath.h"
 
-#define FIT_POINTS 16u  // most points of a fit
+#define FIT_POINTS 16u      // most points of a fit
+#define FIT_END 536870911L  // of columns: so much that the squares of FIT_POINTS of them fit 63 bits
 
 /// numerator * 2^shift / denominator, saturated to 32 bits; shift -31..62. A zero denominator saturates.
 int32_t fit_ratio(int64_t numerator, int64_t denominator, int16_t shift);
@@ -24,7 +25,7 @@ typedef struct {
   int32_t rms;  // of what the fit leaves over, in the format of y
 } fit_plane_t;
 
-/// Fits n points, 3..FIT_POINTS. Columns within +-2^28. Returns false when the two regressors cannot be told apart.
+/// Fits n points, 3..FIT_POINTS. Columns within +-FIT_END. Returns false when the two regressors cannot be told apart.
 bool fit_plane(const int32_t* x, const int32_t* f, const int32_t* y, uint16_t n, fit_plane_t* out);
 
 #endif

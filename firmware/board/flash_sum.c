@@ -16,8 +16,9 @@ static uint32_t read_pair(uint32_t address) {
 void flash_sum_begin(flash_sum_t* sum) {
   sum->state = FLASH_SUM_NONE;
   if (hal_flash_read(HAL_FLASH_IMAGE_IDENTITY) != HAL_IMAGE_MARK) return;
-  sum->end = read_pair(HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_SUM_END);
-  if (sum->end <= SUM_AT + 1uL || sum->end > HAL_FLASH_CSM_RESERVED) return;
+  const uint32_t end = read_pair(HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_SUM_END);
+  if (end <= SUM_AT + 1uL || end > HAL_FLASH_CSM_RESERVED) return;
+  sum->end = end;
   sum->wanted = read_pair(SUM_AT);
   sum->next = HAL_FLASH_START;
   sum->crc = CRC32_BEGIN;

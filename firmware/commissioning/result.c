@@ -25,7 +25,7 @@ static commissioning_verdict_t near(int32_t value, int32_t before, int32_t facto
 }
 
 static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
-  return (q_abs_sat(a - b) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
+  return (q_abs_sat(q_sub_sat(a, b)) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
 }
 
 // What the functions below offer, each once: three of the staircase, three unsaturated, the map and that it is known,
@@ -49,17 +49,17 @@ static commissioning_verdict_t judge_staircase(const staircase_values_t* v, comm
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   const commissioning_verdict_t straight = (v->command_rms_q16 > RMS_MAX_Q16) ? VERDICT_SPREAD : VERDICT_USED;
   const commissioning_verdict_t quiet = (v->window_rms_q16 > RMS_MAX_Q16) ? VERDICT_SPREAD : VERDICT_USED;
-  const int32_t winding = v->resistance_q24 - p->device_resistance;
+  const int32_t winding = q_sub_sat(v->resistance_q24, p->device_resistance);
   const commissioning_verdict_t resistance = worst(worst(measured, straight), near(winding, p->stator_resistance, 3));
   offer(r, ID_stator_resistance, winding, resistance);
   const bool big_drop = q_abs_sat(v->drop_error_q16) > DROP_CHANGE_MAX_Q16;
   const commissioning_verdict_t drop = worst(worst(measured, quiet), big_drop ? VERDICT_NAMEPLATE : VERDICT_USED);
-  offer(r, ID_device_drop, p->device_drop + v->drop_error_q16, drop);
+  offer(r, ID_device_drop, q_add_sat(p->device_drop, v->drop_error_q16), drop);
   // Volts over the link are a share of the period of 100 us.
   const int32_t edge_q16 = q_mul_sat(q_div(v->edge_error_q16, v->link_q16, 16), 100L * 65536L, 16);
   const bool big_edge = q_abs_sat(edge_q16) > EDGE_CHANGE_MAX_Q16;
   const commissioning_verdict_t edge = worst(worst(resistance, drop), big_edge ? VERDICT_NAMEPLATE : VERDICT_USED);
-  offer(r, ID_turn_on_delay, p->turn_on_delay + edge_q16, edge);
+  offer(r, ID_turn_on_delay, q_add_sat(p->turn_on_delay, edge_q16), edge);
   return resistance;
 }
 
@@ -119,7 +119,7 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
     ldq_q20[k] = level[k].ldq_q20;
     below = measured;
   }
-  const bool smooth = map_smooth(ldq_q20, zero->lqq_q20 - zero->ldd_q20);
+  const bool smooth = map_smooth(ldq_q20, q_sub_sat(zero->lqq_q20, zero->ldd_q20));
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     level[k].ldq_q20 = ldq_q20[k];
     judge_level(&level[k], zero, k, unsaturated, r);
@@ -142,14 +142,15 @@ void commissioning_solve_motion(commissioning_t* c) {
 // Flux over inertia, from how far the torque trains moved the shaft, is a second way to the inertia.
 static int32_t inertia_from_trains(const commissioning_t* c, const spin_values_t* v) {
   const map_values_t top = map_solve(c->map.group[MAP_LEVELS - 1u], &c->model);
-  const int32_t moved_q24 = q_max(16777216L + top.share_q24, 1);
+  const int32_t moved_q24 = q_max(q_add_sat(16777216L, top.share_q24), 1);
   return q_div(v->inertia_up_q24 / 2 + v->inertia_down_q24 / 2, moved_q24, 24);
 }
 
 static void judge_spin(const commissioning_t* c, commissioning_verdict_t resistance, commissioning_report_t* r) {
   const parameters_t* const p = &parameters;
   const int32_t winding = (resistance == VERDICT_USED) ? r->list[0].value : p->stator_resistance;
-  const spin_values_t v = spin_solve(&c->spin, winding + p->device_resistance, c->model.ld_q30, c->model.pole_pairs);
+  const int32_t resistance_q24 = q_add_sat(winding, p->device_resistance);
+  const spin_values_t v = spin_solve(&c->spin, resistance_q24, c->model.ld_q30, c->model.pole_pairs);
   const commissioning_verdict_t measured = v.valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   commissioning_verdict_t flux = worst(measured, agree(v.flux_q28, v.flux_low_q28, 10));
   flux = worst(flux, (v.flux_q28 <= 0) ? VERDICT_NOT_PHYSICAL : near(v.flux_q28, p->magnet_flux, 2));
@@ -177,7 +178,8 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
   report->count = 0;
   const staircase_values_t stairs = staircase_solve(&c->staircase, &c->model);
   const map_values_t zero = unsaturated_solve(&c->unsaturated, &c->model);
-  const int32_t mismatch_q30 = c->mismatch_q30 + unsaturated_mismatch_q30(&c->unsaturated, &c->model);
+  const int32_t beyond_q30 = unsaturated_mismatch_q30(&c->unsaturated, &c->model);
+  const int32_t mismatch_q30 = q_add_sat(c->mismatch_q30, beyond_q30);
   const commissioning_verdict_t resistance = judge_staircase(&stairs, report);
   const commissioning_verdict_t unsaturated = judge_unsaturated(&zero, mismatch_q30, report);
   judge_map(c, &zero, unsaturated, report);

@@ -14,13 +14,17 @@ typedef struct {
   int32_t current[STAIRCASE_LEVELS], factor[STAIRCASE_LEVELS], voltage[STAIRCASE_LEVELS];
 } columns_t;
 
+static int32_t for_fit(int32_t x) { return q_limit(x, FIT_END); }
+
+static int32_t mean_of(int64_t sum, int32_t count) { return for_fit(fit_ratio(sum, count, 0)); }
+
 static bool command_columns(const staircase_t* s, columns_t* c) {
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const staircase_level_t* const l = &s->level[k];
     if (l->periods == 0) return false;
-    c->current[k] = fit_ratio(l->current, l->periods, 0);
-    c->factor[k] = fit_ratio(l->factor, l->periods, 0);
-    c->voltage[k] = fit_ratio(l->command, l->periods, 0);
+    c->current[k] = mean_of(l->current, l->periods);
+    c->factor[k] = mean_of(l->factor, l->periods);
+    c->voltage[k] = mean_of(l->command, l->periods);
   }
   return true;
 }
@@ -30,11 +34,12 @@ static bool window_columns(const staircase_t* s, const machine_model_t* m, int32
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const staircase_level_t* const l = &s->level[k];
     if (l->windows == 0) return false;
-    c->current[k] = fit_ratio(l->window_current, l->windows, 0);
-    c->factor[k] = fit_ratio(l->window_factor, l->windows, 0);
+    c->current[k] = mean_of(l->window_current, l->windows);
+    c->factor[k] = mean_of(l->window_factor, l->windows);
     const int32_t sag_q20 = fit_ratio(l->sag, l->windows, 0);
-    const int32_t missing_q20 = sag_q20 - q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30);
-    c->voltage[k] = missing_q20 - q_mul(resistance_q24 - m->rs_q24, c->current[k], 24);
+    const int32_t missing_q20 = q_sub_sat(sag_q20, q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
+    const int32_t known_q20 = q_mul_sat(q_sub_sat(resistance_q24, m->rs_q24), c->current[k], 24);
+    c->voltage[k] = for_fit(q_sub_sat(missing_q20, known_q20));
   }
   return true;
 }
@@ -50,11 +55,11 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
   if (!window_columns(s, m, v.resistance_q24, &c)) return v;
   const int64_t square = fit_dot(c.factor, c.factor, STAIRCASE_LEVELS);
   v.drop_error_q16 = fit_ratio(fit_dot(c.factor, c.voltage, STAIRCASE_LEVELS), square, 16);
-  v.edge_error_q16 = plane.offset_q24 / 256 - v.drop_error_q16;
+  v.edge_error_q16 = q_sub_sat(plane.offset_q24 / 256, v.drop_error_q16);
   int64_t link = 0;
   int64_t rest = 0;
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
-    const int32_t left = c.voltage[k] / 16 - q_mul(v.drop_error_q16, c.factor[k], 20);
+    const int32_t left = for_fit(q_sub_sat(c.voltage[k] / 16, q_mul_sat(v.drop_error_q16, c.factor[k], 20)));
     rest += (int64_t)left * left;
     link += s->level[k].link_q16;
   }
@@ -66,22 +71,25 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
 
 // Inductances from the admittances' mean and half difference and the direction of the larger one.
 static void invert(map_values_t* v, int32_t mean_q30, int32_t half_q30) {
-  const int32_t small = tensor_inductance_q20(mean_q30 + half_q30);
-  const int32_t large = tensor_inductance_q20(mean_q30 - half_q30);
+  const int32_t small = tensor_inductance_q20(q_add_sat(mean_q30, half_q30));
+  const int32_t large = tensor_inductance_q20(q_sub_sat(mean_q30, half_q30));
   const int32_t middle = small / 2 + large / 2;
-  const int32_t half = (large - small) / 2;
+  const int32_t half = q_sub_sat(large, small) / 2;
   const rotation_t twice = frame_rotation((uint32_t)v->turn_bam * 2u);
-  v->ldd_q20 = middle - q_mul(half, twice.cos_q30, 30);
-  v->lqq_q20 = middle + q_mul(half, twice.cos_q30, 30);
+  v->ldd_q20 = q_sub_sat(middle, q_mul(half, twice.cos_q30, 30));
+  v->lqq_q20 = q_add_sat(middle, q_mul(half, twice.cos_q30, 30));
   v->ldq_q20 = -q_mul(half, twice.sin_q30, 30);
 }
 
 // From `from` towards `to` by a share.
-static int32_t along(int32_t from, int32_t to, int32_t share_q24) { return from + q_mul_sat(to - from, share_q24, 24); }
+static int32_t along(int32_t from, int32_t to, int32_t share_q24) {
+  return q_add_sat(from, q_mul_sat(q_sub_sat(to, from), share_q24, 24));
+}
 
 void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20) {
   if (v->current_q20 <= below->current_q20) return;
-  const int32_t share_q24 = q_div(current_q20 - below->current_q20, v->current_q20 - below->current_q20, 24);
+  const int32_t between_q20 = q_sub_sat(v->current_q20, below->current_q20);
+  const int32_t share_q24 = q_div(q_sub_sat(current_q20, below->current_q20), between_q20, 24);
   v->ldd_q20 = along(below->ldd_q20, v->ldd_q20, share_q24);
   v->lqq_q20 = along(below->lqq_q20, v->lqq_q20, share_q24);
   v->ldq_q20 = along(below->ldq_q20, v->ldq_q20, share_q24);
@@ -101,13 +109,13 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
   int32_t cubic[MAP_LEVELS];
   int32_t value[MAP_LEVELS];
   int32_t largest = 0;
-  fit_plane_t fit;
+  fit_plane_t fit = {0, 0, 0};
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     // The higher a level, the larger the turn that was read: weights 1, 2, 3, 4. Currents as a share of the largest.
     const int32_t n = (int32_t)k + 1;
     linear[k] = n * n * (1048576L / 4);
     cubic[k] = n * n * n * n * (1048576L / 64);
-    value[k] = n * ldq_q20[k];
+    value[k] = n * q_limit(ldq_q20[k], FIT_END / (int32_t)MAP_LEVELS);
     largest = q_max(largest, q_abs_sat(ldq_q20[k]));
   }
   (void)fit_plane(linear, cubic, value, MAP_LEVELS, &fit);  // these two columns can be told apart
@@ -116,7 +124,7 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     const int32_t n = (int32_t)k + 1;
     value[k] = q_mul(fit.slope_q24, n * (1048576L / 4), 24) + q_mul(fit.offset_q24, n * n * n * (1048576L / 64), 24);
-    close = close && q_abs_sat(value[k] - ldq_q20[k]) <= far_q20;
+    close = close && q_abs_sat(q_sub_sat(value[k], ldq_q20[k])) <= far_q20;
   }
   for (uint16_t k = 0; close && k < MAP_LEVELS; k++) ldq_q20[k] = value[k];
   return close;
@@ -145,7 +153,7 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
   }
   // Groups 0 and 2 have i_q > 0, 1 and 3 i_q < 0; 2 and 3 are those of the mirrored train.
   const int32_t moved = (axis[0] - axis[2]) / 2 + (axis[1] - axis[3]) / 2;
-  const int32_t predicted = (position[0] - position[2]) / 2 + (position[1] - position[3]) / 2;
+  const int32_t predicted = q_sub_sat(position[0], position[2]) / 2 + q_sub_sat(position[1], position[3]) / 2;
   v.share_q24 = fit_ratio(moved, predicted, 24);
   v.turn_bam = (axis[0] - axis[1]) / 4 + (axis[2] - axis[3]) / 4;
   invert(&v, mean, half);
@@ -167,18 +175,22 @@ static steady_t steady(const spin_station_t* s, int32_t ld_q30) {
   return m;
 }
 
+static int32_t emf_q16(const steady_t* s, int32_t resistance_q24) {
+  return q_sub_sat(s->voltage_q16, q_mul_sat(resistance_q24, s->current_q20, 28));
+}
+
 static int32_t flux_q28(int32_t emf_q16, int32_t speed) { return fit_ratio(emf_q16 * BPP_PER_RAD_Q12, speed, 0); }
 
 // Inertia from a ramp between two steady speeds, friction taken off as it is at those speeds.
 static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const steady_t* high, int32_t change,
                            int32_t torque_constant_q24, int32_t pole_pairs) {
   const int32_t mean_speed = fit_ratio(r->speed, r->periods, 0);
-  const int32_t place_q24 = fit_ratio(mean_speed - low->speed, high->speed - low->speed, 24);
-  const int32_t friction_q20 = low->current_q20 + q_mul(high->current_q20 - low->current_q20, place_q24, 24);
-  const int32_t net_q20 = fit_ratio(r->current_q, r->periods, 0) - friction_q20;
-  const int32_t torque_q24 = q_mul(torque_constant_q24, net_q20, 20);
-  const int64_t impulse_q16 = q_shr64(q_product(torque_q24, r->periods) + 128, 8);  // N m periods
-  return fit_ratio(impulse_q16 * BPP_PER_ACCEL_Q16 * pole_pairs, change, -8);
+  const int32_t place_q24 = fit_ratio((int64_t)mean_speed - low->speed, (int64_t)high->speed - low->speed, 24);
+  const int32_t friction_q20 = along(low->current_q20, high->current_q20, place_q24);
+  const int32_t net_q20 = q_sub_sat(fit_ratio(r->current_q, r->periods, 0), friction_q20);
+  const int32_t torque_q24 = q_mul_sat(torque_constant_q24, net_q20, 20);
+  const int32_t impulse_q10 = q_mul_sat(torque_q24, r->periods, 14);  // N m periods
+  return fit_ratio(impulse_q10 * BPP_PER_ACCEL_Q16 * pole_pairs, change, -2);
 }
 
 spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30, int32_t pole_pairs) {
@@ -189,17 +201,18 @@ spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30
   const steady_t low = steady(&s->station[0], ld_q30);
   const steady_t high = steady(&s->station[1], ld_q30);
   const steady_t end = steady(&s->station[2], ld_q30);
-  const int32_t change = high.speed - low.speed;
+  const int32_t change = q_sub_sat(high.speed, low.speed);
   if (change <= 0 || s->ramp[0].periods == 0 || s->ramp[1].periods == 0) return v;
-  const int32_t current_q20 = high.current_q20 - low.current_q20;
-  const int32_t resistive_q16 = q_mul(resistance_q24, current_q20, 28);
-  v.flux_q28 = flux_q28(high.voltage_q16 - low.voltage_q16 - resistive_q16, change);
-  v.flux_low_q28 = flux_q28(low.voltage_q16 - q_mul(resistance_q24, low.current_q20, 28), low.speed);
-  const int32_t torque_constant_q24 = 3 * pole_pairs * (v.flux_q28 / 16) / 2;
-  const int32_t torque_q20 = q_mul(torque_constant_q24, current_q20, 24);
+  const int32_t current_q20 = q_sub_sat(high.current_q20, low.current_q20);
+  const int32_t low_emf_q16 = emf_q16(&low, resistance_q24);
+  v.flux_q28 = flux_q28(q_sub_sat(emf_q16(&high, resistance_q24), low_emf_q16), change);
+  v.flux_low_q28 = flux_q28(low_emf_q16, low.speed);
+  const int32_t torque_constant_q24 = q_mul_sat(v.flux_q28 / 16, 3 * pole_pairs, 1);
+  const int32_t torque_q20 = q_mul_sat(torque_constant_q24, current_q20, 24);
   v.friction_q24 = fit_ratio(torque_q20 * BPP_PER_RAD_Q4 * pole_pairs, change, 0);
   v.inertia_up_q24 = inertia_q24(&s->ramp[0], &low, &high, change, torque_constant_q24, pole_pairs);
-  v.inertia_down_q24 = inertia_q24(&s->ramp[1], &end, &high, end.speed - high.speed, torque_constant_q24, pole_pairs);
+  v.inertia_down_q24 =
+      inertia_q24(&s->ramp[1], &end, &high, q_sub_sat(end.speed, high.speed), torque_constant_q24, pole_pairs);
   v.valid = true;
   return v;
 }

@@ -4,7 +4,7 @@
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
 
-#define HEAD 2u  // type and tag
+#define STATUS_AT 2u  // behind type and tag
 #define IDENTITY_WORDS 10u
 #define ENTRY_WORDS 2u
 
@@ -28,7 +28,7 @@ static uint16_t erase(octet_reader_t* r) {
 }
 
 static uint16_t write(octet_reader_t* r) {
-  uint16_t words[KERNEL_WORDS_MAX];
+  static uint16_t words[KERNEL_WORDS_MAX];
   const uint32_t address = take_u32(r);
   const uint16_t count = octets_left(r) / 2u;
   if (count == 0u || count > KERNEL_WORDS_MAX) return KERNEL_LENGTH;
@@ -72,12 +72,13 @@ static uint16_t carry_out(uint16_t type, octet_reader_t* r, octet_writer_t* w) {
 
 uint16_t kernel_answer(const uint16_t* request, uint16_t count, uint16_t* answer) {
   octet_writer_t w = octet_writer(answer, RECORD_MAX - 2u);
-  octet_reader_t r = octet_reader(&request[HEAD], (uint16_t)(count - HEAD));
-  put_u8(&w, (uint16_t)(request[0] | RECORD_ANSWER));
-  put_u8(&w, request[1]);
+  octet_reader_t r = octet_reader(request, count);
+  const uint16_t type = take_u8(&r);
+  put_u8(&w, type | RECORD_ANSWER);
+  put_u8(&w, take_u8(&r));
   put_u8(&w, KERNEL_OK);
-  const uint16_t status = carry_out(request[0], &r, &w);
-  answer[HEAD] = status;
+  const uint16_t status = carry_out(type, &r, &w);
+  answer[STATUS_AT] = status;
   if (status == KERNEL_FLASH) {
     put_u16(&w, update_failed_code());
     put_u32(&w, update_failed_at());

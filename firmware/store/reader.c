@@ -17,7 +17,8 @@ static slot_header_t header;
 const slot_header_t* reader_header(void) { return &header; }
 
 uint16_t reader_progress(void) {
-  return (position <= SLOT_HEADER) ? 0u : (uint16_t)(100uL * position / (SLOT_HEADER + header.length + SLOT_CHECK));
+  const uint32_t all = (uint32_t)header.length + SLOT_HEADER + SLOT_CHECK;
+  return (position <= SLOT_HEADER) ? 0u : (uint16_t)(100uL * position / all);
 }
 
 static void read_on(uint16_t octets) {
@@ -34,7 +35,7 @@ void reader_begin(uint16_t slot) {
 }
 
 static void take(uint16_t octets) {
-  for (uint16_t end = (uint16_t)(used + octets); used < end; used++) crc = crc32_add(crc, chunk[used]);
+  for (uint16_t k = 0; k < octets; k++) crc = crc32_add(crc, chunk[used + k]);
 }
 
 // What has come is the header.
@@ -42,9 +43,10 @@ static reader_result_t take_header(void) {
   header = slot_unpack_header(chunk);
   used = SLOT_MAGIC_OCTETS;
   take(SLOT_HEADER - SLOT_MAGIC_OCTETS);
+  used = SLOT_HEADER;
   if (header.length > SLOT_LENGTH_MAX) return READER_BAD;
   // Entries of another version are another version's business, but its check is not.
-  if (header.version == SLOT_VERSION && header.length != header.count * SLOT_ENTRY) return READER_BAD;
+  if (header.version == SLOT_VERSION && header.length != (uint32_t)header.count * SLOT_ENTRY) return READER_BAD;
   return READER_WAITS;
 }
 
@@ -62,6 +64,7 @@ reader_result_t reader_step(slot_entry_t* entry) {
     const uint16_t octets = (uint16_t)q_min(SLOT_ENTRY, held - used);
     *entry = slot_unpack_entry(chunk + used);
     take(octets);
+    used = (uint16_t)(used + SLOT_ENTRY);  // the last one may be shorter: then that is all as well
     return (header.version == SLOT_VERSION) ? READER_ENTRY : READER_WAITS;
   }
   if (!reading && position == 0u) return READER_FAILED;  // the memory was busy

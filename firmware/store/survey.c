@@ -84,12 +84,13 @@ static survey_result_t conclude(void) {
 
 // The newest slot that has not been checked yet.
 static survey_result_t check_next(void) {
-  slot = SLOTS;
+  uint16_t newest = SLOTS;
   for (uint16_t k = 0; k < SLOTS; k++) {
     if (!candidate[k]) continue;
-    if (slot == SLOTS || slot_is_newer(headers[k].sequence, headers[slot].sequence)) slot = k;
+    if (newest == SLOTS || slot_is_newer(headers[k].sequence, headers[newest].sequence)) newest = k;
   }
-  if (slot == SLOTS) return conclude();
+  if (newest == SLOTS) return conclude();
+  slot = newest;
   candidate[slot] = false;
   stage = CHECK_SLOT;
   reads = 0;

@@ -42,10 +42,10 @@ void values_copy(void) {
 
 bool values_know(uint16_t id) { return find(id) < parameter_count(); }
 
-// raw with `from` fractional bits as one with `to`; exact halves upward.
-static int64_t rescaled(int32_t raw, uint16_t from, uint16_t to) {
-  if (to >= from) return (int64_t)raw * (int64_t)(1uLL << (to - from));
-  const uint16_t down = (uint16_t)(from - to);
+// raw with so many fractional bits more, or fewer; exact halves upward.
+static int64_t rescaled(int32_t raw, int16_t more) {
+  if (more >= 0) return (int64_t)raw * (int64_t)(1uLL << more);
+  const unsigned down = (unsigned)-more;
   return q_shr64(raw + (int64_t)(1uLL << (down - 1u)), down);
 }
 
@@ -54,14 +54,15 @@ value_fate_t values_put(const slot_entry_t* entry) {
   if (index >= parameter_count()) return VALUE_UNKNOWN;
   const parameter_info_t* const info = parameter_info(index);
   if (entry->q > Q_MAX) return VALUE_REFUSED;
-  int64_t raw = rescaled(entry->raw, entry->q, info->q);
+  const int16_t more = (int16_t)((int16_t)info->q - (int16_t)entry->q);
+  int64_t raw = rescaled(entry->raw, more);
   // A limit in the coarser of two formats may be one step beyond that in the finer one.
-  int64_t slack = (entry->q == info->q) ? 0 : 1;
-  if (info->q > entry->q) slack = (int64_t)(1uLL << (info->q - entry->q));
+  int64_t slack = (more == 0) ? 0 : 1;
+  if (more > 0) slack = (int64_t)(1uLL << more);
   if (raw < info->minimum - slack || raw > info->maximum + slack) return VALUE_REFUSED;
   raw = (raw < info->minimum) ? info->minimum : raw;
   *value(&set, index) = (raw > info->maximum) ? info->maximum : (int32_t)raw;
-  return (entry->q == info->q) ? VALUE_TAKEN : VALUE_RESCALED;
+  return (more == 0) ? VALUE_TAKEN : VALUE_RESCALED;
 }
 
 slot_entry_t values_entry(uint16_t index) {

@@ -39,7 +39,8 @@ store_report_t writer_report(void) {
 }
 
 static void put(uint16_t octets) {
-  for (uint16_t end = (uint16_t)(filled + octets); filled < end; filled++) crc = crc32_add(crc, page[filled]);
+  for (uint16_t k = 0; k < octets; k++) crc = crc32_add(crc, page[filled + k]);
+  filled = (uint16_t)(filled + octets);
 }
 
 bool writer_begin(const store_report_t* so_far) {
@@ -87,7 +88,7 @@ static writer_result_t copy_unknown(void) {
 }
 
 static writer_result_t compose(void) {
-  if (complete || filled == HAL_NVM_PAGE) {
+  if (complete || filled > HAL_NVM_PAGE - SLOT_ENTRY) {
     stage = WRITE_PAGE;
     const uint16_t address = (uint16_t)(new_slot * SLOT_SIZE + written);
     return hal_nvm_write(address, page, filled) ? WRITER_GOES_ON : WRITER_FAILED;

@@ -204,6 +204,15 @@ TEST(CommissioningSpin, LargeAndSmallInertias) {
   }
 }
 
+// More than the flux may be, which is judged behind it.
+TEST(CommissioningSpin, AMagnetTooStrongHasATorqueConstant) {
+  const spin_t s = spun(2.5, 0.02, 0.003, 0.387, 20);
+  const spin_values_t v = spin_solve(&s, raw(0.387, 24), raw(0.0049, 30), 20);
+  EXPECT_NEAR(real(v.flux_q28, 28), 2.5, 1e-4);
+  EXPECT_NEAR(real(v.inertia_up_q24, 24), 0.02, 2e-5);
+  EXPECT_NEAR(real(v.inertia_down_q24, 24), 0.02, 2e-5);
+}
+
 TEST(CommissioningSpin, BothRampsAreNeeded) {
   for (int k = 0; k < 2; ++k) {
     spin_t s = spun(0.1552, 0.00546, 0.003, 0.387);

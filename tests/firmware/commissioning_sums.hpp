@@ -73,10 +73,9 @@ inline staircase_t climbed(const machine_model_t& m, double resistance, double d
 }
 
 /// Sums of a spin of a machine with these values, between two speeds in rad/s (mechanical).
-inline spin_t spun(double flux, double inertia, double friction, double resistance) {
-  constexpr int kPairs = 4;
-  const double bpp = 4294967296.0 * kPeriod * kPairs / (2.0 * kPi);  // per rad/s mechanical
-  const double kt = 1.5 * kPairs * flux, offset = 0.3;
+inline spin_t spun(double flux, double inertia, double friction, double resistance, int pairs = 4) {
+  const double bpp = 4294967296.0 * kPeriod * pairs / (2.0 * kPi);  // per rad/s mechanical
+  const double kt = 1.5 * pairs * flux, offset = 0.3;
   const double speed[3] = {20.0, 60.0, 20.0};
   spin_t s{};
   for (int k = 0; k < 3; ++k) {
@@ -84,7 +83,7 @@ inline spin_t spun(double flux, double inertia, double friction, double resistan
     s.station[k].periods = 5000;
     s.station[k].speed = 5000LL * std::llround(speed[k] * bpp);
     s.station[k].current_q = 5000LL * raw(current, 20);
-    s.station[k].voltage_q = 5000LL * raw(flux * kPairs * speed[k] + resistance * current + offset, 16);
+    s.station[k].voltage_q = 5000LL * raw(flux * pairs * speed[k] + resistance * current + offset, 16);
   }
   for (int k = 0; k < 2; ++k) {
     const double change = speed[k + 1] - speed[k];

@@ -130,9 +130,9 @@ static void fit(uint16_t n) {
   int32_t y[FIT_POINTS];
   fit_plane_t out;
   for (uint16_t k = 0; k < FIT_POINTS; k++) {
-    x[k] = any_from(-268435456L, 268435456L);
-    f[k] = any_from(-268435456L, 268435456L);
-    y[k] = any_from(-268435456L, 268435456L);
+    x[k] = any_from(-FIT_END, FIT_END);
+    f[k] = any_from(-FIT_END, FIT_END);
+    y[k] = any_from(-FIT_END, FIT_END);
   }
   (void)fit_plane(x, f, y, n, &out);
 }

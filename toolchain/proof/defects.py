@@ -149,6 +149,17 @@ DEFECTS = (
         "framing", "splitter_octet", "firmware/link/splitter.c", "<= RECORD_ENCODED_MAX)", "<= RECORD_ENCODED_MAX + 1u)"
     ),
     Defect("framing", "take", "firmware/can/segments.c", "j->count >= RECORD_MAX", "j->count > RECORD_MAX"),
+    Defect("store", "take_header", "firmware/store/survey.c", "slot + 1u == SLOTS", "slot == SLOTS"),
+    Defect("kernel", "write", "firmware/flash_kernel/requests.c", "> KERNEL_WORDS_MAX", "> 2u * KERNEL_WORDS_MAX"),
+    Defect(
+        "selftest",
+        "hal_selftest_ram",
+        "firmware/board/selftest.c",
+        "selftest.pair < HAL_SELFTEST_PAIRS &&",
+        "selftest.pair <= HAL_SELFTEST_PAIRS &&",
+    ),
+    Defect("results", "agree", "firmware/commissioning/result.c", "q_sub_sat(a, b)", "a - b"),
+    Defect("chip", "keep", "hal/f2808/sci.c", "in % HAL_SCI_RECEIVE_RING]", "in % (HAL_SCI_RECEIVE_RING + 1u)]"),
     Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
     Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),
     Defect("contracts", "q15_sat", "hal/qmath/qarith.h", "q_clamp(x, INT16_MIN, ", "q_clamp(x, -INT16_MAX, "),

@@ -10,6 +10,7 @@ LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ran
 ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
 ESTIMATORS_RANGES, START_RANGES = "tests/prove/estimators_ranges.h", "tests/prove/start_ranges.h"
+RESULTS_RANGES = "tests/prove/results_ranges.h"
 FLOORS = (CONTROL_RANGES, MODULATOR_RANGES, ESTIMATORS_RANGES, START_RANGES)
 
 
@@ -75,6 +76,24 @@ BESIDE = (
     *("firmware/link/guard.c", "firmware/link/stream.c", *TEXTS),
 )
 TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
+
+STORE = ("tests/prove/store.c", "firmware/store/*.c", "firmware/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c")
+KERNEL = (
+    *("tests/prove/kernel.c", "firmware/flash_kernel/*.c", "firmware/link/splitter.c", RECORD, OCTETS, CRC),
+    "hal/qmath/qdiv.c",
+)
+SELFTEST = (
+    *("tests/prove/selftest.c", "firmware/board/selftest.c", "firmware/board/flash_sum.c", "firmware/clear.c"),
+    *("firmware/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c"),
+)
+
+RESULTS = (
+    *("tests/prove/results.c", "firmware/commissioning/solve.c", "firmware/commissioning/result.c"),
+    *("firmware/parameters.c", "estimators/admittance_tensor.c", "estimators/fit.c", *CONTROL),
+)
+
+DRIVERS = "adc", "clock", "encoder", "gpio", "irq", "lines", "pwm", "safety", "sci", "slices", "timer", "watchdog"
+CHIP = ("tests/prove/chip.c", "hal/qmath/qdiv.c", *(f"hal/f2808/{name}.c" for name in DRIVERS))
 
 # All that the control interrupt runs but what speaks to the chip; and what of that is read by itself.
 INTERRUPT = (
@@ -266,6 +285,18 @@ PARTS = (
     ),
     of_link("blocks", FRAMES, ("-eva-auto-loop-unroll", "300")),
     of_link("framing", FRAMES, APART, OF_BLOCKS),
+    of_link("store", STORE, READER, OF_QMATH),
+    of_link("kernel", KERNEL, ROUNDS, *(OF_QMATH, OF_RECORDS)),
+    of_link("selftest", SELFTEST, ("-eva-auto-loop-unroll", "16", "-eva-slevel", "20"), *(OF_QMATH, OF_WRITING)),
+    eva(
+        "results",
+        RESULTS,
+        ("-eva-auto-loop-unroll", "140", "-eva-slevel", "20", "-eva-split-return", "full"),
+        f"{OF_QMATH},fit_ratio",
+        headers=(RESULTS_RANGES,),
+    ),
+    # What is volatile has any bits, also where it is a truth value.
+    of_link("chip", CHIP, ("-eva-auto-loop-unroll", "140", "-no-warn-invalid-bool"), OF_QMATH),
     *(
         wp(name, ("hal/qmath/qdiv.c",), ("-wp-timeout", "20"), proved, (BITS, CONTRACTS, *more))
         for name, proved, more in (
