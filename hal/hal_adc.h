@@ -4,9 +4,9 @@
 // (DC link, auxiliary). hal_pwm_frame_t says when the bursts start; the window interrupt (hal_irq.h) comes when the
 // last one is complete. Sums, not means, are handed over: the division is left to the user, who knows the scale.
 //
-// Codes are 12 bits, 0..4095. On silicon before revision C the second channel of a pair reads high by 1/256 of the first
-// one's code (SPRZ171); what is handed over is without it.
-// The first pair after power-up or a long pause may be wrong: run one window and discard it before measuring offsets.
+// Codes are 12 bits, 0..4095. On silicon before revision C the second channel of a pair reads high by 1/256 of the
+// first one's code (SPRZ171); what is handed over is without it. The first pair after power-up or a long pause may be
+// wrong: run one window and discard it before measuring offsets.
 //
 // Times, from the trigger, in ticks of 10 ns at ADCCLK = 12.5 MHz (8 ticks): sampling starts after 2.5 ADCCLK, holds
 // 1 ADCCLK later, and pairs follow each other every 3 ADCCLK.

@@ -103,24 +103,19 @@ void adc_sequence_slices(void) {
   adc_rearm();
 }
 
-// What the second channel of a pair, or a sum of it, has of its own.
-static inline uint16_t less_crosstalk(uint16_t first, uint16_t second) {
-  const uint16_t share = (uint16_t)(first >> 8);
-  return (share < second) ? (uint16_t)(second - share) : 0u;
-}
-
-TARGET_RAM_CODE uint16_t adc_slice_result(uint16_t n) {
-  const uint16_t result = target_read16(RESULT(SEQ2_FIRST_RESULT + n));
-  if (!has_crosstalk || (n & 1u) == 0u) {
-    return result;
-  }
-  return less_crosstalk(target_read16(RESULT(SEQ2_FIRST_RESULT + n - 1u)), result);
-}
-
 // A pair is read as one 32-bit word, which peripheral frame 0 allows: A in its lower half, B in its upper one. Up to 16
 // pairs add up without a carry from one half into the other. Written out, without a loop: this interrupt comes up to
 // three times a period.
 static inline uint32_t pair(uint16_t first_result) { return target_read32(RESULT(first_result)); }
+
+// A pair, or a sum of pairs, of which the second channel has its own alone.
+static inline uint32_t less_crosstalk(uint32_t both) {
+  const uint32_t share = (both & 0xFF00uL) << 8;
+  if (!has_crosstalk) {
+    return both;
+  }
+  return (both >= share) ? both - share : both & 0xFFFFuL;
+}
 
 static inline uint32_t sum_of_end(uint16_t first_result) {
   uint32_t sum = pair(first_result);
@@ -133,23 +128,23 @@ static inline uint32_t sum_of_start(uint16_t first_result) {
   return three + pair((uint16_t)(first_result + 6u));
 }
 
+TARGET_RAM_CODE uint16_t adc_slice_result(uint16_t n) {
+  const uint32_t both = less_crosstalk(pair(SEQ2_FIRST_RESULT + (n & 2u)));
+  return (uint16_t)(((n & 1u) == 0u) ? both : both >> 16);
+}
+
 typedef char sums_have_as_many_terms_as_bursts[(HAL_ADC_START_SAMPLES == 4u && HAL_ADC_END_SAMPLES == 3u) ? 1 : -1];
 
 static inline void take_results(hal_adc_window_t* window) {
-  const uint32_t start = sum_of_start(0u);
-  const uint32_t end = sum_of_end(SEQ2_FIRST_RESULT);
-  const uint32_t slow = pair(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES);
+  const uint32_t start = less_crosstalk(sum_of_start(0u));
+  const uint32_t end = less_crosstalk(sum_of_end(SEQ2_FIRST_RESULT));
+  const uint32_t slow = less_crosstalk(pair(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES));
   window->start_a = (uint16_t)(start & 0xFFFFuL);
   window->start_b = (uint16_t)(start >> 16);
   window->end_a = (uint16_t)(end & 0xFFFFuL);
   window->end_b = (uint16_t)(end >> 16);
   window->link = (uint16_t)(slow & 0xFFFFuL);
   window->aux = (uint16_t)(slow >> 16);
-  if (has_crosstalk) {
-    window->start_b = less_crosstalk(window->start_a, window->start_b);
-    window->end_b = less_crosstalk(window->end_a, window->end_b);
-    window->aux = less_crosstalk(window->link, window->aux);
-  }
   rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
