@@ -15,9 +15,8 @@ namespace {
 
 constexpr Tick kReady = 60 * kMillisecond;  // clock, offsets
 constexpr Tick kWatchdog = 100 * Tick{HAL_WATCHDOG_PERIOD_US + 1};
-constexpr Tick kNext = kPeriod;  // the program fails at its next step, at most a period later
-constexpr Tick kServed =
-    11 * kPeriod;  // served once more for the last control interrupt, a millisecond after the time before
+constexpr Tick kNext = kPeriod;               // the program fails at its next step, at most a period later
+constexpr Tick kServed = 11 * kPeriod;        // served once more for the last control interrupt, a millisecond later
 constexpr Tick kFaultAt = 50 * kMillisecond;  // of a plan, from RUN on
 
 class Failing : public ::testing::Test {
@@ -65,6 +64,12 @@ class Failing : public ::testing::Test {
 
   void advance_to(Tick t) { desk->advance(t - desk->now()); }
 
+  // Since when the program has failed.
+  Tick fail(chip::Failure how) {
+    desk->fail(how);
+    return desk->now();
+  }
+
   // One reset so far. No device has been on since `by`, through the reset, until somebody starts the drive.
   void expect_off_until_a_start(Tick by) {
     EXPECT_EQ(resets(), 1u);
@@ -84,8 +89,7 @@ class Failing : public ::testing::Test {
 // The control interrupt goes on with all its protection: the gates are in good hands until the reset.
 TEST_F(Failing, ABackgroundLevelThatHangsEndsInAReset) {
   turn();
-  const Tick failed = desk->now();
-  desk->fail(chip::Failure::kBackgroundHangs);
+  const Tick failed = fail(chip::Failure::kBackgroundHangs);
   desk->advance(24 * kMillisecond);
   EXPECT_EQ(resets(), 0u);
   EXPECT_EQ(drive_state(), DRIVE_RUN);
@@ -100,9 +104,8 @@ TEST_F(Failing, AnInterruptThatDoesNotReturnLosesTheGateEnable) {
   for (const Tick phase : {0, 1'500, 3'100, 4'700, 6'300, 7'900}) {
     turn();
     desk->advance(phase);
-    const Tick failed = desk->now(),
-               off_by = failed + kNext + kEnableTimeout + kPeriod;  // the board looks once a period
-    desk->fail(chip::Failure::kInterruptHangs);
+    const Tick failed = fail(chip::Failure::kInterruptHangs);
+    const Tick off_by = failed + kNext + kEnableTimeout + kPeriod;  // the board looks once a period
     advance_to(off_by);
     EXPECT_LE(pins().enable_toggled(), failed + kNext) << phase;
     EXPECT_FALSE(pins().any_device_on()) << phase;
@@ -145,8 +148,7 @@ TEST_F(Failing, AControlInterruptThatNeverComesAgainMeansResetsWithoutEnd) {
 
 TEST_F(Failing, AnIllegalInstructionTripsTheGatesAtOnce) {
   turn();
-  const Tick failed = desk->now();
-  desk->fail(chip::Failure::kIllegalInstruction);
+  const Tick failed = fail(chip::Failure::kIllegalInstruction);
   desk->advance(kMillisecond);
   EXPECT_FALSE(pins().any_device_on());
   EXPECT_LE(pins().devices_off_since(), failed + kNext);
@@ -176,8 +178,7 @@ TEST_F(Failing, ARunSwitchThatIsStillClosedStartsNothingAfterTheReset) {
   desk->set_input("speed", 1.5);
   desk->set_input("run", 1.0);
   wait_for_run();
-  const Tick failed = desk->now();
-  desk->fail(chip::Failure::kBackgroundHangs);
+  const Tick failed = fail(chip::Failure::kBackgroundHangs);
   desk->advance(1000 * kMillisecond);
   EXPECT_EQ(resets(), 1u);
   EXPECT_EQ(drive_state(), DRIVE_READY);
