@@ -109,12 +109,14 @@ void board_service(void) {
 }
 
 drive_fault_t board_refusal(void) {
+  if (hal_irq_unexpected_count() != 0u) return FAULT_INTERRUPT;
   if (selftest.failed != 0u) return FAULT_SELF_TEST;
   if (parameters.precharge_voltage != 0 && !board.relay) return FAULT_PRECHARGE;
   return watch_emergency();
 }
 
 drive_fault_t board_why_off(void) {
+  if (hal_irq_unexpected_count() != 0u) return FAULT_INTERRUPT;  // which has switched them off
   const drive_fault_t fault = watch_emergency();
   return fault == FAULT_NONE ? FAULT_GATES_OFF : fault;
 }

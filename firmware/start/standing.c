@@ -6,7 +6,6 @@
 #include "firmware/parameters.h"
 #include "firmware/position.h"
 #include "firmware/start/start.h"
-#include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 
 #define AXIS_SKIP 4u         // periods for the alternating layout to be what is sampled
@@ -54,7 +53,7 @@ static void reset_control(drive_t* d) {
 }
 
 void drive_begin_start(drive_t* d) {
-  if (!d->config_valid || !d->control.speed_ready || hal_irq_unexpected_count() != 0u) {
+  if (!d->config_valid || !d->control.speed_ready) {
     drive_raise(d, FAULT_PARAMETER);
     return;
   }

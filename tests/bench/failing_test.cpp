@@ -153,7 +153,7 @@ TEST_F(Failing, AnIllegalInstructionTripsTheGatesAtOnce) {
   EXPECT_FALSE(pins().any_device_on());
   EXPECT_LE(pins().devices_off_since(), failed + kNext);
   EXPECT_EQ(drive_state(), DRIVE_FAULT) << "the control interrupt lives";
-  EXPECT_EQ(drive_signals().fault, FAULT_GATES_OFF);
+  EXPECT_EQ(drive_signals().fault, FAULT_INTERRUPT);
   EXPECT_EQ(resets(), 0u);
   advance_to(failed + kNext + kWatchdog);
   expect_off_until_a_start(failed + kNext);

@@ -34,7 +34,7 @@ TEST_F(StartRefused, WithASpeedControlThatCouldNotBeSetUp) {
 
 TEST_F(StartRefused, AfterAnInterruptThatNobodyExpected) {
   board.unexpected_interrupts = 1;
-  expect_refused(FAULT_PARAMETER);
+  expect_refused(FAULT_INTERRUPT);
 }
 
 TEST_F(StartRefused, WhileTheLinkIsNotCharged) {
