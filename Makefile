@@ -64,6 +64,7 @@ image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: 
 	{ grep -A 30 -m 1 FAILED build/image-check.log; exit 1; }
 	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
 	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
+	@echo; echo "lamp:"; cat build/image-check/hal/f2808/image/stillspin_lamp.map
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm

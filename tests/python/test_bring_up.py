@@ -1,4 +1,4 @@
-"""The bring-up guide: its commands exist, and every stage's block is run on the virtual board that the stage names."""
+"""The bring-up guide: its commands exist, and every stage's block (stage 0 has none) is run on the virtual board that the stage names."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ pytest.importorskip("stillspin._core", reason="the native module is not built")
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "bring-up.md").read_text(encoding="utf-8")
-STAGES = dict(re.findall(r"^## (Stage \d): [^\n]*\n(.*?)(?=^## |\Z)", GUIDE, re.MULTILINE | re.DOTALL))
+STAGES = dict(re.findall(r"^## (Stage [1-9]): [^\n]*\n(.*?)(?=^## |\Z)", GUIDE, re.MULTILINE | re.DOTALL))
 LIST = (ROOT / "firmware/console/command_list.h").read_text(encoding="utf-8")
 COMMANDS = set(re.findall(r"^COMMAND\((\w+),", LIST, re.MULTILINE))
 PATIENCE = 700  # ms for the answer to a line

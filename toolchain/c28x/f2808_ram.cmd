@@ -1,6 +1,6 @@
-/* A program in the RAM of a TMS320F2808, loaded over JTAG or by the boot ROM's serial loader: for parts of the drive and
-   for tests on the bench. The whole drive does not fit. Nothing is placed below 0x480, where the boot ROM works while
-   it loads, except the stack and the entry. Blocks: toolchain/f2808/memory.csv. */
+/* A program in the RAM of a TMS320F2808, loaded over JTAG or by the boot ROM's serial loader: the lamp (firmware/lamp),
+   and parts of the drive for tests on the bench. The whole drive does not fit. Nothing is placed below 0x480, where the
+   boot ROM works while it loads, except the stack and the entry. Blocks: toolchain/f2808/memory.csv. */
 
 --stack_size=0x3C0
 

@@ -24,6 +24,7 @@ DRIVERS = ROOT / "hal" / "f2808"
 RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR|Flash2808_\w+|Flash_\w+")
 KERNEL = "flash_kernel_main"
 RESIDENT = "resident"  # the section that stays in sector A
+SECTOR_A = "RESIDENT"  # its range, which the drive's image has
 NO_CODE = "no code for the C28x: see the map beside this file\n"  # all that the linked file holds
 FLASH_LIBRARY_WORDS = 1600  # room for TI's flash library in the kernel; a guess
 
@@ -128,7 +129,7 @@ def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Dep
         "code": words.get(".text", 0),
         "flash": flash,
         "resident": resident,
-        "update": flash - min(resident, file.ranges["RESIDENT"].length),
+        "update": flash - min(resident, file.ranges[SECTOR_A].length),
         "stack": depth.total,
     }
 
@@ -141,16 +142,18 @@ def link(arguments: list[str]) -> int:
     pile = Pile(path for path in paths if path.suffix != ".cmd")
     missing = sorted(n for n in pile.missing() - file.symbols if not RUN_TIME.fullmatch(n))
     words = pile.words(file)
-    if any(KERNEL in obj.defined for obj in pile.objects):
-        depth = stack_depth(pile.objects, ("main",))
-        words[".text"] += FLASH_LIBRARY_WORDS
-        fill, unfit = place(words, file)
-        rows, grown = [f"| stack | {depth.total} | {file.stack_words} | |"], unfit
-    else:
+    if SECTOR_A in file.ranges:
         depth = stack_depth(pile.objects)
         fill, unfit = place(words, file)
         rows, grown = budgets(figures_of(pile, words, file, depth))
         grown += unresident(pile.objects, file, RESIDENT) + left_in_flash(pile.objects, marked(DRIVERS))
+    else:  # a program in RAM
+        depth = stack_depth(pile.objects, ("main",))
+        words[".text"] += FLASH_LIBRARY_WORDS * any(KERNEL in obj.defined for obj in pile.objects)
+        fill, unfit = place(words, file)
+        rows, grown = [f"| stack | {depth.total} | {file.stack_words} | |"], unfit
+        if depth.total > file.stack_words:
+            grown = [*unfit, f"the stack takes {depth.total} words and has {file.stack_words}"]
     lines = [
         "| estimated words | now | goal | |",
         "|---|---|---|---|",
@@ -160,7 +163,7 @@ def link(arguments: list[str]) -> int:
         "|---|---|---|",
     ]
     lines += [f"| {name} | {used} | {file.ranges[name].length} |" for name, used in fill.items()]
-    code, sectors = pile.words().get(".text", 0), ("APP", "RESIDENT")
+    code, sectors = pile.words().get(".text", 0), ("APP", SECTOR_A)
     if set(sectors) <= set(fill):
         free = sum(file.ranges[name].length - fill[name] for name in sectors)
         lines += ["", f"the chip is full when code takes {(code + free) / code:.2f} words for a half word of Thumb-2"]

@@ -3,7 +3,7 @@ find_package(Python COMPONENTS Interpreter REQUIRED)
 file(GLOB_RECURSE drive_sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
   ${PROJECT_SOURCE_DIR}/hal/*.c ${PROJECT_SOURCE_DIR}/control/*.c ${PROJECT_SOURCE_DIR}/svpwm/*.c
   ${PROJECT_SOURCE_DIR}/estimators/*.c ${PROJECT_SOURCE_DIR}/firmware/*.c)
-list(FILTER drive_sources EXCLUDE REGEX "/image/|/flash_kernel/|/flash\\.c$")  # other programs, and what only they use
+list(FILTER drive_sources EXCLUDE REGEX "/image/|/flash_kernel/|/lamp/|/flash\\.c$")  # other programs, and what only they use
 file(GLOB_RECURSE drive_headers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/hal/*.h ${PROJECT_SOURCE_DIR}/control/*.h ${PROJECT_SOURCE_DIR}/svpwm/*.h
   ${PROJECT_SOURCE_DIR}/estimators/*.h ${PROJECT_SOURCE_DIR}/firmware/*.h)
