@@ -99,7 +99,7 @@ static void put_pair_first(svpwm_pulses_t* p, const lengths_t* l);
 /*@ requires \valid(p) && lengths(l) && \separated(p, l); assigns *p; ensures in_room(p) && WRITTEN(p); */
 static void put_pair_last(svpwm_pulses_t* p, const lengths_t* l);
 
-/*@ requires GIVEN(t) && x <= 2 && IS_PULSE(pulse_ticks);
+/*@ requires GIVEN(t) && (x == t->hi || x == t->mid || x == t->lo) && IS_PULSE(pulse_ticks);
     requires FITS(t, pulse_ticks); assigns \nothing;
     ensures legs_of(\result.x, \result.longer, \result.shorter) && \result.x == x;
     ensures 1 <= \result.on_x <= LONGEST && 1 <= \result.on_longer <= LONGEST && 1 <= \result.on_shorter <= LONGEST; */

@@ -8,6 +8,7 @@
 #include "hal/hal_flash.h"
 #include "hal/hal_lines.h"
 #include "hal/hal_selftest.h"
+#include "hal/hal_time.h"
 #include "tests/prove/any_parameters.h"
 
 drive_t drive;
@@ -17,6 +18,7 @@ void drive_parameters_changed(void) {}
 
 bool hal_lines_gates_pass(void) { return any_bool(); }
 bool hal_selftest_gates_are_off(void) { return any_bool(); }
+bool hal_watchdog_caused_reset(void) { return any_bool(); }
 uint16_t hal_selftest_watchdog_count(void) { return any_u16; }
 bool hal_selftest_ram(uint16_t pair) {
   //@ assert pair < HAL_SELFTEST_PAIRS;
