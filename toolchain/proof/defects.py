@@ -55,7 +55,13 @@ DEFECTS = (
         "d->supervision.missing > SAMPLES_TIMEOUT",
         "SAMPLES_TIMEOUT / d->supervision.missing < 1u",
     ),
-    Defect("svpwm", "alternate", "svpwm/modulator.c", "* FOUR_FIFTHS_Q15", "* 99 * FOUR_FIFTHS_Q15"),
+    Defect(
+        "svpwm",
+        "alternate",
+        "svpwm/modulator.c",
+        "(uint32_t)c->pulse_ticks * FOUR",
+        "(int32_t)c->pulse_ticks * 99 * (int32_t)FOUR",
+    ),
     Defect(
         "turned", "turned", "estimators/deviation.c", "(square_q28 - fourth_q28) * 2", "(square_q28 - fourth_q28) * 16"
     ),
@@ -74,10 +80,10 @@ DEFECTS = (
     Defect("layouts", "most_of_both", "svpwm/extended.c", "(room + t1 + t2) / 2", "(room + t1 + t2 + 2) / 2"),
     Defect(
         "layouts",
-        "svpwm_centred",
+        "svpwm_long_zero",
         "svpwm/extended.c",
-        "q_max(even, SVPWM_PULSE_MIN_TICKS",
-        "q_min(even, SVPWM_PULSE_MIN_TICKS",
+        "2u, SVPWM_FIRST_TICK, common",
+        "2u, SVPWM_FIRST_TICK - 1, common",
     ),
     Defect(
         "words", "read_speed", "firmware/console/commands_drive.c", "(uint16_t)(value->count - length)", "value->count"
