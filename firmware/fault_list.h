@@ -30,4 +30,5 @@ FAULT(18, BRAKE_RESISTOR, "brake resistor on for more than brake_share", "brake 
 FAULT(19, GATE_ENABLE, "gate enable does not pass the gates although its line is toggled",
       "check the circuit behind the enable line and its feedback")
 FAULT(20, SELF_TEST, "self-test failed", "see the command status; a fault of chip or board")
-FAULT(21, INTERRUPT, "an interrupt that nobody expected", "switch off and on; a fault of chip or software: tell its makers")
+FAULT(21, INTERRUPT, "an interrupt that nobody expected",
+      "switch off and on; a fault of chip or software: tell its makers")

@@ -1,5 +1,5 @@
-// The first program for a new board: the fault lamp blinks once a second, counted by the crystal. It runs from RAM, so a
-// probe and a compiler can be tried before anything is written to the flash; see docs/bring-up.md, stage 0.
+// The first program for a new board: the fault lamp blinks once a second, counted by the crystal. It runs from RAM, so
+// a probe and a compiler can be tried before anything is written to the flash; see docs/bring-up.md, stage 0.
 //
 // The gates stay as the reset has left them, inputs, and their enable line is low and does not move.
 

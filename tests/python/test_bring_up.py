@@ -1,4 +1,4 @@
-"""The bring-up guide: its commands exist, and the blocks of stages 1 to 6 are run on the virtual boards that they name."""
+"""The bring-up guide: its commands exist, and the blocks of stages 1 to 6 run on the boards that they name."""
 
 import re
 from pathlib import Path
