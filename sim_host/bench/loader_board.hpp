@@ -65,6 +65,9 @@ class LoaderBoard final : private chip::World {
   Tick serial_now() const { return chip_->now(); }  // the line's time begins with the supply
   Running running() const { return running_; }
 
+  /// How often a pin of a gate, or a general purpose one, has been driven to another level than that of its pull-down.
+  std::uint64_t driven() const { return driven_; }
+
   /// All cells from 0x3E8000 on, as a JTAG probe sees them.
   const std::vector<std::uint16_t>& flash();
   /// std::invalid_argument for a wrong size.
@@ -76,10 +79,10 @@ class LoaderBoard final : private chip::World {
   chip::Chip::Firmware boot_code();
   bool holds_kernel();
 
-  void on_pwm_pins(Tick, int, bool, bool) override {}
+  void on_pwm_pins(Tick, int, bool a, bool b) override { driven_ += a || b ? 1 : 0; }
   std::uint16_t adc_sample(Tick, int) override { return 0; }
   bool pin_level(Tick t, int pin) override;
-  void on_output_pin(Tick, int, bool) override {}
+  void on_output_pin(Tick, int, bool) override { ++driven_; }
   std::int64_t encoder_edges(Tick) override { return 0; }
   Tick serial_reaches(Tick t, bool level) override { return serial_.reaches(t, level); }
   void on_serial_frame(Tick, const chip::SerialFrame& frame) override { serial_.receive(frame); }
@@ -91,6 +94,7 @@ class LoaderBoard final : private chip::World {
   BootMode jumpers_ = BootMode::kFlash;
   Running running_ = Running::kBootRom;
   devices::SerialLine serial_;
+  std::uint64_t driven_ = 0;
   Tick off_ = 0;  // board time at which the chip was switched on
   std::unique_ptr<chip::Chip> chip_;
 };

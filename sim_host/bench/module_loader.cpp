@@ -82,6 +82,7 @@ void bind_loader_board(nb::module_& m) {
           nb::arg("on"))
       .def_prop_ro("now", [](Self self) { return self.board().now(); })
       .def_prop_ro("running", [](Self self) { return std::string(words_of(self.board().running())); })
+      .def_prop_ro("driven", [](Self self) { return self.board().driven(); })
       .def_prop_ro("in_loop", [](Self self) { return (void)self.board(), false; })
       .def_prop_rw(
           "flash", [](Self self) { return self.board().flash(); },

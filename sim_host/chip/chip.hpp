@@ -60,9 +60,10 @@ struct Statistics {
 /// How a program may fail.
 enum class Failure {
   kNone,
-  kBackgroundHangs,    // below the interrupts, which are still taken
-  kInterruptHangs,     // one that runs then or comes next does not return
-  kIllegalInstruction  // below the interrupts; that of the instruction leads back to it, over and over
+  kBackgroundHangs,     // below the interrupts, which are still taken
+  kInterruptHangs,      // one that runs then or comes next does not return
+  kIllegalInstruction,  // below the interrupts; that of the instruction leads back to it, over and over
+  kHalted  // by a debugger: both levels and the watchdog stand, and the PWM's counters as FREE_SOFT = 0 has it
 };
 
 class Chip {

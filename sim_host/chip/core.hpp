@@ -55,7 +55,7 @@ class Core final : public ChipServices {
   void set_revision(std::uint16_t revision);
   void block_adc_triggers(bool on) { adc_blocked_ = on; }
   void hold_interrupts(bool on) { interrupts_.set_held(on); }
-  void fail(Failure failure) { failure_ = failure; }
+  void fail(Failure failure);
   const std::string& error() const { return error_; }
   void pins_changed() { pins_dirty_ = world_touched_ = true; }
   void stop_can_transmission();
@@ -167,6 +167,7 @@ class Core final : public ChipServices {
   void run_isr(unsigned vector);
   void trap(unsigned vector);
   bool is_failing() const {
+    if (failure_ == Failure::kHalted) return true;
     return failure_ != Failure::kNone && depth_ == (failure_ == Failure::kInterruptHangs ? 1u : 0u);
   }
   [[noreturn]] void go_on_failing();

@@ -132,6 +132,15 @@ void Core::trap(unsigned vector) {
   interrupts_.leave(frame);
 }
 
+void Core::fail(Failure failure) {
+  failure_ = failure;
+  if (failure != Failure::kHalted) return;
+  interrupts_.set_held(true);
+  epwm_.set_time_base_clock(false, now_);
+  set_due(kEPwm, epwm_.next_event());
+  set_due(kWatchdog, kNever);
+}
+
 // What is left of a program that has failed.
 void Core::go_on_failing() {
   for (;;) {

@@ -28,6 +28,11 @@ class NativeLoader(Protocol):
         ...
 
     @property
+    def driven(self) -> int:
+        """How often a pin has been driven to another level than that of its pull-down: a gate's, the enable line's, any."""
+        ...
+
+    @property
     def in_loop(self) -> bool:
         """Never."""
         ...

@@ -172,6 +172,23 @@ TEST_F(Failing, ConversionsThatDoNotComeAreAFault) {
   EXPECT_EQ(resets(), 0u);
 }
 
+// Its pins stay as they are, and with them the vector that is on.
+TEST_F(Failing, AChipThatADebuggerHaltsLosesTheGateEnable) {
+  for (const Tick phase : {0, 1'500, 3'100, 4'700, 6'300, 7'900}) {
+    turn();
+    desk->advance(phase);
+    const Tick failed = fail(chip::Failure::kHalted), off_by = failed + kNext + kEnableTimeout + kPeriod;
+    EXPECT_TRUE(pins().any_device_on());
+    advance_to(off_by);
+    EXPECT_FALSE(pins().any_device_on()) << phase;
+    EXPECT_LE(pins().enable_toggled(), failed + kNext) << phase;
+    desk->advance(100 * kMillisecond);
+    EXPECT_FALSE(pins().any_device_on()) << phase;
+    EXPECT_LE(pins().devices_off_since(), off_by) << phase;
+    EXPECT_EQ(resets(), 0u) << "the watchdog stands as well";
+  }
+}
+
 // Whoever holds a switch closed has not asked for a start.
 TEST_F(Failing, ARunSwitchThatIsStillClosedStartsNothingAfterTheReset) {
   switch_on({}, {{"speed_input", 1.0}, {"speed_input_full", 1000.0}});

@@ -126,6 +126,7 @@ def board(image, kernel=None):
     it = Board(image, kernel)
     try:
         yield it
+        assert it.native.driven == 0, "a pin has left its pull-down"
     finally:
         it.native.close()
 
