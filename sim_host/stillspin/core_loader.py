@@ -29,7 +29,7 @@ class NativeLoader(Protocol):
 
     @property
     def driven(self) -> int:
-        """How often a pin has been driven to another level than that of its pull-down: a gate's, the enable line's, any."""
+        """How often a pin has been driven to another level than its pull-down's: of a gate, the enable line, any."""
         ...
 
     @property
