@@ -152,7 +152,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
-  static const machine_trim_t none = {0, 0, 0, 0, 0, ONE_Q24, 0, 0, MACHINE_PSI_HASTE_Q30};
+  static const machine_trim_t none = {0, 0, 0, 0, 0, ONE_Q24, 0, 0, MACHINE_PSI_VARIANCE_Q32};
   m->trim = none;
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;

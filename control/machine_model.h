@@ -27,8 +27,8 @@ typedef struct {
   int32_t period_us;    // PWM period, microseconds, 20..500
 } machine_parameters_t;
 
-#define MACHINE_SPEED_END_BPP 1298773986L  // 1.9 rad per period: the fastest that the model's formats hold
-#define MACHINE_PSI_HASTE_Q30 10737418L    // 1/100
+#define MACHINE_SPEED_END_BPP 1298773986L    // 1.9 rad per period: the fastest that the model's formats hold
+#define MACHINE_PSI_VARIANCE_Q32 386547057L  // 0.09
 
 /// What the drive learns while it runs, added to what the parameters say.
 typedef struct {
@@ -37,7 +37,7 @@ typedef struct {
   int32_t psi_share_q24;              // of the map's flux along q: its inductance has changed with yqq
   int32_t rs_q24;                     // of the resistance, ohm
   int32_t psi_q16;                    // of the magnet's flux/T, V per (rad per period)
-  int32_t psi_haste_q30;              // share of its error taken over in a step while it is not known well
+  int32_t psi_variance_q32;           // its uncertainty: 1 where a voltage error at 1/50 rad per period told as much
 } machine_trim_t;
 
 typedef struct {

@@ -91,7 +91,7 @@ static void follow_scores(deviation_observer_t* s, const information_t* n) {
 }
 
 static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
-  return q_mul_sat(s->mean_score_q20, s->mean_score_q20, 17) > s->score_power_q23 / 5 * 2 &&
+  return q_square_sat(s->mean_score_q20, 17) > s->score_power_q23 / 5 * 2 &&
          q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
 }
 
@@ -112,7 +112,7 @@ static void admit_load_step(deviation_observer_t* s, const deviation_observer_co
 // Cogging that is not known yet is a load that changes with the angle. An eighth of the variance is a bandwidth lower
 // by the root of two, since that goes with the load's rate to the third.
 static int32_t quiet_noise_q20(const deviation_observer_t* s, const deviation_observer_config_t* c) {
-  return c->load_noise_quiet_q20 - q_mul(c->load_noise_quiet_q20, s->cogging.known_q30, 30) / 8 * 7;
+  return c->load_noise_quiet_q20 - q_shr(q_mul_floor(c->load_noise_quiet_q20, s->cogging.known_q30, 30), 3) * 7;
 }
 
 static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
@@ -126,7 +126,7 @@ static void admit_load_change(deviation_observer_t* s, const deviation_observer_
     admit_load_step(s, c, step_q20);
   }
   const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->alert_q30, 30);
-  s->p_ll += periods * (c->load_noise_q20 - q_mul(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30));
+  s->p_ll += periods * (c->load_noise_q20 - q_mul_floor(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30));
 }
 
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
@@ -134,7 +134,7 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
       q_add_sat(s->load_accel_q8, cogging_load(&s->cogging, &c->cogging, s->angle_bam, s->speed_bpp));
   const int32_t change_q8 = q_sat64((int64_t)torque_accel_q8 - load_q8 + s->speed_rest_q8);
   const int32_t change = q_shr(change_q8, 8);
-  s->angle_bam += (uint32_t)(s->speed_bpp + change / 2);
+  s->angle_bam += (uint32_t)(s->speed_bpp + q_shr(change, 1));
   s->speed_bpp += change;
   s->speed_rest_q8 = (int32_t)((uint32_t)change_q8 & 255u);
 }
@@ -142,12 +142,12 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
 // The covariance over the periods since it was last renewed; a period is 1/64 of the unit of time.
 static void predict_covariance(deviation_observer_t* s) {
   const int32_t time_q32 = s->gathered.periods * 67108864L;
-  const int32_t drawn = q_mul(s->p_ss + s->p_al, time_q32, 32);
-  s->p_aa += q_mul(2 * s->p_as + drawn, time_q32, 32);
+  const int32_t drawn = q_mul_hi(s->p_ss + s->p_al, time_q32);
+  s->p_aa += q_mul_hi(2 * s->p_as + drawn, time_q32);
   s->p_as += drawn;
-  s->p_al += q_mul(s->p_sl, time_q32, 32);
-  s->p_ss += q_mul(2 * s->p_sl + q_mul(s->p_ll, time_q32, 32), time_q32, 32);
-  s->p_sl += q_mul(s->p_ll, time_q32, 32);
+  s->p_al += q_mul_hi(s->p_sl, time_q32);
+  s->p_ss += q_mul_hi(2 * s->p_sl + q_mul_hi(s->p_ll, time_q32), time_q32);
+  s->p_sl += q_mul_hi(s->p_ll, time_q32);
 }
 
 typedef struct {

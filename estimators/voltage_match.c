@@ -2,21 +2,18 @@
 
 #define CURRENT_UNIT_SHIFT 2u  // 4 A count as much
 #define SPEED_UNITS 50L        // as 1/50 rad per period, 480 rpm with four pole pairs
-#define SPEED_UNITS_Q8 (SPEED_UNITS * 256L)
-#define HASTE_MIN_Q16 21845L  // a third of that speed, 160 rpm
-#define HASTE_OVER 8          // the haste is over at eight times the share
-#define FLOOR_Q16 4096L       // (a quarter of a unit)^2: less current and speed than that tell nothing
+#define HASTE_MIN_Q16 7282L    // (a third of it)^2, 160 rpm
+#define ONE_Q20 1048576L
+#define HASTE_OVER 8     // the haste is over at eight times the share
+#define FLOOR_Q16 4096L  // (a quarter of a unit)^2: less current and speed than that tell nothing
 
-// The flux told may be far off: at first its error is taken over as by a mean of all steps, 1/n, with n beginning where
-// the haste does; 1/(n + 1) is 1/n - 1/n^2. The resistance waits. Only with speed is there anything to count.
-static bool hurry(machine_model_t* m, int32_t e_q16, int32_t w_q16, int32_t share_q30) {
-  machine_trim_t* const t = &m->trim;
-  const int32_t speed_q16 = q_abs_sat(w_q16);
-  if (speed_q16 < HASTE_MIN_Q16 || t->psi_haste_q30 / HASTE_OVER <= share_q30) return false;
-  const int32_t along_q16 = (w_q16 < 0) ? q_neg_sat(e_q16) : e_q16;
-  const int32_t error_q16 = q_mul_sat(q_over(along_q16, q_invert(speed_q16), 16), SPEED_UNITS_Q8, 8);
-  t->psi_q16 = q_sub_sat(t->psi_q16, q_mul(error_q16, t->psi_haste_q30, 30));
-  t->psi_haste_q30 -= q_mul(t->psi_haste_q30, t->psi_haste_q30, 30);
+// The flux told may be far off. While that is so its error is taken over by least squares: the slower it turns, the
+// less a voltage tells of the flux, so what was told before counts with its speed squared. True where a step is due to
+// that and not to the drift.
+static bool hurries(machine_trim_t* t, int32_t speed_squared_q16, int32_t share_q30) {
+  const int32_t told_q20 = q_mul_sat(t->psi_variance_q32, speed_squared_q16, 28);
+  if (speed_squared_q16 < HASTE_MIN_Q16 || told_q20 / HASTE_OVER <= q_shr(share_q30, 10)) return false;
+  t->psi_variance_q32 = q_over(t->psi_variance_q32, q_invert(ONE_Q20 + told_q20), 20);
   return true;
 }
 
@@ -38,15 +35,18 @@ void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30
   const int32_t i_q16 = q_shr(m->iq_q20, 4u + CURRENT_UNIT_SHIFT);
   const int32_t w_q16 = q_mul(w_q30, SPEED_UNITS * 65536L, 30);
   const int32_t e_q16 = q_over(r->mean_q20.q, m->per_yq, 26);  // V
-  if (!hurry(m, e_q16, w_q16, share_q30)) {
+  const int32_t speed_squared_q16 = q_mul_sat(w_q16, w_q16, 16);
+  int32_t step_q22 = 0;
+  if (hurries(t, speed_squared_q16, share_q30)) {
+    step_q22 = q_mul_sat(e_q16, t->psi_variance_q32, 26);
+  } else {
     const int32_t still_q16 = q_add_sat(q_mul_sat(i_q16, i_q16, 16), FLOOR_Q16);
-    const int32_t power_q16 = q_add_sat(still_q16, q_mul_sat(w_q16, w_q16, 16));
-    const q_inverse_t per_power = q_invert(power_q16);
-    const int32_t step_q22 = q_mul_sat(q_over(e_q16, per_power, 16), share_q30, 24);
+    const q_inverse_t per_power = q_invert(q_add_sat(still_q16, speed_squared_q16));
+    step_q22 = q_mul_sat(q_over(e_q16, per_power, 16), share_q30, 24);
     // What the back-EMF leaves at speed is not the resistance's: it learns with its part of the power only.
     const int32_t slow_q22 = q_mul(step_q22, q_over(still_q16, per_power, 30), 30);
     t->rs_q24 = q_sub_sat(t->rs_q24, q_mul_sat(slow_q22, i_q16, 16));  // a volt is 1/4 ohm
-    t->psi_q16 = q_sub_sat(t->psi_q16, q_mul_sat(q_mul_sat(step_q22, w_q16, 16), SPEED_UNITS, 6));
   }
+  t->psi_q16 = q_sub_sat(t->psi_q16, q_mul_sat(q_mul_sat(step_q22, w_q16, 16), SPEED_UNITS, 6));
   bound(m);
 }

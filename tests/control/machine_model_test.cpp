@@ -350,7 +350,7 @@ TEST(MachineModel, NothingIsLearntAtFirst) {
     EXPECT_EQ(learnt, 0);
   }
   EXPECT_EQ(real(t.psi_share_q24, 24), 1.0);
-  EXPECT_NEAR(real(t.psi_haste_q30, 30), 0.01, 1e-9);
+  EXPECT_NEAR(real(t.psi_variance_q32, 32), 0.09, 1e-9);
 }
 
 // An inertia that was learnt makes the model that of another rotor, whatever it was scaled to before.

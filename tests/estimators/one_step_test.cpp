@@ -84,7 +84,7 @@ TEST(OneStep, VoltageMatch) {
   const machine_model_t told = model_of(Motor{});
   for (const auto& [amps, speed] : {std::pair{6.0, 0.004}, {-3.0, 0.03}, {2.0, -0.05}, {0.3, 0.005}}) {
     machine_model_t m = told;
-    m.trim.psi_haste_q30 = 0;
+    m.trim.psi_variance_q32 = 0;
     regression_t r = {};
     const double volts = 0.8;
     machine_model_follow(&m, raw(amps, 20));
@@ -98,8 +98,8 @@ TEST(OneStep, VoltageMatch) {
   }
 }
 
-// At speed the flux first takes over a share of all that is missing, 1/n of it in the n-th step; the resistance waits.
-// It begins a third of the unit of speed, and ends at eight times the slow share.
+// At speed the flux first learns as least squares do, a speed counting squared; the resistance waits. It begins at a
+// third of the unit of speed, and ends where a step has eight times the slow share.
 TEST(OneStep, VoltageMatchInHaste) {
   const machine_model_t told = model_of(Motor{});
   const auto step = [&](machine_model_t* m, double speed, double share) {
@@ -108,26 +108,39 @@ TEST(OneStep, VoltageMatchInHaste) {
     r.mean_q20.q = raw(0.8 * real(m->yq_q30, 30), 20);
     voltage_match_step(m, &r, raw(speed, 30), raw(share, 30));
   };
-  for (const double speed : {0.02, -0.02}) {
+  for (const double direction : {1.0, -1.0}) {
     machine_model_t m = told;
-    m.trim.psi_haste_q30 = raw(0.01, 30);
-    double psi = 0.0, haste = 0.01;
+    m.trim.psi_variance_q32 = raw(0.09, 32);
+    double psi = 0.0, variance = 0.09;
     for (int n = 0; n < 50; ++n) {
+      const double speed = direction * (0.008 + 0.001 * n), w = 50.0 * speed;
       step(&m, speed, 1e-5);
-      psi -= 0.8 / speed * haste;
-      haste -= haste * haste;
+      variance /= 1.0 + variance * w * w;
+      psi -= 0.8 * w * variance * 50.0;
       ASSERT_NEAR(real(m.trim.psi_q16, 16), psi, 2e-4 * std::fabs(psi)) << n;
+      ASSERT_NEAR(real(m.trim.psi_variance_q32, 32), variance, 1e-5 * variance) << n;
     }
-    EXPECT_NEAR(1.0 / haste, 150.0, 1.0);
     EXPECT_EQ(m.trim.rs_q24, 0);
   }
   for (const auto& [speed, share, hurries] :
-       {std::tuple{0.0068, 1e-5, true}, {0.0065, 1e-5, false}, {0.02, 0.00124, true}, {0.02, 0.00126, false}}) {
+       {std::tuple{0.0068, 1e-5, true}, {0.0065, 1e-5, false}, {0.02, 0.01124, true}, {0.02, 0.01126, false}}) {
     machine_model_t m = told;
-    m.trim.psi_haste_q30 = raw(0.01, 30);
+    m.trim.psi_variance_q32 = raw(0.09, 32);
     step(&m, speed, share);
     EXPECT_EQ(m.trim.rs_q24 == 0, hurries) << speed << ", " << share;
   }
+}
+
+// As fast as a shaft may turn, a step takes over what is missing and no more.
+TEST(OneStep, HasteAtFullSpeed) {
+  machine_model_t m = model_of(Motor{});
+  m.trim.psi_variance_q32 = raw(0.09, 32);
+  regression_t r = {};
+  machine_model_follow(&m, raw(5.0, 20));
+  r.mean_q20.q = raw(0.8 * real(m.yq_q30, 30), 20);
+  voltage_match_step(&m, &r, raw(1.9, 30), raw(1e-5, 30));
+  EXPECT_NEAR(real(m.trim.psi_q16, 16), -0.8 / 1.9, 0.01 * 0.8 / 1.9);
+  EXPECT_NEAR(real(m.trim.psi_variance_q32, 32), 0.09 / (1.0 + 0.09 * 95.0 * 95.0), 1e-8);
 }
 
 // From an eighth of the bound, the magnet's own flux, it finds back.

@@ -54,7 +54,7 @@ static inline void any_trim(machine_model_t* m) {
   m->trim.psi_share_q24 = any_i32;
   m->trim.rs_q24 = any_from(-RS_NOMINAL_MAX_Q24 / 2, RS_NOMINAL_MAX_Q24);
   m->trim.psi_q16 = any_from(-TRIM_FLUX_END_Q16, TRIM_FLUX_END_Q16);
-  m->trim.psi_haste_q30 = any_from(0, MACHINE_PSI_HASTE_Q30);
+  m->trim.psi_variance_q32 = any_from(0, MACHINE_PSI_VARIANCE_Q32);
 }
 
 // Two main admittances and any direction.

@@ -121,7 +121,7 @@ def wandering(rate, duration):
     return [(0.0, 0.0)] + [(0.3 + k * WALK_STEP, float(torque)) for k, torque in enumerate(folded)]
 
 
-def efficiency(rpm, rate, parameters):
+def efficiency(rpm, rate, parameters, seed=1):
     """Rms error over the bound while the speed is held: profile ideal and the converter's noise of `bench`.
 
     The load wanders by the named rate, or is 1 N m without one.
@@ -141,7 +141,7 @@ def efficiency(rpm, rate, parameters):
         max_start=2.0,
         record_every=1,
         waveform=(0.0, 0.0, 1),
-        seed=1,
+        seed=seed,
         progress=None,
     )
     assert result.completed, result.reason
@@ -156,17 +156,20 @@ def efficiency(rpm, rate, parameters):
 MACHINE = (("machine", "pole_pairs"), ("mechanics", "inertia"))
 
 
-@pytest.mark.parametrize("rpm", [0.0, 60.0, 600.0, 3000.0])
-def test_told_the_true_noise_the_observer_is_near_the_bound(rpm):
+HELD = [(0.0, 1), (60.0, 1), *((rpm, seed) for rpm in (600.0, 3000.0) for seed in range(1, 6))]
+
+
+@pytest.mark.parametrize(("rpm", "seed"), HELD)
+def test_told_the_true_noise_the_observer_is_near_the_bound(rpm, seed):
     """The load wanders as both expect it, so the bound holds: nobody is better, but for chance.
 
     The error forgets within some 5 ms, so 1.4 s are some 300 errors: their rms is within 4 % or so of the truth, of
     which the floor leaves two and a half. The ceiling is the aim. What keeps the observer off the bound: fixed point,
     10 mA for both axes where alpha has 9 mA and beta 12 mA, the torque by a noisy current, steps that it looks out for
-    at a crawl.
+    at a crawl. What is learnt of the machine on the way to the speed is not forgotten within 5 ms: hence five seeds.
     """
     rate = "observer_load_quiet" if rpm == 0.0 else "observer_load_rate"
-    assert 0.9 < efficiency(rpm, rate, {"observer_noise": 10.0}) < 1.5
+    assert 0.9 < efficiency(rpm, rate, {"observer_noise": 10.0}, seed) < 1.5
 
 
 @pytest.mark.parametrize("rpm", [5.0, 60.0, 600.0, 3000.0])

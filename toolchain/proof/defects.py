@@ -105,7 +105,13 @@ DEFECTS = (
         "q_clamp(before + change, -SPEED_END_BPP, SPEED_END_BPP)",
         "before + change",
     ),
-    Defect("estimators", "hurry", "estimators/voltage_match.c", "q_neg_sat(e_q16)", "-e_q16"),
+    Defect(
+        "estimators",
+        "voltage_match_step",
+        "estimators/voltage_match.c",
+        "q_add_sat(still_q16, speed_squared_q16)",
+        "still_q16 + speed_squared_q16",
+    ),
     # What a function promises is taken behind it, so it shows there.
     Defect(
         "observer",
