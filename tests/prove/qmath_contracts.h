@@ -56,6 +56,9 @@ static inline int32_t q_neg_sat(int32_t x);
 /*@ assigns \nothing; ensures \result == sat32(x < 0 ? -x : x); */
 static inline int32_t q_abs_sat(int32_t x);
 
+/*@ assigns \nothing; ensures \result == (x < 0 ? -x : x); */
+static inline uint32_t q_abs_u32(int32_t x);
+
 /*@ requires 1 <= shift <= 62; assigns \nothing; ensures \result == ((a * b + (1 << (shift - 1))) >> shift); */
 static inline int64_t q_mul64(int32_t a, int32_t b, unsigned shift);
 
@@ -83,6 +86,20 @@ static inline int32_t q_mul_add(int32_t a, int32_t b, int32_t c, int32_t d, unsi
     requires a * b - c * d + (1 << (shift - 1)) <= 9223372036854775807 && a * b - c * d <= 9223372036854775807;
     assigns \nothing; ensures \result == (int32_t)((a * b - c * d + (1 << (shift - 1))) >> shift); */
 static inline int32_t q_mul_sub(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift);
+
+/*@ requires 1 <= shift <= 62;
+    requires a * b + c * d + (1 << (shift - 1)) <= 9223372036854775807 && a * b + c * d <= 9223372036854775807;
+    assigns \nothing; ensures \result == sat32((a * b + c * d + (1 << (shift - 1))) >> shift); */
+static inline int32_t q_mul_add_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift);
+
+/*@ requires 1 <= shift <= 62;
+    requires a * b - c * d + (1 << (shift - 1)) <= 9223372036854775807 && a * b - c * d <= 9223372036854775807;
+    assigns \nothing; ensures \result == sat32((a * b - c * d + (1 << (shift - 1))) >> shift); */
+static inline int32_t q_mul_sub_sat(int32_t a, int32_t b, int32_t c, int32_t d, unsigned shift);
+
+/*@ requires 0 <= part && 0 <= per_total_q30 && part * per_total_q30 <= 2147483647;
+    assigns \nothing; ensures \result == part * per_total_q30; */
+static inline int32_t q_share_q30(int32_t part, int32_t per_total_q30);
 
 /*@ requires 1 <= shift <= 62; assigns \nothing; ensures \result == (int32_t)((a * b) >> shift); */
 static inline int32_t q_mul_floor(int32_t a, int32_t b, unsigned shift);

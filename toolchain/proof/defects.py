@@ -179,4 +179,8 @@ DEFECTS = (
         "contracts", "q_mul_hi", "hal/qmath/qarith.h", "q_shr64(q_product(a, b), 32)", "q_shr64((int32_t)a * b, 32)"
     ),
     Defect("contracts", "q_sub_sat", "hal/qmath/qarith.h", "q_sat64((int64_t)a - b)", "a - b"),
+    Defect(
+        "contracts", "q_abs_u32", "hal/qmath/qarith.h", "((uint32_t)0 - (uint32_t)x)", "((uint32_t)1 - (uint32_t)x)"
+    ),
+    Defect("contracts", "q_over", "hal/qmath/qdiv.h", "inverse.exponent - shift", "inverse.exponent - 1u - shift"),
 )

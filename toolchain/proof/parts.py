@@ -6,6 +6,7 @@ from pathlib import Path
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
 SHIFT_RANGES, BITS, FLOOR = "tests/prove/shift_ranges.h", "tests/prove/bits.h", "tests/prove/floor.h"
+OVER = "tests/prove/over_contract.h"
 LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
 ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
@@ -42,6 +43,7 @@ OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_a
 CONTRACTS_OF_QMATH = (
     *("q_shr", "q_shr64", "q_max", "q_min", "q_max16", "q_min16", "q_clamp", "q_in_range", "q_sat64"),
     *("q_add_sat", "q_sub_sat", "q_neg_sat", "q_abs_sat", "q_product", "q_mul64", "q_mul", "q_mul_sat", "q_mac"),
+    *("q_abs_u32", "q_mul_add_sat", "q_mul_sub_sat", "q_share_q30", "q_over"),
     *("q_mul_add", "q_mul_sub", "q_mul_floor", "q_mul_add_floor", "q_mul_sub_floor", "q_mul_hi", "q_umul_hi"),
     *("q15_sat", "q15_add_sat", "q15_sub_sat", "q15_mul"),
 )
@@ -308,7 +310,7 @@ PARTS = (
     *(
         wp(name, ("hal/qmath/qdiv.c",), ("-wp-timeout", "20"), proved, (BITS, CONTRACTS, *more))
         for name, proved, more in (
-            ("contracts", CONTRACTS_OF_QMATH, ()),
+            ("contracts", CONTRACTS_OF_QMATH, (OVER,)),
             ("shifts", ("q_shr",), (FLOOR, SHIFT_RANGES)),
             ("between", BETWEEN, (SHIFT_RANGES, RANGES)),
         )
