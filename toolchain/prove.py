@@ -15,25 +15,28 @@ is.
 import csv
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
+from subprocess import PIPE, STDOUT
 
 import planted
 from proof.defects import DEFECTS
 from proof.parts import LONGEST, PARTS, PROVED, SHOWN_ELSEWHERE, Part
+from proof.shown import Shown
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
 PACK, TABLE = "toolchain/pack_text.py", "packed_text_table.c"
 KNOWN = "tests/prove/alarms.txt"
 SECONDS = 1500
-FALSE_SECONDS = 30  # ten times what is true of the planted functions takes
+FALSE_SHARE = 4  # of a goal's time: still some ten times what is true of the planted functions takes
 AT_ONCE = 2
 OPEN = ("Unknown", "Invalid", "Inconsistent", "Never tried")
 
@@ -86,8 +89,8 @@ def is_open(part: Part, row: dict[str, str]) -> bool:
     return not related and not promised and status != "Never tried"
 
 
-def read(part: Part, tree: Path, out: Path) -> Read:
-    """Lets Frama-C read a part."""
+def read(part: Part, tree: Path, out: Path, defective: Collection[str] = ()) -> Read:
+    """Lets Frama-C read a part; with defective functions no further than until each of them has shown itself."""
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
     included = " ".join(f"-include {header}" for header in part.headers)
     machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 {included}")
@@ -95,19 +98,38 @@ def read(part: Part, tree: Path, out: Path) -> Read:
     given = ("-eva-use-spec", part.given) if part.given else ()
     named = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
     command = ["frama-c", *machine, *sources, *part.flags, *given, *named, "-then", "-report-csv", str(table)]
-    # Frama-C believes PWD more than where it is.
-    home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(out / "why3.conf")}
     begin = time.monotonic()
-    done = subprocess.run(command, cwd=tree, env=home, capture_output=True, text=True, check=False, timeout=SECONDS)
-    log.write_text(done.stdout + done.stderr, encoding="utf-8")
-    if done.returncode != 0:
-        raise RuntimeError(f"frama-c fails, see {log}: {(done.stdout + done.stderr)[-1500:]}")
+    headers = [path.relative_to(tree).as_posix() for folder in FOLDERS for path in (tree / folder).rglob("*.h")]
+    own = [file for file in sources if not Path(file).is_absolute()]
+    if not says_all(command, tree, log, Shown(tree, {*own, *headers}, defective)):
+        return Read(Counter((function, "shown") for function in defective), "", time.monotonic() - begin)
     with table.open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t", quoting=csv.QUOTE_NONE))
     alarms = Counter((plain(row["function"]), plain(row["property kind"])) for row in rows if is_open(part, row))
     proved = {plain(row["function"]) for row in rows if row["status"].startswith("Valid")}
     alarms.update((function, "nothing proved") for function in part.proved if function not in proved)
-    return Read(alarms, summary(part, rows, done.stdout), time.monotonic() - begin)
+    return Read(alarms, summary(part, rows, log.read_text(encoding="utf-8")), time.monotonic() - begin)
+
+
+def says_all(command: list[str], tree: Path, log: Path, shown: Shown) -> bool:
+    """Runs Frama-C; False where it was ended because what it had said was enough. RuntimeError where it fails."""
+    # It believes PWD more than where it is.
+    home = {**os.environ, "PWD": str(tree), "WHY3CONFIG": str(log.parent / "why3.conf")}
+    timed = ["timeout", str(SECONDS), *command]
+    with (
+        log.open("w", encoding="utf-8") as kept,
+        subprocess.Popen(
+            timed, cwd=tree, env=home, stdout=PIPE, stderr=STDOUT, text=True, start_new_session=True
+        ) as run,
+    ):
+        for line in run.stdout or ():
+            kept.write(line)
+            if shown.is_complete_with(line):
+                os.killpg(run.pid, signal.SIGTERM)
+                return False
+    if run.returncode != 0:
+        raise RuntimeError(f"frama-c fails with {run.returncode}, see {log}: {log.read_text(encoding='utf-8')[-1500:]}")
+    return True
 
 
 def known() -> dict[str, Counter[Alarm]]:
@@ -149,7 +171,8 @@ def check(out: Path, wanted: list[str]) -> int:
 
 def of_these(part: Part, functions: tuple[str, ...]) -> Part:
     """A proof of some of its functions alone. What is not true is tried until the time is over, so there is less."""
-    return replace(part, proved=functions, flags=(*part.flags, "-wp-timeout", str(FALSE_SECONDS)))
+    seconds = int(part.flags[part.flags.index("-wp-timeout") + 1]) // FALSE_SHARE
+    return replace(part, proved=functions, flags=(*part.flags, "-wp-timeout", str(seconds)))
 
 
 def plant(out: Path, wanted: list[str]) -> int:
@@ -161,8 +184,16 @@ def plant(out: Path, wanted: list[str]) -> int:
         changes = [(d.file, d.right, d.wrong) for d in defects[part.name]]
         complaints += planted.plant(out / "trees" / part.name, FOLDERS, changes)
     parts = [of_these(part, tuple(d.function for d in defects[part.name])) if part.proved else part for part in parts]
-    for part, done in at_once(lambda part: read(part, out / "trees" / part.name, out), parts):
+
+    def look(part: Part) -> Read:
+        functions = {d.function for d in defects[part.name]}
+        # One that shows something anyway is only seen when it shows more, and that is counted at the end.
+        countable = any(function in functions for function, _ in bounds[part.name])
+        return read(part, out / "trees" / part.name, out, () if countable else functions)
+
+    for part, done in at_once(look, parts):
         seen = {function for function, _ in more_than(done.alarms, bounds[part.name])}
+        print(f"prove: {part.name}: {len(defects[part.name])} defects planted, {done.seconds:.0f} s", flush=True)
         complaints += [f"{d.function}: {d.wrong!r} is not found" for d in defects[part.name] if d.function not in seen]
     planned = sum(len(defects[part.name]) for part in parts)
     print(f"prove: {planned} defects planted, {len(complaints)} not found where they are")

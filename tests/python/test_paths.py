@@ -212,3 +212,12 @@ def test_periods_are_read_from_the_log(tmp_path: Path) -> None:
     at = (0x114, 0x200, 0x116, 0x100, 0x200, 0x110, 0x100)
     log.write_text("".join(f"Trace 0: 0x7f [00800400/{place:08x}/00000110/ff020200] x\n" for place in at))
     assert list(periods(log, regions, ("leaf",))) == [("leaf", {"rare"}), ("leaf", set())]
+
+
+def test_many_regions_are_covered_by_few_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
+    listing = LISTING + "\n00000200 <drive_control_step>:\n     200:\t4770      \tbx\tlr\n"
+    known = frames_of(listing)
+    linked = Program(listing, {}, lambda addresses: {address: known[address] for address in addresses})
+    regions = Regions(linked, {"rare"}, ["chooses"], ["leaf"])
+    monkeypatch.setattr("paths.watch.RANGES", 2)
+    assert regions.filter() == "0x100..0x119,0x200..0x201"

@@ -12,8 +12,10 @@ import argparse
 import hashlib
 import importlib.util
 import json
+import os
 import subprocess
 import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +28,7 @@ from stillspin.core import NativeResult
 from stillspin.runs import execute
 
 NOT_COMPARED = ("wall_seconds", "plant_share")
+_SERVERS = threading.local()
 
 
 def take_module(folder: str) -> None:
@@ -52,9 +55,8 @@ def jobs_of(identifier: str) -> list[execute.Job]:
     return execute.prepare(chosen, settings, native)
 
 
-def digest(module: str, identifier: str, index: int, seconds: float) -> dict[str, Any]:
+def digest(identifier: str, index: int, seconds: float) -> dict[str, Any]:
     """What a run leaves, in short."""
-    take_module(module)
     job = jobs_of(identifier)[index]
     job = replace(job, run=replace(job.run, duration=min(job.run.duration, seconds)))
     try:
@@ -76,22 +78,46 @@ def left_by(result: NativeResult) -> dict[str, Any]:
     return left
 
 
-def in_process(module: str, identifier: str, index: int, seconds: float) -> dict[str, Any]:
-    """The same in a process of its own: the firmware has static variables."""
-    command = [sys.executable, __file__, "--one", module, identifier, str(index), str(seconds)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        return {"crashed": done.returncode, "said": done.stderr[-400:]}
-    left: dict[str, Any] = json.loads(done.stdout)
+def serve(module: str) -> None:
+    """Plays the runs that standard input names, each in a process of its own: the firmware has static variables."""
+    take_module(module)
+    core.load()
+    for line in sys.stdin:
+        child = os.fork()
+        if child == 0:
+            print(json.dumps(digest(*json.loads(line))), flush=True)
+            os._exit(0)
+        if code := os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]):
+            print(json.dumps({"crashed": code}), flush=True)
+
+
+def server(module: str) -> subprocess.Popen[str]:
+    """This thread's process with a native module, which has all at hand that a run needs."""
+    kept: dict[str, subprocess.Popen[str]] = _SERVERS.__dict__
+    if module not in kept:
+        command = [sys.executable, __file__, "--serve", module]
+        kept[module] = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    return kept[module]
+
+
+def played(module: str, identifier: str, index: int, seconds: float) -> dict[str, Any]:
+    """What a run leaves, from the module's server. RuntimeError where that has ended."""
+    by = server(module)
+    if by.stdin is None or by.stdout is None:
+        raise RuntimeError("a server without pipes")
+    print(json.dumps((identifier, index, seconds)), file=by.stdin, flush=True)
+    if not (said := by.stdout.readline()):
+        raise RuntimeError(f"what plays the runs of {module} has ended: {by.wait()}")
+    left: dict[str, Any] = json.loads(said)
     return left
 
 
 def compare(module: str, identifier: str, index: int, name: str, seconds: float) -> tuple[bool, str]:
     """One run by both drives."""
-    mine, other = (in_process(which, identifier, index, seconds) for which in ("native", module))
+    mine, other = (played(which, identifier, index, seconds) for which in ("native", module))
     different = sorted(key for key in {*mine, *other} if mine.get(key) != other.get(key))
     if different or "crashed" in mine:
-        told = {key: (mine.get(key), other.get(key)) for key in different if key in ("crashed", "said", "reason")}
+        told = {key: (mine.get(key), other.get(key)) for key in different if key in ("crashed", "reason")}
         return False, f"DIFFERS {identifier} {name}: {', '.join(different)} {told or ''}"
     stats = mine.get("stats", {})
     how = mine.get("broken") or mine["reason"] or "completed"
@@ -101,9 +127,8 @@ def compare(module: str, identifier: str, index: int, name: str, seconds: float)
 
 def main() -> int:
     """Compares what the command line names."""
-    if sys.argv[1] == "--one":
-        module, identifier, index, seconds = sys.argv[2:]
-        print(json.dumps(digest(module, identifier, int(index), float(seconds))))
+    if sys.argv[1:2] == ["--serve"]:
+        serve(sys.argv[2])
         return 0
     parser = argparse.ArgumentParser(description="The native drive against that of a 16-bit int.")
     parser.add_argument("module")

@@ -7,13 +7,26 @@ in a period has run in it.
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from pathlib import Path
 
 from paths.facts import Facts
 from paths.program import Program
 
+RANGES = 32  # fewer log much that nobody asked for, more are slow to search
 PERIOD = "drive_control_step"  # begins a period
 _EXECUTED = re.compile(r"Trace \d+: \S+ \[[^/]*/([0-9a-f]+)/")
+
+
+def _joined(ranges: Iterable[tuple[int, int]], gap: int) -> list[tuple[int, int]]:
+    """Sorted ranges, those with such a gap between them as one."""
+    joined: list[tuple[int, int]] = []
+    for start, end in ranges:
+        if joined and start - joined[-1][1] <= gap:
+            joined[-1] = joined[-1][0], max(end, joined[-1][1])
+        else:
+            joined.append((start, end))
+    return joined
 
 
 class Regions:
@@ -40,14 +53,11 @@ class Regions:
         self._starts = [start for start, _, _ in self._found]
 
     def filter(self) -> str:
-        """The ranges, as QEMU's option -dfilter takes them."""
-        joined: list[list[int]] = []
-        for start, end, _ in self._found:
-            if joined and start <= joined[-1][1]:
-                joined[-1][1] = max(end, joined[-1][1])
-            else:
-                joined.append([start, end])
-        return ",".join(f"{start:#x}..{end - 1:#x}" for start, end in joined)
+        """Ranges that cover them, for QEMU's option -dfilter, which tries one after the other: so they are few."""
+        joined = _joined(((start, end) for start, end, _ in self._found), 0)
+        gaps = sorted((after[0] - before[1] for before, after in pairwise(joined)), reverse=True)
+        covering = _joined(joined, gaps[RANGES - 1]) if len(gaps) >= RANGES else joined
+        return ",".join(f"{start:#x}..{end - 1:#x}" for start, end in covering)
 
     def at(self, address: int) -> frozenset[str]:
         """Whose code begins to run there."""

@@ -109,8 +109,8 @@ DEFECTS = (
         "estimators",
         "voltage_match_step",
         "estimators/voltage_match.c",
-        "q_add_sat(still_q16, speed_squared_q16)",
-        "still_q16 + speed_squared_q16",
+        "t->psi_q16 = q_sub_sat(t->psi_q16, q",
+        "t->psi_q16 = (t->psi_q16 - q",
     ),
     # What a function promises is taken behind it, so it shows there.
     Defect(
