@@ -8,6 +8,8 @@
 #include "firmware/words.h"
 #include "tests/prove/any.h"
 
+#define WORDS_OF_A_KIND 48  // at least; what comes behind is there for no kind
+
 static uint16_t block[240];
 static uint16_t typed[EDITOR_LINE];
 static word_t word;
@@ -20,31 +22,29 @@ static void any_word(void) {
   word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
 }
 
-static uint16_t length(const char* text) {
-  uint16_t n = 0;
-  while (text[n] != '\0') n++;
-  return n;
+// Whatever was typed, compared with one text.
+static void compare_packed(packed_text_t text) {
+  char room[SUGGEST_NAME_ROOM];
+  octet_writer_t w = writer();
+  put_packed(&w, text);
+  packed_copy(text, room, SUGGEST_NAME_ROOM);
+  word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
+  (void)packed_equals(text, word.text, word.count);
+  (void)packed_occurs(text, word.text, word.count);
 }
 
 static char room[SUGGEST_NAME_ROOM];
 
-// A name at the end of its room: what is read behind it lies outside.
-static const char* unpacked(packed_text_t text) {
-  packed_copy(text, room, SUGGEST_NAME_ROOM);
-  const uint16_t n = length(room) + 1u;
-  char* const name = &room[SUGGEST_NAME_ROOM - n];
-  packed_copy(text, name, n);
+// Any name of so many characters, at the end of its room: what is read behind it lies outside.
+static const char* any_name(uint16_t count) {
+  char* const name = &room[SUGGEST_NAME_ROOM - 1u - count];
+  for (uint16_t k = 0; k < count; k++) name[k] = (char)any_from(1, 127);
+  name[count] = '\0';
   return name;
 }
 
-// Whatever was typed, compared with one name.
-static void compare(packed_text_t text) {
-  octet_writer_t w = writer();
-  put_packed(&w, text);
-  const char* const name = unpacked(text);
+static void compare(const char* name) {
   word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
-  (void)packed_equals(text, word.text, word.count);
-  (void)packed_occurs(text, word.text, word.count);
   (void)text_begins(name, word.text, word.count);
   (void)text_equals(name, word.text, word.count);
   (void)text_occurs(name, word.text, word.count);
@@ -52,14 +52,14 @@ static void compare(packed_text_t text) {
 
 void prove_names(void) {
   any_word();
-  for (uint16_t k = 0; k < parameter_count(); k++) compare(parameter_info(k)->name);
-  for (uint16_t k = 0; k < signal_count(); k++) compare(signal_info(k)->name);
+  for (uint16_t k = 0; k < parameter_count(); k++) compare_packed(parameter_info(k)->name);
+  for (uint16_t k = 0; k < signal_count(); k++) compare_packed(signal_info(k)->name);
+  for (uint16_t n = 0; n < SUGGEST_NAME_ROOM; n++) compare(any_name(n));
 }
 
 // The same with one character wrong, missing or too many.
-static void come_near(packed_text_t text) {
-  const char* const name = unpacked(text);
-  const uint16_t n = length(name);
+static void come_near(uint16_t n) {
+  const char* const name = any_name(n);
   word.count = (uint16_t)any_from(0, n - 2);
   (void)suggest_is_near(name, &word);
   for (word.count = n - 1u; word.count <= n + 1u; word.count++) (void)suggest_is_near(name, &word);
@@ -69,8 +69,7 @@ static void come_near(packed_text_t text) {
 
 void prove_near(void) {
   any_word();
-  for (uint16_t k = 0; k < parameter_count(); k++) come_near(parameter_info(k)->name);
-  for (uint16_t k = 0; k < signal_count(); k++) come_near(signal_info(k)->name);
+  for (uint16_t n = 2; n < SUGGEST_NAME_ROOM; n++) come_near(n);
 }
 
 static void one_format(uint16_t q, uint16_t decimals) {
@@ -82,8 +81,8 @@ static void one_format(uint16_t q, uint16_t decimals) {
 
 static void words_of(uint16_t kind) {
   octet_writer_t w = writer();
-  for (uint16_t code = 0; code < 128u; code++) put_words(&w, (words_kind_t)kind, code);
-  put_words(&w, (words_kind_t)kind, (uint16_t)any_from(128, 65535L));
+  for (uint16_t code = 0; code < WORDS_OF_A_KIND; code++) put_words(&w, (words_kind_t)kind, code);
+  put_words(&w, (words_kind_t)kind, (uint16_t)any_from(WORDS_OF_A_KIND, 65535L));
 }
 
 // One more octet, however full the block is; all else goes through this.

@@ -121,8 +121,8 @@ DEFECTS = (
         "q_max(s->speed_bpp + ",
     ),
     Defect(
-        "observer",
-        "step_from_all",
+        "look",
+        "leave_after",
         "estimators/deviation_observer.c",
         "++left->periods >= LEFT_PERIODS_MAX",
         "++left->periods > LEFT_PERIODS_MAX",

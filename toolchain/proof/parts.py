@@ -11,7 +11,7 @@ LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ran
 ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
 ESTIMATORS_RANGES, START_RANGES = "tests/prove/estimators_ranges.h", "tests/prove/start_ranges.h"
-RESULTS_RANGES = "tests/prove/results_ranges.h"
+LOOK_RANGES, RESULTS_RANGES = "tests/prove/look_ranges.h", "tests/prove/results_ranges.h"
 FLOORS = (CONTROL_RANGES, MODULATOR_RANGES, ESTIMATORS_RANGES, START_RANGES)
 
 
@@ -215,12 +215,16 @@ PARTS = (
     *(
         eva(
             name,
-            (f"tests/prove/{name}.c", *ESTIMATORS),
+            (f"tests/prove/{name}.c", *sources),
             (*READER, "-eva-slevel-function", "information_collect:100"),
-            f"{OF_QMATH},turned",
-            headers=(ROTATION_RANGES, ESTIMATORS_RANGES),
+            f"{OF_QMATH},turned{given}",
+            headers=(ROTATION_RANGES, *headers),
         )
-        for name in ("estimators", "observer")
+        for name, sources, given, headers in (
+            ("estimators", ESTIMATORS, "", (ESTIMATORS_RANGES,)),
+            ("look", ("estimators/deviation.c", "estimators/regression.c", *CONTROL), "", (LOOK_RANGES,)),
+            ("observer", ESTIMATORS, ",look", (LOOK_RANGES, ESTIMATORS_RANGES)),
+        )
     ),
     *(
         eva(name, (f"tests/prove/{name}.c", *ESTIMATORS), READER, OF_QMATH, headers=(header,))
@@ -317,5 +321,5 @@ PARTS = (
     ),
 )
 # What takes longest begins first: nobody waits for it alone at the end.
-LONGEST = ("layouts", "observer", "interrupt", "names", "requests")
+LONGEST = ("layouts", "interrupt", "names", "requests", "numbers")
 PROVED = frozenset(function for part in PARTS for function in part.proved)
