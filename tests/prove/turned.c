@@ -5,7 +5,7 @@
 #include "tests/prove/any.h"
 
 #define SLICES 128L
-#define ANGLES 16L
+#define ANGLES 32L
 #define ANGLE_END_Q30 1073741824L  // 1 rad: more than half a period at 1.9 rad per period
 
 static int32_t any_between(int32_t a, int32_t b) { return any_from(q_min(a, b) - 4, q_max(a, b) + 4); }
