@@ -69,8 +69,8 @@ image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm
 	@$(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_int16.py
-	@cmake --build --preset $(PRESET) --target stillspin_int16_trap
-	@$(PYTHON) toolchain/int16/compare_runs.py $(BUILD)/tests/int16/stillspin_int16_trap
+	@cmake --build --preset int16
+	@$(PYTHON) toolchain/int16/compare_runs.py $(BUILD)/tests/int16/stillspin_int16
 
 vectors: ## run the arithmetic's vectors on AVR, Cortex-M3 and M4 against a model in Python, and with planted defects
 	@bash toolchain/setup.sh build avr cortex

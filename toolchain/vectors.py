@@ -4,15 +4,16 @@
 Usage: toolchain/vectors.py OUT [--defects]     (make vectors)
 
 tests/vectors makes cases by a generator with a fixed seed and hashes the results: on this computer, on an ATmega1284P
-(avr-gcc and simavr: an int of 16 bits on a real machine), on a Cortex-M3 and an M4 (QEMU). Each has to print what
-tests/vectors/model.py finds from the functions' definitions. With --defects, every defect of DEFECTS is planted into a
-copy of the sources and has to be seen where it says.
+(avr-gcc and simavr: an int of 16 bits on a real machine), on a Cortex-M3 and an M4 (QEMU). toolchain/presets.json has a
+preset for each. Each has to print what tests/vectors/model.py finds from the functions' definitions. With --defects,
+every defect of DEFECTS is planted into a copy of the sources and has to be seen where it says.
 """
 
+import os
 import re
+import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,62 +24,56 @@ sys.path.insert(0, str(ROOT / "tests" / "vectors"))
 import model  # noqa: E402
 import planted  # noqa: E402
 
-FOLDERS = ("hal", "control", "estimators", "tests/vectors", "tests/m3")
-SOURCES = (
-    *("tests/vectors/vectors.c", "hal/qmath/qdiv.c", "hal/qmath/qsqrt.c", "hal/qmath/qtrig.c"),
-    *("estimators/blend.c", "estimators/tracking_observer.c"),
+COPIED = (
+    *("CMakeLists.txt", "CMakePresets.json", "toolchain", "hal", "control", "estimators", "tests/vectors"),
+    *("tests/m3/startup.c", "tests/m3/m3.ld"),
 )
-WARNINGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-I.")
 MCU = "atmega1284p"
 SECONDS = 120
 CASES = model.BLOCKS * model.CASES * len(model.Vectors().groups)
+
+
+@dataclass(frozen=True)
+class Target:
+    """A processor: the preset that compiles for it, and what runs a program of it."""
+
+    preset: str
+    runner: tuple[str, ...]
+
+    def build(self, tree: Path, out: Path) -> Path:
+        """The program, made of a tree's sources."""
+        place = out / self.preset
+        if not (place / "build.ninja").exists():
+            run(["cmake", "--preset", self.preset, "-B", str(place), f"-DPython_EXECUTABLE={sys.executable}"], tree)
+        run(["cmake", "--build", str(place)], tree)
+        return place / "tests" / "vectors" / "stillspin_vectors"
+
+    def lines(self, tree: Path, out: Path) -> list[str]:
+        """What the program prints; simavr prints it in colour, a point for a line's end, after lines of its own."""
+        printed = re.sub(r"\x1b\[[0-9;]*m", "", run([*self.runner, str(self.build(tree, out))], tree))
+        lines = (line.removesuffix(".") for line in printed.splitlines())
+        return [line for line in lines if line and not line.startswith(("Loaded", "UART"))]
 
 
 def run(command: list[str], tree: Path) -> str:
     """Its output; an error when it fails."""
     done = subprocess.run(command, cwd=tree, capture_output=True, text=True, check=False, timeout=SECONDS)
     if done.returncode != 0:
-        raise RuntimeError(f"{' '.join(command[:6])} ..: {done.stdout[-500:]}{done.stderr[-2000:]}")
+        raise RuntimeError(f"{' '.join(command[:6])} ..: {done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout + done.stderr
 
 
-def on_this_computer(tree: Path, out: Path) -> str:
-    """By the computer's own compiler."""
-    run(["gcc", *WARNINGS, *SOURCES, "tests/vectors/main_hosted.c", "-o", str(out)], tree)
-    return run([str(out)], tree)
+def qemu(machine: str) -> tuple[str, ...]:
+    """A board in QEMU, with semihosting."""
+    quiet = ("-nographic", "-monitor", "none", "-serial", "none")
+    return ("qemu-system-arm", "-M", machine, *quiet, "-semihosting-config", "enable=on,target=native", "-kernel")
 
 
-def on_avr(tree: Path, out: Path) -> str:
-    """By avr-gcc; simavr prints every line in colour, with a point for its end, after two lines of its own."""
-    run(["avr-gcc", f"-mmcu={MCU}", *WARNINGS, *SOURCES, "tests/vectors/main_avr.c", "-o", str(out)], tree)
-    printed = re.sub(r"\x1b\[[0-9;]*m", "", run(["simavr", "-m", MCU, "-f", "20000000", str(out)], tree))
-    lines = (line.removesuffix(".") for line in printed.splitlines())
-    return "\n".join(line for line in lines if line and not line.startswith(("Loaded", "UART")))
-
-
-def on_cortex(core: str, machine: str) -> Callable[[Path, Path], str]:
-    """By arm-none-eabi-gcc in QEMU, with semihosting."""
-
-    def play(tree: Path, out: Path) -> str:
-        compiler = ["arm-none-eabi-gcc", f"-mcpu=cortex-{core}", "-mthumb"]
-        crti, crt0, crtn = (
-            run([*compiler, f"-print-file-name={name}"], tree).strip() for name in ("crti.o", "rdimon-crt0.o", "crtn.o")
-        )
-        program = [crti, crt0, *SOURCES, "tests/vectors/main_hosted.c", "tests/m3/startup.c", crtn]
-        link = ["-T", "tests/m3/m3.ld", "-nostartfiles", "--specs=rdimon.specs"]
-        run([*compiler, *WARNINGS, *link, *program, "-o", str(out)], tree)
-        quiet = ["-nographic", "-monitor", "none", "-serial", "none"]
-        semihosting = ["-semihosting-config", "enable=on,target=native"]
-        return run(["qemu-system-arm", "-M", machine, *quiet, *semihosting, "-kernel", str(out)], tree)
-
-    return play
-
-
-TARGETS: dict[str, Callable[[Path, Path], str]] = {
-    "this computer": on_this_computer,
-    "ATmega1284P": on_avr,
-    "Cortex-M3": on_cortex("m3", "mps2-an385"),
-    "Cortex-M4": on_cortex("m4", "mps2-an386"),
+TARGETS = {
+    "this computer": Target("vectors", ()),
+    "ATmega1284P": Target("avr", ("simavr", "-m", MCU, "-f", "20000000")),
+    "Cortex-M3": Target("cortex-m3", qemu("mps2-an385")),
+    "Cortex-M4": Target("cortex-m4", qemu("mps2-an386")),
 }
 
 
@@ -121,24 +116,28 @@ DEFECTS = (
 
 def wrong_groups(name: str, tree: Path, out: Path, wanted: list[str]) -> set[str]:
     """Groups whose lines differ from the model's; all of them where the output is not even of its length."""
-    lines = TARGETS[name](tree, out / name.replace(" ", "_")).split("\n")
-    lines = [line for line in lines if line]
+    lines = TARGETS[name].lines(tree, out)
     if len(lines) != len(wanted):
         return {line.split()[0] for line in wanted}
     return {right.split()[0] for right, line in zip(wanted, lines, strict=True) if right != line}
 
 
-def missed(defect: Defect, out: Path, wanted: list[str]) -> list[str]:
-    """Where a planted defect is not seen as it should be."""
-    tree = out / "tree"
-    complaints = planted.plant(tree, FOLDERS, [(defect.file, defect.right, defect.wrong)])
+def on_all(tree: Path, out: Path, wanted: list[str]) -> dict[str, set[str]]:
+    """The wrong groups of every target."""
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(TARGETS, pool.map(lambda name: wrong_groups(name, tree, out, wanted), TARGETS), strict=True))
+
+
+def missed(defect: Defect, tree: Path, out: Path, wanted: list[str]) -> list[str]:
+    """Where a defect that is planted into the copy is not seen as it should be. The copy is as it was again."""
+    complaints = planted.change(tree, [(defect.file, defect.right, defect.wrong)])
     if complaints:
         return complaints
-    for name in TARGETS:
-        seen = wrong_groups(name, tree, out, wanted)
+    for name, seen in on_all(tree, out, wanted).items():
         expected = defect.groups if name in defect.targets else frozenset()
         if seen != expected:
             complaints.append(f"{name}: {defect.wrong!r} is seen by {sorted(seen)}, not by {sorted(expected)}")
+    shutil.copy(ROOT / defect.file, tree / defect.file)  # with a new time, so that it is compiled again
     return complaints
 
 
@@ -148,11 +147,14 @@ def main() -> int:
     out.mkdir(parents=True, exist_ok=True)
     wanted = list(model.expected())
     if "--defects" in sys.argv:
-        complaints = [complaint for defect in DEFECTS for complaint in missed(defect, out, wanted)]
+        tree, built = out / "tree", out / "defects"
+        os.environ["CFLAGS"] = "-w"  # a defect is to show when it runs, also where the compiler warns of it
+        shutil.rmtree(built, ignore_errors=True)
+        planted.copy(tree, COPIED)
+        complaints = [complaint for defect in DEFECTS for complaint in missed(defect, tree, built, wanted)]
         print(f"vectors: {len(DEFECTS)} defects planted, {len(complaints)} times not seen where they have to be")
     else:
-        with ThreadPoolExecutor(2) as pool:
-            found = dict(zip(TARGETS, pool.map(lambda n: wrong_groups(n, ROOT, out, wanted), TARGETS), strict=True))
+        found = on_all(ROOT, out, wanted)
         complaints = [f"{name}: {', '.join(sorted(groups))} differ" for name, groups in found.items() if groups]
         print(f"vectors: {CASES} cases on {', '.join(TARGETS)}: {'as the model' if not complaints else 'DIFFERENT'}")
     for complaint in complaints:
