@@ -42,14 +42,27 @@ class Part:
 
     sources: tuple[str, ...]
     programs: tuple[str, ...]
+    near: int = 1  # how many of the programs are the part's own
+    without: frozenset[str] = frozenset()  # sources that these programs do not have
+
+    @property
+    def files(self) -> list[str]:
+        """The sources, from the repository's root."""
+        found = {path.relative_to(ROOT).as_posix() for pattern in self.sources for path in ROOT.glob(pattern)}
+        return sorted(found - self.without)
 
 
+FIRMWARE = ("firmware_test", "bench_run_test")
+# The drivers on a bus that records, and on the virtual chip; firmware_test has a board of fakes instead.
+DRIVERS = ("hal_drivers_test", "hal_on_chip_test", "hal_can_test", "bench_run_test")
+# A header of firmware/ is in every source, and one of hal/f2808/ the map, which has a check of its own: left out.
 PARTS = {
     "hal/qmath": Part(("hal/qmath/*.c", "hal/qmath/*.h"), ("qmath_test", "control_test", "estimators_test")),
+    "hal/f2808": Part(("hal/f2808/*.c", "hal/tape.c"), DRIVERS, 3, frozenset({"hal/f2808/flash.c"})),
     "control": Part(("control/*.c", "control/*.h"), ("control_test", "bench_run_test")),
     "svpwm": Part(("svpwm/*.c", "svpwm/*.h"), ("svpwm_test", "bench_run_test")),
     "estimators": Part(("estimators/*.c", "estimators/*.h"), ("estimators_test", "firmware_test", "bench_run_test")),
-    # The states and what protects; a header of firmware/ is in every source, and is left out.
+    # The states and what protects.
     "firmware": Part(
         (
             *("firmware/state_machine.c", "firmware/protection.c", "firmware/fault_history.c", "firmware/actions.c"),
@@ -57,8 +70,29 @@ PARTS = {
             *("firmware/control_interrupt.c", "firmware/schedule.c"),
             *("firmware/start/*.c", "firmware/board/*.c", "firmware/commissioning/*.c"),
         ),
-        ("firmware_test", "bench_run_test"),
+        FIRMWARE,
     ),
+    # What else a period does.
+    "firmware/period": Part(
+        (
+            *("firmware/position.c", "firmware/modulation.c", "firmware/hysteresis.c", "firmware/drive_config.c"),
+            *("firmware/flux_source.c", "firmware/inertia_task.c", "firmware/current_task.c", "firmware/signals.c"),
+            *("firmware/background.c", "firmware/main.c"),
+        ),
+        FIRMWARE,
+    ),
+    "firmware/console": Part(
+        (
+            *("firmware/console/*.c", "firmware/text.c", "firmware/words.c", "firmware/packed_text.c"),
+            *("firmware/parameters.c", "firmware/clear.c"),
+        ),
+        FIRMWARE,
+    ),
+    "firmware/link": Part(("firmware/link/*.c", "firmware/hil/*.c", "firmware/scope/*.c"), FIRMWARE),
+    "firmware/can": Part(("firmware/can/*.c",), FIRMWARE),
+    "firmware/store": Part(("firmware/store/*.c",), FIRMWARE),
+    "firmware/flash_kernel": Part(("firmware/flash_kernel/*.c",), ("flash_kernel_test",)),
+    "firmware/lamp": Part(("firmware/lamp/*.c",), ("lamp_test",)),
 }
 
 
@@ -90,11 +124,22 @@ class Verdicts:
 class Score:
     """What became of a part's mutants."""
 
+    changes: int  # that there are in the part, drawn or not
     distinct: int = 0
     killed: dict[str, int] = field(default_factory=dict)  # by program
     survivors: list[Mutant] = field(default_factory=list)
     invalid: int = 0
     equal: int = 0
+
+    @property
+    def mutants(self) -> float:
+        """How many distinct ones the part has, by the share of those that were drawn."""
+        return self.changes * self.distinct / max(self.distinct + self.invalid + self.equal, 1)
+
+    @property
+    def share(self) -> float:
+        """Of the distinct ones, those that were killed."""
+        return sum(self.killed.values()) / max(self.distinct, 1)
 
     def line(self, name: str) -> str:
         """As published: Wilson's interval."""
@@ -104,7 +149,18 @@ class Score:
         low, high = (100 * (middle + sign * half) / (1 + z2 / n) for sign in (-1, 1))
         by = ", ".join(f"{program} {count}" for program, count in self.killed.items())
         dropped = f"{self.invalid} do not compile, {self.equal} change nothing"
-        return f"{name:12} {killed:5d} / {self.distinct:5d} {100 * p:6.1f} %  [{low:.1f}, {high:.1f}]  {by}; {dropped}"
+        score = f"{killed:5d} / {self.distinct:5d} {100 * p:6.1f} %  [{low:.1f}, {high:.1f}]"
+        return f"{name:21} {score}  {by}; {dropped}; some {self.mutants:.0f} in all"
+
+
+def of_all(scores: list[Score]) -> str:
+    """The parts together, each with the weight of its mutants; the draws are independent, so their variances add up."""
+    every = max(sum(score.mutants for score in scores), 1.0)
+    share = sum(score.mutants * score.share for score in scores) / every
+    spread = sum(
+        (score.mutants / every) ** 2 * score.share * (1 - score.share) / max(score.distinct, 1) for score in scores
+    )
+    return f"{'all':21} {100 * share:21.1f} %  +-{196 * math.sqrt(spread):.1f}  of some {every:.0f} mutants"
 
 
 class Run:
@@ -166,7 +222,7 @@ class Run:
         """`invalid`, `equal`, `killed PROGRAM`, or `code DIGEST` where nothing noticed."""
         key = self.key(mutant)
         known = self.verdicts.known.get(key, "")
-        programs = part.programs[:1] if self.near or mutant.file.endswith(".h") else part.programs
+        programs = part.programs[: part.near] if self.near or mutant.file.endswith(".h") else part.programs
         state = hashlib.sha256("".join(self.board.programs[name].digest for name in programs).encode()).hexdigest()
         if known and (not known.startswith("survived") or known == f"survived {state}"):
             return known
@@ -185,21 +241,22 @@ class Run:
             return "invalid"
         if not changed:
             return "equal"
+        links = False
         for name in programs:
             out = place / name
             if not linked(self.board, name, changed, out):
-                return "invalid"
+                continue  # a program without this source has not what it needs
+            links = True
             if not passes(out, PATIENCE * self.board.programs[name].seconds + LEAST):
                 return f"killed {name}"
-        return None
+        return None if links else "invalid"
 
     def part(self, name: str, sample: int | None) -> Score:
         """The score of a part."""
         part = PARTS[name]
-        files = sorted({p.relative_to(ROOT).as_posix() for pattern in part.sources for p in ROOT.glob(pattern)})
-        every = [mutant for file in files for mutant in mutants(file, self.source(file))]
+        every = [mutant for file in part.files for mutant in mutants(file, self.source(file))]
         random.Random(self.seed).shuffle(every)
-        score = Score()
+        score = Score(len(every))
         while every and (sample is None or score.distinct < sample):
             count = 64 if sample is None else max(sample - score.distinct, WORKERS)
             batch, every = every[:count], every[count:]
@@ -231,16 +288,18 @@ def main() -> int:
     BUILD.mkdir(parents=True, exist_ok=True)
     near = "near" in words
     seed = next((int(word[5:]) for word in words if word.startswith("seed=")), SEED)
-    programs = {name for part in chosen for name in PARTS[part].programs[: 1 if near else None]}
+    programs = {name for part in chosen for name in PARTS[part].programs[: PARTS[part].near if near else None]}
     run = Run(make_board(sorted(programs)), near, seed)
     for program in run.board.programs.values():
         print(f"{program.name}: {program.seconds:.1f} s")
-    lines, survivors = [], []
+    lines, survivors, scores = [], [], []
     for name in chosen:
         score = run.part(name, sample)
+        scores.append(score)
         lines.append(score.line(name))
         told = sorted(score.survivors, key=lambda m: (m.file, m.at))
         survivors += [mutant.told(run.source(mutant.file)) for mutant in told]
+    lines.append(of_all(scores))
     REPORT.write_text("\n".join([*lines, "", "survivors:", *survivors]) + "\n", encoding="utf-8")
     print("\n".join(["", *lines, f"survivors: {REPORT.relative_to(ROOT)}"]))
     return 0
