@@ -110,7 +110,7 @@ static inline int32_t q_abs_sat(int32_t x) { return (x < 0) ? q_neg_sat(x) : x; 
 // |x| exactly: 2^31 for INT32_MIN.
 static inline uint32_t q_abs_u32(int32_t x) { return (x < 0) ? ((uint32_t)0 - (uint32_t)x) : (uint32_t)x; }
 
-// x * 2^n, saturated, n = 0..31.
+// x * 2^n, saturated, n = 0..30.
 static inline int32_t q_shl_sat(int32_t x, unsigned n) {
   if (x > q_shr(INT32_MAX, n)) {
     return INT32_MAX;
@@ -118,7 +118,7 @@ static inline int32_t q_shl_sat(int32_t x, unsigned n) {
   if (x < q_shr(INT32_MIN, n)) {
     return INT32_MIN;
   }
-  return (int32_t)((uint32_t)x << n);
+  return x * (int32_t)((uint32_t)1 << n);
 }
 
 // x^2.

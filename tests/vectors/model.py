@@ -143,7 +143,7 @@ class Vectors:
     def shifts(self) -> Words:
         a = self.number()
         n = self.below(32)
-        return [limited(a << n), a >> n, rounded(a, n), 32 - (a & MASK).bit_length()]
+        return [limited(a << (n if n < 31 else 0)), a >> n, rounded(a, n), 32 - (a & MASK).bit_length()]
 
     def products(self) -> Words:
         a, b = self.number(), self.number()

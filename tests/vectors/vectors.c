@@ -50,7 +50,7 @@ static void sums(void) {
 static void shifts(void) {
   const int32_t a = number();
   const unsigned n = (unsigned)below(32);
-  signed_result(q_shl_sat(a, n));
+  signed_result(q_shl_sat(a, (n < 31u) ? n : 0u));
   signed_result(q_shr(a, n));
   signed_result(q_shr_round(a, n));
   result(q_clz32((uint32_t)a));

@@ -6,7 +6,7 @@ from pathlib import Path
 
 RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
 SHIFT_RANGES, BITS, FLOOR = "tests/prove/shift_ranges.h", "tests/prove/bits.h", "tests/prove/floor.h"
-OVER = "tests/prove/over_contract.h"
+OVER, LEFT_SHIFT, REST = (f"tests/prove/{name}.h" for name in ("over_contract", "left_shift", "rest"))
 LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
 ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
@@ -312,11 +312,13 @@ PARTS = (
     # What is volatile has any bits, also where it is a truth value.
     of_link("chip", CHIP, ("-eva-auto-loop-unroll", "140", "-no-warn-invalid-bool"), OF_QMATH),
     *(
-        wp(name, ("hal/qmath/qdiv.c",), ("-wp-timeout", "20"), proved, (BITS, CONTRACTS, *more))
-        for name, proved, more in (
-            ("contracts", CONTRACTS_OF_QMATH, (OVER,)),
-            ("shifts", ("q_shr",), (FLOOR, SHIFT_RANGES)),
-            ("between", BETWEEN, (SHIFT_RANGES, RANGES)),
+        wp(name, ("hal/qmath/qdiv.c",), ("-wp-timeout", "20"), proved, headers)
+        for name, proved, headers in (
+            ("contracts", CONTRACTS_OF_QMATH, (BITS, CONTRACTS, OVER)),
+            ("shifts", ("q_shr",), (BITS, CONTRACTS, FLOOR, SHIFT_RANGES)),
+            ("left", ("q_shr", "q_shl_sat"), (CONTRACTS, FLOOR, LEFT_SHIFT)),
+            ("rest", ("q_follow_rest",), (REST, SHIFT_RANGES, RANGES)),
+            ("between", BETWEEN, (BITS, CONTRACTS, SHIFT_RANGES, RANGES)),
         )
     ),
 )
