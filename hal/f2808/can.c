@@ -64,17 +64,19 @@ static bool find_timing(uint32_t bitrate, uint32_t* timing) {
 static bool share_mailboxes(const hal_can_group_t* groups, uint16_t group_count) {
   uint16_t next = HAL_CAN_MAILBOXES;
   if (group_count > HAL_CAN_GROUPS_MAX) return false;
+  can.transmit_mailboxes = ALL_MAILBOXES;
   for (uint16_t g = 0u; g < group_count; g++) {
     if (groups[g].mailboxes == 0u || groups[g].mailboxes >= next) return false;
     can.groups[g] = groups[g];
     can.group_mailboxes[g] = 0uL;
-    for (uint16_t n = 0u; n < groups[g].mailboxes; n++) {
+    const uint16_t end = (uint16_t)(next - groups[g].mailboxes);
+    while (next > end) {
       next--;
       can.group_mailboxes[g] |= bit_of(next);
     }
+    can.transmit_mailboxes &= ~can.group_mailboxes[g];
   }
   can.group_count = group_count;
-  can.transmit_mailboxes = bit_of(next) - 1u;
   return true;
 }
 

@@ -68,6 +68,17 @@ TEST_F(Can, groups_leave_a_mailbox_to_send_from) {
   EXPECT_FALSE(hal_can_init(500'000, many.data(), HAL_CAN_GROUPS_MAX + 1));
 }
 
+TEST_F(Can, a_node_that_hears_nobody_sends_from_every_mailbox) {
+  ASSERT_TRUE(hal_can_init(500'000, nullptr, 0));
+  configuration(true);
+  hal_can_service();
+  EXPECT_EQ(bus.word32(REG_CANMD), 0u) << "none receives";
+  configuration(false);
+  hal_can_service();
+  const hal_can_frame_t frame = {0x123, false, 0, {}};
+  for (unsigned n = 0; n < HAL_CAN_MAILBOXES; ++n) EXPECT_TRUE(hal_can_send(&frame, 0)) << n;
+}
+
 TEST_F(Can, groups_have_identifiers_of_either_length) {
   EXPECT_EQ(bus.word32(REG_CANMSGID(kFirst)), CANMSGID_AME_MASK | 0x101u << CANMSGID_STANDARD_LSB);
   EXPECT_EQ(bus.word32(REG_CANMSGID(kExtended)), CANMSGID_IDE_MASK | CANMSGID_AME_MASK | 0x1ABCDE00u);

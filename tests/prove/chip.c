@@ -1,7 +1,6 @@
 // The chip's drivers that the interrupts and the set-up call, with any contents of every register at every access and
 // any octets, rates, frames and ticks from above, in any order.
 
-#include "hal/f2808/target.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
@@ -14,38 +13,6 @@
 #include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 #include "tests/prove/any.h"
-
-uint16_t target_read16(uint32_t address) {
-  (void)address;
-  return any_u16;
-}
-uint32_t target_read32(uint32_t address) {
-  (void)address;
-  return any_u32;
-}
-void target_write16(uint32_t address, uint16_t value) {
-  (void)address;
-  (void)value;
-}
-void target_write32(uint32_t address, uint32_t value) {
-  (void)address;
-  (void)value;
-}
-void target_eallow(void) {}
-void target_edis(void) {}
-void target_enable_interrupts(void) {}
-void target_disable_interrupts(void) {}
-uint16_t target_read_ier(void) { return any_u16; }
-void target_write_ier(uint16_t mask) { (void)mask; }
-void target_clear_ifr(void) {}
-void target_idle(void) {}
-void target_elapse(uint16_t cycles) { (void)cycles; }
-
-// An interrupt comes as soon as it can.
-void target_set_vector(uint16_t vector, target_isr_t isr) {
-  //@ assert vector < 128;
-  isr();
-}
 
 // The tape in any state.
 hal_tape_t hal_tape;

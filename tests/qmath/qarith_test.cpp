@@ -63,7 +63,8 @@ void check_one(std::int32_t x) {
   for (unsigned n = 0; n < 32; ++n) {
     ASSERT_TRUE(Wide{q_shr(x, n)} == floor_shift(x, n)) << x << " >> " << n;
     ASSERT_TRUE(Wide{q_shr_round(x, n)} == round_shift(x, n)) << x << " >> " << n;
-    if (n < 31) ASSERT_EQ(q_shl_sat(x, n), saturate(Wide{x} * (Wide{1} << n))) << x << " << " << n;
+    if (n == 31) continue;
+    ASSERT_EQ(q_shl_sat(x, n), saturate(Wide{x} * (Wide{1} << n))) << x << " << " << n;
   }
 }
 

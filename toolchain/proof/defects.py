@@ -174,6 +174,7 @@ DEFECTS = (
     Defect("chip", "keep", "hal/f2808/sci.c", "in % HAL_SCI_RECEIVE_RING]", "in % (HAL_SCI_RECEIVE_RING + 1u)]"),
     Defect("left", "q_shl_sat", "hal/qmath/qarith.h", "(x > q_shr(INT32_MAX, n))", "(x >= q_shr(INT32_MAX, n))"),
     Defect("rest", "q_follow_rest", "hal/qmath/qarith.h", "(int32_t)(sum >> n)", "(int32_t)(sum >> (n - 1u))"),
+    Defect("devices", "bit_of", "hal/f2808/can.c", "(31u - q_clz32(pending))", "(32u - q_clz32(pending))"),
     Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
     Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),
     Defect("contracts", "q15_sat", "hal/qmath/qarith.h", "q_clamp(x, INT16_MIN, ", "q_clamp(x, -INT16_MAX, "),

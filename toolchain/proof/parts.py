@@ -96,7 +96,10 @@ RESULTS = (
 )
 
 DRIVERS = "adc", "clock", "encoder", "gpio", "irq", "lines", "pwm", "safety", "sci", "slices", "timer", "watchdog"
-CHIP = ("tests/prove/chip.c", "hal/qmath/qdiv.c", *(f"hal/f2808/{name}.c" for name in DRIVERS))
+ANY_REGISTER = "tests/prove/any_register.c"
+CHIP = ("tests/prove/chip.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2808/{name}.c" for name in DRIVERS))
+OF_DEVICES = "can", "i2c", "eeprom", "selftest", "flash", "flash_read", "gpio"
+DEVICES = ("tests/prove/devices.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2808/{name}.c" for name in OF_DEVICES))
 
 # All that the control interrupt runs but what speaks to the chip; and what of that is read by itself.
 INTERRUPT = (
@@ -311,6 +314,20 @@ PARTS = (
     ),
     # What is volatile has any bits, also where it is a truth value.
     of_link("chip", CHIP, ("-eva-auto-loop-unroll", "140", "-no-warn-invalid-bool"), OF_QMATH),
+    # In which phase a transfer is says which way its octets go.
+    of_link(
+        "devices",
+        DEVICES,
+        (
+            "-eva-auto-loop-unroll",
+            "140",
+            "-no-warn-invalid-bool",
+            "-eva-partition-value",
+            "phase",
+            "-eva-interprocedural-splits",
+        ),
+        OF_QMATH,
+    ),
     *(
         wp(name, ("hal/qmath/qdiv.c",), ("-wp-timeout", "20"), proved, headers)
         for name, proved, headers in (
