@@ -1,8 +1,7 @@
-// The board's own lines and what a drive looks at before it trusts itself: memory, watchdog, gates.
+// The board's own lines: relay, brake, emergency stop, run switch, gates.
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_lines.h"
-#include "hal/hal_selftest.h"
 #include "hal/hal_tape.h"
 #include "tests/hal/bus_test.hpp"
 
@@ -10,7 +9,6 @@ namespace stillspin::test {
 
 namespace {
 constexpr std::uint32_t kEmergency = 1u << 13;
-constexpr std::uint32_t kRam = 0x8000;
 }  // namespace
 
 class Lines : public BusTest {
@@ -55,34 +53,43 @@ TEST_F(Lines, emergency_stop_of_a_tape_is_the_tapes) {
   EXPECT_TRUE(bus.steps.empty()) << "no register is reached";
 }
 
-// A memory that gives one word wrong, once: whichever of the test's reads it is.
-TEST_F(Lines, every_read_of_the_memory_test_counts) {
-  const std::uint32_t a = kRam + 2 * 7;
-  bus.words[a] = 0x1234;
-  bus.words[a + 1] = 0xABCD;
-  int read = 0, wrong = 0;
-  bus.spoils = [&](std::uint16_t word) { return static_cast<std::uint16_t>(word ^ (read++ == wrong ? 0x0040 : 0)); };
-  const auto passes = [&](int n) {
-    read = 0;
-    wrong = n;
-    return hal_selftest_ram(7);
+// The board is off until it is told otherwise, and each line is told alone.
+TEST_F(Lines, relay_and_brake_begin_off_and_follow_one_by_one) {
+  const std::uint32_t relay = 1u << 16, brake = 1u << 17;
+  hal_lines_init();
+  for (const std::uint32_t line : {relay, brake}) {
+    expect_before(bus.first_write(REG_GPACLEAR, line), bus.first_write(REG_GPADIR, line), "level before direction");
+  }
+  EXPECT_EQ(bus.word32(REG_GPADIR), relay | brake);
+  EXPECT_EQ(bus.word32(REG_GPAMUX2), 0u) << "both are their own";
+  EXPECT_EQ(bus.first_write(REG_GPASET), FakeBus::npos);
+  const auto does = [this](void (*act)(bool), bool on, std::uint32_t line) {
+    bus.forget_steps();
+    act(on);
+    ASSERT_EQ(bus.steps.size(), 1u);
+    EXPECT_EQ(bus.steps[0].address, on ? REG_GPASET : REG_GPACLEAR);
+    EXPECT_EQ(bus.steps[0].value, line) << "and no other line";
   };
-  EXPECT_TRUE(passes(-1));
-  const int reads = read;
-  ASSERT_EQ(reads, 12) << "two to be kept, two of each of four passes, two at the end";
-  for (int n = 2; n < reads; ++n) EXPECT_FALSE(passes(n)) << "read " << n;
-  EXPECT_TRUE(passes(-1));
-  EXPECT_EQ(bus.words[a], 0x1234) << "what was there is there again";
-  EXPECT_EQ(bus.words[a + 1], 0xABCD);
+  for (const bool on : {true, false}) {
+    does(hal_lines_relay, on, relay);
+    does(hal_lines_brake, on, brake);
+  }
 }
 
-TEST_F(Lines, gates_are_off_when_every_one_of_their_pins_is_low) {
-  bus.words[REG_GPADAT] = 0xFFC0;
-  EXPECT_TRUE(hal_selftest_gates_are_off());
-  for (unsigned pin = 0; pin < 6; ++pin) {
-    bus.words[REG_GPADAT] = static_cast<std::uint16_t>(0xFFC0u | 1u << pin);
-    EXPECT_FALSE(hal_selftest_gates_are_off()) << "GPIO" << pin;
-  }
+TEST_F(Lines, run_switch_is_on_when_its_line_is_low_and_gates_pass_when_theirs_is_high) {
+  const auto only = [this](unsigned pin, bool level) {
+    const std::uint32_t bits = level ? 1u << pin : ~(1u << pin);
+    bus.words[REG_GPADAT] = static_cast<std::uint16_t>(bits & 0xFFFFu);
+    bus.words[REG_GPADAT + 1] = static_cast<std::uint16_t>(bits >> 16);
+  };
+  only(25, false);
+  EXPECT_TRUE(hal_lines_run());
+  only(25, true);
+  EXPECT_FALSE(hal_lines_run());
+  only(24, true);
+  EXPECT_TRUE(hal_lines_gates_pass());
+  only(24, false);
+  EXPECT_FALSE(hal_lines_gates_pass());
 }
 
 }  // namespace stillspin::test
