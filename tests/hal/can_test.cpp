@@ -1,37 +1,12 @@
 // The CAN driver on a register bus: what it refuses, and what a controller may say that no other node makes it say.
-// Frames and buses are can_on_chip_test.cpp.
+// Mailboxes are can_mailboxes_test.cpp, states can_states_test.cpp, frames and
+// buses can_on_chip_test.cpp.
 
-#include "hal/f2808/registers.h"
-#include "hal/hal_can.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/can_bus_test.hpp"
 
 namespace stillspin::test {
 
-namespace {
-constexpr hal_can_group_t kGroups[] = {{0x101, 0x7FF, false, 3}, {0x1ABCDE00, 0x1FFFFF00, true, 2}};
-constexpr unsigned kFirst = 31, kOpen = 29,
-                   kExtended = 28;  // mailboxes: the first group's ends, the second's upper one
-}  // namespace
-
-class Can : public BusTest {
- protected:
-  void SetUp() override {
-    bus.power_all();
-    ASSERT_TRUE(hal_can_init(500'000, kGroups, 2));
-    configuration(true);
-    hal_can_service();
-    configuration(false);
-    hal_can_service();
-    ASSERT_EQ(hal_can_status().state, HAL_CAN_ACTIVE);
-  }
-  /// What the controller says of its change into and out of configuration.
-  void configuration(bool on) { set(REG_CANES, on ? CANES_CCE_MASK : 0u); }
-  void set(std::uint32_t address, std::uint32_t value) {
-    bus.words[address] = static_cast<std::uint16_t>(value & 0xFFFFu);
-    bus.words[address + 1] = static_cast<std::uint16_t>(value >> 16);
-  }
-  static hal_can_frame_t message(std::uint16_t length = 8) { return {0x181, false, length, {1, 2, 3, 4, 5, 6, 7, 8}}; }
-};
+using Can = CanOnBus;
 
 TEST_F(Can, rates_that_cannot_be_met_are_refused) {
   for (const std::uint32_t rate : {0u, 9'999u, 10'000u, 333'000u, 1'000'001u}) {

@@ -75,4 +75,27 @@ TEST_F(Clock, peripherals_have_clocks_and_pwm_counters_stand_still) {
   EXPECT_EQ(bus.words[REG_PCLKCR0] & PCLKCR0_SCIAENCLK_MASK, PCLKCR0_SCIAENCLK_MASK);
 }
 
+// A boot loader may have left the divider on.
+TEST_F(Clock, divider_is_off_before_the_pll_is_changed) {
+  bus.words[REG_PLLSTS] = PLLSTS_CLKINDIV_MASK;
+  ASSERT_TRUE(hal_clock_init());
+  EXPECT_EQ(bus.words[REG_PLLSTS] & PLLSTS_CLKINDIV_MASK, 0u);
+  const std::size_t off = bus.first_write(REG_PLLSTS);
+  EXPECT_EQ(bus.steps[off].value & PLLSTS_CLKINDIV_MASK, 0u);
+  expect_before(off, bus.first_write(REG_PLLCR), "CLKINDIV before PLLCR");
+}
+
+TEST_F(Clock, running_pll_that_has_not_locked_is_waited_for) {
+  bus.words[REG_PLLCR] = 10;
+  EXPECT_FALSE(hal_clock_init());
+  EXPECT_GT(bus.cycles, 65536u);
+  EXPECT_EQ(bus.first_write(REG_PCLKCR1), FakeBus::npos);
+}
+
+TEST_F(Clock, every_peripheral_in_use_has_its_clock_and_no_other) {
+  ASSERT_TRUE(hal_clock_init());
+  EXPECT_EQ(bus.words[REG_PCLKCR0],
+            PCLKCR0_ADCENCLK_MASK | PCLKCR0_I2CAENCLK_MASK | PCLKCR0_SCIAENCLK_MASK | PCLKCR0_ECANAENCLK_MASK);
+}
+
 }  // namespace stillspin::test

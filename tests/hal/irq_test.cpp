@@ -25,6 +25,7 @@ class Irq : public BusTest {
 
 TEST_F(Irq, everything_is_off_before_vectors_change) {
   bus.words[REG_PIECTRL] = PIECTRL_ENPIE_MASK;
+  bus.ier = kGroup1 | kGroup3;
   hal_irq_install(control, window);
   const std::size_t first_vector = bus.first(Op::kSetVector);
   expect_before(bus.first(Op::kDisableInterrupts), first_vector, "INTM");
@@ -32,6 +33,8 @@ TEST_F(Irq, everything_is_off_before_vectors_change) {
   expect_before(bus.first_write(REG_PIECTRL), first_vector, "PIE");
   EXPECT_EQ(bus.steps[bus.first_write(REG_PIECTRL)].value, 0u);
   expect_before(first_vector, bus.first_write(REG_PIECTRL, PIECTRL_ENPIE_MASK), "table before it is used");
+  expect_before(bus.first(Op::kDisableInterrupts), bus.first(Op::kClearIfr), "nothing new behind the one who cleans");
+  EXPECT_EQ(bus.ier, 0u);
   for (unsigned group = 1; group <= 12; ++group) {
     EXPECT_EQ(bus.steps[bus.first_write(REG_PIEIER(group))].value, 0u);
     EXPECT_EQ(bus.steps[bus.first_write(REG_PIEIFR(group))].value, 0u);
@@ -72,6 +75,8 @@ TEST_F(Irq, unexpected_interrupts_are_counted_to_the_end_of_a_word) {
     bus.forget_steps();
   }
   EXPECT_EQ(hal_irq_unexpected_count(), 65535u) << "none is no count to come back to";
+  hal_irq_install(control, window);
+  EXPECT_EQ(hal_irq_unexpected_count(), 0u) << "since it was installed";
 }
 
 TEST_F(Irq, old_events_are_cleared_from_the_peripheral_to_the_cpu) {
@@ -85,6 +90,18 @@ TEST_F(Irq, old_events_are_cleared_from_the_peripheral_to_the_cpu) {
   expect_before(counter_off, epwm_flag, "event counter before ETFLG, or a waiting event sets it again");
   expect_before(epwm_flag, bus.first_write(REG_PIEIFR(3)), "ETFLG before PIEIFR");
   expect_before(adc_flag, bus.first_write(REG_PIEIFR(1)), "ADCST before PIEIFR");
+  for (const unsigned group : {1u, 3u}) {
+    const std::size_t held = bus.first_write(REG_PIEIER(group));
+    EXPECT_EQ(bus.steps[held].value, 0u) << "flags may be written while nothing of the group is enabled";
+    EXPECT_EQ(bus.steps[bus.first_write(REG_PIEIFR(group))].value, 0u);
+    expect_before(held, bus.first_write(REG_PIEIFR(group)), "PIEIER off before PIEIFR");
+    expect_before(bus.first_write(REG_PIEIFR(group)), bus.first(Op::kClearIfr), "PIEIFR before IFR");
+  }
+  EXPECT_EQ(bus.steps.front().op, Op::kDisableInterrupts);
+  EXPECT_EQ(bus.steps[epwm_flag].value, EPWM_ETCLR_INT_MASK);
+  EXPECT_EQ(bus.steps[adc_flag].value, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
+  EXPECT_NE(bus.first_write(REG_PIEACK, kGroup1), FakeBus::npos);
+  EXPECT_NE(bus.first_write(REG_PIEACK, kGroup3), FakeBus::npos);
   expect_before(bus.first_write(REG_PIEIFR(3)), bus.first_write(REG_PIEIER(3), 1), "PIEIFR before PIEIER");
   expect_before(bus.first_write(REG_PIEIFR(1)), bus.first_write(REG_PIEIER(1), 2), "PIEIFR before PIEIER");
   expect_before(bus.last_write(REG_PIEACK), counter_on, "everything is ready before events count");

@@ -53,6 +53,7 @@ TEST_F(Pwm, counters_start_last_and_together) {
 }
 
 TEST_F(Pwm, time_bases_count_up_to_9999_in_step) {
+  for (unsigned module = 1; module <= 6; ++module) bus.words[EPWM_BASE(module) + EPWM_TBCTR] = 77;  // a first life's
   ASSERT_TRUE(hal_pwm_init(kDeadBand));
   for (unsigned module = 1; module <= 6; ++module) {
     const std::uint16_t control = epwm(module, EPWM_TBCTL);
@@ -63,6 +64,8 @@ TEST_F(Pwm, time_bases_count_up_to_9999_in_step) {
     const bool master = module == 1;
     EXPECT_EQ((control & EPWM_TBCTL_PHSEN_MASK) != 0, !master);
     EXPECT_EQ((control & EPWM_TBCTL_SYNCOSEL_MASK) >> EPWM_TBCTL_SYNCOSEL_LSB, master ? 1u : 0u);
+    EXPECT_NE(control & EPWM_TBCTL_PRDLD_MASK, 0u) << "a period that is written counts at once";
+    EXPECT_NE(control & EPWM_TBCTL_PHSDIR_MASK, 0u) << "up behind the pulse, too";
     EXPECT_EQ(epwm(module, EPWM_TBPHS_TBPHS), master ? 0u : 2u) << "the pulse is two ticks on its way";
   }
 }
@@ -85,6 +88,7 @@ TEST_F(Pwm, no_pulse_and_no_burst_at_the_start) {
 }
 
 TEST_F(Pwm, legs_are_complementary_with_dead_band) {
+  for (unsigned leg = 1; leg <= 3; ++leg) bus.words[EPWM_BASE(leg) + EPWM_AQCTLB] = 0x0FFF;  // a first life's
   ASSERT_TRUE(hal_pwm_init(kDeadBand));
   for (unsigned leg = 1; leg <= 3; ++leg) {
     EXPECT_EQ(epwm(leg, EPWM_DBCTL), 0x000Bu) << "active high complementary, both edges, from A";
@@ -96,6 +100,7 @@ TEST_F(Pwm, legs_are_complementary_with_dead_band) {
 }
 
 TEST_F(Pwm, windows_trigger_the_adc_and_the_first_module_interrupts) {
+  bus.words[EPWM_BASE(1) + EPWM_ETPS] = 0x0001;  // a first life's
   ASSERT_TRUE(hal_pwm_init(kDeadBand));
   EXPECT_EQ(epwm(1, EPWM_ETSEL), 0x0009u) << "interrupt at zero";
   EXPECT_EQ(epwm(1, EPWM_ETPS), 0x0000u) << "not counting before hal_irq_enable";
@@ -157,6 +162,12 @@ TEST_F(Pwm, frame_of_an_overrun_control_interrupt_writes_nothing) {
   EXPECT_FALSE(hal_pwm_write(&frame, 5000));
   EXPECT_EQ(bus.count_writes(), 0u);
   EXPECT_EQ(bus.steps[1].address, EPWM_BASE(1) + EPWM_TBCTR) << "time first: a start in between must be seen";
+  for (const std::uint16_t waiting : {1, 2, 3}) {
+    bus.words[EPWM_BASE(1) + EPWM_ETPS] = static_cast<std::uint16_t>(waiting << EPWM_ETPS_INTCNT_LSB | 1);
+    EXPECT_FALSE(hal_pwm_write(&frame, 5000)) << waiting;
+  }
+  bus.words[EPWM_BASE(1) + EPWM_ETPS] = 0xFFF3;  // everything else of the register
+  EXPECT_TRUE(hal_pwm_write(&frame, 5000));
 }
 
 // A computer that plays the tape must find the drive as late as it was.
@@ -210,6 +221,38 @@ TEST_F(Pwm, gates_stay_off_while_the_over_current_input_is_low) {
   EXPECT_FALSE(hal_pwm_gates_on());
   EXPECT_EQ(bus.count_writes(), 0u) << "clearing the latch, even for a moment, would switch devices on";
   EXPECT_TRUE(hal_pwm_is_tripped());
+}
+
+// Over-current that comes just then, or a flag that does not clear.
+TEST_F(Pwm, gates_that_do_not_come_on_are_told) {
+  ASSERT_TRUE(hal_pwm_init(kDeadBand));
+  for (unsigned leg = 1; leg <= 3; ++leg) {
+    bus.between = [&] { bus.words[EPWM_BASE(leg) + EPWM_TZFLG] = EPWM_TZFLG_OST_MASK; };
+    EXPECT_FALSE(hal_pwm_gates_on()) << "leg " << leg;
+    bus.between = nullptr;
+    EXPECT_TRUE(hal_pwm_gates_on());
+  }
+}
+
+TEST_F(Pwm, every_leg_is_let_go_and_held_and_no_window) {
+  ASSERT_TRUE(hal_pwm_init(kDeadBand));
+  bus.forget_steps();
+  ASSERT_TRUE(hal_pwm_gates_on());
+  for (unsigned module = 1; module <= 6; ++module) {
+    const std::size_t clear = bus.first_write(EPWM_BASE(module) + EPWM_TZCLR);
+    EXPECT_EQ(clear != FakeBus::npos, module <= 4) << "the legs and the witness";
+    if (clear != FakeBus::npos) {
+      EXPECT_EQ(bus.steps[clear].value, EPWM_TZCLR_OST_MASK);
+    }
+  }
+  expect_before(bus.first_write(EPWM_BASE(4) + EPWM_TZCLR), bus.first_write(EPWM_BASE(1) + EPWM_TZCLR),
+                "the witness first: a trip in between is not lost");
+  bus.forget_steps();
+  hal_pwm_gates_off();
+  EXPECT_EQ(bus.count_writes(), 3u);
+  for (unsigned leg = 1; leg <= 3; ++leg) {
+    EXPECT_EQ(bus.steps[bus.first_write(EPWM_BASE(leg) + EPWM_TZFRC)].value, EPWM_TZFRC_OST_MASK);
+  }
 }
 
 TEST_F(Pwm, one_tripped_leg_is_enough) {
