@@ -30,19 +30,16 @@ class CanOnBus : public BusTest {
   }
   /// What the controller says of its change into and out of configuration.
   void configuration(bool on) { set(REG_CANES, on ? CANES_CCE_MASK : 0u); }
-  void set(std::uint32_t address, std::uint32_t value) {
-    bus.words[address] = static_cast<std::uint16_t>(value & 0xFFFFu);
-    bus.words[address + 1] = static_cast<std::uint16_t>(value >> 16);
-  }
+  void set(std::uint32_t address, std::uint32_t value) { bus.set32(address, value); }
   void service_after(std::uint64_t cycles) {
     bus.cycles += cycles;
     hal_can_service();
   }
   /// What was written to a register last.
   std::uint32_t written(std::uint32_t address) {
-    const std::size_t step = bus.last_write(address);
-    EXPECT_NE(step, FakeBus::npos) << std::hex << address << " is not written";
-    return step == FakeBus::npos ? 0 : bus.steps[step].value;
+    const std::vector<std::uint32_t> values = bus.written(address);
+    EXPECT_FALSE(values.empty()) << std::hex << address << " is not written";
+    return values.empty() ? 0 : values.back();
   }
   static hal_can_frame_t message(std::uint16_t length = 8) { return {0x181, false, length, {1, 2, 3, 4, 5, 6, 7, 8}}; }
 };

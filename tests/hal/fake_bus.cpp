@@ -55,6 +55,19 @@ std::uint32_t FakeBus::word32(std::uint32_t address) const {
          (high == words.end() ? 0u : static_cast<std::uint32_t>(high->second) << 16);
 }
 
+void FakeBus::set32(std::uint32_t address, std::uint32_t value) {
+  words[address] = static_cast<std::uint16_t>(value & 0xFFFFu);
+  words[address + 1] = static_cast<std::uint16_t>(value >> 16);
+}
+
+std::vector<std::uint32_t> FakeBus::written(std::uint32_t address) const {
+  std::vector<std::uint32_t> values;
+  for (const Step& step : steps) {
+    if (step.op == Op::kWrite && step.address == address) values.push_back(step.value);
+  }
+  return values;
+}
+
 std::size_t FakeBus::first_write(std::uint32_t address, std::uint32_t bits) const {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].op == Op::kWrite && steps[i].address == address && (steps[i].value & bits) == bits) {

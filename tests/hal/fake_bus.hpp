@@ -63,6 +63,10 @@ class FakeBus {
   void forget_steps() { steps.clear(); }
 
   std::uint32_t word32(std::uint32_t address) const;
+  void set32(std::uint32_t address, std::uint32_t value);
+
+  /// What was written to the address, in turn.
+  std::vector<std::uint32_t> written(std::uint32_t address) const;
 
   /// Index of the first or last step that writes the address (with these bits set); npos if there is none.
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);

@@ -35,12 +35,8 @@ class Gpio : public BusTest {
     all_settings(0x5A5A5A5A);
   }
   void all_settings(std::uint32_t value) {
-    for (const std::uint32_t address : kSettings) set(address, value);
+    for (const std::uint32_t address : kSettings) bus.set32(address, value);
     bus.forget_steps();
-  }
-  void set(std::uint32_t address, std::uint32_t value) {
-    bus.words[address] = static_cast<std::uint16_t>(value & 0xFFFFu);
-    bus.words[address + 1] = static_cast<std::uint16_t>(value >> 16);
   }
   /// Of the settings those that are not as all_settings has left them.
   std::map<std::uint32_t, std::uint32_t> changed(std::uint32_t from) const {
@@ -77,7 +73,7 @@ TEST_F(Gpio, an_output_begins_with_its_level) {
     const Port port = port_of(pin);
     for (const bool level : {false, true}) {
       all_settings(0);
-      set(port.mux, 0xFFFFFFFF);
+      bus.set32(port.mux, 0xFFFFFFFF);
       gpio_make_output(pin, level);
       EXPECT_EQ(bus.word32(port.mux), ~pair(pin, 3)) << "GPIO" << pin;
       EXPECT_EQ(bus.word32(port.direction), bit(pin));
@@ -122,14 +118,14 @@ TEST_F(Gpio, levels_are_written_and_read_by_the_pins_own_bit) {
     writes(port.clear);
     gpio_toggle(pin);
     writes(port.toggle);
-    set(0x6FC0, 0);
-    set(0x6FC8, 0);
+    bus.set32(0x6FC0, 0);
+    bus.set32(0x6FC8, 0);
     EXPECT_FALSE(gpio_read(pin)) << "GPIO" << pin;
-    set(port.data, bit(pin));
+    bus.set32(port.data, bit(pin));
     EXPECT_TRUE(gpio_read(pin)) << "GPIO" << pin;
-    set(0x6FC0, 0xFFFFFFFF);
-    set(0x6FC8, 0xFFFFFFFF);
-    set(port.data, ~bit(pin));
+    bus.set32(0x6FC0, 0xFFFFFFFF);
+    bus.set32(0x6FC8, 0xFFFFFFFF);
+    bus.set32(port.data, ~bit(pin));
     EXPECT_FALSE(gpio_read(pin)) << "GPIO" << pin;
   }
 }

@@ -77,11 +77,7 @@ TEST_F(Lines, relay_and_brake_begin_off_and_follow_one_by_one) {
 }
 
 TEST_F(Lines, run_switch_is_on_when_its_line_is_low_and_gates_pass_when_theirs_is_high) {
-  const auto only = [this](unsigned pin, bool level) {
-    const std::uint32_t bits = level ? 1u << pin : ~(1u << pin);
-    bus.words[REG_GPADAT] = static_cast<std::uint16_t>(bits & 0xFFFFu);
-    bus.words[REG_GPADAT + 1] = static_cast<std::uint16_t>(bits >> 16);
-  };
+  const auto only = [this](unsigned pin, bool level) { bus.set32(REG_GPADAT, level ? 1u << pin : ~(1u << pin)); };
   only(25, false);
   EXPECT_TRUE(hal_lines_run());
   only(25, true);

@@ -138,11 +138,7 @@ TEST_F(Serial, octets_go_out_in_their_order_four_a_period_and_as_the_fifo_has_ro
     bus.words[kSci + SCI_FFTX] = static_cast<std::uint16_t>(used << SCI_FFTX_TXFFST_LSB);
     bus.forget_steps();
     hal_sci_service();
-    std::vector<std::uint32_t> sent;
-    for (const Step& s : bus.steps) {
-      if (s.op == Op::kWrite && s.address == kSci + SCI_TXBUF) sent.push_back(s.value);
-    }
-    return sent;
+    return bus.written(kSci + SCI_TXBUF);
   };
   using Octets = std::vector<std::uint32_t>;
   EXPECT_EQ(sent_into(0), Octets{});
@@ -216,13 +212,12 @@ class SerialBreak : public Serial {
     bus.words[REG_GPADAT + 1] = line ? 0xFFFF : static_cast<std::uint16_t>(~(1u << (28 - 16)));
   }
   /// One period: how many octets it has sent, and whether it has reset the port.
-  int sent = 0;
+  std::size_t sent = 0;
   bool reset = false;
   void service() {
     bus.forget_steps();
     hal_sci_service();
-    sent = 0;
-    for (const Step& s : bus.steps) sent += s.op == Op::kWrite && s.address == kSci + SCI_TXBUF ? 1 : 0;
+    sent = bus.written(kSci + SCI_TXBUF).size();
     const std::size_t held = bus.first_write(kSci + SCI_CTL1);
     reset = held != FakeBus::npos;
     if (!reset) return;
@@ -234,21 +229,21 @@ class SerialBreak : public Serial {
 
 TEST_F(SerialBreak, port_is_reset_when_the_line_is_high_and_all_has_been_sent) {
   service();
-  EXPECT_EQ(sent, 4) << "the line is low: no use in a reset";
+  EXPECT_EQ(sent, 4u) << "the line is low: no use in a reset";
   EXPECT_FALSE(reset);
   EXPECT_EQ(hal_sci_errors().breaks, 1);
   status(true, true, false);
   service();
-  EXPECT_EQ(sent, 0) << "it must become empty";
+  EXPECT_EQ(sent, 0u) << "it must become empty";
   EXPECT_FALSE(reset) << "an octet is on the line";
   status(true, true, true);
   service();
   EXPECT_TRUE(reset);
-  EXPECT_EQ(sent, 4);
+  EXPECT_EQ(sent, 4u);
   status(false, true, true);
   service();
   EXPECT_FALSE(reset) << "once";
-  EXPECT_EQ(sent, 4);
+  EXPECT_EQ(sent, 4u);
   EXPECT_EQ(hal_sci_errors().breaks, 1) << "it was one break";
 }
 

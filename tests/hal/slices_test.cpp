@@ -17,13 +17,7 @@ class Slices : public BusTest {
   }
   using Values = std::vector<std::uint32_t>;
   std::uint16_t epwm(unsigned module, std::uint32_t offset) { return bus.words[EPWM_BASE(module) + offset]; }
-  Values written(unsigned module, std::uint32_t offset) const {
-    Values values;
-    for (const Step& s : bus.steps) {
-      if (s.op == Op::kWrite && s.address == EPWM_BASE(module) + offset) values.push_back(s.value);
-    }
-    return values;
-  }
+  Values written(unsigned module, std::uint32_t offset) const { return bus.written(EPWM_BASE(module) + offset); }
   /// A compare value now and in the shadow: what was meant for this period must not come any more.
   void expect_at_once(unsigned module, unsigned a, unsigned b) {
     const std::uint32_t base = EPWM_BASE(module);

@@ -119,6 +119,26 @@ TEST_F(TapeWords, OutputsFitToTheLastWord) {
   EXPECT_FALSE(hal_tape_finish_period());
 }
 
+TEST_F(TapeWords, WhatDoesNotFitLeavesTheRestAsItIs) {
+  start(TAPE_RECORDS);
+  for (unsigned k = 0; k < TAPE_WORKS + 1; ++k) work(TAPE_RELOADED);
+  for (std::uint16_t k = 0; k < TAPE_INPUTS + 1; ++k) tape_note(k);
+  for (std::uint16_t k = 0; k < TAPE_OUTPUTS + 1; ++k) tape_tell(TAPE_LEGS, nullptr, 0);
+  for (std::uint16_t k = 0; k < TAPE_WINDOWS + 1; ++k) window();
+  const tape_period_t& p = hal_tape.period;
+  EXPECT_EQ(p.works[0], TAPE_RELOADED | 1u << 3);
+  EXPECT_EQ(p.works[TAPE_WORKS - 1], TAPE_RELOADED | 1u << 3);
+  EXPECT_EQ(p.inputs[0], 0);
+  EXPECT_EQ(p.inputs[TAPE_INPUTS - 1], TAPE_INPUTS - 1);
+  EXPECT_EQ(p.outputs[0], TAPE_LEGS);
+  EXPECT_EQ(p.windows[0].call, 0);
+  EXPECT_EQ(p.windows[TAPE_WINDOWS - 1].results[TAPE_RESULTS - 1], TAPE_RESULTS);
+  EXPECT_EQ(p.work_count, TAPE_WORKS);
+  EXPECT_EQ(p.input_count, TAPE_INPUTS);
+  EXPECT_EQ(p.output_count, TAPE_OUTPUTS);
+  EXPECT_EQ(p.window_count, TAPE_WINDOWS);
+}
+
 TEST_F(TapeWords, ANewPeriodHasNothingOfTheLast) {
   const auto expect_new = [] {
     const tape_period_t& p = hal_tape.period;
