@@ -28,7 +28,7 @@ TEST_F(Adc, powers_up_and_waits_5_ms_before_anything_else) {
   const std::uint64_t before = bus.cycles;
   bring_up();
   const std::size_t power = bus.first_write(REG_ADCTRL3);
-  EXPECT_EQ(bus.steps[power].value, 0x00E1u) << "bandgap, reference, converter; simultaneous; ADCCLK = HSPCLK";
+  EXPECT_EQ(bus.steps.at(power).value, 0x00E1u) << "bandgap, reference, converter; simultaneous; ADCCLK = HSPCLK";
   expect_before(bus.first_write(REG_ADCTRL1, ADCTRL1_RESET_MASK), power, "reset before power-up");
   expect_before(power, bus.first_write(REG_ADCMAXCONV), "power-up before set-up");
   EXPECT_GE(bus.cycles - before, 500000u) << "5 ms at 100 MHz";
@@ -47,7 +47,7 @@ TEST_F(Adc, triggers_are_armed_last) {
   bring_up();
   const std::size_t arm = bus.first_write(REG_ADCTRL2);
   EXPECT_EQ(arm, bus.last_write_of_all());
-  EXPECT_EQ(bus.steps[arm].value, 0x4149u) << "SOCA to SEQ1, SOCB to SEQ2, SEQ2 interrupt, both sequencers reset";
+  EXPECT_EQ(bus.steps.at(arm).value, 0x4149u) << "SOCA to SEQ1, SOCB to SEQ2, SEQ2 interrupt, both sequencers reset";
 }
 
 TEST_F(Adc, results_are_summed_by_channel) {
@@ -100,8 +100,8 @@ TEST_F(Adc, window_is_read_then_rearmed_then_flag_cleared_then_acknowledged) {
   hal_adc_read_window(&window);
   std::size_t last_result = 0;
   for (std::size_t i = 0; i < bus.steps.size(); ++i) {
-    const bool result = bus.steps[i].op == Op::kRead && bus.steps[i].address >= REG_MIRROR_ADCRESULT0 &&
-                        bus.steps[i].address < REG_MIRROR_ADCRESULT0 + 16;
+    const bool result = bus.steps.at(i).op == Op::kRead && bus.steps.at(i).address >= REG_MIRROR_ADCRESULT0 &&
+                        bus.steps.at(i).address < REG_MIRROR_ADCRESULT0 + 16;
     last_result = result ? i : last_result;
   }
   const std::size_t rearm = bus.first_write(REG_ADCTRL2);
@@ -110,9 +110,9 @@ TEST_F(Adc, window_is_read_then_rearmed_then_flag_cleared_then_acknowledged) {
   expect_before(last_result, rearm, "results before they may be overwritten");
   expect_before(rearm, clear, "sequencers before the flag");
   expect_before(clear, acknowledge, "flag before PIEACK, or the interrupt would come twice");
-  EXPECT_EQ(bus.steps[rearm].value, 0x4149u) << "the triggers stay on";
-  EXPECT_EQ(bus.steps[clear].value, 0x0030u);
-  EXPECT_EQ(bus.steps[acknowledge].value, 0x0001u) << "group 1 and no other";
+  EXPECT_EQ(bus.steps.at(rearm).value, 0x4149u) << "the triggers stay on";
+  EXPECT_EQ(bus.steps.at(clear).value, 0x0030u);
+  EXPECT_EQ(bus.steps.at(acknowledge).value, 0x0001u) << "group 1 and no other";
 }
 
 // The first conversion after power-up may be wrong.
@@ -140,7 +140,7 @@ TEST_F(Adc, reference_is_what_the_second_conversion_gave) {
   EXPECT_EQ(bus.words[REG_ADCST], 0) << "no interrupt is left";
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ1], 0) << "set up for windows again";
   EXPECT_EQ(bus.words[REG_ADCMAXCONV], 0x0033u);
-  EXPECT_EQ(bus.steps[bus.last_write(REG_ADCTRL2)].value, 0x4149u);
+  EXPECT_EQ(bus.steps.at(bus.last_write(REG_ADCTRL2)).value, 0x4149u);
 }
 
 TEST_F(Adc, sequencer_begins_with_the_reference_each_time) {
@@ -166,7 +166,7 @@ TEST_F(Adc, slices_are_a_pair_of_currents_and_the_slow_pair) {
   adc_sequence_slices();
   EXPECT_EQ(bus.words[REG_ADCMAXCONV] & ADCMAXCONV_MAX_CONV2_MASK, 0x0010u) << "two pairs";
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3] & 0x00FFu, 0x0010u);
-  EXPECT_EQ(bus.steps[bus.last_write_of_all()].address, REG_ADCTRL2) << "armed last";
+  EXPECT_EQ(bus.steps.at(bus.last_write_of_all()).address, REG_ADCTRL2) << "armed last";
   for (std::uint16_t n = 0; n < 16; ++n) bus.words[REG_MIRROR_ADCRESULT0 + n] = static_cast<std::uint16_t>(100 + n);
   for (std::uint16_t n = 0; n < 4; ++n) EXPECT_EQ(adc_slice_result(n), 108 + n);
   adc_sequence_windows();

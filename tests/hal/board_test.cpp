@@ -53,8 +53,8 @@ TEST_F(Board, safety_outputs_start_low) {
 TEST_F(Board, enable_toggles_and_lamp_switches) {
   hal_safety_toggle_enable();
   ASSERT_EQ(bus.steps.size(), 1u);
-  EXPECT_EQ(bus.steps[0].address, REG_GPBTOGGLE);
-  EXPECT_EQ(bus.steps[0].value, kEnable);
+  EXPECT_EQ(bus.steps.at(0).address, REG_GPBTOGGLE);
+  EXPECT_EQ(bus.steps.at(0).value, kEnable);
   hal_safety_fault_lamp(true);
   EXPECT_EQ(bus.steps.back().address, REG_GPASET);
   EXPECT_EQ(bus.steps.back().value, kLamp);
@@ -77,7 +77,7 @@ TEST_F(Board, encoder_counts_one_turn_and_wraps_there) {
   EXPECT_EQ(pair(bus.word32(REG_GPAMUX2), 22), 0u);
   EXPECT_EQ(bus.word32(eqep + EQEP_QPOSINIT), 0u);
   EXPECT_EQ(bus.word32(eqep + EQEP_QPOSCNT), 0u);
-  EXPECT_EQ(bus.steps[bus.first_write(eqep + EQEP_QEPCTL)].value, 0u);
+  EXPECT_EQ(bus.steps.at(bus.first_write(eqep + EQEP_QEPCTL)).value, 0u);
   expect_before(bus.first_write(eqep + EQEP_QEPCTL), bus.first_write(eqep + EQEP_QDECCTL), "off while it changes");
   expect_before(bus.last_write(REG_GPAMUX2), bus.last_write(eqep + EQEP_QPOSCNT),
                 "the pins first: their connection may look like an edge");
@@ -111,10 +111,10 @@ TEST_F(Board, cycle_counter_counts_up_freely) {
   EXPECT_EQ(bus.words[timer + CPUTIMER_TPR], 0u) << "every SYSCLKOUT";
   EXPECT_EQ(bus.words[timer + CPUTIMER_TPRH], 0u);
   const std::size_t stop = bus.first_write(timer + CPUTIMER_TCR, CPUTIMER_TCR_TSS_MASK);
-  EXPECT_EQ(bus.steps[stop].value, CPUTIMER_TCR_TSS_MASK);
+  EXPECT_EQ(bus.steps.at(stop).value, CPUTIMER_TCR_TSS_MASK);
   expect_before(stop, bus.first_write(timer + CPUTIMER_PRD), "stopped while it changes");
   const std::size_t reload = bus.first_write(timer + CPUTIMER_TCR, CPUTIMER_TCR_TRB_MASK);
-  EXPECT_EQ(bus.steps[reload].value, CPUTIMER_TCR_TSS_MASK | CPUTIMER_TCR_TRB_MASK) << "stopped while it reloads";
+  EXPECT_EQ(bus.steps.at(reload).value, CPUTIMER_TCR_TSS_MASK | CPUTIMER_TCR_TRB_MASK) << "stopped while it reloads";
   expect_before(bus.first_write(timer + CPUTIMER_TCR, CPUTIMER_TCR_TRB_MASK), bus.last_write(timer + CPUTIMER_TCR),
                 "reload before the start");
   EXPECT_EQ(bus.words[timer + CPUTIMER_TCR], CPUTIMER_TCR_FREE_MASK) << "no interrupt, and a debugger does not stop it";
@@ -137,8 +137,8 @@ TEST_F(Board, watchdog_is_serviced_by_the_two_keys_in_order) {
   hal_watchdog_service();
   ASSERT_EQ(bus.count_writes(), 2u);
   const std::size_t first = bus.first_write(REG_WDKEY);
-  EXPECT_EQ(bus.steps[first].value, 0x55u);
-  EXPECT_EQ(bus.steps[bus.last_write(REG_WDKEY)].value, 0xAAu);
+  EXPECT_EQ(bus.steps.at(first).value, 0x55u);
+  EXPECT_EQ(bus.steps.at(bus.last_write(REG_WDKEY)).value, 0xAAu);
 }
 
 TEST_F(Board, cause_of_reset_is_readable) {
@@ -150,7 +150,7 @@ TEST_F(Board, cause_of_reset_is_readable) {
 TEST_F(Board, idle_sleeps) {
   hal_idle();
   ASSERT_EQ(bus.steps.size(), 1u);
-  EXPECT_EQ(bus.steps[0].op, Op::kIdle);
+  EXPECT_EQ(bus.steps.at(0).op, Op::kIdle);
 }
 
 }  // namespace stillspin::test

@@ -17,7 +17,7 @@ class CanMailboxes : public CanOnBus {
  protected:
   std::size_t read_of(std::uint32_t address) const {
     for (std::size_t i = 0; i < bus.steps.size(); ++i) {
-      if (bus.steps[i].op == Op::kRead && bus.steps[i].address == address) return i;
+      if (bus.steps.at(i).op == Op::kRead && bus.steps.at(i).address == address) return i;
     }
     return FakeBus::npos;
   }
@@ -67,7 +67,7 @@ TEST_F(CanMailboxes, configuration_has_its_order) {
   EXPECT_EQ(written(REG_CANRIOC), CANRIOC_RXFUNC_MASK);
   start();
   const std::size_t off = bus.first_write(REG_CANME), on = bus.last_write(REG_CANME);
-  EXPECT_EQ(bus.steps[off].value, 0u);
+  EXPECT_EQ(bus.steps.at(off).value, 0u);
   expect_before(off, bus.first_write(REG_CANMSGID(kExtended)), "identifiers while their mailbox is disabled");
   expect_before(bus.last_write(REG_CANMSGID(kFirst)), on, "identifiers while their mailbox is disabled");
   expect_before(bus.last_write(REG_CANRMP), on, "what came before is forgotten before more may come");
@@ -94,8 +94,8 @@ TEST_F(CanMailboxes, a_frame_goes_into_its_mailbox_while_that_is_disabled) {
   EXPECT_EQ(written(REG_CANMDL(kSends)), 0x81020304u) << "8 bits an octet";
   EXPECT_EQ(written(REG_CANMDH(kSends)), 0x05060708u);
   const std::size_t off = bus.first_write(REG_CANME), on = bus.last_write(REG_CANME);
-  EXPECT_EQ(bus.steps[off].value, ~kSending) << "the others go on";
-  EXPECT_EQ(bus.steps[on].value, ~kSending | bit(kSends));
+  EXPECT_EQ(bus.steps.at(off).value, ~kSending) << "the others go on";
+  EXPECT_EQ(bus.steps.at(on).value, ~kSending | bit(kSends));
   expect_before(off, bus.first_write(REG_CANMSGID(kSends)), "disabled first");
   expect_before(bus.last_write(REG_CANMDH(kSends)), on, "and enabled when all is there");
   expect_before(on, bus.first_write(REG_CANTRS), "then asked to be sent");
@@ -123,10 +123,21 @@ TEST_F(CanMailboxes, all_that_are_left_send_from_above_down) {
   EXPECT_FALSE(hal_can_send(&frame, 1));
   set(REG_CANTRS, requested & ~bit(kSends));
   EXPECT_FALSE(hal_can_send(&frame, 0)) << "it would overtake those below";
+  EXPECT_EQ(hal_can_waiting(0), kSends);
   EXPECT_TRUE(hal_can_send(&frame, 1)) << "which another priority may";
   EXPECT_EQ(written(REG_CANTRS), bit(kSends));
   hal_can_cancel(0);
   EXPECT_EQ(written(REG_CANTRR), kSending & ~bit(kSends)) << "of this priority alone";
+}
+
+TEST_F(CanMailboxes, none_overtakes_the_last_of_a_full_house) {
+  const hal_can_frame_t frame = message();
+  for (unsigned n = 0; n <= kSends; ++n) ASSERT_TRUE(hal_can_send(&frame, 0));
+  set(REG_CANTRS, bit(0));  // all others have gone
+  EXPECT_EQ(hal_can_waiting(0), 1);
+  EXPECT_FALSE(hal_can_send(&frame, 0));
+  set(REG_CANTRS, 0);
+  EXPECT_TRUE(hal_can_send(&frame, 0));
 }
 
 // Cleared, it takes the next frame; the open one is cleared before, so that what overwrites it is seen.

@@ -9,11 +9,11 @@ class Clock : public BusTest {};
 TEST_F(Clock, watchdog_is_stopped_before_anything_else) {
   ASSERT_TRUE(hal_clock_init());
   std::size_t first = 0;
-  while (bus.steps[first].op != Op::kWrite) {
+  while (bus.steps.at(first).op != Op::kWrite) {
     ++first;
   }
-  EXPECT_EQ(bus.steps[first].address, REG_WDCR);
-  EXPECT_EQ(bus.steps[first].value, 0x0068u) << "WDDIS with the check bits 101; any others reset the chip";
+  EXPECT_EQ(bus.steps.at(first).address, REG_WDCR);
+  EXPECT_EQ(bus.steps.at(first).value, 0x0068u) << "WDDIS with the check bits 101; any others reset the chip";
 }
 
 TEST_F(Clock, pll_is_changed_only_with_the_missing_clock_detector_off) {
@@ -31,7 +31,7 @@ TEST_F(Clock, detector_stays_off_until_the_pll_has_locked) {
   ASSERT_TRUE(hal_clock_init());
   const std::size_t multiplier = bus.first_write(REG_PLLCR);
   std::size_t poll = multiplier;
-  while (!(bus.steps[poll].op == Op::kRead && bus.steps[poll].address == REG_PLLSTS)) {
+  while (!(bus.steps.at(poll).op == Op::kRead && bus.steps.at(poll).address == REG_PLLSTS)) {
     ++poll;
   }
   expect_before(poll, bus.last_write(REG_PLLSTS), "PLLLOCKS is read before MCLKOFF is cleared");
@@ -81,7 +81,7 @@ TEST_F(Clock, divider_is_off_before_the_pll_is_changed) {
   ASSERT_TRUE(hal_clock_init());
   EXPECT_EQ(bus.words[REG_PLLSTS] & PLLSTS_CLKINDIV_MASK, 0u);
   const std::size_t off = bus.first_write(REG_PLLSTS);
-  EXPECT_EQ(bus.steps[off].value & PLLSTS_CLKINDIV_MASK, 0u);
+  EXPECT_EQ(bus.steps.at(off).value & PLLSTS_CLKINDIV_MASK, 0u);
   expect_before(off, bus.first_write(REG_PLLCR), "CLKINDIV before PLLCR");
 }
 

@@ -67,8 +67,8 @@ TEST_F(Lines, relay_and_brake_begin_off_and_follow_one_by_one) {
     bus.forget_steps();
     act(on);
     ASSERT_EQ(bus.steps.size(), 1u);
-    EXPECT_EQ(bus.steps[0].address, on ? REG_GPASET : REG_GPACLEAR);
-    EXPECT_EQ(bus.steps[0].value, line) << "and no other line";
+    EXPECT_EQ(bus.steps.at(0).address, on ? REG_GPASET : REG_GPACLEAR);
+    EXPECT_EQ(bus.steps.at(0).value, line) << "and no other line";
   };
   for (const bool on : {true, false}) {
     does(hal_lines_relay, on, relay);

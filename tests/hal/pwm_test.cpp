@@ -45,7 +45,7 @@ TEST_F(Pwm, counters_start_last_and_together) {
   bus.words[REG_PCLKCR0] |= PCLKCR0_TBCLKSYNC_MASK;  // as after a second initialisation
   ASSERT_TRUE(hal_pwm_init(kDeadBand));
   const std::size_t stop = bus.first_write(REG_PCLKCR0);
-  EXPECT_EQ(bus.steps[stop].value & PCLKCR0_TBCLKSYNC_MASK, 0u);
+  EXPECT_EQ(bus.steps.at(stop).value & PCLKCR0_TBCLKSYNC_MASK, 0u);
   expect_before(stop, bus.first_write(EPWM_BASE(1) + EPWM_TBCTL), "stopped while being set up");
   EXPECT_EQ(bus.last_write(REG_PCLKCR0), bus.last_write_of_all()) << "TBCLKSYNC is the last write";
   EXPECT_NE(bus.words[REG_PCLKCR0] & PCLKCR0_TBCLKSYNC_MASK, 0u);
@@ -161,7 +161,7 @@ TEST_F(Pwm, frame_of_an_overrun_control_interrupt_writes_nothing) {
   bus.words[EPWM_BASE(1) + EPWM_TBCTR] = 10;     // which is why the counter is low
   EXPECT_FALSE(hal_pwm_write(&frame, 5000));
   EXPECT_EQ(bus.count_writes(), 0u);
-  EXPECT_EQ(bus.steps[1].address, EPWM_BASE(1) + EPWM_TBCTR) << "time first: a start in between must be seen";
+  EXPECT_EQ(bus.steps.at(1).address, EPWM_BASE(1) + EPWM_TBCTR) << "time first: a start in between must be seen";
   for (const std::uint16_t waiting : {1, 2, 3}) {
     bus.words[EPWM_BASE(1) + EPWM_ETPS] = static_cast<std::uint16_t>(waiting << EPWM_ETPS_INTCNT_LSB | 1);
     EXPECT_FALSE(hal_pwm_write(&frame, 5000)) << waiting;
@@ -242,7 +242,7 @@ TEST_F(Pwm, every_leg_is_let_go_and_held_and_no_window) {
     const std::size_t clear = bus.first_write(EPWM_BASE(module) + EPWM_TZCLR);
     EXPECT_EQ(clear != FakeBus::npos, module <= 4) << "the legs and the witness";
     if (clear != FakeBus::npos) {
-      EXPECT_EQ(bus.steps[clear].value, EPWM_TZCLR_OST_MASK);
+      EXPECT_EQ(bus.steps.at(clear).value, EPWM_TZCLR_OST_MASK);
     }
   }
   expect_before(bus.first_write(EPWM_BASE(4) + EPWM_TZCLR), bus.first_write(EPWM_BASE(1) + EPWM_TZCLR),
@@ -251,7 +251,7 @@ TEST_F(Pwm, every_leg_is_let_go_and_held_and_no_window) {
   hal_pwm_gates_off();
   EXPECT_EQ(bus.count_writes(), 3u);
   for (unsigned leg = 1; leg <= 3; ++leg) {
-    EXPECT_EQ(bus.steps[bus.first_write(EPWM_BASE(leg) + EPWM_TZFRC)].value, EPWM_TZFRC_OST_MASK);
+    EXPECT_EQ(bus.steps.at(bus.first_write(EPWM_BASE(leg) + EPWM_TZFRC)).value, EPWM_TZFRC_OST_MASK);
   }
 }
 

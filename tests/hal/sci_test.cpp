@@ -25,7 +25,7 @@ TEST_F(Serial, port_is_set_up_in_reset_and_then_let_go) {
   ASSERT_TRUE(hal_sci_init(115200));
   const std::size_t held = bus.first_write(kSci + SCI_CTL1);
   ASSERT_NE(held, FakeBus::npos);
-  EXPECT_EQ(bus.steps[held].value, 0u) << "in reset, receiver and transmitter off";
+  EXPECT_EQ(bus.steps.at(held).value, 0u) << "in reset, receiver and transmitter off";
   for (std::uint32_t reg : {SCI_CCR, SCI_LBAUD, SCI_FFTX, SCI_FFRX}) {
     expect_before(held, bus.first_write(kSci + reg), "settings in reset");
     expect_before(bus.last_write(kSci + reg), bus.last_write(kSci + SCI_CTL1), "settings before it is let go");
@@ -221,7 +221,7 @@ class SerialBreak : public Serial {
     const std::size_t held = bus.first_write(kSci + SCI_CTL1);
     reset = held != FakeBus::npos;
     if (!reset) return;
-    EXPECT_EQ(bus.steps[held].value, 0x0003u) << "the receiver and the transmitter stay on";
+    EXPECT_EQ(bus.steps.at(held).value, 0x0003u) << "the receiver and the transmitter stay on";
     EXPECT_EQ(bus.words[kSci + SCI_CTL1], 0x0023u) << "and the port is let go";
     expect_before(held, bus.last_write(kSci + SCI_CTL1), "reset, then let go");
   }

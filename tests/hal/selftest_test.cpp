@@ -62,7 +62,7 @@ TEST_F(SelfTest, the_first_pair_opens_the_memory) {
   std::set<std::uint32_t> expected{kRam, kRam + 1};
   for (std::uint32_t n = 0; n < 8; ++n) expected.insert(kPasswords + n);
   EXPECT_EQ(reached(Op::kRead), expected);
-  EXPECT_EQ(bus.steps[0].address, kPasswords) << "before it is tested";
+  EXPECT_EQ(bus.steps.at(0).address, kPasswords) << "before it is tested";
 }
 
 // An interrupt would find its variables on the checkerboard.

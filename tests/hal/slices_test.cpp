@@ -91,8 +91,8 @@ TEST_F(Slices, results_are_taken_then_rearmed_then_acknowledged) {
                     acknowledge = bus.first_write(REG_PIEACK);
   expect_before(rearm, clear, "sequencers before the flag");
   expect_before(clear, acknowledge, "flag before PIEACK, or the interrupt would come twice");
-  EXPECT_EQ(bus.steps[clear].value, 0x0030u);
-  EXPECT_EQ(bus.steps[acknowledge].value, 0x0001u) << "group 1 and no other";
+  EXPECT_EQ(bus.steps.at(clear).value, 0x0030u);
+  EXPECT_EQ(bus.steps.at(acknowledge).value, 0x0001u) << "group 1 and no other";
 }
 
 TEST_F(Slices, end_gives_the_period_back_without_pulses_or_bursts) {
