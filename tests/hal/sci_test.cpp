@@ -1,5 +1,7 @@
 // Set-up of the serial port: order, divider, pins, refusals. What octets do is tested on the virtual chip.
 
+#include <cstdlib>
+
 #include "hal/f2808/registers.h"
 #include "hal/hal_sci.h"
 #include "tests/hal/bus_test.hpp"
@@ -21,7 +23,18 @@ class Serial : public BusTest {
   }
 };
 
+// In a process of its own: the driver's state is global.
+TEST_F(Serial, port_that_has_not_been_set_up_is_not_served) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto serve = [this] {
+    hal_sci_service();
+    std::exit(bus.steps.empty() ? 0 : 1);
+  };
+  EXPECT_EXIT(serve(), ::testing::ExitedWithCode(0), "");
+}
+
 TEST_F(Serial, port_is_set_up_in_reset_and_then_let_go) {
+  for (std::uint32_t n = 0; n <= SCI_PRI; ++n) bus.words[kSci + n] = 0xFFFF;  // a boot loader's
   ASSERT_TRUE(hal_sci_init(115200));
   const std::size_t held = bus.first_write(kSci + SCI_CTL1);
   ASSERT_NE(held, FakeBus::npos);
@@ -34,6 +47,10 @@ TEST_F(Serial, port_is_set_up_in_reset_and_then_let_go) {
   EXPECT_EQ(bus.words[kSci + SCI_CCR], 0x0007u) << "8N1, idle-line";
   EXPECT_EQ(bus.words[kSci + SCI_FFTX], 0xE000u) << "FIFO on, no interrupt";
   EXPECT_EQ(bus.words[kSci + SCI_FFRX], 0x201Fu) << "FIFO on, no interrupt";
+  EXPECT_EQ(bus.words[kSci + SCI_CTL2], 0u) << "no interrupt";
+  EXPECT_EQ(bus.words[kSci + SCI_FFCT], 0u) << "the rate is not measured, and octets follow each other at once";
+  EXPECT_EQ(bus.written(kSci + SCI_FFTX).front(), 0u) << "FIFOs that hold nothing";
+  EXPECT_EQ(bus.written(kSci + SCI_FFRX).front(), SCI_FFRX_RXFFOVRCLR_MASK);
 }
 
 TEST_F(Serial, pins_belong_to_the_port_before_it_listens) {

@@ -54,6 +54,10 @@ TEST_F(Slices, begin_stops_bursts_and_holds_the_legs_low) {
     EXPECT_TRUE(written(leg, EPWM_CMPA_CMPA).empty()) << "the forcing is enough";
     EXPECT_EQ(epwm(leg, EPWM_TBPRD), 9999) << "the period goes on";
   }
+  for (unsigned module = 4; module <= 6; ++module) {
+    EXPECT_TRUE(written(module, EPWM_AQSFRC).empty() && written(module, EPWM_AQCSFRC).empty())
+        << "a window has no pins";
+  }
   EXPECT_EQ(epwm(4, EPWM_TBPRD), 999);
   EXPECT_EQ(written(4, EPWM_TBCTR), Values{0});
   EXPECT_EQ(epwm(5, EPWM_TBPRD), 9999);
