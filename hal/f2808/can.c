@@ -181,7 +181,6 @@ static void watch_mailboxes(uint32_t status) {
   (void)reap();
   if ((status & (CANES_EW_MASK | CANES_EP_MASK)) != 0uL) can.last_progress = hal_time_cycles();
   if (hal_time_cycles() - can.last_progress < STALL_CYCLES) return;
-  can.last_progress = hal_time_cycles();
   count(&can.restarts);
   request_configuration();
 }
