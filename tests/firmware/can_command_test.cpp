@@ -1,5 +1,7 @@
 // The command from the bus: what counts, what starts the drive, what happens when it stays away.
 
+#include <algorithm>
+
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
@@ -132,6 +134,86 @@ TEST_F(CanCommand, GapsOfTheAliveCounterAreCounted) {
   EXPECT_EQ(command.bad, 0);
 }
 
+// The counts tell how bad the bus is, so they must not begin again at zero.
+TEST_F(CanCommand, CountsGoToTheEndOfAWordAndStayThere) {
+  take(frame(CAN_MODE_OFF));
+  for (std::uint32_t n = 1; n <= 5000; ++n) {
+    alive = (alive + 14) % 16;
+    take(frame(CAN_MODE_OFF));
+    ASSERT_EQ(command.gaps, std::min(14u * n, 65'535u));
+  }
+  const hal_can_frame_t bad = can_frame(CAN_COMMAND, kNode);
+  for (std::uint32_t n = 1; n <= 65'600; ++n) {
+    take(bad);
+    ASSERT_EQ(command.bad, std::min(n, 65'535u));
+  }
+}
+
+// Whoever sends it may have counted for hours.
+TEST_F(CanCommand, TheFirstCommandMayHaveAnyCount) {
+  for (std::uint16_t count = 0; count < 16; ++count) {
+    can_command_reset(&command);
+    alive = (count + 15) % 16;
+    take(frame(CAN_MODE_OFF));
+    EXPECT_TRUE(command.heard) << count;
+    EXPECT_EQ(command.gaps, 0) << count;
+    EXPECT_EQ(command.bad, 0) << count;
+  }
+}
+
+TEST_F(CanCommand, TheFirstOffOrStopIsAChangeToIt) {
+  for (const std::int32_t mode : {CAN_MODE_OFF, CAN_MODE_STOP}) {
+    board = FakeBoard{};
+    drive_reset();
+    SetUp();
+    make_run();  // by somebody else
+    take(frame(mode));
+    EXPECT_EQ(drive.request.coast, mode == CAN_MODE_OFF);
+    EXPECT_EQ(drive.request.stop, mode == CAN_MODE_STOP);
+  }
+}
+
+TEST_F(CanCommand, WhatDoesNotCountDoesNothing) {
+  make_running_by_bus();
+  for (const std::int32_t mode : {CAN_MODE_OFF, CAN_MODE_STOP, CAN_MODE_RUN}) {
+    hal_can_frame_t f = frame(mode, 400, true);
+    f.data[3] ^= 1;
+    take(f);
+  }
+  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(drive.request.coast);
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_FALSE(command.clear_fault);
+}
+
+TEST_F(CanCommand, TheTimeOutIsAsLongAsItSays) {
+  parameters.can_timeout = 50;
+  drive.time_ms = 1000;
+  take(frame(CAN_MODE_OFF));
+  can_command_service(&command, 1049);
+  EXPECT_FALSE(command.timed_out);
+  can_command_service(&command, 1050);
+  EXPECT_TRUE(command.timed_out);
+  take(frame(CAN_MODE_OFF));
+  EXPECT_FALSE(command.timed_out) << "until a command counts again";
+}
+
+TEST_F(CanCommand, SilenceBeforeTheFirstCommandIsNoTimeOut) {
+  make_ready();
+  pass(1000);
+  EXPECT_FALSE(command.timed_out);
+}
+
+TEST_F(CanCommand, WithoutAReactionTheBusKeepsTheCommand) {
+  parameters.can_reaction = CAN_REACTION_NONE;
+  make_running_by_bus();
+  pass(300);
+  EXPECT_TRUE(command.timed_out);
+  EXPECT_TRUE(command.commanding);
+  take(frame(CAN_MODE_RUN, 400));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 100 << 16) << "the next command goes on with it";
+}
+
 TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {
   const drive_state_t after[] = {DRIVE_RUN, DRIVE_STOP, DRIVE_READY};
   for (int reaction = 0; reaction <= 2; ++reaction) {
@@ -171,6 +253,8 @@ TEST_F(CanCommand, AStopForgetsAStartThatHasNotBeenTaken) {
   drive.request.reload = true;  // holds the start back
   take(frame(CAN_MODE_RUN));
   ASSERT_TRUE(drive.request.start);
+  pass(1);
+  EXPECT_TRUE(command.commanding) << "the start has only not been taken yet";
   take(frame(CAN_MODE_STOP));
   drive.request.reload = false;
   pass(100);
@@ -226,6 +310,54 @@ TEST_F(CanCommand, ARunGivenDuringAFaultIsForgotten) {
   drive_command_reset();  // somebody else clears it
   say(CAN_MODE_RUN, 0, 150);
   EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+// In one message, and the fault is gone before the background level comes by again.
+TEST_F(CanCommand, ARunThatClearsAFaultDoesNotStartToo) {
+  make_running_by_bus();
+  board.tripped_by_pin = true;
+  board.gates_on = false;
+  periods(2);
+  ASSERT_EQ(drive.state, DRIVE_FAULT);
+  board.tripped_by_pin = false;
+  say(CAN_MODE_OFF, 0, 20);
+  take(frame(CAN_MODE_RUN, 0, true));
+  periods(2);
+  ASSERT_NE(drive.state, DRIVE_FAULT);
+  say(CAN_MODE_RUN, 0, 150);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+TEST_F(CanCommand, OnlyARisingBitClearsAndOnlyAFault) {
+  make_ready();
+  take(frame(CAN_MODE_OFF, 0, true));
+  EXPECT_FALSE(drive.request.reset) << "there is no fault";
+  drive.state = DRIVE_FAULT;
+  take(frame(CAN_MODE_OFF, 0, true));
+  EXPECT_FALSE(drive.request.reset) << "the bit has been there since before the fault";
+  take(frame(CAN_MODE_OFF, 0, false));
+  EXPECT_FALSE(drive.request.reset);
+  take(frame(CAN_MODE_OFF, 0, true));
+  EXPECT_TRUE(drive.request.reset);
+}
+
+TEST_F(CanCommand, ASpeedIsTakenOnlyByADriveThatTheBusRuns) {
+  make_running_by_bus();
+  drive.state = DRIVE_FAULT;
+  take(frame(CAN_MODE_RUN, 400));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "not for after the fault";
+  drive.state = DRIVE_RUN;
+  command.commanding = false;
+  take(frame(CAN_MODE_RUN, 400));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "somebody else's";
+}
+
+TEST_F(CanCommand, AStopThatGoesOnDoesNotStopWhatSomebodyElseStarts) {
+  make_ready();
+  say(CAN_MODE_STOP, 0, 20);
+  drive_command_start();
+  say(CAN_MODE_STOP, 0, 100);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
 }
 
 TEST_F(CanCommand, ADriveThatSomebodyElseStartedIsNotStoppedBySilence) {

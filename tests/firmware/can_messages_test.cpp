@@ -35,6 +35,16 @@ TEST(CanMessages, NodesDoNotShareIdentifiers) {
   }
 }
 
+TEST(CanMessages, AMessageBeginsEmptyAndInTheStandardFormat) {
+  for (std::uint16_t k = 0; k < CAN_MESSAGES; ++k) {
+    const hal_can_frame_t frame = can_frame(static_cast<can_message_t>(k), CAN_NODE_MAX);
+    EXPECT_EQ(frame.id, can_message_info(k)->base + CAN_NODE_MAX);
+    EXPECT_FALSE(frame.extended);
+    EXPECT_EQ(frame.length, can_message_info(k)->octets);
+    for (const std::uint16_t octet : frame.data) EXPECT_EQ(octet, 0);
+  }
+}
+
 TEST(CanMessages, EveryFieldKeepsItsExtremesAndLeavesTheOthersAlone) {
   for (std::uint16_t k = 0; k < CAN_FIELDS; ++k) {
     const can_field_info_t& f = *can_field_info(k);

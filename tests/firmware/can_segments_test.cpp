@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -56,6 +58,51 @@ TEST_F(CanSegments, EveryLengthArrivesAsItWas) {
     EXPECT_EQ(records[0], record);
   }
   EXPECT_EQ(joiner.dropped, 0u);
+}
+
+// The other end is another program: the two must not only agree with each other.
+TEST_F(CanSegments, PiecesAreNumberedAndTheFirstAndTheLastAreMarked) {
+  const auto frames = pieces_of(record_of(20));
+  ASSERT_EQ(frames.size(), 4u);
+  const std::uint16_t heads[] = {0x80, 0x01, 0x02, 0x43}, lengths[] = {8, 8, 8, 2};
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    EXPECT_EQ(frames[k].data[0], heads[k]);
+    EXPECT_EQ(frames[k].length, lengths[k]);
+  }
+  EXPECT_EQ(pieces_of(record_of(2)).at(0).data[0], 0xC0) << "the only one is both";
+}
+
+TEST_F(CanSegments, APieceStaysInItsFrame) {
+  segment_splitter_t s = {};
+  std::fill(std::begin(s.octets), std::end(s.octets), 0x5A);
+  segment_split_begin(&s, 20, 0);
+  hal_can_frame_t frames[2] = {};
+  ASSERT_TRUE(segment_split_peek(&s, frames));
+  EXPECT_EQ(frames[0].length, 8);
+  EXPECT_EQ(frames[1].id, 0u) << "what lies behind it";
+}
+
+TEST_F(CanSegments, AnEmptyFrameIsNoPiece) {
+  auto frames = pieces_of(record_of(30));
+  frames.insert(frames.begin() + 2, hal_can_frame_t{0, false, 0, {SEGMENT_FIRST}});
+  EXPECT_EQ(join(frames).size(), 1u);
+}
+
+TEST_F(CanSegments, ARecordThatIsBegunAnewIsDroppedAndCounted) {
+  const auto good = pieces_of(record_of(30));
+  EXPECT_TRUE(join({good[0], good[1]}).empty());
+  EXPECT_EQ(join(good).size(), 1u);
+  EXPECT_EQ(joiner.dropped, 1u);
+  EXPECT_TRUE(join({good[1], good[2]}).empty());
+  EXPECT_EQ(joiner.dropped, 1u) << "pieces of no record: which it was has been counted";
+}
+
+TEST_F(CanSegments, TheCountOfWhatWasDroppedStaysAtItsEnd) {
+  const auto first = pieces_of(record_of(30))[0];
+  for (std::uint32_t n = 0; n < 65'600; ++n) {
+    ASSERT_EQ(joiner.dropped, std::min(n == 0 ? 0 : n - 1, 65'535u));
+    (void)segment_join(&joiner, &first, 0);
+  }
 }
 
 TEST_F(CanSegments, MissingRepeatedAndExchangedPiecesDropTheRecordAndNoMore) {

@@ -1,5 +1,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
+#include <algorithm>
+
 #include "hal/hal_can.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_encoder.h"
@@ -90,7 +92,7 @@ void hal_irq_enable(void) {}
 std::uint16_t hal_irq_disable(void) { return 0; }
 void hal_irq_restore(std::uint16_t) {}
 std::uint16_t hal_irq_unexpected_count(void) { return board.unexpected_interrupts; }
-void hal_profile_step(std::uint16_t) {}
+void hal_profile_step(std::uint16_t cycles) { board.cycles += cycles; }
 std::uint32_t hal_time_cycles() { return 0; }  // no time passes
 void hal_irq_control_begin(void) {}
 void hal_irq_control_end(void) {}
@@ -105,6 +107,7 @@ std::uint32_t hal_encoder_count(void) { return board.encoder; }
 bool hal_can_init(std::uint32_t bitrate, const hal_can_group_t* groups, std::uint16_t count) {
   board.can_groups.assign(groups, groups + count);
   board.can_rate = bitrate;
+  board.can_set_ups++;
   return bitrate != 0;
 }
 void hal_can_off(void) { board.can_rate = 0; }
@@ -116,14 +119,21 @@ bool hal_can_receive(std::uint16_t group, hal_can_frame_t* frame) {
   waiting.pop_front();
   return true;
 }
-bool hal_can_send(const hal_can_frame_t* frame, std::uint16_t) {
+bool hal_can_send(const hal_can_frame_t* frame, std::uint16_t priority) {
   if (!board.can_drains && board.can_out.size() >= board.can_room) return false;
+  board.can_priority[frame->id] = priority;
   board.can_out.push_back(*frame);
   return true;
 }
-void hal_can_cancel(std::uint16_t) { board.can_cancels++; }
-std::uint16_t hal_can_waiting(std::uint16_t) {
-  return board.can_drains ? 0 : static_cast<std::uint16_t>(board.can_out.size());
+void hal_can_cancel(std::uint16_t priority) {
+  const auto waits = [&](const hal_can_frame_t& frame) { return board.can_priority[frame.id] == priority; };
+  board.can_out.erase(std::remove_if(board.can_out.begin(), board.can_out.end(), waits), board.can_out.end());
+  board.can_cancels++;
+}
+std::uint16_t hal_can_waiting(std::uint16_t priority) {
+  const auto waits = [&](const hal_can_frame_t& frame) { return board.can_priority[frame.id] == priority; };
+  const auto count = std::count_if(board.can_out.begin(), board.can_out.end(), waits);
+  return board.can_drains ? 0 : static_cast<std::uint16_t>(count);
 }
 hal_can_status_t hal_can_status(void) { return board.can_status; }
 void hal_can_recover(void) { board.can_recoveries++; }

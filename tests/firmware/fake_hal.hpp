@@ -58,7 +58,9 @@ struct FakeBoard {
   std::size_t can_room = 16;   // mailboxes for can_out
   bool can_drains = true;      // what is sent leaves its mailbox at once
   hal_can_status_t can_status = {HAL_CAN_ACTIVE, 0, 0, 0, 0, 0};
-  int can_recoveries = 0, can_cancels = 0;
+  std::map<std::uint32_t, std::uint16_t> can_priority;  // with which an identifier was sent last
+  int can_recoveries = 0, can_cancels = 0, can_set_ups = 0;
+  std::uint32_t cycles = 0;  // that the firmware says it has taken
 };
 extern FakeBoard board;
 
