@@ -131,9 +131,9 @@ void hal_can_cancel(std::uint16_t priority) {
   board.can_cancels++;
 }
 std::uint16_t hal_can_waiting(std::uint16_t priority) {
+  if (board.can_drains) return 0;
   const auto waits = [&](const hal_can_frame_t& frame) { return board.can_priority[frame.id] == priority; };
-  const auto count = std::count_if(board.can_out.begin(), board.can_out.end(), waits);
-  return board.can_drains ? 0 : static_cast<std::uint16_t>(count);
+  return static_cast<std::uint16_t>(std::count_if(board.can_out.begin(), board.can_out.end(), waits));
 }
 hal_can_status_t hal_can_status(void) { return board.can_status; }
 void hal_can_recover(void) { board.can_recoveries++; }

@@ -8,7 +8,7 @@ bool FakeNvm::begin(std::uint16_t where, std::uint16_t* in, const std::uint16_t*
   if (state == NVM_BUSY || n == 0 || where + std::size_t{n} > memory.size()) return false;
   const long job = jobs++;
   if (job == refused_job) return false;
-  deaf = job == deaf_job;
+  deaf = deaf_job >= 0 && job >= deaf_job && job < deaf_job + deaf_jobs;
   state = NVM_BUSY;
   address = where;
   read = in;

@@ -35,6 +35,7 @@ class FakeNvm {
   long wrong_at_octet = -1;
   long jobs = 0;
   long deaf_job = -1, refused_job = -1;
+  long deaf_jobs = 1;  // so many in a row
 
   /// Octets that do not take what is written to them.
   std::vector<unsigned> dead;

@@ -14,8 +14,10 @@
 
 namespace {
 
-constexpr std::uint16_t kB = 1, kD = 3;
+constexpr std::uint16_t kB = 1, kC = 2, kD = 3;
+constexpr std::uint16_t kReadsOtherwise = 40;  // the flash library's own code for such a word
 constexpr std::uint32_t kBStart = 0x3F0000, kDStart = 0x3E8000;
+constexpr std::uint32_t kLast = HAL_FLASH_SECTOR_WORDS - 1;  // word of a sector
 
 // A flash that does what it is told, unless a test says otherwise; and a list of what it was told.
 struct FakeFlash {
@@ -106,10 +108,18 @@ TEST_F(FlashKernel, TellsWhatAnEraseDidNotDo) {
   EXPECT_EQ(update_erase(kB), KERNEL_LOCKED);
   flash.erase_gives = HAL_FLASH_OUTSIDE;
   EXPECT_EQ(update_erase(kB), KERNEL_RANGE);
-  flash.erase_gives = HAL_FLASH_DONE;
-  flash.stays_low = kBStart + 0x3FFF;
-  EXPECT_EQ(update_erase(kB), KERNEL_FLASH) << "its last word";
-  EXPECT_EQ(update_failed_at(), kBStart + 0x3FFF);
+}
+
+TEST_F(FlashKernel, FindsAWordThatAnEraseDidNotReach) {
+  for (const std::uint16_t sector : {kB, kC, kD}) {
+    const std::uint32_t start = kBStart - (sector - kB) * HAL_FLASH_SECTOR_WORDS;
+    for (const std::uint32_t word : {start, start + kLast}) {
+      flash.stays_low = word;
+      EXPECT_EQ(update_erase(sector), KERNEL_FLASH);
+      EXPECT_EQ(update_failed_at(), word);
+      EXPECT_EQ(update_failed_code(), kReadsOtherwise);
+    }
+  }
 }
 
 TEST_F(FlashKernel, WritesWhatDiffersAndReadsItBack) {
@@ -120,6 +130,7 @@ TEST_F(FlashKernel, WritesWhatDiffersAndReadsItBack) {
   flash.programs_nothing = true;
   EXPECT_EQ(update_write(kDStart + 1, words, 3), KERNEL_FLASH);
   EXPECT_EQ(update_failed_at(), kDStart + 1);
+  EXPECT_EQ(update_failed_code(), kReadsOtherwise);
   flash.program_gives = HAL_FLASH_FAILED;
   EXPECT_EQ(update_write(kDStart + 1, words, 3), KERNEL_FLASH);
   EXPECT_EQ(update_failed_at(), 0x3E8123u);
@@ -139,6 +150,8 @@ TEST_F(FlashKernel, WritesNoMarkAndNothingBehindOne) {
   EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY, words, 3), KERNEL_OK);
   EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY - 2, words, 3), KERNEL_OK);
   EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY - 1, words, 3), KERNEL_RANGE);
+  const std::uint16_t ones[] = {1, 1};
+  EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY - 1, ones, 1), KERNEL_OK) << "up to it";
   seal();
   EXPECT_EQ(update_write(kBStart, words, 3), KERNEL_STATE);
 }
@@ -177,7 +190,6 @@ TEST_F(FlashKernel, AnswersWhatItDoesNotKnow) {
   EXPECT_EQ(ask({KERNEL_WRITE, 7, 0, 0, 0, 0}), (std::vector<std::uint16_t>{0xB2, 7, KERNEL_LENGTH})) << "no words";
   EXPECT_EQ(ask({KERNEL_WRITE, 7, 0}), (std::vector<std::uint16_t>{0xB2, 7, KERNEL_LENGTH}));
   EXPECT_EQ(ask({KERNEL_WRITE, 7, 0, 0, 0x3F, 0, 1}), (std::vector<std::uint16_t>{0xB2, 7, KERNEL_LENGTH})) << "half";
-  EXPECT_EQ(ask({KERNEL_INFO, 1}).size(), 3u + 7u + 24u);
 }
 
 TEST_F(FlashKernel, RequestsOfAnotherLengthAreRefusedUntouched) {
@@ -209,15 +221,27 @@ TEST_F(FlashKernel, WritesAsManyWordsAtOnceAsItHasRoomFor) {
   EXPECT_EQ(status(request), KERNEL_LENGTH) << "half a word is left";
 }
 
+// The sum of "12345678" by the standard CRC-32: the host has it from the file.
 TEST_F(FlashKernel, TellsTheSumOfWhatIsThere) {
-  flash.at(kBStart) = 0x1234;
-  std::uint32_t crc = 0;
-  ASSERT_TRUE(update_crc(kBStart, 2, &crc));
-  const auto octet = [&](int k) { return static_cast<std::uint16_t>(crc >> (8 * k) & 0xFFu); };
-  EXPECT_EQ(ask({KERNEL_CHECK, 7, 0, 0, 0x3F, 0, 2, 0, 0, 0}),
-            (std::vector<std::uint16_t>{0xB3, 7, KERNEL_OK, octet(0), octet(1), octet(2), octet(3)}));
+  const std::uint16_t words[] = {0x3231, 0x3433, 0x3635, 0x3837};
+  for (std::uint32_t k = 0; k < 4; k++) flash.at(kBStart + k) = words[k];
+  EXPECT_EQ(ask({KERNEL_CHECK, 7, 0, 0, 0x3F, 0, 4, 0, 0, 0}),
+            (std::vector<std::uint16_t>{0xB3, 7, KERNEL_OK, 0xAF, 0xDA, 0xE0, 0x9A}));
   EXPECT_EQ(ask({KERNEL_CHECK, 7, 0, 0x80, 0x3F, 0, 1, 0, 0, 0}), (std::vector<std::uint16_t>{0xB3, 7, KERNEL_RANGE}))
       << "behind the flash";
+}
+
+TEST_F(FlashKernel, TellsWhichChipAndWhichImageItIs) {
+  std::vector<std::uint16_t> expected = {KERNEL_INFO | 0x80, 5, KERNEL_OK, KERNEL_PROTOCOL, 0, 0x3C, 0, 3, 0, 0};
+  for (std::uint16_t k = 0; k < 10; k++) {
+    flash.at(HAL_FLASH_IMAGE_IDENTITY + k) = static_cast<std::uint16_t>(0x4100 + k);
+    expected.insert(expected.end(), {k, 0x41});
+  }
+  for (std::uint16_t k = 0; k < 2; k++) {
+    flash.at(HAL_FLASH_BOOT_ENTRY + k) = static_cast<std::uint16_t>(0x5200 + k);
+    expected.insert(expected.end(), {k, 0x52});
+  }
+  EXPECT_EQ(ask({KERNEL_INFO, 5}), expected);
 }
 
 TEST_F(FlashKernel, SealsAndRestartsByRequest) {

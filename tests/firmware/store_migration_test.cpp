@@ -78,6 +78,46 @@ TEST_F(Store, LimitsSurviveAChangeOfFormat) {
   }
 }
 
+// A limit in the coarser of two formats may be one step beyond that in the finer one: such a value is the limit.
+TEST_F(Store, AStepOfTheCoarserFormatBeyondALimitIsTheLimit) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    const parameter_info_t* const info = parameter_info(k);
+    for (int q = 0; q <= 31; ++q) {
+      if (q == info->q) continue;
+      const int more = q - info->q;
+      for (const bool upper : {false, true}) {
+        const std::int32_t limit = upper ? info->maximum : info->minimum;
+        const double away = (upper ? 1.0 : -1.0) * std::ldexp(1.0, std::max(0, more));
+        const double exact = std::ldexp(double(limit), more);
+        const double at = upper ? std::floor(exact) : std::ceil(exact);
+        if (std::fabs(at) + 3.0 * std::fabs(away) > 2147483646.0) continue;
+        const auto put_at = [&](double raw) {
+          const slot_entry_t entry = {info->id, static_cast<std::uint16_t>(q), static_cast<std::int32_t>(raw)};
+          values_reset();
+          return values_put(&entry);
+        };
+        ASSERT_EQ(put_at(at + away), VALUE_RESCALED) << bench::text_of(info->name) << " q" << q;
+        ASSERT_EQ(values_entry(k).raw, limit) << bench::text_of(info->name) << " q" << q;
+        ASSERT_EQ(put_at(at + 3.0 * away), VALUE_REFUSED) << bench::text_of(info->name) << " q" << q;
+      }
+    }
+  }
+}
+
+TEST_F(Store, NoParameterHasMoreThan31FractionalBits) {
+  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
+    const parameter_info_t* const info = parameter_info(k);
+    for (const std::uint16_t q : {32, 40, 63, 64, 255}) {
+      const slot_entry_t entry = {info->id, q, 0};
+      EXPECT_EQ(values_put(&entry), VALUE_REFUSED) << bench::text_of(info->name) << " q" << q;
+    }
+    const slot_entry_t finest = {info->id, 31, 0};
+    if (info->minimum <= 0 && info->maximum >= 0) {
+      EXPECT_EQ(values_put(&finest), VALUE_RESCALED) << bench::text_of(info->name);
+    }
+  }
+}
+
 TEST_F(Store, WhatIsOutOfItsRangeIsRefused) {
   Image image;
   image.entries = table();
