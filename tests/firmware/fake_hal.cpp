@@ -120,6 +120,9 @@ bool hal_can_receive(std::uint16_t group, hal_can_frame_t* frame) {
   return true;
 }
 bool hal_can_send(const hal_can_frame_t* frame, std::uint16_t priority) {
+  EXPECT_LT(priority, HAL_CAN_PRIORITIES);
+  EXPECT_LE(frame->length, 8);
+  EXPECT_TRUE(std::all_of(frame->data, frame->data + frame->length, [](unsigned octet) { return octet <= 0xFF; }));
   if (!board.can_drains && board.can_out.size() >= board.can_room) return false;
   board.can_priority[frame->id] = priority;
   board.can_out.push_back(*frame);

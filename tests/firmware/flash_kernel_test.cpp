@@ -122,6 +122,24 @@ TEST_F(FlashKernel, FindsAWordThatAnEraseDidNotReach) {
   }
 }
 
+TEST_F(FlashKernel, AnEraseLooksAtItsOwnSectorOnly) {
+  flash.at(kBStart) = flash.at(kBStart - 1) = flash.at(kBStart - HAL_FLASH_SECTOR_WORDS - 1) = 0x1234;
+  EXPECT_EQ(update_erase(kC), KERNEL_OK);
+  EXPECT_EQ(flash.at(kBStart), 0x1234);
+}
+
+TEST_F(FlashKernel, LooksAtEveryWordOfAWrite) {
+  const std::uint16_t words[] = {1, 2, 3};
+  flash.at(kDStart) = 1;
+  flash.at(kDStart + 1) = 2;
+  flash.programs_nothing = true;
+  EXPECT_EQ(update_write(kDStart, words, 3), KERNEL_FLASH);
+  EXPECT_EQ(update_failed_at(), kDStart + 2);
+  flash.programs_nothing = false;
+  EXPECT_EQ(update_write(kDStart, words, 3), KERNEL_OK);
+  EXPECT_EQ(flash.at(kDStart + 2), 3) << "also when it begins with what is there";
+}
+
 TEST_F(FlashKernel, WritesWhatDiffersAndReadsItBack) {
   const std::uint16_t words[] = {1, 2, 3};
   EXPECT_EQ(update_write(kDStart, words, 3), KERNEL_OK);

@@ -445,6 +445,7 @@ TEST_F(Store, TheDriveStaysInBootWhileItIsRead) {
 TEST_F(Store, ResetIsThePowerOnStateOfABoardWithoutOne) {
   power_on();
   save();
+  ASSERT_TRUE(store_save());
   drive_reset();
   EXPECT_EQ(store_state(), STORE_EMPTY);
   EXPECT_FALSE(store_is_busy());
