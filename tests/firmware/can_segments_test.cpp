@@ -153,6 +153,7 @@ TEST_F(CanSegments, AnEndlessRecordIsDropped) {
     EXPECT_FALSE(segment_join(&joiner, &frame, 0));
     frame.data[0] = (k + 1) & SEGMENT_NUMBER;
     ASSERT_LE(joiner.count, RECORD_MAX);
+    ASSERT_EQ(joiner.dropped, SEGMENT_OCTETS * (k + 1) > RECORD_MAX ? 1u : 0u) << "with the first octet too many";
   }
   EXPECT_EQ(joiner.dropped, 1u);
 }

@@ -169,6 +169,7 @@ TEST_F(FlashKernel, WritesNoMarkAndNothingBehindOne) {
   EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY - 2, words, 3), KERNEL_OK);
   EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY - 1, words, 3), KERNEL_RANGE);
   const std::uint16_t ones[] = {1, 1};
+  EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY, ones, 1), KERNEL_RANGE) << "also as the first word";
   EXPECT_EQ(update_write(HAL_FLASH_IMAGE_IDENTITY - 1, ones, 1), KERNEL_OK) << "up to it";
   seal();
   EXPECT_EQ(update_write(kBStart, words, 3), KERNEL_STATE);
