@@ -28,9 +28,9 @@ void unplug() {
 
 /// Cycles that one round says it takes.
 std::uint32_t cycles_of_a_round() {
-  board.cycles = 0;
+  board.stated_cycles = 0;
   can_node_service();
-  return board.cycles;
+  return board.stated_cycles;
 }
 
 TEST_F(CanNode, HearsWhatIsMeantForItAndNothingElse) {

@@ -27,6 +27,8 @@ bool hal_pwm_init(std::uint16_t) { return true; }
 bool hal_pwm_set_dead_band(std::uint16_t) { return true; }
 
 bool hal_pwm_write(const hal_pwm_frame_t* frame, std::uint16_t) {
+  bool in_time;
+  if (board.plays_frame != nullptr && board.plays_frame(*frame, &in_time)) return in_time;
   if (board.late) return false;
   board.frame = *frame;
   board.frames++;
@@ -73,6 +75,7 @@ std::uint16_t hal_flash_read(std::uint32_t address) {
   return word == board.flash.end() ? HAL_FLASH_ERASED : word->second;
 }
 void hal_adc_read_window(hal_adc_window_t* window) {
+  if (board.plays_window != nullptr && board.plays_window(window)) return;
   *window = {};
   if (board.adc.empty()) return;  // a window that a host in the loop has invented
   *window = board.adc.front();
@@ -87,15 +90,19 @@ void hal_slices_end(void) { board.slice_ticks = 0; }
 void hal_slice_read(hal_slice_t* slice) { *slice = board.slice; }
 void hal_slice_set_legs(std::uint16_t state) { board.legs = state; }
 
-void hal_irq_install(hal_isr_t, hal_isr_t) {}
-void hal_irq_enable(void) {}
+void hal_irq_install(hal_isr_t control, hal_isr_t window) {
+  board.control_interrupt = control;
+  board.window_interrupt = window;
+  board.interrupts_enabled = false;
+}
+void hal_irq_enable(void) { board.interrupts_enabled = true; }
 std::uint16_t hal_irq_disable(void) { return 0; }
 void hal_irq_restore(std::uint16_t) {}
 std::uint16_t hal_irq_unexpected_count(void) { return board.unexpected_interrupts; }
-void hal_profile_step(std::uint16_t cycles) { board.cycles += cycles; }
-std::uint32_t hal_time_cycles() { return 0; }  // no time passes
+void hal_profile_step(std::uint16_t cycles) { board.stated_cycles += cycles; }
+std::uint32_t hal_time_cycles() { return board.cycles; }
 void hal_irq_control_begin(void) {}
-void hal_irq_control_end(void) {}
+void hal_irq_control_end(void) { board.control_ends++; }
 void hal_safety_toggle_enable(void) { board.enable_toggles++; }
 void hal_safety_fault_lamp(bool on) {
   board.lamp = on;

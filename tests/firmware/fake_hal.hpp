@@ -11,6 +11,7 @@
 
 #include "hal/hal_adc.h"
 #include "hal/hal_can.h"
+#include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_sci.h"
 #include "hal/hal_slices.h"
@@ -33,10 +34,17 @@ struct FakeBoard {
   int gates_off_calls = 0, frames = 0, enable_toggles = 0;
   hal_pwm_frame_t frame = {};
   std::deque<hal_adc_window_t> adc;  // what hal_adc_read_window gives next
+  // What the drivers do with a tape, where a test wants it (hil_host.hpp). True when it has played.
+  bool (*plays_frame)(const hal_pwm_frame_t& frame, bool* in_time) = nullptr;
+  bool (*plays_window)(hal_adc_window_t* window) = nullptr;
   std::uint32_t encoder = 0;
   bool relay = false, brake = false, emergency = false, gates_pass = false, run = false;
   int lines_wired = 0, emergency_wired = 0;
   std::uint16_t unexpected_interrupts = 0;
+  hal_isr_t control_interrupt = nullptr, window_interrupt = nullptr;  // installed
+  bool interrupts_enabled = false;
+  int control_ends = 0;        // of the control interrupt
+  std::uint32_t cycles = 0;    // the clock: no time passes by itself
   bool slow_is_speed = false;  // what the converter's last place reads
   bool gate_pins_off = true;
   bool reset_by_watchdog = false;
@@ -60,7 +68,7 @@ struct FakeBoard {
   hal_can_status_t can_status = {HAL_CAN_ACTIVE, 0, 0, 0, 0, 0};
   std::map<std::uint32_t, std::uint16_t> can_priority;  // with which an identifier was sent last
   int can_recoveries = 0, can_cancels = 0, can_set_ups = 0;
-  std::uint32_t cycles = 0;  // that the firmware says it has taken
+  std::uint32_t stated_cycles = 0;  // that the firmware says it has taken
 };
 extern FakeBoard board;
 

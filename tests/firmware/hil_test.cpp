@@ -1,11 +1,11 @@
 // The host in the loop as it is asked for over the link: when it is let in, what a step may be, a step that comes
 // again.
 
+#include "tests/firmware/hil_host.hpp"
 #include "tests/firmware/requests.hpp"
 
 extern "C" {
-#include "firmware/hil/delta.h"
-#include "firmware/hil/hil.h"
+#include "hal/hal_time.h"
 }
 
 namespace {
@@ -14,6 +14,10 @@ using namespace stillspin::test;
 
 class HostInTheLoop : public Requests {
  protected:
+  void SetUp() override {
+    Requests::SetUp();
+    let_tapes_play();
+  }
   void TearDown() override { hil_reset(); }
 
   /// A step of such a shape that tells nothing new against zeros: windows, words of a result, inputs, works.
@@ -57,8 +61,87 @@ TEST_F(HostInTheLoop, IsNotLetInWhileTheMemoryIsWritten) {
 }
 
 TEST_F(HostInTheLoop, NothingIsSteppedBeforeItIsLetIn) {
-  EXPECT_EQ(give_step(0).status(), STATE);
-  EXPECT_EQ(ask(REQUEST_HIL_LEAVE).status(), STATE);
+  for (const Answer& refused : {give_step(0), ask(REQUEST_HIL_LEAVE)}) {
+    EXPECT_EQ(refused.status(), STATE);
+    EXPECT_EQ(refused.text(), "the host is not in the loop: enter first");
+  }
+}
+
+// At first a drive of the board's own may have been there, then one that was stepped.
+TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
+  const Octets longest = {TAPE_WINDOWS, TAPE_RESULTS, TAPE_INPUTS, TAPE_WORKS};
+  for (int entry = 0; entry < 2; ++entry) {
+    ASSERT_EQ(set(86, 500 * 256).status(), OK);
+    board.frame = {};
+    board.interrupts_enabled = false;
+    const int switched_off = board.gates_off_calls;
+    ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
+    EXPECT_GT(board.gates_off_calls, switched_off);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(board.frame.rise_tick[k], HAL_PWM_NONE) << "the board itself makes no pulses";
+      EXPECT_EQ(board.frame.fall_tick[k], HAL_PWM_NONE);
+      EXPECT_EQ(board.frame.burst_start_tick[k], HAL_PWM_NONE) << "nor does it sample";
+      EXPECT_EQ(board.frame.burst_end_tick[k], HAL_PWM_NONE);
+    }
+    EXPECT_TRUE(board.interrupts_enabled);
+    EXPECT_TRUE(tape_plays());
+    EXPECT_EQ(drive.state, DRIVE_BOOT);
+    EXPECT_EQ(parameter_get(86), 3000 * 256);
+    EXPECT_EQ(hil_expected(), 0);
+    ASSERT_EQ(give_step(0, longest).status(), OK);
+    ASSERT_NE(drive.state, DRIVE_BOOT) << "it is stepped";
+  }
+  hil_reset();
+  EXPECT_FALSE(hil_is_active() || tape_plays()) << "only power-on ends it";
+}
+
+// Of the board's own interrupts the serial port and the watchdog live on. The drive is not theirs.
+TEST_F(HostInTheLoop, TheBoardsInterruptsServeThePortAndTheWatchdog) {
+  EXPECT_EQ(hil_heartbeat(4711), 4711) << "the drive's own";
+  ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
+  const std::uint16_t heartbeat = drive.heartbeat, before = hil_heartbeat(4711);
+  for (int k = 1; k <= 3; ++k) {
+    board.control_interrupt();
+    board.window_interrupt();
+    EXPECT_EQ(hil_heartbeat(4711), before + k);
+    EXPECT_EQ(board.serial_services, k);
+    EXPECT_EQ(board.control_ends, k);
+  }
+  EXPECT_EQ(drive.heartbeat, heartbeat);
+  ASSERT_EQ(ask(REQUEST_HIL_LEAVE).status(), OK);
+  const std::uint16_t last = hil_heartbeat(4711);
+  board.control_interrupt();
+  EXPECT_EQ(hil_heartbeat(4711), last) << "nothing is left for the watchdog";
+  EXPECT_EQ(board.serial_services, 4) << "the answer still goes out";
+  EXPECT_EQ(board.control_ends, 4);
+}
+
+TEST_F(HostInTheLoop, AHostThatIsGoneResetsTheBoard) {
+  const std::uint32_t rest = HIL_REST_S * HAL_TIME_CYCLES_PER_S;
+  const auto is_alive = [] {
+    hil_service();
+    const std::uint16_t before = hil_heartbeat(0);
+    board.control_interrupt();
+    return hil_heartbeat(0) != before;
+  };
+  board.cycles = 0xFFFFFFFFu - rest / 2;  // the clock wraps
+  ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
+  board.cycles += rest;
+  EXPECT_TRUE(is_alive());
+  ASSERT_EQ(give_step(0).status(), OK);
+  board.cycles += rest;
+  EXPECT_TRUE(is_alive()) << "the time is since the last step";
+  ASSERT_EQ(give_step(77).status(), CONFLICT);
+  board.cycles += rest;
+  EXPECT_TRUE(is_alive()) << "who asks for the wrong one is still there";
+  board.cycles += 1;
+  EXPECT_FALSE(is_alive());
+  EXPECT_FALSE(is_alive());
+  hil_reset();
+  board.cycles += 2 * rest;
+  hil_service();
+  ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
+  EXPECT_TRUE(is_alive()) << "nobody is missed before he is let in";
 }
 
 TEST_F(HostInTheLoop, AStepIsNoLongerThanItsTape) {
