@@ -58,6 +58,44 @@ TEST_F(Guard, WithoutItSilenceIsNothing) {
   EXPECT_FALSE(drive.request.stop || drive.request.coast);
 }
 
+TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
+  start(~1);
+  EXPECT_FALSE(guard_is_on());
+  drive.state = DRIVE_READY;
+  ASSERT_EQ(give(COMMAND_COMMISSION, ~1).status(), OK);
+  EXPECT_FALSE(guard_is_on());
+  ASSERT_EQ(give(COMMAND_COMMISSION, 1).status(), OK);
+  EXPECT_TRUE(guard_is_on()) << "a commissioning turns the motor, too";
+}
+
+// From the last record on, and no earlier; then it has done its work.
+TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
+  const auto stops_at = [](std::uint32_t ms) {
+    drive.request.stop = false;
+    drive.time_ms = ms;
+    guard_service();
+    return drive.request.stop;
+  };
+  drive.state = DRIVE_RUN;
+  drive.time_ms = 1000;
+  guard_begin(GUARD_BUS);
+  EXPECT_FALSE(stops_at(1199));
+  guard_heard(GUARD_BUS);
+  EXPECT_FALSE(stops_at(1398));
+  EXPECT_TRUE(stops_at(1399));
+  EXPECT_TRUE(guard_has_stopped());
+  EXPECT_FALSE(guard_is_on() || stops_at(9999));
+  guard_begin(GUARD_BUS);
+  EXPECT_FALSE(guard_has_stopped()) << "since the last start";
+  drive.state = DRIVE_READY;
+  EXPECT_TRUE(stops_at(20000)) << "a start that was not carried out yet is taken back";
+  EXPECT_FALSE(guard_has_stopped());
+  guard_begin(GUARD_BUS);
+  drive.state = DRIVE_RUN;
+  guard_reset();
+  EXPECT_FALSE(guard_is_on() || stops_at(30000));
+}
+
 TEST_F(Guard, OnlyThePortThatStartedCounts) {
   start(1);
   std::uint16_t answer[RECORD_MAX];

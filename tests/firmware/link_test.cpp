@@ -138,6 +138,14 @@ TEST(Record, NoneIsLongerThanItsRoom) {
   EXPECT_EQ(record_open(longest.data(), RECORD_MAX + 1u), 0u) << "although its check sum is right";
 }
 
+TEST(Record, NoneIsShorterThanTypeAndTag) {
+  Octets shortest = {0x08, 0x21, 0, 0};
+  ASSERT_EQ(record_seal(shortest.data(), 1), 3);
+  EXPECT_EQ(record_open(shortest.data(), 3), 0) << "although its check sum is right";
+  ASSERT_EQ(record_seal(shortest.data(), 2), 4);
+  EXPECT_EQ(record_open(shortest.data(), 4), 2);
+}
+
 TEST(Record, OneFlippedBitIsAlwaysNoticed) {
   Octets record = {0x08, 0x21, 1, 2, 3, 0, 0};
   ASSERT_EQ(record_seal(record.data(), 5), 7);
@@ -213,12 +221,18 @@ TEST_F(Splitter, ADamagedRecordIsCountedAndTheNextOneTaken) {
   EXPECT_EQ(s.errors.damaged, 1);
 }
 
-// Whichever octet of two records is lost, at most these two are, and text and records stay what they are.
 TEST_F(Splitter, DamagedRecordsAreCountedToTheEndOfAWord) {
   for (int k = 0; k < 65536; ++k) feed(Octets{0, 9, 1, 0});
   EXPECT_EQ(s.errors.damaged, 65535) << "none is no count to come back to";
 }
 
+TEST_F(Splitter, AnOctetByItselfIsADamagedRecord) {
+  feed(Octets{0, 1, 0});
+  EXPECT_EQ(s.errors.damaged, 1);
+  EXPECT_EQ(seen, "");
+}
+
+// Whichever octet of two records is lost, at most these two are, and text and records stay what they are.
 TEST_F(Splitter, ALostOctetDoesNotTurnRecordsIntoTextForLong) {
   Octets both = wire({0x08, 0x01, 0x33});
   const Octets second = wire({0x08, 0x02, 0x44});
@@ -258,6 +272,19 @@ TEST_F(Splitter, TextBehindAStrayZeroIsNotLost) {
   EXPECT_EQ(s.errors.broken_off, 0);
 }
 
+// What can be typed is text: everything printable and the ends of lines.
+TEST_F(Splitter, OnlyWhatCanBePrintedIsTextBehindAStrayZero) {
+  for (std::uint16_t octet = 1; octet < 256; ++octet) {
+    SetUp();
+    seen.clear();
+    const bool text = (octet >= ' ' && octet <= '~') || octet == '\r' || octet == '\n';
+    feed(Octets{0, 'a', octet, 'b'});
+    rest(SPLITTER_REST_MS);
+    EXPECT_EQ(seen, text ? std::string("a") + static_cast<char>(octet) + "b" : "") << octet;
+    EXPECT_EQ(s.errors.broken_off, text ? 0 : 1) << octet;
+  }
+}
+
 TEST_F(Splitter, LongTextBehindAStrayZeroIsNotLostEither) {
   std::string text;
   while (text.size() < 700) text += "set speed_ramp 300\r";
@@ -274,6 +301,37 @@ TEST_F(Splitter, ARecordThatIsTooLongIsSkippedToItsEnd) {
   feed(wire({0x08, 0x07}));
   feed("a");
   EXPECT_EQ(seen, "[0807]a");
+}
+
+// One that has been counted and is skipped is not broken off on top.
+TEST_F(Splitter, ARecordThatIsTooLongIsCountedOnce) {
+  feed(Octets{0});
+  feed(Octets(1000, 0x80));
+  rest(SPLITTER_REST_MS);
+  EXPECT_EQ(s.errors.too_long, 1);
+  EXPECT_EQ(s.errors.broken_off, 0);
+  EXPECT_EQ(s.errors.damaged, 0);
+  feed("stop\r");
+  EXPECT_EQ(seen, "stop\r") << "and text is expected again";
+}
+
+TEST_F(Splitter, ARecordMayHaveSoManyOctetsAndNotOneMore) {
+  feed(Octets{0});
+  feed(Octets(RECORD_ENCODED_MAX, 0x80));
+  EXPECT_EQ(s.errors.too_long, 0);
+  feed(Octets{0x80});
+  EXPECT_EQ(s.errors.too_long, 1);
+}
+
+TEST_F(Splitter, AResetForgetsARecordThatHadBegun) {
+  feed(Octets{0, 9, 1, 0});
+  feed(Octets(1000, 0x80));
+  splitter_reset(&s);
+  EXPECT_EQ(s.errors.damaged + s.errors.too_long + s.errors.broken_off, 0);
+  feed("a");
+  EXPECT_EQ(seen, "a") << "text at once";
+  feed(wire({0x08, 0x04}));
+  EXPECT_EQ(seen, "a[0804]");
 }
 
 TEST_F(Splitter, TheLongestRecordFits) {

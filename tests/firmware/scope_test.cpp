@@ -346,8 +346,28 @@ TEST_F(Scope, RefusedSetUpsChangeNothing) {
   refused([](scope_setup_t& s) { s.trigger = signal_count; });
   refused([](scope_setup_t& s) { s.count = 0; });
   refused([](scope_setup_t& s) { s.count = 5; });
-  refused([](scope_setup_t& s) { s.channel[0].signal = signal_count; });
-  refused([](scope_setup_t& s) { s.channel[0].shift = 32; });
+  for (int k = 0; k < int(SCOPE_CHANNELS); ++k) {
+    refused([&](scope_setup_t& s) { s.channel[k].signal = signal_count; });
+    refused([&](scope_setup_t& s) { s.channel[k].shift = 32; });
+  }
+}
+
+TEST_F(Scope, ASetUpMayBeAtTheEndOfEveryRange) {
+  scope_setup_t s = counting();
+  s.decimation = 65535;
+  s.pretrigger = SCOPE_DEPTH - 1;
+  s.mode = SCOPE_AUTO;
+  s.edge = SCOPE_BELOW;
+  s.trigger = signal_count - 1;
+  s.count = SCOPE_CHANNELS;
+  for (scope_channel_t& c : s.channel) c = {signal_count - 1, SCOPE_SHIFT_MAX};
+  arm(s);
+  EXPECT_EQ(scope_setup_in_force()->pretrigger, SCOPE_DEPTH - 1);
+  EXPECT_EQ(scope_setup_in_force()->channel[3].signal, signal_count - 1);
+  interrupts(65535);
+  EXPECT_EQ(scope_status().recorded, 1);
+  interrupt();
+  EXPECT_EQ(scope_status().recorded, 2);
 }
 
 TEST_F(Scope, PowerOnForgetsEverything) {

@@ -69,6 +69,39 @@ TEST_F(Requests, EachPortHasItsStream) {
   EXPECT_GT(stream_event(GUARD_BUS, event), 0) << "the other one goes on";
 }
 
+// The counter is used up by what was missed, so the host sees the gap; the rest stays in step.
+TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
+  const std::uint16_t places[] = {9, 10};
+  std::uint16_t event[RECORD_MAX];
+  const std::uint32_t begin = drive.time_ms;
+  drive.control.measured_q20 = {-2, 0x01020304};
+  stream_setup(GUARD_BUS, 10, places, 2);
+  const auto comes_at = [&](std::uint32_t ms) {
+    drive.time_ms = begin + ms;
+    return stream_event(GUARD_BUS, event) > 0;
+  };
+  EXPECT_FALSE(comes_at(9));
+  ASSERT_TRUE(comes_at(10));
+  EXPECT_EQ(Octets(event, event + 14),
+            Octets({EVENT_STREAM, 0}) + little(begin + 10, 4) + little(0xFFFFFFFE, 4) + little(0x01020304, 4));
+  EXPECT_FALSE(comes_at(19));
+  ASSERT_TRUE(comes_at(57)) << "those of 30, 40 and 50 are missed";
+  EXPECT_EQ(event[1], 4);
+  EXPECT_EQ(stream_lost(GUARD_BUS), 3);
+  EXPECT_FALSE(comes_at(59));
+  ASSERT_TRUE(comes_at(60));
+  EXPECT_EQ(event[1], 5);
+  stream_dropped(GUARD_BUS);
+  EXPECT_EQ(stream_lost(GUARD_BUS), 4);
+  stream_setup(GUARD_BUS, 10, places, 1);
+  EXPECT_EQ(stream_lost(GUARD_BUS), 0) << "a new one begins anew";
+  EXPECT_FALSE(comes_at(69));
+  ASSERT_TRUE(comes_at(70));
+  EXPECT_EQ(event[1], 0);
+  stream_reset();
+  EXPECT_FALSE(comes_at(1000));
+}
+
 TEST_F(Requests, AStreamThatNobodyComesForIsCountedToTheEndOfAWord) {
   const std::uint16_t place = 0;
   std::uint16_t event[RECORD_MAX];

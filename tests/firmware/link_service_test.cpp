@@ -1,0 +1,112 @@
+// The serial port round by round: how much is taken, what waits for room, what a reset forgets.
+
+#include "tests/firmware/requests.hpp"
+
+extern "C" {
+#include "firmware/console/output.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr int LONGEST = RECORD_ENCODED_MAX + 2;  // that an answer can be on the wire
+
+class LinkService : public Requests {
+ protected:
+  void SetUp() override {
+    Requests::SetUp();
+    board.serial_out.clear();
+    board.serial_in.clear();
+  }
+  static std::size_t sent() { return board.serial_out.size(); }
+};
+
+// 115200 Bd are 1.15 octets in the 100 us after which a round comes at the latest.
+TEST_F(LinkService, TextAtTheFullRateOfThePortDoesNotPileUp) {
+  const std::string line = "get speed_limit\r";
+  std::size_t most = 0;
+  double octets = 0;
+  for (int at = 0; at < 3000; octets -= std::floor(octets)) {
+    for (octets += 1.15; octets >= 1.0; octets -= 1.0) send(line.substr(static_cast<std::size_t>(at++) % 4, 1));
+    run(1);
+    most = std::max(most, board.serial_in.size());
+  }
+  EXPECT_LE(most, 8u);
+}
+
+TEST_F(LinkService, ARoundIsShortWhateverWaits) {
+  send(std::string(200, 'x'));
+  link_service();
+  EXPECT_LT(board.serial_in.size(), 200u);
+  EXPECT_GE(board.serial_in.size(), 192u);
+  board.serial_in.clear();
+  link_service();
+  for (std::uint16_t k = 0; k < 3; ++k) send_record({REQUEST_STATUS, k});
+  int answers = 0;
+  for (int round = 0; round < 20; ++round) {
+    const std::size_t before = sent();
+    link_service();
+    EXPECT_LE(sent() - before, 32u) << "one answer";
+    answers += sent() - before > 20 ? 1 : 0;
+  }
+  EXPECT_EQ(answers, 3);
+}
+
+// An answer is whole or not at all: what cannot be answered is left in the port.
+TEST_F(LinkService, ARequestWaitsForTheRoomThatAnAnswerMayNeed) {
+  send_record({REQUEST_STATUS, 1});
+  const std::size_t waiting = board.serial_in.size();
+  board.serial_room = LONGEST - 1;
+  link_service();
+  EXPECT_EQ(board.serial_in.size(), waiting);
+  board.serial_room = LONGEST;
+  link_service();
+  link_service();
+  EXPECT_TRUE(board.serial_in.empty());
+  EXPECT_GT(sent(), 20u);
+}
+
+TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
+  const std::uint16_t place = 9;
+  const int event = 2 + 2 + 4 + 4 + 2 + 1;  // zeros, type and counter, time, value, CRC, COBS
+  drive.control.measured_q20.d = 0x01010101;
+  for (const int missing : {1, 0}) {
+    stream_setup(GUARD_SERIAL, 5, &place, 1);
+    drive.time_ms += 5;
+    board.serial_room = static_cast<std::uint16_t>(LONGEST + OUTPUT_LINE + event - missing);
+    link_service();
+    EXPECT_EQ(sent(), missing ? 0u : static_cast<unsigned>(event));
+    EXPECT_EQ(stream_lost(GUARD_SERIAL), missing);
+    EXPECT_EQ(link_errors().events_dropped, missing);
+  }
+}
+
+// Text was found behind a stray zero and not yet handed to the console.
+TEST_F(LinkService, AResetForgetsTextThatWaits) {
+  send(Octets{0} + Octets{'h', 'e', 'l', 'p', '\r'});
+  link_service();
+  drive.time_ms += SPLITTER_REST_MS;
+  link_service();
+  link_reset();
+  board.serial_out.clear();
+  text.clear();
+  run(500);
+  EXPECT_EQ(text, "");
+}
+
+TEST_F(LinkService, AResetEndsWhatAMachineHasAskedFor) {
+  EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2) + little(4, 2)).status(), OK);
+  guard_begin(GUARD_SERIAL);
+  send(Octets{0, 9, 9, 9, 0});
+  run(10);
+  EXPECT_EQ(link_errors().records.damaged, 1);
+  link_reset();
+  EXPECT_FALSE(guard_is_on());
+  EXPECT_EQ(link_errors().records.damaged, 0);
+  records.clear();
+  run(500);
+  EXPECT_TRUE(records.empty());
+}
+
+}  // namespace
