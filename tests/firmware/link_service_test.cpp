@@ -82,6 +82,12 @@ TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   }
 }
 
+// It comes all at once when the record that it might have been is given up.
+TEST_F(LinkService, ACommandBehindAStrayZeroIsCarriedOut) {
+  send(Octets{0});
+  EXPECT_NE(command("get speed_limit").find("3300"), std::string::npos);
+}
+
 // Text was found behind a stray zero and not yet handed to the console.
 TEST_F(LinkService, AResetForgetsTextThatWaits) {
   send(Octets{0} + Octets{'h', 'e', 'l', 'p', '\r'});

@@ -24,13 +24,28 @@ TEST_F(RequestFields, EachTypeHasItsLengths) {
     unsigned type;
     std::size_t shortest, longest;
   } types[] = {
-      {REQUEST_IDENTITY, 0, 0},       {REQUEST_PARAMETER_INFO, 2, 2}, {REQUEST_SIGNAL_INFO, 2, 2},
-      {REQUEST_PARAMETER_READ, 3, 3}, {REQUEST_PARAMETER_GET, 2, 2},  {REQUEST_PARAMETER_SET, 6, 6},
-      {REQUEST_COMMAND, 5, 5},        {REQUEST_STATUS, 0, 0},         {REQUEST_SIGNALS, 2, 32},
-      {REQUEST_FAULT, 1, 1},          {REQUEST_WORDS, 2, 2},          {REQUEST_LINK, 0, 0},
-      {REQUEST_SCOPE_SETUP, 16, 25},  {REQUEST_SCOPE_ARM, 0, 0},      {REQUEST_SCOPE_STATE, 0, 0},
-      {REQUEST_SCOPE_READ, 4, 4},     {REQUEST_SCOPE_STOP, 0, 0},     {REQUEST_STREAM, 2, 18},
-      {REQUEST_HIL_ENTER, 0, 0},      {REQUEST_HIL_LEAVE, 0, 0},      {REQUEST_COMMISSION_RESULT, 2, 2},
+      {REQUEST_IDENTITY, 0, 0},
+      {REQUEST_PARAMETER_INFO, 2, 2},
+      {REQUEST_SIGNAL_INFO, 2, 2},
+      {REQUEST_PARAMETER_READ, 3, 3},
+      {REQUEST_PARAMETER_GET, 2, 2},
+      {REQUEST_PARAMETER_SET, 6, 6},
+      {REQUEST_COMMAND, 5, 5},
+      {REQUEST_STATUS, 0, 0},
+      {REQUEST_SIGNALS, 2, 32},
+      {REQUEST_FAULT, 1, 1},
+      {REQUEST_WORDS, 2, 2},
+      {REQUEST_LINK, 0, 0},
+      {REQUEST_SCOPE_SETUP, 16, 25},
+      {REQUEST_SCOPE_ARM, 0, 0},
+      {REQUEST_SCOPE_STATE, 0, 0},
+      {REQUEST_SCOPE_READ, 4, 4},
+      {REQUEST_SCOPE_STOP, 0, 0},
+      {REQUEST_STREAM, 2, 18},
+      {REQUEST_HIL_ENTER, 0, 0},
+      {REQUEST_HIL_LEAVE, 0, 0},
+      {REQUEST_COMMISSION_RESULT, 2, 2},
+      {REQUEST_HIL_STEP, 3, RECORD_BODY_MAX},
   };
   for (const auto& t : types) {
     Octets body(t.longest + 1, 0);
