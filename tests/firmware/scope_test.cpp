@@ -269,6 +269,7 @@ TEST_F(Scope, AutoArmsAgainWhenEveryChannelHasBeenRead) {
   EXPECT_EQ(scope_read(0, 1022, &word, 1), 1);
   (void)read(1);
   (void)read(1);
+  EXPECT_EQ(scope_read(0, 1024, &word, 1), 0) << "behind the last word there is none to give";
   EXPECT_EQ(scope_status().state, SCOPE_DONE) << "channel 0 has not been read to its end";
   EXPECT_EQ(scope_read(0, 1023, &word, 1), 1);
   EXPECT_EQ(word, 1023);
