@@ -23,6 +23,7 @@ bool store_is_busy(void) { return work != WORK_NONE; }
 const store_report_t* store_report(void) { return &report; }
 
 uint16_t store_progress(void) {
+  if (store_is_busy() && !begun) return 0;
   switch (work) {
     case WORK_LOAD:
       return survey_progress();

@@ -132,6 +132,7 @@ TEST_F(Store, ProgressRisesToTheEnd) {
   for (int n = 0; n < 3; ++n) {
     ASSERT_TRUE(store_save());
     EXPECT_EQ(store_state(), STORE_SAVING);
+    EXPECT_EQ(store_progress(), 0) << "of this job, not of the one before";
     int last = 0;
     std::set<int> seen;
     while (store_is_busy()) {
@@ -147,6 +148,7 @@ TEST_F(Store, ProgressRisesToTheEnd) {
     EXPECT_EQ(store_progress(), 100);
   }
   ASSERT_TRUE(store_load());
+  EXPECT_EQ(store_progress(), 0);
   int half = 0, last = 0;
   for (store_service(); store_is_busy(); store_service()) {
     EXPECT_GE(store_progress(), last);
