@@ -1,5 +1,7 @@
 // The states of the drive: what ends its calibration, and what a request does where it is of no use.
 
+#include <algorithm>
+
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {
@@ -48,6 +50,7 @@ TEST_F(States, ACurrentThatDoesNotEndIsAFaultAfterTenSeconds) {
 TEST_F(States, AResetCalibratesAnew) {
   make_ready();
   periods(1000);
+  drive.calm_at = 50000;  // a current has flowed for seconds then
   drive_raise(&drive, FAULT_OFFSET);
   drive_command_reset();
   hal_adc_window_t w = still_window();
@@ -57,7 +60,7 @@ TEST_F(States, AResetCalibratesAnew) {
   ASSERT_EQ(drive.state, DRIVE_CALIBRATE);
   for (int n = 0; n < 255; ++n) period(w);
   EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
-  for (int n = 0; n < 250; ++n) period(w);
+  period(w);
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048 + 8, 0.1);
 }
@@ -127,6 +130,159 @@ TEST_F(States, AStopLetsAnEvaluationEnd) {
   drive.commissioning.evaluate = false;
   drive_sequence(&drive);
   EXPECT_EQ(drive.state, DRIVE_READY);
+}
+
+// A hundred codes off the middle is too much, and what would leave the formats of the samples is not even used.
+TEST_F(States, AnOffsetEndsWhereTheSamplesFormatsDo) {
+  for (const int quarters : {399, -399, 401, -401, 1200, -1200}) {
+    for (const bool first : {true, false}) {
+      SetUp();
+      hal_adc_window_t w = still_window();
+      (first ? w.start_a : w.start_b) = static_cast<std::uint16_t>(4 * 2048 + quarters);
+      for (int n = 0; n < 600; ++n) period(w);
+      EXPECT_EQ(drive.state, std::abs(quarters) < 400 ? DRIVE_READY : DRIVE_FAULT) << quarters;
+      const double off = real(first ? drive.trim.offset_a_q8 : drive.trim.offset_b_q8, 8) - 2048.0;
+      EXPECT_NEAR(off, std::clamp(quarters / 4.0, -128.0, 128.0), 0.1) << quarters;
+    }
+  }
+}
+
+// Both sensors together may be ten codes off their offsets, which noise never is.
+TEST_F(States, ACurrentIsWhatIsTenCodesOff) {
+  for (const auto& [a, b] : {std::pair{38, 0}, {0, 38}, {19, 19}, {44, 0}, {0, 44}, {22, 22}}) {
+    SetUp();
+    for (int n = 0; n < 600; ++n) {
+      hal_adc_window_t w = still_window();
+      const int sign = n % 2 == 0 ? 1 : -1;
+      w.start_a = static_cast<std::uint16_t>(4 * 2048 + sign * a);  // quarters of a code
+      w.start_b = static_cast<std::uint16_t>(4 * 2048 - sign * b);
+      period(w);
+    }
+    EXPECT_EQ(drive.state, a + b < 40 ? DRIVE_READY : DRIVE_CALIBRATE) << a << " " << b;
+  }
+}
+
+// The watchdogs of gate driver and processor live on these.
+TEST_F(States, EveryPeriodCounts) {
+  make_ready();
+  const int toggles = board.enable_toggles;
+  const std::uint32_t in_state = drive.periods;
+  const std::uint16_t beats = drive.heartbeat;
+  periods(7);
+  EXPECT_EQ(board.enable_toggles, toggles + 7);
+  EXPECT_EQ(drive.periods, in_state + 7);
+  EXPECT_EQ(drive.heartbeat, beats + 7);
+}
+
+TEST_F(States, TheDriveBootsUntilItsValuesAreThere) {
+  drive.loading = true;
+  periods(100);
+  EXPECT_EQ(drive.state, DRIVE_BOOT);
+  drive.loading = false;
+  period();
+  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  EXPECT_EQ(drive.periods, 0u);
+}
+
+// Gates off at once, whatever is under way; what a commissioning has changed for itself must come back.
+TEST_F(States, ACoastEndsACommissioning) {
+  make_run();
+  commissioning_t& c = drive.commissioning;
+  drive.state = DRIVE_COMMISSION;
+  c.outcome = COMMISSIONING_RUNNING;
+  c.phase = COMMISSIONING_MAP;
+  c.requested = true;
+  drive_command_coast();
+  drive_sequence(&drive);
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_FALSE(board.gates_on);
+  EXPECT_EQ(c.outcome, COMMISSIONING_ABORTED);
+  EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
+  EXPECT_FALSE(c.requested);
+  EXPECT_TRUE(drive.request.reload);
+}
+
+TEST_F(States, ACoastIsCarriedOutOnce) {
+  make_run();
+  drive_command_coast();
+  period();
+  EXPECT_EQ(drive.state, DRIVE_READY);
+  drive_command_start();
+  period();
+  EXPECT_EQ(drive.state, DRIVE_START);
+  SetUp();
+  make_ready();
+  const std::uint32_t in_state = drive.periods;
+  drive_command_coast();
+  period();
+  EXPECT_EQ(drive.periods, in_state + 1) << "a power stage that is off has nothing to switch off";
+}
+
+// What was asked for before and not carried out yet must not outlive the stop that follows.
+TEST_F(States, AStopForgetsWhatWasAskedForBefore) {
+  for (void (*end)() : {drive_command_stop, drive_command_coast}) {
+    for (void (*begin)() : {drive_command_start, drive_command_commission}) {
+      SetUp();
+      make_ready();
+      begin();
+      end();
+      periods(3);
+      EXPECT_EQ(drive.state, DRIVE_READY);
+      EXPECT_FALSE(board.gates_on);
+    }
+  }
+}
+
+// A commissioning that a fault has ended, and the background level has not been there since.
+TEST_F(States, AStartBehindAFailedCommissioningIsAStart) {
+  make_ready();
+  drive.commissioning.requested = true;
+  drive_command_start();
+  drive_sequence(&drive);
+  ASSERT_EQ(drive.state, DRIVE_START);
+  start_run(&drive, 0, 0);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
+TEST_F(States, WhereThePowerStageIsOnAndWhereTheShaftIsTurned) {
+  const struct {
+    drive_state_t state;
+    bool energised, turning;
+  } cases[] = {{DRIVE_BOOT, false, false}, {DRIVE_CALIBRATE, false, false}, {DRIVE_READY, false, false},
+               {DRIVE_START, true, false}, {DRIVE_RUN, true, true},         {DRIVE_STOP, true, true},
+               {DRIVE_FAULT, false, false}};
+  for (const bool spin : {false, true}) {
+    drive.commissioning.phase = COMMISSIONING_SPIN;
+    drive.commissioning.turning = spin;
+    for (const auto& c : cases) {
+      drive.state = c.state;
+      EXPECT_EQ(drive_is_energised(), c.energised) << c.state;
+      EXPECT_EQ(drive_is_turning(&drive), c.turning) << c.state;
+    }
+    drive.state = DRIVE_COMMISSION;
+    EXPECT_TRUE(drive_is_energised());
+    EXPECT_EQ(drive_is_turning(&drive), spin);
+    drive.commissioning.phase = COMMISSIONING_EVALUATE;
+    EXPECT_FALSE(drive_is_energised());
+  }
+}
+
+// With the reference at zero a shaft that goes on turning has stop_time, whatever the last one took of it.
+TEST_F(States, EachStopHasItsWholeTime) {
+  make_run();
+  parameters.stop_time = 50;
+  drive.supervision.stopping_periods = 400;
+  drive_command_stop();
+  drive_sequence(&drive);
+  ASSERT_EQ(drive.state, DRIVE_STOP);
+  drive.position.used.speed_bpp = bpp_of(5);
+  drive.control.ramp.value = 1;
+  for (int n = 0; n < 100; ++n) drive_sequence(&drive);  // the ramp has its own time
+  drive.control.ramp.value = 0;
+  for (int n = 0; n < 500; ++n) drive_sequence(&drive);
+  EXPECT_EQ(drive.state, DRIVE_STOP);
+  drive_sequence(&drive);
+  EXPECT_EQ(drive.fault, FAULT_STOP);
 }
 
 }  // namespace
