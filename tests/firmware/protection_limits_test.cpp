@@ -1,0 +1,156 @@
+// Each limit of the protection at its last good value and the first bad one, and what a fault leaves for people.
+
+#include "firmware/fault_history.h"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+class ProtectionLimits : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_run();
+    drive.watch.open = false;
+    drive.schedule.judges = false;
+    drive.modulation.state.is_alternating = false;
+    drive.samples.count = 1;
+    currents({0, 0});
+  }
+  static void currents(ab_t first, ab_t second = {0, 0}) {
+    drive.samples.windows[0].current_q20 = first;
+    drive.samples.windows[1].current_q20 = second;
+  }
+  static drive_fault_t judged() {
+    drive_protect(&drive);
+    return drive.fault;
+  }
+};
+
+TEST_F(ProtectionLimits, MissingSamplesAndLatePeriods) {
+  for (const int bad : {0, 1}) {
+    SetUp();
+    drive.supervision.missing = static_cast<std::uint16_t>(5 + bad);
+    EXPECT_EQ(judged(), bad != 0 ? FAULT_NO_SAMPLES : FAULT_NONE);
+    SetUp();
+    drive.supervision.overrun = static_cast<std::uint16_t>(10 + bad);
+    EXPECT_EQ(judged(), bad != 0 ? FAULT_OVERRUN : FAULT_NONE);
+  }
+}
+
+// What a parameter says is still good.
+TEST_F(ProtectionLimits, TheLinkAndTheCurrentMayReachTheirLimits) {
+  for (const int bad : {0, 1}) {
+    SetUp();
+    drive.samples.link_q16 = parameters.link_minimum - bad;
+    EXPECT_EQ(judged(), bad != 0 ? FAULT_LINK_LOW : FAULT_NONE);
+    SetUp();
+    drive.samples.link_q16 = parameters.link_maximum + bad;
+    EXPECT_EQ(judged(), bad != 0 ? FAULT_LINK_HIGH : FAULT_NONE);
+    for (const int sign : {1, -1}) {
+      SetUp();
+      currents({sign * (parameters.trip_current + bad), 0});
+      EXPECT_EQ(judged(), bad != 0 ? FAULT_CURRENT_LIMIT : FAULT_NONE);
+    }
+  }
+}
+
+// A current that has gone is none; within a period the comparator is there.
+TEST_F(ProtectionLimits, TheLatestWindowIsLookedAt) {
+  const ab_t much = {raw(18.5, 20), 0};
+  for (const bool latest : {false, true}) {
+    SetUp();
+    drive.samples.count = 2;
+    latest ? currents({0, 0}, much) : currents(much);
+    EXPECT_EQ(judged(), latest ? FAULT_CURRENT_LIMIT : FAULT_NONE);
+  }
+}
+
+// A start that listens with the gates off means them to be off, and a fast shaft's current through the diodes is no
+// fault of it; whoever has switched them on means them to be on.
+TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
+  for (const drive_state_t state : {DRIVE_START, DRIVE_RUN}) {
+    for (const bool powered : {false, true}) {
+      for (const bool pin : {false, true}) {
+        SetUp();
+        drive.state = state;
+        drive.start.powered = powered;
+        board.gates_on = false;
+        board.tripped_by_pin = pin;
+        const bool meant = state == DRIVE_START && !powered;
+        EXPECT_EQ(judged(), meant ? FAULT_NONE : pin ? FAULT_OVER_CURRENT : FAULT_GATES_OFF) << state << powered;
+      }
+    }
+  }
+}
+
+TEST_F(ProtectionLimits, ADriveThatIsOffIsNotJudged) {
+  for (const drive_state_t state : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY}) {
+    drive.state = state;
+    drive.supervision.missing = drive.supervision.overrun = 1000;
+    drive.samples.link_q16 = 0;
+    EXPECT_EQ(judged(), FAULT_NONE) << state;
+  }
+}
+
+// Windows tell as much as one that is as long as they are together.
+TEST_F(ProtectionLimits, TheSpanOfThePapersWindowsIsThatOfAll) {
+  synchronism_t expected = {};
+  for (const auto& [first, second] : {std::pair{4000, 0}, {1000, 3000}, {3000, 1000}}) {
+    SetUp();
+    parameters.position_source = POSITION_PAPER;
+    drive.schedule.judges = true;
+    drive.samples.count = second == 0 ? 1 : 2;
+    drive.samples.windows[0].span_ticks = static_cast<std::int16_t>(first);
+    drive.samples.windows[1].span_ticks = static_cast<std::int16_t>(second);
+    drive.position.avv.regression = {};
+    drive.position.avv.regression.information = 1;  // it has seen something
+    synchronism_reset(&drive.supervision.synchronism);
+    (void)judged();
+    const synchronism_t& s = drive.supervision.synchronism;
+    if (second == 0) expected = s;
+    ASSERT_GT(expected.limit_q16, 0);
+    EXPECT_EQ(s.limit_q16, expected.limit_q16) << first;
+  }
+}
+
+// AVV beside the encoder may stray: that is divergence, the angle in use stands. Beside the observer one of them is
+// lost.
+TEST_F(ProtectionLimits, AvvBesideTheEncoderIsNoDoubtOfTheAngle) {
+  for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER_AVV}) {
+    SetUp();
+    parameters.position_source = source;
+    drive.schedule.judges = true;
+    drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
+    drive.position.used.speed_bpp = 0;
+    drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
+    drive.position.high.angle_bam = drive.position.low.angle_bam + bam(2.0);
+    synchronism_reset(&drive.supervision.synchronism);
+    (void)judged();
+    EXPECT_EQ(drive.supervision.synchronism.doubt > 0, source == POSITION_OBSERVER_AVV);
+  }
+}
+
+TEST_F(ProtectionLimits, TheRecordOfAFaultSaysWhatWas) {
+  drive.time_ms = 12345;
+  drive.state = DRIVE_STOP;
+  drive.position.used.speed_bpp = bpp_of(600);
+  drive.samples.link_q16 = raw(287.5, 16);
+  drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};
+  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_raise(&drive, FAULT_OVERRUN);  // the first stays
+  EXPECT_EQ(fault_history_total(), 1);
+  fault_record_t r = {};
+  ASSERT_TRUE(fault_history_read(0, &r));
+  EXPECT_EQ(r.time_ms, 12345u);
+  EXPECT_EQ(r.fault, FAULT_LINK_LOW);
+  EXPECT_EQ(r.state, DRIVE_STOP);
+  EXPECT_EQ(r.speed_q16 >> 16, 600);
+  EXPECT_EQ(r.link_q16, raw(287.5, 16));
+  EXPECT_EQ(r.current_d_q20, raw(1.5, 20));
+  EXPECT_EQ(r.current_q_q20, raw(-2.5, 20));
+  EXPECT_FALSE(fault_history_read(1, &r));
+}
+
+}  // namespace
