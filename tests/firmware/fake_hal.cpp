@@ -43,9 +43,10 @@ bool hal_pwm_gates_on(void) {
 void hal_pwm_gates_off(void) {
   board.gates_on = false;
   board.gates_off_calls++;
+  if (board.held_off == 0) board.off_unheld++;
 }
 
-std::uint16_t hal_pwm_period_tick(void) { return 0; }
+std::uint16_t hal_pwm_period_tick(void) { return board.pwm_tick; }
 bool hal_pwm_is_tripped(void) { return !board.gates_on; }
 bool hal_pwm_was_tripped_by_pin(void) { return board.tripped_by_pin; }
 
@@ -96,14 +97,23 @@ void hal_irq_install(hal_isr_t control, hal_isr_t window) {
   board.interrupts_enabled = false;
 }
 void hal_irq_enable(void) { board.interrupts_enabled = true; }
-std::uint16_t hal_irq_disable(void) { return 0; }
-void hal_irq_restore(std::uint16_t) {}
+std::uint16_t hal_irq_disable(void) {
+  board.interrupt_holds++;
+  return board.held_off++;
+}
+void hal_irq_restore(std::uint16_t state) { board.held_off = state; }
 std::uint16_t hal_irq_unexpected_count(void) { return board.unexpected_interrupts; }
-void hal_profile_step(std::uint16_t cycles) { board.stated_cycles += cycles; }
+void hal_profile_step(std::uint16_t cycles) { board.profile.push_back(cycles); }
 std::uint32_t hal_time_cycles() { return board.cycles; }
-void hal_irq_control_begin(void) {}
+void hal_irq_control_begin(void) { board.control_begins++; }
 void hal_irq_control_end(void) { board.control_ends++; }
-void hal_safety_toggle_enable(void) { board.enable_toggles++; }
+static void belongs_into_control(void) {
+  if (board.control_begins == board.control_ends) board.outside_control++;
+}
+void hal_safety_toggle_enable(void) {
+  board.enable_toggles++;
+  belongs_into_control();
+}
 void hal_safety_fault_lamp(bool on) {
   board.lamp = on;
   board.lit_with_gates_on = board.lit_with_gates_on || (on && board.gates_on);
@@ -153,7 +163,10 @@ bool hal_sci_init(std::uint32_t baud) {
   board.baud = baud;
   return true;
 }
-void hal_sci_service(void) { board.serial_services++; }
+void hal_sci_service(void) {
+  board.serial_services++;
+  belongs_into_control();
+}
 std::uint16_t hal_sci_read(std::uint16_t* octets, std::uint16_t room) {
   std::uint16_t taken = 0;
   for (; taken < room && !board.serial_in.empty(); ++taken) {

@@ -43,7 +43,6 @@ struct FakeBoard {
   std::uint16_t unexpected_interrupts = 0;
   hal_isr_t control_interrupt = nullptr, window_interrupt = nullptr;  // installed
   bool interrupts_enabled = false;
-  int control_ends = 0;        // of the control interrupt
   std::uint32_t cycles = 0;    // the clock: no time passes by itself
   bool slow_is_speed = false;  // what the converter's last place reads
   bool gate_pins_off = true;
@@ -59,6 +58,12 @@ struct FakeBoard {
   std::uint16_t serial_room = 512;                  // of the transmit ring, taken octets deducted
   std::uint32_t baud = 0;
   int serial_services = 0;
+  std::vector<std::uint16_t> profile;          // what the chip's model was told of run times
+  int control_begins = 0, control_ends = 0;    // of the control interrupt
+  int outside_control = 0;                     // what belongs between these two and was not
+  int interrupt_holds = 0;                     // how often both interrupts were held off
+  std::uint16_t held_off = 0, off_unheld = 0;  // they are now; gates switched off while they were not
+  std::uint16_t pwm_tick = 0;                  // of the running period
   hal_sci_errors_t serial_errors = {};
   std::deque<hal_can_frame_t> can_in[HAL_CAN_GROUPS_MAX], can_out;
   std::vector<hal_can_group_t> can_groups;
@@ -68,7 +73,6 @@ struct FakeBoard {
   hal_can_status_t can_status = {HAL_CAN_ACTIVE, 0, 0, 0, 0, 0};
   std::map<std::uint32_t, std::uint16_t> can_priority;  // with which an identifier was sent last
   int can_recoveries = 0, can_cancels = 0, can_set_ups = 0;
-  std::uint32_t stated_cycles = 0;  // that the firmware says it has taken
 };
 extern FakeBoard board;
 

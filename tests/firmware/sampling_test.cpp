@@ -1,5 +1,7 @@
 // From codes to windows: times, voltages, the filtered link; and the frames that go to the hardware.
 
+#include <cstring>
+
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {
@@ -114,6 +116,92 @@ TEST_F(Drive, EveryFrameIsOneThatTheHardwareCanDo) {
     }
   }
   EXPECT_GT(board.frames, 1000);
+}
+
+/// As many windows as the pattern has, one after the other, and what is made of them.
+void sample(const std::vector<hal_adc_window_t>& windows) {
+  for (const hal_adc_window_t& w : windows) {
+    board.adc.push_back(w);
+    drive_window_interrupt();
+  }
+  drive_read_samples(&drive);
+}
+
+// A link that nothing is known of is as the first windows have it; then each window moves it by an eighth.
+TEST_F(Drive, TheLinkIsAMeanOfEightWindows) {
+  make_ready();
+  for (const double before : {0.0, 260.0}) {
+    const auto count = static_cast<std::size_t>(drive.modulation.sampled.window_count);
+    ASSERT_GT(count, 1u);
+    drive.samples.link_q16 = raw(before, 16);
+    std::vector<hal_adc_window_t> windows;
+    double mean = before == 0.0 ? real(still_window(300.0).link * drive.config.volts_per_code_q16, 16) : before;
+    mean *= (8.0 - static_cast<double>(count)) / 8.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      windows.push_back(still_window(300.0 + 10.0 * static_cast<double>(k)));
+      mean += real(windows[k].link * drive.config.volts_per_code_q16, 16) / 8.0;
+    }
+    sample(windows);
+    EXPECT_NEAR(real(drive.samples.link_q16, 16), mean, 1e-3) << before;
+    for (std::size_t k = 0; k < count; ++k) {
+      EXPECT_EQ(drive.samples.link_end_q16[k], windows[k].link * drive.config.volts_per_code_q16) << k;
+    }
+  }
+}
+
+// The input beside the currents is that of the last whole period, whatever comes in meanwhile.
+TEST_F(Drive, TheAuxiliaryInputIsThatOfAWholePeriod) {
+  const auto convert = [](std::uint16_t code) {
+    hal_adc_window_t w = still_window();
+    w.aux = code;
+    board.adc.push_back(w);
+    drive_window_interrupt();
+  };
+  (void)sampling_swap();
+  for (const std::uint16_t code : {111, 222, 333}) {
+    convert(code);
+    convert(999);  // of the period's second window
+    (void)sampling_swap();
+    EXPECT_EQ(sampling_auxiliary(), code);
+    convert(555);
+    EXPECT_EQ(sampling_auxiliary(), code);
+    (void)sampling_swap();
+  }
+}
+
+TEST_F(Drive, AResetForgetsTheWindows) {
+  for (const int swaps : {0, 1}) {
+    for (int k = 0; k < 2; ++k) {
+      drive_window_interrupt();
+      if (k < swaps) (void)sampling_swap();
+    }
+    sampling_reset();
+    for (int k = 0; k < 2; ++k) EXPECT_EQ(sampling_swap()->count, 0) << swaps << k;
+  }
+}
+
+// No window may come in while the buffers change their places.
+TEST_F(Drive, BuffersAreSwappedWithTheInterruptsHeldOff) {
+  const int before = board.interrupt_holds;
+  (void)sampling_swap();
+  EXPECT_EQ(board.interrupt_holds, before + 1);
+  EXPECT_EQ(board.held_off, 0);
+}
+
+// What was learnt of the sensors is taken in its turn.
+TEST_F(Drive, TheSensorsScaleIsRenewedInItsTurn) {
+  make_ready();
+  const slopes_scale_t before = drive.samples.scale;
+  drive.trim.mismatch_q30 = raw(0.02, 30);
+  drive.trim.offset_a_q8 += 512;
+  const slopes_scale_t renewed = slopes_scale(&drive.config.slopes, &drive.trim);
+  ASSERT_NE(std::memcmp(&before, &renewed, sizeof before), 0);
+  for (const turn_t turn : {TURN_REGRESS, TURNS, TURN_VOLTAGE}) {
+    drive.schedule.turn = turn;
+    sample(std::vector<hal_adc_window_t>(drive.modulation.sampled.window_count, still_window()));
+    const slopes_scale_t& expected = turn == TURN_VOLTAGE ? renewed : before;
+    EXPECT_EQ(std::memcmp(&drive.samples.scale, &expected, sizeof expected), 0) << turn;
+  }
 }
 
 }  // namespace

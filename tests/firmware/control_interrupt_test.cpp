@@ -1,0 +1,47 @@
+// The frame of the control interrupt: what it tells the model of the chip, and what stands between begin and end.
+
+#include "firmware/isr_cycles.h"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+using Steps = std::vector<std::uint16_t>;
+
+class ControlInterrupt : public Drive {
+ protected:
+  Steps told(int missing) {
+    board.profile.clear();
+    period(still_window(), missing);
+    return board.profile;
+  }
+};
+
+// Each step says how long it takes when it has been done, so that what follows it happens as late as on the chip.
+TEST_F(ControlInterrupt, EveryStepTellsItsTimeOnce) {
+  make_run();
+  const int windows = drive.modulation.sampled.window_count;
+  Steps expected(static_cast<std::size_t>(windows), CYCLES_WINDOW);
+  for (const unsigned cycles :
+       {CYCLES_READ_SAMPLES, CYCLES_ESTIMATE, CYCLES_SUPERVISE, CYCLES_CONTROL, CYCLES_MODULATE, CYCLES_SERIAL}) {
+    expected.push_back(static_cast<std::uint16_t>(cycles));
+  }
+  EXPECT_EQ(told(0), expected);
+  const Steps blind = {CYCLES_READ_SLICES, CYCLES_ESTIMATE_BLIND, CYCLES_SUPERVISE_BLIND,
+                       CYCLES_CONTROL,     CYCLES_MODULATE,       CYCLES_SERIAL};
+  EXPECT_EQ(told(drive.modulation.sampled.window_count), blind) << "without windows it is over earlier";
+}
+
+// The window interrupt may come between begin and end only; all of the interrupt's work is there, the serial port's
+// too.
+TEST_F(ControlInterrupt, ItsWorkIsBetweenBeginAndEnd) {
+  const int services = board.serial_services;
+  periods(5);
+  EXPECT_EQ(board.control_begins, 5);
+  EXPECT_EQ(board.control_ends, 5);
+  EXPECT_EQ(board.serial_services, services + 5);
+  EXPECT_EQ(board.outside_control, 0);
+}
+
+}  // namespace
