@@ -1,5 +1,7 @@
 // The start of a shaft that turns: pairs of short circuits whose back-EMFs the test makes up.
 
+#include <algorithm>
+
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {
@@ -200,6 +202,117 @@ TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
       for (const int begin : {1500, 6500}) expected += blind == 0 || begin >= on + 200;
       EXPECT_EQ(drive.start.pulse.windows, expected) << blind << ", " << on;
     }
+  }
+}
+
+// In sixty degrees at the speed of the EMF: far enough to be told from noise, near enough for one turn alone.
+TEST_F(StartCaught, TheNextPulseWaitsForSixtyDegrees) {
+  for (const double speed : {25.0, 100.0, 300.0, 3000.0}) {
+    SetUp();
+    await_pulse();
+    see_pulse(0.5, speed * Motor{}.flux);
+    ASSERT_EQ(drive.start.phase, START_LISTEN);
+    EXPECT_NEAR(drive.start.pause, std::max(6.0, kPi / 3.0 / speed / kPeriod), 1.0 + 2.0 / speed * 25.0) << speed;
+    EXPECT_FALSE(drive.control.closed);
+    await_pulse();
+    EXPECT_EQ(drive.start.pulse.windows, 0) << "seen anew";
+  }
+}
+
+// Beyond what drops and noise can fake.
+TEST_F(StartCaught, AnEmfBelowThreeVoltsIsAShaftThatStands) {
+  for (const double volts : {2.9, 3.1}) {
+    SetUp();
+    await_pulse();
+    see_pulse(0.5, volts);
+    EXPECT_EQ(drive.start.phase, volts < 3.0 ? START_AXIS : START_LISTEN);
+    EXPECT_EQ(drive.start.shorted, volts > 3.0);
+    EXPECT_EQ(board.gates_on, volts < 3.0);
+  }
+}
+
+// A sixteenth of the largest current is enough to be looked at; without it a pulse takes its time.
+TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
+  const double enough = real(parameters.current_limit, 20) / 16.0;
+  for (const double share : {0.97, 1.03}) {
+    for (const int tick : {11, 12}) {
+      SetUp();
+      await_pulse();
+      drive.samples.count = 0;
+      drive.start.tick = static_cast<std::uint16_t>(tick);
+      drive.start.pulse.windows = 2;
+      drive.start.pulse.last_q20 = {0, raw(-share * enough, 20)};
+      start_step_pulse(&drive);
+      EXPECT_EQ(board.gates_on, share < 1.0 && tick < 12) << share << " " << tick;
+    }
+  }
+}
+
+TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
+  drive.start.stray = 99;
+  drive.start.learnt = true;
+  drive.start.axis.count = 5;
+  drive.control.weakening.trim_q20 = raw(-3.0, 20);
+  catch_at(300.0, 1.0);
+  const drive_start_t& s = drive.start;
+  ASSERT_EQ(s.phase, START_CATCH);
+  EXPECT_FALSE(s.shorted || s.learnt);
+  EXPECT_EQ(s.stray, 0);
+  EXPECT_EQ(s.axis.count, 0);
+  EXPECT_EQ(s.sigma_q8, s.rotor.sigma_q8);
+  EXPECT_GT(s.sigma_q8, 0);
+  EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
+  EXPECT_EQ(drive.position.avv.observer.speed_bpp, s.rotor.speed_bpp);
+  EXPECT_EQ(drive.control.weakening_q20, 0) << "at 300 rad/s nothing is weakened";
+  EXPECT_FALSE(board.gates_on);
+  start_step_catch(&drive);
+  EXPECT_TRUE(board.gates_on);
+}
+
+// Until the axis is seen the frame turns with the rotor as the back-EMF has it; then with the axis, where that is not
+// further off than the back-EMF can be. The flux is seen by the inductances that were seen with it.
+TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
+  for (const double off : {0.1, -0.1, 0.5, -0.5}) {
+    SetUp();
+    catch_at(300.0, 1.25);
+    ASSERT_EQ(drive.start.phase, START_CATCH);
+    drive_start_t& s = drive.start;
+    const flying_rotor_t caught = s.rotor;
+    regression_t& r = drive.position.avv.regression;
+    r = {};
+    for (int n = 1; n <= 5; ++n) {
+      start_step_catch(&drive);
+      EXPECT_FALSE(s.learnt);
+      EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - caught.angle_bam)), n * 300.0 * kPeriod, 1e-3);
+      EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
+      EXPECT_EQ(drive.position.avv.observer.speed_bpp, caught.speed_bpp);
+    }
+    EXPECT_EQ(s.axis.count, 0) << "it has not been seen";
+    EXPECT_NEAR(1.0 * drive.model.trim.psi_q16 / drive.model.emf_q16, 0.25, 0.01);
+    const double mean = 0.5 * (real(drive.model.yd_q30, 30) + real(drive.model.yq_q30, 30));
+    const double half = 0.5 * (real(drive.model.yd_q30, 30) - real(drive.model.yq_q30, 30)), spread = 4000.0;
+    const auto see = [&] {  // inductances that are a fifth smaller than told
+      r.information = 1000000;
+      r.spread_q8 = raw(spread, 8);
+      r.along_q16 = raw(0.25 * mean * spread, 16);
+      r.mirror_q16 = raw((1.25 * std::cos(2.0 * off) - 1.0) * half * spread, 16);
+      r.cross_q16 = raw(1.25 * std::sin(2.0 * off) * half * spread, 16);
+      start_step_catch(&drive);
+    };
+    s.blind = 1;
+    see();
+    EXPECT_EQ(s.axis.count, 0) << "windows of gates that were off";
+    s.blind = 0;
+    for (int n = 0; n < AXIS_PERIODS; ++n) see();
+    EXPECT_FALSE(s.learnt) << "a decision has a period of its own";
+    const std::uint32_t before = s.rotor.angle_bam;
+    drive.schedule.decides = true;
+    see();
+    EXPECT_TRUE(s.learnt);
+    const double most = 15.0 * kDegree;
+    EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - before)), 300.0 * kPeriod + std::clamp(off, -most, most), 2e-3) << off;
+    EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
+    EXPECT_EQ(drive.model.trim.psi_q16, 0) << "the flux is as told";
   }
 }
 

@@ -120,4 +120,59 @@ TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   EXPECT_EQ(drive.start.phase, START_CHARGE) << "only what they were on counts";
 }
 
+// Whole periods, and no fewer than asked for.
+TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
+  for (const auto& [ms, periods_on] : {std::pair{5.0, 50}, {5.01, 51}}) {
+    SetUp();
+    parameters.bootstrap_time = raw(ms, 16);
+    drive_command_start();
+    while (!board.gates_on) period();
+    drive.samples.count = 0;
+    for (int n = 1; n < periods_on; ++n) start_step_charge(&drive);
+    EXPECT_EQ(drive.start.phase, START_CHARGE) << ms;
+    start_step_charge(&drive);
+    EXPECT_NE(drive.start.phase, START_CHARGE) << ms;
+  }
+}
+
+// Half of the largest current, on either axis and in either direction, in the latest window of a power stage that is
+// on.
+TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
+  const double half = 0.5 * real(parameters.current_limit, 20);
+  for (const Vector way : {Vector{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
+    for (const double share : {0.98, 1.02}) {
+      for (const bool latest : {false, true}) {
+        for (const bool blind : {false, true}) {
+          SetUp();
+          parameters.bootstrap_time = raw(20.0, 16);
+          drive_command_start();
+          while (!board.gates_on) period();
+          drive.start.blind = blind ? 1 : 0;
+          drive.samples.count = 2;
+          drive.samples.windows[0].current_q20 = drive.samples.windows[1].current_q20 = {0, 0};
+          drive.samples.windows[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
+          start_step_charge(&drive);
+          EXPECT_EQ(board.gates_on, share < 1.0 || !latest || blind) << share << latest << blind;
+        }
+      }
+    }
+  }
+}
+
+// For a current to die away.
+TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
+  parameters.bootstrap_time = raw(20.0, 16);
+  drive_command_start();
+  while (!board.gates_on) period();
+  drive.start.blind = 0;
+  drive.samples.count = 1;
+  drive.samples.windows[0].current_q20 = {parameters.current_limit, 0};
+  start_step_charge(&drive);
+  ASSERT_FALSE(board.gates_on);
+  for (int n = 1; n < 20; ++n) drive_start(&drive);
+  EXPECT_FALSE(board.gates_on);
+  drive_start(&drive);
+  EXPECT_TRUE(board.gates_on);
+}
+
 }  // namespace

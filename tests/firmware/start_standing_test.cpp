@@ -311,4 +311,64 @@ TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
   EXPECT_EQ(drive.hold.left, 0u);
 }
 
+TEST_F(StartStanding, TheGatesHaveTheirInstant) {
+  start_power(&drive, false);
+  EXPECT_FALSE(board.gates_on || start().powered);
+  board.pwm_tick = 4321;
+  start().blind = 0;
+  start_power(&drive, true);
+  EXPECT_TRUE(board.gates_on && start().powered);
+  EXPECT_EQ(start().on_tick, 4321);
+  EXPECT_EQ(start().blind, 2) << "this period and the next have begun with the gates off";
+}
+
+// Speed control, encoder and the watch over the polarity go on from here; nobody holds the shaft.
+TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
+  board.encoder = 1234;
+  drive.hold.left = 9;
+  drive.control.reference_q20.q = raw(3.0, 20);
+  drive.control.speed.current_q20 = drive.control.speed.integral_q20 = raw(2.0, 20);
+  drive_hand_over(&drive, bam(0.8), bpp(100.0));
+  EXPECT_EQ(drive.position.used.angle_bam, bam(0.8));
+  EXPECT_EQ(drive.position.used.speed_bpp, bpp(100.0));
+  EXPECT_EQ(drive.position.encoder.angle_bam, bam(0.8));
+  EXPECT_EQ(drive.position.encoder.speed_bpp, bpp(100.0));
+  const std::uint32_t count = position_encoder_angle(1234, 4, parameters.encoder_counts);
+  EXPECT_EQ(drive.position.encoder_offset_bam, bam(0.8) - count);
+  EXPECT_EQ(drive.watch.axis.angle_bam, bam(0.8));
+  EXPECT_EQ(drive.watch.axis.speed_bpp, bpp(100.0));
+  EXPECT_EQ(drive.hold.left, 0u);
+  EXPECT_EQ(drive.control.ramp.value, bpp(100.0));
+  EXPECT_EQ(drive.control.reference_q20.q, 0);
+  EXPECT_EQ(drive.control.speed.current_q20, 0);
+}
+
+// The flux that takes over above its blend has the shaft from the start on; nobody else does.
+TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
+  for (const std::int32_t source : {POSITION_OBSERVER, POSITION_FLUX_CONV, POSITION_FLUX_ACTIVE}) {
+    for (const int above : {0, 1}) {
+      SetUp();
+      parameters.position_source = source;
+      drive.config.blend.high_bpp = drive.config.turn.speed_bpp - above;
+      drive.position.blend.region = BLEND_LOW;
+      drive.position.blend.share_q15 = 32767;
+      start_turn(&drive);
+      const bool alone = source >= POSITION_FLUX_CONV && above != 0;
+      EXPECT_EQ(drive.position.blend.region, alone ? BLEND_HIGH : BLEND_LOW) << source;
+      EXPECT_EQ(drive.position.blend.share_q15, alone ? 0 : 32767) << source;
+    }
+  }
+}
+
+TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
+  start_turn(&drive);
+  for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
+    start().seen = {start().turn.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
+    drive.control.command_q16 = {0, 0};
+    step();
+  }
+  EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+  EXPECT_FALSE(board.gates_on);
+}
+
 }  // namespace
