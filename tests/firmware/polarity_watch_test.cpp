@@ -139,4 +139,60 @@ TEST_F(PolarityWatch, AQuarterOfTheEmfAgainstTheRotationIsASuspicion) {
   EXPECT_FALSE(polarity_watch_suspects(&drive));
 }
 
+TEST_F(PolarityWatch, BeginsWithNothingOfTheLastRun) {
+  for (const int check : {0, 1}) {
+    polarity_watch_t& w = drive.watch;
+    parameters.polarity_check = check;
+    w.axis_periods = w.periods = w.voltage_q12.d = w.voltage_q12.q = 7;
+    w.blind = true;
+    w.open = check == 0;
+    w.sign.clear = w.sign.against = 9;
+    w.sign.seen_q16 = w.sign.expected_q16 = -99;
+    polarity_watch_begin(&drive, bam(1.1), bpp(50.0));
+    EXPECT_EQ(w.open, check != 0);
+    EXPECT_EQ(w.axis.angle_bam, bam(1.1));
+    EXPECT_EQ(w.axis.speed_bpp, bpp(50.0));
+    EXPECT_EQ(w.axis_periods | w.periods | w.voltage_q12.d | w.voltage_q12.q, 0);
+    EXPECT_EQ(w.sign.clear + w.sign.against + w.sign.seen_q16 + w.sign.expected_q16, 0);
+    EXPECT_FALSE(w.blind);
+  }
+}
+
+// The command is in the frame in use, the back-EMF on the watch's own axis: an angle in use that is off is not a magnet
+// that is reversed.
+TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
+  for (const double emf : {40.0, -40.0}) {
+    for (const double off : {0.0, 1.7, -1.7, 3.0}) {
+      SetUp();
+      source(POSITION_AVV);
+      const std::int32_t speed = bpp_of(600);
+      drive.watch.axis.speed_bpp = speed;
+      const Vector command = Vector{0.0, emf}.turned(-off);
+      drive.control.command_q16 = raw_dq(command, 16);
+      bool reversed = false;
+      int n = 0;
+      for (; n < 600 && drive.watch.open; ++n) {
+        drive.position.used.angle_bam =
+            drive.watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
+        reversed = step(n % 5 == 4 ? TURN_VOLTAGE : kNone);
+      }
+      EXPECT_GE(n, 50) << "5 ms";
+      EXPECT_FALSE(drive.watch.open) << off;
+      EXPECT_EQ(reversed, emf < 0.0) << off;
+    }
+  }
+}
+
+// The sums of voltages that nobody looks at stay what they are.
+TEST_F(PolarityWatch, SumsThatAreNotLookedAtEnd) {
+  source(POSITION_AVV);
+  drive.control.command_q16 = {raw(4000.0, 16), raw(-4000.0, 16)};
+  for (int n = 0; n < 20000; ++n) EXPECT_FALSE(step(kNone));
+  EXPECT_GT(drive.watch.voltage_q12.d, 1000000000);
+  EXPECT_LT(drive.watch.voltage_q12.q, -1000000000);
+  EXPECT_GT(drive.watch.periods, 9000);
+  EXPECT_LE(drive.watch.periods, 10000);
+  EXPECT_LE(drive.watch.axis_periods, 10000);
+}
+
 }  // namespace
