@@ -1,0 +1,44 @@
+// A drive in RUN whose speed task the test calls, period by period.
+
+#ifndef STILLSPIN_TESTS_FIRMWARE_SPEED_TASK_HPP
+#define STILLSPIN_TESTS_FIRMWARE_SPEED_TASK_HPP
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+
+inline constexpr double kLink = 300.0;
+
+class SpeedTask : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    drive.state = DRIVE_RUN;
+    drive.watch.open = false;
+    drive.samples.link_q16 = raw(kLink, 16);
+    drive.control.current_limit_q20 = raw(10.0, 20);
+    drive.control.reference_q20 = {0, 0};
+    drive.control.ramp.value = drive.control.target_bpp = 0;
+    parameters.position_hold = 0;
+    speed(0.0);
+  }
+  static void part(task_t task) {
+    drive.schedule.task = task;
+    drive_control_speed(&drive);
+  }
+  static void millisecond() {
+    for (int k = 0; k < 10; ++k) {
+      schedule_next(&drive);
+      drive_control_speed(&drive);
+    }
+  }
+  static void speed(double rad_per_s) { drive.position.used = {0, bpp(rad_per_s), 0, 32767}; }
+  static double iq() { return real(drive.control.reference_q20.q, 20); }
+  static double id() { return real(drive.control.reference_q20.d, 20); }
+  static double torque_constant() { return real(machine_torque_constant_q24(&drive.model, 0), 24); }
+};
+
+}  // namespace stillspin::test
+
+#endif
