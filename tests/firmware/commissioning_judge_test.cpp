@@ -352,4 +352,17 @@ TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   EXPECT_EQ(drive_commissioning_result(0).id, 0);
 }
 
+// A line is drawn over the upper quarter of the current at least.
+TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
+  for (const double share : {0.74, 0.76}) {
+    SetUp();
+    const double limit = real(parameters.current_limit, 20);
+    const double pulse = drive.config.modulator.pulse_ticks / 1e4;
+    const double link = real(drive.samples.link_q16, 16);
+    drive.commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
+    for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
+    EXPECT_NEAR(real(drive.control.reference_q20.d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
+  }
+}
+
 }  // namespace

@@ -258,4 +258,46 @@ TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   }
 }
 
+// A phase's first period forgets the sums of the last commissioning.
+TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
+  begin();
+  commissioning_t& c = drive.commissioning;
+  const auto first_period = [&](bool (*phase)(drive_t*)) {
+    std::memset(&c.staircase, 0x11, sizeof c.staircase);
+    std::memset(&c.map, 0x11, sizeof c.map);
+    std::memset(&c.spin, 0x11, sizeof c.spin);
+    std::memset(&c.unsaturated, 0x11, sizeof c.unsaturated);
+    c.tick = 0;
+    drive.samples.count = 0;
+    EXPECT_FALSE(phase(&drive));
+  };
+  first_period(commissioning_climb);
+  EXPECT_EQ(c.staircase.index, 0);
+  EXPECT_EQ(c.staircase.tick, 1);
+  for (const staircase_level_t& l : c.staircase.level) {
+    EXPECT_EQ(l.current | l.factor | l.command | l.window_current | l.window_factor | l.residual | l.sag, 0);
+    EXPECT_EQ(l.periods | l.windows, 0);
+  }
+  first_period(commissioning_map);
+  EXPECT_EQ(c.map.level, 0);
+  EXPECT_EQ(c.map.train, 0);
+  EXPECT_EQ(c.map.tick, 1);
+  EXPECT_TRUE(c.map.pause);
+  EXPECT_EQ(c.unsaturated.count, 0);
+  const double moved = rad(angle_diff_bam(c.target_bam, drive.position.used.angle_bam));
+  EXPECT_NEAR(moved, 45.0 * kDegree / 300.0, 1e-6) << "from where the shaft is";
+  for (const auto& level : c.map.group) {
+    for (const map_group_t& g : level) {
+      EXPECT_EQ(g.position | g.current, 0);
+      EXPECT_EQ(g.tensor.count, 0);
+    }
+  }
+  first_period(commissioning_spin);
+  EXPECT_TRUE(c.turning && c.adapting);
+  EXPECT_EQ(c.spin.leg, 0);
+  EXPECT_EQ(c.spin.tick, 0);
+  for (const spin_station_t& s : c.spin.station) EXPECT_EQ(s.speed | s.voltage_q | s.current_q | s.periods, 0);
+  for (const spin_ramp_t& r : c.spin.ramp) EXPECT_EQ(r.speed | r.current_q | r.periods, 0);
+}
+
 }  // namespace
