@@ -1,0 +1,55 @@
+// A drive after power-on, or after a computer has stepped it: nothing of what was is left.
+
+#include <cstring>
+
+#include "firmware/board/functions.h"
+#include "firmware/board/selftest.h"
+#include "firmware/fault_history.h"
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/scope/scope.h"
+}
+
+namespace stillspin::test {
+namespace {
+
+TEST_F(Drive, AResetLeavesADriveThatCanStart) {
+  make_run();
+  parameters.current_limit = raw(9.0, 20);
+  parameters.magnet_flux = raw(0.05, 28);
+  drive.trim = {};
+  drive.model.emf_q16 = drive.config.nameplate.emf_q16 / 2;
+  drive.control.speed_ready = drive.config_valid = false;
+  drive.control.current_limit_q20 = 0;
+  ::board.share_q15 = 100;
+  ::board.relay = true;
+  selftest.failed = 1;
+  drive_raise(&drive, FAULT_LINK_LOW);
+
+  drive_reset();
+  EXPECT_EQ(drive.state, DRIVE_BOOT);
+  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_EQ(drive.time_ms, 0u);
+  EXPECT_EQ(fault_history_total(), 0);
+  EXPECT_EQ(scope_setup_in_force()->count, 0);
+  EXPECT_EQ(selftest.failed, 0);
+  EXPECT_FALSE(::board.relay);
+  EXPECT_EQ(parameters.current_limit, raw(14.0, 20)) << "the values are the table's";
+  EXPECT_EQ(drive.control.current_limit_q20, parameters.current_limit);
+  EXPECT_TRUE(drive.config_valid && drive.control.speed_ready);
+  for (const std::int32_t middle : {drive.rest_a_q8, drive.rest_b_q8, drive.trim.offset_a_q8, drive.trim.offset_b_q8}) {
+    EXPECT_EQ(middle, 2048 * 256);
+  }
+  const slopes_scale_t scale = slopes_scale(&drive.config.slopes, &drive.trim);
+  EXPECT_EQ(std::memcmp(&drive.samples.scale, &scale, sizeof scale), 0);
+  const Motor motor;
+  EXPECT_NEAR(real(drive.model.emf_q16, 16), motor.flux / kPeriod, 1.0);
+  const std::int32_t per_nm_q20 = q_over(1 << 20, drive.control.per_torque_constant, 24);
+  EXPECT_NEAR(real(per_nm_q20, 20), 1.0 / motor.torque_constant(), 1e-3);
+  EXPECT_EQ(drive.position.used.angle_bam, 0u);
+  EXPECT_EQ(drive.position.used.speed_bpp, 0);
+}
+
+}  // namespace
+}  // namespace stillspin::test
