@@ -126,4 +126,15 @@ TEST_F(Editor, TheEndOfALine) {
   EXPECT_FALSE(e.too_long);
 }
 
+// A terminal's keys begin with ESC [ and end with a character from @ on; what stands between belongs to them.
+TEST_F(Editor, ASequenceEndsWithItsFinalCharacter) {
+  for (int final = '@'; final <= '~'; ++final) {
+    editor_reset(&e);
+    EXPECT_EQ(type("\x1B[" + std::string(1, static_cast<char>(final)) + "x\r"), "x|") << final;
+  }
+  for (int between = ' '; between < '@'; ++between) {
+    EXPECT_EQ(type("\x1B[" + std::string(1, static_cast<char>(between)) + "Zx\r"), "x|") << between;
+  }
+}
+
 }  // namespace

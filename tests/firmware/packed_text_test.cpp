@@ -110,6 +110,7 @@ TEST(PackedText, PartsAreFound) {
     EXPECT_TRUE(occurs(row.number, ""));
     EXPECT_TRUE(occurs(row.number, row.text));
     EXPECT_FALSE(occurs(row.number, row.text + "~"));
+    EXPECT_FALSE(occurs(row.number, row.text + std::string(1, '\0'))) << "the end is no character";
     for (std::size_t at = 0; at + 3 < row.text.size(); ++at) EXPECT_TRUE(occurs(row.number, row.text.substr(at, 4)));
   }
   EXPECT_TRUE(occurs(TEXT_PARAMETER_stator_resistance, "RESISTANCE of"));

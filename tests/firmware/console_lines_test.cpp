@@ -1,0 +1,225 @@
+// Whole lines as a person reads them: every number with its unit and in its column.
+
+#include <algorithm>
+
+#include "sim_host/bench/texts.hpp"
+#include "tests/firmware/console.hpp"
+
+extern "C" {
+#include "firmware/console/commands.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/scope/scope.h"
+}
+
+namespace {
+
+using namespace stillspin;
+using namespace stillspin::test;
+
+class ConsoleLines : public Console {
+ protected:
+  /// Spaces up to a column.
+  static std::string to(std::string text, std::size_t column) {
+    text.resize(std::max(column, text.size() + 1), ' ');
+    return text;
+  }
+  static long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+  static void at_work() {
+    drive.state = DRIVE_RUN;
+    drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
+    drive.control.wanted_rpm_q16 = raw(-712.3, 16);
+    drive.samples.link_q16 = raw(287.6, 16);
+    drive.control.measured_q20 = {raw(1.234, 20), raw(-5.678, 20)};
+  }
+};
+
+TEST_F(ConsoleLines, AHelpRowHasNameArgumentsAndWhatItIs) {
+  const std::string help = command("help");
+  std::string expected;
+  for (std::uint16_t k = 0; command_info(k) != nullptr; ++k) {
+    const command_t& c = *command_info(k);
+    const std::string row =
+        to(bench::text_of(c.name) + " " + bench::text_of(c.arguments), 26) + bench::text_of(c.help) + "\r\n";
+    EXPECT_EQ(command("help " + bench::text_of(c.name)).rfind(row, 0), 0u) << row;
+    expected += row;
+  }
+  EXPECT_EQ(help, expected + "Ctrl-C ends a long answer; stop and coast always work. More: help <command>\r\n");
+}
+
+TEST_F(ConsoleLines, HelpOfOneCommandIsAllThatIsSaidOfIt) {
+  EXPECT_EQ(lines(command("help set")), 1 + 3);
+  EXPECT_EQ(lines(command("help scope")), 1 + 6);
+  EXPECT_EQ(lines(command("help can")), 1);
+  EXPECT_EQ(command("help cam"), "there is no command 'cam': did you mean can?\r\n");
+}
+
+TEST_F(ConsoleLines, StatusInNumbers) {
+  at_work();
+  board.serial_errors = {1, 20, 300, 4000};
+  const std::string status = command("status");
+  EXPECT_EQ(status.rfind("state       running\r\n"
+                         "speed       600.5 rpm of -712.3 rpm\r\n"
+                         "current     d 1.23 A, q -5.68 A\r\n"
+                         "DC link     287.6 V\r\n"
+                         "limits      none\r\n"
+                         "fault       none\r\n",
+                         0),
+            0u)
+      << status;
+  EXPECT_TRUE(has(status, "\r\nstore       nothing has been saved yet: defaults are in force; saves so far 0\r\n"))
+      << status;
+  EXPECT_TRUE(has(status, "\r\nserial      4321 disturbances, 0 damaged records, 0 events dropped\r\n")) << status;
+  EXPECT_EQ(lines(status), 11);
+}
+
+TEST_F(ConsoleLines, WatchIsALineTwiceASecond) {
+  at_work();
+  send("watch\r");
+  run(300);
+  EXPECT_TRUE(has(text, "running   600.5 rpm of -712.3 rpm   d 1.23 A, q -5.68 A   287.6 V\r\n")) << text;
+  text.clear();
+  run(4600);
+  EXPECT_EQ(lines(text), 0);
+  run(200);
+  EXPECT_EQ(lines(text), 1);
+  run(5000);
+  EXPECT_EQ(lines(text), 2);
+}
+
+// The newest first, each with its circumstances.
+TEST_F(ConsoleLines, FaultsWithTheirCircumstances) {
+  at_work();
+  drive.time_ms = 5067;
+  drive_raise(&drive, FAULT_LINK_LOW);
+  at_work();
+  drive.state = DRIVE_STOP;
+  drive.time_ms = 65407;
+  drive_raise(&drive, FAULT_OVERRUN);
+  run(10);  // nobody types yet: it is not told
+  const std::string circumstances = " at 600.5 rpm, link 287.6 V, d 1.23 A, q -5.68 A\r\n";
+  const std::string overrun = bench::words_of(WORDS_FAULT, FAULT_OVERRUN);
+  EXPECT_EQ(command("faults"), "2 since power-on, which was 65 s ago; the newest first\r\n65.407 s  " + overrun +
+                                   ", stopping" + circumstances + "5.067 s  DC link below link_minimum, running" +
+                                   circumstances);
+}
+
+// A star before what is not the default; a part that was asked for is forgotten with the next list.
+TEST_F(ConsoleLines, AParametersRow) {
+  const std::string meaning = "for how long after the start a standing shaft is held stiffly, for a brake to open";
+  EXPECT_EQ(command("list hold_time").rfind(to(to("hold_time", 23) + "0 ms", 42) + meaning, 0), 0u);
+  parameters.hold_time = 100;
+  EXPECT_EQ(command("list HOLD_TIME").rfind(to(to("hold_time", 22) + "*100 ms", 42) + meaning, 0), 0u);
+  EXPECT_EQ(lines(command("list hold_time")), 1);
+  EXPECT_EQ(lines(command("list", 30000)), parameter_count());
+}
+
+TEST_F(ConsoleLines, ASignalsRow) {
+  at_work();
+  const std::string row = to(to("speed", 22) + "600.50 rpm", 40) + "mechanical speed in use\r\n";
+  EXPECT_EQ(command("signals mechanical"), row);
+  EXPECT_EQ(command("get speed"), row);
+}
+
+TEST_F(ConsoleLines, APartIsForgottenWithTheNextList) {
+  EXPECT_EQ(lines(command("signals start_phase")), 1);
+  EXPECT_EQ(lines(command("signals", 10000)), signal_count());
+}
+
+TEST_F(ConsoleLines, AValueHasTheDecimalsThatItsFormatIsWorth) {
+  const std::pair<int, int> cases[] = {{0, 0}, {1, 1}, {8, 1}, {9, 2}, {16, 2}, {17, 3}, {20, 3}, {21, 4}, {32, 4}};
+  for (const auto& [q, decimals] : cases) {
+    signal_info_t s = *signal_info(0);
+    s.q = static_cast<std::uint16_t>(q);
+    EXPECT_EQ(signal_decimals(&s), decimals) << q;
+  }
+}
+
+TEST_F(ConsoleLines, ASpeedBeyondTheLimitIsRefusedWithBoth) {
+  EXPECT_EQ(command("ref -9000.5"), "-9000.5 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
+  EXPECT_EQ(command("ref 3300"), "ref 3300.00 rpm\r\n") << "which may be reached";
+}
+
+TEST_F(ConsoleLines, ACommissioningSaysHowFarItIs) {
+  drive.commissioning.outcome = COMMISSIONING_RUNNING;
+  drive.commissioning.phase = COMMISSIONING_STAIRCASE;
+  drive.commissioning.staircase.index = 7;
+  EXPECT_EQ(command("commission"), "commissioning: under way, 11 %: DC staircase: resistance, drop, dead time\r\n");
+}
+
+TEST_F(ConsoleLines, AResultIsWhatWasAndWhatIs) {
+  drive.commissioning.evaluate = true;  // and nothing was measured
+  commissioning_service(&drive);
+  const std::string rows = command("commission results", 20000);
+  EXPECT_EQ(rows.rfind(to(to("stator_resistance", 22) + "0.3200 -> -0.0350 ohm", 50) +
+                           bench::words_of(WORDS_VERDICT, VERDICT_NOT_MEASURED) + "\r\n",
+                       0),
+            0u)
+      << rows;
+}
+
+// Of the scope as it is set up when nothing else was said: a quarter of the records before the trigger, which is now.
+TEST_F(ConsoleLines, AScopeThatWasOnlyGivenItsChannels) {
+  EXPECT_EQ(command("scope"), "scope: idle, 0 records\r\n");
+  (void)command("scope channels speed");
+  EXPECT_EQ(command("scope"),
+            "scope: idle, 0 records\r\nchannels speed\r\ntrigger now, every 1, before 256, mode single\r\n");
+}
+
+TEST_F(ConsoleLines, ARecordOfTheScopeIsARow) {
+  at_work();
+  drive.control.measured_q20.q = raw(-5.5, 20);
+  (void)command("scope channels speed current_q state");
+  (void)command("scope arm");
+  for (int k = 0; k < 1100; ++k) scope_step(7);
+  const std::string state = command("scope");
+  EXPECT_EQ(state.rfind("scope: done, 1024 records, trigger in record 256 at 7 ms\r\n", 0), 0u) << state;
+  const auto row = [](const std::string& number) {
+    return to(to(to(to(number, 6) + "600.50", 18) + "-5.500", 30) + "4", 42) + "\r\n";
+  };
+  EXPECT_EQ(command("scope print 1000"), row("0") + row("1000"));
+}
+
+// A key ends a watch and the wait for a start, but not the wait for the store: its answer comes first.
+TEST_F(ConsoleLines, WhatIsTypedDuringASaveWaits) {
+  send("save\rversion\r");
+  run(20000);
+  EXPECT_TRUE(has(text, "the values have been saved")) << text;
+  EXPECT_LT(text.find("the values have been saved"), text.find("protocol 1"));
+}
+
+// Each way in which the port has seen a disturbance.
+TEST_F(ConsoleLines, AnyErrorOfThePortDisturbsALine) {
+  for (std::uint16_t hal_sci_errors_t::* error :
+       {&hal_sci_errors_t::framing, &hal_sci_errors_t::overrun, &hal_sci_errors_t::breaks, &hal_sci_errors_t::lost}) {
+    text.clear();
+    send("ref 5");
+    run(50);
+    ++(board.serial_errors.*error);
+    send("0\r");
+    run(300);
+    EXPECT_TRUE(has(text, "the line was disturbed on its way: nothing done, send it again\r\n> ")) << text;
+    EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+    EXPECT_EQ(command("ref 0"), "ref 0.00 rpm\r\n") << "the next one is not";
+  }
+}
+
+// Sixty-three characters wait for the end of an answer; with one more the answer ends.
+TEST_F(ConsoleLines, WhatIsTypedAheadHasItsRoom) {
+  send("list\r");
+  run(100);
+  send(std::string(63, ' '));
+  run(50);
+  EXPECT_FALSE(has(text, "more input")) << text;
+  send(" ");
+  run(50);
+  EXPECT_TRUE(has(text, "more input than can be kept: the answer ends here\r\n> ")) << text;
+}
+
+TEST_F(ConsoleLines, FourNamesAreSuggestedAtMost) {
+  const std::string said = command("get curren");
+  EXPECT_EQ(std::count(said.begin(), said.end(), ','), 3) << said;
+  EXPECT_EQ(said.rfind("there is no parameter 'curren': did you mean ", 0), 0u) << said;
+}
+
+}  // namespace
