@@ -36,8 +36,6 @@ static scope_setup_t draft(void) {
   s.pretrigger = SCOPE_DEPTH / 4u;
   s.mode = SCOPE_SINGLE;
   s.edge = SCOPE_AT_ONCE;
-  s.trigger = 0;
-  s.level = 0;
   return s;
 }
 
