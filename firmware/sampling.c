@@ -19,7 +19,6 @@ static uint16_t sampling_filling;
 
 void sampling_reset(void) {
   sampling_buffers[0].count = 0;
-  sampling_buffers[1].count = 0;
   sampling_filling = 0;
 }
 

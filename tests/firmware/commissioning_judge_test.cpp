@@ -365,4 +365,33 @@ TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
   }
 }
 
+// Currents that are measured wrong spoil everything else.
+TEST_F(CommissioningJudge, AMismatchThatNoSensorHasSpoilsEverything) {
+  c.mismatch_q30 = raw(0.4, 30);
+  commissioning_report_t report;
+  commissioning_judge(&c, &report);
+  int refused = 0;
+  for (int k = 0; k < report.count; ++k) {
+    if (report.list[k].verdict == VERDICT_RANGE) ++refused;
+    EXPECT_TRUE(report.list[k].verdict == VERDICT_DEPENDS || report.list[k].verdict == VERDICT_RANGE) << k;
+  }
+  EXPECT_EQ(refused, 1) << "the mismatch itself";
+}
+
+// Opposite along either axis; vectors that are alike in one of them are no pair.
+TEST_F(CommissioningStairs, APairIsOppositeAlongBothAxes) {
+  deviation_t first, second;
+  drive.samples.count = 2;
+  estimator_window_t* const w = drive.samples.windows;
+  w[0] = w[1] = {};
+  for (const auto& [a, b] : {std::pair{100.0, 150.0}, {0.0, 150.0}, {-100.0, 0.0}}) {
+    for (const auto& [along, across] : {std::pair{-1.0, -1.0}, {-1.0, 1.0}, {1.0, -1.0}}) {
+      w[0].voltage_q16 = raw_ab({a, b}, 16);
+      w[1].voltage_q16 = raw_ab({along * a, across * b}, 16);
+      const bool pair = (a == 0.0 || along < 0.0) && (b == 0.0 || across < 0.0);
+      EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << a << " " << b << " " << along << across;
+    }
+  }
+}
+
 }  // namespace

@@ -227,4 +227,44 @@ TEST(CommissioningSpin, AShaftThatDidNotTurnIsNotValid) {
   EXPECT_FALSE(spin_solve(&s, raw(0.387, 24), raw(0.0049, 30), 4).valid);
 }
 
+TEST(CommissioningSpin, EachStationIsNeeded) {
+  for (int k = 0; k < 3; ++k) {
+    spin_t s = spun(0.1552, 0.00546, 0.003, 0.387);
+    s.station[k].periods = 0;
+    EXPECT_FALSE(spin_solve(&s, raw(0.387, 24), raw(0.0049, 30), 4).valid) << k;
+  }
+}
+
+// A report shows what was measured beside why it is not used: of what was not, that is nothing.
+TEST(CommissioningSolve, WhatWasNotMeasuredIsZero) {
+  const machine_model_t m = nameplate();
+  const staircase_t no_stairs{};
+  const staircase_values_t stairs = staircase_solve(&no_stairs, &m);
+  EXPECT_FALSE(stairs.valid);
+  EXPECT_EQ(stairs.resistance_q24 | stairs.drop_error_q16 | stairs.edge_error_q16 | stairs.link_q16, 0);
+  EXPECT_EQ(stairs.command_rms_q16 | stairs.window_rms_q16, 0);
+  const map_group_t no_groups[MAP_GROUPS] = {};
+  for (const map_values_t& map : {unsaturated_solve(&no_groups[0].tensor, &m), map_solve(no_groups, &m)}) {
+    EXPECT_FALSE(map.valid);
+    EXPECT_EQ(map.ldd_q20 | map.lqq_q20 | map.ldq_q20 | map.turn_bam | map.share_q24 | map.current_q20, 0);
+  }
+  const spin_t no_spin{};
+  const spin_values_t spin = spin_solve(&no_spin, raw(0.387, 24), raw(0.0049, 30), 4);
+  EXPECT_FALSE(spin.valid);
+  EXPECT_EQ(spin.flux_q28 | spin.flux_low_q28 | spin.friction_q24, 0);
+  EXPECT_EQ(spin.inertia_up_q24 | spin.inertia_down_q24, 0);
+  EXPECT_EQ(unsaturated_mismatch_q30(&no_groups[0].tensor, &m), 0);
+}
+
+// The turn that is not there without current; the motion that nobody has predicted is none of a point without it.
+TEST(CommissioningSolve, APointWithoutCurrentHasNeitherTurnNorShare) {
+  const machine_model_t m = nameplate();
+  tensor_sums_t s;
+  tensor_reset(&s);
+  add_pairs(&s, m, {4.655e-3, 7.41e-3, 0.0}, 0.0, 0.0, 99);
+  const map_values_t v = unsaturated_solve(&s, &m);
+  ASSERT_TRUE(v.valid);
+  EXPECT_EQ(v.ldq_q20 | v.turn_bam | v.share_q24 | v.current_q20, 0);
+}
+
 }  // namespace

@@ -100,8 +100,9 @@ TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
 TEST_F(StartCaught, AFluxThatIsOffIsTakenFromALargeEmf) {
   const struct {
     double speed, flux, taken;
-  } cases[] = {{300.0, 1.05, 0.0},  {300.0, 1.25, 0.25},  {-400.0, 0.8, -0.2},
-               {300.0, 1.7, 0.375}, {600.0, 0.5, -0.375}, {200.0, 1.2, 0.0} /* 38 V */};
+  } cases[] = {{300.0, 1.05, 0.0},  {300.0, 1.25, 0.25},   {-400.0, 0.8, -0.2},
+               {300.0, 1.7, 0.375}, {600.0, 0.5, -0.375},  {200.0, 1.2, 0.0} /* 38 V */,
+               {300.0, 1.115, 0.0}, {300.0, 1.135, 0.135}, {400.0, 0.88, 0.0}};
   for (const auto& c : cases) {
     SetUp();
     catch_at(c.speed, c.flux);
@@ -183,7 +184,7 @@ TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
 // others all does.
 TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
   for (const int blind : {2, 1, 0}) {
-    for (const int on : {1000, 1290, 1310, 1500, 4000, 9000}) {
+    for (const int on : {1000, 1290, 1300, 1310, 1500, 4000, 9000}) {
       drive.start.phase = START_PULSE;
       drive.start.powered = true;
       drive.start.tick = 0;
@@ -240,7 +241,7 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
       await_pulse();
       drive.samples.count = 0;
       drive.start.tick = static_cast<std::uint16_t>(tick);
-      drive.start.pulse.windows = 2;
+      drive.start.pulse.windows = 1;
       drive.start.pulse.last_q20 = {0, raw(-share * enough, 20)};
       start_step_pulse(&drive);
       EXPECT_EQ(board.gates_on, share < 1.0 && tick < 12) << share << " " << tick;
@@ -267,6 +268,14 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
   EXPECT_FALSE(board.gates_on);
   start_step_catch(&drive);
   EXPECT_TRUE(board.gates_on);
+}
+
+// A fast shaft needs its field current from the first period on.
+TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
+  catch_at(1500.0, 1.0);
+  ASSERT_EQ(drive.start.phase, START_CATCH);
+  EXPECT_LT(real(drive.control.weakening_q20, 20), -0.1);
+  EXPECT_LT(real(drive.control.reference_q20.d, 20), -0.1);
 }
 
 // Until the axis is seen the frame turns with the rotor as the back-EMF has it; then with the axis, where that is not

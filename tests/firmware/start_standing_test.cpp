@@ -296,6 +296,7 @@ TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
   if_start_t& turn = start().turn;
   drive.control.current.d.integral = drive.control.current.q.integral = 99;
   drive.hold.left = 7;
+  drive.position.flux.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
   for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
     drive.position.used.angle_bam = turn.vector_bam;
     start().seen = {turn.vector_bam - bam(0.4), turn.speed_bpp, 0, 32767};
@@ -305,6 +306,9 @@ TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
   ASSERT_EQ(drive.state, DRIVE_RUN);
   EXPECT_EQ(drive.control.ramp.value, drive.config.turn.speed_bpp);
   EXPECT_EQ(drive.position.used.angle_bam, start().seen.angle_bam);
+  EXPECT_EQ(drive.position.encoder.angle_bam, start().seen.angle_bam);
+  EXPECT_EQ(drive.position.encoder.speed_bpp, turn.speed_bpp);
+  EXPECT_EQ(drive.position.flux.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
   EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
   EXPECT_EQ(drive.control.reference_q20.d, 0);
   EXPECT_NEAR(real(drive.control.reference_q20.q, 20), real(turn.current_q20, 20) * std::sin(0.4), 0.05);
@@ -369,6 +373,14 @@ TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
   }
   EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
   EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(StartStanding, AnAxisHasTwentyMilliseconds) {
+  start().tick = 199;
+  step();
+  EXPECT_EQ(drive.state, DRIVE_START);
+  step();
+  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
 }
 
 }  // namespace
