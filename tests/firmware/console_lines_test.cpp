@@ -6,6 +6,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
+#include "firmware/actions.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/scope/scope.h"
@@ -220,6 +221,22 @@ TEST_F(ConsoleLines, FourNamesAreSuggestedAtMost) {
   const std::string said = command("get curren");
   EXPECT_EQ(std::count(said.begin(), said.end(), ','), 3) << said;
   EXPECT_EQ(said.rfind("there is no parameter 'curren': did you mean ", 0), 0u) << said;
+}
+
+// Whoever comes second is told what the first one is at.
+TEST_F(ConsoleLines, AStoreThatIsBusySaysAtWhat) {
+  const std::pair<answer_status_t (*)(octet_writer_t*), const char*> actions[] = {
+      {action_save, "save"}, {action_load, "load"}, {action_defaults, "defaults"}};
+  std::uint16_t octets[100];
+  octet_writer_t why = octet_writer(octets, 100);
+  ASSERT_EQ(action_save(&why), ANSWER_OK);
+  EXPECT_EQ(why.count, 0);
+  for (const auto& [action, name] : actions) {
+    why = octet_writer(octets, 100);
+    EXPECT_EQ(action(&why), ANSWER_BUSY) << name;
+    EXPECT_EQ(std::string(octets, octets + why.count),
+              "the store is busy: " + bench::words_of(WORDS_STORE, static_cast<std::uint16_t>(store_state())));
+  }
 }
 
 }  // namespace
