@@ -3,6 +3,10 @@
 #include "firmware/isr_cycles.h"
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/scope/scope.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -42,6 +46,29 @@ TEST_F(ControlInterrupt, ItsWorkIsBetweenBeginAndEnd) {
   EXPECT_EQ(board.control_ends, 5);
   EXPECT_EQ(board.serial_services, services + 5);
   EXPECT_EQ(board.outside_control, 0);
+}
+
+// Between the speed control's milliseconds the current loop makes a voltage of what is asked for.
+TEST_F(ControlInterrupt, ACurrentThatIsAskedForBecomesAVoltage) {
+  make_run();
+  while (drive.schedule.period != 2) period();
+  for (const double amps : {3.0, -3.0}) {
+    drive.control.reference_q20.q = raw(amps, 20);
+    const std::int32_t before = drive.control.command_q16.q;
+    periods(2);  // with a current divider of two
+    EXPECT_GT((drive.control.command_q16.q - before) * (amps > 0.0 ? 1.0 : -1.0), raw(5.0, 16)) << amps;
+  }
+}
+
+TEST_F(ControlInterrupt, TheScopeSeesEachPeriod) {
+  scope_setup_t s = {};
+  s.count = 1;
+  s.decimation = 1;
+  s.edge = SCOPE_AT_ONCE;
+  ASSERT_TRUE(scope_setup(&s));
+  ASSERT_TRUE(scope_arm());
+  periods(5);
+  EXPECT_EQ(scope_status().recorded, 5);
 }
 
 }  // namespace
