@@ -268,6 +268,7 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
     std::memset(&c.spin, 0x11, sizeof c.spin);
     std::memset(&c.unsaturated, 0x11, sizeof c.unsaturated);
     c.tick = 0;
+    c.turning = c.adapting = false;
     drive.samples.count = 0;
     EXPECT_FALSE(phase(&drive));
   };

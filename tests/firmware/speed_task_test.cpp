@@ -241,7 +241,9 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
                         {0.5, 0.0, 0.0, 0.5},
                         {0.004, 0.0, 2.2, 3.0},
                         {-0.004, 0.0, -2.2, -3.0},
-                        {0.01, 0.0, 4.4, 1.0}}) {
+                        {0.01, 0.0, 4.4, 1.0},
+                        {0.0533, 0.0, 0.0, 3.0},
+                        {-0.0533, 0.0, 0.0, -3.0}}) {
     SetUp();
     parameters.position_source = POSITION_OBSERVER;
     ASSERT_TRUE(drive_config_load(&drive.config));
