@@ -34,7 +34,9 @@ bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text) {
   return k < a->count && packed_equals(text, a->word[k].text, a->word[k].count);
 }
 
-bool word_occurs(const word_t* word, packed_text_t text) { return packed_occurs(text, word->text, word->count); }
+bool word_occurs(const word_t* word, packed_text_t text) {
+  return word->text == NULL || packed_occurs(text, word->text, word->count);
+}
 
 // The word from `at` on, or the next one; moves `at` behind it.
 static word_t next_word(const editor_line_t* line, uint16_t* at) {

@@ -44,7 +44,7 @@ bool command_makes_safe(const editor_line_t* line);
 bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
 bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text);
 
-/// True when the word occurs in the text; an empty one occurs in all of them.
+/// True when the word occurs in the text; one that is nowhere (text is NULL) occurs in all of them.
 bool word_occurs(const word_t* word, packed_text_t text);
 
 void command_help(const words_of_line_t* a);

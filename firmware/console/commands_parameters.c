@@ -36,6 +36,7 @@ static bool list_one(uint16_t step) {
 }
 
 void command_list(const words_of_line_t* a) {
+  pattern.text = NULL;
   pattern.count = 0;
   if (a->count > 0u) pattern = a->word[0];
   console_run(list_one, false);

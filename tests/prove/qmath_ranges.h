@@ -14,6 +14,9 @@ unsigned q_clz32(uint32_t x);
     ensures x < 0 ==> \result <= 0; ensures x >= 0 ==> \result >= 0; */
 static inline int32_t q_sat64(int64_t x);
 
+/*@ requires n <= 30; assigns \result \from x, n; */
+static inline int32_t q_shl_sat(int32_t x, unsigned n);
+
 /*@ requires 0 <= limit; assigns \result \from x, limit; ensures -limit <= \result <= limit;
     ensures \result <= -1 || 0 <= \result;  // always: has its signs read apart
 */

@@ -269,7 +269,7 @@ PARTS = (
         "commands",
         ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
         READER,
-        *(OF_QMATH, OF_WRITING, OF_TYPING, OF_LINES),
+        *(OF_QMATH, "q_shl_sat", OF_WRITING, OF_TYPING, OF_LINES),
         related=("read_speed", "unit_fits"),
     ),
     wp(
