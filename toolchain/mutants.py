@@ -33,6 +33,7 @@ SEED = 2808
 WORKERS = 2
 VERDICTS = BUILD / "verdicts.jsonl"
 REPORT = BUILD / "report.txt"
+OF_PROGRAMS = ("survived", "unlinked")  # verdicts that hold for these programs alone
 PATIENCE = 4.0  # times what a program takes without a mutant
 
 
@@ -55,7 +56,8 @@ class Part:
 FIRMWARE = ("firmware_test", "bench_run_test")
 # The drivers on a bus that records, and on the virtual chip; firmware_test has a board of fakes instead.
 DRIVERS = ("hal_drivers_test", "hal_on_chip_test", "hal_can_test", "bench_run_test")
-# A header of firmware/ is in every source, and one of hal/f2808/ the map, which has a check of its own: left out.
+# A header of firmware/ is in every source, those of hal/f2808/ are the map, which has a check of its own, and a few
+# lines beside it: left out.
 PARTS = {
     "hal/qmath": Part(("hal/qmath/*.c", "hal/qmath/*.h"), ("qmath_test", "control_test", "estimators_test")),
     "hal/f2808": Part(("hal/f2808/*.c", "hal/tape.c"), DRIVERS, 3, frozenset({"hal/f2808/flash.c"})),
@@ -141,6 +143,13 @@ class Score:
         """Of the distinct ones, those that were killed."""
         return sum(self.killed.values()) / max(self.distinct, 1)
 
+    @property
+    def variance(self) -> float:
+        """Of the share, by two more killed and two more left (Agresti and Coull): of 60 killed of 60 it is not 0."""
+        n = self.distinct + 4
+        p = (sum(self.killed.values()) + 2) / n
+        return p * (1 - p) / n
+
     def line(self, name: str) -> str:
         """As published: Wilson's interval."""
         killed, n = sum(self.killed.values()), max(self.distinct, 1)
@@ -154,13 +163,12 @@ class Score:
 
 
 def of_all(scores: list[Score]) -> str:
-    """The parts together, each with the weight of its mutants; the draws are independent, so their variances add up."""
+    """Parts together, each with the weight of its mutants; the draws are independent, so their variances add up."""
     every = max(sum(score.mutants for score in scores), 1.0)
     share = sum(score.mutants * score.share for score in scores) / every
-    spread = sum(
-        (score.mutants / every) ** 2 * score.share * (1 - score.share) / max(score.distinct, 1) for score in scores
-    )
-    return f"{'all':21} {100 * share:21.1f} %  +-{196 * math.sqrt(spread):.1f}  of some {every:.0f} mutants"
+    spread = sum((score.mutants / every) ** 2 * score.variance for score in scores)
+    name = "all" if len(scores) == len(PARTS) else f"these {len(scores)}"
+    return f"{name:21} {100 * share:21.1f} %  +-{196 * math.sqrt(spread):.1f}  of some {every:.0f} mutants"
 
 
 class Run:
@@ -219,23 +227,24 @@ class Run:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def judge(self, mutant: Mutant, part: Part) -> str:
-        """`invalid`, `equal`, `killed PROGRAM`, or `code DIGEST` where nothing noticed."""
+        """`invalid`, `equal`, `killed PROGRAM`; of these programs `survived` or `unlinked`, with what they are."""
         key = self.key(mutant)
         known = self.verdicts.known.get(key, "")
         programs = part.programs[: part.near] if self.near or mutant.file.endswith(".h") else part.programs
         state = hashlib.sha256("".join(self.board.programs[name].digest for name in programs).encode()).hexdigest()
-        if known and (not known.startswith("survived") or known == f"survived {state}"):
+        if known and (not known.startswith(OF_PROGRAMS) or known.endswith(f" {state}")):
             return known
         place = Path(tempfile.mkdtemp(dir=BUILD))
         try:
-            verdict = self.run_in(mutant, part, programs, place) or f"survived {state}"
+            verdict = self.run_in(mutant, part, programs, place)
         finally:
             shutil.rmtree(place)
+        verdict = f"{verdict} {state}" if verdict in OF_PROGRAMS else verdict
         self.verdicts.note(key, verdict)
         return verdict
 
-    def run_in(self, mutant: Mutant, part: Part, programs: tuple[str, ...], place: Path) -> str | None:
-        """Compiles, links, runs; None where nothing noticed."""
+    def run_in(self, mutant: Mutant, part: Part, programs: tuple[str, ...], place: Path) -> str:
+        """Compiles, links, runs."""
         changed = self.objects(mutant, part, place)
         if changed is None:
             return "invalid"
@@ -249,7 +258,7 @@ class Run:
             links = True
             if not passes(out, PATIENCE * self.board.programs[name].seconds + LEAST):
                 return f"killed {name}"
-        return None if links else "invalid"
+        return "survived" if links else "unlinked"
 
     def part(self, name: str, sample: int | None) -> Score:
         """The score of a part."""
@@ -269,8 +278,11 @@ class Run:
 
 def count_in(score: Score, mutant: Mutant, verdict: str) -> None:
     """Adds one mutant to a score."""
-    if verdict in ("invalid", "equal"):
-        setattr(score, verdict, getattr(score, verdict) + 1)
+    if verdict == "equal":
+        score.equal += 1
+        return
+    if verdict.startswith(("invalid", "unlinked")):
+        score.invalid += 1
         return
     score.distinct += 1
     if verdict.startswith("survived"):

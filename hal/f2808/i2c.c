@@ -24,6 +24,7 @@
 #define MODE_START ((uint16_t)(MODE_ON | I2C_MDR_STT_MASK | I2C_MDR_MST_MASK))
 #define MODE_STOP ((uint16_t)(MODE_ON | I2C_MDR_STP_MASK | I2C_MDR_MST_MASK))
 
+// NONE: before the first transfer.
 typedef enum { PHASE_NONE, PHASE_ADDRESS, PHASE_SEND, PHASE_RECEIVE, PHASE_ABORT } phase_t;
 
 static i2c_transfer_t job;

@@ -30,7 +30,7 @@ uint16_t Flash2808_Program(uint16_t* to, uint16_t* from, uint32_t words, flash_l
   return any_u16;
 }
 
-static uint16_t octets[HAL_NVM_PAGE];
+static uint16_t octets[HAL_NVM_SIZE];
 
 static void exchange_frames(void) {
   hal_can_group_t groups[HAL_CAN_GROUPS_MAX];
@@ -55,8 +55,8 @@ static void exchange_frames(void) {
 
 static void remember(void) {
   if (any_bool()) (void)hal_nvm_init();
-  if (any_bool()) (void)hal_nvm_read(any_u16, octets, any_up_to(HAL_NVM_PAGE));
-  if (any_bool()) (void)hal_nvm_write(any_u16, octets, any_up_to(HAL_NVM_PAGE));
+  if (any_bool()) (void)hal_nvm_read(any_u16, octets, any_up_to(HAL_NVM_SIZE));
+  if (any_bool()) (void)hal_nvm_write(any_u16, octets, any_up_to(HAL_NVM_SIZE));
   (void)hal_nvm_step();
   (void)hal_nvm_fault();
 }

@@ -1,5 +1,5 @@
-// The same of a shift to the right, which rounds down. For the proof of q_shr alone: with products of two unknowns the
-// prover goes astray elsewhere.
+// The same of a shift to the right, which rounds down. For the proofs of the shifts alone: with products of two
+// unknowns the prover goes astray elsewhere.
 
 #ifndef STILLSPIN_TESTS_PROVE_FLOOR_H
 #define STILLSPIN_TESTS_PROVE_FLOOR_H

@@ -1,5 +1,5 @@
 // What q_shl_sat promises, in ACSL, and what it takes of shifts: two sentences of the numbers, one of q_shr, which WP
-// proves of it (part shifts).
+// proves beside it (part left).
 
 #ifndef STILLSPIN_TESTS_PROVE_LEFT_SHIFT_H
 #define STILLSPIN_TESTS_PROVE_LEFT_SHIFT_H

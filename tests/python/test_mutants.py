@@ -62,22 +62,23 @@ def test_a_score_has_wilsons_interval() -> None:
 def test_parts_together_weigh_as_much_as_they_have_mutants() -> None:
     large = mutants.Score(300, distinct=10, killed={"a_test": 10})
     small = mutants.Score(100, distinct=10, killed={"a_test": 5})
-    # sqrt(1/16 * 0.25 / 10) * 1.96 = 0.077
-    assert mutants.of_all([large, small]).split() == ["all", "87.5", "%", "+-7.7", "of", "some", "400", "mutants"]
+    # 9/16 of 12/14 * 2/14 / 14 and 1/16 of 7/14 * 7/14 / 14 are 0.078^2 together, times 1.96
+    wanted = ["these", "2", "87.5", "%", "+-15.2", "of", "some", "400", "mutants"]
+    assert mutants.of_all([large, small]).split() == wanted
 
 
 @pytest.mark.parametrize(
     ("links", "fails", "verdict"),
     [
-        ({"near", "far"}, set(), None),
+        ({"near", "far"}, set(), "survived"),
         ({"near", "far"}, {"far"}, "killed far"),
         ({"far"}, {"far"}, "killed far"),  # near has not what the source needs
         ({"near", "far"}, {"near", "far"}, "killed near"),
-        (set(), {"near"}, "invalid"),
+        (set(), {"near"}, "unlinked"),
     ],
 )
 def test_a_program_that_does_not_link_is_passed_over(
-    links: set[str], fails: set[str], verdict: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    links: set[str], fails: set[str], verdict: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     board = Board(programs={name: Program(name, []) for name in ("near", "far")})
     run = mutants.Run.__new__(mutants.Run)
