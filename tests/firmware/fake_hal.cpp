@@ -24,7 +24,10 @@ using stillspin::test::board;
 extern "C" {
 
 bool hal_pwm_init(std::uint16_t) { return true; }
-bool hal_pwm_set_dead_band(std::uint16_t) { return true; }
+bool hal_pwm_set_dead_band(std::uint16_t ticks) {
+  board.dead_band = ticks;
+  return board.dead_band_fits;
+}
 
 bool hal_pwm_write(const hal_pwm_frame_t* frame, std::uint16_t) {
   bool in_time;
@@ -118,7 +121,7 @@ void hal_safety_fault_lamp(bool on) {
   board.lamp = on;
   board.lit_with_gates_on = board.lit_with_gates_on || (on && board.gates_on);
 }
-void hal_encoder_init(std::uint32_t) {}
+void hal_encoder_init(std::uint32_t counts) { board.encoder_counts = counts; }
 std::uint32_t hal_encoder_count(void) { return board.encoder; }
 
 bool hal_can_init(std::uint32_t bitrate, const hal_can_group_t* groups, std::uint16_t count) {

@@ -37,7 +37,9 @@ struct FakeBoard {
   // What the drivers do with a tape, where a test wants it (hil_host.hpp). True when it has played.
   bool (*plays_frame)(const hal_pwm_frame_t& frame, bool* in_time) = nullptr;
   bool (*plays_window)(hal_adc_window_t* window) = nullptr;
-  std::uint32_t encoder = 0;
+  std::uint32_t encoder = 0, encoder_counts = 0;
+  std::uint16_t dead_band = 0;  // as last set
+  bool dead_band_fits = true;
   bool relay = false, brake = false, emergency = false, gates_pass = false, run = false;
   int lines_wired = 0, emergency_wired = 0;
   std::uint16_t unexpected_interrupts = 0;

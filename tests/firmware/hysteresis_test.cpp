@@ -1,5 +1,7 @@
 // Hysteresis control on a board of fakes: which leg goes where, when it runs, and what its band does.
 
+#include <algorithm>
+
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {
@@ -129,6 +131,213 @@ TEST_F(Hysteresis, NeedsTheEncoderAndWholeSlices) {
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   parameters.position_source = 2;
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
+}
+
+// A current that is exactly a band away changes nothing, one code more does: each leg by its own current.
+TEST_F(Hysteresis, ALegSwitchesBeyondTheBandAndStaysWithinIt) {
+  hysteresis_t& h = drive.hysteresis;
+  h.offset_a_q8 = 2000 * 256;
+  h.offset_b_q8 = 2100 * 256;
+  h.step_a_q8 = h.step_b_q8 = 0;
+  h.reference_a_q8 = 60 * 256;
+  h.reference_b_q8 = -20 * 256;
+  h.band_q8 = 41 * 256;
+  const auto legs = [&h](int a, int b, std::uint16_t before) {  // codes above the references
+    h.state = board.legs = before;
+    board.slice.current_a = static_cast<std::uint16_t>(2060 + a);
+    board.slice.current_b = static_cast<std::uint16_t>(2080 + b);
+    drive_window_interrupt();
+    EXPECT_EQ(h.state, board.legs) << "as it was told";
+    return h.state;
+  };
+  for (const std::uint16_t before : {0, 7}) {
+    EXPECT_EQ(legs(0, 0, before), before);
+    EXPECT_EQ(legs(41, -41, before), before) << "a band too high and too low";
+    EXPECT_EQ(legs(-41, 41, before), before);
+    EXPECT_EQ(legs(41, 0, before), before) << "c is 41 too low";
+    EXPECT_EQ(legs(-41, 0, before), before);
+    EXPECT_EQ(legs(42, -20, before), before & 6);
+    EXPECT_EQ(legs(-42, 20, before), before | 1);
+    EXPECT_EQ(legs(-20, 42, before), before & 5);
+    EXPECT_EQ(legs(20, -42, before), before | 2);
+    EXPECT_EQ(legs(21, 21, before), before | 4);
+    EXPECT_EQ(legs(-21, -21, before), before & 3);
+  }
+}
+
+// A leg is counted when it goes high, each for itself.
+TEST_F(Hysteresis, EveryLegThatGoesHighIsCounted) {
+  for (std::uint16_t before = 0; before < 8; ++before) {
+    for (const double a : {-1.0, 1.0}) {
+      drive.hysteresis.state = before;
+      const std::uint16_t counted = drive.hysteresis.switched;
+      slice(a, -a);  // c stays
+      const unsigned up = drive.hysteresis.state & ~static_cast<unsigned>(before);
+      EXPECT_EQ(drive.hysteresis.switched - counted, static_cast<int>((up & 1u) + ((up >> 1) & 1u) + (up >> 2)));
+    }
+  }
+}
+
+TEST_F(Hysteresis, BothReferencesMoveWithTheSlicesUpToAnEnd) {
+  hysteresis_t& h = drive.hysteresis;
+  h.reference_a_q8 = 1000;
+  h.reference_b_q8 = -2000;
+  h.step_a_q8 = 70;
+  h.step_b_q8 = -30;
+  for (int n = 0; n < 3; ++n) slice();
+  EXPECT_EQ(h.reference_a_q8, 1210);
+  EXPECT_EQ(h.reference_b_q8, -2090);
+  h.step_a_q8 = raw(900000.0, 8);
+  h.step_b_q8 = -h.step_a_q8;
+  for (int n = 0; n < 20; ++n) slice();
+  EXPECT_GT(h.reference_a_q8, raw(4096.0, 8)) << "beyond any code";
+  EXPECT_EQ(h.reference_b_q8, -h.reference_a_q8);
+}
+
+// From the instant at which they are set to the same instant of the next period.
+TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
+  const Vector reference = {3.0, -5.0};
+  const double speed = 0.11, begin = 0.7;  // rad per period
+  drive.control.reference_q20 = raw_dq(reference, 20);
+  drive.hysteresis.offset_a_q8 = raw(2048.0, 8);
+  for (const int tick : {0, 1234, 9999, 12000}) {
+    board.pwm_tick = static_cast<std::uint16_t>(tick);
+    drive.position.used.angle_bam = bam(begin);
+    drive.position.used.speed_bpp = raw(speed / kTurn, 32);
+    parameters.slice_time = raw(tick == 0 ? 5.0 : 10.0, 16);
+    const int slices = tick == 0 ? 20 : 10;
+    ASSERT_TRUE(drive_hysteresis(&drive));
+    const double passed = std::min(tick, 10000) / 10000.0;
+    const auto codes = [&](double periods, double behind) {
+      return reference.turned(begin + speed * periods - behind).x * 102.4;
+    };
+    const hysteresis_t& h = drive.hysteresis;
+    EXPECT_NEAR(real(h.reference_a_q8, 8), codes(passed, 0.0), 0.02) << tick;
+    EXPECT_NEAR(real(h.reference_b_q8, 8), codes(passed, kTurn / 3.0), 0.02) << tick;
+    EXPECT_NEAR(real(h.step_a_q8, 8), (codes(passed + 1.0, 0.0) - codes(passed, 0.0)) / slices, 0.01) << tick;
+    EXPECT_NEAR(real(h.step_b_q8, 8), (codes(passed + 1.0, kTurn / 3.0) - codes(passed, kTurn / 3.0)) / slices, 0.01);
+    EXPECT_NEAR(real(h.band_q8, 8), band() * 102.4, 0.01);
+  }
+}
+
+// In the frame of the middle of the period that the slices were taken in, less the offsets; and the link with it.
+TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
+  hysteresis_t& h = drive.hysteresis;
+  h.offset_a_q8 = raw(2048.0 + 10.24, 8);
+  h.offset_b_q8 = raw(2048.0 - 20.48, 8);
+  drive_hysteresis_samples(&drive);
+  board.slice.link = 2000;
+  drive.samples.link_q16 = raw(300.0, 16);
+  for (int n = 0; n < 5; ++n) slice(n < 3 ? 4.1 : -0.9, 2.3);  // 2.0 and 2.5 A
+  drive.position.used.angle_bam = bam(0.4);
+  drive.position.used.speed_bpp = raw(0.2 / kTurn, 32);
+  drive.supervision.missing = 3;
+  drive.samples.count = 2;
+  drive_hysteresis_samples(&drive);
+  const Vector wanted = Vector{2.0, (2.0 + 2.0 * 2.5) / std::sqrt(3.0)}.turned(-0.5);
+  EXPECT_NEAR(real(drive.control.measured_q20.d, 20), wanted.x, 0.01);
+  EXPECT_NEAR(real(drive.control.measured_q20.q, 20), wanted.y, 0.01);
+  EXPECT_NEAR(real(drive.samples.link_q16, 16), 300.0 + (2000.0 / 4096.0 * 450.0 - 300.0) / 8.0, 0.01);
+  EXPECT_EQ(drive.supervision.missing, 0);
+  EXPECT_EQ(drive.samples.count, 0) << "of windows";
+  EXPECT_EQ(drive.fault, FAULT_NONE);
+  // Taken once: without a slice everything stays, and the period counts as one without samples.
+  const dq_t before = drive.control.measured_q20;
+  for (int n = 1; n < 4; ++n) {
+    drive_hysteresis_samples(&drive);
+    EXPECT_EQ(drive.supervision.missing, n);
+    EXPECT_EQ(drive.control.measured_q20.d, before.d);
+  }
+  slice(1.1, -0.7);
+  drive_hysteresis_samples(&drive);
+  EXPECT_NEAR(std::hypot(real(drive.control.measured_q20.d, 20), real(drive.control.measured_q20.q, 20)), 1.0, 0.01)
+      << "of this slice alone";
+}
+
+// Any phase in either direction, in one slice of many; and not what was there before.
+TEST_F(Hysteresis, AnyPhaseTripsInEitherDirection) {
+  const struct {
+    double a, b;
+    bool trips;
+  } cases[] = {{18.2, -9.0, true}, {-18.2, 9.0, true},  {-9.0, 18.2, true},  {9.0, -18.2, true}, {9.1, 9.1, true},
+               {-9.1, -9.1, true}, {17.8, -9.0, false}, {-9.0, -8.8, false}, {8.8, 9.0, false},  {-17.8, 17.8, false}};
+  for (const auto& c : cases) {
+    SetUp();
+    slice(c.a, c.b);
+    for (int n = 0; n < 19; ++n) slice();
+    drive_control_interrupt();
+    EXPECT_EQ(drive.fault, c.trips ? FAULT_CURRENT_LIMIT : FAULT_NONE) << c.a << " " << c.b;
+  }
+}
+
+// Every 10 ms by an eighth of what the frequency is off by, which counts as one at most.
+TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds) {
+  hysteresis_t& h = drive.hysteresis;
+  const auto after = [&h](int kilohertz, double amps) {
+    parameters.hysteresis_frequency = raw(8.0, 16);
+    h.band_q20 = raw(amps, 20);
+    h.periods = 0;
+    h.switched = static_cast<std::uint16_t>(h.counted + 30 * kilohertz);
+    for (int n = 0; n < 99; ++n) {
+      (void)drive_hysteresis(&drive);
+      EXPECT_EQ(h.band_q20, raw(amps, 20)) << n;
+    }
+    (void)drive_hysteresis(&drive);
+    EXPECT_EQ(h.counted, h.switched);
+    return real(h.band_q20, 20);
+  };
+  EXPECT_NEAR(after(8, 0.5), 0.5, 1e-4);
+  EXPECT_NEAR(after(10, 0.5), 0.5 * (1.0 + 0.25 / 8.0), 1e-4);
+  EXPECT_NEAR(after(4, 0.5), 0.5 * (1.0 - 0.5 / 8.0), 1e-4);
+  EXPECT_NEAR(after(40, 0.5), 0.5 * (1.0 + 1.0 / 8.0), 1e-4);
+  EXPECT_NEAR(after(40, 4.9), 5.0, 1e-4) << "5 A at most";
+  EXPECT_NEAR(after(0, 0.022), 0.02, 1e-4) << "two codes at least";
+}
+
+// A run begins with the band of the parameter, the offsets that were found, and nothing of the run before.
+TEST_F(Hysteresis, ARunBeginsAnew) {
+  drive.hysteresis.running = 0;
+  drive.hysteresis.sums = {1, 2, 3, 4, 5};
+  drive.hysteresis.state = 7;
+  drive.hysteresis.switched = 50;
+  drive.trim.offset_a_q8 = raw(2050.0, 8);
+  drive.trim.offset_b_q8 = raw(2040.0, 8);
+  parameters.hysteresis_band = raw(0.3, 20);
+  parameters.slice_time = raw(10.0, 16);
+  board.slice_ticks = 0;
+  EXPECT_TRUE(drive_hysteresis(&drive));
+  const hysteresis_t& h = drive.hysteresis;
+  EXPECT_EQ(board.slice_ticks, 1000);
+  EXPECT_EQ(h.sums.slices + h.sums.a_q8 + h.sums.b_q8 + h.sums.peak_q8, 0);
+  EXPECT_EQ(h.state + h.switched + h.counted, 0) << "all legs low";
+  EXPECT_EQ(h.offset_a_q8, raw(2050.0, 8));
+  EXPECT_EQ(h.offset_b_q8, raw(2040.0, 8));
+  EXPECT_NEAR(real(h.band_q8, 8), 0.3 * 102.4, 0.01);
+}
+
+TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
+  for (const std::int32_t law : {0, 1}) {
+    for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION, DRIVE_FAULT}) {
+      SetUp();
+      parameters.current_law = law;
+      drive.state = state;
+      const bool wanted = law == 1 && (state == DRIVE_RUN || state == DRIVE_STOP);
+      EXPECT_EQ(drive_hysteresis(&drive), wanted) << law << state;
+      EXPECT_EQ(board.slice_ticks, wanted ? 500 : 0);
+      EXPECT_EQ(drive.hysteresis.running, wanted ? 1 : 0);
+    }
+  }
+}
+
+// Nobody commands a voltage meanwhile.
+TEST_F(Hysteresis, TheCurrentControlRests) {
+  drive.control.closed = true;
+  drive.control.command_q16 = {raw(10.0, 16), raw(-20.0, 16)};
+  drive.control.current.q.integral = 1234567;
+  drive_control_current(&drive);
+  EXPECT_EQ(drive.control.command_q16.d, 0);
+  EXPECT_EQ(drive.control.command_q16.q, 0);
+  EXPECT_EQ(drive.control.current.q.integral, 0);
 }
 
 }  // namespace

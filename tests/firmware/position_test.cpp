@@ -1,7 +1,7 @@
 // Which estimators run when, what the idle one does meanwhile, and what of an angle the speed control may use: single
 // steps of a drive that the test has put where it wants it.
 
-#include "tests/firmware/fake_hal.hpp"
+#include "tests/firmware/position.hpp"
 
 extern "C" {
 #include "firmware/flux_source.h"
@@ -10,39 +10,6 @@ extern "C" {
 namespace {
 
 using namespace stillspin::test;
-
-constexpr std::uint32_t kHere = 0x10000000u, kThere = 0x18000000u;  // 11 degrees apart
-
-class Position : public Drive {
- protected:
-  /// In RUN with this source, at rest at kHere.
-  void run_with(std::int32_t source) {
-    SetUp();
-    make_ready();
-    parameters.position_source = source;
-    ASSERT_TRUE(drive_config_load(&drive.config));
-    drive.state = DRIVE_RUN;
-    drive.schedule.turning = true;
-    drive.watch.open = false;
-    position_preset(&drive, kHere, 0);
-    see(2);
-  }
-  /// So many windows, the first of them under a zero vector, of a machine at rest without current.
-  static void see(std::uint16_t count) {
-    drive.samples.count = count;
-    for (std::uint16_t k = 0; k < count; ++k) {
-      estimator_window_t w = {};
-      w.middle_tick = static_cast<std::int16_t>(2500 + 5000 * k);
-      w.span_ticks = 3000;
-      w.zero_vector = k == 0;
-      drive.samples.windows[k] = w;
-    }
-  }
-  static void blend(blend_region_t region, double share_of_low) {
-    drive.position.blend.region = region;
-    drive.position.blend.share_q15 = static_cast<std::int32_t>(share_of_low * 32767.0);
-  }
-};
 
 // ZVV alone, both, AVV alone; who does not run stands by where the other one is.
 TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
@@ -184,7 +151,6 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       see(1);
       blend(c.region, c.share);
       drive.samples.windows[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
-      drive.samples.ripple_q16 = {0, 0};
       if (starting) drive.state = DRIVE_START;
       drive.schedule.turning = !starting;
       drive.start.powered = true;

@@ -1,0 +1,354 @@
+// From the users' units to the modules': every parameter, away from its default, arrives as what it says.
+
+#include <cstring>
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/flux_source.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+constexpr double kBppPerRpm = 4.0 / 60.0 * kPeriod * 4294967296.0;
+
+class Units : public Drive {
+ protected:
+  /// The configuration of the parameters as they are.
+  static const drive_config_t& made() {
+    static drive_config_t c;
+    const drive_config_t* const fresh = drive_config_make();
+    EXPECT_NE(fresh, nullptr);
+    if (fresh != nullptr) c = *fresh;
+    return c;
+  }
+  static bool refused() { return drive_config_make() == nullptr; }
+};
+
+void expect_near_share(double value, double wanted, double share) {
+  EXPECT_NEAR(value, wanted, std::fabs(share * wanted));
+}
+
+// L of every point of the map, as its inverse and as the flux between the points.
+TEST_F(Units, TheMapIsTheMachinesAtEveryPoint) {
+  const double ldd[] = {4.9, 4.9 * 0.97, 4.9 * 0.93, 4.9 * 0.88, 4.9 * 0.82};
+  const double lqq[] = {7.8, 7.8 * 1.02, 7.8 * 0.95, 7.8 * 0.85, 7.8 * 0.75};
+  const double ldq[] = {0.0, 0.05, -0.11, 0.17, -0.23};
+  parameters.ldd_1 = raw(97, 16), parameters.ldd_2 = raw(93, 16), parameters.ldd_3 = raw(88, 16);
+  parameters.ldd_4 = raw(82, 16);
+  parameters.lqq_1 = raw(102, 16), parameters.lqq_2 = raw(95, 16), parameters.lqq_3 = raw(85, 16);
+  parameters.lqq_4 = raw(75, 16);
+  parameters.ldq_1 = raw(0.05, 20), parameters.ldq_2 = raw(-0.11, 20), parameters.ldq_3 = raw(0.17, 20);
+  parameters.ldq_4 = raw(-0.23, 20);
+  parameters.map_current = raw(12.0, 20);
+  machine_model_t m = made().nameplate;
+  EXPECT_EQ(m.iq_q20, 0) << "it begins without current";
+  for (int k = 0; k < 5; ++k) {
+    if (k > 0) machine_model_move(&m, raw(3.0 * k, 20));
+    const double determinant = (ldd[k] * lqq[k] - ldq[k] * ldq[k]) * 1e-3;
+    expect_near_share(real(m.yd_q30, 30), kPeriod * lqq[k] / determinant, 1e-4);
+    expect_near_share(real(m.yq_q30, 30), kPeriod * ldd[k] / determinant, 1e-4);
+    EXPECT_NEAR(real(m.ydq_q30, 30), -kPeriod * ldq[k] / determinant, 1e-6);
+  }
+}
+
+// The reluctance's torque per ampere at the sensors' full scale.
+TEST_F(Units, AReluctanceTooLargeForTheTorquesFormatIsRefused) {
+  parameters.current_full_scale = raw(200.0, 20);
+  parameters.inductance_d = raw(10.0, 20);
+  parameters.inductance_q = raw(31.0, 20);  // 6 Lq - Ld 200 A = 25.2 N m/A
+  EXPECT_FALSE(refused());
+  parameters.inductance_q = raw(31.5, 20);  // 25.8 N m/A
+  EXPECT_TRUE(refused());
+}
+
+TEST_F(Units, WindowsAndEdges) {
+  parameters.pulse_time = raw(41.5, 16);
+  parameters.window_minimum = raw(17.5, 16);
+  parameters.window_maximum = raw(29.37, 16);
+  parameters.zero_time = raw(12.34, 16);
+  parameters.settle_time = raw(9.87, 16);
+  parameters.dead_time = raw(1.41, 16);
+  parameters.turn_on_delay = raw(0.27, 16);
+  parameters.turn_off_delay = raw(0.73, 16);
+  parameters.drop_band = raw(0.3, 20);
+  parameters.device_drop = raw(1.25, 16);
+  const drive_config_t& c = made();
+  EXPECT_EQ(c.modulator.pulse_ticks, 4150);
+  EXPECT_EQ(c.modulator.extended.window_min_ticks, 1750);
+  EXPECT_EQ(c.modulator.extended.window_max_ticks, 2937);
+  EXPECT_EQ(c.modulator.extended.zero_ticks, 1234);
+  EXPECT_EQ(c.modulator.sampling.settle_ticks, 987);
+  EXPECT_EQ(c.modulator.sampling.burst_ticks, static_cast<int>(HAL_ADC_BURST_TICKS));
+  EXPECT_EQ(c.dead_time.blocked_ticks, 168);
+  EXPECT_EQ(c.dead_time.released_ticks, 73);
+  EXPECT_EQ(c.dead_time.band_q20, raw(0.3, 20));
+  EXPECT_NEAR(real(c.dead_time.edge_band_q20, 20), 0.8, 1e-6) << "half an ampere of the ripple on top";
+  EXPECT_EQ(c.dead_time.drop_q16, raw(1.25, 16));
+  const ab_t large = {raw(5.0, 20), 0};
+  expect_near_share(real(dead_time_drop_q16(&c.dead_time, large).alpha, 16), 1.25 * 4.0 / 3.0, 1e-3);
+}
+
+// Half of the band is for the ripple at an edge, and centred pulses of the flux have none; 10 mA is left of any.
+TEST_F(Units, TheFluxHasHalfTheBand) {
+  parameters.drop_band = raw(0.3, 20);
+  for (const bool beside : {false, true}) {
+    parameters.position_source = beside ? POSITION_ENCODER : POSITION_FLUX_CONV;
+    parameters.flux_beside = beside ? 1 : 0;
+    EXPECT_NEAR(real(made().dead_time.band_q20, 20), 0.15, 1e-6);
+    EXPECT_NEAR(real(made().dead_time.edge_band_q20, 20), 0.65, 1e-6);
+  }
+  parameters.drop_band = raw(0.015, 20);
+  EXPECT_NEAR(real(made().dead_time.band_q20, 20), 0.01, 1e-6);
+  parameters.flux_beside = 0;
+  EXPECT_EQ(made().dead_time.band_q20, raw(0.015, 20));
+}
+
+TEST_F(Units, SpeedControl) {
+  parameters.friction = raw(0.0123, 24);
+  parameters.inertia = raw(0.0031, 24);
+  parameters.speed_alpha = raw(345.0, 8);
+  parameters.speed_trajectory = raw(9.5, 8);
+  parameters.speed_pi_bandwidth = raw(33.0, 8);
+  parameters.speed_pi_damping = raw(0.9, 12);
+  parameters.speed_ramp = raw(1700.0, 8);
+  parameters.position_hold = raw(7.5, 8);
+  const drive_config_t& c = made();
+  EXPECT_EQ(c.speed.friction_q24, parameters.friction);
+  EXPECT_EQ(c.speed.inertia_q24, parameters.inertia);
+  EXPECT_EQ(c.speed.step_periods, 10);
+  EXPECT_EQ(c.speed.alpha_q8, parameters.speed_alpha);
+  EXPECT_EQ(c.speed.trajectory_ms_q8, parameters.speed_trajectory);
+  EXPECT_EQ(c.speed.pi_bandwidth_q8, parameters.speed_pi_bandwidth);
+  EXPECT_EQ(c.speed.pi_damping_q12, parameters.speed_pi_damping);
+  expect_near_share(c.ramp_step_bpp, 1.7 * kBppPerRpm, 1e-4);
+  expect_near_share(real(c.hold_gain_q30, 30), 7.5 * kPeriod, 1e-5);
+  expect_near_share(c.hold_below_bpp, 20.0 * kBppPerRpm, 1e-4);
+  expect_near_share(real(c.friction_per_bpp_q40, 40), 0.0123 * kTurn / 60.0 / kBppPerRpm, 1e-3);
+  mtpa_t mtpa;
+  mtpa_design(&mtpa, &c.nameplate);
+  EXPECT_EQ(c.mtpa.pole_q20, mtpa.pole_q20);
+}
+
+TEST_F(Units, CurrentControl) {
+  for (const int divider : {1, 2}) {
+    for (const int corner : {0, 1}) {
+      parameters.current_bandwidth = 1500;
+      parameters.current_divider = divider;
+      parameters.current_corner = corner;
+      const drive_config_t& c = made();
+      const current_design_t design = {1500, 100, divider,
+                                       corner == 1 ? CURRENT_CORNER_MACHINE : CURRENT_CORNER_QUARTER};
+      current_controller_config_t wanted = {};
+      ASSERT_TRUE(current_controller_design(&wanted, &c.nameplate, &design));
+      EXPECT_EQ(std::memcmp(&wanted.d, &c.current.d, sizeof wanted.d), 0) << divider << corner;
+      EXPECT_EQ(std::memcmp(&wanted.q, &c.current.q, sizeof wanted.q), 0) << divider << corner;
+    }
+  }
+}
+
+TEST_F(Units, TheTurnedStart) {
+  parameters.if_current = raw(6.5, 20);
+  parameters.if_align = 321;
+  parameters.if_acceleration = raw(700.0, 8);
+  parameters.if_speed = raw(270.0, 8);
+  parameters.if_time = 1234;
+  const drive_config_t& c = made();
+  EXPECT_EQ(c.turn.current_q20, parameters.if_current);
+  EXPECT_EQ(c.turn.align_periods, 3210);
+  EXPECT_NEAR(c.turn.step_bpp, 0.07 * kBppPerRpm, 1.0);
+  expect_near_share(c.turn.speed_bpp, 270.0 * kBppPerRpm, 1e-4);
+  EXPECT_EQ(c.turn.wait_periods, 12340);
+}
+
+// A rotor so light that it swings about the vector faster than can be damped matters to who turns one.
+TEST_F(Units, AVectorThatCannotTurnTheShaftIsRefusedWhereItIsWanted) {
+  parameters.if_current = raw(12.0, 20);
+  parameters.magnet_flux = raw(0.9, 28);
+  parameters.inertia = raw(0.0002, 24);
+  EXPECT_FALSE(refused());
+  parameters.start_method = 1;
+  EXPECT_TRUE(refused());
+}
+
+TEST_F(Units, ThePapersObservers) {
+  parameters.avv_bandwidth_short = raw(130.0, 8);
+  parameters.avv_bandwidth_long = raw(270.0, 8);
+  parameters.zvv_proportional = raw(7.0, 8);
+  parameters.zvv_integral = raw(11.0, 8);
+  const drive_config_t& c = made();
+  expect_near_share(real(c.avv.bandwidth_short_q30, 30), 130.0 * kPeriod, 1e-6);
+  expect_near_share(real(c.avv.bandwidth_long_q30, 30), 270.0 * kPeriod, 1e-6);
+  expect_near_share(real(c.zvv.kp_q30, 30), 7.0 * kPeriod, 1e-5);
+  expect_near_share(real(c.zvv.ki_q40, 40), 11.0 * kPeriod * kPeriod, 1e-4);
+  parameters.avv_bandwidth_long = raw(90.0, 8);
+  EXPECT_EQ(made().avv.bandwidth_long_q30, made().avv.bandwidth_short_q30) << "never slower with more to see";
+}
+
+// Variances go with the square.
+TEST_F(Units, TheObserversNoiseAndLoad) {
+  parameters.map_known = 1;
+  const drive_config_t usual = made();
+  const auto with = [](std::int32_t parameters_t::* which, double times) {
+    const std::int32_t before = parameters.*which;
+    parameters.*which = static_cast<std::int32_t>(std::lround(before * times));
+    const drive_config_t c = made();
+    parameters.*which = before;
+    return c;
+  };
+  expect_near_share(with(&parameters_t::observer_noise, 2.0).observer.weight_q8, usual.observer.weight_q8 / 4.0, 1e-2);
+  expect_near_share(with(&parameters_t::observer_load_rate, 2.0).observer.load_noise_q20,
+                    usual.observer.load_noise_q20 * 4.0, 1e-2);
+  expect_near_share(with(&parameters_t::observer_load_quiet, 2.0).observer.load_noise_quiet_q20,
+                    usual.observer.load_noise_quiet_q20 * 4.0, 5e-2);
+  expect_near_share(with(&parameters_t::observer_load_step, 0.5).observer.load_step_q20,
+                    usual.observer.load_step_q20 / 4.0, 1e-2);
+  expect_near_share(usual.observer.crawl_bpp, 10.0 * kBppPerRpm, 1e-4);
+}
+
+// A brake that opens lets a load fall on the shaft: a third of the noise, twice the load's rate, no step to look for.
+TEST_F(Units, AHeldShaftsObserverIsFastAndLooksForNoStep) {
+  parameters.map_known = 1;
+  const drive_config_t& c = made();
+  EXPECT_GT(c.observer.moving_step_q20, 0);
+  expect_near_share(c.hold_observer.weight_q8, c.observer.weight_q8 / 0.09, 1e-2);
+  expect_near_share(c.hold_observer.load_noise_q20, 4.0 * c.observer.load_noise_q20, 1e-2);
+  EXPECT_EQ(c.hold_observer.load_noise_quiet_q20, c.hold_observer.load_noise_q20) << "at a crawl too";
+  EXPECT_LT(c.hold_observer.load_step_q20, c.observer.load_step_q20 / 1000) << "the format's least";
+  EXPECT_EQ(c.hold_observer.moving_step_q20, 0);
+  EXPECT_EQ(c.hold_observer.crawl_bpp, c.observer.crawl_bpp);
+  EXPECT_EQ(c.hold_observer.cogging.order, c.observer.cogging.order);
+}
+
+// Any number of it says that the map is known.
+TEST_F(Units, WithoutTheMapNoStepIsLookedForAtSpeedAndThreeQuartersOfItAtACrawl) {
+  const drive_config_t without = made();
+  EXPECT_FALSE(without.mapped);
+  EXPECT_EQ(without.observer.moving_step_q20, 0);
+  std::int32_t parameters_t::* const which[] = {&parameters_t::map_known, &parameters_t::ldq_1, &parameters_t::ldq_2,
+                                                &parameters_t::ldq_3, &parameters_t::ldq_4};
+  for (const auto member : which) {
+    parameters.*member = 1;
+    const drive_config_t& c = made();
+    EXPECT_TRUE(c.mapped);
+    EXPECT_GT(c.observer.moving_step_q20, 0);
+    expect_near_share(without.observer.load_step_q20, c.observer.load_step_q20 * 9.0 / 16.0, 1e-3);
+    parameters.*member = 0;
+  }
+}
+
+TEST_F(Units, CoggingAndWindowsOfTheObserver) {
+  parameters.cogging_order = 17;
+  const drive_config_t& c = made();
+  EXPECT_EQ(c.observer.cogging.order, 17);
+  expect_near_share(c.observer.cogging.fast_bpp, 10.0 * kBppPerRpm, 1e-4);
+  // The acceleration of 1 N m.
+  const Motor m;
+  expect_near_share(real(c.observer.cogging.bound_q8, 8),
+                    m.pole_pairs / m.inertia * kPeriod * kPeriod / kTurn * 4294967296.0, 1e-3);
+  EXPECT_FALSE(c.observer.zero_vectors_only);
+  parameters.observer_windows = 0;
+  EXPECT_TRUE(made().observer.zero_vectors_only);
+}
+
+TEST_F(Units, SynchronismAndWhatIsLearnt) {
+  parameters.synchronism_floor = raw(12.5, 16);
+  parameters.synchronism_share = raw(45.0, 8);
+  parameters.synchronism_time = 37;
+  parameters.adapt_time = raw(270.0, 8);
+  parameters.drift_time = raw(1300.0, 8);
+  const drive_config_t& c = made();
+  EXPECT_EQ(c.synchronism.floor_q16, parameters.synchronism_floor);
+  EXPECT_NEAR(real(c.synchronism.share_q15, 15), 0.45, 1e-4);
+  EXPECT_EQ(c.synchronism.bad_periods, 370);
+  expect_near_share(real(c.adapt_share_q30, 30), TURNS * kPeriod / 0.27, 1e-5);
+  expect_near_share(real(c.drift_share_q30, 30), TURNS * kPeriod / 1.3, 1e-5);
+  parameters.adapt_time = parameters.drift_time = raw(29999.0, 8);
+  EXPECT_GT(made().adapt_share_q30, 0);
+  EXPECT_GT(made().drift_share_q30, 0);
+  parameters.adapt_time = parameters.drift_time = raw(30000.0, 8);
+  EXPECT_EQ(made().adapt_share_q30, 0) << "30000 is off";
+  EXPECT_EQ(made().drift_share_q30, 0);
+}
+
+TEST_F(Units, SensorsAndTheEncoder) {
+  parameters.current_full_scale = raw(33.0, 20);
+  parameters.link_full_scale = raw(789.0, 16);
+  parameters.sensor_mismatch = raw(-1.25, 16);
+  for (const double degrees : {-180.0, -12.5, 0.01, 37.0, 180.0}) {
+    parameters.encoder_trim = raw(degrees, 16);
+    EXPECT_NEAR(wrapped(rad(made().encoder_trim_bam) - degrees * kDegree), 0.0, 1e-6) << degrees;
+  }
+  const drive_config_t& c = made();
+  expect_near_share(real(c.slopes.amps_per_code_q30, 30), 33.0 / 2048.0, 1e-6);
+  expect_near_share(real(c.codes_per_amp_q16, 16), 2048.0 / 33.0, 1e-6);
+  EXPECT_EQ(c.slopes.start_samples, static_cast<int>(HAL_ADC_START_SAMPLES));
+  EXPECT_EQ(c.slopes.end_samples, static_cast<int>(HAL_ADC_END_SAMPLES));
+  expect_near_share(real(c.slopes.amps_per_count_q36, 36), 33.0 / 2048.0 / 12.0, 1e-5);
+  EXPECT_NEAR(real(c.volts_per_code_q16, 16), 789.0 / 4096.0, 0.6 / 65536.0);
+  expect_near_share(real(c.sensor_mismatch_q30, 30), -0.0125, 1e-4);
+}
+
+// dLdq/di_q is dLqq/di_d: the map's first segment, as a share of L_q per ampere.
+TEST_F(Units, SaturationAlongTheAxes) {
+  parameters.map_current = raw(12.0, 20);
+  parameters.ldq_1 = raw(-0.09, 20);
+  parameters.saturation_d = raw(-1.7, 24);
+  const drive_config_t& c = made();
+  expect_near_share(real(c.saturation.q_q30, 30), -0.09 / 7.8 / 3.0, 1e-4);
+  expect_near_share(real(c.saturation.d_q30, 30), -0.017, 1e-4);
+}
+
+TEST_F(Units, TheMethodIsThatOfTheSourceOrOfWhoLooksOn) {
+  EXPECT_FALSE(flux_source_is_wanted());
+  for (int method = FLUX_CONV; method <= FLUX_ACTIVE; ++method) {
+    parameters.position_source = POSITION_FLUX_CONV + method;
+    parameters.flux_beside = 0;
+    EXPECT_TRUE(flux_source_is_wanted());
+    EXPECT_EQ(made().flux.method, method);
+    parameters.position_source = POSITION_ENCODER;
+    EXPECT_FALSE(flux_source_is_wanted());
+    parameters.flux_beside = 1 + method;
+    EXPECT_TRUE(flux_source_is_wanted());
+    EXPECT_EQ(made().flux.method, method);
+  }
+}
+
+TEST_F(Units, TheStatorFlux) {
+  parameters.position_source = POSITION_FLUX_CONV;
+  parameters.flux_cutoff = raw(31.0, 8);
+  parameters.flux_bandwidth = raw(123.0, 8);
+  parameters.lqq_4 = raw(80.0, 16);
+  const drive_config_t c = made();
+  expect_near_share(real(c.flux.cutoff_q30, 30), 31.0 * kPeriod, 1e-5);
+  expect_near_share(real(c.flux.bandwidth_q30, 30), 123.0 * kPeriod, 1e-5);
+  EXPECT_FALSE(c.flux.is_plain);
+  parameters.flux_plain = 1;
+  EXPECT_TRUE(made().flux.is_plain);
+  // Once in 10 ms: 100 ms of the inductance, 200 ms of the magnet, from a twentieth of the magnet's flux on.
+  const double step = c.flux.adaptation_periods * kPeriod;
+  EXPECT_NEAR(step, 0.01, 1e-9);
+  EXPECT_NEAR(real(c.flux.adaptation.inductance_q30, 30), step / 0.1, 1e-6);
+  EXPECT_NEAR(real(c.flux.adaptation.current_q24, 24), 0.05, 1e-6);
+  for (const int learn : {0, 1, 2, 3}) {
+    parameters.flux_adapt = learn;
+    const flux_adaptation_config_t& a = made().flux.adaptation;
+    EXPECT_EQ(a.saturation_q24, (learn & 1) != 0 ? flux_adaptation_identify_q24(&c.nameplate) : 0) << learn;
+    EXPECT_NEAR(real(a.magnet_q30, 30), (learn & 2) != 0 ? step / 0.2 : 0.0, 1e-6) << learn;
+  }
+}
+
+// A phase without current makes its voltage itself within the dead time; where there is none all voltages are known.
+TEST_F(Units, WithoutDeadTimeTheFluxSeesEveryPhase) {
+  parameters.position_source = POSITION_FLUX_CONV;
+  EXPECT_EQ(made().flux.blind_q20, made().dead_time.band_q20);
+  parameters.turn_on_delay = parameters.turn_off_delay = 0;
+  parameters.dead_time = raw(0.01, 16);
+  EXPECT_GT(made().flux.blind_q20, 0);
+  parameters.dead_time = 0;
+  EXPECT_EQ(made().flux.blind_q20, 0);
+}
+
+}  // namespace

@@ -1,0 +1,244 @@
+// From the voltage command to the frame that the hardware gets, and the current control before it: on a drive that the
+// test has put where it wants it.
+
+#include <cstring>
+
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "svpwm/ripple.h"
+}
+
+namespace {
+
+using namespace stillspin::test;
+
+class Modulation : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    drive.state = DRIVE_RUN;
+    drive.watch.open = false;
+    drive.control.closed = true;
+    drive.samples.link_q16 = raw(300.0, 16);
+    drive.position.used = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
+    drive.control.command_q16 = raw_dq({20.0, 35.0}, 16);
+    drive.control.measured_q20 = raw_dq({1.5, -4.0}, 20);
+    drive.limits = 0;
+  }
+  /// The pulses of this excitation, and whether they are those that the drive makes.
+  static bool modulates_as(excitation_t excitation) {
+    modulator_t state = drive.modulation.state;
+    drive_modulate(&drive);
+    svpwm_pulses_t wanted = {};
+    (void)modulator_step(&state, &drive.config.modulator, excitation, drive.modulation.asked_q16,
+                         drive.samples.link_q16, &wanted);
+    return std::memcmp(wanted.at, drive.modulation.next.pulses.at, sizeof wanted.at) == 0;
+  }
+};
+
+// The voltage acts in the next period, whose middle is one and a half periods on; the devices' drops are added.
+TEST_F(Modulation, TheVoltageIsTurnedToWhereTheRotorWillBe) {
+  for (const double speed : {0.12, -0.5}) {
+    drive.position.used.speed_bpp = raw(speed / kTurn, 32);
+    drive_modulate(&drive);
+    const double angle = 0.3 + 1.5 * speed;
+    const Vector current = Vector{1.5, -4.0}.turned(angle);
+    const Vector drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current, 20)), 16);
+    EXPECT_GT(drop.length(), 0.5);
+    const Vector wanted = Vector{20.0, 35.0}.turned(angle) + drop;
+    EXPECT_NEAR(real(drive.modulation.asked_q16.alpha, 16), wanted.x, 1e-3);
+    EXPECT_NEAR(real(drive.modulation.asked_q16.beta, 16), wanted.y, 1e-3);
+    // and that is what the motor gets
+    const Vector mean = real(svpwm_mean_q16(&drive.modulation.next.pulses, drive.samples.link_q16), 16);
+    EXPECT_NEAR((mean - wanted).length(), 0.0, 0.1);
+  }
+}
+
+TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
+  drive_modulate(&drive);
+  const svpwm_pattern_t& p = drive.modulation.next;
+  const hal_pwm_frame_t& f = board.frame;
+  ASSERT_EQ(p.window_count, 2);
+  const dead_time_config_t& c = drive.config.dead_time;
+  // As far as the current at the edge says: by the blocked or the released time, never more.
+  int blocked = 0, released = 0;
+  for (std::uint16_t leg = 0; leg < 3; ++leg) {
+    for (const int shift : {p.pulses.at[leg] - f.rise_tick[leg], p.pulses.at[3 + leg] - f.fall_tick[leg]}) {
+      EXPECT_GE(shift, c.released_ticks);
+      EXPECT_LE(shift, c.blocked_ticks);
+      blocked += shift == c.blocked_ticks;
+      released += shift == c.released_ticks;
+    }
+  }
+  EXPECT_GT(blocked, 0);
+  EXPECT_GT(released, 0);
+  svpwm_pattern_t again = p;
+  svpwm_pulses_t command = {};
+  const double angle = 0.3 + 1.5 * 0.12;
+  const machine_model_t& m = drive.model;
+  const svpwm_carried_t carried = {raw_ab(Vector{1.5, -4.0}.turned(angle), 20), (m.yd_q30 + m.yq_q30) / 2,
+                                   drive.samples.link_q16};
+  svpwm_send(&c, &drive.config.modulator.sampling, &carried, &again, &command);
+  for (std::uint16_t leg = 0; leg < 3; ++leg) {
+    EXPECT_NEAR(f.rise_tick[leg], command.at[leg], 1) << leg;
+    EXPECT_NEAR(f.fall_tick[leg], command.at[3 + leg], 1) << leg;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const bool used = k < p.window_count;
+    EXPECT_EQ(f.burst_start_tick[k], used ? p.windows[k].start : HAL_PWM_NONE);
+    EXPECT_EQ(f.burst_end_tick[k], used ? p.windows[k].end : HAL_PWM_NONE);
+  }
+}
+
+// What was read belongs to the period before; a frame that came too late leaves the one that runs, and is counted.
+TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
+  drive_modulate(&drive);
+  drive.position.used.angle_bam = bam(2.0);
+  const svpwm_pattern_t first = drive.modulation.running;
+  EXPECT_EQ(std::memcmp(&first, &drive.modulation.next, sizeof first), 0);
+  board.late = true;
+  for (int n = 1; n < 4; ++n) {
+    drive_modulate(&drive);
+    EXPECT_EQ(drive.supervision.overrun, n);
+    EXPECT_EQ(drive.limits & LIMIT_OVERRUN, LIMIT_OVERRUN);
+    EXPECT_EQ(std::memcmp(&first, &drive.modulation.running, sizeof first), 0);
+    EXPECT_EQ(std::memcmp(&first, &drive.modulation.sampled, sizeof first), 0);
+  }
+  board.late = false;
+  drive.limits = 0;
+  drive_modulate(&drive);
+  EXPECT_EQ(drive.supervision.overrun, 0) << "in a row";
+  EXPECT_EQ(drive.limits & LIMIT_OVERRUN, 0);
+  EXPECT_EQ(std::memcmp(&first, &drive.modulation.sampled, sizeof first), 0);
+  EXPECT_NE(std::memcmp(&first, &drive.modulation.running, sizeof first), 0);
+}
+
+// The excess that the link cannot give comes off the integrators, along the axes in which it was asked.
+TEST_F(Modulation, AVoltageThatTheLinkHasNotComesOffTheIntegrators) {
+  for (const bool closed : {true, false}) {
+    SetUp();
+    drive.control.closed = closed;
+    drive.control.measured_q20 = {0, 0};
+    drive.control.command_q16 = raw_dq({-150.0, 250.0}, 16);
+    current_controller_t& c = drive.control.current;
+    c.d.integral = raw(-150.0, 20);
+    c.q.integral = raw(250.0, 20);
+    drive_modulate(&drive);
+    EXPECT_EQ(drive.limits & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
+    const double d = real(c.d.integral, 20) + 150.0, q = real(c.q.integral, 20) - 250.0;
+    if (closed) {
+      EXPECT_GT(d, 1.0);
+      // a quarter of the bandwidth is both axes' corner: what comes off has the direction of the command
+      EXPECT_NEAR(q / d, -250.0 / 150.0, 0.1);
+    } else {
+      EXPECT_EQ(d, 0.0);
+      EXPECT_EQ(q, 0.0);
+    }
+  }
+}
+
+// What a person asked for; else what the source wants. A start and a commissioning live on opposite vectors.
+TEST_F(Modulation, TheExcitationIsTheOneAskedForOrTheSources) {
+  for (std::int32_t source = POSITION_ENCODER; source <= POSITION_FLUX_ACTIVE; ++source) {
+    for (const bool fast : {false, true}) {
+      for (const bool alone : {false, true}) {
+        SetUp();
+        parameters.position_source = source;
+        // the paper's own: long zero vectors up to three quarters of the blend's begin
+        const std::int32_t enter = drive.config.blend.low_bpp / 4 * 3;
+        drive.position.used.speed_bpp = fast ? -enter : 1 - enter;
+        drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
+        drive.position.blend.share_q15 = 0;
+        excitation_t wanted = EXCITATION_ALTERNATING;
+        if (source == POSITION_PAPER) wanted = fast ? EXCITATION_EXTENDED : EXCITATION_LONG_ZERO;
+        if (source >= POSITION_FLUX_CONV && alone) wanted = EXCITATION_CENTRED;
+        EXPECT_TRUE(modulates_as(wanted)) << source << fast << alone;
+      }
+    }
+  }
+}
+
+TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
+  for (const std::int32_t asked : {0, 1, 2, 4}) {
+    for (const drive_state_t state : {DRIVE_RUN, DRIVE_STOP, DRIVE_START, DRIVE_COMMISSION}) {
+      SetUp();
+      parameters.excitation = asked;
+      drive.state = state;
+      drive.start.shorted = false;
+      const bool own = state == DRIVE_START || state == DRIVE_COMMISSION;
+      EXPECT_TRUE(modulates_as(own ? EXCITATION_ALTERNATING : static_cast<excitation_t>(asked))) << asked << state;
+    }
+  }
+}
+
+// Only a start shorts the machine, whatever voltage is asked.
+TEST_F(Modulation, AShortedStartHasItsOwnPattern) {
+  for (const drive_state_t state : {DRIVE_START, DRIVE_RUN}) {
+    SetUp();
+    drive.state = state;
+    drive.start.shorted = true;
+    drive_modulate(&drive);
+    const svpwm_pattern_t wanted = start_short_circuit(&drive.config.modulator.sampling);
+    const bool same = std::memcmp(&wanted.pulses.at, &drive.modulation.next.pulses.at, sizeof wanted.pulses.at) == 0;
+    EXPECT_EQ(same, state == DRIVE_START);
+    if (state != DRIVE_START) continue;
+    EXPECT_EQ(std::memcmp(&wanted, &drive.modulation.running, sizeof wanted), 0);
+    for (int leg = 0; leg < 3; ++leg)
+      EXPECT_EQ(board.frame.rise_tick[leg], static_cast<std::uint16_t>(wanted.pulses.at[leg]));
+    EXPECT_EQ(board.frame.burst_start_tick[0], wanted.windows[0].start);
+  }
+}
+
+// An open loop commands nothing, and begins anew.
+TEST_F(Modulation, AnOpenLoopCommandsNoVoltageAndForgets) {
+  drive.control.closed = false;
+  drive.control.current.d.integral = drive.control.current.q.integral = 99999;
+  drive_control_current(&drive);
+  EXPECT_EQ(drive.control.command_q16.d, 0);
+  EXPECT_EQ(drive.control.command_q16.q, 0);
+  EXPECT_EQ(drive.control.current.d.integral, 0);
+  EXPECT_EQ(drive.control.current.q.integral, 0);
+}
+
+TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
+  for (const std::int32_t divider : {1, 2}) {
+    for (std::uint16_t period = 0; period < 10; ++period) {
+      SetUp();
+      parameters.current_divider = divider;
+      drive.schedule.period = period;
+      drive.control.reference_q20 = raw_dq({2.0, 5.0}, 20);
+      current_controller_t copy = drive.control.current;
+      const dq_t before = drive.control.command_q16;
+      const dq_t wanted =
+          current_controller_step(&copy, &drive.config.current, &drive.model, drive.control.reference_q20,
+                                  drive.control.measured_q20, drive.position.used.speed_bpp);
+      drive_control_current(&drive);
+      const bool steps = divider == 1 || period % 2 == 0;
+      EXPECT_EQ(drive.control.command_q16.d, steps ? wanted.d : before.d) << divider << period;
+      EXPECT_EQ(drive.control.command_q16.q, steps ? wanted.q : before.q) << divider << period;
+    }
+  }
+}
+
+// A change of the reference that is known beforehand is fed along q, within what a command may be.
+TEST_F(Modulation, WhatIsFedComesOnTopAlongQ) {
+  const auto command = [](std::int32_t feed_q16) {
+    drive.schedule.period = 0;
+    current_controller_reset(&drive.control.current);
+    drive.control.feed_q16 = feed_q16;
+    drive_control_current(&drive);
+    return drive.control.command_q16;
+  };
+  const dq_t without = command(0);
+  for (const double volts : {12.0, -7.0}) {
+    const dq_t with = command(raw(volts, 16));
+    EXPECT_EQ(with.d, without.d);
+    EXPECT_EQ(with.q - without.q, raw(volts, 16));
+  }
+  EXPECT_EQ(command(INT32_MAX).q, CURRENT_COMMAND_END_Q16);
+  EXPECT_EQ(command(INT32_MIN).q, -CURRENT_COMMAND_END_Q16);
+}
+
+}  // namespace

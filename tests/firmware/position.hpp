@@ -1,0 +1,60 @@
+// A drive in RUN with a position source and windows of the test's own.
+
+#ifndef STILLSPIN_TESTS_FIRMWARE_POSITION_HPP
+#define STILLSPIN_TESTS_FIRMWARE_POSITION_HPP
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+
+inline constexpr std::uint32_t kHere = 0x10000000u, kThere = 0x18000000u;  // 11 degrees apart
+
+class Position : public Drive {
+ protected:
+  /// In RUN with this source, at rest at kHere.
+  void run_with(std::int32_t source) {
+    SetUp();
+    make_ready();
+    parameters.position_source = source;
+    ASSERT_TRUE(drive_config_load(&drive.config));
+    drive.state = DRIVE_RUN;
+    drive.schedule.turning = true;
+    drive.watch.open = false;
+    position_preset(&drive, kHere, 0);
+    see(2);
+  }
+  /// So many windows, the first of them under a zero vector, of a machine at rest without current.
+  static void see(std::uint16_t count) {
+    drive.samples.count = count;
+    drive.samples.ripple_q16 = {0, 0};
+    for (std::uint16_t k = 0; k < count; ++k) {
+      estimator_window_t w = {};
+      w.middle_tick = static_cast<std::int16_t>(2500 + 5000 * k);
+      w.span_ticks = 3000;
+      w.zero_vector = k == 0;
+      drive.samples.windows[k] = w;
+    }
+  }
+  /// Two windows of opposite voltages along phase a, as the model has a machine that stands at this angle.
+  static void see_machine(std::uint32_t angle_bam) {
+    see(2);
+    const machine_model_t& m = drive.model;
+    for (int k = 0; k < 2; ++k) {
+      estimator_window_t& w = drive.samples.windows[k];
+      const Vector v = {k == 0 ? 180.0 : -180.0, 0.0};
+      const Vector own = v.turned(-rad(angle_bam));
+      const Vector slope = {real(m.yd_q30, 30) * own.x, real(m.yq_q30, 30) * own.y};
+      w.zero_vector = false;
+      w.voltage_q16 = raw_ab(v, 16);
+      w.slope_q20 = raw_ab(slope.turned(rad(angle_bam)), 20);
+    }
+  }
+  static void blend(blend_region_t region, double share_of_low) {
+    drive.position.blend.region = region;
+    drive.position.blend.share_q15 = static_cast<std::int32_t>(share_of_low * 32767.0);
+  }
+};
+
+}  // namespace stillspin::test
+
+#endif
