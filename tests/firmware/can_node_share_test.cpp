@@ -30,7 +30,7 @@ void unplug() {
 std::uint32_t cycles_of_a_round() {
   board.profile.clear();
   can_node_service();
-  return std::accumulate(board.profile.begin(), board.profile.end(), 0u);
+  return spent();
 }
 
 TEST_F(CanNode, HearsWhatIsMeantForItAndNothingElse) {

@@ -23,11 +23,11 @@ using stillspin::test::board;
 
 extern "C" {
 
-bool hal_pwm_init(std::uint16_t) { return true; }
 bool hal_pwm_set_dead_band(std::uint16_t ticks) {
   board.dead_band = ticks;
   return board.dead_band_fits;
 }
+bool hal_pwm_init(std::uint16_t ticks) { return hal_pwm_set_dead_band(ticks); }
 
 bool hal_pwm_write(const hal_pwm_frame_t* frame, std::uint16_t) {
   bool in_time;
@@ -54,8 +54,8 @@ bool hal_pwm_is_tripped(void) { return !board.gates_on; }
 bool hal_pwm_was_tripped_by_pin(void) { return board.tripped_by_pin; }
 
 void hal_adc_power_up(void) {}
-bool hal_adc_is_up(void) { return true; }
-void hal_adc_set_up(void) {}
+bool hal_adc_is_up(void) { return board.adc_looks-- <= 0; }
+void hal_adc_set_up(void) { board.adc_set_up = true; }
 void hal_adc_choose_slow(bool speed) { board.slow_is_speed = speed; }
 void hal_adc_measure_reference(std::uint16_t* ground, std::uint16_t* reference) {
   *ground = board.ground;
@@ -117,6 +117,12 @@ void hal_safety_toggle_enable(void) {
   board.enable_toggles++;
   belongs_into_control();
 }
+bool hal_clock_init(void) { return board.clock_runs; }
+void hal_time_init(void) {}
+void hal_idle(void) { board.on_idle(); }
+void hal_watchdog_start(void) { board.watchdog = true; }
+void hal_watchdog_service(void) { board.watchdog_services++; }
+void hal_safety_init(void) { board.safety = true; }
 void hal_safety_fault_lamp(bool on) {
   board.lamp = on;
   board.lit_with_gates_on = board.lit_with_gates_on || (on && board.gates_on);
@@ -162,6 +168,7 @@ hal_can_status_t hal_can_status(void) { return board.can_status; }
 void hal_can_recover(void) { board.can_recoveries++; }
 
 bool hal_sci_init(std::uint32_t baud) {
+  board.baud_calls++;
   if (baud == 0 || baud > HAL_SCI_MAX_BAUD) return false;
   board.baud = baud;
   return true;

@@ -7,6 +7,7 @@
 
 #include <deque>
 #include <map>
+#include <numeric>
 #include <vector>
 
 #include "hal/hal_adc.h"
@@ -30,6 +31,12 @@ struct FakeBoard {
   bool gates_on = false, lamp = false;
   bool lit_with_gates_on = false;  // the lamp before the gates were off
   bool tripped_by_pin = false, pin_low = false;
+  bool clock_runs = true;
+  void (*on_idle)(void) = nullptr;  // what happens while the background level sleeps
+  bool watchdog = false, safety = false;
+  int watchdog_services = 0;
+  int adc_looks = 0;  // until the converter is up
+  bool adc_set_up = false;
   bool late = false;  // hal_pwm_write comes too late
   int gates_off_calls = 0, frames = 0, enable_toggles = 0;
   hal_pwm_frame_t frame = {};
@@ -59,6 +66,7 @@ struct FakeBoard {
   std::deque<std::uint16_t> serial_in, serial_out;  // octets for the firmware, and from it
   std::uint16_t serial_room = 512;                  // of the transmit ring, taken octets deducted
   std::uint32_t baud = 0;
+  int baud_calls = 0;
   int serial_services = 0;
   std::vector<std::uint16_t> profile;          // what the chip's model was told of run times
   int control_begins = 0, control_ends = 0;    // of the control interrupt
@@ -77,6 +85,9 @@ struct FakeBoard {
   int can_recoveries = 0, can_cancels = 0, can_set_ups = 0;
 };
 extern FakeBoard board;
+
+/// Cycles that steps have said they take since the profile was cleared.
+inline std::uint32_t spent() { return std::accumulate(board.profile.begin(), board.profile.end(), 0u); }
 
 /// Codes of a board at rest: no current, 300 V.
 inline hal_adc_window_t still_window(double link = 300.0) {

@@ -1,8 +1,13 @@
 // Hysteresis control on a board of fakes: which leg goes where, when it runs, and what its band does.
 
 #include <algorithm>
+#include <vector>
 
 #include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/isr_cycles.h"
+}
 
 namespace {
 
@@ -241,6 +246,8 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   EXPECT_EQ(drive.supervision.missing, 0);
   EXPECT_EQ(drive.samples.count, 0) << "of windows";
   EXPECT_EQ(drive.fault, FAULT_NONE);
+  const hysteresis_sums_t& left = h.sums;
+  EXPECT_EQ(std::vector<std::int32_t>({left.a_q8, left.b_q8, left.peak_q8, left.slices}), std::vector<std::int32_t>(4));
   // Taken once: without a slice everything stays, and the period counts as one without samples.
   const dq_t before = drive.control.measured_q20;
   for (int n = 1; n < 4; ++n) {
@@ -327,6 +334,16 @@ TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
       EXPECT_EQ(drive.hysteresis.running, wanted ? 1 : 0);
     }
   }
+}
+
+// For the virtual chip, where arithmetic takes no time by itself.
+TEST_F(Hysteresis, ItsStepsSayWhatTheyTake) {
+  board.profile.clear();
+  slice();
+  EXPECT_EQ(spent(), CYCLES_SLICE);
+  board.profile.clear();
+  (void)drive_hysteresis(&drive);
+  EXPECT_EQ(spent(), CYCLES_REFER);
 }
 
 // Nobody commands a voltage meanwhile.

@@ -6,6 +6,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/isr_cycles.h"
 #include "svpwm/ripple.h"
 }
 
@@ -89,6 +90,17 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
     const bool used = k < p.window_count;
     EXPECT_EQ(f.burst_start_tick[k], used ? p.windows[k].start : HAL_PWM_NONE);
     EXPECT_EQ(f.burst_end_tick[k], used ? p.windows[k].end : HAL_PWM_NONE);
+  }
+}
+
+// For the virtual chip: before the write, which may be too late by it.
+TEST_F(Modulation, ItsStepSaysWhatItTakes) {
+  for (const bool shorted : {false, true}) {
+    board.profile.clear();
+    drive.state = DRIVE_START;
+    drive.start.shorted = shorted;
+    drive_modulate(&drive);
+    EXPECT_EQ(spent(), CYCLES_MODULATE);
   }
 }
 

@@ -7,6 +7,7 @@
 
 extern "C" {
 #include "firmware/flux_source.h"
+#include "firmware/isr_cycles.h"
 #include "svpwm/ripple.h"
 }
 
@@ -490,8 +491,10 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
     drive.position.flux.pause = 1;
     see(windows);
     drive.schedule.skips = false;
+    board.profile.clear();
     estimate();
     EXPECT_EQ(drive.position.flux.pause > 1, windows == 0);
+    EXPECT_EQ(spent(), CYCLES_ESTIMATE_FLUX) << "for the virtual chip";
   }
 }
 
