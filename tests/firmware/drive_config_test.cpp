@@ -139,9 +139,9 @@ TEST_F(DriveConfig, AnAxisThatTurnsTooFarIsRefused) {
 TEST_F(DriveConfig, AMagnetThatDrivesTooMuchCurrentIsRefused) {
   set("inductance_d", 0.2);
   set("inductance_q", 0.8);
-  set("magnet_flux", 0.7);
+  set("magnet_flux", 0.79);
   EXPECT_TRUE(drive_config_load(&drive.config));
-  set("magnet_flux", 0.9);  // lambda/Lq of 1125 A
+  set("magnet_flux", 0.81);  // lambda/Lq of 1013 A
   expect_refused();
   set("magnet_flux", 0.7);
   set("lqq_4", 90.0);

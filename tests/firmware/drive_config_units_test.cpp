@@ -64,6 +64,23 @@ TEST_F(Units, AReluctanceTooLargeForTheTorquesFormatIsRefused) {
   EXPECT_TRUE(refused());
 }
 
+// lambda/Lq of 1000 A at one point alone, whichever it is.
+TEST_F(Units, EveryPointOfTheMapHasToFitTheFormats) {
+  parameters.inductance_d = raw(0.2, 20);
+  parameters.inductance_q = raw(0.8, 20);
+  parameters.magnet_flux = raw(0.7, 28);
+  EXPECT_FALSE(refused());
+  std::int32_t parameters_t::* const points[] = {&parameters_t::lqq_1, &parameters_t::lqq_2, &parameters_t::lqq_3,
+                                                 &parameters_t::lqq_4};
+  for (const auto point : points) {
+    parameters.*point = raw(86.0, 16);
+    EXPECT_TRUE(refused());
+    parameters.*point = raw(89.0, 16);
+    EXPECT_FALSE(refused());
+    parameters.*point = raw(100.0, 16);
+  }
+}
+
 TEST_F(Units, WindowsAndEdges) {
   parameters.pulse_time = raw(41.5, 16);
   parameters.window_minimum = raw(17.5, 16);

@@ -301,6 +301,17 @@ TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds
   EXPECT_NEAR(after(0, 0.022), 0.02, 1e-4) << "two codes at least";
 }
 
+// What windows have left from before is not taken for those of the first period with pulses.
+TEST_F(Hysteresis, PulsesBeginWithoutOldWindows) {
+  drive.hysteresis.running = 0;
+  for (int n = 0; n < 2; ++n) drive_window_interrupt();
+  (void)drive_hysteresis(&drive);
+  drive.state = DRIVE_READY;
+  EXPECT_FALSE(drive_hysteresis(&drive));
+  EXPECT_EQ(sampling_swap()->count, 0);
+  EXPECT_EQ(sampling_swap()->count, 0);
+}
+
 // A run begins with the band of the parameter, the offsets that were found, and nothing of the run before.
 TEST_F(Hysteresis, ARunBeginsAnew) {
   drive.hysteresis.running = 0;

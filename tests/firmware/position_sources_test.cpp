@@ -1,7 +1,7 @@
 // What goes into an estimator and comes out of it, source by source: the current of the windows, the torque, what is
 // learnt in which turn, the encoder, the stator flux, and the start that turns a vector.
 
-#include <cstring>
+#include <algorithm>
 
 #include "tests/firmware/position.hpp"
 
@@ -480,6 +480,29 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
     EXPECT_EQ(drive.position.observer.speed_bpp, drive.position.high.speed_bpp);
     EXPECT_EQ(drive.position.observer.load_accel_q8, drive.position.high.load_accel_q8);
   }
+}
+
+// The drops of the devices are those of the current at the period's end, along both axes.
+TEST_F(Sources, WhatTheDevicesTakeIsNotTheFluxs) {
+  Vector flux[2];
+  const Vector current = {-1.0, 6.0};
+  const double volts = 4.0;
+  Vector drop = {};
+  for (const bool drops : {false, true}) {
+    run_with(POSITION_FLUX_CONV);
+    blend(BLEND_HIGH, 0.0);
+    see(0);
+    drive.config.dead_time.drop_q16 = drops ? raw(volts, 16) : 0;
+    dead_time_design(&drive.config.dead_time);
+    drive.control.measured_q20 = raw_dq(current, 20);
+    flux_source_follow(&drive, &drive.position.used);
+    estimate();
+    flux[drops] = real(drive.position.flux.flux_q16, 16);
+    drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current.turned(rad(kHere)), 20)), 16);
+  }
+  EXPECT_GT(std::min(std::fabs(drop.x), std::fabs(drop.y)), 1.0);
+  EXPECT_NEAR(flux[1].x - flux[0].x, -drop.x, 0.05);
+  EXPECT_NEAR(flux[1].y - flux[0].y, -drop.y, 0.05);
 }
 
 // Between the speeds the flux has no time to learn where the observer has windows; where these are left out it has.
