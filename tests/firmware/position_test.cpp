@@ -70,6 +70,18 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
   }
 }
 
+// So does ZVV where it takes turns with AVV, for which they were turned.
+TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
+  run_with(POSITION_PAPER);
+  blend(BLEND_BOTH, 0.5);
+  drive.schedule.task = TASK_SPEED;
+  drive.position.high.angle_bam = drive.position.avv.observer.angle_bam = kThere;
+  drive.samples.windows[0].slope_q20 = {raw(0.02, 20), raw(0.01, 20)};
+  drive_estimate(&drive);
+  const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
+  EXPECT_NEAR(real(drive.position.zvv.deviation_q20, 20), slope.y, 5e-5);
+}
+
 // The place of a regression that saw nothing teaches nothing.
 TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
   for (const std::uint16_t windows : {2, 0}) {
