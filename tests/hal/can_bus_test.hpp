@@ -3,6 +3,8 @@
 #ifndef STILLSPIN_TESTS_HAL_CAN_BUS_TEST_HPP
 #define STILLSPIN_TESTS_HAL_CAN_BUS_TEST_HPP
 
+#include <vector>
+
 #include "hal/f2808/registers.h"
 #include "hal/hal_can.h"
 #include "tests/hal/bus_test.hpp"

@@ -54,17 +54,6 @@ TEST_F(CanStates, each_bus_off_is_counted_once_and_takes_back_what_waits) {
   }
 }
 
-TEST_F(CanStates, bus_offs_and_restarts_are_counted_from_each_start) {
-  set(REG_CANES, CANES_BO_MASK);
-  hal_can_service();
-  EXPECT_EQ(hal_can_status().bus_offs, 1);
-  ASSERT_TRUE(hal_can_init(500'000, kGroups, 2));
-  EXPECT_EQ(hal_can_status().bus_offs, 0);
-  start();
-  const hal_can_frame_t frame = message();
-  EXPECT_TRUE(hal_can_send(&frame, 0)) << "it is not off any more";
-}
-
 class CanThatStalls : public CanOnBus {
  protected:
   static constexpr std::uint64_t kMillisecond = 100'000;  // cycles
@@ -113,6 +102,22 @@ TEST_F(CanThatStalls, the_time_counts_from_being_back_on_the_bus) {
   hal_can_service();
   service_after(kMillisecond);
   EXPECT_EQ(hal_can_status().restarts, 1);
+}
+
+TEST_F(CanThatStalls, bus_offs_and_restarts_are_counted_from_each_start) {
+  stall();
+  service_after(kStall + kMillisecond);
+  EXPECT_EQ(hal_can_status().restarts, 1);
+  start();
+  set(REG_CANES, CANES_BO_MASK);
+  hal_can_service();
+  EXPECT_EQ(hal_can_status().bus_offs, 1);
+  ASSERT_TRUE(hal_can_init(500'000, kGroups, 2));
+  EXPECT_EQ(hal_can_status().bus_offs, 0);
+  EXPECT_EQ(hal_can_status().restarts, 0);
+  start();
+  const hal_can_frame_t frame = message();
+  EXPECT_TRUE(hal_can_send(&frame, 0)) << "it is not off any more";
 }
 
 TEST_F(CanThatStalls, not_while_frames_leave_one_by_one) {

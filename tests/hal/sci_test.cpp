@@ -276,11 +276,15 @@ TEST_F(SerialBreak, each_break_counts) {
 }
 
 TEST_F(SerialBreak, a_new_set_up_knows_nothing_of_it) {
+  bus.words[kSci + SCI_FFRX] = 1u << SCI_FFRX_RXFFST_LSB;
+  for (unsigned k = 0; k <= HAL_SCI_RECEIVE_RING; ++k) service();
+  bus.words[kSci + SCI_FFRX] = SCI_FFRX_RXFFOVF_MASK | 1u << SCI_FFRX_RXFFST_LSB;
+  bus.words[kSci + SCI_RXBUF] = SCI_RXBUF_SCIFFFE_MASK;
   service();
-  bus.words[kSci + SCI_FFRX] = SCI_FFRX_RXFFOVF_MASK | 2u << SCI_FFRX_RXFFST_LSB;
-  service();
+  hal_sci_errors_t errors = hal_sci_errors();
+  for (const std::uint16_t one : {errors.breaks, errors.overrun, errors.framing, errors.lost}) ASSERT_EQ(one, 1);
   ASSERT_TRUE(hal_sci_init(9600));
-  const hal_sci_errors_t errors = hal_sci_errors();
+  errors = hal_sci_errors();
   EXPECT_EQ(errors.breaks + errors.overrun + errors.framing + errors.lost, 0);
   EXPECT_EQ(hal_sci_room(), HAL_SCI_TRANSMIT_RING) << "what was to be sent is dropped";
   std::uint16_t octet;
