@@ -187,6 +187,17 @@ TEST_F(BoardFunctions, TheEmergencyStopFaultsRefusesAndExplains) {
   EXPECT_EQ(drive.fault, FAULT_EMERGENCY);
 }
 
+// A control interrupt in the middle of it would find a drive that is half in its fault.
+TEST_F(BoardFunctions, AFaultIsRaisedWithTheInterruptsHeldOff) {
+  parameters.emergency_stop = 1;
+  board.emergency = true;
+  look();
+  ASSERT_EQ(drive.fault, FAULT_EMERGENCY);
+  EXPECT_EQ(board.gates_off_calls, 1);
+  EXPECT_EQ(board.off_unheld, 0);
+  EXPECT_EQ(board.held_off, 0);
+}
+
 TEST_F(BoardFunctions, NothingIsJudgedWhileTheDriveBoots) {
   parameters.emergency_stop = 1;
   board.emergency = true;

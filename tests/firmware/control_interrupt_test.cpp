@@ -51,7 +51,7 @@ TEST_F(ControlInterrupt, ItsWorkIsBetweenBeginAndEnd) {
 // Between the speed control's milliseconds the current loop makes a voltage of what is asked for.
 TEST_F(ControlInterrupt, ACurrentThatIsAskedForBecomesAVoltage) {
   make_run();
-  while (drive.schedule.period != 2) period();
+  periods_until([] { return drive.schedule.period == 2; });
   for (const double amps : {3.0, -3.0}) {
     drive.control.reference_q20.q = raw(amps, 20);
     const std::int32_t before = drive.control.command_q16.q;

@@ -46,7 +46,7 @@ bool hal_pwm_gates_on(void) {
 void hal_pwm_gates_off(void) {
   board.gates_on = false;
   board.gates_off_calls++;
-  if (board.held_off == 0) board.off_unheld++;
+  if (board.held_off == 0 && board.control_begins == board.control_ends) board.off_unheld++;
 }
 
 std::uint16_t hal_pwm_period_tick(void) { return board.pwm_tick; }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <vector>
@@ -68,12 +69,13 @@ struct FakeBoard {
   std::uint32_t baud = 0;
   int baud_calls = 0;
   int serial_services = 0;
-  std::vector<std::uint16_t> profile;          // what the chip's model was told of run times
-  int control_begins = 0, control_ends = 0;    // of the control interrupt
-  int outside_control = 0;                     // what belongs between these two and was not
-  int interrupt_holds = 0;                     // how often both interrupts were held off
-  std::uint16_t held_off = 0, off_unheld = 0;  // they are now; gates switched off while they were not
-  std::uint16_t pwm_tick = 0;                  // of the running period
+  std::vector<std::uint16_t> profile;        // what the chip's model was told of run times
+  int control_begins = 0, control_ends = 0;  // of the control interrupt
+  int outside_control = 0;                   // what belongs between these two and was not
+  int interrupt_holds = 0;                   // how often both interrupts were held off
+  std::uint16_t held_off = 0;                // they are now
+  int off_unheld = 0;                        // gates switched off where the control interrupt could have come between
+  std::uint16_t pwm_tick = 0;                // of the running period
   hal_sci_errors_t serial_errors = {};
   std::deque<hal_can_frame_t> can_in[HAL_CAN_GROUPS_MAX], can_out;
   std::vector<hal_can_group_t> can_groups;
@@ -125,6 +127,11 @@ class Drive : public ::testing::Test {
 
   void periods(int n) {
     for (int k = 0; k < n; ++k) period();
+  }
+  /// As many as it takes.
+  void periods_until(const std::function<bool()>& done) {
+    for (int k = 0; k < 400 && !done(); ++k) period();
+    ASSERT_TRUE(done());
   }
 
   /// Ready, calibrated.

@@ -14,6 +14,9 @@ class StartRefused : public Drive {
     parameters.polarity_check = 0;
     make_ready();
   }
+  void until_on() {
+    periods_until([] { return board.gates_on; });
+  }
   void expect_refused(drive_fault_t fault) {
     const int frames_with_gates = board.gates_off_calls;
     drive_command_start();
@@ -95,7 +98,7 @@ TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
 TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
   parameters.bootstrap_time = raw(20.0, 16);
   drive_command_start();
-  while (!board.gates_on) period();
+  until_on();
   for (int n = 0; n < 4; ++n) period(still_window(), drive.modulation.sampled.window_count);
   EXPECT_EQ(drive.samples.count, 0);
   EXPECT_EQ(drive.start.phase, START_CHARGE);
@@ -107,7 +110,7 @@ TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   parameters.bootstrap_time = raw(20.0, 16);
   parameters.flying_start = 0;
   drive_command_start();
-  while (!board.gates_on) period();
+  until_on();
   hal_adc_window_t w = still_window();
   w.start_a = 4 * (2048 + 8 * 102);  // 8 A of 14
   w.end_a = 3 * (2048 + 8 * 102);
@@ -126,7 +129,7 @@ TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
     SetUp();
     parameters.bootstrap_time = raw(ms, 16);
     drive_command_start();
-    while (!board.gates_on) period();
+    until_on();
     drive.samples.count = 0;
     for (int n = 1; n < periods_on; ++n) start_step_charge(&drive);
     EXPECT_EQ(drive.start.phase, START_CHARGE) << ms;
@@ -146,7 +149,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
           SetUp();
           parameters.bootstrap_time = raw(20.0, 16);
           drive_command_start();
-          while (!board.gates_on) period();
+          until_on();
           drive.start.blind = blind ? 1 : 0;
           drive.samples.count = 2;
           drive.samples.windows[0].current_q20 = drive.samples.windows[1].current_q20 = {0, 0};
@@ -163,7 +166,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
 TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
   parameters.bootstrap_time = raw(20.0, 16);
   drive_command_start();
-  while (!board.gates_on) period();
+  until_on();
   drive.start.blind = 0;
   drive.samples.count = 1;
   drive.samples.windows[0].current_q20 = {parameters.current_limit, 0};
