@@ -16,7 +16,8 @@ namespace {
 
 TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   make_run();
-  parameters.current_limit = raw(9.0, 20);
+  const std::int32_t limit = parameters.current_limit;
+  parameters.current_limit = limit / 2;
   parameters.magnet_flux = raw(0.05, 28);
   drive.trim = {};
   drive.model.emf_q16 = drive.config.nameplate.emf_q16 / 2;
@@ -35,7 +36,7 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   EXPECT_EQ(scope_setup_in_force()->count, 0);
   EXPECT_EQ(selftest.failed, 0);
   EXPECT_FALSE(::board.relay);
-  EXPECT_EQ(parameters.current_limit, raw(14.0, 20)) << "the values are the table's";
+  EXPECT_EQ(parameters.current_limit, limit) << "the values are the table's";
   EXPECT_EQ(drive.control.current_limit_q20, parameters.current_limit);
   EXPECT_TRUE(drive.config_valid && drive.control.speed_ready);
   for (const std::int32_t middle : {drive.rest_a_q8, drive.rest_b_q8, drive.trim.offset_a_q8, drive.trim.offset_b_q8}) {

@@ -16,8 +16,8 @@ namespace {
 using namespace stillspin::test;
 using Words = HilPeriod::Words;
 
-constexpr std::uint16_t IN_TIME = 1;  // what hal_pwm_write returns: the one thing that a drive at rest asks for
-constexpr std::uint16_t EARLY = 8;    // a piece of work before the step
+constexpr std::uint16_t kInTime = 1;  // what hal_pwm_write returns: the one thing that a drive at rest asks for
+constexpr std::uint16_t kEarly = 8;   // a piece of work before the step
 
 class Stepping : public Drive {
  protected:
@@ -50,7 +50,7 @@ class Stepping : public Drive {
   static tape_window_t taped(std::uint16_t call, const hal_adc_window_t& w) {
     return {call, {w.start_a, w.start_b, w.end_a, w.end_b, w.link, w.aux}};
   }
-  static HilPeriod empty() { return {{}, {IN_TIME}, {}}; }
+  static HilPeriod empty() { return {{}, {kInTime}, {}}; }
 
   static void expect_on_tape(const HilPeriod& told) {
     const tape_period_t& p = hal_tape.period;
@@ -189,7 +189,7 @@ TEST_F(Stepping, AStepThatIsNotWholeChangesNothing) {
 
 // The background's work stands on the side of the step on which it was done, as often as it was done.
 TEST_F(Stepping, WorkIsDoneOnItsSideOfTheStep) {
-  for (const std::uint16_t side : {EARLY, std::uint16_t{0}}) {
+  for (const std::uint16_t side : {kEarly, std::uint16_t{0}}) {
     (void)step(empty());
     drive.commissioning.evaluate = true;
     drive.request.reload = true;
