@@ -13,8 +13,6 @@ namespace {
 constexpr std::uint32_t kLamp = 1u << 27;
 constexpr std::uint32_t kEnable = 1u << 2;  // GPIO34 in port B
 constexpr std::uint32_t kTrip = 1u << 12;
-
-std::uint32_t pair(std::uint32_t word, unsigned pin) { return (word >> (2 * (pin % 16))) & 3u; }
 }  // namespace
 
 class Board : public BusTest {
@@ -26,8 +24,8 @@ TEST_F(Board, over_current_input_is_asynchronous_with_pull_up) {
   bus.words[REG_GPAPUD] = 0xFFFF;
   hal_safety_init();
   EXPECT_EQ(bus.word32(REG_GPAPUD) & kTrip, 0u) << "a broken wire must not float";
-  EXPECT_EQ(pair(bus.word32(REG_GPAQSEL1), 12), 3u) << "works without a clock";
-  EXPECT_EQ(pair(bus.word32(REG_GPAMUX1), 12), 1u) << "TZ1";
+  EXPECT_EQ(pair_of(bus.word32(REG_GPAQSEL1), 12), 3u) << "works without a clock";
+  EXPECT_EQ(pair_of(bus.word32(REG_GPAMUX1), 12), 1u) << "TZ1";
   expect_before(bus.first_write(REG_GPAQSEL1), bus.first_write(REG_GPAMUX1), "settings before the multiplexer");
   EXPECT_EQ(bus.words[REG_GPAPUD], 0xFFFF & ~kTrip) << "other pins are kept";
 }
@@ -72,9 +70,9 @@ TEST_F(Board, encoder_counts_one_turn_and_wraps_there) {
   EXPECT_EQ(bus.words[eqep + EQEP_QEPCTL], 0x9008u) << "free run, reset at maximum, counter on";
   expect_before(bus.last_write(eqep + EQEP_QPOSCNT), bus.last_write(eqep + EQEP_QEPCTL), "counter set, then on");
   for (unsigned pin : {20u, 21u, 23u}) {
-    EXPECT_EQ(pair(bus.word32(REG_GPAMUX2), pin), 1u) << "GPIO" << pin;
+    EXPECT_EQ(pair_of(bus.word32(REG_GPAMUX2), pin), 1u) << "GPIO" << pin;
   }
-  EXPECT_EQ(pair(bus.word32(REG_GPAMUX2), 22), 0u);
+  EXPECT_EQ(pair_of(bus.word32(REG_GPAMUX2), 22), 0u);
   EXPECT_EQ(bus.word32(eqep + EQEP_QPOSINIT), 0u);
   EXPECT_EQ(bus.word32(eqep + EQEP_QPOSCNT), 0u);
   EXPECT_EQ(bus.steps.at(bus.first_write(eqep + EQEP_QEPCTL)).value, 0u);
@@ -98,7 +96,7 @@ TEST_F(Board, encoder_filters_its_pins_for_half_a_microsecond) {
   EXPECT_EQ((6 - 1) * sampling * 10, 500u) << "ns";
   EXPECT_EQ(control & 0xFF00FFFFu, 0x56001234u) << "other pins have their own";
   for (unsigned pin : {20u, 21u, 23u}) {
-    EXPECT_EQ(pair(bus.word32(REG_GPAQSEL2), pin), 2u) << "six samples, GPIO" << pin;
+    EXPECT_EQ(pair_of(bus.word32(REG_GPAQSEL2), pin), 2u) << "six samples, GPIO" << pin;
     EXPECT_EQ(bus.word32(REG_GPAPUD) >> pin & 1u, 0u) << "an open collector needs it, GPIO" << pin;
   }
 }

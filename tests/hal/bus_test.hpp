@@ -16,6 +16,9 @@ class BusTest : public ::testing::Test {
     EXPECT_FALSE(bus.protection_lifted) << "EALLOW without EDIS";
   }
 
+  /// A pin's two bits of a register that has two for each.
+  static std::uint32_t pair_of(std::uint32_t word, unsigned pin) { return (word >> (2 * (pin % 16))) & 3u; }
+
   /// Step i happened, and before step j.
   void expect_before(std::size_t i, std::size_t j, const char* why) {
     EXPECT_NE(i, FakeBus::npos) << "the earlier step is missing: " << why;

@@ -38,7 +38,7 @@ class CanOnBus : public BusTest {
     hal_can_service();
   }
   /// What was written to a register last.
-  std::uint32_t written(std::uint32_t address) {
+  std::uint32_t last_written(std::uint32_t address) {
     const std::vector<std::uint32_t> values = bus.written(address);
     EXPECT_FALSE(values.empty()) << std::hex << address << " is not written";
     return values.empty() ? 0 : values.back();

@@ -29,11 +29,7 @@ TEST_F(Clock, pll_is_changed_only_with_the_missing_clock_detector_off) {
 
 TEST_F(Clock, detector_stays_off_until_the_pll_has_locked) {
   ASSERT_TRUE(hal_clock_init());
-  const std::size_t multiplier = bus.first_write(REG_PLLCR);
-  std::size_t poll = multiplier;
-  while (!(bus.steps.at(poll).op == Op::kRead && bus.steps.at(poll).address == REG_PLLSTS)) {
-    ++poll;
-  }
+  const std::size_t poll = bus.first_read(REG_PLLSTS, bus.first_write(REG_PLLCR));
   expect_before(poll, bus.last_write(REG_PLLSTS), "PLLLOCKS is read before MCLKOFF is cleared");
 }
 

@@ -85,6 +85,15 @@ std::size_t FakeBus::last_write(std::uint32_t address) const {
   return found;
 }
 
+std::size_t FakeBus::first_read(std::uint32_t address, std::size_t from) const {
+  for (std::size_t i = from; i < steps.size(); ++i) {
+    if (steps[i].op == Op::kRead && steps[i].address == address) {
+      return i;
+    }
+  }
+  return npos;
+}
+
 std::size_t FakeBus::first(Op op) const {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].op == op) {

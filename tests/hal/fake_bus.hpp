@@ -72,6 +72,8 @@ class FakeBus {
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
   std::size_t first_write(std::uint32_t address, std::uint32_t bits = 0) const;
   std::size_t last_write(std::uint32_t address) const;
+  /// And of the first one, from a step on, that reads it.
+  std::size_t first_read(std::uint32_t address, std::size_t from = 0) const;
   std::size_t first(Op op) const;
   std::size_t count_writes() const;
   std::size_t last_write_of_all() const;

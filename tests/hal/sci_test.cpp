@@ -11,7 +11,6 @@ namespace stillspin::test {
 namespace {
 constexpr std::uint32_t kSci = SCI_BASE(1);
 constexpr double kLspclk = 50e6;
-std::uint32_t pair(std::uint32_t word, unsigned pin) { return (word >> (2 * (pin % 16))) & 3u; }
 }  // namespace
 
 class Serial : public BusTest {
@@ -56,10 +55,10 @@ TEST_F(Serial, port_is_set_up_in_reset_and_then_let_go) {
 TEST_F(Serial, pins_belong_to_the_port_before_it_listens) {
   bus.words[REG_GPAPUD + 1] = 0xFFFF;
   ASSERT_TRUE(hal_sci_init(115200));
-  EXPECT_EQ(pair(bus.word32(REG_GPAMUX2), 28), 1u);
-  EXPECT_EQ(pair(bus.word32(REG_GPAMUX2), 29), 1u);
+  EXPECT_EQ(pair_of(bus.word32(REG_GPAMUX2), 28), 1u);
+  EXPECT_EQ(pair_of(bus.word32(REG_GPAMUX2), 29), 1u);
   EXPECT_EQ(bus.word32(REG_GPAPUD) & 3u << 28, 0u) << "an open line must rest high";
-  EXPECT_EQ(pair(bus.word32(REG_GPAQSEL2), 28), 3u) << "not sampled";
+  EXPECT_EQ(pair_of(bus.word32(REG_GPAQSEL2), 28), 3u) << "not sampled";
   expect_before(bus.first_write(REG_GPAMUX2), bus.last_write(kSci + SCI_CTL1), "pins first");
 }
 
