@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "tests/firmware/can_frames.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
 #include "firmware/can/command.h"
-#include "firmware/can/messages.h"
 }
 
 namespace stillspin::test {
@@ -26,13 +26,7 @@ class CanCommand : public Drive {
     parameters.polarity_check = 0;
   }
   hal_can_frame_t frame(std::int32_t mode, std::int32_t speed = 0, bool clear = false) {
-    hal_can_frame_t f = can_frame(CAN_COMMAND, kNode);
-    can_put(&f, CAN_COMMAND_MODE, mode);
-    can_put(&f, CAN_COMMAND_SPEED, speed);
-    can_put(&f, CAN_COMMAND_CLEAR_FAULT, clear ? 1 : 0);
-    can_put(&f, CAN_COMMAND_ALIVE, alive = (alive + 1) % 16);
-    can_put(&f, CAN_COMMAND_CRC, can_crc8(&f, 3));
-    return f;
+    return command_frame(alive = (alive + 1) % 16, mode, speed, clear);
   }
   void take(const hal_can_frame_t& f) { can_command_take(&command, &f, drive.time_ms); }
   void pass(int ms) {

@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <map>
 
+#include "tests/firmware/can_frames.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
 #include "firmware/can/command.h"
-#include "firmware/can/messages.h"
 #include "firmware/can/node.h"
-#include "firmware/can/segments.h"
 }
 
 namespace stillspin::test {
@@ -52,20 +51,10 @@ class CanNode : public Drive {
     return sent;
   }
   static std::vector<hal_can_frame_t> pieces(const std::vector<std::uint16_t>& record) {
-    segment_splitter_t s = {};
-    std::copy(record.begin(), record.end(), s.octets);
-    segment_split_begin(&s, static_cast<std::uint16_t>(record.size()), 0);
-    std::vector<hal_can_frame_t> frames;
-    hal_can_frame_t frame = can_frame(CAN_RECORD_REQUEST, 1);
-    for (; segment_split_peek(&s, &frame); segment_split_advance(&s, 0)) frames.push_back(frame);
-    return frames;
+    return pieces_of(record, can_frame(CAN_RECORD_REQUEST, 1));
   }
   static hal_can_frame_t command(std::int32_t alive, std::int32_t mode = CAN_MODE_OFF) {
-    hal_can_frame_t f = can_frame(CAN_COMMAND, 1);
-    can_put(&f, CAN_COMMAND_MODE, mode);
-    can_put(&f, CAN_COMMAND_ALIVE, alive);
-    can_put(&f, CAN_COMMAND_CRC, can_crc8(&f, 3));
-    return f;
+    return command_frame(alive, mode);
   }
   static hal_can_frame_t parameter(std::int32_t operation, std::int32_t id, std::int32_t raw) {
     hal_can_frame_t f = can_frame(CAN_PARAMETER_REQUEST, 1);

@@ -7,26 +7,10 @@
 #include <random>
 #include <vector>
 
-extern "C" {
-#include "firmware/can/segments.h"
-}
+#include "tests/firmware/can_frames.hpp"
 
 namespace stillspin::test {
 namespace {
-
-std::vector<hal_can_frame_t> pieces_of(const std::vector<std::uint16_t>& record) {
-  segment_splitter_t s = {};
-  std::copy(record.begin(), record.end(), s.octets);
-  segment_split_begin(&s, static_cast<std::uint16_t>(record.size()), 0);
-  std::vector<hal_can_frame_t> frames;
-  hal_can_frame_t frame = {};
-  while (segment_split_peek(&s, &frame)) {
-    frames.push_back(frame);
-    segment_split_advance(&s, 0);
-  }
-  EXPECT_EQ(s.count, 0u);
-  return frames;
-}
 
 std::vector<std::uint16_t> record_of(unsigned octets, unsigned seed = 1) {
   std::vector<std::uint16_t> record;
