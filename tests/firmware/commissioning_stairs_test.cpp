@@ -1,0 +1,115 @@
+// What a commissioning sums and sends: the staircase's levels, the pairs of the map, and when results are there.
+
+#include "tests/firmware/commissioning_sums.hpp"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+// What a volt of drop in every phase makes along d is summed whatever drop the drive compensates: 4/3 V where the three
+// currents are far from zero.
+class CommissioningStairs : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    make_ready();
+    drive.state = DRIVE_COMMISSION;
+    drive.commissioning.model = nameplate();
+    drive.commissioning.tick = 1;
+  }
+  static staircase_t& stairs() { return drive.commissioning.staircase; }
+};
+
+TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
+  for (const auto& [drop, sixths] : {std::pair{0.0, 0}, {0.95, 1}, {2.0, 5}}) {
+    SetUp();
+    drive.config.dead_time.drop_q16 = raw(drop, 16);
+    dead_time_design(&drive.config.dead_time);
+    drive.control.measured_q20 = {raw(10.0, 20), 0};
+    drive.position.used.angle_bam = bam(sixths * kPi / 3.0);
+    stairs().tick = 600;
+    (void)commissioning_climb(&drive);
+    ASSERT_EQ(stairs().level[0].periods, 1);
+    EXPECT_NEAR(real(stairs().level[0].factor, 20), 4.0 / 3.0, 1e-3) << drop;
+  }
+}
+
+// Twice the ripple and a fifth to spare must leave room for a line; where it does not, no current is sent at all.
+TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
+  for (const bool room : {true, false}) {
+    SetUp();
+    if (!room) drive.commissioning.model.yd_q30 *= 8;  // 0.6 mH: a ripple of 8 A and more
+    for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
+    EXPECT_NEAR(real(drive.control.reference_q20.d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
+  }
+}
+
+// A train or a pause without a pair of opposite windows adds nothing to its sums.
+TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
+  for (const bool pair : {true, false}) {
+    SetUp();
+    map_t& m = drive.commissioning.map;
+    m.segment = 60;
+    m.train = 1;
+    m.tick = 55;
+    drive.samples.count = pair ? 2 : 1;
+    drive.samples.windows[0] = drive.samples.windows[1] = {};
+    drive.samples.windows[0].voltage_q16 = {raw(200.0, 16), 0};
+    drive.samples.windows[1].voltage_q16 = {raw(-200.0, 16), 0};
+    (void)commissioning_map(&drive);
+    EXPECT_EQ(m.group[0][3].tensor.count, pair ? 1 : 0);  // the mirrored train begins with a negative current
+    m.pause = true;
+    m.tick = 350;
+    (void)commissioning_map(&drive);
+    EXPECT_EQ(drive.commissioning.unsaturated.count, pair ? 1 : 0);
+  }
+}
+
+TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
+  commissioning_t& c = drive.commissioning;
+  c.outcome = COMMISSIONING_RUNNING;
+  c.phase = COMMISSIONING_EVALUATE;
+  c.evaluate = true;
+  EXPECT_EQ(drive_commissioning_count(), 0);
+  commissioning_service(&drive);
+  EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_PARTLY);
+  ASSERT_EQ(drive_commissioning_count(), 23);
+  EXPECT_NE(drive_commissioning_result(22).id, 0);
+  EXPECT_EQ(drive_commissioning_result(23).id, 0);
+  c.outcome = COMMISSIONING_DONE;
+  EXPECT_EQ(drive_commissioning_count(), 23);
+  c.outcome = COMMISSIONING_ABORTED;
+  EXPECT_EQ(drive_commissioning_result(0).id, 0);
+}
+
+// A line is drawn over the upper quarter of the current at least.
+TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
+  for (const double share : {0.74, 0.76}) {
+    SetUp();
+    const double limit = real(parameters.current_limit, 20);
+    const double pulse = drive.config.modulator.pulse_ticks / 1e4;
+    const double link = real(drive.samples.link_q16, 16);
+    drive.commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
+    for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
+    EXPECT_NEAR(real(drive.control.reference_q20.d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
+  }
+}
+
+// Opposite along either axis; vectors that are alike in one of them are no pair.
+TEST_F(CommissioningStairs, APairIsOppositeAlongBothAxes) {
+  deviation_t first, second;
+  drive.samples.count = 2;
+  estimator_window_t* const w = drive.samples.windows;
+  w[0] = w[1] = {};
+  for (const auto& [a, b] : {std::pair{100.0, 150.0}, {0.0, 150.0}, {-100.0, 0.0}}) {
+    for (const auto& [along, across] : {std::pair{-1.0, -1.0}, {-1.0, 1.0}, {1.0, -1.0}}) {
+      w[0].voltage_q16 = raw_ab({a, b}, 16);
+      w[1].voltage_q16 = raw_ab({along * a, across * b}, 16);
+      const bool pair = (a == 0.0 || along < 0.0) && (b == 0.0 || across < 0.0);
+      EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << a << " " << b << " " << along << across;
+    }
+  }
+}
+
+}  // namespace
