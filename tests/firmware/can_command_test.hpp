@@ -1,0 +1,57 @@
+// What the tests of the command from the bus have in common: somebody who gives it, and the drive that takes it.
+
+#ifndef STILLSPIN_TESTS_FIRMWARE_CAN_COMMAND_TEST_HPP
+#define STILLSPIN_TESTS_FIRMWARE_CAN_COMMAND_TEST_HPP
+
+#include "tests/firmware/can_frames.hpp"
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/can/command.h"
+}
+
+namespace stillspin::test {
+
+class CanCommand : public Drive {
+ protected:
+  can_command_t command = {};
+  std::uint16_t alive = 0;
+
+  void SetUp() override {
+    Drive::SetUp();
+    can_command_reset(&command);
+    parameters.position_source = 0;
+    parameters.polarity_check = 0;
+  }
+  hal_can_frame_t frame(std::int32_t mode, std::int32_t speed = 0, bool clear = false) {
+    return command_frame(alive = (alive + 1) % 16, mode, speed, clear);
+  }
+  void take(const hal_can_frame_t& f) { can_command_take(&command, &f, drive.time_ms); }
+  void pass(int ms) {
+    for (int k = 0; k < ms; ++k) {
+      for (int n = 0; n < 10; ++n) {
+        period();
+        forget_windows();
+      }
+      can_command_service(&command, drive.time_ms);
+    }
+  }
+  /// A command every 10 ms for as long.
+  void say(std::int32_t mode, std::int32_t speed, int ms) {
+    for (int k = 0; k < ms; k += 10) {
+      take(frame(mode, speed));
+      pass(10);
+    }
+  }
+  void make_running_by_bus() {
+    make_ready();
+    say(CAN_MODE_OFF, 0, 20);
+    say(CAN_MODE_RUN, 0, 60);
+    ASSERT_EQ(drive.state, DRIVE_RUN);
+    ASSERT_TRUE(command.commanding);
+  }
+};
+
+}  // namespace stillspin::test
+
+#endif
