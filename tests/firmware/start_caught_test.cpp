@@ -1,62 +1,13 @@
-// The start of a shaft that turns: pairs of short circuits whose back-EMFs the test makes up.
+// The start of a shaft that turns: its short circuits, and what is made of a pair. How the drive goes on from there is
+// start_caught_frame_test.cpp.
+
+#include "tests/firmware/start_caught_test.hpp"
 
 #include <algorithm>
-
-#include "tests/firmware/fake_hal.hpp"
 
 namespace {
 
 using namespace stillspin::test;
-
-class StartCaught : public Drive {
- protected:
-  void SetUp() override {
-    Drive::SetUp();
-    parameters.position_source = 0;
-    make_ready();
-    drive_command_start();
-    period();
-    ASSERT_EQ(drive.state, DRIVE_START);
-  }
-
-  /// The next short circuit, with a back-EMF of this size (V) in this direction (rad) in its middle, which is now.
-  static void see_pulse(double direction, double volts) {
-    flying_pulse_t& p = drive.start.pulse;
-    drive.samples.count = 0;
-    p.windows = 2;
-    p.first_tick = drive.start.clock - 5000;
-    p.last_tick = drive.start.clock + 5000;
-    p.first_q20 = p.last_q20 = {raw(2.0, 20), 0};  // enough to be looked at
-    p.drive_q16 = raw_ab(Vector{volts, 0.0}.turned(direction) * 2.0, 16);
-    judge();
-  }
-  /// Of the short circuit that has been seen: the gates go off, it is judged, and the loop is closed where it fits.
-  static void judge() {
-    start_step_pulse(&drive);
-    EXPECT_FALSE(board.gates_on) << "the current dies away";
-    start_step_pulse(&drive);
-    EXPECT_TRUE(drive.start.decides) << "in a period for itself";
-    EXPECT_EQ(drive.start.phase, START_PULSE);
-    drive.schedule.decides = true;
-    start_step_pulse(&drive);
-    drive.schedule.decides = false;
-    if (drive.start.phase == START_CATCH) start_step_catch(&drive);
-  }
-  void await_pulse() {
-    for (int n = 0; n < 700 && drive.start.phase != START_PULSE; ++n) period();
-    ASSERT_EQ(drive.start.phase, START_PULSE);
-  }
-  /// Two short circuits of a shaft at this speed (rad/s, electrical) whose magnet is `flux` times what was told.
-  void catch_at(double speed, double flux) {
-    const double volts = std::fabs(speed) * Motor{}.flux * flux;
-    await_pulse();
-    const std::int32_t first = drive.start.clock;
-    see_pulse(0.5, volts);
-    ASSERT_EQ(drive.start.phase, START_LISTEN);
-    await_pulse();
-    see_pulse(0.5 + speed * (drive.start.clock - first) * 1e-8, volts);
-  }
-};
 
 TEST_F(StartCaught, APairThatFitsGivesTheSpeed) {
   for (const double speed : {300.0, -300.0}) {
@@ -135,31 +86,6 @@ TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
   start_step_pulse(&drive);
   EXPECT_EQ(drive.start.phase, START_PULSE);
   EXPECT_EQ(drive.start.pulses, 0);
-}
-
-// The estimators must follow what was caught before the drive may run; else the next pair is tried.
-TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
-  for (const double stray : {14.9, -14.9, 15.1, -15.1}) {
-    SetUp();
-    catch_at(300.0, 1.0);
-    ASSERT_EQ(drive.start.phase, START_CATCH);
-    drive.start.learnt = true;
-    drive.start.stray = drive.position.avv.error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
-    drive.start.tick = 139;
-    start_step_catch(&drive);
-    EXPECT_EQ(drive.start.phase, START_CATCH) << "not before its time";
-    EXPECT_FALSE(drive.start.decides);
-    drive.start.tick = 140;
-    start_step_catch(&drive);
-    EXPECT_EQ(drive.start.phase, START_CATCH) << "not beside anything else";
-    EXPECT_TRUE(drive.start.decides);
-    drive.schedule.decides = true;
-    start_step_catch(&drive);
-    const bool follows = std::fabs(stray) < 15.0;
-    EXPECT_EQ(drive.state, follows ? DRIVE_RUN : DRIVE_START) << stray;
-    EXPECT_EQ(drive.start.tries, follows ? 0 : 1);
-    EXPECT_EQ(board.gates_on, follows);
-  }
 }
 
 // All lower devices on for the whole period, which three windows share.
@@ -247,82 +173,6 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
       start_step_pulse(&drive);
       EXPECT_EQ(board.gates_on, share < 1.0 && tick < 12) << share << " " << tick;
     }
-  }
-}
-
-TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
-  drive.start.stray = 99;
-  drive.start.learnt = true;
-  drive.start.axis.count = 5;
-  drive.control.weakening.trim_q20 = raw(-3.0, 20);
-  catch_at(300.0, 1.0);
-  const drive_start_t& s = drive.start;
-  ASSERT_EQ(s.phase, START_CATCH);
-  EXPECT_FALSE(s.shorted || s.learnt);
-  EXPECT_EQ(s.stray, 0);
-  EXPECT_EQ(s.axis.count, 0);
-  EXPECT_EQ(s.sigma_q8, s.rotor.sigma_q8);
-  EXPECT_GT(s.sigma_q8, 0);
-  EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
-  EXPECT_EQ(drive.position.avv.observer.speed_bpp, s.rotor.speed_bpp);
-  EXPECT_EQ(drive.control.weakening_q20, 0) << "at 300 rad/s nothing is weakened";
-  EXPECT_FALSE(board.gates_on);
-  start_step_catch(&drive);
-  EXPECT_TRUE(board.gates_on);
-}
-
-// A fast shaft needs its field current from the first period on.
-TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
-  catch_at(1500.0, 1.0);
-  ASSERT_EQ(drive.start.phase, START_CATCH);
-  EXPECT_LT(real(drive.control.weakening_q20, 20), -0.1);
-  EXPECT_LT(real(drive.control.reference_q20.d, 20), -0.1);
-}
-
-// Until the axis is seen the frame turns with the rotor as the back-EMF has it; then with the axis, where that is not
-// further off than the back-EMF can be. The flux is seen by the inductances that were seen with it.
-TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
-  for (const double off : {0.1, -0.1, 0.5, -0.5}) {
-    SetUp();
-    catch_at(300.0, 1.25);
-    ASSERT_EQ(drive.start.phase, START_CATCH);
-    drive_start_t& s = drive.start;
-    const flying_rotor_t caught = s.rotor;
-    regression_t& r = drive.position.avv.regression;
-    r = {};
-    for (int n = 1; n <= 5; ++n) {
-      start_step_catch(&drive);
-      EXPECT_FALSE(s.learnt);
-      EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - caught.angle_bam)), n * 300.0 * kPeriod, 1e-3);
-      EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
-      EXPECT_EQ(drive.position.avv.observer.speed_bpp, caught.speed_bpp);
-    }
-    EXPECT_EQ(s.axis.count, 0) << "it has not been seen";
-    EXPECT_NEAR(1.0 * drive.model.trim.psi_q16 / drive.model.emf_q16, 0.25, 0.01);
-    const double mean = 0.5 * (real(drive.model.yd_q30, 30) + real(drive.model.yq_q30, 30));
-    const double half = 0.5 * (real(drive.model.yd_q30, 30) - real(drive.model.yq_q30, 30)), spread = 4000.0;
-    const auto see = [&] {  // inductances that are a fifth smaller than told
-      r.information = 1000000;
-      r.spread_q8 = raw(spread, 8);
-      r.along_q16 = raw(0.25 * mean * spread, 16);
-      r.mirror_q16 = raw((1.25 * std::cos(2.0 * off) - 1.0) * half * spread, 16);
-      r.cross_q16 = raw(1.25 * std::sin(2.0 * off) * half * spread, 16);
-      start_step_catch(&drive);
-    };
-    s.blind = 1;
-    see();
-    EXPECT_EQ(s.axis.count, 0) << "windows of gates that were off";
-    s.blind = 0;
-    for (int n = 0; n < AXIS_PERIODS; ++n) see();
-    EXPECT_FALSE(s.learnt) << "a decision has a period of its own";
-    const std::uint32_t before = s.rotor.angle_bam;
-    drive.schedule.decides = true;
-    see();
-    EXPECT_TRUE(s.learnt);
-    const double most = 15.0 * kDegree;
-    EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - before)), 300.0 * kPeriod + std::clamp(off, -most, most), 2e-3) << off;
-    EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
-    EXPECT_EQ(drive.model.trim.psi_q16, 0) << "the flux is as told";
   }
 }
 

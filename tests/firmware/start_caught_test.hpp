@@ -1,0 +1,62 @@
+// A shaft that turns when it is started: pairs of short circuits whose back-EMFs the test makes up.
+
+#ifndef STILLSPIN_TESTS_FIRMWARE_START_CAUGHT_TEST_HPP
+#define STILLSPIN_TESTS_FIRMWARE_START_CAUGHT_TEST_HPP
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+
+class StartCaught : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    parameters.position_source = 0;
+    make_ready();
+    drive_command_start();
+    period();
+    ASSERT_EQ(drive.state, DRIVE_START);
+  }
+
+  /// The next short circuit, with a back-EMF of this size (V) in this direction (rad) in its middle, which is now.
+  static void see_pulse(double direction, double volts) {
+    flying_pulse_t& p = drive.start.pulse;
+    drive.samples.count = 0;
+    p.windows = 2;
+    p.first_tick = drive.start.clock - 5000;
+    p.last_tick = drive.start.clock + 5000;
+    p.first_q20 = p.last_q20 = {raw(2.0, 20), 0};  // enough to be looked at
+    p.drive_q16 = raw_ab(Vector{volts, 0.0}.turned(direction) * 2.0, 16);
+    judge();
+  }
+  /// Of the short circuit that has been seen: the gates go off, it is judged, and the loop is closed where it fits.
+  static void judge() {
+    start_step_pulse(&drive);
+    EXPECT_FALSE(board.gates_on) << "the current dies away";
+    start_step_pulse(&drive);
+    EXPECT_TRUE(drive.start.decides) << "in a period for itself";
+    EXPECT_EQ(drive.start.phase, START_PULSE);
+    drive.schedule.decides = true;
+    start_step_pulse(&drive);
+    drive.schedule.decides = false;
+    if (drive.start.phase == START_CATCH) start_step_catch(&drive);
+  }
+  void await_pulse() {
+    for (int n = 0; n < 700 && drive.start.phase != START_PULSE; ++n) period();
+    ASSERT_EQ(drive.start.phase, START_PULSE);
+  }
+  /// Two short circuits of a shaft at this speed (rad/s, electrical) whose magnet is `flux` times what was told.
+  void catch_at(double speed, double flux) {
+    const double volts = std::fabs(speed) * Motor{}.flux * flux;
+    await_pulse();
+    const std::int32_t first = drive.start.clock;
+    see_pulse(0.5, volts);
+    ASSERT_EQ(drive.start.phase, START_LISTEN);
+    await_pulse();
+    see_pulse(0.5 + speed * (drive.start.clock - first) * 1e-8, volts);
+  }
+};
+
+}  // namespace stillspin::test
+
+#endif
