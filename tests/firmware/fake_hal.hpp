@@ -114,6 +114,7 @@ class Drive : public ::testing::Test {
     board = FakeBoard{};
     drive_reset();
   }
+  void TearDown() override { EXPECT_EQ(board.held_off, 0) << "interrupts that nobody has let through again"; }
 
   /// One period: as many window interrupts as the pattern has windows, then the control interrupt.
   void period(const hal_adc_window_t& w = still_window(), int missing = 0) {
