@@ -75,12 +75,7 @@ TEST_F(CanCommand, SilenceWhileOffDoesNotMakeTheNextRunAStart) {
 }
 
 TEST_F(CanCommand, AFaultIsClearedByARisingBitAndTheDriveDoesNotStartByItself) {
-  make_running_by_bus();
-  board.tripped_by_pin = true;
-  board.gates_on = false;
-  periods(2);
-  ASSERT_EQ(drive.state, DRIVE_FAULT);
-  board.tripped_by_pin = false;
+  make_tripped();
   say(CAN_MODE_RUN, 0, 50);
   EXPECT_FALSE(command.commanding);
   take(frame(CAN_MODE_RUN, 0, true));
@@ -91,11 +86,7 @@ TEST_F(CanCommand, AFaultIsClearedByARisingBitAndTheDriveDoesNotStartByItself) {
 }
 
 TEST_F(CanCommand, ARunGivenDuringAFaultIsForgotten) {
-  make_running_by_bus();
-  board.tripped_by_pin = true;
-  board.gates_on = false;
-  periods(2);
-  board.tripped_by_pin = false;
+  make_tripped();
   say(CAN_MODE_OFF, 0, 20);
   say(CAN_MODE_RUN, 0, 20);
   drive_command_reset();  // somebody else clears it
@@ -105,12 +96,7 @@ TEST_F(CanCommand, ARunGivenDuringAFaultIsForgotten) {
 
 // In one message, and the fault is gone before the background level comes by again.
 TEST_F(CanCommand, ARunThatClearsAFaultDoesNotStartToo) {
-  make_running_by_bus();
-  board.tripped_by_pin = true;
-  board.gates_on = false;
-  periods(2);
-  ASSERT_EQ(drive.state, DRIVE_FAULT);
-  board.tripped_by_pin = false;
+  make_tripped();
   say(CAN_MODE_OFF, 0, 20);
   take(frame(CAN_MODE_RUN, 0, true));
   periods(2);

@@ -50,6 +50,15 @@ class CanCommand : public Drive {
     ASSERT_EQ(drive.state, DRIVE_RUN);
     ASSERT_TRUE(command.commanding);
   }
+  /// By the over-current comparator, which has let go again.
+  void make_tripped() {
+    make_running_by_bus();
+    board.tripped_by_pin = true;
+    board.gates_on = false;
+    periods(2);
+    ASSERT_EQ(drive.state, DRIVE_FAULT);
+    board.tripped_by_pin = false;
+  }
 };
 
 }  // namespace stillspin::test

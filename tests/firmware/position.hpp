@@ -55,6 +55,17 @@ class Position : public Drive {
   }
 };
 
+/// What goes into an estimator and comes out of it.
+class Sources : public Position {
+ protected:
+  /// In a period of this turn.
+  static void estimate(turn_t turn = TURNS) {
+    drive.schedule.turn = turn;
+    drive_estimate(&drive);
+  }
+  static dq_t measured() { return drive.control.measured_q20; }
+};
+
 }  // namespace stillspin::test
 
 #endif

@@ -1,0 +1,137 @@
+// What is learnt of the machine and the sensors, in which turn, and how much of it.
+
+#include "tests/firmware/position.hpp"
+
+namespace {
+
+using namespace stillspin::test;
+
+// What the sensors' mismatch, the admittance's error and a voltage's leave in the observer's regression.
+class Learning : public Sources {
+ protected:
+  void learn_with(std::int32_t source) {
+    run_with(source);
+    see(0);
+    drive.model = drive.config.nameplate;
+    sensor_match_reset(&drive.position.sensors);
+    drive.trim.mismatch_q30 = 0;
+    drive.position.is_near = true;
+    drive.modulation.state.is_alternating = true;
+    drive.model.iq_q20 = raw(3.0, 20);
+    regression_t r = {};
+    r.spread_q8 = raw(30000.0, 8);
+    r.along_q16 = raw(40.0, 16);
+    r.curl_q16 = raw(20.0, 16);
+    r.mean_q20 = {0, raw(0.01, 20)};
+    r.information = 1000000;
+    drive.position.observer.regression = r;
+  }
+  static bool admittances() { return drive.model.trim.mean_q30 != 0; }
+  static bool sensors() { return drive.position.sensors.mismatch_q30 != 0; }
+  static bool voltage() { return drive.model.trim.rs_q24 != 0 || drive.model.trim.psi_q16 != 0; }
+};
+
+// Admittances and sensors in one turn, resistance and flux in another: once it runs, and near enough.
+TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
+  for (int turn = 0; turn <= TURNS; ++turn) {
+    if (turn == TURN_REGRESS || turn == TURN_LOOK) continue;
+    for (const bool near : {true, false}) {
+      for (const bool alternating : {true, false}) {
+        learn_with(POSITION_OBSERVER);
+        drive.position.is_near = near;
+        drive.modulation.state.is_alternating = alternating;
+        estimate(static_cast<turn_t>(turn));
+        EXPECT_EQ(admittances(), near && turn == TURN_LIKENESS) << turn;
+        EXPECT_EQ(sensors(), near && turn == TURN_LIKENESS && alternating) << turn << "all directions, or none";
+        EXPECT_EQ(voltage(), near && turn == TURN_VOLTAGE) << turn;
+        EXPECT_EQ(drive.trim.mismatch_q30, drive.position.sensors.mismatch_q30);
+      }
+    }
+  }
+}
+
+// A period with three windows has no room for the polarity's watch beside it.
+TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
+  for (const std::uint16_t count : {2, 3}) {
+    for (const bool watched : {true, false}) {
+      learn_with(POSITION_OBSERVER);
+      see(count);
+      drive.watch.open = watched;
+      estimate(TURN_VOLTAGE);
+      EXPECT_EQ(voltage(), !(watched && count == 3));
+    }
+  }
+}
+
+// A turn takes 5/4 as long as the places say, and twice that while the shaft turns, where half as much again is learnt.
+TEST_F(Learning, SharesAreThoseOfTheParametersTimes) {
+  learn_with(POSITION_OBSERVER);
+  const double y0 = 0.5 * (real(drive.model.yd_q30, 30) + real(drive.model.yq_q30, 30));
+  estimate(TURN_LIKENESS);
+  const double share = 1.5 * real(drive.config.adapt_share_q30, 30);
+  EXPECT_NEAR(real(drive.model.trim.mean_q30, 30) / (share * 40.0 / 30000.0), 1.0, 1e-3);
+  EXPECT_NEAR(real(drive.trim.mismatch_q30, 30) / (share * std::sqrt(3.0) * 20.0 / 30000.0 / y0), 1.0, 1e-3);
+  learn_with(POSITION_OBSERVER);
+  drive.position.used.speed_bpp = drive.position.observer.speed_bpp = bpp(60.0);
+  drive.model.trim.psi_variance_q32 = 0;
+  machine_model_t model = drive.model;
+  voltage_match_step(&model, &drive.position.observer.regression, raw(60.0 * kPeriod, 30),
+                     raw(1.5 * real(drive.config.drift_share_q30, 30), 30));
+  estimate(TURN_VOLTAGE);
+  EXPECT_NE(model.trim.rs_q24, 0);
+  EXPECT_NEAR(drive.model.trim.rs_q24, model.trim.rs_q24, 2 + std::abs(model.trim.rs_q24) / 100);
+  EXPECT_NEAR(drive.model.trim.psi_q16, model.trim.psi_q16, 2 + std::abs(model.trim.psi_q16) / 100);
+}
+
+// A start learns admittances in their turn and the sensors in the voltage's, with 5/4 of the share.
+TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
+  for (const turn_t turn : {TURN_LIKENESS, TURN_VOLTAGE, TURN_MOVE}) {
+    learn_with(POSITION_OBSERVER);
+    see_machine(kHere);
+    for (int k = 0; k < 2; ++k) {
+      drive.samples.windows[k].slope_q20.alpha += raw(k == 0 ? 0.2 : -0.2, 20);
+      drive.samples.windows[k].slope_q20.beta += raw(k == 0 ? 0.1 : -0.1, 20);
+    }
+    drive.state = DRIVE_START;
+    drive.schedule.turning = false;
+    drive.start.powered = true;
+    estimate(turn);
+    EXPECT_EQ(admittances(), turn == TURN_LIKENESS) << turn;
+    EXPECT_EQ(sensors(), turn == TURN_VOLTAGE) << turn;
+    EXPECT_FALSE(voltage());
+    if (turn != TURN_LIKENESS) continue;
+    const regression_t& r = drive.position.avv.regression;
+    const double wanted = 1.25 * real(drive.config.adapt_share_q30, 30) * real(r.along_q16, 16) / real(r.spread_q8, 8);
+    EXPECT_NEAR(real(drive.model.trim.mean_q30, 30) / wanted, 1.0, 1e-2);
+  }
+}
+
+// A commissioning at standstill has AVV, which learns where it is told to, or the torque alone.
+TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
+  for (const bool adapting : {true, false}) {
+    for (const bool predicting : {true, false}) {
+      learn_with(POSITION_FLUX_CONV);
+      see_machine(kHere);
+      drive.samples.windows[0].slope_q20.alpha += raw(0.2, 20);
+      drive.state = DRIVE_COMMISSION;
+      drive.schedule.turning = false;
+      drive.commissioning.turning = false;
+      drive.commissioning.adapting = adapting;
+      drive.commissioning.predicting = predicting;
+      drive.position.avv.observer = {kThere, 1000, raw(500.0, 8), 0};
+      drive.control.measured_q20 = {0, 0};
+      const std::int32_t error = drive.position.avv.error_bam = 4711;
+      estimate(TURN_LIKENESS);
+      EXPECT_EQ(admittances(), adapting && !predicting);
+      EXPECT_EQ(drive.position.avv.error_bam == error, predicting) << "no measurement at all";
+      EXPECT_EQ(drive.position.used.angle_bam, drive.position.avv.observer.angle_bam);
+      if (!predicting) continue;
+      EXPECT_EQ(drive.position.used.angle_bam, kThere + 1000u);
+      EXPECT_EQ(drive.position.used.speed_bpp, 1000) << "the load as of now is left out";
+      EXPECT_EQ(drive.position.used.load_accel_q8, raw(500.0, 8));
+      EXPECT_EQ(drive.position.used.quality_q15, 32767);
+    }
+  }
+}
+
+}  // namespace
