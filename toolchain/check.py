@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from checks import Finding, arrows, command_files, conditionals, int16, links, packages, registers
+from checks import Finding, arrows, command_files, conditionals, int16, links, packages, pieces, registers
 from checks.preprocessor import SOURCE_FOLDERS, SUFFIXES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -49,6 +49,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "linker": command_files.check,
     "links": links.check,
     "packages": packages.check,
+    "pieces": pieces.check,
 }
 DESCRIPTIONS = {
     "arrows": "includes point downward",
@@ -58,6 +59,7 @@ DESCRIPTIONS = {
     "linker": "the linker command files keep to the memory of the chip",
     "links": "links and paths in the book exist",
     "packages": "every Python package is installed",
+    "pieces": "what the book makes of data is as the data say",
     "format": "clang-format",
     "ruff": "Python lint and format",
     "mypy": "Python types, strict",
