@@ -35,6 +35,7 @@ build: setup ## compile firmware, virtual chip, plant and Python module into bui
 	@cmake --build --preset $(PRESET) --parallel $(JOBS)
 
 test: build ## run every check, the C++ tests and the Python tests
+	@bash toolchain/setup.sh build test
 	@bash toolchain/run-tests.sh $(PRESET)
 
 demo: build ## commission the drive, reproduce the main figures of the first paper, write out/demo/report.html
@@ -107,7 +108,8 @@ fuzz16: setup ## a short search with a 16-bit int, the same every time, and plan
 	@bash toolchain/setup.sh build llvm
 	@bash toolchain/fuzz.sh 10000 short
 
-pictures: build ## renew the pictures of README and book, docs/images; the page's need a Chromium
+pictures: build ## renew the pictures of README and book, docs/images
+	@bash toolchain/setup.sh build test
 	@rm -rf $(PICTURES_OUT)
 	@.venv/bin/stillspin reproduce $(PICTURED) --no-paper-scheme --no-nameplate --out $(PICTURES_OUT)
 	@$(PYTHON) toolchain/overview.py $(PICTURES_OUT) docs/images/bench.png

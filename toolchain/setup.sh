@@ -3,7 +3,8 @@
 #
 #   1. Debian packages (debian-packages.txt) and a clang with the msp430 target, through apt-get, only if one is missing;
 #   2. the locked Python packages (requirements.lock) into .venv, only if the lock, the Python or the place has changed;
-#   3. the project's own Python package, editable, from sim_host/.
+#   3. the project's own Python package, editable, from sim_host/;
+#   4. for group `test` on a distribution without a Chromium of its own (Ubuntu has a snap), the one of Playwright.
 #
 # When nothing is missing, nothing is fetched and the network is not touched.
 # Usage: toolchain/setup.sh [GROUP]...   (groups of debian-packages.txt; default: build). Group `llvm` is opt, llc and the
@@ -31,14 +32,21 @@ reason_of() { sed -nE "s/^[a-z]+[ ]*\|[ ]*${1//+/\\+}[ ]*\|[ ]*(.*)/\1/p" "$tabl
 
 is_installed() { [[ $(dpkg-query -W -f='${db:Status-Status}\n' "$1" 2>/dev/null | head -n 1) == installed ]]; }
 
+has_group() { [[ " ${groups[*]} " == *" $1 "* ]]; }
+
 missing_packages() {
   local group package
   for group in "${groups[@]}"; do
     for package in $(packages_of_group "$group"); do
-      is_installed "$package" || echo "$package"
+      is_installed "$package" || { [[ $package == chromium ]] && has_browser; } || echo "$package"
     done
   done
 }
+
+has_browser() {
+  command -v chromium || command -v chromium-browser || command -v google-chrome ||
+    { [[ -x $venv/bin/python ]] && "$venv/bin/python" tests/python/browser.py; }
+} >/dev/null 2>&1
 
 # Fills `become_root`, the words put before a command that needs root.
 choose_root() {
@@ -76,6 +84,15 @@ refresh_package_lists() {
   apt update >"$logs/apt.log" 2>&1 || say "the package lists could not be refreshed (see $logs/apt.log), trying the old ones"
 }
 
+# Takes out of `wanted` what install_browser brings, after the Python packages.
+without_browser_of_elsewhere() {
+  local package kept=()
+  for package in ${wanted[@]+"${wanted[@]}"}; do
+    [[ $package == chromium ]] && ! is_installable chromium || kept+=("$package")
+  done
+  wanted=(${kept[@]+"${kept[@]}"})
+}
+
 # The packages of `wanted`, together; one by one if that fails, so that the culprit can be named.
 install_wanted() {
   local package failed=()
@@ -93,7 +110,7 @@ install_wanted() {
 
 # What of group llvm is wanted and not there for a clang ("clang-19" or "clang").
 missing_llvm() {
-  [[ " ${groups[*]} " == *' llvm '* ]] || return 0
+  has_group llvm || return 0
   command -v "opt${1#clang}" >/dev/null || echo "llvm${1#clang}"
   local version
   if version=$("$1" -dumpversion 2>/dev/null); then
@@ -119,6 +136,8 @@ install_debian_packages() {
   mkdir -p "$logs"
   choose_root
   refresh_package_lists
+  without_browser_of_elsewhere
+  ((${#wanted[@]} + ${#llvm[@]})) || [[ -n $need_clang ]] || return 0
   say "installing Debian packages:"
   for package in ${wanted[@]+"${wanted[@]}"}; do
     say "  $package: $(reason_of "$package")"
@@ -187,8 +206,19 @@ install_own_package() {
   echo "$stamp" >"$venv/stillspin-package.stamp"
 }
 
+# ---- The browser of the page's tests --------------------------------------------------------------------------------
+
+install_browser() {
+  has_group test && ! has_browser || return 0
+  mkdir -p "$logs"
+  say "installing the Chromium of Playwright: looks at the page as a person does"
+  "$venv/bin/python" -m playwright install --with-deps chromium >"$logs/browser.log" 2>&1 </dev/null || die "cannot install a" \
+    "Chromium (see $logs/browser.log); by hand: any chromium, chromium-browser or google-chrome on the path"
+}
+
 wanted=()
 become_root=()
 install_debian_packages
 install_python_packages
 install_own_package
+install_browser

@@ -12,8 +12,8 @@ from function_desk import Desk
 from playwright.sync_api import sync_playwright
 from typer.testing import CliRunner
 
+import browser
 import fake_core
-from browser import CHROMIUM
 from fake_drive import FakeDrive
 from stillspin import cli
 from stillspin.drive import Drive
@@ -79,9 +79,11 @@ def chromium():
     """The browser that is installed."""
     with sync_playwright() as playwright:
         # No sandbox: it does not start where the tests run as root; the only page opened is this project's.
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
-        yield browser
-        browser.close()
+        launched = playwright.chromium.launch(
+            executable_path=browser.found(playwright), args=["--no-sandbox", "--disable-gpu"]
+        )
+        yield launched
+        launched.close()
 
 
 @pytest.fixture

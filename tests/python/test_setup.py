@@ -6,8 +6,11 @@ Every tool that could reach the network or change the machine is replaced by a s
 import os
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+
+import browser
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -20,6 +23,7 @@ class Machine:
         self.bin.mkdir()
         self.log = folder / "calls"
         self.log.touch()
+        self.path = f"{self.bin}:{os.environ['PATH']}"
 
     def tool(self, name: str, script: str = "", status: int = 0) -> None:
         """Puts a tool that notes its call, runs ``script`` and exits with ``status``."""
@@ -32,11 +36,22 @@ class Machine:
         lines = self.log.read_text(encoding="utf-8").splitlines()
         return [line[len(name) + 1 :] for line in lines if line.startswith(name + " ")]
 
-    def setup(self) -> "subprocess.CompletedProcess[str]":
-        """Runs the set-up in the real tree with the fake tools in front."""
-        env = {**os.environ, "PATH": f"{self.bin}:{os.environ['PATH']}", "PIP_NO_INDEX": "1"}
+    def hide(self, *names: str) -> None:
+        """Takes programs off the path."""
+        rest = self.bin.parent / "rest"
+        rest.mkdir()
+        for folder in map(Path, os.environ["PATH"].split(":")):
+            for file in folder.iterdir() if folder.is_dir() else ():
+                if file.name not in names and not (rest / file.name).is_symlink():
+                    (rest / file.name).symlink_to(file)
+        self.path = f"{self.bin}:{rest}"
+
+    def setup(self, *groups: str) -> "subprocess.CompletedProcess[str]":
+        """Runs the set-up in the real tree with the fake tools in front; what Playwright would fetch is not there."""
+        nowhere = {"PLAYWRIGHT_BROWSERS_PATH": str(self.bin / "none"), "PLAYWRIGHT_DOWNLOAD_HOST": "http://127.0.0.1:9"}
+        env = {**os.environ, **nowhere, "PATH": self.path, "PIP_NO_INDEX": "1"}
         return subprocess.run(
-            ["bash", str(ROOT / "toolchain/setup.sh")],
+            ["bash", str(ROOT / "toolchain/setup.sh"), *groups],
             env=env,
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -109,3 +124,45 @@ def test_a_machine_without_clang_gets_the_newest_in_the_lists(machine: Machine) 
     run = machine.setup()
     assert run.returncode == 0, run.stderr
     assert machine.calls("apt-get")[-1].split()[-1] == "clang-19"
+
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+MISSING_BROWSER = "[[ ${!#} == chromium ]] && exit 1\necho installed"
+
+
+def test_the_tests_of_the_page_get_the_distributions_chromium(machine: Machine) -> None:
+    machine.hide(*BROWSERS)
+    machine.tool("dpkg-query", MISSING_BROWSER)
+    machine.tool("apt-cache", "echo '  Candidate: 1.0-1'")
+    machine.tool("apt-get", f"[[ $* == *install* ]] && cp {machine.bin}/id {machine.bin}/chromium")
+    run = machine.setup("build", "test")
+    assert run.returncode == 0, run.stderr
+    assert "chromium: looks at the page" in run.stdout
+    assert machine.calls("apt-get")[-1].split()[-1] == "chromium"
+
+
+def test_a_machine_without_any_chromium_fails_and_says_what_to_do(machine: Machine) -> None:
+    machine.hide(*BROWSERS)
+    machine.tool("dpkg-query", MISSING_BROWSER)
+    machine.tool("apt-cache", "echo '  Candidate: (none)'")
+    machine.tool("apt-get", "[[ $* == *chromium* ]] && exit 97")
+    run = machine.setup("build", "test")
+    assert run.returncode != 0
+    assert "installing the Chromium of Playwright" in run.stdout
+    assert len(run.stderr.splitlines()) == 1 and "cannot install a Chromium" in run.stderr
+    assert "by hand: any chromium" in run.stderr
+
+
+def test_a_browser_that_is_there_is_enough(machine: Machine) -> None:
+    machine.hide(*BROWSERS)
+    machine.tool("dpkg-query", MISSING_BROWSER)
+    machine.tool("google-chrome")
+    run = machine.setup("build", "test")
+    assert run.returncode == 0 and machine.calls("apt-get") == [], run.stdout
+
+
+def test_without_a_browser_the_tests_of_the_page_fail_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    nothing = SimpleNamespace(chromium=SimpleNamespace(executable_path="/nowhere/chromium"))
+    with pytest.raises(pytest.fail.Exception, match=r"setup\.sh build test"):
+        browser.found(nothing)

@@ -12,12 +12,11 @@ from tempfile import TemporaryDirectory
 import pytest
 from desk import PATIENT, board, needs_board
 
-from browser import needs_chromium
 from stillspin.drive import Drive
 from stillspin.drive.requester import wait_until
 from stillspin.tune.server import Server
 
-pytestmark = [needs_chromium, needs_board]
+pytestmark = needs_board
 ROOT = Path(__file__).parents[2]
 SLOW = 30
 LONG = 240

@@ -4,7 +4,6 @@ import time
 
 import pytest
 
-from browser import needs_chromium
 from stillspin.drive.requester import wait_until
 
 READY, RUN = 2, 4
@@ -23,14 +22,12 @@ def hold(tuned):
     tuned.mouse.down()
 
 
-@needs_chromium
 def test_the_token_leaves_the_address_line_and_a_reload_works(tuned, server):
     assert tuned.url == f"http://127.0.0.1:{server.guard.port}/"
     tuned.reload()
     tuned.wait_for_selector("#state:has-text('ready')")
 
 
-@needs_chromium
 def test_holding_the_button_runs_the_motor(tuned, fake):
     tuned.fill("#reference", "300")
     tuned.press("#reference", "Enter")
@@ -43,7 +40,6 @@ def test_holding_the_button_runs_the_motor(tuned, fake):
     tuned.wait_for_selector("#state:has-text('ready')")
 
 
-@needs_chromium
 def test_the_space_bar_and_escape(tuned, fake):
     tuned.keyboard.down(" ")
     tuned.wait_for_selector("#state:has-text('run')")
@@ -60,7 +56,6 @@ def test_the_space_bar_and_escape(tuned, fake):
     assert fake.state == READY
 
 
-@needs_chromium
 def test_a_page_that_is_hidden_or_closed_stops_the_motor(tuned, fake):
     tuned.check("#keep")
     tuned.click("#hold")
@@ -82,7 +77,6 @@ def test_a_page_that_is_hidden_or_closed_stops_the_motor(tuned, fake):
     assert wait_until(lambda: fake.state != RUN, 10)
 
 
-@needs_chromium
 def test_a_page_that_hangs_stops_the_motor(tuned, fake):
     tuned.check("#keep")
     tuned.click("#hold")
@@ -91,7 +85,6 @@ def test_a_page_that_hangs_stops_the_motor(tuned, fake):
     assert fake.state != RUN
 
 
-@needs_chromium
 def test_parameters_are_searched_changed_and_refused_in_words(tuned, fake):
     tuned.click("[data-tab=parameters]")
     tuned.fill("#search", "ramp")
@@ -107,7 +100,6 @@ def test_parameters_are_searched_changed_and_refused_in_words(tuned, fake):
     assert error.inner_text() == "speed_ramp: 200000 rpm/s is out of range; 0 … 100000 rpm/s"
 
 
-@needs_chromium
 def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
     tuned.click("[data-tab=scope]")
     tuned.click("#capture")
@@ -130,14 +122,12 @@ def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
     tuned.wait_for_selector("#state:has-text('ready')")
 
 
-@needs_chromium
 def test_an_unplugged_drive_is_said(tuned, fake):
     fake.unplug()
     tuned.wait_for_selector("#lost:visible")
     assert "is lost" in tuned.inner_text("#lost")
 
 
-@needs_chromium
 def test_another_site_in_the_same_browser_gets_nothing(tuned, server):
     """With the page's cookie in the jar: not as a script, a fetch, a frame, nor as a live connection."""
     other = tuned.context.new_page()
