@@ -42,7 +42,7 @@ demo: build ## commission the drive, reproduce the main figures of the first pap
 	@rm -rf $(DEMO_OUT)
 	@status=0; .venv/bin/stillspin reproduce $(DEMO) --no-paper-scheme --no-nameplate --out $(DEMO_OUT) || status=$$?; \
 	if [[ -f $(DEMO_OUT)/report.html ]]; then bash toolchain/show.sh $(DEMO_OUT)/report.html; fi; \
-	exit $$status  # 1 when a run broke off: the report says which and why
+	exit $$status  # 1 when a run broke off or a goal is missed: the report says which and why
 
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench

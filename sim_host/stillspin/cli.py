@@ -1,7 +1,6 @@
 """The command line `stillspin`.
 
-Exit status: 0 when every run ran, whatever its figures; 1 when a run broke off, a commissioning left a value open, or a
-drive did not do what was asked; 2 for bad input, said in one line.
+What is wrong is said in one line, and the exit status is one of exit_codes.py.
 """
 
 from __future__ import annotations
@@ -21,7 +20,8 @@ from stillspin.board import power, serve
 from stillspin.cases import drift, profile, scenario_file
 from stillspin.cases.scenario import Scenario
 from stillspin.errors import InputError
-from stillspin.one_line_errors import BROKEN, OneLineErrors
+from stillspin.exit_codes import ExitCode
+from stillspin.one_line_errors import OneLineErrors
 from stillspin.options import (
     ChangeOption,
     JobsOption,
@@ -54,7 +54,7 @@ def _on(motor: str | None, scenario: Scenario) -> Scenario:
 
 
 def _carry_out(scenarios: Sequence[Scenario], options: Options) -> None:
-    """Run scenarios, print what came out, and end the process when a run broke off."""
+    """Run scenarios, print what came out, and end the process when a run broke off or a goal is missed."""
     done = carry_out(scenarios, options)
     tables.summary(done.results, done.beside)
     total = report.tally(done.results)
@@ -68,8 +68,8 @@ def _carry_out(scenarios: Sequence[Scenario], options: Options) -> None:
     broken = [outcome for result in done.results for outcome in result.broken]
     for outcome in broken:
         print(f"stillspin: {outcome.scenario}, run {outcome.run}: broken off: {outcome.broken}", file=sys.stderr)
-    if broken or done.refused:
-        raise typer.Exit(BROKEN)
+    if broken or done.refused or total.met < total.goals:
+        raise typer.Exit(ExitCode.SHORT)
 
 
 @app.command()
@@ -185,7 +185,7 @@ def drift_(
     short = tables.drift(done.results, done.beside)
     print(f"{short} figures miss the goal of a plant that has drifted; see {out / report.PAGE}")
     if short or done.refused:
-        raise typer.Exit(BROKEN)
+        raise typer.Exit(ExitCode.SHORT)
 
 
 @app.command(name="explain")
@@ -216,6 +216,8 @@ def explain_(
     for run_name, words in found.broken.items():
         print(f"stillspin: {chosen.id}, {run_name}: broken off: {words}", file=sys.stderr)
     print(f"see {where / explain_report.PICTURE} and {where / output.MARK}")
+    if found.broken:
+        raise typer.Exit(ExitCode.SHORT)
 
 
 @app.command(name="commission")
@@ -242,7 +244,7 @@ def commission_(
     for value in result.refused:
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)
     if result.refused:
-        raise typer.Exit(BROKEN)
+        raise typer.Exit(ExitCode.SHORT)
 
 
 @app.command(name="board")
@@ -318,7 +320,7 @@ def startup_matrix(
     failed = [outcome for outcome in outcomes if outcome.problem]
     print(f"{len(outcomes) - len(failed)} of {len(outcomes)} starts are good; see {out}")
     if failed:
-        raise typer.Exit(BROKEN)
+        raise typer.Exit(ExitCode.SHORT)
 
 
 @app.command(name="list")

@@ -5,13 +5,23 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-
-class InputError(Exception):
-    """Bad input. The message is one line for people; the command line ends with exit status 2."""
+from stillspin.exit_codes import ExitCode
 
 
-class CampaignError(Exception):
-    """The runs could not be carried out for a reason outside them. The command line ends with exit status 1."""
+class StillspinError(Exception):
+    """Whatever is told to people in one line; the command line ends with `exit_code`."""
+
+    exit_code = ExitCode.SHORT
+
+
+class InputError(StillspinError):
+    """Bad input."""
+
+    exit_code = ExitCode.BAD_INPUT
+
+
+class CampaignError(StillspinError):
+    """The runs could not be carried out for a reason outside them."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
@@ -12,20 +13,12 @@ from typing import Any
 from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
-from stillspin.errors import CampaignError, InputError
-from stillspin.link.errors import DriveError
-
-BROKEN = 1
-BAD_INPUT = 2
-INTERRUPTED = 130
+from stillspin.errors import StillspinError
+from stillspin.exit_codes import ExitCode
 
 
 class OneLineErrors(TyperGroup):
-    """A group of commands that says what was wrong in one line.
-
-    Exit status: 2 for bad input (also the command line's own complaints), 1 when the runs could not be carried out or
-    the drive did not do what was asked, 130 when interrupted, by Ctrl-C or SIGTERM.
-    """
+    """A group of commands that says what was wrong in one line, and ends with a status of exit_codes.py."""
 
     def main(
         self,
@@ -41,14 +34,19 @@ class OneLineErrors(TyperGroup):
             signal.signal(signal.SIGTERM, _interrupt)
         try:
             status = super().main(args, prog_name, complete_var, False, windows_expand_args, **extra)
-            if status == INTERRUPTED:
+            if status == ExitCode.INTERRUPTED:
                 _complain("interrupted; what was finished before is kept", status)
-        except InputError as error:
-            status = _complain(str(error), BAD_INPUT)
+            sys.stdout.flush()
+        except StillspinError as error:
+            status = _complain(str(error), error.exit_code)
         except TyperException as error:
             status = _complain(error.format_message(), error.exit_code)
-        except (CampaignError, DriveError) as error:
-            status = _complain(str(error), BROKEN)
+        except BrokenPipeError:
+            status = _nobody_reads()
+        except SystemExit as error:
+            if not isinstance(error.__context__, BrokenPipeError):
+                raise
+            status = _nobody_reads()
         if standalone_mode:
             sys.exit(status if isinstance(status, int) else 0)
         return status
@@ -57,6 +55,17 @@ class OneLineErrors(TyperGroup):
 def _interrupt(_number: int, _frame: FrameType | None) -> None:
     """Whoever is told to end does it as by Ctrl-C: motors are stopped, boards switched off."""
     raise KeyboardInterrupt
+
+
+def _nobody_reads() -> int:
+    """What is still in a buffer goes nowhere, instead of into a complaint of the interpreter as it ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            os.dup2(nowhere, stream.fileno())
+    return ExitCode.CLOSED_PIPE
 
 
 def _complain(message: str, status: int) -> int:

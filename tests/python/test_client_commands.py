@@ -87,7 +87,7 @@ def test_a_conflict_that_the_next_values_resolve_is_none(ask, fake, tmp_path):
     ("arguments", "status", "said"),
     [
         (("params", "dump"), 2, "which drive? --drive serial:///dev/ttyUSB0"),
-        (("params", "dump", "--drive", "/dev/none"), 1, "there is no serial port /dev/none"),
+        (("params", "dump", "--drive", "/dev/none"), 3, "there is no serial port /dev/none"),
         (("params", "dump", "--drive", "usb:x"), 2, "must be like serial:///dev/ttyUSB0"),
         (("scope", "speed", "--out", "x.xls"), 2, "x.xls: the ending must be one of .parquet, .csv, .mf4"),
         (("scope", "speed=fast"), 2, "the full scale must be a number"),

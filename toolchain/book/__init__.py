@@ -16,8 +16,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from book import figures, parameters
+from stillspin import exit_codes
 
-PIECES: dict[str, Callable[[Path], str]] = {"parameters": parameters.page}
+PIECES: dict[str, Callable[[Path], str]] = {
+    "parameters": parameters.page,
+    "exit-codes": lambda _root: exit_codes.table(),
+}
 _PIECE = re.compile(
     r"(?P<begin><!-- (?P<name>[\w-]+): made by toolchain/render\.py -->\n)"
     r"(?P<body>.*?)(?P<end><!-- end of (?P=name) -->)",

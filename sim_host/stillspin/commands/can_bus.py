@@ -53,7 +53,8 @@ def bus(
                 print(decoder.line(message), flush=True)
             seen[message.arbitration_id] = data
     except KeyboardInterrupt:
-        pass
+        if duration:  # without, it is the end
+            raise
     finally:
         opened.shutdown()
 

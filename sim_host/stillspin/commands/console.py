@@ -19,7 +19,8 @@ from stillspin.commands.completion import Words
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Drive
-from stillspin.link.errors import DriveError, LinkError
+from stillspin.errors import InputError
+from stillspin.link.errors import DriveError, NoAnswerError
 
 _END = b"\r"
 _QUIET = 0.3
@@ -36,7 +37,7 @@ def console(
     """Talk to the drive; Tab completes, Ctrl-D leaves."""
     with opened(where) as drive:
         if not drive.link.transport.has_console:
-            raise LinkError(f"{drive.link.transport.name}: the console is on the serial port only")
+            raise InputError(f"{drive.link.transport.name}: the console is on the serial port only")
         if command or not sys.stdin.isatty():
             for line in command or sys.stdin:
                 say(drive, line.rstrip("\n"))
@@ -59,7 +60,7 @@ def say(drive: Drive, line: str) -> None:
         drive.link.transport.send_text(line.encode("ascii", "replace") + _END)
         end = time.monotonic() + _ANSWER
         if not heard.wait(_ANSWER):
-            raise DriveError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
+            raise NoAnswerError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
         while not transcript.answered and heard.wait(_QUIET) and time.monotonic() < end:
             heard.clear()
     if transcript.rest:

@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 
 from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
 from stillspin.flash import layout
 from stillspin.flash.files import DriveImage, drive_image, kernel_program
 from stillspin.flash.kernel import Info, Kernel
@@ -17,7 +18,6 @@ from stillspin.flash.line import SerialLine
 from stillspin.flash.update import Outcome, Progress, update, verify, words_to_write
 from stillspin.link import address
 from stillspin.link.errors import DriveError
-from stillspin.one_line_errors import BROKEN
 from stillspin.report.progress import PhaseBar
 
 KERNEL_NAME = "stillspin_flash_kernel.out"
@@ -37,7 +37,7 @@ def flash(
         typer.Option("--kernel", metavar="FILE", help=f"The flash kernel [default: {KERNEL_NAME} beside IMAGE]."),
     ] = None,
     only_verify: Annotated[
-        bool, typer.Option("--verify", help="Compare and change nothing; 1 when they differ.")
+        bool, typer.Option("--verify", help="Compare and change nothing; 4 when they differ.")
     ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Check the files, say what would be done; no port.")
@@ -46,7 +46,7 @@ def flash(
     """Load the flash kernel by the boot ROM, then erase, write and verify sectors B to D; sector A is never touched.
 
     The board has to be in serial boot: jumpers set, then a reset. An update that broke off is repeated the same way.
-    Exit status: 0 when the board has the image, 1 when it has not, 2 for bad input.
+    Exit status 0 when the board has the image.
     """
     image = drive_image(image_file)
     print(f"image:  {image.identity.text}, {image.size} words in sectors B to D")
@@ -118,7 +118,7 @@ def _tell_comparison(outcome: Outcome) -> None:
         return
     where = f"sectors {', '.join(outcome.erased)} differ" if outcome.erased else "only its mark is missing"
     print(f"the board has not this image: {where}")
-    raise typer.Exit(BROKEN)
+    raise typer.Exit(ExitCode.DIFFERS)
 
 
 def _tell_update(outcome: Outcome) -> None:

@@ -14,12 +14,12 @@ from rich.console import Console
 from stillspin import core
 from stillspin.commands.connection import DriveOption, wanted
 from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
 from stillspin.hil import Difference, campaign, runs
 from stillspin.hil.campaign import Wish
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.link import address
-from stillspin.one_line_errors import BROKEN
 from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption
 from stillspin.report import tables
 from stillspin.report.progress import Counter, PhaseBar
@@ -70,7 +70,7 @@ def hil(
 
     The board's power stage stays off; it leaves this mode by a reset, which the end of the command brings about.
     Virtual boards do as many runs at a time as --jobs says, a real one does one.
-    Exit status: 0 when every run is identical, 1 when one is not, 2 for bad input.
+    Exit status 0 when every run is identical, 4 when one differs.
     """
     of = revision()
     wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params, of)
@@ -90,8 +90,9 @@ def hil(
     done = [_tell(new, results) for new in rows]
     if len(done) > 1:
         tables.loop(done)
-    if not all(new.identical for new in done):
-        raise typer.Exit(BROKEN)
+    worst = max((new.exit_code for new in done), default=ExitCode.DONE)
+    if worst:
+        raise typer.Exit(worst)
 
 
 def _address(port: str, can: str, where: str) -> str:

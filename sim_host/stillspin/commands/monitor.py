@@ -48,7 +48,8 @@ def monitor(
             else:
                 _list(stream, end)
         except KeyboardInterrupt:
-            pass
+            if duration:  # without, it is the end
+                raise
         lost = stream.lost
     if lost:
         screen.print(f"{lost} samples were lost on the way")

@@ -13,6 +13,7 @@ from stillspin.commands import parameter_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.parameter_file import Difference
 from stillspin.drive import Drive
+from stillspin.exit_codes import ExitCode
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.report import tables
@@ -60,13 +61,18 @@ def diff(
     other: Annotated[str, typer.Argument(help="A file, 'defaults' or 'drive'.")] = DRIVE,
     where: DriveOption = "",
 ) -> None:
-    """Compare a file with the drive, or with another file; what a file does not name is not compared."""
+    """Compare a file with the drive, or with another file; what a file does not name is not compared.
+
+    Exit status 4 when they differ.
+    """
     with opened(where) as drive:
         first, second = (_side(name, drive) for name in (one, other))
         named = [name for name in first if name in second]
         rows = parameter_file.differences(first, second, drive.table, named)
     tables.differences(rows, one, other)
     print(f"{len(rows)} of {len(named)} parameters differ")
+    if rows:
+        raise typer.Exit(ExitCode.DIFFERS)
 
 
 def _side(name: str, drive: Drive) -> dict[str, float]:

@@ -14,7 +14,7 @@ from typing import Any
 
 from stillspin.drive.protocol import VERSION, Request, StatusCode
 from stillspin.drive.table import Parameter, Signal, Table
-from stillspin.link.errors import DriveError, RefusedError
+from stillspin.link.errors import DifferentError, RefusedError
 
 Ask = Callable[[Request, bytes], bytes]
 _ALWAYS = 1
@@ -52,7 +52,7 @@ def identity(ask: Ask) -> Identity:
     head = unpack("<HHHHI", body)
     protocol, parameters, signals, faults, crc = head
     if protocol != VERSION:
-        raise DriveError(f"the drive speaks version {protocol} of the protocol, this client version {VERSION}")
+        raise DifferentError(f"the drive speaks version {protocol} of the protocol, this client version {VERSION}")
     version = body[struct.calcsize("<HHHHI") :].decode("ascii", "replace").rstrip("\0")
     return Identity(parameters, signals, faults, crc, version)
 
@@ -90,7 +90,7 @@ def unpack(form: str, body: bytes) -> tuple[Any, ...]:
         DriveError: it is too short.
     """
     if len(body) < struct.calcsize(form):
-        raise DriveError(f"an answer of {len(body)} octets is too short: client and firmware do not fit together")
+        raise DifferentError(f"an answer of {len(body)} octets is too short: client and firmware do not fit together")
     return struct.unpack_from(form, body)
 
 

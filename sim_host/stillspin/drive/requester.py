@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from stillspin.drive.protocol import Request, StatusCode
-from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
+from stillspin.link.errors import DifferentError, LinkError, NoAnswerError, RefusedError
 from stillspin.link.records import ANSWER, Record
 from stillspin.link.splitter import Damaged, Item, Text
 from stillspin.link.transport import Transport
@@ -213,7 +213,7 @@ class Requester:
 
 def _accepted(answer: Record) -> bytes:
     if not answer.body:
-        raise DriveError("an answer without a status: client and firmware do not fit together")
+        raise DifferentError("an answer without a status: client and firmware do not fit together")
     status, body = answer.body[0], answer.body[1:]
     if status == StatusCode.OK:
         return body

@@ -9,7 +9,7 @@ from enum import IntEnum
 from stillspin.flash import layout
 from stillspin.flash.files import Identity, identity_of
 from stillspin.flash.line import Line
-from stillspin.link.errors import LinkError, NoAnswerError, RefusedError
+from stillspin.link.errors import DifferentError, NoAnswerError, RefusedError
 from stillspin.link.records import ANSWER, Record, to_wire
 from stillspin.link.splitter import Splitter
 
@@ -79,7 +79,9 @@ class Kernel:
         """
         body = self._ask(Request.INFO, b"", attempts=attempts)
         if len(body) != _INFO.size:
-            raise LinkError(f"{self._line.name}: another kernel than this program's: its answer has {len(body)} octets")
+            raise DifferentError(
+                f"{self._line.name}: another kernel than this program's: its answer has {len(body)} octets"
+            )
         protocol, part, revision, locked, *words = _INFO.unpack(body)
         identity, entry = tuple(words[: layout.IDENTITY_WORDS]), words[layout.IDENTITY_WORDS :]
         return Info(

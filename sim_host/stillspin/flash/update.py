@@ -20,7 +20,7 @@ from stillspin.flash.kernel import Info, Kernel
 from stillspin.flash.layout import Sector
 from stillspin.flash.line import Line, drop
 from stillspin.flash.program import Program
-from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
+from stillspin.link.errors import DifferentError, DriveError, NoAnswerError, RefusedError
 
 _LETTERS = 10
 _START_WAIT = 0.1
@@ -71,13 +71,13 @@ def _check_kernel(kernel: Kernel, line: Line, program: Program) -> None:
             "GPIO29 high, GPIO34 low), reset the board and repeat; after an update that broke off it is needed, too"
         ) from None
     if info.protocol != kernel_requests.PROTOCOL:
-        raise LinkError(
+        raise DifferentError(
             f"{line.name}: the kernel speaks protocol {info.protocol}, this program {kernel_requests.PROTOCOL}: build "
             "both from one commit"
         )
     for block in program.blocks:
         if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
-            raise LinkError(
+            raise DifferentError(
                 f"{line.name}: the kernel in RAM is not the one of the file: reset the board and repeat; the flash was "
                 "not touched"
             )
@@ -87,22 +87,24 @@ def check_board(kernel: Kernel, line: Line, image: DriveImage) -> Info:
     """Refuse a board that may not get this image, before anything is erased.
 
     Raises:
-        RefusedError: another chip, a locked one, one without boot code or with another sector A.
+        DifferentError: another chip, one without boot code or with another sector A.
+        RefusedError: a locked one.
     """
     info = kernel.info()
 
-    def refuse(words: str) -> RefusedError:
-        return RefusedError(f"{line.name}: {words}; nothing was erased", kernel_requests.Status.STATE)
+    def other(words: str) -> DifferentError:
+        return DifferentError(f"{line.name}: {words}; nothing was erased")
 
     if info.part & 0xFF != layout.PART:
-        raise refuse(f"the chip is no {layout.PART_NAME} (part 0x{info.part & 0xFF:02X}, wanted 0x{layout.PART:02X})")
+        raise other(f"the chip is no {layout.PART_NAME} (part 0x{info.part & 0xFF:02X}, wanted 0x{layout.PART:02X})")
     if info.locked:
-        raise refuse("the chip is locked by passwords: open it over JTAG")
+        words = f"{line.name}: the chip is locked by passwords: open it over JTAG; nothing was erased"
+        raise RefusedError(words, kernel_requests.Status.LOCKED)
     if not info.has_boot_entry:
-        raise refuse("the board has no boot code in sector A: program it once over JTAG, see docs/flash.md")
+        raise other("the board has no boot code in sector A: program it once over JTAG, see docs/flash.md")
     for block in image.resident:
         if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
-            raise refuse(
+            raise other(
                 f"the image's sector A (boot code and resident part, from 0x{block.address:06X}) is not the board's, "
                 "and sector A is never written here: program the whole image over JTAG, see docs/flash.md"
             )

@@ -147,7 +147,7 @@ def _step_through(loop: Loop, run: LoopRun, row: Row, native: core.NativeCore, p
     try:
         return ended(row, loop.run(native, run.play, progress)), True
     except DriveError as error:
-        return replace(row, lost=str(error)), isinstance(error, RefusedError)
+        return replace(row, lost=str(error), lost_code=error.exit_code), isinstance(error, RefusedError)
 
 
 def _requester(where: str) -> Requester:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
 from stillspin.hil.loop import LoopResult
 from stillspin.hil.runs import LoopRun
 
@@ -27,7 +28,7 @@ class Row:
         seconds: how long `steps` took.
         step, words: the first period that differed, where one did.
         ended: why the run broke off, empty when it did not.
-        lost: why the loop broke off, empty when it did not.
+        lost: why the loop broke off, empty when it did not; lost_code: the exit status of that.
     """
 
     scenario: str
@@ -44,6 +45,14 @@ class Row:
     words: str = ""
     ended: str = ""
     lost: str = ""
+    lost_code: int = ExitCode.DONE
+
+    @property
+    def exit_code(self) -> int:
+        """What a command ends with whose result this is."""
+        if self.lost:
+            return self.lost_code
+        return ExitCode.DONE if self.identical else ExitCode.DIFFERS
 
     @property
     def identical(self) -> bool:

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+from stillspin.errors import StillspinError
+from stillspin.exit_codes import ExitCode
 
-class DriveError(Exception):
-    """The drive, or the way to it, did not do what was asked. The command line ends with exit status 1."""
+
+class DriveError(StillspinError):
+    """The drive, or the way to it, did not do what was asked."""
 
 
 class LinkError(DriveError):
     """The way to the drive cannot be opened, or is lost."""
 
+    exit_code = ExitCode.NO_CONNECTION
+
 
 class NoAnswerError(DriveError):
     """The drive did not answer in time."""
+
+    exit_code = ExitCode.NO_CONNECTION
+
+
+class DifferentError(DriveError):
+    """The board is not what it has to be: another chip, image, build or version."""
+
+    exit_code = ExitCode.DIFFERS
 
 
 class RefusedError(DriveError):
