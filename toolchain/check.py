@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from checks import Finding, arrows, command_files, conditionals, int16, links, packages, pieces, registers
+from checks import Finding, arrows, command_files, conditionals, glossary, int16, links, packages, pieces, registers
 from checks.preprocessor import SOURCE_FOLDERS, SUFFIXES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -48,6 +48,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "registers": registers.check,
     "linker": command_files.check,
     "links": links.check,
+    "glossary": glossary.check,
     "packages": packages.check,
     "pieces": pieces.check,
 }
@@ -58,6 +59,7 @@ DESCRIPTIONS = {
     "registers": "the register map agrees with the tables of the chip",
     "linker": "the linker command files keep to the memory of the chip",
     "links": "links and paths in the book exist",
+    "glossary": "abbreviations are explained",
     "packages": "every Python package is installed",
     "pieces": "what the book makes of data is as the data say",
     "format": "clang-format",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -11,8 +12,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from book import parameters  # noqa: E402
-from checks import pieces  # noqa: E402
+from book import hooks, parameters  # noqa: E402
+from checks import glossary, pieces  # noqa: E402
 
 STATE = "**no**, neither the flash nor the time"
 """How docs/image.md answers whether the drive fits its chip."""
@@ -60,12 +61,57 @@ def test_a_parameter_that_is_on_no_page_fails_the_check(tree: Path) -> None:
     ]
     listed.write_text(text.replace("friction,", "drag,"), encoding="utf-8")
     assert "friction" in pieces.check(tree)[0].message
-    listed.write_text(
-        text.replace("(7, friction", "(999, drag", 1) + text[text.index("// Machine") :], encoding="utf-8"
-    )
-    assert pieces.check(tree)
 
 
 def _line(tree: Path) -> int:
     lines = (tree / "docs/parameters.md").read_text(encoding="utf-8").split("\n")
     return 1 + next(k for k, line in enumerate(lines) if line.startswith("<!-- parameters:"))
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The book as `make docs` builds it."""
+    where = tmp_path_factory.mktemp("site")
+    command = ["-m", "mkdocs", "build", "--quiet", "--strict", "--config-file", "toolchain/mkdocs.yml", "--site-dir"]
+    subprocess.run([sys.executable, *command, str(where)], cwd=ROOT, check=True)
+    return where
+
+
+@pytest.mark.parametrize(
+    ("words", "place"),
+    [
+        ("speed_ramp", "parameters.html#speed_ramp"),
+        ("ramp speed", "parameters.html#speed_ramp"),
+        ("polarity ambiguous", "start.html"),
+        ("host in the loop", "hil.html"),
+    ],
+)
+def test_the_search_finds_it_in_a_book_that_was_opened_as_a_file(chromium, site, words, place) -> None:
+    """Without a server, which is how `make docs` opens it; what is found is a link that leads there."""
+    page = chromium.new_page()
+    page.goto(f"{(site / 'index.html').as_uri()}")
+    page.fill("input[name=q]", words)
+    page.press("input[name=q]", "Enter")
+    link = page.locator(f'#mkdocs-search-results a[href^="./{place}"]').first
+    link.click()
+    assert place in page.url
+    page.close()
+
+
+def test_the_search_says_when_there_is_nothing(chromium, site) -> None:
+    page = chromium.new_page()
+    page.goto(f"{(site / 'search.html').as_uri()}?q=quetzalcoatl")
+    assert page.locator("#mkdocs-search-results").inner_text() == "No results found"
+    page.close()
+
+
+def test_an_abbreviation_is_explained_where_it_stands(site: Path) -> None:
+    page = (site / "hil.html").read_text(encoding="utf-8")
+    known = hooks.abbreviations()
+    assert f'<abbr title="{known["CAN"]}">CAN</abbr>' in page
+    assert len(known) > 60
+
+
+@pytest.mark.parametrize(("line", "words"), [("a CAN bus, an XQZ and `ABC`", ["XQZ"]), ("an RS-232 port, a B-SPM", [])])
+def test_an_abbreviation_that_nobody_explains_fails_the_check(line: str, words: list[str]) -> None:
+    assert glossary.unexplained(line) == words

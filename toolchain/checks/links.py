@@ -20,7 +20,7 @@ def pages(root: Path) -> list[Path]:
     return [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
 
 
-def _prose(text: str) -> list[tuple[int, str]]:
+def prose(text: str) -> list[tuple[int, str]]:
     """Numbered lines outside fenced code blocks."""
     kept, fenced = [], False
     for number, line in enumerate(text.splitlines(), start=1):
@@ -49,7 +49,7 @@ def check(root: Path) -> list[Finding]:
     findings = []
     for page in pages(root):
         name = page.relative_to(root).as_posix()
-        for number, line in _prose(page.read_text(encoding="utf-8")):
+        for number, line in prose(page.read_text(encoding="utf-8")):
             findings += [Finding(name, number, f"dead link to {target}") for target in _dead_links(page, line)]
             findings += [Finding(name, number, f"{path} does not exist") for path in _dead_paths(root, line)]
     return findings
