@@ -20,7 +20,7 @@ PICTURES_OUT := out/pictures
 unexport PYTHONPATH PYTHONHOME
 
 .PHONY: help setup build test demo bench isr-cost isr-bound image-check int16 vectors cppcheck prove mcdc mutants verify \
-	loss fuzz fuzz16 pictures docs lint format lock clean
+	loss fuzz fuzz16 wheel pictures docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
@@ -108,6 +108,9 @@ fuzz16: setup ## a short search with a 16-bit int, the same every time, and plan
 	@bash toolchain/setup.sh build llvm
 	@bash toolchain/fuzz.sh 10000 short
 
+wheel: build ## build the client for people without a compiler, and this machine's virtual drive, into dist/
+	@$(PYTHON) toolchain/wheel.py dist
+
 pictures: build ## renew the pictures of README and book, docs/images
 	@bash toolchain/setup.sh build test
 	@rm -rf $(PICTURES_OUT)
@@ -129,5 +132,5 @@ lock: setup ## renew toolchain/requirements.lock (needs the network)
 	@bash toolchain/lock.sh
 
 clean: ## remove build products and reports; .venv stays
-	@rm -rf build out site sim_host/stillspin/_core*.so .mypy_cache .ruff_cache .pytest_cache
+	@rm -rf build dist out site sim_host/stillspin/_core*.so .mypy_cache .ruff_cache .pytest_cache
 	@find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -5,7 +5,6 @@ What is wrong is said in one line, and the exit status is one of exit_codes.py.
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -31,6 +30,7 @@ from stillspin.options import (
     ProfileOption,
     SeedOption,
     by_mark,
+    processors,
     whole,
 )
 from stillspin.report import explain_report, output, startup_report, tables
@@ -133,7 +133,7 @@ def reproduce(
 ) -> None:
     """Commission the drive, run scenarios in parallel and write report.html and metrics.json."""
     chosen = _chosen(scenarios or [], motor or [])
-    workers = jobs or len(os.sched_getaffinity(0))
+    workers = jobs or processors()
     options = Options(
         profile_name,
         seed,
@@ -178,7 +178,7 @@ def drift_(
     """Commission the drive, then change the plant behind its back; status 1 where twice a goal is missed."""
     listed, drifts = drift.load(core.plant_schema(core.load()))
     ids = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or listed)
-    workers = jobs or len(os.sched_getaffinity(0))
+    workers = jobs or processors()
     chosen = by_mark(drifts, only or [], "drift")
     options = Options(profile_name, seed, out, jobs=workers, params=params, commission=True, others=chosen)
     done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
@@ -210,7 +210,7 @@ def explain_(
     """Run a scenario without each effect of the plant in turn, and with each alone: which one makes the figures."""
     chosen = _on(motor, scenario_file.load(scenario))
     where = out or Path(f"results-explain-{chosen.id}")
-    workers = jobs or len(os.sched_getaffinity(0))
+    workers = jobs or processors()
     found = explain.carry_out(chosen, explain.Options(profile_name, seed, where, workers, params, only or [], alone))
     tables.explanation(found)
     for run_name, words in found.broken.items():
@@ -314,7 +314,7 @@ def startup_matrix(
     todo = startup.chosen(startup.cases(seeds, quick, linear), way or [])
     with output.fresh_directory(out) as directory:
         with Counter(Console(stderr=True), len(todo)) as counter:
-            outcomes = startup.run_all(common, todo, jobs or len(os.sched_getaffinity(0)), counter.one_more)
+            outcomes = startup.run_all(common, todo, jobs or processors(), counter.one_more)
         startup_report.write(directory, outcomes, profile_name)
     tables.startup(startup_report.rows(outcomes))
     failed = [outcome for outcome in outcomes if outcome.problem]

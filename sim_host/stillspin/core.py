@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import json
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -146,6 +147,13 @@ BOARD = "STILLSPIN_BOARD"
 """Environment variable: the board, a name of hal/boards/; unset or empty is the usual one."""
 
 
+NOT_INSTALLED = (
+    "this needs the virtual drive, which is missing: pip install 'stillspin[virtual]', or make build in the sources"
+)
+PARAMETERS = "parameters.json"
+"""The firmware's parameter table in a wheel, which has no native module to ask; toolchain/wheel.py puts it there."""
+
+
 def _on_board(board: str) -> ModuleType:
     """The native module of another board than the usual one."""
     folder = Path(__file__).parent / "boards"
@@ -161,21 +169,29 @@ def _on_board(board: str) -> ModuleType:
     return module
 
 
+def _built_or_installed() -> ModuleType:
+    """The native module: built in the source tree, or of the wheel stillspin-virtual."""
+    try:
+        return importlib.import_module("stillspin._core")
+    except ModuleNotFoundError:
+        return importlib.import_module("stillspin_virtual._core")
+
+
 def load() -> NativeCore:
     """The native module.
 
     Raises:
-        InputError: it is not built, or does not load on this machine.
+        InputError: it is not there, or does not load on this machine.
     """
     board = os.environ.get(BOARD, "")
     try:
         if board and "stillspin._core" not in sys.modules:
             return cast(NativeCore, _on_board(board))
-        return cast(NativeCore, importlib.import_module("stillspin._core"))
+        return cast(NativeCore, _built_or_installed())
+    except ModuleNotFoundError as error:
+        raise InputError(NOT_INSTALLED) from error
     except ImportError as error:
-        raise InputError(
-            f"the native module stillspin._core does not load ({error}); build it as the README says"
-        ) from error
+        raise InputError(f"the virtual drive does not load ({error}); it runs where it was built") from error
 
 
 def _choices(row: Mapping[str, Any]) -> tuple[str, ...]:
@@ -277,6 +293,18 @@ def plant_schema(core: NativeCore) -> Schema:
 def parameters(core: NativeCore) -> dict[str, Entry]:
     """Name -> firmware parameter, in the order of the firmware's table."""
     return {row["name"]: _parameter_entry(row) for row in core.parameters()}
+
+
+def known_parameters() -> dict[str, Entry]:
+    """The parameters of the firmware that this package belongs to, also where there is no virtual drive to ask.
+
+    Raises:
+        InputError: there is neither a virtual drive nor a table.
+    """
+    file = Path(__file__).with_name(PARAMETERS)
+    if not file.exists():
+        return parameters(load())
+    return {row["name"]: _parameter_entry(row) for row in json.loads(file.read_text(encoding="utf-8"))}
 
 
 def _parameter_entry(row: Mapping[str, Any]) -> Entry:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Protocol, TypeVar
@@ -26,6 +27,12 @@ def whole(name: str, low: int, high: int) -> Callable[[str], int]:
         return value
 
     return parse
+
+
+def processors() -> int:
+    """How many this process may use: how many runs go at a time."""
+    affinity = getattr(os, "sched_getaffinity", None)  # of Linux alone
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 class Marked(Protocol):

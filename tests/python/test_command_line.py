@@ -46,12 +46,12 @@ def test_bad_input_is_one_line_and_leaves_nothing_behind(call, tmp_path, argumen
     assert left_over(tmp_path) == []
 
 
-def test_a_module_that_is_not_built_is_said_in_one_line(tmp_path, monkeypatch):
+def test_a_virtual_drive_that_is_not_installed_is_said_in_one_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "stillspin._core", None)
     result = CliRunner().invoke(cli.app, ["run", "A10"])
     assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
-    assert "stillspin._core does not load" in result.stderr
+    assert "pip install 'stillspin[virtual]'" in result.stderr
 
 
 def test_a_run_writes_the_report_the_figures_and_a_record(call, tmp_path):

@@ -6,6 +6,7 @@ import itertools
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from serial import SerialException
 
 from stillspin.errors import InputError
 from stillspin.link import address, cobs
@@ -219,6 +220,14 @@ def test_what_is_no_address(text, said):
         (OSError(errno.EBUSY, "busy"), "in use by another program"),
         (OSError(errno.EACCES, "denied"), "group dialout"),
         (OSError(errno.ENOTTY, "not a terminal"), "is no serial port"),
+        (
+            SerialException(f"could not open port 'COM3': {PermissionError(13, 'Access is denied.')!r}"),
+            "in use by another",
+        ),
+        (
+            SerialException(f"could not open port 'COM3': {FileNotFoundError(2, 'No such file')!r}"),
+            "there is no serial port",
+        ),
         (OSError(errno.EIO, "Input/output error"), "cannot be opened: Input/output error"),
     ],
 )

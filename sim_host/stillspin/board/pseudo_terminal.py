@@ -7,16 +7,19 @@ bit rate that the program sets is a property of its end of the line, which may b
 from __future__ import annotations
 
 import errno
-import fcntl
 import os
 import select
 import struct
+import sys
 import tempfile
-import termios
-import tty
 from pathlib import Path
 
 from stillspin.errors import InputError
+
+if sys.platform != "win32":
+    import fcntl
+    import termios
+    import tty
 
 DEFAULT_RATE = 115200
 BACKLOG = 65536
@@ -41,6 +44,8 @@ class PseudoTerminal:
         Raises:
             InputError: the link cannot be made, or there are no pseudo-terminals.
         """
+        if sys.platform == "win32":
+            raise InputError("Windows has no pseudo-terminals for the virtual board's port: run it under Linux or WSL")
         try:
             self._master, slave = os.openpty()
         except OSError as error:

@@ -7,16 +7,16 @@ import io
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib as mpl
-from matplotlib.figure import Figure
-
-from stillspin import mdf
+from stillspin import extras, mdf
 from stillspin.drive.scope import Capture
 from stillspin.errors import InputError
 from stillspin.report.style import PANEL_HEIGHT, RUN_COLOURS, STYLE, WIDTH
 from stillspin.runs import records
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _DRAWINGS = (".svg", ".png", ".pdf")
 
@@ -25,12 +25,27 @@ def check(path: Path) -> None:
     """Complain about a name or a place before the capture is made rather than after it.
 
     Raises:
-        InputError: an ending that means nothing here, or no such directory.
+        InputError: an ending that means nothing here, or whose package is not installed, or no such directory.
     """
-    if path.suffix.lower() not in WRITERS:
+    suffix = path.suffix.lower()
+    if suffix not in WRITERS:
         raise InputError(f"{path}: the ending must be one of {', '.join(WRITERS)}")
+    package = _package(suffix)
+    if package:
+        extras.need(package)
     if path.is_dir() or not path.absolute().parent.is_dir():
         raise InputError(f"{path}: cannot be written (no such directory)")
+
+
+def usual(stem: str) -> list[Path]:
+    """What is written where no file is named: a table and a drawing; CSV where the packages for both are missing."""
+    endings = [ending for ending in (".parquet", ".svg") if extras.has(_package(ending))]
+    return [Path(stem + ending) for ending in endings or [".csv"]]
+
+
+def _package(suffix: str) -> str:
+    """What has to be installed for an ending; empty where nothing has."""
+    return "matplotlib" if suffix in _DRAWINGS else "pyarrow" if suffix == ".parquet" else ""
 
 
 def write(path: Path, capture: Capture) -> None:
@@ -90,9 +105,10 @@ def _mf4(path: Path, capture: Capture) -> None:
 
 def draw(capture: Capture) -> Figure:
     """One panel for each unit, the trigger as a line through all."""
+    mpl, figures = extras.need("matplotlib"), extras.need("matplotlib.figure")
     units = list(dict.fromkeys(capture.units.values()))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, PANEL_HEIGHT * max(2, len(units)) + 0.5), layout="constrained")
+        figure: Figure = figures.Figure(figsize=(WIDTH, PANEL_HEIGHT * max(2, len(units)) + 0.5), layout="constrained")
         panels = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
         for panel, unit in zip(panels, units, strict=True):
             names = [name for name in capture.signals if capture.units[name] == unit]
@@ -108,7 +124,7 @@ def draw(capture: Capture) -> Figure:
 
 def _drawing(path: Path, capture: Capture) -> None:
     figure = draw(capture)
-    with mpl.rc_context(STYLE):
+    with extras.need("matplotlib").rc_context(STYLE):
         figure.savefig(path, dpi=110)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -20,7 +19,7 @@ from stillspin.hil.campaign import Wish
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.link import address
-from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption
+from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption, processors
 from stillspin.report import tables
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
@@ -83,7 +82,7 @@ def hil(
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [number for number in runs.broad(everything) if number in left]
     rows = (
-        _on_virtual(wish, chosen, kind, jobs or len(os.sched_getaffinity(0)))
+        _on_virtual(wish, chosen, kind, jobs or processors())
         if board.partition(":")[0] == _VIRTUAL
         else _on_one([everything[number] for number in chosen], board, of, jobs)
     )

@@ -30,7 +30,7 @@ app = typer.Typer(
 def table(context: typer.Context) -> None:
     """The parameters of the firmware in this package: number, name, range, default, meaning."""
     if context.invoked_subcommand is None:
-        tables.parameters(core.parameters(core.load()).values())
+        tables.parameters(core.known_parameters().values())
 
 
 @app.command()

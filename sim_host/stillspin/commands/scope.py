@@ -33,7 +33,7 @@ def scope(
     ] = None,
 ) -> None:
     """Capture signals around a trigger: 1024 records of up to four, at up to 10 kHz."""
-    files = out or [Path("capture.parquet"), Path("capture.svg")]
+    files = out or capture_file.usual("capture")
     for file in files:
         capture_file.check(file)
     channels = [_channel(text) for text in signals]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import re
 import threading
 import time
 from pathlib import Path
@@ -16,6 +17,8 @@ from stillspin.link.splitter import Item, Splitter
 
 DEFAULT_BAUD = 115200
 _WRITE_TIMEOUT = 2.0
+_WINDOWS = re.compile(r"Error\((\d+),")
+"""There pyserial has the error number in its text alone: PermissionError(13, 'Access is denied.', None, 5)."""
 
 
 class SerialTransport:
@@ -86,9 +89,13 @@ def explain(port: str, error: Exception) -> str:
     """Why a port cannot be opened, and what to do about it."""
     code = getattr(error, "errno", None)
     text = str(error)
-    if code in {errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK} or "exclusively lock" in text:
+    windows = _WINDOWS.search(text) if code is None else None
+    if windows:
+        code = int(windows[1])
+    taken = code == errno.EACCES if windows else code in {errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK}
+    if taken or "exclusively lock" in text:
         return f"serial port {port} is in use by another program; close that one first"
-    if code == errno.ENOENT or not Path(port).exists():
+    if code == errno.ENOENT or not (windows or Path(port).exists()):
         return f"there is no serial port {port}; {_ports()}"
     if code in {errno.EACCES, errno.EPERM}:
         return (

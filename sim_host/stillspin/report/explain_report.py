@@ -10,6 +10,7 @@ from typing import Any
 
 from stillspin.cases.effects import ALONE, WITHOUT, Effect
 from stillspin.cases.scenario import Scenario
+from stillspin.extras import need
 from stillspin.measure.figures import Result
 from stillspin.report import output
 from stillspin.runs.assess import ScenarioResult
@@ -103,6 +104,7 @@ def write(directory: Path, found: Explanation, settings: Settings) -> None:
 
 
 def _drawn(found: Explanation) -> str:
+    need("matplotlib")
     from stillspin.report import explain_plot  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
 
     return explain_plot.draw(found)

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
+from stillspin import extras
 from stillspin.cases.profile import Profile
 from stillspin.cases.variant import Beside
 from stillspin.measure.figures import Result
@@ -120,15 +119,16 @@ def write(
 
 def html(results: Sequence[ScenarioResult], settings: Sequence[Settings], beside: Sequence[Beside]) -> str:
     """The page."""
-    environment = Environment(
-        loader=PackageLoader("stillspin.report", "templates"),
+    jinja = extras.need("jinja2")
+    environment = jinja.Environment(
+        loader=jinja.PackageLoader("stillspin.report", "templates"),
         autoescape=True,
-        undefined=StrictUndefined,
+        undefined=jinja.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.filters.update(number=number, unit=unit_text, verdict=verdict, image=_image, slug=_slug)
-    return environment.get_template("report.html.j2").render(
+    page: str = environment.get_template("report.html.j2").render(
         results=results,
         beside=[_Column(item) for item in beside],
         tallies={result.scenario.id: tally([result]) for result in results},
@@ -137,6 +137,7 @@ def html(results: Sequence[ScenarioResult], settings: Sequence[Settings], beside
         plants=[(each.profile.motor, _plant_rows(each.profile)) for each in settings],
         runs_directory=RUNS,
     )
+    return page
 
 
 class _Column:

@@ -6,18 +6,16 @@ import csv
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import matplotlib as mpl
-
-mpl.use("Agg")  # before pyplot: no display is needed
-
-import matplotlib.pyplot as plt
-from matplotlib.axes import Axes
-
+from stillspin import extras
 from stillspin.report import output
 from stillspin.report.style import COLOURS, STYLE, WIDTH
 from stillspin.revision import revision
 from stillspin.runs.startup import BACKWARD_LIMIT, WAYS, Case, Outcome
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _TITLES = {"brake": "held by a brake until RUN", "free": "free shaft", "flying": "turning shaft"}
 
@@ -94,6 +92,8 @@ def _figures(group: Sequence[Outcome]) -> dict[str, float | int]:
 def _draw(path: Path, outcomes: Sequence[Outcome]) -> None:
     """Motion backwards and angle error over the initial angle, a column for each way that was run."""
     ways = [way for way in WAYS if any(item.case.way == way for item in outcomes)]
+    extras.need("matplotlib").use("Agg")  # before pyplot: no display is needed
+    plt = extras.need("matplotlib.pyplot")
     with plt.rc_context(STYLE):
         canvas, grid = plt.subplots(2, len(ways), figsize=(WIDTH, 5.0), sharex=True, squeeze=False)
         for column, way in enumerate(ways):

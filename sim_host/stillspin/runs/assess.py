@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin.cases.scenario import Scenario
+from stillspin.extras import need
 from stillspin.measure import figures, pieces
 from stillspin.runs import records
 from stillspin.runs.execute import Outcome
@@ -66,6 +67,7 @@ def assess(
     measured = figures.evaluate(scenario, counting, profile, extras, lost)
     drawings = []
     if draw and recorded and scenario.plots:
+        need("matplotlib")
         from stillspin.report import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
 
         drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded, extras)) for plot in scenario.plots]

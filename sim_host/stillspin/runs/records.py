@@ -12,12 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
+from stillspin import extras, tabular
 from stillspin.core import Signals, Waveform
-
-_KEY = b"stillspin"
 
 
 @dataclass(frozen=True)
@@ -39,34 +36,33 @@ def write(path: Path, signals: Mapping[str, Any], about: Mapping[str, Any], unit
         units: unit per signal, stored with its column.
     """
     columns = {name: _stored(name, np.asarray(data)) for name, data in signals.items()}
-    fields = [
-        pa.field(name, pa.from_numpy_dtype(data.dtype), metadata={"unit": units.get(name, "")})
-        for name, data in columns.items()
-    ]
-    schema = pa.schema(fields, metadata={_KEY: json.dumps(about, sort_keys=True)})
-    table = pa.table([pa.array(data) for data in columns.values()], schema=schema)
-    pq.write_table(table, path, compression="zstd")
+    _parquet().write_table(tabular.arrow(columns, units, about), path, compression="zstd")
 
 
 def write_waveform(path: Path, waveform: Mapping[str, Mapping[str, Any]], about: Mapping[str, Any]) -> None:
     """Write the stretch of a run that was looked into: one row, a column `table.name` for each list of values."""
+    pa = extras.need("pyarrow")
     lists = {
         f"{table}.{name}": pa.array([_stored(name, np.asarray(data))])
         for table, columns in waveform.items()
         for name, data in columns.items()
     }
-    stored = pa.table(lists).replace_schema_metadata({_KEY: json.dumps(about, sort_keys=True)})
-    pq.write_table(stored, path, compression="zstd")
+    stored = pa.table(lists).replace_schema_metadata({tabular.ABOUT: json.dumps(about, sort_keys=True)})
+    _parquet().write_table(stored, path, compression="zstd")
 
 
 def read_waveform(path: Path) -> Waveform:
     """Read what `write_waveform` wrote: table -> name -> values."""
-    stored = pq.read_table(path)
+    stored = _parquet().read_table(path)
     waveform: Waveform = {}
     for column in stored.column_names:
         table, _, name = column.partition(".")
         waveform.setdefault(table, {})[name] = stored.column(column)[0].values.to_numpy()
     return waveform
+
+
+def _parquet() -> Any:
+    return extras.need("pyarrow.parquet")
 
 
 def _stored(name: str, data: Any) -> Any:
@@ -77,6 +73,6 @@ def _stored(name: str, data: Any) -> Any:
 
 def read(path: Path) -> Record:
     """Read a run written by `write`."""
-    table = pq.read_table(path)
+    table = _parquet().read_table(path)
     signals = {name: table.column(name).to_numpy() for name in table.column_names}
-    return Record(signals, json.loads((table.schema.metadata or {}).get(_KEY, b"{}")))
+    return Record(signals, json.loads((table.schema.metadata or {}).get(tabular.ABOUT, b"{}")))

@@ -1,0 +1,46 @@
+"""Columns with units as tables of other tools: of Arrow and of pandas."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from stillspin import extras
+
+ABOUT = b"stillspin"
+"""Key of a schema's metadata; its value is JSON."""
+
+
+def arrow(columns: Mapping[str, Any], units: Mapping[str, str], about: Mapping[str, Any]) -> Any:
+    """A pyarrow.Table.
+
+    Args:
+        columns: equally long arrays by name.
+        units: by name; stored as `unit` in the metadata of the column's field.
+        about: JSON values, stored under `stillspin` in the schema's metadata.
+
+    Raises:
+        InputError: pyarrow is not installed.
+    """
+    pa = extras.need("pyarrow")
+    arrays = {name: np.asarray(data) for name, data in columns.items()}
+    fields = [
+        pa.field(name, pa.from_numpy_dtype(data.dtype), metadata={"unit": units.get(name, "")})
+        for name, data in arrays.items()
+    ]
+    schema = pa.schema(fields, metadata={ABOUT: json.dumps(about, sort_keys=True)})
+    return pa.table([pa.array(data) for data in arrays.values()], schema=schema)
+
+
+def frame(columns: Mapping[str, Any], units: Mapping[str, str], about: Mapping[str, Any]) -> Any:
+    """A pandas.DataFrame whose `attrs` have `units` by column and `about`.
+
+    Raises:
+        InputError: pandas is not installed.
+    """
+    made = extras.need("pandas").DataFrame(dict(columns))
+    made.attrs = {"units": dict(units), "about": dict(about)}
+    return made

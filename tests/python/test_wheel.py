@@ -1,0 +1,161 @@
+"""The client's wheel in an environment without a compiler, against a virtual board of the whole installation."""
+
+import subprocess
+import sys
+import urllib.request
+from email.parser import Parser
+from pathlib import Path
+from zipfile import ZipFile
+
+import desk
+import pytest
+from desk import needs_board
+from empty_environment import Environment, closure
+
+import stillspin
+
+pytestmark = needs_board
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def wheels(tmp_path_factory):
+    """The two wheels: the client's, the virtual drive's."""
+    out = tmp_path_factory.mktemp("dist")
+    subprocess.run([sys.executable, ROOT / "toolchain" / "wheel.py", out], check=True, timeout=120)
+    (client,), (virtual,) = out.glob("stillspin-*.whl"), out.glob("stillspin_virtual-*.whl")
+    return client, virtual
+
+
+def needs(wheel):
+    with ZipFile(wheel) as file:
+        (metadata,) = (name for name in file.namelist() if name.endswith(".dist-info/METADATA"))
+        return Parser().parsestr(file.read(metadata).decode()).get_all("Requires-Dist")
+
+
+@pytest.fixture(scope="module")
+def client(wheels, tmp_path_factory):
+    """The client alone."""
+    made = Environment(tmp_path_factory.mktemp("client"))
+    made.lend(closure(needs(wheels[0])))
+    made.install(wheels[0])
+    return made
+
+
+@pytest.fixture(scope="module")
+def board(tmp_path_factory):
+    """The port of a virtual board; `can` beside it is its SLCAN adapter."""
+    with desk.board(tmp_path_factory.mktemp("board")) as port:
+        yield port
+
+
+def test_the_wheel_is_pure_python_and_has_every_file_of_the_package(wheels):
+    client, virtual = wheels
+    assert client.name == f"stillspin-{stillspin.__version__}-py3-none-any.whl"
+    assert f"stillspin-virtual=={stillspin.__version__}" in "".join(needs(client))
+    assert "none-any" not in virtual.name
+    listed = subprocess.run(["git", "ls-files", "sim_host"], cwd=ROOT, check=True, capture_output=True, text=True)
+    ours = {Path(line).relative_to("sim_host") for line in listed.stdout.splitlines()}
+    kinds = {".py", ".toml", ".dbc", ".j2", ".js", ".css", ".html", ".typed"}
+    code = {str(path) for path in ours if path.parts[0] == "stillspin" and path.suffix in kinds}
+    data = {f"stillspin/{path}" for path in ours if path.parts[0] in {"motors", "profiles", "scenarios", "schemes"}}
+    with ZipFile(client) as file:
+        inside = set(file.namelist())
+    assert {name for name in inside if name.endswith((".so", ".pyd", ".dll"))} == set()
+    assert code | data | {"stillspin/py.typed", "stillspin/parameters.json"} <= inside
+
+
+def test_the_client_needs_neither_plots_nor_tables_nor_a_compiler(client):
+    asked = "import importlib.util as u, shutil; print([n for n in {} if u.find_spec(n)], shutil.which('cc'))"
+    said = client.run("python", "-c", asked.format(["matplotlib", "pyarrow", "pandas", "jinja2", "stillspin._core"]))
+    assert said.stdout.strip() == "[] None", said.stderr
+
+
+def test_parameters_are_read_compared_and_set(client, board):
+    assert client.run("stillspin", "params", "dump", "here.toml", "--drive", board).returncode == 0
+    said = client.run("stillspin", "console", "--drive", board, "-c", "set speed_ramp 777")
+    assert said.returncode == 0, said.stderr
+    said = client.run("stillspin", "params", "diff", "here.toml", "--drive", board)
+    assert "speed_ramp" in said.stdout
+    assert "1 of" in said.stdout, said.stderr
+    assert client.run("stillspin", "params", "load", "here.toml", "--drive", board).returncode == 0
+    assert "0 of" in client.run("stillspin", "params", "diff", "here.toml", "--drive", board).stdout
+
+
+RUN = """
+import sys
+from stillspin.drive import Drive, Trigger
+with Drive.open(sys.argv[1]) as drive:
+    with drive.running(300, timeout=30):
+        print(drive.status().energised)
+        drive.capture("speed", trigger=Trigger("speed", 250, "above"))
+    print(drive.status().energised)
+"""
+
+
+def test_the_motor_starts_guarded_and_stops(client, board):
+    said = client.run("python", "-c", RUN, board)
+    assert said.stdout.split() == ["True", "False"], said.stderr
+
+
+def test_what_is_captured_without_the_packages_for_tables_is_csv(client, board):
+    said = client.run("stillspin", "scope", "speed", "current_q", "--drive", board)
+    assert said.returncode == 0, said.stderr
+    assert "see capture.csv" in said.stdout
+    assert (client.home / "capture.csv").read_text().splitlines()[0] == "time [s],speed [rpm],current_q [A]"
+
+
+def test_signals_and_the_bus_are_shown(client, board):
+    said = client.run("stillspin", "monitor", "link_voltage", "--duration", "0.5", "--drive", board)
+    assert said.stdout.startswith("time [s]\tlink_voltage [V]"), said.stderr
+    said = client.run("stillspin", "can", f"can:slcan:{Path(board).with_name('can')}", "--duration", "1")
+    assert "node 1" in said.stdout, said.stderr
+
+
+def test_the_page_is_served_from_the_wheel(client, board):
+    serve = [client.bin / "stillspin", "tune", "--no-open", "--drive", board]
+    with subprocess.Popen(serve, env=client.variables, stdout=subprocess.PIPE, text=True) as running:
+        try:
+            page = next(line for line in running.stdout if line.startswith("page: ")).split()[1]
+            with urllib.request.urlopen(page, timeout=10) as answer:
+                assert b"<script" in answer.read()
+        finally:
+            running.terminate()
+
+
+def test_the_firmwares_table_is_in_the_wheel(client):
+    said = client.run("stillspin", "params")
+    assert "pole_pairs" in said.stdout, said.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "extra"),
+    [
+        (("run", "A10"), "virtual"),
+        (("board",), "virtual"),
+        (("params", "dump", "--drive", "virtual:"), "virtual"),
+        (("hil", "A10", "--port", "/dev/null"), "virtual"),
+        (("scope", "speed", "--out", "x.parquet", "--drive", "/dev/null"), "tables"),
+        (("scope", "speed", "--out", "x.svg", "--drive", "/dev/null"), "plots"),
+    ],
+)
+def test_what_is_missing_is_one_line_with_the_remedy(client, arguments, extra):
+    said = client.run("stillspin", *arguments)
+    assert said.returncode == 2
+    assert said.stderr.count("\n") == 1
+    assert f"pip install 'stillspin[{extra}]'" in said.stderr
+
+
+def test_the_extra_brings_the_virtual_drive(wheels, tmp_path):
+    made = Environment(tmp_path)
+    made.lend(closure([*needs(wheels[0]), "matplotlib", "pyarrow", "jinja2"]))
+    made.install(wheels[1])
+    made.install(wheels[0])
+    said = made.run("stillspin", "params", "dump", "--changed", "--drive", "virtual:")
+    assert "[parameters]" in said.stdout, said.stderr
+
+
+def test_nothing_wants_modules_of_unix_when_it_is_imported(client):
+    said = client.run("python", Path(__file__).with_name("as_windows.py"))
+    assert "run it under Linux or WSL" in said.stdout, said.stderr
