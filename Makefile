@@ -35,7 +35,7 @@ build: setup ## compile firmware, virtual chip, plant and Python module into bui
 	@cmake --build --preset $(PRESET) --parallel $(JOBS)
 
 test: build ## run every check, the C++ tests and the Python tests
-	@bash toolchain/setup.sh build test
+	@bash toolchain/setup.sh build test llvm
 	@bash toolchain/run-tests.sh $(PRESET)
 
 demo: build ## commission the drive, reproduce the main figures of the first paper, write out/demo/report.html

@@ -22,7 +22,13 @@ COMPILE = ROOT / "toolchain/int16/compile.py"
 CLANG = subprocess.run(["bash", "toolchain/find-clang.sh"], cwd=ROOT, capture_output=True, text=True, check=False)
 OPT = "opt" + CLANG.stdout.strip().removeprefix("clang")
 
-compiles = pytest.mark.skipif(shutil.which(OPT) is None, reason=f"no {OPT}; `make int16` installs it")
+
+@pytest.fixture
+def compiles() -> None:
+    """What makes code that runs here is there."""
+    if shutil.which(OPT) is None:
+        pytest.fail(f"no {OPT}; `bash toolchain/setup.sh build llvm`, as `make test` does, installs it", pytrace=False)
+
 
 PLANTED = """
 typedef struct {
@@ -75,7 +81,7 @@ def library(tmp_path: Path, *options: str) -> Path:
     return made
 
 
-@compiles
+@pytest.mark.usefixtures("compiles")
 @pytest.mark.parametrize(
     ("name", "arguments", "result", "expected"),
     [
@@ -115,7 +121,7 @@ def trapping(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return library(tmp_path_factory.mktemp("int16_trap"), "--trap")
 
 
-@compiles
+@pytest.mark.usefixtures("compiles")
 @pytest.mark.parametrize(
     ("good", "bad"),
     [
