@@ -17,14 +17,17 @@ static uint32_t asked_ms;
 
 static bool no_arguments(const words_of_line_t* a) {
   if (a->count == 0u) return true;
-  line_of(SAY_this_command_stands_alone_nothing_done);
+  line_refused(SAY_this_command_stands_alone_nothing_done);
   return false;
 }
 
 static bool wait_for_run(uint16_t step) {
   const uint32_t waited = drive_time_ms() - asked_ms;
   (void)step;
-  if (drive.state == DRIVE_FAULT) return false;  // which the console tells unasked
+  if (drive.state == DRIVE_FAULT) {  // which the console tells unasked
+    count_refusal();
+    return false;
+  }
   if (drive.state == DRIVE_RUN) {
     octet_writer_t* const w = line_begin();
     put_packed(w, SAY_running_after);
@@ -34,7 +37,7 @@ static bool wait_for_run(uint16_t step) {
     return false;
   }
   if (waited < START_PATIENCE_MS) return true;
-  line_of(SAY_not_running_yet_see_status);
+  line_refused(SAY_not_running_yet_see_status);
   return false;
 }
 
@@ -42,7 +45,7 @@ void command_start(const words_of_line_t* a) {
   if (!no_arguments(a)) return;
   octet_writer_t* const w = line_begin();
   if (action_start(GUARD_NONE, w) != ANSWER_OK) {
-    line_end();
+    line_end_refused();
     return;
   }
   asked_ms = drive_time_ms();
@@ -89,22 +92,20 @@ void command_ref(const words_of_line_t* a) {
   if (a->count == 0u) {
     show_reference();
   } else if (!read_speed(a, &rpm_q16)) {
-    line_of(SAY_ref_takes_a_speed_in_rpm_for);
+    line_refused(SAY_ref_takes_a_speed_in_rpm_for);
   } else {
     octet_writer_t* const w = line_begin();
     if (action_speed(rpm_q16, w) == ANSWER_OK) {
       show_reference();
     } else {
-      line_end();
+      line_end_refused();
     }
   }
 }
 
 void command_reset(const words_of_line_t* a) {
   if (!no_arguments(a)) return;
-  octet_writer_t* const w = line_begin();
-  if (action_reset(w) == ANSWER_OK) put_packed(w, SAY_cleared_the_current_offsets_are_calibrated_a);
-  line_end();
+  line_answer(action_reset(line_begin()) == ANSWER_OK, SAY_cleared_the_current_offsets_are_calibrated_a);
 }
 
 static void show_commissioning(void) {
@@ -141,11 +142,10 @@ void command_commission(const words_of_line_t* a) {
   if (a->count == 0u) {
     show_commissioning();
   } else if (word_is(a, 0, "start")) {
-    octet_writer_t* const w = line_begin();
-    if (action_commission(GUARD_NONE, w) == ANSWER_OK) put_packed(w, SAY_commissioning_the_shaft_will_turn_stop_ends);
-    line_end();
+    line_answer(action_commission(GUARD_NONE, line_begin()) == ANSWER_OK,
+                SAY_commissioning_the_shaft_will_turn_stop_ends);
   } else if (!word_is(a, 0, "results")) {
-    line_of(SAY_commission_commission_start_or_commission_re);
+    line_refused(SAY_commission_commission_start_or_commission_re);
   } else if (drive_commissioning_count() == 0u) {
     line_of(SAY_nothing_has_been_measured_since_power_on);
   } else {

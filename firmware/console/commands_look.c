@@ -162,7 +162,7 @@ static bool watch(uint16_t step) {
 void command_watch(const words_of_line_t* a) {
   watched_count = 0;
   if (a->count > WATCH_SIGNALS) {
-    line_of(SAY_watch_shows_at_most_four_signals);
+    line_refused(SAY_watch_shows_at_most_four_signals);
     return;
   }
   for (uint16_t k = 0; k < a->count; k++) {

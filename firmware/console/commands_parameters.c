@@ -78,7 +78,7 @@ static bool describe(uint16_t step) {
 
 void command_get(const words_of_line_t* a) {
   if (a->count != 1u) {
-    line_of(SAY_get_name_one_parameter_or_signal_list);
+    line_refused(SAY_get_name_one_parameter_or_signal_list);
     return;
   }
   const uint16_t parameter = find(&a->word[0]);
@@ -115,7 +115,7 @@ static void refuse_unit(const parameter_info_t* p) {
     put_packed(w, p->unit);
   }
   put_packed(w, SAY_nothing_changed);
-  line_end();
+  line_end_refused();
 }
 
 static void change(const parameter_info_t* p, int32_t raw) {
@@ -125,6 +125,8 @@ static void change(const parameter_info_t* p, int32_t raw) {
     put_packed(w, p->name);
     put_text(w, " = ");
     put_value(w, p, parameter_get(p->id));
+  } else if (parameter_get(p->id) != raw) {  // one that does not fit together with others yet is taken
+    count_refusal();
   }
   line_end();
 }
@@ -132,7 +134,7 @@ static void change(const parameter_info_t* p, int32_t raw) {
 void command_set(const words_of_line_t* a) {
   decimal_t number;
   if (a->count < 2u || a->count > 3u) {
-    line_of(SAY_set_name_value_unit_for_example_set);
+    line_refused(SAY_set_name_value_unit_for_example_set);
     return;
   }
   const parameter_info_t* const p = parameter_info(find(&a->word[0]));
@@ -142,7 +144,7 @@ void command_set(const words_of_line_t* a) {
   }
   const uint16_t length = text_number(a->word[1].text, a->word[1].count, &number);
   if (length == 0u) {
-    line_of(SAY_the_value_is_not_a_number_nothing);
+    line_refused(SAY_the_value_is_not_a_number_nothing);
   } else if (!unit_fits(a, length, p->unit)) {
     refuse_unit(p);
   } else {

@@ -41,18 +41,18 @@ static scope_setup_t draft(void) {
 
 static void apply(const scope_setup_t* s) {
   if (s->count == 0u) {
-    line_of(SAY_first_scope_channels_signal);
+    line_refused(SAY_first_scope_channels_signal);
   } else if (scope_setup(s)) {
     line_of(SAY_set_scope_arm_begins);
   } else {
-    line_of(SAY_outside_of_its_range_nothing_changed_see);
+    line_refused(SAY_outside_of_its_range_nothing_changed_see);
   }
 }
 
 static void set_channels(const words_of_line_t* a) {
   scope_setup_t s = draft();
   if (a->count < 2u || a->count > 1u + SCOPE_CHANNELS) {
-    line_of(SAY_scope_channels_takes_one_to_four_signals);
+    line_refused(SAY_scope_channels_takes_one_to_four_signals);
     return;
   }
   s.count = (uint16_t)(a->count - 1u);
@@ -80,7 +80,7 @@ static void set_trigger(const words_of_line_t* a) {
   while (edge < EDGES && !word_is(a, 2, edges[edge])) edge++;
   const bool complete = a->count >= 4u && edge < EDGES && edge != SCOPE_AT_ONCE;
   if (!complete || text_number(a->word[3].text, a->word[3].count, &level) != a->word[3].count) {
-    line_of(SAY_scope_trigger_signal_rising_falling_either_a);
+    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
     return;
   }
   s.trigger = signal_find(&a->word[1]);
@@ -89,7 +89,7 @@ static void set_trigger(const words_of_line_t* a) {
     return;
   }
   if (a->count > 5u || (a->count == 5u && !word_is_packed(a, 4, signal_info(s.trigger)->unit))) {
-    line_of(SAY_the_level_is_in_the_signal_s);
+    line_refused(SAY_the_level_is_in_the_signal_s);
     return;
   }
   s.edge = (scope_edge_t)edge;
@@ -109,7 +109,7 @@ static bool whole(const words_of_line_t* a, uint16_t* value) {
 static void set_number(const words_of_line_t* a, bool every) {
   scope_setup_t s = draft();
   if (!whole(a, every ? &s.decimation : &s.pretrigger)) {
-    line_of(SAY_a_whole_number_is_missing_nothing_changed);
+    line_refused(SAY_a_whole_number_is_missing_nothing_changed);
     return;
   }
   apply(&s);
@@ -118,7 +118,7 @@ static void set_number(const words_of_line_t* a, bool every) {
 static void set_mode(const words_of_line_t* a) {
   scope_setup_t s = draft();
   if (a->count != 2u || (!word_is(a, 1, "single") && !word_is(a, 1, "auto"))) {
-    line_of(SAY_scope_mode_single_or_scope_mode_auto);
+    line_refused(SAY_scope_mode_single_or_scope_mode_auto);
     return;
   }
   s.mode = word_is(a, 1, "auto") ? SCOPE_AUTO : SCOPE_SINGLE;
@@ -210,9 +210,9 @@ static void begin_print(const words_of_line_t* a) {
   const scope_state_t state = scope_status().state;
   stride = 16;
   if (a->count > 1u && (!whole(a, &stride) || stride == 0u)) {
-    line_of(SAY_scope_print_one_record_in_so_many);
+    line_refused(SAY_scope_print_one_record_in_so_many);
   } else if (state != SCOPE_DONE && state != SCOPE_IDLE) {
-    line_of(SAY_the_scope_still_records_scope_stop_ends);
+    line_refused(SAY_the_scope_still_records_scope_stop_ends);
   } else if (scope_status().recorded == 0u) {
     line_of(SAY_nothing_has_been_recorded);
   } else {
@@ -232,13 +232,17 @@ void command_scope(const words_of_line_t* a) {
   } else if (word_is(a, 0, "mode")) {
     set_mode(a);
   } else if (word_is(a, 0, "arm")) {
-    line_of(scope_arm() ? SAY_armed : SAY_first_scope_channels_signal);
+    if (scope_arm()) {
+      line_of(SAY_armed);
+    } else {
+      line_refused(SAY_first_scope_channels_signal);
+    }
   } else if (word_is(a, 0, "stop")) {
     scope_stop();
     line_of(SAY_stopped);
   } else if (word_is(a, 0, "print")) {
     begin_print(a);
   } else {
-    line_of(SAY_scope_has_no_such_part_see_help);
+    line_refused(SAY_scope_has_no_such_part_see_help);
   }
 }

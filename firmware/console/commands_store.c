@@ -26,8 +26,10 @@ static void put_report(octet_writer_t* w) {
 static bool wait_for_store(uint16_t step) {
   (void)step;
   if (store_is_busy()) return true;
+  const store_state_t state = store_state();
+  if (state != STORE_SAVED && state != STORE_LOADED && state != STORE_MIGRATED) count_refusal();
   octet_writer_t* const w = line_begin();
-  put_words(w, WORDS_STORE, (uint16_t)store_state());
+  put_words(w, WORDS_STORE, (uint16_t)state);
   put_report(w);
   line_end();
   return false;
@@ -37,7 +39,7 @@ static void await(answer_status_t status) {
   if (status == ANSWER_OK) {
     console_run(wait_for_store, false);
   } else {
-    line_end();
+    line_end_refused();
   }
 }
 
@@ -53,7 +55,5 @@ void command_load(const words_of_line_t* a) {
 
 void command_defaults(const words_of_line_t* a) {
   (void)a;
-  octet_writer_t* const w = line_begin();
-  if (action_defaults(w) == ANSWER_OK) put_packed(w, SAY_every_parameter_is_at_its_default_save);
-  line_end();
+  line_answer(action_defaults(line_begin()) == ANSWER_OK, SAY_every_parameter_is_at_its_default_save);
 }

@@ -31,6 +31,7 @@ static uint16_t errors_before;  // of the port, when the line began
 
 void console_reset(void) {
   editor_reset(&editor);
+  output_reset();
   job = NULL;
   kept_first = 0;
   kept_count = 0;
@@ -68,9 +69,9 @@ static void obey(void) {
   const bool damaged = editor.disturbed || port_errors() != errors_before;
   command = editor.line;
   if (editor.too_long) {
-    line_of(SAY_a_line_has_at_most_80_characters);
+    line_refused(SAY_a_line_has_at_most_80_characters);
   } else if (damaged && !command_makes_safe(&command)) {
-    line_of(SAY_the_line_was_disturbed_on_its_way);
+    line_refused(SAY_the_line_was_disturbed_on_its_way);
   } else {
     command_obey(&command);
   }
@@ -143,7 +144,7 @@ void console_octet(uint16_t octet) {
     return;
   }
   if (job == NULL || console_takes()) return;
-  line_of(SAY_more_input_than_can_be_kept_the);
+  line_refused(SAY_more_input_than_can_be_kept_the);
   end_job();
 }
 

@@ -6,6 +6,9 @@
 
 static uint16_t block[OUTPUT_LINE];
 static octet_writer_t line;
+static uint16_t refused;
+
+void output_reset(void) { refused = 0; }
 
 octet_writer_t* line_begin(void) {
   line = octet_writer(block, OUTPUT_LINE - RESERVED);
@@ -24,4 +27,27 @@ void line_end(void) {
 void line_of(packed_text_t text) {
   put_packed(line_begin(), text);
   line_end();
+}
+
+void count_refusal(void) { refused++; }
+
+uint16_t refusals(void) { return refused; }
+
+void line_end_refused(void) {
+  count_refusal();
+  line_end();
+}
+
+void line_refused(packed_text_t text) {
+  put_packed(line_begin(), text);
+  line_end_refused();
+}
+
+void line_answer(bool done, packed_text_t text) {
+  if (done) {
+    put_packed(&line, text);
+    line_end();
+  } else {
+    line_end_refused();
+  }
 }

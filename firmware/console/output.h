@@ -4,6 +4,7 @@
 #ifndef STILLSPIN_FIRMWARE_CONSOLE_OUTPUT_H
 #define STILLSPIN_FIRMWARE_CONSOLE_OUTPUT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "firmware/packed_text.h"
@@ -13,6 +14,9 @@ extern "C" {
 #endif
 
 #define OUTPUT_LINE 208u  // characters, with the line's end
+
+/// Power-on state.
+void output_reset(void);
 
 /// An empty line to write into; there is only one.
 octet_writer_t* line_begin(void);
@@ -25,6 +29,15 @@ void line_flush(void);
 
 /// A line of one text.
 void line_of(packed_text_t text);
+
+/// For a command that was not carried out: people read why, programs read how many there have been (request LINK).
+void count_refusal(void);
+uint16_t refusals(void);
+void line_end_refused(void);
+void line_refused(packed_text_t text);
+
+/// Ends a line that says why not, or gives it this text where the command was carried out.
+void line_answer(bool done, packed_text_t text);
 
 #if defined(__cplusplus)
 }

@@ -75,7 +75,7 @@ static void say(void) {
     put_packed(w, near[k]);
   }
   if (found > 0u) put_u8(w, '?');
-  line_end();
+  line_end_refused();
 }
 
 static bool look(uint16_t step) {

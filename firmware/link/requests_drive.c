@@ -1,5 +1,6 @@
 // Commands, and how the drive is.
 
+#include "firmware/console/output.h"
 #include "firmware/drive.h"
 #include "firmware/fault_history.h"
 #include "firmware/link/link.h"
@@ -100,6 +101,7 @@ answer_status_t request_link(request_t* r) {
   put_u16(w, e.port.breaks);
   put_u16(w, e.port.lost);
   put_u16(w, stream_lost(r->port));
+  put_u16(w, refusals());
   return ANSWER_OK;
 }
 

@@ -77,6 +77,7 @@ class FakeDrive:
         self.start_fault = 0  # what the next start ends in
         self.chatter = b""  # said before the next answer
         self.typed = b""
+        self.refusals = 0  # lines of console that were not carried out
         self.setup = None
         self.scope = 4  # its state: done
         self.stream = None
@@ -146,6 +147,7 @@ class FakeDrive:
         self.typed += octets
         while b"\r" in self.typed:
             line, _, self.typed = self.typed.partition(b"\r")
+            self.refusals += line.startswith(b"refuse")
             self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
 
     def _move(self):
@@ -303,6 +305,9 @@ class FakeDrive:
         if kind not in WORDS or code >= len(WORDS[kind]):
             raise RefusalError(UNKNOWN)
         return WORDS[kind][code].encode()
+
+    def _on_0c(self, _):
+        return struct.pack("<9H", *([0] * 8), self.refusals)
 
     def _on_10(self, body):
         head = struct.unpack_from("<HHBBHiB", body)

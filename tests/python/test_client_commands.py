@@ -246,6 +246,13 @@ def test_the_console_says_a_line_and_prints_the_answer(ask):
     assert result.stdout == "heard get speed_ramp\n", result.stderr
 
 
+def test_the_console_ends_with_1_when_a_line_is_refused_and_sends_the_others(ask):
+    result = ask("console", "-c", "get x", "-c", "refuse y", "-c", "stop")
+    assert result.exit_code == 1
+    assert result.stdout == "heard get x\nheard refuse y\nheard stop\n"
+    assert result.stderr == "stillspin: not carried out: refuse y\n"
+
+
 def test_a_transcript_is_without_echo_prompt_and_escapes():
     transcript = Transcript()
     transcript.expect("get x")

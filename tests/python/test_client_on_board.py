@@ -142,6 +142,15 @@ def test_the_console_answers_among_records(desk, port):
     assert desk.link.counts.damaged == 0
 
 
+def test_the_console_ends_with_1_when_the_drive_refuses(port, home):
+    lines = ["set speed_limit 7000", "ref 300", "start now", "version"]
+    typed = [part for line in lines for part in ("-c", line)]
+    result = CliRunner().invoke(cli.app, ["console", *typed, "--drive", port])
+    assert result.exit_code == 1
+    assert result.stderr.splitlines() == [f"stillspin: not carried out: {line}" for line in (lines[0], lines[2])]
+    assert "stillspin 0.1.0" in result.stdout
+
+
 def test_the_commands(port, home, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
@@ -150,7 +159,7 @@ def test_the_commands(port, home, tmp_path, monkeypatch):
         assert result.exit_code == 0, result.stderr
         return result.stdout
 
-    assert "speed_limit" in call("console", "--command", "get speed_limit")
+    assert "speed_limit" in call("console", "--command", "get speed_limit", "-c", "save")
     dumped = call("params", "dump", "all.toml")
     assert "parameters; see all.toml" in dumped
     assert call("params", "load", "all.toml").startswith("0 of ")

@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -19,12 +20,16 @@ from stillspin.commands.completion import Words
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Drive
+from stillspin.drive.describe import unpack
+from stillspin.drive.protocol import Request
 from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
 from stillspin.link.errors import DriveError, NoAnswerError
 
 _END = b"\r"
-_QUIET = 0.3
-_ANSWER = 3.0
+_ECHO = 3.0
+_ANSWER = 6.0
+"""Seconds until the prompt: the console gives a start five. `watch` never comes to an end."""
 _REFRESH = 0.5
 _LEAVE = {"exit", "quit"}
 
@@ -39,10 +44,30 @@ def console(
         if not drive.link.transport.has_console:
             raise InputError(f"{drive.link.transport.name}: the console is on the serial port only")
         if command or not sys.stdin.isatty():
-            for line in command or sys.stdin:
-                say(drive, line.rstrip("\n"))
+            _say_all(drive, command or sys.stdin)
         else:
             _talk(drive)
+
+
+def _say_all(drive: Drive, lines: Iterable[str]) -> None:
+    """Send lines, also behind one that is refused: it may be the one that stops the motor."""
+    status = ExitCode.DONE
+    before = _refusals(drive)
+    for line in lines:
+        say(drive, line.rstrip("\n"))
+        after = _refusals(drive)
+        if after != before:
+            print(f"stillspin: not carried out: {line.strip()}", file=sys.stderr)
+            status = ExitCode.SHORT
+        before = after
+    if status:
+        raise typer.Exit(status)
+
+
+def _refusals(drive: Drive) -> int:
+    """How many lines the drive's console has not carried out since power-on."""
+    *_, count = unpack("<9H", drive.link.request(Request.LINK, repeat=True))
+    return int(count)
 
 
 def say(drive: Drive, line: str) -> None:
@@ -59,9 +84,9 @@ def say(drive: Drive, line: str) -> None:
     with drive.link.listening(text=take):
         drive.link.transport.send_text(line.encode("ascii", "replace") + _END)
         end = time.monotonic() + _ANSWER
-        if not heard.wait(_ANSWER):
+        if not heard.wait(_ECHO):
             raise NoAnswerError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
-        while not transcript.answered and heard.wait(_QUIET) and time.monotonic() < end:
+        while not transcript.answered and heard.wait(max(0.0, end - time.monotonic())):
             heard.clear()
     if transcript.rest:
         print(transcript.rest)
