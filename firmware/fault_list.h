@@ -25,10 +25,12 @@ FAULT(14, EMERGENCY, "emergency stop", "release it, then reset")
 FAULT(15, PRECHARGE, "DC link not charged, precharge relay open",
       "check the supply, the precharge resistor and precharge_voltage")
 FAULT(16, TEMPERATURE, "heat sink beyond temperature_limit, or its sensor broken", "let it cool, check fan and sensor")
-FAULT(17, OVERLOAD, "overload: mean square of the current beyond overload_current", "less load; check overload_time")
+FAULT(17, OVERLOAD, "overload: mean square of the current beyond overload_current", "less load; check rated_current, overload_current, overload_time")
 FAULT(18, BRAKE_RESISTOR, "brake resistor on for more than brake_share", "brake more slowly; check brake_voltage")
 FAULT(19, GATE_ENABLE, "gate enable does not pass the gates although its line is toggled",
       "check the circuit behind the enable line and its feedback")
 FAULT(20, SELF_TEST, "self-test failed", "see the command status; a fault of chip or board")
 FAULT(21, INTERRUPT, "an interrupt that nobody expected",
       "switch off and on; a fault of chip or software: tell its makers")
+FAULT(22, STALL, "stalled: the shaft does not follow at the limit of the current",
+      "look for what holds or overloads the shaft; check current_limit, speed_ramp and stall_time")

@@ -18,6 +18,7 @@ PARAMETER(6, inertia, "kgm2", 24, 6, 100, 500000, 4550, STOPPED, "inertia of rot
 PARAMETER(7, friction, "Nms", 24, 5, 0, 50000, 300, STOPPED, "viscous friction")
 PARAMETER(8, current_limit, "A", 20, 2, 50, 10000, 1400, STOPPED, "largest phase current, peak")
 PARAMETER(9, speed_limit, "rpm", 8, 0, 10, 6000, 3300, STOPPED, "largest speed reference")
+PARAMETER(520, rated_current, "A", 20, 2, 10, 10000, 1089, ALWAYS, "rated phase current of the motor, peak")
 
 // Inverter
 PARAMETER(20, dead_time, "us", 16, 2, BOARD_DEAD_TIME_LEAST, 500, BOARD_DEAD_TIME, STOPPED,
@@ -138,6 +139,8 @@ PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED,
           "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
 PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
           "for standstill after a stop has brought the reference to zero, then the drive faults")
+PARAMETER(521, stall_time, "ms", 0, 0, 0, 60000, 2000, ALWAYS,
+          "a shaft that does not follow its reference at the limit of the current for so long is a fault; 0 is none")
 PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
           "EMF error that is borne at any speed, see synchronism_time")
 PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
@@ -214,9 +217,10 @@ PARAMETER(405, brake_share, "%", 16, 0, 1, 100, 20, ALWAYS, "mean time that it m
 PARAMETER(410, temperature_limit, "C", 8, 0, 0, 130, 0, ALWAYS, "of the heat sink; 0 where it has no sensor")
 PARAMETER(411, temperature_derating, "C", 8, 0, 0, 130, 70, ALWAYS,
           "from here on the current limit falls, to a half at temperature_limit")
-PARAMETER(412, overload_current, "A", 20, 2, 0, 10000, 0, ALWAYS,
-          "phase current, peak, that may flow for ever; the limit falls to it; 0 watches nothing")
-PARAMETER(413, overload_time, "ms", 0, 0, 100, 600000, 10000, ALWAYS, "time constant of motor and inverter")
+PARAMETER(412, overload_current, "A", 20, 2, -100, 10000, -100, ALWAYS,
+          "phase current, peak, that may flow for ever; the limit falls to it; below 0 rated_current, 0 watches nothing")
+PARAMETER(413, overload_time, "ms", 0, 0, 100, 600000, 60000, ALWAYS,
+          "time constant of the winding, or of the inverter where that is shorter")
 PARAMETER(420, emergency_stop, "", 0, 0, 0, 1, 0, STOPPED, "1: its contact is wired, and switches the gates off")
 PARAMETER(421, gate_feedback, "", 0, 0, 0, 1, 0, STOPPED, "1: the gate enable's output is wired, and watched")
 PARAMETER(430, speed_input, "", 0, 0, 0, 2, 0, STOPPED,

@@ -1,8 +1,8 @@
 // Heat sink and overload: the current limit falls first, then the drive faults.
 //
 // The mean square of the phase current over the overload's time constant is held against that of the current that may
-// flow for ever (I^2 t: what the winding's copper loss heats). From 0.9 of that current on the limit falls in a
-// straight line to it.
+// flow for ever, the motor's rated one unless it is said to be another (I^2 t: what the winding's copper loss heats).
+// From 0.9 of that current on the limit falls in a straight line to it.
 
 #include "firmware/board/functions.h"
 #include "firmware/drive.h"
@@ -13,6 +13,8 @@
 #define TURN 8u           // ms between two looks
 #define SLOW_SETTLES 3u   // ms from the choice of the converter's input to its code
 #define SENSOR_MARGIN 32  // codes beyond the table: a broken wire, a short circuit
+#define HEAT_ONE_Q24 16777216L
+#define SHARE_END_Q12 46340L  // its square fits
 
 static const int16_t ntc[BOARD_NTC_POINTS] = BOARD_NTC_CODES;
 
@@ -41,17 +43,18 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
   return FAULT_NONE;
 }
 
-// Saturated: 181 A.
-static int32_t square_q16(int32_t amps_q20) { return q_mul_sat(amps_q20, amps_q20, 24); }
-
-static drive_fault_t follow_overload(int32_t* share_q15) {
+// Square of the current, of that which may flow for ever; saturated at eleven times that current.
+static int32_t heating_q24(int32_t ever_q20) {
   const dq_t i = drive.control.measured_q20;
-  const int32_t now = drive_is_energised() ? q_add_sat(square_q16(i.d), square_q16(i.q)) : 0;
-  const int32_t ever = square_q16(parameters.overload_current);
-  board.heat_q16 += (now - board.heat_q16) / (int32_t)(parameters.overload_time / (int32_t)TURN);
-  const int32_t end_q15 = q_min(BOARD_SHARE_ONE, q_div(parameters.overload_current, parameters.current_limit, 15));
-  *share_q15 = q_min(*share_q15, share_between(board.heat_q16, ever / 5 * 4, ever, end_q15));
-  return board.heat_q16 > ever / 10 * 11 ? FAULT_OVERLOAD : FAULT_NONE;
+  const int32_t share_q12 = q_min(q_div(q_hypot(i.d, i.q), ever_q20, 12), SHARE_END_Q12);
+  return drive_is_energised() ? share_q12 * share_q12 : 0;
+}
+
+static drive_fault_t follow_overload(int32_t ever_q20, int32_t* share_q15) {
+  board.heat_q24 += (heating_q24(ever_q20) - board.heat_q24) / (parameters.overload_time / (int32_t)TURN);
+  const int32_t end_q15 = q_min(BOARD_SHARE_ONE, q_div(ever_q20, parameters.current_limit, 15));
+  *share_q15 = q_min(*share_q15, share_between(board.heat_q24, HEAT_ONE_Q24 / 5 * 4, HEAT_ONE_Q24, end_q15));
+  return board.heat_q24 > HEAT_ONE_Q24 / 10 * 11 ? FAULT_OVERLOAD : FAULT_NONE;
 }
 
 drive_fault_t board_follow_heat(void) {
@@ -59,8 +62,9 @@ drive_fault_t board_follow_heat(void) {
   int32_t share_q15 = BOARD_SHARE_ONE;
   drive_fault_t fault = FAULT_NONE;
   if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) fault = follow_heat_sink(&share_q15);
-  if (parameters.overload_current != 0) {
-    const drive_fault_t overload = follow_overload(&share_q15);
+  const int32_t ever_q20 = (parameters.overload_current < 0) ? parameters.rated_current : parameters.overload_current;
+  if (ever_q20 != 0) {
+    const drive_fault_t overload = follow_overload(ever_q20, &share_q15);
     if (fault == FAULT_NONE) fault = overload;
   }
   board.share_q15 = share_q15;

@@ -104,6 +104,7 @@ void board_service(void) {
   report(precharge());
   report(watch_brake());
   report(board_follow_heat());
+  report(board_follow_shaft());
   drive.control.current_limit_q20 = board_current_limit();
   board_follow_speed_input();
 }

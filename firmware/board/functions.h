@@ -1,6 +1,7 @@
 // What the board does beside the gates, in the background: precharge relay, brake resistor, emergency stop, heat sink
-// and overload, gate enable watched, speed command without a host. Each is off until its parameter (400..449) says that
-// it is wired, and costs nothing until then; the control interrupt sees no more of it than the current limit in use.
+// and overload, stalled shaft, gate enable watched, speed command without a host. What needs a wire is off until its
+// parameter (400..449) says that there is one, and costs nothing until then; overload and stall are watched unless they
+// are switched off. The control interrupt sees no more of it than the current limit in use.
 //
 // Once a millisecond of the drive's time, the brake resistor in every pass of the background loop. While a computer
 // steps the drive (hil/hil.h) the functions rest.
@@ -44,12 +45,14 @@ typedef struct {
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
   int32_t celsius_q8;      // heat sink
-  int32_t heat_q16;        // mean square of the current, A^2
+  int32_t heat_q24;        // mean square of the current, of that which may flow for ever
   int32_t share_q15;       // of the current limit that is left
   uint16_t code;           // of the speed command
   uint16_t lost_ms;        // without a signal for so long
   speed_input_t input;
-  bool asked;  // the switch was closed at the last look
+  bool asked;               // the switch was closed at the last look
+  uint16_t stalled_ms;      // the shaft has not got on for so long
+  uint32_t stall_from_bam;  // from here
 } board_t;
 
 extern board_t board;
@@ -72,8 +75,9 @@ int32_t board_current_limit(void);
 void put_board(octet_writer_t* w);
 
 // The parts, once a millisecond each.
-drive_fault_t board_follow_heat(void);  // derating.c
-void board_follow_speed_input(void);    // speed_input.c
+drive_fault_t board_follow_heat(void);   // derating.c
+drive_fault_t board_follow_shaft(void);  // stall.c
+void board_follow_speed_input(void);     // speed_input.c
 
 #if defined(__cplusplus)
 }

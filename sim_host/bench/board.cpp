@@ -95,12 +95,24 @@ std::uint16_t Board::auxiliary_code(Tick t) {
   return code_of(4096.0 * ohms / (ohms + BOARD_NTC_PULL_UP));
 }
 
+// The motor's phase that hangs on a leg.
+int Board::wire_of(int leg) const {
+  const int straight = options_.crossed - 1;
+  return options_.crossed == 0 || leg == straight ? leg : 3 - straight - leg;
+}
+
+std::uint16_t Board::current_code(Tick t, std::size_t input) {
+  constexpr plant::AdcInput kPhases[] = {plant::AdcInput::kCurrentA, plant::AdcInput::kCurrentB,
+                                         plant::AdcInput::kCurrentC};
+  return plant_.adc_code(t, kPhases[wire_of(options_.input[input])]);
+}
+
 void Board::drive_leg(Tick t, int leg) {
   const PlantTimer timer(*this);
   const bool lower = enabled_ && lower_[leg];
   bool upper = enabled_ && upper_[leg];
   if (options_.bootstrap) upper = bootstrap_[static_cast<std::size_t>(leg)].switch_leg(t, upper, lower);
-  plant_.set_gate(t, leg, upper, lower);
+  plant_.set_gate(t, wire_of(leg), upper, lower);
   compare(t, plant_.peak_current());
   watch_devices(t);
 }
@@ -133,9 +145,9 @@ std::uint16_t Board::adc_sample(Tick t, int channel) {
   switch (channel) {
     case kChannelCurrentA:
       probe_.sample(t);
-      return plant_.adc_code(t, plant::AdcInput::kCurrentA);
+      return current_code(t, 0);
     case kChannelCurrentB:
-      return plant_.adc_code(t, plant::AdcInput::kCurrentB);
+      return current_code(t, 1);
     case kChannelLink:
       return plant_.adc_code(t, plant::AdcInput::kLinkVoltage);
     case kChannelAuxiliary:

@@ -118,6 +118,8 @@ class Board : public chip::World {
   void watch_devices(Tick t);
 
   std::uint16_t auxiliary_code(Tick t);
+  std::uint16_t current_code(Tick t, std::size_t input);
+  int wire_of(int leg) const;
 
   BoardOptions options_;
   BoardInputs inputs_;

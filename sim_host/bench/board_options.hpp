@@ -3,6 +3,8 @@
 #ifndef STILLSPIN_SIM_HOST_BENCH_BOARD_OPTIONS_HPP
 #define STILLSPIN_SIM_HOST_BENCH_BOARD_OPTIONS_HPP
 
+#include <array>
+
 namespace stillspin::bench {
 
 struct BoardOptions {
@@ -10,6 +12,8 @@ struct BoardOptions {
   double precharge_resistance = 0;  // ohm, until the relay bridges it; 0: no relay, the link hangs on its source
   bool brake = false;               // the drive's output switches the brake resistor (link.brake_resistance)
   bool enable_stuck = false;        // the gate enable passes the gates for ever
+  std::array<int, 2> input{0, 1};   // whose sensor is on the converter's inputs a and b
+  int crossed = 0;                  // 1..3: the motor's wires of the two other phases than a, b, c are crossed
 };
 
 /// What somebody at the board does to its inputs.

@@ -36,6 +36,7 @@ FaultPlayer::FaultPlayer(const FaultPlan& plan) : plan_(plan) {
   at(p.lost_triggers_time > 0, p.lost_triggers_at, [](const FaultPlan&, Board& b) { b.lose_triggers(true); });
   at(p.lost_triggers_time > 0, p.lost_triggers_at + p.lost_triggers_time,
      [](const FaultPlan&, Board& b) { b.lose_triggers(false); });
+  at(p.blocked_shaft != 0, p.blocked_shaft_at, [](const FaultPlan&, Board& b) { b.plant().set_locked(true); });
   at(p.late_interrupts > 0, p.late_interrupts_at,
      [](const FaultPlan& f, Board& b) { b.delay_interrupts(std::llround(f.late_interrupts * kTicksPerMicrosecond)); });
   at(p.late_interrupts > 0, p.late_interrupts_at + p.late_interrupts_time,
@@ -43,7 +44,9 @@ FaultPlayer::FaultPlayer(const FaultPlan& plan) : plan_(plan) {
   std::stable_sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
 }
 
-void FaultPlayer::step(double now, Board& board) {
+void FaultPlayer::step(double since_start, double since_power_on, Board& board) {
+  const double now = plan_.from_power_on != 0.0 ? since_power_on : since_start;
+  if (now < 0.0) return;
   while (next_ < events_.size() && events_[next_].time <= now + kSameTime) events_[next_++].act(plan_, board);
 }
 

@@ -82,6 +82,7 @@ class Director : public PeriodListener {
     watch_fault(t, s);
     board_->plant().advance(t);
     if (!running()) prepare(t, s);
+    faults_.step(running() ? (t - origin_) * kSecondsPerTick : -1.0, t * kSecondsPerTick, *board_);
     if (running()) act(t);
     if (!started_) return;
     if (!running()) travel_.to(board_->plant().state().angle_m);
@@ -146,7 +147,6 @@ class Director : public PeriodListener {
 
   void act(Tick t) {
     const double now = (t - origin_) * kSecondsPerTick;
-    faults_.step(now, *board_);
     give_commands(now);
     if (request_.on_period) request_.on_period(now);
   }

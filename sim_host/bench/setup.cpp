@@ -8,6 +8,8 @@ namespace {
 
 const std::vector<std::string> kSolvers = {"erkstep", "rk4", "reference"};
 const std::vector<std::string> kPhases = {"none", "a", "b", "c"};
+const std::vector<std::string> kLegs = {"a", "b", "c"};
+const std::vector<std::string> kPairs = {"none", "bc", "ca", "ab"};
 
 #define ROW(section, key, unit, kind, minimum, maximum, field, help, choices)                                \
   Entry {                                                                                                    \
@@ -86,6 +88,9 @@ const std::vector<Entry> kEntries = {
           "in series with the source until the precharge relay closes; 0: none"),
     ENTRY(board, brake, "", kSwitch, 0, 1, board.brake, "the drive switches the brake resistor"),
     ENTRY(board, enable_stuck, "", kSwitch, 0, 1, board.enable_stuck, "the gate enable passes the gates for ever"),
+    CHOICE(wiring, input_a, kLegs, board.input[0], "whose sensor is on the converter's input a"),
+    CHOICE(wiring, input_b, kLegs, board.input[1], "whose sensor is on the converter's input b"),
+    CHOICE(wiring, motor_crossed, kPairs, board.crossed, "two motor wires are on each other's terminals"),
     ENTRY(initial, link_voltage, "V", kNumber, -1, 2000, nominal.initial.link_voltage,
           "DC link at power-on; negative: that of the source"),
     ENTRY(initial, angle, "rad", kNumber, -1e3, 1e3, nominal.initial.angle, "electrical angle at power-on"),
@@ -115,6 +120,10 @@ const std::vector<Entry> kEntries = {
           "interrupts are held off for this long in every period; 0 is none"),
     AT(late_interrupts_at, "from when, from the end of the start"),
     ENTRY(fault, late_interrupts_time, "s", kNumber, 0, 3600, fault.late_interrupts_time, "for how long"),
+    ENTRY(fault, blocked_shaft, "", kSwitch, 0, 1, fault.blocked_shaft, "the shaft is held and cannot turn"),
+    AT(blocked_shaft_at, "from when, from the end of the start"),
+    ENTRY(fault, from_power_on, "", kSwitch, 0, 1, fault.from_power_on,
+          "the times of all faults count from power-on, not from the end of the start"),
     CHOICE(solver, method, kSolvers, solver, "erkstep: ARKODE, adaptive; rk4: fixed steps, fast; reference: CVODE"),
     ENTRY(solver, relative_tolerance, "", kNumber, 1e-13, 1e-3, nominal.solver.relative_tolerance, "of erkstep"),
     ENTRY(solver, max_segment, "10ns", kWhole, 1, 10000, nominal.solver.max_segment, "longest step between events"),
@@ -153,6 +162,8 @@ plant::PlantConfig Setup::plant() const {
   c.mechanics.inertia *= 1.0 + error.inertia;
   constexpr plant::Solver kMethods[] = {plant::Solver::kErkStep, plant::Solver::kRungeKutta, plant::Solver::kReference};
   c.solver.solver = kMethods[static_cast<int>(solver)];
+  // The sensor of phase c is there where something is wired to it.
+  if (board.crossed != 0 || board.input[0] == 2 || board.input[1] == 2) c.sensor.count = 3;
   c.validate();
   return c;
 }

@@ -104,7 +104,8 @@ void VirtualBoard::on_period(Tick t) {
     board_.plant().advance(t);
     if (brake_until_run_) board_.plant().set_locked(locked_);
   }
-  if (first_run_ >= 0) faults_.step(static_cast<double>(t - first_run_) * kSecondsPerTick, board_);
+  const double since_start = first_run_ < 0 ? -1.0 : static_cast<double>(t - first_run_) * kSecondsPerTick;
+  faults_.step(since_start, static_cast<double>(t) * kSecondsPerTick, board_);
 }
 
 void VirtualBoard::tell_parameters() {

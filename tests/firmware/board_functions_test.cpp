@@ -321,7 +321,7 @@ TEST_F(BoardFunctions, TheHotterOfTheTwoRules) {
   EXPECT_NEAR(share(), 0.63, 0.01);
   convert(360);
   drive.control.measured_q20 = {0, raw(30.0, 20)};
-  ::board.heat_q16 = 200 << 16;
+  ::board.heat_q24 = 2 << 24;
   look(8);
   EXPECT_EQ(drive.fault, FAULT_TEMPERATURE) << "the first that is found is told";
 }

@@ -17,6 +17,8 @@ _BLOCKS = [
     (range(200, 220), "Serial port"),
     (range(220, 240), "CAN"),
     (range(240, 260), "Store and scope"),
+    (range(520, 521), "Machine"),
+    (range(521, 530), "Supervision"),
 ]
 
 

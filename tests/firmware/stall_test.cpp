@@ -1,0 +1,119 @@
+// When a shaft counts as stalled: a reference, all the torque there is, and no way made. Each condition alone, and the
+// times.
+
+#include "firmware/board/functions.h"
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+namespace {
+
+constexpr double kDegree = 4294967296.0 / 360.0;
+
+class Stall : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    drive.state = DRIVE_RUN;
+    drive.loading = false;
+    drive.samples.link_q16 = raw(300.0, 16);
+    refer(100);
+    drive.limits = LIMIT_CURRENT;
+    parameters.stall_time = 500;
+  }
+  static void refer(int rpm) { drive.control.ramp.value = rpm < 0 ? -bpp_of(-rpm) : bpp_of(rpm); }
+  static void look() {
+    drive.time_ms++;
+    board_service();
+  }
+  /// Milliseconds until the fault, `most` without one; the shaft turns at rpm meanwhile.
+  static int looks_to_fault(double rpm, int most) {
+    double angle = 0.0;
+    for (int n = 1; n <= most; ++n) {
+      angle += rpm / 60.0 * 4.0 * 360.0 * 1e-3;
+      drive.position.used.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
+      drive.position.used.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
+      look();
+      if (drive.state == DRIVE_FAULT) return n;
+    }
+    return most;
+  }
+  void expect_none(double rpm) {
+    EXPECT_EQ(looks_to_fault(rpm, 5000), 5000) << rpm;
+    EXPECT_EQ(drive.fault, FAULT_NONE) << rpm;
+  }
+  void expect_stall(double rpm) {
+    EXPECT_NEAR(looks_to_fault(rpm, 5000), 501, 2) << rpm;
+    EXPECT_EQ(drive.fault, FAULT_STALL) << rpm;
+  }
+};
+
+TEST_F(Stall, ABlockedShaftIsAFaultAfterItsTime) {
+  expect_stall(0.0);
+  EXPECT_FALSE(board.gates_on);
+}
+
+TEST_F(Stall, SoIsOneThatIsPushedBack) {
+  expect_stall(-100.0);
+  SetUp();
+  refer(-100);
+  expect_stall(100.0);
+}
+
+TEST_F(Stall, NeverAtAReferenceOfZero) {
+  refer(0);
+  expect_none(0.0);
+}
+
+TEST_F(Stall, NotBelowTheLimitOfTheCurrent) {
+  for (const int limits : {0, int(LIMIT_VOLTAGE), int(LIMIT_WEAKENING | LIMIT_BRAKING | LIMIT_OVERRUN)}) {
+    drive.limits = limits;
+    expect_none(0.0);
+  }
+}
+
+TEST_F(Stall, NotInAnotherStateThanRun) {
+  for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_STOP, DRIVE_COMMISSION}) {
+    drive.state = state;
+    expect_none(0.0);
+    EXPECT_EQ(drive.state, state);
+  }
+}
+
+TEST_F(Stall, ZeroSwitchesItOff) {
+  parameters.stall_time = 0;
+  expect_none(0.0);
+  parameters.stall_time = 500;
+  SetUp();
+  expect_stall(0.0);
+}
+
+// A shaft that makes half of its reference's way, or a quarter of an electrical turn in the time, is not stalled.
+TEST_F(Stall, AShaftThatGetsOnIsNone) {
+  expect_none(8.0);  // 96 degrees in the time, of the 1200 that the reference asks for
+  expect_none(3000.0);
+  refer(2);  // 24 degrees
+  expect_none(1.1);
+  SetUp();
+  refer(2);
+  expect_stall(0.9);
+}
+
+TEST_F(Stall, TheRestlessAngleOfABlockedShaftDoesNotHideIt) {
+  int n = 0;
+  for (; n < 5000 && drive.state == DRIVE_RUN; ++n) {
+    drive.position.used.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>((n % 2 == 0 ? 3.5 : -3.5) * kDegree));
+    look();
+  }
+  EXPECT_NEAR(n, 501, 2);
+}
+
+TEST_F(Stall, AMomentOffTheLimitBeginsAnew) {
+  EXPECT_EQ(looks_to_fault(0.0, 400), 400);
+  drive.limits = 0;
+  look();
+  drive.limits = LIMIT_CURRENT;
+  expect_stall(0.0);
+}
+
+}  // namespace
+}  // namespace stillspin::test
