@@ -9,7 +9,7 @@
 //
 // A segment lasts 40 periods; the whole test 560 (56 ms at 10 kHz). A response below a quarter of what the inertia lets
 // expect is ambiguous (blocked shaft, far too large inertia, noise), and so is one below four times its standard error,
-// which the scatter of the angle tells.
+// which the scatter of the angle tells, or above eight times the expectation: then something else moves the shaft.
 
 #ifndef STILLSPIN_ESTIMATORS_POLARITY_H
 #define STILLSPIN_ESTIMATORS_POLARITY_H
@@ -26,6 +26,7 @@ typedef struct {
   int16_t tick;          // periods since the start
   int32_t current_q20;   // amplitude, A
   int32_t expected_bam;  // response if the model is right
+  int16_t passes;        // of both patterns, counted together
   int32_t response_bam;  // sum so far
   int32_t rough_bam;     // sum of the differences between neighbouring angles in the pauses, 2^-8
   uint32_t last_bam;     // the angle before
@@ -36,6 +37,9 @@ typedef struct {
 
 /// amplitude in A; accel_q8: electrical acceleration that it makes.
 void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int32_t accel_q8);
+
+/// Repeats the test with the same current and adds to what it has shown; at most 6 passes.
+void polarity_again(polarity_t* s, uint32_t angle_bam);
 
 /// One period: takes the measured angle (unfiltered), returns the q-axis current to command, A Q20.
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam);

@@ -25,7 +25,8 @@ FAULT(14, EMERGENCY, "emergency stop", "release it, then reset")
 FAULT(15, PRECHARGE, "DC link not charged, precharge relay open",
       "check the supply, the precharge resistor and precharge_voltage")
 FAULT(16, TEMPERATURE, "heat sink beyond temperature_limit, or its sensor broken", "let it cool, check fan and sensor")
-FAULT(17, OVERLOAD, "overload: mean square of the current beyond overload_current", "less load; check rated_current, overload_current, overload_time")
+FAULT(17, OVERLOAD, "overload: mean square of the current beyond overload_current",
+      "less load; check rated_current, overload_current, overload_time")
 FAULT(18, BRAKE_RESISTOR, "brake resistor on for more than brake_share", "brake more slowly; check brake_voltage")
 FAULT(19, GATE_ENABLE, "gate enable does not pass the gates although its line is toggled",
       "check the circuit behind the enable line and its feedback")
@@ -34,3 +35,5 @@ FAULT(21, INTERRUPT, "an interrupt that nobody expected",
       "switch off and on; a fault of chip or software: tell its makers")
 FAULT(22, STALL, "stalled: the shaft does not follow at the limit of the current",
       "look for what holds or overloads the shaft; check current_limit, speed_ramp and stall_time")
+FAULT(23, START_VOLTAGE, "the DC link is too low to find rotor and polarity at the start",
+      "raise the DC link, or lower start_current and polarity_current; commission the drive")

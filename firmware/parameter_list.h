@@ -217,8 +217,9 @@ PARAMETER(405, brake_share, "%", 16, 0, 1, 100, 20, ALWAYS, "mean time that it m
 PARAMETER(410, temperature_limit, "C", 8, 0, 0, 130, 0, ALWAYS, "of the heat sink; 0 where it has no sensor")
 PARAMETER(411, temperature_derating, "C", 8, 0, 0, 130, 70, ALWAYS,
           "from here on the current limit falls, to a half at temperature_limit")
-PARAMETER(412, overload_current, "A", 20, 2, -100, 10000, -100, ALWAYS,
-          "phase current, peak, that may flow for ever; the limit falls to it; below 0 rated_current, 0 watches nothing")
+PARAMETER(
+    412, overload_current, "A", 20, 2, -100, 10000, -100, ALWAYS,
+    "phase current, peak, that may flow for ever; the limit falls to it; below 0 rated_current, 0 watches nothing")
 PARAMETER(413, overload_time, "ms", 0, 0, 100, 600000, 60000, ALWAYS,
           "time constant of the winding, or of the inverter where that is shorter")
 PARAMETER(420, emergency_stop, "", 0, 0, 0, 1, 0, STOPPED, "1: its contact is wired, and switches the gates off")

@@ -9,8 +9,8 @@
 #include "firmware/drive.h"
 #include "firmware/parameters.h"
 
-#define LEAST_BAM 95443718L   // 8 degrees: what the angle may stray under changing current
-#define MOST_BAM 1073741824L  // a quarter of an electrical turn
+#define LEAST_BAM 95443718L                         // 8 degrees: what the angle may stray under changing current
+#define MOST_BAM 1073741824L                        // a quarter of an electrical turn
 #define FAST_BPP (MOST_BAM / DRIVE_PERIODS_PER_MS)  // too far between two looks to tell the direction
 
 static void begin_anew(const drive_t* d) {

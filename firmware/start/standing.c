@@ -16,6 +16,8 @@
 #define RESISTANCE_SHARE 16  // less than a sixteenth off is left alone
 #define SATURATION_TRIES 3u
 #define MOTION_TRIES 3u
+#define HELD_TRIES 6u
+#define HOLD_BACKS 2u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
 void start_enter(drive_t* d, start_phase_t phase) {
@@ -122,7 +124,7 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
   drive_start_t* const s = &d->start;
   if (valid) axis_add(&s->axis, &d->position.avv.regression);
   if (!axis_is_complete(&s->axis)) {
-    if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+    if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_START_VOLTAGE);
     return false;
   }
   if (!start_decides(d)) return false;
@@ -157,14 +159,45 @@ static void decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
   if (d->state == DRIVE_RUN && speed == 0) hold_begin(d);
 }
 
+static void begin_test(drive_t* d, start_phase_t phase) {
+  static const followed_t none = {0, 0};
+  d->start.followed = none;
+  start_enter(d, phase);
+}
+
+// The voltage is too low for the current, and with it the angle may have gone astray and the shaft been set in motion:
+// from the beginning, with less.
+static void hold_back(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  s->held_back++;
+  s->pulses = 0;
+  s->tries = 0;
+  if (s->held_back > HOLD_BACKS) {
+    drive_raise(d, FAULT_START_VOLTAGE);
+  } else {
+    start_look(d);
+  }
+}
+
+// Twice as much with each try; after one that the voltage was too low for, half of that.
+static int32_t motion_current(const drive_start_t* s) {
+  if (s->held_back > 0u && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
+  return q_min(q_shl_sat(parameters.polarity_current, s->tries), parameters.current_limit);
+}
+
 static void try_motion(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (s->phase != START_MOTION) s->tries = 0;
-  const int32_t current = q_min(q_shl_sat(parameters.polarity_current, s->tries), parameters.current_limit);
+  if (s->held_back > 0u && s->tries > 0u) {
+    polarity_again(&s->motion, d->position.avv.observer.angle_bam);
+    begin_test(d, START_MOTION);
+    return;
+  }
+  const int32_t current = motion_current(s);
   const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
   polarity_begin(&s->motion, d->position.avv.observer.angle_bam, current,
                  q_mul_sat(torque_q16, d->model.accel_q12, 20));
-  start_enter(d, START_MOTION);
+  begin_test(d, START_MOTION);
 }
 
 // Twice with the same current, the second time together with the first; then with half as much again.
@@ -175,7 +208,7 @@ static void try_saturation(drive_t* d) {
   const int32_t current = q_min(parameters.start_current + more, parameters.current_limit);
   if (s->tries == 1u) {
     saturation_again(&s->saturation);
-    start_enter(d, START_SATURATION);
+    begin_test(d, START_SATURATION);
     return;
   }
   if (!saturation_is_visible(&d->model, &d->config.saturation, current)) {
@@ -183,13 +216,15 @@ static void try_saturation(drive_t* d) {
     return;
   }
   saturation_begin(&s->saturation, &d->model, &d->config.saturation, current);
-  start_enter(d, START_SATURATION);
+  begin_test(d, START_SATURATION);
 }
 
 static void step_settle(drive_t* d) {
   if (d->start.tick < SETTLE_PERIODS || !start_decides(d)) return;
   if (parameters.polarity_check == 0) {
     decided(d, POLARITY_RIGHT, 0);
+  } else if (d->start.held_back > 0u) {
+    try_motion(d);
   } else {
     try_saturation(d);
   }
@@ -204,32 +239,46 @@ static void take_resistance(drive_t* d) {
 static void step_saturation(drive_t* d) {
   drive_start_t* const s = &d->start;
   saturation_t* const test = &s->saturation;
-  d->control.reference_q20.d = saturation_step(test, &d->position.avv.regression, &d->model);
+  const int32_t asked_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
+  d->control.reference_q20.d = asked_q20;
+  const int16_t tick = (int16_t)((test->tick - 1) % SATURATION_SEGMENT);
+  if (s->tick <= SATURATION_LENGTH)
+    followed_step(&s->followed, tick, SATURATION_SEGMENT, asked_q20, d->control.measured_q20.d);
   if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_decides(d)) return;
   s->tries++;
-  if (test->result != POLARITY_AMBIGUOUS) {
+  if (!followed_well(&s->followed, test->current_q20)) {
+    hold_back(d);
+  } else if (test->result != POLARITY_AMBIGUOUS) {
     take_resistance(d);
     decided(d, test->result, test->sigma_q8);
   } else if (s->tries < SATURATION_TRIES) {
     try_saturation(d);
-  } else {
+  } else if (present_speed(d) == 0) {
     try_motion(d);
+  } else {
+    hold_back(d);
   }
 }
 
 static void step_motion(drive_t* d) {
   drive_start_t* const s = &d->start;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
-  d->control.reference_q20.q = polarity_step(&s->motion, raw);
+  const int32_t asked_q20 = polarity_step(&s->motion, raw);
+  d->control.reference_q20.q = asked_q20;
+  const int16_t tick = (int16_t)((s->motion.tick - 1) % POLARITY_SEGMENT);
+  if (s->tick <= POLARITY_LENGTH)
+    followed_step(&s->followed, tick, POLARITY_SEGMENT, asked_q20, d->control.measured_q20.q);
   if (s->motion.result == POLARITY_PENDING || !start_decides(d)) return;
   s->tries++;
-  if (s->motion.result != POLARITY_AMBIGUOUS) {
+  if (!followed_well(&s->followed, s->motion.current_q20)) {
+    hold_back(d);
+  } else if (s->motion.result != POLARITY_AMBIGUOUS) {
     decided(d, s->motion.result, s->motion.sigma_q8);
-  } else if (s->tries < MOTION_TRIES) {
+  } else if (s->tries < ((s->held_back > 0u) ? HELD_TRIES : MOTION_TRIES)) {
     try_motion(d);
   } else {
     s->sigma_q8 = s->motion.sigma_q8;
-    drive_raise(d, FAULT_POLARITY);
+    drive_raise(d, (s->held_back > 0u) ? FAULT_START_VOLTAGE : FAULT_POLARITY);
   }
 }
 

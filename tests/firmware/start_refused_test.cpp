@@ -58,7 +58,7 @@ TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft
   EXPECT_NE(drive.start.phase, START_AXIS);
 }
 
-// Windows that never show the axis: 20 ms, then the drive says so.
+// Windows that never show the axis, for want of voltage: 20 ms, then the drive says so.
 TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
   parameters.flying_start = 0;
   drive_command_start();
@@ -70,7 +70,7 @@ TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
     drive.start.axis.count = 0;
     period();
   }
-  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
   EXPECT_NEAR(n, 200, 3);
   EXPECT_FALSE(board.gates_on);
 }

@@ -214,6 +214,68 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   EXPECT_EQ(start().tries, 0);
 }
 
+// A test whose current did not follow does not count, whatever it says: all over again from the listening, by motion,
+// with half of the current that was too much; after the third time the voltage is named.
+TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
+  parameters.polarity_current = raw(4.0, 20);
+  start().saturation.current_q20 = raw(10.0, 20);
+  start().followed.worst_q20 = raw(3.8, 20);
+  saturation_says(POLARITY_RIGHT);
+  EXPECT_EQ(start().phase, START_AXIS);
+  EXPECT_EQ(start().held_back, 1);
+  at(START_SETTLE, 100);
+  step();
+  ASSERT_EQ(start().phase, START_MOTION);
+  EXPECT_EQ(start().motion.current_q20, raw(4.0, 20));
+  EXPECT_EQ(start().followed.worst_q20, 0);
+  start().followed.worst_q20 = raw(1.6, 20);
+  motion_says(1.0);
+  EXPECT_EQ(start().phase, START_AXIS);
+  at(START_SETTLE, 100);
+  step();
+  EXPECT_EQ(start().motion.current_q20, raw(2.0, 20));
+  motion_says(0.0);
+  EXPECT_EQ(start().motion.current_q20, raw(2.0, 20)) << "not more again";
+  EXPECT_EQ(start().motion.passes, 2);
+  start().followed.worst_q20 = raw(0.8, 20);
+  motion_says(1.0);
+  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+}
+
+TEST_F(StartStanding, ThreeEighthsOfTheAmplitudeAreTheLimit) {
+  start().saturation.current_q20 = raw(10.0, 20);
+  start().followed.worst_q20 = raw(3.7, 20);
+  saturation_says(POLARITY_RIGHT);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+}
+
+// What less current does not tell either is the voltage's fault, not the shaft's.
+TEST_F(StartStanding, WhatStaysOpenAfterThatNamesTheVoltage) {
+  drive.config.saturation = {0, 0};
+  start().held_back = 1;
+  at(START_SETTLE, 100);
+  step();
+  for (int n = 0; n < 5; ++n) motion_says(0.0);
+  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(start().motion.passes, 6);
+  motion_says(0.0);
+  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+}
+
+// A saturation that stays open on a shaft that turns meanwhile, or an angle that does, is no place for the other test.
+TEST_F(StartStanding, AShaftThatTheTestHasSetInMotionIsListenedToAnew) {
+  drive.config.saturation = {0, raw(0.002, 30)};
+  start().tries = 2;
+  drive.position.avv.observer.speed_bpp = bpp(60.0);
+  at(START_SATURATION, SATURATION_LENGTH + 100, 60.0);
+  start().saturation.tick = SATURATION_LENGTH;
+  start().saturation.result = POLARITY_AMBIGUOUS;
+  step();
+  EXPECT_EQ(start().held_back, 1);
+  EXPECT_EQ(start().phase, START_AXIS);
+}
+
 // Twice the current with each try, up to the limit; after three the polarity is a fault that says how sure it was.
 TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   parameters.polarity_current = raw(4.0, 20);
@@ -380,7 +442,7 @@ TEST_F(StartStanding, AnAxisHasTwentyMilliseconds) {
   step();
   EXPECT_EQ(drive.state, DRIVE_START);
   step();
-  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
 }
 
 }  // namespace

@@ -348,7 +348,7 @@ TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
     period();
   }
   EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
   EXPECT_LT(drive.supervision.missing, 5) << "windows there were";
 }
 

@@ -18,7 +18,10 @@ static int32_t any_current(void) { return any_from(AMPERES_Q20 / 8, CURRENT_MAX_
 static void move(void) {
   polarity_t s;
   polarity_begin(&s, any_u32, any_current(), any_i32);
-  while (any_bool()) (void)polarity_step(&s, any_u32);
+  while (any_bool()) {
+    (void)polarity_step(&s, any_u32);
+    if (any_bool()) polarity_again(&s, any_u32);
+  }
 }
 
 static void saturate(void) {

@@ -14,8 +14,8 @@
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"
 
-/*@ requires \valid(s); assigns *s, \result \from *s, angle_bam;
-    ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3); */
+/*@ requires \valid(s) && FROM_TO(s->passes, 1, 6); assigns *s, \result \from *s, angle_bam;
+    ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3) && FROM_TO(s->passes, 1, 6); */
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam);
 
 /*@ requires \valid(s) && \valid_read(r) && \valid_read(m) && FROM_TO(s->passes, 0, 8);
