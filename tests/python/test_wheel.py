@@ -124,6 +124,15 @@ def test_the_page_is_served_from_the_wheel(client, board):
             running.terminate()
 
 
+def test_a_demonstration_is_made_and_flashed(client, tmp_path):
+    assert client.run("stillspin", "demo-image", tmp_path).returncode == 0
+    port, log = tmp_path / "port", tmp_path / "log"
+    with desk.process(log, (port,), "loader", str(tmp_path / "flash.bin"), "--serial-link", str(port), "--speed", "10"):
+        said = client.run("stillspin", "flash", tmp_path / "stillspin_demonstration.bin", "--port", port)
+    assert said.returncode == 0, said.stderr
+    assert "the chip runs: drive" in log.read_text()
+
+
 def test_the_firmwares_table_is_in_the_wheel(client):
     said = client.run("stillspin", "params")
     assert "pole_pairs" in said.stdout, said.stderr

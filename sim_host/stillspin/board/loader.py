@@ -10,7 +10,7 @@ from typing import cast
 from stillspin import core
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
-from stillspin.board.pseudo_terminal import PseudoTerminal
+from stillspin.board.proving_port import ProvingPort
 from stillspin.board.serve import stopped_by_signals
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
@@ -58,13 +58,13 @@ def serve(file: Path, kernel: Program, link: Path | None, speed: float) -> None:
         board.set_serial_boot(True)
         board.power_cycle()
         # The desk asks nothing else of a board than what this one has, too.
-        desk = Desk(cast(NativeBoard, board), PseudoTerminal(link))
+        desk = Desk(cast(NativeBoard, board), ProvingPort(link))
     except InputError:
         board.close()
         raise
     print(f"virtual board: serial boot, flash {file}")
     print(f"serial port:   {desk.port.name}")
-    print(f"try:           stillspin flash IMAGE --kernel KERNEL --port {desk.port.name}", flush=True)
+    print(f"try:           stillspin flash IMAGE --port {desk.port.name}", flush=True)
     try:
         pacer = Pacer(speed)
         with stopped_by_signals() as stop:

@@ -17,4 +17,5 @@ def register(app: typer.Typer) -> None:
     app.command(name="tune")(tune.tune)
     app.command(name="hil")(hil.hil)
     app.command(name="flash")(flash.flash)
+    app.command(name="demo-image")(flash.demo_image)
     app.command(name="loader")(loader.loader)

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.flash import layout
+from stillspin.flash import demonstration, layout
 from stillspin.flash.files import DriveImage, drive_image, kernel_program
 from stillspin.flash.kernel import Info, Kernel
 from stillspin.flash.line import SerialLine
@@ -20,8 +20,8 @@ from stillspin.link import address
 from stillspin.link.errors import DriveError
 from stillspin.report.progress import PhaseBar
 
-KERNEL_NAME = "stillspin_flash_kernel.out"
-"""Beside the image, unless --kernel says otherwise."""
+KERNEL_NAMES = ("stillspin_flash_kernel.out", demonstration.KERNEL_NAME)
+"""Beside the image, unless --kernel says otherwise; the first that is there."""
 
 
 def flash(
@@ -34,7 +34,7 @@ def flash(
     ] = "",
     kernel_file: Annotated[
         Path | None,
-        typer.Option("--kernel", metavar="FILE", help=f"The flash kernel [default: {KERNEL_NAME} beside IMAGE]."),
+        typer.Option("--kernel", metavar="FILE", help=f"The flash kernel [default: {KERNEL_NAMES[0]} beside IMAGE]."),
     ] = None,
     only_verify: Annotated[
         bool, typer.Option("--verify", help="Compare and change nothing; 4 when they differ.")
@@ -52,7 +52,7 @@ def flash(
     print(f"image:  {image.identity.text}, {image.size} words in sectors B to D")
     if not image.summed:
         print("note:   the image has no check sum: the board's self-test will not know whether its flash is right")
-    kernel = kernel_program(_kernel_path(image_file, kernel_file))
+    kernel = kernel_program(kernel_file or kernel_beside(image_file))
     print(f"kernel: {kernel.size} words, {kernel.kind}")
     if dry_run:
         _tell_plan(image)
@@ -71,13 +71,27 @@ def flash(
         _tell_update(outcome)
 
 
-def _kernel_path(image_file: Path, kernel_file: Path | None) -> Path:
-    if kernel_file:
-        return kernel_file
-    beside = image_file.parent / KERNEL_NAME
-    if not beside.exists():
-        raise InputError(f"there is no flash kernel {beside}; --kernel FILE says where it is (docs/flash.md)")
-    return beside
+def demo_image(
+    *, directory: Annotated[Path, typer.Argument(metavar="DIRECTORY", help="Where the two files go; made if need be.")]
+) -> None:
+    """Make an image and a flash kernel to try `stillspin flash` with, on a virtual board; no other board gets them."""
+    image, kernel = demonstration.write(directory)
+    print(f"image:  {image}\nkernel: {kernel}")
+    print(f"try:    stillspin loader {directory / 'flash.bin'}    a virtual board in serial boot, which names its port")
+    print(f"        stillspin flash {image} --port PORT")
+
+
+def kernel_beside(file: Path) -> Path:
+    """The kernel that lies beside a file.
+
+    Raises:
+        InputError: there is none.
+    """
+    for name in KERNEL_NAMES:
+        if (file.parent / name).exists():
+            return file.parent / name
+    missing = file.parent / KERNEL_NAMES[0]
+    raise InputError(f"there is no flash kernel {missing}; --kernel FILE says where it is (docs/flash.md)")
 
 
 def _port(text: str) -> str:

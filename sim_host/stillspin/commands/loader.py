@@ -8,13 +8,17 @@ from typing import Annotated
 import typer
 
 from stillspin.board import loader as virtual
+from stillspin.commands.flash import kernel_beside
 from stillspin.flash.files import kernel_program
 
 
 def loader(
     *,
     file: Annotated[Path, typer.Argument(metavar="FLASH", help="Keeps the flash; a new board when not there.")],
-    kernel_file: Annotated[Path, typer.Option("--kernel", metavar="FILE", help="The flash kernel to expect.")],
+    kernel_file: Annotated[
+        Path | None,
+        typer.Option("--kernel", metavar="FILE", help="The flash kernel to expect [default: the one beside FLASH]."),
+    ] = None,
     link: Annotated[
         Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
     ] = None,
@@ -26,4 +30,4 @@ def loader(
 
     What is downloaded is C28x code and does not run here: the kernel's C stands in for its own image and no other.
     """
-    virtual.serve(file, kernel_program(kernel_file), link, speed)
+    virtual.serve(file, kernel_program(kernel_file or kernel_beside(file)), link, speed)

@@ -104,6 +104,12 @@ def head(entry: int) -> bytes:
     return _word(KEY) + bytes(2 * _RESERVED) + _address(entry)
 
 
+def to_octets(program: Program) -> bytes:
+    """A whole program as a file has it."""
+    body = b"".join(octets for block in program.blocks for octets in block_octets(block))
+    return head(program.entry or 0) + body + END
+
+
 def block_octets(block: Block) -> Iterator[bytes]:
     """A block of the stream, in as many as its size needs."""
     for at in range(0, len(block.words), _LONGEST):

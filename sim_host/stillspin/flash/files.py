@@ -50,21 +50,27 @@ class Identity:
     revision: int
     changed: bool
     tables: int
+    demonstration: bool = False
+    """It is no program, and for a virtual board alone."""
 
     @property
     def text(self) -> str:
         """For people."""
         version = ".".join(map(str, self.version))
+        if self.demonstration:
+            return f"{version} (a demonstration, for a virtual board alone)"
         commit = f"commit {self.revision:08x}" if self.revision else "unknown commit"
         return f"{version} ({commit}{', changed' if self.changed else ''}, tables {self.tables:08x})"
 
 
 def identity_of(words: tuple[int, ...]) -> Identity | None:
     """The identity in its ten words, whether or not the mark is there; None where there is none."""
-    _, form, major, minor, patch, low, high, changed, tables_low, tables_high = words
+    _, form, major, minor, patch, low, high, flags, tables_low, tables_high = words
     if form != layout.IDENTITY_FORMAT:
         return None
-    return Identity((major, minor, patch), high << 16 | low, bool(changed), tables_high << 16 | tables_low)
+    changed, demonstration = bool(flags & layout.CHANGED), bool(flags & layout.DEMONSTRATION)
+    tables = tables_high << 16 | tables_low
+    return Identity((major, minor, patch), high << 16 | low, changed, tables, demonstration)
 
 
 @dataclass(frozen=True)
@@ -156,7 +162,7 @@ def kernel_program(path: Path) -> Program:
                 f"{name}: 0x{block.address:06X} to 0x{block.end - 1:06X} is not in the kernel's RAM (H0); "
                 "link it with toolchain/c28x/f2808_kernel.cmd"
             )
-    if program.word(layout.KERNEL_RAM.start) != layout.KERNEL_MARK:
+    if program.word(layout.KERNEL_RAM.start) not in {layout.KERNEL_MARK, layout.KERNEL_DEMONSTRATION}:
         raise InputError(f"{name}: is no flash kernel: there is no mark at 0x{layout.KERNEL_RAM.start:06X}")
     if program.entry is None or program.word(program.entry) is None:
         raise InputError(f"{name}: its entry point is not among what it loads")

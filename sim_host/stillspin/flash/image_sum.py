@@ -26,7 +26,7 @@ def _pair(program: Program, address: int) -> int:
     return _NONE if low is None or high is None else high << 16 | low
 
 
-def _computed(program: Program, end: int) -> int:
+def computed(program: Program, end: int) -> int:
     """The sum of what the flash holds once the program is in it, its own place erased."""
     words = [layout.ERASED] * (end - layout.FLASH.start)
     for block in program.blocks:
@@ -50,7 +50,7 @@ def check(program: Program, name: str) -> bool:
         return False
     if not layout.SUM + 2 <= end <= layout.CSM_RESERVED.start:
         raise InputError(f"{name}: its check sum ends at 0x{end:06X}, outside of the image; the file is damaged")
-    wanted, found = _pair(program, layout.SUM), _computed(program, end)
+    wanted, found = _pair(program, layout.SUM), computed(program, end)
     if wanted != found:
         raise InputError(
             f"{name}: its words have the check sum 0x{found:08X}, it says 0x{wanted:08X}; the file is damaged: build "
@@ -71,7 +71,7 @@ def stamp(data: bytes, name: str) -> tuple[bytes, int, int]:
         raise InputError(f"{name}: has no identity with room for a check sum at 0x{layout.IDENTITY:06X}")
     end = max(used)
     data = coff.patched(data, name, layout.SUM_END, (end & 0xFFFF, end >> 16))
-    crc = _computed(coff.read(data, name), end)
+    crc = computed(coff.read(data, name), end)
     return coff.patched(data, name, layout.SUM, (crc & 0xFFFF, crc >> 16)), end, crc
 
 

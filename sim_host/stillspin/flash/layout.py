@@ -21,6 +21,8 @@ SUM_END = IDENTITY + 10
 SUM = IDENTITY + 12
 MARK = 0x5AA5
 IDENTITY_FORMAT = 1
+CHANGED, DEMONSTRATION = 1, 2
+"""Bits of the identity's member `changed`."""
 
 PART = 0x003C
 PART_NAME = "TMS320F2808"
@@ -28,6 +30,8 @@ PART_NAME = "TMS320F2808"
 KERNEL_RAM = range(0x3FA000, 0x3FC000)
 """H0 by its high address: all that is loaded lies there, so that it can be read back and compared."""
 KERNEL_MARK = 0x464B
+KERNEL_DEMONSTRATION = 0x464D
+"""In the mark's place where the kernel is no program: no host of before loads that."""
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Protocol, Self
 
 import serial
@@ -11,6 +13,8 @@ from stillspin.link.serial_port import explain
 
 _WRITE_TIMEOUT = 2.0
 _PATIENCE = 100
+_PSEUDO = re.compile(r"/dev/(pts/\d+|ttys\d+)")
+"""On Linux and on macOS; Windows has none."""
 
 
 class Line(Protocol):
@@ -19,6 +23,11 @@ class Line(Protocol):
     @property
     def name(self) -> str:
         """For people."""
+        ...
+
+    @property
+    def is_pseudo_terminal(self) -> bool:
+        """Whether a program is at the other end, not a cable."""
         ...
 
     def set_rate(self, rate: int) -> None:
@@ -52,10 +61,16 @@ class SerialLine:
             LinkError: it cannot be opened.
         """
         self.name = f"serial port {port}"
+        self.is_pseudo_terminal = self.is_pseudo(port)
         try:
             self._port = serial.Serial(port, exclusive=True, write_timeout=_WRITE_TIMEOUT)
         except (OSError, serial.SerialException, ValueError) as error:
             raise LinkError(explain(port, error)) from error
+
+    @staticmethod
+    def is_pseudo(port: str) -> bool:
+        """Whether a port is a pseudo-terminal, also by a link to it."""
+        return _PSEUDO.fullmatch(str(Path(port).resolve())) is not None
 
     def __enter__(self) -> Self:
         return self

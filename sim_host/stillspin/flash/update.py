@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stillspin.errors import InputError
+from stillspin.flash import demonstration, layout, rom, virtual
 from stillspin.flash import kernel as kernel_requests
-from stillspin.flash import layout, rom
 from stillspin.flash.files import DriveImage
 from stillspin.flash.image_sum import crc_of
 from stillspin.flash.kernel import Info, Kernel
@@ -40,6 +41,20 @@ class Outcome:
     erased: tuple[str, ...] = ()
     written: int = 0
     before: Info | None = None
+
+
+def check_demonstration(line: Line, program: Program, image: DriveImage) -> None:
+    """Refuse what no chip can run to everything but a virtual board; the first on a line.
+
+    Raises:
+        InputError: this is a demonstration, and no virtual board is there.
+        LinkError: the port is lost.
+    """
+    if (image.identity.demonstration or demonstration.is_kernel(program)) and not virtual.is_at(line):
+        raise InputError(
+            f"{line.name}: no virtual board is there, and a demonstration is for nothing else: a chip would run into "
+            "words that are no program; stillspin loader makes a virtual board. Nothing was loaded"
+        )
 
 
 def connect(line: Line, program: Program, progress: Progress) -> Kernel:
@@ -145,8 +160,10 @@ def verify(line: Line, program: Program, image: DriveImage, progress: Progress) 
     """Compare, and change nothing.
 
     Raises:
+        InputError: see check_demonstration.
         DriveError: the board cannot be asked.
     """
+    check_demonstration(line, program, image)
     kernel = connect(line, program, progress)
     info = check_board(kernel, line, image)
     progress("comparing", 0.0)
@@ -158,8 +175,10 @@ def update(line: Line, program: Program, image: DriveImage, progress: Progress) 
     """Bring an image onto the board, unless it is there already.
 
     Raises:
+        InputError: see check_demonstration.
         DriveError: it is not there; the message says what state the board is in, and what to do.
     """
+    check_demonstration(line, program, image)
     kernel = connect(line, program, progress)
     info = check_board(kernel, line, image)
     progress("comparing", 0.0)
