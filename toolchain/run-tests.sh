@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
 # Runs the checks, the C++ tests and the Python tests, all three whatever the ones before gave, so that one run shows
-# everything that is wrong. Usage: toolchain/run-tests.sh PRESET, after a build.
+# everything that is wrong. The last lines name every test that was skipped. Usage: toolchain/run-tests.sh PRESET, after
+# a build.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=$1
 failed=()
+results=("$PWD/build/tests-cpp.xml" "$PWD/build/tests-python.xml")
+rm -f "${results[@]}"
 
 .venv/bin/python toolchain/check.py || failed+=("checks (make lint)")
-ctest --preset "$preset" --progress || failed+=("C++ tests (ctest --preset $preset)")
+ctest --preset "$preset" --progress --output-junit "${results[0]}" || failed+=("C++ tests (ctest --preset $preset)")
 .venv/bin/python -m pytest -q -c sim_host/pyproject.toml --rootdir . \
-  -n "$(nproc)" --dist loadfile --no-loadscope-reorder tests/python || failed+=("Python tests")
+  -n "$(nproc)" --dist loadfile --no-loadscope-reorder --junit-xml "${results[1]}" tests/python || failed+=("Python tests")
 
 if ((${#failed[@]})); then
   printf 'failed: %s\n' "${failed[@]}" >&2
-  exit 1
 fi
+.venv/bin/python toolchain/tally.py "${results[@]}"
+exit $((${#failed[@]} > 0))

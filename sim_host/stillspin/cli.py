@@ -20,7 +20,7 @@ from stillspin.cases import drift, profile, scenario_file
 from stillspin.cases.scenario import Scenario
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.one_line_errors import OneLineErrors
+from stillspin.one_line_errors import HELP, OneLineErrors
 from stillspin.options import (
     ChangeOption,
     JobsOption,
@@ -44,8 +44,24 @@ app = typer.Typer(
     cls=OneLineErrors,
     help="The virtual drive: run the firmware on a simulated inverter and motor and measure what it does.",
     rich_markup_mode=None,
-    add_completion=False,
+    context_settings=HELP,
 )
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"stillspin {__version__} ({revision()})")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    *,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="The version, and end.")
+    ] = False,
+) -> None:
+    pass
 
 
 def _on(motor: str | None, scenario: Scenario) -> Scenario:

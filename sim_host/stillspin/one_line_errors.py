@@ -16,9 +16,22 @@ from typer.exceptions import TyperException
 from stillspin.errors import StillspinError
 from stillspin.exit_codes import ExitCode
 
+HELP = {"help_option_names": ["-h", "--help"]}
+"""Settings of the whole command line: commands inherit them."""
+
 
 class OneLineErrors(TyperGroup):
-    """A group of commands that says what was wrong in one line, and ends with a status of exit_codes.py."""
+    """A group of commands that says what was wrong in one line, and ends with a status of exit_codes.py.
+
+    With nothing behind its name it shows its help, unless it does something by itself.
+    """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """See typer."""
+        if not args and not self.invoke_without_command and not ctx.resilient_parsing:
+            print(ctx.get_help())
+            ctx.exit()
+        return super().parse_args(ctx, args)
 
     def main(
         self,
