@@ -108,6 +108,13 @@ class FakeDrive:
             os.close(self._master)
             os.close(self._slave)
 
+    def switch_on_again(self):
+        """As after a power cut: the parameters are the defaults, the time begins anew, nothing is streamed."""
+        with self._lock:
+            self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
+            self.state, self.fault, self.guarded, self.stream = READY, 0, False, None
+            self._begin = time.monotonic()
+
     def raise_fault(self, code):
         with self._lock:
             self._fail(code)

@@ -71,6 +71,12 @@ class VirtualTransport:
             self._check()
             self._board.set_load(torque)
 
+    def set_input(self, name: str, value: float) -> None:
+        """Set an input of the board: "emergency" pressed is 1; the others are those of `NativeBoard.set_input`."""
+        with self._lock:
+            self._check()
+            self._board.set_input(name, value)
+
     def truth(self) -> dict[str, float]:
         """The true machine: angle and speed of the shaft, currents, torques, DC link."""
         with self._lock:

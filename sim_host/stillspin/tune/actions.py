@@ -9,46 +9,13 @@ from typing import Any
 
 from stillspin.drive import commissioning, scope
 from stillspin.drive.protocol import Words
-from stillspin.drive.table import Parameter
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
-from stillspin.tune.groups import group_of
-from stillspin.tune.workbench import Message, Workbench
+from stillspin.tune.messages import Message
+from stillspin.tune.workbench import Workbench
 
 _POLL = 0.05
 _LONGEST = 600.0
-
-
-def describe(bench: Workbench) -> Message:
-    """Everything that does not change: the drive's table, for a page that has just been opened."""
-    table = bench.drive.table
-    return {
-        "t": "hello",
-        "version": bench.drive.version,
-        "where": bench.drive.link.transport.name,
-        "parameters": [_parameter(entry) for entry in table.parameters],
-        "signals": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in table.signals],
-        "values": bench.drive.parameters(),
-        "plotted": bench.plotted,
-        "edges": list(scope.EDGES),
-        "depth": scope.DEPTH,
-    }
-
-
-def _parameter(entry: Parameter) -> Message:
-    return {
-        "name": entry.name,
-        "id": entry.id,
-        "group": group_of(entry.id),
-        "unit": entry.unit,
-        "decimals": entry.decimals,
-        "minimum": entry.minimum,
-        "maximum": entry.maximum,
-        "initial": entry.initial,
-        "always": entry.always,
-        "meaning": entry.meaning,
-        "range": entry.range_text,
-    }
 
 
 def _set(bench: Workbench, _: str, given: Message) -> Any:
@@ -98,6 +65,10 @@ def _plot(bench: Workbench, _: str, given: Message) -> Any:
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise InputError("signals: must be a list of names")
     bench.plot(names)
+
+
+def _look_again(bench: Workbench, _: str, __: Message) -> Any:
+    bench.look_again()
 
 
 def _commission(bench: Workbench, who: str, _: Message) -> Any:
@@ -181,6 +152,7 @@ ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {
     "defaults": _defaults,
     "faults": _faults,
     "plot": _plot,
+    "look_again": _look_again,
     "commission": _commission,
     "phase": _phase,
     "results": _results,

@@ -1,58 +1,56 @@
-"""The drive as the page sees it: one watcher that asks for its status, stops it when nobody holds it, and streams."""
+"""The drive as the page sees it: commands, the dead man's switch over them, and what is to be plotted."""
 
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
-from stillspin.drive import Drive, Stream
+from stillspin.drive import Drive
 from stillspin.drive.protocol import GUARDED, Command
-from stillspin.drive.state import COMMISSIONING_RUNNING, Status
+from stillspin.drive.state import COMMISSIONING_RUNNING
 from stillspin.errors import InputError
-from stillspin.link.errors import DriveError, LinkError
+from stillspin.link.errors import DriveError
+from stillspin.tune.connection import Connection
 from stillspin.tune.dead_man import PATIENCE, DeadMan
-
-Message = dict[str, Any]
-Tell = Callable[[Message], None]
-
-_STATUS = 0.1
-_BATCH = 0.05
-_STREAM = 0.02
-_DEFAULT = ["speed", "speed_reference", "current_d", "current_q"]
+from stillspin.tune.messages import Tell
+from stillspin.tune.streamer import Streamer
+from stillspin.tune.watch import Watch
 
 
 class Workbench:
     """Everything blocks: call it from a thread. `tell` gets what all pages should know, from any thread."""
 
-    def __init__(self, drive: Drive, tell: Tell, patience: float = PATIENCE) -> None:
-        self.drive = drive
+    def __init__(
+        self, drive: Drive, tell: Tell, patience: float = PATIENCE, reopen: Callable[[], Drive] | None = None
+    ) -> None:
+        self.connection = Connection(drive, reopen)
         self.dead_man = DeadMan(patience)
         self.tell = tell
         self._end = threading.Event()
-        self._stop_owed = False
-        self._plotted = list(dict.fromkeys(self._known(_DEFAULT)))
-        self._replot = threading.Event()
-        self._last: Message = {}
         self._capture = 0
-        self._threads = [
-            threading.Thread(target=self._watch, name="stillspin watch", daemon=True),
-            threading.Thread(target=self._pump, name="stillspin stream", daemon=True),
-        ]
+        self.streamer = Streamer(self.connection, tell, self._end)
+        self.watch = Watch(self, self._end)
+
+    @property
+    def drive(self) -> Drive:
+        """The drive; another object after it has been opened again."""
+        return self.connection.drive
 
     def begin(self) -> None:
         """Watch and stream from now on."""
-        for thread in self._threads:
-            thread.start()
+        self.watch.start()
+        self.streamer.start()
 
     def close(self) -> None:
         """Stop the motor if a page holds it, and end."""
-        if self.dead_man.release():
-            self.stop()
-        self._end.set()
-        for thread in self._threads:
-            thread.join(2.0)
+        try:
+            if self.dead_man.release():
+                self.stop()
+        finally:
+            self._end.set()
+            self.watch.join()
+            self.streamer.join()
+            self.connection.close()
 
     # Commands
 
@@ -76,7 +74,7 @@ class Workbench:
                 self.stop()  # the command may have arrived although its answer did not
             raise
         if not self.dead_man.is_held_by(who):  # let go while the command was under way
-            self._stop()
+            self.watch.stop()
 
     def release(self, who: str, why: str) -> None:
         """`who` has let go: the motor stops if it was his."""
@@ -87,13 +85,11 @@ class Workbench:
     def stop(self) -> None:
         """Stop, whoever holds it."""
         self.dead_man.release()
-        self._stop()
+        self.watch.stop()
 
-    def _stop(self) -> None:
-        """Stop; what fails is tried again by the watch, which asks for nothing else until then."""
-        self._stop_owed = True
-        self.drive.stop()
-        self._stop_owed = False
+    def look_again(self) -> None:
+        """Try to open a drive that is away now, and not only in half a second."""
+        self.connection.hurry()
 
     def coast(self) -> None:
         """Gates off, whoever holds it."""
@@ -105,8 +101,7 @@ class Workbench:
         self.drive.table.chosen(names)
         if not 1 <= len(names) <= 8:
             raise InputError(f"{len(names)} signals; 1 … 8 can be plotted at once")
-        self._plotted = list(dict.fromkeys(names))
-        self._replot.set()
+        self.streamer.choose(names)
 
     def begin_capture(self) -> int:
         """The number of a new capture; from now on no other is under way."""
@@ -120,82 +115,4 @@ class Workbench:
     @property
     def plotted(self) -> list[str]:
         """Names of the signals that are streamed."""
-        return list(self._plotted)
-
-    @property
-    def last_status(self) -> Mapping[str, Any]:
-        """As it was told last."""
-        return self._last
-
-    # Threads
-
-    def _watch(self) -> None:
-        """The dead man's switch and the questions that keep a guarded drive running are one loop: both, or neither."""
-        while not self._end.wait(_STATUS):
-            try:
-                if self.dead_man.expired():
-                    self._stop_owed = True
-                if self._stop_owed:
-                    self._stop()
-                    self.tell({"t": "note", "text": "stopped: nothing was heard from the page"})
-                self._last = status_message(self.drive.status())
-                self.tell(self._last)
-            except LinkError as error:
-                self.tell({"t": "lost", "text": str(error)})
-                return
-            except DriveError as error:
-                self.tell({"t": "note", "text": str(error)})
-
-    def _pump(self) -> None:
-        while not self._end.is_set():
-            self._replot.clear()
-            names = self.plotted
-            if not names:
-                return
-            try:
-                with self.drive.stream(names, _STREAM) as stream:
-                    self.tell({"t": "plotted", "signals": names})
-                    self._forward(stream)
-            except LinkError:
-                return
-            except DriveError as error:
-                self.tell({"t": "note", "text": str(error)})
-                self._end.wait(1.0)
-
-    def _forward(self, stream: Stream) -> None:
-        times: list[float] = []
-        rows: list[tuple[float, ...]] = []
-        sent = time.monotonic()
-        while not (self._end.is_set() or self._replot.is_set()):
-            sample = stream.next(_BATCH)
-            if sample:
-                times.append(sample.time)
-                rows.append(sample.values)
-            now = time.monotonic()
-            if rows and now - sent >= _BATCH:
-                columns = [list(column) for column in zip(*rows, strict=True)]
-                self.tell({"t": "samples", "time": times, "values": columns, "lost": stream.lost})
-                times, rows, sent = [], [], now
-
-    def _known(self, names: list[str]) -> list[str]:
-        known = [signal.name for signal in self.drive.table.signals]
-        return [name for name in names if name in known] or known[:1]
-
-
-def status_message(status: Status) -> Message:
-    """A status for the page."""
-    raw = status.raw
-    return {
-        "t": "status",
-        "time": status.time,
-        "state": status.state,
-        "number": raw.state,
-        "energised": status.energised,
-        "fault": status.fault,
-        "remedy": status.remedy,
-        "limits": list(status.limits),
-        "speed": status.speed,
-        "reference": status.reference,
-        "store": status.store,
-        "commissioning": {"outcome": raw.outcome, "phase": raw.phase, "progress": raw.progress / 1000},
-    }
+        return self.streamer.names

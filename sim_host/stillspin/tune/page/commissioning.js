@@ -72,7 +72,8 @@ export class Commissioning {
     this.measuring = false;
     by("keep").checked = false;
     if ([DONE, PARTLY].includes(commissioning.outcome)) await this.result(commissioning.outcome);
-    else this.broken(commissioning.outcome === ABORTED ? "It was stopped; the parameters are as before." : `It ended in a fault: ${fault}`);
+    else if (commissioning.outcome === ABORTED) this.broken("It was stopped; the parameters are as before.");
+    else this.broken(fault ? `It ended in a fault: ${fault}` : "The drive was switched off meanwhile: nothing was measured.");
   }
 
   async progress({ progress, phase }) {

@@ -9,6 +9,7 @@ export class Faults {
     this.link = link;
     this.fail = fail;
     this.last = "";
+    link.on(["hello", "again"], () => this.refresh());
     link.on("status", (status) => this.notice(status));
   }
 
@@ -37,7 +38,7 @@ export class Faults {
       make(
         "tr",
         {},
-        make("td", { title: `${fault.time.toFixed(3)} s after it was switched on` }, `${span(Math.max(0, this.now - fault.time))} ago`),
+        make("td", { title: `${fault.time.toFixed(3)} s after it was switched on` }, `${span(Math.max(0, (this.now ?? fault.time) - fault.time))} ago`),
         make("td", {}, make("strong", {}, fault.cause), make("div", { class: "hint" }, fault.remedy)),
         make("td", {}, fault.state),
         make("td", { class: "figure" }, `${number(fault.speed, 0)} rpm`),

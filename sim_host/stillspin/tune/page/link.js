@@ -1,4 +1,6 @@
-// The connection to the server: questions with answers, and what the drive says unasked.
+// The connection to the server: questions with answers, what the drive says unasked, and coming back by itself.
+
+const AGAIN = 1000; // ms
 
 export class Link {
   constructor() {
@@ -6,23 +8,42 @@ export class Link {
     this.listeners = new Map();
     this.next = 1;
     this.socket = null;
+    this.retry = 0;
+    this.heard = 0; // when the server said something, ms
+    this.table = null; // of the drive that was connected last
   }
 
-  open() {
-    this.socket = new WebSocket(`ws://${location.host}/live`);
+  get open() {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  /** Connects now, and again whenever the connection has ended. */
+  connect() {
+    clearTimeout(this.retry);
+    if (this.socket) this.socket.onclose = null;
+    this.socket?.close();
+    this.socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
     this.socket.onmessage = (event) => this.take(JSON.parse(event.data));
-    this.socket.onclose = () => {
-      for (const { reject } of this.waiting.values()) reject(new Error("the server has ended"));
-      this.waiting.clear();
-      this.emit("closed", {});
-    };
+    this.socket.onclose = () => this.closed();
+  }
+
+  async closed() {
+    for (const { reject } of this.waiting.values()) reject(new Error("the server has ended"));
+    this.waiting.clear();
+    this.retry = setTimeout(() => this.connect(), AGAIN);
+    const answer = await fetch("/", { method: "HEAD" }).catch(() => null);
+    if (!this.open) this.emit("closed", { refused: answer?.status === 403 });
   }
 
   take(message) {
-    if (message.t !== "reply") {
-      this.emit(message.t, message);
-      return;
-    }
+    this.heard = performance.now();
+    if (message.t === "reply") this.reply(message);
+    else if (message.t === "hello" && message.crc === this.table) this.emit("again", message);
+    else this.emit(message.t, message);
+    if (message.t === "hello") this.table = message.crc;
+  }
+
+  reply(message) {
     const pending = this.waiting.get(message.id);
     this.waiting.delete(message.id);
     if (!pending) return;
@@ -31,7 +52,7 @@ export class Link {
   }
 
   on(kind, listener) {
-    this.listeners.set(kind, [...(this.listeners.get(kind) ?? []), listener]);
+    for (const one of [kind].flat()) this.listeners.set(one, [...(this.listeners.get(one) ?? []), listener]);
   }
 
   emit(kind, message) {
@@ -39,12 +60,12 @@ export class Link {
   }
 
   say(message) {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    if (this.open) this.socket.send(JSON.stringify(message));
   }
 
   /** Asks the server; rejects with words. */
   ask(what, given = {}) {
-    if (this.socket?.readyState !== WebSocket.OPEN) return Promise.reject(new Error("the server has ended"));
+    if (!this.open) return Promise.reject(new Error("the server has ended"));
     const id = this.next++;
     this.say({ t: "ask", id, what, given });
     return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));

@@ -12,6 +12,8 @@ export class Live {
     this.frozen = false;
     this.dirty = false;
     link.on("hello", (hello) => this.choices(hello));
+    link.on("again", ({ plotted }) => plotted.join() !== this.names.join() && this.choose());
+    link.on("unknown", () => this.age());
     link.on("plotted", ({ signals }) => this.begin(signals));
     link.on("samples", (message) => this.add(message));
     by("freeze").onclick = () => this.freeze();
@@ -24,6 +26,7 @@ export class Live {
 
   choices({ signals, plotted }) {
     this.table = signals;
+    this.names = null;
     by("signals").replaceChildren(
       ...signals.map(({ name, unit, meaning }) => {
         const box = make("input", { type: "checkbox", value: name, checked: plotted.includes(name) });
@@ -41,16 +44,28 @@ export class Live {
     if (names.length) this.link.ask("plot", { signals: names }).catch(() => {});
   }
 
+  /** Old values are no values. */
+  age() {
+    for (const panel of this.panels ?? []) for (const value of panel.values) value.textContent = "–";
+    this.dirty = false;
+  }
+
   begin(names) {
+    if (this.names?.join() === names.join()) return;
     this.names = names;
-    this.time = [];
-    this.values = names.map(() => []);
+    this.forget();
     const signals = names.map((name) => this.table.find((signal) => signal.name === name));
     this.panels = panels(by("plots"), signals, make);
   }
 
+  forget() {
+    this.time = [];
+    this.values = this.names.map(() => []);
+  }
+
   add({ time, values, lost }) {
     if (!this.panels || values.length !== this.values.length) return;
+    if (time[0] < this.time[this.time.length - 1]) this.forget(); // the drive was switched off and on
     this.time.push(...time);
     values.forEach((column, at) => this.values[at].push(...column));
     const old = this.time.findIndex((at) => at > this.time[this.time.length - 1] - KEPT);

@@ -7,6 +7,7 @@ export class Parameters {
     this.link = link;
     this.fail = fail;
     link.on("hello", (hello) => this.build(hello));
+    link.on("again", ({ values }) => this.take(values));
     by("search").oninput = () => this.filter();
     by("changed").onchange = () => this.filter();
     by("save").onclick = () => this.save();

@@ -6,18 +6,21 @@
 import { by, number, span } from "./dom.js";
 
 const BEAT = 100; // ms
+const STAYS = 500; // ms
 const PATIENCE = 500; // ms, between the answer to a start and the first status with the motor energised
 const [READY, FAULT] = [2, 6];
 
 export class Run {
-  constructor(link, fail) {
+  constructor(link, events) {
     this.link = link;
-    this.fail = fail;
+    this.events = events;
+    this.fail = (error) => events.note(error.message);
     this.status = null;
     this.beat = null;
-    link.on("hello", (hello) => this.limits(hello));
+    link.on(["hello", "again"], (hello) => this.limits(hello));
     link.on("status", (status) => this.show(status));
     link.on("closed", () => this.release());
+    link.on("unknown", () => this.unknown());
     this.buttons();
     this.keys();
     document.addEventListener("visibilitychange", () => document.hidden && this.release());
@@ -51,7 +54,7 @@ export class Run {
     hold.addEventListener("contextmenu", (event) => event.preventDefault());
     by("stop").onclick = () => this.stop("stop");
     by("coast").onclick = () => this.stop("coast");
-    by("reset").onclick = () => this.link.ask("reset").catch(this.fail);
+    by("reset").onclick = () => this.clear();
     by("keep").onchange = () => this.release();
     by("reference").onchange = () => this.refer(Number(by("reference").value));
     by("slider").oninput = () => this.refer(Number(by("slider").value));
@@ -127,11 +130,43 @@ export class Run {
       });
   }
 
+  /** It has stopped by itself, or never began. */
+  ended({ fault, unheard }) {
+    this.release();
+    if (fault) return; // said in the banner
+    this.events.note(
+      unheard
+        ? "The drive has stopped the motor by itself: it heard nothing for its link_timeout."
+        : "The motor has stopped, and not by this page.",
+    );
+  }
+
+  async clear() {
+    try {
+      await this.link.ask("reset");
+      setTimeout(() => this.status?.fault && this.events.note(`Still there: ${this.status.fault}. ${this.status.remedy}`), STAYS);
+    } catch (error) {
+      this.fail(error);
+    }
+  }
+
+  /** Nothing is known: nothing is shown as if it were. */
+  unknown() {
+    this.status = null;
+    by("state").textContent = "not known";
+    by("state").className = "pill unknown";
+    for (const id of ["speed", "now-reference", "limits", "store", "time"]) by(id).textContent = "–";
+    by("fault").hidden = true;
+    by("hold").disabled = !this.held;
+    if (this.held) by("hold").textContent = "Not known whether it runs";
+    for (const element of document.querySelectorAll("[data-stopped]")) element.disabled = true;
+  }
+
   show(status) {
     this.status = status;
     this.energised ||= status.energised;
     const over = this.begun && !status.energised && (this.energised || Date.now() - this.begun > PATIENCE);
-    if (this.held && over) this.release(); // it has stopped by itself, or never began
+    if (this.held && over) this.ended(status);
     const state = by("state");
     state.textContent = status.state;
     state.className = `pill ${status.number === FAULT ? "bad" : status.energised ? "on" : ""}`;

@@ -1,0 +1,46 @@
+"""What does not change while a drive is connected: its table, for a page that has just been opened."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stillspin.drive import scope
+from stillspin.drive.table import Parameter
+from stillspin.tune.groups import group_of
+from stillspin.tune.messages import Message
+
+if TYPE_CHECKING:
+    from stillspin.tune.workbench import Workbench
+
+
+def describe(bench: Workbench) -> Message:
+    """Everything that does not change: the drive's table, for a page that has just been opened."""
+    table = bench.drive.table
+    return {
+        "t": "hello",
+        "version": bench.drive.version,
+        "crc": table.crc,
+        "where": bench.drive.link.transport.name,
+        "parameters": [_parameter(entry) for entry in table.parameters],
+        "signals": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in table.signals],
+        "values": bench.drive.parameters(),
+        "plotted": bench.plotted,
+        "edges": list(scope.EDGES),
+        "depth": scope.DEPTH,
+    }
+
+
+def _parameter(entry: Parameter) -> Message:
+    return {
+        "name": entry.name,
+        "id": entry.id,
+        "group": group_of(entry.id),
+        "unit": entry.unit,
+        "decimals": entry.decimals,
+        "minimum": entry.minimum,
+        "maximum": entry.maximum,
+        "initial": entry.initial,
+        "always": entry.always,
+        "meaning": entry.meaning,
+        "range": entry.range_text,
+    }

@@ -1,0 +1,34 @@
+"""What the server says to the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from stillspin.drive.state import Status
+
+Message = dict[str, Any]
+Tell = Callable[[Message], None]
+
+_GUARD_STOPPED = 2
+"""Bit of the status's link octet, firmware/link/requests_drive.c."""
+
+
+def status_message(status: Status) -> Message:
+    """A status for the page."""
+    raw = status.raw
+    return {
+        "t": "status",
+        "time": status.time,
+        "state": status.state,
+        "number": raw.state,
+        "energised": status.energised,
+        "fault": status.fault,
+        "remedy": status.remedy,
+        "limits": list(status.limits),
+        "speed": status.speed,
+        "reference": status.reference,
+        "store": status.store,
+        "unheard": bool(raw.link & _GUARD_STOPPED),
+        "commissioning": {"outcome": raw.outcome, "phase": raw.phase, "progress": raw.progress / 1000},
+    }

@@ -1,0 +1,79 @@
+"""The watcher: asks the drive what it does, stops it when nobody holds it, and opens it again when it was away."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+from stillspin.link.errors import DriveError, LinkError, NoAnswerError
+from stillspin.tune.connection import SwitchedOnError
+from stillspin.tune.describe import describe
+from stillspin.tune.messages import status_message
+
+if TYPE_CHECKING:
+    from stillspin.tune.workbench import Workbench
+
+_STATUS = 0.1
+
+
+class Watch(threading.Thread):
+    """The dead man's switch and the questions that keep a guarded drive running are one loop: both, or neither."""
+
+    def __init__(self, bench: Workbench, end: threading.Event) -> None:
+        super().__init__(name="stillspin watch", daemon=True)
+        self._bench = bench
+        self._way = bench.connection
+        self._end = end
+        self._owed = ""
+        """Why the motor must still be stopped; empty when it must not."""
+        self._away = False
+
+    def stop(self) -> None:
+        """Stop; what fails is tried again here, and nothing else is asked until then."""
+        self._owed = "stopped; it took more than one try"
+        self._bench.drive.stop()
+        self._owed = ""
+
+    def run(self) -> None:
+        """See Thread."""
+        while not self._end.wait(_STATUS):
+            try:
+                if self._away:
+                    self._come_back()
+                else:
+                    self._look()
+            except NoAnswerError:
+                self._say_away("silent")
+            except LinkError as error:
+                self._lose(error)
+            except DriveError as error:
+                self._bench.tell({"t": "note", "text": str(error)})
+
+    def _look(self) -> None:
+        if self._bench.dead_man.expired():
+            self._owed = "stopped: nothing was heard from the page"
+        if why := self._owed:
+            self._bench.drive.stop()
+            self._owed = ""
+            self._bench.tell({"t": "note", "text": why})
+        self._bench.tell(status_message(self._bench.drive.describe_status(self._way.look())))
+
+    def _lose(self, error: LinkError) -> None:
+        self._away = True
+        # A drive with a long link_timeout may still be running when it is back, and the first question keeps it so.
+        if self._bench.dead_man.release():
+            self._owed = "stopped: the connection to the drive was lost"
+        if isinstance(error, SwitchedOnError):
+            self._owed = ""
+            self._bench.tell({"t": "note", "text": str(error)})
+        self._say_away("lost")
+
+    def _come_back(self) -> None:
+        if self._way.reopen():
+            self._bench.tell(describe(self._bench))
+            self._away = False
+        else:
+            self._say_away("lost")
+
+    def _say_away(self, kind: str) -> None:
+        self._bench.tell({"t": kind, "text": self._way.trouble, "for": self._way.silence})
