@@ -7,7 +7,7 @@ import io
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from stillspin import extras, mdf
 from stillspin.drive.scope import Capture
@@ -65,23 +65,8 @@ def write(path: Path, capture: Capture) -> None:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
-def about(capture: Capture) -> dict[str, Any]:
-    """What is known of a capture beside its values."""
-    return {
-        "firmware": capture.version,
-        "trigger": {
-            "signal": capture.trigger.signal,
-            "level": capture.trigger.level,
-            "edge": capture.trigger.edge,
-            "time": capture.trigger_time,
-        },
-        "interval": capture.interval,
-        "clipped": list(capture.clipped),
-    }
-
-
 def _parquet(path: Path, capture: Capture) -> None:
-    records.write(path, {"time": capture.time, **capture.signals}, about(capture), {"time": "s", **capture.units})
+    records.write(path, {"time": capture.time, **capture.signals}, capture.about, {"time": "s", **capture.units})
 
 
 def _csv(path: Path, capture: Capture) -> None:

@@ -8,7 +8,9 @@ with drive.running(600):
 print(drive.status())
 """
 
+from stillspin.drive.commissioning import Identified, Report
 from stillspin.drive.drive import Drive
+from stillspin.drive.log import Log
 from stillspin.drive.scope import Capture, Channel, Trigger
 from stillspin.drive.state import Fault, Status
 from stillspin.drive.stream import Sample, Stream
@@ -21,7 +23,10 @@ __all__ = [
     "ConflictWarning",
     "Drive",
     "Fault",
+    "Identified",
+    "Log",
     "Parameter",
+    "Report",
     "Sample",
     "Signal",
     "Status",

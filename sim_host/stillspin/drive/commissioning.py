@@ -21,6 +21,9 @@ _BEGIN = 5.0
 DONE, PARTLY, ABORTED, FAILED = 2, 3, 4, 5
 USED = 0
 
+OnProgress = Callable[[float, str], bool | None]
+"""Gets the share done, 0 to 1, and the phase in words; False stops."""
+
 
 @dataclass(frozen=True)
 class Identified:
@@ -44,7 +47,7 @@ class Report:
     """Whether every value is plausible and in use."""
 
 
-def follow(drive: Drive, progress: Callable[[float, str], bool] | None) -> Report:
+def follow(drive: Drive, on_progress: OnProgress | None) -> Report:
     """Wait for the end of a commissioning that has been asked for.
 
     Raises:
@@ -61,7 +64,7 @@ def follow(drive: Drive, progress: Callable[[float, str], bool] | None) -> Repor
         if not begun and (raw.fault or time.monotonic() - asked > _BEGIN):
             cause = drive.words(Words.FAULT, raw.fault) if raw.fault else "the drive does not begin"
             raise DriveError(f"no commissioning: {cause}")
-        if progress and not progress(raw.progress / 1000, drive.words(Words.PHASE, raw.phase)):
+        if on_progress and on_progress(raw.progress / 1000, drive.words(Words.PHASE, raw.phase)) is False:
             drive.stop()
         time.sleep(_INTERVAL)
     if raw.outcome == ABORTED:

@@ -6,10 +6,10 @@ import struct
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
-from stillspin.drive import describe, protocol, scope, values
-from stillspin.drive.commissioning import Report, follow
+from stillspin.drive import describe, log, protocol, scope, values
+from stillspin.drive.commissioning import OnProgress, Report, follow
 from stillspin.drive.describe import unpack
 from stillspin.drive.protocol import GUARDED, Command, Request, Words
 from stillspin.drive.requester import Requester, wait_until
@@ -86,7 +86,7 @@ class Drive:
         self.close()
 
     def close(self) -> None:
-        """Give the port back. The drive goes on with what it does."""
+        """Give the port back. The drive goes on with what it does; every call from now on says that this is closed."""
         self.link.close()
 
     @property
@@ -136,19 +136,32 @@ class Drive:
 
     # Commands
 
-    def start(self, speed: float | None = None, *, guarded: bool = False) -> None:
+    def start(
+        self, speed: float | None = None, *, guarded: bool = False, wait: bool = False, timeout: float = 10.0
+    ) -> None:
         """Energise the motor.
 
         Args:
             speed: rpm, set beforehand; otherwise the one in force.
             guarded: the drive stops by itself when nothing is heard from this client for its `link_timeout`.
+            wait: return when the start procedure is over and the motor runs; otherwise as soon as the drive begins.
+            timeout: s to wait for that.
 
         Raises:
             RefusedError: it is not ready, or its parameters do not fit together.
+            DriveError: with `wait`, the start ended in a fault, in the drive's words; or it took longer than
+                `timeout`, and the motor is stopped.
         """
         if speed is not None:
             self.ref(speed)
         self.command(Command.START, GUARDED if guarded else 0)
+        if wait:
+            try:
+                self.wait_for_run(timeout)
+            except BaseException:
+                with suppress(DriveError):
+                    self.stop()
+                raise
 
     def stop(self) -> None:
         """Speed to zero along the ramp, then power stage off."""
@@ -246,7 +259,8 @@ class Drive:
         wait_until(lambda: self.raw_status().state in {RUN, FAULT}, timeout)
         status = self.status()
         if status.raw.state != RUN:
-            raise DriveError(f"the motor does not run: {status.fault or f'the drive is {status.state}'}")
+            why = status.fault or f"the drive is {status.state} after {timeout:g} s"
+            raise DriveError("; ".join(filter(None, (f"the motor does not run: {why}", status.remedy))))
 
     # Inspection
 
@@ -310,6 +324,21 @@ class Drive:
         """Up to eight signals every `period` seconds; iterate over it."""
         return Stream(self.link, self.table.chosen(signals), period)
 
+    def log(self, *signals: str, duration: float, period: float = 0.02) -> log.Log:
+        """Keep up to eight signals for a while; returns when it is over.
+
+        Args:
+            signals: names.
+            duration: s.
+            period: s between samples, 1 ms and more.
+
+        Raises:
+            InputError: no such signal, too many, or a period or duration out of range.
+            LinkError: the way to the drive is lost.
+        """
+        with self.stream(signals, period) as stream:
+            return log.keep(stream, duration, self.version)
+
     # Scope
 
     def scope_arm(self, setup: scope.Setup) -> None:
@@ -364,17 +393,17 @@ class Drive:
 
     # Commissioning
 
-    def commission(self, progress: Callable[[float, str], bool] | None = None) -> Report:
+    def commission(self, on_progress: OnProgress | None = None) -> Report:
         """Let the drive measure machine and inverter. It takes about a minute and a half and turns the shaft.
 
         Args:
-            progress: gets the share done and the phase in words; false stops it.
+            on_progress: gets the share done, 0 to 1, and the phase in words; False from it stops.
 
         Raises:
             DriveError: it was stopped, or ended in a fault.
         """
         self.command(Command.COMMISSION)
-        return follow(self, progress)
+        return follow(self, on_progress)
 
     def _ask(self, kind: Request, body: bytes) -> bytes:
         return self.link.request(kind, body, repeat=kind in protocol.REPEATABLE)

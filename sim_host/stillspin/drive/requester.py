@@ -149,8 +149,11 @@ class Requester:
         return self._lost
 
     def close(self) -> None:
-        """End the thread, give the port back."""
+        """End the thread, give the port back. Who asks from now on, or waits for an answer, is told so."""
         self._end()
+        closed = LinkError(f"the drive on {self.transport.name} is closed: close() was called or its context is over")
+        self._lost = closed
+        self._answers.put(closed)
         self.transport.close()
 
     def _begin(self) -> threading.Thread:

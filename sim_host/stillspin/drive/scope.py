@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from stillspin.drive.protocol import CONTROL_PERIOD
+from stillspin.drive.recording import Recording
 from stillspin.drive.table import Signal, Table
 from stillspin.errors import InputError, did_you_mean
 
@@ -82,14 +84,9 @@ class ScopeState:
 
 
 @dataclass(frozen=True)
-class Capture:
-    """What the scope recorded; all arrays have one element per record."""
+class Capture(Recording):
+    """What the scope recorded; `time` counts from the trigger and is negative before it."""
 
-    time: npt.NDArray[np.float64]
-    """Seconds from the trigger; negative before it."""
-    signals: Mapping[str, npt.NDArray[np.float64]]
-    """In users' units."""
-    units: Mapping[str, str]
     clipped: tuple[str, ...]
     """Signals that went beyond their full scale."""
     trigger: Trigger
@@ -99,6 +96,22 @@ class Capture:
     """Seconds between two records."""
     version: str
     """Of the firmware."""
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """Firmware, trigger, interval, and what was clipped."""
+        trigger = self.trigger
+        return {
+            "firmware": self.version,
+            "trigger": {
+                "signal": trigger.signal,
+                "level": trigger.level,
+                "edge": trigger.edge,
+                "time": self.trigger_time,
+            },
+            "interval": self.interval,
+            "clipped": list(self.clipped),
+        }
 
 
 def shift(signal: Signal, full_scale: float | None) -> int:
