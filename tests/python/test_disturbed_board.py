@@ -143,7 +143,7 @@ def wire_errors(bench):
     bench.port.write(to_wire(Record(Request.LINK, 9)))
     bench.until(bench.desk.time + 0.05)
     (answer,) = [record for record in bench.answers if record.kind == Request.LINK | ANSWER]
-    return struct.unpack("<8H", answer.body[1:])
+    return struct.unpack_from("<8H", answer.body, 1)
 
 
 def test_two_programs_on_one_port_and_one_on_the_bus(quiet):
