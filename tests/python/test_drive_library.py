@@ -2,7 +2,9 @@
 
 import inspect
 import json
+import re
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,12 +43,24 @@ CALLS = {
     "capture": lambda drive: drive.capture("speed"),
     "commission": lambda drive: drive.commission(),
 }
+LIBRARY = Path(__file__).resolve().parents[2] / "docs" / "library"
 ASK_NOBODY = {"open", "virtual", "close", "kept_alive", "describe_status"}
 
 
+def public():
+    return {name for name, _ in inspect.getmembers(Drive, callable) if not name.startswith("_")}
+
+
 def test_every_method_is_tried_behind_the_end():
-    public = {name for name, _ in inspect.getmembers(Drive, callable) if not name.startswith("_")}
-    assert public == set(CALLS) | ASK_NOBODY
+    assert public() == set(CALLS) | ASK_NOBODY
+
+
+def test_every_method_is_on_one_page_of_the_book_and_says_what_it_does():
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in LIBRARY.glob("*.md"))
+    named = re.findall(r"^::: stillspin\.drive\.Drive\.(\w+)$", pages, re.MULTILINE)
+    (opening,) = re.findall(r"members: \[(.*)\]", pages)
+    assert sorted([*named, *opening.split(", ")]) == sorted({*public(), "__init__", "version"})
+    assert all(inspect.getdoc(getattr(Drive, name)) for name in public())
 
 
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)

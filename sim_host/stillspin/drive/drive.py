@@ -26,7 +26,6 @@ from stillspin.link.virtual import VirtualTransport
 _LIMIT_BITS = 16
 _SPEED_MAX = 2.0**15
 _SIGNALS_MOST = 16
-_KEEP_ALIVE = 0.05
 
 
 class Drive:
@@ -229,8 +228,8 @@ class Drive:
                     wait_until(lambda: self.raw_status().state not in ENERGISED, timeout)
 
     @contextmanager
-    def kept_alive(self, interval: float = _KEEP_ALIVE) -> Iterator[None]:
-        """Lets the drive hear from this client regularly, as a guarded start wants it."""
+    def kept_alive(self, interval: float = 0.05) -> Iterator[None]:
+        """Lets the drive hear from this client every `interval` seconds, as a guarded start wants it."""
         end = threading.Event()
 
         def tell() -> None:
