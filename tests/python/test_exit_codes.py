@@ -36,9 +36,6 @@ BAD = {
     "commission": ("commission", "--profile", "bnch"),
     "board": ("board", "--profile", "bnch"),
     "startup-matrix": ("startup-matrix", "--way", "sideways"),
-    "list": ("list", "--none"),
-    "version": ("version", "--none"),
-    "params": ("params", "--none"),
     "params dump": ("params", "dump"),
     "params diff": ("params", "diff", "defaults"),
     "params load": ("params", "load", "x.toml"),
@@ -52,7 +49,7 @@ BAD = {
     "demo-image": ("demo-image", "/dev/null/demo"),
     "loader": ("loader", "flash.bin", "--kernel", "none.out"),
 }
-"""Something wrong for every command that there is."""
+"""Something that a command does not take, or does not find; for others an option that there is not."""
 
 
 def commands(group, before=()):
@@ -63,18 +60,21 @@ def commands(group, before=()):
             yield from commands(command, (*before, name))
 
 
-def test_the_book_has_every_status_and_every_command():
+ALL = list(commands(typer.main.get_command(cli.app)))
+
+
+def test_the_book_has_every_status():
     text = BOOK.read_text(encoding="utf-8")
     for code in ExitCode:
         assert f"| {code:d} | {code.title} | {code.meaning} |" in text
     assert {int(code) for code in ExitCode} == {0, 1, 2, 3, 4, 130, 141}
-    assert set(commands(typer.main.get_command(cli.app))) == set(BAD)
+    assert set(BAD) < set(ALL)
 
 
-@pytest.mark.parametrize("arguments", BAD.values(), ids=BAD)
-def test_bad_input_is_2_and_one_line(call, monkeypatch, arguments):
+@pytest.mark.parametrize("name", ALL)
+def test_bad_input_is_2_and_one_line(call, monkeypatch, name):
     monkeypatch.delenv("STILLSPIN_DRIVE", raising=False)
-    result = call(*arguments)
+    result = call(*BAD.get(name, (*name.split(), "--none")))
     assert (result.exit_code, result.stderr.count("\n")) == (2, 1), result.output
     assert result.stderr.startswith("stillspin: ")
 

@@ -9,6 +9,7 @@ from flash_bench import KERNEL, NEW, NEW_IMAGE, OLD, flash_of, nothing
 
 from stillspin.flash import kernel as kernel_requests
 from stillspin.flash import layout
+from stillspin.flash.broken_off import BrokenOffError, Stage
 from stillspin.flash.files import DriveImage
 from stillspin.flash.image_sum import crc_of
 from stillspin.flash.kernel import Kernel
@@ -185,3 +186,57 @@ def test_power_that_fails_while_the_mark_is_written_leaves_all_or_nothing():
             assert flash_of(board) == make.cells(NEW)
             assert board.boots() == "drive"
     assert {make.ERASED, make.MARK} < marks, "and something between"
+
+
+# ---- what is said of it
+
+
+def chip_runs(board):
+    """What the chip does after a reset with the jumpers set back."""
+    board.native.advance(make.TICKS_PER_SECOND // 100)
+    return check_broken_off(board)
+
+
+@pytest.mark.parametrize(
+    ("phase", "stage", "runs"),
+    [
+        ("loading the kernel", Stage.BEFORE, "drive"),
+        ("comparing", Stage.BEFORE, "drive"),
+        ("erasing sector D", Stage.BEGINNING, "drive"),
+        ("erasing sector C", Stage.ERASED, "waiting"),
+        ("writing", Stage.ERASED, "waiting"),
+        ("verifying", Stage.ERASED, "waiting"),
+    ],
+)
+def test_ctrl_c_says_what_is_on_the_chip(phase, stage, runs):
+    def stop_at(what, _share):
+        if what == phase:
+            raise KeyboardInterrupt
+
+    with make.board(OLD) as board:
+        with pytest.raises(BrokenOffError) as caught:
+            update(make.BoardLine(board), KERNEL, NEW_IMAGE, stop_at)
+        assert str(caught.value) == f"interrupted; {stage.value}"
+        assert caught.value.exit_code == 130
+        assert chip_runs(board) == runs
+
+
+def test_a_pulled_cable_never_promises_an_image_that_is_not_there():
+    """Sampled over the whole update: what is said fits what the chip does."""
+    total = octets_in_all(NEW_IMAGE)
+    said = set()
+    for cut_at in range(0, total, 41):
+        with make.board(OLD) as board:
+            line = make.CutLine(board, cut_at)
+            with pytest.raises(DriveError) as caught:
+                update(line, KERNEL, NEW_IMAGE, nothing)
+            assert caught.value.exit_code == 3
+            stage = caught.value.stage if isinstance(caught.value, BrokenOffError) else None
+            said.add(stage)
+            board.native.advance_until_heard(ERASE_WAIT)
+            runs = chip_runs(board)
+            if stage is None:
+                assert runs == "drive", cut_at
+            elif stage is Stage.ERASED:
+                assert runs == "waiting", cut_at
+    assert {None, Stage.ERASED} <= said

@@ -13,7 +13,9 @@ import pytest
 from desk import needs_board
 
 from stillspin import cli
+from stillspin.flash.kernel import Kernel
 from stillspin.flash.program import Block
+from stillspin.link.errors import LinkError
 
 pytestmark = needs_board
 
@@ -87,6 +89,24 @@ def test_port_that_is_not_there_is_one_line(files, flash):
     status, _, complaint = flash(files / "old.out", "--kernel", files / "kernel.txt", "--port", files / "ttyNothing")
     assert status == 3
     assert "there is no serial port" in complaint
+
+
+@pytest.mark.parametrize(("cause", "status"), [(KeyboardInterrupt(), 130), (LinkError("the port is lost"), 3)])
+def test_an_update_that_is_broken_off_says_what_is_on_the_chip_and_what_to_do(files, flash, monkeypatch, cause, status):
+    def fails(*_):
+        raise cause
+
+    image, kernel = files / "new.hex", ["--kernel", files / "kernel.txt"]
+    with virtual(files) as port:
+        assert flash(files / "old.out", *kernel, "--port", port)[0] == 0
+        with monkeypatch.context() as broken:
+            broken.setattr(Kernel, "write", fails)
+            ended, _, complaint = flash(image, *kernel, "--port", port)
+        again = f"stillspin flash {image} --kernel {kernel[1]} --port {port}"
+        assert (ended, complaint.count("\n")) == (status, 1)
+        assert "no complete image is on the chip: it stays in its boot code and runs no drive" in complaint
+        assert f"leave the jumpers in serial boot, reset the board, then: {again}\n" in complaint
+        assert flash(*again.split()[2:])[0] == 0
 
 
 def test_flash_file_of_another_size_is_one_line(files, capsys):

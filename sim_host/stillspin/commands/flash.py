@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +13,7 @@ from rich.console import Console
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.flash import demonstration, layout
+from stillspin.flash.broken_off import BrokenOffError
 from stillspin.flash.files import DriveImage, drive_image, kernel_program
 from stillspin.flash.kernel import Info, Kernel
 from stillspin.flash.line import SerialLine
@@ -58,9 +60,12 @@ def flash(
         _tell_plan(image)
         return
     with SerialLine(_port(port)) as line:
-        with PhaseBar(Console(stderr=True)) as bar:
-            action = verify if only_verify else update
-            outcome = action(line, kernel, image, _shown(bar))
+        action = verify if only_verify else update
+        try:
+            with PhaseBar(Console(stderr=True)) as bar:
+                outcome = action(line, kernel, image, _shown(bar))
+        except BrokenOffError as error:
+            raise error.with_remedy(_command(image_file, port, kernel_file)) from error
         with suppress(DriveError):
             Kernel(line).restart()
     if outcome.before:
@@ -79,6 +84,12 @@ def demo_image(
     print(f"image:  {image}\nkernel: {kernel}")
     print(f"try:    stillspin loader {directory / 'flash.bin'}    a virtual board in serial boot, which names its port")
     print(f"        stillspin flash {image} --port PORT")
+
+
+def _command(image_file: Path, port: str, kernel_file: Path | None) -> str:
+    """The command line of an update, as a shell takes it."""
+    kernel = ["--kernel", str(kernel_file)] if kernel_file else []
+    return shlex.join(["stillspin", "flash", str(image_file), *kernel, "--port", port])
 
 
 def kernel_beside(file: Path) -> Path:

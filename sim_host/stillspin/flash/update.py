@@ -15,6 +15,7 @@ import numpy as np
 from stillspin.errors import InputError
 from stillspin.flash import demonstration, layout, rom, virtual
 from stillspin.flash import kernel as kernel_requests
+from stillspin.flash.broken_off import BrokenOffError, Stage
 from stillspin.flash.files import DriveImage
 from stillspin.flash.image_sum import crc_of
 from stillspin.flash.kernel import Info, Kernel
@@ -176,35 +177,37 @@ def update(line: Line, program: Program, image: DriveImage, progress: Progress) 
 
     Raises:
         InputError: see check_demonstration.
-        DriveError: it is not there; the message says what state the board is in, and what to do.
+        DriveError: it is not there.
+        BrokenOffError: after the first erase was asked for, or by Ctrl-C; it says what is on the chip.
     """
     check_demonstration(line, program, image)
-    kernel = connect(line, program, progress)
-    info = check_board(kernel, line, image)
-    progress("comparing", 0.0)
-    wrong = differing(kernel, image, info)
+    try:
+        kernel = connect(line, program, progress)
+        info = check_board(kernel, line, image)
+        progress("comparing", 0.0)
+        wrong = differing(kernel, image, info)
+    except KeyboardInterrupt as error:
+        raise BrokenOffError(error, Stage.BEFORE) from error
     if not wrong and info.mark == layout.MARK:
         return Outcome(True, before=info)
-    try:
-        written = _carry_out(kernel, image, wrong, progress)
-    except DriveError as error:
-        raise type(error)(*_with_state(error)) from error
+    written = _carry_out(kernel, image, wrong, progress)
     return Outcome(False, tuple(sector.name for sector in wrong), written, info)
 
 
 def _carry_out(kernel: Kernel, image: DriveImage, wrong: list[Sector], progress: Progress) -> int:
-    for index, sector in enumerate(wrong):
-        progress(f"erasing sector {sector.name}", index / len(wrong))
-        kernel.erase(sector)
-    todo = [piece for sector in wrong for piece in pieces(image, sector)]
-    for index, (address, words) in enumerate(todo):
-        kernel.write(address, words)
-        progress("writing", (index + 1) / len(todo))
-    progress("verifying", 0.0)
-    kernel.seal(crc_of(image.words))
+    stage = Stage.BEGINNING if wrong else Stage.SEALING
+    try:
+        for index, sector in enumerate(wrong):
+            progress(f"erasing sector {sector.name}", index / len(wrong))
+            kernel.erase(sector)
+            stage = Stage.ERASED
+        todo = [piece for sector in wrong for piece in pieces(image, sector)]
+        for index, (address, words) in enumerate(todo):
+            kernel.write(address, words)
+            progress("writing", (index + 1) / len(todo))
+        progress("verifying", 0.0)
+        stage = Stage.SEALING
+        kernel.seal(crc_of(image.words))
+    except (DriveError, KeyboardInterrupt) as error:
+        raise BrokenOffError(error, stage) from error
     return sum(len(words) for _, words in todo)
-
-
-def _with_state(error: DriveError) -> tuple[object, ...]:
-    words = f"{error}; once a sector is erased the board runs no drive until an update is complete"
-    return (words, error.status) if isinstance(error, RefusedError) else (words,)
