@@ -49,7 +49,7 @@ static word_t next_word(const editor_line_t* line, uint16_t* at) {
   return word;
 }
 
-void command_obey(const editor_line_t* line) {
+void command_obey(const editor_line_t* line, bool expired) {
   uint16_t at = 0;
   const word_t name = next_word(line, &at);
   if (name.count == 0u) return;
@@ -59,11 +59,17 @@ void command_obey(const editor_line_t* line) {
     return;
   }
   words_of_line_t a;
+  a.expired = expired;
   for (a.count = 0; a.count < COMMAND_WORDS; a.count++) {
     a.word[a.count] = next_word(line, &at);
     if (a.word[a.count].count == 0u) break;
   }
   commands[command].function(&a);
+}
+
+bool command_may_move(const words_of_line_t* a) {
+  if (a->expired) line_refused(SAY_the_line_is_too_old_to_move);
+  return !a->expired;
 }
 
 bool command_makes_safe(const editor_line_t* line) {

@@ -24,6 +24,7 @@ typedef struct {
 typedef struct {
   word_t word[COMMAND_WORDS];  // behind the command's own; more than any command takes
   uint16_t count;
+  bool expired;  // it stood for long before its end came
 } words_of_line_t;
 
 typedef struct {
@@ -35,7 +36,11 @@ typedef struct {
 const command_t* command_info(uint16_t index);
 
 /// Carries a line out, or says why not. The line stays unchanged until its job is through.
-void command_obey(const editor_line_t* line);
+void command_obey(const editor_line_t* line, bool expired);
+
+/// For what energises or moves the motor: false, and said, when the line has expired. Whether a line does that depends
+/// on its words and on the drive ('ref 0', 'commission results'): so it is asked where it is about to happen.
+bool command_may_move(const words_of_line_t* a);
 
 /// Whether the line stops the motor, whatever else it says.
 bool command_makes_safe(const editor_line_t* line);

@@ -7,6 +7,7 @@
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/drive.h"
+#include "firmware/link/guard.h"
 #include "firmware/packed_text.h"
 #include "firmware/text.h"
 #include "firmware/words.h"
@@ -41,13 +42,40 @@ static bool wait_for_run(uint16_t step) {
   return false;
 }
 
+// Who watches over the motor: word k, the only one left. False, and said, when nobody does and that was not asked for.
+static bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
+  if (a->count == k && guard_is_fed()) {
+    *guard = GUARD_SERIAL;
+  } else if (a->count == k + 1u && word_is(a, k, "hold")) {
+    *guard = GUARD_KEYS;
+  } else if (a->count == k + 1u && word_is(a, k, "free")) {
+    *guard = GUARD_NONE;
+  } else {
+    line_refused(SAY_nothing_done_nobody_would_watch_add);
+    return false;
+  }
+  return command_may_move(a);
+}
+
+static void say_guard(guard_t guard) {
+  if (guard == GUARD_KEYS) line_of(SAY_hold_it_runs_while_keys_come);
+  if (guard == GUARD_NONE) line_of(SAY_free_nobody_watches_it_runs_until);
+}
+
 void command_start(const words_of_line_t* a) {
-  if (!no_arguments(a)) return;
+  guard_t guard;
+  if (!choose_guard(a, 0, &guard)) return;
+  if (guard == GUARD_NONE && drive_is_energised()) {  // of a motor that runs: whoever held it leaves
+    guard_release();
+    say_guard(guard);
+    return;
+  }
   octet_writer_t* const w = line_begin();
-  if (action_start(GUARD_NONE, w) != ANSWER_OK) {
+  if (action_start(guard, w) != ANSWER_OK) {
     line_end_refused();
     return;
   }
+  say_guard(guard);
   asked_ms = drive_time_ms();
   console_run(wait_for_run, true);
 }
@@ -93,7 +121,7 @@ void command_ref(const words_of_line_t* a) {
     show_reference();
   } else if (!read_speed(a, &rpm_q16)) {
     line_refused(SAY_ref_takes_a_speed_in_rpm_for);
-  } else {
+  } else if (rpm_q16 == 0 || !drive_is_energised() || command_may_move(a)) {
     octet_writer_t* const w = line_begin();
     if (action_speed(rpm_q16, w) == ANSWER_OK) {
       show_reference();
@@ -138,12 +166,19 @@ static bool list_results(uint16_t step) {
   return true;
 }
 
+static void begin_commissioning(const words_of_line_t* a) {
+  guard_t guard;
+  if (!choose_guard(a, 1, &guard)) return;
+  const bool begins = action_commission(guard, line_begin()) == ANSWER_OK;
+  line_answer(begins, SAY_commissioning_the_shaft_will_turn_stop_ends);
+  if (begins) say_guard(guard);
+}
+
 void command_commission(const words_of_line_t* a) {
   if (a->count == 0u) {
     show_commissioning();
   } else if (word_is(a, 0, "start")) {
-    line_answer(action_commission(GUARD_NONE, line_begin()) == ANSWER_OK,
-                SAY_commissioning_the_shaft_will_turn_stop_ends);
+    begin_commissioning(a);
   } else if (!word_is(a, 0, "results")) {
     line_refused(SAY_commission_commission_start_or_commission_re);
   } else if (drive_commissioning_count() == 0u) {

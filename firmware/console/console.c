@@ -6,7 +6,9 @@
 #include "firmware/console/commands.h"
 #include "firmware/console/editor.h"
 #include "firmware/console/output.h"
+#include "firmware/drive_api.h"
 #include "firmware/fault_history.h"
+#include "firmware/link/guard.h"
 #include "firmware/link/record.h"
 #include "firmware/packed_text.h"
 #include "firmware/words.h"
@@ -14,6 +16,8 @@
 
 #define KEPT 64u                                      // characters typed ahead; a power of two
 #define ROOM (OUTPUT_LINE + RECORD_ENCODED_MAX + 2u)  // a line, and the answer to a record beside it
+#define EXPIRES_MS 5000u
+#define AFTER_PAUSE 0x100u  // beside an octet: nothing had come for EXPIRES_MS
 #define CTRL_C 0x03u
 #define LINE_FEED 0x0Au
 #define RETURN 0x0Du
@@ -28,6 +32,9 @@ static uint16_t kept_first, kept_count;
 static bool someone_types;
 static uint16_t faults_told;
 static uint16_t errors_before;  // of the port, when the line began
+static uint16_t breaks_before;
+static uint32_t heard_ms;
+static bool silence_told;
 
 void console_reset(void) {
   editor_reset(&editor);
@@ -38,6 +45,9 @@ void console_reset(void) {
   someone_types = false;
   faults_told = 0;
   errors_before = 0;
+  breaks_before = hal_sci_errors().breaks;
+  heard_ms = 0;
+  silence_told = false;
 }
 
 void console_give_way(void) { someone_types = false; }
@@ -73,11 +83,12 @@ static void obey(void) {
   } else if (damaged && !command_makes_safe(&command)) {
     line_refused(SAY_the_line_was_disturbed_on_its_way);
   } else {
-    command_obey(&command);
+    command_obey(&command, editor.expired);
   }
 }
 
 static void edit(uint16_t octet) {
+  if ((octet & AFTER_PAUSE) != 0u && editor.line.count > 0u) editor.expired = true;
   if (editor.line.count == 0u) errors_before = port_errors();
   const editor_event_t event = editor_octet(&editor, octet, line_begin());
   line_flush();
@@ -106,7 +117,7 @@ static bool asks_to_stop(void) {
   static editor_line_t last;
   last.count = 0;
   for (uint16_t k = 0; k + 1u < kept_count; k++) {
-    const uint16_t octet = kept[(uint16_t)(kept_first + k) & (KEPT - 1u)];
+    const uint16_t octet = kept[(uint16_t)(kept_first + k) & (KEPT - 1u)] & 0xFFu;
     if (octet == RETURN || octet == LINE_FEED) {
       last.count = 0;
     } else {
@@ -123,23 +134,42 @@ static void stop_at_once(void) {
   job = NULL;
   kept_count = 0;
   line_of(SAY_the_answer_and_what_was_typed_ahead);
-  command_obey(&command);
+  command_obey(&command, false);
   prompt();
 }
 
+// A break is the terminal's way to say that what came before does not count.
+static void look_for_breaks(void) {
+  const uint16_t breaks = hal_sci_errors().breaks;
+  if (breaks == breaks_before) return;
+  breaks_before = breaks;
+  kept_count = 0;
+  editor_cut(&editor);
+}
+
+// The space bar that holds the motor neither fills the line nor ends an answer.
+static bool only_holds(uint16_t octet) {
+  return guard_heard(GUARD_KEYS) && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
+}
+
 void console_octet(uint16_t octet) {
+  const uint32_t pause_ms = drive_time_ms() - heard_ms;
+  heard_ms += pause_ms;
   someone_types = true;
+  look_for_breaks();
+  if (only_holds(octet)) return;
   if (job != NULL && octet == CTRL_C) {
     break_off();
     return;
   }
   if (job != NULL && ends_by_key) end_job();
+  if (pause_ms >= EXPIRES_MS) octet |= AFTER_PAUSE;
   if (job == NULL && kept_count == 0u) {
     edit(octet);
     return;
   }
   keep(octet);
-  if ((octet == RETURN || octet == LINE_FEED) && asks_to_stop()) {
+  if (((octet & 0xFFu) == RETURN || (octet & 0xFFu) == LINE_FEED) && asks_to_stop()) {
     stop_at_once();
     return;
   }
@@ -149,21 +179,29 @@ void console_octet(uint16_t octet) {
 }
 
 // Someone who watches the terminal wants to know why the motor stops.
-static void tell_faults(void) {
+static void tell(void) {
   fault_record_t fault;
   const uint16_t total = fault_history_total();
-  if (total == faults_told) return;
+  const bool faulted = total != faults_told && fault_history_read(0, &fault);
+  const bool silent = guard_has_stopped() && !silence_told;
   faults_told = total;
-  if (!someone_types || !fault_history_read(0, &fault)) return;
+  silence_told = guard_has_stopped();
+  if (!someone_types || !(faulted || silent)) return;
   octet_writer_t* const w = line_begin();
-  put_text(w, "\r\n! fault: ");
-  put_words(w, WORDS_FAULT, (uint16_t)fault.fault);
+  put_text(w, "\r\n! ");
+  if (faulted) {
+    put_text(w, "fault: ");
+    put_words(w, WORDS_FAULT, (uint16_t)fault.fault);
+  } else {
+    put_packed(w, SAY_nobody_was_heard_for_link_timeout);
+  }
   line_end();
   editor_show(&editor, line_begin());
   line_flush();
 }
 
 void console_service(void) {
+  look_for_breaks();
   if (hal_sci_room() < ROOM) return;
   if (job != NULL) {
     if (!job(step++)) end_job();
@@ -173,6 +211,6 @@ void console_service(void) {
     kept_count--;
     edit(octet);
   } else {
-    tell_faults();
+    tell();
   }
 }

@@ -28,7 +28,8 @@ void console_octet(uint16_t octet);
 /// Background level.
 void console_service(void);
 
-/// A machine uses the port: no unasked text from here until someone types again.
+/// A machine has introduced itself: no unasked text from here until someone types. Records alone say nothing, a
+/// terminal may send some beside its text to keep the guard alive.
 void console_give_way(void);
 
 /// For commands: the job that answers. `until_key`: it waits for something, and any character ends it.

@@ -20,6 +20,7 @@ static void begin_line(editor_t* e) {
   e->cursor = 0;
   e->too_long = false;
   e->disturbed = false;
+  e->expired = false;
   e->escape = ESCAPE_NONE;
   e->recalled = 0;
 }
@@ -29,6 +30,12 @@ void editor_reset(editor_t* e) {
   e->after_return = false;
   e->parameter = 0;
   for (uint16_t k = 0; k < EDITOR_HISTORY; k++) e->history[k].count = 0;
+}
+
+void editor_cut(editor_t* e) {
+  const bool some = e->line.count > 0u;
+  begin_line(e);
+  e->disturbed = some;
 }
 
 void editor_show(const editor_t* e, octet_writer_t* echo) {

@@ -47,7 +47,7 @@ static void answer(void) {
 
 static void sort(int16_t found) {
   if (found == SPLITTER_RECORD) {
-    console_give_way();
+    if ((splitter.octets[0] & 0xFFu) == REQUEST_IDENTITY) console_give_way();
     answer();
   } else {
     text_at = 0;

@@ -55,7 +55,7 @@ uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, u
   if (count < 2u) return 0;
   const uint16_t type = request[0] & 0xFFu;
   if ((type & RECORD_ANSWER) != 0u) return 0;  // an answer that comes back must not be answered
-  guard_heard(port);
+  (void)guard_heard(port);
   request_t r;
   r.port = port;
   r.body = octet_reader(&request[2], (uint16_t)(count - 2u));

@@ -28,7 +28,7 @@ TEST_F(Console, StatusAndFaults) {
   EXPECT_TRUE(has(status, "state       fault\r\n")) << status;
   EXPECT_TRUE(has(status, "fault       loss of synchronism. less load")) << status;
   EXPECT_TRUE(has(status, "parameters  fit together"));
-  EXPECT_TRUE(has(command("start"), "reset it first: loss of synchronism"));
+  EXPECT_TRUE(has(command("start free"), "reset it first: loss of synchronism"));
   EXPECT_TRUE(has(command("reset"), "cleared"));
 }
 
@@ -115,9 +115,9 @@ TEST_F(Console, Commissioning) {
   EXPECT_EQ(command("commission"), "commissioning: not yet\r\n");
   EXPECT_EQ(command("commission results"), "nothing has been measured since power-on\r\n");
   EXPECT_TRUE(has(command("commission now"), "commission start"));
-  EXPECT_TRUE(has(command("commission start"), "not ready"));
+  EXPECT_TRUE(has(command("commission start free"), "not ready"));
   drive.state = DRIVE_READY;
-  EXPECT_TRUE(has(command("commission start"), "the shaft will turn"));
+  EXPECT_TRUE(has(command("commission start free"), "the shaft will turn"));
   EXPECT_TRUE(drive.request.commission);
 }
 

@@ -99,7 +99,7 @@ TEST_F(Console, List) {
 }
 
 TEST_F(Console, StartRefStop) {
-  EXPECT_TRUE(has(command("start"), "not ready yet"));
+  EXPECT_TRUE(has(command("start free"), "not ready yet"));
   drive.state = DRIVE_READY;
   EXPECT_EQ(command("ref 600 rpm"), "ref 600.00 rpm\r\n");
   EXPECT_EQ(command("ref -50rpm"), "ref -50.00 rpm\r\n");
@@ -109,7 +109,7 @@ TEST_F(Console, StartRefStop) {
   EXPECT_TRUE(has(command("ref 60 rpm now"), "Nothing changed"));
   EXPECT_TRUE(has(command("start now"), "nothing done"));
   EXPECT_FALSE(drive.request.start);
-  send("start\r");
+  send("start free\r");
   run(300);
   EXPECT_TRUE(drive.request.start);
   text.clear();
@@ -142,7 +142,7 @@ TEST_F(Console, WordsBeyondTheLastAreLeftOut) {
 
 TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
   drive.state = DRIVE_READY;
-  send("start\r");
+  send("start free\r");
   run(100);
   drive.time_ms += 4900;
   run(500);
@@ -154,7 +154,7 @@ TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
 
 TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
   drive.state = DRIVE_READY;
-  send("start\rstop\r");
+  send("start free\rstop\r");
   run(500);
   EXPECT_TRUE(drive.request.stop);
   EXPECT_FALSE(drive.request.start);
@@ -177,6 +177,12 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
   text.clear();
   drive.state = DRIVE_RUN;
   drive_raise(&drive, FAULT_LINK_HIGH);
+  run(300);
+  EXPECT_TRUE(has(text, "! fault: DC link above")) << "a terminal that keeps the guard alive is still one: " << text;
+  (void)ask(REQUEST_IDENTITY);
+  text.clear();
+  drive.state = DRIVE_RUN;
+  drive_raise(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_EQ(text, "") << "a machine is there";
 }

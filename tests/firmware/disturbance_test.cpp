@@ -25,10 +25,19 @@ TEST(Disturbance, AnyOctets) {
 
 TEST(Disturbance, WordsAndRecordsInAnyOrder) {
   std::mt19937 random(12);
-  const char* const words[] = {
-      "list\r",  "help ", "set ", "speed_ramp ", "get ",        "start\r", "stop\r", "ref ",
-      "600 ",    "rpm\r", "\r",   "watch\r",     "faults\r",    "\x03",    "scope ", "channels speed\r",
-      "trigger", " now",  "arm ", "print 1\r",   "commission ", "\x1B[A",  "-1.5",   "status\r"};
+  const char* const words[] = {"list\r",       "help ",
+                               "set ",         "speed_ramp ",
+                               "get ",         "start free\r",
+                               "start hold\r", "commission start free\r",
+                               "stop\r",       "ref ",
+                               "600 ",         "rpm\r",
+                               "\r",           "watch\r",
+                               "faults\r",     "\x03",
+                               "scope ",       "channels speed\r",
+                               "trigger",      " now",
+                               "arm ",         "print 1\r",
+                               "commission ",  "\x1B[A",
+                               "-1.5",         "status\r"};
   for (int trial = 0; trial < 2000; ++trial) {
     std::vector<std::uint8_t> octets;
     for (unsigned n = random() % 60; n > 0; --n) {

@@ -47,6 +47,7 @@ static words_of_line_t any_words(void) {
     a.word[k].count = (uint16_t)any_from(1, (int32_t)EDITOR_LINE);
   }
   a.count = any_up_to(COMMAND_WORDS);
+  a.expired = any_bool();
   return a;
 }
 

@@ -15,8 +15,9 @@ uint16_t hal_sci_room(void) { return any_up_to(HAL_SCI_TRANSMIT_RING); }
 
 static bool any_line(uint16_t step) { return step == 0u || any_bool(); }
 
-void command_obey(const editor_line_t* line) {
+void command_obey(const editor_line_t* line, bool expired) {
   (void)line;
+  (void)expired;
   if (any_bool()) console_run(any_line, any_bool());
 }
 
@@ -38,7 +39,7 @@ void prove_console(void) {
   while (any_bool()) {
     any_moment();
     if (any_bool()) any_stream(GUARD_SERIAL);
-    if (any_bool()) guard_begin((guard_t)any_up_to(2));
+    if (any_bool()) guard_begin((guard_t)any_up_to(3));
     link_service();
     console_service();
     (void)link_errors();

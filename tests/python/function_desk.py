@@ -45,7 +45,7 @@ class Desk:
 
     def run(self, rpm: float) -> None:
         self.type(f"ref {rpm} rpm")
-        self.type("start")
+        self.type("start free")
         assert self.until(RUN), self.status("fault")
 
     @property

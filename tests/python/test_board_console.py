@@ -84,7 +84,7 @@ def test_parameter_is_shown_changed_and_refused(terminal):
 
 def test_motor_turns_when_told(terminal):
     terminal.say("ref 300 rpm")
-    terminal.say("start")
+    terminal.say("start free")
     terminal.wait_for("status", "running")
     terminal.wait_for("status", "rpm of 300.0 rpm")
     assert "may not change while" in terminal.say("set inertia 0.01")[0]

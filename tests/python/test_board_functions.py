@@ -21,7 +21,7 @@ def test_bootstrap_capacitors_are_charged_before_the_first_pulse(power: Any) -> 
 def test_without_charging_the_upper_devices_do_not_switch(power: Any) -> None:
     """That the model can tell: the same start without the time for it."""
     desk = power({"bootstrap_time": 0.0, "flying_start": 0.0}, {"board": {"bootstrap": True}})
-    desk.type("start")
+    desk.type("start free")
     desk.wait(50)
     assert desk.output("lockouts") > 0
 
@@ -31,7 +31,7 @@ def test_a_turning_shaft_is_not_braked_by_the_charging(power: Any) -> None:
     plant = {"board": {"bootstrap": True}, "initial": {"speed": 200.0}}
     desk = power({"bootstrap_time": 2.0}, plant)
     desk.type("ref 1500 rpm")
-    desk.type("start", 0)
+    desk.type("start free", 0)
     assert desk.until(RUN), desk.status("fault")
     assert desk.output("lockouts") == 0
     assert desk.truth("speed") > 1200
@@ -58,7 +58,7 @@ def test_the_relay_closes_when_the_link_is_charged(power: Any) -> None:
 
 def test_a_start_before_the_link_is_charged_is_refused(power: Any) -> None:
     desk = power({"precharge_voltage": 270.0}, charging(100.0))
-    desk.type("start")
+    desk.type("start free")
     assert (desk.state, desk.fault) == (FAULT, PRECHARGE)
     desk.wait(600)
     desk.type("reset", 100)
@@ -171,7 +171,7 @@ def test_overload_brings_the_current_limit_down_to_what_may_flow_for_ever(power:
 def test_overload_that_derating_does_not_end_is_a_fault(power: Any) -> None:
     """The limit is above what may flow for ever by so little time that it comes too late."""
     desk = power({"overload_current": 3.0, "overload_time": 100.0, "if_current": 10.0, "start_method": 1.0})
-    desk.type("start", 0)
+    desk.type("start free", 0)
     desk.wait(1500)
     assert (desk.state, desk.fault) == (FAULT, OVERLOAD)
 

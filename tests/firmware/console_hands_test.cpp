@@ -1,0 +1,255 @@
+// Safe hands: no motor that starts from a line somebody left behind, none that runs when nobody is there any more.
+
+#include "tests/firmware/console.hpp"
+
+extern "C" {
+#include "firmware/link/guard.h"
+}
+
+namespace {
+
+using namespace stillspin;
+using namespace stillspin::test;
+
+class ConsoleHands : public Console {
+ protected:
+  static constexpr int kLong = 50000, kShort = 49000;  // rounds, on either side of 5 s
+
+  void SetUp() override {
+    Console::SetUp();
+    drive.state = DRIVE_READY;
+  }
+  /// What is said at once to a line that has stood for so many rounds.
+  std::string after(const std::string& line, int rounds) {
+    send(line);
+    run(rounds);
+    text.clear();
+    send("\r");
+    run(300);
+    return text;
+  }
+  void start_hold() {
+    (void)command("start hold", 100);
+    ASSERT_TRUE(drive.request.start);
+    drive.request.start = false;
+    drive.state = DRIVE_RUN;
+    run(300);
+  }
+  static constexpr const char* kTooOld = "too old: the line stood for 5 s, nothing done. Arrow up brings it back\r\n> ";
+};
+
+TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
+  for (const char* line : {"start free", "start hold", "commission start free"}) {
+    EXPECT_EQ(after(line, kLong), std::string("\r\n") + kTooOld) << line;
+    EXPECT_FALSE(drive.request.start || drive.request.commission || guard_is_on()) << line;
+  }
+  EXPECT_FALSE(has(after("start free", kShort), "too old"));
+  EXPECT_TRUE(drive.request.start);
+}
+
+TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
+  EXPECT_TRUE(has(after("ref 50", kLong), "ref 50.00 rpm")) << "nothing moves yet";
+  drive.state = DRIVE_RUN;
+  EXPECT_TRUE(has(after("ref 60", kLong), "too old"));
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 50 * 65536);
+  EXPECT_TRUE(has(after("ref 0", kLong), "ref 0.00 rpm"));
+}
+
+TEST_F(ConsoleHands, OtherLinesNeverExpire) {
+  EXPECT_TRUE(has(after("get speed_ramp", kLong), "speed_ramp = "));
+  EXPECT_TRUE(has(after("set speed_ramp 250", 20 * kLong), "speed_ramp = 250 rpm/s"));
+  EXPECT_TRUE(has(after("commission results", kLong), "nothing has been measured"));
+  drive.state = DRIVE_RUN;
+  EXPECT_TRUE(has(after("stop", kLong), "stopping"));
+  EXPECT_TRUE(drive.request.stop);
+}
+
+// Once expired it stays expired: to complete somebody else's line is not to have typed it.
+TEST_F(ConsoleHands, AnOldLineStaysOldUntilItIsEmptied) {
+  send("start fre");
+  run(kLong);
+  EXPECT_TRUE(has(command("e"), "too old"));
+  EXPECT_FALSE(drive.request.start);
+  send("start fre");
+  run(kLong);
+  send("\x15");
+  EXPECT_FALSE(has(command("start free", 300), "too old"));
+  EXPECT_TRUE(drive.request.start);
+}
+
+TEST_F(ConsoleHands, TheArrowUpBringsAnOldLineBackAsANewOne) {
+  (void)after("start free", kLong);
+  (void)command("\x1B[A", 300);
+  EXPECT_TRUE(drive.request.start);
+}
+
+// Typed ahead during an answer, it is as old as when it came, not as when its turn came.
+TEST_F(ConsoleHands, WhatIsTypedAheadIsAsOldAsItIs) {
+  board.serial_room = 0;
+  send("list\rstart free");
+  for (int k = 0; k < kLong / 10; ++k) {
+    drive.time_ms++;
+    board.serial_room = 300;  // for the console to take octets
+    link_service();
+    board.serial_room = 0;  // and none for the lines of the answer
+    console_service();
+    board.serial_out.clear();
+  }
+  send("\r");
+  run(40000);
+  EXPECT_TRUE(has(text, "too old")) << text.substr(text.size() - 200);
+  EXPECT_FALSE(drive.request.start);
+}
+
+TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
+  send("start free");
+  run(100);
+  board.serial_errors.breaks++;
+  run(10);
+  text.clear();
+  send("\r");
+  run(300);
+  EXPECT_FALSE(drive.request.start);
+  EXPECT_TRUE(has(text, "the line was disturbed on its way"));
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n");
+  send("re");
+  run(100);
+  board.serial_errors.breaks++;
+  run(10);
+  EXPECT_TRUE(has(command("start free"), "disturbed")) << "the rest of a line is no line";
+  EXPECT_FALSE(drive.request.start);
+}
+
+TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
+  send("list\rref 70\r");
+  run(100);
+  board.serial_errors.breaks++;
+  run(30000);
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n");
+}
+
+TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
+  const std::string ways =
+      "nothing done: nobody would watch. Add 'hold' (runs while keys come) or 'free' (runs until 'stop')\r\n";
+  for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
+    EXPECT_EQ(command(line), ways) << line;
+  }
+  EXPECT_FALSE(drive.request.start || drive.request.commission);
+}
+
+TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
+  EXPECT_TRUE(has(command("start free", 100), "free: nobody watches, it runs until 'stop', without this terminal too"));
+  EXPECT_TRUE(drive.request.start);
+  EXPECT_FALSE(guard_is_on());
+  drive.request.start = false;
+  drive.state = DRIVE_RUN;
+  run(100000);
+  EXPECT_FALSE(drive.request.stop) << "and means it";
+}
+
+TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
+  start_hold();
+  for (int k = 0; k < 20; ++k) {
+    run(9000);
+    send(k % 2 == 0 ? "\r" : "x");
+    run(10);
+    ASSERT_FALSE(drive.request.stop) << k;
+  }
+  run(9000);
+  EXPECT_FALSE(drive.request.stop);
+  text.clear();
+  run(1500);
+  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(has(text, "\r\n! nobody was heard for link_timeout: the motor stops\r\n")) << text;
+  text.clear();
+  run(20000);
+  EXPECT_EQ(text, "") << "once";
+}
+
+TEST_F(ConsoleHands, ALetGoMotorCoastsWhenThatIsTheReaction) {
+  parameters.link_reaction = LINK_REACTION_COAST;
+  start_hold();
+  run(11000);
+  EXPECT_TRUE(drive.request.coast);
+}
+
+TEST_F(ConsoleHands, RecordsDoNotHoldWhatKeysHold) {
+  start_hold();
+  for (int k = 0; k < 12; ++k) {
+    (void)ask(REQUEST_STATUS);
+    run(600);
+  }
+  EXPECT_TRUE(drive.request.stop);
+}
+
+// The space bar is the key to hold: it leaves the line empty and an answer that goes on alone.
+TEST_F(ConsoleHands, TheSpaceBarHoldsAndNothingElse) {
+  start_hold();
+  send("watch speed\r");
+  run(100);
+  text.clear();
+  for (int k = 0; k < 300; ++k) {
+    send(" ");
+    run(300);
+  }
+  EXPECT_FALSE(drive.request.stop);
+  EXPECT_GE(std::count(text.begin(), text.end(), '\n'), 15) << text;
+  EXPECT_FALSE(has(text, "> "));
+  send("stop\r");
+  run(100);
+  EXPECT_TRUE(drive.request.stop);
+}
+
+TEST_F(ConsoleHands, ASpaceIsASpaceWhenNobodyHolds) {
+  (void)command("start free", 100);
+  drive.state = DRIVE_RUN;
+  send("watch\r");
+  run(300);
+  text.clear();
+  send(" ");
+  run(300);
+  EXPECT_EQ(text, ">  ") << "any key ends a watch and is the next line's first";
+  send("get  speed_ramp");
+  run(100);
+  EXPECT_TRUE(has(text, "get  speed_ramp"));
+}
+
+TEST_F(ConsoleHands, RecordsThatComeGuardABareStart) {
+  EXPECT_TRUE(has(command("start", 300), "nobody would watch"));
+  (void)ask(REQUEST_STATUS);
+  EXPECT_EQ(command("start", 100), "");
+  EXPECT_TRUE(drive.request.start);
+  drive.request.start = false;
+  drive.state = DRIVE_RUN;
+  for (int k = 0; k < 30; ++k) {
+    (void)ask(REQUEST_STATUS);
+    run(5000);
+  }
+  EXPECT_FALSE(drive.request.stop);
+  run(11000);
+  EXPECT_TRUE(drive.request.stop) << "the terminal has died";
+}
+
+TEST_F(ConsoleHands, RecordsThatCameOnceAreNoGuard) {
+  (void)ask(REQUEST_STATUS);
+  run(9000);
+  EXPECT_FALSE(has(command("commission start", 100), "nobody would watch"));
+  (void)command("stop");
+  drive.request.commission = false;
+  (void)ask(REQUEST_STATUS);
+  run(10500);
+  EXPECT_TRUE(has(command("commission start", 100), "nobody would watch"));
+}
+
+TEST_F(ConsoleHands, WhoLeavesMayLetGoOfAMotorThatRuns) {
+  start_hold();
+  EXPECT_TRUE(has(command("start free", 100), "free: nobody watches"));
+  run(30000);
+  EXPECT_FALSE(drive.request.stop);
+  guard_begin(GUARD_BUS);
+  (void)command("start free", 100);
+  EXPECT_TRUE(guard_is_on()) << "not of what the bus holds";
+}
+
+}  // namespace
