@@ -89,7 +89,7 @@ TEST_F(Refusals, EveryWayToSayNoIsOne) {
 
 TEST_F(Refusals, WhatTheDriveDoesNotDoNowIsOne) {
   drive.state = DRIVE_RUN;
-  for (const char* line : {"set speed_limit 1000", "load", "defaults", "start", "commission start"}) {
+  for (const char* line : {"set speed_limit 1000", "load", "defaults", "start hold", "commission start"}) {
     EXPECT_EQ(of(line), 1) << line << ": " << text;
   }
 }
@@ -108,7 +108,7 @@ TEST_F(Refusals, ASaveThatFailsIsOne) {
 TEST_F(Refusals, AStartThatEndsInAFaultIsOne) {
   drive.state = DRIVE_READY;
   const std::uint16_t before = refusals();
-  send("start\r");
+  send("start free\r");
   run(100);
   EXPECT_EQ(refusals(), before) << text;
   drive_raise(&drive, FAULT_LINK_LOW);
