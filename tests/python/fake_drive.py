@@ -81,7 +81,8 @@ class FakeDrive:
         self.setup = None
         self.scope = 4  # its state: done
         self.stream = None
-        self.outcome, self.progress = 0, 0
+        self.outcome, self.progress = 0, 0.0
+        self.pace = 4000  # of a commissioning, per mille per second
         self._counter = 0
         self._begin = self._last = self._heard = self._sent = time.monotonic()
         self._master, slave = pty.openpty()
@@ -167,7 +168,7 @@ class FakeDrive:
         if self.state == 5 and abs(self.speed) < 2:
             self.state = READY
         if self.state == COMMISSION:
-            self.progress = min(1000, self.progress + int(step * 4000) + 1)
+            self.progress = min(1000.0, self.progress + step * self.pace)
             if self.progress == 1000:
                 self.state, self.outcome = READY, 3
         if self.guarded and self.state == RUN and now - self._heard > self.values[200] / 1000:
@@ -289,7 +290,7 @@ class FakeDrive:
 
     def _on_08(self, _):
         speeds = (raw(self.speed, 16), raw(self.reference, 16))
-        last = (self.outcome, 2 if self.state == COMMISSION else 0, self.progress, self.guarded)
+        last = (self.outcome, 2 if self.state == COMMISSION else 0, int(self.progress), self.guarded)
         limits = 1 if self.state == RUN else 0
         return struct.pack(
             "<IBBHiiBBBBHB", self._now_ms(), self.state, self.fault, limits, *speeds, self.store, 0, *last

@@ -140,7 +140,7 @@ def test_the_wizard_measures_the_machine_and_what_it_found_is_kept(tmp_path, mon
         change(page, "stator_resistance", 0.25)
         page.click("[data-tab=commissioning]")
         assert page.locator("#commission").is_disabled()
-        for box in page.locator("#wizard input").all():
+        for box in page.locator("#wizard input[type=checkbox]").all():
             box.check()
         page.click("#commission")
         page.wait_for_selector("#state:has-text('commissioning')")

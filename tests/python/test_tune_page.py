@@ -110,7 +110,7 @@ def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
     assert download.value.path().read_text().startswith("time [s],speed [rpm],current_d [A],current_q [A]\n")
     tuned.click("[data-tab=commissioning]")
     assert tuned.locator("#commission").is_disabled()
-    for box in tuned.locator("#wizard input").all():
+    for box in tuned.locator("#wizard input[type=checkbox]").all():
         box.check()
     tuned.click("#commission")
     tuned.wait_for_selector("#wizard :text('too few samples')")

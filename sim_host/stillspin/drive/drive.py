@@ -354,10 +354,10 @@ class Drive:
         """End a capture; what has been recorded can be read."""
         self._ask(Request.SCOPE_STOP, b"")
 
-    def scope_read(self, setup: scope.Setup) -> scope.Capture:
-        """Fetch a capture that is done or stopped."""
+    def scope_read(self, setup: scope.Setup, chunk: int = scope.CHUNK) -> scope.Capture:
+        """Fetch a capture that is done or stopped; small chunks of records leave room on the line for a stream."""
         state = self.scope_state()
-        words = [values.read_channel(self._ask, number, state.recorded) for number in range(len(setup.channels))]
+        words = [values.read_channel(self._ask, number, state.recorded, chunk) for number in range(len(setup.channels))]
         return scope.decode(setup, state, words, self.table)
 
     def capture(

@@ -20,7 +20,8 @@ from stillspin.link.errors import DriveError, RefusedError
 if TYPE_CHECKING:
     from stillspin.drive.drive import Drive
 
-_READ_MOST = 32
+_READ_MOST = 4
+"""Per question: answers that are short leave room on the line for a stream."""
 _SAVE_TIMEOUT = 10.0
 STORE_SAVING, STORE_SAVED, STORE_FAILED = 4, 5, 6
 """States of the store, firmware/store/store.h."""
@@ -80,12 +81,12 @@ def read_all(ask: Ask, table: Table) -> dict[str, int]:
     return found
 
 
-def read_channel(ask: Ask, channel: int, count: int) -> npt.NDArray[np.int16]:
-    """The records of one channel of the scope."""
+def read_channel(ask: Ask, channel: int, count: int, chunk: int = CHUNK) -> npt.NDArray[np.int16]:
+    """The records of one channel of the scope, so many per question."""
     words = bytearray()
     while len(words) < 2 * count:
         at = len(words) // 2
-        body = ask(Request.SCOPE_READ, struct.pack("<BHB", channel, at, min(CHUNK, count - at)))
+        body = ask(Request.SCOPE_READ, struct.pack("<BHB", channel, at, min(chunk, count - at)))
         if not body:
             break
         words += body

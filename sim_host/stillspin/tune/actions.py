@@ -16,6 +16,8 @@ from stillspin.tune.workbench import Workbench
 
 _POLL = 0.05
 _LONGEST = 600.0
+_CHUNK = 12
+"""Records of a capture per question: the plotted signals go on without a gap."""
 
 
 def _set(bench: Workbench, _: str, given: Message) -> Any:
@@ -106,7 +108,7 @@ def _capture(bench: Workbench, _: str, given: Message) -> Any:
         time.sleep(_POLL)
     if state == scope.IDLE:
         raise DriveError("the capture was stopped before its trigger")
-    capture = bench.drive.scope_read(setup)
+    capture = bench.drive.scope_read(setup, _CHUNK)
     return {
         "time": capture.time.tolist(),
         "signals": {name: values.tolist() for name, values in capture.signals.items()},

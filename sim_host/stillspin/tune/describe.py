@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from stillspin.drive import scope
 from stillspin.drive.table import Parameter
+from stillspin.tune import choices
 from stillspin.tune.groups import group_of
 from stillspin.tune.messages import Message
 
@@ -23,6 +24,7 @@ def describe(bench: Workbench) -> Message:
         "where": bench.drive.link.transport.name,
         "parameters": [_parameter(entry) for entry in table.parameters],
         "signals": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in table.signals],
+        "words": choices.of_signals(bench.drive),
         "values": bench.drive.parameters(),
         "plotted": bench.plotted,
         "edges": list(scope.EDGES),
@@ -36,6 +38,7 @@ def _parameter(entry: Parameter) -> Message:
         "id": entry.id,
         "group": group_of(entry.id),
         "unit": entry.unit,
+        "choices": choices.of_parameter(entry),
         "decimals": entry.decimals,
         "minimum": entry.minimum,
         "maximum": entry.maximum,

@@ -1,6 +1,6 @@
 // The commissioning, in three steps: what to see to, measuring, what was found.
 
-import { by, make, number, withUnit } from "./dom.js";
+import { by, make, number, span, withUnit } from "./dom.js";
 
 const [RUNNING, DONE, PARTLY, ABORTED] = [1, 2, 3, 4];
 const PLATE = ["pole_pairs", "current_limit", "speed_limit", "stator_resistance", "inductance_d", "inductance_q", "magnet_flux"];
@@ -27,14 +27,14 @@ export class Commissioning {
   prepare() {
     const items = PLATE.map((name) => this.table.find((parameter) => parameter.name === name)).filter(Boolean);
     const plate = items.map((parameter) =>
-      make("tr", {}, make("td", {}, parameter.name), make("td", { class: "figure" }, number(this.value(parameter.name), parameter.decimals)),
+      make("tr", {}, make("td", {}, parameter.name), make("td", { class: "figure" }, this.parameters.twin(parameter.name)),
         make("td", {}, parameter.unit), make("td", { class: "hint" }, parameter.meaning)),
     );
     const spin = this.table.find((parameter) => parameter.name === "spin_speed");
     const speed = spin ? ` It turns at up to ${number(this.value("spin_speed"), 0)} ${spin.unit}.` : "";
     const boxes = [
       "The shaft is free to turn, nothing is coupled to it, nobody can touch it.",
-      "The values of the nameplate below are those of this motor.",
+      "The values below are those of this motor's nameplate; what is not on it may be rough: it is measured.",
       "I can switch the power off by hand.",
     ].map((text) => make("label", { class: "check" }, make("input", { type: "checkbox" }), ` ${text}`));
     const start = make("button", { id: "commission", disabled: true, onclick: () => this.start() }, "Measure");
@@ -57,17 +57,19 @@ export class Commissioning {
     by("keep").checked = true;
     this.bar = make("progress", { max: 1, value: 0 });
     this.words = make("p", { class: "calm" }, "starting");
+    this.left = make("p", { class: "calm", id: "time-left" });
+    this.begun = null;
     this.phase = null;
-    this.steps(1, this.words, this.bar,
+    this.steps(1, this.words, this.bar, this.left,
       make("div", { class: "bar" }, make("button", { id: "abort", onclick: () => this.run.stop("stop") }, "Stop measuring")));
     this.measuring = true;
     this.run.hold("commission");
   }
 
-  async follow({ commissioning, fault }) {
+  async follow({ commissioning, fault, time }) {
     const before = this.outcome;
     this.outcome = commissioning.outcome;
-    if (this.measuring && commissioning.outcome === RUNNING) this.progress(commissioning);
+    if (this.measuring && commissioning.outcome === RUNNING) this.progress(commissioning, time);
     if (before !== RUNNING || commissioning.outcome === RUNNING || !this.measuring) return;
     this.measuring = false;
     by("keep").checked = false;
@@ -76,8 +78,11 @@ export class Commissioning {
     else this.broken(fault ? `It ended in a fault: ${fault}` : "The drive was switched off meanwhile: nothing was measured.");
   }
 
-  async progress({ progress, phase }) {
+  async progress({ progress, phase }, time) {
     this.bar.value = progress;
+    this.begun ??= { time, progress };
+    const [took, done] = [time - this.begun.time, progress - this.begun.progress];
+    this.left.textContent = done > 0.03 ? `about ${span((took / done) * (1 - progress))} left` : "";
     if (phase === this.phase) return;
     this.phase = phase;
     const words = await this.link.ask("phase", { phase }).catch(() => "");

@@ -8,7 +8,7 @@ export function make(tag, properties = {}, ...children) {
   for (const [key, value] of Object.entries(properties)) {
     if (key === "class") element.className = value;
     else if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
-    else if (key.startsWith("data-") || key.startsWith("aria-")) element.setAttribute(key, value);
+    else if (key.startsWith("data-") || key.startsWith("aria-") || key === "role") element.setAttribute(key, value);
     else element[key] = value;
   }
   element.append(...children.filter((child) => child !== null && child !== undefined));
@@ -29,3 +29,10 @@ export function span(seconds) {
 }
 
 export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
+
+/** A signal's value for people: in words where it stands for a state, with its unit otherwise. */
+export function told(value, { name, unit }, words = {}) {
+  const list = words[name];
+  if (name === "limit" && list) return list.filter((_, bit) => (value >> bit) & 1).join(", ") || "nothing";
+  return list?.[value] ?? withUnit(number(value), unit);
+}

@@ -1,6 +1,6 @@
 // Live signals: a rolling window, one panel for each unit.
 
-import { by, make, number } from "./dom.js";
+import { by, make, told } from "./dom.js";
 import { panels } from "./plot.js";
 
 const MOST = 8;
@@ -24,8 +24,9 @@ export class Live {
     draw();
   }
 
-  choices({ signals, plotted }) {
+  choices({ signals, plotted, words }) {
     this.table = signals;
+    this.words = words;
     this.names = null;
     by("signals").replaceChildren(
       ...signals.map(({ name, unit, meaning }) => {
@@ -73,7 +74,7 @@ export class Live {
       this.time.splice(0, old);
       for (const column of this.values) column.splice(0, old);
     }
-    by("stream-lost").textContent = lost ? `${lost} samples lost on the way` : "";
+    by("stream-lost").textContent = lost ? `${lost} samples did not arrive` : "";
     this.dirty = true;
   }
 
@@ -92,9 +93,9 @@ export class Live {
     const x = this.time.slice(first).map((time) => time - now);
     for (const panel of this.panels) {
       const series = panel.members.map(({ name, at, colour }) => ({ name, colour, x, y: this.values[at].slice(first) }));
-      panel.plot.show({ from, to: 0, series });
-      panel.members.forEach(({ at }, place) => {
-        panel.values[place].textContent = number(this.values[at][last]);
+      panel.plot.show({ from, to: 0, series, unit: panel.unit, timeUnit: "s" });
+      panel.members.forEach((signal, place) => {
+        panel.values[place].textContent = told(this.values[signal.at][last], signal, this.words);
       });
     }
   }

@@ -2,10 +2,18 @@
 
 import { by, make } from "./dom.js";
 
+/** Where a parameter's value is entered: a list of words where its numbers stand for something. */
+export function field({ name, choices, minimum }) {
+  if (!choices.length) return make("input", { type: "text", inputMode: "decimal", spellcheck: false, "aria-label": name });
+  const options = choices.map((words, at) => make("option", { value: String(minimum + at) }, `${minimum + at} ${words}`));
+  return make("select", { "aria-label": name }, ...options);
+}
+
 export class Parameters {
   constructor(link, fail) {
     this.link = link;
     this.fail = fail;
+    this.watchers = new Map();
     link.on("hello", (hello) => this.build(hello));
     link.on("again", ({ values }) => this.take(values));
     by("search").oninput = () => this.filter();
@@ -30,10 +38,11 @@ export class Parameters {
 
   row(parameter) {
     const { name, unit, range, meaning, always, initial, decimals } = parameter;
-    const input = make("input", { type: "text", inputMode: "decimal", spellcheck: false, "aria-label": name });
+    const input = field(parameter);
     if (!always) input.setAttribute("data-stopped", "");
     const error = make("div", { class: "error", hidden: true });
     const back = make("button", { class: "back", title: `Default: ${initial.toFixed(decimals)} ${unit}` }, "↺");
+    back.setAttribute("aria-label", `${name} to its default`);
     if (!always) back.setAttribute("data-stopped", "");
     const element = make(
       "div",
@@ -54,6 +63,22 @@ export class Parameters {
     return element;
   }
 
+  /** A second field for a parameter, elsewhere on the page: both change it, both show what is in effect. */
+  twin(name) {
+    const { parameter, value } = this.rows.get(name);
+    const input = field(parameter);
+    const show = (now) => (input.value = now.toFixed(parameter.decimals));
+    this.watchers.set(name, [show]);
+    input.onchange = async () => {
+      const words = await this.change(this.rows.get(name), input.value);
+      if (words) this.fail(new Error(words));
+      show(this.rows.get(name).value);
+    };
+    if (!parameter.always) input.setAttribute("data-stopped", "");
+    show(value);
+    return input;
+  }
+
   take(values) {
     for (const [name, value] of Object.entries(values)) this.put(this.rows.get(name), value);
     this.filter();
@@ -62,21 +87,27 @@ export class Parameters {
   put(row, value) {
     row.value = value;
     row.input.value = value.toFixed(row.parameter.decimals);
+    for (const watcher of this.watchers.get(row.parameter.name) ?? []) watcher(value);
     row.error.hidden = true;
     row.element.classList.toggle("changed", value !== row.parameter.initial);
   }
 
+  /** Changes it; words when the drive does not like it. */
   async change(row, text) {
-    if (text === row.value.toFixed(row.parameter.decimals)) return this.put(row, row.value);
+    if (text === row.value.toFixed(row.parameter.decimals)) {
+      this.put(row, row.value);
+      return "";
+    }
     try {
       const { value, conflict } = await this.link.ask("set", { name: row.parameter.name, value: text });
       this.put(row, value);
       this.complain(row, conflict);
       by("store-note").textContent = "Changes are in effect; they are kept when they are saved.";
+      return conflict;
     } catch (error) {
       this.complain(row, error.message);
+      return error.message;
     }
-    return null;
   }
 
   complain(row, words) {

@@ -1,6 +1,6 @@
 // Lines over time on a canvas: axes with round numbers, a reading under the pointer, a mark at zero.
 
-const MARGIN = { left: 62, right: 12, top: 8, bottom: 22 };
+const MARGIN = { left: 62, right: 26, top: 20, bottom: 22 };
 
 /** Up to `count` round numbers in low … high. */
 export function ticks(low, high, count) {
@@ -50,7 +50,7 @@ export class Plot {
   draw() {
     const { canvas, content } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (!content || !width) return;
+    if (!content || !height || !width) return;
     const scale = window.devicePixelRatio || 1;
     canvas.width = width * scale;
     canvas.height = height * scale;
@@ -99,6 +99,10 @@ export class Plot {
       this.stroke(pen, x(value), MARGIN.top, x(value), height - MARGIN.bottom);
       pen.fillText(short(value), x(value), height - MARGIN.bottom + 6);
     }
+    pen.textAlign = "left";
+    pen.fillText(content.timeUnit, width - MARGIN.right + 8, height - MARGIN.bottom + 6);
+    pen.textAlign = "right";
+    pen.fillText(content.unit || "(number)", MARGIN.left - 6, 2);
     if (content.mark === undefined) return;
     pen.strokeStyle = this.colour("--quiet");
     this.stroke(pen, x(content.mark), MARGIN.top, x(content.mark), height - MARGIN.bottom);
@@ -164,8 +168,8 @@ export function panels(home, signals, make) {
       const value = make("b", { "data-value": signal.name });
       return { value, item: make("span", { class: "legend" }, key, `${signal.name} `, value) };
     });
-    const canvas = make("canvas");
-    const head = make("div", { class: "legends" }, ...values.map(({ item }) => item), make("em", {}, unit));
+    const canvas = make("canvas", { role: "img", "aria-label": `${own.map(({ name }) => name).join(", ")} over time` });
+    const head = make("div", { class: "legends" }, ...values.map(({ item }) => item));
     home.append(make("div", { class: "panel" }, head, canvas));
     return { unit, members: own, values: values.map(({ value }) => value), plot: new Plot(canvas) };
   });

@@ -155,7 +155,7 @@ export class Run {
     this.status = null;
     by("state").textContent = "not known";
     by("state").className = "pill unknown";
-    for (const id of ["speed", "now-reference", "limits", "store", "time"]) by(id).textContent = "–";
+    for (const id of ["speed", "now-reference", "limits", "now-fault", "store", "time"]) by(id).textContent = "–";
     by("fault").hidden = true;
     by("hold").disabled = !this.held;
     if (this.held) by("hold").textContent = "Not known whether it runs";
@@ -175,6 +175,7 @@ export class Run {
     by("limits").textContent = status.limits.join(", ") || "nothing";
     by("store").textContent = status.store;
     by("time").textContent = span(status.time);
+    by("now-fault").textContent = status.fault || "no fault";
     by("fault").hidden = !status.fault;
     by("fault-words").textContent = status.remedy ? `${status.fault}:` : status.fault;
     by("fault-remedy").textContent = status.remedy;

@@ -51,7 +51,7 @@ export class Scope {
     by("setup").replaceChildren(
       ...this.channels.map((select, at) => field(`Channel ${at + 1}`, select)),
       field("Trigger when", this.trigger),
-      field("", this.edge),
+      field("it", this.edge),
       field("Level", this.level, this.unit),
       field("A record every", this.decimation, make("em", {}, "× 0.1 ms")),
       field("Before the trigger", this.before, make("em", {}, "%")),
@@ -113,7 +113,7 @@ export class Scope {
     const built = panels(by("captured"), list, make);
     for (const panel of built) {
       const series = panel.members.map(({ name, colour }) => ({ name, colour, x, y: signals[name] }));
-      panel.plot.show({ from: x[0], to: x[x.length - 1], mark: 0, series });
+      panel.plot.show({ from: x[0], to: x[x.length - 1], mark: 0, series, unit: panel.unit, timeUnit: "ms" });
     }
     by("captured").append(make("p", { class: "hint" }, "Time in ms from the trigger."));
   }

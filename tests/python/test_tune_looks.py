@@ -1,0 +1,101 @@
+"""How the page looks: nothing cut off or wasted at three sizes, units, words for numbers, and no lost samples."""
+
+import time
+
+import pytest
+from desk import needs_board
+
+from stillspin.drive import Drive
+from stillspin.tune import choices
+from stillspin.tune.actions import ACTIONS
+from stillspin.tune.describe import describe
+from stillspin.tune.server import Server
+
+TABS = ("live", "parameters", "scope", "faults", "commissioning")
+SIZES = [(1440, 900), (1024, 768), (390, 844)]
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_nothing_is_cut_off_and_no_third_of_it_is_empty(page, server, width, height):
+    page.set_viewport_size({"width": width, "height": height})
+    page.goto(server.address)
+    page.wait_for_selector("#state:has-text('ready')")
+    for tab in TABS:
+        page.click(f"[data-tab={tab}]")
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        for wide in page.locator("button:visible, input:visible, select:visible, canvas:visible").all():
+            box = wide.bounding_box()
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= width
+        sheet = page.locator(f"#{tab}").bounding_box()
+        assert sheet["y"] + sheet["height"] > 0.95 * height
+    page.click("[data-tab=live]")
+    last = page.locator("#plots canvas").last.bounding_box()
+    assert last["y"] + last["height"] > 0.9 * height  # the plots, and not only their frame
+
+
+@needs_board
+def test_numbers_that_stand_for_something_are_words_of_the_drive():
+    with Drive.virtual(speed=0) as drive:
+        table = drive.table
+
+        def words(name):
+            return choices.of_parameter(table.parameter(name))
+
+        assert words("excitation")[4:] == ["long zero vector", "as 2, cheapest pair above"]
+        assert words("position_source")[4:6] == ["observer alone", "CONV"]
+        assert len(words("position_source")) == 9
+        assert words("link_reaction") == ["stop", "coast"]
+        assert words("current_law") == ["PI with space vectors", "hysteresis"]
+        assert words("mtpa") == ["no", "yes"]
+        assert words("pole_pairs") == words("current_divider") == words("speed_limit") == []
+        said = choices.of_signals(drive)
+        assert said["state"][2] == "ready"
+        assert said["fault"][14] == "emergency stop"
+        assert all(all(text for text in list_[1:]) for name, list_ in said.items() if name != "limit")
+
+
+@needs_board
+def test_no_sample_is_lost_while_parameters_and_a_capture_are_read():
+    with (
+        Drive.virtual(speed=1.0) as drive,
+        Server(drive) as server,
+        drive.stream(["speed", "current_q"], 0.02) as stream,
+    ):
+        time.sleep(0.5)
+        for _ in range(3):
+            describe(server.bench)
+        setup = {"trigger": "speed", "level": 0, "edge": "now", "decimation": 1, "pretrigger": 0.0}
+        ACTIONS["capture"](server.bench, "somebody", {"signals": ["speed", "current_d"], **setup})
+        assert stream.lost == 0
+
+
+def test_units_words_and_that_there_is_no_fault_are_said(page, server, fake):
+    page.goto(server.address)
+    page.wait_for_selector("#state:has-text('ready')")
+    page.wait_for_selector("[data-value=speed]:has-text('rpm')")
+    page.wait_for_selector("#now-fault:has-text('no fault')")
+    page.click("#chooser summary")
+    page.check("#signals input[value=state]")
+    page.wait_for_selector("[data-value=state]:has-text('ready')")
+    page.click("[data-tab=commissioning]")
+    for box in page.locator("#wizard input[type=checkbox]").all():
+        box.check()
+    fake.pace = 100
+    page.click("#commission")
+    page.wait_for_selector("#time-left:has-text('left')")
+
+
+def test_the_nameplate_is_entered_in_the_wizard(page, server, fake):
+    page.goto(server.address)
+    page.wait_for_selector("#state:has-text('ready')")
+    page.click("[data-tab=commissioning]")
+    field = page.locator("#wizard [aria-label=current_limit]")
+    field.fill("9")
+    field.press("Enter")
+    page.wait_for_selector("[data-name=current_limit].changed", state="attached")
+    assert fake.values[6] == 9 << 20
+    field.fill("99")
+    field.press("Enter")
+    page.wait_for_selector("#note:has-text('current_limit: 99')")
+    assert field.input_value() == "9.00"  # what is in effect
