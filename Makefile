@@ -20,11 +20,11 @@ PICTURES_OUT := out/pictures
 unexport PYTHONPATH PYTHONHOME
 
 .PHONY: help setup build test demo bench isr-cost isr-bound image-check int16 vectors cppcheck prove mcdc mutants verify \
-	loss fuzz fuzz16 wheel pictures docs lint format lock clean
+	loss fuzz fuzz16 wheel figures figures-long pictures docs lint format lock clean
 
 help: ## list these targets
 	@echo "stillspin: targets"
-	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 
 setup: ## install what is missing: Debian packages, Python packages in .venv
 	@bash toolchain/setup.sh
@@ -110,6 +110,12 @@ fuzz16: setup ## a short search with a 16-bit int, the same every time, and plan
 
 wheel: build ## build the client for people without a compiler, and this machine's virtual drive, into dist/
 	@$(PYTHON) toolchain/wheel.py dist
+
+figures: build ## run what the tables of README and book have their figures from; goes on where it was broken off
+	@$(PYTHON) toolchain/figures.py
+
+figures-long: build ## the same and what takes longer: every estimator over speed, all starts, a board in the loop
+	@$(PYTHON) toolchain/figures.py --long
 
 pictures: build ## renew the pictures of README and book, docs/images
 	@bash toolchain/setup.sh build test

@@ -46,7 +46,7 @@ class Piece:
 
 def _made(root: Path, name: str) -> str:
     body = PIECES[name](root) if name in PIECES else figures.piece(root, name)
-    return body.strip("\n") + "\n"
+    return "\n".join(line.rstrip() for line in body.strip("\n").split("\n")) + "\n"
 
 
 def pages(root: Path) -> list[Path]:

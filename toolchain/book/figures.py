@@ -8,11 +8,12 @@ as the book does. A figure that misses its goal is bold.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateNotFound
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 
 FOLDER = "docs/figures"
 TEMPLATES = "toolchain/book/pieces"
@@ -30,14 +31,9 @@ def number(value: float | None, digits: int = 2) -> str:
         return "–"
     if value == 0:
         return "0"
-    text = f"{value:.{digits}g}"
-    if "e" in text:
-        text = f"{float(text):f}".rstrip("0").rstrip(".") if abs(value) < 1 else f"{float(text):.0f}"
-    elif abs(value) >= 10**digits:
-        text = f"{value:.0f}"
-    elif abs(value) < 10 ** (digits - 1) and "." in text and abs(value) >= 1:
-        text = f"{value:.{digits - 1}f}"
-    return text.replace("-", "−")
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    text = f"{value:.{decimals}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", "−")
 
 
 def fixed(value: float | None, decimals: int = 1) -> str:
@@ -62,10 +58,70 @@ def value(scenarios: Mapping[str, Any], path: str, unit: str = "", digits: int =
     return f"**{text}**" if figure.get("met") is False else text
 
 
-def tally(scenarios: Mapping[str, Any]) -> str:
-    """`29 of 30`: goals that are met."""
-    met = [figure["met"] for figures in scenarios.values() for figure in figures.values() if figure["goal"] is not None]
+def tally(scenarios: Mapping[str, Any], family: str = "A") -> str:
+    """`29 of 30`: goals of the scenarios of a family that are met."""
+    own = [figures for name, figures in scenarios.items() if name.startswith(family)]
+    met = [figure["met"] for figures in own for figure in figures.values() if figure["goal"] is not None]
     return f"{sum(map(bool, met))} of {len(met)}"
+
+
+def plain(scenarios: Mapping[str, Any], path: str, decimals: int = 1) -> str:
+    """A figure with so many decimals, without unit and verdict."""
+    return fixed(_figure(scenarios, path)["value"], decimals)
+
+
+def within(scenarios: Mapping[str, Any], path: str, goal: float) -> str:
+    """A figure, bold where it is beyond a goal."""
+    number_of = _figure(scenarios, path)["value"]
+    text = "lost" if number_of is None else number(number_of)
+    return text if number_of is not None and abs(number_of) <= goal else f"**{text}**"
+
+
+def share(found: float, true: float) -> str:
+    """`+1.4 %`: how far a value is from the true one."""
+    return f"{100 * (found / true - 1):+.1f} %".replace("-", "−")
+
+
+def printed(scenarios: Mapping[str, Any], path: str) -> str:
+    """A line of what `stillspin reproduce` prints."""
+    figure = _figure(scenarios, path)
+    scenario, _, name = path.partition(".")
+    unit = {"deg el": "° el"}.get(figure["unit"], figure["unit"])
+    paper, goal = (number(figure[key], 3) for key in ("paper", "goal"))
+    verdict = {True: "met", False: "short", None: ""}[figure["met"]]
+    value_of = number(figure["value"], 3)
+    return f"{scenario:9} {name:32} {value_of:>5}  {unit:5} {paper:>5} {goal:>5}  {verdict}".rstrip()
+
+
+def held(holds: Sequence[Sequence[float | None]], speed: float) -> str:
+    """The peak of the position error at the first stretch at a speed (rpm); a dash where the shaft was lost."""
+    return fixed(next((peak for held_at, peak in holds if held_at is not None and abs(held_at - speed) < 1.0), None))
+
+
+def over_speed(runs: Mapping[str, Sequence[Sequence[float | None]]], loads: Mapping[str, str]) -> str:
+    """A table of every estimator beside the others, a row for each speed that is held on the way down."""
+    ways = {"observer": "observer", "paper": "ZVV, AVV", "active": "active", "conv": "CONV"}
+    ways |= {"pp01": "PP-01", "pp02": "PP-02"}
+    out = ["| load | rpm | " + " | ".join(ways.values()) + " |", "| --- | --- |" + " --- |" * len(ways)]
+    for load, words in loads.items():
+        for k, (speed, _) in enumerate(runs[f"observer_{load}"]):
+            cells = [held(runs.get(f"{way}_{load}", []), speed) if speed is not None else "" for way in ways]
+            out.append(f"| {'' if k else words} | {fixed(speed, 0)} | " + " | ".join(cells) + " |")
+    return "\n".join(out)
+
+
+def thousands(whole: int) -> str:
+    """1 234 567."""
+    return f"{whole:,}".replace(",", " ")
+
+
+def identical(rows: Sequence[Mapping[str, Any]]) -> str:
+    """`180 of 180`: runs in which board and virtual drive agreed to the end."""
+    same = sum(bool(row["board"]) and row["board"] == row["native"] and not row["lost"] for row in rows)
+    return f"{same} of {len(rows)}"
+
+
+USED = (value, number, fixed, tally, plain, within, share, printed, held, over_speed, thousands, identical)
 
 
 def environment(root: Path) -> Environment:
@@ -77,7 +133,7 @@ def environment(root: Path) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.globals.update(data=load(root), value=value, number=number, fixed=fixed, tally=tally)
+    made.globals.update(data=load(root), **{each.__name__: each for each in USED})
     return made
 
 
@@ -91,3 +147,5 @@ def piece(root: Path, name: str) -> str:
         return environment(root).get_template(f"{name}.md.j2").render()
     except TemplateNotFound:
         raise LookupError(f"nothing makes the piece {name}: there is no {TEMPLATES}/{name}.md.j2") from None
+    except (TemplateError, TypeError) as error:
+        raise LookupError(f"{TEMPLATES}/{name}.md.j2: {error}") from None
