@@ -160,6 +160,7 @@ nb::list parameter_rows() {
     row["name"] = text_of(p->name);
     row["unit"] = text_of(p->unit);
     row["decimals"] = p->decimals;
+    row["whole"] = p->q == 0;
     row["minimum"] = std::ldexp(p->minimum, -p->q);
     row["maximum"] = std::ldexp(p->maximum, -p->q);
     row["default"] = std::ldexp(p->initial, -p->q);

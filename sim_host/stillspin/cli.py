@@ -30,6 +30,7 @@ from stillspin.options import (
     ProfileOption,
     SeedOption,
     by_mark,
+    number,
     processors,
     whole,
 )
@@ -272,7 +273,10 @@ def board_(
     change: ChangeOption = None,
     params: ParamsOption = None,
     speed: Annotated[
-        float, typer.Option("--speed", min=0.0, metavar="N", help="Times real time; 0 is as fast as possible.")
+        float,
+        typer.Option(
+            "--speed", parser=number("--speed", 0), metavar="N", help="Times real time; 0 is as fast as possible."
+        ),
     ] = 1.0,
     serial_link: Annotated[
         Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
@@ -288,9 +292,18 @@ def board_(
         Path | None,
         typer.Option("--eeprom", metavar="FILE", help="Keeps what the drive saves from one start to the next."),
     ] = None,
-    load: Annotated[float, typer.Option("--load", metavar="NM", help="Load torque on the shaft.")] = 0.0,
+    load: Annotated[
+        float,
+        typer.Option("--load", parser=number("--load", unit="Nm"), metavar="NM", help="Load torque on the shaft."),
+    ] = 0.0,
     end: Annotated[
-        float | None, typer.Option("--for", min=0.0, metavar="SECONDS", help="Switch off after so much of its time.")
+        float | None,
+        typer.Option(
+            "--for",
+            parser=number("--for", 0, unit="s"),
+            metavar="SECONDS",
+            help="Switch off after so much of its time.",
+        ),
     ] = None,
     parent: Annotated[
         int | None, typer.Option("--parent", metavar="PID", help="Switch off when this process, its parent, is gone.")

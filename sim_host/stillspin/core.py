@@ -16,13 +16,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Protocol, cast
 
-import numpy as np
 import numpy.typing as npt
 
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
 from stillspin.core_loop import NativeStepLoop, NativeStepLoops
 from stillspin.errors import InputError, did_you_mean
+from stillspin.quantity import Range
 
 Value = float | int | bool | str
 Plant = dict[str, dict[str, Value]]
@@ -212,6 +212,7 @@ class Entry:
     access: str = ""
     number: int = 0
     decimals: int = 0
+    whole: bool = False
 
     @property
     def range_text(self) -> str:
@@ -220,9 +221,27 @@ class Entry:
             return "one of " + ", ".join(self.choices)
         if isinstance(self.default, bool):
             return "true or false"
-        low = "-∞" if self.minimum is None else f"{self.minimum:g}"
-        high = "∞" if self.maximum is None else f"{self.maximum:g}"
-        return f"{low} … {high}{' ' + self.unit if self.unit else ''}"
+        return str(self.range)
+
+    @property
+    def range(self) -> Range:
+        """Of a number."""
+        return Range(self.minimum, self.maximum, self.unit, self.whole)
+
+    def read(self, typed: str, where: str) -> Value:
+        """What somebody typed, as the type of this entry.
+
+        Raises:
+            InputError: as `check`.
+        """
+        if typed in self.choices or isinstance(self.default, str):
+            return self.check(typed, where)
+        word = {"true": True, "false": False}.get(typed.lower())
+        if isinstance(self.default, bool) or (word is not None and self.access):
+            return self.check(typed if word is None else word, where)
+        if self.choices and not typed.lstrip("+-.")[:1].isdigit():
+            return self.check(typed, where)
+        return self._number(typed, where)
 
     def check(self, value: object, where: str) -> Value:
         """`value` as the type of this entry.
@@ -244,7 +263,9 @@ class Entry:
             if not isinstance(value, str):
                 raise InputError(f"{where} = {value!r}: must be text")
             return value
-        return self._number(value, where)
+        if isinstance(value, str):
+            raise InputError(f"{where}: {value!r} is text, no number; {self.range_text}")
+        return self._number(int(value) if isinstance(value, bool) and self.access else value, where)
 
     def _choice(self, value: str, where: str) -> Value:
         if value not in self.choices:
@@ -252,20 +273,9 @@ class Entry:
         return value if isinstance(self.default, str) else self.choices.index(value)
 
     def _number(self, value: object, where: str) -> Value:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            unit = f" in {self.unit}" if self.unit else ""
-            raise InputError(f"{where} = {value!r}: must be a number{unit} ({self.range_text})")
+        number = self.range.read(value, where)
         # A parameter's default is always a number; what is whole in the plant (poles, bits) has a whole default.
-        whole = isinstance(self.default, int)
-        if not np.isfinite(value) or (whole and value != int(value)):
-            raise InputError(
-                f"{where} = {value!r}: must be a {'whole' if whole else 'finite'} number ({self.range_text})"
-            )
-        too_low = self.minimum is not None and value < self.minimum
-        too_high = self.maximum is not None and value > self.maximum
-        if too_low or too_high:
-            raise InputError(f"{where} = {value:g}: out of range, allowed is {self.range_text}")
-        return int(value) if whole else float(value)
+        return int(number) if isinstance(self.default, int) else number
 
 
 Schema = dict[str, dict[str, Entry]]
@@ -283,6 +293,7 @@ def plant_schema(core: NativeCore) -> Schema:
                 default=row["default"],
                 help=row.get("help", ""),
                 choices=_choices(row),
+                whole=isinstance(row["default"], int) and not isinstance(row["default"], bool),
             )
             for key, row in keys.items()
         }
@@ -322,6 +333,7 @@ def _parameter_entry(row: Mapping[str, Any]) -> Entry:
         access=str(row["access"]),
         number=int(row["id"]),
         decimals=decimals,
+        whole=bool(row["whole"]),
     )
 
 
@@ -333,8 +345,6 @@ def parameter(known: Mapping[str, Entry], name: str, value: object, where: str) 
     """
     if name not in known:
         raise InputError(f"{where}: there is no firmware parameter '{name}'{did_you_mean(name, known)}")
-    if isinstance(value, bool):
-        value = int(value)
     return float(known[name].check(value, where))
 
 
@@ -344,10 +354,15 @@ def plant_entry(schema: Schema, section: str, key: str, value: object, where: st
     Raises:
         InputError: no such section or key, or a value that it does not take.
     """
+    return entry_known(schema, section, key, where).check(value, where)
+
+
+def entry_known(schema: Schema, section: str, key: str, where: str) -> Entry:
+    """The plant entry `section.key`; complains when there is none."""
     section_known(schema, section, where)
     if key not in schema[section]:
         raise InputError(f"{where}: section '{section}' has no entry '{key}'{did_you_mean(key, schema[section])}")
-    return schema[section][key].check(value, where)
+    return schema[section][key]
 
 
 def section_known(schema: Schema, section: str, where: str) -> None:

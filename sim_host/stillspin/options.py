@@ -10,23 +10,21 @@ from typing import Annotated, Protocol, TypeVar
 import typer
 
 from stillspin.errors import InputError
+from stillspin.quantity import Range
 
 Choice = TypeVar("Choice", bound="Marked")
 
 
 def whole(name: str, low: int, high: int) -> Callable[[str], int]:
-    """A parser of whole numbers that says what was given and what is allowed."""
+    """A parser of whole numbers."""
+    allowed = Range(low, high, whole=True)
+    return lambda typed: allowed.read_whole(typed, name)
 
-    def parse(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise InputError(f"{name} '{text}': must be a whole number, {low} … {high}")
-        return value
 
-    return parse
+def number(name: str, low: float | None = None, high: float | None = None, unit: str = "") -> Callable[[str], float]:
+    """A parser of numbers."""
+    allowed = Range(low, high, unit)
+    return lambda typed: allowed.read(typed, name)
 
 
 def processors() -> int:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from stillspin.errors import InputError, did_you_mean
+from stillspin.quantity import Range
 
 
 def read(path: Path) -> Table:
@@ -61,12 +62,17 @@ class Table:
         value = self.raw(key, default)
         if value is None:
             raise InputError(f"{self.where}: '{key}' is missing")
-        number = as_number(value)
-        if number is None:
-            raise self.fail(key, "must be a number")
-        if minimum is not None and number < minimum:
-            raise self.fail(key, f"must be at least {minimum:g}")
-        return number
+        return Range(minimum).read(self._untyped(key, value), f"{self.where}: {key}")
+
+    def whole(self, key: str, default: int, minimum: int) -> int:
+        """A whole number."""
+        value = self._untyped(key, self.raw(key, default))
+        return Range(minimum, whole=True).read_whole(value, f"{self.where}: {key}")
+
+    def _untyped(self, key: str, value: Any) -> Any:
+        if isinstance(value, str):
+            raise self.fail(key, "must be a number, without quotes")
+        return value
 
     def switch(self, key: str) -> bool:
         """True or false; false where nothing is said."""

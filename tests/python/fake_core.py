@@ -183,7 +183,8 @@ def plant_schema():
 
 def parameters():
     names = ("id", "name", "unit", "decimals", "minimum", "maximum", "default", "access", "help")
-    return [dict(zip(names, row, strict=True)) for row in _PARAMETERS]
+    whole = ("pole_pairs", "excitation", "observer_windows", "speed_law")
+    return [dict(zip(names, row, strict=True)) | {"whole": row[1] in whole} for row in _PARAMETERS]
 
 
 def check_parameters(parameters):

@@ -90,8 +90,8 @@ def test_a_conflict_that_the_next_values_resolve_is_none(ask, fake, tmp_path):
         (("params", "dump", "--drive", "/dev/none"), 3, "there is no serial port /dev/none"),
         (("params", "dump", "--drive", "usb:x"), 2, "must be like serial:///dev/ttyUSB0"),
         (("scope", "speed", "--out", "x.xls"), 2, "x.xls: the ending must be one of .parquet, .csv, .mf4"),
-        (("scope", "speed=fast"), 2, "the full scale must be a number"),
-        (("monitor", "--duration", "-1"), 2, "must be 0 or more"),
+        (("scope", "speed=fast"), 2, "full scale of speed: 'fast' is no number"),
+        (("monitor", "--duration", "-1"), 2, "is out of range; 0 … ∞"),
     ],
 )
 def test_what_is_wrong_is_one_line(call, tmp_path, arguments, status, said):

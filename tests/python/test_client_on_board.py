@@ -172,6 +172,27 @@ def test_bad_values_are_refused_before_they_are_sent(desk):
         desk.set("speed_limit", 1e6)
 
 
+@pytest.mark.parametrize("typed", ["5000", "-1e5 rpm", 4000.5])
+def test_a_speed_beyond_the_limit_names_what_holds_now_and_what_sets_it(desk, typed):
+    before = desk.status().reference
+    desk.set("speed_limit", 1200)
+    with pytest.raises(InputError) as caught:
+        desk.ref(typed)
+    words = str(typed).removesuffix(" rpm")
+    assert str(caught.value) == f"speed: {words} rpm is out of range; -1200 … 1200 rpm (speed_limit)"
+    assert desk.status().reference == before
+
+
+def test_pole_pairs_stay_whole_and_a_comma_is_no_point(desk):
+    with pytest.raises(InputError, match=r"pole_pairs: 2\.5 is not a whole number; 1 … 20"):
+        desk.set("pole_pairs", "2.5")
+    with pytest.raises(InputError, match="no comma"):
+        desk.set("current_limit", "1,5")
+    assert desk.set("pole_pairs", "0.4e1") == 4
+    listed = {entry["name"]: entry["whole"] for entry in core.load().parameters()}
+    assert listed == {parameter.name: parameter.range.whole for parameter in desk.table.parameters}
+
+
 def test_defaults_are_the_tables(desk):
     desk.set("speed_ramp", 1234)
     desk.defaults()

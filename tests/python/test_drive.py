@@ -60,7 +60,7 @@ def test_values_are_in_the_units_of_the_table(drive):
         ("current_limit", "12 V", "current_limit is in A, not in V"),
         ("motor_poles", "4 A", "motor_poles has no unit, not in A"),
         ("current_limit", "much", "'much' is no number"),
-        ("current_limit", float("nan"), "nan is no number"),
+        ("current_limit", float("nan"), "nan A is no number"),
     ],
 )
 def test_what_is_wrong_with_a_value_is_said_before_it_is_sent(fake, drive, name, value, said):
@@ -235,9 +235,12 @@ def test_a_capture_has_units_and_time_from_the_trigger(drive):
     ("options", "said"),
     [
         ({"trigger": Trigger("speed", 0, "up")}, "no trigger edge 'up'; known: above, below, either"),
-        ({"trigger": Trigger("speed", 40000)}, "speed: 40000 is out of range; -32768 … 32768 rpm"),
-        ({"decimation": 0}, "decimation 0: must be 1 … 65535"),
-        ({"pretrigger": 1.0}, "must be 0 or more and below 1"),
+        (
+            {"trigger": Trigger("speed", 40000)},
+            r"speed: 40000 rpm is out of range; -32768 … 32768 rpm \(all",
+        ),
+        ({"decimation": 0}, "decimation: 0 is out of range; 1 … 65535"),
+        ({"pretrigger": 1.0}, "pretrigger: 100 % is out of range; 0 … 99.9 %"),
     ],
 )
 def test_what_is_wrong_with_a_capture_is_said(drive, options, said):

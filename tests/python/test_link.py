@@ -204,7 +204,7 @@ def test_addresses(text, channel, options):
         ("usb:///dev/ttyUSB0", "must be like serial:///dev/ttyUSB0"),
         ("serial://", "names no port"),
         ("serial:///dev/ttyUSB0?bautd=9600", "no option 'bautd'; did you mean 'baud'"),
-        ("serial:///dev/ttyUSB0?baud=fast", "baud must be a whole number"),
+        ("serial:///dev/ttyUSB0?baud=fast", "baud: 'fast' is no number; 0 … ∞"),
         ("can:slcan", "must be like"),
         ("can:slcan:/dev/ttyACM0?node=32", "node must be 1 … 31"),
     ],

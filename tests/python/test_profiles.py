@@ -1,8 +1,5 @@
 """Profiles and --set: every entry is checked against what plant and firmware know, and complaints are one line."""
 
-import math
-import string
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -71,8 +68,8 @@ def test_a_profile_can_be_a_file(tmp_path):
         ("[acd]\nnoise = 1\n", "did you mean 'adc'"),
         ("[adcs]\n", "did you mean 'adc'"),
         ("[adc]\nnoise = 101\n", "0 … 100 LSB"),
-        ("[adc]\nnoise = '1'\n", "must be a number in LSB"),
-        ("[adc]\nnoise = true\n", "must be a number in LSB"),
+        ("[adc]\nnoise = '1'\n", "is text, no number; 0 … 100 LSB"),
+        ("[adc]\nnoise = true\n", "True is no number; 0 … 100 LSB"),
         ("[sensor]\ncount = 2.5\n", "whole number"),
         ("[link]\nstiff = 1\n", "true or false"),
         ("[solver]\nmethod = 3\n", "must be text"),
@@ -132,13 +129,14 @@ def test_the_last_of_two_changes_counts():
         ("adcx.noise=1", "did you mean 'adc'"),
         ("noise=1", "did you mean 'adc.noise'"),
         ("speed_rmp=1", "did you mean 'speed_ramp'"),
-        ("adc.noise=1LSB", "give the number alone, in LSB"),
-        ("inverter.turn_on_delay=1us", "give the number alone, in ticks"),
-        ("speed_ramp=300rpm/s", "give the number alone, in rpm/s"),
+        ("adc.noise=1A", "is in LSB, not in A"),
+        ("inverter.turn_on_delay=1us", "is in ticks, not in us"),
+        ("speed_ramp=300rpm", "is in rpm/s, not in rpm"),
         ("adc.noise=-0.1", "0 … 100 LSB"),
-        ("adc.noise=loud", "must be a number in LSB"),
-        ("adc.noise=true", "must be a number in LSB"),
-        ("adc.noise=1e999", "finite"),
+        ("adc.noise=loud", "'loud' is no number; 0 … 100 LSB"),
+        ("adc.noise=true", "'true' is no number; 0 … 100 LSB"),
+        ("adc.noise=1,5", "no comma"),
+        ("adc.noise=1e999", "1e999 LSB is no number"),
         ("link.stiff=2", "true or false"),
     ],
 )
@@ -173,29 +171,6 @@ def test_any_word_is_either_taken_or_refused_in_one_line(word):
         profile.changes([word], SCHEMA, KNOWN)
     except InputError as error:
         assert str(error)
-
-
-@given(
-    st.text(string.ascii_letters + "._", min_size=1, max_size=20),
-    st.text("0123456789.e+-naif", min_size=1, max_size=12),
-)
-def test_numbers_are_read_as_python_reads_them_or_not_at_all(name, text):
-    value = profile.parse_value(text)
-    if isinstance(value, str):
-        with_exponent = text.replace("e", "").replace("+", "").replace("-", "").replace(".", "")
-        # What Python would take but this does not: nan, inf, and nothing else.
-        assert not with_exponent.isdigit() or not _is_float(text)
-    else:
-        assert math.isclose(float(value), float(text), rel_tol=0.0)
-    assert profile.split_assignment(f"{name}={text}") == (name, text)
-
-
-def _is_float(text):
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def test_choices_of_parameters_may_be_given_by_name():

@@ -9,15 +9,12 @@ at the plant's own default.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from stillspin import core, resources, toml_table
 from stillspin.errors import InputError, did_you_mean
-
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -129,48 +126,24 @@ def split_assignment(word: str) -> tuple[str, str]:
     return name, value
 
 
-def parse_value(text: str) -> core.Value:
-    """A value of the command line: true, false, a number, else text."""
-    if text.lower() in {"true", "false"}:
-        return text.lower() == "true"
-    if re.fullmatch(r"[+-]?\d+", text):
-        return int(text)
-    if _NUMBER.fullmatch(text):
-        return float(text)
-    return text
-
-
 def changes(words: Iterable[str], schema: core.Schema, known: Mapping[str, core.Entry]) -> Changes:
     """Sort the words of `--set` into plant entries and firmware parameters, checked.
 
     Raises:
-        InputError: malformed, unknown, wrong type, a unit behind the number, or out of range.
+        InputError: malformed, unknown, wrong type, another unit, or out of range.
     """
     result = Changes()
     for word in words:
         name, text = split_assignment(word)
-        value = parse_value(text)
         where = f"--set {name}"
         section, dot, key = name.partition(".")
         if dot and name not in known:
-            _no_unit(schema.get(section, {}).get(key), text, value, where)
-            checked = core.plant_entry(schema, section, key, value, where)
+            checked = core.entry_known(schema, section, key, where).read(text, where)
             result.plant.setdefault(section, {})[key] = checked
         else:
-            _no_unit(known.get(name), text, value, where)
             if name not in known:
                 near = [*known, *(f"{part}.{item}" for part, keys in schema.items() for item in keys)]
                 raise InputError(f"--set '{word}': there is no parameter '{name}'{did_you_mean(name, near)}")
-            result.parameters[name] = core.parameter(known, name, value, where)
+            result.parameters[name] = float(known[name].read(text, where))
         result.words.append(f"{name}={text}")
     return result
-
-
-def _no_unit(entry: core.Entry | None, text: str, value: core.Value, where: str) -> None:
-    """Say so when a number comes with a unit: 1us is not a number, and 1e-6 is meant."""
-    if entry is None or isinstance(entry.default, str) or not isinstance(value, str):
-        return
-    number = _NUMBER.match(text)
-    if number:
-        unit = f"in {entry.unit}" if entry.unit else "without a unit"
-        raise InputError(f"{where} = '{text}': give the number alone, {unit} ({entry.range_text})")

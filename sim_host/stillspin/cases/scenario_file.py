@@ -153,7 +153,7 @@ def _run(table: Table) -> Run:
         parameters=_parameters(table.table("parameters")),
         plant=_plant(table.table("plant")),
         reached=tuple(_reached(reached, duration) for reached in table.tables("reached")),
-        record_every=int(table.number("record_every", 1, minimum=1)),
+        record_every=table.whole("record_every", 1, minimum=1),
         waveform=_look(table, duration),
         may_be_lost=table.switch("may_be_lost"),
     )
@@ -169,7 +169,7 @@ def _look(table: Table, duration: float) -> Look | None:
         return None
     look = table.table("waveform")
     first, last = _window(look, "window", look.raw("window"), duration)
-    raster = int(look.number("raster", 100, minimum=1))
+    raster = look.whole("raster", 100, minimum=1)
     look.finish()
     return first, last, raster
 

@@ -17,6 +17,7 @@ from cantools.database.errors import Error as DatabaseError
 from stillspin.errors import InputError
 from stillspin.link import address
 from stillspin.link.can_bus import NODES, open_bus
+from stillspin.options import number
 
 _DBC = Path(__file__).resolve().parent.parent / "can" / "stillspin.dbc"
 _NODE_MASK = 0x7F
@@ -31,7 +32,12 @@ def bus(
         typer.Argument(metavar="ADDRESS", help="can:slcan:/dev/ttyACM0 or can:socketcan:can0; node= shows one alone."),
     ],
     dbc: Annotated[Path, typer.Option("--dbc", help="Another description of the bus.")] = _DBC,
-    duration: Annotated[float, typer.Option("--duration", metavar="S", help="End after so many seconds.")] = 0.0,
+    duration: Annotated[
+        float,
+        typer.Option(
+            "--duration", parser=number("--duration", 0, unit="s"), metavar="S", help="End after so many seconds."
+        ),
+    ] = 0.0,
     changes: Annotated[bool, typer.Option("--changes", help="Only messages whose content has changed.")] = False,
 ) -> None:
     """Show every message of the bus with its signals, until Ctrl-C."""

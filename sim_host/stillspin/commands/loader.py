@@ -10,6 +10,7 @@ import typer
 from stillspin.board import loader as virtual
 from stillspin.commands.flash import kernel_beside
 from stillspin.flash.files import kernel_program
+from stillspin.options import number
 
 
 def loader(
@@ -23,7 +24,10 @@ def loader(
         Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
     ] = None,
     speed: Annotated[
-        float, typer.Option("--speed", min=0.0, metavar="N", help="Times real time; 0 is as fast as possible.")
+        float,
+        typer.Option(
+            "--speed", parser=number("--speed", 0), metavar="N", help="Times real time; 0 is as fast as possible."
+        ),
     ] = 1.0,
 ) -> None:
     """Put a virtual board in serial boot on the desk, to try `stillspin flash`; Ctrl-C switches it off.

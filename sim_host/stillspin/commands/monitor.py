@@ -18,6 +18,7 @@ from stillspin.commands import braille
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.drive import Drive, Sample, Status, Stream
 from stillspin.errors import InputError
+from stillspin.options import number
 
 _DEFAULT = ["speed", "speed_reference", "current_d", "current_q"]
 _COLOURS = ["cyan", "dark_orange", "green", "magenta", "blue", "yellow", "red", "white"]
@@ -33,8 +34,18 @@ def monitor(
         list[str] | None, typer.Argument(metavar="[SIGNAL]...", help="Up to 8 [default: speeds and currents].")
     ] = None,
     where: DriveOption = "",
-    period: Annotated[float, typer.Option("--period", metavar="MS", help="Milliseconds between samples.")] = 20.0,
-    duration: Annotated[float, typer.Option("--duration", metavar="S", help="End after so many seconds of it.")] = 0.0,
+    period: Annotated[
+        float,
+        typer.Option(
+            "--period", parser=number("--period", 0, unit="ms"), metavar="MS", help="Milliseconds between samples."
+        ),
+    ] = 20.0,
+    duration: Annotated[
+        float,
+        typer.Option(
+            "--duration", parser=number("--duration", 0, unit="s"), metavar="S", help="End after so many seconds of it."
+        ),
+    ] = 0.0,
 ) -> None:
     """Show signals live, until Ctrl-C."""
     if duration < 0:
@@ -120,10 +131,10 @@ def _panel(panel: _Panel, stream: Stream, width: int, height: int) -> list[Text]
     known = [value for values in shown for value in values]
     low, high = braille.nice_range(min(known), max(known)) if known else (-1.0, 1.0)
     title = Text(" " * _LABEL)
-    for values, number in zip(shown, panel.numbers, strict=True):
-        signal = stream.signals[number]
+    for values, place in zip(shown, panel.numbers, strict=True):
+        signal = stream.signals[place]
         value = f"{values[-1]:.4g} {signal.unit}" if values else ""
-        title.append(f" {signal.name} {value} ", style=_COLOURS[number % len(_COLOURS)])
+        title.append(f" {signal.name} {value} ", style=_COLOURS[place % len(_COLOURS)])
     lines = [title]
     for index, row in enumerate(braille.plot(shown, low, high, width, height)):
         label = {0: f"{high:.5g}", height - 1: f"{low:.5g}"}.get(index, "")

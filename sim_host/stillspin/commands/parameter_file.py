@@ -63,8 +63,8 @@ def read(path: Path, table: Table) -> dict[str, float]:
     for name, value in values.items():
         try:
             parameter = table.parameter(name)
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise InputError(f"{name}: {value!r} is no number; {parameter.range_text}")
+            if isinstance(value, str):
+                raise InputError(f"{name}: {value!r} is text, no number; {parameter.range}")
             found[name] = parameter.to_user(parameter.to_raw(value))
         except InputError as error:
             raise InputError(f"{path}: {error}") from None

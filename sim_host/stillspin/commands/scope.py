@@ -11,7 +11,8 @@ from rich.console import Console
 from stillspin.commands import capture_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.drive.scope import Channel, Trigger
-from stillspin.errors import InputError
+from stillspin.options import number, whole
+from stillspin.quantity import Range
 from stillspin.report import tables
 
 
@@ -22,11 +23,34 @@ def scope(
     ],
     where: DriveOption = "",
     trigger: Annotated[str, typer.Option("--trigger", "-t", help="Signal of the trigger [default: the first].")] = "",
-    level: Annotated[float, typer.Option("--level", "-l", help="Level of the trigger, in the signal's unit.")] = 0.0,
+    level: Annotated[
+        str, typer.Option("--level", "-l", metavar="NUMBER", help="Level of the trigger, in the signal's unit.")
+    ] = "0",
     edge: Annotated[str, typer.Option("--edge", "-e", help="rising, falling, either, above, below, or now.")] = "",
-    decimation: Annotated[int, typer.Option("--decimation", help="Control interrupts (100 µs) per record.")] = 1,
-    pretrigger: Annotated[float, typer.Option("--pretrigger", help="Percent of records before the trigger.")] = 25.0,
-    timeout: Annotated[float, typer.Option("--timeout", help="Seconds to wait for the trigger.")] = 30.0,
+    decimation: Annotated[
+        int,
+        typer.Option(
+            "--decimation",
+            parser=whole("--decimation", 1, 65535),
+            metavar="N",
+            help="Control interrupts (100 µs) per record.",
+        ),
+    ] = 1,
+    pretrigger: Annotated[
+        float,
+        typer.Option(
+            "--pretrigger",
+            parser=number("--pretrigger", 0, 99.9, "%"),
+            metavar="PERCENT",
+            help="Percent of records before the trigger.",
+        ),
+    ] = 25.0,
+    timeout: Annotated[
+        float,
+        typer.Option(
+            "--timeout", parser=number("--timeout", 0, unit="s"), metavar="S", help="Seconds to wait for the trigger."
+        ),
+    ] = 30.0,
     out: Annotated[
         list[Path] | None,
         typer.Option("--out", "-o", help="File to write: .parquet, .csv, .mf4, .svg, .png or .pdf. Repeatable."),
@@ -38,8 +62,10 @@ def scope(
         capture_file.check(file)
     channels = [_channel(text) for text in signals]
     chosen = edge or ("rising" if trigger else "now")
-    wanted = Trigger(trigger or channels[0].signal, level, chosen)
+    source = trigger or channels[0].signal
     with opened(where) as drive, Console(stderr=True).status("waiting for the trigger"):
+        signal = drive.table.signal(source)
+        wanted = Trigger(source, signal.to_user(signal.to_raw(level)), chosen)
         capture = drive.capture(
             *channels, trigger=wanted, decimation=decimation, pretrigger=pretrigger / 100, timeout=timeout
         )
@@ -53,7 +79,4 @@ def _channel(text: str) -> Channel:
     name, equals, scale = text.partition("=")
     if not equals:
         return Channel(name)
-    try:
-        return Channel(name, float(scale))
-    except ValueError:
-        raise InputError(f"{text}: the full scale must be a number") from None
+    return Channel(name, Range(0).read(scale, f"full scale of {name}"))

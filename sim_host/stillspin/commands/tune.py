@@ -14,9 +14,9 @@ import typer
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.drive import Drive
 from stillspin.errors import InputError
+from stillspin.options import whole
 from stillspin.tune.server import Server
 
-_PORTS = range(65536)
 _OWN = range(49152, 65536)
 """Ports that anybody may use."""
 
@@ -25,13 +25,17 @@ def tune(
     *,
     where: DriveOption = "",
     port: Annotated[
-        int, typer.Option("--port", help="Port on the loopback; 0: the drive's own, or any that is free.")
+        int,
+        typer.Option(
+            "--port",
+            parser=whole("--port", 0, 65535),
+            metavar="N",
+            help="Port on the loopback; 0: the drive's own, or any that is free.",
+        ),
     ] = 0,
     browser: Annotated[bool, typer.Option("--open/--no-open", help="Open it in the browser.")] = True,
 ) -> None:
     """Serve the page for this drive, to this computer only, until Ctrl-C."""
-    if port not in _PORTS:
-        raise InputError(f"--port {port}: must be 0 … {_PORTS[-1]}")
     with opened(where) as drive, _server(drive, where, port) as server:
         print(f"{drive.version} on {drive.link.transport.name}")
         print(f"page: {server.address}", flush=True)

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from stillspin.drive import describe, log, protocol, scope, values
 from stillspin.drive.commissioning import OnProgress, Report, follow
 from stillspin.drive.describe import unpack
-from stillspin.drive.protocol import GUARDED, Command, Request, Words
+from stillspin.drive.protocol import GUARDED, Command, Request, StatusCode, Words
 from stillspin.drive.requester import Requester, wait_until
 from stillspin.drive.state import ENERGISED, FAULT, RUN, Fault, RawFault, RawStatus, Status, rpm
 from stillspin.drive.stream import Stream
@@ -22,6 +22,7 @@ from stillspin.link import address
 from stillspin.link.errors import DriveError, NoAnswerError, RefusedError
 from stillspin.link.transport import Transport
 from stillspin.link.virtual import VirtualTransport
+from stillspin.quantity import Range
 
 _LIMIT_BITS = 16
 _SPEED_MAX = 2.0**15
@@ -136,7 +137,7 @@ class Drive:
     # Commands
 
     def start(
-        self, speed: float | None = None, *, guarded: bool = False, wait: bool = False, timeout: float = 10.0
+        self, speed: float | str | None = None, *, guarded: bool = False, wait: bool = False, timeout: float = 10.0
     ) -> None:
         """Energise the motor.
 
@@ -174,15 +175,26 @@ class Drive:
         """Clear a latched fault."""
         self.command(Command.RESET)
 
-    def ref(self, speed: float) -> None:
-        """Speed reference, rpm.
+    def ref(self, speed: float | str) -> None:
+        """Speed reference.
+
+        Args:
+            speed: rpm; text may have the unit behind the number.
 
         Raises:
-            RefusedError: beyond the drive's speed_limit.
+            InputError: no number, or beyond the drive's speed_limit.
+            RefusedError: the drive says why not.
         """
-        if not abs(speed) < _SPEED_MAX:
-            raise InputError(f"speed {speed:g} rpm is out of range; above -{_SPEED_MAX:g} and below {_SPEED_MAX:g} rpm")
-        self.command(Command.SPEED, round(speed * 2**16))
+        wanted = Range(unit="rpm").read(speed, "speed")
+        try:
+            if abs(wanted) < _SPEED_MAX:
+                self.command(Command.SPEED, round(wanted * 2**16))
+                return
+        except RefusedError as error:
+            if error.status != StatusCode.RANGE:
+                raise
+        limit = self.get("speed_limit")
+        Range(-limit, limit, "rpm", set_by="speed_limit").read(speed, "speed")
 
     def save(self) -> None:
         """Keep the present parameters in the drive's store; returns when they are there.

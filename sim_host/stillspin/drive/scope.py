@@ -14,6 +14,7 @@ from stillspin.drive.protocol import CONTROL_PERIOD
 from stillspin.drive.recording import Recording
 from stillspin.drive.table import Signal, Table
 from stillspin.errors import InputError, did_you_mean
+from stillspin.quantity import Range
 
 MOST = 4
 DEPTH = 1024
@@ -25,6 +26,10 @@ IDLE, FILLING, ARMED, TRIGGERED, DONE = range(5)
 NOWHERE = 0xFFFF
 _WORD = 2**15
 _SHIFT_MAX = 31
+DECIMATION = Range(1, 0xFFFF, whole=True)
+"""Control interrupts per record."""
+BEFORE = Range(0, 99.9, "%")
+"""Records before the trigger."""
 # Full scale per unit when nothing else is asked for: above everything that the default limits let a drive reach.
 _FULL_SCALE = {"A": 32.0, "V": 512.0, "rpm": 8192.0, "turn": 0.5, "Nm": 64.0}
 
@@ -43,8 +48,8 @@ class Trigger:
     """When to record."""
 
     signal: str = "speed"
-    level: float = 0.0
-    """In the signal's unit."""
+    level: float | str = 0.0
+    """In the signal's unit; text may have it behind the number."""
     edge: str = "now"
     """One of EDGES; `now` triggers at once, `above` and `below` need no edge."""
 
@@ -135,10 +140,8 @@ def encode(setup: Setup, table: Table) -> bytes:
     """
     if not 1 <= len(setup.channels) <= MOST:
         raise InputError(f"a scope of {len(setup.channels)} channels; 1 … {MOST} are possible")
-    if not 1 <= setup.decimation <= 0xFFFF:
-        raise InputError(f"decimation {setup.decimation}: must be 1 … 65535")
-    if not 0 <= setup.pretrigger < 1:
-        raise InputError(f"pre-trigger share {setup.pretrigger:g}: must be 0 or more and below 1")
+    DECIMATION.read(setup.decimation, "decimation")
+    BEFORE.read(100.0 * setup.pretrigger, "pretrigger")
     edge = EDGES.get(setup.trigger.edge)
     if edge is None:
         raise InputError(f"no trigger edge '{setup.trigger.edge}'{did_you_mean(setup.trigger.edge, EDGES)}")

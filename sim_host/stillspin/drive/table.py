@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from stillspin.errors import InputError, did_you_mean
+from stillspin.quantity import Range
 
 TURN = "turn"
 """Unit of the signals that are binary angles."""
-_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
 @dataclass(frozen=True)
@@ -49,10 +48,14 @@ class Parameter:
         return self.to_user(self.initial_raw)
 
     @property
+    def range(self) -> Range:
+        """What it may be. What has no fractional bits is whole."""
+        return Range(self.minimum, self.maximum, self.unit, self.q == 0, self.decimals)
+
+    @property
     def range_text(self) -> str:
         """Range and unit, for people."""
-        low, high = self._number(self.minimum_raw), self._number(self.maximum_raw)
-        return f"{low} … {high} {self.unit}".rstrip()
+        return str(self.range)
 
     def to_user(self, raw: int) -> float:
         """The value in `unit`: the shortest number, of the table's decimals or more, that is this raw value again."""
@@ -76,26 +79,9 @@ class Parameter:
         """The raw value of a value in `unit`; text may have the unit behind the number.
 
         Raises:
-            InputError: no number, another unit, or out of range; in words.
+            InputError: no number, another unit, out of range, or a fraction of what is whole; in words.
         """
-        number = self._parse(value) if isinstance(value, str) else float(value)
-        if not math.isfinite(number):
-            raise InputError(f"{self.name}: {value} is no number; {self.range_text}")
-        raw = self._raw(number)
-        if not self.minimum_raw <= raw <= self.maximum_raw:
-            given = f"{number:g} {self.unit}".rstrip()
-            raise InputError(f"{self.name}: {given} is out of range; {self.range_text}")
-        return raw
-
-    def _parse(self, text: str) -> float:
-        match = _NUMBER.fullmatch(text)
-        if not match:
-            raise InputError(f"{self.name}: '{text}' is no number; {self.range_text}")
-        number, unit = match.groups()
-        if unit and unit != self.unit:
-            wanted = f"is in {self.unit}" if self.unit else "has no unit"
-            raise InputError(f"{self.name} {wanted}, not in {unit}")
-        return float(number)
+        return self._raw(self.range.read(value, self.name))
 
 
 @dataclass(frozen=True)
@@ -112,17 +98,15 @@ class Signal:
         """The value in `unit`; angles are −0.5 … 0.5 turn."""
         return float(raw / (1 << self.q))
 
-    def to_raw(self, value: float) -> int:
-        """The raw value next to `value`.
+    def to_raw(self, value: float | str) -> int:
+        """The raw value next to `value`; text may have the unit behind the number.
 
         Raises:
-            InputError: it does not fit into 32 bits.
+            InputError: no number, or it does not fit into 32 bits.
         """
-        raw = round(value * (1 << self.q))
-        if not -(2**31) <= raw < 2**31:
-            limit = 2.0 ** (31 - self.q)
-            raise InputError(f"{self.name}: {value:g} is out of range; {-limit:g} … {limit:g} {self.unit}".rstrip())
-        return raw
+        least, step = -(2.0 ** (31 - self.q)), 2.0**-self.q
+        held = Range(least, -least - step, self.unit, decimals=0, set_by="all that the signal holds")
+        return round(held.read(value, self.name) * (1 << self.q))
 
 
 @dataclass(frozen=True)

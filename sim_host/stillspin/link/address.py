@@ -16,6 +16,7 @@ from stillspin.link.can_bus import DEFAULT_BITRATE, NODES, CanTransport
 from stillspin.link.serial_port import DEFAULT_BAUD, SerialTransport
 from stillspin.link.transport import Transport
 from stillspin.link.virtual import VirtualTransport
+from stillspin.quantity import Range
 
 _FORMS = "serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0?node=1 or virtual:"
 
@@ -78,10 +79,7 @@ def _options(text: str, query: str, known: dict[str, int]) -> dict[str, int]:
     for name, value in parse_qsl(query, keep_blank_values=True):
         if name not in known:
             raise InputError(f"address '{text}': no option '{name}'{did_you_mean(name, known)}")
-        try:
-            options[name] = int(value, 0)
-        except ValueError:
-            raise InputError(f"address '{text}': {name} must be a whole number") from None
+        options[name] = Range(0, whole=True).read_whole(value, f"address '{text}': {name}")
     return options
 
 

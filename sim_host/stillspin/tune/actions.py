@@ -11,11 +11,13 @@ from stillspin.drive import commissioning, scope
 from stillspin.drive.protocol import Words
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
+from stillspin.quantity import ANY, Range
 from stillspin.tune.messages import Message
 from stillspin.tune.workbench import Workbench
 
 _POLL = 0.05
 _LONGEST = 600.0
+_WHOLE = Range(0, whole=True)
 _CHUNK = 12
 """Records of a capture per question: the plotted signals go on without a gap."""
 
@@ -29,7 +31,7 @@ def _values(bench: Workbench, _: str, __: Message) -> Any:
 
 
 def _start(bench: Workbench, who: str, given: Message) -> Any:
-    bench.start(who, _number(given, "speed"))
+    bench.start(who, _typed(given, "speed"))
 
 
 def _stop(bench: Workbench, _: str, __: Message) -> Any:
@@ -45,7 +47,7 @@ def _reset(bench: Workbench, _: str, __: Message) -> Any:
 
 
 def _ref(bench: Workbench, _: str, given: Message) -> Any:
-    bench.drive.ref(_number(given, "speed"))
+    bench.drive.ref(_typed(given, "speed"))
 
 
 def _save(bench: Workbench, _: str, __: Message) -> Any:
@@ -78,7 +80,7 @@ def _commission(bench: Workbench, who: str, _: Message) -> Any:
 
 
 def _phase(bench: Workbench, _: str, given: Message) -> Any:
-    return bench.drive.words(Words.PHASE, int(_number(given, "phase")))
+    return bench.drive.words(Words.PHASE, _WHOLE.read_whole(_typed(given, "phase"), "phase"))
 
 
 def _results(bench: Workbench, _: str, __: Message) -> Any:
@@ -123,9 +125,11 @@ def _setup(given: Message) -> scope.Setup:
     names = given.get("signals")
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise InputError("signals: must be a list of names")
-    trigger = scope.Trigger(_text(given, "trigger"), _number(given, "level"), _text(given, "edge"))
+    trigger = scope.Trigger(_text(given, "trigger"), _typed(given, "level"), _text(given, "edge"))
     channels = [scope.Channel(name) for name in names]
-    return scope.Setup(channels, trigger, int(_number(given, "decimation")), _number(given, "pretrigger"))
+    decimation = scope.DECIMATION.read_whole(_typed(given, "decimation"), "a record every")
+    before = scope.BEFORE.read(_typed(given, "before"), "before the trigger")
+    return scope.Setup(channels, trigger, decimation, before / 100.0)
 
 
 def _text(given: Message, key: str) -> str:
@@ -135,11 +139,10 @@ def _text(given: Message, key: str) -> str:
     return value
 
 
-def _number(given: Message, key: str) -> float:
+def _typed(given: Message, key: str) -> float | str:
+    """A number, or the text of one as it was typed into the page."""
     value = given.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"{key}: must be a number")
-    return float(value)
+    return value if isinstance(value, str) else ANY.read(value, key)
 
 
 ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {

@@ -54,7 +54,7 @@ class Workbench:
 
     # Commands
 
-    def start(self, who: str, speed: float) -> None:
+    def start(self, who: str, speed: float | str) -> None:
         """Start; it goes on while `who` tells the dead man's switch so."""
         self._run(who, lambda: self.drive.start(speed, guarded=True))
 

@@ -36,8 +36,6 @@ export class Run {
     const limit = values.speed_limit ?? 3000;
     by("slider").min = -limit;
     by("slider").max = limit;
-    by("reference").min = -limit;
-    by("reference").max = limit;
   }
 
   buttons() {
@@ -56,8 +54,8 @@ export class Run {
     by("coast").onclick = () => this.stop("coast");
     by("reset").onclick = () => this.clear();
     by("keep").onchange = () => this.release();
-    by("reference").onchange = () => this.refer(Number(by("reference").value));
-    by("slider").oninput = () => this.refer(Number(by("slider").value));
+    by("reference").onchange = () => this.refer(by("reference").value);
+    by("slider").oninput = () => this.refer(by("slider").value);
   }
 
   keys() {
@@ -80,7 +78,7 @@ export class Run {
   }
 
   start() {
-    this.hold("start", { speed: Number(by("reference").value) });
+    this.hold("start", { speed: by("reference").value });
   }
 
   /** Asks for something that runs the motor, and holds it. */

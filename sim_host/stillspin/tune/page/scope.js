@@ -42,10 +42,10 @@ export class Scope {
       { id: "edge" },
       ...edges.map((edge) => make("option", { value: edge, selected: edge === "rising" }, EDGES[edge] ?? edge)),
     );
-    this.level = make("input", { id: "level", type: "number", step: "any", value: 100 });
+    this.level = make("input", { id: "level", type: "text", inputMode: "decimal", value: 100 });
     this.unit = make("em");
-    this.decimation = make("input", { id: "decimation", type: "number", min: 1, max: 65535, value: 4 });
-    this.before = make("input", { id: "before", type: "number", min: 0, max: 99, value: 25 });
+    this.decimation = make("input", { id: "decimation", type: "text", inputMode: "numeric", value: 4 });
+    this.before = make("input", { id: "before", type: "text", inputMode: "decimal", value: 25 });
     this.length = make("span", { class: "hint" });
     const field = (text, ...parts) => make("label", { class: "field" }, text, make("span", { class: "with-unit" }, ...parts));
     by("setup").replaceChildren(
@@ -67,7 +67,8 @@ export class Scope {
     const now = this.edge.value === "now";
     this.level.disabled = this.trigger.disabled = now;
     const seconds = this.depth * PERIOD * Number(this.decimation.value);
-    this.length.textContent = `${this.depth} records, ${Number((seconds * 1e3).toPrecision(4))} ms`;
+    const span = Number.isFinite(seconds) ? `, ${Number((seconds * 1e3).toPrecision(4))} ms` : "";
+    this.length.textContent = `${this.depth} records${span}`;
   }
 
   async run() {
@@ -75,10 +76,10 @@ export class Scope {
     const given = {
       signals: names,
       trigger: this.trigger.value,
-      level: Number(this.level.value),
+      level: this.level.value,
       edge: this.edge.value,
-      decimation: Number(this.decimation.value),
-      pretrigger: Number(this.before.value) / 100,
+      decimation: this.decimation.value,
+      before: this.before.value,
     };
     this.busy(true, "preparing");
     try {
