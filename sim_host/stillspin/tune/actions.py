@@ -12,6 +12,7 @@ from stillspin.drive.protocol import Words
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.quantity import ANY, Range
+from stillspin.tune import files
 from stillspin.tune.messages import Message
 from stillspin.tune.workbench import Workbench
 
@@ -69,6 +70,10 @@ def _plot(bench: Workbench, _: str, given: Message) -> Any:
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise InputError("signals: must be a list of names")
     bench.plot(names)
+
+
+def _load(bench: Workbench, _: str, given: Message) -> Any:
+    return files.load(bench, _text(given, "name"), _text(given, "text"))
 
 
 def _look_again(bench: Workbench, _: str, __: Message) -> Any:
@@ -157,6 +162,7 @@ ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {
     "defaults": _defaults,
     "faults": _faults,
     "plot": _plot,
+    "load": _load,
     "look_again": _look_again,
     "commission": _commission,
     "phase": _phase,

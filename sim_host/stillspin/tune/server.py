@@ -15,6 +15,7 @@ from aiohttp import web
 from stillspin.drive import Drive
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
+from stillspin.tune import files
 from stillspin.tune.dead_man import PATIENCE
 from stillspin.tune.guard import Guard
 from stillspin.tune.pages import Pages
@@ -91,6 +92,8 @@ class Server:
         application = web.Application(middlewares=[self.guard.middleware()])
         application.router.add_get("/", self._index)
         application.router.add_get("/live", self._pages.live)
+        names = "{name:history\\.parquet|history\\.csv|parameters\\.toml}"
+        application.router.add_get(f"/file/{names}", files.handler(self.bench))
         application.router.add_static("/page", _PAGE)
         application.on_shutdown.append(self._pages.say_goodbye)
         return application

@@ -8,6 +8,7 @@ import time
 from stillspin.drive import Drive, Stream
 from stillspin.link.errors import DriveError, LinkError
 from stillspin.tune.connection import Connection
+from stillspin.tune.history import History
 from stillspin.tune.messages import Tell
 
 _BATCH = 0.05
@@ -27,6 +28,7 @@ class Streamer(threading.Thread):
         self._end = end
         self._anew = threading.Event()
         self._names = self._known(_DEFAULT)
+        self.history = History()
 
     @property
     def names(self) -> list[str]:
@@ -47,6 +49,7 @@ class Streamer(threading.Thread):
             try:
                 with drive.stream(names, _PERIOD) as stream:
                     self._tell({"t": "plotted", "signals": names})
+                    self.history.begin({signal.name: signal.unit for signal in stream.signals})
                     self._forward(stream, drive)
             except DriveError as error:
                 if not (isinstance(error, LinkError) or self._way.trouble):  # the watch says those
@@ -67,6 +70,7 @@ class Streamer(threading.Thread):
             now = time.monotonic()
             if rows and now - sent >= _BATCH:
                 columns = [list(column) for column in zip(*rows, strict=True)]
+                self.history.add(times, columns)
                 self._tell({"t": "samples", "time": times, "values": columns, "lost": stream.lost})
                 times, rows, sent = [], [], now
 

@@ -19,6 +19,8 @@ export class Parameters {
     by("search").oninput = () => this.filter();
     by("changed").onchange = () => this.filter();
     by("save").onclick = () => this.save();
+    by("load").onclick = () => by("load-file").click();
+    by("load-file").onchange = () => this.load(by("load-file").files[0]);
     by("defaults").onclick = () => this.defaults();
   }
 
@@ -134,6 +136,19 @@ export class Parameters {
       by("store-note").textContent = await this.link.ask("save");
     } catch (error) {
       by("store-note").textContent = "";
+      this.fail(error);
+    }
+  }
+
+  /** The values of a file, as `stillspin params dump` writes it. */
+  async load(file) {
+    by("load-file").value = "";
+    try {
+      const { values, named, different, complaints } = await this.link.ask("load", { name: file.name, text: await file.text() });
+      this.take(values);
+      by("store-note").textContent = `${file.name} names ${named} parameters; ${different} were different. They are kept when they are saved.`;
+      if (complaints.length) this.fail(new Error(complaints.join("; ")));
+    } catch (error) {
       this.fail(error);
     }
   }
