@@ -24,11 +24,16 @@ _CHUNK = 12
 
 
 def _set(bench: Workbench, _: str, given: Message) -> Any:
-    return asdict(bench.drive.change(_text(given, "name"), _text(given, "value")))
+    name = _text(given, "name")
+    change = bench.drive.change(name, _text(given, "value"))
+    bench.streamer.learn({name: change.value})
+    return asdict(change)
 
 
 def _values(bench: Workbench, _: str, __: Message) -> Any:
-    return bench.drive.parameters()
+    values = bench.drive.parameters()
+    bench.streamer.learn(values)
+    return values
 
 
 def _start(bench: Workbench, who: str, given: Message) -> Any:
@@ -58,7 +63,7 @@ def _save(bench: Workbench, _: str, __: Message) -> Any:
 
 def _defaults(bench: Workbench, _: str, __: Message) -> Any:
     bench.drive.defaults()
-    return bench.drive.parameters()
+    return _values(bench, "", {})
 
 
 def _faults(bench: Workbench, _: str, __: Message) -> Any:

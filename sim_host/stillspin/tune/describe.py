@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from stillspin.drive import scope
 from stillspin.drive.table import Parameter
-from stillspin.tune import choices
+from stillspin.tune import choices, derived
 from stillspin.tune.groups import group_of
 from stillspin.tune.messages import Message
 
@@ -24,6 +24,7 @@ def describe(bench: Workbench) -> Message:
         "where": bench.drive.link.transport.name,
         "parameters": [_parameter(entry) for entry in table.parameters],
         "signals": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in table.signals],
+        "derived": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in derived.available(table)],
         "words": choices.of_signals(bench.drive),
         "values": bench.drive.parameters(),
         "plotted": bench.plotted,

@@ -55,4 +55,6 @@ def load(bench: Workbench, name: str, text: str) -> dict[str, Any]:
             raise InputError(str(error).replace(f"{directory}/", "")) from None
     rows = parameter_file.differences(bench.drive.parameters(), wanted, bench.drive.table, wanted)
     complaints = transfer(bench.drive, rows)
-    return {"values": bench.drive.parameters(), "named": len(wanted), "different": len(rows), "complaints": complaints}
+    values = bench.drive.parameters()
+    bench.streamer.learn(values)
+    return {"values": values, "named": len(wanted), "different": len(rows), "complaints": complaints}

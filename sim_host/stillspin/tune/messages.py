@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +13,11 @@ Tell = Callable[[Message], None]
 
 _GUARD_STOPPED = 2
 """Bit of the status's link octet, firmware/link/requests_drive.c."""
+
+
+def for_page(value: float) -> float | None:
+    """What JSON has for a number that is not known."""
+    return None if math.isnan(value) else value
 
 
 def status_message(status: Status) -> Message:

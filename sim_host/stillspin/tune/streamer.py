@@ -6,10 +6,12 @@ import threading
 import time
 
 from stillspin.drive import Drive, Stream
+from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, LinkError
 from stillspin.tune.connection import Connection
+from stillspin.tune.derived import Choice
 from stillspin.tune.history import History
-from stillspin.tune.messages import Tell
+from stillspin.tune.messages import Tell, for_page
 
 _BATCH = 0.05
 _PERIOD = 0.02
@@ -27,38 +29,47 @@ class Streamer(threading.Thread):
         self._tell = tell
         self._end = end
         self._anew = threading.Event()
-        self._names = self._known(_DEFAULT)
+        self._names = list(_DEFAULT)
+        self._parameters: dict[str, float] = {}
         self.history = History()
 
     @property
     def names(self) -> list[str]:
-        """Of the signals that are streamed."""
-        return list(self._names)
+        """Of the signals that are plotted."""
+        return self._choice().names
 
     def choose(self, names: list[str]) -> None:
-        """Stream these from now on."""
-        self._names = list(dict.fromkeys(names))
+        """Plot these from now on.
+
+        Raises:
+            InputError: no such signal, or too many.
+        """
+        self._names = Choice(names, self._way.drive.table).names
         self._anew.set()
+
+    def learn(self, values: dict[str, float]) -> None:
+        """Parameters that are in force now."""
+        self._parameters |= values
 
     def run(self) -> None:
         """See Thread."""
         while not self._end.is_set():
             self._anew.clear()
-            drive = self._way.drive
-            names = self._known(self._names)
+            drive, choice = self._way.drive, self._choice()
             try:
-                with drive.stream(names, _PERIOD) as stream:
-                    self._tell({"t": "plotted", "signals": names})
-                    self.history.begin({signal.name: signal.unit for signal in stream.signals})
-                    self._forward(stream, drive)
+                self.learn({name: drive.get(name) for name in choice.parameters})
+                with drive.stream(choice.streamed, _PERIOD) as stream:
+                    self._tell({"t": "plotted", "signals": choice.names})
+                    self.history.begin(choice.units)
+                    self._forward(stream, drive, choice)
             except DriveError as error:
                 if not (isinstance(error, LinkError) or self._way.trouble):  # the watch says those
                     self._tell({"t": "note", "text": str(error)})
                 self._end.wait(_AGAIN)
 
-    def _forward(self, stream: Stream, drive: Drive) -> None:
+    def _forward(self, stream: Stream, drive: Drive, choice: Choice) -> None:
         times: list[float] = []
-        rows: list[tuple[float, ...]] = []
+        rows: list[list[float]] = []
         sent = time.monotonic()
         while (
             self._way.drive is drive and self._way.silence < _SILENT and not (self._end.is_set() or self._anew.is_set())
@@ -66,14 +77,22 @@ class Streamer(threading.Thread):
             sample = stream.next(_BATCH)
             if sample:
                 times.append(sample.time)
-                rows.append(sample.values)
+                rows.append(choice.row(sample.values, self._parameters))
             now = time.monotonic()
             if rows and now - sent >= _BATCH:
-                columns = [list(column) for column in zip(*rows, strict=True)]
-                self.history.add(times, columns)
-                self._tell({"t": "samples", "time": times, "values": columns, "lost": stream.lost})
+                self._hand_over(times, [list(column) for column in zip(*rows, strict=True)], stream.lost)
                 times, rows, sent = [], [], now
 
-    def _known(self, names: list[str]) -> list[str]:
-        known = [signal.name for signal in self._way.drive.table.signals]
-        return [name for name in dict.fromkeys(names) if name in known] or known[:1]
+    def _hand_over(self, times: list[float], columns: list[list[float]], lost: int) -> None:
+        self.history.add(times, columns)
+        shown = [list(map(for_page, column)) for column in columns]
+        self._tell({"t": "samples", "time": times, "values": shown, "lost": lost})
+
+    def _choice(self) -> Choice:
+        """What is wanted, as far as this drive has it."""
+        table = self._way.drive.table
+        try:
+            return Choice(self._names, table)
+        except InputError:
+            known = [signal.name for signal in table.signals]
+            return Choice([name for name in self._names if name in known][:4] or known[:1], table)

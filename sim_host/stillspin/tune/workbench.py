@@ -8,7 +8,6 @@ from collections.abc import Callable
 from stillspin.drive import Drive
 from stillspin.drive.protocol import GUARDED, Command
 from stillspin.drive.state import COMMISSIONING_RUNNING
-from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.tune.connection import Connection
 from stillspin.tune.dead_man import PATIENCE, DeadMan
@@ -98,9 +97,6 @@ class Workbench:
 
     def plot(self, names: list[str]) -> None:
         """Stream these signals."""
-        self.drive.table.chosen(names)
-        if not 1 <= len(names) <= 8:
-            raise InputError(f"{len(names)} signals; 1 … 8 can be plotted at once")
         self.streamer.choose(names)
 
     def begin_capture(self) -> int:

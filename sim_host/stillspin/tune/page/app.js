@@ -22,7 +22,7 @@ link.on(["hello", "again"], ({ version, where }) => (by("where").textContent = `
 tabs();
 const run = new Run(link, events);
 const parameters = new Parameters(link, fail);
-new Live(link);
+new Live(link, fail);
 new Scope(link, fail);
 new Faults(link, fail);
 new Commissioning(link, run, parameters, fail);

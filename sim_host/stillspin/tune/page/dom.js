@@ -15,8 +15,9 @@ export function make(tag, properties = {}, ...children) {
   return element;
 }
 
-/** A number for people: four digits, a real minus sign. */
+/** A number for people: four digits, a real minus sign; a dash for one that is not known. */
 export function number(value, decimals = null) {
+  if (value === null) return "–";
   const text = decimals === null ? String(Number(value.toPrecision(4))) : value.toFixed(decimals);
   return text.replace("-", "−");
 }
@@ -32,6 +33,7 @@ export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
 /** A signal's value for people: in words where it stands for a state, with its unit otherwise. */
 export function told(value, { name, unit }, words = {}) {
+  if (value === null) return "–"; // not known
   const list = words[name];
   if (name === "limit" && list) return list.filter((_, bit) => (value >> bit) & 1).join(", ") || "nothing";
   return list?.[value] ?? withUnit(number(value), unit);

@@ -7,8 +7,9 @@ const MOST = 8;
 const KEPT = 90; // s
 
 export class Live {
-  constructor(link) {
+  constructor(link, fail) {
     this.link = link;
+    this.fail = fail;
     this.frozen = false;
     this.dirty = false;
     link.on("hello", (hello) => this.choices(hello));
@@ -24,12 +25,12 @@ export class Live {
     draw();
   }
 
-  choices({ signals, plotted, words }) {
-    this.table = signals;
+  choices({ signals, derived, plotted, words }) {
+    this.table = [...signals, ...derived];
     this.words = words;
     this.names = null;
     by("signals").replaceChildren(
-      ...signals.map(({ name, unit, meaning }) => {
+      ...this.table.map(({ name, unit, meaning }) => {
         const box = make("input", { type: "checkbox", value: name, checked: plotted.includes(name) });
         box.onchange = () => this.choose();
         return make("label", { class: "check", title: meaning }, box, ` ${name} `, make("em", {}, unit));
@@ -42,7 +43,7 @@ export class Live {
     const boxes = [...by("signals").querySelectorAll("input")];
     const names = boxes.filter((box) => box.checked).map((box) => box.value);
     for (const box of boxes) box.disabled = !box.checked && names.length >= MOST;
-    if (names.length) this.link.ask("plot", { signals: names }).catch(() => {});
+    if (names.length) this.link.ask("plot", { signals: names }).catch(this.fail);
   }
 
   /** Old values are no values. */

@@ -20,7 +20,7 @@ export function padded(low, high) {
   return [low - air, high + air];
 }
 
-const short = (value) => String(Number(value.toPrecision(6))).replace("-", "−");
+const short = (value) => value === null ? "–" : String(Number(value.toPrecision(6))).replace("-", "−");
 
 export class Plot {
   /** series: [{name, x, y, colour}] with colour a CSS variable's name. */
@@ -75,7 +75,7 @@ export class Plot {
     let [low, high] = [Infinity, -Infinity];
     for (const { x, y } of content.series) {
       for (let at = 0; at < y.length; at++) {
-        if (x[at] < content.from) continue;
+        if (x[at] < content.from || y[at] === null) continue;
         if (y[at] < low) low = y[at];
         if (y[at] > high) high = y[at];
       }
@@ -120,7 +120,11 @@ export class Plot {
     pen.lineWidth = 1.6;
     pen.lineJoin = "round";
     pen.beginPath();
-    for (let at = 0; at < values.length; at++) pen.lineTo(x(times[at]), y(values[at]));
+    let lifted = true; // what is not known leaves a gap
+    for (let at = 0; at < values.length; at++) {
+      if (values[at] !== null) pen[lifted ? "moveTo" : "lineTo"](x(times[at]), y(values[at]));
+      lifted = values[at] === null;
+    }
     pen.stroke();
   }
 

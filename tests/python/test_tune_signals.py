@@ -1,0 +1,76 @@
+"""Signals that the page computes: their formulas, and against the true machine; empty where the rotor is not known."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from desk import needs_board
+
+from stillspin.drive import Drive
+from stillspin.drive.requester import wait_until
+from stillspin.drive.table import Signal
+from stillspin.errors import InputError
+from stillspin.tune.derived import Choice
+
+MOTOR = {"pole_pairs": 4, "inductance_d": 4.0, "inductance_q": 6.0, "magnet_flux": 0.15, "current_limit": 10.0}
+
+
+@pytest.fixture
+def table(drive):
+    """That of the small drive, with the signals and parameters that it lacks."""
+    more = ("voltage_d", "voltage_q")
+    signals = [*drive.table.signals, *(Signal(20 + at, name, "V", 16, "") for at, name in enumerate(more))]
+    sample = drive.table.parameters[0]
+    parameters = [*drive.table.parameters, *(replace(sample, name=name) for name in MOTOR if name != "current_limit")]
+    return replace(drive.table, signals=tuple(signals), parameters=tuple(parameters))
+
+
+def value(table, name, **signals):
+    choice = Choice([name], table)
+    return choice.row(tuple(signals[need] for need in choice.streamed), MOTOR)[0]
+
+
+def test_the_formulas(table):
+    currents = {"current_d": -2.0, "current_q": 3.0}
+    assert value(table, "torque", **currents) == pytest.approx(1.5 * 4 * (0.15 + 0.002 * 2) * 3)
+    assert value(table, "current_share", **currents) == pytest.approx(10 * math.sqrt(13))
+    assert value(table, "power", voltage_d=10.0, voltage_q=20.0, **currents) == pytest.approx(1.5 * 40)
+    assert value(table, "current_a", angle=0.0, **currents) == pytest.approx(-2.0)
+    phases = [value(table, f"current_{phase}", angle=0.2, **currents) for phase in "abc"]
+    assert sum(phases) == pytest.approx(0.0, abs=1e-12)
+    assert math.sqrt(2 / 3 * sum(x * x for x in phases)) == pytest.approx(math.sqrt(13))
+
+
+def test_what_is_not_known_of_the_rotor_is_empty(table):
+    choice = Choice(["speed", "link_voltage", "torque"], table)
+    row = choice.row(tuple(310.0 if name == "link_voltage" else math.nan for name in choice.streamed), MOTOR)
+    assert math.isnan(row[0])
+    assert row[1] == 310.0
+    assert math.isnan(row[2])
+
+
+def test_more_than_the_drive_streams_is_refused_in_words(table):
+    many = ["power", "current_a", "state", "speed", "speed_reference", "link_voltage"]
+    with pytest.raises(InputError, match=r"these need 9 signals of the drive .* 1 … 8 can be plotted at once"):
+        Choice(many, table)
+    with pytest.raises(InputError, match="no signal 'x'"):
+        Choice(["x"], table)
+
+
+@needs_board
+def test_they_are_those_of_the_true_machine():
+    with Drive.virtual("ideal", speed=1.0) as drive:
+        board = drive.link.transport
+        board.set_load(1.0)
+        with drive.running(600):
+            assert wait_until(lambda: abs(drive.status().speed - 600) < 5, 20)
+            choice = Choice(["torque", "current_share", "power"], drive.table)
+            parameters = drive.parameters()
+            rows = [choice.row(tuple(drive.signals(*choice.streamed).values()), parameters) for _ in range(40)]
+            torque, share, power = (sum(column) / len(rows) for column in zip(*rows, strict=True))
+            true = board.truth()
+            assert torque == pytest.approx(1.0 + 0.003 * 600 * math.pi / 30, abs=0.15)  # load and friction
+            assert power == pytest.approx(torque * 600 * math.pi / 30, rel=0.25)  # and what the winding takes
+            assert share == pytest.approx(
+                100 * math.hypot(true["i_d"], true["i_q"]) / parameters["current_limit"], abs=4
+            )
