@@ -60,17 +60,12 @@ def test_more_than_the_drive_streams_is_refused_in_words(table):
 @needs_board
 def test_they_are_those_of_the_true_machine():
     with Drive.virtual("ideal", speed=1.0) as drive:
-        board = drive.link.transport
-        board.set_load(1.0)
+        drive.link.transport.set_load(1.0)
         with drive.running(600):
             assert wait_until(lambda: abs(drive.status().speed - 600) < 5, 20)
-            choice = Choice(["torque", "current_share", "power"], drive.table)
+            choice = Choice(["torque", "power"], drive.table)
             parameters = drive.parameters()
             rows = [choice.row(tuple(drive.signals(*choice.streamed).values()), parameters) for _ in range(40)]
-            torque, share, power = (sum(column) / len(rows) for column in zip(*rows, strict=True))
-            true = board.truth()
+            torque, power = (sum(column) / len(rows) for column in zip(*rows, strict=True))
             assert torque == pytest.approx(1.0 + 0.003 * 600 * math.pi / 30, abs=0.15)  # load and friction
             assert power == pytest.approx(torque * 600 * math.pi / 30, rel=0.25)  # and what the winding takes
-            assert share == pytest.approx(
-                100 * math.hypot(true["i_d"], true["i_q"]) / parameters["current_limit"], abs=4
-            )
