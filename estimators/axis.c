@@ -6,6 +6,7 @@ void axis_add(axis_t* s, const regression_t* r) {
   s->along_q16 = q_add_sat(s->along_q16, r->along_q16);
   s->mirror_q16 = q_add_sat(s->mirror_q16, r->mirror_q16);
   s->cross_q16 = q_add_sat(s->cross_q16, r->cross_q16);
+  s->curl_q16 = q_add_sat(s->curl_q16, r->curl_q16);
   s->count++;
 }
 

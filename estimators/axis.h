@@ -17,7 +17,7 @@
 #define AXIS_PERIODS 12  // two rounds of six
 
 typedef struct {
-  int32_t spread_q8, along_q16, mirror_q16, cross_q16;  // sums, see regression_t
+  int32_t spread_q8, along_q16, mirror_q16, cross_q16, curl_q16;  // sums, see regression_t
   uint16_t count;
 } axis_t;
 
@@ -27,7 +27,7 @@ typedef struct {
 } axis_result_t;
 
 static inline void axis_begin(axis_t* s) {
-  const axis_t none = {0, 0, 0, 0, 0};
+  const axis_t none = {0, 0, 0, 0, 0, 0};
   *s = none;
 }
 

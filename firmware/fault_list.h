@@ -6,7 +6,7 @@ FAULT(0, NONE, "none", "")
 FAULT(1, OVER_CURRENT, "over-current comparator", "look for a short circuit or an earth fault before the reset")
 FAULT(2, CURRENT_LIMIT, "sampled current beyond trip_current",
       "lower current_bandwidth, or check inductance_d, inductance_q and the current sensors")
-FAULT(3, LINK_LOW, "DC link below link_minimum", "check the supply, and link_full_scale")
+FAULT(3, LINK_LOW, "DC link below link_minimum", "check the supply and its wires, and link_full_scale")
 FAULT(4, LINK_HIGH, "DC link above link_maximum", "brake more slowly: speed_ramp, link_regulation; check the supply")
 FAULT(5, OVERRUN, "control interrupt overrun", "a fault of the software: tell its makers")
 FAULT(6, NO_SAMPLES, "no samples from the ADC", "a fault of the board or of the software")
@@ -19,7 +19,7 @@ FAULT(9, OFFSET, "current offset implausible",
 FAULT(10, PARAMETER, "parameters do not fit together", "set the parameters that it names; see also the command status")
 FAULT(11, GATES_OFF, "gates switched off unexpectedly", "check the enable line of the gate driver")
 FAULT(12, SYNCHRONISM, "loss of synchronism",
-      "less load or a slower speed_ramp; commission the drive; check magnet_flux and stator_resistance")
+      "less load or a slower speed_ramp; commission the drive; check magnet_flux, stator_resistance and all wires")
 FAULT(13, STOP, "standstill not reached within stop_time", "raise stop_time, or look for what drives the shaft")
 FAULT(14, EMERGENCY, "emergency stop", "release it, then reset")
 FAULT(15, PRECHARGE, "DC link not charged, precharge relay open",
@@ -37,3 +37,9 @@ FAULT(22, STALL, "stalled: the shaft does not follow at the limit of the current
       "look for what holds or overloads the shaft; check current_limit, speed_ramp and stall_time")
 FAULT(23, START_VOLTAGE, "the DC link is too low to find rotor and polarity at the start",
       "raise the DC link, or lower start_current and polarity_current; commission the drive")
+FAULT(24, NO_CURRENT, "no current flows in any phase at the start",
+      "check motor cable, supply of the gate drivers, supply and wires of the current sensors")
+FAULT(25, OPEN_PHASE, "a motor phase carries no current", "check its wire, terminals and gate driver")
+FAULT(26, CURRENT_SENSOR, "a current sensor shows nothing or the reverse", "check its supply, wire and direction")
+FAULT(27, SENSOR_ORDER, "the current sensors are on other phases than the gates",
+      "compare a, b and c at gates, motor cable, sensors and converter")

@@ -137,6 +137,8 @@ PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
 PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 15, ALWAYS, "for how long")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED,
           "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
+PARAMETER(522, wiring_check, "", 0, 0, 0, 1, 1, STOPPED,
+          "look at the start whether phases and current sensors are wired as they should be; needs flying_start")
 PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
           "for standstill after a stop has brought the reference to zero, then the drive faults")
 PARAMETER(521, stall_time, "ms", 0, 0, 0, 60000, 2000, ALWAYS,

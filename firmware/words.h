@@ -28,10 +28,11 @@ typedef enum {
   WORDS_SCOPE = 10,         // scope_state_t
   WORDS_CAN = 11,           // hal_can_state_t
   WORDS_BOARD = 12,         // board_words_t
-  WORDS_SELFTEST = 13       // number of the bit in selftest_failure_t, and more (board/selftest.c)
+  WORDS_SELFTEST = 13,      // number of the bit in selftest_failure_t, and more (board/selftest.c)
+  WORDS_WIRING = 14         // wiring_t
 } words_kind_t;
 
-#define WORDS_KINDS 14u
+#define WORDS_KINDS 15u
 
 /// Whether there is such a kind, and such a code in it.
 bool words_exist(uint16_t kind, uint16_t code);

@@ -71,6 +71,10 @@ static void status_fault(octet_writer_t* w) {
   const uint16_t fault = (uint16_t)drive.fault;
   put_words(w, WORDS_FAULT, fault);
   if (fault == FAULT_NONE) return;
+  if (fault >= FAULT_OPEN_PHASE && drive.start.wiring != WIRING_GOOD) {
+    put_text(w, ": ");
+    put_words(w, WORDS_WIRING, (uint16_t)drive.start.wiring);
+  }
   put_text(w, ". ");
   put_words(w, WORDS_REMEDY, fault);
 }

@@ -109,6 +109,8 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   if (d->state == DRIVE_STOP) commissioning_abort(d);
 }
 
+static bool is_turned_next(const drive_t* d) { return parameters.start_method == 1 && !d->commissioning.requested; }
+
 void start_find_axis(drive_t* d) {
   d->start.shorted = false;
   d->control.closed = false;
@@ -117,7 +119,13 @@ void start_find_axis(drive_t* d) {
   if (!d->start.powered) start_power(d, true);
   if (d->state != DRIVE_START) return;
   start_enter(d, START_AXIS);
-  if (parameters.start_method == 1 && !d->commissioning.requested) start_turn(d);
+  if (is_turned_next(d) && (parameters.wiring_check == 0 || parameters.flying_start == 0)) start_turn(d);
+}
+
+// Only where the listening has found that the shaft stands.
+static void judge_wiring(drive_t* d) {
+  if (parameters.wiring_check == 0 || parameters.flying_start == 0) return;
+  d->start.wiring = wiring_judge(&d->start.axis, &d->model, q_shr(d->config.slopes.amps_per_code_q30, 10));
 }
 
 bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
@@ -128,10 +136,18 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
     return false;
   }
   if (!start_decides(d)) return false;
+  if (s->phase == START_AXIS) judge_wiring(d);
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
   admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
   *axis_bam = axis.angle_bam;
   return true;
+}
+
+static drive_fault_t fault_of(wiring_t wiring) {
+  if (wiring == WIRING_GOOD) return FAULT_NONE;
+  if (wiring == WIRING_NO_CURRENT) return FAULT_NO_CURRENT;
+  if (wiring <= WIRING_OPEN_C) return FAULT_OPEN_PHASE;
+  return (wiring <= WIRING_REVERSED_BOTH) ? FAULT_CURRENT_SENSOR : FAULT_SENSOR_ORDER;
 }
 
 static void step_axis(drive_t* d) {
@@ -139,8 +155,17 @@ static void step_axis(drive_t* d) {
   const bool seen = start_sees_axis(d, d->start.tick >= AXIS_SKIP, &axis_bam);
   position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
   if (!seen) return;
-  d->control.closed = true;
-  start_enter(d, START_SETTLE);
+  const drive_fault_t fault = fault_of(d->start.wiring);
+  if (fault != FAULT_NONE) {
+    drive_raise(d, fault);
+  } else if (is_turned_next(d)) {
+    d->model = d->config.nameplate;
+    position_preset(d, 0, 0);
+    start_turn(d);
+  } else {
+    d->control.closed = true;
+    start_enter(d, START_SETTLE);
+  }
 }
 
 // AVV's speed where it is more than noise.

@@ -6,6 +6,8 @@
 // ambiguous is tried again with more current and then is a fault. A test whose current did not follow, because the DC
 // link is too low for it, does not count: less current is tried, from the axis on.
 //
+// The same windows tell whether phases and current sensors are wired as they should be (estimators/wiring.h).
+//
 // With start_method 1 a shaft that stands is turned by a current vector instead (turning.c): that needs no saliency.
 
 #ifndef STILLSPIN_FIRMWARE_START_START_H
@@ -18,6 +20,7 @@
 #include "estimators/followed.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
+#include "estimators/wiring.h"
 
 typedef enum {
   START_LISTEN = 0,      // gates off, the short circuit is prepared
@@ -51,6 +54,7 @@ typedef struct {
   flying_pulse_t pulse;
   flying_emf_t first;
   axis_t axis;
+  wiring_t wiring;  // what the axis was found with says about it
   saturation_t saturation;
   polarity_t motion;
   followed_t followed;  // the current, what the present test asked of it

@@ -84,6 +84,7 @@ TEST(Suggest, OneEditOrAPart) {
 }
 
 TEST_F(Console, List) {
+  parameters.wiring_check = 1;  // as by default: nothing is marked as changed
   const std::string all = command("list", 30000);
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     EXPECT_TRUE(has(all, bench::text_of(parameter_info(k)->name)));

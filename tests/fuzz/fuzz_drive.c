@@ -37,6 +37,7 @@ static void periods_until(drive_state_t state, uint16_t most) {
 static void power_on(void) {
   fuzz_board_power_on();
   drive_reset();
+  parameters.wiring_check = 0;  // no motor is there
   hil_reset();
   link_reset();
 }
