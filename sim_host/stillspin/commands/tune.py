@@ -7,6 +7,7 @@ import threading
 import webbrowser
 import zlib
 from functools import partial
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,6 +16,7 @@ from stillspin.commands.connection import DriveOption, opened
 from stillspin.drive import Drive
 from stillspin.errors import InputError
 from stillspin.options import whole
+from stillspin.tune.listen import Outside, outside
 from stillspin.tune.server import Server
 
 _OWN = range(49152, 65536)
@@ -30,13 +32,23 @@ def tune(
             "--port",
             parser=whole("--port", 0, 65535),
             metavar="N",
-            help="Port on the loopback; 0: the drive's own, or any that is free.",
+            help="TCP port; 0: the drive's own, or any that is free.",
         ),
     ] = 0,
+    listen: Annotated[
+        str,
+        typer.Option("--listen", metavar="ADDRESS", help="Serve other machines, too; needs the three files below."),
+    ] = "",
+    certificate: Annotated[Path | None, typer.Option("--certificate", help="TLS certificate, PEM.")] = None,
+    key: Annotated[Path | None, typer.Option("--key", help="Its key, PEM.")] = None,
+    token_file: Annotated[
+        Path | None, typer.Option("--token-file", help="The token that the page must be opened with.")
+    ] = None,
     browser: Annotated[bool, typer.Option("--open/--no-open", help="Open it in the browser.")] = True,
 ) -> None:
-    """Serve the page for this drive, to this computer only, until Ctrl-C."""
-    with opened(where) as drive, _server(drive, where, port) as server:
+    """Serve the page for this drive until Ctrl-C: to this computer only, unless --listen names an interface."""
+    beyond = outside(listen, certificate, key, token_file)
+    with opened(where) as drive, _server(drive, where, port, beyond) as server:
         print(f"{drive.version} on {drive.link.transport.name}")
         print(f"page: {server.address}", flush=True)
         print("Whoever has this address can run the motor. Ctrl-C ends the server and stops the motor.", flush=True)
@@ -48,10 +60,10 @@ def tune(
             print("stopped")
 
 
-def _server(drive: Drive, where: str, port: int) -> Server:
+def _server(drive: Drive, where: str, port: int, beyond: Outside | None) -> Server:
     """On the port that this drive had the last time, so that a page which is still open finds it again."""
     reopen = partial(Drive.open, where)
     if not port:
         with contextlib.suppress(InputError):
-            return Server(drive, _OWN[zlib.crc32(where.encode()) % len(_OWN)], reopen=reopen)
-    return Server(drive, port, reopen=reopen)
+            return Server(drive, _OWN[zlib.crc32(where.encode()) % len(_OWN)], reopen=reopen, outside=beyond)
+    return Server(drive, port, reopen=reopen, outside=beyond)

@@ -27,6 +27,7 @@ HEADERS = {
     "Cache-Control": "no-store",
 }
 _NAMES = ("127.0.0.1", "localhost", "[::1]")
+_DEFAULT_PORTS = {"http": 80, "https": 443}
 _OWN_SITE = {"same-origin", "none"}
 
 
@@ -35,6 +36,9 @@ class Guard:
     """The secrets of one start of the server. `port` is known when it listens."""
 
     port: int = 0
+    names: tuple[str, ...] = _NAMES
+    """By which the server may be called; the first is that of its address."""
+    scheme: str = "http"
     token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
     session: str = field(default_factory=lambda: secrets.token_urlsafe(24))
 
@@ -46,20 +50,22 @@ class Guard:
     @property
     def address(self) -> str:
         """What to open in a browser."""
-        return f"http://127.0.0.1:{self.port}/?token={self.token}"
+        return f"{self.scheme}://{self.names[0]}:{self.port}/?token={self.token}"
 
     def complaint(self, request: web.Request) -> str:
         """Why a request is refused; empty when it is not."""
-        own = {f"{name}:{self.port}" for name in _NAMES}
+        own = {f"{name}:{self.port}" for name in self.names}
+        if self.port == _DEFAULT_PORTS[self.scheme]:
+            own |= set(self.names)
         origin = request.headers.get("Origin")
         by_token = request.path == "/" and _same(request.query.get("token", ""), self.token)
         by_cookie = _same(request.cookies.get(self.cookie, ""), self.session)
         site = request.headers.get("Sec-Fetch-Site", "none")
         if request.headers.get("Host", "") not in own:
-            return "this server answers to the loopback's own names only"
+            return f"this server answers to its own names only: {', '.join(self.names)}"
         if origin is None and "Upgrade" in request.headers:
             return "a connection for live data must say where it comes from"
-        if origin is not None and origin not in {f"http://{name}" for name in own}:
+        if origin is not None and origin not in {f"{self.scheme}://{name}" for name in own}:
             return "requests from other pages are refused"
         if site not in _OWN_SITE and not by_token:
             return "requests from other pages are refused"
@@ -79,7 +85,10 @@ class Guard:
             if not response.prepared:
                 response.headers.update(HEADERS)
                 if request.path == "/":
-                    response.set_cookie(self.cookie, self.session, httponly=True, samesite="Strict", path="/")
+                    secure = self.scheme == "https"
+                    response.set_cookie(
+                        self.cookie, self.session, httponly=True, samesite="Strict", path="/", secure=secure
+                    )
             return response
 
         return check

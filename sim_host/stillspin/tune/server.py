@@ -1,10 +1,9 @@
-"""Serves the page and its live connection, on the loopback only."""
+"""Serves the page and its live connection: on the loopback, unless asked for more."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import socket
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -13,16 +12,15 @@ from types import TracebackType
 from aiohttp import web
 
 from stillspin.drive import Drive
-from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.tune import files
 from stillspin.tune.dead_man import PATIENCE
 from stillspin.tune.guard import Guard
+from stillspin.tune.listen import LOOPBACK, Outside, listening
 from stillspin.tune.pages import Pages
 from stillspin.tune.workbench import Workbench
 
 _PAGE = Path(__file__).resolve().parent / "page"
-_HOST = "127.0.0.1"
 
 
 class Server:
@@ -34,23 +32,26 @@ class Server:
         port: int = 0,
         patience: float = PATIENCE,
         reopen: Callable[[], Drive] | None = None,
+        outside: Outside | None = None,
     ) -> None:
         """Take a port; 0 is any that is free.
 
         Args:
             drive: that is open; who opened it closes it.
-            port: TCP port on the loopback.
+            port: TCP port.
             patience: s without a word from who holds the motor, until it is stopped.
             reopen: opens the drive again when the way to it was lost; without, it stays lost.
+            outside: where other machines reach it; the loopback only, without.
 
         Raises:
             InputError: the port cannot be had.
         """
-        self.guard = Guard()
+        self.guard = Guard(names=(outside.name,), scheme="https", token=outside.token) if outside else Guard()
+        self._tls = outside.tls if outside else None
         self._loop = asyncio.new_event_loop()
         self._pages = Pages(self._loop)
         self.bench = self._pages.bench = Workbench(drive, self._pages.tell, patience, reopen)
-        self._socket = _listen(port)
+        self._socket = listening(outside.host if outside else LOOPBACK, port)
         self.guard.port = self._socket.getsockname()[1]
         self._ready = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="stillspin tune", daemon=True)
@@ -76,7 +77,7 @@ class Server:
         asyncio.set_event_loop(self._loop)
         runner = web.AppRunner(self._application(), access_log=None, shutdown_timeout=1.0)
         self._loop.run_until_complete(runner.setup())
-        self._loop.run_until_complete(web.SockSite(runner, self._socket).start())
+        self._loop.run_until_complete(web.SockSite(runner, self._socket, ssl_context=self._tls).start())
         beat = self._loop.create_task(self._pages.beat())
         self._ready.set()
         try:
@@ -108,15 +109,3 @@ async def _cancel_all() -> None:
     for task in waiting:
         task.cancel()
     await asyncio.gather(*waiting, return_exceptions=True)
-
-
-def _listen(port: int) -> socket.socket:
-    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listening.bind((_HOST, port))
-        listening.listen(16)
-    except OSError as error:
-        listening.close()
-        raise InputError(f"--port {port}: cannot be had ({error.strerror})") from error
-    return listening
