@@ -122,6 +122,7 @@ pictures: build ## renew the pictures of README and book, docs/images
 	@rm -rf $(PICTURES_OUT)
 	@.venv/bin/stillspin reproduce $(PICTURED) --no-paper-scheme --no-nameplate --out $(PICTURES_OUT)
 	@$(PYTHON) toolchain/overview.py $(PICTURES_OUT) docs/images/bench.png
+	@$(PYTHON) toolchain/tuning_pictures.py
 	@STILLSPIN_PICTURES=docs/images $(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_tune_on_board.py tests/python/test_notebook.py
 
 docs: setup ## build the book into site/

@@ -1,0 +1,90 @@
+"""The three ways in (docs/way-*.md): their commands are carried out as they stand there."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from function_desk import Desk
+from test_bring_up import shape
+
+from stillspin import core
+from stillspin.cases import profile
+
+pytest.importorskip("stillspin._core", reason="the native module is not built")
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 700  # ms for the answer to a line
+STILLSPIN = ".venv/bin/stillspin "
+STAYS = ("board", "console", "tune")  # they stay open; test_board.py and test_client_on_board.py run them
+
+
+def page(name: str) -> str:
+    return (ROOT / f"docs/way-{name}.md").read_text(encoding="utf-8")
+
+
+def blocks(name: str, language: str = "") -> list[str]:
+    """The page's fenced blocks of a language; those of the shell and of the console name none."""
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", page(name), re.MULTILINE | re.DOTALL)
+    return [text for said, text in found if said == language]
+
+
+def shell_lines(name: str) -> list[str]:
+    return [line for block in blocks(name) for line in block.splitlines() if line.startswith((STILLSPIN, "cmp "))]
+
+
+@pytest.mark.parametrize(("name", "plant"), [("tune", {}), ("board", {"link": {"source_voltage": 1.0}})])
+def test_the_console_answers_what_the_way_says(name, plant) -> None:
+    native = core.load()
+    bench = profile.load("bench", core.plant_schema(native), core.parameters(native), "A")
+    sections = {**bench.plant, "solver": {"method": "rk4"}}
+    for section, entries in plant.items():
+        sections[section] = {**sections.get(section, {}), **entries}
+    desk = Desk(bench.parameters, sections, wait=250)
+    command, said = "", set()
+    try:
+        for line in (line for block in blocks(name) if block.startswith("> ") for line in block.splitlines()):
+            if line.startswith("> "):
+                command = line[2:]
+                said = {shape(answer) for answer in desk.type(command, PATIENCE).splitlines()}
+            elif line.startswith("-- "):
+                desk.wait(1000 * float(line.split()[1]))
+            else:
+                assert shape(line) in said, f"{command}: {line!r} is not among {sorted(said)}"
+    finally:
+        desk.board.close()
+
+
+def test_the_commands_of_the_way_to_tests_end_as_it_says(tmp_path: Path) -> None:
+    """One after the other in the same place; the run with the open phase fails, all others pass."""
+    lines = shell_lines("test")
+    assert len(lines) >= 7
+    for line in lines:
+        words = shlex.split(line.replace("/tmp", str(tmp_path)))
+        run = [sys.executable, "-m", "stillspin", *words[1:]] if line.startswith(STILLSPIN) else words
+        done = subprocess.run(run, capture_output=True, text=True, cwd=tmp_path, check=False)
+        assert done.returncode == (1 if "open_phase" in line else 0), f"{line}\n{done.stdout}\n{done.stderr}"
+
+
+def test_the_python_of_the_way_to_tests_runs() -> None:
+    (program,) = blocks("test", "python")
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["3000.0", "running"]
+
+
+@pytest.mark.parametrize("name", ["tune", "test", "board"])
+def test_every_command_of_a_way_and_its_options_exist(name: str) -> None:
+    for line in (line for line in shell_lines(name) if line.startswith(STILLSPIN)):
+        words = shlex.split(line)[1:]
+        command = words[:2] if words[0] == "params" else words[:1]
+        shown = subprocess.run(
+            [sys.executable, "-m", "stillspin", *command, "--help"], capture_output=True, text=True, check=True
+        ).stdout
+        for option in (word for word in words if word.startswith("--")):
+            assert option in shown, line
+        assert command[0] in STAYS or name != "tune" or command[0] == "params"
