@@ -250,6 +250,7 @@ def commission_(
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
+    profile.say_not_stated(chosen)
     changes = profile.changes(change or [], schema, known)
     commission.check_target(out)
     with PhaseBar(Console(stderr=True)) as bar:
@@ -313,6 +314,7 @@ def board_(
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
+    profile.say_not_stated(chosen)
     changes = profile.changes(change or [], schema, known)
     if params:
         changes.parameters = {**commission.load(params, known), **changes.parameters}

@@ -98,6 +98,7 @@ _PARAMETERS = [
     (21, "turn_on_delay", "us", 2, 0.0, 2.0, 0.3, "STOPPED", "turn-on delay"),
     (22, "turn_off_delay", "us", 2, 0.0, 2.0, 0.6, "STOPPED", "turn-off delay"),
     (23, "device_drop", "V", 3, 0.0, 5.0, 0.95, "STOPPED", "on-state drop of a device"),
+    (9, "speed_limit", "rpm", 0, 10.0, 6000.0, 3300.0, "STOPPED", "largest speed reference"),
     (24, "device_resistance", "ohm", 4, 0.0, 1.0, 0.035, "STOPPED", "on-state resistance of a device"),
     (25, "drop_band", "A", 2, 0.01, 2.0, 0.2, "ALWAYS", "current below which its sign is not trusted"),
     (40, "excitation", "", 0, 0.0, 5.0, 3.0, "STOPPED", "pulse pattern"),

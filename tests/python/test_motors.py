@@ -112,3 +112,65 @@ def test_what_cannot_be_is_said(call, tmp_path):
     assert "there is no motor 'C'" in call("run", "A10", "--motor", "C").stderr
     assert "only one where scenarios are named" in call("reproduce", "A10", "--motor", "A", "--motor", "B").stderr
     assert "there is no scenario for it" in call("reproduce", "--motor", "C").stderr
+
+
+PUMP = """
+[machine]
+pole_pairs = 3
+resistance = 2.5
+inductance_d = 11e-3
+inductance_q = 14e-3
+magnet_flux = 0.11
+[link]
+source_voltage = 60.0
+[adc]
+current_range = 8.0
+voltage_range = 100.0
+[parameters]
+current_limit = 5.0
+"""
+
+
+def pump(tmp_path, text=PUMP):
+    path = tmp_path / "pump.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_quantity_is_stated_once_and_the_drives_parameters_follow(native, tmp_path):
+    loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path)))
+    expected = {
+        "pole_pairs": 3, "stator_resistance": 2.5, "inductance_d": 11.0, "inductance_q": 14.0, "magnet_flux": 0.11,
+        "current_full_scale": 8.0, "trip_current": 7.2, "observer_noise": 40.0, "link_full_scale": 100.0,
+        "link_minimum": 30.0, "link_regulation": 81.0, "link_maximum": 84.0, "map_current": 5.0,
+        "weakening_limit": 4.0,
+    }  # fmt: skip
+    assert {name: loaded.parameters.get(name) for name in expected} == pytest.approx(expected)
+    assert "inertia" not in loaded.parameters
+    native.check_parameters({**loaded.parameters, "speed_limit": 1300})
+
+
+def test_what_the_file_states_of_a_parameter_goes_before_what_follows(native, tmp_path):
+    text = PUMP + "trip_current = 6.5\nstator_resistance = 2.6\n"
+    loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path, text)))
+    assert (loaded.parameters["trip_current"], loaded.parameters["stator_resistance"]) == (6.5, 2.6)
+    assert loaded.plant["machine"]["resistance"] == 2.5
+
+
+def test_what_is_not_stated_is_said_and_what_the_drive_keeps_instead(native, tmp_path):
+    loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path)))
+    assert "mechanics.inertia is not stated; the drive keeps inertia = 0.00455 kgm2" in loaded.not_stated
+    assert "parameters.speed_limit is not stated; the drive keeps speed_limit = 3300 rpm" in loaded.not_stated
+    assert len(loaded.not_stated) == 4  # and friction, and the rated current
+
+
+@pytest.mark.parametrize("motor", MOTORS)
+def test_the_motors_that_ship_leave_nothing_out(native, motor):
+    assert profile.load("bench", core.plant_schema(native), core.parameters(native), motor).not_stated == ()
+
+
+def test_a_run_says_on_the_terminal_what_is_not_stated(call, tmp_path):
+    result = call("run", "A10", "--motor", pump(tmp_path), "--profile", "ideal", "--no-plots")
+    assert "stillspin: motor pump: mechanics.inertia is not stated; the drive keeps inertia" in result.stderr
+    page = next(tmp_path.glob("results*/report.html")).read_text(encoding="utf-8")
+    assert "mechanics.inertia is not stated" in page

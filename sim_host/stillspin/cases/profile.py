@@ -9,11 +9,13 @@ at the plant's own default.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from stillspin import core, resources, toml_table
+from stillspin.cases import nameplate
 from stillspin.errors import InputError, did_you_mean
 
 
@@ -24,6 +26,7 @@ class Profile:
     Attributes:
         commission: the machine differs from its nameplate, so that a campaign lets the drive measure it first.
         motor: its name.
+        not_stated: what its file leaves out, and what the drive keeps instead.
     """
 
     name: str
@@ -32,6 +35,7 @@ class Profile:
     parameters: dict[str, float] = field(default_factory=dict)
     commission: bool = False
     motor: str = resources.DEFAULT_MOTOR
+    not_stated: tuple[str, ...] = ()
 
 
 @dataclass
@@ -55,7 +59,12 @@ class _File:
 
 
 def load(
-    name_or_path: str, schema: core.Schema, known: Mapping[str, core.Entry], motor: str = resources.DEFAULT_MOTOR
+    name_or_path: str,
+    schema: core.Schema,
+    known: Mapping[str, core.Entry],
+    motor: str = resources.DEFAULT_MOTOR,
+    *,
+    checked: bool = True,
 ) -> Profile:
     """Read and check a profile, and lay it over a motor.
 
@@ -64,20 +73,32 @@ def load(
         schema: what the plant can be told.
         known: the firmware's parameters.
         motor: "A" or another motor that ships, or the path of a TOML file.
+        checked: what follows from the motor's file is within the ranges of the drive's parameters.
 
     Raises:
         InputError: not found, not TOML, unknown entry, wrong type or out of range.
     """
     machine = _read(resources.find("motors", motor), schema, known)
     effects = _read(resources.find("profiles", name_or_path), schema, known)
+    follows = nameplate.following(machine.plant, machine.parameters)
+    for name, value in follows.items() if checked else ():
+        if name in known:
+            core.parameter(known, name, value, f"motor {machine.name}: {name}, which follows from its file")
     return Profile(
         effects.name,
         effects.description,
         merged(machine.plant, effects.plant),
-        {**machine.parameters, **effects.parameters},
+        {**follows, **machine.parameters, **effects.parameters},
         effects.commission,
         machine.name,
+        nameplate.not_stated(machine.plant, machine.parameters, known),
     )
+
+
+def say_not_stated(chosen: Profile) -> None:
+    """What the motor's file leaves out, for the terminal."""
+    for words in chosen.not_stated:
+        print(f"stillspin: motor {chosen.motor}: {words}", file=sys.stderr)
 
 
 def _read(path: Path, schema: core.Schema, known: Mapping[str, core.Entry]) -> _File:

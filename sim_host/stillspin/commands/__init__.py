@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import typer
 
-from stillspin.commands import can_bus, console, flash, hil, loader, monitor, params, scope, tune
+from stillspin.commands import can_bus, console, flash, hil, loader, monitor, motor, params, scope, tune
 
 
 def register(app: typer.Typer) -> None:
     """Add them to the command line."""
     app.add_typer(params.app, name="params")
+    app.add_typer(motor.app, name="motor")
     app.command(name="console")(console.console)
     app.command(name="scope")(scope.scope)
     app.command(name="monitor")(monitor.monitor)

@@ -126,6 +126,7 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "machine": _machine(plant, known.schema),
         "observer": {name: parameters.get(name, known.parameters[name].default) for name in _OBSERVER},
         "parameters": parameters,
+        "not_stated": list(settings.profile.not_stated),
         "load": run.load,
         "duration": run.duration,
     }

@@ -70,6 +70,8 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
     native = core.load()
     motors = list(dict.fromkeys(scenario.motor for scenario in scenarios))
     own = {motor: _own(native, options, motor) for motor in motors}
+    for each in own.values():
+        profile.say_not_stated(each.profile)
     settings = _told(native, own, options)
     screen = Console(stderr=True)
     # What is wrong with the scenarios is said before the drive spends half a minute on measuring itself.

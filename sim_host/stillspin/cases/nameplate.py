@@ -1,0 +1,75 @@
+"""One nameplate: a motor's file states each quantity once, and what the drive is told of it follows from that.
+
+The file states the machine in SI units; the drive's parameters have their own units. What `[parameters]` states goes
+before what follows. What is stated nowhere is said: the drive keeps its default then, which is motor A's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from stillspin import core
+
+
+@dataclass(frozen=True)
+class Following:
+    """A firmware parameter that follows from an entry of the plant: so many of its units to one of the plant's."""
+
+    parameter: str
+    section: str
+    key: str
+    factor: float = 1.0
+    needed: bool = True
+    """Whether it is said where it is not stated; what is the board's has a default that is right."""
+    digits: int = 9
+
+
+FOLLOWING = (
+    Following("pole_pairs", "machine", "pole_pairs"),
+    Following("stator_resistance", "machine", "resistance"),
+    Following("inductance_d", "machine", "inductance_d", 1e3),
+    Following("inductance_q", "machine", "inductance_q", 1e3),
+    Following("magnet_flux", "machine", "magnet_flux"),
+    Following("inertia", "mechanics", "inertia"),
+    Following("friction", "mechanics", "viscous_friction"),
+    Following("rated_current", "machine", "rated_peak_current", digits=2),
+    Following("current_full_scale", "adc", "current_range", needed=False),
+    Following("trip_current", "adc", "current_range", 0.9, needed=False),
+    Following("observer_noise", "adc", "current_range", 5.0, needed=False),  # mA, quantisation and noise of 12 bits
+    Following("link_full_scale", "adc", "voltage_range", needed=False),
+    Following("link_minimum", "link", "source_voltage", 0.5),
+    Following("link_regulation", "link", "source_voltage", 1.35, needed=False),
+    Following("link_maximum", "link", "source_voltage", 1.4, needed=False),
+)
+STATED = ("current_limit", "speed_limit")
+"""Parameters that follow from nothing: the motor's file has them."""
+
+
+def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float]:
+    """The parameters that follow from what a motor's file states of the plant, and that it does not state itself."""
+    found = {}
+    for row in FOLLOWING:
+        value = plant.get(row.section, {}).get(row.key)
+        if value is not None and row.parameter not in stated:
+            found[row.parameter] = round(float(value) * row.factor, row.digits)
+    limit = stated.get("current_limit")
+    if limit is not None and "map_current" not in stated:
+        found["map_current"] = limit
+    if limit is not None and "weakening_limit" not in stated:
+        found["weakening_limit"] = round(0.8 * limit, 9)
+    return found
+
+
+def not_stated(plant: core.Plant, stated: Mapping[str, float], known: Mapping[str, core.Entry]) -> tuple[str, ...]:
+    """What a motor's file leaves out, and what the drive keeps instead, in words."""
+    open_ = [
+        (f"{row.section}.{row.key}", row.parameter)
+        for row in FOLLOWING
+        if row.needed and row.key not in plant.get(row.section, {}) and row.parameter not in stated
+    ] + [(f"parameters.{name}", name) for name in STATED if name not in stated]
+    return tuple(
+        f"{where} is not stated; the drive keeps {name} = {known[name].default:g} {known[name].unit}".rstrip()
+        for where, name in open_
+        if name in known
+    )

@@ -1,0 +1,128 @@
+"""`stillspin motor`: what will work with a motor and what will not; a file from what a nameplate says."""
+
+import importlib
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from test_motors import PUMP
+from typer.testing import CliRunner
+
+from stillspin import cli, core
+from stillspin.cases import motor_check, profile
+
+SALIENT = PUMP.replace("60.0", "300.0").replace("8.0", "20.0").replace("100.0", "450.0") + "speed_limit = 1500\n"
+"""A motor that the drive runs."""
+
+
+@pytest.fixture(scope="module")
+def native():
+    return importlib.import_module("stillspin._core")
+
+
+def told(*arguments):
+    return CliRunner().invoke(cli.app, ["motor", *map(str, arguments)])
+
+
+def findings(native, tmp_path: Path, text: str) -> dict[str, motor_check.Finding]:
+    path = tmp_path / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load("bench", schema, known, str(path), checked=False)
+    found = motor_check.findings(motor_check.Motor(chosen, schema, known), native)
+    return {finding.title: finding for finding in found}
+
+
+def test_motor_a_works_and_its_start_is_tried(native):
+    result = told("check", "A")
+    assert result.exit_code == 0, result.stdout
+    assert re.search(r"works  tried: started, 3[23]\d rpm of 330 rpm after 2 s", result.stdout)
+    assert "nothing speaks against it" in result.stdout
+
+
+def test_a_motor_without_saliency_does_not_start_at_rest(native):
+    result = told("check", "B-SPM")
+    assert result.exit_code == 1
+    assert "WRONG  start at rest: Lq and Ld differ by 0.0%" in result.stdout
+    assert "start_method = 1" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("change", "title", "words"),
+    [
+        (
+            ("current_limit = 5.0", "current_limit = 14.0"),
+            "start at rest",
+            "gone from 11.4 A on; current_limit is 14 A",
+        ),
+        (("magnet_flux = 0.11", "magnet_flux = 0.9"), "gates off", "link_maximum is 420 V"),
+        (("magnet_flux = 0.11", "magnet_flux = 0.9"), "top speed", "speed_limit is 1500 rpm"),
+        (("magnet_flux = 0.11", "magnet_flux = 0.9"), "drive's rules", "speed_limit is too high"),
+        (("inductance_d = 11e-3", "inductance_d = 0.3e-3"), "ripple", "by 28 A; trip_current is 18 A"),
+        (("resistance = 2.5", "resistance = 19.0"), "polarity", "asks for 10 A; the link drives"),
+        (("pole_pairs = 3", "pole_pairs = 40"), "range", "pole_pairs: 40 is out of range; 1 … 20"),
+        (("pole_pairs = 3", "pole_pairs = 20\n"), "periods per turn", ""),
+    ],
+)
+def test_what_will_not_work_is_said_with_its_numbers(native, tmp_path, change, title, words):
+    assert change[0] in SALIENT
+    text = SALIENT.replace(*change)
+    if title == "periods per turn":
+        text = text.replace("speed_limit = 1500", "speed_limit = 4000")
+    finding = findings(native, tmp_path, text)[title]
+    assert not finding.works
+    assert words in finding.words
+
+
+def test_what_is_not_stated_is_noted(native, tmp_path):
+    (tmp_path / "pump.toml").write_text(SALIENT, encoding="utf-8")
+    assert "note   mechanics.inertia is not stated; the drive keeps" in told("check", tmp_path / "pump.toml").stdout
+
+
+def test_a_bad_file_is_bad_input(native, tmp_path):
+    (tmp_path / "bad.toml").write_text("[machine]\nresistanze = 1\n", encoding="utf-8")
+    result = told("check", tmp_path / "bad.toml")
+    assert result.exit_code == 2
+    assert "did you mean 'resistance'" in result.stderr
+
+
+ANSWERS = {
+    "--pole-pairs": "4", "--resistance": "0.32", "--inductance-d": "4.9", "--inductance-q": "7.8", "--emf": "82.07",
+    "--rated-current": "7.7", "--inertia": "4.55e-3", "--voltage": "300", "--current-range": "20", "--speed": "3e3",
+}  # fmt: skip
+
+
+def test_a_new_motor_is_written_from_a_nameplate_and_works(native, tmp_path):
+    path = tmp_path / "new.toml"
+    made = told("new", path, *(part for pair in ANSWERS.items() for part in pair))
+    assert made.exit_code == 0, made.stderr
+    machine = tomllib.loads(path.read_text(encoding="utf-8"))["machine"]
+    assert machine["magnet_flux"] == pytest.approx(0.16, rel=1e-3)
+    assert machine["rated_peak_current"] == pytest.approx(10.89, rel=1e-3)
+    assert machine["inductance_d"] == 4.9e-3
+    checked = told("check", path)
+    assert checked.exit_code == 0, checked.stdout
+    assert "not stated" not in checked.stdout
+    again = told("new", path, *(part for pair in ANSWERS.items() for part in pair))
+    assert again.exit_code == 2 and "is there already" in again.stderr
+
+
+def test_the_questions_are_asked_one_by_one(native, tmp_path):
+    path = tmp_path / "asked.toml"
+    answers = "\n".join(ANSWERS.values()) + "\n"
+    result = CliRunner().invoke(cli.app, ["motor", "new", str(path)], input=answers)
+    assert result.exit_code == 0, result.output
+    assert result.stdout.count(":") >= len(ANSWERS)
+    assert tomllib.loads(path.read_text(encoding="utf-8"))["link"]["source_voltage"] == 300
+
+
+@pytest.mark.parametrize(
+    ("flag", "typed", "words"), [("--pole-pairs", "2.5", "not a whole number"), ("--emf", "1,5", "no comma")]
+)
+def test_a_wrong_answer_is_bad_input_and_writes_nothing(native, tmp_path, flag, typed, words):
+    path = tmp_path / "new.toml"
+    answers = ANSWERS | {flag: typed}
+    result = told("new", path, *(part for pair in answers.items() for part in pair))
+    assert result.exit_code == 2 and words in result.stderr
+    assert not path.exists()
