@@ -5,6 +5,7 @@ What is wrong is said in one line, and the exit status is one of exit_codes.py.
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -373,4 +374,7 @@ commands.register(app)
 
 def main() -> None:
     """Entry point of the console script."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a file on Windows takes 250 letters; "?" for the rest
     app()

@@ -7,6 +7,7 @@ import builtins
 import importlib
 import os
 import pkgutil
+import signal
 import sys
 
 OTHERS = (
@@ -32,6 +33,8 @@ builtins.__import__ = as_on_windows
 sys.platform = "win32"
 for absent in ("openpty", "sched_getaffinity", "getuid", "fork", "ttyname", "mkfifo"):
     delattr(os, absent)
+for absent in ("SIGALRM", "SIGHUP", "SIGKILL", "SIGPIPE", "SIGUSR1"):
+    delattr(signal, absent)
 
 package = importlib.import_module("stillspin")
 for module in pkgutil.walk_packages(package.__path__, "stillspin."):

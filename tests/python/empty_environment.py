@@ -53,12 +53,12 @@ class Environment:
         language = {name: value for name, value in os.environ.items() if name.startswith(("LANG", "LC_"))}
         return {"PATH": str(self.bin), "HOME": str(self.home), "COLUMNS": "200", **language}
 
-    def run(self, program, *arguments, timeout=60):
+    def run(self, program, *arguments, timeout=60, **variables):
         """What a program of this environment said, and its exit status."""
         return subprocess.run(
             [self.bin / program, *map(str, arguments)],
             cwd=self.home,
-            env=self.variables,
+            env={**self.variables, **variables},
             capture_output=True,
             text=True,
             timeout=timeout,

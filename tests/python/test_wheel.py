@@ -138,6 +138,12 @@ def test_the_firmwares_table_is_in_the_wheel(client):
     assert "pole_pairs" in said.stdout, said.stderr
 
 
+def test_letters_that_a_file_on_windows_does_not_take_are_no_traceback(client):
+    said = client.run("stillspin", "params", PYTHONIOENCODING="ascii")
+    assert (said.returncode, said.stderr) == (0, "")
+    assert "?" in said.stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "extra"),
     [
