@@ -18,7 +18,8 @@ RATE = 38400
 AHEAD = 16
 """Octets under way at most. The ROM has an octet's time for each, and needs a tenth of it."""
 _LETTER = b"A"
-_LETTER_WAIT = 0.3
+_LETTER_WAIT = 1.0
+"""Seconds; a letter that is sent while the echo of the one before is under way is data for the ROM, a wrong key."""
 _ECHO_WAIT = 1.0
 
 Progress = Callable[[int, int], None]
