@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from stillspin.commands import can_bus, console, flash, hil, loader, monitor, motor, params, scope, tune
+from stillspin.commands import can_bus, console, flash, hil, loader, monitor, motor, params, schema, scope, tune
 
 
 def register(app: typer.Typer) -> None:
@@ -12,6 +12,7 @@ def register(app: typer.Typer) -> None:
     app.add_typer(params.app, name="params")
     app.add_typer(motor.app, name="motor")
     app.command(name="console")(console.console)
+    app.command(name="schema")(schema.schema)
     app.command(name="scope")(scope.scope)
     app.command(name="monitor")(monitor.monitor)
     app.command(name="can")(can_bus.bus)
