@@ -123,7 +123,7 @@ def test_a_board_that_says_nothing_is_told():
     done = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", os.ttyname(port)])
     os.close(board)
     os.close(port)
-    assert done.exit_code == 1
+    assert done.exit_code == 3
     assert "A10 creep (its start): BROKE OFF: no answer from the drive" in done.output
 
 

@@ -41,6 +41,21 @@ def test_motor_a_works_and_its_start_is_tried(native):
     assert "nothing speaks against it" in result.stdout
 
 
+def test_motor_b_works_but_for_its_speed_limit(native):
+    result = told("check", "B")
+    assert result.exit_code == 1
+    assert "1 of 9 will not work" in result.stdout
+    assert "WRONG  top speed: the EMF takes the link's voltage at 2151 rpm" in result.stdout
+
+
+def test_a_ripple_that_the_formula_lets_pass_is_found_by_the_start(native, tmp_path):
+    """Half the pulse on top of the limit is below the trip, but what the pulses of a start add up to is not."""
+    low = SALIENT.replace("11e-3", "0.5e-3").replace("14e-3", "0.8e-3").replace("resistance = 2.5", "resistance = 0.3")
+    found = findings(native, tmp_path, low)
+    assert found["ripple"].works
+    assert not found["tried"].works and "over-current" in found["tried"].words
+
+
 def test_a_motor_without_saliency_does_not_start_at_rest(native):
     result = told("check", "B-SPM")
     assert result.exit_code == 1
@@ -59,7 +74,11 @@ def test_a_motor_without_saliency_does_not_start_at_rest(native):
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "gates off", "link_maximum is 420 V"),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "top speed", "speed_limit is 1500 rpm"),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "drive's rules", "speed_limit is too high"),
-        (("inductance_d = 11e-3", "inductance_d = 0.3e-3"), "ripple", "by 28 A; trip_current is 18 A"),
+        (
+            ("inductance_d = 11e-3", "inductance_d = 0.3e-3"),
+            "ripple",
+            "by 28 A, up to 19 A at current_limit; trip_current is 18 A",
+        ),
         (("resistance = 2.5", "resistance = 19.0"), "polarity", "asks for 10 A; the link drives"),
         (("pole_pairs = 3", "pole_pairs = 40"), "range", "pole_pairs: 40 is out of range; 1 … 20"),
         (("pole_pairs = 3", "pole_pairs = 20\n"), "periods per turn", ""),

@@ -95,11 +95,13 @@ def _ripple(motor: Motor) -> Finding:
     """A pulse of a vector, 2/3 of the link at the motor, over the smaller inductance."""
     volts = 2.0 / 3.0 * motor.plant("link", "source_voltage")
     ripple = volts * motor.told("pulse_time") * 1e-6 / motor.plant("machine", "inductance_d")
-    trip = motor.told("trip_current")
+    trip, peak = motor.told("trip_current"), motor.told("current_limit") + ripple / 2.0
     pulse = f"a pulse of {motor.told('pulse_time'):g} µs changes the current by {ripple:.3g} A"
-    words = f"{pulse}; trip_current is {trip:.3g} A"
-    if ripple > trip:
-        return Finding("ripple", False, f"{words}: shorten pulse_time, or put a choke before the motor")
+    words = f"{pulse}, up to {peak:.3g} A at current_limit; trip_current is {trip:.3g} A"
+    if peak > trip:
+        return Finding(
+            "ripple", False, f"{words}: lower current_limit, shorten pulse_time, or put a choke before the motor"
+        )
     return Finding("ripple", True, words)
 
 
