@@ -27,7 +27,7 @@ from stillspin.runs import records
 ROOT = Path(__file__).resolve().parent.parent
 STILLSPIN = ROOT / ".venv/bin/stillspin"
 ERROR = "position error (° el)"
-LABELS = {"true_speed": "speed (rpm)", "i_q": "torque current (A)", "v_dc": "DC link (V)"}
+LABELS = {"true_speed": "speed (rpm)", "i_q": "torque current (A)"}
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ PICTURES = (
         "ramp",
         "A16-reversal",
         {f"speed_ramp {value} rpm/s": f"speed_ramp={value}" for value in (1500, 3000, 9000)},
-        ("true_speed", "i_q", "v_dc"),
+        ("true_speed", "i_q"),
         (0.0, 3.2),
     ),
 )

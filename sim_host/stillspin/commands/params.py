@@ -22,7 +22,9 @@ DEFAULTS = "defaults"
 DRIVE = "drive"
 
 app = typer.Typer(
-    cls=OneLineErrors, help="The firmware's parameters: the table; dump, diff and load.", rich_markup_mode=None
+    cls=OneLineErrors,
+    help="The firmware's parameters: the table; dump, diff and load. What one sees of each: docs/parameters.md.",
+    rich_markup_mode=None,
 )
 
 
