@@ -1,9 +1,9 @@
 // The commissioning, in three steps: what to see to, measuring, what was found.
 
 import { by, make, number, span, withUnit } from "./dom.js";
+import { PLATE, questions } from "./nameplate.js";
 
 const [RUNNING, DONE, PARTLY, ABORTED] = [1, 2, 3, 4];
-const PLATE = ["pole_pairs", "current_limit", "speed_limit", "stator_resistance", "inductance_d", "inductance_q", "magnet_flux"];
 
 export class Commissioning {
   constructor(link, run, parameters, fail) {
@@ -44,7 +44,7 @@ export class Commissioning {
       make("p", {}, `The drive measures machine and inverter by itself, in about a minute and a half.${speed} `,
         "The motor goes on while this page is open and in front, and stops when it is not."),
       make("div", { class: "list" }, ...boxes),
-      make("table", { class: "narrow" }, make("tbody", {}, ...plate)),
+      make("table", { class: "narrow" }, make("tbody", {}, ...questions(this.parameters), ...plate)),
       make("div", { class: "bar" }, start),
     );
   }
