@@ -106,15 +106,15 @@ def _ripple(motor: Motor) -> Finding:
 
 
 def _polarity(motor: Motor) -> Finding:
-    """Whether the link can drive the test's current within a pulse train of ten periods."""
+    """Whether the link drives the test's current through the winding at all, and in what time."""
     volts = motor.plant("link", "source_voltage") / math.sqrt(3.0)
     resistance, inductance = motor.plant("machine", "resistance"), motor.plant("machine", "inductance_d")
-    wanted = motor.told("start_current")
-    possible = volts / resistance * -math.expm1(-10.0 * _PERIOD * resistance / inductance)
-    words = f"the polarity test asks for {wanted:.3g} A; the link drives {possible:.3g} A within 1 ms"
+    wanted, possible = min(motor.told("start_current"), motor.told("current_limit")), volts / resistance
+    words = f"the polarity test asks for {wanted:.3g} A; the link drives up to {possible:.3g} A"
     if possible < wanted:
         return Finding("polarity", False, f"{words}: lower start_current, or raise the link's voltage")
-    return Finding("polarity", True, words)
+    rise = -inductance / resistance * math.log1p(-wanted / possible) if wanted < possible else math.inf
+    return Finding("polarity", True, f"{words} and is there after {1e3 * rise:.2g} ms")
 
 
 def _speed(motor: Motor) -> Finding:
