@@ -285,6 +285,36 @@ TEST_F(BoardFunctions, OverloadIsBorneForItsTime) {
   EXPECT_NEAR(looks, -1000.0 * std::log(1.0 - 110.0 / 144.0), 20.0);
 }
 
+// By default the motor's rated current is what may flow for ever; the time constant is a winding's.
+TEST_F(BoardFunctions, WithoutAnotherCurrentTheMotorsRatedOneCounts) {
+  parameters.rated_current = raw(4.0, 20);
+  drive.state = DRIVE_RUN;
+  drive.control.measured_q20 = {0, raw(8.0, 20)};
+  const int looks = looks_to_fault(60000);
+  EXPECT_EQ(drive.fault, FAULT_OVERLOAD);
+  EXPECT_NEAR(looks, -60000.0 * std::log(1.0 - 1.1 / 4.0), 400.0);
+}
+
+TEST_F(BoardFunctions, AnOverloadCurrentOfZeroWatchesNothing) {
+  parameters.overload_current = 0;
+  drive.state = DRIVE_RUN;
+  drive.control.measured_q20 = {0, raw(30.0, 20)};
+  look(200000);
+  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(share(), 1.0);
+}
+
+// Small motors and long times: nothing of the mean square is lost in its rounding.
+TEST_F(BoardFunctions, TheMeanSquareIsAsFineForASmallMotor) {
+  parameters.rated_current = raw(0.1, 20);
+  parameters.overload_time = 600000;
+  drive.state = DRIVE_RUN;
+  drive.control.measured_q20 = {0, raw(0.12, 20)};
+  const int looks = looks_to_fault(1200000);
+  EXPECT_EQ(drive.fault, FAULT_OVERLOAD);
+  EXPECT_NEAR(looks, -600000.0 * std::log(1.0 - 1.1 / 1.44), 20000.0);
+}
+
 TEST_F(BoardFunctions, TheLimitFallsToWhatMayFlowForEver) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
