@@ -52,12 +52,12 @@ flying_emf_t flying_evaluate(const flying_pulse_t* s, const machine_model_t* m) 
 }
 
 // Magnitude of the speed that makes this EMF, binary angle per period.
-static int32_t speed_of(const flying_emf_t* e, const machine_model_t* m) {
-  return q_mul_sat(q_div(e->size_q16, m->emf_q16, 30), BPP_PER_RAD, 30);
+int32_t flying_speed(int32_t size_q16, const machine_model_t* m) {
+  return q_mul_sat(q_div(size_q16, m->emf_q16, 30), BPP_PER_RAD, 30);
 }
 
 int32_t flying_pause(const flying_emf_t* e, const machine_model_t* m, int32_t least, int32_t most) {
-  return q_clamp(SIXTY_DEGREES_BAM / q_max(speed_of(e, m), 1), least, most);
+  return q_clamp(SIXTY_DEGREES_BAM / q_max(flying_speed(e->size_q16, m), 1), least, most);
 }
 
 bool flying_resolve(const flying_emf_t* first, const flying_emf_t* second, const machine_model_t* m,
@@ -73,7 +73,7 @@ bool flying_resolve(const flying_emf_t* first, const flying_emf_t* second, const
   const int32_t size = q_min(first->size_q16, second->size_q16);
   const int32_t error_bam = q_mul_sat(q_div(EMF_ERROR_Q16, size, 16), BPP_PER_RAD, 16);
   rotor->sigma_q8 = q_div(q_abs_sat(turn), q_max(error_bam, 1), 8);
-  const int32_t expected = speed_of(second, m) / 2 + speed_of(first, m) / 2;
+  const int32_t expected = flying_speed(second->size_q16, m) / 2 + flying_speed(first->size_q16, m) / 2;
   const int32_t seen = q_abs_sat(rotor->speed_bpp);
   return q_abs_sat(turn) > FIFTEEN_DEGREES_BAM && seen > expected / 5 * 2 && seen / 5 * 2 < expected;
 }

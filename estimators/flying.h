@@ -51,6 +51,9 @@ int32_t flying_current(const flying_pulse_t* s);
 /// Needs a window or more.
 flying_emf_t flying_evaluate(const flying_pulse_t* s, const machine_model_t* m);
 
+/// Magnitude of the speed that makes an EMF of this size (V), binary angle per period.
+int32_t flying_speed(int32_t size_q16, const machine_model_t* m);
+
 /// Periods in which a rotor with this EMF turns by 60 degrees, between least and most.
 int32_t flying_pause(const flying_emf_t* e, const machine_model_t* m, int32_t least, int32_t most);
 

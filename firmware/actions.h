@@ -30,6 +30,10 @@ typedef enum {
 answer_status_t action_start(guard_t guard, octet_writer_t* why);
 answer_status_t action_commission(guard_t guard, octet_writer_t* why);
 
+/// Two short-circuit pulses: how the shaft turns. The outcome is asked for afterwards (drive_look_outcome).
+answer_status_t action_look(octet_writer_t* why);
+void put_look(octet_writer_t* w);
+
 /// Always taken: what is not under way need not be stopped.
 void action_stop(void);
 void action_coast(void);

@@ -139,8 +139,14 @@ typedef struct {
 } drive_supervision_t;
 
 typedef struct {
-  bool start, stop, coast, reset, reload, commission;
+  bool start, stop, coast, reset, reload, commission, look;
 } drive_request_t;
+
+/// What the last look at the shaft has shown.
+typedef struct {
+  look_outcome_t outcome;
+  int32_t rpm_q16;
+} drive_look_t;
 
 typedef struct {
   drive_state_t state;
@@ -172,6 +178,7 @@ typedef struct {
   drive_supervision_t supervision;
   drive_request_t request;
   commissioning_t commissioning;
+  drive_look_t look;
 } drive_t;
 
 extern drive_t drive;
@@ -193,6 +200,13 @@ void schedule_next(drive_t* d);
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);
 
+/// True where angle and speed in use are the rotor's: the power stage is on and the start has found them. With the
+/// gates off nothing is, with an encoder neither: what it counts has an angle from the start's end on, while the drive
+/// runs.
+bool drive_knows_speed(const volatile drive_t* d);
+/// The bits of known_t.
+uint16_t drive_known(const volatile drive_t* d);
+
 /// Mechanical speed, rpm Q16, of an electrical one.
 int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp);
 
@@ -206,6 +220,8 @@ void drive_enter(drive_t* d, drive_state_t state);
 /// Lets the position sources and the speed control start from this angle and speed.
 void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 void drive_begin_start(drive_t* d);
+/// Two pulses that tell how the shaft turns, and back to READY (start/flying.c).
+void drive_begin_look(drive_t* d);
 void drive_start(drive_t* d);
 void start_enter(drive_t* d, start_phase_t phase);
 void start_power(drive_t* d, bool on);

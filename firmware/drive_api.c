@@ -43,6 +43,25 @@ bool drive_is_turning(const drive_t* d) {
   return d->state == DRIVE_RUN || d->state == DRIVE_STOP || spinning;
 }
 
+static bool sees_currents(const volatile drive_t* d) {
+  switch (d->state) {
+    case DRIVE_START:
+      return d->start.powered && d->start.blind == 0u;
+    case DRIVE_COMMISSION:
+      return d->commissioning.phase != COMMISSIONING_EVALUATE;
+    default:
+      return d->state == DRIVE_RUN || d->state == DRIVE_STOP;
+  }
+}
+
+bool drive_knows_speed(const volatile drive_t* d) {
+  return sees_currents(d) && (d->state != DRIVE_START || d->start.phase == START_CATCH);
+}
+
+uint16_t drive_known(const volatile drive_t* d) {
+  return (uint16_t)((drive_knows_speed(d) ? KNOWN_ROTOR : 0) | (sees_currents(d) ? KNOWN_FRAME : 0));
+}
+
 void drive_parameters_changed(void) { drive.request.reload = true; }
 
 void drive_command_start(void) { drive.request.start = true; }
@@ -51,6 +70,7 @@ void drive_command_start(void) { drive.request.start = true; }
 static void forget_starts(void) {
   drive.request.start = false;
   drive.request.commission = false;
+  drive.request.look = false;
 }
 
 void drive_command_stop(void) {
@@ -62,6 +82,20 @@ void drive_command_coast(void) {
   forget_starts();
   drive.request.coast = true;
 }
+
+void drive_command_look(void) {
+  drive.look.outcome = LOOK_RUNNING;
+  drive.request.look = true;
+}
+
+// The end of a look writes its outcome; who breaks it off does not know of it.
+look_outcome_t drive_look_outcome(void) {
+  const bool goes_on = drive.request.look || (drive.state == DRIVE_START && drive.start.looking);
+  const look_outcome_t outcome = drive.look.outcome;
+  return (outcome == LOOK_RUNNING && !goes_on) ? LOOK_ENDED : outcome;
+}
+
+int32_t drive_look_rpm(void) { return drive.look.rpm_q16; }
 
 void drive_command_reset(void) { drive.request.reset = true; }
 

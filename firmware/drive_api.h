@@ -38,7 +38,7 @@ typedef enum {
   LIMIT_BRAKING = 16  // the DC link takes no more
 } drive_limit_t;
 
-#define SIGNAL(name, unit, q, value, meaning) int32_t name;
+#define SIGNAL(name, unit, q, of, value, meaning) int32_t name;
 typedef struct {
 #include "firmware/signal_list.h"
 } drive_signals_t;
@@ -48,12 +48,26 @@ typedef struct {
 drive_signals_t drive_signals(void);
 /// One of them, by its place in signal_list.h, as it is now; a place that does not exist gives 0.
 int32_t drive_signal(uint16_t place);
-/// Some of them, given by their places, as one control interrupt left them. Returns drive_time_ms of that interrupt.
-uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
+/// What is known beside the drive's own state.
+typedef enum {
+  KNOWN_ROTOR = 1,  // angle and speed are the rotor's
+  KNOWN_FRAME = 2   // the currents are seen in the frame that the control uses; in a start that need not be the rotor's
+} known_t;
+
+typedef struct {
+  uint32_t time_ms;  // drive_time_ms
+  uint16_t known;    // bits of known_t: signals that need another one are 0 and say nothing
+} signals_seen_t;
+
+/// Some of them, given by their places, as one control interrupt left them. Returns what goes with that interrupt.
+signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
+/// Whether the signal has a value now.
+bool drive_signal_is_known(uint16_t place);
 
 typedef struct {
   packed_text_t name, unit, meaning;
-  uint16_t q;
+  uint16_t q : 8;
+  uint16_t needs : 2;  // bit of known_t
 } signal_info_t;
 
 uint16_t signal_count(void);
@@ -98,6 +112,22 @@ void drive_command_coast(void);
 void drive_command_speed(int32_t rpm_q16);
 /// Clears a latched fault; the drive calibrates its offsets again and is READY.
 void drive_command_reset(void);
+
+/// What two short-circuit pulses say of a shaft.
+typedef enum {
+  LOOK_NONE = 0,     // nobody has looked since power-on
+  LOOK_RUNNING = 1,  // under way
+  LOOK_TURNS = 2,    // at drive_look_rpm
+  LOOK_STANDS = 3,   // or turns more slowly than drive_look_rpm
+  LOOK_UNCLEAR = 4,  // the pulses contradict each other; by the size of its EMF alone it turns at drive_look_rpm
+  LOOK_ENDED = 5     // by a stop or a fault
+} look_outcome_t;
+
+/// From READY, a tenth of a second: short-circuits the motor twice for up to a millisecond. READY follows.
+void drive_command_look(void);
+look_outcome_t drive_look_outcome(void);
+/// Mechanical, Q16; its sign only when it TURNS.
+int32_t drive_look_rpm(void);
 
 // Commissioning. It takes a minute and a half, turns the shaft, and ends in READY.
 

@@ -21,6 +21,7 @@ typedef struct {
   uint32_t time_ms;       // since power-on
   drive_fault_t fault;    // the cause
   drive_state_t state;    // in which it happened
+  uint16_t known;         // bits of known_t; what is not is 0
   int32_t speed_q16;      // rpm, mechanical
   int32_t link_q16;       // V
   int32_t current_d_q20;  // A, mean of the period before

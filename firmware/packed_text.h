@@ -24,7 +24,7 @@ enum {
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_##name,
 #include "firmware/parameter_list.h"
 #undef PARAMETER
-#define SIGNAL(name, unit, q, value, meaning) TEXT_SIGNAL_##name,
+#define SIGNAL(name, unit, q, of, value, meaning) TEXT_SIGNAL_##name,
 #include "firmware/signal_list.h"
 #undef SIGNAL
 #define FAULT(number, name, words, remedy) TEXT_FAULT_##number,
@@ -51,10 +51,10 @@ enum {
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_UNIT_##name,
 #include "firmware/parameter_list.h"
 #undef PARAMETER
-#define SIGNAL(name, unit, q, value, meaning) TEXT_SIGNAL_NAME_##name,
+#define SIGNAL(name, unit, q, of, value, meaning) TEXT_SIGNAL_NAME_##name,
 #include "firmware/signal_list.h"
 #undef SIGNAL
-#define SIGNAL(name, unit, q, value, meaning) TEXT_SIGNAL_UNIT_##name,
+#define SIGNAL(name, unit, q, of, value, meaning) TEXT_SIGNAL_UNIT_##name,
 #include "firmware/signal_list.h"
 #undef SIGNAL
 #define COMMAND(name, arguments, help) TEXT_COMMAND_NAME_##name,

@@ -18,10 +18,13 @@ static void note(const drive_t* d, drive_fault_t fault) {
   r.time_ms = d->time_ms;
   r.fault = fault;
   r.state = d->state;
-  r.speed_q16 = drive_rpm_q16(d, d->position.used.speed_bpp);
+  r.known = drive_known(d);
+  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->position.used.speed_bpp) : 0;
   r.link_q16 = d->samples.link_q16;
-  r.current_d_q20 = d->control.measured_q20.d;
-  r.current_q_q20 = d->control.measured_q20.q;
+  const dq_t none = {0, 0};
+  const dq_t seen_q20 = ((r.known & KNOWN_FRAME) != 0u) ? d->control.measured_q20 : none;
+  r.current_d_q20 = seen_q20.d;
+  r.current_q_q20 = seen_q20.q;
   fault_history_add(&r);
 }
 

@@ -4,7 +4,12 @@
 
 #include "firmware/drive.h"
 
-#define SIGNAL(name, unit, q, value, meaning) {TEXT_SIGNAL_NAME_##name, TEXT_SIGNAL_UNIT_##name, TEXT_SIGNAL_##name, q},
+#define DRIVE 0
+#define ROTOR KNOWN_ROTOR
+#define FRAME KNOWN_FRAME
+
+#define SIGNAL(name, unit, q, of, value, meaning) \
+  {TEXT_SIGNAL_NAME_##name, TEXT_SIGNAL_UNIT_##name, TEXT_SIGNAL_##name, q, of},
 static const signal_info_t table[] = {
 #include "firmware/signal_list.h"
 };
@@ -12,12 +17,26 @@ static const signal_info_t table[] = {
 
 // Volatile: to the background level the interrupt changes the drive at any time.
 #define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
-#define SIGNAL(name, unit, q, value, meaning) \
-  static int32_t look_at_##name(const volatile drive_t* d) { return (int32_t)(value); }
+// By Clarke's components of the windows: they have offset and gains in them already.
+static int32_t phase_current(const volatile drive_t* d, bool of_b) {
+  const uint16_t count = d->samples.count;
+  ab_t sum = {0, 0};
+  for (uint16_t k = 0; k < count; k++) {
+    sum.alpha += d->samples.windows[k].current_q20.alpha / (int32_t)count;
+    sum.beta += d->samples.windows[k].current_q20.beta / (int32_t)count;
+  }
+  const abc_t phases = frame_inverse_clarke(sum);
+  return of_b ? phases.b : phases.a;
+}
+
+#define SIGNAL(name, unit, q, of, value, meaning)                  \
+  static int32_t look_at_##name(const volatile drive_t* d) {       \
+    return (((of) & ~drive_known(d)) != 0) ? 0 : (int32_t)(value); \
+  }
 #include "firmware/signal_list.h"
 #undef SIGNAL
 
-#define SIGNAL(name, unit, q, value, meaning) look_at_##name,
+#define SIGNAL(name, unit, q, of, value, meaning) look_at_##name,
 static int32_t (*const looks[])(const volatile drive_t* d) = {
 #include "firmware/signal_list.h"
 };
@@ -29,20 +48,23 @@ uint16_t signal_count(void) { return COUNT; }
 
 const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &table[place] : NULL; }
 
+bool drive_signal_is_known(uint16_t place) { return (table[place].needs & ~drive_known(&drive)) == 0; }
+
 int32_t drive_signal(uint16_t place) { return (place < COUNT) ? looks[place](&drive) : 0; }
 
 // The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
-uint32_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
+signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
   const volatile uint16_t* const interrupts = &drive.heartbeat;
   const volatile uint32_t* const clock = &drive.time_ms;
   uint16_t seen;
-  uint32_t time_ms;
+  signals_seen_t with;
   do {
     seen = *interrupts;
-    time_ms = *clock;
+    with.time_ms = *clock;
+    with.known = drive_known(&drive);
     for (uint16_t k = 0; k < count; k++) copy[k] = drive_signal(places[k]);
   } while (seen != *interrupts);
-  return time_ms;
+  return with;
 }
 
 drive_signals_t drive_signals(void) {
@@ -51,7 +73,7 @@ drive_signals_t drive_signals(void) {
   uint16_t seen;
   do {
     seen = *interrupts;
-#define SIGNAL(name, unit, q, value, meaning) s.name = look_at_##name(&drive);
+#define SIGNAL(name, unit, q, of, value, meaning) s.name = look_at_##name(&drive);
 #include "firmware/signal_list.h"
 #undef SIGNAL
   } while (seen != *interrupts);

@@ -90,9 +90,12 @@ static void break_off(drive_t* d) {
 
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
-  if (!(r->start || r->stop || r->coast || r->reset || r->commission)) return;
+  if (!(r->start || r->stop || r->coast || r->reset || r->commission || r->look)) return;
   if (r->coast && drive_is_energised()) coast(d);
-  if (r->coast) r->start = false;
+  if (r->coast) {
+    r->start = false;
+    r->look = false;
+  }
   r->coast = false;
   if (r->reload) return;  // first the changed parameters, then the start
   if ((d->state == DRIVE_START || d->state == DRIVE_COMMISSION) && r->stop) break_off(d);
@@ -101,6 +104,9 @@ static void take_requests(drive_t* d) {
     drive_begin_start(d);
   } else if (d->state == DRIVE_READY && r->commission) {
     commissioning_begin(d);
+  } else if (d->state == DRIVE_READY && r->look) {
+    d->commissioning.requested = false;
+    drive_begin_look(d);
   }
   if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
   if (d->state == DRIVE_FAULT && r->reset) {
@@ -112,6 +118,7 @@ static void take_requests(drive_t* d) {
   r->stop = false;
   r->reset = false;
   r->commission = false;
+  r->look = false;
 }
 
 void drive_sequence(drive_t* d) {

@@ -29,10 +29,11 @@ typedef enum {
   WORDS_CAN = 11,           // hal_can_state_t
   WORDS_BOARD = 12,         // board_words_t
   WORDS_SELFTEST = 13,      // number of the bit in selftest_failure_t, and more (board/selftest.c)
-  WORDS_WIRING = 14         // wiring_t
+  WORDS_WIRING = 14,        // wiring_t
+  WORDS_LOOK = 15           // look_outcome_t; behind 2, 3 and 4 comes a speed
 } words_kind_t;
 
-#define WORDS_KINDS 15u
+#define WORDS_KINDS 16u
 
 /// Whether there is such a kind, and such a code in it.
 bool words_exist(uint16_t kind, uint16_t code);

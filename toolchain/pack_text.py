@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # The list, its macro, and which of the macro's arguments is the text: in the order of packed_text.h.
 LISTS = (
     ("firmware/parameter_list.h", "PARAMETER", 9),
-    ("firmware/signal_list.h", "SIGNAL", 4),
+    ("firmware/signal_list.h", "SIGNAL", 5),
     ("firmware/fault_list.h", "FAULT", 2),
     ("firmware/fault_list.h", "FAULT", 3),
     ("firmware/word_list.h", "WORDS", 2),

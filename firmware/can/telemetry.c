@@ -9,6 +9,7 @@ void telemetry_status(hal_can_frame_t* frame, const can_command_t* command, uint
   can_put(frame, CAN_STATUS_COMMANDED, command->commanding ? 1 : 0);
   can_put(frame, CAN_STATUS_TIMED_OUT, command->timed_out ? 1 : 0);
   can_put(frame, CAN_STATUS_ENERGISED, drive_is_energised() ? 1 : 0);
+  can_put(frame, CAN_STATUS_SPEED_KNOWN, s.speed_known);
   can_put(frame, CAN_STATUS_FAULT, s.fault);
   can_put(frame, CAN_STATUS_LIMITS, s.limit);
   can_put(frame, CAN_STATUS_ALIVE, (int32_t)alive);

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "firmware/console/editor.h"
+#include "firmware/link/octets.h"
 #include "firmware/packed_text.h"
 
 #if defined(__cplusplus)
@@ -65,11 +66,14 @@ void command_set(const words_of_line_t* a);
 void command_start(const words_of_line_t* a);
 void command_stop(const words_of_line_t* a);
 void command_coast(const words_of_line_t* a);
+void command_look(const words_of_line_t* a);
 void command_reset(const words_of_line_t* a);
 void command_ref(const words_of_line_t* a);
 void command_commission(const words_of_line_t* a);
 
 // commands_look.c
+/// What would be lost with the power, behind what the line says; nothing where nothing would.
+void put_unsaved(octet_writer_t* w);
 void command_status(const words_of_line_t* a);
 void command_faults(const words_of_line_t* a);
 void command_signals(const words_of_line_t* a);

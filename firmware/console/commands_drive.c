@@ -1,4 +1,4 @@
-// start, stop, coast, ref, reset, commission.
+// start, stop, coast, look, ref, reset, commission.
 
 #include <stddef.h>
 
@@ -94,6 +94,24 @@ void command_coast(const words_of_line_t* a) {
   line_of(SAY_power_stage_off);
 }
 
+static bool wait_for_look(uint16_t step) {
+  (void)step;
+  if (drive_look_outcome() == LOOK_RUNNING) return true;
+  put_look(line_begin());
+  if (drive_look_outcome() == LOOK_ENDED) count_refusal();
+  line_end();
+  return false;
+}
+
+void command_look(const words_of_line_t* a) {
+  if (!no_arguments(a) || !command_may_move(a)) return;
+  if (action_look(line_begin()) == ANSWER_OK) {
+    console_run(wait_for_look, false);
+  } else {
+    line_end_refused();
+  }
+}
+
 static void show_reference(void) {
   octet_writer_t* const w = line_begin();
   put_packed(w, SAY_ref);
@@ -147,6 +165,7 @@ static void show_commissioning(void) {
     put_text(w, " %: ");
     put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
   }
+  if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) put_unsaved(w);
   line_end();
 }
 

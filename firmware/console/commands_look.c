@@ -35,8 +35,9 @@ static void put_limits(octet_writer_t* w, int32_t limits) {
 }
 
 static void put_speeds(octet_writer_t* w) {
-  put_fixed(w, drive_signals().speed, 16, 1);
-  put_packed(w, SAY_rpm_of);
+  const drive_signals_t s = drive_signals();
+  if (s.speed_known != 0) put_fixed(w, s.speed, 16, 1);
+  put_packed(w, (s.speed_known != 0) ? SAY_rpm_of : SAY_unknown_the_shaft_may_be_turning);
   put_fixed(w, drive.control.wanted_rpm_q16, 16, 1);
   put_packed(w, SAY_rpm);
 }
@@ -52,12 +53,23 @@ static void status_state(octet_writer_t* w) {
   }
 }
 
-static void status_current(octet_writer_t* w) {
-  put_text(w, "d ");
-  put_fixed(w, drive_signals().current_d, 20, 2);
-  put_packed(w, SAY_a_q);
-  put_fixed(w, drive_signals().current_q, 20, 2);
+static void put_pair(octet_writer_t* w, packed_text_t before, int32_t first_q20, packed_text_t between,
+                     int32_t second_q20) {
+  put_packed(w, before);
+  put_fixed(w, first_q20, 20, 2);
+  put_packed(w, between);
+  put_fixed(w, second_q20, 20, 2);
   put_text(w, " A");
+}
+
+// With the gates off there is no d and no q: what the sensors read.
+static void status_current(octet_writer_t* w) {
+  const drive_signals_t s = drive_signals();
+  if ((drive_known(&drive) & KNOWN_FRAME) != 0u) {
+    put_pair(w, SAY_d, s.current_d, SAY_a_q, s.current_q);
+  } else {
+    put_pair(w, SAY_phase_a, s.current_a, SAY_a_phase_b, s.current_b);
+  }
 }
 
 static void status_link(octet_writer_t* w) {
@@ -79,9 +91,20 @@ static void status_fault(octet_writer_t* w) {
   put_words(w, WORDS_REMEDY, fault);
 }
 
+void put_unsaved(octet_writer_t* w) {
+  const uint16_t unsaved = store_unsaved();
+  if (unsaved == 0u) return;
+  if (unsaved < STORE_UNSAVED_UNKNOWN) {
+    put_text(w, "; ");
+    put_unsigned(w, unsaved);
+  }
+  put_packed(w, (unsaved < STORE_UNSAVED_UNKNOWN) ? SAY_not_saved_save_keeps_them : SAY_not_saved_the_last_save_failed);
+}
+
 static void status_parameters(octet_writer_t* w) {
   const packed_text_t conflict = parameter_conflict_known();
   put_packed(w, (conflict == PACKED_NONE) ? SAY_fit_together : conflict);
+  put_unsaved(w);
 }
 
 static void status_store(octet_writer_t* w) {
@@ -191,15 +214,18 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   put_words(w, WORDS_FAULT, (uint16_t)f->fault);
   put_text(w, ", ");
   put_words(w, WORDS_STATE, (uint16_t)f->state);
-  put_packed(w, SAY_at);
-  put_fixed(w, f->speed_q16, 16, 1);
-  put_packed(w, SAY_rpm_link);
+  const bool turned = (f->known & KNOWN_ROTOR) != 0u;
+  if (turned) {
+    put_packed(w, SAY_at);
+    put_fixed(w, f->speed_q16, 16, 1);
+  }
+  put_packed(w, turned ? SAY_rpm_link : SAY_speed_unknown_link);
   put_fixed(w, f->link_q16, 16, 1);
-  put_packed(w, SAY_v_d);
-  put_fixed(w, f->current_d_q20, 20, 2);
-  put_packed(w, SAY_a_q);
-  put_fixed(w, f->current_q_q20, 20, 2);
-  put_text(w, " A");
+  if ((f->known & KNOWN_FRAME) != 0u) {
+    put_pair(w, SAY_v_d, f->current_d_q20, SAY_a_q, f->current_q_q20);
+  } else {
+    put_text(w, " V");
+  }
 }
 
 static bool list_faults(uint16_t step) {

@@ -194,7 +194,11 @@ static bool put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
     int16_t value;
     if (scope_read(k, at, &value, 1) == 0u) return false;
     const int32_t q = (int32_t)signal->q - (int32_t)s->channel[k].shift;  // -31 has only a sign left
-    put_fixed(w, q_shl_sat(value, (unsigned)q_clamp(-q, 0, 30)), (uint16_t)q_max(q, 0), signal_decimals(signal));
+    if (value == SCOPE_UNKNOWN) {
+      put_u8(w, '-');
+    } else {
+      put_fixed(w, q_shl_sat(value, (unsigned)q_clamp(-q, 0, 30)), (uint16_t)q_max(q, 0), signal_decimals(signal));
+    }
     put_spaces_to(w, (uint16_t)(6u + 12u * (k + 1u)));
   }
   return true;

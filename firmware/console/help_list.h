@@ -11,6 +11,8 @@ HELP(start, 2, "start hold      as long as keys come: keep the space bar down. W
 HELP(start, 3, "start free      until 'stop', also when this terminal is gone; lets go of a motor that runs")
 HELP(start, 4, "start           watched by the program at the other end, which keeps it alive (stillspin console)")
 HELP(ref, 1, "ref 600 rpm     ref -50")
+HELP(look, 1, "From 'ready': short-circuits the motor twice for up to a millisecond and sees what current flows.")
+HELP(look, 2, "A shaft that turns is braked a little by it. The power stage is off again when the answer comes.")
 HELP(watch, 1, "watch           state, speed, current, DC link")
 HELP(watch, 2, "watch load_torque current_q")
 HELP(commission, 1,

@@ -19,7 +19,11 @@ uint16_t signal_decimals(const signal_info_t* s) {
 void put_signal(octet_writer_t* w, uint16_t place) {
   const signal_info_t* const s = signal_info(place);
   int32_t raw;
-  (void)drive_signals_copy(&place, 1, &raw);
+  const signals_seen_t seen = drive_signals_copy(&place, 1, &raw);
+  if ((s->needs & ~seen.known) != 0) {
+    put_packed(w, SAY_unknown);
+    return;
+  }
   put_fixed(w, raw, s->q, signal_decimals(s));
   if (packed_is_empty(s->unit)) return;
   put_u8(w, ' ');

@@ -10,7 +10,7 @@
 /// The place behind the last one.
 enum {
   SIGNAL_NONE = 0
-#define SIGNAL(name, unit, q, value, meaning) +1
+#define SIGNAL(name, unit, q, of, value, meaning) +1
 #include "firmware/signal_list.h"
 #undef SIGNAL
 };

@@ -199,7 +199,7 @@ static uint32_t add_i32(uint32_t crc, int32_t value) {
 uint32_t hil_signals_crc(void) {
   const drive_signals_t s = drive_signals();
   uint32_t crc = CRC32_BEGIN;
-#define SIGNAL(name, unit, q, value, meaning) crc = add_i32(crc, s.name);
+#define SIGNAL(name, unit, q, of, value, meaning) crc = add_i32(crc, s.name);
 #include "firmware/signal_list.h"
 #undef SIGNAL
   return crc32_end(crc);

@@ -21,7 +21,7 @@ request_handler_t request_identity, request_parameter_info, request_signal_info,
 request_handler_t request_parameter_read, request_parameter_get, request_parameter_set;
 // requests_drive.c
 request_handler_t request_command, request_status, request_signals, request_fault, request_link,
-    request_commission_result;
+    request_commission_result, request_look;
 // requests_hil.c
 request_handler_t request_hil_enter, request_hil_step, request_hil_leave;
 // requests_scope.c

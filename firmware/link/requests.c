@@ -30,6 +30,7 @@ static const entry_t entries[] = {
     {REQUEST_SCOPE_STOP, 0, 0, request_scope_stop},
     {REQUEST_STREAM, 2, 18, request_stream},
     {REQUEST_COMMISSION_RESULT, 2, 2, request_commission_result},
+    {REQUEST_LOOK, 0, 0, request_look},
     {REQUEST_HIL_ENTER, 0, 0, request_hil_enter},
     {REQUEST_HIL_STEP, 3, RECORD_BODY_MAX, request_hil_step},
     {REQUEST_HIL_LEAVE, 0, 0, request_hil_leave},

@@ -34,9 +34,18 @@ answer_status_t request_command(request_t* r) {
       return action_defaults(&r->answer);
     case COMMAND_LOAD:
       return action_load(&r->answer);
+    case COMMAND_LOOK:
+      return action_look(&r->answer);
     default:
       return ANSWER_UNKNOWN;
   }
+}
+
+answer_status_t request_look(request_t* r) {
+  put_u8(&r->answer, (uint16_t)drive_look_outcome());
+  put_i32(&r->answer, drive_look_rpm());
+  put_look(&r->answer);
+  return ANSWER_OK;
 }
 
 static uint16_t link_flags(void) { return (uint16_t)((guard_is_on() ? 1u : 0u) | (guard_has_stopped() ? 2u : 0u)); }
@@ -56,6 +65,8 @@ answer_status_t request_status(request_t* r) {
   put_u8(w, (uint16_t)drive_commissioning_phase());
   put_u16(w, (uint16_t)drive_commissioning_progress());
   put_u8(w, link_flags());
+  put_u8(w, drive_known(&drive));
+  put_u8(w, store_unsaved());
   return ANSWER_OK;
 }
 
@@ -70,8 +81,9 @@ answer_status_t request_signals(request_t* r) {
     places[k] = take_u16(&r->body);
     if (places[k] >= signal_count()) return ANSWER_RANGE;
   }
-  (void)drive_signals_copy(places, count, values);
+  const signals_seen_t seen = drive_signals_copy(places, count, values);
   for (uint16_t k = 0; k < count; k++) put_i32(&r->answer, values[k]);
+  put_u8(&r->answer, seen.known);
   return ANSWER_OK;
 }
 
@@ -87,6 +99,7 @@ answer_status_t request_fault(request_t* r) {
   put_i32(w, f.link_q16);
   put_i32(w, f.current_d_q20);
   put_i32(w, f.current_q_q20);
+  put_u8(w, f.known);
   return ANSWER_OK;
 }
 

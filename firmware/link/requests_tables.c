@@ -25,7 +25,7 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
 }
 
 static void put_signal(octet_writer_t* w, const signal_info_t* s) {
-  put_u8(w, s->q);
+  put_u8(w, (uint16_t)(s->q | s->needs << 6));
   put_packed(w, s->name);
   put_u8(w, 0);
   put_packed(w, s->unit);

@@ -54,12 +54,13 @@ uint16_t stream_event(guard_t port, uint16_t* record) {
   if (s->period == 0u || drive_time_ms() - s->last_ms < s->period) return 0;
   int32_t values[STREAM_SIGNALS] = {0};
   s->last_ms += s->period;
-  const uint32_t time_ms = drive_signals_copy(s->signals, s->count, values);
-  skip_missed(s, time_ms);
+  const signals_seen_t seen = drive_signals_copy(s->signals, s->count, values);
+  skip_missed(s, seen.time_ms);
   octet_writer_t w = octet_writer(record, RECORD_MAX - 2u);
   put_u8(&w, EVENT_STREAM);
   put_u8(&w, s->counter++);
-  put_u32(&w, time_ms);
+  put_u32(&w, seen.time_ms);
   for (uint16_t k = 0; k < s->count; k++) put_i32(&w, values[k]);
+  put_u8(&w, seen.known);
   return w.count;
 }

@@ -141,7 +141,8 @@ static void watch_trigger(void) {
 static void record(void) {
   for (uint16_t k = 0; k < setup_in_force.count; k++) {
     const scope_channel_t* const c = &setup_in_force.channel[k];
-    ring[k][head] = (int16_t)q_clamp(q_shr(drive_signal(c->signal), c->shift), INT16_MIN, INT16_MAX);
+    const int32_t value = q_clamp(q_shr(drive_signal(c->signal), c->shift), -INT16_MAX, INT16_MAX);
+    ring[k][head] = drive_signal_is_known(c->signal) ? (int16_t)value : SCOPE_UNKNOWN;
   }
   head = (uint16_t)((head + 1u) & RING_MASK);
   if (recorded < SCOPE_DEPTH) recorded++;

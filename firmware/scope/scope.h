@@ -1,6 +1,6 @@
 // Captured scope: up to four signals, recorded in the control interrupt around a trigger.
 //
-// A record is one word per channel: floor(raw / 2^shift) of a signal of signal_list.h, saturated to 16 bits, so its
+// A record is one word per channel: floor(raw / 2^shift) of a signal of signal_list.h, saturated to +-32767, so its
 // unit is that of the signal and its format Q(q - shift). SCOPE_DEPTH records are kept, one in every `decimation`
 // control interrupts (100 us). `pretrigger` of them lie before the record of the trigger, which is therefore record
 // number `pretrigger` of a finished capture.
@@ -22,9 +22,10 @@
 #include <stdint.h>
 
 #define SCOPE_CHANNELS 4u
-#define SCOPE_DEPTH 1024u      // records; a power of two
-#define SCOPE_SHIFT_MAX 31u    // of a channel
-#define SCOPE_NOWHERE 0xFFFFu  // no trigger yet
+#define SCOPE_DEPTH 1024u        // records; a power of two
+#define SCOPE_SHIFT_MAX 31u      // of a channel
+#define SCOPE_NOWHERE 0xFFFFu    // no trigger yet
+#define SCOPE_UNKNOWN INT16_MIN  // in a record: the signal was unknown (known_t)
 
 typedef enum {
   SCOPE_IDLE = 0,

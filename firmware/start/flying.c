@@ -71,12 +71,21 @@ static void close_loop(drive_t* d) {
   drive_weaken_field(d);
 }
 
+// The gates are off already.
+static void end_look(drive_t* d, look_outcome_t outcome, int32_t speed_bpp) {
+  d->look.outcome = outcome;
+  d->look.rpm_q16 = drive_rpm_q16(d, speed_bpp);
+  drive_enter(d, DRIVE_READY);
+}
+
 static void try_again(drive_t* d) {
   drive_start_t* const s = &d->start;
   s->tries++;
   s->pulses = 0;
   if (s->tries < PAIRS_MAX) {
     start_listen(d, PAUSE_MIN);
+  } else if (s->looking) {
+    end_look(d, LOOK_UNCLEAR, flying_speed(s->emf_q16, &d->model));
   } else {
     drive_raise(d, FAULT_POLARITY);
   }
@@ -85,10 +94,20 @@ static void try_again(drive_t* d) {
 static void judge_pair(drive_t* d, const flying_emf_t* second) {
   drive_start_t* const s = &d->start;
   s->emf_q16 = second->size_q16;
-  if (flying_resolve(&s->first, second, &d->model, &s->rotor)) {
-    start_enter(d, START_CATCH);
-  } else {
+  if (!flying_resolve(&s->first, second, &d->model, &s->rotor)) {
     try_again(d);
+  } else if (s->looking) {
+    end_look(d, LOOK_TURNS, s->rotor.speed_bpp);
+  } else {
+    start_enter(d, START_CATCH);
+  }
+}
+
+static void find_no_emf(drive_t* d) {
+  if (d->start.looking) {
+    end_look(d, LOOK_STANDS, flying_speed(STANDING_Q16, &d->model));
+  } else {
+    start_find_axis(d);
   }
 }
 
@@ -97,7 +116,7 @@ static void judge_pulse(drive_t* d) {
   drive_start_t* const s = &d->start;
   const flying_emf_t e = flying_evaluate(&s->pulse, &d->model);
   if (e.size_q16 < STANDING_Q16) {
-    start_find_axis(d);
+    find_no_emf(d);
     return;
   }
   s->pulses++;

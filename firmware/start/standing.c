@@ -54,10 +54,11 @@ static void reset_control(drive_t* d) {
   d->control.feed_q16 = 0;
 }
 
-void drive_begin_start(drive_t* d) {
+// False when it was refused, with a fault.
+static bool prepare(drive_t* d) {
   if (!d->config_valid || !d->control.speed_ready) {
     drive_raise(d, FAULT_PARAMETER);
-    return;
+    return false;
   }
   clear(&d->supervision, sizeof d->supervision);
   clear(&d->start, sizeof d->start);
@@ -70,13 +71,24 @@ void drive_begin_start(drive_t* d) {
   reset_control(d);
   drive_enter(d, DRIVE_START);
   const drive_fault_t refusal = board_refusal();
-  if (refusal != FAULT_NONE) {
-    drive_raise(d, refusal);
-  } else if (parameters.bootstrap_time != 0) {
+  if (refusal != FAULT_NONE) drive_raise(d, refusal);
+  return refusal == FAULT_NONE;
+}
+
+void drive_begin_start(drive_t* d) {
+  if (!prepare(d)) return;
+  if (parameters.bootstrap_time != 0) {
     start_charge(d);
   } else {
     start_look(d);
   }
+}
+
+// The lower devices need no bootstrap capacitors.
+void drive_begin_look(drive_t* d) {
+  if (!prepare(d)) return;
+  d->start.looking = true;
+  start_listen(d, LISTEN_FIRST);
 }
 
 void start_look(drive_t* d) {

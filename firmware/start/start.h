@@ -42,6 +42,7 @@ typedef struct {
   uint16_t pulses;
   uint16_t charged;      // periods in which the bootstrap capacitors were charged
   uint16_t blind;        // periods until the windows belong to a power stage that is on
+  bool looking;          // not a start: how the shaft turns is all that is asked
   bool powered;          // the start has the gates on
   bool shorted;          // the modulator holds all lower devices on
   bool decides;          // the next period is for a decision alone (start_decides)

@@ -15,6 +15,8 @@ static work_t work;
 static bool begun;  // false: asked for, store_service begins
 static store_state_t state;
 static store_report_t report;
+static bool kept_known;   // the staged set is what the next power-on will have
+static uint16_t unsaved;  // as long as the staged set is at work
 
 store_state_t store_state(void) { return state; }
 
@@ -36,8 +38,16 @@ uint16_t store_progress(void) {
   }
 }
 
+uint16_t store_unsaved(void) {
+  if (!store_is_busy()) unsaved = kept_known ? values_changed() : STORE_UNSAVED_UNKNOWN;
+  return unsaved;
+}
+
 void store_reset(void) {
   static const store_report_t nothing = {0};
+  values_reset();
+  kept_known = true;
+  unsaved = 0;
   work = WORK_NONE;
   state = STORE_EMPTY;
   report = nothing;
@@ -45,6 +55,7 @@ void store_reset(void) {
 }
 
 static void begin(work_t what, store_state_t meanwhile) {
+  (void)store_unsaved();
   work = what;
   state = meanwhile;
   begun = false;
@@ -63,8 +74,8 @@ bool store_load(void) {
 
 bool store_save(void) {
   if (store_is_busy()) return false;
-  values_copy();
   begin(WORK_SURVEY, STORE_SAVING);
+  values_copy();
   return true;
 }
 
@@ -95,25 +106,36 @@ static store_state_t take_over(void) {
   return other_firmware ? STORE_MIGRATED : STORE_LOADED;
 }
 
+// The values in force are the kept ones, or nothing that can be used is kept: the next power-on has the defaults.
+static void end_load(store_state_t result) {
+  end(result);
+  kept_known = true;
+  if (result == STORE_LOADED || result == STORE_MIGRATED || result == STORE_OLDER) {
+    values_copy();
+  } else if (result != STORE_FAILED) {
+    values_reset();
+  }
+}
+
 static void load(void) {
   const survey_result_t result = survey_step();
   if (result == SURVEY_GOES_ON) return;
   report = *survey_report();
   switch (result) {
     case SURVEY_FOUND:
-      end(take_over());
+      end_load(take_over());
       break;
     case SURVEY_EMPTY:
-      end(STORE_EMPTY);
+      end_load(STORE_EMPTY);
       break;
     case SURVEY_DAMAGED:
-      end(STORE_DAMAGED);
+      end_load(STORE_DAMAGED);
       break;
     case SURVEY_FOREIGN:
-      end(STORE_FOREIGN);
+      end_load(STORE_FOREIGN);
       break;
     default:
-      end(STORE_ABSENT);
+      end_load(STORE_ABSENT);
       break;
   }
 }
@@ -123,6 +145,7 @@ static void survey(void) {
   const survey_result_t result = survey_step();
   if (result == SURVEY_GOES_ON) return;
   if (result == SURVEY_FAILED || !writer_begin(survey_report())) {
+    kept_known = false;
     end(STORE_FAILED);
   } else {
     work = WORK_WRITE;
@@ -132,8 +155,9 @@ static void survey(void) {
 static void save(void) {
   const writer_result_t result = writer_step();
   if (result == WRITER_GOES_ON) return;
-  if (result == WRITER_DONE) report = writer_report();
-  end((result == WRITER_DONE) ? STORE_SAVED : STORE_FAILED);
+  kept_known = result == WRITER_DONE;
+  if (kept_known) report = writer_report();
+  end(kept_known ? STORE_SAVED : STORE_FAILED);
 }
 
 void store_service(void) {

@@ -71,6 +71,14 @@ slot_entry_t values_entry(uint16_t index) {
   return entry;
 }
 
+uint16_t values_changed(void) {
+  uint16_t changed = 0;
+  for (uint16_t k = 0; k < parameter_count(); k++) {
+    if (*value(&parameters, k) != *value(&set, k)) changed++;
+  }
+  return changed;
+}
+
 void values_swap(void) {
   for (uint16_t k = 0; k < parameter_count(); k++) {
     const int32_t kept = *value(&parameters, k);

@@ -1,4 +1,5 @@
-// A whole set of parameter values beside the one in force: what is being read, or what is to be saved.
+// A whole set of parameter values beside the one in force: what is being read, what is to be saved, and between two
+// such jobs what is kept.
 //
 // Values come by the number of their parameter, and from another firmware they may come in another format.
 
@@ -28,6 +29,9 @@ bool values_know(uint16_t id);
 
 /// Parameter `index` of the table, 0..parameter_count() - 1.
 slot_entry_t values_entry(uint16_t index);
+
+/// How many of the values in force differ.
+uint16_t values_changed(void);
 
 /// Exchanges this set and the one in force.
 void values_swap(void);

@@ -1,6 +1,7 @@
 #include "sim_host/bench/recorder.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace stillspin::bench {
 namespace {
@@ -18,6 +19,11 @@ struct Row {
 double scaled(std::int32_t raw, int q) { return std::ldexp(static_cast<double>(raw), -q); }
 double radians(std::int32_t bam) { return scaled(bam, 31) * kPi; }
 
+// What is said of the rotor is no number while the drive does not know its angle.
+double known(const Row& r, double value) {
+  return r.f.speed_known != 0 ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
 struct Column {
   ColumnInfo info;
   double (*value)(const Row&);
@@ -28,9 +34,10 @@ const Column kColumns[] = {
     {{"time", "s", "0 is the end of the start procedure"}, [](const Row& r) { return r.time; }},
     {{"true_angle", "rad", "electrical rotor angle"}, [](const Row& r) { return r.p.angle_e; }},
     {{"est_angle", "rad", "electrical angle that the controller used"},
-     [](const Row& r) { return radians(r.f.angle); }},
+     [](const Row& r) { return known(r, radians(r.f.angle)); }},
     {{"true_speed", "rpm", "shaft speed"}, [](const Row& r) { return r.p.speed_m * kRpmPerRads; }},
-    {{"est_speed", "rpm", "speed that the controller used"}, [](const Row& r) { return scaled(r.f.speed, 16); }},
+    {{"est_speed", "rpm", "speed that the controller used"},
+     [](const Row& r) { return known(r, scaled(r.f.speed, 16)); }},
     {{"speed_ref", "rpm", "speed reference after its ramp"},
      [](const Row& r) { return scaled(r.f.speed_reference, 16); }},
     {{"torque", "Nm", "air-gap torque"}, [](const Row& r) { return r.p.torque; }},
@@ -40,8 +47,8 @@ const Column kColumns[] = {
     {{"i_c", "A", "current of phase c"}, [](const Row& r) { return r.p.current[2]; }},
     {{"true_i_d", "A", "d-axis current at the period's start"}, [](const Row& r) { return r.p.current_d; }},
     {{"true_i_q", "A", "q-axis current at the period's start"}, [](const Row& r) { return r.p.current_q; }},
-    {{"i_d", "A", "d-axis current as measured"}, [](const Row& r) { return scaled(r.f.current_d, 20); }},
-    {{"i_q", "A", "q-axis current as measured"}, [](const Row& r) { return scaled(r.f.current_q, 20); }},
+    {{"i_d", "A", "d-axis current as measured"}, [](const Row& r) { return known(r, scaled(r.f.current_d, 20)); }},
+    {{"i_q", "A", "q-axis current as measured"}, [](const Row& r) { return known(r, scaled(r.f.current_q, 20)); }},
     {{"i_d_ref", "A", "d-axis current reference"}, [](const Row& r) { return scaled(r.f.current_d_reference, 20); }},
     {{"i_q_ref", "A", "q-axis current reference"}, [](const Row& r) { return scaled(r.f.current_q_reference, 20); }},
     {{"v_d", "V", "d-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_d, 16); }},
@@ -51,15 +58,15 @@ const Column kColumns[] = {
     {{"v_beta", "V", "its part across phase a"}, [](const Row& r) { return scaled(r.f.voltage_beta, 16); }},
     {{"v_link", "V", "DC-link voltage as measured"}, [](const Row& r) { return scaled(r.f.link_voltage, 16); }},
     {{"deviation_q", "A/s", "q-axis current deviation under zero vectors (D of the paper)"},
-     [](const Row& r) { return scaled(r.f.deviation_q, 8); }},
+     [](const Row& r) { return known(r, scaled(r.f.deviation_q, 8)); }},
     {{"v_dc", "V", "DC-link voltage"}, [](const Row& r) { return r.p.link_voltage; }},
     {{"angle_zvv", "rad", "electrical angle of the low-speed estimator"},
-     [](const Row& r) { return radians(r.f.angle_low); }},
+     [](const Row& r) { return known(r, radians(r.f.angle_low)); }},
     {{"angle_avv", "rad", "electrical angle of the AVV estimator"},
-     [](const Row& r) { return radians(r.f.angle_avv); }},
+     [](const Row& r) { return known(r, radians(r.f.angle_avv)); }},
     {{"weight", "", "share of the low-speed estimator"}, [](const Row& r) { return r.f.weight / 32767.0; }},
     {{"load_estimate", "Nm", "estimated load torque, friction included"},
-     [](const Row& r) { return scaled(r.f.load_torque, 16); }},
+     [](const Row& r) { return known(r, scaled(r.f.load_torque, 16)); }},
     {{"state", "", "state of the drive"}, [](const Row& r) { return static_cast<double>(r.f.state); }},
     {{"fault", "", "latched fault"}, [](const Row& r) { return static_cast<double>(r.f.fault); }},
     {{"start_phase", "", "phase of the start"}, [](const Row& r) { return static_cast<double>(r.f.start_phase); }},
@@ -69,7 +76,7 @@ const Column kColumns[] = {
     {{"true_load_angle", "rad", "of the stator flux before the d-axis"},
      [](const Row& r) { return std::atan2(r.p.flux_q, r.p.flux_d); }},
     {{"load_angle", "rad", "the same as the stator-flux sources have it"},
-     [](const Row& r) { return radians(r.f.load_angle); }},
+     [](const Row& r) { return known(r, radians(r.f.load_angle)); }},
     {{"magnet_flux", "Vs", "magnet flux as the stator-flux sources have it"},
      [](const Row& r) { return scaled(r.f.magnet_flux, 16) * 1e-3; }},
     {{"told_angle", "1/rad^2", "Fisher information of the last period's windows about the electrical angle"},

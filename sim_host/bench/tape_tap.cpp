@@ -81,7 +81,7 @@ Octets answer_of(const tape_period_t& p, std::uint16_t sequence, hil_answer_t& b
 std::vector<std::int32_t> raw_signals() {
   const drive_signals_t s = drive_signals();
   return {
-#define SIGNAL(name, unit, q, value, meaning) s.name,
+#define SIGNAL(name, unit, q, of, value, meaning) s.name,
 #include "firmware/signal_list.h"
 #undef SIGNAL
   };

@@ -167,7 +167,7 @@ std::vector<Quantity> VirtualBoard::truth() {
 std::vector<Quantity> VirtualBoard::signals() {
   const drive_signals_t s = drive_signals();
   return {
-#define SIGNAL(name, unit, q, value, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
+#define SIGNAL(name, unit, q, of, value, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
 #include "firmware/signal_list.h"
 #undef SIGNAL
   };

@@ -257,7 +257,7 @@ TEST_F(CanNode, SendsTheStreamBehindTheAnswers) {
     const std::vector<hal_can_frame_t> frames = take_sent()[0x481];
     for (const hal_can_frame_t& f : frames) {
       if (!segment_join(&joiner, &f, 0)) continue;
-      ASSERT_EQ(joiner.count, 2 + 4 + 8);
+      ASSERT_EQ(joiner.count, 2 + 4 + 8 + 1);
       EXPECT_EQ(joiner.octets[0], EVENT_STREAM);
       events++;
     }

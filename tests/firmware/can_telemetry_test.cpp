@@ -50,7 +50,7 @@ TEST_F(CanTelemetry, EachBitOfTheStatusHasAMeaningOfItsOwn) {
   command.timed_out = false;
   EXPECT_EQ(changed(idle, status(9)), Fields{CAN_STATUS_ALIVE});
   drive.state = DRIVE_STOP;
-  EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_ENERGISED}));
+  EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_ENERGISED, CAN_STATUS_SPEED_KNOWN}));
   drive.state = DRIVE_FAULT;
   drive.fault = FAULT_OVER_CURRENT;
   EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_FAULT}));
@@ -62,6 +62,7 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
     const hal_can_frame_t frame = status();
     EXPECT_EQ(can_get(&frame, CAN_STATUS_STATE), state);
     EXPECT_EQ(can_get(&frame, CAN_STATUS_ENERGISED), drive_is_energised() ? 1 : 0);
+    EXPECT_EQ(can_get(&frame, CAN_STATUS_SPEED_KNOWN), drive_knows_speed(&drive) ? 1 : 0);
   }
   drive.fault = FAULT_OVER_CURRENT;
   drive.limits = LIMIT_CURRENT | LIMIT_BRAKING;
@@ -72,6 +73,7 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
 }
 
 TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
+  drive.state = DRIVE_RUN;
   drive.position.used.speed_bpp = bpp_of(1500);
   drive.control.ramp.value = bpp_of(-750);
   const hal_can_frame_t frame = status();
@@ -81,6 +83,7 @@ TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
 
 // Every value another one, so that none can stand for its neighbour.
 TEST_F(CanTelemetry, CurrentsVoltagesAndTorqueAreInTheirUnits) {
+  drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {raw(-1.5, 20), raw(7.25, 20)};
   drive.control.reference_q20 = {raw(-2.125, 20), raw(9.75, 20)};
   drive.control.command_q16 = {raw(-80.5, 16), raw(120.25, 16)};

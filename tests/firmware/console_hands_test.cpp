@@ -51,6 +51,7 @@ TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
   EXPECT_TRUE(has(after("ref 50", kLong), "ref 50.00 rpm")) << "nothing moves yet";
   drive.state = DRIVE_RUN;
   EXPECT_TRUE(has(after("ref 60", kLong), "too old"));
+  EXPECT_TRUE(has(after("look", kLong), "too old"));
   EXPECT_EQ(drive.control.wanted_rpm_q16, 50 * 65536);
   EXPECT_TRUE(has(after("ref 0", kLong), "ref 0.00 rpm"));
 }

@@ -53,7 +53,8 @@ TEST_F(Console, StatusSaysWhyParametersDoNotFitTogether) {
   parameters.if_current = parameters.current_limit + 1;
   parameters.start_method = 1;
   drive.request.reload = true;
-  EXPECT_TRUE(has(command("status"), "parameters  if_current must not exceed current_limit with start_method 1\r\n"));
+  EXPECT_TRUE(
+      has(command("status"), "parameters  if_current must not exceed current_limit with start_method 1; 3 not saved"));
 }
 
 TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {
@@ -64,8 +65,32 @@ TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {
 TEST_F(Console, Signals) {
   const std::string all = command("signals", 10000);
   for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, bench::text_of(signal_info(k)->name)));
+  drive.state = DRIVE_RUN;
   drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
   EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
+}
+
+// With the power stage off the estimators go on, and what they make of nothing is no speed.
+TEST_F(Console, WhatIsUnknownIsSaidInWords) {
+  drive.state = DRIVE_READY;
+  drive.position.used.speed_bpp = bpp_of(25);
+  drive.control.measured_q20 = {1 << 20, -5 * (1 << 20)};
+  drive.control.wanted_rpm_q16 = 600 * 65536;
+  drive.samples.count = 1;
+  drive.samples.windows[0].current_q20 = {raw(0.02, 20), raw(-0.0346, 20)};
+  std::string said = command("status", 3000);
+  EXPECT_TRUE(has(said, "state       ready\r\n")) << said;
+  EXPECT_TRUE(has(said, "speed       unknown, the shaft may be turning; reference 600.0 rpm\r\n")) << said;
+  EXPECT_TRUE(has(said, "current     phase a 0.02 A, phase b -0.04 A\r\n")) << said;
+  drive.samples.count = 0;
+  EXPECT_TRUE(
+      has(command("watch", 300), "ready   unknown, the shaft may be turning; reference 600.0 rpm   phase a 0.00"));
+  EXPECT_TRUE(has(command("watch speed current_q", 300), "\nspeed unknown   current_q unknown\r\n"));
+  EXPECT_TRUE(has(command("get angle"), "angle                 unknown           electrical angle"));
+  EXPECT_TRUE(has(command("get speed_known"), "speed_known           0 "));
+  drive_raise(&drive, FAULT_OFFSET);
+  said = command("faults");
+  EXPECT_TRUE(has(said, "current offset implausible, ready, speed unknown, link 0.0 V\r\n")) << said;
 }
 
 TEST_F(Console, WatchGoesOnUntilAKey) {
@@ -82,6 +107,7 @@ TEST_F(Console, WatchGoesOnUntilAKey) {
 }
 
 TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
+  drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {1 << 20, -5 * (1 << 20)};
   EXPECT_EQ(command("watch current_q", 300), "current_q -5.000 A\r\n");
   EXPECT_TRUE(
@@ -90,7 +116,8 @@ TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
 }
 
 TEST_F(Console, WatchShowsFourSignalsAtMost) {
-  EXPECT_TRUE(has(command("watch state fault limit speed", 300), "state 0   fault 0   limit 0   speed 0.00 rpm\r\n"));
+  drive.state = DRIVE_RUN;
+  EXPECT_TRUE(has(command("watch state fault limit speed", 300), "state 4   fault 0   limit 0   speed 0.00 rpm\r\n"));
   EXPECT_TRUE(has(command("watch state fault limit speed angle", 300), "at most four signals"));
 }
 
@@ -133,6 +160,10 @@ TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {
   drive.commissioning.evaluate = true;  // and nothing was measured
   commissioning_service(&drive);
   ASSERT_EQ(drive.commissioning.outcome, COMMISSIONING_PARTLY);
+  const std::int32_t before = parameters.inertia;
+  parameters.inertia++;
+  EXPECT_TRUE(has(command("commission"), "; 2 not saved: 'save' keeps them\r\n"));
+  parameters.inertia = before;
   const std::string rows = command("commission results", 20000);
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), drive_commissioning_count());
   EXPECT_TRUE(has(rows, "\r\nmap_known             0 -> 1   ")) << rows;

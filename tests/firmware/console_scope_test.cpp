@@ -47,6 +47,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
                   "channels speed current_q angle\r\n"
                   "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
+  drive.state = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
     drive.position.used.speed_bpp = bpp_of(k);
     drive.control.measured_q20.q = -5 * (1 << 20);
@@ -57,6 +58,12 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   const std::string rows = command("scope print 5", 60000);
   EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
   EXPECT_TRUE(has(rows, "-5.000      0.2500"));
+  EXPECT_TRUE(has(command("scope arm"), "armed"));
+  drive.state = DRIVE_READY;
+  for (int k = 0; k < 20; ++k) scope_step(0);
+  EXPECT_TRUE(has(command("scope stop"), "stopped"));
+  const std::string unknown = command("scope print 1", 6000);
+  EXPECT_TRUE(has(unknown, "0     -           -           -")) << unknown;
   EXPECT_TRUE(has(command("scope stop"), "stopped"));
 }
 
@@ -75,6 +82,7 @@ TEST_F(ConsoleScope, AStepOfARecordMayBeMoreThanOne) {
   EXPECT_TRUE(has(command("scope channels deviation_q"), "set"));
   EXPECT_TRUE(has(command("scope trigger now"), "set"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
+  drive.state = DRIVE_RUN;
   drive.position.deviation_q20 = -(9 << 20);  // in a period of 100 us
   steps(2000);
   EXPECT_TRUE(has(command("scope print 1000", 2000), "\n1000  -90000.0"));

@@ -27,7 +27,7 @@ struct Row {
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   {TEXT_PARAMETER_##name, meaning}, {TEXT_PARAMETER_NAME_##name, #name}, {TEXT_PARAMETER_UNIT_##name, unit},
-#define SIGNAL(name, unit, q, value, meaning) \
+#define SIGNAL(name, unit, q, of, value, meaning) \
   {TEXT_SIGNAL_##name, meaning}, {TEXT_SIGNAL_NAME_##name, #name}, {TEXT_SIGNAL_UNIT_##name, unit},
 #define FAULT(number, name, words, remedy) {TEXT_FAULT_##number, words}, {TEXT_REMEDY_##number, remedy},
 #define WORDS(kind, code, text) {TEXT_##kind##_##code, text},

@@ -77,21 +77,22 @@ TEST_F(RequestFields, StatusTellsHowTheDriveIs) {
   drive.commissioning.map.level = 3;
   ASSERT_GT(drive_commissioning_progress(), 255) << "both octets of it";
   const Octets told = of(ask(REQUEST_STATUS));
-  ASSERT_EQ(told.size(), 23u);
+  ASSERT_EQ(told.size(), 25u);
   EXPECT_EQ(Octets(told.begin() + 4, told.begin() + 6), Octets({DRIVE_COMMISSION, FAULT_STOP}));
   EXPECT_EQ(Octets(told.begin() + 16, told.end()),
             Octets({STORE_SAVING, store_progress(), COMMISSIONING_RUNNING, COMMISSIONING_MAP}) +
-                little(static_cast<std::uint32_t>(drive_commissioning_progress()), 2) + Octets{0});
+                little(static_cast<std::uint32_t>(drive_commissioning_progress()), 2) +
+                Octets({0, 3, store_unsaved()}));
 }
 
 TEST_F(RequestFields, AFaultIsToldAsItWasRecorded) {
-  const fault_record_t older = {0x12345678, FAULT_OVER_CURRENT, DRIVE_STOP, -70000, 0x01020304, -5, 0x7F000001};
+  const fault_record_t older = {0x12345678, FAULT_OVER_CURRENT, DRIVE_STOP, 3, -70000, 0x01020304, -5, 0x7F000001};
   fault_record_t newer = older;
   newer.time_ms++;
   fault_history_add(&older);
   fault_history_add(&newer);
   const Octets rest =
-      Octets{FAULT_OVER_CURRENT, DRIVE_STOP} + i32(-70000) + i32(0x01020304) + i32(-5) + i32(0x7F000001);
+      Octets{FAULT_OVER_CURRENT, DRIVE_STOP} + i32(-70000) + i32(0x01020304) + i32(-5) + i32(0x7F000001) + Octets{3};
   EXPECT_EQ(of(ask(REQUEST_FAULT, {1})), little(2, 2) + little(0x12345678, 4) + rest);
   EXPECT_EQ(of(ask(REQUEST_FAULT, {0})), little(2, 2) + little(0x12345679, 4) + rest);
   EXPECT_EQ(ask(REQUEST_FAULT, {2}).status(), RANGE);
@@ -121,8 +122,8 @@ TEST_F(RequestFields, AsManySignalsAsThereMayBe) {
     places = places + little(place, 2);
     values = values + i32(drive_signal(place));
   }
-  EXPECT_EQ(of(ask(REQUEST_SIGNALS, places)), values);
-  EXPECT_EQ(ask(REQUEST_SIGNALS, little(signal_count() - 1u, 2)).body(), 4u);
+  EXPECT_EQ(of(ask(REQUEST_SIGNALS, places)), values + Octets{3});
+  EXPECT_EQ(ask(REQUEST_SIGNALS, little(signal_count() - 1u, 2)).body(), 5u);
 }
 
 TEST_F(RequestFields, EverySignalTellsAllOfItself) {
@@ -130,7 +131,7 @@ TEST_F(RequestFields, EverySignalTellsAllOfItself) {
     const signal_info_t& s = *signal_info(k);
     const Answer a = ask(REQUEST_SIGNAL_INFO, little(k, 2));
     ASSERT_EQ(a.status(), OK);
-    EXPECT_EQ(a.number(0, 1), s.q);
+    EXPECT_EQ(a.number(0, 1), s.q + 0x40u * s.needs);
     EXPECT_EQ(a.text(1), bench::text_of(s.name) + '\0' + bench::text_of(s.unit) + '\0' + bench::text_of(s.meaning));
   }
   EXPECT_EQ(ask(REQUEST_SIGNAL_INFO, little(signal_count(), 2)).status(), RANGE);
@@ -190,6 +191,7 @@ TEST_F(RequestFields, AScopeIsSetUpAsTold) {
 }
 
 TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
+  drive.state = DRIVE_RUN;
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).text(), "the scope has no set-up yet");
   const Octets setup = little(1, 2) + little(300, 2) + Octets{SCOPE_SINGLE, SCOPE_AT_ONCE, 4, 0} + i32(0);
   ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, setup + Octets{2, 9, 0, 0, 10, 0, 0}).status(), OK);
@@ -213,6 +215,7 @@ TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
 }
 
 TEST_F(RequestFields, AStreamTakesItsSignalsInTheirOrder) {
+  drive.state = DRIVE_RUN;
   Octets body = little(20, 2), values;
   drive.control.measured_q20 = {-5, 0x12345678};
   drive.position.low.angle_bam = 0x89ABCDEF;
@@ -224,7 +227,7 @@ TEST_F(RequestFields, AStreamTakesItsSignalsInTheirOrder) {
   records.clear();
   run(200);
   ASSERT_EQ(records.size(), 1u);
-  EXPECT_EQ(Octets(records[0].begin() + 6, records[0].end()), values);
+  EXPECT_EQ(Octets(records[0].begin() + 6, records[0].end()), values + Octets{3});
 }
 
 }  // namespace

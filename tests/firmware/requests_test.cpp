@@ -79,7 +79,7 @@ TEST_F(Requests, EveryParameterTellsAllOfItself) {
   }
   EXPECT_EQ(ask(REQUEST_PARAMETER_INFO, little(parameter_count(), 2)).status(), RANGE);
   const Answer s = ask(REQUEST_SIGNAL_INFO, little(3, 2));
-  EXPECT_EQ(s.number(0, 1), 32u);
+  EXPECT_EQ(s.number(0, 1), 32u | 0x40u) << "and of the rotor";
   EXPECT_EQ(s.text(1).substr(0, 11), std::string("angle\0turn\0", 11));
 }
 
@@ -192,14 +192,15 @@ TEST_F(Requests, StatusAndSignals) {
   drive.control.ramp.value = bpp_of(600);
   drive.limits = LIMIT_VOLTAGE | LIMIT_BRAKING;
   const Answer a = ask(REQUEST_STATUS);
-  ASSERT_EQ(a.body(), 23u);
+  ASSERT_EQ(a.body(), 25u);
   EXPECT_NEAR(a.number(0, 4), drive.time_ms, 45);
   EXPECT_EQ(a.number(4, 1), static_cast<unsigned>(DRIVE_RUN));
   EXPECT_EQ(a.number(6, 2), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
   EXPECT_NEAR(static_cast<std::int32_t>(a.number(8, 4)), -123 * 65536, 3);
   EXPECT_NEAR(a.number(12, 4), 600 * 65536, 3);
   const Answer s = ask(REQUEST_SIGNALS, little(4, 2) + little(2, 2));
-  ASSERT_EQ(s.body(), 8u);
+  ASSERT_EQ(s.body(), 9u);
+  EXPECT_EQ(s.number(8, 1), 3u);
   EXPECT_NEAR(static_cast<std::int32_t>(s.number(0, 4)), -123 * 65536, 3);
   EXPECT_EQ(s.number(4, 4), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
   EXPECT_EQ(ask(REQUEST_SIGNALS, little(signal_count(), 2)).status(), RANGE);
@@ -324,6 +325,7 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   wrong[12] = 2;
   EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, wrong).status(), LENGTH);
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
+  drive.state = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
     drive.position.used.speed_bpp = bpp_of(k);
     scope_step(static_cast<std::uint32_t>(k));
@@ -344,12 +346,17 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
 TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
   drive_reset();
   drive.time_ms = 5;
+  drive.state = DRIVE_RUN;
   drive.control.measured_q20.d = 6;
   const std::uint16_t places[] = {9, 60000};
   std::int32_t values[2] = {-1, -1};
-  EXPECT_EQ(drive_signals_copy(places, 2, values), 5u);
+  EXPECT_EQ(drive_signals_copy(places, 2, values).time_ms, 5u);
   EXPECT_EQ(values[0], 6);
   EXPECT_EQ(values[1], 0);
+  EXPECT_EQ(drive_signals_copy(places, 1, values).known, KNOWN_ROTOR | KNOWN_FRAME);
+  drive.state = DRIVE_READY;
+  EXPECT_EQ(drive_signals_copy(places, 1, values).known, 0);
+  EXPECT_EQ(values[0], 0);
 }
 
 }  // namespace

@@ -164,6 +164,29 @@ TEST_F(Scope, TriggerIsSeenBetweenTwoRecords) {
   expect_consecutive(read(), 30, 10);
 }
 
+// Also in a channel of which a shift leaves nothing but the sign.
+TEST_F(Scope, WhatIsUnknownIsNoNumber) {
+  scope_setup_t s = counting();
+  s.edge = SCOPE_AT_ONCE;
+  s.pretrigger = 0;
+  s.count = 3;
+  s.channel[0] = {signal_current_q, 0};
+  s.channel[1] = {signal_current_q, 31};
+  s.channel[2] = {signal_state, 0};
+  arm(s);
+  interrupts(4, -1);
+  drive.state = DRIVE_READY;
+  scope_step(1);
+  interrupts(1024, -1);
+  for (std::uint16_t channel = 0; channel < 2; ++channel) {
+    const std::vector<int> words = read(channel);
+    EXPECT_EQ(words[3], -1);
+    EXPECT_EQ(words[4], SCOPE_UNKNOWN);
+    EXPECT_EQ(words[5], -1);
+  }
+  EXPECT_EQ(read(2)[4], DRIVE_READY);
+}
+
 TEST_F(Scope, WordsAreShiftedAndSaturated) {
   scope_setup_t s = counting();
   s.edge = SCOPE_AT_ONCE;
@@ -181,7 +204,7 @@ TEST_F(Scope, WordsAreShiftedAndSaturated) {
     const std::vector<int> words = read(channel);
     for (std::size_t k = 0; k < std::size(values); ++k) {
       const double shifted = std::floor(std::ldexp(double(values[k]), -int(s.channel[channel].shift)));
-      EXPECT_EQ(words[k], std::clamp(shifted, -32768.0, 32767.0)) << values[k] << " channel " << channel;
+      EXPECT_EQ(words[k], std::clamp(shifted, -32767.0, 32767.0)) << values[k] << " channel " << channel;
     }
   }
 }

@@ -12,7 +12,7 @@ extern "C" {
 namespace stillspin::test {
 
 enum : std::uint16_t {
-#define SIGNAL(name, unit, q, value, meaning) signal_##name,
+#define SIGNAL(name, unit, q, of, value, meaning) signal_##name,
 #include "firmware/signal_list.h"
 #undef SIGNAL
   signals_listed
@@ -22,6 +22,7 @@ class Scope : public Drive {
  protected:
   /// Interrupt number n: `current_d` is n, `current_q` what the test says.
   void interrupt(std::int32_t current = 0) {
+    drive.state = DRIVE_RUN;
     drive.control.measured_q20.d = static_cast<std::int32_t>(n_);
     drive.control.measured_q20.q = current;
     scope_step(n_ / 10u);

@@ -13,13 +13,14 @@ namespace {
 using namespace stillspin::test;
 
 TEST_F(Requests, AStreamComesAtItsPeriod) {
+  drive.state = DRIVE_RUN;
   drive.control.measured_q20.d = 77;
   EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(9, 2) + little(0, 2)).status(), OK);
   records.clear();
   run(2000);  // 200 ms
   ASSERT_EQ(records.size(), 10u);
   for (std::size_t k = 1; k < records.size(); ++k) {
-    ASSERT_EQ(records[k].size(), 2u + 4u + 8u);
+    ASSERT_EQ(records[k].size(), 2u + 4u + 8u + 1u);
     EXPECT_EQ(records[k][0], EVENT_STREAM);
     EXPECT_EQ(records[k][1], records[k - 1][1] + 1);
     EXPECT_EQ(records[k][2], (records[k - 1][2] + 20) & 0xFF);
@@ -74,6 +75,7 @@ TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
   const std::uint16_t places[] = {9, 10};
   std::uint16_t event[RECORD_MAX];
   const std::uint32_t begin = drive.time_ms;
+  drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {-2, 0x01020304};
   stream_setup(GUARD_BUS, 10, places, 2);
   const auto comes_at = [&](std::uint32_t ms) {

@@ -139,7 +139,7 @@ void fuzz_serve_bus(void) {
 }
 
 void fuzz_forget_requests(void) {
-  static const drive_request_t none = {false, false, false, false, false, false};
+  static const drive_request_t none = {0};
   drive.request = none;
 }
 

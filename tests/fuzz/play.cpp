@@ -82,7 +82,7 @@ class Player {
 
   bool answered() const {
     return std::any_of(records.begin(), records.end(), [](const auto& r) {
-      return r.size() == 26 && r[0] == (REQUEST_STATUS | RECORD_ANSWER) && r[1] == 0x5A && r[2] == 0;
+      return r.size() == 28 && r[0] == (REQUEST_STATUS | RECORD_ANSWER) && r[1] == 0x5A && r[2] == 0;
     });
   }
 

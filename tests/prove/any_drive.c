@@ -14,8 +14,14 @@
 drive_t drive;
 
 static void any_fault(void) {
-  const fault_record_t f = {
-      any_u32, (drive_fault_t)any_up_to(40), (drive_state_t)any_up_to(7), any_i32, any_i32, any_i32, any_i32};
+  const fault_record_t f = {any_u32,
+                            (drive_fault_t)any_up_to(40),
+                            (drive_state_t)any_up_to(7),
+                            (uint16_t)any_up_to(3),
+                            any_i32,
+                            any_i32,
+                            any_i32,
+                            any_i32};
   fault_history_add(&f);
 }
 

@@ -30,11 +30,14 @@ SIGNALS = [
     ("state", "", 0, "state of the drive"),
     ("angle", "turn", 32, "electrical angle"),
     ("speed", "rpm", 16, "mechanical speed"),
+    ("speed_known", "", 0, "1: known, 0: unknown"),
     ("speed_reference", "rpm", 16, "speed reference after the ramp"),
     ("current_d", "A", 20, "measured d-axis current"),
     ("current_q", "A", 20, "measured q-axis current"),
     ("link_voltage", "V", 16, "DC-link voltage"),
 ]
+ROTOR = {"angle", "speed", "current_d", "current_q"}
+"""What is known only with the rotor's angle."""
 STATES = ["boot", "calibrate", "ready", "start", "run", "stop", "fault", "commission"]
 WORDS = {
     0: STATES,
@@ -47,7 +50,7 @@ WORDS = {
 }
 CONFLICT_WORDS = "link_regulation must be above link_minimum"
 OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT = range(8)
-READY, RUN, FAULT, COMMISSION = 2, 4, 6, 7
+READY, RUN, STOP, FAULT, COMMISSION = 2, 4, 5, 6, 7
 DEPTH = 1024
 
 
@@ -66,6 +69,7 @@ class FakeDrive:
     def __init__(self, version="fake 1.0"):
         self.version = version
         self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
+        self.kept = dict(self.values)
         self.state, self.fault, self.store = READY, 0, 1
         self.speed = self.reference = self.set_point = 0.0
         self.guarded = False
@@ -83,6 +87,8 @@ class FakeDrive:
         self.stream = None
         self.outcome, self.progress = 0, 0.0
         self.pace = 4000  # of a commissioning, per mille per second
+        self.looked = (0, 0, "nobody has looked")
+        self.seen = (2, 1059, "the shaft turns at 1059 rpm")  # by the next look
         self._counter = 0
         self._begin = self._last = self._heard = self._sent = time.monotonic()
         self._master, slave = pty.openpty()
@@ -115,6 +121,14 @@ class FakeDrive:
             self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
             self.state, self.fault, self.guarded, self.stream = READY, 0, False, None
             self._begin = time.monotonic()
+
+    @property
+    def unsaved(self):
+        return sum(value != self.kept[number] for number, value in self.values.items())
+
+    @property
+    def known(self):
+        return 3 if self.state in (RUN, STOP, COMMISSION) else 0
 
     def raise_fault(self, code):
         with self._lock:
@@ -182,11 +196,13 @@ class FakeDrive:
             numbers = self._signals(self.stream[1])
             body = struct.pack(f"<I{len(numbers)}i", self._now_ms(), *numbers)
             self._counter = (self._counter + 1) % 256
-            self._write(to_wire(Record(0x40, self._counter, body)))
+            self._write(to_wire(Record(0x40, self._counter, body + bytes((self.known,)))))
 
     def _signals(self, indices):
         values = {"state": self.state, "speed": self.speed, "speed_reference": self.reference, "link_voltage": 310.0}
         values |= {"angle": -0.25, "current_d": -1.5, "current_q": 2.0 if self.state == RUN else 0.0}
+        values = {name: value if self.known or name not in ROTOR else 0.0 for name, value in values.items()}
+        values["speed_known"] = self.known & 1
         if any(index >= len(SIGNALS) for index in indices):
             raise RefusalError(UNKNOWN)
         return [raw(values[SIGNALS[index][0]], SIGNALS[index][2]) for index in indices]
@@ -230,7 +246,8 @@ class FakeDrive:
 
     def _on_03(self, body):
         name, unit, q, meaning = SIGNALS[struct.unpack("<H", body)[0]]
-        return struct.pack("<B", q) + b"\0".join(word.encode() for word in (name, unit, meaning))
+        needs = 0x40 if name in ROTOR else 0
+        return struct.pack("<B", q | needs) + b"\0".join(word.encode() for word in (name, unit, meaning))
 
     def _on_04(self, body):
         first, count = struct.unpack("<HB", body)
@@ -282,23 +299,29 @@ class FakeDrive:
             self.set_point = argument / 2**16
         elif code == 6:
             self.state, self.outcome, self.progress = COMMISSION, 1, 0
+        elif code == 10:
+            if self.state != READY:
+                raise RefusalError(STATE)
+            self.looked = self.seen
         elif code == 7:
             self.store = 5
+            self.kept = dict(self.values)
         elif code == 8:
             self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
         return b""
 
     def _on_08(self, _):
         speeds = (raw(self.speed, 16), raw(self.reference, 16))
-        last = (self.outcome, 2 if self.state == COMMISSION else 0, int(self.progress), self.guarded)
+        phase = 2 if self.state == COMMISSION else 0
+        last = (self.outcome, phase, int(self.progress), self.guarded, self.known, self.unsaved)
         limits = 1 if self.state == RUN else 0
         return struct.pack(
-            "<IBBHiiBBBBHB", self._now_ms(), self.state, self.fault, limits, *speeds, self.store, 0, *last
+            "<IBBHiiBBBBHBBB", self._now_ms(), self.state, self.fault, limits, *speeds, self.store, 0, *last
         )
 
     def _on_09(self, body):
         indices = struct.unpack(f"<{len(body) // 2}H", body)
-        return struct.pack(f"<{len(indices)}i", *self._signals(indices))
+        return struct.pack(f"<{len(indices)}iB", *self._signals(indices), self.known)
 
     def _on_0a(self, body):
         (age,) = struct.unpack("<B", body)
@@ -306,7 +329,7 @@ class FakeDrive:
             raise RefusalError(RANGE)
         at, code, state, speed = self.faults[age]
         numbers = (raw(speed, 16), raw(310, 16), raw(-1, 20), raw(3, 20))
-        return struct.pack("<HIBBiiii", len(self.faults), at, code, state, *numbers)
+        return struct.pack("<HIBBiiiiB", len(self.faults), at, code, state, *numbers, 3 if state in (RUN, STOP) else 0)
 
     def _on_0b(self, body):
         kind, code = struct.unpack("<BB", body)
@@ -346,6 +369,10 @@ class FakeDrive:
         self._signals(indices)
         self.stream = (period / 1000, indices) if period else None
         return b""
+
+    def _on_17(self, _):
+        outcome, speed, words = self.looked
+        return struct.pack("<Bi", outcome, raw(speed, 16)) + words.encode()
 
     def _on_16(self, body):
         (index,) = struct.unpack("<H", body)

@@ -63,7 +63,7 @@ def test_every_command_and_parameter_of_the_guide_exists() -> None:
             assert rest[0] in known, line
     named = set(re.findall(r"`([a-z]+_[a-z_]+)`", GUIDE))
     signals = {row["name"] for row in core.load().signals()}
-    fields = {"current_d", "current_q"}
+    fields = {"current_d", "current_q", "current_a", "current_b"}
     assert named - set(known) - signals - fields == set()
 
 

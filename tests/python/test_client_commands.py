@@ -210,8 +210,14 @@ def test_monitor_prints_numbers_where_nobody_looks(ask):
 
 def test_monitor_draws_lines_in_a_terminal(fake):
     environment = {**os.environ, "TERM": "xterm-256color"}
-    seen = terminal(["monitor", "speed", "current_d", "--drive", fake.port, "--duration", "1.5"], environment, 20)
-    assert "ready" in seen
+    line = ["monitor", "link_voltage", "current_d", "--drive", fake.port, "--duration", "1.5"]
+    seen = terminal(line, environment, 20)
+    assert "ready  speed unknown: the shaft may be turning" in seen
+    assert "link_voltage 310 V" in seen
+    assert "current_d unknown" in seen
+    assert any(0x2800 < ord(character) < 0x2900 for character in seen)
+    fake.state = 4
+    seen = terminal(line, environment, 20)
     assert "current_d -1.5 A" in seen
     assert any(0x2800 < ord(character) < 0x2900 for character in seen)
 

@@ -1,5 +1,6 @@
 """The drive as an object, against the small drive of fake_drive.py on a pseudo-terminal."""
 
+import math
 import threading
 import time
 
@@ -7,9 +8,10 @@ import numpy as np
 import pytest
 
 from fake_drive import PARAMETERS
-from stillspin.drive import Channel, ConflictWarning, Drive, Trigger, scope
+from stillspin.drive import Channel, ConflictWarning, Drive, Outcome, Signal, Table, Trigger, scope
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until
+from stillspin.drive.state import RawStatus
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
 
@@ -103,8 +105,73 @@ def test_status_signals_and_words(drive):
     assert wait_until(lambda: not drive.status().energised, 2)
 
 
-def test_faults_in_words_newest_first(fake, drive):
+def test_with_the_power_stage_off_nothing_of_the_rotor_is_a_number(fake, drive):
+    fake.speed = -25.0  # what an estimator makes of nothing
+    status = drive.status()
+    assert (status.state, status.speed_known) == ("ready", False)
+    assert math.isnan(status.speed)
+    assert status.speed_text == "speed unknown: the shaft may be turning"
+    seen = drive.signals("speed", "angle", "current_q", "link_voltage")
+    assert [math.isnan(value) for value in seen.values()] == [True, True, True, False]
+    with drive.stream(["speed", "speed_known", "link_voltage"], 0.005) as stream:
+        sample = stream.next(2)
+        assert math.isnan(sample.values[0])
+        assert sample.values[1:] == (0.0, 310.0)
+        drive.start(0)
+        assert wait_until(lambda: stream.next(2).values[1] == 1.0, 2)
+    assert drive.status().speed_known
     fake.raise_fault(1)
+    fake.raise_fault(2)
+    newest, oldest = drive.faults()
+    assert not newest.speed_known
+    assert math.isnan(newest.speed)
+    assert math.isnan(newest.current_q)
+    assert (oldest.speed_known, oldest.current_q) == (True, 3.0)
+
+
+def test_a_capture_has_no_number_for_what_was_unknown():
+    table = Table("", 0, 0, (), (Signal(0, "speed", "rpm", 16, 1, ""), Signal(1, "state", "", 0, 0, "")))
+    setup = scope.Setup([Channel("speed", 8192.0), Channel("state")])
+    words = [np.array([-32768, -32767, 5, 32766], np.int16), np.array([2, 2, 4, 4], np.int16)]
+    found = scope.decode(setup, scope.ScopeState(scope.DONE, 4, 0, 0.0), words, table)
+    assert np.isnan(found.signals["speed"]).tolist() == [True, False, False, False]
+    assert found.signals["speed"][2] == pytest.approx(5.5 * 0.25)
+    assert found.clipped == ("speed",)
+    words[0][1] = -32766
+    assert scope.decode(setup, scope.ScopeState(scope.DONE, 4, 0, 0.0), words, table).clipped == ()
+
+
+def test_a_look_tells_how_the_shaft_turns(fake, drive):
+    seen = drive.look()
+    assert (seen.outcome, seen.speed, seen.text) == (Outcome.TURNS, 1059.0, "the shaft turns at 1059 rpm")
+    fake.seen = (3, 45, "it turns at less than 45 rpm")
+    seen = drive.look()
+    assert (seen.outcome, seen.limit) == (Outcome.STANDS, 45.0)
+    assert math.isnan(seen.speed)
+    fake.seen = (5, 0, "ended by a stop")
+    with pytest.raises(DriveError, match="not looked at: ended by a stop"):
+        drive.look()
+    drive.start(100)
+    with pytest.raises(RefusedError):
+        drive.look()
+
+
+def test_what_is_not_saved_is_told(fake, drive):
+    assert (drive.status().unsaved, drive.status().unsaved_text) == (0, "")
+    drive.set("current_limit", 2.5)
+    assert drive.status().unsaved_text == "1 parameter is not saved: 'save' keeps what is in force"
+    drive.set("speed_ramp", 1000)
+    assert drive.status().unsaved == 2
+    drive.set("current_limit", 14.0)
+    drive.save()
+    assert drive.status().unsaved == 0
+    assert RawStatus(*[0] * 13, 255).unsaved_known is None
+
+
+def test_faults_in_words_newest_first(fake, drive):
+    drive.start(0)
+    fake.raise_fault(1)
+    fake.state = 4
     fake.raise_fault(2)
     newest, oldest = drive.faults()
     assert newest.cause == "a phase current beyond trip_current"
@@ -219,6 +286,7 @@ def test_a_stream_of_too_much_is_refused(drive):
 
 
 def test_a_capture_has_units_and_time_from_the_trigger(drive):
+    drive.start(0)
     capture = drive.capture("speed", Channel("current_d", 4.0), trigger=Trigger("speed", 10, "rising"), decimation=2)
     assert capture.time.size == scope.DEPTH
     assert capture.time[256] == 0.0

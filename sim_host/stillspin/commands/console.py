@@ -124,6 +124,8 @@ def _talk(drive: Drive) -> None:
             stop.set()
     if drive.link.lost:
         raise drive.link.lost
+    if unsaved := drive.status().unsaved_text:
+        print(unsaved)
 
 
 class _Bar:
@@ -144,7 +146,7 @@ class _Bar:
                 self._text = f" {error}"
             else:
                 what = f"{status.state}: {status.fault}" if status.fault else status.state
-                self._text = f" {what} | {status.speed:.1f} rpm, reference {status.reference:.1f} rpm"
+                self._text = f" {what} | {status.speed_text}, reference {status.reference:.1f} rpm"
             self._session.app.invalidate()
 
 

@@ -116,7 +116,7 @@ def _picture(panels: list[_Panel], stream: Stream, status: Status, screen: Conso
 
 
 def _headline(status: Status, lost: int) -> Text:
-    line = Text(f"{status.state}  {status.speed:.1f} rpm", style="bold")
+    line = Text(f"{status.state}  {status.speed_text}", style="bold")
     if status.fault:
         line.append(f"  {status.fault}", style="bold red")
     if status.limits:
@@ -126,14 +126,18 @@ def _headline(status: Status, lost: int) -> Text:
     return line
 
 
+def _value(value: float, unit: str) -> str:
+    return "unknown" if math.isnan(value) else f"{value:.4g} {unit}"
+
+
 def _panel(panel: _Panel, stream: Stream, width: int, height: int) -> list[Text]:
     shown = [list(values)[-2 * width :] for values in panel.values]
-    known = [value for values in shown for value in values]
+    known = [value for values in shown for value in values if not math.isnan(value)]
     low, high = braille.nice_range(min(known), max(known)) if known else (-1.0, 1.0)
     title = Text(" " * _LABEL)
     for values, place in zip(shown, panel.numbers, strict=True):
         signal = stream.signals[place]
-        value = f"{values[-1]:.4g} {signal.unit}" if values else ""
+        value = _value(values[-1], signal.unit) if values else ""
         title.append(f" {signal.name} {value} ", style=_COLOURS[place % len(_COLOURS)])
     lines = [title]
     for index, row in enumerate(braille.plot(shown, low, high, width, height)):

@@ -11,6 +11,7 @@ print(drive.status())
 from stillspin.drive.commissioning import Identified, Report
 from stillspin.drive.drive import Drive
 from stillspin.drive.log import Log
+from stillspin.drive.look import Look, Outcome
 from stillspin.drive.scope import Capture, Channel, Trigger
 from stillspin.drive.state import Fault, Status
 from stillspin.drive.stream import Sample, Stream
@@ -25,6 +26,8 @@ __all__ = [
     "Fault",
     "Identified",
     "Log",
+    "Look",
+    "Outcome",
     "Parameter",
     "Report",
     "Sample",

@@ -18,7 +18,8 @@ from stillspin.link.errors import DifferentError, RefusedError
 
 Ask = Callable[[Request, bytes], bytes]
 _ALWAYS = 1
-_FORMAT = 1
+_Q, _NEEDS = 0x3F, 6
+_FORMAT = 2
 _BOOT = 10.0
 _AGAIN = 0.1
 
@@ -108,9 +109,9 @@ def _parameter(index: int, body: bytes) -> Parameter:
 
 
 def _signal(index: int, body: bytes) -> Signal:
-    (q,) = unpack("<B", body)
+    (form,) = unpack("<B", body)
     name, unit, meaning = _words(body[1:], 3)
-    return Signal(index, name, unit, q, meaning)
+    return Signal(index, name, unit, form & _Q, form >> _NEEDS, meaning)
 
 
 def _file(crc: int) -> Path:

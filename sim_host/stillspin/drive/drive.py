@@ -9,13 +9,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from stillspin.drive import describe, log, protocol, scope, values
+from stillspin.drive import look as looking
 from stillspin.drive.commissioning import OnProgress, Report, follow
 from stillspin.drive.describe import unpack
 from stillspin.drive.protocol import GUARDED, Command, Request, StatusCode, Words
 from stillspin.drive.requester import Requester, wait_until
 from stillspin.drive.state import ENERGISED, FAULT, RUN, Fault, RawFault, RawStatus, Status, rpm
 from stillspin.drive.stream import Stream
-from stillspin.drive.table import Table
+from stillspin.drive.table import KNOWN_ROTOR, Table
 from stillspin.drive.values import ConflictWarning
 from stillspin.errors import InputError
 from stillspin.link import address
@@ -171,6 +172,15 @@ class Drive:
         """Power stage off at once; the shaft runs out."""
         self.command(Command.COAST)
 
+    def look(self) -> looking.Look:
+        """How the shaft turns, when that is unknown: two short-circuit pulses from `ready`, then ready again.
+
+        Raises:
+            RefusedError: it is not ready, or its parameters do not fit together.
+            DriveError: ended by a stop or a fault.
+        """
+        return looking.look(self)
+
     def reset(self) -> None:
         """Clear a latched fault."""
         self.command(Command.RESET)
@@ -292,9 +302,11 @@ class Drive:
             fault=self.words(Words.FAULT, raw.fault) if raw.fault else "",
             remedy=self.words(Words.REMEDY, raw.fault) if raw.fault else "",
             limits=tuple(self.words(Words.LIMIT, bit) for bit in bits),
-            speed=rpm(raw.speed_q16),
+            speed=rpm(raw.speed_q16, bool(raw.known & KNOWN_ROTOR)),
+            speed_known=bool(raw.known & KNOWN_ROTOR),
             reference=rpm(raw.reference_q16),
             store=self.words(Words.STORE, raw.store),
+            unsaved=raw.unsaved_known,
             raw=raw,
         )
 
@@ -313,13 +325,13 @@ class Drive:
         return found
 
     def signals(self, *names: str) -> dict[str, float]:
-        """Signals of one and the same control interrupt, at most 16; by name."""
+        """Signals of one and the same control interrupt, at most 16; by name. NaN for what is unknown."""
         chosen = self.table.chosen(names)
         if not 1 <= len(chosen) <= _SIGNALS_MOST:
             raise InputError(f"{len(chosen)} signals at once; 1 … {_SIGNALS_MOST} are possible")
         numbers = struct.pack(f"<{len(chosen)}H", *(signal.index for signal in chosen))
-        raw = unpack(f"<{len(chosen)}i", self._ask(Request.SIGNALS, numbers))
-        return {signal.name: signal.to_user(value) for signal, value in zip(chosen, raw, strict=True)}
+        *raw, known = unpack(f"<{len(chosen)}iB", self._ask(Request.SIGNALS, numbers))
+        return {signal.name: signal.to_user(value, known) for signal, value in zip(chosen, raw, strict=True)}
 
     def words(self, kind: Words, code: int) -> str:
         """The drive's words for a code."""

@@ -31,6 +31,7 @@ class Request(IntEnum):
     SCOPE_STOP = 0x14
     STREAM = 0x15
     COMMISSION_RESULT = 0x16
+    LOOK = 0x17
     HIL_ENTER = 0x20
     HIL_STEP = 0x21
     HIL_LEAVE = 0x22
@@ -64,6 +65,7 @@ class Command(IntEnum):
     SAVE = 7
     DEFAULTS = 8
     LOAD = 9
+    LOOK = 10
 
 
 GUARDED = 1
@@ -95,7 +97,7 @@ REPEATABLE = frozenset(
         *(Request.PARAMETER_GET, Request.PARAMETER_SET, Request.STATUS, Request.SIGNALS, Request.FAULT, Request.WORDS),
         Request.LINK,
         *(Request.SCOPE_SETUP, Request.SCOPE_STATE, Request.SCOPE_READ, Request.SCOPE_STOP, Request.STREAM),
-        Request.COMMISSION_RESULT,
+        *(Request.COMMISSION_RESULT, Request.LOOK),
     }
 )
 """Requests that may reach the drive twice without doing more than once."""

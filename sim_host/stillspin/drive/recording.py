@@ -19,7 +19,7 @@ class Recording:
     time: npt.NDArray[np.float64]
     """Seconds."""
     signals: Mapping[str, npt.NDArray[np.float64]]
-    """In users' units, by name."""
+    """In users' units, by name; NaN where the drive did not know."""
     units: Mapping[str, str]
     """Of the signals, by name; empty where a signal has none."""
 

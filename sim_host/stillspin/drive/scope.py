@@ -25,6 +25,8 @@ EDGES = {"rising": 0, "falling": 1, "either": 2, "now": 3, "above": 4, "below": 
 IDLE, FILLING, ARMED, TRIGGERED, DONE = range(5)
 NOWHERE = 0xFFFF
 _WORD = 2**15
+_UNKNOWN = -_WORD
+"""In a record: the signal was unknown."""
 _SHIFT_MAX = 31
 DECIMATION = Range(1, 0xFFFF, whole=True)
 """Control interrupts per record."""
@@ -162,9 +164,10 @@ def decode(setup: Setup, state: ScopeState, words: Sequence[npt.NDArray[np.int16
         signal = table.signal(channel.signal)
         bits = shift(signal, channel.full_scale)
         half = 0.5 if bits else 0.0  # dropping bits rounds down, half a step on average
-        signals[signal.name] = (raw.astype(np.float64) + half) * 2.0 ** (bits - signal.q)
+        known = raw != _UNKNOWN
+        signals[signal.name] = np.where(known, (raw.astype(np.float64) + half) * 2.0 ** (bits - signal.q), np.nan)
         units[signal.name] = signal.unit
-        if raw.size and (raw.max() == _WORD - 1 or raw.min() == -_WORD) and bits + 16 < 32:
+        if np.any(np.abs(raw[known].astype(np.int32)) == _WORD - 1) and bits + 16 < 32:
             clipped.append(signal.name)
     interval = setup.decimation * CONTROL_PERIOD
     at = 0 if state.trigger_at == NOWHERE else state.trigger_at

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from stillspin.drive.describe import unpack
+from stillspin.drive.table import KNOWN_FRAME, KNOWN_ROTOR
 
 _Q16 = 2**16
 _Q20 = 2**20
-STATUS_FORM = "<IBBHiiBBBBHB"
-FAULT_FORM = "<HIBBiiii"
+STATUS_FORM = "<IBBHiiBBBBHBBB"
+FAULT_FORM = "<HIBBiiiiB"
 
 BOOT, CALIBRATE, READY, START, RUN, STOP, FAULT, COMMISSION = range(8)
 """States of the drive, firmware/drive_api.h."""
 ENERGISED = frozenset({START, RUN, STOP, COMMISSION})
 COMMISSIONING_RUNNING = 1
+_UNSAVED_UNKNOWN = 255
 
 
 @dataclass(frozen=True)
@@ -33,11 +36,18 @@ class RawStatus:
     phase: int
     progress: int
     link: int
+    known: int
+    unsaved: int
 
     @classmethod
     def unpack(cls, body: bytes) -> RawStatus:
         """From the body of an answer."""
         return cls(*unpack(STATUS_FORM, body))
+
+    @property
+    def unsaved_known(self) -> int | None:
+        """How many parameters are not saved; None when a save has failed."""
+        return self.unsaved if self.unsaved < _UNSAVED_UNKNOWN else None
 
 
 @dataclass(frozen=True)
@@ -54,12 +64,29 @@ class Status:
     limits: tuple[str, ...]
     """What holds the drive back."""
     speed: float
-    """rpm, as the drive estimates it."""
+    """rpm, as the drive estimates it; NaN while it is unknown."""
+    speed_known: bool
+    """False with the power stage off and until a start has found the rotor: the shaft may be turning."""
     reference: float
     """rpm, after the ramp."""
     store: str
     """State of the parameter store."""
+    unsaved: int | None
+    """Parameters that the next power-on will not have as they are now; None when a save has failed."""
     raw: RawStatus
+
+    @property
+    def speed_text(self) -> str:
+        """The speed for people."""
+        return f"{self.speed:.1f} rpm" if self.speed_known else "speed unknown: the shaft may be turning"
+
+    @property
+    def unsaved_text(self) -> str:
+        """What would be lost with the power, for people; empty when nothing would."""
+        if self.unsaved is None:
+            return "parameters are not saved: the last save failed"
+        what = "1 parameter is" if self.unsaved == 1 else f"{self.unsaved} parameters are"
+        return f"{what} not saved: 'save' keeps what is in force" if self.unsaved else ""
 
     @property
     def energised(self) -> bool:
@@ -79,6 +106,7 @@ class RawFault:
     link_voltage_q16: int
     current_d_q20: int
     current_q_q20: int
+    known: int
 
     @classmethod
     def unpack(cls, body: bytes) -> RawFault:
@@ -98,23 +126,26 @@ class Fault:
     remedy: str
     """What to do about it; empty when the drive does not say."""
     speed: float
-    """rpm"""
+    """rpm; NaN where it was unknown."""
     link_voltage: float
     """V"""
     current_d: float
-    """A"""
+    """A; NaN with the power stage off, as current_q."""
     current_q: float
     """A"""
     code: int
+    speed_known: bool
 
     @classmethod
     def from_raw(cls, raw: RawFault, cause: str, state: str, remedy: str) -> Fault:
         """In users' units, with the words for code and state."""
-        currents = (raw.current_d_q20 / _Q20, raw.current_q_q20 / _Q20)
-        speed, link = raw.speed_q16 / _Q16, raw.link_voltage_q16 / _Q16
-        return cls(raw.time_ms / 1e3, cause, state, remedy, speed, link, *currents, raw.code)
+        known, seen = bool(raw.known & KNOWN_ROTOR), bool(raw.known & KNOWN_FRAME)
+        scale = 1 / _Q20 if seen else math.nan
+        currents = (raw.current_d_q20 * scale, raw.current_q_q20 * scale)
+        speed, link = rpm(raw.speed_q16, known), raw.link_voltage_q16 / _Q16
+        return cls(raw.time_ms / 1e3, cause, state, remedy, speed, link, *currents, raw.code, known)
 
 
-def rpm(q16: int) -> float:
-    """Revolutions per minute of a Q16 value."""
-    return q16 / _Q16
+def rpm(q16: int, known: bool = True) -> float:
+    """Revolutions per minute of a Q16 value; NaN of one that is not known."""
+    return q16 / _Q16 if known else math.nan

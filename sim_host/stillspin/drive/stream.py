@@ -26,7 +26,7 @@ class Sample:
     time: float
     """Seconds since the drive was switched on."""
     values: tuple[float, ...]
-    """In the signals' units and order."""
+    """In the signals' units and order; NaN for what is unknown."""
 
 
 class Stream:
@@ -54,7 +54,7 @@ class Stream:
         self._requester = requester
         self._samples: queue.Queue[Sample] = queue.Queue(_WAITING)
         self._counter: int | None = None
-        self._form = f"<I{len(signals)}i"
+        self._form = f"<I{len(signals)}iB"
         self._stack = ExitStack()
         self._stack.enter_context(requester.listening(event=self._take))
         numbers = struct.pack(f"<H{len(signals)}H", period_ms, *(signal.index for signal in signals))
@@ -104,11 +104,11 @@ class Stream:
         if self._counter is not None:
             self.lost += (record.tag - self._counter - 1) % 256
         self._counter = record.tag
-        time_ms, *raw = struct.unpack(self._form, record.body)
-        self._put(time_ms / 1e3, raw)
+        time_ms, *raw, known = struct.unpack(self._form, record.body)
+        self._put(time_ms / 1e3, raw, known)
 
-    def _put(self, at: float, raw: Sequence[int]) -> None:
-        values = tuple(signal.to_user(value) for signal, value in zip(self.signals, raw, strict=True))
+    def _put(self, at: float, raw: Sequence[int], known: int) -> None:
+        values = tuple(signal.to_user(value, known) for signal, value in zip(self.signals, raw, strict=True))
         try:
             self._samples.put_nowait(Sample(at, values))
         except queue.Full:

@@ -12,6 +12,9 @@ from stillspin.quantity import Range
 
 TURN = "turn"
 """Unit of the signals that are binary angles."""
+KNOWN_ROTOR, KNOWN_FRAME = 1, 2
+"""What a drive knows: the rotor's angle and speed; the currents in the frame that its control uses."""
+KNOWN_ALL = KNOWN_ROTOR | KNOWN_FRAME
 
 
 @dataclass(frozen=True)
@@ -92,11 +95,13 @@ class Signal:
     name: str
     unit: str
     q: int
+    needs: int
+    """Bits of KNOWN_ALL that must be there, or it says nothing."""
     meaning: str
 
-    def to_user(self, raw: int) -> float:
-        """The value in `unit`; angles are −0.5 … 0.5 turn."""
-        return float(raw / (1 << self.q))
+    def to_user(self, raw: int, known: int = KNOWN_ALL) -> float:
+        """The value in `unit`; angles are −0.5 … 0.5 turn. NaN where what it needs is not among the bits of `known`."""
+        return math.nan if self.needs & ~known else float(raw / (1 << self.q))
 
     def to_raw(self, value: float | str) -> int:
         """The raw value next to `value`; text may have the unit behind the number.

@@ -13,7 +13,7 @@ from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.quantity import ANY, Range
 from stillspin.tune import files
-from stillspin.tune.messages import Message
+from stillspin.tune.messages import Message, for_page
 from stillspin.tune.workbench import Workbench
 
 _POLL = 0.05
@@ -67,7 +67,9 @@ def _defaults(bench: Workbench, _: str, __: Message) -> Any:
 
 
 def _faults(bench: Workbench, _: str, __: Message) -> Any:
-    return [asdict(fault) for fault in bench.drive.faults()]
+    faults = [asdict(fault) for fault in bench.drive.faults()]
+    unknown = ("speed", "current_d", "current_q")
+    return [fault | {name: for_page(fault[name]) for name in unknown} for fault in faults]
 
 
 def _plot(bench: Workbench, _: str, given: Message) -> Any:
@@ -123,7 +125,7 @@ def _capture(bench: Workbench, _: str, given: Message) -> Any:
     capture = bench.drive.scope_read(setup, _CHUNK)
     return {
         "time": capture.time.tolist(),
-        "signals": {name: values.tolist() for name, values in capture.signals.items()},
+        "signals": {name: [for_page(value) for value in values.tolist()] for name, values in capture.signals.items()},
         "units": dict(capture.units),
         "clipped": list(capture.clipped),
         "interval": capture.interval,

@@ -32,9 +32,11 @@ def status_message(status: Status) -> Message:
         "fault": status.fault,
         "remedy": status.remedy,
         "limits": list(status.limits),
-        "speed": status.speed,
+        "speed": for_page(status.speed),
+        "speed_known": status.speed_known,
         "reference": status.reference,
         "store": status.store,
+        "unsaved": status.unsaved_text,
         "unheard": bool(raw.link & _GUARD_STOPPED),
         "commissioning": {"outcome": raw.outcome, "phase": raw.phase, "progress": raw.progress / 1000},
     }

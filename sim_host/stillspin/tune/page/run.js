@@ -171,7 +171,7 @@ export class Run {
     by("speed").textContent = number(status.speed, 1);
     by("now-reference").textContent = `${number(status.reference, 1)} rpm`;
     by("limits").textContent = status.limits.join(", ") || "nothing";
-    by("store").textContent = status.store;
+    by("store").textContent = status.unsaved ? `${status.store}; ${status.unsaved}` : status.store;
     by("time").textContent = span(status.time);
     by("now-fault").textContent = status.fault || "no fault";
     by("fault").hidden = !status.fault;

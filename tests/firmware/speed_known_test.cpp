@@ -1,0 +1,80 @@
+// What is known of the rotor: nothing with the power stage off, nor before a start has found it.
+
+#include "tests/firmware/fake_hal.hpp"
+
+namespace stillspin::test {
+namespace {
+
+class SpeedKnown : public Drive {
+ protected:
+  void SetUp() override {
+    Drive::SetUp();
+    drive.position.used = {0x20000000u, 123456, 1'000'000, 32767};
+    drive.position.low = drive.position.high = drive.position.used;
+    drive.position.deviation_q20 = 1000;
+    drive.position.flux.load_angle_bam = 0x01000000;
+    drive.control.measured_q20 = {raw(-1.5, 20), raw(2.5, 20)};
+  }
+  static void expect(bool known, const char* what) { expect(known, known, what); }
+  static void expect(bool known, bool seen, const char* what) {
+    EXPECT_EQ(drive_known(&drive), (known ? KNOWN_ROTOR : 0) | (seen ? KNOWN_FRAME : 0)) << what;
+    EXPECT_EQ(drive_knows_speed(&drive), known) << what;
+    EXPECT_EQ(drive_signals().speed_known, known ? 1 : 0) << what;
+    for (std::uint16_t place = 0; place < signal_count(); ++place) {
+      const unsigned needs = signal_info(place)->needs;
+      EXPECT_EQ(drive_signal_is_known(place), needs == 0 || (needs == KNOWN_ROTOR ? known : seen)) << what << place;
+      if (needs != 0) {
+        EXPECT_EQ(drive_signal(place) != 0, drive_signal_is_known(place)) << what << place;
+      }
+    }
+    const drive_signals_t s = drive_signals();
+    for (const std::int32_t value :
+         {s.angle, s.speed, s.load_torque, s.angle_low, s.angle_avv, s.deviation_q, s.load_angle}) {
+      EXPECT_EQ(value != 0, known) << what;
+    }
+    for (const std::int32_t value : {s.current_d, s.current_q}) EXPECT_EQ(value != 0, seen) << what;
+  }
+};
+
+TEST_F(SpeedKnown, InTheStatesInWhichTheRotorIsFollowed) {
+  const std::pair<drive_state_t, bool> states[] = {{DRIVE_BOOT, false}, {DRIVE_CALIBRATE, false}, {DRIVE_READY, false},
+                                                   {DRIVE_RUN, true},   {DRIVE_STOP, true},       {DRIVE_FAULT, false}};
+  for (const auto& [state, known] : states) {
+    drive.state = state;
+    expect(known, std::to_string(state).c_str());
+  }
+}
+
+TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
+  drive.state = DRIVE_COMMISSION;
+  for (const auto phase :
+       {COMMISSIONING_TURN, COMMISSIONING_STAIRCASE, COMMISSIONING_SPIN, COMMISSIONING_MAP, COMMISSIONING_EVALUATE}) {
+    drive.commissioning.phase = phase;
+    expect(phase != COMMISSIONING_EVALUATE, std::to_string(phase).c_str());
+  }
+}
+
+// Before the polarity is known the angle may be half a turn off; a vector that turns says nothing of the rotor.
+TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
+  drive.state = DRIVE_START;
+  for (int phase = START_LISTEN; phase <= START_CHARGE; ++phase) {
+    drive.start.phase = static_cast<start_phase_t>(phase);
+    drive.start.powered = true;
+    drive.start.blind = 0;
+    expect(phase == START_CATCH, true, std::to_string(phase).c_str());
+    drive.start.blind = 1;
+    expect(false, "the windows are of before");
+    drive.start.blind = 0;
+    drive.start.powered = false;
+    expect(false, "the gates are off");
+  }
+}
+
+TEST_F(SpeedKnown, TheEncoderMakesNoDifference) {
+  parameters.position_source = 0;
+  drive.state = DRIVE_READY;
+  expect(false, "its count has an angle only while the drive runs");
+}
+
+}  // namespace
+}  // namespace stillspin::test

@@ -1,0 +1,78 @@
+"""What a drive says of a shaft of which it knows nothing: not a number, anywhere. On the virtual board, full link."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+from function_desk import FAULT, READY, RUN, Desk
+
+pytest.importorskip("stillspin._core", reason="the native module is not built")
+
+OF_ROTOR = ("angle", "speed", "load_torque", "current_d", "current_q")
+SENSOR_NOISE = 0.05
+"""A; the sensors' noise and what a code is worth, in the mean of a period."""
+
+
+@pytest.fixture
+def desk():
+    made = Desk({"emergency_stop": 1.0}, wait=250)
+    yield made
+    made.board.close()
+
+
+def expect_nothing_known(desk: Desk) -> None:
+    """Of the rotor, in signals, status, watch; while the sensors' currents are small."""
+    seen = [desk.board.signals() for _ in range(200) if desk.wait(1.3) is None]
+    assert all(row["speed_known"] == 0.0 for row in seen)
+    assert all(row[name] == 0.0 for row in seen for name in OF_ROTOR)
+    assert max(abs(row[name]) for row in seen for name in ("current_a", "current_b")) < SENSOR_NOISE
+    assert desk.status("speed").startswith("unknown, the shaft may be turning; reference ")
+    currents = re.fullmatch(r"phase a (-?\d+\.\d\d) A, phase b (-?\d+\.\d\d) A", desk.status("current"))
+    assert currents
+    assert all(abs(float(value)) <= SENSOR_NOISE for value in currents.groups())
+    assert "unknown, the shaft may be turning" in desk.type("watch", 100)
+    desk.type("", 20)
+
+
+def test_an_idle_board_at_full_link_shows_the_sensors_noise_and_no_estimate(desk):
+    assert desk.state == READY
+    assert desk.board.signals()["link_voltage"] == pytest.approx(300, abs=3)
+    expect_nothing_known(desk)
+
+
+def test_after_coast_the_speed_is_unknown_while_the_shaft_turns(desk):
+    desk.run(1200)
+    desk.wait(1000)
+    assert desk.board.signals()["speed_known"] == 1.0
+    assert desk.board.signals()["speed"] == pytest.approx(1200, rel=0.01)
+    desk.type("coast")
+    assert desk.truth("speed") > 900
+    assert desk.status("state") == "ready"
+    expect_nothing_known(desk)
+    assert desk.truth("speed") > 300
+
+
+def test_after_an_emergency_the_speed_is_unknown_and_was_known_when_it_came(desk):
+    desk.run(900)
+    desk.wait(1000)
+    desk.board.set_input("emergency", 1.0)
+    desk.wait(50)
+    assert desk.state == FAULT
+    assert desk.truth("speed") > 600
+    expect_nothing_known(desk)
+    assert re.search(r"emergency stop, running at 9\d\d\.\d rpm", desk.type("faults", 200))
+
+
+def test_a_start_is_known_at_its_end(desk):
+    """Not while it still looks for the polarity."""
+    desk.type("start free", 0)
+    known = []
+    while desk.state != RUN:
+        known.append(desk.board.signals()["speed_known"])
+        desk.wait(0.3)
+    assert len(known) > 50
+    assert not any(known)
+    assert desk.board.signals()["speed_known"] == 1.0
+    assert math.isclose(desk.board.signals()["speed"], desk.truth("speed"), abs_tol=30.0)
