@@ -11,6 +11,7 @@ longer than the rest together. Exit status 1 when a command failed.
 import argparse
 import hashlib
 import json
+import shutil
 import subprocess
 import sys
 import time
@@ -85,6 +86,8 @@ def _is_fresh(step: Step, made_of: str) -> bool:
 def carry_out(step: Step, made_of: str) -> bool:
     """Run a command and keep its figures; False when it failed."""
     out = WORK / step.name
+    if "--resume" not in step.command:
+        shutil.rmtree(out, ignore_errors=True)  # what an earlier run left is no result of this one
     if not step.command.startswith("reproduce") and step.name != "drift":
         out.mkdir(parents=True, exist_ok=True)
     arguments = [word.replace("OUT", str(out)) for word in step.command.split()]
@@ -92,10 +95,11 @@ def carry_out(step: Step, made_of: str) -> bool:
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as said:  # the bar of progress is on the other stream
         status = subprocess.run([STILLSPIN, *arguments], cwd=ROOT, stdout=said, check=False).returncode
-    if status not in (0, 1):  # 1: a goal is missed, which is a result
+    found = gather(out) if out.exists() else {}
+    if status not in (0, 1) or not found:  # 1: a goal is missed, which is a result
         print(f"figures: {step.name}: exit status {status}; see {log}", file=sys.stderr)
         return False
-    content = {"command": f"stillspin {step.command}", "sources": made_of, "figures": gather(out)}
+    content = {"command": f"stillspin {step.command}", "sources": made_of, "figures": found}
     DATA.mkdir(exist_ok=True)
     text = json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True)
     (DATA / f"{step.name}.json").write_text(text + "\n", encoding="utf-8")
