@@ -50,7 +50,7 @@ def test_the_oldest_samples_go_first(monkeypatch):
 def tuned(page, server):
     page.goto(server.address)
     page.wait_for_selector("#state:has-text('ready')")
-    page.wait_for_selector("[data-value=speed]:has-text('rpm')")
+    page.wait_for_selector("[data-value=speed_reference]:has-text('rpm')")
     return page
 
 

@@ -103,5 +103,5 @@ def test_the_page_works_over_it(served, chromium):
     page = context.new_page()
     page.goto(served.address)
     page.wait_for_selector("#state:has-text('ready')")
-    page.wait_for_selector("[data-value=speed]:has-text('rpm')")
+    page.wait_for_selector("[data-value=speed_reference]:has-text('rpm')")
     context.close()

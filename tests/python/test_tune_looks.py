@@ -74,7 +74,7 @@ def test_no_sample_is_lost_while_parameters_and_a_capture_are_read():
 def test_units_words_and_that_there_is_no_fault_are_said(page, server, fake):
     page.goto(server.address)
     page.wait_for_selector("#state:has-text('ready')")
-    page.wait_for_selector("[data-value=speed]:has-text('rpm')")
+    page.wait_for_selector("[data-value=speed_reference]:has-text('rpm')")
     page.wait_for_selector("#now-fault:has-text('no fault')")
     page.click("#chooser summary")
     page.check("#signals input[value=state]")

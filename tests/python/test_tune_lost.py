@@ -130,7 +130,7 @@ def test_a_cable_that_is_pulled_at_the_drive_and_put_back(home, page):
         cable.cut = False
         ready(page)
         assert page.is_hidden("#lost")
-        page.wait_for_selector("[data-value=speed]:not(:text-is('–'))")  # and the signals come again
+        page.wait_for_selector("[data-value=speed_reference]:not(:text-is('–'))")  # and the signals come again
 
 
 @needs_board
