@@ -13,7 +13,9 @@ extern "C" {
 // The first word of an image that is complete; an update programs it last.
 #define HAL_IMAGE_MARK 0x5AA5u
 #define HAL_IMAGE_FORMAT 1u    // of hal_image_identity_t: raised when a member changes its meaning
-#define HAL_IMAGE_SUM_END 10u  // places of members, in words, for who has the flash
+#define HAL_IMAGE_REVISION 5u  // places of members, in words, for who has the flash
+#define HAL_IMAGE_CHANGED 7u
+#define HAL_IMAGE_SUM_END 10u
 #define HAL_IMAGE_SUM 12u
 
 // At a fixed place in the image, for whoever has the file or the flash and not the running drive. Words only, so that

@@ -7,6 +7,9 @@
 #include "firmware/link/requests.h"
 #include "firmware/version.h"
 #include "firmware/words.h"
+#include "hal/hal_board.h"
+#include "hal/hal_flash.h"
+#include "hal/hal_image.h"
 
 static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_u16(w, p->id);
@@ -90,6 +93,15 @@ static uint16_t faults(void) {
   return count;
 }
 
+// The commit that the image was built from, low word first, and whether there were changes beside it; zeros where the
+// program does not come from an image.
+static void put_build(octet_writer_t* w) {
+  const bool is_known = hal_flash_read(HAL_FLASH_IMAGE_IDENTITY) == HAL_IMAGE_MARK;
+  for (uint32_t k = HAL_IMAGE_REVISION; k <= HAL_IMAGE_CHANGED; k++) {
+    put_u16(w, is_known ? hal_flash_read(HAL_FLASH_IMAGE_IDENTITY + k) : 0u);
+  }
+}
+
 answer_status_t request_identity(request_t* r) {
   if (!sum.complete) return ANSWER_BUSY;
   put_u16(&r->answer, LINK_PROTOCOL);
@@ -98,6 +110,10 @@ answer_status_t request_identity(request_t* r) {
   put_u16(&r->answer, faults());
   put_u32(&r->answer, crc32_end(sum.crc));
   put_text(&r->answer, FIRMWARE_NAME);
+  put_u8(&r->answer, 0);
+  put_text(&r->answer, BOARD_NAME);
+  put_u8(&r->answer, 0);
+  put_build(&r->answer);
   return ANSWER_OK;
 }
 

@@ -19,6 +19,7 @@ from stillspin import __version__, commands, core, resources
 from stillspin.board import power, serve
 from stillspin.cases import drift, profile, scenario_file
 from stillspin.cases.scenario import Scenario
+from stillspin.commands.connection import opened
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.one_line_errors import HELP, OneLineErrors
@@ -364,9 +365,14 @@ def list_() -> None:
 
 
 @app.command()
-def version() -> None:
-    """The version, and the revision of the sources."""
+def version(
+    *, where: Annotated[str, typer.Option("--drive", "-d", metavar="ADDRESS", help="A drive that tells its own.")] = ""
+) -> None:
+    """The version, and the revision of the sources; with --drive that of the drive's firmware, too."""
     print(f"stillspin {__version__} ({revision()})")
+    if where:
+        with opened(where) as drive:
+            print(f"drive: {drive.identity.text}")
 
 
 commands.register(app)

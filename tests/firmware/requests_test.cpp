@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/scope/scope.h"
 #include "firmware/version.h"
 #include "firmware/words.h"
+#include "hal/hal_board.h"
 }
 
 namespace {
@@ -32,7 +33,8 @@ TEST_F(Requests, Identity) {
   EXPECT_EQ(a.number(2, 2), parameter_count());
   EXPECT_EQ(a.number(4, 2), signal_count());
   EXPECT_EQ(a.number(6, 2), kFaults);
-  EXPECT_EQ(a.text(12), FIRMWARE_NAME);
+  const std::string names = std::string(FIRMWARE_NAME) + '\0' + BOARD_NAME + '\0';
+  EXPECT_EQ(a.text(12), names + std::string(6, '\0')) << "no image: the commit is not known";
   EXPECT_EQ(std::string(FIRMWARE_VERSION), STILLSPIN_VERSION) << "of CMakeLists.txt";
 }
 

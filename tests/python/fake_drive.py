@@ -234,7 +234,8 @@ class FakeDrive:
 
     def _on_01(self, _):
         crc = zlib.crc32(repr((PARAMETERS, SIGNALS, self.version)).encode())
-        return struct.pack("<HHHHI", 1, len(PARAMETERS), len(SIGNALS), 16, crc) + self.version.encode()
+        head = struct.pack("<HHHHI", 1, len(PARAMETERS), len(SIGNALS), 16, crc)
+        return head + self.version.encode() + b"\0ipm\0" + struct.pack("<IH", 0x1234ABCD, 1)
 
     def _on_02(self, body):
         (index,) = struct.unpack("<H", body)

@@ -26,6 +26,7 @@ TALKS = {
     "scope": ("scope", "speed", "--drive", NOBODY),
     "monitor": ("monitor", "--drive", NOBODY),
     "tune": ("tune", "--no-open", "--drive", NOBODY),
+    "version": ("version", "--drive", NOBODY),
 }
 """Commands that open a drive with Drive.open."""
 BAD = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from contextlib import suppress
@@ -17,10 +18,11 @@ from typer.testing import CliRunner
 from stillspin import core
 from stillspin.cases import profile, scenario_file
 from stillspin.cli import app
+from stillspin.drive import describe
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import Requester, wait_until
 from stillspin.errors import InputError
-from stillspin.hil import Loop, runs, told
+from stillspin.hil import Loop, built, runs, told
 from stillspin.hil.results import Results, Row
 from stillspin.link import address
 from stillspin.link.errors import LinkError, NoAnswerError, RefusedError
@@ -124,9 +126,10 @@ def test_a_board_that_says_nothing_is_told():
     os.close(board)
     os.close(port)
     assert done.exit_code == 3
-    assert "A10 creep (its start): BROKE OFF: no answer from the drive" in done.output
+    assert "stillspin: no answer from the drive on serial port" in done.output
 
 
+BUILT = r"stillspin \d+\.\d+\.\d+ \(board bench, unknown commit, table [0-9a-f]{8}\)"
 KINDS = {
     "A09": "id_3",  # locked rotor, encoder
     "A12": "hysteresis",  # slices instead of windows, which interrupt the control step
@@ -147,6 +150,7 @@ def test_every_kind_of_run_goes_through_the_loop(link, way, kinds, tmp_path):
     assert {row["scenario"]: row["run"] for row in rows} == {kind: KINDS[kind] for kind in kinds}
     assert not any(row["whole"] for row in rows)
     assert all(row["board"] == row["native"] and row["steps"] > 2000 for row in rows)
+    assert all(re.fullmatch(BUILT, row["firmware"]) for row in rows)
 
 
 def differences(body, at, count):
@@ -230,6 +234,34 @@ def test_a_board_that_leaves_the_loop_refuses_its_next_step(requester, play):
 
     with pytest.raises(RefusedError, match="step 99: the board refuses"):
         Loop(Leaving(requester, 100)).run(core.load(), play(0.05))
+
+
+def test_a_board_that_is_built_otherwise_is_refused_before_the_first_step(fake):
+    done = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", fake.port])
+    assert (done.exit_code, done.stderr.count("\n")) == (4, 1), done.output
+    assert "version fake 1.0 on the board, stillspin 0.1.0 on the virtual drive" in done.stderr
+    assert "board file ipm on the board, bench on the virtual drive" in done.stderr
+    assert "parameter motor_poles on the board alone" in done.stderr
+    assert "No step was done" in done.stderr
+    assert Request.HIL_ENTER not in fake.asked
+
+
+def test_what_differs_in_the_tables_is_named_with_both_values(requester):
+    ask = Loop(requester).ask
+    ours = describe.table(ask, describe.identity(ask))
+    first, second, *others = ours.parameters
+    other = replace(first, initial_raw=first.initial_raw + (1 << first.q))
+    wider = replace(second, maximum_raw=second.maximum_raw + (1 << second.q))
+    theirs = replace(ours, crc=1, parameters=(other, wider, *others[:-1]))
+    found = built._of_tables(theirs, ours)
+    assert found[0].startswith(f"parameter {others[-1].name} on the virtual drive alone")
+    assert found[1].startswith(f"parameter {first.name}: default {other.text(other.initial_raw)} on the board, ")
+    assert found[2].startswith(f"parameter {second.name}: range {wider.range_text} on the board, ")
+    assert len(found) == 3
+    assert built._of_tables(replace(ours, crc=1), ours) == [
+        f"words for states and faults, table 00000001 on the board, {ours.crc:08x} on the virtual drive"
+    ]
+    assert built.check_board(ask).board == "bench"
 
 
 def test_results_are_kept_run_by_run(tmp_path):

@@ -44,6 +44,11 @@ def test_version_as_option_and_command(call):
     assert call("--version").exit_code == 0
 
 
+def test_a_drive_tells_its_version_board_build_and_table(call, fake):
+    *_, drive = call("version", "--drive", fake.port).stdout.splitlines()
+    assert drive.startswith("drive: fake 1.0 (board ipm, commit 1234abcd, changed, table ")
+
+
 def asked(tmp_path, **variables):
     """What the command line tells a shell that completes."""
     environment = {**os.environ, "HOME": str(tmp_path), **variables}

@@ -102,5 +102,5 @@ def test_a_bus_that_is_not_there_is_said(tmp_path):
     if Path("/sys/class/net/can0").exists():
         pytest.skip("there is one")
     done = CliRunner().invoke(cli.app, ["monitor", "speed", "--drive", WHERE])
-    assert done.exit_code == 1
+    assert done.exit_code == 3
     assert "there is no CAN interface can0" in done.stderr

@@ -33,6 +33,22 @@ class Identity:
     faults: int
     crc: int
     version: str
+    board: str = ""
+    """The board file that it was built for (hal/boards/)."""
+    commit: int = 0
+    """First 32 bits of the commit that its image was built from; 0 where that is not known."""
+    changed: bool = False
+    """Whether there were changes beside the commit."""
+
+    @property
+    def build(self) -> str:
+        """Commit in words."""
+        return f"commit {self.commit:08x}{', changed' if self.changed else ''}" if self.commit else "unknown commit"
+
+    @property
+    def text(self) -> str:
+        """All of it, for people and for the heads of files."""
+        return f"{self.version} (board {self.board or 'unknown'}, {self.build}, table {self.crc:08x})"
 
 
 def identity(ask: Ask) -> Identity:
@@ -54,8 +70,11 @@ def identity(ask: Ask) -> Identity:
     protocol, parameters, signals, faults, crc = head
     if protocol != VERSION:
         raise DifferentError(f"the drive speaks version {protocol} of the protocol, this client version {VERSION}")
-    version = body[struct.calcsize("<HHHHI") :].decode("ascii", "replace").rstrip("\0")
-    return Identity(parameters, signals, faults, crc, version)
+    version, _, more = body[struct.calcsize("<HHHHI") :].partition(b"\0")
+    board, _, build = more.partition(b"\0")
+    commit, changed = unpack("<IH", build) if build else (0, 0)
+    name, file = (octets.decode("ascii", "replace") for octets in (version, board))
+    return Identity(parameters, signals, faults, crc, name, file, commit, bool(changed))
 
 
 def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = None) -> Table:

@@ -7,6 +7,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 
 from stillspin.drive import describe, log, protocol, scope, values
 from stillspin.drive import look as looking
@@ -382,7 +383,7 @@ class Drive:
         """Fetch a capture that is done or stopped; small chunks of records leave room on the line for a stream."""
         state = self.scope_state()
         words = [values.read_channel(self._ask, number, state.recorded, chunk) for number in range(len(setup.channels))]
-        return scope.decode(setup, state, words, self.table)
+        return replace(scope.decode(setup, state, words, self.table), version=self.identity.text)
 
     def capture(
         self,

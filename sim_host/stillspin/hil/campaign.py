@@ -14,10 +14,12 @@ from typing import Any
 from stillspin import core
 from stillspin.cases import profile
 from stillspin.core import Progress
+from stillspin.drive import describe
 from stillspin.drive.requester import Requester
 from stillspin.errors import CampaignError
 from stillspin.hil import runs
 from stillspin.hil.boards import boards
+from stillspin.hil.built import check_board
 from stillspin.hil.loop import Loop
 from stillspin.hil.results import Row, begun, ended
 from stillspin.hil.runs import LoopRun
@@ -73,8 +75,10 @@ def on_one(chosen: Sequence[LoopRun], where: str, revision: str, progress: Progr
     native = core.load()
     kind = address.parse(where).kind
     with _loop(where) as loop:
+        firmware = check_board(loop.ask).text
         for run in chosen:
-            row, goes_on = _step_through(loop, run, begun(run, kind, revision), native, progress(run))
+            row = replace(begun(run, kind, revision), firmware=firmware)
+            row, goes_on = _step_through(loop, run, row, native, progress(run))
             yield row
             if not goes_on:
                 return
@@ -119,11 +123,12 @@ class _Worker:
         self._runs = wish.runs(self._native)
         self._kind = address.parse(where).kind
         self._loop = Loop(_requester(where))
+        self._firmware = describe.identity(self._loop.ask).text
         self._stop = stop
 
     def step_through(self, number: int) -> Row:
         run = self._runs[number]
-        row = begun(run, self._kind, self._revision)
+        row = replace(begun(run, self._kind, self._revision), firmware=self._firmware)
         return _step_through(self._loop, run, row, self._native, lambda _share: not self._stop.value)[0]
 
 

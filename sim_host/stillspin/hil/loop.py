@@ -115,6 +115,10 @@ class Loop:
         difference = self._difference(loop)
         return LoopResult(loop.steps, seconds, *log.digests, difference, "" if difference else reason)
 
+    def ask(self, kind: Request, body: bytes = b"") -> bytes:
+        """Anything of the board that may be asked twice, outside of a run."""
+        return self._requester.request(kind, body, repeat=True)
+
     def leave(self) -> None:
         """Let the board reset itself."""
         self._requester.request(Request.HIL_LEAVE, repeat=True)

@@ -24,6 +24,7 @@ class Row:
         profile: of the plant.
         whole: to its end; only its start otherwise.
         link: the way: serial or can.
+        firmware: the board's version, board file, build and table.
         board, native: hashes over everything that the two said.
         seconds: how long `steps` took.
         step, words: the first period that differed, where one did.
@@ -46,6 +47,7 @@ class Row:
     ended: str = ""
     lost: str = ""
     lost_code: int = ExitCode.DONE
+    firmware: str = ""
 
     @property
     def exit_code(self) -> int:

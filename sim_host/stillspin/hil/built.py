@@ -1,0 +1,109 @@
+"""Whether a board is built like the virtual drive that it is compared with, said before the first step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TypeVar
+
+from stillspin.drive import describe
+from stillspin.drive.describe import Ask, Identity
+from stillspin.drive.protocol import Request
+from stillspin.drive.requester import Requester
+from stillspin.drive.table import Parameter, Signal, Table
+from stillspin.link.errors import DifferentError
+from stillspin.link.virtual import VirtualTransport
+
+_SHOWN = 8
+Row = TypeVar("Row", Parameter, Signal)
+
+
+def check_board(ask: Ask) -> Identity:
+    """Compare a board's version, board file and table with those of the virtual drive.
+
+    Args:
+        ask: of the board.
+
+    Returns:
+        What the board says of itself.
+
+    Raises:
+        DifferentError: what differs, with both values, and how to go on.
+    """
+    theirs = describe.identity(ask)
+    virtual = Requester(VirtualTransport(speed=0.0), timeout=5.0)
+    try:
+
+        def ask_virtual(kind: Request, body: bytes) -> bytes:
+            return virtual.request(kind, body, repeat=True)
+
+        ours = describe.identity(ask_virtual)
+        found = list(_of_identity(theirs, ours))
+        if theirs.crc != ours.crc:
+            found += _of_tables(describe.table(ask, theirs), describe.table(ask_virtual, ours))
+    finally:
+        virtual.close()
+    if found:
+        more = [f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
+        raise DifferentError(
+            f"the board is not built like the virtual drive: {'; '.join([*found[:_SHOWN], *more])}. No step was done. "
+            f"Put an image of these sources for board {ours.board} onto it (docs/flash.md), or use the stillspin that "
+            "its image was built with"
+        )
+    return theirs
+
+
+def _differs(what: str, board: object, virtual: object) -> str:
+    return f"{what} {board} on the board, {virtual} on the virtual drive"
+
+
+def _of_identity(theirs: Identity, ours: Identity) -> Iterator[str]:
+    if theirs.version != ours.version:
+        yield _differs("version", theirs.version, ours.version)
+    if theirs.board != ours.board:
+        yield _differs("board file", theirs.board or "unknown", ours.board)
+
+
+def _of_tables(theirs: Table, ours: Table) -> list[str]:
+    """What differs in the tables; their check sums, when it is the words of states and faults."""
+    found = [*_parameters(theirs, ours), *_signals(theirs, ours)]
+    return found or [_differs("words for states and faults, table", f"{theirs.crc:08x}", f"{ours.crc:08x}")]
+
+
+def _named(rows: tuple[Row, ...]) -> dict[str, Row]:
+    return {row.name: row for row in rows}
+
+
+def _one_sided(kind: str, theirs: Mapping[str, object], ours: Mapping[str, object]) -> Iterator[str]:
+    for name in [*theirs, *ours]:
+        if name not in ours:
+            yield f"{kind} {name} on the board alone"
+        elif name not in theirs:
+            yield f"{kind} {name} on the virtual drive alone"
+
+
+def _parameters(theirs: Table, ours: Table) -> Iterator[str]:
+    board, virtual = _named(theirs.parameters), _named(ours.parameters)
+    yield from _one_sided("parameter", board, virtual)
+    for name in (name for name in board if name in virtual):
+        one, other = board[name], virtual[name]
+        if (one.initial, one.unit) != (other.initial, other.unit):
+            defaults = (one.text(one.initial_raw), other.text(other.initial_raw))
+            yield _differs(f"parameter {name}: default", *defaults)
+        elif one.range_text != other.range_text:
+            yield _differs(f"parameter {name}: range", one.range_text, other.range_text)
+        elif (one.id, one.q, one.index, one.always) != (other.id, other.q, other.index, other.always):
+            yield _differs(
+                f"parameter {name}: number, place and fraction bits",
+                f"{one.id}, {one.index}, {one.q}",
+                f"{other.id}, {other.index}, {other.q}",
+            )
+
+
+def _signals(theirs: Table, ours: Table) -> Iterator[str]:
+    board, virtual = _named(theirs.signals), _named(ours.signals)
+    yield from _one_sided("signal", board, virtual)
+    for name in (name for name in board if name in virtual):
+        one, other = board[name], virtual[name]
+        if (one.index, one.q, one.unit) != (other.index, other.q, other.unit):
+            places = (f"{one.index} with {one.q} fraction bits", f"{other.index} with {other.q} fraction bits")
+            yield _differs(f"signal {name}: place", *places)
