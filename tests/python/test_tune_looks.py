@@ -123,3 +123,17 @@ def test_the_wizard_asks_as_a_nameplate_says_it(page):
         page.locator("#wizard [aria-label='Rated current']").fill("1,5")
         page.locator("#wizard [aria-label='Rated current']").press("Enter")
         page.wait_for_selector("#note:has-text('is no number')")
+
+
+def test_an_unknown_speed_is_said_and_looked_at_on_command(page, server, fake):
+    page.goto(server.address)
+    page.wait_for_selector("#state:has-text('ready')")
+    page.wait_for_selector("#shaft:has-text('the shaft may be turning')")
+    assert page.inner_text("#speed") == "–"
+    page.click("#look")
+    page.wait_for_selector("#note:has-text('the shaft turns at 1059 rpm')")
+    page.check("#keep")
+    page.click("#hold")
+    page.wait_for_selector("#state.on")
+    page.wait_for_selector("#shaft", state="hidden")
+    page.keyboard.press("Escape")

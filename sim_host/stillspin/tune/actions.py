@@ -83,6 +83,10 @@ def _load(bench: Workbench, _: str, given: Message) -> Any:
     return files.load(bench, _text(given, "name"), _text(given, "text"))
 
 
+def _look(bench: Workbench, _: str, __: Message) -> Any:
+    return bench.drive.look().text
+
+
 def _look_again(bench: Workbench, _: str, __: Message) -> Any:
     bench.look_again()
 
@@ -170,6 +174,7 @@ ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {
     "faults": _faults,
     "plot": _plot,
     "load": _load,
+    "look": _look,
     "look_again": _look_again,
     "commission": _commission,
     "phase": _phase,

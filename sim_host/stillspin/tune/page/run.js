@@ -51,6 +51,7 @@ export class Run {
     }
     hold.addEventListener("contextmenu", (event) => event.preventDefault());
     by("stop").onclick = () => this.stop("stop");
+    by("look").onclick = () => this.look();
     by("coast").onclick = () => this.stop("coast");
     by("reset").onclick = () => this.clear();
     by("keep").onchange = () => this.release();
@@ -139,6 +140,17 @@ export class Run {
     );
   }
 
+  /** Whether the shaft turns, by two short pulses. */
+  async look() {
+    by("look").disabled = true;
+    try {
+      this.events.note(await this.link.ask("look"));
+    } catch (error) {
+      this.fail(error);
+    }
+    by("look").disabled = false;
+  }
+
   async clear() {
     try {
       await this.link.ask("reset");
@@ -154,7 +166,7 @@ export class Run {
     by("state").textContent = "not known";
     by("state").className = "pill unknown";
     for (const id of ["speed", "now-reference", "limits", "now-fault", "store", "time"]) by(id).textContent = "–";
-    by("fault").hidden = true;
+    by("fault").hidden = by("shaft").hidden = true;
     by("hold").disabled = !this.held;
     if (this.held) by("hold").textContent = "Not known whether it runs";
     for (const element of document.querySelectorAll("[data-stopped]")) element.disabled = true;
@@ -174,6 +186,7 @@ export class Run {
     by("store").textContent = status.unsaved ? `${status.store}; ${status.unsaved}` : status.store;
     by("time").textContent = span(status.time);
     by("now-fault").textContent = status.fault || "no fault";
+    by("shaft").hidden = status.speed_known;
     by("fault").hidden = !status.fault;
     by("fault-words").textContent = status.remedy ? `${status.fault}:` : status.fault;
     by("fault-remedy").textContent = status.remedy;
