@@ -8,7 +8,6 @@ from desk import needs_board
 
 from stillspin.drive import Drive
 from stillspin.drive.requester import wait_until
-from stillspin.drive.table import Signal
 from stillspin.errors import InputError
 from stillspin.tune.derived import Choice
 
@@ -19,7 +18,10 @@ MOTOR = {"pole_pairs": 4, "inductance_d": 4.0, "inductance_q": 6.0, "magnet_flux
 def table(drive):
     """That of the small drive, with the signals and parameters that it lacks."""
     more = ("voltage_d", "voltage_q")
-    signals = [*drive.table.signals, *(Signal(20 + at, name, "V", 16, "") for at, name in enumerate(more))]
+    signals = [
+        *drive.table.signals,
+        *(replace(drive.table.signals[0], index=20 + at, name=name, unit="V") for at, name in enumerate(more)),
+    ]
     sample = drive.table.parameters[0]
     parameters = [*drive.table.parameters, *(replace(sample, name=name) for name in MOTOR if name != "current_limit")]
     return replace(drive.table, signals=tuple(signals), parameters=tuple(parameters))
