@@ -77,16 +77,21 @@ answer_status_t action_reset(octet_writer_t* why) {
   return ANSWER_OK;
 }
 
+static int32_t speed_limit_q16(void) { return q_shl_sat(parameters.speed_limit, 8); }
+
+void put_speed_limit(octet_writer_t* w) {
+  put_packed(w, SAY_rpm_is_beyond_speed_limit);
+  put_fixed(w, speed_limit_q16(), 16, 0);
+  put_packed(w, SAY_rpm_nothing_changed);
+}
+
 answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
-  const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
-  if (q_abs_sat(rpm_q16) <= limit_q16) {
+  if (q_abs_sat(rpm_q16) <= speed_limit_q16()) {
     drive_command_speed(rpm_q16);
     return ANSWER_OK;
   }
   put_fixed(why, rpm_q16, 16, 1);
-  put_packed(why, SAY_rpm_is_beyond_speed_limit);
-  put_fixed(why, limit_q16, 16, 0);
-  put_packed(why, SAY_rpm_nothing_changed);
+  put_speed_limit(why);
   return ANSWER_RANGE;
 }
 
@@ -97,16 +102,20 @@ void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw
   put_packed(w, parameter->unit);
 }
 
+void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
+  put_fixed(w, parameter->minimum, parameter->q, parameter->decimals);
+  put_text(w, " .. ");
+  put_value(w, parameter, parameter->maximum);
+  put_packed(w, SAY_nothing_changed);
+}
+
 // With one decimal more where the table's are too few to show what is wrong.
 static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
   put_packed(why, p->name);
   put_text(why, " = ");
   put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
   put_packed(why, SAY_is_outside_of);
-  put_fixed(why, p->minimum, p->q, p->decimals);
-  put_text(why, " .. ");
-  put_value(why, p, p->maximum);
-  put_packed(why, SAY_nothing_changed);
+  put_range(why, p);
   return ANSWER_RANGE;
 }
 

@@ -2,6 +2,8 @@
 
 #include "hal/qmath/qmath.h"
 
+#define EXPONENT_ENOUGH 100  // for everything else to be beyond all formats
+
 static const int32_t ten[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L, 10000000L, 100000000L, 1000000000L};
 
 // `digits` of them at least.
@@ -42,7 +44,7 @@ void put_spaces_to(octet_writer_t* w, uint16_t column) {
 
 static bool is_digit(uint16_t c) { return c >= '0' && c <= '9'; }
 
-// One digit more; false when it does not fit.
+// One digit more; false, and nothing changed, when it does not fit.
 static bool append(decimal_t* number, uint16_t c) {
   if (number->digits > INT32_MAX / 10) return false;
   const uint32_t more = (uint32_t)number->digits * 10u + (uint16_t)(c - '0');
@@ -51,42 +53,71 @@ static bool append(decimal_t* number, uint16_t c) {
   return true;
 }
 
-uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
-  uint16_t at = 0;
-  uint16_t seen = 0;
+// The digits and the point from `at` on; returns the place behind them. `scale` is the power of ten of the last digit
+// that was taken, `seen` how many there are.
+static uint16_t read_digits(const uint16_t* text, uint16_t at, uint16_t count, decimal_t* number, int16_t* scale,
+                            uint16_t* seen) {
   bool behind_point = false;
-  bool fits = true;
-  bool cut = false;
-  const bool negative = count > 0u && text[0] == '-';
-  number->digits = 0;
-  number->decimals = 0;
-  if (count > 0u && (text[0] == '-' || text[0] == '+')) at++;
+  bool full = false;
   for (; at < count; at++) {
-    if (!behind_point && (text[at] == '.' || text[at] == ',')) {
+    if (!behind_point && text[at] == '.') {
       behind_point = true;
       continue;
     }
     if (!is_digit(text[at])) break;
-    seen++;
-    if (!behind_point) {
-      fits = fits && append(number, text[at]);
-    } else if (!cut && number->decimals < TEXT_DECIMALS_MAX && append(number, text[at])) {
-      number->decimals++;
-    } else {
-      cut = true;
-    }
+    (*seen)++;
+    full = full || !append(number, text[at]);
+    if (full != behind_point) *scale = (int16_t)(full ? *scale + 1 : *scale - 1);
   }
-  if (!fits) {
-    number->digits = INT32_MAX;
-    number->decimals = 0;
-  }
-  if (negative) number->digits = -number->digits;
-  return (seen > 0u) ? at : 0u;
+  return at;
 }
 
-int32_t decimal_raw(const decimal_t* number, uint16_t q) {
-  if (q < 32u) return q_div(number->digits, ten[number->decimals], q);
-  return q_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
+// Behind an e, when digits follow; the place behind them, or `at` when this is no exponent but a unit.
+static uint16_t read_exponent(const uint16_t* text, uint16_t at, uint16_t count, int16_t* scale) {
+  uint16_t end = (uint16_t)(at + 1u);
+  int16_t exponent = 0;
+  if (at >= count || text_small(text[at]) != 'e') return at;
+  const bool negative = end < count && text[end] == '-';
+  if (end < count && (text[end] == '-' || text[end] == '+')) end++;
+  if (end >= count || !is_digit(text[end])) return at;
+  for (; end < count && is_digit(text[end]); end++) {
+    if (exponent < EXPONENT_ENOUGH) exponent = (int16_t)(exponent * 10 + (int16_t)(text[end] - '0'));
+  }
+  *scale = (int16_t)(negative ? *scale - exponent : *scale + exponent);
+  return end;
+}
+
+static void apply_scale(decimal_t* number, int16_t scale) {
+  for (; scale > 0 && number->digits > 0; scale--) {
+    if (append(number, '0')) continue;
+    number->digits = INT32_MAX;
+    break;
+  }
+  for (; scale < -(int16_t)TEXT_DECIMALS_MAX; scale++) number->digits /= 10;
+  number->decimals = (scale < 0) ? (uint16_t)-scale : 0u;
+}
+
+uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
+  int16_t scale = 0;
+  uint16_t seen = 0;
+  const bool negative = count > 0u && text[0] == '-';
+  const uint16_t first = (negative || (count > 0u && text[0] == '+')) ? 1u : 0u;
+  number->digits = 0;
+  number->decimals = 0;
+  uint16_t at = read_digits(text, first, count, number, &scale, &seen);
+  if (seen == 0u) return 0;
+  at = read_exponent(text, at, count, &scale);
+  apply_scale(number, scale);
+  if (negative) number->digits = -number->digits;
+  return (at < count && (text[at] == ',' || text[at] == '.')) ? 0u : at;
+}
+
+bool decimal_is_whole(const decimal_t* number) { return number->digits % ten[number->decimals] == 0; }
+
+bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw) {
+  *raw = (q < 32u) ? q_div(number->digits, ten[number->decimals], q)
+                   : q_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
+  return q_abs_sat(*raw) < INT32_MAX;
 }
 
 uint16_t text_small(uint16_t c) { return (c >= 'A' && c <= 'Z') ? (uint16_t)(c + 32u) : c; }

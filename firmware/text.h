@@ -32,13 +32,16 @@ typedef struct {
   uint16_t decimals;  // 0..9
 } decimal_t;
 
-/// Reads [+-]digits[.digits] at the beginning of `count` characters; a comma is as good as a point. Returns how many
-/// characters the number has, 0 when there is none. What does not fit 31 bits becomes the largest number, decimals
-/// beyond the ninth are cut off.
+/// Reads [+-]digits[.digits][e[+-]digits] at the beginning of `count` characters. Returns how many characters the
+/// number has; 0 when there is none, or when a comma or a second point is behind it. What does not fit 31 bits becomes
+/// the largest number, which decimal_raw refuses; digits beyond the ninth, or the tenth, count
+/// as zeros.
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 
-/// Nearest raw value with q fractional bits (0..32), saturated.
-int32_t decimal_raw(const decimal_t* number, uint16_t q);
+bool decimal_is_whole(const decimal_t* number);
+
+/// Nearest raw value with q fractional bits (0..32). False when it does not fit, or is the last one that would.
+bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw);
 
 /// The small letter of a capital; any other character itself.
 uint16_t text_small(uint16_t c);

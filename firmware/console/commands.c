@@ -34,6 +34,10 @@ bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text) {
   return k < a->count && packed_equals(text, a->word[k].text, a->word[k].count);
 }
 
+void put_word(octet_writer_t* w, const word_t* word) {
+  for (uint16_t k = 0; k < word->count; k++) put_u8(w, word->text[k]);
+}
+
 bool word_occurs(const word_t* word, packed_text_t text) {
   return word->text == NULL || packed_occurs(text, word->text, word->count);
 }

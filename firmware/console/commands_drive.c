@@ -120,32 +120,45 @@ static void show_reference(void) {
   line_end();
 }
 
-// "600 rpm", "600rpm" or "600".
-static bool read_speed(const words_of_line_t* a, int32_t* rpm_q16) {
-  decimal_t number;
+// "600 rpm", "600rpm" or "600": how long the number is, 0 for all else.
+static uint16_t read_speed(const words_of_line_t* a, decimal_t* number) {
   const word_t* const value = &a->word[0];
-  const uint16_t length = text_number(value->text, value->count, &number);
+  const uint16_t length = text_number(value->text, value->count, number);
   const uint16_t left = (uint16_t)(value->count - length);
-  if (length == 0u || a->count > 2u) return false;
-  if (left > 0u && (a->count > 1u || !text_equals("rpm", &value->text[length], left))) return false;
-  if (a->count == 2u && !word_is(a, 1, "rpm")) return false;
-  *rpm_q16 = decimal_raw(&number, 16);
-  return true;
+  if (length == 0u || a->count > 2u) return 0;
+  if (left > 0u && (a->count > 1u || !text_equals("rpm", &value->text[length], left))) return 0;
+  return (a->count < 2u || word_is(a, 1, "rpm")) ? length : 0u;
+}
+
+static void take_speed(const words_of_line_t* a, const decimal_t* number, uint16_t length) {
+  int32_t rpm_q16;
+  const word_t typed = {a->word[0].text, length};
+  const bool fits = decimal_raw(number, 16, &rpm_q16);
+  if (rpm_q16 != 0 && drive_is_energised() && !command_may_move(a)) return;
+  octet_writer_t* const w = line_begin();
+  if (!fits) {
+    put_word(w, &typed);
+    put_speed_limit(w);
+  } else if (action_speed(rpm_q16, w) == ANSWER_OK) {
+    show_reference();
+    return;
+  }
+  line_end_refused();
 }
 
 void command_ref(const words_of_line_t* a) {
-  int32_t rpm_q16;
+  decimal_t number;
   if (a->count == 0u) {
     show_reference();
-  } else if (!read_speed(a, &rpm_q16)) {
-    line_refused(SAY_ref_takes_a_speed_in_rpm_for);
-  } else if (rpm_q16 == 0 || !drive_is_energised() || command_may_move(a)) {
-    octet_writer_t* const w = line_begin();
-    if (action_speed(rpm_q16, w) == ANSWER_OK) {
-      show_reference();
-    } else {
-      line_end_refused();
-    }
+    return;
+  }
+  const uint16_t length = read_speed(a, &number);
+  if (length > 0u) {
+    take_speed(a, &number, length);
+  } else {
+    put_word(line_begin(), &a->word[0]);
+    line_answer(true, SAY_is_not_a_speed);
+    count_refusal();
   }
 }
 

@@ -131,8 +131,20 @@ static void change(const parameter_info_t* p, int32_t raw) {
   line_end();
 }
 
+// As it was typed: a number that does not fit has no other form.
+static void refuse_value(const parameter_info_t* p, const word_t* typed, packed_text_t why) {
+  octet_writer_t* const w = line_begin();
+  put_packed(w, p->name);
+  put_text(w, " = ");
+  put_word(w, typed);
+  put_packed(w, why);
+  put_range(w, p);
+  line_end_refused();
+}
+
 void command_set(const words_of_line_t* a) {
   decimal_t number;
+  int32_t raw;
   if (a->count < 2u || a->count > 3u) {
     line_refused(SAY_set_name_value_unit_for_example_set);
     return;
@@ -142,12 +154,22 @@ void command_set(const words_of_line_t* a) {
     suggest(SUGGEST_PARAMETER, &a->word[0]);
     return;
   }
-  const uint16_t length = text_number(a->word[1].text, a->word[1].count, &number);
+  word_t typed = a->word[1];
+  const uint16_t length = text_number(typed.text, typed.count, &number);
   if (length == 0u) {
-    line_refused(SAY_the_value_is_not_a_number_nothing);
-  } else if (!unit_fits(a, length, p->unit)) {
+    refuse_value(p, &typed, SAY_is_not_a_number_of);
+    return;
+  }
+  if (!unit_fits(a, length, p->unit)) {
     refuse_unit(p);
+    return;
+  }
+  typed.count = length;
+  if (!decimal_raw(&number, p->q, &raw) || raw < p->minimum || raw > p->maximum) {
+    refuse_value(p, &typed, SAY_is_outside_of);
+  } else if (p->q == 0u && !decimal_is_whole(&number)) {
+    refuse_value(p, &typed, SAY_is_not_a_whole_number_of);
   } else {
-    change(p, decimal_raw(&number, p->q));
+    change(p, raw);
   }
 }

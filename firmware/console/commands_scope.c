@@ -36,6 +36,7 @@ static scope_setup_t draft(void) {
   s.pretrigger = SCOPE_DEPTH / 4u;
   s.mode = SCOPE_SINGLE;
   s.edge = SCOPE_AT_ONCE;
+  s.hysteresis = SCOPE_BY_SPAN;
   return s;
 }
 
@@ -68,9 +69,28 @@ static void set_channels(const words_of_line_t* a) {
   apply(&s);
 }
 
+// A number in the signal's unit, and the unit when it is there; moves `k` behind them. False, and said, when it is
+// none.
+static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_t* signal, int32_t* raw) {
+  decimal_t number;
+  const word_t* const typed = &a->word[*k];
+  if (text_number(typed->text, typed->count, &number) != typed->count) {
+    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
+    return false;
+  }
+  if (!decimal_raw(&number, signal->q, raw)) {
+    put_word(line_begin(), typed);
+    line_answer(true, SAY_is_outside_of_the_signal_s_range);
+    count_refusal();
+    return false;
+  }
+  (*k)++;
+  if (word_is_packed(a, *k, signal->unit)) (*k)++;
+  return true;
+}
+
 static void set_trigger(const words_of_line_t* a) {
   scope_setup_t s = draft();
-  decimal_t level;
   if (a->count == 2u && word_is(a, 1, edges[SCOPE_AT_ONCE])) {
     s.edge = SCOPE_AT_ONCE;
     apply(&s);
@@ -78,8 +98,7 @@ static void set_trigger(const words_of_line_t* a) {
   }
   uint16_t edge = 0;
   while (edge < EDGES && !word_is(a, 2, edges[edge])) edge++;
-  const bool complete = a->count >= 4u && edge < EDGES && edge != SCOPE_AT_ONCE;
-  if (!complete || text_number(a->word[3].text, a->word[3].count, &level) != a->word[3].count) {
+  if (a->count < 4u || edge == EDGES || edge == SCOPE_AT_ONCE) {
     line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
     return;
   }
@@ -88,21 +107,29 @@ static void set_trigger(const words_of_line_t* a) {
     suggest(SUGGEST_SIGNAL, &a->word[1]);
     return;
   }
-  if (a->count > 5u || (a->count == 5u && !word_is_packed(a, 4, signal_info(s.trigger)->unit))) {
-    line_refused(SAY_the_level_is_in_the_signal_s);
-    return;
-  }
   s.edge = (scope_edge_t)edge;
-  s.level = decimal_raw(&level, signal_info(s.trigger)->q);
-  apply(&s);
+  s.hysteresis = SCOPE_BY_SPAN;
+  const signal_info_t* const signal = signal_info(s.trigger);
+  uint16_t k = 3;
+  if (!read_level(a, &k, signal, &s.level)) return;
+  if (k < a->count && edge < SCOPE_AT_ONCE) {
+    if (!read_level(a, &k, signal, &s.hysteresis)) return;
+    s.hysteresis = q_max(s.hysteresis, 0);
+  }
+  if (k < a->count) {
+    line_refused(SAY_the_level_is_in_the_signal_s);
+  } else {
+    apply(&s);
+  }
 }
 
 // A whole number 0..65535 behind the sub-command.
 static bool whole(const words_of_line_t* a, uint16_t* value) {
   decimal_t n;
+  int32_t number;
   if (a->count != 2u || text_number(a->word[1].text, a->word[1].count, &n) != a->word[1].count) return false;
-  if (n.decimals != 0u || n.digits < 0 || n.digits > 65535L) return false;
-  *value = (uint16_t)n.digits;
+  if (!decimal_is_whole(&n) || !decimal_raw(&n, 0, &number) || number < 0 || number > 65535L) return false;
+  *value = (uint16_t)number;
   return true;
 }
 
@@ -151,6 +178,10 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     put_fixed(w, s->level, signal->q, signal_decimals(signal));
     put_u8(w, ' ');
     put_packed(w, signal->unit);
+    if (s->hysteresis >= 0) {
+      put_packed(w, SAY_hysteresis);
+      put_fixed(w, s->hysteresis, signal->q, signal_decimals(signal));
+    }
   } else {
     put_packed(w, SAY_now);
   }

@@ -64,7 +64,7 @@ bool suggest_is_near(const char* name, const word_t* word) {
 static void say(void) {
   octet_writer_t* const w = line_begin();
   put_packed(w, (packed_text_t)(SAY_there_is_no_command + (uint16_t)kind_of));
-  for (uint16_t k = 0; k < wanted.count; k++) put_u8(w, wanted.text[k]);
+  put_word(w, &wanted);
   put_u8(w, '\'');
   for (uint16_t k = 0; k < found; k++) {
     if (k == 0u) {

@@ -23,7 +23,7 @@ static const entry_t entries[] = {
     {REQUEST_FAULT, 1, 1, request_fault},
     {REQUEST_WORDS, 2, 2, request_words},
     {REQUEST_LINK, 0, 0, request_link},
-    {REQUEST_SCOPE_SETUP, 16, 25, request_scope_setup},
+    {REQUEST_SCOPE_SETUP, 16, 29, request_scope_setup},
     {REQUEST_SCOPE_ARM, 0, 0, request_scope_arm},
     {REQUEST_SCOPE_STATE, 0, 0, request_scope_state},
     {REQUEST_SCOPE_READ, 4, 4, request_scope_read},

@@ -7,6 +7,7 @@
 
 #define CHANNEL_OCTETS 3u
 #define HEAD_OCTETS 13u
+#define HYSTERESIS_OCTETS 4u
 #define READ_MAX 100u
 
 answer_status_t request_scope_setup(request_t* r) {
@@ -19,7 +20,8 @@ answer_status_t request_scope_setup(request_t* r) {
   s.trigger = take_u16(b);
   s.level = take_i32(b);
   s.count = take_u8(b);
-  if (b->count != HEAD_OCTETS + CHANNEL_OCTETS * s.count) return ANSWER_LENGTH;
+  const uint16_t least = (uint16_t)(HEAD_OCTETS + CHANNEL_OCTETS * s.count);
+  if (b->count != least && b->count != least + HYSTERESIS_OCTETS) return ANSWER_LENGTH;
   if (mode > SCOPE_AUTO || edge > SCOPE_BELOW) return ANSWER_RANGE;
   s.mode = (scope_mode_t)mode;
   s.edge = (scope_edge_t)edge;
@@ -28,6 +30,7 @@ answer_status_t request_scope_setup(request_t* r) {
     s.channel[k].signal = take_u16(b);
     s.channel[k].shift = take_u8(b);
   }
+  s.hysteresis = (octets_left(b) > 0u) ? take_i32(b) : SCOPE_BY_SPAN;
   return scope_setup(&s) ? ANSWER_OK : ANSWER_RANGE;
 }
 

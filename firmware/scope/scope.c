@@ -7,6 +7,8 @@
 #include "hal/qmath/qmath.h"
 
 #define RING_MASK (SCOPE_DEPTH - 1u)
+#define SPAN_SHARE 2u     // a quarter
+#define SPAN_FORGETS 13u  // an extreme creeps after the signal with 2^13 control interrupts
 
 // The background level changes set-up and ring only while `state` is IDLE or DONE, when the interrupt leaves them
 // alone; so the state is written first at an end and last at a start.
@@ -19,10 +21,11 @@ static uint16_t wait;      // control interrupts to the next record
 static uint16_t left;      // records still to come, when TRIGGERED
 static uint16_t mark;      // the trigger's record; SCOPE_NOWHERE
 static uint32_t mark_time_ms;
-static int32_t previous;  // of the trigger signal
-static bool fresh;        // there is no previous value yet
-static bool fired;        // since the last record
-static uint16_t unread;   // AUTO: a bit for each channel whose last word has not been read; none behind a stop
+static int32_t lowest, highest;    // of the trigger signal, of late
+static bool was_below, was_above;  // by the hysteresis, since the last edge
+static bool fresh;                 // there is no value yet
+static bool fired;                 // since the last record
+static uint16_t unread;            // AUTO: a bit for each channel whose last word has not been read; none behind a stop
 
 static bool is_running(void) {
   const scope_state_t now = state;
@@ -69,6 +72,8 @@ bool scope_arm(void) {
   forget_records();
   wait = 1;
   fresh = true;
+  was_below = false;
+  was_above = false;
   fired = false;
   unread = (uint16_t)((1u << setup_in_force.count) - 1u);
   state = SCOPE_FILLING;
@@ -111,16 +116,29 @@ uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t 
 
 // ---- control interrupt level ---------------------------------------------------------------------------------------
 
+static int32_t hysteresis(int32_t value) {
+  if (setup_in_force.hysteresis >= 0) return setup_in_force.hysteresis;
+  if (fresh) lowest = highest = value;
+  lowest = q_min(value, lowest + q_shr(q_sub_sat(value, lowest), SPAN_FORGETS));
+  highest = q_max(value, highest - q_shr(q_sub_sat(highest, value), SPAN_FORGETS));
+  return q_shr(q_sub_sat(highest, lowest), SPAN_SHARE);
+}
+
 static bool is_met(int32_t value) {
-  const bool above = value >= setup_in_force.level;
-  const bool was_above = fresh ? above : (previous >= setup_in_force.level);
+  const int32_t level = setup_in_force.level;
+  const int32_t band = hysteresis(value);
+  const bool above = value >= level;
+  const bool rises = above && was_below;
+  const bool falls = !above && was_above;
+  was_below = !above && (was_below || value < q_sub_sat(level, band));
+  was_above = above && (was_above || value >= q_add_sat(level, band));
   switch (setup_in_force.edge) {
     case SCOPE_RISING:
-      return above && !was_above;
+      return rises;
     case SCOPE_FALLING:
-      return !above && was_above;
+      return falls;
     case SCOPE_EITHER:
-      return above != was_above;
+      return rises || falls;
     case SCOPE_ABOVE:
       return above;
     case SCOPE_BELOW:
@@ -131,10 +149,9 @@ static bool is_met(int32_t value) {
 }
 
 static void watch_trigger(void) {
-  const int32_t value = drive_signal(setup_in_force.trigger);
+  const bool met = is_met(drive_signal(setup_in_force.trigger));
   if (state == SCOPE_FILLING && recorded >= setup_in_force.pretrigger) state = SCOPE_ARMED;
-  if (state == SCOPE_ARMED && is_met(value)) fired = true;
-  previous = value;
+  if (state == SCOPE_ARMED && met) fired = true;
   fresh = false;
 }
 

@@ -5,6 +5,11 @@
 // control interrupts (100 us). `pretrigger` of them lie before the record of the trigger, which is therefore record
 // number `pretrigger` of a finished capture.
 //
+// An edge goes through `level` with a hysteresis, so that noise on a signal that falls is no rise: it rises when it has
+// been more than the hysteresis below the level, and then reaches it. SCOPE_BY_SPAN takes a quarter of what the signal
+// has spanned of late for it: an extreme is forgotten with a time constant of 0.8 s, from the arming on. ABOVE and
+// BELOW need no edge and have no hysteresis.
+//
 //   IDLE ──arm──> FILLING ──pre-trigger part recorded──> ARMED ──trigger──> TRIGGERED ──rest recorded──> DONE
 //
 // The trigger signal is looked at in every control interrupt, also between two records, in all its 32 bits; an edge
@@ -24,6 +29,7 @@
 #define SCOPE_CHANNELS 4u
 #define SCOPE_DEPTH 1024u        // records; a power of two
 #define SCOPE_SHIFT_MAX 31u      // of a channel
+#define SCOPE_BY_SPAN (-1L)      // a hysteresis
 #define SCOPE_NOWHERE 0xFFFFu    // no trigger yet
 #define SCOPE_UNKNOWN INT16_MIN  // in a record: the signal was unknown (known_t)
 
@@ -38,8 +44,8 @@ typedef enum {
 typedef enum { SCOPE_SINGLE = 0, SCOPE_AUTO = 1 } scope_mode_t;
 
 typedef enum {
-  SCOPE_RISING = 0,   // from below level to level or above
-  SCOPE_FALLING = 1,  // from level or above to below
+  SCOPE_RISING = 0,   // from below level - hysteresis to level or above
+  SCOPE_FALLING = 1,  // from level + hysteresis or above to below level
   SCOPE_EITHER = 2,
   SCOPE_AT_ONCE = 3,
   SCOPE_ABOVE = 4,  // at level or above, whatever it was before
@@ -56,9 +62,10 @@ typedef struct {
   uint16_t pretrigger;  // records, 0..SCOPE_DEPTH - 1
   scope_mode_t mode;
   scope_edge_t edge;
-  uint16_t trigger;  // index of the trigger signal
-  int32_t level;     // raw, in its format
-  uint16_t count;    // channels, 1..SCOPE_CHANNELS
+  uint16_t trigger;    // index of the trigger signal
+  int32_t level;       // raw, in its format
+  int32_t hysteresis;  // the same; SCOPE_BY_SPAN
+  uint16_t count;      // channels, 1..SCOPE_CHANNELS
   scope_channel_t channel[SCOPE_CHANNELS];
 } scope_setup_t;
 

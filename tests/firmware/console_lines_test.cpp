@@ -50,7 +50,7 @@ TEST_F(ConsoleLines, AHelpRowHasNameArgumentsAndWhatItIs) {
 
 TEST_F(ConsoleLines, HelpOfOneCommandIsAllThatIsSaidOfIt) {
   EXPECT_EQ(lines(command("help set")), 1 + 3);
-  EXPECT_EQ(lines(command("help scope")), 1 + 6);
+  EXPECT_EQ(lines(command("help scope")), 1 + 7);
   EXPECT_EQ(lines(command("help can")), 1);
   EXPECT_EQ(command("help cam"), "there is no command 'cam': did you mean can?\r\n");
 }

@@ -36,7 +36,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(command("scope trigger now"), "first: scope channels"));
   EXPECT_TRUE(has(command("scope channels speed current_q angle"), "set"));
   EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm"), "set"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "nothing changed"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "rising|falling"));
   EXPECT_TRUE(has(command("scope trigger speed up 100"), "rising|falling"));
   EXPECT_TRUE(has(command("scope every 2"), "set"));
   EXPECT_TRUE(has(command("scope every 0"), "nothing changed"));
@@ -104,7 +104,10 @@ TEST_F(ConsoleScope, ATriggerIsASignalAnEdgeAndALevel) {
   EXPECT_TRUE(has(command("scope trigger speed now 100"), wants)) << "now has no level";
   EXPECT_TRUE(has(command("scope trigger speed rising 100x"), wants));
   EXPECT_TRUE(has(command("scope trigger sped rising 100"), "there is no signal 'sped': did you mean speed?"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm now"), "the level is in the signal's unit"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm now"), "rising|falling"));
+  EXPECT_TRUE(
+      has(command("scope trigger speed rising 40000"), "40000 is outside of the signal's range: nothing changed"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 1,5"), wants));
   EXPECT_EQ(scope_setup_in_force()->edge, SCOPE_AT_ONCE) << "nothing of that was taken";
   EXPECT_TRUE(has(command("scope trigger speed above 100"), "set")) << "the unit may be left out";
   EXPECT_EQ(scope_setup_in_force()->edge, SCOPE_ABOVE);
@@ -113,13 +116,29 @@ TEST_F(ConsoleScope, ATriggerIsASignalAnEdgeAndALevel) {
   EXPECT_TRUE(has(command("scope"), "\r\ntrigger now, every 1,"));
 }
 
+TEST_F(ConsoleScope, AHysteresisMayStandBehindTheLevel) {
+  (void)command("scope channels speed");
+  EXPECT_TRUE(has(command("scope trigger speed rising 100"), "set"));
+  EXPECT_EQ(scope_setup_in_force()->hysteresis, SCOPE_BY_SPAN);
+  for (const char* words : {"100 5", "100 rpm 5", "100 5 rpm", "1e2 rpm 5.0 rpm"}) {
+    EXPECT_TRUE(has(command(std::string("scope trigger speed rising ") + words), "set")) << words;
+    EXPECT_EQ(scope_setup_in_force()->hysteresis, 5 << 16) << words;
+    EXPECT_EQ(scope_setup_in_force()->level, 100 << 16) << words;
+  }
+  EXPECT_TRUE(has(command("scope"), "\r\ntrigger speed rising 100.00 rpm, hysteresis 5.00, every 1,"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 5 5"), "the level is in the signal's unit"));
+  EXPECT_TRUE(has(command("scope trigger speed above 100 5"), "the level is in the signal's unit")) << "has none";
+}
+
 TEST_F(ConsoleScope, NumbersAreWholeAndFitAWord) {
   (void)command("scope channels speed");
   EXPECT_TRUE(has(command("scope every 65535"), "set"));
-  for (const char* number : {"", " 2 3", " 2x", " 2.5", " -1", " 65536"}) {
+  for (const char* number : {"", " 2 3", " 2x", " 2.5", " -1", " 65536", " 1,5", " 1e9"}) {
     EXPECT_TRUE(has(command(std::string("scope every") + number), "a whole number is missing")) << number;
   }
   EXPECT_EQ(scope_setup_in_force()->decimation, 65535);
+  EXPECT_TRUE(has(command("scope every 1e1"), "set"));
+  EXPECT_EQ(scope_setup_in_force()->decimation, 10);
 }
 
 TEST_F(ConsoleScope, OneCaptureOrOneAfterTheOther) {

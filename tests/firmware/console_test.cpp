@@ -47,17 +47,41 @@ TEST_F(Console, GetAndSet) {
 
 TEST_F(Console, WhatIsRefusedIsExplained) {
   EXPECT_EQ(command("set speed_limit 7000 rpm"),
-            "speed_limit = 7000.0 is outside of 10 .. 6000 rpm: nothing changed\r\n");
+            "speed_limit = 7000 is outside of 10 .. 6000 rpm: nothing changed\r\n");
   EXPECT_EQ(command("set speed_limit 7 krpm"), "speed_limit is in rpm: nothing changed\r\n");
   EXPECT_EQ(command("set speed_limit 7krpm"), "speed_limit is in rpm: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 3 A"), "pole_pairs has no unit: nothing changed\r\n");
-  EXPECT_EQ(command("set speed_limit fast"), "the value is not a number: nothing changed\r\n");
+  EXPECT_EQ(command("set speed_limit fast"),
+            "speed_limit = fast is not a number (point, no comma) of 10 .. 6000 rpm: nothing changed\r\n");
   EXPECT_TRUE(has(command("set speed_limit"), "set name value [unit]"));
   EXPECT_TRUE(has(command("set speed_limit 1 2 3"), "set name value [unit]"));
   EXPECT_EQ(parameters.speed_limit, 3300 * 256);
   drive.state = DRIVE_RUN;
   EXPECT_EQ(command("set speed_limit 1000"),
             "speed_limit may not change while the power stage is on: stop the drive first\r\n");
+}
+
+TEST_F(Console, NumbersAreOneRule) {
+  EXPECT_EQ(command("set pole_pairs 2.5"), "pole_pairs = 2.5 is not a whole number of 1 .. 20: nothing changed\r\n");
+  EXPECT_EQ(command("set pole_pairs 25e-1"),
+            "pole_pairs = 25e-1 is not a whole number of 1 .. 20: nothing changed\r\n");
+  EXPECT_EQ(command("set pole_pairs 2.0"), "pole_pairs = 2\r\n");
+  EXPECT_EQ(command("set pole_pairs 0.3e1"), "pole_pairs = 3\r\n");
+  EXPECT_EQ(command("set stator_resistance 1,5"),
+            "stator_resistance = 1,5 is not a number (point, no comma) of 0.0010 .. 20.0000 ohm: nothing changed\r\n");
+  EXPECT_EQ(command("set speed_ramp 1e3"), "speed_ramp = 1000 rpm/s\r\n");
+  EXPECT_EQ(command("set speed_ramp 2e3rpm/s"), "speed_ramp = 2000 rpm/s\r\n");
+  for (const char* far : {"1e9", "99999999999999", "-5", "4000000000"}) {
+    EXPECT_EQ(command(std::string("set link_minimum ") + far),
+              std::string("link_minimum = ") + far + " is outside of 10.0 .. 1000.0 V: nothing changed\r\n");
+  }
+  EXPECT_EQ(command("ref 1e3"), "ref 1000.00 rpm\r\n");
+  EXPECT_EQ(command("ref 15e2rpm"), "ref 1500.00 rpm\r\n");
+  EXPECT_EQ(command("ref 1,000"),
+            "1,000 is not a speed in rpm, such as 600 or 1.5e3 (point, no comma): nothing changed\r\n");
+  EXPECT_EQ(command("ref 1e9"), "1e9 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
+  EXPECT_EQ(command("ref -40000"), "-40000 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
+  EXPECT_EQ(drive.control.wanted_rpm_q16, 1500 * 65536);
 }
 
 TEST_F(Console, DidYouMean) {
@@ -106,8 +130,8 @@ TEST_F(Console, StartRefStop) {
   EXPECT_EQ(command("ref -50rpm"), "ref -50.00 rpm\r\n");
   EXPECT_EQ(command("ref"), "ref -50.00 rpm\r\n");
   EXPECT_TRUE(has(command("ref 9000"), "beyond speed_limit, 3300 rpm"));
-  EXPECT_TRUE(has(command("ref 60 Hz"), "Nothing changed"));
-  EXPECT_TRUE(has(command("ref 60 rpm now"), "Nothing changed"));
+  EXPECT_TRUE(has(command("ref 60 Hz"), "nothing changed"));
+  EXPECT_TRUE(has(command("ref 60 rpm now"), "nothing changed"));
   EXPECT_TRUE(has(command("start now"), "nothing done"));
   EXPECT_FALSE(drive.request.start);
   send("start free\r");

@@ -37,7 +37,7 @@ TEST_F(RequestFields, EachTypeHasItsLengths) {
       {REQUEST_FAULT, 1, 1},
       {REQUEST_WORDS, 2, 2},
       {REQUEST_LINK, 0, 0},
-      {REQUEST_SCOPE_SETUP, 16, 25},
+      {REQUEST_SCOPE_SETUP, 16, 29},
       {REQUEST_SCOPE_ARM, 0, 0},
       {REQUEST_SCOPE_STATE, 0, 0},
       {REQUEST_SCOPE_READ, 4, 4},
@@ -53,7 +53,7 @@ TEST_F(RequestFields, EachTypeHasItsLengths) {
     EXPECT_EQ(ask(t.type, body).status(), LENGTH) << t.type;
     for (const std::size_t length : {t.shortest, t.longest}) {
       body.assign(length, 0);
-      if (t.type == REQUEST_SCOPE_SETUP) body[12] = static_cast<std::uint16_t>((length - 13) / 3);
+      if (t.type == REQUEST_SCOPE_SETUP) body[12] = length == t.longest ? 4 : 1;  // with a hysteresis
       EXPECT_NE(ask(t.type, body).status(), LENGTH) << t.type << ", " << length;
       hil_reset();
     }
@@ -187,7 +187,12 @@ TEST_F(RequestFields, AScopeIsSetUpAsTold) {
   for (const Octets& wrong : {Octets{SCOPE_AUTO + 1, 0, 4, 0}, Octets{0, SCOPE_BELOW + 1, 4, 0}}) {
     EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, head + wrong + level + channels).status(), RANGE);
   }
-  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, head + Octets{0, 0, 4, 0} + level + Octets{5} + Octets(15, 0)).status(), LENGTH);
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, head + Octets{0, 0, 4, 0} + level + Octets{5} + Octets(15, 0)).status(), RANGE);
+  EXPECT_EQ(s.hysteresis, SCOPE_BY_SPAN) << "when there is none";
+  const Octets edge = head + Octets{0, SCOPE_RISING, 4, 0} + level + channels;
+  ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, edge + i32(80000)).status(), OK);
+  EXPECT_EQ(scope_setup_in_force()->hysteresis, 80000);
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, edge + Octets{1, 2}).status(), LENGTH);
 }
 
 TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {

@@ -315,7 +315,7 @@ TEST_F(Requests, TheScopeTakesAsManyChannelsAsItHas) {
     EXPECT_EQ(scope_setup_in_force()->channel[k].signal, k + 3);
     EXPECT_EQ(scope_setup_in_force()->channel[k].shift, k);
   }
-  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, channels + Octets{3, 0, 0})).status(), LENGTH);
+  EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, scope_setup_body(SCOPE_RISING, channels + Octets{3, 0, 0})).status(), RANGE);
 }
 
 TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {

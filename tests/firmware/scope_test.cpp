@@ -125,6 +125,70 @@ TEST_F(Scope, Edges) {
   }
 }
 
+TEST_F(Scope, AnEdgeComesFromBeyondTheHysteresis) {
+  const EdgeCase cases[] = {
+      {SCOPE_RISING, {200, 99, 101, 91, 100, 90, 100, 89, 100}, 8},
+      {SCOPE_FALLING, {0, 101, 99, 109, 99, 110, 100, 99}, 7},
+      {SCOPE_EITHER, {100, 99, 100, 90, 100, 89, 95, 100}, 7},
+      {SCOPE_EITHER, {0, 109, 99}, 1},
+      {SCOPE_ABOVE, {99, 100}, 1},
+      {SCOPE_BELOW, {100, 99}, 1},
+      {SCOPE_RISING, {-2147483647 - 1, 100}, 1},
+  };
+  for (const EdgeCase& c : cases) {
+    scope_setup_t s = counting();
+    s.hysteresis = 10;
+    s.edge = c.edge;
+    arm(s);
+    int at = -1;
+    for (std::size_t k = 0; k < c.values.size(); ++k) {
+      interrupt(c.values[k]);
+      if (at < 0 && scope_status().state == SCOPE_TRIGGERED) at = int(k);
+    }
+    EXPECT_EQ(at, c.at) << "edge " << c.edge << " case " << (&c - cases);
+  }
+}
+
+// A fall over a second with noise on it, of which each rise is through the level: none of them counts, and the real one
+// does. The noise is a twentieth of the fall, uniform and new in each interrupt.
+TEST_F(Scope, NoiseOnASignalThatFallsIsNoRise) {
+  const auto triggered = [&](std::int32_t hysteresis, bool comes_back) {
+    std::uint32_t random = 1;
+    scope_setup_t s = counting();
+    s.level = 500000;
+    s.hysteresis = hysteresis;
+    arm(s);
+    for (int k = 0; k < (comes_back ? 20000 : 10000); ++k) {
+      random = random * 1664525u + 1013904223u;
+      interrupt(100 * (k < 10000 ? 10000 - k : k - 10000) + std::int32_t((random >> 16) * 3 / 4));
+    }
+    return scope_status().state >= SCOPE_TRIGGERED;
+  };
+  EXPECT_TRUE(triggered(0, false)) << "as it is without";
+  EXPECT_FALSE(triggered(SCOPE_BY_SPAN, false));
+  EXPECT_TRUE(triggered(SCOPE_BY_SPAN, true));
+  EXPECT_FALSE(triggered(49152, false)) << "as much as the noise";
+}
+
+// The span is that of late: after a great change small ones count again.
+TEST_F(Scope, AGreatChangeIsForgotten) {
+  scope_setup_t s = counting();
+  s.level = 50000;
+  s.hysteresis = SCOPE_BY_SPAN;
+  arm(s);
+  interrupts(100, 0);
+  interrupts(100, 40 * 1000 * 1000);
+  ASSERT_EQ(scope_status().state, SCOPE_TRIGGERED);
+  arm(s);
+  interrupts(10, 40 * 1000 * 1000);
+  interrupts(1000, 0);
+  interrupt(50000);
+  EXPECT_EQ(scope_status().state, SCOPE_ARMED);
+  interrupts(60000, 0);
+  interrupt(50000);
+  EXPECT_EQ(scope_status().state, SCOPE_TRIGGERED);
+}
+
 TEST_F(Scope, AtOnceStillHasItsPretrigger) {
   scope_setup_t s = counting();
   s.edge = SCOPE_AT_ONCE;

@@ -43,18 +43,21 @@ Read number(const std::string& text) {
   return {length, d.digits, d.decimals};
 }
 
+constexpr std::int32_t kNoFit = INT32_MIN;
+
 std::int32_t raw(const std::string& text, std::uint16_t q) {
   const Read r = number(text);
   const decimal_t d = {r.digits, r.decimals};
-  return decimal_raw(&d, q);
+  std::int32_t value = 0;
+  return decimal_raw(&d, q, &value) ? value : kNoFit;
 }
 
 // Digits that end where a number does, at it and beyond it.
 TEST(Text, NumbersAtTheEndOfTheirFormat) {
   EXPECT_EQ(number("2147483647").digits, INT32_MAX);
-  EXPECT_EQ(number("2147483648").digits, INT32_MAX) << "too many";
-  EXPECT_EQ(number("-2147483648").digits, -INT32_MAX) << "too many";
-  EXPECT_EQ(number("2147483650").digits, INT32_MAX) << "too many";
+  EXPECT_EQ(number("2147483648").digits, 2147483640) << "the tenth digit does not fit any more";
+  EXPECT_EQ(number("-2147483648").digits, -2147483640);
+  EXPECT_EQ(number("3147483650").digits, INT32_MAX) << "too many";
   EXPECT_EQ(number("21474836470").digits, INT32_MAX) << "too many";
   EXPECT_EQ(number("21474836.48").digits, 214748364) << "a decimal that does not fit is left out";
   EXPECT_EQ(number("21474836.48").decimals, 1);
@@ -94,9 +97,9 @@ TEST(Text, ReadsNumbers) {
   EXPECT_EQ(number("600rpm").length, 3);
   EXPECT_EQ(number("-0.50").digits, -50);
   EXPECT_EQ(number("-0.50").decimals, 2);
-  EXPECT_EQ(number("+1,5").digits, 15);
+  for (const char* none : {"1,5", "+1,5", "1,000", "1.2.3", "1e3.5", "1."})
+    EXPECT_EQ(number(none).length, none[1] == '.' && none[2] == '\0' ? 2 : 0) << none;
   EXPECT_EQ(number(".5").length, 2);
-  EXPECT_EQ(number("1.2.3").length, 3);
   for (const char* none : {"", "-", "+", ".", "rpm", "-rpm", "--1"}) EXPECT_EQ(number(none).length, 0) << none;
   EXPECT_EQ(number("99999999999").digits, INT32_MAX);
   EXPECT_EQ(number("-99999999999").digits, -INT32_MAX);
@@ -108,9 +111,40 @@ TEST(Text, ValuesAreTheNearestOnes) {
   EXPECT_EQ(raw("1.5", 16), 98304);
   EXPECT_EQ(raw("-1.5", 16), -98304);
   EXPECT_EQ(raw("0.00455", 24), 76336);  // 76336.3
-  EXPECT_EQ(raw("40000", 16), INT32_MAX) << "saturates, so that a range refuses it";
+  EXPECT_EQ(raw("40000", 16), kNoFit);
+  EXPECT_EQ(raw("-40000", 16), kNoFit);
+  EXPECT_EQ(raw("0.5", 32), kNoFit);
+  EXPECT_EQ(raw("1e9", 16), kNoFit);
   EXPECT_EQ(raw("-0.25", 32), -1073741824);
-  EXPECT_EQ(raw("99999999999", 0), INT32_MAX);
+  EXPECT_EQ(raw("99999999999", 0), kNoFit);
+  EXPECT_EQ(raw("-99999999999", 0), kNoFit);
+  EXPECT_EQ(raw("2147483646", 0), 2147483646);
+}
+
+TEST(Text, ExponentsAreRead) {
+  EXPECT_EQ(raw("1e3", 0), 1000);
+  EXPECT_EQ(raw("1E+3", 0), 1000);
+  EXPECT_EQ(raw("1.5e3", 16), 1500 * 65536);
+  EXPECT_EQ(raw("-25e-1", 16), -163840);
+  EXPECT_EQ(raw("1000000000000e-12", 8), 256) << "what is too long alone may fit with its exponent";
+  EXPECT_EQ(raw("0e999", 8), 0);
+  EXPECT_EQ(raw("1e-999", 8), 0);
+  EXPECT_EQ(raw("1e99999999999", 8), kNoFit);
+  EXPECT_EQ(number("1e3rpm").length, 3);
+  EXPECT_EQ(number("1em").length, 1) << "no exponent: the unit may begin with an e";
+  EXPECT_EQ(number("1e").length, 1);
+  EXPECT_EQ(number("1e-").length, 1);
+  EXPECT_EQ(number("e3").length, 0);
+}
+
+TEST(Text, WholeNumbers) {
+  const auto whole = [](const std::string& text) {
+    const Read r = number(text);
+    const decimal_t d = {r.digits, r.decimals};
+    return decimal_is_whole(&d);
+  };
+  for (const char* yes : {"2", "2.0", "1e3", "2.50e1", "-7.000", "0"}) EXPECT_TRUE(whole(yes)) << yes;
+  for (const char* no : {"2.5", "25e-1", "0.000000001", "1e-9"}) EXPECT_FALSE(whole(no)) << no;
 }
 
 // What is written with enough decimals comes back to the bit.

@@ -110,9 +110,14 @@ void put_spaces_to(octet_writer_t* w, uint16_t column);
     ensures number->decimals <= 9; ensures -2147483647 <= number->digits; */
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 
-/*@ requires \valid_read(number) && number->decimals <= 9 && q <= 32;
-    assigns \result \from *number, q; */
-int32_t decimal_raw(const decimal_t* number, uint16_t q);
+/*@ requires \valid_read(number) && number->decimals <= 9 && q <= 32 && \valid(raw);
+    assigns *raw, \result \from *number, q; ensures \initialized(raw);
+    ensures \result == 0 || \result == 1; */
+bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw);
+
+/*@ requires \valid_read(number) && number->decimals <= 9;
+    assigns \result \from *number; ensures \result == 0 || \result == 1; */
+bool decimal_is_whole(const decimal_t* number);
 
 /*@ requires \valid_read(name) && \valid_read(word) && word->count <= 80;
     assigns \result \from name[0], word->count; ensures \result == 0 || \result == 1; */

@@ -76,7 +76,9 @@ static void one_format(uint16_t q, uint16_t decimals) {
   octet_writer_t w = writer();
   const decimal_t number = {any_from(-INT32_MAX, INT32_MAX), decimals};
   put_fixed(&w, any_i32, q, decimals);
-  (void)decimal_raw(&number, q);
+  int32_t raw;
+  (void)decimal_raw(&number, q, &raw);
+  (void)decimal_is_whole(&number);
 }
 
 static void words_of(uint16_t kind) {

@@ -18,8 +18,9 @@ bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
 /*@ requires words_of(a) && unit < PACKED_TEXTS; assigns \nothing; */
 bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t unit);
 
-/*@ requires words_of(a) && a->count >= 1 && \valid(rpm_q16) && \separated(rpm_q16, a); assigns *rpm_q16; */
-static bool read_speed(const words_of_line_t* a, int32_t* rpm_q16);
+/*@ requires words_of(a) && a->count >= 1 && \valid(number) && \separated(number, a); assigns *number;
+    ensures \result <= a->word[0].count; */
+static uint16_t read_speed(const words_of_line_t* a, decimal_t* number);
 
 /*@ requires words_of(a) && a->count >= 2 && number_length <= a->word[1].count && unit < PACKED_TEXTS;
     assigns \nothing; */

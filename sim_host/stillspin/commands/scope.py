@@ -27,6 +27,15 @@ def scope(
         str, typer.Option("--level", "-l", metavar="NUMBER", help="Level of the trigger, in the signal's unit.")
     ] = "0",
     edge: Annotated[str, typer.Option("--edge", "-e", help="rising, falling, either, above, below, or now.")] = "",
+    hysteresis: Annotated[
+        float | None,
+        typer.Option(
+            "--hysteresis",
+            parser=number("--hysteresis", 0),
+            metavar="NUMBER",
+            help="An edge comes from so far beyond the level [default: from the signal's span].",
+        ),
+    ] = None,
     decimation: Annotated[
         int,
         typer.Option(
@@ -65,7 +74,7 @@ def scope(
     source = trigger or channels[0].signal
     with opened(where) as drive, Console(stderr=True).status("waiting for the trigger"):
         signal = drive.table.signal(source)
-        wanted = Trigger(source, signal.to_user(signal.to_raw(level)), chosen)
+        wanted = Trigger(source, signal.to_user(signal.to_raw(level)), chosen, hysteresis)
         capture = drive.capture(
             *channels, trigger=wanted, decimation=decimation, pretrigger=pretrigger / 100, timeout=timeout
         )

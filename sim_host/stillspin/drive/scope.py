@@ -54,6 +54,9 @@ class Trigger:
     """In the signal's unit; text may have it behind the number."""
     edge: str = "now"
     """One of EDGES; `now` triggers at once, `above` and `below` need no edge."""
+    hysteresis: float | None = None
+    """How far an edge must come from beyond the level, in the signal's unit; None: a quarter of what the signal has
+    spanned during the last second."""
 
 
 @dataclass(frozen=True)
@@ -154,6 +157,10 @@ def encode(setup: Setup, table: Table) -> bytes:
     for channel in setup.channels:
         chosen = table.signal(channel.signal)
         body += struct.pack("<HB", chosen.index, shift(chosen, channel.full_scale))
+    if setup.trigger.hysteresis is not None:
+        if not setup.trigger.hysteresis >= 0:
+            raise InputError(f"hysteresis {setup.trigger.hysteresis:g}: must be 0 or more")
+        body += struct.pack("<i", signal.to_raw(setup.trigger.hysteresis))
     return body
 
 
