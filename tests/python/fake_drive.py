@@ -81,6 +81,9 @@ class FakeDrive:
         self.start_fault = 0  # what the next start ends in
         self.chatter = b""  # said before the next answer
         self.typed = b""
+        self.lines = []  # of the console
+        self.interrupts = 0
+        self.watched = False  # a line of `watch` again and again
         self.refusals = 0  # lines of console that were not carried out
         self.setup = None
         self.scope = 4  # its state: done
@@ -90,7 +93,7 @@ class FakeDrive:
         self.looked = (0, 0, "nobody has looked")
         self.seen = (2, 1059, "the shaft turns at 1059 rpm")  # by the next look
         self._counter = 0
-        self._begin = self._last = self._heard = self._sent = time.monotonic()
+        self._begin = self._last = self._heard = self._sent = self._watched = time.monotonic()
         self._master, slave = pty.openpty()
         tty.setraw(slave)
         self.port = os.ttyname(slave)
@@ -166,11 +169,24 @@ class FakeDrive:
                 self._move()
 
     def _console(self, octets):
-        self.typed += octets
-        while b"\r" in self.typed:
-            line, _, self.typed = self.typed.partition(b"\r")
-            self.refusals += line.startswith(b"refuse")
-            self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
+        for octet in octets:
+            self.watched = False
+            if octet == 3:
+                self.typed, self.interrupts = b"", self.interrupts + 1
+                self._write(b"^C\r\n> ")
+            elif octet == 13:
+                line, self.typed = self.typed, b""
+                self._obey(line)
+            else:
+                self.typed += bytes((octet,))
+
+    def _obey(self, line):
+        self.lines.append(line.decode())
+        self.refusals += line.startswith(b"refuse")
+        self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
+        if line.startswith(b"start"):
+            self.state, self.guarded = RUN, line == b"start"
+        self.watched = line == b"watch"
 
     def _move(self):
         now = time.monotonic()
@@ -191,6 +207,9 @@ class FakeDrive:
 
     def _tell(self):
         now = time.monotonic()
+        if self.watched and now - self._watched >= 0.02:
+            self._watched = now
+            self._write(b"speed 12.3 rpm\r\n")
         if self.stream and now - self._sent >= self.stream[0]:
             self._sent = now
             numbers = self._signals(self.stream[1])

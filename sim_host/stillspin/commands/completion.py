@@ -14,7 +14,7 @@ COMMANDS = {
     "list": "parameters whose name or meaning has a word in it",
     "get": "the value of a parameter",
     "set": "change a parameter",
-    "start": "energise the motor",
+    "start": "energise the motor, watched by this console",
     "stop": "speed to zero, then power stage off",
     "coast": "power stage off at once",
     "ref": "speed reference",

@@ -18,6 +18,7 @@ from prompt_toolkit.patch_stdout import patch_stdout
 
 from stillspin.commands.completion import Words
 from stillspin.commands.connection import DriveOption, opened
+from stillspin.commands.console_session import Session, session
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Drive
 from stillspin.drive.describe import unpack
@@ -26,35 +27,43 @@ from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.link.errors import DriveError, NoAnswerError
 
-_END = b"\r"
 _ECHO = 3.0
 _ANSWER = 6.0
 """Seconds until the prompt: the console gives a start five. `watch` never comes to an end."""
 _REFRESH = 0.5
 _LEAVE = {"exit", "quit"}
+_TWICE = 2.0
+"""Seconds within which a second Ctrl-C asks whether to leave."""
 
 
 def console(
     *,
     where: DriveOption = "",
     command: Annotated[list[str] | None, typer.Option("--command", "-c", help="Say this and end. Repeatable.")] = None,
+    keep_running: Annotated[
+        bool,
+        typer.Option("--keep-running", help="Leave a motor running that was started here; nobody watches it then."),
+    ] = False,
 ) -> None:
-    """Talk to the drive; Tab completes, Ctrl-D leaves."""
+    """Talk to the drive; Tab completes, Ctrl-D leaves and stops a motor that was started here."""
     with opened(where) as drive:
         if not drive.link.transport.has_console:
             raise InputError(f"{drive.link.transport.name}: the console is on the serial port only")
-        if command or not sys.stdin.isatty():
-            _say_all(drive, command or sys.stdin)
-        else:
-            _talk(drive)
+        with session(drive, keep_running=keep_running) as current:
+            if command or not sys.stdin.isatty():
+                _say_all(drive, current, command or sys.stdin)
+            else:
+                _talk(drive, current)
+        if drive.link.lost:
+            raise drive.link.lost
 
 
-def _say_all(drive: Drive, lines: Iterable[str]) -> None:
+def _say_all(drive: Drive, current: Session, lines: Iterable[str]) -> None:
     """Send lines, also behind one that is refused: it may be the one that stops the motor."""
     status = ExitCode.DONE
     before = _refusals(drive)
     for line in lines:
-        say(drive, line.rstrip("\n"))
+        say(drive, current, line.rstrip("\n"))
         after = _refusals(drive)
         if after != before:
             print(f"stillspin: not carried out: {line.strip()}", file=sys.stderr)
@@ -70,7 +79,7 @@ def _refusals(drive: Drive) -> int:
     return int(count)
 
 
-def say(drive: Drive, line: str) -> None:
+def say(drive: Drive, current: Session, line: str) -> None:
     """Send a line and print what the drive answers."""
     transcript = Transcript()
     heard = threading.Event()
@@ -82,7 +91,7 @@ def say(drive: Drive, line: str) -> None:
 
     transcript.expect(line)
     with drive.link.listening(text=take):
-        drive.link.transport.send_text(line.encode("ascii", "replace") + _END)
+        current.send(line)
         end = time.monotonic() + _ANSWER
         if not heard.wait(_ECHO):
             raise NoAnswerError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
@@ -92,17 +101,17 @@ def say(drive: Drive, line: str) -> None:
         print(transcript.rest)
 
 
-def _talk(drive: Drive) -> None:
+def _talk(drive: Drive, current: Session) -> None:
     transcript = Transcript()
     stop = threading.Event()
-    session: PromptSession[str] = PromptSession(
+    terminal: PromptSession[str] = PromptSession(
         "stillspin> ",
         history=_history(),
         auto_suggest=AutoSuggestFromHistory(),
         completer=Words(drive.table),
         complete_while_typing=False,
     )
-    bar = _Bar(drive, session, stop)
+    bar = _Bar(drive, terminal, stop)
 
     def show(octets: bytes) -> None:
         for text in transcript.feed(octets):
@@ -111,21 +120,40 @@ def _talk(drive: Drive) -> None:
     thread = threading.Thread(target=bar.run, daemon=True)
     thread.start()
     print(f"{drive.version} on {drive.link.transport.name}; help lists what it understands, Ctrl-D leaves")
+    interrupted = -_TWICE
     with patch_stdout(), drive.link.listening(text=show):
         try:
-            while (line := session.prompt(bottom_toolbar=bar.text).strip()) not in _LEAVE:
+            while not drive.link.lost:
+                try:
+                    line = terminal.prompt(bottom_toolbar=bar.text).strip()
+                except KeyboardInterrupt:
+                    current.interrupt()
+                    before, interrupted = interrupted, time.monotonic()
+                    if interrupted - before < _TWICE and _wants_to_leave(current):
+                        break
+                    continue
+                if line in _LEAVE:
+                    break
                 transcript.expect(line)
-                drive.link.transport.send_text(line.encode("ascii", "replace") + _END)
+                current.send(line)
         except EOFError:
             pass
-        except KeyboardInterrupt:
-            print("left; the drive goes on with what it does")
         finally:
             stop.set()
-    if drive.link.lost:
-        raise drive.link.lost
-    if unsaved := drive.status().unsaved_text:
+    if not drive.link.lost and (unsaved := drive.status().unsaved_text):
         print(unsaved)
+
+
+def _wants_to_leave(current: Session) -> bool:
+    """Asks; one who does not answer leaves."""
+    runs = current.holds_motor()
+    question = "leave and stop the motor? [y]es, [k]eep it running, [n]o: " if runs else "leave? [y]es, [n]o: "
+    try:
+        answer = PromptSession[str](question).prompt().strip().lower()
+    except (EOFError, KeyboardInterrupt):
+        return True
+    current.keep_running = current.keep_running or (runs and answer.startswith("k"))
+    return answer.startswith(("y", "k"))
 
 
 class _Bar:

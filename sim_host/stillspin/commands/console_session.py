@@ -1,0 +1,133 @@
+"""A session of the console: it begins with nothing of the one before, and no motor runs on behind it unless told so.
+
+While it lasts, records beside the text keep the drive's guard alive, so that a bare `start` is taken and a session that
+dies stops the motor; one that ends, in whatever way, stops what it has started at once.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+from stillspin.drive import Drive
+from stillspin.drive.state import ENERGISED
+from stillspin.exit_codes import ExitCode
+from stillspin.link.errors import DriveError, NoAnswerError
+
+LINE_END = b"\r"
+CTRL_C = b"\x03"
+_PROMPT = b"> "
+_QUIET = 0.2
+"""Seconds without a character behind a prompt: nothing runs any more."""
+_PATIENCE = 3.0
+_KEEP_ALIVE = 0.1
+_MOVES = {"start", "commission", "look"}
+
+
+class Session:
+    """What was said in it, as far as it concerns the motor."""
+
+    def __init__(self, drive: Drive, keep_running: bool = False) -> None:
+        self.keep_running = keep_running
+        """Leave a motor that this session has started running when it ends."""
+        self._drive = drive
+        self._started = self._free = False
+
+    def send(self, line: str) -> None:
+        """A line with its end.
+
+        Raises:
+            LinkError: the way is lost.
+        """
+        words = line.lower().split()
+        if words[:1] and words[0] in _MOVES:
+            self._started, self._free = True, "free" in words
+        self._drive.link.transport.send_text(line.encode("ascii", "replace") + LINE_END)
+
+    def interrupt(self) -> None:
+        """Empties the line, or ends a long answer, at the drive."""
+        self._drive.link.transport.send_text(CTRL_C)
+
+    def holds_motor(self) -> bool:
+        """Whether a motor runs that this session has started, and that its end would stop."""
+        return self._started and not self._free and self._drive.raw_status().state in ENERGISED
+
+    def clear(self) -> None:
+        """End what the session before has left running, and what it left in the line; nothing of it is shown.
+
+        Raises:
+            NoAnswerError: no prompt comes.
+        """
+        heard = bytearray()
+        came = threading.Event()
+
+        def take(octets: bytes) -> None:
+            heard.extend(octets)
+            came.set()
+
+        with self._drive.link.listening(text=take):
+            self.interrupt()
+            end = time.monotonic() + _PATIENCE
+            while time.monotonic() < end:
+                if not came.wait(_QUIET) and heard.endswith(_PROMPT):
+                    return
+                came.clear()
+        raise NoAnswerError(f"no prompt from the console on {self._drive.link.transport.name}")
+
+    def end(self) -> None:
+        """End what still answers, and stop the motor of this session unless it is to run on."""
+        if self._drive.link.lost:
+            return
+        if self.holds_motor():
+            if self.keep_running:
+                self.interrupt()
+                self.send("start free")  # on a motor that runs: it takes the guard off
+                said = "the motor runs on; nobody watches it"
+            else:
+                self._drive.stop()
+                said = "the motor stops, because the session that started it ends"
+            with suppress(OSError):  # the terminal may be gone
+                print(said, flush=True)
+        self.interrupt()
+
+
+@contextmanager
+def session(drive: Drive, *, keep_running: bool = False) -> Iterator[Session]:
+    """A session on a serial port's console, until the context ends, by a signal too.
+
+    Raises:
+        NoAnswerError: the console shows no prompt.
+    """
+    current = Session(drive, keep_running)
+    with _ends_orderly(), drive.kept_alive(_KEEP_ALIVE):
+        try:
+            current.clear()
+            yield current
+        finally:
+            with suppress(DriveError):
+                current.end()
+
+
+@contextmanager
+def _ends_orderly() -> Iterator[None]:
+    """A closed terminal and a request to end (SIGHUP, SIGTERM) unwind the program instead of cutting it off."""
+    names = ("SIGHUP", "SIGTERM")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    if threading.current_thread() is not threading.main_thread():
+        numbers = []
+    before: list[tuple[int, Callable[[int, FrameType | None], object] | int | None]] = [
+        (number, signal.signal(number, _leave)) for number in numbers
+    ]
+    try:
+        yield
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler)
+
+
+def _leave(_number: int, _frame: FrameType | None) -> None:
+    raise SystemExit(ExitCode.INTERRUPTED)

@@ -1,0 +1,200 @@
+"""A session of the console begins clean, keeps the guard alive and leaves no motor running behind it."""
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from stillspin.drive.requester import wait_until
+from stillspin.exit_codes import ExitCode
+
+PATIENCE = 15.0
+READY, RUN, STOP = 2, 4, 5
+
+
+@pytest.fixture
+def ask(call, fake):
+    """Calls the command line for the small drive."""
+    return lambda *arguments: call(*arguments, "--drive", fake.port)
+
+
+class Person:
+    """At a terminal on which `stillspin console` runs."""
+
+    def __init__(self, port, *options):
+        self._master, slave = pty.openpty()
+        command = [sys.executable, "-m", "stillspin", "console", "--drive", port, *options]
+        self.process = subprocess.Popen(
+            command,
+            stdin=slave,
+            stdout=slave,
+            stderr=slave,
+            start_new_session=True,
+            env={**os.environ, "TERM": "xterm"},
+        )
+        os.close(slave)
+        os.set_blocking(self._master, False)
+        self.seen = ""
+        assert self.sees("Ctrl-D leaves"), self.seen
+
+    def _look(self):
+        try:
+            octets = os.read(self._master, 65536)
+        except (BlockingIOError, OSError):
+            return
+        self.seen += octets.decode(errors="replace")
+        if "\x1b[6n" in octets.decode(errors="replace"):  # where is the cursor
+            os.write(self._master, b"\x1b[1;1R")
+
+    def sees(self, words):
+        def shown():
+            self._look()
+            return words in self.seen
+
+        return wait_until(shown, PATIENCE)
+
+    def type(self, keys):
+        os.write(self._master, keys.encode())
+
+    def goes(self):
+        def gone():
+            self._look()
+            return self.process.poll() is not None
+
+        return wait_until(gone, PATIENCE)
+
+    def hang_up(self):
+        os.close(self._master)
+        self._master = -1
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
+        if self._master >= 0:
+            os.close(self._master)
+
+
+@pytest.fixture
+def sit_down(fake):
+    people = []
+
+    def begin(*options):
+        people.append(Person(fake.port, *options))
+        return people[-1]
+
+    yield begin
+    for person in people:
+        person.close()
+
+
+def runs(fake):
+    return wait_until(lambda: fake.state == RUN, PATIENCE)
+
+
+def stops(fake):
+    return wait_until(lambda: fake.state in {STOP, READY}, PATIENCE)
+
+
+def test_a_line_that_was_left_is_emptied_and_an_abandoned_watch_is_not_shown(ask, fake):
+    fake.typed, fake.watched = b"start", True
+    result = ask("console", "-c", "version")
+    assert fake.lines == ["version"]
+    assert "heard version" in result.stdout
+    assert "rpm" not in result.stdout
+
+
+def test_a_watch_does_not_outlive_its_session(ask, fake):
+    ask("console", "-c", "watch")
+    assert fake.lines == ["watch"]
+    assert not fake.watched
+
+
+def test_commands_that_have_started_the_motor_stop_it_at_their_end(ask, fake):
+    result = ask("console", "-c", "start")
+    assert "the motor stops, because the session that started it ends" in result.stdout
+    assert stops(fake)
+
+
+def test_free_and_keep_running_leave_it_running(ask, fake):
+    assert "the motor stops" not in ask("console", "-c", "start free").stdout
+    assert fake.state == RUN
+    fake.state = READY
+    fake.lines.clear()
+    assert "the motor runs on; nobody watches it" in ask("console", "-c", "start", "--keep-running").stdout
+    assert fake.lines == ["start", "start free"]
+    assert fake.state == RUN
+    assert not fake.guarded
+
+
+def test_a_motor_of_somebody_else_is_left_alone(ask, fake):
+    fake.state = RUN
+    ask("console", "-c", "status")
+    assert fake.state == RUN
+
+
+def test_a_session_keeps_the_guard_alive(sit_down, fake):
+    fake.values[200] = 1000  # link_timeout
+    person = sit_down()
+    person.type("start\r")
+    assert runs(fake)
+    time.sleep(2.5)
+    assert fake.state == RUN
+    os.killpg(person.process.pid, signal.SIGSTOP)  # it hangs: nothing comes any more
+    assert stops(fake)
+    os.killpg(person.process.pid, signal.SIGCONT)
+
+
+def test_ctrl_c_goes_to_the_drive_and_a_second_one_asks(sit_down, fake):
+    person = sit_down()
+    person.type("start\r")
+    assert runs(fake)
+    before = fake.interrupts
+    person.type("\x03")
+    assert wait_until(lambda: fake.interrupts > before, PATIENCE)
+    assert fake.state == RUN
+    assert person.process.poll() is None
+    person.type("\x03")
+    assert person.sees("leave and stop the motor?"), person.seen
+    person.type("n\r")
+    time.sleep(0.5)
+    assert (person.process.poll(), fake.state) == (None, RUN)
+    time.sleep(2.0)
+    person.type("\x03\x03")
+    assert wait_until(lambda: person.sees("leave and stop") and person.seen.count("leave and stop") > 1, PATIENCE)
+    person.type("y\r")
+    assert person.goes()
+    assert stops(fake)
+
+
+def test_the_answer_may_be_to_keep_it_running(sit_down, fake):
+    person = sit_down()
+    person.type("start\r")
+    assert runs(fake)
+    person.type("\x03\x03")
+    assert person.sees("leave and stop the motor?"), person.seen
+    person.type("k\r")
+    assert person.goes()
+    assert fake.lines[-1] == "start free"
+    assert fake.state == RUN
+
+
+@pytest.mark.parametrize("way", ["\x04", "exit\r", signal.SIGTERM, signal.SIGHUP, None])
+def test_every_way_out_stops_the_motor(sit_down, fake, way):
+    fake.values[200] = 10000  # link_timeout: it is not the guard that stops it
+    person = sit_down()
+    person.type("start\r")
+    assert runs(fake)
+    if way is None:
+        person.hang_up()
+    elif isinstance(way, str):
+        person.type(way)
+    else:
+        os.kill(person.process.pid, way)
+    assert stops(fake)
+    assert wait_until(lambda: person.process.poll() is not None, PATIENCE)
+    if isinstance(way, signal.Signals):
+        assert person.process.returncode == ExitCode.INTERRUPTED
