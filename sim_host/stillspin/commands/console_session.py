@@ -6,10 +6,11 @@ dies stops the motor; one that ends, in whatever way, stops what it has started 
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
@@ -78,6 +79,11 @@ class Session:
                 came.clear()
         raise NoAnswerError(f"no prompt from the console on {self._drive.link.transport.name}")
 
+    def stop(self) -> None:
+        """Stop a motor that this session has started, unless it is to run on."""
+        if not self.keep_running and self.holds_motor():
+            self._drive.stop()
+
     def end(self) -> None:
         """End what still answers, and stop the motor of this session unless it is to run on."""
         if self._drive.link.lost:
@@ -103,7 +109,7 @@ def session(drive: Drive, *, keep_running: bool = False) -> Iterator[Session]:
         NoAnswerError: the console shows no prompt.
     """
     current = Session(drive, keep_running)
-    with _ends_orderly(), drive.kept_alive(_KEEP_ALIVE):
+    with _ends_orderly(current), drive.kept_alive(_KEEP_ALIVE):
         try:
             current.clear()
             yield current
@@ -113,21 +119,29 @@ def session(drive: Drive, *, keep_running: bool = False) -> Iterator[Session]:
 
 
 @contextmanager
-def _ends_orderly() -> Iterator[None]:
-    """A closed terminal and a request to end (SIGHUP, SIGTERM) unwind the program instead of cutting it off."""
-    names = ("SIGHUP", "SIGTERM")
+def _ends_orderly(current: Session) -> Iterator[None]:
+    """A closed terminal and a request to end (SIGHUP, SIGTERM) stop the motor and unwind the program.
+
+    Whatever the program is at swallows an exception now and then: the motor does not wait for that, nor does the end.
+    """
+    ended = threading.Event()
+
+    def see_to_it() -> None:
+        with suppress(DriveError):
+            current.stop()
+        if not ended.wait(_PATIENCE):
+            os._exit(ExitCode.INTERRUPTED)
+
+    def leave(_number: int, _frame: FrameType | None) -> None:
+        threading.Thread(target=see_to_it, daemon=True).start()
+        raise SystemExit(ExitCode.INTERRUPTED)
+
+    names = ("SIGHUP", "SIGTERM") if threading.current_thread() is threading.main_thread() else ()
     numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    if threading.current_thread() is not threading.main_thread():
-        numbers = []
-    before: list[tuple[int, Callable[[int, FrameType | None], object] | int | None]] = [
-        (number, signal.signal(number, _leave)) for number in numbers
-    ]
+    before = [(number, signal.signal(number, leave)) for number in numbers]
     try:
         yield
     finally:
+        ended.set()
         for number, handler in before:
             signal.signal(number, handler)
-
-
-def _leave(_number: int, _frame: FrameType | None) -> None:
-    raise SystemExit(ExitCode.INTERRUPTED)
