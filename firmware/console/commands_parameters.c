@@ -118,7 +118,7 @@ static void refuse_unit(const parameter_info_t* p) {
   line_end_refused();
 }
 
-static void change(const parameter_info_t* p, int32_t raw) {
+static void take_value(const parameter_info_t* p, int32_t raw) {
   octet_writer_t* const w = line_begin();
   const answer_status_t status = action_set(p, raw, w);
   if (status == ANSWER_OK) {
@@ -170,6 +170,6 @@ void command_set(const words_of_line_t* a) {
   } else if (p->q == 0u && !decimal_is_whole(&number)) {
     refuse_value(p, &typed, SAY_is_not_a_whole_number_of);
   } else {
-    change(p, raw);
+    take_value(p, raw);
   }
 }
