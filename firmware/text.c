@@ -2,7 +2,7 @@
 
 #include "hal/qmath/qmath.h"
 
-#define EXPONENT_ENOUGH 100  // for everything else to be beyond all formats
+#define EXPONENT_ENOUGH 100u  // for everything else to be beyond all formats
 
 static const int32_t ten[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L, 10000000L, 100000000L, 1000000000L};
 
@@ -73,32 +73,34 @@ static uint16_t read_digits(const uint16_t* text, uint16_t at, uint16_t count, d
 }
 
 // Behind an e, when digits follow; the place behind them, or `at` when this is no exponent but a unit.
-static uint16_t read_exponent(const uint16_t* text, uint16_t at, uint16_t count, int16_t* scale) {
+static uint16_t read_exponent(const uint16_t* text, uint16_t at, uint16_t count, int16_t* exponent) {
   uint16_t end = (uint16_t)(at + 1u);
-  int16_t exponent = 0;
+  uint16_t power = 0;
+  *exponent = 0;
   if (at >= count || text_small(text[at]) != 'e') return at;
   const bool negative = end < count && text[end] == '-';
   if (end < count && (text[end] == '-' || text[end] == '+')) end++;
   if (end >= count || !is_digit(text[end])) return at;
   for (; end < count && is_digit(text[end]); end++) {
-    if (exponent < EXPONENT_ENOUGH) exponent = (int16_t)(exponent * 10 + (int16_t)(text[end] - '0'));
+    if (power < EXPONENT_ENOUGH) power = (uint16_t)(power * 10u + ((text[end] - (uint16_t)'0') & 15u));
   }
-  *scale = (int16_t)(negative ? *scale - exponent : *scale + exponent);
+  *exponent = (int16_t)(negative ? -(int16_t)power : (int16_t)power);
   return end;
 }
 
-static void apply_scale(decimal_t* number, int16_t scale) {
+static void apply_scale(decimal_t* number, int32_t scale) {
   for (; scale > 0 && number->digits > 0; scale--) {
     if (append(number, '0')) continue;
     number->digits = INT32_MAX;
     break;
   }
-  for (; scale < -(int16_t)TEXT_DECIMALS_MAX; scale++) number->digits /= 10;
+  for (; scale < -(int32_t)TEXT_DECIMALS_MAX; scale++) number->digits /= 10;
   number->decimals = (scale < 0) ? (uint16_t)-scale : 0u;
 }
 
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
   int16_t scale = 0;
+  int16_t exponent = 0;
   uint16_t seen = 0;
   const bool negative = count > 0u && text[0] == '-';
   const uint16_t first = (negative || (count > 0u && text[0] == '+')) ? 1u : 0u;
@@ -106,8 +108,8 @@ uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
   number->decimals = 0;
   uint16_t at = read_digits(text, first, count, number, &scale, &seen);
   if (seen == 0u) return 0;
-  at = read_exponent(text, at, count, &scale);
-  apply_scale(number, scale);
+  at = read_exponent(text, at, count, &exponent);
+  apply_scale(number, (int32_t)scale + exponent);
   if (negative) number->digits = -number->digits;
   return (at < count && (text[at] == ',' || text[at] == '.')) ? 0u : at;
 }

@@ -128,6 +128,7 @@ bool suggest_is_near(const char* name, const word_t* word);
     assigns echo->octets[0 .. echo->room - 1], echo->count, echo->full \from *e, octet, echo->count, echo->room;
     ensures echo->count <= echo->room; ensures echo->full == 0 || echo->full == 1;
     ensures e->too_long == 0 || e->too_long == 1; ensures e->disturbed == 0 || e->disturbed == 1;
+    ensures e->expired == 0 || e->expired == 1;
     ensures e->line.count <= 80; ensures e->recalled <= 4;
     ensures e->history[0].count <= 80 && e->history[1].count <= 80 && e->history[2].count <= 80;
     ensures e->history[3].count <= 80; ensures 0 <= \result <= 2; */
