@@ -119,8 +119,8 @@ uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t 
 static int32_t hysteresis(int32_t value) {
   if (setup_in_force.hysteresis >= 0) return setup_in_force.hysteresis;
   if (fresh) lowest = highest = value;
-  lowest = q_min(value, lowest + q_shr(q_sub_sat(value, lowest), SPAN_FORGETS));
-  highest = q_max(value, highest - q_shr(q_sub_sat(highest, value), SPAN_FORGETS));
+  lowest = q_min(value, q_add_sat(lowest, q_shr(q_sub_sat(value, lowest), SPAN_FORGETS)));
+  highest = q_max(value, q_sub_sat(highest, q_shr(q_sub_sat(highest, value), SPAN_FORGETS)));
   return q_shr(q_sub_sat(highest, lowest), SPAN_SHARE);
 }
 
