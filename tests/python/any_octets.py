@@ -99,12 +99,12 @@ def events(octets):
     stream = Stream.__new__(Stream)
     stream.lost = 0
     stream._counter = None
-    stream._form = "<I2i"
+    stream._form = "<I2iB"
     taken = []
-    stream._put = lambda at, raw: taken.append((at, *raw))
+    stream._put = lambda at, raw, known: taken.append((at, *raw, known))
     for kind in (0x40, 0x41):
         stream._take(Record(kind, len(octets) % 256, octets))
-    assert len(taken) == (len(octets) == 12)
+    assert len(taken) == (len(octets) == 13)
 
 
 CHECKS = (slcan, splitter, joiner, answers, events)
@@ -115,7 +115,7 @@ def some_octets(random):
     words = (
         *(b"S6\r", b"O\r", b"L\r", b"C\r", b"Z1\r", b"F\r", b"V\r", b"s031C\r", b"t12381122334455667788\r", b"t7FF0\r"),
         *(b"T1FFFFFFF1AA\r", b"r1234\r", b"R000000018\r", b"t1239", b"\r", b"\x07", b"\0", b"\0\0", b"x" * 40),
-        *(to_wire(WHOLE), to_wire(Record(0x40, 1, bytes(12))), b"ready\r\n> ", *FRAMES),
+        *(to_wire(WHOLE), to_wire(Record(0x40, 1, bytes(13))), b"ready\r\n> ", *FRAMES),
     )
     out = bytearray()
     for _ in range(random.randrange(10)):

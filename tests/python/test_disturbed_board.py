@@ -112,7 +112,7 @@ def running():
     try:
         os.write(bench.bus, b"S6\rO\r")
         bench.until(READY)
-        bench.port.write(b"ref 300\rstart\r")
+        bench.port.write(b"ref 300\rstart free\r")
         bench.until(START_UNTIL)
         assert bench.board.signals()["state"] == 4, bench.text
         yield bench

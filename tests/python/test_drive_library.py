@@ -21,6 +21,7 @@ CALLS = {
     "start": lambda drive: drive.start(100),
     "stop": lambda drive: drive.stop(),
     "coast": lambda drive: drive.coast(),
+    "look": lambda drive: drive.look(),
     "reset": lambda drive: drive.reset(),
     "ref": lambda drive: drive.ref(100),
     "save": lambda drive: drive.save(),
@@ -115,7 +116,7 @@ def test_captures_and_logs_are_tables_of_arrow_with_units(drive):
         table = recording.table()
         assert table.column_names == ["time", "speed", "current_q"]
         assert [table.field(name).metadata[b"unit"] for name in table.column_names] == [b"s", b"rpm", b"A"]
-        assert json.loads(table.schema.metadata[b"stillspin"])["firmware"] == drive.version
+        assert json.loads(table.schema.metadata[b"stillspin"])["firmware"] == drive.identity.text
         np.testing.assert_array_equal(table.column("speed").to_numpy(), recording.signals["speed"])
         assert table.num_rows == recording.time.size > 0
 
@@ -124,7 +125,7 @@ def test_captures_and_logs_are_frames_of_pandas_with_units(drive):
     for recording in recordings(drive):
         frame = recording.frame()
         assert frame.attrs["units"] == {"time": "s", "speed": "rpm", "current_q": "A"}
-        assert frame.attrs["about"]["firmware"] == drive.version
+        assert frame.attrs["about"]["firmware"] == drive.identity.text
         np.testing.assert_array_equal(frame["speed"], recording.signals["speed"])
 
 

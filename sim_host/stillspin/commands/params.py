@@ -47,7 +47,7 @@ def dump(
         values = drive.parameters()
         if changed:
             values = {name: value for name, value in values.items() if value != drive.table.parameter(name).initial}
-        about = [f"Parameters of a drive with firmware {drive.version}."]
+        about = [f"Parameters of a drive with firmware {drive.identity.text}."]
         content = parameter_file.text(values, drive.table, about)
     if file:
         parameter_file.write(file, content)

@@ -361,7 +361,7 @@ class Drive:
             LinkError: the way to the drive is lost.
         """
         with self.stream(signals, period) as stream:
-            return log.keep(stream, duration, self.version)
+            return log.keep(stream, duration, self.identity.text)
 
     # Scope
 

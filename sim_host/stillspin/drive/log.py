@@ -21,7 +21,7 @@ class Log(Recording):
 
     lost: int
     """Samples that did not arrive."""
-    version: str
+    version: str  # of the firmware, with board, build and table
     """Of the firmware."""
 
     @property
@@ -36,7 +36,7 @@ def keep(stream: Stream, duration: float, version: str) -> Log:
     Args:
         stream: open.
         duration: s of this computer's clock.
-        version: of the firmware.
+        version: of the firmware, with board, build and table.
 
     Raises:
         InputError: a duration that is not above 0.

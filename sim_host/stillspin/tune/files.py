@@ -35,9 +35,9 @@ def handler(bench: Workbench) -> Any:
 
 def _content(bench: Workbench, name: str) -> bytes:
     if name == "parameters.toml":
-        about = [f"Parameters of a drive with firmware {bench.drive.version}."]
+        about = [f"Parameters of a drive with firmware {bench.drive.identity.text}."]
         return parameter_file.text(bench.drive.parameters(), bench.drive.table, about).encode()
-    return bench.streamer.history.file(name.rpartition(".")[2], bench.drive.version)
+    return bench.streamer.history.file(name.rpartition(".")[2], bench.drive.identity.text)
 
 
 def load(bench: Workbench, name: str, text: str) -> dict[str, Any]:
