@@ -36,11 +36,13 @@ from stillspin.options import (
     processors,
     whole,
 )
-from stillspin.report import explain_report, output, startup_report, tables
+from stillspin.report import explain_report, junit, output, startup_report, tables
 from stillspin.report import page as report
+from stillspin.report.junit import JunitOption
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
 from stillspin.runs import commission, execute, explain, startup
+from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.reproduction import Options, carry_out, write_found
 
 app = typer.Typer(
@@ -72,9 +74,11 @@ def _on(motor: str | None, scenario: Scenario) -> Scenario:
     return scenario if motor is None else replace(scenario, motor=motor)
 
 
-def _carry_out(scenarios: Sequence[Scenario], options: Options) -> None:
+def _carry_out(scenarios: Sequence[Scenario], options: Options, verdicts: junit.Report | None = None) -> None:
     """Run scenarios, print what came out, and end the process when a run broke off or a goal is missed."""
     done = carry_out(scenarios, options)
+    if verdicts:
+        verdicts.add(junit.of_refused(words) for words in done.refused)
     tables.summary(done.results, done.beside)
     total = report.tally(done.results)
     print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
@@ -149,9 +153,17 @@ def reproduce(
             help="Run what is about the position error with the paper's position scheme, too.",
         ),
     ] = True,
+    junit_file: JunitOption = None,
 ) -> None:
     """Commission the drive, run scenarios in parallel and write report.html and metrics.json."""
     chosen = _chosen(scenarios or [], motor or [])
+    own = {scenario.id for scenario in chosen}
+    verdicts = junit.Report(junit_file, "reproduce")
+
+    def told(result: ScenarioResult) -> None:
+        if result.scenario.id in own:
+            verdicts.add(junit.of_scenario(result))
+
     workers = jobs or processors()
     options = Options(
         profile_name,
@@ -162,8 +174,10 @@ def reproduce(
         commission=commission_first,
         paper_scheme=paper_scheme,
         nameplate=nameplate,
+        told=told,
     )
-    _carry_out(chosen, options)
+    with verdicts:
+        _carry_out(chosen, options, verdicts)
 
 
 def _chosen(names: Sequence[str], motors: Sequence[str]) -> list[Scenario]:
@@ -341,13 +355,19 @@ def startup_matrix(
     ] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-startup"),
     jobs: JobsOption = None,
+    junit_file: JunitOption = None,
 ) -> None:
     """Start from every angle, under loads and parameter errors, standing and turning; status 1 when one fails."""
     common, linear = startup.bench(profile_name)
     todo = startup.chosen(startup.cases(seeds, quick, linear), way or [])
-    with output.fresh_directory(out) as directory:
+    with junit.Report(junit_file, "startup-matrix") as verdicts, output.fresh_directory(out) as directory:
         with Counter(Console(stderr=True), len(todo)) as counter:
-            outcomes = startup.run_all(common, todo, jobs or processors(), counter.one_more)
+
+            def told(outcome: startup.Outcome) -> None:
+                verdicts.add([junit.of_start(outcome)])
+                counter.one_more(outcome)
+
+            outcomes = startup.run_all(common, todo, jobs or processors(), told)
         startup_report.write(directory, outcomes, profile_name)
     tables.startup(startup_report.rows(outcomes))
     failed = [outcome for outcome in outcomes if outcome.problem]

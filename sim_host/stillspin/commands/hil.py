@@ -20,7 +20,8 @@ from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.link import address
 from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption, processors
-from stillspin.report import tables
+from stillspin.report import junit, tables
+from stillspin.report.junit import JunitOption
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
 
@@ -64,6 +65,7 @@ def hil(
     params: ParamsOption = None,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
     jobs: JobsOption = None,
+    junit_file: JunitOption = None,
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
 
@@ -81,12 +83,18 @@ def hil(
     kind = _kind(board)
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [number for number in runs.broad(everything) if number in left]
+    skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
     rows = (
         _on_virtual(wish, chosen, kind, jobs or processors())
         if board.partition(":")[0] == _VIRTUAL
         else _on_one([everything[number] for number in chosen], board, of, jobs)
     )
-    done = [_tell(new, results) for new in rows]
+    done = []
+    with junit.Report(junit_file, "hil") as verdicts:
+        verdicts.add(map(junit.left_out, skipped))
+        for new in rows:
+            verdicts.add([junit.of_loop(new)])
+            done.append(_tell(new, results))
     if len(done) > 1:
         tables.loop(done)
     worst = max((new.exit_code for new in done), default=ExitCode.DONE)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Self
 
@@ -17,7 +17,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from stillspin.cases.scenario import Scenario
+from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.campaign import Watcher
 from stillspin.runs.execute import Outcome
 
@@ -65,10 +65,11 @@ class Counter(_Drawn):
 
 
 class Bar(_Drawn, Watcher):
-    """One bar over everything: runs by their share done, then figures and plots."""
+    """One bar over everything: runs by their share done, then figures and plots; `told` is told of each scenario."""
 
-    def __init__(self, console: Console) -> None:
+    def __init__(self, console: Console, told: Callable[[ScenarioResult], None] = lambda _: None) -> None:
         super().__init__(console, *_columns())
+        self._told = told
         self._task: TaskID | None = None
         self._runs = self._done = self._drawn = 0
         self._shares = 0.0
@@ -89,9 +90,10 @@ class Bar(_Drawn, Watcher):
         self._done += 1
         self._show()
 
-    def assessed(self, scenario: Scenario) -> None:
+    def assessed(self, result: ScenarioResult) -> None:
         """A scenario's figures and plots are ready."""
         self._drawn += 1
+        self._told(result)
         self._show()
 
     def _show(self) -> None:

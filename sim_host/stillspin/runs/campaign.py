@@ -48,7 +48,7 @@ class Watcher:
     def finished(self, outcome: Outcome) -> None:
         """A run ended."""
 
-    def assessed(self, scenario: Scenario) -> None:
+    def assessed(self, result: ScenarioResult) -> None:
         """A scenario's figures and plots are ready."""
 
 
@@ -70,6 +70,7 @@ def run_all(plan: Plan, workers: int, watcher: Watcher) -> list[ScenarioResult]:
 def _serial(plan: Plan, watcher: Watcher) -> list[ScenarioResult]:
     shares = [0.0] * len(plan.jobs)
     outcomes: list[Outcome] = []
+    results: dict[str, ScenarioResult] = {}
     for slot, job in enumerate(plan.jobs):
 
         def report(share: float, slot: int = slot) -> bool:
@@ -79,11 +80,12 @@ def _serial(plan: Plan, watcher: Watcher) -> list[ScenarioResult]:
 
         outcomes.append(execute(job, plan.directory, report))
         watcher.finished(outcomes[-1])
-    results = []
-    for scenario in plan.scenarios:
-        results.append(assess(scenario, _of(scenario, outcomes), plan.directory, plan.profile, plan.draw))
-        watcher.assessed(scenario)
-    return results
+        scenario = next(item for item in plan.scenarios if item.id == job.scenario)
+        if sum(item.scenario == scenario.id for item in outcomes) == len(scenario.runs):
+            result = assess(scenario, _of(scenario, outcomes), plan.directory, plan.profile, plan.draw)
+            results[scenario.id] = result
+            watcher.assessed(result)
+    return [results[scenario.id] for scenario in plan.scenarios]
 
 
 def _of(scenario: Scenario, outcomes: Sequence[Outcome]) -> list[Outcome]:
@@ -156,4 +158,4 @@ class _Pool:
 
     def _assessed(self, result: ScenarioResult) -> None:
         self._results[result.scenario.id] = result
-        self._watcher.assessed(result.scenario)
+        self._watcher.assessed(result)

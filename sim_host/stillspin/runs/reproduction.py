@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -36,6 +36,7 @@ class Options:
         params: a parameter file for the drive; None for none.
         commission: whether the drive measures itself first, where the profile is for it and there is no `params`.
         paper_scheme, nameplate: the variants beside; others: and some more.
+        told: is told of every scenario, also of those beside, as soon as it is measured.
     """
 
     profile: str
@@ -49,6 +50,7 @@ class Options:
     paper_scheme: bool = False
     nameplate: bool = False
     others: Sequence[Variant] = ()
+    told: Callable[[ScenarioResult], None] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
         runs = directory / output.RUNS
         name = own[motors[0]].profile.name
         plan = campaign.Plan([scenario for scenario, _ in todo], jobs, runs, name, options.draw)
-        with Bar(screen) as bar:
+        with Bar(screen, options.told) as bar:
             results, beside = variant.separate(campaign.run_all(plan, options.jobs, bar), variants)
         report.write(directory, results, list(settings.values()), beside)
     return Reproduction(results, beside, refused)

@@ -26,6 +26,7 @@ from stillspin.measure.pieces import Floats
 WAYS = ("brake", "free", "flying")
 RATED_TORQUE = 11.0  # N m
 BACKWARD_LIMIT = 2.0  # degrees mechanical
+ANGLE_LIMIT = 60.0  # degrees electrical
 ANGLES = 24
 COMMAND = 300.0  # rpm
 FLYING = (-3000.0, -2000.0, -1000.0, -300.0, -100.0, -60.0, -30.0, 30.0, 60.0, 100.0, 300.0, 1000.0, 2000.0, 3000.0)
@@ -62,7 +63,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the true shaft did. `problem`: None when the start is a good one."""
+    """What the true shaft did. `problem`: None when the start is a good one; `broken`: it did not come to its end."""
 
     case: Case
     problem: str | None
@@ -70,6 +71,7 @@ class Outcome:
     sigma: float = 0.0  # confidence in the polarity, standard errors
     angle_error: float = 0.0  # degrees electrical at the end of the start procedure
     start: float = 0.0  # s from the request to the end of the procedure
+    broken: bool = False
 
 
 @dataclass(frozen=True)
@@ -193,13 +195,13 @@ def run(common: Bench, case: Case) -> Outcome:
 def _judge(case: Case, result: NativeResult, target: float) -> Outcome:
     signals = {name: np.asarray(values) for name, values in result.signals.items()}
     if not result.completed or signals["time"].size < 2:
-        return Outcome(case, result.reason or "broken off")
+        return Outcome(case, result.reason or "broken off", broken=True)
     speed: Floats = signals["true_speed"]
     off = math.remainder(float(signals["true_angle"][0] - signals["est_angle"][0]), 2.0 * math.pi)
     backward = _backward(case, signals["time"], speed, dict(result.stats))
     late = abs(float(speed[-1]) - target)
     problem = None
-    if abs(math.degrees(off)) > 60.0:
+    if abs(math.degrees(off)) > ANGLE_LIMIT:
         problem = f"wrong angle: {math.degrees(off):.0f} degrees off"
     elif late > 0.1 * abs(target) + 20.0:
         problem = f"lost: {speed[-1]:.0f} rpm instead of {target:.0f}"
