@@ -7,10 +7,15 @@ it fail on purpose: `inverter.dead_short = true` faults, `friction = 99` in the 
 
 from __future__ import annotations
 
+import struct
 import time as clock
 from types import SimpleNamespace
 
 import numpy as np
+
+from stillspin.drive.protocol import VERSION, Request
+from stillspin.link.records import ANSWER, Record, to_wire
+from stillspin.link.splitter import Splitter
 
 SAMPLE = 1e-4  # s, one PWM period
 
@@ -297,3 +302,31 @@ def commission(*, plant, parameters, limit, seed, progress, tape=None):
         reason="fault: over-current comparator" if short else "",
         stats={"wall_seconds": 1.0, "simulated_seconds": 40.05, "commissioning_seconds": 40.0},
     )
+
+
+FIRMWARE = "stillspin fake (board bench, commit 0badcafe, table 12345678)"
+
+
+class VirtualBoard:
+    """Says who it is, and nothing else."""
+
+    def __init__(self, *, plant, parameters, seed):
+        self.now = 0
+        self._splitter, self._said = Splitter(), b""
+
+    def advance(self, ticks):
+        self.now += ticks
+
+    def serial_write(self, octets):
+        for item in self._splitter.feed(octets, 0.0):
+            if isinstance(item, Record) and item.kind == Request.IDENTITY:
+                head = struct.pack("<HHHHI", VERSION, 0, 0, 0, 0x12345678)
+                body = head + b"stillspin fake\0bench\0" + struct.pack("<IH", 0x0BADCAFE, 0)
+                self._said += to_wire(Record(item.kind | ANSWER, item.tag, b"\0" + body))
+
+    def serial_read(self):
+        said, self._said = self._said, b""
+        return said
+
+    def close(self):
+        """Nothing is kept."""

@@ -34,9 +34,10 @@ def page(results):
 
 def test_metrics_have_exactly_the_agreed_shape(results):
     metrics = json.loads((results / "metrics.json").read_text(encoding="utf-8"))
-    assert list(metrics) == ["profile", "seed", "revision", "scenarios"]
+    assert list(metrics) == ["profile", "seed", "revision", "firmware", "scenarios"]
     assert (metrics["profile"], metrics["seed"]) == ("ideal", 9)
     assert metrics["revision"]
+    assert metrics["firmware"] == fake_core.FIRMWARE
     assert list(metrics["scenarios"]) == ["A10", "A14", "A18c"]
     paper = json.loads((results / "paper.json").read_text(encoding="utf-8"))
     assert list(paper) == [*metrics, "lost"]
@@ -69,7 +70,15 @@ def test_every_link_to_a_record_leads_somewhere(results, page):
 
 
 def test_the_page_says_what_it_is_about(page):
-    for word in ("ideal", "seed of the noise", "the nameplate", "Fig. 18c", "simulated s per s", "0.2"):
+    for word in (
+        "ideal",
+        "seed of the noise",
+        "the nameplate",
+        "Fig. 18c",
+        "simulated s per s",
+        "0.2",
+        fake_core.FIRMWARE,
+    ):
         assert word in page
     own = [scenario_file.load(name) for name in ("A10", "A14", "A18c")]
     variants = [variant.paper().scenario(scenario) for scenario in own if variant.paper().applies(scenario)]

@@ -7,11 +7,9 @@ from typing import TypeVar
 
 from stillspin.drive import describe
 from stillspin.drive.describe import Ask, Identity
-from stillspin.drive.protocol import Request
-from stillspin.drive.requester import Requester
+from stillspin.drive.own import virtual_ask
 from stillspin.drive.table import Parameter, Signal, Table
 from stillspin.link.errors import DifferentError
-from stillspin.link.virtual import VirtualTransport
 
 _SHOWN = 8
 Row = TypeVar("Row", Parameter, Signal)
@@ -30,18 +28,11 @@ def check_board(ask: Ask) -> Identity:
         DifferentError: what differs, with both values, and how to go on.
     """
     theirs = describe.identity(ask)
-    virtual = Requester(VirtualTransport(speed=0.0), timeout=5.0)
-    try:
-
-        def ask_virtual(kind: Request, body: bytes) -> bytes:
-            return virtual.request(kind, body, repeat=True)
-
+    with virtual_ask() as ask_virtual:
         ours = describe.identity(ask_virtual)
         found = list(_of_identity(theirs, ours))
         if theirs.crc != ours.crc:
             found += _of_tables(describe.table(ask, theirs), describe.table(ask_virtual, ours))
-    finally:
-        virtual.close()
     if found:
         more = [f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
         raise DifferentError(

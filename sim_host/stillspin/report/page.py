@@ -78,6 +78,7 @@ def metrics(results: Mapping[str, ScenarioResult], settings: Settings) -> dict[s
         "profile": settings.profile.name,
         "seed": settings.seed,
         "revision": settings.revision,
+        "firmware": settings.firmware,
         "scenarios": {identifier: _figures(result) for identifier, result in results.items()},
     }
 

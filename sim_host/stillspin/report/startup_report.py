@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stillspin import extras
+from stillspin.drive.own import firmware
 from stillspin.report import output
 from stillspin.report.style import COLOURS, STYLE, WIDTH
 from stillspin.revision import revision
@@ -68,6 +69,7 @@ def write(directory: Path, outcomes: Sequence[Outcome], profile: str) -> None:
     metrics = {
         "profile": profile,
         "revision": revision(),
+        "firmware": firmware(),
         "starts": len(outcomes),
         "failed": sum(1 for item in outcomes if item.problem),
         "ways": {way: _figures([item for item in outcomes if item.case.way == way]) for way in WAYS},

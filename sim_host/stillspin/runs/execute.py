@@ -24,13 +24,19 @@ _OBSERVER = ("observer_load_rate", "observer_load_quiet")
 
 @dataclass(frozen=True)
 class Settings:
-    """What all runs of a campaign have in common. `parameters_from`: where the firmware's parameters come from."""
+    """What all runs of a campaign have in common.
+
+    Attributes:
+        parameters_from: where the firmware's parameters come from.
+        firmware: version, board file, build and table.
+    """
 
     profile: Profile
     changes: Changes
     seed: int
     revision: str
     parameters_from: str = "the nameplate"
+    firmware: str = ""
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from stillspin.cases import profile, variant
 from stillspin.cases.scenario import Scenario
 from stillspin.cases.variant import Beside, Variant
 from stillspin.core import NativeCore
+from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.report import output
 from stillspin.report import page as report
@@ -75,6 +76,8 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
     for each in own.values():
         profile.say_not_stated(each.profile)
     settings = _told(native, own, options)
+    about = firmware()
+    settings = {motor: replace(each, firmware=about) for motor, each in settings.items()}
     screen = Console(stderr=True)
     # What is wrong with the scenarios is said before the drive spends half a minute on measuring itself.
     for scenario in scenarios:
