@@ -19,25 +19,28 @@ static const signal_info_t table[] = {
 #define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
 // By Clarke's components of the windows: they have offset and gains in them already.
 static int32_t phase_current(const volatile drive_t* d, bool of_b) {
+  static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
   const uint16_t count = d->samples.count;
+  const int32_t share_q30 = per_windows_q30[count];
   ab_t sum = {0, 0};
   for (uint16_t k = 0; k < count; k++) {
-    sum.alpha += d->samples.windows[k].current_q20.alpha / (int32_t)count;
-    sum.beta += d->samples.windows[k].current_q20.beta / (int32_t)count;
+    sum.alpha += q_mul_floor(d->samples.windows[k].current_q20.alpha, share_q30, 30);
+    sum.beta += q_mul_floor(d->samples.windows[k].current_q20.beta, share_q30, 30);
   }
   const abc_t phases = frame_inverse_clarke(sum);
   return of_b ? phases.b : phases.a;
 }
 
-#define SIGNAL(name, unit, q, of, value, meaning)                  \
-  static int32_t look_at_##name(const volatile drive_t* d) {       \
-    return (((of) & ~drive_known(d)) != 0) ? 0 : (int32_t)(value); \
+// What is known is asked once for all of a pass: it has to fit between two interrupts.
+#define SIGNAL(name, unit, q, of, value, meaning)                            \
+  static int32_t look_at_##name(const volatile drive_t* d, uint16_t known) { \
+    return (((of) & ~(int32_t)known) != 0) ? 0 : (int32_t)(value);           \
   }
 #include "firmware/signal_list.h"
 #undef SIGNAL
 
 #define SIGNAL(name, unit, q, of, value, meaning) look_at_##name,
-static int32_t (*const looks[])(const volatile drive_t* d) = {
+static int32_t (*const looks[])(const volatile drive_t* d, uint16_t known) = {
 #include "firmware/signal_list.h"
 };
 #undef SIGNAL
@@ -50,7 +53,9 @@ const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &tab
 
 bool drive_signal_is_known(uint16_t place) { return (table[place].needs & ~drive_known(&drive)) == 0; }
 
-int32_t drive_signal(uint16_t place) { return (place < COUNT) ? looks[place](&drive) : 0; }
+static int32_t look_at(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
+
+int32_t drive_signal(uint16_t place) { return look_at(place, drive_known(&drive)); }
 
 // The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
 signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
@@ -62,7 +67,7 @@ signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_
     seen = *interrupts;
     with.time_ms = *clock;
     with.known = drive_known(&drive);
-    for (uint16_t k = 0; k < count; k++) copy[k] = drive_signal(places[k]);
+    for (uint16_t k = 0; k < count; k++) copy[k] = look_at(places[k], with.known);
   } while (seen != *interrupts);
   return with;
 }
@@ -73,7 +78,8 @@ drive_signals_t drive_signals(void) {
   uint16_t seen;
   do {
     seen = *interrupts;
-#define SIGNAL(name, unit, q, of, value, meaning) s.name = look_at_##name(&drive);
+    const uint16_t known = drive_known(&drive);
+#define SIGNAL(name, unit, q, of, value, meaning) s.name = look_at_##name(&drive, known);
 #include "firmware/signal_list.h"
 #undef SIGNAL
   } while (seen != *interrupts);

@@ -53,6 +53,7 @@ typedef struct {
   bool asked;               // the switch was closed at the last look
   uint16_t stalled_ms;      // the shaft has not got on for so long
   uint32_t stall_from_bam;  // from here
+  int32_t stall_back_bpp;   // and turned so fast against the reference
 } board_t;
 
 extern board_t board;

@@ -3,7 +3,9 @@
 // What counts is how far the angle in use gets, not the speed in use: on a shaft that stands the latter may be off by
 // some rpm. In stall_time it has to get half as far as the reference does, or a quarter of an electrical turn: a shaft
 // that is run up at the limit of the current is long past that. At a reference of zero a load is held on purpose,
-// however much of it. Start and commissioning know their own moves and their own times.
+// however much of it. Start and commissioning know their own moves and their own times. A shaft that still turns the
+// other way and slows down, as a heavy one does in a reversal, is getting on, too. A moment below the limit of the
+// current takes back four: on a blocked shaft the noise of the speed makes such moments.
 
 #include "firmware/board/functions.h"
 #include "firmware/drive.h"
@@ -12,15 +14,30 @@
 #define LEAST_BAM 95443718L                         // 8 degrees: what the angle may stray under changing current
 #define MOST_BAM 1073741824L                        // a quarter of an electrical turn
 #define FAST_BPP (MOST_BAM / DRIVE_PERIODS_PER_MS)  // too far between two looks to tell the direction
+#define SLOWER_BPP 286331L                          // 0.67 Hz: beyond what the speed of a shaft strays that stands
+#define RELIEF_MS 4u
+
+// How fast the shaft turns against the reference; 0 where it does not.
+static int32_t back_bpp(const drive_t* d) {
+  const int32_t speed_bpp = d->position.used.speed_bpp;
+  return q_max((d->control.ramp.value > 0) ? q_neg_sat(speed_bpp) : speed_bpp, 0);
+}
 
 static void begin_anew(const drive_t* d) {
   board.stalled_ms = 0;
   board.stall_from_bam = d->position.used.angle_bam;
+  board.stall_back_bpp = back_bpp(d);
 }
 
-static bool is_pressed(const drive_t* d) {
-  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && (d->limits & LIMIT_CURRENT) != 0 &&
-         q_abs_sat(d->position.used.speed_bpp) < FAST_BPP;
+static bool is_asked_to_turn(const drive_t* d) {
+  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && q_abs_sat(d->position.used.speed_bpp) < FAST_BPP;
+}
+
+// By a sixteenth of its largest speed since it began at least.
+static bool is_slowing(const drive_t* d) {
+  const int32_t now_bpp = back_bpp(d);
+  board.stall_back_bpp = q_max(board.stall_back_bpp, now_bpp);
+  return board.stall_back_bpp - now_bpp > board.stall_back_bpp / 16 + SLOWER_BPP;
 }
 
 // Half of the reference's way in stall_time.
@@ -39,7 +56,11 @@ static int32_t way_bam(const drive_t* d) {
 
 drive_fault_t board_follow_shaft(void) {
   const drive_t* const d = &drive;
-  if (!is_pressed(d) || way_bam(d) > least_way_bam(d)) begin_anew(d);
+  if (!is_asked_to_turn(d) || way_bam(d) > least_way_bam(d) || is_slowing(d)) begin_anew(d);
+  if ((d->limits & LIMIT_CURRENT) == 0) {
+    board.stalled_ms -= (board.stalled_ms < RELIEF_MS) ? board.stalled_ms : RELIEF_MS;
+    return FAULT_NONE;
+  }
   if (parameters.stall_time == 0 || (int32_t)board.stalled_ms < parameters.stall_time) {
     board.stalled_ms++;
     return FAULT_NONE;

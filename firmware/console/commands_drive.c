@@ -65,7 +65,7 @@ static void say_guard(guard_t guard) {
 void command_start(const words_of_line_t* a) {
   guard_t guard;
   if (!choose_guard(a, 0, &guard)) return;
-  if (guard == GUARD_NONE && drive_is_energised()) {  // of a motor that runs: whoever held it leaves
+  if (guard == GUARD_NONE && drive_is_energised() && drive.state != DRIVE_STOP) {  // whoever held the motor leaves
     guard_release();
     say_guard(guard);
     return;

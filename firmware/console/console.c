@@ -19,6 +19,8 @@
 #define EXPIRES_MS 5000u
 #define AFTER_PAUSE 0x100u  // beside an octet: nothing had come for EXPIRES_MS
 #define CTRL_C 0x03u
+#define FIRST_KEY 0x01u
+#define BEHIND_KEYS 0x7Fu
 #define LINE_FEED 0x0Au
 #define RETURN 0x0Du
 
@@ -88,8 +90,12 @@ static void obey(void) {
 }
 
 static void edit(uint16_t octet) {
-  if ((octet & AFTER_PAUSE) != 0u && editor.line.count > 0u) editor.expired = true;
-  if (editor.line.count == 0u) errors_before = port_errors();
+  if (editor.line.count == 0u) {  // what it had was taken back
+    editor.expired = false;
+    errors_before = port_errors();
+  } else if ((octet & AFTER_PAUSE) != 0u) {
+    editor.expired = true;
+  }
   const editor_event_t event = editor_octet(&editor, octet, line_begin());
   line_flush();
   if (event == EDITOR_DONE) {
@@ -147,9 +153,18 @@ static void look_for_breaks(void) {
   editor_cut(&editor);
 }
 
+// What a loose cable sends is nobody's key.
+static bool is_key(uint16_t octet) {
+  static uint16_t errors_at_key;
+  const uint16_t errors = port_errors();
+  const bool clean = errors == errors_at_key;
+  errors_at_key = errors;
+  return clean && octet >= FIRST_KEY && octet < BEHIND_KEYS;
+}
+
 // The space bar that holds the motor neither fills the line nor ends an answer.
 static bool only_holds(uint16_t octet) {
-  return guard_heard(GUARD_KEYS) && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
+  return is_key(octet) && guard_heard(GUARD_KEYS) && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
 }
 
 void console_octet(uint16_t octet) {

@@ -78,6 +78,14 @@ TEST_F(ConsoleHands, AnOldLineStaysOldUntilItIsEmptied) {
   EXPECT_TRUE(drive.request.start);
 }
 
+TEST_F(ConsoleHands, AnOldLineThatWasTakenBackIsForgotten) {
+  send("sta");
+  run(kLong);
+  send("\b\b\b");
+  EXPECT_FALSE(has(command("start free", 300), "too old"));
+  EXPECT_TRUE(drive.request.start);
+}
+
 TEST_F(ConsoleHands, TheArrowUpBringsAnOldLineBackAsANewOne) {
   (void)after("start free", kLong);
   (void)command("\x1B[A", 300);
@@ -166,6 +174,16 @@ TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
   text.clear();
   run(20000);
   EXPECT_EQ(text, "") << "once";
+}
+
+// A cable that hangs loose is no hand.
+TEST_F(ConsoleHands, OctetsThatNoKeySendsDoNotHold) {
+  start_hold();
+  for (int k = 0; k < 12; ++k) {
+    send(k % 2 == 0 ? "\xFF" : "\x80");
+    run(1000);
+  }
+  EXPECT_TRUE(drive.request.stop);
 }
 
 TEST_F(ConsoleHands, ALetGoMotorCoastsWhenThatIsTheReaction) {

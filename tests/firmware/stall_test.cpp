@@ -108,12 +108,39 @@ TEST_F(Stall, TheRestlessAngleOfABlockedShaftDoesNotHideIt) {
   EXPECT_NEAR(n, 501, 2);
 }
 
-TEST_F(Stall, AMomentOffTheLimitBeginsAnew) {
+// The noise of the speed takes a blocked shaft off the limit now and then; it is found all the same.
+TEST_F(Stall, AMomentOffTheLimitTakesFourBack) {
   EXPECT_EQ(looks_to_fault(0.0, 400), 400);
   drive.limits = 0;
   look();
   drive.limits = LIMIT_CURRENT;
+  EXPECT_NEAR(looks_to_fault(0.0, 5000), 105, 2);
+  EXPECT_EQ(drive.fault, FAULT_STALL);
+}
+
+TEST_F(Stall, OffTheLimitForAFifthOfTheTimeBeginsAnew) {
+  EXPECT_EQ(looks_to_fault(0.0, 400), 400);
+  drive.limits = 0;
+  for (int n = 0; n < 100; ++n) look();
+  drive.limits = LIMIT_CURRENT;
   expect_stall(0.0);
+}
+
+// A heavy shaft whose reference has changed its sign already: it slows down for longer than the time, then turns round.
+TEST_F(Stall, AReversalIsNone) {
+  for (const double direction : {1.0, -1.0}) {
+    SetUp();
+    refer(direction > 0 ? 1500 : -1500);
+    double angle = 0.0;
+    for (int n = 0; n < 10000; ++n) {
+      const double rpm = direction * (-1500.0 + 0.3 * n);
+      angle += rpm / 60.0 * 4.0 * 360.0 * 1e-3;
+      drive.position.used.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
+      drive.position.used.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
+      look();
+      ASSERT_EQ(drive.fault, FAULT_NONE) << rpm;
+    }
+  }
 }
 
 }  // namespace
