@@ -34,6 +34,7 @@ static uint16_t kept_first, kept_count;
 static bool someone_types;
 static uint16_t faults_told;
 static uint16_t errors_before;  // of the port, when the line began
+static uint16_t errors_at_key;
 static uint16_t breaks_before;
 static uint32_t heard_ms;
 static bool silence_told;
@@ -47,6 +48,7 @@ void console_reset(void) {
   someone_types = false;
   faults_told = 0;
   errors_before = 0;
+  errors_at_key = 0;
   breaks_before = hal_sci_errors().breaks;
   heard_ms = 0;
   silence_told = false;
@@ -155,7 +157,6 @@ static void look_for_breaks(void) {
 
 // What a loose cable sends is nobody's key.
 static bool is_key(uint16_t octet) {
-  static uint16_t errors_at_key;
   const uint16_t errors = port_errors();
   const bool clean = errors == errors_at_key;
   errors_at_key = errors;
