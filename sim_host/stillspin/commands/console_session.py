@@ -15,7 +15,8 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 
 from stillspin.drive import Drive
-from stillspin.drive.state import ENERGISED
+from stillspin.drive.requester import wait_until
+from stillspin.drive.state import ENERGISED, STOP
 from stillspin.exit_codes import ExitCode
 from stillspin.link.errors import DriveError, NoAnswerError
 
@@ -84,15 +85,25 @@ class Session:
         if not self.keep_running and self.holds_motor():
             self._drive.stop()
 
+    def _set_free(self) -> str:
+        """Take the guard off a motor that runs, and say what became of it.
+
+        The port may be closed at once after this: the answer is waited for, so that no octet of the line is lost.
+        """
+        self.interrupt()
+        self.send("start free")
+        freed = wait_until(lambda: not self._drive.raw_status().guarded, _PATIENCE)
+        if freed and self._drive.raw_status().state in ENERGISED - {STOP}:
+            return "the motor runs on; nobody watches it"
+        return "the motor does not run on: the drive has not taken 'start free'"
+
     def end(self) -> None:
         """End what still answers, and stop the motor of this session unless it is to run on."""
         if self._drive.link.lost:
             return
         if self.holds_motor():
             if self.keep_running:
-                self.interrupt()
-                self.send("start free")  # on a motor that runs: it takes the guard off
-                said = "the motor runs on; nobody watches it"
+                said = self._set_free()
             else:
                 self._drive.stop()
                 said = "the motor stops, because the session that started it ends"

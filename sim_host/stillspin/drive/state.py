@@ -45,6 +45,11 @@ class RawStatus:
         return cls(*unpack(STATUS_FORM, body))
 
     @property
+    def guarded(self) -> bool:
+        """Whether the drive stops by itself when it hears nothing more from who holds it."""
+        return bool(self.link & 1)
+
+    @property
     def unsaved_known(self) -> int | None:
         """How many parameters are not saved; None when a save has failed."""
         return self.unsaved if self.unsaved < _UNSAVED_UNKNOWN else None
