@@ -10,6 +10,7 @@ BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 RUNS ?= 1000000
 SAMPLE ?= 60
+PUBLISHED := 60 near seed=41
 PYTHON := .venv/bin/python
 DEMO := A10 A15 A16 A18a A18b A18c
 DEMO_OUT := out/demo
@@ -47,14 +48,17 @@ demo: build ## commission the drive, reproduce the main figures of the first pap
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
 	@bash toolchain/bench.sh $(BUILD)
+	@$(PYTHON) toolchain/keep.py speed
 
 isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
 	@bash toolchain/setup.sh build cortex
 	@$(PYTHON) toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
+	@$(PYTHON) toolchain/keep.py isr-cost
 
 isr-bound: build ## bound the interrupts' instructions by the longest path through the Cortex-M3's program, checked in runs
 	@bash toolchain/setup.sh build cortex
 	@$(PYTHON) toolchain/m3_bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
+	@$(PYTHON) toolchain/keep.py isr-bound
 
 image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
 	@mkdir -p build
@@ -66,6 +70,7 @@ image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: 
 	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
 	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
 	@echo; echo "lamp:"; cat build/image-check/hal/f2808/image/stillspin_lamp.map
+	@$(PYTHON) toolchain/keep.py image
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm
@@ -86,14 +91,17 @@ cppcheck: ## read the drive's C with the C28x's widths, and planted defects
 prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted defects
 	@bash toolchain/setup.sh build prove
 	@$(PYTHON) toolchain/prove.py build/prove
+	@$(PYTHON) toolchain/keep.py prove
 	@$(PYTHON) toolchain/prove.py build/prove --defects
 
 mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC of every condition
 	@bash toolchain/setup.sh build llvm
 	@$(PYTHON) toolchain/mcdc.py
+	@$(PYTHON) toolchain/keep.py mcdc
 
 mutants: setup ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
+	@if [[ "$(SAMPLE)" == "$(PUBLISHED)" ]]; then $(PYTHON) toolchain/keep.py mutants; fi
 
 verify: image-check isr-bound cppcheck prove vectors int16 fuzz16 mcdc ## the checks that take long: these eight
 
@@ -124,6 +132,7 @@ pictures: build ## renew the pictures of README and book, docs/images
 	@$(PYTHON) toolchain/overview.py $(PICTURES_OUT) docs/images/bench.png
 	@$(PYTHON) toolchain/tuning_pictures.py
 	@STILLSPIN_PICTURES=docs/images $(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_tune_on_board.py tests/python/test_notebook.py
+	@$(PYTHON) toolchain/keep.py pictures
 
 docs: setup ## build the book into site/
 	@$(PYTHON) -m mkdocs build --quiet --strict --config-file toolchain/mkdocs.yml

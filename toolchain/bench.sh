@@ -11,12 +11,15 @@ fi
 "$program"
 
 counts=$(mktemp)
+figures=build/bench/figures.json
+mkdir -p "${figures%/*}"
+rm -f "$figures"
 trap 'rm -f "$counts"' EXIT
 for rpm in 5 80 2000; do
   echo
   echo "instructions of the firmware per control interrupt, native build, on the way to $rpm rpm"
   valgrind --quiet --tool=callgrind --callgrind-out-file="$counts" "$program" "$rpm" >/dev/null
-  .venv/bin/python toolchain/isr_cost.py "$counts"
+  .venv/bin/python toolchain/isr_cost.py "$counts" "$figures" "$rpm"
 done
 echo
 size "$1/firmware/libstillspin_firmware.a" | awk 'NR > 1 { data += $2 + $3 } END { printf "firmware variables: %d bytes, %d words of 16 bits\n", data, data / 2 }'

@@ -1,39 +1,28 @@
 #!/usr/bin/env python3
 """Runs what the tables of README.md and the book have their figures from, and brings the tables up to date.
 
-Usage: toolchain/figures.py [--long] [--again] [NAME]...     (make figures, make figures-long)
+Usage: toolchain/figures.py [--long] [--again] [--list] [NAME]...     (make figures, make figures-long)
 
 Each command below writes docs/figures/NAME.json. One whose file was made by the same command from the same sources is
 left out, so a run that was broken off goes on where it ended; --again leaves out nothing. --long adds what takes
-longer than the rest together. Exit status 1 when a command failed.
+longer than the rest together, and the commands of the Makefile that keep records of their own, but for the mutants.
+--list runs nothing: it says which records are of older sources, and the exit status is 1 when there are any. Exit
+status 1 when a command failed.
 """
 
 import argparse
-import hashlib
-import json
 import shutil
 import subprocess
 import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from book import render
+from book import records, render
 from book.gather import gather
 
 ROOT = Path(__file__).resolve().parent.parent
 STILLSPIN = ROOT / ".venv/bin/stillspin"
-DATA, WORK = ROOT / "docs/figures", ROOT / "build/figures"
-# What decides a figure: the drive, what it runs on, what is done with it, and how it is judged.
-SOURCES = (
-    *("control", "estimators", "firmware", "hal", "svpwm"),
-    *(
-        f"sim_host/{name}"
-        for name in ("bench", "chip", "devices", "plant", "motors", "profiles", "scenarios", "schemes")
-    ),
-    *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs")),
-)
-SUFFIXES = {".c", ".h", ".cpp", ".hpp", ".toml", ".py"}
+WORK = ROOT / "build/figures"
 
 
 @dataclass(frozen=True)
@@ -50,6 +39,7 @@ STEPS = (
     Step("ideal", "reproduce --profile ideal --no-paper-scheme --no-nameplate --out OUT"),
     Step("commission", "commission --seed 2 --out OUT/params.toml"),
     Step("drift", "drift --out OUT"),
+    Step("explain", "explain A09 --no-alone --out OUT"),
     Step("loads", "reproduce S02 S03 S04 S05 --no-paper-scheme --out OUT"),
     Step("motor-b", "reproduce S06 --no-paper-scheme --no-nameplate --out OUT"),
     Step("flux", "reproduce --motor B --no-paper-scheme --no-nameplate --out OUT"),
@@ -66,21 +56,13 @@ STEPS = (
 )
 
 
-def sources() -> str:
-    """A sum over everything that decides a figure."""
-    files = sorted(path for tree in SOURCES for path in (ROOT / tree).rglob("*") if path.suffix in SUFFIXES)
-    total = hashlib.sha256()
-    for path in files:
-        total.update(f"{path.relative_to(ROOT)}\0".encode() + path.read_bytes() + b"\0")
-    return total.hexdigest()[:16]
+LONGEST = "mutants"
+"""Hours: runs only where it is named."""
 
 
 def _is_fresh(step: Step, made_of: str) -> bool:
-    path = DATA / f"{step.name}.json"
-    if not path.exists():
-        return False
-    known = json.loads(path.read_text(encoding="utf-8"))
-    return (known["command"], known["sources"]) == (f"stillspin {step.command}", made_of)
+    known = records.load(ROOT).get(step.name)
+    return known is not None and (known["command"], known["sources"]) == (f"stillspin {step.command}", made_of)
 
 
 def carry_out(step: Step, made_of: str) -> bool:
@@ -88,7 +70,7 @@ def carry_out(step: Step, made_of: str) -> bool:
     out = WORK / step.name
     if "--resume" not in step.command:
         shutil.rmtree(out, ignore_errors=True)  # what an earlier run left is no result of this one
-    if not step.command.startswith("reproduce") and step.name != "drift":
+    if not step.command.startswith(("reproduce", "drift", "explain")):  # these make it, whole or not at all
         out.mkdir(parents=True, exist_ok=True)
     arguments = [word.replace("OUT", str(out)) for word in step.command.split()]
     log = WORK / f"{step.name}.log"
@@ -99,36 +81,53 @@ def carry_out(step: Step, made_of: str) -> bool:
     if status not in (0, 1) or not found:  # 1: a goal is missed, which is a result
         print(f"figures: {step.name}: exit status {status}; see {log}", file=sys.stderr)
         return False
-    content = {"command": f"stillspin {step.command}", "sources": made_of, "figures": found}
-    DATA.mkdir(exist_ok=True)
-    text = json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True)
-    (DATA / f"{step.name}.json").write_text(text + "\n", encoding="utf-8")
+    records.keep(ROOT, step.name, f"stillspin {step.command}", found, made_of)
     return True
+
+
+def carry_out_make(name: str) -> bool:
+    """Run a command of the Makefile, which keeps its figures by itself; False when it failed."""
+    command = records.COMMANDS[name].command
+    return subprocess.run(command, cwd=ROOT, shell=True, check=False).returncode == 0
+
+
+def _chosen(long: bool, names: list[str]) -> tuple[list[Step], list[str]]:
+    """What is asked for: commands of `stillspin`, commands of the Makefile."""
+    if names:
+        return [step for step in STEPS if step.name in names], [name for name in records.COMMANDS if name in names]
+    made = [name for name in records.COMMANDS if long and name != LONGEST]
+    return [step for step in STEPS if long or not step.is_long], made
 
 
 def main() -> int:
     """See the module's text."""
+    known = (*(step.name for step in STEPS), *records.COMMANDS)
     parser = argparse.ArgumentParser(description="Renews the figures of README.md and the book.")
     parser.add_argument("--long", action="store_true", help="also what takes long")
     parser.add_argument("--again", action="store_true", help="also what is fresh")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(step.name for step in STEPS))
+    parser.add_argument("--list", action="store_true", help="only say what is of older sources")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(known))
     options = parser.parse_args()
-    if unknown := set(options.names) - {step.name for step in STEPS}:
+    if unknown := set(options.names) - set(known):
         parser.error(f"no such step: {', '.join(sorted(unknown))}")
-    made_of = sources()
-    named = [
-        step
-        for step in STEPS
-        if step.name in options.names or (not options.names and (options.long or not step.is_long))
-    ]
-    todo = [step for step in named if options.again or not _is_fresh(step, made_of)]
-    print(f"figures: {len(todo)} of {len(named)} commands to run, {len(named) - len(todo)} fresh", flush=True)
+    old = records.outdated(ROOT)
+    if options.list:
+        for name, command in old.items():
+            print(f"figures: {name} is of older sources: {command}")
+        return 1 if old else 0
+    made_of = records.sources(ROOT)
+    steps, made = _chosen(options.long, options.names)
+    todo = [step for step in steps if options.again or not _is_fresh(step, made_of)]
+    by_make = [name for name in made if options.again or name in old or name not in records.load(ROOT)]
+    count, left = len(todo) + len(by_make), len(steps) + len(made)
+    print(f"figures: {count} of {left} commands to run, {left - count} fresh", flush=True)
     failed = False
     for k, step in enumerate(todo, 1):
-        print(f"figures: {k} of {len(todo)}: stillspin {step.command}", flush=True)
-        begun = time.monotonic()
+        print(f"figures: {k} of {count}: stillspin {step.command}", flush=True)
         failed = not carry_out(step, made_of) or failed
-        print(f"figures: {step.name} took {time.monotonic() - begun:.0f} s", flush=True)
+    for k, name in enumerate(by_make, len(todo) + 1):
+        print(f"figures: {k} of {count}: {records.COMMANDS[name].command}", flush=True)
+        failed = not carry_out_make(name) or failed
     for piece in render(ROOT, write=True):
         if not piece.is_fresh:
             print(f"figures: {piece.page}: {piece.name} renewed")

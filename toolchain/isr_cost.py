@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Instructions of the firmware per control interrupt, by source folder and file, from a callgrind record.
 
-Usage: toolchain/isr_cost.py callgrind.out
+Usage: toolchain/isr_cost.py callgrind.out [FIGURES RPM]      FIGURES: a file that gets the parts' sums at this speed
 
 Only lines of the firmware's own sources count, wherever they were inlined; the virtual chip behind a register access
 and the plant behind it do not. The background loop and the window interrupt are in the sum.
 """
 
+import json
 import re
 import sys
 from collections import defaultdict
@@ -60,6 +61,12 @@ def folder_of(file: str) -> str | None:
     return next((folder for folder in FOLDERS if f"/{folder}/" in file), None)
 
 
+def keep(path: Path, rpm: str, parts: dict[str, int]) -> None:
+    """Adds a speed's instructions per control interrupt to the figures of the book."""
+    known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    path.write_text(json.dumps(known | {rpm: parts}), encoding="utf-8")
+
+
 def main() -> int:
     """Print the table."""
     cost, interrupts = count(Path(sys.argv[1]))
@@ -79,12 +86,13 @@ def main() -> int:
         total += sum(rows.values())
     print(f"  {'all':12s} {total:7.0f}   over {interrupts} interrupts")
     everything = sum(cost.values())
-    shares = {
-        part: sum(c for f, c in cost.items() if f"/sim_host/{part}/" in f) / everything for part in ("plant", "chip")
-    }
-    shares["firmware"] = total * interrupts / everything
-    shares["rest"] = 1.0 - sum(shares.values())  # libraries (mathematics, memory), bench
-    print("  share of all instructions: " + ", ".join(f"{part} {100 * share:.0f} %" for part, share in shares.items()))
+    parts = {part: sum(c for f, c in cost.items() if f"/sim_host/{part}/" in f) for part in ("plant", "chip")}
+    parts["firmware"] = round(total * interrupts)
+    parts["rest"] = everything - sum(parts.values())  # libraries (mathematics, memory), bench
+    shares = ", ".join(f"{part} {100 * own / everything:.0f} %" for part, own in parts.items())
+    print(f"  share of all instructions: {shares}")
+    if len(sys.argv) > 2:
+        keep(Path(sys.argv[2]), sys.argv[3], {part: round(own / interrupts) for part, own in parts.items()})
     return 0
 
 

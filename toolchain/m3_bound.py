@@ -7,10 +7,11 @@ The same program whose instructions toolchain/m3_cost.py counts is taken apart (
 not say by itself, how often loops go round and what excludes each other, stands in toolchain/m3_paths.txt; runs show
 whether that is so: each is replayed in QEMU, which logs what is executed. A bound above the one allowed, a fact that a
 run contradicts, a step of a run that takes longer than its bound, and a function of the compiler's run-time library
-are failures. The table is printed and written to OUT/bounds.md. --explain says which functions the longest path of a
-mode goes through.
+are failures. The table is printed and written to OUT/bounds.md and OUT/figures.json. --explain says which functions
+the longest path of a mode goes through.
 """
 
+import json
 import os
 import re
 import subprocess
@@ -20,6 +21,7 @@ from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import m3_cost
 from paths.bound import Bound, Way
@@ -170,6 +172,15 @@ def rows_of(bounds: dict[str, Mode], windows: dict[str, int]) -> list[str]:
     return lines
 
 
+def published(bounds: dict[str, Mode], windows: dict[str, int]) -> dict[str, Any]:
+    """What the book's table is made of."""
+    modes = {
+        name: {"steps": [way.cost for way in mode.steps], "kind": mode.kinds[-1] or "any period"}
+        for name, mode in bounds.items()
+    }
+    return {"modes": modes, "windows": windows}
+
+
 def explain(name: str, mode: Mode) -> None:
     """Prints where the instructions of a longest path come from."""
     print(f"\n{name}: {mode.worst} instructions in {mode.kinds[-1] or 'any period'}, of these")
@@ -191,6 +202,7 @@ def main() -> int:
     windows = {name: Bound(program, modes[name], modes[name].never).of_function(WINDOW).cost for name in WINDOW_MODES}
     lines = rows_of(bounds, windows)
     (out / "bounds.md").write_text("\n".join(lines) + "\n")
+    (out / "figures.json").write_text(json.dumps(published(bounds, windows)))
     print("\n".join(lines), flush=True)
     if explained:
         explain(explained, bounds[explained])

@@ -6,17 +6,19 @@ Usage: toolchain/m3_cost.py RECORDER OUT     (make isr-cost)
 Runs of the virtual drive are recorded natively at the drive's register accesses and replayed on an emulated
 Cortex-M3 that runs the whole firmware (tests/m3). A replay that does anything else than the native run, a count above
 toolchain/m3_budget.txt, and a charge of firmware/isr_cycles.h that the count does not bear out are failures. The table
-is printed and written to OUT/table.md.
+is printed and written to OUT/table.md, the counts to OUT/figures.json.
 """
 
+import json
 import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 BUDGET = ROOT / "toolchain" / "m3_budget.txt"
@@ -209,6 +211,17 @@ def rows_of(results: dict[str, dict[str, Table]]) -> list[str]:
     return lines
 
 
+def published(results: dict[str, dict[str, Table]]) -> dict[str, Any]:
+    """What the book's tables are made of: the steps of each source over all runs, and the whole run by run."""
+    return {
+        source: {
+            "steps": {key: asdict(cost) for key, cost in joined(runs.values()).items()},
+            "runs": {name: asdict(table["turning all"]) for name, table in runs.items()},
+        }
+        for source, runs in results.items()
+    }
+
+
 def over_budget(results: dict[str, dict[str, Table]]) -> list[str]:
     """What costs more than the budget allows."""
     complaints = []
@@ -253,6 +266,7 @@ def main() -> int:
             trace.unlink()
     lines = rows_of(results)
     (out / "table.md").write_text("\n".join(lines) + "\n")
+    (out / "figures.json").write_text(json.dumps(published(results)))
     print("\n".join(lines))
     print("\nevery run the same on the Cortex-M3 as natively, bit for bit")
     complaints = over_budget(results) + wrong_charges(joined(results["observer"].values()))

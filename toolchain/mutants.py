@@ -24,6 +24,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from mutation.board import BUILD, FLOORS, ROOT, Board, code_of, compiled, linked, make_board, passes
 from mutation.board import LEAST_TIME as LEAST
@@ -33,6 +34,7 @@ SEED = 2808
 WORKERS = 2
 VERDICTS = BUILD / "verdicts.jsonl"
 REPORT = BUILD / "report.txt"
+FIGURES = BUILD / "figures.json"
 OF_PROGRAMS = ("survived", "unlinked")  # verdicts that hold for these programs alone
 PATIENCE = 4.0  # times what a program takes without a mutant
 
@@ -150,25 +152,40 @@ class Score:
         p = (sum(self.killed.values()) + 2) / n
         return p * (1 - p) / n
 
-    def line(self, name: str) -> str:
-        """As published: Wilson's interval."""
-        killed, n = sum(self.killed.values()), max(self.distinct, 1)
-        p, z2 = killed / n, 1.96**2
+    def interval(self) -> tuple[float, float]:
+        """Of the share at 95 %, in percent, by Wilson."""
+        n = max(self.distinct, 1)
+        p, z2 = sum(self.killed.values()) / n, 1.96**2
         middle, half = p + z2 / 2 / n, 1.96 * math.sqrt(p * (1 - p) / n + z2 / 4 / n / n)
-        low, high = (100 * (middle + sign * half) / (1 + z2 / n) for sign in (-1, 1))
+        return 100 * (middle - half) / (1 + z2 / n), 100 * (middle + half) / (1 + z2 / n)
+
+    def published(self) -> dict[str, Any]:
+        """What the book's table is made of."""
+        low, high = self.interval()
+        return {"noticed": sum(self.killed.values()), "of": self.distinct, "low": low, "high": high}
+
+    def line(self, name: str) -> str:
+        """As printed."""
+        killed, n = sum(self.killed.values()), max(self.distinct, 1)
+        p, (low, high) = killed / n, self.interval()
         by = ", ".join(f"{program} {count}" for program, count in self.killed.items())
         dropped = f"{self.invalid} do not compile, {self.equal} change nothing"
         score = f"{killed:5d} / {self.distinct:5d} {100 * p:6.1f} %  [{low:.1f}, {high:.1f}]"
         return f"{name:21} {score}  {by}; {dropped}; some {self.mutants:.0f} in all"
 
 
-def of_all(scores: list[Score]) -> str:
+def together(scores: list[Score]) -> dict[str, float]:
     """Parts together, each with the weight of its mutants; the draws are independent, so their variances add up."""
     every = max(sum(score.mutants for score in scores), 1.0)
     share = sum(score.mutants * score.share for score in scores) / every
     spread = sum((score.mutants / every) ** 2 * score.variance for score in scores)
-    name = "all" if len(scores) == len(PARTS) else f"these {len(scores)}"
-    return f"{name:21} {100 * share:21.1f} %  +-{196 * math.sqrt(spread):.1f}  of some {every:.0f} mutants"
+    return {"percent": 100 * share, "plus_minus": 196 * math.sqrt(spread), "mutants": every}
+
+
+def of_all(scores: list[Score]) -> str:
+    """The same as printed."""
+    name, of = "all" if len(scores) == len(PARTS) else f"these {len(scores)}", together(scores)
+    return f"{name:21} {of['percent']:21.1f} %  +-{of['plus_minus']:.1f}  of some {of['mutants']:.0f} mutants"
 
 
 class Run:
@@ -313,6 +330,8 @@ def main() -> int:
         survivors += [mutant.told(run.source(mutant.file)) for mutant in told]
     lines.append(of_all(scores))
     REPORT.write_text("\n".join([*lines, "", "survivors:", *survivors]) + "\n", encoding="utf-8")
+    found = {"all": together(scores), "parts": {name: s.published() for name, s in zip(chosen, scores, strict=True)}}
+    FIGURES.write_text(json.dumps(found), encoding="utf-8")
     print("\n".join(["", *lines, f"survivors: {REPORT.relative_to(ROOT)}"]))
     return 0
 

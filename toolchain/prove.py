@@ -13,6 +13,7 @@ is.
 """
 
 import csv
+import json
 import os
 import re
 import signal
@@ -156,16 +157,20 @@ def at_once(work: Callable[[Part], Read], parts: list[Part]) -> Iterator[tuple[P
 
 
 def check(out: Path, wanted: list[str]) -> int:
-    """Reads the parts; prints a line for each, and what is new."""
-    status, bounds = 0, known()
+    """Reads the parts; prints a line for each, and what is new. Of all of them, the book's table goes to OUT."""
+    status, bounds, rows = 0, known(), []
     parts = [part for part in PARTS if not wanted or part.name in wanted]
     for part, done in at_once(lambda part: read(part, ROOT, out), parts):
         bound = bounds[part.name]
+        rows.append({"part": part.name, "words": done.words, "open": done.alarms.total()})
         left = f"{done.alarms.total()} left open ({bound.total()} known)"
         print(f"prove: {part.name}: {done.words}, {left}, {done.seconds:.0f} s", flush=True)
         for (function, kind), count in more_than(done.alarms, bound).items():
             status = 1
             print(f"{part.name} {function} {kind} {count}  # known are {bound[function, kind]}")
+    if not wanted:
+        rows.sort(key=lambda row: str(row["part"]))
+        (out / "figures.json").write_text(json.dumps(rows), encoding="utf-8")
     return status
 
 

@@ -12,23 +12,77 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from book import hooks, parameters  # noqa: E402
+from book import chip, hooks, parameters, records  # noqa: E402
 from checks import glossary, pieces  # noqa: E402
 
-STATE = "**no**, neither the flash nor the time"
-"""How docs/image.md answers whether the drive fits its chip."""
 
-
-@pytest.mark.parametrize("page", ["flash.md", "bring-up.md", "isr-cost.md"])
-def test_who_is_about_to_use_a_chip_reads_first_that_the_image_does_not_fit(page: str) -> None:
-    """Before the first heading, for as long as that is so."""
-    known = (ROOT / "docs/image.md").read_text(encoding="utf-8")
-    assert STATE in known, "the image fits: take the warnings away, and this test"
-    top = (ROOT / "docs" / page).read_text(encoding="utf-8").split("\n## ")[0]
-    warnings = [line for line in top.split("\n") if line.startswith("> **")]
-    assert any("fit" in line for line in warnings), top
-    assert "147 %" in top
+@pytest.mark.parametrize(
+    "page", ["README.md", *(f"docs/{name}.md" for name in ("way-board", "flash", "bring-up", "isr-cost"))]
+)
+def test_who_is_about_to_use_a_chip_reads_first_how_the_image_fits(page: str) -> None:
+    """By the last counts of image and interrupt, and before the first heading of the pages about the chip."""
+    known = records.load(ROOT)
+    fit = chip.fit(ROOT, known["image"]["figures"], known["isr-cost"]["figures"])
+    text = (ROOT / page).read_text(encoding="utf-8")
+    top = text if page == "README.md" else text.split("\n## ")[0]
+    assert ("does not fit its chip" in top) is not fit.fits
+    assert f"{fit.flash_share:.0f} % of the flash" in top
+    assert f"{fit.share(fit.from_flash):.0f} % of its period" in top
     assert "image.md#does-it-fit" in top
+
+
+def test_a_smaller_and_faster_image_fits() -> None:
+    known = records.load(ROOT)
+    image, cost = known["image"]["figures"], known["isr-cost"]["figures"]
+    image["flash"]["words"] -= 30000
+    image["code"]["words"] -= 30000
+    assert not chip.fit(ROOT, image, cost).fits
+    for name in ("turning all", "turning window"):
+        cost["observer"]["steps"][name]["worst"] //= 2
+    found = chip.fit(ROOT, image, cost)
+    assert found.fits
+    assert found.chance > 99
+
+
+def test_the_chip_is_full_when_all_words_cost_what_is_left() -> None:
+    known = records.load(ROOT)
+    image = {name: dict(row) for name, row in known["image"]["figures"].items()}
+    image["code"]["words"], image["ram_code"]["words"] = 40000, 0
+    image["flash"]["words"], image["flash"]["goal"] = 50000, 60000
+    assert chip.fit(ROOT, image, known["isr-cost"]["figures"]).full == pytest.approx(50000 / 40000)
+
+
+def test_figures_of_older_sources_are_said_to_be_that() -> None:
+    end = "| 1 |\n<!-- end of drift -->\n\nMore.\n"
+    assert hooks.aged(end, {}) == end
+    aged = hooks.aged(end, {"drift": "toolchain/figures.py drift"})
+    assert "Of an older state of the sources; `toolchain/figures.py drift` renews it." in aged
+    assert hooks.aged(end, {"speed": "make bench"}) == end
+    state = hooks.aged("<!-- end of state -->", {"image": "make image-check", "isr-cost": "make isr-cost"})
+    assert "`make image-check` and `make isr-cost`" in state
+
+
+def test_a_record_is_of_older_sources_as_soon_as_one_of_them_changes(tmp_path: Path) -> None:
+    for folder in ("control", "tests/m3"):
+        (tmp_path / folder).mkdir(parents=True)
+    source = tmp_path / "control/a.c"
+    source.write_text("int a;\n", encoding="utf-8")
+    records.keep(tmp_path, "isr-cost", "make isr-cost", {"observer": 1})
+    assert records.outdated(tmp_path) == {}
+    source.write_text("int b;\n", encoding="utf-8")
+    assert records.outdated(tmp_path) == {"isr-cost": "make isr-cost"}
+
+
+def test_a_picture_that_no_command_made_fails_the_check(tree: Path) -> None:
+    images = tree / records.PICTURES
+    images.mkdir(exist_ok=True)
+    (images / "bench.png").write_bytes(b"as made")
+    records.keep(tree, "pictures", "make pictures", records.sums(images))
+    assert pieces.check(tree) == []
+    (images / "bench.png").write_bytes(b"another")
+    assert [str(finding) for finding in pieces.check(tree)] == [
+        "docs/images/bench.png:1: is not as make pictures left it"
+    ]
 
 
 @pytest.fixture
@@ -39,6 +93,8 @@ def tree(tmp_path: Path) -> Path:
     (tmp_path / "firmware").mkdir()
     for name in ("README.md", parameters.LIST):
         shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / chip.COSTS).parent.mkdir()
+    shutil.copy(ROOT / chip.COSTS, tmp_path / chip.COSTS)
     return tmp_path
 
 

@@ -1,28 +1,22 @@
 """Pieces of pages that are templates, and the figures that they name.
 
-docs/figures/NAME.json is what one command gave (`make figures`, toolchain/figures.py): `command`, `sources` (a sum over
-what decides the figures), `figures`. A template reaches it as `data.NAME`; `peak(…)` and the others below write a value
-as the book does. A figure that misses its goal is bold.
+A template reaches the figures of a record (book/records.py) as `data.NAME`, and whether the drive fits its chip as
+`fit`; `value(…)` and the others below write a value as the book does. A figure that misses its goal is bold.
 """
 
 from __future__ import annotations
 
-import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 
-FOLDER = "docs/figures"
+from book import chip, records
+
 TEMPLATES = "toolchain/book/pieces"
-
-
-def load(root: Path) -> dict[str, Any]:
-    """What all commands gave, by the name of the file."""
-    files = sorted((root / FOLDER).glob("*.json"))
-    return {path.stem: json.loads(path.read_text(encoding="utf-8"))["figures"] for path in files}
 
 
 def number(value: float | None, digits: int = 2) -> str:
@@ -110,6 +104,22 @@ def over_speed(runs: Mapping[str, Sequence[Sequence[float | None]]], loads: Mapp
     return "\n".join(out)
 
 
+def counted(found: Mapping[str, Any] | None) -> str:
+    """Two cells: instructions in the mean and at most."""
+    return f"{fixed(found['mean'], 0)} | {found['worst']}" if found else " | "
+
+
+def run_by_run(cost: Mapping[str, Any], sources: Sequence[str]) -> str:
+    """A table of the control interrupt's instructions, a row for each run, by its speed."""
+    head = " | ".join(f"{source}: mean | worst" for source in sources)
+    out = [f"| at rpm | {head} |", "| --- |" + " --- | --- |" * len(sources)]
+    names = {name for source in sources for name in cost[source]["runs"]}
+    for name in sorted(names, key=lambda name: (int(name.partition(",")[0]), name)):
+        cells = (counted(cost[source]["runs"].get(name)) for source in sources)
+        out += [f"| {name} | {' | '.join(cells)} |"]
+    return "\n".join(out)
+
+
 def thousands(whole: int) -> str:
     """1 234 567."""
     return f"{whole:,}".replace(",", " ")
@@ -121,7 +131,10 @@ def identical(rows: Sequence[Mapping[str, Any]]) -> str:
     return f"{same} of {len(rows)}"
 
 
-USED = (value, number, fixed, tally, plain, within, share, printed, held, over_speed, thousands, identical)
+USED = (
+    *(value, number, fixed, tally, plain, within, share, printed, held, over_speed, counted, run_by_run),
+    *(thousands, identical, chip.hundreds),
+)
 
 
 def environment(root: Path) -> Environment:
@@ -133,8 +146,19 @@ def environment(root: Path) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.globals.update(data=load(root), **{each.__name__: each for each in USED})
+    data = {name: record["figures"] for name, record in records.load(root).items()}
+    made.globals.update(data=data, **{each.__name__: each for each in USED})
+    if {"image", "isr-cost"} <= data.keys():
+        made.globals["fit"] = chip.fit(root, data["image"], data["isr-cost"])
     return made
+
+
+def drawn_from(root: Path, name: str) -> set[str]:
+    """The records that a piece's template names; none where it has no template."""
+    path = root / TEMPLATES / f"{name}.md.j2"
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    named = {known for known in records.load(root) if re.search(rf'\bdata\.{known}\b|"{known}"', text)}
+    return named | ({"image", "isr-cost"} if re.search(r"\bfit\.|_chip", text) else set())
 
 
 def piece(root: Path, name: str) -> str:

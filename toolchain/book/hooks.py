@@ -1,16 +1,29 @@
-"""What mkdocs does for the book beside its own work: abbreviations are explained, the search needs no server."""
+"""What mkdocs does for the book beside its own work.
+
+Abbreviations are explained, the search needs no server, and figures of older sources than those of the book are said to
+be that.
+"""
 
 from __future__ import annotations
 
 import json
 import re
 import shutil
+import sys
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+from book import figures, records  # noqa: E402
+
+ROOT = HERE.parents[1]
 GLOSSARY = HERE.parents[1] / "docs/glossary.md"
 _ROW = re.compile(r"^\| \*\*(?P<term>[^*]+)\*\* \| (?P<words>.+?) \|$", re.MULTILINE)
+_END = re.compile(r"^<!-- end of (?P<name>[\w-]+) -->$", re.MULTILINE)
 _LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 
 
@@ -20,11 +33,31 @@ def abbreviations(text: str | None = None) -> dict[str, str]:
     return {match["term"]: _LINK.sub(r"\1", match["words"]).replace("`", "") for match in _ROW.finditer(known)}
 
 
+@cache
+def _outdated() -> dict[str, str]:
+    return records.outdated(ROOT)
+
+
+def aged(markdown: str, outdated: Mapping[str, str]) -> str:
+    """Behind every piece whose records are of older sources: that it is so, and which command renews it."""
+
+    def words(match: re.Match[str]) -> str:
+        commands = sorted({outdated[name] for name in figures.drawn_from(ROOT, match["name"]) if name in outdated})
+        said = " and ".join(f"`{command}`" for command in commands)
+        return match[0] + (f"\n\n*Of an older state of the sources; {said} renews it.*\n" if commands else "")
+
+    return _END.sub(words, markdown)
+
+
 def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
     """Behind every page but the glossary what its abbreviations mean; the extension `abbr` puts it where they stand."""
     if page.file.src_uri == GLOSSARY.name:
         return markdown
-    return markdown + "\n\n" + "\n".join(f"*[{term}]: {words}" for term, words in abbreviations().items())
+    return (
+        aged(markdown, _outdated())
+        + "\n\n"
+        + "\n".join(f"*[{term}]: {words}" for term, words in abbreviations().items())
+    )
 
 
 def on_post_build(*, config: Any, **_: Any) -> None:

@@ -4,6 +4,7 @@ Takes objects and a linker command file, says what is missing, where everything 
 stack gets; leaves a map. Estimates: see sizes.py.
 """
 
+import json
 import re
 import sys
 from collections.abc import Iterable
@@ -114,6 +115,13 @@ def budgets(figures: dict[str, int]) -> tuple[list[str], list[str]]:
     return rows, complaints
 
 
+def published(figures: dict[str, int]) -> dict[str, dict[str, int | str]]:
+    """What the book's table is made of: of each budget what it is about, words now, and the goal."""
+    fields = [line.partition("#")[0].split("|") for line in BUDGET.read_text(encoding="utf-8").splitlines()]
+    rows = [[field.strip() for field in row] for row in fields if len(row) == 4]
+    return {key: {"what": what, "words": figures[key], "goal": int(goal)} for key, what, goal, _ in rows}
+
+
 def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Depth) -> dict[str, int]:
     """What the budgets are about."""
     words = pile.words()
@@ -145,7 +153,8 @@ def link(arguments: list[str]) -> int:
     if SECTOR_A in file.ranges:
         depth = stack_depth(pile.objects)
         fill, unfit = place(words, file)
-        rows, grown = budgets(figures_of(pile, words, file, depth))
+        figures = figures_of(pile, words, file, depth)
+        rows, grown = budgets(figures)
         grown += unresident(pile.objects, file, RESIDENT) + left_in_flash(pile.objects, marked(DRIVERS))
     else:  # a program in RAM
         depth = stack_depth(pile.objects, ("main",))
@@ -171,6 +180,8 @@ def link(arguments: list[str]) -> int:
     output = Path(options["--output_file"])
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
     output.write_text(NO_CODE, encoding="utf-8")
+    if SECTOR_A in file.ranges:
+        output.with_suffix(".json").write_text(json.dumps(published(figures)), encoding="utf-8")
     for complaint in (*(f"undefined: {name}" for name in missing), *grown, *depth.complaints):
         print(f"link (stand-in): {complaint}", file=sys.stderr)
     return 1 if missing or grown or depth.complaints else 0

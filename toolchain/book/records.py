@@ -1,0 +1,128 @@
+"""Records: what one command gave, docs/figures/NAME.json, which the tables of README.md and the book are made from.
+
+A record says which command made it, of which sources (a sum over their text), and the figures. The runs of `stillspin`
+are kept by toolchain/figures.py; commands of the Makefile keep their own (toolchain/keep.py).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+FOLDER = "docs/figures"
+SUFFIXES = {".c", ".h", ".cpp", ".hpp", ".toml", ".py", ".cmd"}
+PICTURES = "docs/images"
+DRIVE = ("control", "estimators", "firmware", "hal", "svpwm")
+# What decides a figure of a run: the drive, what it runs on, what is done with it, and how it is judged.
+RUNS = (
+    *DRIVE,
+    *(
+        f"sim_host/{name}"
+        for name in ("bench", "chip", "devices", "plant", "motors", "profiles", "scenarios", "schemes")
+    ),
+    *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs")),
+)
+UNKNOWN = "unknown"
+"""Sources of a record whose figures were taken from an older page."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """A command of the Makefile that keeps a record.
+
+    Attributes:
+        command: that renews it; result: the file that it leaves, or the folder of pictures, of which the record has
+            sums; sources: what decides its figures.
+    """
+
+    command: str
+    result: str
+    sources: tuple[str, ...]
+
+
+COMMANDS = {
+    "image": Made(
+        "make image-check",
+        "build/image-check/hal/f2808/image/stillspin_f2808.json",
+        (
+            *DRIVE,
+            *("hal/f2808/image/boot.asm", "toolchain/c28x", "toolchain/f2808", "toolchain/image"),
+            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py"),
+        ),
+    ),
+    "isr-cost": Made("make isr-cost", "build/isr-cost/figures.json", (*DRIVE, "toolchain/m3_cost.py", "tests/m3")),
+    "isr-bound": Made(
+        "make isr-bound",
+        "build/isr-bound/figures.json",
+        (*DRIVE, "toolchain/m3_bound.py", "toolchain/m3_paths.txt", "toolchain/paths", "tests/m3"),
+    ),
+    "prove": Made(
+        "make prove", "build/prove/figures.json", (*DRIVE, "tests/prove", "toolchain/prove.py", "toolchain/proof")
+    ),
+    "mcdc": Made("make mcdc", "build/mcdc/figures.json", (*DRIVE, "tests", "toolchain/mcdc.py")),
+    "mutants": Made(
+        'make mutants SAMPLE="60 near seed=41"',
+        "build/mutants/figures.json",
+        (*DRIVE, "tests", "toolchain/mutants.py", "toolchain/mutation"),
+    ),
+    "speed": Made("make bench", "build/bench/figures.json", RUNS),
+    "pictures": Made(
+        "make pictures",
+        PICTURES,
+        (*RUNS, "sim_host/stillspin/tune", "toolchain/overview.py", "toolchain/tuning_pictures.py"),
+    ),
+}
+
+
+def _files(root: Path, trees: tuple[str, ...]) -> list[Path]:
+    found: set[Path] = set()
+    for tree in trees:
+        where = root / tree
+        found |= {where} if where.is_file() else {path for path in where.rglob("*") if path.suffix in SUFFIXES}
+    return sorted(found)
+
+
+def sources(root: Path, trees: tuple[str, ...] = RUNS) -> str:
+    """A sum over everything that decides a record's figures."""
+    total = hashlib.sha256()
+    for path in _files(root, trees):
+        total.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes() + b"\0")
+    return total.hexdigest()[:16]
+
+
+def sources_of(root: Path, name: str) -> str:
+    """The same for a record by its name, as the sources are now."""
+    return sources(root, COMMANDS[name].sources if name in COMMANDS else RUNS)
+
+
+def load(root: Path) -> dict[str, dict[str, Any]]:
+    """All records, by name."""
+    files = sorted((root / FOLDER).glob("*.json"))
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in files}
+
+
+def sums(folder: Path) -> dict[str, str]:
+    """A sum of each picture of a folder."""
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()[:16] for path in sorted(folder.glob("*.png"))}
+
+
+def keep(root: Path, name: str, command: str, figures: Any, made_of: str = "") -> None:
+    """Write a record; `made_of`: the sum over its sources when the command began, where that is not now."""
+    content = {"command": command, "sources": made_of or sources_of(root, name), "figures": figures}
+    (root / FOLDER).mkdir(parents=True, exist_ok=True)
+    text = json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True)
+    (root / FOLDER / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+
+
+def outdated(root: Path) -> dict[str, str]:
+    """Records whose sources have changed since they were made, and what renews each."""
+    now: dict[tuple[str, ...], str] = {}
+    found = {}
+    for name, record in load(root).items():
+        trees = COMMANDS[name].sources if name in COMMANDS else RUNS
+        if now.setdefault(trees, sources(root, trees)) != record["sources"]:
+            found[name] = record["command"] if name in COMMANDS else f"toolchain/figures.py {name}"
+    return found
