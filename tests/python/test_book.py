@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from book import chip, hooks, parameters, records  # noqa: E402
+from book import chip, figures, hooks, parameters, records  # noqa: E402
 from checks import glossary, pieces  # noqa: E402
 
 
@@ -71,6 +71,18 @@ def test_a_record_is_of_older_sources_as_soon_as_one_of_them_changes(tmp_path: P
     assert records.outdated(tmp_path) == {}
     source.write_text("int b;\n", encoding="utf-8")
     assert records.outdated(tmp_path) == {"isr-cost": "make isr-cost"}
+
+
+def test_runs_stand_by_their_speed_and_a_source_that_has_none_leaves_a_gap() -> None:
+    runs = {name: {"mean": 10.4, "worst": 20} for name in ("600", "0, held", "0", "60")}
+    cost = {"observer": {"runs": runs}, "paper": {"runs": {"60": {"mean": 1.0, "worst": 2}}}}
+    rows = figures.run_by_run(cost, ["observer", "paper"]).split("\n")[2:]
+    assert rows == [
+        "| 0 | 10 | 20 |  |  |",
+        "| 0, held | 10 | 20 |  |  |",
+        "| 60 | 10 | 20 | 1 | 2 |",
+        "| 600 | 10 | 20 |  |  |",
+    ]
 
 
 def test_a_picture_that_no_command_made_fails_the_check(tree: Path) -> None:

@@ -135,6 +135,7 @@ def test_figure_beyond_its_limit_is_caught(
     monkeypatch.setattr(link, "BUDGET", budget)
     rows = ["| all code | 100 | 100 | met |", "| stack | 10 | 9 | **not met** |"]
     assert link.budgets({"code": 100, "stack": 10}) == (rows, complaints)
+    assert link.published({"code": 100, "stack": 10})["stack"] == {"what": "stack", "words": 10, "goal": 9}
 
 
 @pytest.mark.parametrize(("limit", "status"), [(9999, 0), (0, 1)])

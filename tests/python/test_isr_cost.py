@@ -3,6 +3,7 @@
 The counts are given: neither recorder nor emulator is needed.
 """
 
+import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -57,3 +58,10 @@ def test_count_beyond_a_budget_or_a_charge_is_caught(
 ) -> None:
     assert run(*given) == len(said)
     assert [line for line in capsys.readouterr().out.splitlines() if line.startswith("isr-cost:")] == said
+
+
+def test_the_counts_are_left_for_the_book(run: Callable[[int, int], int], tmp_path: Path) -> None:
+    run(800, 1000)
+    left = json.loads((tmp_path / "figures.json").read_text(encoding="utf-8"))
+    assert left["observer"]["steps"]["turning all"]["worst"] == 800
+    assert left["paper"]["runs"]["80"] == {"periods": 10, "mean": 600.0, "worst": 700}

@@ -57,6 +57,8 @@ def test_a_score_has_wilsons_interval() -> None:
     score = mutants.Score(40, distinct=10, killed={"a_test": 9}, invalid=10)
     assert score.line("x").split()[:8] == ["x", "9", "/", "10", "90.0", "%", "[59.6,", "98.2]"]
     assert score.mutants == 20
+    left = score.published()
+    assert (left["noticed"], left["of"], round(left["low"], 1), round(left["high"], 1)) == (9, 10, 59.6, 98.2)
 
 
 def test_parts_together_weigh_as_much_as_they_have_mutants() -> None:
