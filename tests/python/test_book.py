@@ -100,7 +100,7 @@ def test_a_picture_that_no_command_made_fails_the_check(tree: Path) -> None:
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """A copy of what the pieces of the book are made of."""
-    for folder in ("docs", "toolchain/book", "hal/boards"):
+    for folder in ("docs", "toolchain/book", "hal/boards", "sim_host/motors", "sim_host/profiles"):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
     (tmp_path / "firmware").mkdir()
     for name in ("README.md", parameters.LIST):

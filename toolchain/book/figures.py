@@ -1,13 +1,14 @@
 """Pieces of pages that are templates, and the figures that they name.
 
-A template reaches the figures of a record (book/records.py) as `data.NAME`, and whether the drive fits its chip as
-`fit`; `value(…)` and the others below write a value as the book does. A figure that misses its goal is bold.
+A template reaches the figures of a record (book/records.py) as `data.NAME`, whether the drive fits its chip as
+`fit`, and the files of motors and profiles as `motors` and `profiles`; `value(…)` and the others below write a value as the book does. A figure that misses its goal is bold.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -137,6 +138,10 @@ USED = (
 )
 
 
+def _files(folder: Path) -> dict[str, Any]:
+    return {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.toml"))}
+
+
 def environment(root: Path) -> Environment:
     """What templates may use."""
     made = Environment(
@@ -148,6 +153,7 @@ def environment(root: Path) -> Environment:
     )
     data = {name: record["figures"] for name, record in records.load(root).items()}
     made.globals.update(data=data, **{each.__name__: each for each in USED})
+    made.globals.update(motors=_files(root / "sim_host/motors"), profiles=_files(root / "sim_host/profiles"))
     if {"image", "isr-cost"} <= data.keys():
         made.globals["fit"] = chip.fit(root, data["image"], data["isr-cost"])
     return made
