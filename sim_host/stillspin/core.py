@@ -11,7 +11,6 @@ import json
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Protocol, cast
@@ -21,10 +20,9 @@ import numpy.typing as npt
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
 from stillspin.core_loop import NativeStepLoop, NativeStepLoops
+from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
-from stillspin.quantity import Range
 
-Value = float | int | bool | str
 Plant = dict[str, dict[str, Value]]
 Signals = dict[str, npt.NDArray[Any]]
 Command = tuple[float, str, float]
@@ -196,86 +194,6 @@ def load() -> NativeCore:
 
 def _choices(row: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(str(choice) for choice in row.get("choices", ()))
-
-
-@dataclass(frozen=True)
-class Entry:
-    """One settable number, switch or word: an entry of the plant or a firmware parameter."""
-
-    name: str
-    unit: str
-    minimum: float | None
-    maximum: float | None
-    default: Value
-    help: str
-    choices: tuple[str, ...] = ()
-    access: str = ""
-    number: int = 0
-    decimals: int = 0
-    whole: bool = False
-
-    @property
-    def range_text(self) -> str:
-        """The allowed values in words, such as "0 … 450 V"."""
-        if self.choices:
-            return "one of " + ", ".join(self.choices)
-        if isinstance(self.default, bool):
-            return "true or false"
-        return str(self.range)
-
-    @property
-    def range(self) -> Range:
-        """Of a number."""
-        return Range(self.minimum, self.maximum, self.unit, self.whole)
-
-    def read(self, typed: str, where: str) -> Value:
-        """What somebody typed, as the type of this entry.
-
-        Raises:
-            InputError: as `check`.
-        """
-        if typed in self.choices or isinstance(self.default, str):
-            return self.check(typed, where)
-        word = {"true": True, "false": False}.get(typed.lower())
-        if isinstance(self.default, bool) or (word is not None and self.access):
-            return self.check(typed if word is None else word, where)
-        if self.choices and not typed.lstrip("+-.")[:1].isdigit():
-            return self.check(typed, where)
-        return self._number(typed, where)
-
-    def check(self, value: object, where: str) -> Value:
-        """`value` as the type of this entry.
-
-        Args:
-            value: a bool, number or text, from TOML or the command line.
-            where: how to name it in a message.
-
-        Raises:
-            InputError: wrong type or out of range.
-        """
-        if self.choices and isinstance(value, str):
-            return self._choice(value, where)
-        if isinstance(self.default, bool):
-            if not isinstance(value, bool):
-                raise InputError(f"{where} = {value!r}: must be true or false")
-            return value
-        if isinstance(self.default, str):
-            if not isinstance(value, str):
-                raise InputError(f"{where} = {value!r}: must be text")
-            return value
-        if isinstance(value, str):
-            raise InputError(f"{where}: {value!r} is text, no number; {self.range_text}")
-        return self._number(int(value) if isinstance(value, bool) and self.access else value, where)
-
-    def _choice(self, value: str, where: str) -> Value:
-        if value not in self.choices:
-            raise InputError(f"{where} = '{value}': not a choice{did_you_mean(value, self.choices)}")
-        return value if isinstance(self.default, str) else self.choices.index(value)
-
-    def _number(self, value: object, where: str) -> Value:
-        number = self.range.read(value, where)
-        # A parameter's default is always a number; what is whole in the plant (poles, bits) has a whole default.
-        return int(number) if isinstance(self.default, int) else number
 
 
 Schema = dict[str, dict[str, Entry]]

@@ -8,7 +8,13 @@ from typing import Any
 
 from stillspin.errors import InputError
 
-EXTRA_OF = {"jinja2": "virtual", "matplotlib": "plots", "pandas": "tables", "pyarrow": "tables"}
+EXTRA_OF = {
+    "jinja2": "virtual",
+    "jsonschema": "virtual",
+    "matplotlib": "plots",
+    "pandas": "tables",
+    "pyarrow": "tables",
+}
 """Package -> the extra in sim_host/pyproject.toml that brings it."""
 
 

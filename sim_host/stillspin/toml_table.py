@@ -64,11 +64,6 @@ class Table:
             raise InputError(f"{self.where}: '{key}' is missing")
         return Range(minimum).read(self._untyped(key, value), f"{self.where}: {key}")
 
-    def whole(self, key: str, default: int, minimum: int) -> int:
-        """A whole number."""
-        value = self._untyped(key, self.raw(key, default))
-        return Range(minimum, whole=True).read_whole(value, f"{self.where}: {key}")
-
     def _untyped(self, key: str, value: Any) -> Any:
         if isinstance(value, str):
             raise self.fail(key, "must be a number, without quotes")
@@ -80,27 +75,6 @@ class Table:
         if not isinstance(value, bool):
             raise self.fail(key, "must be true or false")
         return value
-
-    def optional_number(self, key: str) -> float | None:
-        """A finite number, or None when it is not given."""
-        return self.number(key) if self.has(key) else None
-
-    def rows(self, key: str, *kinds: type) -> list[tuple[Any, ...]]:
-        """An array of arrays, each with one element per kind; numbers come back as float."""
-        value = self.raw(key, [])
-        words = ", ".join("number" if kind is float else "text" for kind in kinds)
-        if not isinstance(value, list):
-            raise self.fail(key, f"must be a list of [{words}]")
-        return [self._row(key, row, kinds, words) for row in value]
-
-    def _row(self, key: str, row: Any, kinds: tuple[type, ...], words: str) -> tuple[Any, ...]:
-        problem = InputError(f"{self.where}: {key}: {row!r} must be [{words}]")
-        if not isinstance(row, list) or len(row) != len(kinds):
-            raise problem
-        converted = [as_number(item) if kind is float else item for item, kind in zip(row, kinds, strict=True)]
-        if not all(isinstance(item, kind) for item, kind in zip(converted, kinds, strict=True)):
-            raise problem
-        return tuple(converted)
 
     def table(self, key: str) -> Table:
         """A sub-table, empty when it is not given."""

@@ -1,78 +1,150 @@
-"""The JSON schema of motor and profile files says what the loader says."""
+"""The schemas of motor, profile and scenario files: the loaders check by them, and others read the same from them."""
 
-import importlib
+import copy
 import json
-import tomllib
+import math
+import random
 
+import fastjsonschema
 import jsonschema
 import pytest
 from typer.testing import CliRunner
 
-from stillspin import cli, core, resources
-from stillspin.cases import file_schema, profile
+from stillspin import cli, core, resources, toml_table
+from stillspin.cases import file_schema, profile, scenario_file
 from stillspin.errors import InputError
 
 FILES = [(kind, name) for kind in file_schema.KINDS for name in resources.names(f"{kind}s")]
+OTHERS = ["x", "", -1, 0, 1, 2.5, 1e9, True, [], [[]], {}, {"x": 1}, [0.1, 0.2], math.nan, math.inf]
+CHANGES = 40  # of each file
+
+
+def made(kind):
+    native = core.load()
+    return file_schema.schema(kind, core.plant_schema(native), core.parameters(native))
 
 
 @pytest.fixture(scope="module")
-def native():
-    return importlib.import_module("stillspin._core")
+def judges():
+    """Another implementation than the loader's, by kind of file."""
+    return {kind: fastjsonschema.compile(made(kind)) for kind in file_schema.KINDS}
 
 
-def complaints(native, kind, text):
-    made = file_schema.schema(kind, core.plant_schema(native), core.parameters(native))
-    jsonschema.Draft202012Validator.check_schema(made)
-    return list(jsonschema.Draft202012Validator(made).iter_errors(tomllib.loads(text)))
+def fits(judges, kind, data):
+    try:
+        judges[kind](data)
+    except fastjsonschema.JsonSchemaValueException:
+        return False
+    return all(math.isfinite(value) for _, value in places(data) if isinstance(value, float))
+
+
+def load(monkeypatch, kind, name, data):
+    """What the loader says of a file of this content; a RelationError is of what a schema cannot say."""
+    native, read = core.load(), toml_table.read
+    own = resources.directory(f"{kind}s") / f"{name}.toml"
+    with monkeypatch.context() as patch:
+        patch.setattr(toml_table, "read", lambda p: toml_table.Table(data, str(p)) if p == own else read(p))
+        try:
+            if kind == "scenario":
+                scenario_file.read(own)
+            else:
+                names = ("ideal", name) if kind == "motor" else (name, "A")
+                profile.load(names[0], core.plant_schema(native), core.parameters(native), names[1], checked=False)
+        except InputError as error:
+            return error
+    return None
+
+
+def content(kind, name):
+    return toml_table.read(resources.directory(f"{kind}s") / f"{name}.toml").items()
+
+
+def places(data, path=()):
+    """Every value of a file, with the keys that lead to it."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+        yield (*path, key), value
+        if isinstance(value, dict | list):
+            yield from places(value, (*path, key))
+
+
+def changed(data, dice):
+    """The content with one place of it left out, replaced, or with an unknown key beside it."""
+    result = copy.deepcopy(data)
+    *way, last = dice.choice([path for path, _ in places(result)])
+    inside = result
+    for key in way:
+        inside = inside[key]
+    change = dice.randrange(4)
+    if change == 0:
+        del inside[last]
+    elif change == 1 and isinstance(inside, dict):
+        inside["nonsense"] = inside[last]
+    else:
+        inside[last] = copy.deepcopy(dice.choice(OTHERS))
+    return result, (change, *way, last)
+
+
+@pytest.mark.parametrize("kind", file_schema.KINDS)
+def test_a_schema_is_one(kind):
+    jsonschema.Draft7Validator.check_schema(made(kind))
 
 
 @pytest.mark.parametrize(("kind", "name"), FILES)
-def test_every_file_that_ships_fits_its_schema(native, kind, name):
-    text = (resources.directory(f"{kind}s") / f"{name}.toml").read_text(encoding="utf-8")
-    assert complaints(native, kind, text) == []
+def test_every_file_that_ships_fits_its_schema(judges, kind, name):
+    assert fits(judges, kind, content(kind, name))
+
+
+@pytest.mark.parametrize(("kind", "name"), FILES)
+def test_the_loader_takes_what_the_schema_takes_and_nothing_else(judges, monkeypatch, kind, name):
+    dice, data = random.Random(name), content(kind, name)
+    for _ in range(CHANGES):
+        other, change = changed(data, dice)
+        error = load(monkeypatch, kind, name, other)
+        taken = error is None or isinstance(error, scenario_file.RelationError)
+        assert taken == fits(judges, kind, other), (change, error)
+        assert error is None or (f"{name}.toml: " in str(error) and "\n" not in str(error)), (change, error)
 
 
 @pytest.mark.parametrize(
-    ("text", "right"),
+    ("place", "value", "words"),
     [
-        ("[machine]\npole_pairs = 4\n", True),
-        ("[machine]\npole_pairs = 4.0\n", True),
-        ("[machine]\npole_pairs = 2.5\n", False),
-        ("[machine]\npole_pairs = 51\n", False),
-        ("[machine]\npoles = 8\n", False),
-        ("[machines]\npole_pairs = 4\n", False),
-        ("[machine]\nresistance = '1'\n", False),
-        ("[machine]\nresistance = 1\n", True),
-        ("[link]\nstiff = 1\n", False),
-        ("[link]\nstiff = true\n", True),
-        ("[solver]\nmethod = 'rk4'\n", True),
-        ("[solver]\nmethod = 'rk5'\n", False),
-        ("[parameters]\nmtpa = true\n", True),
-        ("[parameters]\nmtpa = 1\n", True),
-        ("[parameters]\nmtpa = 2\n", False),
-        ("[parameters]\ncurrent_limit = 1e6\n", False),
-        ("[parameters]\ncurent_limit = 1\n", False),
-        ("commission = 'yes'\n", False),
-        ("description = 'A pump.'\n", True),
+        (("machine", "pole_pairs"), 4.0, ""),
+        (("machine", "pole_pairs"), 2.5, "machine.pole_pairs: 2.5 is not a whole number; 1 … 50"),
+        (("machine", "pole_pairs"), 51, "machine.pole_pairs: 51 is out of range; 1 … 50"),
+        (("machine", "poles"), 8, "machine: unknown key 'poles'; did you mean 'pole_pairs'?"),
+        (("machines",), {}, "unknown key 'machines'; did you mean 'machine'?"),
+        (("machine",), 4, "machine = 4: must be a table"),
+        (("machine", "resistance"), "1", "machine.resistance = '1': must be a number"),
+        (("machine", "resistance"), math.nan, "machine.resistance: nan ohm is no number"),
+        (("link", "stiff"), 1, "link.stiff = 1: must be true or false"),
+        (("link", "stiff"), True, ""),
+        (("solver",), {"method": "rk4"}, ""),
+        (("solver",), {"method": "rk5"}, "solver.method = 'rk5': not a choice; did you mean 'rk4'?"),
+        (("parameters", "mtpa"), True, ""),
+        (("parameters", "mtpa"), 1, ""),
+        (("parameters", "mtpa"), 2, "parameters.mtpa: 2 is out of range; 0 … 1"),
+        (("parameters", "curent_limit"), 1, "unknown key 'curent_limit'; did you mean 'current_limit'?"),
+        (("commission",), "yes", "commission = 'yes': must be true or false"),
     ],
 )
-def test_the_schema_takes_what_the_loader_takes_and_nothing_else(native, tmp_path, text, right):
-    assert (complaints(native, "motor", text) == []) == right
-    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
-    schema, known = core.plant_schema(native), core.parameters(native)
-    try:
-        profile.load("ideal", schema, known, str(tmp_path / "mine.toml"), checked=False)
-        taken = True
-    except InputError:
-        taken = False
-    assert taken == right
+def test_a_complaint_names_place_value_and_what_is_allowed(judges, monkeypatch, place, value, words):
+    data = content("motor", "A")
+    inside = data
+    for key in place[:-1]:
+        inside = inside[key]
+    inside[place[-1]] = value
+    error = load(monkeypatch, "motor", "A", data)
+    assert (words == "") == (error is None) == fits(judges, "motor", data)
+    assert words in str(error or "")
 
 
-def test_the_command_writes_the_schema_and_says_how_an_editor_finds_it(native, tmp_path):
+def test_the_command_writes_the_schema_and_says_how_an_editor_finds_it(tmp_path):
     path = tmp_path / "motor.schema.json"
     result = CliRunner().invoke(cli.app, ["schema", "motor", "--out", str(path)])
     assert result.exit_code == 0, result.stderr
     assert "#:schema ./motor.schema.json" in result.stdout
     written = json.loads(path.read_text(encoding="utf-8"))
     assert written["properties"]["machine"]["properties"]["resistance"]["description"].endswith("[ohm]")
+    shown = CliRunner().invoke(cli.app, ["schema", "scenario"])
+    assert "encoder_trim" in json.loads(shown.stdout)["definitions"]["parameters"]["properties"]
     assert CliRunner().invoke(cli.app, ["schema", "moter"]).exit_code == 2

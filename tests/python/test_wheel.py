@@ -68,7 +68,7 @@ def test_the_wheel_is_pure_python_and_has_every_file_of_the_package(wheels):
 
 def test_the_client_needs_neither_plots_nor_tables_nor_a_compiler(client):
     asked = "import importlib.util as u, shutil; print([n for n in {} if u.find_spec(n)], shutil.which('cc'))"
-    said = client.run("python", "-c", asked.format(["matplotlib", "pyarrow", "pandas", "jinja2", "stillspin._core"]))
+    said = client.run("python", "-c", asked.format(["matplotlib", "pyarrow", "pandas", "jinja2", "jsonschema", "stillspin._core"]))
     assert said.stdout.strip() == "[] None", said.stderr
 
 
@@ -164,7 +164,7 @@ def test_what_is_missing_is_one_line_with_the_remedy(client, arguments, extra):
 
 def test_the_extra_brings_the_virtual_drive(wheels, tmp_path):
     made = Environment(tmp_path)
-    made.lend(closure([*needs(wheels[0]), "matplotlib", "pyarrow", "jinja2"]))
+    made.lend(closure([*needs(wheels[0]), "matplotlib", "pyarrow", "jinja2", "jsonschema"]))
     made.install(wheels[1])
     made.install(wheels[0])
     said = made.run("stillspin", "params", "dump", "--changed", "--drive", "virtual:")

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from stillspin import core, resources, toml_table
 from stillspin.cases.profile import Profile, merged
 from stillspin.cases.scenario import Scenario
-from stillspin.core import Plant, Value
+from stillspin.core import Plant
+from stillspin.entry import Entry, Value
 from stillspin.errors import InputError
 from stillspin.runs.execute import Settings
 
@@ -52,7 +53,7 @@ class Worlds:
     own: Profile
     ideal: Profile
     schema: core.Schema
-    known: Mapping[str, core.Entry]
+    known: Mapping[str, Entry]
 
     def value(self, where: Profile, entry: tuple[str, str]) -> Value:
         """What an entry of the plant is in a profile."""
@@ -136,7 +137,7 @@ def exact(worlds: Worlds) -> dict[str, float]:
     }
 
 
-def load(schema: core.Schema, known: Mapping[str, core.Entry]) -> list[Effect]:
+def load(schema: core.Schema, known: Mapping[str, Entry]) -> list[Effect]:
     """All effects.
 
     Raises:
@@ -148,7 +149,7 @@ def load(schema: core.Schema, known: Mapping[str, core.Entry]) -> list[Effect]:
     return effects
 
 
-def _effect(table: toml_table.Table, schema: core.Schema, known: Mapping[str, core.Entry]) -> Effect:
+def _effect(table: toml_table.Table, schema: core.Schema, known: Mapping[str, Entry]) -> Effect:
     title, mark, exactly = table.text("title"), table.text("mark"), table.switch("exact")
     entries = () if exactly else _entries(table, "entries", schema)
     needs = _entries(table, "needs", schema) if table.has("needs") else ()

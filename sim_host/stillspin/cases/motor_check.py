@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from stillspin import core
 from stillspin.cases.profile import Profile
+from stillspin.entry import Entry
 from stillspin.errors import InputError
 
 _PERIOD = 1e-4  # s, of the control interrupt
@@ -33,7 +34,7 @@ class Motor:
 
     profile: Profile
     schema: core.Schema
-    known: Mapping[str, core.Entry]
+    known: Mapping[str, Entry]
 
     def plant(self, section: str, key: str) -> float:
         """An entry of the plant."""

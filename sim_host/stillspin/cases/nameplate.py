@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from stillspin import core
+from stillspin.entry import Entry
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float
     return found
 
 
-def not_stated(plant: core.Plant, stated: Mapping[str, float], known: Mapping[str, core.Entry]) -> tuple[str, ...]:
+def not_stated(plant: core.Plant, stated: Mapping[str, float], known: Mapping[str, Entry]) -> tuple[str, ...]:
     """What a motor's file leaves out, and what the drive keeps instead, in words."""
     open_ = [
         (f"{row.section}.{row.key}", row.parameter)

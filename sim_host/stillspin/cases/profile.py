@@ -12,10 +12,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
-from stillspin import core, resources, toml_table
-from stillspin.cases import nameplate
+from stillspin import core, json_schema, resources, toml_table
+from stillspin.cases import file_schema, nameplate
+from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 
 
@@ -61,7 +61,7 @@ class _File:
 def load(
     name_or_path: str,
     schema: core.Schema,
-    known: Mapping[str, core.Entry],
+    known: Mapping[str, Entry],
     motor: str = resources.DEFAULT_MOTOR,
     *,
     checked: bool = True,
@@ -78,8 +78,8 @@ def load(
     Raises:
         InputError: not found, not TOML, unknown entry, wrong type or out of range.
     """
-    machine = _read(resources.find("motors", motor), schema, known)
-    effects = _read(resources.find("profiles", name_or_path), schema, known)
+    machine = _read("motor", motor, schema, known)
+    effects = _read("profile", name_or_path, schema, known)
     follows = nameplate.following(machine.plant, machine.parameters)
     for name, value in follows.items() if checked else ():
         if name in known:
@@ -101,32 +101,20 @@ def say_not_stated(chosen: Profile) -> None:
         print(f"stillspin: motor {chosen.motor}: {words}", file=sys.stderr)
 
 
-def _read(path: Path, schema: core.Schema, known: Mapping[str, core.Entry]) -> _File:
-    table = toml_table.read(path)
-    description = table.text("description", "").strip()
-    commission = table.switch("commission")
-    parameters = {
-        name: core.parameter(known, name, value, f"{path}: parameters.{name}")
-        for name, value in table.table("parameters").items().items()
+def _read(kind: str, name: str, schema: core.Schema, known: Mapping[str, Entry]) -> _File:
+    path = resources.find(f"{kind}s", name)
+    data = toml_table.read(path).items()
+    json_schema.check(data, file_schema.plant(kind, schema, known), str(path))
+    plant = {
+        section: {key: entries[key].value(value) for key, value in data[section].items()}
+        for section, entries in schema.items()
+        if section in data
     }
-    plant: core.Plant = {}
-    for section, keys in table.items().items():
-        if section not in {"description", "commission", "parameters"}:
-            plant[section] = _section(section, keys, schema, path)
-    return _File(path.stem, description, plant, parameters, commission)
+    parameters = {name: float(known[name].value(value)) for name, value in data.get("parameters", {}).items()}
+    return _File(path.stem, data.get("description", "").strip(), plant, parameters, data.get("commission", False))
 
 
-def _section(section: str, keys: object, schema: core.Schema, path: Path) -> dict[str, core.Value]:
-    if not isinstance(keys, dict):
-        known = ["description", "commission", "parameters", *schema]
-        raise InputError(f"{path}: unknown key '{section}'{did_you_mean(section, known)}")
-    core.section_known(schema, section, str(path))
-    return {
-        key: core.plant_entry(schema, section, key, value, f"{path}: {section}.{key}") for key, value in keys.items()
-    }
-
-
-def merged(*plants: Mapping[str, Mapping[str, core.Value]]) -> core.Plant:
+def merged(*plants: Mapping[str, Mapping[str, Value]]) -> core.Plant:
     """Plants laid over one another; later ones win entry by entry."""
     result: core.Plant = {}
     for plant in plants:
@@ -147,7 +135,7 @@ def split_assignment(word: str) -> tuple[str, str]:
     return name, value
 
 
-def changes(words: Iterable[str], schema: core.Schema, known: Mapping[str, core.Entry]) -> Changes:
+def changes(words: Iterable[str], schema: core.Schema, known: Mapping[str, Entry]) -> Changes:
     """Sort the words of `--set` into plant entries and firmware parameters, checked.
 
     Raises:

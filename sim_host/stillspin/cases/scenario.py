@@ -15,6 +15,11 @@ from stillspin.core import Command, LoadPoint, Look, Plant
 
 Window = tuple[float, float]
 
+COMMANDS = ("speed_ref_rpm", "start", "stop", "coast", "reset")
+"""What a run may command; `set:` before the name of a parameter is another."""
+RATIO = "ratio"
+"""Kind of a figure that is made of two others."""
+
 
 @dataclass(frozen=True)
 class Reached:

@@ -1,4 +1,4 @@
-"""Reads and checks scenario files. Every complaint names the file, the place, the value and what is allowed.
+"""Reads scenario files. What may stand where is in their schema (file_schema.py); here is what relates two places.
 
 Shorthands of the format: `[defaults]` holds what the runs have in common; `reference` in a run draws a moving speed
 command (a sine, or straight lines through points) as set points every `interval` seconds, or with `what` another
@@ -7,23 +7,26 @@ command such as `set:encoder_trim`. `waveform` in a run asks for what happens in
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection
+import functools
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from stillspin import resources, toml_table
-from stillspin.cases.scenario import Figure, Goal, Plot, Reached, Run, Scenario, Window
-from stillspin.core import Command, Look, Plant
+from stillspin import core, json_schema, resources, toml_table
+from stillspin.cases import file_schema
+from stillspin.cases.scenario import RATIO, Figure, Goal, Plot, Reached, Run, Scenario, Window
+from stillspin.core import Command, Look
 from stillspin.errors import InputError, did_you_mean
+from stillspin.json_schema import Json
 from stillspin.measure import metrics
-from stillspin.report import panels
-from stillspin.toml_table import Table
 
-_NAME = re.compile(r"[a-z0-9_]+")
+
+class RelationError(InputError):
+    """Two places of a file that do not fit together, which a schema cannot say."""
+
+
 _PANELS = ("speed", "position_error", "torque", "currents")
 """Drawn of a scenario that does not say what to draw."""
 
@@ -65,251 +68,174 @@ def read(path: Path) -> Scenario:
     Raises:
         InputError: the file is wrong.
     """
-    table = toml_table.read(path)
-    identifier = table.text("id")
-    if identifier != path.stem:
-        raise table.fail("id", f"must be the file's name, '{path.stem}'")
-    motor = table.text("motor")
-    motors = resources.names("motors")
-    if motor not in motors:
-        raise table.fail("motor", f"must be one of {', '.join(motors)}")
-    paper = table.table("paper")
-    defaults = table.table("defaults").items()
-    runs = tuple(_run(_with_defaults(run, defaults)) for run in table.tables("runs"))
-    names = _unique(table, "runs", [run.name for run in runs])
-    figures = tuple(_figure(figure, runs) for figure in table.tables("figures"))
-    _unique(table, "figures", [figure.name for figure in figures])
-    _check_ratios(table, figures)
-    scenario = Scenario(
-        id=identifier,
-        title=table.text("title"),
-        motor=motor,
-        description=table.text("description", "").strip(),
-        paper_figure=paper.text("figure", ""),
-        paper_says=paper.text("says", ""),
+    data = toml_table.read(path).items()
+    json_schema.check(data, _schema(), str(path))
+    if data["id"] != path.stem:
+        raise RelationError(f"{path}: id = '{data['id']}': must be the file's name, '{path.stem}'")
+    stated = [_with_defaults(run, data.get("defaults", {})) for run in data["runs"]]
+    runs = tuple(_run(run, f"{path}: runs[{number}]") for number, run in enumerate(stated))
+    names = _unique([run.name for run in runs], f"{path}: runs")
+    figures = tuple(_figure(item, runs, f"{path}: figures[{n}]") for n, item in enumerate(data["figures"]))
+    _unique([figure.name for figure in figures], f"{path}: figures")
+    _check_ratios(figures, path)
+    plots = tuple(_plot(item, names, f"{path}: plots[{n}]") for n, item in enumerate(data.get("plots", [])))
+    paper = data.get("paper", {})
+    return Scenario(
+        id=data["id"],
+        title=data["title"],
+        motor=data["motor"],
+        description=data.get("description", "").strip(),
+        paper_figure=paper.get("figure", ""),
+        paper_says=paper.get("says", ""),
         runs=runs,
         figures=figures,
-        plots=tuple(_plot(plot, names) for plot in table.tables("plots")) or (Plot("", _PANELS, tuple(names), None),),
-        on_demand=table.switch("on_demand"),
+        plots=plots or (Plot("", _PANELS, tuple(names), None),),
+        on_demand=data.get("on_demand", False),
     )
-    paper.finish()
-    table.finish()
-    return scenario
 
 
-def _with_defaults(run: Table, defaults: dict[str, Any]) -> Table:
-    """The run with what it does not state itself taken from the defaults; tables are joined key by key."""
-    joined = dict(defaults)
-    for key, value in run.items().items():
-        if isinstance(value, dict) and isinstance(defaults.get(key), dict):
-            joined[key] = {**defaults[key], **value}
-        else:
-            joined[key] = value
-    return Table(joined, run.where)
+@functools.cache
+def _schema() -> Json:
+    native = core.load()
+    return file_schema.scenario(core.plant_schema(native), core.parameters(native))
 
 
-def _unique(table: Table, key: str, names: list[str]) -> list[str]:
-    if not names:
-        raise InputError(f"{table.where}: there must be at least one of [[{key}]]")
+def _with_defaults(run: Json, defaults: Json) -> Json:
+    """The run with what it does not state itself taken from the defaults; parameters and plant are joined by key."""
+    joined = {key: {**defaults.get(key, {}), **run.get(key, {})} for key in ("parameters", "plant")}
+    return {**defaults, **run, **joined}
+
+
+def _unique(names: list[str], where: str) -> list[str]:
     twice = {name for name in names if names.count(name) > 1}
     if twice:
-        raise InputError(f"{table.where}: {key}: the name '{min(twice)}' is used twice")
+        raise RelationError(f"{where}: the name '{min(twice)}' is used twice")
     return names
 
 
-def _name(table: Table) -> str:
-    name = table.text("name")
-    if not _NAME.fullmatch(name):
-        raise table.fail("name", "must be lower case letters, digits and '_'")
-    return name
-
-
-def _window(table: Table, key: str, value: Any, duration: float) -> Window:
-    problem = table.fail(key, f"must be [from, to] in s with 0 ≤ from < to ≤ {duration:g}")
-    if not isinstance(value, list) or len(value) != 2:
-        raise problem
-    first, last = (toml_table.as_number(item) for item in value)
-    if first is None or last is None or not 0.0 <= first < last <= duration:
-        raise problem
+def _window(value: Sequence[float], duration: float, where: str) -> Window:
+    first, last = map(float, value)
+    if not first < last <= duration:
+        raise RelationError(f"{where} = {value!r}: must be [from, to] in s with 0 ≤ from < to ≤ {duration:g}")
     return first, last
 
 
-def _run(table: Table) -> Run:
-    duration = table.number("duration", minimum=0.001)
-    commands: list[Command] = [*table.rows("commands", float, str, float), *_reference(table)]
-    late = [at for at, _, _ in commands if not 0.0 <= at <= duration]
+def _run(stated: Json, where: str) -> Run:
+    duration = float(stated["duration"])
+    commands = [(float(at), what, float(value)) for at, what, value in stated.get("commands", [])]
+    commands += _reference(stated["reference"]) if "reference" in stated else []
+    late = [at for at, _, _ in commands if at > duration]
     if late:
-        raise table.fail("commands", f"the time {late[0]:g} s is not within 0 … {duration:g} s")
-    load = table.rows("load", float, float)
+        raise RelationError(f"{where}.commands: the time {late[0]:g} s is not within 0 … {duration:g} s")
+    load = stated.get("load", [])
     if any(later[0] <= earlier[0] for earlier, later in pairwise(load)):
-        raise table.fail("load", "the times must rise")
-    run = Run(
-        name=_name(table),
-        title=table.text("title", ""),
+        raise RelationError(f"{where}.load = {load!r}: the times must rise")
+    return Run(
+        name=stated["name"],
+        title=stated.get("title", ""),
         duration=duration,
-        max_start=table.number("max_start", 3.0, minimum=0.0),
+        max_start=float(stated.get("max_start", 3.0)),
         commands=tuple(sorted(commands, key=lambda command: command[0])),
-        load=tuple((at, torque) for at, torque in load),
-        parameters=_parameters(table.table("parameters")),
-        plant=_plant(table.table("plant")),
-        reached=tuple(_reached(reached, duration) for reached in table.tables("reached")),
-        record_every=table.whole("record_every", 1, minimum=1),
-        waveform=_look(table, duration),
-        may_be_lost=table.switch("may_be_lost"),
+        load=tuple((float(at), float(torque)) for at, torque in load),
+        parameters={name: _plain(value) for name, value in stated["parameters"].items()},
+        plant=stated["plant"],
+        reached=tuple(_reached(item, duration, f"{where}.reached[{n}]") for n, item in enumerate(stated["reached"])),
+        record_every=int(stated.get("record_every", 1)),
+        waveform=_look(stated["waveform"], duration, f"{where}.waveform") if "waveform" in stated else None,
+        may_be_lost=stated.get("may_be_lost", False),
     )
-    if not run.reached:
-        raise InputError(f"{table.where}: 'reached' is missing: a run counts only if the shaft did what was commanded")
-    table.finish()
-    return run
 
 
-def _look(table: Table, duration: float) -> Look | None:
+def _plain(value: float | str) -> float | str:
+    return value if isinstance(value, str) else float(value)
+
+
+def _look(stated: Json, duration: float, where: str) -> Look:
     """The stretch that is looked into."""
-    if not table.has("waveform"):
-        return None
-    look = table.table("waveform")
-    first, last = _window(look, "window", look.raw("window"), duration)
-    raster = look.whole("raster", 100, minimum=1)
-    look.finish()
-    return first, last, raster
+    first, last = _window(stated["window"], duration, f"{where}.window")
+    return first, last, int(stated.get("raster", 100))
 
 
-def _parameters(table: Table) -> dict[str, float | str]:
-    values: dict[str, float | str] = {}
-    for name, value in table.items().items():
-        number = toml_table.as_number(value)
-        if number is None and not isinstance(value, str):
-            raise table.fail(name, "must be a number or the name of a choice")
-        values[name] = value if number is None else number
-    return values
+def _reached(stated: Json, duration: float, where: str) -> Reached:
+    speed = stated.get("speed")
+    window = _window(stated["window"], duration, f"{where}.window")
+    return Reached(window, float(stated["band"]), None if speed is None else float(speed))
 
 
-def _plant(table: Table) -> Plant:
-    plant: Plant = {}
-    for section, keys in table.items().items():
-        if not isinstance(keys, dict):
-            raise table.fail(section, "must be a table of plant entries")
-        plant[section] = keys
-    return plant
-
-
-def _reached(table: Table, duration: float) -> Reached:
-    reached = Reached(
-        window=_window(table, "window", table.raw("window"), duration),
-        band=table.number("band", minimum=0.0),
-        speed=table.optional_number("speed"),
-    )
-    table.finish()
-    return reached
-
-
-def _reference(table: Table) -> list[Command]:
+def _reference(drawing: Json) -> list[Command]:
     """Set points of a moving command, the speed where it does not say which."""
-    if not table.has("reference"):
-        return []
-    drawing = table.table("reference")
-    shape = drawing.text("shape")
-    what = drawing.text("what", "speed_ref_rpm")
-    interval = drawing.number("interval", 0.001, minimum=1e-4)
-    if shape == "sine":
-        start, stop = drawing.number("start", minimum=0.0), drawing.number("stop", minimum=0.0)
-        time = np.arange(start, stop, interval)
-        speed = drawing.number("amplitude") * np.sin(2.0 * np.pi * drawing.number("frequency") * (time - start))
-    elif shape == "points":
-        points = drawing.rows("points", float, float)
-        if len(points) < 2:
-            raise drawing.fail("points", "must have at least two points [s, rpm]")
-        at, value = (np.array(column) for column in zip(*points, strict=True))
+    what, interval = drawing.get("what", "speed_ref_rpm"), drawing.get("interval", 0.001)
+    if drawing["shape"] == "sine":
+        start = drawing["start"]
+        time = np.arange(start, drawing["stop"], interval)
+        speed = drawing["amplitude"] * np.sin(2.0 * np.pi * drawing["frequency"] * (time - start))
+    else:
+        at, value = (np.array(column, dtype=float) for column in zip(*drawing["points"], strict=True))
         time = np.arange(at[0], at[-1] + interval / 2.0, interval)
         speed = np.interp(time, at, value)
-    else:
-        raise drawing.fail("shape", "must be 'sine' or 'points'")
-    drawing.finish()
     return [(float(t), what, float(n)) for t, n in zip(time.round(9), speed.round(9), strict=True)]
 
 
-def _goal(table: Table) -> Goal:
-    value = table.raw("goal")
-    if not isinstance(value, dict):
-        return Goal(table.optional_number("goal"))
-    goals = {profile: toml_table.as_number(number) for profile, number in value.items()}
-    numbers = {profile: number for profile, number in goals.items() if number is not None}
-    if len(numbers) != len(goals):
-        raise table.fail("goal", "must be a number, or a table of numbers by profile ('default' for all others)")
+def _goal(stated: float | dict[str, float] | None) -> Goal:
+    if not isinstance(stated, dict):
+        return Goal(None if stated is None else float(stated))
+    numbers = {profile: float(number) for profile, number in stated.items()}
     return Goal(numbers.pop("default", None), numbers)
 
 
-def _figure(table: Table, runs: tuple[Run, ...]) -> Figure:
-    name = _name(table)
-    kind = table.text("kind", name)
-    of = _ratio_of(table) if kind == "ratio" else None
-    if of is None and kind not in metrics.KINDS:
-        raise InputError(
-            f"{table.where}: '{kind}' is not a kind of figure{did_you_mean(kind, [*metrics.KINDS, 'ratio'])}"
-        )
-    chosen = _runs(table, [run.name for run in runs])
-    figure = Figure(
-        name=name,
+def _figure(stated: Json, runs: tuple[Run, ...], where: str) -> Figure:
+    kind = str(stated.get("kind", stated["name"]))
+    chosen = _runs(stated, [run.name for run in runs], where)
+    paper = stated.get("paper")
+    ratio = kind == RATIO
+    return Figure(
+        name=stated["name"],
         kind=kind,
-        unit="" if of else metrics.KINDS[kind].unit,
-        runs=() if of else chosen,
-        windows=() if of else _windows(table, min(run.duration for run in runs if run.name in chosen)),
-        paper=table.optional_number("paper"),
-        goal=_goal(table),
-        of=of,
-        note=table.text("note", ""),
+        unit="" if ratio else metrics.KINDS[kind].unit,
+        runs=() if ratio else chosen,
+        windows=() if ratio else _windows(stated, min(run.duration for run in runs if run.name in chosen), where),
+        paper=None if paper is None else float(paper),
+        goal=_goal(stated.get("goal")),
+        of=tuple(stated["of"]) if ratio else None,
+        note=stated.get("note", ""),
     )
-    table.finish()
-    return figure
 
 
-def _ratio_of(table: Table) -> tuple[str, str]:
-    names = table.texts("of")
-    if len(names) != 2:
-        raise table.fail("of", "must name the two figures whose ratio is taken")
-    return names[0], names[1]
-
-
-def _windows(table: Table, duration: float) -> tuple[Window, ...]:
+def _windows(stated: Json, duration: float, where: str) -> tuple[Window, ...]:
     """One window, or a list of them."""
-    value = table.raw("window")
-    several = isinstance(value, list) and bool(value) and all(isinstance(item, list) for item in value)
-    return tuple(_window(table, "window", item, duration) for item in (value if several else [value]))
+    value = stated["window"]
+    several = value if isinstance(value[0], list) else [value]
+    return tuple(_window(item, duration, f"{where}.window") for item in several)
 
 
-def _runs(table: Table, known: list[str]) -> tuple[str, ...]:
+def _listed(value: str | list[str]) -> list[str]:
+    return [value] if isinstance(value, str) else value
+
+
+def _runs(stated: Json, known: list[str], where: str) -> tuple[str, ...]:
     """The runs that a figure or plot is about: all of them when it does not say."""
-    chosen = table.texts("runs") or known
+    chosen = _listed(stated.get("runs", known))
     for name in chosen:
         if name not in known:
-            raise InputError(f"{table.where}: there is no run '{name}'{did_you_mean(name, known)}")
+            raise RelationError(f"{where}.runs: there is no run '{name}'{did_you_mean(name, known)}")
     return tuple(chosen)
 
 
-def _check_ratios(table: Table, figures: tuple[Figure, ...]) -> None:
+def _check_ratios(figures: tuple[Figure, ...], path: Path) -> None:
     """A ratio is of figures that stand before it, so that they are there when it is taken."""
     earlier: list[str] = []
     for figure in figures:
         for name in figure.of or ():
             if name not in earlier:
-                raise InputError(
-                    f"{table.where}: {figure.name}: no figure '{name}' before it{did_you_mean(name, earlier)}"
-                )
+                raise RelationError(f"{path}: {figure.name}: no figure '{name}' before it{did_you_mean(name, earlier)}")
         earlier.append(figure.name)
 
 
-def _plot(table: Table, runs: list[str]) -> Plot:
-    chosen = table.texts("panels")
-    for name in chosen:
-        if name not in panels.PANELS:
-            raise InputError(f"{table.where}: '{name}' is not a panel{did_you_mean(name, panels.PANELS)}")
-    if not chosen:
-        raise InputError(f"{table.where}: 'panels' is missing{did_you_mean('', panels.PANELS)}")
-    plot = Plot(
-        title=table.text("title", ""),
-        panels=tuple(chosen),
-        runs=_runs(table, runs),
-        window=_window(table, "window", table.raw("window"), float("inf")) if table.has("window") else None,
+def _plot(stated: Json, runs: list[str], where: str) -> Plot:
+    window = stated.get("window")
+    return Plot(
+        title=stated.get("title", ""),
+        panels=tuple(_listed(stated["panels"])),
+        runs=_runs(stated, runs, where),
+        window=_window(window, float("inf"), f"{where}.window") if window else None,
     )
-    table.finish()
-    return plot

@@ -1,4 +1,4 @@
-"""`stillspin schema`: the JSON schema of motor and profile files, for editors."""
+"""`stillspin schema`: the JSON schema of motor, profile and scenario files, for editors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from stillspin.errors import InputError, did_you_mean
 
 def schema(
     *,
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="motor or profile.")],
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="motor, profile or scenario.")],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File to write [default: to the terminal].")] = None,
 ) -> None:
     """Write the JSON schema of a kind of file; an editor checks a file by it that begins with #:schema FILE."""

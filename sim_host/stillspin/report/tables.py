@@ -11,9 +11,9 @@ from rich.text import Text
 from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.cases.scenario import Scenario
 from stillspin.cases.variant import Beside
-from stillspin.core import Entry
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
+from stillspin.entry import Entry
 from stillspin.hil.results import Row
 from stillspin.measure.figures import Result
 from stillspin.report import page as report

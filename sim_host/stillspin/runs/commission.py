@@ -9,8 +9,9 @@ from pathlib import Path
 
 from stillspin import core, toml_table
 from stillspin.cases.profile import Changes, Profile, merged
-from stillspin.core import Entry, NativeCommissioning, NativeCore
+from stillspin.core import NativeCommissioning, NativeCore
 from stillspin.core_loop import NativeStepLoop
+from stillspin.entry import Entry
 from stillspin.errors import CampaignError, InputError
 
 LIMIT = 180.0
