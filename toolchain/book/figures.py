@@ -1,7 +1,8 @@
 """Pieces of pages that are templates, and the figures that they name.
 
-A template reaches the figures of a record (book/records.py) as `data.NAME`, whether the drive fits its chip as
-`fit`, and the files of motors and profiles as `motors` and `profiles`; `value(…)` and the others below write a value as the book does. A figure that misses its goal is bold.
+A template reaches the figures of a record (book/records.py) as `data.NAME`, whether the drive fits its chip as `fit`,
+and the files of motors and profiles as `motors` and `profiles`; `value(…)` and the others below write a value as
+the book does. A figure that misses its goal is bold.
 """
 
 from __future__ import annotations
