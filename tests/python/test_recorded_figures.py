@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,11 @@ import pytest
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+import figures as renewal  # noqa: E402
+from book import records  # noqa: E402
+
 DATA = ROOT / "docs/figures"
 DUE = "the drive has other figures than docs/figures: run make figures"
 
@@ -53,3 +59,50 @@ def test_every_record_says_what_made_it() -> None:
         assert content["command"].startswith(("stillspin ", "make ")), path
         assert len(content["sources"]) == 16 or content["sources"] == "unknown", path
         assert content["figures"], path
+
+
+@pytest.fixture
+def renewed(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, list[str]]]:
+    """`toolchain/figures.py` where commands only note that they ran: its exit status, and what ran in which order."""
+    ran: list[str] = []
+    kept = {step.name: {"command": f"stillspin {step.command}", "sources": "now"} for step in renewal.STEPS}
+    kept |= {name: {"command": made.command, "sources": "now"} for name, made in records.COMMANDS.items()}
+
+    def run(old: set[str], failing: str, *arguments: str) -> tuple[int, list[str]]:
+        def carry_out(name: str) -> bool:
+            ran.append(name)
+            return name != failing
+
+        monkeypatch.setattr(
+            records, "load", lambda _: {k: v | {"sources": "old"} if k in old else v for k, v in kept.items()}
+        )
+        monkeypatch.setattr(records, "outdated", lambda _: {k: kept[k]["command"] for k in kept if k in old})
+        monkeypatch.setattr(records, "sources", lambda _: "now")
+        monkeypatch.setattr(renewal, "render", lambda *_, **__: ())
+        monkeypatch.setattr(renewal, "carry_out", lambda step, _: carry_out(step.name))
+        monkeypatch.setattr(renewal, "carry_out_make", carry_out)
+        monkeypatch.setattr(sys, "argv", ["figures.py", *arguments])
+        return renewal.main(), ran
+
+    return run
+
+
+def test_what_is_fresh_is_left_out_and_a_failure_stops_nothing(renewed: Callable[..., tuple[int, list[str]]]) -> None:
+    """In one run that nobody has to attend; of what takes hours nothing."""
+    old = {"bench", "startup", "isr-cost", "prove", "mutants"}
+    assert renewed(old, "startup", "--long") == (1, ["bench", "startup", "isr-cost", "prove"])
+
+
+def test_what_takes_long_runs_where_it_is_asked_for(renewed: Callable[..., tuple[int, list[str]]]) -> None:
+    assert renewed({"bench", "startup", "prove"}, "") == (0, ["bench"])
+
+
+def test_what_is_named_runs_alone(renewed: Callable[..., tuple[int, list[str]]]) -> None:
+    assert renewed({"bench", "mutants"}, "", "mutants", "drift") == (0, ["mutants"])
+
+
+def test_records_of_older_sources_are_listed(
+    renewed: Callable[..., tuple[int, list[str]]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert renewed({"prove"}, "", "--list") == (1, [])
+    assert capsys.readouterr().out == "figures: prove is of older sources: make prove\n"

@@ -68,7 +68,9 @@ def test_the_wheel_is_pure_python_and_has_every_file_of_the_package(wheels):
 
 def test_the_client_needs_neither_plots_nor_tables_nor_a_compiler(client):
     asked = "import importlib.util as u, shutil; print([n for n in {} if u.find_spec(n)], shutil.which('cc'))"
-    said = client.run("python", "-c", asked.format(["matplotlib", "pyarrow", "pandas", "jinja2", "jsonschema", "stillspin._core"]))
+    said = client.run(
+        "python", "-c", asked.format(["matplotlib", "pyarrow", "pandas", "jinja2", "jsonschema", "stillspin._core"])
+    )
     assert said.stdout.strip() == "[] None", said.stderr
 
 
