@@ -148,6 +148,7 @@ typedef struct {
   int32_t rpm_q16;
 } drive_look_t;
 
+/// What is read everywhere comes first, what is large last: the farther a member, the longer the code that reaches it.
 typedef struct {
   drive_state_t state;
   drive_fault_t fault;
@@ -156,29 +157,29 @@ typedef struct {
   schedule_t schedule;
   uint32_t time_ms;    // control interrupts since power-on, in ms; wraps after 49 days
   uint16_t heartbeat;  // counts control interrupts, for the watchdog
-  drive_start_t start;
+  bool config_valid;
+  bool conflict_known;  // of the parameters that the configuration was made of
+  bool loading;         // the store is being read: BOOT goes on
+  drive_request_t request;
+  packed_text_t conflict;  // why they do not fit together, or PACKED_NONE
+  drive_position_t position;
+  drive_control_t control;
+  drive_samples_t samples;
+  machine_model_t model;  // nameplate, at the working point and with what was learnt
+  drive_modulation_t modulation;
+  drive_supervision_t supervision;
   hold_t hold;
   polarity_watch_t watch;
   inertia_match_t inertia;
-  machine_model_t model;         // nameplate, at the working point and with what was learnt
-  slopes_trim_t trim;            // current offsets, mismatch of the sensors
+  hysteresis_t hysteresis;
+  slopes_trim_t trim;  // current offsets, mismatch of the sensors
+  drive_look_t look;
   uint32_t calm_at;              // period in which the currents will have been at rest for long enough
   int32_t rest_a_q8, rest_b_q8;  // currents at rest while the offsets are found, codes
   int32_t unrest_q8;             // mean deviation of the currents from their offsets while these are found, codes
+  drive_start_t start;
   drive_config_t config;
-  bool config_valid;
-  bool conflict_known;     // of the parameters that the configuration was made of
-  packed_text_t conflict;  // why they do not fit together, or PACKED_NONE
-  bool loading;            // the store is being read: BOOT goes on
-  drive_samples_t samples;
-  drive_position_t position;
-  drive_control_t control;
-  drive_modulation_t modulation;
-  hysteresis_t hysteresis;
-  drive_supervision_t supervision;
-  drive_request_t request;
   commissioning_t commissioning;
-  drive_look_t look;
 } drive_t;
 
 extern drive_t drive;
