@@ -27,7 +27,7 @@ typedef struct {
   uint16_t revision[2];  // first 32 bits of the commit's name; 0: built from an unknown one
   uint16_t changed;      // bit 0: there were changes beside the commit; bit 1: no program, a demonstration
   uint16_t tables[2];    // first 32 bits of the SHA-256 of the lists of parameters, signals and faults
-  // CRC-32 (firmware/link/crc.h) of the words from HAL_FLASH_START to before sum_end, low octet first; words that
+  // CRC-32 (firmware/base/crc.h) of the words from HAL_FLASH_START to before sum_end, low octet first; words that
   // nothing was linked to count as erased, and so does the sum. The linked file gets both (toolchain/stamp_image.py),
   // and has ones until then.
   uint16_t sum_end[2];

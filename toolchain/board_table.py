@@ -4,7 +4,7 @@
 Usage: toolchain/board_table.py [--write]
 
 Prints the tables, or puts them between the two marks in docs/board.md. Scalings are recalculated here as the firmware
-calculates them (firmware/drive_config.c, firmware/board/temperature.c), so that the rounding errors stand beside them.
+calculates them (firmware/config/config.c, firmware/board/temperature.c), so that the rounding errors stand beside them.
 """
 
 import math
@@ -104,7 +104,7 @@ def nearest(value: float) -> int:
 
 
 def scalings(board: Board) -> list[Scaling]:
-    """The board's analogue scalings as firmware/drive_config.c makes them of the parameters' defaults."""
+    """The board's analogue scalings as firmware/config/config.c makes them of the parameters' defaults."""
     amps, volts = board.number("CURRENT_RANGE") / 100, board.number("LINK_RANGE") / 10
     amps_q20, volts_q16 = nearest(amps * 2**20), nearest(volts * 2**16)
     per_code_q30 = nearest(amps_q20 / 2)

@@ -39,7 +39,7 @@ class Defect:
 
 DEFECTS = (
     Defect(
-        *("a sign bit shifted out of an int", "link16", TRAP, "firmware/link/octets.c"),
+        *("a sign bit shifted out of an int", "link16", TRAP, "firmware/base/octets.c"),
         *("(uint16_t)(take_u8(r) << 8)", "(uint16_t)((int16_t)take_u8(r) << 8)", True),
     ),
     Defect(
@@ -51,7 +51,7 @@ DEFECTS = (
         *("l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
     ),
     Defect(
-        *("a word behind the last one", "link16", TRAP, "firmware/words.c"),
+        *("a word behind the last one", "link16", TRAP, "firmware/text/words.c"),
         *("return (k < ROWS && kinds[k] == kind)", "return (kinds[k] == kind)"),
     ),
     Defect(

@@ -5,7 +5,7 @@ Usage: toolchain/m3_cost.py RECORDER OUT     (make isr-cost)
 
 Runs of the virtual drive are recorded natively at the drive's register accesses and replayed on an emulated
 Cortex-M3 that runs the whole firmware (tests/m3). A replay that does anything else than the native run, a count above
-toolchain/m3_budget.txt, and a charge of firmware/isr_cycles.h that the count does not bear out are failures. The table
+toolchain/m3_budget.txt, and a charge of isr_cycles.h that the count does not bear out are failures. The table
 is printed and written to OUT/table.md, the counts to OUT/figures.json.
 """
 
@@ -22,7 +22,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 BUDGET = ROOT / "toolchain" / "m3_budget.txt"
-CHARGES = ROOT / "firmware" / "isr_cycles.h"
+CHARGES = ROOT / "firmware" / "interfaces" / "isr_cycles.h"
 COMPILER = "arm-none-eabi-gcc"
 EMULATOR = "qemu-system-arm"
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware")

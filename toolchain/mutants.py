@@ -69,30 +69,57 @@ PARTS = {
     # The states and what protects.
     "firmware": Part(
         (
-            *("firmware/state_machine.c", "firmware/protection.c", "firmware/fault_history.c", "firmware/actions.c"),
-            *("firmware/drive_api.c", "firmware/parameter_rules.c", "firmware/sampling.c", "firmware/speed_task.c"),
-            *("firmware/control_interrupt.c", "firmware/schedule.c"),
-            *("firmware/start/*.c", "firmware/board/*.c", "firmware/commissioning/*.c"),
+            *(
+                "firmware/drive/sequence.c",
+                "firmware/drive/protection.c",
+                "firmware/mode/fault_history.c",
+                "firmware/api/actions.c",
+            ),
+            *(
+                "firmware/mode/commands.c",
+                "firmware/config/rules.c",
+                "firmware/drive/sampling.c",
+                "firmware/drive/speed.c",
+            ),
+            *("firmware/drive/control_interrupt.c", "firmware/drive/schedule.c"),
+            *("firmware/start/*.c", "firmware/drive/brake_hold.c", "firmware/drive/polarity_watch.c"),
+            *("firmware/board/*.c", "firmware/commissioning/*.c"),
         ),
         FIRMWARE,
     ),
     # What else a period does.
     "firmware/period": Part(
         (
-            *("firmware/position.c", "firmware/modulation.c", "firmware/hysteresis.c", "firmware/drive_config.c"),
-            *("firmware/flux_source.c", "firmware/inertia_task.c", "firmware/current_task.c", "firmware/signals.c"),
-            *("firmware/background.c", "firmware/main.c"),
+            *(
+                "firmware/drive/position.c",
+                "firmware/drive/modulation.c",
+                "firmware/hysteresis/hysteresis.c",
+                "firmware/config/config.c",
+            ),
+            *(
+                "firmware/sources/flux.c",
+                "firmware/drive/inertia.c",
+                "firmware/drive/current.c",
+                "firmware/drive/signals.c",
+            ),
+            *("firmware/drive/reload.c", "firmware/boot/main.c"),
         ),
         FIRMWARE,
     ),
     "firmware/console": Part(
         (
-            *("firmware/console/*.c", "firmware/text.c", "firmware/words.c", "firmware/packed_text.c"),
-            *("firmware/parameters.c", "firmware/clear.c"),
+            *("firmware/console/*.c", "firmware/text/text.c", "firmware/text/words.c", "firmware/text/packed_text.c"),
+            *("firmware/dictionary/parameters.c", "firmware/base/clear.c"),
         ),
         FIRMWARE,
     ),
-    "firmware/link": Part(("firmware/link/*.c", "firmware/hil/*.c", "firmware/scope/*.c"), FIRMWARE),
+    "firmware/link": Part(
+        (
+            *("firmware/link/*.c", "firmware/base/octets.c", "firmware/base/crc.c", "firmware/api/guard.c"),
+            *("firmware/hil/*.c", "firmware/scope/*.c"),
+        ),
+        FIRMWARE,
+    ),
     "firmware/can": Part(("firmware/can/*.c",), FIRMWARE),
     "firmware/store": Part(("firmware/store/*.c",), FIRMWARE),
     "firmware/flash_kernel": Part(("firmware/flash_kernel/*.c",), ("flash_kernel_test",)),

@@ -6,7 +6,7 @@ Usage: toolchain/pack_text.py OUTPUT.c     (the build does it)
 A character of a string takes a word of the C28x's flash. What the lists below have, names and units, meanings, causes
 and remedies, words of states and help, is therefore packed by pairs that occur often (byte pair encoding: P. Gage, "A
 New Algorithm for Data Compression", C Users Journal 12(2), 1994). The lists stay what people read and change;
-firmware/packed_text.h numbers the texts in the same order.
+firmware/text/packed_text.h numbers the texts in the same order.
 """
 
 import re
@@ -18,18 +18,18 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 # The list, its macro, and which of the macro's arguments is the text: in the order of packed_text.h.
 LISTS = (
-    ("firmware/parameter_list.h", "PARAMETER", 9),
-    ("firmware/signal_list.h", "SIGNAL", 5),
-    ("firmware/fault_list.h", "FAULT", 2),
-    ("firmware/fault_list.h", "FAULT", 3),
-    ("firmware/word_list.h", "WORDS", 2),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 9),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 5),
+    ("firmware/dictionary/fault_list.h", "FAULT", 2),
+    ("firmware/dictionary/fault_list.h", "FAULT", 3),
+    ("firmware/text/word_list.h", "WORDS", 2),
     ("firmware/console/command_list.h", "COMMAND", 2),
     ("firmware/console/help_list.h", "HELP", 2),
-    ("firmware/phrase_list.h", "PHRASE", 1),
-    ("firmware/parameter_list.h", "PARAMETER", 1),
-    ("firmware/parameter_list.h", "PARAMETER", 2),
-    ("firmware/signal_list.h", "SIGNAL", 0),
-    ("firmware/signal_list.h", "SIGNAL", 1),
+    ("firmware/text/phrase_list.h", "PHRASE", 1),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 1),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 2),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 0),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 1),
     ("firmware/console/command_list.h", "COMMAND", 0),
     ("firmware/console/command_list.h", "COMMAND", 1),
 )
@@ -119,7 +119,7 @@ def pack(strings: list[str]) -> str:
     return "\n".join(
         [
             f"// Made by toolchain/pack_text.py: {len(strings)} texts, {plain} characters, {taken} words.",
-            '#include "firmware/packed_text.h"',
+            '#include "firmware/text/packed_text.h"',
             "",
             f"typedef char all_texts_are_here[(PACKED_TEXTS == {len(strings)}) ? 1 : -1];",
             f"typedef char no_pair_is_too_deep[(PACKED_DEPTH == {DEPTH}) ? 1 : -1];",

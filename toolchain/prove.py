@@ -56,7 +56,7 @@ class Read:
 def sources_of(part: Part, tree: Path, table: Path) -> list[str]:
     """Its files, and with the texts the table that the build makes of them."""
     found = [path.relative_to(tree).as_posix() for pattern in part.sources for path in sorted(tree.glob(pattern))]
-    return [*found, str(table)] if "firmware/packed_text.c" in found else found
+    return [*found, str(table)] if "firmware/text/packed_text.c" in found else found
 
 
 def summary(part: Part, rows: list[dict[str, str]], said: str) -> str:

@@ -5,9 +5,9 @@
 // From 0.9 of that current on the limit falls in a straight line to it.
 
 #include "firmware/board/functions.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/sampling.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/sampling.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_board.h"
 
 #define TURN 8u           // ms between two looks

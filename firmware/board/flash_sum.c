@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-#include "firmware/link/crc.h"
+#include "firmware/base/crc.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
 

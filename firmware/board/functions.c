@@ -1,11 +1,11 @@
 #include "firmware/board/functions.h"
 
+#include "firmware/base/clear.h"
 #include "firmware/board/selftest.h"
-#include "firmware/clear.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/text.h"
-#include "firmware/words.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_lines.h"
 

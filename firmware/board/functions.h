@@ -12,8 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/drive_api.h"
-#include "firmware/link/octets.h"
+#include "firmware/base/octets.h"
+#include "firmware/mode/commands.h"
 
 #if defined(__cplusplus)
 extern "C" {

@@ -6,9 +6,9 @@
 // drive; it runs again when the switch has been opened and closed. The same clears a fault.
 
 #include "firmware/board/functions.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/sampling.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/sampling.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_lines.h"
 

@@ -8,8 +8,8 @@
 // current takes back four: on a blocked shaft the noise of the speed makes such moments.
 
 #include "firmware/board/functions.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 
 #define LEAST_BAM 95443718L                         // 8 degrees: what the angle may stray under changing current
 #define MOST_BAM 1073741824L                        // a quarter of an electrical turn

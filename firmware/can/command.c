@@ -1,8 +1,8 @@
 #include "firmware/can/command.h"
 
 #include "firmware/can/messages.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 
 #define ALIVE_MODULO 16u
 #define CRC_AT 3u

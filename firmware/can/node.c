@@ -2,15 +2,15 @@
 
 #include <stddef.h>
 
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
 #include "firmware/can/segments.h"
 #include "firmware/can/telemetry.h"
-#include "firmware/drive.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/stream.h"
-#include "firmware/parameters.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_profile.h"
 
 #define DIAGNOSTIC_PERIOD_MS 1000

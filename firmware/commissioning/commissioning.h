@@ -11,7 +11,7 @@
 #define STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
 
 #include "estimators/admittance_tensor.h"
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 
 #define STAIRCASE_LEVELS 14u
 #define MAP_LEVELS 4u

@@ -7,8 +7,8 @@
 // The place is the nearest multiple of 60 degrees electrical, at most 7.5 degrees mechanical away with four pole pairs:
 // with i_d there, no phase carries less than half of it, so no phase current changes its sign within the ripple.
 
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
 #define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us

@@ -16,9 +16,9 @@
 // instants lie symmetrically. The angle is not corrected again before the current is gone, for its turn would be taken
 // for motion. Between trains the shaft is held for 40 ms.
 
-#include "firmware/clear.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/base/clear.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 
 #define EXCURSION_BAM 71582788L  // 6 degrees
 #define SEGMENTS 4

@@ -1,10 +1,10 @@
 #include "firmware/commissioning/result.h"
 
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,
 enum {
-#include "firmware/parameter_list.h"
+#include "firmware/dictionary/parameter_list.h"
   ID_NONE = 0
 };
 #undef PARAMETER

@@ -1,6 +1,6 @@
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/result.h"
-#include "firmware/drive.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_tape.h"
 

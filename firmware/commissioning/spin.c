@@ -4,10 +4,10 @@
 // free of what does not turn: drops, dead time, offsets. The ramps begin and end at steady speed, so that lags of the
 // estimators do not count: inertia is the momentum that went in, less friction, over the change of speed.
 
-#include "firmware/clear.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/position.h"
+#include "firmware/base/clear.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/mode/mode.h"
 
 #define SETTLE_PERIODS 4000
 #define STATION_PERIODS 10000

@@ -15,9 +15,9 @@
 // the latter not beyond the field-weakening limit, for the magnets' sake. Resistance of winding and of devices cannot
 // be told apart this way: the devices' is kept as it was given.
 
-#include "firmware/clear.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/base/clear.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 
 #define VOLT_THIRD_Q27 44739243L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
 #define VOLT_SIDE_Q27 77490641L

@@ -5,8 +5,8 @@
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
-#include "firmware/packed_text.h"
-#include "firmware/text.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
 
 #define COMMAND(name, arguments, help) \
   {TEXT_COMMAND_NAME_##name, TEXT_COMMAND_ARGUMENTS_##name, TEXT_COMMAND_##name, command_##name},

@@ -6,9 +6,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/base/octets.h"
 #include "firmware/console/editor.h"
-#include "firmware/link/octets.h"
-#include "firmware/packed_text.h"
+#include "firmware/text/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -59,7 +59,7 @@ bool word_occurs(const word_t* word, packed_text_t text);
 
 void command_help(const words_of_line_t* a);
 
-void command_can(const words_of_line_t* a);  // commands_can.c
+void command_can(const words_of_line_t* a);  // can/commands.c
 
 // commands_parameters.c
 void command_list(const words_of_line_t* a);
@@ -84,12 +84,12 @@ void command_signals(const words_of_line_t* a);
 void command_watch(const words_of_line_t* a);
 void command_version(const words_of_line_t* a);
 
-// commands_store.c
+// store/commands.c
 void command_save(const words_of_line_t* a);
 void command_load(const words_of_line_t* a);
 void command_defaults(const words_of_line_t* a);
 
-// commands_scope.c
+// scope/commands.c
 void command_scope(const words_of_line_t* a);
 
 #if defined(__cplusplus)

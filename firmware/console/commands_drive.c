@@ -2,15 +2,15 @@
 
 #include <stddef.h>
 
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
+#include "firmware/api/guard.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
-#include "firmware/drive.h"
-#include "firmware/link/guard.h"
-#include "firmware/packed_text.h"
-#include "firmware/text.h"
-#include "firmware/words.h"
+#include "firmware/mode/mode.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
 
 #define START_PATIENCE_MS 5000u
 

@@ -9,14 +9,14 @@
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"
-#include "firmware/drive.h"
-#include "firmware/fault_history.h"
+#include "firmware/dictionary/version.h"
 #include "firmware/link/link.h"
-#include "firmware/packed_text.h"
+#include "firmware/mode/fault_history.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
-#include "firmware/text.h"
-#include "firmware/version.h"
-#include "firmware/words.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
 
 #define COLUMN 12u
 #define WATCH_MS 500u

@@ -2,14 +2,14 @@
 
 #include <stddef.h>
 
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"
-#include "firmware/packed_text.h"
-#include "firmware/text.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
 
 #define COLUMN_VALUE 23u
 #define COLUMN_MEANING 42u

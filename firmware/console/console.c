@@ -2,16 +2,16 @@
 
 #include <stddef.h>
 
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
+#include "firmware/api/guard.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/editor.h"
 #include "firmware/console/output.h"
-#include "firmware/drive_api.h"
-#include "firmware/fault_history.h"
-#include "firmware/link/guard.h"
 #include "firmware/link/record.h"
-#include "firmware/packed_text.h"
-#include "firmware/words.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/fault_history.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/words.h"
 #include "hal/hal_sci.h"
 
 #define KEPT 64u                                      // characters typed ahead; a power of two

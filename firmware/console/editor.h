@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/link/octets.h"
+#include "firmware/base/octets.h"
 
 #if defined(__cplusplus)
 extern "C" {

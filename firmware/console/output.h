@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/packed_text.h"
+#include "firmware/text/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {

@@ -1,6 +1,6 @@
 #include "firmware/console/signal_text.h"
 
-#include "firmware/text.h"
+#include "firmware/text/text.h"
 
 uint16_t signal_find(const word_t* name) {
   for (uint16_t k = 0; k < signal_count(); k++) {

@@ -3,15 +3,15 @@
 #ifndef STILLSPIN_FIRMWARE_CONSOLE_SIGNAL_TEXT_H
 #define STILLSPIN_FIRMWARE_CONSOLE_SIGNAL_TEXT_H
 
+#include "firmware/base/octets.h"
 #include "firmware/console/commands.h"
-#include "firmware/drive_api.h"
-#include "firmware/link/octets.h"
+#include "firmware/mode/commands.h"
 
 /// The place behind the last one.
 enum {
   SIGNAL_NONE = 0
 #define SIGNAL(name, unit, q, of, value, meaning) +1
-#include "firmware/signal_list.h"
+#include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
 };
 

@@ -4,9 +4,9 @@
 
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
-#include "firmware/drive_api.h"
-#include "firmware/packed_text.h"
-#include "firmware/text.h"
+#include "firmware/mode/commands.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
 
 #define NAMES_A_STEP 4u
 #define MOST 4u

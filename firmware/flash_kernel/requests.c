@@ -1,6 +1,6 @@
+#include "firmware/base/octets.h"
 #include "firmware/flash_kernel/kernel.h"
 #include "firmware/flash_kernel/update.h"
-#include "firmware/link/octets.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
 

@@ -1,7 +1,7 @@
 #include "firmware/flash_kernel/update.h"
 
+#include "firmware/base/crc.h"
 #include "firmware/flash_kernel/kernel.h"
-#include "firmware/link/crc.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
 

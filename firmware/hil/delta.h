@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-#include "firmware/link/octets.h"
+#include "firmware/base/octets.h"
 
 #if defined(__cplusplus)
 extern "C" {

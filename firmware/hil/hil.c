@@ -2,10 +2,10 @@
 
 #include <stddef.h>
 
-#include "firmware/clear.h"
-#include "firmware/drive.h"
+#include "firmware/base/clear.h"
+#include "firmware/base/crc.h"
 #include "firmware/hil/delta.h"
-#include "firmware/link/crc.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
@@ -200,7 +200,7 @@ uint32_t hil_signals_crc(void) {
   const drive_signals_t s = drive_signals();
   uint32_t crc = CRC32_BEGIN;
 #define SIGNAL(name, unit, q, of, value, meaning) crc = add_i32(crc, s.name);
-#include "firmware/signal_list.h"
+#include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
   return crc32_end(crc);
 }

@@ -25,7 +25,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/link/octets.h"
+#include "firmware/base/octets.h"
 #include "hal/hal_tape.h"
 
 #if defined(__cplusplus)

@@ -1,11 +1,11 @@
 #include "firmware/link/link.h"
 
+#include "firmware/api/guard.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
-#include "firmware/drive_api.h"
-#include "firmware/link/guard.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/commands.h"
 
 #define OCTETS_A_ROUND 8u  // 115200 Bd bring little more than one in a period
 #define WIRE_MAX (RECORD_ENCODED_MAX + 2u)

@@ -1,7 +1,7 @@
 #include "firmware/link/record.h"
 
+#include "firmware/base/crc.h"
 #include "firmware/link/cobs.h"
-#include "firmware/link/crc.h"
 
 uint16_t record_seal(uint16_t* octets, uint16_t count) {
   const uint16_t crc = crc16(octets, count);

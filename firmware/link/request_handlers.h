@@ -4,8 +4,8 @@
 #ifndef STILLSPIN_FIRMWARE_LINK_REQUEST_HANDLERS_H
 #define STILLSPIN_FIRMWARE_LINK_REQUEST_HANDLERS_H
 
-#include "firmware/actions.h"
-#include "firmware/link/octets.h"
+#include "firmware/api/actions.h"
+#include "firmware/base/octets.h"
 
 typedef struct {
   guard_t port;
@@ -22,9 +22,9 @@ request_handler_t request_parameter_read, request_parameter_get, request_paramet
 // requests_drive.c
 request_handler_t request_command, request_status, request_signals, request_fault, request_link,
     request_commission_result, request_look;
-// requests_hil.c
+// hil/requests.c
 request_handler_t request_hil_enter, request_hil_step, request_hil_leave;
-// requests_scope.c
+// scope/requests.c
 request_handler_t request_scope_setup, request_scope_arm, request_scope_state, request_scope_read, request_scope_stop,
     request_stream;
 

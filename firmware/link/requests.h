@@ -7,7 +7,7 @@
 #ifndef STILLSPIN_FIRMWARE_LINK_REQUESTS_H
 #define STILLSPIN_FIRMWARE_LINK_REQUESTS_H
 
-#include "firmware/link/guard.h"
+#include "firmware/api/guard.h"
 #include "firmware/link/record.h"
 
 #if defined(__cplusplus)

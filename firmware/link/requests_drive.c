@@ -1,12 +1,12 @@
 // Commands, and how the drive is.
 
 #include "firmware/console/output.h"
-#include "firmware/drive.h"
-#include "firmware/fault_history.h"
 #include "firmware/link/link.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/fault_history.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 
 answer_status_t request_command(request_t* r) {

@@ -2,11 +2,11 @@
 
 #include <stddef.h>
 
-#include "firmware/link/crc.h"
+#include "firmware/base/crc.h"
+#include "firmware/dictionary/version.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/requests.h"
-#include "firmware/version.h"
-#include "firmware/words.h"
+#include "firmware/text/words.h"
 #include "hal/hal_board.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"

@@ -1,8 +1,8 @@
 #include "firmware/link/stream.h"
 
-#include "firmware/drive_api.h"
-#include "firmware/link/octets.h"
+#include "firmware/base/octets.h"
 #include "firmware/link/record.h"
+#include "firmware/mode/commands.h"
 
 typedef struct {
   uint16_t period;  // ms; 0: no stream

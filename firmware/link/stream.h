@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "firmware/link/guard.h"
+#include "firmware/api/guard.h"
 
 #if defined(__cplusplus)
 extern "C" {

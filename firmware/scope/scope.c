@@ -1,7 +1,7 @@
 #include "firmware/scope/scope.h"
 
-#include "firmware/drive_api.h"
-#include "firmware/isr_cycles.h"
+#include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/commands.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/qmath/qmath.h"

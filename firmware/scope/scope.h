@@ -17,8 +17,8 @@
 // FILLING does not trigger: no record lacks its pre-trigger part. In AUTO mode a finished capture is kept until
 // scope_read has given the last word of every channel; then it arms itself again.
 //
-// All but scope_step are for the background level. Cost: CYCLES_SCOPE of firmware/isr_cycles.h while recording.
-// RAM: 4096 words.
+// All but scope_step are for the background level. Cost: CYCLES_SCOPE of firmware/interfaces/isr_cycles.h while
+// recording. RAM: 4096 words.
 
 #ifndef STILLSPIN_FIRMWARE_SCOPE_SCOPE_H
 #define STILLSPIN_FIRMWARE_SCOPE_SCOPE_H

@@ -1,9 +1,9 @@
 // The start of a shaft that turns: two short circuits tell angle, polarity and speed, then the current loop is closed
 // at that speed and watched for a moment before the drive runs.
 
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/position.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/mode/mode.h"
 
 #define PULSE_MAX 12u          // periods of a short circuit that hardly drives a current
 #define PAUSE_MIN 6            // for the current to die away

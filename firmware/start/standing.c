@@ -1,10 +1,10 @@
 // The start: the sequence, and the start of a shaft that stands. See start.h.
 
+#include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
-#include "firmware/clear.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/position.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/mode/mode.h"
 #include "firmware/start/start.h"
 #include "hal/hal_pwm.h"
 

@@ -1,6 +1,6 @@
 #include "firmware/store/reader.h"
 
-#include "firmware/link/crc.h"
+#include "firmware/base/crc.h"
 #include "hal/hal_nvm.h"
 #include "hal/qmath/qarith.h"
 

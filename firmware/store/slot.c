@@ -1,6 +1,6 @@
 #include "firmware/store/slot.h"
 
-#include "firmware/link/octets.h"
+#include "firmware/base/octets.h"
 
 void slot_pack_u32(uint32_t value, uint16_t* octets) {
   octet_writer_t w = octet_writer(octets, 4);

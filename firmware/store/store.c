@@ -2,8 +2,8 @@
 
 #include <stddef.h>
 
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/slot.h"
 #include "firmware/store/survey.h"
 #include "firmware/store/values.h"

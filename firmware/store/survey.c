@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/store/reader.h"
 #include "firmware/store/slot.h"
 #include "firmware/store/values.h"

@@ -2,14 +2,14 @@
 
 #include <stddef.h>
 
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
 #include "hal/qmath/qarith.h"
 
 #define Q_MAX 31u  // fractional bits of a 32-bit number
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) offsetof(parameters_t, name),
 static const size_t offsets[] = {
-#include "firmware/parameter_list.h"
+#include "firmware/dictionary/parameter_list.h"
 };
 #undef PARAMETER
 

@@ -1,7 +1,7 @@
 #include "firmware/store/writer.h"
 
-#include "firmware/link/crc.h"
-#include "firmware/parameters.h"
+#include "firmware/base/crc.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/store/reader.h"
 #include "firmware/store/slot.h"
 #include "firmware/store/values.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "firmware/drive_api.h"
 #include "firmware/link/requests.h"
+#include "firmware/mode/commands.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"

@@ -5,7 +5,7 @@
 #include "sim_host/plant/portable_math.hpp"
 
 extern "C" {
-#include "firmware/sampling.h"
+#include "firmware/drive/sampling.h"
 }
 
 namespace stillspin::bench {

@@ -15,7 +15,7 @@
 #include "sim_host/plant/plant.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
+#include "firmware/mode/mode.h"
 }
 
 namespace stillspin::bench {

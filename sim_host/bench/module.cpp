@@ -12,7 +12,7 @@
 #include <cmath>
 #include <memory>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "sim_host/bench/commission.hpp"
 #include "sim_host/bench/module_setup.hpp"
 #include "sim_host/bench/replay.hpp"

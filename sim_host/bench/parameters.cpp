@@ -2,7 +2,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"
 #include "sim_host/bench/texts.hpp"

@@ -29,7 +29,7 @@ struct Column {
   double (*value)(const Row&);
 };
 
-// Names, units and meaning of the record; the firmware's own part follows firmware/signal_list.h.
+// Names, units and meaning of the record; the firmware's own part follows firmware/dictionary/signal_list.h.
 const Column kColumns[] = {
     {{"time", "s", "0 is the end of the start procedure"}, [](const Row& r) { return r.time; }},
     {{"true_angle", "rad", "electrical rotor angle"}, [](const Row& r) { return r.p.angle_e; }},

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "sim_host/bench/information.hpp"
 #include "sim_host/bench/run.hpp"
 #include "sim_host/plant/plant.hpp"

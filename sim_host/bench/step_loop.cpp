@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
 #include "firmware/hil/delta.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/requests.h"

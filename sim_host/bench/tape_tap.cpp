@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "firmware/drive_api.h"
 #include "firmware/hil/delta.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/record.h"
 #include "firmware/link/requests.h"
+#include "firmware/mode/commands.h"
 #include "hal/hal_tape.h"
 
 namespace stillspin::bench {
@@ -82,7 +82,7 @@ std::vector<std::int32_t> raw_signals() {
   const drive_signals_t s = drive_signals();
   return {
 #define SIGNAL(name, unit, q, of, value, meaning) s.name,
-#include "firmware/signal_list.h"
+#include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
   };
 }

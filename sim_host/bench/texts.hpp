@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware/words.h"
+#include "firmware/text/words.h"
 
 namespace stillspin::bench {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "firmware/drive_api.h"
 #include "firmware/hil/hil.h"
+#include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "sim_host/bench/run.hpp"
 #include "sim_host/chip/memory.hpp"
@@ -168,7 +168,7 @@ std::vector<Quantity> VirtualBoard::signals() {
   const drive_signals_t s = drive_signals();
   return {
 #define SIGNAL(name, unit, q, of, value, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
-#include "firmware/signal_list.h"
+#include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
   };
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "firmware/can/messages.h"
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "sim_host/bench/virtual_board.hpp"
 
 namespace stillspin::bench {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
 #include "sim_host/bench/run.hpp"
 #include "tests/bench/drive_runs.hpp"
 #include "tests/bench/loop.hpp"

@@ -11,9 +11,9 @@
 #include <memory>
 #include <string>
 
-#include "firmware/actions.h"
-#include "firmware/drive_api.h"
+#include "firmware/api/actions.h"
 #include "firmware/link/requests.h"
+#include "firmware/mode/commands.h"
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board_port.hpp"
 #include "sim_host/bench/loop_plugs.hpp"

@@ -5,8 +5,8 @@
 #include "tests/bench/drive_runs.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 }
 
 namespace stillspin::bench {

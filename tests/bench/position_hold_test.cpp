@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "tests/bench/drive_runs.hpp"
 
 namespace stillspin::bench {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "tests/bench/drive_runs.hpp"
 
 namespace stillspin::bench {

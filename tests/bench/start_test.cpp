@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "tests/bench/drive_runs.hpp"
 
 namespace stillspin::bench {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_nvm.h"
 #include "hal/hal_profile.h"
@@ -15,8 +15,8 @@
 #include "sim_host/devices/eeprom.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 }
 

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board.hpp"
 #include "sim_host/bench/virtual_board.hpp"
 #include "tests/firmware/slot_of.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 }
 

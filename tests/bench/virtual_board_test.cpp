@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "hal/hal_sci.h"
 #include "sim_host/bench/run.hpp"

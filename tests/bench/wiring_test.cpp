@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "tests/bench/drive_runs.hpp"
 
 namespace stillspin::bench {

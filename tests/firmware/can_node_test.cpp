@@ -5,7 +5,7 @@
 #include <random>
 
 extern "C" {
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/stream.h"
 }

@@ -8,7 +8,7 @@
 
 extern "C" {
 #include "firmware/commissioning/result.h"
-#include "firmware/words.h"
+#include "firmware/text/words.h"
 }
 
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
-#include "firmware/link/guard.h"
+#include "firmware/api/guard.h"
 }
 
 namespace {

@@ -6,7 +6,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
-#include "firmware/actions.h"
+#include "firmware/api/actions.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/scope/scope.h"

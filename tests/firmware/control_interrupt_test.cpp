@@ -1,6 +1,6 @@
 // The frame of the control interrupt: what it tells the model of the chip, and what stands between begin and end.
 
-#include "firmware/isr_cycles.h"
+#include "firmware/interfaces/isr_cycles.h"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {

@@ -9,9 +9,9 @@
 #include "tests/control/quantities.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/position.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/mode/mode.h"
 }
 
 namespace {

@@ -5,7 +5,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/flux_source.h"
+#include "firmware/sources/flux.h"
 }
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
-#include "firmware/fault_history.h"
+#include "firmware/mode/fault_history.h"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {

@@ -20,10 +20,10 @@
 #include "tests/control/quantities.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
-#include "firmware/position.h"
-#include "firmware/sampling.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/drive/sampling.h"
+#include "firmware/mode/mode.h"
 }
 
 namespace stillspin::test {

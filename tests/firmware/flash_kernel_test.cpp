@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/base/crc.h"
 #include "firmware/flash_kernel/kernel.h"
 #include "firmware/flash_kernel/update.h"
-#include "firmware/link/crc.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
 

@@ -7,7 +7,7 @@
 #include "tests/firmware/hil_host.hpp"
 
 extern "C" {
-#include "firmware/link/crc.h"
+#include "firmware/base/crc.h"
 #include "firmware/link/record.h"
 }
 

@@ -8,9 +8,9 @@
 #include "tests/firmware/link_octets.hpp"
 
 extern "C" {
+#include "firmware/base/crc.h"
+#include "firmware/base/octets.h"
 #include "firmware/link/cobs.h"
-#include "firmware/link/crc.h"
-#include "firmware/link/octets.h"
 #include "firmware/link/record.h"
 }
 

@@ -6,7 +6,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/isr_cycles.h"
+#include "firmware/interfaces/isr_cycles.h"
 #include "svpwm/ripple.h"
 }
 

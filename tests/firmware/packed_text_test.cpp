@@ -10,8 +10,8 @@
 
 extern "C" {
 #include "firmware/console/suggest.h"
-#include "firmware/drive_api.h"
-#include "firmware/text.h"
+#include "firmware/mode/commands.h"
+#include "firmware/text/text.h"
 }
 
 namespace stillspin::test {
@@ -38,11 +38,11 @@ struct Row {
 const Row kRows[] = {
 #include "firmware/console/command_list.h"
 #include "firmware/console/help_list.h"
-#include "firmware/fault_list.h"
-#include "firmware/parameter_list.h"
-#include "firmware/phrase_list.h"
-#include "firmware/signal_list.h"
-#include "firmware/word_list.h"
+#include "firmware/dictionary/fault_list.h"
+#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/signal_list.h"
+#include "firmware/text/phrase_list.h"
+#include "firmware/text/word_list.h"
 };
 #undef PARAMETER
 #undef SIGNAL
@@ -128,12 +128,12 @@ TEST(PackedText, WhatIsTooLongForTheBlockIsCutOffAndSaysSo) {
 
 TEST(Words, AreThoseOfTheirKindAndCode) {
 #define WORDS(kind, code, text) EXPECT_EQ(words_of(WORDS_##kind, code), text);
-#include "firmware/word_list.h"
+#include "firmware/text/word_list.h"
 #undef WORDS
 #define FAULT(number, name, words, remedy)         \
   EXPECT_EQ(words_of(WORDS_FAULT, number), words); \
   EXPECT_EQ(words_of(WORDS_REMEDY, number), remedy);
-#include "firmware/fault_list.h"
+#include "firmware/dictionary/fault_list.h"
 #undef FAULT
 }
 

@@ -4,8 +4,8 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/actions.h"
-#include "firmware/text.h"
+#include "firmware/api/actions.h"
+#include "firmware/text/text.h"
 }
 
 namespace {

@@ -10,8 +10,8 @@
 #include "sim_host/bench/texts.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_board.h"
 }
 
@@ -31,7 +31,7 @@ constexpr bool STOPPED = false, ALWAYS = true;
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   {id, #name, q, decimals, minimum, maximum, initial, &parameters.name, access},
 const Row kRows[] = {
-#include "firmware/parameter_list.h"
+#include "firmware/dictionary/parameter_list.h"
 };
 #undef PARAMETER
 

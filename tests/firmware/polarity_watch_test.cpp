@@ -5,7 +5,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/start/polarity_watch.h"
+#include "firmware/drive/polarity_watch.h"
 }
 
 namespace {

@@ -5,8 +5,8 @@
 #include "tests/firmware/position.hpp"
 
 extern "C" {
-#include "firmware/flux_source.h"
-#include "firmware/isr_cycles.h"
+#include "firmware/interfaces/isr_cycles.h"
+#include "firmware/sources/flux.h"
 #include "svpwm/ripple.h"
 }
 

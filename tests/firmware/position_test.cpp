@@ -4,7 +4,7 @@
 #include "tests/firmware/position.hpp"
 
 extern "C" {
-#include "firmware/flux_source.h"
+#include "firmware/sources/flux.h"
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // Each limit of the protection at its last good value and the first bad one, and what a fault leaves for people.
 
-#include "firmware/fault_history.h"
+#include "firmware/mode/fault_history.h"
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {

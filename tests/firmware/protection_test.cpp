@@ -1,7 +1,7 @@
 // What opens the power stage while the drive runs, each cause alone, and what must not: the conditions that
 // supervision_test.cpp meets only together.
 
-#include "firmware/fault_history.h"
+#include "firmware/mode/fault_history.h"
 #include "tests/firmware/fake_hal.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 
 extern "C" {
 #include "firmware/console/output.h"
-#include "firmware/fault_history.h"
 #include "firmware/hil/hil.h"
+#include "firmware/mode/fault_history.h"
 #include "firmware/scope/scope.h"
 }
 

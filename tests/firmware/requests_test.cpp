@@ -6,11 +6,11 @@
 #include <set>
 
 extern "C" {
-#include "firmware/fault_history.h"
-#include "firmware/link/crc.h"
+#include "firmware/base/crc.h"
+#include "firmware/dictionary/version.h"
+#include "firmware/mode/fault_history.h"
 #include "firmware/scope/scope.h"
-#include "firmware/version.h"
-#include "firmware/words.h"
+#include "firmware/text/words.h"
 #include "hal/hal_board.h"
 }
 
@@ -18,7 +18,7 @@ namespace {
 
 #define FAULT(number, name, words, remedy) +1
 constexpr int kFaults = 0
-#include "firmware/fault_list.h"
+#include "firmware/dictionary/fault_list.h"
     ;
 #undef FAULT
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "firmware/board/functions.h"
-#include "firmware/drive.h"
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
 #include "hal/hal_selftest.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 extern "C" {
-#include "firmware/link/crc.h"
+#include "firmware/base/crc.h"
 #include "firmware/store/slot.h"
 }
 

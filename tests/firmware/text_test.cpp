@@ -1,6 +1,6 @@
 // Numbers to text and back, in fixed point.
 
-#include "firmware/text.h"
+#include "firmware/text/text.h"
 
 #include <gtest/gtest.h>
 

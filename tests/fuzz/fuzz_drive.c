@@ -2,11 +2,11 @@
 
 #include "firmware/can/node.h"
 #include "firmware/console/console.h"
-#include "firmware/drive.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
-#include "firmware/parameters.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 
 #define CALIBRATION 400u  // periods that are more than enough
@@ -112,7 +112,7 @@ void fuzz_put_into(uint16_t state) {
 void fuzz_fault(uint16_t which) {
   static const drive_fault_t faults[] = {
 #define FAULT(number, name, words, remedy) FAULT_##name,
-#include "firmware/fault_list.h"
+#include "firmware/dictionary/fault_list.h"
 #undef FAULT
   };
   const drive_fault_t fault = faults[which % (uint16_t)(sizeof faults / sizeof faults[0])];
@@ -158,7 +158,7 @@ uint16_t fuzz_parameter_out_of_range(void) {
   uint16_t place = 0;
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   if (is_wrong(place++, parameters.name)) return place;
-#include "firmware/parameter_list.h"
+#include "firmware/dictionary/parameter_list.h"
 #undef PARAMETER
   return 0;
 }

@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 
 #ifdef __cplusplus
 extern "C" {

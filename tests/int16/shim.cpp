@@ -8,7 +8,7 @@
 #include "sim_host/bench/texts.hpp"
 
 extern "C" {
-#include "firmware/drive.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_tape.h"
 }
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "hal/f2808/target.h"
 #include "sim_host/bench/run.hpp"
 #include "tests/m3/trace.h"

@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "firmware/drive_api.h"
+#include "firmware/mode/commands.h"
 #include "hal/f2808/target.h"
 #include "tests/m3/trace.h"
 

@@ -4,7 +4,7 @@
 #ifndef STILLSPIN_TESTS_PROVE_ANY_CONFIG_H
 #define STILLSPIN_TESTS_PROVE_ANY_CONFIG_H
 
-#include "firmware/drive.h"
+#include "firmware/mode/mode.h"
 #include "tests/prove/any_flux.h"
 #include "tests/prove/any_modulator.h"
 #include "tests/prove/any_observer.h"

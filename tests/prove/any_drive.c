@@ -4,7 +4,7 @@
 
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
-#include "firmware/fault_history.h"
+#include "firmware/mode/fault_history.h"
 #include "firmware/scope/scope.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"

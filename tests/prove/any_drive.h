@@ -3,8 +3,8 @@
 #ifndef STILLSPIN_TESTS_PROVE_ANY_DRIVE_H
 #define STILLSPIN_TESTS_PROVE_ANY_DRIVE_H
 
-#include "firmware/drive.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/mode.h"
 #include "tests/prove/any.h"
 
 /// To be called wherever a control interrupt may have come.

@@ -68,7 +68,7 @@ static inline void any_admittance(machine_model_t* m) {
   m->ydq_q30 = q_mul(half_q30, twice.sin_q30, 30);
 }
 
-// The largest component of a current vector, for a machine whose K and k0 go with it (firmware/drive_config.c).
+// The largest component of a current vector, for a machine whose K and k0 go with it (firmware/config/config.c).
 static int32_t any_current_end_q20;
 
 static inline void any_turn(machine_model_t* m) {

@@ -3,7 +3,7 @@
 #ifndef STILLSPIN_TESTS_PROVE_ANY_PARAMETERS_H
 #define STILLSPIN_TESTS_PROVE_ANY_PARAMETERS_H
 
-#include "firmware/parameters.h"
+#include "firmware/dictionary/parameters.h"
 #include "tests/prove/any.h"
 
 static inline void any_parameters(void) {

@@ -14,7 +14,7 @@
 #define TURN_MAX_BPP 683565276L               // 1 rad per period: with the current put ahead
 #define SLOPE_MAX_Q20 1073741824L             // slopes.h
 #define RS_NOMINAL_MAX_Q24 352321536L         // 21 ohm
-#define Y0_END_Q30 644245094L                 // 0.6 A per V and period, in the map (firmware/drive_config.c)
+#define Y0_END_Q30 644245094L                 // 0.6 A per V and period, in the map (firmware/config/config.c)
 #define Y_END_Q30 1288490189L                 // 1.2, with what is learnt
 #define Y_CROSS_END_Q30 966367641L            // 0.9 across
 #define TILT_END_Q24 1073741824L              // 64
@@ -24,7 +24,7 @@
 #define LEAST_SHARE_Q24 (-15728640L)          // of the map's admittances, learnt: 15/16 less
 #define START_SAMPLES 4                       // hal/hal_adc.h
 #define END_SAMPLES 3
-#define OFFSET_MIN_Q8 491520L                     // 1920 codes (firmware/state_machine.c)
+#define OFFSET_MIN_Q8 491520L                     // 1920 codes (firmware/drive/sequence.c)
 #define OFFSET_MAX_Q8 557056L                     // 2176
 #define AMPERES_PER_COUNT_MAX_Q36 559240534L      // of 200 A of full scale; counts of twelve products
 #define GAIN_MAX_Q36 587210000L                   // of that, with five percent of mismatch

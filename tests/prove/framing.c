@@ -2,9 +2,9 @@
 // way out. Where the pieces are told apart by what came before, one step is made from every state that there can be,
 // and has to lead to such a state again (link_ranges.h): so it holds step after step without end.
 
+#include "firmware/base/crc.h"
 #include "firmware/can/segments.h"
 #include "firmware/link/cobs.h"
-#include "firmware/link/crc.h"
 #include "firmware/link/splitter.h"
 #include "tests/prove/any.h"
 

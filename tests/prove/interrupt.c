@@ -4,11 +4,11 @@
 
 #include <string.h>
 
+#include "firmware/base/clear.h"
 #include "firmware/board/selftest.h"
-#include "firmware/clear.h"
 #include "firmware/commissioning/result.h"
-#include "firmware/drive.h"
-#include "firmware/sampling.h"
+#include "firmware/drive/sampling.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_encoder.h"

@@ -8,8 +8,8 @@
 #include "firmware/console/commands.h"
 #include "firmware/console/suggest.h"
 #include "firmware/link/splitter.h"
-#include "firmware/text.h"
-#include "firmware/words.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
 #include "tests/prove/qmath_ranges.h"
 
 /*@ requires count == 0 || \valid_read(octets + (0 .. count - 1)); assigns \result \from octets[0 .. count - 1]; */

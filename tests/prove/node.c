@@ -5,10 +5,10 @@
 
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/record.h"
 #include "firmware/link/stream.h"
-#include "firmware/parameters.h"
 #include "tests/prove/any_drive.h"
 
 uint16_t hal_sci_room(void) { return any_u16; }

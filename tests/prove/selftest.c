@@ -2,8 +2,8 @@
 
 #include "firmware/board/selftest.h"
 
-#include "firmware/clear.h"
-#include "firmware/drive.h"
+#include "firmware/base/clear.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_lines.h"

@@ -1,11 +1,11 @@
 // Numbers and words in and out of text: every text of the drive's tables, any characters that somebody typed, any value
 // in any format.
 
-#include "firmware/text.h"
+#include "firmware/text/text.h"
 
 #include "firmware/console/suggest.h"
-#include "firmware/drive_api.h"
-#include "firmware/words.h"
+#include "firmware/mode/commands.h"
+#include "firmware/text/words.h"
 #include "tests/prove/any.h"
 
 #define WORDS_OF_A_KIND 48  // at least; what comes behind is there for no kind

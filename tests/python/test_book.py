@@ -102,7 +102,7 @@ def tree(tmp_path: Path) -> Path:
     """A copy of what the pieces of the book are made of."""
     for folder in ("docs", "toolchain/book", "hal/boards", "sim_host/motors", "sim_host/profiles"):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
-    (tmp_path / "firmware").mkdir()
+    (tmp_path / parameters.LIST).parent.mkdir(parents=True)
     for name in ("README.md", parameters.LIST):
         shutil.copy(ROOT / name, tmp_path / name)
     (tmp_path / chip.COSTS).parent.mkdir()

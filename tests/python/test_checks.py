@@ -37,7 +37,7 @@ def house(tmp_path: Path) -> Path:
         "control/pi.h",
         "svpwm/modulator.h",
         "estimators/avv.h",
-        "firmware/drive.h",
+        "firmware/mode/mode.h",
         "sim_host/chip/world.hpp",
         "sim_host/plant/plant.hpp",
     ):
@@ -53,20 +53,20 @@ def house(tmp_path: Path) -> Path:
         ("control/x.c", "svpwm/modulator.h"),
         ("control/x.c", "estimators/avv.h"),
         ("control/x.h", "hal/hal_pwm.h"),
-        ("svpwm/x.c", "firmware/drive.h"),
+        ("svpwm/x.c", "firmware/mode/mode.h"),
         ("estimators/x.c", "control/pi.h"),
         ("estimators/x.c", "hal/hal_pwm.h"),
         ("firmware/x.c", "hal/f2808/registers.h"),
-        ("hal/f2808/x.c", "firmware/drive.h"),
+        ("hal/f2808/x.c", "firmware/mode/mode.h"),
         ("hal/f2808/x.c", "control/frame.h"),
         ("hal/f2808/x.c", "svpwm/modulator.h"),
         ("hal/f2808/x.c", "estimators/avv.h"),
-        ("sim_host/chip/x.cpp", "firmware/drive.h"),
+        ("sim_host/chip/x.cpp", "firmware/mode/mode.h"),
         ("sim_host/chip/x.cpp", "hal/f2808/pwm_internal.h"),
         ("sim_host/plant/x.cpp", "hal/f2808/registers.h"),
         ("control/x.c", "sim_host/chip/world.hpp"),
-        ("control/x.c", "../firmware/drive.h"),
-        ("control/x.c", "control/../firmware/drive.h"),
+        ("control/x.c", "../firmware/mode/mode.h"),
+        ("control/x.c", "control/../firmware/mode/mode.h"),
         ("control/x.c", "control/no_such_file.h"),
         ("control/x.c", "math.h"),
     ],
@@ -80,11 +80,11 @@ def test_arrow_that_goes_up_is_caught(house: Path, source: str, include: str) ->
 @pytest.mark.parametrize(
     "line",
     [
-        "#include <firmware/drive.h>",
-        '  #  include "firmware/drive.h"',
-        '#include /* why not */ "firmware/drive.h"',
-        '#include \\\n "firmware/drive.h"',
-        '#define DRIVE "firmware/drive.h"\n#include DRIVE',
+        "#include <firmware/mode/mode.h>",
+        '  #  include "firmware/mode/mode.h"',
+        '#include /* why not */ "firmware/mode/mode.h"',
+        '#include \\\n "firmware/mode/mode.h"',
+        '#define DRIVE "firmware/mode/mode.h"\n#include DRIVE',
     ],
 )
 def test_disguised_arrow_is_caught(house: Path, line: str) -> None:
@@ -104,11 +104,11 @@ def test_disguised_arrow_is_caught(house: Path, line: str) -> None:
         ("hal/f2808/x.c", '"hal/hal_pwm.h"'),
         ("sim_host/chip/x.cpp", '"hal/f2808/target.h"'),
         ("sim_host/plant/x.cpp", "<vector>"),
-        ("sim_host/bench/x.cpp", '"firmware/drive.h"'),
+        ("sim_host/bench/x.cpp", '"firmware/mode/mode.h"'),
     ],
 )
 def test_arrow_that_goes_down_passes(house: Path, source: str, include: str) -> None:
-    plant(house, source, f'#include {include}\n// #include "firmware/drive.h"\n')
+    plant(house, source, f'#include {include}\n// #include "firmware/mode/mode.h"\n')
     assert arrows.check(house) == []
 
 

@@ -27,7 +27,7 @@ def pins_of_the_guide() -> dict[str, int]:
 
 def parameter(name: str) -> list[int]:
     """Smallest, largest and default value in the units of its decimals."""
-    row = re.search(rf"PARAMETER\(\d+, {name}, ([^)]*)", source("firmware/parameter_list.h"))
+    row = re.search(rf"PARAMETER\(\d+, {name}, ([^)]*)", source("firmware/dictionary/parameter_list.h"))
     assert row
     fields = [field.strip() for field in row[1].split(",")]
     return [int(field) for field in fields[3:6]]

@@ -1,4 +1,4 @@
-"""The reference page of all parameters, from firmware/parameter_list.h and what docs/what_you_see.toml says of them."""
+"""The reference page of all parameters, from parameter_list.h and what docs/what_you_see.toml says of them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from board_table import read
 from pack_text import rows
 
-LIST, SEEN = "firmware/parameter_list.h", "docs/what_you_see.toml"
+LIST, SEEN = "firmware/dictionary/parameter_list.h", "docs/what_you_see.toml"
 BOARD = "hal/boards/bench.h"
 ACCESS = {"STOPPED": "may change only while the power stage is off", "ALWAYS": "may change at any time"}
 WHO = {

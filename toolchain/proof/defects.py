@@ -30,7 +30,7 @@ DEFECTS = (
     Defect(
         "interrupt",
         "hal_adc_read_window",
-        "firmware/sampling.c",
+        "firmware/drive/sampling.c",
         "(place < ESTIMATOR_WINDOWS)",
         "(place < ESTIMATOR_WINDOWS + 1u)",
     ),
@@ -51,7 +51,7 @@ DEFECTS = (
     Defect(
         "interrupt",
         "calibrate",
-        "firmware/state_machine.c",
+        "firmware/drive/sequence.c",
         "d->supervision.missing > SAMPLES_TIMEOUT",
         "SAMPLES_TIMEOUT / d->supervision.missing < 1u",
     ),
@@ -128,9 +128,9 @@ DEFECTS = (
         "++left->periods > LEFT_PERIODS_MAX",
     ),
     Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
-    Defect("configuration", "q_mul", "firmware/drive_config.c", "q_mul64(p->encoder_trim", "q_mul(p->encoder_trim"),
+    Defect("configuration", "q_mul", "firmware/config/config.c", "q_mul64(p->encoder_trim", "q_mul(p->encoder_trim"),
     Defect(
-        "configuration", "load_machine", "firmware/drive_config.c", "pole_pairs * 1832519L", "pole_pairs * 183251900L"
+        "configuration", "load_machine", "firmware/config/config.c", "pole_pairs * 1832519L", "pole_pairs * 183251900L"
     ),
     Defect(
         "flux",
@@ -144,15 +144,15 @@ DEFECTS = (
         "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
     ),
     Defect("commissioning", "take_off", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
-    Defect("packed", "packed_next", "firmware/packed_text.c", "[code - FIRST_PAIR]", "[code - FIRST_PAIR + 1u]"),
-    Defect("numbers", "put_digits", "firmware/text.c", "reversed[10]", "reversed[9]"),
-    Defect("names", "common", "firmware/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
+    Defect("packed", "packed_next", "firmware/text/packed_text.c", "[code - FIRST_PAIR]", "[code - FIRST_PAIR + 1u]"),
+    Defect("numbers", "put_digits", "firmware/text/text.c", "reversed[10]", "reversed[9]"),
+    Defect("names", "common", "firmware/text/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
     Defect(
         "near", "is_one_edit_away", "firmware/console/suggest.c", "&name[k + 1u], rest, l", "&name[k + 2u], rest, l"
     ),
     Defect("editor", "insert", "firmware/console/editor.c", "l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
-    Defect("commands", "set_channels", "firmware/console/commands_scope.c", "a->count > 1u +", "a->count > 2u +"),
-    Defect("requests", "scope_read", "firmware/link/requests_scope.c", "count > READ_MAX", "count > 2u * READ_MAX"),
+    Defect("commands", "set_channels", "firmware/scope/commands.c", "a->count > 1u +", "a->count > 2u +"),
+    Defect("requests", "scope_read", "firmware/scope/requests.c", "count > READ_MAX", "count > 2u * READ_MAX"),
     Defect("requests", "delta_take", "firmware/hil/hil.c", "shape[2] > TAPE_INPUTS", "shape[2] > 2u * TAPE_INPUTS"),
     Defect("console", "keep", "firmware/console/console.c", "kept_count) & (KEPT - 1u)", "kept_count) & KEPT"),
     Defect("node", "can_put", "firmware/can/messages.c", "&frame->data[at >> 3]", "&frame->data[at >> 2]"),

@@ -62,38 +62,53 @@ SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
 CONTROL = ("control/*.c", QMATH)
 ESTIMATORS = ("estimators/*.c", *CONTROL)
 CONFIGURATION = (
-    *("tests/prove/configuration.c", "firmware/drive_config.c", "firmware/parameter*.c", "firmware/clear.c"),
-    *("firmware/flux_source.c", "svpwm/*.c", *ESTIMATORS),
+    *(
+        "tests/prove/configuration.c",
+        "firmware/config/config.c",
+        "firmware/dictionary/parameters.c",
+        "firmware/config/rules.c",
+        "firmware/base/clear.c",
+    ),
+    *("firmware/sources/flux.c", "svpwm/*.c", *ESTIMATORS),
 )
-OCTETS, RECORD, CRC = "firmware/link/octets.c", "firmware/link/record.c", "firmware/link/crc.c"
+OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
 FRAMES = (
     *("tests/prove/framing.c", "firmware/link/splitter.c", RECORD, "firmware/link/cobs.c", CRC),
     *("firmware/can/segments.c", "hal/qmath/qdiv.c"),
 )
 TEXTS = (
-    *("firmware/text.c", "firmware/words.c", "firmware/packed_text.c", "firmware/parameters.c", "firmware/signals.c"),
+    *(
+        "firmware/text/text.c",
+        "firmware/text/words.c",
+        "firmware/text/packed_text.c",
+        "firmware/dictionary/parameters.c",
+        "firmware/drive/signals.c",
+    ),
     *(OCTETS, "hal/qmath/qdiv.c"),
 )
 TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (
-    *("tests/prove/any_drive.c", "firmware/actions.c", "firmware/fault_history.c", "firmware/scope/scope.c"),
-    *("firmware/link/guard.c", "firmware/link/stream.c", *TEXTS),
+    *("tests/prove/any_drive.c", "firmware/api/actions.c", "firmware/mode/fault_history.c", "firmware/scope/scope.c"),
+    *("firmware/api/guard.c", "firmware/link/stream.c", *TEXTS),
 )
 TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
 
-STORE = ("tests/prove/store.c", "firmware/store/*.c", "firmware/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c")
+STORE = (
+    *("tests/prove/store.c", "firmware/dictionary/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c"),
+    *(f"firmware/store/{name}.c" for name in ("reader", "slot", "store", "survey", "values", "writer")),
+)
 KERNEL = (
     *("tests/prove/kernel.c", "firmware/flash_kernel/*.c", "firmware/link/splitter.c", RECORD, OCTETS, CRC),
     "hal/qmath/qdiv.c",
 )
 SELFTEST = (
-    *("tests/prove/selftest.c", "firmware/board/selftest.c", "firmware/board/flash_sum.c", "firmware/clear.c"),
-    *("firmware/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c"),
+    *("tests/prove/selftest.c", "firmware/board/selftest.c", "firmware/board/flash_sum.c", "firmware/base/clear.c"),
+    *("firmware/dictionary/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c"),
 )
 
 RESULTS = (
     *("tests/prove/results.c", "firmware/commissioning/solve.c", "firmware/commissioning/result.c"),
-    *("firmware/parameters.c", "estimators/admittance_tensor.c", "estimators/fit.c", *CONTROL),
+    *("firmware/dictionary/parameters.c", "estimators/admittance_tensor.c", "estimators/fit.c", *CONTROL),
 )
 
 DRIVERS = "adc", "clock", "encoder", "gpio", "irq", "lines", "pwm", "safety", "sci", "slices", "timer", "watchdog"
@@ -105,10 +120,8 @@ DEVICES = ("tests/prove/devices.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2
 # All that the control interrupt runs but what speaks to the chip; and what of that is read by itself.
 INTERRUPT = (
     *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/scope/scope.c", *ESTIMATORS, "svpwm/*.c"),
-    *(f"firmware/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "position", "flux_source")),
-    *(f"firmware/{name}.c" for name in ("protection", "state_machine", "speed_task", "inertia_task", "current_task")),
-    *(f"firmware/{name}.c" for name in ("modulation", "hysteresis", "signals", "drive_api", "background")),
-    *("firmware/parameters.c", "firmware/fault_history.c"),
+    *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*.c", "firmware/hysteresis/*.c"),
+    "firmware/dictionary/parameters.c",
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),
 )
@@ -268,7 +281,10 @@ PARTS = (
     ),
     of_link(
         "commands",
-        ("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+        (
+            *("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+            *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "store")),
+        ),
         READER,
         *(OF_QMATH, "q_shl_sat", OF_WRITING, OF_TYPING, OF_LINES),
         related=("read_speed", "unit_fits"),
@@ -283,8 +299,8 @@ PARTS = (
     of_link(
         "requests",
         (
-            *("tests/prove/requests.c", "firmware/link/requests*.c", CRC, "firmware/hil/*.c"),
-            *("firmware/clear.c", "hal/tape.c", *BESIDE),
+            *("tests/prove/requests.c", "firmware/link/requests*.c", "firmware/scope/requests.c", CRC),
+            *("firmware/hil/*.c", "firmware/base/clear.c", "hal/tape.c", *BESIDE),
         ),
         READER,
         *(OF_QMATH, OF_WRITING),
@@ -297,7 +313,10 @@ PARTS = (
     ),
     of_link(
         "node",
-        ("tests/prove/node.c", "firmware/can/*.c", RECORD, *BESIDE),
+        (
+            *("tests/prove/node.c", RECORD, *BESIDE),
+            *(f"firmware/can/{name}.c" for name in ("command", "messages", "node", "segments", "telemetry")),
+        ),
         (*ROUNDS, "-eva-slevel-function", "stream_event:300"),
         *(OF_QMATH, OF_WRITING, OF_FRAMES),
     ),

@@ -22,7 +22,7 @@ _TIMEOUT = 3.0
 
 
 class Outcome(IntEnum):
-    """What came of it, firmware/drive_api.h."""
+    """What came of it, firmware/mode/commands.h."""
 
     NONE = 0
     RUNNING = 1

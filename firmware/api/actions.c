@@ -1,0 +1,177 @@
+#include "firmware/api/actions.h"
+
+#include <stddef.h>
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/hil/hil.h"
+#include "firmware/mode/mode.h"
+#include "firmware/store/store.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
+
+// Why the drive cannot begin anything now; OK when it can.
+static answer_status_t check_ready(octet_writer_t* why) {
+  const packed_text_t conflict = parameter_conflict_known();
+  switch (drive.state) {
+    case DRIVE_READY:
+      if (conflict == PACKED_NONE) return ANSWER_OK;
+      put_packed(why, conflict);
+      return ANSWER_CONFLICT;
+    case DRIVE_FAULT:
+      put_packed(why, SAY_a_fault_is_latched_reset_it_first);
+      put_words(why, WORDS_FAULT, (uint16_t)drive.fault);
+      return ANSWER_STATE;
+    case DRIVE_BOOT:
+    case DRIVE_CALIBRATE:
+      put_packed(why, SAY_the_drive_is_not_ready_yet);
+      break;
+    default:
+      put_packed(why, SAY_the_drive_is_busy_stop_it_first);
+      break;
+  }
+  put_words(why, WORDS_STATE, (uint16_t)drive.state);
+  return ANSWER_STATE;
+}
+
+answer_status_t action_start(guard_t guard, octet_writer_t* why) {
+  const answer_status_t status = check_ready(why);
+  if (status != ANSWER_OK) return status;
+  guard_begin(guard);
+  drive_command_start();
+  return ANSWER_OK;
+}
+
+answer_status_t action_commission(guard_t guard, octet_writer_t* why) {
+  const answer_status_t status = check_ready(why);
+  if (status != ANSWER_OK) return status;
+  guard_begin(guard);
+  drive_command_commission();
+  return ANSWER_OK;
+}
+
+answer_status_t action_look(octet_writer_t* why) {
+  const answer_status_t status = check_ready(why);
+  if (status == ANSWER_OK) drive_command_look();
+  return status;
+}
+
+void put_look(octet_writer_t* w) {
+  const look_outcome_t outcome = drive_look_outcome();
+  put_words(w, WORDS_LOOK, (uint16_t)outcome);
+  if (outcome < LOOK_TURNS || outcome > LOOK_UNCLEAR) return;
+  put_fixed(w, drive_look_rpm(), 16, 0);
+  put_packed(w, SAY_rpm);
+}
+
+void action_stop(void) { drive_command_stop(); }
+
+void action_coast(void) { drive_command_coast(); }
+
+answer_status_t action_reset(octet_writer_t* why) {
+  if (drive.state != DRIVE_FAULT) {
+    put_packed(why, SAY_no_fault_is_latched);
+    return ANSWER_STATE;
+  }
+  drive_command_reset();
+  return ANSWER_OK;
+}
+
+static int32_t speed_limit_q16(void) { return q_shl_sat(parameters.speed_limit, 8); }
+
+void put_speed_limit(octet_writer_t* w) {
+  put_packed(w, SAY_rpm_is_beyond_speed_limit);
+  put_fixed(w, speed_limit_q16(), 16, 0);
+  put_packed(w, SAY_rpm_nothing_changed);
+}
+
+answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
+  if (q_abs_sat(rpm_q16) <= speed_limit_q16()) {
+    drive_command_speed(rpm_q16);
+    return ANSWER_OK;
+  }
+  put_fixed(why, rpm_q16, 16, 1);
+  put_speed_limit(why);
+  return ANSWER_RANGE;
+}
+
+void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
+  put_fixed(w, raw, parameter->q, parameter->decimals);
+  if (packed_is_empty(parameter->unit)) return;
+  put_u8(w, ' ');
+  put_packed(w, parameter->unit);
+}
+
+void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
+  put_fixed(w, parameter->minimum, parameter->q, parameter->decimals);
+  put_text(w, " .. ");
+  put_value(w, parameter, parameter->maximum);
+  put_packed(w, SAY_nothing_changed);
+}
+
+// With one decimal more where the table's are too few to show what is wrong.
+static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
+  put_packed(why, p->name);
+  put_text(why, " = ");
+  put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
+  put_packed(why, SAY_is_outside_of);
+  put_range(why, p);
+  return ANSWER_RANGE;
+}
+
+// The value is in the table already, `before` was.
+static answer_status_t check_conflict(const parameter_info_t* p, int32_t before, octet_writer_t* why) {
+  const packed_text_t conflict = parameter_conflict();
+  if (conflict == PACKED_NONE) return ANSWER_OK;
+  if (drive_is_energised()) {
+    (void)parameter_set(p->id, before);
+    put_packed(why, SAY_not_taken_while_the_drive_runs);
+  } else {
+    put_packed(why, SAY_taken_but_the_drive_does_not_start);
+  }
+  put_packed(why, conflict);
+  return ANSWER_CONFLICT;
+}
+
+answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why) {
+  const int32_t before = parameter_get(parameter->id);
+  switch (parameter_set(parameter->id, raw)) {
+    case SET_OK:
+      return check_conflict(parameter, before, why);
+    case SET_RANGE:
+      return refuse_range(parameter, raw, why);
+    case SET_RUNNING:
+      put_packed(why, parameter->name);
+      put_packed(why, SAY_may_not_change_while_the_power_stage);
+      return ANSWER_RUNNING;
+    default:
+      return ANSWER_UNKNOWN;
+  }
+}
+
+// Why the store did not begin.
+static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
+  if (hil_is_active()) {
+    put_packed(why, SAY_not_with_the_host_in_the_loop);
+    return ANSWER_STATE;
+  }
+  if (needs_rest && drive_is_energised()) {
+    put_packed(why, SAY_not_while_the_power_stage_is_on);
+    return ANSWER_RUNNING;
+  }
+  put_packed(why, SAY_the_store_is_busy);
+  put_words(why, WORDS_STORE, (uint16_t)store_state());
+  return ANSWER_BUSY;
+}
+
+answer_status_t action_save(octet_writer_t* why) {
+  return !hil_is_active() && store_save() ? ANSWER_OK : refuse_store(false, why);
+}
+
+answer_status_t action_load(octet_writer_t* why) {
+  return !hil_is_active() && store_load() ? ANSWER_OK : refuse_store(true, why);
+}
+
+answer_status_t action_defaults(octet_writer_t* why) {
+  return !hil_is_active() && store_defaults() ? ANSWER_OK : refuse_store(true, why);
+}

@@ -1,0 +1,68 @@
+// What a user may ask of the drive, whoever passes it on: checked, with the reason in words when it is refused.
+// Console, link and bus call these, so that all of them refuse the same things in the same words.
+//
+// A reason says what was wrong, the value, the range and what to do; it is appended to `why`. Background level.
+
+#ifndef STILLSPIN_FIRMWARE_API_ACTIONS_H
+#define STILLSPIN_FIRMWARE_API_ACTIONS_H
+
+#include "firmware/api/guard.h"
+#include "firmware/base/octets.h"
+#include "firmware/mode/commands.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/// The numbers are those of the link's answers: stable. words(WORDS_STATUS, .) has their words.
+typedef enum {
+  ANSWER_OK = 0,
+  ANSWER_UNKNOWN = 1,
+  ANSWER_RANGE = 2,
+  ANSWER_RUNNING = 3,  // not while the power stage is on
+  ANSWER_LENGTH = 4,
+  ANSWER_BUSY = 5,
+  ANSWER_STATE = 6,    // not in this state of the drive
+  ANSWER_CONFLICT = 7  // parameters that do not fit together
+} answer_status_t;
+
+/// With a guard, `link_timeout` without a record of the port stops the drive again.
+answer_status_t action_start(guard_t guard, octet_writer_t* why);
+answer_status_t action_commission(guard_t guard, octet_writer_t* why);
+
+/// Two short-circuit pulses: how the shaft turns. The outcome is asked for afterwards (drive_look_outcome).
+answer_status_t action_look(octet_writer_t* why);
+void put_look(octet_writer_t* w);
+
+/// Always taken: what is not under way need not be stopped.
+void action_stop(void);
+void action_coast(void);
+
+answer_status_t action_reset(octet_writer_t* why);
+
+/// rpm Q16.
+answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why);
+
+/// CONFLICT says which parameters do not fit together. With the power stage off the value is taken all the same, since
+/// the others may follow; while the drive runs it is not.
+answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why);
+
+/// Begin to keep the present parameters, and to take those that are kept; store_state tells what becomes of it.
+answer_status_t action_save(octet_writer_t* why);
+answer_status_t action_load(octet_writer_t* why);
+
+/// Every parameter to its default; what is kept stays as it is.
+answer_status_t action_defaults(octet_writer_t* why);
+
+/// The rest of a refusal behind the value: the range that holds, and that nothing has changed.
+void put_range(octet_writer_t* w, const parameter_info_t* parameter);
+void put_speed_limit(octet_writer_t* w);
+
+/// A value with its unit, as the table has its decimals.
+void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

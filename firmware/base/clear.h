@@ -1,0 +1,11 @@
+// Zero for what is too large to be assigned: an empty constant to copy would have as many words of flash.
+
+#ifndef STILLSPIN_FIRMWARE_BASE_CLEAR_H
+#define STILLSPIN_FIRMWARE_BASE_CLEAR_H
+
+#include <stddef.h>
+
+/// Puts `count` characters (on the C28x: words) from `at` on to zero, which is 0, false or NULL for every type there.
+void clear(void* at, size_t count);
+
+#endif

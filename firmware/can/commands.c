@@ -1,0 +1,68 @@
+// can: how the node of the CAN bus is.
+
+#include "firmware/console/commands.h"
+
+#include "firmware/can/node.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
+
+static can_node_state_t now;  // one moment for all lines
+
+static void put_count(octet_writer_t* w, uint16_t count, packed_text_t what) {
+  put_unsigned(w, count);
+  put_packed(w, what);
+}
+
+static void line_bus(octet_writer_t* w) {
+  put_packed(w, SAY_bus_node);
+  put_unsigned(w, now.node);
+  if (now.rate_kbit > 0) {
+    put_packed(w, SAY_at);
+    put_unsigned(w, (uint32_t)now.rate_kbit);
+    put_packed(w, SAY_kbit_s);
+  }
+  put_text(w, ": ");
+  put_words(w, WORDS_CAN, (uint16_t)now.bus.state);
+}
+
+static void line_errors(octet_writer_t* w) {
+  put_packed(w, SAY_errors);
+  put_count(w, now.bus.transmit_errors, SAY_sending);
+  put_count(w, now.bus.receive_errors, SAY_receiving);
+  put_count(w, now.bus.bus_offs, SAY_times_restarted);
+  put_count(w, now.bus.restarts, SAY_times);
+}
+
+static void line_lost(octet_writer_t* w) {
+  put_packed(w, SAY_lost);
+  put_count(w, now.lost, SAY_frames_or_records);
+  put_count(w, now.bad_commands, SAY_commands_did_not_count);
+}
+
+static void line_command(octet_writer_t* w) {
+  packed_text_t how = SAY_none_has_come;
+  if (now.heard) how = SAY_they_come;
+  if (now.commanding) how = SAY_they_command_the_drive;
+  if (now.timed_out) how = SAY_they_stay_away;
+  put_packed(w, SAY_commands);
+  put_packed(w, how);
+}
+
+static void (*const lines[])(octet_writer_t* w) = {line_bus, line_errors, line_lost, line_command};
+
+#define LINES ((uint16_t)(sizeof lines / sizeof lines[0]))
+
+static bool show(uint16_t step) {
+  lines[step](line_begin());
+  line_end();
+  return step + 1u < LINES;
+}
+
+void command_can(const words_of_line_t* a) {
+  (void)a;
+  now = can_node_state();
+  console_run(show, false);
+}

@@ -1,0 +1,215 @@
+// From the parameters, in the user's units, to the constants of every module.
+
+#include <stddef.h>
+
+#include "firmware/base/clear.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+#include "firmware/sources/flux.h"
+#include "hal/hal_adc.h"
+
+#define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
+#define CRAWL_MAX_RPM_Q16 655360L    // where cogging is learnt
+#define HOLD_BELOW_RPM_Q16 1310720L  // 20 rpm
+#define COGGING_MAX_Q20 1048576L     // 1 N m
+#define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
+#define LEAST_BAND_Q20 10486L        // 0.01 A
+#define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
+#define MILLIHENRY_Q30 1099511628L   // mH (Q20) to H (Q30): 1.024
+
+// Ticks of 10 ns from a time in us, Q16.
+static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
+
+// bandwidth (rad/s, Q8) * T, Q30: 100 us * 2^22 = 419.43.
+static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return q_mul(bandwidth_q8, 439804651L, 20); }
+
+// Share of an inductance (H, Q30) in percent (Q16).
+static int32_t share_of(int32_t inductance_q30, int32_t percent_q16) {
+  return q_mul(inductance_q30, q_mul(percent_q16, 10737418L, 16), 30);
+}
+
+static bool load_map(machine_model_t* m) {
+  const parameters_t* const p = &parameters;
+  const int32_t ldd_q16[] = {p->ldd_1, p->ldd_2, p->ldd_3, p->ldd_4};  // percent
+  const int32_t lqq_q16[] = {p->lqq_1, p->lqq_2, p->lqq_3, p->lqq_4};
+  const int32_t ldq_q20[] = {p->ldq_1, p->ldq_2, p->ldq_3, p->ldq_4};  // mH
+  machine_map_parameters_t map = {p->map_current, {m->ld_q30}, {m->lq_q30}, {0}};
+  for (uint16_t k = 0; k < MACHINE_MAP_SEGMENTS; k++) {
+    map.ldd_q30[k + 1u] = share_of(m->ld_q30, ldd_q16[k]);
+    map.lqq_q30[k + 1u] = share_of(m->lq_q30, lqq_q16[k]);
+    map.ldq_q30[k + 1u] = q_mul(ldq_q20[k], MILLIHENRY_Q30, 30);
+  }
+  return machine_model_saturate(m, &map);
+}
+
+// What the estimators make of a point of the map fits their formats: of h (machine_model.h) with the largest current
+// that two sensors show together, twice their full scale.
+static bool point_fits(const machine_model_t* m) {
+  const int32_t k0_q20 = q_max(q_abs_sat(m->k0_q20.d), q_abs_sat(m->k0_q20.q));
+  const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
+  const int32_t k_q24 = q_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
+  const int32_t turn_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
+  return k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
+}
+
+// So does the torque per ampere with that current, and the torque with it: the reluctance adds 51 N m/A to the 30 of
+// the largest flux, times 400 A.
+static bool torque_fits(const machine_model_t* m) {
+  return q_shr(m->reluctance_q24, 12) * q_shr(parameters.current_full_scale, 16) > -RELUCTANCE_END_Q16;
+}
+
+static bool fits_formats(machine_model_t* m) {
+  bool fits = torque_fits(m);
+  for (int32_t k = 0; k < MACHINE_MAP_POINTS; k++) {
+    machine_model_move(m, parameters.map_current / MACHINE_MAP_SEGMENTS * k);
+    fits = fits && point_fits(m);
+  }
+  machine_model_move(m, 0);
+  return fits;
+}
+
+static bool load_machine(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  machine_parameters_t m;
+  m.rs_q24 = p->stator_resistance + p->device_resistance;
+  m.ld_q30 = q_mul(p->inductance_d, MILLIHENRY_Q30, 30);
+  m.lq_q30 = q_mul(p->inductance_q, MILLIHENRY_Q30, 30);
+  m.flux_q28 = p->magnet_flux;
+  m.inertia_q24 = p->inertia;
+  m.pole_pairs = p->pole_pairs;
+  m.period_us = DRIVE_PERIOD_US;
+  if (!machine_model_init(&c->nameplate, &m) || !load_map(&c->nameplate) || !fits_formats(&c->nameplate)) return false;
+  // rpm to binary angle per period: pole pairs / 60 s * T * 2^32 = 7158.2788 per pole pair.
+  c->bpp_per_rpm_q8 = p->pole_pairs * 1832519L;
+  c->rpm_per_bpp_q40 = q_div(16777216L, c->bpp_per_rpm_q8, 24);
+  return true;
+}
+
+// Between two windows lie the edge and its settling at least; the window before must have been read by then.
+#if SAMPLING_SETTLE_MIN_TICKS + HAL_ADC_BURST_TICKS < HAL_ADC_WINDOW_GAP_TICKS
+#error "two windows follow each other faster than the converter is read"
+#endif
+
+static bool load_modulation(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  c->modulator.pulse_ticks = ticks(p->pulse_time);
+  c->modulator.extended.window_min_ticks = ticks(p->window_minimum);
+  c->modulator.extended.window_max_ticks = ticks(p->window_maximum);
+  c->modulator.extended.zero_ticks = ticks(p->zero_time);
+  c->modulator.sampling.settle_ticks = ticks(p->settle_time);
+  c->modulator.sampling.burst_ticks = HAL_ADC_BURST_TICKS;
+  c->modulator.sampling.span_min_ticks = 300;
+  c->modulator.sampling.last_tick = 9640;
+  c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
+  c->dead_time.released_ticks = ticks(p->turn_off_delay);
+  // Half of it is for what the ripple at an edge is wrong by, and the flux has centred pulses without any.
+  c->dead_time.band_q20 = flux_source_is_wanted() ? q_max(q_shr(p->drop_band, 1), LEAST_BAND_Q20) : p->drop_band;
+  c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + c->dead_time.band_q20;
+  c->dead_time.drop_q16 = p->device_drop;
+  dead_time_design(&c->dead_time);
+  return modulator_config_valid(&c->modulator) && c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
+         c->dead_time.blocked_ticks <= SVPWM_FIRST_TICK - 20;
+}
+
+static bool load_control(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  c->speed.friction_q24 = p->friction;
+  c->speed.inertia_q24 = p->inertia;
+  c->speed.step_periods = DRIVE_PERIODS_PER_MS;
+  c->speed.alpha_q8 = p->speed_alpha;
+  c->speed.trajectory_ms_q8 = p->speed_trajectory;
+  c->speed.pi_bandwidth_q8 = p->speed_pi_bandwidth;
+  c->speed.pi_damping_q12 = p->speed_pi_damping;
+  // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
+  c->friction_per_bpp_q40 = q_mul_sat(q_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
+  c->ramp_step_bpp = q_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
+  c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
+  c->hold_below_bpp = q_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
+  const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
+                                    (current_corner_t)p->current_corner};
+  mtpa_design(&c->mtpa, &c->nameplate);
+  const if_start_parameters_t turn = {p->if_current, p->if_align * DRIVE_PERIODS_PER_MS,
+                                      q_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
+                                      q_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
+  const bool turns = if_start_design(&c->turn, &c->nameplate, &turn) || p->start_method == 0;
+  static speed_controller_t trial;  // too large for the stack; the background level alone comes here
+  return turns && speed_controller_init(&trial, &c->speed, &c->nameplate) &&
+         current_controller_design(&c->current, &c->nameplate, &current);
+}
+
+// 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.
+static int32_t share_per_turn_q30(int32_t time_q8) {
+  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)TURNS, time_q8 * DRIVE_PERIODS_PER_MS, 30);
+}
+
+static bool load_blend(drive_config_t* c) {
+  const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
+  const int32_t low = flux ? parameters.flux_low : parameters.blend_low;
+  const int32_t high = flux ? parameters.flux_high : parameters.blend_high;
+  return blend_design(&c->blend, q_mul_sat(low, c->bpp_per_rpm_q8, 24), q_mul_sat(high, c->bpp_per_rpm_q8, 24));
+}
+
+// While the shaft is held the load is followed at once, five times as fast as at a crawl, and no step looked for.
+static void load_hold_observer(drive_config_t* c, const deviation_observer_tuning_t* usual) {
+  deviation_observer_tuning_t t = *usual;
+  t.noise_q20 = usual->noise_q20 / 10 * 3;
+  t.load_rate_q20 = q_shl_sat(usual->load_rate_q20, 1);
+  t.load_rate_quiet_q20 = t.load_rate_q20;
+  t.load_step_q20 = 0;
+  t.steps_at_speed = false;
+  c->hold_observer = c->observer;
+  deviation_observer_design(&c->hold_observer, &c->nameplate, &t);
+}
+
+static bool load_position(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  c->avv.bandwidth_short_q30 = bandwidth_step_q30(p->avv_bandwidth_short);
+  c->avv.bandwidth_long_q30 = bandwidth_step_q30(q_max(p->avv_bandwidth_long, p->avv_bandwidth_short));
+  c->zvv.kp_q30 = bandwidth_step_q30(p->zvv_proportional);
+  c->zvv.ki_q40 = q_mul(p->zvv_integral, 11258999L, 18);  // rad/s^2 Q8 * T^2 as Q40
+  // Without the map the angle turns with the current, and a load that is followed fast closes a loop over that.
+  c->mapped = (p->map_known | p->ldq_1 | p->ldq_2 | p->ldq_3 | p->ldq_4) != 0;
+  const deviation_observer_tuning_t observer = {q_mul(p->observer_noise, 1073741824L, 18) / 1000,
+                                                p->observer_load_rate,
+                                                p->observer_load_quiet,
+                                                c->mapped ? p->observer_load_step : p->observer_load_step / 4 * 3,
+                                                q_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
+                                                c->mapped};
+  deviation_observer_design(&c->observer, &c->nameplate, &observer);
+  c->observer.cogging.order = p->cogging_order;
+  c->observer.cogging.fast_bpp = c->observer.crawl_bpp;
+  c->observer.cogging.bound_q8 = q_min(q_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24), COGGING_BOUND_END_Q8);
+  c->observer.zero_vectors_only = p->observer_windows == 0;
+  load_hold_observer(c, &observer);
+  c->synchronism.floor_q16 = p->synchronism_floor;
+  c->synchronism.share_q15 = q_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
+  c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
+  c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
+  c->drift_share_q30 = share_per_turn_q30(p->drift_time);
+  c->encoder_trim_bam = (uint32_t)q_mul64(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  // dLqq/di_d = dLdq/di_q, the slope of the map's first segment, over Lq. The other one comes in percent, Q24.
+  c->saturation.q_q30 = q_div(q_div(p->ldq_1, p->inductance_q, 30), p->map_current / 4, 20);
+  c->saturation.d_q30 = q_mul(p->saturation_d, 687194767L, 30);
+  c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
+  c->codes_per_amp_q16 = q_div(65536L, c->slopes.amps_per_code_q30, 30);
+  c->sensor_mismatch_q30 = q_mul(p->sensor_mismatch, 167772L, 10);  // percent, Q16
+  c->slopes.start_samples = HAL_ADC_START_SAMPLES;
+  c->slopes.end_samples = HAL_ADC_END_SAMPLES;
+  slopes_design(&c->slopes);
+  c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
+  return load_blend(c) && flux_source_load(c);
+}
+
+const drive_config_t* drive_config_make(void) {
+  static drive_config_t made;  // too large for the stack; the background level alone makes configurations
+  clear(&made, sizeof made);
+  const bool fits = load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made);
+  return fits ? &made : NULL;
+}
+
+bool drive_config_load(drive_config_t* c) {
+  const drive_config_t* const made = drive_config_make();
+  if (made == NULL) return false;
+  *c = *made;
+  return true;
+}

@@ -1,0 +1,76 @@
+// What the table's ranges cannot say: which parameters must fit together.
+
+#include <stddef.h>
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+#include "firmware/text/packed_text.h"
+#include "hal/hal_pwm.h"
+
+#define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
+#define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
+
+// Peak line-to-line EMF at the speed limit, V Q16: sqrt(3) lambda w.
+static int32_t largest_emf_q16(const parameters_t* p) {
+  const int32_t volts_q16 = q_mul_sat(p->magnet_flux, p->speed_limit * p->pole_pairs, 20);
+  return q_mul(volts_q16, 194755224L, 30);  // sqrt(3) 2 pi / 60
+}
+
+// Lqq below Ldd at one of the map's points.
+static bool map_is_crossed(const parameters_t* p) {
+  const int32_t lqq[] = {p->lqq_1, p->lqq_2, p->lqq_3, p->lqq_4};
+  const int32_t ldd[] = {p->ldd_1, p->ldd_2, p->ldd_3, p->ldd_4};
+  for (uint16_t k = 0; k < 4u; k++) {
+    if ((int64_t)lqq[k] * p->inductance_q < (int64_t)ldd[k] * p->inductance_d) return true;
+  }
+  return false;
+}
+
+packed_text_t drive_config_or_conflict(const drive_config_t** made) {
+  const parameters_t* const p = &parameters;
+  if (p->inductance_q < p->inductance_d) return SAY_inductance_q_must_be_at_least_inductance;
+  if (p->blend_high <= p->blend_low) return SAY_blend_high_must_be_above_blend_low;
+  if (p->flux_high <= p->flux_low) return SAY_flux_high_must_be_above_flux_low;
+  if (p->window_maximum < p->window_minimum) return SAY_window_maximum_must_be_at_least_window;
+  if (p->link_maximum <= p->link_minimum) return SAY_link_maximum_must_be_above_link_minimum;
+  if (p->link_regulation <= p->link_minimum || p->link_regulation > p->link_maximum - 65536L)
+    return SAY_link_regulation_must_be_above_link_minimum;
+  if (p->dead_time + p->turn_on_delay < p->turn_off_delay) return SAY_turn_off_delay_must_not_exceed_dead;
+  if (p->dead_time + p->turn_on_delay > EDGE_SHIFT_MAX_Q16) return SAY_dead_time_turn_on_delay_must_not;
+  if (p->trip_current < p->current_limit) return SAY_trip_current_must_be_at_least_current;
+  if (p->trip_current > p->current_full_scale / 100 * 97) return SAY_trip_current_must_be_below_97_of;
+  if (p->link_maximum > p->link_full_scale / 100 * 97) return SAY_link_maximum_must_be_below_97_of;
+  // A fault switches the gates off at any speed; the diodes then charge the link up to the EMF.
+  if (largest_emf_q16(p) > p->link_maximum) return SAY_speed_limit_is_too_high_with_the;
+  if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
+  if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
+  if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
+  if (p->position_source == POSITION_PAPER && q_abs_sat(p->id_low_speed) < 1048576L)
+    return SAY_position_source_1_needs_id_low_speed;
+  if ((p->excitation == 0 || p->excitation >= 4) &&
+      (p->position_source == POSITION_OBSERVER_AVV || p->position_source == POSITION_AVV))
+    return SAY_excitation_0_4_and_5_have_no;
+  if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
+    return SAY_hold_time_needs_excitation_2_3_or;
+  if (map_is_crossed(p)) return SAY_lqq_1_lqq_4_of_inductance_q;
+  if (p->current_law == CURRENT_LAW_HYSTERESIS && p->position_source != POSITION_ENCODER)
+    return SAY_current_law_1_needs_position_source_0;
+  if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
+    return SAY_100_us_must_be_a_whole_number;
+  if (p->flux_beside > 0 && p->position_source != POSITION_ENCODER) return SAY_flux_beside_needs_position_source_0;
+  if (p->start_method == 1 && p->position_source == POSITION_ENCODER) return SAY_start_method_1_needs_a_position_source;
+  if (p->start_method == 1 && p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
+  if (p->current_bandwidth * (3 + p->current_divider) > 10400) return SAY_current_bandwidth_must_not_exceed_2080_rad;
+  *made = drive_config_make();
+  return (*made != NULL) ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
+}
+
+packed_text_t parameter_conflict(void) {
+  const drive_config_t* unused;
+  return drive_config_or_conflict(&unused);
+}
+
+// Whatever changes a parameter asks for a new configuration, which finds out.
+packed_text_t parameter_conflict_known(void) {
+  return (drive.conflict_known && !drive.request.reload) ? drive.conflict : parameter_conflict();
+}

@@ -1,0 +1,75 @@
+#include "firmware/dictionary/parameters.h"
+
+#include <stddef.h>
+
+#include "firmware/mode/mode.h"
+#include "hal/hal_board.h"
+
+parameters_t parameters;
+
+// 10^n and the exact conversion of a decimal value to a raw one, in integers so that every compiler agrees.
+#define TEN_0 1LL
+#define TEN_1 10LL
+#define TEN_2 100LL
+#define TEN_3 1000LL
+#define TEN_4 10000LL
+#define TEN_5 100000LL
+#define TEN_6 1000000LL
+#define RAW(value, q, ten) \
+  (int32_t)((((value) < 0 ? -1LL : 1LL) * (ten) / 2 + (long long)(value) * (1LL << (q))) / (ten))
+
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
+  {id,                                                                                     \
+   q,                                                                                      \
+   decimals,                                                                               \
+   PARAMETER_##access,                                                                     \
+   TEXT_PARAMETER_NAME_##name,                                                             \
+   TEXT_PARAMETER_UNIT_##name,                                                             \
+   TEXT_PARAMETER_##name,                                                                  \
+   RAW(minimum, q, TEN_##decimals),                                                        \
+   RAW(maximum, q, TEN_##decimals),                                                        \
+   RAW(initial, q, TEN_##decimals)},
+static const parameter_info_t table[] = {
+#include "firmware/dictionary/parameter_list.h"
+};
+#undef PARAMETER
+
+#define COUNT ((uint16_t)(sizeof table / sizeof table[0]))
+
+// The values stand in the table's order: the struct is an array with names.
+typedef char values_are_an_array[(sizeof(parameters_t) == COUNT * sizeof(int32_t)) ? 1 : -1];
+static int32_t* value_of(uint16_t k) { return &((int32_t*)(void*)&parameters)[k]; }
+
+void parameters_reset(void) {
+  for (uint16_t k = 0; k < COUNT; k++) *value_of(k) = table[k].initial;
+}
+
+uint16_t parameter_count(void) { return COUNT; }
+
+const parameter_info_t* parameter_info(uint16_t index) { return (index < COUNT) ? &table[index] : NULL; }
+
+static uint16_t index_of(uint16_t id) {
+  uint16_t k = 0;
+  while (k < COUNT && table[k].id != id) k++;
+  return k;
+}
+
+const parameter_info_t* parameter_by_id(uint16_t id) { return parameter_info(index_of(id)); }
+
+parameter_result_t parameter_set(uint16_t id, int32_t raw) {
+  const uint16_t k = index_of(id);
+  if (k >= COUNT) return SET_UNKNOWN;
+  if (raw < table[k].minimum || raw > table[k].maximum) return SET_RANGE;
+  if (table[k].access == PARAMETER_STOPPED) {
+    drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
+    if (drive_is_energised()) return SET_RUNNING;
+  }
+  *value_of(k) = raw;
+  drive_parameters_changed();
+  return SET_OK;
+}
+
+int32_t parameter_get(uint16_t id) {
+  const uint16_t k = index_of(id);
+  return (k < COUNT) ? *value_of(k) : 0;
+}

@@ -1,0 +1,36 @@
+// The control interrupt: once per PWM period, at its start. Its step reads like the block diagram.
+
+#include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/mode.h"
+#include "firmware/scope/scope.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_profile.h"
+#include "hal/hal_sci.h"
+#include "hal/hal_tape.h"
+
+void drive_control_step(drive_t* d) {
+  schedule_next(d);
+  drive_read_samples(d);
+  const bool windows = d->samples.count > 0u;
+  hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);
+  drive_estimate(d);
+  hal_profile_step(windows ? CYCLES_ESTIMATE : CYCLES_ESTIMATE_BLIND);
+  drive_protect(d);
+  drive_sequence(d);
+  hal_profile_step(windows ? CYCLES_SUPERVISE : CYCLES_SUPERVISE_BLIND);
+  drive_control_speed(d);
+  drive_control_current(d);
+  hal_profile_step(CYCLES_CONTROL);
+  drive_modulate(d);
+  scope_step(d->time_ms);
+}
+
+void drive_control_interrupt(void) {
+  hal_irq_control_begin();
+  hal_tape_step_begin();
+  drive_control_step(&drive);
+  hal_tape_step_end();
+  hal_sci_service();
+  hal_profile_step(CYCLES_SERIAL);
+  hal_irq_control_end();
+}

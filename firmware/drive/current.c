@@ -1,0 +1,19 @@
+// Current control, every period or every second one (current_divider).
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+
+void drive_control_current(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  if (!c->closed || d->hysteresis.running != 0u) {
+    const dq_t none = {0, 0};
+    c->command_q16 = none;
+    current_controller_reset(&c->current);
+    return;
+  }
+  // In between, the command stands still in the rotor frame.
+  if (d->schedule.period % (uint16_t)parameters.current_divider != 0u) return;
+  c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
+                                           c->measured_q20, d->position.used.speed_bpp);
+  if (c->feed_q16 != 0) c->command_q16.q = q_limit(q_add_sat(c->command_q16.q, c->feed_q16), CURRENT_COMMAND_END_Q16);
+}

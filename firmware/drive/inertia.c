@@ -1,0 +1,45 @@
+// Inertia learnt from run-ups (estimators/inertia_match.h), once a millisecond, and what hangs on it.
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+
+#define STILL_RPM_Q16 1310720L  // 20 rpm
+
+static void look(const drive_t* d, inertia_seen_t* in) {
+  in->angle_bam = d->position.used.angle_bam;
+  in->speed_bpp = d->position.used.speed_bpp;
+  in->reference_bpp = d->control.ramp.value;
+  in->torque_accel_q8 = d->position.torque_accel_q8;
+  // Three tenths of what the current limit gives.
+  const int32_t limit_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), parameters.current_limit, 28);
+  in->least_accel_q8 = q_mul_sat(limit_q16, d->model.accel_q12, 20) / 10 * 3;
+  in->still_bpp = q_mul_sat(STILL_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
+}
+
+// The load that the observer has made of the wrong inertia goes, and the speed that it could not believe comes.
+static void hand_on(drive_t* d, int32_t factor_q24) {
+  const inertia_match_t* const s = &d->inertia;
+  machine_model_scale_inertia(&d->model, &d->config.nameplate, s->ratio_q24);
+  speed_controller_scale(&d->control.speed, s->ratio_q24);
+  if (s->phase == INERTIA_RUN_UP) {
+    d->position.observer.load_accel_q8 = s->start_base_q8;
+    d->position.observer.speed_bpp = q_limit(q_add_sat(s->speed0_bpp, s->gained_bpp), MACHINE_SPEED_END_BPP);
+  } else {
+    d->position.observer.load_accel_q8 = q_mul_sat(d->position.observer.load_accel_q8, factor_q24, 24);
+  }
+}
+
+// Without the map a large current turns the angle, and the torque is less than the current says: that would be taken
+// for inertia.
+void drive_match_inertia(drive_t* d) {
+  if (parameters.inertia_adapt == 0 || !d->config.mapped || parameters.position_source != POSITION_OBSERVER) return;
+  if (d->state != DRIVE_RUN) {
+    d->inertia.quiet_ms = 0;
+    d->inertia.phase = INERTIA_REST;
+    return;
+  }
+  inertia_seen_t in;
+  look(d, &in);
+  const int32_t factor_q24 = inertia_match_step(&d->inertia, &in, DRIVE_PERIODS_PER_MS);
+  if (factor_q24 != INERTIA_SAME_Q24) hand_on(d, factor_q24);
+}

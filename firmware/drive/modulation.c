@@ -1,0 +1,90 @@
+// From the voltage command to the compare registers.
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/mode.h"
+#include "firmware/sources/flux.h"
+#include "hal/hal_profile.h"
+#include "hal/hal_pwm.h"
+
+#define DEADLINE_TICK 9700u  // later than this in the period nothing is written
+#define EXCITATION_BY_SOURCE 3
+
+// The paper's scheme wants long zero vectors at low speed and extended active ones from below the blend on.
+static excitation_t excitation(const drive_t* d) {
+  if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
+  if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
+  if (parameters.position_source == POSITION_OBSERVER) return EXCITATION_ALTERNATING;
+  if (parameters.position_source >= POSITION_FLUX_CONV) return flux_source_excitation(d);
+  if (parameters.position_source != POSITION_PAPER) return EXCITATION_ALTERNATING;
+  const int32_t enter = d->config.blend.low_bpp / 4 * 3;
+  return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
+}
+
+// The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
+static uint32_t angle_at_action(const drive_t* d) {
+  const int32_t speed = d->position.used.speed_bpp;
+  return d->position.used.angle_bam + (uint32_t)(speed + speed / 2);
+}
+
+// Written out, three times each, rather than as loops.
+static inline void put_leg(hal_pwm_frame_t* f, const svpwm_pulses_t* command, uint16_t leg) {
+  f->rise_tick[leg] = (uint16_t)command->at[leg];
+  f->fall_tick[leg] = (uint16_t)command->at[SVPWM_LEGS + leg];
+}
+
+static inline void put_window(hal_pwm_frame_t* f, const svpwm_pattern_t* p, uint16_t k) {
+  const bool used = k < p->window_count;
+  f->burst_start_tick[k] = used ? (uint16_t)p->windows[k].start : HAL_PWM_NONE;
+  f->burst_end_tick[k] = used ? (uint16_t)p->windows[k].end : HAL_PWM_NONE;
+}
+
+static void write_frame(drive_t* d, const svpwm_pulses_t* command) {
+  const svpwm_pattern_t* const p = &d->modulation.next;
+  hal_pwm_frame_t f;
+  put_leg(&f, command, 0u);
+  put_leg(&f, command, 1u);
+  put_leg(&f, command, 2u);
+  put_window(&f, p, 0u);
+  put_window(&f, p, 1u);
+  put_window(&f, p, 2u);
+  const bool written = hal_pwm_write(&f, DEADLINE_TICK);
+  d->modulation.sampled = d->modulation.running;
+  if (written) {
+    d->supervision.overrun = 0;
+    d->modulation.running = *p;
+  } else {
+    d->supervision.overrun++;
+    d->limits |= LIMIT_OVERRUN;
+  }
+}
+
+void drive_modulate(drive_t* d) {
+  if (drive_hysteresis(d)) return;
+  drive_control_t* const c = &d->control;
+  if (d->state == DRIVE_START && d->start.shorted) {
+    d->modulation.next = start_short_circuit(&d->config.modulator.sampling);
+    hal_profile_step(CYCLES_MODULATE);
+    write_frame(d, &d->modulation.next.pulses);
+    return;
+  }
+  const rotation_t r = frame_rotation(angle_at_action(d));
+  const ab_t current_q20 = frame_inverse_park(c->measured_q20, r);
+  const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);
+  const ab_t wanted_q16 = frame_inverse_park(c->command_q16, r);
+  const ab_t asked_q16 = {wanted_q16.alpha + drop_q16.alpha, wanted_q16.beta + drop_q16.beta};
+  d->modulation.asked_q16 = asked_q16;
+  svpwm_pattern_t* const pattern = &d->modulation.next;
+  svpwm_pulses_t command;
+  const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d), asked_q16,
+                                                   d->samples.link_q16, &pattern->pulses);
+  if (result.limited && c->closed) {
+    const ab_t excess_q16 = {asked_q16.alpha - result.realised_q16.alpha, asked_q16.beta - result.realised_q16.beta};
+    current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
+    d->limits |= LIMIT_VOLTAGE;
+  }
+  const svpwm_carried_t carried = {current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16};
+  svpwm_send(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, &command);
+  hal_profile_step(CYCLES_MODULATE);
+  write_frame(d, &command);
+}

@@ -1,0 +1,20 @@
+// Watches, after a start, whether the back-EMF has the sign that the polarity found lets expect; see polarity_watch.c.
+
+#ifndef STILLSPIN_FIRMWARE_DRIVE_POLARITY_WATCH_H
+#define STILLSPIN_FIRMWARE_DRIVE_POLARITY_WATCH_H
+
+#include "estimators/emf_sign.h"
+#include "estimators/tracking_observer.h"
+
+typedef struct {
+  bool open;  // not answered since the start
+  tracking_observer_t axis;
+  uint32_t axis_then_bam;  // where it was when the windows were last regressed
+  int32_t axis_periods;    // since it was last corrected
+  bool blind;              // it was not seen then
+  emf_sign_t sign;
+  dq_t voltage_q12;  // sum of the commands since the back-EMF was last looked at, V
+  int32_t periods;   // that long ago
+} polarity_watch_t;
+
+#endif

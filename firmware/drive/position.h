@@ -1,0 +1,20 @@
+// Position sources of the drive, beside the step that mode/mode.h declares.
+
+#ifndef STILLSPIN_FIRMWARE_DRIVE_POSITION_H
+#define STILLSPIN_FIRMWARE_DRIVE_POSITION_H
+
+#include "firmware/mode/mode.h"
+
+/// Lets AVV start from this angle and speed: a start that looks for the axis has nothing else at work.
+void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+
+/// Lets every estimator start from this angle and speed.
+void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+
+/// Makes the encoder's present count mean this angle. Reads the encoder.
+void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+
+/// Electrical angle of an encoder count whose zero lies on phase a.
+uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);
+
+#endif

@@ -1,0 +1,156 @@
+// What opens the power stage: looked at in every period, before anything is commanded.
+
+#include "firmware/board/functions.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/mode/fault_history.h"
+#include "firmware/mode/mode.h"
+#include "firmware/sources/flux.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_safety.h"
+
+#define MISSING_MAX 5u   // periods without samples
+#define OVERRUN_MAX 10u  // periods repeated because the interrupt was late
+#define JUDGED_PERIODS_MAX 6L
+
+static void note(const drive_t* d, drive_fault_t fault) {
+  fault_record_t r;
+  r.time_ms = d->time_ms;
+  r.fault = fault;
+  r.state = d->state;
+  r.known = drive_known(d);
+  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->position.used.speed_bpp) : 0;
+  r.link_q16 = d->samples.link_q16;
+  const dq_t none = {0, 0};
+  const dq_t seen_q20 = ((r.known & KNOWN_FRAME) != 0u) ? d->control.measured_q20 : none;
+  r.current_d_q20 = seen_q20.d;
+  r.current_q_q20 = seen_q20.q;
+  fault_history_add(&r);
+}
+
+void drive_raise(drive_t* d, drive_fault_t fault) {
+  hal_pwm_gates_off();
+  if (d->state == DRIVE_FAULT) return;
+  note(d, fault);
+  d->fault = fault;
+  d->state = DRIVE_FAULT;
+  d->periods = 0;
+  d->control.closed = false;
+  d->control.wanted_rpm_q16 = 0;
+  d->control.target_bpp = 0;
+  hal_safety_fault_lamp(true);
+}
+
+// By the latest of the period's windows; within a period the comparator is there.
+static bool over_current(const drive_t* d) {
+  if (d->samples.count == 0u) return false;
+  const abc_t i = frame_inverse_clarke(d->samples.windows[d->samples.count - 1u].current_q20);
+  const int32_t limit = parameters.trip_current;
+  return !(q_in_range(i.a, -limit, limit) && q_in_range(i.b, -limit, limit) && q_in_range(i.c, -limit, limit));
+}
+
+// Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
+static bool encoder_beside_avv(void) {
+  return parameters.position_source == POSITION_ENCODER && parameters.current_law == CURRENT_LAW_PI &&
+         parameters.flux_beside == 0 && parameters.excitation != EXCITATION_CENTRED &&
+         parameters.excitation < EXCITATION_LONG_ZERO;
+}
+
+// Sources whose estimators are both meant to be right only between the ends of the blend.
+static bool blends_by_turns(void) {
+  return parameters.position_source == POSITION_PAPER || parameters.position_source >= POSITION_FLUX_CONV;
+}
+
+// How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
+static int32_t disagreement(const drive_t* d) {
+  const drive_position_t* const p = &d->position;
+  const bool both = parameters.position_source == POSITION_OBSERVER_AVV || encoder_beside_avv() ||
+                    (blends_by_turns() && p->blend.region == BLEND_BOTH);
+  if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
+  return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
+}
+
+// The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
+static bool diverged(drive_t* d, int32_t periods, int32_t apart_bam) {
+  const int32_t speed_limit = q_mul_floor(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
+  const bool wrong = (apart_bam > 0 && apart_bam > q_mul_floor(parameters.divergence_limit, 11930465L, 16)) ||
+                     q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
+  d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + (uint16_t)periods) : 0u;
+  return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+}
+
+// Where the observer looks at the windows, its residuals say how it is: those of all periods since it was last asked.
+static bool is_by_observer(const drive_t* d) {
+  const int32_t source = parameters.position_source;
+  return source == POSITION_OBSERVER || (source >= POSITION_FLUX_CONV && !flux_source_rests(d));
+}
+
+static int32_t span_of(const drive_samples_t* s) {
+  int32_t span_ticks = 0;
+  for (uint16_t k = 0; k < s->count; k++) span_ticks += s->windows[k].span_ticks;
+  return span_ticks;
+}
+
+// An angle error that is asked for is none.
+static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int32_t apart_bam) {
+  const int32_t source = parameters.position_source;
+  const regression_t* const by_avv = &d->position.avv.regression;
+  if (source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
+  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, ahead_bpp, periods};
+  if (is_by_observer(d)) {
+    (void)deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods);
+  } else if (source == POSITION_PAPER && by_avv->information > 0) {
+    seen.residual_q20 = by_avv->mean_q20;  // AVV has regressed the same windows
+    seen.span_ticks = span_of(&d->samples);
+  } else {
+    synchronism_look(&seen, &d->model, d->samples.windows, d->samples.count, d->position.used.angle_bam);
+  }
+  // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
+  return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen,
+                           (source == POSITION_ENCODER) ? 0 : apart_bam);
+}
+
+// In its turns only, where a period says what the next ones do, or the observer's residuals are those of all periods
+// since; alternating pulses give each period windows of its own.
+static bool judges_now(const drive_t* d) {
+  return d->schedule.judges || (d->modulation.state.is_alternating && !is_by_observer(d));
+}
+
+// How much faster the frame in use has turned than its speed says, since it was last judged; 0 when that is long ago.
+static int32_t frame_ahead_bpp(const drive_t* d, int32_t since) {
+  if ((uint32_t)(since - 1) >= JUDGED_PERIODS_MAX) return 0;
+  const uint32_t by_speed_bam = (uint32_t)d->position.used.speed_bpp * (uint32_t)since;
+  return angle_diff_bam(d->position.used.angle_bam, d->supervision.judged_bam + by_speed_bam) / since;
+}
+
+static drive_fault_t check_position(drive_t* d) {
+  const int32_t since = (uint16_t)(d->heartbeat - d->supervision.judged_at);
+  const int32_t ahead_bpp = frame_ahead_bpp(d, since);
+  const int32_t periods = q_min(since, JUDGED_PERIODS_MAX);
+  d->supervision.judged_at = d->heartbeat;
+  d->supervision.judged_bam = d->position.used.angle_bam;
+  const int32_t apart_bam = disagreement(d);
+  if (lost_synchronism(d, periods, ahead_bpp, apart_bam))
+    return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
+  return diverged(d, periods, apart_bam) ? FAULT_DIVERGENCE : FAULT_NONE;
+}
+
+static drive_fault_t check(drive_t* d) {
+  // With the gates off a fast shaft may drive a current through the diodes; switching them on forgets that.
+  const bool meant_off = d->state == DRIVE_START && !d->start.powered;
+  if (!meant_off && hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
+  if (hal_pwm_is_tripped() && !meant_off) return board_why_off();
+  if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
+  if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
+  if (over_current(d)) return FAULT_CURRENT_LIMIT;
+  if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
+  if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
+  if (polarity_watch_step(d)) return FAULT_POLARITY;
+  return (drive_is_turning(d) && judges_now(d)) ? check_position(d) : FAULT_NONE;
+}
+
+void drive_protect(drive_t* d) {
+  if (!drive_is_energised()) return;
+  const drive_fault_t fault = check(d);
+  if (fault != FAULT_NONE) drive_raise(d, fault);
+}

@@ -1,0 +1,48 @@
+// What the drive does between two control interrupts.
+
+#include <stddef.h>
+
+#include "firmware/board/functions.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+#include "hal/hal_encoder.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_tape.h"
+
+// The dead band of the gate signals, ticks; the power stage's own minimum is the parameter's business.
+uint16_t drive_dead_band_ticks(void) {
+  const int32_t ticks = q_shr_round(parameters.dead_time * 100, 16);
+  return (uint16_t)q_max(ticks, (int32_t)HAL_PWM_DEAD_BAND_MIN_TICKS);
+}
+
+// A changed parameter becomes effective as a whole, between two control interrupts. Only this level writes the
+// configuration, so it may be read here without a lock; a start that is asked for meanwhile waits for the request to be
+// taken back.
+static void reload(void) {
+  const drive_config_t* fresh;
+  const packed_text_t conflict = drive_config_or_conflict(&fresh);
+  const bool valid = conflict == PACKED_NONE;
+  const uint16_t state = hal_irq_disable();
+  hal_tape_work_begin(TAPE_RELOADED);
+  drive.request.reload = false;
+  drive.config_valid = valid;
+  drive.conflict = conflict;
+  drive.conflict_known = true;
+  if (valid) drive.config = *fresh;
+  drive.control.current_limit_q20 = board_current_limit();
+  drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
+  if (!drive_is_energised()) {
+    drive.model = drive.config.nameplate;
+    drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+    hal_encoder_init((uint32_t)parameters.encoder_counts);
+    if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());
+  }
+  hal_tape_work_end();
+  hal_irq_restore(state);
+}
+
+void background_step(drive_t* d) {
+  commissioning_service(d);
+  if (d->request.reload && hal_tape_has_work(TAPE_RELOADED)) reload();
+}

@@ -1,0 +1,124 @@
+// From bursts of conversions to windows with slope, current and voltage.
+//
+// The window interrupt stores raw sums; the control interrupt, once per period, swaps the two buffers and turns the
+// sums of the period before into physical quantities, with the pattern that was running then.
+
+#include "firmware/drive/sampling.h"
+
+#include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/mode.h"
+#include "hal/hal_adc.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_profile.h"
+#include "svpwm/ripple.h"
+
+#define THIRD 357913941L  // Q30
+
+static sampling_buffer_t sampling_buffers[2];
+static uint16_t sampling_filling;
+
+void sampling_reset(void) {
+  sampling_buffers[0].count = 0;
+  sampling_filling = 0;
+}
+
+void drive_window_interrupt(void) {
+  if (drive.hysteresis.running != 0u) {
+    drive_hysteresis_slice(&drive.hysteresis);
+    return;
+  }
+  sampling_buffer_t* const b = &sampling_buffers[sampling_filling];
+  const uint16_t place = b->count;
+  hal_adc_window_t spare;
+  b->count = (uint16_t)(place + 1u);
+  hal_adc_read_window((place < ESTIMATOR_WINDOWS) ? &b->windows[place] : &spare);
+  hal_profile_step(CYCLES_WINDOW);
+}
+
+const sampling_buffer_t* sampling_swap(void) {
+  const uint16_t state = hal_irq_disable();
+  const uint16_t full = sampling_filling;
+  sampling_filling = (uint16_t)(1u - full);
+  sampling_buffers[sampling_filling].count = 0;
+  hal_irq_restore(state);
+  return &sampling_buffers[full];
+}
+
+// One word: an interrupt in between can do no harm.
+uint16_t sampling_auxiliary(void) { return sampling_buffers[1u - sampling_filling].windows[0].aux; }
+
+// Clarke of the eight switching states: thirds of the link, and 1/sqrt(3) of it.
+static const int16_t thirds_of_state[8] = {0, 2, -1, 1, -1, 1, -2, 0};
+static const int16_t sides_of_state[8] = {0, 0, 1, 1, -1, -1, 0, 0};
+
+// What is the same for all windows of a period.
+typedef struct {
+  const dead_time_config_t* drops;
+  const slopes_scale_t* slopes;
+  int32_t third_q16, side_q16;  // of the DC link, V
+} scale_t;
+
+static scale_t scale_of(const drive_t* d) {
+  const scale_t s = {&d->config.dead_time, &d->samples.scale, q_mul_floor(d->samples.link_q16, THIRD, 30),
+                     q_mul_floor(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30)};
+  return s;
+}
+
+static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_window_t* raw, estimator_window_t* out) {
+  const int32_t begin = w->start + (int32_t)HAL_ADC_START_DELAY_TICKS;
+  const int32_t end = w->end + (int32_t)HAL_ADC_END_DELAY_TICKS;
+  const slopes_sums_t sums = {raw->start_a, raw->start_b, raw->end_a, raw->end_b};
+  const uint16_t state = w->state & 7u;
+  out->span_ticks = (int16_t)q_max(end - begin, 1);
+  out->middle_tick = (int16_t)q_shr(begin + end, 1);
+  out->zero_vector = svpwm_is_zero_vector(state);
+  slopes_evaluate(s->slopes, &sums, out);
+  const ab_t drop = dead_time_drop_q16(s->drops, out->current_q20);
+  out->voltage_q16.alpha = thirds_of_state[state] * s->third_q16 - drop.alpha;
+  out->voltage_q16.beta = sides_of_state[state] * s->side_q16 - drop.beta;
+}
+
+// Takes over an eighth of what each window says; up to 2000 V, so that the sum stays in 31 bits.
+static void follow_link(drive_t* d, const sampling_buffer_t* b, uint16_t count) {
+  if (count == 0u) return;
+  drive_samples_t* const s = &d->samples;
+  const int32_t volts_per_code_q16 = d->config.volts_per_code_q16;
+  int32_t sum_q16 = 0;
+  if (s->link_q16 == 0) s->link_q16 = (int32_t)b->windows[0].link * volts_per_code_q16;
+  for (uint16_t k = 0; k < count; k++) {
+    const int32_t volts_q16 = (int32_t)b->windows[k].link * volts_per_code_q16;
+    s->link_end_q16[k] = volts_q16;
+    sum_q16 += volts_q16;
+  }
+  s->link_q16 = q_shr(sum_q16 + (8 - (int32_t)count) * s->link_q16, 3);
+}
+
+static void take_raw(drive_samples_t* s, const hal_adc_window_t* w) {
+  s->raw_a_q8 = (int32_t)w->start_a * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+  s->raw_b_q8 = (int32_t)w->start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
+}
+
+void drive_read_samples(drive_t* d) {
+  if (d->hysteresis.running != 0u) {
+    drive_hysteresis_samples(d);
+    return;
+  }
+  const sampling_buffer_t* const b = sampling_swap();
+  const svpwm_pattern_t* const p = &d->modulation.sampled;
+  drive_samples_t* const s = &d->samples;
+  s->count = 0;
+  const bool complete = b->count == p->window_count;
+  d->supervision.missing = (complete && p->window_count > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
+  if (!complete) return;
+  if (d->state == DRIVE_CALIBRATE) take_raw(s, &b->windows[0]);
+  follow_link(d, b, p->window_count);
+  if (d->schedule.turn == TURN_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
+  const scale_t scale = scale_of(d);
+  int16_t middles[ESTIMATOR_WINDOWS];
+  for (uint16_t k = 0; k < p->window_count; k++) {
+    evaluate(&scale, &p->windows[k], &b->windows[k], &s->windows[k]);
+    middles[k] = s->windows[k].middle_tick;
+  }
+  s->ripple_q16 = svpwm_ripple_q16(&p->pulses, middles, p->window_count, s->link_q16);
+  s->count = p->window_count;
+}

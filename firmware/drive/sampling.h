@@ -1,0 +1,23 @@
+// Buffers between the window interrupt and the control interrupt.
+
+#ifndef STILLSPIN_FIRMWARE_DRIVE_SAMPLING_H
+#define STILLSPIN_FIRMWARE_DRIVE_SAMPLING_H
+
+#include "estimators/estimator.h"
+#include "hal/hal_adc.h"
+
+typedef struct {
+  hal_adc_window_t windows[ESTIMATOR_WINDOWS];
+  uint16_t count;
+} sampling_buffer_t;
+
+/// Gives the buffer of the period that has ended and opens the other one.
+const sampling_buffer_t* sampling_swap(void);
+
+/// Empties both.
+void sampling_reset(void);
+
+/// Background level: code of the auxiliary input in the last period's first window.
+uint16_t sampling_auxiliary(void);
+
+#endif

@@ -1,0 +1,98 @@
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+#include "firmware/sources/flux.h"
+
+#define MOVED_Q20 131072L  // 0.125 A: so far from its working point the model may be
+#define WAITED_MAX 3u      // turns in a row that give way
+
+static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_TURN, TASK_RENEW, TASK_TURN,
+                                                   TASK_FIELD, TASK_JUDGE,       TASK_TURN, TASK_RENEW, TASK_TURN};
+
+// Whether the deviation observer runs at all while the shaft turns.
+static bool has_observer(const drive_t* d) {
+  const int32_t source = parameters.position_source;
+  if (source >= POSITION_FLUX_CONV) return !flux_source_rests(d);
+  return source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV;
+}
+
+// Observer and flux both at work: the observer leaves the windows out beside speed control and field weakening.
+static bool is_beside_flux(const drive_t* d) {
+  return parameters.position_source >= POSITION_FLUX_CONV && !blend_is_low(&d->position.blend);
+}
+
+// What cannot wait: working point or covariance, by turns where both want it, the covariance first where it would be
+// renewed anyway. A shaft that is held wants its working point always.
+static bool take_urgent(drive_t* d, bool observes) {
+  schedule_t* const s = &d->schedule;
+  const bool due = s->pressed || (observes && !s->held && deviation_observer_is_due(&d->position.observer));
+  const bool moved = s->held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
+  if (!moved && !due) return false;
+  s->moves = moved && !(due && (s->moved_last || s->pressed));
+  s->renews = !s->moves;
+  s->moved_last = s->moves;
+  return true;
+}
+
+// In the first millisecond of a run how much the windows will tell is not known yet.
+static bool is_young(const drive_t* d) { return d->periods < DRIVE_PERIODS_PER_MS; }
+
+static void take_turn(schedule_t* s) {
+  s->waited = 0;
+  s->last = (uint16_t)((s->last + 1u) % TURNS);
+  s->turn = (turn_t)s->last;
+}
+
+static void turn_or_give_way(drive_t* d, bool observes) {
+  schedule_t* const s = &d->schedule;
+  if ((s->held || s->waited < WAITED_MAX) && take_urgent(d, observes)) {
+    s->waited++;
+  } else {
+    take_turn(s);
+  }
+}
+
+static bool is_judgement(task_t task) { return task == TASK_JUDGE_FIRST || task == TASK_JUDGE; }
+
+// Before the shaft turns nothing is judged or renewed; the synchronism of one that is held is judged once in a
+// millisecond.
+static bool is_turn(const schedule_t* s) {
+  if (!s->turning) return s->task > TASK_FIELD;
+  return s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST);
+}
+
+// Whether the observer finds time for the windows, which may make it renew the covariance as well.
+static bool has_room(const drive_t* d) {
+  const schedule_t* const s = &d->schedule;
+  const bool is_long = s->task == TASK_SPEED || s->task == TASK_FIELD;
+  if (is_long && is_beside_flux(d)) return false;
+  return !s->pressed || s->renews || !(is_long || s->judges || is_young(d));
+}
+
+static void begin(schedule_t* s) {
+  s->period = (s->period < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(s->period + 1u) : 0u;
+  s->task = tasks[s->period];
+  s->turn = TURNS;
+  s->moves = false;
+  s->renews = false;
+  s->judges = false;
+  s->decides = false;
+  s->skips = false;
+}
+
+void schedule_next(drive_t* d) {
+  schedule_t* const s = &d->schedule;
+  begin(s);
+  s->turning = drive_is_turning(d) || drive_is_turned(d);
+  const bool observes = s->turning && has_observer(d);
+  s->held = hold_is_on(d);
+  s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
+  s->pressed = observes && (is_young(d) || deviation_observer_is_pressed(&d->position.observer));
+  if (is_turn(s)) {
+    s->decides = d->state == DRIVE_START && d->start.decides;
+    if (!s->decides) turn_or_give_way(d, observes);
+  } else {
+    s->renews = s->task == TASK_RENEW;
+    s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
+  }
+  s->skips = s->decides || (observes && !has_room(d));
+}

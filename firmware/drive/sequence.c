@@ -1,0 +1,148 @@
+// The states of the drive: boot, offset calibration, ready, start, run, stop, fault.
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+#include "hal/hal_pwm.h"
+#include "hal/hal_safety.h"
+
+#define CALIBRATE_PERIODS 256u
+#define SAMPLES_TIMEOUT 2000u
+#define OFFSET_MAX_Q8 (100L * 256L)  // codes off the middle: about 1 A on a 20 A range
+#define OFFSET_END_Q8 (128L * 256L)  // none beyond is ever used: samples stay in their formats
+#define UNREST_MAX_Q8 (10L * 256L)   // mean deviation from the offset, codes: ten times the converter's noise
+#define UNREST_TIMEOUT 100000u       // 10 s
+
+void drive_enter(drive_t* d, drive_state_t state) {
+  d->calm_at = 0;
+  d->state = state;
+  d->periods = 0;
+}
+
+// A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
+// shaft, and with the EMF below the link it ends.
+static bool current_flows(drive_t* d) {
+  const int32_t off_q8 = q_abs_sat(d->samples.raw_a_q8 - d->rest_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->rest_b_q8);
+  d->unrest_q8 = q_follow_near(d->unrest_q8, off_q8, 5);
+  return d->unrest_q8 > UNREST_MAX_Q8;
+}
+
+static int32_t usable_offset(int32_t rest_q8) {
+  return q_clamp(rest_q8, DRIVE_MIDDLE_Q8 - OFFSET_END_Q8, DRIVE_MIDDLE_Q8 + OFFSET_END_Q8);
+}
+
+static void calibrate(drive_t* d) {
+  if (d->supervision.missing > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+  if (d->samples.count == 0u) return;
+  d->rest_a_q8 = q_follow_near(d->rest_a_q8, d->samples.raw_a_q8, 4);
+  d->rest_b_q8 = q_follow_near(d->rest_b_q8, d->samples.raw_b_q8, 4);
+  d->trim.offset_a_q8 = usable_offset(d->rest_a_q8);
+  d->trim.offset_b_q8 = usable_offset(d->rest_b_q8);
+  const bool flows = current_flows(d);
+  if (flows) d->calm_at = d->periods + CALIBRATE_PERIODS;
+  const bool calm = d->periods >= d->calm_at;
+  if (d->periods < CALIBRATE_PERIODS || (!calm && d->periods < UNREST_TIMEOUT)) return;
+  const bool plausible = q_abs_sat(d->rest_a_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8 &&
+                         q_abs_sat(d->rest_b_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8;
+  if (plausible && calm) {
+    drive_enter(d, DRIVE_READY);
+  } else {
+    drive_raise(d, FAULT_OFFSET);
+  }
+}
+
+// Opens the power stage at once and goes back to READY.
+static void coast(drive_t* d) {
+  hal_pwm_gates_off();
+  d->control.closed = false;
+  commissioning_abort(d);
+  drive_enter(d, DRIVE_READY);
+}
+
+static void stop(drive_t* d) {
+  drive_supervision_t* const v = &d->supervision;
+  const int32_t still = q_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
+  if (d->control.ramp.value != 0) return;
+  v->stopping_periods++;
+  if (q_abs_sat(d->position.used.speed_bpp) <= still) {
+    coast(d);
+  } else if (v->stopping_periods > (uint32_t)parameters.stop_time * DRIVE_PERIODS_PER_MS) {
+    drive_raise(d, FAULT_STOP);
+  }
+}
+
+static void begin_stop(drive_t* d) {
+  d->supervision.stopping_periods = 0;
+  drive_enter(d, DRIVE_STOP);
+}
+
+// A start or a commissioning that is not wanted any more: stops the shaft where it turns, else opens the power stage.
+static void break_off(drive_t* d) {
+  // The gates are off already, and the background level is about to write what was found.
+  if (d->state == DRIVE_COMMISSION && d->commissioning.phase == COMMISSIONING_EVALUATE) return;
+  const bool turning = drive_is_turning(d);
+  commissioning_abort(d);
+  if (turning) {
+    begin_stop(d);
+  } else {
+    coast(d);
+  }
+}
+
+static void take_requests(drive_t* d) {
+  drive_request_t* const r = &d->request;
+  if (!(r->start || r->stop || r->coast || r->reset || r->commission || r->look)) return;
+  if (r->coast && drive_is_energised()) coast(d);
+  if (r->coast) {
+    r->start = false;
+    r->look = false;
+  }
+  r->coast = false;
+  if (r->reload) return;  // first the changed parameters, then the start
+  if ((d->state == DRIVE_START || d->state == DRIVE_COMMISSION) && r->stop) break_off(d);
+  if (d->state == DRIVE_READY && r->start) {
+    d->commissioning.requested = false;
+    drive_begin_start(d);
+  } else if (d->state == DRIVE_READY && r->commission) {
+    commissioning_begin(d);
+  } else if (d->state == DRIVE_READY && r->look) {
+    d->commissioning.requested = false;
+    drive_begin_look(d);
+  }
+  if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
+  if (d->state == DRIVE_FAULT && r->reset) {
+    d->fault = FAULT_NONE;
+    hal_safety_fault_lamp(false);
+    drive_enter(d, DRIVE_CALIBRATE);
+  }
+  r->start = false;
+  r->stop = false;
+  r->reset = false;
+  r->commission = false;
+  r->look = false;
+}
+
+void drive_sequence(drive_t* d) {
+  d->periods++;
+  d->heartbeat++;
+  hal_safety_toggle_enable();
+  switch (d->state) {
+    case DRIVE_BOOT:
+      if (!d->loading) drive_enter(d, DRIVE_CALIBRATE);
+      break;
+    case DRIVE_CALIBRATE:
+      calibrate(d);
+      break;
+    case DRIVE_START:
+      drive_start(d);
+      break;
+    case DRIVE_STOP:
+      stop(d);
+      break;
+    case DRIVE_COMMISSION:
+      commissioning_step(d);
+      break;
+    default:
+      break;
+  }
+  take_requests(d);
+}

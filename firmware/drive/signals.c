@@ -1,0 +1,87 @@
+// The table of the signals, and looking at several of one control interrupt. Nothing is copied while nobody looks.
+
+#include <stddef.h>
+
+#include "firmware/mode/mode.h"
+
+#define DRIVE 0
+#define ROTOR KNOWN_ROTOR
+#define FRAME KNOWN_FRAME
+
+#define SIGNAL(name, unit, q, of, value, meaning) \
+  {TEXT_SIGNAL_NAME_##name, TEXT_SIGNAL_UNIT_##name, TEXT_SIGNAL_##name, q, of},
+static const signal_info_t table[] = {
+#include "firmware/dictionary/signal_list.h"
+};
+#undef SIGNAL
+
+// Volatile: to the background level the interrupt changes the drive at any time.
+#define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
+// By Clarke's components of the windows: they have offset and gains in them already.
+static int32_t phase_current(const volatile drive_t* d, bool of_b) {
+  static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
+  const uint16_t count = d->samples.count;
+  const int32_t share_q30 = per_windows_q30[count];
+  ab_t sum = {0, 0};
+  for (uint16_t k = 0; k < count; k++) {
+    sum.alpha += q_mul_floor(d->samples.windows[k].current_q20.alpha, share_q30, 30);
+    sum.beta += q_mul_floor(d->samples.windows[k].current_q20.beta, share_q30, 30);
+  }
+  const abc_t phases = frame_inverse_clarke(sum);
+  return of_b ? phases.b : phases.a;
+}
+
+// What is known is asked once for all of a pass: it has to fit between two interrupts.
+#define SIGNAL(name, unit, q, of, value, meaning)                            \
+  static int32_t look_at_##name(const volatile drive_t* d, uint16_t known) { \
+    return (((of) & ~(int32_t)known) != 0) ? 0 : (int32_t)(value);           \
+  }
+#include "firmware/dictionary/signal_list.h"
+#undef SIGNAL
+
+#define SIGNAL(name, unit, q, of, value, meaning) look_at_##name,
+static int32_t (*const looks[])(const volatile drive_t* d, uint16_t known) = {
+#include "firmware/dictionary/signal_list.h"
+};
+#undef SIGNAL
+
+#define COUNT ((uint16_t)(sizeof table / sizeof table[0]))
+
+uint16_t signal_count(void) { return COUNT; }
+
+const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &table[place] : NULL; }
+
+bool drive_signal_is_known(uint16_t place) { return (table[place].needs & ~drive_known(&drive)) == 0; }
+
+static int32_t look_at(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
+
+int32_t drive_signal(uint16_t place) { return look_at(place, drive_known(&drive)); }
+
+// The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
+signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
+  const volatile uint16_t* const interrupts = &drive.heartbeat;
+  const volatile uint32_t* const clock = &drive.time_ms;
+  uint16_t seen;
+  signals_seen_t with;
+  do {
+    seen = *interrupts;
+    with.time_ms = *clock;
+    with.known = drive_known(&drive);
+    for (uint16_t k = 0; k < count; k++) copy[k] = look_at(places[k], with.known);
+  } while (seen != *interrupts);
+  return with;
+}
+
+drive_signals_t drive_signals(void) {
+  const volatile uint16_t* const interrupts = &drive.heartbeat;
+  drive_signals_t s;
+  uint16_t seen;
+  do {
+    seen = *interrupts;
+    const uint16_t known = drive_known(&drive);
+#define SIGNAL(name, unit, q, of, value, meaning) s.name = look_at_##name(&drive, known);
+#include "firmware/dictionary/signal_list.h"
+#undef SIGNAL
+  } while (seen != *interrupts);
+  return s;
+}

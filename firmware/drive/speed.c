@@ -1,0 +1,188 @@
+// Speed control and field weakening, once a millisecond on a tick of the control interrupt.
+
+#include "control/brake_limit.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+
+#define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link
+#define SEEING_SHIFT 4                     // 16 ms: the torque current's noise stays out of i_d
+#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
+
+static int32_t voltage_limit(const drive_t* d) {
+  return q_mul(d->samples.link_q16, q_mul(parameters.voltage_use, PERCENT_OF_SQRT3_INV_Q30, 16), 30);
+}
+
+static void weaken(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const field_weakening_input_t in = {
+      d->position.used.speed_bpp, c->reference_q20.q,         q_hypot(c->command_q16.d, c->command_q16.q),
+      voltage_limit(d),           parameters.weakening_limit, parameters.weakening_gain};
+  c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->model);
+}
+
+// While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
+// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft, below
+// the speed at which the magnet is learnt, and the EMF stands out of that.
+static int32_t seeing_current(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
+  const bool blind =
+      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.used.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
+  const int32_t missing_q20 = blind ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
+  c->seeing_q20 = q_follow(c->seeing_q20, missing_q20, SEEING_SHIFT);
+  return -c->seeing_q20;
+}
+
+static void refer_field(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
+  int32_t least = (parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
+  if (parameters.position_source >= POSITION_FLUX_CONV) least = q_min(least, seeing_current(d));
+  // A commissioning takes its spin for one without i_d.
+  if (d->state == DRIVE_COMMISSION) {
+    bias = 0;
+    least = 0;
+  }
+  c->reference_q20.d =
+      q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
+  d->limits &= ~(int32_t)LIMIT_WEAKENING;
+  if (c->weakening_q20 < 0) d->limits |= LIMIT_WEAKENING;
+}
+
+void drive_weaken_field(drive_t* d) {
+  weaken(d);
+  refer_field(d);
+}
+
+// Current that balances the estimated load. The observers see friction as part of the load; the speed law's own model
+// has it too, so it is taken off here.
+static int32_t load_current(const drive_t* d) {
+  const int32_t speed = d->position.used.speed_bpp;
+  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 20);
+  const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
+  const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
+  return q_over(torque_q20, d->control.per_torque_constant, 24);
+}
+
+int32_t drive_current_room(const drive_t* d) {
+  const int32_t limit = d->control.current_limit_q20;
+  const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
+  return (room > 0) ? q_min((int32_t)q_sqrt64((uint64_t)room), limit) : 0;
+}
+
+static int32_t braking_room(const drive_t* d, int32_t room_q20) {
+  brake_limit_input_t in;
+  in.link_q16 = d->samples.link_q16;
+  in.start_q16 = parameters.link_regulation;
+  // The rest of the way to the fault is for noise and for the delay of the loop.
+  in.end_q16 = parameters.link_regulation + (parameters.link_maximum - parameters.link_regulation) / 3 * 2;
+  in.emf_q16 = q_mul_sat(q_abs_sat(machine_speed_rad_q30(d->position.used.speed_bpp)), d->model.emf_q16, 30);
+  in.drop_q16 = q_mul_sat(d->model.nominal_rs_q24, parameters.current_limit, 28);
+  return brake_limit_q20(&in, room_q20);
+}
+
+// Both follow the reference of i_d.
+static void make_torque_constant(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  c->per_torque_constant = q_invert(machine_torque_constant_q24(&d->model, c->reference_q20.d));
+}
+
+static void make_room(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  c->room_q20 = drive_current_room(d);
+  c->braking_room_q20 = braking_room(d, c->room_q20);
+}
+
+// Braking is what acts against the rotation.
+static void limit_current(const drive_t* d, speed_controller_input_t* in) {
+  const drive_control_t* const c = &d->control;
+  in->lowest_q20 = (in->speed_bpp > 0) ? -c->braking_room_q20 : -c->room_q20;
+  in->highest_q20 = (in->speed_bpp < 0) ? c->braking_room_q20 : c->room_q20;
+}
+
+// A shaft that may not be braked as fast as the ramp falls would be left behind by it, and be braked on when it has
+// long been told to speed up again: the ramp waits.
+static bool ramp_waits(const drive_t* d, int32_t target_bpp) {
+  if ((d->limits & LIMIT_BRAKING) == 0) return false;
+  const int32_t value = d->control.ramp.value;
+  return (d->position.used.speed_bpp > 0) ? target_bpp < value : target_bpp > value;
+}
+
+// At a reference of zero the place is kept, not only the speed.
+static int32_t hold_place(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const bool at_zero = d->state == DRIVE_RUN && c->target_bpp == 0 && c->ramp.value == 0;
+  const bool slow = q_abs_sat(d->position.used.speed_bpp) < d->config.hold_below_bpp;
+  if (!at_zero || !(slow || c->place.holding)) {
+    position_hold_release(&c->place);
+    return 0;
+  }
+  return position_hold_step(&c->place, d->position.used.angle_bam, d->config.hold_gain_q30);
+}
+
+static void step_ramp(drive_t* d, speed_controller_input_t* in) {
+  drive_control_t* const c = &d->control;
+  const int32_t target = (d->state == DRIVE_STOP) ? 0 : c->target_bpp;
+  in->reference_bpp = c->ramp.value;
+  ramp_step(&c->ramp, ramp_waits(d, target) ? c->ramp.value : target, d->config.ramp_step_bpp);
+  in->reference_step_bpp = c->ramp.step;
+  if (d->config.ramp_step_bpp == 0) in->reference_bpp = c->ramp.value;
+}
+
+static void note_limits(drive_t* d, const speed_controller_input_t* in) {
+  const int32_t iq_q20 = d->control.reference_q20.q;
+  const int32_t room = q_max(in->highest_q20, -in->lowest_q20);
+  if (q_abs_sat(iq_q20) >= room) d->limits |= LIMIT_CURRENT;
+  const bool at_end = iq_q20 <= in->lowest_q20 || iq_q20 >= in->highest_q20;
+  if (at_end && q_abs_sat(iq_q20) < room) d->limits |= LIMIT_BRAKING;
+}
+
+static void step_speed(drive_t* d, bool held) {
+  drive_control_t* const c = &d->control;
+  speed_controller_input_t in;
+  step_ramp(d, &in);
+  in.reference_bpp = q_add_sat(in.reference_bpp, hold_place(d));
+  d->limits &= ~(int32_t)LIMIT_BRAKING;
+  in.speed_bpp = d->position.used.speed_bpp;
+  in.load_current_q20 = load_current(d);
+  limit_current(d, &in);
+  if (held) {
+    speed_controller_preset(&c->speed, q_sub_sat(c->reference_q20.q, in.load_current_q20));
+    return;
+  }
+  c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)parameters.speed_law, &in);
+  note_limits(d, &in);
+}
+
+static void begin_millisecond(drive_t* d, bool held) {
+  d->time_ms++;
+  d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
+  if (drive_is_turning(d)) step_speed(d, held);
+}
+
+static bool weakens(const drive_t* d) {
+  return drive_is_turning(d) || (d->state == DRIVE_START && d->start.phase == START_CATCH);
+}
+
+void drive_control_speed(drive_t* d) {
+  const bool held = hold_step(d);
+  switch (d->schedule.task) {
+    case TASK_SPEED:
+      if (weakens(d)) refer_field(d);
+      make_room(d);
+      begin_millisecond(d, held);
+      break;
+    case TASK_JUDGE_FIRST:
+      if (d->schedule.judges) deviation_observer_learn(&d->position.observer, &d->config.observer);
+      break;
+    case TASK_FIELD:
+      if (weakens(d)) weaken(d);
+      break;
+    case TASK_JUDGE:
+      make_torque_constant(d);
+      drive_match_inertia(d);
+      break;
+    default:
+      break;
+  }
+}

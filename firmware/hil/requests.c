@@ -1,0 +1,32 @@
+// Host in the loop.
+
+#include "firmware/hil/hil.h"
+#include "firmware/link/request_handlers.h"
+#include "firmware/text/packed_text.h"
+
+static answer_status_t said(request_t* r, hil_result_t result) {
+  switch (result) {
+    case HIL_OK:
+      return ANSWER_OK;
+    case HIL_ENERGISED:
+      put_packed(&r->answer, SAY_the_power_stage_is_on_stop_first);
+      return ANSWER_RUNNING;
+    case HIL_BUSY:
+      put_packed(&r->answer, SAY_parameters_are_being_saved_or_read_try);
+      return ANSWER_BUSY;
+    case HIL_NOT_ACTIVE:
+      put_packed(&r->answer, SAY_the_host_is_not_in_the_loop);
+      return ANSWER_STATE;
+    case HIL_SEQUENCE:
+      put_u16(&r->answer, hil_expected());
+      return ANSWER_CONFLICT;
+    default:
+      return ANSWER_LENGTH;
+  }
+}
+
+answer_status_t request_hil_enter(request_t* r) { return said(r, hil_enter()); }
+
+answer_status_t request_hil_step(request_t* r) { return said(r, hil_step(&r->body, &r->answer)); }
+
+answer_status_t request_hil_leave(request_t* r) { return said(r, hil_leave()); }

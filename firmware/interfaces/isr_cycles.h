@@ -1,0 +1,29 @@
+// Run time of the steps of the control interrupt on the chip, in cycles of SYSCLKOUT: what the virtual chip lets pass.
+//
+// Estimates, no measurement on the chip. Samples, estimate, supervise, control, modulate and the window's interrupt are
+// the worst periods of their steps counted on a Cortex-M3, times 1.25; `make isr-cost` fails where one of them is
+// further than a tenth from that (docs/isr-cost.md, toolchain/m3_cost.py). The rest is estimated from operations: a
+// 32 x 32 bit product with rounding 13 cycles, one that is only added up 8, an upper half 6, a saturation 8, a
+// reciprocal 70. Not in it: position source 2 or a hold, which evaluate the windows twice, and what follows when the
+// compare values are written, serial port and scope. They make a compare value that is written too late be seen too
+// late.
+
+#ifndef STILLSPIN_FIRMWARE_INTERFACES_ISR_CYCLES_H
+#define STILLSPIN_FIRMWARE_INTERFACES_ISR_CYCLES_H
+
+#define CYCLES_READ_SAMPLES 1000u
+#define CYCLES_READ_SLICES 400u  // no windows to evaluate
+#define CYCLES_ESTIMATE 2400u
+#define CYCLES_ESTIMATE_FLUX 400u   // beside the observer, which leaves its regression for it
+#define CYCLES_ESTIMATE_BLIND 900u  // without windows: the observers only predict
+#define CYCLES_SUPERVISE 620u
+#define CYCLES_SUPERVISE_BLIND 100u
+#define CYCLES_CONTROL 900u
+#define CYCLES_MODULATE 1400u
+#define CYCLES_SERIAL 120u  // two octets each way
+#define CYCLES_REFER 550u   // references of the hysteresis
+#define CYCLES_WINDOW 110u
+#define CYCLES_SLICE 120u
+#define CYCLES_SCOPE 210u  // while it records: four channels and the trigger
+
+#endif

@@ -1,0 +1,284 @@
+// scope: set-up, state and a coarse print. Whole captures go over the link's records.
+
+#include "firmware/console/commands.h"
+
+#include <stddef.h>
+
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/console/suggest.h"
+#include "firmware/scope/scope.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
+#include "hal/qmath/qmath.h"
+
+static const char* const edges[] = {"rising", "falling", "either", "now", "above", "below"};
+#define EDGES ((uint16_t)(sizeof edges / sizeof edges[0]))
+
+// Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
+static uint16_t shift_of(const signal_info_t* s) {
+  static const struct {
+    const char* unit;
+    uint16_t whole;
+  } reach[] = {{"", 7}, {"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
+  uint16_t whole = 15;
+  for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
+    if (packed_is(s->unit, reach[k].unit)) whole = reach[k].whole;
+  }
+  return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
+}
+
+static scope_setup_t draft(void) {
+  scope_setup_t s = *scope_setup_in_force();
+  if (s.count > 0u) return s;
+  s.decimation = 1;
+  s.pretrigger = SCOPE_DEPTH / 4u;
+  s.mode = SCOPE_SINGLE;
+  s.edge = SCOPE_AT_ONCE;
+  s.hysteresis = SCOPE_BY_SPAN;
+  return s;
+}
+
+static void apply(const scope_setup_t* s) {
+  if (s->count == 0u) {
+    line_refused(SAY_first_scope_channels_signal);
+  } else if (scope_setup(s)) {
+    line_of(SAY_set_scope_arm_begins);
+  } else {
+    line_refused(SAY_outside_of_its_range_nothing_changed_see);
+  }
+}
+
+static void set_channels(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count < 2u || a->count > 1u + SCOPE_CHANNELS) {
+    line_refused(SAY_scope_channels_takes_one_to_four_signals);
+    return;
+  }
+  s.count = (uint16_t)(a->count - 1u);
+  for (uint16_t k = 0; k < s.count; k++) {
+    const uint16_t place = signal_find(&a->word[k + 1u]);
+    if (place == SIGNAL_NONE) {
+      suggest(SUGGEST_SIGNAL, &a->word[k + 1u]);
+      return;
+    }
+    s.channel[k].signal = place;
+    s.channel[k].shift = shift_of(signal_info(place));
+  }
+  apply(&s);
+}
+
+// A number in the signal's unit, and the unit when it is there; moves `k` behind them. False, and said, when it is
+// none.
+static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_t* signal, int32_t* raw) {
+  decimal_t number;
+  const word_t* const typed = &a->word[*k];
+  if (text_number(typed->text, typed->count, &number) != typed->count) {
+    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
+    return false;
+  }
+  if (!decimal_raw(&number, signal->q, raw)) {
+    put_word(line_begin(), typed);
+    line_answer(true, SAY_is_outside_of_the_signal_s_range);
+    count_refusal();
+    return false;
+  }
+  (*k)++;
+  if (word_is_packed(a, *k, signal->unit)) (*k)++;
+  return true;
+}
+
+static void set_trigger(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count == 2u && word_is(a, 1, edges[SCOPE_AT_ONCE])) {
+    s.edge = SCOPE_AT_ONCE;
+    apply(&s);
+    return;
+  }
+  uint16_t edge = 0;
+  while (edge < EDGES && !word_is(a, 2, edges[edge])) edge++;
+  if (a->count < 4u || edge == EDGES || edge == SCOPE_AT_ONCE) {
+    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
+    return;
+  }
+  s.trigger = signal_find(&a->word[1]);
+  if (s.trigger == SIGNAL_NONE) {
+    suggest(SUGGEST_SIGNAL, &a->word[1]);
+    return;
+  }
+  s.edge = (scope_edge_t)edge;
+  s.hysteresis = SCOPE_BY_SPAN;
+  const signal_info_t* const signal = signal_info(s.trigger);
+  uint16_t k = 3;
+  if (!read_level(a, &k, signal, &s.level)) return;
+  if (k < a->count && edge < SCOPE_AT_ONCE) {
+    if (!read_level(a, &k, signal, &s.hysteresis)) return;
+    s.hysteresis = q_max(s.hysteresis, 0);
+  }
+  if (k < a->count) {
+    line_refused(SAY_the_level_is_in_the_signal_s);
+  } else {
+    apply(&s);
+  }
+}
+
+// A whole number 0..65535 behind the sub-command.
+static bool whole(const words_of_line_t* a, uint16_t* value) {
+  decimal_t n;
+  int32_t number;
+  if (a->count != 2u || text_number(a->word[1].text, a->word[1].count, &n) != a->word[1].count) return false;
+  if (!decimal_is_whole(&n) || !decimal_raw(&n, 0, &number) || number < 0 || number > 65535L) return false;
+  *value = (uint16_t)number;
+  return true;
+}
+
+static void set_number(const words_of_line_t* a, bool every) {
+  scope_setup_t s = draft();
+  if (!whole(a, every ? &s.decimation : &s.pretrigger)) {
+    line_refused(SAY_a_whole_number_is_missing_nothing_changed);
+    return;
+  }
+  apply(&s);
+}
+
+static void set_mode(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count != 2u || (!word_is(a, 1, "single") && !word_is(a, 1, "auto"))) {
+    line_refused(SAY_scope_mode_single_or_scope_mode_auto);
+    return;
+  }
+  s.mode = word_is(a, 1, "auto") ? SCOPE_AUTO : SCOPE_SINGLE;
+  apply(&s);
+}
+
+static void put_state(octet_writer_t* w) {
+  const scope_status_t status = scope_status();
+  put_packed(w, SAY_scope);
+  put_words(w, WORDS_SCOPE, (uint16_t)status.state);
+  put_text(w, ", ");
+  put_unsigned(w, status.recorded);
+  put_packed(w, SAY_records);
+  if (status.trigger_at == SCOPE_NOWHERE) return;
+  put_packed(w, SAY_trigger_in_record);
+  put_unsigned(w, status.trigger_at);
+  put_packed(w, SAY_at);
+  put_unsigned(w, status.trigger_time_ms);
+  put_packed(w, SAY_ms);
+}
+
+static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
+  put_packed(w, SAY_trigger);
+  if (s->edge != SCOPE_AT_ONCE) {
+    const signal_info_t* const signal = signal_info(s->trigger);
+    put_packed(w, signal->name);
+    put_u8(w, ' ');
+    put_text(w, edges[s->edge]);
+    put_u8(w, ' ');
+    put_fixed(w, s->level, signal->q, signal_decimals(signal));
+    put_u8(w, ' ');
+    put_packed(w, signal->unit);
+    if (s->hysteresis >= 0) {
+      put_packed(w, SAY_hysteresis);
+      put_fixed(w, s->hysteresis, signal->q, signal_decimals(signal));
+    }
+  } else {
+    put_packed(w, SAY_now);
+  }
+  put_packed(w, SAY_every);
+  put_unsigned(w, s->decimation);
+  put_packed(w, SAY_before);
+  put_unsigned(w, s->pretrigger);
+  put_packed(w, (s->mode == SCOPE_AUTO) ? SAY_mode_auto : SAY_mode_single);
+}
+
+static void put_channels(octet_writer_t* w, const scope_setup_t* s) {
+  put_packed(w, SAY_channels);
+  for (uint16_t k = 0; k < s->count; k++) {
+    put_u8(w, ' ');
+    put_packed(w, signal_info(s->channel[k].signal)->name);
+  }
+}
+
+static bool show(uint16_t step) {
+  const scope_setup_t* const s = scope_setup_in_force();
+  octet_writer_t* const w = line_begin();
+  if (step == 0u) {
+    put_state(w);
+  } else if (step == 1u) {
+    put_channels(w, s);
+  } else {
+    put_trigger(w, s);
+  }
+  line_end();
+  return s->count > 0u && step < 2u;
+}
+
+static uint16_t stride;
+
+// False when there is no such record, or none any more: the scope was armed again.
+static bool put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
+  put_unsigned(w, at);
+  put_spaces_to(w, 6);
+  for (uint16_t k = 0; k < s->count; k++) {
+    const signal_info_t* const signal = signal_info(s->channel[k].signal);
+    int16_t value;
+    if (scope_read(k, at, &value, 1) == 0u) return false;
+    const int32_t q = (int32_t)signal->q - (int32_t)s->channel[k].shift;  // -31 has only a sign left
+    if (value == SCOPE_UNKNOWN) {
+      put_u8(w, '-');
+    } else {
+      put_fixed(w, q_shl_sat(value, (unsigned)q_clamp(-q, 0, 30)), (uint16_t)q_max(q, 0), signal_decimals(signal));
+    }
+    put_spaces_to(w, (uint16_t)(6u + 12u * (k + 1u)));
+  }
+  return true;
+}
+
+static bool print(uint16_t step) {
+  if (!put_record(line_begin(), scope_setup_in_force(), (uint16_t)((uint32_t)step * stride))) return false;
+  line_end();
+  return true;
+}
+
+static void begin_print(const words_of_line_t* a) {
+  const scope_state_t state = scope_status().state;
+  stride = 16;
+  if (a->count > 1u && (!whole(a, &stride) || stride == 0u)) {
+    line_refused(SAY_scope_print_one_record_in_so_many);
+  } else if (state != SCOPE_DONE && state != SCOPE_IDLE) {
+    line_refused(SAY_the_scope_still_records_scope_stop_ends);
+  } else if (scope_status().recorded == 0u) {
+    line_of(SAY_nothing_has_been_recorded);
+  } else {
+    console_run(print, false);
+  }
+}
+
+void command_scope(const words_of_line_t* a) {
+  if (a->count == 0u) {
+    console_run(show, false);
+  } else if (word_is(a, 0, "channels")) {
+    set_channels(a);
+  } else if (word_is(a, 0, "trigger")) {
+    set_trigger(a);
+  } else if (word_is(a, 0, "every") || word_is(a, 0, "before")) {
+    set_number(a, word_is(a, 0, "every"));
+  } else if (word_is(a, 0, "mode")) {
+    set_mode(a);
+  } else if (word_is(a, 0, "arm")) {
+    if (scope_arm()) {
+      line_of(SAY_armed);
+    } else {
+      line_refused(SAY_first_scope_channels_signal);
+    }
+  } else if (word_is(a, 0, "stop")) {
+    scope_stop();
+    line_of(SAY_stopped);
+  } else if (word_is(a, 0, "print")) {
+    begin_print(a);
+  } else {
+    line_refused(SAY_scope_has_no_such_part_see_help);
+  }
+}

@@ -1,0 +1,115 @@
+#include "firmware/sources/flux.h"
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/interfaces/isr_cycles.h"
+#include "hal/hal_profile.h"
+#include "svpwm/ripple.h"
+
+#define PER_PERIOD_Q20 439804651L        // rad/s (Q8) to rad per period (Q30), as in bandwidths: 100 us 2^22 2^20
+#define ADAPTATION_PERIODS 100u          // a tenth of the speed control's rate
+#define INDUCTANCE_SHARE_Q30 107374182L  // 0.1: 100 ms
+#define MAGNET_SHARE_Q30 53687091L       // 0.05: 200 ms
+#define CURRENT_LEAST_Q24 838861L        // the torque current makes a twentieth of the magnet's flux
+#define LEARNING_BPP 27342611L           // 400 rad/s: the magnet's flux is learnt from there on
+#define LEARN_INDUCTANCE 1
+#define LEARN_MAGNET 2
+
+// That has the shaft, or looks on; below zero without one.
+static int32_t method(void) {
+  return q_max(parameters.position_source - POSITION_FLUX_CONV, parameters.flux_beside - 1);
+}
+
+bool flux_source_is_wanted(void) { return method() >= 0; }
+
+bool flux_source_load(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  flux_observer_config_t* const f = &c->flux;
+  f->method = (flux_method_t)q_max(method(), FLUX_CONV);
+  f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
+  f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
+  f->is_plain = p->flux_plain != 0;
+  // Without dead time every voltage is known.
+  f->blind_q20 = (c->dead_time.blocked_ticks > 0) ? c->dead_time.band_q20 : 0;
+  f->adaptation_periods = ADAPTATION_PERIODS;
+  f->adaptation.saturation_q24 =
+      ((p->flux_adapt & LEARN_INDUCTANCE) != 0) ? flux_adaptation_identify_q24(&c->nameplate) : 0;
+  f->adaptation.inductance_q30 = INDUCTANCE_SHARE_Q30;
+  f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
+  f->adaptation.current_q24 = CURRENT_LEAST_Q24;
+  f->adaptation.lowest_bpp = LEARNING_BPP;
+  return !flux_source_is_wanted() || flux_observer_config_valid(f, &c->nameplate);
+}
+
+bool flux_source_rests(const drive_t* d) { return blend_is_high(&d->position.blend) && !polarity_watch_is_awake(d); }
+
+// The current at the end of the period: what was measured in the frame in use, that frame moved on.
+static flux_period_t period_of(const drive_t* d, bool is_full) {
+  const uint32_t end_bam = d->position.used.angle_bam + (uint32_t)d->position.used.speed_bpp;
+  flux_period_t p;
+  p.is_full = is_full;
+  p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
+  p.measured_q20 = d->control.measured_q20;
+  p.reference_q20 = d->control.reference_q20;
+  if (drive_is_turned(d)) {
+    p.measured_q20 = drive_seen(d, p.measured_q20);
+    p.reference_q20 = drive_seen(d, p.reference_q20);
+  }
+  const ab_t mean_q16 = svpwm_mean_q16(&d->modulation.sampled.pulses, d->samples.link_q16);
+  const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, p.current_q20);
+  p.voltage_q16.alpha = mean_q16.alpha - drop_q16.alpha;
+  p.voltage_q16.beta = mean_q16.beta - drop_q16.beta;
+  return p;
+}
+
+static estimator_output_t step(drive_t* d, const estimator_input_t* in, bool is_full) {
+  const flux_period_t p = period_of(d, is_full);
+  return flux_observer_step(&d->position.flux, &d->config.flux, in, &p);
+}
+
+// The observer goes along, so that it is right when it is wanted again.
+static void carry_observer(drive_t* d, const estimator_output_t* now) {
+  deviation_observer_t* const o = &d->position.observer;
+  o->angle_bam = now->angle_bam;
+  o->speed_bpp = now->speed_bpp;
+  o->load_accel_q8 = now->load_accel_q8;
+}
+
+estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
+  drive_position_t* const p = &d->position;
+  p->high = step(d, in, false);
+  p->low = p->high;
+  carry_observer(d, &p->high);
+  return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
+}
+
+void flux_source_take(drive_t* d) {
+  d->position.blend.region = BLEND_HIGH;
+  d->position.blend.share_q15 = 0;
+}
+
+void flux_source_follow(drive_t* d, const estimator_output_t* now) {
+  flux_observer_preset(&d->position.flux, now, d->control.measured_q20);
+}
+
+estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {
+  drive_position_t* const p = &d->position;
+  hal_profile_step(CYCLES_ESTIMATE_FLUX);
+  p->high = *low;
+  if (blend_is_low(&p->blend)) {
+    flux_source_follow(d, low);
+  } else {
+    p->high = step(d, in, in->window_count > 0u);
+  }
+  return blend_step(&p->blend, &d->config.blend, low, &p->high);
+}
+
+estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
+  const int32_t least_bpp = q_mul_sat(parameters.flux_low, d->config.bpp_per_rpm_q8, 24);
+  if (q_abs_sat(truth->speed_bpp) >= least_bpp) return step(d, in, false);
+  flux_source_follow(d, truth);
+  return *truth;
+}
+
+excitation_t flux_source_excitation(const drive_t* d) {
+  return flux_source_rests(d) ? EXCITATION_CENTRED : EXCITATION_ALTERNATING;
+}

@@ -1,0 +1,36 @@
+// The stator flux as a position source: joins estimators/flux_observer.h with the drive.
+//
+// Below flux_low the deviation observer has the shaft and the flux is set to what its angle lets expect; between
+// flux_low and flux_high both run, and blend.h hands over; above, the flux runs alone and the observer is carried
+// along with it. Above, the pulses are centred: the flux needs no measuring windows beyond one for the current.
+
+#ifndef STILLSPIN_FIRMWARE_SOURCES_FLUX_H
+#define STILLSPIN_FIRMWARE_SOURCES_FLUX_H
+
+#include "firmware/mode/mode.h"
+
+/// True where a method has the shaft, or looks on.
+bool flux_source_is_wanted(void);
+
+/// The flux's part of the configuration, from parameters and nameplate. False where it is wanted for a machine that it
+/// cannot be given.
+bool flux_source_load(drive_config_t* c);
+
+/// True where the flux alone has the shaft and nobody else needs the observer.
+bool flux_source_rests(const drive_t* d);
+
+/// Gives the shaft to the flux alone, whatever the speed; the blend goes on from there.
+void flux_source_take(drive_t* d);
+
+/// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
+void flux_source_follow(drive_t* d, const estimator_output_t* now);
+
+estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in);
+estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low);
+
+/// flux_beside: a method beside a source that is right, from flux_low on; what the method says.
+estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth);
+
+excitation_t flux_source_excitation(const drive_t* d);
+
+#endif

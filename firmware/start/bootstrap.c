@@ -1,0 +1,37 @@
+// Before the first pulse: all lower devices on, which charges the bootstrap capacitors of the upper ones' supplies.
+//
+// The gates come on when the short circuit is what the modulator gives. A shaft that turns drives a current through it:
+// then they rest until it has died away, and only what they were on counts.
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
+
+#define REST_PERIODS 20u
+
+void start_charge(drive_t* d) {
+  d->start.shorted = true;
+  d->start.charged = 0;
+  start_enter(d, START_CHARGE);
+}
+
+static bool flows(const drive_t* d) {
+  if (d->samples.count == 0u || drive_is_blind(d)) return false;
+  const ab_t i = d->samples.windows[d->samples.count - 1u].current_q20;
+  return q_max(q_abs_sat(i.alpha), q_abs_sat(i.beta)) > parameters.current_limit / 2;
+}
+
+void start_step_charge(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  if (!s->powered) {
+    if (s->tick < REST_PERIODS) return;
+    start_power(d, true);
+    return;
+  }
+  s->charged++;
+  if ((int32_t)s->charged >= q_shr(parameters.bootstrap_time * DRIVE_PERIODS_PER_MS + 65535L, 16)) {
+    start_look(d);
+  } else if (flows(d)) {
+    start_power(d, false);
+    s->tick = 0;
+  }
+}

@@ -1,0 +1,51 @@
+// The I-F start of a shaft that stands: see control/if_start.h. The position source runs beside it; when it agrees, the
+// drive runs on with what the source says, and with the torque that the vector had.
+//
+// A flux source that takes over above flux_high has the shaft alone: its integral begins when the vector has reached
+// its speed, with the flux that the vector lets expect. Below, and with the other sources, the shaft is seen from the
+// end of the vector's rest on.
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/mode/mode.h"
+#include "firmware/sources/flux.h"
+
+void start_turn(drive_t* d) {
+  static const estimator_output_t none = {0, 0, 0, 0};
+  d->start.seen = none;
+  if_start_begin(&d->start.turn, 0, d->control.target_bpp < 0);
+  current_controller_reset(&d->control.current);
+  d->control.closed = true;
+  d->watch.open = false;
+  const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
+  if (flux && d->config.turn.speed_bpp > d->config.blend.high_bpp) flux_source_take(d);
+  start_enter(d, START_TURN);
+}
+
+// The estimators go on as they are. No watch over the polarity: a source that took the magnet for reversed would have
+// been half a turn away from the vector.
+static void take_over(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const estimator_output_t seen = d->start.seen;
+  const dq_t own_q20 = drive_seen(d, c->reference_q20);
+  d->position.used = seen;
+  position_align_encoder(d, seen.angle_bam, seen.speed_bpp);
+  flux_observer_keep(&d->position.flux);
+  d->hold.left = 0;
+  c->ramp.value = seen.speed_bpp;
+  c->reference_q20.d = 0;
+  c->reference_q20.q = own_q20.q;
+  speed_controller_preset(&c->speed, 0);
+  current_controller_reset(&c->current);
+  drive_enter(d, DRIVE_RUN);
+}
+
+void start_step_turn(drive_t* d) {
+  drive_start_t* const s = &d->start;
+  const if_start_result_t result =
+      if_start_step(&s->turn, &d->config.turn, d->control.command_q16, s->seen.angle_bam, s->seen.speed_bpp);
+  d->control.reference_q20.d = s->turn.current_q20;
+  d->control.reference_q20.q = 0;
+  if (result == IF_START_TAKEN_OVER && start_decides(d)) take_over(d);
+  if (result == IF_START_FAILED) drive_raise(d, FAULT_DIVERGENCE);
+}

@@ -1,0 +1,60 @@
+// save, load, defaults.
+
+#include "firmware/console/commands.h"
+
+#include <stddef.h>
+
+#include "firmware/api/actions.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/store/store.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
+
+static void put_report(octet_writer_t* w) {
+  const store_report_t* const r = store_report();
+  const parameter_info_t* const first = parameter_by_id(r->first_refused);
+  if (first == NULL) return;
+  put_text(w, "; ");
+  put_unsigned(w, r->refused);
+  put_packed(w, SAY_outside_of_their_range_now_at_their);
+  put_text(w, ": ");
+  put_packed(w, first->name);
+  if (r->refused > 1u) put_text(w, " ..");
+}
+
+static bool wait_for_store(uint16_t step) {
+  (void)step;
+  if (store_is_busy()) return true;
+  const store_state_t state = store_state();
+  if (state != STORE_SAVED && state != STORE_LOADED && state != STORE_MIGRATED) count_refusal();
+  octet_writer_t* const w = line_begin();
+  put_words(w, WORDS_STORE, (uint16_t)state);
+  put_report(w);
+  line_end();
+  return false;
+}
+
+static void await(answer_status_t status) {
+  if (status == ANSWER_OK) {
+    console_run(wait_for_store, false);
+  } else {
+    line_end_refused();
+  }
+}
+
+void command_save(const words_of_line_t* a) {
+  (void)a;
+  await(action_save(line_begin()));
+}
+
+void command_load(const words_of_line_t* a) {
+  (void)a;
+  await(action_load(line_begin()));
+}
+
+void command_defaults(const words_of_line_t* a) {
+  (void)a;
+  line_answer(action_defaults(line_begin()) == ANSWER_OK, SAY_every_parameter_is_at_its_default_save);
+}

@@ -1,0 +1,40 @@
+#include "firmware/text/words.h"
+
+// The kind of each row of word_list.h.
+#define WORDS(kind, code, text) WORDS_##kind,
+static const uint16_t kinds[] = {
+#include "firmware/text/word_list.h"
+};
+#undef WORDS
+
+#define ROWS ((uint16_t)(sizeof kinds / sizeof kinds[0]))
+#define FAULTS ((uint16_t)TEXT_REMEDY_0 - (uint16_t)TEXT_FAULT_0)
+
+// The place of a word in word_list.h; ROWS when there is none.
+static uint16_t row_of(uint16_t kind, uint16_t code) {
+  uint16_t k = 0;
+  while (k < ROWS && kinds[k] != kind) k++;
+  k = (uint16_t)(k + code);
+  return (k < ROWS && kinds[k] == kind) ? k : ROWS;
+}
+
+static bool is_of_fault(uint16_t kind) { return kind == (uint16_t)WORDS_FAULT || kind == (uint16_t)WORDS_REMEDY; }
+
+bool words_exist(uint16_t kind, uint16_t code) {
+  if (is_of_fault(kind)) return code < FAULTS;
+  return code < ROWS && row_of(kind, code) < ROWS;
+}
+
+void put_words(octet_writer_t* w, words_kind_t kind, uint16_t code) {
+  if (!words_exist((uint16_t)kind, code)) {
+    put_u8(w, '?');
+    return;
+  }
+  uint16_t text = (uint16_t)TEXT_STATE_0;
+  if (is_of_fault((uint16_t)kind)) {
+    text = (uint16_t)((kind == WORDS_FAULT ? (uint16_t)TEXT_FAULT_0 : (uint16_t)TEXT_REMEDY_0) + code);
+  } else {
+    text = (uint16_t)(text + row_of((uint16_t)kind, code));
+  }
+  put_packed(w, (packed_text_t)text);
+}
