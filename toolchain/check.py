@@ -13,7 +13,19 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from checks import Finding, arrows, command_files, conditionals, glossary, int16, links, packages, pieces, registers
+from checks import (
+    Finding,
+    arrows,
+    command_files,
+    conditionals,
+    glossary,
+    int16,
+    links,
+    packages,
+    pieces,
+    registers,
+    tables,
+)
 from checks.preprocessor import SOURCE_FOLDERS, SUFFIXES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -51,6 +63,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "glossary": glossary.check,
     "packages": packages.check,
     "pieces": pieces.check,
+    "tables": tables.check,
 }
 DESCRIPTIONS = {
     "arrows": "includes point downward",
@@ -62,6 +75,7 @@ DESCRIPTIONS = {
     "glossary": "abbreviations are explained",
     "packages": "every Python package is installed",
     "pieces": "what the book makes of data is as the data say",
+    "tables": "tables of figures are made from data",
     "format": "clang-format",
     "ruff": "Python lint and format",
     "mypy": "Python types, strict",

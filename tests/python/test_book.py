@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
 from book import chip, figures, hooks, parameters, records  # noqa: E402
-from checks import glossary, pieces  # noqa: E402
+from checks import glossary, pieces, tables  # noqa: E402
 
 
 @pytest.mark.parametrize(
@@ -83,6 +83,23 @@ def test_runs_stand_by_their_speed_and_a_source_that_has_none_leaves_a_gap() -> 
         "| 60 | 10 | 20 | 1 | 2 |",
         "| 600 | 10 | 20 |  |  |",
     ]
+
+
+ROWS = "| | A | B |\n| --- | --- | --- |\n| x | {} | why |\n| y | **9.1 %** | not |\n"
+
+
+@pytest.mark.parametrize(
+    ("page", "lines"),
+    [
+        (ROWS.format("0.3 %"), [1]),
+        ("\n\n" + ROWS.format("–"), [3]),
+        (ROWS.format("`limit`"), []),
+        ("<!-- not measured: by design -->\n\n" + ROWS.format("3"), []),
+        ("<!-- x: made by toolchain/render.py -->\n" + ROWS.format("3") + "<!-- end of x -->\n", []),
+    ],
+)
+def test_a_table_of_figures_that_is_kept_by_hand_fails_the_check(page: str, lines: list[int]) -> None:
+    assert list(tables.by_hand(page)) == lines
 
 
 def test_a_picture_that_no_command_made_fails_the_check(tree: Path) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 FOLDER = "docs/figures"
-SUFFIXES = {".c", ".h", ".cpp", ".hpp", ".toml", ".py", ".cmd"}
+SUFFIXES = {".c", ".h", ".cpp", ".hpp", ".toml", ".py", ".cmd", ".js", ".css", ".html"}
 PICTURES = "docs/images"
 DRIVE = ("control", "estimators", "firmware", "hal", "svpwm")
 # What decides a figure of a run: the drive, what it runs on, what is done with it, and how it is judged.
