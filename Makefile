@@ -47,30 +47,26 @@ demo: build ## commission the drive, reproduce the main figures of the first pap
 
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
-	@bash toolchain/bench.sh $(BUILD)
-	@$(PYTHON) toolchain/keep.py speed
+	@$(PYTHON) toolchain/keep.py speed bash toolchain/bench.sh $(BUILD)
 
 isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
-	@$(PYTHON) toolchain/keep.py isr-cost
+	@$(PYTHON) toolchain/keep.py isr-cost toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
 
 isr-bound: build ## bound the interrupts' instructions by the longest path through the Cortex-M3's program, checked in runs
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/m3_bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
-	@$(PYTHON) toolchain/keep.py isr-bound
+	@$(PYTHON) toolchain/keep.py isr-bound toolchain/m3_bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
 
 image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
 	@mkdir -p build
 	@C2000_CG_ROOT=$(CURDIR)/toolchain/standin cmake --preset f2808 -B build/image-check \
 	-DF2808_FLASH_API=$(CURDIR)/toolchain/standin/Flash2808_API.lib >build/image-check.log 2>&1 || \
 	{ cat build/image-check.log; exit 1; }
-	@cmake --build build/image-check --parallel $(JOBS) >>build/image-check.log 2>&1 || \
+	@$(PYTHON) toolchain/keep.py image cmake --build build/image-check --parallel $(JOBS) >>build/image-check.log 2>&1 || \
 	{ grep -A 30 -m 1 FAILED build/image-check.log; exit 1; }
 	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
 	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
 	@echo; echo "lamp:"; cat build/image-check/hal/f2808/image/stillspin_lamp.map
-	@$(PYTHON) toolchain/keep.py image
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm
@@ -90,14 +86,12 @@ cppcheck: ## read the drive's C with the C28x's widths, and planted defects
 
 prove: ## absence of run-time errors with a 16-bit int, by Frama-C, and planted defects
 	@bash toolchain/setup.sh build prove
-	@$(PYTHON) toolchain/prove.py build/prove
-	@$(PYTHON) toolchain/keep.py prove
+	@$(PYTHON) toolchain/keep.py prove toolchain/prove.py build/prove
 	@$(PYTHON) toolchain/prove.py build/prove --defects
 
 mcdc: ## cover the decisions of the drive's C by the C++ tests: lines, branches, MC/DC of every condition
 	@bash toolchain/setup.sh build llvm
-	@$(PYTHON) toolchain/mcdc.py
-	@$(PYTHON) toolchain/keep.py mcdc
+	@$(PYTHON) toolchain/keep.py mcdc toolchain/mcdc.py
 
 mutants: setup ## change the drive's C in SAMPLE places (60, or all) of each part, and count what the C++ tests notice
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -17,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
 import figures as renewal  # noqa: E402
+import keep  # noqa: E402
 from book import records  # noqa: E402
 
 DATA = ROOT / "docs/figures"
@@ -106,3 +108,22 @@ def test_records_of_older_sources_are_listed(
 ) -> None:
     assert renewed({"prove"}, "", "--list") == (1, [])
     assert capsys.readouterr().out == "figures: prove is of older sources: make prove\n"
+
+
+@pytest.mark.parametrize(("status", "writes", "kept"), [(0, True, 2), (1, True, 2), (1, False, 1), (0, False, 1)])
+def test_what_a_command_measured_is_kept_even_when_it_is_beyond_its_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: int, writes: bool, kept: int
+) -> None:
+    """Of a command that ended before it had measured anything, the old record stays."""
+    result = tmp_path / "result.json"
+    result.write_text("1", encoding="utf-8")
+    os.utime(result, (0, 0))
+    monkeypatch.setattr(keep, "ROOT", tmp_path)
+    monkeypatch.setattr(keep, "render", lambda *_, **__: ())
+    monkeypatch.setitem(records.COMMANDS, "image", records.Made("make image-check", result.name, ("control",)))
+    records.keep(tmp_path, "image", "make image-check", 1, "before")
+    written = f"open({str(result)!r}, 'w').write('2')" if writes else "pass"
+    assert keep.main("image", sys.executable, "-c", f"{written}; raise SystemExit({status})") == status
+    record = records.load(tmp_path)["image"]
+    assert record["figures"] == kept
+    assert (record["sources"] == "before") is (status == 1 and not writes)
