@@ -20,6 +20,7 @@ from stillspin.board import power, serve
 from stillspin.cases import drift, profile, scenario_file
 from stillspin.cases.scenario import Scenario
 from stillspin.commands.connection import opened
+from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.one_line_errors import HELP, OneLineErrors
@@ -272,7 +273,7 @@ def commission_(
     with PhaseBar(Console(stderr=True)) as bar:
         result = commission.run(native, chosen, changes, seed, bar.show)
     tables.commissioning(result)
-    write_found(out, result, execute.Settings(chosen, changes, seed, revision()))
+    write_found(out, result, execute.Settings(chosen, changes, seed, revision(), firmware=firmware()))
     found = len(result.values) - len(result.refused)
     print(f"{found} of {len(result.values)} values found in {result.duration:.1f} s of the drive's time; see {out}")
     for value in result.refused:

@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
+import fake_core
 from stillspin import cli
 from stillspin.report import output
 from stillspin.runs import records
@@ -64,6 +65,7 @@ def test_a_run_writes_the_report_the_figures_and_a_record(call, tmp_path):
     about = records.read(tmp_path / "here" / "runs" / "A10-creep.parquet").about
     assert (about["seed"], about["profile"], about["changes"]) == (5, "bench", ["adc.noise=0.5"])
     assert about["plant"]["adc"]["noise"] == 0.5
+    assert about["firmware"] == fake_core.FIRMWARE
 
 
 def test_columns_of_a_record_carry_their_units(call, tmp_path):

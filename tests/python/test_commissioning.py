@@ -12,6 +12,7 @@ import tomllib
 
 import pytest
 
+import fake_core
 from stillspin import core
 from stillspin.cases import profile
 from stillspin.errors import InputError
@@ -51,6 +52,7 @@ def test_it_writes_what_it_found(call, tmp_path):
     assert "2 of 2 values found in 40.0 s" in result.stdout
     text = (tmp_path / "found.toml").read_text(encoding="utf-8")
     assert text.startswith("# Motor A, commissioned in profile bench, seed 7")
+    assert f"# Firmware {fake_core.FIRMWARE}.\n" in text
     assert tomllib.loads(text) == {"parameters": {"friction": 0.004, "speed_ramp": 2007.0}}
 
 

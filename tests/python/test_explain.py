@@ -10,11 +10,12 @@ import pytest
 from stillspin import core
 from stillspin.cases import effects, profile, scenario_file
 from stillspin.cases.effects import ALONE, WITHOUT, Effect, Worlds
+from stillspin.drive import own
 from stillspin.errors import InputError
 from stillspin.measure.figures import Result
 from stillspin.options import by_mark
 from stillspin.report.explain_report import Explanation, content
-from stillspin.runs import explain
+from stillspin.runs import explain, records
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings, prepare
 
@@ -142,6 +143,8 @@ def test_noise_explains_the_error_of_an_ideal_plant_with_noise(tmp_path) -> None
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     told = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+    recorded = {records.read(path).about["firmware"] for path in (out / "runs").glob("*.parquet")}
+    assert recorded == {told["firmware"]} == {own.firmware()}
     rms = told["figures"]["position_error_rms"]
     assert set(told["effects"]) == {"adc-noise", "commissioning"}  # that is all there is
     assert rms["dominating"] == "adc-noise"

@@ -74,6 +74,7 @@ def content(found: Explanation, settings: Settings) -> dict[str, Any]:
         "profile": settings.profile.name,
         "seed": settings.seed,
         "revision": settings.revision,
+        "firmware": settings.firmware,
         "scenario": found.scenario.id,
         "effects": {effect.mark: effect.title for effect in found.effects},
         "figures": {figure.name: _figure(found, figure) for figure in found.figures},

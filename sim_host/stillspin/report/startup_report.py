@@ -57,19 +57,20 @@ def rows(outcomes: Iterable[Outcome]) -> list[tuple[str, ...]]:
 
 def write(directory: Path, outcomes: Sequence[Outcome], profile: str) -> None:
     """Writes `startup.csv` (all cases), `startup.svg` and `metrics.json` into an existing directory."""
+    identity = firmware()
     with (directory / "startup.csv").open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         names = ("way", "angle_deg", "direction", "load_nm", "error", "seed", "speed_rpm")
-        table.writerow((*names, "problem", "backward_deg", "sigma", "angle_error_deg", "start_s"))
+        table.writerow((*names, "problem", "backward_deg", "sigma", "angle_error_deg", "start_s", "firmware"))
         for item in outcomes:
             case = item.case
             about = (case.way, case.angle, case.direction, case.load, case.error, case.seed, case.speed)
             found = (item.backward, item.sigma, item.angle_error, item.start)
-            table.writerow((*about, item.problem or "", *(f"{value:.4f}" for value in found)))
+            table.writerow((*about, item.problem or "", *(f"{value:.4f}" for value in found), identity))
     metrics = {
         "profile": profile,
         "revision": revision(),
-        "firmware": firmware(),
+        "firmware": identity,
         "starts": len(outcomes),
         "failed": sum(1 for item in outcomes if item.problem),
         "ways": {way: _figures([item for item in outcomes if item.case.way == way]) for way in WAYS},

@@ -126,6 +126,7 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "profile": settings.profile.name,
         "seed": settings.seed,
         "revision": settings.revision,
+        "firmware": settings.firmware,
         "changes": settings.changes.words,
         "parameters_from": settings.parameters_from,
         "motor": scenario.motor,

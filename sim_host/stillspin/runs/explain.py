@@ -19,6 +19,7 @@ from stillspin import core
 from stillspin.cases import effects, profile
 from stillspin.cases.effects import ALONE, WITHOUT, Case, Effect, Worlds
 from stillspin.cases.scenario import Scenario
+from stillspin.drive.own import firmware
 from stillspin.options import by_mark
 from stillspin.report import explain_report, output
 from stillspin.report.explain_report import Explanation
@@ -83,7 +84,7 @@ def carry_out(scenario: Scenario, options: Options) -> Explanation:
 
 def _settings(where: profile.Profile, seed: int, told: dict[str, float]) -> Settings:
     parameters = {**where.parameters, **told}
-    return Settings(replace(where, parameters=parameters), profile.Changes(), seed, revision())
+    return Settings(replace(where, parameters=parameters), profile.Changes(), seed, revision(), firmware=firmware())
 
 
 def _cases(worlds: Worlds, listed: Sequence[Effect], told: dict[str, float] | None, options: Options) -> list[Case]:

@@ -76,8 +76,6 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
     for each in own.values():
         profile.say_not_stated(each.profile)
     settings = _told(native, own, options)
-    about = firmware()
-    settings = {motor: replace(each, firmware=about) for motor, each in settings.items()}
     screen = Console(stderr=True)
     # What is wrong with the scenarios is said before the drive spends half a minute on measuring itself.
     for scenario in scenarios:
@@ -106,7 +104,8 @@ def _own(native: NativeCore, options: Options, motor: str) -> Settings:
     """Settings with the profile on a motor as it is."""
     schema, known = core.plant_schema(native), core.parameters(native)
     changes = profile.changes(options.changes, schema, known)
-    return Settings(profile.load(options.profile, schema, known, motor), changes, options.seed, revision())
+    chosen = profile.load(options.profile, schema, known, motor)
+    return Settings(chosen, changes, options.seed, revision(), firmware=firmware())
 
 
 def _told(native: NativeCore, own: Mapping[str, Settings], options: Options) -> dict[str, Settings]:
@@ -149,5 +148,6 @@ def write_found(file: Path, found: commission.Result, settings: Settings) -> Non
     plant, words = settings.profile, settings.changes.words
     where = f"Motor {plant.motor}, commissioned in profile {plant.name}, seed {settings.seed}"
     about = [f"{where}, stillspin {__version__} ({settings.revision})."]
+    about += [f"Firmware {settings.firmware}."] if settings.firmware else []
     about += [f"Changed beforehand: {', '.join(words)}."] if words else []
     commission.write(file, found, about)
