@@ -6,7 +6,6 @@ import pytest
 from desk import needs_board
 
 from stillspin.drive import Drive
-from stillspin.drive.requester import wait_until
 from stillspin.tune import choices
 from stillspin.tune.actions import ACTIONS
 from stillspin.tune.describe import describe
@@ -85,44 +84,6 @@ def test_units_words_and_that_there_is_no_fault_are_said(page, server, fake):
     fake.pace = 100
     page.click("#commission")
     page.wait_for_selector("#time-left:has-text('left')")
-
-
-def test_the_nameplate_is_entered_in_the_wizard(page, server, fake):
-    page.goto(server.address)
-    page.wait_for_selector("#state:has-text('ready')")
-    page.click("[data-tab=commissioning]")
-    field = page.locator("#wizard [aria-label=current_limit]")
-    field.fill("9")
-    field.press("Enter")
-    page.wait_for_selector("[data-name=current_limit].changed", state="attached")
-    assert fake.values[6] == 9 << 20
-    field.fill("99")
-    field.press("Enter")
-    page.wait_for_selector("#note:has-text('current_limit: 99')")
-    assert field.input_value() == "9.00"  # what is in effect
-
-
-@needs_board
-def test_the_wizard_asks_as_a_nameplate_says_it(page):
-    with Drive.virtual() as drive, Server(drive) as server:
-        page.goto(server.address)
-        page.wait_for_selector("#state:has-text('ready')")
-        page.click("[data-tab=commissioning]")
-        for label, typed in (
-            ("Voltage constant, between two wires", "41.04"),  # 4 pole pairs: 0.08 Vs
-            ("Rated current", "5"),
-            ("Resistance between two wires", "1.5"),
-        ):
-            field = page.locator(f"#wizard [aria-label='{label}']")
-            field.fill(typed)
-            field.press("Enter")
-        assert wait_until(lambda: abs(drive.get("stator_resistance") - 0.75) < 1e-4, 10)
-        assert abs(drive.get("magnet_flux") - 0.08) < 1e-4
-        assert abs(drive.get("rated_current") - 5 * 2**0.5) < 0.01
-        assert page.locator("#wizard [aria-label=magnet_flux]").input_value().startswith("0.0800")
-        page.locator("#wizard [aria-label='Rated current']").fill("1,5")
-        page.locator("#wizard [aria-label='Rated current']").press("Enter")
-        page.wait_for_selector("#note:has-text('is no number')")
 
 
 def test_an_unknown_speed_is_said_and_looked_at_on_command(page, server, fake):

@@ -130,31 +130,3 @@ def test_a_page_that_is_closed_stops_the_real_firmware(tuned):
     other.goto(address)
     other.wait_for_selector("#state:has-text('ready')", timeout=1000 * SLOW)
     other.close()
-
-
-def test_the_wizard_measures_the_machine_and_what_it_found_is_kept(tmp_path, monkeypatch, page):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    options = ("--speed", "0", "--eeprom", str(tmp_path / "memory"))
-    with opened(page, *options) as drive:
-        change(page, "link_timeout", 60000)  # of the drive's time, which goes faster than ours
-        change(page, "stator_resistance", 0.25)
-        page.click("[data-tab=commissioning]")
-        assert page.locator("#commission").is_disabled()
-        for box in page.locator("#wizard input[type=checkbox]").all():
-            box.check()
-        page.click("#commission")
-        page.wait_for_selector("#state:has-text('commissioning')")
-        page.wait_for_selector("#wizard :text('DC staircase')")
-        page.wait_for_selector("#keep-results", timeout=1000 * LONG)
-        assert "Every value is plausible and in use." in page.inner_text("#wizard")
-        row = page.locator("#wizard tr", has_text="stator_resistance").inner_text()
-        assert "0.25" in row
-        assert "plausible, in use" in row
-        picture(page, "commissioning")
-        page.click("#keep-results")
-        page.wait_for_selector("#store:has-text('the values have been saved')")
-        found = drive.parameters()
-        assert abs(found["stator_resistance"] - 0.32) < 0.05
-    with opened(page, *options) as drive:
-        assert drive.parameters() == found
-        assert "the saved values are in force" in page.inner_text("#store")

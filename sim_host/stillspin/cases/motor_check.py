@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 from stillspin import core
 from stillspin.cases.profile import Profile
@@ -26,6 +27,18 @@ class Finding:
     title: str
     works: bool
     words: str
+
+
+class Described(Protocol):
+    """A machine with its board, and what the drive is told of it."""
+
+    def plant(self, section: str, key: str) -> float:
+        """What the machine and its board are, in SI units."""
+        ...
+
+    def told(self, name: str) -> float:
+        """A parameter of the drive, in its own unit."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -48,10 +61,14 @@ class Motor:
 def findings(motor: Motor, native: core.NativeCore) -> list[Finding]:
     """Everything that was looked at; where the drive takes the parameters a start is tried, too."""
     ranges = _ranges(motor)
-    rules = [_rules(motor, native)] if all(finding.works for finding in ranges) else []
-    physics = (_saliency, _ripple, _polarity, _speed, _emf_of_a_trip, _turn)
-    tried = [_tried(motor, native)] if rules and rules[0].works else []
-    return [*ranges, *rules, *(look(motor) for look in physics), *tried]
+    held = [rules(motor.profile.parameters, native)] if all(finding.works for finding in ranges) else []
+    start = [tried(motor.profile, motor.told("speed_limit"), native)] if held and held[0].works else []
+    return [*ranges, *held, *physics(motor), *start]
+
+
+def physics(motor: Described) -> list[Finding]:
+    """What follows from the numbers alone."""
+    return [look(motor) for look in (_saliency, _ripple, _polarity, _speed, _emf_of_a_trip, _turn)]
 
 
 def _ranges(motor: Motor) -> list[Finding]:
@@ -66,15 +83,16 @@ def _ranges(motor: Motor) -> list[Finding]:
     return wrong or [Finding("range", True, f"all {total} values are within the ranges of the drive's parameters")]
 
 
-def _rules(motor: Motor, native: core.NativeCore) -> Finding:
+def rules(parameters: Mapping[str, float], native: core.NativeCore) -> Finding:
+    """Whether the drive takes the parameters together."""
     try:
-        native.check_parameters(dict(motor.profile.parameters))
+        native.check_parameters(dict(parameters))
     except ValueError as error:
         return Finding("drive's rules", False, str(error).removeprefix("firmware parameters: "))
     return Finding("drive's rules", True, "the drive takes the parameters together")
 
 
-def _saliency(motor: Motor) -> Finding:
+def _saliency(motor: Described) -> Finding:
     d, q = motor.plant("machine", "inductance_d"), motor.plant("machine", "inductance_q")
     share = (q - d) / (q + d)
     if share < _SALIENCY_LEAST:
@@ -92,7 +110,7 @@ def _saliency(motor: Motor) -> Finding:
     return Finding("start at rest", True, f"{words}, and there up to {end:.3g} A; current_limit is {limit:.3g} A")
 
 
-def _ripple(motor: Motor) -> Finding:
+def _ripple(motor: Described) -> Finding:
     """A pulse of a vector, 2/3 of the link at the motor, over the smaller inductance."""
     volts = 2.0 / 3.0 * motor.plant("link", "source_voltage")
     ripple = volts * motor.told("pulse_time") * 1e-6 / motor.plant("machine", "inductance_d")
@@ -106,7 +124,7 @@ def _ripple(motor: Motor) -> Finding:
     return Finding("ripple", True, words)
 
 
-def _polarity(motor: Motor) -> Finding:
+def _polarity(motor: Described) -> Finding:
     """Whether the link drives the test's current through the winding at all, and in what time."""
     volts = motor.plant("link", "source_voltage") / math.sqrt(3.0)
     resistance, inductance = motor.plant("machine", "resistance"), motor.plant("machine", "inductance_d")
@@ -118,7 +136,7 @@ def _polarity(motor: Motor) -> Finding:
     return Finding("polarity", True, f"{words} and is there after {1e3 * rise:.2g} ms")
 
 
-def _speed(motor: Motor) -> Finding:
+def _speed(motor: Described) -> Finding:
     """The speed that the link and field weakening allow without load."""
     volts = motor.plant("link", "source_voltage") / math.sqrt(3.0) * motor.told("voltage_use") / 100.0
     flux = motor.plant("machine", "magnet_flux")
@@ -131,7 +149,7 @@ def _speed(motor: Motor) -> Finding:
     return Finding("top speed", True, f"{words}; speed_limit is {limit:.0f} rpm")
 
 
-def _emf_of_a_trip(motor: Motor) -> Finding:
+def _emf_of_a_trip(motor: Described) -> Finding:
     """What the diodes charge the link to when the gates go off at the speed limit."""
     speed = motor.told("speed_limit") * math.pi / 30.0
     volts = math.sqrt(3.0) * motor.plant("machine", "magnet_flux") * motor.plant("machine", "pole_pairs") * speed
@@ -142,7 +160,7 @@ def _emf_of_a_trip(motor: Motor) -> Finding:
     return Finding("gates off", volts <= most, words)
 
 
-def _turn(motor: Motor) -> Finding:
+def _turn(motor: Described) -> Finding:
     limit, pairs = motor.told("speed_limit"), motor.plant("machine", "pole_pairs")
     steps = 60.0 / (limit * pairs * _PERIOD)
     words = f"an electrical turn at speed_limit has {steps:.0f} control interrupts"
@@ -154,14 +172,14 @@ def _turn(motor: Motor) -> Finding:
     return Finding("periods per turn", True, words)
 
 
-def _tried(motor: Motor, native: core.NativeCore) -> Finding:
-    """A start and a run-up of the virtual drive without load."""
-    target = round(0.1 * motor.told("speed_limit"))
+def tried(chosen: Profile, speed_limit: float, native: core.NativeCore) -> Finding:
+    """A start and a run-up of the virtual drive without load, to a tenth of `speed_limit`, rpm."""
+    target = round(0.1 * speed_limit)
     title = "tried"
     try:
         result = native.run(
-            plant=motor.profile.plant,
-            parameters=dict(motor.profile.parameters),
+            plant=chosen.plant,
+            parameters=dict(chosen.parameters),
             commands=[(0.2, "speed_ref_rpm", float(target))],
             load=[],
             duration=2.0,

@@ -8,13 +8,12 @@ from typing import Annotated
 import typer
 
 from stillspin import core
-from stillspin.cases import motor_check, profile
+from stillspin.cases import motor_check, profile, questions
 from stillspin.commands import parameter_file
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.options import ProfileOption
-from stillspin.quantity import Range
 
 app = typer.Typer(cls=OneLineErrors, help="Motor files: make one, check one.", rich_markup_mode=None)
 
@@ -40,8 +39,11 @@ def check(
         raise typer.Exit(ExitCode.SHORT)
 
 
-def _asked(flag: str, question: str, help_: str) -> typer.models.OptionInfo:
-    option: typer.models.OptionInfo = typer.Option(flag, prompt=question, metavar="NUMBER", help=help_)
+def _asked(key: str) -> typer.models.OptionInfo:
+    asked = next(question for question in questions.QUESTIONS if question.key == key)
+    prompt = f"{asked.text}, {asked.unit}" if asked.unit else asked.text
+    flag = f"--{key.replace('_', '-')}"
+    option: typer.models.OptionInfo = typer.Option(flag, prompt=prompt, metavar="NUMBER", help=f"{prompt}.")
     return option
 
 
@@ -49,59 +51,31 @@ def _asked(flag: str, question: str, help_: str) -> typer.models.OptionInfo:
 def new(
     *,
     file: Annotated[Path, typer.Argument(help="The file to write; one that exists is not touched.")],
-    pole_pairs: Annotated[str, _asked("--pole-pairs", "Pole pairs (half the number of poles)", "Pole pairs.")],
-    resistance: Annotated[
-        str, _asked("--resistance", "Resistance of a phase (half of that between wires), ohm", "ohm")
-    ],
-    inductance_d: Annotated[str, _asked("--inductance-d", "d-axis inductance of a phase (the smaller one), mH", "mH")],
-    inductance_q: Annotated[str, _asked("--inductance-q", "q-axis inductance of a phase, mH", "mH")],
-    emf: Annotated[str, _asked("--emf", "Voltage constant, V rms between two wires at 1000 rpm", "V per 1000 rpm")],
-    rated_current: Annotated[str, _asked("--rated-current", "Rated current, A rms", "A rms")],
-    inertia: Annotated[str, _asked("--inertia", "Inertia of rotor and load, kg m2", "kgm2")],
-    voltage: Annotated[str, _asked("--voltage", "DC-link voltage, V", "V")],
-    current_range: Annotated[str, _asked("--current-range", "Range of the board's current sensors, A", "A")],
-    speed: Annotated[str, _asked("--speed", "Largest speed, rpm", "rpm")],
+    pole_pairs: Annotated[str, _asked("pole_pairs")],
+    resistance: Annotated[str, _asked("resistance")],
+    inductance_d: Annotated[str, _asked("inductance_d")],
+    inductance_q: Annotated[str, _asked("inductance_q")],
+    emf: Annotated[str, _asked("emf")],
+    rated_current: Annotated[str, _asked("rated_current")],
+    inertia: Annotated[str, _asked("inertia")],
+    voltage: Annotated[str, _asked("voltage")],
+    current_range: Annotated[str, _asked("current_range")],
+    speed: Annotated[str, _asked("speed")],
 ) -> None:
     """Ask what a nameplate says, and write a motor's file; each question is an option, too."""
     if file.exists():
         raise InputError(f"{file}: is there already")
-    pairs = Range(1, 20, whole=True).read_whole(pole_pairs, "pole pairs")
-
-    def positive(typed: str, name: str, unit: str) -> float:
-        return Range(1e-9, unit=unit).read(typed, name)
-
-    # V rms between wires at 1000 rpm to Vs peak of a phase: sqrt(2/3) over the electrical speed.
-    flux = positive(emf, "voltage constant", "V") * (2.0 / 3.0) ** 0.5 / (pairs * 104.719755)
-    peak = positive(rated_current, "rated current", "A") * 2.0**0.5
-    sensors = positive(current_range, "current range", "A")
-    link = positive(voltage, "DC-link voltage", "V")
-    content = f"""description = "{file.stem}"
-
-[machine]
-pole_pairs = {pairs}
-resistance = {positive(resistance, "resistance", "ohm"):g}  # ohm, of a phase
-inductance_d = {positive(inductance_d, "d-axis inductance", "mH") / 1e3:g}  # H
-inductance_q = {positive(inductance_q, "q-axis inductance", "mH") / 1e3:g}  # H
-magnet_flux = {flux:.6g}  # Vs, peak
-rated_peak_current = {peak:.6g}  # A
-cross_inductance = 0.0  # H, not on a nameplate
-
-[mechanics]
-inertia = {positive(inertia, "inertia", "kgm2"):g}  # kg m2, rotor and load
-viscous_friction = 0.0  # N m s, not on a nameplate
-
-[link]
-source_voltage = {link:g}  # V
-brake_on_voltage = {1.33 * link:.6g}
-brake_off_voltage = {1.3 * link:.6g}
-
-[adc]
-current_range = {sensors:g}  # A, of the sensors
-voltage_range = {1.5 * link:.6g}  # V, of the link's divider
-
-[parameters]
-current_limit = {min(1.3 * peak, 0.7 * sensors):.4g}  # A, peak
-speed_limit = {positive(speed, "largest speed", "rpm"):g}  # rpm
-"""
-    parameter_file.write(file, content)
+    typed = {
+        "pole_pairs": pole_pairs,
+        "resistance": resistance,
+        "inductance_d": inductance_d,
+        "inductance_q": inductance_q,
+        "emf": emf,
+        "rated_current": rated_current,
+        "inertia": inertia,
+        "voltage": voltage,
+        "current_range": current_range,
+        "speed": speed,
+    }
+    parameter_file.write(file, questions.file_text(file.stem, questions.read(typed)))
     print(f"see {file}; what will work: stillspin motor check {file}")

@@ -90,8 +90,13 @@ class Status:
         """What would be lost with the power, for people; empty when nothing would."""
         if self.unsaved is None:
             return "parameters are not saved: the last save failed"
+        return f"{self.unsaved_count}: 'save' keeps what is in force" if self.unsaved else ""
+
+    @property
+    def unsaved_count(self) -> str:
+        """How many parameters are not saved, in words; empty where none is, or nobody knows."""
         what = "1 parameter is" if self.unsaved == 1 else f"{self.unsaved} parameters are"
-        return f"{what} not saved: 'save' keeps what is in force" if self.unsaved else ""
+        return f"{what} not saved" if self.unsaved else ""
 
     @property
     def energised(self) -> bool:

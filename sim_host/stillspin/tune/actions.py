@@ -12,8 +12,8 @@ from stillspin.drive.protocol import Words
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.quantity import ANY, Range
-from stillspin.tune import files
-from stillspin.tune.messages import Message, for_page
+from stillspin.tune import files, plate
+from stillspin.tune.messages import Message, for_page, shown_unit
 from stillspin.tune.workbench import Workbench
 
 _POLL = 0.05
@@ -83,6 +83,18 @@ def _load(bench: Workbench, _: str, given: Message) -> Any:
     return files.load(bench, _text(given, "name"), _text(given, "text"))
 
 
+def _plate(bench: Workbench, _: str, __: Message) -> Any:
+    return plate.asked(bench.drive.table, bench.drive.parameters())
+
+
+def _plate_check(bench: Workbench, _: str, given: Message) -> Any:
+    return plate.check(bench, given)
+
+
+def _plate_use(bench: Workbench, _: str, given: Message) -> Any:
+    return plate.use(bench, given)
+
+
 def _look(bench: Workbench, _: str, __: Message) -> Any:
     return bench.drive.look().text
 
@@ -130,7 +142,7 @@ def _capture(bench: Workbench, _: str, given: Message) -> Any:
     return {
         "time": capture.time.tolist(),
         "signals": {name: [for_page(value) for value in values.tolist()] for name, values in capture.signals.items()},
-        "units": dict(capture.units),
+        "units": {name: shown_unit(unit) for name, unit in capture.units.items()},
         "clipped": list(capture.clipped),
         "interval": capture.interval,
         "at": capture.trigger_time,
@@ -174,6 +186,9 @@ ACTIONS: dict[str, Callable[[Workbench, str, Message], Any]] = {
     "faults": _faults,
     "plot": _plot,
     "load": _load,
+    "plate": _plate,
+    "plate_check": _plate_check,
+    "plate_use": _plate_use,
     "look": _look,
     "look_again": _look_again,
     "commission": _commission,

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from stillspin.drive import scope
-from stillspin.drive.table import Parameter
+from stillspin.drive.table import Parameter, Signal
 from stillspin.tune import choices, derived
+from stillspin.tune.derived import Derived
 from stillspin.tune.groups import group_of
-from stillspin.tune.messages import Message
+from stillspin.tune.messages import Message, shown_unit
 
 if TYPE_CHECKING:
     from stillspin.tune.workbench import Workbench
@@ -23,8 +25,8 @@ def describe(bench: Workbench) -> Message:
         "crc": table.crc,
         "where": bench.drive.link.transport.name,
         "parameters": [_parameter(entry) for entry in table.parameters],
-        "signals": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in table.signals],
-        "derived": [{"name": s.name, "unit": s.unit, "meaning": s.meaning} for s in derived.available(table)],
+        "signals": [_signal(entry) for entry in table.signals],
+        "derived": [_signal(entry) for entry in derived.available(table)],
         "words": choices.of_signals(bench.drive),
         "values": bench.drive.parameters(),
         "plotted": bench.plotted,
@@ -33,12 +35,16 @@ def describe(bench: Workbench) -> Message:
     }
 
 
+def _signal(entry: Signal | Derived) -> Message:
+    return {"name": entry.name, "unit": shown_unit(entry.unit), "meaning": entry.meaning}
+
+
 def _parameter(entry: Parameter) -> Message:
     return {
         "name": entry.name,
         "id": entry.id,
         "group": group_of(entry.id),
-        "unit": entry.unit,
+        "unit": shown_unit(entry.unit),
         "choices": choices.of_parameter(entry),
         "decimals": entry.decimals,
         "minimum": entry.minimum,
@@ -46,5 +52,5 @@ def _parameter(entry: Parameter) -> Message:
         "initial": entry.initial,
         "always": entry.always,
         "meaning": entry.meaning,
-        "range": entry.range_text,
+        "range": str(replace(entry.range, unit=shown_unit(entry.unit))),
     }

@@ -15,6 +15,17 @@ _GUARD_STOPPED = 2
 """Bit of the status's link octet, firmware/link/requests_drive.c."""
 
 
+_SHOWN = {
+    "C": "°C", "ohm": "Ω", "us": "µs", "deg": "°", "kgm2": "kg m²", "rad/s2": "rad/s²", "A2s2": "A² s²",
+    "Nm": "N m", "Nms": "N m s", "Vs": "V s", "mVs": "mV s",
+}  # fmt: skip
+
+
+def shown_unit(unit: str) -> str:
+    """A unit of the drive, which has ASCII alone, as people write it."""
+    return _SHOWN.get(unit, unit)
+
+
 def for_page(value: float) -> float | None:
     """What JSON has for a number that is not known."""
     return None if math.isnan(value) else value
@@ -36,7 +47,7 @@ def status_message(status: Status) -> Message:
         "speed_known": status.speed_known,
         "reference": status.reference,
         "store": status.store,
-        "unsaved": status.unsaved_text,
+        "unsaved": status.unsaved_count or status.unsaved_text,
         "unheard": bool(raw.link & _GUARD_STOPPED),
         "commissioning": {"outcome": raw.outcome, "phase": raw.phase, "progress": raw.progress / 1000},
     }

@@ -29,6 +29,13 @@ export function span(seconds) {
   return `${(seconds / 3600).toFixed(1)} h`;
 }
 
+const DECIMALS = { rpm: 1, A: 2, V: 1, "N m": 2, W: 0, "%": 1, turn: 3, "°C": 1 };
+
+/** A value that comes again and again: always with as many decimals, so that nothing jumps. */
+export function quantity(value, unit) {
+  return value === null ? "–" : withUnit(number(value, DECIMALS[unit] ?? null), unit);
+}
+
 export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
 /** A signal's value for people: in words where it stands for a state, with its unit otherwise. */
@@ -36,5 +43,5 @@ export function told(value, { name, unit }, words = {}) {
   if (value === null) return "–"; // not known
   const list = words[name];
   if (name === "limit" && list) return list.filter((_, bit) => (value >> bit) & 1).join(", ") || "nothing";
-  return list?.[value] ?? withUnit(number(value), unit);
+  return list?.[value] ?? quantity(value, unit);
 }

@@ -1,8 +1,9 @@
 // The drive's fault memory, in its own words.
 
-import { by, make, number, span } from "./dom.js";
+import { by, make, quantity, span } from "./dom.js";
 
-const COLUMNS = ["When", "What", "While", "Speed", "DC link", "i_d", "i_q"];
+const FIGURES = [["Speed", "speed", "rpm"], ["DC link", "link_voltage", "V"], ["i_d", "current_d", "A"], ["i_q", "current_q", "A"]];
+const COLUMNS = ["When", "What", "While", ...FIGURES.map(([title]) => title)];
 
 export class Faults {
   constructor(link, fail) {
@@ -38,16 +39,13 @@ export class Faults {
       make(
         "tr",
         {},
-        make("td", { title: `${fault.time.toFixed(3)} s after it was switched on` }, `${span(Math.max(0, (this.now ?? fault.time) - fault.time))} ago`),
+        make("td", { "data-title": "When", title: `${fault.time.toFixed(3)} s after it was switched on` }, `${span(Math.max(0, (this.now ?? fault.time) - fault.time))} ago`),
         make("td", {}, make("strong", {}, fault.cause), make("div", { class: "hint" }, fault.remedy)),
-        make("td", {}, fault.state),
-        make("td", { class: "figure" }, `${number(fault.speed, 0)} rpm`),
-        make("td", { class: "figure" }, `${number(fault.link_voltage, 0)} V`),
-        make("td", { class: "figure" }, `${number(fault.current_d, 2)} A`),
-        make("td", { class: "figure" }, `${number(fault.current_q, 2)} A`),
+        make("td", { "data-title": "While" }, fault.state),
+        ...FIGURES.map(([title, key, unit]) => make("td", { class: "figure", "data-title": title }, quantity(fault[key], unit))),
       ),
     );
     const head = make("tr", {}, ...COLUMNS.map((title, at) => make("th", { class: at > 2 ? "figure" : "" }, title)));
-    by("history").replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
+    by("history").replaceChildren(make("table", { class: "stack" }, make("thead", {}, head), make("tbody", {}, ...rows)));
   }
 }

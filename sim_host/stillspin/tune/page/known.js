@@ -54,7 +54,7 @@ export class Known {
 
   tell(away, now) {
     const words = this.words(now);
-    const since = this.heard ? ` Nothing is known since ${span(away / 1000)}. ${MOTOR}` : "";
+    const since = this.heard ? ` Nothing has been known for ${span(away / 1000)}. ${MOTOR}` : "";
     by("lost-words").textContent = words + since;
     by("again").hidden = Boolean(this.cause?.refused);
     if (words === this.said) return;

@@ -3,7 +3,7 @@
 import { by, make } from "./dom.js";
 
 /** Where a parameter's value is entered: a list of words where its numbers stand for something. */
-export function field({ name, choices, minimum }) {
+function field({ name, choices, minimum }) {
   if (!choices.length) return make("input", { type: "text", inputMode: "decimal", spellcheck: false, "aria-label": name });
   const options = choices.map((words, at) => make("option", { value: String(minimum + at) }, `${minimum + at} ${words}`));
   return make("select", { "aria-label": name }, ...options);
@@ -13,7 +13,6 @@ export class Parameters {
   constructor(link, fail) {
     this.link = link;
     this.fail = fail;
-    this.watchers = new Map();
     link.on("hello", (hello) => this.build(hello));
     link.on("again", ({ values }) => this.take(values));
     by("search").oninput = () => this.filter();
@@ -65,22 +64,6 @@ export class Parameters {
     return element;
   }
 
-  /** A second field for a parameter, elsewhere on the page: both change it, both show what is in effect. */
-  twin(name) {
-    const { parameter, value } = this.rows.get(name);
-    const input = field(parameter);
-    const show = (now) => (input.value = now.toFixed(parameter.decimals));
-    this.watchers.set(name, [show]);
-    input.onchange = async () => {
-      const words = await this.change(this.rows.get(name), input.value);
-      if (words) this.fail(new Error(words));
-      show(this.rows.get(name).value);
-    };
-    if (!parameter.always) input.setAttribute("data-stopped", "");
-    show(value);
-    return input;
-  }
-
   take(values) {
     for (const [name, value] of Object.entries(values)) this.put(this.rows.get(name), value);
     this.filter();
@@ -89,7 +72,6 @@ export class Parameters {
   put(row, value) {
     row.value = value;
     row.input.value = value.toFixed(row.parameter.decimals);
-    for (const watcher of this.watchers.get(row.parameter.name) ?? []) watcher(value);
     row.error.hidden = true;
     row.element.classList.toggle("changed", value !== row.parameter.initial);
   }

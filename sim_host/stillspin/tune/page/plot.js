@@ -15,7 +15,7 @@ export function ticks(low, high, count) {
 
 /** A range around values with some air, never empty. */
 export function padded(low, high) {
-  if (!Number.isFinite(low)) return [-1, 1];
+  if (!Number.isFinite(low) || (low === 0 && high === 0)) return [-1, 1];
   const air = Math.max((high - low) * 0.08, Math.abs(high) * 1e-3, 1e-3);
   return [low - air, high + air];
 }
@@ -68,7 +68,16 @@ export class Plot {
     pen.clip();
     for (const line of content.series) this.line(pen, line, content, x, y);
     pen.restore();
+    if (content.series.every(({ y }) => y.every((value) => value === null))) this.say(pen, "not known", width / 2, height / 2);
     this.read(pen, content, x, y, width, height);
+  }
+
+  say(pen, words, x, y) {
+    pen.fillStyle = this.colour("--quiet");
+    pen.textAlign = "center";
+    pen.textBaseline = "bottom";
+    pen.font = "13px system-ui, sans-serif";
+    pen.fillText(words, x, y - 6);
   }
 
   range(content) {
@@ -141,8 +150,8 @@ export class Plot {
     for (const line of content.series) {
       const at = nearest(line.x, time);
       if (at < 0) continue;
-      pen.fillStyle = this.colour(line.colour);
-      pen.fillText(`${line.name} ${short(line.y[at])}`, this.pointer + (part > 0.6 ? -8 : 8), row);
+      pen.fillStyle = this.colour("--ink");
+      pen.fillText(`${line.name} ${short(line.y[at])} ${content.unit}`, this.pointer + (part > 0.6 ? -8 : 8), row);
       row += 14;
     }
   }

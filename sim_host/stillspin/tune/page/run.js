@@ -183,8 +183,9 @@ export class Run {
     by("speed").textContent = number(status.speed, 1);
     by("now-reference").textContent = `${number(status.reference, 1)} rpm`;
     by("limits").textContent = status.limits.join(", ") || "nothing";
-    by("store").textContent = status.unsaved ? `${status.store}; ${status.unsaved}` : status.store;
+    by("store").textContent = [status.store, status.unsaved].filter(Boolean).join("; ");
     by("time").textContent = span(status.time);
+    by("time").dataset.seconds = status.time;
     by("now-fault").textContent = status.fault || "no fault";
     by("shaft").hidden = status.speed_known;
     by("fault").hidden = !status.fault;

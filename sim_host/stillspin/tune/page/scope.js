@@ -8,11 +8,11 @@ const PERIOD = 1e-4; // s, of the control interrupt
 const FIRST = ["speed", "current_d", "current_q", ""];
 const EDGES = {
   now: "at once",
-  rising: "rises through",
-  falling: "falls through",
-  either: "crosses",
-  above: "is at or above",
-  below: "is below",
+  rising: "it rises through",
+  falling: "it falls through",
+  either: "it crosses",
+  above: "it is at or above",
+  below: "it is below",
 };
 
 export class Scope {
@@ -50,8 +50,8 @@ export class Scope {
     const field = (text, ...parts) => make("label", { class: "field" }, text, make("span", { class: "with-unit" }, ...parts));
     by("setup").replaceChildren(
       ...this.channels.map((select, at) => field(`Channel ${at + 1}`, select)),
-      field("Trigger when", this.trigger),
-      field("it", this.edge),
+      field("Trigger on", this.trigger),
+      field("when", this.edge),
       field("Level", this.level, this.unit),
       field("A record every", this.decimation, make("em", {}, "× 0.1 ms")),
       field("Before the trigger", this.before, make("em", {}, "%")),
