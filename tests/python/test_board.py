@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import os
+import pty
 import re
 import signal
 import subprocess
 import sys
+import termios
 import time
 from collections import deque
 
@@ -309,9 +311,9 @@ def test_warnings_come_once_and_also_without_a_terminal(desk, port):
 def start(tmp_path):
     started = []
 
-    def run(*arguments):
+    def run(*arguments, stderr=subprocess.PIPE):
         command = [sys.executable, "-m", "stillspin", "board", "--serial-link", str(tmp_path / "drive"), *arguments]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=stderr, text=True)
         started.append(process)
         return process, tmp_path / "drive"
 
@@ -346,6 +348,26 @@ def test_process_ends_orderly_when_asked(start, number):
     assert "switched off after" in out
     assert err == ""
     assert not link.is_symlink()
+
+
+def test_a_terminal_that_takes_nothing_does_not_stop_the_drive(start):
+    """Ctrl-S, text that is selected: the drive answers at its port all the same."""
+    master, terminal = pty.openpty()
+    process, link = start(stderr=terminal)
+    _until_ready(process)
+    with _open(link) as client:
+        assert os.read(master, 1)
+        termios.tcflow(terminal, termios.TCOOFF)
+        time.sleep(1.0)
+        client.write(b"\rversion\r")
+        assert b"protocol" in client.read_until(b"protocol")
+    termios.tcflow(terminal, termios.TCOON)
+    process.send_signal(signal.SIGTERM)
+    out, _ = process.communicate(timeout=10)
+    assert process.returncode == 0
+    assert "switched off after" in out
+    os.close(master)
+    os.close(terminal)
 
 
 def test_process_keeps_real_time(start):

@@ -1,7 +1,9 @@
-"""What the virtual board says on the terminal: how to connect, one line of status, and warnings."""
+"""What the virtual board says on the terminal while it runs: one line of status, and warnings."""
 
 from __future__ import annotations
 
+import queue
+import threading
 import time
 from types import TracebackType
 from typing import Self
@@ -16,6 +18,8 @@ from stillspin.drive import state
 
 _EVERY = 0.25  # s between two looks of the status line
 _AGAIN = 30.0  # s after which a warning is repeated
+_WAITING = 8  # texts that wait for the terminal; what comes on top of them is not shown
+_LAST = 1.0  # s that the last words may take at the end
 
 _STATES = {
     state.BOOT: "boot",
@@ -30,7 +34,11 @@ _STATES = {
 
 
 class Show:
-    """Draws the status line where somebody looks, prints warnings anywhere."""
+    """Draws the status line where somebody looks, prints warnings anywhere.
+
+    A thread of its own does it: a terminal that takes nothing (Ctrl-S, a selection, a suspended window) must not stop
+    the drive's time.
+    """
 
     def __init__(self, console: Console, desk: Desk, pacer: Pacer, speed: float) -> None:
         self._console = console
@@ -40,17 +48,41 @@ class Show:
         self._live = Live(console=console, auto_refresh=False, transient=True) if console.is_terminal else None
         self._next = 0.0
         self._warned: dict[str, float] = {}
+        self._texts: queue.Queue[Text | None] = queue.Queue(_WAITING)
+        self._draws = threading.Thread(target=self._draw, name="stillspin status line", daemon=True)
 
     def __enter__(self) -> Self:
-        if self._live:
-            self._live.start()
+        self._draws.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """The last words are waited for, but not for a terminal that takes nothing."""
+        end = time.monotonic() + _LAST
+        try:
+            self._texts.put(None, timeout=_LAST)
+        except queue.Full:
+            return
+        self._draws.join(max(0.0, end - time.monotonic()))
+
+    def _draw(self) -> None:
+        if self._live:
+            self._live.start()
+        while (text := self._texts.get()) is not None:
+            if text.style or not self._live:
+                self._console.print(text, soft_wrap=True)
+            else:
+                self._live.update(text, refresh=True)
         if self._live:
             self._live.stop()
+
+    def _show(self, text: Text) -> bool:
+        try:
+            self._texts.put_nowait(text)
+        except queue.Full:
+            return False
+        return True
 
     def look(self) -> None:
         """Renew the line and look for something to warn of, a few times a second."""
@@ -67,7 +99,7 @@ class Show:
             words = f"{self._desk.port.dropped} octets were not fetched by the program that has the port open"
             self._warn("dropped", now, words)
         if self._live:
-            self._live.update(Text(self.line()), refresh=True)
+            self._show(Text(self.line()))
 
     def line(self) -> str:
         """Time, speed, state of the drive, shaft, port."""
@@ -76,8 +108,8 @@ class Show:
         words = _STATES.get(int(signals["state"]), "?")
         port = f"open at {desk.port.rate} bit/s" if desk.port.is_open else "not open"
         return (
-            f"{desk.time:9.1f} s  {self._ratio()}  {words}  {truth['speed']:7.1f} rpm  {truth['load_torque']:.2f} Nm  "
-            f"port {port}, {desk.octets_in} octets in, {desk.octets_out} out"
+            f"{desk.time:9.1f} s  {self._ratio()}  {words}  shaft {truth['speed']:7.1f} rpm, load "
+            f"{truth['load_torque']:.2f} Nm  port {port}, {desk.octets_in} octets in, {desk.octets_out} out"
         )
 
     def _ratio(self) -> str:
@@ -87,5 +119,5 @@ class Show:
     def _warn(self, kind: str, now: float, words: str) -> None:
         if now - self._warned.get(kind, -_AGAIN) < _AGAIN:
             return
-        self._warned[kind] = now
-        self._console.print(f"stillspin: {words}", style="yellow", highlight=False, soft_wrap=True)
+        if self._show(Text(f"stillspin: {words}", style="yellow")):
+            self._warned[kind] = now
