@@ -164,6 +164,12 @@ def test_the_commands(port, home, tmp_path, monkeypatch):
     assert "parameters; see all.toml" in dumped
     assert call("params", "load", "all.toml").startswith("0 of ")
     assert "1024 records every 0.1 ms" in call("scope", "current_d", "current_q", "--out", "x.csv")
+    step = ["speed", "speed_reference", "--trigger", "speed_reference", "--level", "100", "--decimation", "2"]
+    call("scope", *step, "--run", "600", "--out", "step.csv")
+    rows = [line.split(",") for line in (tmp_path / "step.csv").read_text().splitlines() if line[0] in "-0123456789"]
+    reference = [float(row[2]) for row in rows]
+    assert reference[0] < 100 < reference[-1], "the step is in it, and nobody else had to make it"
+    assert "ready" in call("console", "-c", "status"), "the motor ran for the capture alone"
     assert len(call("monitor", "speed", "--duration", "1").splitlines()) > 5
 
 

@@ -1,4 +1,4 @@
-"""The three ways in (docs/way-*.md): their commands are carried out as they stand there."""
+"""The three ways in (docs/way-*.md): their commands are carried out as they stand; those of other pages can be."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ import re
 import shlex
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from function_desk import Desk
 from test_bring_up import shape
+from typer.main import get_command
 
-from stillspin import core
+from stillspin import cli, core
 from stillspin.cases import profile
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
@@ -88,3 +90,36 @@ def test_every_command_of_a_way_and_its_options_exist(name: str) -> None:
         for option in (word for word in words if word.startswith("--")):
             assert option in shown, line
         assert command[0] in STAYS or name != "tune" or command[0] == "params"
+
+
+def commands_of_the_book() -> list[tuple[str, str]]:
+    """Page and line of every command of stillspin in a fenced block."""
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    fenced = [
+        (at.name, block) for at in pages for block in re.findall(r"^```\n(.*?)^```$", at.read_text(), re.M | re.S)
+    ]
+    lines = [(name, line) for name, block in fenced for line in block.splitlines()]
+    return [(name, line) for name, line in lines if re.match(r"(\.venv/bin/)?stillspin [a-z][a-z-]*( |$)", line)]
+
+
+def test_the_commands_of_the_book_can_be_pasted() -> None:
+    """The command, its options and what `--set` changes exist, and what is said beside it is a comment to the shell."""
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    lines = commands_of_the_book()
+    assert len(lines) > 60
+    for name, line in lines:
+        command, words = get_command(cli.app), shlex.split(line, comments=True)[1:]
+        while words and words[0] in getattr(command, "commands", {}):
+            command = command.commands[words.pop(0)]
+        assert getattr(command, "invoke_without_command", True), f"{name}: {line}"
+        options = {spelt: option for option in command.params for spelt in option.opts + option.secondary_opts}
+        assert {word for word in words if word.startswith("-")} <= options.keys(), f"{name}: {line}"
+        places = [
+            word
+            for word, before in zip(words, ["", *words], strict=False)
+            if not word.startswith("-") and (before not in options or options[before].is_flag)
+        ]
+        room = [option.nargs for option in command.params if option.param_type_name == "argument"]
+        assert -1 in room or len(places) <= sum(room), f"{name}: {line}"
+        profile.changes([after for word, after in pairwise(words) if word == "--set"], schema, known)

@@ -60,6 +60,15 @@ def scope(
             "--timeout", parser=number("--timeout", 0, unit="s"), metavar="S", help="Seconds to wait for the trigger."
         ),
     ] = 30.0,
+    run: Annotated[
+        float | None,
+        typer.Option(
+            "--run",
+            parser=number("--run", unit="rpm"),
+            metavar="RPM",
+            help="Run the motor at this speed once the scope waits, until it is done.",
+        ),
+    ] = None,
     out: Annotated[
         list[Path] | None,
         typer.Option("--out", "-o", help="File to write: .parquet, .csv, .mf4, .svg, .png or .pdf. Repeatable."),
@@ -76,7 +85,7 @@ def scope(
         signal = drive.table.signal(source)
         wanted = Trigger(source, signal.to_user(signal.to_raw(level)), chosen, hysteresis)
         capture = drive.capture(
-            *channels, trigger=wanted, decimation=decimation, pretrigger=pretrigger / 100, timeout=timeout
+            *channels, trigger=wanted, decimation=decimation, pretrigger=pretrigger / 100, timeout=timeout, run=run
         )
     for file in files:
         capture_file.write(file, capture)

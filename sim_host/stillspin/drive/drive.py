@@ -6,7 +6,7 @@ import struct
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import replace
 
 from stillspin.drive import describe, log, protocol, scope, values
@@ -392,6 +392,7 @@ class Drive:
         decimation: int = 1,
         pretrigger: float = 0.25,
         timeout: float = 10.0,
+        run: float | None = None,
     ) -> scope.Capture:
         """Record up to four signals around a trigger.
 
@@ -401,16 +402,19 @@ class Drive:
             decimation: control interrupts (100 µs) per record.
             pretrigger: share of the records before the trigger.
             timeout: s to wait for the trigger.
+            run: rpm at which the motor runs from when the scope is armed until the capture is done, as by `running`.
 
         Raises:
-            DriveError: no trigger came.
+            DriveError: no trigger came, or the motor does not run.
         """
         chosen = tuple(scope.Channel(item) if isinstance(item, str) else item for item in channels)
         setup = scope.Setup(
             chosen, trigger or scope.Trigger(chosen[0].signal if chosen else ""), decimation, pretrigger
         )
         self.scope_arm(setup)
-        if not wait_until(lambda: self.scope_state().done, timeout + setup.duration):
+        with nullcontext() if run is None else self.running(run):
+            done = wait_until(lambda: self.scope_state().done, timeout + setup.duration)
+        if not done:
             self.scope_stop()
             raise DriveError(f"the scope has seen no trigger within {timeout:g} s")
         return self.scope_read(setup)
