@@ -48,7 +48,7 @@ from stillspin.runs.reproduction import Options, carry_out, write_found
 
 app = typer.Typer(
     cls=OneLineErrors,
-    help="The virtual drive: run the firmware on a simulated inverter and motor and measure what it does.",
+    help="Tools of the drive: run its firmware on a simulated inverter and motor, or work with a board.",
     rich_markup_mode=None,
     context_settings=HELP,
 )
@@ -64,7 +64,7 @@ def _version(wanted: bool) -> None:
 def _common(
     *,
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="The version, and end.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
     pass
@@ -108,7 +108,7 @@ def run(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-SCENARIO].")
     ] = None,
-    no_plots: Annotated[bool, typer.Option("--no-plots", help="Do not draw.")] = False,
+    no_plots: Annotated[bool, typer.Option("--no-plots", help="Write no plots.")] = False,
 ) -> None:
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
     chosen = scenario_file.load(scenario)
@@ -151,7 +151,7 @@ def reproduce(
         bool,
         typer.Option(
             "--paper-scheme/--no-paper-scheme",
-            help="Run what is about the position error with the paper's position scheme, too.",
+            help="Run the scenarios about the position error with the paper's position scheme, too.",
         ),
     ] = True,
     junit_file: JunitOption = None,
@@ -189,7 +189,7 @@ def _chosen(names: Sequence[str], motors: Sequence[str]) -> list[Scenario]:
             raise InputError(f"--motor {', '.join(motors)}: there is no scenario for it; name one to run on it")
         return [scenario_file.load(name) for name in ids]
     if len(motors) > 1:
-        raise InputError(f"--motor {', '.join(motors)}: only one where scenarios are named")
+        raise InputError(f"--motor {', '.join(motors)}: name only one motor together with scenarios")
     ids = list(dict.fromkeys(scenario_file.find(name).stem for name in names))
     return [_on(motors[0] if motors else None, scenario_file.load(name)) for name in ids]
 
@@ -204,12 +204,12 @@ def drift_(
     seed: SeedOption = 1,
     params: ParamsOption = None,
     only: Annotated[
-        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this drift, by its mark. Repeatable.")
+        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this drift, such as flux. Repeatable.")
     ] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results-drift"),
     jobs: JobsOption = None,
 ) -> None:
-    """Commission the drive, then change the plant behind its back; status 1 where twice a goal is missed."""
+    """Commission the drive, then change the plant (drift); exit status 1 when a figure is beyond twice its goal."""
     listed, drifts = drift.load(core.plant_schema(core.load()))
     ids = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or listed)
     workers = jobs or processors()
@@ -231,7 +231,7 @@ def explain_(
     seed: SeedOption = 1,
     params: ParamsOption = None,
     only: Annotated[
-        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this effect, by its mark. Repeatable.")
+        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this effect, such as cogging. Repeatable.")
     ] = None,
     alone: Annotated[
         bool, typer.Option("--alone/--no-alone", help="Run each effect alone on profile ideal, too.")
@@ -241,7 +241,7 @@ def explain_(
     ] = None,
     jobs: JobsOption = None,
 ) -> None:
-    """Run a scenario without each effect of the plant in turn, and with each alone: which one makes the figures."""
+    """Run a scenario without each effect of the plant in turn, and with each alone, to see which one counts."""
     chosen = _on(motor, scenario_file.load(scenario))
     where = out or Path(f"results-explain-{chosen.id}")
     workers = jobs or processors()
@@ -263,7 +263,7 @@ def commission_(
     change: ChangeOption = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="The parameter file to write.")] = Path("params.toml"),
 ) -> None:
-    """Let the drive find out about machine and inverter; write what it found for `run --params`."""
+    """Let the drive measure motor and inverter; write the parameters that it found, for `run --params`."""
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
@@ -293,18 +293,27 @@ def board_(
     speed: Annotated[
         float,
         typer.Option(
-            "--speed", parser=number("--speed", 0), metavar="N", help="Times real time; 0 is as fast as possible."
+            "--speed",
+            parser=number("--speed", 0),
+            metavar="N",
+            help="Speed as a multiple of real time; 0 is as fast as possible.",
         ),
     ] = 1.0,
     serial_link: Annotated[
-        Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
+        Path | None,
+        typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
     ] = None,
     can_link: Annotated[
         Path | None,
-        typer.Option("--can-link", metavar="PATH", help="A name for the SLCAN adapter that stays the same."),
+        typer.Option(
+            "--can-link", metavar="PATH", help="Symbolic link to the SLCAN adapter: a name that stays the same."
+        ),
     ] = None,
     socketcan: Annotated[
-        str | None, typer.Option("--socketcan", metavar="NAME", help="A CAN interface of the kernel, no SLCAN adapter.")
+        str | None,
+        typer.Option(
+            "--socketcan", metavar="NAME", help="A CAN interface of the kernel, instead of the SLCAN adapter."
+        ),
     ] = None,
     eeprom: Annotated[
         Path | None,
@@ -320,14 +329,14 @@ def board_(
             "--for",
             parser=number("--for", 0, unit="s"),
             metavar="SECONDS",
-            help="Switch off after so much of its time.",
+            help="Switch off after so many seconds of the board's time.",
         ),
     ] = None,
     parent: Annotated[
         int | None, typer.Option("--parent", metavar="PID", help="Switch off when this process, its parent, is gone.")
     ] = None,
 ) -> None:
-    """Put the virtual drive on the desk: its serial port is a pseudo-terminal, its time is real time."""
+    """Run a virtual board in real time; its serial port is a pseudo-terminal. Ctrl-C switches it off."""
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
@@ -350,15 +359,16 @@ def startup_matrix(
     seeds: Annotated[
         int, typer.Option("--seeds", metavar="N", parser=whole("--seeds", 1, 100), help="Noise seeds of each case.")
     ] = 3,
-    quick: Annotated[bool, typer.Option("--quick", help="A representative few, in seconds.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="About a hundred representative starts, in seconds.")] = False,
     way: Annotated[
-        list[str] | None, typer.Option("--way", metavar="WAY", help="Only brake, free or flying. Repeatable.")
+        list[str] | None,
+        typer.Option("--way", metavar="WAY", help="Only this kind of start: brake, free or flying. Repeatable."),
     ] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-startup"),
     jobs: JobsOption = None,
     junit_file: JunitOption = None,
 ) -> None:
-    """Start from every angle, under loads and parameter errors, standing and turning; status 1 when one fails."""
+    """Start from every angle, under loads and parameter errors, standing and turning; exit status 1 when one fails."""
     common, linear = startup.bench(profile_name)
     todo = startup.chosen(startup.cases(seeds, quick, linear), way or [])
     with junit.Report(junit_file, "startup-matrix") as verdicts, output.fresh_directory(out) as directory:
@@ -387,7 +397,10 @@ def list_() -> None:
 
 @app.command()
 def version(
-    *, where: Annotated[str, typer.Option("--drive", "-d", metavar="ADDRESS", help="A drive that tells its own.")] = ""
+    *,
+    where: Annotated[
+        str, typer.Option("--drive", "-d", metavar="ADDRESS", help="The drive to ask, such as /dev/ttyUSB0.")
+    ] = "",
 ) -> None:
     """The version, and the revision of the sources; with --drive that of the drive's firmware, too."""
     print(f"stillspin {__version__} ({revision()})")

@@ -20,7 +20,7 @@ class ExitCode(IntEnum):
         return member
 
     DONE = 0, "done", "what was asked for is done, and every goal is met"
-    SHORT = 1, "refused or short", "the drive refused, a goal is missed, or a run, a start or a commissioning failed"
+    SHORT = 1, "refused or missed", "the drive refused, a goal is missed, or a run, a start or a commissioning failed"
     BAD_INPUT = 2, "bad input", "an option, a name, a value or a file is wrong; nothing was done"
     NO_CONNECTION = 3, "no connection", "a port that does not open, nobody who answers, or a connection that was lost"
     DIFFERS = 4, "the board differs", "its image, its parameters, its build or what it computes is not what was given"

@@ -115,7 +115,7 @@ def test_link_of_another_board_is_left_alone_at_the_end(tmp_path):
 
 def test_link_that_cannot_be_made_is_refused(tmp_path):
     (tmp_path / "file").write_text("precious")
-    with pytest.raises(InputError, match="no symbolic link"):
+    with pytest.raises(InputError, match="not a symbolic link"):
         PseudoTerminal(tmp_path / "file")
     with pytest.raises(InputError, match="cannot be made"):
         PseudoTerminal(tmp_path / "none" / "drive")

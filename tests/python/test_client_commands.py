@@ -86,7 +86,7 @@ def test_a_conflict_that_the_next_values_resolve_is_none(ask, fake, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "status", "said"),
     [
-        (("params", "dump"), 2, "which drive? --drive serial:///dev/ttyUSB0"),
+        (("params", "dump"), 2, "no drive is given: --drive /dev/ttyUSB0"),
         (("params", "dump", "--drive", "/dev/none"), 3, "there is no serial port /dev/none"),
         (("params", "dump", "--drive", "usb:x"), 2, "must be like serial:///dev/ttyUSB0"),
         (("scope", "speed", "--out", "x.xls"), 2, "x.xls: the ending must be one of .parquet, .csv, .mf4"),

@@ -113,9 +113,9 @@ def test_unsealed_piece_has_no_mark(file):
 
 WITHOUT_IDENTITY = [block for block in IMAGE if block.address != make.IDENTITY]
 BAD = {
-    "empty": (b"", "in no format"),
-    "words": (b"hello, this is no image\n" * 9, "in no format"),
-    "noise": (bytes(range(7, 256)) * 20, "in no format"),
+    "empty": (b"", "has an unknown format"),
+    "words": (b"hello, this is no image\n" * 9, "has an unknown format"),
+    "noise": (bytes(range(7, 256)) * 20, "has an unknown format"),
     "elf": (b"\x7fELF" + bytes(200), "ELF file"),
     "arm coff": (make.coff(IMAGE, target=0x0097), "another processor"),
     "object": (make.coff(IMAGE, flags=0x1101), "has not been linked"),
@@ -132,7 +132,7 @@ BAD = {
     "ascii key": (FORMATS["ascii"].replace(b"AA 08", b"AB 08", 1), "does not begin with the key"),
     "binary cut": (FORMATS["binary"][:-7], "breaks off"),
     "binary behind": (FORMATS["binary"] + b"more", "behind the end"),
-    "twice": (make.intel_hex([*IMAGE, Block(0x3E8042, (1,))]), "says twice"),
+    "twice": (make.intel_hex([*IMAGE, Block(0x3E8042, (1,))]), "twice; the file is damaged"),
     "nothing": (make.intel_hex([]), "nothing to load"),
     "ram": (make.coff([*IMAGE, Block(0x008000, (1,))]), "is not in the flash"),
     "otp": (make.coff([*IMAGE, Block(0x3D7800, (1,))]), "is not in the flash"),
@@ -210,7 +210,7 @@ def test_dry_run_says_what_would_be_done_and_needs_no_port(tmp_path):
     ("arguments", "blamed"),
     [
         (["{image}"], "there is no flash kernel"),
-        (["{image}", "--kernel", "{kernel}"], "which port?"),
+        (["{image}", "--kernel", "{kernel}"], "no port is given"),
         (["{image}", "--kernel", "{kernel}", "--port", "can:slcan:/dev/x"], "must be a serial port"),
         (["{missing}", "--kernel", "{kernel}"], "cannot be read"),
         (["{kernel}", "--kernel", "{kernel}"], "is not in the flash"),

@@ -110,7 +110,7 @@ def test_a_campaign_keeps_the_motors_apart(call, tmp_path):
 
 def test_what_cannot_be_is_said(call, tmp_path):
     assert "there is no motor 'C'" in call("run", "A10", "--motor", "C").stderr
-    assert "only one where scenarios are named" in call("reproduce", "A10", "--motor", "A", "--motor", "B").stderr
+    assert "name only one motor" in call("reproduce", "A10", "--motor", "A", "--motor", "B").stderr
     assert "there is no scenario for it" in call("reproduce", "--motor", "C").stderr
 
 

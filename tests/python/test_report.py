@@ -116,7 +116,7 @@ def test_numbers_are_written_for_people(value, text):
     ("value", "goal", "met", "word"),
     [
         (1.0, 2.0, True, "met"),
-        (3.0, 2.0, False, "short"),
+        (3.0, 2.0, False, "missed"),
         (None, 2.0, False, "no value"),
         (1.0, None, None, ""),
         (None, None, None, ""),  # a dash among the values; nothing was promised

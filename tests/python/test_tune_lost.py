@@ -84,7 +84,7 @@ def test_a_server_that_stalls_leaves_nothing_green_and_the_page_says_what_the_mo
         run(page)
         tune.signal(signal.SIGSTOP)
         not_known(page, time.monotonic())
-        page.wait_for_selector("#lost:has-text('The server is not heard')")
+        page.wait_for_selector("#lost:has-text('The server does not answer')")
         assert "link_timeout" in page.inner_text("#lost")
         time.sleep(1.0)  # the drive has stopped by itself
         tune.signal(signal.SIGCONT)

@@ -84,7 +84,7 @@ def printed(scenarios: Mapping[str, Any], path: str) -> str:
     scenario, _, name = path.partition(".")
     unit = {"deg el": "° el"}.get(figure["unit"], figure["unit"])
     paper, goal = (number(figure[key], 3) for key in ("paper", "goal"))
-    verdict = {True: "met", False: "short", None: ""}[figure["met"]]
+    verdict = {True: "met", False: "missed", None: ""}[figure["met"]]
     value_of = number(figure["value"], 3)
     return f"{scenario:9} {name:32} {value_of:>5}  {unit:5} {paper:>5} {goal:>5}  {verdict}".rstrip()
 

@@ -49,7 +49,7 @@ class PseudoTerminal:
         try:
             self._master, slave = os.openpty()
         except OSError as error:
-            raise InputError(f"no pseudo-terminal can be had: {error.strerror}") from error
+            raise InputError(f"cannot open a pseudo-terminal: {error.strerror}") from error
         self.device = os.ttyname(slave)
         tty.setraw(slave)
         os.close(slave)
@@ -144,7 +144,7 @@ class PseudoTerminal:
         if link is None:
             return
         if link.exists() and not link.is_symlink():
-            raise InputError(f"{link}: is there already and no symbolic link; name another place")
+            raise InputError(f"{link}: exists already and is not a symbolic link; name another path")
         try:
             with tempfile.TemporaryDirectory(prefix=f".{link.name}-", dir=link.absolute().parent) as beside:
                 fresh = Path(beside) / link.name

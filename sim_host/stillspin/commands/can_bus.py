@@ -29,13 +29,18 @@ def bus(
     *,
     where: Annotated[
         str,
-        typer.Argument(metavar="ADDRESS", help="can:slcan:/dev/ttyACM0 or can:socketcan:can0; node= shows one alone."),
+        typer.Argument(
+            metavar="ADDRESS", help="can:slcan:/dev/ttyACM0 or can:socketcan:can0; with ?node=1 that node alone."
+        ),
     ],
-    dbc: Annotated[Path, typer.Option("--dbc", help="Another description of the bus.")] = _DBC,
+    dbc: Annotated[Path, typer.Option("--dbc", help="DBC file that describes the messages.")] = _DBC,
     duration: Annotated[
         float,
         typer.Option(
-            "--duration", parser=number("--duration", 0, unit="s"), metavar="S", help="End after so many seconds."
+            "--duration",
+            parser=number("--duration", 0, unit="s"),
+            metavar="S",
+            help="End after so many seconds; 0: with Ctrl-C.",
         ),
     ] = 0.0,
     changes: Annotated[bool, typer.Option("--changes", help="Only messages whose content has changed.")] = False,

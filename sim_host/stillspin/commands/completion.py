@@ -10,27 +10,30 @@ from prompt_toolkit.document import Document
 from stillspin.drive.table import Table
 
 COMMANDS = {
-    "help": "what the console understands",
-    "list": "parameters whose name or meaning has a word in it",
-    "get": "the value of a parameter",
+    "help": "the commands, or more of one",
+    "list": "parameters whose name or meaning contains a word",
+    "get": "a parameter or a signal",
     "set": "change a parameter",
     "start": "energise the motor, watched by this console",
     "stop": "speed to zero, then power stage off",
     "coast": "power stage off at once",
     "ref": "speed reference",
-    "status": "what the drive does",
-    "signals": "values of one control interrupt",
-    "faults": "fault history",
-    "reset": "clear a fault",
-    "save": "keep the parameters",
-    "load": "parameters from the store",
-    "defaults": "every parameter to its default",
-    "scope": "captured scope",
+    "status": "state of the drive",
+    "look": "whether and how the shaft turns, by two short pulses",
+    "watch": "a line twice a second until a key is pressed",
+    "signals": "signals and their values",
+    "faults": "the last faults",
+    "reset": "clear a latched fault",
+    "save": "save the parameters for the next power-on",
+    "load": "go back to the saved parameters",
+    "defaults": "set every parameter to its default",
+    "scope": "capture signals",
+    "can": "the CAN node: rate, state, errors",
     "commission": "measure machine and inverter",
-    "version": "of the firmware",
+    "version": "version of the firmware",
 }
 _OF_PARAMETERS = {"get", "set", "list"}
-_OF_SIGNALS = {"scope", "signals", "stream"}
+_OF_SIGNALS = {"scope", "signals", "watch"}
 
 
 class Words(Completer):

@@ -20,7 +20,7 @@ DriveOption = Annotated[
         "-d",
         metavar="ADDRESS",
         envvar="STILLSPIN_DRIVE",
-        help="serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0, or virtual: for none.",
+        help="serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0, or virtual: (a virtual board).",
     ),
 ]
 
@@ -33,7 +33,7 @@ def wanted(where: str) -> str:
     """
     if not where:
         raise InputError(
-            "which drive? --drive serial:///dev/ttyUSB0 or the variable STILLSPIN_DRIVE says it; virtual: is one"
+            "no drive is given: --drive /dev/ttyUSB0, or the variable STILLSPIN_DRIVE; virtual: is a virtual board"
         )
     return where
 

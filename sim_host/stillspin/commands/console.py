@@ -39,7 +39,9 @@ _TWICE = 2.0
 def console(
     *,
     where: DriveOption = "",
-    command: Annotated[list[str] | None, typer.Option("--command", "-c", help="Say this and end. Repeatable.")] = None,
+    command: Annotated[
+        list[str] | None, typer.Option("--command", "-c", help="Send this line to the console and exit. Repeatable.")
+    ] = None,
     keep_running: Annotated[
         bool,
         typer.Option("--keep-running", help="Leave a motor running that was started here; nobody watches it then."),

@@ -39,13 +39,13 @@ def flash(
         typer.Option("--kernel", metavar="FILE", help=f"The flash kernel [default: {KERNEL_NAMES[0]} beside IMAGE]."),
     ] = None,
     only_verify: Annotated[
-        bool, typer.Option("--verify", help="Compare and change nothing; 4 when they differ.")
+        bool, typer.Option("--verify", help="Compare only; exit status 4 when they differ.")
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Check the files, say what would be done; no port.")
+        bool, typer.Option("--dry-run", help="Check the files and say what would be done; opens no port.")
     ] = False,
 ) -> None:
-    """Load the flash kernel by the boot ROM, then erase, write and verify sectors B to D; sector A is never touched.
+    """Load the flash kernel through the boot ROM, then erase, write and verify sectors B to D; never sector A.
 
     The board has to be in serial boot: jumpers set, then a reset. An update that broke off is repeated the same way.
     Exit status 0 when the board has the image.
@@ -79,7 +79,7 @@ def flash(
 def demo_image(
     *, directory: Annotated[Path, typer.Argument(metavar="DIRECTORY", help="Where the two files go; made if need be.")]
 ) -> None:
-    """Make an image and a flash kernel to try `stillspin flash` with, on a virtual board; no other board gets them."""
+    """Make an image and a flash kernel to try `stillspin flash` on a virtual board; other boards are refused."""
     image, kernel = demonstration.write(directory)
     print(f"image:  {image}\nkernel: {kernel}")
     print(f"try:    stillspin loader {directory / 'flash.bin'}    a virtual board in serial boot, which names its port")
@@ -102,15 +102,15 @@ def kernel_beside(file: Path) -> Path:
         if (file.parent / name).exists():
             return file.parent / name
     missing = file.parent / KERNEL_NAMES[0]
-    raise InputError(f"there is no flash kernel {missing}; --kernel FILE says where it is (docs/flash.md)")
+    raise InputError(f"there is no flash kernel {missing}; give --kernel FILE (docs/flash.md)")
 
 
 def _port(text: str) -> str:
     if not text:
-        raise InputError("which port? --port /dev/ttyUSB0 says it")
+        raise InputError("no port is given: --port /dev/ttyUSB0")
     parsed = address.parse(text)
     if parsed.kind != "serial":
-        raise InputError(f"--port {text}: must be a serial port; the boot ROM's loader has no other way")
+        raise InputError(f"--port {text}: must be a serial port; the boot ROM loads over nothing else")
     return parsed.channel
 
 

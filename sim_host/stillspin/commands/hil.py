@@ -53,11 +53,9 @@ def hil(
     check: Annotated[
         bool, typer.Option("--check", help=f"Only the start and the first {runs.CHECK:g} s of every run.")
     ] = False,
-    file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Keep the results here, beside what it has already.")
-    ] = None,
+    file: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Add the results to this file.")] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Leave out what FILE has as identical, of these sources.")
+        bool, typer.Option("--resume", help="Leave out runs that FILE has as identical, made from these sources.")
     ] = False,
     profile_name: ProfileOption = "bench",
     seed: SeedOption = 1,
@@ -105,7 +103,7 @@ def hil(
 def _address(port: str, can: str, where: str) -> str:
     """The one address that is meant."""
     if (port != "") + (can != "") > 1:
-        raise InputError("--port and --can: only one of them, there is one board")
+        raise InputError("give either --port or --can, not both")
     if _VIRTUAL in {port, can}:
         return f"{_VIRTUAL}:{'serial' if port else 'can'}"
     if port:

@@ -15,23 +15,29 @@ from stillspin.options import number
 
 def loader(
     *,
-    file: Annotated[Path, typer.Argument(metavar="FLASH", help="Keeps the flash; a new board when not there.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FLASH", help="File that holds the board's flash; created when missing.")
+    ],
     kernel_file: Annotated[
         Path | None,
         typer.Option("--kernel", metavar="FILE", help="The flash kernel to expect [default: the one beside FLASH]."),
     ] = None,
     link: Annotated[
-        Path | None, typer.Option("--serial-link", metavar="PATH", help="A name for the port that stays the same.")
+        Path | None,
+        typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
     ] = None,
     speed: Annotated[
         float,
         typer.Option(
-            "--speed", parser=number("--speed", 0), metavar="N", help="Times real time; 0 is as fast as possible."
+            "--speed",
+            parser=number("--speed", 0),
+            metavar="N",
+            help="Speed as a multiple of real time; 0 is as fast as possible.",
         ),
     ] = 1.0,
 ) -> None:
-    """Put a virtual board in serial boot on the desk, to try `stillspin flash`; Ctrl-C switches it off.
+    """Run a virtual board in serial boot, to try `stillspin flash`; Ctrl-C switches it off.
 
-    What is downloaded is C28x code and does not run here: the kernel's C stands in for its own image and no other.
+    Downloaded C28x code cannot run here: the same kernel, compiled for this computer, runs in its place.
     """
     virtual.serve(file, kernel_program(kernel_file or kernel_beside(file)), link, speed)

@@ -43,7 +43,10 @@ def monitor(
     duration: Annotated[
         float,
         typer.Option(
-            "--duration", parser=number("--duration", 0, unit="s"), metavar="S", help="End after so many seconds of it."
+            "--duration",
+            parser=number("--duration", 0, unit="s"),
+            metavar="S",
+            help="End after so many seconds; 0: with Ctrl-C.",
         ),
     ] = 0.0,
 ) -> None:

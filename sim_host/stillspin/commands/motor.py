@@ -24,7 +24,7 @@ def check(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A motor's file, or the name of one that ships.")],
     profile_name: ProfileOption = "bench",
 ) -> None:
-    """Say what will work with a motor and what will not, with numbers; status 1 where something will not."""
+    """Say what will work with a motor and what will not, with numbers; exit status 1 when something will not."""
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, file, checked=False)
@@ -34,7 +34,7 @@ def check(
     for finding in found:
         print(f"{'works' if finding.works else 'WRONG':<6} {finding.title}: {finding.words}")
     wrong = sum(not finding.works for finding in found)
-    print(f"{wrong} of {len(found)} will not work" if wrong else f"nothing speaks against it, {len(found)} looked at")
+    print(f"{wrong} of {len(found)} will not work" if wrong else f"no problem found in {len(found)} checks")
     if wrong:
         raise typer.Exit(ExitCode.SHORT)
 
@@ -64,7 +64,7 @@ def new(
 ) -> None:
     """Ask what a nameplate says, and write a motor's file; each question is an option, too."""
     if file.exists():
-        raise InputError(f"{file}: is there already")
+        raise InputError(f"{file}: exists already; name another file")
     typed = {
         "pole_pairs": pole_pairs,
         "resistance": resistance,
@@ -78,4 +78,4 @@ def new(
         "speed": speed,
     }
     parameter_file.write(file, questions.file_text(file.stem, questions.read(typed)))
-    print(f"see {file}; what will work: stillspin motor check {file}")
+    print(f"{file} written; what will work with it: stillspin motor check {file}")

@@ -23,7 +23,7 @@ DRIVE = "drive"
 
 app = typer.Typer(
     cls=OneLineErrors,
-    help="The firmware's parameters: the table; dump, diff and load. What one sees of each: docs/parameters.md.",
+    help="The firmware's parameters: the table; dump, diff and load. What each one does: docs/parameters.md.",
     rich_markup_mode=None,
 )
 

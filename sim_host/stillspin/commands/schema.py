@@ -19,7 +19,7 @@ def schema(
     kind: Annotated[str, typer.Argument(metavar="KIND", help="motor, profile or scenario.")],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File to write [default: to the terminal].")] = None,
 ) -> None:
-    """Write the JSON schema of a kind of file; an editor checks a file by it that begins with #:schema FILE."""
+    """Write the JSON schema of a kind of file; editors check a file with it whose first line is #:schema FILE."""
     if kind not in file_schema.KINDS:
         raise InputError(f"there is no kind of file '{kind}'{did_you_mean(kind, file_schema.KINDS)}")
     native = core.load()

@@ -33,7 +33,7 @@ def scope(
             "--hysteresis",
             parser=number("--hysteresis", 0),
             metavar="NUMBER",
-            help="An edge comes from so far beyond the level [default: from the signal's span].",
+            help="An edge counts only from this far beyond the level [default: from the signal's span].",
         ),
     ] = None,
     decimation: Annotated[
@@ -74,7 +74,7 @@ def scope(
         typer.Option("--out", "-o", help="File to write: .parquet, .csv, .mf4, .svg, .png or .pdf. Repeatable."),
     ] = None,
 ) -> None:
-    """Capture signals around a trigger: 1024 records of up to four, at up to 10 kHz."""
+    """Capture signals around a trigger: 1024 records of up to four signals, at up to 10 kHz."""
     files = out or capture_file.usual("capture")
     for file in files:
         capture_file.check(file)

@@ -42,7 +42,7 @@ def tune(
     certificate: Annotated[Path | None, typer.Option("--certificate", help="TLS certificate, PEM.")] = None,
     key: Annotated[Path | None, typer.Option("--key", help="Its key, PEM.")] = None,
     token_file: Annotated[
-        Path | None, typer.Option("--token-file", help="The token that the page must be opened with.")
+        Path | None, typer.Option("--token-file", help="File with the token that opens the page.")
     ] = None,
     browser: Annotated[bool, typer.Option("--open/--no-open", help="Open it in the browser.")] = True,
 ) -> None:

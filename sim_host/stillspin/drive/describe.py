@@ -69,7 +69,10 @@ def identity(ask: Ask) -> Identity:
     head = unpack("<HHHHI", body)
     protocol, parameters, signals, faults, crc = head
     if protocol != VERSION:
-        raise DifferentError(f"the drive speaks version {protocol} of the protocol, this client version {VERSION}")
+        raise DifferentError(
+            f"the drive speaks version {protocol} of the protocol, this client version {VERSION}: "
+            "install the client that belongs to the firmware"
+        )
     version, _, more = body[struct.calcsize("<HHHHI") :].partition(b"\0")
     board, _, build = more.partition(b"\0")
     commit, changed = unpack("<IH", build) if build else (0, 0)
@@ -110,7 +113,9 @@ def unpack(form: str, body: bytes) -> tuple[Any, ...]:
         DriveError: it is too short.
     """
     if len(body) < struct.calcsize(form):
-        raise DifferentError(f"an answer of {len(body)} octets is too short: client and firmware do not fit together")
+        raise DifferentError(
+            f"an answer of {len(body)} octets is too short: client and firmware are of different versions"
+        )
     return struct.unpack_from(form, body)
 
 

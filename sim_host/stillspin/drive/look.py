@@ -57,7 +57,7 @@ def look(drive: Drive) -> Look:
     """
     drive.command(Command.LOOK)
     if not wait_until(lambda: read(drive).outcome != Outcome.RUNNING, _TIMEOUT):
-        raise DriveError("the drive is still looking at its shaft")
+        raise DriveError("the drive has not finished looking at its shaft; try again")
     seen = read(drive)
     if seen.outcome not in {Outcome.TURNS, Outcome.STANDS, Outcome.UNCLEAR}:
         fault = drive.status().fault

@@ -26,7 +26,7 @@ def read_program(path: Path) -> Program:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
     name = str(path)
     if len(data) > _LARGEST:
-        raise InputError(f"{name}: {len(data)} octets are no program for this chip; give {_FORMATS}")
+        raise InputError(f"{name}: {len(data)} octets are not a program for this chip; give {_FORMATS}")
     if data.startswith(b"\x7fELF"):
         raise InputError(
             f"{name}: is an ELF file; link with --abi=coffabi, as the preset f2808 does, or give Intel hex"
@@ -39,7 +39,7 @@ def read_program(path: Path) -> Program:
         return boot_stream.from_text(data, name)
     if data.lstrip()[:1] == b":":
         return intel_hex.read(data, name)
-    raise InputError(f"{name}: is in no format that is known; give {_FORMATS}")
+    raise InputError(f"{name}: has an unknown format; give {_FORMATS}")
 
 
 @dataclass(frozen=True)

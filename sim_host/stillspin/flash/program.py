@@ -52,7 +52,7 @@ def assemble(blocks: Iterable[Block], entry: int | None, kind: str, name: str) -
     joined: list[Block] = []
     for block in sorted((block for block in blocks if block.words), key=lambda block: block.address):
         if joined and joined[-1].end > block.address:
-            raise InputError(f"{name}: says twice what word 0x{block.address:06X} is; the file is damaged")
+            raise InputError(f"{name}: defines word 0x{block.address:06X} twice; the file is damaged")
         if joined and joined[-1].end == block.address:
             joined[-1] = Block(joined[-1].address, joined[-1].words + block.words)
         else:

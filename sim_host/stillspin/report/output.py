@@ -46,7 +46,7 @@ def _check(target: Path) -> None:
     if target.is_dir() and target.samefile(Path.cwd()):
         raise InputError(f"--out {target}: is the current directory, which results would replace; name another one")
     if target.is_dir() and any(target.iterdir()) and not (target / MARK).is_file():
-        raise InputError(f"--out {target}: holds something else than results of stillspin; name a new or empty one")
+        raise InputError(f"--out {target}: holds other things than results of stillspin; name a new or empty one")
 
 
 def _put_in_place(partial: Path, target: Path) -> None:

@@ -30,11 +30,11 @@ class Tally:
 
     @property
     def verdict(self) -> str:
-        """`broken off`, `short`, `met`, or `stated` where there is no goal."""
+        """`broken off`, `missed`, `met`, or `stated` where there is no goal."""
         if self.broken:
             return "broken off"
         if self.met < self.goals:
-            return "short"
+            return "missed"
         return "met" if self.goals else "stated"
 
 
@@ -47,12 +47,12 @@ def tally(results: Sequence[ScenarioResult]) -> Tally:
 
 
 def verdict(figure: Result) -> str:
-    """`met`, `short`, `no value`, or nothing when there is no goal."""
+    """`met`, `missed`, `no value`, or nothing when there is no goal."""
     if figure.goal is None:
         return ""
     if figure.value is None:
         return "no value"
-    return "met" if figure.met else "short"
+    return "met" if figure.met else "missed"
 
 
 def number(value: float | None) -> str:

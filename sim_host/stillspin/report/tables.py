@@ -21,7 +21,7 @@ from stillspin.report.explain_report import Explanation
 from stillspin.runs import commission
 from stillspin.runs.assess import ScenarioResult
 
-_COLOURS = {"met": "green", "short": "red", "no value": "red", "": ""}
+_COLOURS = {"met": "green", "missed": "red", "no value": "red", "": ""}
 _RIGHT = {
     *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
     *("without", "alone"),

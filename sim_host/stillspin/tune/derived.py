@@ -80,7 +80,7 @@ DERIVED = {
             "W",
             (*_DQ, "voltage_d", "voltage_q"),
             (),
-            "electrical power into the motor: 1.5 (v_d i_d + v_q i_q), of the voltage that is asked for",
+            "electrical power into the motor: 1.5 (v_d i_d + v_q i_q), with the commanded voltage",
             _power,
         ),
         Derived(
@@ -88,7 +88,7 @@ DERIVED = {
             "%",
             _DQ,
             ("current_limit",),
-            "how much of current_limit flows: sqrt(i_d^2 + i_q^2) / current_limit",
+            "share of current_limit that flows: sqrt(i_d^2 + i_q^2) / current_limit",
             _share,
         ),
     )

@@ -111,5 +111,5 @@ def listening(host: str, port: int) -> socket.socket:
         found.listen(16)
     except OSError as error:
         found.close()
-        raise InputError(f"--port {port} on {host}: cannot be had ({error.strerror})") from error
+        raise InputError(f"--port {port} on {host}: cannot be opened ({error.strerror})") from error
     return found

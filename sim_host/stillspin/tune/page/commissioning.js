@@ -44,7 +44,7 @@ export class Commissioning {
     for (const box of boxes) box.onchange = look;
     this.steps(1,
       make("p", {}, `The drive measures machine and inverter by itself, in about a minute and a half.${speed} `,
-        "The motor goes on while this page is open and in front, and stops when it is not."),
+        "The motor runs only while this page is open and in front."),
       make("div", { class: "list" }, ...boxes),
       make("div", { class: "bar" }, start, make("button", { class: "plain", onclick: () => this.nameplate() }, "Back to the motor")),
     );
@@ -93,7 +93,7 @@ export class Commissioning {
   }
 
   broken(words) {
-    this.steps(3, make("p", {}, words), make("div", { class: "bar" }, make("button", { onclick: () => this.prepare() }, "Once more")));
+    this.steps(3, make("p", {}, words), make("div", { class: "bar" }, make("button", { onclick: () => this.prepare() }, "Measure again")));
   }
 
   async result(outcome) {
@@ -109,7 +109,7 @@ export class Commissioning {
     this.steps(3, make("p", {}, `${words} They are kept when they are saved.`),
       make("table", { class: "stack" }, make("thead", {}, head), make("tbody", {}, ...rows)),
       make("div", { class: "bar" }, make("button", { id: "keep-results", onclick: () => this.parameters.save() }, "Save in the drive"),
-        make("button", { class: "plain", onclick: () => this.prepare() }, "Once more")));
+        make("button", { class: "plain", onclick: () => this.prepare() }, "Measure again")));
     this.parameters.refresh().catch(this.fail);
   }
 }

@@ -63,10 +63,10 @@ export class Known {
   }
 
   words(now) {
-    if (this.cause?.refused) return "The server has been started anew: open the address that it has printed. This page then comes back, too.";
+    if (this.cause?.refused) return "The server was restarted: open the address that it has printed; then this page comes back, too.";
     if (this.cause?.closed || !this.link.open) return "The server has ended. Start stillspin tune again; this page looks for it every second.";
-    if (now - this.link.heard > OLD + 200) return "The server is not heard: it or the computer that it runs on is stalled.";
-    return this.cause ? this.cause.text[0].toUpperCase() + this.cause.text.slice(1) : "The drive is not heard.";
+    if (now - this.link.heard > OLD + 200) return "The server does not answer: it, or its computer, has stalled.";
+    return this.cause ? this.cause.text[0].toUpperCase() + this.cause.text.slice(1) : "The drive does not answer.";
   }
 
   retry() {
