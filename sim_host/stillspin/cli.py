@@ -51,6 +51,8 @@ app = typer.Typer(
     help="Tools of the drive: run its firmware on a simulated inverter and motor, or work with a board.",
     rich_markup_mode=None,
     context_settings=HELP,
+    epilog="To begin: `stillspin board --serial-link /tmp/drive` is a virtual drive; in a second terminal "
+    "`stillspin console --drive /tmp/drive` talks to it, and `stillspin tune --drive /tmp/drive` is its page.",
 )
 
 

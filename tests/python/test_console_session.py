@@ -182,6 +182,16 @@ def test_the_answer_may_be_to_keep_it_running(sit_down, fake):
     assert fake.state == RUN
 
 
+def test_who_leaves_a_motor_that_runs_free_is_told(sit_down, fake):
+    person = sit_down()
+    person.type("start free\r")
+    assert runs(fake)
+    person.type("\x04")
+    assert person.goes()
+    assert "the motor runs on" in person.seen
+    assert fake.state == RUN
+
+
 @pytest.mark.parametrize("way", ["\x04", "exit\r", signal.SIGTERM, signal.SIGHUP, None])
 def test_every_way_out_stops_the_motor(sit_down, fake, way):
     person = sit_down()

@@ -29,6 +29,28 @@ def test_a_bare_command_shows_the_help(call):
     assert (bare.exit_code, bare.stdout) == (0, call("--help").stdout)
 
 
+def test_the_help_says_of_every_command_a_whole_sentence(call):
+    shown = call().stdout
+    listed = shown.split("Commands:")[1]
+    assert "..." not in listed
+    assert "To begin:" in shown
+
+
+@pytest.mark.parametrize(("on_path", "says"), [(False, str(STILLSPIN)), (True, "stillspin")])
+def test_a_command_that_is_proposed_can_be_pasted(tmp_path, on_path, says):
+    path = os.environ["PATH"].split(os.pathsep)
+    others = [place for place in path if not (Path(place) / "stillspin").exists()]
+    place = os.pathsep.join([str(STILLSPIN.parent), *others] if on_path else others)
+    done = subprocess.run(
+        [STILLSPIN, "demo-image", tmp_path / "demo"],
+        env={**os.environ, "PATH": place},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert f"try:    {says} loader " in done.stdout
+
+
 def test_a_bare_group_shows_its_help(call, monkeypatch):
     group = typer.main.get_command(cli.app).commands["params"]
     monkeypatch.setattr(group, "invoke_without_command", False)

@@ -12,6 +12,7 @@ from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
 from stillspin.board.proving_port import ProvingPort
 from stillspin.board.serve import stopped_by_signals
+from stillspin.called import called
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
 from stillspin.errors import InputError
@@ -64,7 +65,7 @@ def serve(file: Path, kernel: Program, link: Path | None, speed: float) -> None:
         raise
     print(f"virtual board: serial boot, flash {file}")
     print(f"serial port:   {desk.port.name}")
-    print(f"try:           stillspin flash IMAGE --port {desk.port.name}", flush=True)
+    print(f"try:           {called()} flash IMAGE --port {desk.port.name}", flush=True)
     try:
         pacer = Pacer(speed)
         with stopped_by_signals() as stop:

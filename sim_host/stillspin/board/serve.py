@@ -19,6 +19,7 @@ from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
 from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
 from stillspin.board.show import Show
+from stillspin.called import called
 from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
 from stillspin.link.can_bus import DEFAULT_BITRATE
@@ -141,5 +142,5 @@ def _say_how_to_connect(desk: Desk, title: str) -> None:
     if desk.can:
         kind = "SLCAN adapter" if isinstance(desk.can, SlcanPlug) else "SocketCAN interface"
         print(f"CAN:           {desk.can.name}, {kind}; the drive is node 1 at {DEFAULT_BITRATE // 1000} kbit/s")
-    print(f"connect:       stillspin console --drive {name}, or any terminal program")
+    print(f"connect:       {called()} console --drive {name}, or any terminal program")
     print("switch off:    Ctrl-C", flush=True)

@@ -142,8 +142,12 @@ def _talk(drive: Drive, current: Session) -> None:
             pass
         finally:
             stop.set()
-    if not drive.link.lost and (unsaved := drive.status().unsaved_text):
-        print(unsaved)
+    if not drive.link.lost:
+        status = drive.status()
+        if status.energised and not current.holds_motor():
+            print("the motor runs on: it was started free, or by somebody else; 'stop' on the console ends it")
+        if status.unsaved_text:
+            print(status.unsaved_text)
 
 
 def _wants_to_leave(current: Session) -> bool:

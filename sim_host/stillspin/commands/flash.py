@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from stillspin.called import called
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.flash import demonstration, layout
@@ -82,14 +83,16 @@ def demo_image(
     """Make an image and a flash kernel to try `stillspin flash` on a virtual board; other boards are refused."""
     image, kernel = demonstration.write(directory)
     print(f"image:  {image}\nkernel: {kernel}")
-    print(f"try:    stillspin loader {directory / 'flash.bin'}    a virtual board in serial boot, which names its port")
-    print(f"        stillspin flash {image} --port PORT")
+    print(
+        f"try:    {called()} loader {directory / 'flash.bin'}  # a virtual board in serial boot, which names its port"
+    )
+    print(f"        {called()} flash {image} --port PORT")
 
 
 def _command(image_file: Path, port: str, kernel_file: Path | None) -> str:
     """The command line of an update, as a shell takes it."""
     kernel = ["--kernel", str(kernel_file)] if kernel_file else []
-    return shlex.join(["stillspin", "flash", str(image_file), *kernel, "--port", port])
+    return shlex.join([called(), "flash", str(image_file), *kernel, "--port", port])
 
 
 def kernel_beside(file: Path) -> Path:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from stillspin import core
+from stillspin.called import called
 from stillspin.cases import motor_check, profile, questions
 from stillspin.commands import parameter_file
 from stillspin.errors import InputError
@@ -78,4 +79,4 @@ def new(
         "speed": speed,
     }
     parameter_file.write(file, questions.file_text(file.stem, questions.read(typed)))
-    print(f"{file} written; what will work with it: stillspin motor check {file}")
+    print(f"{file} written; what will work with it: {called()} motor check {file}")
