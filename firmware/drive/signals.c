@@ -51,11 +51,9 @@ uint16_t signal_count(void) { return COUNT; }
 
 const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &table[place] : NULL; }
 
-bool drive_signal_is_known(uint16_t place) { return (table[place].needs & ~drive_known(&drive)) == 0; }
+bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
 
-static int32_t look_at(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
-
-int32_t drive_signal(uint16_t place) { return look_at(place, drive_known(&drive)); }
+int32_t drive_signal(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
 
 // The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
 signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
@@ -67,7 +65,7 @@ signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_
     seen = *interrupts;
     with.time_ms = *clock;
     with.known = drive_known(&drive);
-    for (uint16_t k = 0; k < count; k++) copy[k] = look_at(places[k], with.known);
+    for (uint16_t k = 0; k < count; k++) copy[k] = drive_signal(places[k], with.known);
   } while (seen != *interrupts);
   return with;
 }

@@ -46,8 +46,6 @@ typedef struct {
 
 /// All signals, as one control interrupt left them, without holding the next one up.
 drive_signals_t drive_signals(void);
-/// One of them, by its place in signal_list.h, as it is now; a place that does not exist gives 0.
-int32_t drive_signal(uint16_t place);
 /// What is known beside the drive's own state.
 typedef enum {
   KNOWN_ROTOR = 1,  // angle and speed are the rotor's
@@ -61,8 +59,11 @@ typedef struct {
 
 /// Some of them, given by their places, as one control interrupt left them. Returns what goes with that interrupt.
 signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
-/// Whether the signal has a value now.
-bool drive_signal_is_known(uint16_t place);
+/// One of them, by its place in signal_list.h, as it is now; a place that does not exist gives 0. known: as drive_known
+/// has it now, asked once for as many as are looked at together.
+int32_t drive_signal(uint16_t place, uint16_t known);
+/// Whether the signal has a value with that.
+bool drive_signal_is_known(uint16_t place, uint16_t known);
 
 typedef struct {
   packed_text_t name, unit, meaning;

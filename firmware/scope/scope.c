@@ -1,14 +1,13 @@
 #include "firmware/scope/scope.h"
 
 #include "firmware/interfaces/isr_cycles.h"
-#include "firmware/mode/commands.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/qmath/qmath.h"
 
 #define RING_MASK (SCOPE_DEPTH - 1u)
-#define SPAN_SHARE 2u     // a quarter
-#define SPAN_FORGETS 13u  // an extreme creeps after the signal with 2^13 control interrupts
+#define SPAN_FORGETS 13u  // extremes and mean follow the signal with 2^13 control interrupts
 
 // The background level changes set-up and ring only while `state` is IDLE or DONE, when the interrupt leaves them
 // alone; so the state is written first at an end and last at a start.
@@ -21,11 +20,11 @@ static uint16_t wait;      // control interrupts to the next record
 static uint16_t left;      // records still to come, when TRIGGERED
 static uint16_t mark;      // the trigger's record; SCOPE_NOWHERE
 static uint32_t mark_time_ms;
-static int32_t lowest, highest;    // of the trigger signal, of late
-static bool was_below, was_above;  // by the hysteresis, since the last edge
-static bool fresh;                 // there is no value yet
-static bool fired;                 // since the last record
-static uint16_t unread;            // AUTO: a bit for each channel whose last word has not been read; none behind a stop
+static int32_t lowest, highest, mean;  // of the trigger signal, of late
+static bool was_below, was_above;      // by the hysteresis, since the last edge
+static bool fresh;                     // there is no value yet
+static bool fired;                     // since the last record
+static uint16_t unread;  // AUTO: a bit for each channel whose last word has not been read; none behind a stop
 
 static bool is_running(void) {
   const scope_state_t now = state;
@@ -116,22 +115,39 @@ uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t 
 
 // ---- control interrupt level ---------------------------------------------------------------------------------------
 
-static int32_t hysteresis(int32_t value) {
-  if (setup_in_force.hysteresis >= 0) return setup_in_force.hysteresis;
-  if (fresh) lowest = highest = value;
-  lowest = q_min(value, q_add_sat(lowest, q_shr(q_sub_sat(value, lowest), SPAN_FORGETS)));
-  highest = q_max(value, q_sub_sat(highest, q_shr(q_sub_sat(highest, value), SPAN_FORGETS)));
-  return q_shr(q_sub_sat(highest, lowest), SPAN_SHARE);
+// At least by one, so that what has few steps is forgotten, too.
+static int32_t follow(int32_t from, int32_t to) {
+  const int32_t off = q_sub_sat(to, from);
+  return q_add_sat(from, q_shr(off, SPAN_FORGETS) + (off > 0 ? 1 : 0));
+}
+
+static int32_t quarter_of_span(int32_t value) {
+  if (fresh) lowest = highest = mean = value;
+  lowest = q_min(value, follow(lowest, value));
+  highest = q_max(value, follow(highest, value));
+  mean = follow(mean, value);
+  return q_shr(q_sub_sat(highest, lowest), 2);
+}
+
+// An edge against the way that the signal has gone of late has to be twice as large: noise is not.
+static void look_beyond(int32_t value, bool above) {
+  const int32_t level = setup_in_force.level;
+  int32_t below_by = setup_in_force.hysteresis, above_by = below_by;
+  if (below_by < 0) {
+    const int32_t quarter = quarter_of_span(value);
+    const int32_t off = q_sub_sat(mean, level);
+    below_by = quarter << (off > quarter ? 1 : 0);
+    above_by = quarter << (off < -quarter ? 1 : 0);
+  }
+  was_below = !above && (was_below || value < q_sub_sat(level, below_by));
+  was_above = above && (was_above || value >= q_add_sat(level, above_by));
 }
 
 static bool is_met(int32_t value) {
-  const int32_t level = setup_in_force.level;
-  const int32_t band = hysteresis(value);
-  const bool above = value >= level;
+  const bool above = value >= setup_in_force.level;
   const bool rises = above && was_below;
   const bool falls = !above && was_above;
-  was_below = !above && (was_below || value < q_sub_sat(level, band));
-  was_above = above && (was_above || value >= q_add_sat(level, band));
+  look_beyond(value, above);
   switch (setup_in_force.edge) {
     case SCOPE_RISING:
       return rises;
@@ -148,18 +164,18 @@ static bool is_met(int32_t value) {
   }
 }
 
-static void watch_trigger(void) {
-  const bool met = is_met(drive_signal(setup_in_force.trigger));
+static void watch_trigger(uint16_t known) {
+  const bool met = is_met(drive_signal(setup_in_force.trigger, known));
   if (state == SCOPE_FILLING && recorded >= setup_in_force.pretrigger) state = SCOPE_ARMED;
   if (state == SCOPE_ARMED && met) fired = true;
   fresh = false;
 }
 
-static void record(void) {
+static void record(uint16_t known) {
   for (uint16_t k = 0; k < setup_in_force.count; k++) {
     const scope_channel_t* const c = &setup_in_force.channel[k];
-    const int32_t value = q_clamp(q_shr(drive_signal(c->signal), c->shift), -INT16_MAX, INT16_MAX);
-    ring[k][head] = drive_signal_is_known(c->signal) ? (int16_t)value : SCOPE_UNKNOWN;
+    const int32_t value = q_clamp(q_shr(drive_signal(c->signal, known), c->shift), -INT16_MAX, INT16_MAX);
+    ring[k][head] = drive_signal_is_known(c->signal, known) ? (int16_t)value : SCOPE_UNKNOWN;
   }
   head = (uint16_t)((head + 1u) & RING_MASK);
   if (recorded < SCOPE_DEPTH) recorded++;
@@ -168,11 +184,12 @@ static void record(void) {
 void scope_step(uint32_t time_ms) {
   if (!is_running()) return;
   hal_profile_step(CYCLES_SCOPE);
-  watch_trigger();
+  const uint16_t known = drive_known(&drive);
+  watch_trigger(known);
   if (--wait > 0u) return;
   wait = setup_in_force.decimation;
   const uint16_t here = head;
-  record();
+  record(known);
   if (state == SCOPE_ARMED && fired) {
     mark = here;
     mark_time_ms = time_ms;

@@ -7,8 +7,9 @@
 //
 // An edge goes through `level` with a hysteresis, so that noise on a signal that falls is no rise: it rises when it has
 // been more than the hysteresis below the level, and then reaches it. SCOPE_BY_SPAN takes a quarter of what the signal
-// has spanned of late for it: an extreme is forgotten with a time constant of 0.8 s, from the arming on. ABOVE and
-// BELOW need no edge and have no hysteresis.
+// has spanned of late for it, and twice that for an edge back to where the signal comes from, which on a slow fall is
+// noise: there its mean of late is beyond the level by more than the quarter. Extremes and mean are forgotten with a
+// time constant of 0.8 s, from the arming on. ABOVE and BELOW need no edge and have no hysteresis.
 //
 //   IDLE ──arm──> FILLING ──pre-trigger part recorded──> ARMED ──trigger──> TRIGGERED ──rest recorded──> DONE
 //

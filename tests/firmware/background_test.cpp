@@ -226,11 +226,11 @@ TEST(SignalTable, EverySignalHasAPlaceAndNothingIsBehindTheLast) {
   drive_reset();
   for (std::uint16_t place = 0; place < signal_count(); ++place) ASSERT_NE(signal_info(place), nullptr);
   EXPECT_EQ(signal_info(signal_count()), nullptr);
-  EXPECT_EQ(drive_signal(signal_count()), 0);
+  EXPECT_EQ(drive_signal(signal_count(), 0), 0);
   drive.start.wiring = WIRING_SWAPPED;
-  EXPECT_EQ(drive_signal(static_cast<std::uint16_t>(signal_count() - 1)), WIRING_SWAPPED) << "the last of them";
+  EXPECT_EQ(drive_signal(static_cast<std::uint16_t>(signal_count() - 1), 0), WIRING_SWAPPED) << "the last of them";
   drive.state = DRIVE_STOP;
-  EXPECT_EQ(drive_signal(0), DRIVE_STOP);
+  EXPECT_EQ(drive_signal(0, 0), DRIVE_STOP);
   EXPECT_EQ(drive_signals().state, DRIVE_STOP);
 }
 

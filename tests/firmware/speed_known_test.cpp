@@ -17,14 +17,16 @@ class SpeedKnown : public Drive {
   }
   static void expect(bool known, const char* what) { expect(known, known, what); }
   static void expect(bool known, bool seen, const char* what) {
-    EXPECT_EQ(drive_known(&drive), (known ? KNOWN_ROTOR : 0) | (seen ? KNOWN_FRAME : 0)) << what;
+    const std::uint16_t now = drive_known(&drive);
+    EXPECT_EQ(now, (known ? KNOWN_ROTOR : 0) | (seen ? KNOWN_FRAME : 0)) << what;
     EXPECT_EQ(drive_knows_speed(&drive), known) << what;
     EXPECT_EQ(drive_signals().speed_known, known ? 1 : 0) << what;
     for (std::uint16_t place = 0; place < signal_count(); ++place) {
       const unsigned needs = signal_info(place)->needs;
-      EXPECT_EQ(drive_signal_is_known(place), needs == 0 || (needs == KNOWN_ROTOR ? known : seen)) << what << place;
+      EXPECT_EQ(drive_signal_is_known(place, now), needs == 0 || (needs == KNOWN_ROTOR ? known : seen))
+          << what << place;
       if (needs != 0) {
-        EXPECT_EQ(drive_signal(place) != 0, drive_signal_is_known(place)) << what << place;
+        EXPECT_EQ(drive_signal(place, now) != 0, drive_signal_is_known(place, now)) << what << place;
       }
     }
     const drive_signals_t s = drive_signals();

@@ -56,7 +56,7 @@ class Trigger:
     """One of EDGES; `now` triggers at once, `above` and `below` need no edge."""
     hysteresis: float | None = None
     """How far an edge must come from beyond the level, in the signal's unit; None: a quarter of what the signal has
-    spanned during the last second."""
+    spanned during the last second, half against the way that it has gone."""
 
 
 @dataclass(frozen=True)
