@@ -4,7 +4,7 @@
 #define PAUSES 6
 #define PASSES_MAX 6
 #define SIGMA_MIN_Q8 (4L * 256L)
-#define RESPONSE_MAX 32  // quarters of what was expected: something else moves the shaft
+#define RESPONSE_MAX 32  // quarters of what was expected
 
 // Sign of the current and weight of the angle in the segments of a pattern.
 static const int16_t drive_sign[POLARITY_SEGMENTS] = {0, 1, -1, 0, -1, 1, 0};
@@ -18,6 +18,7 @@ void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int3
   s->response_bam = 0;
   s->rough_bam = 0;
   s->sigma_q8 = 0;
+  s->bounded = false;
   polarity_again(s, angle_bam);
 }
 
@@ -42,8 +43,8 @@ static polarity_result_t judge(polarity_t* s) {
   const int32_t threshold = q_max(s->expected_bam / 4, 1);
   const int32_t response = s->response_bam / s->passes;
   s->sigma_q8 = q_div(q_abs_sat(response), q_max(error_bam(s), 1), 8);
-  const bool clear = s->sigma_q8 >= SIGMA_MIN_Q8 && q_abs_sat(response) / RESPONSE_MAX < threshold;
-  if (!clear) return POLARITY_AMBIGUOUS;
+  if (s->sigma_q8 < SIGMA_MIN_Q8) return POLARITY_AMBIGUOUS;
+  if (s->bounded && q_abs_sat(response) / RESPONSE_MAX >= threshold) return POLARITY_AMBIGUOUS;
   if (response >= threshold) return POLARITY_RIGHT;
   return (response <= -threshold) ? POLARITY_WRONG : POLARITY_AMBIGUOUS;
 }

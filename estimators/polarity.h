@@ -9,7 +9,9 @@
 //
 // A segment lasts 40 periods; the whole test 560 (56 ms at 10 kHz). A response below a quarter of what the inertia lets
 // expect is ambiguous (blocked shaft, far too large inertia, noise), and so is one below four times its standard error,
-// which the scatter of the angle tells, or above eight times the expectation: then something else moves the shaft.
+// which the scatter of the angle tells. A shaft may be any number of times lighter than told; but where the test is not
+// the first, because the voltage was too low for the one before, a response above eight times the expectation is what
+// that one has left moving (bounded).
 
 #ifndef STILLSPIN_ESTIMATORS_POLARITY_H
 #define STILLSPIN_ESTIMATORS_POLARITY_H
@@ -32,10 +34,11 @@ typedef struct {
   uint32_t last_bam;     // the angle before
   int32_t sigma_q8;      // response over its standard error
   uint32_t origin_bam;   // angle at the beginning
+  bool bounded;          // a response far beyond the expected one says nothing
   polarity_result_t result;
 } polarity_t;
 
-/// amplitude in A; accel_q8: electrical acceleration that it makes.
+/// amplitude in A; accel_q8: electrical acceleration that it makes. Not bounded.
 void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int32_t accel_q8);
 
 /// Repeats the test with the same current and adds to what it has shown; at most 6 passes.

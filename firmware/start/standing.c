@@ -144,7 +144,7 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
   drive_start_t* const s = &d->start;
   if (valid) axis_add(&s->axis, &d->position.avv.regression);
   if (!axis_is_complete(&s->axis)) {
-    if (s->tick > AXIS_TIMEOUT) drive_raise(d, FAULT_START_VOLTAGE);
+    if (s->tick > AXIS_TIMEOUT) drive_raise(d, (d->samples.count > 0u) ? FAULT_START_VOLTAGE : FAULT_NO_SAMPLES);
     return false;
   }
   if (!start_decides(d)) return false;
@@ -202,30 +202,40 @@ static void begin_test(drive_t* d, start_phase_t phase) {
   start_enter(d, phase);
 }
 
-// The voltage is too low for the current, and with it the angle may have gone astray and the shaft been set in motion:
-// from the beginning, with less.
+static drive_fault_t left_open(const drive_start_t* s) { return s->starved ? FAULT_START_VOLTAGE : FAULT_POLARITY; }
+
+// The shaft has been set in motion, or, with a voltage that is too low for the current, the angle may have gone astray,
+// too: from the beginning.
 static void hold_back(drive_t* d) {
   drive_start_t* const s = &d->start;
   s->held_back++;
   s->pulses = 0;
   s->tries = 0;
   if (s->held_back > HOLD_BACKS) {
-    drive_raise(d, FAULT_START_VOLTAGE);
+    drive_raise(d, left_open(s));
   } else {
     start_look(d);
   }
 }
 
+// True when the current of a test has followed; else all begins anew, with less.
+static bool has_followed(drive_t* d, int32_t amplitude_q20) {
+  if (followed_well(&d->start.followed, amplitude_q20)) return true;
+  d->start.starved = true;
+  hold_back(d);
+  return false;
+}
+
 // Twice as much with each try; after one that the voltage was too low for, half of that.
 static int32_t motion_current(const drive_start_t* s) {
-  if (s->held_back > 0u && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
+  if (s->starved && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
   return q_min(q_shl_sat(parameters.polarity_current, s->tries), parameters.current_limit);
 }
 
 static void try_motion(drive_t* d) {
   drive_start_t* const s = &d->start;
   if (s->phase != START_MOTION) s->tries = 0;
-  if (s->held_back > 0u && s->tries > 0u) {
+  if (s->starved && s->tries > 0u) {
     polarity_again(&s->motion, d->position.avv.observer.angle_bam);
     begin_test(d, START_MOTION);
     return;
@@ -234,6 +244,7 @@ static void try_motion(drive_t* d) {
   const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
   polarity_begin(&s->motion, d->position.avv.observer.angle_bam, current,
                  q_mul_sat(torque_q16, d->model.accel_q12, 20));
+  s->motion.bounded = s->starved;
   begin_test(d, START_MOTION);
 }
 
@@ -283,9 +294,8 @@ static void step_saturation(drive_t* d) {
     followed_step(&s->followed, tick, SATURATION_SEGMENT, asked_q20, d->control.measured_q20.d);
   if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_decides(d)) return;
   s->tries++;
-  if (!followed_well(&s->followed, test->current_q20)) {
-    hold_back(d);
-  } else if (test->result != POLARITY_AMBIGUOUS) {
+  if (!has_followed(d, test->current_q20)) return;
+  if (test->result != POLARITY_AMBIGUOUS) {
     take_resistance(d);
     decided(d, test->result, test->sigma_q8);
   } else if (s->tries < SATURATION_TRIES) {
@@ -307,15 +317,14 @@ static void step_motion(drive_t* d) {
     followed_step(&s->followed, tick, POLARITY_SEGMENT, asked_q20, d->control.measured_q20.q);
   if (s->motion.result == POLARITY_PENDING || !start_decides(d)) return;
   s->tries++;
-  if (!followed_well(&s->followed, s->motion.current_q20)) {
-    hold_back(d);
-  } else if (s->motion.result != POLARITY_AMBIGUOUS) {
+  if (!has_followed(d, s->motion.current_q20)) return;
+  if (s->motion.result != POLARITY_AMBIGUOUS) {
     decided(d, s->motion.result, s->motion.sigma_q8);
-  } else if (s->tries < ((s->held_back > 0u) ? HELD_TRIES : MOTION_TRIES)) {
+  } else if (s->tries < (s->starved ? HELD_TRIES : MOTION_TRIES)) {
     try_motion(d);
   } else {
     s->sigma_q8 = s->motion.sigma_q8;
-    drive_raise(d, (s->held_back > 0u) ? FAULT_START_VOLTAGE : FAULT_POLARITY);
+    drive_raise(d, left_open(s));
   }
 }
 

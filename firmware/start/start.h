@@ -60,7 +60,8 @@ typedef struct {
   saturation_t saturation;
   polarity_t motion;
   followed_t followed;  // the current, what the present test asked of it
-  uint16_t held_back;   // how often it did not, and less was tried
+  uint16_t held_back;   // how often all began anew
+  bool starved;         // the current of a test did not follow: less is tried
   if_start_t turn;
   estimator_output_t seen;  // by the position source, while the vector turns
   int32_t sigma_q8;         // confidence in the polarity, standard errors

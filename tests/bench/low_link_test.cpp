@@ -58,6 +58,11 @@ TEST(LowLink, NoStartIsHalfATurnOff) {
   }
 }
 
+// A rotor without its load, ten times lighter than told, with nothing but motion to tell its polarity.
+TEST(LowLink, AShaftTenTimesLighterThanToldStarts) {
+  EXPECT_EQ(starts_at(300.0, true, {{"inertia", 0.0455}}).refused, 0);
+}
+
 // What has always started still does.
 TEST(LowLink, FromAFifthOfTheVoltageOnEveryStartIsGood) {
   EXPECT_EQ(starts_at(64.0, false, kLinear).refused, 0);

@@ -236,6 +236,7 @@ TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
   EXPECT_EQ(start().motion.current_q20, raw(2.0, 20));
   motion_says(0.0);
   EXPECT_EQ(start().motion.current_q20, raw(2.0, 20)) << "not more again";
+  EXPECT_TRUE(start().motion.bounded);
   EXPECT_EQ(start().motion.passes, 2);
   start().followed.worst_q20 = raw(0.8, 20);
   motion_says(1.0);
@@ -254,6 +255,7 @@ TEST_F(StartStanding, ThreeEighthsOfTheAmplitudeAreTheLimit) {
 TEST_F(StartStanding, WhatStaysOpenAfterThatNamesTheVoltage) {
   drive.config.saturation = {0, 0};
   start().held_back = 1;
+  start().starved = true;
   at(START_SETTLE, 100);
   step();
   for (int n = 0; n < 5; ++n) motion_says(0.0);
@@ -274,6 +276,30 @@ TEST_F(StartStanding, AShaftThatTheTestHasSetInMotionIsListenedToAnew) {
   step();
   EXPECT_EQ(start().held_back, 1);
   EXPECT_EQ(start().phase, START_AXIS);
+}
+
+// A shaft that creeps has all its current: motion is tried as ever, and what stays open is the polarity's fault.
+TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
+  parameters.polarity_current = raw(4.0, 20);
+  parameters.current_limit = raw(14.0, 20);
+  drive.config.saturation = {0, 0};
+  start().held_back = 1;
+  at(START_SETTLE, 100);
+  step();
+  for (const double amps : {4.0, 8.0, 14.0}) {
+    EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
+    EXPECT_FALSE(start().motion.bounded);
+    motion_says(0.1);
+  }
+  EXPECT_EQ(drive.fault, FAULT_POLARITY);
+  SetUp();
+  start().held_back = 2;
+  start().tries = 2;
+  at(START_SATURATION, SATURATION_LENGTH + 100, 60.0);
+  start().saturation.tick = SATURATION_LENGTH;
+  start().saturation.result = POLARITY_AMBIGUOUS;
+  step();
+  EXPECT_EQ(drive.fault, FAULT_POLARITY);
 }
 
 // Twice the current with each try, up to the limit; after three the polarity is a fault that says how sure it was.
@@ -441,8 +467,16 @@ TEST_F(StartStanding, AnAxisHasTwentyMilliseconds) {
   start().tick = 199;
   step();
   EXPECT_EQ(drive.state, DRIVE_START);
+  drive.samples.count = 2;
   step();
   EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+}
+
+TEST_F(StartStanding, WithoutWindowsTheAxisLacksSamples) {
+  start().tick = 200;
+  drive.samples.count = 0;
+  step();
+  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
 }
 
 }  // namespace
