@@ -2,6 +2,7 @@
 //
 // The mean square of the phase current over the overload's time constant is held against that of the current that may
 // flow for ever, the motor's rated one unless it is said to be another (I^2 t: what the winding's copper loss heats).
+// Where neither is told it is half of the current limit, safe where that is up to twice the rated current.
 // From 0.9 of that current on the limit falls in a straight line to it.
 
 #include "firmware/board/functions.h"
@@ -43,6 +44,11 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
   return FAULT_NONE;
 }
 
+int32_t board_lasting_current(void) {
+  if (parameters.overload_current >= 0) return parameters.overload_current;
+  return (parameters.rated_current != 0) ? parameters.rated_current : parameters.current_limit / 2;
+}
+
 // Square of the current, of that which may flow for ever; saturated at eleven times that current.
 static int32_t heating_q24(int32_t ever_q20) {
   const dq_t i = drive.control.measured_q20;
@@ -62,7 +68,7 @@ drive_fault_t board_follow_heat(void) {
   int32_t share_q15 = BOARD_SHARE_ONE;
   drive_fault_t fault = FAULT_NONE;
   if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) fault = follow_heat_sink(&share_q15);
-  const int32_t ever_q20 = (parameters.overload_current < 0) ? parameters.rated_current : parameters.overload_current;
+  const int32_t ever_q20 = board_lasting_current();
   if (ever_q20 != 0) {
     const drive_fault_t overload = follow_overload(ever_q20, &share_q15);
     if (fault == FAULT_NONE) fault = overload;

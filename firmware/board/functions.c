@@ -23,6 +23,8 @@ void board_reset(void) {
   selftest_reset();
 }
 
+bool board_is_warm(void) { return board.share_q15 < BOARD_SHARE_ONE; }
+
 int32_t board_current_limit(void) { return q_mul(parameters.current_limit, board.share_q15, 15); }
 
 static void report(drive_fault_t fault) {
@@ -140,5 +142,7 @@ void put_board(octet_writer_t* w) {
   if (parameters.brake_voltage != 0) put_item(w, board.braking ? BOARD_BRAKING : BOARD_NOT_BRAKING);
   if (parameters.temperature_limit != 0) put_number(w, BOARD_HEAT_SINK, board.celsius_q8, 8, " C; ");
   if (parameters.speed_input != 0) put_item(w, (board_words_t)((uint16_t)BOARD_INPUT_OFF + (uint16_t)board.input));
+  if (parameters.overload_current == 0) put_item(w, BOARD_OVERLOAD_UNWATCHED);
+  if (parameters.overload_current < 0 && parameters.rated_current == 0) put_item(w, BOARD_RATED_UNTOLD);
   put_number(w, BOARD_LIMIT_IN_USE, board.share_q15 * 25 / 8, 10, " %");
 }

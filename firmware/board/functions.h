@@ -34,7 +34,9 @@ typedef enum {
   BOARD_BRAKING = 5,
   BOARD_INPUT_OFF = 6,  // from here on a speed_input_t
   BOARD_HEAT_SINK = 10,
-  BOARD_LIMIT_IN_USE = 11
+  BOARD_LIMIT_IN_USE = 11,
+  BOARD_RATED_UNTOLD = 12,
+  BOARD_OVERLOAD_UNWATCHED = 13
 } board_words_t;
 
 typedef struct {
@@ -71,6 +73,13 @@ drive_fault_t board_why_off(void);
 
 /// Largest phase current now: current_limit, or what heat sink and overload leave of it. A, Q20.
 int32_t board_current_limit(void);
+
+/// Whether that is less than the whole: something has to cool.
+bool board_is_warm(void);
+
+/// Phase current that may flow for ever, peak: overload_current, else the motor's rated one, else half of
+/// current_limit. A, Q20; 0: any may.
+int32_t board_lasting_current(void);
 
 /// The functions in use, in words.
 void put_board(octet_writer_t* w);

@@ -158,6 +158,7 @@ static survey_result_t take_slot(void) {
     return check_next();
   }
   report.slot = slot;
+  if (staging) values_complete();
   report.missing = (uint16_t)(parameter_count() + report.unknown - report.values);
   return conclude();
 }

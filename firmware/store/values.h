@@ -27,6 +27,10 @@ void values_copy(void);
 value_fate_t values_put(const slot_entry_t* entry);
 bool values_know(uint16_t id);
 
+/// Behind the last one. A firmware that knew no rated_current had overload_current 0, watching nothing, where nobody
+/// had set it: it becomes that of the motor.
+void values_complete(void);
+
 /// Parameter `index` of the table, 0..parameter_count() - 1.
 slot_entry_t values_entry(uint16_t index);
 

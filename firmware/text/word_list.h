@@ -98,6 +98,8 @@ WORDS(BOARD, 8, "speed input: run switch closed")
 WORDS(BOARD, 9, "speed input: signal lost")
 WORDS(BOARD, 10, "heat sink")
 WORDS(BOARD, 11, "current limit")
+WORDS(BOARD, 12, "rated_current not told: half of current_limit may last")
+WORDS(BOARD, 13, "overload_current 0: no overload is watched")
 
 WORDS(SELFTEST, 0, "RAM does not keep what is written")
 WORDS(SELFTEST, 1, "CPU clock and crystal do not agree")

@@ -18,6 +18,7 @@ class BoardFunctions : public Drive {
     Drive::SetUp();
     drive.state = DRIVE_READY;
     drive.loading = false;
+    parameters.rated_current = raw(10.89, 20);
     drive.samples.link_q16 = raw(300.0, 16);
   }
 
@@ -293,6 +294,24 @@ TEST_F(BoardFunctions, WithoutAnotherCurrentTheMotorsRatedOneCounts) {
   const int looks = looks_to_fault(60000);
   EXPECT_EQ(drive.fault, FAULT_OVERLOAD);
   EXPECT_NEAR(looks, -60000.0 * std::log(1.0 - 1.1 / 4.0), 400.0);
+}
+
+// Where no rated current is told, half of the limit is what hardly a motor does not bear; status says so.
+TEST_F(BoardFunctions, WithoutARatedCurrentHalfOfTheLimitCounts) {
+  parameters_reset();
+  ASSERT_EQ(parameters.rated_current, 0) << "nobody has told it";
+  parameters.current_limit = raw(9.0, 20);
+  EXPECT_EQ(board_lasting_current(), raw(4.5, 20));
+  EXPECT_NE(words().find("rated_current not told: half of current_limit may last"), std::string::npos);
+  parameters.rated_current = raw(6.0, 20);
+  EXPECT_EQ(board_lasting_current(), raw(6.0, 20));
+  EXPECT_EQ(words().find("rated_current"), std::string::npos);
+  parameters.overload_current = raw(5.0, 20);
+  EXPECT_EQ(board_lasting_current(), raw(5.0, 20));
+  parameters.rated_current = 0;
+  EXPECT_EQ(words().find("rated_current"), std::string::npos) << "it is told what may flow";
+  parameters.overload_current = 0;
+  EXPECT_NE(words().find("no overload is watched"), std::string::npos);
 }
 
 TEST_F(BoardFunctions, AnOverloadCurrentOfZeroWatchesNothing) {

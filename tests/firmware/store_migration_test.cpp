@@ -27,6 +27,28 @@ TEST_F(Store, AnOlderFirmwareHadFewerParameters) {
   EXPECT_EQ(power_on(), STORE_LOADED);
 }
 
+// A firmware that knew no rated current watched no overload unless somebody had set it to.
+TEST_F(Store, AnOverloadThatNobodyHasSetIsWatchedFromNowOn) {
+  constexpr std::uint16_t kRated = 520, kOverload = 412;
+  const auto overload_of = [&](bool rated, std::int32_t stored) {
+    Image image;
+    image.entries = table();
+    for (slot_entry_t& e : image.entries) {
+      if (e.id == kOverload) e.raw = stored;
+    }
+    const auto is_rated = [](const slot_entry_t& e) { return e.id == kRated; };
+    auto& entries = image.entries;
+    if (!rated) entries.erase(std::remove_if(entries.begin(), entries.end(), is_rated), entries.end());
+    put(0, image);
+    EXPECT_EQ(power_on(), rated ? STORE_LOADED : STORE_MIGRATED);
+    return parameters.overload_current;
+  };
+  EXPECT_LT(overload_of(false, 0), 0) << "the motor's";
+  EXPECT_EQ(parameters.rated_current, 0);
+  EXPECT_EQ(overload_of(false, 5 << 20), 5 << 20);
+  EXPECT_EQ(overload_of(true, 0), 0) << "somebody wants that";
+}
+
 TEST_F(Store, OrderDoesNotMatter) {
   Image image;
   image.entries = table();

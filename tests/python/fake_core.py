@@ -89,7 +89,7 @@ _PARAMETERS = [
     (3, "inductance_d", "mH", 3, 0.05, 200.0, 4.9, "STOPPED", "d-axis inductance"),
     (4, "inductance_q", "mH", 3, 0.05, 200.0, 7.8, "STOPPED", "q-axis inductance"),
     (5, "magnet_flux", "Vs", 5, 0.002, 0.9, 0.16, "STOPPED", "magnet flux linkage"),
-    (520, "rated_current", "A", 2, 0.1, 100.0, 10.89, "STOPPED", "rated phase current"),
+    (520, "rated_current", "A", 2, 0.0, 100.0, 0.0, "STOPPED", "rated phase current"),
     (8, "current_limit", "A", 2, 0.5, 100.0, 14.0, "STOPPED", "largest phase current"),
     (26, "current_full_scale", "A", 2, 1.0, 200.0, 20.0, "STOPPED", "current at ADC code 4096"),
     (27, "link_full_scale", "V", 1, 10.0, 2000.0, 450.0, "STOPPED", "DC-link voltage at ADC code 4096"),
