@@ -5,6 +5,9 @@
 // when the gates are off again the background level turns them into parameters, checks each for plausibility and writes
 // those that pass. What each phase measures and how it is evaluated stands at the head of its file; docs/commissioning.
 //
+// The currents reach the limit, which may be several times what the machine bears for long. Where heat sink or overload
+// take something of the limit away the measuring waits at rest until all of it is back (board_is_warm).
+//
 // Cost: at standstill the position sources but AVV are idle, which is more than the sums take; 1400 words.
 
 #ifndef STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
@@ -31,6 +34,7 @@ typedef struct {
   staircase_level_t level[STAIRCASE_LEVELS];
   uint16_t index;
   int32_t tick;
+  int32_t most_q20;
 } staircase_t;
 
 /// Periods of one sign of the torque in one kind of train (group: 2 * mirrored train + negative sign).

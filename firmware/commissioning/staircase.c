@@ -12,10 +12,12 @@
 //
 // Levels: seven from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase
 // has at least half of i_d, so that is twice the ripple and a fifth to spare). First with i_d > 0, then with i_d < 0;
-// the latter not beyond the field-weakening limit, for the magnets' sake. Resistance of winding and of devices cannot
-// be told apart this way: the devices' is kept as it was given.
+// the latter not beyond the field-weakening limit, for the magnets' sake, and neither beyond what a level may last
+// without an overload: with the machine cool, a quarter of what the overload's time constant bears. Resistance of
+// winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
 #include "firmware/base/clear.h"
+#include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 
@@ -32,8 +34,16 @@ static int32_t ripple_q20(const drive_t* d) {
   return swing_q20 / 3 * 2 / 100 * (d->config.modulator.pulse_ticks / 100);
 }
 
+// A level lasts 0.9 s: the square of its current, of that which may flow for ever, times 0.9 s over the time constant.
+static int32_t bearable_q20(void) {
+  const int32_t lasting_q20 = board_lasting_current();
+  if (lasting_q20 == 0) return parameters.current_limit;
+  const int32_t share_q8 = (int32_t)q_sqrt32((uint32_t)parameters.overload_time * 18u);  // 2^16 / 4 / 900 ms
+  return q_min(parameters.current_limit, q_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
+}
+
 static int32_t level_q20(const drive_t* d, uint16_t index) {
-  const int32_t limit = parameters.current_limit;
+  const int32_t limit = d->commissioning.staircase.most_q20;
   const bool weakening = index >= SIDE;
   const int32_t most = weakening ? q_clamp(parameters.weakening_limit, limit / 2, limit) : limit;
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
@@ -90,6 +100,7 @@ bool commissioning_climb(drive_t* d) {
   staircase_t* const s = &c->staircase;
   if (c->tick == 0) {
     clear(s, sizeof *s);
+    s->most_q20 = bearable_q20();
   }
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
@@ -97,6 +108,10 @@ bool commissioning_climb(drive_t* d) {
     if (d->control.reference_q20.d != 0) return false;
     s->tick = q_add_sat(s->tick, 1);
     return s->tick > SETTLE_PERIODS + 1;
+  }
+  if (s->tick == 0 && board_is_warm()) {
+    commissioning_set_d(d, 0);
+    return false;
   }
   commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];

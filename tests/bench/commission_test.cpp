@@ -66,6 +66,22 @@ TEST(Commission, ALockedShaftIsNotMeasuredAsIfItTurned) {
   EXPECT_TRUE(std::isnan(found(result, "magnet_flux")));
 }
 
+// The limit is three times what the motor bears for long: the measuring waits for it to cool, or stays below.
+TEST(Commission, AMotorWithALargeLimitIsNotOverloaded) {
+  for (const double seconds : {60.0, 10.0}) {
+    CommissionRequest request = bench_request();
+    request.limit = 600.0;
+    request.parameters["rated_current"] = 14.0 / 3.0;
+    request.parameters["overload_time"] = 1000.0 * seconds;
+    const CommissionResult result = commission(request);
+    ASSERT_TRUE(result.completed) << seconds << ": " << result.reason;
+    EXPECT_NEAR(found(result, "stator_resistance"), 0.352, 0.03) << seconds;
+    EXPECT_NEAR(found(result, "inductance_d"), 4.655, 0.03 * 4.655) << seconds;
+    EXPECT_NEAR(found(result, "inductance_q"), 7.41, 0.03 * 7.41) << seconds;
+    EXPECT_NEAR(found(result, "inertia"), 5.46e-3, 0.05 * 5.46e-3) << seconds;
+  }
+}
+
 TEST(Commission, CanBeStopped) {
   for (const double until : {0.01, 0.1, 0.3}) {
     CommissionRequest request = bench_request();

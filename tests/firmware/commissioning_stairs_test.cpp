@@ -1,5 +1,6 @@
 // What a commissioning sums and sends: the staircase's levels, the pairs of the map, and when results are there.
 
+#include "firmware/board/functions.h"
 #include "tests/firmware/commissioning_sums.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
@@ -17,6 +18,7 @@ class CommissioningStairs : public Drive {
     drive.state = DRIVE_COMMISSION;
     drive.commissioning.model = nameplate();
     drive.commissioning.tick = 1;
+    drive.commissioning.staircase.most_q20 = parameters.current_limit;
   }
   static staircase_t& stairs() { return drive.commissioning.staircase; }
 };
@@ -43,6 +45,43 @@ TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(drive.control.reference_q20.d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
   }
+}
+
+// A level begins when heat sink and overload leave the whole limit, and one that has begun goes on; so does a train.
+TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
+  ::board.share_q15 = BOARD_SHARE_ONE - 1;
+  drive.control.reference_q20.d = raw(0.5, 20);
+  for (int n = 0; n < 100; ++n) EXPECT_FALSE(commissioning_climb(&drive));
+  EXPECT_EQ(drive.control.reference_q20.d, 0);
+  EXPECT_EQ(stairs().tick, 0);
+  ::board.share_q15 = BOARD_SHARE_ONE;
+  (void)commissioning_climb(&drive);
+  ::board.share_q15 = BOARD_SHARE_ONE - 1;
+  for (int n = 0; n < 100; ++n) (void)commissioning_climb(&drive);
+  EXPECT_EQ(stairs().tick, 101);
+  EXPECT_GT(drive.control.reference_q20.d, 0);
+  map_t& m = drive.commissioning.map;
+  m.pause = true;
+  m.train = 1;
+  for (int n = 0; n < 2000; ++n) (void)commissioning_map(&drive);
+  EXPECT_TRUE(m.pause);
+  ::board.share_q15 = BOARD_SHARE_ONE;
+  for (int n = 0; n < 2; ++n) (void)commissioning_map(&drive);
+  EXPECT_FALSE(m.pause);
+}
+
+// With the machine cool a level of 0.9 s is a quarter of what trips.
+TEST_F(CommissioningStairs, ALevelIsNoOverload) {
+  parameters.rated_current = raw(4.0, 20);
+  for (const auto& [seconds, most] : {std::pair{60.0, 14.0}, {10.0, 4.0 * std::sqrt(10.0 / 3.6)}, {1.0, 4.0}}) {
+    parameters.overload_time = static_cast<std::int32_t>(1000.0 * seconds);
+    drive.commissioning.tick = 0;
+    (void)commissioning_climb(&drive);
+    EXPECT_NEAR(real(stairs().most_q20, 20), most, 0.01 * most) << seconds;
+  }
+  parameters.overload_current = 0;
+  (void)commissioning_climb(&drive);
+  EXPECT_EQ(stairs().most_q20, parameters.current_limit);
 }
 
 // A train or a pause without a pair of opposite windows adds nothing to its sums.
