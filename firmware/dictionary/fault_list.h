@@ -43,3 +43,4 @@ FAULT(25, OPEN_PHASE, "a motor phase carries no current", "check its wire, termi
 FAULT(26, CURRENT_SENSOR, "a current sensor shows nothing or the reverse", "check its supply, wire and direction")
 FAULT(27, SENSOR_ORDER, "the current sensors are on other phases than the gates",
       "compare a, b and c at gates, motor cable, sensors and converter")
+FAULT(28, ENCODER, "the encoder counts against the field", "exchange two wires of the motor, or A and B of the encoder")

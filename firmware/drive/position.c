@@ -289,7 +289,16 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
 
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   d->position.encoder_offset_bam = angle_bam - encoder_angle(d);
+  d->position.aligned_bam = angle_bam;
   tracking_observer_preset(&d->position.encoder, angle_bam, q_limit(speed_bpp, MACHINE_SPEED_END_BPP), 0);
+}
+
+bool position_encoder_is_reversed(const drive_t* d) {
+  if (parameters.position_source != POSITION_ENCODER) return false;
+  const uint32_t encoder_bam = d->position.encoder.angle_bam - d->position.aligned_bam;
+  const uint32_t windows_bam = d->position.high.angle_bam - d->position.aligned_bam;
+  return q_abs_sat(angle_diff_bam(windows_bam + encoder_bam, 0)) <
+         q_abs_sat(angle_diff_bam(windows_bam, encoder_bam)) / 2;
 }
 
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {

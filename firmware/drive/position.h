@@ -14,6 +14,10 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 /// Makes the encoder's present count mean this angle. Reads the encoder.
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
+/// Whether the encoder has turned the other way than the windows since then. Only soon after a start, within an
+/// electrical turn.
+bool position_encoder_is_reversed(const drive_t* d);
+
 /// Electrical angle of an encoder count whose zero lies on phase a.
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);
 

@@ -149,8 +149,15 @@ static drive_fault_t check(drive_t* d) {
   return (drive_is_turning(d) && judges_now(d)) ? check_position(d) : FAULT_NONE;
 }
 
+// What an encoder makes of it that counts the other way round, as with two motor wires exchanged.
+static bool is_of_angle(drive_fault_t fault) {
+  return fault == FAULT_DIVERGENCE || fault == FAULT_SYNCHRONISM || fault == FAULT_POLARITY;
+}
+
 void drive_protect(drive_t* d) {
   if (!drive_is_energised()) return;
-  const drive_fault_t fault = check(d);
+  const bool first_turns = polarity_watch_is_awake(d);
+  drive_fault_t fault = check(d);
+  if (first_turns && is_of_angle(fault) && position_encoder_is_reversed(d)) fault = FAULT_ENCODER;
   if (fault != FAULT_NONE) drive_raise(d, fault);
 }

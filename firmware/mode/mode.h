@@ -97,6 +97,7 @@ typedef struct {
   tracking_observer_t encoder;
   bool is_near;                 // what was last regressed is near enough to learn from
   uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
+  uint32_t aligned_bam;         // where it was found
   int32_t torque_accel_q8;      // acceleration of the torque of the measured current
   int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
 } drive_position_t;

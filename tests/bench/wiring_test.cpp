@@ -133,6 +133,24 @@ TEST(Wiring, CrossedMotorWiresOnlyReverseTheDirection) {
   }
 }
 
+// With an encoder that does count the same way as before, the first motion shows it.
+TEST(Wiring, CrossedMotorWiresAreNamedByTheEncoder) {
+  for (const int pair : {1, 2, 3}) {
+    for (int k = 0; k < 6; ++k) {
+      for (const double rpm : {200.0, -200.0, 20.0}) {
+        RunRequest request = motor_a(0.3 + k * kTurn / 6.0);
+        request.duration = 1.0;
+        request.setup.board.crossed = pair;
+        request.parameters["position_source"] = 0.0;
+        request.commands = {{0.05, "speed_ref_rpm", rpm}};
+        const RunResult result = run(request);
+        EXPECT_NE(result.reason.find("encoder counts against the field"), std::string::npos)
+            << pair << ' ' << k << ' ' << rpm << ": " << result.reason;
+      }
+    }
+  }
+}
+
 // The first start after power-on, of what is wired as it should be: no false alarm.
 TEST(Wiring, WhatIsRightStarts) {
   for (const double volts : {100.0, 150.0, 300.0, 400.0}) {
