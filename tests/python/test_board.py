@@ -106,11 +106,35 @@ def test_link_is_made_replaced_and_removed(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_link_of_another_board_is_left_alone_at_the_end(tmp_path):
-    first, second = PseudoTerminal(tmp_path / "drive"), PseudoTerminal(tmp_path / "drive")
+def test_link_of_a_board_that_runs_is_not_taken_over(tmp_path):
+    link = tmp_path / "drive"
+    first = PseudoTerminal(link)
+    with pytest.raises(InputError, match="another virtual board that runs"):
+        PseudoTerminal(link)
+    assert str(link.readlink()) == first.device
     first.close()
-    assert str((tmp_path / "drive").readlink()) == second.device
+    second = PseudoTerminal(link)
+    assert str(link.readlink()) == second.device
     second.close()
+
+
+def test_link_of_a_board_that_was_killed_is_taken_over(start, tmp_path):
+    process, link = start()
+    _until_ready(process)
+    process.kill()
+    process.wait()
+    port = PseudoTerminal(link)
+    assert str(link.readlink()) == port.device
+    port.close()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_link_that_is_not_ours_any_more_is_left_alone_at_the_end(tmp_path):
+    port = PseudoTerminal(tmp_path / "drive")
+    (tmp_path / "drive").unlink()
+    (tmp_path / "drive").symlink_to("/dev/null")
+    port.close()
+    assert str((tmp_path / "drive").readlink()) == "/dev/null"
 
 
 def test_link_that_cannot_be_made_is_refused(tmp_path):

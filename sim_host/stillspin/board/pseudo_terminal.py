@@ -38,7 +38,7 @@ class PseudoTerminal:
         """Make it.
 
         Args:
-            link: symbolic link to make to it; an old one is replaced.
+            link: symbolic link to make to it; an old one is replaced, that of a board that runs is not.
             rate: bit/s that the port is set to until a program sets it.
 
         Raises:
@@ -63,6 +63,7 @@ class PseudoTerminal:
         self.dropped = 0
         """Octets that a program which had the port open did not fetch in time."""
         self._link: Path | None = None
+        self._lock: tuple[Path, int] | None = None
         try:
             self._make_link(link)
         except InputError:
@@ -131,6 +132,9 @@ class PseudoTerminal:
             return
         if self._link and self._link.is_symlink() and str(self._link.readlink()) == self.device:
             self._link.unlink()
+        if self._lock:
+            self._lock[0].unlink(missing_ok=True)
+            os.close(self._lock[1])
         os.close(self._master)
         self._master = -1
 
@@ -146,6 +150,7 @@ class PseudoTerminal:
         if link.exists() and not link.is_symlink():
             raise InputError(f"{link}: exists already and is not a symbolic link; name another path")
         try:
+            self._lock = _locked(link)
             with tempfile.TemporaryDirectory(prefix=f".{link.name}-", dir=link.absolute().parent) as beside:
                 fresh = Path(beside) / link.name
                 fresh.symlink_to(self.device)
@@ -153,3 +158,22 @@ class PseudoTerminal:
         except OSError as error:
             raise InputError(f"{link}: cannot be made ({error.strerror})") from error
         self._link = link
+
+
+def _locked(link: Path) -> tuple[Path, int]:
+    """The lock beside it that says that the link is in use; it ends with the process, however that ends.
+
+    Raises:
+        InputError: another board has it.
+        OSError: it cannot be made.
+    """
+    beside = link.with_name(f".{link.name}.lock")
+    lock = os.open(beside, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        os.close(lock)
+        raise InputError(
+            f"{link}: is the port of another virtual board that runs; end it, or name another path"
+        ) from error
+    return beside, lock
