@@ -5,6 +5,7 @@ import errno
 import json
 import os
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -20,6 +21,7 @@ from stillspin.commands.completion import Words
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Capture, Trigger
 from stillspin.errors import InputError
+from stillspin.report import tables
 
 
 @pytest.fixture
@@ -193,6 +195,19 @@ def test_a_capture_that_cannot_be_written_leaves_nothing(drive, tmp_path, monkey
     with pytest.raises(InputError, match=r"x\.csv: cannot be written \(No space left on device\)"):
         capture_file.write(tmp_path / "captures" / "x.csv", capture)
     assert list((tmp_path / "captures").iterdir()) == []
+
+
+def test_what_the_drive_did_not_know_is_no_number_in_the_table(drive, capsys):
+    capture = drive.capture("speed")
+    speed = np.full(capture.time.size, 600.0)
+    speed[:24] = np.nan
+    tables.capture(
+        replace(capture, signals={"speed": speed, "angle": speed * np.nan}, units={"speed": "rpm", "angle": "°"})
+    )
+    _, first, second = (line.split() for line in capsys.readouterr().out.strip().splitlines())
+    assert first[:4] == ["speed", "600", "600", "600"]
+    assert first[5:] == ["unknown", "in", "24", "of", str(speed.size), "records"]
+    assert second[:4] == ["angle", "–", "–", "–"]
 
 
 def test_a_place_that_cannot_be_written_is_said_before_the_capture(tmp_path):

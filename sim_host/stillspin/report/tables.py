@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -134,11 +135,14 @@ def differences(rows: Iterable[tuple[Parameter, float | None, float | None]], on
 
 
 def capture(result: Capture) -> None:
-    """What was captured, a row per signal."""
+    """What was captured, a row per signal; of one that the drive does not know all the time, what it knew."""
     table = _table("signal", "least", "mean", "greatest", "unit", "")
     for name, values in result.signals.items():
-        numbers = (f"{number:.4g}" for number in (values.min(), values.mean(), values.max())) if values.size else "–––"
+        known = values[~np.isnan(values)]
+        numbers = (f"{number:.4g}" for number in (known.min(), known.mean(), known.max())) if known.size else "–––"
         words = Text("beyond its full scale", style="red") if name in result.clipped else Text("")
+        if known.size < values.size:
+            words.append(f" unknown in {values.size - known.size} of {values.size} records")
         table.add_row(name, *numbers, result.units[name], words)
     _print(table)
 
