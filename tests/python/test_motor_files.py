@@ -9,8 +9,9 @@ import pytest
 from test_motors import PUMP
 from typer.testing import CliRunner
 
-from stillspin import cli, core
+from stillspin import cli, core, resources
 from stillspin.cases import motor_check, profile
+from stillspin.cases.motor_told import Finding, Motor
 
 SALIENT = PUMP.replace("60.0", "300.0").replace("8.0", "20.0").replace("100.0", "450.0") + "speed_limit = 1500\n"
 """A motor that the drive runs."""
@@ -25,12 +26,12 @@ def told(*arguments):
     return CliRunner().invoke(cli.app, ["motor", *map(str, arguments)])
 
 
-def findings(native, tmp_path: Path, text: str) -> dict[str, motor_check.Finding]:
+def findings(native, tmp_path: Path, text: str) -> dict[str, Finding]:
     path = tmp_path / "mine.toml"
     path.write_text(text, encoding="utf-8")
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load("bench", schema, known, str(path), checked=False)
-    found = motor_check.findings(motor_check.Motor(chosen, schema, known), native)
+    found = motor_check.findings(Motor(chosen, schema, known), native)
     return {finding.title: finding for finding in found}
 
 
@@ -41,11 +42,33 @@ def test_motor_a_works_and_its_start_is_tried(native):
     assert "no problem found" in result.stdout
 
 
-def test_motor_b_works_but_for_its_speed_limit(native):
-    result = told("check", "B")
-    assert result.exit_code == 1
-    assert "1 of 9 will not work" in result.stdout
-    assert "WRONG  top speed: the EMF takes the link's voltage at 2151 rpm" in result.stdout
+def test_motor_b_works_up_to_its_speed_limit_and_not_beyond(native, tmp_path):
+    assert told("check", "B").exit_code == 0
+    text = (resources.directory("motors") / "B.toml").read_text(encoding="utf-8")
+    finding = findings(native, tmp_path, text.replace("speed_limit = 2600", "speed_limit = 3300"))["top speed"]
+    assert not finding.works
+    assert "the EMF takes the link's voltage at 2151 rpm" in finding.words
+    assert "speed_limit is 3300 rpm: lower it to 2610 rpm" in finding.words
+
+
+@pytest.mark.parametrize("wanted", [2600.0, 3300.0])
+def test_the_virtual_drive_agrees_about_motor_b(native, wanted):
+    """Unloaded and on the true machine: up to its speed limit, and not to the one of motor A."""
+    chosen = profile.load("ideal", core.plant_schema(native), core.parameters(native), "B")
+    result = native.run(
+        plant=profile.merged(chosen.plant, {"solver": {"method": "rk4"}}),
+        parameters={**chosen.parameters, "speed_limit": 3300.0},
+        commands=[(0.0, "speed_ref_rpm", wanted)],
+        load=[],
+        duration=4.0,
+        max_start=5.0,
+        record_every=10,
+        waveform=(0.0, 0.0, 1),
+        seed=1,
+        progress=None,
+    )
+    assert result.completed and not result.faults
+    assert (abs(float(result.signals["true_speed"][-1]) - wanted) < 10.0) == (wanted == 2600.0)
 
 
 def test_a_ripple_that_the_formula_lets_pass_is_found_by_the_start(native, tmp_path):
@@ -73,7 +96,44 @@ def test_a_motor_without_saliency_does_not_start_at_rest(native):
         ),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "gates off", "link_maximum is 420 V"),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "top speed", "speed_limit is 1500 rpm"),
-        (("magnet_flux = 0.11", "magnet_flux = 0.9"), "drive's rules", "speed_limit is too high"),
+        (
+            ("magnet_flux = 0.11", "magnet_flux = 0.9"),
+            "drive's rules",
+            "beyond link_maximum; speed_limit = 1500: at most 857 rpm with link_maximum = 420 V",
+        ),
+        (
+            ("current_limit = 5.0", "current_limit = 5.0\ntrip_current = 4.0"),
+            "drive's rules",
+            "current_limit; trip_current = 4: at least 5.00 A with current_limit = 5 A; or current_limit = 5: at",
+        ),
+        (
+            ("current_limit = 5.0", "current_limit = 5.0\ncurrent_divider = 2\ncurrent_bandwidth = 2600"),
+            "drive's rules",
+            "current_divider 2; current_bandwidth = 2600: at most 2080 rad/s with current_divider = 2",
+        ),
+        (
+            ("current_limit = 5.0", "current_limit = 19.0\ncurrent_bandwidth = 2600"),
+            "current loop",
+            "lower current_bandwidth to 2573 rad/s",
+        ),
+        (
+            ("[adc]", "[mechanics]\ninertia = 1e-5\n[adc]"),
+            "swing",
+            "swing at 1080 rad/s; current_bandwidth is 1800 rad/s, at least 2160 rad/s are needed",
+        ),
+        (
+            (
+                "current_limit = 5.0",
+                "current_limit = 5.0\nspeed_law = 1\nspeed_pi_bandwidth = 100\nspeed_pi_damping = 0.3",
+            ),
+            "speed loop",
+            "with 29° of phase left (30° are needed)",
+        ),
+        (
+            ("current_limit = 5.0", "current_limit = 5.0\ninertia = 0.02"),
+            "speed loop",
+            "tell the right inertia",
+        ),
         (
             ("inductance_d = 11e-3", "inductance_d = 0.3e-3"),
             "ripple",

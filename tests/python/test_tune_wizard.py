@@ -93,7 +93,7 @@ def test_what_will_not_work_is_said_with_its_numbers(page):
         page.fill("[data-key=speed]", "3300")
         assert page.inner_text("#plate-found") == ""  # it was about other answers
         page.click("#plate-check")
-        page.wait_for_selector("#plate-found :text('No problem found in 9 checks')")
+        page.wait_for_selector("#plate-found :text('No problem found in 12 checks')")
 
 
 @needs_board

@@ -10,6 +10,7 @@ import typer
 from stillspin import core
 from stillspin.called import called
 from stillspin.cases import motor_check, profile, questions
+from stillspin.cases.motor_told import Motor
 from stillspin.commands import parameter_file
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -29,7 +30,7 @@ def check(
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, file, checked=False)
-    found = motor_check.findings(motor_check.Motor(chosen, schema, known), native)
+    found = motor_check.findings(Motor(chosen, schema, known), native)
     for words in chosen.not_stated:
         print(f"note   {words}")
     for finding in found:

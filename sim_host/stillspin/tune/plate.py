@@ -13,7 +13,7 @@ from typing import Any
 
 from stillspin import core
 from stillspin.cases import motor_check, nameplate, profile, questions
-from stillspin.cases.motor_check import Finding
+from stillspin.cases.motor_told import Finding
 from stillspin.commands import parameter_file
 from stillspin.commands.params import transfer
 from stillspin.drive.table import Table
@@ -28,7 +28,7 @@ _PATIENCE = 120.0
 
 @dataclass(frozen=True)
 class _Asked:
-    """The motor of the answers at this drive, see motor_check.Described."""
+    """The motor of the answers at this drive, see motor_told.Described."""
 
     machine: core.Plant
     parameters: Mapping[str, float]

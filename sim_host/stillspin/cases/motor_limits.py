@@ -1,0 +1,64 @@
+"""How far a parameter may go where the limit is set by other parameters: asked of the drive's own rules."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+
+from stillspin import core
+from stillspin.entry import Entry
+
+_HALVINGS = 40
+
+
+def conflict(native: core.NativeCore, parameters: Mapping[str, float]) -> str:
+    """Which rule the parameters break, empty when they fit together."""
+    try:
+        native.check_parameters(dict(parameters))
+    except ValueError as error:
+        return str(error).removeprefix("firmware parameters: ")
+    return ""
+
+
+def ways_out(
+    native: core.NativeCore, known: Mapping[str, Entry], parameters: Mapping[str, float], broken: str
+) -> list[str]:
+    """For each parameter that a broken rule names, up to where it may go or from where on, with the others as they are.
+
+    Args:
+        native: the drive.
+        known: its parameters.
+        parameters: their values, the default of those that are not there.
+        broken: the rule in words.
+    """
+    named = [name for name in dict.fromkeys(re.findall(r"[a-z][a-z0-9_]+", broken)) if name in known]
+    told = {name: float(parameters.get(name, known[name].default)) for name in named}
+    found = []
+    for name in named:
+
+        def said(value: float, name: str = name) -> str:
+            return conflict(native, {**parameters, name: value})
+
+        bound = _bound(known[name], told[name], said)
+        if bound:
+            others = [f"{other} = {told[other]:g} {known[other].unit}".rstrip() for other in named if other != name]
+            found.append(f"{bound}{' with ' if others else ''}{', '.join(others)}")
+    return found
+
+
+def _bound(entry: Entry, now: float, said: Callable[[float], str]) -> str:
+    """How far this parameter alone has to move until no rule is broken; empty when that does not help."""
+    broken = said(now)
+    for end, word in ((entry.minimum, "at most"), (entry.maximum, "at least")):
+        if end is None or said(end) == broken:
+            continue
+        wrong, right = now, end  # at the end another rule may be broken
+        for _ in range(_HALVINGS):
+            middle = (wrong + right) / 2.0
+            wrong, right = (middle, right) if said(middle) == broken else (wrong, middle)
+        steps = round(right * 10**entry.decimals, 3)
+        bound = (math.floor(steps) if right < now else math.ceil(steps)) / 10**entry.decimals
+        if not said(bound):
+            return f"{entry.name} = {now:g}: {word} {bound:.{entry.decimals}f} {entry.unit}".rstrip()
+    return ""

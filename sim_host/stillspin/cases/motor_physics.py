@@ -1,0 +1,96 @@
+"""What physics says of a motor on this drive: start, ripple, polarity test, top speed, gates off."""
+
+from __future__ import annotations
+
+import math
+
+from stillspin.cases.motor_told import PERIOD, Described, Finding
+
+_TURN_LEAST = 12.0  # control interrupts per electrical turn
+_SALIENCY_LEAST = 0.02
+
+
+def saliency(motor: Described) -> Finding:
+    """Whether the inductances differ enough to tell the position at rest, up to the limit of the current."""
+    d, q = motor.plant("machine", "inductance_d"), motor.plant("machine", "inductance_q")
+    share = (q - d) / (q + d)
+    if share < _SALIENCY_LEAST:
+        words = f"Lq and Ld differ by {share:.1%} of their sum: no start from standstill by saliency"
+        return Finding("start at rest", False, f"{words}; start_method = 1 turns the shaft by a current first")
+    limit = motor.told("current_limit")
+    words = f"(Lq − Ld)/(Lq + Ld) is {share:.1%} without current"
+    if not motor.plant("machine", "saturation"):
+        return Finding("start at rest", True, words)
+    # The plant's Lqq is Lq / (1 + (iq / 2 rated)^2).
+    end = 2.0 * motor.plant("machine", "rated_peak_current") * math.sqrt(q / d - 1.0)
+    if end < limit:
+        words += f", and gone from {end:.3g} A on; current_limit is {limit:.3g} A"
+        return Finding("start at rest", False, f"{words}: choose current_limit below {0.9 * end:.3g} A")
+    return Finding("start at rest", True, f"{words}, and there up to {end:.3g} A; current_limit is {limit:.3g} A")
+
+
+def ripple(motor: Described) -> Finding:
+    """A pulse of a vector, 2/3 of the link at the motor, over the smaller inductance."""
+    volts = 2.0 / 3.0 * motor.plant("link", "source_voltage")
+    ripple = volts * motor.told("pulse_time") * 1e-6 / motor.plant("machine", "inductance_d")
+    trip, peak = motor.told("trip_current"), motor.told("current_limit") + ripple / 2.0
+    pulse = f"a pulse of {motor.told('pulse_time'):g} µs changes the current by {ripple:.3g} A"
+    words = f"{pulse}, up to {peak:.3g} A at current_limit; trip_current is {trip:.3g} A"
+    if peak > trip:
+        return Finding(
+            "ripple", False, f"{words}: lower current_limit, shorten pulse_time, or put a choke before the motor"
+        )
+    return Finding("ripple", True, words)
+
+
+def polarity(motor: Described) -> Finding:
+    """Whether the link drives the test's current through the winding at all, and in what time."""
+    volts = motor.plant("link", "source_voltage") / math.sqrt(3.0)
+    resistance, inductance = motor.plant("machine", "resistance"), motor.plant("machine", "inductance_d")
+    wanted, possible = min(motor.told("start_current"), motor.told("current_limit")), volts / resistance
+    words = f"the polarity test asks for {wanted:.3g} A; the link drives up to {possible:.3g} A"
+    if possible < wanted:
+        return Finding("polarity", False, f"{words}: lower start_current, or raise the link's voltage")
+    rise = -inductance / resistance * math.log1p(-wanted / possible) if wanted < possible else math.inf
+    return Finding("polarity", True, f"{words} and is there after {1e3 * rise:.2g} ms")
+
+
+def speed(motor: Described) -> Finding:
+    """The speed that the link and field weakening allow without load."""
+    volts = motor.plant("link", "source_voltage") / math.sqrt(3.0) * motor.told("voltage_use") / 100.0
+    flux = motor.plant("machine", "magnet_flux")
+    weakened = max(flux - motor.plant("machine", "inductance_d") * motor.told("weakening_limit"), 1e-9)
+    pairs, limit = motor.plant("machine", "pole_pairs"), motor.told("speed_limit")
+    base, fastest = (volts / linked / pairs * 30.0 / math.pi for linked in (max(flux, 1e-9), weakened))
+    words = f"the EMF takes the link's voltage at {base:.0f} rpm, with weakening_limit at {fastest:.0f} rpm"
+    if fastest < limit:
+        ways = f"lower it to {fastest:.0f} rpm, or raise weakening_limit or the link's voltage"
+        return Finding("top speed", False, f"{words}; speed_limit is {limit:.0f} rpm: {ways}")
+    return Finding("top speed", True, f"{words}; speed_limit is {limit:.0f} rpm")
+
+
+def emf_of_a_trip(motor: Described) -> Finding:
+    """What the diodes charge the link to when the gates go off at the speed limit."""
+    limit = motor.told("speed_limit")
+    linked = motor.plant("machine", "magnet_flux") * motor.plant("machine", "pole_pairs")
+    volts = math.sqrt(3.0) * linked * limit * math.pi / 30.0
+    most = motor.told("link_maximum")
+    words = (
+        f"with the gates off at speed_limit the motor charges the link to {volts:.0f} V; link_maximum is {most:.0f} V"
+    )
+    if volts > most:
+        return Finding("gates off", False, f"{words}: lower speed_limit to {limit * most / volts:.0f} rpm")
+    return Finding("gates off", True, words)
+
+
+def turn(motor: Described) -> Finding:
+    """Whether an electrical turn has enough control interrupts."""
+    limit, pairs = motor.told("speed_limit"), motor.plant("machine", "pole_pairs")
+    steps = 60.0 / (limit * pairs * PERIOD)
+    words = f"an electrical turn at speed_limit has {steps:.0f} control interrupts"
+    if steps < _TURN_LEAST:
+        most = 60.0 / (_TURN_LEAST * pairs * PERIOD)
+        return Finding(
+            "periods per turn", False, f"{words}; {_TURN_LEAST:.0f} are needed: speed_limit up to {most:.0f} rpm"
+        )
+    return Finding("periods per turn", True, words)
