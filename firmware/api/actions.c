@@ -127,7 +127,7 @@ static answer_status_t check_conflict(const parameter_info_t* p, int32_t before,
     (void)parameter_set(p->id, before);
     put_packed(why, SAY_not_taken_while_the_drive_runs);
   } else {
-    put_packed(why, SAY_taken_but_the_drive_does_not_start);
+    put_packed(why, SAY_set_but_the_drive_does_not_start);
   }
   put_packed(why, conflict);
   return ANSWER_CONFLICT;
@@ -152,7 +152,7 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
 // Why the store did not begin.
 static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
   if (hil_is_active()) {
-    put_packed(why, SAY_not_with_the_host_in_the_loop);
+    put_packed(why, SAY_not_in_the_loop_parameters_are_the_simulations);
     return ANSWER_STATE;
   }
   if (needs_rest && drive_is_energised()) {

@@ -39,14 +39,14 @@ static void line_errors(octet_writer_t* w) {
 static void line_lost(octet_writer_t* w) {
   put_packed(w, SAY_lost);
   put_count(w, now.lost, SAY_frames_or_records);
-  put_count(w, now.bad_commands, SAY_commands_did_not_count);
+  put_count(w, now.bad_commands, SAY_commands_rejected);
 }
 
 static void line_command(octet_writer_t* w) {
-  packed_text_t how = SAY_none_has_come;
-  if (now.heard) how = SAY_they_come;
-  if (now.commanding) how = SAY_they_command_the_drive;
-  if (now.timed_out) how = SAY_they_stay_away;
+  packed_text_t how = SAY_none_received;
+  if (now.heard) how = SAY_received_but_not_started;
+  if (now.commanding) how = SAY_in_command_of_the_drive;
+  if (now.timed_out) how = SAY_missing_can_timeout;
   put_packed(w, SAY_commands);
   put_packed(w, how);
 }

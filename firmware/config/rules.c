@@ -49,10 +49,10 @@ packed_text_t drive_config_or_conflict(const drive_config_t** made) {
     return SAY_position_source_1_needs_id_low_speed;
   if ((p->excitation == 0 || p->excitation >= 4) &&
       (p->position_source == POSITION_OBSERVER_AVV || p->position_source == POSITION_AVV))
-    return SAY_excitation_0_4_and_5_have_no;
+    return SAY_avv_needs_two_active_vectors;
   if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
     return SAY_hold_time_needs_excitation_2_3_or;
-  if (map_is_crossed(p)) return SAY_lqq_1_lqq_4_of_inductance_q;
+  if (map_is_crossed(p)) return SAY_lqq_n_inductance_q_must_be;
   if (p->current_law == CURRENT_LAW_HYSTERESIS && p->position_source != POSITION_ENCODER)
     return SAY_current_law_1_needs_position_source_0;
   if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)

@@ -18,7 +18,7 @@ static uint32_t asked_ms;
 
 static bool no_arguments(const words_of_line_t* a) {
   if (a->count == 0u) return true;
-  line_refused(SAY_this_command_stands_alone_nothing_done);
+  line_refused(SAY_this_command_takes_nothing_after_it);
   return false;
 }
 
@@ -58,8 +58,8 @@ static bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
 }
 
 static void say_guard(guard_t guard) {
-  if (guard == GUARD_KEYS) line_of(SAY_hold_it_runs_while_keys_come);
-  if (guard == GUARD_NONE) line_of(SAY_free_nobody_watches_it_runs_until);
+  if (guard == GUARD_KEYS) line_of(SAY_hold_runs_while_a_key_is_held);
+  if (guard == GUARD_NONE) line_of(SAY_free_nobody_watches_runs_until_stop);
 }
 
 void command_start(const words_of_line_t* a) {

@@ -157,7 +157,7 @@ void command_set(const words_of_line_t* a) {
   word_t typed = a->word[1];
   const uint16_t length = text_number(typed.text, typed.count, &number);
   if (length == 0u) {
-    refuse_value(p, &typed, SAY_is_not_a_number_of);
+    refuse_value(p, &typed, SAY_is_not_a_number_in);
     return;
   }
   if (!unit_fits(a, length, p->unit)) {
@@ -168,7 +168,7 @@ void command_set(const words_of_line_t* a) {
   if (!decimal_raw(&number, p->q, &raw) || raw < p->minimum || raw > p->maximum) {
     refuse_value(p, &typed, SAY_is_outside_of);
   } else if (p->q == 0u && !decimal_is_whole(&number)) {
-    refuse_value(p, &typed, SAY_is_not_a_whole_number_of);
+    refuse_value(p, &typed, SAY_is_not_a_whole_number_in);
   } else {
     take_value(p, raw);
   }

@@ -209,7 +209,7 @@ static void tell(void) {
     put_text(w, "fault: ");
     put_words(w, WORDS_FAULT, (uint16_t)fault.fault);
   } else {
-    put_packed(w, SAY_nobody_was_heard_for_link_timeout);
+    put_packed(w, SAY_nothing_was_heard_for_link_timeout);
   }
   line_end();
   editor_show(&editor, line_begin());

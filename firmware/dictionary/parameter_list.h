@@ -53,17 +53,17 @@ PARAMETER(60, position_source, "", 0, 0, 0, 8, 4, STOPPED,
 PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED,
           "mechanical speed below which the low-speed estimator is used")
 PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical speed above which AVV is used")
-PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 200, ALWAYS, "tracking observer with long windows")
-PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer with short windows")
+PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 200, ALWAYS, "bandwidth of AVV's observer, long windows")
+PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "bandwidth of AVV's observer, short windows")
 PARAMETER(65, adapt_time, "ms", 8, 0, 20, 30000, 150, ALWAYS,
           "time constant of the adaptation of admittances and sensors; 30000 is off")
-PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms error of a current difference over a window")
+PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms noise of a current difference over a window")
 PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 100, ALWAYS, "load change per 10 ms that the observer expects")
 PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,
-          "the same at a crawl, while nothing shows that the load changes")
+          "observer_load_rate at a crawl, while the load seems steady")
 PARAMETER(77, observer_load_step, "Nm", 20, 2, 1, 10000, 200, ALWAYS,
-          "step of the load that it looks out for at a crawl; twice of it at speed where the map is known")
-PARAMETER(76, cogging_order, "", 0, 0, 0, 60, 6, ALWAYS, "waves of cogging per electrical turn; 0 learns none")
+          "load step that the observer looks for at a crawl; at speed twice that, if the map is known")
+PARAMETER(76, cogging_order, "", 0, 0, 0, 60, 6, ALWAYS, "cogging periods per electrical turn; 0 learns none")
 PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
 PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 40, ALWAYS, "Kp of the paper's ZVV observer")
@@ -91,8 +91,7 @@ PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
 PARAMETER(88, weakening_limit, "A", 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, "A/V", 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
-PARAMETER(330, mtpa, "", 0, 0, 0, 1, 0, ALWAYS,
-          "1 adds the d-axis current that makes the current for a torque the smallest")
+PARAMETER(330, mtpa, "", 0, 0, 0, 1, 0, ALWAYS, "1 adds the d-axis current that gives the most torque per ampere")
 PARAMETER(331, current_divider, "", 0, 0, 1, 2, 1, STOPPED,
           "PWM periods per step of the current control; 2 allows current_bandwidth up to 2080")
 PARAMETER(332, current_corner, "", 0, 0, 0, 1, 0, STOPPED,
@@ -102,16 +101,15 @@ PARAMETER(332, current_corner, "", 0, 0, 0, 1, 0, STOPPED,
 PARAMETER(340, start_method, "", 0, 0, 0, 1, 0, STOPPED,
           "how a standing shaft is started: 0 by its saliency, 1 turned by a current vector (I-F)")
 PARAMETER(341, if_current, "A", 20, 2, 20, 10000, 800, STOPPED, "length of the current vector")
-PARAMETER(342, if_align, "ms", 0, 0, 10, 5000, 500, STOPPED,
-          "at rest first: a quarter turn behind while it rises, then where it begins")
-PARAMETER(343, if_acceleration, "rpm/s", 8, 0, 10, 100000, 500, STOPPED, "slope of its speed")
+PARAMETER(342, if_align, "ms", 0, 0, 10, 5000, 500, STOPPED, "time that the current vector rests before it turns")
+PARAMETER(343, if_acceleration, "rpm/s", 8, 0, 10, 100000, 500, STOPPED, "acceleration of the current vector")
 PARAMETER(344, if_speed, "rpm", 8, 0, 10, 6000, 300, STOPPED,
-          "its speed at the end, where the position source takes over")
+          "speed of the vector at which the position source takes over")
 PARAMETER(345, if_time, "ms", 0, 0, 100, 10000, 2000, STOPPED,
-          "that the source has to agree with it, then the drive faults")
+          "time for the source to agree with the vector before the fault")
 
 // Saturation: incremental inductances at i_d = 0 and i_q = 1/4 .. 4/4 of map_current
-PARAMETER(110, map_current, "A", 20, 2, 100, 10000, 1400, STOPPED, "i_q of the map's last point")
+PARAMETER(110, map_current, "A", 20, 2, 100, 10000, 1400, STOPPED, "i_q of the inductance map's last point")
 PARAMETER(111, lqq_1, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 1/4 of map_current")
 PARAMETER(112, lqq_2, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 2/4 of map_current")
 PARAMETER(113, lqq_3, "%", 16, 2, 2000, 15000, 10000, STOPPED, "share of inductance_q at 3/4 of map_current")
@@ -124,7 +122,7 @@ PARAMETER(119, ldq_1, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual induct
 PARAMETER(120, ldq_2, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 2/4 of map_current")
 PARAMETER(121, ldq_3, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 3/4 of map_current")
 PARAMETER(122, ldq_4, "mH", 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at map_current")
-PARAMETER(123, map_known, "", 0, 0, 0, 1, 0, STOPPED, "1: the map is the machine's, also where it is flat")
+PARAMETER(123, map_known, "", 0, 0, 0, 1, 0, STOPPED, "1: the inductance map is the machine's, even where it is flat")
 
 // Commissioning
 PARAMETER(130, sensor_mismatch, "%", 16, 3, -5000, 5000, 0, STOPPED,
@@ -135,22 +133,22 @@ PARAMETER(131, spin_speed, "rpm", 8, 0, 300, 2000, 600, STOPPED, "speed of the c
 PARAMETER(100, polarity_current, "A", 20, 2, 20, 10000, 300, STOPPED, "current of the polarity test")
 PARAMETER(101, divergence_limit, "deg", 16, 0, 10, 90, 45, ALWAYS,
           "disagreement of the estimators that counts as divergence")
-PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 15, ALWAYS, "for how long")
+PARAMETER(102, divergence_time, "ms", 0, 0, 1, 1000, 15, ALWAYS, "time above divergence_limit before the fault")
 PARAMETER(103, polarity_check, "", 0, 0, 0, 1, 1, STOPPED,
           "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
 PARAMETER(522, wiring_check, "", 0, 0, 0, 1, 1, STOPPED,
           "look at the start whether phases and current sensors are wired as they should be; needs flying_start")
 PARAMETER(160, stop_time, "ms", 0, 0, 10, 60000, 1000, ALWAYS,
-          "for standstill after a stop has brought the reference to zero, then the drive faults")
+          "time to standstill after a stop has brought the reference to zero; longer is a fault")
 PARAMETER(521, stall_time, "ms", 0, 0, 0, 60000, 2000, ALWAYS,
-          "a shaft that does not follow its reference at the limit of the current for so long is a fault; 0 is none")
+          "time at the current limit with a shaft that does not follow, before the fault; 0: no such fault")
 PARAMETER(161, synchronism_floor, "V", 16, 1, 5, 1000, 40, ALWAYS,
-          "EMF error that is borne at any speed, see synchronism_time")
-PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "and this share of the EMF on top of it")
+          "EMF error allowed at any speed, see synchronism_time")
+PARAMETER(162, synchronism_share, "%", 8, 0, 10, 100, 60, ALWAYS, "share of the EMF added to synchronism_floor")
 PARAMETER(163, synchronism_time, "ms", 0, 0, 1, 1000, 5, ALWAYS,
-          "after which an EMF error at its limit, or estimators a quarter turn apart, is a loss of synchronism")
+          "time of an EMF error at its limit, or of estimators a quarter turn apart, before the fault")
 PARAMETER(164, link_regulation, "V", 16, 1, 100, 15000, 4050, ALWAYS,
-          "DC-link voltage from which braking is reduced, to nothing at two thirds of the way to link_maximum")
+          "DC-link voltage above which braking is reduced, to nothing two thirds of the way to link_maximum")
 
 // The start
 PARAMETER(150, flying_start, "", 0, 0, 0, 1, 1, STOPPED, "look for a turning shaft before the start")
@@ -173,8 +171,8 @@ PARAMETER(174, slice_time, "us", 16, 2, 500, 2000, 500, STOPPED,
 
 // Position by the stator flux
 PARAMETER(300, flux_cutoff, "rad/s", 8, 1, 20, 1500, 20, STOPPED,
-          "least cut-off of the low-pass that integrates the flux")
-PARAMETER(301, flux_bandwidth, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "tracking observer behind the stator flux")
+          "lowest cut-off of the low-pass that integrates the flux")
+PARAMETER(301, flux_bandwidth, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "bandwidth of the observer behind the stator flux")
 PARAMETER(303, flux_low, "rpm", 16, 1, 10, 20000, 3500, STOPPED,
           "mechanical speed below which the observer is used, not the stator flux")
 PARAMETER(304, flux_high, "rpm", 16, 1, 20, 30000, 5000, STOPPED,
@@ -190,47 +188,51 @@ PARAMETER(306, flux_plain, "", 0, 0, 0, 1, 0, STOPPED,
 
 // Serial port
 PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
-          "rate of the serial port from the next power-on on, once it is saved")
+          "bit rate of the serial port; saved, it applies from the next power-on")
 PARAMETER(201, link_timeout, "ms", 0, 0, 50, 60000, 1000, ALWAYS,
-          "without a record from the port that started the drive with the guard, then link_reaction")
+          "longest silence of the port that guards the motor, then link_reaction")
 PARAMETER(202, link_reaction, "", 0, 0, 1, 2, 1, ALWAYS, "when the guard hears nothing: 1 stop, 2 coast")
 
 // CAN bus
 PARAMETER(220, can_node, "", 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus, added to the messages' identifiers")
 PARAMETER(221, can_rate, "kbit/s", 0, 0, 0, 1000, 500, STOPPED,
-          "1000, 500, 250, 125, 100, 50, 20 or 10; the bus is off with 0 and with what cannot be made")
+          "1000, 500, 250, 125, 100, 50, 20 or 10; with 0 or any other value the bus is off")
 PARAMETER(222, can_timeout, "ms", 0, 0, 10, 10000, 200, ALWAYS,
-          "without a command on the bus that started the drive, then can_reaction")
-PARAMETER(223, can_reaction, "", 0, 0, 0, 2, 1, ALWAYS, "when commands stay away: 0 nothing, 1 stop, 2 coast")
-PARAMETER(224, can_status_period, "ms", 0, 0, 0, 10000, 10, ALWAYS, "between two STATUS messages; 0 sends none")
+          "longest silence of the bus that started the drive, then can_reaction")
+PARAMETER(223, can_reaction, "", 0, 0, 0, 2, 1, ALWAYS, "when commands are missing: 0 nothing, 1 stop, 2 coast")
+PARAMETER(224, can_status_period, "ms", 0, 0, 0, 10000, 10, ALWAYS, "period of the STATUS message; 0 sends none")
 PARAMETER(225, can_telemetry_period, "ms", 0, 0, 0, 10000, 20, ALWAYS,
-          "between two TELEMETRY_1 and TELEMETRY_2; 0 sends none")
-PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS, "from bus-off to the attempt to be on the bus again")
+          "period of TELEMETRY_1 and TELEMETRY_2; 0 sends none")
+PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS, "time from bus-off to the next attempt")
 
 // Functions of the board (board/functions.h)
 PARAMETER(400, bootstrap_time, "ms", 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
           "lower devices on before the first pulse, for the bootstrap capacitors; 0 where there are none")
 PARAMETER(401, precharge_voltage, "V", 16, 1, 0, 15000, 0, STOPPED,
           "DC-link voltage at which the precharge relay closes; 0 where there is none")
-PARAMETER(402, precharge_time, "ms", 0, 0, 10, 60000, 2000, ALWAYS, "the DC link may take so long to get there")
+PARAMETER(402, precharge_time, "ms", 0, 0, 10, 60000, 2000, ALWAYS, "time for the DC link to reach precharge_voltage")
 PARAMETER(403, brake_voltage, "V", 16, 1, 0, 15000, 0, STOPPED,
           "DC-link voltage that switches the brake resistor on; 0 where there is none")
-PARAMETER(404, brake_hysteresis, "V", 16, 1, 10, 1000, 100, ALWAYS, "so far below it is switched off")
-PARAMETER(405, brake_share, "%", 16, 0, 1, 100, 20, ALWAYS, "mean time that it may be on, over 8 s")
-PARAMETER(410, temperature_limit, "C", 8, 0, 0, 130, 0, ALWAYS, "of the heat sink; 0 where it has no sensor")
+PARAMETER(404, brake_hysteresis, "V", 16, 1, 10, 1000, 100, ALWAYS,
+          "the brake resistor is switched off so far below brake_voltage")
+PARAMETER(405, brake_share, "%", 16, 0, 1, 100, 20, ALWAYS,
+          "share of the time that the brake resistor may be on, over 8 s")
+PARAMETER(410, temperature_limit, "C", 8, 0, 0, 130, 0, ALWAYS,
+          "heat-sink temperature of the fault; 0 where there is no sensor")
 PARAMETER(411, temperature_derating, "C", 8, 0, 0, 130, 70, ALWAYS,
-          "from here on the current limit falls, to a half at temperature_limit")
-PARAMETER(
-    412, overload_current, "A", 20, 2, -100, 10000, -100, ALWAYS,
-    "phase current, peak, that may flow for ever; the limit falls to it; below 0 rated_current, 0 watches nothing")
+          "heat-sink temperature from which the current limit falls, to half at temperature_limit")
+PARAMETER(412, overload_current, "A", 20, 2, -100, 10000, -100, ALWAYS,
+          "continuous phase current, peak, to which overload lowers the limit; below 0: rated_current, 0: no check")
 PARAMETER(413, overload_time, "ms", 0, 0, 100, 600000, 60000, ALWAYS,
           "time constant of the winding, or of the inverter where that is shorter")
-PARAMETER(420, emergency_stop, "", 0, 0, 0, 1, 0, STOPPED, "1: its contact is wired, and switches the gates off")
-PARAMETER(421, gate_feedback, "", 0, 0, 0, 1, 0, STOPPED, "1: the gate enable's output is wired, and watched")
+PARAMETER(420, emergency_stop, "", 0, 0, 0, 1, 0, STOPPED,
+          "1: an emergency-stop contact is wired and switches the gates off")
+PARAMETER(421, gate_feedback, "", 0, 0, 0, 1, 0, STOPPED, "1: the gate enable's output is wired back and watched")
 PARAMETER(430, speed_input, "", 0, 0, 0, 2, 0, STOPPED,
           "speed and run switch at the board: 0 not used, 1 from 0 V, 2 live zero at 10 %")
-PARAMETER(431, speed_input_dead, "%", 16, 1, 0, 500, 20, ALWAYS, "at the lower end that means standstill")
-PARAMETER(432, speed_input_loss, "", 0, 0, 1, 2, 1, ALWAYS, "when the live zero is lost: 1 stop, 2 coast")
-PARAMETER(433, speed_input_full, "rpm", 8, 0, 10, 6000, 2000, ALWAYS, "speed at the upper end")
+PARAMETER(431, speed_input_dead, "%", 16, 1, 0, 500, 20, ALWAYS,
+          "share of the speed input's lower end that means standstill")
+PARAMETER(432, speed_input_loss, "", 0, 0, 1, 2, 1, ALWAYS, "when the speed input's live zero is lost: 1 stop, 2 coast")
+PARAMETER(433, speed_input_full, "rpm", 8, 0, 10, 6000, 2000, ALWAYS, "speed at the upper end of the speed input")
 PARAMETER(440, reference_input, "", 0, 0, 0, 1, 0, STOPPED,
-          "1: ground and reference are wired to the converter, for the self-test")
+          "1: ground and reference are wired to the ADC, for the self-test")

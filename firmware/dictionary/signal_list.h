@@ -4,9 +4,9 @@
 // FRAME of the control only while the power stage is on: 0 else, whatever the estimators make of nothing. What is said
 // of the DRIVE is always known. No include guard: it is included with different meanings of SIGNAL.
 
-SIGNAL(state, "", 0, DRIVE, d->state, "state of the drive, drive_state_t")
-SIGNAL(fault, "", 0, DRIVE, d->fault, "latched fault, drive_fault_t")
-SIGNAL(limit, "", 0, DRIVE, d->limits, "what holds the drive back, bits of drive_limit_t")
+SIGNAL(state, "", 0, DRIVE, d->state, "state of the drive")
+SIGNAL(fault, "", 0, DRIVE, d->fault, "latched fault")
+SIGNAL(limit, "", 0, DRIVE, d->limits, "active limits, one bit each")
 SIGNAL(angle, "turn", 32, ROTOR, d->position.used.angle_bam, "electrical angle in use, at the start of the period")
 SIGNAL(speed, "rpm", 16, ROTOR, SIGNAL_RPM(d->position.used.speed_bpp), "mechanical speed in use")
 SIGNAL(angle_low, "turn", 32, ROTOR, d->position.low.angle_bam, "electrical angle of the low-speed estimator")
@@ -20,24 +20,24 @@ SIGNAL(current_q_reference, "A", 20, DRIVE, d->control.reference_q20.q, "q-axis 
 SIGNAL(voltage_d, "V", 16, DRIVE, d->control.command_q16.d, "d-axis voltage command")
 SIGNAL(voltage_q, "V", 16, DRIVE, d->control.command_q16.q, "q-axis voltage command")
 SIGNAL(voltage_alpha, "V", 16, DRIVE, d->modulation.asked_q16.alpha,
-       "mean voltage asked of the modulator for the next period, drops added")
-SIGNAL(voltage_beta, "V", 16, DRIVE, d->modulation.asked_q16.beta, "its part across phase a")
+       "alpha-axis mean voltage for the next period, device drops added")
+SIGNAL(voltage_beta, "V", 16, DRIVE, d->modulation.asked_q16.beta, "beta-axis mean voltage for the next period")
 SIGNAL(deviation_q, "A/s", 8, ROTOR, q_mul_sat(d->position.deviation_q20, 10000L, 12),
-       "q-axis current deviation under zero vectors, D of the paper; encoder and paper only")
+       "q-axis current deviation under zero vectors, D of the paper; position_source 0 and 1 only")
 SIGNAL(link_voltage, "V", 16, DRIVE, d->samples.link_q16, "DC-link voltage")
 SIGNAL(load_torque, "Nm", 16, ROTOR, q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 24),
        "estimated load torque")
-SIGNAL(windows, "", 0, DRIVE, d->samples.count, "windows sampled in the last period")
-SIGNAL(start_phase, "", 0, DRIVE, d->start.phase, "phase of the start, start_phase_t")
+SIGNAL(windows, "", 0, DRIVE, d->samples.count, "current windows sampled in the last period")
+SIGNAL(start_phase, "", 0, DRIVE, d->start.phase, "phase of the start")
 SIGNAL(polarity_sigma, "", 8, DRIVE, d->start.sigma_q8,
        "confidence in the polarity found at the start, standard errors")
 SIGNAL(load_angle, "turn", 32, ROTOR, d->position.flux.load_angle_bam,
-       "of the stator flux before the rotor's, as estimated")
+       "estimated angle of the stator flux ahead of the rotor")
 SIGNAL(current_a, "A", 20, DRIVE, phase_current(d, false),
        "current of phase a as its sensor reads it, with the gates off as well: mean of the period's windows")
-SIGNAL(current_b, "A", 20, DRIVE, phase_current(d, true), "the same of phase b")
+SIGNAL(current_b, "A", 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
 SIGNAL(speed_known, "", 0, DRIVE, drive_knows_speed(d),
        "1: angle and speed are the rotor's; 0: unknown, the shaft may turn")
 SIGNAL(magnet_flux, "mVs", 16, DRIVE, d->position.flux.machine.psi_q16 / 10,
-       "magnet flux as the stator-flux sources have it")
-SIGNAL(wiring, "", 0, DRIVE, d->start.wiring, "what the start has found wired wrongly, wiring_t")
+       "magnet flux as the stator-flux sources estimate it")
+SIGNAL(wiring, "", 0, DRIVE, d->start.wiring, "wiring mistake found at the start, 0 none")

@@ -15,7 +15,7 @@ static answer_status_t said(request_t* r, hil_result_t result) {
       put_packed(&r->answer, SAY_parameters_are_being_saved_or_read_try);
       return ANSWER_BUSY;
     case HIL_NOT_ACTIVE:
-      put_packed(&r->answer, SAY_the_host_is_not_in_the_loop);
+      put_packed(&r->answer, SAY_not_in_host_in_the_loop_mode);
       return ANSWER_STATE;
     case HIL_SEQUENCE:
       put_u16(&r->answer, hil_expected());

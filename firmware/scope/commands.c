@@ -45,7 +45,7 @@ static void apply(const scope_setup_t* s) {
   if (s->count == 0u) {
     line_refused(SAY_first_scope_channels_signal);
   } else if (scope_setup(s)) {
-    line_of(SAY_set_scope_arm_begins);
+    line_of(SAY_set_scope_arm_starts_it);
   } else {
     line_refused(SAY_outside_of_its_range_nothing_changed_see);
   }
@@ -246,9 +246,9 @@ static void begin_print(const words_of_line_t* a) {
   const scope_state_t state = scope_status().state;
   stride = 16;
   if (a->count > 1u && (!whole(a, &stride) || stride == 0u)) {
-    line_refused(SAY_scope_print_one_record_in_so_many);
+    line_refused(SAY_scope_print_every_nth_record);
   } else if (state != SCOPE_DONE && state != SCOPE_IDLE) {
-    line_refused(SAY_the_scope_still_records_scope_stop_ends);
+    line_refused(SAY_the_scope_is_recording_scope_stop_ends);
   } else if (scope_status().recorded == 0u) {
     line_of(SAY_nothing_has_been_recorded);
   } else {
@@ -279,6 +279,6 @@ void command_scope(const words_of_line_t* a) {
   } else if (word_is(a, 0, "print")) {
     begin_print(a);
   } else {
-    line_refused(SAY_scope_has_no_such_part_see_help);
+    line_refused(SAY_no_such_scope_command_see_help);
   }
 }

@@ -36,7 +36,7 @@ answer_status_t request_scope_setup(request_t* r) {
 
 answer_status_t request_scope_arm(request_t* r) {
   if (scope_arm()) return ANSWER_OK;
-  put_packed(&r->answer, SAY_the_scope_has_no_set_up_yet);
+  put_packed(&r->answer, SAY_the_scope_is_not_set_up_yet);
   return ANSWER_STATE;
 }
 

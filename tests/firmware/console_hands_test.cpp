@@ -35,7 +35,8 @@ class ConsoleHands : public Console {
     drive.state = DRIVE_RUN;
     run(300);
   }
-  static constexpr const char* kTooOld = "too old: the line stood for 5 s, nothing done. Arrow up brings it back\r\n> ";
+  static constexpr const char* kTooOld =
+      "too old: the line was typed over 5 s ago, nothing done. Arrow up recalls it\r\n> ";
 };
 
 TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
@@ -140,7 +141,7 @@ TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
 
 TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
   const std::string ways =
-      "nothing done: nobody would watch. Add 'hold' (runs while keys come) or 'free' (runs until 'stop')\r\n";
+      "nothing done: nobody would watch. Add 'hold' (runs while a key is held) or 'free' (runs until 'stop')\r\n";
   for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
     EXPECT_EQ(command(line), ways) << line;
   }
@@ -148,7 +149,8 @@ TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
 }
 
 TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
-  EXPECT_TRUE(has(command("start free", 100), "free: nobody watches, it runs until 'stop', without this terminal too"));
+  EXPECT_TRUE(
+      has(command("start free", 100), "free: nobody watches; it runs until 'stop', even without this terminal"));
   EXPECT_TRUE(drive.request.start);
   EXPECT_FALSE(guard_is_on());
   drive.request.start = false;
@@ -170,7 +172,7 @@ TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
   text.clear();
   run(1500);
   EXPECT_TRUE(drive.request.stop);
-  EXPECT_TRUE(has(text, "\r\n! nobody was heard for link_timeout: the motor stops\r\n")) << text;
+  EXPECT_TRUE(has(text, "\r\n! nothing was heard for link_timeout: the motor stops\r\n")) << text;
   text.clear();
   run(20000);
   EXPECT_EQ(text, "") << "once";

@@ -26,7 +26,7 @@ TEST_F(Console, StatusAndFaults) {
   EXPECT_TRUE(has(faults, " s  loss of synchronism, running at 0.0 rpm, link ")) << faults;
   const std::string status = command("status");
   EXPECT_TRUE(has(status, "state       fault\r\n")) << status;
-  EXPECT_TRUE(has(status, "fault       loss of synchronism. less load")) << status;
+  EXPECT_TRUE(has(status, "fault       loss of synchronism. reduce load")) << status;
   EXPECT_TRUE(has(status, "parameters  fit together"));
   EXPECT_TRUE(has(command("start free"), "reset it first: loss of synchronism"));
   EXPECT_TRUE(has(command("reset"), "cleared"));
@@ -182,12 +182,12 @@ TEST_F(Console, TheBusInWords) {
   EXPECT_TRUE(has(command("can"), ": on the bus\r\n"));
   can_node_service();
   board.can_status = {HAL_CAN_BUS_OFF, 255, 3, 9, 2, 1};
-  EXPECT_EQ(
-      command("can"),
-      "bus         node 1 at 500 kbit/s: bus-off: it tries again after can_recovery\r\n"
-      "errors      255 sending, 3 receiving (96 warn, 256 sending are bus-off); bus-off 2 times, restarted 1 times\r\n"
-      "lost        9 frames or records; 0 commands did not count\r\n"
-      "commands    none has come\r\n");
+  EXPECT_EQ(command("can"),
+            "bus         node 1 at 500 kbit/s: bus-off: tries again after can_recovery\r\n"
+            "errors      255 sending, 3 receiving (96 is a warning, 256 sending is bus-off); bus-off 2 times, "
+            "restarted 1 times\r\n"
+            "lost        9 frames or records; 0 commands rejected\r\n"
+            "commands    none received\r\n");
 }
 
 TEST_F(Console, WhoCommandsOverTheBus) {
@@ -203,12 +203,12 @@ TEST_F(Console, WhoCommandsOverTheBus) {
   };
   drive.state = DRIVE_READY;
   come(CAN_MODE_OFF);
-  EXPECT_TRUE(has(command("can"), "commands    they come; the drive was not started by them\r\n"));
+  EXPECT_TRUE(has(command("can"), "commands    received, but the drive was not started by them\r\n"));
   come(CAN_MODE_RUN);
-  EXPECT_TRUE(has(command("can"), "commands    they command the drive\r\n"));
+  EXPECT_TRUE(has(command("can"), "commands    in command of the drive\r\n"));
   drive.time_ms += static_cast<std::uint32_t>(parameters.can_timeout);
   can_node_service();
-  EXPECT_TRUE(has(command("can"), "commands    they stay away (can_timeout)\r\n"));
+  EXPECT_TRUE(has(command("can"), "commands    missing (can_timeout)\r\n"));
 }
 
 }  // namespace

@@ -158,13 +158,13 @@ TEST_F(ConsoleScope, WhatCanBePrinted) {
   EXPECT_EQ(command("scope print"), "nothing has been recorded\r\n");
   EXPECT_TRUE(has(command("scope arm"), "armed"));
   steps(20);
-  EXPECT_TRUE(has(command("scope print"), "the scope still records"));
+  EXPECT_TRUE(has(command("scope print"), "the scope is recording"));
   EXPECT_TRUE(has(command("scope stop"), "stopped"));
   EXPECT_EQ(first_words(command("scope print")), "0 16 ") << "what there is of one that was broken off";
   EXPECT_EQ(first_words(command("scope print 9")), "0 9 18 ");
   EXPECT_EQ(first_words(command("scope print 65535")), "0 ");
-  EXPECT_TRUE(has(command("scope print 0"), "one record in so many"));
-  EXPECT_TRUE(has(command("scope print few"), "one record in so many"));
+  EXPECT_TRUE(has(command("scope print 0"), "every n-th record"));
+  EXPECT_TRUE(has(command("scope print few"), "every n-th record"));
 }
 
 // A machine at the other end, or in AUTO mode the reading itself, may arm it meanwhile.

@@ -52,7 +52,7 @@ TEST_F(Console, WhatIsRefusedIsExplained) {
   EXPECT_EQ(command("set speed_limit 7krpm"), "speed_limit is in rpm: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 3 A"), "pole_pairs has no unit: nothing changed\r\n");
   EXPECT_EQ(command("set speed_limit fast"),
-            "speed_limit = fast is not a number (point, no comma) of 10 .. 6000 rpm: nothing changed\r\n");
+            "speed_limit = fast is not a number (point, no comma) in 10 .. 6000 rpm: nothing changed\r\n");
   EXPECT_TRUE(has(command("set speed_limit"), "set name value [unit]"));
   EXPECT_TRUE(has(command("set speed_limit 1 2 3"), "set name value [unit]"));
   EXPECT_EQ(parameters.speed_limit, 3300 * 256);
@@ -62,13 +62,13 @@ TEST_F(Console, WhatIsRefusedIsExplained) {
 }
 
 TEST_F(Console, NumbersAreOneRule) {
-  EXPECT_EQ(command("set pole_pairs 2.5"), "pole_pairs = 2.5 is not a whole number of 1 .. 20: nothing changed\r\n");
+  EXPECT_EQ(command("set pole_pairs 2.5"), "pole_pairs = 2.5 is not a whole number in 1 .. 20: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 25e-1"),
-            "pole_pairs = 25e-1 is not a whole number of 1 .. 20: nothing changed\r\n");
+            "pole_pairs = 25e-1 is not a whole number in 1 .. 20: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 2.0"), "pole_pairs = 2\r\n");
   EXPECT_EQ(command("set pole_pairs 0.3e1"), "pole_pairs = 3\r\n");
   EXPECT_EQ(command("set stator_resistance 1,5"),
-            "stator_resistance = 1,5 is not a number (point, no comma) of 0.0010 .. 20.0000 ohm: nothing changed\r\n");
+            "stator_resistance = 1,5 is not a number (point, no comma) in 0.0010 .. 20.0000 ohm: nothing changed\r\n");
   EXPECT_EQ(command("set speed_ramp 1e3"), "speed_ramp = 1000 rpm/s\r\n");
   EXPECT_EQ(command("set speed_ramp 2e3rpm/s"), "speed_ramp = 2000 rpm/s\r\n");
   for (const char* far : {"1e9", "99999999999999", "-5", "4000000000"}) {
@@ -150,7 +150,7 @@ TEST_F(Console, StartRefStop) {
 
 TEST_F(Console, StartAndResetStandAlone) {
   drive.state = DRIVE_FAULT;
-  EXPECT_EQ(command("reset now"), "this command stands alone: nothing done\r\n");
+  EXPECT_EQ(command("reset now"), "this command takes nothing after it: nothing done\r\n");
   EXPECT_FALSE(drive.request.reset);
   EXPECT_TRUE(has(command("reset"), "cleared"));
   EXPECT_TRUE(drive.request.reset);
@@ -246,8 +246,7 @@ TEST_F(Console, LoadSaysWhichValuesWereRefused) {
     std::copy(slot.begin(), slot.end(), nvm.memory.begin());
     return command("load", 20000);
   };
-  const std::string migrated =
-      "the values saved by another firmware are in force; save to keep them in this one's form";
+  const std::string migrated = "values saved by another firmware are in force; save to keep them in this one's format";
   const slot_entry_t ramp = {86, 8, -1}, limit = {8, 20, INT32_MAX};
   EXPECT_EQ(load({}), migrated + "\r\n");
   EXPECT_EQ(load({limit}), migrated + "; 1 outside of their range, now at their default: current_limit\r\n");

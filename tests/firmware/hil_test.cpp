@@ -63,7 +63,7 @@ TEST_F(HostInTheLoop, IsNotLetInWhileTheMemoryIsWritten) {
 TEST_F(HostInTheLoop, NothingIsSteppedBeforeItIsLetIn) {
   for (const Answer& refused : {give_step(0), ask(REQUEST_HIL_LEAVE)}) {
     EXPECT_EQ(refused.status(), STATE);
-    EXPECT_EQ(refused.text(), "the host is not in the loop: enter first");
+    EXPECT_EQ(refused.text(), "not in host-in-the-loop mode: enter it first");
   }
 }
 

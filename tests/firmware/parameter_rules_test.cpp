@@ -86,12 +86,12 @@ TEST_F(ParameterRules, ThePulseLeavesRoomForItsWindow) {
   parameters.window_minimum = parameters.window_maximum = raw(30.0, 16);
   keeps();
   parameters.settle_time += raw(0.01, 16);
-  refuses("0.65 pulse_time");
+  refuses("0.65 x pulse_time");
   parameters.pulse_time = raw(15.0, 16);
   parameters.settle_time = raw(5.25, 16);
   keeps();
   parameters.settle_time += raw(0.01, 16);
-  refuses("0.65 pulse_time");
+  refuses("0.65 x pulse_time");
 }
 
 TEST_F(ParameterRules, ThePapersSchemeNeedsItsCurrentInEitherDirection) {
@@ -114,7 +114,7 @@ TEST_F(ParameterRules, AvvNeedsTwoActiveVectors) {
       const bool avv = source == 2 || source == 3;
       SCOPED_TRACE(testing::Message() << source << " " << excitation);
       if (avv && (excitation == 0 || excitation >= 4)) {
-        refuses("for AVV");
+        refuses("AVV needs two active vectors");
       } else {
         keeps();
       }

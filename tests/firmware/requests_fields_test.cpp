@@ -197,7 +197,7 @@ TEST_F(RequestFields, AScopeIsSetUpAsTold) {
 
 TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
   drive.state = DRIVE_RUN;
-  EXPECT_EQ(ask(REQUEST_SCOPE_ARM).text(), "the scope has no set-up yet");
+  EXPECT_EQ(ask(REQUEST_SCOPE_ARM).text(), "the scope is not set up yet");
   const Octets setup = little(1, 2) + little(300, 2) + Octets{SCOPE_SINGLE, SCOPE_AT_ONCE, 4, 0} + i32(0);
   ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, setup + Octets{2, 9, 0, 0, 10, 0, 0}).status(), OK);
   ASSERT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);

@@ -90,7 +90,7 @@ class FakeDrive:
         self.stream = None
         self.outcome, self.progress = 0, 0.0
         self.pace = 4000  # of a commissioning, per mille per second
-        self.looked = (0, 0, "nobody has looked")
+        self.looked = (0, 0, "no look since power-on")
         self.seen = (2, 1059, "the shaft turns at 1059 rpm")  # by the next look
         self._counter = 0
         self._begin = self._last = self._heard = self._sent = self._watched = time.monotonic()
@@ -294,7 +294,7 @@ class FakeDrive:
         self.values[number] = value
         if self.values[164] < raw(50, 16):
             raise RefusalError(
-                CONFLICT, "taken, but the drive does not start with it: link_regulation must be above link_minimum"
+                CONFLICT, "set, but the drive does not start with it: link_regulation must be above link_minimum"
             )
         if self.stubborn == number:
             raise RefusalError(BUSY)

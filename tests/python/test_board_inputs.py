@@ -109,7 +109,7 @@ def test_a_reference_that_is_off_is_found(power: Any) -> None:
     desk.board.set_input("reference", 120.0)
     desk.wait(150)
     assert (desk.state, desk.fault) == (FAULT, SELF_TEST)
-    assert "the converter misreads ground or reference" in desk.status("self-test")
+    assert "the ADC misreads ground or reference" in desk.status("self-test")
 
 
 def test_what_is_not_wired_is_not_missed(power: Any) -> None:

@@ -262,7 +262,7 @@ def test_who_may_command_is_said_in_words():
         bench.text = b""
         bench.port.write(b"can\r")
         bench.until(bench.desk.time + 0.1)
-        assert b"commands    none has come" in bench.text
+        assert b"commands    none received" in bench.text
 
 
 def test_a_port_is_for_one_client(tmp_path):
