@@ -76,7 +76,7 @@ class Drive:
         Args:
             profile: the plant, a name from `stillspin list` or a TOML file.
             changes: as `run --set` takes them.
-            speed: times real time; 0 is as fast as possible.
+            speed: multiple of real time; 0 is as fast as possible.
             seed: of the noise.
         """
         return cls(VirtualTransport(profile, changes, speed=speed, seed=seed), timeout=2.0)
@@ -170,7 +170,7 @@ class Drive:
         self.command(Command.STOP)
 
     def coast(self) -> None:
-        """Power stage off at once; the shaft runs out."""
+        """Power stage off at once; the shaft coasts."""
         self.command(Command.COAST)
 
     def look(self) -> looking.Look:
