@@ -19,7 +19,7 @@ PARAMETER(7, friction, "Nms", 24, 5, 0, 50000, 300, STOPPED, "viscous friction")
 PARAMETER(8, current_limit, "A", 20, 2, 50, 10000, 1400, STOPPED, "largest phase current, peak")
 PARAMETER(9, speed_limit, "rpm", 8, 0, 10, 6000, 3300, STOPPED, "largest speed reference")
 PARAMETER(520, rated_current, "A", 20, 2, 0, 10000, 0, ALWAYS,
-          "rated phase current of the motor, peak; 0: not told, half of current_limit counts")
+          "rated phase current of the motor, peak; 0: not set, half of current_limit is used")
 
 // Inverter
 PARAMETER(20, dead_time, "us", 16, 2, BOARD_DEAD_TIME_LEAST, 500, BOARD_DEAD_TIME, STOPPED,

@@ -78,10 +78,10 @@ const std::vector<Mistake> kMistakes = {
     {WIRING_DEAD_B, "a current sensor shows nothing", stuck(2)},
     {WIRING_REVERSED_A, "a current sensor shows nothing or is reversed", reversed(1)},
     {WIRING_REVERSED_B, "a current sensor shows nothing or is reversed", reversed(2)},
-    {WIRING_SWAPPED, "sensors are on other phases", inputs(1, 0)},
-    {WIRING_OTHER_PHASES, "sensors are on other phases", inputs(0, 2)},
-    {WIRING_OTHER_PHASES, "sensors are on other phases", inputs(1, 2)},
-    {WIRING_OTHER_PHASES, "sensors are on other phases", inputs(2, 1)},
+    {WIRING_SWAPPED, "sensors are on different phases", inputs(1, 0)},
+    {WIRING_OTHER_PHASES, "sensors are on different phases", inputs(0, 2)},
+    {WIRING_OTHER_PHASES, "sensors are on different phases", inputs(1, 2)},
+    {WIRING_OTHER_PHASES, "sensors are on different phases", inputs(2, 1)},
 };
 
 void expect_named(RunRequest request, const Mistake& mistake) {

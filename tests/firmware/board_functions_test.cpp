@@ -302,7 +302,7 @@ TEST_F(BoardFunctions, WithoutARatedCurrentHalfOfTheLimitCounts) {
   ASSERT_EQ(parameters.rated_current, 0) << "nobody has told it";
   parameters.current_limit = raw(9.0, 20);
   EXPECT_EQ(board_lasting_current(), raw(4.5, 20));
-  EXPECT_NE(words().find("rated_current not told: half of current_limit may last"), std::string::npos);
+  EXPECT_NE(words().find("rated_current not set: half of current_limit is used"), std::string::npos);
   parameters.rated_current = raw(6.0, 20);
   EXPECT_EQ(board_lasting_current(), raw(6.0, 20));
   EXPECT_EQ(words().find("rated_current"), std::string::npos);
@@ -311,7 +311,7 @@ TEST_F(BoardFunctions, WithoutARatedCurrentHalfOfTheLimitCounts) {
   parameters.rated_current = 0;
   EXPECT_EQ(words().find("rated_current"), std::string::npos) << "it is told what may flow";
   parameters.overload_current = 0;
-  EXPECT_NE(words().find("no overload is watched"), std::string::npos);
+  EXPECT_NE(words().find("no overload protection"), std::string::npos);
 }
 
 TEST_F(BoardFunctions, AnOverloadCurrentOfZeroWatchesNothing) {

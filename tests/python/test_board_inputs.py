@@ -120,4 +120,4 @@ def test_what_is_not_wired_is_not_missed(power: Any) -> None:
     desk.board.set_input("run", 1.0)
     desk.board.set_input("heat_sink", 150.0)
     desk.run(300)
-    assert desk.status("board") == "rated_current not told: half of current_limit may last; current limit 100 %"
+    assert desk.status("board") == "rated_current not set: half of current_limit is used; current limit 100 %"
