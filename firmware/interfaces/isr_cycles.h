@@ -2,7 +2,8 @@
 //
 // Estimates, no measurement on the chip. Samples, estimate, supervise, control, modulate and the window's interrupt are
 // the worst periods of their steps counted on a Cortex-M3, times 1.25; `make isr-cost` fails where one of them is
-// further than a tenth from that (docs/isr-cost.md, toolchain/m3_cost.py). The rest is estimated from operations: a
+// further than a tenth from that (docs/isr-cost.md, toolchain/m3_cost.py); the scope is what the worst period is longer
+// with it. The rest is estimated from operations: a
 // 32 x 32 bit product with rounding 13 cycles, one that is only added up 8, an upper half 6, a saturation 8, a
 // reciprocal 70. Not in it: position source 2 or a hold, which evaluate the windows twice, and what follows when the
 // compare values are written, serial port and scope. They make a compare value that is written too late be seen too
@@ -24,6 +25,6 @@
 #define CYCLES_REFER 550u   // references of the hysteresis
 #define CYCLES_WINDOW 110u
 #define CYCLES_SLICE 120u
-#define CYCLES_SCOPE 210u  // while it records: four channels and the trigger
+#define CYCLES_SCOPE 600u  // while it records: four channels, of the dearest signals, and the trigger
 
 #endif

@@ -1,8 +1,8 @@
 // Records a run of the virtual drive at the boundary of hal/f2808/target.h, for replay.c.
 //
 // Usage: stillspin_isr_record FILE RPM LOAD SHAFT [NAME=VALUE]...     a start with the shaft at SHAFT (rpm), then RPM,
-// then LOAD (N m) as a step; NAME is a firmware parameter. The linker puts the functions here in the place of the
-// target's and of the commands (-Wl,--wrap).
+// then LOAD (N m) as a step; NAME is a firmware parameter, or `scope`, which then records. The linker puts the
+// functions here in the place of the target's and of the commands (-Wl,--wrap).
 
 #include <array>
 #include <cmath>
@@ -16,6 +16,10 @@
 #include "hal/f2808/target.h"
 #include "sim_host/bench/run.hpp"
 #include "tests/m3/trace.h"
+
+extern "C" {
+#include "tests/m3/scope_run.h"
+}
 
 namespace {
 
@@ -169,6 +173,14 @@ parameter_result_t __wrap_parameter_set(std::uint16_t id, std::int32_t raw) {
 
 namespace {
 
+void begin_scope_once(double) {
+  static bool begun = false;
+  if (begun) return;
+  begun = true;
+  log(TRACE_SCOPE);
+  scope_run_begin();
+}
+
 stillspin::bench::RunRequest request_of(int argc, char** argv) {
   stillspin::bench::RunRequest r;
   const double rpm = std::atof(argv[2]);
@@ -185,7 +197,11 @@ stillspin::bench::RunRequest request_of(int argc, char** argv) {
     const std::string word = argv[k];
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) throw std::invalid_argument(word + ": not NAME=VALUE");
-    r.parameters[word.substr(0, equals)] = std::atof(word.c_str() + equals + 1);
+    if (word.substr(0, equals) == "scope") {
+      r.on_period = begin_scope_once;
+    } else {
+      r.parameters[word.substr(0, equals)] = std::atof(word.c_str() + equals + 1);
+    }
   }
   return r;
 }

@@ -16,6 +16,7 @@
 
 #include "firmware/mode/commands.h"
 #include "hal/f2808/target.h"
+#include "tests/m3/scope_run.h"
 #include "tests/m3/trace.h"
 
 void firmware_main(void);
@@ -216,6 +217,9 @@ static void catch_up(void) {
         break;
       case TRACE_COMMAND_SPEED:
         drive_command_speed((int32_t)r.value);
+        break;
+      case TRACE_SCOPE:
+        scope_run_begin();
         break;
       case TRACE_END:
         report();

@@ -25,7 +25,8 @@ typedef enum {
   TRACE_COMMAND_START,  // nothing
   TRACE_COMMAND_STOP,   // nothing
   TRACE_COMMAND_SPEED,  // raw value
-  TRACE_END             // nothing
+  TRACE_END,            // nothing
+  TRACE_SCOPE           // nothing: scope_run_begin
 } trace_kind_t;
 
 typedef struct {

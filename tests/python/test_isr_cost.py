@@ -26,7 +26,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[int, int],
         return trace
 
     def replay(_image: Path, trace: Path) -> m3_cost.Table:
-        worst = 800 if trace.read_text() == "600" else 700
+        worst = {"600": 800, "600, scope": 1600}.get(trace.read_text(), 700)
         return {f"turning {step}": m3_cost.Cost(10, 600.0, worst) for step in (*m3_cost.STEPS, "window")}
 
     changes = {"BUDGET": budget, "CHARGES": charges, "missing_tools": list, "record": record, "replay": replay}
@@ -37,7 +37,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[int, int],
 
     def main(limit: int, charge: int) -> int:
         budget.write_text(f"# why\nobserver turning 900\npaper turning {limit}  # the worst of all its runs\n")
-        worth = dict.fromkeys(m3_cost.CHARGED, 1000) | {"CYCLES_WINDOW": charge}
+        worth = dict.fromkeys((*m3_cost.CHARGED, "CYCLES_SCOPE"), 1000) | {"CYCLES_WINDOW": charge}
         charges.write_text("".join(f"#define {name} {cycles}u\n" for name, cycles in worth.items()))
         return m3_cost.main()
 
