@@ -19,7 +19,7 @@ extern "C" {
 // What hal_sci_service can carry: four octets of ten bits in each period of 100 us, each way.
 #define HAL_SCI_MAX_BAUD 400000uL
 
-// Counts since hal_sci_init; each stays at 65535.
+// Counts since hal_sci_init; each stays at 65535, but that of the breaks, which begins anew.
 typedef struct {
   uint16_t framing;  // characters without a stop bit: noise or a wrong rate
   uint16_t overrun;  // times that the port's FIFO overflowed
@@ -37,6 +37,9 @@ void hal_sci_service(void);
 
 // Background level. Takes up to `room` received octets; returns how many.
 uint16_t hal_sci_read(uint16_t* octets, uint16_t room);
+
+// Background level. True once behind a break: what had come before it and was not read yet is dropped.
+bool hal_sci_take_break(void);
 
 // Background level. Hands octets over to be sent, as many as fit; returns how many. Upper halves of words are ignored.
 uint16_t hal_sci_write(const uint16_t* octets, uint16_t count);

@@ -34,18 +34,18 @@ static answer_status_t check_ready(octet_writer_t* why) {
   return ANSWER_STATE;
 }
 
-answer_status_t action_start(guard_t guard, octet_writer_t* why) {
+answer_status_t action_start(guard_t guard, uint32_t holder, octet_writer_t* why) {
   const answer_status_t status = check_ready(why);
   if (status != ANSWER_OK) return status;
-  guard_begin(guard);
+  guard_begin(guard, holder);
   drive_command_start();
   return ANSWER_OK;
 }
 
-answer_status_t action_commission(guard_t guard, octet_writer_t* why) {
+answer_status_t action_commission(guard_t guard, uint32_t holder, octet_writer_t* why) {
   const answer_status_t status = check_ready(why);
   if (status != ANSWER_OK) return status;
-  guard_begin(guard);
+  guard_begin(guard, holder);
   drive_command_commission();
   return ANSWER_OK;
 }

@@ -26,9 +26,9 @@ typedef enum {
   ANSWER_CONFLICT = 7  // parameters that do not fit together
 } answer_status_t;
 
-/// With a guard, `link_timeout` without a record of the port stops the drive again.
-answer_status_t action_start(guard_t guard, octet_writer_t* why);
-answer_status_t action_commission(guard_t guard, octet_writer_t* why);
+/// With a guard, `link_timeout` without a record of its holder stops the drive again (link/guard.h).
+answer_status_t action_start(guard_t guard, uint32_t holder, octet_writer_t* why);
+answer_status_t action_commission(guard_t guard, uint32_t holder, octet_writer_t* why);
 
 /// Two short-circuit pulses: how the shaft turns. The outcome is asked for afterwards (drive_look_outcome).
 answer_status_t action_look(octet_writer_t* why);

@@ -5,6 +5,7 @@
 // is 10 % to 90 % of 3 V, and what lies beyond 5 % or 95 % is a broken wire or a short circuit. A lost signal stops the
 // drive; it runs again when the switch has been opened and closed. The same clears a fault.
 
+#include "firmware/api/guard.h"
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
@@ -33,6 +34,7 @@ static void follow_switch(void) {
   if (opened && drive.state == DRIVE_FAULT) drive_command_reset();
   if (!closed || drive.state != DRIVE_READY) return;
   board.input = SPEED_INPUT_RUNS;
+  guard_begin(GUARD_OWN, 0);
   drive_command_start();
 }
 

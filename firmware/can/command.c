@@ -1,5 +1,6 @@
 #include "firmware/can/command.h"
 
+#include "firmware/api/guard.h"
 #include "firmware/can/messages.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
@@ -48,6 +49,7 @@ static void run(can_command_t* c, int32_t speed_steps) {
   if (!starts) return;
   c->armed = false;
   c->commanding = true;
+  guard_begin((parameters.can_reaction == CAN_REACTION_NONE) ? GUARD_NONE : GUARD_OWN, 0);
   drive_command_start();
 }
 

@@ -44,7 +44,7 @@ static bool wait_for_run(uint16_t step) {
 
 // Who watches over the motor: word k, the only one left. False, and said, when nobody does and that was not asked for.
 static bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
-  if (a->count == k && guard_is_fed()) {
+  if (a->count == k && guard_beside_text() != 0u) {
     *guard = GUARD_SERIAL;
   } else if (a->count == k + 1u && word_is(a, k, "hold")) {
     *guard = GUARD_KEYS;
@@ -66,12 +66,15 @@ void command_start(const words_of_line_t* a) {
   guard_t guard;
   if (!choose_guard(a, 0, &guard)) return;
   if (guard == GUARD_NONE && drive_is_energised() && drive.state != DRIVE_STOP) {  // whoever held the motor leaves
-    guard_release();
-    say_guard(guard);
+    if (guard_release()) {
+      say_guard(guard);
+    } else {
+      line_refused(SAY_others_hold_the_motor);
+    }
     return;
   }
   octet_writer_t* const w = line_begin();
-  if (action_start(guard, w) != ANSWER_OK) {
+  if (action_start(guard, guard_beside_text(), w) != ANSWER_OK) {
     line_end_refused();
     return;
   }
@@ -201,7 +204,7 @@ static bool list_results(uint16_t step) {
 static void begin_commissioning(const words_of_line_t* a) {
   guard_t guard;
   if (!choose_guard(a, 1, &guard)) return;
-  const bool begins = action_commission(guard, line_begin()) == ANSWER_OK;
+  const bool begins = action_commission(guard, guard_beside_text(), line_begin()) == ANSWER_OK;
   line_answer(begins, SAY_commissioning_the_shaft_will_turn_stop_ends);
   if (begins) say_guard(guard);
 }

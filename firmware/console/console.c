@@ -35,7 +35,6 @@ static bool someone_types;
 static uint16_t faults_told;
 static uint16_t errors_before;  // of the port, when the line began
 static uint16_t errors_at_key;
-static uint16_t breaks_before;
 static uint32_t heard_ms;
 static bool silence_told;
 
@@ -49,7 +48,6 @@ void console_reset(void) {
   faults_told = 0;
   errors_before = 0;
   errors_at_key = 0;
-  breaks_before = hal_sci_errors().breaks;
   heard_ms = 0;
   silence_told = false;
 }
@@ -93,7 +91,7 @@ static void obey(void) {
 
 static void edit(uint16_t octet) {
   if (editor.line.count == 0u) {  // what it had was taken back
-    editor.expired = false;
+    editor.expired = editor.cut;
     errors_before = port_errors();
   } else if ((octet & AFTER_PAUSE) != 0u) {
     editor.expired = true;
@@ -146,13 +144,9 @@ static void stop_at_once(void) {
   prompt();
 }
 
-// A break is the terminal's way to say that what came before does not count.
-static void look_for_breaks(void) {
-  const uint16_t breaks = hal_sci_errors().breaks;
-  if (breaks == breaks_before) return;
-  breaks_before = breaks;
+static void cut(void) {
+  editor_cut(&editor, kept_count > 0u);
   kept_count = 0;
-  editor_cut(&editor);
 }
 
 // What a loose cable sends is nobody's key.
@@ -165,14 +159,17 @@ static bool is_key(uint16_t octet) {
 
 // The space bar that holds the motor neither fills the line nor ends an answer.
 static bool only_holds(uint16_t octet) {
-  return is_key(octet) && guard_heard(GUARD_KEYS) && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
+  return is_key(octet) && guard_key() && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
 }
 
 void console_octet(uint16_t octet) {
+  if (octet == CONSOLE_BREAK) {
+    cut();
+    return;
+  }
   const uint32_t pause_ms = drive_time_ms() - heard_ms;
   heard_ms += pause_ms;
   someone_types = true;
-  look_for_breaks();
   if (only_holds(octet)) return;
   if (job != NULL && octet == CTRL_C) {
     break_off();
@@ -217,7 +214,6 @@ static void tell(void) {
 }
 
 void console_service(void) {
-  look_for_breaks();
   if (hal_sci_room() < ROOM) return;
   if (job != NULL) {
     if (!job(step++)) end_job();

@@ -22,7 +22,9 @@ void console_reset(void);
 /// Whether console_octet may be called.
 bool console_takes(void);
 
-/// A character from the port, with room for EDITOR_ECHO_MAX or OUTPUT_LINE to be sent back.
+#define CONSOLE_BREAK 0x200u  // as a character: what was typed and is not obeyed yet is forgotten
+
+/// A character from the port, with room for EDITOR_ECHO_MAX or OUTPUT_LINE to be sent back; a break needs none.
 void console_octet(uint16_t octet);
 
 /// Background level.

@@ -21,6 +21,7 @@ static void begin_line(editor_t* e) {
   e->too_long = false;
   e->disturbed = false;
   e->expired = false;
+  e->cut = false;
   e->escape = ESCAPE_NONE;
   e->recalled = 0;
 }
@@ -32,10 +33,10 @@ void editor_reset(editor_t* e) {
   for (uint16_t k = 0; k < EDITOR_HISTORY; k++) e->history[k].count = 0;
 }
 
-void editor_cut(editor_t* e) {
-  const bool some = e->line.count > 0u;
+void editor_cut(editor_t* e, bool more) {
+  const bool cut = e->cut || more || e->line.count > 0u;
   begin_line(e);
-  e->disturbed = some;
+  e->cut = cut;
 }
 
 void editor_show(const editor_t* e, octet_writer_t* echo) {

@@ -33,6 +33,7 @@ typedef struct {
   bool too_long;
   bool disturbed;
   bool expired;       // it has stood for long; set from outside
+  bool cut;           // it may have begun before it was emptied
   bool after_return;  // a LF that follows belongs to it
   uint16_t escape;    // where in an escape sequence
   uint16_t parameter;
@@ -44,8 +45,9 @@ typedef enum { EDITOR_NOTHING, EDITOR_DONE, EDITOR_BREAK } editor_event_t;
 
 void editor_reset(editor_t* e);
 
-/// An empty line, with the history as it is. What comes before its end belongs to a line of which some is missing.
-void editor_cut(editor_t* e);
+/// An empty line, with the history as it is. What comes next may be the rest of what was there, or of what was typed
+/// behind it (`more`).
+void editor_cut(editor_t* e, bool more);
 
 /// Takes an octet and appends to `echo` what the terminal is to be sent. After EDITOR_DONE the line is in `line` until
 /// editor_next.

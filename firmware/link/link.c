@@ -55,9 +55,17 @@ static void sort(int16_t found) {
   }
 }
 
+// A break is the terminal's way to say that what came before does not count.
+static void forget(void) {
+  splitter.in_record = false;
+  text_at = text_end;
+  console_octet(CONSOLE_BREAK);
+}
+
 // One octet or character further; false when there is none, or no room for what it may bring about.
 static bool take_octet(void) {
   uint16_t octet;
+  if (hal_sci_take_break()) forget();
   if (hal_sci_room() < WIRE_MAX) return false;
   if (text_at < text_end) {
     if (!console_takes()) return false;

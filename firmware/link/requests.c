@@ -18,7 +18,7 @@ static const entry_t entries[] = {
     {REQUEST_PARAMETER_GET, 2, 2, request_parameter_get},
     {REQUEST_PARAMETER_SET, 6, 6, request_parameter_set},
     {REQUEST_COMMAND, 5, 5, request_command},
-    {REQUEST_STATUS, 0, 0, request_status},
+    {REQUEST_STATUS, 0, 4, request_status},
     {REQUEST_SIGNALS, 2, 32, request_signals},
     {REQUEST_FAULT, 1, 1, request_fault},
     {REQUEST_WORDS, 2, 2, request_words},
@@ -56,7 +56,6 @@ uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, u
   if (count < 2u) return 0;
   const uint16_t type = request[0] & 0xFFu;
   if ((type & RECORD_ANSWER) != 0u) return 0;  // an answer that comes back must not be answered
-  (void)guard_heard(port);
   request_t r;
   r.port = port;
   r.body = octet_reader(&request[2], (uint16_t)(count - 2u));

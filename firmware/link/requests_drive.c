@@ -9,13 +9,22 @@
 #include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 
+// A guard that is asked for without a number is a former client's: nobody could tell who keeps it alive.
+static bool lacks_holder(uint16_t code, uint32_t number, octet_writer_t* why) {
+  if (number != 1u || (code != COMMAND_START && code != COMMAND_COMMISSION)) return false;
+  put_packed(why, SAY_a_guarded_start_needs_the_number);
+  return true;
+}
+
 answer_status_t request_command(request_t* r) {
   const uint16_t code = take_u8(&r->body);
   const int32_t argument = take_i32(&r->body);
-  const guard_t guard = ((argument & 1) != 0) ? r->port : GUARD_NONE;
+  const uint32_t holder = (uint32_t)argument;
+  const guard_t guard = ((holder & 1u) != 0u) ? r->port : GUARD_NONE;
+  if (lacks_holder(code, holder, &r->answer)) return ANSWER_RANGE;
   switch (code) {
     case COMMAND_START:
-      return action_start(guard, &r->answer);
+      return action_start(guard, holder, &r->answer);
     case COMMAND_STOP:
       action_stop();
       return ANSWER_OK;
@@ -27,7 +36,7 @@ answer_status_t request_command(request_t* r) {
     case COMMAND_SPEED:
       return action_speed(argument, &r->answer);
     case COMMAND_COMMISSION:
-      return action_commission(guard, &r->answer);
+      return action_commission(guard, holder, &r->answer);
     case COMMAND_SAVE:
       return action_save(&r->answer);
     case COMMAND_DEFAULTS:
@@ -48,10 +57,15 @@ answer_status_t request_look(request_t* r) {
   return ANSWER_OK;
 }
 
-static uint16_t link_flags(void) { return (uint16_t)((guard_is_on() ? 1u : 0u) | (guard_has_stopped() ? 2u : 0u)); }
+static uint16_t link_flags(uint32_t asker) {
+  return (uint16_t)((guard_is_on() ? 1u : 0u) | (guard_has_stopped() ? 2u : 0u) | (guard_is_of(asker) ? 4u : 0u));
+}
 
 answer_status_t request_status(request_t* r) {
   octet_writer_t* const w = &r->answer;
+  const uint32_t asker = (r->body.count > 0u) ? take_u32(&r->body) : 0u;
+  if (r->body.short_of) return ANSWER_LENGTH;
+  if (asker != 0u) guard_heard(r->port, asker);
   const drive_signals_t s = drive_signals();
   put_u32(w, drive_time_ms());
   put_u8(w, (uint16_t)drive.state);
@@ -64,7 +78,7 @@ answer_status_t request_status(request_t* r) {
   put_u8(w, (uint16_t)drive_commissioning_outcome());
   put_u8(w, (uint16_t)drive_commissioning_phase());
   put_u16(w, (uint16_t)drive_commissioning_progress());
-  put_u8(w, link_flags());
+  put_u8(w, link_flags(asker));
   put_u8(w, drive_known(&drive));
   put_u8(w, store_unsaved());
   return ANSWER_OK;

@@ -29,6 +29,8 @@ static ring_t receive_ring, transmit_ring;
 static uint16_t received[HAL_SCI_RECEIVE_RING];
 static uint16_t to_send[HAL_SCI_TRANSMIT_RING];
 static hal_sci_errors_t errors;
+static volatile uint16_t break_at;  // in the receive ring: what lies before it came before the last break
+static uint16_t breaks_taken;
 
 static uint16_t fill(const ring_t* ring) { return (uint16_t)(ring->in - ring->out); }
 
@@ -59,6 +61,7 @@ static void forget(void) {
   receive_ring.in = receive_ring.out = 0u;
   transmit_ring.in = transmit_ring.out = 0u;
   errors = (hal_sci_errors_t){0u, 0u, 0u, 0u};
+  breaks_taken = 0u;
   broken = false;
 }
 
@@ -114,7 +117,8 @@ static bool may_send_on(void) {
   if (!broken) {
     if (!reg_any(SCI + SCI_RXST, SCI_RXST_BRKDT_MASK)) return true;
     broken = true;
-    count(&errors.breaks);
+    break_at = receive_ring.in;
+    errors.breaks++;
   }
   if (!gpio_read(BOARD_PIN_SERIAL_IN)) return true;
   if (!reg_any(SCI + SCI_CTL2, SCI_CTL2_TXEMPTY_MASK)) return false;
@@ -152,6 +156,16 @@ uint16_t hal_sci_read(uint16_t* octets, uint16_t room) {
     receive_ring.out++;
   }
   return taken;
+}
+
+// What has been read beyond it was read before its break was counted.
+bool hal_sci_take_break(void) {
+  const uint16_t breaks = errors.breaks;
+  if (breaks == breaks_taken) return false;
+  breaks_taken = breaks;
+  const uint16_t at = break_at;
+  if ((uint16_t)(at - receive_ring.out) <= HAL_SCI_RECEIVE_RING) receive_ring.out = at;
+  return true;
 }
 
 uint16_t hal_sci_room(void) { return (uint16_t)(HAL_SCI_TRANSMIT_RING - fill(&transmit_ring)); }

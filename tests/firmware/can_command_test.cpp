@@ -18,6 +18,19 @@ TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
   EXPECT_TRUE(drive.request.stop);
 }
 
+// Its own time-out watches over the motor, and nobody else lets go of it.
+TEST_F(CanCommand, TheMotorIsItsOwn) {
+  make_running_by_bus();
+  EXPECT_TRUE(guard_is_on());
+  EXPECT_FALSE(guard_release());
+  guard_reset();
+  parameters.can_reaction = CAN_REACTION_NONE;
+  say(CAN_MODE_OFF, 0, 60);
+  say(CAN_MODE_RUN, 0, 60);
+  EXPECT_TRUE(drive_is_energised());
+  EXPECT_FALSE(guard_is_on()) << "it does nothing when the bus is silent";
+}
+
 TEST_F(CanCommand, OffOpensTheGates) {
   make_running_by_bus();
   say(CAN_MODE_OFF, 0, 10);

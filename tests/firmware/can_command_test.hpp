@@ -7,6 +7,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/api/guard.h"
 #include "firmware/can/command.h"
 }
 

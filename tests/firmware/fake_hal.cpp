@@ -192,5 +192,11 @@ std::uint16_t hal_sci_write(const std::uint16_t* octets, std::uint16_t count) {
   return put;
 }
 std::uint16_t hal_sci_room(void) { return board.serial_room; }
+bool hal_sci_take_break(void) {
+  if (board.serial_break < 0) return false;
+  board.serial_in.erase(board.serial_in.begin(), board.serial_in.begin() + board.serial_break);
+  board.serial_break = -1;
+  return true;
+}
 hal_sci_errors_t hal_sci_errors(void) { return board.serial_errors; }
 }

@@ -65,6 +65,7 @@ struct FakeBoard {
   std::uint16_t legs = 0;
   hal_slice_t slice = {2048, 2048, 2731};           // no current, 300 V
   std::deque<std::uint16_t> serial_in, serial_out;  // octets for the firmware, and from it
+  int serial_break = -1;                            // a break came behind so many of them; -1: none
   std::uint16_t serial_room = 512;                  // of the transmit ring, taken octets deducted
   std::uint32_t baud = 0;
   int baud_calls = 0;

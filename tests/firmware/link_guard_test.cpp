@@ -1,4 +1,4 @@
-// A drive that was started guarded stops by itself when the port that has started it is silent.
+// A drive that was started guarded stops by itself when who has started it is silent, whoever else speaks.
 
 #include "tests/firmware/requests.hpp"
 
@@ -13,6 +13,8 @@ class Guard : public Requests {
     drive.state = DRIVE_READY;
     parameters.link_timeout = 200;
   }
+  static constexpr std::int32_t kMine = 0x12345, kOthers = 0x12347;
+  Answer tell(std::int32_t number) { return ask(REQUEST_STATUS, little(static_cast<std::uint32_t>(number), 4)); }
   void start(std::int32_t argument) {
     ASSERT_EQ(give(COMMAND_START, argument).status(), OK);
     drive.request.start = false;
@@ -21,10 +23,10 @@ class Guard : public Requests {
 };
 
 TEST_F(Guard, SilenceStopsTheDrive) {
-  start(1);
+  start(kMine);
   for (int k = 0; k < 8; ++k) {
     run(1000);
-    EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
+    EXPECT_EQ(tell(kMine).number(22, 1), 5u) << "on, and of who asks";
   }
   EXPECT_FALSE(drive.request.stop);
   run(1500);
@@ -35,7 +37,7 @@ TEST_F(Guard, SilenceStopsTheDrive) {
 }
 
 TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
-  ASSERT_EQ(give(COMMAND_START, 1).status(), OK);
+  ASSERT_EQ(give(COMMAND_START, kMine).status(), OK);
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
   drive.state = DRIVE_FAULT;
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 0u);
@@ -46,7 +48,7 @@ TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
 
 TEST_F(Guard, ItCanBeToldToCoast) {
   parameters.link_reaction = LINK_REACTION_COAST;
-  start(1);
+  start(kMine);
   run(2500);
   EXPECT_TRUE(drive.request.coast);
   EXPECT_FALSE(drive.request.stop);
@@ -64,8 +66,39 @@ TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
   drive.state = DRIVE_READY;
   ASSERT_EQ(give(COMMAND_COMMISSION, ~1).status(), OK);
   EXPECT_FALSE(guard_is_on());
-  ASSERT_EQ(give(COMMAND_COMMISSION, 1).status(), OK);
+  ASSERT_EQ(give(COMMAND_COMMISSION, kMine).status(), OK);
   EXPECT_TRUE(guard_is_on()) << "a commissioning turns the motor, too";
+}
+
+// Whoever asks meanwhile: one that only looks, and one that holds something of its own.
+TEST_F(Guard, OtherClientsKeepNothingAlive) {
+  start(kMine);
+  for (int k = 0; k < 30; ++k) {
+    EXPECT_EQ(tell(kOthers).number(22, 1) & 4u, 0u);
+    (void)ask(REQUEST_SIGNALS, {0, 0});
+    (void)ask(REQUEST_STATUS);
+  }
+  EXPECT_TRUE(drive.request.stop);
+}
+
+TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
+  start(kMine);
+  (void)tell(kOthers);
+  for (int k = 0; k < 30; ++k) {
+    run(1000);
+    (void)tell(kMine);
+  }
+  EXPECT_FALSE(drive.request.stop);
+}
+
+TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
+  for (const unsigned code : {COMMAND_START, COMMAND_COMMISSION}) {
+    EXPECT_EQ(give(code, 1).status(), RANGE);
+    EXPECT_EQ(give(code, 1).text(), "a guarded start needs the client's number: this client is too old");
+  }
+  EXPECT_FALSE(drive.request.start || drive.request.commission);
+  EXPECT_EQ(give(COMMAND_SPEED, 1).status(), OK) << "of which the lowest bit says nothing";
+  for (int octets = 1; octets < 4; ++octets) EXPECT_EQ(ask(REQUEST_STATUS, little(1, octets)).status(), LENGTH);
 }
 
 // From the last record on, and no earlier; then it has done its work.
@@ -78,38 +111,38 @@ TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
   };
   drive.state = DRIVE_RUN;
   drive.time_ms = 1000;
-  guard_begin(GUARD_BUS);
+  guard_begin(GUARD_BUS, 7);
   EXPECT_FALSE(stops_at(1199));
-  guard_heard(GUARD_BUS);
+  guard_heard(GUARD_BUS, 7);
   EXPECT_FALSE(stops_at(1398));
   EXPECT_TRUE(stops_at(1399));
   EXPECT_TRUE(guard_has_stopped());
   EXPECT_FALSE(guard_is_on() || stops_at(9999));
-  guard_begin(GUARD_BUS);
+  guard_begin(GUARD_BUS, 7);
   EXPECT_FALSE(guard_has_stopped()) << "since the last start";
   drive.state = DRIVE_READY;
   EXPECT_TRUE(stops_at(20000)) << "a start that was not carried out yet is taken back";
   EXPECT_FALSE(guard_has_stopped());
-  guard_begin(GUARD_BUS);
+  guard_begin(GUARD_BUS, 7);
   drive.state = DRIVE_RUN;
   guard_reset();
   EXPECT_FALSE(guard_is_on() || stops_at(30000));
 }
 
 TEST_F(Guard, OnlyThePortThatStartedCounts) {
-  start(1);
+  start(kMine);
   std::uint16_t answer[RECORD_MAX];
-  const std::uint16_t request[] = {REQUEST_STATUS, 7};
+  const std::uint16_t request[] = {REQUEST_STATUS, 7, 0x45, 0x23, 0x01, 0};
   for (int k = 0; k < 30; ++k) {
     run(100);
-    (void)request_answer(GUARD_BUS, request, 2, answer);
+    (void)request_answer(GUARD_BUS, request, 6, answer);
     send("\r");  // nor does text
   }
   EXPECT_TRUE(drive.request.stop);
 }
 
 TEST_F(Guard, ItEndsWithThePowerStage) {
-  start(1);
+  start(kMine);
   run(10);
   drive.state = DRIVE_READY;
   run(10);

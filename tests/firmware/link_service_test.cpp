@@ -114,7 +114,7 @@ TEST_F(LinkService, AResetForgetsTextThatWaits) {
 
 TEST_F(LinkService, AResetEndsWhatAMachineHasAskedFor) {
   EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2) + little(4, 2)).status(), OK);
-  guard_begin(GUARD_SERIAL);
+  guard_begin(GUARD_SERIAL, 7);
   send(Octets{0, 9, 9, 9, 0});
   run(10);
   EXPECT_EQ(link_errors().records.damaged, 1);

@@ -3,6 +3,10 @@
 #include "firmware/board/functions.h"
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/api/guard.h"
+}
+
 namespace stillspin::test {
 namespace {
 
@@ -43,6 +47,7 @@ TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {
   turns(1, true, 0);
   EXPECT_EQ(drive.state, DRIVE_START);
   EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
+  EXPECT_FALSE(guard_release()) << "the switch watches over its motor";
 }
 
 TEST_F(SpeedInput, TheConverterIsChosenForThreeMillisecondsInEight) {

@@ -274,6 +274,36 @@ TEST_F(SerialBreak, each_break_counts) {
   }
 }
 
+// The octets of two periods, a break behind the first: what is read after it was told came behind it.
+TEST_F(SerialBreak, what_came_before_it_is_dropped_and_what_came_behind_it_is_kept) {
+  std::uint16_t octets[8];
+  const auto receive = [&](std::uint16_t octet) {
+    bus.words[kSci + SCI_FFRX] = 2u << SCI_FFRX_RXFFST_LSB;
+    bus.words[kSci + SCI_RXBUF] = octet;
+    service();
+    bus.words[kSci + SCI_FFRX] = 0;
+  };
+  status(false, true, true);
+  receive('a');
+  EXPECT_FALSE(hal_sci_take_break());
+  status(true, true, true);
+  receive('b');
+  status(false, true, true);
+  receive('c');
+  EXPECT_TRUE(hal_sci_take_break());
+  ASSERT_EQ(hal_sci_read(octets, 8), 2);
+  EXPECT_EQ(octets[1], 'c');
+  EXPECT_FALSE(hal_sci_take_break()) << "once";
+  status(true, true, true);
+  service();
+  status(false, true, true);
+  receive('d');
+  ASSERT_EQ(hal_sci_read(octets, 1), 1) << "before anybody asks for the break";
+  EXPECT_TRUE(hal_sci_take_break());
+  ASSERT_EQ(hal_sci_read(octets, 8), 1) << "nothing comes twice";
+  EXPECT_EQ(octets[0], 'd');
+}
+
 TEST_F(SerialBreak, a_new_set_up_knows_nothing_of_it) {
   bus.words[kSci + SCI_FFRX] = 1u << SCI_FFRX_RXFFST_LSB;
   for (unsigned k = 0; k <= HAL_SCI_RECEIVE_RING; ++k) service();
@@ -288,6 +318,7 @@ TEST_F(SerialBreak, a_new_set_up_knows_nothing_of_it) {
   EXPECT_EQ(hal_sci_room(), HAL_SCI_TRANSMIT_RING) << "what was to be sent is dropped";
   std::uint16_t octet;
   EXPECT_EQ(hal_sci_read(&octet, 1), 0) << "and what had come";
+  EXPECT_FALSE(hal_sci_take_break());
   status(false, true, true);
   service();
   EXPECT_FALSE(reset);

@@ -115,6 +115,7 @@ uint16_t hal_sci_read(uint16_t* octets, uint16_t room) {
   any_octets(octets, count);
   return count;
 }
+bool hal_sci_take_break(void) { return any_bool(); }
 hal_sci_errors_t hal_sci_errors(void) {
   const hal_sci_errors_t e = {any_u16, any_u16, any_u16, any_u16};
   return e;

@@ -39,7 +39,7 @@ void prove_console(void) {
   while (any_bool()) {
     any_moment();
     if (any_bool()) any_stream(GUARD_SERIAL);
-    if (any_bool()) guard_begin((guard_t)any_up_to(3));
+    if (any_bool()) guard_begin((guard_t)any_up_to(3), any_u32);
     link_service();
     console_service();
     (void)link_errors();

@@ -73,6 +73,7 @@ class FakeDrive:
         self.state, self.fault, self.store = READY, 0, 1
         self.speed = self.reference = self.set_point = 0.0
         self.guarded = False
+        self.holder = self.beside_text = 0  # numbers of who holds the motor, and of who has spoken last
         self.faults = []
         self.asked = []  # types of the requests answered, in order
         self.swallow = []  # types of requests of which the next one gets no answer
@@ -163,7 +164,6 @@ class FakeDrive:
                 if isinstance(item, Text):
                     self._console(item.octets)
                 elif isinstance(item, Record):
-                    self._heard = time.monotonic()
                     self._answer(item)
             with self._lock:
                 self._move()
@@ -185,8 +185,18 @@ class FakeDrive:
         self.refusals += line.startswith(b"refuse")
         self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
         if line.startswith(b"start"):
-            self.state, self.guarded = RUN, line == b"start"
+            self.start(self.beside_text if line == b"start" else 0)
         self.watched = line == b"watch"
+
+    def _start_if_ready(self, argument):
+        if self.state != READY:
+            raise RefusalError(STATE)
+        if argument == 1:
+            raise RefusalError(RANGE, "a guarded start needs the client's number")
+        self.start(argument)
+
+    def start(self, holder):
+        self.state, self.guarded, self.holder, self._heard = RUN, bool(holder & 1), holder, time.monotonic()
 
     def _move(self):
         now = time.monotonic()
@@ -302,10 +312,8 @@ class FakeDrive:
 
     def _on_07(self, body):
         code, argument = struct.unpack("<Bi", body)
-        if code == 1 and self.state != READY:
-            raise RefusalError(STATE)
         if code == 1:
-            self.state, self.guarded = RUN, bool(argument & 1)
+            self._start_if_ready(argument)
             if self.start_fault:
                 self._fail(self.start_fault)
         elif code == 2 and self.state in (RUN, COMMISSION):
@@ -318,6 +326,7 @@ class FakeDrive:
         elif code == 5:
             self.set_point = argument / 2**16
         elif code == 6:
+            self._start_if_ready(argument)
             self.state, self.outcome, self.progress = COMMISSION, 1, 0
         elif code == 10:
             if self.state != READY:
@@ -330,14 +339,23 @@ class FakeDrive:
             self.values = {number: raw(initial, q) for number, _, _, q, _, _, _, initial, _, _ in PARAMETERS}
         return b""
 
-    def _on_08(self, _):
+    def _on_08(self, body):
+        asker = int.from_bytes(body, "little")
+        if asker:
+            self.beside_text = asker
+        if asker and asker == self.holder:
+            self._heard = time.monotonic()
         speeds = (raw(self.speed, 16), raw(self.reference, 16))
         phase = 2 if self.state == COMMISSION else 0
-        last = (self.outcome, phase, int(self.progress), self.guarded, self.known, self.unsaved)
+        last = (self.outcome, phase, int(self.progress), self._link_flags(asker), self.known, self.unsaved)
         limits = 1 if self.state == RUN else 0
         return struct.pack(
             "<IBBHiiBBBBHBBB", self._now_ms(), self.state, self.fault, limits, *speeds, self.store, 0, *last
         )
+
+    def _link_flags(self, asker):
+        on = self.guarded and self.state in (RUN, COMMISSION)
+        return on + 4 * (on and asker == self.holder)
 
     def _on_09(self, body):
         indices = struct.unpack(f"<{len(body) // 2}H", body)

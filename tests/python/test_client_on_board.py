@@ -1,6 +1,8 @@
 """The client and the firmware: pyserial on a pseudo-terminal, behind it the virtual board in real time."""
 
 import os
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -14,6 +16,7 @@ from typer.testing import CliRunner
 from stillspin import cli, core
 from stillspin.drive import Channel, Drive, Trigger
 from stillspin.drive.requester import wait_until
+from stillspin.drive.state import ENERGISED
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.link.records import Record, to_wire
@@ -120,6 +123,31 @@ def test_the_drive_stops_by_itself_when_a_guarded_client_is_silent(desk):
     time.sleep(1.5)
     assert wait_until(lambda: not desk.status().energised, SLOW)
     assert desk.raw_status().link & 2
+
+
+HOLDS = """
+import sys, time
+from stillspin.drive import Drive
+with Drive.open(sys.argv[1], timeout=2.0) as drive, drive.running(100, timeout=20):
+    print("runs", flush=True)
+    time.sleep(600)
+"""
+
+
+def test_a_motor_whose_client_is_killed_stops_although_another_asks(port, home):
+    with Drive.open(port, timeout=2.0) as before:
+        before.set("link_timeout", 4000)  # for the other to be there in time
+    with subprocess.Popen([sys.executable, "-c", HOLDS, port], stdout=subprocess.PIPE, text=True) as client:
+        assert client.stdout.readline() == "runs\n"
+        client.kill()
+        client.wait()
+        with Drive.open(port, timeout=2.0) as other, other.kept_alive():
+            first = other.raw_status()
+            assert first.state in ENERGISED
+            assert (first.guarded, first.held) == (True, False)
+            assert wait_until(lambda: other.raw_status().state not in ENERGISED, SLOW, 0.05)
+            assert other.raw_status().link & 2
+            other.set("link_timeout", 1000)
 
 
 def test_noise_and_half_records_leave_the_drive_controllable(desk):

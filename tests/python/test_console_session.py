@@ -132,8 +132,19 @@ def test_free_and_keep_running_leave_it_running(ask, fake):
 
 
 def test_a_motor_of_somebody_else_is_left_alone(ask, fake):
-    fake.state = RUN
+    fake.start(4711)
     ask("console", "-c", "status")
+    assert fake.state == RUN
+
+
+def test_a_session_that_ends_leaves_a_motor_alone_that_another_has_started_since(sit_down, fake):
+    person = sit_down()
+    person.type("start\r")
+    assert runs(fake)
+    assert person.sees("heard start"), person.seen
+    fake.start(4711)
+    person.type("\x04")
+    assert person.goes()
     assert fake.state == RUN
 
 

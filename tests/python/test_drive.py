@@ -11,7 +11,7 @@ from fake_drive import PARAMETERS
 from stillspin.drive import Channel, ConflictWarning, Drive, Outcome, Signal, Table, Trigger, scope
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until
-from stillspin.drive.state import RawStatus
+from stillspin.drive.state import RUN, RawStatus
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, LinkError, NoAnswerError, RefusedError
 
@@ -249,6 +249,48 @@ def test_a_guarded_motor_stops_when_the_client_is_silent(fake, drive):
     drive.start(300, guarded=True)
     assert fake.state == 4
     assert wait_until(lambda: fake.state != 4, 2)
+
+
+def test_what_another_client_asks_keeps_no_motor_running(fake, drive):
+    drive.set("link_timeout", 100)
+    drive.start(300, guarded=True)
+    drive.holder = 0
+    drive.hold()  # from here on it is somebody else
+    with drive.kept_alive(0.02):
+        assert wait_until(lambda: fake.state != RUN, 2)
+
+
+def test_a_client_that_goes_leaves_the_motor_of_another_alone(fake, drive):
+    with drive.running(300):
+        assert drive.raw_status().held
+        fake.start(4711)  # meanwhile it has stopped, and another client has started it
+        assert not drive.raw_status().held
+    assert fake.state == RUN
+    assert not drive.let_go()
+    assert fake.state == RUN
+    drive.stop()
+    assert fake.state != RUN  # stop is for everybody
+
+
+def test_questions_are_asked_in_the_order_of_their_coming(drive):
+    order = []
+    for number in range(20):
+
+        def ask(number=number):
+            with drive.link._turns.turn(urgent=False):
+                order.append(number)
+
+        with drive.link._turns.turn(urgent=False):
+            threads = []
+            for _ in range(3):
+                threads.append(threading.Thread(target=ask))
+                threads[-1].start()
+                waiting = len(threads)
+                assert wait_until(lambda waiting=waiting: len(drive.link._turns._waiting) == waiting, 5, 0.0)
+        ask()  # who has just had his turn does not go first again
+        for thread in threads:
+            thread.join()
+    assert order == sorted(order)
 
 
 def test_running_is_guarded_and_ends_with_the_context(fake, drive):

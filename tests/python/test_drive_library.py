@@ -20,6 +20,7 @@ CALLS = {
     "raw_parameters": lambda drive: drive.raw_parameters(),
     "start": lambda drive: drive.start(100),
     "stop": lambda drive: drive.stop(),
+    "let_go": lambda drive: drive.let_go(),
     "coast": lambda drive: drive.coast(),
     "look": lambda drive: drive.look(),
     "reset": lambda drive: drive.reset(),
@@ -45,7 +46,7 @@ CALLS = {
     "commission": lambda drive: drive.commission(),
 }
 LIBRARY = Path(__file__).resolve().parents[2] / "docs" / "library"
-ASK_NOBODY = {"open", "virtual", "close", "kept_alive", "describe_status"}
+ASK_NOBODY = {"open", "virtual", "close", "hold", "kept_alive", "describe_status"}
 
 
 def public():

@@ -229,6 +229,28 @@ def test_the_motor_stops_when_the_page_lets_go_or_is_closed(server, fake):
     assert wait_until(lambda: fake.state != RUN, 10)
 
 
+def test_a_page_that_goes_leaves_the_motor_of_another_alone_but_its_stop_is_for_everybody(server, fake, clock):
+    async def is_closed(page):
+        await page.ask("start", speed=300)
+        fake.start(4711)  # meanwhile it has stopped, and another client has started it
+
+    async def falls_silent(page):
+        await page.ask("stop")
+        assert await asyncio.to_thread(wait_until, lambda: fake.state == READY, 10)
+        await page.ask("start", speed=300)
+        fake.start(4711)
+        clock[0] += PATIENCE + 0.01
+        assert await asyncio.to_thread(wait_until, lambda: not server.bench.dead_man.release(), 10)
+        assert not await asyncio.to_thread(wait_until, lambda: fake.state != RUN, 0.3)  # three rounds of the watch
+        await page.ask("stop")
+        assert fake.state != RUN
+
+    fake.values[200] = 10000  # link_timeout: nobody keeps this guard alive here
+    talk(server, is_closed)
+    assert not wait_until(lambda: fake.state != RUN, 0.3)
+    talk(server, falls_silent)
+
+
 def test_a_page_that_only_looks_does_not_keep_the_motor_running(server, fake, clock):
     async def conversation(page):
         await page.ask("start", speed=300)

@@ -27,17 +27,15 @@ _QUIET = 0.2
 """Seconds without a character behind a prompt: nothing runs any more."""
 _PATIENCE = 3.0
 _KEEP_ALIVE = 0.1
-_MOVES = {"start", "commission", "look"}
 
 
 class Session:
-    """What was said in it, as far as it concerns the motor."""
+    """What goes to the console, and whether a motor runs by it."""
 
     def __init__(self, drive: Drive, keep_running: bool = False) -> None:
         self.keep_running = keep_running
         """Leave a motor that this session has started running when it ends."""
         self._drive = drive
-        self._started = self._free = False
 
     def send(self, line: str) -> None:
         """A line with its end.
@@ -45,9 +43,6 @@ class Session:
         Raises:
             LinkError: the way is lost.
         """
-        words = line.lower().split()
-        if words[:1] and words[0] in _MOVES:
-            self._started, self._free = True, "free" in words
         self._drive.link.transport.send_text(line.encode("ascii", "replace") + LINE_END)
 
     def interrupt(self) -> None:
@@ -56,7 +51,7 @@ class Session:
 
     def holds_motor(self) -> bool:
         """Whether a motor runs that this session has started, and that its end would stop."""
-        return self._started and not self._free and self._drive.raw_status().state in ENERGISED
+        return self._drive.raw_status().held
 
     def clear(self) -> None:
         """End what the session before has left running, and what it left in the line; nothing of it is shown.
@@ -82,8 +77,8 @@ class Session:
 
     def stop(self) -> None:
         """Stop a motor that this session has started, unless it is to run on."""
-        if not self.keep_running and self.holds_motor():
-            self._drive.stop()
+        if not self.keep_running:
+            self._drive.let_go()
 
     def _set_free(self) -> str:
         """Take the guard off a motor that runs, and say what became of it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import struct
 import threading
 import warnings
@@ -13,7 +14,7 @@ from stillspin.drive import describe, log, protocol, scope, values
 from stillspin.drive import look as looking
 from stillspin.drive.commissioning import OnProgress, Report, follow
 from stillspin.drive.describe import unpack
-from stillspin.drive.protocol import GUARDED, Command, Request, StatusCode, Words
+from stillspin.drive.protocol import HOLDERS, Command, Request, StatusCode, Words
 from stillspin.drive.requester import Requester, wait_until
 from stillspin.drive.state import ENERGISED, FAULT, RUN, Fault, RawFault, RawStatus, Status, rpm
 from stillspin.drive.stream import Stream
@@ -49,6 +50,8 @@ class Drive:
             progress: gets the share of the table that has been read.
         """
         self.link = Requester(transport, timeout)
+        self.holder = 0
+        """The number under which this client holds a motor; 0 before it has one."""
         self._words: dict[tuple[int, int], str] = {}
         try:
             self.identity = describe.identity(self._ask)
@@ -145,7 +148,8 @@ class Drive:
 
         Args:
             speed: rpm, set beforehand; otherwise the one in force.
-            guarded: the drive stops by itself when nothing is heard from this client for its `link_timeout`.
+            guarded: the drive stops by itself when this client has not asked for its `status` for the drive's
+                `link_timeout`; `kept_alive` asks by itself. What other clients ask does not count.
             wait: return when the start procedure is over and the motor runs; otherwise as soon as the drive begins.
             timeout: s to wait for that.
 
@@ -156,7 +160,7 @@ class Drive:
         """
         if speed is not None:
             self.ref(speed)
-        self.command(Command.START, GUARDED if guarded else 0)
+        self.command(Command.START, self.hold() if guarded else 0)
         if wait:
             try:
                 self.wait_for_run(timeout)
@@ -168,6 +172,18 @@ class Drive:
     def stop(self) -> None:
         """Speed to zero along the ramp, then power stage off."""
         self.command(Command.STOP)
+
+    def hold(self) -> int:
+        """The argument of a guarded start: this client's number, which `status` tells the drive from now on."""
+        self.holder = self.holder or secrets.choice(HOLDERS)
+        return self.holder
+
+    def let_go(self) -> bool:
+        """Stop the motor if it runs by a guarded start of this client, and say whether it did."""
+        held = self.raw_status(urgent=True).held
+        if held:
+            self.stop()
+        return held
 
     def coast(self) -> None:
         """Power stage off at once; the shaft coasts."""
@@ -246,17 +262,17 @@ class Drive:
                 self.wait_for_run(timeout)
                 yield
             finally:
-                if not self.link.lost:
-                    self.stop()
+                if not self.link.lost and self.let_go():
                     wait_until(lambda: self.raw_status().state not in ENERGISED, timeout)
 
     @contextmanager
     def kept_alive(self, interval: float = 0.05) -> Iterator[None]:
         """Lets the drive hear from this client every `interval` seconds, as a guarded start wants it."""
         end = threading.Event()
+        self.hold()
 
         def tell() -> None:
-            while not end.wait(interval):
+            for _ in self.link.transport.beats(interval, end):
                 try:
                     self.raw_status()
                 except NoAnswerError:
@@ -286,9 +302,16 @@ class Drive:
 
     # Inspection
 
-    def raw_status(self) -> RawStatus:
-        """The numbers behind `status`."""
-        return RawStatus.unpack(self._ask(Request.STATUS, b""))
+    def raw_status(self, once: float | None = None, *, urgent: bool = False) -> RawStatus:
+        """The numbers behind `status`.
+
+        Args:
+            once: s to wait for the answer; the question is then not repeated.
+            urgent: before all that waits.
+        """
+        body = struct.pack("<I", self.holder) if self.holder else b""
+        answer = self.link.request(Request.STATUS, body, repeat=once is None, timeout=once, urgent=urgent)
+        return RawStatus.unpack(answer)
 
     def status(self) -> Status:
         """What the drive does now."""
@@ -424,14 +447,17 @@ class Drive:
     def commission(self, on_progress: OnProgress | None = None) -> Report:
         """Let the drive measure machine and inverter. It takes about a minute and a half and turns the shaft.
 
+        It ends with this program: the drive stops by itself when it hears nothing from this client.
+
         Args:
             on_progress: gets the share done, 0 to 1, and the phase in words; False from it stops.
 
         Raises:
             DriveError: it was stopped, or ended in a fault.
         """
-        self.command(Command.COMMISSION)
-        return follow(self, on_progress)
+        with self.kept_alive():
+            self.command(Command.COMMISSION, self.hold())
+            return follow(self, on_progress)
 
     def _ask(self, kind: Request, body: bytes) -> bytes:
         return self.link.request(kind, body, repeat=kind in protocol.REPEATABLE)

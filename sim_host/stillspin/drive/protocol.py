@@ -68,8 +68,8 @@ class Command(IntEnum):
     LOOK = 10
 
 
-GUARDED = 1
-"""Argument of START: the drive stops by itself when no record comes for `link_timeout`."""
+HOLDERS = range(3, 2**31, 2)
+"""Arguments of a guarded START or COMMISSION: the drive stops by itself without a STATUS of this number."""
 
 
 class Words(IntEnum):

@@ -7,6 +7,7 @@ import queue
 import random
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -41,23 +42,24 @@ class Counts:
 
 
 class Turns:
-    """Who asks next: what is urgent goes before whatever else waits."""
+    """Who asks next: in the order of their coming; what is urgent goes before whatever else waits."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._taken = False
-        self._urgent = 0
+        self._waiting: deque[object] = deque()
 
     @contextmanager
     def turn(self, urgent: bool) -> Iterator[None]:
         """Wait for the turn, and have it while the context lasts."""
+        me = object()
         with self._changed:
-            self._urgent += urgent
+            (self._waiting.appendleft if urgent else self._waiting.append)(me)
             try:
-                self._changed.wait_for(lambda: not self._taken and (urgent or not self._urgent))
+                self._changed.wait_for(lambda: not self._taken and self._waiting[0] is me)
                 self._taken = True
             finally:
-                self._urgent -= urgent
+                self._waiting.remove(me)
         try:
             yield
         finally:

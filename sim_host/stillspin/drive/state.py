@@ -50,6 +50,11 @@ class RawStatus:
         return bool(self.link & 1)
 
     @property
+    def held(self) -> bool:
+        """Whether it is this client that keeps the guard alive, because its start asked for it."""
+        return bool(self.link & 4)
+
+    @property
     def unsaved_known(self) -> int | None:
         """How many parameters are not saved; None when a save has failed."""
         return self.unsaved if self.unsaved < _UNSAVED_UNKNOWN else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from stillspin.link.records import Record
 from stillspin.link.segments import Joiner, split
 from stillspin.link.serial_port import descriptor_of, explain
 from stillspin.link.splitter import Damaged, Item
+from stillspin.link.transport import beats_of_clock
 
 DEFAULT_BITRATE = 500_000
 NODES = range(1, 32)
@@ -72,6 +74,10 @@ class CanTransport:
             raise LinkError(f"{self.name} is lost: {error}") from error
         items += [Damaged(b"", "a piece is missing")] * (self._joiner.damaged - damaged)
         return items
+
+    def beats(self, interval: float, end: threading.Event) -> Iterator[None]:
+        """See Transport."""
+        return beats_of_clock(interval, end)
 
     def close(self) -> None:
         """See Transport."""

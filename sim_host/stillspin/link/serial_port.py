@@ -6,6 +6,7 @@ import errno
 import re
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import serial
@@ -14,6 +15,7 @@ from serial.tools import list_ports
 from stillspin.link.errors import LinkError
 from stillspin.link.records import Record, to_wire
 from stillspin.link.splitter import Item, Splitter
+from stillspin.link.transport import beats_of_clock
 
 DEFAULT_BAUD = 115200
 _WRITE_TIMEOUT = 2.0
@@ -55,6 +57,10 @@ class SerialTransport:
         except (OSError, serial.SerialException, TypeError) as error:  # TypeError: closed during the read
             raise LinkError(f"{self.name} is lost: {_reason(error)}") from error
         return self._splitter.feed(octets, time.monotonic())
+
+    def beats(self, interval: float, end: threading.Event) -> Iterator[None]:
+        """See Transport."""
+        return beats_of_clock(interval, end)
 
     def close(self) -> None:
         """See Transport."""

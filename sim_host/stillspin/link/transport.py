@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Iterator
 from typing import Protocol
 
 from stillspin.link.records import Record
@@ -50,6 +52,16 @@ class Transport(Protocol):
         """
         ...
 
+    def beats(self, interval: float, end: threading.Event) -> Iterator[None]:
+        """One every `interval` seconds of the drive's time, until the end."""
+        ...
+
     def close(self) -> None:
         """Give the port back. May be called twice."""
         ...
+
+
+def beats_of_clock(interval: float, end: threading.Event) -> Iterator[None]:
+    """The beats of a drive whose time is the clock's."""
+    while not end.wait(interval):
+        yield

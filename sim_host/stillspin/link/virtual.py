@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
+from collections.abc import Iterator
 
 from stillspin import core, resources
 from stillspin.board.desk import SLICE, TICKS_PER_SECOND
@@ -16,6 +18,8 @@ from stillspin.link.records import Record, to_wire
 from stillspin.link.splitter import Item, Splitter
 
 _PAUSE = 0.002
+_LATE = 0.2
+"""Seconds of the board's time behind a beat, from which on it goes no faster than the clock."""
 
 
 class VirtualTransport:
@@ -58,6 +62,7 @@ class VirtualTransport:
         self._pacer = Pacer(speed)
         self._splitter = Splitter()
         self._lock = threading.Lock()
+        self._awaited = math.inf
         self._closed = False
 
     @property
@@ -102,8 +107,20 @@ class VirtualTransport:
             if octets or now > end:
                 # Silence is measured in the board's time: it may run slower than the clock.
                 return self._splitter.feed(octets, self._time)
-            if not self._pacer.free:
+            if not self._pacer.free or self._time > self._awaited:
                 time.sleep(_PAUSE)
+
+    def beats(self, interval: float, end: threading.Event) -> Iterator[None]:
+        """See Transport. A board that is faster than the clock waits for who is late with the next one."""
+        try:
+            while not end.is_set():
+                beat = self._time + interval
+                self._awaited = beat + _LATE
+                while self._time < beat and not end.wait(_PAUSE / 2):
+                    pass
+                yield
+        finally:
+            self._awaited = math.inf
 
     def close(self) -> None:
         """See Transport. Switches the board off."""

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 
 from stillspin.drive import Drive
-from stillspin.drive.protocol import Request
 from stillspin.drive.state import RawStatus
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, LinkError, NoAnswerError
@@ -51,14 +50,13 @@ class Connection:
         """
         name = self.drive.link.transport.name
         try:
-            body = self.drive.link.request(Request.STATUS, repeat=False, timeout=_ANSWER)
+            status = self.drive.raw_status(once=_ANSWER)
         except NoAnswerError:
             self.trouble = f"the drive on {name} does not answer: is it switched on, is the cable in?"
             raise
         except LinkError as error:
             self.trouble = str(error)
             raise
-        status = RawStatus.unpack(body)
         at = status.time_ms / 1e3
         self._heard, before, self._time = time.monotonic(), self._time, at
         if self._open and at < before - _STEP_BACK:
@@ -83,12 +81,14 @@ class Connection:
             return False
         self._hurry.clear()
         self._next = time.monotonic() + _AGAIN
+        holder = self.drive.holder
         self.drive.close()
         try:
             self.drive = self._open()
         except (DriveError, InputError) as error:
             self.trouble = str(error)
             return False
+        self.drive.holder = holder  # what ran for the page is still the page's
         self._heard, self._time, self.trouble = time.monotonic(), 0.0, ""
         return True
 

@@ -26,13 +26,30 @@ class Watch(threading.Thread):
         self._end = end
         self._owed = ""
         """Why the motor must still be stopped; empty when it must not."""
+        self._whoever = False
+        """Whether it must be stopped also when somebody else has started it."""
         self._away = False
 
     def stop(self) -> None:
-        """Stop; what fails is tried again here, and nothing else is asked until then."""
-        self._owed = "stopped; it took more than one try"
-        self._bench.drive.stop()
+        """Stop, whoever holds it; what fails is tried again here, and nothing else is asked until then."""
+        self._owe("stopped; it took more than one try", whoever=True)
+        self._settle()
+
+    def let_go(self) -> bool:
+        """The same for a motor that runs by a start of this page's, and for no other; whether it did."""
+        self._owe("stopped; it took more than one try")
+        return self._settle()
+
+    def _owe(self, why: str, *, whoever: bool = False) -> None:
+        self._owed, self._whoever = why, whoever
+
+    def _settle(self) -> bool:
+        drive = self._bench.drive
+        stopped = self._whoever or drive.let_go()
+        if self._whoever:
+            drive.stop()
         self._owed = ""
+        return stopped
 
     def run(self) -> None:
         """See Thread."""
@@ -51,10 +68,8 @@ class Watch(threading.Thread):
 
     def _look(self) -> None:
         if self._bench.dead_man.expired():
-            self._owed = "stopped: nothing was heard from the page"
-        if why := self._owed:
-            self._bench.drive.stop()
-            self._owed = ""
+            self._owe("stopped: nothing was heard from the page")
+        if (why := self._owed) and self._settle():
             self._bench.tell({"t": "note", "text": why})
         self._bench.tell(status_message(self._bench.drive.describe_status(self._way.look())))
 
@@ -62,7 +77,7 @@ class Watch(threading.Thread):
         self._away = True
         # A drive with a long link_timeout may still be running when it is back, and the first question keeps it so.
         if self._bench.dead_man.release():
-            self._owed = "stopped: the connection to the drive was lost"
+            self._owe("stopped: the connection to the drive was lost")
         if isinstance(error, SwitchedOnError):
             self._owed = ""
             self._bench.tell({"t": "note", "text": str(error)})

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 
 from stillspin.drive import Drive
-from stillspin.drive.protocol import GUARDED, Command
+from stillspin.drive.protocol import Command
 from stillspin.drive.state import COMMISSIONING_RUNNING
 from stillspin.link.errors import DriveError
 from stillspin.tune.connection import Connection
@@ -44,7 +44,7 @@ class Workbench:
         """Stop the motor if a page holds it, and end."""
         try:
             if self.dead_man.release():
-                self.stop()
+                self.watch.let_go()
         finally:
             self._end.set()
             self.watch.join()
@@ -59,7 +59,7 @@ class Workbench:
 
     def commission(self, who: str) -> None:
         """Measure machine and inverter; goes on as `start` does."""
-        self._run(who, lambda: self.drive.command(Command.COMMISSION, GUARDED))
+        self._run(who, lambda: self.drive.command(Command.COMMISSION, self.drive.hold()))
 
     def _run(self, who: str, command: Callable[[], None]) -> None:
         status = self.drive.raw_status()
@@ -70,15 +70,14 @@ class Workbench:
             command()
         except DriveError:
             if self.dead_man.release(who):
-                self.stop()  # the command may have arrived although its answer did not
+                self.watch.let_go()  # the command may have arrived although its answer did not
             raise
         if not self.dead_man.is_held_by(who):  # let go while the command was under way
-            self.watch.stop()
+            self.watch.let_go()
 
     def release(self, who: str, why: str) -> None:
         """`who` has let go: the motor stops if it was his."""
-        if self.dead_man.release(who):
-            self.stop()
+        if self.dead_man.release(who) and self.watch.let_go():
             self.tell({"t": "note", "text": why})
 
     def stop(self) -> None:
