@@ -277,7 +277,8 @@ def commission_(
     tables.commissioning(result)
     write_found(out, result, execute.Settings(chosen, changes, seed, revision(), firmware=firmware()))
     found = len(result.values) - len(result.refused)
-    print(f"{found} of {len(result.values)} values found in {result.duration:.1f} s of the drive's time; see {out}")
+    print(f"{found} of {len(result.values)} values found in {result.duration:.1f} s of the drive's time")
+    print(f"they are in {out} and in no drive: 'stillspin params load {out} --save' puts them into one")
     for value in result.refused:
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)
     if result.refused:

@@ -203,6 +203,18 @@ def test_who_leaves_a_motor_that_runs_free_is_told(sit_down, fake):
     assert fake.state == RUN
 
 
+def test_who_leaves_is_told_what_is_not_saved(sit_down, fake):
+    person = sit_down()  # which has changed link_timeout
+    person.type("\x04")
+    assert person.sees("1 parameter is not saved: 'save' keeps what is in force"), person.seen
+    assert person.goes()
+    other = sit_down()
+    fake.kept = dict(fake.values)
+    other.type("exit\r")
+    assert other.goes()
+    assert "not saved" not in other.seen
+
+
 @pytest.mark.parametrize("way", ["\x04", "exit\r", signal.SIGTERM, signal.SIGHUP, None])
 def test_every_way_out_stops_the_motor(sit_down, fake, way):
     person = sit_down()

@@ -148,6 +148,10 @@ def test_a_look_tells_how_the_shaft_turns(fake, drive):
     seen = drive.look()
     assert (seen.outcome, seen.limit) == (Outcome.STANDS, 45.0)
     assert math.isnan(seen.speed)
+    fake.seen = (4, 45, "it turns, the pulses do not agree on how; by its back-EMF at about 45 rpm")
+    seen = drive.look()
+    assert (seen.outcome, seen.limit) == (Outcome.UNCLEAR, 45.0)
+    assert math.isnan(seen.speed)
     fake.seen = (5, 0, "ended by a stop")
     with pytest.raises(DriveError, match="not looked at: ended by a stop"):
         drive.look()
@@ -363,11 +367,21 @@ def test_a_commissioning_is_followed_to_its_results(drive):
     report = drive.commission(lambda share, phase: phases.append((share, phase)) or True)
     assert not report.complete
     assert phases[0][1] == "staircase"
+    assert report.unsaved == ""
+    assert phases[-1] == (1.0, "done")
     assert [(value.name, value.value, value.used) for value in report.values] == [
         ("current_limit", 13.5, True),
         ("speed_limit", 5000.0, False),
     ]
     assert report.values[1].words == "too few samples"
+
+
+def test_a_commissioning_says_that_its_results_are_not_saved(fake, drive):
+    fake.values[6] -= 1
+    heard = []
+    report = drive.commission(lambda share, phase: heard.append(phase))
+    assert report.unsaved == "1 parameter is not saved: 'save' keeps what is in force"
+    assert heard[-1] == f"done: {report.unsaved}"
 
 
 def test_a_commissioning_can_be_stopped(drive):

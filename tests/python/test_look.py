@@ -95,7 +95,30 @@ def test_a_coast_ends_it(desk: Desk) -> None:
     desk.wait(100)
     said = desk.board.serial_read().decode()
     assert desk.state == READY
-    assert "look" in said
+    assert "power stage off" in said  # which answers instead
+
+
+def test_a_fault_ends_it(desk: Desk) -> None:
+    desk.board.serial_write(b"look\r")
+    desk.wait(1.2)
+    desk.board.set_input("emergency", 1.0)
+    desk.wait(100)
+    assert desk.state == FAULT
+    assert "ended by a stop or a fault: see 'status'" in desk.board.serial_read().decode()
+
+
+@pytest.mark.parametrize("speed", [900, -900])
+def test_pulses_that_contradict_each_other_are_said_to(desk: Desk, speed: float) -> None:
+    """A drive that is told a third of its magnet: size and turning of the back-EMF have no speed in common."""
+    desk.run(speed)
+    desk.wait(1500)
+    desk.type("coast", 100)
+    told = 0.3 * float(re.search(r"magnet_flux = (\S+)", desk.type("get magnet_flux"))[1])
+    assert f"magnet_flux = {told:.5f}" in desk.type(f"set magnet_flux {told:.5f}")
+    said, before = looked(desk)
+    found = re.search(r"it turns, the pulses do not agree on how; by its back-EMF at about (\d+) rpm", said)
+    assert found, said
+    assert float(found[1]) == pytest.approx(abs(before) / 0.3, rel=0.1)
 
 
 def test_nothing_looks_by_itself(desk: Desk) -> None:

@@ -22,7 +22,7 @@ DONE, PARTLY, ABORTED, FAILED = 2, 3, 4, 5
 USED = 0
 
 OnProgress = Callable[[float, str], bool | None]
-"""Gets the share done, 0 to 1, and the phase in words; False stops."""
+"""Gets the share done, 0 to 1, and the phase in words, at the end what is not saved; False stops."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,8 @@ class Report:
     values: tuple[Identified, ...]
     complete: bool
     """Whether every value is plausible and in use."""
+    unsaved: str
+    """What would be lost with the power, in words; empty when nothing would."""
 
 
 def follow(drive: Drive, on_progress: OnProgress | None) -> Report:
@@ -71,7 +73,10 @@ def follow(drive: Drive, on_progress: OnProgress | None) -> Report:
         raise DriveError("the commissioning was stopped; the parameters are as before")
     if raw.outcome not in {DONE, PARTLY}:
         raise DriveError(f"the commissioning failed: {drive.words(Words.FAULT, raw.fault)}")
-    return Report(results(drive), raw.outcome == DONE)
+    report = Report(results(drive), raw.outcome == DONE, drive.status().unsaved_text)
+    if on_progress:
+        on_progress(1.0, f"done: {report.unsaved}" if report.unsaved else "done")
+    return report
 
 
 def results(drive: Drive) -> tuple[Identified, ...]:

@@ -450,7 +450,8 @@ class Drive:
         It ends with this program: the drive stops by itself when it hears nothing from this client.
 
         Args:
-            on_progress: gets the share done, 0 to 1, and the phase in words; False from it stops.
+            on_progress: gets the share done, 0 to 1, and the phase in words, at the end what is not saved; False from
+                it stops.
 
         Raises:
             DriveError: it was stopped, or ended in a fault.
