@@ -10,13 +10,15 @@
 #include "firmware/text/text.h"
 #include "firmware/text/words.h"
 
+#define RULE_MAX 100u  // characters of a rule
+
 // Why the drive cannot begin anything now; OK when it can.
 static answer_status_t check_ready(octet_writer_t* why) {
   const packed_text_t conflict = parameter_conflict_known();
   switch (drive.state) {
     case DRIVE_READY:
       if (conflict == PACKED_NONE) return ANSWER_OK;
-      put_packed(why, conflict);
+      put_conflict(why, conflict);
       return ANSWER_CONFLICT;
     case DRIVE_FAULT:
       put_packed(why, SAY_a_fault_is_latched_reset_it_first);
@@ -79,8 +81,8 @@ answer_status_t action_reset(octet_writer_t* why) {
 
 static int32_t speed_limit_q16(void) { return q_shl_sat(parameters.speed_limit, 8); }
 
-void put_speed_limit(octet_writer_t* w) {
-  put_packed(w, SAY_rpm_is_beyond_speed_limit);
+void put_speed_limit(octet_writer_t* w, packed_text_t why) {
+  put_packed(w, why);
   put_fixed(w, speed_limit_q16(), 16, 0);
   put_packed(w, SAY_rpm_nothing_changed);
 }
@@ -91,7 +93,7 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
     return ANSWER_OK;
   }
   put_fixed(why, rpm_q16, 16, 1);
-  put_speed_limit(why);
+  put_speed_limit(why, SAY_rpm_is_beyond_speed_limit);
   return ANSWER_RANGE;
 }
 
@@ -107,6 +109,29 @@ void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
   put_text(w, " .. ");
   put_value(w, parameter, parameter->maximum);
   put_packed(w, SAY_nothing_changed);
+}
+
+static bool is_of_a_name(uint16_t c) { return c >= '0' && c != ':'; }
+
+void put_conflict(octet_writer_t* w, packed_text_t conflict) {
+  uint16_t text[RULE_MAX];
+  octet_writer_t rule = octet_writer(text, RULE_MAX);
+  put_packed(&rule, conflict);
+  put_packed(w, conflict);
+  uint16_t first = 0;
+  const char* separator = " (";
+  for (uint16_t end = 0; end <= rule.count; end++) {
+    if (end < rule.count && is_of_a_name(text[end])) continue;
+    const parameter_info_t* const p = parameter_named(&text[first], (uint16_t)(end - first));
+    first = (uint16_t)(end + 1u);
+    if (p == NULL) continue;
+    put_text(w, separator);
+    put_packed(w, p->name);
+    put_text(w, " = ");
+    put_value(w, p, parameter_get(p->id));
+    separator = ", ";
+  }
+  if (separator[0] == ',') put_u8(w, ')');
 }
 
 // With one decimal more where the table's are too few to show what is wrong.
@@ -129,7 +154,7 @@ static answer_status_t check_conflict(const parameter_info_t* p, int32_t before,
   } else {
     put_packed(why, SAY_set_but_the_drive_does_not_start);
   }
-  put_packed(why, conflict);
+  put_conflict(why, conflict);
   return ANSWER_CONFLICT;
 }
 

@@ -56,7 +56,10 @@ answer_status_t action_defaults(octet_writer_t* why);
 
 /// The rest of a refusal behind the value: the range that holds, and that nothing has changed.
 void put_range(octet_writer_t* w, const parameter_info_t* parameter);
-void put_speed_limit(octet_writer_t* w);
+void put_speed_limit(octet_writer_t* w, packed_text_t why);
+
+/// A rule that does not hold, with what the parameters that it names are now.
+void put_conflict(octet_writer_t* w, packed_text_t conflict);
 
 /// A value with its unit, as the table has its decimals.
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);

@@ -141,7 +141,7 @@ static void take_speed(const words_of_line_t* a, const decimal_t* number, uint16
   octet_writer_t* const w = line_begin();
   if (!fits) {
     put_word(w, &typed);
-    put_speed_limit(w);
+    put_speed_limit(w, SAY_rpm_is_beyond_speed_limit);
   } else if (action_speed(rpm_q16, w) == ANSWER_OK) {
     show_reference();
     return;
@@ -159,9 +159,10 @@ void command_ref(const words_of_line_t* a) {
   if (length > 0u) {
     take_speed(a, &number, length);
   } else {
-    put_word(line_begin(), &a->word[0]);
-    line_answer(true, SAY_is_not_a_speed);
-    count_refusal();
+    octet_writer_t* const w = line_begin();
+    put_word(w, &a->word[0]);
+    put_speed_limit(w, SAY_is_not_a_speed);
+    line_end_refused();
   }
 }
 

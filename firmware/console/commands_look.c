@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/api/actions.h"
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/console/commands.h"
@@ -103,7 +104,11 @@ void put_unsaved(octet_writer_t* w) {
 
 static void status_parameters(octet_writer_t* w) {
   const packed_text_t conflict = parameter_conflict_known();
-  put_packed(w, (conflict == PACKED_NONE) ? SAY_fit_together : conflict);
+  if (conflict == PACKED_NONE) {
+    put_packed(w, SAY_fit_together);
+  } else {
+    put_conflict(w, conflict);
+  }
   put_unsaved(w);
 }
 

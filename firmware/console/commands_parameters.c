@@ -42,17 +42,10 @@ void command_list(const words_of_line_t* a) {
   console_run(list_one, false);
 }
 
-// Its place in the table; behind the last one when there is none of that name.
-static uint16_t find(const word_t* name) {
-  uint16_t k = 0;
-  while (k < parameter_count() && !packed_equals(parameter_info(k)->name, name->text, name->count)) k++;
-  return k;
-}
-
-static uint16_t described;
+static const parameter_info_t* described;
 
 static bool describe(uint16_t step) {
-  const parameter_info_t* const p = parameter_info(described);
+  const parameter_info_t* const p = described;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
     put_packed(w, p->name);
@@ -81,9 +74,8 @@ void command_get(const words_of_line_t* a) {
     line_refused(SAY_get_name_one_parameter_or_signal_list);
     return;
   }
-  const uint16_t parameter = find(&a->word[0]);
-  if (parameter < parameter_count()) {
-    described = parameter;
+  described = parameter_named(a->word[0].text, a->word[0].count);
+  if (described != NULL) {
     console_run(describe, false);
     return;
   }
@@ -149,7 +141,7 @@ void command_set(const words_of_line_t* a) {
     line_refused(SAY_set_name_value_unit_for_example_set);
     return;
   }
-  const parameter_info_t* const p = parameter_info(find(&a->word[0]));
+  const parameter_info_t* const p = parameter_named(a->word[0].text, a->word[0].count);
   if (p == NULL) {
     suggest(SUGGEST_PARAMETER, &a->word[0]);
     return;

@@ -54,6 +54,13 @@ static uint16_t index_of(uint16_t id) {
   return k;
 }
 
+const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count) {
+  for (uint16_t k = 0; k < COUNT; k++) {
+    if (packed_equals(table[k].name, name, count)) return &table[k];
+  }
+  return NULL;
+}
+
 const parameter_info_t* parameter_by_id(uint16_t id) { return parameter_info(index_of(id)); }
 
 parameter_result_t parameter_set(uint16_t id, int32_t raw) {

@@ -96,6 +96,8 @@ uint16_t parameter_count(void);
 const parameter_info_t* parameter_info(uint16_t index);
 /// By its number; NULL when there is none.
 const parameter_info_t* parameter_by_id(uint16_t id);
+/// Capitals count as small letters.
+const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
 parameter_result_t parameter_set(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
 /// Why the present parameters cannot be used together, one sentence; PACKED_NONE when they can.

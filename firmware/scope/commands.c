@@ -41,13 +41,12 @@ static scope_setup_t draft(void) {
   return s;
 }
 
+// Everything but the channels has been looked at where it was read.
 static void apply(const scope_setup_t* s) {
-  if (s->count == 0u) {
-    line_refused(SAY_first_scope_channels_signal);
-  } else if (scope_setup(s)) {
+  if (scope_setup(s)) {
     line_of(SAY_set_scope_arm_starts_it);
   } else {
-    line_refused(SAY_outside_of_its_range_nothing_changed_see);
+    line_refused(SAY_first_scope_channels_signal);
   }
 }
 
@@ -124,23 +123,40 @@ static void set_trigger(const words_of_line_t* a) {
   }
 }
 
-// A whole number 0..65535 behind the sub-command.
-static bool whole(const words_of_line_t* a, uint16_t* value) {
+static bool read_whole(const word_t* typed, uint16_t least, uint16_t most, uint16_t* value) {
   decimal_t n;
   int32_t number;
-  if (a->count != 2u || text_number(a->word[1].text, a->word[1].count, &n) != a->word[1].count) return false;
-  if (!decimal_is_whole(&n) || !decimal_raw(&n, 0, &number) || number < 0 || number > 65535L) return false;
+  if (text_number(typed->text, typed->count, &n) != typed->count || !decimal_is_whole(&n)) return false;
+  if (!decimal_raw(&n, 0, &number) || number < (int32_t)least || number > (int32_t)most) return false;
   *value = (uint16_t)number;
   return true;
 }
 
-static void set_number(const words_of_line_t* a, bool every) {
-  scope_setup_t s = draft();
-  if (!whole(a, every ? &s.decimation : &s.pretrigger)) {
-    line_refused(SAY_a_whole_number_is_missing_nothing_changed);
-    return;
+// The whole number behind the sub-command. False, and said, when it is none of least .. most.
+static bool whole(const words_of_line_t* a, uint16_t least, uint16_t most, uint16_t* value) {
+  if (a->count == 2u && read_whole(&a->word[1], least, most, value)) return true;
+  octet_writer_t* const w = line_begin();
+  for (uint16_t k = 0; k < a->count; k++) {
+    put_word(w, &a->word[k]);
+    if (k + 1u < a->count) put_u8(w, ' ');
   }
-  apply(&s);
+  put_packed(w, SAY_is_not_a_whole_number_in);
+  put_unsigned(w, least);
+  put_text(w, " .. ");
+  put_unsigned(w, most);
+  put_packed(w, SAY_nothing_changed);
+  line_end_refused();
+  return false;
+}
+
+static void set_every(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (whole(a, 1, UINT16_MAX, &s.decimation)) apply(&s);
+}
+
+static void set_before(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (whole(a, 0, SCOPE_DEPTH - 1u, &s.pretrigger)) apply(&s);
 }
 
 static void set_mode(const words_of_line_t* a) {
@@ -245,9 +261,8 @@ static bool print(uint16_t step) {
 static void begin_print(const words_of_line_t* a) {
   const scope_state_t state = scope_status().state;
   stride = 16;
-  if (a->count > 1u && (!whole(a, &stride) || stride == 0u)) {
-    line_refused(SAY_scope_print_every_nth_record);
-  } else if (state != SCOPE_DONE && state != SCOPE_IDLE) {
+  if (a->count > 1u && !whole(a, 1, UINT16_MAX, &stride)) return;
+  if (state != SCOPE_DONE && state != SCOPE_IDLE) {
     line_refused(SAY_the_scope_is_recording_scope_stop_ends);
   } else if (scope_status().recorded == 0u) {
     line_of(SAY_nothing_has_been_recorded);
@@ -263,8 +278,10 @@ void command_scope(const words_of_line_t* a) {
     set_channels(a);
   } else if (word_is(a, 0, "trigger")) {
     set_trigger(a);
-  } else if (word_is(a, 0, "every") || word_is(a, 0, "before")) {
-    set_number(a, word_is(a, 0, "every"));
+  } else if (word_is(a, 0, "every")) {
+    set_every(a);
+  } else if (word_is(a, 0, "before")) {
+    set_before(a);
   } else if (word_is(a, 0, "mode")) {
     set_mode(a);
   } else if (word_is(a, 0, "arm")) {

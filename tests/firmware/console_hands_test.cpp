@@ -10,6 +10,7 @@ namespace {
 
 using namespace stillspin;
 using namespace stillspin::test;
+using stillspin::test::board;  // and not the drive's own
 
 class ConsoleHands : public Console {
  protected:

@@ -53,8 +53,9 @@ TEST_F(Console, StatusSaysWhyParametersDoNotFitTogether) {
   parameters.if_current = parameters.current_limit + 1;
   parameters.start_method = 1;
   drive.request.reload = true;
-  EXPECT_TRUE(
-      has(command("status"), "parameters  if_current must not exceed current_limit with start_method 1; 3 not saved"));
+  EXPECT_TRUE(has(command("status"),
+                  "parameters  if_current must not exceed current_limit with start_method 1 (if_current = "
+                  "14.00 A, current_limit = 14.00 A, start_method = 1); 3 not saved"));
 }
 
 TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {

@@ -134,8 +134,12 @@ TEST_F(ConsoleScope, NumbersAreWholeAndFitAWord) {
   (void)command("scope channels speed");
   EXPECT_TRUE(has(command("scope every 65535"), "set"));
   for (const char* number : {"", " 2 3", " 2x", " 2.5", " -1", " 65536", " 1,5", " 1e9"}) {
-    EXPECT_TRUE(has(command(std::string("scope every") + number), "a whole number is missing")) << number;
+    EXPECT_EQ(command(std::string("scope every") + number),
+              std::string("every") + number + " is not a whole number in 1 .. 65535: nothing changed\r\n");
   }
+  EXPECT_EQ(command("scope every 0"), "every 0 is not a whole number in 1 .. 65535: nothing changed\r\n");
+  EXPECT_EQ(command("scope before 1024"), "before 1024 is not a whole number in 0 .. 1023: nothing changed\r\n");
+  EXPECT_TRUE(has(command("scope before 1023"), "set"));
   EXPECT_EQ(scope_setup_in_force()->decimation, 65535);
   EXPECT_TRUE(has(command("scope every 1e1"), "set"));
   EXPECT_EQ(scope_setup_in_force()->decimation, 10);
@@ -163,8 +167,8 @@ TEST_F(ConsoleScope, WhatCanBePrinted) {
   EXPECT_EQ(first_words(command("scope print")), "0 16 ") << "what there is of one that was broken off";
   EXPECT_EQ(first_words(command("scope print 9")), "0 9 18 ");
   EXPECT_EQ(first_words(command("scope print 65535")), "0 ");
-  EXPECT_TRUE(has(command("scope print 0"), "every n-th record"));
-  EXPECT_TRUE(has(command("scope print few"), "every n-th record"));
+  EXPECT_EQ(command("scope print 0"), "print 0 is not a whole number in 1 .. 65535: nothing changed\r\n");
+  EXPECT_TRUE(has(command("scope print few"), "print few is not a whole number"));
 }
 
 // A machine at the other end, or in AUTO mode the reading itself, may arm it meanwhile.

@@ -78,7 +78,7 @@ TEST_F(Console, NumbersAreOneRule) {
   EXPECT_EQ(command("ref 1e3"), "ref 1000.00 rpm\r\n");
   EXPECT_EQ(command("ref 15e2rpm"), "ref 1500.00 rpm\r\n");
   EXPECT_EQ(command("ref 1,000"),
-            "1,000 is not a speed in rpm, such as 600 or 1.5e3 (point, no comma): nothing changed\r\n");
+            "1,000 is not a number (point, no comma) in rpm up to speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref 1e9"), "1e9 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref -40000"), "-40000 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(drive.control.wanted_rpm_q16, 1500 * 65536);

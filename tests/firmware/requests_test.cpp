@@ -124,7 +124,9 @@ TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
   const std::int32_t long_window = 30 * 65536;
   const Answer taken = set(43, 10 * 65536);  // window_maximum below window_minimum
   EXPECT_EQ(taken.status(), CONFLICT);
-  EXPECT_EQ(taken.text(), "set, but the drive does not start with it: window_maximum must be at least window_minimum");
+  EXPECT_EQ(taken.text(),
+            "set, but the drive does not start with it: window_maximum must be at least window_minimum "
+            "(window_maximum = 10.00 us, window_minimum = 18.00 us)");
   EXPECT_EQ(parameter_get(43), 10 * 65536);
   drive.state = DRIVE_READY;
   EXPECT_EQ(give(COMMAND_START).status(), CONFLICT);
