@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "firmware/commissioning/outcome.h"
+#include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/hil/hil.h"
 #include "firmware/mode/mode.h"

@@ -8,6 +8,7 @@
 
 #include "firmware/api/guard.h"
 #include "firmware/base/octets.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
 
 #if defined(__cplusplus)

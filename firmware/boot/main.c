@@ -1,5 +1,7 @@
 // The image's entry: brings the board up, then serves the watchdog and waits for interrupts.
 
+#include "firmware/boot/main.h"
+
 #include <stddef.h>
 
 #include "firmware/board/functions.h"
@@ -7,6 +9,7 @@
 #include "firmware/can/node.h"
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"

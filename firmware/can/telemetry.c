@@ -1,6 +1,7 @@
 #include "firmware/can/telemetry.h"
 
 #include "firmware/can/messages.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 
 void telemetry_status(hal_can_frame_t* frame, const can_command_t* command, uint16_t alive) {

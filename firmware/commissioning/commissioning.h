@@ -14,7 +14,7 @@
 #define STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
 
 #include "estimators/admittance_tensor.h"
-#include "firmware/mode/commands.h"
+#include "firmware/commissioning/outcome.h"
 
 #define STAIRCASE_LEVELS 14u
 #define MAP_LEVELS 4u

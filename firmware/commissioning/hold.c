@@ -7,6 +7,7 @@
 // The place is the nearest multiple of 60 degrees electrical, at most 7.5 degrees mechanical away with four pole pairs:
 // with i_d there, no phase carries less than half of it, so no phase current changes its sign within the ripple.
 
+#include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 

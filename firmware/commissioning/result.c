@@ -1,5 +1,7 @@
 #include "firmware/commissioning/result.h"
 
+#include "firmware/commissioning/outcome.h"
+#include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,

@@ -3,6 +3,7 @@
 #ifndef STILLSPIN_FIRMWARE_COMMISSIONING_RESULT_H
 #define STILLSPIN_FIRMWARE_COMMISSIONING_RESULT_H
 
+#include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/solve.h"
 
 #define COMMISSIONING_RESULTS 24u

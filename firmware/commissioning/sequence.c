@@ -1,6 +1,9 @@
 #include "firmware/commissioning/commissioning.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_tape.h"
 

@@ -5,9 +5,11 @@
 // estimators do not count: inertia is the momentum that went in, less friction, over the change of speed.
 
 #include "firmware/base/clear.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 
 #define SETTLE_PERIODS 4000
 #define STATION_PERIODS 10000

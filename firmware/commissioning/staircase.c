@@ -18,6 +18,7 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 

@@ -1,5 +1,7 @@
 // From the parameters, in the user's units, to the constants of every module.
 
+#include "firmware/config/config.h"
+
 #include <stddef.h>
 
 #include "firmware/base/clear.h"

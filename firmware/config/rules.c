@@ -1,7 +1,10 @@
 // What the table's ranges cannot say: which parameters must fit together.
 
+#include "firmware/config/rules.h"
+
 #include <stddef.h>
 
+#include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/packed_text.h"

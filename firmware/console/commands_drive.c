@@ -4,9 +4,11 @@
 
 #include "firmware/api/actions.h"
 #include "firmware/api/guard.h"
+#include "firmware/commissioning/outcome.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"

@@ -1,5 +1,6 @@
 #include "firmware/console/signal_text.h"
 
+#include "firmware/drive/signals.h"
 #include "firmware/text/text.h"
 
 uint16_t signal_find(const word_t* name) {

@@ -5,6 +5,7 @@
 
 #include "firmware/base/octets.h"
 #include "firmware/console/commands.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 
 /// The place behind the last one.

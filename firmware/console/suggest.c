@@ -4,6 +4,8 @@
 
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"

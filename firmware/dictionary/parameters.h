@@ -1,9 +1,16 @@
-// The parameter values in use, by name. The table itself is parameter_list.h; mode/commands.h has access by id.
+// The parameter values in use, by name. The table itself is parameter_list.h.
 
 #ifndef STILLSPIN_FIRMWARE_DICTIONARY_PARAMETERS_H
 #define STILLSPIN_FIRMWARE_DICTIONARY_PARAMETERS_H
 
-#include "firmware/mode/commands.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/text/packed_text.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
 
 /// One int32_t per parameter, with the table's number of fractional bits.
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) int32_t name;
@@ -28,7 +35,32 @@ enum {
 /// Values of the parameter current_law.
 enum { CURRENT_LAW_PI = 0, CURRENT_LAW_HYSTERESIS = 1 };
 
+typedef enum { PARAMETER_STOPPED = 0, PARAMETER_ALWAYS = 1 } parameter_access_t;
+typedef enum { SET_OK = 0, SET_UNKNOWN = 1, SET_RANGE = 2, SET_RUNNING = 3 } parameter_result_t;
+
+typedef struct {
+  uint16_t id;
+  uint16_t q : 6;
+  uint16_t decimals : 4;
+  uint16_t access : 2;  // parameter_access_t
+  packed_text_t name, unit, meaning;
+  int32_t minimum, maximum, initial;  // raw, with q fractional bits
+} parameter_info_t;
+
+uint16_t parameter_count(void);
+const parameter_info_t* parameter_info(uint16_t index);
+/// By its number; NULL when there is none.
+const parameter_info_t* parameter_by_id(uint16_t id);
+/// Capitals count as small letters.
+const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
+parameter_result_t parameter_set(uint16_t id, int32_t raw);
+int32_t parameter_get(uint16_t id);
+
 /// Puts every parameter to its default.
 void parameters_reset(void);
+
+#if defined(__cplusplus)
+}
+#endif
 
 #endif

@@ -21,6 +21,7 @@
 #include "firmware/drive/brake_hold.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 #define CONTROL_STEP_Q30 24159191L  // wc T, with 225 rad/s

@@ -1,5 +1,6 @@
 // The control interrupt: once per PWM period, at its start. Its step reads like the block diagram.
 
+#include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "firmware/scope/scope.h"

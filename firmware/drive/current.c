@@ -1,6 +1,7 @@
 // Current control, every period or every second one (current_divider).
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 void drive_control_current(drive_t* d) {

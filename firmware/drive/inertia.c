@@ -1,6 +1,7 @@
 // Inertia learnt from run-ups (estimators/inertia_match.h), once a millisecond, and what hangs on it.
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 #define STILL_RPM_Q16 1310720L  // 20 rpm

@@ -1,9 +1,12 @@
 // From the voltage command to the compare registers.
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux.h"
+#include "firmware/start/phases.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_pwm.h"
 

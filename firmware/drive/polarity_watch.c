@@ -13,6 +13,7 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 #define SUM_END_Q12 1073741824L       // of 64 periods of 4096 V

@@ -3,6 +3,7 @@
 #include "firmware/drive/position.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux.h"
 #include "hal/hal_encoder.h"

@@ -1,4 +1,4 @@
-// Position sources of the drive, beside the step that mode/mode.h declares.
+// Position sources of the drive, beside the step that steps.h declares.
 
 #ifndef STILLSPIN_FIRMWARE_DRIVE_POSITION_H
 #define STILLSPIN_FIRMWARE_DRIVE_POSITION_H

@@ -3,6 +3,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux.h"

@@ -3,7 +3,10 @@
 #include <stddef.h>
 
 #include "firmware/board/functions.h"
+#include "firmware/commissioning/phases.h"
+#include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"

@@ -5,6 +5,8 @@
 
 #include "firmware/drive/sampling.h"
 
+#include "firmware/drive/steps.h"
+#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"

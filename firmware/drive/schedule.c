@@ -1,4 +1,5 @@
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux.h"
 

@@ -1,7 +1,11 @@
 // The states of the drive: boot, offset calibration, ready, start, run, stop, fault.
 
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 

@@ -1,5 +1,7 @@
 // The table of the signals, and looking at several of one control interrupt. Nothing is copied while nobody looks.
 
+#include "firmware/drive/signals.h"
+
 #include <stddef.h>
 
 #include "firmware/mode/mode.h"

@@ -2,6 +2,7 @@
 
 #include "control/brake_limit.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 #define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link

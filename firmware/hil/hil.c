@@ -4,6 +4,8 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/base/crc.h"
+#include "firmware/drive/signals.h"
+#include "firmware/drive/steps.h"
 #include "firmware/hil/delta.h"
 #include "firmware/mode/mode.h"
 #include "firmware/store/store.h"

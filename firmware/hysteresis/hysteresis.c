@@ -3,6 +3,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
+#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"

@@ -1,6 +1,8 @@
 // Commands, and how the drive is.
 
+#include "firmware/commissioning/outcome.h"
 #include "firmware/console/output.h"
+#include "firmware/drive/signals.h"
 #include "firmware/link/link.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/requests.h"

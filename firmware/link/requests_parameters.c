@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/dictionary/parameters.h"
 #include "firmware/link/request_handlers.h"
 
 #define READ_MAX 32u

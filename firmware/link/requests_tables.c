@@ -3,7 +3,9 @@
 #include <stddef.h>
 
 #include "firmware/base/crc.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/dictionary/version.h"
+#include "firmware/drive/signals.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/requests.h"
 #include "firmware/text/words.h"

@@ -1,6 +1,7 @@
 #include "firmware/link/stream.h"
 
 #include "firmware/base/octets.h"
+#include "firmware/drive/signals.h"
 #include "firmware/link/record.h"
 #include "firmware/mode/commands.h"
 

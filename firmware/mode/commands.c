@@ -2,6 +2,8 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/sampling.h"

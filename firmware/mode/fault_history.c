@@ -1,5 +1,7 @@
 #include "firmware/mode/fault_history.h"
 
+#include "firmware/mode/states.h"
+
 static volatile fault_record_t ring[FAULT_HISTORY_DEPTH];
 static volatile uint16_t written;  // records since power-on, wraps: the next one's place
 static volatile uint16_t total;    // the same for people: stays at its end

@@ -31,6 +31,7 @@
 #include "firmware/interfaces/schedule.h"
 #include "firmware/mode/commands.h"
 #include "firmware/start/start.h"
+#include "firmware/text/packed_text.h"
 #include "svpwm/edges.h"
 #include "svpwm/modulator.h"
 
@@ -185,19 +186,7 @@ typedef struct {
 
 extern drive_t drive;
 
-/// Makes a configuration of the parameters, background level only; NULL when they do not fit together. What it points
-/// to is good until the next one is made.
-const drive_config_t* drive_config_make(void);
-/// The same to a place of one's own; false, with the old one kept, when they do not fit together.
-bool drive_config_load(drive_config_t* c);
-/// Makes a configuration if the parameters fit together: PACKED_NONE, or why they do not, in a sentence
-/// (config/rules.c).
-packed_text_t drive_config_or_conflict(const drive_config_t** made);
-
 void drive_parameters_changed(void);
-
-/// Decides what the period that begins does (schedule.h).
-void schedule_next(drive_t* d);
 
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);
@@ -218,36 +207,6 @@ void drive_raise(drive_t* d, drive_fault_t fault);
 /// Enters a state and starts counting its periods.
 void drive_enter(drive_t* d, drive_state_t state);
 
-// The state START: start/standing.c, and start/flying.c for a shaft that turns.
-/// Lets the position sources and the speed control start from this angle and speed.
-void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
-void drive_begin_start(drive_t* d);
-/// Two pulses that tell how the shaft turns, and back to READY (start/flying.c).
-void drive_begin_look(drive_t* d);
-void drive_start(drive_t* d);
-void start_enter(drive_t* d, start_phase_t phase);
-void start_power(drive_t* d, bool on);
-void start_listen(drive_t* d, uint16_t pause);
-void start_find_axis(drive_t* d);
-void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
-
-/// Takes the period's regression where it is valid. True, in a period for the decision, when the axis is known: the
-/// model has the admittances, and *axis_bam is how far the axis is from where it was looked for. Too late is a fault.
-bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam);
-
-/// Asks for the next period for a decision alone; true in that period, which has room for it.
-bool start_decides(drive_t* d);
-
-void start_step_listen(drive_t* d);
-void start_step_pulse(drive_t* d);
-void start_step_catch(drive_t* d);
-void start_turn(drive_t* d);    // start/if_start.c
-void start_charge(drive_t* d);  // start/bootstrap.c
-void start_step_charge(drive_t* d);
-void start_look(drive_t* d);
-void start_step_turn(drive_t* d);
-svpwm_pattern_t start_short_circuit(const sampling_config_t* c);
-
 /// True while the start turns a current vector: the position source runs, and is not used yet.
 static inline bool drive_is_turned(const drive_t* d) { return d->state == DRIVE_START && d->start.phase == START_TURN; }
 
@@ -260,69 +219,5 @@ static inline dq_t drive_seen(const drive_t* d, dq_t vector) {
 static inline bool drive_is_blind(const drive_t* d) {
   return d->state == DRIVE_START && (!d->start.powered || d->start.blind > 0u);
 }
-
-/// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
-void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
-bool polarity_watch_step(drive_t* d);
-bool polarity_watch_suspects(const drive_t* d);
-bool polarity_watch_is_awake(const drive_t* d);
-
-/// Holds the shaft for hold_time from now (drive/brake_hold.c).
-void hold_begin(drive_t* d);
-bool hold_is_on(const drive_t* d);
-
-/// One period; false when it is over and the speed controller has the torque current.
-bool hold_step(drive_t* d);
-
-/// Learns the inertia; once a millisecond (drive/inertia.c).
-void drive_match_inertia(drive_t* d);
-
-/// Torque current that the limit leaves beside the reference of i_d, A.
-int32_t drive_current_room(const drive_t* d);
-
-/// Field weakening of this instant, into the d-axis reference; while the shaft turns it takes four periods of the
-/// millisecond.
-void drive_weaken_field(drive_t* d);  // drive/speed.c
-
-// The state COMMISSION (commissioning/sequence.c) and its phases, each in its own file: one period; true at the phase's
-// end.
-void commissioning_begin(drive_t* d);
-void commissioning_step(drive_t* d);
-void commissioning_abort(drive_t* d);
-void commissioning_service(drive_t* d);                   // background level: evaluation
-bool commissioning_turn(drive_t* d);                      // commissioning/hold.c
-bool commissioning_climb(drive_t* d);                     // commissioning/staircase.c
-bool commissioning_map(drive_t* d);                       // commissioning/map.c
-bool commissioning_spin(drive_t* d);                      // commissioning/spin.c
-void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
-void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
-/// The period's two opposite windows against the model, in the frame of the angle in use; false when there are none.
-bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);
-
-// The steps of the control interrupt, in their order.
-void drive_read_samples(drive_t* d);     // sampling.c
-void drive_estimate(drive_t* d);         // position.c
-void drive_protect(drive_t* d);          // protection.c
-void drive_sequence(drive_t* d);         // drive/sequence.c
-void drive_control_speed(drive_t* d);    // drive/speed.c
-void drive_control_current(drive_t* d);  // drive/current.c
-void drive_modulate(drive_t* d);         // modulation.c
-
-// Hysteresis in the place of current control and modulation (hysteresis.c).
-bool drive_hysteresis(drive_t* d);             // switches it on and off with the state; true while it is on
-void drive_hysteresis_samples(drive_t* d);     // in the place of the windows
-void drive_hysteresis_slice(hysteresis_t* h);  // the slice interrupt
-
-/// What the control interrupt does in a period, between its begin and its end (control_interrupt.c).
-void drive_control_step(drive_t* d);
-
-/// Background level, once behind every interrupt (drive/reload.c).
-void background_step(drive_t* d);
-
-/// The dead band of the gate signals by the parameter; the power stage's own minimum is the parameter's business.
-uint16_t drive_dead_band_ticks(void);
-
-void drive_control_interrupt(void);
-void drive_window_interrupt(void);
 
 #endif

@@ -8,6 +8,7 @@
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"
+#include "firmware/drive/signals.h"
 #include "firmware/scope/scope.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"

@@ -1,5 +1,6 @@
 // Captured scope, and the stream of slow signals.
 
+#include "firmware/drive/signals.h"
 #include "firmware/link/request_handlers.h"
 #include "firmware/link/stream.h"
 #include "firmware/scope/scope.h"

@@ -1,5 +1,6 @@
 #include "firmware/scope/scope.h"
 
+#include "firmware/drive/signals.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"

@@ -1,6 +1,7 @@
 #include "firmware/sources/flux.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "hal/hal_profile.h"
 #include "svpwm/ripple.h"

@@ -5,6 +5,7 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 
 #define REST_PERIODS 20u
 

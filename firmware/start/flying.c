@@ -3,7 +3,9 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 
 #define PULSE_MAX 12u          // periods of a short circuit that hardly drives a current
 #define PAUSE_MIN 6            // for the current to die away

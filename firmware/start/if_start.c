@@ -9,6 +9,7 @@
 #include "firmware/drive/position.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux.h"
+#include "firmware/start/phases.h"
 
 void start_turn(drive_t* d) {
   static const estimator_output_t none = {0, 0, 0, 0};

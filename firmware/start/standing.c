@@ -2,9 +2,12 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 #include "firmware/start/start.h"
 #include "hal/hal_pwm.h"
 

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/store/slot.h"

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "firmware/boot/main.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/link/requests.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/board.hpp"

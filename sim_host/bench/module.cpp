@@ -12,6 +12,7 @@
 #include <cmath>
 #include <memory>
 
+#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/commission.hpp"
 #include "sim_host/bench/module_setup.hpp"

@@ -1,7 +1,10 @@
+#include "firmware/dictionary/parameters.h"
+
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
+#include "firmware/config/rules.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/drive/signals.h"
+
 namespace stillspin::bench {
 namespace {
 

@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/information.hpp"
 #include "sim_host/bench/run.hpp"

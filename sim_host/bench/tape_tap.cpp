@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "firmware/drive/signals.h"
 #include "firmware/hil/delta.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/record.h"

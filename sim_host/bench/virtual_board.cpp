@@ -5,6 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "firmware/boot/main.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/hil/hil.h"
 #include "firmware/mode/commands.h"
 #include "firmware/store/store.h"

@@ -8,7 +8,9 @@
 #include <memory>
 #include <vector>
 
+#include "firmware/boot/main.h"
 #include "firmware/can/messages.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/virtual_board.hpp"
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "hal/hal_time.h"
 #include "tests/bench/loop.hpp"

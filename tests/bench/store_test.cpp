@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/boot/main.h"
 #include "firmware/mode/commands.h"
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board.hpp"

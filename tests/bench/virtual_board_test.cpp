@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "hal/hal_sci.h"

@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "tests/bench/drive_runs.hpp"
 

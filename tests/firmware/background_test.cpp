@@ -2,6 +2,14 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

@@ -6,8 +6,15 @@
 
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
 #include "hal/hal_board.h"
 #include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/drive/steps.h"
+}
 
 namespace stillspin::test {
 namespace {

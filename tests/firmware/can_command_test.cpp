@@ -5,6 +5,10 @@
 
 #include <algorithm>
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+
 namespace stillspin::test {
 namespace {
 

@@ -9,6 +9,8 @@
 extern "C" {
 #include "firmware/api/guard.h"
 #include "firmware/can/command.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 }
 
 namespace stillspin::test {

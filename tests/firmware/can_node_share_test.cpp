@@ -6,8 +6,10 @@
 #include "tests/firmware/can_node_test.hpp"
 
 extern "C" {
+#include "firmware/dictionary/parameters.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/states.h"
 }
 
 namespace stillspin::test {

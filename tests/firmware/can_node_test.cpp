@@ -6,8 +6,11 @@
 
 extern "C" {
 #include "firmware/api/actions.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/states.h"
 }
 
 namespace stillspin::test {

@@ -5,6 +5,9 @@
 extern "C" {
 #include "firmware/can/messages.h"
 #include "firmware/can/telemetry.h"
+#include "firmware/drive/signals.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
 }
 
 namespace stillspin::test {

@@ -7,7 +7,11 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/result.h"
+#include "firmware/config/rules.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
 }
 
 namespace {

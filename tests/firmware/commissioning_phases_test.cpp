@@ -5,6 +5,13 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

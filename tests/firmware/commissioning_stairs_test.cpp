@@ -1,8 +1,15 @@
 // What a commissioning sums and sends: the staircase's levels, the pairs of the map, and when results are there.
 
 #include "firmware/board/functions.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/commissioning_sums.hpp"
 #include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/commissioning/phases.h"
+}
 
 namespace {
 

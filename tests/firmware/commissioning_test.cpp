@@ -7,7 +7,15 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
 #include "firmware/text/words.h"
 }
 

@@ -4,6 +4,8 @@
 
 extern "C" {
 #include "firmware/api/guard.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

@@ -7,8 +7,13 @@
 
 extern "C" {
 #include "firmware/api/actions.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/signal_text.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
+#include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 }
 

@@ -7,7 +7,12 @@ extern "C" {
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
 #include "firmware/can/node.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/console/output.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

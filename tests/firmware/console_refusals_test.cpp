@@ -4,6 +4,7 @@
 
 extern "C" {
 #include "firmware/console/output.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
+#include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 }
 

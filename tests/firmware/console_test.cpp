@@ -11,6 +11,9 @@ extern "C" {
 #include "firmware/console/commands.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

@@ -9,8 +9,11 @@
 #include "tests/control/quantities.hpp"
 
 extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 }
 

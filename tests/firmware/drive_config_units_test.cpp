@@ -5,6 +5,8 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/sources/flux.h"
 }
 

@@ -4,7 +4,10 @@
 
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {

@@ -8,7 +8,11 @@
 
 extern "C" {
 #include "firmware/base/crc.h"
+#include "firmware/drive/signals.h"
+#include "firmware/drive/steps.h"
 #include "firmware/link/record.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

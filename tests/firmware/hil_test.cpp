@@ -1,6 +1,8 @@
 // The host in the loop as it is asked for over the link: when it is let in, what a step may be, a step that comes
 // again.
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/hil_host.hpp"
 #include "tests/firmware/requests.hpp"
 

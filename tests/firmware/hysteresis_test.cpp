@@ -6,7 +6,14 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/config/rules.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

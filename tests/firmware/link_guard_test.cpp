@@ -1,5 +1,7 @@
 // A drive that was started guarded stops by itself when who has started it is silent, whoever else speaks.
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/requests.hpp"
 
 namespace {

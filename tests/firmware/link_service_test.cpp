@@ -7,6 +7,7 @@
 
 extern "C" {
 #include "firmware/console/output.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

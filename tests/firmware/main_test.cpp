@@ -7,9 +7,13 @@
 
 extern "C" {
 #include "firmware/board/selftest.h"
+#include "firmware/boot/main.h"
 #include "firmware/can/messages.h"
 #include "firmware/can/segments.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
+#include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "hal/hal_time.h"
 }

@@ -6,7 +6,11 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
 #include "svpwm/ripple.h"
 }
 

@@ -10,6 +10,8 @@
 
 extern "C" {
 #include "firmware/console/suggest.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/text/text.h"
 }

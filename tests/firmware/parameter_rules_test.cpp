@@ -5,6 +5,8 @@
 
 extern "C" {
 #include "firmware/api/actions.h"
+#include "firmware/config/rules.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/text/text.h"
 }
 

@@ -5,7 +5,10 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/dictionary/parameters.h"
 #include "firmware/drive/polarity_watch.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

@@ -5,6 +5,13 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/states.h"
+}
+
 namespace stillspin::test {
 
 inline constexpr std::uint32_t kHere = 0x10000000u, kThere = 0x18000000u;  // 11 degrees apart

@@ -1,5 +1,7 @@
 // A commissioning's spin, the encoder, and who looks on beside it.
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/position.hpp"
 
 namespace {

@@ -5,7 +5,9 @@
 #include "tests/firmware/position.hpp"
 
 extern "C" {
+#include "firmware/dictionary/parameters.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/mode/states.h"
 #include "firmware/sources/flux.h"
 #include "svpwm/ripple.h"
 }

@@ -1,5 +1,7 @@
 // What is learnt of the machine and the sensors, in which turn, and how much of it.
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/position.hpp"
 
 namespace {

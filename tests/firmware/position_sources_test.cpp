@@ -3,6 +3,12 @@
 
 #include "tests/firmware/position.hpp"
 
+extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

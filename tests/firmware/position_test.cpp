@@ -4,6 +4,9 @@
 #include "tests/firmware/position.hpp"
 
 extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/states.h"
 #include "firmware/sources/flux.h"
 }
 

@@ -1,7 +1,13 @@
 // Each limit of the protection at its last good value and the first bad one, and what a fault leaves for people.
 
+#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/drive/steps.h"
+}
 
 namespace {
 

@@ -1,8 +1,14 @@
 // What opens the power stage while the drive runs, each cause alone, and what must not: the conditions that
 // supervision_test.cpp meets only together.
 
+#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
+#include "firmware/drive/steps.h"
+}
 
 namespace {
 

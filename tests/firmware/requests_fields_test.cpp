@@ -3,9 +3,14 @@
 #include "tests/firmware/requests.hpp"
 
 extern "C" {
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/console/output.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/hil/hil.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 }
 

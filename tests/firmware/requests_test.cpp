@@ -7,8 +7,14 @@
 
 extern "C" {
 #include "firmware/base/crc.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/dictionary/version.h"
+#include "firmware/drive/signals.h"
+#include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 #include "firmware/text/words.h"
 #include "hal/hal_board.h"

@@ -4,6 +4,12 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/drive/steps.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

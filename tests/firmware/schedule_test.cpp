@@ -4,6 +4,13 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

@@ -2,6 +2,9 @@
 
 #include "tests/firmware/scope_test.hpp"
 
+#include "firmware/drive/signals.h"
+#include "firmware/mode/states.h"
+
 namespace {
 
 using namespace stillspin::test;

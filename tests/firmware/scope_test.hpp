@@ -6,6 +6,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 }
 

@@ -1,10 +1,13 @@
 // A drive without a host: a switch at the board starts and stops it, a voltage is its speed.
 
 #include "firmware/board/functions.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
 #include "firmware/api/guard.h"
+#include "firmware/drive/steps.h"
 }
 
 namespace stillspin::test {

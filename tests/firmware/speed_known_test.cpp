@@ -1,5 +1,9 @@
 // What is known of the rotor: nothing with the power stage off, nor before a start has found it.
 
+#include "firmware/commissioning/outcome.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
 
 namespace stillspin::test {

@@ -2,6 +2,12 @@
 
 #include "tests/firmware/speed_task.hpp"
 
+extern "C" {
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

@@ -5,6 +5,12 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/states.h"
+}
+
 namespace stillspin::test {
 
 inline constexpr double kLink = 300.0;

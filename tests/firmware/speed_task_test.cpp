@@ -7,6 +7,10 @@
 
 extern "C" {
 #include "control/brake_limit.h"
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

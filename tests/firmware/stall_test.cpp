@@ -2,6 +2,8 @@
 // times.
 
 #include "firmware/board/functions.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
 
 namespace stillspin::test {

@@ -4,6 +4,11 @@
 
 #include "tests/firmware/start_caught_test.hpp"
 
+extern "C" {
+#include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

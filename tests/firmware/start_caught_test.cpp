@@ -3,6 +3,12 @@
 
 #include "tests/firmware/start_caught_test.hpp"
 
+extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
+}
+
 #include <algorithm>
 
 namespace {

@@ -5,6 +5,13 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
+}
+
 namespace stillspin::test {
 
 class StartCaught : public Drive {

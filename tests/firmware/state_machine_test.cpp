@@ -4,6 +4,15 @@
 
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/commissioning/outcome.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

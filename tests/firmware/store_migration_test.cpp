@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/config/rules.h"
+#include "firmware/dictionary/parameters.h"
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/store_test.hpp"
 

@@ -1,6 +1,8 @@
 // The power fails somewhere in a save: at every octet that goes over the bus, and in every page's write cycle with
 // everything that may be left of the page. Started again, either the old or the new set is in force, as a whole.
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/store_test.hpp"
 

@@ -5,6 +5,10 @@
 
 #include <set>
 
+#include "firmware/config/rules.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
 #include "sim_host/bench/texts.hpp"
 
 namespace {

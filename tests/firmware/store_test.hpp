@@ -10,6 +10,8 @@
 #include "tests/firmware/slot_of.hpp"
 
 extern "C" {
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "firmware/store/values.h"
 }

@@ -1,5 +1,6 @@
 // What would be lost with the power: how many parameters differ from what the next power-on has.
 
+#include "firmware/dictionary/parameters.h"
 #include "tests/firmware/console.hpp"
 #include "tests/firmware/store_test.hpp"
 

@@ -5,7 +5,9 @@
 #include "tests/firmware/requests.hpp"
 
 extern "C" {
+#include "firmware/drive/signals.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/states.h"
 }
 
 namespace {

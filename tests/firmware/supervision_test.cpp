@@ -3,6 +3,14 @@
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
+extern "C" {
+#include "firmware/config/rules.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/states.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

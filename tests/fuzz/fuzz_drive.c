@@ -1,8 +1,10 @@
 #include "tests/fuzz/fuzz_drive.h"
 
 #include "firmware/can/node.h"
+#include "firmware/commissioning/outcome.h"
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"

@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/link/record.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/splitter.h"
+#include "firmware/mode/states.h"
 }
 
 namespace stillspin::test {

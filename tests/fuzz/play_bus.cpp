@@ -12,6 +12,7 @@ extern "C" {
 #include "firmware/can/messages.h"
 #include "firmware/can/segments.h"
 #include "firmware/link/requests.h"
+#include "firmware/mode/states.h"
 }
 
 namespace stillspin::test {

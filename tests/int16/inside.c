@@ -1,5 +1,6 @@
 // Compiled with the drive's 16-bit int: what the native side needs of structures that are laid out otherwise there.
 
+#include "firmware/commissioning/outcome.h"
 #include "firmware/mode/mode.h"
 
 uint16_t samples_out(int32_t* flat);

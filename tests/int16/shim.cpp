@@ -8,6 +8,9 @@
 #include "sim_host/bench/texts.hpp"
 
 extern "C" {
+#include "firmware/commissioning/outcome.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_tape.h"
 }

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "hal/f2808/target.h"
 #include "sim_host/bench/run.hpp"

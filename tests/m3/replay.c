@@ -14,6 +14,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "firmware/boot/main.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "hal/f2808/target.h"
 #include "tests/m3/scope_run.h"

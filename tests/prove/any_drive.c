@@ -4,7 +4,11 @@
 
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/config/rules.h"
+#include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"

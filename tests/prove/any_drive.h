@@ -3,6 +3,7 @@
 #ifndef STILLSPIN_TESTS_PROVE_ANY_DRIVE_H
 #define STILLSPIN_TESTS_PROVE_ANY_DRIVE_H
 
+#include "firmware/drive/signals.h"
 #include "firmware/link/stream.h"
 #include "firmware/mode/mode.h"
 #include "tests/prove/any.h"

@@ -1,6 +1,7 @@
 // What is made of the parameters, each anywhere in the range that the table gives it: whether they fit together, and if
 // so the configuration of the whole drive.
 
+#include "firmware/config/config.h"
 #include "firmware/mode/mode.h"
 #include "tests/prove/any_parameters.h"
 

@@ -6,8 +6,11 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/board/selftest.h"
+#include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/result.h"
+#include "firmware/config/config.h"
 #include "firmware/drive/sampling.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 #include "hal/hal_adc.h"

@@ -2,9 +2,11 @@
 
 #include "firmware/link/requests.h"
 
+#include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "firmware/link/stream.h"
+#include "firmware/mode/commands.h"
 #include "firmware/scope/scope.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"

@@ -2,6 +2,7 @@
 // and any parameters. Of the model, only that there are 1 to 20 pole pairs.
 
 #include "firmware/commissioning/result.h"
+#include "firmware/config/rules.h"
 #include "firmware/mode/mode.h"
 #include "tests/prove/any_parameters.h"
 

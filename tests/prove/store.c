@@ -3,6 +3,7 @@
 
 #include "firmware/store/store.h"
 
+#include "firmware/config/rules.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_nvm.h"
 #include "tests/prove/any_parameters.h"

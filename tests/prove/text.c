@@ -4,6 +4,8 @@
 #include "firmware/text/text.h"
 
 #include "firmware/console/suggest.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/text/words.h"
 #include "tests/prove/any.h"

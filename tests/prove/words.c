@@ -3,6 +3,7 @@
 
 #include "firmware/console/commands_drive.c"
 #include "firmware/console/commands_parameters.c"
+#include "firmware/dictionary/parameters.h"
 
 /*@ predicate word_of(word_t* w) = \valid_read(w) && 1 <= w->count <= EDITOR_LINE &&
       \valid_read(w->text + (0 .. w->count - 1));

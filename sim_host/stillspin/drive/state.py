@@ -14,7 +14,7 @@ STATUS_FORM = "<IBBHiiBBBBHBBB"
 FAULT_FORM = "<HIBBiiiiB"
 
 BOOT, CALIBRATE, READY, START, RUN, STOP, FAULT, COMMISSION = range(8)
-"""States of the drive, firmware/mode/commands.h."""
+"""States of the drive, firmware/mode/states.h."""
 ENERGISED = frozenset({START, RUN, STOP, COMMISSION})
 COMMISSIONING_RUNNING = 1
 _UNSAVED_UNKNOWN = 255

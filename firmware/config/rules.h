@@ -1,0 +1,21 @@
+// Whether the parameters fit together.
+
+#ifndef STILLSPIN_FIRMWARE_CONFIG_RULES_H
+#define STILLSPIN_FIRMWARE_CONFIG_RULES_H
+
+#include "firmware/text/packed_text.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/// Why the present parameters cannot be used together, one sentence; PACKED_NONE when they can.
+packed_text_t parameter_conflict(void);
+/// The same, without a calculation when the background level has made a configuration of them.
+packed_text_t parameter_conflict_known(void);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

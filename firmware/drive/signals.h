@@ -1,0 +1,50 @@
+// What may be looked at, and how: by the background level, without holding the control interrupt up.
+
+#ifndef STILLSPIN_FIRMWARE_DRIVE_SIGNALS_H
+#define STILLSPIN_FIRMWARE_DRIVE_SIGNALS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/text/packed_text.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+#define SIGNAL(name, unit, q, of, value, meaning) int32_t name;
+typedef struct {
+#include "firmware/dictionary/signal_list.h"
+} drive_signals_t;
+#undef SIGNAL
+
+/// All signals, as one control interrupt left them, without holding the next one up.
+drive_signals_t drive_signals(void);
+typedef struct {
+  uint32_t time_ms;  // drive_time_ms
+  uint16_t known;    // bits of known_t: signals that need another one are 0 and say nothing
+} signals_seen_t;
+
+/// Some of them, given by their places, as one control interrupt left them. Returns what goes with that interrupt.
+signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
+/// One of them, by its place in signal_list.h, as it is now; a place that does not exist gives 0. known: as drive_known
+/// has it now, asked once for as many as are looked at together.
+int32_t drive_signal(uint16_t place, uint16_t known);
+/// Whether the signal has a value with that.
+bool drive_signal_is_known(uint16_t place, uint16_t known);
+
+typedef struct {
+  packed_text_t name, unit, meaning;
+  uint16_t q : 8;
+  uint16_t needs : 2;  // bit of known_t
+} signal_info_t;
+
+uint16_t signal_count(void);
+/// NULL behind the last one.
+const signal_info_t* signal_info(uint16_t place);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif

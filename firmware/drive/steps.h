@@ -1,0 +1,55 @@
+// The control interrupt, its steps in their order, and what they have of each other.
+
+#ifndef STILLSPIN_FIRMWARE_DRIVE_STEPS_H
+#define STILLSPIN_FIRMWARE_DRIVE_STEPS_H
+
+#include "firmware/mode/mode.h"
+
+/// What the control interrupt does in a period, between its begin and its end (control_interrupt.c).
+void drive_control_step(drive_t* d);
+
+/// Background level, once behind every interrupt (drive/reload.c).
+void background_step(drive_t* d);
+
+/// The dead band of the gate signals by the parameter; the power stage's own minimum is the parameter's business.
+uint16_t drive_dead_band_ticks(void);
+
+void drive_control_interrupt(void);
+void drive_window_interrupt(void);
+
+// The steps of the control interrupt, in their order.
+void drive_read_samples(drive_t* d);     // sampling.c
+void drive_estimate(drive_t* d);         // position.c
+void drive_protect(drive_t* d);          // protection.c
+void drive_sequence(drive_t* d);         // drive/sequence.c
+void drive_control_speed(drive_t* d);    // drive/speed.c
+void drive_control_current(drive_t* d);  // drive/current.c
+void drive_modulate(drive_t* d);         // modulation.c
+
+/// Decides what the period that begins does (schedule.h).
+void schedule_next(drive_t* d);
+
+/// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
+void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
+bool polarity_watch_step(drive_t* d);
+bool polarity_watch_suspects(const drive_t* d);
+bool polarity_watch_is_awake(const drive_t* d);
+
+/// Holds the shaft for hold_time from now (drive/brake_hold.c).
+void hold_begin(drive_t* d);
+bool hold_is_on(const drive_t* d);
+
+/// One period; false when it is over and the speed controller has the torque current.
+bool hold_step(drive_t* d);
+
+/// Learns the inertia; once a millisecond (drive/inertia.c).
+void drive_match_inertia(drive_t* d);
+
+/// Torque current that the limit leaves beside the reference of i_d, A.
+int32_t drive_current_room(const drive_t* d);
+
+/// Field weakening of this instant, into the d-axis reference; while the shaft turns it takes four periods of the
+/// millisecond.
+void drive_weaken_field(drive_t* d);  // drive/speed.c
+
+#endif

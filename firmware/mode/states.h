@@ -1,0 +1,37 @@
+// States of the drive, its faults, and what limits it.
+
+#ifndef STILLSPIN_FIRMWARE_MODE_STATES_H
+#define STILLSPIN_FIRMWARE_MODE_STATES_H
+
+typedef enum {
+  DRIVE_BOOT = 0,
+  DRIVE_CALIBRATE = 1,  // current offsets, power stage off
+  DRIVE_READY = 2,
+  DRIVE_START = 3,  // initial angle and polarity
+  DRIVE_RUN = 4,
+  DRIVE_STOP = 5,  // speed to zero, then ready
+  DRIVE_FAULT = 6,
+  DRIVE_COMMISSION = 7  // measures machine and inverter
+} drive_state_t;
+
+#define FAULT(number, name, words, remedy) FAULT_##name = (number),
+typedef enum {
+#include "firmware/dictionary/fault_list.h"
+} drive_fault_t;
+#undef FAULT
+
+typedef enum {
+  LIMIT_CURRENT = 1,
+  LIMIT_VOLTAGE = 2,
+  LIMIT_WEAKENING = 4,
+  LIMIT_OVERRUN = 8,
+  LIMIT_BRAKING = 16  // the DC link takes no more
+} drive_limit_t;
+
+/// What is known beside the drive's own state.
+typedef enum {
+  KNOWN_ROTOR = 1,  // angle and speed are the rotor's
+  KNOWN_FRAME = 2   // the currents are seen in the frame that the control uses; in a start that need not be the rotor's
+} known_t;
+
+#endif
