@@ -37,9 +37,10 @@ static int32_t share_between(int32_t value, int32_t from, int32_t to, int32_t en
 static drive_fault_t follow_heat_sink(int32_t* share_q15) {
   const int32_t code = (int32_t)sampling_auxiliary();
   const bool broken = code > ntc[0] + SENSOR_MARGIN || code < ntc[BOARD_NTC_POINTS - 1u] - SENSOR_MARGIN;
-  board.celsius_q8 = celsius_q8(code);
-  if (broken || board.celsius_q8 > parameters.temperature_limit) return FAULT_TEMPERATURE;
-  *share_q15 = share_between(board.celsius_q8, parameters.temperature_derating, parameters.temperature_limit,
+  drive.heat_sink_q8 = celsius_q8(code);
+  drive.heat_sink_known = !broken;
+  if (broken || drive.heat_sink_q8 > parameters.temperature_limit) return FAULT_TEMPERATURE;
+  *share_q15 = share_between(drive.heat_sink_q8, parameters.temperature_derating, parameters.temperature_limit,
                              BOARD_SHARE_ONE / 2);
   return FAULT_NONE;
 }
@@ -67,7 +68,11 @@ drive_fault_t board_follow_heat(void) {
   if ((board.at_ms & (TURN - 1u)) != 0u) return FAULT_NONE;
   int32_t share_q15 = BOARD_SHARE_ONE;
   drive_fault_t fault = FAULT_NONE;
-  if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) fault = follow_heat_sink(&share_q15);
+  if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) {
+    fault = follow_heat_sink(&share_q15);
+  } else {
+    drive.heat_sink_known = false;
+  }
   const int32_t ever_q20 = board_lasting_current();
   if (ever_q20 != 0) {
     const drive_fault_t overload = follow_overload(ever_q20, &share_q15);

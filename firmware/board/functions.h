@@ -46,7 +46,6 @@ typedef struct {
   uint16_t charging_ms;    // the DC link has been on its way for so long
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
-  int32_t celsius_q8;      // heat sink
   int32_t heat_q24;        // mean square of the current, of that which may flow for ever
   int32_t share_q15;       // of the current limit that is left
   uint16_t code;           // of the speed command

@@ -134,6 +134,15 @@ static void add_pause(drive_t* d) {
   if (commissioning_pair(d, &first, &second)) tensor_add(&d->commissioning.unsaturated, &first, &second);
 }
 
+// A level is as far as its last group is full.
+int32_t commissioning_map_done(const map_t* m) {
+  static const int16_t ends[MAP_LEVELS + 1u] = {0, 270, 585, 820, 1000};
+  if (m->level >= MAP_LEVELS) return ends[MAP_LEVELS];
+  const int32_t periods = m->group[m->level][MAP_GROUPS - 1u].tensor.count * ((int32_t)m->level + 1);
+  const int32_t begin = ends[m->level];
+  return begin + q_min(periods, WANTED_PERIODS) * (ends[m->level + 1u] - begin) / WANTED_PERIODS;
+}
+
 bool commissioning_map(drive_t* d) {
   map_t* const m = &d->commissioning.map;
   if (d->commissioning.tick == 0) {

@@ -14,7 +14,7 @@ static commissioning_report_t report;
 
 typedef struct {
   bool (*step)(drive_t* d);
-  int16_t share;  // per mille of the whole
+  int16_t share;  // per mille of the time of the whole, as motor A takes it
 } phase_t;
 
 static bool at_once(drive_t* d) {
@@ -23,10 +23,10 @@ static bool at_once(drive_t* d) {
 }
 
 static const phase_t phases[] = {{at_once, 0},
-                                 {commissioning_turn, 20},
-                                 {commissioning_climb, 180},
-                                 {commissioning_spin, 150},
-                                 {commissioning_map, 650}};
+                                 {commissioning_turn, 8},
+                                 {commissioning_climb, 170},
+                                 {commissioning_spin, 42},
+                                 {commissioning_map, 780}};
 
 // The sensors' ringing after an edge is a tenth of a degree at the usual settle time; here that counts. The parameters
 // put it back: every end of a commissioning lets them be loaded again.
@@ -125,7 +125,7 @@ commissioning_phase_t drive_commissioning_phase(void) { return drive.commissioni
 // Share of the phase that is done, per mille.
 static int32_t within_phase(const commissioning_t* c) {
   if (c->phase == COMMISSIONING_STAIRCASE) return (int32_t)c->staircase.index * 1000 / (int32_t)STAIRCASE_LEVELS;
-  if (c->phase == COMMISSIONING_MAP) return (int32_t)c->map.level * 1000 / (int32_t)MAP_LEVELS;
+  if (c->phase == COMMISSIONING_MAP) return commissioning_map_done(&c->map);
   if (c->phase == COMMISSIONING_SPIN) return (int32_t)c->spin.leg * 250;
   return 0;
 }

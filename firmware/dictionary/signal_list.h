@@ -1,8 +1,9 @@
 // The drive's signals that tools may look at. SIGNAL(name, unit, q, of, value, meaning): `value` is where the drive `d`
 // has it between two runs of the control interrupt (signals.c); an int32_t with q fractional bits; angles are binary
 // angles (unit "turn", q 32). What is said of the ROTOR is known only with its angle (speed_known), what is said in the
-// FRAME of the control only while the power stage is on: 0 else, whatever the estimators make of nothing. What is said
-// of the DRIVE is always known. No include guard: it is included with different meanings of SIGNAL.
+// FRAME of the control only while the power stage is on, what is said of the HEAT_SINK only where its sensor is in use:
+// 0 else, whatever the estimators make of nothing. What is said of the DRIVE is always known. No include guard: it is
+// included with different meanings of SIGNAL.
 
 SIGNAL(state, "", 0, DRIVE, d->state, "state of the drive")
 SIGNAL(fault, "", 0, DRIVE, d->fault, "latched fault")
@@ -41,3 +42,4 @@ SIGNAL(speed_known, "", 0, DRIVE, drive_knows_speed(d),
 SIGNAL(magnet_flux, "mVs", 16, DRIVE, d->position.flux.machine.psi_q16 / 10,
        "magnet flux as the stator-flux sources estimate it")
 SIGNAL(wiring, "", 0, DRIVE, d->start.wiring, "wiring mistake found at the start, 0 none")
+SIGNAL(temperature, "C", 8, HEAT_SINK, d->heat_sink_q8, "of the heat sink; unknown where temperature_limit is 0")

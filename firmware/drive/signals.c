@@ -9,6 +9,7 @@
 #define DRIVE 0
 #define ROTOR KNOWN_ROTOR
 #define FRAME KNOWN_FRAME
+#define HEAT_SINK KNOWN_HEAT_SINK
 
 #define SIGNAL(name, unit, q, of, value, meaning) \
   {TEXT_SIGNAL_NAME_##name, TEXT_SIGNAL_UNIT_##name, TEXT_SIGNAL_##name, q, of},

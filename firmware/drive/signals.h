@@ -36,7 +36,7 @@ bool drive_signal_is_known(uint16_t place, uint16_t known);
 typedef struct {
   packed_text_t name, unit, meaning;
   uint16_t q : 8;
-  uint16_t needs : 2;  // bit of known_t
+  uint16_t needs : 3;  // bit of known_t
 } signal_info_t;
 
 uint16_t signal_count(void);

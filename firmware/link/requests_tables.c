@@ -29,8 +29,9 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_packed(w, p->meaning);
 }
 
+// What it needs stands in two bits: 0 nothing, 1 the rotor, 2 the frame, 3 the heat sink.
 static void put_signal(octet_writer_t* w, const signal_info_t* s) {
-  put_u8(w, (uint16_t)(s->q | s->needs << 6));
+  put_u8(w, (uint16_t)(s->q | (s->needs - (s->needs >> 2)) << 6));
   put_packed(w, s->name);
   put_u8(w, 0);
   put_packed(w, s->unit);

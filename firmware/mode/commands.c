@@ -61,7 +61,8 @@ bool drive_knows_speed(const volatile drive_t* d) {
 }
 
 uint16_t drive_known(const volatile drive_t* d) {
-  return (uint16_t)((drive_knows_speed(d) ? KNOWN_ROTOR : 0) | (sees_currents(d) ? KNOWN_FRAME : 0));
+  return (uint16_t)((drive_knows_speed(d) ? KNOWN_ROTOR : 0) | (sees_currents(d) ? KNOWN_FRAME : 0) |
+                    (d->heat_sink_known ? KNOWN_HEAT_SINK : 0));
 }
 
 void drive_parameters_changed(void) { drive.request.reload = true; }

@@ -179,6 +179,8 @@ typedef struct {
   uint32_t calm_at;              // period in which the currents will have been at rest for long enough
   int32_t rest_a_q8, rest_b_q8;  // currents at rest while the offsets are found, codes
   int32_t unrest_q8;             // mean deviation of the currents from their offsets while these are found, codes
+  int32_t heat_sink_q8;          // degrees C, as board/derating.c has it
+  bool heat_sink_known;          // by a sensor that is in use and whole
   drive_start_t start;
   drive_config_t config;
   commissioning_t commissioning;

@@ -31,7 +31,8 @@ typedef enum {
 /// What is known beside the drive's own state.
 typedef enum {
   KNOWN_ROTOR = 1,  // angle and speed are the rotor's
-  KNOWN_FRAME = 2   // the currents are seen in the frame that the control uses; in a start that need not be the rotor's
+  KNOWN_FRAME = 2,  // the currents are seen in the frame that the control uses; in a start that need not be the rotor's
+  KNOWN_HEAT_SINK = 4  // the board has a temperature sensor that is in use and whole
 } known_t;
 
 #endif

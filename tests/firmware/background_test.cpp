@@ -235,8 +235,10 @@ TEST(SignalTable, EverySignalHasAPlaceAndNothingIsBehindTheLast) {
   for (std::uint16_t place = 0; place < signal_count(); ++place) ASSERT_NE(signal_info(place), nullptr);
   EXPECT_EQ(signal_info(signal_count()), nullptr);
   EXPECT_EQ(drive_signal(signal_count(), 0), 0);
-  drive.start.wiring = WIRING_SWAPPED;
-  EXPECT_EQ(drive_signal(static_cast<std::uint16_t>(signal_count() - 1), 0), WIRING_SWAPPED) << "the last of them";
+  drive.heat_sink_q8 = 20 * 256;
+  const auto last = static_cast<std::uint16_t>(signal_count() - 1);
+  EXPECT_EQ(drive_signal(last, KNOWN_HEAT_SINK), 20 * 256) << "the last of them";
+  EXPECT_EQ(drive_signal(last, 0), 0);
   drive.state = DRIVE_STOP;
   EXPECT_EQ(drive_signal(0, 0), DRIVE_STOP);
   EXPECT_EQ(drive_signals().state, DRIVE_STOP);

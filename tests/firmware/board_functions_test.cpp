@@ -7,6 +7,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 #include "hal/hal_board.h"
@@ -228,9 +229,10 @@ TEST_F(BoardFunctions, TheHeatSinksTemperatureIsThatOfTheTable) {
       convert(static_cast<std::uint16_t>(code));
       look(8);
       const double between = double(codes[k] - code) / (codes[k] - codes[k + 1]);
-      EXPECT_NEAR(::board.celsius_q8 / 256.0, BOARD_NTC_FIRST + BOARD_NTC_STEP * (k + between), 0.1) << code;
+      EXPECT_NEAR(drive_signals().temperature / 256.0, BOARD_NTC_FIRST + BOARD_NTC_STEP * (k + between), 0.1) << code;
     }
   }
+  EXPECT_EQ(drive_known(&drive) & KNOWN_HEAT_SINK, KNOWN_HEAT_SINK);
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_NE(words().find("heat sink 130 C"), std::string::npos) << words();
   convert(codes[3]);

@@ -373,13 +373,17 @@ TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
   };
   EXPECT_EQ(progress(COMMISSIONING_IDLE), 0);
   EXPECT_EQ(progress(COMMISSIONING_TURN), 0);
-  EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 20);
+  EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 8);
   c.staircase.index = 7;
-  EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 110);
+  EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 8 + 85);
   c.spin.leg = 2;
-  EXPECT_EQ(progress(COMMISSIONING_SPIN), 275);
+  EXPECT_EQ(progress(COMMISSIONING_SPIN), 178 + 21);
   c.map.level = 1;
-  EXPECT_EQ(progress(COMMISSIONING_MAP), 350 + 162);
+  EXPECT_EQ(progress(COMMISSIONING_MAP), 220 + 210);
+  c.map.group[1][MAP_GROUPS - 1].tensor.count = 2000;  // half of what the second level wants
+  EXPECT_EQ(progress(COMMISSIONING_MAP), 220 + 333);
+  c.map.level = MAP_LEVELS;
+  EXPECT_EQ(progress(COMMISSIONING_MAP), 1000);
   EXPECT_EQ(progress(COMMISSIONING_EVALUATE), 1000);
 }
 

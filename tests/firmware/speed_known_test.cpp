@@ -27,8 +27,8 @@ class SpeedKnown : public Drive {
     EXPECT_EQ(drive_signals().speed_known, known ? 1 : 0) << what;
     for (std::uint16_t place = 0; place < signal_count(); ++place) {
       const unsigned needs = signal_info(place)->needs;
-      EXPECT_EQ(drive_signal_is_known(place, now), needs == 0 || (needs == KNOWN_ROTOR ? known : seen))
-          << what << place;
+      const bool there = needs == KNOWN_ROTOR ? known : needs == KNOWN_FRAME ? seen : false;
+      EXPECT_EQ(drive_signal_is_known(place, now), needs == 0 || there) << what << place;
       if (needs != 0) {
         EXPECT_EQ(drive_signal(place, now) != 0, drive_signal_is_known(place, now)) << what << place;
       }

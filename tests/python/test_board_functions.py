@@ -132,6 +132,7 @@ def test_a_hot_heat_sink_takes_current_and_then_faults(power: Any) -> None:
     line = desk.status("board")
     assert "heat sink 50 C" in line or "heat sink 51 C" in line or "heat sink 49 C" in line
     assert "current limit 100 %" in line
+    assert abs(desk.board.signals()["temperature"] - 50.0) < 2.0
     desk.board.set_input("heat_sink", 80.0)
     desk.wait(20)
     share = int(desk.status("board").split("current limit ")[1].split(" ")[0])
@@ -152,6 +153,24 @@ def test_a_broken_sensor_is_a_fault(power: Any, celsius: float) -> None:
     desk.board.set_input("heat_sink", celsius)
     desk.wait(20)
     assert (desk.state, desk.fault) == (FAULT, TEMPERATURE)
+    assert temperature(desk) == "unknown"
+
+
+def test_without_a_sensor_the_temperature_is_unknown(power: Any) -> None:
+    """And not 0 C."""
+    desk = power({})
+    desk.board.set_input("heat_sink", 50.0)
+    desk.wait(20)
+    assert temperature(desk) == "unknown"
+    desk.type("set temperature_limit 90")
+    assert abs(float(temperature(desk)) - 50.0) < 2.0
+    desk.type("set temperature_limit 0")
+    assert temperature(desk) == "unknown"
+
+
+def temperature(desk: Any) -> str:
+    """What stands behind its name."""
+    return str(desk.type("signals temperature", 100).split()[3])
 
 
 def test_overload_brings_the_current_limit_down_to_what_may_flow_for_ever(power: Any) -> None:

@@ -10,6 +10,7 @@ from stillspin.drive import Drive
 from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
 from stillspin.tune.derived import Choice
+from stillspin.tune.server import Server
 
 MOTOR = {"pole_pairs": 4, "inductance_d": 4.0, "inductance_q": 6.0, "magnet_flux": 0.15, "current_limit": 10.0}
 
@@ -17,10 +18,13 @@ MOTOR = {"pole_pairs": 4, "inductance_d": 4.0, "inductance_q": 6.0, "magnet_flux
 @pytest.fixture
 def table(drive):
     """That of the small drive, with the signals and parameters that it lacks."""
-    more = ("voltage_d", "voltage_q")
+    more = {"voltage_d": "V", "voltage_q": "V", "current_a": "A", "current_b": "A"}
     signals = [
         *drive.table.signals,
-        *(replace(drive.table.signals[0], index=20 + at, name=name, unit="V") for at, name in enumerate(more)),
+        *(
+            replace(drive.table.signals[0], index=20 + at, name=name, unit=unit)
+            for at, (name, unit) in enumerate(more.items())
+        ),
     ]
     sample = drive.table.parameters[0]
     parameters = [*drive.table.parameters, *(replace(sample, name=name) for name in MOTOR if name != "current_limit")]
@@ -37,10 +41,7 @@ def test_the_formulas(table):
     assert value(table, "torque", **currents) == pytest.approx(1.5 * 4 * (0.15 + 0.002 * 2) * 3)
     assert value(table, "current_share", **currents) == pytest.approx(10 * math.sqrt(13))
     assert value(table, "power", voltage_d=10.0, voltage_q=20.0, **currents) == pytest.approx(1.5 * 40)
-    assert value(table, "current_a", angle=0.0, **currents) == pytest.approx(-2.0)
-    phases = [value(table, f"current_{phase}", angle=0.2, **currents) for phase in "abc"]
-    assert sum(phases) == pytest.approx(0.0, abs=1e-12)
-    assert math.sqrt(2 / 3 * sum(x * x for x in phases)) == pytest.approx(math.sqrt(13))
+    assert value(table, "current_c", current_a=-2.0, current_b=0.5) == pytest.approx(1.5)
 
 
 def test_what_is_not_known_of_the_rotor_is_empty(table):
@@ -52,7 +53,7 @@ def test_what_is_not_known_of_the_rotor_is_empty(table):
 
 
 def test_more_than_the_drive_streams_is_refused_in_words(table):
-    many = ["power", "current_a", "state", "speed", "speed_reference", "link_voltage"]
+    many = ["power", "current_c", "state", "speed", "speed_reference"]
     with pytest.raises(InputError, match=r"these need 9 signals of the drive .* 1 … 8 can be plotted at once"):
         Choice(many, table)
     with pytest.raises(InputError, match="no signal 'x'"):
@@ -71,3 +72,21 @@ def test_they_are_those_of_the_true_machine():
             torque, power = (sum(column) / len(rows) for column in zip(*rows, strict=True))
             assert torque == pytest.approx(1.0 + 0.003 * 600 * math.pi / 30, abs=0.15)  # load and friction
             assert power == pytest.approx(torque * 600 * math.pi / 30, rel=0.25)  # and what the winding takes
+
+
+@needs_board
+def test_a_person_finds_currents_torque_power_load_and_temperature_among_the_signals(page):
+    """What no sensor has seen is a dash, and not 0 degrees."""
+    wanted = ("current_a", "current_b", "current_c", "torque", "load_torque", "power", "current_share", "temperature")
+    with Drive.virtual() as drive, Server(drive) as server:
+        page.goto(server.address)
+        page.wait_for_selector("#state:has-text('ready')")
+        page.click("#chooser summary")
+        for name in wanted:
+            assert page.locator(f"#signals input[value={name}]").count() == 1, name
+        page.check("#signals input[value=temperature]")
+        page.wait_for_selector("[data-value=temperature]:text-is('–')")
+        drive.set("temperature_limit", 120)
+        page.wait_for_selector("[data-value=temperature]:has-text('°C')")
+        drive.set("temperature_limit", 0)
+        page.wait_for_selector("[data-value=temperature]:text-is('–')")

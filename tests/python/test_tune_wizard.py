@@ -14,6 +14,7 @@ from stillspin.errors import InputError
 from stillspin.tune import plate
 from stillspin.tune.server import Server
 
+HONEST = 0.3
 TYPED = {flag.removeprefix("--").replace("-", "_"): value for flag, value in ANSWERS.items()}
 
 
@@ -26,6 +27,22 @@ def fits(page):
             box = wide.bounding_box()
             assert box["x"] >= 0
             assert box["x"] + box["width"] <= width
+
+
+def follow_the_time_left(page):
+    """(when, seconds that are said to be left, share done) until it is over; when in the drive's seconds."""
+    page.evaluate("""() => {
+        window.said = [];
+        const look = () => {
+            const words = document.getElementById('time-left')?.textContent ?? '';
+            const [, number, unit] = words.match(/about ([\\d.]+) (s|min)/) ?? [];
+            const time = Number(document.getElementById('time').dataset.seconds);
+            const done = document.querySelector('progress')?.value;
+            if (number) window.said.push([time, number * (unit === 'min' ? 60 : 1), done]);
+        };
+        const all = {childList: true, subtree: true, characterData: true};
+        new MutationObserver(look).observe(document.getElementById('wizard'), all);
+    }""")
 
 
 @needs_board
@@ -55,9 +72,15 @@ def test_a_motor_is_asked_for_checked_set_measured_and_saved(tmp_path, monkeypat
             box.check()
         page.click("#commission")
         page.wait_for_selector("#state:has-text('commissioning')")
+        follow_the_time_left(page)
         page.wait_for_selector("#wizard :text('DC staircase')")
         fits(page)
         page.wait_for_selector("#keep-results", timeout=1000 * LONG)
+        said = page.evaluate("window.said")
+        end = said[-1][0]
+        late = [(at, left, end - at) for at, left, done in said if done > 0.25 and end - at > 5.0]
+        assert len(late) > 10
+        assert [row for row in late if abs(row[1] - row[2]) > HONEST * row[2]] == []
         assert "Every value is plausible and in use." in page.inner_text("#wizard")
         row = page.locator("#wizard tr", has_text="stator_resistance").inner_text()
         assert "0.25" in row

@@ -135,7 +135,7 @@ def _parameter(index: int, body: bytes) -> Parameter:
 def _signal(index: int, body: bytes) -> Signal:
     (form,) = unpack("<B", body)
     name, unit, meaning = _words(body[1:], 3)
-    return Signal(index, name, unit, form & _Q, form >> _NEEDS, meaning)
+    return Signal(index, name, unit, form & _Q, (1 << (form >> _NEEDS)) >> 1, meaning)
 
 
 def _file(crc: int) -> Path:

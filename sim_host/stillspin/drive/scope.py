@@ -33,7 +33,7 @@ DECIMATION = Range(1, 0xFFFF, whole=True)
 BEFORE = Range(0, 99.9, "%")
 """Records before the trigger."""
 # Full scale per unit when nothing else is asked for: above everything that the default limits let a drive reach.
-_FULL_SCALE = {"A": 32.0, "V": 512.0, "rpm": 8192.0, "turn": 0.5, "Nm": 64.0}
+_FULL_SCALE = {"A": 32.0, "V": 512.0, "rpm": 8192.0, "turn": 0.5, "Nm": 64.0, "C": 256.0}
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from stillspin.quantity import Range
 
 TURN = "turn"
 """Unit of the signals that are binary angles."""
-KNOWN_ROTOR, KNOWN_FRAME = 1, 2
-"""What a drive knows: the rotor's angle and speed; the currents in the frame that its control uses."""
-KNOWN_ALL = KNOWN_ROTOR | KNOWN_FRAME
+KNOWN_ROTOR, KNOWN_FRAME, KNOWN_HEAT_SINK = 1, 2, 4
+"""What a drive knows: the rotor's angle and speed; the currents in the frame that its control uses; its temperature."""
+KNOWN_ALL = KNOWN_ROTOR | KNOWN_FRAME | KNOWN_HEAT_SINK
 
 
 @dataclass(frozen=True)

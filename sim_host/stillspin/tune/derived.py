@@ -31,9 +31,8 @@ class Derived:
     """Of signals and parameters, in their units."""
 
 
-def _phase(signals: Values, turn: float) -> float:
-    angle = 2 * math.pi * (signals["angle"] - turn)
-    return signals["current_d"] * math.cos(angle) - signals["current_q"] * math.sin(angle)
+def _phase_c(signals: Values, _: Values) -> float:
+    return -signals["current_a"] - signals["current_b"]
 
 
 def _torque(signals: Values, parameters: Values) -> float:
@@ -55,17 +54,13 @@ _TORQUE = ("pole_pairs", "inductance_d", "inductance_q", "magnet_flux")
 DERIVED = {
     entry.name: entry
     for entry in (
-        *(
-            Derived(
-                f"current_{phase}",
-                "A",
-                ("angle", *_DQ),
-                (),
-                f"current of phase {phase}: i_d cos x - i_q sin x, x = angle - {number}/3 turn; "
-                "above 25 Hz too few samples to show its wave: use the scope",
-                lambda signals, _, number=number: _phase(signals, number / 3),  # type: ignore[misc]
-            )
-            for number, phase in enumerate("abc")
+        Derived(
+            "current_c",
+            "A",
+            ("current_a", "current_b"),
+            (),
+            "current of phase c, -(current_a + current_b); above 25 Hz too few samples to show its wave: use the scope",
+            _phase_c,
         ),
         Derived(
             "torque",
