@@ -47,7 +47,7 @@ def plant() -> int:
             clean, _ = look_at(["x.c"], Path(name))
             missed += [what] if clean else []
     found = len(DEFECTS) - len(missed)
-    print("; ".join([f"cppcheck: {found} of {len(DEFECTS)} planted defects found", *(f"not {w}" for w in missed)]))
+    print("; ".join([f"cppcheck: {found} of {len(DEFECTS)} planted defects found", *(f"missed: {w}" for w in missed)]))
     return 1 if missed else 0
 
 

@@ -103,9 +103,9 @@ def main() -> int:
     """See the module's text."""
     known = (*(step.name for step in STEPS), *records.COMMANDS)
     parser = argparse.ArgumentParser(description="Renews the figures of README.md and the book.")
-    parser.add_argument("--long", action="store_true", help="also what takes long")
-    parser.add_argument("--again", action="store_true", help="also what is fresh")
-    parser.add_argument("--list", action="store_true", help="only say what is of older sources")
+    parser.add_argument("--long", action="store_true", help="also what takes hours")
+    parser.add_argument("--again", action="store_true", help="also what is up to date")
+    parser.add_argument("--list", action="store_true", help="only say what was made from older sources")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(known))
     options = parser.parse_args()
     if unknown := set(options.names) - set(known):
@@ -113,14 +113,14 @@ def main() -> int:
     old = records.outdated(ROOT)
     if options.list:
         for name, command in old.items():
-            print(f"figures: {name} is of older sources: {command}")
+            print(f"figures: {name} was made from older sources; renew it: {command}")
         return 1 if old else 0
     made_of = records.sources(ROOT)
     steps, made = _chosen(options.long, options.names)
     todo = [step for step in steps if options.again or not _is_fresh(step, made_of)]
     by_make = [name for name in made if options.again or name in old or name not in records.load(ROOT)]
     count, left = len(todo) + len(by_make), len(steps) + len(made)
-    print(f"figures: {count} of {left} commands to run, {left - count} fresh", flush=True)
+    print(f"figures: {count} of {left} commands to run, {left - count} are up to date", flush=True)
     failed = False
     for k, step in enumerate(todo, 1):
         print(f"figures: {k} of {count}: stillspin {step.command}", flush=True)

@@ -193,7 +193,7 @@ def main() -> int:
     explained = sys.argv[sys.argv.index("--explain") + 1] if "--explain" in sys.argv else ""
     recorder, out = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     if missing := m3_cost.missing_tools():
-        print(f"isr-bound: not installed: {' '.join(missing)}; once: sudo apt-get install {' '.join(missing)}")
+        print(f"isr-bound: not installed: {' '.join(missing)}; run once: sudo apt-get install {' '.join(missing)}")
         return 1
     out.mkdir(parents=True, exist_ok=True)
     image = m3_cost.build(out)
@@ -209,7 +209,7 @@ def main() -> int:
         return 0
     complaints = [*misnamed(modes), *run_time(program)]
     complaints += [
-        f"{name}: {mode.worst} instructions, allowed are {mode.facts.most}"
+        f"{name}: {mode.worst} instructions, {mode.facts.most} are allowed"
         for name, mode in bounds.items()
         if not 0 < mode.worst <= mode.facts.most
     ]

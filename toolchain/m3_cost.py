@@ -249,7 +249,7 @@ def wrong_charges(table: Table, scope: int) -> list[str]:
         charged = int(found.group(1)) if found else 0
         cycles = count * CYCLES_PER_INSTRUCTION
         if abs(charged - cycles) > CHARGE_MARGIN * cycles:
-            complaints.append(f"{CHARGES.name}: {name} is {charged}, by the count {cycles:.0f}")
+            complaints.append(f"{CHARGES.name}: {name} is {charged} cycles, the count gives {cycles:.0f}")
     return complaints
 
 
@@ -258,7 +258,7 @@ def main() -> int:
     recorder, out = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     missing = missing_tools()
     if missing:
-        print(f"isr-cost: not installed: {' '.join(missing)}; once: sudo apt-get install {' '.join(missing)}")
+        print(f"isr-cost: not installed: {' '.join(missing)}; run once: sudo apt-get install {' '.join(missing)}")
         return 1
     out.mkdir(parents=True, exist_ok=True)
     image = build(out)

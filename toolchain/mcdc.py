@@ -91,12 +91,14 @@ def tools() -> tuple[str, str, str, Path]:
     number = version.group(1)
     profdata, cov = f"llvm-profdata{suffix}", f"llvm-cov{suffix}"
     if shutil.which(profdata) is None or shutil.which(cov) is None:
-        raise SystemExit(f"mcdc: no {cov}; once: sudo apt-get install llvm-{number}")
+        raise SystemExit(f"mcdc: no {cov}; run once: sudo apt-get install llvm-{number}")
     where = subprocess.run([clang, "--print-resource-dir"], capture_output=True, text=True, check=True).stdout.strip()
     runtime = next(Path(where).rglob(f"libclang_rt.profile*{os.uname().machine}.a"), None)
     runtime = runtime or next(Path(where).rglob("libclang_rt.profile.a"), None)
     if runtime is None:
-        raise SystemExit(f"mcdc: {clang} has no profile runtime; once: sudo apt-get install libclang-rt-{number}-dev")
+        raise SystemExit(
+            f"mcdc: {clang} has no profile runtime; run once: sudo apt-get install libclang-rt-{number}-dev"
+        )
     return clang, profdata, cov, runtime
 
 

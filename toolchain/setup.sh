@@ -53,7 +53,7 @@ choose_root() {
   if [[ $(id -u) == 0 ]]; then
     become_root=()
   elif ! command -v sudo >/dev/null; then
-    die "neither root nor sudo; once, as root: apt-get install ${wanted[*]}"
+    die "Debian packages are missing, and there is no sudo; run once as root: apt-get install ${wanted[*]}"
   elif [[ -t 0 ]]; then
     become_root=(sudo)
   else
@@ -81,7 +81,7 @@ newest_clang_package() {
 
 refresh_package_lists() {
   say "refreshing the package lists"
-  apt update >"$logs/apt.log" 2>&1 || say "the package lists could not be refreshed (see $logs/apt.log), trying the old ones"
+  apt update >"$logs/apt.log" 2>&1 || say "the package lists could not be refreshed (see $logs/apt.log); going on with the old ones"
 }
 
 # Takes out of `wanted` what install_browser brings, after the Python packages.
@@ -104,7 +104,7 @@ install_wanted() {
   done
   if ((${#failed[@]})); then
     die "cannot install ${failed[*]}; by hand: sudo apt-get install ${failed[*]}, then run make again" \
-      "(apt-get's words: $logs/apt.log)"
+      "(what apt-get says: $logs/apt.log)"
   fi
 }
 
@@ -124,7 +124,7 @@ install_debian_packages() {
   local need_clang='' package clang llvm=()
   clang=$(bash toolchain/find-clang.sh) || need_clang=1
   if ! command -v dpkg-query >/dev/null; then
-    say "not a Debian or Ubuntu machine: the packages of $table are taken to be there"
+    say "not a Debian or Ubuntu machine: it must have what $table lists"
     [[ -z $need_clang ]] || die "no clang with the msp430 target: install LLVM's clang 14 or newer, then run make again"
     return
   fi
@@ -144,7 +144,7 @@ install_debian_packages() {
   done
   if [[ -n $need_clang ]]; then
     clang=$(newest_clang_package)
-    [[ -n $clang ]] || die "cannot install a clang: none of clang-14 to clang-22 is in the package lists; by hand:" \
+    [[ -n $clang ]] || die "cannot install clang: none of clang-14 to clang-22 is in the package lists; by hand:" \
       "install any LLVM clang 14 or newer whose --print-targets names msp430, then run make again"
     say "  $clang: checks the firmware's C with a 16-bit int, as on the DSP"
     wanted+=("$clang")
@@ -211,9 +211,9 @@ install_own_package() {
 install_browser() {
   has_group test && ! has_browser || return 0
   mkdir -p "$logs"
-  say "installing the Chromium of Playwright: looks at the page as a person does"
-  "$venv/bin/python" -m playwright install --with-deps chromium >"$logs/browser.log" 2>&1 </dev/null || die "cannot install a" \
-    "Chromium (see $logs/browser.log); by hand: any chromium, chromium-browser or google-chrome on the path"
+  say "installing the Chromium of Playwright, for the tests of the page in the browser"
+  "$venv/bin/python" -m playwright install --with-deps chromium >"$logs/browser.log" 2>&1 </dev/null || die "cannot install" \
+    "Chromium (see $logs/browser.log); by hand: install any chromium, chromium-browser or google-chrome"
 }
 
 wanted=()

@@ -51,7 +51,7 @@ void BoardPort::send(const Octets& request) {
 Octets BoardPort::receive() {
   Octets answer;
   for (int k = 1; !wait_for_answer(kPatienceMs, answer); k++) {
-    if (k == kTries) throw PortError("the board gives no answer");
+    if (k == kTries) throw PortError("the board does not answer");
     write(wire_);
   }
   return answer;
@@ -66,7 +66,7 @@ void BoardPort::write(const Octets& octets) const {
     } else if (!may_come_again(errno)) {
       throw PortError(std::string("the port is lost: ") + std::strerror(errno));
     } else if (!wait_for(descriptor_, POLLOUT, kPatienceMs)) {
-      throw PortError("the port takes no octets: is something connected to it?");
+      throw PortError("the port accepts no data: is anything connected to it?");
     }
   }
 }

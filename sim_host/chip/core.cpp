@@ -144,7 +144,8 @@ void Core::model_error(const char* text, std::int64_t value) {
 void Core::fail_with_current_exception() {
   stop_ = true;
   exception_ = std::current_exception();
-  error_ = "virtual F2808, tick " + std::to_string(now_) + ": the world threw an exception";
+  error_ = "virtual F2808, tick " + std::to_string(now_) +
+           ": what stands for the world outside of the chip threw an exception";
 }
 
 // ---- time and events ----------------------------------------------------------------------------------

@@ -51,14 +51,14 @@ void SerialLine::append(unsigned levels, unsigned bits, double bit, Tick t) {
 
 void SerialLine::set_rate(double bits_per_second) {
   if (!(bits_per_second >= kMinimumRate && bits_per_second <= kMaximumRate)) {
-    throw std::invalid_argument("serial rate " + std::to_string(bits_per_second) + " bit/s: 10 to 10000000");
+    throw std::invalid_argument("serial rate " + std::to_string(bits_per_second) + " bit/s: must be 10 to 10000000");
   }
   rate_ = bits_per_second;
 }
 
 void SerialLine::set_noise(double flips_per_bit, std::uint64_t seed) {
   if (!(flips_per_bit >= 0.0 && flips_per_bit <= 1.0)) {
-    throw std::invalid_argument("serial noise " + std::to_string(flips_per_bit) + ": 0 to 1");
+    throw std::invalid_argument("serial noise " + std::to_string(flips_per_bit) + ": must be 0 to 1");
   }
   flips_ = flips_per_bit;
   random_.seed(seed);

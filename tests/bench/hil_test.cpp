@@ -231,7 +231,7 @@ std::string words_of(const std::function<void(int)>& at_the_other_end) {
 
 TEST(BoardPort, SaysWhenNoAnswerComes) {
   int other = -1;
-  EXPECT_EQ(words_of([&](int end) { other = end; }), "the board gives no answer");
+  EXPECT_EQ(words_of([&](int end) { other = end; }), "the board does not answer");
   std::array<char, 64> heard;
   EXPECT_EQ(::read(other, heard.data(), heard.size()) % 5, 0) << "asked five times";
   ::close(other);

@@ -114,4 +114,4 @@ def test_flash_file_of_another_size_is_one_line(files, capsys):
     with pytest.raises(SystemExit) as ended:
         cli.app(["loader", str(files / "flash.bin"), "--kernel", str(files / "kernel.txt")])
     assert ended.value.code == 2
-    assert "has 5 octets, the flash 131072" in capsys.readouterr().err
+    assert "has 5 octets, must have 131072" in capsys.readouterr().err

@@ -30,7 +30,7 @@ def refused(board, image, blamed):
 def test_image_with_other_boot_code_is_refused():
     boot = (Block(0x3F4000, (0x561F, 0x7029, 0x761F, 0x0002)), make.BOOT[1])
     with make.board(make.image_blocks(1, boot=boot)) as board:
-        refused(board, NEW_IMAGE, "sector A .* is not the board's")
+        refused(board, NEW_IMAGE, "sector A .* differs from the board's")
 
 
 def resident_part(seed):
@@ -60,7 +60,11 @@ def test_image_with_one_other_word_in_its_resident_part_is_refused(tmp_path, pla
     words = list(resident.words)
     words[place] ^= 1
     with make.board(make.image_blocks(1, boot=(*make.BOOT, resident))) as board:
-        refused(board, image_with(tmp_path, 2, Block(resident.address, tuple(words))), "sector A .* is not the board's")
+        refused(
+            board,
+            image_with(tmp_path, 2, Block(resident.address, tuple(words))),
+            "sector A .* differs from the board's",
+        )
 
 
 def test_board_without_boot_code_is_refused():
@@ -82,7 +86,7 @@ def test_another_chip_is_refused(monkeypatch):
 def test_kernel_that_is_damaged_in_ram_is_refused(monkeypatch):
     monkeypatch.setattr("stillspin.flash.update.crc_of", lambda _words: 0)
     with make.board(OLD) as board:
-        refused(board, OLD_IMAGE, "not the one of the file")
+        refused(board, OLD_IMAGE, "differs from the file")
 
 
 @pytest.fixture

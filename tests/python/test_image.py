@@ -114,7 +114,7 @@ def test_undefined_symbol_and_overflow_are_seen(tmp_path: Path) -> None:
     pile = Pile([compiled(tmp_path, code)])
     assert "nowhere" in pile.missing()
     _, complaints = place(pile.words(), read_command_file(ROOT / FLASH))
-    assert complaints == ["RAM_DATA takes 14000 words and has 12288"]
+    assert complaints == ["RAM_DATA takes 14000 words, there are 12288"]
 
 
 def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_resident_part() -> None:
@@ -123,7 +123,7 @@ def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_resident_par
     fill, complaints = place({"resident": 100, "ramfuncs": 400, ".text": app - 600, ".econst": 1000}, file)
     assert (fill["APP"], fill["RESIDENT"], complaints) == (app, 900, [])
     _, complaints = place({"resident": 100, ".text": app, ".econst": room}, file)
-    assert complaints == [f"RESIDENT takes {room + 100} words and has {room}"]
+    assert complaints == [f"RESIDENT takes {room + 100} words, there are {room}"]
 
 
 @pytest.mark.parametrize(("limit", "complaints"), [(100, []), (99, ["all code: 100, limit 99"])])

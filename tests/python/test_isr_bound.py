@@ -99,7 +99,7 @@ def test_what_keeps_the_bound_passes(run: Callable[[Given], int], capsys: pytest
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (Given(most=799), "observer turning: 800 instructions, allowed are 799"),
+        (Given(most=799), "observer turning: 800 instructions, 799 are allowed"),
         (
             Given(cost={f"turning {m3_cost.STEPS[1]}": 101}),
             f"observer, 600 rpm: turning, {m3_cost.STEPS[1]}: 101 instructions, by the bound at most 100",

@@ -49,8 +49,8 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[int, int],
     [
         ((800, 1000), []),
         ((799, 1000), ["isr-cost: paper, turning: 800 instructions, budget 799"]),
-        ((800, 1101), ["isr-cost: charges.h: CYCLES_WINDOW is 1101, by the count 1000"]),
-        ((800, 899), ["isr-cost: charges.h: CYCLES_WINDOW is 899, by the count 1000"]),
+        ((800, 1101), ["isr-cost: charges.h: CYCLES_WINDOW is 1101 cycles, the count gives 1000"]),
+        ((800, 899), ["isr-cost: charges.h: CYCLES_WINDOW is 899 cycles, the count gives 1000"]),
     ],
 )
 def test_count_beyond_a_budget_or_a_charge_is_caught(

@@ -107,7 +107,7 @@ def test_records_of_older_sources_are_listed(
     renewed: Callable[..., tuple[int, list[str]]], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert renewed({"prove"}, "", "--list") == (1, [])
-    assert capsys.readouterr().out == "figures: prove is of older sources: make prove\n"
+    assert capsys.readouterr().out == "figures: prove was made from older sources; renew it: make prove\n"
 
 
 @pytest.mark.parametrize(("status", "writes", "kept"), [(0, True, 2), (1, True, 2), (1, False, 1), (0, False, 1)])

@@ -328,7 +328,7 @@ def test_the_next_capture_ends_the_one_before(server, fake):
         await page.hear("scope")
         await page.say(t="ask", id=78, what="capture", given=setup)
         reply = await page.hear("reply")
-        assert reply == {"t": "reply", "id": 77, "error": "another capture has been begun"}
+        assert reply == {"t": "reply", "id": 77, "error": "another capture was started and ended this one"}
         fake.scope = DONE
         assert len((await page.hear("reply"))["result"]["time"]) == 1024
 

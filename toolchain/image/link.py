@@ -95,7 +95,7 @@ def place(words: dict[str, int], file: CommandFile) -> tuple[dict[str, int], lis
             fill[placement.run] += size
     for name, used in fill.items():
         if used > file.ranges[name].length:
-            complaints.append(f"{name} takes {used} words and has {file.ranges[name].length}")
+            complaints.append(f"{name} takes {used} words, there are {file.ranges[name].length}")
     return fill, complaints
 
 
@@ -162,7 +162,7 @@ def link(arguments: list[str]) -> int:
         fill, unfit = place(words, file)
         rows, grown = [f"| stack | {depth.total} | {file.stack_words} | |"], unfit
         if depth.total > file.stack_words:
-            grown = [*unfit, f"the stack takes {depth.total} words and has {file.stack_words}"]
+            grown = [*unfit, f"the stack takes {depth.total} words, there are {file.stack_words}"]
     lines = [
         "| estimated words | now | goal | |",
         "|---|---|---|---|",

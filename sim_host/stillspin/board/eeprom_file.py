@@ -25,7 +25,7 @@ def insert(board: NativeBoard, file: Path) -> None:
         raise InputError(f"--eeprom {file}: cannot be read ({error.strerror})") from error
     size = len(board.eeprom)
     if len(content) != size:
-        raise InputError(f"--eeprom {file}: has {len(content)} octets, the memory has {size}")
+        raise InputError(f"--eeprom {file}: has {len(content)} octets, must have {size}")
     board.eeprom = content
 
 

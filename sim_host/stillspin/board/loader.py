@@ -41,7 +41,7 @@ def _read(file: Path) -> list[int]:
     except OSError as error:
         raise InputError(f"{file}: cannot be read ({error.strerror})") from error
     if len(content) != _FILE.size:
-        raise InputError(f"{file}: has {len(content)} octets, the flash {_FILE.size}")
+        raise InputError(f"{file}: has {len(content)} octets, must have {_FILE.size}")
     return list(_FILE.unpack(content))
 
 

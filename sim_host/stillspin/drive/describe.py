@@ -114,7 +114,7 @@ def unpack(form: str, body: bytes) -> tuple[Any, ...]:
     """
     if len(body) < struct.calcsize(form):
         raise DifferentError(
-            f"an answer of {len(body)} octets is too short: client and firmware are of different versions"
+            f"an answer of {len(body)} octets is too short: install the client that belongs to the firmware"
         )
     return struct.unpack_from(form, body)
 

@@ -439,7 +439,7 @@ class Drive:
             done = wait_until(lambda: self.scope_state().done, timeout + setup.duration)
         if not done:
             self.scope_stop()
-            raise DriveError(f"the scope has seen no trigger within {timeout:g} s")
+            raise DriveError(f"no trigger within {timeout:g} s; check its signal, level and edge")
         return self.scope_read(setup)
 
     # Commissioning

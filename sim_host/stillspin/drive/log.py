@@ -43,7 +43,7 @@ def keep(stream: Stream, duration: float, version: str) -> Log:
         LinkError: the way to the drive is lost.
     """
     if not duration > 0:
-        raise InputError(f"a log of {duration:g} s; must be above 0")
+        raise InputError(f"duration of a log: must be above 0 s, not {duration:g} s")
     samples: list[Sample] = []
     end = time.monotonic() + duration
     while time.monotonic() < end:

@@ -218,7 +218,7 @@ class Requester:
 
 def _accepted(answer: Record) -> bytes:
     if not answer.body:
-        raise DifferentError("an answer without a status: client and firmware are of different versions")
+        raise DifferentError("an answer without a status: install the client that belongs to the firmware")
     status, body = answer.body[0], answer.body[1:]
     if status == StatusCode.OK:
         return body

@@ -130,7 +130,7 @@ def shift(signal: Signal, full_scale: float | None) -> int:
     if scale is None:  # numbers of states, bits, shares: as they are, down to 16 bits
         return max(0, signal.q + 1 - 15)
     if not scale > 0:
-        raise InputError(f"full scale of {signal.name}: {scale:g} must be above 0")
+        raise InputError(f"full scale of {signal.name}: must be above 0, not {scale:g}")
     bits = 0
     while bits < _SHIFT_MAX and scale * 2**signal.q > (_WORD << bits):
         bits += 1
@@ -144,7 +144,7 @@ def encode(setup: Setup, table: Table) -> bytes:
         InputError: what is asked for is not possible; in words.
     """
     if not 1 <= len(setup.channels) <= MOST:
-        raise InputError(f"a scope of {len(setup.channels)} channels; 1 … {MOST} are possible")
+        raise InputError(f"{len(setup.channels)} scope channels; 1 … {MOST} are possible")
     DECIMATION.read(setup.decimation, "decimation")
     BEFORE.read(100.0 * setup.pretrigger, "pretrigger")
     edge = EDGES.get(setup.trigger.edge)

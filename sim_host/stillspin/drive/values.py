@@ -101,7 +101,7 @@ def save(drive: Drive) -> None:
     """
     drive.command(Command.SAVE)
     if not wait_until(lambda: drive.raw_status().store != STORE_SAVING, _SAVE_TIMEOUT, 0.05):
-        raise DriveError("the drive is still saving")
+        raise DriveError(f"still saving after {_SAVE_TIMEOUT:g} s; the drive's status says how it ends")
     state = drive.raw_status().store
     if state != STORE_SAVED:
         raise DriveError(f"not saved; {drive.words(Words.STORE, state)}")

@@ -38,12 +38,12 @@ def from_text(data: bytes, name: str) -> Program:
         InputError: it is none.
     """
     if data.startswith(_STX) and _ETX not in data:
-        raise InputError(f"{name}: breaks off before its end mark; copy it again")
+        raise InputError(f"{name}: is cut short before its end mark; copy it again")
     body = _ADDRESS.sub(b" ", data.partition(_ETX)[0].lstrip(_STX)).replace(b",", b" ")
     try:
         octets = bytes.fromhex(body.decode("ascii"))
     except ValueError:
-        raise InputError(f"{name}: is no hex2000 boot stream: there is more in it than octets in hexadecimal") from None
+        raise InputError(f"{name}: is no boot stream of hex2000: not all of it is hexadecimal") from None
     return from_octets(octets, name)
 
 
@@ -57,7 +57,7 @@ class _Reader:
         piece = self._octets[self.at : self.at + 2 * count]
         if len(piece) < 2 * count:
             raise InputError(
-                f"{self._name}: the boot stream breaks off after {len(self._octets)} octets; copy it again"
+                f"{self._name}: the boot stream is cut short after {len(self._octets)} octets; copy it again"
             )
         self.at += 2 * count
         return tuple(piece[k] | piece[k + 1] << 8 for k in range(0, len(piece), 2))
@@ -79,7 +79,9 @@ def from_octets(octets: bytes, name: str) -> Program:
     """
     reader = _Reader(octets, name)
     if reader.words(1) != (KEY,):
-        raise InputError(f"{name}: is no boot stream: it does not begin with the key 0x08AA; hex2000 --boot --sci8")
+        raise InputError(
+            f"{name}: is no boot stream: it does not begin with the key 0x08AA; make it with hex2000 --boot --sci8"
+        )
     reader.words(_RESERVED)
     entry = reader.address()
     blocks = []

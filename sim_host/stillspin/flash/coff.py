@@ -30,7 +30,7 @@ def read(data: bytes, name: str) -> Program:
     try:
         return _read(data, name)
     except struct.error:
-        raise InputError(f"{name}: the COFF file breaks off; copy it again") from None
+        raise InputError(f"{name}: the COFF file is cut short; copy it again") from None
 
 
 def _read(data: bytes, name: str) -> Program:

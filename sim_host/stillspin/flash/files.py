@@ -165,5 +165,5 @@ def kernel_program(path: Path) -> Program:
     if program.word(layout.KERNEL_RAM.start) not in {layout.KERNEL_MARK, layout.KERNEL_DEMONSTRATION}:
         raise InputError(f"{name}: is no flash kernel: there is no mark at 0x{layout.KERNEL_RAM.start:06X}")
     if program.entry is None or program.word(program.entry) is None:
-        raise InputError(f"{name}: its entry point is not among what it loads")
+        raise InputError(f"{name}: its entry point is outside of what it loads; build it again")
     return program

@@ -37,10 +37,12 @@ def read(data: bytes, name: str) -> Program:
         octets = _record(line, number, name)
         address, kind, body = int.from_bytes(octets[1:3]), octets[3], octets[4:]
         if ended:
-            raise InputError(f"{name}, line {number}: stands behind the end of the file")
+            raise InputError(f"{name}, line {number}: comes after the end record; make the file again")
         if kind == _DATA:
             if len(body) % 2:
-                raise InputError(f"{name}, line {number}: half a word; use hex2000 --romwidth=16 --memwidth=16")
+                raise InputError(
+                    f"{name}, line {number}: half a word; make the file with hex2000 --romwidth=16 --memwidth=16"
+                )
             words = tuple(int.from_bytes(body[k : k + 2]) for k in range(0, len(body), 2))
             blocks.append(Block(base + address, words))
         elif kind == _LINEAR:
@@ -50,7 +52,7 @@ def read(data: bytes, name: str) -> Program:
         elif kind == _END:
             ended = True
         else:
-            raise InputError(f"{name}, line {number}: record type {kind} is none of hex2000's")
+            raise InputError(f"{name}, line {number}: hex2000 writes no record type {kind}; make the file with hex2000")
     if not ended:
-        raise InputError(f"{name}: breaks off before its last record; copy it again")
+        raise InputError(f"{name}: is cut short before its last record; copy it again")
     return assemble(blocks, entry, "Intel hex", name)

@@ -80,7 +80,8 @@ class Kernel:
         body = self._ask(Request.INFO, b"", attempts=attempts)
         if len(body) != _INFO.size:
             raise DifferentError(
-                f"{self._line.name}: another kernel than this program's: its answer has {len(body)} octets"
+                f"{self._line.name}: the kernel is not this program's (its answer has {len(body)} octets): build both "
+                "from one commit"
             )
         protocol, part, revision, locked, *words = _INFO.unpack(body)
         identity, entry = tuple(words[: layout.IDENTITY_WORDS]), words[layout.IDENTITY_WORDS :]
@@ -171,14 +172,14 @@ def _words(status: int, body: bytes) -> str:
     if status == Status.FLASH and len(body) == 6:
         code, address = struct.unpack("<HI", body)
         return (
-            f"the flash did not do it at 0x{address:06X} (code {code} of TI's library); repeat; if it stays so, the "
-            "sector is worn or damaged and only a JTAG probe tells more"
+            f"the flash failed at 0x{address:06X} (code {code} of TI's library): repeat; if it fails again, the sector "
+            "is worn or damaged: look at it over JTAG"
         )
     if status == Status.UNKNOWN:
         return "the drive is running, not the kernel: set the jumpers to serial boot and reset the board"
     return {
-        Status.RANGE: "refused: sector A, passwords and what is no flash are never written",
-        Status.LENGTH: "the request had a wrong length: kernel and this program do not fit together",
+        Status.RANGE: "refused: only sectors B, C and D are ever written",
+        Status.LENGTH: "the request had a wrong length: build kernel and program from one commit",
         Status.STATE: "refused: the flash does not hold what was sent; repeat the update",
-        Status.LOCKED: "the board is locked by passwords: open it over JTAG, or leave it to who knows them",
+        Status.LOCKED: "the board is locked by passwords: open it over JTAG",
     }.get(Status(status) if status in set(Status) else Status.OK, f"refused with status {status}")

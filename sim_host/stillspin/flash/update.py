@@ -53,8 +53,8 @@ def check_demonstration(line: Line, program: Program, image: DriveImage) -> None
     """
     if (image.identity.demonstration or demonstration.is_kernel(program)) and not virtual.is_at(line):
         raise InputError(
-            f"{line.name}: no virtual board is there, and a demonstration is for nothing else: a chip would run into "
-            "words that are no program; stillspin loader makes a virtual board. Nothing was loaded"
+            f"{line.name}: no virtual board is there, and a demonstration image is for nothing else: a chip would run "
+            "words that are no program. Nothing was loaded; stillspin loader starts a virtual board"
         )
 
 
@@ -84,7 +84,7 @@ def _check_kernel(kernel: Kernel, line: Line, program: Program) -> None:
     except NoAnswerError:
         raise NoAnswerError(
             f"{line.name}: neither boot ROM nor flash kernel answers: set the jumpers to serial boot (GPIO18 and "
-            "GPIO29 high, GPIO34 low), reset the board and repeat; after an update that broke off it is needed, too"
+            "GPIO29 high, GPIO34 low), reset the board and repeat, also after an update that was interrupted"
         ) from None
     if info.protocol != kernel_requests.PROTOCOL:
         raise DifferentError(
@@ -94,8 +94,8 @@ def _check_kernel(kernel: Kernel, line: Line, program: Program) -> None:
     for block in program.blocks:
         if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
             raise DifferentError(
-                f"{line.name}: the kernel in RAM is not the one of the file: reset the board and repeat; the flash was "
-                "not touched"
+                f"{line.name}: the kernel in RAM differs from the file: reset the board and repeat; the flash "
+                "was not touched"
             )
 
 
@@ -121,8 +121,8 @@ def check_board(kernel: Kernel, line: Line, image: DriveImage) -> Info:
     for block in image.resident:
         if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
             raise other(
-                f"the image's sector A (boot code and resident part, from 0x{block.address:06X}) is not the board's, "
-                "and sector A is never written here: program the whole image over JTAG, see docs/flash.md"
+                f"the image's sector A (boot code and resident part, from 0x{block.address:06X}) differs from the "
+                "board's, and sector A is never written here: program the whole image over JTAG, see docs/flash.md"
             )
     return info
 

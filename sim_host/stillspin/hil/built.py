@@ -37,8 +37,8 @@ def check_board(ask: Ask) -> Identity:
         more = [f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
         raise DifferentError(
             f"the board is not built like the virtual drive: {'; '.join([*found[:_SHOWN], *more])}. No step was done. "
-            f"Put an image of these sources for board {ours.board} onto it (docs/flash.md), or use the stillspin that "
-            "its image was built with"
+            f"Flash an image of these sources for board {ours.board} (docs/flash.md), or use the stillspin that its "
+            "image was built with"
         )
     return theirs
 

@@ -128,7 +128,7 @@ class Loop:
         try:
             self._requester.request(Request.HIL_ENTER, repeat=True)
         except RefusedError as error:
-            raise CampaignError(f"the board does not go into the loop: {error}") from error
+            raise CampaignError(f"the board does not enter host in the loop: {error}") from error
 
     def _ask(self, request: bytes) -> bytes:
         """A request by way of the requester."""
@@ -160,7 +160,7 @@ class Loop:
             return None
         step, torn, board, native, signals = loop.mismatch
         if torn:
-            return Difference(step, "the board asked its hardware for something else than the virtual drive did")
+            return Difference(step, "the board accessed other hardware than the virtual drive did")
         return Difference(step, told.difference(board, native) or self._signal(signals))
 
     def _signal(self, ours: list[int]) -> str:

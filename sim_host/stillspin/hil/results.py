@@ -133,4 +133,4 @@ class Results:
                 item = Row(**fields)
                 self.rows[item.key] = item
         except (OSError, ValueError, KeyError, TypeError) as error:
-            raise InputError(f"--json {file}: holds something else than results of stillspin hil") from error
+            raise InputError(f"--json {file}: holds no results of stillspin hil; name another file") from error

@@ -84,7 +84,7 @@ def _options(text: str, query: str, known: dict[str, int]) -> dict[str, int]:
 
 
 def _no_port(text: str) -> str:
-    raise InputError(f"address '{text}' names no port")
+    raise InputError(f"address '{text}' names no port; must be like {_FORMS}")
 
 
 def _bad(text: str) -> Address:

@@ -71,7 +71,7 @@ class SerialTransport:
             with self._sending:
                 self._port.write(octets)
         except serial.SerialTimeoutException as error:
-            raise LinkError(f"{self.name} takes no octets: is something connected to it?") from error
+            raise LinkError(f"{self.name} accepts no data: is anything connected to it?") from error
         except (OSError, serial.SerialException, TypeError) as error:
             raise LinkError(f"{self.name} is lost: {_reason(error)}") from error
 

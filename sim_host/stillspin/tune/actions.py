@@ -128,10 +128,10 @@ def _capture(bench: Workbench, _: str, given: Message) -> Any:
     told = -1
     while (state := bench.drive.scope_state().state) not in {scope.DONE, scope.IDLE}:
         if not bench.captures(number):
-            raise DriveError("another capture has been begun")
+            raise DriveError("another capture was started and ended this one")
         if time.monotonic() > end:
             bench.drive.scope_stop()
-            raise DriveError(f"no trigger within {_LONGEST:g} s")
+            raise DriveError(f"no trigger within {_LONGEST:g} s; check its signal, level and edge")
         if state != told:
             bench.tell({"t": "scope", "armed": state == scope.ARMED, "text": bench.drive.words(Words.SCOPE, state)})
             told = state

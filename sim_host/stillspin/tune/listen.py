@@ -62,7 +62,7 @@ def _one_interface(host: str) -> None:
     except ValueError:
         return  # a name
     if everywhere:
-        raise InputError(f"--listen {host}: is every interface of this machine; name one")
+        raise InputError(f"--listen {host}: stands for every interface of this machine; give the address of one")
 
 
 def _tls(certificate: Path, key: Path) -> ssl.SSLContext:
@@ -88,8 +88,8 @@ def _token(file: Path) -> str:
         raise InputError(f"--token-file {file}: must be letters, digits, - and _") from error
     if len(token) < _SHORTEST or not token.replace("-", "").replace("_", "").isalnum():
         raise InputError(
-            f"--token-file {file}: at least {_SHORTEST} letters, digits, - and _, drawn by chance; "
-            "python3 -c 'import secrets; print(secrets.token_urlsafe())' draws one"
+            f"--token-file {file}: must be {_SHORTEST} or more random letters, digits, - and _; make one with "
+            "python3 -c 'import secrets; print(secrets.token_urlsafe())'"
         )
     return token
 
