@@ -69,7 +69,7 @@ TEST_F(Loop, ParametersOfASimulationAreNotKept) {
     const Words answer = ask({REQUEST_COMMAND, code, 0, 0, 0, 0});
     ASSERT_GT(answer.size(), 1u) << code;
     EXPECT_EQ(answer.front(), ANSWER_STATE) << code;
-    EXPECT_EQ(std::string(answer.begin() + 1, answer.end()).substr(0, 31), "not with the host in the loop: ") << code;
+    EXPECT_EQ(std::string(answer.begin() + 1, answer.end()).substr(0, 31), "not in host-in-the-loop mode: t") << code;
   }
   ASSERT_EQ(ask({REQUEST_HIL_LEAVE}), Words{0});
   desk->advance(200 * kMillisecond);
