@@ -99,3 +99,13 @@ JobsOption = Annotated[
         help="Runs at a time [default: one per processor].",
     ),
 ]
+
+
+ClusterOption = Annotated[
+    str,
+    typer.Option(
+        "--cluster",
+        metavar="ADDRESS",
+        help="Let the workers of this Dask cluster do the runs, such as tcp://host:8786 [default: this computer].",
+    ),
+]

@@ -117,7 +117,7 @@ def test_commissioning_is_repeated_only_for_what_it_measures(monkeypatch: pytest
     both = worlds()
     asked: list[str] = []
 
-    def pretend(cases: list[effects.Case], _: int) -> list[dict[str, float]]:
+    def pretend(cases: list[effects.Case], _: object) -> list[dict[str, float]]:
         asked.extend(case.mark for case in cases)
         return [{"device_drop": 0.123} for _ in cases]
 

@@ -129,7 +129,7 @@ def test_a_start_fails_with_figure_and_goal(tmp_path, core, monkeypatch):
         startup.Outcome(startup.Case("free", 45.0, 1, 0.0, "none", 1), "over-current", broken=True),
     ]
 
-    def run_all(_bench, _todo, _jobs, told):
+    def run_all(_bench, _todo, _where, told):
         for outcome in found:
             told(outcome)
         return found

@@ -13,6 +13,7 @@ from stillspin import core
 from stillspin.drive import own
 from stillspin.errors import InputError
 from stillspin.runs import startup
+from stillspin.runs.workers import Where
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
@@ -64,7 +65,7 @@ def test_half_the_rated_load_falls_on_the_shaft_at_every_angle() -> None:
         and case.error in {"flux -30%", "flux +30%", "J -30%"}
     ]
     assert len(todo) == 24 * 2 * 3 * 3
-    outcomes = startup.run_all(common, todo, 2, lambda _: None)
+    outcomes = startup.run_all(common, todo, Where(2), lambda _: None)
     assert not [item for item in outcomes if item.problem]
     swinging = [item.backward for item in outcomes if item.case.error != "flux -30%"]
     assert max(swinging) < 1.5

@@ -1,14 +1,38 @@
-"""The commands of `stillspin` that talk to a drive."""
+"""The commands of `stillspin`."""
 
 from __future__ import annotations
 
 import typer
 
-from stillspin.commands import can_bus, console, flash, hil, loader, monitor, motor, params, schema, scope, tune
+from stillspin.commands import (
+    board,
+    campaigns,
+    can_bus,
+    commission,
+    console,
+    explain,
+    flash,
+    hil,
+    loader,
+    monitor,
+    motor,
+    params,
+    schema,
+    scope,
+    startup,
+    tune,
+)
 
 
 def register(app: typer.Typer) -> None:
     """Add them to the command line."""
+    app.command(name="run")(campaigns.run)
+    app.command(name="reproduce")(campaigns.reproduce)
+    app.command(name="drift")(campaigns.drift)
+    app.command(name="explain")(explain.explain)
+    app.command(name="commission")(commission.commission)
+    app.command(name="board")(board.board)
+    app.command(name="startup-matrix")(startup.startup_matrix)
     app.add_typer(params.app, name="params")
     app.add_typer(motor.app, name="motor")
     app.command(name="console")(console.console)

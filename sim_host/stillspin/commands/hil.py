@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -15,15 +16,24 @@ from stillspin.commands.connection import DriveOption, wanted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.hil import Difference, campaign, runs
-from stillspin.hil.campaign import Wish
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
+from stillspin.hil.wish import Wish
 from stillspin.link import address
-from stillspin.options import ChangeOption, JobsOption, ParamsOption, ProfileOption, SeedOption, processors
+from stillspin.options import (
+    ChangeOption,
+    ClusterOption,
+    JobsOption,
+    ParamsOption,
+    ProfileOption,
+    SeedOption,
+    processors,
+)
 from stillspin.report import junit, tables
 from stillspin.report.junit import JunitOption
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
+from stillspin.runs.workers import Where
 
 _VIRTUAL = "virtual"
 
@@ -63,6 +73,7 @@ def hil(
     params: ParamsOption = None,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
     jobs: JobsOption = None,
+    cluster: ClusterOption = "",
     junit_file: JunitOption = None,
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
@@ -72,7 +83,7 @@ def hil(
     Exit status 0 when every run is identical, 4 when one differs.
     """
     of = revision()
-    wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params, of)
+    wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params)
     everything = wish.runs(core.load())
     if not everything:
         raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios)}")
@@ -80,12 +91,12 @@ def hil(
     board = _address(port, can, where)
     kind = _kind(board)
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
-    chosen = [number for number in runs.broad(everything) if number in left]
+    chosen = [everything[number] for number in runs.broad(everything) if number in left]
     skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
     rows = (
-        _on_virtual(wish, chosen, kind, jobs or processors())
+        _on_virtual(chosen, kind, of, Where(jobs or processors(), cluster))
         if board.partition(":")[0] == _VIRTUAL
-        else _on_one([everything[number] for number in chosen], board, of, jobs)
+        else _on_one(chosen, board, of, Where(jobs or 1, cluster))
     )
     done = []
     with junit.Report(junit_file, "hil") as verdicts:
@@ -127,18 +138,18 @@ def _is_done(results: Results, run: LoopRun, kind: str, of: str) -> bool:
     return row is not None and row.identical and row.revision == of
 
 
-def _on_one(chosen: Sequence[LoopRun], board: str, of: str, jobs: int | None) -> Iterator[Row]:
-    if jobs not in {None, 1}:
-        raise InputError(f"--jobs {jobs}: a board does one run at a time")
+def _on_one(chosen: Sequence[LoopRun], board: str, of: str, where: Where) -> Iterator[Row]:
+    if where.jobs != 1 or where.cluster:
+        raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
     with PhaseBar(Console(stderr=True)) as bar:
         yield from campaign.on_one(chosen, board, of, lambda run: partial(bar.show, phase=f"{run.scenario} {run.name}"))
 
 
-def _on_virtual(wish: Wish, chosen: Sequence[int], kind: str, jobs: int) -> Iterator[Row]:
+def _on_virtual(chosen: Sequence[LoopRun], kind: str, of: str, where: Where) -> Iterator[Row]:
     if not chosen:
         return
     with Counter(Console(stderr=True), len(chosen)) as counter:
-        for row in campaign.on_virtual(wish, chosen, kind, min(jobs, len(chosen))):
+        for row in campaign.on_virtual(chosen, kind, of, replace(where, jobs=min(where.jobs, len(chosen)))):
             counter.one_more(row)
             yield row
 

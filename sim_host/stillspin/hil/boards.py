@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Self
 
@@ -27,29 +25,15 @@ _PATIENCE = 300.0  # s; a machine with much else to do takes long to start a pro
 _POLL = 0.05
 
 
-@contextmanager
-def boards(kind: str, count: int) -> Iterator[list[str]]:
-    """Addresses of so many boards, which run until the context ends.
-
-    Args:
-        kind: serial or can, the way to them.
-        count: how many.
+def memory() -> bytes:
+    """The content of the memory of a board that has been told its rates: it takes the port's at its next start.
 
     Raises:
-        CampaignError: one of them does not start.
+        CampaignError: a board does not start.
     """
-    with tempfile.TemporaryDirectory(prefix="stillspin-hil-") as directory, ExitStack() as started:
-        root = Path(directory)
-        memory = _memory(root)
-        running = [started.enter_context(_Board(root / str(number), memory)) for number in range(count)]
-        yield [board.wait(kind) for board in running]
-
-
-def _memory(root: Path) -> Path:
-    """The content of the memory of a board that has been told its rates: it takes the port's at its next start."""
     try:
         with (
-            _Board(root / "first", None) as board,
+            Board(None) as board,
             Drive.open(board.wait("serial", DEFAULT_BAUD), timeout=5.0) as drive,
         ):
             drive.set("baud_rate", BAUD)
@@ -60,21 +44,27 @@ def _memory(root: Path) -> Path:
     return board.memory
 
 
-class _Board:
-    """One process."""
+class Board:
+    """One process, from entering to leaving; `memory` is what is in its memory after that."""
 
-    def __init__(self, directory: Path, memory: Path | None) -> None:
-        directory.mkdir()
-        self.memory = directory / "memory"
-        if memory:
-            shutil.copyfile(memory, self.memory)
+    def __init__(self, memory: bytes | None) -> None:
+        self.memory = memory or b""
+
+    def __enter__(self) -> Self:
+        """Switch it on."""
+        self._directory = tempfile.TemporaryDirectory(prefix="stillspin-hil-")
+        directory = Path(self._directory.name)
+        self._eeprom = directory / "memory"
+        if self.memory:
+            self._eeprom.write_bytes(self.memory)
         self._serial, self._can = directory / "serial", directory / "can"
         self._log = directory / "log"
-        plugs = ["--serial-link", str(self._serial), "--can-link", str(self._can), "--eeprom", str(self.memory)]
+        plugs = ["--serial-link", str(self._serial), "--can-link", str(self._can), "--eeprom", str(self._eeprom)]
         with self._log.open("w") as log:
             # Should this process end before it knows of that one, that one ends by itself.
             guard = ["--parent", str(os.getpid())]
             self._process = subprocess.Popen(_command("--speed", "0", *guard, *plugs), stdout=log, stderr=log)
+        return self
 
     def wait(self, kind: str, baud: int = BAUD) -> str:
         """Its address, as soon as it has one.
@@ -91,13 +81,12 @@ class _Board:
             return f"serial://{self._serial}?baud={baud}"
         return f"can:slcan:{self._can}?bitrate={BITRATE}"
 
-    def __enter__(self) -> Self:
-        return self
-
     def __exit__(self, *_: object) -> None:
-        """Switch it off; returns when its memory is a file."""
+        """Switch it off."""
         self._process.terminate()
         self._process.wait(_PATIENCE)
+        self.memory = self._eeprom.read_bytes() if self._eeprom.exists() else b""
+        self._directory.cleanup()
 
 
 def _command(*options: str) -> Sequence[str]:

@@ -73,7 +73,7 @@ def broad(chosen: Sequence[LoopRun]) -> list[int]:
 def _runs(name: str, settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
     if name == COMMISSION:
         chosen = settings(resources.DEFAULT_MOTOR)
-        play = _commissioning(chosen, check=check)
+        play = _CommissioningPlay(chosen, check)
         length = _CHECK_COMMISSION if check else commission.LIMIT
         return [LoopRun(COMMISSION, "motor", play, chosen.profile.name, not check, length)]
     scenario = scenario_file.load(name)
@@ -81,33 +81,38 @@ def _runs(name: str, settings: SettingsOf, native: NativeCore, *, check: bool) -
     jobs = execute.prepare(scenario, chosen, native)
     profile = chosen.profile.name
     taken = [_shortened(job) if check else job for job in jobs]
-    return [LoopRun(job.scenario, job.run.name, _of_job(job), profile, not check, job.run.duration) for job in taken]
+    return [LoopRun(job.scenario, job.run.name, _JobPlay(job), profile, not check, job.run.duration) for job in taken]
 
 
 def _shortened(job: Job) -> Job:
     return replace(job, run=replace(job.run, duration=min(job.run.duration, CHECK), waveform=None))
 
 
-def _of_job(job: Job) -> Play:
-    def play(native: NativeCore, progress: Progress, loop: NativeStepLoop) -> str:
-        return execute.play(native, job, progress, loop).reason
+@dataclass(frozen=True)
+class _JobPlay:
+    """A run of a scenario; it can be sent to another process."""
 
-    return play
+    job: Job
+
+    def __call__(self, native: NativeCore, progress: Progress, loop: NativeStepLoop) -> str:
+        return execute.play(native, self.job, progress, loop).reason
 
 
-def _commissioning(settings: Settings, *, check: bool) -> Play:
-    limit = _CHECK_COMMISSION if check else commission.LIMIT
+@dataclass(frozen=True)
+class _CommissioningPlay:
+    """The commissioning; it can be sent to another process."""
 
-    def play(native: NativeCore, progress: Progress, loop: NativeStepLoop) -> str:
+    settings: Settings
+    check: bool
+
+    def __call__(self, native: NativeCore, progress: Progress, loop: NativeStepLoop) -> str:
         result = commission.play(
             native,
-            settings.profile,
-            settings.changes,
-            settings.seed,
+            self.settings.profile,
+            self.settings.changes,
+            self.settings.seed,
             lambda share, _phase: progress(share),
             tape=loop,
-            limit=limit,
+            limit=_CHECK_COMMISSION if self.check else commission.LIMIT,
         )
-        return "" if check else result.reason
-
-    return play
+        return "" if self.check else result.reason

@@ -7,10 +7,9 @@ what is no longer there.
 
 from __future__ import annotations
 
-import multiprocessing as mp
+from collections import deque
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -28,6 +27,7 @@ from stillspin.revision import revision
 from stillspin.runs import campaign, commission, execute
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
+from stillspin.runs.workers import Task, Where, report, workers
 
 IDEAL = "ideal"
 
@@ -37,7 +37,7 @@ class Options:
     """What is wanted.
 
     Attributes:
-        profile: a name or a path; out: the directory of the results; jobs: runs at a time.
+        profile: a name or a path; out: the directory of the results; where: by whom.
         params: a parameter file instead of the commissioning on the plant as it is.
         only: marks of effects, none for all; alone: whether to run each alone on `ideal`, too.
     """
@@ -45,7 +45,7 @@ class Options:
     profile: str
     seed: int
     out: Path
-    jobs: int = 1
+    where: Where = field(default_factory=Where)
     params: Path | None = None
     only: Sequence[str] = ()
     alone: bool = True
@@ -76,7 +76,7 @@ def carry_out(scenario: Scenario, options: Options) -> Explanation:
         runs = directory / output.RUNS
         plan = campaign.Plan([varied for varied, _ in todo], jobs, runs, worlds.own.name, draw=False)
         with Bar(Console(stderr=True)) as bar:
-            results = campaign.run_all(plan, options.jobs, bar)
+            results = campaign.run_all(plan, options.where, bar)
         found = _explanation(scenario, cases, results, options)
         explain_report.write(directory, found, cases[0].settings)
     return found
@@ -96,7 +96,7 @@ def _cases(worlds: Worlds, listed: Sequence[Effect], told: dict[str, float] | No
         new += [effects.case(ALONE, item, plain, worlds) for item in listed if item.commission and not item.exact]
     measures = worlds.own.commission
     first = [Case(WITHOUT, None, own)] if told is None and measures else []
-    found = dict(zip([each.mark for each in [*first, *new]], _found([*first, *new], options.jobs), strict=True))
+    found = dict(zip([each.mark for each in [*first, *new]], _found([*first, *new], options.where), strict=True))
     base = _settings(worlds.own, seed, found.get(f"{WITHOUT}-nothing", told or {}))
     cases = [Case(WITHOUT, None, base)]
     cases += [_with(effects.case(WITHOUT, item, base, worlds), own, found, worlds) for item in listed]
@@ -118,17 +118,19 @@ def _with(each: Case, before: Settings, found: dict[str, dict[str, float]], worl
     )
 
 
-def _found(cases: Sequence[Case], jobs: int) -> list[dict[str, float]]:
+def _found(cases: Sequence[Case], where: Where) -> list[dict[str, float]]:
     """What each case's commissioning believes to have found."""
-    if not cases:
-        return []
-    with ProcessPoolExecutor(min(jobs, len(cases)), mp.get_context("spawn")) as pool:
-        return list(pool.map(_commission, cases))
+    found: dict[int, dict[str, float]] = {}
+    with workers(where) as crew:
+        for task, told in crew.finished(deque(Task(_commission, (case,), number) for number, case in enumerate(cases))):
+            found[task.tag] = told
+    return [found[number] for number in range(len(cases))]
 
 
 def _commission(each: Case) -> dict[str, float]:
     settings = each.settings
-    return commission.run(core.load(), settings.profile, settings.changes, settings.seed, None).told
+    native, seed = core.load(), settings.seed
+    return commission.run(native, settings.profile, settings.changes, seed, lambda share, _phase: report(0, share)).told
 
 
 def _explanation(

@@ -22,6 +22,7 @@ from stillspin.revision import revision
 from stillspin.runs import campaign, commission, execute
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
+from stillspin.runs.workers import Where
 
 PARAMS = "params.toml"
 """What a campaign's commissioning found, beside its results; with the motor's name where there are several."""
@@ -33,7 +34,7 @@ class Options:
 
     Attributes:
         profile: a name or a path; changes: as `--set` takes them; out: the directory of the results.
-        jobs: runs at a time; draw: whether to draw.
+        where: by whom; draw: whether to draw.
         params: a parameter file for the drive; None for none.
         commission: whether the drive measures itself first, where the profile is for it and there is no `params`.
         paper_scheme, nameplate: the variants beside; others: and some more.
@@ -44,7 +45,7 @@ class Options:
     seed: int
     out: Path
     changes: list[str] = field(default_factory=list)
-    jobs: int = 1
+    where: Where = field(default_factory=Where)
     draw: bool = True
     params: Path | None = None
     commission: bool = False
@@ -95,7 +96,7 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
         name = own[motors[0]].profile.name
         plan = campaign.Plan([scenario for scenario, _ in todo], jobs, runs, name, options.draw)
         with Bar(screen, options.told) as bar:
-            results, beside = variant.separate(campaign.run_all(plan, options.jobs, bar), variants)
+            results, beside = variant.separate(campaign.run_all(plan, options.where, bar), variants)
         report.write(directory, results, list(settings.values()), beside)
     return Reproduction(results, beside, refused)
 

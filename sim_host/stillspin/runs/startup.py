@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from stillspin.cases import profile
 from stillspin.core import NativeResult, Plant, Schema
 from stillspin.errors import InputError, did_you_mean
 from stillspin.measure.pieces import Floats
+from stillspin.runs.workers import Task, Where, report, workers
 
 WAYS = ("brake", "free", "flying")
 RATED_TORQUE = 11.0  # N m
@@ -187,7 +187,7 @@ def run(common: Bench, case: Case) -> Outcome:
         record_every=1,
         waveform=(0.0, 0.0, 1),
         seed=case.seed,
-        progress=None,
+        progress=lambda share: report(0, share),
     )
     return _judge(case, result, target)
 
@@ -225,11 +225,14 @@ def _backward(case: Case, time: Floats, speed: Floats, stats: dict[str, float]) 
     return max(after, before)
 
 
-def run_all(common: Bench, todo: Sequence[Case], workers: int, done: Callable[[Outcome], None]) -> list[Outcome]:
-    """All cases on worker processes, in their order; `done` is told of each."""
+def run_all(common: Bench, todo: Sequence[Case], where: Where, done: Callable[[Outcome], None]) -> list[Outcome]:
+    """All cases on workers, in their order; `done` is told of each."""
     outcomes: list[Outcome] = []
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        for outcome in pool.map(run, itertools.repeat(common), todo, chunksize=8):
-            outcomes.append(outcome)
-            done(outcome)
+    early: dict[int, Outcome] = {}
+    with workers(where) as crew:
+        for task, outcome in crew.finished(deque(Task(run, (common, case), k) for k, case in enumerate(todo))):
+            early[task.tag] = outcome
+            while len(outcomes) in early:
+                outcomes.append(early.pop(len(outcomes)))
+                done(outcomes[-1])
     return outcomes

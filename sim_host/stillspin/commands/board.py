@@ -1,0 +1,83 @@
+"""`stillspin board`: the virtual drive on the desk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stillspin import core, resources
+from stillspin.board import power, serve
+from stillspin.cases import profile
+from stillspin.options import ChangeOption, MotorOption, ParamsOption, ProfileOption, SeedOption, number
+from stillspin.runs import commission
+
+
+def board(
+    *,
+    profile_name: ProfileOption = "bench",
+    motor: MotorOption = resources.DEFAULT_MOTOR,
+    seed: SeedOption = 1,
+    change: ChangeOption = None,
+    params: ParamsOption = None,
+    speed: Annotated[
+        float,
+        typer.Option(
+            "--speed",
+            parser=number("--speed", 0),
+            metavar="N",
+            help="Speed as a multiple of real time; 0 is as fast as possible.",
+        ),
+    ] = 1.0,
+    serial_link: Annotated[
+        Path | None,
+        typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
+    ] = None,
+    can_link: Annotated[
+        Path | None,
+        typer.Option(
+            "--can-link", metavar="PATH", help="Symbolic link to the SLCAN adapter: a name that stays the same."
+        ),
+    ] = None,
+    socketcan: Annotated[
+        str | None,
+        typer.Option(
+            "--socketcan", metavar="NAME", help="A CAN interface of the kernel, instead of the SLCAN adapter."
+        ),
+    ] = None,
+    eeprom: Annotated[
+        Path | None,
+        typer.Option("--eeprom", metavar="FILE", help="Keeps what the drive saves from one start to the next."),
+    ] = None,
+    load: Annotated[
+        float,
+        typer.Option("--load", parser=number("--load", unit="Nm"), metavar="NM", help="Load torque on the shaft."),
+    ] = 0.0,
+    end: Annotated[
+        float | None,
+        typer.Option(
+            "--for",
+            parser=number("--for", 0, unit="s"),
+            metavar="SECONDS",
+            help="Switch off after so many seconds of the board's time.",
+        ),
+    ] = None,
+    parent: Annotated[
+        int | None, typer.Option("--parent", metavar="PID", help="Switch off when this process, its parent, is gone.")
+    ] = None,
+) -> None:
+    """Run a virtual board in real time; its serial port is a pseudo-terminal. Ctrl-C switches it off."""
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(profile_name, schema, known, motor)
+    profile.say_not_stated(chosen)
+    changes = profile.changes(change or [], schema, known)
+    if params:
+        changes.parameters = {**commission.load(params, known), **changes.parameters}
+        changes.words.append(f"--params {params.name}")
+    title = f"motor {chosen.motor}, profile {chosen.name}, seed {seed}" + "".join(
+        f", {words}" for words in changes.words
+    )
+    powered = power.power(native, chosen, changes, seed)
+    serve.serve(powered, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent), title)

@@ -1,0 +1,194 @@
+"""`stillspin run`, `reproduce` and `drift`: scenarios on the virtual drive, measured and judged."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stillspin import core, resources
+from stillspin.cases import drift as drifts
+from stillspin.cases import scenario_file
+from stillspin.cases.scenario import Scenario
+from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
+from stillspin.options import (
+    ChangeOption,
+    ClusterOption,
+    JobsOption,
+    OtherMotorOption,
+    ParamsOption,
+    ProfileOption,
+    SeedOption,
+    by_mark,
+    processors,
+)
+from stillspin.report import junit, tables
+from stillspin.report import page as report
+from stillspin.report.junit import JunitOption
+from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.reproduction import Options, carry_out
+from stillspin.runs.workers import Where
+
+
+def on_motor(motor: str | None, scenario: Scenario) -> Scenario:
+    """The scenario on another motor than its own, where one is wanted."""
+    return scenario if motor is None else replace(scenario, motor=motor)
+
+
+def _carry_out(scenarios: Sequence[Scenario], options: Options, verdicts: junit.Report | None = None) -> None:
+    """Run scenarios, print what came out, and end the process when a run broke off or a goal is missed."""
+    done = carry_out(scenarios, options)
+    if verdicts:
+        verdicts.add(junit.of_refused(words) for words in done.refused)
+    tables.summary(done.results, done.beside)
+    total = report.tally(done.results)
+    print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
+    for item in done.beside:
+        beside = report.tally(list(item.results.values()))
+        lost = sum(len(result.lost) for result in item.results.values())
+        print(f"{item.variant.title}: {beside.met} of {beside.goals} goals met, {lost} runs lost")
+    for words in done.refused:
+        print(f"stillspin: {words}", file=sys.stderr)
+    broken = [outcome for result in done.results for outcome in result.broken]
+    for outcome in broken:
+        print(f"stillspin: {outcome.scenario}, run {outcome.run}: broken off: {outcome.broken}", file=sys.stderr)
+    if broken or done.refused or total.met < total.goals:
+        raise typer.Exit(ExitCode.SHORT)
+
+
+def run(
+    *,
+    scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
+    profile_name: ProfileOption = "bench",
+    motor: OtherMotorOption = None,
+    seed: SeedOption = 1,
+    change: ChangeOption = None,
+    params: ParamsOption = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-SCENARIO].")
+    ] = None,
+    no_plots: Annotated[bool, typer.Option("--no-plots", help="Write no plots.")] = False,
+) -> None:
+    """Run one scenario: figures of merit, plots, and a Parquet file per run."""
+    chosen = scenario_file.load(scenario)
+    where = out or Path(f"results-{chosen.id}")
+    _carry_out(
+        [on_motor(motor, chosen)], Options(profile_name, seed, where, change or [], draw=not no_plots, params=params)
+    )
+
+
+def reproduce(
+    *,
+    scenarios: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[ID]...", help="Scenarios [default: all of the motor but those on demand]."),
+    ] = None,
+    profile_name: ProfileOption = "bench",
+    motor: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--motor",
+            metavar="NAME",
+            help="All scenarios of this motor, repeatable [default: A]; or, with an ID, another one for it.",
+        ),
+    ] = None,
+    seed: SeedOption = 1,
+    params: ParamsOption = None,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
+    jobs: JobsOption = None,
+    cluster: ClusterOption = "",
+    commission_first: Annotated[
+        bool,
+        typer.Option(
+            "--commission/--no-commission",
+            help="Let the drive measure machine and inverter first where the profile differs from the nameplate.",
+        ),
+    ] = True,
+    nameplate: Annotated[
+        bool,
+        typer.Option("--nameplate/--no-nameplate", help="Run everything on the nameplate's parameters, too."),
+    ] = True,
+    paper_scheme: Annotated[
+        bool,
+        typer.Option(
+            "--paper-scheme/--no-paper-scheme",
+            help="Run the scenarios about the position error with the paper's position scheme, too.",
+        ),
+    ] = True,
+    junit_file: JunitOption = None,
+) -> None:
+    """Commission the drive, run scenarios in parallel and write report.html and metrics.json."""
+    chosen = _chosen(scenarios or [], motor or [])
+    own = {scenario.id for scenario in chosen}
+    verdicts = junit.Report(junit_file, "reproduce")
+
+    def told(result: ScenarioResult) -> None:
+        if result.scenario.id in own:
+            verdicts.add(junit.of_scenario(result))
+
+    options = Options(
+        profile_name,
+        seed,
+        out,
+        where=Where(jobs or processors(), cluster),
+        params=params,
+        commission=commission_first,
+        paper_scheme=paper_scheme,
+        nameplate=nameplate,
+        told=told,
+    )
+    with verdicts:
+        _carry_out(chosen, options, verdicts)
+
+
+def _chosen(names: Sequence[str], motors: Sequence[str]) -> list[Scenario]:
+    """The scenarios named, on the motor given if there is one; else all that motors have."""
+    if not names:
+        ids = scenario_file.campaign_ids(motors or [resources.DEFAULT_MOTOR])
+        if not ids:
+            raise InputError(f"--motor {', '.join(motors)}: there is no scenario for it; name one to run on it")
+        return [scenario_file.load(name) for name in ids]
+    if len(motors) > 1:
+        raise InputError(f"--motor {', '.join(motors)}: name only one motor together with scenarios")
+    ids = list(dict.fromkeys(scenario_file.find(name).stem for name in names))
+    return [on_motor(motors[0] if motors else None, scenario_file.load(name)) for name in ids]
+
+
+def drift(
+    *,
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Scenarios [default: those of the list].")
+    ] = None,
+    profile_name: ProfileOption = "bench",
+    seed: SeedOption = 1,
+    params: ParamsOption = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", metavar="MARK", help="Only this drift, such as flux. Repeatable.")
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results-drift"),
+    jobs: JobsOption = None,
+    cluster: ClusterOption = "",
+) -> None:
+    """Commission the drive, then change the plant (drift); exit status 1 when a figure is beyond twice its goal."""
+    listed, known = drifts.load(core.plant_schema(core.load()))
+    ids = dict.fromkeys(scenario_file.find(name).stem for name in scenarios or listed)
+    chosen = by_mark(known, only or [], "drift")
+    options = Options(
+        profile_name,
+        seed,
+        out,
+        where=Where(jobs or processors(), cluster),
+        params=params,
+        commission=True,
+        others=chosen,
+    )
+    done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
+    short = tables.drift(done.results, done.beside)
+    print(f"{short} figures miss the goal of a plant that has drifted; see {out / report.PAGE}")
+    if short or done.refused:
+        raise typer.Exit(ExitCode.SHORT)
