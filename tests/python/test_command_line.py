@@ -146,7 +146,7 @@ def test_nothing_but_earlier_results_is_replaced(call, tmp_path):
     (tmp_path / "thesis" / "chapter.tex").write_text("all my work", encoding="utf-8")
     result = call("run", "A10", "--out", "thesis")
     assert (result.exit_code, left_over(tmp_path / "thesis")) == (2, ["chapter.tex"])
-    assert "holds something else" in result.stderr
+    assert "holds other things" in result.stderr
     assert call("run", "A10", "--out", "thesis/chapter.tex").exit_code == 2
     assert call("run", "A10", "--out", ".").exit_code == 2
 
