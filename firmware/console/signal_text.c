@@ -25,6 +25,10 @@ void put_signal(octet_writer_t* w, uint16_t place) {
     put_packed(w, SAY_unknown);
     return;
   }
+  put_signal_value(w, s, raw);
+}
+
+void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
   put_fixed(w, raw, s->q, signal_decimals(s));
   if (packed_is_empty(s->unit)) return;
   put_u8(w, ' ');

@@ -70,6 +70,17 @@ static void set_channels(const words_of_line_t* a) {
   apply(&s);
 }
 
+static void refuse_level(const word_t* typed, const signal_info_t* signal) {
+  octet_writer_t* const w = line_begin();
+  put_word(w, typed);
+  put_packed(w, SAY_is_not_between);
+  put_signal_value(w, signal, -INT32_MAX);
+  put_packed(w, SAY_and);
+  put_signal_value(w, signal, INT32_MAX);
+  put_packed(w, SAY_nothing_changed);
+  line_end_refused();
+}
+
 // A number in the signal's unit, and the unit when it is there; moves `k` behind them. False, and said, when it is
 // none.
 static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_t* signal, int32_t* raw) {
@@ -80,9 +91,7 @@ static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_
     return false;
   }
   if (!decimal_raw(&number, signal->q, raw)) {
-    put_word(line_begin(), typed);
-    line_answer(true, SAY_is_outside_of_the_signal_s_range);
-    count_refusal();
+    refuse_level(typed, signal);
     return false;
   }
   (*k)++;
@@ -193,9 +202,7 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     put_u8(w, ' ');
     put_text(w, edges[s->edge]);
     put_u8(w, ' ');
-    put_fixed(w, s->level, signal->q, signal_decimals(signal));
-    put_u8(w, ' ');
-    put_packed(w, signal->unit);
+    put_signal_value(w, signal, s->level);
     if (s->hysteresis >= 0) {
       put_packed(w, SAY_hysteresis);
       put_fixed(w, s->hysteresis, signal->q, signal_decimals(signal));
@@ -266,7 +273,7 @@ static void begin_print(const words_of_line_t* a) {
   if (state != SCOPE_DONE && state != SCOPE_IDLE) {
     line_refused(SAY_the_scope_is_recording_scope_stop_ends);
   } else if (scope_status().recorded == 0u) {
-    line_of(SAY_nothing_has_been_recorded);
+    line_refused(SAY_nothing_has_been_recorded);
   } else {
     console_run(print, false);
   }

@@ -83,6 +83,8 @@ TEST_F(Refusals, EveryWayToSayNoIsOne) {
                                   std::string("scope every"),
                                   std::string("scope mode"),
                                   std::string("scope print 0"),
+                                  std::string("scope print"),
+                                  std::string("scope trigger speed above 40000"),
                                   std::string("scope trigger speed")}) {
     EXPECT_EQ(of(line), 1) << line << ": " << text;
   }
