@@ -17,6 +17,7 @@ from typing import Any, Protocol, cast
 
 import numpy.typing as npt
 
+from stillspin import extras
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
 from stillspin.core_loop import NativeStepLoop, NativeStepLoops
@@ -145,9 +146,7 @@ BOARD = "STILLSPIN_BOARD"
 """Environment variable: the board, a name of hal/boards/; unset or empty is the usual one."""
 
 
-NOT_INSTALLED = (
-    "this needs the virtual drive, which is missing: pip install 'stillspin[virtual]', or make build in the sources"
-)
+NOT_INSTALLED = f"this needs the virtual drive, which is missing: {extras.remedy('virtual')}"
 PARAMETERS = "parameters.json"
 """The firmware's parameter table in a wheel, which has no native module to ask; toolchain/wheel.py puts it there."""
 

@@ -18,6 +18,14 @@ EXTRA_OF = {
 """Package -> the extra in sim_host/pyproject.toml that brings it."""
 
 
+def remedy(extra: str) -> str:
+    """How to get an extra; on no public index is there a stillspin, so it says where the wheels come from."""
+    return (
+        f"pip install --find-links dist 'stillspin[{extra}]' where dist is what 'make wheel' made, "
+        "or 'make build' in the sources"
+    )
+
+
 def has(package: str) -> bool:
     """Whether a package is there."""
     return importlib.util.find_spec(package) is not None
@@ -34,5 +42,5 @@ def need(module: str) -> Any:
     """
     package = module.partition(".")[0]
     if not has(package):
-        raise InputError(f"this needs {package}, which is not installed: pip install 'stillspin[{EXTRA_OF[package]}]'")
+        raise InputError(f"this needs {package}, which is not installed: {remedy(EXTRA_OF[package])}")
     return importlib.import_module(module)

@@ -52,7 +52,7 @@ def test_a_virtual_drive_that_is_not_installed_is_said_in_one_line(tmp_path, mon
     monkeypatch.setitem(sys.modules, "stillspin._core", None)
     result = CliRunner().invoke(cli.app, ["run", "A10"])
     assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
-    assert "pip install 'stillspin[virtual]'" in result.stderr
+    assert "pip install --find-links dist 'stillspin[virtual]'" in result.stderr
 
 
 def test_a_run_writes_the_report_the_figures_and_a_record(call, tmp_path):

@@ -161,7 +161,7 @@ def test_what_is_missing_is_one_line_with_the_remedy(client, arguments, extra):
     said = client.run("stillspin", *arguments)
     assert said.returncode == 2
     assert said.stderr.count("\n") == 1
-    assert f"pip install 'stillspin[{extra}]'" in said.stderr
+    assert f"pip install --find-links dist 'stillspin[{extra}]'" in said.stderr
 
 
 def test_the_extra_brings_the_virtual_drive(wheels, tmp_path):

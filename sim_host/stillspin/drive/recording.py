@@ -34,7 +34,7 @@ class Recording:
         The metadata of each field has its `unit`, those of the schema have `about` as JSON under `stillspin`.
 
         Raises:
-            InputError: pyarrow is not installed; `pip install 'stillspin[tables]'`.
+            InputError: pyarrow is not installed; says how to get it.
         """
         return tabular.arrow({"time": self.time, **self.signals}, {"time": "s", **self.units}, self.about)
 
@@ -42,6 +42,6 @@ class Recording:
         """A `pandas.DataFrame` with the columns `time` and the signals; `attrs` has `units` and `about`.
 
         Raises:
-            InputError: pandas is not installed; `pip install 'stillspin[tables]'`.
+            InputError: pandas is not installed; says how to get it.
         """
         return tabular.frame({"time": self.time, **self.signals}, {"time": "s", **self.units}, self.about)
