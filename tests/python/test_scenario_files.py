@@ -259,3 +259,11 @@ def test_the_users_change_wins_over_the_scenario_and_that_over_the_profile():
     predictive = execute.prepare(scenario_file.load("A18a"), settings, fake_core)[0]
     assert predictive.parameters == {"speed_law": 1.0, "speed_ramp": 0.0, "dead_time": 1.0}
     assert predictive.plant == {"adc": {"noise": 2.0, "inl": 1.0}}
+
+
+def test_no_title_promises_what_the_usual_position_source_does_not_show():
+    """One estimator for all speeds has no blend; what shows the paper's says with which setting."""
+    for scenario in map(scenario_file.load, scenario_file.ids()):
+        assert "blend" not in scenario.title.lower()
+        if "blend" in scenario.description.lower():
+            assert "position_source" in scenario.description, scenario.id

@@ -134,7 +134,7 @@ PANELS: dict[str, Panel] = {
             Line("$i_c$", _signal("i_c"), "c"),
         ),
     ),
-    "weight": Panel("share of ZVV", (Line("weight", _signal("weight"), "true"),)),
+    "weight": Panel("share of the low-speed estimator", (Line("weight", _signal("weight"), "true"),)),
     "link": Panel("DC link (V)", (Line("measured", _signal("v_dc"), "true"),)),
     "trajectory": Panel("$i_β$ (A)", ()),
     "deviation_sweep": Panel("q-axis current deviation (A/s)", ()),
