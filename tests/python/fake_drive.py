@@ -84,11 +84,15 @@ class FakeDrive:
         self.typed = b""
         self.lines = []  # of the console
         self.interrupts = 0
+        self.dies = False  # with the next line of the console
         self.watched = False  # a line of `watch` again and again
         self.refusals = 0  # lines of console that were not carried out
         self.setup = None
         self.scope = 4  # its state: done
         self.stream = None
+        self.unsent = 0  # samples of the stream that it counts as such
+        self.missing = 0  # samples that its numbers leave out behind the first of a stream
+        self.streamed = False
         self.outcome, self.progress = 0, 0.0
         self.pace = 4000  # of a commissioning, per mille per second
         self.looked = (0, 0, "no look since power-on")
@@ -113,11 +117,15 @@ class FakeDrive:
         self.unplug()
 
     def unplug(self):
-        if not self._end.is_set():
-            self._end.set()
-            self._thread.join()
-            os.close(self._master)
-            os.close(self._slave)
+        self._end.set()
+        self._thread.join()
+        if self._slave is not None:
+            self._hang_up()
+
+    def _hang_up(self):
+        os.close(self._master)
+        os.close(self._slave)
+        self._slave = None
 
     def switch_on_again(self):
         """As after a power cut: the parameters are the defaults, the time begins anew, nothing is streamed."""
@@ -167,6 +175,8 @@ class FakeDrive:
                     self._answer(item)
             with self._lock:
                 self._move()
+        if self.dies:
+            self._hang_up()
 
     def _console(self, octets):
         for octet in octets:
@@ -181,6 +191,9 @@ class FakeDrive:
                 self.typed += bytes((octet,))
 
     def _obey(self, line):
+        if self.dies:
+            self._end.set()  # and with it the port
+            return
         self.lines.append(line.decode())
         self.refusals += line.startswith(b"refuse")
         self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
@@ -224,7 +237,9 @@ class FakeDrive:
             self._sent = now
             numbers = self._signals(self.stream[1])
             body = struct.pack(f"<I{len(numbers)}i", self._now_ms(), *numbers)
-            self._counter = (self._counter + 1) % 256
+            left_out, self.missing = (self.missing, 0) if self.streamed else (0, self.missing)
+            self.streamed = True
+            self._counter = (self._counter + 1 + left_out) % 256
             self._write(to_wire(Record(0x40, self._counter, body + bytes((self.known,)))))
 
     def _signals(self, indices):
@@ -376,7 +391,7 @@ class FakeDrive:
         return WORDS[kind][code].encode()
 
     def _on_0c(self, _):
-        return struct.pack("<9H", *([0] * 8), self.refusals)
+        return struct.pack("<9H", *([0] * 7), self.unsent, self.refusals)
 
     def _on_10(self, body):
         head = struct.unpack_from("<HHBBHiB", body)
@@ -406,6 +421,7 @@ class FakeDrive:
         period, *indices = struct.unpack(f"<{len(body) // 2}H", body)
         self._signals(indices)
         self.stream = (period / 1000, indices) if period else None
+        self.streamed = False
         return b""
 
     def _on_17(self, _):

@@ -20,6 +20,7 @@ from stillspin.commands import braille, capture_file
 from stillspin.commands.completion import Words
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Capture, Trigger
+from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
 from stillspin.report import tables
 
@@ -38,20 +39,20 @@ def test_a_dump_is_loaded_without_a_change(ask, fake, tmp_path):
     result = ask("params", "load", "all.toml")
     assert result.stdout == "0 of 7 parameters changed\n"
     assert fake.values == before
-    assert ask("params", "diff", "all.toml").stdout == "0 of 7 parameters differ\n"
+    assert ask("params", "diff", "all.toml").stdout == "0 of 7 parameters different\n"
 
 
 def test_what_differs_is_shown_and_loaded(ask, fake, tmp_path):
     (tmp_path / "some.toml").write_text("[parameters]\nspeed_ramp = 500\nmotor_poles = 4\n")
     result = ask("params", "diff", "some.toml")
     assert "speed_ramp" in result.stdout
-    assert "1 of 2 parameters differ" in result.stdout
+    assert "1 of 2 parameters different" in result.stdout
     result = ask("params", "load", "some.toml", "--save")
     assert "1 of 2 parameters changed, saved" in result.stdout, result.stderr
     assert fake.values[86] == 500 * 2**8
     assert fake.store == 5
     assert "speed_ramp = 500" in ask("params", "dump", "--changed").stdout
-    assert "1 of 7 parameters differ" in ask("params", "diff", "defaults").stdout
+    assert "1 of 7 parameters different" in ask("params", "diff", "defaults").stdout
 
 
 def test_nothing_is_sent_of_a_file_that_is_wrong(ask, fake, tmp_path):
@@ -221,6 +222,30 @@ def test_monitor_prints_numbers_where_nobody_looks(ask):
     assert lines[0] == "time [s]\tspeed [rpm]\tlink_voltage [V]"
     assert len(lines) > 10
     assert all(line.endswith("\t310") for line in lines[1:])
+
+
+@pytest.mark.parametrize(
+    ("unsent", "said"),
+    [
+        (3, "3 samples did not arrive: not sent, the drive's port has no room for so many"),
+        (1, "3 samples did not arrive: 1 not sent, the drive's port has no room for so many"),
+        (1, "; 2 lost on the way, this computer is too busy"),
+        (0, "3 samples did not arrive: lost on the way, this computer is too busy"),
+    ],
+)
+def test_samples_that_did_not_arrive_are_explained(drive, fake, unsent, said):
+    with drive.stream(["speed"], 0.005) as stream:
+        assert stream.next(1.0)
+        assert stream.why_lost() == ""
+        fake.unsent, fake.missing = unsent, 3
+        assert wait_until(lambda: stream.lost == 3, 5.0)
+        assert said in stream.why_lost()
+
+
+def test_monitor_says_why_samples_did_not_arrive(ask, fake):
+    fake.missing = 1
+    result = ask("monitor", "speed", "--period", 5, "--duration", 0.5)
+    assert "1 sample did not arrive: lost on the way" in result.stdout
 
 
 def test_monitor_draws_lines_in_a_terminal(fake):

@@ -230,3 +230,20 @@ def test_every_way_out_stops_the_motor(sit_down, fake, way):
     assert wait_until(lambda: person.process.poll() is not None, PATIENCE)
     if isinstance(way, signal.Signals):
         assert person.process.returncode == ExitCode.INTERRUPTED
+
+
+def test_a_port_that_is_gone_is_said_without_a_key(sit_down, fake):
+    person = sit_down()
+    fake.unplug()
+    assert person.goes(), person.seen
+    assert person.process.returncode == ExitCode.NO_CONNECTION
+    assert f"serial port {fake.port} is gone: look whether its cable is in" in person.seen
+    assert "Errno" not in person.seen
+
+
+def test_a_port_that_is_gone_before_the_answer_is_said(ask, fake):
+    fake.dies = True
+    result = ask("console", "-c", "version")
+    assert result.exit_code == ExitCode.NO_CONNECTION
+    assert "is gone: look whether its cable is in" in result.stderr
+    assert "no answer" not in result.stderr

@@ -76,7 +76,7 @@ def test_parameters_go_to_a_file_and_come_back(tuned, server, fake, drive, tmp_p
     assert parameter_file.read(file, drive.table)["speed_ramp"] == 1234
     tuned.set_input_files("#load-file", file)
     assert wait_until(lambda: fake.values[86] == 1234 << 8, 10)
-    tuned.wait_for_selector("#store-note:has-text('motor.toml names 7 parameters; 1 were different')")
+    tuned.wait_for_selector("#store-note:has-text('motor.toml names 7 parameters, of which 1 had another value here')")
     assert tuned.input_value("[data-name=speed_ramp] input") == "1234"
 
 

@@ -113,7 +113,7 @@ def test_a_cable_that_is_pulled_at_the_computer_and_put_back(home, page):
         ready(page)
         assert page.is_hidden("#lost")
         assert page.input_value("#level") == "77"  # what was set up on the page is still there
-        assert "is lost" in page.text_content("#events")
+        assert "is gone" in page.text_content("#events")
         run(page)
 
 

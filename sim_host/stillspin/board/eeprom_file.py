@@ -6,6 +6,7 @@ import tempfile
 from pathlib import Path
 
 from stillspin.core_board import NativeBoard
+from stillspin.counted import counted
 from stillspin.errors import InputError
 
 
@@ -25,7 +26,7 @@ def insert(board: NativeBoard, file: Path) -> None:
         raise InputError(f"--eeprom {file}: cannot be read ({error.strerror})") from error
     size = len(board.eeprom)
     if len(content) != size:
-        raise InputError(f"--eeprom {file}: has {len(content)} octets, must have {size}")
+        raise InputError(f"--eeprom {file}: has {counted(len(content), 'octet')}, must have {size}")
     board.eeprom = content
 
 

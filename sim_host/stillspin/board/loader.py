@@ -15,6 +15,7 @@ from stillspin.board.serve import stopped_by_signals
 from stillspin.called import called
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.flash import layout
 from stillspin.flash.program import Program
@@ -41,7 +42,7 @@ def _read(file: Path) -> list[int]:
     except OSError as error:
         raise InputError(f"{file}: cannot be read ({error.strerror})") from error
     if len(content) != _FILE.size:
-        raise InputError(f"{file}: has {len(content)} octets, must have {_FILE.size}")
+        raise InputError(f"{file}: has {counted(len(content), 'octet')}, must have {_FILE.size}")
     return list(_FILE.unpack(content))
 
 

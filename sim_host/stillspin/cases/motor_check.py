@@ -12,6 +12,7 @@ from stillspin import core
 from stillspin.cases import motor_limits, motor_loops, motor_physics
 from stillspin.cases.motor_told import Described, Finding, Motor
 from stillspin.cases.profile import Profile
+from stillspin.counted import counted
 from stillspin.errors import InputError
 
 _LOOKS = (
@@ -49,7 +50,9 @@ def _ranges(motor: Motor) -> list[Finding]:
         except InputError as error:
             wrong.append(Finding("range", False, str(error)))
     total = len(motor.profile.parameters)
-    return wrong or [Finding("range", True, f"all {total} values are within the ranges of the drive's parameters")]
+    return wrong or [
+        Finding("range", True, f"all {counted(total, 'value')} are within the ranges of the drive's parameters")
+    ]
 
 
 def rules(parameters: Mapping[str, float], native: core.NativeCore) -> Finding:

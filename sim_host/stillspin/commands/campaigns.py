@@ -14,6 +14,7 @@ from stillspin import core, resources
 from stillspin.cases import drift as drifts
 from stillspin.cases import scenario_file
 from stillspin.cases.scenario import Scenario
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.options import (
@@ -47,11 +48,12 @@ def _carry_out(scenarios: Sequence[Scenario], options: Options, verdicts: junit.
         verdicts.add(junit.of_refused(words) for words in done.refused)
     tables.summary(done.results, done.beside)
     total = report.tally(done.results)
-    print(f"{total.met} of {total.goals} goals met, {total.broken} runs broken off; see {options.out / report.PAGE}")
+    reached = f"{counted(total.met, 'goal', total.goals)} met, {counted(total.broken, 'run')} broken off"
+    print(f"{reached}; see {options.out / report.PAGE}")
     for item in done.beside:
         beside = report.tally(list(item.results.values()))
         lost = sum(len(result.lost) for result in item.results.values())
-        print(f"{item.variant.title}: {beside.met} of {beside.goals} goals met, {lost} runs lost")
+        print(f"{item.variant.title}: {counted(beside.met, 'goal', beside.goals)} met, {counted(lost, 'run')} lost")
     for words in done.refused:
         print(f"stillspin: {words}", file=sys.stderr)
     broken = [outcome for result in done.results for outcome in result.broken]
@@ -189,6 +191,6 @@ def drift(
     )
     done = carry_out([scenario_file.load(identifier) for identifier in ids], options)
     short = tables.drift(done.results, done.beside)
-    print(f"{short} figures miss the goal of a plant that has drifted; see {out / report.PAGE}")
+    print(f"{counted(short, 'figure')} beyond the goal of a plant that has drifted; see {out / report.PAGE}")
     if short or done.refused:
         raise typer.Exit(ExitCode.SHORT)

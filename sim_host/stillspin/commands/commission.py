@@ -11,6 +11,7 @@ from rich.console import Console
 
 from stillspin import core, resources
 from stillspin.cases import profile
+from stillspin.counted import counted
 from stillspin.drive.own import firmware
 from stillspin.exit_codes import ExitCode
 from stillspin.options import ChangeOption, MotorOption, ProfileOption, SeedOption
@@ -42,7 +43,7 @@ def commission(
     tables.commissioning(result)
     write_found(out, result, execute.Settings(chosen, changes, seed, revision(), firmware=firmware()))
     found = len(result.values) - len(result.refused)
-    print(f"{found} of {len(result.values)} values found in {result.duration:.1f} s of the drive's time")
+    print(f"{counted(found, 'value', len(result.values))} found in {result.duration:.1f} s of the drive's time")
     print(f"they are in {out} and in no drive: 'stillspin params load {out} --save' puts them into one")
     for value in result.refused:
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)

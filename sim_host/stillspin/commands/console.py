@@ -21,8 +21,8 @@ from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.console_session import Session, session
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Drive
-from stillspin.drive.describe import unpack
-from stillspin.drive.protocol import Request
+from stillspin.drive.link_counts import ask_counts
+from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.link.errors import DriveError, NoAnswerError
@@ -77,8 +77,7 @@ def _say_all(drive: Drive, current: Session, lines: Iterable[str]) -> None:
 
 def _refusals(drive: Drive) -> int:
     """How many lines the drive's console has not carried out since power-on."""
-    *_, count = unpack("<9H", drive.link.request(Request.LINK, repeat=True))
-    return int(count)
+    return ask_counts(drive.link).refused
 
 
 def say(drive: Drive, current: Session, line: str) -> None:
@@ -95,10 +94,12 @@ def say(drive: Drive, current: Session, line: str) -> None:
     with drive.link.listening(text=take):
         current.send(line)
         end = time.monotonic() + _ANSWER
-        if not heard.wait(_ECHO):
+        if not wait_until(lambda: heard.is_set() or drive.link.lost is not None, _ECHO):
             raise NoAnswerError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
         while not transcript.answered and heard.wait(max(0.0, end - time.monotonic())):
             heard.clear()
+    if drive.link.lost:
+        raise drive.link.lost
     if transcript.rest:
         print(transcript.rest)
 
@@ -172,12 +173,25 @@ class _Bar:
     def text(self) -> str:
         return self._text
 
+    def _leave(self) -> None:
+        """Nobody has to press a key to be told that the port is gone."""
+        app = self._session.app
+
+        def leave() -> None:
+            if app.is_running and not app.is_done:
+                app.exit(exception=EOFError)
+
+        if app.loop:
+            app.loop.call_soon_threadsafe(leave)
+
     def run(self) -> None:
         while not self._stop.wait(_REFRESH):
             try:
                 status = self._drive.status()
             except DriveError as error:
                 self._text = f" {error}"
+                if self._drive.link.lost and self._session.app.is_running:
+                    self._leave()
             else:
                 what = f"{status.state}: {status.fault}" if status.fault else status.state
                 self._text = f" {what} | {status.speed_text}, reference {status.reference:.1f} rpm"

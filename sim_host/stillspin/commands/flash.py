@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 
 from stillspin.called import called
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.flash import demonstration, layout
@@ -52,11 +53,11 @@ def flash(
     Exit status 0 when the board has the image.
     """
     image = drive_image(image_file)
-    print(f"image:  {image.identity.text}, {image.size} words in sectors B to D")
+    print(f"image:  {image.identity.text}, {counted(image.size, 'word')} in sectors B to D")
     if not image.summed:
         print("note:   the image has no check sum: the board's self-test will not know whether its flash is right")
     kernel = kernel_program(kernel_file or kernel_beside(image_file))
-    print(f"kernel: {kernel.size} words, {kernel.kind}")
+    print(f"kernel: {counted(kernel.size, 'word')}, {kernel.kind}")
     if dry_run:
         _tell_plan(image)
         return
@@ -134,9 +135,9 @@ def _state(info: Info) -> str:
 def _tell_plan(image: DriveImage) -> None:
     for sector in layout.SECTORS:
         words = words_to_write(image, sector)
-        print(f"sector {sector.name}: erase, then {words} words")
+        print(f"sector {sector.name}: erase, then {counted(words, 'word')}")
     kept = sum(len(block.words) for block in image.resident)
-    print(f"sector A: not written; {kept} words of boot code and resident part are compared with the board's")
+    print(f"sector A: not written; {counted(kept, 'word')} of boot code and resident part to compare with the board's")
     print("dry run: nothing was sent")
 
 
@@ -154,5 +155,5 @@ def _tell_update(outcome: Outcome) -> None:
         print("the board has this image already: nothing was erased or written")
     else:
         erased = f"sectors {', '.join(outcome.erased)} erased" if outcome.erased else "nothing erased"
-        print(f"{erased}, {outcome.written} words written and verified, image complete")
+        print(f"{erased}, {counted(outcome.written, 'word')} written and verified, image complete")
     print("set the jumpers back (GPIO18, GPIO29, GPIO34 high: boot from flash) and reset the board")

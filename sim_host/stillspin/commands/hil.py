@@ -13,6 +13,7 @@ from rich.console import Console
 
 from stillspin import core
 from stillspin.commands.connection import DriveOption, wanted
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.hil import Difference, campaign, runs
@@ -157,7 +158,7 @@ def _on_virtual(chosen: Sequence[LoopRun], kind: str, of: str, where: Where) -> 
 def _tell(new: Row, results: Results) -> Row:
     results.add(new)
     title = f"{new.scenario} {new.run}" + ("" if new.whole else " (its start)")
-    rate = f"{new.steps} steps in {new.seconds:.1f} s ({new.rate:.0f} steps/s)"
+    rate = f"{counted(new.steps, 'step')} in {new.seconds:.1f} s ({new.rate:.0f} steps/s)"
     if new.lost:
         print(f"{title}: BROKE OFF: {new.lost}", flush=True)
     elif new.step is not None:

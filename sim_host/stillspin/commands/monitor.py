@@ -16,6 +16,7 @@ from rich.text import Text
 
 from stillspin.commands import braille
 from stillspin.commands.connection import DriveOption, opened
+from stillspin.counted import counted
 from stillspin.drive import Drive, Sample, Status, Stream
 from stillspin.errors import InputError
 from stillspin.options import number
@@ -64,9 +65,9 @@ def monitor(
         except KeyboardInterrupt:
             if duration:  # without, it is the end
                 raise
-        lost = stream.lost
+        lost = stream.why_lost()
     if lost:
-        screen.print(f"{lost} samples were lost on the way")
+        screen.print(lost)
 
 
 def _samples(stream: Stream, end: float) -> Iterator[Sample | None]:
@@ -125,7 +126,7 @@ def _headline(status: Status, lost: int) -> Text:
     if status.limits:
         line.append(f"  limited by {', '.join(status.limits)}", style="yellow")
     if lost:
-        line.append(f"  {lost} samples lost", style="red")
+        line.append(f"  {counted(lost, 'sample')} lost", style="red")
     return line
 
 

@@ -12,6 +12,7 @@ from stillspin.called import called
 from stillspin.cases import motor_check, profile, questions
 from stillspin.cases.motor_told import Motor
 from stillspin.commands import parameter_file
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.one_line_errors import OneLineErrors
@@ -36,7 +37,7 @@ def check(
     for finding in found:
         print(f"{'works' if finding.works else 'WRONG':<6} {finding.title}: {finding.words}")
     wrong = sum(not finding.works for finding in found)
-    print(f"{wrong} of {len(found)} will not work" if wrong else f"no problem found in {len(found)} checks")
+    print(f"{wrong} of {len(found)} will not work" if wrong else f"no problem found in {counted(len(found), 'check')}")
     if wrong:
         raise typer.Exit(ExitCode.SHORT)
 

@@ -12,6 +12,7 @@ from stillspin import core
 from stillspin.commands import parameter_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.commands.parameter_file import Difference
+from stillspin.counted import counted
 from stillspin.drive import Drive
 from stillspin.exit_codes import ExitCode
 from stillspin.link.errors import DriveError, RefusedError
@@ -51,7 +52,7 @@ def dump(
         content = parameter_file.text(values, drive.table, about)
     if file:
         parameter_file.write(file, content)
-        print(f"{len(values)} parameters; see {file}")
+        print(f"{counted(len(values), 'parameter')}; see {file}")
     else:
         print(content, end="")
 
@@ -72,7 +73,7 @@ def diff(
         named = [name for name in first if name in second]
         rows = parameter_file.differences(first, second, drive.table, named)
     tables.differences(rows, one, other)
-    print(f"{len(rows)} of {len(named)} parameters differ")
+    print(f"{counted(len(rows), 'parameter', len(named))} different")
     if rows:
         raise typer.Exit(ExitCode.DIFFERS)
 
@@ -102,7 +103,7 @@ def load(
             drive.save()
         after = drive.parameters()
     changed = sum(after[parameter.name] == value for parameter, _, value in rows)
-    print(f"{changed} of {len(wanted)} parameters changed{', saved' if save and not complaints else ''}")
+    print(f"{counted(changed, 'parameter', len(wanted))} changed{', saved' if save and not complaints else ''}")
     for words in complaints:
         print(f"stillspin: {words}", file=sys.stderr)
     if complaints:

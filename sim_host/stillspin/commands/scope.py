@@ -10,6 +10,7 @@ from rich.console import Console
 
 from stillspin.commands import capture_file
 from stillspin.commands.connection import DriveOption, opened
+from stillspin.counted import counted
 from stillspin.drive.scope import Channel, Trigger
 from stillspin.options import number, whole
 from stillspin.quantity import Range
@@ -90,7 +91,9 @@ def scope(
     for file in files:
         capture_file.write(file, capture)
     tables.capture(capture)
-    print(f"{capture.time.size} records every {capture.interval * 1e3:g} ms; see {', '.join(map(str, files))}")
+    print(
+        f"{counted(capture.time.size, 'record')} every {capture.interval * 1e3:g} ms; see {', '.join(map(str, files))}"
+    )
 
 
 def _channel(text: str) -> Channel:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from stillspin.counted import counted
 from stillspin.exit_codes import ExitCode
 from stillspin.options import ClusterOption, JobsOption, ProfileOption, processors, whole
 from stillspin.report import junit, output, startup_report, tables
@@ -47,6 +48,6 @@ def startup_matrix(
         startup_report.write(directory, outcomes, profile_name)
     tables.startup(startup_report.rows(outcomes))
     failed = [outcome for outcome in outcomes if outcome.problem]
-    print(f"{len(outcomes) - len(failed)} of {len(outcomes)} starts are good; see {out}")
+    print(f"{counted(len(outcomes) - len(failed), 'start', len(outcomes))} good; see {out}")
     if failed:
         raise typer.Exit(ExitCode.SHORT)

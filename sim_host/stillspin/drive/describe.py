@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from stillspin.counted import counted
 from stillspin.drive.protocol import VERSION, Request, StatusCode
 from stillspin.drive.table import Parameter, Signal, Table
 from stillspin.link.errors import DifferentError, RefusedError
@@ -114,7 +115,7 @@ def unpack(form: str, body: bytes) -> tuple[Any, ...]:
     """
     if len(body) < struct.calcsize(form):
         raise DifferentError(
-            f"an answer of {len(body)} octets is too short: install the client that belongs to the firmware"
+            f"an answer of {counted(len(body), 'octet')} is too short: install the client that belongs to the firmware"
         )
     return struct.unpack_from(form, body)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from stillspin.counted import counted
 from stillspin.drive.describe import unpack
 from stillspin.drive.table import KNOWN_FRAME, KNOWN_ROTOR
 
@@ -100,8 +101,8 @@ class Status:
     @property
     def unsaved_count(self) -> str:
         """How many parameters are not saved, in words; empty where none is, or nobody knows."""
-        what = "1 parameter is" if self.unsaved == 1 else f"{self.unsaved} parameters are"
-        return f"{what} not saved" if self.unsaved else ""
+        verb = "is" if self.unsaved == 1 else "are"
+        return f"{counted(self.unsaved, 'parameter')} {verb} not saved" if self.unsaved else ""
 
     @property
     def energised(self) -> bool:

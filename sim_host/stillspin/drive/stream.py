@@ -8,15 +8,21 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 
+from stillspin.counted import counted
+from stillspin.drive.link_counts import ask_counts
 from stillspin.drive.protocol import STREAM_EVENT, Request
 from stillspin.drive.requester import Requester
 from stillspin.drive.table import Signal
 from stillspin.errors import InputError
+from stillspin.link.errors import DriveError
 from stillspin.link.records import Record
 
 MOST = 8
 _WAITING = 20000
 _POLL = 0.2
+_UNSENT = "not sent, the drive's port has no room for so many (fewer signals or a longer period help)"
+_ON_THE_WAY = "lost on the way, this computer is too busy to fetch them or the line is disturbed"
+_LEFT = "not fetched, this program is too busy"
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,7 @@ class Stream:
         self.signals = tuple(signals)
         self.lost = 0
         """Samples that did not arrive."""
+        self._left = 0  # of them, those that came and that nobody fetched in time
         self._requester = requester
         self._samples: queue.Queue[Sample] = queue.Queue(_WAITING)
         self._counter: int | None = None
@@ -90,6 +97,25 @@ class Stream:
                 raise self._requester.lost from None
             return None
 
+    def why_lost(self) -> str:
+        """How many samples did not arrive and where they went, for people; empty when all did. Asks the drive.
+
+        The drive numbers its samples and counts those that it could not send: what is missing beside them was sent and
+        did not get here.
+        """
+        if not (lost := self.lost):
+            return ""
+        said = f"{counted(lost, 'sample')} did not arrive"
+        try:
+            unsent = min(ask_counts(self._requester).unsent, lost - self._left)
+        except DriveError:
+            return said
+        where = ((unsent, _UNSENT), (lost - unsent - self._left, _ON_THE_WAY), (self._left, _LEFT))
+        parts = [(number, words) for number, words in where if number]
+        if len(parts) == 1:
+            return f"{said}: {parts[0][1]}"
+        return f"{said}: " + "; ".join(f"{number} {words}" for number, words in parts)
+
     def close(self) -> None:
         """Make the drive stop sending."""
         self._stack.close()
@@ -113,3 +139,4 @@ class Stream:
             self._samples.put_nowait(Sample(at, values))
         except queue.Full:
             self.lost += 1
+            self._left += 1

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.flash.program import Block, Program, assemble
 
@@ -57,7 +58,7 @@ class _Reader:
         piece = self._octets[self.at : self.at + 2 * count]
         if len(piece) < 2 * count:
             raise InputError(
-                f"{self._name}: the boot stream is cut short after {len(self._octets)} octets; copy it again"
+                f"{self._name}: the boot stream is cut short after {counted(len(self._octets), 'octet')}; copy it again"
             )
         self.at += 2 * count
         return tuple(piece[k] | piece[k + 1] << 8 for k in range(0, len(piece), 2))
@@ -89,7 +90,9 @@ def from_octets(octets: bytes, name: str) -> Program:
         address = reader.address()
         blocks.append(Block(address, reader.words(size)))
     if reader.rest.strip(b"\0\xff"):
-        raise InputError(f"{name}: has {len(reader.rest)} octets behind the end of the boot stream; make it again")
+        raise InputError(
+            f"{name}: has {counted(len(reader.rest), 'octet')} behind the end of the boot stream; make it again"
+        )
     return assemble(blocks, entry, "boot stream", name)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.flash import boot_stream, coff, image_sum, intel_hex, layout
 from stillspin.flash.layout import contains
@@ -26,7 +27,9 @@ def read_program(path: Path) -> Program:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
     name = str(path)
     if len(data) > _LARGEST:
-        raise InputError(f"{name}: {len(data)} octets are not a program for this chip; give {_FORMATS}")
+        raise InputError(
+            f"{name}: a file of {counted(len(data), 'octet')} is no program for this chip; give {_FORMATS}"
+        )
     if data.startswith(b"\x7fELF"):
         raise InputError(
             f"{name}: is an ELF file; link with --abi=coffabi, as the preset f2808 does, or give Intel hex"

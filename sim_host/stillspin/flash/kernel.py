@@ -6,6 +6,7 @@ import struct
 from dataclasses import dataclass
 from enum import IntEnum
 
+from stillspin.counted import counted
 from stillspin.flash import layout
 from stillspin.flash.files import Identity, identity_of
 from stillspin.flash.line import Line
@@ -80,7 +81,7 @@ class Kernel:
         body = self._ask(Request.INFO, b"", attempts=attempts)
         if len(body) != _INFO.size:
             raise DifferentError(
-                f"{self._line.name}: the kernel is not this program's (its answer has {len(body)} octets): build both "
+                f"{self._line.name}: the kernel is not this program's (its answer has {counted(len(body), 'octet')}): build both "
                 "from one commit"
             )
         protocol, part, revision, locked, *words = _INFO.unpack(body)

@@ -11,6 +11,7 @@ import binascii
 import struct
 from dataclasses import dataclass
 
+from stillspin.counted import counted
 from stillspin.link import cobs
 
 MARK = b"\0"
@@ -64,7 +65,7 @@ def pack(record: Record) -> bytes:
         RecordError: the body is longer than MAX_BODY.
     """
     if len(record.body) > MAX_BODY:
-        raise RecordError(f"a body of {len(record.body)} octets; {MAX_BODY} fit")
+        raise RecordError(f"a body of {counted(len(record.body), 'octet')}; {MAX_BODY} fit")
     content = bytes((record.kind, record.tag)) + record.body
     return content + struct.pack("<H", crc16(content))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from stillspin.cases.scenario import Figure, Reached, Run, Scenario
 from stillspin.core import Signals
+from stillspin.counted import counted
 from stillspin.measure import metrics, pieces
 from stillspin.measure.pieces import Extras
 
@@ -156,5 +157,5 @@ def _where(figure: Figure, runs: int) -> str:
     if figure.of:
         return f"{figure.of[0]} / {figure.of[1]}"
     windows = ", ".join(f"{first:g} … {last:g} s".replace(" ", "\N{NO-BREAK SPACE}") for first, last in figure.windows)
-    names = f"all {runs} runs" if len(figure.runs) == runs > 3 else ", ".join(figure.runs)
+    names = f"all {counted(runs, 'run')}" if len(figure.runs) == runs > 3 else ", ".join(figure.runs)
     return f"{names}: {windows}"

@@ -12,6 +12,7 @@ from typing import Any
 from stillspin import extras
 from stillspin.cases.profile import Profile
 from stillspin.cases.variant import Beside
+from stillspin.counted import counted
 from stillspin.measure.figures import Result
 from stillspin.report.output import MARK, RUNS
 from stillspin.runs.assess import ScenarioResult
@@ -128,7 +129,9 @@ def html(results: Sequence[ScenarioResult], settings: Sequence[Settings], beside
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(number=number, unit=unit_text, verdict=verdict, image=_image, slug=_slug)
+    environment.filters.update(
+        number=number, counted=counted, unit=unit_text, verdict=verdict, image=_image, slug=_slug
+    )
     page: str = environment.get_template("report.html.j2").render(
         results=results,
         beside=[_Column(item) for item in beside],

@@ -17,6 +17,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from stillspin.counted import counted
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.campaign import Watcher
 from stillspin.runs.execute import Outcome
@@ -61,7 +62,9 @@ class Counter(_Drawn):
     def one_more(self, _: object) -> None:
         """One of them is done."""
         self._done += 1
-        self._progress.update(self._task, completed=self._done, description=f"{self._done} of {self._total} runs")
+        self._progress.update(
+            self._task, completed=self._done, description=f"{counted(self._done, 'run', self._total)}"
+        )
 
 
 class Bar(_Drawn, Watcher):
@@ -100,7 +103,7 @@ class Bar(_Drawn, Watcher):
         if self._task is None:
             return
         done = max(self._shares, float(self._done)) + _ASSESSING * self._drawn
-        self._progress.update(self._task, completed=done, description=f"{self._done} of {self._runs} runs")
+        self._progress.update(self._task, completed=done, description=f"{counted(self._done, 'run', self._runs)}")
 
 
 class PhaseBar(_Drawn):

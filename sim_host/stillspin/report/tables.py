@@ -12,6 +12,7 @@ from rich.text import Text
 from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.cases.scenario import Scenario
 from stillspin.cases.variant import Beside
+from stillspin.counted import counted
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
 from stillspin.entry import Entry
@@ -142,7 +143,7 @@ def capture(result: Capture) -> None:
         numbers = (f"{number:.4g}" for number in (known.min(), known.mean(), known.max())) if known.size else "–––"
         words = Text("beyond its full scale", style="red") if name in result.clipped else Text("")
         if known.size < values.size:
-            words.append(f" unknown in {values.size - known.size} of {values.size} records")
+            words.append(f" unknown in {counted(values.size - known.size, 'record', values.size)}")
         table.add_row(name, *numbers, result.units[name], words)
     _print(table)
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from stillspin.counted import counted
 from stillspin.drive.table import Table
 from stillspin.errors import InputError
 
@@ -120,7 +121,7 @@ class Choice:
         self.streamed = list(dict.fromkeys([*plain, *needed]))
         if not 1 <= len(self.streamed) <= MOST:
             raise InputError(
-                f"these need {len(self.streamed)} signals of the drive ({', '.join(self.streamed)}); "
+                f"these need {counted(len(self.streamed), 'signal')} of the drive ({', '.join(self.streamed)}); "
                 f"1 … {MOST} can be plotted at once"
             )
 

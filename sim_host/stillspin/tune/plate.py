@@ -16,6 +16,7 @@ from stillspin.cases import motor_check, nameplate, profile, questions
 from stillspin.cases.motor_told import Finding
 from stillspin.commands import parameter_file
 from stillspin.commands.params import transfer
+from stillspin.counted import counted
 from stillspin.drive.table import Table
 from stillspin.errors import InputError
 from stillspin.tune.messages import Message, shown_unit
@@ -114,7 +115,7 @@ def _ranges(follows: Mapping[str, float], table: Table) -> Finding:
             table.parameter(name).to_raw(value)
         except InputError as error:
             complaints.append(str(error))
-    good = f"all {len(follows)} values are within the ranges of the drive's parameters"
+    good = f"all {counted(len(follows), 'value')} are within the ranges of the drive's parameters"
     return Finding("range", not complaints, "; ".join(complaints) or good)
 
 

@@ -70,7 +70,8 @@ class Streamer(threading.Thread):
     def _forward(self, stream: Stream, drive: Drive, choice: Choice) -> None:
         times: list[float] = []
         rows: list[list[float]] = []
-        sent = time.monotonic()
+        sent = asked = time.monotonic()
+        lost, why = 0, ""
         while (
             self._way.drive is drive and self._way.silence < _SILENT and not (self._end.is_set() or self._anew.is_set())
         ):
@@ -80,10 +81,12 @@ class Streamer(threading.Thread):
                 rows.append(choice.row(sample.values, self._parameters))
             now = time.monotonic()
             if rows and now - sent >= _BATCH:
-                self._hand_over(times, [list(column) for column in zip(*rows, strict=True)], stream.lost)
+                if stream.lost != lost and now - asked >= _SILENT:
+                    why, lost, asked = stream.why_lost(), stream.lost, now
+                self._hand_over(times, [list(column) for column in zip(*rows, strict=True)], why)
                 times, rows, sent = [], [], now
 
-    def _hand_over(self, times: list[float], columns: list[list[float]], lost: int) -> None:
+    def _hand_over(self, times: list[float], columns: list[list[float]], lost: str) -> None:
         self.history.add(times, columns)
         shown = [list(map(for_page, column)) for column in columns]
         self._tell({"t": "samples", "time": times, "values": shown, "lost": lost})

@@ -22,6 +22,11 @@ export function number(value, decimals = null) {
   return text.replace("-", "−");
 }
 
+/** A number of things: 1 sample, 2 samples. */
+export function counted(number, what) {
+  return `${number} ${what}${number === 1 ? "" : "s"}`;
+}
+
 /** Seconds in words that a person says. */
 export function span(seconds) {
   if (seconds < 90) return `${Math.round(seconds)} s`;

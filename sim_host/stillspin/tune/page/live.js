@@ -75,7 +75,7 @@ export class Live {
       this.time.splice(0, old);
       for (const column of this.values) column.splice(0, old);
     }
-    by("stream-lost").textContent = lost ? `${lost} ${lost === 1 ? "sample" : "samples"} did not arrive` : "";
+    by("stream-lost").textContent = lost;
     this.dirty = true;
   }
 

@@ -1,6 +1,6 @@
 // The motor's nameplate: ten questions, what will work with the answers, the parameters that follow. The server calculates.
 
-import { make, number, withUnit } from "./dom.js";
+import { counted, make, number, withUnit } from "./dom.js";
 
 export class Nameplate {
   constructor(link, parameters, fail) {
@@ -50,7 +50,7 @@ export class Nameplate {
       make("li", { class: works ? "works" : "wrong" }, make("strong", {}, works ? "works" : "will not work"), make("span", {}, `${title}: ${words}`));
     const use = make("button", { id: "plate-use", "data-stopped": "", onclick: () => this.use(answers, next) }, wrong ? "Set in the drive all the same" : "Set in the drive");
     this.found.replaceChildren(
-      make("h2", {}, wrong ? `${wrong} of ${findings.length} will not work` : `No problem found in ${findings.length} checks`),
+      make("h2", {}, wrong ? `${wrong} of ${findings.length} will not work` : `No problem found in ${counted(findings.length, "check")}`),
       make("ul", { class: "findings" }, ...findings.map(row), missing ? make("li", {}, make("strong", {}, "not looked at"), make("span", {}, missing)) : null),
       changes.length ? this.changes(changes) : make("p", { class: "calm" }, "The drive has these values already."),
       make("div", { class: "bar" }, changes.length ? use : make("button", { id: "plate-use", onclick: next }, "Go on")),

@@ -1,6 +1,6 @@
 // The parameter tree: headings, values with unit and range, errors in the drive's words.
 
-import { by, make } from "./dom.js";
+import { by, counted, make } from "./dom.js";
 
 /** Where a parameter's value is entered: a list of words where its numbers stand for something. */
 function field({ name, choices, minimum }) {
@@ -128,7 +128,7 @@ export class Parameters {
     try {
       const { values, named, different, complaints } = await this.link.ask("load", { name: file.name, text: await file.text() });
       this.take(values);
-      by("store-note").textContent = `${file.name} names ${named} parameters; ${different} were different. They are kept when they are saved.`;
+      by("store-note").textContent = `${file.name} names ${counted(named, "parameter")}, of which ${different} had another value here. They are kept when they are saved.`;
       if (complaints.length) this.fail(new Error(complaints.join("; ")));
     } catch (error) {
       this.fail(error);

@@ -1,6 +1,6 @@
 // The captured scope: set-up, waiting for the trigger, the picture, a file.
 
-import { by, make } from "./dom.js";
+import { by, counted, make } from "./dom.js";
 import { panels } from "./plot.js";
 
 const CHANNELS = 4;
@@ -68,7 +68,7 @@ export class Scope {
     this.level.disabled = this.trigger.disabled = now;
     const seconds = this.depth * PERIOD * Number(this.decimation.value);
     const span = Number.isFinite(seconds) ? `, ${Number((seconds * 1e3).toPrecision(4))} ms` : "";
-    this.length.textContent = `${this.depth} records${span}`;
+    this.length.textContent = `${counted(this.depth, "record")}${span}`;
   }
 
   async run() {
@@ -107,7 +107,7 @@ export class Scope {
   show() {
     const { time, signals, units, clipped, interval } = this.capture;
     const beyond = clipped.length ? `; beyond full scale: ${clipped.join(", ")}` : "";
-    this.busy(false, `${time.length} records every ${Number((interval * 1e3).toPrecision(4))} ms${beyond}`);
+    this.busy(false, `${counted(time.length, "record")} every ${Number((interval * 1e3).toPrecision(4))} ms${beyond}`);
     by("download").disabled = false;
     const list = Object.keys(signals).map((name) => ({ name, unit: units[name] }));
     const x = time.map((seconds) => seconds * 1e3);
