@@ -8,7 +8,7 @@ from typing import Protocol, Self
 
 import serial
 
-from stillspin.link.errors import LinkError
+from stillspin.link.errors import LinkError, gone
 from stillspin.link.serial_port import explain
 
 _WRITE_TIMEOUT = 2.0
@@ -91,7 +91,7 @@ class SerialLine:
             self._port.write(octets)
             self._port.flush()
         except (OSError, serial.SerialException) as error:
-            raise LinkError(f"{self.name} is lost: {error}") from error
+            raise gone(self.name) from error
 
     def read(self, most: int, timeout: float) -> bytes:
         """See Line."""
@@ -101,7 +101,7 @@ class SerialLine:
             if octets:
                 octets += bytes(self._port.read(min(self._port.in_waiting, most - 1)))
         except (OSError, serial.SerialException, TypeError) as error:
-            raise LinkError(f"{self.name} is lost: {error}") from error
+            raise gone(self.name) from error
         return octets
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import can
 import serial
 
-from stillspin.link.errors import LinkError
+from stillspin.link.errors import LinkError, gone
 from stillspin.link.records import Record
 from stillspin.link.segments import Joiner, split
 from stillspin.link.serial_port import descriptor_of, explain
@@ -52,8 +52,10 @@ class CanTransport:
                 for data in split(record):
                     message = can.Message(arbitration_id=identifier, is_extended_id=False, data=data)
                     self._bus.send(message, timeout=_SEND_TIMEOUT)
-        except (can.CanError, OSError, serial.SerialException) as error:
+        except can.CanError as error:
             raise LinkError(f"{self.name}: cannot send: {error}") from error
+        except OSError as error:  # of pyserial, too
+            raise gone(self.name) from error
 
     def send_text(self, octets: bytes) -> None:
         """See Transport."""
@@ -71,7 +73,7 @@ class CanTransport:
                     items.append(record)
                 message = self._bus.recv(0)
         except (can.CanError, OSError, serial.SerialException, ValueError) as error:
-            raise LinkError(f"{self.name} is lost: {error}") from error
+            raise gone(self.name) from error
         items += [Damaged(b"", "a piece is missing")] * (self._joiner.damaged - damaged)
         return items
 

@@ -16,6 +16,15 @@ class LinkError(DriveError):
     exit_code = ExitCode.NO_CONNECTION
 
 
+def gone(name: str) -> LinkError:
+    """The way was there and is not any more; what the system calls it (errno 5, a read without data) helps nobody.
+
+    Args:
+        name: of the port or bus, for people.
+    """
+    return LinkError(f"{name} is gone: look whether its cable is in, and what it leads to is switched on or still runs")
+
+
 class NoAnswerError(DriveError):
     """The drive did not answer in time."""
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import serial
 from serial.tools import list_ports
 
-from stillspin.link.errors import LinkError
+from stillspin.link.errors import LinkError, gone
 from stillspin.link.records import Record, to_wire
 from stillspin.link.splitter import Item, Splitter
 from stillspin.link.transport import beats_of_clock
@@ -55,7 +55,7 @@ class SerialTransport:
             if octets:
                 octets += self._port.read(self._port.in_waiting)
         except (OSError, serial.SerialException, TypeError) as error:  # TypeError: closed during the read
-            raise LinkError(f"{self.name} is lost: {_reason(error)}") from error
+            raise gone(self.name) from error
         return self._splitter.feed(octets, time.monotonic())
 
     def beats(self, interval: float, end: threading.Event) -> Iterator[None]:
@@ -73,7 +73,7 @@ class SerialTransport:
         except serial.SerialTimeoutException as error:
             raise LinkError(f"{self.name} accepts no data: is anything connected to it?") from error
         except (OSError, serial.SerialException, TypeError) as error:
-            raise LinkError(f"{self.name} is lost: {_reason(error)}") from error
+            raise gone(self.name) from error
 
 
 def _open(port: str, baud: int) -> serial.Serial:
