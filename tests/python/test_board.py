@@ -394,6 +394,33 @@ def test_a_terminal_that_takes_nothing_does_not_stop_the_drive(start):
     os.close(terminal)
 
 
+@pytest.mark.parametrize("way", [signal.SIGTERM, signal.SIGINT, "\x03"])
+def test_a_board_ends_at_once_on_a_terminal_that_takes_nothing(tmp_path, way):
+    """Everything of it stands on a terminal that was stopped with Ctrl-S."""
+    master, terminal = pty.openpty()
+    link = tmp_path / "drive"
+    board = [sys.executable, "-m", "stillspin", "board", "--serial-link", str(link)]
+    command = ["setsid", "--ctty", *board]  # the terminal's keys are signals for it
+    process = subprocess.Popen(command, stdin=terminal, stdout=terminal, stderr=terminal)
+    try:
+        seen = b""
+        while b"real time" not in seen:
+            seen += os.read(master, 4096)
+        os.write(master, b"\x13")  # Ctrl-S
+        time.sleep(1.0)
+        if isinstance(way, str):
+            os.write(master, way.encode())
+        else:
+            process.send_signal(way)
+        assert process.wait(timeout=10) == 0
+        assert not link.is_symlink()
+    finally:
+        process.kill()
+        process.wait()
+        os.close(master)
+        os.close(terminal)
+
+
 def test_process_keeps_real_time(start):
     process, _ = start("--for", "3")
     _until_ready(process)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,9 +23,11 @@ from stillspin.board.show import Show
 from stillspin.called import called
 from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
 from stillspin.link.can_bus import DEFAULT_BITRATE
 
 _PAUSE = 0.05  # s of wall time; the longest sleep
+_LEAVE = 1.0  # s that the terminal has for the last line
 
 
 @dataclass(frozen=True)
@@ -77,7 +80,16 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
         if options.eeprom:
             eeprom_file.keep(board, options.eeprom)
         desk.close()
-    print(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time")
+    _take_leave(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time", show)
+
+
+def _take_leave(words: str, show: Show) -> None:
+    """Says them, and ends the process where the terminal takes nothing: all is kept, and Python would wait for it."""
+    said = threading.Thread(target=print, args=(words,), kwargs={"flush": True}, daemon=True)
+    said.start()
+    said.join(_LEAVE)
+    if said.is_alive() or show.is_stuck:
+        os._exit(ExitCode.DONE)
 
 
 def _plug_in(board: NativeBoard, options: Options) -> Desk:

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from stillspin.board.desk import Desk
 from stillspin.board.pacer import Pacer
+from stillspin.counted import counted
 from stillspin.drive import state
 
 _EVERY = 0.25  # s between two looks of the status line
@@ -66,6 +67,11 @@ class Show:
             return
         self._draws.join(max(0.0, end - time.monotonic()))
 
+    @property
+    def is_stuck(self) -> bool:
+        """Whether the terminal has not taken the last words."""
+        return self._draws.is_alive()
+
     def _draw(self) -> None:
         if self._live:
             self._live.start()
@@ -96,7 +102,7 @@ class Show:
         if rates:
             self._warn("rate", now, f"the terminal is set to {rates[0]} bit/s and the drive to {rates[1]}")
         if self._desk.port.dropped:
-            words = f"{self._desk.port.dropped} octets were not fetched by the program that has the port open"
+            words = f"not fetched by the program that has the port open: {counted(self._desk.port.dropped, 'octet')}"
             self._warn("dropped", now, words)
         if self._live:
             self._show(Text(self.line()))
@@ -109,7 +115,7 @@ class Show:
         port = f"open at {desk.port.rate} bit/s" if desk.port.is_open else "not open"
         return (
             f"{desk.time:9.1f} s  {self._ratio()}  {words}  shaft {truth['speed']:7.1f} rpm, load "
-            f"{truth['load_torque']:.2f} Nm  port {port}, {desk.octets_in} octets in, {desk.octets_out} out"
+            f"{truth['load_torque']:.2f} Nm  port {port}, {counted(desk.octets_in, 'octet')} in, {desk.octets_out} out"
         )
 
     def _ratio(self) -> str:
