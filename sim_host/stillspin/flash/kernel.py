@@ -81,8 +81,8 @@ class Kernel:
         body = self._ask(Request.INFO, b"", attempts=attempts)
         if len(body) != _INFO.size:
             raise DifferentError(
-                f"{self._line.name}: the kernel is not this program's (its answer has {counted(len(body), 'octet')}): build both "
-                "from one commit"
+                f"{self._line.name}: the kernel is not this program's (its answer has {counted(len(body), 'octet')}): "
+                "build both from one commit"
             )
         protocol, part, revision, locked, *words = _INFO.unpack(body)
         identity, entry = tuple(words[: layout.IDENTITY_WORDS]), words[layout.IDENTITY_WORDS :]
