@@ -76,7 +76,11 @@ static void say(void) {
     }
     put_packed(w, near[k]);
   }
-  if (found > 0u) put_u8(w, '?');
+  if (found > 0u) {
+    put_u8(w, '?');
+  } else if (kind_of == SUGGEST_COMMAND) {
+    put_packed(w, SAY_see_help);
+  }
   line_end_refused();
 }
 

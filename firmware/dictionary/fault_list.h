@@ -13,13 +13,15 @@ FAULT(6, NO_SAMPLES, "no samples from the ADC", "a board or software fault: swit
 FAULT(7, DIVERGENCE, "estimators diverged or speed not plausible",
       "commission the drive; check pole_pairs, inductances and magnet_flux")
 FAULT(8, POLARITY, "polarity of the magnet ambiguous, or contradicted by the back-EMF",
-      "commission the drive, raise start_current, or free the shaft for the start")
+      "commission the drive, raise start_current or free the shaft for the start; is a motor wire broken? "
+      "the next start names it")
 FAULT(9, OFFSET, "current offset implausible",
       "check the current sensors and their supply; no current may flow at power-on")
 FAULT(10, PARAMETER, "parameters do not fit together", "'status' says which do not: set them")
 FAULT(11, GATES_OFF, "gates switched off unexpectedly", "check the enable line of the gate driver")
 FAULT(12, SYNCHRONISM, "loss of synchronism",
-      "reduce load or speed_ramp; commission the drive; check magnet_flux, stator_resistance and all wires")
+      "reduce load or speed_ramp; commission the drive; check magnet_flux, stator_resistance; is a motor wire "
+      "broken? the next start names it")
 FAULT(13, STOP, "standstill not reached within stop_time", "raise stop_time, or look for what drives the shaft")
 FAULT(14, EMERGENCY, "emergency stop", "release it, then reset")
 FAULT(15, PRECHARGE, "DC link not charged, precharge relay open",

@@ -32,6 +32,7 @@ TEST_F(Console, StatusAndFaults) {
   const std::string status = command("status");
   EXPECT_TRUE(has(status, "state       fault\r\n")) << status;
   EXPECT_TRUE(has(status, "fault       loss of synchronism. reduce load")) << status;
+  EXPECT_TRUE(has(status, "is a motor wire broken? the next start names it\r\n")) << status;
   EXPECT_TRUE(has(status, "parameters  fit together"));
   EXPECT_TRUE(has(command("start free"), "reset it first: loss of synchronism"));
   EXPECT_TRUE(has(command("reset"), "cleared"));
@@ -60,7 +61,7 @@ TEST_F(Console, StatusSaysWhyParametersDoNotFitTogether) {
   drive.request.reload = true;
   EXPECT_TRUE(has(command("status"),
                   "parameters  if_current must not exceed current_limit with start_method 1 (if_current = "
-                  "14.00 A, current_limit = 14.00 A, start_method = 1); 3 not saved"));
+                  "14.00 A, current_limit = 14.00 A, start_method = 1); 3 of the parameters not saved"));
 }
 
 TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {
@@ -168,7 +169,7 @@ TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {
   ASSERT_EQ(drive.commissioning.outcome, COMMISSIONING_PARTLY);
   const std::int32_t before = parameters.inertia;
   parameters.inertia++;
-  EXPECT_TRUE(has(command("commission"), "; 2 not saved: 'save' keeps them\r\n"));
+  EXPECT_TRUE(has(command("commission"), "; 2 of the parameters not saved: 'save' keeps them\r\n"));
   parameters.inertia = before;
   const std::string rows = command("commission results", 20000);
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), drive_commissioning_count());

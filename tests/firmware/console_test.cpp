@@ -92,7 +92,10 @@ TEST_F(Console, DidYouMean) {
   EXPECT_EQ(command("get speed_lmit"), "there is no parameter 'speed_lmit': did you mean speed_limit?\r\n");
   EXPECT_EQ(command("get ldq"), "there is no parameter 'ldq': did you mean ldq_1, ldq_2, ldq_3, ldq_4?\r\n");
   EXPECT_EQ(command("watch sped"), "there is no signal 'sped': did you mean speed?\r\n");
-  EXPECT_EQ(command("xyzzy"), "there is no command 'xyzzy'\r\n");
+  EXPECT_EQ(command("xyzzy"), "there is no command 'xyzzy': see 'help'\r\n");
+  EXPECT_EQ(command("?"), "there is no command '?': see 'help'\r\n");
+  EXPECT_EQ(command("help me"), "there is no command 'me': see 'help'\r\n");
+  EXPECT_EQ(command("get xyzzy"), "there is no parameter 'xyzzy'\r\n");
 }
 
 TEST(Suggest, OneEditOrAPart) {

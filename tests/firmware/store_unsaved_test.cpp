@@ -68,7 +68,8 @@ TEST_F(Console, StatusSaysWhatIsNotSaved) {
   values_copy();  // what is kept, with what the tests' board needs
   EXPECT_TRUE(has(command("status", 3000), "parameters  fit together\r\n"));
   EXPECT_TRUE(has(command("set speed_ramp 100"), "speed_ramp = 100 rpm/s"));
-  EXPECT_TRUE(has(command("status", 3000), "parameters  fit together; 1 not saved: 'save' keeps them\r\n"));
+  EXPECT_TRUE(
+      has(command("status", 3000), "parameters  fit together; 1 of the parameters not saved: 'save' keeps them\r\n"));
   EXPECT_TRUE(has(command("set speed_ramp 3000"), "speed_ramp = 3000 rpm/s"));
   EXPECT_TRUE(has(command("status", 3000), "parameters  fit together\r\n"));
 }
