@@ -69,20 +69,9 @@ PARTS = {
     # The states and what protects.
     "firmware": Part(
         (
-            *(
-                "firmware/drive/sequence.c",
-                "firmware/drive/protection.c",
-                "firmware/mode/fault_history.c",
-                "firmware/api/actions.c",
-            ),
-            *(
-                "firmware/mode/commands.c",
-                "firmware/config/rules.c",
-                "firmware/drive/sampling.c",
-                "firmware/drive/speed.c",
-            ),
-            *("firmware/drive/control_interrupt.c", "firmware/drive/schedule.c"),
-            *("firmware/start/*.c", "firmware/drive/brake_hold.c", "firmware/drive/polarity_watch.c"),
+            *("firmware/mode/*.c", "firmware/config/rules.c", "firmware/api/actions.c", "firmware/start/*.c"),
+            *(f"firmware/drive/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "protection")),
+            *(f"firmware/drive/{name}.c" for name in ("sequence", "speed", "reset", "brake_hold", "polarity_watch")),
             *("firmware/board/*.c", "firmware/commissioning/*.c"),
         ),
         FIRMWARE,
@@ -90,28 +79,14 @@ PARTS = {
     # What else a period does.
     "firmware/period": Part(
         (
-            *(
-                "firmware/drive/position.c",
-                "firmware/drive/modulation.c",
-                "firmware/hysteresis/hysteresis.c",
-                "firmware/config/config.c",
-            ),
-            *(
-                "firmware/sources/flux.c",
-                "firmware/drive/inertia.c",
-                "firmware/drive/current.c",
-                "firmware/drive/signals.c",
-            ),
-            *("firmware/drive/reload.c", "firmware/boot/main.c"),
+            *(f"firmware/drive/{name}.c" for name in ("position", "modulation", "inertia", "current", "signals")),
+            *("firmware/drive/reload.c", "firmware/sources/*.c", "firmware/hysteresis/*.c", "firmware/config/config.c"),
+            *("firmware/boot/main.c", "firmware/editions/*.c"),
         ),
         FIRMWARE,
     ),
     "firmware/console": Part(
-        (
-            *("firmware/console/*.c", "firmware/text/text.c", "firmware/text/words.c", "firmware/text/packed_text.c"),
-            *("firmware/dictionary/parameters.c", "firmware/base/clear.c"),
-        ),
-        FIRMWARE,
+        ("firmware/console/*.c", "firmware/text/*.c", "firmware/dictionary/*.c", "firmware/base/clear.c"), FIRMWARE
     ),
     "firmware/link": Part(
         (

@@ -8,6 +8,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_board.h"
 
@@ -29,9 +30,9 @@ static int32_t celsius_q8(int32_t code) {
 
 // Share left between `from` (all) and `to` (the share at the end).
 static int32_t share_between(int32_t value, int32_t from, int32_t to, int32_t end_q15) {
-  if (value <= from) return BOARD_SHARE_ONE;
+  if (value <= from) return INTERLOCK_SHARE_ONE;
   if (value >= to) return end_q15;
-  return BOARD_SHARE_ONE - q_mul(q_div(value - from, to - from, 15), BOARD_SHARE_ONE - end_q15, 15);
+  return INTERLOCK_SHARE_ONE - q_mul(q_div(value - from, to - from, 15), INTERLOCK_SHARE_ONE - end_q15, 15);
 }
 
 static drive_fault_t follow_heat_sink(int32_t* share_q15) {
@@ -41,7 +42,7 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
   drive.heat_sink_known = !broken;
   if (broken || drive.heat_sink_q8 > parameters.temperature_limit) return FAULT_TEMPERATURE;
   *share_q15 = share_between(drive.heat_sink_q8, parameters.temperature_derating, parameters.temperature_limit,
-                             BOARD_SHARE_ONE / 2);
+                             INTERLOCK_SHARE_ONE / 2);
   return FAULT_NONE;
 }
 
@@ -59,14 +60,14 @@ static int32_t heating_q24(int32_t ever_q20) {
 
 static drive_fault_t follow_overload(int32_t ever_q20, int32_t* share_q15) {
   board.heat_q24 += (heating_q24(ever_q20) - board.heat_q24) / (parameters.overload_time / (int32_t)TURN);
-  const int32_t end_q15 = q_min(BOARD_SHARE_ONE, q_div(ever_q20, parameters.current_limit, 15));
+  const int32_t end_q15 = q_min(INTERLOCK_SHARE_ONE, q_div(ever_q20, parameters.current_limit, 15));
   *share_q15 = q_min(*share_q15, share_between(board.heat_q24, HEAT_ONE_Q24 / 5 * 4, HEAT_ONE_Q24, end_q15));
   return board.heat_q24 > HEAT_ONE_Q24 / 10 * 11 ? FAULT_OVERLOAD : FAULT_NONE;
 }
 
 drive_fault_t board_follow_heat(void) {
   if ((board.at_ms & (TURN - 1u)) != 0u) return FAULT_NONE;
-  int32_t share_q15 = BOARD_SHARE_ONE;
+  int32_t share_q15 = INTERLOCK_SHARE_ONE;
   drive_fault_t fault = FAULT_NONE;
   if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) {
     fault = follow_heat_sink(&share_q15);
@@ -78,6 +79,6 @@ drive_fault_t board_follow_heat(void) {
     const drive_fault_t overload = follow_overload(ever_q20, &share_q15);
     if (fault == FAULT_NONE) fault = overload;
   }
-  board.share_q15 = share_q15;
+  interlock_share_q15 = share_q15;
   return fault;
 }

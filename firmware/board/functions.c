@@ -3,6 +3,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/board/selftest.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/text.h"
 #include "firmware/text/words.h"
@@ -18,14 +19,9 @@ board_t board;
 
 void board_reset(void) {
   clear(&board, sizeof board);
-  board.share_q15 = BOARD_SHARE_ONE;
   board.asked = true;  // a switch that is closed at power-on starts nothing
   selftest_reset();
 }
-
-bool board_is_warm(void) { return board.share_q15 < BOARD_SHARE_ONE; }
-
-int32_t board_current_limit(void) { return q_mul(parameters.current_limit, board.share_q15, 15); }
 
 static void report(drive_fault_t fault) {
   if (fault == FAULT_NONE) return;
@@ -90,10 +86,6 @@ static drive_fault_t watch_enable(void) {
   return board.silent_ms > SILENT_MAX ? FAULT_GATE_ENABLE : FAULT_NONE;
 }
 
-static drive_fault_t watch_emergency(void) {
-  return parameters.emergency_stop != 0 && hal_lines_emergency() ? FAULT_EMERGENCY : FAULT_NONE;
-}
-
 void board_service(void) {
   brake();
   report(selftest_service());
@@ -101,27 +93,18 @@ void board_service(void) {
   board.at_ms = drive.time_ms;
   wire();
   if (drive.state == DRIVE_BOOT) return;
-  report(watch_emergency());
+  report(interlock_emergency());
   report(watch_enable());
   report(precharge());
   report(watch_brake());
   report(board_follow_heat());
   report(board_follow_shaft());
-  drive.control.current_limit_q20 = board_current_limit();
+  drive.control.current_limit_q20 = interlock_current_limit();
   board_follow_speed_input();
 }
 
 drive_fault_t board_refusal(void) {
-  if (hal_irq_unexpected_count() != 0u) return FAULT_INTERRUPT;
-  if (selftest.failed != 0u) return FAULT_SELF_TEST;
-  if (parameters.precharge_voltage != 0 && !board.relay) return FAULT_PRECHARGE;
-  return watch_emergency();
-}
-
-drive_fault_t board_why_off(void) {
-  if (hal_irq_unexpected_count() != 0u) return FAULT_INTERRUPT;  // which has switched them off
-  const drive_fault_t fault = watch_emergency();
-  return fault == FAULT_NONE ? FAULT_GATES_OFF : fault;
+  return parameters.precharge_voltage != 0 && !board.relay ? FAULT_PRECHARGE : FAULT_NONE;
 }
 
 static void put_item(octet_writer_t* w, board_words_t word) {
@@ -144,5 +127,5 @@ void put_board(octet_writer_t* w) {
   if (parameters.speed_input != 0) put_item(w, (board_words_t)((uint16_t)BOARD_INPUT_OFF + (uint16_t)board.input));
   if (parameters.overload_current == 0) put_item(w, BOARD_OVERLOAD_UNWATCHED);
   if (parameters.overload_current < 0 && parameters.rated_current == 0) put_item(w, BOARD_RATED_UNTOLD);
-  put_number(w, BOARD_LIMIT_IN_USE, board.share_q15 * 25 / 8, 10, " %");
+  put_number(w, BOARD_LIMIT_IN_USE, interlock_share_q15 * 25 / 8, 10, " %");
 }

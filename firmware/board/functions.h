@@ -19,8 +19,6 @@
 extern "C" {
 #endif
 
-#define BOARD_SHARE_ONE ((int32_t)32768)  // Q15
-
 /// What the speed command has come to.
 typedef enum { SPEED_INPUT_OFF = 0, SPEED_INPUT_WAITS = 1, SPEED_INPUT_RUNS = 2, SPEED_INPUT_LOST = 3 } speed_input_t;
 
@@ -47,7 +45,6 @@ typedef struct {
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
   int32_t heat_q24;        // mean square of the current, of that which may flow for ever
-  int32_t share_q15;       // of the current limit that is left
   uint16_t code;           // of the speed command
   uint16_t lost_ms;        // without a signal for so long
   speed_input_t input;
@@ -64,17 +61,8 @@ void board_reset(void);
 /// Background level, once behind every interrupt.
 void board_service(void);
 
-/// What keeps the drive from starting, FAULT_NONE when nothing does.
+/// The precharge against a start (mode/interlock.h).
 drive_fault_t board_refusal(void);
-
-/// Why the gates are off although nobody has switched them off.
-drive_fault_t board_why_off(void);
-
-/// Largest phase current now: current_limit, or what heat sink and overload leave of it. A, Q20.
-int32_t board_current_limit(void);
-
-/// Whether that is less than the whole: something has to cool.
-bool board_is_warm(void);
 
 /// Phase current that may flow for ever, peak: overload_current, else the motor's rated one, else half of
 /// current_limit. A, Q20; 0: any may.

@@ -24,6 +24,8 @@ selftest_t selftest;
 
 void selftest_reset(void) { clear(&selftest, sizeof selftest); }
 
+drive_fault_t selftest_refusal(void) { return selftest.failed == 0u ? FAULT_NONE : FAULT_SELF_TEST; }
+
 static void judge(bool good, selftest_failure_t failure) {
   if (!good) selftest.failed |= (uint16_t)failure;
 }
@@ -62,7 +64,7 @@ drive_fault_t selftest_service(void) {
   judge(parameters.reference_input == 0 || (off < REFERENCE_OFF && selftest.ground < (uint16_t)REFERENCE_OFF),
         SELFTEST_CONVERTER);
   judge(parameters.gate_feedback == 0 || !selftest.passed_early, SELFTEST_GATE_ENABLE);
-  return selftest.failed == 0u ? FAULT_NONE : FAULT_SELF_TEST;
+  return selftest_refusal();
 }
 
 static void put_item(octet_writer_t* w, uint16_t* items, uint16_t word) {

@@ -46,6 +46,9 @@ extern selftest_t selftest;
 
 void selftest_reset(void);
 
+/// What has failed, against a start (mode/interlock.h).
+drive_fault_t selftest_refusal(void);
+
 /// Before the interrupts come, with the gates off and the converter up.
 void selftest_look(void);
 

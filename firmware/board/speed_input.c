@@ -13,6 +13,7 @@
 #include "hal/hal_adc.h"
 #include "hal/hal_lines.h"
 
+#define ONE_Q15 ((int32_t)32768)
 #define TURN 8u
 #define CHOOSE_AT 1u  // of the turn; the heat sink is read at 0
 #define READ_AT 4u
@@ -56,8 +57,8 @@ static void take(int32_t code) {
   if (lost || board.input != SPEED_INPUT_RUNS) return;
   const int32_t share_q15 = live ? q_div(code - LIVE_FIRST, LIVE_SPAN, 15) : q_div(code, SPAN, 15);
   const int32_t dead_q15 = q_mul(parameters.speed_input_dead, 21474836L, 32);
-  const int32_t beyond = q_clamp(share_q15, 0, BOARD_SHARE_ONE) - dead_q15;
-  const int32_t asked = beyond <= 0 ? 0 : q_div(beyond, BOARD_SHARE_ONE - dead_q15, 15);
+  const int32_t beyond = q_clamp(share_q15, 0, ONE_Q15) - dead_q15;
+  const int32_t asked = beyond <= 0 ? 0 : q_div(beyond, ONE_Q15 - dead_q15, 15);
   drive_command_speed(q_mul(q_shl_sat(parameters.speed_input_full, 8), asked, 15));
 }
 

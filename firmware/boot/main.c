@@ -9,6 +9,7 @@
 #include "firmware/can/node.h"
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"

@@ -6,7 +6,7 @@
 // those that pass. What each phase measures and how it is evaluated stands at the head of its file; docs/commissioning.
 //
 // The currents reach the limit, which may be several times what the machine bears for long. Where heat sink or overload
-// take something of the limit away the measuring waits at rest until all of it is back (board_is_warm).
+// take something of the limit away the measuring waits at rest until all of it is back (interlock_is_warm).
 //
 // Cost: at standstill the position sources but AVV are idle, which is more than the sums take; 1400 words.
 

@@ -17,9 +17,9 @@
 // for motion. Between trains the shaft is held for 40 ms.
 
 #include "firmware/base/clear.h"
-#include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 
 #define EXCURSION_BAM 71582788L  // 6 degrees
@@ -159,7 +159,7 @@ bool commissioning_map(drive_t* d) {
   const int32_t length = (m->train % 2u == 0u) ? MOVE_PERIODS + PAUSE_PERIODS : PAUSE_PERIODS;
   move_on(d, m);
   commissioning_hold(d);
-  if (m->tick == length && board_is_warm()) return false;
+  if (m->tick == length && interlock_is_warm()) return false;
   if (m->tick > length - STILL_PERIODS) add_pause(d);
   m->tick = q_add_sat(m->tick, 1);
   if (m->tick <= length) return false;

@@ -3,6 +3,7 @@
 #include "firmware/commissioning/outcome.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,
 enum {

@@ -20,6 +20,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 
 #define VOLT_THIRD_Q27 44739243L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
@@ -110,7 +111,7 @@ bool commissioning_climb(drive_t* d) {
     s->tick = q_add_sat(s->tick, 1);
     return s->tick > SETTLE_PERIODS + 1;
   }
-  if (s->tick == 0 && board_is_warm()) {
+  if (s->tick == 0 && interlock_is_warm()) {
     commissioning_set_d(d, 0);
     return false;
   }

@@ -2,7 +2,6 @@
 
 #include <stddef.h>
 
-#include "firmware/mode/mode.h"
 #include "hal/hal_board.h"
 
 parameters_t parameters;
@@ -63,17 +62,9 @@ const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count) {
 
 const parameter_info_t* parameter_by_id(uint16_t id) { return parameter_info(index_of(id)); }
 
-parameter_result_t parameter_set(uint16_t id, int32_t raw) {
+void parameter_write(uint16_t id, int32_t raw) {
   const uint16_t k = index_of(id);
-  if (k >= COUNT) return SET_UNKNOWN;
-  if (raw < table[k].minimum || raw > table[k].maximum) return SET_RANGE;
-  if (table[k].access == PARAMETER_STOPPED) {
-    drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
-    if (drive_is_energised()) return SET_RUNNING;
-  }
-  *value_of(k) = raw;
-  drive_parameters_changed();
-  return SET_OK;
+  if (k < COUNT) *value_of(k) = raw;
 }
 
 int32_t parameter_get(uint16_t id) {

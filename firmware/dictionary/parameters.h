@@ -53,7 +53,8 @@ const parameter_info_t* parameter_info(uint16_t index);
 const parameter_info_t* parameter_by_id(uint16_t id);
 /// Capitals count as small letters.
 const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
-parameter_result_t parameter_set(uint16_t id, int32_t raw);
+/// No check: see parameter_set in mode/commands.h. A number that does not exist writes nothing.
+void parameter_write(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
 
 /// Puts every parameter to its default.

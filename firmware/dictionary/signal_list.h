@@ -37,7 +37,7 @@ SIGNAL(load_angle, "turn", 32, ROTOR, d->position.flux.load_angle_bam,
 SIGNAL(current_a, "A", 20, DRIVE, phase_current(d, false),
        "current of phase a as its sensor reads it, with the gates off as well: mean of the period's windows")
 SIGNAL(current_b, "A", 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
-SIGNAL(speed_known, "", 0, DRIVE, drive_knows_speed(d),
+SIGNAL(speed_known, "", 0, DRIVE, (known & KNOWN_ROTOR) != 0u,
        "1: angle and speed are the rotor's; 0: unknown, the shaft may turn")
 SIGNAL(magnet_flux, "mVs", 16, DRIVE, d->position.flux.machine.psi_q16 / 10,
        "magnet flux as the stator-flux sources estimate it")

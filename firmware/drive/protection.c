@@ -1,46 +1,16 @@
 // What opens the power stage: looked at in every period, before anything is commanded.
 
-#include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
-#include "firmware/mode/fault_history.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_safety.h"
 
 #define MISSING_MAX 5u   // periods without samples
 #define OVERRUN_MAX 10u  // periods repeated because the interrupt was late
 #define JUDGED_PERIODS_MAX 6L
-
-static void note(const drive_t* d, drive_fault_t fault) {
-  fault_record_t r;
-  r.time_ms = d->time_ms;
-  r.fault = fault;
-  r.state = d->state;
-  r.known = drive_known(d);
-  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->position.used.speed_bpp) : 0;
-  r.link_q16 = d->samples.link_q16;
-  const dq_t none = {0, 0};
-  const dq_t seen_q20 = ((r.known & KNOWN_FRAME) != 0u) ? d->control.measured_q20 : none;
-  r.current_d_q20 = seen_q20.d;
-  r.current_q_q20 = seen_q20.q;
-  fault_history_add(&r);
-}
-
-void drive_raise(drive_t* d, drive_fault_t fault) {
-  hal_pwm_gates_off();
-  if (d->state == DRIVE_FAULT) return;
-  note(d, fault);
-  d->fault = fault;
-  d->state = DRIVE_FAULT;
-  d->periods = 0;
-  d->control.closed = false;
-  d->control.wanted_rpm_q16 = 0;
-  d->control.target_bpp = 0;
-  hal_safety_fault_lamp(true);
-}
 
 // By the latest of the period's windows; within a period the comparator is there.
 static bool over_current(const drive_t* d) {
@@ -140,7 +110,7 @@ static drive_fault_t check(drive_t* d) {
   // With the gates off a fast shaft may drive a current through the diodes; switching them on forgets that.
   const bool meant_off = d->state == DRIVE_START && !d->start.powered;
   if (!meant_off && hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
-  if (hal_pwm_is_tripped() && !meant_off) return board_why_off();
+  if (hal_pwm_is_tripped() && !meant_off) return interlock_why_off();
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
   if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
   if (over_current(d)) return FAULT_CURRENT_LIMIT;

@@ -2,11 +2,12 @@
 
 #include <stddef.h>
 
-#include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
@@ -33,7 +34,7 @@ static void reload(void) {
   drive.conflict = conflict;
   drive.conflict_known = true;
   if (valid) drive.config = *fresh;
-  drive.control.current_limit_q20 = board_current_limit();
+  drive.control.current_limit_q20 = interlock_current_limit();
   drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;

@@ -16,12 +16,6 @@
 #define UNREST_MAX_Q8 (10L * 256L)   // mean deviation from the offset, codes: ten times the converter's noise
 #define UNREST_TIMEOUT 100000u       // 10 s
 
-void drive_enter(drive_t* d, drive_state_t state) {
-  d->calm_at = 0;
-  d->state = state;
-  d->periods = 0;
-}
-
 // A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
 // shaft, and with the EMF below the link it ends.
 static bool current_flows(drive_t* d) {

@@ -37,6 +37,7 @@ static int32_t phase_current(const volatile drive_t* d, bool of_b) {
 // What is known is asked once for all of a pass: it has to fit between two interrupts.
 #define SIGNAL(name, unit, q, of, value, meaning)                            \
   static int32_t look_at_##name(const volatile drive_t* d, uint16_t known) { \
+    (void)d;                                                                 \
     return (((of) & ~(int32_t)known) != 0) ? 0 : (int32_t)(value);           \
   }
 #include "firmware/dictionary/signal_list.h"

@@ -4,6 +4,7 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/base/crc.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hil/delta.h"

@@ -7,11 +7,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/states.h"
 
 #if defined(__cplusplus)
 extern "C" {
 #endif
+
+/// A value of the drive's, kept where it is in its range and may be changed now; what is made of the parameters follows
+/// in the background.
+parameter_result_t parameter_set(uint16_t id, int32_t raw);
 
 /// Since power-on, by the control interrupt; wraps after 49 days.
 uint32_t drive_time_ms(void);
@@ -44,9 +49,6 @@ void drive_command_look(void);
 look_outcome_t drive_look_outcome(void);
 /// Mechanical, Q16; its sign only when it TURNS.
 int32_t drive_look_rpm(void);
-
-/// Power-on state: clears the drive and puts every parameter to its default. firmware_main does it first.
-void drive_reset(void);
 
 #if defined(__cplusplus)
 }

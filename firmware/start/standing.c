@@ -1,11 +1,11 @@
 // The start: the sequence, and the start of a shaft that stands. See start.h.
 
 #include "firmware/base/clear.h"
-#include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 #include "firmware/start/start.h"
@@ -73,7 +73,7 @@ static bool prepare(drive_t* d) {
   position_preset(d, 0, 0);
   reset_control(d);
   drive_enter(d, DRIVE_START);
-  const drive_fault_t refusal = board_refusal();
+  const drive_fault_t refusal = interlock_refusal();
   if (refusal != FAULT_NONE) drive_raise(d, refusal);
   return refusal == FAULT_NONE;
 }

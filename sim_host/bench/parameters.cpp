@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "firmware/config/rules.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/run.hpp"

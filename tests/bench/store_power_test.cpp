@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "hal/hal_clock.h"
 #include "hal/hal_nvm.h"

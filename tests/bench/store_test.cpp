@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/boot/main.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "hal/f2808/registers.h"
 #include "sim_host/bench/board.hpp"

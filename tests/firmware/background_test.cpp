@@ -4,9 +4,11 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/commands.h"
+#include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 }
 

@@ -7,8 +7,10 @@
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/states.h"
 #include "hal/hal_board.h"
 #include "tests/firmware/fake_hal.hpp"
@@ -63,7 +65,7 @@ class BoardFunctions : public Drive {
     put_board(&w);
     return {octets, octets + w.count};
   }
-  static double share() { return ::board.share_q15 / 32768.0; }
+  static double share() { return interlock_share_q15 / 32768.0; }
 };
 
 TEST_F(BoardFunctions, NothingIsDoneThatIsNotWired) {
@@ -75,8 +77,8 @@ TEST_F(BoardFunctions, NothingIsDoneThatIsNotWired) {
   EXPECT_FALSE(board.brake);
   EXPECT_EQ(board.lines_wired, 0);
   EXPECT_EQ(board.emergency_wired, 0);
-  EXPECT_EQ(board_refusal(), FAULT_NONE);
-  EXPECT_EQ(board_why_off(), FAULT_GATES_OFF);
+  EXPECT_EQ(interlock_refusal(), FAULT_NONE);
+  EXPECT_EQ(interlock_why_off(), FAULT_GATES_OFF);
   EXPECT_EQ(words(), "current limit 100 %");
 }
 
@@ -100,11 +102,11 @@ TEST_F(BoardFunctions, TheRelayFollowsTheChargeOfTheLink) {
   parameters.precharge_voltage = raw(200.0, 16);
   look_at_link(199.0);
   EXPECT_FALSE(board.relay);
-  EXPECT_EQ(board_refusal(), FAULT_PRECHARGE);
+  EXPECT_EQ(interlock_refusal(), FAULT_PRECHARGE);
   EXPECT_NE(words().find("precharge relay open"), std::string::npos);
   look_at_link(200.0);
   EXPECT_TRUE(board.relay);
-  EXPECT_EQ(board_refusal(), FAULT_NONE);
+  EXPECT_EQ(interlock_refusal(), FAULT_NONE);
   EXPECT_NE(words().find("precharge relay closed"), std::string::npos);
   look_at_link(151.0);
   EXPECT_TRUE(board.relay);
@@ -187,10 +189,10 @@ TEST_F(BoardFunctions, TheEmergencyStopFaultsRefusesAndExplains) {
   look();
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_EQ(words(), "emergency stop released; current limit 100 %");
-  EXPECT_EQ(board_why_off(), FAULT_GATES_OFF);
+  EXPECT_EQ(interlock_why_off(), FAULT_GATES_OFF);
   board.emergency = true;
-  EXPECT_EQ(board_refusal(), FAULT_EMERGENCY);
-  EXPECT_EQ(board_why_off(), FAULT_EMERGENCY);
+  EXPECT_EQ(interlock_refusal(), FAULT_EMERGENCY);
+  EXPECT_EQ(interlock_why_off(), FAULT_EMERGENCY);
   EXPECT_EQ(words(), "emergency stop pressed; current limit 100 %");
   look();
   EXPECT_EQ(drive.fault, FAULT_EMERGENCY);
@@ -254,8 +256,8 @@ TEST_F(BoardFunctions, AHotHeatSinkTakesHalfTheCurrentAndThenAll) {
     convert(c.code);
     look(8);
     EXPECT_NEAR(share(), c.share, 0.01) << c.code;
-    EXPECT_NEAR(real(board_current_limit(), 20), 14.0 * c.share, 0.15);
-    EXPECT_EQ(drive.control.current_limit_q20, board_current_limit());
+    EXPECT_NEAR(real(interlock_current_limit(), 20), 14.0 * c.share, 0.15);
+    EXPECT_EQ(drive.control.current_limit_q20, interlock_current_limit());
   }
   EXPECT_NE(words().find("current limit 6"), std::string::npos) << words();
   convert(369);

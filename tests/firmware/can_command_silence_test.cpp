@@ -1,6 +1,7 @@
 // What becomes of a drive when the command from the bus stays away, comes back, or finds a fault.
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 #include "tests/firmware/can_command_test.hpp"

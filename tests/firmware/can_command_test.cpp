@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 

@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/commissioning/result.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 }
 

@@ -3,6 +3,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/states.h"
 #include "tests/firmware/commissioning_sums.hpp"
 #include "tests/firmware/fake_hal.hpp"
@@ -56,14 +57,14 @@ TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
 
 // A level begins when heat sink and overload leave the whole limit, and one that has begun goes on; so does a train.
 TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
-  ::board.share_q15 = BOARD_SHARE_ONE - 1;
+  interlock_share_q15 = INTERLOCK_SHARE_ONE - 1;
   drive.control.reference_q20.d = raw(0.5, 20);
   for (int n = 0; n < 100; ++n) EXPECT_FALSE(commissioning_climb(&drive));
   EXPECT_EQ(drive.control.reference_q20.d, 0);
   EXPECT_EQ(stairs().tick, 0);
-  ::board.share_q15 = BOARD_SHARE_ONE;
+  interlock_share_q15 = INTERLOCK_SHARE_ONE;
   (void)commissioning_climb(&drive);
-  ::board.share_q15 = BOARD_SHARE_ONE - 1;
+  interlock_share_q15 = INTERLOCK_SHARE_ONE - 1;
   for (int n = 0; n < 100; ++n) (void)commissioning_climb(&drive);
   EXPECT_EQ(stairs().tick, 101);
   EXPECT_GT(drive.control.reference_q20.d, 0);
@@ -72,7 +73,7 @@ TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
   m.train = 1;
   for (int n = 0; n < 2000; ++n) (void)commissioning_map(&drive);
   EXPECT_TRUE(m.pause);
-  ::board.share_q15 = BOARD_SHARE_ONE;
+  interlock_share_q15 = INTERLOCK_SHARE_ONE;
   for (int n = 0; n < 2; ++n) (void)commissioning_map(&drive);
   EXPECT_FALSE(m.pause);
 }

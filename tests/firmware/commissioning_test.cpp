@@ -14,6 +14,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/commands.h"
+#include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
 #include "firmware/text/words.h"

@@ -12,6 +12,7 @@ extern "C" {
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 }

@@ -13,6 +13,7 @@ extern "C" {
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 }

@@ -5,8 +5,10 @@
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
 
@@ -26,7 +28,7 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   drive.model.emf_q16 = drive.config.nameplate.emf_q16 / 2;
   drive.control.speed_ready = drive.config_valid = false;
   drive.control.current_limit_q20 = 0;
-  ::board.share_q15 = 100;
+  interlock_share_q15 = 100;
   ::board.relay = true;
   selftest.failed = 1;
   drive_raise(&drive, FAULT_LINK_LOW);

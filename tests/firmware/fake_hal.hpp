@@ -22,6 +22,7 @@
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/sampling.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"

@@ -8,6 +8,7 @@
 
 extern "C" {
 #include "firmware/base/crc.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/drive/steps.h"
 #include "firmware/link/record.h"

@@ -11,9 +11,11 @@ extern "C" {
 #include "firmware/can/messages.h"
 #include "firmware/can/segments.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/mode/commands.h"
+#include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 #include "hal/hal_time.h"
 }

@@ -11,6 +11,7 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_board.h"
 }

@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/dictionary/version.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"

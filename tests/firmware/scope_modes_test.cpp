@@ -1,5 +1,6 @@
 // One capture or one after another, what can be read of it, and which set-ups are refused.
 
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "tests/firmware/scope_test.hpp"
 

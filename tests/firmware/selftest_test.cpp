@@ -8,6 +8,8 @@
 
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
@@ -89,7 +91,7 @@ TEST_F(SelfTest, FindsTheFirstAndTheLastPairOfRam) {
     whole_ram();
     EXPECT_EQ(selftest.failed, SELFTEST_RAM) << pair;
     EXPECT_EQ(selftest_service(), FAULT_SELF_TEST);
-    EXPECT_EQ(board_refusal(), FAULT_SELF_TEST);
+    EXPECT_EQ(interlock_refusal(), FAULT_SELF_TEST);
   }
 }
 

@@ -8,6 +8,7 @@
 extern "C" {
 #include "firmware/api/guard.h"
 #include "firmware/drive/steps.h"
+#include "firmware/mode/mode.h"
 }
 
 namespace stillspin::test {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/store_test.hpp"

@@ -2,6 +2,7 @@
 // everything that may be left of the page. Started again, either the old or the new set is in force, as a whole.
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/store_test.hpp"

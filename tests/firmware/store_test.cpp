@@ -7,6 +7,7 @@
 
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 #include "sim_host/bench/texts.hpp"

@@ -11,6 +11,7 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "firmware/store/values.h"

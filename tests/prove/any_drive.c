@@ -8,6 +8,7 @@
 #include "firmware/config/rules.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 #include "firmware/store/store.h"

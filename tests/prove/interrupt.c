@@ -5,13 +5,18 @@
 #include <string.h>
 
 #include "firmware/base/clear.h"
+#include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/result.h"
 #include "firmware/config/config.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/sampling.h"
 #include "firmware/drive/steps.h"
+#include "firmware/interfaces/service.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
+#include "firmware/scope/scope.h"
 #include "firmware/store/store.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_encoder.h"
@@ -67,8 +72,11 @@ bool hal_slices_begin(uint16_t slice_ticks) {
   return any_bool();
 }
 void hal_slices_end(void) {}
+static void nothing_else(void) {}
+service_reset_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, NULL};
+static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
+interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};
 void selftest_reset(void) {}
-void store_reset(void) {}
 void hal_encoder_init(uint32_t counts_per_turn) { (void)counts_per_turn; }
 bool hal_pwm_set_dead_band(uint16_t ticks) { return any_bool(); }
 bool hal_tape_has_work(tape_work_t work) { return true; }

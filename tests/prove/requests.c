@@ -2,6 +2,7 @@
 
 #include "firmware/link/requests.h"
 
+#include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"

@@ -14,7 +14,6 @@
 drive_t drive;
 
 bool drive_is_energised(void) { return any_bool(); }
-void drive_parameters_changed(void) {}
 
 bool hal_lines_gates_pass(void) { return any_bool(); }
 bool hal_selftest_gates_are_off(void) { return any_bool(); }

@@ -27,6 +27,7 @@ FIRMWARE = (
     ("drive",),
     ("start", "sources", "hysteresis", "board", "console", "link", "boot"),
     ("commissioning", "can", "store", "scope", "hil"),
+    ("editions",),
 )
 LEFT = "toolchain/arrows_left.txt"
 

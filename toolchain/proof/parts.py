@@ -89,7 +89,7 @@ TEXTS = (
 TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (
     *("tests/prove/any_drive.c", "firmware/api/actions.c", "firmware/mode/fault_history.c", "firmware/scope/scope.c"),
-    *("firmware/api/guard.c", "firmware/link/stream.c", *TEXTS),
+    *("firmware/api/guard.c", "firmware/mode/access.c", "firmware/link/stream.c", *TEXTS),
 )
 TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
 
@@ -108,7 +108,13 @@ SELFTEST = (
 
 RESULTS = (
     *("tests/prove/results.c", "firmware/commissioning/solve.c", "firmware/commissioning/result.c"),
-    *("firmware/dictionary/parameters.c", "estimators/admittance_tensor.c", "estimators/fit.c", *CONTROL),
+    *(
+        "firmware/dictionary/parameters.c",
+        "firmware/mode/access.c",
+        "estimators/admittance_tensor.c",
+        "estimators/fit.c",
+    ),
+    *CONTROL,
 )
 
 DRIVERS = "adc", "clock", "encoder", "gpio", "irq", "lines", "pwm", "safety", "sci", "slices", "timer", "watchdog"

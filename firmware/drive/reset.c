@@ -1,0 +1,33 @@
+// The state after power-on.
+
+#include "firmware/drive/reset.h"
+
+#include "firmware/base/clear.h"
+#include "firmware/config/config.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/drive/sampling.h"
+#include "firmware/interfaces/service.h"
+#include "firmware/mode/fault_history.h"
+#include "firmware/mode/interlock.h"
+#include "firmware/mode/mode.h"
+
+void drive_reset(void) {
+  clear(&drive, sizeof drive);
+  sampling_reset();
+  fault_history_reset();
+  parameters_reset();
+  interlock_reset();
+  for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();
+  drive.control.current_limit_q20 = interlock_current_limit();
+  drive.rest_a_q8 = drive.rest_b_q8 = DRIVE_MIDDLE_Q8;
+  drive.trim.offset_a_q8 = drive.rest_a_q8;
+  drive.trim.offset_b_q8 = drive.rest_b_q8;
+  drive.config_valid = drive_config_load(&drive.config);
+  drive.model = drive.config.nameplate;
+  drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
+  drive.samples.scale = slopes_scale(&drive.config.slopes, &drive.trim);
+  drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+  modulator_reset(&drive.modulation.state);
+  position_preset(&drive, 0, 0);
+}

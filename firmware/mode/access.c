@@ -1,0 +1,20 @@
+// Parameters that may be changed now: in their range, and where the drive does not rest on them while it is on.
+
+#include <stddef.h>
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
+#include "firmware/mode/mode.h"
+
+parameter_result_t parameter_set(uint16_t id, int32_t raw) {
+  const parameter_info_t* const info = parameter_by_id(id);
+  if (info == NULL) return SET_UNKNOWN;
+  if (raw < info->minimum || raw > info->maximum) return SET_RANGE;
+  if (info->access == PARAMETER_STOPPED) {
+    drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
+    if (drive_is_energised()) return SET_RUNNING;
+  }
+  parameter_write(id, raw);
+  drive_parameters_changed();
+  return SET_OK;
+}

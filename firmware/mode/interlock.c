@@ -1,0 +1,35 @@
+#include "firmware/mode/interlock.h"
+
+#include <stddef.h>
+
+#include "firmware/dictionary/parameters.h"
+#include "hal/hal_irq.h"
+#include "hal/hal_lines.h"
+#include "hal/qmath/qmath.h"
+
+int32_t interlock_share_q15;
+
+void interlock_reset(void) { interlock_share_q15 = INTERLOCK_SHARE_ONE; }
+
+int32_t interlock_current_limit(void) { return q_mul(parameters.current_limit, interlock_share_q15, 15); }
+
+bool interlock_is_warm(void) { return interlock_share_q15 < INTERLOCK_SHARE_ONE; }
+
+drive_fault_t interlock_emergency(void) {
+  return parameters.emergency_stop != 0 && hal_lines_emergency() ? FAULT_EMERGENCY : FAULT_NONE;
+}
+
+drive_fault_t interlock_refusal(void) {
+  if (hal_irq_unexpected_count() != 0u) return FAULT_INTERRUPT;
+  for (uint16_t k = 0; edition_interlocks[k] != NULL; k++) {
+    const drive_fault_t fault = edition_interlocks[k]();
+    if (fault != FAULT_NONE) return fault;
+  }
+  return interlock_emergency();
+}
+
+drive_fault_t interlock_why_off(void) {
+  if (hal_irq_unexpected_count() != 0u) return FAULT_INTERRUPT;  // which has switched them off
+  const drive_fault_t fault = interlock_emergency();
+  return fault == FAULT_NONE ? FAULT_GATES_OFF : fault;
+}
