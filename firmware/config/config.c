@@ -145,7 +145,7 @@ static int32_t share_per_turn_q30(int32_t time_q8) {
 }
 
 static bool load_blend(drive_config_t* c) {
-  const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
+  const bool flux = (position_sources[parameters.position_source]->traits & SOURCE_HANDS_OVER) != 0u;
   const int32_t low = flux ? parameters.flux_low : parameters.blend_low;
   const int32_t high = flux ? parameters.flux_high : parameters.blend_high;
   return blend_design(&c->blend, q_mul_sat(low, c->bpp_per_rpm_q8, 24), q_mul_sat(high, c->bpp_per_rpm_q8, 24));

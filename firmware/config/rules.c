@@ -31,6 +31,7 @@ static bool map_is_crossed(const parameters_t* p) {
 
 packed_text_t drive_config_or_conflict(const drive_config_t** made) {
   const parameters_t* const p = &parameters;
+  const uint16_t source = position_sources[p->position_source]->traits;
   if (p->inductance_q < p->inductance_d) return SAY_inductance_q_must_be_at_least_inductance;
   if (p->blend_high <= p->blend_low) return SAY_blend_high_must_be_above_blend_low;
   if (p->flux_high <= p->flux_low) return SAY_flux_high_must_be_above_flux_low;
@@ -48,20 +49,19 @@ packed_text_t drive_config_or_conflict(const drive_config_t** made) {
   if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
   if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
   if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
-  if (p->position_source == POSITION_PAPER && q_abs_sat(p->id_low_speed) < 1048576L)
+  if ((source & SOURCE_TURNS) != 0u && q_abs_sat(p->id_low_speed) < 1048576L)
     return SAY_position_source_1_needs_id_low_speed;
-  if ((p->excitation == 0 || p->excitation >= 4) &&
-      (p->position_source == POSITION_OBSERVER_AVV || p->position_source == POSITION_AVV))
+  if ((p->excitation == 0 || p->excitation >= 4) && (source & (SOURCE_BESIDE | SOURCE_AVV_FIRST)) != 0u)
     return SAY_avv_needs_two_active_vectors;
   if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
     return SAY_hold_time_needs_excitation_2_3_or;
   if (map_is_crossed(p)) return SAY_lqq_n_inductance_q_must_be;
-  if (p->current_law == CURRENT_LAW_HYSTERESIS && p->position_source != POSITION_ENCODER)
+  if (p->current_law == CURRENT_LAW_HYSTERESIS && (source & SOURCE_MEASURES) == 0u)
     return SAY_current_law_1_needs_position_source_0;
   if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
     return SAY_100_us_must_be_a_whole_number;
-  if (p->flux_beside > 0 && p->position_source != POSITION_ENCODER) return SAY_flux_beside_needs_position_source_0;
-  if (p->start_method == 1 && p->position_source == POSITION_ENCODER) return SAY_start_method_1_needs_a_position_source;
+  if (p->flux_beside > 0 && (source & SOURCE_MEASURES) == 0u) return SAY_flux_beside_needs_position_source_0;
+  if (p->start_method == 1 && (source & SOURCE_MEASURES) != 0u) return SAY_start_method_1_needs_a_position_source;
   if (p->start_method == 1 && p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
   if (p->current_bandwidth * (3 + p->current_divider) > 10400) return SAY_current_bandwidth_must_not_exceed_2080_rad;
   *made = drive_config_make();

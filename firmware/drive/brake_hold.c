@@ -21,6 +21,7 @@
 #include "firmware/drive/brake_hold.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
@@ -30,12 +31,10 @@
 #define SLEW_Q20 734003L            // s, 0.7 A: some 50 V, within the alternating layout
 #define RETURN_Q30 24159191L        // 0.7 wc T / s, per ampere
 
-// The other sources have no observer that could be fast for a moment.
-static bool has_observer(void) { return parameters.position_source >= POSITION_OBSERVER; }
-
 void hold_begin(drive_t* d) {
   hold_t* const h = &d->hold;
-  h->left = has_observer() ? (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS : 0u;
+  // The other sources have no observer that could be fast for a moment.
+  h->left = position_has(d, SOURCE_READS) ? (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS : 0u;
   h->reference_bam = d->position.used.angle_bam;
   h->current_per_accel = q_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
   if (h->left > 0u) deviation_observer_stands(&d->position.observer);

@@ -1,6 +1,7 @@
 // Inertia learnt from run-ups (estimators/inertia_match.h), once a millisecond, and what hangs on it.
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
@@ -33,7 +34,8 @@ static void hand_on(drive_t* d, int32_t factor_q24) {
 // Without the map a large current turns the angle, and the torque is less than the current says: that would be taken
 // for inertia.
 void drive_match_inertia(drive_t* d) {
-  if (parameters.inertia_adapt == 0 || !d->config.mapped || parameters.position_source != POSITION_OBSERVER) return;
+  const bool alone = position_has(d, SOURCE_SINGLE) && position_has(d, SOURCE_READS);
+  if (parameters.inertia_adapt == 0 || !d->config.mapped || !alone) return;
   if (d->state != DRIVE_RUN) {
     d->inertia.quiet_ms = 0;
     d->inertia.phase = INERTIA_REST;

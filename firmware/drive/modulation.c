@@ -1,11 +1,12 @@
 // From the voltage command to the compare registers.
 
+#include <stddef.h>
+
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/flux.h"
 #include "firmware/start/phases.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_pwm.h"
@@ -13,15 +14,11 @@
 #define DEADLINE_TICK 9700u  // later than this in the period nothing is written
 #define EXCITATION_BY_SOURCE 3
 
-// The paper's scheme wants long zero vectors at low speed and extended active ones from below the blend on.
 static excitation_t excitation(const drive_t* d) {
   if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
   if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
-  if (parameters.position_source == POSITION_OBSERVER) return EXCITATION_ALTERNATING;
-  if (parameters.position_source >= POSITION_FLUX_CONV) return flux_source_excitation(d);
-  if (parameters.position_source != POSITION_PAPER) return EXCITATION_ALTERNATING;
-  const int32_t enter = d->config.blend.low_bpp / 4 * 3;
-  return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
+  const position_source_t* const source = d->source;
+  return (source->excitation == NULL) ? EXCITATION_ALTERNATING : source->excitation(d);
 }
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.

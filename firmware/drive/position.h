@@ -18,7 +18,27 @@ void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 /// electrical turn.
 bool position_encoder_is_reversed(const drive_t* d);
 
+/// What the encoder shows now, without that offset.
+uint32_t position_encoder_now(const drive_t* d);
+
 /// Electrical angle of an encoder count whose zero lies on phase a.
 uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);
+
+/// Whether the source in use has this trait.
+static inline bool position_has(const drive_t* d, uint16_t trait) { return (d->source->traits & trait) != 0u; }
+
+/// True where the blend has left the low-speed estimator, and nobody else needs it.
+bool position_observer_rests(const drive_t* d);
+
+/// Gives the shaft to the high-speed estimator alone, whatever the speed; the blend goes on from there.
+void position_hand_over(drive_t* d);
+
+/// True where the deviation observer reads the windows now.
+bool position_observer_reads(const drive_t* d);
+
+/// With two estimators by turns: below the blend a period without active windows says nothing to AVV.
+static inline bool position_low_alone(const drive_t* d) {
+  return blend_is_low(&d->position.blend) && d->samples.count <= 1u;
+}
 
 #endif

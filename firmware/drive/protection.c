@@ -5,7 +5,6 @@
 #include "firmware/drive/steps.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/flux.h"
 #include "hal/hal_pwm.h"
 
 #define MISSING_MAX 5u   // periods without samples
@@ -21,22 +20,16 @@ static bool over_current(const drive_t* d) {
 }
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
-static bool encoder_beside_avv(void) {
-  return parameters.position_source == POSITION_ENCODER && parameters.current_law == CURRENT_LAW_PI &&
-         parameters.flux_beside == 0 && parameters.excitation != EXCITATION_CENTRED &&
-         parameters.excitation < EXCITATION_LONG_ZERO;
-}
-
-// Sources whose estimators are both meant to be right only between the ends of the blend.
-static bool blends_by_turns(void) {
-  return parameters.position_source == POSITION_PAPER || parameters.position_source >= POSITION_FLUX_CONV;
+static bool encoder_beside_avv(const drive_t* d) {
+  return position_has(d, SOURCE_MEASURES) && parameters.current_law == CURRENT_LAW_PI && parameters.flux_beside == 0 &&
+         parameters.excitation != EXCITATION_CENTRED && parameters.excitation < EXCITATION_LONG_ZERO;
 }
 
 // How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
 static int32_t disagreement(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  const bool both = parameters.position_source == POSITION_OBSERVER_AVV || encoder_beside_avv() ||
-                    (blends_by_turns() && p->blend.region == BLEND_BOTH);
+  const bool both = position_has(d, SOURCE_BESIDE) || encoder_beside_avv(d) ||
+                    (position_has(d, SOURCE_BLENDS) && p->blend.region == BLEND_BOTH);
   if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
   return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
 }
@@ -50,12 +43,6 @@ static bool diverged(drive_t* d, int32_t periods, int32_t apart_bam) {
   return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
 }
 
-// Where the observer looks at the windows, its residuals say how it is: those of all periods since it was last asked.
-static bool is_by_observer(const drive_t* d) {
-  const int32_t source = parameters.position_source;
-  return source == POSITION_OBSERVER || (source >= POSITION_FLUX_CONV && !flux_source_rests(d));
-}
-
 static int32_t span_of(const drive_samples_t* s) {
   int32_t span_ticks = 0;
   for (uint16_t k = 0; k < s->count; k++) span_ticks += s->windows[k].span_ticks;
@@ -64,13 +51,14 @@ static int32_t span_of(const drive_samples_t* s) {
 
 // An angle error that is asked for is none.
 static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int32_t apart_bam) {
-  const int32_t source = parameters.position_source;
+  const bool measured = position_has(d, SOURCE_MEASURES);
   const regression_t* const by_avv = &d->position.avv.regression;
-  if (source == POSITION_ENCODER && parameters.encoder_trim != 0) return false;
+  if (measured && parameters.encoder_trim != 0) return false;
   synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, ahead_bpp, periods};
-  if (is_by_observer(d)) {
+  // Where the observer reads the windows, its residuals say how it is: those of all periods since it was last asked.
+  if (position_observer_reads(d)) {
     (void)deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods);
-  } else if (source == POSITION_PAPER && by_avv->information > 0) {
+  } else if (position_has(d, SOURCE_TURNS) && by_avv->information > 0) {
     seen.residual_q20 = by_avv->mean_q20;  // AVV has regressed the same windows
     seen.span_ticks = span_of(&d->samples);
   } else {
@@ -78,13 +66,13 @@ static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int
   }
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
   return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen,
-                           (source == POSITION_ENCODER) ? 0 : apart_bam);
+                           measured ? 0 : apart_bam);
 }
 
 // In its turns only, where a period says what the next ones do, or the observer's residuals are those of all periods
 // since; alternating pulses give each period windows of its own.
 static bool judges_now(const drive_t* d) {
-  return d->schedule.judges || (d->modulation.state.is_alternating && !is_by_observer(d));
+  return d->schedule.judges || (d->modulation.state.is_alternating && !position_observer_reads(d));
 }
 
 // How much faster the frame in use has turned than its speed says, since it was last judged; 0 when that is long ago.

@@ -30,6 +30,7 @@ static void reload(void) {
   const uint16_t state = hal_irq_disable();
   hal_tape_work_begin(TAPE_RELOADED);
   drive.request.reload = false;
+  drive_choose_source();
   drive.config_valid = valid;
   drive.conflict = conflict;
   drive.conflict_known = true;

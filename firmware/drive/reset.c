@@ -23,6 +23,7 @@ void drive_reset(void) {
   drive.rest_a_q8 = drive.rest_b_q8 = DRIVE_MIDDLE_Q8;
   drive.trim.offset_a_q8 = drive.rest_a_q8;
   drive.trim.offset_b_q8 = drive.rest_b_q8;
+  drive_choose_source();
   drive.config_valid = drive_config_load(&drive.config);
   drive.model = drive.config.nameplate;
   drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));

@@ -1,7 +1,6 @@
-#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/flux.h"
 
 #define MOVED_Q20 131072L  // 0.125 A: so far from its working point the model may be
 #define WAITED_MAX 3u      // turns in a row that give way
@@ -11,14 +10,13 @@ static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST,
 
 // Whether the deviation observer runs at all while the shaft turns.
 static bool has_observer(const drive_t* d) {
-  const int32_t source = parameters.position_source;
-  if (source >= POSITION_FLUX_CONV) return !flux_source_rests(d);
-  return source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV;
+  if (position_has(d, SOURCE_HANDS_OVER)) return !position_observer_rests(d);
+  return position_has(d, SOURCE_OBSERVES);
 }
 
 // Observer and flux both at work: the observer leaves the windows out beside speed control and field weakening.
 static bool is_beside_flux(const drive_t* d) {
-  return parameters.position_source >= POSITION_FLUX_CONV && !blend_is_low(&d->position.blend);
+  return position_has(d, SOURCE_HANDS_OVER) && !blend_is_low(&d->position.blend);
 }
 
 // What cannot wait: working point or covariance, by turns where both want it, the covariance first where it would be

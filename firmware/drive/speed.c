@@ -1,13 +1,13 @@
 // Speed control and field weakening, once a millisecond on a tick of the control interrupt.
 
+#include <stddef.h>
+
 #include "control/brake_limit.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 #define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link
-#define SEEING_SHIFT 4                     // 16 ms: the torque current's noise stays out of i_d
-#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
 
 static int32_t voltage_limit(const drive_t* d) {
   return q_mul(d->samples.link_q16, q_mul(parameters.voltage_use, PERCENT_OF_SQRT3_INV_Q30, 16), 30);
@@ -21,24 +21,11 @@ static void weaken(drive_t* d) {
   c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->model);
 }
 
-// While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
-// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft, below
-// the speed at which the magnet is learnt, and the EMF stands out of that.
-static int32_t seeing_current(drive_t* d) {
-  drive_control_t* const c = &d->control;
-  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
-  const bool blind =
-      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.used.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
-  const int32_t missing_q20 = blind ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
-  c->seeing_q20 = q_follow(c->seeing_q20, missing_q20, SEEING_SHIFT);
-  return -c->seeing_q20;
-}
-
 static void refer_field(drive_t* d) {
   drive_control_t* const c = &d->control;
   int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
   int32_t least = (parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
-  if (parameters.position_source >= POSITION_FLUX_CONV) least = q_min(least, seeing_current(d));
+  if (d->source->highest_d_q20 != NULL) least = q_min(least, d->source->highest_d_q20(d));
   // A commissioning takes its spin for one without i_d.
   if (d->state == DRIVE_COMMISSION) {
     bias = 0;

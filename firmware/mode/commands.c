@@ -3,7 +3,12 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 
-void drive_parameters_changed(void) { drive.request.reload = true; }
+void drive_choose_source(void) { drive.source = position_sources[parameters.position_source]; }
+
+void drive_parameters_changed(void) {
+  drive.request.reload = true;
+  drive_choose_source();
+}
 
 void drive_command_start(void) { drive.request.start = true; }
 

@@ -29,6 +29,7 @@
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/hysteresis/hysteresis.h"
 #include "firmware/interfaces/schedule.h"
+#include "firmware/interfaces/source.h"
 #include "firmware/mode/commands.h"
 #include "firmware/start/start.h"
 #include "firmware/text/packed_text.h"
@@ -151,7 +152,7 @@ typedef struct {
 } drive_look_t;
 
 /// What is read everywhere comes first, what is large last: the farther a member, the longer the code that reaches it.
-typedef struct {
+typedef struct drive {
   drive_state_t state;
   drive_fault_t fault;
   int32_t limits;
@@ -163,7 +164,8 @@ typedef struct {
   bool conflict_known;  // of the parameters that the configuration was made of
   bool loading;         // the store is being read: BOOT goes on
   drive_request_t request;
-  packed_text_t conflict;  // why they do not fit together, or PACKED_NONE
+  const position_source_t* source;  // by the parameter, chosen when that changes
+  packed_text_t conflict;           // why they do not fit together, or PACKED_NONE
   drive_position_t position;
   drive_control_t control;
   drive_samples_t samples;
@@ -188,7 +190,9 @@ typedef struct {
 
 extern drive_t drive;
 
+/// What is made of the parameters is made anew; the position source is chosen at once.
 void drive_parameters_changed(void);
+void drive_choose_source(void);
 
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);

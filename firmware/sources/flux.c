@@ -1,8 +1,10 @@
 #include "firmware/sources/flux.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/sources/sources.h"
 #include "hal/hal_profile.h"
 #include "svpwm/ripple.h"
 
@@ -12,6 +14,8 @@
 #define MAGNET_SHARE_Q30 53687091L       // 0.05: 200 ms
 #define CURRENT_LEAST_Q24 838861L        // the torque current makes a twentieth of the magnet's flux
 #define LEARNING_BPP 27342611L           // 400 rad/s: the magnet's flux is learnt from there on
+#define SEEING_SHIFT 4                   // 16 ms: the torque current's noise stays out of i_d
+#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
 
@@ -40,8 +44,6 @@ bool flux_source_load(drive_config_t* c) {
   f->adaptation.lowest_bpp = LEARNING_BPP;
   return !flux_source_is_wanted() || flux_observer_config_valid(f, &c->nameplate);
 }
-
-bool flux_source_rests(const drive_t* d) { return blend_is_high(&d->position.blend) && !polarity_watch_is_awake(d); }
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
 static flux_period_t period_of(const drive_t* d, bool is_full) {
@@ -83,11 +85,6 @@ estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
   return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
 }
 
-void flux_source_take(drive_t* d) {
-  d->position.blend.region = BLEND_HIGH;
-  d->position.blend.share_q15 = 0;
-}
-
 void flux_source_follow(drive_t* d, const estimator_output_t* now) {
   flux_observer_preset(&d->position.flux, now, d->control.measured_q20);
 }
@@ -111,6 +108,31 @@ estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, 
   return *truth;
 }
 
-excitation_t flux_source_excitation(const drive_t* d) {
-  return flux_source_rests(d) ? EXCITATION_CENTRED : EXCITATION_ALTERNATING;
+static excitation_t flux_excitation(const drive_t* d) {
+  return position_observer_rests(d) ? EXCITATION_CENTRED : EXCITATION_ALTERNATING;
 }
+
+// While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
+// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft, below
+// the speed at which the magnet is learnt, and the EMF stands out of that.
+static int32_t seeing_current(drive_t* d) {
+  drive_control_t* const c = &d->control;
+  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
+  const bool blind =
+      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.used.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
+  const int32_t missing_q20 = blind ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
+  c->seeing_q20 = q_follow(c->seeing_q20, missing_q20, SEEING_SHIFT);
+  return -c->seeing_q20;
+}
+
+// The observer below the blend, the stator flux above, both between. There nothing is learnt of the windows, for want
+// of time.
+static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
+  in->regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
+  if (position_observer_rests(d)) return flux_source_alone(d, in);
+  const estimator_output_t low = source_observer(d, in);
+  return flux_source_beside(d, in, &low);
+}
+
+const position_source_t flux_source = {source_flux, flux_excitation, seeing_current, flux_source_follow,
+                                       SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};

@@ -16,12 +16,6 @@ bool flux_source_is_wanted(void);
 /// cannot be given.
 bool flux_source_load(drive_config_t* c);
 
-/// True where the flux alone has the shaft and nobody else needs the observer.
-bool flux_source_rests(const drive_t* d);
-
-/// Gives the shaft to the flux alone, whatever the speed; the blend goes on from there.
-void flux_source_take(drive_t* d);
-
 /// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
 void flux_source_follow(drive_t* d, const estimator_output_t* now);
 
@@ -30,7 +24,5 @@ estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, c
 
 /// flux_beside: a method beside a source that is right, from flux_low on; what the method says.
 estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth);
-
-excitation_t flux_source_excitation(const drive_t* d);
 
 #endif

@@ -5,10 +5,8 @@
 // its speed, with the flux that the vector lets expect. Below, and with the other sources, the shaft is seen from the
 // end of the vector's rest on.
 
-#include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/flux.h"
 #include "firmware/start/phases.h"
 
 void start_turn(drive_t* d) {
@@ -18,8 +16,7 @@ void start_turn(drive_t* d) {
   current_controller_reset(&d->control.current);
   d->control.closed = true;
   d->watch.open = false;
-  const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
-  if (flux && d->config.turn.speed_bpp > d->config.blend.high_bpp) flux_source_take(d);
+  if (position_has(d, SOURCE_HANDS_OVER) && d->config.turn.speed_bpp > d->config.blend.high_bpp) position_hand_over(d);
   start_enter(d, START_TURN);
 }
 

@@ -117,7 +117,7 @@ class Inertia : public Drive {
     drive.state = DRIVE_RUN;
     drive.config.mapped = true;
     parameters.inertia_adapt = 1;
-    parameters.position_source = POSITION_OBSERVER;
+    use_source(POSITION_OBSERVER);
     drive.control.ramp.value = drive.position.used.speed_bpp = bpp_of(100);
     drive.inertia.reference_bpp = drive.control.ramp.value;
   }
@@ -212,7 +212,7 @@ TEST_F(Inertia, NothingIsLearntWithoutTheMapTheParameterAndTheObserver) {
     run_up(0.5);
     if (missing == 1) drive.config.mapped = false;
     if (missing == 2) parameters.inertia_adapt = 0;
-    if (missing == 3) parameters.position_source = POSITION_OBSERVER_AVV;
+    if (missing == 3) use_source(POSITION_OBSERVER_AVV);
     drive_match_inertia(&drive);
     EXPECT_EQ(drive.inertia.ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;
   }

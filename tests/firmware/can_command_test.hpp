@@ -23,7 +23,7 @@ class CanCommand : public Drive {
   void SetUp() override {
     Drive::SetUp();
     can_command_reset(&command);
-    parameters.position_source = 0;
+    use_source(0);
     parameters.polarity_check = 0;
   }
   hal_can_frame_t frame(std::int32_t mode, std::int32_t speed = 0, bool clear = false) {

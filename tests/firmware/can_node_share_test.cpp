@@ -198,7 +198,7 @@ TEST_F(CanNode, BusOffIsKeptForItsWholePauseHoweverLateItIsSeen) {
 // ---- state
 
 TEST_F(CanNode, ItsStateTellsWhoIsInCommand) {
-  parameters.position_source = 0;
+  use_source(0);
   parameters.polarity_check = 0;
   EXPECT_EQ(can_node_state().rate_kbit, -1);
   parameters.can_rate = 250;

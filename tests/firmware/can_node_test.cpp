@@ -282,7 +282,7 @@ TEST_F(CanNode, SendsTheStreamBehindTheAnswers) {
 
 // Whatever came, the drive obeys the next proper commands.
 TEST_F(CanNode, AnyFramesLeaveTheDriveControllable) {
-  parameters.position_source = 0;
+  use_source(0);
   parameters.polarity_check = 0;
   pass(40);
   std::mt19937 random(11);

@@ -111,6 +111,12 @@ inline std::int32_t bpp_of(int rpm) {
   return bpp;
 }
 
+/// Another position source, at once.
+inline void use_source(std::int32_t source) {
+  parameters.position_source = source;
+  drive.source = position_sources[source];
+}
+
 class Drive : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -156,7 +162,7 @@ class Drive : public ::testing::Test {
     drive.supervision = drive_supervision_t{};
   }
   void make_run() {
-    parameters.position_source = 0;
+    use_source(0);
     parameters.polarity_check = 0;
     make_ready();
     drive_command_start();

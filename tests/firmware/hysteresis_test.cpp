@@ -141,7 +141,7 @@ TEST_F(Hysteresis, NeedsTheEncoderAndWholeSlices) {
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
   parameters.slice_time = raw(10.0, 16);
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
-  parameters.position_source = 2;
+  use_source(2);
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
 }
 

@@ -161,7 +161,7 @@ TEST_F(Modulation, TheExcitationIsTheOneAskedForOrTheSources) {
     for (const bool fast : {false, true}) {
       for (const bool alone : {false, true}) {
         SetUp();
-        parameters.position_source = source;
+        use_source(source);
         // the paper's own: long zero vectors up to three quarters of the blend's begin
         const std::int32_t enter = drive.config.blend.low_bpp / 4 * 3;
         drive.position.used.speed_bpp = fast ? -enter : 1 - enter;

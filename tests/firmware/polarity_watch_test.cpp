@@ -30,7 +30,7 @@ class PolarityWatch : public Drive {
     drive.watch.axis_then_bam = bam(0.5);
   }
   static void source(std::int32_t source) {
-    parameters.position_source = source;
+    use_source(source);
     drive.position.avv.regression.information = 1000000;
     drive.position.avv.error_bam = 0;
     drive.position.observer.regression = {};

@@ -22,7 +22,7 @@ class Position : public Drive {
   void run_with(std::int32_t source) {
     SetUp();
     make_ready();
-    parameters.position_source = source;
+    use_source(source);
     ASSERT_TRUE(drive_config_load(&drive.config));
     drive.state = DRIVE_RUN;
     drive.schedule.turning = true;

@@ -113,9 +113,9 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
 
 TEST_F(Sources, TheFluxMayBeGivenTheShaftAtAnySpeed) {
   run_with(POSITION_FLUX_CONV);
-  EXPECT_FALSE(flux_source_rests(&drive));
-  flux_source_take(&drive);
-  EXPECT_TRUE(flux_source_rests(&drive));
+  EXPECT_FALSE(position_observer_rests(&drive));
+  position_hand_over(&drive);
+  EXPECT_TRUE(position_observer_rests(&drive));
 }
 
 // The frame is the vector's, turned on; who looks on is set at rest, and runs from there on.

@@ -8,6 +8,7 @@ extern "C" {
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux.h"
+#include "firmware/sources/sources.h"
 }
 
 namespace {
@@ -124,8 +125,8 @@ TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
     run_with(POSITION_FLUX_CONV);
     blend(c.region, c.share);
     drive.watch.open = c.watched;
-    EXPECT_EQ(flux_source_rests(&drive), c.alone) << c.region << c.share << c.watched;
-    EXPECT_EQ(flux_source_excitation(&drive), c.alone ? EXCITATION_CENTRED : EXCITATION_ALTERNATING);
+    EXPECT_EQ(position_observer_rests(&drive), c.alone) << c.region << c.share << c.watched;
+    EXPECT_EQ(flux_source.excitation(&drive), c.alone ? EXCITATION_CENTRED : EXCITATION_ALTERNATING);
   }
 }
 

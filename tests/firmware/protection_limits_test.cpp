@@ -105,7 +105,7 @@ TEST_F(ProtectionLimits, TheSpanOfThePapersWindowsIsThatOfAll) {
   synchronism_t expected = {};
   for (const auto& [first, second] : {std::pair{4000, 0}, {1000, 3000}, {3000, 1000}}) {
     SetUp();
-    parameters.position_source = POSITION_PAPER;
+    use_source(POSITION_PAPER);
     drive.schedule.judges = true;
     drive.samples.count = second == 0 ? 1 : 2;
     drive.samples.windows[0].span_ticks = static_cast<std::int16_t>(first);
@@ -126,7 +126,7 @@ TEST_F(ProtectionLimits, TheSpanOfThePapersWindowsIsThatOfAll) {
 TEST_F(ProtectionLimits, AvvBesideTheEncoderIsNoDoubtOfTheAngle) {
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER_AVV}) {
     SetUp();
-    parameters.position_source = source;
+    use_source(source);
     drive.schedule.judges = true;
     drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
     drive.position.used.speed_bpp = 0;

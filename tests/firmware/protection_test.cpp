@@ -74,7 +74,7 @@ TEST_F(Protection, ASpeedFarBeyondTheLimitIsDivergence) {
     SetUp();
     make_run();
     trust_synchronism();
-    parameters.position_source = POSITION_AVV;
+    use_source(POSITION_AVV);
     const auto speed = static_cast<std::int32_t>(bpp_of(3300) * share);
     const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
     const int n = while_running(2 * allowed, [&] {
@@ -130,7 +130,7 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
     SetUp();
     make_run();
     trust_synchronism();
-    parameters.position_source = c.source;
+    use_source(c.source);
     drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
     drive.schedule.judges = true;
     drive.modulation.state.is_alternating = true;
@@ -198,7 +198,7 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
 // What the observer's windows left over is judged once; with no windows since there is nothing to judge.
 TEST_F(Protection, ResidualsAreJudgedOnce) {
   make_run();
-  parameters.position_source = POSITION_OBSERVER;
+  use_source(POSITION_OBSERVER);
   drive.schedule.judges = true;
   drive.config.synchronism.bad_periods = 0;
   drive.config.synchronism.floor_q16 = raw(0.5, 16);
@@ -220,7 +220,7 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
       SetUp();
       make_run();
       trust_synchronism();
-      parameters.position_source = POSITION_FLUX_CONV;
+      use_source(POSITION_FLUX_CONV);
       drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
       drive.position.blend.share_q15 = alone ? 0 : 16384;
       drive.watch.open = false;
@@ -240,7 +240,7 @@ TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
   for (const bool seen : {true, false}) {
     SetUp();
     make_run();
-    parameters.position_source = POSITION_PAPER;
+    use_source(POSITION_PAPER);
     drive.config.synchronism.bad_periods = 0;
     drive.config.synchronism.floor_q16 = raw(0.5, 16);
     drive.config.synchronism.share_q15 = 0;
@@ -268,7 +268,7 @@ TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
       SetUp();
       make_run();
       trust_synchronism();
-      parameters.position_source = POSITION_OBSERVER;
+      use_source(POSITION_OBSERVER);
       drive.position.used.speed_bpp = bpp_of(300);
       drive.supervision.judged_bam = drive.position.used.angle_bam = 0xFFFFF000u;  // and on past the turn's end
       drive.supervision.judged_at = drive.heartbeat = 65533u;                      // and the counter's

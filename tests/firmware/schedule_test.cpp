@@ -24,7 +24,7 @@ class Schedule : public Drive {
   }
   /// In RUN with this source, at a known angle without current, at the end of a millisecond.
   static void run_with(std::int32_t source) {
-    parameters.position_source = source;
+    use_source(source);
     ASSERT_TRUE(drive_config_load(&drive.config));
     drive.state = DRIVE_RUN;
     drive.watch.open = false;

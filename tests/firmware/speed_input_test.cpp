@@ -18,7 +18,7 @@ class SpeedInput : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    parameters.position_source = 0;
+    use_source(0);
     parameters.polarity_check = 0;
     parameters.speed_input = 1;
     drive_parameters_changed();

@@ -77,7 +77,7 @@ TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
 }
 
 TEST_F(SpeedKnown, TheEncoderMakesNoDifference) {
-  parameters.position_source = 0;
+  use_source(0);
   drive.state = DRIVE_READY;
   expect(false, "its count has an angle only while the drive runs");
 }

@@ -108,7 +108,7 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
   drive.config.flux.adaptation.lowest_bpp = bpp(400.0);
   parameters.mtpa = 0;
   for (const Case& c : cases) {
-    parameters.position_source = c.source;
+    use_source(c.source);
     drive.control.current_limit_q20 = raw(c.limit, 20);
     drive.control.seeing_q20 = 0;
     drive.position.blend.share_q15 = c.share_q15;
@@ -218,7 +218,7 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
 
 // While a start's hold has the torque, the speed law waits where it will go on from: the current less the load's.
 TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
-  parameters.position_source = POSITION_OBSERVER;
+  use_source(POSITION_OBSERVER);
   ASSERT_TRUE(drive_config_load(&drive.config));
   drive.hold.left = 5;
   drive.hold.reference_bam = 0;
@@ -249,7 +249,7 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
                         {0.0533, 0.0, 0.0, 3.0},
                         {-0.0533, 0.0, 0.0, -3.0}}) {
     SetUp();
-    parameters.position_source = POSITION_OBSERVER;
+    use_source(POSITION_OBSERVER);
     ASSERT_TRUE(drive_config_load(&drive.config));
     part(TASK_SPEED);
     parameters.hold_time = 1;
@@ -278,7 +278,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
   for (int k = 0; k < 10; ++k) {
     SetUp();
     parameters.inertia_adapt = 1;
-    parameters.position_source = POSITION_OBSERVER;
+    use_source(POSITION_OBSERVER);
     drive.config.mapped = true;
     drive_control_t& c = drive.control;
     drive.time_ms = kMark;

@@ -18,7 +18,7 @@ class StartCaught : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    parameters.position_source = 0;
+    use_source(0);
     make_ready();
     drive_command_start();
     period();

@@ -17,7 +17,7 @@ class StartRefused : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    parameters.position_source = 0;
+    use_source(0);
     parameters.polarity_check = 0;
     make_ready();
   }

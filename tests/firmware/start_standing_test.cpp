@@ -446,7 +446,7 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
   for (const std::int32_t source : {POSITION_OBSERVER, POSITION_FLUX_CONV, POSITION_FLUX_ACTIVE}) {
     for (const int above : {0, 1}) {
       SetUp();
-      parameters.position_source = source;
+      use_source(source);
       drive.config.blend.high_bpp = drive.config.turn.speed_bpp - above;
       drive.position.blend.region = BLEND_LOW;
       drive.position.blend.share_q15 = 32767;

@@ -69,7 +69,7 @@ CONFIGURATION = (
         "firmware/config/rules.c",
         "firmware/base/clear.c",
     ),
-    *("firmware/sources/flux.c", "svpwm/*.c", *ESTIMATORS),
+    *("firmware/sources/*.c", "firmware/editions/position_sources.c", "svpwm/*.c", *ESTIMATORS),
 )
 OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
 FRAMES = (
@@ -127,6 +127,7 @@ DEVICES = ("tests/prove/devices.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2
 INTERRUPT = (
     *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/scope/scope.c", *ESTIMATORS, "svpwm/*.c"),
     *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*.c", "firmware/hysteresis/*.c"),
+    "firmware/editions/position_sources.c",
     "firmware/dictionary/parameters.c",
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),

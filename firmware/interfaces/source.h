@@ -1,0 +1,38 @@
+// A position source: where angle and speed come from while the shaft turns. Its state is its own.
+
+#ifndef STILLSPIN_FIRMWARE_INTERFACES_SOURCE_H
+#define STILLSPIN_FIRMWARE_INTERFACES_SOURCE_H
+
+#include "estimators/estimator.h"
+#include "svpwm/modulator.h"
+
+struct drive;
+
+/// What others have to know of a source.
+enum {
+  SOURCE_MEASURES = 1,     // the angle is measured, not estimated
+  SOURCE_SINGLE = 2,       // one estimator at all speeds
+  SOURCE_OBSERVES = 4,     // the deviation observer is at work at low speed
+  SOURCE_READS = 8,        // and it reads the windows, not AVV
+  SOURCE_HANDS_OVER = 16,  // above the blend it rests, and the other has the shaft alone
+  SOURCE_BLENDS = 32,      // two estimators, both meant to be right only between the ends of the blend
+  SOURCE_BESIDE = 64,      // two estimators, both meant to be right at any speed
+  SOURCE_TURNS = 128,  // two estimators that look at the windows by turns; the blend goes by a speed from the start on
+  SOURCE_AVV_FIRST = 256  // it is AVV that looks at the windows first
+};
+
+typedef struct {
+  estimator_output_t (*step)(struct drive* d, estimator_input_t* in);
+  /// The pulses it wants where the parameter `excitation` leaves that to it; NULL: alternating.
+  excitation_t (*excitation)(const struct drive* d);
+  /// Highest i_d with which it sees; NULL: any.
+  int32_t (*highest_d_q20)(struct drive* d);
+  /// Goes along with an angle that somebody else knows; NULL: need not.
+  void (*follow)(struct drive* d, const estimator_output_t* now);
+  uint16_t traits;
+} position_source_t;
+
+/// By the values of the parameter position_source (editions/).
+extern const position_source_t* const position_sources[];
+
+#endif

@@ -1,0 +1,22 @@
+// AVV alone: the start's estimator, and a source.
+
+#include <stddef.h>
+
+#include "firmware/sources/sources.h"
+
+#define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
+
+void source_step_avv(drive_t* d, const estimator_input_t* in) {
+  d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
+  if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return;
+  if (d->schedule.turn == TURN_REGRESS)
+    d->position.is_near = q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM;
+  source_learn(d, &d->position.avv.regression);
+}
+
+static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) {
+  source_step_avv(d, in);
+  return d->position.high;
+}
+
+const position_source_t avv_source = {source_avv, NULL, NULL, NULL, SOURCE_AVV_FIRST};
