@@ -6,7 +6,7 @@
 
 void drive_control_current(drive_t* d) {
   drive_control_t* const c = &d->control;
-  if (!c->closed || d->hysteresis.running != 0u) {
+  if (!c->closed || d->sliced != 0u) {
     const dq_t none = {0, 0};
     c->command_q16 = none;
     current_controller_reset(&c->current);

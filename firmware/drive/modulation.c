@@ -4,8 +4,8 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
-#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/interfaces/phase_control.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 #include "hal/hal_profile.h"
@@ -60,7 +60,7 @@ static void write_frame(drive_t* d, const svpwm_pulses_t* command) {
 }
 
 void drive_modulate(drive_t* d) {
-  if (drive_hysteresis(d)) return;
+  if (edition_phase_control != NULL && edition_phase_control->step(d)) return;
   drive_control_t* const c = &d->control;
   if (d->state == DRIVE_START && d->start.shorted) {
     d->modulation.next = start_short_circuit(&d->config.modulator.sampling);

@@ -6,8 +6,8 @@
 #include "firmware/drive/sampling.h"
 
 #include "firmware/drive/steps.h"
-#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/interfaces/phase_control.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_irq.h"
@@ -25,8 +25,8 @@ void sampling_reset(void) {
 }
 
 void drive_window_interrupt(void) {
-  if (drive.hysteresis.running != 0u) {
-    drive_hysteresis_slice(&drive.hysteresis);
+  if (drive.sliced != 0u) {
+    edition_phase_control->slice();
     return;
   }
   sampling_buffer_t* const b = &sampling_buffers[sampling_filling];
@@ -101,8 +101,8 @@ static void take_raw(drive_samples_t* s, const hal_adc_window_t* w) {
 }
 
 void drive_read_samples(drive_t* d) {
-  if (d->hysteresis.running != 0u) {
-    drive_hysteresis_samples(d);
+  if (d->sliced != 0u) {
+    edition_phase_control->samples(d);
     return;
   }
   const sampling_buffer_t* const b = sampling_swap();

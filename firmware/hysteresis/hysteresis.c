@@ -3,7 +3,6 @@
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
-#include "firmware/hysteresis/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"
@@ -18,6 +17,8 @@
 #define CODES_END_Q8 268435456L  // of a reference or a step: far beyond any sensor
 #define SUM_END_Q8 1073741824L   // of a thousand slices
 #define ADAPT_SHARE_Q15 4096L    // an eighth of the relative error of the frequency at a time
+
+hysteresis_t hysteresis;
 
 static uint16_t slice_ticks(void) { return (uint16_t)q_shr_round(parameters.slice_time * 100, 16); }
 
@@ -41,7 +42,8 @@ static uint16_t risen(uint16_t before, uint16_t now) {
   return (uint16_t)((up & 1u) + ((up >> 1) & 1u) + ((up >> 2) & 1u));
 }
 
-void drive_hysteresis_slice(hysteresis_t* h) {
+static void hysteresis_slice(void) {
+  hysteresis_t* const h = &hysteresis;
   hal_slice_t now;
   hal_slice_read(&now);
   const int32_t a = (int32_t)now.current_a * 256 - h->offset_a_q8;
@@ -62,8 +64,8 @@ void drive_hysteresis_slice(hysteresis_t* h) {
 
 static int32_t mean_code_q8(int32_t sum_q8, uint16_t slices) { return q_limit(sum_q8 / (int32_t)slices, CODE_END_Q8); }
 
-void drive_hysteresis_samples(drive_t* d) {
-  hysteresis_t* const h = &d->hysteresis;
+static void hysteresis_samples(drive_t* d) {
+  hysteresis_t* const h = &hysteresis;
   const uint16_t state = hal_irq_disable();
   const hysteresis_sums_t taken = h->sums;
   h->sums.a_q8 = 0;
@@ -111,7 +113,7 @@ static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
 
 // From now on the references go where they will be in a period.
 static void refer(drive_t* d) {
-  hysteresis_t* const h = &d->hysteresis;
+  hysteresis_t* const h = &hysteresis;
   const int32_t slices = (int32_t)(HAL_PWM_PERIOD_TICKS / slice_ticks());
   const int32_t speed = d->position.used.speed_bpp;
   const int32_t passed_q30 = q_min((int32_t)hal_pwm_period_tick(), HAL_PWM_PERIOD_TICKS) * 107374L;
@@ -129,27 +131,28 @@ static void refer(drive_t* d) {
 }
 
 static void begin(drive_t* d) {
-  hysteresis_t* const h = &d->hysteresis;
+  hysteresis_t* const h = &hysteresis;
   clear(h, sizeof *h);
   h->offset_a_q8 = d->trim.offset_a_q8;
   h->offset_b_q8 = d->trim.offset_b_q8;
   h->band_q20 = parameters.hysteresis_band;
   refer(d);
-  h->running = (uint16_t)hal_slices_begin(slice_ticks());
+  d->sliced = (uint16_t)hal_slices_begin(slice_ticks());
 }
 
-bool drive_hysteresis(drive_t* d) {
-  hysteresis_t* const h = &d->hysteresis;
+static bool hysteresis_step(drive_t* d) {
   const bool wanted = parameters.current_law == 1 && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
-  if (wanted && h->running == 0u) begin(d);
-  if (!wanted && h->running != 0u) {
+  if (wanted && d->sliced == 0u) begin(d);
+  if (!wanted && d->sliced != 0u) {
     hal_slices_end();
-    h->running = 0;
+    d->sliced = 0;
     sampling_reset();
   }
-  if (h->running == 0u) return false;
-  adapt(h);
+  if (d->sliced == 0u) return false;
+  adapt(&hysteresis);
   refer(d);
   hal_profile_step(CYCLES_REFER);
   return true;
 }
+
+const phase_control_t hysteresis_control = {hysteresis_step, hysteresis_samples, hysteresis_slice};

@@ -13,6 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interfaces/phase_control.h"
+
 /// Of the slices since the last control interrupt, codes.
 typedef struct {
   int32_t a_q8, b_q8, peak_q8;
@@ -20,7 +22,6 @@ typedef struct {
 } hysteresis_sums_t;
 
 typedef struct {
-  volatile uint16_t running;          // 0 or 1
   uint16_t state;                     // legs, bit k: leg k high
   int32_t offset_a_q8, offset_b_q8;   // codes at zero current
   int32_t reference_a_q8, step_a_q8;  // phase a, and its change per slice
@@ -31,5 +32,9 @@ typedef struct {
   int32_t band_q20;           // A
   uint16_t counted, periods;  // for the adaptation
 } hysteresis_t;
+
+extern hysteresis_t hysteresis;
+
+extern const phase_control_t hysteresis_control;
 
 #endif

@@ -27,7 +27,6 @@
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/drive/brake_hold.h"
 #include "firmware/drive/polarity_watch.h"
-#include "firmware/hysteresis/hysteresis.h"
 #include "firmware/interfaces/schedule.h"
 #include "firmware/interfaces/source.h"
 #include "firmware/mode/commands.h"
@@ -158,8 +157,9 @@ typedef struct drive {
   int32_t limits;
   uint32_t periods;  // since the state was entered
   schedule_t schedule;
-  uint32_t time_ms;    // control interrupts since power-on, in ms; wraps after 49 days
-  uint16_t heartbeat;  // counts control interrupts, for the watchdog
+  uint32_t time_ms;          // control interrupts since power-on, in ms; wraps after 49 days
+  uint16_t heartbeat;        // counts control interrupts, for the watchdog
+  volatile uint16_t sliced;  // 1: a phase control has the legs (interfaces/phase_control.h)
   bool config_valid;
   bool conflict_known;  // of the parameters that the configuration was made of
   bool loading;         // the store is being read: BOOT goes on
@@ -175,7 +175,6 @@ typedef struct drive {
   hold_t hold;
   polarity_watch_t watch;
   inertia_match_t inertia;
-  hysteresis_t hysteresis;
   slopes_trim_t trim;  // current offsets, mismatch of the sensors
   drive_look_t look;
   uint32_t calm_at;              // period in which the currents will have been at rest for long enough

@@ -10,7 +10,7 @@ extern "C" {
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
-#include "firmware/hysteresis/steps.h"
+#include "firmware/hysteresis/hysteresis.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
@@ -45,7 +45,7 @@ class Hysteresis : public Drive {
 
   static std::uint16_t code(double amps) { return static_cast<std::uint16_t>(std::lround(2048.0 + amps * 102.4)); }
 
-  double band() const { return real(drive.hysteresis.band_q20, 20); }
+  double band() const { return real(::hysteresis.band_q20, 20); }
 };
 
 TEST_F(Hysteresis, RunsFromRunOnAndWritesNoPulses) {
@@ -86,10 +86,10 @@ TEST_F(Hysteresis, EveryLegBringsItsCurrentBack) {
 }
 
 TEST_F(Hysteresis, ReferenceMovesWithTheSlices) {
-  drive.hysteresis.step_a_q8 = 100;
-  const std::int32_t before = drive.hysteresis.reference_a_q8;
+  ::hysteresis.step_a_q8 = 100;
+  const std::int32_t before = ::hysteresis.reference_a_q8;
   for (int n = 0; n < 3; ++n) slice();
-  EXPECT_EQ(drive.hysteresis.reference_a_q8, before + 300);
+  EXPECT_EQ(::hysteresis.reference_a_q8, before + 300);
 }
 
 TEST_F(Hysteresis, MeanOfTheSlicesIsTheMeasuredCurrent) {
@@ -147,7 +147,7 @@ TEST_F(Hysteresis, NeedsTheEncoderAndWholeSlices) {
 
 // A current that is exactly a band away changes nothing, one code more does: each leg by its own current.
 TEST_F(Hysteresis, ALegSwitchesBeyondTheBandAndStaysWithinIt) {
-  hysteresis_t& h = drive.hysteresis;
+  hysteresis_t& h = ::hysteresis;
   h.offset_a_q8 = 2000 * 256;
   h.offset_b_q8 = 2100 * 256;
   h.step_a_q8 = h.step_b_q8 = 0;
@@ -181,17 +181,17 @@ TEST_F(Hysteresis, ALegSwitchesBeyondTheBandAndStaysWithinIt) {
 TEST_F(Hysteresis, EveryLegThatGoesHighIsCounted) {
   for (std::uint16_t before = 0; before < 8; ++before) {
     for (const double a : {-1.0, 1.0}) {
-      drive.hysteresis.state = before;
-      const std::uint16_t counted = drive.hysteresis.switched;
+      ::hysteresis.state = before;
+      const std::uint16_t counted = ::hysteresis.switched;
       slice(a, -a);  // c stays
-      const unsigned up = drive.hysteresis.state & ~static_cast<unsigned>(before);
-      EXPECT_EQ(drive.hysteresis.switched - counted, static_cast<int>((up & 1u) + ((up >> 1) & 1u) + (up >> 2)));
+      const unsigned up = ::hysteresis.state & ~static_cast<unsigned>(before);
+      EXPECT_EQ(::hysteresis.switched - counted, static_cast<int>((up & 1u) + ((up >> 1) & 1u) + (up >> 2)));
     }
   }
 }
 
 TEST_F(Hysteresis, BothReferencesMoveWithTheSlicesUpToAnEnd) {
-  hysteresis_t& h = drive.hysteresis;
+  hysteresis_t& h = ::hysteresis;
   h.reference_a_q8 = 1000;
   h.reference_b_q8 = -2000;
   h.step_a_q8 = 70;
@@ -211,19 +211,19 @@ TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
   const Vector reference = {3.0, -5.0};
   const double speed = 0.11, begin = 0.7;  // rad per period
   drive.control.reference_q20 = raw_dq(reference, 20);
-  drive.hysteresis.offset_a_q8 = raw(2048.0, 8);
+  ::hysteresis.offset_a_q8 = raw(2048.0, 8);
   for (const int tick : {0, 1234, 9999, 12000}) {
     board.pwm_tick = static_cast<std::uint16_t>(tick);
     drive.position.used.angle_bam = bam(begin);
     drive.position.used.speed_bpp = raw(speed / kTurn, 32);
     parameters.slice_time = raw(tick == 0 ? 5.0 : 10.0, 16);
     const int slices = tick == 0 ? 20 : 10;
-    ASSERT_TRUE(drive_hysteresis(&drive));
+    ASSERT_TRUE(hysteresis_control.step(&drive));
     const double passed = std::min(tick, 10000) / 10000.0;
     const auto codes = [&](double periods, double behind) {
       return reference.turned(begin + speed * periods - behind).x * 102.4;
     };
-    const hysteresis_t& h = drive.hysteresis;
+    const hysteresis_t& h = ::hysteresis;
     EXPECT_NEAR(real(h.reference_a_q8, 8), codes(passed, 0.0), 0.02) << tick;
     EXPECT_NEAR(real(h.reference_b_q8, 8), codes(passed, kTurn / 3.0), 0.02) << tick;
     EXPECT_NEAR(real(h.step_a_q8, 8), (codes(passed + 1.0, 0.0) - codes(passed, 0.0)) / slices, 0.01) << tick;
@@ -234,10 +234,10 @@ TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
 
 // In the frame of the middle of the period that the slices were taken in, less the offsets; and the link with it.
 TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
-  hysteresis_t& h = drive.hysteresis;
+  hysteresis_t& h = ::hysteresis;
   h.offset_a_q8 = raw(2048.0 + 10.24, 8);
   h.offset_b_q8 = raw(2048.0 - 20.48, 8);
-  drive_hysteresis_samples(&drive);
+  hysteresis_control.samples(&drive);
   board.slice.link = 2000;
   drive.samples.link_q16 = raw(300.0, 16);
   for (int n = 0; n < 5; ++n) slice(n < 3 ? 4.1 : -0.9, 2.3);  // 2.0 and 2.5 A
@@ -245,7 +245,7 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   drive.position.used.speed_bpp = raw(0.2 / kTurn, 32);
   drive.supervision.missing = 3;
   drive.samples.count = 2;
-  drive_hysteresis_samples(&drive);
+  hysteresis_control.samples(&drive);
   const Vector wanted = Vector{2.0, (2.0 + 2.0 * 2.5) / std::sqrt(3.0)}.turned(-0.5);
   EXPECT_NEAR(real(drive.control.measured_q20.d, 20), wanted.x, 0.01);
   EXPECT_NEAR(real(drive.control.measured_q20.q, 20), wanted.y, 0.01);
@@ -258,12 +258,12 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   // Taken once: without a slice everything stays, and the period counts as one without samples.
   const dq_t before = drive.control.measured_q20;
   for (int n = 1; n < 4; ++n) {
-    drive_hysteresis_samples(&drive);
+    hysteresis_control.samples(&drive);
     EXPECT_EQ(drive.supervision.missing, n);
     EXPECT_EQ(drive.control.measured_q20.d, before.d);
   }
   slice(1.1, -0.7);
-  drive_hysteresis_samples(&drive);
+  hysteresis_control.samples(&drive);
   EXPECT_NEAR(std::hypot(real(drive.control.measured_q20.d, 20), real(drive.control.measured_q20.q, 20)), 1.0, 0.01)
       << "of this slice alone";
 }
@@ -286,17 +286,17 @@ TEST_F(Hysteresis, AnyPhaseTripsInEitherDirection) {
 
 // Every 10 ms by an eighth of what the frequency is off by, which counts as one at most.
 TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds) {
-  hysteresis_t& h = drive.hysteresis;
+  hysteresis_t& h = ::hysteresis;
   const auto after = [&h](int kilohertz, double amps) {
     parameters.hysteresis_frequency = raw(8.0, 16);
     h.band_q20 = raw(amps, 20);
     h.periods = 0;
     h.switched = static_cast<std::uint16_t>(h.counted + 30 * kilohertz);
     for (int n = 0; n < 99; ++n) {
-      (void)drive_hysteresis(&drive);
+      (void)hysteresis_control.step(&drive);
       EXPECT_EQ(h.band_q20, raw(amps, 20)) << n;
     }
-    (void)drive_hysteresis(&drive);
+    (void)hysteresis_control.step(&drive);
     EXPECT_EQ(h.counted, h.switched);
     return real(h.band_q20, 20);
   };
@@ -310,28 +310,28 @@ TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds
 
 // What windows have left from before is not taken for those of the first period with pulses.
 TEST_F(Hysteresis, PulsesBeginWithoutOldWindows) {
-  drive.hysteresis.running = 0;
+  drive.sliced = 0;
   for (int n = 0; n < 2; ++n) drive_window_interrupt();
-  (void)drive_hysteresis(&drive);
+  (void)hysteresis_control.step(&drive);
   drive.state = DRIVE_READY;
-  EXPECT_FALSE(drive_hysteresis(&drive));
+  EXPECT_FALSE(hysteresis_control.step(&drive));
   EXPECT_EQ(sampling_swap()->count, 0);
   EXPECT_EQ(sampling_swap()->count, 0);
 }
 
 // A run begins with the band of the parameter, the offsets that were found, and nothing of the run before.
 TEST_F(Hysteresis, ARunBeginsAnew) {
-  drive.hysteresis.running = 0;
-  drive.hysteresis.sums = {1, 2, 3, 4, 5};
-  drive.hysteresis.state = 7;
-  drive.hysteresis.switched = 50;
+  drive.sliced = 0;
+  ::hysteresis.sums = {1, 2, 3, 4, 5};
+  ::hysteresis.state = 7;
+  ::hysteresis.switched = 50;
   drive.trim.offset_a_q8 = raw(2050.0, 8);
   drive.trim.offset_b_q8 = raw(2040.0, 8);
   parameters.hysteresis_band = raw(0.3, 20);
   parameters.slice_time = raw(10.0, 16);
   board.slice_ticks = 0;
-  EXPECT_TRUE(drive_hysteresis(&drive));
-  const hysteresis_t& h = drive.hysteresis;
+  EXPECT_TRUE(hysteresis_control.step(&drive));
+  const hysteresis_t& h = ::hysteresis;
   EXPECT_EQ(board.slice_ticks, 1000);
   EXPECT_EQ(h.sums.slices + h.sums.a_q8 + h.sums.b_q8 + h.sums.peak_q8, 0);
   EXPECT_EQ(h.state + h.switched + h.counted, 0) << "all legs low";
@@ -347,9 +347,9 @@ TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
       parameters.current_law = law;
       drive.state = state;
       const bool wanted = law == 1 && (state == DRIVE_RUN || state == DRIVE_STOP);
-      EXPECT_EQ(drive_hysteresis(&drive), wanted) << law << state;
+      EXPECT_EQ(hysteresis_control.step(&drive), wanted) << law << state;
       EXPECT_EQ(board.slice_ticks, wanted ? 500 : 0);
-      EXPECT_EQ(drive.hysteresis.running, wanted ? 1 : 0);
+      EXPECT_EQ(drive.sliced, wanted ? 1 : 0);
     }
   }
 }
@@ -360,7 +360,7 @@ TEST_F(Hysteresis, ItsStepsSayWhatTheyTake) {
   slice();
   EXPECT_EQ(spent(), CYCLES_SLICE);
   board.profile.clear();
-  (void)drive_hysteresis(&drive);
+  (void)hysteresis_control.step(&drive);
   EXPECT_EQ(spent(), CYCLES_REFER);
 }
 

@@ -13,6 +13,7 @@
 #include "firmware/drive/reset.h"
 #include "firmware/drive/sampling.h"
 #include "firmware/drive/steps.h"
+#include "firmware/hysteresis/hysteresis.h"
 #include "firmware/interfaces/service.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
@@ -73,6 +74,7 @@ bool hal_slices_begin(uint16_t slice_ticks) {
 }
 void hal_slices_end(void) {}
 static void nothing_else(void) {}
+const phase_control_t* const edition_phase_control = &hysteresis_control;
 service_reset_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, NULL};
 static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
 interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};
