@@ -12,7 +12,7 @@
 #include "firmware/text/text.h"
 #include "firmware/text/words.h"
 
-#define RULE_MAX 100u  // characters of a rule
+#define NAME_MAX 32u  // characters of a parameter's name, and some
 
 // Why the drive cannot begin anything now; OK when it can.
 static answer_status_t check_ready(octet_writer_t* why) {
@@ -116,23 +116,26 @@ void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
 static bool is_of_a_name(uint16_t c) { return c >= '0' && c != ':'; }
 
 void put_conflict(octet_writer_t* w, packed_text_t conflict) {
-  uint16_t text[RULE_MAX];
-  octet_writer_t rule = octet_writer(text, RULE_MAX);
-  put_packed(&rule, conflict);
-  put_packed(w, conflict);
-  uint16_t first = 0;
+  uint16_t name[NAME_MAX];
+  uint16_t count = 0, c;
   const char* separator = " (";
-  for (uint16_t end = 0; end <= rule.count; end++) {
-    if (end < rule.count && is_of_a_name(text[end])) continue;
-    const parameter_info_t* const p = parameter_named(&text[first], (uint16_t)(end - first));
-    first = (uint16_t)(end + 1u);
+  packed_reader_t r = packed_reader(conflict);
+  put_packed(w, conflict);
+  do {
+    c = packed_next(&r);
+    if (is_of_a_name(c) && count < NAME_MAX) {
+      name[count++] = c;
+      continue;
+    }
+    const parameter_info_t* const p = parameter_named(name, count);
+    count = 0;
     if (p == NULL) continue;
     put_text(w, separator);
     put_packed(w, p->name);
     put_text(w, " = ");
     put_value(w, p, parameter_get(p->id));
     separator = ", ";
-  }
+  } while (c != 0u);
   if (separator[0] == ',') put_u8(w, ')');
 }
 

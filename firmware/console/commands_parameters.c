@@ -47,6 +47,7 @@ static const parameter_info_t* described;
 
 static bool describe(uint16_t step) {
   const parameter_info_t* const p = described;
+  if (p == NULL) return false;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
     put_packed(w, p->name);

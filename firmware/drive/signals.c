@@ -23,15 +23,17 @@ static const signal_info_t table[] = {
 // By Clarke's components of the windows: they have offset and gains in them already.
 static int32_t phase_current(const volatile drive_t* d, bool of_b) {
   static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
-  const uint16_t count = d->samples.count;
-  const int32_t share_q30 = per_windows_q30[count];
+  const uint16_t count = d->samples.count & ESTIMATOR_WINDOWS;  // three: a mask, too
   ab_t sum = {0, 0};
   for (uint16_t k = 0; k < count; k++) {
-    sum.alpha += q_mul_floor(d->samples.windows[k].current_q20.alpha, share_q30, 30);
-    sum.beta += q_mul_floor(d->samples.windows[k].current_q20.beta, share_q30, 30);
+    sum.alpha = q_add_sat(sum.alpha, d->samples.windows[k].current_q20.alpha);
+    sum.beta = q_add_sat(sum.beta, d->samples.windows[k].current_q20.beta);
   }
-  const abc_t phases = frame_inverse_clarke(sum);
-  return of_b ? phases.b : phases.a;
+  const int32_t share_q30 = per_windows_q30[count];
+  const int32_t alpha_q20 = q_mul_floor(sum.alpha, share_q30, 30);
+  if (!of_b) return alpha_q20;
+  const int32_t beta_q20 = q_mul_floor(sum.beta, share_q30, 30);
+  return q_sub_sat(q_mul_floor(beta_q20, FRAME_SQRT3_HALF_Q30, 30), alpha_q20 / 2);
 }
 
 // What is known is asked once for all of a pass: it has to fit between two interrupts.

@@ -137,8 +137,8 @@ static void look_beyond(int32_t value, bool above) {
   if (below_by < 0) {
     const int32_t quarter = quarter_of_span(value);
     const int32_t off = q_sub_sat(mean, level);
-    below_by = quarter << (off > quarter ? 1 : 0);
-    above_by = quarter << (off < -quarter ? 1 : 0);
+    below_by = (off > quarter) ? quarter + quarter : quarter;
+    above_by = (off < -quarter) ? quarter + quarter : quarter;
   }
   was_below = !above && (was_below || value < q_sub_sat(level, below_by));
   was_above = above && (was_above || value >= q_add_sat(level, above_by));

@@ -71,6 +71,11 @@ void drive_command_start(void) {}
 void drive_command_stop(void) {}
 void drive_command_coast(void) {}
 void drive_command_reset(void) {}
+void drive_command_look(void) {}
+look_outcome_t drive_look_outcome(void) { return (look_outcome_t)any_up_to(5); }
+int32_t drive_look_rpm(void) { return any_i32; }
+bool drive_knows_speed(const volatile drive_t* d) { return d->heartbeat > 0u && any_bool(); }
+uint16_t drive_known(const volatile drive_t* d) { return (uint16_t)(d->heartbeat & any_up_to(3)); }
 void drive_command_commission(void) {}
 void drive_command_speed(int32_t rpm_q16) { drive.control.wanted_rpm_q16 = rpm_q16; }
 bool drive_is_energised(void) { return any_bool(); }
@@ -96,6 +101,7 @@ bool store_defaults(void) { return any_bool(); }
 bool store_is_busy(void) { return any_bool(); }
 store_state_t store_state(void) { return (store_state_t)any_up_to(11); }
 uint16_t store_progress(void) { return any_up_to(100); }
+uint16_t store_unsaved(void) { return any_up_to(255); }
 const store_report_t* store_report(void) {
   static store_report_t r;
   r.sequence = any_u32;

@@ -19,6 +19,7 @@ static void any_state(uint16_t count) {
   e.too_long = any_bool();
   e.disturbed = any_bool();
   e.expired = any_bool();
+  e.cut = any_bool();
   e.after_return = any_bool();
   e.escape = (uint16_t)any_from(0, 2);
   e.parameter = any_u16;
@@ -37,7 +38,7 @@ void prove_editor(void) {
     any_state(count);
     editor_next(&e);
     any_state(count);
-    editor_cut(&e);
+    editor_cut(&e, any_bool());
     any_state(count);
     echo = octet_writer(block, 200);
     editor_show(&e, &echo);

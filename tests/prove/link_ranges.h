@@ -128,14 +128,14 @@ bool suggest_is_near(const char* name, const word_t* word);
     assigns echo->octets[0 .. echo->room - 1], echo->count, echo->full \from *e, octet, echo->count, echo->room;
     ensures echo->count <= echo->room; ensures echo->full == 0 || echo->full == 1;
     ensures e->too_long == 0 || e->too_long == 1; ensures e->disturbed == 0 || e->disturbed == 1;
-    ensures e->expired == 0 || e->expired == 1;
+    ensures e->expired == 0 || e->expired == 1; ensures e->cut == 0 || e->cut == 1;
     ensures e->line.count <= 80; ensures e->recalled <= 4;
     ensures e->history[0].count <= 80 && e->history[1].count <= 80 && e->history[2].count <= 80;
     ensures e->history[3].count <= 80; ensures 0 <= \result <= 2; */
 editor_event_t editor_octet(editor_t* e, uint16_t octet, octet_writer_t* echo);
 
 /*@ requires \valid(e) && e->line.count <= 80; assigns *e \from *e;
-    ensures e->line.count == 0 && e->cursor == 0;
+    ensures e->line.count == 0 && e->cursor == 0 && e->cut == 0;
     ensures e->history[0].count <= 80 && e->history[1].count <= 80 && e->history[2].count <= 80;
     ensures e->history[3].count <= 80; */
 void editor_next(editor_t* e);

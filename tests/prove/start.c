@@ -6,9 +6,11 @@
 #include "estimators/emf_sign.h"
 #include "estimators/fit.h"
 #include "estimators/flying.h"
+#include "estimators/followed.h"
 #include "estimators/inertia_match.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
+#include "estimators/wiring.h"
 #include "tests/prove/any_windows.h"
 
 static machine_model_t model;
@@ -18,7 +20,9 @@ static int32_t any_current(void) { return any_from(AMPERES_Q20 / 8, CURRENT_MAX_
 static void move(void) {
   polarity_t s;
   polarity_begin(&s, any_u32, any_current(), any_i32);
+  //@ loop widen_hints s.passes, 6;
   while (any_bool()) {
+    s.bounded = any_bool();
     (void)polarity_step(&s, any_u32);
     if (any_bool()) polarity_again(&s, any_u32);
   }
@@ -51,7 +55,18 @@ static void find_axis(void) {
   while (any_bool()) {
     const regression_t r = any_regression();
     axis_add(&s, &r);
-    if (axis_is_complete(&s)) (void)axis_evaluate(&s, &model);
+    if (!axis_is_complete(&s)) continue;
+    (void)axis_evaluate(&s, &model);
+    (void)wiring_judge(&s, &model, any_from(0, AMPERES_Q20));
+  }
+}
+
+static void follow(void) {
+  followed_t f = {any_i32, any_i32};
+  while (any_bool()) {
+    const int16_t length = (int16_t)any_from(4, 32767);
+    followed_step(&f, any_i16, length, any_i32, any_i32);
+    (void)followed_well(&f, any_i32);
   }
 }
 
@@ -103,6 +118,7 @@ void prove_start(void) {
   move();
   saturate();
   find_axis();
+  follow();
   look_at_emf();
   catch();
   run_up();

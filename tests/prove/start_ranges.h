@@ -8,9 +8,11 @@
 #include "estimators/axis.h"
 #include "estimators/emf_sign.h"
 #include "estimators/flying.h"
+#include "estimators/followed.h"
 #include "estimators/inertia_match.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
+#include "estimators/wiring.h"
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"
 
@@ -37,6 +39,13 @@ void axis_add(axis_t* s, const regression_t* r);
 /*@ requires \valid_read(s) && \valid_read(m); assigns \result \from *s, *m;
     ensures WITHIN(\result.angle_bam, 1073741824); */
 axis_result_t axis_evaluate(const axis_t* s, const machine_model_t* m);
+
+/*@ requires \valid(f) && FROM_TO(length, 4, 32767); assigns *f \from *f, tick, length, asked_q20, flows_q20; */
+void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t asked_q20, int32_t flows_q20);
+
+/*@ requires \valid_read(s) && \valid_read(m); assigns \result \from *s, *m, code_q20;
+    ensures FROM_TO(\result, 0, 11); */
+wiring_t wiring_judge(const axis_t* s, const machine_model_t* m, int32_t code_q20);
 
 /*@ requires \valid(s) && \valid_read(m) && \valid_read(w); assigns *s \from *s, *m, *w, tick; */
 void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_window_t* w, int32_t tick);

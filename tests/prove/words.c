@@ -27,13 +27,10 @@ static uint16_t read_speed(const words_of_line_t* a, decimal_t* number);
     assigns \nothing; */
 static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_text_t unit);
 
-/*@ requires word_of(name); assigns \nothing; */
-static uint16_t find(const word_t* name);
-
 // What the table says, the part commands reads.
-/*@ assigns \nothing; ensures \result == \null || (\valid_read(\result) && \result->unit < PACKED_TEXTS &&
-      \result->q <= 32); */
-const parameter_info_t* parameter_info(uint16_t index);
+/*@ requires \valid_read(name + (0 .. count - 1)); assigns \nothing;
+    ensures \result == \null || (\valid_read(\result) && \result->unit < PACKED_TEXTS && \result->q <= 32); */
+const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
 
 /*@ requires words_of(a); */
 void command_set(const words_of_line_t* a);

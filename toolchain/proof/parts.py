@@ -35,7 +35,7 @@ OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_chea
 OF_DROPS = "dead_time_sign_q21,dead_time_delay_ticks"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
-OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed,packed_is_empty"
+OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed,packed_is_empty,packed_next"
 OF_DECIMALS = "text_number,decimal_raw,decimal_is_whole"
 OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_equals,packed_is,packed_copy,suggest_is_near"
 OF_LINES = "editor_octet,editor_next,editor_show"
@@ -310,7 +310,7 @@ PARTS = (
             *("firmware/hil/*.c", "firmware/base/clear.c", "hal/tape.c", *BESIDE),
         ),
         READER,
-        *(OF_QMATH, OF_WRITING),
+        *(OF_QMATH, OF_WRITING, "packed_equals"),
     ),
     of_link(
         "console",
@@ -325,7 +325,7 @@ PARTS = (
             *(f"firmware/can/{name}.c" for name in ("command", "messages", "node", "segments", "telemetry")),
         ),
         (*ROUNDS, "-eva-slevel-function", "stream_event:300"),
-        *(OF_QMATH, OF_WRITING, OF_FRAMES),
+        *(OF_QMATH, OF_WRITING, OF_FRAMES, "packed_equals"),
     ),
     of_link("blocks", FRAMES, ("-eva-auto-loop-unroll", "300")),
     of_link("framing", FRAMES, APART, OF_BLOCKS),
