@@ -171,12 +171,13 @@ def test_the_console_answers_among_records(desk, port):
 
 
 def test_the_console_ends_with_1_when_the_drive_refuses(port, home):
-    lines = ["set speed_limit 7000", "ref 300", "start now", "version"]
+    lines = ["set speed_limit 7000", "ref 300", "start now", "version", "scope trigger speed above 40000"]
     typed = [part for line in lines for part in ("-c", line)]
     result = CliRunner().invoke(cli.app, ["console", *typed, "--drive", port])
     assert result.exit_code == 1
-    assert result.stderr.splitlines() == [f"stillspin: not carried out: {line}" for line in (lines[0], lines[2])]
+    assert result.stderr.splitlines() == [f"stillspin: not carried out: {line}" for line in lines[::2]]
     assert "stillspin 0.1.0" in result.stdout
+    assert "40000 is not between -32768.00 rpm and 32768.00 rpm: nothing changed" in result.stdout
 
 
 def test_the_commands(port, home, tmp_path, monkeypatch):
