@@ -132,6 +132,7 @@ def test_free_and_keep_running_leave_it_running(ask, fake):
 
 
 def test_a_motor_of_somebody_else_is_left_alone(ask, fake):
+    fake.values[200] = 5000  # link_timeout: machines stall
     fake.start(4711)
     ask("console", "-c", "status")
     assert fake.state == RUN

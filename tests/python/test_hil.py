@@ -294,7 +294,7 @@ def test_results_are_kept_run_by_run(tmp_path):
     assert kept["A10", "creep", "ideal", False, "serial"].identical
     assert kept["A10", "creep", "ideal", True, "serial"].revision == "r2"
     file.write_text("[]")
-    with pytest.raises(InputError, match="something else"):
+    with pytest.raises(InputError, match="holds no results"):
         Results(file)
 
 
@@ -369,7 +369,7 @@ def test_a_step_that_is_repeated_is_not_carried_out_again(requester):
 
 
 def test_steps_are_refused_before_the_board_is_in_the_loop(requester):
-    with pytest.raises(RefusedError, match="enter first"):
+    with pytest.raises(RefusedError, match="enter it first"):
         requester.request(Request.HIL_STEP, bytes((0, 0, 0)), repeat=True)
 
 

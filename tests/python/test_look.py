@@ -116,7 +116,7 @@ def test_pulses_that_contradict_each_other_are_said_to(desk: Desk, speed: float)
     told = 0.3 * float(re.search(r"magnet_flux = (\S+)", desk.type("get magnet_flux"))[1])
     assert f"magnet_flux = {told:.5f}" in desk.type(f"set magnet_flux {told:.5f}")
     said, before = looked(desk)
-    found = re.search(r"it turns, the pulses do not agree on how; by its back-EMF at about (\d+) rpm", said)
+    found = re.search(r"it turns, but the two pulses disagree; by its back-EMF at about (\d+) rpm", said)
     assert found, said
     assert float(found[1]) == pytest.approx(abs(before) / 0.3, rel=0.1)
 

@@ -67,7 +67,7 @@ def test_no_sample_is_lost_while_parameters_and_a_capture_are_read():
             describe(server.bench)
         setup = {"trigger": "speed", "level": 0, "edge": "now", "decimation": 1, "before": 0}
         ACTIONS["capture"](server.bench, "somebody", {"signals": ["speed", "current_d"], **setup})
-        assert stream.lost == 0
+        assert stream.lost == 0, stream.why_lost()
 
 
 def test_units_words_and_that_there_is_no_fault_are_said(page, server, fake):
