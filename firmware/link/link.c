@@ -9,6 +9,7 @@
 
 #define OCTETS_A_ROUND 8u  // 115200 Bd bring little more than one in a period
 #define WIRE_MAX (RECORD_ENCODED_MAX + 2u)
+#define EVENT_WIRE_MAX (2u + 4u + 4u * STREAM_SIGNALS + 1u + 5u)  // with CRC, code octet and zeros
 
 static splitter_t splitter;
 static uint16_t text_at, text_end;  // text in the splitter's block that the console has not had yet
@@ -25,24 +26,20 @@ void link_reset(void) {
   console_reset();
 }
 
-// False when less than `beside` octets would be left free.
-static bool send(uint16_t count, uint16_t beside) {
-  const uint16_t octets = record_to_wire(record, count, wire);
-  if (hal_sci_room() < octets + beside) return false;
-  (void)hal_sci_write(wire, octets);
-  return true;
+// There has to be room.
+static void send(uint16_t count) {
+  if (count > 0u) (void)hal_sci_write(wire, record_to_wire(record, count, wire));
 }
 
 // Only into a ring that is all but empty, so that a stream too fast for the port leaves room for all else; the port's
-// FIFO keeps the wire busy meanwhile.
+// FIFO keeps the wire busy meanwhile. One that waits behind an answer comes late, not never: it is missed when the next
+// one is due.
 static void send_event(void) {
-  const uint16_t count = stream_event(GUARD_SERIAL, record);
-  if (count > 0u && !send(count, WIRE_MAX + OUTPUT_LINE)) stream_dropped(GUARD_SERIAL);
+  if (hal_sci_room() >= EVENT_WIRE_MAX + WIRE_MAX + OUTPUT_LINE) send(stream_event(GUARD_SERIAL, record));
 }
 
-static void answer(void) {
-  const uint16_t count = request_answer(GUARD_SERIAL, splitter.octets, splitter.count, record);
-  if (count > 0u) (void)send(count, 0);  // take_octet has seen to the room
+static void answer(void) {  // take_octet has seen to the room
+  send(request_answer(GUARD_SERIAL, splitter.octets, splitter.count, record));
 }
 
 static void sort(int16_t found) {

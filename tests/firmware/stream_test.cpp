@@ -34,6 +34,17 @@ TEST_F(Requests, AStreamComesAtItsPeriod) {
   EXPECT_TRUE(records.empty());
 }
 
+// An answer may take the wire for most of a stream's period: a sample that is due meanwhile comes after it.
+TEST_F(Requests, AStreamWaitsBehindAnAnswer) {
+  EXPECT_EQ(ask(REQUEST_STREAM, little(25, 2) + little(4, 2)).status(), OK);
+  for (int k = 0; k < 40; ++k) {
+    const Answer long_one = ask(REQUEST_PARAMETER_READ, little(0, 2) + little(32, 1));
+    ASSERT_EQ(long_one.status(), OK);
+    ASSERT_GT(long_one.body(), 190u);
+  }
+  EXPECT_EQ(ask(REQUEST_LINK).number(14, 2), 0u);
+}
+
 TEST_F(Requests, AStreamWithoutRoomDropsAndCounts) {
   EXPECT_EQ(ask(REQUEST_STREAM, little(1, 2) + Octets(16, 0)).status(), OK);  // 45 octets a ms, 12 go through
   run(5000);
