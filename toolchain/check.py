@@ -16,6 +16,7 @@ from pathlib import Path
 from checks import (
     Finding,
     arrows,
+    circles,
     command_files,
     conditionals,
     glossary,
@@ -55,6 +56,7 @@ def _commands(fix: bool) -> dict[str, list[list[str]]]:
 
 TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "arrows": arrows.check,
+    "circles": circles.check,
     "conditionals": conditionals.check,
     "int16": int16.check,
     "registers": registers.check,
@@ -67,6 +69,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
 }
 DESCRIPTIONS = {
     "arrows": "includes point downward",
+    "circles": "no circle of imports in the Python package",
     "conditionals": "no code that only one build sees",
     "int16": "C compiles with a 16-bit int",
     "registers": "the register map agrees with the tables of the chip",

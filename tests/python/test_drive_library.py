@@ -93,7 +93,7 @@ def test_a_start_that_waits_raises_in_the_words_of_the_fault(fake, drive):
 
 
 def test_a_start_that_takes_too_long_stops_the_motor(fake, drive, monkeypatch):
-    monkeypatch.setattr("stillspin.drive.drive.RUN", 99)
+    monkeypatch.setattr("stillspin.drive.motion.RUN", 99)
     with pytest.raises(DriveError, match=r"after 0\.2 s"):
         drive.start(300, wait=True, timeout=0.2)
     assert fake.state != 4

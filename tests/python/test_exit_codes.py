@@ -118,7 +118,7 @@ def test_a_drive_of_another_protocol_is_4(call, monkeypatch):
             pass
 
     monkeypatch.setattr(address, "connect", lambda _where: Other())
-    monkeypatch.setattr("stillspin.drive.drive.Requester", lambda *_: OtherVersion())
+    monkeypatch.setattr("stillspin.drive.inspection.Requester", lambda *_: OtherVersion())
     result = call("monitor", "--drive", NOBODY)
     assert result.exit_code == 4
     assert "version 9 of the protocol" in result.stderr

@@ -14,7 +14,8 @@ from stillspin.drive import own
 from stillspin.errors import InputError
 from stillspin.measure.figures import Result
 from stillspin.options import by_mark
-from stillspin.report.explain_report import Explanation, content
+from stillspin.report.explain_report import content
+from stillspin.report.explanation import Explanation
 from stillspin.runs import explain, records
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings, prepare

@@ -64,7 +64,7 @@ def test_no_sample_is_lost_while_parameters_and_a_capture_are_read():
     ):
         time.sleep(0.5)
         for _ in range(3):
-            describe(server.bench)
+            describe(server.bench.drive, server.bench.plotted)
         setup = {"trigger": "speed", "level": 0, "edge": "now", "decimation": 1, "before": 0}
         ACTIONS["capture"](server.bench, "somebody", {"signals": ["speed", "current_d"], **setup})
         assert stream.lost == 0, stream.why_lost()

@@ -6,15 +6,12 @@ import struct
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from stillspin.drive.describe import unpack
+from stillspin.drive.motion import Motion
 from stillspin.drive.protocol import Request, Words
 from stillspin.drive.state import COMMISSIONING_RUNNING
 from stillspin.link.errors import DriveError
-
-if TYPE_CHECKING:
-    from stillspin.drive.drive import Drive
 
 _INTERVAL = 0.1
 _BEGIN = 5.0
@@ -49,7 +46,7 @@ class Report:
     """What would be lost with the power, in words; empty when nothing would."""
 
 
-def follow(drive: Drive, on_progress: OnProgress | None) -> Report:
+def follow(drive: Motion, on_progress: OnProgress | None) -> Report:
     """Wait for the end of a commissioning that has been asked for.
 
     Raises:
@@ -79,7 +76,7 @@ def follow(drive: Drive, on_progress: OnProgress | None) -> Report:
     return report
 
 
-def results(drive: Drive) -> tuple[Identified, ...]:
+def results(drive: Motion) -> tuple[Identified, ...]:
     """What the last commissioning found; empty without one."""
     names = {parameter.id: parameter.name for parameter in drive.table.parameters}
     found: list[Identified] = []

@@ -6,16 +6,13 @@ import math
 import struct
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING
 
 from stillspin.drive.describe import unpack
+from stillspin.drive.inspection import Inspection
 from stillspin.drive.protocol import Command, Request
 from stillspin.drive.requester import wait_until
 from stillspin.drive.state import rpm
 from stillspin.link.errors import DriveError
-
-if TYPE_CHECKING:
-    from stillspin.drive.drive import Drive
 
 _FORM = "<Bi"
 _TIMEOUT = 3.0
@@ -48,7 +45,7 @@ class Look:
     """In the drive's words."""
 
 
-def look(drive: Drive) -> Look:
+def look(drive: Inspection) -> Look:
     """Send the command, wait for the pulses.
 
     Raises:
@@ -65,7 +62,7 @@ def look(drive: Drive) -> Look:
     return seen
 
 
-def read(drive: Drive) -> Look:
+def read(drive: Inspection) -> Look:
     """What the last look has shown."""
     body = drive.link.request(Request.LOOK, b"", repeat=True)
     code, q16 = unpack(_FORM, body)

@@ -5,20 +5,17 @@ from __future__ import annotations
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from stillspin.drive.describe import Ask, unpack
+from stillspin.drive.inspection import Inspection
 from stillspin.drive.protocol import Command, Request, StatusCode, Words
 from stillspin.drive.requester import wait_until
 from stillspin.drive.scope import CHUNK
 from stillspin.drive.table import Parameter, Table
 from stillspin.link.errors import DriveError, RefusedError
-
-if TYPE_CHECKING:
-    from stillspin.drive.drive import Drive
 
 _READ_MOST = 4
 """Per question: answers that are short leave room on the line for a stream."""
@@ -93,7 +90,7 @@ def read_channel(ask: Ask, channel: int, count: int, chunk: int = CHUNK) -> npt.
     return np.frombuffer(bytes(words), dtype="<i2").astype(np.int16)
 
 
-def save(drive: Drive) -> None:
+def save(drive: Inspection) -> None:
     """Ask for it, and wait until the store has it.
 
     Raises:

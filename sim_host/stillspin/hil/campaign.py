@@ -18,7 +18,8 @@ from stillspin.hil.results import Row, begun, ended
 from stillspin.hil.runs import LoopRun
 from stillspin.link import address
 from stillspin.link.errors import DriveError, RefusedError
-from stillspin.runs.workers import Task, Where, report, workers
+from stillspin.runs.reporting import report
+from stillspin.runs.workers import Task, Where, workers
 
 ProgressOf = Callable[[LoopRun], Progress]
 

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 
 from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.measure.figures import Result
-from stillspin.report.explain_report import Explanation
+from stillspin.report.explanation import Explanation
 from stillspin.report.page import unit_text
 from stillspin.report.style import COLOURS, STYLE, WIDTH
 

@@ -19,7 +19,7 @@ from stillspin.entry import Entry
 from stillspin.hil.results import Row
 from stillspin.measure.figures import Result
 from stillspin.report import page as report
-from stillspin.report.explain_report import Explanation
+from stillspin.report.explanation import Explanation
 from stillspin.runs import commission
 from stillspin.runs.assess import ScenarioResult
 

@@ -11,7 +11,8 @@ from pathlib import Path
 from stillspin.cases.scenario import Scenario
 from stillspin.runs.assess import ScenarioResult, assess
 from stillspin.runs.execute import Job, Outcome, execute
-from stillspin.runs.workers import Task, Where, report, workers
+from stillspin.runs.reporting import report
+from stillspin.runs.workers import Task, Where, workers
 
 Files = dict[str, bytes]
 

@@ -17,7 +17,7 @@ from stillspin.errors import CampaignError, InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.extras import need
 from stillspin.revision import revision
-from stillspin.runs.workers import reporting
+from stillspin.runs.reporting import reporting
 
 _PATIENCE = 30.0  # s, for the scheduler and the first worker
 _EVERY = 0.5  # s between two words of a worker

@@ -21,13 +21,14 @@ from stillspin.cases.scenario import Scenario
 from stillspin.drive.own import firmware
 from stillspin.options import by_mark
 from stillspin.report import explain_report, output
-from stillspin.report.explain_report import Explanation
+from stillspin.report.explanation import Explanation
 from stillspin.report.progress import Bar
 from stillspin.revision import revision
 from stillspin.runs import campaign, commission, execute
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
-from stillspin.runs.workers import Task, Where, report, workers
+from stillspin.runs.reporting import report
+from stillspin.runs.workers import Task, Where, workers
 
 IDEAL = "ideal"
 

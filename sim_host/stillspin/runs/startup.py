@@ -21,7 +21,8 @@ from stillspin.cases import profile
 from stillspin.core import NativeResult, Plant, Schema
 from stillspin.errors import InputError, did_you_mean
 from stillspin.measure.pieces import Floats
-from stillspin.runs.workers import Task, Where, report, workers
+from stillspin.runs.reporting import report
+from stillspin.runs.workers import Task, Where, workers
 
 WAYS = ("brake", "free", "flying")
 RATED_TORQUE = 11.0  # N m

@@ -17,10 +17,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from stillspin.errors import CampaignError
+from stillspin.runs import cluster
+from stillspin.runs.reporting import listen, reporting
 
 _POLL = 0.1  # s between two looks at the progress of the workers
 
-Report = Callable[[int, float], bool]
 Shares = Callable[[Sequence[float]], None]
 
 
@@ -50,32 +51,6 @@ class Task:
     arguments: tuple[Any, ...]
     tag: Any = None
     near: bool = False
-
-
-def _nobody_listens(_slot: int, _share: float) -> bool:
-    return True
-
-
-_listeners: list[Report] = [_nobody_listens]
-"""The last one is whom the tasks of this process report to."""
-
-
-def report(slot: int, share: float) -> bool:
-    """Tell the campaign of a task how far it is, 0 … 1; false when nobody waits for it any more.
-
-    `slot`: which of the campaign's shares this is.
-    """
-    return _listeners[-1](slot, share)
-
-
-@contextmanager
-def reporting(to: Report) -> Iterator[None]:
-    """Let `report` of this process reach somebody."""
-    _listeners.append(to)
-    try:
-        yield
-    finally:
-        _listeners.remove(to)
 
 
 class Workers:
@@ -142,8 +117,6 @@ def workers(where: Where, slots: int = 0, watch: Shares = lambda _: None) -> Ite
             pool = held.enter_context(_Processes(where.jobs, slots))
             here, ahead, tell = pool, where.jobs, lambda: watch(list(pool.shares))
         if where.cluster:
-            from stillspin.runs import cluster  # noqa: PLC0415 - an extra of the installation
-
             far = held.enter_context(cluster.connected(where.cluster, shares))
             yield Workers(here, far, far.ahead, lambda: watch(shares))
             return
@@ -203,4 +176,4 @@ def _start(shares: Any, stop: Any) -> None:
         shares[slot] = share
         return not stop.value
 
-    _listeners.append(told)
+    listen(told)

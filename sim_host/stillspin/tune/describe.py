@@ -2,34 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from stillspin.drive import scope
+from stillspin.drive import Drive, scope
 from stillspin.drive.table import Parameter, Signal
 from stillspin.tune import choices, derived
 from stillspin.tune.derived import Derived
 from stillspin.tune.groups import group_of
 from stillspin.tune.messages import Message, shown_unit
 
-if TYPE_CHECKING:
-    from stillspin.tune.workbench import Workbench
 
+def describe(drive: Drive, plotted: Sequence[str]) -> Message:
+    """Everything that does not change: the drive's table, for a page that has just been opened.
 
-def describe(bench: Workbench) -> Message:
-    """Everything that does not change: the drive's table, for a page that has just been opened."""
-    table = bench.drive.table
+    Args:
+        drive: that is connected.
+        plotted: names of the signals that are streamed.
+    """
+    table = drive.table
     return {
         "t": "hello",
-        "version": bench.drive.version,
+        "version": drive.version,
         "crc": table.crc,
-        "where": bench.drive.link.transport.name,
+        "where": drive.link.transport.name,
         "parameters": [_parameter(entry) for entry in table.parameters],
         "signals": [_signal(entry) for entry in table.signals],
         "derived": [_signal(entry) for entry in derived.available(table)],
-        "words": choices.of_signals(bench.drive),
-        "values": bench.drive.parameters(),
-        "plotted": bench.plotted,
+        "words": choices.of_signals(drive),
+        "values": drive.parameters(),
+        "plotted": list(plotted),
         "edges": list(scope.EDGES),
         "depth": scope.DEPTH,
     }

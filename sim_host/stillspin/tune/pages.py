@@ -68,7 +68,7 @@ class Pages:
         sender = asyncio.create_task(_send(connection, queue))
         try:
             with contextlib.suppress(DriveError):  # it is away: all pages are told when it is back
-                await queue.put(_text(await asyncio.to_thread(describe, self.bench)))
+                await queue.put(_text(await asyncio.to_thread(describe, self.bench.drive, self.bench.plotted)))
             self._pages[who] = queue
             async for message in connection:
                 if message.type == WSMsgType.TEXT:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING
 
 from stillspin.link.errors import DriveError, LinkError, NoAnswerError
-from stillspin.tune.connection import SwitchedOnError
+from stillspin.tune.connection import Connection, SwitchedOnError
+from stillspin.tune.dead_man import DeadMan
 from stillspin.tune.describe import describe
-from stillspin.tune.messages import status_message
-
-if TYPE_CHECKING:
-    from stillspin.tune.workbench import Workbench
+from stillspin.tune.messages import Tell, status_message
+from stillspin.tune.streamer import Streamer
 
 _STATUS = 0.1
 
@@ -19,11 +17,12 @@ _STATUS = 0.1
 class Watch(threading.Thread):
     """The dead man's switch and the questions that keep a guarded drive running are one loop: both, or neither."""
 
-    def __init__(self, bench: Workbench, end: threading.Event) -> None:
+    def __init__(
+        self, way: Connection, dead_man: DeadMan, streamer: Streamer, tell: Tell, end: threading.Event
+    ) -> None:
         super().__init__(name="stillspin watch", daemon=True)
-        self._bench = bench
-        self._way = bench.connection
-        self._end = end
+        self._way, self._dead_man, self._streamer = way, dead_man, streamer
+        self._tell, self._end = tell, end
         self._owed = ""
         """Why the motor must still be stopped; empty when it must not."""
         self._whoever = False
@@ -44,7 +43,7 @@ class Watch(threading.Thread):
         self._owed, self._whoever = why, whoever
 
     def _settle(self) -> bool:
-        drive = self._bench.drive
+        drive = self._way.drive
         stopped = self._whoever or drive.let_go()
         if self._whoever:
             drive.stop()
@@ -64,31 +63,31 @@ class Watch(threading.Thread):
             except LinkError as error:
                 self._lose(error)
             except DriveError as error:
-                self._bench.tell({"t": "note", "text": str(error)})
+                self._tell({"t": "note", "text": str(error)})
 
     def _look(self) -> None:
-        if self._bench.dead_man.expired():
+        if self._dead_man.expired():
             self._owe("stopped: nothing was heard from the page")
         if (why := self._owed) and self._settle():
-            self._bench.tell({"t": "note", "text": why})
-        self._bench.tell(status_message(self._bench.drive.describe_status(self._way.look())))
+            self._tell({"t": "note", "text": why})
+        self._tell(status_message(self._way.drive.describe_status(self._way.look())))
 
     def _lose(self, error: LinkError) -> None:
         self._away = True
         # A drive with a long link_timeout may still be running when it is back, and the first question keeps it so.
-        if self._bench.dead_man.release():
+        if self._dead_man.release():
             self._owe("stopped: the connection to the drive was lost")
         if isinstance(error, SwitchedOnError):
             self._owed = ""
-            self._bench.tell({"t": "note", "text": str(error)})
+            self._tell({"t": "note", "text": str(error)})
         self._say_away("lost")
 
     def _come_back(self) -> None:
         if self._way.reopen():
-            self._bench.tell(describe(self._bench))
+            self._tell(describe(self._way.drive, self._streamer.names))
             self._away = False
         else:
             self._say_away("lost")
 
     def _say_away(self, kind: str) -> None:
-        self._bench.tell({"t": kind, "text": self._way.trouble, "for": self._way.silence})
+        self._tell({"t": kind, "text": self._way.trouble, "for": self._way.silence})

@@ -28,7 +28,7 @@ class Workbench:
         self._end = threading.Event()
         self._capture = 0
         self.streamer = Streamer(self.connection, tell, self._end)
-        self.watch = Watch(self, self._end)
+        self.watch = Watch(self.connection, self.dead_man, self.streamer, tell, self._end)
 
     @property
     def drive(self) -> Drive:
