@@ -14,6 +14,7 @@ import typer
 
 from stillspin.errors import InputError
 from stillspin.hil.results import Row
+from stillspin.resources import natural_key
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.startup import ANGLE_LIMIT, BACKWARD_LIMIT, Outcome
 
@@ -66,11 +67,13 @@ class Report:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        # By what they are of: which scenario was judged first, depends on who was quick.
+        done = sorted(self._cases, key=lambda case: natural_key(case.classname))
         if kind is None or issubclass(kind, typer.Exit):
-            self._write(self._cases)
+            self._write(done)
             return
         words = "interrupted" if issubclass(kind, KeyboardInterrupt) else str(error) or kind.__name__
-        self._write([*self._cases, self._broken(f"{_NOT_ENDED}: {words}")])
+        self._write([*done, self._broken(f"{_NOT_ENDED}: {words}")])
 
     def _broken(self, words: str) -> TestCase:
         return TestCase(self._name, self._name, kind="error", words=words)
