@@ -81,17 +81,24 @@ TEST_F(LinkService, ARequestWaitsForTheRoomThatAnAnswerMayNeed) {
 TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   const std::uint16_t place = 9;
   const int event = 2 + 2 + 4 + 4 + 1 + 2 + 1;  // zeros, type and counter, time, value, known, CRC, COBS
+  const int longest_event = event + 4 * (int(STREAM_SIGNALS) - 1);
   drive.state = DRIVE_RUN;
   drive.control.measured_q20.d = 0x01010101;
-  for (const int missing : {1, 0}) {
-    stream_setup(GUARD_SERIAL, 5, &place, 1);
-    drive.time_ms += 5;
-    board.serial_room = static_cast<std::uint16_t>(kLongest + OUTPUT_LINE + event - missing);
+  stream_setup(GUARD_SERIAL, 5, &place, 1);
+  const auto sends_after = [&](unsigned ms, int missing) {
+    const unsigned before = sent();
+    drive.time_ms += ms;
+    board.serial_room = static_cast<std::uint16_t>(kLongest + OUTPUT_LINE + longest_event - missing);
     link_service();
-    EXPECT_EQ(sent(), missing ? 0u : static_cast<unsigned>(event));
-    EXPECT_EQ(stream_lost(GUARD_SERIAL), missing);
-    EXPECT_EQ(link_errors().events_dropped, missing);
-  }
+    return sent() - before;
+  };
+  EXPECT_EQ(sends_after(5, 1), 0u) << "it waits";
+  EXPECT_EQ(sends_after(4, 0), unsigned(event)) << "it comes late";
+  EXPECT_EQ(stream_lost(GUARD_SERIAL), 0);
+  EXPECT_EQ(sends_after(1, 1), 0u);
+  EXPECT_EQ(sends_after(5, 0), unsigned(event)) << "the one that is due";
+  EXPECT_EQ(stream_lost(GUARD_SERIAL), 1) << "the one before it";
+  EXPECT_EQ(link_errors().events_dropped, 1);
 }
 
 // It comes all at once when the record that it might have been is given up.
