@@ -51,7 +51,7 @@ def test_what_is_too_weak_is_refused(files, tmp_path):
     weak = tmp_path / "token"
     weak.write_text("secret\n")
     weak.chmod(0o600)
-    with pytest.raises(InputError, match="at least 22 letters"):
+    with pytest.raises(InputError, match="22 or more random letters"):
         outside("localhost", certificate, key, weak)
     weak.write_text(TOKEN)
     weak.chmod(0o644)

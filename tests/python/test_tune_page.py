@@ -125,7 +125,7 @@ def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
 def test_an_unplugged_drive_is_said(tuned, fake):
     fake.unplug()
     tuned.wait_for_selector("#lost:visible")
-    assert "is lost" in tuned.inner_text("#lost")
+    assert "is gone" in tuned.inner_text("#lost")
 
 
 def test_another_site_in_the_same_browser_gets_nothing(tuned, server):
