@@ -69,7 +69,7 @@ def read(path: Path) -> Scenario:
         InputError: the file is wrong.
     """
     data = toml_table.read(path).items()
-    json_schema.check(data, _schema(), str(path))
+    json_schema.check(data, _schema(core.load()), str(path))
     if data["id"] != path.stem:
         raise RelationError(f"{path}: id = '{data['id']}': must be the file's name, '{path.stem}'")
     stated = [_with_defaults(run, data.get("defaults", {})) for run in data["runs"]]
@@ -95,8 +95,7 @@ def read(path: Path) -> Scenario:
 
 
 @functools.cache
-def _schema() -> Json:
-    native = core.load()
+def _schema(native: Any) -> Json:
     return file_schema.scenario(core.plant_schema(native), core.parameters(native))
 
 
