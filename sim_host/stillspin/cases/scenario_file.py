@@ -95,7 +95,7 @@ def read(path: Path) -> Scenario:
 
 
 @functools.cache
-def _schema(native: Any) -> Json:
+def _schema(native: core.NativeCore) -> Json:
     return file_schema.scenario(core.plant_schema(native), core.parameters(native))
 
 
