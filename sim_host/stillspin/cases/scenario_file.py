@@ -7,7 +7,6 @@ command such as `set:encoder_trim`. `waveform` in a run asks for what happens in
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Collection, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -69,7 +68,7 @@ def read(path: Path) -> Scenario:
         InputError: the file is wrong.
     """
     data = toml_table.read(path).items()
-    json_schema.check(data, _schema(core.load()), str(path))
+    json_schema.check(data, _schema(), str(path))
     if data["id"] != path.stem:
         raise RelationError(f"{path}: id = '{data['id']}': must be the file's name, '{path.stem}'")
     stated = [_with_defaults(run, data.get("defaults", {})) for run in data["runs"]]
@@ -94,8 +93,8 @@ def read(path: Path) -> Scenario:
     )
 
 
-@functools.cache
-def _schema(native: core.NativeCore) -> Json:
+def _schema() -> Json:
+    native = core.load()
     return file_schema.scenario(core.plant_schema(native), core.parameters(native))
 
 
