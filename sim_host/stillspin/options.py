@@ -89,6 +89,15 @@ ParamsOption = Annotated[
 ]
 
 
+PaceOption = Annotated[
+    float,
+    typer.Option(
+        "--speed",
+        parser=number("--speed", 0),
+        metavar="N",
+        help="Speed as a multiple of real time; 0 is as fast as possible.",
+    ),
+]
 JobsOption = Annotated[
     int | None,
     typer.Option(

@@ -144,7 +144,7 @@ def talk(server, conversation):
             aiohttp.ClientSession(headers=cookie(server)) as session,
             session.ws_connect(f"{own}/live", origin=own) as socket,
         ):
-            await asyncio.wait_for(conversation(Page(socket)), 60)  # what never comes fails, and holds up nobody
+            await asyncio.wait_for(conversation(Page(socket)), 60)  # s: what never comes is a failure, no hang
 
     asyncio.run(connected())
 
@@ -185,8 +185,8 @@ def test_what_the_server_does_not_know_is_said_and_harms_nothing(server):
 def clock(server):
     """The dead man's clock, which only the test moves: [s]."""
     now = [0.0]
-    # the server's parts hold the one dead man: he is made anew in his place
-    server.bench.dead_man.__init__(PATIENCE, lambda: now[0])
+    switch = server.bench.dead_man
+    switch.patience, switch.clock = PATIENCE, lambda: now[0]
     return now
 
 

@@ -10,7 +10,7 @@ import typer
 from stillspin import core, resources
 from stillspin.board import power, serve
 from stillspin.cases import profile
-from stillspin.options import ChangeOption, MotorOption, ParamsOption, ProfileOption, SeedOption, number
+from stillspin.options import ChangeOption, MotorOption, PaceOption, ParamsOption, ProfileOption, SeedOption, number
 from stillspin.runs import commission
 
 
@@ -21,15 +21,7 @@ def board(
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
-    speed: Annotated[
-        float,
-        typer.Option(
-            "--speed",
-            parser=number("--speed", 0),
-            metavar="N",
-            help="Speed as a multiple of real time; 0 is as fast as possible.",
-        ),
-    ] = 1.0,
+    speed: PaceOption = 1.0,
     serial_link: Annotated[
         Path | None,
         typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),

@@ -10,7 +10,7 @@ import typer
 from stillspin.board import loader as virtual
 from stillspin.commands.flash import kernel_beside
 from stillspin.flash.files import kernel_program
-from stillspin.options import number
+from stillspin.options import PaceOption
 
 
 def loader(
@@ -26,15 +26,7 @@ def loader(
         Path | None,
         typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
     ] = None,
-    speed: Annotated[
-        float,
-        typer.Option(
-            "--speed",
-            parser=number("--speed", 0),
-            metavar="N",
-            help="Speed as a multiple of real time; 0 is as fast as possible.",
-        ),
-    ] = 1.0,
+    speed: PaceOption = 1.0,
 ) -> None:
     """Run a virtual board in serial boot, to try `stillspin flash`; Ctrl-C switches it off.
 

@@ -14,8 +14,10 @@ class DeadMan:
     """Who holds the motor, and since when nothing was heard. Any thread."""
 
     def __init__(self, patience: float = PATIENCE, clock: Callable[[], float] = time.monotonic) -> None:
-        self._patience = patience
-        self._clock = clock
+        self.patience = patience
+        """Seconds of silence that are borne."""
+        self.clock = clock
+        """Tells the time in seconds."""
         self._lock = threading.Lock()
         self._holder: str | None = None
         self._heard = 0.0
@@ -23,13 +25,13 @@ class DeadMan:
     def take(self, who: str) -> None:
         """`who` holds the motor from now on; the one before does not."""
         with self._lock:
-            self._holder, self._heard = who, self._clock()
+            self._holder, self._heard = who, self.clock()
 
     def tell(self, who: str) -> None:
         """`who` is still there."""
         with self._lock:
             if who == self._holder:
-                self._heard = self._clock()
+                self._heard = self.clock()
 
     @property
     def heard(self) -> float:
@@ -52,7 +54,7 @@ class DeadMan:
     def expired(self) -> bool:
         """True once, when the holder has been silent for too long; it then holds the motor no more."""
         with self._lock:
-            late = self._holder is not None and self._clock() - self._heard > self._patience
+            late = self._holder is not None and self.clock() - self._heard > self.patience
             if late:
                 self._holder = None
             return late
