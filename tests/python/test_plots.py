@@ -1,11 +1,15 @@
 """Plots keep every peak of a long record, survive records that are cut short, and are the same every time."""
 
+import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from stillspin.cases import scenario_file
 from stillspin.cases.scenario import Plot
 from stillspin.report import panels, plots
+from stillspin.report.special_plots import SPECIAL
+from stillspin.report.style import PANEL_HEIGHT, STYLE
 
 
 def recorded(duration=1.0, first=-0.05):
@@ -64,6 +68,15 @@ def test_every_panel_draws_one_run_and_several(panel, runs):
     svg = plots.draw(plot, scenario_file.load("A18a"), {name: recorded() for name in runs})
     assert svg.startswith("<?xml")
     assert svg == plots.draw(plot, scenario_file.load("A18a"), {name: recorded() for name in runs})
+
+
+@pytest.mark.parametrize("panel", [name for name in panels.PANELS if name not in SPECIAL])
+def test_a_label_is_no_longer_than_its_panel_is_high(panel):
+    with mpl.rc_context(STYLE):
+        size = mpl.rcParams["axes.labelsize"]
+        figure = Figure()
+        label = figure.text(0, 0, panels.PANELS[panel].label, rotation=90, fontsize=size)
+        assert label.get_window_extent().height / figure.dpi < PANEL_HEIGHT
 
 
 @pytest.mark.parametrize("panel", panels.PANELS)

@@ -87,7 +87,7 @@ PANELS: dict[str, Panel] = {
             Line("reference", _signal("speed_ref"), "reference"),
         ),
     ),
-    "tracking": Panel("true − commanded speed (rpm)", (Line("error", _deviation, "true"),), symmetric=True),
+    "tracking": Panel("tracking error (rpm)", (Line("error", _deviation, "true"),), symmetric=True),
     "position_error": Panel("position error (° el)", (Line("true − used", _error, "error"),), symmetric=True),
     "angle": Panel(
         "angle (° el)",
@@ -98,9 +98,7 @@ PANELS: dict[str, Panel] = {
         "shaft travel (° el)",
         (Line("true", _travel("true_angle"), "true"), Line("used", _travel("est_angle"), "estimate")),
     ),
-    "beside_error": Panel(
-        "position error of the method beside (° el)", (Line("true − beside", _beside_error, "error"),), symmetric=True
-    ),
+    "beside_error": Panel("error, beside (° el)", (Line("true − beside", _beside_error, "error"),), symmetric=True),
     "load_angle": Panel(
         "load angle (° el)",
         (Line("true", _wrapped("true_load_angle"), "true"), Line("estimated", _wrapped("load_angle"), "estimate")),
@@ -108,7 +106,7 @@ PANELS: dict[str, Panel] = {
     "load_angle_error": Panel(
         "load-angle error (° el)", (Line("true − estimated", _load_angle_error, "error"),), symmetric=True
     ),
-    "magnet_flux": Panel("magnet flux learnt (mVs)", (Line("learnt", _signal("magnet_flux", 1e3), "estimate"),)),
+    "magnet_flux": Panel("magnet flux (mVs)", (Line("learnt", _signal("magnet_flux", 1e3), "estimate"),)),
     "torque": Panel(
         "torque (N m)",
         (
@@ -134,7 +132,7 @@ PANELS: dict[str, Panel] = {
             Line("$i_c$", _signal("i_c"), "c"),
         ),
     ),
-    "weight": Panel("share of the low-speed estimator", (Line("weight", _signal("weight"), "true"),)),
+    "weight": Panel("low-speed share", (Line("weight", _signal("weight"), "true"),)),
     "link": Panel("DC link (V)", (Line("measured", _signal("v_dc"), "true"),)),
     "trajectory": Panel("$i_β$ (A)", ()),
     "deviation_sweep": Panel("q-axis current deviation (A/s)", ()),
