@@ -20,6 +20,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import compose
+
 ROOT = Path(__file__).resolve().parent.parent
 BUDGET = ROOT / "toolchain" / "m3_budget.txt"
 CHARGES = ROOT / "firmware" / "interfaces" / "isr_cycles.h"
@@ -121,18 +123,17 @@ def build(out: Path) -> Path:
     found = (path.relative_to(ROOT) for folder in FOLDERS for path in (ROOT / folder).rglob("*.c"))
     sources = sorted(path for path in found if "image" not in path.parts)  # the DSP's own start
     counters = [Path("tests/m3/replay.c"), Path("tests/m3/startup.c")]
-    texts = out / "packed_text_table.c"
-    subprocess.run([sys.executable, ROOT / "toolchain" / "pack_text.py", texts], check=True)
+    made = compose.write(out.resolve() / "made")
     ccache = [tool] if (tool := shutil.which("ccache")) else []
 
     def compile_one(source: Path) -> Path:
         target = out / source.as_posix().strip("/").replace("/", "_").replace(".c", ".o")
-        flags = (*COMMON, *(COUNTER if source in counters else PROGRAM))
+        flags = (*COMMON, f"-I{out.resolve() / 'made'}", *(COUNTER if source in counters else PROGRAM))
         subprocess.run([*ccache, COMPILER, *flags, "-c", source.as_posix(), "-o", target], cwd=ROOT, check=True)
         return target
 
     with ThreadPoolExecutor(2) as pool:
-        objects = list(pool.map(compile_one, [*sources, texts.resolve(), *counters]))
+        objects = list(pool.map(compile_one, [*sources, *made, *counters]))
 
     def start_file(name: str) -> str:
         found = subprocess.run([COMPILER, *CPU, f"-print-file-name={name}"], capture_output=True, text=True, check=True)

@@ -1,41 +1,41 @@
-#!/usr/bin/env python3
 """Packs the drive's texts: two octets in a word, and an octet above 127 stands for two others.
-
-Usage: toolchain/pack_text.py OUTPUT.c     (the build does it)
 
 A character of a string takes a word of the C28x's flash. What the lists below have, names and units, meanings, causes
 and remedies, words of states and help, is therefore packed by pairs that occur often (byte pair encoding: P. Gage, "A
-New Algorithm for Data Compression", C Users Journal 12(2), 1994). The lists stay what people read and change;
-firmware/text/packed_text.h numbers the texts in the same order.
+New Algorithm for Data Compression", C Users Journal 12(2), 1994). The lists stay what people read and change; the
+texts' numbers are made here as well, so that the code that says something includes none of them.
 """
 
 import re
-import sys
 from collections import Counter
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-# The list, its macro, and which of the macro's arguments is the text: in the order of packed_text.h.
+NUMBERS = "firmware/text/text_numbers.h"
+# The lists (with * those of every folder), the macro, which of its arguments is the text, and what its number is
+# called, by the arguments.
 LISTS = (
-    ("firmware/dictionary/parameter_list.h", "PARAMETER", 9),
-    ("firmware/dictionary/signal_list.h", "SIGNAL", 5),
-    ("firmware/dictionary/fault_list.h", "FAULT", 2),
-    ("firmware/dictionary/fault_list.h", "FAULT", 3),
-    ("firmware/text/word_list.h", "WORDS", 2),
-    ("firmware/console/command_list.h", "COMMAND", 2),
-    ("firmware/console/help_list.h", "HELP", 2),
-    ("firmware/text/phrase_list.h", "PHRASE", 1),
-    ("firmware/dictionary/parameter_list.h", "PARAMETER", 1),
-    ("firmware/dictionary/parameter_list.h", "PARAMETER", 2),
-    ("firmware/dictionary/signal_list.h", "SIGNAL", 0),
-    ("firmware/dictionary/signal_list.h", "SIGNAL", 1),
-    ("firmware/console/command_list.h", "COMMAND", 0),
-    ("firmware/console/command_list.h", "COMMAND", 1),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 9, "TEXT_PARAMETER_{1}"),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 5, "TEXT_SIGNAL_{0}"),
+    ("firmware/dictionary/fault_list.h", "FAULT", 2, "TEXT_FAULT_{0}"),
+    ("firmware/dictionary/fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
+    ("firmware/text/word_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
+    ("firmware/console/command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
+    ("firmware/console/help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
+    ("firmware/*/phrase_list.h", "PHRASE", 1, "SAY_{0}"),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 2, "TEXT_PARAMETER_UNIT_{1}"),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 0, "TEXT_SIGNAL_NAME_{0}"),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 1, "TEXT_SIGNAL_UNIT_{0}"),
+    ("firmware/console/command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
+    ("firmware/console/command_list.h", "COMMAND", 1, "TEXT_COMMAND_ARGUMENTS_{0}"),
 )
 PAIRS = 128
 FIRST_PAIR = 128
 DEPTH = 8  # PACKED_DEPTH: pairs of pairs, at most so deep
+INCLUDE = re.compile(r'^#include "(firmware/[^"]+)"$', re.MULTILINE)
 TOKEN = re.compile(r'//[^\n]*|"(?:[^"\\]|\\.)*"|[(),]|[^"(),/]+|/')
 
 
@@ -61,15 +61,35 @@ def rows(text: str, macro: str) -> list[list[str]]:
     return found
 
 
-def texts(root: Path = ROOT) -> list[str]:
-    """All texts in their order."""
-    found: list[str] = []
-    for name, macro, column in LISTS:
-        content = (root / name).read_text(encoding="utf-8")
-        found += [row[column] for row in rows(content, macro)]
-    for text in found:
+def files(root: Path) -> list[Path]:
+    """All lists, with the parts that some consist of."""
+    found = [path for pattern, *_ in LISTS for path in sorted(root.glob(pattern))]
+    parts = [root / name for path in found for name in INCLUDE.findall(path.read_text(encoding="utf-8"))]
+    return sorted({*found, *parts})
+
+
+def whole(root: Path, name: str) -> str:
+    """A list with its parts in the place of their names."""
+    text = (root / name).read_text(encoding="utf-8")
+    return INCLUDE.sub(lambda part: (root / part[1]).read_text(encoding="utf-8"), text)
+
+
+def texts(root: Path = ROOT) -> dict[str, str]:
+    """All texts by what their numbers are called, in their order."""
+
+    def read() -> Iterator[tuple[str, str]]:
+        for pattern, macro, column, name in LISTS:
+            for path in sorted(root.glob(pattern)):
+                for row in rows(whole(root, path.relative_to(root).as_posix()), macro):
+                    yield name.format(*row), row[column]
+
+    found: dict[str, str] = {}
+    for name, text in read():
         if not text.isascii() or "\\" in text or any(not 32 <= ord(c) < 127 for c in text):
             raise ValueError(f"not plain ASCII: {text!r}")
+        if name in found:
+            raise ValueError(f"{name} is there twice")
+        found[name] = text
     return found
 
 
@@ -102,8 +122,14 @@ def table(name: str, values: list[int]) -> list[str]:
     return [*lines, "};", ""]
 
 
+def numbers(names: list[str]) -> str:
+    """The header with the texts' numbers."""
+    lines = ["// Made by toolchain/compose.py: the numbers of the packed texts.", "", "enum {"]
+    return "\n".join([*lines, *(f"  {name}," for name in names), "  PACKED_TEXTS", "};", ""])
+
+
 def pack(strings: list[str]) -> str:
-    """The C file."""
+    """The C file with the texts."""
     coded = {string: [ord(c) for c in string] for string in strings}
     pairs = squeeze(list(coded.values()))
     octets: list[int] = []
@@ -118,7 +144,7 @@ def pack(strings: list[str]) -> str:
     taken = len(words) + len(starts) + len(pairs)
     return "\n".join(
         [
-            f"// Made by toolchain/pack_text.py: {len(strings)} texts, {plain} characters, {taken} words.",
+            f"// Made by toolchain/compose.py: {len(strings)} texts, {plain} characters, {taken} words.",
             '#include "firmware/text/packed_text.h"',
             "",
             f"typedef char all_texts_are_here[(PACKED_TEXTS == {len(strings)}) ? 1 : -1];",
@@ -129,18 +155,3 @@ def pack(strings: list[str]) -> str:
             *table("packed_octets", words),
         ]
     )
-
-
-def main() -> int:
-    """See above."""
-    try:
-        content = pack(texts())
-    except ValueError as error:
-        print(f"pack_text: {error}", file=sys.stderr)
-        return 1
-    Path(sys.argv[1]).write_text(content, encoding="utf-8")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -27,6 +27,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from subprocess import PIPE, STDOUT
 
+import compose
 import planted
 from proof.defects import DEFECTS
 from proof.parts import LONGEST, PARTS, PROVED, SHOWN_ELSEWHERE, Part
@@ -34,7 +35,7 @@ from proof.shown import Shown
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
-PACK, TABLE = "toolchain/pack_text.py", "packed_text_table.c"
+MADE = "made"
 KNOWN = "tests/prove/alarms.txt"
 SECONDS = 1500
 FALSE_SHARE = 4  # of a goal's time: still some ten times what is true of the planted functions takes
@@ -94,8 +95,8 @@ def read(part: Part, tree: Path, out: Path, defective: Collection[str] = ()) -> 
     """Lets Frama-C read a part; with defective functions no further than until each of them has shown itself."""
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
     included = " ".join(f"-include {header}" for header in part.headers)
-    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -std=c99 {included}")
-    sources = sources_of(part, tree, out / TABLE)
+    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -I{out / MADE} -std=c99 {included}")
+    sources = sources_of(part, tree, out / MADE / compose.TEXTS)
     given = ("-eva-use-spec", part.given) if part.given else ()
     named = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
     command = ["frama-c", *machine, *sources, *part.flags, *given, *named, "-then", "-report-csv", str(table)]
@@ -222,7 +223,7 @@ def main() -> int:
         return 2
     out.mkdir(parents=True, exist_ok=True)
     subprocess.run(["why3", "-C", str(out / "why3.conf"), "config", "detect"], capture_output=True, check=True)
-    subprocess.run([sys.executable, PACK, str(out / TABLE)], cwd=ROOT, check=True)
+    compose.write(out / MADE)
     return plant(out, names) if options else check(out, names)
 
 

@@ -6,8 +6,8 @@
 
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/flux.h"
 #include "hal/hal_adc.h"
 
 #define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
@@ -15,7 +15,6 @@
 #define HOLD_BELOW_RPM_Q16 1310720L  // 20 rpm
 #define COGGING_MAX_Q20 1048576L     // 1 N m
 #define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
-#define LEAST_BAND_Q20 10486L        // 0.01 A
 #define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
 #define MILLIHENRY_Q30 1099511628L   // mH (Q20) to H (Q30): 1.024
 
@@ -104,8 +103,7 @@ static bool load_modulation(drive_config_t* c) {
   c->modulator.sampling.last_tick = 9640;
   c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
   c->dead_time.released_ticks = ticks(p->turn_off_delay);
-  // Half of it is for what the ripple at an edge is wrong by, and the flux has centred pulses without any.
-  c->dead_time.band_q20 = flux_source_is_wanted() ? q_max(q_shr(p->drop_band, 1), LEAST_BAND_Q20) : p->drop_band;
+  c->dead_time.band_q20 = p->drop_band;
   c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + c->dead_time.band_q20;
   c->dead_time.drop_q16 = p->device_drop;
   dead_time_design(&c->dead_time);
@@ -199,13 +197,20 @@ static bool load_position(drive_config_t* c) {
   c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   slopes_design(&c->slopes);
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
-  return load_blend(c) && flux_source_load(c);
+  return load_blend(c);
+}
+
+static bool load_parts(drive_config_t* c) {
+  bool fits = true;
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) fits = edition_config_parts[k](c) && fits;
+  return fits;
 }
 
 const drive_config_t* drive_config_make(void) {
   static drive_config_t made;  // too large for the stack; the background level alone makes configurations
   clear(&made, sizeof made);
-  const bool fits = load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made);
+  const bool fits =
+      load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made) && load_parts(&made);
   return fits ? &made : NULL;
 }
 

@@ -43,7 +43,7 @@
 
 /// Derived from the parameters, see config/config.c. Holds nothing that is found while the drive runs: the background
 /// level replaces it as a whole.
-typedef struct {
+typedef struct drive_config {
   machine_model_t nameplate;
   modulator_config_t modulator;
   dead_time_config_t dead_time;

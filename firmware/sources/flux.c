@@ -15,7 +15,8 @@
 #define CURRENT_LEAST_Q24 838861L        // the torque current makes a twentieth of the magnet's flux
 #define LEARNING_BPP 27342611L           // 400 rad/s: the magnet's flux is learnt from there on
 #define SEEING_SHIFT 4                   // 16 ms: the torque current's noise stays out of i_d
-#define SEEING 3  // times the current whose sign is certain: i_d without torque where the flux sees
+#define SEEING 3               // times the current whose sign is certain: i_d without torque where the flux sees
+#define LEAST_BAND_Q20 10486L  // 0.01 A
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
 
@@ -24,10 +25,18 @@ static int32_t method(void) {
   return q_max(parameters.position_source - POSITION_FLUX_CONV, parameters.flux_beside - 1);
 }
 
-bool flux_source_is_wanted(void) { return method() >= 0; }
+// Half of the band is for what the ripple at an edge is wrong by, and the flux has centred pulses without any.
+static void narrow_band(dead_time_config_t* c) {
+  const int32_t band_q20 = q_max(q_shr(c->band_q20, 1), LEAST_BAND_Q20);
+  c->edge_band_q20 -= c->band_q20 - band_q20;
+  c->band_q20 = band_q20;
+  dead_time_design(c);
+}
 
 bool flux_source_load(drive_config_t* c) {
   const parameters_t* const p = &parameters;
+  const bool is_wanted = method() >= 0;
+  if (is_wanted) narrow_band(&c->dead_time);
   flux_observer_config_t* const f = &c->flux;
   f->method = (flux_method_t)q_max(method(), FLUX_CONV);
   f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
@@ -42,7 +51,7 @@ bool flux_source_load(drive_config_t* c) {
   f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
   f->adaptation.current_q24 = CURRENT_LEAST_Q24;
   f->adaptation.lowest_bpp = LEARNING_BPP;
-  return !flux_source_is_wanted() || flux_observer_config_valid(f, &c->nameplate);
+  return !is_wanted || flux_observer_config_valid(f, &c->nameplate);
 }
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.

@@ -9,11 +9,8 @@
 
 #include "firmware/mode/mode.h"
 
-/// True where a method has the shaft, or looks on.
-bool flux_source_is_wanted(void);
-
-/// The flux's part of the configuration, from parameters and nameplate. False where it is wanted for a machine that it
-/// cannot be given.
+/// The flux's part of the configuration (interfaces/config_part.h). False where the flux is wanted for a machine that
+/// it cannot be given.
 bool flux_source_load(drive_config_t* c);
 
 /// Sets the flux to what this angle, in whose frame the current is measured, lets expect.

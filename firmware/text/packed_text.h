@@ -1,8 +1,8 @@
 // The drive's texts, packed in flash: two octets in a word, an octet above 127 stands for two others.
 //
 // A character of a string takes a whole word of the C28x's memory. toolchain/pack_text.py takes the texts from the
-// lists below, in this order, and packs them to less than a third (byte pair encoding: P. Gage, "A New Algorithm for
-// Data Compression", C Users Journal 12(2), 1994).
+// lists that people edit, numbers them (text_numbers.h, made by the build) and packs them to less than a third (byte
+// pair encoding: P. Gage, "A New Algorithm for Data Compression", C Users Journal 12(2), 1994).
 
 #ifndef STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
 #define STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "firmware/base/octets.h"
+#include "firmware/text/text_numbers.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -18,53 +19,6 @@ extern "C" {
 
 /// A text's number. Texts that are the same share their octets.
 typedef uint16_t packed_text_t;
-
-/// The texts, by the list that they stand in.
-enum {
-#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_##name,
-#include "firmware/dictionary/parameter_list.h"
-#undef PARAMETER
-#define SIGNAL(name, unit, q, of, value, meaning) TEXT_SIGNAL_##name,
-#include "firmware/dictionary/signal_list.h"
-#undef SIGNAL
-#define FAULT(number, name, words, remedy) TEXT_FAULT_##number,
-#include "firmware/dictionary/fault_list.h"
-#undef FAULT
-#define FAULT(number, name, words, remedy) TEXT_REMEDY_##number,
-#include "firmware/dictionary/fault_list.h"
-#undef FAULT
-#define WORDS(kind, code, text) TEXT_##kind##_##code,
-#include "firmware/text/word_list.h"
-#undef WORDS
-#define COMMAND(name, arguments, help) TEXT_COMMAND_##name,
-#include "firmware/console/command_list.h"
-#undef COMMAND
-#define HELP(command, number, text) TEXT_HELP_##command##_##number,
-#include "firmware/console/help_list.h"
-#undef HELP
-#define PHRASE(name, text) SAY_##name,
-#include "firmware/text/phrase_list.h"
-#undef PHRASE
-#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_NAME_##name,
-#include "firmware/dictionary/parameter_list.h"
-#undef PARAMETER
-#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) TEXT_PARAMETER_UNIT_##name,
-#include "firmware/dictionary/parameter_list.h"
-#undef PARAMETER
-#define SIGNAL(name, unit, q, of, value, meaning) TEXT_SIGNAL_NAME_##name,
-#include "firmware/dictionary/signal_list.h"
-#undef SIGNAL
-#define SIGNAL(name, unit, q, of, value, meaning) TEXT_SIGNAL_UNIT_##name,
-#include "firmware/dictionary/signal_list.h"
-#undef SIGNAL
-#define COMMAND(name, arguments, help) TEXT_COMMAND_NAME_##name,
-#include "firmware/console/command_list.h"
-#undef COMMAND
-#define COMMAND(name, arguments, help) TEXT_COMMAND_ARGUMENTS_##name,
-#include "firmware/console/command_list.h"
-#undef COMMAND
-  PACKED_TEXTS
-};
 
 #define PACKED_NONE PACKED_TEXTS  // no text
 

@@ -320,18 +320,21 @@ TEST_F(Units, SaturationAlongTheAxes) {
   expect_near_share(real(c.saturation.d_q30, 30), -0.017, 1e-4);
 }
 
+// Where the flux is at work a current's sign is trusted from half the band on.
 TEST_F(Units, TheMethodIsThatOfTheSourceOrOfWhoLooksOn) {
-  EXPECT_FALSE(flux_source_is_wanted());
+  const std::int32_t band_q20 = made().dead_time.band_q20, edge_band_q20 = made().dead_time.edge_band_q20;
+  EXPECT_EQ(band_q20, parameters.drop_band);
+  EXPECT_EQ(edge_band_q20 - band_q20, raw(0.5, 20));
   for (int method = FLUX_CONV; method <= FLUX_ACTIVE; ++method) {
-    parameters.position_source = POSITION_FLUX_CONV + method;
+    for (const bool looks_on : {false, true}) {
+      parameters.position_source = looks_on ? POSITION_ENCODER : POSITION_FLUX_CONV + method;
+      parameters.flux_beside = looks_on ? 1 + method : 0;
+      EXPECT_EQ(made().flux.method, method);
+      EXPECT_EQ(made().dead_time.band_q20, band_q20 / 2);
+      EXPECT_EQ(made().dead_time.edge_band_q20 - made().dead_time.band_q20, raw(0.5, 20));
+    }
     parameters.flux_beside = 0;
-    EXPECT_TRUE(flux_source_is_wanted());
-    EXPECT_EQ(made().flux.method, method);
-    parameters.position_source = POSITION_ENCODER;
-    EXPECT_FALSE(flux_source_is_wanted());
-    parameters.flux_beside = 1 + method;
-    EXPECT_TRUE(flux_source_is_wanted());
-    EXPECT_EQ(made().flux.method, method);
+    EXPECT_EQ(made().dead_time.band_q20, band_q20);
   }
 }
 

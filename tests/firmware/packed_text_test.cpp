@@ -38,11 +38,17 @@ struct Row {
 #define HELP(command, number, text) {TEXT_HELP_##command##_##number, text},
 #define PHRASE(name, text) {SAY_##name, text},
 const Row kRows[] = {
+#include "firmware/can/phrase_list.h"
+#include "firmware/config/phrase_list.h"
 #include "firmware/console/command_list.h"
 #include "firmware/console/help_list.h"
+#include "firmware/console/phrase_list.h"
 #include "firmware/dictionary/fault_list.h"
 #include "firmware/dictionary/parameter_list.h"
 #include "firmware/dictionary/signal_list.h"
+#include "firmware/hil/phrase_list.h"
+#include "firmware/scope/phrase_list.h"
+#include "firmware/store/phrase_list.h"
 #include "firmware/text/phrase_list.h"
 #include "firmware/text/word_list.h"
 };

@@ -9,6 +9,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
+import compose  # noqa: E402
 import pack_text  # noqa: E402
 
 
@@ -26,13 +27,28 @@ def test_arguments_of_a_macro_are_found() -> None:
 
 def test_every_list_has_its_texts() -> None:
     texts = pack_text.texts()
-    assert "stator resistance of a phase" in texts
-    assert "loss of synchronism" in texts
-    assert {"stator_resistance", "ohm", "speed", "commission"} <= set(texts)
+    assert texts["TEXT_PARAMETER_stator_resistance"] == "stator resistance of a phase"
+    assert texts["TEXT_FAULT_12"] == "loss of synchronism"
+    assert texts["SAY_nothing_has_been_recorded"].startswith("nothing has been recorded"), "a folder's own list"
+    assert {"stator_resistance", "ohm", "speed", "commission"} <= set(texts.values())
+
+
+def test_texts_are_numbered_as_they_are_packed() -> None:
+    made = compose.made()
+    names = re.findall(r"^  (\w+),?$", made[pack_text.NUMBERS], re.MULTILINE)
+    assert names == [*pack_text.texts(), "PACKED_TEXTS"]
+
+
+def test_two_texts_of_a_name_are_refused(tmp_path: Path) -> None:
+    for folder in ("scope", "can"):
+        (tmp_path / "firmware" / folder).mkdir(parents=True)
+        (tmp_path / "firmware" / folder / "phrase_list.h").write_text('PHRASE(none, "none")\n', encoding="utf-8")
+    with pytest.raises(ValueError, match="SAY_none is there twice"):
+        pack_text.texts(tmp_path)
 
 
 def test_unpacking_gives_the_texts_back() -> None:
-    texts = pack_text.texts()
+    texts = list(pack_text.texts().values())
     coded = [[ord(c) for c in text] for text in texts]
     pairs = pack_text.squeeze(coded)
     assert ["".join(unpacked(code, pairs) for code in string) for string in coded] == texts
@@ -63,8 +79,7 @@ def test_texts_that_are_the_same_share_their_octets() -> None:
 
 @pytest.mark.parametrize("text", ["10 µs", "line\\n"])
 def test_what_the_console_cannot_show_is_refused(tmp_path: Path, text: str) -> None:
-    for name, _, _ in pack_text.LISTS:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(f'WORDS(STATE, 0, "{text}")\n', encoding="utf-8")
+    (tmp_path / "firmware" / "text").mkdir(parents=True)
+    (tmp_path / "firmware" / "text" / "word_list.h").write_text(f'WORDS(STATE, 0, "{text}")\n', encoding="utf-8")
     with pytest.raises(ValueError, match="plain ASCII"):
         pack_text.texts(tmp_path)

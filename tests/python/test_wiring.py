@@ -27,7 +27,9 @@ def pins_of_the_guide() -> dict[str, int]:
 
 def parameter(name: str) -> list[int]:
     """Smallest, largest and default value in the units of its decimals."""
-    row = re.search(rf"PARAMETER\(\d+, {name}, ([^)]*)", source("firmware/dictionary/parameter_list.h"))
+    lists = sorted((ROOT / "firmware" / "dictionary").glob("parameters_*.h"))
+    rows = "".join(path.read_text(encoding="utf-8") for path in lists)
+    row = re.search(rf"PARAMETER\(\d+, {name}, ([^)]*)", rows)
     assert row
     fields = [field.strip() for field in row[1].split(",")]
     return [int(field) for field in fields[3:6]]

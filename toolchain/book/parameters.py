@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from board_table import read
-from pack_text import rows
+from pack_text import rows, whole
 
 LIST, SEEN = "firmware/dictionary/parameter_list.h", "docs/what_you_see.toml"
 BOARD = "hal/boards/bench.h"
@@ -42,7 +42,7 @@ class Parameter:
 def parameters(root: Path) -> Iterator[Parameter]:
     """All of them, in the order of the list; what the board decides is that of `bench`."""
     board = {name: text.rstrip("u") for name, text in read(root / BOARD).values.items()}
-    text = (root / LIST).read_text(encoding="utf-8")
+    text = whole(root, LIST)
     starts = [match for match in _HEADING.finditer(text) if match.start() > 0]
     for k, match in enumerate(starts):
         part = text[match.end() : starts[k + 1].start() if k + 1 < len(starts) else len(text)]

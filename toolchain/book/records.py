@@ -50,7 +50,7 @@ COMMANDS = {
         (
             *DRIVE,
             *("hal/f2808/image/boot.asm", "toolchain/c28x", "toolchain/f2808", "toolchain/image"),
-            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py"),
+            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/compose.py"),
         ),
     ),
     "isr-cost": Made("make isr-cost", "build/isr-cost/figures.json", (*DRIVE, "toolchain/m3_cost.py", "tests/m3")),

@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+import pack_text
+
 from checks import Finding
 from checks.calls import foreign_calls
 from checks.preprocessor import SOURCE_FOLDERS, directives, sources
@@ -101,6 +103,8 @@ def part_of(path: str) -> str | None:
 
 def _resolve(root: Path, source: str, name: str) -> str | None:
     """The file of the tree that ``name``, included by ``source``, means: beside it or from the root."""
+    if name == pack_text.NUMBERS:
+        return name  # the build makes it
     for base in (posixpath.dirname(source), ""):
         candidate = posixpath.normpath(posixpath.join(base, name))
         if (root / candidate).is_file():

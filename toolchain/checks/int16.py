@@ -12,8 +12,9 @@ import subprocess
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-import pack_text
+import compose
 
 from checks import Finding
 
@@ -66,8 +67,9 @@ def check_all(root: Path, units: Mapping[str, str | None]) -> list[Finding]:
         return [Finding("toolchain/find-clang.sh", 0, "no clang with the msp430 target: run `make setup`")]
     runs: list[tuple[str, tuple[str, ...]]] = [(name, ()) for name in units]
     runs += [(name, DSP) for name in units if name.startswith("hal/")]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = pool.map(lambda run: check_file(clang, root, run[0], units[run[0]], run[1]), runs)
+    with TemporaryDirectory() as made, ThreadPoolExecutor(os.cpu_count()) as pool:
+        compose.write(Path(made), root)
+        results = pool.map(lambda run: check_file(clang, root, run[0], units[run[0]], (f"-I{made}", *run[1])), runs)
         # A header's fault is reported by every file that includes it: once is enough.
         return list(dict.fromkeys(finding for result in results for finding in result))
 
@@ -81,7 +83,7 @@ def check_sources(root: Path) -> list[Finding]:
 def check_generated(root: Path) -> list[Finding]:
     """Findings for what the build makes: the packed texts, and the identity with 0, the narrowest, for its numbers."""
     made = {
-        "firmware/packed_text_table.c": pack_text.pack(pack_text.texts(root)),
+        **{f"firmware/{name}": text for name, text in compose.made(root).items() if name.endswith(".c")},
         IDENTITY: re.sub(r"@\w+@", "0", (root / IDENTITY).read_text(encoding="utf-8")),
     }
     return check_all(root, {name: f'#line 1 "{name}"\n{text}' for name, text in made.items()})

@@ -133,7 +133,18 @@ def compile_one(source: Path, options: argparse.Namespace) -> Path:
     stem = options.out / source.as_posix().replace("/", "_").removesuffix(".c")
     extra = (*(TRAP if options.trap else ()), *(ADDRESS if options.address else ()))
     characters = ("-I", str(HERE / "include"), "-include", str(HERE / "include" / "characters.h"))
-    text = widen(run(clang, *FRONT, f"-I{options.tree}", "-I.", *characters, "-E", str(options.tree / source)))
+    text = widen(
+        run(
+            clang,
+            *FRONT,
+            f"-I{options.made}",
+            f"-I{options.tree}",
+            "-I.",
+            *characters,
+            "-E",
+            str(options.tree / source),
+        )
+    )
     code = run(
         *(clang, *FRONT, *extra, "-O1", "-g", "-Xclang", "-disable-llvm-passes"),
         *("-x", "cpp-output", "-S", "-emit-llvm", "-o", "-", "-"),
@@ -184,6 +195,7 @@ def main() -> int:
     parser.add_argument("--calls", default="")
     parser.add_argument("--gives", default="")
     parser.add_argument("--tree", type=Path, default=ROOT)
+    parser.add_argument("--made", type=Path, required=True)
     parser.add_argument("--rest", type=Path)
     parser.add_argument("sources", type=Path, nargs="+")
     options = parser.parse_intermixed_args()

@@ -1,5 +1,4 @@
 # The drive's sources as objects with a 16-bit int: toolchain/int16/compile.py.
-find_package(Python COMPONENTS Interpreter REQUIRED)
 file(GLOB_RECURSE drive_sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
   ${PROJECT_SOURCE_DIR}/hal/*.c ${PROJECT_SOURCE_DIR}/control/*.c ${PROJECT_SOURCE_DIR}/svpwm/*.c
   ${PROJECT_SOURCE_DIR}/estimators/*.c ${PROJECT_SOURCE_DIR}/firmware/*.c)
@@ -11,16 +10,13 @@ file(GLOB_RECURSE drive_headers CONFIGURE_DEPENDS
 # Makes <folder>/all.o of some of them (SOURCES) and of a test's own (OWN).
 function(stillspin_int16_objects folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;OWN;OPTIONS" ${ARGN})
-  set(texts ${folder}_texts.c)
   set(sources ${ARG_SOURCES} ${ARG_OWN})
   list(TRANSFORM sources PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE absolute_sources)
   add_custom_command(OUTPUT ${folder}/all.o
-    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/toolchain/pack_text.py ${texts}
     COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/toolchain/int16/compile.py ${folder} ${ARG_OPTIONS}
-            ${sources} ${texts}
+            --made ${made_folder} ${sources} ${composed_sources}
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM
-    DEPENDS ${absolute_sources} ${drive_headers}
-            ${PROJECT_SOURCE_DIR}/toolchain/pack_text.py
+    DEPENDS ${absolute_sources} ${drive_headers} ${composed_sources}
             ${PROJECT_SOURCE_DIR}/toolchain/int16/compile.py ${PROJECT_SOURCE_DIR}/toolchain/int16/include/characters.h
             ${PROJECT_SOURCE_DIR}/toolchain/int16/include/stdint.h
     COMMENT "Compiling the drive with a 16-bit int")

@@ -1,0 +1,17 @@
+// What the CAN node says on the console: PHRASE(name, text), see text/phrase_list.h.
+
+PHRASE(bus_node, "bus         node ")
+PHRASE(kbit_s, " kbit/s")
+PHRASE(errors, "errors      ")
+PHRASE(lost, "lost        ")
+PHRASE(commands, "commands    ")
+PHRASE(sending, " sending, ")
+PHRASE(receiving, " receiving (96 is a warning, 256 sending is bus-off); bus-off ")
+PHRASE(times_restarted, " times, restarted ")
+PHRASE(times, " times")
+PHRASE(frames_or_records, " frames or records; ")
+PHRASE(commands_rejected, " commands rejected")
+PHRASE(none_received, "none received")
+PHRASE(received_but_not_started, "received, but the drive was not started by them")
+PHRASE(in_command_of_the_drive, "in command of the drive")
+PHRASE(missing_can_timeout, "missing (can_timeout)")
