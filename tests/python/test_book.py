@@ -117,7 +117,14 @@ def test_a_picture_that_no_command_made_fails_the_check(tree: Path) -> None:
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """A copy of what the pieces of the book are made of."""
-    for folder in ("docs", "toolchain/book", "hal/boards", "sim_host/motors", "sim_host/profiles", "firmware/dictionary"):
+    for folder in (
+        "docs",
+        "toolchain/book",
+        "hal/boards",
+        "sim_host/motors",
+        "sim_host/profiles",
+        "firmware/dictionary",
+    ):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
     shutil.copy(ROOT / "README.md", tmp_path / "README.md")
     (tmp_path / chip.COSTS).parent.mkdir()
