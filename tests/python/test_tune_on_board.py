@@ -98,7 +98,12 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     tuned.click("[data-tab=live]")
     refer(tuned, 400)
     assert wait_until(lambda: abs(speed(tuned) - 400) < 8, SLOW)
-    tuned.select_option("#window", "5")
+    tuned.click("#freeze")
+    drawn = tuned.locator("#plots").screenshot()
+    assert tuned.locator("#plots").screenshot() == drawn
+    tuned.select_option("#window", "5")  # what is frozen is drawn anew
+    assert tuned.locator("#plots").screenshot() != drawn
+    tuned.click("#freeze")
     picture(tuned, "live")
 
     # What may not change while it runs says why.

@@ -18,6 +18,7 @@ export class Live {
     link.on("plotted", ({ signals }) => this.begin(signals));
     link.on("samples", (message) => this.add(message));
     by("freeze").onclick = () => this.freeze();
+    by("window").onchange = () => this.time && this.draw(); // frozen or idle, too
     const draw = () => {
       if (this.dirty && !this.frozen && !by("live").hidden) this.draw();
       requestAnimationFrame(draw);
