@@ -1,57 +1,234 @@
 #!/usr/bin/env python3
-"""Makes what the build makes of the firmware's lists: the texts, packed, and their numbers.
+"""Makes what an edition of the firmware is composed of: its tables, the packed texts and their numbers.
 
-Usage: toolchain/compose.py FOLDER     (the build does it)
+Usage: toolchain/compose.py EDITION FOLDER     (the build does it)
+
+EDITION is a list in firmware/editions/ or a file of that form elsewhere: one feature a line, a folder of firmware/ with
+a feature.toml, or a path from where the list is. What a feature.toml may say:
+
+    needs       features without which this one does not work
+    headers     what declares the rows: in its folder, or from the root
+    parameters  numbers of the parameters that are its own
+    signals     names of the signals that are its own
+    words       kinds of words (text/word_list.h) that are its own
+    rows        by table: what stands there, with its place: a number, smaller ones come first
 
 What has not changed is not written again. FOLDER belongs into the include path before the tree.
 """
 
 import sys
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import pack_text
 
+ROOT = pack_text.ROOT
+EDITIONS, FEATURE = "firmware/editions", "feature.toml"
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
 
 
-def made(root: Path = pack_text.ROOT) -> dict[str, str]:
+@dataclass(frozen=True)
+class Table:
+    """A table of an edition, as C has it."""
+
+    type: str
+    header: str
+    form: str = "list"  # with NULL behind the last one; "one" and no more, or NULL; "places": by number, NULL between
+    least: int = 0  # places at least
+
+    def text(self, name: str, rows: list[tuple[int, str]]) -> str:
+        """Its definition, of rows with their places."""
+        refer = "&" if self.type.startswith("const ") else ""  # functions need none
+        if self.form == "one":
+            return f"{self.type}* const edition_{name} = {refer + rows[0][1] if rows else 'NULL'};\n"
+        if self.form == "places":
+            by_place = dict(rows)
+            count = max([self.least, *(place + 1 for place in by_place)])
+            cells = [refer + by_place[k] if k in by_place else "NULL" for k in range(count)]
+        else:
+            cells = [*(refer + row for _, row in rows), "NULL"]
+        prefix = "" if self.form == "places" else "edition_"
+        return "\n    ".join([f"{self.type}* const {prefix}{name}[] = {{", *(f"{cell}," for cell in cells)]) + "\n};\n"
+
+
+TABLES = {
+    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9),
+    "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
+    "config_parts": Table("config_part_t", "firmware/interfaces/config_part.h"),
+    "resets": Table("service_reset_t", "firmware/interfaces/service.h"),
+    "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
+}
+
+
+@dataclass(frozen=True)
+class Feature:
+    """A folder with what it says of itself."""
+
+    name: str
+    folder: Path
+    needs: tuple[str, ...] = ()
+    headers: tuple[str, ...] = ()
+    parameters: tuple[int, ...] = ()
+    signals: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    rows: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def places(self, table: str) -> list[tuple[int, str]]:
+        """Its rows in a table with their places."""
+        found = []
+        for name, places in self.rows.get(table, {}).items():
+            found += [(place, name) for place in (places if isinstance(places, list) else [places])]
+        return found
+
+
+@dataclass(frozen=True)
+class Edition:
+    """A list of features."""
+
+    name: str
+    file: Path
+    features: tuple[Feature, ...]
+
+
+def feature_of(name: str, folder: Path) -> Feature:
+    """What the folder says.
+
+    Raises:
+        ValueError: it says nothing, or something that is not known.
+    """
+    file = folder / FEATURE
+    if not file.is_file():
+        raise ValueError(f"there is no feature {name}: {file} does not exist")
+    try:
+        said = tomllib.loads(file.read_text(encoding="utf-8"))
+        if unknown := said.get("rows", {}).keys() - TABLES.keys():
+            raise ValueError(f"no table is called {', '.join(sorted(unknown))}")
+        lists = {key: value if key == "rows" else tuple(value) for key, value in said.items()}
+        return Feature(name, folder, **lists)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{file}: {error}") from error
+
+
+def all_features(root: Path = ROOT) -> list[Feature]:
+    """Those of the tree."""
+    base = root / "firmware"
+    folders = sorted(file.parent for file in base.rglob(FEATURE))
+    return [feature_of(folder.relative_to(base).as_posix(), folder) for folder in folders]
+
+
+def read_edition(name: str, root: Path = ROOT) -> Edition:
+    """An edition by its name, or by the path of its list.
+
+    Raises:
+        ValueError: there is no such list, a feature that it names does not exist or needs one that it does not name.
+    """
+    own = name.endswith(".txt")
+    file = Path(name) if own else root / EDITIONS / f"{name}.txt"
+    if not file.is_file():
+        known = ", ".join(path.stem for path in sorted((root / EDITIONS).glob("*.txt")))
+        raise ValueError(f"there is no edition {name}: {file} does not exist; there are {known}")
+    features = []
+    for line in file.read_text(encoding="utf-8").splitlines():
+        said = line.partition("#")[0].strip()
+        if said:
+            inside = root / "firmware" / said
+            outside = file.parent / said
+            features.append(feature_of(said, outside if not inside.is_dir() and outside.is_dir() else inside))
+    here = {feature.name for feature in features}
+    for feature in features:
+        if missing := [need for need in feature.needs if need not in here]:
+            raise ValueError(f"{file}: {feature.name} needs {', '.join(missing)}")
+    return Edition(file.stem, file, tuple(features))
+
+
+def table_text(name: str, edition: Edition, root: Path) -> str:
+    """The C file with a table.
+
+    Raises:
+        ValueError: two features want the same place.
+    """
+    table = TABLES[name]
+    rows: list[tuple[int, str]] = []
+    headers = {table.header}
+    for feature in edition.features:
+        own = feature.places(name)
+        rows += own
+        if own:
+            headers |= {header_of(feature, header, root) for header in feature.headers}
+    rows.sort()
+    for (place, row), (next_place, next_row) in pairwise(rows):
+        if place == next_place or table.form == "one":
+            raise ValueError(f"{edition.file}: {row} and {next_row} want the same place in {name}")
+    lines = [f"// Made by toolchain/compose.py: {name} of the edition {edition.name}.", "", "#include <stddef.h>", ""]
+    lines += [f'#include "{header}"' for header in sorted(headers)]
+    return "\n".join([*lines, "", table.text(name, rows)])
+
+
+def header_of(feature: Feature, header: str, root: Path) -> str:
+    """As it is included: from the root, or by its whole path where the feature is not in the tree."""
+    if header.startswith("firmware/"):
+        return header
+    path = feature.folder / header
+    return path.relative_to(root).as_posix() if path.is_relative_to(root) else path.resolve().as_posix()
+
+
+def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
     """The files by their names in the folder."""
     texts = pack_text.texts(root)
-    return {pack_text.NUMBERS: pack_text.numbers(list(texts)), TEXTS: pack_text.pack(list(texts.values()))}
+    return {
+        pack_text.NUMBERS: pack_text.numbers(list(texts)),
+        TEXTS: pack_text.pack(list(texts.values())),
+        **{f"{name}.c": table_text(name, edition, root) for name in TABLES},
+    }
 
 
-def write(folder: Path, root: Path = pack_text.ROOT) -> list[Path]:
+def write(folder: Path, edition: str = "lab", root: Path = ROOT) -> list[Path]:
     """Writes what differs; the C sources among them."""
-    files = made(root)
+    files = made(read_edition(edition, root), root)
     for name, text in files.items():
-        file = folder / name
-        if not file.exists() or file.read_text(encoding="utf-8") != text:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text, encoding="utf-8")
+        write_one(folder / name, text)
     return [folder / name for name in files if name.endswith(".c")]
 
 
-def set_list(name: str, paths: list[Path]) -> str:
+def write_one(file: Path, text: str) -> None:
+    """Writes a file that says something else, or is not there."""
+    if not file.exists() or file.read_text(encoding="utf-8") != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+
+def set_list(name: str, values: Iterable[str]) -> str:
     """A list for CMake."""
-    return "\n  ".join([f"set({name}", *(path.resolve().as_posix() for path in paths)]) + ")\n"
+    return "\n  ".join([f"set({name}", *values]) + ")\n"
 
 
-def write_for_cmake(folder: Path) -> None:
-    """The same, and what CMake has to know of it: the sources made, and what they are made of."""
-    sources = write(folder)
-    tools = [Path(__file__), Path(pack_text.__file__)]
-    lists = [*tools, *pack_text.files(pack_text.ROOT)]
-    text = set_list("composed_sources", sources) + set_list("composed_from", lists)
-    (folder / CMAKE).write_text(text, encoding="utf-8")
+def write_for_cmake(folder: Path, name: str) -> None:
+    """The same, and what CMake has to know of it."""
+    edition, features = read_edition(name), all_features()
+    sources = write(folder, name)
+    here = {feature.name for feature in edition.features}
+    known = {feature.name for feature in features}
+    outside = [feature for feature in edition.features if feature.name not in known]
+    files = [Path(__file__), Path(pack_text.__file__), edition.file, *pack_text.files(ROOT)]
+    files += [feature.folder / FEATURE for feature in (*features, *outside)]
+    text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
+    text += set_list("composed_from", (path.resolve().as_posix() for path in files))
+    text += set_list("composed_left_out", (feature.name for feature in features if feature.name not in here))
+    text += set_list("composed_outside", (feature.folder.resolve().as_posix() for feature in outside))
+    write_one(folder / CMAKE, text)
 
 
 def main() -> int:
     """See above."""
-    if len(sys.argv) != 2:
+    if len(sys.argv) != 3:
         print(__doc__.strip())
         return 2
     try:
-        write_for_cmake(Path(sys.argv[1]))
+        write_for_cmake(Path(sys.argv[2]), sys.argv[1])
     except ValueError as error:
         print(f"compose: {error}", file=sys.stderr)
         return 1

@@ -80,8 +80,13 @@ PARTS = {
     "firmware/period": Part(
         (
             *(f"firmware/drive/{name}.c" for name in ("position", "modulation", "inertia", "current", "signals")),
-            *("firmware/drive/reload.c", "firmware/sources/*.c", "firmware/hysteresis/*.c", "firmware/config/config.c"),
-            *("firmware/boot/main.c", "firmware/editions/*.c"),
+            *(
+                "firmware/drive/reload.c",
+                "firmware/sources/*/*.c",
+                "firmware/hysteresis/*.c",
+                "firmware/config/config.c",
+            ),
+            "firmware/boot/main.c",
         ),
         FIRMWARE,
     ),

@@ -54,10 +54,12 @@ class Read:
     seconds: float
 
 
-def sources_of(part: Part, tree: Path, table: Path) -> list[str]:
-    """Its files, and with the texts the table that the build makes of them."""
+def sources_of(part: Part, tree: Path, out: Path) -> list[str]:
+    """Its files: those of the tree, those that the build makes, and with the texts their table."""
     found = [path.relative_to(tree).as_posix() for pattern in part.sources for path in sorted(tree.glob(pattern))]
-    return [*found, str(table)] if "firmware/text/packed_text.c" in found else found
+    made = [name for name in part.sources if name.startswith(f"{MADE}/")]
+    made += [f"{MADE}/{compose.TEXTS}"] if "firmware/text/packed_text.c" in found else []
+    return [*found, *(str(out / name) for name in made)]
 
 
 def summary(part: Part, rows: list[dict[str, str]], said: str) -> str:
@@ -96,7 +98,7 @@ def read(part: Part, tree: Path, out: Path, defective: Collection[str] = ()) -> 
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
     included = " ".join(f"-include {header}" for header in part.headers)
     machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -I{out / MADE} -std=c99 {included}")
-    sources = sources_of(part, tree, out / MADE / compose.TEXTS)
+    sources = sources_of(part, tree, out)
     given = ("-eva-use-spec", part.given) if part.given else ()
     named = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
     command = ["frama-c", *machine, *sources, *part.flags, *given, *named, "-then", "-report-csv", str(table)]

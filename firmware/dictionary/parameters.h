@@ -28,7 +28,7 @@ enum {
   POSITION_OBSERVER_AVV = 2,  // the observer at low speed, AVV above
   POSITION_AVV = 3,
   POSITION_OBSERVER = 4,
-  POSITION_FLUX_CONV = 5,  // from here on: the observer at low speed, the stator flux above (sources/flux.h)
+  POSITION_FLUX_CONV = 5,  // from here on: the observer at low speed, the stator flux above (sources/flux/)
   POSITION_FLUX_ACTIVE = 8
 };
 

@@ -7,7 +7,7 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/sources/flux.h"
+#include "firmware/sources/flux/flux.h"
 }
 
 namespace {

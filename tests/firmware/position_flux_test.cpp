@@ -8,7 +8,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/states.h"
-#include "firmware/sources/flux.h"
+#include "firmware/sources/flux/flux.h"
 #include "svpwm/ripple.h"
 }
 

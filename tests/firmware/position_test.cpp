@@ -7,7 +7,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
-#include "firmware/sources/flux.h"
+#include "firmware/sources/flux/flux.h"
 #include "firmware/sources/sources.h"
 }
 

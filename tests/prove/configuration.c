@@ -6,7 +6,7 @@
 #include "firmware/config/config.h"
 #include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/flux.h"
+#include "firmware/sources/flux/flux.h"
 #include "tests/prove/any_parameters.h"
 
 config_part_t* const edition_config_parts[] = {flux_source_load, NULL};

@@ -34,7 +34,7 @@ def test_every_list_has_its_texts() -> None:
 
 
 def test_texts_are_numbered_as_they_are_packed() -> None:
-    made = compose.made()
+    made = compose.made(compose.read_edition("lab"))
     names = re.findall(r"^  (\w+),?$", made[pack_text.NUMBERS], re.MULTILINE)
     assert names == [*pack_text.texts(), "PACKED_TEXTS"]
 

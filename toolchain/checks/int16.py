@@ -68,7 +68,8 @@ def check_all(root: Path, units: Mapping[str, str | None]) -> list[Finding]:
     runs: list[tuple[str, tuple[str, ...]]] = [(name, ()) for name in units]
     runs += [(name, DSP) for name in units if name.startswith("hal/")]
     with TemporaryDirectory() as made, ThreadPoolExecutor(os.cpu_count()) as pool:
-        compose.write(Path(made), root)
+        if (root / compose.EDITIONS).is_dir():
+            compose.write(Path(made), root=root)
         results = pool.map(lambda run: check_file(clang, root, run[0], units[run[0]], (f"-I{made}", *run[1])), runs)
         # A header's fault is reported by every file that includes it: once is enough.
         return list(dict.fromkeys(finding for result in results for finding in result))
@@ -83,7 +84,11 @@ def check_sources(root: Path) -> list[Finding]:
 def check_generated(root: Path) -> list[Finding]:
     """Findings for what the build makes: the packed texts, and the identity with 0, the narrowest, for its numbers."""
     made = {
-        **{f"firmware/{name}": text for name, text in compose.made(root).items() if name.endswith(".c")},
+        **{
+            f"firmware/{name}": text
+            for name, text in compose.made(compose.read_edition("lab", root), root).items()
+            if name.endswith(".c")
+        },
         IDENTITY: re.sub(r"@\w+@", "0", (root / IDENTITY).read_text(encoding="utf-8")),
     }
     return check_all(root, {name: f'#line 1 "{name}"\n{text}' for name, text in made.items()})

@@ -58,6 +58,7 @@ INLINED = "svpwm_fall_of,svpwm_order,nested_order,put_centred"
 SHOWN_ELSEWHERE = ("q_sat_bits", "q_mix", "q_mix_sat")
 
 QMATH = "hal/qmath/*.c"
+SOURCES_TABLE = "made/position_sources.c"  # of what the build makes (toolchain/compose.py)
 SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
 CONTROL = ("control/*.c", QMATH)
 ESTIMATORS = ("estimators/*.c", *CONTROL)
@@ -69,7 +70,7 @@ CONFIGURATION = (
         "firmware/config/rules.c",
         "firmware/base/clear.c",
     ),
-    *("firmware/sources/*.c", "firmware/editions/position_sources.c", "svpwm/*.c", *ESTIMATORS),
+    *("firmware/sources/*/*.c", SOURCES_TABLE, "svpwm/*.c", *ESTIMATORS),
 )
 OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
 FRAMES = (
@@ -126,8 +127,8 @@ DEVICES = ("tests/prove/devices.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2
 # All that the control interrupt runs but what speaks to the chip; and what of that is read by itself.
 INTERRUPT = (
     *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/scope/scope.c", *ESTIMATORS, "svpwm/*.c"),
-    *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*.c", "firmware/hysteresis/*.c"),
-    "firmware/editions/position_sources.c",
+    *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*/*.c", "firmware/hysteresis/*.c"),
+    SOURCES_TABLE,
     "firmware/dictionary/parameters.c",
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),

@@ -5,7 +5,7 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
-#include "firmware/sources/flux.h"
+#include "firmware/sources/flux/flux.h"
 #include "firmware/sources/sources.h"
 
 static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {

@@ -1,4 +1,4 @@
-#include "firmware/sources/flux.h"
+#include "firmware/sources/flux/flux.h"
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"

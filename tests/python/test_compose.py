@@ -1,0 +1,133 @@
+"""The composition of an edition: what its list takes, what it is refused for, and the tables that come of it."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+import compose  # noqa: E402
+
+EDITIONS = sorted(path.stem for path in (ROOT / compose.EDITIONS).glob("*.txt"))
+
+
+def plant(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def rows(text: str) -> list[str]:
+    """What stands in a table."""
+    found = re.search(r"\{(.*)\}", text, re.DOTALL)
+    assert found
+    return [row.strip().removeprefix("&") for row in found[1].split(",") if row.strip()]
+
+
+def test_lab_has_everything() -> None:
+    assert {feature.name for feature in compose.read_edition("lab").features} == {
+        feature.name for feature in compose.all_features()
+    }
+
+
+def test_each_edition_is_smaller_than_lab() -> None:
+    lab = {feature.name for feature in compose.read_edition("lab").features}
+    for name in set(EDITIONS) - {"lab"}:
+        assert {feature.name for feature in compose.read_edition(name).features} < lab
+
+
+def test_hil_is_drive_with_a_host_in_the_place_of_commissioning() -> None:
+    drive, hil = ({feature.name for feature in compose.read_edition(name).features} for name in ("drive", "hil"))
+    assert drive - hil == {"commissioning"}
+    assert hil - drive == {"hil"}
+
+
+def test_a_table_has_the_rows_of_the_edition_in_their_order(tmp_path: Path) -> None:
+    resets = compose.table_text("resets", compose.read_edition("lab"), ROOT)
+    assert [row for row in rows(resets) if row.startswith(("scope", "store", "board"))] == [
+        "scope_reset",
+        "store_reset",
+        "board_reset",
+    ]
+    backwards = plant(tmp_path, "backwards.txt", "board\nstore\nscope\n")
+    assert rows(compose.table_text("resets", compose.read_edition(str(backwards)), ROOT)) == rows(resets)
+
+
+def test_what_is_left_out_leaves_its_place_empty() -> None:
+    sources = compose.table_text("position_sources", compose.read_edition("minimal"), ROOT)
+    assert rows(sources) == ["NULL", "NULL", "observer_avv_source", "avv_source", "observer_source", *["NULL"] * 4]
+    assert "edition_phase_control = NULL;" in compose.table_text("phase_control", compose.read_edition("minimal"), ROOT)
+
+
+def test_every_row_is_declared_by_a_header_that_its_feature_names() -> None:
+    """Otherwise only the compiler of an edition that has it would notice."""
+    for feature in compose.all_features():
+        headers = [ROOT / compose.header_of(feature, header, ROOT) for header in feature.headers]
+        declared = "".join(header.read_text(encoding="utf-8") for header in headers)
+        for name in (name for table in feature.rows.values() for name in table):
+            assert re.search(rf"\b{name}\b", declared), f"{feature.name}: {name}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "wrong"),
+    [
+        ("drive\nscoop\n", "there is no feature scoop"),
+        ("drive\nbase\n", "there is no feature base"),
+        ("console\n", "console needs link"),
+        ("hysteresis\nsources/encoder\nsources/flux\n", "sources/encoder needs sources/observer"),
+    ],
+)
+def test_a_list_that_cannot_be_built_is_refused_by_name(tmp_path: Path, lines: str, wrong: str) -> None:
+    own = plant(tmp_path, "own.txt", lines)
+    with pytest.raises(ValueError, match=wrong):
+        compose.read_edition(str(own))
+
+
+def test_an_edition_that_there_is_not_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(ValueError, match=f"no edition labs: .*there are {', '.join(EDITIONS)}"):
+        compose.read_edition("labs")
+
+
+@pytest.mark.parametrize(
+    ("said", "wrong"),
+    [
+        ("[rows]\nrests = { a = 1 }\n", "no table is called rests"),
+        ('need = ["link"]\n', "need"),
+        ("needs = [\n", "feature.toml"),
+    ],
+)
+def test_a_feature_that_says_what_nobody_knows_is_refused(tmp_path: Path, said: str, wrong: str) -> None:
+    plant(tmp_path, "own/feature.toml", said)
+    own = plant(tmp_path, "own.txt", "own\n")
+    with pytest.raises(ValueError, match=wrong):
+        compose.read_edition(str(own))
+
+
+def test_two_rows_of_one_place_are_refused(tmp_path: Path) -> None:
+    plant(tmp_path, "own/feature.toml", "[rows]\nphase_control = { own_control = 1 }\n")
+    own = plant(tmp_path, "own.txt", "sources/observer\nsources/flux\nsources/encoder\nhysteresis\nown\n")
+    with pytest.raises(ValueError, match="hysteresis_control and own_control want the same place in phase_control"):
+        compose.table_text("phase_control", compose.read_edition(str(own)), ROOT)
+
+
+def test_the_configuration_stops_where_the_edition_cannot_be_built(tmp_path: Path) -> None:
+    plant(tmp_path, "own.txt", "console\n")
+    command = ["cmake", "-S", str(ROOT), "-B", str(tmp_path / "build"), f"-DSTILLSPIN_EDITION={tmp_path / 'own.txt'}"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    assert "console needs link" in done.stderr
+
+
+def test_what_has_not_changed_is_not_written_again(tmp_path: Path) -> None:
+    sources = compose.write(tmp_path)
+    before = {path: path.stat().st_mtime_ns for path in sources}
+    assert len(before) > len(compose.TABLES)
+    compose.write(tmp_path)
+    assert {path: path.stat().st_mtime_ns for path in sources} == before
+    compose.write(tmp_path, "minimal")
+    assert {path.name for path in sources if path.stat().st_mtime_ns != before[path]} >= {"position_sources.c"}
