@@ -18,9 +18,12 @@ from checks import (
     arrows,
     circles,
     command_files,
+    comparisons,
     conditionals,
+    faces,
     glossary,
     int16,
+    interrupt,
     links,
     packages,
     pieces,
@@ -56,6 +59,9 @@ def _commands(fix: bool) -> dict[str, list[list[str]]]:
 
 TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "arrows": arrows.check,
+    "faces": faces.check,
+    "comparisons": comparisons.check,
+    "interrupt": interrupt.check,
     "circles": circles.check,
     "conditionals": conditionals.check,
     "int16": int16.check,
@@ -69,6 +75,9 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
 }
 DESCRIPTIONS = {
     "arrows": "includes point downward",
+    "faces": "the firmware's headers are small",
+    "comparisons": "nobody asks which position source is chosen",
+    "interrupt": "interrupts read the configuration, no parameters",
     "circles": "no circle of imports in the Python package",
     "conditionals": "no code that only one build sees",
     "int16": "C compiles with a 16-bit int",

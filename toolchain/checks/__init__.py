@@ -5,6 +5,7 @@ Each check is a function from the root of the tree to a list of findings; an emp
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -18,3 +19,12 @@ class Finding:
     def __str__(self) -> str:
         place = f"{self.path}:{self.line}" if self.line else self.path
         return f"{place}: {self.message}"
+
+
+def left(file: Path) -> dict[tuple[str, str], int]:
+    """What a list of exceptions bears, ``file: what what``: file and what, with the line that says so."""
+    known = {}
+    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines() if file.exists() else [], start=1):
+        source, colon, what = line.partition("#")[0].partition(":")
+        known |= {(source.strip(), each): number for each in what.split() if colon}
+    return known

@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 
 import pack_text
 
-from checks import Finding
+from checks import Finding, left
 from checks.calls import foreign_calls
 from checks.preprocessor import SOURCE_FOLDERS, directives, sources
 
@@ -173,19 +173,9 @@ def arrows_up(root: Path) -> list[Arrow]:
     return sorted({*_includes(root), *_calls(root)}, key=lambda arrow: (arrow.source, arrow.line, arrow.target))
 
 
-def left(root: Path) -> dict[tuple[str, str], int]:
-    """What of it is known and borne: source and target, with the line that says so."""
-    file = root / LEFT
-    known = {}
-    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines() if file.exists() else [], start=1):
-        source, colon, targets = line.partition("#")[0].partition(":")
-        known |= {(source.strip(), target): number for target in targets.split() if colon}
-    return known
-
-
 def check(root: Path) -> list[Finding]:
     """Findings for every arrow that points up a floor, sideways, or nowhere, and for exceptions that nothing needs."""
-    found, borne = arrows_up(root), left(root)
+    found, borne = arrows_up(root), left(root / LEFT)
     needed = {(arrow.source, arrow.target) for arrow in found}
     findings = [Finding(a.source, a.line, a.message) for a in found if (a.source, a.target) not in borne]
     for (source, target), line in borne.items():

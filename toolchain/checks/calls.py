@@ -12,12 +12,12 @@ from pathlib import Path
 
 from checks.preprocessor import without_comments
 
-_DEFINITION = re.compile(
+DEFINITION = re.compile(
     r"^(?!typedef\b)(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)\((?:[^;{}()]|\([^()]*\))*\)\s*\{", re.MULTILINE
 )
 _VARIABLE = re.compile(r"(?<!\breturn)[\w*][ ]+\**(\w+)[ ]*[=;)\[]")
 _STRING = re.compile(r'"(?:\\.|[^"\\\n])*"')
-_NAME = re.compile(r"(?<![\w.])(?<!->)[A-Za-z_]\w*")
+NAME = re.compile(r"(?<![\w.])(?<!->)[A-Za-z_]\w*")
 
 
 @dataclass(frozen=True)
@@ -30,26 +30,26 @@ class Call:
     defined: str
 
 
-def _code(path: Path) -> str:
+def code(path: Path) -> str:
     """Without comments and texts, line by line as it was; what a table says of a member stays."""
     return _STRING.sub(lambda text: '"' + " " * (len(text[0]) - 2) + '"', without_comments(path.read_text("utf-8")))
 
 
 def foreign_calls(root: Path, folder: str) -> Iterator[Call]:
     """Each name once a file."""
-    texts = {p.relative_to(root).as_posix(): _code(p) for p in sorted((root / folder).rglob("*.[ch]")) if p.is_file()}
+    texts = {p.relative_to(root).as_posix(): code(p) for p in sorted((root / folder).rglob("*.[ch]")) if p.is_file()}
     own: dict[str, set[str]] = defaultdict(set)
     defined: dict[str, list[str]] = defaultdict(list)
     for source, text in texts.items():
         own[source].update(_VARIABLE.findall(text))
-        for static, name in _DEFINITION.findall(text):
+        for static, name in DEFINITION.findall(text):
             if static:
                 own[source].add(name)
             else:
                 defined[name].append(source)
     for source, text in texts.items():
         seen = set(own[source])
-        for match in _NAME.finditer(text):
+        for match in NAME.finditer(text):
             name = match[0]
             places = defined.get(name, [])
             if name in seen or not places or len({Path(place).parent for place in places}) != 1:

@@ -1,0 +1,148 @@
+"""The checks of the inside of firmware/: small headers, no question for the source, no parameter in an interrupt."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from planting import plant
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+from checks import comparisons, faces, interrupt, left  # noqa: E402
+
+
+def including(count: int) -> str:
+    return "#include <stdint.h>\n" + "".join(f'#include "firmware/base/h{k}.h"\n' for k in range(count))
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        (including(7), "includes"),
+        (including(6) + '#  include   "firmware/mode/x.h"\n', "includes"),
+        ("\n" * 151, "lines"),
+    ],
+)
+def test_header_that_is_too_large_is_caught(tmp_path: Path, text: str, what: str) -> None:
+    header = plant(tmp_path, "firmware/mode/mode.h", text)
+    assert [f.path for f in faces.check(tmp_path)] == ["firmware/mode/mode.h"]
+    plant(tmp_path, faces.LEFT, f"# a comment\nfirmware/mode/mode.h: {what}\n")
+    assert faces.check(tmp_path) == []
+    header.write_text("", encoding="utf-8")
+    assert [(f.path, f.line) for f in faces.check(tmp_path)] == [(faces.LEFT, 2)]
+
+
+def test_header_that_is_just_small_enough_passes(tmp_path: Path) -> None:
+    plant(tmp_path, "firmware/mode/mode.h", including(6) + '// #include "firmware/mode/x.h"\n' + "\n" * 142)
+    plant(tmp_path, "firmware/mode/mode.c", including(9))
+    plant(tmp_path, "hal/wide.h", including(9))
+    assert faces.check(tmp_path) == []
+
+
+VALUES = "enum {\n  POSITION_ENCODER = 0,  // measured\n  POSITION_AVV = 3\n};\n"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "bool f(void) { return parameters.position_source == 3; }",
+        "bool f(const parameters_t* p) { return p->position_source > 4; }",
+        "void f(void) { switch (parameters . position_source) { default: break; } }",
+        "int32_t f(void) { const int32_t source = parameters.position_source; return source; }",
+        "bool f(int32_t source) { return source != POSITION_AVV; }",
+        "bool f(void) { return parameter_get(ID_position_source) != 0; }",
+        "bool f(const drive_t* d) { return d->source == &avv_source; }",
+        "bool f(const drive_t* d) { return d->source != position_sources[POSITION_AVV]; }",
+        "bool f(const drive_t* d) { return position_sources[parameters.position_source] != d->source; }",
+    ],
+)
+def test_question_which_source_is_chosen_is_caught(tmp_path: Path, line: str) -> None:
+    plant(tmp_path, "firmware/dictionary/parameters.h", VALUES)
+    plant(tmp_path, "firmware/drive/speed.c", f'#include "firmware/mode/mode.h"\n{line}\n')
+    assert [(f.path, f.line) for f in comparisons.check(tmp_path)] == [("firmware/drive/speed.c", 2)]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "uint16_t f(void) { return position_sources[parameters.position_source]->traits; }",
+        "estimator_output_t f(drive_t* d) { return position_sources[POSITION_AVV]->step(d, NULL); }",
+        "bool f(const drive_t* d) { return (d->source->traits & SOURCE_MEASURES) != 0u; }",
+        "// parameters.position_source == POSITION_AVV",
+        'const char* f(void) { return "POSITION_AVV"; }',
+    ],
+)
+def test_source_that_is_looked_up_passes(tmp_path: Path, line: str) -> None:
+    plant(tmp_path, "firmware/dictionary/parameters.h", VALUES)
+    plant(tmp_path, "firmware/drive/speed.c", line + "\n")
+    assert comparisons.check(tmp_path) == []
+
+
+INTERRUPT = """
+static void step(drive_t* d) { d->look(&steps_of_drive); }
+void drive_control_interrupt(void) { step(&drive); }
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("firmware/drive/control_interrupt.c", INTERRUPT.replace("step(&", "if (parameters.mtpa == 0) step(&")),
+        ("firmware/drive/control_interrupt.c", INTERRUPT.replace("d->look(", "read(d, parameters.mtpa, ")),
+        ("firmware/drive/sampling.c", "void drive_window_interrupt(void) {\n  take(parameters.mtpa);\n}\n"),
+        ("firmware/drive/speed.c", "void speed_step(drive_t* d,\n  int32_t x) {\n  d->x = x + parameters.mtpa;\n}\n"),
+        ("firmware/drive/steps.h", "#define speed_step(d) ((d)->x + parameters.mtpa)\n"),
+        (
+            "firmware/drive/speed.c",
+            "const steps_t steps_of_drive = {.first = f};\nint f(void) { return parameters.mtpa; }\n",
+        ),
+        ("firmware/start/hook.c", "static int32_t hook(drive_t* d) { return d->x / parameters.mtpa; }\n"),
+        (
+            "firmware/start/hook.c",
+            "int32_t in_table(void) { return parameters.mtpa; }\nrows_t* const rows[] = {in_table};\n",
+        ),
+    ],
+)
+def test_parameter_that_an_interrupt_reads_is_caught(tmp_path: Path, path: str, text: str) -> None:
+    plant(tmp_path, interrupt.POINTERS, "step -> hook 3 x hook @rows\n[host in the loop]\nstep -> elsewhere\n")
+    called = INTERRUPT.replace("d->look", "speed_step(d, 0), d->look")
+    plant(tmp_path, "firmware/drive/control_interrupt.c", called)
+    plant(tmp_path, "firmware/drive/other.c", "void elsewhere(void) { use(parameters.mtpa); }\n")
+    plant(tmp_path, "firmware/drive/own.c", "static int step(int x) { return x + parameters.mtpa; }\n")
+    assert interrupt.check(tmp_path) == []
+    source = plant(tmp_path, path, text)
+    assert [f.path for f in interrupt.check(tmp_path)] == [path]
+    plant(tmp_path, interrupt.LEFT, f"# a comment\n{path}: mtpa\n")
+    assert interrupt.check(tmp_path) == []
+    source.write_text("", encoding="utf-8")
+    assert [(f.path, f.line) for f in interrupt.check(tmp_path)] == [(interrupt.LEFT, 2)]
+
+
+def test_all_parameters_at_once_are_caught(tmp_path: Path) -> None:
+    text = "void drive_control_interrupt(void) {\n  const parameters_t* const p = &parameters;\n  use(p->mtpa);\n}\n"
+    plant(tmp_path, "firmware/drive/control_interrupt.c", text)
+    assert [(f.path, f.line) for f in interrupt.check(tmp_path)] == [("firmware/drive/control_interrupt.c", 2)]
+
+
+def test_what_the_interrupts_run_is_found_in_the_drive_itself() -> None:
+    """Through calls, the table of phases, that of sources and their hooks, and down from each of both interrupts."""
+    reached = {name: piece.source for piece, name in interrupt.Program(ROOT).reached(interrupt.INTERRUPTS).items()}
+    expected = {
+        "drive_protect": "firmware/drive/protection.c",
+        "start_step_turn": "firmware/start/if_start.c",
+        "source_paper": "firmware/sources/paper.c",
+        "flux_excitation": "firmware/sources/flux.c",
+        "hysteresis_slice": "firmware/hysteresis/hysteresis.c",
+        "board_refusal": "firmware/board/functions.c",
+        "scope_step": "firmware/scope/scope.c",
+    }
+    assert {name: reached.get(name) for name in expected} == expected
+    assert not {"parameter_set", "drive_config_make", "background_step", "console_service"} & set(reached)
+
+
+def test_exceptions_become_fewer() -> None:
+    """These numbers only ever go down, to 0."""
+    assert len(left(ROOT / faces.LEFT)) <= 2
+    assert len(left(ROOT / interrupt.LEFT)) <= 59

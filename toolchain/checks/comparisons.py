@@ -1,0 +1,48 @@
+"""Nobody asks which position source is chosen: a source says of itself what others have to know (interfaces/source.h).
+
+``position_source``, and the names of its values, stand in firmware/ as what a table is looked up by, and nowhere else;
+the row that the table gives is compared with no other. The files of OWN make the table and know their own rows.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from checks import Finding
+from checks.calls import code
+
+TABLE = "position_sources"
+OWN = {
+    "firmware/dictionary/parameters.h": "names the values",
+    "firmware/sources/flux.c": "its four methods are four rows that differ in their number",
+}
+_ENUM = re.compile(r"enum\s*\{([^}]*\bPOSITION_ENCODER\b[^}]*)\}")
+_LOOKED_UP = re.compile(rf"\b{TABLE}\s*\[[^\]]*\]")
+_ROW = r"&\s*\w+_source\b"
+_COMPARED = re.compile(rf"[=!]=\s*(?:{_ROW}|{TABLE}\b)|(?:{_ROW}|{TABLE}\s*\[[^\]]*\])\s*[=!]=")
+
+
+def _values(root: Path) -> list[str]:
+    enum = _ENUM.search(code(path)) if (path := root / "firmware/dictionary/parameters.h").exists() else None
+    return re.findall(r"\b(POSITION_\w+)", enum[1]) if enum else []
+
+
+def _asked(text: str, values: list[str]) -> Iterator[int]:
+    """Where a source, or its number, is asked for."""
+    names = re.compile(rf"(?:\.|->)\s*position_source\b|\b(?:{'|'.join(['ID_position_source', *values])})\b")
+    yield from (match.start() for match in _COMPARED.finditer(text))
+    rest = _LOOKED_UP.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
+    yield from (match.start() for match in names.finditer(rest))
+
+
+def check(root: Path) -> list[Finding]:
+    """Findings for every place where a source, or its number, is asked for."""
+    values = _values(root)
+    findings = []
+    for path in sorted((root / "firmware").rglob("*.[ch]")):
+        source = path.relative_to(root).as_posix()
+        text = code(path)
+        for line in sorted({text.count("\n", 0, at) + 1 for at in _asked(text, values)} if source not in OWN else ()):
+            message = "asks which position source is chosen: what it has to know is a trait or a hook of the source"
+            findings.append(Finding(source, line, message))
+    return findings
