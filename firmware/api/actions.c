@@ -136,7 +136,7 @@ void put_conflict(octet_writer_t* w, packed_text_t conflict) {
     put_value(w, p, parameter_get(p->id));
     separator = ", ";
   } while (c != 0u);
-  if (separator[0] == ',') put_u8(w, ')');
+  put_u8(w, ')');  // every rule names a parameter
 }
 
 // With one decimal more where the table's are too few to show what is wrong.

@@ -19,7 +19,6 @@
 #define EXPIRES_MS 5000u
 #define AFTER_PAUSE 0x100u  // beside an octet: nothing had come for EXPIRES_MS
 #define CTRL_C 0x03u
-#define FIRST_KEY 0x01u
 #define BEHIND_KEYS 0x7Fu
 #define LINE_FEED 0x0Au
 #define RETURN 0x0Du
@@ -149,12 +148,12 @@ static void cut(void) {
   kept_count = 0;
 }
 
-// What a loose cable sends is nobody's key.
+// What a loose cable sends is nobody's key. Zeros do not come here: they are the ends of records.
 static bool is_key(uint16_t octet) {
   const uint16_t errors = port_errors();
   const bool clean = errors == errors_at_key;
   errors_at_key = errors;
-  return clean && octet >= FIRST_KEY && octet < BEHIND_KEYS;
+  return clean && octet < BEHIND_KEYS;
 }
 
 // The space bar that holds the motor neither fills the line nor ends an answer.

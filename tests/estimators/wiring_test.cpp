@@ -91,6 +91,7 @@ const std::vector<Mistake> kMistakes = {
     {WIRING_OTHER_PHASES, {-1, {2, 1}}},
     {WIRING_OTHER_PHASES, {-1, {1, 2}}},
     {WIRING_OTHER_PHASES, {-1, {2, 0}}},
+    {WIRING_OTHER_PHASES, {-1, {0, 2}, {-1.0, 1.0}}},
     {WIRING_NO_CURRENT, {-1, {0, 1}, {0.0, 0.0}}},
 };
 
@@ -154,6 +155,44 @@ TEST(Wiring, TooLittleToTellIsNoMistake) {
   heavy.lq *= 40.0;
   EXPECT_EQ(judged(Motor{}, {-1, {0, 1}, {0.0, 0.0}}, 0.3, 32.0, 0.0, 100.0), WIRING_GOOD);
   EXPECT_EQ(judged(heavy, {-1, {0, 1}, {-1.0, 1.0}}, 0.3, 32.0, 0.031), WIRING_GOOD);
+}
+
+// Sums as the windows of the nameplate's machine would make them, without a saliency; `curl` of what lies along them is
+// seen across: both sensors turned.
+axis_t turned_sums(double curl) {
+  const machine_model_t m = model_of(Motor{});
+  axis_t s = {};
+  s.spread_q8 = raw(2e5, 8);
+  s.count = AXIS_PERIODS;
+  const double mean = 0.5 * (real(m.yd_q30, 30) + real(m.yq_q30, 30)) * 2e5;
+  s.mirror_q16 = -raw(0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)) * 2e5, 16);
+  s.curl_q16 = raw(curl * mean, 16);
+  return s;
+}
+
+// Neither is a phase another one then, nor a sensor turned round.
+TEST(Wiring, BothSensorsTurnedALittleIsNoMistake) {
+  const machine_model_t m = model_of(Motor{});
+  for (const double curl : {-0.4, 0.4}) {
+    const axis_t s = turned_sums(curl);
+    EXPECT_EQ(wiring_judge(&s, &m, 1), WIRING_GOOD) << curl;
+  }
+  const axis_t far = turned_sums(0.9);
+  EXPECT_EQ(wiring_judge(&far, &m, 1), WIRING_OTHER_PHASES);
+}
+
+// Each sum alone, on what else would be a mistake.
+TEST(Wiring, ASumAtTheEndOfItsFormatSaysNothing) {
+  const machine_model_t m = model_of(Motor{});
+  for (std::int32_t axis_t::* const sum : {&axis_t::along_q16, &axis_t::mirror_q16, &axis_t::cross_q16}) {
+    axis_t s = turned_sums(0.9);
+    s.*sum = INT32_MAX;
+    EXPECT_EQ(wiring_judge(&s, &m, 1), WIRING_GOOD);
+  }
+  axis_t s = turned_sums(0.9);
+  s.spread_q8 = INT32_MAX;
+  s.curl_q16 = INT32_MAX;
+  EXPECT_EQ(wiring_judge(&s, &m, 1), WIRING_GOOD) << "what the nameplate lets expect";
 }
 
 }  // namespace

@@ -70,6 +70,22 @@ TEST_F(Commissioning, IsNotTurnedByAVector) {
   }
 }
 
+// Nor are the wires looked at first where nobody has listened whether the shaft turns.
+TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
+  for (const bool listens : {true, false}) {
+    SetUp();
+    parameters.start_method = 1;
+    parameters.flying_start = listens;
+    parameters.wiring_check = 1;
+    make_ready();
+    drive_command_start();
+    period();
+    ASSERT_EQ(drive.start.phase, listens ? START_LISTEN : START_TURN);
+    start_find_axis(&drive);
+    EXPECT_EQ(drive.start.phase, listens ? START_AXIS : START_TURN);
+  }
+}
+
 TEST_F(Commissioning, AStartIsStillAStart) {
   begin();
   drive_command_stop();

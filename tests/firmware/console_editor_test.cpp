@@ -137,4 +137,16 @@ TEST_F(Editor, ASequenceEndsWithItsFinalCharacter) {
   }
 }
 
+// What is left of a line that was cut twice is still the rest of one.
+TEST_F(Editor, ASecondCutLeavesTheFirst) {
+  (void)type("start");
+  editor_cut(&e, false);
+  EXPECT_TRUE(e.cut);
+  editor_cut(&e, false);
+  EXPECT_TRUE(e.cut);
+  editor_reset(&e);
+  editor_cut(&e, false);
+  EXPECT_FALSE(e.cut) << "there was nothing to cut";
+}
+
 }  // namespace

@@ -222,7 +222,8 @@ TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
 TEST_F(ConsoleHands, OctetsThatNoKeySendsDoNotHold) {
   start_hold();
   for (int k = 0; k < 12; ++k) {
-    send(k % 2 == 0 ? "\xFF" : "\x80");
+    const Octets octets = {0xFF, 0x80, 0};
+    send(Octets{octets[std::size_t(k % 3)]});
     run(1000);
   }
   EXPECT_TRUE(drive.request.stop);

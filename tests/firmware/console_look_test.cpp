@@ -145,6 +145,27 @@ TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
   EXPECT_FALSE(has(command("watch", 300), "..."));
 }
 
+TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
+  drive.state = DRIVE_RUN;
+  drive_raise(&drive, FAULT_OPEN_PHASE);
+  drive.start.wiring = WIRING_OPEN_B;
+  const std::string named = command("status");
+  EXPECT_TRUE(has(named, ": " + bench::words_of(WORDS_WIRING, WIRING_OPEN_B) + ". ")) << named;
+  drive.start.wiring = WIRING_GOOD;
+  const std::string plain = command("status");
+  EXPECT_FALSE(has(plain, bench::words_of(WORDS_WIRING, WIRING_GOOD))) << plain;
+  drive.start.wiring = WIRING_OPEN_B;
+  drive.fault = FAULT_SYNCHRONISM;
+  EXPECT_FALSE(has(command("status"), bench::words_of(WORDS_WIRING, WIRING_OPEN_B))) << "found by an earlier start";
+}
+
+TEST_F(Console, StatusSaysThatTheLastSaveFailed) {
+  nvm.absent = true;
+  (void)command("save", 3000);
+  ASSERT_EQ(store_state(), STORE_FAILED);
+  EXPECT_TRUE(has(command("status", 3000), "the last save failed"));
+}
+
 TEST_F(Console, Commissioning) {
   EXPECT_EQ(command("commission"), "commissioning: not yet\r\n");
   EXPECT_EQ(command("commission results"), "nothing has been measured since power-on\r\n");
@@ -161,6 +182,10 @@ TEST_F(Console, ACommissioningUnderWayIsToldWithItsPhase) {
   EXPECT_EQ(command("commission"), "commissioning: under way, 100 %: evaluation\r\n");
   drive.commissioning.outcome = COMMISSIONING_ABORTED;
   EXPECT_FALSE(has(command("commission"), "evaluation"));
+  parameters.inertia++;
+  EXPECT_FALSE(has(command("commission"), "not saved"));
+  drive.commissioning.outcome = COMMISSIONING_DONE;
+  EXPECT_TRUE(has(command("commission"), "not saved"));
 }
 
 TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {

@@ -137,7 +137,7 @@ TEST_F(ConsoleScope, AHysteresisMayStandBehindTheLevel) {
 TEST_F(ConsoleScope, NumbersAreWholeAndFitAWord) {
   (void)command("scope channels speed");
   EXPECT_TRUE(has(command("scope every 65535"), "set"));
-  for (const char* number : {"", " 2 3", " 2x", " 2.5", " -1", " 65536", " 1,5", " 1e9"}) {
+  for (const char* number : {"", " 2 3", " 2x", " 2.5", " -1", " 65536", " 1,5", " 1e9", " 99999999999"}) {
     EXPECT_EQ(command(std::string("scope every") + number),
               std::string("every") + number + " is not a whole number in 1 .. 65535: nothing changed\r\n");
   }

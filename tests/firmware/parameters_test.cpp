@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <set>
 #include <string>
@@ -145,6 +146,12 @@ TEST_F(Parameters, RefusedWhileEnergised) {
       EXPECT_EQ(parameter_get(info->id), allowed ? info->minimum : info->initial) << r.name;
     }
   }
+}
+
+TEST_F(Parameters, AnIdThatThereIsNotWritesNothing) {
+  const parameters_t before = parameters;
+  parameter_write(0xFFFF, 1);
+  EXPECT_EQ(std::memcmp(&before, &parameters, sizeof before), 0);
 }
 
 }  // namespace

@@ -91,4 +91,15 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
   }
 }
 
+// Without an encoder there is none that could be reversed, whatever the angles are.
+TEST_F(Sources, OnlyAnEncoderCanBeReversed) {
+  for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER}) {
+    run_with(source);
+    position_align_encoder(&drive, kHere, 0);
+    drive.position.encoder.angle_bam = kHere + 0x1000000u;
+    drive.position.high.angle_bam = kHere - 0x1000000u;
+    EXPECT_EQ(position_encoder_is_reversed(&drive), source == POSITION_ENCODER);
+  }
+}
+
 }  // namespace

@@ -19,6 +19,8 @@ extern "C" {
 #include "firmware/scope/scope.h"
 #include "firmware/text/words.h"
 #include "hal/hal_board.h"
+#include "hal/hal_flash.h"
+#include "hal/hal_image.h"
 }
 
 namespace {
@@ -43,6 +45,18 @@ TEST_F(Requests, Identity) {
   const std::string names = std::string(FIRMWARE_NAME) + '\0' + BOARD_NAME + '\0';
   EXPECT_EQ(a.text(12), names + std::string(6, '\0')) << "no image: the commit is not known";
   EXPECT_EQ(std::string(FIRMWARE_VERSION), STILLSPIN_VERSION) << "of CMakeLists.txt";
+}
+
+TEST_F(Requests, IdentityNamesTheCommitOfTheImage) {
+  board.flash[HAL_FLASH_IMAGE_IDENTITY] = HAL_IMAGE_MARK;
+  board.flash[HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_REVISION] = 0x4321;
+  board.flash[HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_REVISION + 1] = 0x8765;
+  board.flash[HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_CHANGED] = 1;
+  const Answer a = ask(REQUEST_IDENTITY);
+  ASSERT_EQ(a.status(), OK);
+  const std::size_t behind = a.body() - 6;
+  EXPECT_EQ(a.number(behind, 4), 0x87654321u);
+  EXPECT_EQ(a.number(behind + 4, 2), 1u);
 }
 
 // A host keeps the tables by this number: it must be that of the tables as they are told.

@@ -81,6 +81,13 @@ TEST_F(Stall, NotInAnotherStateThanRun) {
   }
 }
 
+// More than a quarter of a turn between two looks: the angle alone would not tell which way.
+TEST_F(Stall, ASpeedBeyondWhatTwoLooksTellIsNone) {
+  drive.position.used.speed_bpp = bpp_of(40000);
+  for (int n = 0; n < 2000; ++n) look();
+  EXPECT_EQ(drive.fault, FAULT_NONE);
+}
+
 TEST_F(Stall, ZeroSwitchesItOff) {
   parameters.stall_time = 0;
   expect_none(0.0);
