@@ -306,7 +306,10 @@ def main() -> int:
     ]
     lines += ["", "uncovered:", *uncovered]
     (BUILD / "report.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    counts = {name: {"conditions": len(f.conditions), "unreachable": f.listed} for name, f in folders.items()}
+    counts = {
+        name: {"conditions": len(f.conditions), "uncovered": len(f.uncovered), "unreachable": f.listed}
+        for name, f in folders.items()
+    }
     (BUILD / "figures.json").write_text(json.dumps(counts), encoding="utf-8")
     complaints += uncovered
     for complaint in complaints:

@@ -14,7 +14,7 @@ from checks.calls import code
 TABLE = "position_sources"
 OWN = {
     "firmware/dictionary/parameters.h": "names the values",
-    "firmware/sources/flux.c": "its four methods are four rows that differ in their number",
+    "firmware/sources/flux/flux.c": "its four methods are four rows that differ in their number",
 }
 _ENUM = re.compile(r"enum\s*\{([^}]*\bPOSITION_ENCODER\b[^}]*)\}")
 _LOOKED_UP = re.compile(rf"\b{TABLE}\s*\[[^\]]*\]")
