@@ -51,11 +51,11 @@ bench: build ## measure how fast the simulation runs
 
 isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/keep.py isr-cost toolchain/m3_cost.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
+	@$(PYTHON) toolchain/keep.py isr-cost toolchain/isr/count.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
 
 isr-bound: build ## bound the interrupts' instructions by the longest path through the Cortex-M3's program, checked in runs
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/keep.py isr-bound toolchain/m3_bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
+	@$(PYTHON) toolchain/keep.py isr-bound toolchain/isr/bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
 
 image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
 	@mkdir -p build

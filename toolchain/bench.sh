@@ -19,7 +19,7 @@ for rpm in 5 80 2000; do
   echo
   echo "instructions of the firmware per control interrupt, native build, on the way to $rpm rpm"
   valgrind --quiet --tool=callgrind --callgrind-out-file="$counts" "$program" "$rpm" >/dev/null
-  .venv/bin/python toolchain/isr_cost.py "$counts" "$figures" "$rpm"
+  .venv/bin/python toolchain/isr/host.py "$counts" "$figures" "$rpm"
 done
 echo
 size "$1/firmware/libstillspin_firmware.a" | awk 'NR > 1 { data += $2 + $3 } END { printf "firmware variables: %d bytes, %d words of 16 bits\n", data, data / 2 }'

@@ -4,7 +4,7 @@
 Usage: toolchain/board_table.py [--write]
 
 Prints the tables, or puts them between the two marks in docs/board.md. Scalings are recalculated here as the firmware
-calculates them (firmware/config/config.c, firmware/board/temperature.c), so that the rounding errors stand beside them.
+calculates them (firmware/config/config.c, firmware/board/derating.c), so that the rounding errors stand beside them.
 """
 
 import math

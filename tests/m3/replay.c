@@ -103,7 +103,7 @@ static void end_step(void) {
   begin_span();
 }
 
-// Where the emulator's log of what was executed says which periods are which (toolchain/paths/watch.py).
+// Where the emulator's log of what was executed says which periods are which (toolchain/isr/paths/watch.py).
 APART static void turning_period(void) { __asm volatile(""); }
 APART static void starting_period(void) { __asm volatile(""); }
 

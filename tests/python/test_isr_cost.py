@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-import m3_cost  # noqa: E402
+from isr import count  # noqa: E402
 
 
 @pytest.fixture
@@ -21,25 +21,25 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[int, int],
     """The command, where the worst period has 800 instructions, with a budget and the charge of a window."""
     budget, charges, trace = (tmp_path / name for name in ("budget.txt", "charges.h", "a.trace"))
 
-    def record(_recorder: Path, _out: Path, _source: str, run: m3_cost.Run) -> Path:
+    def record(_recorder: Path, _out: Path, _source: str, run: count.Run) -> Path:
         trace.write_text(run.name)
         return trace
 
-    def replay(_image: Path, trace: Path) -> m3_cost.Table:
+    def replay(_image: Path, trace: Path) -> count.Table:
         worst = {"600": 800, "600, scope": 1600}.get(trace.read_text(), 700)
-        return {f"turning {step}": m3_cost.Cost(10, 600.0, worst) for step in (*m3_cost.STEPS, "window")}
+        return {f"turning {step}": count.Cost(10, 600.0, worst) for step in (*count.STEPS, "window")}
 
     changes = {"BUDGET": budget, "CHARGES": charges, "missing_tools": list, "record": record, "replay": replay}
     for name, value in changes.items():
-        monkeypatch.setattr(m3_cost, name, value)
-    monkeypatch.setattr(m3_cost, "build", lambda out: out / "replay.elf")
-    monkeypatch.setattr(sys, "argv", ["m3_cost.py", "recorder", str(tmp_path)])
+        monkeypatch.setattr(count, name, value)
+    monkeypatch.setattr(count, "build", lambda out: out / "replay.elf")
+    monkeypatch.setattr(sys, "argv", ["count.py", "recorder", str(tmp_path)])
 
     def main(limit: int, charge: int) -> int:
         budget.write_text(f"# why\nobserver turning 900\npaper turning {limit}  # the worst of all its runs\n")
-        worth = dict.fromkeys((*m3_cost.CHARGED, "CYCLES_SCOPE"), 1000) | {"CYCLES_WINDOW": charge}
+        worth = dict.fromkeys((*count.CHARGED, "CYCLES_SCOPE"), 1000) | {"CYCLES_WINDOW": charge}
         charges.write_text("".join(f"#define {name} {cycles}u\n" for name, cycles in worth.items()))
-        return m3_cost.main()
+        return count.main()
 
     return main
 

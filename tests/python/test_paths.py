@@ -1,4 +1,4 @@
-"""The longest paths (toolchain/paths): blocks, loops and calls of listings whose paths are counted by hand."""
+"""The longest paths (toolchain/isr/paths): blocks, loops and calls of listings whose paths are counted by hand."""
 
 import sys
 from pathlib import Path
@@ -7,12 +7,12 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "toolchain"))
 
-from paths.bound import Bound
-from paths.facts import Facts, read_facts
-from paths.loops import loops_of
-from paths.program import Frame, Program
-from paths.steps import Steps
-from paths.watch import Regions, contradiction, periods
+from isr.paths.bound import Bound
+from isr.paths.facts import Facts, read_facts
+from isr.paths.loops import loops_of
+from isr.paths.program import Frame, Program
+from isr.paths.steps import Steps
+from isr.paths.watch import Regions, contradiction, periods
 
 LISTING = """
 00000100 <leaf>:
@@ -219,5 +219,5 @@ def test_many_regions_are_covered_by_few_ranges(monkeypatch: pytest.MonkeyPatch)
     known = frames_of(listing)
     linked = Program(listing, {}, lambda addresses: {address: known[address] for address in addresses})
     regions = Regions(linked, {"rare"}, ["chooses"], ["leaf"])
-    monkeypatch.setattr("paths.watch.RANGES", 2)
+    monkeypatch.setattr("isr.paths.watch.RANGES", 2)
     assert regions.filter() == "0x100..0x119,0x200..0x201"

@@ -53,11 +53,15 @@ COMMANDS = {
             *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/compose.py"),
         ),
     ),
-    "isr-cost": Made("make isr-cost", "build/isr-cost/figures.json", (*DRIVE, "toolchain/m3_cost.py", "tests/m3")),
+    "isr-cost": Made(
+        "make isr-cost",
+        "build/isr-cost/figures.json",
+        (*DRIVE, "toolchain/isr/count.py", "toolchain/compose.py", "tests/m3"),
+    ),
     "isr-bound": Made(
         "make isr-bound",
         "build/isr-bound/figures.json",
-        (*DRIVE, "toolchain/m3_bound.py", "toolchain/m3_paths.txt", "toolchain/paths", "tests/m3"),
+        (*DRIVE, "toolchain/isr", "toolchain/isr/facts.txt", "toolchain/compose.py", "tests/m3"),
     ),
     "prove": Made(
         "make prove", "build/prove/figures.json", (*DRIVE, "tests/prove", "toolchain/prove.py", "toolchain/proof")

@@ -7,9 +7,9 @@ Of what may and may not come after each other in different places nothing is kno
 from collections import Counter
 from dataclasses import dataclass, field
 
-from paths.facts import Facts
-from paths.loops import Loop, in_order, loops_of
-from paths.program import BY_POINTER, Block, Function, Program, fact_on, plain, shared
+from isr.paths.facts import Facts
+from isr.paths.loops import Loop, in_order, loops_of
+from isr.paths.program import BY_POINTER, Block, Function, Program, fact_on, plain, shared
 
 ACCESS = "target_"  # a register access counts as the one instruction that calls it
 NO_INSTRUCTION = "target_elapse"  # nothing on the chip

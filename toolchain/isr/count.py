@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Instructions of the control interrupt on a Cortex-M3, counted in QEMU, and the same results bit for bit.
 
-Usage: toolchain/m3_cost.py RECORDER OUT     (make isr-cost)
+Usage: toolchain/isr/count.py RECORDER OUT     (make isr-cost)
 
 Runs of the virtual drive are recorded natively at the drive's register accesses and replayed on an emulated
 Cortex-M3 that runs the whole firmware (tests/m3). A replay that does anything else than the native run, a count above
-toolchain/m3_budget.txt, and a charge of isr_cycles.h that the count does not bear out are failures. The table
+toolchain/isr/budget.txt, and a charge of isr_cycles.h that the count does not bear out are failures. The table
 is printed and written to OUT/table.md, the counts to OUT/figures.json.
 """
 
@@ -20,10 +20,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import compose
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
 
-ROOT = Path(__file__).resolve().parent.parent
-BUDGET = ROOT / "toolchain" / "m3_budget.txt"
+import compose  # noqa: E402
+
+BUDGET = ROOT / "toolchain" / "isr" / "budget.txt"
 CHARGES = ROOT / "firmware" / "interfaces" / "isr_cycles.h"
 COMPILER = "arm-none-eabi-gcc"
 EMULATOR = "qemu-system-arm"

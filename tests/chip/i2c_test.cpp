@@ -1,12 +1,13 @@
 // The I2C module alone: what it puts on the lines and when, acknowledges, counts, FIFOs, flags, interrupts.
 
+#include "sim_host/chip/i2c.hpp"
+
 #include <gtest/gtest.h>
 
 #include <deque>
 #include <string>
 
 #include "hal/f2808/registers.h"
-#include "sim_host/chip/i2c.hpp"
 #include "tests/chip/peripheral_bench.hpp"
 
 namespace stillspin::chip::testing {

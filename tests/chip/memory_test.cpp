@@ -1,9 +1,10 @@
 // RAM, the flash's cells, code security, and the stand-in for TI's flash library.
 
+#include "sim_host/chip/memory.hpp"
+
 #include <gtest/gtest.h>
 
 #include "hal/f2808/flash_library.h"
-#include "sim_host/chip/memory.hpp"
 #include "tests/chip/core_bench.hpp"
 
 namespace {

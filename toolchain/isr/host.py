@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Instructions of the firmware per control interrupt, by source folder and file, from a callgrind record.
 
-Usage: toolchain/isr_cost.py callgrind.out [FIGURES RPM]      FIGURES: a file that gets the parts' sums at this speed
+Usage: toolchain/isr/host.py callgrind.out [FIGURES RPM]      FIGURES: a file that gets the parts' sums at this speed
 
 Only lines of the firmware's own sources count, wherever they were inlined; the virtual chip behind a register access
 and the plant behind it do not. The background loop and the window interrupt are in the sum.
@@ -71,7 +71,7 @@ def main() -> int:
     """Print the table."""
     cost, interrupts = count(Path(sys.argv[1]))
     if interrupts == 0:
-        print("isr_cost: no control interrupt in this record", file=sys.stderr)
+        print("host: no control interrupt in this record", file=sys.stderr)
         return 1
     total = 0.0
     for folder in FOLDERS:

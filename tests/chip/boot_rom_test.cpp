@@ -1,10 +1,11 @@
 // The boot ROM: mode pins, autobaud, the serial loader octet by octet.
 
+#include "sim_host/chip/boot_rom.hpp"
+
 #include <gtest/gtest.h>
 
 #include <optional>
 
-#include "sim_host/chip/boot_rom.hpp"
 #include "sim_host/chip/memory.hpp"
 #include "tests/chip/core_bench.hpp"
 #include "tests/chip/sci_bench.hpp"

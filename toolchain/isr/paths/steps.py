@@ -2,9 +2,9 @@
 
 from collections import defaultdict
 
-from paths.bound import ACCESS, IMPOSSIBLE, Bound, Way, longer, total
-from paths.loops import in_order
-from paths.program import Block
+from isr.paths.bound import ACCESS, IMPOSSIBLE, Bound, Way, longer, total
+from isr.paths.loops import in_order
+from isr.paths.program import Block
 
 Place = tuple[str, int]  # function, block
 

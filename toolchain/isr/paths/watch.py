@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from pathlib import Path
 
-from paths.facts import Facts
-from paths.program import Program
+from isr.paths.facts import Facts
+from isr.paths.program import Program
 
 RANGES = 32  # fewer log much that nobody asked for, more are slow to search
 PERIOD = "drive_control_step"  # begins a period

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """The longest paths of the interrupts on a Cortex-M3: a bound of their instructions, whatever the drive meets.
 
-Usage: toolchain/m3_bound.py RECORDER OUT [--explain MODE]     (make isr-bound)
+Usage: toolchain/isr/bound.py RECORDER OUT [--explain MODE]     (make isr-bound)
 
-The same program whose instructions toolchain/m3_cost.py counts is taken apart (toolchain/paths). What the code does
-not say by itself, how often loops go round and what excludes each other, stands in toolchain/m3_paths.txt; runs show
-whether that is so: each is replayed in QEMU, which logs what is executed. A bound above the one allowed, a fact that a
-run contradicts, a step of a run that takes longer than its bound, and a function of the compiler's run-time library
-are failures. The table is printed and written to OUT/bounds.md and OUT/figures.json. --explain says which functions
-the longest path of a mode goes through.
+The same program whose instructions toolchain/isr/count.py counts is taken apart (toolchain/isr/paths). What the code
+does not say by itself, how often loops go round and what excludes each other, stands in toolchain/isr/facts.txt; runs
+show whether that is so: each is replayed in QEMU, which logs what is executed. A bound above the one allowed, a fact
+that a run contradicts, a step of a run that takes longer than its bound, and a function of the compiler's run-time
+library are failures. The table is printed and written to OUT/bounds.md and OUT/figures.json. --explain says which
+functions the longest path of a mode goes through.
 """
 
 import json
@@ -23,14 +23,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import m3_cost
-from paths.bound import Bound, Way
-from paths.facts import Facts, read_facts
-from paths.program import Program, read_program
-from paths.steps import Steps
-from paths.watch import Regions, contradiction, periods
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-FACTS = m3_cost.ROOT / "toolchain" / "m3_paths.txt"
+from isr import count
+from isr.paths.bound import Bound, Way
+from isr.paths.facts import Facts, read_facts
+from isr.paths.program import Program, read_program
+from isr.paths.steps import Steps
+from isr.paths.watch import Regions, contradiction, periods
+
+FACTS = count.ROOT / "toolchain" / "isr" / "facts.txt"
 CONTROL, WINDOW = "control_isr", "window_isr"
 WINDOW_MODES = {"any": "hysteresis control", "turning": "modulator"}  # who may make the pulses there
 TURNING, STARTING = "turning_period", "starting_period"  # tests/m3/replay.c
@@ -87,7 +89,7 @@ def names_of(modes: Iterable[Facts]) -> set[str]:
 
 def sources() -> list[Path]:
     """The drive's C."""
-    return [path for folder in m3_cost.FOLDERS for path in (m3_cost.ROOT / folder).rglob("*.[ch]")]
+    return [path for folder in count.FOLDERS for path in (count.ROOT / folder).rglob("*.[ch]")]
 
 
 def constants() -> dict[str, int]:
@@ -107,7 +109,7 @@ def definitions(name: str) -> set[str]:
         text = path.read_text(encoding="utf-8") if not file or path.name == file else ""
         begins = r"static inline [\w *]*" if path.suffix == ".h" else r"[a-zA-Z][\w *]*"
         if re.search(rf"^{begins}\b{own}\([^;]*?\{{$", text, re.MULTILINE):
-            found.add(path.relative_to(m3_cost.ROOT).as_posix())
+            found.add(path.relative_to(count.ROOT).as_posix())
     return found
 
 
@@ -127,42 +129,40 @@ def run_time(program: Program) -> list[str]:
     return [f"an interrupt may call {name}" for name in reached if RUN_TIME.fullmatch(name)]
 
 
-def watch(
-    image: Path, trace: Path, source: str, regions: Regions, modes: dict[str, Facts]
-) -> tuple[m3_cost.Table, str]:
+def watch(image: Path, trace: Path, source: str, regions: Regions, modes: dict[str, Facts]) -> tuple[count.Table, str]:
     """Replays a run; its counts, and the first period that contradicts the facts."""
-    family = "flux" if source in m3_cost.FLUX else source
+    family = "flux" if source in count.FLUX else source
     with tempfile.NamedTemporaryFile(dir=trace.parent, suffix=".log") as log:
         logging = ("-d", "exec,nochain", "-dfilter", regions.filter(), "-D", log.name)
-        table = m3_cost.replay(image, trace, *logging)
-        for count, (mark, run) in enumerate(periods(Path(log.name), regions, (TURNING, STARTING))):
+        table = count.replay(image, trace, *logging)
+        for number, (mark, run) in enumerate(periods(Path(log.name), regions, (TURNING, STARTING))):
             names = (f"{family} turning",) if mark == TURNING else ALONE
             found = [f"{name}: {against}" for name in names if (against := contradiction(modes[name], run))]
             if len(found) == len(names):
-                return table, f"period {count}: {'; '.join(found)}"
+                return table, f"period {number}: {'; '.join(found)}"
     return table, ""
 
 
-def longer_than_bound(table: m3_cost.Table, source: str, bounds: dict[str, Mode], window: int) -> list[str]:
+def longer_than_bound(table: count.Table, source: str, bounds: dict[str, Mode], window: int) -> list[str]:
     """Steps of a run that take more than their bound. What a flux method takes has a step of its own."""
     found: list[str] = []
     own = table.get("turning window")
     if own and own.worst > window + WINDOW_CALLER:
         found.append(f"a window's own interrupt: {own.worst} instructions, by the bound at most {window}")
-    if source in m3_cost.FLUX:
+    if source in count.FLUX:
         return found
     for phase, names in (("turning", (f"{source} turning",)), ("starting", ALONE)):
-        for k, step in enumerate(m3_cost.STEPS):
+        for k, step in enumerate(count.STEPS):
             most = max(bounds[name].steps[k].cost for name in names)
             cost = table.get(f"{phase} {step}")
-            if cost and cost.worst > most + CALLER * (k >= len(m3_cost.STEPS) - 2):
+            if cost and cost.worst > most + CALLER * (k >= len(count.STEPS) - 2):
                 found.append(f"{phase}, {step}: {cost.worst} instructions, by the bound at most {most}")
     return found
 
 
 def rows_of(bounds: dict[str, Mode], windows: dict[str, int]) -> list[str]:
     """The published table."""
-    steps = [step.replace("_", " ") for step in m3_cost.STEPS]
+    steps = [step.replace("_", " ") for step in count.STEPS]
     lines = [f"| at most | {' | '.join(steps)} | in |", f"|---{'|---' * len(steps)}|---|"]
     for name, mode in bounds.items():
         costs = " | ".join(str(way.cost) for way in mode.steps)
@@ -184,19 +184,19 @@ def published(bounds: dict[str, Mode], windows: dict[str, int]) -> dict[str, Any
 def explain(name: str, mode: Mode) -> None:
     """Prints where the instructions of a longest path come from."""
     print(f"\n{name}: {mode.worst} instructions in {mode.kinds[-1] or 'any period'}, of these")
-    for function, count in mode.steps[-1].parts.most_common(40):
-        print(f"{count:6} {function}")
+    for function, cost in mode.steps[-1].parts.most_common(40):
+        print(f"{cost:6} {function}")
 
 
 def main() -> int:
     """Take apart, bound, watch, print."""
     explained = sys.argv[sys.argv.index("--explain") + 1] if "--explain" in sys.argv else ""
     recorder, out = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    if missing := m3_cost.missing_tools():
+    if missing := count.missing_tools():
         print(f"isr-bound: not installed: {' '.join(missing)}; run once: sudo apt-get install {' '.join(missing)}")
         return 1
     out.mkdir(parents=True, exist_ok=True)
-    image = m3_cost.build(out)
+    image = count.build(out)
     program, modes = read_program(image), read_facts(FACTS, constants())
     bounds = {name: bound_of(program, facts) for name, facts in modes.items() if facts.most > 0}
     windows = {name: Bound(program, modes[name], modes[name].never).of_function(WINDOW).cost for name in WINDOW_MODES}
@@ -215,11 +215,11 @@ def main() -> int:
     ]
     reached = [function.name for function in program.taken_apart()]
     regions = Regions(program, names_of(modes.values()), reached, (TURNING, STARTING))
-    runs = [(source, run) for source, named in WATCHED.items() for run in m3_cost.RUNS[source] if run.name in named]
+    runs = [(source, run) for source, named in WATCHED.items() for run in count.RUNS[source] if run.name in named]
 
-    def one(pair: tuple[str, m3_cost.Run]) -> list[str]:
+    def one(pair: tuple[str, count.Run]) -> list[str]:
         source, run = pair
-        trace = m3_cost.record(recorder, out, source, run)
+        trace = count.record(recorder, out, source, run)
         table, against = watch(image, trace, source, regions, modes)
         trace.unlink()
         found = ([against] if against else []) + longer_than_bound(table, source, bounds, windows["turning"])

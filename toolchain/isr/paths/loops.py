@@ -3,7 +3,7 @@
 from collections import defaultdict
 from dataclasses import dataclass
 
-from paths.program import Function
+from isr.paths.program import Function
 
 
 @dataclass(frozen=True)
