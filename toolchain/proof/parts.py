@@ -277,7 +277,8 @@ PARTS = (
     ),
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64,q_sat_bits"),
-    of_link("packed", TYPED, ("-eva-min-loop-unroll", "900", "-eva-no-results")),  # of one long walk they cost half
+    # More rounds than there are texts. Results of one long walk cost half.
+    of_link("packed", TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH),
     of_link("near", TYPED, NAMES, OF_QMATH, OF_NAMES),
