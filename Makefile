@@ -20,7 +20,7 @@ PICTURES_OUT := out/pictures
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost isr-bound image-check int16 vectors cppcheck prove mcdc mutants verify \
+.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify \
 	loss fuzz fuzz16 wheel figures figures-long pictures docs lint format lock clean
 
 help: ## list these targets
@@ -49,24 +49,12 @@ bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
 	@$(PYTHON) toolchain/keep.py speed bash toolchain/bench.sh $(BUILD)
 
-isr-cost: build ## count the control interrupt's instructions on a Cortex-M3 (QEMU), results compared bit for bit
+isr-cost: build ## count the interrupts' instructions on a Cortex-M3 (QEMU): cycles of a period; bit for bit the native run
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/keep.py isr-cost toolchain/isr/count.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-cost
+	@$(PYTHON) toolchain/keep.py isr-cost toolchain/isr/count.py $(BUILD)/tests/m3/stillspin_isr_record build/image-check build/isr-cost
 
-isr-bound: build ## bound the interrupts' instructions by the longest path through the Cortex-M3's program, checked in runs
-	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/keep.py isr-bound toolchain/isr/bound.py $(BUILD)/tests/m3/stillspin_isr_record build/isr-bound
-
-image-check: setup ## estimate the DSP's image by a stand-in for TI's compiler: sections, symbols, sizes, stack
-	@mkdir -p build
-	@C2000_CG_ROOT=$(CURDIR)/toolchain/standin cmake --preset f2808 -B build/image-check \
-	-DF2808_FLASH_API=$(CURDIR)/toolchain/standin/Flash2808_API.lib >build/image-check.log 2>&1 || \
-	{ cat build/image-check.log; exit 1; }
-	@$(PYTHON) toolchain/keep.py image cmake --build build/image-check --parallel $(JOBS) >>build/image-check.log 2>&1 || \
-	{ grep -A 30 -m 1 FAILED build/image-check.log; exit 1; }
-	@cat build/image-check/hal/f2808/image/stillspin_f2808.map
-	@echo; echo "flash kernel:"; cat build/image-check/hal/f2808/image/stillspin_flash_kernel.map
-	@echo; echo "lamp:"; cat build/image-check/hal/f2808/image/stillspin_lamp.map
+image-check: setup ## estimate the DSP's image, by edition, by a stand-in for TI's compiler: symbols, sizes, stack
+	@$(PYTHON) toolchain/keep.py image toolchain/image/check.py build/image-check
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm
@@ -97,7 +85,7 @@ mutants: setup ## change the drive's C in SAMPLE places (60, or all) of each par
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
 	@if [[ "$(SAMPLE)" == "$(PUBLISHED)" ]]; then $(PYTHON) toolchain/keep.py mutants; fi
 
-verify: image-check isr-bound cppcheck prove vectors int16 fuzz16 mcdc ## the checks that take long: these eight
+verify: image-check isr-cost cppcheck prove vectors int16 fuzz16 mcdc ## the checks that take long: these eight
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

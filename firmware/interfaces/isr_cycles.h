@@ -1,12 +1,10 @@
 // Run time of the steps of the control interrupt on the chip, in cycles of SYSCLKOUT: what the virtual chip lets pass.
 //
-// Estimates, no measurement on the chip. Samples, estimate, supervise, control, modulate and the window's interrupt are
-// the worst periods of their steps counted on a Cortex-M3, times 1.25, and the scope is what it adds to the worst
-// period; `make isr-cost` fails where one of them is further than a tenth from that (docs/isr-cost.md,
-// toolchain/isr/count.py). The rest is estimated from operations: a 32 x 32 bit product with rounding 13 cycles, one
-// that is only added up 8, an upper half 6, a saturation 8, a reciprocal 70. Not in it: position source 2 or a hold,
-// which evaluate the windows twice. Serial port and scope come when the compare values are written: a value that is
-// written too late is seen too late.
+// Estimates from operations, no measurement on the chip: a 32 x 32 bit product with rounding 13 cycles, one that is
+// only added up 8, an upper half 6, a saturation 8, a reciprocal 70. By what other C28x code takes the steps need more
+// (docs/isr-cost.md), and `make isr-cost` says by how much. Not in it: position source 2 or a hold, which evaluate the
+// windows twice. Serial port and scope come when the compare values are written: a value that is written too late is
+// seen too late.
 
 #ifndef STILLSPIN_FIRMWARE_INTERFACES_ISR_CYCLES_H
 #define STILLSPIN_FIRMWARE_INTERFACES_ISR_CYCLES_H

@@ -1,21 +1,29 @@
 // Records a run of the virtual drive at the boundary of hal/f2808/target.h, for replay.c.
 //
 // Usage: stillspin_isr_record FILE RPM LOAD SHAFT [NAME=VALUE]...     a start with the shaft at SHAFT (rpm), then RPM,
-// then LOAD (N m) as a step; NAME is a firmware parameter, or `scope`, which then records. The linker puts the
-// functions here in the place of the target's and of the commands (-Wl,--wrap).
+// then LOAD (N m) as a step. NAME is a firmware parameter, or one of
+//   scope       it records
+//   link        V of the source that feeds the link
+//   then        rpm, the next reference while the load is on
+//   stop        the command at that time
+//   commission  instead of all that; RPM and LOAD mean nothing
+// The linker puts the functions here in the place of the target's and of the commands (-Wl,--wrap).
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "firmware/commissioning/outcome.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "hal/f2808/target.h"
+#include "sim_host/bench/commission.hpp"
 #include "sim_host/bench/run.hpp"
 #include "tests/m3/trace.h"
 
@@ -127,6 +135,7 @@ WRAP_VALUE(target_write_ier, TRACE_WRITE_IER)
 WRAP_VALUE(target_elapse, TRACE_ELAPSE)
 WRAP_COMMAND(drive_command_start, TRACE_COMMAND_START)
 WRAP_COMMAND(drive_command_stop, TRACE_COMMAND_STOP)
+WRAP_COMMAND(drive_command_commission, TRACE_COMMAND_COMMISSION)
 
 std::uint16_t __real_target_read_ier(void);
 std::uint16_t __wrap_target_read_ier(void) {
@@ -183,29 +192,76 @@ void begin_scope_once(double) {
   scope_run_begin();
 }
 
-stillspin::bench::RunRequest request_of(int argc, char** argv) {
-  stillspin::bench::RunRequest r;
-  const double rpm = std::atof(argv[2]);
-  r.setup.nominal = stillspin::plant::PlantConfig();  // the inverter of profile bench
-  const double shaft = std::atof(argv[4]);            // rpm
-  r.setup.nominal.initial.speed = shaft * std::acos(-1.0) / 30.0;
-  r.setup.solver = 1;
-  r.parameters["speed_ramp"] = 15000.0;
-  r.commands = {{0.0, "speed_ref_rpm", rpm}};
-  const double settled = 0.1 + std::abs(rpm - shaft) / 10000.0;
-  r.load = {{settled, 0.0}, {settled + 0.005, std::atof(argv[3])}};
-  r.duration = settled + 0.25;
+// What a word of the command line says: a parameter, or what else is done with the drive.
+class Wish {
+ public:
+  explicit Wish(const std::map<std::string, double>& words) : parameters_(words) {}
+
+  /// Takes a word that is no parameter; false where it was not said.
+  bool take(const std::string& name, double& value) {
+    const auto found = parameters_.find(name);
+    if (found == parameters_.end()) return false;
+    value = found->second;
+    parameters_.erase(found);
+    return true;
+  }
+  const std::map<std::string, double>& parameters() const { return parameters_; }
+
+ private:
+  std::map<std::string, double> parameters_;
+};
+
+std::map<std::string, double> words_of(int argc, char** argv) {
+  std::map<std::string, double> words;
   for (int k = 5; k < argc; k++) {
     const std::string word = argv[k];
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) throw std::invalid_argument(word + ": not NAME=VALUE");
-    if (word.substr(0, equals) == "scope") {
-      r.on_period = begin_scope_once;
-    } else {
-      r.parameters[word.substr(0, equals)] = std::atof(word.c_str() + equals + 1);
-    }
+    words[word.substr(0, equals)] = std::atof(word.c_str() + equals + 1);
   }
-  return r;
+  return words;
+}
+
+stillspin::bench::Setup setup_of(Wish& wish, double shaft_rpm) {
+  stillspin::bench::Setup setup;
+  setup.nominal = stillspin::plant::PlantConfig();  // the inverter of profile bench
+  setup.nominal.initial.speed = shaft_rpm * std::acos(-1.0) / 30.0;
+  setup.solver = 1;
+  wish.take("link", setup.nominal.link.source_voltage);
+  return setup;
+}
+
+std::string run_once(Wish& wish, char** argv) {
+  constexpr double kHeld = 0.25;  // s under load
+  stillspin::bench::RunRequest r;
+  const double rpm = std::atof(argv[2]), shaft = std::atof(argv[4]);
+  double value = 0.0;
+  r.setup = setup_of(wish, shaft);
+  r.commands = {{0.0, "speed_ref_rpm", rpm}};
+  const double settled = 0.1 + std::abs(rpm - shaft) / 10000.0;
+  r.load = {{settled, 0.0}, {settled + 0.005, std::atof(argv[3])}};
+  r.duration = settled + kHeld;
+  if (wish.take("then", value)) {
+    r.commands.push_back({r.duration, "speed_ref_rpm", value});
+    r.duration += kHeld + std::abs(rpm - value) / 10000.0;
+  }
+  if (wish.take("stop", value)) {
+    r.commands.push_back({r.duration, "stop", 0.0});
+    r.duration += kHeld + std::abs(rpm) / 10000.0;
+  }
+  if (wish.take("scope", value)) r.on_period = begin_scope_once;
+  r.parameters = wish.parameters();
+  r.parameters.emplace("speed_ramp", 15000.0);
+  const stillspin::bench::RunResult result = run(r);
+  return result.completed ? "" : result.reason;
+}
+
+std::string commission_once(Wish& wish, char** argv) {
+  stillspin::bench::CommissionRequest r;
+  r.setup = setup_of(wish, std::atof(argv[4]));
+  r.parameters = wish.parameters();
+  const stillspin::bench::CommissionResult result = commission(r);
+  return result.completed ? "" : result.reason;
 }
 
 }  // namespace
@@ -221,8 +277,10 @@ int main(int argc, char** argv) {
     return 1;
   }
   try {
-    const stillspin::bench::RunResult result = run(request_of(argc, argv));
-    if (!result.completed) throw std::runtime_error(result.reason);
+    Wish wish(words_of(argc, argv));
+    double value = 0.0;
+    const std::string failed = wish.take("commission", value) ? commission_once(wish, argv) : run_once(wish, argv);
+    if (!failed.empty()) throw std::runtime_error(failed);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
     return 1;

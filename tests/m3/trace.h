@@ -15,18 +15,19 @@ typedef enum {
   TRACE_WRITE32,
   TRACE_READ_IER,  // value
   TRACE_WRITE_IER,
-  TRACE_CPU,            // EALLOW, EDIS, CLRC INTM, SETC INTM, clearing of IFR: nothing but an instant
-  TRACE_SET_VECTOR,     // vector
-  TRACE_IDLE,           // nothing
-  TRACE_ELAPSE,         // cycles
-  TRACE_INTERRUPT,      // vector
-  TRACE_RETURN,         // vector, hash of the drive's signals
-  TRACE_PARAMETER,      // id, raw value
-  TRACE_COMMAND_START,  // nothing
-  TRACE_COMMAND_STOP,   // nothing
-  TRACE_COMMAND_SPEED,  // raw value
-  TRACE_END,            // nothing
-  TRACE_SCOPE           // nothing: scope_run_begin
+  TRACE_CPU,                // EALLOW, EDIS, CLRC INTM, SETC INTM, clearing of IFR: nothing but an instant
+  TRACE_SET_VECTOR,         // vector
+  TRACE_IDLE,               // nothing
+  TRACE_ELAPSE,             // cycles
+  TRACE_INTERRUPT,          // vector
+  TRACE_RETURN,             // vector, hash of the drive's signals
+  TRACE_PARAMETER,          // id, raw value
+  TRACE_COMMAND_START,      // nothing
+  TRACE_COMMAND_STOP,       // nothing
+  TRACE_COMMAND_SPEED,      // raw value
+  TRACE_END,                // nothing
+  TRACE_SCOPE,              // nothing: scope_run_begin
+  TRACE_COMMAND_COMMISSION  // nothing
 } trace_kind_t;
 
 typedef struct {

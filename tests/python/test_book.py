@@ -12,6 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
+import costs  # noqa: E402
 from book import chip, figures, hooks, parameters, records  # noqa: E402
 from checks import glossary, pieces, tables  # noqa: E402
 
@@ -26,30 +27,22 @@ def test_who_is_about_to_use_a_chip_reads_first_how_the_image_fits(page: str) ->
     text = (ROOT / page).read_text(encoding="utf-8")
     top = text if page == "README.md" else text.split("\n## ")[0]
     assert ("does not fit its chip" in top) is not fit.fits
-    assert f"{fit.flash_share:.0f} % of the flash" in top
-    assert f"{fit.share(fit.from_flash):.0f} % of its period" in top
+    assert f"{fit.of_flash(fit.words):.0f} % of the flash" in top
+    assert f"{fit.of_period(fit.worst):.0f} % of its period" in top
     assert "image.md#does-it-fit" in top
 
 
 def test_a_smaller_and_faster_image_fits() -> None:
     known = records.load(ROOT)
     image, cost = known["image"]["figures"], known["isr-cost"]["figures"]
-    image["flash"]["words"] -= 30000
-    image["code"]["words"] -= 30000
+    edition = chip.fit(ROOT, image, cost).edition
+    image["editions"][edition]["flash_words_expected"] = 50000
+    cost["editions"][edition]["by_source"]["observer"]["worst_cycles_expected"] = 10001
     assert not chip.fit(ROOT, image, cost).fits
-    for name in ("turning all", "turning window"):
-        cost["observer"]["steps"][name]["worst"] //= 2
+    cost["editions"][edition]["by_source"]["observer"]["worst_cycles_expected"] = 5600
     found = chip.fit(ROOT, image, cost)
     assert found.fits
-    assert found.chance > 99
-
-
-def test_the_chip_is_full_when_all_words_cost_what_is_left() -> None:
-    known = records.load(ROOT)
-    image = {name: dict(row) for name, row in known["image"]["figures"].items()}
-    image["code"]["words"], image["ram_code"]["words"] = 40000, 0
-    image["flash"]["words"], image["flash"]["goal"] = 50000, 60000
-    assert chip.fit(ROOT, image, known["isr-cost"]["figures"]).full == pytest.approx(50000 / 40000)
+    assert min(found.flash_chance, found.time_chance) > 99
 
 
 def test_figures_of_older_sources_are_said_to_be_that() -> None:
@@ -127,8 +120,8 @@ def tree(tmp_path: Path) -> Path:
     ):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
     shutil.copy(ROOT / "README.md", tmp_path / "README.md")
-    (tmp_path / chip.COSTS).parent.mkdir()
-    shutil.copy(ROOT / chip.COSTS, tmp_path / chip.COSTS)
+    (tmp_path / costs.FILE).parent.mkdir()
+    shutil.copy(ROOT / costs.FILE, tmp_path / costs.FILE)
     return tmp_path
 
 

@@ -1,9 +1,12 @@
 """The image for the DSP without TI's tools: linker command files, boot code, stand-in link, message without cl2000."""
 
+import json
 import os
 import shutil
 import subprocess
 import sys
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
 import pytest
@@ -12,10 +15,12 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
 from checks import command_files  # noqa: E402
-from image import link, stack  # noqa: E402
+from costs import chance_of_words, costs  # noqa: E402
+from image import check, link, stack  # noqa: E402
 from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
+from image.interrupts import dear_calls  # noqa: E402
 from image.link import Pile, place  # noqa: E402
 from image.ram_code import left_in_flash, marked  # noqa: E402
 from image.resident import unresident  # noqa: E402
@@ -126,30 +131,81 @@ def test_what_does_not_fit_the_sectors_of_an_update_goes_behind_the_resident_par
     assert complaints == [f"RESIDENT takes {room + 100} words, there are {room}"]
 
 
-@pytest.mark.parametrize(("limit", "complaints"), [(100, []), (99, ["all code: 100, limit 99"])])
-def test_figure_beyond_its_limit_is_caught(
+@pytest.mark.parametrize(("limit", "complaints"), [(200, []), (199, ["lab, globals in RAM: 200, limit 199"])])
+def test_figure_beyond_its_limit_is_caught_and_one_beyond_its_goal_is_short(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: int, complaints: list[str]
 ) -> None:
-    budget = tmp_path / "budget.txt"
-    budget.write_text(f"# key | what | goal | limit\ncode | all code | 100 | {limit}\nstack | stack | 9 | 10\n")
-    monkeypatch.setattr(link, "BUDGET", budget)
-    rows = ["| all code | 100 | 100 | met |", "| stack | 10 | 9 | **not met** |"]
-    assert link.budgets({"code": 100, "stack": 10}) == (rows, complaints)
-    assert link.published({"code": 100, "stack": 10})["stack"] == {"what": "stack", "words": 10, "goal": 9}
+    limits = tmp_path / "limits.txt"
+    limits.write_text(f"# edition | key | goal | limit\nlab | globals | 100 | {limit}\nlab | stack | 10 | 10\n")
+    monkeypatch.setattr(check, "LIMITS", limits)
+    figures = {"globals": 200, "stack": 10}
+    assert check.judged("lab", figures) == (["lab, globals in RAM: 200, goal 100"], complaints)
+    assert check.judged("drive", figures) == ([], [])
 
 
-@pytest.mark.parametrize(("limit", "status"), [(9999, 0), (0, 1)])
-def test_link_fails_where_a_figure_is_beyond_its_limit(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: int, status: int
-) -> None:
+def test_words_are_those_that_the_chip_is_expected_to_need() -> None:
+    """Of the drive's code alone: TI's library and constants are what they are."""
+    counted = {"code": 1900, "ram_code": 100, "library": 800, "flash": 3000, "globals": 500, "stack": 50}
+    figures = check.figures_of(counted | {"flash_room": 65328, "ram_code_room": 4088})
+    words = costs(ROOT)["words"]
+    assert figures["flash_expected"] == round(1800 + words["expected"] * 1200)
+    assert figures["flash_p90"] == round(1800 + words["expected"] * words["p90"] * 1200)
+    assert check.budget(figures)["ram_words"] == 550 + round(words["expected"] * 100)
+    assert chance_of_words(words, words["high"]) == pytest.approx(90)
+
+
+def test_link_leaves_the_figures_that_are_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     code = "int image_identity;\nvoid control_isr(void);\nvoid control_isr(void) {}\n"
     code += "void window_isr(void);\nvoid window_isr(void) {}\nint main(void) { return 0; }\n"
-    for module, name, text in ((link, "BUDGET", f"code | code | 1 | {limit}\n"), (stack, "TABLE", "")):
-        plain = tmp_path / name
-        plain.write_text(text)
-        monkeypatch.setattr(module, name, plain)
+    (tmp_path / "calls.txt").write_text("")
+    monkeypatch.setattr(stack, "TABLE", tmp_path / "calls.txt")
     given = [compiled(tmp_path, code), ROOT / "hal/f2808/image/boot.asm", ROOT / FLASH]
-    assert link.link([*map(str, given), f"--output_file={tmp_path / 'x.out'}"]) == status
+    assert link.link([*map(str, given), f"--output_file={tmp_path / 'x.out'}"]) == 0
+    figures = check.figures_of(json.loads((tmp_path / "x.json").read_text(encoding="utf-8")))
+    assert check.budget(figures)["flash_words_available"] == 65328
+    assert set(check.WHAT) <= set(figures)
+    assert figures["thumb"] == figures["code"] - 800 < 20
+
+
+def test_the_stand_ins_flags_are_those_that_the_costs_were_measured_with() -> None:
+    """Words and cycles of the C28x are known for what clang makes with these; other flags would flatter the image."""
+    loader = SourceFileLoader("cl2000", str(ROOT / "toolchain/standin/bin/cl2000"))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    flags = [flag for flag in module.CLANG if flag not in ("-include", str(module.STANDIN / "include.h"))]
+    assert flags == [
+        *("--target=thumbv7m-none-eabi", "-mcpu=cortex-m3", "-std=c99", "-ffreestanding", "-Os", "-mno-movt"),
+        *("-ffunction-sections", "-fdata-sections", "-fno-unwind-tables", "-fstack-usage"),
+        *("-D__TI_COMPILER_VERSION__=22006000", "-D__TMS320C28XX__", "-D__TMS320C2000__"),
+        *("-Wall", "-Wextra", "-Wshadow", "-Wundef", "-Werror", "-Wno-unused-function"),
+    ]
+    assert module.SIZE == {"--opt_for_speed=0": ("-mllvm", "-inline-threshold=5"), "--opt_for_speed=1": ()}
+    preset = (ROOT / "toolchain/c28x-cl2000.cmake").read_text(encoding="utf-8")
+    assert "${C2000_FLAGS} --relaxed_ansi -O2 --opt_for_speed=0 --gen_func_subsections=on" in preset
+
+
+@pytest.mark.parametrize(
+    ("quotient", "complaints"),
+    [
+        ("int f(int a, int b) { return a / b; }", []),
+        (
+            "long long f(long long a, long long b) { return a / b; }",
+            ["f, which an interrupt may run, calls __aeabi_ldivmod"],
+        ),
+        ("float f(float a, float b) { return a * b; }", ["f, which an interrupt may run, calls __aeabi_fmul"]),
+    ],
+)
+def test_a_dear_function_of_the_library_in_an_interrupt_is_caught(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, quotient: str, complaints: list[str]
+) -> None:
+    """Through a pointer that the table of indirect calls knows."""
+    code = f"void control_isr(void);\nvoid window_isr(void);\n__attribute__((noinline)) {quotient}\n"
+    code += "void (*hook)(void);\nvoid window_isr(void) { hook(); }\nvoid control_isr(void) {}\n"
+    (tmp_path / "calls.txt").write_text("window_isr -> f\n")
+    monkeypatch.setattr(stack, "TABLE", tmp_path / "calls.txt")
+    assert dear_calls([read_object(compiled(tmp_path, code))]) == complaints
 
 
 def resident(folder: Path, archive: str, code: str) -> tuple[Pile, list[str]]:

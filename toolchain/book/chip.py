@@ -1,17 +1,18 @@
-"""Whether the drive fits its chip: the counts of image and interrupt by the costs of real C28x code."""
+"""Whether the drive fits its chip, by what image and interrupt are expected to take of it."""
 
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import NormalDist
 from typing import Any
 
-COSTS = "toolchain/f2808/measured_costs.toml"
-EIGHTY_PERCENT = 2 * NormalDist().inv_cdf(0.9)  # width of that interval in standard deviations
+from costs import chance_of_cycles, chance_of_words, costs
+
+EDITIONS = ("drive", "lab")
+"""Which of them the book speaks of: the first that is built and counted."""
+SOURCE = "observer"
 
 
 @dataclass(frozen=True)
@@ -19,57 +20,63 @@ class Fit:
     """What the book says of it.
 
     Attributes:
-        words, room: of flash, expected and there; chance: that it fits, %; full: words for a half word at which the
-            flash is full.
-        from_flash, from_ram: cycles of the longest control interrupt with its windows; period: cycles that there are.
-        start: how much longer the longest period of a start is, %.
+        edition: the one that this is about.
+        words, words_p90, room: of flash, expected, at 90 %, and there; flash_chance: that it fits, %.
+        worst, worst_p90, mean: cycles of a period, windows included; period: that there are; time_chance: that it fits.
     """
 
-    words: float
+    edition: str
+    words: int
+    words_p90: int
     room: int
-    chance: float
-    full: float
-    from_flash: float
-    from_ram: float
+    flash_chance: float
+    worst: int
+    worst_p90: int
+    mean: int
     period: int
-    start: float
-
-    @property
-    def flash_share(self) -> float:
-        """Of the flash, %."""
-        return 100 * self.words / self.room
+    time_chance: float
 
     @property
     def fits(self) -> bool:
         """By what is expected."""
-        return self.words <= self.room and self.from_flash <= self.period
+        return self.words <= self.room and self.worst <= self.period
 
-    def share(self, cycles: float) -> float:
+    def of_flash(self, words: float) -> float:
+        """Of the flash, %."""
+        return 100 * words / self.room
+
+    def of_period(self, cycles: float) -> float:
         """Of the period, %."""
         return 100 * cycles / self.period
 
 
 def fit(root: Path, image: Mapping[str, Any], cost: Mapping[str, Any]) -> Fit:
-    """By the figures of `make image-check` and of `make isr-cost`."""
-    costs = tomllib.loads((root / COSTS).read_text(encoding="utf-8"))
-    words, cycles = costs["words"], costs["cycles"]
-    code = image["code"]["words"] + image["ram_code"]["words"]
-    room, data = image["flash"]["goal"], image["flash"]["words"] - code
-    full = (room - data) / code
-    spread = (words["high"] - words["low"]) / EIGHTY_PERCENT
-    steps = cost["observer"]["steps"]
-    worst, window = (steps[f"turning {name}"]["worst"] for name in ("all", "window"))
-    executed = cycles["as_the_image"] * (worst + cycles["windows"] * window)
-    entries = (1 + cycles["windows"]) * cycles["interrupt_entry"]
+    """By the figures of `make image-check` and of `make isr-cost`.
+
+    Raises:
+        LookupError: no edition has been both built and counted.
+    """
+    known = costs(root)
+    both = [name for name in EDITIONS if name in image["editions"] and name in cost["editions"]]
+    if not both:
+        raise LookupError("no edition has been both built and counted: make image-check isr-cost")
+    edition = both[0]
+    flash, time = image["editions"][edition], cost["editions"][edition]["by_source"][SOURCE]
+    words, room = flash["flash_words_expected"], flash["flash_words_available"]
+    code = image["details"][edition]["thumb"]["words"]
+    ratio = known["words"]["expected"] + (room - words) / code
+    worst, period = time["worst_cycles_expected"], cost["period_cycles"]
     return Fit(
-        words=data + words["expected"] * code,
-        room=room,
-        chance=100 * NormalDist(words["expected"], spread).cdf(full),
-        full=full,
-        from_flash=executed * cycles["flash"] + entries,
-        from_ram=executed * cycles["ram"] + entries,
-        period=cycles["period"],
-        start=100 * (steps["starting all"]["worst"] / worst - 1),
+        edition,
+        words,
+        flash["flash_words_p90"],
+        room,
+        chance_of_words(known["words"], ratio),
+        worst,
+        time["worst_cycles_p90"],
+        time["mean_cycles_expected"],
+        period,
+        chance_of_cycles(known["cycles"], period / worst),
     )
 
 

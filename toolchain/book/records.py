@@ -46,22 +46,21 @@ class Made:
 COMMANDS = {
     "image": Made(
         "make image-check",
-        "build/image-check/hal/f2808/image/stillspin_f2808.json",
+        "build/image-check/figures.json",
         (
             *DRIVE,
             *("hal/f2808/image/boot.asm", "toolchain/c28x", "toolchain/f2808", "toolchain/image"),
-            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/compose.py"),
+            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/compose.py", "toolchain/costs.py"),
         ),
     ),
     "isr-cost": Made(
         "make isr-cost",
         "build/isr-cost/figures.json",
-        (*DRIVE, "toolchain/isr/count.py", "toolchain/compose.py", "tests/m3"),
-    ),
-    "isr-bound": Made(
-        "make isr-bound",
-        "build/isr-bound/figures.json",
-        (*DRIVE, "toolchain/isr", "toolchain/isr/facts.txt", "toolchain/compose.py", "tests/m3"),
+        (
+            *DRIVE,
+            *("toolchain/isr", "toolchain/f2808", "toolchain/standin/bin/cl2000", "toolchain/c28x-cl2000.cmake"),
+            *("toolchain/compose.py", "toolchain/costs.py", "tests/m3"),
+        ),
     ),
     "prove": Made(
         "make prove", "build/prove/figures.json", (*DRIVE, "tests/prove", "toolchain/prove.py", "toolchain/proof")

@@ -13,19 +13,21 @@ from pathlib import Path
 from image.boot_code import BootCode, read_boot_code
 from image.command_file import CommandFile, read_command_file
 from image.elf import ObjectFile, read_object
+from image.interrupts import dear_calls
 from image.ram_code import left_in_flash, marked
 from image.resident import unresident
 from image.sizes import RUN_TIME_LIBRARY, RUN_TIME_WORDS, object_words
 from image.stack import Depth, stack_depth
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-BUDGET = ROOT / "toolchain" / "f2808" / "image_budget.txt"
 DRIVERS = ROOT / "hal" / "f2808"
 # What TI's libraries bring: the C start-up, what a compiler calls for arithmetic or copying, and the flash library.
 RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR|Flash2808_\w+|Flash_\w+")
 KERNEL = "flash_kernel_main"
 RESIDENT = "resident"  # the section that stays in sector A
 SECTOR_A = "RESIDENT"  # its range, which the drive's image has
+FLASH = ("APP_ENTRY", "APP", "RESIDENT")  # what sections may fill, but for boot code and identity
+HOT = "RAM_CODE"
 NO_CODE = "no code for the C28x: see the map beside this file\n"  # all that the linked file holds
 FLASH_LIBRARY_WORDS = 1600  # room for TI's flash library in the kernel; a guess
 
@@ -99,31 +101,8 @@ def place(words: dict[str, int], file: CommandFile) -> tuple[dict[str, int], lis
     return fill, complaints
 
 
-def budgets(figures: dict[str, int]) -> tuple[list[str], list[str]]:
-    """The published table's rows, and what has grown beyond its limit."""
-    rows, complaints = [], []
-    for line in BUDGET.read_text(encoding="utf-8").splitlines():
-        fields = line.partition("#")[0].split("|")
-        if len(fields) != 4:
-            continue
-        key, what, goal, limit = (field.strip() for field in fields)
-        value = figures[key]
-        met = "met" if value <= int(goal) else "**not met**"
-        rows.append(f"| {what} | {value} | {goal} | {met} |")
-        if value > int(limit):
-            complaints.append(f"{what}: {value}, limit {limit}")
-    return rows, complaints
-
-
-def published(figures: dict[str, int]) -> dict[str, dict[str, int | str]]:
-    """What the book's table is made of: of each budget what it is about, words now, and the goal."""
-    fields = [line.partition("#")[0].split("|") for line in BUDGET.read_text(encoding="utf-8").splitlines()]
-    rows = [[field.strip() for field in row] for row in fields if len(row) == 4]
-    return {key: {"what": what, "words": figures[key], "goal": int(goal)} for key, what, goal, _ in rows}
-
-
 def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Depth) -> dict[str, int]:
-    """What the budgets are about."""
+    """What goals and limits are about (check.py), and the room that there is."""
     words = pile.words()
     scope = sum(s.size // 2 for o in pile.objects for s in o.sections if s.name == ".bss.ring" and s.size > 4096)
     flash = sum(words.get(n, 0) for n in (".text", ".econst", ".cinit", ".pinit", ".switch", "ramfuncs"))
@@ -139,11 +118,14 @@ def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Dep
         "resident": resident,
         "update": flash - min(resident, file.ranges[SECTOR_A].length),
         "stack": depth.total,
+        "library": sum(RUN_TIME_WORDS.values()),  # of the code, and words of the C28x already
+        "flash_room": sum(file.ranges[name].length for name in FLASH),
+        "ram_code_room": file.ranges[HOT].length,
     }
 
 
 def link(arguments: list[str]) -> int:
-    """Links; 0 when everything is there and no limit is passed. A range that is too small is a limit's business."""
+    """Links; 0 when everything is there. A range that is too small is a limit's business (check.py)."""
     paths = [Path(a) for a in arguments if not a.startswith("-")]
     options = dict(a.partition("=")[::2] for a in arguments if a.startswith("--"))
     file = read_command_file(next(path for path in paths if path.suffix == ".cmd"))
@@ -154,18 +136,19 @@ def link(arguments: list[str]) -> int:
         depth = stack_depth(pile.objects)
         fill, unfit = place(words, file)
         figures = figures_of(pile, words, file, depth)
-        rows, grown = budgets(figures)
-        grown += unresident(pile.objects, file, RESIDENT) + left_in_flash(pile.objects, marked(DRIVERS))
+        rows = [f"| {name} | {value} |" for name, value in figures.items()]
+        grown = unresident(pile.objects, file, RESIDENT) + left_in_flash(pile.objects, marked(DRIVERS))
+        grown += dear_calls(pile.objects)
     else:  # a program in RAM
         depth = stack_depth(pile.objects, ("main",))
         words[".text"] += FLASH_LIBRARY_WORDS * any(KERNEL in obj.defined for obj in pile.objects)
         fill, unfit = place(words, file)
-        rows, grown = [f"| stack | {depth.total} | {file.stack_words} | |"], unfit
+        rows, grown = [f"| stack | {depth.total} |"], unfit
         if depth.total > file.stack_words:
             grown = [*unfit, f"the stack takes {depth.total} words, there are {file.stack_words}"]
     lines = [
-        "| estimated words | now | goal | |",
-        "|---|---|---|---|",
+        "| estimated words | |",
+        "|---|---|",
         *rows,
         "",
         "| range | used | of |",
@@ -181,7 +164,7 @@ def link(arguments: list[str]) -> int:
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
     output.write_text(NO_CODE, encoding="utf-8")
     if SECTOR_A in file.ranges:
-        output.with_suffix(".json").write_text(json.dumps(published(figures)), encoding="utf-8")
+        output.with_suffix(".json").write_text(json.dumps(figures), encoding="utf-8")
     for complaint in (*(f"undefined: {name}" for name in missing), *grown, *depth.complaints):
         print(f"link (stand-in): {complaint}", file=sys.stderr)
     return 1 if missing or grown or depth.complaints else 0

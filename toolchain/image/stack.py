@@ -174,6 +174,16 @@ def _depth_in(mode: str, lines: list[str], objects: list[ObjectFile]) -> Depth:
     return depth
 
 
+def complete_graphs(objects: list[ObjectFile]) -> list[dict[str, set[str]]]:
+    """Of each of the drive's modes who calls whom, through pointers, too."""
+    found = []
+    for lines in _modes().values():
+        graph = build_graph(objects)
+        _add_indirect(graph, objects, lines, Depth())
+        found.append(graph.calls)
+    return found
+
+
 def _add_levels(graph: Graph, levels: tuple[str, ...], where: str, depth: Depth) -> set[str]:
     """The levels' depths on top of one another; all functions that are reached."""
     known: Ways = {}

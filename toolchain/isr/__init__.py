@@ -1,1 +1,1 @@
-"""What the interrupts take: counted on an emulated Cortex-M3, bounded by its program's longest paths, on the host."""
+"""What the interrupts cost on the chip, by the image's own program; and what a native control interrupt costs here."""

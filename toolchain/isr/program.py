@@ -1,0 +1,189 @@
+"""The image's program with a replay in the place of its registers (tests/m3), and what counts its instructions.
+
+Every source is compiled by the very command that makes the image's object of it (the stand-in for cl2000), with
+tests/m3/calls.h for hal/f2808/target.h. Only the replay itself is compiled aside.
+"""
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from image.elf import read_object
+from image.ram_code import SECTION as RAM_CODE
+
+ROOT = Path(__file__).resolve().parents[2]
+REPLAY = ROOT / "tests" / "m3"
+COMPILER, EMULATOR, NATIVE = "arm-none-eabi-gcc", "qemu-system-arm", "gcc"
+CPU = ("-mcpu=cortex-m3", "-mthumb")
+# As the stand-in does: an enumeration is an int; and bool is a word by its header.
+ASIDE = (*CPU, "-O2", "-std=c99", "-g", "-Wall", "-Wextra", "-fno-short-enums")
+PLUGIN = ("-std=c99", "-O2", "-Wall", "-Wextra", "-fPIC", "-shared")
+LIBRARIES = re.compile(r"CMakeFiles/(stillspin_\w+)\.dir/")
+PROGRAMS = re.compile(r"stillspin_(f2808\w*|lamp|flash_kernel)")  # their own starts, and other programs
+# A section of the linker's map: name, place, length, object; a long name stands in a line of its own.
+MAPPED = re.compile(r"^ (\.text\S*|ramfuncs)\s+(0x[0-9a-f]+)\s+(0x[0-9a-f]+) (\S+)$", re.MULTILINE)
+# Of the replay, and of the drive where a step of the control interrupt begins.
+MARKS = re.compile(r"mark_\w+|target_elapse|drive_(estimate|protect|control_speed|modulate)")
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of the linked program: where it is there, and where the image has it.
+
+    Attributes:
+        file: its source, from the root of the tree; empty for the compiler's library.
+    """
+
+    name: str
+    file: str
+    start: int
+    size: int
+    in_ram: bool
+
+
+@dataclass(frozen=True)
+class Program:
+    """The linked program, the counting plugin, the functions that count."""
+
+    image: Path
+    plugin: Path
+    functions: list[Function]
+    marks: dict[str, int]
+
+
+def missing_tools() -> list[str]:
+    """What is not installed, as Debian packages."""
+    packages = []
+    if shutil.which(COMPILER) is None:
+        packages.append("gcc-arm-none-eabi libnewlib-arm-none-eabi")
+    if shutil.which(EMULATOR) is None:
+        packages.append("qemu-system-arm")
+    return packages
+
+
+def commands(build: Path) -> dict[str, list[str]]:
+    """Of each object of the drive in a build of the image the command that makes it, without the object's name."""
+    found = {}
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        words = shlex.split(entry["command"])
+        output = next(word for word in words if word.startswith("--output_file="))
+        library = LIBRARIES.search(output)
+        if library and not PROGRAMS.fullmatch(library[1]):
+            words.remove(output)
+            found[output.removeprefix("--output_file=")] = words
+    return found
+
+
+def _source(words: list[str]) -> Path:
+    return Path(next(w.removeprefix("--c_file=") for w in words if w.startswith("--c_file=")))
+
+
+def _compile(build: Path, out: Path) -> dict[Path, Path]:
+    """All objects, and the source of each."""
+    sources = {}
+    jobs = []
+    for name, words in commands(build).items():
+        target = (out / name).resolve()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        sources[target] = _source(words)
+        jobs.append([*words, f"--preinclude={REPLAY / 'calls.h'}", f"--output_file={target}"])
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda job: subprocess.run(job, check=True, cwd=build), jobs))
+    return sources
+
+
+def _compile_aside(build: Path, out: Path) -> list[Path]:
+    """The replay."""
+    headers = ("-include", ROOT / "toolchain/standin/include.h", "-include", REPLAY / "calls.h")
+    folders = (f"-I{ROOT}", f"-I{build / 'made'}")
+    made = []
+    for name in ("replay", "startup"):
+        made.append((out / f"{name}.o").resolve())
+        command = [COMPILER, *ASIDE, *headers, *folders, "-c", REPLAY / f"{name}.c", "-o", made[-1]]
+        subprocess.run(command, check=True)
+    return made
+
+
+def _file_of(name: str) -> str:
+    command = [COMPILER, *CPU, f"-print-file-name={name}"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def _link(objects: list[Path], out: Path) -> Path:
+    image = out / "replay.elf"
+    options = ("-nostartfiles", "--specs=rdimon.specs", "-Wl,--gc-sections,--no-enum-size-warning,--no-warn-execstack")
+    first = (_file_of("crti.o"), _file_of("rdimon-crt0.o"))
+    places = ("-T", REPLAY / "m3.ld", f"-Wl,-Map,{out / 'replay.map'}")
+    command = [COMPILER, *CPU, *options, *places, *first, *objects, _file_of("crtn.o"), "-o", image]
+    subprocess.run(command, check=True)
+    return image
+
+
+def functions_of(linked: str, sources: dict[Path, Path], aside: list[Path]) -> list[Function]:
+    """By the linker's map: those of the drive's objects, and whole members of the compiler's library."""
+    text = re.sub(r"^( \.text\S*)\n\s+", r"\1 ", linked, flags=re.MULTILINE)
+    places = {
+        (found[4], found[1]): (int(found[2], 16), int(found[3], 16))
+        for found in MAPPED.finditer(text[text.index("Linker script and memory map") :])
+    }
+    functions = []
+    for target, source in sources.items():
+        file = source.relative_to(ROOT).as_posix() if source.is_relative_to(ROOT) else source.name
+        obj = read_object(target)
+        for symbol in (each for each in obj.symbols if each.is_function and each.section):
+            section = obj.sections[symbol.section].name
+            start, length = places.get((str(target), section), (0, 0))
+            if length:
+                in_ram = section == RAM_CODE
+                functions.append(Function(symbol.name, file, start + symbol.value, symbol.size, in_ram))
+    own = {str(path) for path in (*sources, *aside)}
+    for (path, _), (start, length) in places.items():
+        if path not in own and length:
+            member = re.search(r"\((?:lib_a-)?([^)]+)\.o\)", path)
+            functions.append(Function(member[1] if member else Path(path).stem, "", start, length, False))
+    return sorted(functions, key=lambda function: function.start)
+
+
+def marks_of(image: Path) -> dict[str, int]:
+    """Where the marks are."""
+    symbols = read_object(image).symbols
+    return {symbol.name: symbol.value for symbol in symbols if symbol.is_function and MARKS.fullmatch(symbol.name)}
+
+
+def _codes(path: Path) -> dict[str, bytes]:
+    """The octets of an object's functions."""
+    obj = read_object(path)
+    functions = [symbol for symbol in obj.symbols if symbol.is_function and symbol.section]
+    return {each.name: obj.sections[each.section].content[each.value : each.value + each.size] for each in functions}
+
+
+def compared(build: Path, out: Path) -> tuple[int, list[str]]:
+    """How many functions are octet for octet the image's, and the others, `OBJECT: FUNCTION`.
+
+    These should be the drivers' that access registers. FileNotFoundError where the image has not been built.
+    """
+    same, other = 0, []
+    for name in commands(build):
+        own, counted = _codes(build / name), _codes(out / name)
+        for function, code in own.items():
+            if counted.get(function) == code:
+                same += 1
+            else:
+                other.append(f"{name}: {function}")
+    return same, other
+
+
+def make(build: Path, out: Path) -> Program:
+    """Of the image that was built in a folder."""
+    out.mkdir(parents=True, exist_ok=True)
+    sources, aside = _compile(build, out), _compile_aside(build, out)
+    image = _link([*sources, *aside], out)
+    plugin = (out / "count.so").resolve()
+    subprocess.run([NATIVE, *PLUGIN, REPLAY / "count.c", "-o", plugin], check=True)
+    linked = (out / "replay.map").read_text(encoding="utf-8")
+    return Program(image, plugin, functions_of(linked, sources, aside), marks_of(image))
