@@ -14,6 +14,7 @@ MOST_LEFT = 119
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
+import check  # noqa: E402
 import pack_text  # noqa: E402
 from checks import arrows, conditionals, int16, left, links, packages, registers  # noqa: E402
 from checks.preprocessor import without_comments  # noqa: E402
@@ -248,7 +249,7 @@ def test_fault_in_the_dsps_branch_is_caught(tmp_path: Path) -> None:
 
 
 def test_fault_in_what_the_build_makes_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for folder in ("hal", "firmware"):
+    for folder in ("hal", "control", "estimators", "svpwm", "firmware"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     assert int16.check_generated(tmp_path) == []
     text = (tmp_path / int16.IDENTITY).read_text(encoding="utf-8")
@@ -264,8 +265,15 @@ def test_dead_link_and_dead_path_are_caught(tmp_path: Path) -> None:
     plant(tmp_path, "docs/there.md", "```\n[not](a-link.md)\n```\n")
     plant(tmp_path, "control/pi.h")
     plant(tmp_path, "README.md", "[a](docs/index.md)\n![b](docs/images/none.png)\nsee `control/none.c`\n")
+    plant(tmp_path, "CONTRIBUTING.md", "[a](docs/none.md)\n")
     findings = links.check(tmp_path)
-    assert [(f.path, f.line) for f in findings] == [("README.md", 2), ("README.md", 3)]
+    assert [(f.path, f.line) for f in findings] == [("README.md", 2), ("README.md", 3), ("CONTRIBUTING.md", 1)]
+
+
+def test_function_that_is_not_where_its_link_leads_is_caught(tmp_path: Path) -> None:
+    plant(tmp_path, "README.md", "[`pi_step`](control/pi.h) and [`pi_stop`](control/pi.h)\n")
+    plant(tmp_path, "control/pi.h", "int32_t pi_step(pi_t* s);\nint32_t pi_stop_all(void);\n")
+    assert [f.message for f in links.check(tmp_path)] == ["pi_stop is not in pi.h"]
 
 
 def test_package_that_is_not_installed_is_caught(tmp_path: Path) -> None:
@@ -368,3 +376,9 @@ def test_slip_in_the_register_map_is_caught(tmp_path: Path, file: str, right: st
 
 def test_register_map_agrees_with_the_tables(tmp_path: Path) -> None:
     assert registers.check(register_house(tmp_path)) == []
+
+
+def test_each_check_has_a_row_in_the_book_that_says_what_it_is_for() -> None:
+    page = (ROOT / "docs/architecture.md").read_text(encoding="utf-8").partition("\n## Checks\n")[2]
+    rows = re.findall(r"^\| (\w+) \| .+ \| .+ \|$", page, re.MULTILINE)
+    assert rows == ["check", *check.DESCRIPTIONS]

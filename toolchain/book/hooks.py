@@ -1,7 +1,7 @@
 """What mkdocs does for the book beside its own work.
 
-Abbreviations are explained, the search needs no server, and figures of older sources than those of the book are said to
-be that.
+Abbreviations are explained, the search needs no server, figures of older sources than those of the book are said to
+be that, and what links to a source, which the book does not hold, is the name alone.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ GLOSSARY = HERE.parents[1] / "docs/glossary.md"
 _ROW = re.compile(r"^\| \*\*(?P<term>[^*]+)\*\* \| (?P<words>.+?) \|$", re.MULTILINE)
 _END = re.compile(r"^<!-- end of (?P<name>[\w-]+) -->$", re.MULTILINE)
 _LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+_SOURCE = re.compile(r"\[([^\]]*)\]\(\.\./[^)]*\)")
 
 
 def abbreviations(text: str | None = None) -> dict[str, str]:
@@ -49,8 +50,14 @@ def aged(markdown: str, outdated: Mapping[str, str]) -> str:
     return _END.sub(words, markdown)
 
 
+def without_sources(markdown: str, page: str) -> str:
+    """Links of a page that leave the book's folder as their words alone."""
+    return markdown if "/" in page else _SOURCE.sub(r"\1", markdown)
+
+
 def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
     """Behind every page but the glossary what its abbreviations mean; the extension `abbr` puts it where they stand."""
+    markdown = without_sources(markdown, page.file.src_uri)
     if page.file.src_uri == GLOSSARY.name:
         return markdown
     return (
