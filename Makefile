@@ -54,6 +54,7 @@ isr-cost: build ## count the interrupts' instructions on a Cortex-M3 (QEMU): cyc
 	@$(PYTHON) toolchain/keep.py isr-cost toolchain/isr/count.py $(BUILD)/tests/m3/stillspin_isr_record build/image-check build/isr-cost
 
 image-check: setup ## estimate the DSP's image, by edition, by a stand-in for TI's compiler: symbols, sizes, stack
+	@bash toolchain/setup.sh build cortex
 	@$(PYTHON) toolchain/keep.py image toolchain/image/check.py build/image-check
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects

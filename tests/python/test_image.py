@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 from checks import command_files  # noqa: E402
 from costs import chance_of_words, costs  # noqa: E402
-from image import check, link, stack  # noqa: E402
+from image import check, classes, link, stack  # noqa: E402
 from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
@@ -146,8 +146,9 @@ def test_figure_beyond_its_limit_is_caught_and_one_beyond_its_goal_is_short(
 def test_words_are_those_that_the_chip_is_expected_to_need() -> None:
     """Of the drive's code alone: TI's library and constants are what they are."""
     counted = {"code": 1900, "ram_code": 100, "library": 800, "flash": 3000, "globals": 500, "stack": 50}
-    figures = check.figures_of(counted | {"flash_room": 65328, "ram_code_room": 4088})
+    figures = check.figures_of(counted | {"flash_room": 65328, "ram_code_room": 4088}, 1300)
     words = costs(ROOT)["words"]
+    assert figures["flash_by_class"] == 1800 + 1300
     assert figures["flash_expected"] == round(1800 + words["expected"] * 1200)
     assert figures["flash_p90"] == round(1800 + words["expected"] * words["p90"] * 1200)
     assert check.budget(figures)["ram_words"] == 550 + round(words["expected"] * 100)
@@ -161,10 +162,63 @@ def test_link_leaves_the_figures_that_are_judged(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(stack, "TABLE", tmp_path / "calls.txt")
     given = [compiled(tmp_path, code), ROOT / "hal/f2808/image/boot.asm", ROOT / FLASH]
     assert link.link([*map(str, given), f"--output_file={tmp_path / 'x.out'}"]) == 0
-    figures = check.figures_of(json.loads((tmp_path / "x.json").read_text(encoding="utf-8")))
+    linked = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    assert linked.pop("objects") == [str(tmp_path / "x.obj")]
+    figures = check.figures_of(linked, 0)
     assert check.budget(figures)["flash_words_available"] == 65328
     assert set(check.WHAT) <= set(figures)
     assert figures["thumb"] == figures["code"] - 800 < 20
+
+
+@pytest.mark.parametrize(
+    ("mnemonic", "operands", "found"),
+    [
+        ("adds", "r0, r0, #1", "alu"),
+        ("sub.w", "sp, sp, #8", "alu"),
+        ("asrs", "r1, r0, #31", "shift"),
+        ("movge.w", "r0, #1", "move"),
+        ("uxth", "r0, r0", "move"),
+        ("cmp.w", "r0, #1000", "compare"),
+        ("itete", "ge", "conditional"),
+        ("smull", "r0, r1, r2, r3", "long_product"),
+        ("smlal", "r0, r1, r2, r3", "other"),
+        ("sbcs.w", "r0, r1, r2", "other"),
+        ("sdiv", "r0, r1, r2", "other"),
+        ("bne.n", "10 <f+0x10>", "branch"),
+        ("cbnz", "r0, 10 <f+0x10>", "branch"),
+        ("bl", "0 <g>", "call"),
+        ("blx", "r3", "call"),
+        ("bx", "lr", "return"),
+        ("bx", "r3", "branch"),
+        ("push", "{r4, lr}", "multiple"),
+        ("ldrd", "r0, r1, [sp]", "multiple"),
+        ("ldr", "r0, [pc, #40]\t@ (3c <f+0x3c>)", "literal"),
+        ("ldrsh.w", "r0, [r1, #14]", "load_near_16"),
+        ("ldr", "r0, [r1]", "load_near_32"),
+        ("ldr", "r0, [r1, #16]", "load_far_32"),
+        ("ldr.w", "r0, [r1, #-4]!", "load_far_32"),
+        ("ldrh.w", "r0, [r1, r2, lsl #1]", "load_indexed_16"),
+        ("ldr", "r0, [sp, #4]", "load_stack_32"),
+        ("strheq", "r0, [r1, #2]", "store_near_16"),
+        ("str", "r0, [sp, #4]", "store_stack"),
+    ],
+)
+def test_instructions_have_their_class(mnemonic: str, operands: str, found: str) -> None:
+    assert classes.class_of(mnemonic, operands) == found
+    assert found in costs(ROOT)["classes"]
+
+
+def test_words_by_class_are_those_of_a_listing() -> None:
+    listing = "\n".join(
+        [
+            *("a.obj:     file format elf32-littlearm", "", "Disassembly of section .text.f:", "00000000 <f>:"),
+            *("   0:\tadds\tr0, #1", "   2:\tbx\tlr", "   4:\t.word\t0x00000000"),
+        ]
+    )
+    counts = classes.counted(listing)
+    assert counts == {"a.obj": {"function": 1, "alu": 1, "return": 1}}
+    known = costs(ROOT)["classes"]
+    assert classes.words(counts["a.obj"], known) == pytest.approx(known["for_size"] * (0.5 + 2.3 + 1.0))
 
 
 def test_the_stand_ins_flags_are_those_that_the_costs_were_measured_with() -> None:

@@ -22,6 +22,10 @@ sys.path.insert(0, str(HERE.parent))
 
 from costs import costs  # noqa: E402
 
+from image import classes  # noqa: E402
+from image.elf import read_object  # noqa: E402
+from image.sizes import object_words  # noqa: E402
+
 ROOT = HERE.parents[1]
 STANDIN = ROOT / "toolchain" / "standin"
 LIMITS = ROOT / "toolchain" / "f2808" / "image_limits.txt"
@@ -35,6 +39,7 @@ WHAT = {
     "ram_code": "of these running from RAM",
     "flash_expected": "the whole flash (A to D), expected",
     "flash_p90": "the same, at 90 % not exceeded",
+    "flash_by_class": "the same by the classes of the instructions",
     "strings": "strings, a word for a character, and packed texts",
     "constants": "other constants",
     "resident": "half words and words that stay in sector A",
@@ -70,7 +75,23 @@ def run(what: str, command: list[str], folder: Path, environment: Mapping[str, s
         raise subprocess.CalledProcessError(done.returncode, command)
 
 
-def figures_of(counted: Mapping[str, int]) -> dict[str, int]:
+def parts_of(objects: list[str], folder: Path) -> dict[str, dict[str, int]]:
+    """By folder of the tree: half words of Thumb-2, and words by half words and by the classes of instructions."""
+    known = costs(ROOT)
+    paths = [folder / name for name in objects]
+    parts: dict[str, dict[str, float]] = {}
+    for file, counts in classes.counted(classes.disassembled(paths)).items():
+        part = next(name for name in Path(file).relative_to(folder).parts if name != "CMakeFiles")
+        row = parts.setdefault(part, {"half_words": 0, "by_class": 0})
+        row["by_class"] += classes.words(counts, known["classes"])
+        sections = object_words(read_object(Path(file)))
+        row["half_words"] += sections.get(".text", 0) + sections.get("ramfuncs", 0)
+    for row in parts.values():
+        row["expected"] = known["words"]["expected"] * row["half_words"]
+    return {part: {name: round(value) for name, value in row.items()} for part, row in sorted(parts.items())}
+
+
+def figures_of(counted: Mapping[str, int], by_class: int) -> dict[str, int]:
     """What the link counted, and what it comes to in words of the C28x."""
     words = costs(ROOT)["words"]
     thumb = counted["code"] + counted["ram_code"] - counted["library"]  # that is of the C28x already
@@ -82,6 +103,7 @@ def figures_of(counted: Mapping[str, int]) -> dict[str, int]:
         "thumb": thumb,
         "flash_expected": round(rest + expected),
         "flash_p90": round(rest + expected * words["p90"]),
+        "flash_by_class": rest + by_class,
         "ram_code_expected": hot,
         "ram": counted["globals"] + counted["stack"] + hot,
     }
@@ -92,6 +114,7 @@ def budget(figures: Mapping[str, int]) -> dict[str, int]:
     return {
         "flash_words_expected": figures["flash_expected"],
         "flash_words_p90": figures["flash_p90"],
+        "flash_words_by_class": figures["flash_by_class"],
         "flash_words_available": figures["flash_room"],
         "ram_words": figures["ram"],
         "ram_words_available": RAM,
@@ -134,6 +157,7 @@ def main() -> int:
     """Build, print, judge."""
     out = Path(sys.argv[1]).resolve()
     figures: dict[str, dict[str, int]] = {}
+    parts: dict[str, dict[str, dict[str, int]]] = {}
     failed, short, beyond = False, [], []
     for edition in EDITIONS:
         folder = out / edition
@@ -147,7 +171,9 @@ def main() -> int:
             failed = True
         if not made.exists():
             continue
-        figures[edition] = figures_of(json.loads(made.read_text(encoding="utf-8")))
+        linked = json.loads(made.read_text(encoding="utf-8"))
+        parts[edition] = parts_of(linked.pop("objects"), folder)
+        figures[edition] = figures_of(linked, sum(part["by_class"] for part in parts[edition].values()))
         for name in MAPS:
             print(f"{edition}, {name}:\n{made.with_name(f'{name}.map').read_text(encoding='utf-8')}")
         judgement = judged(edition, figures[edition])
@@ -158,9 +184,11 @@ def main() -> int:
     budgets = {"editions": {edition: budget(own) for edition, own in figures.items()}}
     (out / "budget.json").write_text(json.dumps(budgets, indent=1), encoding="utf-8")
     details = {edition: published(edition, own) for edition, own in figures.items()}
-    (out / "figures.json").write_text(json.dumps({**budgets, "details": details}), encoding="utf-8")
+    (out / "figures.json").write_text(json.dumps({**budgets, "details": details, "parts": parts}), encoding="utf-8")
     for edition, own in budgets["editions"].items():
         print(f"{edition}: " + ", ".join(f"{name} {value}" for name, value in own.items()))
+        for part, row in parts[edition].items():
+            print(f"  {part:12}" + "".join(f"{name.replace('_', ' '):>12} {value:6}" for name, value in row.items()))
     for line in short:
         print(f"image-check: short: {line}")
     for line in beyond:

@@ -164,7 +164,8 @@ def link(arguments: list[str]) -> int:
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
     output.write_text(NO_CODE, encoding="utf-8")
     if SECTOR_A in file.ranges:
-        output.with_suffix(".json").write_text(json.dumps(figures), encoding="utf-8")
+        left = {**figures, "objects": [str(obj.path) for obj in pile.objects]}
+        output.with_suffix(".json").write_text(json.dumps(left), encoding="utf-8")
     for complaint in (*(f"undefined: {name}" for name in missing), *grown, *depth.complaints):
         print(f"link (stand-in): {complaint}", file=sys.stderr)
     return 1 if missing or grown or depth.complaints else 0
