@@ -54,8 +54,7 @@ def test_every_board_says_everything() -> None:
 
 
 def test_the_other_board_has_little_in_common() -> None:
-    usual, other = tables.boards()
-    assert (usual.name, other.name) == ("bench", OTHER)
+    usual, other = (board for board in tables.boards() if board.name in ("bench", OTHER))
     for macro in (
         "FIRST_LEG_MODULE",
         "GATE_ON_LEVEL",
