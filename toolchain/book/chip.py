@@ -80,6 +80,11 @@ def fit(root: Path, image: Mapping[str, Any], cost: Mapping[str, Any]) -> Fit:
     )
 
 
+def chance(percent: float) -> str:
+    """`0.9 %`; what is next to nothing is said to be that."""
+    return "below 0.1 %" if percent < 0.1 else f"{percent:.1f} %" if percent < 10 else f"{percent:.0f} %"
+
+
 def hundreds(value: float) -> str:
     """`78 200`: to the hundred."""
     return f"{100 * math.floor(value / 100 + 0.5):,}".replace(",", " ")

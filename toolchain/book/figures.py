@@ -135,7 +135,7 @@ def identical(rows: Sequence[Mapping[str, Any]]) -> str:
 
 USED = (
     *(value, number, fixed, tally, plain, within, share, printed, held, over_speed, counted, run_by_run),
-    *(thousands, identical, chip.hundreds),
+    *(thousands, identical, chip.hundreds, chip.chance),
 )
 
 
