@@ -118,7 +118,7 @@ def tree(tmp_path: Path) -> Path:
         "sim_host/profiles",
         "firmware/dictionary",
     ):
-        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "README.md", tmp_path / "README.md")
     (tmp_path / costs.FILE).parent.mkdir()
     shutil.copy(ROOT / costs.FILE, tmp_path / costs.FILE)
