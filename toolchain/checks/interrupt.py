@@ -2,7 +2,8 @@
 
 A parameter that is set acts at once where it is read; the configuration is changed between two control interrupts, when
 all of it fits together. What an interrupt runs is found by name, from its two functions on: what they call, hand on or
-look up in a table, what toolchain/f2808/indirect_calls.txt says of calls through pointers, and macros. What still reads
+look up in a table, the features' rows, what toolchain/f2808/indirect_calls.txt says of calls through pointers, and
+macros. What still reads
 a parameter there stands in LEFT, which only shrinks.
 """
 
@@ -11,6 +12,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+
+import compose
 
 from checks import Finding, left
 from checks.calls import DEFINITION, NAME, code
@@ -54,6 +57,12 @@ class Program:
         self._pointers: dict[str, list[str]] = {}
         for path in sorted((root / "firmware").rglob("*.[ch]")):
             self._take(path.relative_to(root).as_posix(), path)
+        for feature in compose.all_features(root):
+            for table in feature.rows:
+                name = table if compose.TABLES[table].form == "places" else f"edition_{table}"
+                rows = " ".join(row for _, row in feature.places(table))
+                source = (feature.folder / compose.FEATURE).relative_to(root).as_posix()
+                self._shared[name].append(Piece(source, 1, rows))
         if (root / POINTERS).exists():
             self._take_pointers((root / POINTERS).read_text("utf-8"))
 
