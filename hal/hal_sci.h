@@ -18,6 +18,7 @@ extern "C" {
 #define HAL_SCI_TRANSMIT_RING 512u  // octets
 // What hal_sci_service can carry: four octets of ten bits in each period of 100 us, each way.
 #define HAL_SCI_MAX_BAUD 400000uL
+#define HAL_SCI_USUAL_BAUD 115200uL  // until the saved rate is known, and when it cannot be made
 
 // Counts since hal_sci_init; each stays at 65535, but that of the breaks, which begins anew.
 typedef struct {

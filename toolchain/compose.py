@@ -55,11 +55,14 @@ class Table:
         return "\n    ".join([f"{self.type}* const {prefix}{name}[] = {{", *(f"{cell}," for cell in cells)]) + "\n};\n"
 
 
+SERVICE = "firmware/interfaces/service.h"
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
     "config_parts": Table("config_part_t", "firmware/interfaces/config_part.h"),
-    "resets": Table("service_reset_t", "firmware/interfaces/service.h"),
+    **{name: Table("service_t", SERVICE) for name in ("resets", "power_on", "loading", "starting", "pass")},
+    "works": Table("work_t", SERVICE),
+    "watch": Table("watch_t", SERVICE, "one"),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
 }
 

@@ -2,10 +2,10 @@
 
 #include <stddef.h>
 
+#include "firmware/api/status.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/hil/hil.h"
 #include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
 #include "firmware/text/packed_text.h"
@@ -181,7 +181,7 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
 
 // Why the store did not begin.
 static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
-  if (hil_is_active()) {
+  if (feature_status.stepped) {
     put_packed(why, SAY_not_in_the_loop_parameters_are_the_simulations);
     return ANSWER_STATE;
   }
@@ -195,13 +195,13 @@ static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
 }
 
 answer_status_t action_save(octet_writer_t* why) {
-  return !hil_is_active() && store_save() ? ANSWER_OK : refuse_store(false, why);
+  return !feature_status.stepped && store_save() ? ANSWER_OK : refuse_store(false, why);
 }
 
 answer_status_t action_load(octet_writer_t* why) {
-  return !hil_is_active() && store_load() ? ANSWER_OK : refuse_store(true, why);
+  return !feature_status.stepped && store_load() ? ANSWER_OK : refuse_store(true, why);
 }
 
 answer_status_t action_defaults(octet_writer_t* why) {
-  return !hil_is_active() && store_defaults() ? ANSWER_OK : refuse_store(true, why);
+  return !feature_status.stepped && store_defaults() ? ANSWER_OK : refuse_store(true, why);
 }

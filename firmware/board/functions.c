@@ -1,5 +1,6 @@
 #include "firmware/board/functions.h"
 
+#include "firmware/api/status.h"
 #include "firmware/base/clear.h"
 #include "firmware/board/selftest.h"
 #include "firmware/dictionary/parameters.h"
@@ -87,6 +88,7 @@ static drive_fault_t watch_enable(void) {
 }
 
 void board_service(void) {
+  if (feature_status.stepped) return;
   brake();
   report(selftest_service());
   if (board.at_ms == drive.time_ms) return;

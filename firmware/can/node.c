@@ -3,12 +3,12 @@
 #include <stddef.h>
 
 #include "firmware/api/actions.h"
+#include "firmware/api/status.h"
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
 #include "firmware/can/segments.h"
 #include "firmware/can/telemetry.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/hil/hil.h"
 #include "firmware/link/stream.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_profile.h"
@@ -236,7 +236,7 @@ void can_node_service(void) {
   hal_profile_step(CYCLES_ROUND);
   // With the host in the loop the drive and its parameters are a simulation's: the bus carries records and knows
   // nothing of the rest.
-  const bool own_drive = !hil_is_active();
+  const bool own_drive = !feature_status.stepped;
   if (drive.loading) return;
   if (own_drive) follow_parameters();
   hal_can_service();

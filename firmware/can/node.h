@@ -24,6 +24,8 @@ typedef uint16_t (*can_answer_t)(const uint16_t* request, uint16_t count, uint16
 /// Power-on state, off the bus until the saved rate and number are known (drive_t.loading): at another rate than the
 /// bus' a node disturbs all others. `answer` may be NULL: no records then.
 void can_node_reset(can_answer_t answer);
+/// The same, with the answers of the serial port (power_on.c).
+void can_power_on(void);
 
 /// Background level.
 void can_node_service(void);

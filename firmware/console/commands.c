@@ -8,21 +8,25 @@
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
 
-#define COMMAND(name, arguments, help) \
-  {TEXT_COMMAND_NAME_##name, TEXT_COMMAND_ARGUMENTS_##name, TEXT_COMMAND_##name, command_##name},
-static const command_t commands[] = {
+#define COMMAND(name, arguments, help) command_##name,
+command_function_t* const commands[] = {
 #include "firmware/console/command_list.h"
 };
 #undef COMMAND
 
 #define COMMANDS ((uint16_t)(sizeof commands / sizeof commands[0]))
 
-const command_t* command_info(uint16_t index) { return (index < COMMANDS) ? &commands[index] : NULL; }
+// The texts stand in the table's order.
+static packed_text_t text_of(packed_text_t first, uint16_t command) { return (packed_text_t)(first + command); }
+
+packed_text_t command_name(uint16_t command) {
+  return (command < COMMANDS) ? text_of(TEXT_COMMAND_NAME_help, command) : PACKED_NONE;
+}
 
 // COMMANDS when there is none of that name.
 static uint16_t find(const word_t* word) {
   uint16_t k = 0;
-  while (k < COMMANDS && !packed_equals(commands[k].name, word->text, word->count)) k++;
+  while (k < COMMANDS && !packed_equals(command_name(k), word->text, word->count)) k++;
   return k;
 }
 
@@ -68,7 +72,7 @@ void command_obey(const editor_line_t* line, bool expired) {
     a.word[a.count] = next_word(line, &at);
     if (a.word[a.count].count == 0u) break;
   }
-  commands[command].function(&a);
+  commands[command](&a);
 }
 
 bool command_may_move(const words_of_line_t* a) {
@@ -82,18 +86,18 @@ bool command_makes_safe(const editor_line_t* line) {
   return text_equals("stop", name.text, name.count) || text_equals("coast", name.text, name.count);
 }
 
-static void put_command(const command_t* c) {
+static void put_command(uint16_t command) {
   octet_writer_t* const w = line_begin();
-  put_packed(w, c->name);
+  put_packed(w, command_name(command));
   put_u8(w, ' ');
-  put_packed(w, c->arguments);
+  put_packed(w, text_of(TEXT_COMMAND_ARGUMENTS_help, command));
   put_spaces_to(w, 26);
-  put_packed(w, c->help);
+  put_packed(w, text_of(TEXT_COMMAND_help, command));
   line_end();
 }
 
 static bool list_commands(uint16_t step) {
-  if (step < COMMANDS) put_command(&commands[step]);
+  if (step < COMMANDS) put_command(step);
   if (step == COMMANDS) line_of(SAY_ctrl_c_ends_a_long_answer_stop);
   return step < COMMANDS;
 }
@@ -109,12 +113,12 @@ static uint16_t explained;  // command
 
 static bool explain(uint16_t step) {
   if (step == 0u) {
-    put_command(&commands[explained]);
+    put_command(explained);
     return true;
   }
   const uint16_t at = (uint16_t)(step - 1u);
   if (at >= sizeof explains / sizeof explains[0]) return false;
-  if (explains[at] != commands[explained].help) return true;
+  if (explains[at] != text_of(TEXT_COMMAND_help, explained)) return true;
   put_packed(line_begin(), (packed_text_t)(TEXT_HELP_list_1 + at));
   line_end();
   return true;

@@ -28,13 +28,11 @@ typedef struct {
   bool expired;  // it stood for long before its end came
 } words_of_line_t;
 
-typedef struct {
-  packed_text_t name, arguments, help;
-  void (*function)(const words_of_line_t* a);
-} command_t;
+typedef void command_function_t(const words_of_line_t* a);
 
-/// NULL behind the last one.
-const command_t* command_info(uint16_t index);
+/// By its place in the list; PACKED_NONE behind the last one.
+packed_text_t command_name(uint16_t command);
+extern command_function_t* const commands[];
 
 /// Carries a line out, or says why not. The line stays unchanged until its job is through.
 void command_obey(const editor_line_t* line, bool expired);

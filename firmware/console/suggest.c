@@ -21,10 +21,7 @@ static uint16_t found;
 
 // PACKED_NONE behind the last one.
 static packed_text_t name_of(uint16_t index) {
-  if (kind_of == SUGGEST_COMMAND) {
-    const command_t* const c = command_info(index);
-    return (c != NULL) ? c->name : PACKED_NONE;
-  }
+  if (kind_of == SUGGEST_COMMAND) return command_name(index);
   if (kind_of == SUGGEST_SIGNAL) {
     const signal_info_t* const s = signal_info(index);
     return (s != NULL) ? s->name : PACKED_NONE;

@@ -1,13 +1,16 @@
 // The control interrupt: once per PWM period, at its start. Its step reads like the block diagram.
 
+#include <stddef.h>
+
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
-#include "firmware/scope/scope.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_sci.h"
 #include "hal/hal_tape.h"
+
+void (*drive_onlooker)(void);
 
 void drive_control_step(drive_t* d) {
   schedule_next(d);
@@ -23,7 +26,7 @@ void drive_control_step(drive_t* d) {
   drive_control_current(d);
   hal_profile_step(CYCLES_CONTROL);
   drive_modulate(d);
-  scope_step(d->time_ms);
+  if (drive_onlooker != NULL) drive_onlooker();
 }
 
 void drive_control_interrupt(void) {

@@ -2,10 +2,11 @@
 
 #include <stddef.h>
 
-#include "firmware/commissioning/phases.h"
+#include "firmware/api/status.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
+#include "firmware/interfaces/service.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
@@ -48,6 +49,10 @@ static void reload(void) {
 }
 
 void background_step(drive_t* d) {
-  commissioning_service(d);
+  for (uint16_t k = 0; edition_works[k] != NULL; k++) edition_works[k](d);
   if (d->request.reload && hal_tape_has_work(TAPE_RELOADED)) reload();
+}
+
+void drive_service(void) {
+  if (!feature_status.stepped) background_step(&drive);
 }

@@ -2,6 +2,8 @@
 
 #include "firmware/drive/reset.h"
 
+#include <stddef.h>
+
 #include "firmware/base/clear.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"

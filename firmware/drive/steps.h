@@ -8,8 +8,13 @@
 /// What the control interrupt does in a period, between its begin and its end (control_interrupt.c).
 void drive_control_step(drive_t* d);
 
-/// Background level, once behind every interrupt (drive/reload.c).
+/// Called at the end of that, at control interrupt level; NULL while nobody looks on, which costs least.
+extern void (*drive_onlooker)(void);
+
+/// Background level: what is worked out between two control interrupts (drive/reload.c).
 void background_step(drive_t* d);
+/// In every pass; rests while a host steps the drive.
+void drive_service(void);
 
 /// The dead band of the gate signals by the parameter; the power stage's own minimum is the parameter's business.
 uint16_t drive_dead_band_ticks(void);

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/api/status.h"
 #include "firmware/base/clear.h"
 #include "firmware/base/crc.h"
 #include "firmware/drive/reset.h"
@@ -9,7 +10,6 @@
 #include "firmware/drive/steps.h"
 #include "firmware/hil/delta.h"
 #include "firmware/mode/mode.h"
-#include "firmware/store/store.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_sci.h"
@@ -17,9 +17,8 @@
 #include "hal/hal_time.h"
 
 typedef struct {
-  bool active, leaving;
+  bool leaving;
   bool answered, torn;  // a step has been, which may be asked for again; the last one
-  volatile uint16_t heartbeat;
   uint16_t expected;
   uint32_t heard;                  // cycles
   uint16_t shape[HIL_STEP_SHAPE];  // of the last step, whose words are on the tape
@@ -30,18 +29,16 @@ static hil_t hil;
 
 void hil_reset(void) {
   clear(&hil, sizeof hil);
+  feature_status.stepped = false;
+  feature_status.heartbeat = 0u;
   hal_tape_start(TAPE_OFF, NULL);
 }
 
-bool hil_is_active(void) { return hil.active; }
-
 uint16_t hil_expected(void) { return hil.expected; }
-
-uint16_t hil_heartbeat(uint16_t of_drive) { return hil.active ? hil.heartbeat : of_drive; }
 
 // The board's own interrupts while the drive's are stepped.
 static void own_interrupt(void) {
-  if (!hil.leaving) hil.heartbeat++;
+  if (!hil.leaving) feature_status.heartbeat++;
   hal_sci_service();
   hal_irq_control_end();
 }
@@ -69,15 +66,15 @@ static void clear_tape(void) {
 
 hil_result_t hil_enter(void) {
   // In the loop already, the drive only believes that its power stage is on: it may begin anew at any time.
-  if (!hil.active && (drive_is_energised() || !hal_pwm_is_tripped())) return HIL_ENERGISED;
-  if (store_is_busy()) return HIL_BUSY;
+  if (!feature_status.stepped && (drive_is_energised() || !hal_pwm_is_tripped())) return HIL_ENERGISED;
+  if (feature_status.store_work != 0u) return HIL_BUSY;
   hal_tape_start(TAPE_OFF, NULL);
   hal_irq_install(own_interrupt, own_window);
   hal_pwm_gates_off();
   stop_bursts();
   drive_reset();
   hil_reset();
-  hil.active = true;
+  feature_status.stepped = true;
   hil.heard = hal_time_cycles();
   clear_tape();
   hal_tape_start(TAPE_PLAYS, drive_window_interrupt);
@@ -86,13 +83,13 @@ hil_result_t hil_enter(void) {
 }
 
 hil_result_t hil_leave(void) {
-  if (!hil.active) return HIL_NOT_ACTIVE;
+  if (!feature_status.stepped) return HIL_NOT_ACTIVE;
   hil.leaving = true;
   return HIL_OK;
 }
 
 void hil_service(void) {
-  if (hil.active && hal_time_cycles() - hil.heard > HIL_REST_S * HAL_TIME_CYCLES_PER_S) hil.leaving = true;
+  if (feature_status.stepped && hal_time_cycles() - hil.heard > HIL_REST_S * HAL_TIME_CYCLES_PER_S) hil.leaving = true;
 }
 
 static void take_window(octet_reader_t* r, tape_window_t* w, uint16_t results) {
@@ -174,7 +171,7 @@ void hil_keep_answer(hil_answer_t* before, bool torn, const tape_period_t* p) {
 
 // Nothing changes a signal between two steps, so an answer that is asked for again is the same.
 hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer) {
-  if (!hil.active) return HIL_NOT_ACTIVE;
+  if (!feature_status.stepped) return HIL_NOT_ACTIVE;
   const uint16_t sequence = take_u16(step);
   hil.heard = hal_time_cycles();
   const bool again = hil.answered && sequence == (uint16_t)(hil.expected - 1u);

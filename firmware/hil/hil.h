@@ -71,11 +71,6 @@ void hil_service(void);
 /// Number of the step that is expected next.
 uint16_t hil_expected(void);
 
-bool hil_is_active(void);
-
-/// What has to go on for the watchdog to be served: the drive's own count, or while active the board's interrupt's.
-uint16_t hil_heartbeat(uint16_t of_drive);
-
 /// CRC-32 over all signals of the drive in their order, little-endian.
 uint32_t hil_signals_crc(void);
 

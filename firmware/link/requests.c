@@ -6,34 +6,36 @@
 
 typedef struct {
   uint16_t type;
-  uint16_t shortest, longest;  // body, octets
+  uint16_t body;  // octets: the fewest, and the most in the upper half
   request_handler_t* handler;
 } entry_t;
 
+#define BODY(fewest, most) ((uint16_t)((fewest) | (most) << 8))
+
 static const entry_t entries[] = {
-    {REQUEST_IDENTITY, 0, 0, request_identity},
-    {REQUEST_PARAMETER_INFO, 2, 2, request_parameter_info},
-    {REQUEST_SIGNAL_INFO, 2, 2, request_signal_info},
-    {REQUEST_PARAMETER_READ, 3, 3, request_parameter_read},
-    {REQUEST_PARAMETER_GET, 2, 2, request_parameter_get},
-    {REQUEST_PARAMETER_SET, 6, 6, request_parameter_set},
-    {REQUEST_COMMAND, 5, 5, request_command},
-    {REQUEST_STATUS, 0, 4, request_status},
-    {REQUEST_SIGNALS, 2, 32, request_signals},
-    {REQUEST_FAULT, 1, 1, request_fault},
-    {REQUEST_WORDS, 2, 2, request_words},
-    {REQUEST_LINK, 0, 0, request_link},
-    {REQUEST_SCOPE_SETUP, 16, 29, request_scope_setup},
-    {REQUEST_SCOPE_ARM, 0, 0, request_scope_arm},
-    {REQUEST_SCOPE_STATE, 0, 0, request_scope_state},
-    {REQUEST_SCOPE_READ, 4, 4, request_scope_read},
-    {REQUEST_SCOPE_STOP, 0, 0, request_scope_stop},
-    {REQUEST_STREAM, 2, 18, request_stream},
-    {REQUEST_COMMISSION_RESULT, 2, 2, request_commission_result},
-    {REQUEST_LOOK, 0, 0, request_look},
-    {REQUEST_HIL_ENTER, 0, 0, request_hil_enter},
-    {REQUEST_HIL_STEP, 3, RECORD_BODY_MAX, request_hil_step},
-    {REQUEST_HIL_LEAVE, 0, 0, request_hil_leave},
+    {REQUEST_IDENTITY, BODY(0, 0), request_identity},
+    {REQUEST_PARAMETER_INFO, BODY(2, 2), request_parameter_info},
+    {REQUEST_SIGNAL_INFO, BODY(2, 2), request_signal_info},
+    {REQUEST_PARAMETER_READ, BODY(3, 3), request_parameter_read},
+    {REQUEST_PARAMETER_GET, BODY(2, 2), request_parameter_get},
+    {REQUEST_PARAMETER_SET, BODY(6, 6), request_parameter_set},
+    {REQUEST_COMMAND, BODY(5, 5), request_command},
+    {REQUEST_STATUS, BODY(0, 4), request_status},
+    {REQUEST_SIGNALS, BODY(2, 32), request_signals},
+    {REQUEST_FAULT, BODY(1, 1), request_fault},
+    {REQUEST_WORDS, BODY(2, 2), request_words},
+    {REQUEST_LINK, BODY(0, 0), request_link},
+    {REQUEST_SCOPE_SETUP, BODY(16, 29), request_scope_setup},
+    {REQUEST_SCOPE_ARM, BODY(0, 0), request_scope_arm},
+    {REQUEST_SCOPE_STATE, BODY(0, 0), request_scope_state},
+    {REQUEST_SCOPE_READ, BODY(4, 4), request_scope_read},
+    {REQUEST_SCOPE_STOP, BODY(0, 0), request_scope_stop},
+    {REQUEST_STREAM, BODY(2, 18), request_stream},
+    {REQUEST_COMMISSION_RESULT, BODY(2, 2), request_commission_result},
+    {REQUEST_LOOK, BODY(0, 0), request_look},
+    {REQUEST_HIL_ENTER, BODY(0, 0), request_hil_enter},
+    {REQUEST_HIL_STEP, BODY(3, RECORD_BODY_MAX), request_hil_step},
+    {REQUEST_HIL_LEAVE, BODY(0, 0), request_hil_leave},
 };
 
 #define ENTRIES (sizeof entries / sizeof entries[0])
@@ -48,7 +50,7 @@ static const entry_t* find(uint16_t type) {
 static answer_status_t handle(request_t* r, uint16_t type) {
   const entry_t* const entry = find(type);
   if (entry == NULL) return ANSWER_UNKNOWN;
-  if (r->body.count < entry->shortest || r->body.count > entry->longest) return ANSWER_LENGTH;
+  if (r->body.count < (entry->body & 0xFFu) || r->body.count > entry->body >> 8) return ANSWER_LENGTH;
   return entry->handler(r);
 }
 

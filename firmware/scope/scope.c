@@ -1,6 +1,9 @@
 #include "firmware/scope/scope.h"
 
+#include <stddef.h>
+
 #include "firmware/drive/signals.h"
+#include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"
@@ -32,6 +35,12 @@ static bool is_running(void) {
   return now >= SCOPE_FILLING && now <= SCOPE_TRIGGERED;
 }
 
+// Nothing is recorded from here on.
+static void rest(scope_state_t now) {
+  state = now;
+  drive_onlooker = NULL;
+}
+
 static void forget_records(void) {
   head = 0;
   recorded = 0;
@@ -41,7 +50,7 @@ static void forget_records(void) {
 
 void scope_reset(void) {
   static const scope_setup_t none = {0};
-  state = SCOPE_IDLE;
+  rest(SCOPE_IDLE);
   setup_in_force = none;
   forget_records();
 }
@@ -58,7 +67,7 @@ static bool is_valid(const scope_setup_t* s) {
 
 bool scope_setup(const scope_setup_t* setup) {
   if (!is_valid(setup)) return false;
-  state = SCOPE_IDLE;
+  rest(SCOPE_IDLE);
   setup_in_force = *setup;
   forget_records();
   return true;
@@ -68,7 +77,7 @@ const scope_setup_t* scope_setup_in_force(void) { return &setup_in_force; }
 
 bool scope_arm(void) {
   if (setup_in_force.count == 0u) return false;
-  state = SCOPE_IDLE;
+  rest(SCOPE_IDLE);
   forget_records();
   wait = 1;
   fresh = true;
@@ -77,12 +86,13 @@ bool scope_arm(void) {
   fired = false;
   unread = (uint16_t)((1u << setup_in_force.count) - 1u);
   state = SCOPE_FILLING;
+  drive_onlooker = scope_step;
   return true;
 }
 
 void scope_stop(void) {
   const uint16_t interrupts = hal_irq_disable();
-  if (is_running()) state = SCOPE_IDLE;
+  if (is_running()) rest(SCOPE_IDLE);
   hal_irq_restore(interrupts);
   unread = 0;
 }
@@ -182,7 +192,7 @@ static void record(uint16_t known) {
   if (recorded < SCOPE_DEPTH) recorded++;
 }
 
-void scope_step(uint32_t time_ms) {
+void scope_step(void) {
   if (!is_running()) return;
   hal_profile_step(CYCLES_SCOPE);
   const uint16_t known = drive_known(&drive);
@@ -193,9 +203,9 @@ void scope_step(uint32_t time_ms) {
   record(known);
   if (state == SCOPE_ARMED && fired) {
     mark = here;
-    mark_time_ms = time_ms;
+    mark_time_ms = drive.time_ms;
     left = (uint16_t)(SCOPE_DEPTH - setup_in_force.pretrigger);
     state = SCOPE_TRIGGERED;
   }
-  if (state == SCOPE_TRIGGERED && --left == 0u) state = SCOPE_DONE;
+  if (state == SCOPE_TRIGGERED && --left == 0u) rest(SCOPE_DONE);
 }

@@ -99,7 +99,7 @@ scope_status_t scope_status(void);
 /// while a capture runs.
 uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t count);
 
-/// Control interrupt level, at its end. time_ms: drive_t.time_ms.
-void scope_step(uint32_t time_ms);
+/// Control interrupt level, at its end: hangs itself there while a capture runs (drive_onlooker).
+void scope_step(void);
 
 #endif

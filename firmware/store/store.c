@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/api/status.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
@@ -10,9 +11,9 @@
 #include "firmware/store/values.h"
 #include "firmware/store/writer.h"
 
-typedef enum { WORK_NONE, WORK_LOAD, WORK_SURVEY, WORK_WRITE } work_t;
+// feature_status.store_work
+enum { WORK_NONE, WORK_LOAD, WORK_SURVEY, WORK_WRITE };
 
-static work_t work;
 static bool begun;  // false: asked for, store_service begins
 static store_state_t state;
 static store_report_t report;
@@ -21,13 +22,13 @@ static uint16_t unsaved;  // as long as the staged set is at work
 
 store_state_t store_state(void) { return state; }
 
-bool store_is_busy(void) { return work != WORK_NONE; }
+bool store_is_busy(void) { return feature_status.store_work != WORK_NONE; }
 
 const store_report_t* store_report(void) { return &report; }
 
 uint16_t store_progress(void) {
   if (store_is_busy() && !begun) return 0;
-  switch (work) {
+  switch (feature_status.store_work) {
     case WORK_LOAD:
       return survey_progress();
     case WORK_SURVEY:
@@ -49,15 +50,15 @@ void store_reset(void) {
   values_reset();
   kept_known = true;
   unsaved = 0;
-  work = WORK_NONE;
+  feature_status.store_work = WORK_NONE;
   state = STORE_EMPTY;
   report = nothing;
   report.slot = SLOTS;
 }
 
-static void begin(work_t what, store_state_t meanwhile) {
+static void begin(uint16_t what, store_state_t meanwhile) {
   (void)store_unsaved();
-  work = what;
+  feature_status.store_work = what;
   state = meanwhile;
   begun = false;
 }
@@ -89,7 +90,7 @@ bool store_defaults(void) {
 }
 
 static void end(store_state_t result) {
-  work = WORK_NONE;
+  feature_status.store_work = WORK_NONE;
   state = result;
 }
 
@@ -149,7 +150,7 @@ static void survey(void) {
     kept_known = false;
     end(STORE_FAILED);
   } else {
-    work = WORK_WRITE;
+    feature_status.store_work = WORK_WRITE;
   }
 }
 
@@ -164,10 +165,10 @@ static void save(void) {
 void store_service(void) {
   if (store_is_busy() && !begun) {
     begun = true;
-    survey_begin(work == WORK_LOAD);
+    survey_begin(feature_status.store_work == WORK_LOAD);
     return;
   }
-  switch (work) {
+  switch (feature_status.store_work) {
     case WORK_LOAD:
       load();
       break;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "firmware/api/status.h"
 #include "firmware/boot/main.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
@@ -94,7 +95,7 @@ Tick VirtualBoard::rest_periods() const {
   return 1 + std::max(frame, octet) / kPeriod;
 }
 
-bool VirtualBoard::in_loop() { return hil_is_active(); }
+bool VirtualBoard::in_loop() { return feature_status.stepped; }
 
 void VirtualBoard::on_period(Tick t) {
   const drive_signals_t s = drive_signals();

@@ -43,11 +43,11 @@ class ConsoleLines : public Console {
 TEST_F(ConsoleLines, AHelpRowHasNameArgumentsAndWhatItIs) {
   const std::string help = command("help");
   std::string expected;
-  for (std::uint16_t k = 0; command_info(k) != nullptr; ++k) {
-    const command_t& c = *command_info(k);
-    const std::string row =
-        to(bench::text_of(c.name) + " " + bench::text_of(c.arguments), 26) + bench::text_of(c.help) + "\r\n";
-    EXPECT_EQ(command("help " + bench::text_of(c.name)).rfind(row, 0), 0u) << row;
+  for (std::uint16_t k = 0; command_name(k) != PACKED_NONE; ++k) {
+    const auto piece = [k](int first) { return bench::text_of(static_cast<packed_text_t>(first + k)); };
+    const std::string row = to(piece(TEXT_COMMAND_NAME_help) + " " + piece(TEXT_COMMAND_ARGUMENTS_help), 26) +
+                            piece(TEXT_COMMAND_help) + "\r\n";
+    EXPECT_EQ(command("help " + piece(TEXT_COMMAND_NAME_help)).rfind(row, 0), 0u) << row;
     expected += row;
   }
   EXPECT_EQ(help, expected + "Ctrl-C ends a long answer; stop and coast always work. More: help <command>\r\n");
@@ -178,7 +178,8 @@ TEST_F(ConsoleLines, ARecordOfTheScopeIsARow) {
   drive.control.measured_q20.q = raw(-5.5, 20);
   (void)command("scope channels speed current_q state");
   (void)command("scope arm");
-  for (int k = 0; k < 1100; ++k) scope_step(7);
+  drive.time_ms = 7;
+  for (int k = 0; k < 1100; ++k) scope_step();
   const std::string state = command("scope");
   EXPECT_EQ(state.rfind("scope: done, 1024 records, trigger in record 256 at 7 ms\r\n", 0), 0u) << state;
   const auto row = [](const std::string& number) {

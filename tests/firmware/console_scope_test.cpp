@@ -17,7 +17,7 @@ using namespace stillspin::test;
 class ConsoleScope : public Console {
  protected:
   void steps(int n) {
-    for (int k = 0; k < n; ++k) scope_step(drive.time_ms);
+    for (int k = 0; k < n; ++k) scope_step();
   }
   static std::string first_words(const std::string& rows) {
     std::istringstream lines(rows);
@@ -53,7 +53,8 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
     drive.position.used.speed_bpp = bpp_of(k);
     drive.control.measured_q20.q = -5 * (1 << 20);
     drive.position.used.angle_bam = 1u << 30;
-    scope_step(static_cast<std::uint32_t>(k));
+    drive.time_ms = static_cast<std::uint32_t>(k);
+    scope_step();
   }
   EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));
   const std::string rows = command("scope print 5", 60000);
@@ -61,7 +62,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(rows, "-5.000      0.2500"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
   drive.state = DRIVE_READY;
-  for (int k = 0; k < 20; ++k) scope_step(0);
+  for (int k = 0; k < 20; ++k) scope_step();
   EXPECT_TRUE(has(command("scope stop"), "stopped"));
   const std::string unknown = command("scope print 1", 6000);
   EXPECT_TRUE(has(unknown, "0     -           -           -")) << unknown;

@@ -9,6 +9,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/api/status.h"
 #include "firmware/hil/delta.h"
 #include "firmware/hil/hil.h"
 }

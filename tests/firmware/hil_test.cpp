@@ -48,7 +48,7 @@ TEST_F(HostInTheLoop, IsNotLetInWhileAGateMayBeOn) {
   EXPECT_EQ(refused.status(), RUNNING);
   EXPECT_EQ(refused.text(), "the power stage is on: stop first");
   EXPECT_TRUE(board.gates_on) << "whoever has it on keeps it";
-  EXPECT_FALSE(hil_is_active());
+  EXPECT_FALSE(feature_status.stepped);
   board.gates_on = false;
   EXPECT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
 }
@@ -59,7 +59,7 @@ TEST_F(HostInTheLoop, IsNotLetInWhileTheMemoryIsWritten) {
   const Answer refused = ask(REQUEST_HIL_ENTER);
   EXPECT_EQ(refused.status(), BUSY);
   EXPECT_EQ(refused.text(), "parameters are being saved or read: try again");
-  EXPECT_FALSE(hil_is_active());
+  EXPECT_FALSE(feature_status.stepped);
 }
 
 TEST_F(HostInTheLoop, NothingIsSteppedBeforeItIsLetIn) {
@@ -94,26 +94,25 @@ TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
     ASSERT_NE(drive.state, DRIVE_BOOT) << "it is stepped";
   }
   hil_reset();
-  EXPECT_FALSE(hil_is_active() || tape_plays()) << "only power-on ends it";
+  EXPECT_FALSE(feature_status.stepped || tape_plays()) << "only power-on ends it";
 }
 
 // Of the board's own interrupts the serial port and the watchdog live on. The drive is not theirs.
 TEST_F(HostInTheLoop, TheBoardsInterruptsServeThePortAndTheWatchdog) {
-  EXPECT_EQ(hil_heartbeat(4711), 4711) << "the drive's own";
   ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
-  const std::uint16_t heartbeat = drive.heartbeat, before = hil_heartbeat(4711);
+  const std::uint16_t heartbeat = drive.heartbeat, before = feature_status.heartbeat;
   for (int k = 1; k <= 3; ++k) {
     board.control_interrupt();
     board.window_interrupt();
-    EXPECT_EQ(hil_heartbeat(4711), before + k);
+    EXPECT_EQ(feature_status.heartbeat, before + k);
     EXPECT_EQ(board.serial_services, k);
     EXPECT_EQ(board.control_ends, k);
   }
   EXPECT_EQ(drive.heartbeat, heartbeat);
   ASSERT_EQ(ask(REQUEST_HIL_LEAVE).status(), OK);
-  const std::uint16_t last = hil_heartbeat(4711);
+  const std::uint16_t last = feature_status.heartbeat;
   board.control_interrupt();
-  EXPECT_EQ(hil_heartbeat(4711), last) << "nothing is left for the watchdog";
+  EXPECT_EQ(feature_status.heartbeat, last) << "nothing is left for the watchdog";
   EXPECT_EQ(board.serial_services, 4) << "the answer still goes out";
   EXPECT_EQ(board.control_ends, 4);
 }
@@ -122,9 +121,9 @@ TEST_F(HostInTheLoop, AHostThatIsGoneResetsTheBoard) {
   const std::uint32_t rest = HIL_REST_S * HAL_TIME_CYCLES_PER_S;
   const auto is_alive = [] {
     hil_service();
-    const std::uint16_t before = hil_heartbeat(0);
+    const std::uint16_t before = feature_status.heartbeat;
     board.control_interrupt();
-    return hil_heartbeat(0) != before;
+    return feature_status.heartbeat != before;
   };
   board.cycles = 0xFFFFFFFFu - rest / 2;  // the clock wraps
   ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);

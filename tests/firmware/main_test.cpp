@@ -160,6 +160,27 @@ TEST_F(Main, TheBackgroundLeavesADriveInTheLoopAlone) {
   }
 }
 
+// The board's own interrupts are then what the watchdog is served for, whatever the drive that is stepped counts.
+TEST_F(Main, WithAHostInTheLoopTheBoardsOwnInterruptsFeedTheWatchdog) {
+  static int before, sleep;
+  sleep = 0;
+  run([](int) {
+    board.cycles += HAL_TIME_CYCLES_PER_US * 2000u;
+    if (drive.loading) return true;
+    if (++sleep == 1) {
+      EXPECT_EQ(hil_enter(), HIL_OK);
+    }
+    if (sleep == 2) before = board.watchdog_services;
+    if (sleep > 2 && sleep < 12) drive.heartbeat++;
+    if (sleep == 12) {
+      EXPECT_EQ(board.watchdog_services, before);
+    }
+    if (sleep >= 12) board.control_interrupt();
+    return sleep < 20;
+  });
+  EXPECT_EQ(board.watchdog_services, before + 8);
+}
+
 TEST_F(Main, SerialPortBusAndMemoryAreServed) {
   run([](int n) {
     if (n == 5) {

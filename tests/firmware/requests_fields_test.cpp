@@ -209,7 +209,8 @@ TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
   EXPECT_EQ(of(ask(REQUEST_SCOPE_STATE)), Octets{SCOPE_FILLING} + little(0, 2) + little(SCOPE_NOWHERE, 2) + i32(0));
   for (int k = 0; k < 2000; ++k) {
     drive.control.measured_q20 = {k, -k};
-    scope_step(static_cast<std::uint32_t>(0x01020000 + k));
+    drive.time_ms = static_cast<std::uint32_t>(0x01020000 + k);
+    scope_step();
   }
   EXPECT_EQ(of(ask(REQUEST_SCOPE_STATE)),
             Octets{SCOPE_DONE} + little(SCOPE_DEPTH, 2) + little(300, 2) + little(0x01020000 + 300, 4));

@@ -352,7 +352,8 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   drive.state = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
     drive.position.used.speed_bpp = bpp_of(k);
-    scope_step(static_cast<std::uint32_t>(k));
+    drive.time_ms = static_cast<std::uint32_t>(k);
+    scope_step();
   }
   const Answer state = ask(REQUEST_SCOPE_STATE);
   EXPECT_EQ(state.number(0, 1), static_cast<unsigned>(SCOPE_DONE));

@@ -243,7 +243,7 @@ TEST_F(Scope, WhatIsUnknownIsNoNumber) {
   arm(s);
   interrupts(4, -1);
   drive.state = DRIVE_READY;
-  scope_step(1);
+  scope_step();
   interrupts(1024, -1);
   for (std::uint16_t channel = 0; channel < 2; ++channel) {
     const std::vector<int> words = read(channel);

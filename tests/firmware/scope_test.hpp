@@ -26,7 +26,8 @@ class Scope : public Drive {
     drive.state = DRIVE_RUN;
     drive.control.measured_q20.d = static_cast<std::int32_t>(n_);
     drive.control.measured_q20.q = current;
-    scope_step(n_ / 10u);
+    drive.time_ms = n_ / 10u;
+    scope_step();
     n_++;
   }
   void interrupts(int count, std::int32_t current = 0) {

@@ -1,5 +1,6 @@
 #include "tests/fuzz/fuzz_drive.h"
 
+#include "firmware/api/status.h"
 #include "firmware/can/node.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/console/console.h"
@@ -27,7 +28,7 @@ static void period(void) {
 }
 
 void fuzz_background(void) {
-  if (!hil_is_active()) background_step(&drive);
+  if (!feature_status.stepped) background_step(&drive);
 }
 
 static void periods_until(drive_state_t state, uint16_t most) {
@@ -100,7 +101,7 @@ typedef struct {
 } lasting_t;
 
 void fuzz_put_into(uint16_t state) {
-  if (hil_is_active()) return;  // it is a simulation's drive
+  if (feature_status.stepped) return;  // it is a simulation's drive
   const lasting_t now = {drive.time_ms, drive.heartbeat, drive.request, drive.config, drive.config_valid};
   drive = reached[state];
   drive.time_ms = now.time_ms;
@@ -123,7 +124,7 @@ void fuzz_fault(uint16_t which) {
 }
 
 void fuzz_pass(uint16_t ms) {
-  if (hil_is_active()) return;  // its time is the simulation's
+  if (feature_status.stepped) return;  // its time is the simulation's
   drive.time_ms += ms - 1u;
   drive.schedule.period = DRIVE_PERIODS_PER_MS - 1u;
   period();
@@ -148,7 +149,7 @@ void fuzz_forget_requests(void) {
 
 bool fuzz_is_running(void) { return drive.state == DRIVE_RUN; }
 bool fuzz_is_to_stop(void) { return drive.request.stop; }
-bool fuzz_has_host(void) { return hil_is_active(); }
+bool fuzz_has_host(void) { return feature_status.stepped; }
 uint32_t fuzz_time_ms(void) { return drive.time_ms; }
 uint16_t fuzz_node(void) { return (uint16_t)parameters.can_node; }
 

@@ -2,6 +2,7 @@
 
 #include "tests/prove/any_drive.h"
 
+#include "firmware/api/status.h"
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/commissioning/outcome.h"
@@ -17,6 +18,7 @@
 #include "hal/hal_sci.h"
 
 drive_t drive;
+void (*drive_onlooker)(void);
 
 static void any_fault(void) {
   const fault_record_t f = {any_u32,
@@ -38,6 +40,7 @@ void any_moment(void) {
   drive.time_ms = any_u32;
   drive.heartbeat = any_u16;
   drive.loading = any_bool();
+  feature_status.store_work = any_up_to(3);
   drive.start.phase = (start_phase_t)any_up_to(15);
   drive.start.sigma_q8 = any_i32;
   drive.config.rpm_per_bpp_q40 = any_i32;
@@ -63,7 +66,7 @@ void any_moment(void) {
   drive.control.wanted_rpm_q16 = any_i32;
   drive.modulation.asked_q16.alpha = any_i32;
   drive.modulation.asked_q16.beta = any_i32;
-  scope_step(any_u32);
+  scope_step();
 }
 
 void drive_parameters_changed(void) {}

@@ -8,6 +8,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
 #include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
 #include "firmware/config/config.h"
 #include "firmware/drive/reset.h"
@@ -75,7 +76,8 @@ bool hal_slices_begin(uint16_t slice_ticks) {
 void hal_slices_end(void) {}
 static void nothing_else(void) {}
 const phase_control_t* const edition_phase_control = &hysteresis_control;
-service_reset_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, NULL};
+service_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, NULL};
+work_t* const edition_works[] = {commissioning_service, NULL};
 static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
 interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};
 void selftest_reset(void) {}

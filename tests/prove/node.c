@@ -3,16 +3,15 @@
 
 #include "firmware/can/node.h"
 
+#include "firmware/api/status.h"
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/hil/hil.h"
 #include "firmware/link/record.h"
 #include "firmware/link/stream.h"
 #include "tests/prove/any_drive.h"
 
 uint16_t hal_sci_room(void) { return any_u16; }
-bool hil_is_active(void) { return any_bool(); }
 
 bool hal_can_init(uint32_t bitrate, const hal_can_group_t* groups, uint16_t count) {
   (void)bitrate;
@@ -89,6 +88,7 @@ void prove_node(void) {
   while (any_bool()) {
     any_moment();
     any_parameters();
+    feature_status.stepped = any_bool();
     if (any_bool()) any_stream(GUARD_BUS);
     can_node_service();
     (void)can_node_state();

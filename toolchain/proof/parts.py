@@ -90,12 +90,13 @@ TEXTS = (
 TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (
     *("tests/prove/any_drive.c", "firmware/api/actions.c", "firmware/mode/fault_history.c", "firmware/scope/scope.c"),
-    *("firmware/api/guard.c", "firmware/mode/access.c", "firmware/link/stream.c", *TEXTS),
+    *("firmware/api/guard.c", "firmware/api/status.c", "firmware/mode/access.c", "firmware/link/stream.c", *TEXTS),
 )
 TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
 
 STORE = (
-    *("tests/prove/store.c", "firmware/dictionary/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c"),
+    *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/api/status.c", OCTETS, CRC),
+    "hal/qmath/qdiv.c",
     *(f"firmware/store/{name}.c" for name in ("reader", "slot", "store", "survey", "values", "writer")),
 )
 KERNEL = (
