@@ -39,10 +39,11 @@ class Table:
     header: str
     form: str = "list"  # with NULL behind the last one; "one" and no more, or NULL; "places": by number, NULL between
     least: int = 0  # places at least
+    arrays: bool = False  # its rows are arrays
 
     def text(self, name: str, rows: list[tuple[int, str]]) -> str:
         """Its definition, of rows with their places."""
-        refer = "&" if self.type.startswith("const ") else ""  # functions need none
+        refer = "&" if self.type.startswith("const ") and not self.arrays else ""  # functions need none
         if self.form == "one":
             return f"{self.type}* const edition_{name} = {refer + rows[0][1] if rows else 'NULL'};\n"
         if self.form == "places":
@@ -63,6 +64,8 @@ TABLES = {
     **{name: Table("service_t", SERVICE) for name in ("resets", "power_on", "loading", "starting", "pass")},
     "works": Table("work_t", SERVICE),
     "watch": Table("watch_t", SERVICE, "one"),
+    "status_updates": Table("service_t", "firmware/api/status.h"),
+    "requests": Table("const request_row_t", "firmware/link/request_rows.h", arrays=True),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
 }
 

@@ -2,20 +2,16 @@
 
 #include <stddef.h>
 
-#include "firmware/api/status.h"
-#include "firmware/commissioning/outcome.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
-#include "firmware/store/store.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
 #include "firmware/text/words.h"
 
 #define NAME_MAX 32u  // characters of a parameter's name, and some
 
-// Why the drive cannot begin anything now; OK when it can.
-static answer_status_t check_ready(octet_writer_t* why) {
+answer_status_t action_may_begin(octet_writer_t* why) {
   const packed_text_t conflict = parameter_conflict_known();
   switch (drive.state) {
     case DRIVE_READY:
@@ -39,23 +35,15 @@ static answer_status_t check_ready(octet_writer_t* why) {
 }
 
 answer_status_t action_start(guard_t guard, uint32_t holder, octet_writer_t* why) {
-  const answer_status_t status = check_ready(why);
+  const answer_status_t status = action_may_begin(why);
   if (status != ANSWER_OK) return status;
   guard_begin(guard, holder);
   drive_command_start();
   return ANSWER_OK;
 }
 
-answer_status_t action_commission(guard_t guard, uint32_t holder, octet_writer_t* why) {
-  const answer_status_t status = check_ready(why);
-  if (status != ANSWER_OK) return status;
-  guard_begin(guard, holder);
-  drive_command_commission();
-  return ANSWER_OK;
-}
-
 answer_status_t action_look(octet_writer_t* why) {
-  const answer_status_t status = check_ready(why);
+  const answer_status_t status = action_may_begin(why);
   if (status == ANSWER_OK) drive_command_look();
   return status;
 }
@@ -177,31 +165,4 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
     default:
       return ANSWER_UNKNOWN;
   }
-}
-
-// Why the store did not begin.
-static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
-  if (feature_status.stepped) {
-    put_packed(why, SAY_not_in_the_loop_parameters_are_the_simulations);
-    return ANSWER_STATE;
-  }
-  if (needs_rest && drive_is_energised()) {
-    put_packed(why, SAY_not_while_the_power_stage_is_on);
-    return ANSWER_RUNNING;
-  }
-  put_packed(why, SAY_the_store_is_busy);
-  put_words(why, WORDS_STORE, (uint16_t)store_state());
-  return ANSWER_BUSY;
-}
-
-answer_status_t action_save(octet_writer_t* why) {
-  return !feature_status.stepped && store_save() ? ANSWER_OK : refuse_store(false, why);
-}
-
-answer_status_t action_load(octet_writer_t* why) {
-  return !feature_status.stepped && store_load() ? ANSWER_OK : refuse_store(true, why);
-}
-
-answer_status_t action_defaults(octet_writer_t* why) {
-  return !feature_status.stepped && store_defaults() ? ANSWER_OK : refuse_store(true, why);
 }

@@ -27,9 +27,11 @@ typedef enum {
   ANSWER_CONFLICT = 7  // parameters that do not fit together
 } answer_status_t;
 
+/// Whether the drive can begin anything now.
+answer_status_t action_may_begin(octet_writer_t* why);
+
 /// With a guard, `link_timeout` without a record of its holder stops the drive again (link/guard.h).
 answer_status_t action_start(guard_t guard, uint32_t holder, octet_writer_t* why);
-answer_status_t action_commission(guard_t guard, uint32_t holder, octet_writer_t* why);
 
 /// Two short-circuit pulses: how the shaft turns. The outcome is asked for afterwards (drive_look_outcome).
 answer_status_t action_look(octet_writer_t* why);
@@ -47,13 +49,6 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why);
 /// CONFLICT says which parameters do not fit together. With the power stage off the value is taken all the same, since
 /// the others may follow; while the drive runs it is not.
 answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why);
-
-/// Begin to keep the present parameters, and to take those that are kept; store_state tells what becomes of it.
-answer_status_t action_save(octet_writer_t* why);
-answer_status_t action_load(octet_writer_t* why);
-
-/// Every parameter to its default; what is kept stays as it is.
-answer_status_t action_defaults(octet_writer_t* why);
 
 /// The rest of a refusal behind the value: the range that holds, and that nothing has changed.
 void put_range(octet_writer_t* w, const parameter_info_t* parameter);

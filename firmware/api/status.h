@@ -7,17 +7,34 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interfaces/service.h"
+
 #if defined(__cplusplus)
 extern "C" {
 #endif
+
+#define UNSAVED_UNKNOWN 255u
 
 typedef struct {
   bool stepped;                 // a host steps the drive: it and its parameters are a simulation's (hil/)
   volatile uint16_t heartbeat;  // meanwhile, in the place of the drive's own
   uint16_t store_work;          // what the parameter store is at; 0: nothing (store/)
+  uint16_t refusals;            // commands that were typed and not carried out (console/)
+  // As of the last status_update.
+  uint16_t store_state;             // WORDS_STORE
+  uint16_t store_progress;          // percent
+  uint16_t unsaved;                 // parameters that are not what the next power-on will have; UNSAVED_UNKNOWN
+  uint16_t commissioning_outcome;   // WORDS_COMMISSIONING
+  uint16_t commissioning_phase;     // WORDS_PHASE
+  uint16_t commissioning_progress;  // per mille
 } feature_status_t;
 
 extern feature_status_t feature_status;
+
+/// Background level: everyone writes what is asked for too seldom to be written all the time.
+void status_update(void);
+/// Those who do (editions/).
+extern service_t* const edition_status_updates[];
 
 #if defined(__cplusplus)
 }

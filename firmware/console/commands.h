@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/api/guard.h"
 #include "firmware/base/octets.h"
 #include "firmware/console/editor.h"
 #include "firmware/text/packed_text.h"
@@ -41,6 +42,12 @@ void command_obey(const editor_line_t* line, bool expired);
 /// on its words and on the drive ('ref 0', 'commission results'): so it is asked where it is about to happen.
 bool command_may_move(const words_of_line_t* a);
 
+/// Who is to watch over what moves the motor: word k, the only one left. False, and said, when nobody would and that
+/// was not asked for, or when the line has expired.
+bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard);
+/// What that means for who types.
+void say_guard(guard_t guard);
+
 /// Whether the line stops the motor, whatever else it says.
 bool command_makes_safe(const editor_line_t* line);
 
@@ -57,7 +64,8 @@ bool word_occurs(const word_t* word, packed_text_t text);
 
 void command_help(const words_of_line_t* a);
 
-void command_can(const words_of_line_t* a);  // can/commands.c
+void command_can(const words_of_line_t* a);         // can/commands.c
+void command_commission(const words_of_line_t* a);  // commissioning/commands.c
 
 // commands_parameters.c
 void command_list(const words_of_line_t* a);
@@ -71,7 +79,6 @@ void command_coast(const words_of_line_t* a);
 void command_look(const words_of_line_t* a);
 void command_reset(const words_of_line_t* a);
 void command_ref(const words_of_line_t* a);
-void command_commission(const words_of_line_t* a);
 
 // commands_look.c
 /// What would be lost with the power, behind what the line says; nothing where nothing would.

@@ -1,10 +1,9 @@
-// start, stop, coast, look, ref, reset, commission.
+// start, stop, coast, look, ref, reset.
 
 #include <stddef.h>
 
 #include "firmware/api/actions.h"
 #include "firmware/api/guard.h"
-#include "firmware/commissioning/outcome.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
@@ -44,8 +43,7 @@ static bool wait_for_run(uint16_t step) {
   return false;
 }
 
-// Who watches over the motor: word k, the only one left. False, and said, when nobody does and that was not asked for.
-static bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
+bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
   if (a->count == k && guard_beside_text() != 0u) {
     *guard = GUARD_SERIAL;
   } else if (a->count == k + 1u && word_is(a, k, "hold")) {
@@ -59,7 +57,7 @@ static bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
   return command_may_move(a);
 }
 
-static void say_guard(guard_t guard) {
+void say_guard(guard_t guard) {
   if (guard == GUARD_KEYS) line_of(SAY_hold_runs_while_a_key_is_held);
   if (guard == GUARD_NONE) line_of(SAY_free_nobody_watches_runs_until_stop);
 }
@@ -171,57 +169,4 @@ void command_ref(const words_of_line_t* a) {
 void command_reset(const words_of_line_t* a) {
   if (!no_arguments(a)) return;
   line_answer(action_reset(line_begin()) == ANSWER_OK, SAY_cleared_the_current_offsets_are_calibrated_a);
-}
-
-static void show_commissioning(void) {
-  const commissioning_outcome_t outcome = drive_commissioning_outcome();
-  octet_writer_t* const w = line_begin();
-  put_packed(w, SAY_commissioning);
-  put_words(w, WORDS_COMMISSIONING, (uint16_t)outcome);
-  if (outcome == COMMISSIONING_RUNNING) {
-    put_text(w, ", ");
-    put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
-    put_text(w, " %: ");
-    put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
-  }
-  if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) put_unsaved(w);
-  line_end();
-}
-
-static bool list_results(uint16_t step) {
-  const commissioning_result_t r = drive_commissioning_result(step);
-  const parameter_info_t* const p = parameter_by_id(r.id);
-  if (p == NULL) return false;  // there is no such result, or none any more
-  octet_writer_t* const w = line_begin();
-  put_packed(w, p->name);
-  put_spaces_to(w, 22);
-  put_fixed(w, r.before, p->q, p->decimals);
-  put_text(w, " -> ");
-  put_value(w, p, r.value);
-  put_spaces_to(w, 50);
-  put_words(w, WORDS_VERDICT, (uint16_t)r.verdict);
-  line_end();
-  return true;
-}
-
-static void begin_commissioning(const words_of_line_t* a) {
-  guard_t guard;
-  if (!choose_guard(a, 1, &guard)) return;
-  const bool begins = action_commission(guard, guard_beside_text(), line_begin()) == ANSWER_OK;
-  line_answer(begins, SAY_commissioning_the_shaft_will_turn_stop_ends);
-  if (begins) say_guard(guard);
-}
-
-void command_commission(const words_of_line_t* a) {
-  if (a->count == 0u) {
-    show_commissioning();
-  } else if (word_is(a, 0, "start")) {
-    begin_commissioning(a);
-  } else if (!word_is(a, 0, "results")) {
-    line_refused(SAY_commission_commission_start_or_commission_re);
-  } else if (drive_commissioning_count() == 0u) {
-    line_of(SAY_nothing_has_been_measured_since_power_on);
-  } else {
-    console_run(list_results, false);
-  }
 }

@@ -3,9 +3,9 @@
 #include <stddef.h>
 
 #include "firmware/api/actions.h"
+#include "firmware/api/status.h"
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
-#include "firmware/commissioning/outcome.h"
 #include "firmware/config/rules.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/console.h"
@@ -53,7 +53,8 @@ static void status_state(octet_writer_t* w) {
     put_words(w, WORDS_START, (uint16_t)drive_signals().start_phase);
   } else if (drive.state == DRIVE_COMMISSION) {
     put_text(w, ": ");
-    put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
+    status_update();
+    put_words(w, WORDS_PHASE, feature_status.commissioning_phase);
   }
 }
 
@@ -96,13 +97,14 @@ static void status_fault(octet_writer_t* w) {
 }
 
 void put_unsaved(octet_writer_t* w) {
-  const uint16_t unsaved = store_unsaved();
+  status_update();
+  const uint16_t unsaved = feature_status.unsaved;
   if (unsaved == 0u) return;
-  if (unsaved < STORE_UNSAVED_UNKNOWN) {
+  if (unsaved < UNSAVED_UNKNOWN) {
     put_text(w, "; ");
     put_unsigned(w, unsaved);
   }
-  put_packed(w, (unsaved < STORE_UNSAVED_UNKNOWN) ? SAY_not_saved_save_keeps_them : SAY_not_saved_the_last_save_failed);
+  put_packed(w, (unsaved < UNSAVED_UNKNOWN) ? SAY_not_saved_save_keeps_them : SAY_not_saved_the_last_save_failed);
 }
 
 static void status_parameters(octet_writer_t* w) {

@@ -1,14 +1,14 @@
 #include "firmware/console/output.h"
 
+#include "firmware/api/status.h"
 #include "hal/hal_sci.h"
 
 #define RESERVED 5u  // three points and the line's end
 
 static uint16_t block[OUTPUT_LINE];
 static octet_writer_t line;
-static uint16_t refused;
 
-void output_reset(void) { refused = 0; }
+void output_reset(void) { feature_status.refusals = 0; }
 
 octet_writer_t* line_begin(void) {
   line = octet_writer(block, OUTPUT_LINE - RESERVED);
@@ -29,9 +29,7 @@ void line_of(packed_text_t text) {
   line_end();
 }
 
-void count_refusal(void) { refused++; }
-
-uint16_t refusals(void) { return refused; }
+void count_refusal(void) { feature_status.refusals++; }
 
 void line_end_refused(void) {
   count_refusal();

@@ -32,7 +32,6 @@ void line_of(packed_text_t text);
 
 /// For a command that was not carried out: people read why, programs read how many there have been (request LINK).
 void count_refusal(void);
-uint16_t refusals(void);
 void line_end_refused(void);
 void line_refused(packed_text_t text);
 

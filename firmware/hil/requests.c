@@ -1,7 +1,8 @@
-// Host in the loop.
+#include "firmware/hil/requests.h"
+
+#include <stddef.h>
 
 #include "firmware/hil/hil.h"
-#include "firmware/link/request_handlers.h"
 #include "firmware/text/packed_text.h"
 
 static answer_status_t said(request_t* r, hil_result_t result) {
@@ -25,8 +26,13 @@ static answer_status_t said(request_t* r, hil_result_t result) {
   }
 }
 
-answer_status_t request_hil_enter(request_t* r) { return said(r, hil_enter()); }
+static answer_status_t request_hil_enter(request_t* r) { return said(r, hil_enter()); }
 
-answer_status_t request_hil_step(request_t* r) { return said(r, hil_step(&r->body, &r->answer)); }
+static answer_status_t request_hil_step(request_t* r) { return said(r, hil_step(&r->body, &r->answer)); }
 
-answer_status_t request_hil_leave(request_t* r) { return said(r, hil_leave()); }
+static answer_status_t request_hil_leave(request_t* r) { return said(r, hil_leave()); }
+
+const request_row_t hil_requests[] = {{REQUEST_HIL_ENTER, REQUEST_BODY(0u, 0u), request_hil_enter},
+                                      {REQUEST_HIL_STEP, REQUEST_BODY(3u, RECORD_BODY_MAX), request_hil_step},
+                                      {REQUEST_HIL_LEAVE, REQUEST_BODY(0u, 0u), request_hil_leave},
+                                      REQUEST_ROWS_END};

@@ -2,56 +2,29 @@
 
 #include <stddef.h>
 
-#include "firmware/link/request_handlers.h"
+#include "firmware/link/request_rows.h"
 
-typedef struct {
-  uint16_t type;
-  uint16_t body;  // octets: the fewest, and the most in the upper half
-  request_handler_t* handler;
-} entry_t;
+#define COMMAND_BODY 5u  // code and argument
 
-#define BODY(fewest, most) ((uint16_t)((fewest) | (most) << 8))
-
-static const entry_t entries[] = {
-    {REQUEST_IDENTITY, BODY(0, 0), request_identity},
-    {REQUEST_PARAMETER_INFO, BODY(2, 2), request_parameter_info},
-    {REQUEST_SIGNAL_INFO, BODY(2, 2), request_signal_info},
-    {REQUEST_PARAMETER_READ, BODY(3, 3), request_parameter_read},
-    {REQUEST_PARAMETER_GET, BODY(2, 2), request_parameter_get},
-    {REQUEST_PARAMETER_SET, BODY(6, 6), request_parameter_set},
-    {REQUEST_COMMAND, BODY(5, 5), request_command},
-    {REQUEST_STATUS, BODY(0, 4), request_status},
-    {REQUEST_SIGNALS, BODY(2, 32), request_signals},
-    {REQUEST_FAULT, BODY(1, 1), request_fault},
-    {REQUEST_WORDS, BODY(2, 2), request_words},
-    {REQUEST_LINK, BODY(0, 0), request_link},
-    {REQUEST_SCOPE_SETUP, BODY(16, 29), request_scope_setup},
-    {REQUEST_SCOPE_ARM, BODY(0, 0), request_scope_arm},
-    {REQUEST_SCOPE_STATE, BODY(0, 0), request_scope_state},
-    {REQUEST_SCOPE_READ, BODY(4, 4), request_scope_read},
-    {REQUEST_SCOPE_STOP, BODY(0, 0), request_scope_stop},
-    {REQUEST_STREAM, BODY(2, 18), request_stream},
-    {REQUEST_COMMISSION_RESULT, BODY(2, 2), request_commission_result},
-    {REQUEST_LOOK, BODY(0, 0), request_look},
-    {REQUEST_HIL_ENTER, BODY(0, 0), request_hil_enter},
-    {REQUEST_HIL_STEP, BODY(3, RECORD_BODY_MAX), request_hil_step},
-    {REQUEST_HIL_LEAVE, BODY(0, 0), request_hil_leave},
-};
-
-#define ENTRIES (sizeof entries / sizeof entries[0])
-
-static const entry_t* find(uint16_t type) {
-  for (uint16_t k = 0; k < ENTRIES; k++) {
-    if (entries[k].type == type) return &entries[k];
+static const request_row_t* find(uint16_t type) {
+  for (uint16_t k = 0; edition_requests[k] != NULL; k++) {
+    for (const request_row_t* row = edition_requests[k]; row->handler != NULL; row++) {
+      if (row->type == type) return row;
+    }
   }
   return NULL;
 }
 
 static answer_status_t handle(request_t* r, uint16_t type) {
-  const entry_t* const entry = find(type);
-  if (entry == NULL) return ANSWER_UNKNOWN;
-  if (r->body.count < (entry->body & 0xFFu) || r->body.count > entry->body >> 8) return ANSWER_LENGTH;
-  return entry->handler(r);
+  if (type == REQUEST_COMMAND) {
+    if (r->body.count != COMMAND_BODY) return ANSWER_LENGTH;
+    type = REQUEST_OF_COMMAND(take_u8(&r->body));
+  }
+  const request_row_t* const row = find(type);
+  const uint16_t count = octets_left(&r->body);
+  if (row == NULL) return ANSWER_UNKNOWN;
+  if (count < (row->body & 0xFFu) || count > row->body >> 8) return ANSWER_LENGTH;
+  return row->handler(r);
 }
 
 uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {

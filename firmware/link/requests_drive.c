@@ -1,58 +1,48 @@
 // Commands, and how the drive is.
 
-#include "firmware/commissioning/outcome.h"
-#include "firmware/console/output.h"
+#include <stddef.h>
+
+#include "firmware/api/status.h"
 #include "firmware/drive/signals.h"
 #include "firmware/link/link.h"
-#include "firmware/link/request_handlers.h"
-#include "firmware/link/requests.h"
+#include "firmware/link/request_rows.h"
 #include "firmware/link/stream.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
-#include "firmware/store/store.h"
 
-// A guard that is asked for without a number is a former client's: nobody could tell who keeps it alive.
-static bool lacks_holder(uint16_t code, uint32_t number, octet_writer_t* why) {
-  if (number != 1u || (code != COMMAND_START && code != COMMAND_COMMISSION)) return false;
-  put_packed(why, SAY_a_guarded_start_needs_the_number);
-  return true;
+bool request_takes_guard(request_t* r, guard_t* guard, uint32_t* holder) {
+  *holder = take_u32(&r->body);
+  *guard = ((*holder & 1u) != 0u) ? r->port : GUARD_NONE;
+  if (*holder != 1u) return true;
+  put_packed(&r->answer, SAY_a_guarded_start_needs_the_number);
+  return false;
 }
 
-answer_status_t request_command(request_t* r) {
-  const uint16_t code = take_u8(&r->body);
-  const int32_t argument = take_i32(&r->body);
-  const uint32_t holder = (uint32_t)argument;
-  const guard_t guard = ((holder & 1u) != 0u) ? r->port : GUARD_NONE;
-  if (lacks_holder(code, holder, &r->answer)) return ANSWER_RANGE;
-  switch (code) {
-    case COMMAND_START:
-      return action_start(guard, holder, &r->answer);
-    case COMMAND_STOP:
-      action_stop();
-      return ANSWER_OK;
-    case COMMAND_COAST:
-      action_coast();
-      return ANSWER_OK;
-    case COMMAND_RESET:
-      return action_reset(&r->answer);
-    case COMMAND_SPEED:
-      return action_speed(argument, &r->answer);
-    case COMMAND_COMMISSION:
-      return action_commission(guard, holder, &r->answer);
-    case COMMAND_SAVE:
-      return action_save(&r->answer);
-    case COMMAND_DEFAULTS:
-      return action_defaults(&r->answer);
-    case COMMAND_LOAD:
-      return action_load(&r->answer);
-    case COMMAND_LOOK:
-      return action_look(&r->answer);
-    default:
-      return ANSWER_UNKNOWN;
-  }
+static answer_status_t request_start(request_t* r) {
+  guard_t guard;
+  uint32_t holder;
+  return request_takes_guard(r, &guard, &holder) ? action_start(guard, holder, &r->answer) : ANSWER_RANGE;
 }
 
-answer_status_t request_look(request_t* r) {
+static answer_status_t request_stop(request_t* r) {
+  (void)r;
+  action_stop();
+  return ANSWER_OK;
+}
+
+static answer_status_t request_coast(request_t* r) {
+  (void)r;
+  action_coast();
+  return ANSWER_OK;
+}
+
+static answer_status_t request_reset(request_t* r) { return action_reset(&r->answer); }
+
+static answer_status_t request_speed(request_t* r) { return action_speed(take_i32(&r->body), &r->answer); }
+
+static answer_status_t request_begin_look(request_t* r) { return action_look(&r->answer); }
+
+static answer_status_t request_look(request_t* r) {
   put_u8(&r->answer, (uint16_t)drive_look_outcome());
   put_i32(&r->answer, drive_look_rpm());
   put_look(&r->answer);
@@ -63,11 +53,12 @@ static uint16_t link_flags(uint32_t asker) {
   return (uint16_t)((guard_is_on() ? 1u : 0u) | (guard_has_stopped() ? 2u : 0u) | (guard_is_of(asker) ? 4u : 0u));
 }
 
-answer_status_t request_status(request_t* r) {
+static answer_status_t request_status(request_t* r) {
   octet_writer_t* const w = &r->answer;
   const uint32_t asker = (r->body.count > 0u) ? take_u32(&r->body) : 0u;
   if (r->body.short_of) return ANSWER_LENGTH;
   if (asker != 0u) guard_heard(r->port, asker);
+  status_update();
   const drive_signals_t s = drive_signals();
   put_u32(w, drive_time_ms());
   put_u8(w, (uint16_t)drive.state);
@@ -75,35 +66,18 @@ answer_status_t request_status(request_t* r) {
   put_u16(w, (uint16_t)s.limit);
   put_i32(w, s.speed);
   put_i32(w, s.speed_reference);
-  put_u8(w, (uint16_t)store_state());
-  put_u8(w, store_progress());
-  put_u8(w, (uint16_t)drive_commissioning_outcome());
-  put_u8(w, (uint16_t)drive_commissioning_phase());
-  put_u16(w, (uint16_t)drive_commissioning_progress());
+  put_u8(w, feature_status.store_state);
+  put_u8(w, feature_status.store_progress);
+  put_u8(w, feature_status.commissioning_outcome);
+  put_u8(w, feature_status.commissioning_phase);
+  put_u16(w, feature_status.commissioning_progress);
   put_u8(w, link_flags(asker));
   put_u8(w, drive_known(&drive));
-  put_u8(w, store_unsaved());
+  put_u8(w, feature_status.unsaved);
   return ANSWER_OK;
 }
 
-#define SIGNALS_MAX 16u
-
-answer_status_t request_signals(request_t* r) {
-  uint16_t places[SIGNALS_MAX] = {0};
-  int32_t values[SIGNALS_MAX] = {0};
-  if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
-  const uint16_t count = r->body.count / 2u;
-  for (uint16_t k = 0; k < count; k++) {
-    places[k] = take_u16(&r->body);
-    if (places[k] >= signal_count()) return ANSWER_RANGE;
-  }
-  const signals_seen_t seen = drive_signals_copy(places, count, values);
-  for (uint16_t k = 0; k < count; k++) put_i32(&r->answer, values[k]);
-  put_u8(&r->answer, seen.known);
-  return ANSWER_OK;
-}
-
-answer_status_t request_fault(request_t* r) {
+static answer_status_t request_fault(request_t* r) {
   fault_record_t f;
   if (!fault_history_read(take_u8(&r->body), &f)) return ANSWER_RANGE;
   octet_writer_t* const w = &r->answer;
@@ -119,7 +93,7 @@ answer_status_t request_fault(request_t* r) {
   return ANSWER_OK;
 }
 
-answer_status_t request_link(request_t* r) {
+static answer_status_t request_link(request_t* r) {
   const link_errors_t e = link_errors();
   octet_writer_t* const w = &r->answer;
   put_u16(w, e.records.damaged);
@@ -130,18 +104,18 @@ answer_status_t request_link(request_t* r) {
   put_u16(w, e.port.breaks);
   put_u16(w, e.port.lost);
   put_u16(w, stream_lost(r->port));
-  put_u16(w, refusals());
+  put_u16(w, feature_status.refusals);
   return ANSWER_OK;
 }
 
-answer_status_t request_commission_result(request_t* r) {
-  const uint16_t index = take_u16(&r->body);
-  put_u16(&r->answer, drive_commissioning_count());
-  if (index >= drive_commissioning_count()) return ANSWER_OK;  // there is no such one: the number alone
-  const commissioning_result_t v = drive_commissioning_result(index);
-  put_u16(&r->answer, v.id);
-  put_i32(&r->answer, v.before);
-  put_i32(&r->answer, v.value);
-  put_u8(&r->answer, (uint16_t)v.verdict);
-  return ANSWER_OK;
-}
+const request_row_t drive_requests[] = {{REQUEST_STATUS, REQUEST_BODY(0u, 4u), request_status},
+                                        {REQUEST_FAULT, REQUEST_BODY(1u, 1u), request_fault},
+                                        {REQUEST_LINK, REQUEST_BODY(0u, 0u), request_link},
+                                        {REQUEST_LOOK, REQUEST_BODY(0u, 0u), request_look},
+                                        {REQUEST_OF_COMMAND(COMMAND_START), ARGUMENT_BODY, request_start},
+                                        {REQUEST_OF_COMMAND(COMMAND_STOP), ARGUMENT_BODY, request_stop},
+                                        {REQUEST_OF_COMMAND(COMMAND_COAST), ARGUMENT_BODY, request_coast},
+                                        {REQUEST_OF_COMMAND(COMMAND_RESET), ARGUMENT_BODY, request_reset},
+                                        {REQUEST_OF_COMMAND(COMMAND_SPEED), ARGUMENT_BODY, request_speed},
+                                        {REQUEST_OF_COMMAND(COMMAND_LOOK), ARGUMENT_BODY, request_begin_look},
+                                        REQUEST_ROWS_END};

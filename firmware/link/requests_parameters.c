@@ -3,11 +3,11 @@
 #include <stddef.h>
 
 #include "firmware/dictionary/parameters.h"
-#include "firmware/link/request_handlers.h"
+#include "firmware/link/request_rows.h"
 
 #define READ_MAX 32u
 
-answer_status_t request_parameter_read(request_t* r) {
+static answer_status_t request_parameter_read(request_t* r) {
   const uint16_t first = take_u16(&r->body);
   const uint16_t count = take_u8(&r->body);
   if (count > READ_MAX || first >= parameter_count()) return ANSWER_RANGE;
@@ -20,17 +20,22 @@ answer_status_t request_parameter_read(request_t* r) {
   return ANSWER_OK;
 }
 
-answer_status_t request_parameter_get(request_t* r) {
+static answer_status_t request_parameter_get(request_t* r) {
   const uint16_t id = take_u16(&r->body);
   if (parameter_by_id(id) == NULL) return ANSWER_UNKNOWN;
   put_i32(&r->answer, parameter_get(id));
   return ANSWER_OK;
 }
 
-answer_status_t request_parameter_set(request_t* r) {
+static answer_status_t request_parameter_set(request_t* r) {
   const parameter_info_t* const p = parameter_by_id(take_u16(&r->body));
   if (p == NULL) return ANSWER_UNKNOWN;
   const answer_status_t status = action_set(p, take_i32(&r->body), &r->answer);
   if (status == ANSWER_OK) put_i32(&r->answer, parameter_get(p->id));
   return status;
 }
+
+const request_row_t parameter_requests[] = {{REQUEST_PARAMETER_READ, REQUEST_BODY(3u, 3u), request_parameter_read},
+                                            {REQUEST_PARAMETER_GET, REQUEST_BODY(2u, 2u), request_parameter_get},
+                                            {REQUEST_PARAMETER_SET, REQUEST_BODY(6u, 6u), request_parameter_set},
+                                            REQUEST_ROWS_END};

@@ -6,8 +6,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/dictionary/version.h"
 #include "firmware/drive/signals.h"
-#include "firmware/link/request_handlers.h"
-#include "firmware/link/requests.h"
+#include "firmware/link/request_rows.h"
 #include "firmware/text/words.h"
 #include "hal/hal_board.h"
 #include "hal/hal_flash.h"
@@ -105,7 +104,7 @@ static void put_build(octet_writer_t* w) {
   }
 }
 
-answer_status_t request_identity(request_t* r) {
+static answer_status_t request_identity(request_t* r) {
   if (!sum.complete) return ANSWER_BUSY;
   put_u16(&r->answer, LINK_PROTOCOL);
   put_u16(&r->answer, parameter_count());
@@ -120,21 +119,21 @@ answer_status_t request_identity(request_t* r) {
   return ANSWER_OK;
 }
 
-answer_status_t request_parameter_info(request_t* r) {
+static answer_status_t request_parameter_info(request_t* r) {
   const parameter_info_t* const p = parameter_info(take_u16(&r->body));
   if (p == NULL) return ANSWER_RANGE;
   put_parameter(&r->answer, p);
   return ANSWER_OK;
 }
 
-answer_status_t request_signal_info(request_t* r) {
+static answer_status_t request_signal_info(request_t* r) {
   const signal_info_t* const s = signal_info(take_u16(&r->body));
   if (s == NULL) return ANSWER_RANGE;
   put_signal(&r->answer, s);
   return ANSWER_OK;
 }
 
-answer_status_t request_words(request_t* r) {
+static answer_status_t request_words(request_t* r) {
   const uint16_t kind = take_u8(&r->body);
   if (kind >= WORDS_KINDS) return ANSWER_UNKNOWN;
   const uint16_t code = take_u8(&r->body);
@@ -142,3 +141,9 @@ answer_status_t request_words(request_t* r) {
   put_words(&r->answer, (words_kind_t)kind, code);
   return ANSWER_OK;
 }
+
+const request_row_t table_requests[] = {{REQUEST_IDENTITY, REQUEST_BODY(0u, 0u), request_identity},
+                                        {REQUEST_PARAMETER_INFO, REQUEST_BODY(2u, 2u), request_parameter_info},
+                                        {REQUEST_SIGNAL_INFO, REQUEST_BODY(2u, 2u), request_signal_info},
+                                        {REQUEST_WORDS, REQUEST_BODY(2u, 2u), request_words},
+                                        REQUEST_ROWS_END};

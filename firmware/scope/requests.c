@@ -1,8 +1,7 @@
-// Captured scope, and the stream of slow signals.
+#include "firmware/scope/requests.h"
 
-#include "firmware/drive/signals.h"
-#include "firmware/link/request_handlers.h"
-#include "firmware/link/stream.h"
+#include <stddef.h>
+
 #include "firmware/scope/scope.h"
 #include "firmware/text/packed_text.h"
 
@@ -11,7 +10,7 @@
 #define HYSTERESIS_OCTETS 4u
 #define READ_MAX 100u
 
-answer_status_t request_scope_setup(request_t* r) {
+static answer_status_t request_scope_setup(request_t* r) {
   octet_reader_t* const b = &r->body;
   scope_setup_t s = {0};
   s.decimation = take_u16(b);
@@ -35,13 +34,13 @@ answer_status_t request_scope_setup(request_t* r) {
   return scope_setup(&s) ? ANSWER_OK : ANSWER_RANGE;
 }
 
-answer_status_t request_scope_arm(request_t* r) {
+static answer_status_t request_scope_arm(request_t* r) {
   if (scope_arm()) return ANSWER_OK;
   put_packed(&r->answer, SAY_the_scope_is_not_set_up_yet);
   return ANSWER_STATE;
 }
 
-answer_status_t request_scope_state(request_t* r) {
+static answer_status_t request_scope_state(request_t* r) {
   const scope_status_t s = scope_status();
   put_u8(&r->answer, (uint16_t)s.state);
   put_u16(&r->answer, s.recorded);
@@ -51,7 +50,7 @@ answer_status_t request_scope_state(request_t* r) {
 }
 
 // While a capture runs there is nothing to read: the answer is empty.
-answer_status_t request_scope_read(request_t* r) {
+static answer_status_t request_scope_read(request_t* r) {
   int16_t words[READ_MAX] = {0};
   const uint16_t channel = take_u8(&r->body);
   const uint16_t offset = take_u16(&r->body);
@@ -62,22 +61,15 @@ answer_status_t request_scope_read(request_t* r) {
   return ANSWER_OK;
 }
 
-answer_status_t request_scope_stop(request_t* r) {
+static answer_status_t request_scope_stop(request_t* r) {
   (void)r;
   scope_stop();
   return ANSWER_OK;
 }
 
-answer_status_t request_stream(request_t* r) {
-  uint16_t places[STREAM_SIGNALS] = {0};
-  if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
-  const uint16_t period_ms = take_u16(&r->body);
-  const uint16_t count = (uint16_t)(octets_left(&r->body) / 2u);
-  for (uint16_t k = 0; k < count; k++) {
-    places[k] = take_u16(&r->body);
-    if (places[k] >= signal_count()) return ANSWER_RANGE;
-  }
-  if (period_ms != 0u && count == 0u) return ANSWER_LENGTH;
-  stream_setup(r->port, period_ms, places, count);
-  return ANSWER_OK;
-}
+const request_row_t scope_requests[] = {{REQUEST_SCOPE_SETUP, REQUEST_BODY(16u, 29u), request_scope_setup},
+                                        {REQUEST_SCOPE_ARM, REQUEST_BODY(0u, 0u), request_scope_arm},
+                                        {REQUEST_SCOPE_STATE, REQUEST_BODY(0u, 0u), request_scope_state},
+                                        {REQUEST_SCOPE_READ, REQUEST_BODY(4u, 4u), request_scope_read},
+                                        {REQUEST_SCOPE_STOP, REQUEST_BODY(0u, 0u), request_scope_stop},
+                                        REQUEST_ROWS_END};

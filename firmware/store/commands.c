@@ -4,10 +4,10 @@
 
 #include <stddef.h>
 
-#include "firmware/api/actions.h"
 #include "firmware/console/console.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/store/actions.h"
 #include "firmware/store/store.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"

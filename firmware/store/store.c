@@ -41,8 +41,14 @@ uint16_t store_progress(void) {
 }
 
 uint16_t store_unsaved(void) {
-  if (!store_is_busy()) unsaved = kept_known ? values_changed() : STORE_UNSAVED_UNKNOWN;
+  if (!store_is_busy()) unsaved = kept_known ? values_changed() : UNSAVED_UNKNOWN;
   return unsaved;
+}
+
+void store_status_update(void) {
+  feature_status.store_state = (uint16_t)state;
+  feature_status.store_progress = store_progress();
+  feature_status.unsaved = store_unsaved();
 }
 
 void store_reset(void) {

@@ -73,11 +73,12 @@ bool store_load(void);
 /// Puts every parameter to its default, in force but not saved. False while the power stage is on or the store is busy.
 bool store_defaults(void);
 
-#define STORE_UNSAVED_UNKNOWN 255u
-
-/// How many parameters are not what the next power-on will have; STORE_UNSAVED_UNKNOWN behind a save that failed. A
+/// How many parameters are not what the next power-on will have; UNSAVED_UNKNOWN behind a save that failed. A
 /// value that is set back to the kept one is not among them.
 uint16_t store_unsaved(void);
+
+/// Writes into feature_status how it is.
+void store_status_update(void);
 
 store_state_t store_state(void);
 bool store_is_busy(void);

@@ -6,7 +6,6 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
-#include "firmware/api/actions.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/console/commands.h"
@@ -15,6 +14,7 @@ extern "C" {
 #include "firmware/drive/signals.h"
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
+#include "firmware/store/actions.h"
 }
 
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
-#include "firmware/console/output.h"
+#include "firmware/api/status.h"
 #include "firmware/mode/states.h"
 }
 
@@ -15,9 +15,9 @@ using namespace stillspin::test;
 class Refusals : public Console {
  protected:
   int of(const std::string& line) {
-    const std::uint16_t before = refusals();
+    const std::uint16_t before = feature_status.refusals;
     command(line);
-    return refusals() - before;
+    return feature_status.refusals - before;
   }
 };
 
@@ -110,13 +110,13 @@ TEST_F(Refusals, ASaveThatFailsIsOne) {
 
 TEST_F(Refusals, AStartThatEndsInAFaultIsOne) {
   drive.state = DRIVE_READY;
-  const std::uint16_t before = refusals();
+  const std::uint16_t before = feature_status.refusals;
   send("start free\r");
   run(100);
-  EXPECT_EQ(refusals(), before) << text;
+  EXPECT_EQ(feature_status.refusals, before) << text;
   drive_raise(&drive, FAULT_LINK_LOW);
   run(100);
-  EXPECT_EQ(refusals(), before + 1) << text;
+  EXPECT_EQ(feature_status.refusals, before + 1) << text;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // What would be lost with the power: how many parameters differ from what the next power-on has.
 
+#include "firmware/api/status.h"
 #include "firmware/dictionary/parameters.h"
 #include "tests/firmware/console.hpp"
 #include "tests/firmware/store_test.hpp"
@@ -58,7 +59,7 @@ TEST_F(Store, BehindASaveThatFailedNobodyKnows) {
   EXPECT_TRUE(store_save());
   serve();
   ASSERT_EQ(store_state(), STORE_FAILED);
-  EXPECT_EQ(store_unsaved(), STORE_UNSAVED_UNKNOWN);
+  EXPECT_EQ(store_unsaved(), UNSAVED_UNKNOWN);
   nvm.absent = false;
   EXPECT_EQ(save(), STORE_SAVED);
   EXPECT_EQ(store_unsaved(), 0);

@@ -98,6 +98,16 @@ commissioning_result_t drive_commissioning_result(uint16_t index) {
   return r;
 }
 
+static void any_status(void) {
+  feature_status.store_state = any_up_to(11);
+  feature_status.store_progress = any_up_to(100);
+  feature_status.unsaved = any_up_to(255);
+  feature_status.commissioning_outcome = any_up_to(5);
+  feature_status.commissioning_phase = any_up_to(5);
+  feature_status.commissioning_progress = any_up_to(1000);
+}
+service_t* const edition_status_updates[] = {any_status, 0};
+
 bool store_save(void) { return any_bool(); }
 bool store_load(void) { return any_bool(); }
 bool store_defaults(void) { return any_bool(); }

@@ -2,14 +2,17 @@
 
 #include "firmware/link/requests.h"
 
-#include "firmware/console/output.h"
+#include "firmware/commissioning/requests.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
+#include "firmware/hil/requests.h"
 #include "firmware/link/link.h"
 #include "firmware/link/stream.h"
 #include "firmware/mode/commands.h"
+#include "firmware/scope/requests.h"
 #include "firmware/scope/scope.h"
+#include "firmware/store/requests.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
@@ -17,6 +20,10 @@
 #include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 #include "tests/prove/any_drive.h"
+
+const request_row_t* const edition_requests[] = {drive_requests, parameter_requests,     signal_requests,
+                                                 table_requests, scope_requests,         hil_requests,
+                                                 store_requests, commissioning_requests, 0};
 
 uint16_t hal_sci_room(void) { return any_up_to(HAL_SCI_TRANSMIT_RING); }
 void hal_sci_service(void) {}
@@ -26,7 +33,6 @@ void hal_irq_install(hal_isr_t control, hal_isr_t window) {
   control();
   window();
 }
-uint16_t refusals(void) { return any_u16; }
 uint16_t hal_flash_read(uint32_t address) { return (uint16_t)(address & any_u16); }
 bool hal_pwm_is_tripped(void) { return any_bool(); }
 void hal_pwm_gates_off(void) {}

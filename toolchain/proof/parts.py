@@ -91,6 +91,7 @@ TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (
     *("tests/prove/any_drive.c", "firmware/api/actions.c", "firmware/mode/fault_history.c", "firmware/scope/scope.c"),
     *("firmware/api/guard.c", "firmware/api/status.c", "firmware/mode/access.c", "firmware/link/stream.c", *TEXTS),
+    *("firmware/store/actions.c", "firmware/commissioning/actions.c"),
 )
 TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
 
@@ -293,7 +294,7 @@ PARTS = (
         "commands",
         (
             *("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
-            *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "store")),
+            *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "store", "commissioning")),
         ),
         READER,
         *(OF_QMATH, "q_shl_sat", OF_WRITING, OF_TYPING, OF_LINES),
@@ -309,7 +310,8 @@ PARTS = (
     of_link(
         "requests",
         (
-            *("tests/prove/requests.c", "firmware/link/requests*.c", "firmware/scope/requests.c", CRC),
+            *("tests/prove/requests.c", "firmware/link/requests*.c", CRC),
+            *(f"firmware/{folder}/requests.c" for folder in ("scope", "store", "commissioning")),
             *("firmware/hil/*.c", "firmware/base/clear.c", "hal/tape.c", *BESIDE),
         ),
         READER,

@@ -1,0 +1,67 @@
+// commission.
+
+#include "firmware/console/commands.h"
+
+#include <stddef.h>
+
+#include "firmware/commissioning/actions.h"
+#include "firmware/commissioning/outcome.h"
+#include "firmware/console/console.h"
+#include "firmware/console/output.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "firmware/text/words.h"
+
+static void show_commissioning(void) {
+  const commissioning_outcome_t outcome = drive_commissioning_outcome();
+  octet_writer_t* const w = line_begin();
+  put_packed(w, SAY_commissioning);
+  put_words(w, WORDS_COMMISSIONING, (uint16_t)outcome);
+  if (outcome == COMMISSIONING_RUNNING) {
+    put_text(w, ", ");
+    put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
+    put_text(w, " %: ");
+    put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
+  }
+  if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) put_unsaved(w);
+  line_end();
+}
+
+static bool list_results(uint16_t step) {
+  const commissioning_result_t r = drive_commissioning_result(step);
+  const parameter_info_t* const p = parameter_by_id(r.id);
+  if (p == NULL) return false;  // there is no such result, or none any more
+  octet_writer_t* const w = line_begin();
+  put_packed(w, p->name);
+  put_spaces_to(w, 22);
+  put_fixed(w, r.before, p->q, p->decimals);
+  put_text(w, " -> ");
+  put_value(w, p, r.value);
+  put_spaces_to(w, 50);
+  put_words(w, WORDS_VERDICT, (uint16_t)r.verdict);
+  line_end();
+  return true;
+}
+
+static void begin_commissioning(const words_of_line_t* a) {
+  guard_t guard;
+  if (!choose_guard(a, 1, &guard)) return;
+  const bool begins = action_commission(guard, guard_beside_text(), line_begin()) == ANSWER_OK;
+  line_answer(begins, SAY_commissioning_the_shaft_will_turn_stop_ends);
+  if (begins) say_guard(guard);
+}
+
+void command_commission(const words_of_line_t* a) {
+  if (a->count == 0u) {
+    show_commissioning();
+  } else if (word_is(a, 0, "start")) {
+    begin_commissioning(a);
+  } else if (!word_is(a, 0, "results")) {
+    line_refused(SAY_commission_commission_start_or_commission_re);
+  } else if (drive_commissioning_count() == 0u) {
+    line_of(SAY_nothing_has_been_measured_since_power_on);
+  } else {
+    console_run(list_results, false);
+  }
+}

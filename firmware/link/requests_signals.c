@@ -1,0 +1,42 @@
+// Values of the signals: once, and as a stream.
+
+#include <stddef.h>
+
+#include "firmware/drive/signals.h"
+#include "firmware/link/request_rows.h"
+#include "firmware/link/stream.h"
+
+#define SIGNALS_MAX 16u
+
+static answer_status_t request_signals(request_t* r) {
+  uint16_t places[SIGNALS_MAX] = {0};
+  int32_t values[SIGNALS_MAX] = {0};
+  if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
+  const uint16_t count = r->body.count / 2u;
+  for (uint16_t k = 0; k < count; k++) {
+    places[k] = take_u16(&r->body);
+    if (places[k] >= signal_count()) return ANSWER_RANGE;
+  }
+  const signals_seen_t seen = drive_signals_copy(places, count, values);
+  for (uint16_t k = 0; k < count; k++) put_i32(&r->answer, values[k]);
+  put_u8(&r->answer, seen.known);
+  return ANSWER_OK;
+}
+
+static answer_status_t request_stream(request_t* r) {
+  uint16_t places[STREAM_SIGNALS] = {0};
+  if (r->body.count % 2u != 0u) return ANSWER_LENGTH;
+  const uint16_t period_ms = take_u16(&r->body);
+  const uint16_t count = (uint16_t)(octets_left(&r->body) / 2u);
+  for (uint16_t k = 0; k < count; k++) {
+    places[k] = take_u16(&r->body);
+    if (places[k] >= signal_count()) return ANSWER_RANGE;
+  }
+  if (period_ms != 0u && count == 0u) return ANSWER_LENGTH;
+  stream_setup(r->port, period_ms, places, count);
+  return ANSWER_OK;
+}
+
+const request_row_t signal_requests[] = {{REQUEST_SIGNALS, REQUEST_BODY(2u, 2u * SIGNALS_MAX), request_signals},
+                                         {REQUEST_STREAM, REQUEST_BODY(2u, 2u + 2u * STREAM_SIGNALS), request_stream},
+                                         REQUEST_ROWS_END};
