@@ -11,7 +11,8 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     parameters  numbers of the parameters that are its own
     signals     names of the signals that are its own
     words       kinds of words (text/word_list.h) that are its own
-    rows        by table: what stands there, with its place: a number, smaller ones come first
+    rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
+                have theirs from its list
 
 What has not changed is not written again. FOLDER belongs into the include path before the tree.
 """
@@ -40,32 +41,37 @@ class Table:
     form: str = "list"  # with NULL behind the last one; "one" and no more, or NULL; "places": by number, NULL between
     least: int = 0  # places at least
     arrays: bool = False  # its rows are arrays
+    prefix: str = "edition_"
 
     def text(self, name: str, rows: list[tuple[int, str]]) -> str:
         """Its definition, of rows with their places."""
         refer = "&" if self.type.startswith("const ") and not self.arrays else ""  # functions need none
         if self.form == "one":
-            return f"{self.type}* const edition_{name} = {refer + rows[0][1] if rows else 'NULL'};\n"
+            return f"{self.type}* const {self.prefix}{name} = {refer + rows[0][1] if rows else 'NULL'};\n"
         if self.form == "places":
             by_place = dict(rows)
             count = max([self.least, *(place + 1 for place in by_place)])
             cells = [refer + by_place[k] if k in by_place else "NULL" for k in range(count)]
         else:
             cells = [*(refer + row for _, row in rows), "NULL"]
-        prefix = "" if self.form == "places" else "edition_"
-        return "\n    ".join([f"{self.type}* const {prefix}{name}[] = {{", *(f"{cell}," for cell in cells)]) + "\n};\n"
+        head = f"{self.type}* const {self.prefix}{name}[] = {{"
+        return "\n    ".join([head, *(f"{cell}," for cell in cells)]) + "\n};\n"
 
 
-SERVICE = "firmware/interfaces/service.h"
+SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
+COMMANDS = [row[0] for row in pack_text.rows((ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")]
 TABLES = {
-    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9),
+    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
     "config_parts": Table("config_part_t", "firmware/interfaces/config_part.h"),
     **{name: Table("service_t", SERVICE) for name in ("resets", "power_on", "loading", "starting", "pass")},
     "works": Table("work_t", SERVICE),
     "watch": Table("watch_t", SERVICE, "one"),
-    "status_updates": Table("service_t", "firmware/api/status.h"),
+    "status_updates": Table("service_t", STATUS),
     "requests": Table("const request_row_t", "firmware/link/request_rows.h", arrays=True),
+    "commands": Table("command_function_t", "firmware/console/commands.h", "places", len(COMMANDS)),
+    "status_lines": Table("const status_line_t", STATUS),
+    "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one"),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
 }
 
@@ -81,12 +87,15 @@ class Feature:
     parameters: tuple[int, ...] = ()
     signals: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
-    rows: dict[str, dict[str, Any]] = field(default_factory=dict)
+    rows: dict[str, Any] = field(default_factory=dict)
 
     def places(self, table: str) -> list[tuple[int, str]]:
         """Its rows in a table with their places."""
+        rows = self.rows.get(table, {})
+        if isinstance(rows, list):
+            return [(COMMANDS.index(name.removeprefix("command_")), name) for name in rows]
         found = []
-        for name, places in self.rows.get(table, {}).items():
+        for name, places in rows.items():
             found += [(place, name) for place in (places if isinstance(places, list) else [places])]
         return found
 

@@ -95,7 +95,8 @@ PARTS = {
     ),
     "firmware/link": Part(
         (
-            *("firmware/link/*.c", "firmware/base/octets.c", "firmware/base/crc.c", "firmware/api/guard.c"),
+            *("firmware/link/*.c", "firmware/base/octets.c", "firmware/base/crc.c"),
+            *("firmware/api/guard.c", "firmware/api/status.c"),
             *("firmware/hil/*.c", "firmware/scope/*.c"),
         ),
         FIRMWARE,

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/base/octets.h"
 #include "firmware/interfaces/service.h"
 
 #if defined(__cplusplus)
@@ -35,6 +36,14 @@ extern feature_status_t feature_status;
 void status_update(void);
 /// Those who do (editions/).
 extern service_t* const edition_status_updates[];
+
+/// A line about how something is, for people.
+typedef struct {
+  const char* title;
+  void (*put)(octet_writer_t* w);
+} status_line_t;
+/// Those of the edition, NULL behind the last one (editions/).
+extern const status_line_t* const edition_status_lines[];
 
 #if defined(__cplusplus)
 }

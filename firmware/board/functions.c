@@ -121,7 +121,7 @@ static void put_number(octet_writer_t* w, board_words_t word, int32_t value, uin
   put_text(w, unit);
 }
 
-void put_board(octet_writer_t* w) {
+static void put_board(octet_writer_t* w) {
   if (parameters.emergency_stop != 0) put_item(w, hal_lines_emergency() ? BOARD_PRESSED : BOARD_RELEASED);
   if (parameters.precharge_voltage != 0) put_item(w, board.relay ? BOARD_CHARGED : BOARD_CHARGING);
   if (parameters.brake_voltage != 0) put_item(w, board.braking ? BOARD_BRAKING : BOARD_NOT_BRAKING);
@@ -131,3 +131,5 @@ void put_board(octet_writer_t* w) {
   if (parameters.overload_current < 0 && parameters.rated_current == 0) put_item(w, BOARD_RATED_UNTOLD);
   put_number(w, BOARD_LIMIT_IN_USE, interlock_share_q15 * 25 / 8, 10, " %");
 }
+
+const status_line_t board_line = {"board", put_board};

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/base/octets.h"
+#include "firmware/api/status.h"
 #include "firmware/mode/commands.h"
 
 #if defined(__cplusplus)
@@ -69,7 +69,7 @@ drive_fault_t board_refusal(void);
 int32_t board_lasting_current(void);
 
 /// The functions in use, in words.
-void put_board(octet_writer_t* w);
+extern const status_line_t board_line;
 
 // The parts, once a millisecond each.
 drive_fault_t board_follow_heat(void);   // derating.c

@@ -73,7 +73,7 @@ static void put_item(octet_writer_t* w, uint16_t* items, uint16_t word) {
   (*items)++;
 }
 
-void put_selftest(octet_writer_t* w) {
+static void put_selftest(octet_writer_t* w) {
   uint16_t items = 0u;
   for (uint16_t k = 0; k < FAILURES; k++) {
     if (((uint16_t)(selftest.failed >> k) & 1u) != 0u) put_item(w, &items, k);
@@ -85,3 +85,5 @@ void put_selftest(octet_writer_t* w) {
   if (selftest.flash.state == FLASH_SUM_NONE) put_item(w, &items, WORD_NO_SUM);
   if (hal_watchdog_caused_reset()) put_item(w, &items, WORD_WATCHDOG);
 }
+
+const status_line_t selftest_line = {"self-test", put_selftest};

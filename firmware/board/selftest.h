@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/base/octets.h"
+#include "firmware/api/status.h"
 #include "firmware/board/flash_sum.h"
 #include "firmware/mode/commands.h"
 
@@ -58,7 +58,7 @@ void selftest_count(uint32_t cycles);
 /// A pass of the background loop. FAULT_SELF_TEST when something has failed.
 drive_fault_t selftest_service(void);
 
-void put_selftest(octet_writer_t* w);
+extern const status_line_t selftest_line;
 
 #if defined(__cplusplus)
 }

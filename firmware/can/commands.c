@@ -1,9 +1,9 @@
 // can: how the node of the CAN bus is.
 
-#include "firmware/console/commands.h"
+#include "firmware/can/commands.h"
 
 #include "firmware/can/node.h"
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"

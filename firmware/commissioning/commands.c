@@ -1,12 +1,12 @@
 // commission.
 
-#include "firmware/console/commands.h"
+#include "firmware/commissioning/commands.h"
 
 #include <stddef.h>
 
 #include "firmware/commissioning/actions.h"
 #include "firmware/commissioning/outcome.h"
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/text/packed_text.h"

@@ -5,7 +5,7 @@
 #include "firmware/api/actions.h"
 #include "firmware/api/guard.h"
 #include "firmware/console/commands.h"
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"

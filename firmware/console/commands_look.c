@@ -4,20 +4,16 @@
 
 #include "firmware/api/actions.h"
 #include "firmware/api/status.h"
-#include "firmware/board/functions.h"
-#include "firmware/board/selftest.h"
 #include "firmware/config/rules.h"
 #include "firmware/console/commands.h"
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"
 #include "firmware/dictionary/version.h"
 #include "firmware/drive/signals.h"
-#include "firmware/link/link.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
-#include "firmware/store/store.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
 #include "firmware/text/words.h"
@@ -117,39 +113,21 @@ static void status_parameters(octet_writer_t* w) {
   put_unsaved(w);
 }
 
-static void status_store(octet_writer_t* w) {
-  put_words(w, WORDS_STORE, (uint16_t)store_state());
-  put_packed(w, SAY_saves_so_far);
-  put_unsigned(w, store_report()->sequence);
-}
-
-static void status_port(octet_writer_t* w) {
-  const link_errors_t e = link_errors();
-  put_unsigned(w, (uint32_t)e.port.framing + e.port.overrun + e.port.breaks + e.port.lost);
-  put_packed(w, SAY_disturbances);
-  put_unsigned(w, (uint32_t)e.records.damaged + e.records.too_long + e.records.broken_off);
-  put_packed(w, SAY_damaged_records);
-  put_unsigned(w, e.events_dropped);
-  put_packed(w, SAY_events_dropped);
-}
-
-static const struct {
-  const char* title;
-  void (*put)(octet_writer_t* w);
-} status_lines[] = {{"state", status_state},           {"speed", put_speeds},     {"current", status_current},
-                    {"DC link", status_link},          {"limits", status_limits}, {"fault", status_fault},
-                    {"parameters", status_parameters}, {"board", put_board},      {"self-test", put_selftest},
-                    {"store", status_store},           {"serial", status_port}};
-
-#define STATUS_LINES ((uint16_t)(sizeof status_lines / sizeof status_lines[0]))
+const status_line_t state_line = {"state", status_state};
+const status_line_t speed_line = {"speed", put_speeds};
+const status_line_t current_line = {"current", status_current};
+const status_line_t dc_link_line = {"DC link", status_link};
+const status_line_t limits_line = {"limits", status_limits};
+const status_line_t fault_line = {"fault", status_fault};
+const status_line_t parameters_line = {"parameters", status_parameters};
 
 static bool show_status(uint16_t step) {
   octet_writer_t* const w = line_begin();
-  put_text(w, status_lines[step].title);
+  put_text(w, edition_status_lines[step]->title);
   put_spaces_to(w, COLUMN);
-  status_lines[step].put(w);
+  edition_status_lines[step]->put(w);
   line_end();
-  return step + 1u < STATUS_LINES;
+  return edition_status_lines[step + 1u] != NULL;
 }
 
 void command_status(const words_of_line_t* a) {

@@ -4,7 +4,7 @@
 
 #include "firmware/api/actions.h"
 #include "firmware/console/commands.h"
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"

@@ -6,16 +6,16 @@
 #include "firmware/api/guard.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/editor.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
-#include "firmware/link/record.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/words.h"
 #include "hal/hal_sci.h"
 
-#define KEPT 64u                                      // characters typed ahead; a power of two
-#define ROOM (OUTPUT_LINE + RECORD_ENCODED_MAX + 2u)  // a line, and the answer to a record beside it
+#define KEPT 64u                                   // characters typed ahead; a power of two
+#define ROOM (TEXT_LINE_MAX + RECORD_ON_WIRE_MAX)  // a line, and the answer to a record beside it
 #define EXPIRES_MS 5000u
 #define AFTER_PAUSE 0x100u  // beside an octet: nothing had come for EXPIRES_MS
 #define CTRL_C 0x03u
@@ -25,9 +25,6 @@
 
 static editor_t editor;
 static editor_line_t command;  // the one that is being answered
-static console_job_t* job;
-static uint16_t step;
-static bool ends_by_key;
 static uint16_t kept[KEPT];
 static uint16_t kept_first, kept_count;
 static bool someone_types;
@@ -40,7 +37,7 @@ static bool silence_told;
 void console_reset(void) {
   editor_reset(&editor);
   output_reset();
-  job = NULL;
+  console_work.function = NULL;
   kept_first = 0;
   kept_count = 0;
   someone_types = false;
@@ -51,13 +48,7 @@ void console_reset(void) {
   silence_told = false;
 }
 
-void console_give_way(void) { someone_types = false; }
-
-void console_run(console_job_t* new_job, bool until_key) {
-  job = new_job;
-  step = 0;
-  ends_by_key = until_key;
-}
+static void give_way(void) { someone_types = false; }
 
 static void prompt(void) {
   put_text(line_begin(), EDITOR_PROMPT);
@@ -65,7 +56,7 @@ static void prompt(void) {
 }
 
 static void end_job(void) {
-  job = NULL;
+  console_work.function = NULL;
   prompt();
 }
 
@@ -101,10 +92,10 @@ static void edit(uint16_t octet) {
     obey();
     editor_next(&editor);
   }
-  if (event != EDITOR_NOTHING && job == NULL) prompt();
+  if (event != EDITOR_NOTHING && console_work.function == NULL) prompt();
 }
 
-bool console_takes(void) { return kept_count < KEPT; }
+static bool keeps_more(void) { return kept_count < KEPT; }
 
 static void keep(uint16_t octet) {
   kept[(uint16_t)(kept_first + kept_count) & (KEPT - 1u)] = octet;
@@ -136,7 +127,7 @@ static bool asks_to_stop(void) {
 
 // To stop does not wait for the end of a long answer.
 static void stop_at_once(void) {
-  job = NULL;
+  console_work.function = NULL;
   kept_count = 0;
   line_of(SAY_the_answer_and_what_was_typed_ahead);
   command_obey(&command, false);
@@ -161,8 +152,8 @@ static bool only_holds(uint16_t octet) {
   return is_key(octet) && guard_key() && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
 }
 
-void console_octet(uint16_t octet) {
-  if (octet == CONSOLE_BREAK) {
+static void take_key(uint16_t octet) {
+  if (octet == TEXT_BREAK) {
     cut();
     return;
   }
@@ -170,13 +161,13 @@ void console_octet(uint16_t octet) {
   heard_ms += pause_ms;
   someone_types = true;
   if (only_holds(octet)) return;
-  if (job != NULL && octet == CTRL_C) {
+  if (console_work.function != NULL && octet == CTRL_C) {
     break_off();
     return;
   }
-  if (job != NULL && ends_by_key) end_job();
+  if (console_work.function != NULL && console_work.ends_by_key) end_job();
   if (pause_ms >= EXPIRES_MS) octet |= AFTER_PAUSE;
-  if (job == NULL && kept_count == 0u) {
+  if (console_work.function == NULL && kept_count == 0u) {
     edit(octet);
     return;
   }
@@ -185,10 +176,12 @@ void console_octet(uint16_t octet) {
     stop_at_once();
     return;
   }
-  if (job == NULL || console_takes()) return;
+  if (console_work.function == NULL || keeps_more()) return;
   line_refused(SAY_more_input_than_can_be_kept_the);
   end_job();
 }
+
+const text_port_t console_text_port = {keeps_more, take_key, give_way};
 
 // Someone who watches the terminal wants to know why the motor stops.
 static void tell(void) {
@@ -214,8 +207,8 @@ static void tell(void) {
 
 void console_service(void) {
   if (hal_sci_room() < ROOM) return;
-  if (job != NULL) {
-    if (!job(step++)) end_job();
+  if (console_work.function != NULL) {
+    if (!console_work.function(console_work.step++)) end_job();
   } else if (kept_count > 0u) {
     const uint16_t octet = kept[kept_first];
     kept_first = (uint16_t)(kept_first + 1u) & (KEPT - 1u);

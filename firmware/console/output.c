@@ -5,20 +5,20 @@
 
 #define RESERVED 5u  // three points and the line's end
 
-static uint16_t block[OUTPUT_LINE];
+static uint16_t block[TEXT_LINE_MAX];
 static octet_writer_t line;
 
 void output_reset(void) { feature_status.refusals = 0; }
 
 octet_writer_t* line_begin(void) {
-  line = octet_writer(block, OUTPUT_LINE - RESERVED);
+  line = octet_writer(block, TEXT_LINE_MAX - RESERVED);
   return &line;
 }
 
 void line_flush(void) { (void)hal_sci_write(block, line.count); }
 
 void line_end(void) {
-  line.room = OUTPUT_LINE;
+  line.room = TEXT_LINE_MAX;
   if (line.full) put_text(&line, "...");
   put_text(&line, "\r\n");
   line_flush();

@@ -7,13 +7,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interfaces/text_port.h"
 #include "firmware/text/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {
 #endif
-
-#define OUTPUT_LINE 208u  // characters, with the line's end
 
 /// Power-on state.
 void output_reset(void);

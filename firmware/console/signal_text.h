@@ -4,7 +4,7 @@
 #define STILLSPIN_FIRMWARE_CONSOLE_SIGNAL_TEXT_H
 
 #include "firmware/base/octets.h"
-#include "firmware/console/commands.h"
+#include "firmware/console/words_of_line.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 

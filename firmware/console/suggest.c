@@ -2,7 +2,8 @@
 
 #include <stddef.h>
 
-#include "firmware/console/console.h"
+#include "firmware/console/command_table.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/console/commands.h"
+#include "firmware/console/words_of_line.h"
 
 #if defined(__cplusplus)
 extern "C" {

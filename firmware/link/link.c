@@ -1,18 +1,22 @@
 #include "firmware/link/link.h"
 
+#include <stddef.h>
+
 #include "firmware/api/guard.h"
-#include "firmware/console/console.h"
-#include "firmware/console/output.h"
+#include "firmware/interfaces/text_port.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/stream.h"
 #include "firmware/mode/commands.h"
 
 #define OCTETS_A_ROUND 8u  // 115200 Bd bring little more than one in a period
 #define WIRE_MAX (RECORD_ENCODED_MAX + 2u)
+#if WIRE_MAX != RECORD_ON_WIRE_MAX
+#error "text leaves another room for records than they take"
+#endif
 #define EVENT_WIRE_MAX (2u + 4u + 4u * STREAM_SIGNALS + 1u + 5u)  // with CRC, code octet and zeros
 
 static splitter_t splitter;
-static uint16_t text_at, text_end;  // text in the splitter's block that the console has not had yet
+static uint16_t text_at, text_end;  // text in the splitter's block that nobody has had yet
 static uint16_t record[RECORD_MAX];
 static uint16_t wire[WIRE_MAX];
 
@@ -23,7 +27,6 @@ void link_reset(void) {
   text_end = 0;
   requests_reset();
   stream_reset();
-  console_reset();
 }
 
 // There has to be room.
@@ -35,7 +38,7 @@ static void send(uint16_t count) {
 // FIFO keeps the wire busy meanwhile. One that waits behind an answer comes late, not never: it is missed when the next
 // one is due.
 static void send_event(void) {
-  if (hal_sci_room() >= EVENT_WIRE_MAX + WIRE_MAX + OUTPUT_LINE) send(stream_event(GUARD_SERIAL, record));
+  if (hal_sci_room() >= EVENT_WIRE_MAX + WIRE_MAX + TEXT_LINE_MAX) send(stream_event(GUARD_SERIAL, record));
 }
 
 static void answer(void) {  // take_octet has seen to the room
@@ -44,11 +47,11 @@ static void answer(void) {  // take_octet has seen to the room
 
 static void sort(int16_t found) {
   if (found == SPLITTER_RECORD) {
-    if ((splitter.octets[0] & 0xFFu) == REQUEST_IDENTITY) console_give_way();
+    if (edition_text_port != NULL && (splitter.octets[0] & 0xFFu) == REQUEST_IDENTITY) edition_text_port->give_way();
     answer();
   } else {
     text_at = 0;
-    text_end = (uint16_t)found;
+    text_end = (edition_text_port != NULL) ? (uint16_t)found : 0u;
   }
 }
 
@@ -56,7 +59,7 @@ static void sort(int16_t found) {
 static void forget(void) {
   splitter.in_record = false;
   text_at = text_end;
-  console_octet(CONSOLE_BREAK);
+  if (edition_text_port != NULL) edition_text_port->octet(TEXT_BREAK);
 }
 
 // One octet or character further; false when there is none, or no room for what it may bring about.
@@ -65,8 +68,8 @@ static bool take_octet(void) {
   if (hal_sci_take_break()) forget();
   if (hal_sci_room() < WIRE_MAX) return false;
   if (text_at < text_end) {
-    if (!console_takes()) return false;
-    console_octet(splitter.octets[text_at++]);
+    if (!edition_text_port->takes()) return false;
+    edition_text_port->octet(splitter.octets[text_at++]);
     return true;
   }
   if (hal_sci_read(&octet, 1) == 0u) {

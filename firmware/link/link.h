@@ -9,6 +9,7 @@
 
 #include <stdint.h>
 
+#include "firmware/api/status.h"
 #include "firmware/link/splitter.h"
 #include "hal/hal_sci.h"
 
@@ -29,6 +30,7 @@ void link_reset(void);
 void link_service(void);
 
 link_errors_t link_errors(void);
+extern const status_line_t serial_line;
 
 #if defined(__cplusplus)
 }

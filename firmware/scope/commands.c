@@ -1,10 +1,10 @@
 // scope: set-up, state and a coarse print. Whole captures go over the link's records.
 
-#include "firmware/console/commands.h"
+#include "firmware/scope/commands.h"
 
 #include <stddef.h>
 
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/suggest.h"

@@ -1,10 +1,10 @@
 // save, load, defaults.
 
-#include "firmware/console/commands.h"
+#include "firmware/store/commands.h"
 
 #include <stddef.h>
 
-#include "firmware/console/console.h"
+#include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/store/actions.h"
@@ -59,3 +59,11 @@ void command_defaults(const words_of_line_t* a) {
   (void)a;
   line_answer(action_defaults(line_begin()) == ANSWER_OK, SAY_every_parameter_is_at_its_default_save);
 }
+
+static void status_store(octet_writer_t* w) {
+  put_words(w, WORDS_STORE, (uint16_t)store_state());
+  put_packed(w, SAY_saves_so_far);
+  put_unsigned(w, store_report()->sequence);
+}
+
+const status_line_t store_line = {"store", status_store};

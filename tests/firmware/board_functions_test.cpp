@@ -62,7 +62,7 @@ class BoardFunctions : public Drive {
   static std::string words() {
     std::uint16_t octets[400];
     octet_writer_t w = octet_writer(octets, 400);
-    put_board(&w);
+    board_line.put(&w);
     return {octets, octets + w.count};
   }
   static double share() { return interlock_share_q15 / 32768.0; }

@@ -139,7 +139,7 @@ TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
   drive.commissioning.phase = COMMISSIONING_STAIRCASE;
   drive.limits = LIMIT_CURRENT | LIMIT_VOLTAGE | LIMIT_WEAKENING | LIMIT_OVERRUN | LIMIT_BRAKING;
   const std::string line = command("watch", 300);
-  EXPECT_EQ(line.size(), OUTPUT_LINE);
+  EXPECT_EQ(line.size(), TEXT_LINE_MAX);
   EXPECT_EQ(line.substr(line.size() - 5), "...\r\n");
   drive.state = DRIVE_RUN;
   EXPECT_FALSE(has(command("watch", 300), "..."));

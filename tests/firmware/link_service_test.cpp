@@ -88,7 +88,7 @@ TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   const auto sends_after = [&](unsigned ms, int missing) {
     const unsigned before = sent();
     drive.time_ms += ms;
-    board.serial_room = static_cast<std::uint16_t>(kLongest + OUTPUT_LINE + longest_event - missing);
+    board.serial_room = static_cast<std::uint16_t>(kLongest + TEXT_LINE_MAX + longest_event - missing);
     link_service();
     return sent() - before;
   };

@@ -51,7 +51,7 @@ class SelfTest : public ::testing::Test {
   static std::string words() {
     std::uint16_t octets[400];
     octet_writer_t w = octet_writer(octets, 400);
-    put_selftest(&w);
+    selftest_line.put(&w);
     return {octets, octets + w.count};
   }
 };

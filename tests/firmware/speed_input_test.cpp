@@ -164,7 +164,7 @@ TEST_F(SpeedInput, TheBoardsWordsSayWhatItDoes) {
   const auto words = [] {
     std::uint16_t octets[400];
     octet_writer_t w = octet_writer(octets, 400);
-    put_board(&w);
+    board_line.put(&w);
     return std::string(octets, octets + w.count);
   };
   turns(1, false, 2048);

@@ -57,6 +57,7 @@ class Terminal : public Drive {
   void SetUp() override {
     Drive::SetUp();
     link_reset();
+    console_reset();
     nvm = FakeNvm{};
     splitter_reset(&far_);
     run(400);  // the tables' check sum

@@ -44,6 +44,7 @@ static void power_on(void) {
   parameters.wiring_check = 0;  // no motor is there
   hil_reset();
   link_reset();
+  console_reset();
 }
 
 // The machine stands, so the drive runs with an encoder and does not ask which way round its magnet is.

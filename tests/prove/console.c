@@ -5,11 +5,14 @@
 #include "firmware/console/console.h"
 
 #include "firmware/console/commands.h"
+#include "firmware/console/job.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/stream.h"
 #include "hal/hal_sci.h"
 #include "tests/prove/any_drive.h"
+
+const text_port_t* const edition_text_port = &console_text_port;
 
 uint16_t hal_sci_room(void) { return any_up_to(HAL_SCI_TRANSMIT_RING); }
 
@@ -36,6 +39,7 @@ uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, u
 void prove_console(void) {
   any_moment();
   link_reset();
+  console_reset();
   while (any_bool()) {
     any_moment();
     if (any_bool()) any_stream(GUARD_SERIAL);

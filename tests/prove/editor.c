@@ -6,7 +6,7 @@
 #include "tests/prove/any.h"
 
 static editor_t e;
-static uint16_t block[200];  // OUTPUT_LINE without its end
+static uint16_t block[200];  // TEXT_LINE_MAX without its end
 
 static void any_text(editor_line_t* line) {
   for (uint16_t k = 0; k < EDITOR_LINE; k++) line->text[k] = any_u16;

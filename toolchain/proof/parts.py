@@ -93,7 +93,7 @@ BESIDE = (
     *("firmware/api/guard.c", "firmware/api/status.c", "firmware/mode/access.c", "firmware/link/stream.c", *TEXTS),
     *("firmware/store/actions.c", "firmware/commissioning/actions.c"),
 )
-TERMINAL = ("firmware/console/console.c", "firmware/console/editor.c", "firmware/console/output.c")
+TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "editor", "output"))
 
 STORE = (
     *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/api/status.c", OCTETS, CRC),
@@ -293,8 +293,10 @@ PARTS = (
     of_link(
         "commands",
         (
-            *("tests/prove/commands.c", "firmware/console/commands*.c", "firmware/console/s*.c", *TERMINAL, *BESIDE),
+            *("tests/prove/commands.c", *TERMINAL, *BESIDE),
+            *(f"firmware/console/{name}.c" for name in ("command*", "words_of_line", "s*")),
             *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "store", "commissioning")),
+            "firmware/link/status.c",
         ),
         READER,
         *(OF_QMATH, "q_shl_sat", OF_WRITING, OF_TYPING, OF_LINES),

@@ -1,0 +1,49 @@
+// A command line as words.
+
+#ifndef STILLSPIN_FIRMWARE_CONSOLE_WORDS_OF_LINE_H
+#define STILLSPIN_FIRMWARE_CONSOLE_WORDS_OF_LINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/base/octets.h"
+#include "firmware/console/editor.h"
+#include "firmware/text/packed_text.h"
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/// A word of the command line; it stays where it is until the command's job is through.
+typedef struct {
+  const uint16_t* text;
+  uint16_t count;
+} word_t;
+
+#define COMMAND_WORDS 16u
+
+typedef struct {
+  word_t word[COMMAND_WORDS];  // behind the command's own; more than any command takes
+  uint16_t count;
+  bool expired;  // it stood for long before its end came
+} words_of_line_t;
+
+/// The word from `at` on, or the next one; moves `at` behind it.
+word_t next_word(const editor_line_t* line, uint16_t* at);
+
+/// True when word k is there and is this one.
+bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
+/// The word as it was typed.
+void put_word(octet_writer_t* w, const word_t* word);
+
+/// True when word k is this text.
+bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text);
+
+/// True when the word occurs in the text; one that is nowhere (text is NULL) occurs in all of them.
+bool word_occurs(const word_t* word, packed_text_t text);
+
+#if defined(__cplusplus)
+}
+#endif
+
+#endif
