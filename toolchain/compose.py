@@ -62,6 +62,7 @@ SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
 COMMANDS = [row[0] for row in pack_text.rows((ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")]
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
+    "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
     "config_parts": Table("config_part_t", "firmware/interfaces/config_part.h"),
     **{name: Table("service_t", SERVICE) for name in ("resets", "power_on", "loading", "starting", "pass")},

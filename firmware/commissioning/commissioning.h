@@ -15,6 +15,7 @@
 
 #include "estimators/admittance_tensor.h"
 #include "firmware/commissioning/outcome.h"
+#include "firmware/interfaces/state.h"
 
 #define STAIRCASE_LEVELS 14u
 #define MAP_LEVELS 4u
@@ -79,10 +80,7 @@ typedef struct {
   commissioning_phase_t phase;
   commissioning_outcome_t outcome;
   int32_t tick;           // periods in this phase
-  bool requested;         // the start that is under way leads here
-  bool adapting;          // the model follows the windows
   bool predicting;        // the angle runs ahead on the torque alone
-  bool turning;           // speed control is active
   bool solve_motion;      // the background level owes acceleration and torque constant from the spin
   bool evaluate;          // the sums are complete and the gates are off
   uint32_t target_bam;    // where the shaft is held
@@ -96,5 +94,13 @@ typedef struct {
   map_t map;
   spin_t spin;
 } commissioning_t;
+
+/// Its memory: a drive has one commissioning.
+extern commissioning_t commissioning;
+
+/// As after power-on.
+void commissioning_reset(void);
+
+extern const state_t commissioning_state;
 
 #endif

@@ -47,7 +47,7 @@ static int32_t blank(uint16_t level) {
 }
 
 static void begin_train(drive_t* d) {
-  map_t* const m = &d->commissioning.map;
+  map_t* const m = &commissioning.map;
   const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), level_q20(m->level), 28);
   const int32_t accel_q8 = q_max(q_mul_sat(torque_q16, d->model.accel_q12, 20), 1);
   const int32_t square = q_div(EXCURSION_BAM, accel_q8, 8);
@@ -58,7 +58,7 @@ static void begin_train(drive_t* d) {
   m->speed_q8 = 0;
   m->position_bam = 0;
   m->train++;
-  d->commissioning.predicting = true;
+  commissioning.predicting = true;
 }
 
 // Follows what the current of the last period did to the shaft.
@@ -110,7 +110,7 @@ static void run_train(drive_t* d, map_t* m) {
   if (m->tick < SEGMENTS * m->segment + blank(m->level)) return;
   m->pause = true;
   m->tick = 0;
-  d->commissioning.predicting = false;
+  commissioning.predicting = false;
 }
 
 static bool level_complete(const map_t* m) {
@@ -123,15 +123,15 @@ static bool level_complete(const map_t* m) {
 
 // Before every second train the shaft moves on by 45 degrees electrical: over eight places cogging averages out, and so
 // does a mismatch of the sensors that changes with the current (the converter's bend).
-static void move_on(drive_t* d, const map_t* m) {
-  if (m->train % 2u == 0u && m->tick < MOVE_PERIODS) d->commissioning.target_bam += PLACE_BAM / MOVE_PERIODS;
+static void move_on(const map_t* m) {
+  if (m->train % 2u == 0u && m->tick < MOVE_PERIODS) commissioning.target_bam += PLACE_BAM / MOVE_PERIODS;
 }
 
 // The last part of a pause, at rest, is the map's point without current.
 static void add_pause(drive_t* d) {
   deviation_t first;
   deviation_t second;
-  if (commissioning_pair(d, &first, &second)) tensor_add(&d->commissioning.unsaturated, &first, &second);
+  if (commissioning_pair(d, &first, &second)) tensor_add(&commissioning.unsaturated, &first, &second);
 }
 
 // A level is as far as its last group is full.
@@ -144,12 +144,12 @@ int32_t commissioning_map_done(const map_t* m) {
 }
 
 bool commissioning_map(drive_t* d) {
-  map_t* const m = &d->commissioning.map;
-  if (d->commissioning.tick == 0) {
+  map_t* const m = &commissioning.map;
+  if (commissioning.tick == 0) {
     clear(m, sizeof *m);
     m->pause = true;
-    d->commissioning.target_bam = d->position.used.angle_bam;
-    tensor_reset(&d->commissioning.unsaturated);
+    commissioning.target_bam = d->position.used.angle_bam;
+    tensor_reset(&commissioning.unsaturated);
   }
   if (m->level >= MAP_LEVELS) return true;
   if (!m->pause) {
@@ -157,7 +157,7 @@ bool commissioning_map(drive_t* d) {
     return false;
   }
   const int32_t length = (m->train % 2u == 0u) ? MOVE_PERIODS + PAUSE_PERIODS : PAUSE_PERIODS;
-  move_on(d, m);
+  move_on(m);
   commissioning_hold(d);
   if (m->tick == length && interlock_is_warm()) return false;
   if (m->tick > length - STILL_PERIODS) add_pause(d);

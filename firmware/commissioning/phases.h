@@ -1,14 +1,13 @@
-// The state COMMISSION (sequence.c) and its phases, each in its own file.
+// The phases of the state COMMISSION (sequence.c), each in its own file.
 
 #ifndef STILLSPIN_FIRMWARE_COMMISSIONING_PHASES_H
 #define STILLSPIN_FIRMWARE_COMMISSIONING_PHASES_H
 
+#include "firmware/commissioning/commissioning.h"
 #include "firmware/mode/mode.h"
 
-void commissioning_begin(drive_t* d);
-void commissioning_step(drive_t* d);
-void commissioning_abort(drive_t* d);
-void commissioning_service(drive_t* d);                   // background level: evaluation
+/// Background level: evaluation.
+void commissioning_service(drive_t* d);
 bool commissioning_turn(drive_t* d);                      // commissioning/hold.c
 bool commissioning_climb(drive_t* d);                     // commissioning/staircase.c
 bool commissioning_map(drive_t* d);                       // commissioning/map.c
@@ -16,6 +15,8 @@ int32_t commissioning_map_done(const map_t* m);           // share of it in time
 bool commissioning_spin(drive_t* d);                      // commissioning/spin.c
 void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
+/// Angle and speed while the shaft is held (commissioning/hold.c).
+void commissioning_estimate(drive_t* d, estimator_input_t* in);
 /// The period's two opposite windows against the model, in the frame of the angle in use; false when there are none.
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);
 

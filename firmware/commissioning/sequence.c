@@ -1,14 +1,17 @@
+#include "firmware/base/clear.h"
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_tape.h"
 
 #define LONGER_TICKS 500
 #define SAMPLING_MIN_TICKS 450  // two bursts and the shortest useful time between them
+
+commissioning_t commissioning;
 
 static commissioning_report_t report;
 
@@ -16,6 +19,8 @@ typedef struct {
   bool (*step)(drive_t* d);
   int16_t share;  // per mille of the time of the whole, as motor A takes it
 } phase_t;
+
+void commissioning_reset(void) { clear(&commissioning, sizeof commissioning); }
 
 static bool at_once(drive_t* d) {
   (void)d;
@@ -36,46 +41,44 @@ static void settle_longer(drive_t* d) {
   c->settle_ticks = (int16_t)q_min(c->settle_ticks + LONGER_TICKS, q_max(c->settle_ticks, most));
 }
 
-void commissioning_begin(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
+static void commissioning_begin(drive_t* d, drive_state_t behind) {
+  (void)behind;  // it ends in READY
+  commissioning_t* const c = &commissioning;
   c->outcome = COMMISSIONING_RUNNING;
   c->phase = COMMISSIONING_IDLE;
   c->tick = 0;
-  c->requested = true;
   c->evaluate = false;
   c->solve_motion = false;
-  c->adapting = true;
   c->predicting = false;
-  c->turning = false;
   settle_longer(d);
-  drive_begin_start(d);
+  start_state.begin(d, DRIVE_COMMISSION);
 }
 
-void commissioning_abort(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
+static void commissioning_abandon(drive_t* d) {
+  (void)d;
+  commissioning_t* const c = &commissioning;
   if (c->outcome != COMMISSIONING_RUNNING) return;
   c->outcome = COMMISSIONING_ABORTED;
-  c->requested = false;
   c->phase = COMMISSIONING_IDLE;
   drive_parameters_changed();
 }
 
 static void next_phase(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
+  commissioning_t* const c = &commissioning;
   c->phase = (commissioning_phase_t)((uint16_t)c->phase + 1u);
   c->tick = 0;
-  c->adapting = c->phase == COMMISSIONING_TURN;
+  d->flags.frozen = c->phase != COMMISSIONING_TURN;
   if (c->phase == COMMISSIONING_MAP) c->mismatch_q30 = d->trim.mismatch_q30;
   if (c->phase != COMMISSIONING_EVALUATE) return;
   hal_pwm_gates_off();
   d->control.closed = false;
-  c->turning = false;
-  c->requested = false;
+  d->flags.spins = false;
+  d->flags.over = true;
   c->evaluate = true;
 }
 
-void commissioning_step(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
+static void commissioning_step(drive_t* d) {
+  commissioning_t* const c = &commissioning;
   if (c->phase == COMMISSIONING_EVALUATE) {
     if (!c->evaluate) drive_enter(d, DRIVE_READY);
     return;
@@ -86,14 +89,13 @@ void commissioning_step(drive_t* d) {
 }
 
 static bool has_failed(const drive_t* d) {
-  return d->commissioning.outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT;
+  return commissioning.outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT;
 }
 
-static void serve(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
+static void settle(drive_t* d) {
+  commissioning_t* const c = &commissioning;
   if (has_failed(d)) {
     c->outcome = COMMISSIONING_FAILED;
-    c->requested = false;
     c->phase = COMMISSIONING_IDLE;
     drive_parameters_changed();
   }
@@ -109,18 +111,21 @@ static void serve(drive_t* d) {
 }
 
 void commissioning_service(drive_t* d) {
-  const bool wanted = has_failed(d) || d->commissioning.solve_motion || d->commissioning.evaluate;
+  const bool wanted = has_failed(d) || commissioning.solve_motion || commissioning.evaluate;
   if (!wanted || !hal_tape_has_work(TAPE_EVALUATED)) return;
   hal_tape_work_begin(TAPE_EVALUATED);
-  serve(d);
+  settle(d);
   hal_tape_work_end();
 }
 
+const state_t commissioning_state = {commissioning_begin, commissioning_step, commissioning_estimate,
+                                     commissioning_abandon};
+
 void drive_command_commission(void) { drive.request.commission = true; }
 
-commissioning_outcome_t drive_commissioning_outcome(void) { return drive.commissioning.outcome; }
+commissioning_outcome_t drive_commissioning_outcome(void) { return commissioning.outcome; }
 
-commissioning_phase_t drive_commissioning_phase(void) { return drive.commissioning.phase; }
+commissioning_phase_t drive_commissioning_phase(void) { return commissioning.phase; }
 
 // Share of the phase that is done, per mille.
 static int32_t within_phase(const commissioning_t* c) {
@@ -131,7 +136,7 @@ static int32_t within_phase(const commissioning_t* c) {
 }
 
 int32_t drive_commissioning_progress(void) {
-  const commissioning_t* const c = &drive.commissioning;
+  const commissioning_t* const c = &commissioning;
   if (c->phase == COMMISSIONING_EVALUATE) return 1000;
   int32_t before = 0;
   for (uint16_t k = 0; k < (uint16_t)c->phase; k++) before += phases[k].share;
@@ -139,7 +144,7 @@ int32_t drive_commissioning_progress(void) {
 }
 
 uint16_t drive_commissioning_count(void) {
-  const commissioning_outcome_t outcome = drive.commissioning.outcome;
+  const commissioning_outcome_t outcome = commissioning.outcome;
   return (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) ? report.count : 0u;
 }
 

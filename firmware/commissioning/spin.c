@@ -8,8 +8,8 @@
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
 
 #define SETTLE_PERIODS 4000
 #define STATION_PERIODS 10000
@@ -38,24 +38,24 @@ static int32_t target_rpm_q16(uint16_t leg) {
   return (leg == (uint16_t)LEG_UP) ? high_q16 : high_q16 / 3;
 }
 
-static void enter_leg(drive_t* d, uint16_t leg) {
-  d->commissioning.spin.leg = leg;
-  d->commissioning.spin.tick = 0;
+static void enter_leg(uint16_t leg) {
+  commissioning.spin.leg = leg;
+  commissioning.spin.tick = 0;
 }
 
 static void begin(drive_t* d) {
-  clear(&d->commissioning.spin, sizeof d->commissioning.spin);
-  d->commissioning.turning = true;
-  d->commissioning.adapting = true;
+  clear(&commissioning.spin, sizeof commissioning.spin);
+  d->flags.spins = true;
+  d->flags.frozen = false;
   drive_hand_over(d, d->position.used.angle_bam, 0);
   d->control.target_bpp = 0;
-  enter_leg(d, (uint16_t)LEG_FIRST);
+  enter_leg((uint16_t)LEG_FIRST);
 }
 
 // Moves the speed reference towards the leg's; true when it is there. The drive's own ramp may be slower still.
 static bool approach(drive_t* d) {
   const int32_t high = q_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
-  const int32_t goal = q_mul_sat(target_rpm_q16(d->commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
+  const int32_t goal = q_mul_sat(target_rpm_q16(commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
   const int32_t step = high / RAMP_PERIODS;
   int32_t* const target = &d->control.target_bpp;
   *target = q_clamp(goal, q_sub_sat(*target, step), q_add_sat(*target, step));
@@ -64,9 +64,9 @@ static bool approach(drive_t* d) {
 
 // Back to holding the shaft, with the motion that the background level makes of the sums.
 static bool hand_back(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
-  if (c->turning) {
-    c->turning = false;
+  commissioning_t* const c = &commissioning;
+  if (d->flags.spins) {
+    d->flags.spins = false;
     c->solve_motion = true;
     position_preset(d, d->position.used.angle_bam, 0);
     d->control.reference_q20.d = 0;
@@ -80,9 +80,9 @@ static bool hand_back(drive_t* d) {
 }
 
 bool commissioning_spin(drive_t* d) {
-  spin_t* const s = &d->commissioning.spin;
-  if (d->commissioning.tick == 0) begin(d);
-  if (!d->commissioning.turning) return hand_back(d);
+  spin_t* const s = &commissioning.spin;
+  if (commissioning.tick == 0) begin(d);
+  if (!d->flags.spins) return hand_back(d);
   const bool arrived = approach(d);
   if (s->leg >= (uint16_t)LEG_STOP) {
     s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
@@ -93,6 +93,6 @@ bool commissioning_spin(drive_t* d) {
   if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
   if (!settling) add_station(d, &s->station[s->leg]);
   s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
-  if (s->tick >= SETTLE_PERIODS + STATION_PERIODS) enter_leg(d, (uint16_t)(s->leg + 1u));
+  if (s->tick >= SETTLE_PERIODS + STATION_PERIODS) enter_leg((uint16_t)(s->leg + 1u));
   return false;
 }

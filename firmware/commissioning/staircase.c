@@ -32,7 +32,7 @@
 
 // Peak to peak on the d-axis: two thirds of the link for the length of a pulse.
 static int32_t ripple_q20(const drive_t* d) {
-  const int32_t swing_q20 = q_mul(d->samples.link_q16, d->commissioning.model.yd_q30, 26);
+  const int32_t swing_q20 = q_mul(d->samples.link_q16, commissioning.model.yd_q30, 26);
   return swing_q20 / 3 * 2 / 100 * (d->config.modulator.pulse_ticks / 100);
 }
 
@@ -45,7 +45,7 @@ static int32_t bearable_q20(void) {
 }
 
 static int32_t level_q20(const drive_t* d, uint16_t index) {
-  const int32_t limit = d->commissioning.staircase.most_q20;
+  const int32_t limit = commissioning.staircase.most_q20;
   const bool weakening = index >= SIDE;
   const int32_t most = weakening ? q_clamp(parameters.weakening_limit, limit / 2, limit) : limit;
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
@@ -98,7 +98,7 @@ static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
 }
 
 bool commissioning_climb(drive_t* d) {
-  commissioning_t* const c = &d->commissioning;
+  commissioning_t* const c = &commissioning;
   staircase_t* const s = &c->staircase;
   if (c->tick == 0) {
     clear(s, sizeof *s);

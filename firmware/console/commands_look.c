@@ -84,9 +84,9 @@ static void status_fault(octet_writer_t* w) {
   const uint16_t fault = (uint16_t)drive.fault;
   put_words(w, WORDS_FAULT, fault);
   if (fault == FAULT_NONE) return;
-  if (fault >= FAULT_OPEN_PHASE && drive.start.wiring != WIRING_GOOD) {
+  if (fault >= FAULT_OPEN_PHASE && drive.found.wiring != WIRING_GOOD) {
     put_text(w, ": ");
-    put_words(w, WORDS_WIRING, (uint16_t)drive.start.wiring);
+    put_words(w, WORDS_WIRING, (uint16_t)drive.found.wiring);
   }
   put_text(w, ". ");
   put_words(w, WORDS_REMEDY, fault);

@@ -31,8 +31,10 @@
 #define SLEW_Q20 734003L            // s, 0.7 A: some 50 V, within the alternating layout
 #define RETURN_Q30 24159191L        // 0.7 wc T / s, per ampere
 
+hold_t brake_hold;
+
 void hold_begin(drive_t* d) {
-  hold_t* const h = &d->hold;
+  hold_t* const h = &brake_hold;
   // The other sources have no observer that could be fast for a moment.
   h->left = position_has(d, SOURCE_READS) ? (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS : 0u;
   h->reference_bam = d->position.used.angle_bam;
@@ -40,18 +42,20 @@ void hold_begin(drive_t* d) {
   if (h->left > 0u) deviation_observer_stands(&d->position.observer);
 }
 
-bool hold_is_on(const drive_t* d) { return d->hold.left > 0u && d->state == DRIVE_RUN; }
+void hold_end(void) { brake_hold.left = 0; }
+
+bool hold_is_on(const drive_t* d) { return brake_hold.left > 0u && d->state == DRIVE_RUN; }
 
 // Electrical acceleration, binary angle per period^2, Q8, without the load's and w'.
 static int32_t restoring_accel_q8(const drive_t* d) {
   const estimator_output_t* const now = &d->position.used;
-  const int32_t behind = angle_diff_bam(d->hold.reference_bam, now->angle_bam);
+  const int32_t behind = angle_diff_bam(brake_hold.reference_bam, now->angle_bam);
   const int32_t slow = q_sub_sat(d->control.ramp.value, now->speed_bpp);
   return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
 }
 
 bool hold_step(drive_t* d) {
-  hold_t* const h = &d->hold;
+  hold_t* const h = &brake_hold;
   if (!hold_is_on(d)) return false;
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;

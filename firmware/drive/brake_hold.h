@@ -1,14 +1,24 @@
-// Holding the shaft while a brake opens, see hold.c.
+// Holding the shaft while a brake opens, see brake_hold.c.
 
 #ifndef STILLSPIN_FIRMWARE_DRIVE_BRAKE_HOLD_H
 #define STILLSPIN_FIRMWARE_DRIVE_BRAKE_HOLD_H
 
-#include <stdint.h>
+#include "firmware/mode/mode.h"
 
 typedef struct {
   uint32_t left;              // periods
   uint32_t reference_bam;     // electrical angle to be held
   int32_t current_per_accel;  // A (Q20) per acceleration (Q8), Q20
 } hold_t;
+
+extern hold_t brake_hold;
+
+/// Holds the shaft for hold_time from now.
+void hold_begin(drive_t* d);
+void hold_end(void);
+bool hold_is_on(const drive_t* d);
+
+/// One period; false when it is over and the speed controller has the torque current.
+bool hold_step(drive_t* d);
 
 #endif

@@ -7,7 +7,6 @@
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/interfaces/phase_control.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_pwm.h"
 
@@ -19,6 +18,15 @@ static excitation_t excitation(const drive_t* d) {
   if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
   const position_source_t* const source = d->source;
   return (source->excitation == NULL) ? EXCITATION_ALTERNATING : source->excitation(d);
+}
+
+// All lower devices on for the whole period, and three windows in it.
+static svpwm_pattern_t short_circuit(const sampling_config_t* c) {
+  const svpwm_pattern_t p = {{{-1, -1, -1, -1, -1, -1}, 0},
+                             {svpwm_window_between(c, 0, 3300, 0), svpwm_window_between(c, 3300, 6600, 0),
+                              svpwm_window_between(c, 6600, SVPWM_PERIOD_TICKS, 0)},
+                             SVPWM_WINDOWS};
+  return p;
 }
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
@@ -62,8 +70,8 @@ static void write_frame(drive_t* d, const svpwm_pulses_t* command) {
 void drive_modulate(drive_t* d) {
   if (edition_phase_control != NULL && edition_phase_control->step(d)) return;
   drive_control_t* const c = &d->control;
-  if (d->state == DRIVE_START && d->start.shorted) {
-    d->modulation.next = start_short_circuit(&d->config.modulator.sampling);
+  if (d->flags.shorted) {
+    d->modulation.next = short_circuit(&d->config.modulator.sampling);
     hal_profile_step(CYCLES_MODULATE);
     write_frame(d, &d->modulation.next.pulses);
     return;

@@ -21,14 +21,16 @@
 #define PERIODS_END 10000L            // a second: the turns are much shorter
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
 
+polarity_watch_t polarity_watch;
+
 static void forget_voltage(polarity_watch_t* w) {
   w->voltage_q12.d = 0;
   w->voltage_q12.q = 0;
   w->periods = 0;
 }
 
-void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  polarity_watch_t* const w = &d->watch;
+void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp) {
+  polarity_watch_t* const w = &polarity_watch;
   w->open = parameters.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
   w->axis_periods = 0;
@@ -45,7 +47,7 @@ static const regression_t* regression_in_use(const drive_t* d) {
 // regressed them last. It is known up to half a turn.
 static int32_t axis_off(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  const polarity_watch_t* const w = &d->watch;
+  const polarity_watch_t* const w = &polarity_watch;
   const bool observed = position_has(d, SOURCE_READS);
   const uint32_t from = observed ? p->observer.regressed_bam : p->avv.observer.angle_bam;
   const int32_t error = observed ? avv_angle_error(&p->observer.regression, &d->model) : p->avv.error_bam;
@@ -68,7 +70,7 @@ static dq_t on_axis(dq_t x, rotation_t r) {
 
 // The axis is the one in use for now, and the change of the current counts from here.
 static void begin_anew(drive_t* d) {
-  polarity_watch_t* const w = &d->watch;
+  polarity_watch_t* const w = &polarity_watch;
   tracking_observer_preset(&w->axis, d->position.used.angle_bam, d->position.used.speed_bpp, 0);
   w->axis_then_bam = w->axis.angle_bam;
   w->sign.clear = 0;
@@ -79,7 +81,7 @@ static void begin_anew(drive_t* d) {
 
 // Takes the error that was seen once for every period since the last time.
 static void follow_axis(drive_t* d) {
-  polarity_watch_t* const w = &d->watch;
+  polarity_watch_t* const w = &polarity_watch;
   const int32_t periods = w->axis_periods;
   w->axis_periods = 0;
   w->blind = is_blind(d);
@@ -95,7 +97,7 @@ static int32_t mean_volts_q16(int32_t sum_q12, int32_t periods) {
 }
 
 static emf_sign_result_t look(drive_t* d) {
-  polarity_watch_t* const w = &d->watch;
+  polarity_watch_t* const w = &polarity_watch;
   const rotation_t r = frame_rotation(d->position.used.angle_bam - w->axis.angle_bam);
   const dq_t mean_q16 = {mean_volts_q16(w->voltage_q12.d, w->periods), mean_volts_q16(w->voltage_q12.q, w->periods)};
   const emf_sign_seen_t seen = {on_axis(mean_q16, r), on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
@@ -103,8 +105,10 @@ static emf_sign_result_t look(drive_t* d) {
   return emf_sign_step(&w->sign, &d->model, &seen);
 }
 
+void polarity_watch_end(void) { polarity_watch.open = false; }
+
 bool polarity_watch_step(drive_t* d) {
-  polarity_watch_t* const w = &d->watch;
+  polarity_watch_t* const w = &polarity_watch;
   if (!polarity_watch_is_awake(d)) return false;
   tracking_observer_predict(&w->axis, 0);
   w->voltage_q12.d = q_limit(w->voltage_q12.d + q_shr(d->control.command_q16.d, 4), SUM_END_Q12);
@@ -123,9 +127,9 @@ bool polarity_watch_step(drive_t* d) {
   return sign == EMF_SIGN_REVERSED;
 }
 
-bool polarity_watch_is_awake(const drive_t* d) { return d->watch.open && d->state == DRIVE_RUN; }
+bool polarity_watch_is_awake(const drive_t* d) { return polarity_watch.open && d->state == DRIVE_RUN; }
 
-bool polarity_watch_suspects(const drive_t* d) {
-  const emf_sign_t* const sign = &d->watch.sign;
-  return d->watch.open && sign->seen_q16 < -(sign->expected_q16 / 4);
+bool polarity_watch_suspects(void) {
+  const emf_sign_t* const sign = &polarity_watch.sign;
+  return polarity_watch.open && sign->seen_q16 < -(sign->expected_q16 / 4);
 }

@@ -5,6 +5,7 @@
 
 #include "estimators/emf_sign.h"
 #include "estimators/tracking_observer.h"
+#include "firmware/mode/mode.h"
 
 typedef struct {
   bool open;  // not answered since the start
@@ -16,5 +17,14 @@ typedef struct {
   dq_t voltage_q12;  // sum of the commands since the back-EMF was last looked at, V
   int32_t periods;   // that long ago
 } polarity_watch_t;
+
+extern polarity_watch_t polarity_watch;
+
+/// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
+void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp);
+void polarity_watch_end(void);
+bool polarity_watch_step(drive_t* d);
+bool polarity_watch_suspects(void);
+bool polarity_watch_is_awake(const drive_t* d);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_encoder.h"
@@ -14,20 +15,6 @@
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
 static bool is_turn(const drive_t* d, turn_t turn) { return d->schedule.turn == turn; }
-
-// Before the shaft turns AVV alone is at work.
-static estimator_output_t step_start(drive_t* d, estimator_input_t* in) {
-  return position_sources[POSITION_AVV]->step(d, in);
-}
-
-// Commissioning at standstill: AVV alone, or no measurement at all and the angle by the torque.
-static estimator_output_t step_commissioning(drive_t* d, estimator_input_t* in) {
-  if (!d->commissioning.predicting) return step_start(d, in);
-  tracking_observer_t* const o = &d->position.avv.observer;
-  tracking_observer_predict(o, q_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
-  const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
-  return out;
-}
 
 // The estimator that looks at the windows first, as it was last.
 static const estimator_output_t* first_of(const drive_t* d, uint16_t traits) {
@@ -82,31 +69,16 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
   d->control.measured_q20.q = q_limit(moved_q20.q, DRIVE_CURRENT_END_Q20);
 }
 
-// The I-F start: the control uses the vector's frame, and the source looks on. At rest the angle is the vector's: a
-// saliency has two.
-static void estimate_turned(drive_t* d, estimator_input_t* in) {
-  drive_start_t* const s = &d->start;
-  if (position_observer_rests(d) && !if_start_is_up(&s->turn, &d->config.turn)) {
-    if (d->source->follow != NULL) d->source->follow(d, &d->position.used);
-    s->seen = d->position.used;
-  } else if (s->turn.tick < d->config.turn.align_periods) {
-    position_preset(d, d->position.used.angle_bam, d->position.used.speed_bpp);
-    s->seen = d->position.used;
-  } else {
-    s->seen = d->source->step(d, in);
-  }
-  d->position.used.angle_bam = s->turn.angle_bam + (uint32_t)s->turn.speed_bpp;
-  d->position.used.speed_bpp = s->turn.speed_bpp;
-}
-
 void drive_estimate(drive_t* d) {
-  const uint16_t count = drive_is_blind(d) ? 0u : d->samples.count;
-  const bool measuring = d->state == DRIVE_COMMISSION && !d->commissioning.turning;
-  const bool turned = drive_is_turned(d);
+  const uint16_t count = (d->flags.invalid > 0u) ? 0u : d->samples.count;
+  const bool measuring = d->state == DRIVE_COMMISSION && !d->flags.spins;
+  const bool turned = d->flags.open_loop;
   const bool starting = !measuring && !d->schedule.turning;
-  // The spin of a commissioning runs on the observer: the other sources want windows, or an alignment, of their own.
-  const bool commissions = d->state == DRIVE_COMMISSION;
-  const position_source_t* const source = commissions ? position_sources[POSITION_OBSERVER] : d->source;
+  // Before the shaft turns AVV alone is at work. The spin of a commissioning runs on the observer: the other sources
+  // want windows, or an alignment, of their own.
+  const position_source_t* source = d->source;
+  if (d->state == DRIVE_COMMISSION) source = position_sources[POSITION_OBSERVER];
+  if (starting) source = position_sources[POSITION_AVV];
   // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone.
   const bool alone = (source->traits & SOURCE_SINGLE) != 0u || starting || turned;
   const estimator_output_t* const first = alone ? &d->position.used : first_of(d, source->traits);
@@ -124,16 +96,15 @@ void drive_estimate(drive_t* d) {
   in.frames = (turned || measuring) ? 0 : d->samples.frames;
   // While the polarity is open the sign of the torque is, too. A source that looks on is told what its own angle makes
   // of the current, as later.
-  const dq_t seen_q20 = turned ? drive_seen(d, d->control.measured_q20) : d->control.measured_q20;
+  dq_t seen_q20 = d->control.measured_q20;
+  if (turned) seen_q20 = position_seen(d, seen_q20);
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(machine_torque_q16(&d->model, seen_q20), d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&d->inertia, in.torque_accel_q8);
-  if (turned) {
-    estimate_turned(d, &in);
-  } else if (measuring) {
-    d->position.used = step_commissioning(d, &in);
+  if (turned || measuring) {
+    drive_states[d->state]->estimate(d, &in);
   } else {
-    d->position.used = starting ? step_start(d, &in) : source->step(d, &in);
+    d->position.used = source->step(d, &in);
   }
 }
 
@@ -149,18 +120,25 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   p->used = now;
 }
 
+static void begin_flux(drive_t* d, bool keeps) {
+  const position_source_t* const flux = position_sources[POSITION_FLUX_CONV];
+  if (flux != NULL) flux->begin(d, keeps);
+}
+
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   drive_position_t* const p = &d->position;
   position_preset_axis(d, angle_bam, seen_bpp);
   const int32_t speed_bpp = p->used.speed_bpp;
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
-  flux_observer_reset(&p->flux, &d->config.flux, &d->model);
+  begin_flux(d, false);
   blend_reset(&p->blend);
   if (position_has(d, SOURCE_TURNS)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
   p->low = p->used;
   p->high = p->used;
 }
+
+void position_keep(drive_t* d) { begin_flux(d, true); }
 
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   d->position.encoder_offset_bam = angle_bam - position_encoder_now(d);

@@ -1,6 +1,7 @@
 // What opens the power stage: looked at in every period, before anything is commanded.
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/interlock.h"
@@ -90,13 +91,13 @@ static drive_fault_t check_position(drive_t* d) {
   d->supervision.judged_bam = d->position.used.angle_bam;
   const int32_t apart_bam = disagreement(d);
   if (lost_synchronism(d, periods, ahead_bpp, apart_bam))
-    return polarity_watch_suspects(d) ? FAULT_POLARITY : FAULT_SYNCHRONISM;
+    return polarity_watch_suspects() ? FAULT_POLARITY : FAULT_SYNCHRONISM;
   return diverged(d, periods, apart_bam) ? FAULT_DIVERGENCE : FAULT_NONE;
 }
 
 static drive_fault_t check(drive_t* d) {
   // With the gates off a fast shaft may drive a current through the diodes; switching them on forgets that.
-  const bool meant_off = d->state == DRIVE_START && !d->start.powered;
+  const bool meant_off = d->flags.gates_off;
   if (!meant_off && hal_pwm_was_tripped_by_pin()) return FAULT_OVER_CURRENT;
   if (hal_pwm_is_tripped() && !meant_off) return interlock_why_off();
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;

@@ -7,6 +7,8 @@
 #include "firmware/base/clear.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/sampling.h"
 #include "firmware/interfaces/service.h"
@@ -17,6 +19,8 @@
 void drive_reset(void) {
   clear(&drive, sizeof drive);
   sampling_reset();
+  hold_end();
+  clear(&polarity_watch, sizeof polarity_watch);
   fault_history_reset();
   parameters_reset();
   interlock_reset();

@@ -1,3 +1,4 @@
+#include "firmware/drive/brake_hold.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
@@ -81,13 +82,13 @@ static void begin(schedule_t* s) {
 void schedule_next(drive_t* d) {
   schedule_t* const s = &d->schedule;
   begin(s);
-  s->turning = drive_is_turning(d) || drive_is_turned(d);
+  s->turning = drive_is_turning(d) || d->flags.open_loop;
   const bool observes = s->turning && has_observer(d);
   s->held = hold_is_on(d);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
   s->pressed = observes && (is_young(d) || deviation_observer_is_pressed(&d->position.observer));
   if (is_turn(s)) {
-    s->decides = d->state == DRIVE_START && d->start.decides;
+    s->decides = d->flags.decides;
     if (!s->decides) turn_or_give_way(d, observes);
   } else {
     s->renews = s->task == TASK_RENEW;

@@ -1,11 +1,10 @@
 // The states of the drive: boot, offset calibration, ready, start, run, stop, fault.
 
-#include "firmware/commissioning/outcome.h"
-#include "firmware/commissioning/phases.h"
+#include <stddef.h>
+
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 
@@ -48,11 +47,17 @@ static void calibrate(drive_t* d) {
   }
 }
 
+// A commissioning that is under way, or that a start leads to, is not wanted any more.
+static void abandon(drive_t* d) {
+  const state_t* const s = drive_states[DRIVE_COMMISSION];
+  if (s != NULL) s->abandon(d);
+}
+
 // Opens the power stage at once and goes back to READY.
 static void coast(drive_t* d) {
   hal_pwm_gates_off();
   d->control.closed = false;
-  commissioning_abort(d);
+  abandon(d);
   drive_enter(d, DRIVE_READY);
 }
 
@@ -76,14 +81,19 @@ static void begin_stop(drive_t* d) {
 // A start or a commissioning that is not wanted any more: stops the shaft where it turns, else opens the power stage.
 static void break_off(drive_t* d) {
   // The gates are off already, and the background level is about to write what was found.
-  if (d->state == DRIVE_COMMISSION && d->commissioning.phase == COMMISSIONING_EVALUATE) return;
+  if (d->flags.over) return;
   const bool turning = drive_is_turning(d);
-  commissioning_abort(d);
+  abandon(d);
   if (turning) {
     begin_stop(d);
   } else {
     coast(d);
   }
+}
+
+static void begin_state(drive_t* d, drive_state_t state, drive_state_t behind) {
+  const state_t* const s = drive_states[state];
+  if (s != NULL) s->begin(d, behind);
 }
 
 static void take_requests(drive_t* d) {
@@ -98,13 +108,11 @@ static void take_requests(drive_t* d) {
   if (r->reload) return;  // first the changed parameters, then the start
   if ((d->state == DRIVE_START || d->state == DRIVE_COMMISSION) && r->stop) break_off(d);
   if (d->state == DRIVE_READY && r->start) {
-    d->commissioning.requested = false;
-    drive_begin_start(d);
+    begin_state(d, DRIVE_START, DRIVE_RUN);
   } else if (d->state == DRIVE_READY && r->commission) {
-    commissioning_begin(d);
+    begin_state(d, DRIVE_COMMISSION, DRIVE_READY);
   } else if (d->state == DRIVE_READY && r->look) {
-    d->commissioning.requested = false;
-    drive_begin_look(d);
+    begin_state(d, DRIVE_START, DRIVE_READY);
   }
   if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
   if (d->state == DRIVE_FAULT && r->reset) {
@@ -131,13 +139,13 @@ void drive_sequence(drive_t* d) {
       calibrate(d);
       break;
     case DRIVE_START:
-      drive_start(d);
+      drive_states[DRIVE_START]->step(d);
       break;
     case DRIVE_STOP:
       stop(d);
       break;
     case DRIVE_COMMISSION:
-      commissioning_step(d);
+      drive_states[DRIVE_COMMISSION]->step(d);
       break;
     default:
       break;

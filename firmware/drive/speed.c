@@ -4,6 +4,7 @@
 
 #include "control/brake_limit.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
@@ -148,9 +149,7 @@ static void begin_millisecond(drive_t* d, bool held) {
   if (drive_is_turning(d)) step_speed(d, held);
 }
 
-static bool weakens(const drive_t* d) {
-  return drive_is_turning(d) || (d->state == DRIVE_START && d->start.phase == START_CATCH);
-}
+static bool weakens(const drive_t* d) { return drive_is_turning(d) || d->flags.caught; }
 
 void drive_control_speed(drive_t* d) {
   const bool held = hold_step(d);

@@ -34,18 +34,8 @@ void drive_modulate(drive_t* d);         // modulation.c
 /// Decides what the period that begins does (schedule.h).
 void schedule_next(drive_t* d);
 
-/// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
-void polarity_watch_begin(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
-bool polarity_watch_step(drive_t* d);
-bool polarity_watch_suspects(const drive_t* d);
-bool polarity_watch_is_awake(const drive_t* d);
-
-/// Holds the shaft for hold_time from now (drive/brake_hold.c).
-void hold_begin(drive_t* d);
-bool hold_is_on(const drive_t* d);
-
-/// One period; false when it is over and the speed controller has the torque current.
-bool hold_step(drive_t* d);
+/// Lets the position sources and the speed control start from this angle and speed (drive/hand_over.c).
+void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
 /// Learns the inertia; once a millisecond (drive/inertia.c).
 void drive_match_inertia(drive_t* d);

@@ -36,7 +36,7 @@ void drive_command_look(void) {
 
 // The end of a look writes its outcome; who breaks it off does not know of it.
 look_outcome_t drive_look_outcome(void) {
-  const bool goes_on = drive.request.look || (drive.state == DRIVE_START && drive.start.looking);
+  const bool goes_on = drive.request.look || (drive.state == DRIVE_START && drive.flags.behind == DRIVE_READY);
   const look_outcome_t outcome = drive.look.outcome;
   return (outcome == LOOK_RUNNING && !goes_on) ? LOOK_ENDED : outcome;
 }
@@ -47,7 +47,7 @@ void drive_command_reset(void) { drive.request.reset = true; }
 
 void drive_command_speed(int32_t rpm_q16) {
   drive.control.wanted_rpm_q16 = rpm_q16;
-  if (drive.state == DRIVE_COMMISSION && drive.commissioning.turning) return;  // the spin has a speed of its own
+  if (drive.flags.spins) return;  // the spin has a speed of its own
   const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
   drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
 }

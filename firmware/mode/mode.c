@@ -2,36 +2,25 @@
 
 #include "firmware/mode/mode.h"
 
-#include "firmware/commissioning/outcome.h"
 #include "firmware/mode/fault_history.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 
 drive_t drive;
 
-bool drive_is_energised(void) {
-  const bool commissioning = drive.state == DRIVE_COMMISSION && drive.commissioning.phase != COMMISSIONING_EVALUATE;
-  return drive.state == DRIVE_START || drive.state == DRIVE_RUN || drive.state == DRIVE_STOP || commissioning;
+// All states behind READY but FAULT, until the state itself says that it is over.
+static bool is_energised(const volatile drive_t* d) {
+  return d->state >= DRIVE_START && d->state != DRIVE_FAULT && !d->flags.over;
 }
 
-bool drive_is_turning(const drive_t* d) {
-  const bool spinning = d->state == DRIVE_COMMISSION && d->commissioning.turning;
-  return d->state == DRIVE_RUN || d->state == DRIVE_STOP || spinning;
-}
+bool drive_is_energised(void) { return is_energised(&drive); }
 
-static bool sees_currents(const volatile drive_t* d) {
-  switch (d->state) {
-    case DRIVE_START:
-      return d->start.powered && d->start.blind == 0u;
-    case DRIVE_COMMISSION:
-      return d->commissioning.phase != COMMISSIONING_EVALUATE;
-    default:
-      return d->state == DRIVE_RUN || d->state == DRIVE_STOP;
-  }
-}
+bool drive_is_turning(const drive_t* d) { return d->state == DRIVE_RUN || d->state == DRIVE_STOP || d->flags.spins; }
+
+static bool sees_currents(const volatile drive_t* d) { return is_energised(d) && d->flags.invalid == 0u; }
 
 bool drive_knows_speed(const volatile drive_t* d) {
-  return sees_currents(d) && (d->state != DRIVE_START || d->start.phase == START_CATCH);
+  return sees_currents(d) && (d->state != DRIVE_START || d->flags.caught);
 }
 
 uint16_t drive_known(const volatile drive_t* d) {
@@ -47,10 +36,16 @@ int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp) {
   return q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24);
 }
 
+static void begin(drive_t* d, drive_state_t state) {
+  static const state_flags_t none = {DRIVE_BOOT, 0, false, false, false, false, false, false, false, false};
+  d->state = state;
+  d->flags = none;
+  d->periods = 0;
+}
+
 void drive_enter(drive_t* d, drive_state_t state) {
   d->calm_at = 0;
-  d->state = state;
-  d->periods = 0;
+  begin(d, state);
 }
 
 static void note(const drive_t* d, drive_fault_t fault) {
@@ -73,8 +68,7 @@ void drive_raise(drive_t* d, drive_fault_t fault) {
   if (d->state == DRIVE_FAULT) return;
   note(d, fault);
   d->fault = fault;
-  d->state = DRIVE_FAULT;
-  d->periods = 0;
+  begin(d, DRIVE_FAULT);
   d->control.closed = false;
   d->control.wanted_rpm_q16 = 0;
   d->control.target_bpp = 0;

@@ -1,18 +1,9 @@
-// States of the drive, its faults, and what limits it.
+// Faults of the drive, beside its states, and what limits it.
 
 #ifndef STILLSPIN_FIRMWARE_MODE_STATES_H
 #define STILLSPIN_FIRMWARE_MODE_STATES_H
 
-typedef enum {
-  DRIVE_BOOT = 0,
-  DRIVE_CALIBRATE = 1,  // current offsets, power stage off
-  DRIVE_READY = 2,
-  DRIVE_START = 3,  // initial angle and polarity
-  DRIVE_RUN = 4,
-  DRIVE_STOP = 5,  // speed to zero, then ready
-  DRIVE_FAULT = 6,
-  DRIVE_COMMISSION = 7  // measures machine and inverter
-} drive_state_t;
+#include "firmware/interfaces/state.h"
 
 #define FAULT(number, name, words, remedy) FAULT_##name = (number),
 typedef enum {

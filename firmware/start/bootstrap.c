@@ -10,20 +10,24 @@
 #define REST_PERIODS 20u
 
 void start_charge(drive_t* d) {
-  d->start.shorted = true;
-  d->start.charged = 0;
+  if (parameters.bootstrap_time == 0) {
+    start_look(d);
+    return;
+  }
+  d->flags.shorted = true;
+  starting.charged = 0;
   start_enter(d, START_CHARGE);
 }
 
 static bool flows(const drive_t* d) {
-  if (d->samples.count == 0u || drive_is_blind(d)) return false;
+  if (d->samples.count == 0u || d->flags.invalid > 0u) return false;
   const ab_t i = d->samples.windows[d->samples.count - 1u].current_q20;
   return q_max(q_abs_sat(i.alpha), q_abs_sat(i.beta)) > parameters.current_limit / 2;
 }
 
 void start_step_charge(drive_t* d) {
-  drive_start_t* const s = &d->start;
-  if (!s->powered) {
+  drive_start_t* const s = &starting;
+  if (d->flags.gates_off) {
     if (s->tick < REST_PERIODS) return;
     start_power(d, true);
     return;

@@ -17,26 +17,18 @@
 #define ON_TICKS 200              // from the gates' command to the devices
 #define STRAY_MAX_BAM 178956971L  // 15 degrees
 
-// All lower devices on for the whole period, and three windows in it.
-svpwm_pattern_t start_short_circuit(const sampling_config_t* c) {
-  const svpwm_pattern_t p = {{{-1, -1, -1, -1, -1, -1}, 0},
-                             {svpwm_window_between(c, 0, 3300, 0), svpwm_window_between(c, 3300, 6600, 0),
-                              svpwm_window_between(c, 6600, SVPWM_PERIOD_TICKS, 0)},
-                             SVPWM_WINDOWS};
-  return p;
-}
-
 void start_listen(drive_t* d, uint16_t pause) {
   start_power(d, false);
-  d->start.shorted = true;
+  d->flags.shorted = true;
+  d->flags.caught = false;
   d->control.closed = false;
-  d->start.pause = pause;
+  starting.pause = pause;
   start_enter(d, START_LISTEN);
 }
 
 void start_step_listen(drive_t* d) {
-  if (d->start.tick < d->start.pause) return;
-  flying_begin(&d->start.pulse);
+  if (starting.tick < starting.pause) return;
+  flying_begin(&starting.pulse);
   start_enter(d, START_PULSE);
   start_power(d, true);
 }
@@ -45,29 +37,32 @@ void start_step_listen(drive_t* d) {
 // the admittance of the model as it is by now: a machine of other inductances looks like one of another flux.
 static void take_flux(drive_t* d) {
   machine_model_t* const m = &d->model;
-  const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(d->start.rotor.speed_bpp));
+  const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(starting.rotor.speed_bpp));
   m->trim.psi_q16 = 0;
-  if (d->start.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
+  if (starting.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
   const int32_t told_q30 = m->map.points[0].yqq_q30;
   const int32_t now_q30 = told_q30 + q_mul(told_q30, m->trim.yqq_q24, 24);
-  const int32_t emf_q16 = q_mul_sat(d->start.emf_q16, q_div(told_q30, now_q30, 24), 24);
+  const int32_t emf_q16 = q_mul_sat(starting.emf_q16, q_div(told_q30, now_q30, 24), 24);
   const int32_t off_q16 = q_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
   if (q_abs_sat(off_q16) < m->emf_q16 / 8) return;
   m->trim.psi_q16 = q_clamp(off_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
 }
 
+// The start's clock: tick at which the running period began, from the start of START.
+static uint32_t clock_of(const drive_t* d) { return d->periods * (uint32_t)ESTIMATOR_PERIOD_TICKS; }
+
 // The rotor's state, carried on from the second pulse to the running period.
 static void close_loop(drive_t* d) {
-  flying_rotor_t* const rotor = &d->start.rotor;
-  const int32_t periods_q16 = q_div((int32_t)(d->start.clock - (uint32_t)rotor->tick), ESTIMATOR_PERIOD_TICKS, 16);
+  flying_rotor_t* const rotor = &starting.rotor;
+  const int32_t periods_q16 = q_div((int32_t)(clock_of(d) - (uint32_t)rotor->tick), ESTIMATOR_PERIOD_TICKS, 16);
   rotor->angle_bam += (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
   position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
   take_flux(d);
-  axis_begin(&d->start.axis);
-  d->start.sigma_q8 = rotor->sigma_q8;
-  d->start.learnt = false;
-  d->start.shorted = false;
-  d->start.stray = 0;
+  axis_begin(&starting.axis);
+  d->found.sigma_q8 = rotor->sigma_q8;
+  starting.learnt = false;
+  d->flags.shorted = false;
+  starting.stray = 0;
   d->control.closed = true;
   field_weakening_reset(&d->control.weakening);
   drive_weaken_field(d);
@@ -81,12 +76,12 @@ static void end_look(drive_t* d, look_outcome_t outcome, int32_t speed_bpp) {
 }
 
 static void try_again(drive_t* d) {
-  drive_start_t* const s = &d->start;
+  drive_start_t* const s = &starting;
   s->tries++;
   s->pulses = 0;
   if (s->tries < PAIRS_MAX) {
     start_listen(d, PAUSE_MIN);
-  } else if (s->looking) {
+  } else if (d->flags.behind == DRIVE_READY) {
     end_look(d, LOOK_UNCLEAR, flying_speed(s->emf_q16, &d->model));
   } else {
     drive_raise(d, FAULT_POLARITY);
@@ -94,19 +89,20 @@ static void try_again(drive_t* d) {
 }
 
 static void judge_pair(drive_t* d, const flying_emf_t* second) {
-  drive_start_t* const s = &d->start;
+  drive_start_t* const s = &starting;
   s->emf_q16 = second->size_q16;
   if (!flying_resolve(&s->first, second, &d->model, &s->rotor)) {
     try_again(d);
-  } else if (s->looking) {
+  } else if (d->flags.behind == DRIVE_READY) {
     end_look(d, LOOK_TURNS, s->rotor.speed_bpp);
   } else {
+    d->flags.caught = true;
     start_enter(d, START_CATCH);
   }
 }
 
 static void find_no_emf(drive_t* d) {
-  if (d->start.looking) {
+  if (d->flags.behind == DRIVE_READY) {
     end_look(d, LOOK_STANDS, flying_speed(STANDING_Q16, &d->model));
   } else {
     start_find_axis(d);
@@ -115,7 +111,7 @@ static void find_no_emf(drive_t* d) {
 
 // The gates are off again.
 static void judge_pulse(drive_t* d) {
-  drive_start_t* const s = &d->start;
+  drive_start_t* const s = &starting;
   const flying_emf_t e = flying_evaluate(&s->pulse, &d->model);
   if (e.size_q16 < STANDING_Q16) {
     find_no_emf(d);
@@ -131,21 +127,21 @@ static void judge_pulse(drive_t* d) {
 }
 
 // Middle of a window of the last period, on the start's clock; ticks count on behind the end of their format.
-static int32_t tick_of(const drive_start_t* s, const estimator_window_t* w) {
-  return (int32_t)(s->clock - (uint32_t)(ESTIMATOR_PERIOD_TICKS - w->middle_tick));
+static int32_t tick_of(const drive_t* d, const estimator_window_t* w) {
+  return (int32_t)(clock_of(d) - (uint32_t)(ESTIMATOR_PERIOD_TICKS - w->middle_tick));
 }
 
 void start_step_pulse(drive_t* d) {
-  drive_start_t* const s = &d->start;
-  if (!s->powered) {
+  drive_start_t* const s = &starting;
+  if (d->flags.gates_off) {
     if (start_decides(d)) judge_pulse(d);
     return;
   }
   for (uint16_t k = 0; k < d->samples.count; k++) {
     const estimator_window_t* const w = &d->samples.windows[k];
     // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
-    const bool early = s->blind > 0u && w->middle_tick - w->span_ticks / 2 < s->on_tick + ON_TICKS;
-    if (!early) flying_add(&s->pulse, &d->model, w, tick_of(s, w));
+    const bool early = d->flags.invalid > 0u && w->middle_tick - w->span_ticks / 2 < s->on_tick + ON_TICKS;
+    if (!early) flying_add(&s->pulse, &d->model, w, tick_of(d, w));
   }
   const bool enough = flying_current(&s->pulse) > parameters.current_limit / 16;
   if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) start_power(d, false);
@@ -153,10 +149,10 @@ void start_step_pulse(drive_t* d) {
 
 // The first periods go to the axis and the admittances, in the frame that turns with the rotor as the back-EMF has it.
 static void learn(drive_t* d) {
-  drive_start_t* const s = &d->start;
+  drive_start_t* const s = &starting;
   s->rotor.angle_bam += (uint32_t)s->rotor.speed_bpp;
   int32_t axis_bam = 0;
-  s->learnt = start_sees_axis(d, !drive_is_blind(d), &axis_bam);
+  s->learnt = start_sees_axis(d, d->flags.invalid == 0u, &axis_bam);
   if (s->learnt) {
     s->rotor.angle_bam += (uint32_t)q_limit(axis_bam, STRAY_MAX_BAM);
     take_flux(d);
@@ -166,12 +162,12 @@ static void learn(drive_t* d) {
 
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
 void start_step_catch(drive_t* d) {
-  drive_start_t* const s = &d->start;
-  if (s->shorted) {
+  drive_start_t* const s = &starting;
+  if (d->flags.shorted) {
     close_loop(d);
     return;
   }
-  if (!s->powered) start_power(d, true);
+  if (d->flags.gates_off) start_power(d, true);
   if (!s->learnt) {
     learn(d);
     return;

@@ -1,20 +1,14 @@
-// The start: the sequence, and the start of a shaft that stands. See start.h.
+// The start of a shaft that stands: axis, then polarity, by saturation or by a motion. See start.h.
 
-#include "firmware/base/clear.h"
-#include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
-#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
-#include "firmware/start/start.h"
-#include "hal/hal_pwm.h"
 
 #define AXIS_SKIP 4u         // periods for the alternating layout to be what is sampled
-#define AXIS_TIMEOUT 200u    // periods
 #define SETTLE_PERIODS 100u  // for the current loop to settle at zero, and the angle
-#define LISTEN_FIRST 4u      // periods until the short circuit is what the modulator gives
 #define CALM_PERIODS 100u    // without current after a test, for the angle and for what is learnt of a standing shaft
 #define RESISTANCE_SHARE 16  // less than a sixteenth off is left alone
 #define SATURATION_TRIES 3u
@@ -23,139 +17,22 @@
 #define HOLD_BACKS 2u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
-void start_enter(drive_t* d, start_phase_t phase) {
-  d->start.phase = phase;
-  d->start.tick = 0;
-}
-
-void start_power(drive_t* d, bool on) {
-  d->start.powered = on;
-  d->start.blind = 2;  // this period and the next have begun with the gates off
-  if (!on) {
-    hal_pwm_gates_off();
-  } else if (hal_pwm_gates_on()) {
-    d->start.on_tick = (int32_t)hal_pwm_period_tick();
-  } else {
-    drive_raise(d, FAULT_OVER_CURRENT);
-  }
-}
-
-bool start_decides(drive_t* d) {
-  const bool now = d->schedule.decides;
-  d->start.decides = !now;
-  return now;
-}
-
-static void reset_control(drive_t* d) {
-  d->control.closed = false;
-  modulator_reset(&d->modulation.state);
-  field_weakening_reset(&d->control.weakening);
-  d->control.ramp.value = 0;
-  position_hold_release(&d->control.place);
-  d->control.reference_q20.d = 0;
-  d->control.reference_q20.q = 0;
-  d->control.feed_q16 = 0;
-}
-
-// False when it was refused, with a fault.
-static bool prepare(drive_t* d) {
-  if (!d->config_valid || !d->control.speed_ready) {
-    drive_raise(d, FAULT_PARAMETER);
-    return false;
-  }
-  clear(&d->supervision, sizeof d->supervision);
-  clear(&d->start, sizeof d->start);
-  d->model = d->config.nameplate;
-  inertia_match_reset(&d->inertia);
-  speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
-  d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
-  d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;
-  position_preset(d, 0, 0);
-  reset_control(d);
-  drive_enter(d, DRIVE_START);
-  const drive_fault_t refusal = interlock_refusal();
-  if (refusal != FAULT_NONE) drive_raise(d, refusal);
-  return refusal == FAULT_NONE;
-}
-
-void drive_begin_start(drive_t* d) {
-  if (!prepare(d)) return;
-  if (parameters.bootstrap_time != 0) {
-    start_charge(d);
-  } else {
-    start_look(d);
-  }
-}
-
-// The lower devices need no bootstrap capacitors.
-void drive_begin_look(drive_t* d) {
-  if (!prepare(d)) return;
-  d->start.looking = true;
-  start_listen(d, LISTEN_FIRST);
-}
-
-void start_look(drive_t* d) {
-  if (parameters.flying_start != 0) {
-    start_listen(d, LISTEN_FIRST);
-  } else {
-    start_find_axis(d);
-  }
-}
-
-void drive_hand_over(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  position_preset(d, angle_bam, speed_bpp);
-  position_align_encoder(d, angle_bam, speed_bpp);
-  speed_controller_preset(&d->control.speed, 0);
-  d->hold.left = 0;
-  polarity_watch_begin(d, angle_bam, speed_bpp);
-  d->control.ramp.value = speed_bpp;
-  d->control.reference_q20.q = 0;
-}
-
-// A commissioning wants a shaft that stands; one that was caught turning is brought to rest instead.
-static drive_state_t state_behind(const drive_t* d) {
-  if (!d->commissioning.requested) return DRIVE_RUN;
-  return (d->start.phase == START_CATCH) ? DRIVE_STOP : DRIVE_COMMISSION;
-}
-
-void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  drive_hand_over(d, angle_bam, speed_bpp);
-  drive_enter(d, state_behind(d));
-  if (d->state == DRIVE_STOP) commissioning_abort(d);
-}
-
-static bool is_turned_next(const drive_t* d) { return parameters.start_method == 1 && !d->commissioning.requested; }
-
-void start_find_axis(drive_t* d) {
-  d->start.shorted = false;
-  d->control.closed = false;
-  position_preset(d, 0, 0);
-  axis_begin(&d->start.axis);
-  if (!d->start.powered) start_power(d, true);
-  if (d->state != DRIVE_START) return;
-  start_enter(d, START_AXIS);
-  if (is_turned_next(d) && (parameters.wiring_check == 0 || parameters.flying_start == 0)) start_turn(d);
+static bool is_turned_next(const drive_t* d) {
+  return parameters.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
 }
 
 // Only where the listening has found that the shaft stands.
-static void judge_wiring(drive_t* d) {
-  if (parameters.wiring_check == 0 || parameters.flying_start == 0) return;
-  d->start.wiring = wiring_judge(&d->start.axis, &d->model, q_shr(d->config.slopes.amps_per_code_q30, 10));
-}
+bool start_checks_wiring(void) { return parameters.wiring_check != 0 && parameters.flying_start != 0; }
 
-bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
-  drive_start_t* const s = &d->start;
-  if (valid) axis_add(&s->axis, &d->position.avv.regression);
-  if (!axis_is_complete(&s->axis)) {
-    if (s->tick > AXIS_TIMEOUT) drive_raise(d, (d->samples.count > 0u) ? FAULT_START_VOLTAGE : FAULT_NO_SAMPLES);
-    return false;
-  }
-  if (!start_decides(d)) return false;
-  if (s->phase == START_AXIS) judge_wiring(d);
-  const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
-  admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
-  *axis_bam = axis.angle_bam;
-  return true;
+void start_find_axis(drive_t* d) {
+  d->flags.shorted = false;
+  d->control.closed = false;
+  position_preset(d, 0, 0);
+  axis_begin(&starting.axis);
+  if (d->flags.gates_off) start_power(d, true);
+  if (d->state != DRIVE_START) return;
+  start_enter(d, START_AXIS);
+  if (is_turned_next(d) && !start_checks_wiring()) start_turn(d);
 }
 
 static drive_fault_t fault_of(wiring_t wiring) {
@@ -165,12 +42,12 @@ static drive_fault_t fault_of(wiring_t wiring) {
   return (wiring <= WIRING_REVERSED_BOTH) ? FAULT_CURRENT_SENSOR : FAULT_SENSOR_ORDER;
 }
 
-static void step_axis(drive_t* d) {
+void start_step_axis(drive_t* d) {
   int32_t axis_bam = 0;
-  const bool seen = start_sees_axis(d, d->start.tick >= AXIS_SKIP, &axis_bam);
+  const bool seen = start_sees_axis(d, starting.tick >= AXIS_SKIP, &axis_bam);
   position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
   if (!seen) return;
-  const drive_fault_t fault = fault_of(d->start.wiring);
+  const drive_fault_t fault = fault_of(d->found.wiring);
   if (fault != FAULT_NONE) {
     drive_raise(d, fault);
   } else if (is_turned_next(d)) {
@@ -194,14 +71,14 @@ static int32_t present_speed(const drive_t* d) {
 static void decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
   const uint32_t angle = d->position.avv.observer.angle_bam;
   const int32_t speed = present_speed(d);
-  d->start.sigma_q8 = sigma_q8;
+  d->found.sigma_q8 = sigma_q8;
   start_run(d, (result == POLARITY_WRONG) ? angle + ANGLE_BAM_HALF_TURN : angle, speed);
   if (d->state == DRIVE_RUN && speed == 0) hold_begin(d);
 }
 
 static void begin_test(drive_t* d, start_phase_t phase) {
   static const followed_t none = {0, 0};
-  d->start.followed = none;
+  starting.followed = none;
   start_enter(d, phase);
 }
 
@@ -210,7 +87,7 @@ static drive_fault_t left_open(const drive_start_t* s) { return s->starved ? FAU
 // The shaft has been set in motion, or, with a voltage that is too low for the current, the angle may have gone astray,
 // too: from the beginning.
 static void hold_back(drive_t* d) {
-  drive_start_t* const s = &d->start;
+  drive_start_t* const s = &starting;
   s->held_back++;
   s->pulses = 0;
   s->tries = 0;
@@ -223,8 +100,8 @@ static void hold_back(drive_t* d) {
 
 // True when the current of a test has followed; else all begins anew, with less.
 static bool has_followed(drive_t* d, int32_t amplitude_q20) {
-  if (followed_well(&d->start.followed, amplitude_q20)) return true;
-  d->start.starved = true;
+  if (followed_well(&starting.followed, amplitude_q20)) return true;
+  starting.starved = true;
   hold_back(d);
   return false;
 }
@@ -236,8 +113,8 @@ static int32_t motion_current(const drive_start_t* s) {
 }
 
 static void try_motion(drive_t* d) {
-  drive_start_t* const s = &d->start;
-  if (s->phase != START_MOTION) s->tries = 0;
+  drive_start_t* const s = &starting;
+  if (d->found.phase != START_MOTION) s->tries = 0;
   if (s->starved && s->tries > 0u) {
     polarity_again(&s->motion, d->position.avv.observer.angle_bam);
     begin_test(d, START_MOTION);
@@ -253,8 +130,8 @@ static void try_motion(drive_t* d) {
 
 // Twice with the same current, the second time together with the first; then with half as much again.
 static void try_saturation(drive_t* d) {
-  drive_start_t* const s = &d->start;
-  if (s->phase != START_SATURATION) s->tries = 0;
+  drive_start_t* const s = &starting;
+  if (d->found.phase != START_SATURATION) s->tries = 0;
   const int32_t more = (s->tries >= 2u) ? parameters.start_current / 2 : 0;
   const int32_t current = q_min(parameters.start_current + more, parameters.current_limit);
   if (s->tries == 1u) {
@@ -270,11 +147,11 @@ static void try_saturation(drive_t* d) {
   begin_test(d, START_SATURATION);
 }
 
-static void step_settle(drive_t* d) {
-  if (d->start.tick < SETTLE_PERIODS || !start_decides(d)) return;
+void start_step_settle(drive_t* d) {
+  if (starting.tick < SETTLE_PERIODS || !start_decides(d)) return;
   if (parameters.polarity_check == 0) {
     decided(d, POLARITY_RIGHT, 0);
-  } else if (d->start.held_back > 0u) {
+  } else if (starting.held_back > 0u) {
     try_motion(d);
   } else {
     try_saturation(d);
@@ -283,12 +160,12 @@ static void step_settle(drive_t* d) {
 
 // A winding that is much colder or warmer than when it was measured: what follows may stand under load at once.
 static void take_resistance(drive_t* d) {
-  const int32_t more_q24 = saturation_resistance_q24(&d->start.saturation, &d->model);
+  const int32_t more_q24 = saturation_resistance_q24(&starting.saturation, &d->model);
   if (q_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
 }
 
-static void step_saturation(drive_t* d) {
-  drive_start_t* const s = &d->start;
+void start_step_saturation(drive_t* d) {
+  drive_start_t* const s = &starting;
   saturation_t* const test = &s->saturation;
   const int32_t asked_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
   d->control.reference_q20.d = asked_q20;
@@ -310,8 +187,8 @@ static void step_saturation(drive_t* d) {
   }
 }
 
-static void step_motion(drive_t* d) {
-  drive_start_t* const s = &d->start;
+void start_step_motion(drive_t* d) {
+  drive_start_t* const s = &starting;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
   const int32_t asked_q20 = polarity_step(&s->motion, raw);
   d->control.reference_q20.q = asked_q20;
@@ -326,18 +203,7 @@ static void step_motion(drive_t* d) {
   } else if (s->tries < (s->starved ? HELD_TRIES : MOTION_TRIES)) {
     try_motion(d);
   } else {
-    s->sigma_q8 = s->motion.sigma_q8;
+    d->found.sigma_q8 = s->motion.sigma_q8;
     drive_raise(d, left_open(s));
   }
-}
-
-void drive_start(drive_t* d) {
-  typedef void (*step_t)(drive_t*);
-  static const step_t steps[] = {start_step_listen, start_step_pulse, start_step_catch, step_axis,        step_settle,
-                                 step_saturation,   step_motion,      start_step_turn,  start_step_charge};
-  drive_start_t* const s = &d->start;
-  s->tick++;
-  s->clock += ESTIMATOR_PERIOD_TICKS;
-  steps[s->phase](d);
-  if (s->blind > 0u) s->blind--;
 }

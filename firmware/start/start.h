@@ -21,7 +21,7 @@
 #include "estimators/followed.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
-#include "estimators/wiring.h"
+#include "firmware/interfaces/state.h"
 
 typedef enum {
   START_LISTEN = 0,      // gates off, the short circuit is prepared
@@ -36,35 +36,33 @@ typedef enum {
 } start_phase_t;
 
 typedef struct {
-  start_phase_t phase;
   uint16_t tick;   // periods since the phase was entered
   uint16_t pause;  // periods to listen before the next pulse
   uint16_t tries;  // of the present phase
   uint16_t pulses;
   uint16_t charged;      // periods in which the bootstrap capacitors were charged
-  uint16_t blind;        // periods until the windows belong to a power stage that is on
-  bool looking;          // not a start: how the shaft turns is all that is asked
-  bool powered;          // the start has the gates on
-  bool shorted;          // the modulator holds all lower devices on
-  bool decides;          // the next period is for a decision alone (start_decides)
   bool learnt;           // axis and admittances of a caught rotor are
   int32_t on_tick;       // of the period in which the gates came on
   flying_rotor_t rotor;  // caught: at the second pulse, then carried on
   int32_t emf_q16;       // of that pulse, V
-  uint32_t clock;        // tick at which the running period began, from the start of START
   int32_t stray;         // filtered angle error while catching, binary angle
   flying_pulse_t pulse;
   flying_emf_t first;
   axis_t axis;
-  wiring_t wiring;  // what the axis was found with says about it
   saturation_t saturation;
   polarity_t motion;
   followed_t followed;  // the current, what the present test asked of it
   uint16_t held_back;   // how often all began anew
   bool starved;         // the current of a test did not follow: less is tried
   if_start_t turn;
-  estimator_output_t seen;  // by the position source, while the vector turns
-  int32_t sigma_q8;         // confidence in the polarity, standard errors
 } drive_start_t;
+
+/// Its memory: a drive has one start.
+extern drive_start_t starting;
+
+/// As after power-on.
+void start_reset(void);
+
+extern const state_t start_state;
 
 #endif

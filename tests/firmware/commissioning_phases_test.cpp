@@ -25,17 +25,16 @@ class Phases : public Drive {
     make_ready();
     drive.state = DRIVE_COMMISSION;
     drive.model = drive.config.nameplate;
-    commissioning().model = drive.model;
+    commissioning.model = drive.model;
     drive.samples.link_q16 = raw(kLink, 16);
     drive.position.used = {0, 0, 0, 32767};
     limit_ = real(parameters.current_limit, 20);
   }
-  static commissioning_t& commissioning() { return drive.commissioning; }
 
   /// One period of a phase, as the sequence calls it.
   static bool step(bool (*phase)(drive_t*)) {
     const bool done = phase(&drive);
-    commissioning().tick++;
+    commissioning.tick++;
     return done;
   }
   /// The period's windows, under opposite vectors along alpha; what they leave over is along d, A per period.
@@ -69,7 +68,7 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
   };
   for (const Case& c : {Case{0.2, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 200.0}, {-0.1, 2.0, -300.0}}) {
     drive.position.used = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
-    commissioning().target_bam = bam(1.0 + c.off);
+    commissioning.target_bam = bam(1.0 + c.off);
     commissioning_hold(&drive);
     const double accel = 3600.0 * c.off - 120.0 * c.speed + c.load;
     const double torque_constant = real(machine_torque_constant_q24(&drive.model, 0), 24);
@@ -77,7 +76,7 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
   }
   for (const double sign : {1.0, -1.0}) {
     drive.position.used = {0, 0, 0, 32767};
-    commissioning().target_bam = bam(sign * 2.0);
+    commissioning.target_bam = bam(sign * 2.0);
     commissioning_hold(&drive);
     EXPECT_NEAR(real(drive.control.reference_q20.q, 20), sign * limit_ / 4.0, 1e-5);
   }
@@ -86,14 +85,14 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
 // To the nearest sixth of a turn, 0.02 degrees in a period, and 600 ms in all.
 TEST_F(Phases, TheShaftIsTakenToASixthOfATurn) {
   for (const auto& [from, to] : {std::pair{0.0, 0.0}, {29.0, 0.0}, {31.0, 60.0}, {-80.0, -60.0}, {179.0, 180.0}}) {
-    commissioning().tick = 0;
+    commissioning.tick = 0;
     drive.position.used.angle_bam = bam(from * kDegree);
     std::uint32_t last = bam(from * kDegree);
     int n = 1;
     for (; !step(commissioning_turn); ++n) {
-      const std::int32_t moved = angle_diff_bam(commissioning().target_bam, last);
+      const std::int32_t moved = angle_diff_bam(commissioning.target_bam, last);
       ASSERT_LE(std::fabs(rad(moved)), 0.0201 * kDegree);
-      last = commissioning().target_bam;
+      last = commissioning.target_bam;
       if (n == 100) {
         const double way = std::clamp(to - from, -2.0, 2.0);
         EXPECT_NEAR(wrapped(rad(last) - (from + way) * kDegree) / kDegree, 0.0, 0.01) << from;
@@ -101,7 +100,7 @@ TEST_F(Phases, TheShaftIsTakenToASixthOfATurn) {
       ASSERT_LT(n, 10000);
     }
     EXPECT_EQ(n, 6001);
-    EXPECT_NEAR(wrapped(rad(commissioning().target_bam) - to * kDegree) / kDegree, 0.0, 1e-4) << from;
+    EXPECT_NEAR(wrapped(rad(commissioning.target_bam) - to * kDegree) / kDegree, 0.0, 1e-4) << from;
   }
 }
 
@@ -151,9 +150,9 @@ TEST_F(Phases, TheStaircaseSumsEachLevel) {
   }
   EXPECT_NEAR(n, 14 * 9000 + 601 + 64, 64);
   EXPECT_EQ(drive.control.reference_q20.d, 0) << "the current is gone when it is over";
-  ASSERT_EQ(commissioning().staircase.index, 14);
+  ASSERT_EQ(commissioning.staircase.index, 14);
   for (int k = 0; k < 14; ++k) {
-    const staircase_level_t& l = commissioning().staircase.level[k];
+    const staircase_level_t& l = commissioning.staircase.level[k];
     ASSERT_EQ(l.periods, 8400) << k;
     ASSERT_EQ(l.windows, 2 * 8400) << k;
     EXPECT_NEAR(real(l.current / l.periods, 20), level(k), 2e-3 * limit_) << k;
@@ -181,13 +180,13 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   std::int32_t last = 0;
   for (; n < 100000; ++n) {
     EXPECT_FALSE(step(commissioning_spin));
-    if (!commissioning().turning) break;
+    if (!drive.flags.spins) break;
     ASSERT_LE(std::abs(drive.control.target_bpp - last), high / 3000 + 1) << n;
     last = drive.control.ramp.value = drive.position.used.speed_bpp = drive.control.target_bpp;
   }
   // ramps of 0.1, 0.2, 0.2 and 0.1 s, settling and stations, 0.3 s at rest
   EXPECT_NEAR(n, 1000 + 2000 + 2000 + 1000 + 3 * 14000 + 3000, 20);
-  const spin_t& s = commissioning().spin;
+  const spin_t& s = commissioning.spin;
   for (int k = 0; k < 3; ++k) {
     const spin_station_t& at = s.station[k];
     ASSERT_EQ(at.periods, 10000) << k;
@@ -205,13 +204,13 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   EXPECT_NEAR(static_cast<double>(s.ramp[1].speed) / high, 2000.0 * 2.0 / 3.0 + 4000.0 / 3.0, 5.0);
 
   // Held again where it came to rest, until the background level has made its motion of the sums.
-  EXPECT_TRUE(commissioning().solve_motion);
+  EXPECT_TRUE(commissioning.solve_motion);
   EXPECT_EQ(drive.control.reference_q20.d, 0);
-  EXPECT_EQ(commissioning().target_bam, drive.position.used.angle_bam);
+  EXPECT_EQ(commissioning.target_bam, drive.position.used.angle_bam);
   EXPECT_FALSE(step(commissioning_spin));
-  commissioning().torque_q24 = 123456;
-  commissioning().accel_q12 = 654321;
-  commissioning().solve_motion = false;
+  commissioning.torque_q24 = 123456;
+  commissioning.accel_q12 = 654321;
+  commissioning.solve_motion = false;
   EXPECT_TRUE(step(commissioning_spin));
   EXPECT_EQ(drive.model.torque_q24, 123456);
   EXPECT_EQ(drive.model.accel_q12, 654321);
@@ -222,7 +221,7 @@ TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   parameters.spin_speed = 900 * 256;
   parameters.speed_limit = 450 * 256;
   std::int32_t most = 0;
-  for (int n = 0; n < 60000 && (n == 0 || commissioning().turning); ++n) {
+  for (int n = 0; n < 60000 && (n == 0 || drive.flags.spins); ++n) {
     (void)step(commissioning_spin);
     drive.control.ramp.value = drive.position.used.speed_bpp = drive.control.target_bpp;
     most = std::max(most, drive.control.target_bpp);
@@ -230,8 +229,8 @@ TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   EXPECT_NEAR(most, bpp_of(450), 300);
   SetUp();
   for (int n = 0; n < 20000; ++n) (void)step(commissioning_spin);  // the ramp does not move
-  EXPECT_EQ(commissioning().spin.leg, 0);
-  EXPECT_EQ(commissioning().spin.tick, 0);
+  EXPECT_EQ(commissioning.spin.leg, 0);
+  EXPECT_EQ(commissioning.spin.tick, 0);
 }
 
 // The map: trains of torque current that put the shaft back, their mirror images, and pauses; at four levels. The shaft
@@ -243,7 +242,7 @@ struct Train {
 };
 
 TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
-  const map_t& m = commissioning().map;
+  const map_t& m = commissioning.map;
   drive.position.used.angle_bam = bam(0.5);
   std::vector<Train> trains;
   std::vector<std::int32_t> feeds, references;
@@ -253,26 +252,26 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
     ASSERT_LT(n, 400000);
     if (!m.pause) length = static_cast<std::size_t>(m.segment);
     const bool paused = n == 0 || m.pause;
-    const std::int32_t still = commissioning().unsaturated.count;
-    const std::uint32_t held = commissioning().target_bam;
+    const std::int32_t still = commissioning.unsaturated.count;
+    const std::uint32_t held = commissioning.target_bam;
     if (n > 0) drive.position.used.angle_bam = held;  // the shaft is where it is held
     drive.control.measured_q20 = {0, drive.control.reference_q20.q};
     windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
     ASSERT_FALSE(step(commissioning_map));
     if (paused) {
       ++pauses.back();
-      EXPECT_EQ(drive.commissioning.predicting, !m.pause);
+      EXPECT_EQ(commissioning.predicting, !m.pause);
       if (n > 0 && pauses.back() <= 300 && trains.size() % 2 == 0) {
-        EXPECT_NEAR(rad(angle_diff_bam(commissioning().target_bam, held)), 45.0 * kDegree / 300.0, 1e-6);
+        EXPECT_NEAR(rad(angle_diff_bam(commissioning.target_bam, held)), 45.0 * kDegree / 300.0, 1e-6);
       } else if (n > 0) {
-        EXPECT_EQ(commissioning().target_bam, held);
+        EXPECT_EQ(commissioning.target_bam, held);
       }
       if (m.pause) continue;
-      stills.push_back(commissioning().unsaturated.count);
+      stills.push_back(commissioning.unsaturated.count);
       trains.emplace_back();
       continue;
     }
-    EXPECT_EQ(commissioning().unsaturated.count, still);
+    EXPECT_EQ(commissioning.unsaturated.count, still);
     Train& t = trains.back();
     t.current.push_back(real(drive.control.reference_q20.q, 20));
     t.farthest = std::max(t.farthest, std::fabs(rad(m.position_bam)));
@@ -318,11 +317,11 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
 // As many periods of each sign in each kind of train as a level wants, over whole rounds of eight places, without those
 // in which the current settles.
 TEST_F(Phases, TheMapSumsItsGroups) {
-  const map_t& m = commissioning().map;
+  const map_t& m = commissioning.map;
   int trains[4] = {}, segments[4] = {};
   for (int n = 0; !step(commissioning_map); ++n) {
     ASSERT_LT(n, 2000000);
-    drive.position.used.angle_bam = commissioning().target_bam;
+    drive.position.used.angle_bam = commissioning.target_bam;
     if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
     drive.control.measured_q20 = {0, drive.control.reference_q20.q};
     windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
@@ -353,12 +352,12 @@ TEST_F(Phases, TheMapSumsItsGroups) {
 
 // A segment is as long as a constant torque takes for six degrees: accel n^2, within what is short and long.
 TEST_F(Phases, ASegmentTakesTheShaftSixDegreesOn) {
-  const map_t& m = commissioning().map;
+  const map_t& m = commissioning.map;
   for (const auto& [inertia, length] : {std::pair{1.0, 0}, {0.2, 40}, {100.0, 90}}) {
-    commissioning().tick = 0;
+    commissioning.tick = 0;
     drive.model = drive.config.nameplate;
     drive.model.accel_q12 = static_cast<std::int32_t>(drive.model.accel_q12 / inertia);
-    while (commissioning().tick == 0 || m.pause) (void)step(commissioning_map);
+    while (commissioning.tick == 0 || m.pause) (void)step(commissioning_map);
     const double accel = real(machine_torque_constant_q24(&drive.model, 0), 24) * limit_ / 4.0 * per_torque();
     const double periods = std::sqrt(6.0 * kDegree / accel) / kPeriod;
     EXPECT_NEAR(m.segment, length == 0 ? std::clamp(periods, 40.0, 90.0) : length, 1.0) << inertia;
@@ -366,7 +365,7 @@ TEST_F(Phases, ASegmentTakesTheShaftSixDegreesOn) {
 }
 
 TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
-  commissioning_t& c = commissioning();
+  commissioning_t& c = commissioning;
   const auto progress = [&](commissioning_phase_t phase) {
     c.phase = phase;
     return drive_commissioning_progress();
@@ -390,11 +389,11 @@ TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
 // A level is complete when each of its groups is, after whole rounds of places; or after so many trains that the pairs
 // of windows will not come.
 TEST_F(Phases, ALevelWantsAllItsGroups) {
-  map_t& m = commissioning().map;
+  map_t& m = commissioning.map;
   for (int few = -1; few < 4; ++few) {
     for (const int trains : {15, 16, 608}) {
       m = {};
-      commissioning().tick = 1;
+      commissioning.tick = 1;
       for (int k = 0; k < 4; ++k) m.group[0][k].tensor.count = k == few ? 7999 : 8000;
       m.train = static_cast<std::uint16_t>(trains);
       m.tick = 1000;

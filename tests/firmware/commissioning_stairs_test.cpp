@@ -24,11 +24,11 @@ class CommissioningStairs : public Drive {
     Drive::SetUp();
     make_ready();
     drive.state = DRIVE_COMMISSION;
-    drive.commissioning.model = nameplate();
-    drive.commissioning.tick = 1;
-    drive.commissioning.staircase.most_q20 = parameters.current_limit;
+    commissioning.model = nameplate();
+    commissioning.tick = 1;
+    commissioning.staircase.most_q20 = parameters.current_limit;
   }
-  static staircase_t& stairs() { return drive.commissioning.staircase; }
+  static staircase_t& stairs() { return commissioning.staircase; }
 };
 
 TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
@@ -49,7 +49,7 @@ TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
 TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
   for (const bool room : {true, false}) {
     SetUp();
-    if (!room) drive.commissioning.model.yd_q30 *= 8;  // 0.6 mH: a ripple of 8 A and more
+    if (!room) commissioning.model.yd_q30 *= 8;  // 0.6 mH: a ripple of 8 A and more
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(drive.control.reference_q20.d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
   }
@@ -68,7 +68,7 @@ TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
   for (int n = 0; n < 100; ++n) (void)commissioning_climb(&drive);
   EXPECT_EQ(stairs().tick, 101);
   EXPECT_GT(drive.control.reference_q20.d, 0);
-  map_t& m = drive.commissioning.map;
+  map_t& m = commissioning.map;
   m.pause = true;
   m.train = 1;
   for (int n = 0; n < 2000; ++n) (void)commissioning_map(&drive);
@@ -83,7 +83,7 @@ TEST_F(CommissioningStairs, ALevelIsNoOverload) {
   parameters.rated_current = raw(4.0, 20);
   for (const auto& [seconds, most] : {std::pair{60.0, 14.0}, {10.0, 4.0 * std::sqrt(10.0 / 3.6)}, {1.0, 4.0}}) {
     parameters.overload_time = static_cast<std::int32_t>(1000.0 * seconds);
-    drive.commissioning.tick = 0;
+    commissioning.tick = 0;
     (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(stairs().most_q20, 20), most, 0.01 * most) << seconds;
   }
@@ -96,7 +96,7 @@ TEST_F(CommissioningStairs, ALevelIsNoOverload) {
 TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
   for (const bool pair : {true, false}) {
     SetUp();
-    map_t& m = drive.commissioning.map;
+    map_t& m = commissioning.map;
     m.segment = 60;
     m.train = 1;
     m.tick = 55;
@@ -109,12 +109,12 @@ TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
     m.pause = true;
     m.tick = 350;
     (void)commissioning_map(&drive);
-    EXPECT_EQ(drive.commissioning.unsaturated.count, pair ? 1 : 0);
+    EXPECT_EQ(commissioning.unsaturated.count, pair ? 1 : 0);
   }
 }
 
 TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
-  commissioning_t& c = drive.commissioning;
+  commissioning_t& c = commissioning;
   c.outcome = COMMISSIONING_RUNNING;
   c.phase = COMMISSIONING_EVALUATE;
   c.evaluate = true;
@@ -137,7 +137,7 @@ TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
     const double limit = real(parameters.current_limit, 20);
     const double pulse = drive.config.modulator.pulse_ticks / 1e4;
     const double link = real(drive.samples.link_q16, 16);
-    drive.commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
+    commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(drive.control.reference_q20.d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
   }

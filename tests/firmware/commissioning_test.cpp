@@ -66,7 +66,7 @@ TEST_F(Commissioning, IsNotTurnedByAVector) {
     make_ready();
     asked ? drive_command_commission() : drive_command_start();
     periods(2);
-    EXPECT_EQ(drive.start.phase, asked ? START_AXIS : START_TURN);
+    EXPECT_EQ(drive.found.phase, asked ? START_AXIS : START_TURN);
   }
 }
 
@@ -80,9 +80,9 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
     make_ready();
     drive_command_start();
     period();
-    ASSERT_EQ(drive.start.phase, listens ? START_LISTEN : START_TURN);
+    ASSERT_EQ(drive.found.phase, listens ? START_LISTEN : START_TURN);
     start_find_axis(&drive);
-    EXPECT_EQ(drive.start.phase, listens ? START_AXIS : START_TURN);
+    EXPECT_EQ(drive.found.phase, listens ? START_AXIS : START_TURN);
   }
 }
 
@@ -102,7 +102,7 @@ TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
   make_ready();
   drive_command_commission();
   periods(10);
-  drive.start.phase = START_CATCH;
+  drive.flags.caught = true;
   start_run(&drive, 0, 4000000);  // 140 rpm
   EXPECT_EQ(drive.state, DRIVE_STOP);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
@@ -132,7 +132,7 @@ TEST_F(Commissioning, AFaultEndsIt) {
   EXPECT_EQ(drive.state, DRIVE_FAULT);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_FAILED);
   EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_IDLE);
-  EXPECT_FALSE(drive.commissioning.requested) << "no start leads there any more";
+  EXPECT_EQ(drive.flags.behind, DRIVE_BOOT) << "no start leads there any more";
   EXPECT_TRUE(drive.request.reload);
   EXPECT_FALSE(board.gates_on);
 }
@@ -140,8 +140,8 @@ TEST_F(Commissioning, AFaultEndsIt) {
 TEST_F(Commissioning, SumsThatAreEmptyChangeNothing) {
   commissioning_report_t report;
   const parameters_t before = parameters;
-  drive.commissioning.model = drive.config.nameplate;
-  commissioning_judge(&drive.commissioning, &report);
+  commissioning.model = drive.config.nameplate;
+  commissioning_judge(&commissioning, &report);
   EXPECT_EQ(commissioning_use(&report), COMMISSIONING_PARTLY);
   EXPECT_EQ(report.count, 23);
   for (int k = 0; k < report.count; ++k) {
@@ -154,7 +154,7 @@ TEST_F(Commissioning, SumsThatAreEmptyChangeNothing) {
 // At no current the machine is as the model has it, at the levels nothing came in.
 TEST_F(Commissioning, AMapCurrentWithoutItsLevelsIsNotUsed) {
   commissioning_report_t report;
-  commissioning_t& c = drive.commissioning;
+  commissioning_t& c = commissioning;
   parameters.current_limit = raw(8.0, 20);
   const std::int32_t before = parameters.map_current;
   c.model = drive.config.nameplate;
@@ -168,10 +168,10 @@ TEST_F(Commissioning, AMapCurrentWithoutItsLevelsIsNotUsed) {
 
 TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   begin();
-  drive.commissioning.phase = COMMISSIONING_EVALUATE;
-  drive.commissioning.evaluate = true;
+  commissioning.phase = COMMISSIONING_EVALUATE;
+  commissioning.evaluate = true;
   drive.request.reload = false;
-  drive.commissioning.model = drive.config.nameplate;
+  commissioning.model = drive.config.nameplate;
   commissioning_service(&drive);
   EXPECT_TRUE(drive.request.reload) << "nothing was measured, yet the longer settling has to go";
 }
@@ -179,17 +179,18 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
 // Played from a tape, the background's work is done where it was done, and not before.
 TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   begin();
-  drive.commissioning.phase = COMMISSIONING_EVALUATE;
-  drive.commissioning.evaluate = true;
-  drive.commissioning.model = drive.config.nameplate;
+  commissioning.phase = COMMISSIONING_EVALUATE;
+  commissioning.evaluate = true;
+  drive.flags.over = true;
+  commissioning.model = drive.config.nameplate;
   drive_parameters_changed();
   hal_tape_start(TAPE_PLAYS, nullptr);
   background_step(&drive);
-  EXPECT_TRUE(drive.commissioning.evaluate);
+  EXPECT_TRUE(commissioning.evaluate);
   EXPECT_TRUE(drive.request.reload);
   hal_tape_start(TAPE_OFF, nullptr);
   background_step(&drive);
-  EXPECT_FALSE(drive.commissioning.evaluate);
+  EXPECT_FALSE(commissioning.evaluate);
   EXPECT_FALSE(drive.request.reload);
 }
 
@@ -197,16 +198,15 @@ TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
 TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
   parameters.flying_start = 0;
   make_ready();
-  commissioning_t& c = drive.commissioning;
-  c.turning = c.predicting = c.solve_motion = c.evaluate = true;
-  c.adapting = false;
+  commissioning_t& c = commissioning;
+  c.predicting = c.solve_motion = c.evaluate = true;
   c.phase = COMMISSIONING_SPIN;
   c.tick = 99;
   drive_command_commission();
   period();
   EXPECT_EQ(drive.state, DRIVE_START);
-  EXPECT_FALSE(c.turning || c.predicting || c.solve_motion || c.evaluate);
-  EXPECT_TRUE(c.adapting && c.requested);
+  EXPECT_FALSE(drive.flags.spins || drive.flags.frozen || c.predicting || c.solve_motion || c.evaluate);
+  EXPECT_EQ(drive.flags.behind, DRIVE_COMMISSION);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
   EXPECT_EQ(c.tick, 0);
 }
@@ -215,23 +215,23 @@ TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
 // end.
 TEST_F(Commissioning, PhasesFollowEachOther) {
   begin();
-  commissioning_t& c = drive.commissioning;
-  EXPECT_TRUE(c.adapting);
+  commissioning_t& c = commissioning;
+  EXPECT_FALSE(drive.flags.frozen);
   c.tick = 6000;  // of turning to its place
-  commissioning_step(&drive);
+  commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_STAIRCASE);
   EXPECT_EQ(c.tick, 0);
-  EXPECT_FALSE(c.adapting);
-  commissioning_step(&drive);
+  EXPECT_TRUE(drive.flags.frozen);
+  commissioning_state.step(&drive);
   EXPECT_EQ(c.tick, 1);
   c.staircase.index = STAIRCASE_LEVELS;
   c.staircase.tick = 601;
   drive.control.reference_q20.d = 0;
-  commissioning_step(&drive);
+  commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_SPIN);
   c.tick = 1;
   drive.trim.mismatch_q30 = 4321;
-  commissioning_step(&drive);  // a spin that is over
+  commissioning_state.step(&drive);  // a spin that is over
   EXPECT_EQ(c.phase, COMMISSIONING_MAP);
   EXPECT_EQ(c.mismatch_q30, 4321);
   c.tick = 1;
@@ -239,24 +239,25 @@ TEST_F(Commissioning, PhasesFollowEachOther) {
   c.map.pause = true;
   c.map.tick = 1000;
   c.map.train = 1;
-  commissioning_step(&drive);
+  commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_EVALUATE);
   EXPECT_TRUE(c.evaluate);
-  EXPECT_FALSE(c.requested);
+  EXPECT_TRUE(drive.flags.over);
   EXPECT_FALSE(board.gates_on);
   EXPECT_FALSE(drive.control.closed);
   EXPECT_EQ(drive.state, DRIVE_COMMISSION);
-  commissioning_step(&drive);
+  commissioning_state.step(&drive);
   EXPECT_EQ(drive.state, DRIVE_COMMISSION) << "the background level is not through yet";
   c.evaluate = false;
-  commissioning_step(&drive);
+  commissioning_state.step(&drive);
   EXPECT_EQ(drive.state, DRIVE_READY);
 }
 
 TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
   begin();
-  drive.commissioning.phase = COMMISSIONING_EVALUATE;
-  drive.commissioning.evaluate = true;
+  commissioning.phase = COMMISSIONING_EVALUATE;
+  commissioning.evaluate = true;
+  drive.flags.over = true;
   drive_command_stop();
   periods(3);
   EXPECT_EQ(drive.state, DRIVE_COMMISSION);
@@ -265,11 +266,11 @@ TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
 
 TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
   begin();
-  drive.commissioning.turning = true;
+  drive.flags.spins = true;
   drive.control.target_bpp = 12345;
   drive_command_speed(1000L * 65536L);
   EXPECT_EQ(drive.control.target_bpp, 12345);
-  drive.commissioning.turning = false;
+  drive.flags.spins = false;
   drive_command_speed(1000L * 65536L);
   EXPECT_GT(drive.control.target_bpp, 12345);
 }
@@ -286,14 +287,15 @@ TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
 // A phase's first period forgets the sums of the last commissioning.
 TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   begin();
-  commissioning_t& c = drive.commissioning;
+  commissioning_t& c = commissioning;
   const auto first_period = [&](bool (*phase)(drive_t*)) {
     std::memset(&c.staircase, 0x11, sizeof c.staircase);
     std::memset(&c.map, 0x11, sizeof c.map);
     std::memset(&c.spin, 0x11, sizeof c.spin);
     std::memset(&c.unsaturated, 0x11, sizeof c.unsaturated);
     c.tick = 0;
-    c.turning = c.adapting = false;
+    drive.flags.spins = false;
+    drive.flags.frozen = true;
     drive.samples.count = 0;
     EXPECT_FALSE(phase(&drive));
   };
@@ -319,7 +321,7 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
     }
   }
   first_period(commissioning_spin);
-  EXPECT_TRUE(c.turning && c.adapting);
+  EXPECT_TRUE(drive.flags.spins && !drive.flags.frozen);
   EXPECT_EQ(c.spin.leg, 0);
   EXPECT_EQ(c.spin.tick, 0);
   for (const spin_station_t& s : c.spin.station) EXPECT_EQ(s.speed | s.voltage_q | s.current_q | s.periods, 0);

@@ -147,15 +147,15 @@ TEST_F(ConsoleLines, ASpeedBeyondTheLimitIsRefusedWithBoth) {
 }
 
 TEST_F(ConsoleLines, ACommissioningSaysHowFarItIs) {
-  drive.commissioning.outcome = COMMISSIONING_RUNNING;
-  drive.commissioning.phase = COMMISSIONING_STAIRCASE;
-  drive.commissioning.staircase.index = 7;
+  commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning.phase = COMMISSIONING_STAIRCASE;
+  commissioning.staircase.index = 7;
   EXPECT_EQ(command("commission"), "commissioning: under way, 9 %: DC staircase: resistance, drop, dead time\r\n");
 }
 
 // No resistance at all was measured, of which a device has 35 mohm: the winding would have less than none.
 TEST_F(ConsoleLines, AResultIsWhatWasAndWhatIs) {
-  drive.commissioning.evaluate = true;  // and nothing was measured
+  commissioning.evaluate = true;  // and nothing was measured
   commissioning_service(&drive);
   const std::string rows = command("commission results", 20000);
   EXPECT_EQ(rows.rfind(to(to("stator_resistance", 22) + "0.3200 -> -0.0350 ohm", 50) +

@@ -13,6 +13,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/states.h"
+#include "firmware/start/start.h"
 }
 
 namespace {
@@ -48,8 +49,8 @@ TEST_F(Console, StatusSaysWhatHoldsTheDriveBack) {
 
 TEST_F(Console, StatusSaysHowFarAProcedureIs) {
   drive.state = DRIVE_COMMISSION;
-  drive.commissioning.phase = COMMISSIONING_SPIN;
-  drive.start.phase = START_CHARGE;
+  commissioning.phase = COMMISSIONING_SPIN;
+  drive.found.phase = START_CHARGE;
   EXPECT_TRUE(has(command("status"), "state       commissioning: spin: flux linkage, inertia, friction\r\n"));
   drive.state = DRIVE_START;
   EXPECT_TRUE(has(command("status"), "state       starting: charging the bootstrap capacitors\r\n"));
@@ -136,7 +137,7 @@ TEST_F(Console, WatchSaysWhatHoldsTheDriveBack) {
 
 TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
   drive.state = DRIVE_COMMISSION;
-  drive.commissioning.phase = COMMISSIONING_STAIRCASE;
+  commissioning.phase = COMMISSIONING_STAIRCASE;
   drive.limits = LIMIT_CURRENT | LIMIT_VOLTAGE | LIMIT_WEAKENING | LIMIT_OVERRUN | LIMIT_BRAKING;
   const std::string line = command("watch", 300);
   EXPECT_EQ(line.size(), TEXT_LINE_MAX);
@@ -148,13 +149,13 @@ TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
 TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
   drive.state = DRIVE_RUN;
   drive_raise(&drive, FAULT_OPEN_PHASE);
-  drive.start.wiring = WIRING_OPEN_B;
+  drive.found.wiring = WIRING_OPEN_B;
   const std::string named = command("status");
   EXPECT_TRUE(has(named, ": " + bench::words_of(WORDS_WIRING, WIRING_OPEN_B) + ". ")) << named;
-  drive.start.wiring = WIRING_GOOD;
+  drive.found.wiring = WIRING_GOOD;
   const std::string plain = command("status");
   EXPECT_FALSE(has(plain, bench::words_of(WORDS_WIRING, WIRING_GOOD))) << plain;
-  drive.start.wiring = WIRING_OPEN_B;
+  drive.found.wiring = WIRING_OPEN_B;
   drive.fault = FAULT_SYNCHRONISM;
   EXPECT_FALSE(has(command("status"), bench::words_of(WORDS_WIRING, WIRING_OPEN_B))) << "found by an earlier start";
 }
@@ -177,21 +178,21 @@ TEST_F(Console, Commissioning) {
 }
 
 TEST_F(Console, ACommissioningUnderWayIsToldWithItsPhase) {
-  drive.commissioning.outcome = COMMISSIONING_RUNNING;
-  drive.commissioning.phase = COMMISSIONING_EVALUATE;
+  commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning.phase = COMMISSIONING_EVALUATE;
   EXPECT_EQ(command("commission"), "commissioning: under way, 100 %: evaluation\r\n");
-  drive.commissioning.outcome = COMMISSIONING_ABORTED;
+  commissioning.outcome = COMMISSIONING_ABORTED;
   EXPECT_FALSE(has(command("commission"), "evaluation"));
   parameters.inertia++;
   EXPECT_FALSE(has(command("commission"), "not saved"));
-  drive.commissioning.outcome = COMMISSIONING_DONE;
+  commissioning.outcome = COMMISSIONING_DONE;
   EXPECT_TRUE(has(command("commission"), "not saved"));
 }
 
 TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {
-  drive.commissioning.evaluate = true;  // and nothing was measured
+  commissioning.evaluate = true;  // and nothing was measured
   commissioning_service(&drive);
-  ASSERT_EQ(drive.commissioning.outcome, COMMISSIONING_PARTLY);
+  ASSERT_EQ(commissioning.outcome, COMMISSIONING_PARTLY);
   const std::int32_t before = parameters.inertia;
   parameters.inertia++;
   EXPECT_TRUE(has(command("commission"), "; 2 of the parameters not saved: 'save' keeps them\r\n"));
@@ -203,7 +204,7 @@ TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {
   EXPECT_TRUE(has(rows, "not measured: too few usable periods"));
   send("commission results\r");
   run(250);
-  drive.commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning.outcome = COMMISSIONING_RUNNING;
   text.clear();
   run(20000);
   EXPECT_EQ(text, "> ");

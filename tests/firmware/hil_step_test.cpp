@@ -8,6 +8,7 @@
 
 extern "C" {
 #include "firmware/base/crc.h"
+#include "firmware/commissioning/commissioning.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/drive/steps.h"
@@ -196,13 +197,13 @@ TEST_F(Stepping, AStepThatIsNotWholeChangesNothing) {
 TEST_F(Stepping, WorkIsDoneOnItsSideOfTheStep) {
   for (const std::uint16_t side : {kEarly, std::uint16_t{0}}) {
     (void)step(empty());
-    drive.commissioning.evaluate = true;
+    commissioning.evaluate = true;
     drive.request.reload = true;
     HilPeriod p = empty();
     p.works = {static_cast<std::uint16_t>(TAPE_RELOADED | side), static_cast<std::uint16_t>(TAPE_EVALUATED | side),
                static_cast<std::uint16_t>(TAPE_RELOADED | side)};
     EXPECT_EQ(step(p).torn, 0) << side;
-    EXPECT_FALSE(drive.commissioning.evaluate || drive.request.reload) << "an evaluation changes parameters";
+    EXPECT_FALSE(commissioning.evaluate || drive.request.reload) << "an evaluation changes parameters";
   }
   drive.request.reload = true;
   EXPECT_EQ(step(empty()).torn, 0);

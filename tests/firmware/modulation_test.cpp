@@ -1,12 +1,15 @@
 // From the voltage command to the frame that the hardware gets, and the current control before it: on a drive that the
 // test has put where it wants it.
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/states.h"
@@ -24,7 +27,7 @@ class Modulation : public Drive {
     Drive::SetUp();
     make_ready();
     drive.state = DRIVE_RUN;
-    drive.watch.open = false;
+    polarity_watch.open = false;
     drive.control.closed = true;
     drive.samples.link_q16 = raw(300.0, 16);
     drive.position.used = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
@@ -102,7 +105,7 @@ TEST_F(Modulation, ItsStepSaysWhatItTakes) {
   for (const bool shorted : {false, true}) {
     board.profile.clear();
     drive.state = DRIVE_START;
-    drive.start.shorted = shorted;
+    drive.flags.shorted = shorted;
     drive_modulate(&drive);
     EXPECT_EQ(spent(), CYCLES_MODULATE);
   }
@@ -182,29 +185,42 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
       SetUp();
       parameters.excitation = asked;
       drive.state = state;
-      drive.start.shorted = false;
+      drive.flags.shorted = false;
       const bool own = state == DRIVE_START || state == DRIVE_COMMISSION;
       EXPECT_TRUE(modulates_as(own ? EXCITATION_ALTERNATING : static_cast<excitation_t>(asked))) << asked << state;
     }
   }
 }
 
-// Only a start shorts the machine, whatever voltage is asked.
-TEST_F(Modulation, AShortedStartHasItsOwnPattern) {
-  for (const drive_state_t state : {DRIVE_START, DRIVE_RUN}) {
-    SetUp();
-    drive.state = state;
-    drive.start.shorted = true;
-    drive_modulate(&drive);
-    const svpwm_pattern_t wanted = start_short_circuit(&drive.config.modulator.sampling);
-    const bool same = std::memcmp(&wanted.pulses.at, &drive.modulation.next.pulses.at, sizeof wanted.pulses.at) == 0;
-    EXPECT_EQ(same, state == DRIVE_START);
-    if (state != DRIVE_START) continue;
-    EXPECT_EQ(std::memcmp(&wanted, &drive.modulation.running, sizeof wanted), 0);
-    for (int leg = 0; leg < 3; ++leg)
-      EXPECT_EQ(board.frame.rise_tick[leg], static_cast<std::uint16_t>(wanted.pulses.at[leg]));
-    EXPECT_EQ(board.frame.burst_start_tick[0], wanted.windows[0].start);
+// Whatever voltage is asked: all lower devices on for the whole period, which three windows share.
+TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
+  drive.flags.shorted = true;
+  drive_modulate(&drive);
+  const sampling_config_t& c = drive.config.modulator.sampling;
+  const svpwm_pattern_t& p = drive.modulation.next;
+  ASSERT_EQ(p.window_count, 3);
+  int at = 0;
+  for (const svpwm_window_t& w : p.windows) {
+    EXPECT_EQ(w.start, at + c.settle_ticks);
+    EXPECT_EQ(w.state, 0);
+    at += 3300;
+    EXPECT_EQ(w.end, std::min<int>(at - c.burst_ticks, c.last_tick));
   }
+  EXPECT_GE(p.windows[2].end, 6600 + c.settle_ticks + c.span_min_ticks);
+  for (const std::int16_t edge : p.pulses.at) {
+    EXPECT_LT(edge, 0) << "a leg is never high";
+  }
+  EXPECT_EQ(std::memcmp(&p, &drive.modulation.running, sizeof p), 0);
+  for (int leg = 0; leg < 3; ++leg) EXPECT_EQ(board.frame.rise_tick[leg], static_cast<std::uint16_t>(p.pulses.at[leg]));
+  EXPECT_EQ(board.frame.burst_start_tick[0], p.windows[0].start);
+}
+
+TEST_F(Modulation, OnlyAStartShortsTheMachine) {
+  drive.flags.shorted = true;
+  drive_enter(&drive, DRIVE_RUN);
+  drive_modulate(&drive);
+  EXPECT_GE(*std::max_element(std::begin(drive.modulation.next.pulses.at), std::end(drive.modulation.next.pulses.at)),
+            0);
 }
 
 // An open loop commands nothing, and begins anew.

@@ -26,8 +26,8 @@ class PolarityWatch : public Drive {
     drive.state = DRIVE_RUN;
     drive.samples.count = 2;
     drive.control.measured_q20 = {0, 0};
-    polarity_watch_begin(&drive, bam(0.5), 0);
-    drive.watch.axis_then_bam = bam(0.5);
+    polarity_watch_begin(bam(0.5), 0);
+    polarity_watch.axis_then_bam = bam(0.5);
   }
   static void source(std::int32_t source) {
     use_source(source);
@@ -41,7 +41,7 @@ class PolarityWatch : public Drive {
     drive.schedule.turn = turn;
     return polarity_watch_step(&drive);
   }
-  static double axis() { return rad(drive.watch.axis.angle_bam); }
+  static double axis() { return rad(polarity_watch.axis.angle_bam); }
 };
 
 // A triple pole at 120 rad/s takes three times 120 T of what the axis is off, once for every period since it last did;
@@ -57,8 +57,8 @@ TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
       EXPECT_FALSE(step(kFollow));
       const double all = std::clamp(5.0 * off, -kPi, kPi);  // an angle is no more than half a turn
       EXPECT_NEAR(axis(), 0.5 + 3.0 * 120.0 * kPeriod * all, 1e-4) << off << ", " << half;
-      EXPECT_EQ(drive.watch.axis_periods, 0);
-      EXPECT_FALSE(drive.watch.blind);
+      EXPECT_EQ(polarity_watch.axis_periods, 0);
+      EXPECT_FALSE(polarity_watch.blind);
     }
   }
 }
@@ -66,10 +66,10 @@ TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
 // The observer's windows were regressed some periods ago: what they showed belongs to where both were then.
 TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
   source(POSITION_OBSERVER);
-  drive.watch.axis.speed_bpp = bpp(200.0);
+  polarity_watch.axis.speed_bpp = bpp(200.0);
   EXPECT_FALSE(step(kRegress));
   const double then = 0.5 + 200.0 * kPeriod;
-  EXPECT_NEAR(rad(drive.watch.axis_then_bam), then, 1e-5);
+  EXPECT_NEAR(rad(polarity_watch.axis_then_bam), then, 1e-5);
   drive.position.observer.regressed_bam = bam(then + 0.2);
   for (int n = 0; n < 2; ++n) EXPECT_FALSE(step(kNone));
   EXPECT_FALSE(step(kFollow));
@@ -81,12 +81,12 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   source(POSITION_OBSERVER);
   drive.control.command_q16 = {raw(2.0, 16), raw(-5.0, 16)};
   for (int n = 0; n < 3; ++n) EXPECT_FALSE(step(kNone));
-  EXPECT_EQ(drive.watch.voltage_q12.d, 3 * raw(2.0, 12));
-  EXPECT_EQ(drive.watch.voltage_q12.q, 3 * raw(-5.0, 12));
-  EXPECT_EQ(drive.watch.periods, 3);
-  drive.watch.blind = false;
+  EXPECT_EQ(polarity_watch.voltage_q12.d, 3 * raw(2.0, 12));
+  EXPECT_EQ(polarity_watch.voltage_q12.q, 3 * raw(-5.0, 12));
+  EXPECT_EQ(polarity_watch.periods, 3);
+  polarity_watch.blind = false;
   EXPECT_FALSE(step(TURN_VOLTAGE));
-  EXPECT_EQ(drive.watch.voltage_q12.d | drive.watch.voltage_q12.q | drive.watch.periods, 0);
+  EXPECT_EQ(polarity_watch.voltage_q12.d | polarity_watch.voltage_q12.q | polarity_watch.periods, 0);
 }
 
 // A large current turns the axis, and windows without an axis do not show it: then it is the one in use, and what had
@@ -102,19 +102,19 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     if (why == 2) drive.control.measured_q20.q = raw(-0.51 * limit, 20);
     if (why == 3) drive.position.avv.regression.information = 0;
     if (why == 0) drive.control.measured_q20.q = raw(0.49 * limit, 20);
-    drive.watch.sign.clear = drive.watch.sign.against = 9;
+    polarity_watch.sign.clear = polarity_watch.sign.against = 9;
     drive.control.command_q16 = {raw(1.0, 16), raw(2.0, 16)};
     EXPECT_FALSE(step(kNone));
     EXPECT_FALSE(step(kFollow));
     const bool blind = why != 0;
-    EXPECT_EQ(drive.watch.blind, blind) << why;
+    EXPECT_EQ(polarity_watch.blind, blind) << why;
     EXPECT_NEAR(axis(), blind ? -1.0 : 0.5, 1e-3) << why;
-    EXPECT_EQ(drive.watch.sign.clear + drive.watch.sign.against, blind ? 0 : 18);
-    EXPECT_EQ(drive.watch.periods, blind ? 0 : 2);
-    EXPECT_EQ(drive.watch.voltage_q12.q, blind ? 0 : raw(4.0, 12));
+    EXPECT_EQ(polarity_watch.sign.clear + polarity_watch.sign.against, blind ? 0 : 18);
+    EXPECT_EQ(polarity_watch.periods, blind ? 0 : 2);
+    EXPECT_EQ(polarity_watch.voltage_q12.q, blind ? 0 : raw(4.0, 12));
     if (blind) {
-      EXPECT_EQ(drive.watch.sign.last_iq_q20, drive.control.measured_q20.q);
-      EXPECT_EQ(drive.watch.axis.speed_bpp, bpp(70.0));
+      EXPECT_EQ(polarity_watch.sign.last_iq_q20, drive.control.measured_q20.q);
+      EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(70.0));
     }
   }
 }
@@ -126,32 +126,32 @@ TEST_F(PolarityWatch, IsAwakeInRunUntilItKnows) {
   EXPECT_FALSE(polarity_watch_is_awake(&drive));
   drive.state = DRIVE_RUN;
   parameters.polarity_check = 0;
-  polarity_watch_begin(&drive, 0, 0);
+  polarity_watch_begin(0, 0);
   EXPECT_FALSE(polarity_watch_is_awake(&drive));
 }
 
 // What has been seen of the back-EMF against the rotation, a quarter of what is expected, is a suspicion.
 TEST_F(PolarityWatch, AQuarterOfTheEmfAgainstTheRotationIsASuspicion) {
-  drive.watch.sign.expected_q16 = raw(20.0, 16);
+  polarity_watch.sign.expected_q16 = raw(20.0, 16);
   for (const double seen : {-4.9, -5.1, 5.1}) {
-    drive.watch.sign.seen_q16 = raw(seen, 16);
-    EXPECT_EQ(polarity_watch_suspects(&drive), seen < -5.0) << seen;
+    polarity_watch.sign.seen_q16 = raw(seen, 16);
+    EXPECT_EQ(polarity_watch_suspects(), seen < -5.0) << seen;
   }
-  drive.watch.sign.seen_q16 = raw(-20.0, 16);
-  drive.watch.open = false;
-  EXPECT_FALSE(polarity_watch_suspects(&drive));
+  polarity_watch.sign.seen_q16 = raw(-20.0, 16);
+  polarity_watch.open = false;
+  EXPECT_FALSE(polarity_watch_suspects());
 }
 
 TEST_F(PolarityWatch, BeginsWithNothingOfTheLastRun) {
   for (const int check : {0, 1}) {
-    polarity_watch_t& w = drive.watch;
+    polarity_watch_t& w = polarity_watch;
     parameters.polarity_check = check;
     w.axis_periods = w.periods = w.voltage_q12.d = w.voltage_q12.q = 7;
     w.blind = true;
     w.open = check == 0;
     w.sign.clear = w.sign.against = 9;
     w.sign.seen_q16 = w.sign.expected_q16 = -99;
-    polarity_watch_begin(&drive, bam(1.1), bpp(50.0));
+    polarity_watch_begin(bam(1.1), bpp(50.0));
     EXPECT_EQ(w.open, check != 0);
     EXPECT_EQ(w.axis.angle_bam, bam(1.1));
     EXPECT_EQ(w.axis.speed_bpp, bpp(50.0));
@@ -169,18 +169,18 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
       SetUp();
       source(POSITION_AVV);
       const std::int32_t speed = bpp_of(600);
-      drive.watch.axis.speed_bpp = speed;
+      polarity_watch.axis.speed_bpp = speed;
       const Vector command = Vector{0.0, emf}.turned(-off);
       drive.control.command_q16 = raw_dq(command, 16);
       bool reversed = false;
       int n = 0;
-      for (; n < 600 && drive.watch.open; ++n) {
+      for (; n < 600 && polarity_watch.open; ++n) {
         drive.position.used.angle_bam =
-            drive.watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
+            polarity_watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
         reversed = step(n % 5 == 4 ? TURN_VOLTAGE : kNone);
       }
       EXPECT_GE(n, 50) << "5 ms";
-      EXPECT_FALSE(drive.watch.open) << off;
+      EXPECT_FALSE(polarity_watch.open) << off;
       EXPECT_EQ(reversed, emf < 0.0) << off;
     }
   }
@@ -191,11 +191,11 @@ TEST_F(PolarityWatch, SumsThatAreNotLookedAtEnd) {
   source(POSITION_AVV);
   drive.control.command_q16 = {raw(4000.0, 16), raw(-4000.0, 16)};
   for (int n = 0; n < 20000; ++n) EXPECT_FALSE(step(kNone));
-  EXPECT_GT(drive.watch.voltage_q12.d, 1000000000);
-  EXPECT_LT(drive.watch.voltage_q12.q, -1000000000);
-  EXPECT_GT(drive.watch.periods, 9000);
-  EXPECT_LE(drive.watch.periods, 10000);
-  EXPECT_LE(drive.watch.axis_periods, 10000);
+  EXPECT_GT(polarity_watch.voltage_q12.d, 1000000000);
+  EXPECT_LT(polarity_watch.voltage_q12.q, -1000000000);
+  EXPECT_GT(polarity_watch.periods, 9000);
+  EXPECT_LE(polarity_watch.periods, 10000);
+  EXPECT_LE(polarity_watch.axis_periods, 10000);
 }
 
 }  // namespace

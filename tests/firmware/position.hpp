@@ -8,6 +8,7 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 }
@@ -26,7 +27,7 @@ class Position : public Drive {
     ASSERT_TRUE(drive_config_load(&drive.config));
     drive.state = DRIVE_RUN;
     drive.schedule.turning = true;
-    drive.watch.open = false;
+    polarity_watch.open = false;
     position_preset(&drive, kHere, 0);
     see(2);
   }

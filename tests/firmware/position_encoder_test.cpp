@@ -12,7 +12,7 @@ using namespace stillspin::test;
 TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
   run_with(POSITION_ENCODER);
   drive.state = DRIVE_COMMISSION;
-  drive.commissioning.turning = true;
+  drive.flags.spins = true;
   drive.position.observer.angle_bam = kThere;
   drive.position.encoder.angle_bam = kHere;
   estimate();

@@ -6,9 +6,11 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/start/start.h"
 #include "svpwm/ripple.h"
 }
 
@@ -27,7 +29,7 @@ TEST_F(Sources, AFluxLooksOnFromItsLowerSpeedOn) {
     const estimator_output_t out = flux_source_look_on(&drive, &in, &truth);
     const bool follows = std::abs(rpm) < 100;
     EXPECT_EQ(out.angle_bam == kHere, follows) << rpm;
-    EXPECT_EQ(drive.position.flux.observer.angle_bam == kHere, follows) << rpm;
+    EXPECT_EQ(flux_observer.observer.angle_bam == kHere, follows) << rpm;
     EXPECT_EQ(out.load_accel_q8 == 33, follows);
   }
 }
@@ -38,7 +40,7 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
   for (const bool watched : {false, true}) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_HIGH, 0.0);
-    drive.watch.open = watched;  // then the observer goes on beside it
+    polarity_watch.open = watched;  // then the observer goes on beside it
     see(0);
     const double speed = 0.2;
     const Vector current = {-1.0, 6.0};
@@ -51,17 +53,17 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
       drive.modulation.sampled.pulses.at[leg] = static_cast<std::int16_t>(1000 + 500 * leg);
       drive.modulation.sampled.pulses.at[3 + leg] = static_cast<std::int16_t>(6000 - 700 * leg);
     }
-    const Vector before = real(drive.position.flux.flux_q16, 16);
+    const Vector before = real(flux_observer.flux_q16, 16);
     const Vector from = current.turned(rad(kHere)), to = current.turned(rad(kHere) + speed);
     estimate();
-    EXPECT_NEAR((real(drive.position.flux.current_q20, 20) - to).length(), 0.0, 1e-4);
+    EXPECT_NEAR((real(flux_observer.current_q20, 20) - to).length(), 0.0, 1e-4);
     const Vector mean = real(svpwm_mean_q16(&drive.modulation.sampled.pulses, raw(310.0, 16)), 16);
     const Vector drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(to, 20)), 16);
     const Vector grown = mean - drop - (from + to) * (0.5 * real(drive.model.rs_q24, 24));
     EXPECT_GT(grown.length(), 20.0);
     // The low-pass forgets some thousandths of a flux of 1600 V.
-    EXPECT_NEAR((real(drive.position.flux.flux_q16, 16) - before - grown).length(), 0.0, 8.0);
-    EXPECT_EQ(drive.position.high.angle_bam, drive.position.flux.observer.angle_bam);
+    EXPECT_NEAR((real(flux_observer.flux_q16, 16) - before - grown).length(), 0.0, 8.0);
+    EXPECT_EQ(drive.position.high.angle_bam, flux_observer.observer.angle_bam);
     if (watched) continue;
     EXPECT_EQ(drive.position.low.angle_bam, drive.position.high.angle_bam);
     EXPECT_EQ(drive.position.used.angle_bam, drive.position.high.angle_bam);
@@ -87,7 +89,7 @@ TEST_F(Sources, WhatTheDevicesTakeIsNotTheFluxs) {
     drive.control.measured_q20 = raw_dq(current, 20);
     flux_source_follow(&drive, &drive.position.used);
     estimate();
-    flux[drops] = real(drive.position.flux.flux_q16, 16);
+    flux[drops] = real(flux_observer.flux_q16, 16);
     drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current.turned(rad(kHere)), 20)), 16);
   }
   EXPECT_GT(std::min(std::fabs(drop.x), std::fabs(drop.y)), 1.0);
@@ -101,12 +103,12 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_BOTH, 0.5);
     flux_source_follow(&drive, &drive.position.used);
-    drive.position.flux.pause = 1;
+    flux_observer.pause = 1;
     see(windows);
     drive.schedule.skips = false;
     board.profile.clear();
     estimate();
-    EXPECT_EQ(drive.position.flux.pause > 1, windows == 0);
+    EXPECT_EQ(flux_observer.pause > 1, windows == 0);
     EXPECT_EQ(spent(), CYCLES_ESTIMATE_FLUX) << "for the virtual chip";
   }
 }
@@ -124,20 +126,19 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
     run_with(POSITION_OBSERVER);
     see(0);
     drive.state = DRIVE_START;
-    drive.start.phase = START_TURN;
-    drive.start.powered = true;
+    drive.flags.open_loop = true;
     drive.config.turn.align_periods = 500;
-    drive.start.turn.tick = aligned ? 500 : 499;
-    drive.start.turn.angle_bam = kThere;
-    drive.start.turn.speed_bpp = 4321;
+    starting.turn.tick = aligned ? 500 : 499;
+    starting.turn.angle_bam = kThere;
+    starting.turn.speed_bpp = 4321;
     drive.position.used = {kHere, 1234, 0, 0};
     drive.position.observer.angle_bam = kThere;
     drive.position.observer.speed_bpp = 0;
     estimate();
     EXPECT_EQ(drive.position.used.angle_bam, kThere + 4321u);
     EXPECT_EQ(drive.position.used.speed_bpp, 4321);
-    EXPECT_EQ(drive.start.seen.angle_bam, drive.position.observer.angle_bam);
-    EXPECT_NEAR(rad(drive.start.seen.angle_bam - (aligned ? kThere : kHere)), 0.0, 1e-3);
+    EXPECT_EQ(drive.position.seen.angle_bam, drive.position.observer.angle_bam);
+    EXPECT_NEAR(rad(drive.position.seen.angle_bam - (aligned ? kThere : kHere)), 0.0, 1e-3);
     EXPECT_EQ(drive.position.avv.observer.angle_bam, kHere) << "all of them are set at rest";
   }
 }
@@ -149,17 +150,16 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
     see(0);
     blend(BLEND_HIGH, 0.0);
     drive.state = DRIVE_START;
-    drive.start.phase = START_TURN;
-    drive.start.powered = true;
-    drive.start.turn.tick = drive.config.turn.align_periods = 500;
-    drive.start.turn.angle_bam = kThere;
-    drive.start.turn.speed_bpp = drive.config.turn.speed_bpp - (up ? 0 : 1);
+    drive.flags.open_loop = true;
+    starting.turn.tick = drive.config.turn.align_periods = 500;
+    starting.turn.angle_bam = kThere;
+    starting.turn.speed_bpp = drive.config.turn.speed_bpp - (up ? 0 : 1);
     drive.position.used = {kHere, 1234, 0, 0};
-    drive.position.flux.observer.angle_bam = kThere;
+    flux_observer.observer.angle_bam = kThere;
     estimate();
-    EXPECT_EQ(drive.position.flux.observer.angle_bam == kHere, !up);
-    EXPECT_EQ(drive.start.seen.angle_bam, drive.position.flux.observer.angle_bam);
-    EXPECT_EQ(drive.position.used.angle_bam, kThere + static_cast<std::uint32_t>(drive.start.turn.speed_bpp));
+    EXPECT_EQ(flux_observer.observer.angle_bam == kHere, !up);
+    EXPECT_EQ(drive.position.seen.angle_bam, flux_observer.observer.angle_bam);
+    EXPECT_EQ(drive.position.used.angle_bam, kThere + static_cast<std::uint32_t>(starting.turn.speed_bpp));
   }
 }
 
@@ -172,17 +172,16 @@ TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
     see(0);
     blend(BLEND_HIGH, 0.0);
     drive.state = DRIVE_START;
-    drive.start.phase = START_TURN;
-    drive.start.powered = true;
-    drive.start.turn.tick = drive.config.turn.align_periods;
-    drive.start.turn.speed_bpp = drive.config.turn.speed_bpp;
+    drive.flags.open_loop = true;
+    starting.turn.tick = drive.config.turn.align_periods;
+    starting.turn.speed_bpp = drive.config.turn.speed_bpp;
     drive.control.reference_q20 = drive.control.measured_q20 = raw_dq({0.0, 14.0}, 20);
     drive.position.used = {kHere, 0, 0, 0};
-    drive.start.seen.angle_bam = turned ? kHere - 0x40000000u : kHere;
+    drive.position.seen.angle_bam = turned ? kHere - 0x40000000u : kHere;
     const estimator_output_t now = {kHere, bpp_of(600), 0, 0};
     flux_source_follow(&drive, &now);
     estimate();
-    seen[turned] = drive.start.seen.angle_bam;
+    seen[turned] = drive.position.seen.angle_bam;
   }
   EXPECT_NE(seen[0], seen[1]);
 }

@@ -1,8 +1,13 @@
 // What is learnt of the machine and the sensors, in which turn, and how much of it.
 
-#include "firmware/dictionary/parameters.h"
-#include "firmware/mode/states.h"
 #include "tests/firmware/position.hpp"
+
+extern "C" {
+#include "firmware/commissioning/commissioning.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
+#include "firmware/mode/states.h"
+}
 
 namespace {
 
@@ -58,7 +63,7 @@ TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
     for (const bool watched : {true, false}) {
       learn_with(POSITION_OBSERVER);
       see(count);
-      drive.watch.open = watched;
+      polarity_watch.open = watched;
       estimate(TURN_VOLTAGE);
       EXPECT_EQ(voltage(), !(watched && count == 3));
     }
@@ -96,7 +101,6 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
     }
     drive.state = DRIVE_START;
     drive.schedule.turning = false;
-    drive.start.powered = true;
     estimate(turn);
     EXPECT_EQ(admittances(), turn == TURN_LIKENESS) << turn;
     EXPECT_EQ(sensors(), turn == TURN_VOLTAGE) << turn;
@@ -117,9 +121,8 @@ TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
       drive.samples.windows[0].slope_q20.alpha += raw(0.2, 20);
       drive.state = DRIVE_COMMISSION;
       drive.schedule.turning = false;
-      drive.commissioning.turning = false;
-      drive.commissioning.adapting = adapting;
-      drive.commissioning.predicting = predicting;
+      drive.flags.frozen = !adapting;
+      commissioning.predicting = predicting;
       drive.position.avv.observer = {kThere, 1000, raw(500.0, 8), 0};
       drive.control.measured_q20 = {0, 0};
       const std::int32_t error = drive.position.avv.error_bam = 4711;

@@ -6,7 +6,10 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
+#include "firmware/sources/flux/flux.h"
 }
 
 namespace {
@@ -53,22 +56,16 @@ TEST_F(Sources, TheCurrentHasAnEndAndStaysWithoutWindows) {
 
 // A start that is off, or has just been switched on, has samples of nothing.
 TEST_F(Sources, ABlindStartMeasuresNothing) {
-  const struct {
-    bool powered;
-    std::uint16_t blind;
-    bool measures;
-  } cases[] = {{true, 0, true}, {true, 2, false}, {false, 0, false}};
-  for (const auto& c : cases) {
+  for (const std::uint16_t invalid : {0, 1, 2}) {
     run_with(POSITION_OBSERVER);
     see(1);
     drive.samples.windows[0].current_q20 = {raw(1.0, 20), 0};
     drive.control.measured_q20 = {0, 0};
     drive.state = DRIVE_START;
     drive.schedule.turning = false;
-    drive.start.powered = c.powered;
-    drive.start.blind = c.blind;
+    drive.flags.invalid = invalid;
     estimate();
-    EXPECT_EQ(measured().d != 0, c.measures) << c.powered << c.blind;
+    EXPECT_EQ(measured().d != 0, invalid == 0) << invalid;
   }
 }
 
@@ -97,13 +94,12 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   run_with(POSITION_OBSERVER);
   see(0);
   drive.state = DRIVE_START;
-  drive.start.phase = START_TURN;
-  drive.start.powered = true;
-  drive.start.seen.angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
+  drive.flags.open_loop = true;
+  drive.position.seen.angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
   drive.control.measured_q20 = {raw(4.0, 20), 0};
   estimate();
   EXPECT_LT(drive.position.torque_accel_q8, -raw(1000.0, 8));
-  drive.start.seen.angle_bam = drive.position.used.angle_bam;
+  drive.position.seen.angle_bam = drive.position.used.angle_bam;
   estimate();
   EXPECT_EQ(drive.position.torque_accel_q8, 0);
 }
@@ -116,7 +112,7 @@ TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
         run_with(POSITION_OBSERVER);
         see(0);
         drive.model = drive.config.nameplate;
-        drive.watch.open = watched;
+        polarity_watch.open = watched;
         drive.schedule.moves = moves;
         drive.control.measured_q20.q = raw(2.5, 20);
         const std::int32_t k = drive.model.k_dq_q24;
@@ -161,7 +157,7 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
     run_with(POSITION_OBSERVER);
     parameters.map_known = 1;
     ASSERT_TRUE(drive_config_load(&drive.config));
-    drive.hold.left = held ? 100 : 0;
+    brake_hold.left = held ? 100 : 0;
     drive.schedule.renews = true;
     deviation_observer_t& o = drive.position.observer;
     o.p_aa = o.p_as = o.p_al = o.p_ss = o.p_sl = 0;
@@ -207,7 +203,7 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
   for (const std::int32_t source : {POSITION_PAPER, POSITION_OBSERVER}) {
     run_with(source);
     blend(BLEND_BOTH, 0.5);
-    drive.position.flux.machine.psi_q16 = 0;
+    flux_observer.machine.psi_q16 = 0;
     drive.position.avv.observer.load_accel_q8 = drive.position.observer.load_accel_q8 = 99;
     const std::int32_t speed = drive.config.blend.high_bpp + 1;
     position_preset(&drive, kThere, speed);
@@ -225,7 +221,7 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
     EXPECT_EQ(p.observer.load_accel_q8, 0);
     EXPECT_EQ(p.zvv.angle_bam, kThere);
     EXPECT_EQ(p.zvv.speed_bpp, speed);
-    EXPECT_GT(p.flux.machine.psi_q16, 0) << "what was learnt of the machine is forgotten";
+    EXPECT_GT(flux_observer.machine.psi_q16, 0) << "what was learnt of the machine is forgotten";
     // The paper's pair is right at once at any speed; the others begin with the low-speed estimator.
     EXPECT_EQ(p.blend.region, source == POSITION_PAPER ? BLEND_HIGH : BLEND_LOW);
     EXPECT_EQ(p.blend.share_q15, source == POSITION_PAPER ? 0 : 32767);

@@ -5,6 +5,8 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
@@ -124,7 +126,7 @@ TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
   for (const auto& c : cases) {
     run_with(POSITION_FLUX_CONV);
     blend(c.region, c.share);
-    drive.watch.open = c.watched;
+    polarity_watch.open = c.watched;
     EXPECT_EQ(position_observer_rests(&drive), c.alone) << c.region << c.share << c.watched;
     EXPECT_EQ(flux_source.excitation(&drive), c.alone ? EXCITATION_CENTRED : EXCITATION_ALTERNATING);
   }
@@ -137,7 +139,7 @@ TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
       for (const bool asked : {false, true}) {
         run_with(POSITION_FLUX_CONV);
         blend(region, 0.5);
-        drive.watch.open = watched;
+        polarity_watch.open = watched;
         drive.schedule.turn = asked ? TURN_REGRESS : TURNS;
         drive.position.is_near = !asked;
         drive.position.observer.regressed_bam = kThere;
@@ -169,7 +171,6 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       drive.samples.windows[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
       if (starting) drive.state = DRIVE_START;
       drive.schedule.turning = !starting;
-      drive.start.powered = true;
       drive.position.used.angle_bam = kThere;
       drive.position.high.angle_bam = kHere + 0x01000000u;
       drive_estimate(&drive);
@@ -201,14 +202,14 @@ TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
 // A shaft is held in RUN; told to stop it is braked like any other.
 TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
   run_with(POSITION_OBSERVER);
-  drive.hold.left = 100;
+  brake_hold.left = 100;
   EXPECT_TRUE(hold_is_on(&drive));
   EXPECT_TRUE(hold_step(&drive));
-  EXPECT_EQ(drive.hold.left, 99u);
+  EXPECT_EQ(brake_hold.left, 99u);
   drive.state = DRIVE_STOP;
   EXPECT_FALSE(hold_is_on(&drive));
   EXPECT_FALSE(hold_step(&drive));
-  EXPECT_EQ(drive.hold.left, 99u);
+  EXPECT_EQ(brake_hold.left, 99u);
 }
 
 // While the link's limit brakes the shaft, a ramp that would brake it more waits, and one that speeds it up does not.

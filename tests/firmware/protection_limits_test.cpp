@@ -6,6 +6,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 }
 
@@ -18,7 +19,7 @@ class ProtectionLimits : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_run();
-    drive.watch.open = false;
+    polarity_watch.open = false;
     drive.schedule.judges = false;
     drive.modulation.state.is_alternating = false;
     drive.samples.count = 1;
@@ -76,16 +77,16 @@ TEST_F(ProtectionLimits, TheLatestWindowIsLookedAt) {
 // A start that listens with the gates off means them to be off, and a fast shaft's current through the diodes is no
 // fault of it; whoever has switched them on means them to be on.
 TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
-  for (const drive_state_t state : {DRIVE_START, DRIVE_RUN}) {
-    for (const bool powered : {false, true}) {
+  for (const bool meant : {false, true}) {
+    for (const bool runs : {false, true}) {
       for (const bool pin : {false, true}) {
         SetUp();
-        drive.state = state;
-        drive.start.powered = powered;
+        drive.state = DRIVE_START;
+        drive.flags.gates_off = meant;
+        if (runs) drive_enter(&drive, DRIVE_RUN);
         board.gates_on = false;
         board.tripped_by_pin = pin;
-        const bool meant = state == DRIVE_START && !powered;
-        EXPECT_EQ(judged(), meant ? FAULT_NONE : pin ? FAULT_OVER_CURRENT : FAULT_GATES_OFF) << state << powered;
+        EXPECT_EQ(judged(), meant && !runs ? FAULT_NONE : pin ? FAULT_OVER_CURRENT : FAULT_GATES_OFF) << meant << runs;
       }
     }
   }

@@ -7,6 +7,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 }
 
@@ -223,7 +224,7 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
       use_source(POSITION_FLUX_CONV);
       drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
       drive.position.blend.share_q15 = alone ? 0 : 16384;
-      drive.watch.open = false;
+      polarity_watch.open = false;
       drive.schedule.judges = asked;
       drive.modulation.state.is_alternating = true;
       drive.position.observer.left = {0, 0, 3000, 1};
@@ -295,14 +296,14 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     make_run();
     trust_synchronism();
     const std::int32_t speed = bpp_of(600);  // 40 V
-    drive.watch.open = true;
-    drive.watch.blind = false;
-    drive.position.used.speed_bpp = drive.watch.axis.speed_bpp = speed;
-    drive.watch.axis.angle_bam = drive.position.used.angle_bam;
+    polarity_watch.open = true;
+    polarity_watch.blind = false;
+    drive.position.used.speed_bpp = polarity_watch.axis.speed_bpp = speed;
+    polarity_watch.axis.angle_bam = drive.position.used.angle_bam;
     drive.control.measured_q20 = {0, 0};
     drive.control.command_q16 = {0, raw(reversed ? -40.0 : 40.0, 16)};
     int n = 0;
-    for (; n < 400 && drive.watch.open && drive.state == DRIVE_RUN; ++n) {
+    for (; n < 400 && polarity_watch.open && drive.state == DRIVE_RUN; ++n) {
       drive.schedule.turn = n % 5 == 0 ? TURN_VOLTAGE : TURNS;  // the back-EMF's place in the turn, and none
       drive.position.used.angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
@@ -310,7 +311,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     EXPECT_GT(n, 50);
     EXPECT_EQ(drive.fault, reversed ? FAULT_POLARITY : FAULT_NONE);
     EXPECT_EQ(drive.state, reversed ? DRIVE_FAULT : DRIVE_RUN);
-    EXPECT_FALSE(drive.watch.open);
+    EXPECT_FALSE(polarity_watch.open);
   }
 }
 
@@ -336,10 +337,10 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
     (void)while_running(400, [&] {
       board.encoder = (board.encoder + 4u) & 4095u;
       drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
-      drive.watch.open = open;
-      drive.watch.blind = true;  // it has no say of its own for now
-      drive.watch.sign.expected_q16 = raw(8.0, 16);
-      drive.watch.sign.seen_q16 = raw(-3.0, 16);
+      polarity_watch.open = open;
+      polarity_watch.blind = true;  // it has no say of its own for now
+      polarity_watch.sign.expected_q16 = raw(8.0, 16);
+      polarity_watch.sign.seen_q16 = raw(-3.0, 16);
     });
     EXPECT_EQ(drive.fault, open ? FAULT_POLARITY : FAULT_SYNCHRONISM);
   }

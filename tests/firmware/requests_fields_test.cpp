@@ -77,9 +77,9 @@ TEST_F(RequestFields, StatusTellsHowTheDriveIs) {
   ASSERT_LT(store_progress(), 100);
   drive.state = DRIVE_COMMISSION;
   drive.fault = FAULT_STOP;
-  drive.commissioning.outcome = COMMISSIONING_RUNNING;
-  drive.commissioning.phase = COMMISSIONING_MAP;
-  drive.commissioning.map.level = 3;
+  commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning.phase = COMMISSIONING_MAP;
+  commissioning.map.level = 3;
   ASSERT_GT(drive_commissioning_progress(), 255) << "both octets of it";
   const Octets told = of(ask(REQUEST_STATUS));
   ASSERT_EQ(told.size(), 25u);
@@ -163,7 +163,7 @@ TEST_F(RequestFields, ParametersAreReadFromAnyPlaceOn) {
 }
 
 TEST_F(RequestFields, ResultsOfACommissioningAreToldWhole) {
-  drive.commissioning.evaluate = true;
+  commissioning.evaluate = true;
   commissioning_service(&drive);
   const std::uint16_t count = drive_commissioning_count();
   ASSERT_GT(count, 0);

@@ -17,6 +17,7 @@ extern "C" {
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
+#include "firmware/start/start.h"
 #include "firmware/text/words.h"
 #include "hal/hal_board.h"
 #include "hal/hal_flash.h"
@@ -294,7 +295,7 @@ TEST_F(Requests, WordsForEverything) {
 
 TEST_F(Requests, ResultsOfACommissioning) {
   EXPECT_EQ(ask(REQUEST_COMMISSION_RESULT, little(0, 2)).octets.size(), 3u + 2u) << "there are none: the number alone";
-  drive.commissioning.evaluate = true;  // and nothing was measured
+  commissioning.evaluate = true;  // and nothing was measured
   commissioning_service(&drive);
   const std::uint16_t count = drive_commissioning_count();
   const Answer last = ask(REQUEST_COMMISSION_RESULT, little(count - 1u, 2));

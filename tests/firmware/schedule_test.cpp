@@ -7,6 +7,8 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 }
@@ -27,7 +29,7 @@ class Schedule : public Drive {
     use_source(source);
     ASSERT_TRUE(drive_config_load(&drive.config));
     drive.state = DRIVE_RUN;
-    drive.watch.open = false;
+    polarity_watch.open = false;
     drive.periods = 100;
     position_preset(&drive, 0, 0);
     know(0.01);
@@ -93,7 +95,7 @@ TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
     drive.state = DRIVE_START;
     leave_working_point();
     next(before);
-    drive.start.decides = true;
+    drive.flags.decides = true;
     schedule_t s = next(1)[0];
     const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;  // then it waits
     EXPECT_NE(s.decides, own);
@@ -101,15 +103,15 @@ TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
     EXPECT_TRUE(s.decides && s.skips);
     EXPECT_EQ(s.turn, TURNS);
     EXPECT_FALSE(s.moves || s.renews || s.judges);
-    drive.start.decides = false;
+    drive.flags.decides = false;
     EXPECT_FALSE(next(1)[0].decides);
   }
 }
 
 TEST_F(Schedule, OnlyAStartDecides) {
-  drive.start.decides = true;
-  for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION, DRIVE_FAULT}) {
-    drive.state = state;
+  for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION}) {
+    drive.flags.decides = true;
+    drive_enter(&drive, state);
     EXPECT_FALSE(next(1)[0].decides) << state;
   }
 }
@@ -201,7 +203,7 @@ TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {
 }
 
 TEST_F(Schedule, AHeldShaftMovesItsWorkingPointWithEveryTurn) {
-  drive.hold.left = 1000;
+  brake_hold.left = 1000;
   drive.position.observer.load_is_new = true;
   for (const schedule_t& s : next(40)) {
     EXPECT_TRUE(s.held);

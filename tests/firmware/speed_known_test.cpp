@@ -1,10 +1,14 @@
 // What is known of the rotor: nothing with the power stage off, nor before a start has found it.
 
+#include "tests/firmware/fake_hal.hpp"
+
+extern "C" {
 #include "firmware/commissioning/outcome.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/states.h"
-#include "tests/firmware/fake_hal.hpp"
+#include "firmware/sources/flux/flux.h"
+}
 
 namespace stillspin::test {
 namespace {
@@ -16,7 +20,7 @@ class SpeedKnown : public Drive {
     drive.position.used = {0x20000000u, 123456, 1'000'000, 32767};
     drive.position.low = drive.position.high = drive.position.used;
     drive.position.deviation_q20 = 1000;
-    drive.position.flux.load_angle_bam = 0x01000000;
+    flux_observer.load_angle_bam = 0x01000000;
     drive.control.measured_q20 = {raw(-1.5, 20), raw(2.5, 20)};
   }
   static void expect(bool known, const char* what) { expect(known, known, what); }
@@ -53,26 +57,20 @@ TEST_F(SpeedKnown, InTheStatesInWhichTheRotorIsFollowed) {
 
 TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
   drive.state = DRIVE_COMMISSION;
-  for (const auto phase :
-       {COMMISSIONING_TURN, COMMISSIONING_STAIRCASE, COMMISSIONING_SPIN, COMMISSIONING_MAP, COMMISSIONING_EVALUATE}) {
-    drive.commissioning.phase = phase;
-    expect(phase != COMMISSIONING_EVALUATE, std::to_string(phase).c_str());
-  }
+  expect(true, "it measures");
+  drive.flags.over = true;
+  expect(false, "the background level has the rest");
 }
 
 // Before the polarity is known the angle may be half a turn off; a vector that turns says nothing of the rotor.
 TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
   drive.state = DRIVE_START;
-  for (int phase = START_LISTEN; phase <= START_CHARGE; ++phase) {
-    drive.start.phase = static_cast<start_phase_t>(phase);
-    drive.start.powered = true;
-    drive.start.blind = 0;
-    expect(phase == START_CATCH, true, std::to_string(phase).c_str());
-    drive.start.blind = 1;
+  for (const bool caught : {false, true}) {
+    drive.flags.caught = caught;
+    drive.flags.invalid = 0;
+    expect(caught, true, std::to_string(caught).c_str());
+    drive.flags.invalid = 1;
     expect(false, "the windows are of before");
-    drive.start.blind = 0;
-    drive.start.powered = false;
-    expect(false, "the gates are off");
   }
 }
 

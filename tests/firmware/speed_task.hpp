@@ -7,6 +7,7 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 }
@@ -21,7 +22,7 @@ class SpeedTask : public Drive {
     Drive::SetUp();
     make_ready();
     drive.state = DRIVE_RUN;
-    drive.watch.open = false;
+    polarity_watch.open = false;
     drive.samples.link_q16 = raw(kLink, 16);
     drive.control.current_limit_q20 = raw(10.0, 20);
     drive.control.reference_q20 = {0, 0};

@@ -9,6 +9,7 @@ extern "C" {
 #include "control/brake_limit.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 }
@@ -39,19 +40,19 @@ TEST_F(SpeedTask, WeakeningSeesWhatTheModulatorHas) {
 
 // In START nothing is weakened, but for a shaft that has been caught.
 TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
-  const auto sees = [&](drive_state_t state, start_phase_t phase) {
+  const auto sees = [&](drive_state_t state, bool caught) {
     drive.state = state;
-    drive.start.phase = phase;
+    drive.flags.caught = caught;
     constexpr std::int32_t kMark = 77;
     drive.control.weakening_q20 = kMark;
     part(TASK_FIELD);
     return drive.control.weakening_q20 != kMark;
   };
-  EXPECT_TRUE(sees(DRIVE_RUN, START_LISTEN));
-  EXPECT_TRUE(sees(DRIVE_STOP, START_LISTEN));
-  EXPECT_TRUE(sees(DRIVE_START, START_CATCH));
-  EXPECT_FALSE(sees(DRIVE_START, START_SETTLE));
-  EXPECT_FALSE(sees(DRIVE_READY, START_CATCH));
+  EXPECT_TRUE(sees(DRIVE_RUN, false));
+  EXPECT_TRUE(sees(DRIVE_STOP, false));
+  EXPECT_TRUE(sees(DRIVE_START, true));
+  EXPECT_FALSE(sees(DRIVE_START, false));
+  EXPECT_FALSE(sees(DRIVE_READY, false));
 }
 
 // What weakening and maximum torque per ampere ask for, whichever is more, and what is wanted at low speed on top,
@@ -80,7 +81,7 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   for (const Case& c : cases) {
     parameters.mtpa = c.mtpa;
     drive.state = c.state;
-    drive.commissioning.turning = true;
+    drive.flags.spins = true;
     drive.position.blend.region = c.region;
     drive.control.weakening_q20 = raw(c.weakening, 20);
     drive.control.reference_q20.q = raw(9.0, 20);
@@ -220,13 +221,13 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
 TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
   use_source(POSITION_OBSERVER);
   ASSERT_TRUE(drive_config_load(&drive.config));
-  drive.hold.left = 5;
-  drive.hold.reference_bam = 0;
+  brake_hold.left = 5;
+  brake_hold.reference_bam = 0;
   part(TASK_SPEED);
   drive.control.reference_q20.q = raw(3.0, 20);
   drive.position.used.load_accel_q8 = static_cast<std::int32_t>(1.2 * real(drive.model.accel_q12, 12) * 256.0);
   part(TASK_SPEED);
-  EXPECT_EQ(drive.hold.left, 3u);
+  EXPECT_EQ(brake_hold.left, 3u);
   EXPECT_NEAR(real(drive.control.speed.current_q20, 20), iq() - 1.2 / torque_constant(), 2e-3);
   EXPECT_GT(iq(), 2.2);
 }
@@ -254,7 +255,7 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     part(TASK_SPEED);
     parameters.hold_time = 1;
     hold_begin(&drive);
-    drive.hold.reference_bam = bam(0.3 + c.off);
+    brake_hold.reference_bam = bam(0.3 + c.off);
     const double w = 50.0;
     drive.control.ramp.value = bpp(w);
     const double per_nm = real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod;
@@ -268,7 +269,7 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     const double accel = 225.0 * 225.0 * c.off + 450.0 * (c.slow - gained) + c.load_nm * per_nm;
     const double wanted = accel / per_ampere;
     EXPECT_NEAR(iq(), c.iq + std::clamp(0.7 * (wanted - c.iq), -0.7, 0.7), 2e-3) << c.off << c.slow << c.load_nm;
-    EXPECT_EQ(drive.hold.left, 9u);
+    EXPECT_EQ(brake_hold.left, 9u);
   }
 }
 

@@ -18,39 +18,40 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
   for (const double stray : {14.9, -14.9, 15.1, -15.1}) {
     SetUp();
     catch_at(300.0, 1.0);
-    ASSERT_EQ(drive.start.phase, START_CATCH);
-    drive.start.learnt = true;
-    drive.start.stray = drive.position.avv.error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
-    drive.start.tick = 139;
+    ASSERT_EQ(drive.found.phase, START_CATCH);
+    starting.learnt = true;
+    starting.stray = drive.position.avv.error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
+    starting.tick = 139;
     start_step_catch(&drive);
-    EXPECT_EQ(drive.start.phase, START_CATCH) << "not before its time";
-    EXPECT_FALSE(drive.start.decides);
-    drive.start.tick = 140;
+    EXPECT_EQ(drive.found.phase, START_CATCH) << "not before its time";
+    EXPECT_FALSE(drive.flags.decides);
+    starting.tick = 140;
     start_step_catch(&drive);
-    EXPECT_EQ(drive.start.phase, START_CATCH) << "not beside anything else";
-    EXPECT_TRUE(drive.start.decides);
+    EXPECT_EQ(drive.found.phase, START_CATCH) << "not beside anything else";
+    EXPECT_TRUE(drive.flags.decides);
     drive.schedule.decides = true;
     start_step_catch(&drive);
     const bool follows = std::fabs(stray) < 15.0;
     EXPECT_EQ(drive.state, follows ? DRIVE_RUN : DRIVE_START) << stray;
-    EXPECT_EQ(drive.start.tries, follows ? 0 : 1);
+    EXPECT_EQ(starting.tries, follows ? 0 : 1);
     EXPECT_EQ(board.gates_on, follows);
   }
 }
 
 TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
-  drive.start.stray = 99;
-  drive.start.learnt = true;
-  drive.start.axis.count = 5;
+  starting.stray = 99;
+  starting.learnt = true;
+  starting.axis.count = 5;
   drive.control.weakening.trim_q20 = raw(-3.0, 20);
   catch_at(300.0, 1.0);
-  const drive_start_t& s = drive.start;
-  ASSERT_EQ(s.phase, START_CATCH);
-  EXPECT_FALSE(s.shorted || s.learnt);
+  const drive_start_t& s = starting;
+  ASSERT_EQ(drive.found.phase, START_CATCH);
+  EXPECT_TRUE(drive.flags.caught);
+  EXPECT_FALSE(drive.flags.shorted || s.learnt);
   EXPECT_EQ(s.stray, 0);
   EXPECT_EQ(s.axis.count, 0);
-  EXPECT_EQ(s.sigma_q8, s.rotor.sigma_q8);
-  EXPECT_GT(s.sigma_q8, 0);
+  EXPECT_EQ(drive.found.sigma_q8, s.rotor.sigma_q8);
+  EXPECT_GT(drive.found.sigma_q8, 0);
   EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
   EXPECT_EQ(drive.position.avv.observer.speed_bpp, s.rotor.speed_bpp);
   EXPECT_EQ(drive.control.weakening_q20, 0) << "at 300 rad/s nothing is weakened";
@@ -62,7 +63,7 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
 // A fast shaft needs its field current from the first period on.
 TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
   catch_at(1500.0, 1.0);
-  ASSERT_EQ(drive.start.phase, START_CATCH);
+  ASSERT_EQ(drive.found.phase, START_CATCH);
   EXPECT_LT(real(drive.control.weakening_q20, 20), -0.1);
   EXPECT_LT(real(drive.control.reference_q20.d, 20), -0.1);
 }
@@ -73,8 +74,8 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
   for (const double off : {0.1, -0.1, 0.5, -0.5}) {
     SetUp();
     catch_at(300.0, 1.25);
-    ASSERT_EQ(drive.start.phase, START_CATCH);
-    drive_start_t& s = drive.start;
+    ASSERT_EQ(drive.found.phase, START_CATCH);
+    drive_start_t& s = starting;
     const flying_rotor_t caught = s.rotor;
     regression_t& r = drive.position.avv.regression;
     r = {};
@@ -97,10 +98,10 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
       r.cross_q16 = raw(1.25 * std::sin(2.0 * off) * half * spread, 16);
       start_step_catch(&drive);
     };
-    s.blind = 1;
+    drive.flags.invalid = 1;
     see();
     EXPECT_EQ(s.axis.count, 0) << "windows of gates that were off";
-    s.blind = 0;
+    drive.flags.invalid = 0;
     for (int n = 0; n < AXIS_PERIODS; ++n) see();
     EXPECT_FALSE(s.learnt) << "a decision has a period of its own";
     const std::uint32_t before = s.rotor.angle_bam;

@@ -19,9 +19,9 @@ TEST_F(StartCaught, APairThatFitsGivesTheSpeed) {
   for (const double speed : {300.0, -300.0}) {
     SetUp();
     catch_at(speed, 1.0);
-    EXPECT_EQ(drive.start.phase, START_CATCH);
+    EXPECT_EQ(drive.found.phase, START_CATCH);
     EXPECT_TRUE(drive.control.closed);
-    EXPECT_NEAR(rad_per_s(drive.start.rotor.speed_bpp), speed, 1.0);
+    EXPECT_NEAR(rad_per_s(starting.rotor.speed_bpp), speed, 1.0);
   }
 }
 
@@ -30,26 +30,25 @@ TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
   for (const double speed : {300.0, -300.0}) {
     SetUp();
     await_pulse();
-    const std::int32_t first = drive.start.clock;
+    const std::uint32_t first = clock();
     see_pulse(0.5, 48.0);
     await_pulse();
     constexpr int kAgo = 47000;  // ticks, 4.7 periods
-    drive.start.clock += kAgo;
-    const double turned = speed * (drive.start.clock - kAgo - first) * 1e-8;
-    flying_pulse_t& p = drive.start.pulse;
+    const double turned = speed * (clock() - kAgo - first) * 1e-8;
+    flying_pulse_t& p = starting.pulse;
     drive.samples.count = 0;
     p.windows = 2;
-    p.first_tick = drive.start.clock - kAgo - 5000;
-    p.last_tick = drive.start.clock - kAgo + 5000;
+    p.first_tick = clock() - kAgo - 5000;
+    p.last_tick = clock() - kAgo + 5000;
     p.first_q20 = p.last_q20 = raw_ab(Vector{2.0, 0.0}.turned(0.5 + turned), 20);
     p.drive_q16 = raw_ab(Vector{96.0, 0.0}.turned(0.5 + turned), 16);
     const double lag = rad(flying_evaluate(&p, &drive.model).lag_bam);
     judge();
-    ASSERT_EQ(drive.start.phase, START_CATCH);
+    ASSERT_EQ(drive.found.phase, START_CATCH);
     // e = w lambda q, and the turning saliency has turned it against the rotation by the lag
     const double behind = std::copysign(kPi / 2.0 - lag, speed);
     const double there = 0.5 + turned - behind + speed * kAgo * 1e-8;
-    EXPECT_NEAR(wrapped(rad(drive.start.rotor.angle_bam) - there), 0.0, 2e-3) << speed;
+    EXPECT_NEAR(wrapped(rad(starting.rotor.angle_bam) - there), 0.0, 2e-3) << speed;
   }
 }
 
@@ -63,7 +62,7 @@ TEST_F(StartCaught, AFluxThatIsOffIsTakenFromALargeEmf) {
   for (const auto& c : cases) {
     SetUp();
     catch_at(c.speed, c.flux);
-    ASSERT_EQ(drive.start.phase, START_CATCH) << c.flux;
+    ASSERT_EQ(drive.found.phase, START_CATCH) << c.flux;
     EXPECT_NEAR(1.0 * drive.model.trim.psi_q16 / drive.model.emf_q16, c.taken, 0.01) << c.speed << ", " << c.flux;
   }
 }
@@ -76,7 +75,7 @@ TEST_F(StartCaught, PairsThatDoNotFitAreTriedAgainFourTimes) {
       await_pulse();
       see_pulse(0.5, 48.0);
     }
-    EXPECT_EQ(drive.start.tries, pair);
+    EXPECT_EQ(starting.tries, pair);
     EXPECT_FALSE(board.gates_on);
     EXPECT_FALSE(drive.control.closed);
   }
@@ -86,30 +85,12 @@ TEST_F(StartCaught, PairsThatDoNotFitAreTriedAgainFourTimes) {
 
 TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
   await_pulse();
-  drive.start.pulse.windows = 0;
+  starting.pulse.windows = 0;
   drive.samples.count = 0;
-  drive.start.tick = 100;
+  starting.tick = 100;
   start_step_pulse(&drive);
-  EXPECT_EQ(drive.start.phase, START_PULSE);
-  EXPECT_EQ(drive.start.pulses, 0);
-}
-
-// All lower devices on for the whole period, which three windows share.
-TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
-  const sampling_config_t& c = drive.config.modulator.sampling;
-  const svpwm_pattern_t p = start_short_circuit(&c);
-  ASSERT_EQ(p.window_count, 3);
-  int at = 0;
-  for (const svpwm_window_t& w : p.windows) {
-    EXPECT_EQ(w.start, at + c.settle_ticks);
-    EXPECT_EQ(w.state, 0);
-    at += 3300;
-    EXPECT_EQ(w.end, std::min<int>(at - c.burst_ticks, c.last_tick));
-  }
-  EXPECT_GE(p.windows[2].end, 6600 + c.settle_ticks + c.span_min_ticks);
-  for (const std::int16_t edge : p.pulses.at) {
-    EXPECT_LT(edge, 0) << "a leg is never high";
-  }
+  EXPECT_EQ(drive.found.phase, START_PULSE);
+  EXPECT_EQ(starting.pulses, 0);
 }
 
 // Of the period in which the gates came on, only what lies behind that instant belongs to the short circuit; of the
@@ -117,12 +98,12 @@ TEST_F(StartCaught, TheShortCircuitLastsThePeriod) {
 TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
   for (const int blind : {2, 1, 0}) {
     for (const int on : {1000, 1290, 1300, 1310, 1500, 4000, 9000}) {
-      drive.start.phase = START_PULSE;
-      drive.start.powered = true;
-      drive.start.tick = 0;
-      drive.start.blind = static_cast<std::uint16_t>(blind);
-      drive.start.on_tick = on;
-      flying_begin(&drive.start.pulse);
+      drive.found.phase = START_PULSE;
+      drive.flags.gates_off = false;
+      starting.tick = 0;
+      drive.flags.invalid = static_cast<std::uint16_t>(blind);
+      starting.on_tick = on;
+      flying_begin(&starting.pulse);
       drive.samples.count = 2;
       for (int k = 0; k < 2; ++k) {
         estimator_window_t w = {};
@@ -133,7 +114,7 @@ TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
       start_step_pulse(&drive);
       int expected = 0;  // the devices switch 2 us after they are told
       for (const int begin : {1500, 6500}) expected += blind == 0 || begin >= on + 200;
-      EXPECT_EQ(drive.start.pulse.windows, expected) << blind << ", " << on;
+      EXPECT_EQ(starting.pulse.windows, expected) << blind << ", " << on;
     }
   }
 }
@@ -144,12 +125,12 @@ TEST_F(StartCaught, TheNextPulseWaitsForSixtyDegrees) {
     SetUp();
     await_pulse();
     see_pulse(0.5, speed * Motor{}.flux);
-    ASSERT_EQ(drive.start.phase, START_LISTEN);
+    ASSERT_EQ(drive.found.phase, START_LISTEN);
     const double wait = kPi / 3.0 / speed / kPeriod;
-    EXPECT_NEAR(drive.start.pause, std::max(6.0, wait), wait < 6.0 ? 0.0 : 0.01 * wait + 1.0) << speed;
+    EXPECT_NEAR(starting.pause, std::max(6.0, wait), wait < 6.0 ? 0.0 : 0.01 * wait + 1.0) << speed;
     EXPECT_FALSE(drive.control.closed);
     await_pulse();
-    EXPECT_EQ(drive.start.pulse.windows, 0) << "seen anew";
+    EXPECT_EQ(starting.pulse.windows, 0) << "seen anew";
   }
 }
 
@@ -159,8 +140,8 @@ TEST_F(StartCaught, AnEmfBelowThreeVoltsIsAShaftThatStands) {
     SetUp();
     await_pulse();
     see_pulse(0.5, volts);
-    EXPECT_EQ(drive.start.phase, volts < 3.0 ? START_AXIS : START_LISTEN);
-    EXPECT_EQ(drive.start.shorted, volts > 3.0);
+    EXPECT_EQ(drive.found.phase, volts < 3.0 ? START_AXIS : START_LISTEN);
+    EXPECT_EQ(drive.flags.shorted, volts > 3.0);
     EXPECT_EQ(board.gates_on, volts < 3.0);
   }
 }
@@ -173,9 +154,9 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
       SetUp();
       await_pulse();
       drive.samples.count = 0;
-      drive.start.tick = static_cast<std::uint16_t>(tick);
-      drive.start.pulse.windows = 1;
-      drive.start.pulse.last_q20 = {0, raw(-share * enough, 20)};
+      starting.tick = static_cast<std::uint16_t>(tick);
+      starting.pulse.windows = 1;
+      starting.pulse.last_q20 = {0, raw(-share * enough, 20)};
       start_step_pulse(&drive);
       EXPECT_EQ(board.gates_on, share < 1.0 && tick < 12) << share << " " << tick;
     }
@@ -185,12 +166,12 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
 // As long as it was told, with the gates off and the short circuit as what the modulator gives.
 TEST_F(StartCaught, AStartListensForItsPause) {
   start_listen(&drive, 10);
-  EXPECT_TRUE(drive.start.shorted);
-  for (int n = 1; n < 10; ++n) drive_start(&drive);
-  EXPECT_EQ(drive.start.phase, START_LISTEN);
+  EXPECT_TRUE(drive.flags.shorted);
+  for (int n = 1; n < 10; ++n) start_state.step(&drive);
+  EXPECT_EQ(drive.found.phase, START_LISTEN);
   EXPECT_FALSE(board.gates_on);
-  drive_start(&drive);
-  EXPECT_EQ(drive.start.phase, START_PULSE);
+  start_state.step(&drive);
+  EXPECT_EQ(drive.found.phase, START_PULSE);
   EXPECT_TRUE(board.gates_on);
 }
 

@@ -25,13 +25,16 @@ class StartCaught : public Drive {
     ASSERT_EQ(drive.state, DRIVE_START);
   }
 
+  /// Ticks from the start of START to the running period.
+  static std::uint32_t clock() { return drive.periods * ESTIMATOR_PERIOD_TICKS; }
+
   /// The next short circuit, with a back-EMF of this size (V) in this direction (rad) in its middle, which is now.
   static void see_pulse(double direction, double volts) {
-    flying_pulse_t& p = drive.start.pulse;
+    flying_pulse_t& p = starting.pulse;
     drive.samples.count = 0;
     p.windows = 2;
-    p.first_tick = drive.start.clock - 5000;
-    p.last_tick = drive.start.clock + 5000;
+    p.first_tick = clock() - 5000;
+    p.last_tick = clock() + 5000;
     p.first_q20 = p.last_q20 = {raw(2.0, 20), 0};  // enough to be looked at
     p.drive_q16 = raw_ab(Vector{volts, 0.0}.turned(direction) * 2.0, 16);
     judge();
@@ -41,26 +44,26 @@ class StartCaught : public Drive {
     start_step_pulse(&drive);
     EXPECT_FALSE(board.gates_on) << "the current dies away";
     start_step_pulse(&drive);
-    EXPECT_TRUE(drive.start.decides) << "in a period for itself";
-    EXPECT_EQ(drive.start.phase, START_PULSE);
+    EXPECT_TRUE(drive.flags.decides) << "in a period for itself";
+    EXPECT_EQ(drive.found.phase, START_PULSE);
     drive.schedule.decides = true;
     start_step_pulse(&drive);
     drive.schedule.decides = false;
-    if (drive.start.phase == START_CATCH) start_step_catch(&drive);
+    if (drive.found.phase == START_CATCH) start_step_catch(&drive);
   }
   void await_pulse() {
-    for (int n = 0; n < 700 && drive.start.phase != START_PULSE; ++n) period();
-    ASSERT_EQ(drive.start.phase, START_PULSE);
+    for (int n = 0; n < 700 && drive.found.phase != START_PULSE; ++n) period();
+    ASSERT_EQ(drive.found.phase, START_PULSE);
   }
   /// Two short circuits of a shaft at this speed (rad/s, electrical) whose magnet is `flux` times what was told.
   void catch_at(double speed, double flux) {
     const double volts = std::fabs(speed) * Motor{}.flux * flux;
     await_pulse();
-    const std::int32_t first = drive.start.clock;
+    const std::uint32_t first = clock();
     see_pulse(0.5, volts);
-    ASSERT_EQ(drive.start.phase, START_LISTEN);
+    ASSERT_EQ(drive.found.phase, START_LISTEN);
     await_pulse();
-    see_pulse(0.5 + speed * (drive.start.clock - first) * 1e-8, volts);
+    see_pulse(0.5 + speed * (clock() - first) * 1e-8, volts);
   }
 };
 

@@ -62,7 +62,7 @@ TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft
   parameters.flying_start = 0;
   board.pin_low = true;
   expect_refused(FAULT_OVER_CURRENT);
-  EXPECT_NE(drive.start.phase, START_AXIS);
+  EXPECT_NE(drive.found.phase, START_AXIS);
 }
 
 // Windows that never show the axis, for want of voltage: 20 ms, then the drive says so.
@@ -74,7 +74,7 @@ TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
   int n = 0;
   for (; n < 400 && drive.state == DRIVE_START; ++n) {
     drive.position.avv.regression.information = 0;
-    drive.start.axis.count = 0;
+    starting.axis.count = 0;
     period();
   }
   EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
@@ -89,13 +89,13 @@ TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
   parameters.flying_start = 0;
   drive_command_start();
   period();
-  ASSERT_EQ(drive.start.phase, START_CHARGE);
+  ASSERT_EQ(drive.found.phase, START_CHARGE);
   EXPECT_FALSE(board.gates_on);
   int on = 0;
-  for (int n = 0; n < 200 && drive.start.phase == START_CHARGE; ++n) {
+  for (int n = 0; n < 200 && drive.found.phase == START_CHARGE; ++n) {
     period();
     on += board.gates_on ? 1 : 0;
-    EXPECT_TRUE(drive.start.shorted || drive.start.phase != START_CHARGE);
+    EXPECT_TRUE(drive.flags.shorted || drive.found.phase != START_CHARGE);
   }
   EXPECT_EQ(drive.state, DRIVE_START);
   EXPECT_NEAR(on, 50, 2);
@@ -108,9 +108,9 @@ TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
   until_on();
   for (int n = 0; n < 4; ++n) period(still_window(), drive.modulation.sampled.window_count);
   EXPECT_EQ(drive.samples.count, 0);
-  EXPECT_EQ(drive.start.phase, START_CHARGE);
+  EXPECT_EQ(drive.found.phase, START_CHARGE);
   EXPECT_TRUE(board.gates_on);
-  EXPECT_EQ(drive.start.charged, 4);
+  EXPECT_EQ(starting.charged, 4);
 }
 
 TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
@@ -122,12 +122,12 @@ TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   w.start_a = 4 * (2048 + 8 * 102);  // 8 A of 14
   w.end_a = 3 * (2048 + 8 * 102);
   for (int n = 0; n < 4; ++n) period(w);
-  EXPECT_EQ(drive.start.phase, START_CHARGE);
+  EXPECT_EQ(drive.found.phase, START_CHARGE);
   EXPECT_FALSE(board.gates_on);
   int rest = 0;
   for (; rest < 100 && !board.gates_on; ++rest) period();
   EXPECT_NEAR(rest, 20, 4);
-  EXPECT_EQ(drive.start.phase, START_CHARGE) << "only what they were on counts";
+  EXPECT_EQ(drive.found.phase, START_CHARGE) << "only what they were on counts";
 }
 
 // Whole periods, and no fewer than asked for.
@@ -139,9 +139,9 @@ TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
     until_on();
     drive.samples.count = 0;
     for (int n = 1; n < periods_on; ++n) start_step_charge(&drive);
-    EXPECT_EQ(drive.start.phase, START_CHARGE) << ms;
+    EXPECT_EQ(drive.found.phase, START_CHARGE) << ms;
     start_step_charge(&drive);
-    EXPECT_NE(drive.start.phase, START_CHARGE) << ms;
+    EXPECT_NE(drive.found.phase, START_CHARGE) << ms;
   }
 }
 
@@ -157,7 +157,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
           parameters.bootstrap_time = raw(20.0, 16);
           drive_command_start();
           until_on();
-          drive.start.blind = blind ? 1 : 0;
+          drive.flags.invalid = blind ? 1 : 0;
           drive.samples.count = 2;
           drive.samples.windows[0].current_q20 = drive.samples.windows[1].current_q20 = {0, 0};
           drive.samples.windows[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
@@ -174,14 +174,14 @@ TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
   parameters.bootstrap_time = raw(20.0, 16);
   drive_command_start();
   until_on();
-  drive.start.blind = 0;
+  drive.flags.invalid = 0;
   drive.samples.count = 1;
   drive.samples.windows[0].current_q20 = {parameters.current_limit, 0};
   start_step_charge(&drive);
   ASSERT_FALSE(board.gates_on);
-  for (int n = 1; n < 20; ++n) drive_start(&drive);
+  for (int n = 1; n < 20; ++n) start_state.step(&drive);
   EXPECT_FALSE(board.gates_on);
-  drive_start(&drive);
+  start_state.step(&drive);
   EXPECT_TRUE(board.gates_on);
 }
 

@@ -5,7 +5,10 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
+#include "firmware/sources/flux/flux.h"
 #include "firmware/start/phases.h"
 }
 
@@ -21,26 +24,26 @@ class StartStanding : public Drive {
     Drive::SetUp();
     parameters.flying_start = 0;
     make_ready();
-    drive_begin_start(&drive);
-    ASSERT_EQ(drive.start.phase, START_AXIS);
+    start_state.begin(&drive, DRIVE_RUN);
+    ASSERT_EQ(drive.found.phase, START_AXIS);
   }
-  static drive_start_t& start() { return drive.start; }
+  static drive_start_t& start() { return starting; }
 
   /// A period of the start, and the one that it asks for a decision alone.
   static void step() {
-    const start_phase_t before = start().phase;
-    drive_start(&drive);
-    drive.schedule.decides = drive.state == DRIVE_START && start().decides;
+    const std::uint16_t before = drive.found.phase;
+    start_state.step(&drive);
+    drive.schedule.decides = drive.state == DRIVE_START && drive.flags.decides;
     if (!drive.schedule.decides) return;
-    EXPECT_EQ(start().phase, before);
-    drive_start(&drive);
-    EXPECT_FALSE(start().decides);
+    EXPECT_EQ(drive.found.phase, before);
+    start_state.step(&drive);
+    EXPECT_FALSE(drive.flags.decides);
     drive.schedule.decides = false;
   }
 
   /// At the end of a phase, with AVV's angle at hand.
   static void at(start_phase_t phase, int tick, double speed = 0.0) {
-    start().phase = phase;
+    drive.found.phase = phase;
     start().tick = static_cast<std::uint16_t>(tick - 1);
     drive.position.avv.observer.angle_bam = bam(kThere);
     drive.position.avv.observer.speed_bpp = bpp(speed);
@@ -76,19 +79,19 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   c.closed = c.place.holding = true;
   drive.supervision.missing = drive.supervision.overrun = 3;
   drive.supervision.synchronism.doubt = 99;
-  drive.start.tries = drive.start.pulses = 2;
+  starting.tries = starting.pulses = 2;
   drive.model.trim.rs_q24 = 777;
   drive.model.accel_q12 /= 2;
   drive.inertia.ratio_q24 /= 2;
   drive.config.sensor_mismatch_q30 = 4321;
-  drive_begin_start(&drive);
+  start_state.begin(&drive, DRIVE_RUN);
   EXPECT_EQ(drive.state, DRIVE_START);
   EXPECT_EQ(c.ramp.value | c.feed_q16 | c.reference_q20.d | c.reference_q20.q, 0);
   EXPECT_FALSE(c.closed);
   EXPECT_FALSE(c.place.holding);
   EXPECT_EQ(drive.supervision.missing + drive.supervision.overrun, 0);
   EXPECT_EQ(drive.supervision.synchronism.doubt, 0);
-  EXPECT_EQ(drive.start.tries + drive.start.pulses, 0);
+  EXPECT_EQ(starting.tries + starting.pulses, 0);
   EXPECT_EQ(drive.model.trim.rs_q24, 0);
   EXPECT_EQ(drive.model.accel_q12, drive.config.nameplate.accel_q12);
   EXPECT_EQ(drive.inertia.ratio_q24, INERTIA_SAME_Q24);
@@ -103,7 +106,7 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
   const machine_model_t& m = drive.model;
   const double half = 0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)), spread = 40000.0;
   int n = 0;
-  for (; start().phase == START_AXIS && n < 50; ++n) {
+  for (; drive.found.phase == START_AXIS && n < 50; ++n) {
     regression_t& r = drive.position.avv.regression;
     r = {};
     r.information = 1000000;
@@ -112,13 +115,13 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
     r.mirror_q16 = raw((std::cos(2.0 * kThere) - 1.0) * half * spread, 16);  // the model has it at zero
     r.cross_q16 = raw(std::sin(2.0 * kThere) * half * spread, 16);
     step();
-    if (start().phase == START_AXIS) {
+    if (drive.found.phase == START_AXIS) {
       EXPECT_EQ(drive.position.avv.observer.angle_bam, 0u);
       EXPECT_FALSE(drive.control.closed);
     }
   }
   EXPECT_EQ(n, 3 + 12);
-  EXPECT_EQ(start().phase, START_SETTLE);
+  EXPECT_EQ(drive.found.phase, START_SETTLE);
   EXPECT_TRUE(drive.control.closed);
   EXPECT_NEAR(rad(drive.position.avv.observer.angle_bam), kThere, 1e-4);
   EXPECT_NEAR(real(m.trim.mean_q30, 30), 0.0005, 1e-6);
@@ -132,7 +135,7 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     SetUp();
     parameters.polarity_check = 0;
     parameters.hold_time = 40;
-    drive.hold.left = 7;  // of the last run
+    brake_hold.left = 7;  // of the last run
     const double speed = Motor{}.electrical(rpm);
     at(START_SETTLE, 99, speed);
     step();
@@ -141,8 +144,8 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     expect_runs(kThere);
     const bool turns = std::fabs(rpm) > 20.0;
     EXPECT_NEAR(rad_per_s(drive.control.ramp.value), turns ? speed : 0.0, 0.01) << rpm;
-    EXPECT_EQ(drive.hold.left, turns ? 0u : 400u) << rpm;
-    EXPECT_EQ(drive.start.sigma_q8, 0);
+    EXPECT_EQ(brake_hold.left, turns ? 0u : 400u) << rpm;
+    EXPECT_EQ(drive.found.sigma_q8, 0);
   }
 }
 
@@ -152,7 +155,7 @@ TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
     drive.config.saturation = {0, visible ? raw(0.002, 30) : 0};
     at(START_SETTLE, 100);
     step();
-    EXPECT_EQ(start().phase, visible ? START_SATURATION : START_MOTION);
+    EXPECT_EQ(drive.found.phase, visible ? START_SATURATION : START_MOTION);
     EXPECT_EQ(start().tick, 0);
     EXPECT_EQ(start().tries, 0);
     EXPECT_EQ(visible ? start().saturation.current_q20 : start().motion.current_q20,
@@ -197,7 +200,7 @@ TEST_F(StartStanding, SaturationDecidesOnceItsCurrentIsGone) {
     EXPECT_EQ(drive.state, DRIVE_START);
     step();
     expect_runs(result == POLARITY_RIGHT ? kThere : kThere + kPi);
-    EXPECT_EQ(start().sigma_q8, 1234);
+    EXPECT_EQ(drive.found.sigma_q8, 1234);
   }
 }
 
@@ -208,7 +211,7 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   step();
   const std::int32_t current = parameters.start_current;
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(start().phase, START_SATURATION);
+  EXPECT_EQ(drive.found.phase, START_SATURATION);
   EXPECT_EQ(start().saturation.passes, 2);
   EXPECT_EQ(start().saturation.current_q20, current);
   EXPECT_EQ(start().tick, 0);
@@ -216,7 +219,7 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   EXPECT_EQ(start().saturation.passes, 1);
   EXPECT_EQ(start().saturation.current_q20, std::min(current + current / 2, parameters.current_limit));
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(start().phase, START_MOTION);
+  EXPECT_EQ(drive.found.phase, START_MOTION);
   EXPECT_EQ(start().tries, 0);
 }
 
@@ -227,16 +230,16 @@ TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
   start().saturation.current_q20 = raw(10.0, 20);
   start().followed.worst_q20 = raw(3.8, 20);
   saturation_says(POLARITY_RIGHT);
-  EXPECT_EQ(start().phase, START_AXIS);
+  EXPECT_EQ(drive.found.phase, START_AXIS);
   EXPECT_EQ(start().held_back, 1);
   at(START_SETTLE, 100);
   step();
-  ASSERT_EQ(start().phase, START_MOTION);
+  ASSERT_EQ(drive.found.phase, START_MOTION);
   EXPECT_EQ(start().motion.current_q20, raw(4.0, 20));
   EXPECT_EQ(start().followed.worst_q20, 0);
   start().followed.worst_q20 = raw(1.6, 20);
   motion_says(1.0);
-  EXPECT_EQ(start().phase, START_AXIS);
+  EXPECT_EQ(drive.found.phase, START_AXIS);
   at(START_SETTLE, 100);
   step();
   EXPECT_EQ(start().motion.current_q20, raw(2.0, 20));
@@ -281,7 +284,7 @@ TEST_F(StartStanding, AShaftThatTheTestHasSetInMotionIsListenedToAnew) {
   start().saturation.result = POLARITY_AMBIGUOUS;
   step();
   EXPECT_EQ(start().held_back, 1);
-  EXPECT_EQ(start().phase, START_AXIS);
+  EXPECT_EQ(drive.found.phase, START_AXIS);
 }
 
 // A shaft that creeps has all its current: motion is tried as ever, and what stays open is the polarity's fault.
@@ -317,13 +320,13 @@ TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   step();
   for (const double amps : {4.0, 8.0, 14.0}) {
     EXPECT_EQ(drive.state, DRIVE_START);
-    EXPECT_EQ(start().phase, START_MOTION);
+    EXPECT_EQ(drive.found.phase, START_MOTION);
     EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
     motion_says(0.1);
   }
   EXPECT_EQ(drive.state, DRIVE_FAULT);
   EXPECT_EQ(drive.fault, FAULT_POLARITY);
-  EXPECT_EQ(start().sigma_q8, start().motion.sigma_q8);
+  EXPECT_EQ(drive.found.sigma_q8, start().motion.sigma_q8);
   EXPECT_FALSE(board.gates_on);
 }
 
@@ -335,7 +338,7 @@ TEST_F(StartStanding, MotionTellsTheHalfTurn) {
     step();
     motion_says(response);
     expect_runs(response > 0.0 ? kThere : kThere + kPi);
-    EXPECT_EQ(start().sigma_q8, start().motion.sigma_q8);
+    EXPECT_EQ(drive.found.sigma_q8, start().motion.sigma_q8);
   }
 }
 
@@ -371,15 +374,15 @@ TEST_F(StartStanding, AVectorBeginsFromRest) {
     SetUp();
     drive.control.target_bpp = backward ? -1000000 : 1000000;
     drive.control.current.d.integral = drive.control.current.q.integral = 99;
-    drive.start.seen.angle_bam = 5;
-    drive.watch.open = true;
+    drive.position.seen.angle_bam = 5;
+    polarity_watch.open = true;
     start_turn(&drive);
-    EXPECT_EQ(start().phase, START_TURN);
+    EXPECT_EQ(drive.found.phase, START_TURN);
     EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
-    EXPECT_EQ(drive.start.seen.angle_bam, 0u);
+    EXPECT_EQ(drive.position.seen.angle_bam, 0u);
     EXPECT_TRUE(drive.control.closed);
-    EXPECT_FALSE(drive.watch.open);
-    EXPECT_EQ(drive.start.turn.backward, backward);
+    EXPECT_FALSE(polarity_watch.open);
+    EXPECT_EQ(starting.turn.backward, backward);
   }
 }
 
@@ -389,41 +392,41 @@ TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
   start_turn(&drive);
   if_start_t& turn = start().turn;
   drive.control.current.d.integral = drive.control.current.q.integral = 99;
-  drive.hold.left = 7;
-  drive.position.flux.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
+  brake_hold.left = 7;
+  flux_observer.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
   for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
     drive.position.used.angle_bam = turn.vector_bam;
-    start().seen = {turn.vector_bam - bam(0.4), turn.speed_bpp, 0, 32767};
+    drive.position.seen = {turn.vector_bam - bam(0.4), turn.speed_bpp, 0, 32767};
     drive.control.command_q16 = {0, 0};
     step();
   }
   ASSERT_EQ(drive.state, DRIVE_RUN);
   EXPECT_EQ(drive.control.ramp.value, drive.config.turn.speed_bpp);
-  EXPECT_EQ(drive.position.used.angle_bam, start().seen.angle_bam);
-  EXPECT_EQ(drive.position.encoder.angle_bam, start().seen.angle_bam);
+  EXPECT_EQ(drive.position.used.angle_bam, drive.position.seen.angle_bam);
+  EXPECT_EQ(drive.position.encoder.angle_bam, drive.position.seen.angle_bam);
   EXPECT_EQ(drive.position.encoder.speed_bpp, turn.speed_bpp);
-  EXPECT_EQ(drive.position.flux.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
+  EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
   EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
   EXPECT_EQ(drive.control.reference_q20.d, 0);
   EXPECT_NEAR(real(drive.control.reference_q20.q, 20), real(turn.current_q20, 20) * std::sin(0.4), 0.05);
-  EXPECT_EQ(drive.hold.left, 0u);
+  EXPECT_EQ(brake_hold.left, 0u);
 }
 
 TEST_F(StartStanding, TheGatesHaveTheirInstant) {
   start_power(&drive, false);
-  EXPECT_FALSE(board.gates_on || start().powered);
+  EXPECT_FALSE(board.gates_on || !drive.flags.gates_off);
   board.pwm_tick = 4321;
-  start().blind = 0;
+  drive.flags.invalid = 0;
   start_power(&drive, true);
-  EXPECT_TRUE(board.gates_on && start().powered);
+  EXPECT_TRUE(board.gates_on && !drive.flags.gates_off);
   EXPECT_EQ(start().on_tick, 4321);
-  EXPECT_EQ(start().blind, 2) << "this period and the next have begun with the gates off";
+  EXPECT_EQ(drive.flags.invalid, 2) << "this period and the next have begun with the gates off";
 }
 
 // Speed control, encoder and the watch over the polarity go on from here; nobody holds the shaft.
 TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   board.encoder = 1234;
-  drive.hold.left = 9;
+  brake_hold.left = 9;
   drive.control.reference_q20.q = raw(3.0, 20);
   drive.control.speed.current_q20 = drive.control.speed.integral_q20 = raw(2.0, 20);
   drive_hand_over(&drive, bam(0.8), bpp(100.0));
@@ -433,9 +436,9 @@ TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   EXPECT_EQ(drive.position.encoder.speed_bpp, bpp(100.0));
   const std::uint32_t count = position_encoder_angle(1234, 4, parameters.encoder_counts);
   EXPECT_EQ(drive.position.encoder_offset_bam, bam(0.8) - count);
-  EXPECT_EQ(drive.watch.axis.angle_bam, bam(0.8));
-  EXPECT_EQ(drive.watch.axis.speed_bpp, bpp(100.0));
-  EXPECT_EQ(drive.hold.left, 0u);
+  EXPECT_EQ(polarity_watch.axis.angle_bam, bam(0.8));
+  EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(100.0));
+  EXPECT_EQ(brake_hold.left, 0u);
   EXPECT_EQ(drive.control.ramp.value, bpp(100.0));
   EXPECT_EQ(drive.control.reference_q20.q, 0);
   EXPECT_EQ(drive.control.speed.current_q20, 0);
@@ -461,7 +464,7 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
 TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
   start_turn(&drive);
   for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
-    start().seen = {start().turn.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
+    drive.position.seen = {start().turn.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
     drive.control.command_q16 = {0, 0};
     step();
   }

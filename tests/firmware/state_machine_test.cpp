@@ -5,6 +5,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
@@ -107,21 +108,21 @@ TEST_F(States, AStopBreaksAStartOffAndOpensThePowerStage) {
 TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
   make_run();
   drive.state = DRIVE_COMMISSION;
-  drive.commissioning.outcome = COMMISSIONING_RUNNING;
-  drive.commissioning.phase = COMMISSIONING_SPIN;
-  drive.commissioning.tick = 1;
+  commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning.phase = COMMISSIONING_SPIN;
+  commissioning.tick = 1;
   for (const bool turning : {true, false}) {
-    drive.commissioning.turning = turning;
+    drive.flags.spins = turning;
     drive.state = DRIVE_COMMISSION;
-    drive.commissioning.outcome = COMMISSIONING_RUNNING;
-    drive.commissioning.phase = COMMISSIONING_TURN;
+    commissioning.outcome = COMMISSIONING_RUNNING;
+    commissioning.phase = COMMISSIONING_TURN;
     board.gates_on = true;
     drive.request.reload = false;  // the background level has been there
     drive_command_stop();
     drive_sequence(&drive);
     EXPECT_EQ(drive.state, turning ? DRIVE_STOP : DRIVE_READY);
     EXPECT_EQ(board.gates_on, turning);
-    EXPECT_EQ(drive.commissioning.outcome, COMMISSIONING_ABORTED);
+    EXPECT_EQ(commissioning.outcome, COMMISSIONING_ABORTED);
   }
 }
 
@@ -129,14 +130,15 @@ TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
 TEST_F(States, AStopLetsAnEvaluationEnd) {
   make_ready();
   drive.state = DRIVE_COMMISSION;
-  drive.commissioning.outcome = COMMISSIONING_RUNNING;
-  drive.commissioning.phase = COMMISSIONING_EVALUATE;
-  drive.commissioning.evaluate = true;
+  commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning.phase = COMMISSIONING_EVALUATE;
+  commissioning.evaluate = true;
+  drive.flags.over = true;
   drive_command_stop();
   drive_sequence(&drive);
   EXPECT_EQ(drive.state, DRIVE_COMMISSION);
-  EXPECT_EQ(drive.commissioning.outcome, COMMISSIONING_RUNNING);
-  drive.commissioning.evaluate = false;
+  EXPECT_EQ(commissioning.outcome, COMMISSIONING_RUNNING);
+  commissioning.evaluate = false;
   drive_sequence(&drive);
   EXPECT_EQ(drive.state, DRIVE_READY);
 }
@@ -196,18 +198,16 @@ TEST_F(States, TheDriveBootsUntilItsValuesAreThere) {
 // Gates off at once, whatever is under way; what a commissioning has changed for itself must come back.
 TEST_F(States, ACoastEndsACommissioning) {
   make_run();
-  commissioning_t& c = drive.commissioning;
+  commissioning_t& c = commissioning;
   drive.state = DRIVE_COMMISSION;
   c.outcome = COMMISSIONING_RUNNING;
   c.phase = COMMISSIONING_MAP;
-  c.requested = true;
   drive_command_coast();
   drive_sequence(&drive);
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
   EXPECT_EQ(c.outcome, COMMISSIONING_ABORTED);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
-  EXPECT_FALSE(c.requested);
   EXPECT_TRUE(drive.request.reload);
 }
 
@@ -245,7 +245,7 @@ TEST_F(States, AStopForgetsWhatWasAskedForBefore) {
 // A commissioning that a fault has ended, and the background level has not been there since.
 TEST_F(States, AStartBehindAFailedCommissioningIsAStart) {
   make_ready();
-  drive.commissioning.requested = true;
+  commissioning.outcome = COMMISSIONING_RUNNING;
   drive_command_start();
   drive_sequence(&drive);
   ASSERT_EQ(drive.state, DRIVE_START);
@@ -261,19 +261,26 @@ TEST_F(States, WhereThePowerStageIsOnAndWhereTheShaftIsTurned) {
                {DRIVE_START, true, false}, {DRIVE_RUN, true, true},         {DRIVE_STOP, true, true},
                {DRIVE_FAULT, false, false}};
   for (const bool spin : {false, true}) {
-    drive.commissioning.phase = COMMISSIONING_SPIN;
-    drive.commissioning.turning = spin;
     for (const auto& c : cases) {
-      drive.state = c.state;
+      drive.flags.spins = spin;
+      drive_enter(&drive, c.state);
       EXPECT_EQ(drive_is_energised(), c.energised) << c.state;
       EXPECT_EQ(drive_is_turning(&drive), c.turning) << c.state;
     }
-    drive.state = DRIVE_COMMISSION;
+    drive_enter(&drive, DRIVE_COMMISSION);
+    drive.flags.spins = spin;
     EXPECT_TRUE(drive_is_energised());
     EXPECT_EQ(drive_is_turning(&drive), spin);
-    drive.commissioning.phase = COMMISSIONING_EVALUATE;
+    drive.flags.over = true;
     EXPECT_FALSE(drive_is_energised());
   }
+}
+
+TEST_F(States, AFeaturesStateHasItsPlace) {
+  EXPECT_EQ(drive_states[DRIVE_START], &start_state);
+  EXPECT_EQ(drive_states[DRIVE_COMMISSION], &commissioning_state);
+  for (const drive_state_t own : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_FAULT})
+    EXPECT_EQ(drive_states[own], nullptr) << own;
 }
 
 // With the reference at zero a shaft that goes on turning has stop_time, whatever the last one took of it.

@@ -9,6 +9,7 @@ extern "C" {
 #include "firmware/drive/steps.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
+#include "firmware/start/start.h"
 }
 
 namespace {
@@ -347,12 +348,12 @@ TEST_F(Drive, AMapWithoutSaliencyIsNamed) {
 TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
   make_run();
   drive.state = DRIVE_START;
-  drive.start = {};
-  drive.start.powered = true;
-  drive.start.phase = START_CATCH;
+  starting = {};
+  drive.flags.caught = true;
+  drive.found.phase = START_CATCH;
   for (int n = 0; n < 300; ++n) {
     drive.position.avv.regression.information = 0;
-    drive.start.axis.count = 0;
+    starting.axis.count = 0;
     period();
   }
   EXPECT_EQ(drive.state, DRIVE_FAULT);

@@ -2,21 +2,36 @@
 
 #include "firmware/api/status.h"
 #include "firmware/can/node.h"
+#include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hil/hil.h"
 #include "firmware/link/link.h"
 #include "firmware/link/requests.h"
 #include "firmware/mode/mode.h"
+#include "firmware/sources/flux/flux.h"
+#include "firmware/start/start.h"
 #include "firmware/store/store.h"
 
 #define CALIBRATION 400u  // periods that are more than enough
 #define START 350u
 
-static drive_t reached[FUZZ_STATES];
+// The drive in a state, with what the state keeps to itself.
+typedef struct {
+  drive_t drive;
+  drive_start_t starting;
+  commissioning_t commissioning;
+  hold_t brake_hold;
+  polarity_watch_t polarity_watch;
+  flux_observer_t flux_observer;
+} reached_t;
+
+static reached_t reached[FUZZ_STATES];
 static bool all_reached;
 
 static void period(void) {
@@ -38,6 +53,20 @@ static void periods_until(drive_state_t state, uint16_t most) {
   }
 }
 
+static void keep(drive_state_t state) {
+  const reached_t now = {drive, starting, commissioning, brake_hold, polarity_watch, flux_observer};
+  reached[state] = now;
+}
+
+static void restore(uint16_t state) {
+  drive = reached[state].drive;
+  starting = reached[state].starting;
+  commissioning = reached[state].commissioning;
+  brake_hold = reached[state].brake_hold;
+  polarity_watch = reached[state].polarity_watch;
+  flux_observer = reached[state].flux_observer;
+}
+
 static void power_on(void) {
   fuzz_board_power_on();
   drive_reset();
@@ -50,14 +79,14 @@ static void power_on(void) {
 // The machine stands, so the drive runs with an encoder and does not ask which way round its magnet is.
 static void reach_states(void) {
   power_on();
-  reached[DRIVE_BOOT] = drive;
+  keep(DRIVE_BOOT);
   period();
-  reached[DRIVE_CALIBRATE] = drive;
+  keep(DRIVE_CALIBRATE);
   periods_until(DRIVE_READY, CALIBRATION);
-  reached[DRIVE_READY] = drive;
+  keep(DRIVE_READY);
   drive_command_commission();
   periods_until(DRIVE_COMMISSION, START);
-  reached[DRIVE_COMMISSION] = drive;
+  keep(DRIVE_COMMISSION);
   drive_command_coast();
   period();
   parameters.position_source = POSITION_ENCODER;
@@ -67,23 +96,23 @@ static void reach_states(void) {
   drive_command_speed((int32_t)300 << 16);
   drive_command_start();
   periods_until(DRIVE_START, 1);
-  reached[DRIVE_START] = drive;
+  keep(DRIVE_START);
   periods_until(DRIVE_RUN, START);
   for (uint16_t k = 0; k < 20u; k++) period();
-  reached[DRIVE_RUN] = drive;
+  keep(DRIVE_RUN);
   drive_command_stop();
   period();
-  reached[DRIVE_STOP] = drive;
+  keep(DRIVE_STOP);
   drive_raise(&drive, FAULT_OVER_CURRENT);
   period();
-  reached[DRIVE_FAULT] = drive;
+  keep(DRIVE_FAULT);
   all_reached = true;
 }
 
 void fuzz_power_on(void) {
   if (!all_reached) reach_states();
   power_on();
-  drive = reached[DRIVE_READY];
+  restore(DRIVE_READY);
 }
 
 static uint16_t answer_as_bus(const uint16_t* request, uint16_t count, uint16_t* answer) {
@@ -104,7 +133,7 @@ typedef struct {
 void fuzz_put_into(uint16_t state) {
   if (feature_status.stepped) return;  // it is a simulation's drive
   const lasting_t now = {drive.time_ms, drive.heartbeat, drive.request, drive.config, drive.config_valid};
-  drive = reached[state];
+  restore(state);
   drive.time_ms = now.time_ms;
   drive.heartbeat = now.heartbeat;
   drive.request = now.request;

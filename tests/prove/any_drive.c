@@ -2,6 +2,8 @@
 
 #include "tests/prove/any_drive.h"
 
+#include <stddef.h>
+
 #include "firmware/api/status.h"
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
@@ -41,8 +43,8 @@ void any_moment(void) {
   drive.heartbeat = any_u16;
   drive.loading = any_bool();
   feature_status.store_work = any_up_to(3);
-  drive.start.phase = (start_phase_t)any_up_to(15);
-  drive.start.sigma_q8 = any_i32;
+  drive.found.phase = any_up_to(15);
+  drive.found.sigma_q8 = any_i32;
   drive.config.rpm_per_bpp_q40 = any_i32;
   drive.model.torque_per_accel_q24 = any_i32;
   drive.samples.count = any_up_to(ESTIMATOR_WINDOWS);
@@ -54,8 +56,10 @@ void any_moment(void) {
   drive.position.high.angle_bam = any_u32;
   drive.position.blend.share_q15 = any_i32;
   drive.position.deviation_q20 = any_i32;
-  drive.position.flux.load_angle_bam = any_u32;
-  drive.position.flux.machine.psi_q16 = any_i32;
+  static flux_observer_t flux;
+  flux.load_angle_bam = any_i32;
+  flux.machine.psi_q16 = any_i32;
+  drive.position.flux = any_bool() ? &flux : NULL;
   drive.control.ramp.value = any_i32;
   drive.control.measured_q20.d = any_i32;
   drive.control.measured_q20.q = any_i32;

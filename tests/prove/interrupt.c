@@ -7,6 +7,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
 #include "firmware/board/selftest.h"
+#include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
@@ -19,6 +20,7 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/scope/scope.h"
+#include "firmware/start/start.h"
 #include "firmware/store/store.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_encoder.h"
@@ -76,7 +78,7 @@ bool hal_slices_begin(uint16_t slice_ticks) {
 void hal_slices_end(void) {}
 static void nothing_else(void) {}
 const phase_control_t* const edition_phase_control = &hysteresis_control;
-service_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, NULL};
+service_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, start_reset, commissioning_reset, NULL};
 work_t* const edition_works[] = {commissioning_service, NULL};
 static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
 interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};

@@ -10,7 +10,7 @@ import pytest
 
 from planting import plant
 
-MOST_LEFT = 18
+MOST_LEFT = 0
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 

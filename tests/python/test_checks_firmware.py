@@ -145,5 +145,5 @@ def test_what_the_interrupts_run_is_found_in_the_drive_itself() -> None:
 
 def test_exceptions_become_fewer() -> None:
     """These numbers only ever go down, to 0."""
-    assert len(left(ROOT / faces.LEFT)) <= 2
+    assert len(left(ROOT / faces.LEFT)) == 0
     assert len(left(ROOT / interrupt.LEFT)) <= 59

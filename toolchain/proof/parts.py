@@ -130,7 +130,7 @@ DEVICES = ("tests/prove/devices.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2
 INTERRUPT = (
     *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/scope/scope.c", *ESTIMATORS, "svpwm/*.c"),
     *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*/*.c", "firmware/hysteresis/*.c"),
-    SOURCES_TABLE,
+    *(SOURCES_TABLE, "made/drive_states.c"),
     "firmware/dictionary/parameters.c",
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),

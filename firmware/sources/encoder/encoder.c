@@ -28,4 +28,4 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   return out;
 }
 
-const position_source_t encoder_source = {source_encoder, NULL, NULL, NULL, SOURCE_MEASURES | SOURCE_SINGLE};
+const position_source_t encoder_source = {source_encoder, NULL, NULL, NULL, NULL, SOURCE_MEASURES | SOURCE_SINGLE};

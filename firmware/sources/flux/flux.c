@@ -1,6 +1,7 @@
 #include "firmware/sources/flux/flux.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
@@ -19,6 +20,8 @@
 #define LEAST_BAND_Q20 10486L  // 0.01 A
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
+
+flux_observer_t flux_observer;
 
 // That has the shaft, or looks on; below zero without one.
 static int32_t method(void) {
@@ -62,9 +65,9 @@ static flux_period_t period_of(const drive_t* d, bool is_full) {
   p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
   p.measured_q20 = d->control.measured_q20;
   p.reference_q20 = d->control.reference_q20;
-  if (drive_is_turned(d)) {
-    p.measured_q20 = drive_seen(d, p.measured_q20);
-    p.reference_q20 = drive_seen(d, p.reference_q20);
+  if (d->flags.open_loop) {
+    p.measured_q20 = position_seen(d, p.measured_q20);
+    p.reference_q20 = position_seen(d, p.reference_q20);
   }
   const ab_t mean_q16 = svpwm_mean_q16(&d->modulation.sampled.pulses, d->samples.link_q16);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, p.current_q20);
@@ -73,9 +76,18 @@ static flux_period_t period_of(const drive_t* d, bool is_full) {
   return p;
 }
 
+static void flux_begin(drive_t* d, bool keeps) {
+  if (keeps) {
+    flux_observer_keep(&flux_observer);
+  } else {
+    flux_observer_reset(&flux_observer, &d->config.flux, &d->model);
+    d->position.flux = &flux_observer;
+  }
+}
+
 static estimator_output_t step(drive_t* d, const estimator_input_t* in, bool is_full) {
   const flux_period_t p = period_of(d, is_full);
-  return flux_observer_step(&d->position.flux, &d->config.flux, in, &p);
+  return flux_observer_step(&flux_observer, &d->config.flux, in, &p);
 }
 
 // The observer goes along, so that it is right when it is wanted again.
@@ -95,7 +107,7 @@ estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
 }
 
 void flux_source_follow(drive_t* d, const estimator_output_t* now) {
-  flux_observer_preset(&d->position.flux, now, d->control.measured_q20);
+  flux_observer_preset(&flux_observer, now, d->control.measured_q20);
 }
 
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {
@@ -143,5 +155,6 @@ static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
   return flux_source_beside(d, in, &low);
 }
 
-const position_source_t flux_source = {source_flux, flux_excitation, seeing_current, flux_source_follow,
-                                       SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};
+const position_source_t flux_source = {
+    source_flux,        flux_excitation, seeing_current,
+    flux_source_follow, flux_begin,      SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};

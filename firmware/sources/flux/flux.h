@@ -7,7 +7,10 @@
 #ifndef STILLSPIN_FIRMWARE_SOURCES_FLUX_H
 #define STILLSPIN_FIRMWARE_SOURCES_FLUX_H
 
+#include "estimators/flux_observer.h"
 #include "firmware/mode/mode.h"
+
+extern flux_observer_t flux_observer;
 
 /// The flux's part of the configuration (interfaces/config_part.h). False where the flux is wanted for a machine that
 /// it cannot be given.

@@ -8,7 +8,7 @@
 
 void source_step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
-  if (d->state == DRIVE_COMMISSION && !d->commissioning.adapting) return;
+  if (d->flags.frozen) return;
   if (d->schedule.turn == TURN_REGRESS)
     d->position.is_near = q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM;
   source_learn(d, &d->position.avv.regression);
@@ -19,4 +19,4 @@ static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) {
   return d->position.high;
 }
 
-const position_source_t avv_source = {source_avv, NULL, NULL, NULL, SOURCE_AVV_FIRST};
+const position_source_t avv_source = {source_avv, NULL, NULL, NULL, NULL, SOURCE_AVV_FIRST};

@@ -1,5 +1,6 @@
 // What the windows say of machine and sensors, learnt slowly.
 
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
 

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/drive/brake_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
 
@@ -30,6 +31,7 @@ static estimator_output_t source_observer_avv(drive_t* d, estimator_input_t* in)
   return blend_step(&d->position.blend, &d->config.blend, &d->position.low, &d->position.high);
 }
 
-const position_source_t observer_source = {source_observer, NULL, NULL, NULL,
-                                           SOURCE_SINGLE | SOURCE_OBSERVES | SOURCE_READS};
-const position_source_t observer_avv_source = {source_observer_avv, NULL, NULL, NULL, SOURCE_OBSERVES | SOURCE_BESIDE};
+const position_source_t observer_source = {
+    source_observer, NULL, NULL, NULL, NULL, SOURCE_SINGLE | SOURCE_OBSERVES | SOURCE_READS};
+const position_source_t observer_avv_source = {
+    source_observer_avv, NULL, NULL, NULL, NULL, SOURCE_OBSERVES | SOURCE_BESIDE};

@@ -56,4 +56,4 @@ static excitation_t paper_excitation(const drive_t* d) {
   return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
-const position_source_t paper_source = {source_paper, paper_excitation, NULL, NULL, SOURCE_BLENDS | SOURCE_TURNS};
+const position_source_t paper_source = {source_paper, paper_excitation, NULL, NULL, NULL, SOURCE_BLENDS | SOURCE_TURNS};

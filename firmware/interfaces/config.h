@@ -1,0 +1,54 @@
+// The constants of a drive: what the interrupt needs of the parameters.
+
+#ifndef STILLSPIN_FIRMWARE_INTERFACES_CONFIG_H
+#define STILLSPIN_FIRMWARE_INTERFACES_CONFIG_H
+
+#include "control/current_controller.h"
+#include "control/if_start.h"
+#include "control/mtpa.h"
+#include "control/speed_controller.h"
+#include "estimators/avv.h"
+#include "estimators/blend.h"
+#include "estimators/deviation_observer.h"
+#include "estimators/flux_observer.h"
+#include "estimators/saturation.h"
+#include "estimators/slopes.h"
+#include "estimators/synchronism.h"
+#include "estimators/zvv.h"
+#include "svpwm/edges.h"
+#include "svpwm/modulator.h"
+
+/// Derived from the parameters, see config/config.c. Holds nothing that is found while the drive runs: the background
+/// level replaces it as a whole.
+typedef struct drive_config {
+  machine_model_t nameplate;
+  modulator_config_t modulator;
+  dead_time_config_t dead_time;
+  current_controller_config_t current;
+  speed_controller_config_t speed;
+  mtpa_t mtpa;
+  if_start_config_t turn;
+  avv_config_t avv;
+  zvv_config_t zvv;
+  deviation_observer_config_t observer, hold_observer;
+  blend_config_t blend;
+  flux_observer_config_t flux;
+  slopes_config_t slopes;
+  synchronism_config_t synchronism;
+  int32_t volts_per_code_q16;
+  int32_t codes_per_amp_q16;  // ADC codes
+  int32_t bpp_per_rpm_q8;
+  int32_t rpm_per_bpp_q40;
+  int32_t adapt_share_q30;       // per turn, of admittances and sensor match
+  int32_t drift_share_q30;       // of resistance and flux
+  int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
+  int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
+  int32_t hold_gain_q30;         // of the position hold, per period
+  int32_t hold_below_bpp;        // slower than this counts as at rest
+  uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
+  int32_t sensor_mismatch_q30;   // of the current sensors, as a share
+  bool mapped;                   // the turn of the saliency axis with the current is known
+  saturation_slopes_t saturation;
+} drive_config_t;
+
+#endif

@@ -1,0 +1,98 @@
+// What the steps of the control interrupt have of each other, period by period.
+
+#ifndef STILLSPIN_FIRMWARE_INTERFACES_PERIOD_H
+#define STILLSPIN_FIRMWARE_INTERFACES_PERIOD_H
+
+#include "control/current_controller.h"
+#include "control/field_weakening.h"
+#include "control/position_hold.h"
+#include "control/ramp.h"
+#include "control/speed_controller.h"
+#include "estimators/admittance.h"
+#include "estimators/avv.h"
+#include "estimators/blend.h"
+#include "estimators/deviation_observer.h"
+#include "estimators/flux_observer.h"
+#include "estimators/sensor_match.h"
+#include "estimators/slopes.h"
+#include "estimators/synchronism.h"
+#include "estimators/voltage_match.h"
+#include "estimators/zvv.h"
+#include "firmware/interfaces/schedule.h"
+#include "firmware/interfaces/source.h"
+#include "svpwm/modulator.h"
+
+#define DRIVE_PERIOD_US 100
+#define DRIVE_PERIODS_PER_MS 10
+#define DRIVE_CURRENT_BITS 29u  // 512 A: no two sensors show more
+#define DRIVE_CURRENT_END_Q20 ((int32_t)1 << DRIVE_CURRENT_BITS)
+#define DRIVE_MIDDLE_Q8 (2048L * 256L)  // of the converter's codes: no current
+
+/// What the control interrupt knows about the last period.
+typedef struct {
+  estimator_window_t windows[ESTIMATOR_WINDOWS];
+  ab_t ripple_q16;                              // ripple flux at the middles of all windows, added up, V period
+  estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
+  uint16_t count;
+  slopes_scale_t scale;                     // of the sensors, renewed in a turn
+  int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
+  int32_t raw_a_q8, raw_b_q8;               // mean codes of the first burst, for the calibration
+  int32_t link_q16;                         // filtered DC-link voltage, V
+} drive_samples_t;
+
+/// Angle and speed in use and the estimators behind them.
+typedef struct {
+  estimator_output_t used, low, high;
+  estimator_output_t seen;  // by the position source, while it looks on
+  avv_t avv;
+  deviation_observer_t observer;
+  zvv_t zvv;
+  blend_t blend;
+  sensor_match_t sensors;
+  tracking_observer_t encoder;
+  bool is_near;                 // what was last regressed is near enough to learn from
+  uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
+  uint32_t aligned_bam;         // where it was found
+  int32_t torque_accel_q8;      // acceleration of the torque of the measured current
+  int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
+  const flux_observer_t* flux;  // for those who look, NULL where no source has one
+} drive_position_t;
+
+typedef struct {
+  current_controller_t current;
+  speed_controller_t speed;
+  field_weakening_t weakening;
+  int32_t weakening_q20;
+  int32_t seeing_q20;                  // what flows against the d-axis so that the flux is seen
+  int32_t current_limit_q20;           // largest phase current now (board/functions.h)
+  int32_t room_q20, braking_room_q20;  // torque current that the limits leave, and against the rotation, A
+  q_inverse_t per_torque_constant;     // of N m per A, Q24, at the reference of i_d
+  ramp_t ramp;
+  position_hold_t place;   // kept at a reference of zero
+  dq_t reference_q20;      // current reference
+  dq_t measured_q20;       // mean current of the last period
+  dq_t command_q16;        // voltage command
+  int32_t feed_q16;        // q-axis voltage for a change of the reference that is known beforehand
+  int32_t wanted_rpm_q16;  // speed asked for, mechanical
+  int32_t target_bpp;      // the same, electrical
+  bool closed;             // current loop closed
+  bool speed_ready;        // the speed controller could be set up
+} drive_control_t;
+
+typedef struct {
+  modulator_t state;
+  svpwm_pattern_t sampled;  // pattern of the period whose windows were just read
+  svpwm_pattern_t running;  // pattern of the period that has just begun
+  svpwm_pattern_t next;     // pattern in the making
+  ab_t asked_q16;           // voltage asked of the modulator, drops of the devices added
+} drive_modulation_t;
+
+typedef struct {
+  uint16_t missing, overrun, diverged_periods;
+  uint16_t judged_at;         // heartbeat when the angle in use was last judged
+  uint32_t judged_bam;        // and that angle
+  uint32_t stopping_periods;  // in STOP with the reference at zero
+  synchronism_t synchronism;
+} drive_supervision_t;
+
+#endif

@@ -1,0 +1,59 @@
+// The states of the drive. One that has a folder of its own (START, COMMISSION) keeps what it is about to itself; what
+// the other steps of the control interrupt have to know of it stands in flags that it writes and they read.
+
+#ifndef STILLSPIN_FIRMWARE_INTERFACES_STATE_H
+#define STILLSPIN_FIRMWARE_INTERFACES_STATE_H
+
+#include "estimators/estimator.h"
+#include "estimators/wiring.h"
+
+struct drive;
+
+typedef enum {
+  DRIVE_BOOT = 0,
+  DRIVE_CALIBRATE = 1,  // current offsets, power stage off
+  DRIVE_READY = 2,
+  DRIVE_START = 3,  // initial angle and polarity
+  DRIVE_RUN = 4,
+  DRIVE_STOP = 5,  // speed to zero, then ready
+  DRIVE_FAULT = 6,
+  DRIVE_COMMISSION = 7  // measures machine and inverter
+} drive_state_t;
+
+typedef struct {
+  /// From READY: what is to follow when it has done its work. It enters its state, or raises a fault.
+  void (*begin)(struct drive* d, drive_state_t behind);
+  /// One period. It enters the state that follows.
+  void (*step)(struct drive* d);
+  /// Angle and speed in use, in the place of the position source: in the open-loop ramp, and at the standstill of
+  /// COMMISSION.
+  void (*estimate)(struct drive* d, estimator_input_t* in);
+  /// COMMISSION: it is not wanted any more, whatever state the drive is in.
+  void (*abandon)(struct drive* d);
+} state_t;
+
+/// By drive_state_t; NULL where the drive itself does all there is, or this edition leaves it out (editions/).
+extern const state_t* const drive_states[];
+
+/// What the state in hand says to the other steps. It alone sets these, and the next one begins with none of them.
+typedef struct {
+  drive_state_t behind;  // START: what it leads to; READY: how the shaft turns is all that is asked
+  uint16_t invalid;      // periods until the samples belong to a power stage that is on and to a known pattern
+  bool gates_off;        // by the start, which has no current flow
+  bool shorted;          // all lower devices on, in the place of the modulator's pattern
+  bool decides;          // the next period is for a decision alone
+  bool caught;           // a rotor that turns: angle and speed in use are its own
+  bool open_loop;        // a current vector turns the rotor: the position source runs, and is not used yet
+  bool spins;            // COMMISSION: speed control and position source are at work
+  bool frozen;           // the model does not follow the windows
+  bool over;             // the gates are off, and the background level has the rest
+} state_flags_t;
+
+/// What the last start has found. It stays for those who look.
+typedef struct {
+  uint16_t phase;    // start_phase_t: it is in this one, or ended in it
+  int32_t sigma_q8;  // confidence in the polarity, standard errors
+  wiring_t wiring;   // what the axis was found with says about it
+} start_found_t;
+
+#endif

@@ -1,0 +1,97 @@
+// The state START: how it begins, its phases in their order, and what it leads to. See start.h.
+
+#include "firmware/start/start.h"
+
+#include <stddef.h>
+
+#include "firmware/base/clear.h"
+#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
+#include "firmware/mode/interlock.h"
+#include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
+
+#define LISTEN_FIRST 4u  // periods until the short circuit is what the modulator gives
+
+drive_start_t starting;
+
+void start_reset(void) { clear(&starting, sizeof starting); }
+
+static void reset_control(drive_t* d) {
+  d->control.closed = false;
+  modulator_reset(&d->modulation.state);
+  field_weakening_reset(&d->control.weakening);
+  d->control.ramp.value = 0;
+  position_hold_release(&d->control.place);
+  d->control.reference_q20.d = 0;
+  d->control.reference_q20.q = 0;
+  d->control.feed_q16 = 0;
+}
+
+// False when it was refused, with a fault.
+static bool prepare(drive_t* d, drive_state_t behind) {
+  if (!d->config_valid || !d->control.speed_ready) {
+    drive_raise(d, FAULT_PARAMETER);
+    return false;
+  }
+  clear(&d->supervision, sizeof d->supervision);
+  clear(&starting, sizeof starting);
+  clear(&d->found, sizeof d->found);
+  d->model = d->config.nameplate;
+  inertia_match_reset(&d->inertia);
+  speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
+  d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
+  d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;
+  position_preset(d, 0, 0);
+  reset_control(d);
+  drive_enter(d, DRIVE_START);
+  d->flags.behind = behind;
+  d->flags.gates_off = true;
+  d->flags.invalid = 2;
+  const drive_fault_t refusal = interlock_refusal();
+  if (refusal != FAULT_NONE) drive_raise(d, refusal);
+  return refusal == FAULT_NONE;
+}
+
+// For a look at the shaft the lower devices are enough: they need no bootstrap capacitors.
+static void start_begin(drive_t* d, drive_state_t behind) {
+  if (!prepare(d, behind)) return;
+  if (behind == DRIVE_READY) {
+    start_listen(d, LISTEN_FIRST);
+  } else {
+    start_charge(d);
+  }
+}
+
+void start_look(drive_t* d) {
+  if (parameters.flying_start != 0) {
+    start_listen(d, LISTEN_FIRST);
+  } else {
+    start_find_axis(d);
+  }
+}
+
+// A commissioning wants a shaft that stands; one that was caught turning is brought to rest instead.
+static drive_state_t state_behind(const drive_t* d) {
+  return (d->flags.behind == DRIVE_COMMISSION && d->flags.caught) ? DRIVE_STOP : d->flags.behind;
+}
+
+void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
+  drive_hand_over(d, angle_bam, speed_bpp);
+  drive_enter(d, state_behind(d));
+  if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon(d);
+}
+
+static void start_step(drive_t* d) {
+  typedef void (*step_t)(drive_t*);
+  static const step_t steps[] = {start_step_listen, start_step_pulse,  start_step_catch,
+                                 start_step_axis,   start_step_settle, start_step_saturation,
+                                 start_step_motion, start_step_turn,   start_step_charge};
+  drive_start_t* const s = &starting;
+  s->tick++;
+  steps[d->found.phase](d);
+  if (d->flags.invalid > 0u && !d->flags.gates_off) d->flags.invalid--;
+}
+
+const state_t start_state = {start_begin, start_step, start_estimate, NULL};
