@@ -37,7 +37,7 @@ typedef struct {
 /// with Ldd <= Lqq, or a value does not fit its format (y above 0.6 A/V, or 0.45 across, psi/T above 32000 V).
 bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int32_t period_q30, int32_t emf_q16);
 
-/// The point at a torque current of either sign. Beyond the table's end the admittances stay, the flux goes on,
+/// The point at a torque current of either sign. Beyond the table's end the inverse inductances stay, the flux goes on,
 /// up to 128 segments and 32768 V.
 machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20);
 

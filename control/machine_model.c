@@ -35,7 +35,7 @@ static void place_flux(machine_model_t* m) {
 }
 
 // K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
-static void turn_with_admittance(machine_model_t* m) {
+static void renew_sensitivity(machine_model_t* m) {
   m->per_yq = q_invert(m->yq_q30);
   const int32_t t_q24 = q_limit(q_over(m->ydq_q30, m->per_yq, 24), T_END_Q24);
   const int32_t r_q24 = q_over(m->yd_q30, m->per_yq, 24);
@@ -98,10 +98,10 @@ void machine_model_follow(machine_model_t* m, int32_t iq_q20) {
   place_flux(m);
 }
 
-void machine_model_turn(machine_model_t* m) {
+void machine_model_renew_sensitivity(machine_model_t* m) {
   const int32_t dd_q24 = m->k_dd_q24;
   const int32_t dq_q24 = m->k_dq_q24;
-  turn_with_admittance(m);
+  renew_sensitivity(m);
   // K i + k0 at (0, i_q) stays what it was.
   const int64_t more_d_q44 = q_product(m->k_dq_q24 - dq_q24, m->iq_q20);
   const int64_t more_q_q44 = q_product(m->k_dd_q24 - dd_q24, m->iq_q20);
@@ -111,7 +111,7 @@ void machine_model_turn(machine_model_t* m) {
 
 void machine_model_move(machine_model_t* m, int32_t iq_q20) {
   admit(m, iq_q20);
-  turn_with_admittance(m);
+  renew_sensitivity(m);
   place_flux(m);
 }
 
@@ -162,9 +162,9 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   return m->accel_q12 < INT32_MAX && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 && m->k0_q20.q > -K0_END_Q20;
 }
 
-void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24) {
-  m->accel_q12 = q_mul_sat(told->accel_q12, ratio_q24, 24);
-  m->torque_per_accel_q24 = q_over(told->torque_per_accel_q24, q_invert(ratio_q24), 24);
+void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* nominal, int32_t ratio_q24) {
+  m->accel_q12 = q_mul_sat(nominal->accel_q12, ratio_q24, 24);
+  m->torque_per_accel_q24 = q_over(nominal->torque_per_accel_q24, q_invert(ratio_q24), 24);
 }
 
 dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {

@@ -1,9 +1,9 @@
 // The machine as the control sees it: constants per PWM period, so that a step of the model is a multiplication.
 //
-// Rotor frame, one period T as the unit of time, at the working point (machine_map.h), w = omega T:
+// Rotor frame, one period T as the unit of time, at the operating point (machine_map.h), w = omega T:
 //   s = Y (v - R i) + w h,    h = K i + k0
 // is the *rotated alpha-beta slope* (current change per period): di_dq/dt + w J i with L di_dq/dt = v - R i - w J psi.
-// Y = T L^-1 is the incremental admittance, and with the flux psi/T = L/T i + psi0 around the working point
+// Y = T L^-1 is the incremental inverse inductance, and with the flux psi/T = L/T i + psi0 around the operating point
 //   K = J - Y J L / T,  k0 = -Y J psi0.
 // Without saturation K = [0, Lq/Ld - 1; 1 - Ld/Lq, 0] and k0 = (0, -lambda/Lq): seed paper, eqs (15)-(20), with the
 // rotation term kept.
@@ -57,7 +57,7 @@ typedef struct {
   machine_map_t map;
   q_inverse_t per_ydd0, per_yqq0, per_half0;  // of the map at no current: ydd, yqq, (ydd - yqq)/2
   machine_trim_t trim;
-  // At the working point, see machine_model_move.
+  // At the operating point, see machine_model_move.
   int32_t iq_q20;                        // A
   int32_t rs_q24;                        // ohm
   int32_t yd_q30, yq_q30, ydq_q30;       // Y
@@ -75,25 +75,25 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 /// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).
 bool machine_model_saturate(machine_model_t* m, const machine_map_parameters_t* map);
 
-/// What the admittances at no current have more than the map. All of the map changes in proportion: inductances that
-/// differ do so saturated as well, and the axis of the saliency turns to where the map has it.
-/// Where they change by more than twice or half, machine_model_settle follows.
+/// What the inverse inductances at no current have more than the map. All of the map changes in proportion: inductances
+/// that differ do so saturated as well, and the axis of the saliency turns to where the map has it. Where they change
+/// by more than twice or half, machine_model_settle follows.
 void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 
 /// Takes the flux's share all of the way to what the trim makes of it.
 void machine_model_settle(machine_model_t* m);
 
 /// Takes an acceleration per torque that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.
-void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* told, int32_t ratio_q24);
+void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* nominal, int32_t ratio_q24);
 
-/// Moves the working point to a torque current, up to 512 A, and takes the trim into account.
+/// Moves the operating point to a torque current, up to 512 A, and takes the trim into account.
 void machine_model_move(machine_model_t* m, int32_t iq_q20);
 
 /// The same in two parts that need not come together. To follow takes Y and the flux along, and leaves K, which says
-/// how h changes around the working point, as it is. To turn makes K of Y, with two reciprocals. h at the torque
+/// how h changes around the operating point, as it is. To turn makes K of Y, with two reciprocals. h at the torque
 /// current is right in between.
 void machine_model_follow(machine_model_t* m, int32_t iq_q20);
-void machine_model_turn(machine_model_t* m);
+void machine_model_renew_sensitivity(machine_model_t* m);
 
 /// Y x, Q20, of a voltage in V Q16.
 static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {
@@ -104,14 +104,15 @@ static inline dq_t machine_admit_q20(const machine_model_t* m, dq_t v_q16) {
 
 /// What products of K (Q24) and a current (Q20) make with k0, A per period and (rad per period), Q20. A saliency that
 /// was learnt may turn more than the format holds.
-static inline int32_t machine_turned_q20(int64_t of_current_q44, int64_t k0_q20) {
+static inline int32_t machine_sensitivity_q20(int64_t of_current_q44, int64_t k0_q20) {
   return q_sat64(q_shr64(of_current_q44, 24) + k0_q20);
 }
 
 /// h = K i + k0: what the slope changes with the speed.
-static inline dq_t machine_turn_q20(const machine_model_t* m, dq_t i_q20) {
-  const dq_t h = {machine_turned_q20(q_mac(q_product(m->k_dd_q24, i_q20.d), m->k_dq_q24, i_q20.q), m->k0_q20.d),
-                  machine_turned_q20(q_product(m->k_qd_q24, i_q20.d) - q_product(m->k_dd_q24, i_q20.q), m->k0_q20.q)};
+static inline dq_t machine_speed_sensitivity_q20(const machine_model_t* m, dq_t i_q20) {
+  const dq_t h = {
+      machine_sensitivity_q20(q_mac(q_product(m->k_dd_q24, i_q20.d), m->k_dq_q24, i_q20.q), m->k0_q20.d),
+      machine_sensitivity_q20(q_product(m->k_qd_q24, i_q20.d) - q_product(m->k_dd_q24, i_q20.q), m->k0_q20.q)};
   return h;
 }
 
@@ -120,7 +121,7 @@ static inline int32_t machine_speed_rad_q30(int32_t speed_bpp) {
   return q_mul_floor(speed_bpp, 1686629713L, 30);  // 2 pi / 4
 }
 
-/// Voltage induced by the rotation, V Q16, at the working point and a current in A Q20: w (-psi_q, psi_d).
+/// Voltage induced by the rotation, V Q16, at the operating point and a current in A Q20: w (-psi_q, psi_d).
 dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp);
 
 /// Air-gap torque, N m Q16, of mean currents in A Q20. Seed paper eq (2) with P/2 instead of the misprinted P.

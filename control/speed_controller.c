@@ -49,7 +49,7 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
   s->gains.pi_kp = q_mul_sat(s->gains.amps_per_bpp, q_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
   s->gains.pi_ki = q_mul_sat(s->gains.amps_per_bpp, q_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
   if (s->gains.pi_kp == INT32_MAX) return false;
-  s->told = s->gains;
+  s->nominal = s->gains;
   speed_controller_preset(s, 0);
   return true;
 }
@@ -57,12 +57,12 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
 // k b is w / (1 + w) with w = alpha b^2.
 void speed_controller_scale(speed_controller_t* s, int32_t ratio_q24) {
   const q_inverse_t per_ratio = q_invert(ratio_q24);
-  const int32_t rest_q24 = q_shr(ONE_Q30 - s->told.share_q30, 6);
-  const int32_t weight_q24 = q_mul(q_mul(q_shr(s->told.share_q30, 6), ratio_q24, 24), ratio_q24, 24);
+  const int32_t rest_q24 = q_shr(ONE_Q30 - s->nominal.share_q30, 6);
+  const int32_t weight_q24 = q_mul(q_mul(q_shr(s->nominal.share_q30, 6), ratio_q24, 24), ratio_q24, 24);
   s->gains.share_q30 = q_clamp(q_over(weight_q24, q_invert(weight_q24 + rest_q24), 30), 0, ONE_Q30);
-  s->gains.amps_per_bpp = q_over(s->told.amps_per_bpp, per_ratio, 24);
-  s->gains.pi_kp = q_over(s->told.pi_kp, per_ratio, 24);
-  s->gains.pi_ki = q_over(s->told.pi_ki, per_ratio, 24);
+  s->gains.amps_per_bpp = q_over(s->nominal.amps_per_bpp, per_ratio, 24);
+  s->gains.pi_kp = q_over(s->nominal.pi_kp, per_ratio, 24);
+  s->gains.pi_ki = q_over(s->nominal.pi_ki, per_ratio, 24);
 }
 
 void speed_controller_preset(speed_controller_t* s, int32_t current_q20) {
@@ -89,11 +89,11 @@ static int32_t pi_law_step(speed_controller_t* s, const speed_controller_input_t
   const int32_t error = q_sub_sat(in->reference_bpp, in->speed_bpp);
   const int32_t proportional = amps_q20(s->gains.pi_kp, error);
   const int32_t integral = q_add_sat(s->integral_q20, amps_q20(s->gains.pi_ki, error));
-  const int32_t asked = q_add_sat(proportional, integral);
-  const int32_t given = q_clamp(asked, in->lowest_q20, in->highest_q20);
+  const int32_t command_q20 = q_add_sat(proportional, integral);
+  const int32_t limited_q20 = q_clamp(command_q20, in->lowest_q20, in->highest_q20);
   // Hold the integrator while the limit is reached and the error would drive it further.
-  if (given == asked || (asked > given) != (error > 0)) s->integral_q20 = integral;
-  return given;
+  if (limited_q20 == command_q20 || (command_q20 > limited_q20) != (error > 0)) s->integral_q20 = integral;
+  return limited_q20;
 }
 
 int32_t speed_controller_step(speed_controller_t* s, speed_law_t law, const speed_controller_input_t* in) {

@@ -44,9 +44,9 @@ typedef struct {
   int32_t response_q8;   // b, bpp per A
   int32_t approach_q30;  // 1 - exp(-Ts / trajectory)
   speed_gains_t gains;
-  speed_gains_t told;    // of the parameters
-  int32_t current_q20;   // i(n-1) of the predictive law
-  int32_t integral_q20;  // of the PI law
+  speed_gains_t nominal;  // of the parameters
+  int32_t current_q20;    // i(n-1) of the predictive law
+  int32_t integral_q20;   // of the PI law
 } speed_controller_t;
 
 typedef struct {

@@ -1,10 +1,10 @@
-// The axis of the saliency from scratch: angle and admittances of a machine that stands, in one go.
+// The axis of the saliency from scratch: angle and inverse inductances of a machine that stands, in one go.
 //
 // Over a full round of the alternating layout the directions of dv are even, so the sums of AVV's regression, taken in
-// a *fixed* frame, separate: along dv only the mean admittance is left, along the mirrored dv half of the saliency
-// times cos 2 theta, across it times sin 2 theta. Angle and both admittances follow without iteration and without
-// knowing any inductance; a tracking observer that starts from a guess can sit a quarter turn off for long, and with
-// inductances that are 30 % wrong it is led by the direction of dv.
+// a *fixed* frame, separate: along dv only the mean inverse inductance is left, along the mirrored dv half of the
+// saliency times cos 2 theta, across it times sin 2 theta. Angle and both inverse inductances follow without iteration
+// and without knowing any inductance; a tracking observer that starts from a guess can sit a quarter turn off for long,
+// and with inductances that are 30 % wrong it is led by the direction of dv.
 //
 // Result within 1 degree of motor A's axis, with half a turn left open. Not valid while the shaft turns by more than a
 // few degrees within AXIS_PERIODS.

@@ -30,7 +30,7 @@ static blend_region_t next_region(blend_region_t now, const blend_config_t* c, i
 }
 
 // Eq (44).
-static int32_t wanted_share_q15(const blend_t* s, const blend_config_t* c, int32_t speed) {
+static int32_t reference_share_q15(const blend_t* s, const blend_config_t* c, int32_t speed) {
   if (s->region == BLEND_LOW) return ONE_Q15;
   if (s->region == BLEND_HIGH) return 0;
   return q_clamp(q_mul_sat(c->high_bpp - speed, c->per_range_q30, 30), 0, ONE_Q15);
@@ -39,7 +39,7 @@ static int32_t wanted_share_q15(const blend_t* s, const blend_config_t* c, int32
 void blend_preset(blend_t* s, const blend_config_t* c, int32_t speed_bpp) {
   blend_reset(s);
   s->region = next_region(BLEND_BOTH, c, q_abs_sat(speed_bpp));
-  s->share_q15 = wanted_share_q15(s, c, q_abs_sat(speed_bpp));
+  s->share_q15 = reference_share_q15(s, c, q_abs_sat(speed_bpp));
 }
 
 static int32_t mix(int32_t low, int32_t high, int32_t share_q15) {
@@ -51,7 +51,7 @@ estimator_output_t blend_step(blend_t* s, const blend_config_t* c, const estimat
   const bool is_high = s->share_q15 == 0;
   const int32_t speed = q_abs_sat(is_high ? high->speed_bpp : mix(low->speed_bpp, high->speed_bpp, s->share_q15));
   s->region = next_region(s->region, c, speed);
-  s->share_q15 = q_clamp(wanted_share_q15(s, c, speed), s->share_q15 - c->rate_q15, s->share_q15 + c->rate_q15);
+  s->share_q15 = q_clamp(reference_share_q15(s, c, speed), s->share_q15 - c->rate_q15, s->share_q15 + c->rate_q15);
   s->disagreement_bam = angle_diff_bam(low->angle_bam, high->angle_bam);
   if (s->share_q15 == 0) return *high;
   estimator_output_t out;

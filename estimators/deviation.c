@@ -63,11 +63,12 @@ deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t 
   // J K - K J = [-p, q; q, p] with p = K_dq + K_qd, q = 2 K_dd; J k0 = (-k0_q, k0_d).
   const int32_t p_q24 = q_add_sat(m->k_dq_q24, m->k_qd_q24);
   const int32_t q_q24 = 2 * m->k_dd_q24;
-  const dq_t turn = {machine_turned_q20(q_product(q_q24, i.q) - q_product(p_q24, i.d), -(int64_t)m->k0_q20.q),
-                     machine_turned_q20(q_mac(q_product(q_q24, i.d), p_q24, i.q), m->k0_q20.d)};
+  const dq_t turn = {machine_sensitivity_q20(q_product(q_q24, i.q) - q_product(p_q24, i.d), -(int64_t)m->k0_q20.q),
+                     machine_sensitivity_q20(q_mac(q_product(q_q24, i.d), p_q24, i.q), m->k0_q20.d)};
   const dq_t lost_q16 = {q_limit(q_mul_floor(m->rs_q24, i.d, 28), LOST_MAX_Q16),
                          q_limit(q_mul_floor(m->rs_q24, i.q, 28), LOST_MAX_Q16)};
-  deviation_sensitivity_t s = {m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, -2 * m->ydq_q30, {0, 0}, machine_turn_q20(m, i)};
+  deviation_sensitivity_t s = {
+      m->yd_q30 - m->yq_q30, 2 * m->ydq_q30, -2 * m->ydq_q30, {0, 0}, machine_speed_sensitivity_q20(m, i)};
   const dq_t lost_q17 = deviation_by_angle_q17(&s, lost_q16);
   s.rest_q17.d = q_mul_floor(turn.d, w_q30, 33) - lost_q17.d;
   s.rest_q17.q = q_mul_floor(turn.q, w_q30, 33) - lost_q17.q;

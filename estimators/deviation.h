@@ -32,7 +32,7 @@ typedef struct {
 typedef struct {
   int32_t saliency_q30, tilt_q30, less_tilt_q30;  // J Y - Y J = [-tilt, saliency; saliency, tilt]
   dq_t rest_q17;                                  // what of h_angle does not hang on the voltage, A per period and rad
-  dq_t turn_q20;                                  // h_speed, A per period and (rad per period)
+  dq_t h_speed_q20;                               // h_speed, A per period and (rad per period)
 } deviation_sensitivity_t;
 
 /// Angle of the estimator in the middle of the period in which the windows lie, from that at its end.

@@ -14,17 +14,17 @@
 #define VARIANCE_MAX (512L * ONE_Q20)
 #define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
 #define ONE_Q30 1073741823L
-#define ALERT_SHIFT 9u                    // an alert fades within 51 ms
-#define ALERT_AGAIN_Q30 858993459L        // and may be repeated after 11 ms
-#define ALERT_OVER_Q30 53687091L          // at speed after 150 ms: what leans for ever is the model, not the load
-#define LEAN_MIN 40                       // a lean of 0.4 units of angle, a third of a degree; Q24 to Q20
-#define STEP_AGE_Q30 268435456L           // 16 periods
+#define BOOST_SHIFT 9u              // the boost fades within 51 ms
+#define BOOST_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
+#define BOOST_OVER_Q30 53687091L    // at speed after 150 ms: what is suspected for ever is the model, not the load
+#define SCORE_BIAS_MIN 40           // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define STEP_AGE_Q30 268435456L     // 16 periods
 #define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
 #define LAG_MAX_Q20 16777216L             // 16 units of time: 102 ms
 #define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
-#define POWER_START 419430L  // 0.05: nothing leans before the power is known
+#define POWER_START 419430L  // 0.05: nothing is suspected before the power is known
 #define HALF_Q9 256L
 #define DUE_Q9 128L
 #define PERIODS_DUE 7L
@@ -82,17 +82,17 @@ static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_ob
 
 // The mean of white scores over 32 periods has 1/63 of their power: five standard deviations are 0.63 of its root, and
 // noise has them once in five minutes. A longer mean would see smaller loads, and 5 N m a millisecond later. The power
-// is measured, not the information's word for it: it holds whatever noise the observer was told.
+// is measured, not the information's word for it: it holds whatever noise the observer was configured with.
 static void follow_scores(deviation_observer_t* s, const information_t* n) {
   s->mean_score_q20 = q_follow_halves(s->mean_score_q20, n->a, MEAN_SHIFT);
   // Neither square nor power is below 0: their difference stays in 31 bits. What the shift leaves counts later: short
   // windows have a power of 100 in Q23, all of which would be lost.
-  s->score_power_q23 = q_follow_rest(s->score_power_q23, q_square_sat(n->a, 17), POWER_SHIFT, &s->score_rest);
+  s->score_power_q23 = q_follow_remainder(s->score_power_q23, q_square_sat(n->a, 17), POWER_SHIFT, &s->score_remainder);
 }
 
-static bool scores_lean(const deviation_observer_t* s, const information_t* n) {
+static bool scores_suggest_step(const deviation_observer_t* s, const information_t* n) {
   return q_square_sat(s->mean_score_q20, 17) > s->score_power_q23 / 5 * 2 &&
-         q_abs_sat(s->mean_score_q20) > n->aa / LEAN_MIN;
+         q_abs_sat(s->mean_score_q20) > n->aa / SCORE_BIAS_MIN;
 }
 
 // A step is noticed when it has already turned the shaft: a load that changed some time ago has left speed and angle
@@ -115,28 +115,28 @@ static int32_t quiet_noise_q20(const deviation_observer_t* s, const deviation_ob
   return c->load_noise_quiet_q20 - q_shr(q_mul_floor(c->load_noise_quiet_q20, s->cogging.known_q30, 30), 3) * 7;
 }
 
-static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
+static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool suspected) {
   const int32_t periods = s->gathered.periods;
   const int32_t crawl_q30 = crawl_share_q30(s, c);
-  s->alert_q30 = q_max(s->alert_q30 - periods * q_shr_round(s->alert_q30, ALERT_SHIFT), 0);
+  s->noise_boost_q30 = q_max(s->noise_boost_q30 - periods * q_shr_round(s->noise_boost_q30, BOOST_SHIFT), 0);
   const int32_t step_q20 = c->moving_step_q20 + q_mul_floor(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
-  const int32_t again_q30 = (crawl_q30 > 0) ? ALERT_AGAIN_Q30 : ALERT_OVER_Q30;
-  if (lean && step_q20 > 0 && s->alert_q30 < again_q30) {
-    s->alert_q30 = ONE_Q30;
+  const int32_t again_q30 = (crawl_q30 > 0) ? BOOST_AGAIN_Q30 : BOOST_OVER_Q30;
+  if (suspected && step_q20 > 0 && s->noise_boost_q30 < again_q30) {
+    s->noise_boost_q30 = ONE_Q30;
     admit_load_step(s, c, step_q20);
   }
-  const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->alert_q30, 30);
+  const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->noise_boost_q30, 30);
   s->p_ll += periods * (c->load_noise_q20 - q_mul_floor(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30));
 }
 
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
   const int32_t load_q8 =
       q_add_sat(s->load_accel_q8, cogging_load(&s->cogging, &c->cogging, s->angle_bam, s->speed_bpp));
-  const int32_t change_q8 = q_sat64((int64_t)torque_accel_q8 - load_q8 + s->speed_rest_q8);
+  const int32_t change_q8 = q_sat64((int64_t)torque_accel_q8 - load_q8 + s->speed_remainder_q8);
   const int32_t change = q_shr(change_q8, 8);
   s->angle_bam += (uint32_t)(s->speed_bpp + q_shr(change, 1));
   s->speed_bpp += change;
-  s->speed_rest_q8 = (int32_t)((uint32_t)change_q8 & 255u);
+  s->speed_remainder_q8 = (int32_t)((uint32_t)change_q8 & 255u);
 }
 
 // The covariance over the periods since it was last renewed; a period is 1/64 of the unit of time.
@@ -244,39 +244,40 @@ static bool gain_is_old(const deviation_observer_t* s) {
 
 bool deviation_observer_is_sure(const deviation_observer_t* s) { return s->p_aa <= KNOWN_VARIANCE; }
 
-bool deviation_observer_is_pressed(const deviation_observer_t* s) {
+bool deviation_observer_update_is_urgent(const deviation_observer_t* s) {
   return !deviation_observer_is_sure(s) || learnt_q9(s) > DUE_Q9;
 }
 
 bool deviation_observer_is_due(const deviation_observer_t* s) {
-  return s->load_is_new || s->gathered.periods >= PERIODS_DUE || deviation_observer_is_pressed(s);
+  return s->load_is_new || s->gathered.periods >= PERIODS_DUE || deviation_observer_update_is_urgent(s);
 }
 
 // A load that steps is not waited with for long, nor is what it does to the covariance in the 11 ms behind it.
-static void note_load(deviation_observer_t* s, const deviation_observer_config_t* c, bool lean) {
+static void note_load(deviation_observer_t* s, const deviation_observer_config_t* c, bool suspected) {
   const bool looks_out = c->moving_step_q20 > 0 || q_abs_sat(s->speed_bpp) <= c->crawl_bpp;
-  s->leaned = s->leaned || (lean && looks_out && s->alert_q30 < ALERT_OVER_Q30);
-  s->load_is_new = s->leaned || s->alert_q30 > ALERT_AGAIN_Q30;
+  s->load_step_suspected = s->load_step_suspected || (suspected && looks_out && s->noise_boost_q30 < BOOST_OVER_Q30);
+  s->load_is_new = s->load_step_suspected || s->noise_boost_q30 > BOOST_AGAIN_Q30;
 }
 
-static const deviation_left_t none_left = {0, 0, 0, 0};
+static const deviation_residual_t no_residual = {0, 0, 0, 0};
 
-bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods) {
-  const deviation_left_t left = s->left;
-  s->left = none_left;
-  if (left.span_ticks <= 0) return false;
-  const int32_t per_tick_q30 = 1073741824L / left.span_ticks;
-  residual_q20->d = q_mul_sat(q_sat64(q_shr64(left.d_q20, 16)), per_tick_q30, 14);
-  residual_q20->q = q_mul_sat(q_sat64(q_shr64(left.q_q20, 16)), per_tick_q30, 14);
-  *span_ticks = left.span_ticks / q_max(left.periods, 1);
-  *periods = left.periods;
+bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks,
+                                           int32_t* periods) {
+  const deviation_residual_t sum = s->residual;
+  s->residual = no_residual;
+  if (sum.span_ticks <= 0) return false;
+  const int32_t per_tick_q30 = 1073741824L / sum.span_ticks;
+  residual_q20->d = q_mul_sat(q_sat64(q_shr64(sum.d_q20, 16)), per_tick_q30, 14);
+  residual_q20->q = q_mul_sat(q_sat64(q_shr64(sum.q_q20, 16)), per_tick_q30, 14);
+  *span_ticks = sum.span_ticks / q_max(sum.periods, 1);
+  *periods = sum.periods;
   return true;
 }
 
 // What is left counts with the span of its window.
-static void leave(deviation_left_t* left, const estimator_input_t* in, const deviation_t d[]) {
+static void leave(deviation_residual_t* left, const estimator_input_t* in, const deviation_t d[]) {
   if (++left->periods >= LEFT_PERIODS_MAX) {
-    *left = none_left;
+    *left = no_residual;
     return;
   }
   int64_t d_q20 = left->d_q20;
@@ -304,7 +305,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
   }
   const deviation_model_t at = deviation_model(in->model, w_q30);
   for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &d[k]);
-  leave(&s->left, in, d);
+  leave(&s->residual, in, d);
   // What the first period says counts only where the sensitivities were asked for beside it.
   const bool counts = s->is_sensitive || in->refresh;
   if (in->refresh || !s->is_sensitive) {
@@ -322,7 +323,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
     regression_evaluate(&s->regression, d, in);
     s->regressed_bam = s->angle_bam;
   }
-  return information_of(&sums, c, h->turn_q20);
+  return information_of(&sums, c, h->h_speed_q20);
 }
 
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their
@@ -346,13 +347,13 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   }
   s->gathered.periods++;
   follow_scores(s, &n);
-  const bool lean = scores_lean(s, &n);
-  note_load(s, c, lean);
+  const bool suspected = scores_suggest_step(s, &n);
+  note_load(s, c, suspected);
   if (in->renew || gain_is_old(s)) {
     predict_covariance(s);
-    admit_load_change(s, c, lean || s->leaned);
+    admit_load_change(s, c, suspected || s->load_step_suspected);
     renew(s);
-    s->leaned = false;
+    s->load_step_suspected = false;
   }
   correct(s, &n);
   const int32_t certainty = 32767 - q_shr(s->p_aa, 12);

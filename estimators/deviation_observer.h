@@ -47,12 +47,12 @@ typedef struct {
   bool zero_vectors_only;
 } deviation_observer_config_t;
 
-/// What the observer has left unexplained since somebody last took it (deviation_observer_take_left).
+/// What the observer has left unexplained since somebody last took it (deviation_observer_take_mean_residual).
 typedef struct {
   int64_t d_q20, q_q20;  // sum of the residuals times their spans, A per period and ticks
   int32_t span_ticks;    // of all windows
   int32_t periods;
-} deviation_left_t;
+} deviation_residual_t;
 
 typedef struct {
   int64_t as_q24;
@@ -64,17 +64,17 @@ typedef struct {
   uint32_t angle_bam;
   int32_t speed_bpp;  // within 1.9 rad per period
   int32_t load_accel_q8;
-  int32_t speed_rest_q8;
+  int32_t speed_remainder_q8;
   int32_t p_aa, p_as, p_al, p_ss, p_sl, p_ll;  // covariance of angle, speed, (minus) load acceleration, Q20
   int32_t mean_score_q20;                      // of the angle, over 32 periods
   int32_t score_power_q23;                     // over 256 periods
-  uint32_t score_rest;                         // what its shift by 8 has left, 0..255
-  int32_t alert_q30;                           // 1 when the load has just changed, decays
+  uint32_t score_remainder;                    // what its shift by 8 has left, 0..255
+  int32_t noise_boost_q30;                     // 1 when the load has just changed, decays
   bool load_is_new;                            // it has changed within the last 11 ms, or
-  bool leaned;                                 // the scores have said that it may be, and nothing was done about it yet
+  bool load_step_suspected;                    // the scores have said that it may be, and nothing was done about it yet
   cogging_t cogging;
   deviation_gathered_t gathered;  // information since the covariance was last renewed
-  deviation_left_t left;
+  deviation_residual_t residual;
   deviation_sensitivity_t sensitivity;  // as last refreshed
   bool is_sensitive;
   regression_t regression;  // of the last step that was to make one
@@ -95,12 +95,13 @@ void deviation_observer_stands(deviation_observer_t* s);
 /// True when the covariance should be renewed in one of the next periods; while the angle is known to 5 degrees.
 bool deviation_observer_is_due(const deviation_observer_t* s);
 /// True when the next windows may well make it renew the covariance, asked or not.
-bool deviation_observer_is_pressed(const deviation_observer_t* s);
+bool deviation_observer_update_is_urgent(const deviation_observer_t* s);
 bool deviation_observer_is_sure(const deviation_observer_t* s);
 
 /// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were
 /// none.
-bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods);
+bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks,
+                                           int32_t* periods);
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);

@@ -65,9 +65,9 @@ void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_
 static void expect_unseen(const flux_observer_t* s, const flux_observer_config_t* f, ab_t* emf_q16) {
   if (s->form.form == STATOR_FLUX_PLAIN || q_abs_sat(s->observer.speed_bpp) >= f->adaptation.lowest_bpp) return;
   const abc_t current_q20 = frame_inverse_clarke(s->current_q20);
-  const bool a = q_abs_sat(current_q20.a) < f->blind_q20;
-  const bool b = q_abs_sat(current_q20.b) < f->blind_q20;
-  const bool c = q_abs_sat(current_q20.c) < f->blind_q20;
+  const bool a = q_abs_sat(current_q20.a) < f->unknown_voltage_q20;
+  const bool b = q_abs_sat(current_q20.b) < f->unknown_voltage_q20;
+  const bool c = q_abs_sat(current_q20.c) < f->unknown_voltage_q20;
   if (!a && !b && !c) return;
   const int32_t turn_q30 = machine_speed_rad_q30(s->observer.speed_bpp);
   const ab_t expected_q16 = {q_mul_sat(s->flux_q16.beta, -turn_q30, 30), q_mul_sat(s->flux_q16.alpha, turn_q30, 30)};

@@ -17,9 +17,9 @@
 // to angle it is w_c s / ((s + w_c)^2 + w^2), at most 1/2 at any speed, and the tracking observer's own at most 1.2.
 //
 // Needs the mean voltage of every period. A phase without current makes its voltage itself, within what dead time and
-// drops leave open: below blind_q20, and below the speed at which the magnet is learnt, the EMF along it is not the
-// told one, but what the flux makes at the observed speed. Where the cut-off is the least one (quality_q15 is 0 there),
-// the integral is not to be trusted.
+// drops leave open: below unknown_voltage_q20, and below the speed at which the magnet is learnt, the EMF along it is
+// not the nominal one, but what the flux makes at the observed speed. Where the cut-off is the least one (quality_q15
+// is 0 there), the integral is not to be trusted.
 
 #ifndef STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
 #define STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
@@ -33,10 +33,10 @@ typedef enum { FLUX_CONV = 0, FLUX_PP01 = 1, FLUX_PP02 = 2, FLUX_ACTIVE = 3 } fl
 
 typedef struct {
   flux_method_t method;
-  bool is_plain;          // all but PP-02 on the low-pass as it is, at cutoff_q30, as the paper has them
-  int32_t cutoff_q30;     // least w_c T of the low-pass integrator, 1e-4..0.015
-  int32_t bandwidth_q30;  // bandwidth * T of the tracking observer, 1e-4..0.1
-  int32_t blind_q20;      // current of a phase below which its voltage is not known, A; 0 for none
+  bool is_plain;                // all but PP-02 on the low-pass as it is, at cutoff_q30, as the paper has them
+  int32_t cutoff_q30;           // least w_c T of the low-pass integrator, 1e-4..0.015
+  int32_t bandwidth_q30;        // bandwidth * T of the tracking observer, 1e-4..0.1
+  int32_t unknown_voltage_q20;  // current of a phase below which its voltage is not known, A; 0 for none
   flux_adaptation_config_t adaptation;
   uint16_t adaptation_periods;  // between two steps of it, 1..1000; in the mean, where more than 32
 } flux_observer_config_t;

@@ -18,7 +18,7 @@ typedef struct {
 } followed_t;
 
 /// One period: its tick in a step of `length` periods.
-void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t asked_q20, int32_t flows_q20);
+void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t reference_q20, int32_t flows_q20);
 
 /// True when the current has followed a pattern of this amplitude.
 bool followed_well(const followed_t* f, int32_t amplitude_q20);

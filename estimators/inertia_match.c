@@ -9,7 +9,7 @@
 #define FIRST_TURN (ONE_Q24 / 4)
 #define LAST_TURN (16 * ONE_Q24)
 #define TURN_END 1073741824L           // 64 turns
-#define LOWEST_Q24 (ONE_Q24 / 8 * 3)   // inertia 2.7 times what was told
+#define LOWEST_Q24 (ONE_Q24 / 8 * 3)   // inertia 2.7 times the nominal one
 #define HIGHEST_Q24 (ONE_Q24 / 2 * 5)  // 0.4 times
 #define BASE_SHIFT 4u
 

@@ -9,9 +9,9 @@
 //
 // A segment lasts 40 periods; the whole test 560 (56 ms at 10 kHz). A response below a quarter of what the inertia lets
 // expect is ambiguous (blocked shaft, far too large inertia, noise), and so is one below four times its standard error,
-// which the scatter of the angle tells. A shaft may be any number of times lighter than told; but where the test is not
-// the first, because the voltage was too low for the one before, a response above eight times the expectation is what
-// that one has left moving (bounded).
+// which the scatter of the angle tells. A shaft may be any number of times lighter than nominal; but where the test is
+// not the first, because the voltage was too low for the one before, a response above eight times the expectation is
+// what that one has left moving (bounded).
 
 #ifndef STILLSPIN_ESTIMATORS_POLARITY_H
 #define STILLSPIN_ESTIMATORS_POLARITY_H

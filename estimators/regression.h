@@ -3,8 +3,8 @@
 //
 // Differences between windows depend on L^-1(theta) alone, and any two or three distinct vectors will do (seed paper,
 // eqs (37)-(41)). The windows are weighted with the square of their span (their information). The four projections of
-// the residuals' differences on those of the voltages belong to the errors of the mean admittance, of the saliency, of
-// the angle and of the sensors' match; the mean residual belongs to resistance and back-EMF.
+// the residuals' differences on those of the voltages belong to the errors of the mean inverse inductance, of the
+// saliency, of the angle and of the sensors' match; the mean residual belongs to resistance and back-EMF.
 
 #ifndef STILLSPIN_ESTIMATORS_REGRESSION_H
 #define STILLSPIN_ESTIMATORS_REGRESSION_H
@@ -13,7 +13,7 @@
 
 typedef struct {
   int32_t spread_q8;    // mean |dv|^2, V^2
-  int32_t along_q16;    // residual along dv, V A per period: error of the mean admittance
+  int32_t along_q16;    // residual along dv, V A per period: error of the mean inverse inductance
   int32_t mirror_q16;   // residual along the mirrored dv: error of the saliency
   int32_t cross_q16;    // residual across the mirrored dv: angle error
   int32_t curl_q16;     // residual across dv: mismatch of the two current sensors

@@ -1,7 +1,7 @@
 #include "estimators/saturation.h"
 
 #define RELATIVE_MAX_Q30 536870912L  // no inductance is taken to change by more than half
-#define FLOOR_SHARE 650              // of the mean admittance: 0.15 %
+#define FLOOR_SHARE 650              // of the mean inverse inductance: 0.15 %
 #define PASSES_MAX 8
 #define STEP_END_Q30 268435456L  // between two rounds, 0.25 A per V and period: the squares of 8 passes fit
 #define SCORE_MIN_Q15 11469L     // 0.35
@@ -15,7 +15,7 @@
 
 static const int16_t segment_sign[SATURATION_SEGMENTS] = {1, -1, -1, 1};
 
-// Change of an admittance from -I to +I: -2 I slope y.
+// Change of an inverse inductance from -I to +I: -2 I slope y.
 static int32_t expected_change(int32_t y_q30, int32_t slope_q30, int32_t current_q20) {
   const int32_t relative_q30 = q_clamp(q_mul_sat(slope_q30, 2 * current_q20, 20), -RELATIVE_MAX_Q30, RELATIVE_MAX_Q30);
   return -q_mul(y_q30, relative_q30, 30);
@@ -54,7 +54,7 @@ void saturation_again(saturation_t* s) {
   s->result = POLARITY_PENDING;
 }
 
-// What the period says about the admittances, projected on the expected change.
+// What the period says about the inverse inductances, projected on the expected change.
 static int32_t projected_q30(const saturation_t* s, const regression_t* r, const machine_model_t* m) {
   const int32_t yd_q30 = q_add_sat(m->yd_q30, q_div(q_add_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
   const int32_t yq_q30 = q_add_sat(m->yq_q30, q_div(q_sub_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
@@ -107,7 +107,7 @@ int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_mo
   s->reference_q20 = q_clamp(sign * s->current_q20, s->reference_q20 - slew, s->reference_q20 + slew);
   if (inside >= 0) {
     add_missing(s, r, sign);
-    // Shares of the mean and not a sum: the admittances of a machine with little inductance fill the format.
+    // Shares of the mean and not a sum: the inverse inductances of a machine with little inductance fill the format.
     s->round_q30 += ((r->information > 0) ? projected_q30(s, r, m) : s->last_q30) / SATURATION_ROUND;
     if (inside % SATURATION_ROUND == SATURATION_ROUND - 1) end_round(s, (int16_t)(inside / SATURATION_ROUND), sign);
   }

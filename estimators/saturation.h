@@ -3,9 +3,9 @@
 // A current along the found axis makes no torque. Along the magnet it adds to its flux, against it it takes away, and
 // the incremental inductances differ between the two: in most machines Ldd falls with +i_d; where the flux map is
 // cross-coupled, energy conservation asks for dLqq/di_d = dLdq/di_q. Both slopes are parameters of the machine. The
-// test commands + - - + and reads both admittances in every period from AVV's regression. What it compares is the
-// projection of (y_d, y_q) on the expected change: score = change seen / change expected, near +1 when the axis is the
-// right way round and near -1 when it is not.
+// test commands + - - + and reads both inverse inductances in every period from AVV's regression. What it compares is
+// the projection of (y_d, y_q) on the expected change: score = change seen / change expected, near +1 when the axis is
+// the right way round and near -1 when it is not.
 //
 // The confidence is the change over its standard error: the scatter within the four segments, and a floor for what does
 // not average out (bent ADC, ringing, drops). Below SATURATION_SIGMA_MIN, or with a score that fits neither answer, the
@@ -53,7 +53,7 @@ typedef struct {
   polarity_result_t result;
 } saturation_t;
 
-/// True when a current of +-current_q20 A changes the admittances by enough to tell.
+/// True when a current of +-current_q20 A changes the inverse inductances by enough to tell.
 bool saturation_is_visible(const machine_model_t* m, const saturation_slopes_t* slopes, int32_t current_q20);
 
 void saturation_begin(saturation_t* s, const machine_model_t* m, const saturation_slopes_t* slopes,

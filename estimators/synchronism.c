@@ -3,8 +3,8 @@
 #include "estimators/deviation.h"
 #include "estimators/window_sum.h"
 
-#define DOUBT_PER_BAD 8     // a good period takes back an eighth of what a bad one adds
-#define DOUBT_END 1048576L  // far beyond any doubt, and as many periods of it stay in 31 bits
+#define DEBOUNCE_PER_BAD 8     // a good period takes back an eighth of what a bad one adds
+#define DEBOUNCE_END 1048576L  // far beyond any fault, and as many periods of it stay in 31 bits
 #define SQUARE_SHIFT 22u
 #define LAG 4  // ms that a speed may be known late
 #define LIMIT_MAX 32768000L
@@ -101,11 +101,11 @@ static void follow_errors(synchronism_t* s, dq_t error_q16, int32_t turned, unsi
 }
 
 // What a period adds: 8 e^2 / limit^2 with the larger of the two errors along q, nothing up to the limit.
-static int32_t doubt_per_period(const synchronism_t* s) {
+static int32_t debounce_per_period(const synchronism_t* s) {
   const int32_t q_q16 = q_max(magnitude(s->error_q16.q), magnitude(s->turned_q16));
   const int32_t error = q_mul_add_floor(s->error_q16.d, s->error_q16.d, q_q16, q_q16, SQUARE_SHIFT);
   const int32_t limit = q_mul_floor(s->limit_q16, s->limit_q16, SQUARE_SHIFT);
-  return (error > limit) ? DOUBT_PER_BAD + q_min((error - limit) / (limit / DOUBT_PER_BAD + 1), DOUBT_END) : 0;
+  return (error > limit) ? DEBOUNCE_PER_BAD + q_min((error - limit) / (limit / DEBOUNCE_PER_BAD + 1), DEBOUNCE_END) : 0;
 }
 
 bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const machine_model_t* m,
@@ -118,8 +118,8 @@ bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const ma
                           q_over(seen->residual_q20.q, m->per_yq, 26)};
   follow_limit(s, c, m, seen, error_q16.q, shift);
   follow_errors(s, error_q16, q_mul_hi(m->emf_q16, seen->ahead_bpp), shift);
-  int32_t per_period = doubt_per_period(s);
-  if (q_limit(apart_bam, APART_LIMIT_BAM) != apart_bam) per_period = q_max(per_period, DOUBT_PER_BAD);
-  s->doubt = (per_period > 0) ? s->doubt + per_period * seen->periods : q_max(s->doubt - seen->periods, 0);
-  return s->doubt > c->bad_periods * DOUBT_PER_BAD;
+  int32_t per_period = debounce_per_period(s);
+  if (q_limit(apart_bam, APART_LIMIT_BAM) != apart_bam) per_period = q_max(per_period, DEBOUNCE_PER_BAD);
+  s->debounce = (per_period > 0) ? s->debounce + per_period * seen->periods : q_max(s->debounce - seen->periods, 0);
+  return s->debounce > c->bad_periods * DEBOUNCE_PER_BAD;
 }

@@ -1,8 +1,8 @@
 // Loss of synchronism: does the angle in use still fit the machine?
 //
 // Whatever estimator an angle comes from, the windows must obey the voltage equation in the frame of that angle. The
-// residual of the mean window of a period (deviation.h), times the L/T of the working point, is an EMF error in volts,
-// expected less true:
+// residual of the mean window of a period (deviation.h), times the L/T of the operating point, is an EMF error in
+// volts, expected less true:
 //   e = w lambda (-sin d, 1 - cos d) + saliency terms     for a frame that is ahead by d and turns with the shaft,
 // |e| = w lambda at d = 60 degrees, 1.4 w lambda at 90 and 2 w lambda with the polarity reversed; an angle that stands
 // or slips gives the EMF of one of the two speeds. It is compared with floor + share |w^ lambda|. The floor stands for
@@ -40,7 +40,7 @@ typedef struct {
   int32_t turned_q16;  // the same along q with the EMF of the frame's own speed, V
   int32_t emf_q16;     // EMF that the speed has let expect, the same mean, V
   int32_t limit_q16;   // what the error may be now, V, up to 500
-  int32_t doubt;       // eight for a period at the limit, less one for a good one
+  int32_t debounce;    // eight for a period at the limit, less one for a good one
 } synchronism_t;
 
 void synchronism_reset(synchronism_t* s);

@@ -4,9 +4,9 @@
 
 void tracking_observer_predict(tracking_observer_t* s, int32_t torque_accel_q8) {
   const int32_t before = s->speed_bpp;
-  const int32_t change_q8 = q_sat64((int64_t)torque_accel_q8 - s->load_accel_q8 + s->speed_rest_q8);
+  const int32_t change_q8 = q_sat64((int64_t)torque_accel_q8 - s->load_accel_q8 + s->speed_remainder_q8);
   const int32_t change = q_shr(change_q8, 8);
-  s->speed_rest_q8 = (int32_t)((uint32_t)change_q8 & 255u);
+  s->speed_remainder_q8 = (int32_t)((uint32_t)change_q8 & 255u);
   s->speed_bpp = q_clamp(before + change, -SPEED_END_BPP, SPEED_END_BPP);
   s->angle_bam += (uint32_t)before + (uint32_t)(change / 2);
 }

@@ -13,7 +13,7 @@ typedef struct {
   uint32_t angle_bam;
   int32_t speed_bpp;  // within 1.9 rad per period
   int32_t load_accel_q8;
-  int32_t speed_rest_q8;  // what of the acceleration was less than one unit of speed
+  int32_t speed_remainder_q8;  // what of the acceleration was less than one unit of speed
 } tracking_observer_t;
 
 static inline void tracking_observer_preset(tracking_observer_t* s, uint32_t angle_bam, int32_t speed_bpp,
@@ -21,7 +21,7 @@ static inline void tracking_observer_preset(tracking_observer_t* s, uint32_t ang
   s->angle_bam = angle_bam;
   s->speed_bpp = speed_bpp;
   s->load_accel_q8 = load_accel_q8;
-  s->speed_rest_q8 = 0;
+  s->speed_remainder_q8 = 0;
 }
 
 /// Moves on by one period.

@@ -7,13 +7,13 @@
 #define HASTE_OVER 8     // the haste is over at eight times the share
 #define FLOOR_Q16 4096L  // (a quarter of a unit)^2: less current and speed than that tell nothing
 
-// The flux told may be far off. While that is so its error is taken over by least squares: the slower it turns, the
-// less a voltage tells of the flux, so what was told before counts with its speed squared. True where a step is due to
+// The nominal flux may be far off. While that is so its error is taken over by least squares: the slower it turns, the
+// less a voltage tells of the flux, so what is known already counts with its speed squared. True where a step is due to
 // that and not to the drift.
 static bool hurries(machine_trim_t* t, int32_t speed_squared_q16, int32_t share_q30) {
-  const int32_t told_q20 = q_mul_sat(t->psi_variance_q32, speed_squared_q16, 28);
-  if (speed_squared_q16 < HASTE_MIN_Q16 || told_q20 / HASTE_OVER <= q_shr(share_q30, 10)) return false;
-  t->psi_variance_q32 = q_over(t->psi_variance_q32, q_invert(ONE_Q20 + told_q20), 20);
+  const int32_t known_q20 = q_mul_sat(t->psi_variance_q32, speed_squared_q16, 28);
+  if (speed_squared_q16 < HASTE_MIN_Q16 || known_q20 / HASTE_OVER <= q_shr(share_q30, 10)) return false;
+  t->psi_variance_q32 = q_over(t->psi_variance_q32, q_invert(ONE_Q20 + known_q20), 20);
   return true;
 }
 

@@ -1,7 +1,7 @@
 // Slow adaptation of the stator resistance and of the magnet flux to what the windows show.
 //
 // The mean residual of a period (regression.h), seen as a voltage of the q axis, is what resistance and back-EMF leave
-// unexplained: e_q = r_q / yq = -dR i_q - w dpsi, i_q being the model's working point. One equation a period for two
+// unexplained: e_q = r_q / yq = -dR i_q - w dpsi, i_q being the model's operating point. One equation a period for two
 // unknowns; a normalised least-mean-squares step moves each by what it can have caused, so that R (and with it what the
 // devices' drops differ) is learnt under load at low speed, and the flux at speed. Both stay within bounds around the
 // parameters. Far slower than the estimators, which therefore see constants.

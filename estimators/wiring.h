@@ -1,9 +1,9 @@
-// Whether motor, gates and current sensors are wired as told: from what the axis was found with (axis.h).
+// Whether motor, gates and current sensors are wired as configured: from what the axis was found with (axis.h).
 //
 // On a shaft that stands the currents under the six active vectors rise by di = Y dv. Summed over a round, the windows
 // give the four entries of the matrix between the voltages that were switched and the currents that two sensors read,
 //
-//   Y = | y + x   c - u |      y mean admittance, (x, c) saliency, u curl
+//   Y = | y + x   c - u |      y mean inverse inductance, (x, c) saliency, u curl
 //       | c + u   y - x |
 //
 // A motor, whatever its saliency and wherever its rotor stands, has u = 0 and y above the length of (x, c). Every

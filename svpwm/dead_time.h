@@ -12,8 +12,8 @@
 #include "svpwm/ripple.h"
 
 typedef struct {
-  int16_t blocked_ticks;   // dead time + turn-on delay, 0..240
-  int16_t released_ticks;  // turn-off delay, 0..blocked
+  int16_t turn_on_ticks;   // dead time + turn-on delay, 0..240
+  int16_t turn_off_ticks;  // turn-off delay, 0..turn_on_ticks
   int32_t edge_band_q20;   // error that a predicted current at an edge may have, A
   int32_t band_q20;        // current below which the sign is not trusted, A, 0.01..2
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
@@ -27,33 +27,33 @@ void dead_time_design(dead_time_config_t* c);
 
 /// Delay of an edge, ticks; the current is positive where it blocks the edge.
 static inline int32_t dead_time_delay_ticks(const dead_time_config_t* c, int32_t blocking_q20) {
-  if (blocking_q20 >= c->band_q20) return c->blocked_ticks;
-  if (blocking_q20 <= -c->band_q20) return c->released_ticks;
-  const int32_t middle = c->blocked_ticks + c->released_ticks;
-  const int32_t half_range = c->blocked_ticks - c->released_ticks;
+  if (blocking_q20 >= c->band_q20) return c->turn_on_ticks;
+  if (blocking_q20 <= -c->band_q20) return c->turn_off_ticks;
+  const int32_t middle = c->turn_on_ticks + c->turn_off_ticks;
+  const int32_t half_range = c->turn_on_ticks - c->turn_off_ticks;
   return q_shr(middle * (int32_t)32768 + half_range * q_mul_hi(blocking_q20 * 8, c->per_band_q29) + 32768L, 16);
 }
 
 /// An edge at a current whose sign is not certain, or not trusted.
-static inline int32_t dead_time_send_in_doubt(const dead_time_config_t* c, const svpwm_ripple_edge_t* e,
-                                              svpwm_arrival_t* arrival) {
+static inline int32_t dead_time_compensate_uncertain(const dead_time_config_t* c, const svpwm_ripple_edge_t* e,
+                                                     svpwm_arrival_t* arrival) {
   const int32_t sent = e->tick - dead_time_delay_ticks(c, e->blocking_q20);
   if (e->blocking_q20 < c->edge_band_q20 && e->blocking_q20 > -c->edge_band_q20) {
-    arrival->earliest = sent + c->released_ticks;
-    arrival->latest = sent + c->blocked_ticks;
+    arrival->earliest = sent + c->turn_off_ticks;
+    arrival->latest = sent + c->turn_on_ticks;
   }
   return sent;
 }
 
 /// The command, in ticks, that makes the motor see an edge where it is wanted. With a current below edge_band an edge
-/// is not certain: with the other sign than predicted it comes up to blocked - released ticks early or late.
-static inline int32_t dead_time_send(const dead_time_config_t* c, const svpwm_ripple_edge_t* e,
-                                     svpwm_arrival_t* arrival) {
+/// is not certain: with the other sign than predicted it comes up to the turn-on less the turn-off delay early or late.
+static inline int32_t dead_time_compensate(const dead_time_config_t* c, const svpwm_ripple_edge_t* e,
+                                           svpwm_arrival_t* arrival) {
   arrival->earliest = e->tick;
   arrival->latest = e->tick;
-  if (e->blocking_q20 >= c->certain_q20) return e->tick - c->blocked_ticks;
-  if (e->blocking_q20 <= -c->certain_q20) return e->tick - c->released_ticks;
-  return dead_time_send_in_doubt(c, e, arrival);
+  if (e->blocking_q20 >= c->certain_q20) return e->tick - c->turn_on_ticks;
+  if (e->blocking_q20 <= -c->certain_q20) return e->tick - c->turn_off_ticks;
+  return dead_time_compensate_uncertain(c, e, arrival);
 }
 
 /// Sign of a current as -1..1, Q21, linear inside the band.

@@ -8,13 +8,13 @@
 
 /// What the legs carry in the period, for the current at an edge.
 typedef struct {
-  ab_t current_q20;        // mean phase currents, alpha-beta, A
-  int32_t admittance_q30;  // mean T/L, A per V and period
-  int32_t link_q16;        // DC link, V
+  ab_t current_q20;                // mean phase currents, alpha-beta, A
+  int32_t inverse_inductance_q30;  // mean T/L, A per V and period
+  int32_t link_q16;                // DC link, V
 } svpwm_carried_t;
 
 /// Commands that make the motor see the edges of the pattern's pulses, and the pattern's windows.
-void svpwm_send(const dead_time_config_t* c, const sampling_config_t* sampling, const svpwm_carried_t* carried,
-                svpwm_pattern_t* pattern, svpwm_pulses_t* command);
+void svpwm_compensate_edges(const dead_time_config_t* c, const sampling_config_t* sampling,
+                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, svpwm_pulses_t* command);
 
 #endif

@@ -70,7 +70,7 @@ typedef struct {
 } svpwm_window_t;
 
 typedef struct {
-  svpwm_pulses_t pulses;  // edges wanted at the motor
+  svpwm_pulses_t pulses;  // edges commanded at the motor
   svpwm_window_t windows[SVPWM_WINDOWS];
   uint16_t window_count;
 } svpwm_pattern_t;

@@ -37,12 +37,12 @@ ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
   return v;
 }
 
-svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t admittance_q30,
+svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t inverse_inductance_q30,
                                       int32_t link_q16) {
   const int32_t a = svpwm_on_ticks(p, 0);
   const int32_t b = svpwm_on_ticks(p, 1);
   const int32_t c = svpwm_on_ticks(p, 2);
-  const int32_t amperes_q20 = q_sat_bits(q_product(link_q16, admittance_q30), 26, AMPERES_BITS);
+  const int32_t amperes_q20 = q_sat_bits(q_product(link_q16, inverse_inductance_q30), 26, AMPERES_BITS);
   const svpwm_ripple_walk_t w = {p,
                                  p->order,
                                  {{3 * a, mean_q20.a}, {3 * b, mean_q20.b}, {3 * c, mean_q20.c}},

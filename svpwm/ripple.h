@@ -41,9 +41,9 @@ typedef struct {
   int32_t blocking_q20;  // current that keeps the edge from coming with its command: out of a leg that rises, A
 } svpwm_ripple_edge_t;
 
-/// admittance_q30: mean T/L, A per V and period; link_q16: DC link, V; together taken as 1024 A at most. Mean currents
-/// up to 1400 A.
-svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t admittance_q30,
+/// inverse_inductance_q30: mean T/L, A per V and period; link_q16: DC link, V; together taken as 1024 A at most. Mean
+/// currents up to 1400 A.
+svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t inverse_inductance_q30,
                                       int32_t link_q16);
 
 /// The next edge; there is one while `order` is not 0, as the last edge is a falling one.

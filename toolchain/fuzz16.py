@@ -51,7 +51,7 @@ DEFECTS = (
         *("l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
     ),
     Defect(
-        *("a word behind the last one", "link16", TRAP, "firmware/text/words.c"),
+        *("a word behind the last one", "link16", TRAP, "firmware/text/catalogue.c"),
         *("return (k < ROWS && kinds[k] == kind)", "return (kinds[k] == kind)"),
     ),
     Defect(

@@ -62,7 +62,7 @@ DRIVERS = ("hal_drivers_test", "hal_on_chip_test", "hal_can_test", "bench_run_te
 # lines beside it: left out.
 PARTS = {
     "hal/qmath": Part(("hal/qmath/*.c", "hal/qmath/*.h"), ("qmath_test", "control_test", "estimators_test")),
-    "hal/f2808": Part(("hal/f2808/*.c", "hal/tape.c"), DRIVERS, 3, frozenset({"hal/f2808/flash.c"})),
+    "hal/f2808": Part(("hal/f2808/*.c", "hal/replay.c"), DRIVERS, 3, frozenset({"hal/f2808/flash.c"})),
     "control": Part(("control/*.c", "control/*.h"), ("control_test", "bench_run_test")),
     "svpwm": Part(("svpwm/*.c", "svpwm/*.h"), ("svpwm_test", "bench_run_test")),
     "estimators": Part(("estimators/*.c", "estimators/*.h"), ("estimators_test", "firmware_test", "bench_run_test")),
@@ -71,7 +71,10 @@ PARTS = {
         (
             *("firmware/mode/*.c", "firmware/config/rules.c", "firmware/api/actions.c", "firmware/start/*.c"),
             *(f"firmware/drive/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "protection")),
-            *(f"firmware/drive/{name}.c" for name in ("sequence", "speed", "reset", "brake_hold", "polarity_watch")),
+            *(
+                f"firmware/drive/{name}.c"
+                for name in ("sequence", "speed", "reset", "brake_release_hold", "polarity_watch")
+            ),
             *("firmware/board/*.c", "firmware/commissioning/*.c"),
         ),
         FIRMWARE,
@@ -96,7 +99,7 @@ PARTS = {
     "firmware/link": Part(
         (
             *("firmware/link/*.c", "firmware/base/octets.c", "firmware/base/crc.c"),
-            *("firmware/api/guard.c", "firmware/api/status.c"),
+            *("firmware/api/comm_watchdog.c", "firmware/api/status.c"),
             *("firmware/hil/*.c", "firmware/scope/*.c"),
         ),
         FIRMWARE,

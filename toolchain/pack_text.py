@@ -21,7 +21,7 @@ LISTS = (
     ("firmware/dictionary/signal_list.h", "SIGNAL", 5, "TEXT_SIGNAL_{0}"),
     ("firmware/dictionary/fault_list.h", "FAULT", 2, "TEXT_FAULT_{0}"),
     ("firmware/dictionary/fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
-    ("firmware/text/word_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
+    ("firmware/text/catalogue_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
     ("firmware/console/command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
     ("firmware/console/help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
     ("firmware/*/phrase_list.h", "PHRASE", 1, "SAY_{0}"),

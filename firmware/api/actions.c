@@ -5,9 +5,9 @@
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 
 #define NAME_MAX 32u  // characters of a parameter's name, and some
 
@@ -20,7 +20,7 @@ answer_status_t action_may_begin(octet_writer_t* why) {
       return ANSWER_CONFLICT;
     case DRIVE_FAULT:
       put_packed(why, SAY_a_fault_is_latched_reset_it_first);
-      put_words(why, WORDS_FAULT, (uint16_t)drive.fault);
+      put_message(why, CATALOGUE_FAULT, (uint16_t)drive.fault);
       return ANSWER_STATE;
     case DRIVE_BOOT:
     case DRIVE_CALIBRATE:
@@ -30,14 +30,14 @@ answer_status_t action_may_begin(octet_writer_t* why) {
       put_packed(why, SAY_the_drive_is_busy_stop_it_first);
       break;
   }
-  put_words(why, WORDS_STATE, (uint16_t)drive.state);
+  put_message(why, CATALOGUE_STATE, (uint16_t)drive.state);
   return ANSWER_STATE;
 }
 
-answer_status_t action_start(guard_t guard, uint32_t holder, octet_writer_t* why) {
+answer_status_t action_start(comm_watchdog_t watchdog, uint32_t holder, octet_writer_t* why) {
   const answer_status_t status = action_may_begin(why);
   if (status != ANSWER_OK) return status;
-  guard_begin(guard, holder);
+  comm_watchdog_begin(watchdog, holder);
   drive_command_start();
   return ANSWER_OK;
 }
@@ -50,7 +50,7 @@ answer_status_t action_look(octet_writer_t* why) {
 
 void put_look(octet_writer_t* w) {
   const look_outcome_t outcome = drive_look_outcome();
-  put_words(w, WORDS_LOOK, (uint16_t)outcome);
+  put_message(w, CATALOGUE_LOOK, (uint16_t)outcome);
   if (outcome < LOOK_TURNS || outcome > LOOK_UNCLEAR) return;
   put_fixed(w, drive_look_rpm(), 16, 0);
   put_packed(w, SAY_rpm);

@@ -6,7 +6,7 @@
 #ifndef STILLSPIN_FIRMWARE_API_ACTIONS_H
 #define STILLSPIN_FIRMWARE_API_ACTIONS_H
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/base/octets.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/// The numbers are those of the link's answers: stable. words(WORDS_STATUS, .) has their words.
+/// The numbers are those of the link's answers: stable. words(CATALOGUE_STATUS, .) has their words.
 typedef enum {
   ANSWER_OK = 0,
   ANSWER_UNKNOWN = 1,
@@ -30,8 +30,8 @@ typedef enum {
 /// Whether the drive can begin anything now.
 answer_status_t action_may_begin(octet_writer_t* why);
 
-/// With a guard, `link_timeout` without a record of its holder stops the drive again (link/guard.h).
-answer_status_t action_start(guard_t guard, uint32_t holder, octet_writer_t* why);
+/// With a watchdog, `link_timeout` without a record of its holder stops the drive again (comm_watchdog.h).
+answer_status_t action_start(comm_watchdog_t watchdog, uint32_t holder, octet_writer_t* why);
 
 /// Two short-circuit pulses: how the shaft turns. The outcome is asked for afterwards (drive_look_outcome).
 answer_status_t action_look(octet_writer_t* why);

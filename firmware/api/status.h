@@ -22,11 +22,11 @@ typedef struct {
   uint16_t store_work;          // what the parameter store is at; 0: nothing (store/)
   uint16_t refusals;            // commands that were typed and not carried out (console/)
   // As of the last status_update.
-  uint16_t store_state;             // WORDS_STORE
+  uint16_t store_state;             // CATALOGUE_STORE
   uint16_t store_progress;          // percent
   uint16_t unsaved;                 // parameters that are not what the next power-on will have; UNSAVED_UNKNOWN
-  uint16_t commissioning_outcome;   // WORDS_COMMISSIONING
-  uint16_t commissioning_phase;     // WORDS_PHASE
+  uint16_t commissioning_outcome;   // CATALOGUE_COMMISSIONING
+  uint16_t commissioning_phase;     // CATALOGUE_PHASE
   uint16_t commissioning_progress;  // per mille
 } feature_status_t;
 

@@ -2,7 +2,7 @@
 //
 // The mean square of the phase current over the overload's time constant is held against that of the current that may
 // flow for ever, the motor's rated one unless it is said to be another (I^2 t: what the winding's copper loss heats).
-// Where neither is told it is half of the current limit, safe where that is up to twice the rated current.
+// Where neither is given it is half of the current limit, safe where that is up to twice the rated current.
 // From 0.9 of that current on the limit falls in a straight line to it.
 
 #include "firmware/board/functions.h"

@@ -19,7 +19,7 @@ void flash_sum_begin(flash_sum_t* sum) {
   const uint32_t end = read_pair(HAL_FLASH_IMAGE_IDENTITY + HAL_IMAGE_SUM_END);
   if (end <= SUM_AT + 1uL || end > HAL_FLASH_CSM_RESERVED) return;
   sum->end = end;
-  sum->wanted = read_pair(SUM_AT);
+  sum->expected = read_pair(SUM_AT);
   sum->next = HAL_FLASH_START;
   sum->crc = CRC32_BEGIN;
   sum->state = FLASH_SUM_UNDER_WAY;
@@ -34,5 +34,5 @@ void flash_sum_service(flash_sum_t* sum) {
     sum->next++;
   }
   if (sum->next < sum->end) return;
-  sum->state = crc32_end(sum->crc) == sum->wanted ? FLASH_SUM_RIGHT : FLASH_SUM_WRONG;
+  sum->state = crc32_end(sum->crc) == sum->expected ? FLASH_SUM_RIGHT : FLASH_SUM_WRONG;
 }

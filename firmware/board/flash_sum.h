@@ -15,7 +15,7 @@ typedef enum { FLASH_SUM_NONE, FLASH_SUM_UNDER_WAY, FLASH_SUM_RIGHT, FLASH_SUM_W
 typedef struct {
   flash_sum_state_t state;
   uint32_t next, end;  // addresses: the next word, and the one behind the last
-  uint32_t wanted;
+  uint32_t expected;
   uint32_t crc;  // so far
 } flash_sum_t;
 

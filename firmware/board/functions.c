@@ -6,10 +6,10 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_irq.h"
-#include "hal/hal_lines.h"
 
 #define POWERED_SHARE 8  // a DC link below an eighth of the threshold is not being charged
 #define SILENT_MAX 20u   // ms: the gate enable's own time and some
@@ -20,25 +20,25 @@ board_t board;
 
 void board_reset(void) {
   clear(&board, sizeof board);
-  board.asked = true;  // a switch that is closed at power-on starts nothing
+  board.switch_closed = true;  // a switch that is closed at power-on starts nothing
   selftest_reset();
 }
 
 static void report(drive_fault_t fault) {
   if (fault == FAULT_NONE) return;
   const uint16_t state = hal_irq_disable();
-  drive_raise(&drive, fault);
+  drive_trip(&drive, fault);
   hal_irq_restore(state);
 }
 
 // Outputs only where something hangs on them.
 static void wire(void) {
   if (!board.wired && (parameters.precharge_voltage != 0 || parameters.brake_voltage != 0)) {
-    hal_lines_init();
+    hal_digital_io_init();
     board.wired = true;
   }
   if (!board.stop_wired && parameters.emergency_stop != 0) {
-    hal_lines_wire_emergency();
+    hal_digital_io_wire_emergency();
     board.stop_wired = true;
   }
 }
@@ -46,7 +46,7 @@ static void wire(void) {
 static void switch_relay(bool on) {
   if (on == board.relay) return;
   board.relay = on;
-  hal_lines_relay(on);
+  hal_digital_io_relay(on);
 }
 
 // The relay closes when the link is charged, and opens when it has lost its supply: the next charge must find it open.
@@ -69,7 +69,7 @@ static void brake(void) {
   if (on == 0 || !board.wired) return;
   const int32_t link = drive.samples.link_q16;
   const bool braking = link > on || (board.braking && link > on - parameters.brake_hysteresis);
-  if (braking != board.braking) hal_lines_brake(braking);
+  if (braking != board.braking) hal_digital_io_brake(braking);
   board.braking = braking;
 }
 
@@ -83,7 +83,7 @@ static drive_fault_t watch_brake(void) {
 
 static drive_fault_t watch_enable(void) {
   if (parameters.gate_feedback == 0) return FAULT_NONE;
-  board.silent_ms = hal_lines_gates_pass() ? 0u : (uint16_t)(board.silent_ms + 1u);
+  board.silent_ms = hal_digital_io_gates_pass() ? 0u : (uint16_t)(board.silent_ms + 1u);
   return board.silent_ms > SILENT_MAX ? FAULT_GATE_ENABLE : FAULT_NONE;
 }
 
@@ -110,19 +110,19 @@ drive_fault_t board_refusal(void) {
 }
 
 static void put_item(octet_writer_t* w, board_words_t word) {
-  put_words(w, WORDS_BOARD, (uint16_t)word);
+  put_message(w, CATALOGUE_BOARD, (uint16_t)word);
   put_text(w, "; ");
 }
 
 static void put_number(octet_writer_t* w, board_words_t word, int32_t value, uint16_t q, const char* unit) {
-  put_words(w, WORDS_BOARD, (uint16_t)word);
+  put_message(w, CATALOGUE_BOARD, (uint16_t)word);
   put_u8(w, ' ');
   put_fixed(w, value, q, 0);
   put_text(w, unit);
 }
 
 static void put_board(octet_writer_t* w) {
-  if (parameters.emergency_stop != 0) put_item(w, hal_lines_emergency() ? BOARD_PRESSED : BOARD_RELEASED);
+  if (parameters.emergency_stop != 0) put_item(w, hal_digital_io_emergency() ? BOARD_PRESSED : BOARD_RELEASED);
   if (parameters.precharge_voltage != 0) put_item(w, board.relay ? BOARD_CHARGED : BOARD_CHARGING);
   if (parameters.brake_voltage != 0) put_item(w, board.braking ? BOARD_BRAKING : BOARD_NOT_BRAKING);
   if (drive.heat_sink_known) put_number(w, BOARD_HEAT_SINK, drive.heat_sink_q8, 8, " C; ");

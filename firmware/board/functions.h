@@ -22,7 +22,7 @@ extern "C" {
 /// What the speed command has come to.
 typedef enum { SPEED_INPUT_OFF = 0, SPEED_INPUT_WAITS = 1, SPEED_INPUT_RUNS = 2, SPEED_INPUT_LOST = 3 } speed_input_t;
 
-/// The words of the functions, WORDS_BOARD.
+/// The words of the functions, CATALOGUE_BOARD.
 typedef enum {
   BOARD_RELEASED = 0,
   BOARD_PRESSED = 1,
@@ -40,7 +40,7 @@ typedef enum {
 typedef struct {
   uint32_t at_ms;          // of the last look
   bool wired, stop_wired;  // outputs, emergency stop set up
-  bool relay, braking;     // as told
+  bool relay, braking;     // as commanded
   uint16_t charging_ms;    // the DC link has been on its way for so long
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
@@ -48,7 +48,7 @@ typedef struct {
   uint16_t code;           // of the speed command
   uint16_t lost_ms;        // without a signal for so long
   speed_input_t input;
-  bool asked;               // the switch was closed at the last look
+  bool switch_closed;       // the switch was closed at the last look
   uint16_t stalled_ms;      // the shaft has not got on for so long
   uint32_t stall_from_bam;  // from here
   int32_t stall_back_bpp;   // and turned so fast against the reference

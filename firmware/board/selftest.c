@@ -3,11 +3,11 @@
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_board.h"
-#include "hal/hal_lines.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_selftest.h"
 #include "hal/hal_time.h"
 
@@ -32,7 +32,7 @@ static void judge(bool good, selftest_failure_t failure) {
 
 void selftest_look(void) {
   judge(hal_selftest_gates_are_off(), SELFTEST_GATE_PINS);
-  selftest.passed_early = hal_lines_gates_pass();
+  selftest.passed_early = hal_digital_io_gates_pass();
   hal_adc_measure_reference(&selftest.ground, &selftest.reference);
   flash_sum_begin(&selftest.flash);
 }
@@ -69,7 +69,7 @@ drive_fault_t selftest_service(void) {
 
 static void put_item(octet_writer_t* w, uint16_t* items, uint16_t word) {
   if (*items != 0u) put_text(w, "; ");
-  put_words(w, WORDS_SELFTEST, word);
+  put_message(w, CATALOGUE_SELFTEST, word);
   (*items)++;
 }
 

@@ -21,7 +21,7 @@
 extern "C" {
 #endif
 
-/// Bits of selftest_t.failed; their places are codes of WORDS_SELFTEST.
+/// Bits of selftest_t.failed; their places are codes of CATALOGUE_SELFTEST.
 typedef enum {
   SELFTEST_RAM = 1,
   SELFTEST_CLOCK = 2,

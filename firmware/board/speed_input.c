@@ -5,13 +5,13 @@
 // is 10 % to 90 % of 3 V, and what lies beyond 5 % or 95 % is a broken wire or a short circuit. A lost signal stops the
 // drive; it runs again when the switch has been opened and closed. The same clears a fault.
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
-#include "hal/hal_lines.h"
+#include "hal/hal_digital_io.h"
 
 #define ONE_Q15 ((int32_t)32768)
 #define TURN 8u
@@ -27,15 +27,15 @@
 
 // The switch decides, the voltage says how fast.
 static void follow_switch(void) {
-  const bool on = hal_lines_run();
-  const bool closed = on && !board.asked, opened = !on && board.asked;
-  board.asked = on;
+  const bool on = hal_digital_io_run();
+  const bool closed = on && !board.switch_closed, opened = !on && board.switch_closed;
+  board.switch_closed = on;
   if (!on) board.input = SPEED_INPUT_WAITS;
   if (opened) drive_command_stop();
   if (opened && drive.state == DRIVE_FAULT) drive_command_reset();
   if (!closed || drive.state != DRIVE_READY) return;
   board.input = SPEED_INPUT_RUNS;
-  guard_begin(GUARD_OWN, 0);
+  comm_watchdog_begin(COMM_WATCHDOG_OWN, 0);
   drive_command_start();
 }
 
@@ -58,14 +58,14 @@ static void take(int32_t code) {
   const int32_t share_q15 = live ? q_div(code - LIVE_FIRST, LIVE_SPAN, 15) : q_div(code, SPAN, 15);
   const int32_t dead_q15 = q_mul(parameters.speed_input_dead, 21474836L, 32);
   const int32_t beyond = q_clamp(share_q15, 0, ONE_Q15) - dead_q15;
-  const int32_t asked = beyond <= 0 ? 0 : q_div(beyond, ONE_Q15 - dead_q15, 15);
-  drive_command_speed(q_mul(q_shl_sat(parameters.speed_input_full, 8), asked, 15));
+  const int32_t reference = beyond <= 0 ? 0 : q_div(beyond, ONE_Q15 - dead_q15, 15);
+  drive_command_speed(q_mul(q_shl_sat(parameters.speed_input_full, 8), reference, 15));
 }
 
 void board_follow_speed_input(void) {
   if (parameters.speed_input == 0) {
     board.input = SPEED_INPUT_OFF;
-    board.asked = true;
+    board.switch_closed = true;
     return;
   }
   follow_switch();

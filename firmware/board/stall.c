@@ -1,4 +1,4 @@
-// A shaft that is told to turn, has all the torque there is, and does not get on.
+// A shaft that is commanded to turn, has all the torque there is, and does not get on.
 //
 // What counts is how far the angle in use gets, not the speed in use: on a shaft that stands the latter may be off by
 // some rpm. In stall_time it has to get half as far as the reference does, or a quarter of an electrical turn: a shaft
@@ -19,18 +19,18 @@
 
 // How fast the shaft turns against the reference; 0 where it does not.
 static int32_t back_bpp(const drive_t* d) {
-  const int32_t speed_bpp = d->position.used.speed_bpp;
+  const int32_t speed_bpp = d->position.selected.speed_bpp;
   return q_max((d->control.ramp.value > 0) ? q_neg_sat(speed_bpp) : speed_bpp, 0);
 }
 
 static void begin_anew(const drive_t* d) {
   board.stalled_ms = 0;
-  board.stall_from_bam = d->position.used.angle_bam;
+  board.stall_from_bam = d->position.selected.angle_bam;
   board.stall_back_bpp = back_bpp(d);
 }
 
-static bool is_asked_to_turn(const drive_t* d) {
-  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && q_abs_sat(d->position.used.speed_bpp) < FAST_BPP;
+static bool has_speed_reference(const drive_t* d) {
+  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && q_abs_sat(d->position.selected.speed_bpp) < FAST_BPP;
 }
 
 // By a sixteenth of its largest speed since it began at least.
@@ -48,15 +48,15 @@ static int32_t least_way_bam(const drive_t* d) {
 
 // The way in the direction of the reference; one that is pushed back counts from where it has been pushed to.
 static int32_t way_bam(const drive_t* d) {
-  const int32_t forth = angle_diff_bam(d->position.used.angle_bam, board.stall_from_bam);
+  const int32_t forth = angle_diff_bam(d->position.selected.angle_bam, board.stall_from_bam);
   const int32_t way = (d->control.ramp.value > 0) ? forth : q_neg_sat(forth);
-  if (way < 0) board.stall_from_bam = d->position.used.angle_bam;
+  if (way < 0) board.stall_from_bam = d->position.selected.angle_bam;
   return way;
 }
 
 drive_fault_t board_follow_shaft(void) {
   const drive_t* const d = &drive;
-  if (!is_asked_to_turn(d) || way_bam(d) > least_way_bam(d) || is_slowing(d)) begin_anew(d);
+  if (!has_speed_reference(d) || way_bam(d) > least_way_bam(d) || is_slowing(d)) begin_anew(d);
   if ((d->limits & LIMIT_CURRENT) == 0) {
     board.stalled_ms -= (board.stalled_ms < RELIEF_MS) ? board.stalled_ms : RELIEF_MS;
     return FAULT_NONE;

@@ -1,6 +1,6 @@
 #include "firmware/can/command.h"
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/can/messages.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
@@ -49,7 +49,7 @@ static void run(can_command_t* c, int32_t speed_steps) {
   if (!starts) return;
   c->armed = false;
   c->commanding = true;
-  guard_begin((parameters.can_reaction == CAN_REACTION_NONE) ? GUARD_NONE : GUARD_OWN, 0);
+  comm_watchdog_begin((parameters.can_reaction == CAN_REACTION_NONE) ? COMM_WATCHDOG_NONE : COMM_WATCHDOG_OWN, 0);
   drive_command_start();
 }
 
@@ -94,8 +94,8 @@ static void react(void) {
 // The start is a request: until the control interrupt takes it, the drive is commanded but not energised. In this
 // order: a request that has gone was carried out before the state is looked at.
 static void follow_drive(can_command_t* c) {
-  const bool asked = drive.request.start;
-  if (!asked && !drive_is_energised()) c->commanding = false;
+  const bool requested = drive.request.start;
+  if (!requested && !drive_is_energised()) c->commanding = false;
 }
 
 void can_command_service(can_command_t* c, uint32_t now_ms) {

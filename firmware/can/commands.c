@@ -5,9 +5,9 @@
 #include "firmware/can/node.h"
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 
 static can_node_state_t now;  // one moment for all lines
 
@@ -25,7 +25,7 @@ static void line_bus(octet_writer_t* w) {
     put_packed(w, SAY_kbit_s);
   }
   put_text(w, ": ");
-  put_words(w, WORDS_CAN, (uint16_t)now.bus.state);
+  put_message(w, CATALOGUE_CAN, (uint16_t)now.bus.state);
 }
 
 static void line_errors(octet_writer_t* w) {

@@ -210,7 +210,7 @@ static void answer_record(uint32_t now_ms) {
 // else.
 static void send_event(uint32_t now_ms) {
   if (self.response.count != 0u || hal_can_waiting(PRIORITY_RECORD) != 0u) return;
-  const uint16_t count = stream_event(GUARD_BUS, self.response.octets);
+  const uint16_t count = stream_event(COMM_WATCHDOG_BUS, self.response.octets);
   if (count != 0u) segment_split_begin(&self.response, count, now_ms);
 }
 
@@ -224,7 +224,7 @@ static void write_record(uint32_t now_ms) {
   }
   // Nobody takes it: what is left of the answer would be old when somebody does.
   if (self.response.count != 0u && now_ms - self.response.last_ms > SEGMENTS_REST_MS) {
-    if (self.response.octets[0] == EVENT_STREAM) stream_dropped(GUARD_BUS);
+    if (self.response.octets[0] == EVENT_STREAM) stream_dropped(COMM_WATCHDOG_BUS);
     self.response.count = 0u;
     hal_can_cancel(PRIORITY_RECORD);
   }

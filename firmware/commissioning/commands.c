@@ -9,20 +9,20 @@
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 
 static void show_commissioning(void) {
   const commissioning_outcome_t outcome = drive_commissioning_outcome();
   octet_writer_t* const w = line_begin();
   put_packed(w, SAY_commissioning);
-  put_words(w, WORDS_COMMISSIONING, (uint16_t)outcome);
+  put_message(w, CATALOGUE_COMMISSIONING, (uint16_t)outcome);
   if (outcome == COMMISSIONING_RUNNING) {
     put_text(w, ", ");
     put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
     put_text(w, " %: ");
-    put_words(w, WORDS_PHASE, (uint16_t)drive_commissioning_phase());
+    put_message(w, CATALOGUE_PHASE, (uint16_t)drive_commissioning_phase());
   }
   if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) put_unsaved(w);
   line_end();
@@ -39,17 +39,17 @@ static bool list_results(uint16_t step) {
   put_text(w, " -> ");
   put_value(w, p, r.value);
   put_spaces_to(w, 50);
-  put_words(w, WORDS_VERDICT, (uint16_t)r.verdict);
+  put_message(w, CATALOGUE_VERDICT, (uint16_t)r.verdict);
   line_end();
   return true;
 }
 
 static void begin_commissioning(const words_of_line_t* a) {
-  guard_t guard;
-  if (!choose_guard(a, 1, &guard)) return;
-  const bool begins = action_commission(guard, guard_beside_text(), line_begin()) == ANSWER_OK;
+  comm_watchdog_t guard;
+  if (!choose_watchdog(a, 1, &guard)) return;
+  const bool begins = action_commission(guard, comm_watchdog_beside_text(), line_begin()) == ANSWER_OK;
   line_answer(begins, SAY_commissioning_the_shaft_will_turn_stop_ends);
-  if (begins) say_guard(guard);
+  if (begins) say_watchdog(guard);
 }
 
 void command_commission(const words_of_line_t* a) {

@@ -13,7 +13,7 @@
 #ifndef STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
 #define STILLSPIN_FIRMWARE_COMMISSIONING_COMMISSIONING_H
 
-#include "estimators/admittance_tensor.h"
+#include "estimators/inverse_inductance_tensor.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/interfaces/state.h"
 

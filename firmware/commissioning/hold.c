@@ -25,20 +25,20 @@ void commissioning_set_d(drive_t* d, int32_t level_q20) {
 }
 
 void commissioning_hold(drive_t* d) {
-  const estimator_output_t* const p = &d->position.used;
+  const estimator_output_t* const p = &d->position.selected;
   const int32_t error_bam = angle_diff_bam(commissioning.target_bam, p->angle_bam);
-  const int32_t wanted_q8 =
+  const int32_t command_q8 =
       q_sub_sat(q_mul_sat(error_bam, STIFFNESS_Q30, 22), q_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
-  const int32_t torque_q20 = q_mul_sat(q_add_sat(wanted_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
+  const int32_t torque_q20 = q_mul_sat(q_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
   const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
   const int32_t limit = parameters.current_limit / 4;
   d->control.reference_q20.q = q_clamp(current, -limit, limit);
 }
 
-bool commissioning_turn(drive_t* d) {
+bool commissioning_align(drive_t* d) {
   commissioning_t* const c = &commissioning;
   if (c->tick == 0) {
-    c->target_bam = d->position.used.angle_bam;
+    c->target_bam = d->position.selected.angle_bam;
     const int32_t sixths = (int32_t)q_div((int32_t)(c->target_bam / 2u), SIXTH_BAM / 2, 0);
     c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
   }
@@ -54,13 +54,13 @@ bool commissioning_turn(drive_t* d) {
 // AVV alone, or no measurement at all and the angle by the torque.
 void commissioning_estimate(drive_t* d, estimator_input_t* in) {
   if (!commissioning.predicting) {
-    d->position.used = position_sources[POSITION_AVV]->step(d, in);
+    d->position.selected = position_sources[POSITION_AVV]->step(d, in);
     return;
   }
   tracking_observer_t* const o = &d->position.avv.observer;
   tracking_observer_predict(o, q_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
   const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
-  d->position.used = out;
+  d->position.selected = out;
 }
 
 // Windows under opposite vectors, as the alternating layout has them: what is common to both is then not the link.
@@ -73,7 +73,7 @@ static bool opposite(const estimator_window_t* a, const estimator_window_t* b) {
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {
   const estimator_window_t* const w = d->samples.windows;
   if (d->samples.count != 2u || !opposite(&w[0], &w[1])) return false;
-  const estimator_output_t* const p = &d->position.used;
+  const estimator_output_t* const p = &d->position.selected;
   *first = deviation_evaluate(&commissioning.model, &w[0], p->angle_bam, p->speed_bpp);
   *second = deviation_evaluate(&commissioning.model, &w[1], p->angle_bam, p->speed_bpp);
   return true;

@@ -94,7 +94,7 @@ static void follow(drive_t* d, map_t* m, int32_t target_q20) {
   d->control.reference_q20.q = m->plan[1];
   m->plan[1] = last;
   m->plan[0] = q_limit(q_clamp(target_q20, last - step, last + step), parameters.current_limit);
-  d->control.feed_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
+  d->control.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
 }
 
 static void run_train(drive_t* d, map_t* m) {
@@ -148,7 +148,7 @@ bool commissioning_map(drive_t* d) {
   if (commissioning.tick == 0) {
     clear(m, sizeof *m);
     m->pause = true;
-    commissioning.target_bam = d->position.used.angle_bam;
+    commissioning.target_bam = d->position.selected.angle_bam;
     tensor_reset(&commissioning.unsaturated);
   }
   if (m->level >= MAP_LEVELS) return true;

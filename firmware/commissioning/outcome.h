@@ -11,7 +11,7 @@ extern "C" {
 
 typedef enum {
   COMMISSIONING_IDLE = 0,
-  COMMISSIONING_TURN = 1,       // to where no phase is without current
+  COMMISSIONING_ALIGN = 1,      // to where no phase is without current
   COMMISSIONING_STAIRCASE = 2,  // resistance, drop, dead time
   COMMISSIONING_SPIN = 3,       // flux linkage, inertia, friction
   COMMISSIONING_MAP = 4,        // inductances against torque current, sensors

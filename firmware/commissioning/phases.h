@@ -8,7 +8,7 @@
 
 /// Background level: evaluation.
 void commissioning_service(drive_t* d);
-bool commissioning_turn(drive_t* d);                      // commissioning/hold.c
+bool commissioning_align(drive_t* d);                     // commissioning/hold.c
 bool commissioning_climb(drive_t* d);                     // commissioning/staircase.c
 bool commissioning_map(drive_t* d);                       // commissioning/map.c
 int32_t commissioning_map_done(const map_t* m);           // share of it in time, per mille

@@ -6,7 +6,7 @@
 #include "firmware/commissioning/outcome.h"
 
 static answer_status_t request_commission(request_t* r) {
-  guard_t guard;
+  comm_watchdog_t guard;
   uint32_t holder;
   return request_takes_guard(r, &guard, &holder) ? action_commission(guard, holder, &r->answer) : ANSWER_RANGE;
 }

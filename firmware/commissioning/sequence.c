@@ -6,7 +6,7 @@
 #include "firmware/mode/mode.h"
 #include "firmware/start/start.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 #define LONGER_TICKS 500
 #define SAMPLING_MIN_TICKS 450  // two bursts and the shortest useful time between them
@@ -28,7 +28,7 @@ static bool at_once(drive_t* d) {
 }
 
 static const phase_t phases[] = {{at_once, 0},
-                                 {commissioning_turn, 8},
+                                 {commissioning_align, 8},
                                  {commissioning_climb, 170},
                                  {commissioning_spin, 42},
                                  {commissioning_map, 780}};
@@ -67,7 +67,7 @@ static void next_phase(drive_t* d) {
   commissioning_t* const c = &commissioning;
   c->phase = (commissioning_phase_t)((uint16_t)c->phase + 1u);
   c->tick = 0;
-  d->flags.frozen = c->phase != COMMISSIONING_TURN;
+  d->flags.frozen = c->phase != COMMISSIONING_ALIGN;
   if (c->phase == COMMISSIONING_MAP) c->mismatch_q30 = d->trim.mismatch_q30;
   if (c->phase != COMMISSIONING_EVALUATE) return;
   hal_pwm_gates_off();
@@ -112,10 +112,10 @@ static void settle(drive_t* d) {
 
 void commissioning_service(drive_t* d) {
   const bool wanted = has_failed(d) || commissioning.solve_motion || commissioning.evaluate;
-  if (!wanted || !hal_tape_has_work(TAPE_EVALUATED)) return;
-  hal_tape_work_begin(TAPE_EVALUATED);
+  if (!wanted || !hal_replay_has_work(REPLAY_EVALUATED)) return;
+  hal_replay_work_begin(REPLAY_EVALUATED);
   settle(d);
-  hal_tape_work_end();
+  hal_replay_work_end();
 }
 
 const state_t commissioning_state = {commissioning_begin, commissioning_step, commissioning_estimate,

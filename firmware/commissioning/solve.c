@@ -69,7 +69,7 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
   return v;
 }
 
-// Inductances from the admittances' mean and half difference and the direction of the larger one.
+// Inductances from the inverse inductances' mean and half difference and the direction of the larger one.
 static void invert(map_values_t* v, int32_t mean_q30, int32_t half_q30) {
   const int32_t small = tensor_inductance_q20(q_add_sat(mean_q30, half_q30));
   const int32_t large = tensor_inductance_q20(q_sub_sat(mean_q30, half_q30));

@@ -19,7 +19,7 @@
 typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
 
 static void add_station(const drive_t* d, spin_station_t* s) {
-  s->speed = q_gather(s->speed, d->position.used.speed_bpp);
+  s->speed = q_gather(s->speed, d->position.selected.speed_bpp);
   s->voltage_q = q_gather(s->voltage_q, d->control.command_q16.q);
   s->current_q = q_gather(s->current_q, d->control.measured_q20.q);
   s->current_d = q_gather(s->current_d, d->control.measured_q20.d);
@@ -27,7 +27,7 @@ static void add_station(const drive_t* d, spin_station_t* s) {
 }
 
 static void add_ramp(const drive_t* d, spin_ramp_t* s) {
-  s->speed = q_gather(s->speed, d->position.used.speed_bpp);
+  s->speed = q_gather(s->speed, d->position.selected.speed_bpp);
   s->current_q = q_gather(s->current_q, d->control.measured_q20.q);
   s->periods = q_add_sat(s->periods, 1);
 }
@@ -47,7 +47,7 @@ static void begin(drive_t* d) {
   clear(&commissioning.spin, sizeof commissioning.spin);
   d->flags.spins = true;
   d->flags.frozen = false;
-  drive_hand_over(d, d->position.used.angle_bam, 0);
+  drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
   d->control.target_bpp = 0;
   enter_leg((uint16_t)LEG_FIRST);
 }
@@ -68,9 +68,9 @@ static bool hand_back(drive_t* d) {
   if (d->flags.spins) {
     d->flags.spins = false;
     c->solve_motion = true;
-    position_preset(d, d->position.used.angle_bam, 0);
+    position_preset(d, d->position.selected.angle_bam, 0);
     d->control.reference_q20.d = 0;
-    c->target_bam = d->position.used.angle_bam;
+    c->target_bam = d->position.selected.angle_bam;
   }
   commissioning_hold(d);
   if (c->solve_motion) return false;

@@ -119,7 +119,7 @@ bool commissioning_climb(drive_t* d) {
   staircase_level_t* const l = &s->level[s->index];
   s->tick = q_add_sat(s->tick, 1);
   if (s->tick > SETTLE_PERIODS) {
-    const rotation_t r = frame_rotation(d->position.used.angle_bam);
+    const rotation_t r = frame_rotation(d->position.selected.angle_bam);
     add_period(d, l, r);
     add_windows(d, l, r);
   }

@@ -49,8 +49,8 @@ static bool point_fits(const machine_model_t* m) {
   const int32_t k0_q20 = q_max(q_abs_sat(m->k0_q20.d), q_abs_sat(m->k0_q20.q));
   const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
   const int32_t k_q24 = q_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
-  const int32_t turn_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
-  return k0_q20 <= K0_MAX_Q20 && turn_q20 < INT32_MAX;
+  const int32_t h_speed_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
+  return k0_q20 <= K0_MAX_Q20 && h_speed_q20 < INT32_MAX;
 }
 
 // So does the torque per ampere with that current, and the torque with it: the reluctance adds 51 N m/A to the 30 of
@@ -101,14 +101,14 @@ static bool load_modulation(drive_config_t* c) {
   c->modulator.sampling.burst_ticks = HAL_ADC_BURST_TICKS;
   c->modulator.sampling.span_min_ticks = 300;
   c->modulator.sampling.last_tick = 9640;
-  c->dead_time.blocked_ticks = ticks(p->dead_time + p->turn_on_delay);
-  c->dead_time.released_ticks = ticks(p->turn_off_delay);
+  c->dead_time.turn_on_ticks = ticks(p->dead_time + p->turn_on_delay);
+  c->dead_time.turn_off_ticks = ticks(p->turn_off_delay);
   c->dead_time.band_q20 = p->drop_band;
   c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + c->dead_time.band_q20;
   c->dead_time.drop_q16 = p->device_drop;
   dead_time_design(&c->dead_time);
-  return modulator_config_valid(&c->modulator) && c->dead_time.blocked_ticks >= c->dead_time.released_ticks &&
-         c->dead_time.blocked_ticks <= SVPWM_FIRST_TICK - 20;
+  return modulator_config_valid(&c->modulator) && c->dead_time.turn_on_ticks >= c->dead_time.turn_off_ticks &&
+         c->dead_time.turn_on_ticks <= SVPWM_FIRST_TICK - 20;
 }
 
 static bool load_control(drive_config_t* c) {
@@ -128,18 +128,18 @@ static bool load_control(drive_config_t* c) {
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);
-  const if_start_parameters_t turn = {p->if_current, p->if_align * DRIVE_PERIODS_PER_MS,
-                                      q_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
-                                      q_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
-  const bool turns = if_start_design(&c->turn, &c->nameplate, &turn) || p->start_method == 0;
+  const if_start_parameters_t if_start = {
+      p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, q_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
+      q_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
+  const bool turns = if_start_design(&c->if_start, &c->nameplate, &if_start) || p->start_method == 0;
   static speed_controller_t trial;  // too large for the stack; the background level alone comes here
   return turns && speed_controller_init(&trial, &c->speed, &c->nameplate) &&
          current_controller_design(&c->current, &c->nameplate, &current);
 }
 
 // 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.
-static int32_t share_per_turn_q30(int32_t time_q8) {
-  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)TURNS, time_q8 * DRIVE_PERIODS_PER_MS, 30);
+static int32_t share_per_slot_q30(int32_t time_q8) {
+  return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)SCHEDULE_SLOTS, time_q8 * DRIVE_PERIODS_PER_MS, 30);
 }
 
 static bool load_blend(drive_config_t* c) {
@@ -184,8 +184,8 @@ static bool load_position(drive_config_t* c) {
   c->synchronism.floor_q16 = p->synchronism_floor;
   c->synchronism.share_q15 = q_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
-  c->adapt_share_q30 = share_per_turn_q30(p->adapt_time);
-  c->drift_share_q30 = share_per_turn_q30(p->drift_time);
+  c->adapt_share_q30 = share_per_slot_q30(p->adapt_time);
+  c->drift_share_q30 = share_per_slot_q30(p->drift_time);
   c->encoder_trim_bam = (uint32_t)q_mul64(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   // dLqq/di_d = dLdq/di_q, the slope of the map's first segment, over Lq. The other one comes in percent, Q24.
   c->saturation.q_q30 = q_div(q_div(p->ldq_1, p->inductance_q, 30), p->map_current / 4, 20);

@@ -49,7 +49,7 @@ packed_text_t drive_config_or_conflict(const drive_config_t** made) {
   if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
   if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
   if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
-  if ((source & SOURCE_TURNS) != 0u && q_abs_sat(p->id_low_speed) < 1048576L)
+  if ((source & SOURCE_ALTERNATES) != 0u && q_abs_sat(p->id_low_speed) < 1048576L)
     return SAY_position_source_1_needs_id_low_speed;
   if ((p->excitation == 0 || p->excitation >= 4) && (source & (SOURCE_BESIDE | SOURCE_AVV_FIRST)) != 0u)
     return SAY_avv_needs_two_active_vectors;

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/api/status.h"
 #include "firmware/console/command_table.h"
 #include "firmware/console/editor.h"
@@ -24,9 +24,9 @@ bool command_may_move(const words_of_line_t* a);
 
 /// Who is to watch over what moves the motor: word k, the only one left. False, and said, when nobody would and that
 /// was not asked for, or when the line has expired.
-bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard);
+bool choose_watchdog(const words_of_line_t* a, uint16_t k, comm_watchdog_t* watchdog);
 /// What that means for who types.
-void say_guard(guard_t guard);
+void say_watchdog(comm_watchdog_t watchdog);
 
 /// Whether the line stops the motor, whatever else it says.
 bool command_makes_safe(const editor_line_t* line);

@@ -3,19 +3,19 @@
 #include <stddef.h>
 
 #include "firmware/api/actions.h"
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 
 #define START_PATIENCE_MS 5000u
 
-static uint32_t asked_ms;
+static uint32_t command_ms;
 
 static bool no_arguments(const words_of_line_t* a) {
   if (a->count == 0u) return true;
@@ -24,7 +24,7 @@ static bool no_arguments(const words_of_line_t* a) {
 }
 
 static bool wait_for_run(uint16_t step) {
-  const uint32_t waited = drive_time_ms() - asked_ms;
+  const uint32_t waited = drive_time_ms() - command_ms;
   (void)step;
   if (drive.state == DRIVE_FAULT) {  // which the console tells unasked
     count_refusal();
@@ -43,13 +43,13 @@ static bool wait_for_run(uint16_t step) {
   return false;
 }
 
-bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
-  if (a->count == k && guard_beside_text() != 0u) {
-    *guard = GUARD_SERIAL;
+bool choose_watchdog(const words_of_line_t* a, uint16_t k, comm_watchdog_t* watchdog) {
+  if (a->count == k && comm_watchdog_beside_text() != 0u) {
+    *watchdog = COMM_WATCHDOG_SERIAL;
   } else if (a->count == k + 1u && word_is(a, k, "hold")) {
-    *guard = GUARD_KEYS;
+    *watchdog = COMM_WATCHDOG_KEYS;
   } else if (a->count == k + 1u && word_is(a, k, "free")) {
-    *guard = GUARD_NONE;
+    *watchdog = COMM_WATCHDOG_NONE;
   } else {
     line_refused(SAY_nothing_done_nobody_would_watch_add);
     return false;
@@ -57,29 +57,30 @@ bool choose_guard(const words_of_line_t* a, uint16_t k, guard_t* guard) {
   return command_may_move(a);
 }
 
-void say_guard(guard_t guard) {
-  if (guard == GUARD_KEYS) line_of(SAY_hold_runs_while_a_key_is_held);
-  if (guard == GUARD_NONE) line_of(SAY_free_nobody_watches_runs_until_stop);
+void say_watchdog(comm_watchdog_t watchdog) {
+  if (watchdog == COMM_WATCHDOG_KEYS) line_of(SAY_hold_runs_while_a_key_is_held);
+  if (watchdog == COMM_WATCHDOG_NONE) line_of(SAY_free_nobody_watches_runs_until_stop);
 }
 
 void command_start(const words_of_line_t* a) {
-  guard_t guard;
-  if (!choose_guard(a, 0, &guard)) return;
-  if (guard == GUARD_NONE && drive_is_energised() && drive.state != DRIVE_STOP) {  // whoever held the motor leaves
-    if (guard_release()) {
-      say_guard(guard);
+  comm_watchdog_t watchdog;
+  if (!choose_watchdog(a, 0, &watchdog)) return;
+  if (watchdog == COMM_WATCHDOG_NONE && drive_is_energised() &&
+      drive.state != DRIVE_STOP) {  // whoever held the motor leaves
+    if (comm_watchdog_release()) {
+      say_watchdog(watchdog);
     } else {
       line_refused(SAY_others_hold_the_motor);
     }
     return;
   }
   octet_writer_t* const w = line_begin();
-  if (action_start(guard, guard_beside_text(), w) != ANSWER_OK) {
+  if (action_start(watchdog, comm_watchdog_beside_text(), w) != ANSWER_OK) {
     line_end_refused();
     return;
   }
-  say_guard(guard);
-  asked_ms = drive_time_ms();
+  say_watchdog(watchdog);
+  command_ms = drive_time_ms();
   console_run(wait_for_run, true);
 }
 
@@ -118,7 +119,7 @@ void command_look(const words_of_line_t* a) {
 static void show_reference(void) {
   octet_writer_t* const w = line_begin();
   put_packed(w, SAY_ref);
-  put_fixed(w, drive.control.wanted_rpm_q16, 16, 2);
+  put_fixed(w, drive.control.command_rpm_q16, 16, 2);
   put_packed(w, SAY_rpm);
   line_end();
 }

@@ -14,9 +14,9 @@
 #include "firmware/drive/signals.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 
 #define COLUMN 12u
 #define WATCH_MS 500u
@@ -25,10 +25,10 @@
 static void put_limits(octet_writer_t* w, int32_t limits) {
   const char* separator = "";
   uint32_t left = (uint32_t)limits;
-  for (uint16_t bit = 0; words_exist(WORDS_LIMIT, bit); bit++, left >>= 1) {
+  for (uint16_t bit = 0; message_exists(CATALOGUE_LIMIT, bit); bit++, left >>= 1) {
     if ((left & 1u) == 0u) continue;
     put_text(w, separator);
-    put_words(w, WORDS_LIMIT, bit);
+    put_message(w, CATALOGUE_LIMIT, bit);
     separator = ", ";
   }
   if (separator[0] == '\0') put_packed(w, SAY_none);
@@ -38,19 +38,19 @@ static void put_speeds(octet_writer_t* w) {
   const drive_signals_t s = drive_signals();
   if (s.speed_known != 0) put_fixed(w, s.speed, 16, 1);
   put_packed(w, (s.speed_known != 0) ? SAY_rpm_of : SAY_unknown_the_shaft_may_be_turning);
-  put_fixed(w, drive.control.wanted_rpm_q16, 16, 1);
+  put_fixed(w, drive.control.command_rpm_q16, 16, 1);
   put_packed(w, SAY_rpm);
 }
 
 static void status_state(octet_writer_t* w) {
-  put_words(w, WORDS_STATE, (uint16_t)drive.state);
+  put_message(w, CATALOGUE_STATE, (uint16_t)drive.state);
   if (drive.state == DRIVE_START) {
     put_text(w, ": ");
-    put_words(w, WORDS_START, (uint16_t)drive_signals().start_phase);
+    put_message(w, CATALOGUE_START, (uint16_t)drive_signals().start_phase);
   } else if (drive.state == DRIVE_COMMISSION) {
     put_text(w, ": ");
     status_update();
-    put_words(w, WORDS_PHASE, feature_status.commissioning_phase);
+    put_message(w, CATALOGUE_PHASE, feature_status.commissioning_phase);
   }
 }
 
@@ -82,14 +82,14 @@ static void status_limits(octet_writer_t* w) { put_limits(w, drive_signals().lim
 
 static void status_fault(octet_writer_t* w) {
   const uint16_t fault = (uint16_t)drive.fault;
-  put_words(w, WORDS_FAULT, fault);
+  put_message(w, CATALOGUE_FAULT, fault);
   if (fault == FAULT_NONE) return;
   if (fault >= FAULT_OPEN_PHASE && drive.found.wiring != WIRING_GOOD) {
     put_text(w, ": ");
-    put_words(w, WORDS_WIRING, (uint16_t)drive.found.wiring);
+    put_message(w, CATALOGUE_WIRING, (uint16_t)drive.found.wiring);
   }
   put_text(w, ". ");
-  put_words(w, WORDS_REMEDY, fault);
+  put_message(w, CATALOGUE_REMEDY, fault);
 }
 
 void put_unsaved(octet_writer_t* w) {
@@ -199,9 +199,9 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   put_unsigned(w, f->time_ms / 10u % 10u);
   put_unsigned(w, f->time_ms % 10u);
   put_packed(w, SAY_s);
-  put_words(w, WORDS_FAULT, (uint16_t)f->fault);
+  put_message(w, CATALOGUE_FAULT, (uint16_t)f->fault);
   put_text(w, ", ");
-  put_words(w, WORDS_STATE, (uint16_t)f->state);
+  put_message(w, CATALOGUE_STATE, (uint16_t)f->state);
   const bool turned = (f->known & KNOWN_ROTOR) != 0u;
   if (turned) {
     put_packed(w, SAY_at);

@@ -3,15 +3,15 @@
 #include <stddef.h>
 
 #include "firmware/api/actions.h"
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/editor.h"
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/fault_history.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
-#include "firmware/text/words.h"
 #include "hal/hal_sci.h"
 
 #define KEPT 64u                                   // characters typed ahead; a power of two
@@ -28,11 +28,11 @@ static editor_line_t command;  // the one that is being answered
 static uint16_t kept[KEPT];
 static uint16_t kept_first, kept_count;
 static bool someone_types;
-static uint16_t faults_told;
+static uint16_t faults_shown;
 static uint16_t errors_before;  // of the port, when the line began
 static uint16_t errors_at_key;
 static uint32_t heard_ms;
-static bool silence_told;
+static bool silence_shown;
 
 void console_reset(void) {
   editor_reset(&editor);
@@ -41,11 +41,11 @@ void console_reset(void) {
   kept_first = 0;
   kept_count = 0;
   someone_types = false;
-  faults_told = 0;
+  faults_shown = 0;
   errors_before = 0;
   errors_at_key = 0;
   heard_ms = 0;
-  silence_told = false;
+  silence_shown = false;
 }
 
 static void give_way(void) { someone_types = false; }
@@ -149,7 +149,7 @@ static bool is_key(uint16_t octet) {
 
 // The space bar that holds the motor neither fills the line nor ends an answer.
 static bool only_holds(uint16_t octet) {
-  return is_key(octet) && guard_key() && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
+  return is_key(octet) && comm_watchdog_key() && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
 }
 
 static void take_key(uint16_t octet) {
@@ -187,16 +187,16 @@ const text_port_t console_text_port = {keeps_more, take_key, give_way};
 static void tell(void) {
   fault_record_t fault;
   const uint16_t total = fault_history_total();
-  const bool faulted = total != faults_told && fault_history_read(0, &fault);
-  const bool silent = guard_has_stopped() && !silence_told;
-  faults_told = total;
-  silence_told = guard_has_stopped();
+  const bool faulted = total != faults_shown && fault_history_read(0, &fault);
+  const bool silent = comm_watchdog_has_stopped() && !silence_shown;
+  faults_shown = total;
+  silence_shown = comm_watchdog_has_stopped();
   if (!someone_types || !(faulted || silent)) return;
   octet_writer_t* const w = line_begin();
   put_text(w, "\r\n! ");
   if (faulted) {
     put_text(w, "fault: ");
-    put_words(w, WORDS_FAULT, (uint16_t)fault.fault);
+    put_message(w, CATALOGUE_FAULT, (uint16_t)fault.fault);
   } else {
     put_packed(w, SAY_nothing_was_heard_for_link_timeout);
   }

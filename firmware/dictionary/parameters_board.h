@@ -5,7 +5,7 @@ PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
           "bit rate of the serial port; saved, it applies from the next power-on")
 PARAMETER(201, link_timeout, "ms", 0, 0, 50, 60000, 1000, ALWAYS,
           "longest silence of the client that guards the motor, then link_reaction")
-PARAMETER(202, link_reaction, "", 0, 0, 1, 2, 1, ALWAYS, "when the guard hears nothing: 1 stop, 2 coast")
+PARAMETER(202, link_reaction, "", 0, 0, 1, 2, 1, ALWAYS, "communication lost: 1 stop, 2 coast")
 
 // CAN bus
 PARAMETER(220, can_node, "", 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus, added to the messages' identifiers")

@@ -20,7 +20,7 @@ PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical sp
 PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 200, ALWAYS, "bandwidth of AVV's observer, long windows")
 PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "bandwidth of AVV's observer, short windows")
 PARAMETER(65, adapt_time, "ms", 8, 0, 20, 30000, 150, ALWAYS,
-          "time constant of the adaptation of admittances and sensors; 30000 is off")
+          "time constant of the adaptation of inverse inductances and sensors; 30000 is off")
 PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms noise of a current difference over a window")
 PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 100, ALWAYS, "load change per 10 ms that the observer expects")
 PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,

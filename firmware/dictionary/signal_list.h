@@ -8,8 +8,8 @@
 SIGNAL(state, "", 0, DRIVE, d->state, "state of the drive")
 SIGNAL(fault, "", 0, DRIVE, d->fault, "latched fault")
 SIGNAL(limit, "", 0, DRIVE, d->limits, "active limits, one bit each")
-SIGNAL(angle, "turn", 32, ROTOR, d->position.used.angle_bam, "electrical angle in use, at the start of the period")
-SIGNAL(speed, "rpm", 16, ROTOR, SIGNAL_RPM(d->position.used.speed_bpp), "mechanical speed in use")
+SIGNAL(angle, "turn", 32, ROTOR, d->position.selected.angle_bam, "electrical angle in use, at the start of the period")
+SIGNAL(speed, "rpm", 16, ROTOR, SIGNAL_RPM(d->position.selected.speed_bpp), "mechanical speed in use")
 SIGNAL(angle_low, "turn", 32, ROTOR, d->position.low.angle_bam, "electrical angle of the low-speed estimator")
 SIGNAL(angle_avv, "turn", 32, ROTOR, d->position.high.angle_bam, "electrical angle of the AVV estimator")
 SIGNAL(weight, "", 15, DRIVE, d->position.blend.share_q15, "share of the low-speed estimator in the blend")
@@ -20,13 +20,13 @@ SIGNAL(current_d_reference, "A", 20, DRIVE, d->control.reference_q20.d, "d-axis 
 SIGNAL(current_q_reference, "A", 20, DRIVE, d->control.reference_q20.q, "q-axis current reference")
 SIGNAL(voltage_d, "V", 16, DRIVE, d->control.command_q16.d, "d-axis voltage command")
 SIGNAL(voltage_q, "V", 16, DRIVE, d->control.command_q16.q, "q-axis voltage command")
-SIGNAL(voltage_alpha, "V", 16, DRIVE, d->modulation.asked_q16.alpha,
+SIGNAL(voltage_alpha, "V", 16, DRIVE, d->modulation.command_q16.alpha,
        "alpha-axis mean voltage for the next period, device drops added")
-SIGNAL(voltage_beta, "V", 16, DRIVE, d->modulation.asked_q16.beta, "beta-axis mean voltage for the next period")
+SIGNAL(voltage_beta, "V", 16, DRIVE, d->modulation.command_q16.beta, "beta-axis mean voltage for the next period")
 SIGNAL(deviation_q, "A/s", 8, ROTOR, q_mul_sat(d->position.deviation_q20, 10000L, 12),
        "q-axis current deviation under zero vectors, D of the paper; position_source 0 and 1 only")
 SIGNAL(link_voltage, "V", 16, DRIVE, d->samples.link_q16, "DC-link voltage")
-SIGNAL(load_torque, "Nm", 16, ROTOR, q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 24),
+SIGNAL(load_torque, "Nm", 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
        "estimated load torque")
 SIGNAL(windows, "", 0, DRIVE, d->samples.count, "current windows sampled in the last period")
 SIGNAL(start_phase, "", 0, DRIVE, d->found.phase, "phase of the start")

@@ -7,8 +7,8 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_sci.h"
-#include "hal/hal_tape.h"
 
 void (*drive_onlooker)(void);
 
@@ -31,9 +31,9 @@ void drive_control_step(drive_t* d) {
 
 void drive_control_interrupt(void) {
   hal_irq_control_begin();
-  hal_tape_step_begin();
+  hal_replay_step_begin();
   drive_control_step(&drive);
-  hal_tape_step_end();
+  hal_replay_step_end();
   hal_sci_service();
   hal_profile_step(CYCLES_SERIAL);
   hal_irq_control_end();

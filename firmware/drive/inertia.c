@@ -8,8 +8,8 @@
 #define STILL_RPM_Q16 1310720L  // 20 rpm
 
 static void look(const drive_t* d, inertia_seen_t* in) {
-  in->angle_bam = d->position.used.angle_bam;
-  in->speed_bpp = d->position.used.speed_bpp;
+  in->angle_bam = d->position.selected.angle_bam;
+  in->speed_bpp = d->position.selected.speed_bpp;
   in->reference_bpp = d->control.ramp.value;
   in->torque_accel_q8 = d->position.torque_accel_q8;
   // Three tenths of what the current limit gives.

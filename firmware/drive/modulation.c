@@ -31,8 +31,8 @@ static svpwm_pattern_t short_circuit(const sampling_config_t* c) {
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
 static uint32_t angle_at_action(const drive_t* d) {
-  const int32_t speed = d->position.used.speed_bpp;
-  return d->position.used.angle_bam + (uint32_t)(speed + speed / 2);
+  const int32_t speed = d->position.selected.speed_bpp;
+  return d->position.selected.angle_bam + (uint32_t)(speed + speed / 2);
 }
 
 // Written out, three times each, rather than as loops.
@@ -79,20 +79,21 @@ void drive_modulate(drive_t* d) {
   const rotation_t r = frame_rotation(angle_at_action(d));
   const ab_t current_q20 = frame_inverse_park(c->measured_q20, r);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);
-  const ab_t wanted_q16 = frame_inverse_park(c->command_q16, r);
-  const ab_t asked_q16 = {wanted_q16.alpha + drop_q16.alpha, wanted_q16.beta + drop_q16.beta};
-  d->modulation.asked_q16 = asked_q16;
+  const ab_t reference_q16 = frame_inverse_park(c->command_q16, r);
+  const ab_t command_q16 = {reference_q16.alpha + drop_q16.alpha, reference_q16.beta + drop_q16.beta};
+  d->modulation.command_q16 = command_q16;
   svpwm_pattern_t* const pattern = &d->modulation.next;
   svpwm_pulses_t command;
-  const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d), asked_q16,
-                                                   d->samples.link_q16, &pattern->pulses);
+  const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d),
+                                                   command_q16, d->samples.link_q16, &pattern->pulses);
   if (result.limited && c->closed) {
-    const ab_t excess_q16 = {asked_q16.alpha - result.realised_q16.alpha, asked_q16.beta - result.realised_q16.beta};
+    const ab_t excess_q16 = {command_q16.alpha - result.realised_q16.alpha,
+                             command_q16.beta - result.realised_q16.beta};
     current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
     d->limits |= LIMIT_VOLTAGE;
   }
   const svpwm_carried_t carried = {current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16};
-  svpwm_send(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, &command);
+  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, &command);
   hal_profile_step(CYCLES_MODULATE);
   write_frame(d, &command);
 }

@@ -34,7 +34,7 @@ void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp) {
   w->open = parameters.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
   w->axis_periods = 0;
-  w->blind = false;
+  w->samples_invalid = false;
   emf_sign_reset(&w->sign);
   forget_voltage(w);
 }
@@ -56,7 +56,7 @@ static int32_t axis_off(const drive_t* d) {
 }
 
 // While the current is large or the windows do not show the axis.
-static bool is_blind(const drive_t* d) {
+static bool samples_are_invalid(const drive_t* d) {
   return q_abs_sat(d->control.measured_q20.q) > parameters.current_limit / 2 ||
          (d->samples.count > 0u && regression_in_use(d)->information == 0);
 }
@@ -71,7 +71,7 @@ static dq_t on_axis(dq_t x, rotation_t r) {
 // The axis is the one in use for now, and the change of the current counts from here.
 static void begin_anew(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
-  tracking_observer_preset(&w->axis, d->position.used.angle_bam, d->position.used.speed_bpp, 0);
+  tracking_observer_preset(&w->axis, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
   w->axis_then_bam = w->axis.angle_bam;
   w->sign.clear = 0;
   w->sign.against = 0;
@@ -84,8 +84,8 @@ static void follow_axis(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   const int32_t periods = w->axis_periods;
   w->axis_periods = 0;
-  w->blind = is_blind(d);
-  if (w->blind) {
+  w->samples_invalid = samples_are_invalid(d);
+  if (w->samples_invalid) {
     begin_anew(d);
   } else if (d->samples.count > 0u) {
     tracking_observer_correct(&w->axis, q_sat64(q_product(axis_off(d), periods)), BANDWIDTH_STEP_Q30);
@@ -98,7 +98,7 @@ static int32_t mean_volts_q16(int32_t sum_q12, int32_t periods) {
 
 static emf_sign_result_t look(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
-  const rotation_t r = frame_rotation(d->position.used.angle_bam - w->axis.angle_bam);
+  const rotation_t r = frame_rotation(d->position.selected.angle_bam - w->axis.angle_bam);
   const dq_t mean_q16 = {mean_volts_q16(w->voltage_q12.d, w->periods), mean_volts_q16(w->voltage_q12.q, w->periods)};
   const emf_sign_seen_t seen = {on_axis(mean_q16, r), on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
                                 w->periods};
@@ -115,12 +115,12 @@ bool polarity_watch_step(drive_t* d) {
   w->voltage_q12.q = q_limit(w->voltage_q12.q + q_shr(d->control.command_q16.q, 4), SUM_END_Q12);
   w->periods = q_min(w->periods + 1, PERIODS_END);
   w->axis_periods = q_min(w->axis_periods + 1, PERIODS_END);
-  if (d->schedule.turn == TURN_REGRESS) w->axis_then_bam = w->axis.angle_bam;
-  if (d->schedule.turn == TURN_LOOK) {
+  if (d->schedule.slot == SLOT_REGRESSION) w->axis_then_bam = w->axis.angle_bam;
+  if (d->schedule.slot == SLOT_LOOK) {
     follow_axis(d);
     return false;
   }
-  if (d->schedule.turn != TURN_VOLTAGE || w->blind) return false;
+  if (d->schedule.slot != SLOT_VOLTAGE || w->samples_invalid) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

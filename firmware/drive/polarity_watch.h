@@ -12,7 +12,7 @@ typedef struct {
   tracking_observer_t axis;
   uint32_t axis_then_bam;  // where it was when the windows were last regressed
   int32_t axis_periods;    // since it was last corrected
-  bool blind;              // it was not seen then
+  bool samples_invalid;    // when it was to be seen
   emf_sign_t sign;
   dq_t voltage_q12;  // sum of the commands since the back-EMF was last looked at, V
   int32_t periods;   // that long ago

@@ -14,12 +14,12 @@
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
-static bool is_turn(const drive_t* d, turn_t turn) { return d->schedule.turn == turn; }
+static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
 
 // The estimator that looks at the windows first, as it was last.
 static const estimator_output_t* first_of(const drive_t* d, uint16_t traits) {
   const drive_position_t* const p = &d->position;
-  const bool low = ((traits & SOURCE_TURNS) != 0u) ? position_low_alone(d) : (traits & SOURCE_AVV_FIRST) == 0u;
+  const bool low = ((traits & SOURCE_ALTERNATES) != 0u) ? position_low_alone(d) : (traits & SOURCE_AVV_FIRST) == 0u;
   return low ? &p->low : &p->high;
 }
 
@@ -27,7 +27,7 @@ bool position_observer_rests(const drive_t* d) {
   return blend_is_high(&d->position.blend) && !polarity_watch_is_awake(d);
 }
 
-void position_hand_over(drive_t* d) {
+void position_bumpless_transfer(drive_t* d) {
   d->position.blend.region = BLEND_HIGH;
   d->position.blend.share_q15 = 0;
 }
@@ -50,7 +50,7 @@ static int32_t less_ripple_q20(int32_t sum_q20, int64_t ripple_q46, int32_t per_
 static void measure_current(drive_t* d, const estimator_output_t* first) {
   drive_samples_t* const s = &d->samples;
   dq_t sum = {0, 0};
-  const estimator_output_t* const used = &d->position.used;
+  const estimator_output_t* const selected = &d->position.selected;
   const uint32_t middle_bam = middle_of(first);
   deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(first->speed_bpp), s->frames);
   for (uint16_t k = 0; k < s->count; k++) {
@@ -63,8 +63,8 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
   const dq_t mean_q20 = {less_ripple_q20(sum.d, q_product(d->model.yd_q30, ripple_q16.d), per_count_q30),
                          less_ripple_q20(sum.q, q_product(d->model.yq_q30, ripple_q16.q), per_count_q30)};
   d->control.measured_q20 = mean_q20;
-  if (first == used || first->angle_bam == used->angle_bam) return;
-  const dq_t moved_q20 = frame_moved(mean_q20, middle_of(used) - middle_bam);
+  if (first == selected || first->angle_bam == selected->angle_bam) return;
+  const dq_t moved_q20 = frame_moved(mean_q20, middle_of(selected) - middle_bam);
   d->control.measured_q20.d = q_limit(moved_q20.d, DRIVE_CURRENT_END_Q20);
   d->control.measured_q20.q = q_limit(moved_q20.q, DRIVE_CURRENT_END_Q20);
 }
@@ -72,7 +72,7 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
 void drive_estimate(drive_t* d) {
   const uint16_t count = (d->flags.invalid > 0u) ? 0u : d->samples.count;
   const bool measuring = d->state == DRIVE_COMMISSION && !d->flags.spins;
-  const bool turned = d->flags.open_loop;
+  const bool open_loop = d->flags.open_loop;
   const bool starting = !measuring && !d->schedule.turning;
   // Before the shaft turns AVV alone is at work. The spin of a commissioning runs on the observer: the other sources
   // want windows, or an alignment, of their own.
@@ -80,31 +80,31 @@ void drive_estimate(drive_t* d) {
   if (d->state == DRIVE_COMMISSION) source = position_sources[POSITION_OBSERVER];
   if (starting) source = position_sources[POSITION_AVV];
   // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone.
-  const bool alone = (source->traits & SOURCE_SINGLE) != 0u || starting || turned;
-  const estimator_output_t* const first = alone ? &d->position.used : first_of(d, source->traits);
+  const bool alone = (source->traits & SOURCE_SINGLE) != 0u || starting || open_loop;
+  const estimator_output_t* const first = alone ? &d->position.selected : first_of(d, source->traits);
   if (count > 0u) measure_current(d, first);
-  const bool moves = d->schedule.moves || is_turn(d, TURN_MOVE);
+  const bool moves = d->schedule.moves || is_slot(d, SLOT_OPERATING_POINT);
   if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
-  if (is_turn(d, TURN_LOOK) && !polarity_watch_is_awake(d)) machine_model_turn(&d->model);
+  if (is_slot(d, SLOT_LOOK) && !polarity_watch_is_awake(d)) machine_model_renew_sensitivity(&d->model);
   estimator_input_t in;
   in.model = &d->model;
-  in.regress = is_turn(d, TURN_REGRESS);
+  in.regress = is_slot(d, SLOT_REGRESSION);
   in.renew = d->schedule.renews;
   in.refresh = moves || !d->schedule.turning;
   in.windows = d->samples.windows;
   in.window_count = d->schedule.skips ? 0u : count;
-  in.frames = (turned || measuring) ? 0 : d->samples.frames;
+  in.frames = (open_loop || measuring) ? 0 : d->samples.frames;
   // While the polarity is open the sign of the torque is, too. A source that looks on is told what its own angle makes
   // of the current, as later.
   dq_t seen_q20 = d->control.measured_q20;
-  if (turned) seen_q20 = position_seen(d, seen_q20);
+  if (open_loop) seen_q20 = position_seen(d, seen_q20);
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(machine_torque_q16(&d->model, seen_q20), d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&d->inertia, in.torque_accel_q8);
-  if (turned || measuring) {
+  if (open_loop || measuring) {
     drive_states[d->state]->estimate(d, &in);
   } else {
-    d->position.used = source->step(d, &in);
+    d->position.selected = source->step(d, &in);
   }
 }
 
@@ -117,7 +117,7 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   const int32_t speed_bpp = q_limit(seen_bpp, MACHINE_SPEED_END_BPP);
   const estimator_output_t now = {angle_bam, speed_bpp, 0, 0};
   avv_preset(&p->avv, angle_bam, speed_bpp, 0);
-  p->used = now;
+  p->selected = now;
 }
 
 static void begin_flux(drive_t* d, bool keeps) {
@@ -128,14 +128,14 @@ static void begin_flux(drive_t* d, bool keeps) {
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   drive_position_t* const p = &d->position;
   position_preset_axis(d, angle_bam, seen_bpp);
-  const int32_t speed_bpp = p->used.speed_bpp;
+  const int32_t speed_bpp = p->selected.speed_bpp;
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
   begin_flux(d, false);
   blend_reset(&p->blend);
-  if (position_has(d, SOURCE_TURNS)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
-  p->low = p->used;
-  p->high = p->used;
+  if (position_has(d, SOURCE_ALTERNATES)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
+  p->low = p->selected;
+  p->high = p->selected;
 }
 
 void position_keep(drive_t* d) { begin_flux(d, true); }

@@ -26,7 +26,7 @@ uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t coun
 
 /// A vector in the frame that the control uses, in the frame of what the position source sees meanwhile.
 static inline dq_t position_seen(const drive_t* d, dq_t vector) {
-  return frame_moved(vector, d->position.seen.angle_bam - d->position.used.angle_bam);
+  return frame_moved(vector, d->position.seen.angle_bam - d->position.selected.angle_bam);
 }
 
 /// Whether the source in use has this trait.
@@ -36,7 +36,7 @@ static inline bool position_has(const drive_t* d, uint16_t trait) { return (d->s
 bool position_observer_rests(const drive_t* d);
 
 /// Gives the shaft to the high-speed estimator alone, whatever the speed; the blend goes on from there.
-void position_hand_over(drive_t* d);
+void position_bumpless_transfer(drive_t* d);
 
 /// What a source has seen of a shaft that a vector turned holds from here on.
 void position_keep(drive_t* d);

@@ -39,7 +39,7 @@ static int32_t disagreement(const drive_t* d) {
 static bool diverged(drive_t* d, int32_t periods, int32_t apart_bam) {
   const int32_t speed_limit = q_mul_floor(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
   const bool wrong = (apart_bam > 0 && apart_bam > q_mul_floor(parameters.divergence_limit, 11930465L, 16)) ||
-                     q_abs_sat(d->position.used.speed_bpp) / 3 * 2 > speed_limit;
+                     q_abs_sat(d->position.selected.speed_bpp) / 3 * 2 > speed_limit;
   d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + (uint16_t)periods) : 0u;
   return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
 }
@@ -55,15 +55,16 @@ static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int
   const bool measured = position_has(d, SOURCE_MEASURES);
   const regression_t* const by_avv = &d->position.avv.regression;
   if (measured && parameters.encoder_trim != 0) return false;
-  synchronism_seen_t seen = {{0, 0}, 0, d->position.used.speed_bpp, ahead_bpp, periods};
+  synchronism_seen_t seen = {{0, 0}, 0, d->position.selected.speed_bpp, ahead_bpp, periods};
   // Where the observer reads the windows, its residuals say how it is: those of all periods since it was last asked.
   if (position_observer_reads(d)) {
-    (void)deviation_observer_take_left(&d->position.observer, &seen.residual_q20, &seen.span_ticks, &seen.periods);
-  } else if (position_has(d, SOURCE_TURNS) && by_avv->information > 0) {
+    (void)deviation_observer_take_mean_residual(&d->position.observer, &seen.residual_q20, &seen.span_ticks,
+                                                &seen.periods);
+  } else if (position_has(d, SOURCE_ALTERNATES) && by_avv->information > 0) {
     seen.residual_q20 = by_avv->mean_q20;  // AVV has regressed the same windows
     seen.span_ticks = span_of(&d->samples);
   } else {
-    synchronism_look(&seen, &d->model, d->samples.windows, d->samples.count, d->position.used.angle_bam);
+    synchronism_look(&seen, &d->model, d->samples.windows, d->samples.count, d->position.selected.angle_bam);
   }
   // AVV beside the encoder may stray where its windows are short; that is divergence, the encoder's angle stands.
   return synchronism_judge(&d->supervision.synchronism, &d->config.synchronism, &d->model, &seen,
@@ -79,8 +80,8 @@ static bool judges_now(const drive_t* d) {
 // How much faster the frame in use has turned than its speed says, since it was last judged; 0 when that is long ago.
 static int32_t frame_ahead_bpp(const drive_t* d, int32_t since) {
   if ((uint32_t)(since - 1) >= JUDGED_PERIODS_MAX) return 0;
-  const uint32_t by_speed_bam = (uint32_t)d->position.used.speed_bpp * (uint32_t)since;
-  return angle_diff_bam(d->position.used.angle_bam, d->supervision.judged_bam + by_speed_bam) / since;
+  const uint32_t by_speed_bam = (uint32_t)d->position.selected.speed_bpp * (uint32_t)since;
+  return angle_diff_bam(d->position.selected.angle_bam, d->supervision.judged_bam + by_speed_bam) / since;
 }
 
 static drive_fault_t check_position(drive_t* d) {
@@ -88,7 +89,7 @@ static drive_fault_t check_position(drive_t* d) {
   const int32_t ahead_bpp = frame_ahead_bpp(d, since);
   const int32_t periods = q_min(since, JUDGED_PERIODS_MAX);
   d->supervision.judged_at = d->heartbeat;
-  d->supervision.judged_bam = d->position.used.angle_bam;
+  d->supervision.judged_bam = d->position.selected.angle_bam;
   const int32_t apart_bam = disagreement(d);
   if (lost_synchronism(d, periods, ahead_bpp, apart_bam))
     return polarity_watch_suspects() ? FAULT_POLARITY : FAULT_SYNCHRONISM;
@@ -119,5 +120,5 @@ void drive_protect(drive_t* d) {
   const bool first_turns = polarity_watch_is_awake(d);
   drive_fault_t fault = check(d);
   if (first_turns && is_of_angle(fault) && position_encoder_is_reversed(d)) fault = FAULT_ENCODER;
-  if (fault != FAULT_NONE) drive_raise(d, fault);
+  if (fault != FAULT_NONE) drive_trip(d, fault);
 }

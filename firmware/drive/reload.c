@@ -13,7 +13,7 @@
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 // The dead band of the gate signals, ticks; the power stage's own minimum is the parameter's business.
 uint16_t drive_dead_band_ticks(void) {
@@ -29,7 +29,7 @@ static void reload(void) {
   const packed_text_t conflict = drive_config_or_conflict(&fresh);
   const bool valid = conflict == PACKED_NONE;
   const uint16_t state = hal_irq_disable();
-  hal_tape_work_begin(TAPE_RELOADED);
+  hal_replay_work_begin(REPLAY_RELOADED);
   drive.request.reload = false;
   drive_choose_source();
   drive.config_valid = valid;
@@ -37,20 +37,20 @@ static void reload(void) {
   drive.conflict_known = true;
   if (valid) drive.config = *fresh;
   drive.control.current_limit_q20 = interlock_current_limit();
-  drive_command_speed(drive.control.wanted_rpm_q16);  // in the units of the new configuration
+  drive_command_speed(drive.control.command_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
     hal_encoder_init((uint32_t)parameters.encoder_counts);
     if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());
   }
-  hal_tape_work_end();
+  hal_replay_work_end();
   hal_irq_restore(state);
 }
 
 void background_step(drive_t* d) {
   for (uint16_t k = 0; edition_works[k] != NULL; k++) edition_works[k](d);
-  if (d->request.reload && hal_tape_has_work(TAPE_RELOADED)) reload();
+  if (d->request.reload && hal_replay_has_work(REPLAY_RELOADED)) reload();
 }
 
 void drive_service(void) {

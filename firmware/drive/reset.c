@@ -7,7 +7,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/sampling.h"
@@ -26,9 +26,9 @@ void drive_reset(void) {
   interlock_reset();
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();
   drive.control.current_limit_q20 = interlock_current_limit();
-  drive.rest_a_q8 = drive.rest_b_q8 = DRIVE_MIDDLE_Q8;
-  drive.trim.offset_a_q8 = drive.rest_a_q8;
-  drive.trim.offset_b_q8 = drive.rest_b_q8;
+  drive.zero_current_a_q8 = drive.zero_current_b_q8 = DRIVE_MIDDLE_Q8;
+  drive.trim.offset_a_q8 = drive.zero_current_a_q8;
+  drive.trim.offset_b_q8 = drive.zero_current_b_q8;
   drive_choose_source();
   drive.config_valid = drive_config_load(&drive.config);
   drive.model = drive.config.nameplate;

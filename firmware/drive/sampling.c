@@ -114,7 +114,7 @@ void drive_read_samples(drive_t* d) {
   if (!complete) return;
   if (d->state == DRIVE_CALIBRATE) take_raw(s, &b->windows[0]);
   follow_link(d, b, p->window_count);
-  if (d->schedule.turn == TURN_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
+  if (d->schedule.slot == SLOT_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
   const scale_t scale = scale_of(d);
   int16_t middles[ESTIMATOR_WINDOWS];
   for (uint16_t k = 0; k < p->window_count; k++) {

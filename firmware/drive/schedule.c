@@ -1,13 +1,13 @@
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
-#define MOVED_Q20 131072L  // 0.125 A: so far from its working point the model may be
+#define MOVED_Q20 131072L  // 0.125 A: so far from its operating point the model may be
 #define WAITED_MAX 3u      // turns in a row that give way
 
-static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_TURN, TASK_RENEW, TASK_TURN,
-                                                   TASK_FIELD, TASK_JUDGE,       TASK_TURN, TASK_RENEW, TASK_TURN};
+static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_SLOT,
+                                                   TASK_FIELD, TASK_JUDGE,       TASK_SLOT, TASK_RENEW, TASK_SLOT};
 
 // Whether the deviation observer runs at all while the shaft turns.
 static bool has_observer(const drive_t* d) {
@@ -20,14 +20,14 @@ static bool is_beside_flux(const drive_t* d) {
   return position_has(d, SOURCE_HANDS_OVER) && !blend_is_low(&d->position.blend);
 }
 
-// What cannot wait: working point or covariance, by turns where both want it, the covariance first where it would be
-// renewed anyway. A shaft that is held wants its working point always.
+// What cannot wait: operating point or covariance, by turns where both want it, the covariance first where it would be
+// renewed anyway. A shaft that is held wants its operating point always.
 static bool take_urgent(drive_t* d, bool observes) {
   schedule_t* const s = &d->schedule;
-  const bool due = s->pressed || (observes && !s->held && deviation_observer_is_due(&d->position.observer));
+  const bool due = s->update_urgent || (observes && !s->held && deviation_observer_is_due(&d->position.observer));
   const bool moved = s->held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
   if (!moved && !due) return false;
-  s->moves = moved && !(due && (s->moved_last || s->pressed));
+  s->moves = moved && !(due && (s->moved_last || s->update_urgent));
   s->renews = !s->moves;
   s->moved_last = s->moves;
   return true;
@@ -36,18 +36,18 @@ static bool take_urgent(drive_t* d, bool observes) {
 // In the first millisecond of a run how much the windows will tell is not known yet.
 static bool is_young(const drive_t* d) { return d->periods < DRIVE_PERIODS_PER_MS; }
 
-static void take_turn(schedule_t* s) {
+static void take_slot(schedule_t* s) {
   s->waited = 0;
-  s->last = (uint16_t)((s->last + 1u) % TURNS);
-  s->turn = (turn_t)s->last;
+  s->last = (uint16_t)((s->last + 1u) % SCHEDULE_SLOTS);
+  s->slot = (schedule_slot_t)s->last;
 }
 
-static void turn_or_give_way(drive_t* d, bool observes) {
+static void slot_or_give_way(drive_t* d, bool observes) {
   schedule_t* const s = &d->schedule;
   if ((s->held || s->waited < WAITED_MAX) && take_urgent(d, observes)) {
     s->waited++;
   } else {
-    take_turn(s);
+    take_slot(s);
   }
 }
 
@@ -55,9 +55,9 @@ static bool is_judgement(task_t task) { return task == TASK_JUDGE_FIRST || task 
 
 // Before the shaft turns nothing is judged or renewed; the synchronism of one that is held is judged once in a
 // millisecond.
-static bool is_turn(const schedule_t* s) {
+static bool is_slot(const schedule_t* s) {
   if (!s->turning) return s->task > TASK_FIELD;
-  return s->task == TASK_TURN || (s->held && s->task == TASK_JUDGE_FIRST);
+  return s->task == TASK_SLOT || (s->held && s->task == TASK_JUDGE_FIRST);
 }
 
 // Whether the observer finds time for the windows, which may make it renew the covariance as well.
@@ -65,17 +65,17 @@ static bool has_room(const drive_t* d) {
   const schedule_t* const s = &d->schedule;
   const bool is_long = s->task == TASK_SPEED || s->task == TASK_FIELD;
   if (is_long && is_beside_flux(d)) return false;
-  return !s->pressed || s->renews || !(is_long || s->judges || is_young(d));
+  return !s->update_urgent || s->renews || !(is_long || s->judges || is_young(d));
 }
 
 static void begin(schedule_t* s) {
   s->period = (s->period < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(s->period + 1u) : 0u;
   s->task = tasks[s->period];
-  s->turn = TURNS;
+  s->slot = SCHEDULE_SLOTS;
   s->moves = false;
   s->renews = false;
   s->judges = false;
-  s->decides = false;
+  s->exclusive = false;
   s->skips = false;
 }
 
@@ -86,13 +86,13 @@ void schedule_next(drive_t* d) {
   const bool observes = s->turning && has_observer(d);
   s->held = hold_is_on(d);
   s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
-  s->pressed = observes && (is_young(d) || deviation_observer_is_pressed(&d->position.observer));
-  if (is_turn(s)) {
-    s->decides = d->flags.decides;
-    if (!s->decides) turn_or_give_way(d, observes);
+  s->update_urgent = observes && (is_young(d) || deviation_observer_update_is_urgent(&d->position.observer));
+  if (is_slot(s)) {
+    s->exclusive = d->flags.wants_exclusive;
+    if (!s->exclusive) slot_or_give_way(d, observes);
   } else {
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
   }
-  s->skips = s->decides || (observes && !has_room(d));
+  s->skips = s->exclusive || (observes && !has_room(d));
 }

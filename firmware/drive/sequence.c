@@ -10,17 +10,18 @@
 
 #define CALIBRATE_PERIODS 256u
 #define SAMPLES_TIMEOUT 2000u
-#define OFFSET_MAX_Q8 (100L * 256L)  // codes off the middle: about 1 A on a 20 A range
-#define OFFSET_END_Q8 (128L * 256L)  // none beyond is ever used: samples stay in their formats
-#define UNREST_MAX_Q8 (10L * 256L)   // mean deviation from the offset, codes: ten times the converter's noise
-#define UNREST_TIMEOUT 100000u       // 10 s
+#define OFFSET_MAX_Q8 (100L * 256L)          // codes off the middle: about 1 A on a 20 A range
+#define OFFSET_END_Q8 (128L * 256L)          // none beyond is ever used: samples stay in their formats
+#define OFFSET_RESIDUAL_MAX_Q8 (10L * 256L)  // mean deviation from the offset, codes: ten times the converter's noise
+#define SETTLE_TIMEOUT 100000u               // 10 s
 
 // A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
 // shaft, and with the EMF below the link it ends.
 static bool current_flows(drive_t* d) {
-  const int32_t off_q8 = q_abs_sat(d->samples.raw_a_q8 - d->rest_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->rest_b_q8);
-  d->unrest_q8 = q_follow_near(d->unrest_q8, off_q8, 5);
-  return d->unrest_q8 > UNREST_MAX_Q8;
+  const int32_t off_q8 =
+      q_abs_sat(d->samples.raw_a_q8 - d->zero_current_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->zero_current_b_q8);
+  d->offset_residual_q8 = q_follow_near(d->offset_residual_q8, off_q8, 5);
+  return d->offset_residual_q8 > OFFSET_RESIDUAL_MAX_Q8;
 }
 
 static int32_t usable_offset(int32_t rest_q8) {
@@ -28,22 +29,22 @@ static int32_t usable_offset(int32_t rest_q8) {
 }
 
 static void calibrate(drive_t* d) {
-  if (d->supervision.missing > SAMPLES_TIMEOUT) drive_raise(d, FAULT_NO_SAMPLES);
+  if (d->supervision.missing > SAMPLES_TIMEOUT) drive_trip(d, FAULT_NO_SAMPLES);
   if (d->samples.count == 0u) return;
-  d->rest_a_q8 = q_follow_near(d->rest_a_q8, d->samples.raw_a_q8, 4);
-  d->rest_b_q8 = q_follow_near(d->rest_b_q8, d->samples.raw_b_q8, 4);
-  d->trim.offset_a_q8 = usable_offset(d->rest_a_q8);
-  d->trim.offset_b_q8 = usable_offset(d->rest_b_q8);
+  d->zero_current_a_q8 = q_follow_near(d->zero_current_a_q8, d->samples.raw_a_q8, 4);
+  d->zero_current_b_q8 = q_follow_near(d->zero_current_b_q8, d->samples.raw_b_q8, 4);
+  d->trim.offset_a_q8 = usable_offset(d->zero_current_a_q8);
+  d->trim.offset_b_q8 = usable_offset(d->zero_current_b_q8);
   const bool flows = current_flows(d);
-  if (flows) d->calm_at = d->periods + CALIBRATE_PERIODS;
-  const bool calm = d->periods >= d->calm_at;
-  if (d->periods < CALIBRATE_PERIODS || (!calm && d->periods < UNREST_TIMEOUT)) return;
-  const bool plausible = q_abs_sat(d->rest_a_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8 &&
-                         q_abs_sat(d->rest_b_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8;
-  if (plausible && calm) {
+  if (flows) d->settled_at = d->periods + CALIBRATE_PERIODS;
+  const bool settled = d->periods >= d->settled_at;
+  if (d->periods < CALIBRATE_PERIODS || (!settled && d->periods < SETTLE_TIMEOUT)) return;
+  const bool plausible = q_abs_sat(d->zero_current_a_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8 &&
+                         q_abs_sat(d->zero_current_b_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8;
+  if (plausible && settled) {
     drive_enter(d, DRIVE_READY);
   } else {
-    drive_raise(d, FAULT_OFFSET);
+    drive_trip(d, FAULT_OFFSET);
   }
 }
 
@@ -66,10 +67,10 @@ static void stop(drive_t* d) {
   const int32_t still = q_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
   if (d->control.ramp.value != 0) return;
   v->stopping_periods++;
-  if (q_abs_sat(d->position.used.speed_bpp) <= still) {
+  if (q_abs_sat(d->position.selected.speed_bpp) <= still) {
     coast(d);
   } else if (v->stopping_periods > (uint32_t)parameters.stop_time * DRIVE_PERIODS_PER_MS) {
-    drive_raise(d, FAULT_STOP);
+    drive_trip(d, FAULT_STOP);
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include "control/brake_limit.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
@@ -16,9 +16,12 @@ static int32_t voltage_limit(const drive_t* d) {
 
 static void weaken(drive_t* d) {
   drive_control_t* const c = &d->control;
-  const field_weakening_input_t in = {
-      d->position.used.speed_bpp, c->reference_q20.q,         q_hypot(c->command_q16.d, c->command_q16.q),
-      voltage_limit(d),           parameters.weakening_limit, parameters.weakening_gain};
+  const field_weakening_input_t in = {d->position.selected.speed_bpp,
+                                      c->reference_q20.q,
+                                      q_hypot(c->command_q16.d, c->command_q16.q),
+                                      voltage_limit(d),
+                                      parameters.weakening_limit,
+                                      parameters.weakening_gain};
   c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->model);
 }
 
@@ -46,28 +49,28 @@ void drive_weaken_field(drive_t* d) {
 // Current that balances the estimated load. The observers see friction as part of the load; the speed law's own model
 // has it too, so it is taken off here.
 static int32_t load_current(const drive_t* d) {
-  const int32_t speed = d->position.used.speed_bpp;
-  const int32_t load_q20 = q_mul_sat(d->position.used.load_accel_q8, d->model.torque_per_accel_q24, 20);
+  const int32_t speed = d->position.selected.speed_bpp;
+  const int32_t load_q20 = q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 20);
   const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
   const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
   return q_over(torque_q20, d->control.per_torque_constant, 24);
 }
 
-int32_t drive_current_room(const drive_t* d) {
+int32_t drive_current_headroom(const drive_t* d) {
   const int32_t limit = d->control.current_limit_q20;
   const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
   return (room > 0) ? q_min((int32_t)q_sqrt64((uint64_t)room), limit) : 0;
 }
 
-static int32_t braking_room(const drive_t* d, int32_t room_q20) {
+static int32_t braking_headroom(const drive_t* d, int32_t headroom_q20) {
   brake_limit_input_t in;
   in.link_q16 = d->samples.link_q16;
   in.start_q16 = parameters.link_regulation;
   // The rest of the way to the fault is for noise and for the delay of the loop.
   in.end_q16 = parameters.link_regulation + (parameters.link_maximum - parameters.link_regulation) / 3 * 2;
-  in.emf_q16 = q_mul_sat(q_abs_sat(machine_speed_rad_q30(d->position.used.speed_bpp)), d->model.emf_q16, 30);
+  in.emf_q16 = q_mul_sat(q_abs_sat(machine_speed_rad_q30(d->position.selected.speed_bpp)), d->model.emf_q16, 30);
   in.drop_q16 = q_mul_sat(d->model.nominal_rs_q24, parameters.current_limit, 28);
-  return brake_limit_q20(&in, room_q20);
+  return brake_limit_q20(&in, headroom_q20);
 }
 
 // Both follow the reference of i_d.
@@ -78,35 +81,35 @@ static void make_torque_constant(drive_t* d) {
 
 static void make_room(drive_t* d) {
   drive_control_t* const c = &d->control;
-  c->room_q20 = drive_current_room(d);
-  c->braking_room_q20 = braking_room(d, c->room_q20);
+  c->headroom_q20 = drive_current_headroom(d);
+  c->braking_headroom_q20 = braking_headroom(d, c->headroom_q20);
 }
 
 // Braking is what acts against the rotation.
 static void limit_current(const drive_t* d, speed_controller_input_t* in) {
   const drive_control_t* const c = &d->control;
-  in->lowest_q20 = (in->speed_bpp > 0) ? -c->braking_room_q20 : -c->room_q20;
-  in->highest_q20 = (in->speed_bpp < 0) ? c->braking_room_q20 : c->room_q20;
+  in->lowest_q20 = (in->speed_bpp > 0) ? -c->braking_headroom_q20 : -c->headroom_q20;
+  in->highest_q20 = (in->speed_bpp < 0) ? c->braking_headroom_q20 : c->headroom_q20;
 }
 
 // A shaft that may not be braked as fast as the ramp falls would be left behind by it, and be braked on when it has
-// long been told to speed up again: the ramp waits.
+// long been commanded to speed up again: the ramp waits.
 static bool ramp_waits(const drive_t* d, int32_t target_bpp) {
   if ((d->limits & LIMIT_BRAKING) == 0) return false;
   const int32_t value = d->control.ramp.value;
-  return (d->position.used.speed_bpp > 0) ? target_bpp < value : target_bpp > value;
+  return (d->position.selected.speed_bpp > 0) ? target_bpp < value : target_bpp > value;
 }
 
-// At a reference of zero the place is kept, not only the speed.
-static int32_t hold_place(drive_t* d) {
+// At a reference of zero the position is kept, not only the speed.
+static int32_t hold_position(drive_t* d) {
   drive_control_t* const c = &d->control;
   const bool at_zero = d->state == DRIVE_RUN && c->target_bpp == 0 && c->ramp.value == 0;
-  const bool slow = q_abs_sat(d->position.used.speed_bpp) < d->config.hold_below_bpp;
-  if (!at_zero || !(slow || c->place.holding)) {
-    position_hold_release(&c->place);
+  const bool slow = q_abs_sat(d->position.selected.speed_bpp) < d->config.hold_below_bpp;
+  if (!at_zero || !(slow || c->position_hold.holding)) {
+    position_hold_release(&c->position_hold);
     return 0;
   }
-  return position_hold_step(&c->place, d->position.used.angle_bam, d->config.hold_gain_q30);
+  return position_hold_step(&c->position_hold, d->position.selected.angle_bam, d->config.hold_gain_q30);
 }
 
 static void step_ramp(drive_t* d, speed_controller_input_t* in) {
@@ -130,9 +133,9 @@ static void step_speed(drive_t* d, bool held) {
   drive_control_t* const c = &d->control;
   speed_controller_input_t in;
   step_ramp(d, &in);
-  in.reference_bpp = q_add_sat(in.reference_bpp, hold_place(d));
+  in.reference_bpp = q_add_sat(in.reference_bpp, hold_position(d));
   d->limits &= ~(int32_t)LIMIT_BRAKING;
-  in.speed_bpp = d->position.used.speed_bpp;
+  in.speed_bpp = d->position.selected.speed_bpp;
   in.load_current_q20 = load_current(d);
   limit_current(d, &in);
   if (held) {

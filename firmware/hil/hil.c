@@ -12,8 +12,8 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_sci.h"
-#include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 
 typedef struct {
@@ -21,7 +21,7 @@ typedef struct {
   bool answered, torn;  // a step has been, which may be asked for again; the last one
   uint16_t expected;
   uint32_t heard;                  // cycles
-  uint16_t shape[HIL_STEP_SHAPE];  // of the last step, whose words are on the tape
+  uint16_t shape[HIL_STEP_SHAPE];  // of the last step, whose words are in the recording
   hil_answer_t before;             // the answer before the last
 } hil_t;
 
@@ -31,7 +31,7 @@ void hil_reset(void) {
   clear(&hil, sizeof hil);
   feature_status.stepped = false;
   feature_status.heartbeat = 0u;
-  hal_tape_start(TAPE_OFF, NULL);
+  hal_replay_start(REPLAY_OFF, NULL);
 }
 
 uint16_t hil_expected(void) { return hil.expected; }
@@ -53,14 +53,14 @@ static void stop_bursts(void) {
   (void)hal_pwm_write(&none, HAL_PWM_LAST_TICK);
 }
 
-// The words that the first step is told against.
-static void clear_tape(void) {
-  tape_period_t* const p = &hal_tape.period;
-  for (uint16_t k = 0; k < TAPE_INPUTS; k++) p->inputs[k] = 0u;
-  for (uint16_t k = 0; k < TAPE_WORKS; k++) p->works[k] = 0u;
-  for (uint16_t k = 0; k < TAPE_WINDOWS; k++) {
+// The words that the first step is given against.
+static void clear_recording(void) {
+  replay_period_t* const p = &hal_replay.period;
+  for (uint16_t k = 0; k < REPLAY_INPUTS; k++) p->inputs[k] = 0u;
+  for (uint16_t k = 0; k < REPLAY_WORKS; k++) p->works[k] = 0u;
+  for (uint16_t k = 0; k < REPLAY_WINDOWS; k++) {
     p->windows[k].call = 0u;
-    for (uint16_t n = 0; n < TAPE_RESULTS; n++) p->windows[k].results[n] = 0u;
+    for (uint16_t n = 0; n < REPLAY_RESULTS; n++) p->windows[k].results[n] = 0u;
   }
 }
 
@@ -68,7 +68,7 @@ hil_result_t hil_enter(void) {
   // In the loop already, the drive only believes that its power stage is on: it may begin anew at any time.
   if (!feature_status.stepped && (drive_is_energised() || !hal_pwm_is_tripped())) return HIL_ENERGISED;
   if (feature_status.store_work != 0u) return HIL_BUSY;
-  hal_tape_start(TAPE_OFF, NULL);
+  hal_replay_start(REPLAY_OFF, NULL);
   hal_irq_install(own_interrupt, own_window);
   hal_pwm_gates_off();
   stop_bursts();
@@ -76,8 +76,8 @@ hil_result_t hil_enter(void) {
   hil_reset();
   feature_status.stepped = true;
   hil.heard = hal_time_cycles();
-  clear_tape();
-  hal_tape_start(TAPE_PLAYS, drive_window_interrupt);
+  clear_recording();
+  hal_replay_start(REPLAY_PLAYS, drive_window_interrupt);
   hal_irq_enable();
   return HIL_OK;
 }
@@ -92,7 +92,7 @@ void hil_service(void) {
   if (feature_status.stepped && hal_time_cycles() - hil.heard > HIL_REST_S * HAL_TIME_CYCLES_PER_S) hil.leaving = true;
 }
 
-static void take_window(octet_reader_t* r, tape_window_t* w, uint16_t results) {
+static void take_window(octet_reader_t* r, replay_window_t* w, uint16_t results) {
   uint16_t words[HIL_WINDOW_WORDS] = {w->call};
   for (uint16_t k = 0; k < results; k++) words[1u + k] = w->results[k];
   delta_take(r, words, words, (uint16_t)(1u + results));
@@ -102,24 +102,24 @@ static void take_window(octet_reader_t* r, tape_window_t* w, uint16_t results) {
 
 // Whether what is left is one step of a shape, neither more nor less.
 static bool is_whole(octet_reader_t r, const uint16_t* shape) {
-  uint16_t any[TAPE_INPUTS] = {0};
-  if (shape[0] > TAPE_WINDOWS || shape[1] > TAPE_RESULTS || shape[2] > TAPE_INPUTS) return false;
-  if (shape[3] > TAPE_WORKS) return false;
+  uint16_t any[REPLAY_INPUTS] = {0};
+  if (shape[0] > REPLAY_WINDOWS || shape[1] > REPLAY_RESULTS || shape[2] > REPLAY_INPUTS) return false;
+  if (shape[3] > REPLAY_WORKS) return false;
   delta_take(&r, any, any, shape[3]);
   delta_take(&r, any, any, shape[2]);
   for (uint16_t k = 0; k < shape[0]; k++) delta_take(&r, any, any, (uint16_t)(1u + shape[1]));
   return octets_fit(&r);
 }
 
-// Onto the tape, which still has the words of the step before. Nothing is changed by a step that is not whole.
+// Into the recording, which still has the words of the step before. Nothing is changed by a step that is not whole.
 static bool take_step(octet_reader_t* r) {
   uint16_t shape[HIL_STEP_SHAPE];
   delta_take(r, shape, hil.shape, HIL_STEP_SHAPE);
   if (!is_whole(*r, shape)) return false;
   for (uint16_t k = 0; k < HIL_STEP_SHAPE; k++) hil.shape[k] = shape[k];
-  if (hil.answered) hil_keep_answer(&hil.before, hil.torn, &hal_tape.period);
-  hal_tape_next_period();
-  tape_period_t* const p = &hal_tape.period;
+  if (hil.answered) hil_keep_answer(&hil.before, hil.torn, &hal_replay.period);
+  hal_replay_next_period();
+  replay_period_t* const p = &hal_replay.period;
   p->window_count = shape[0];
   p->input_count = shape[2];
   p->work_count = shape[3];
@@ -129,31 +129,31 @@ static bool take_step(octet_reader_t* r) {
   return true;
 }
 
-// As long as the tape has work that was done on this side of the step.
+// As long as the recording has work that was done on this side of the step.
 static void play_work(void) {
   uint16_t done;
   do {
-    done = hal_tape.work;
+    done = hal_replay.work;
     background_step(&drive);
-  } while (hal_tape.work != done);
+  } while (hal_replay.work != done);
 }
 
 static void play(void) {
   play_work();
-  hal_tape_step_begin();
+  hal_replay_step_begin();
   drive_control_step(&drive);
-  hal_tape_step_end();
+  hal_replay_step_end();
   play_work();
 }
 
-static uint16_t outputs_of(const tape_period_t* p) { return (uint16_t)q_min(p->output_count, TAPE_OUTPUTS); }
+static uint16_t outputs_of(const replay_period_t* p) { return (uint16_t)q_min(p->output_count, REPLAY_OUTPUTS); }
 
-static void shape_of(uint16_t* shape, bool torn, const tape_period_t* p) {
+static void shape_of(uint16_t* shape, bool torn, const replay_period_t* p) {
   shape[0] = torn ? 1u : 0u;
   shape[1] = p->output_count;
 }
 
-void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* p,
+void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const replay_period_t* p,
                     const hil_answer_t* before) {
   uint16_t shape[HIL_ANSWER_SHAPE];
   shape_of(shape, torn, p);
@@ -163,7 +163,7 @@ void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_
   put_u32(w, hil_signals_crc());
 }
 
-void hil_keep_answer(hil_answer_t* before, bool torn, const tape_period_t* p) {
+void hil_keep_answer(hil_answer_t* before, bool torn, const replay_period_t* p) {
   shape_of(before->shape, torn, p);
   const uint16_t count = outputs_of(p);
   for (uint16_t k = 0; k < count; k++) before->outputs[k] = p->outputs[k];
@@ -179,11 +179,11 @@ hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer) {
     if (sequence != hil.expected) return HIL_SEQUENCE;
     if (!take_step(step)) return HIL_FORMAT;
     play();
-    hil.torn = !hal_tape_finish_period();
+    hil.torn = !hal_replay_finish_period();
     hil.answered = true;
     hil.expected++;
   }
-  hil_put_answer(answer, sequence, hil.torn, &hal_tape.period, &hil.before);
+  hil_put_answer(answer, sequence, hil.torn, &hal_replay.period, &hil.before);
   return HIL_OK;
 }
 

@@ -1,7 +1,7 @@
 // Host in the loop: the control interrupt is stepped by a computer that runs the plant.
 //
 // A board on a desk has neither motor nor power stage, and conversion results cannot be put into a real converter. So
-// from here on the HAL's functions play what a step's record brings (hal/hal_tape.h) and what they are told goes back
+// from here on the HAL's functions play what a step's record brings (hal/hal_replay.h) and what they are told goes back
 // in its answer, with a check sum over every signal of the drive. The computer executes the same C files on the virtual
 // chip and compares: a board that computes otherwise is found in the first period in which it does.
 //
@@ -26,7 +26,7 @@
 #include <stdint.h>
 
 #include "firmware/base/octets.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -35,13 +35,13 @@ extern "C" {
 #define HIL_REST_S 10u
 
 #define HIL_STEP_SHAPE 4u
-#define HIL_WINDOW_WORDS (1u + TAPE_RESULTS)
+#define HIL_WINDOW_WORDS (1u + REPLAY_RESULTS)
 #define HIL_ANSWER_SHAPE 2u
 
 /// Words of answers, as they last stood in their places.
 typedef struct {
   uint16_t shape[HIL_ANSWER_SHAPE];
-  uint16_t outputs[TAPE_OUTPUTS];
+  uint16_t outputs[REPLAY_OUTPUTS];
 } hil_answer_t;
 
 typedef enum { HIL_OK = 0, HIL_ENERGISED, HIL_BUSY, HIL_NOT_ACTIVE, HIL_SEQUENCE, HIL_FORMAT } hil_result_t;
@@ -59,11 +59,11 @@ hil_result_t hil_leave(void);
 hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer);
 
 /// Writes the answer to a step of which `period` has the outputs. For the computer, too, which must expect the same.
-void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const tape_period_t* period,
+void hil_put_answer(octet_writer_t* w, uint16_t sequence, bool torn, const replay_period_t* period,
                     const hil_answer_t* before);
 
 /// That answer becomes the one before the next.
-void hil_keep_answer(hil_answer_t* before, bool torn, const tape_period_t* period);
+void hil_keep_answer(hil_answer_t* before, bool torn, const replay_period_t* period);
 
 /// Background level, while active: notices that no step comes any more.
 void hil_service(void);

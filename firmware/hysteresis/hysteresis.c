@@ -8,7 +8,7 @@
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_slices.h"
+#include "hal/hal_sampling_timer.h"
 
 #define ADAPT_PERIODS 100u       // 10 ms between two corrections of the band
 #define BAND_MIN_Q20 20972L      // 20 mA: two codes
@@ -44,8 +44,8 @@ static uint16_t risen(uint16_t before, uint16_t now) {
 
 static void hysteresis_slice(void) {
   hysteresis_t* const h = &hysteresis;
-  hal_slice_t now;
-  hal_slice_read(&now);
+  hal_timed_samples_t now;
+  hal_sampling_timer_read(&now);
   const int32_t a = (int32_t)now.current_a * 256 - h->offset_a_q8;
   const int32_t b = (int32_t)now.current_b * 256 - h->offset_b_q8;
   const int32_t lack_a = h->reference_a_q8 - a;
@@ -53,7 +53,7 @@ static void hysteresis_slice(void) {
   uint16_t state = decide(h->state, 1u, lack_a, h->band_q8);
   state = decide(state, 2u, lack_b, h->band_q8);
   state = decide(state, 4u, -lack_a - lack_b, h->band_q8);
-  if (state != h->state) hal_slice_set_legs(state);
+  if (state != h->state) hal_sampling_timer_set_legs(state);
   h->switched = (uint16_t)(h->switched + risen(h->state, state));
   h->state = state;
   h->reference_a_q8 = q_limit(h->reference_a_q8 + h->step_a_q8, CODES_END_Q8);
@@ -80,12 +80,12 @@ static void hysteresis_samples(drive_t* d) {
   const int32_t a_q20 = q_mul(mean_code_q8(taken.a_q8, taken.slices), per_code_q30, 18);
   const int32_t b_q20 = q_mul(mean_code_q8(taken.b_q8, taken.slices), per_code_q30, 18);
   // The mean of the period before, whose middle lies half a period behind the angle of its start.
-  const uint32_t middle_bam = d->position.used.angle_bam + (uint32_t)(d->position.used.speed_bpp / 2);
+  const uint32_t middle_bam = d->position.selected.angle_bam + (uint32_t)(d->position.selected.speed_bpp / 2);
   const dq_t mean_q20 = frame_turned(frame_clarke2(a_q20, b_q20), middle_bam);
   d->control.measured_q20.d = q_limit(mean_q20.d, DRIVE_CURRENT_END_Q20);
   d->control.measured_q20.q = q_limit(mean_q20.q, DRIVE_CURRENT_END_Q20);
   d->samples.link_q16 = q_follow_near(d->samples.link_q16, (int32_t)taken.link_code * d->config.volts_per_code_q16, 3);
-  if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_raise(d, FAULT_CURRENT_LIMIT);
+  if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_trip(d, FAULT_CURRENT_LIMIT);
 }
 
 // The band follows the switching frequency: seldom enough to average over the modulation by the angle.
@@ -95,8 +95,8 @@ static void adapt(hysteresis_t* h) {
   h->counted = h->switched;
   h->periods = 0;
   // Three legs, 10 ms: 30 rises per kHz.
-  const int32_t wanted = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
-  const int32_t error_q15 = q_clamp(q_div((int32_t)rises - wanted, wanted, 15), -32767L, 32767L);
+  const int32_t reference = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
+  const int32_t error_q15 = q_clamp(q_div((int32_t)rises - reference, reference, 15), -32767L, 32767L);
   h->band_q20 =
       q_clamp(h->band_q20 + q_mul(q_mul(h->band_q20, error_q15, 15), ADAPT_SHARE_Q15, 15), BAND_MIN_Q20, BAND_MAX_Q20);
 }
@@ -115,9 +115,9 @@ static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
 static void refer(drive_t* d) {
   hysteresis_t* const h = &hysteresis;
   const int32_t slices = (int32_t)(HAL_PWM_PERIOD_TICKS / slice_ticks());
-  const int32_t speed = d->position.used.speed_bpp;
+  const int32_t speed = d->position.selected.speed_bpp;
   const int32_t passed_q30 = q_min((int32_t)hal_pwm_period_tick(), HAL_PWM_PERIOD_TICKS) * 107374L;
-  const uint32_t angle = d->position.used.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
+  const uint32_t angle = d->position.selected.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
   const abc_t now = reference_codes_q8(d, angle);
   const abc_t then = reference_codes_q8(d, angle + (uint32_t)speed);
   const int32_t band_q8 = to_codes_q8(d, h->band_q20);
@@ -137,14 +137,14 @@ static void begin(drive_t* d) {
   h->offset_b_q8 = d->trim.offset_b_q8;
   h->band_q20 = parameters.hysteresis_band;
   refer(d);
-  d->sliced = (uint16_t)hal_slices_begin(slice_ticks());
+  d->sliced = (uint16_t)hal_sampling_timer_begin(slice_ticks());
 }
 
 static bool hysteresis_step(drive_t* d) {
   const bool wanted = parameters.current_law == 1 && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
   if (wanted && d->sliced == 0u) begin(d);
   if (!wanted && d->sliced != 0u) {
-    hal_slices_end();
+    hal_sampling_timer_end();
     d->sliced = 0;
     sampling_reset();
   }

@@ -1,9 +1,9 @@
 // Hysteresis control of the phase currents: each leg goes high when its current is a band below the reference, low when
 // it is a band above, and stays as it is between (what the seed paper compares its modulation with, Fig. 12).
 //
-// Sampled: the decision is made every slice (hal_slices.h) on fresh currents of two phases, c being what is left; the
-// reference moves on with every slice. The band can adapt so that the mean switching frequency is a given one. There
-// are no measuring windows, so the position must come from the encoder.
+// Sampled: the decision is made every slice (hal_sampling_timer.h) on fresh currents of two phases, c being what is
+// left; the reference moves on with every slice. The band can adapt so that the mean switching frequency is a given
+// one. There are no measuring windows, so the position must come from the encoder.
 //
 // Units of the fast part: ADC codes with 8 fractional bits, so that a slice needs no multiplication.
 

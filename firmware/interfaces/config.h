@@ -27,7 +27,7 @@ typedef struct drive_config {
   current_controller_config_t current;
   speed_controller_config_t speed;
   mtpa_t mtpa;
-  if_start_config_t turn;
+  if_start_config_t if_start;
   avv_config_t avv;
   zvv_config_t zvv;
   deviation_observer_config_t observer, hold_observer;
@@ -39,7 +39,7 @@ typedef struct drive_config {
   int32_t codes_per_amp_q16;  // ADC codes
   int32_t bpp_per_rpm_q8;
   int32_t rpm_per_bpp_q40;
-  int32_t adapt_share_q30;       // per turn, of admittances and sensor match
+  int32_t adapt_share_q30;       // per slot, of inverse inductances and sensor match
   int32_t drift_share_q30;       // of resistance and flux
   int32_t friction_per_bpp_q40;  // viscous friction torque, N m per binary angle per period
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump

@@ -8,11 +8,11 @@
 #include "control/position_hold.h"
 #include "control/ramp.h"
 #include "control/speed_controller.h"
-#include "estimators/admittance.h"
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/flux_observer.h"
+#include "estimators/inverse_inductance.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
@@ -42,7 +42,7 @@ typedef struct {
 
 /// Angle and speed in use and the estimators behind them.
 typedef struct {
-  estimator_output_t used, low, high;
+  estimator_output_t selected, low, high;
   estimator_output_t seen;  // by the position source, while it looks on
   avv_t avv;
   deviation_observer_t observer;
@@ -63,20 +63,20 @@ typedef struct {
   speed_controller_t speed;
   field_weakening_t weakening;
   int32_t weakening_q20;
-  int32_t seeing_q20;                  // what flows against the d-axis so that the flux is seen
-  int32_t current_limit_q20;           // largest phase current now (board/functions.h)
-  int32_t room_q20, braking_room_q20;  // torque current that the limits leave, and against the rotation, A
-  q_inverse_t per_torque_constant;     // of N m per A, Q24, at the reference of i_d
+  int32_t observability_q20;                   // what flows against the d-axis so that the flux is observable
+  int32_t current_limit_q20;                   // largest phase current now (board/functions.h)
+  int32_t headroom_q20, braking_headroom_q20;  // torque current that the limits leave, and against the rotation, A
+  q_inverse_t per_torque_constant;             // of N m per A, Q24, at the reference of i_d
   ramp_t ramp;
-  position_hold_t place;   // kept at a reference of zero
-  dq_t reference_q20;      // current reference
-  dq_t measured_q20;       // mean current of the last period
-  dq_t command_q16;        // voltage command
-  int32_t feed_q16;        // q-axis voltage for a change of the reference that is known beforehand
-  int32_t wanted_rpm_q16;  // speed asked for, mechanical
-  int32_t target_bpp;      // the same, electrical
-  bool closed;             // current loop closed
-  bool speed_ready;        // the speed controller could be set up
+  position_hold_t position_hold;  // kept at a reference of zero
+  dq_t reference_q20;             // current reference
+  dq_t measured_q20;              // mean current of the last period
+  dq_t command_q16;               // voltage command
+  int32_t feed_forward_q16;       // q-axis voltage for a change of the reference that is known beforehand
+  int32_t command_rpm_q16;        // speed command, mechanical
+  int32_t target_bpp;             // the same, electrical
+  bool closed;                    // current loop closed
+  bool speed_ready;               // the speed controller could be set up
 } drive_control_t;
 
 typedef struct {
@@ -84,7 +84,7 @@ typedef struct {
   svpwm_pattern_t sampled;  // pattern of the period whose windows were just read
   svpwm_pattern_t running;  // pattern of the period that has just begun
   svpwm_pattern_t next;     // pattern in the making
-  ab_t asked_q16;           // voltage asked of the modulator, drops of the devices added
+  ab_t command_q16;         // voltage commanded of the modulator, drops of the devices added
 } drive_modulation_t;
 
 typedef struct {

@@ -1,5 +1,5 @@
 // A control of the phase currents that takes the place of windows, current control and modulator: it samples in slices
-// of its own (hal/hal_slices.h) and sets the legs itself.
+// of its own (hal/hal_sampling_timer.h) and sets the legs itself.
 
 #ifndef STILLSPIN_FIRMWARE_INTERFACES_PHASE_CONTROL_H
 #define STILLSPIN_FIRMWARE_INTERFACES_PHASE_CONTROL_H

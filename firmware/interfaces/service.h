@@ -26,8 +26,8 @@ extern service_t* const edition_starting[];
 /// (api/status.h).
 extern service_t* const edition_pass[];
 
-/// What the background level works out for the drive between two control interrupts, from the drive alone: a tape has
-/// it (hal/hal_tape.h), and a host that steps the drive has it done between two steps.
+/// What the background level works out for the drive between two control interrupts, from the drive alone: a recording
+/// has it (hal/hal_replay.h), and a host that steps the drive has it done between two steps.
 typedef void work_t(struct drive* d);
 extern work_t* const edition_works[];
 

@@ -17,7 +17,8 @@ enum {
   SOURCE_HANDS_OVER = 16,  // above the blend it rests, and the other has the shaft alone
   SOURCE_BLENDS = 32,      // two estimators, both meant to be right only between the ends of the blend
   SOURCE_BESIDE = 64,      // two estimators, both meant to be right at any speed
-  SOURCE_TURNS = 128,  // two estimators that look at the windows by turns; the blend goes by a speed from the start on
+  SOURCE_ALTERNATES =
+      128,  // two estimators that look at the windows by turns; the blend goes by a speed from the start on
   SOURCE_AVV_FIRST = 256  // it is AVV that looks at the windows first
 };
 

@@ -41,7 +41,7 @@ typedef struct {
   uint16_t invalid;      // periods until the samples belong to a power stage that is on and to a known pattern
   bool gates_off;        // by the start, which has no current flow
   bool shorted;          // all lower devices on, in the place of the modulator's pattern
-  bool decides;          // the next period is for a decision alone
+  bool wants_exclusive;  // the next period is for a decision alone
   bool caught;           // a rotor that turns: angle and speed in use are its own
   bool open_loop;        // a current vector turns the rotor: the position source runs, and is not used yet
   bool spins;            // COMMISSION: speed control and position source are at work

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/interfaces/text_port.h"
 #include "firmware/link/requests.h"
 #include "firmware/link/stream.h"
@@ -21,7 +21,7 @@ static uint16_t record[RECORD_MAX];
 static uint16_t wire[WIRE_MAX];
 
 void link_reset(void) {
-  guard_reset();
+  comm_watchdog_reset();
   splitter_reset(&splitter);
   text_at = 0;
   text_end = 0;
@@ -38,11 +38,11 @@ static void send(uint16_t count) {
 // FIFO keeps the wire busy meanwhile. One that waits behind an answer comes late, not never: it is missed when the next
 // one is due.
 static void send_event(void) {
-  if (hal_sci_room() >= EVENT_WIRE_MAX + WIRE_MAX + TEXT_LINE_MAX) send(stream_event(GUARD_SERIAL, record));
+  if (hal_sci_room() >= EVENT_WIRE_MAX + WIRE_MAX + TEXT_LINE_MAX) send(stream_event(COMM_WATCHDOG_SERIAL, record));
 }
 
 static void answer(void) {  // take_octet has seen to the room
-  send(request_answer(GUARD_SERIAL, splitter.octets, splitter.count, record));
+  send(request_answer(COMM_WATCHDOG_SERIAL, splitter.octets, splitter.count, record));
 }
 
 static void sort(int16_t found) {
@@ -82,7 +82,7 @@ static bool take_octet(void) {
 }
 
 void link_service(void) {
-  guard_service();
+  comm_watchdog_service();
   requests_service();
   send_event();
   uint16_t left = OCTETS_A_ROUND;
@@ -93,6 +93,6 @@ link_errors_t link_errors(void) {
   link_errors_t e;
   e.records = splitter.errors;
   e.port = hal_sci_errors();
-  e.events_dropped = stream_lost(GUARD_SERIAL);
+  e.events_dropped = stream_lost(COMM_WATCHDOG_SERIAL);
   return e;
 }

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 typedef struct {
-  guard_t port;
+  comm_watchdog_t port;
   octet_reader_t body;
   octet_writer_t answer;
 } request_t;
@@ -44,7 +44,7 @@ extern const request_row_t table_requests[];      // requests_tables.c
 
 /// Who watches over what a command starts, by its argument. False, and said, for a guard without a number: that is a
 /// former client, and nobody could tell who keeps it alive.
-bool request_takes_guard(request_t* r, guard_t* guard, uint32_t* holder);
+bool request_takes_guard(request_t* r, comm_watchdog_t* watchdog, uint32_t* holder);
 
 #if defined(__cplusplus)
 }

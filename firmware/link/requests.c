@@ -27,7 +27,7 @@ static answer_status_t handle(request_t* r, uint16_t type) {
   return row->handler(r);
 }
 
-uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
+uint16_t request_answer(comm_watchdog_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
   if (count < 2u) return 0;
   const uint16_t type = request[0] & 0xFFu;
   if ((type & RECORD_ANSWER) != 0u) return 0;  // an answer that comes back must not be answered

@@ -7,7 +7,7 @@
 #ifndef STILLSPIN_FIRMWARE_LINK_REQUESTS_H
 #define STILLSPIN_FIRMWARE_LINK_REQUESTS_H
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/link/record.h"
 
 #if defined(__cplusplus)
@@ -62,7 +62,7 @@ void requests_service(void);
 
 /// Answers `count` octets of a request that came in at this port with a right CRC. Returns the number of octets of the
 /// answer, for which there is room of RECORD_MAX; 0 for what is no request.
-uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, uint16_t* answer);
+uint16_t request_answer(comm_watchdog_t port, const uint16_t* request, uint16_t count, uint16_t* answer);
 
 #if defined(__cplusplus)
 }

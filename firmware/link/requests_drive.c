@@ -10,18 +10,18 @@
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
 
-bool request_takes_guard(request_t* r, guard_t* guard, uint32_t* holder) {
+bool request_takes_guard(request_t* r, comm_watchdog_t* watchdog, uint32_t* holder) {
   *holder = take_u32(&r->body);
-  *guard = ((*holder & 1u) != 0u) ? r->port : GUARD_NONE;
+  *watchdog = ((*holder & 1u) != 0u) ? r->port : COMM_WATCHDOG_NONE;
   if (*holder != 1u) return true;
   put_packed(&r->answer, SAY_a_guarded_start_needs_the_number);
   return false;
 }
 
 static answer_status_t request_start(request_t* r) {
-  guard_t guard;
+  comm_watchdog_t watchdog;
   uint32_t holder;
-  return request_takes_guard(r, &guard, &holder) ? action_start(guard, holder, &r->answer) : ANSWER_RANGE;
+  return request_takes_guard(r, &watchdog, &holder) ? action_start(watchdog, holder, &r->answer) : ANSWER_RANGE;
 }
 
 static answer_status_t request_stop(request_t* r) {
@@ -50,14 +50,15 @@ static answer_status_t request_look(request_t* r) {
 }
 
 static uint16_t link_flags(uint32_t asker) {
-  return (uint16_t)((guard_is_on() ? 1u : 0u) | (guard_has_stopped() ? 2u : 0u) | (guard_is_of(asker) ? 4u : 0u));
+  return (uint16_t)((comm_watchdog_is_on() ? 1u : 0u) | (comm_watchdog_has_stopped() ? 2u : 0u) |
+                    (comm_watchdog_is_of(asker) ? 4u : 0u));
 }
 
 static answer_status_t request_status(request_t* r) {
   octet_writer_t* const w = &r->answer;
   const uint32_t asker = (r->body.count > 0u) ? take_u32(&r->body) : 0u;
   if (r->body.short_of) return ANSWER_LENGTH;
-  if (asker != 0u) guard_heard(r->port, asker);
+  if (asker != 0u) comm_watchdog_heard(r->port, asker);
   status_update();
   const drive_signals_t s = drive_signals();
   put_u32(w, drive_time_ms());

@@ -7,7 +7,7 @@
 #include "firmware/dictionary/version.h"
 #include "firmware/drive/signals.h"
 #include "firmware/link/request_rows.h"
-#include "firmware/text/words.h"
+#include "firmware/text/catalogue.h"
 #include "hal/hal_board.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
@@ -60,13 +60,13 @@ static void add(const octet_writer_t* piece) {
 }
 
 static void next_words(octet_writer_t* piece) {
-  if (words_exist(sum.kind, sum.at)) {
-    put_words(piece, (words_kind_t)sum.kind, sum.at++);
+  if (message_exists(sum.kind, sum.at)) {
+    put_message(piece, (catalogue_t)sum.kind, sum.at++);
     return;
   }
   sum.at = 0;
   sum.kind++;
-  sum.complete = sum.kind == WORDS_KINDS;
+  sum.complete = sum.kind == CATALOGUES;
 }
 
 void requests_service(void) {
@@ -91,7 +91,7 @@ void requests_service(void) {
 
 static uint16_t faults(void) {
   uint16_t count = 0;
-  while (words_exist(WORDS_FAULT, count)) count++;
+  while (message_exists(CATALOGUE_FAULT, count)) count++;
   return count;
 }
 
@@ -135,10 +135,10 @@ static answer_status_t request_signal_info(request_t* r) {
 
 static answer_status_t request_words(request_t* r) {
   const uint16_t kind = take_u8(&r->body);
-  if (kind >= WORDS_KINDS) return ANSWER_UNKNOWN;
+  if (kind >= CATALOGUES) return ANSWER_UNKNOWN;
   const uint16_t code = take_u8(&r->body);
-  if (!words_exist(kind, code)) return ANSWER_RANGE;
-  put_words(&r->answer, (words_kind_t)kind, code);
+  if (!message_exists(kind, code)) return ANSWER_RANGE;
+  put_message(&r->answer, (catalogue_t)kind, code);
   return ANSWER_OK;
 }
 

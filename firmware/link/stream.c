@@ -16,7 +16,7 @@ typedef struct {
 
 static stream_t serial, bus;
 
-static stream_t* of(guard_t port) { return (port == GUARD_BUS) ? &bus : &serial; }
+static stream_t* of(comm_watchdog_t port) { return (port == COMM_WATCHDOG_BUS) ? &bus : &serial; }
 
 void stream_reset(void) {
   static const stream_t none = {0};
@@ -24,7 +24,7 @@ void stream_reset(void) {
   bus = none;
 }
 
-void stream_setup(guard_t port, uint16_t period_ms, const uint16_t* places, uint16_t number) {
+void stream_setup(comm_watchdog_t port, uint16_t period_ms, const uint16_t* places, uint16_t number) {
   stream_t* const s = of(port);
   s->period = period_ms;
   s->count = number;
@@ -34,12 +34,12 @@ void stream_setup(guard_t port, uint16_t period_ms, const uint16_t* places, uint
   s->last_ms = drive_time_ms();
 }
 
-void stream_dropped(guard_t port) {
+void stream_dropped(comm_watchdog_t port) {
   stream_t* const s = of(port);
   if (s->lost < UINT16_MAX) s->lost++;
 }
 
-uint16_t stream_lost(guard_t port) { return of(port)->lost; }
+uint16_t stream_lost(comm_watchdog_t port) { return of(port)->lost; }
 
 // Those that nobody came for.
 static void skip_missed(stream_t* s, uint32_t now) {
@@ -50,7 +50,7 @@ static void skip_missed(stream_t* s, uint32_t now) {
   s->lost = (sum < UINT16_MAX) ? (uint16_t)sum : UINT16_MAX;
 }
 
-uint16_t stream_event(guard_t port, uint16_t* record) {
+uint16_t stream_event(comm_watchdog_t port, uint16_t* record) {
   stream_t* const s = of(port);
   if (s->period == 0u || drive_time_ms() - s->last_ms < s->period) return 0;
   int32_t values[STREAM_SIGNALS] = {0};

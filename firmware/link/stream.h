@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -19,18 +19,19 @@ extern "C" {
 
 void stream_reset(void);
 
-/// `port`: GUARD_SERIAL or GUARD_BUS. Signals by their places in signal_list.h; period 0 ends the stream.
-void stream_setup(guard_t port, uint16_t period_ms, const uint16_t* places, uint16_t count);
+/// `port`: COMM_WATCHDOG_SERIAL or COMM_WATCHDOG_BUS. Signals by their places in signal_list.h; period 0 ends the
+/// stream.
+void stream_setup(comm_watchdog_t port, uint16_t period_ms, const uint16_t* places, uint16_t count);
 
 /// The record that is due, without its CRC, into `record` (room for RECORD_MAX). Returns its octets; 0 when none is
 /// due.
-uint16_t stream_event(guard_t port, uint16_t* record);
+uint16_t stream_event(comm_watchdog_t port, uint16_t* record);
 
 /// To be told when an event found no room.
-void stream_dropped(guard_t port);
+void stream_dropped(comm_watchdog_t port);
 
 /// Events dropped since the stream was set up; stays at 65535.
-uint16_t stream_lost(guard_t port);
+uint16_t stream_lost(comm_watchdog_t port);
 
 #if defined(__cplusplus)
 }

@@ -46,7 +46,7 @@ int32_t drive_look_rpm(void) { return drive.look.rpm_q16; }
 void drive_command_reset(void) { drive.request.reset = true; }
 
 void drive_command_speed(int32_t rpm_q16) {
-  drive.control.wanted_rpm_q16 = rpm_q16;
+  drive.control.command_rpm_q16 = rpm_q16;
   if (drive.flags.spins) return;  // the spin has a speed of its own
   const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
   drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);

@@ -3,8 +3,8 @@
 #include <stddef.h>
 
 #include "firmware/dictionary/parameters.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_irq.h"
-#include "hal/hal_lines.h"
 #include "hal/qmath/qmath.h"
 
 int32_t interlock_share_q15;
@@ -16,7 +16,7 @@ int32_t interlock_current_limit(void) { return q_mul(parameters.current_limit, i
 bool interlock_is_warm(void) { return interlock_share_q15 < INTERLOCK_SHARE_ONE; }
 
 drive_fault_t interlock_emergency(void) {
-  return parameters.emergency_stop != 0 && hal_lines_emergency() ? FAULT_EMERGENCY : FAULT_NONE;
+  return parameters.emergency_stop != 0 && hal_digital_io_emergency() ? FAULT_EMERGENCY : FAULT_NONE;
 }
 
 drive_fault_t interlock_refusal(void) {

@@ -44,7 +44,7 @@ static void begin(drive_t* d, drive_state_t state) {
 }
 
 void drive_enter(drive_t* d, drive_state_t state) {
-  d->calm_at = 0;
+  d->settled_at = 0;
   begin(d, state);
 }
 
@@ -54,7 +54,7 @@ static void note(const drive_t* d, drive_fault_t fault) {
   r.fault = fault;
   r.state = d->state;
   r.known = drive_known(d);
-  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->position.used.speed_bpp) : 0;
+  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->position.selected.speed_bpp) : 0;
   r.link_q16 = d->samples.link_q16;
   const dq_t none = {0, 0};
   const dq_t seen_q20 = ((r.known & KNOWN_FRAME) != 0u) ? d->control.measured_q20 : none;
@@ -63,14 +63,14 @@ static void note(const drive_t* d, drive_fault_t fault) {
   fault_history_add(&r);
 }
 
-void drive_raise(drive_t* d, drive_fault_t fault) {
+void drive_trip(drive_t* d, drive_fault_t fault) {
   hal_pwm_gates_off();
   if (d->state == DRIVE_FAULT) return;
   note(d, fault);
   d->fault = fault;
   begin(d, DRIVE_FAULT);
   d->control.closed = false;
-  d->control.wanted_rpm_q16 = 0;
+  d->control.command_rpm_q16 = 0;
   d->control.target_bpp = 0;
   hal_safety_fault_lamp(true);
 }

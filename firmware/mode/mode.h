@@ -43,18 +43,18 @@ typedef struct drive {
   drive_position_t position;
   drive_control_t control;
   drive_samples_t samples;
-  machine_model_t model;  // nameplate, at the working point and with what was learnt
+  machine_model_t model;  // nameplate, at the operating point and with what was learnt
   drive_modulation_t modulation;
   drive_supervision_t supervision;
   inertia_match_t inertia;
   slopes_trim_t trim;  // current offsets, mismatch of the sensors
   drive_look_t look;
   start_found_t found;
-  uint32_t calm_at;              // period in which the currents will have been at rest for long enough
-  int32_t rest_a_q8, rest_b_q8;  // currents at rest while the offsets are found, codes
-  int32_t unrest_q8;             // mean deviation of the currents from their offsets while these are found, codes
-  int32_t heat_sink_q8;          // degrees C, as board/derating.c has it
-  bool heat_sink_known;          // by a sensor that is in use and whole
+  uint32_t settled_at;                           // period in which the currents will have been at rest for long enough
+  int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes
+  int32_t offset_residual_q8;  // mean deviation of the currents from their offsets while these are found, codes
+  int32_t heat_sink_q8;        // degrees C, as board/derating.c has it
+  bool heat_sink_known;        // by a sensor that is in use and whole
   drive_config_t config;
 } drive_t;
 
@@ -78,7 +78,7 @@ uint16_t drive_known(const volatile drive_t* d);
 int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp);
 
 /// Latches a fault with its circumstances (fault_history.h) and opens the power stage. The speed command is forgotten.
-void drive_raise(drive_t* d, drive_fault_t fault);
+void drive_trip(drive_t* d, drive_fault_t fault);
 
 /// Enters a state and starts counting its periods.
 void drive_enter(drive_t* d, drive_state_t state);

@@ -10,9 +10,9 @@
 #include "firmware/console/suggest.h"
 #include "firmware/drive/signals.h"
 #include "firmware/scope/scope.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 #include "hal/qmath/qmath.h"
 
 static const char* const edges[] = {"rising", "falling", "either", "now", "above", "below"};
@@ -182,7 +182,7 @@ static void set_mode(const words_of_line_t* a) {
 static void put_state(octet_writer_t* w) {
   const scope_status_t status = scope_status();
   put_packed(w, SAY_scope);
-  put_words(w, WORDS_SCOPE, (uint16_t)status.state);
+  put_message(w, CATALOGUE_SCOPE, (uint16_t)status.state);
   put_text(w, ", ");
   put_unsigned(w, status.recorded);
   put_packed(w, SAY_records);

@@ -33,16 +33,17 @@ void start_step_listen(drive_t* d) {
   start_power(d, true);
 }
 
-// The flux that the pulses saw, where it is an eighth or more off what was told; a small EMF is mostly error. It takes
-// the admittance of the model as it is by now: a machine of other inductances looks like one of another flux.
+// The flux that the pulses saw, where it is an eighth or more off the nominal one; a small EMF is mostly error. It
+// takes the inverse inductance of the model as it is by now: a machine of other inductances looks like one of another
+// flux.
 static void take_flux(drive_t* d) {
   machine_model_t* const m = &d->model;
   const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(starting.rotor.speed_bpp));
   m->trim.psi_q16 = 0;
   if (starting.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
-  const int32_t told_q30 = m->map.points[0].yqq_q30;
-  const int32_t now_q30 = told_q30 + q_mul(told_q30, m->trim.yqq_q24, 24);
-  const int32_t emf_q16 = q_mul_sat(starting.emf_q16, q_div(told_q30, now_q30, 24), 24);
+  const int32_t nominal_q30 = m->map.points[0].yqq_q30;
+  const int32_t now_q30 = nominal_q30 + q_mul(nominal_q30, m->trim.yqq_q24, 24);
+  const int32_t emf_q16 = q_mul_sat(starting.emf_q16, q_div(nominal_q30, now_q30, 24), 24);
   const int32_t off_q16 = q_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
   if (q_abs_sat(off_q16) < m->emf_q16 / 8) return;
   m->trim.psi_q16 = q_clamp(off_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
@@ -84,7 +85,7 @@ static void try_again(drive_t* d) {
   } else if (d->flags.behind == DRIVE_READY) {
     end_look(d, LOOK_UNCLEAR, flying_speed(s->emf_q16, &d->model));
   } else {
-    drive_raise(d, FAULT_POLARITY);
+    drive_trip(d, FAULT_POLARITY);
   }
 }
 
@@ -134,7 +135,7 @@ static int32_t tick_of(const drive_t* d, const estimator_window_t* w) {
 void start_step_pulse(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->flags.gates_off) {
-    if (start_decides(d)) judge_pulse(d);
+    if (start_has_exclusive_slot(d)) judge_pulse(d);
     return;
   }
   for (uint16_t k = 0; k < d->samples.count; k++) {
@@ -147,7 +148,8 @@ void start_step_pulse(drive_t* d) {
   if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) start_power(d, false);
 }
 
-// The first periods go to the axis and the admittances, in the frame that turns with the rotor as the back-EMF has it.
+// The first periods go to the axis and the inverse inductances, in the frame that turns with the rotor as the back-EMF
+// has it.
 static void learn(drive_t* d) {
   drive_start_t* const s = &starting;
   s->rotor.angle_bam += (uint32_t)s->rotor.speed_bpp;
@@ -173,7 +175,7 @@ void start_step_catch(drive_t* d) {
     return;
   }
   s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
-  if (s->tick < CATCH_PERIODS || !start_decides(d)) return;
+  if (s->tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return;
   if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
     start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
   } else {

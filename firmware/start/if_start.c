@@ -7,41 +7,42 @@
 
 #include <stddef.h>
 
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 
-void start_turn(drive_t* d) {
+void start_if_ramp(drive_t* d) {
   static const estimator_output_t none = {0, 0, 0, 0};
   d->position.seen = none;
-  if_start_begin(&starting.turn, 0, d->control.target_bpp < 0);
+  if_start_begin(&starting.if_start, 0, d->control.target_bpp < 0);
   current_controller_reset(&d->control.current);
   d->control.closed = true;
   polarity_watch_end();
-  if (position_has(d, SOURCE_HANDS_OVER) && d->config.turn.speed_bpp > d->config.blend.high_bpp) position_hand_over(d);
+  if (position_has(d, SOURCE_HANDS_OVER) && d->config.if_start.speed_bpp > d->config.blend.high_bpp)
+    position_bumpless_transfer(d);
   d->flags.open_loop = true;
-  start_enter(d, START_TURN);
+  start_enter(d, START_IF_RAMP);
 }
 
 // Whether the source looks on in this period. At rest the angle is the vector's: a saliency has two.
-static bool looks_on(drive_t* d, const if_start_t* turn) {
-  if (position_observer_rests(d) && !if_start_is_up(turn, &d->config.turn)) {
-    if (d->source->follow != NULL) d->source->follow(d, &d->position.used);
+static bool looks_on(drive_t* d, const if_start_t* ramp) {
+  if (position_observer_rests(d) && !if_start_is_up(ramp, &d->config.if_start)) {
+    if (d->source->follow != NULL) d->source->follow(d, &d->position.selected);
     return false;
   }
-  if (turn->tick >= d->config.turn.align_periods) return true;
-  position_preset(d, d->position.used.angle_bam, d->position.used.speed_bpp);
+  if (ramp->tick >= d->config.if_start.align_periods) return true;
+  position_preset(d, d->position.selected.angle_bam, d->position.selected.speed_bpp);
   return false;
 }
 
 // The control uses the vector's frame.
 void start_estimate(drive_t* d, estimator_input_t* in) {
-  const if_start_t* const turn = &starting.turn;
-  d->position.seen = looks_on(d, turn) ? d->source->step(d, in) : d->position.used;
-  d->position.used.angle_bam = turn->angle_bam + (uint32_t)turn->speed_bpp;
-  d->position.used.speed_bpp = turn->speed_bpp;
+  const if_start_t* const ramp = &starting.if_start;
+  d->position.seen = looks_on(d, ramp) ? d->source->step(d, in) : d->position.selected;
+  d->position.selected.angle_bam = ramp->angle_bam + (uint32_t)ramp->speed_bpp;
+  d->position.selected.speed_bpp = ramp->speed_bpp;
 }
 
 // The estimators go on as they are. No watch over the polarity: a source that took the magnet for reversed would have
@@ -50,7 +51,7 @@ static void take_over(drive_t* d) {
   drive_control_t* const c = &d->control;
   const estimator_output_t seen = d->position.seen;
   const dq_t own_q20 = position_seen(d, c->reference_q20);
-  d->position.used = seen;
+  d->position.selected = seen;
   position_align_encoder(d, seen.angle_bam, seen.speed_bpp);
   position_keep(d);
   hold_end();
@@ -62,13 +63,13 @@ static void take_over(drive_t* d) {
   drive_enter(d, DRIVE_RUN);
 }
 
-void start_step_turn(drive_t* d) {
+void start_step_if_ramp(drive_t* d) {
   drive_start_t* const s = &starting;
   const estimator_output_t* const seen = &d->position.seen;
   const if_start_result_t result =
-      if_start_step(&s->turn, &d->config.turn, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
-  d->control.reference_q20.d = s->turn.current_q20;
+      if_start_step(&s->if_start, &d->config.if_start, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
+  d->control.reference_q20.d = s->if_start.current_q20;
   d->control.reference_q20.q = 0;
-  if (result == IF_START_TAKEN_OVER && start_decides(d)) take_over(d);
-  if (result == IF_START_FAILED) drive_raise(d, FAULT_DIVERGENCE);
+  if (result == IF_START_TAKEN_OVER && start_has_exclusive_slot(d)) take_over(d);
+  if (result == IF_START_FAILED) drive_trip(d, FAULT_DIVERGENCE);
 }

@@ -10,10 +10,11 @@ void start_enter(drive_t* d, start_phase_t phase);
 void start_power(drive_t* d, bool on);
 
 /// Asks for the next period for a decision alone; true in that period, which has room for it.
-bool start_decides(drive_t* d);
+bool start_has_exclusive_slot(drive_t* d);
 
 /// Takes the period's regression where it is valid. True, in a period for the decision, when the axis is known: the
-/// model has the admittances, and *axis_bam is how far the axis is from where it was looked for. Too late is a fault.
+/// model has the inverse inductances, and *axis_bam is how far the axis is from where it was looked for. Too late is a
+/// fault.
 bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam);
 
 // start.c
@@ -39,8 +40,8 @@ void start_step_saturation(drive_t* d);
 void start_step_motion(drive_t* d);
 
 // if_start.c
-void start_turn(drive_t* d);
-void start_step_turn(drive_t* d);
+void start_if_ramp(drive_t* d);
+void start_step_if_ramp(drive_t* d);
 void start_estimate(drive_t* d, estimator_input_t* in);
 
 #endif

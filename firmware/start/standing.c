@@ -1,7 +1,7 @@
 // The start of a shaft that stands: axis, then polarity, by saturation or by a motion. See start.h.
 
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
@@ -17,7 +17,7 @@
 #define HOLD_BACKS 2u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
-static bool is_turned_next(const drive_t* d) {
+static bool is_if_start_next(const drive_t* d) {
   return parameters.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
 }
 
@@ -32,7 +32,7 @@ void start_find_axis(drive_t* d) {
   if (d->flags.gates_off) start_power(d, true);
   if (d->state != DRIVE_START) return;
   start_enter(d, START_AXIS);
-  if (is_turned_next(d) && !start_checks_wiring()) start_turn(d);
+  if (is_if_start_next(d) && !start_checks_wiring()) start_if_ramp(d);
 }
 
 static drive_fault_t fault_of(wiring_t wiring) {
@@ -49,11 +49,11 @@ void start_step_axis(drive_t* d) {
   if (!seen) return;
   const drive_fault_t fault = fault_of(d->found.wiring);
   if (fault != FAULT_NONE) {
-    drive_raise(d, fault);
-  } else if (is_turned_next(d)) {
+    drive_trip(d, fault);
+  } else if (is_if_start_next(d)) {
     d->model = d->config.nameplate;
     position_preset(d, 0, 0);
-    start_turn(d);
+    start_if_ramp(d);
   } else {
     d->control.closed = true;
     start_enter(d, START_SETTLE);
@@ -92,7 +92,7 @@ static void hold_back(drive_t* d) {
   s->pulses = 0;
   s->tries = 0;
   if (s->held_back > HOLD_BACKS) {
-    drive_raise(d, left_open(s));
+    drive_trip(d, left_open(s));
   } else {
     start_look(d);
   }
@@ -148,7 +148,7 @@ static void try_saturation(drive_t* d) {
 }
 
 void start_step_settle(drive_t* d) {
-  if (starting.tick < SETTLE_PERIODS || !start_decides(d)) return;
+  if (starting.tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return;
   if (parameters.polarity_check == 0) {
     decided(d, POLARITY_RIGHT, 0);
   } else if (starting.held_back > 0u) {
@@ -167,12 +167,13 @@ static void take_resistance(drive_t* d) {
 void start_step_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   saturation_t* const test = &s->saturation;
-  const int32_t asked_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
-  d->control.reference_q20.d = asked_q20;
+  const int32_t reference_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
+  d->control.reference_q20.d = reference_q20;
   const int16_t tick = (int16_t)((test->tick - 1) % SATURATION_SEGMENT);
   if (s->tick <= SATURATION_LENGTH)
-    followed_step(&s->followed, tick, SATURATION_SEGMENT, asked_q20, d->control.measured_q20.d);
-  if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_decides(d)) return;
+    followed_step(&s->followed, tick, SATURATION_SEGMENT, reference_q20, d->control.measured_q20.d);
+  if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_has_exclusive_slot(d))
+    return;
   s->tries++;
   if (!has_followed(d, test->current_q20)) return;
   if (test->result != POLARITY_AMBIGUOUS) {
@@ -190,12 +191,12 @@ void start_step_saturation(drive_t* d) {
 void start_step_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
-  const int32_t asked_q20 = polarity_step(&s->motion, raw);
-  d->control.reference_q20.q = asked_q20;
+  const int32_t reference_q20 = polarity_step(&s->motion, raw);
+  d->control.reference_q20.q = reference_q20;
   const int16_t tick = (int16_t)((s->motion.tick - 1) % POLARITY_SEGMENT);
   if (s->tick <= POLARITY_LENGTH)
-    followed_step(&s->followed, tick, POLARITY_SEGMENT, asked_q20, d->control.measured_q20.q);
-  if (s->motion.result == POLARITY_PENDING || !start_decides(d)) return;
+    followed_step(&s->followed, tick, POLARITY_SEGMENT, reference_q20, d->control.measured_q20.q);
+  if (s->motion.result == POLARITY_PENDING || !start_has_exclusive_slot(d)) return;
   s->tries++;
   if (!has_followed(d, s->motion.current_q20)) return;
   if (s->motion.result != POLARITY_AMBIGUOUS) {
@@ -204,6 +205,6 @@ void start_step_motion(drive_t* d) {
     try_motion(d);
   } else {
     d->found.sigma_q8 = s->motion.sigma_q8;
-    drive_raise(d, left_open(s));
+    drive_trip(d, left_open(s));
   }
 }

@@ -23,16 +23,16 @@ static void reset_control(drive_t* d) {
   modulator_reset(&d->modulation.state);
   field_weakening_reset(&d->control.weakening);
   d->control.ramp.value = 0;
-  position_hold_release(&d->control.place);
+  position_hold_release(&d->control.position_hold);
   d->control.reference_q20.d = 0;
   d->control.reference_q20.q = 0;
-  d->control.feed_q16 = 0;
+  d->control.feed_forward_q16 = 0;
 }
 
 // False when it was refused, with a fault.
 static bool prepare(drive_t* d, drive_state_t behind) {
   if (!d->config_valid || !d->control.speed_ready) {
-    drive_raise(d, FAULT_PARAMETER);
+    drive_trip(d, FAULT_PARAMETER);
     return false;
   }
   clear(&d->supervision, sizeof d->supervision);
@@ -50,7 +50,7 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   d->flags.gates_off = true;
   d->flags.invalid = 2;
   const drive_fault_t refusal = interlock_refusal();
-  if (refusal != FAULT_NONE) drive_raise(d, refusal);
+  if (refusal != FAULT_NONE) drive_trip(d, refusal);
   return refusal == FAULT_NONE;
 }
 
@@ -78,16 +78,16 @@ static drive_state_t state_behind(const drive_t* d) {
 }
 
 void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  drive_hand_over(d, angle_bam, speed_bpp);
+  drive_bumpless_transfer(d, angle_bam, speed_bpp);
   drive_enter(d, state_behind(d));
   if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon(d);
 }
 
 static void start_step(drive_t* d) {
   typedef void (*step_t)(drive_t*);
-  static const step_t steps[] = {start_step_listen, start_step_pulse,  start_step_catch,
-                                 start_step_axis,   start_step_settle, start_step_saturation,
-                                 start_step_motion, start_step_turn,   start_step_charge};
+  static const step_t steps[] = {start_step_listen, start_step_pulse,   start_step_catch,
+                                 start_step_axis,   start_step_settle,  start_step_saturation,
+                                 start_step_motion, start_step_if_ramp, start_step_charge};
   drive_start_t* const s = &starting;
   s->tick++;
   steps[d->found.phase](d);

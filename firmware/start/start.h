@@ -31,7 +31,7 @@ typedef enum {
   START_SETTLE = 4,      // current loop closed at zero
   START_SATURATION = 5,  // polarity by saturation
   START_MOTION = 6,      // polarity by motion
-  START_TURN = 7,        // I-F start: a current vector turns the rotor
+  START_IF_RAMP = 7,     // I-F start: a current vector turns the rotor
   START_CHARGE = 8       // all lower devices on: bootstrap capacitors
 } start_phase_t;
 
@@ -41,7 +41,7 @@ typedef struct {
   uint16_t tries;  // of the present phase
   uint16_t pulses;
   uint16_t charged;      // periods in which the bootstrap capacitors were charged
-  bool learnt;           // axis and admittances of a caught rotor are
+  bool learnt;           // axis and inverse inductances of a caught rotor are
   int32_t on_tick;       // of the period in which the gates came on
   flying_rotor_t rotor;  // caught: at the second pulse, then carried on
   int32_t emf_q16;       // of that pulse, V
@@ -54,7 +54,7 @@ typedef struct {
   followed_t followed;  // the current, what the present test asked of it
   uint16_t held_back;   // how often all began anew
   bool starved;         // the current of a test did not follow: less is tried
-  if_start_t turn;
+  if_start_t if_start;
 } drive_start_t;
 
 /// Its memory: a drive has one start.

@@ -19,13 +19,13 @@ void start_power(drive_t* d, bool on) {
   } else if (hal_pwm_gates_on()) {
     starting.on_tick = (int32_t)hal_pwm_period_tick();
   } else {
-    drive_raise(d, FAULT_OVER_CURRENT);
+    drive_trip(d, FAULT_OVER_CURRENT);
   }
 }
 
-bool start_decides(drive_t* d) {
-  const bool now = d->schedule.decides;
-  d->flags.decides = !now;
+bool start_has_exclusive_slot(drive_t* d) {
+  const bool now = d->schedule.exclusive;
+  d->flags.wants_exclusive = !now;
   return now;
 }
 
@@ -38,13 +38,13 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
   drive_start_t* const s = &starting;
   if (valid) axis_add(&s->axis, &d->position.avv.regression);
   if (!axis_is_complete(&s->axis)) {
-    if (s->tick > AXIS_TIMEOUT) drive_raise(d, (d->samples.count > 0u) ? FAULT_START_VOLTAGE : FAULT_NO_SAMPLES);
+    if (s->tick > AXIS_TIMEOUT) drive_trip(d, (d->samples.count > 0u) ? FAULT_START_VOLTAGE : FAULT_NO_SAMPLES);
     return false;
   }
-  if (!start_decides(d)) return false;
+  if (!start_has_exclusive_slot(d)) return false;
   if (d->found.phase == START_AXIS) judge_wiring(d);
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
-  admittance_preset(&d->model, axis.mean_q30, axis.half_q30);
+  inverse_inductance_preset(&d->model, axis.mean_q30, axis.half_q30);
   *axis_bam = axis.angle_bam;
   return true;
 }

@@ -3,8 +3,8 @@
 #include "firmware/api/status.h"
 #include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
-#include "firmware/text/words.h"
 
 // Why the store did not begin.
 static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
@@ -17,7 +17,7 @@ static answer_status_t refuse_store(bool needs_rest, octet_writer_t* why) {
     return ANSWER_RUNNING;
   }
   put_packed(why, SAY_the_store_is_busy);
-  put_words(why, WORDS_STORE, (uint16_t)store_state());
+  put_message(why, CATALOGUE_STORE, (uint16_t)store_state());
   return ANSWER_BUSY;
 }
 

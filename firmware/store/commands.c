@@ -9,9 +9,9 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/store/actions.h"
 #include "firmware/store/store.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 
 static void put_report(octet_writer_t* w) {
   const store_report_t* const r = store_report();
@@ -31,7 +31,7 @@ static bool wait_for_store(uint16_t step) {
   const store_state_t state = store_state();
   if (state != STORE_SAVED && state != STORE_LOADED && state != STORE_MIGRATED) count_refusal();
   octet_writer_t* const w = line_begin();
-  put_words(w, WORDS_STORE, (uint16_t)state);
+  put_message(w, CATALOGUE_STORE, (uint16_t)state);
   put_report(w);
   line_end();
   return false;
@@ -61,7 +61,7 @@ void command_defaults(const words_of_line_t* a) {
 }
 
 static void status_store(octet_writer_t* w) {
-  put_words(w, WORDS_STORE, (uint16_t)store_state());
+  put_message(w, CATALOGUE_STORE, (uint16_t)store_state());
   put_packed(w, SAY_saves_so_far);
   put_unsigned(w, store_report()->sequence);
 }

@@ -6,8 +6,8 @@
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/store/scan.h"
 #include "firmware/store/slot.h"
-#include "firmware/store/survey.h"
 #include "firmware/store/values.h"
 #include "firmware/store/writer.h"
 
@@ -30,9 +30,9 @@ uint16_t store_progress(void) {
   if (store_is_busy() && !begun) return 0;
   switch (feature_status.store_work) {
     case WORK_LOAD:
-      return survey_progress();
+      return scan_progress();
     case WORK_SURVEY:
-      return (uint16_t)(survey_progress() / 10u);
+      return (uint16_t)(scan_progress() / 10u);
     case WORK_WRITE:
       return (uint16_t)(10u + 9u * writer_progress() / 10u);
     default:
@@ -126,20 +126,20 @@ static void end_load(store_state_t result) {
 }
 
 static void load(void) {
-  const survey_result_t result = survey_step();
-  if (result == SURVEY_GOES_ON) return;
-  report = *survey_report();
+  const scan_result_t result = scan_step();
+  if (result == SCAN_GOES_ON) return;
+  report = *scan_report();
   switch (result) {
-    case SURVEY_FOUND:
+    case SCAN_FOUND:
       end_load(take_over());
       break;
-    case SURVEY_EMPTY:
+    case SCAN_EMPTY:
       end_load(STORE_EMPTY);
       break;
-    case SURVEY_DAMAGED:
+    case SCAN_DAMAGED:
       end_load(STORE_DAMAGED);
       break;
-    case SURVEY_FOREIGN:
+    case SCAN_FOREIGN:
       end_load(STORE_FOREIGN);
       break;
     default:
@@ -149,10 +149,10 @@ static void load(void) {
 }
 
 // Which slot may be written, and what of the other one must be kept.
-static void survey(void) {
-  const survey_result_t result = survey_step();
-  if (result == SURVEY_GOES_ON) return;
-  if (result == SURVEY_FAILED || !writer_begin(survey_report())) {
+static void scan(void) {
+  const scan_result_t result = scan_step();
+  if (result == SCAN_GOES_ON) return;
+  if (result == SCAN_FAILED || !writer_begin(scan_report())) {
     kept_known = false;
     end(STORE_FAILED);
   } else {
@@ -171,7 +171,7 @@ static void save(void) {
 void store_service(void) {
   if (store_is_busy() && !begun) {
     begun = true;
-    survey_begin(feature_status.store_work == WORK_LOAD);
+    scan_begin(feature_status.store_work == WORK_LOAD);
     return;
   }
   switch (feature_status.store_work) {
@@ -179,7 +179,7 @@ void store_service(void) {
       load();
       break;
     case WORK_SURVEY:
-      survey();
+      scan();
       break;
     case WORK_WRITE:
       save();

@@ -14,8 +14,8 @@ static const size_t offsets[] = {
 #undef PARAMETER
 
 static parameters_t set;
-static bool rated_told;  // the set has a rated_current of its own
-static uint16_t guess;   // where the next number is likely to be: a slot has them in the table's order
+static bool has_rated_current;  // the set has a rated_current of its own
+static uint16_t guess;          // where the next number is likely to be: a slot has them in the table's order
 
 static int32_t* value(parameters_t* of, uint16_t index) { return (int32_t*)(void*)((char*)of + offsets[index]); }
 
@@ -33,7 +33,7 @@ static uint16_t find(uint16_t id) {
 
 void values_reset(void) {
   guess = 0;
-  rated_told = false;
+  has_rated_current = false;
   for (uint16_t k = 0; k < parameter_count(); k++) *value(&set, k) = parameter_info(k)->initial;
 }
 
@@ -64,12 +64,12 @@ value_fate_t values_put(const slot_entry_t* entry) {
   if (raw < info->minimum - slack || raw > info->maximum + slack) return VALUE_REFUSED;
   raw = (raw < info->minimum) ? info->minimum : raw;
   *value(&set, index) = (raw > info->maximum) ? info->maximum : (int32_t)raw;
-  if (offsets[index] == offsetof(parameters_t, rated_current)) rated_told = true;
+  if (offsets[index] == offsetof(parameters_t, rated_current)) has_rated_current = true;
   return (more == 0) ? VALUE_TAKEN : VALUE_RESCALED;
 }
 
 void values_complete(void) {
-  if (!rated_told && set.overload_current == 0) set.overload_current = -1;
+  if (!has_rated_current && set.overload_current == 0) set.overload_current = -1;
 }
 
 slot_entry_t values_entry(uint16_t index) {

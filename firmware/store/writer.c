@@ -83,7 +83,7 @@ static writer_result_t copy_unknown(void) {
       copied++;
       return WRITER_GOES_ON;
     default:
-      return WRITER_FAILED;  // it has fewer than the survey counted, or cannot be read
+      return WRITER_FAILED;  // it has fewer than the scan counted, or cannot be read
   }
 }
 

@@ -12,7 +12,7 @@
 
 typedef enum { WRITER_GOES_ON = 0, WRITER_DONE = 1, WRITER_FAILED = 2 } writer_result_t;
 
-/// `so_far` is a survey's. False when its unknown entries leave too little room.
+/// `so_far` is a scan's. False when its unknown entries leave too little room.
 bool writer_begin(const store_report_t* so_far);
 
 writer_result_t writer_step(void);

@@ -5,7 +5,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_board.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_time.h"
 
 #define POWER_UP_CYCLES (5000uL * HAL_TIME_CYCLES_PER_US)
@@ -151,8 +151,8 @@ static inline void take_results(hal_adc_window_t* window) {
 }
 
 static void play_results(hal_adc_window_t* window) {
-  uint16_t results[TAPE_RESULTS];
-  tape_take_results(results, TAPE_RESULTS);
+  uint16_t results[REPLAY_RESULTS];
+  replay_take_results(results, REPLAY_RESULTS);
   window->start_a = results[0];
   window->start_b = results[1];
   window->end_a = results[2];
@@ -162,18 +162,18 @@ static void play_results(hal_adc_window_t* window) {
 }
 
 static void note_results(const hal_adc_window_t* window) {
-  const uint16_t results[TAPE_RESULTS] = {window->start_a, window->start_b, window->end_a,
-                                          window->end_b,   window->link,    window->aux};
-  tape_note_results(results, TAPE_RESULTS);
+  const uint16_t results[REPLAY_RESULTS] = {window->start_a, window->start_b, window->end_a,
+                                            window->end_b,   window->link,    window->aux};
+  replay_note_results(results, REPLAY_RESULTS);
 }
 
 TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
-  if (tape_plays()) {
+  if (replay_plays()) {
     play_results(window);
     return;
   }
   take_results(window);
-  if (!tape_is_off()) {
+  if (!replay_is_off()) {
     note_results(window);
   }
 }

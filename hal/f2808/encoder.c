@@ -4,7 +4,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_board.h"
 #include "hal/hal_encoder.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 #define EQEP EQEP_BASE(1u)
 
@@ -36,13 +36,13 @@ void hal_encoder_init(uint32_t counts_per_turn) {
 // be up to a period old by an unknown amount, while a read in the control interrupt is late by less than a microsecond,
 // 0.4 counts at 6000 rpm. The 32-bit read is one access.
 uint32_t hal_encoder_count(void) {
-  tape_call();
-  if (tape_plays()) {
-    const uint32_t low = tape_take();
-    return low | ((uint32_t)tape_take() << 16);
+  replay_call();
+  if (replay_plays()) {
+    const uint32_t low = replay_take();
+    return low | ((uint32_t)replay_take() << 16);
   }
   const uint32_t count = target_read32(EQEP + EQEP_QPOSCNT);
-  (void)tape_note((uint16_t)(count & 0xFFFFuL));
-  (void)tape_note((uint16_t)(count >> 16));
+  (void)replay_note((uint16_t)(count & 0xFFFFuL));
+  (void)replay_note((uint16_t)(count >> 16));
   return count;
 }

@@ -6,7 +6,7 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_irq.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 #define CONTROL_GROUP PIE_GROUP(VECTOR_EPWM1_INT)
 #define WINDOW_GROUP PIE_GROUP(VECTOR_SEQ2INT)
@@ -96,16 +96,16 @@ TARGET_RAM_CODE void hal_irq_control_end(void) {
 }
 
 TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
-  tape_call();
+  replay_call();
   return irq_hold();
 }
 
 TARGET_RAM_CODE void hal_irq_restore(uint16_t state) {
-  tape_call();
+  replay_call();
   irq_release(state);
 }
 
 uint16_t hal_irq_unexpected_count(void) {
-  tape_call();
-  return tape_plays() ? tape_take() : tape_note(unexpected_count);
+  replay_call();
+  return replay_plays() ? replay_take() : replay_note(unexpected_count);
 }

@@ -8,7 +8,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_board.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 #define POLARITY (BOARD_GATE_ON_LEVEL != 0u ? DBCTL_POLSEL_HIGH_COMPLEMENTARY : DBCTL_POLSEL_LOW_COMPLEMENTARY)
 #define TRIP_LEVEL (BOARD_GATE_ON_LEVEL != 0u ? TZCTL_FORCE_LOW : TZCTL_FORCE_HIGH)
@@ -157,15 +157,15 @@ static bool set_dead_band(uint16_t dead_band_ticks) {
 }
 
 bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
-  tape_tell(TAPE_DEAD_BAND, &dead_band_ticks, 1u);
-  return tape_plays() ? tape_take() != 0u : tape_note(set_dead_band(dead_band_ticks) ? 1u : 0u) != 0u;
+  replay_output(REPLAY_DEAD_BAND, &dead_band_ticks, 1u);
+  return replay_plays() ? replay_take() != 0u : replay_note(set_dead_band(dead_band_ticks) ? 1u : 0u) != 0u;
 }
 
 static inline uint16_t period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
 
 TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) {
-  tape_call();
-  return tape_plays() ? tape_take() : tape_note(period_tick());
+  replay_call();
+  return replay_plays() ? replay_take() : replay_note(period_tick());
 }
 
 // False too when the next period has begun before its control interrupt could come: the counter then looks early. Such
@@ -213,16 +213,16 @@ static void tell_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
     words[n++] = frame->burst_end_tick[window];
   }
   words[n++] = deadline_tick;
-  tape_tell(TAPE_FRAME, words, n);
+  replay_output(REPLAY_FRAME, words, n);
 }
 
 TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
-  if (tape_is_off()) {
+  if (replay_is_off()) {
     return write_frame(frame, deadline_tick);
   }
   tell_frame(frame, deadline_tick);
-  tape_call();
-  return tape_plays() ? tape_take() != 0u : tape_note(write_frame(frame, deadline_tick) ? 1u : 0u) != 0u;
+  replay_call();
+  return replay_plays() ? replay_take() != 0u : replay_note(write_frame(frame, deadline_tick) ? 1u : 0u) != 0u;
 }
 
 static bool gates_on(void) {
@@ -239,15 +239,15 @@ static bool gates_on(void) {
 }
 
 bool hal_pwm_gates_on(void) {
-  tape_tell(TAPE_GATES_ON, NULL, 0u);
-  tape_call();
-  return tape_plays() ? tape_take() != 0u : tape_note(gates_on() ? 1u : 0u) != 0u;
+  replay_output(REPLAY_GATES_ON, NULL, 0u);
+  replay_call();
+  return replay_plays() ? replay_take() != 0u : replay_note(gates_on() ? 1u : 0u) != 0u;
 }
 
-// Also while a tape plays: switching off is never wrong.
+// Also while a recording is played: switching off is never wrong.
 TARGET_RAM_CODE void hal_pwm_gates_off(void) {
-  tape_tell(TAPE_GATES_OFF, NULL, 0u);
-  tape_call();
+  replay_output(REPLAY_GATES_OFF, NULL, 0u);
+  replay_call();
   target_eallow();
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
     target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_TZFRC, EPWM_TZFRC_OST_MASK);
@@ -256,11 +256,11 @@ TARGET_RAM_CODE void hal_pwm_gates_off(void) {
 }
 
 bool hal_pwm_is_tripped(void) {
-  tape_call();
-  return tape_plays() ? tape_take() != 0u : tape_note(is_any_leg_tripped() ? 1u : 0u) != 0u;
+  replay_call();
+  return replay_plays() ? replay_take() != 0u : replay_note(is_any_leg_tripped() ? 1u : 0u) != 0u;
 }
 
 bool hal_pwm_was_tripped_by_pin(void) {
-  tape_call();
-  return tape_plays() ? tape_take() != 0u : tape_note(is_tripped(PWM_TRIP_WITNESS_MODULE) ? 1u : 0u) != 0u;
+  replay_call();
+  return replay_plays() ? replay_take() != 0u : replay_note(is_tripped(PWM_TRIP_WITNESS_MODULE) ? 1u : 0u) != 0u;
 }

@@ -15,7 +15,7 @@
 // over-current input and by nothing else, so its flag does.
 #define PWM_TRIP_WITNESS_MODULE PWM_FIRST_WINDOW_MODULE
 
-// Counts the slices (hal_slices.h): a window's, and not the master, which goes on with the period.
+// Counts the slices (hal_sampling_timer.h): a window's, and not the master, which goes on with the period.
 #define PWM_SLICE_MODULE \
   (PWM_FIRST_WINDOW_MODULE == PWM_MASTER_MODULE ? PWM_MASTER_MODULE + 1u : PWM_FIRST_WINDOW_MODULE)
 

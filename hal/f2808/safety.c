@@ -6,8 +6,8 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_board.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_safety.h"
-#include "hal/hal_tape.h"
 
 #define TRIP_BY_COMPARATOR ((uint16_t)(EPWM_TZSEL_OSHT1_MASK << (BOARD_TRIP_INPUT - 1u)))
 
@@ -25,16 +25,16 @@ void hal_safety_init(void) {
 }
 
 void hal_safety_toggle_enable(void) {
-  tape_tell(TAPE_ENABLE, NULL, 0u);
-  tape_call();
-  if (!tape_plays()) {
+  replay_output(REPLAY_ENABLE, NULL, 0u);
+  replay_call();
+  if (!replay_plays()) {
     gpio_toggle(BOARD_PIN_GATE_ENABLE);
   }
 }
 
 void hal_safety_fault_lamp(bool lit) {
   const uint16_t word = lit ? 1u : 0u;
-  tape_tell(TAPE_LAMP, &word, 1u);
-  tape_call();
+  replay_output(REPLAY_LAMP, &word, 1u);
+  replay_call();
   gpio_write(BOARD_PIN_FAULT_LAMP, lit == (BOARD_LAMP_ON_LEVEL != 0u));
 }

@@ -1,7 +1,7 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
 #include "hal/hal_profile.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_time.h"
 
 #define TIMER CPUTIMER_BASE(2u)
@@ -22,6 +22,6 @@ uint32_t hal_time_cycles(void) { return 0xFFFFFFFFuL - target_read32(TIMER + CPU
 void hal_idle(void) { target_idle(); }
 
 void hal_profile_step(uint16_t cycles) {
-  tape_call();
+  replay_call();
   target_elapse(cycles);
 }

@@ -93,7 +93,7 @@ static inline int32_t q_follow_halves(int32_t a, int32_t b, unsigned n) {
 
 // q_follow_near with what the shift has left, 0..2^n - 1: nothing of a difference is lost. Both are below 2^30;
 // n = 2..24.
-static inline int32_t q_follow_rest(int32_t a, int32_t b, unsigned n, uint32_t* rest) {
+static inline int32_t q_follow_remainder(int32_t a, int32_t b, unsigned n, uint32_t* rest) {
   const int32_t difference = b - a;
   const uint32_t mask = ((uint32_t)1 << n) - 1u;
   const uint32_t sum = *rest + ((uint32_t)difference & mask);

@@ -26,7 +26,7 @@ constexpr Tick kEarliestStart = 5'000'000;
 // Tells the drive its parameters, gives the command and waits for the outcome.
 class Commissioner : public PeriodListener {
  public:
-  explicit Commissioner(const CommissionRequest& request) : tap_(request.tape) {
+  explicit Commissioner(const CommissionRequest& request) : tap_(request.recording) {
     for (const auto& [name, value] : request.parameters) {
       unsigned id = 0;
       const std::int32_t raw = parameter_raw(name, value, id);
@@ -56,7 +56,7 @@ class Commissioner : public PeriodListener {
 
   bool ended() const { return ended_; }
   bool refused() const { return refused_; }
-  /// Whether the one who takes the tape wants more of it.
+  /// Whether the one who takes the recording wants more of it.
   bool taken() const { return taken_; }
   Tick start() const { return start_; }
   std::int32_t fault() const { return fault_; }
@@ -67,7 +67,7 @@ class Commissioner : public PeriodListener {
     refused_ = parameter_set(id, raw) != SET_OK || refused_;
   }
 
-  TapeTap tap_;
+  RecordingTap tap_;
   bool taken_ = true;
   std::vector<std::pair<std::uint16_t, std::int32_t>> parameters_;
   bool configured_ = false, started_ = false, ended_ = false, refused_ = false;
@@ -94,7 +94,7 @@ std::vector<Identified> identified() {
     row.before = std::ldexp(r.before, -static_cast<int>(info.q));
     row.value = std::ldexp(r.value, -static_cast<int>(info.q));
     row.used = r.verdict == VERDICT_USED;
-    row.words = words_of(WORDS_VERDICT, r.verdict);
+    row.words = words_of(CATALOGUE_VERDICT, r.verdict);
     list.push_back(row);
   }
   return list;
@@ -105,17 +105,17 @@ std::string play(const CommissionRequest& request, chip::Chip& chip, const Commi
   while (!drive.ended()) {
     if (chip.now() >= end) return "the commissioning took longer than " + std::to_string(request.limit) + " s";
     chip.run_until(std::min(chip.now() + kChunk, end));
-    if (!drive.taken()) return "stopped by the one who takes the tape";
+    if (!drive.taken()) return "stopped by the one who takes the recording";
     if (chip.statistics().resets > 0) return "the watchdog reset the chip";
     const double share = drive_commissioning_progress() / 1000.0;
-    const std::string phase = words_of(WORDS_PHASE, drive_commissioning_phase());
+    const std::string phase = words_of(CATALOGUE_PHASE, drive_commissioning_phase());
     if (request.progress && !request.progress(share, phase)) return "stopped by the user";
   }
   if (drive.refused()) return "the drive refused a parameter";
   const commissioning_outcome_t outcome = drive_commissioning_outcome();
   if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) return "";
   if (outcome == COMMISSIONING_ABORTED) return "the shaft was turning; it has been brought to rest, try again";
-  return "fault: " + words_of(WORDS_FAULT, static_cast<std::uint16_t>(drive.fault()));
+  return "fault: " + words_of(CATALOGUE_FAULT, static_cast<std::uint16_t>(drive.fault()));
 }
 
 }  // namespace

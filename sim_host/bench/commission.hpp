@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim_host/bench/recording_tap.hpp"
 #include "sim_host/bench/setup.hpp"
-#include "sim_host/bench/tape_tap.hpp"
 
 namespace stillspin::bench {
 
@@ -18,7 +18,7 @@ struct CommissionRequest {
   std::map<std::string, double> parameters;                  // what the drive is told beforehand
   double limit = 120.0;                                      // s of simulated time, 0..3600
   std::function<bool(double, const std::string&)> progress;  // share done, phase in words; false stops
-  TapeSink tape;                                             // gets every period, to be stepped elsewhere
+  RecordingSink recording;                                   // gets every period, to be stepped elsewhere
 };
 
 /// One identified parameter, in the table's units.

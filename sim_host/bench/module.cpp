@@ -70,7 +70,7 @@ PythonResult run_in_python(const nb::dict& plant, const std::map<std::string, do
                            const std::vector<std::tuple<double, std::string, double>>& commands,
                            const std::vector<std::pair<double, double>>& load, double duration, double max_start,
                            int record_every, const std::tuple<double, double, int>& waveform, std::uint64_t seed,
-                           const nb::object& progress, bool record_start, const nb::object& tape) {
+                           const nb::object& progress, bool record_start, const nb::object& recording) {
   RunRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -82,7 +82,7 @@ PythonResult run_in_python(const nb::dict& plant, const std::map<std::string, do
   request.waveform = {std::get<0>(waveform), std::get<1>(waveform), std::get<2>(waveform)};
   request.record_start = record_start;
   request.progress = progress_of(progress);
-  request.tape = tape_sink_of(tape);
+  request.recording = recording_sink_of(recording);
   RunResult result;
   {
     nb::gil_scoped_release release;
@@ -133,7 +133,7 @@ nb::list identified_rows(const CommissionResult& result) {
 
 PythonCommissioning commission_in_python(const nb::dict& plant, const std::map<std::string, double>& parameters,
                                          double limit, std::uint64_t seed, const nb::object& progress,
-                                         const nb::object& tape) {
+                                         const nb::object& recording) {
   CommissionRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
@@ -143,7 +143,7 @@ PythonCommissioning commission_in_python(const nb::dict& plant, const std::map<s
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     return progress.is_none() || nb::cast<bool>(progress(share, phase));
   };
-  request.tape = tape_sink_of(tape);
+  request.recording = recording_sink_of(recording);
   CommissionResult result;
   {
     nb::gil_scoped_release release;
@@ -227,7 +227,7 @@ NB_MODULE(_core, m) {
       .def_ro("stats", &PythonResult::stats);
   m.def("run", &run_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("commands"),
         nb::arg("load"), nb::arg("duration"), nb::arg("max_start"), nb::arg("record_every"), nb::arg("waveform"),
-        nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false, nb::arg("tape") = nb::none(),
+        nb::arg("seed"), nb::arg("progress").none(), nb::arg("record_start") = false, nb::arg("recording") = nb::none(),
         "One run of the virtual drive; see core.py.");
   nb::class_<PythonCommissioning>(m, "CommissioningResult")
       .def_ro("values", &PythonCommissioning::values)
@@ -235,7 +235,7 @@ NB_MODULE(_core, m) {
       .def_ro("reason", &PythonCommissioning::reason)
       .def_ro("stats", &PythonCommissioning::stats);
   m.def("commission", &commission_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("limit"),
-        nb::arg("seed"), nb::arg("progress").none(), nb::arg("tape") = nb::none(),
+        nb::arg("seed"), nb::arg("progress").none(), nb::arg("recording") = nb::none(),
         "The firmware's commissioning on the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),

@@ -64,10 +64,10 @@ nb::object refusal_of(const StepLoop& loop) {
 
 }  // namespace
 
-TapeSink tape_sink_of(const nb::object& loop) {
+RecordingSink recording_sink_of(const nb::object& loop) {
   if (loop.is_none()) return {};
   const std::shared_ptr<StepLoop> taker = nb::cast<const PythonLoop&>(loop).loop;
-  return [taker](const TapedPeriod& period) { return taker->take(period); };
+  return [taker](const RecordedPeriod& period) { return taker->take(period); };
 }
 
 void bind_step_loop(nb::module_& m) {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "sim_host/bench/recording_tap.hpp"
 #include "sim_host/bench/setup.hpp"
-#include "sim_host/bench/tape_tap.hpp"
 
 namespace stillspin::bench {
 
@@ -22,8 +22,8 @@ void bind_virtual_board(nanobind::module_& module);
 /// The class StepLoop.
 void bind_step_loop(nanobind::module_& module);
 
-/// The taker of a tape that Python means: a StepLoop, or None for no tape.
-TapeSink tape_sink_of(const nanobind::object& loop);
+/// The taker of a recording that Python means: a StepLoop, or None for no recording.
+RecordingSink recording_sink_of(const nanobind::object& loop);
 
 /// The class LoaderBoard.
 void bind_loader_board(nanobind::module_& module);

@@ -60,7 +60,7 @@ class Director : public PeriodListener {
         result_(result),
         recorder_(request.record_every, request.setup.plant()),
         faults_(request.setup.fault),
-        tap_(request.tape),
+        tap_(request.recording),
         parameters_(raw_parameters(request.parameters)) {
     recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
     for (const Command& c : request.commands) check(c);
@@ -79,7 +79,7 @@ class Director : public PeriodListener {
   const Travel& travel() const { return travel_; }
 
   void on_period(Tick t) override {
-    if (!tap_.turn() && result_.reason.empty()) result_.reason = "stopped by the one who takes the tape";
+    if (!tap_.turn() && result_.reason.empty()) result_.reason = "stopped by the one who takes the recording";
     const drive_signals_t s = drive_signals();
     recorder_.finish_row(s, drive.samples);
     watch_fault(t, s);
@@ -109,9 +109,9 @@ class Director : public PeriodListener {
     last_fault_ = s.fault;
     if (s.fault == FAULT_NONE) return;
     const double at = (t - (running() ? origin_ : 0)) * kSecondsPerTick;
-    result_.faults.emplace_back(at, words_of(WORDS_FAULT, static_cast<std::uint16_t>(s.fault)));
+    result_.faults.emplace_back(at, words_of(CATALOGUE_FAULT, static_cast<std::uint16_t>(s.fault)));
     if (!running())
-      result_.reason = "fault during the start: " + words_of(WORDS_FAULT, static_cast<std::uint16_t>(s.fault));
+      result_.reason = "fault during the start: " + words_of(CATALOGUE_FAULT, static_cast<std::uint16_t>(s.fault));
   }
 
   void prepare(Tick t, const drive_signals_t& s) {
@@ -195,7 +195,7 @@ class Director : public PeriodListener {
   RunResult& result_;
   Recorder recorder_;
   FaultPlayer faults_;
-  TapeTap tap_;
+  RecordingTap tap_;
   std::vector<RawParameter> parameters_;
   Board* board_ = nullptr;
   Tick origin_ = -1;

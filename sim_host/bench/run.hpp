@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim_host/bench/recording_tap.hpp"
 #include "sim_host/bench/setup.hpp"
-#include "sim_host/bench/tape_tap.hpp"
 #include "sim_host/bench/waveform.hpp"
 
 namespace stillspin::bench {
@@ -36,7 +36,7 @@ struct RunRequest {
   WaveformRequest waveform;                     // a stretch to look into
   bool record_start = false;                    // also record the start procedure, at negative times
   std::function<bool(double)> progress;         // share done; false stops the run
-  TapeSink tape;                                // gets every period from power-on, to be stepped elsewhere
+  RecordingSink recording;                      // gets every period from power-on, to be stepped elsewhere
   std::function<void(double)> on_period;        // for tests: time since the start, before each control interrupt
 };
 

@@ -14,7 +14,7 @@ namespace stillspin::bench {
 
 StepLoop::StepLoop(std::unique_ptr<Way> way) : way_(std::move(way)) {}
 
-bool StepLoop::take(const TapedPeriod& period) {
+bool StepLoop::take(const RecordedPeriod& period) {
   if (ended()) return false;  // the run goes on for some periods before it is broken off
   try {
     receive();
@@ -33,7 +33,7 @@ void StepLoop::finish() {
   }
 }
 
-void StepLoop::send(const TapedPeriod& period) {
+void StepLoop::send(const RecordedPeriod& period) {
   for (const Octets& request : period.requests) {
     if (!accepted(request)) return;
   }
@@ -45,7 +45,7 @@ void StepLoop::send(const TapedPeriod& period) {
 
 void StepLoop::receive() {
   if (!sent_) return;
-  const TapedPeriod period = *std::exchange(sent_, std::nullopt);
+  const RecordedPeriod period = *std::exchange(sent_, std::nullopt);
   if (const auto answer = accepted(REQUEST_HIL_STEP, way_->receive())) compare(*answer, period);
 }
 
@@ -66,7 +66,7 @@ std::optional<Octets> StepLoop::accepted(std::uint8_t type, const Octets& answer
   return std::nullopt;
 }
 
-void StepLoop::compare(const Octets& board, const TapedPeriod& period) {
+void StepLoop::compare(const Octets& board, const RecordedPeriod& period) {
   board_log_.insert(board_log_.end(), board.begin(), board.end());
   native_log_.insert(native_log_.end(), period.answer.begin(), period.answer.end());
   Words outputs;
@@ -84,7 +84,7 @@ bool StepLoop::read_outputs(const Octets& answer, Words& outputs, bool& torn) {
   delta_take(&r, before_.shape, before_.shape, HIL_ANSWER_SHAPE);
   torn = before_.shape[0] != 0;
   const std::uint16_t count = before_.shape[1];
-  if (count > TAPE_OUTPUTS) return false;
+  if (count > REPLAY_OUTPUTS) return false;
   delta_take(&r, before_.outputs, before_.outputs, count);
   (void)take_u32(&r);  // the check sum
   outputs.assign(before_.outputs, before_.outputs + count);

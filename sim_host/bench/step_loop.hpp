@@ -1,5 +1,5 @@
 // Host in the loop: what a run of the virtual drive does in every period is asked of a board, whose answer must be the
-// same to the last bit. The loop is the taker of the run's tape; the first period that differs ends the run.
+// same to the last bit. The loop is the taker of the run's recording; the first period that differs ends the run.
 
 #ifndef STILLSPIN_SIM_HOST_BENCH_STEP_LOOP_HPP
 #define STILLSPIN_SIM_HOST_BENCH_STEP_LOOP_HPP
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim_host/bench/tape_tap.hpp"
+#include "sim_host/bench/recording_tap.hpp"
 
 namespace stillspin::bench {
 
@@ -45,7 +45,7 @@ class StepLoop {
 
   /// A period; false ends the run. The board computes it while the virtual drive computes the next one: its answer is
   /// looked at in the next call.
-  bool take(const TapedPeriod& period);
+  bool take(const RecordedPeriod& period);
 
   /// Looks at the answer to the last period; needed behind every run.
   void finish();
@@ -61,15 +61,15 @@ class StepLoop {
 
  private:
   bool ended() const { return mismatch_ || refusal_ || !lost_.empty() || stopped_; }
-  void send(const TapedPeriod& period);
+  void send(const RecordedPeriod& period);
   void receive();
   std::optional<Octets> accepted(const Octets& request);
   std::optional<Octets> accepted(std::uint8_t type, const Octets& answer);
-  void compare(const Octets& board, const TapedPeriod& period);
+  void compare(const Octets& board, const RecordedPeriod& period);
   bool read_outputs(const Octets& answer, Words& outputs, bool& torn);
 
   std::unique_ptr<Way> way_;
-  std::optional<TapedPeriod> sent_;  // the period whose answer has not been looked at
+  std::optional<RecordedPeriod> sent_;  // the period whose answer has not been looked at
   std::uint64_t steps_ = 0;
   hil_answer_t before_{};  // of the board, to take the next one apart
   Octets board_log_, native_log_;

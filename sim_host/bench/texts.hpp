@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware/text/words.h"
+#include "firmware/text/catalogue.h"
 
 namespace stillspin::bench {
 
@@ -24,8 +24,8 @@ inline std::string text_of(packed_text_t text) {
 }
 
 /// What the drive's number means.
-inline std::string words_of(words_kind_t kind, std::uint16_t code) {
-  return written([=](octet_writer_t* w) { put_words(w, kind, code); });
+inline std::string words_of(catalogue_t kind, std::uint16_t code) {
+  return written([=](octet_writer_t* w) { put_message(w, kind, code); });
 }
 
 }  // namespace stillspin::bench

@@ -80,7 +80,7 @@ class NativeCore(Protocol):
         waveform: Look,
         seed: int,
         progress: Progress | None,
-        tape: NativeStepLoop | None = None,
+        recording: NativeStepLoop | None = None,
     ) -> NativeResult:
         """One run. Times in s from the end of the start procedure; progress gets the share done, false stops."""
         ...
@@ -93,7 +93,7 @@ class NativeCore(Protocol):
         limit: float,
         seed: int,
         progress: Callable[[float, str], bool] | None,
-        tape: NativeStepLoop | None = None,
+        recording: NativeStepLoop | None = None,
     ) -> NativeCommissioning:
         """The firmware's commissioning. `limit`: simulated s; progress gets share and phase, false stops."""
         ...

@@ -10,7 +10,7 @@ Ask = Callable[[bytes], bytes]
 
 
 class NativeStepLoop(Protocol):
-    """A board that is stepped through a run: takes the tape of one run or commissioning and compares every answer."""
+    """A board that is stepped through a run: takes what one run or commissioning records, compares every answer."""
 
     @property
     def steps(self) -> int:

@@ -13,7 +13,7 @@ namespace {
 
 class Steps : public Loop {
  protected:
-  using Periods = std::vector<TapedPeriod>;
+  using Periods = std::vector<RecordedPeriod>;
 
   void SetUp() override {}  // one board at a time: first comes the run
 
@@ -21,7 +21,7 @@ class Steps : public Loop {
     Periods periods;
     request.setup.solver = 1;
     request.parameters["polarity_check"] = 0.0;
-    request.tape = [&](const TapedPeriod& period) {
+    request.recording = [&](const RecordedPeriod& period) {
       periods.push_back(period);
       return true;
     };
@@ -35,7 +35,7 @@ class Steps : public Loop {
     return words;
   }
   // Status and body of the answer to a period's step.
-  Words play(const TapedPeriod& period) {
+  Words play(const RecordedPeriod& period) {
     for (const Octets& request : period.requests) {
       const std::uint16_t status = asked(request).front();
       EXPECT_TRUE(status == ANSWER_OK || status == ANSWER_CONFLICT) << "taken, be it for now without effect";
@@ -73,8 +73,8 @@ TEST_F(Steps, ADriveWithSlicesDoesTheSame) {
   play(record(request));
 }
 
-// Behind the sequence of an answer stand its shape's changes: the first of them is that the tape is torn.
-TEST_F(Steps, AnInputTooFewOrTooManyTearsTheTape) {
+// Behind the sequence of an answer stand its shape's changes: the first of them is that the recording is torn.
+TEST_F(Steps, AnInputTooFewOrTooManyTearsTheRecording) {
   switch_on();
   const auto torn_by = [&](const Words& step) {
     EXPECT_EQ(ask({REQUEST_HIL_ENTER}), Words{0});

@@ -115,7 +115,7 @@ TEST(BoardStore, SavedParametersAreInForceBeforeTheDriveIsReady) {
   EXPECT_EQ(store_state(), STORE_LOADED);
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_EQ(parameters.current_limit, 12 << 20);
-  EXPECT_EQ(drive.config.dead_time.blocked_ticks, 210);
+  EXPECT_EQ(drive.config.dead_time.turn_on_ticks, 210);
   EXPECT_EQ(again.chip.inspect(EPWM_BASE(1) + EPWM_DBRED), 180);
   // 22.5 us an octet, and what the steps in the background add to it, up to a third; 5 ms pass while the converter
   // powers up

@@ -88,7 +88,7 @@ TEST(MachineMap, FluxFollowsFromTheInductances) {
   }
 }
 
-// The whole of machine_model_move: the model's slope is the machine's, for any current near the working point.
+// The whole of machine_model_move: the model's slope is the machine's, for any current near the operating point.
 TEST(MachineMap, TheModelsSlopeIsTheMachines) {
   const Saturated s;
   machine_model_t m = model_with(s, 14.0);
@@ -101,7 +101,7 @@ TEST(MachineMap, TheModelsSlopeIsTheMachines) {
     const double w = random.between(-1300.0, 1300.0);
     const dq_t u = {raw(v.x - s.motor.rs * i.x, 16), raw(v.y - s.motor.rs * i.y, 16)};
     const Vector admitted = real(machine_admit_q20(&m, u), 20);
-    const Vector h = real(machine_turn_q20(&m, raw_dq(i, 20)), 20);
+    const Vector h = real(machine_speed_sensitivity_q20(&m, raw_dq(i, 20)), 20);
     const Vector got = admitted + h * (w * kPeriod);
     const Vector exact = s.slope(i, v, w);
     // half an ampere off the point changes Lqq by up to 1.5 %: of |v| T/L + w flux / L; and the flux table's 0.5e-3 Vs
@@ -122,8 +122,8 @@ TEST(MachineMap, OnThePointsTheSlopeIsExact) {
     const Vector v = random.direction(random.between(0.0, 200.0));
     const double w = random.between(-1300.0, 1300.0);
     const dq_t u = {raw(v.x, 16), raw(v.y - s.motor.rs * iq, 16)};
-    const Vector got =
-        real(machine_admit_q20(&m, u), 20) + real(machine_turn_q20(&m, raw_dq({0.0, iq}, 20)), 20) * (w * kPeriod);
+    const Vector got = real(machine_admit_q20(&m, u), 20) +
+                       real(machine_speed_sensitivity_q20(&m, raw_dq({0.0, iq}, 20)), 20) * (w * kPeriod);
     const Vector exact = s.slope({0.0, iq}, v, w);
     const double flux = 0.5e-3 * std::fabs(w) * kPeriod / s.motor.ld;  // error of psi_q by the trapezoid
     ASSERT_NEAR(got.x, exact.x, 3e-5 + 4e-6 * exact.length() + flux) << iq << " A, " << w << " rad/s";
@@ -132,7 +132,7 @@ TEST(MachineMap, OnThePointsTheSlopeIsExact) {
 }
 
 // Inductances that are all 30 % off are found at no current, where two numbers tell them; saturated and turned as they
-// are at a working point they must then be right as well.
+// are at an operating point they must then be right as well.
 TEST(MachineMap, InductancesFoundAtNoCurrentHoldUnderLoad) {
   const Saturated told;
   for (const double share : {0.7, 1.3}) {
@@ -183,7 +183,8 @@ TEST(MachineMap, RejectsWhatIsNoMachine) {
   EXPECT_EQ(machine_map_at(&m.map, raw(14.0, 20)).yqq_q30, before.yq_q30);  // the old one is kept
 }
 
-// What the formats do not hold is refused: 32000 V for each axis' flux over a period, and an admittance of nothing.
+// What the formats do not hold is refused: 32000 V for each axis' flux over a period, and an inverse inductance of
+// nothing.
 TEST(MachineMap, RefusesWhatItsFormatsDoNotHold) {
   const std::int32_t period = raw(kPeriod, 30);
   const machine_map_parameters_t good = Saturated{}.table(14.0);

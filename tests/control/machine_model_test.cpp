@@ -50,7 +50,7 @@ void check(const Motor& asked) {
   expect_close(real(m.yd_q30, 30), s.period / s.ld, std::ldexp(1.0, -30), t_rel, "yd");
   expect_close(real(m.yq_q30, 30), s.period / s.lq, std::ldexp(1.0, -30), t_rel, "yq");
   expect_close(real(m.emf_q16, 16), s.flux / s.period, std::ldexp(1.0, -16), t_rel, "emf");
-  // K comes from the rounded admittances: 2^-31 of each, relative to yq
+  // K comes from the rounded inverse inductances: 2^-31 of each, relative to yq
   const double y_rel = std::ldexp(1.0, -30) / real(m.yq_q30, 30);
   // the ratio, its square and the determinant's inverse are rounded one after the other
   const double ratio = s.lq / s.ld;
@@ -368,7 +368,7 @@ TEST(MachineModel, AScaledInertiaIsThatOfAnotherRotor) {
   }
 }
 
-// What is learnt of resistance and magnet is part of the working point.
+// What is learnt of resistance and magnet is part of the operating point.
 TEST(MachineModel, TheTrimMovesResistanceAndMagnet) {
   const Motor motor;
   machine_model_t m = model_of(motor);

@@ -1,12 +1,12 @@
-// What is learnt while running: the machine's admittances and the mismatch of the two current sensors.
+// What is learnt while running: the machine's inverse inductances and the mismatch of the two current sensors.
 
 #include <gtest/gtest.h>
 
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
-#include "estimators/admittance.h"
 #include "estimators/avv.h"
+#include "estimators/inverse_inductance.h"
 #include "estimators/sensor_match.h"
 }
 
@@ -45,7 +45,7 @@ class Bench {
       const Input in(model_, windows);
       if (held_) avv_preset(&avv_, start_, 0, 0);
       (void)avv_step(&avv_, &kAvv, in.get());
-      if (adapt) admittance_step(&model_, &avv_.regression, kShare);
+      if (adapt) inverse_inductance_step(&model_, &avv_.regression, kShare);
       if (match) sensor_match_step(&sensors_, &avv_.regression, mean_q30(), match_share);
       machine_model_move(&model_, 0);
       largest_mismatch_ = std::max(largest_mismatch_, std::fabs(mismatch()));
@@ -80,7 +80,7 @@ Motor scaled(double d, double q) {
   return m;
 }
 
-TEST(Admittance, ErrorsOfBothInductancesAreFound) {
+TEST(InverseInductance, ErrorsOfBothInductancesAreFound) {
   const std::pair<double, double> factors[] = {{1.2, 1.0}, {0.8, 1.0}, {1.0, 1.2}, {1.0, 0.8},
                                                {1.2, 1.2}, {0.8, 0.8}, {0.8, 1.2}};
   for (const auto& [d, q] : factors) {
@@ -97,14 +97,14 @@ TEST(Admittance, ErrorsOfBothInductancesAreFound) {
 }
 
 // Ld up and Lq down by a fifth leaves an eighth of the saliency: that is not believed.
-TEST(Admittance, StaysWithinItsBounds) {
+TEST(InverseInductance, StaysWithinItsBounds) {
   const machine_model_t nominal = model_of(Motor{});
   const std::int32_t mean = nominal.yd_q30 / 2 + nominal.yq_q30 / 2;
   const std::int32_t half = (nominal.yd_q30 - nominal.yq_q30) / 2;
   Bench b(scaled(1.2, 0.8), 0.4, 0.0);
   b.run(1500, true, false);
   EXPECT_NEAR(b.half_q30(), half / 3, 2);
-  Bench c(scaled(0.4, 0.4), 0.4, 0.0);  // 2.5 times the admittance
+  Bench c(scaled(0.4, 0.4), 0.4, 0.0);  // 2.5 times the inverse inductance
   c.run(1500, true, false);
   EXPECT_NEAR(c.mean_q30(), mean / 2 * 3, 2);
   // the held error of the mean makes a ripple in the saliency, which its bound cuts: near it, never beyond
@@ -112,16 +112,16 @@ TEST(Admittance, StaysWithinItsBounds) {
   EXPECT_GT(c.half_q30(), half);
 }
 
-TEST(Admittance, NothingIsLearntFromOneVectorOrWithoutAShare) {
+TEST(InverseInductance, NothingIsLearntFromOneVectorOrWithoutAShare) {
   machine_model_t m = model_of(Motor{});
   const regression_t blind = {1000, 1000000, 1000000, 0, 0, 0, {0, 0}};
-  admittance_step(&m, &blind, kShare);
+  inverse_inductance_step(&m, &blind, kShare);
   EXPECT_EQ(m.trim.mean_q30, 0);
   const regression_t seen = {10000000, 1000000, 1000000, 0, 0, 1000000, {0, 0}};
-  admittance_step(&m, &seen, 0);
+  inverse_inductance_step(&m, &seen, 0);
   EXPECT_EQ(m.trim.mean_q30, 0);
   EXPECT_EQ(m.trim.half_q30, 0);
-  admittance_step(&m, &seen, kShare);
+  inverse_inductance_step(&m, &seen, kShare);
   EXPECT_GT(m.trim.mean_q30, 0);
   EXPECT_GT(m.trim.half_q30, 0);
 }
@@ -168,8 +168,8 @@ TEST(SensorMatch, AMatchedPairStaysMatchedWhateverTheSaliency) {
   }
 }
 
-// As the drive runs it, the observer tracking and the admittances adapting. While Y0 is wrong the observed angle
-// wobbles with dv, which does leave something across it; it goes when Y0 is found.
+// As the drive runs it, the observer tracking and the inverse inductances adapting. While Y0 is wrong the observed
+// angle wobbles with dv, which does leave something across it; it goes when Y0 is found.
 TEST(SensorMatch, AMatchedPairStaysMatchedInTheDrive) {
   Random random(61);
   for (int n = 0; n < 40; ++n) {

@@ -5,9 +5,9 @@
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
-#include "estimators/admittance.h"
 #include "estimators/avv.h"
 #include "estimators/axis.h"
+#include "estimators/inverse_inductance.h"
 }
 
 namespace {
@@ -87,11 +87,11 @@ TEST(Axis, TheModelTakesItOver) {
   truth.lq *= 1.2;
   machine_model_t model = model_of(Motor{});
   const axis_result_t r = find(truth, model, 0.4);
-  admittance_preset(&model, r.mean_q30, r.half_q30);
+  inverse_inductance_preset(&model, r.mean_q30, r.half_q30);
   machine_model_move(&model, 0);
   EXPECT_NEAR(kPeriod / real(model.yd_q30, 30) / truth.ld, 1.0, 1e-3);
   EXPECT_NEAR(kPeriod / real(model.yq_q30, 30) / truth.lq, 1.0, 1e-3);
-  admittance_preset(&model, 1, 1);  // not believed
+  inverse_inductance_preset(&model, 1, 1);  // not believed
   machine_model_move(&model, 0);
   EXPECT_GT(model.yq_q30, 0);
   EXPECT_GT(model.yd_q30, model.yq_q30);

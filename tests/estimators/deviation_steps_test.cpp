@@ -28,7 +28,7 @@ class Observer {
     state.p_aa = state.p_ss = state.p_ll = kOne;  // far below the limits
   }
   /// The angle's scores lean as they do behind a step of the load.
-  void lean() { state.mean_score_q20 = 100 * kOne; }
+  void suggest_step() { state.mean_score_q20 = 100 * kOne; }
   void rest() { state.mean_score_q20 = 0; }
   estimator_output_t step(bool renew = true) {
     const estimator_input_t blind = {&model, nullptr, 0, 0, false, renew, false, nullptr};
@@ -44,7 +44,7 @@ class Observer {
 // and age^2 / 2 of it. louder: what the load's variance gains in this period because it is not quiet any more.
 void expect_admitted(Observer with, double variance, double louder, double age, const char* what) {
   Observer without = with;
-  with.lean();
+  with.suggest_step();
   (void)with.step();
   (void)without.step();
   const auto more = [&](std::int32_t deviation_observer_t::* p) {
@@ -72,7 +72,7 @@ TEST(DeviationSteps, AStepOfTheLoadIsAdmittedAsLongAsItHasActed) {
   }
 }
 
-// Again after 11 ms at a crawl, where the alert has faded to 0.8, and after 150 ms at speed, to 0.05; it loses one part
+// Again after 11 ms at a crawl, where the boost has faded to 0.8, and after 150 ms at speed, to 0.05; it loses one part
 // in 512 a period.
 TEST(DeviationSteps, AStepIsAdmittedAgainAfterAWhileOnly) {
   struct Case {
@@ -80,57 +80,57 @@ TEST(DeviationSteps, AStepIsAdmittedAgainAfterAWhileOnly) {
   };
   for (const Case& c : {Case{0.5, 0.8}, Case{4.0, 0.05}}) {
     Observer o(true, c.crawls * kCrawl);
-    o.lean();
+    o.suggest_step();
     (void)o.step();
-    ASSERT_NEAR(real(o.state.alert_q30, 30), 1.0, 1e-6);
+    ASSERT_NEAR(real(o.state.noise_boost_q30, 30), 1.0, 1e-6);
     int periods = 0;
     std::int32_t before = 0;
     do {
-      before = o.state.alert_q30;
+      before = o.state.noise_boost_q30;
       o.state.p_aa = o.state.p_ss = o.state.p_ll = kOne;
-      o.lean();
+      o.suggest_step();
       (void)o.step();
       ++periods;
-    } while (o.state.alert_q30 < before && periods < 5000);
+    } while (o.state.noise_boost_q30 < before && periods < 5000);
     EXPECT_NEAR(periods, std::log(c.left) / std::log(1.0 - 1.0 / 512.0), 2.0) << c.crawls;
   }
 }
 
-// A lean that comes while the covariance is not renewed is kept until it is, and says that it should be.
+// A suspicion that comes while the covariance is not renewed is kept until it is, and says that it should be.
 TEST(DeviationSteps, ALeanWaitsForTheRenewal) {
   Observer o;
   EXPECT_FALSE(deviation_observer_is_due(&o.state));
-  o.lean();
+  o.suggest_step();
   (void)o.step(false);
-  EXPECT_TRUE(o.state.leaned);
+  EXPECT_TRUE(o.state.load_step_suspected);
   EXPECT_TRUE(deviation_observer_is_due(&o.state));
-  EXPECT_EQ(o.state.alert_q30, 0);
+  EXPECT_EQ(o.state.noise_boost_q30, 0);
   o.rest();
   (void)o.step(false);
   EXPECT_TRUE(o.state.load_is_new);
-  EXPECT_EQ(o.state.alert_q30, 0);
+  EXPECT_EQ(o.state.noise_boost_q30, 0);
   (void)o.step();
-  EXPECT_NEAR(real(o.state.alert_q30, 30), 1.0, 1e-6);
-  EXPECT_FALSE(o.state.leaned);
+  EXPECT_NEAR(real(o.state.noise_boost_q30, 30), 1.0, 1e-6);
+  EXPECT_FALSE(o.state.load_step_suspected);
   (void)o.step();
   EXPECT_TRUE(o.state.load_is_new);  // within 11 ms
   for (int n = 0; n < 120; ++n) (void)o.step();
   EXPECT_FALSE(o.state.load_is_new);
 }
 
-// With nobody looking out for steps at speed, a lean there is none of its business.
+// With nobody looking out for steps at speed, a suspicion there is none of its business.
 TEST(DeviationSteps, AtSpeedWithoutTheMapNothingIsLookedOutFor) {
   Observer o(false, 1.5 * kCrawl);
-  o.lean();
+  o.suggest_step();
   (void)o.step(false);
   EXPECT_FALSE(o.state.load_is_new);
   Observer crawling(false, kCrawl);
-  crawling.lean();
+  crawling.suggest_step();
   (void)crawling.step(false);
   EXPECT_TRUE(crawling.state.load_is_new);
 }
 
-// Scores lean when the square of their mean is above 0.4 of their power.
+// Scores suggest a step when the square of their mean is above 0.4 of their power.
 TEST(DeviationSteps, FiveStandardDeviationsAreALean) {
   for (const double share : {0.62, 0.65}) {
     Observer o;
@@ -139,7 +139,7 @@ TEST(DeviationSteps, FiveStandardDeviationsAreALean) {
     // what the step itself forgets first: a 32nd of the mean and a 256th of the power
     o.state.mean_score_q20 = raw(share * std::sqrt(power * 255.0 / 256.0) * 32.0 / 31.0, 20);
     (void)o.step(false);
-    EXPECT_EQ(o.state.leaned, share > std::sqrt(0.4)) << share;
+    EXPECT_EQ(o.state.load_step_suspected, share > std::sqrt(0.4)) << share;
   }
 }
 
@@ -233,20 +233,20 @@ TEST(DeviationSteps, WhatIsLeftIsTheMeanBySpans) {
       sum = sum + left[k] * windows[k].span;
       ticks += windows[k].span;
     }
-    const deviation_left_t kept = o.state.left;
+    const deviation_residual_t kept = o.state.residual;
     deviation_observer_preset(&o.state, 0, 0, 0);  // as if it had not corrected itself
-    o.state.left = kept;
+    o.state.residual = kept;
     const Input in(o.model, windows);
     (void)deviation_observer_step(&o.state, &o.config, in.get());
   }
   dq_t residual = {};
   std::int32_t span = 0, periods = 0;
-  ASSERT_TRUE(deviation_observer_take_left(&o.state, &residual, &span, &periods));
+  ASSERT_TRUE(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods));
   EXPECT_NEAR(real(residual.d, 20), sum.x / ticks, 1e-4);
   EXPECT_NEAR(real(residual.q, 20), sum.y / ticks, 1e-4);
   EXPECT_EQ(span, ticks / 3);
   EXPECT_EQ(periods, 3);
-  EXPECT_FALSE(deviation_observer_take_left(&o.state, &residual, &span, &periods));
+  EXPECT_FALSE(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods));
 }
 
 // Of windows that nobody asks for nothing is kept: after sixteen periods it begins anew.
@@ -260,7 +260,7 @@ TEST(DeviationSteps, WhatNobodyTakesIsForgotten) {
     for (int n = 0; n < count; ++n) (void)deviation_observer_step(&o.state, &o.config, in.get());
     dq_t residual = {};
     std::int32_t span = 0, periods = 0;
-    EXPECT_EQ(deviation_observer_take_left(&o.state, &residual, &span, &periods), kept > 0) << count;
+    EXPECT_EQ(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods), kept > 0) << count;
     EXPECT_EQ(periods, kept);
     EXPECT_EQ(span, kept > 0 ? 5000 : 0);
   }

@@ -98,7 +98,7 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
     const double dw = 10.0;  // the slope is linear in the speed: any step will do
     const Vector by_speed = (slope(at, p.w() + dw) - slope(at, p.w() - dw)) * (0.5 / dw / m.period);
     const Vector h_a = real(deviation_by_angle_q17(&h, d.voltage_q16), 17);
-    const Vector h_s = real(h.turn_q20, 20);
+    const Vector h_s = real(h.h_speed_q20, 20);
     // 1.7e-6 of T as above in both; K is right to a few 1e-7 and is multiplied by 15 A
     ASSERT_NEAR(h_a.x, by_angle.x, 3e-5 + 3e-6 * by_angle.length()) << n;
     ASSERT_NEAR(h_a.y, by_angle.y, 3e-5 + 3e-6 * by_angle.length()) << n;
@@ -171,7 +171,7 @@ TEST(Deviation, SensitivitiesOfATiltedSaliency) {
     const Vector by_speed = (residual(0.0, -dw) - residual(0.0, dw)) * (0.5 / rad(dw));
     const deviation_sensitivity_t h = deviation_sensitivity(&model, w_q30, raw_dq(i, 20));
     const Vector h_a = real(deviation_by_angle_q17(&h, raw_dq(v, 16)), 17);
-    const Vector h_s = real(h.turn_q20, 20);
+    const Vector h_s = real(h.h_speed_q20, 20);
     ASSERT_NEAR(h_a.x, by_angle.x, 3e-4 + 1e-4 * by_angle.length()) << n;
     ASSERT_NEAR(h_a.y, by_angle.y, 3e-4 + 1e-4 * by_angle.length()) << n;
     ASSERT_NEAR(h_s.x, by_speed.x, 2e-3) << n;

@@ -5,9 +5,9 @@
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
-#include "estimators/admittance.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/inertia_match.h"
+#include "estimators/inverse_inductance.h"
 #include "estimators/saturation.h"
 #include "estimators/stator_flux.h"
 #include "estimators/tracking_observer.h"
@@ -56,18 +56,18 @@ TEST(Extremes, WhatALearntSaliencyMakesOfALargeCurrentKeepsItsSign) {
   motor.ld = 5e-3;
   motor.lq = 13.5e-3;
   machine_model_t model = model_of(motor);
-  admittance_preset(&model, 0, INT32_MAX);
+  inverse_inductance_preset(&model, 0, INT32_MAX);
   machine_model_move(&model, 0);
   for (const double sign : {1.0, -1.0}) {
     const deviation_sensitivity_t along_q = deviation_sensitivity(&model, 0, {0, raw(sign * 200.0, 20)});
-    EXPECT_NEAR(real(along_q.turn_q20.d, 20), sign * 2048.0, 1e-3);
+    EXPECT_NEAR(real(along_q.h_speed_q20.d, 20), sign * 2048.0, 1e-3);
     const deviation_sensitivity_t along_d = deviation_sensitivity(&model, 1 << 30, {raw(sign * 200.0, 20), 0});
     EXPECT_NEAR(real(along_d.rest_q17.d, 17), sign * -2048.0, 1.0);  // less what the resistance takes
   }
 }
 
-// Admittances of 3 A per V and period, where 2 is the format's end, while the current along the axis is positive; and
-// residuals that make the resistance as far beyond its own.
+// Inverse inductances of 3 A per V and period, where 2 is the format's end, while the current along the axis is
+// positive; and residuals that make the resistance as far beyond its own.
 TEST(Extremes, WhatASaturationTestSeesBeyondItsFormatKeepsItsSign) {
   const machine_model_t model = model_of(Motor{});
   const saturation_slopes_t slopes = {0, raw(0.00139, 30)};
@@ -83,12 +83,13 @@ TEST(Extremes, WhatASaturationTestSeesBeyondItsFormatKeepsItsSign) {
       r.mean_q20.d = (segment == 0 || segment == 3) ? sign * raw(500.0, 20) : sign * raw(-500.0, 20);
       (void)saturation_step(&s, &r, &model);
     }
-    EXPECT_LT(real(s.change_q30, 30) * sign, -1.5);  // Lq is to grow with this current, so the admittance to fall
+    EXPECT_LT(real(s.change_q30, 30) * sign,
+              -1.5);  // Lq is to grow with this current, so the inverse inductance to fall
     EXPECT_LT(real(saturation_resistance_q24(&s, &model), 24) * sign, -127.0);
   }
 }
 
-// Admittances from one end of their format to the other, round after round, are no certainty.
+// Inverse inductances from one end of their format to the other, round after round, are no certainty.
 TEST(Extremes, TheScatterOfASaturationTestEndsAndDoesNotBeginAnew) {
   const machine_model_t model = model_of(Motor{});
   const saturation_slopes_t slopes = {0, raw(0.00139, 30)};

@@ -297,7 +297,7 @@ TEST(FluxObserver, APhaseWithoutCurrentIsNotBelieved) {
       Bench believed(motor_b(), motor_b(), c, 0.3, speed, Vector{0.0, 2.0});
       believed.dead(2.0);
       EXPECT_GT(believed.run(20000), 0.03) << method;
-      c.blind_q20 = raw(0.1, 20);
+      c.unknown_voltage_q20 = raw(0.1, 20);
       Bench b(motor_b(), motor_b(), c, 0.3, speed, Vector{0.0, 2.0});
       b.dead(2.0);
       EXPECT_LT(b.run(20000), 0.005) << method;

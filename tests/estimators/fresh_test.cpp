@@ -7,7 +7,6 @@
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
-#include "estimators/admittance_tensor.h"
 #include "estimators/avv.h"
 #include "estimators/axis.h"
 #include "estimators/blend.h"
@@ -16,6 +15,7 @@ extern "C" {
 #include "estimators/flux_observer.h"
 #include "estimators/flying.h"
 #include "estimators/inertia_match.h"
+#include "estimators/inverse_inductance_tensor.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
 #include "estimators/sensor_match.h"
@@ -43,7 +43,7 @@ void expect_begun(const tracking_observer_t& s) {
   EXPECT_EQ(s.angle_bam, kAngle);
   EXPECT_EQ(s.speed_bpp, kSpeed);
   EXPECT_EQ(s.load_accel_q8, kLoad);
-  EXPECT_EQ(s.speed_rest_q8, 0);
+  EXPECT_EQ(s.speed_remainder_q8, 0);
 }
 
 TEST(Fresh, Tensor) {
@@ -107,23 +107,24 @@ TEST(Fresh, DeviationObserver) {
   EXPECT_EQ(s.angle_bam, kAngle);
   EXPECT_EQ(s.speed_bpp, kSpeed);
   EXPECT_EQ(s.load_accel_q8, kLoad);
-  EXPECT_EQ(s.speed_rest_q8, 0);
+  EXPECT_EQ(s.speed_remainder_q8, 0);
   EXPECT_EQ(s.p_aa, raw(128.0, 20));  // (10 degrees)^2 in units of 2^-6 rad
   EXPECT_EQ(s.p_ss, raw(64.0, 20));
   EXPECT_EQ(s.p_ll, raw(64.0, 20));
   EXPECT_EQ(s.p_as | s.p_al | s.p_sl, 0);
-  EXPECT_NEAR(real(s.score_power_q23, 23), 0.05, 1e-6) << "nothing leans before the power is known";
-  EXPECT_EQ(s.mean_score_q20 | s.alert_q30, 0);
-  EXPECT_EQ(s.score_rest, 0u);
-  EXPECT_FALSE(s.load_is_new || s.leaned || s.is_sensitive || s.cogging.active);
+  EXPECT_NEAR(real(s.score_power_q23, 23), 0.05, 1e-6) << "nothing is suspected before the power is known";
+  EXPECT_EQ(s.mean_score_q20 | s.noise_boost_q30, 0);
+  EXPECT_EQ(s.score_remainder, 0u);
+  EXPECT_FALSE(s.load_is_new || s.load_step_suspected || s.is_sensitive || s.cogging.active);
   EXPECT_EQ(s.cogging.cos_q8 | s.cogging.sin_q8 | s.cogging.mean_q8 | s.cogging.now_q8, 0);
   EXPECT_EQ(s.cogging.known_q30 | s.cogging.order | s.cogging.wave.cos_q30 | s.cogging.wave.sin_q30, 0);
   EXPECT_EQ(s.cogging.stepped_bam | s.regressed_bam, 0u);
   EXPECT_EQ(s.gathered.aa_q21 | s.gathered.as_q24 | s.gathered.ss_q21 | s.gathered.periods, 0);
-  EXPECT_EQ(s.left.d_q20 | s.left.q_q20 | s.left.span_ticks | s.left.periods, 0);
+  EXPECT_EQ(s.residual.d_q20 | s.residual.q_q20 | s.residual.span_ticks | s.residual.periods, 0);
   const deviation_sensitivity_t& h = s.sensitivity;
-  EXPECT_EQ(h.saliency_q30 | h.tilt_q30 | h.less_tilt_q30 | h.rest_q17.d | h.rest_q17.q | h.turn_q20.d | h.turn_q20.q,
-            0);
+  EXPECT_EQ(
+      h.saliency_q30 | h.tilt_q30 | h.less_tilt_q30 | h.rest_q17.d | h.rest_q17.q | h.h_speed_q20.d | h.h_speed_q20.q,
+      0);
   const regression_t& r = s.regression;
   EXPECT_EQ(r.spread_q8 | r.along_q16 | r.mirror_q16 | r.cross_q16 | r.curl_q16 | r.information, 0);
   EXPECT_EQ(r.mean_q20.d | r.mean_q20.q, 0);
@@ -139,7 +140,7 @@ TEST(Fresh, EmfSign) {
 TEST(Fresh, Synchronism) {
   auto s = used<synchronism_t>();
   synchronism_reset(&s);
-  EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.turned_q16 | s.emf_q16 | s.limit_q16 | s.doubt, 0);
+  EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.turned_q16 | s.emf_q16 | s.limit_q16 | s.debounce, 0);
 }
 
 TEST(Fresh, SensorMatch) {
@@ -181,7 +182,7 @@ TEST(Fresh, Saturation) {
   EXPECT_EQ(s.passes, 1);
   EXPECT_EQ(s.current_q20, raw(10.0, 20));
   EXPECT_EQ(s.unit_d_q30, 0);
-  EXPECT_NEAR(real(s.unit_q_q30, 30), -1.0, 1e-4) << "less admittance with +i_d";
+  EXPECT_NEAR(real(s.unit_q_q30, 30), -1.0, 1e-4) << "less inverse inductance with +i_d";
   EXPECT_NEAR(real(s.expected_q30, 30), 20.0 * 0.00139 * real(m.yq_q30, 30), 1e-7);
   EXPECT_NEAR(real(s.floor_q30, 30), 0.0015 * 0.5 * real(m.yd_q30 + m.yq_q30, 30), 1e-6);
   EXPECT_EQ(s.result, POLARITY_PENDING);
@@ -266,7 +267,7 @@ TEST_F(FreshFlux, ForgetsWhatWasLearnt) {
   EXPECT_EQ(s.flux.flux_q16.alpha | s.flux.flux_q16.beta | s.flux.length_q16 | s.flux.compensation_q16, 0);
   EXPECT_EQ(s.flux.shown_q28.alpha | s.flux.shown_q28.beta, 0);
   EXPECT_EQ(s.observer.angle_bam, 0u);
-  EXPECT_EQ(s.observer.speed_bpp | s.observer.load_accel_q8 | s.observer.speed_rest_q8, 0);
+  EXPECT_EQ(s.observer.speed_bpp | s.observer.load_accel_q8 | s.observer.speed_remainder_q8, 0);
   EXPECT_EQ(s.flux_q16.alpha | s.flux_q16.beta | s.current_q20.alpha | s.current_q20.beta, 0);
   EXPECT_EQ(s.vectors.flux_q24.alpha | s.vectors.flux_q24.beta, 0);
   EXPECT_EQ(s.vectors.current_q24.alpha | s.vectors.current_q24.beta, 0);

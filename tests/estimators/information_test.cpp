@@ -63,7 +63,7 @@ double sigma(unsigned state, int span, double amps, bool of_speed, std::uint64_t
     const deviation_t d = deviation_evaluate(&m, &w, bam(theta), 0);
     const Vector e = real(d.residual_q20, 20);
     const deviation_sensitivity_t s = deviation_sensitivity(&m, 0, d.current_q20);
-    const Vector h = of_speed ? real(s.turn_q20, 20) : real(deviation_by_angle_q17(&s, d.voltage_q16), 17);
+    const Vector h = of_speed ? real(s.h_speed_q20, 20) : real(deviation_by_angle_q17(&s, d.voltage_q16), 17);
     const double error = (e.x * h.x + e.y * h.y) / (h.x * h.x + h.y * h.y);
     squares += error * error;
   }

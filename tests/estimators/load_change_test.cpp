@@ -119,9 +119,9 @@ TEST(LoadChange, NoFalseAlarmInNoise) {
   s.run(1.0);
   int alarms = 0;
   for (int n = 0; n < 2000; ++n) {
-    const std::int32_t before = s.observer().alert_q30;
+    const std::int32_t before = s.observer().noise_boost_q30;
     s.run(0.01);
-    if (s.observer().alert_q30 > before) alarms++;
+    if (s.observer().noise_boost_q30 > before) alarms++;
   }
   EXPECT_EQ(alarms, 0);  // five standard deviations of some 3000 independent means: 0.002 expected
 }

@@ -5,11 +5,11 @@
 #include "tests/estimators/machine_windows.hpp"
 
 extern "C" {
-#include "estimators/admittance.h"
 #include "estimators/avv.h"
 #include "estimators/deviation_information.h"
 #include "estimators/flux_adaptation.h"
 #include "estimators/inertia_match.h"
+#include "estimators/inverse_inductance.h"
 #include "estimators/sensor_match.h"
 #include "estimators/stator_flux.h"
 #include "estimators/synchronism.h"
@@ -46,12 +46,12 @@ TEST(OneStep, SensorMatch) {
   EXPECT_NEAR(real(s.mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
 }
 
-TEST(OneStep, Admittance) {
+TEST(OneStep, InverseInductance) {
   machine_model_t m = model_of(Motor{});
   const double spread = 40000.0;
   const regression_t r = regression(spread, 0.001 * spread, -0.0004 * spread, 0.0);
-  admittance_step(&m, &r, raw(0.02, 30));
-  admittance_step(&m, &r, raw(0.02, 30));
+  inverse_inductance_step(&m, &r, raw(0.02, 30));
+  inverse_inductance_step(&m, &r, raw(0.02, 30));
   EXPECT_NEAR(real(m.trim.mean_q30, 30), 2 * 0.02 * 0.001, 1e-8);
   EXPECT_NEAR(real(m.trim.half_q30, 30), 2 * 0.02 * -0.0004, 1e-8);
 }
@@ -63,7 +63,7 @@ TEST(OneStep, AdmittancesWithinTheirBounds) {
     machine_model_t m = model_of(motor);
     const machine_point_t& p = m.map.points[0];
     const Vector told = {real(p.ydd_q30 / 2 + p.yqq_q30 / 2, 30), real(p.ydd_q30 / 2 - p.yqq_q30 / 2, 30)};
-    admittance_preset(&m, raw(mean * told.x, 30), raw(half * told.y, 30));
+    inverse_inductance_preset(&m, raw(mean * told.x, 30), raw(half * told.y, 30));
     return Vector{1.0 + real(m.trim.mean_q30, 30) / told.x, 1.0 + real(m.trim.half_q30, 30) / told.y};
   };
   EXPECT_NEAR(preset(Motor{}, 1.2, 0.9).x, 1.2, 1e-6);
@@ -288,18 +288,18 @@ TEST(OneStep, PresetsTakeTheSpeedAlong) {
   avv_t avv = {};
   avv.regression.information = 77;
   avv.error_bam = 5;
-  avv.observer.speed_rest_q8 = 9;
+  avv.observer.speed_remainder_q8 = 9;
   avv_preset(&avv, 0x12345678u, -70000, 40);
   EXPECT_EQ(avv.observer.angle_bam, 0x12345678u);
   EXPECT_EQ(avv.observer.speed_bpp, -70000);
   EXPECT_EQ(avv.observer.load_accel_q8, 40);
-  EXPECT_EQ(avv.error_bam | avv.regression.information | avv.observer.speed_rest_q8, 0);
+  EXPECT_EQ(avv.error_bam | avv.regression.information | avv.observer.speed_remainder_q8, 0);
 }
 
 TEST(OneStep, ResetsLeaveNothing) {
   synchronism_t s = {{1, 2}, 3, 4, 5, 6};
   synchronism_reset(&s);
-  EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.turned_q16 | s.emf_q16 | s.limit_q16 | s.doubt, 0);
+  EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.turned_q16 | s.emf_q16 | s.limit_q16 | s.debounce, 0);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(Saturation, RightAndWrong) {
   c.noise = 0.0;
   const saturation_t right = run(c);
   EXPECT_EQ(right.result, POLARITY_RIGHT);
-  EXPECT_NEAR(score(right), 1.0, 0.03);  // the expectation is linear in the current, an admittance is not quite
+  EXPECT_NEAR(score(right), 1.0, 0.03);  // the expectation is linear in the current, an inverse inductance is not quite
   c.wrong_way_round = true;
   const saturation_t wrong = run(c);
   EXPECT_EQ(wrong.result, POLARITY_WRONG);
@@ -87,12 +87,12 @@ double resistance_error(const saturation_t& s) {
 
 // A kelvin changes copper's resistance by 0.4 %; noise and the current loop's last swing leave 3 %.
 TEST(Saturation, TellsTheResistanceOnTheWay) {
-  for (const double true_over_told : {0.7, 1.0, 1.3}) {
+  for (const double true_over_nominal : {0.7, 1.0, 1.3}) {
     for (const bool wrong_way_round : {false, true}) {
       Conditions c;
-      c.resistance = true_over_told;
+      c.resistance = true_over_nominal;
       c.wrong_way_round = wrong_way_round;
-      EXPECT_NEAR(resistance_error(run(c)), true_over_told - 1.0, 0.03);
+      EXPECT_NEAR(resistance_error(run(c)), true_over_nominal - 1.0, 0.03);
     }
   }
 }
@@ -107,7 +107,7 @@ TEST(Saturation, ResistanceStaysWithoutWindows) {
   EXPECT_EQ(saturation_resistance_q24(&s, &model), 0);
 }
 
-// 0.2 mH: admittances of half an ampere per volt and period, at the end of the format.
+// 0.2 mH: inverse inductances of half an ampere per volt and period, at the end of the format.
 TEST(Saturation, WithLittleInductance) {
   Conditions c;
   c.noise = 0.0;
@@ -257,7 +257,7 @@ TEST(Saturation, TheChangeMustFitWhatIsExpected) {
   }
 }
 
-// What does not average out, 0.15 % of the mean admittance, is all of the error where there is no noise.
+// What does not average out, 0.15 % of the mean inverse inductance, is all of the error where there is no noise.
 TEST(Saturation, WithoutNoiseTheFloorIsTheError) {
   Conditions c;
   c.noise = 0.0;

@@ -1,4 +1,4 @@
-// The limit of the voltage left over, and how fast doubt grows beyond it.
+// The limit of the voltage left over, and how fast the debounce counter grows beyond it.
 
 #include <gtest/gtest.h>
 
@@ -29,26 +29,26 @@ TEST(SynchronismLimit, TheLimitIsOfTheWholeVector) {
     const Vector emf = Vector{0.6, 0.8} * (kFloor * part);
     const synchronism_seen_t seen = seen_of(emf, 0.0, 5000, 3);
     for (int n = 0; n < 200; ++n) (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
-    EXPECT_EQ(scene.s.doubt > 0, part > 1.0) << part;
+    EXPECT_EQ(scene.s.debounce > 0, part > 1.0) << part;
   }
 }
 
 /// What one judgement of five periods adds while the error is `share` of the limit at rest.
-std::int32_t doubt_at(double share) {
+std::int32_t debounce_at(double share) {
   Scene scene;
   const Vector emf = Vector{-0.6, 0.8} * (kFloor * share);
   scene.s.error_q16 = raw_dq(emf, 16);
   const synchronism_seen_t seen = seen_of(emf, 0.0, 5000, 5);
   (void)synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0);
-  return scene.s.doubt;
+  return scene.s.debounce;
 }
 
 // 8 e^2 / limit^2 for each period, rounded down.
 TEST(SynchronismLimit, DoubtGrowsWithTheSquareOfTheError) {
-  EXPECT_EQ(doubt_at(0.995), 0);
-  EXPECT_EQ(doubt_at(1.005), 40);
-  EXPECT_EQ(doubt_at(std::sqrt(1.51)), 60);
-  EXPECT_EQ(doubt_at(std::sqrt(2.02)), 80);
+  EXPECT_EQ(debounce_at(0.995), 0);
+  EXPECT_EQ(debounce_at(1.005), 40);
+  EXPECT_EQ(debounce_at(std::sqrt(1.51)), 60);
+  EXPECT_EQ(debounce_at(std::sqrt(2.02)), 80);
 }
 
 // A limit as it may be set, and one that short windows make: the squares stay in their format.
@@ -61,7 +61,7 @@ TEST(SynchronismLimit, SmallAndLargeLimitsDoubtAlike) {
     const synchronism_seen_t seen = seen_of(emf, 0.0, span, 1);
     (void)synchronism_judge(&scene.s, &c, &scene.model, &seen, 0);
     EXPECT_NEAR(real(scene.s.limit_q16, 16), top, 0.01);
-    EXPECT_NEAR(scene.s.doubt, 8 * 2.1, 1.5) << limit;  // 256 parts of the square at half a volt
+    EXPECT_NEAR(scene.s.debounce, 8 * 2.1, 1.5) << limit;  // 256 parts of the square at half a volt
   }
 }
 

@@ -102,7 +102,7 @@ TEST(Synchronism, AFrameThatKeepsUpAddsNoDoubt) {
     seen.ahead_bpp = bpp(-0.9 * lag);
     (void)synchronism_judge(&corrected.s, &kConfig, &corrected.model, &seen, 0);
   }
-  EXPECT_EQ(corrected.s.doubt, late.s.doubt);
+  EXPECT_EQ(corrected.s.debounce, late.s.debounce);
   EXPECT_LT(std::fabs(corrected.turned()), 0.3 * corrected.error().length());
 }
 
@@ -145,7 +145,7 @@ TEST(Synchronism, WithoutWindowsNothingChanges) {
   const synchronism_t before = scene.s;
   const Input none(scene.model, {});
   EXPECT_FALSE(step_with(&scene.s, none, 0, {{0, 0}, 0, 0, 0, 1}));
-  EXPECT_EQ(scene.s.doubt, before.doubt);
+  EXPECT_EQ(scene.s.debounce, before.debounce);
   EXPECT_EQ(scene.s.error_q16.q, before.error_q16.q);
 }
 
@@ -172,7 +172,7 @@ TEST(Synchronism, BearsAnyWindow) {
                                     1 + random.below(6)};
     (void)step_with(&s, in, bam(random.between(-kPi, kPi)), now,
                     static_cast<std::int32_t>(bam(random.between(-kPi, kPi))));
-    ASSERT_GE(s.doubt, 0);
+    ASSERT_GE(s.debounce, 0);
     ASSERT_GE(s.limit_q16, 0);
     // slopes of 40 A a period stand for 3.1 kV
     ASSERT_LT(std::fabs(real(s.error_q16.d, 16)), 5000.0);
@@ -186,10 +186,10 @@ TEST(Synchronism, WithoutASpanNothingIsJudged) {
   const machine_model_t model = model_of(kMotor);
   synchronism_t s;
   synchronism_reset(&s);
-  s.doubt = 40;
+  s.debounce = 40;
   const synchronism_seen_t none = {{raw(9.0, 20), 0}, 0, 0, 0, 5};
   EXPECT_FALSE(synchronism_judge(&s, &kConfig, &model, &none, 0));
-  EXPECT_EQ(s.doubt, 40);
+  EXPECT_EQ(s.debounce, 40);
   EXPECT_EQ(s.error_q16.d, 0);
 }
 
@@ -243,7 +243,7 @@ TEST(Synchronism, AShortErrorIsBorneHoweverLarge) {
     for (int n = 0; n < 8; ++n) {
       const synchronism_seen_t seen = seen_of({0.0, n < 2 ? emf : 0.0}, 0.0, 5000, 5);
       EXPECT_FALSE(synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, 0));
-      most = std::max(most, scene.s.doubt);
+      most = std::max(most, scene.s.debounce);
     }
     EXPECT_GT(most, 0) << emf;
     EXPECT_LE(most, kBad * 8 / 5) << emf;
@@ -290,14 +290,14 @@ TEST(Synchronism, DoubtCountsThePeriods) {
     return synchronism_judge(&scene.s, &kConfig, &scene.model, &seen, static_cast<std::int32_t>(bam(off)));
   };
   EXPECT_FALSE(judge(2.0, 6));
-  EXPECT_EQ(scene.s.doubt, 48);
+  EXPECT_EQ(scene.s.debounce, 48);
   EXPECT_FALSE(judge(0.0, 5));
-  EXPECT_EQ(scene.s.doubt, 43);
+  EXPECT_EQ(scene.s.debounce, 43);
   EXPECT_FALSE(judge(-2.0, 1));
-  EXPECT_EQ(scene.s.doubt, 51);
+  EXPECT_EQ(scene.s.debounce, 51);
   for (int n = 0; n < 10; ++n) EXPECT_FALSE(judge(0.0, 8));
-  EXPECT_EQ(scene.s.doubt, 0);
-  scene.s.doubt = kBad * 8 - 8;
+  EXPECT_EQ(scene.s.debounce, 0);
+  scene.s.debounce = kBad * 8 - 8;
   EXPECT_FALSE(judge(2.0, 1));
   EXPECT_TRUE(judge(2.0, 1));
 }

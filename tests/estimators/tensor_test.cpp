@@ -1,4 +1,4 @@
-// The admittance tensor from pairs of windows, whichever tensor and whichever vectors: 2 x 2 algebra in double
+// The inverse inductance tensor from pairs of windows, whichever tensor and whichever vectors: 2 x 2 algebra in double
 // precision.
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include "tests/control/quantities.hpp"
 
 extern "C" {
-#include "estimators/admittance_tensor.h"
+#include "estimators/inverse_inductance_tensor.h"
 }
 
 namespace {

@@ -118,7 +118,7 @@ class Inertia : public Drive {
     drive.config.mapped = true;
     parameters.inertia_adapt = 1;
     use_source(POSITION_OBSERVER);
-    drive.control.ramp.value = drive.position.used.speed_bpp = bpp_of(100);
+    drive.control.ramp.value = drive.position.selected.speed_bpp = bpp_of(100);
     drive.inertia.reference_bpp = drive.control.ramp.value;
   }
   static double acceleration_limit() {
@@ -137,7 +137,7 @@ class Inertia : public Drive {
     s.start_base_q8 = raw(1000.0, 8);
     s.speed0_bpp = bpp_of(10);
     s.gained_bpp = s.last_gained_bpp = static_cast<std::int32_t>(1000.0 * share * acceleration_limit());
-    s.angle_bam = drive.position.used.angle_bam;
+    s.angle_bam = drive.position.selected.angle_bam;
     s.expected = raw(4.0, 24);
     s.turned = raw(8.0, 24);
     s.next = raw(4.0, 24);
@@ -185,7 +185,7 @@ TEST_F(Inertia, ARunUpUnderLittleTorqueSaysNothing) {
 TEST_F(Inertia, TheReferenceIsReachedWithin20Rpm) {
   for (const int off : {-21, -19, 19, 21}) {
     SetUp();
-    drive.position.used.speed_bpp = bpp_of(100 + off);
+    drive.position.selected.speed_bpp = bpp_of(100 + off);
     drive_match_inertia(&drive);
     EXPECT_EQ(drive.inertia.quiet_ms, std::abs(off) < 20 ? 1 : 0) << off;
   }
@@ -194,7 +194,7 @@ TEST_F(Inertia, TheReferenceIsReachedWithin20Rpm) {
 // At rest the torque's slow mean; what begins the run-up is the ramp.
 TEST_F(Inertia, ARunUpBeginsWithTheRampAfterARest) {
   drive.position.torque_accel_q8 = raw(160.0, 8);
-  drive.position.used.angle_bam = 0x12345678u;
+  drive.position.selected.angle_bam = 0x12345678u;
   for (int n = 0; n < 30; ++n) drive_match_inertia(&drive);
   EXPECT_EQ(drive.inertia.phase, INERTIA_REST);
   EXPECT_GT(drive.inertia.base_q8, raw(100.0, 8));
@@ -202,7 +202,7 @@ TEST_F(Inertia, ARunUpBeginsWithTheRampAfterARest) {
   drive.control.ramp.value += 1;
   drive_match_inertia(&drive);
   EXPECT_EQ(drive.inertia.phase, INERTIA_RUN_UP);
-  EXPECT_EQ(drive.inertia.speed0_bpp, drive.position.used.speed_bpp);
+  EXPECT_EQ(drive.inertia.speed0_bpp, drive.position.selected.speed_bpp);
 }
 
 // A large current turns the angle where the map is not known, and other sources have no observer to correct.

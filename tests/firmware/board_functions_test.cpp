@@ -75,7 +75,7 @@ TEST_F(BoardFunctions, NothingIsDoneThatIsNotWired) {
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_FALSE(board.relay);
   EXPECT_FALSE(board.brake);
-  EXPECT_EQ(board.lines_wired, 0);
+  EXPECT_EQ(board.digital_io_wired, 0);
   EXPECT_EQ(board.emergency_wired, 0);
   EXPECT_EQ(interlock_refusal(), FAULT_NONE);
   EXPECT_EQ(interlock_why_off(), FAULT_GATES_OFF);
@@ -88,14 +88,14 @@ TEST_F(BoardFunctions, OutputsAreSetUpOnce) {
   look(3);
   parameters.brake_voltage = raw(400.0, 16);
   look(3);
-  EXPECT_EQ(board.lines_wired, 1);
+  EXPECT_EQ(board.digital_io_wired, 1);
   EXPECT_EQ(board.emergency_wired, 1);
   drive_reset();
   drive.state = DRIVE_READY;
   drive.loading = false;
   parameters.brake_voltage = raw(400.0, 16);
   look();
-  EXPECT_EQ(board.lines_wired, 2) << "the brake resistor alone wants them, too";
+  EXPECT_EQ(board.digital_io_wired, 2) << "the brake resistor alone wants them, too";
 }
 
 TEST_F(BoardFunctions, TheRelayFollowsTheChargeOfTheLink) {

@@ -34,7 +34,7 @@ TEST_F(CanCommand, WithoutAReactionTheBusKeepsTheCommand) {
   EXPECT_TRUE(command.timed_out);
   EXPECT_TRUE(command.commanding);
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 100 << 16) << "the next command goes on with it";
+  EXPECT_EQ(drive.control.command_rpm_q16, 100 << 16) << "the next command goes on with it";
 }
 
 TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {

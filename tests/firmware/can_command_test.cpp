@@ -16,9 +16,9 @@ namespace {
 TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
   make_running_by_bus();
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 100 << 16) << "400 quarters of a revolution per minute";
+  EXPECT_EQ(drive.control.command_rpm_q16, 100 << 16) << "400 quarters of a revolution per minute";
   take(frame(CAN_MODE_RUN, -400));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, -100 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, -100 * 65536);
   take(frame(CAN_MODE_STOP));
   EXPECT_TRUE(drive.request.stop);
 }
@@ -26,14 +26,14 @@ TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
 // Its own time-out watches over the motor, and nobody else lets go of it.
 TEST_F(CanCommand, TheMotorIsItsOwn) {
   make_running_by_bus();
-  EXPECT_TRUE(guard_is_on());
-  EXPECT_FALSE(guard_release());
-  guard_reset();
+  EXPECT_TRUE(comm_watchdog_is_on());
+  EXPECT_FALSE(comm_watchdog_release());
+  comm_watchdog_reset();
   parameters.can_reaction = CAN_REACTION_NONE;
   say(CAN_MODE_OFF, 0, 60);
   say(CAN_MODE_RUN, 0, 60);
   EXPECT_TRUE(drive_is_energised());
-  EXPECT_FALSE(guard_is_on()) << "it does nothing when the bus is silent";
+  EXPECT_FALSE(comm_watchdog_is_on()) << "it does nothing when the bus is silent";
 }
 
 TEST_F(CanCommand, OffOpensTheGates) {
@@ -148,7 +148,7 @@ TEST_F(CanCommand, WhatDoesNotCountDoesNothing) {
   }
   EXPECT_FALSE(drive.request.stop);
   EXPECT_FALSE(drive.request.coast);
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_EQ(drive.control.command_rpm_q16, 0);
   EXPECT_FALSE(command.clear_fault);
 }
 
@@ -184,11 +184,11 @@ TEST_F(CanCommand, ASpeedIsTakenOnlyByADriveThatTheBusRuns) {
   make_running_by_bus();
   drive.state = DRIVE_FAULT;
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "not for after the fault";
+  EXPECT_EQ(drive.control.command_rpm_q16, 0) << "not for after the fault";
   drive.state = DRIVE_RUN;
   command.commanding = false;
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "somebody else's";
+  EXPECT_EQ(drive.control.command_rpm_q16, 0) << "somebody else's";
 }
 
 TEST_F(CanCommand, AStopThatGoesOnDoesNotStopWhatSomebodyElseStarts) {

@@ -7,7 +7,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/can/command.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/states.h"

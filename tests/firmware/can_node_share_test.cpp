@@ -115,7 +115,7 @@ TEST_F(CanNode, AParameterRequestOfAnotherLengthIsNoRequest) {
 TEST_F(CanNode, TheStreamDoesNotPileUp) {
   parameters.can_status_period = parameters.can_telemetry_period = 0;
   const std::uint16_t speed[] = {4};
-  stream_setup(GUARD_BUS, 20, speed, 1);
+  stream_setup(COMM_WATCHDOG_BUS, 20, speed, 1);
   pass(25);
   const std::size_t pieces_of_one = take_sent()[0x481].size();
   ASSERT_GE(pieces_of_one, 1u);

@@ -250,7 +250,7 @@ TEST_F(CanNode, IsOffTheBusUntilTheSavedRateIsKnown) {
 TEST_F(CanNode, SendsTheStreamBehindTheAnswers) {
   parameters.can_status_period = parameters.can_telemetry_period = 0;
   const std::uint16_t speed_and_link[] = {2, 15};
-  stream_setup(GUARD_BUS, 20, speed_and_link, 2);
+  stream_setup(COMM_WATCHDOG_BUS, 20, speed_and_link, 2);
   pass(5);
   take_sent();
   segment_joiner_t joiner;
@@ -264,19 +264,19 @@ TEST_F(CanNode, SendsTheStreamBehindTheAnswers) {
       EXPECT_EQ(joiner.octets[0], EVENT_STREAM);
       events++;
     }
-    EXPECT_EQ(joiner.octets[1] + 1, events + stream_lost(GUARD_BUS)) << "none of them is lost silently";
+    EXPECT_EQ(joiner.octets[1] + 1, events + stream_lost(COMM_WATCHDOG_BUS)) << "none of them is lost silently";
   };
   pass(200);
   hear();
   EXPECT_EQ(events, 10);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 0);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 0);
   board.can_drains = false;  // unplugged
   board.can_room = 2;
   pass(2000);
   board.can_drains = true;
   pass(25);
   hear();
-  EXPECT_GT(stream_lost(GUARD_BUS), 90);
+  EXPECT_GT(stream_lost(COMM_WATCHDOG_BUS), 90);
   stream_reset();
 }
 

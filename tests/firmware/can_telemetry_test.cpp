@@ -77,7 +77,7 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
 
 TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
   drive.state = DRIVE_RUN;
-  drive.position.used.speed_bpp = bpp_of(1500);
+  drive.position.selected.speed_bpp = bpp_of(1500);
   drive.control.ramp.value = bpp_of(-750);
   const hal_can_frame_t frame = status();
   EXPECT_NEAR(value_of(frame, CAN_STATUS_SPEED), 1500.0, half_step(CAN_STATUS_SPEED));
@@ -91,7 +91,7 @@ TEST_F(CanTelemetry, CurrentsVoltagesAndTorqueAreInTheirUnits) {
   drive.control.reference_q20 = {raw(-2.125, 20), raw(9.75, 20)};
   drive.control.command_q16 = {raw(-80.5, 16), raw(120.25, 16)};
   drive.samples.link_q16 = raw(310.5, 16);
-  drive.position.used.load_accel_q8 = 1'000'000;
+  drive.position.selected.load_accel_q8 = 1'000'000;
   const double torque = drive_signals().load_torque / 65536.0;
   ASSERT_GT(torque, 0.01);
   hal_can_frame_t first = can_frame(CAN_TELEMETRY_1, 1), second = can_frame(CAN_TELEMETRY_2, 1);

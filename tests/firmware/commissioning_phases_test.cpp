@@ -27,7 +27,7 @@ class Phases : public Drive {
     drive.model = drive.config.nameplate;
     commissioning.model = drive.model;
     drive.samples.link_q16 = raw(kLink, 16);
-    drive.position.used = {0, 0, 0, 32767};
+    drive.position.selected = {0, 0, 0, 32767};
     limit_ = real(parameters.current_limit, 20);
   }
 
@@ -67,7 +67,7 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
     double off, speed, load;
   };
   for (const Case& c : {Case{0.2, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 200.0}, {-0.1, 2.0, -300.0}}) {
-    drive.position.used = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
+    drive.position.selected = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
     commissioning.target_bam = bam(1.0 + c.off);
     commissioning_hold(&drive);
     const double accel = 3600.0 * c.off - 120.0 * c.speed + c.load;
@@ -75,7 +75,7 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
     EXPECT_NEAR(real(drive.control.reference_q20.q, 20), accel / per_torque() / torque_constant, 2e-3) << c.off;
   }
   for (const double sign : {1.0, -1.0}) {
-    drive.position.used = {0, 0, 0, 32767};
+    drive.position.selected = {0, 0, 0, 32767};
     commissioning.target_bam = bam(sign * 2.0);
     commissioning_hold(&drive);
     EXPECT_NEAR(real(drive.control.reference_q20.q, 20), sign * limit_ / 4.0, 1e-5);
@@ -86,10 +86,10 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
 TEST_F(Phases, TheShaftIsTakenToASixthOfATurn) {
   for (const auto& [from, to] : {std::pair{0.0, 0.0}, {29.0, 0.0}, {31.0, 60.0}, {-80.0, -60.0}, {179.0, 180.0}}) {
     commissioning.tick = 0;
-    drive.position.used.angle_bam = bam(from * kDegree);
+    drive.position.selected.angle_bam = bam(from * kDegree);
     std::uint32_t last = bam(from * kDegree);
     int n = 1;
-    for (; !step(commissioning_turn); ++n) {
+    for (; !step(commissioning_align); ++n) {
       const std::int32_t moved = angle_diff_bam(commissioning.target_bam, last);
       ASSERT_LE(std::fabs(rad(moved)), 0.0201 * kDegree);
       last = commissioning.target_bam;
@@ -171,7 +171,7 @@ TEST_F(Phases, TheStaircaseSumsEachLevel) {
 
 // The shaft follows its reference at once: three stations of a second, ramps between them, and a stop.
 TEST_F(Phases, TheSpinSumsStationsAndRamps) {
-  drive.position.used = {bam(0.4), bpp(5.0), 0, 32767};
+  drive.position.selected = {bam(0.4), bpp(5.0), 0, 32767};
   const std::int32_t high = bpp_of(600);
   drive.control.command_q16 = {raw(-3.0, 16), raw(20.0, 16)};
   drive.control.measured_q20 = {raw(0.25, 20), raw(0.5, 20)};
@@ -182,7 +182,7 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
     EXPECT_FALSE(step(commissioning_spin));
     if (!drive.flags.spins) break;
     ASSERT_LE(std::abs(drive.control.target_bpp - last), high / 3000 + 1) << n;
-    last = drive.control.ramp.value = drive.position.used.speed_bpp = drive.control.target_bpp;
+    last = drive.control.ramp.value = drive.position.selected.speed_bpp = drive.control.target_bpp;
   }
   // ramps of 0.1, 0.2, 0.2 and 0.1 s, settling and stations, 0.3 s at rest
   EXPECT_NEAR(n, 1000 + 2000 + 2000 + 1000 + 3 * 14000 + 3000, 20);
@@ -206,7 +206,7 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   // Held again where it came to rest, until the background level has made its motion of the sums.
   EXPECT_TRUE(commissioning.solve_motion);
   EXPECT_EQ(drive.control.reference_q20.d, 0);
-  EXPECT_EQ(commissioning.target_bam, drive.position.used.angle_bam);
+  EXPECT_EQ(commissioning.target_bam, drive.position.selected.angle_bam);
   EXPECT_FALSE(step(commissioning_spin));
   commissioning.torque_q24 = 123456;
   commissioning.accel_q12 = 654321;
@@ -223,7 +223,7 @@ TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   std::int32_t most = 0;
   for (int n = 0; n < 60000 && (n == 0 || drive.flags.spins); ++n) {
     (void)step(commissioning_spin);
-    drive.control.ramp.value = drive.position.used.speed_bpp = drive.control.target_bpp;
+    drive.control.ramp.value = drive.position.selected.speed_bpp = drive.control.target_bpp;
     most = std::max(most, drive.control.target_bpp);
   }
   EXPECT_NEAR(most, bpp_of(450), 300);
@@ -243,7 +243,7 @@ struct Train {
 
 TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
   const map_t& m = commissioning.map;
-  drive.position.used.angle_bam = bam(0.5);
+  drive.position.selected.angle_bam = bam(0.5);
   std::vector<Train> trains;
   std::vector<std::int32_t> feeds, references;
   std::vector<int> pauses(1, 0), stills;
@@ -254,7 +254,7 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
     const bool paused = n == 0 || m.pause;
     const std::int32_t still = commissioning.unsaturated.count;
     const std::uint32_t held = commissioning.target_bam;
-    if (n > 0) drive.position.used.angle_bam = held;  // the shaft is where it is held
+    if (n > 0) drive.position.selected.angle_bam = held;  // the shaft is where it is held
     drive.control.measured_q20 = {0, drive.control.reference_q20.q};
     windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
     ASSERT_FALSE(step(commissioning_map));
@@ -276,7 +276,7 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
     t.current.push_back(real(drive.control.reference_q20.q, 20));
     t.farthest = std::max(t.farthest, std::fabs(rad(m.position_bam)));
     if (trains.size() == 1) {
-      feeds.push_back(drive.control.feed_q16);
+      feeds.push_back(drive.control.feed_forward_q16);
       references.push_back(drive.control.reference_q20.q);
     }
     if (m.pause) {
@@ -321,7 +321,7 @@ TEST_F(Phases, TheMapSumsItsGroups) {
   int trains[4] = {}, segments[4] = {};
   for (int n = 0; !step(commissioning_map); ++n) {
     ASSERT_LT(n, 2000000);
-    drive.position.used.angle_bam = commissioning.target_bam;
+    drive.position.selected.angle_bam = commissioning.target_bam;
     if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
     drive.control.measured_q20 = {0, drive.control.reference_q20.q};
     windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
@@ -371,7 +371,7 @@ TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
     return drive_commissioning_progress();
   };
   EXPECT_EQ(progress(COMMISSIONING_IDLE), 0);
-  EXPECT_EQ(progress(COMMISSIONING_TURN), 0);
+  EXPECT_EQ(progress(COMMISSIONING_ALIGN), 0);
   EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 8);
   c.staircase.index = 7;
   EXPECT_EQ(progress(COMMISSIONING_STAIRCASE), 8 + 85);

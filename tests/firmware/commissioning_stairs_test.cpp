@@ -37,7 +37,7 @@ TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
     drive.config.dead_time.drop_q16 = raw(drop, 16);
     dead_time_design(&drive.config.dead_time);
     drive.control.measured_q20 = {raw(10.0, 20), 0};
-    drive.position.used.angle_bam = bam(sixths * kPi / 3.0);
+    drive.position.selected.angle_bam = bam(sixths * kPi / 3.0);
     stairs().tick = 600;
     (void)commissioning_climb(&drive);
     ASSERT_EQ(stairs().level[0].periods, 1);

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 #include "sim_host/bench/texts.hpp"
 #include "tests/firmware/fake_hal.hpp"
 
@@ -17,7 +17,7 @@ extern "C" {
 #include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
-#include "firmware/text/words.h"
+#include "firmware/text/catalogue.h"
 }
 
 namespace {
@@ -44,7 +44,7 @@ TEST_F(Commissioning, FollowsTheStart) {
   begin();
   EXPECT_EQ(drive.state, DRIVE_COMMISSION);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
-  EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_TURN);
+  EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_ALIGN);
   EXPECT_TRUE(board.gates_on);
   EXPECT_EQ(parameter_set(2, parameter_get(2)), SET_RUNNING) << "no stopped parameter under way";
 }
@@ -66,7 +66,7 @@ TEST_F(Commissioning, IsNotTurnedByAVector) {
     make_ready();
     asked ? drive_command_commission() : drive_command_start();
     periods(2);
-    EXPECT_EQ(drive.found.phase, asked ? START_AXIS : START_TURN);
+    EXPECT_EQ(drive.found.phase, asked ? START_AXIS : START_IF_RAMP);
   }
 }
 
@@ -80,9 +80,9 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
     make_ready();
     drive_command_start();
     period();
-    ASSERT_EQ(drive.found.phase, listens ? START_LISTEN : START_TURN);
+    ASSERT_EQ(drive.found.phase, listens ? START_LISTEN : START_IF_RAMP);
     start_find_axis(&drive);
-    EXPECT_EQ(drive.found.phase, listens ? START_AXIS : START_TURN);
+    EXPECT_EQ(drive.found.phase, listens ? START_AXIS : START_IF_RAMP);
   }
 }
 
@@ -176,7 +176,7 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   EXPECT_TRUE(drive.request.reload) << "nothing was measured, yet the longer settling has to go";
 }
 
-// Played from a tape, the background's work is done where it was done, and not before.
+// Played from a recording, the background's work is done where it was done, and not before.
 TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
@@ -184,11 +184,11 @@ TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   drive.flags.over = true;
   commissioning.model = drive.config.nameplate;
   drive_parameters_changed();
-  hal_tape_start(TAPE_PLAYS, nullptr);
+  hal_replay_start(REPLAY_PLAYS, nullptr);
   background_step(&drive);
   EXPECT_TRUE(commissioning.evaluate);
   EXPECT_TRUE(drive.request.reload);
-  hal_tape_start(TAPE_OFF, nullptr);
+  hal_replay_start(REPLAY_OFF, nullptr);
   background_step(&drive);
   EXPECT_FALSE(commissioning.evaluate);
   EXPECT_FALSE(drive.request.reload);
@@ -277,10 +277,10 @@ TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
 
 TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   for (int k = VERDICT_USED; k <= VERDICT_DEPENDS; ++k) {
-    EXPECT_GT(bench::words_of(WORDS_VERDICT, static_cast<std::uint16_t>(k)).size(), 10u);
+    EXPECT_GT(bench::words_of(CATALOGUE_VERDICT, static_cast<std::uint16_t>(k)).size(), 10u);
   }
   for (int k = COMMISSIONING_IDLE; k <= COMMISSIONING_EVALUATE; ++k) {
-    EXPECT_GT(bench::words_of(WORDS_PHASE, static_cast<std::uint16_t>(k)).size(), 5u);
+    EXPECT_GT(bench::words_of(CATALOGUE_PHASE, static_cast<std::uint16_t>(k)).size(), 5u);
   }
 }
 
@@ -312,7 +312,7 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   EXPECT_EQ(c.map.tick, 1);
   EXPECT_TRUE(c.map.pause);
   EXPECT_EQ(c.unsaturated.count, 0);
-  const double moved = rad(angle_diff_bam(c.target_bam, drive.position.used.angle_bam));
+  const double moved = rad(angle_diff_bam(c.target_bam, drive.position.selected.angle_bam));
   EXPECT_NEAR(moved, 45.0 * kDegree / 300.0, 1e-6) << "from where the shaft is";
   for (const auto& level : c.map.group) {
     for (const map_group_t& g : level) {

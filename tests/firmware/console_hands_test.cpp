@@ -3,7 +3,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/states.h"
 }
@@ -50,7 +50,7 @@ class ConsoleHands : public Console {
 TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
   for (const char* line : {"start free", "start hold", "commission start free"}) {
     EXPECT_EQ(after(line, kLong), std::string("\r\n") + kTooOld) << line;
-    EXPECT_FALSE(drive.request.start || drive.request.commission || guard_is_on()) << line;
+    EXPECT_FALSE(drive.request.start || drive.request.commission || comm_watchdog_is_on()) << line;
   }
   EXPECT_FALSE(has(after("start free", kShort), "typed over 5 s ago"));
   EXPECT_TRUE(drive.request.start);
@@ -61,7 +61,7 @@ TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
   drive.state = DRIVE_RUN;
   EXPECT_TRUE(has(after("ref 60", kLong), "typed over 5 s ago"));
   EXPECT_TRUE(has(after("look", kLong), "typed over 5 s ago"));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 50 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 50 * 65536);
   EXPECT_TRUE(has(after("ref 0", kLong), "ref 0.00 rpm"));
 }
 
@@ -159,7 +159,7 @@ TEST_F(ConsoleHands, ABreakLeavesWhatWasTypedBehindItDuringALongAnswer) {
   serial_break();
   send("ref 50\r");
   run(40000);
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 50 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 50 * 65536);
   EXPECT_FALSE(has(text, "ref 70"));
 }
 
@@ -175,7 +175,7 @@ TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
   run(100);
   serial_break();
   run(30000);
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_EQ(drive.control.command_rpm_q16, 0);
   EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n");
 }
 
@@ -192,7 +192,7 @@ TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
   EXPECT_TRUE(
       has(command("start free", 100), "free: nobody watches; it runs until 'stop', even without this terminal"));
   EXPECT_TRUE(drive.request.start);
-  EXPECT_FALSE(guard_is_on());
+  EXPECT_FALSE(comm_watchdog_is_on());
   drive.request.start = false;
   drive.state = DRIVE_RUN;
   run(100000);
@@ -319,10 +319,10 @@ TEST_F(ConsoleHands, WhoLeavesMayLetGoOfAMotorThatRuns) {
 TEST_F(ConsoleHands, NobodyLetsGoOfWhatTheBusOrTheSwitchHolds) {
   const std::string others = "the CAN bus or the board's switch holds the motor: nothing changed\r\n";
   drive.state = DRIVE_RUN;
-  guard_begin(GUARD_BUS, 7);
+  comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_EQ(command("start free", 100), others);
-  EXPECT_TRUE(guard_is_on());
-  guard_begin(GUARD_OWN, 0);
+  EXPECT_TRUE(comm_watchdog_is_on());
+  comm_watchdog_begin(COMM_WATCHDOG_OWN, 0);
   EXPECT_EQ(command("start free", 100), others);
   run(50000);
   EXPECT_FALSE(drive.request.stop) << "they do not speak through it";

@@ -33,8 +33,8 @@ class ConsoleLines : public Console {
 
   static void at_work() {
     drive.state = DRIVE_RUN;
-    drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
-    drive.control.wanted_rpm_q16 = raw(-712.3, 16);
+    drive.position.selected.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
+    drive.control.command_rpm_q16 = raw(-712.3, 16);
     drive.samples.link_q16 = raw(287.6, 16);
     drive.control.measured_q20 = {raw(1.234, 20), raw(-5.678, 20)};
   }
@@ -97,14 +97,14 @@ TEST_F(ConsoleLines, WatchIsALineTwiceASecond) {
 TEST_F(ConsoleLines, FaultsWithTheirCircumstances) {
   at_work();
   drive.time_ms = 5067;
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   at_work();
   drive.state = DRIVE_STOP;
   drive.time_ms = 65407;
-  drive_raise(&drive, FAULT_OVERRUN);
+  drive_trip(&drive, FAULT_OVERRUN);
   run(10);  // nobody types yet: it is not told
   const std::string circumstances = " at 600.5 rpm, link 287.6 V, d 1.23 A, q -5.68 A\r\n";
-  const std::string overrun = bench::words_of(WORDS_FAULT, FAULT_OVERRUN);
+  const std::string overrun = bench::words_of(CATALOGUE_FAULT, FAULT_OVERRUN);
   EXPECT_EQ(command("faults"), "2 since power-on, which was 65 s ago; the newest first\r\n65.407 s  " + overrun +
                                    ", stopping" + circumstances + "5.067 s  DC link below link_minimum, running" +
                                    circumstances);
@@ -159,7 +159,7 @@ TEST_F(ConsoleLines, AResultIsWhatWasAndWhatIs) {
   commissioning_service(&drive);
   const std::string rows = command("commission results", 20000);
   EXPECT_EQ(rows.rfind(to(to("stator_resistance", 22) + "0.3200 -> -0.0350 ohm", 50) +
-                           bench::words_of(WORDS_VERDICT, VERDICT_NOT_MEASURED) + "\r\n",
+                           bench::words_of(CATALOGUE_VERDICT, VERDICT_NOT_MEASURED) + "\r\n",
                        0),
             0u)
       << rows;
@@ -208,7 +208,7 @@ TEST_F(ConsoleLines, AnyErrorOfThePortDisturbsALine) {
     send("0\r");
     run(300);
     EXPECT_TRUE(has(text, "the line was disturbed on its way: nothing done, send it again\r\n> ")) << text;
-    EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+    EXPECT_EQ(drive.control.command_rpm_q16, 0);
     EXPECT_EQ(command("ref 0"), "ref 0.00 rpm\r\n") << "the next one is not";
   }
 }
@@ -243,7 +243,7 @@ TEST_F(ConsoleLines, AStoreThatIsBusySaysAtWhat) {
     why = octet_writer(octets, 100);
     EXPECT_EQ(action(&why), ANSWER_BUSY) << name;
     EXPECT_EQ(std::string(octets, octets + why.count),
-              "the store is busy: " + bench::words_of(WORDS_STORE, static_cast<std::uint16_t>(store_state())));
+              "the store is busy: " + bench::words_of(CATALOGUE_STORE, static_cast<std::uint16_t>(store_state())));
   }
 }
 

@@ -26,7 +26,7 @@ TEST_F(Console, StatusAndFaults) {
   EXPECT_EQ(command("reset"), "no fault is latched\r\n");
   drive.state = DRIVE_RUN;
   drive.time_ms += 12000;
-  drive_raise(&drive, FAULT_SYNCHRONISM);
+  drive_trip(&drive, FAULT_SYNCHRONISM);
   const std::string faults = command("faults");
   EXPECT_TRUE(has(faults, "1 since power-on, which was 12 s ago")) << faults;
   EXPECT_TRUE(has(faults, " s  loss of synchronism, running at 0.0 rpm, link ")) << faults;
@@ -74,16 +74,16 @@ TEST_F(Console, Signals) {
   const std::string all = command("signals", 10000);
   for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, bench::text_of(signal_info(k)->name)));
   drive.state = DRIVE_RUN;
-  drive.position.used.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
+  drive.position.selected.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
   EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
 }
 
 // With the power stage off the estimators go on, and what they make of nothing is no speed.
 TEST_F(Console, WhatIsUnknownIsSaidInWords) {
   drive.state = DRIVE_READY;
-  drive.position.used.speed_bpp = bpp_of(25);
+  drive.position.selected.speed_bpp = bpp_of(25);
   drive.control.measured_q20 = {1 << 20, -5 * (1 << 20)};
-  drive.control.wanted_rpm_q16 = 600 * 65536;
+  drive.control.command_rpm_q16 = 600 * 65536;
   drive.samples.count = 1;
   drive.samples.windows[0].current_q20 = {raw(0.02, 20), raw(-0.0346, 20)};
   std::string said = command("status", 3000);
@@ -96,7 +96,7 @@ TEST_F(Console, WhatIsUnknownIsSaidInWords) {
   EXPECT_TRUE(has(command("watch speed current_q", 300), "\nspeed unknown   current_q unknown\r\n"));
   EXPECT_TRUE(has(command("get angle"), "angle                 unknown           electrical angle"));
   EXPECT_TRUE(has(command("get speed_known"), "speed_known           0 "));
-  drive_raise(&drive, FAULT_OFFSET);
+  drive_trip(&drive, FAULT_OFFSET);
   said = command("faults");
   EXPECT_TRUE(has(said, "current offset implausible, ready, speed unknown, link 0.0 V\r\n")) << said;
 }
@@ -148,16 +148,16 @@ TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
 
 TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
   drive.state = DRIVE_RUN;
-  drive_raise(&drive, FAULT_OPEN_PHASE);
+  drive_trip(&drive, FAULT_OPEN_PHASE);
   drive.found.wiring = WIRING_OPEN_B;
   const std::string named = command("status");
-  EXPECT_TRUE(has(named, ": " + bench::words_of(WORDS_WIRING, WIRING_OPEN_B) + ". ")) << named;
+  EXPECT_TRUE(has(named, ": " + bench::words_of(CATALOGUE_WIRING, WIRING_OPEN_B) + ". ")) << named;
   drive.found.wiring = WIRING_GOOD;
   const std::string plain = command("status");
-  EXPECT_FALSE(has(plain, bench::words_of(WORDS_WIRING, WIRING_GOOD))) << plain;
+  EXPECT_FALSE(has(plain, bench::words_of(CATALOGUE_WIRING, WIRING_GOOD))) << plain;
   drive.found.wiring = WIRING_OPEN_B;
   drive.fault = FAULT_SYNCHRONISM;
-  EXPECT_FALSE(has(command("status"), bench::words_of(WORDS_WIRING, WIRING_OPEN_B))) << "found by an earlier start";
+  EXPECT_FALSE(has(command("status"), bench::words_of(CATALOGUE_WIRING, WIRING_OPEN_B))) << "found by an earlier start";
 }
 
 TEST_F(Console, StatusSaysThatTheLastSaveFailed) {

@@ -114,7 +114,7 @@ TEST_F(Refusals, AStartThatEndsInAFaultIsOne) {
   send("start free\r");
   run(100);
   EXPECT_EQ(feature_status.refusals, before) << text;
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   run(100);
   EXPECT_EQ(feature_status.refusals, before + 1) << text;
 }

@@ -50,9 +50,9 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(command("scope arm"), "armed"));
   drive.state = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
-    drive.position.used.speed_bpp = bpp_of(k);
+    drive.position.selected.speed_bpp = bpp_of(k);
     drive.control.measured_q20.q = -5 * (1 << 20);
-    drive.position.used.angle_bam = 1u << 30;
+    drive.position.selected.angle_bam = 1u << 30;
     drive.time_ms = static_cast<std::uint32_t>(k);
     scope_step();
   }

@@ -85,7 +85,7 @@ TEST_F(Console, NumbersAreOneRule) {
             "1,000 is not a number (point, no comma) in rpm up to speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref 1e9"), "1e9 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref -40000"), "-40000 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 1500 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 1500 * 65536);
 }
 
 TEST_F(Console, DidYouMean) {
@@ -194,27 +194,27 @@ TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
 
 TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
   drive.state = DRIVE_RUN;
-  drive_raise(&drive, FAULT_STOP);
+  drive_trip(&drive, FAULT_STOP);
   run(100);
   EXPECT_EQ(text, "") << "nobody is there";
   send("sta");
   run(100);
   text.clear();
   drive.state = DRIVE_RUN;
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_TRUE(has(text, "! fault: DC link below link_minimum\r\n")) << text;
   EXPECT_TRUE(has(text, "\r> sta")) << "what has been typed is still there";
   (void)ask(REQUEST_STATUS);
   text.clear();
   drive.state = DRIVE_RUN;
-  drive_raise(&drive, FAULT_LINK_HIGH);
+  drive_trip(&drive, FAULT_LINK_HIGH);
   run(300);
   EXPECT_TRUE(has(text, "! fault: DC link above")) << "a terminal that keeps the guard alive is still one: " << text;
   (void)ask(REQUEST_IDENTITY);
   text.clear();
   drive.state = DRIVE_RUN;
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_EQ(text, "") << "a machine is there";
 }
@@ -222,7 +222,7 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
 TEST_F(Console, AFaultThatIsForgottenIsNotTold) {
   send("x");
   drive.state = DRIVE_RUN;
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   ASSERT_TRUE(has(text, "! fault"));
   text.clear();
@@ -286,7 +286,7 @@ TEST_F(Console, WhatIsTypedAheadIsNotLost) {
   send("list\rversion\rref 70\r");
   run(30000);
   EXPECT_TRUE(has(text, "protocol 1"));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 70 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 70 * 65536);
 }
 
 TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
@@ -298,7 +298,7 @@ TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
   EXPECT_TRUE(drive.request.stop);
   run(30000);
   EXPECT_TRUE(has(text, "the answer and what was typed ahead end here\r\nstopping\r\n> "));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0) << "and that was said";
+  EXPECT_EQ(drive.control.command_rpm_q16, 0) << "and that was said";
 }
 
 // A terminal that ends its lines with a line feed stops the motor as soon as any.
@@ -322,7 +322,7 @@ TEST_F(Console, MoreThanCanBeKeptEndsTheAnswerAndIsNotLostEither) {
   send(lines);
   run(60000);
   EXPECT_TRUE(has(text, "more input than can be kept"));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 70 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 70 * 65536);
 }
 
 TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
@@ -348,7 +348,7 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
       "ref \xC3\xA4"
       "50\r");
   run(300);
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_EQ(drive.control.command_rpm_q16, 0);
   send("st\xFFop\r");
   run(300);
   EXPECT_TRUE(drive.request.stop) << "but to stop is always right";
@@ -362,7 +362,7 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
 
 TEST_F(Console, ALineThatIsTooLongIsRefused) {
   EXPECT_TRUE(has(command("ref 50" + std::string(80, ' ')), "at most 80 characters: nothing done"));
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_EQ(drive.control.command_rpm_q16, 0);
 }
 
 // Lines never come out in pieces: whatever the room, whole lines or none.

@@ -68,8 +68,8 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_EQ(c.modulator.extended.window_min_ticks, 1800);
   EXPECT_EQ(c.modulator.extended.window_max_ticks, 3000);
   EXPECT_EQ(c.modulator.sampling.settle_ticks, 1050);
-  EXPECT_EQ(c.dead_time.blocked_ticks, 230);
-  EXPECT_EQ(c.dead_time.released_ticks, 60);
+  EXPECT_EQ(c.dead_time.turn_on_ticks, 230);
+  EXPECT_EQ(c.dead_time.turn_off_ticks, 60);
   EXPECT_NEAR(real(c.slopes.amps_per_code_q30, 30), 20.0 / 2048.0, 1e-9);
   EXPECT_NEAR(real(c.volts_per_code_q16, 16), 450.0 / 4096.0, 1.0 / 65536.0);
   EXPECT_NEAR(real(c.avv.bandwidth_long_q30, 30), 200.0 * kPeriod, 1e-8);
@@ -78,7 +78,7 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.zvv.ki_q40, 40) / (4.0 * kPeriod * kPeriod), 1.0, 1e-4);
   EXPECT_NEAR(real(c.observer.weight_q8, 8) * 1.6e9 / std::ldexp(1.0, 32), 100.0, 0.01);  // 100 mA
   EXPECT_NEAR(real(c.observer.residual_limit_q20, 20), 19.2, 0.01);
-  EXPECT_NEAR(real(c.adapt_share_q30, 30), TURNS * kPeriod / 150e-3, 1e-8);
+  EXPECT_NEAR(real(c.adapt_share_q30, 30), SCHEDULE_SLOTS * kPeriod / 150e-3, 1e-8);
   const double newton_metres =
       m.inertia / m.pole_pairs * kTurn / std::ldexp(kPeriod * kPeriod, 32);  // per bpp a period
   EXPECT_NEAR(real(c.nameplate.torque_per_accel_q24, 24) / (256.0 * newton_metres), 1.0, 1e-3);
@@ -231,7 +231,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
     ASSERT_GE(c.nameplate.yd_q30, c.nameplate.yq_q30);
     ASSERT_LT(c.blend.low_bpp, c.blend.high_bpp);
     ASSERT_GE(c.avv.bandwidth_long_q30, c.avv.bandwidth_short_q30);
-    ASSERT_GE(c.dead_time.blocked_ticks, c.dead_time.released_ticks);
+    ASSERT_GE(c.dead_time.turn_on_ticks, c.dead_time.turn_off_ticks);
     ASSERT_GE(c.ramp_step_bpp, 0);
     ASSERT_GT(c.observer.weight_q8, 0);
     ASSERT_GT(c.observer.load_noise_q20, 0);

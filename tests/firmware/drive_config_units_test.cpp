@@ -101,8 +101,8 @@ TEST_F(Units, WindowsAndEdges) {
   EXPECT_EQ(c.modulator.extended.zero_ticks, 1234);
   EXPECT_EQ(c.modulator.sampling.settle_ticks, 987);
   EXPECT_EQ(c.modulator.sampling.burst_ticks, static_cast<int>(HAL_ADC_BURST_TICKS));
-  EXPECT_EQ(c.dead_time.blocked_ticks, 168);
-  EXPECT_EQ(c.dead_time.released_ticks, 73);
+  EXPECT_EQ(c.dead_time.turn_on_ticks, 168);
+  EXPECT_EQ(c.dead_time.turn_off_ticks, 73);
   EXPECT_EQ(c.dead_time.band_q20, raw(0.3, 20));
   EXPECT_NEAR(real(c.dead_time.edge_band_q20, 20), 0.8, 1e-6) << "half an ampere of the ripple on top";
   EXPECT_EQ(c.dead_time.drop_q16, raw(1.25, 16));
@@ -175,11 +175,11 @@ TEST_F(Units, TheTurnedStart) {
   parameters.if_speed = raw(270.0, 8);
   parameters.if_time = 1234;
   const drive_config_t& c = made();
-  EXPECT_EQ(c.turn.current_q20, parameters.if_current);
-  EXPECT_EQ(c.turn.align_periods, 3210);
-  EXPECT_NEAR(c.turn.step_bpp, 0.07 * kBppPerRpm, 1.0);
-  expect_near_share(c.turn.speed_bpp, 270.0 * kBppPerRpm, 1e-4);
-  EXPECT_EQ(c.turn.wait_periods, 12340);
+  EXPECT_EQ(c.if_start.current_q20, parameters.if_current);
+  EXPECT_EQ(c.if_start.align_periods, 3210);
+  EXPECT_NEAR(c.if_start.step_bpp, 0.07 * kBppPerRpm, 1.0);
+  expect_near_share(c.if_start.speed_bpp, 270.0 * kBppPerRpm, 1e-4);
+  EXPECT_EQ(c.if_start.wait_periods, 12340);
 }
 
 // A rotor so light that it swings about the vector faster than can be damped matters to who turns one.
@@ -282,8 +282,8 @@ TEST_F(Units, SynchronismAndWhatIsLearnt) {
   EXPECT_EQ(c.synchronism.floor_q16, parameters.synchronism_floor);
   EXPECT_NEAR(real(c.synchronism.share_q15, 15), 0.45, 1e-4);
   EXPECT_EQ(c.synchronism.bad_periods, 370);
-  expect_near_share(real(c.adapt_share_q30, 30), TURNS * kPeriod / 0.27, 1e-5);
-  expect_near_share(real(c.drift_share_q30, 30), TURNS * kPeriod / 1.3, 1e-5);
+  expect_near_share(real(c.adapt_share_q30, 30), SCHEDULE_SLOTS * kPeriod / 0.27, 1e-5);
+  expect_near_share(real(c.drift_share_q30, 30), SCHEDULE_SLOTS * kPeriod / 1.3, 1e-5);
   parameters.adapt_time = parameters.drift_time = raw(29999.0, 8);
   EXPECT_GT(made().adapt_share_q30, 0);
   EXPECT_GT(made().drift_share_q30, 0);
@@ -365,12 +365,12 @@ TEST_F(Units, TheStatorFlux) {
 // A phase without current makes its voltage itself within the dead time; where there is none all voltages are known.
 TEST_F(Units, WithoutDeadTimeTheFluxSeesEveryPhase) {
   parameters.position_source = POSITION_FLUX_CONV;
-  EXPECT_EQ(made().flux.blind_q20, made().dead_time.band_q20);
+  EXPECT_EQ(made().flux.unknown_voltage_q20, made().dead_time.band_q20);
   parameters.turn_on_delay = parameters.turn_off_delay = 0;
   parameters.dead_time = raw(0.01, 16);
-  EXPECT_GT(made().flux.blind_q20, 0);
+  EXPECT_GT(made().flux.unknown_voltage_q20, 0);
   parameters.dead_time = 0;
-  EXPECT_EQ(made().flux.blind_q20, 0);
+  EXPECT_EQ(made().flux.unknown_voltage_q20, 0);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   interlock_share_q15 = 100;
   ::board.relay = true;
   selftest.failed = 1;
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
 
   drive_reset();
   EXPECT_EQ(drive.state, DRIVE_BOOT);
@@ -44,7 +44,8 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   EXPECT_EQ(parameters.current_limit, limit) << "the values are the table's";
   EXPECT_EQ(drive.control.current_limit_q20, parameters.current_limit);
   EXPECT_TRUE(drive.config_valid && drive.control.speed_ready);
-  for (const std::int32_t middle : {drive.rest_a_q8, drive.rest_b_q8, drive.trim.offset_a_q8, drive.trim.offset_b_q8}) {
+  for (const std::int32_t middle :
+       {drive.zero_current_a_q8, drive.zero_current_b_q8, drive.trim.offset_a_q8, drive.trim.offset_b_q8}) {
     EXPECT_EQ(middle, 2048 * 256);
   }
   const slopes_scale_t scale = slopes_scale(&drive.config.slopes, &drive.trim);
@@ -53,8 +54,8 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   EXPECT_NEAR(real(drive.model.emf_q16, 16), motor.flux / kPeriod, 1.0);
   const std::int32_t per_nm_q20 = q_over(1 << 20, drive.control.per_torque_constant, 24);
   EXPECT_NEAR(real(per_nm_q20, 20), 1.0 / motor.torque_constant(), 1e-3);
-  EXPECT_EQ(drive.position.used.angle_bam, 0u);
-  EXPECT_EQ(drive.position.used.speed_bpp, 0);
+  EXPECT_EQ(drive.position.selected.angle_bam, 0u);
+  EXPECT_EQ(drive.position.selected.speed_bpp, 0);
 }
 
 }  // namespace

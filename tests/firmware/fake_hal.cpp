@@ -4,10 +4,10 @@
 
 #include "hal/hal_can.h"
 #include "hal/hal_clock.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_irq.h"
-#include "hal/hal_lines.h"
 #include "hal/hal_nvm.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_safety.h"
@@ -62,13 +62,13 @@ void hal_adc_measure_reference(std::uint16_t* ground, std::uint16_t* reference) 
   *reference = board.reference;
 }
 
-void hal_lines_init(void) { board.lines_wired++; }
-void hal_lines_relay(bool on) { board.relay = on; }
-void hal_lines_brake(bool on) { board.brake = on; }
-void hal_lines_wire_emergency(void) { board.emergency_wired++; }
-bool hal_lines_emergency(void) { return board.emergency; }
-bool hal_lines_run(void) { return board.run; }
-bool hal_lines_gates_pass(void) { return board.gates_pass; }
+void hal_digital_io_init(void) { board.digital_io_wired++; }
+void hal_digital_io_relay(bool on) { board.relay = on; }
+void hal_digital_io_brake(bool on) { board.brake = on; }
+void hal_digital_io_wire_emergency(void) { board.emergency_wired++; }
+bool hal_digital_io_emergency(void) { return board.emergency; }
+bool hal_digital_io_run(void) { return board.run; }
+bool hal_digital_io_gates_pass(void) { return board.gates_pass; }
 
 bool hal_selftest_ram(std::uint16_t pair) { return pair != board.bad_pair; }
 std::uint16_t hal_selftest_watchdog_count(void) { return board.watchdog_count; }
@@ -86,13 +86,13 @@ void hal_adc_read_window(hal_adc_window_t* window) {
   board.adc.pop_front();
 }
 
-bool hal_slices_begin(std::uint16_t ticks) {
+bool hal_sampling_timer_begin(std::uint16_t ticks) {
   board.slice_ticks = ticks;
   return true;
 }
-void hal_slices_end(void) { board.slice_ticks = 0; }
-void hal_slice_read(hal_slice_t* slice) { *slice = board.slice; }
-void hal_slice_set_legs(std::uint16_t state) { board.legs = state; }
+void hal_sampling_timer_end(void) { board.slice_ticks = 0; }
+void hal_sampling_timer_read(hal_timed_samples_t* slice) { *slice = board.slice; }
+void hal_sampling_timer_set_legs(std::uint16_t state) { board.legs = state; }
 
 void hal_irq_install(hal_isr_t control, hal_isr_t window) {
   board.control_interrupt = control;

@@ -15,8 +15,8 @@
 #include "hal/hal_can.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_sampling_timer.h"
 #include "hal/hal_sci.h"
-#include "hal/hal_slices.h"
 #include "tests/control/quantities.hpp"
 
 extern "C" {
@@ -44,14 +44,14 @@ struct FakeBoard {
   int gates_off_calls = 0, frames = 0, enable_toggles = 0;
   hal_pwm_frame_t frame = {};
   std::deque<hal_adc_window_t> adc;  // what hal_adc_read_window gives next
-  // What the drivers do with a tape, where a test wants it (hil_host.hpp). True when it has played.
+  // What the drivers do with a recording, where a test wants it (hil_host.hpp). True when it has played.
   bool (*plays_frame)(const hal_pwm_frame_t& frame, bool* in_time) = nullptr;
   bool (*plays_window)(hal_adc_window_t* window) = nullptr;
   std::uint32_t encoder = 0, encoder_counts = 0;
   std::uint16_t dead_band = 0;  // as last set
   bool dead_band_fits = true;
   bool relay = false, brake = false, emergency = false, gates_pass = false, run = false;
-  int lines_wired = 0, emergency_wired = 0;
+  int digital_io_wired = 0, emergency_wired = 0;
   std::uint16_t unexpected_interrupts = 0;
   hal_isr_t control_interrupt = nullptr, window_interrupt = nullptr;  // installed
   bool interrupts_enabled = false;
@@ -65,7 +65,7 @@ struct FakeBoard {
   std::uint16_t ground = 0, reference = 2048;
   std::uint16_t slice_ticks = 0;  // 0: pulses
   std::uint16_t legs = 0;
-  hal_slice_t slice = {2048, 2048, 2731};           // no current, 300 V
+  hal_timed_samples_t slice = {2048, 2048, 2731};   // no current, 300 V
   std::deque<std::uint16_t> serial_in, serial_out;  // octets for the firmware, and from it
   int serial_break = -1;                            // a break came behind so many of them; -1: none
   std::uint16_t serial_room = 512;                  // of the transmit ring, taken octets deducted

@@ -16,18 +16,18 @@ extern "C" {
 
 namespace stillspin::test {
 
-/// From now on the board's pulses and windows are played while a tape plays, as the drivers do it.
+/// From now on the board's pulses and windows are played while a recording is played, as the drivers do it.
 inline void let_tapes_play() {
   board.plays_frame = [](const hal_pwm_frame_t& frame, bool* in_time) {
-    tape_tell(TAPE_FRAME, frame.rise_tick, HAL_PWM_LEGS);
-    tape_call();
-    if (tape_plays()) *in_time = tape_take() != 0;
-    return tape_plays();
+    replay_output(REPLAY_FRAME, frame.rise_tick, HAL_PWM_LEGS);
+    replay_call();
+    if (replay_plays()) *in_time = replay_take() != 0;
+    return replay_plays();
   };
   board.plays_window = [](hal_adc_window_t* window) {
-    std::uint16_t results[TAPE_RESULTS];
-    if (!tape_plays()) return false;
-    tape_take_results(results, TAPE_RESULTS);
+    std::uint16_t results[REPLAY_RESULTS];
+    if (!replay_plays()) return false;
+    replay_take_results(results, REPLAY_RESULTS);
     *window = {results[0], results[1], results[2], results[3], results[4], results[5]};
     return true;
   };
@@ -36,9 +36,9 @@ inline void let_tapes_play() {
 /// What a step brings.
 struct HilPeriod {
   using Words = std::vector<std::uint16_t>;
-  std::vector<tape_window_t> windows;
+  std::vector<replay_window_t> windows;
   Words inputs, works;
-  std::uint16_t results = TAPE_RESULTS;  // words of a window that are told
+  std::uint16_t results = REPLAY_RESULTS;  // words of a window that are told
 };
 
 struct HilAnswer {
@@ -74,7 +74,7 @@ class HilHost {
     a.sequence = take_u16(&r);
     delta_take(&r, before_.shape, before_.shape, HIL_ANSWER_SHAPE);
     a.torn = before_.shape[0];
-    const std::uint16_t count = std::min<std::uint16_t>(before_.shape[1], TAPE_OUTPUTS);
+    const std::uint16_t count = std::min<std::uint16_t>(before_.shape[1], REPLAY_OUTPUTS);
     delta_take(&r, before_.outputs, before_.outputs, count);
     a.outputs.assign(before_.outputs, before_.outputs + count);
     a.crc = take_u32(&r);
@@ -93,8 +93,8 @@ class HilHost {
   }
 
   std::uint16_t sequence_ = 0;
-  std::uint16_t shape_[HIL_STEP_SHAPE] = {}, works_[TAPE_WORKS] = {}, inputs_[TAPE_INPUTS] = {};
-  std::uint16_t windows_[TAPE_WINDOWS][HIL_WINDOW_WORDS] = {};
+  std::uint16_t shape_[HIL_STEP_SHAPE] = {}, works_[REPLAY_WORKS] = {}, inputs_[REPLAY_INPUTS] = {};
+  std::uint16_t windows_[REPLAY_WINDOWS][HIL_WINDOW_WORDS] = {};
   hil_answer_t before_ = {};
 };
 

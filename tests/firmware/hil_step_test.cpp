@@ -53,13 +53,13 @@ class Stepping : public Drive {
     return host.read(answer);
   }
 
-  static tape_window_t taped(std::uint16_t call, const hal_adc_window_t& w) {
+  static replay_window_t recorded_window(std::uint16_t call, const hal_adc_window_t& w) {
     return {call, {w.start_a, w.start_b, w.end_a, w.end_b, w.link, w.aux}};
   }
   static HilPeriod empty() { return {{}, {kInTime}, {}}; }
 
   static void expect_on_tape(const HilPeriod& told) {
-    const tape_period_t& p = hal_tape.period;
+    const replay_period_t& p = hal_replay.period;
     EXPECT_EQ(Words(p.inputs, p.inputs + p.input_count), told.inputs);
     EXPECT_EQ(Words(p.works, p.works + p.work_count), told.works);
     ASSERT_EQ(p.window_count, told.windows.size());
@@ -77,11 +77,11 @@ class Stepping : public Drive {
   }
   HilPeriod any_period() {
     HilPeriod p;
-    p.inputs = any_words(TAPE_INPUTS);
-    p.works = any_words(TAPE_WORKS);
-    p.results = static_cast<std::uint16_t>(random() % (TAPE_RESULTS + 1));
-    p.windows.resize(random() % (TAPE_WINDOWS + 1));
-    for (tape_window_t& w : p.windows) {
+    p.inputs = any_words(REPLAY_INPUTS);
+    p.works = any_words(REPLAY_WORKS);
+    p.results = static_cast<std::uint16_t>(random() % (REPLAY_RESULTS + 1));
+    p.windows.resize(random() % (REPLAY_WINDOWS + 1));
+    for (replay_window_t& w : p.windows) {
       w.call = any();
       for (auto& word : w.results) word = any();
     }
@@ -90,11 +90,11 @@ class Stepping : public Drive {
   /// As much as there may be.
   HilPeriod fullest() {
     HilPeriod p = any_period();
-    p.inputs.resize(TAPE_INPUTS, 0x1234);
-    p.works.resize(TAPE_WORKS, 0x4321);
-    p.windows.resize(TAPE_WINDOWS);
-    p.results = TAPE_RESULTS;
-    for (tape_window_t& w : p.windows) w = {any(), {any(), any(), any(), any(), any(), any()}};
+    p.inputs.resize(REPLAY_INPUTS, 0x1234);
+    p.works.resize(REPLAY_WORKS, 0x4321);
+    p.windows.resize(REPLAY_WINDOWS);
+    p.results = REPLAY_RESULTS;
+    for (replay_window_t& w : p.windows) w = {any(), {any(), any(), any(), any(), any(), any()}};
     return p;
   }
 
@@ -131,14 +131,14 @@ TEST_F(Stepping, ADriveDoesWhatItDoesByItself) {
   enter();
   for (std::size_t n = 0; n < recorded.size(); ++n) {
     HilPeriod told = empty();
-    for (const hal_adc_window_t& w : recorded[n].windows) told.windows.push_back(taped(0, w));
+    for (const hal_adc_window_t& w : recorded[n].windows) told.windows.push_back(recorded_window(0, w));
     const HilAnswer a = step(told);
     const std::uint16_t* rise = recorded[n].frame.rise_tick;
     ASSERT_TRUE(a.fits);
     ASSERT_EQ(a.sequence, n);
     ASSERT_EQ(a.torn, 0) << n;
     ASSERT_EQ(a.crc, recorded[n].crc) << n;
-    ASSERT_EQ(a.outputs, Words({TAPE_FRAME, rise[0], rise[1], rise[2]})) << n;
+    ASSERT_EQ(a.outputs, Words({REPLAY_FRAME, rise[0], rise[1], rise[2]})) << n;
   }
 }
 
@@ -149,8 +149,8 @@ TEST_F(Stepping, WhatIsToldStandsOnTheTape) {
     ASSERT_NO_FATAL_FAILURE(expect_on_tape(told)) << n;
     ASSERT_TRUE(a.fits) << n;
     ASSERT_EQ(a.sequence, n);
-    ASSERT_EQ(a.torn, hal_tape.torn ? 1 : 0) << n;
-    ASSERT_EQ(a.outputs, Words(hal_tape.period.outputs, hal_tape.period.outputs + hal_tape.period.output_count));
+    ASSERT_EQ(a.torn, hal_replay.torn ? 1 : 0) << n;
+    ASSERT_EQ(a.outputs, Words(hal_replay.period.outputs, hal_replay.period.outputs + hal_replay.period.output_count));
     ASSERT_EQ(a.crc, hil_signals_crc());
     ASSERT_EQ(hil_expected(), n + 1);
   }
@@ -162,7 +162,7 @@ TEST_F(Stepping, ALoopBeginsWithZerosWhateverWasBefore) {
   (void)step(fullest());
   enter();
   EXPECT_EQ(hil_expected(), 0);
-  HilPeriod told = {std::vector<tape_window_t>(TAPE_WINDOWS), Words(TAPE_INPUTS), Words(TAPE_WORKS)};
+  HilPeriod told = {std::vector<replay_window_t>(REPLAY_WINDOWS), Words(REPLAY_INPUTS), Words(REPLAY_WORKS)};
   const HilAnswer a = step(told);
   EXPECT_TRUE(a.fits);
   EXPECT_EQ(a.torn, 1);
@@ -200,14 +200,14 @@ TEST_F(Stepping, WorkIsDoneOnItsSideOfTheStep) {
     commissioning.evaluate = true;
     drive.request.reload = true;
     HilPeriod p = empty();
-    p.works = {static_cast<std::uint16_t>(TAPE_RELOADED | side), static_cast<std::uint16_t>(TAPE_EVALUATED | side),
-               static_cast<std::uint16_t>(TAPE_RELOADED | side)};
+    p.works = {static_cast<std::uint16_t>(REPLAY_RELOADED | side), static_cast<std::uint16_t>(REPLAY_EVALUATED | side),
+               static_cast<std::uint16_t>(REPLAY_RELOADED | side)};
     EXPECT_EQ(step(p).torn, 0) << side;
     EXPECT_FALSE(commissioning.evaluate || drive.request.reload) << "an evaluation changes parameters";
   }
   drive.request.reload = true;
   EXPECT_EQ(step(empty()).torn, 0);
-  EXPECT_TRUE(drive.request.reload) << "none without a word on the tape";
+  EXPECT_TRUE(drive.request.reload) << "none without a word in the recording";
 }
 
 // Windows are played where they came: before the step, in the call that hands the pulses over, behind it.
@@ -216,7 +216,7 @@ TEST_F(Stepping, WindowsComeWhereTheyCame) {
     (void)step(empty());
     (void)step(empty());
     HilPeriod p = empty();
-    for (const std::uint16_t call : calls) p.windows.push_back(taped(call, still_window()));
+    for (const std::uint16_t call : calls) p.windows.push_back(recorded_window(call, still_window()));
     EXPECT_EQ(step(p).torn, 0);
     const bool in_this = drive.supervision.missing == 0;
     EXPECT_EQ(step(empty()).torn, 0);
@@ -226,8 +226,8 @@ TEST_F(Stepping, WindowsComeWhereTheyCame) {
   (void)step(empty());
   ASSERT_EQ(drive.modulation.sampled.window_count, 2) << "as many make a period whole";
   EXPECT_EQ(seen_by_steps({0, 0}), std::make_pair(true, false));
-  EXPECT_EQ(seen_by_steps({1, TAPE_BEHIND}), std::make_pair(false, true));
-  EXPECT_EQ(seen_by_steps({0, TAPE_BEHIND}), std::make_pair(false, false));
+  EXPECT_EQ(seen_by_steps({1, REPLAY_BEHIND}), std::make_pair(false, true));
+  EXPECT_EQ(seen_by_steps({0, REPLAY_BEHIND}), std::make_pair(false, false));
 }
 
 // A host with another compiler has to find the same number.

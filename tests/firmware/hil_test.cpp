@@ -24,7 +24,7 @@ class HostInTheLoop : public Requests {
 
   /// A step of such a shape that tells nothing new against zeros: windows, words of a result, inputs, works.
   static Octets step(std::uint16_t sequence, const Octets& shape) {
-    const Octets zeros(TAPE_INPUTS + 1);
+    const Octets zeros(REPLAY_INPUTS + 1);
     Octets octets(RECORD_BODY_MAX);
     octet_writer_t w = octet_writer(octets.data(), RECORD_BODY_MAX);
     put_u16(&w, sequence);
@@ -71,7 +71,7 @@ TEST_F(HostInTheLoop, NothingIsSteppedBeforeItIsLetIn) {
 
 // At first a drive of the board's own may have been there, then one that was stepped.
 TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
-  const Octets longest = {TAPE_WINDOWS, TAPE_RESULTS, TAPE_INPUTS, TAPE_WORKS};
+  const Octets longest = {REPLAY_WINDOWS, REPLAY_RESULTS, REPLAY_INPUTS, REPLAY_WORKS};
   for (int entry = 0; entry < 2; ++entry) {
     ASSERT_EQ(set(86, 500 * 256).status(), OK);
     board.frame = {};
@@ -86,7 +86,7 @@ TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
       EXPECT_EQ(board.frame.burst_end_tick[k], HAL_PWM_NONE);
     }
     EXPECT_TRUE(board.interrupts_enabled);
-    EXPECT_TRUE(tape_plays());
+    EXPECT_TRUE(replay_plays());
     EXPECT_EQ(drive.state, DRIVE_BOOT);
     EXPECT_EQ(parameter_get(86), 3000 * 256);
     EXPECT_EQ(hil_expected(), 0);
@@ -94,7 +94,7 @@ TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
     ASSERT_NE(drive.state, DRIVE_BOOT) << "it is stepped";
   }
   hil_reset();
-  EXPECT_FALSE(feature_status.stepped || tape_plays()) << "only power-on ends it";
+  EXPECT_FALSE(feature_status.stepped || replay_plays()) << "only power-on ends it";
 }
 
 // Of the board's own interrupts the serial port and the watchdog live on. The drive is not theirs.
@@ -146,7 +146,7 @@ TEST_F(HostInTheLoop, AHostThatIsGoneResetsTheBoard) {
 }
 
 TEST_F(HostInTheLoop, AStepIsNoLongerThanItsTape) {
-  const Octets longest = {TAPE_WINDOWS, TAPE_RESULTS, TAPE_INPUTS, TAPE_WORKS};
+  const Octets longest = {REPLAY_WINDOWS, REPLAY_RESULTS, REPLAY_INPUTS, REPLAY_WORKS};
   ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
   for (std::size_t k = 0; k < longest.size(); ++k) {
     Octets shape = longest;

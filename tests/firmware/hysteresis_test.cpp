@@ -214,8 +214,8 @@ TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
   ::hysteresis.offset_a_q8 = raw(2048.0, 8);
   for (const int tick : {0, 1234, 9999, 12000}) {
     board.pwm_tick = static_cast<std::uint16_t>(tick);
-    drive.position.used.angle_bam = bam(begin);
-    drive.position.used.speed_bpp = raw(speed / kTurn, 32);
+    drive.position.selected.angle_bam = bam(begin);
+    drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
     parameters.slice_time = raw(tick == 0 ? 5.0 : 10.0, 16);
     const int slices = tick == 0 ? 20 : 10;
     ASSERT_TRUE(hysteresis_control.step(&drive));
@@ -241,8 +241,8 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   board.slice.link = 2000;
   drive.samples.link_q16 = raw(300.0, 16);
   for (int n = 0; n < 5; ++n) slice(n < 3 ? 4.1 : -0.9, 2.3);  // 2.0 and 2.5 A
-  drive.position.used.angle_bam = bam(0.4);
-  drive.position.used.speed_bpp = raw(0.2 / kTurn, 32);
+  drive.position.selected.angle_bam = bam(0.4);
+  drive.position.selected.speed_bpp = raw(0.2 / kTurn, 32);
   drive.supervision.missing = 3;
   drive.samples.count = 2;
   hysteresis_control.samples(&drive);

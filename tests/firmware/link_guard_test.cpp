@@ -64,12 +64,12 @@ TEST_F(Guard, WithoutItSilenceIsNothing) {
 
 TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
   start(~1);
-  EXPECT_FALSE(guard_is_on());
+  EXPECT_FALSE(comm_watchdog_is_on());
   drive.state = DRIVE_READY;
   ASSERT_EQ(give(COMMAND_COMMISSION, ~1).status(), OK);
-  EXPECT_FALSE(guard_is_on());
+  EXPECT_FALSE(comm_watchdog_is_on());
   ASSERT_EQ(give(COMMAND_COMMISSION, kMine).status(), OK);
-  EXPECT_TRUE(guard_is_on()) << "a commissioning turns the motor, too";
+  EXPECT_TRUE(comm_watchdog_is_on()) << "a commissioning turns the motor, too";
 }
 
 // Whoever asks meanwhile: one that only looks, and one that holds something of its own.
@@ -108,27 +108,27 @@ TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
   const auto stops_at = [](std::uint32_t ms) {
     drive.request.stop = false;
     drive.time_ms = ms;
-    guard_service();
+    comm_watchdog_service();
     return drive.request.stop;
   };
   drive.state = DRIVE_RUN;
   drive.time_ms = 1000;
-  guard_begin(GUARD_BUS, 7);
+  comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_FALSE(stops_at(1199));
-  guard_heard(GUARD_BUS, 7);
+  comm_watchdog_heard(COMM_WATCHDOG_BUS, 7);
   EXPECT_FALSE(stops_at(1398));
   EXPECT_TRUE(stops_at(1399));
-  EXPECT_TRUE(guard_has_stopped());
-  EXPECT_FALSE(guard_is_on() || stops_at(9999));
-  guard_begin(GUARD_BUS, 7);
-  EXPECT_FALSE(guard_has_stopped()) << "since the last start";
+  EXPECT_TRUE(comm_watchdog_has_stopped());
+  EXPECT_FALSE(comm_watchdog_is_on() || stops_at(9999));
+  comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
+  EXPECT_FALSE(comm_watchdog_has_stopped()) << "since the last start";
   drive.state = DRIVE_READY;
   EXPECT_TRUE(stops_at(20000)) << "a start that was not carried out yet is taken back";
-  EXPECT_FALSE(guard_has_stopped());
-  guard_begin(GUARD_BUS, 7);
+  EXPECT_FALSE(comm_watchdog_has_stopped());
+  comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   drive.state = DRIVE_RUN;
-  guard_reset();
-  EXPECT_FALSE(guard_is_on() || stops_at(30000));
+  comm_watchdog_reset();
+  EXPECT_FALSE(comm_watchdog_is_on() || stops_at(30000));
 }
 
 TEST_F(Guard, OnlyThePortThatStartedCounts) {
@@ -137,7 +137,7 @@ TEST_F(Guard, OnlyThePortThatStartedCounts) {
   const std::uint16_t request[] = {REQUEST_STATUS, 7, 0x45, 0x23, 0x01, 0};
   for (int k = 0; k < 30; ++k) {
     run(100);
-    (void)request_answer(GUARD_BUS, request, 6, answer);
+    (void)request_answer(COMM_WATCHDOG_BUS, request, 6, answer);
     send("\r");  // nor does text
   }
   EXPECT_TRUE(drive.request.stop);

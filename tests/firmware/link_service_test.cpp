@@ -84,7 +84,7 @@ TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   const int longest_event = event + 4 * (int(STREAM_SIGNALS) - 1);
   drive.state = DRIVE_RUN;
   drive.control.measured_q20.d = 0x01010101;
-  stream_setup(GUARD_SERIAL, 5, &place, 1);
+  stream_setup(COMM_WATCHDOG_SERIAL, 5, &place, 1);
   const auto sends_after = [&](unsigned ms, int missing) {
     const unsigned before = sent();
     drive.time_ms += ms;
@@ -94,10 +94,10 @@ TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   };
   EXPECT_EQ(sends_after(5, 1), 0u) << "it waits";
   EXPECT_EQ(sends_after(4, 0), unsigned(event)) << "it comes late";
-  EXPECT_EQ(stream_lost(GUARD_SERIAL), 0);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_SERIAL), 0);
   EXPECT_EQ(sends_after(1, 1), 0u);
   EXPECT_EQ(sends_after(5, 0), unsigned(event)) << "the one that is due";
-  EXPECT_EQ(stream_lost(GUARD_SERIAL), 1) << "the one before it";
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_SERIAL), 1) << "the one before it";
   EXPECT_EQ(link_errors().events_dropped, 1);
 }
 
@@ -122,12 +122,12 @@ TEST_F(LinkService, AResetForgetsTextThatWaits) {
 
 TEST_F(LinkService, AResetEndsWhatAMachineHasAskedFor) {
   EXPECT_EQ(ask(REQUEST_STREAM, little(5, 2) + little(4, 2)).status(), OK);
-  guard_begin(GUARD_SERIAL, 7);
+  comm_watchdog_begin(COMM_WATCHDOG_SERIAL, 7);
   send(Octets{0, 9, 9, 9, 0});
   run(10);
   EXPECT_EQ(link_errors().records.damaged, 1);
   link_reset();
-  EXPECT_FALSE(guard_is_on());
+  EXPECT_FALSE(comm_watchdog_is_on());
   EXPECT_EQ(link_errors().records.damaged, 0);
   records.clear();
   run(500);

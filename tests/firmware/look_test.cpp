@@ -76,7 +76,7 @@ TEST_F(Look, WhatBreaksItOffEndsIt) {
   expect_ready();
   EXPECT_EQ(drive_look_outcome(), LOOK_ENDED);
   look();
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   EXPECT_EQ(drive_look_outcome(), LOOK_ENDED);
 }
 

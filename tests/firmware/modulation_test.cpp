@@ -30,7 +30,7 @@ class Modulation : public Drive {
     polarity_watch.open = false;
     drive.control.closed = true;
     drive.samples.link_q16 = raw(300.0, 16);
-    drive.position.used = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
+    drive.position.selected = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
     drive.control.command_q16 = raw_dq({20.0, 35.0}, 16);
     drive.control.measured_q20 = raw_dq({1.5, -4.0}, 20);
     drive.limits = 0;
@@ -40,7 +40,7 @@ class Modulation : public Drive {
     modulator_t state = drive.modulation.state;
     drive_modulate(&drive);
     svpwm_pulses_t wanted = {};
-    (void)modulator_step(&state, &drive.config.modulator, excitation, drive.modulation.asked_q16,
+    (void)modulator_step(&state, &drive.config.modulator, excitation, drive.modulation.command_q16,
                          drive.samples.link_q16, &wanted);
     return std::memcmp(wanted.at, drive.modulation.next.pulses.at, sizeof wanted.at) == 0;
   }
@@ -49,15 +49,15 @@ class Modulation : public Drive {
 // The voltage acts in the next period, whose middle is one and a half periods on; the devices' drops are added.
 TEST_F(Modulation, TheVoltageIsTurnedToWhereTheRotorWillBe) {
   for (const double speed : {0.12, -0.5}) {
-    drive.position.used.speed_bpp = raw(speed / kTurn, 32);
+    drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
     drive_modulate(&drive);
     const double angle = 0.3 + 1.5 * speed;
     const Vector current = Vector{1.5, -4.0}.turned(angle);
     const Vector drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current, 20)), 16);
     EXPECT_GT(drop.length(), 0.5);
     const Vector wanted = Vector{20.0, 35.0}.turned(angle) + drop;
-    EXPECT_NEAR(real(drive.modulation.asked_q16.alpha, 16), wanted.x, 1e-3);
-    EXPECT_NEAR(real(drive.modulation.asked_q16.beta, 16), wanted.y, 1e-3);
+    EXPECT_NEAR(real(drive.modulation.command_q16.alpha, 16), wanted.x, 1e-3);
+    EXPECT_NEAR(real(drive.modulation.command_q16.beta, 16), wanted.y, 1e-3);
     // and that is what the motor gets
     const Vector mean = real(svpwm_mean_q16(&drive.modulation.next.pulses, drive.samples.link_q16), 16);
     EXPECT_NEAR((mean - wanted).length(), 0.0, 0.1);
@@ -74,10 +74,10 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   int blocked = 0, released = 0;
   for (std::uint16_t leg = 0; leg < 3; ++leg) {
     for (const int shift : {p.pulses.at[leg] - f.rise_tick[leg], p.pulses.at[3 + leg] - f.fall_tick[leg]}) {
-      EXPECT_GE(shift, c.released_ticks);
-      EXPECT_LE(shift, c.blocked_ticks);
-      blocked += shift == c.blocked_ticks;
-      released += shift == c.released_ticks;
+      EXPECT_GE(shift, c.turn_off_ticks);
+      EXPECT_LE(shift, c.turn_on_ticks);
+      blocked += shift == c.turn_on_ticks;
+      released += shift == c.turn_off_ticks;
     }
   }
   EXPECT_GT(blocked, 0);
@@ -88,7 +88,7 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   const machine_model_t& m = drive.model;
   const svpwm_carried_t carried = {raw_ab(Vector{1.5, -4.0}.turned(angle), 20), (m.yd_q30 + m.yq_q30) / 2,
                                    drive.samples.link_q16};
-  svpwm_send(&c, &drive.config.modulator.sampling, &carried, &again, &command);
+  svpwm_compensate_edges(&c, &drive.config.modulator.sampling, &carried, &again, &command);
   for (std::uint16_t leg = 0; leg < 3; ++leg) {
     EXPECT_NEAR(f.rise_tick[leg], command.at[leg], 1) << leg;
     EXPECT_NEAR(f.fall_tick[leg], command.at[3 + leg], 1) << leg;
@@ -114,7 +114,7 @@ TEST_F(Modulation, ItsStepSaysWhatItTakes) {
 // What was read belongs to the period before; a frame that came too late leaves the one that runs, and is counted.
 TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
   drive_modulate(&drive);
-  drive.position.used.angle_bam = bam(2.0);
+  drive.position.selected.angle_bam = bam(2.0);
   const svpwm_pattern_t first = drive.modulation.running;
   EXPECT_EQ(std::memcmp(&first, &drive.modulation.next, sizeof first), 0);
   board.late = true;
@@ -167,7 +167,7 @@ TEST_F(Modulation, TheExcitationIsTheOneAskedForOrTheSources) {
         use_source(source);
         // the paper's own: long zero vectors up to three quarters of the blend's begin
         const std::int32_t enter = drive.config.blend.low_bpp / 4 * 3;
-        drive.position.used.speed_bpp = fast ? -enter : 1 - enter;
+        drive.position.selected.speed_bpp = fast ? -enter : 1 - enter;
         drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
         drive.position.blend.share_q15 = 0;
         excitation_t wanted = EXCITATION_ALTERNATING;
@@ -245,7 +245,7 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
       const dq_t before = drive.control.command_q16;
       const dq_t wanted =
           current_controller_step(&copy, &drive.config.current, &drive.model, drive.control.reference_q20,
-                                  drive.control.measured_q20, drive.position.used.speed_bpp);
+                                  drive.control.measured_q20, drive.position.selected.speed_bpp);
       drive_control_current(&drive);
       const bool steps = divider == 1 || period % 2 == 0;
       EXPECT_EQ(drive.control.command_q16.d, steps ? wanted.d : before.d) << divider << period;
@@ -256,10 +256,10 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
 
 // A change of the reference that is known beforehand is fed along q, within what a command may be.
 TEST_F(Modulation, WhatIsFedComesOnTopAlongQ) {
-  const auto command = [](std::int32_t feed_q16) {
+  const auto command = [](std::int32_t feed_forward_q16) {
     drive.schedule.period = 0;
     current_controller_reset(&drive.control.current);
-    drive.control.feed_q16 = feed_q16;
+    drive.control.feed_forward_q16 = feed_forward_q16;
     drive_control_current(&drive);
     return drive.control.command_q16;
   };

@@ -49,8 +49,8 @@ const Row kRows[] = {
 #include "firmware/hil/phrase_list.h"
 #include "firmware/scope/phrase_list.h"
 #include "firmware/store/phrase_list.h"
+#include "firmware/text/catalogue_list.h"
 #include "firmware/text/phrase_list.h"
-#include "firmware/text/word_list.h"
 };
 #undef PARAMETER
 #undef SIGNAL
@@ -135,28 +135,28 @@ TEST(PackedText, WhatIsTooLongForTheBlockIsCutOffAndSaysSo) {
 }
 
 TEST(Words, AreThoseOfTheirKindAndCode) {
-#define WORDS(kind, code, text) EXPECT_EQ(words_of(WORDS_##kind, code), text);
-#include "firmware/text/word_list.h"
+#define WORDS(kind, code, text) EXPECT_EQ(words_of(CATALOGUE_##kind, code), text);
+#include "firmware/text/catalogue_list.h"
 #undef WORDS
-#define FAULT(number, name, words, remedy)         \
-  EXPECT_EQ(words_of(WORDS_FAULT, number), words); \
-  EXPECT_EQ(words_of(WORDS_REMEDY, number), remedy);
+#define FAULT(number, name, words, remedy)             \
+  EXPECT_EQ(words_of(CATALOGUE_FAULT, number), words); \
+  EXPECT_EQ(words_of(CATALOGUE_REMEDY, number), remedy);
 #include "firmware/dictionary/fault_list.h"
 #undef FAULT
 }
 
 TEST(Words, NoneForWhatDoesNotExist) {
-  for (std::uint16_t kind = 0; kind < WORDS_KINDS; ++kind) {
+  for (std::uint16_t kind = 0; kind < CATALOGUES; ++kind) {
     std::uint16_t codes = 0;
-    while (words_exist(kind, codes)) codes++;
+    while (message_exists(kind, codes)) codes++;
     EXPECT_GT(codes, 4) << kind;
     for (const std::uint16_t code : {int{codes}, 255, 0x7FFF, 0xFFFF}) {
-      EXPECT_FALSE(words_exist(kind, static_cast<std::uint16_t>(code))) << kind;
-      EXPECT_EQ(words_of(static_cast<words_kind_t>(kind), static_cast<std::uint16_t>(code)), "?");
+      EXPECT_FALSE(message_exists(kind, static_cast<std::uint16_t>(code))) << kind;
+      EXPECT_EQ(words_of(static_cast<catalogue_t>(kind), static_cast<std::uint16_t>(code)), "?");
     }
   }
-  EXPECT_FALSE(words_exist(WORDS_KINDS, 0));
-  EXPECT_FALSE(words_exist(0xFFFF, 0));
+  EXPECT_FALSE(message_exists(CATALOGUES, 0));
+  EXPECT_FALSE(message_exists(0xFFFF, 0));
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ TEST_F(ParameterRules, TheCurrentLoopsDelayBoundsItsBandwidth) {
 TEST_F(ParameterRules, AMachineBeyondTheFormatsIsRefused) {
   const parameters_t p = parameters;
   const char* const extreme = "too extreme";
-  parameters.inductance_d = raw(0.05, 20);  // 2 T/L: no admittance of this format
+  parameters.inductance_d = raw(0.05, 20);  // 2 T/L: no inverse inductance of this format
   parameters.inductance_q = raw(0.05, 20);
   refuses(extreme);
   parameters = p;

@@ -15,7 +15,7 @@ namespace {
 
 using namespace stillspin::test;
 
-constexpr turn_t kRegress = TURN_REGRESS, kFollow = TURN_LOOK, kNone = TURNS;
+constexpr schedule_slot_t kRegress = SLOT_REGRESSION, kFollow = SLOT_LOOK, kNone = SCHEDULE_SLOTS;
 
 class PolarityWatch : public Drive {
  protected:
@@ -37,8 +37,8 @@ class PolarityWatch : public Drive {
     drive.position.observer.regression.information = 1000000;
     drive.position.observer.regression.spread_q8 = raw(40000.0, 8);
   }
-  static bool step(turn_t turn) {
-    drive.schedule.turn = turn;
+  static bool step(schedule_slot_t turn) {
+    drive.schedule.slot = turn;
     return polarity_watch_step(&drive);
   }
   static double axis() { return rad(polarity_watch.axis.angle_bam); }
@@ -58,7 +58,7 @@ TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
       const double all = std::clamp(5.0 * off, -kPi, kPi);  // an angle is no more than half a turn
       EXPECT_NEAR(axis(), 0.5 + 3.0 * 120.0 * kPeriod * all, 1e-4) << off << ", " << half;
       EXPECT_EQ(polarity_watch.axis_periods, 0);
-      EXPECT_FALSE(polarity_watch.blind);
+      EXPECT_FALSE(polarity_watch.samples_invalid);
     }
   }
 }
@@ -84,8 +84,8 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   EXPECT_EQ(polarity_watch.voltage_q12.d, 3 * raw(2.0, 12));
   EXPECT_EQ(polarity_watch.voltage_q12.q, 3 * raw(-5.0, 12));
   EXPECT_EQ(polarity_watch.periods, 3);
-  polarity_watch.blind = false;
-  EXPECT_FALSE(step(TURN_VOLTAGE));
+  polarity_watch.samples_invalid = false;
+  EXPECT_FALSE(step(SLOT_VOLTAGE));
   EXPECT_EQ(polarity_watch.voltage_q12.d | polarity_watch.voltage_q12.q | polarity_watch.periods, 0);
 }
 
@@ -95,7 +95,7 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
   for (const int why : {0, 1, 2, 3}) {
     SetUp();
     source(POSITION_AVV);
-    drive.position.used = {bam(-1.0), bpp(70.0), 0, 32767};
+    drive.position.selected = {bam(-1.0), bpp(70.0), 0, 32767};
     drive.position.avv.observer.angle_bam = bam(0.5);
     const double limit = real(parameters.current_limit, 20);
     if (why == 1) drive.control.measured_q20.q = raw(0.51 * limit, 20);
@@ -107,7 +107,7 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     EXPECT_FALSE(step(kNone));
     EXPECT_FALSE(step(kFollow));
     const bool blind = why != 0;
-    EXPECT_EQ(polarity_watch.blind, blind) << why;
+    EXPECT_EQ(polarity_watch.samples_invalid, blind) << why;
     EXPECT_NEAR(axis(), blind ? -1.0 : 0.5, 1e-3) << why;
     EXPECT_EQ(polarity_watch.sign.clear + polarity_watch.sign.against, blind ? 0 : 18);
     EXPECT_EQ(polarity_watch.periods, blind ? 0 : 2);
@@ -147,7 +147,7 @@ TEST_F(PolarityWatch, BeginsWithNothingOfTheLastRun) {
     polarity_watch_t& w = polarity_watch;
     parameters.polarity_check = check;
     w.axis_periods = w.periods = w.voltage_q12.d = w.voltage_q12.q = 7;
-    w.blind = true;
+    w.samples_invalid = true;
     w.open = check == 0;
     w.sign.clear = w.sign.against = 9;
     w.sign.seen_q16 = w.sign.expected_q16 = -99;
@@ -157,7 +157,7 @@ TEST_F(PolarityWatch, BeginsWithNothingOfTheLastRun) {
     EXPECT_EQ(w.axis.speed_bpp, bpp(50.0));
     EXPECT_EQ(w.axis_periods | w.periods | w.voltage_q12.d | w.voltage_q12.q, 0);
     EXPECT_EQ(w.sign.clear + w.sign.against + w.sign.seen_q16 + w.sign.expected_q16, 0);
-    EXPECT_FALSE(w.blind);
+    EXPECT_FALSE(w.samples_invalid);
   }
 }
 
@@ -175,9 +175,9 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
       bool reversed = false;
       int n = 0;
       for (; n < 600 && polarity_watch.open; ++n) {
-        drive.position.used.angle_bam =
+        drive.position.selected.angle_bam =
             polarity_watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
-        reversed = step(n % 5 == 4 ? TURN_VOLTAGE : kNone);
+        reversed = step(n % 5 == 4 ? SLOT_VOLTAGE : kNone);
       }
       EXPECT_GE(n, 50) << "5 ms";
       EXPECT_FALSE(polarity_watch.open) << off;

@@ -67,8 +67,8 @@ class Position : public Drive {
 class Sources : public Position {
  protected:
   /// In a period of this turn.
-  static void estimate(turn_t turn = TURNS) {
-    drive.schedule.turn = turn;
+  static void estimate(schedule_slot_t turn = SCHEDULE_SLOTS) {
+    drive.schedule.slot = turn;
     drive_estimate(&drive);
   }
   static dq_t measured() { return drive.control.measured_q20; }

@@ -16,8 +16,8 @@ TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
   drive.position.observer.angle_bam = kThere;
   drive.position.encoder.angle_bam = kHere;
   estimate();
-  EXPECT_EQ(drive.position.used.angle_bam, drive.position.observer.angle_bam);
-  EXPECT_NEAR(rad(drive.position.used.angle_bam - kThere), 0.0, 0.01);
+  EXPECT_EQ(drive.position.selected.angle_bam, drive.position.observer.angle_bam);
+  EXPECT_NEAR(rad(drive.position.selected.angle_bam - kThere), 0.0, 0.01);
 }
 
 // Angle from the count and what was found at the start, speed by a tracking observer; the trim turns the frame alone.
@@ -33,15 +33,15 @@ TEST_F(Sources, TheEncoderHasAngleAndSpeed) {
     estimate();
   }
   const double speed = 3.0 / 4096.0 * 4.0 * kTurn / kPeriod;
-  EXPECT_NEAR(rad_per_s(drive.position.used.speed_bpp), speed, 1e-3 * speed);
+  EXPECT_NEAR(rad_per_s(drive.position.selected.speed_bpp), speed, 1e-3 * speed);
   const double angle = rad(kHere) + std::fmod(9000.0, 1024.0) / 1024.0 * kTurn;
-  EXPECT_NEAR(wrapped(rad(drive.position.used.angle_bam) - angle), 0.0, 0.01);
-  EXPECT_EQ(drive.position.used.quality_q15, 32767);
+  EXPECT_NEAR(wrapped(rad(drive.position.selected.angle_bam) - angle), 0.0, 0.01);
+  EXPECT_EQ(drive.position.selected.quality_q15, 32767);
   drive.config.encoder_trim_bam = bam(0.5);
   estimate();
   EXPECT_EQ(drive.position.low.angle_bam, drive.position.encoder.angle_bam);
-  EXPECT_EQ(drive.position.used.angle_bam, drive.position.encoder.angle_bam + bam(0.5));
-  EXPECT_EQ(drive.position.used.speed_bpp, drive.position.encoder.speed_bpp);
+  EXPECT_EQ(drive.position.selected.angle_bam, drive.position.encoder.angle_bam + bam(0.5));
+  EXPECT_EQ(drive.position.selected.speed_bpp, drive.position.encoder.speed_bpp);
 }
 
 // An angle that is off is taken up within the long windows' bandwidth, three poles at once.

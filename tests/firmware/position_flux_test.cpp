@@ -44,10 +44,10 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
     see(0);
     const double speed = 0.2;
     const Vector current = {-1.0, 6.0};
-    drive.position.used = {kHere, raw(speed / kTurn, 32), 0, 32767};
-    drive.position.observer.speed_bpp = drive.position.used.speed_bpp;
+    drive.position.selected = {kHere, raw(speed / kTurn, 32), 0, 32767};
+    drive.position.observer.speed_bpp = drive.position.selected.speed_bpp;
     drive.control.measured_q20 = drive.control.reference_q20 = raw_dq(current, 20);
-    flux_source_follow(&drive, &drive.position.used);
+    flux_source_follow(&drive, &drive.position.selected);
     drive.samples.link_q16 = raw(310.0, 16);
     for (int leg = 0; leg < 3; ++leg) {
       drive.modulation.sampled.pulses.at[leg] = static_cast<std::int16_t>(1000 + 500 * leg);
@@ -66,7 +66,7 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
     EXPECT_EQ(drive.position.high.angle_bam, flux_observer.observer.angle_bam);
     if (watched) continue;
     EXPECT_EQ(drive.position.low.angle_bam, drive.position.high.angle_bam);
-    EXPECT_EQ(drive.position.used.angle_bam, drive.position.high.angle_bam);
+    EXPECT_EQ(drive.position.selected.angle_bam, drive.position.high.angle_bam);
     // The observer goes along, so that it is right when it is wanted again.
     EXPECT_EQ(drive.position.observer.angle_bam, drive.position.high.angle_bam);
     EXPECT_EQ(drive.position.observer.speed_bpp, drive.position.high.speed_bpp);
@@ -87,7 +87,7 @@ TEST_F(Sources, WhatTheDevicesTakeIsNotTheFluxs) {
     drive.config.dead_time.drop_q16 = drops ? raw(volts, 16) : 0;
     dead_time_design(&drive.config.dead_time);
     drive.control.measured_q20 = raw_dq(current, 20);
-    flux_source_follow(&drive, &drive.position.used);
+    flux_source_follow(&drive, &drive.position.selected);
     estimate();
     flux[drops] = real(flux_observer.flux_q16, 16);
     drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current.turned(rad(kHere)), 20)), 16);
@@ -102,7 +102,7 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
   for (const std::uint16_t windows : {0, 2}) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_BOTH, 0.5);
-    flux_source_follow(&drive, &drive.position.used);
+    flux_source_follow(&drive, &drive.position.selected);
     flux_observer.pause = 1;
     see(windows);
     drive.schedule.skips = false;
@@ -116,7 +116,7 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
 TEST_F(Sources, TheFluxMayBeGivenTheShaftAtAnySpeed) {
   run_with(POSITION_FLUX_CONV);
   EXPECT_FALSE(position_observer_rests(&drive));
-  position_hand_over(&drive);
+  position_bumpless_transfer(&drive);
   EXPECT_TRUE(position_observer_rests(&drive));
 }
 
@@ -127,16 +127,16 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
     see(0);
     drive.state = DRIVE_START;
     drive.flags.open_loop = true;
-    drive.config.turn.align_periods = 500;
-    starting.turn.tick = aligned ? 500 : 499;
-    starting.turn.angle_bam = kThere;
-    starting.turn.speed_bpp = 4321;
-    drive.position.used = {kHere, 1234, 0, 0};
+    drive.config.if_start.align_periods = 500;
+    starting.if_start.tick = aligned ? 500 : 499;
+    starting.if_start.angle_bam = kThere;
+    starting.if_start.speed_bpp = 4321;
+    drive.position.selected = {kHere, 1234, 0, 0};
     drive.position.observer.angle_bam = kThere;
     drive.position.observer.speed_bpp = 0;
     estimate();
-    EXPECT_EQ(drive.position.used.angle_bam, kThere + 4321u);
-    EXPECT_EQ(drive.position.used.speed_bpp, 4321);
+    EXPECT_EQ(drive.position.selected.angle_bam, kThere + 4321u);
+    EXPECT_EQ(drive.position.selected.speed_bpp, 4321);
     EXPECT_EQ(drive.position.seen.angle_bam, drive.position.observer.angle_bam);
     EXPECT_NEAR(rad(drive.position.seen.angle_bam - (aligned ? kThere : kHere)), 0.0, 1e-3);
     EXPECT_EQ(drive.position.avv.observer.angle_bam, kHere) << "all of them are set at rest";
@@ -151,15 +151,15 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
     blend(BLEND_HIGH, 0.0);
     drive.state = DRIVE_START;
     drive.flags.open_loop = true;
-    starting.turn.tick = drive.config.turn.align_periods = 500;
-    starting.turn.angle_bam = kThere;
-    starting.turn.speed_bpp = drive.config.turn.speed_bpp - (up ? 0 : 1);
-    drive.position.used = {kHere, 1234, 0, 0};
+    starting.if_start.tick = drive.config.if_start.align_periods = 500;
+    starting.if_start.angle_bam = kThere;
+    starting.if_start.speed_bpp = drive.config.if_start.speed_bpp - (up ? 0 : 1);
+    drive.position.selected = {kHere, 1234, 0, 0};
     flux_observer.observer.angle_bam = kThere;
     estimate();
     EXPECT_EQ(flux_observer.observer.angle_bam == kHere, !up);
     EXPECT_EQ(drive.position.seen.angle_bam, flux_observer.observer.angle_bam);
-    EXPECT_EQ(drive.position.used.angle_bam, kThere + static_cast<std::uint32_t>(starting.turn.speed_bpp));
+    EXPECT_EQ(drive.position.selected.angle_bam, kThere + static_cast<std::uint32_t>(starting.if_start.speed_bpp));
   }
 }
 
@@ -173,10 +173,10 @@ TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
     blend(BLEND_HIGH, 0.0);
     drive.state = DRIVE_START;
     drive.flags.open_loop = true;
-    starting.turn.tick = drive.config.turn.align_periods;
-    starting.turn.speed_bpp = drive.config.turn.speed_bpp;
+    starting.if_start.tick = drive.config.if_start.align_periods;
+    starting.if_start.speed_bpp = drive.config.if_start.speed_bpp;
     drive.control.reference_q20 = drive.control.measured_q20 = raw_dq({0.0, 14.0}, 20);
-    drive.position.used = {kHere, 0, 0, 0};
+    drive.position.selected = {kHere, 0, 0, 0};
     drive.position.seen.angle_bam = turned ? kHere - 0x40000000u : kHere;
     const estimator_output_t now = {kHere, bpp_of(600), 0, 0};
     flux_source_follow(&drive, &now);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace stillspin::test;
 
-// What the sensors' mismatch, the admittance's error and a voltage's leave in the observer's regression.
+// What the sensors' mismatch, the inverse inductance's error and a voltage's leave in the observer's regression.
 class Learning : public Sources {
  protected:
   void learn_with(std::int32_t source) {
@@ -33,24 +33,24 @@ class Learning : public Sources {
     r.information = 1000000;
     drive.position.observer.regression = r;
   }
-  static bool admittances() { return drive.model.trim.mean_q30 != 0; }
+  static bool inverse_inductances() { return drive.model.trim.mean_q30 != 0; }
   static bool sensors() { return drive.position.sensors.mismatch_q30 != 0; }
   static bool voltage() { return drive.model.trim.rs_q24 != 0 || drive.model.trim.psi_q16 != 0; }
 };
 
-// Admittances and sensors in one turn, resistance and flux in another: once it runs, and near enough.
+// Inverse inductances and sensors in one slot, resistance and flux in another: once it runs, and near enough.
 TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
-  for (int turn = 0; turn <= TURNS; ++turn) {
-    if (turn == TURN_REGRESS || turn == TURN_LOOK) continue;
+  for (int slot = 0; slot <= SCHEDULE_SLOTS; ++slot) {
+    if (slot == SLOT_REGRESSION || slot == SLOT_LOOK) continue;
     for (const bool near : {true, false}) {
       for (const bool alternating : {true, false}) {
         learn_with(POSITION_OBSERVER);
         drive.position.is_near = near;
         drive.modulation.state.is_alternating = alternating;
-        estimate(static_cast<turn_t>(turn));
-        EXPECT_EQ(admittances(), near && turn == TURN_LIKENESS) << turn;
-        EXPECT_EQ(sensors(), near && turn == TURN_LIKENESS && alternating) << turn << "all directions, or none";
-        EXPECT_EQ(voltage(), near && turn == TURN_VOLTAGE) << turn;
+        estimate(static_cast<schedule_slot_t>(slot));
+        EXPECT_EQ(inverse_inductances(), near && slot == SLOT_INDUCTANCE) << slot;
+        EXPECT_EQ(sensors(), near && slot == SLOT_INDUCTANCE && alternating) << slot << "all directions, or none";
+        EXPECT_EQ(voltage(), near && slot == SLOT_VOLTAGE) << slot;
         EXPECT_EQ(drive.trim.mismatch_q30, drive.position.sensors.mismatch_q30);
       }
     }
@@ -64,7 +64,7 @@ TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
       learn_with(POSITION_OBSERVER);
       see(count);
       polarity_watch.open = watched;
-      estimate(TURN_VOLTAGE);
+      estimate(SLOT_VOLTAGE);
       EXPECT_EQ(voltage(), !(watched && count == 3));
     }
   }
@@ -74,25 +74,25 @@ TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
 TEST_F(Learning, SharesAreThoseOfTheParametersTimes) {
   learn_with(POSITION_OBSERVER);
   const double y0 = 0.5 * (real(drive.model.yd_q30, 30) + real(drive.model.yq_q30, 30));
-  estimate(TURN_LIKENESS);
+  estimate(SLOT_INDUCTANCE);
   const double share = 1.5 * real(drive.config.adapt_share_q30, 30);
   EXPECT_NEAR(real(drive.model.trim.mean_q30, 30) / (share * 40.0 / 30000.0), 1.0, 1e-3);
   EXPECT_NEAR(real(drive.trim.mismatch_q30, 30) / (share * std::sqrt(3.0) * 20.0 / 30000.0 / y0), 1.0, 1e-3);
   learn_with(POSITION_OBSERVER);
-  drive.position.used.speed_bpp = drive.position.observer.speed_bpp = bpp(60.0);
+  drive.position.selected.speed_bpp = drive.position.observer.speed_bpp = bpp(60.0);
   drive.model.trim.psi_variance_q32 = 0;
   machine_model_t model = drive.model;
   voltage_match_step(&model, &drive.position.observer.regression, raw(60.0 * kPeriod, 30),
                      raw(1.5 * real(drive.config.drift_share_q30, 30), 30));
-  estimate(TURN_VOLTAGE);
+  estimate(SLOT_VOLTAGE);
   EXPECT_NE(model.trim.rs_q24, 0);
   EXPECT_NEAR(drive.model.trim.rs_q24, model.trim.rs_q24, 2 + std::abs(model.trim.rs_q24) / 100);
   EXPECT_NEAR(drive.model.trim.psi_q16, model.trim.psi_q16, 2 + std::abs(model.trim.psi_q16) / 100);
 }
 
-// A start learns admittances in their turn and the sensors in the voltage's, with 5/4 of the share.
+// A start learns inverse inductances in their slot and the sensors in the voltage's, with 5/4 of the share.
 TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
-  for (const turn_t turn : {TURN_LIKENESS, TURN_VOLTAGE, TURN_MOVE}) {
+  for (const schedule_slot_t slot : {SLOT_INDUCTANCE, SLOT_VOLTAGE, SLOT_OPERATING_POINT}) {
     learn_with(POSITION_OBSERVER);
     see_machine(kHere);
     for (int k = 0; k < 2; ++k) {
@@ -101,11 +101,11 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
     }
     drive.state = DRIVE_START;
     drive.schedule.turning = false;
-    estimate(turn);
-    EXPECT_EQ(admittances(), turn == TURN_LIKENESS) << turn;
-    EXPECT_EQ(sensors(), turn == TURN_VOLTAGE) << turn;
+    estimate(slot);
+    EXPECT_EQ(inverse_inductances(), slot == SLOT_INDUCTANCE) << slot;
+    EXPECT_EQ(sensors(), slot == SLOT_VOLTAGE) << slot;
     EXPECT_FALSE(voltage());
-    if (turn != TURN_LIKENESS) continue;
+    if (slot != SLOT_INDUCTANCE) continue;
     const regression_t& r = drive.position.avv.regression;
     const double wanted = 1.25 * real(drive.config.adapt_share_q30, 30) * real(r.along_q16, 16) / real(r.spread_q8, 8);
     EXPECT_NEAR(real(drive.model.trim.mean_q30, 30) / wanted, 1.0, 1e-2);
@@ -126,15 +126,15 @@ TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
       drive.position.avv.observer = {kThere, 1000, raw(500.0, 8), 0};
       drive.control.measured_q20 = {0, 0};
       const std::int32_t error = drive.position.avv.error_bam = 4711;
-      estimate(TURN_LIKENESS);
-      EXPECT_EQ(admittances(), adapting && !predicting);
+      estimate(SLOT_INDUCTANCE);
+      EXPECT_EQ(inverse_inductances(), adapting && !predicting);
       EXPECT_EQ(drive.position.avv.error_bam == error, predicting) << "no measurement at all";
-      EXPECT_EQ(drive.position.used.angle_bam, drive.position.avv.observer.angle_bam);
+      EXPECT_EQ(drive.position.selected.angle_bam, drive.position.avv.observer.angle_bam);
       if (!predicting) continue;
-      EXPECT_EQ(drive.position.used.angle_bam, kThere + 1000u);
-      EXPECT_EQ(drive.position.used.speed_bpp, 1000) << "the load as of now is left out";
-      EXPECT_EQ(drive.position.used.load_accel_q8, raw(500.0, 8));
-      EXPECT_EQ(drive.position.used.quality_q15, 32767);
+      EXPECT_EQ(drive.position.selected.angle_bam, kThere + 1000u);
+      EXPECT_EQ(drive.position.selected.speed_bpp, 1000) << "the load as of now is left out";
+      EXPECT_EQ(drive.position.selected.load_accel_q8, raw(500.0, 8));
+      EXPECT_EQ(drive.position.selected.quality_q15, 32767);
     }
   }
 }

@@ -6,7 +6,7 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
@@ -24,7 +24,7 @@ TEST_F(Sources, TheCurrentIsTheWindowsMeanLessTheirRipple) {
     run_with(POSITION_ENCODER);
     see(count);
     for (int k = 0; k < count; ++k) drive.samples.windows[k].middle_tick = static_cast<std::int16_t>(1500 + 3100 * k);
-    drive.position.used.speed_bpp = raw(speed / kTurn, 32);
+    drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
     // The ripple of all of them is turned by one angle, that of the middle one.
     const double one = rad(kHere) + speed * drive.samples.windows[count / 2].middle_tick / 10000.0;
     const double yd = real(drive.model.yd_q30, 30), yq = real(drive.model.yq_q30, 30);
@@ -99,14 +99,14 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   drive.control.measured_q20 = {raw(4.0, 20), 0};
   estimate();
   EXPECT_LT(drive.position.torque_accel_q8, -raw(1000.0, 8));
-  drive.position.seen.angle_bam = drive.position.used.angle_bam;
+  drive.position.seen.angle_bam = drive.position.selected.angle_bam;
   estimate();
   EXPECT_EQ(drive.position.torque_accel_q8, 0);
 }
 
-// The model moves where the schedule says so or has its turn, and makes K of the rest in the look's turn.
+// The model moves where the schedule says so or has its slot, and makes K of the rest in the look's slot.
 TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
-  for (int turn = 0; turn <= TURNS; ++turn) {
+  for (int slot = 0; slot <= SCHEDULE_SLOTS; ++slot) {
     for (const bool moves : {false, true}) {
       for (const bool watched : {false, true}) {
         run_with(POSITION_OBSERVER);
@@ -119,13 +119,13 @@ TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
         drive.model.k_dq_q24 = 0;
         drive.position.observer.is_sensitive = true;
         drive.position.observer.sensitivity = {};
-        estimate(static_cast<turn_t>(turn));
-        const bool follows = moves || turn == TURN_MOVE;
-        EXPECT_EQ(drive.model.iq_q20, follows ? raw(2.5, 20) : 0) << turn << moves;
-        EXPECT_EQ(drive.model.k_dq_q24 == k, turn == TURN_LOOK && !watched) << turn << watched;
+        estimate(static_cast<schedule_slot_t>(slot));
+        const bool follows = moves || slot == SLOT_OPERATING_POINT;
+        EXPECT_EQ(drive.model.iq_q20, follows ? raw(2.5, 20) : 0) << slot << moves;
+        EXPECT_EQ(drive.model.k_dq_q24 == k, slot == SLOT_LOOK && !watched) << slot << watched;
         see(1);
         drive.control.measured_q20.q = raw(2.5, 20);
-        estimate(static_cast<turn_t>(turn));
+        estimate(static_cast<schedule_slot_t>(slot));
         EXPECT_EQ(drive.position.observer.sensitivity.saliency_q30 != 0, follows) << "of the observer, with the model";
       }
     }
@@ -144,7 +144,7 @@ TEST_F(Sources, TheScheduleDecidesOnWindowsAndCovariance) {
       drive.schedule.skips = skips;
       drive.schedule.renews = renews;
       estimate();
-      EXPECT_EQ(o.left.span_ticks, skips ? 0 : 6000) << renews;
+      EXPECT_EQ(o.residual.span_ticks, skips ? 0 : 6000) << renews;
       EXPECT_EQ(o.gathered.periods == 0, renews) << skips;
     }
   }
@@ -157,7 +157,7 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
     run_with(POSITION_OBSERVER);
     parameters.map_known = 1;
     ASSERT_TRUE(drive_config_load(&drive.config));
-    brake_hold.left = held ? 100 : 0;
+    brake_release_hold.left = held ? 100 : 0;
     drive.schedule.renews = true;
     deviation_observer_t& o = drive.position.observer;
     o.p_aa = o.p_as = o.p_al = o.p_ss = o.p_sl = 0;
@@ -180,21 +180,21 @@ TEST_F(Sources, AvvBesideTheObserverSeesItsOwnError) {
   EXPECT_EQ(drive.position.low.angle_bam, drive.position.observer.angle_bam);
   EXPECT_EQ(drive.position.high.angle_bam, drive.position.avv.observer.angle_bam);
   const double low = rad(drive.position.low.angle_bam - kHere), high = rad(drive.position.high.angle_bam - kHere);
-  EXPECT_NEAR(rad(drive.position.used.angle_bam - kHere), 0.5 * (low + high), 0.01 * (high - low) + 1e-3);
+  EXPECT_NEAR(rad(drive.position.selected.angle_bam - kHere), 0.5 * (low + high), 0.01 * (high - low) + 1e-3);
 }
 
-// Beyond 15 degrees the regression is not linear; it is asked in its own turn, and stands until the next.
+// Beyond 15 degrees the regression is not linear; it is asked in its own slot, and stands until the next.
 TEST_F(Sources, AvvLearnsWithin15DegreesOnly) {
   for (const double degrees : {-16.0, -14.0, 14.0, 16.0}) {
-    for (const turn_t turn : {TURN_REGRESS, TURN_MOVE}) {
+    for (const schedule_slot_t slot : {SLOT_REGRESSION, SLOT_OPERATING_POINT}) {
       run_with(POSITION_AVV);
       const std::uint32_t there = kHere + bam(degrees * kDegree);
       see_machine(there);
       const bool before = std::fabs(degrees) > 15.0;
       drive.position.is_near = before;
-      estimate(turn);
+      estimate(slot);
       EXPECT_NEAR(rad(drive.position.avv.error_bam) / kDegree, degrees, 0.3);
-      EXPECT_EQ(drive.position.is_near, turn == TURN_REGRESS ? !before : before) << degrees;
+      EXPECT_EQ(drive.position.is_near, slot == SLOT_REGRESSION ? !before : before) << degrees;
     }
   }
 }
@@ -208,7 +208,7 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
     const std::int32_t speed = drive.config.blend.high_bpp + 1;
     position_preset(&drive, kThere, speed);
     const drive_position_t& p = drive.position;
-    for (const estimator_output_t& out : {p.used, p.low, p.high}) {
+    for (const estimator_output_t& out : {p.selected, p.low, p.high}) {
       EXPECT_EQ(out.angle_bam, kThere);
       EXPECT_EQ(out.speed_bpp, speed);
       EXPECT_EQ(out.load_accel_q8, 0);
@@ -233,7 +233,8 @@ TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
     run_with(POSITION_OBSERVER);
     position_preset(&drive, kThere, sign * 2000000000);
     const drive_position_t& p = drive.position;
-    for (const std::int32_t speed : {p.used.speed_bpp, p.avv.observer.speed_bpp, p.observer.speed_bpp, p.zvv.speed_bpp})
+    for (const std::int32_t speed :
+         {p.selected.speed_bpp, p.avv.observer.speed_bpp, p.observer.speed_bpp, p.zvv.speed_bpp})
       EXPECT_EQ(speed, sign * MACHINE_SPEED_END_BPP);
   }
 }
@@ -242,8 +243,8 @@ TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
 TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
   run_with(POSITION_OBSERVER);
   position_preset_axis(&drive, kThere, 777);
-  EXPECT_EQ(drive.position.used.angle_bam, kThere);
-  EXPECT_EQ(drive.position.used.speed_bpp, 777);
+  EXPECT_EQ(drive.position.selected.angle_bam, kThere);
+  EXPECT_EQ(drive.position.selected.speed_bpp, 777);
   EXPECT_EQ(drive.position.avv.observer.angle_bam, kThere);
   EXPECT_EQ(drive.position.avv.observer.speed_bpp, 777);
   EXPECT_EQ(drive.position.observer.angle_bam, kHere);

@@ -5,7 +5,7 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
@@ -44,7 +44,7 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
 // Where the paper's estimators are both at work one has the windows of the periods of speed control and field
 // weakening, the other, which has more of the shaft, those of all others.
 TEST_F(Position, ThePapersEstimatorsTakeTurns) {
-  for (const task_t task : {TASK_SPEED, TASK_FIELD, TASK_JUDGE_FIRST, TASK_RENEW, TASK_TURN}) {
+  for (const task_t task : {TASK_SPEED, TASK_FIELD, TASK_JUDGE_FIRST, TASK_RENEW, TASK_SLOT}) {
     for (const bool below : {false, true}) {
       run_with(POSITION_PAPER);
       blend(below ? BLEND_LOW : BLEND_BOTH, below ? 1.0 : 0.5);
@@ -69,7 +69,7 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
     see(1);
     blend(BLEND_LOW, 1.0);
     drive.samples.windows[0].slope_q20 = {raw(0.02, 20), raw(0.01, 20)};
-    if (!same) drive.position.used.angle_bam = kThere;
+    if (!same) drive.position.selected.angle_bam = kThere;
     drive_estimate(&drive);
     const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
     EXPECT_NEAR(real(drive.position.zvv.deviation_q20, 20), slope.y, 5e-5) << same;
@@ -93,7 +93,7 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
   for (const std::uint16_t windows : {2, 0}) {
     run_with(POSITION_OBSERVER);
     see(windows);
-    drive.schedule.turn = TURN_REGRESS;
+    drive.schedule.slot = SLOT_REGRESSION;
     drive.position.is_near = windows == 0;
     drive_estimate(&drive);
     EXPECT_EQ(drive.position.is_near, windows > 0);
@@ -104,7 +104,7 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
 TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
   for (const bool near : {true, false}) {
     run_with(POSITION_OBSERVER);
-    drive.schedule.turn = TURN_LOOK;
+    drive.schedule.slot = SLOT_LOOK;
     drive.position.is_near = near;
     drive.position.observer.regression = {};
     drive_estimate(&drive);
@@ -140,7 +140,7 @@ TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
         run_with(POSITION_FLUX_CONV);
         blend(region, 0.5);
         polarity_watch.open = watched;
-        drive.schedule.turn = asked ? TURN_REGRESS : TURNS;
+        drive.schedule.slot = asked ? SLOT_REGRESSION : SCHEDULE_SLOTS;
         drive.position.is_near = !asked;
         drive.position.observer.regressed_bam = kThere;
         drive_estimate(&drive);
@@ -171,7 +171,7 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       drive.samples.windows[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
       if (starting) drive.state = DRIVE_START;
       drive.schedule.turning = !starting;
-      drive.position.used.angle_bam = kThere;
+      drive.position.selected.angle_bam = kThere;
       drive.position.high.angle_bam = kHere + 0x01000000u;
       drive_estimate(&drive);
       const Vector current = Vector{3.0, 1.0}.turned(-rad(kThere));
@@ -202,14 +202,14 @@ TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
 // A shaft is held in RUN; told to stop it is braked like any other.
 TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
   run_with(POSITION_OBSERVER);
-  brake_hold.left = 100;
+  brake_release_hold.left = 100;
   EXPECT_TRUE(hold_is_on(&drive));
   EXPECT_TRUE(hold_step(&drive));
-  EXPECT_EQ(brake_hold.left, 99u);
+  EXPECT_EQ(brake_release_hold.left, 99u);
   drive.state = DRIVE_STOP;
   EXPECT_FALSE(hold_is_on(&drive));
   EXPECT_FALSE(hold_step(&drive));
-  EXPECT_EQ(brake_hold.left, 99u);
+  EXPECT_EQ(brake_release_hold.left, 99u);
 }
 
 // While the link's limit brakes the shaft, a ramp that would brake it more waits, and one that speeds it up does not.
@@ -219,7 +219,7 @@ TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
       for (const bool limited : {false, true}) {
         run_with(POSITION_OBSERVER);
         const std::int32_t now = sign * bpp_of(1000);
-        drive.position.used.speed_bpp = drive.control.ramp.value = now;
+        drive.position.selected.speed_bpp = drive.control.ramp.value = now;
         drive.control.target_bpp = now + sign * change * bpp_of(500);
         drive.limits = limited ? LIMIT_BRAKING : 0;
         drive.schedule.task = TASK_SPEED;

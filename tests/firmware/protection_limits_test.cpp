@@ -130,23 +130,23 @@ TEST_F(ProtectionLimits, AvvBesideTheEncoderIsNoDoubtOfTheAngle) {
     use_source(source);
     drive.schedule.judges = true;
     drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
-    drive.position.used.speed_bpp = 0;
+    drive.position.selected.speed_bpp = 0;
     drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
     drive.position.high.angle_bam = drive.position.low.angle_bam + bam(2.0);
     synchronism_reset(&drive.supervision.synchronism);
     (void)judged();
-    EXPECT_EQ(drive.supervision.synchronism.doubt > 0, source == POSITION_OBSERVER_AVV);
+    EXPECT_EQ(drive.supervision.synchronism.debounce > 0, source == POSITION_OBSERVER_AVV);
   }
 }
 
 TEST_F(ProtectionLimits, TheRecordOfAFaultSaysWhatWas) {
   drive.time_ms = 12345;
   drive.state = DRIVE_STOP;
-  drive.position.used.speed_bpp = bpp_of(600);
+  drive.position.selected.speed_bpp = bpp_of(600);
   drive.samples.link_q16 = raw(287.5, 16);
   drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};
-  drive_raise(&drive, FAULT_LINK_LOW);
-  drive_raise(&drive, FAULT_OVERRUN);  // the first stays
+  drive_trip(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_OVERRUN);  // the first stays
   EXPECT_EQ(fault_history_total(), 1);
   fault_record_t r = {};
   ASSERT_TRUE(fault_history_read(0, &r));

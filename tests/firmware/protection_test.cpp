@@ -80,7 +80,7 @@ TEST_F(Protection, ASpeedFarBeyondTheLimitIsDivergence) {
     const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
     const int n = while_running(2 * allowed, [&] {
       drive.position.avv.observer.speed_bpp = speed;
-      drive.position.used.speed_bpp = speed;
+      drive.position.selected.speed_bpp = speed;
     });
     EXPECT_EQ(drive.state, share > 1.5 ? DRIVE_FAULT : DRIVE_RUN);
     if (share > 1.5) {
@@ -227,10 +227,10 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
       polarity_watch.open = false;
       drive.schedule.judges = asked;
       drive.modulation.state.is_alternating = true;
-      drive.position.observer.left = {0, 0, 3000, 1};
+      drive.position.observer.residual = {0, 0, 3000, 1};
       drive.supervision.judged_at = static_cast<std::uint16_t>(drive.heartbeat - 1u);
       drive_protect(&drive);
-      EXPECT_EQ(drive.position.observer.left.span_ticks, (!alone && asked) ? 0 : 3000) << alone << asked;
+      EXPECT_EQ(drive.position.observer.residual.span_ticks, (!alone && asked) ? 0 : 3000) << alone << asked;
       EXPECT_EQ(drive.supervision.judged_at == drive.heartbeat, alone || asked) << alone << asked;
     }
   }
@@ -249,7 +249,7 @@ TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
     synchronism_reset(&drive.supervision.synchronism);
     drive.samples.count = 1;
     drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
-    drive.position.used.speed_bpp = 0;
+    drive.position.selected.speed_bpp = 0;
     drive.position.avv.regression = {};
     drive.position.avv.regression.mean_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
     drive.position.avv.regression.information = seen ? 1000 : 0;
@@ -270,21 +270,21 @@ TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
       make_run();
       trust_synchronism();
       use_source(POSITION_OBSERVER);
-      drive.position.used.speed_bpp = bpp_of(300);
-      drive.supervision.judged_bam = drive.position.used.angle_bam = 0xFFFFF000u;  // and on past the turn's end
-      drive.supervision.judged_at = drive.heartbeat = 65533u;                      // and the counter's
+      drive.position.selected.speed_bpp = bpp_of(300);
+      drive.supervision.judged_bam = drive.position.selected.angle_bam = 0xFFFFF000u;  // and on past the turn's end
+      drive.supervision.judged_at = drive.heartbeat = 65533u;                          // and the counter's
       const estimator_window_t still = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
       const estimator_input_t in = {&drive.model, &still, 1, 0, false, false, false, nullptr};
       (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
       synchronism_reset(&drive.supervision.synchronism);
       drive.heartbeat = static_cast<decltype(drive.heartbeat)>(drive.heartbeat + static_cast<unsigned>(since));
-      drive.position.used.angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
+      drive.position.selected.angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
       drive.schedule.judges = true;
       drive_protect(&drive);
       const synchronism_t& s = drive.supervision.synchronism;
       const double emf = real(drive.model.emf_q16, 16) * std::ldexp(bpp_of(ahead), -32) * kTurn;
       EXPECT_NEAR(real(s.turned_q16 - s.error_q16.q, 16), since <= 6 ? 0.25 * emf : 0.0, 0.01) << since;
-      EXPECT_EQ(drive.supervision.judged_bam, drive.position.used.angle_bam);
+      EXPECT_EQ(drive.supervision.judged_bam, drive.position.selected.angle_bam);
     }
   }
 }
@@ -297,15 +297,15 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     trust_synchronism();
     const std::int32_t speed = bpp_of(600);  // 40 V
     polarity_watch.open = true;
-    polarity_watch.blind = false;
-    drive.position.used.speed_bpp = polarity_watch.axis.speed_bpp = speed;
-    polarity_watch.axis.angle_bam = drive.position.used.angle_bam;
+    polarity_watch.samples_invalid = false;
+    drive.position.selected.speed_bpp = polarity_watch.axis.speed_bpp = speed;
+    polarity_watch.axis.angle_bam = drive.position.selected.angle_bam;
     drive.control.measured_q20 = {0, 0};
     drive.control.command_q16 = {0, raw(reversed ? -40.0 : 40.0, 16)};
     int n = 0;
     for (; n < 400 && polarity_watch.open && drive.state == DRIVE_RUN; ++n) {
-      drive.schedule.turn = n % 5 == 0 ? TURN_VOLTAGE : TURNS;  // the back-EMF's place in the turn, and none
-      drive.position.used.angle_bam += static_cast<std::uint32_t>(speed);
+      drive.schedule.slot = n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
+      drive.position.selected.angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
     }
     EXPECT_GT(n, 50);
@@ -338,7 +338,7 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
       board.encoder = (board.encoder + 4u) & 4095u;
       drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
       polarity_watch.open = open;
-      polarity_watch.blind = true;  // it has no say of its own for now
+      polarity_watch.samples_invalid = true;  // it has no say of its own for now
       polarity_watch.sign.expected_q16 = raw(8.0, 16);
       polarity_watch.sign.seen_q16 = raw(-3.0, 16);
     });
@@ -351,7 +351,7 @@ TEST_F(Protection, EveryFaultOpensTheGatesBeforeAnythingElse) {
     SetUp();
     make_run();
     ASSERT_TRUE(board.gates_on);
-    drive_raise(&drive, static_cast<drive_fault_t>(fault));
+    drive_trip(&drive, static_cast<drive_fault_t>(fault));
     EXPECT_FALSE(board.gates_on) << fault;
     EXPECT_FALSE(board.lit_with_gates_on) << fault;
     EXPECT_TRUE(board.lamp) << fault;
@@ -365,8 +365,8 @@ TEST_F(Protection, TheFaultRecordSaysWhatWas) {
   make_run();
   drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};
   drive.time_ms = 12345;
-  drive_raise(&drive, FAULT_LINK_LOW);
-  drive_raise(&drive, FAULT_OVERRUN);  // the first stays
+  drive_trip(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_OVERRUN);  // the first stays
   EXPECT_EQ(drive.fault, FAULT_LINK_LOW);
   EXPECT_EQ(drive.periods, 0u);
   EXPECT_EQ(drive.control.target_bpp, 0);

@@ -111,8 +111,8 @@ TEST_F(RequestFields, EveryErrorOfTheLinkHasItsPlace) {
     run(1200);  // broken off
   }
   board.serial_errors = {0x0103, 0x0204, 0x0305, 0x0406};
-  for (int k = 0; k < 5; ++k) stream_dropped(GUARD_SERIAL);
-  stream_dropped(GUARD_BUS);
+  for (int k = 0; k < 5; ++k) stream_dropped(COMM_WATCHDOG_SERIAL);
+  stream_dropped(COMM_WATCHDOG_BUS);
   for (int k = 0; k < 7; ++k) count_refusal();
   EXPECT_EQ(of(ask(REQUEST_LINK)), little(1, 2) + little(1, 2) + little(2, 2) + little(0x0103, 2) + little(0x0204, 2) +
                                        little(0x0305, 2) + little(0x0406, 2) + little(5, 2) + little(7, 2));

@@ -18,7 +18,7 @@ extern "C" {
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 #include "firmware/start/start.h"
-#include "firmware/text/words.h"
+#include "firmware/text/catalogue.h"
 #include "hal/hal_board.h"
 #include "hal/hal_flash.h"
 #include "hal/hal_image.h"
@@ -68,7 +68,7 @@ TEST_F(Requests, TheTablesSumIsThatOfWhatIsTold) {
   };
   for (std::uint16_t k = 0; k < parameter_count(); ++k) add(ask(REQUEST_PARAMETER_INFO, little(k, 2)));
   for (std::uint16_t k = 0; k < signal_count(); ++k) add(ask(REQUEST_SIGNAL_INFO, little(k, 2)));
-  for (std::uint16_t kind = 0; kind < WORDS_KINDS; ++kind) {
+  for (std::uint16_t kind = 0; kind < CATALOGUES; ++kind) {
     for (std::uint16_t code = 0;; ++code) {
       const Answer a = ask(REQUEST_WORDS, {kind, code});
       if (a.status() != OK) break;
@@ -82,7 +82,7 @@ TEST_F(Requests, IdentityIsBusyUntilTheSumIsThere) {
   requests_reset();
   std::uint16_t answer[RECORD_MAX];
   const std::uint16_t request[] = {REQUEST_IDENTITY, 7};
-  ASSERT_EQ(request_answer(GUARD_BUS, request, 2, answer), 3);
+  ASSERT_EQ(request_answer(COMM_WATCHDOG_BUS, request, 2, answer), 3);
   EXPECT_EQ(answer[2], BUSY);
 }
 
@@ -165,11 +165,11 @@ TEST_F(Requests, Commands) {
   EXPECT_EQ(give(COMMAND_START).status(), STATE) << "not calibrated yet";
   drive.state = DRIVE_READY;
   EXPECT_EQ(give(COMMAND_SPEED, 600 * 65536).status(), OK);
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 600 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 600 * 65536);
   const Answer fast = give(COMMAND_SPEED, 4000 * 65536);
   EXPECT_EQ(fast.status(), RANGE);
   EXPECT_EQ(fast.text(), "4000.0 rpm is beyond speed_limit, 3300 rpm: nothing changed");
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 600 * 65536);
+  EXPECT_EQ(drive.control.command_rpm_q16, 600 * 65536);
   EXPECT_EQ(give(COMMAND_START).status(), OK);
   EXPECT_TRUE(drive.request.start);
   EXPECT_EQ(give(COMMAND_STOP).status(), OK);
@@ -200,10 +200,10 @@ TEST_F(Requests, TheStore) {
   ASSERT_TRUE(store_save());
   std::uint16_t answer[RECORD_MAX];
   const std::uint16_t save[] = {REQUEST_COMMAND, 1, COMMAND_SAVE, 0, 0, 0, 0};
-  (void)request_answer(GUARD_SERIAL, save, 7, answer);
+  (void)request_answer(COMM_WATCHDOG_SERIAL, save, 7, answer);
   EXPECT_EQ(answer[2], BUSY);
   const std::uint16_t load[] = {REQUEST_COMMAND, 2, COMMAND_LOAD, 0, 0, 0, 0};
-  (void)request_answer(GUARD_SERIAL, load, 7, answer);
+  (void)request_answer(COMM_WATCHDOG_SERIAL, load, 7, answer);
   EXPECT_EQ(answer[2], BUSY) << "at rest as well";
   run(20000);
   drive.state = DRIVE_RUN;
@@ -213,7 +213,7 @@ TEST_F(Requests, TheStore) {
 
 TEST_F(Requests, StatusAndSignals) {
   drive.state = DRIVE_RUN;
-  drive.position.used.speed_bpp = bpp_of(-123);
+  drive.position.selected.speed_bpp = bpp_of(-123);
   drive.control.ramp.value = bpp_of(600);
   drive.limits = LIMIT_VOLTAGE | LIMIT_BRAKING;
   const Answer a = ask(REQUEST_STATUS);
@@ -237,11 +237,11 @@ TEST_F(Requests, FaultsWithTheirCircumstances) {
   EXPECT_EQ(ask(REQUEST_FAULT, {0}).status(), RANGE);
   make_run();
   board.tripped_by_pin = true;
-  drive.position.used.speed_bpp = q_mul(drive.config.bpp_per_rpm_q8, 600 * 256, 16);
+  drive.position.selected.speed_bpp = q_mul(drive.config.bpp_per_rpm_q8, 600 * 256, 16);
   drive.control.measured_q20.q = 3 << 20;
   const std::uint32_t then = drive.time_ms;
-  drive_raise(&drive, FAULT_OVER_CURRENT);
-  drive_raise(&drive, FAULT_STOP);  // one that comes on top is none of its own
+  drive_trip(&drive, FAULT_OVER_CURRENT);
+  drive_trip(&drive, FAULT_STOP);  // one that comes on top is none of its own
   const Answer a = ask(REQUEST_FAULT, {0});
   EXPECT_EQ(a.number(0, 2), 1u);
   EXPECT_EQ(a.number(2, 4), then);
@@ -256,7 +256,7 @@ TEST_F(Requests, TheHistoryKeepsTheLastSixteen) {
   for (int k = 0; k < 20; ++k) {
     drive.state = DRIVE_READY;
     drive.time_ms = static_cast<std::uint32_t>(100 + k);
-    drive_raise(&drive, FAULT_OFFSET);
+    drive_trip(&drive, FAULT_OFFSET);
   }
   EXPECT_EQ(fault_history_total(), 20);
   fault_record_t r;
@@ -270,27 +270,27 @@ TEST_F(Requests, TheHistoryKeepsTheLastSixteen) {
 TEST_F(Requests, WordsForEverything) {
   const auto last = [&](std::uint16_t kind) {
     std::uint16_t code = 0;
-    while (words_exist(kind, code)) code++;
+    while (message_exists(kind, code)) code++;
     return code - 1;
   };
-  EXPECT_EQ(last(WORDS_STATE), DRIVE_COMMISSION);
-  EXPECT_EQ(last(WORDS_FAULT), kFaults - 1);
-  EXPECT_EQ(last(WORDS_REMEDY), kFaults - 1);
-  EXPECT_EQ(1 << last(WORDS_LIMIT), LIMIT_BRAKING);
-  EXPECT_EQ(last(WORDS_VERDICT), VERDICT_DEPENDS);
-  EXPECT_EQ(last(WORDS_PHASE), COMMISSIONING_EVALUATE);
-  EXPECT_EQ(last(WORDS_STATUS), CONFLICT);
-  EXPECT_EQ(last(WORDS_START), START_CHARGE);
-  EXPECT_EQ(last(WORDS_BOARD), 13);    // board_words_t
-  EXPECT_EQ(last(WORDS_SELFTEST), 9);  // board/selftest.c
-  EXPECT_EQ(last(WORDS_WIRING), WIRING_OTHER_PHASES);
-  EXPECT_EQ(last(WORDS_COMMISSIONING), COMMISSIONING_FAILED);
-  EXPECT_EQ(last(WORDS_SCOPE), SCOPE_DONE);
-  EXPECT_EQ(last(WORDS_STORE), STORE_OLDER);
-  EXPECT_EQ(last(WORDS_CAN), HAL_CAN_BUS_OFF);
-  EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 12}).text(), "loss of synchronism");
-  EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_FAULT, 99}).status(), RANGE);
-  EXPECT_EQ(ask(REQUEST_WORDS, {WORDS_KINDS, 0}).status(), UNKNOWN);
+  EXPECT_EQ(last(CATALOGUE_STATE), DRIVE_COMMISSION);
+  EXPECT_EQ(last(CATALOGUE_FAULT), kFaults - 1);
+  EXPECT_EQ(last(CATALOGUE_REMEDY), kFaults - 1);
+  EXPECT_EQ(1 << last(CATALOGUE_LIMIT), LIMIT_BRAKING);
+  EXPECT_EQ(last(CATALOGUE_VERDICT), VERDICT_DEPENDS);
+  EXPECT_EQ(last(CATALOGUE_PHASE), COMMISSIONING_EVALUATE);
+  EXPECT_EQ(last(CATALOGUE_STATUS), CONFLICT);
+  EXPECT_EQ(last(CATALOGUE_START), START_CHARGE);
+  EXPECT_EQ(last(CATALOGUE_BOARD), 13);    // board_words_t
+  EXPECT_EQ(last(CATALOGUE_SELFTEST), 9);  // board/selftest.c
+  EXPECT_EQ(last(CATALOGUE_WIRING), WIRING_OTHER_PHASES);
+  EXPECT_EQ(last(CATALOGUE_COMMISSIONING), COMMISSIONING_FAILED);
+  EXPECT_EQ(last(CATALOGUE_SCOPE), SCOPE_DONE);
+  EXPECT_EQ(last(CATALOGUE_STORE), STORE_OLDER);
+  EXPECT_EQ(last(CATALOGUE_CAN), HAL_CAN_BUS_OFF);
+  EXPECT_EQ(ask(REQUEST_WORDS, {CATALOGUE_FAULT, 12}).text(), "loss of synchronism");
+  EXPECT_EQ(ask(REQUEST_WORDS, {CATALOGUE_FAULT, 99}).status(), RANGE);
+  EXPECT_EQ(ask(REQUEST_WORDS, {CATALOGUES, 0}).status(), UNKNOWN);
 }
 
 TEST_F(Requests, ResultsOfACommissioning) {
@@ -313,7 +313,7 @@ TEST_F(Requests, WrongLengthsAndTypes) {
   EXPECT_FALSE(ask(0x88).came()) << "an answer that comes back must not be answered";
   const std::uint16_t type = REQUEST_STATUS;
   std::uint16_t answer[RECORD_MAX];
-  EXPECT_EQ(request_answer(GUARD_BUS, &type, 1, answer), 0) << "without a tag there is nothing to answer to";
+  EXPECT_EQ(request_answer(COMM_WATCHDOG_BUS, &type, 1, answer), 0) << "without a tag there is nothing to answer to";
 }
 
 TEST_F(Requests, LinkErrorsAreCounted) {
@@ -352,7 +352,7 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
   drive.state = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
-    drive.position.used.speed_bpp = bpp_of(k);
+    drive.position.selected.speed_bpp = bpp_of(k);
     drive.time_ms = static_cast<std::uint32_t>(k);
     scope_step();
   }

@@ -204,10 +204,10 @@ TEST_F(Drive, TheSensorsScaleIsRenewedInItsTurn) {
   drive.trim.offset_a_q8 += 512;
   const slopes_scale_t renewed = slopes_scale(&drive.config.slopes, &drive.trim);
   ASSERT_NE(std::memcmp(&before, &renewed, sizeof before), 0);
-  for (const turn_t turn : {TURN_REGRESS, TURNS, TURN_VOLTAGE}) {
-    drive.schedule.turn = turn;
+  for (const schedule_slot_t turn : {SLOT_REGRESSION, SCHEDULE_SLOTS, SLOT_VOLTAGE}) {
+    drive.schedule.slot = turn;
     sample(std::vector<hal_adc_window_t>(drive.modulation.sampled.window_count, still_window()));
-    const slopes_scale_t& expected = turn == TURN_VOLTAGE ? renewed : before;
+    const slopes_scale_t& expected = turn == SLOT_VOLTAGE ? renewed : before;
     EXPECT_EQ(std::memcmp(&drive.samples.scale, &expected, sizeof expected), 0) << turn;
   }
 }

@@ -7,7 +7,7 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
@@ -37,7 +37,7 @@ class Schedule : public Drive {
     drive.model.iq_q20 = 0;
     drive.schedule = {};
     drive.schedule.period = 9;
-    drive.schedule.last = TURN_MOVE;
+    drive.schedule.last = SLOT_OPERATING_POINT;
   }
   /// The observer knows its angle to `share` of 5 degrees, with nothing gathered.
   static void know(double share) {
@@ -61,14 +61,14 @@ class Schedule : public Drive {
 
 TEST_F(Schedule, TurnsGoRoundAndEveryTaskHasItsPeriod) {
   const std::vector<schedule_t> all = next(50);
-  constexpr task_t kTasks[] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_TURN, TASK_RENEW, TASK_TURN,
-                               TASK_FIELD, TASK_JUDGE,       TASK_TURN, TASK_RENEW, TASK_TURN};
+  constexpr task_t kTasks[] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_SLOT,
+                               TASK_FIELD, TASK_JUDGE,       TASK_SLOT, TASK_RENEW, TASK_SLOT};
   int turn = 0;
   for (int k = 0; k < 50; ++k) {
     const schedule_t& s = all[static_cast<std::size_t>(k)];
     EXPECT_EQ(s.period, k % 10);
     EXPECT_EQ(s.task, kTasks[k % 10]);
-    EXPECT_EQ(s.turn, (s.task == TASK_TURN) ? turn++ % TURNS : static_cast<int>(TURNS)) << k;
+    EXPECT_EQ(s.slot, (s.task == TASK_SLOT) ? turn++ % SCHEDULE_SLOTS : static_cast<int>(SCHEDULE_SLOTS)) << k;
     EXPECT_EQ(s.renews, s.task == TASK_RENEW) << k;
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST) << k;
     EXPECT_TRUE(s.turning && !s.held && !s.moves && !s.skips) << k;
@@ -83,8 +83,8 @@ TEST_F(Schedule, BeforeTheShaftTurnsEveryPeriodIsATurnThatHasNoTask) {
   int turn = 0;
   for (const schedule_t& s : next(40)) {
     const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;
-    EXPECT_EQ(s.turn, own ? static_cast<int>(TURNS) : turn++ % TURNS);
-    EXPECT_FALSE(s.turning || s.unsure || s.pressed || s.renews || s.judges || s.skips || s.decides);
+    EXPECT_EQ(s.slot, own ? static_cast<int>(SCHEDULE_SLOTS) : turn++ % SCHEDULE_SLOTS);
+    EXPECT_FALSE(s.turning || s.unsure || s.update_urgent || s.renews || s.judges || s.skips || s.exclusive);
   }
   EXPECT_EQ(turn, 32);
 }
@@ -95,24 +95,24 @@ TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
     drive.state = DRIVE_START;
     leave_working_point();
     next(before);
-    drive.flags.decides = true;
+    drive.flags.wants_exclusive = true;
     schedule_t s = next(1)[0];
     const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;  // then it waits
-    EXPECT_NE(s.decides, own);
+    EXPECT_NE(s.exclusive, own);
     if (own) s = next(1)[0];
-    EXPECT_TRUE(s.decides && s.skips);
-    EXPECT_EQ(s.turn, TURNS);
+    EXPECT_TRUE(s.exclusive && s.skips);
+    EXPECT_EQ(s.slot, SCHEDULE_SLOTS);
     EXPECT_FALSE(s.moves || s.renews || s.judges);
-    drive.flags.decides = false;
-    EXPECT_FALSE(next(1)[0].decides);
+    drive.flags.wants_exclusive = false;
+    EXPECT_FALSE(next(1)[0].exclusive);
   }
 }
 
 TEST_F(Schedule, OnlyAStartDecides) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION}) {
-    drive.flags.decides = true;
+    drive.flags.wants_exclusive = true;
     drive_enter(&drive, state);
-    EXPECT_FALSE(next(1)[0].decides) << state;
+    EXPECT_FALSE(next(1)[0].exclusive) << state;
   }
 }
 
@@ -120,7 +120,7 @@ TEST_F(Schedule, OnlyAStartDecides) {
 TEST_F(Schedule, TheRegressionSeesEveryPlaceOfTheAlternatingLayout) {
   int seen[6] = {};
   const std::vector<schedule_t> all = next(600);
-  for (int k = 0; k < 600; ++k) seen[k % 6] += all[static_cast<std::size_t>(k)].turn == TURN_REGRESS ? 1 : 0;
+  for (int k = 0; k < 600; ++k) seen[k % 6] += all[static_cast<std::size_t>(k)].slot == SLOT_REGRESSION ? 1 : 0;
   for (const int count : seen) EXPECT_EQ(count, 8);
 }
 
@@ -131,13 +131,13 @@ TEST_F(Schedule, WhatCannotWaitTakesThreeTurnsInARowAtMost) {
     if (!moved) drive.position.observer.gathered.periods = 7;  // a gain that gets old
     int given = 0, turns = 0;
     for (const schedule_t& s : next(40)) {
-      if (s.task != TASK_TURN) {
-        EXPECT_EQ(s.turn, TURNS);
+      if (s.task != TASK_SLOT) {
+        EXPECT_EQ(s.slot, SCHEDULE_SLOTS);
         EXPECT_FALSE(s.moves);
         continue;
       }
       const bool gives_way = moved ? s.moves : s.renews;
-      EXPECT_EQ(gives_way, s.turn == TURNS);
+      EXPECT_EQ(gives_way, s.slot == SCHEDULE_SLOTS);
       EXPECT_FALSE(moved ? s.renews : s.moves);
       ++(gives_way ? given : turns);
     }
@@ -152,7 +152,7 @@ TEST_F(Schedule, WorkingPointAndCovarianceTakeTurns) {
   bool moved_last = false;
   int given = 0;
   for (const schedule_t& s : next(80)) {
-    if (s.task != TASK_TURN || s.turn != TURNS) continue;
+    if (s.task != TASK_SLOT || s.slot != SCHEDULE_SLOTS) continue;
     EXPECT_NE(s.moves, s.renews);
     EXPECT_TRUE(given == 0 || s.moves != moved_last);
     ++given;
@@ -175,7 +175,7 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   know(1.1);
   leave_working_point();
   for (const schedule_t& s : next(40)) {
-    EXPECT_TRUE(s.unsure && s.pressed);
+    EXPECT_TRUE(s.unsure && s.update_urgent);
     EXPECT_FALSE(s.judges);
     EXPECT_FALSE(s.moves) << "it renews anyway";
     EXPECT_EQ(s.skips, s.task == TASK_SPEED || s.task == TASK_FIELD);
@@ -184,7 +184,7 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   know(0.9);
   drive.position.observer.gathered = {0, raw(1.0, 21), 0, 1};
   for (const schedule_t& s : next(10)) {
-    EXPECT_TRUE(s.pressed && !s.unsure);
+    EXPECT_TRUE(s.update_urgent && !s.unsure);
     const bool long_task = s.task == TASK_SPEED || s.task == TASK_FIELD;
     EXPECT_EQ(s.skips, long_task || s.judges);
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST);
@@ -195,7 +195,7 @@ TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {
   drive.periods = 9;
   for (const schedule_t& s : next(10)) {
     EXPECT_FALSE(s.judges);
-    EXPECT_TRUE(s.pressed && !s.unsure) << "how much its windows will tell is not known yet";
+    EXPECT_TRUE(s.update_urgent && !s.unsure) << "how much its windows will tell is not known yet";
     EXPECT_NE(s.skips, s.renews);
   }
   drive.periods = 10;
@@ -203,12 +203,12 @@ TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {
 }
 
 TEST_F(Schedule, AHeldShaftMovesItsWorkingPointWithEveryTurn) {
-  brake_hold.left = 1000;
+  brake_release_hold.left = 1000;
   drive.position.observer.load_is_new = true;
   for (const schedule_t& s : next(40)) {
     EXPECT_TRUE(s.held);
-    EXPECT_EQ(s.turn, TURNS);
-    EXPECT_EQ(s.moves, s.task == TASK_TURN || s.task == TASK_JUDGE_FIRST);
+    EXPECT_EQ(s.slot, SCHEDULE_SLOTS);
+    EXPECT_EQ(s.moves, s.task == TASK_SLOT || s.task == TASK_JUDGE_FIRST);
     EXPECT_EQ(s.renews, s.task == TASK_RENEW);
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE);
   }

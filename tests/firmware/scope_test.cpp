@@ -285,7 +285,7 @@ TEST_F(Scope, RunsInTheControlInterrupt) {
   s.channel[0] = {signal_state, 0};
   arm(s);
   period();
-  drive_raise(&drive, FAULT_STOP);
+  drive_trip(&drive, FAULT_STOP);
   periods(1024);
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
   EXPECT_EQ(scope_status().trigger_time_ms, 40u);

@@ -6,7 +6,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
-#include "firmware/api/guard.h"
+#include "firmware/api/comm_watchdog.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 }
@@ -39,7 +39,7 @@ class SpeedInput : public Drive {
       parameters.divergence_time = 1000;
     }
   }
-  static double asked_rpm() { return drive.control.wanted_rpm_q16 / 65536.0; }
+  static double asked_rpm() { return drive.control.command_rpm_q16 / 65536.0; }
 };
 
 TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {
@@ -51,7 +51,7 @@ TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {
   turns(1, true, 0);
   EXPECT_EQ(drive.state, DRIVE_START);
   EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
-  EXPECT_FALSE(guard_release()) << "the switch watches over its motor";
+  EXPECT_FALSE(comm_watchdog_release()) << "the switch watches over its motor";
 }
 
 TEST_F(SpeedInput, TheConverterIsChosenForThreeMillisecondsInEight) {
@@ -103,13 +103,13 @@ TEST_F(SpeedInput, OpeningTheSwitchStops) {
 TEST_F(SpeedInput, OpeningTheSwitchClearsAFaultAndClosingItDoesNot) {
   turns(1, false, 0);
   turns(6, true, 0);
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   turns(2, true, 0);
   EXPECT_EQ(drive.state, DRIVE_FAULT);
   turns(8, false, 0);
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_EQ(drive.fault, FAULT_NONE);
-  drive_raise(&drive, FAULT_LINK_LOW);
+  drive_trip(&drive, FAULT_LINK_LOW);
   turns(2, true, 0);
   EXPECT_EQ(drive.state, DRIVE_FAULT);
   EXPECT_EQ(::board.input, SPEED_INPUT_WAITS);

@@ -17,8 +17,8 @@ class SpeedKnown : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    drive.position.used = {0x20000000u, 123456, 1'000'000, 32767};
-    drive.position.low = drive.position.high = drive.position.used;
+    drive.position.selected = {0x20000000u, 123456, 1'000'000, 32767};
+    drive.position.low = drive.position.high = drive.position.selected;
     drive.position.deviation_q20 = 1000;
     flux_observer.load_angle_bam = 0x01000000;
     drive.control.measured_q20 = {raw(-1.5, 20), raw(2.5, 20)};

@@ -40,12 +40,12 @@ TEST_F(SpeedReference, AShaftThatIsPushedAwayIsDrivenBack) {
   parameters.position_hold = 1280;
   ASSERT_TRUE(drive_config_load(&drive.config));
   for (const double off : {0.3, -0.3}) {
-    position_hold_release(&drive.control.place);
-    drive.position.used.angle_bam = bam(1.0);
+    position_hold_release(&drive.control.position_hold);
+    drive.position.selected.angle_bam = bam(1.0);
     part(TASK_SPEED);
-    position_hold_t place = drive.control.place;
+    position_hold_t place = drive.control.position_hold;
     speed_controller_t law = drive.control.speed;
-    drive.position.used.angle_bam = bam(1.0 + off);
+    drive.position.selected.angle_bam = bam(1.0 + off);
     part(TASK_SPEED);
     const std::int32_t back = position_hold_step(&place, bam(1.0 + off), drive.config.hold_gain_q30);
     ASSERT_GT(std::abs(back), 100);
@@ -57,7 +57,7 @@ TEST_F(SpeedReference, AShaftThatIsPushedAwayIsDrivenBack) {
 
 // Once in a millisecond, where the angle is judged as well.
 TEST_F(SpeedReference, CoggingIsLearntWhereTheAngleIsJudged) {
-  for (const task_t task : {TASK_SPEED, TASK_JUDGE_FIRST, TASK_TURN, TASK_RENEW, TASK_FIELD, TASK_JUDGE}) {
+  for (const task_t task : {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_FIELD, TASK_JUDGE}) {
     for (const bool judges : {false, true}) {
       drive.config.observer.cogging.order = 6;
       drive.position.observer.cogging.order = 0;
@@ -75,7 +75,7 @@ TEST_F(SpeedReference, TheTorqueOfAnAmpereFollowsTheField) {
   for (const double id : {0.0, -5.0, 2.0}) {
     drive.control.reference_q20.d = raw(id, 20);
     const q_inverse_t before = drive.control.per_torque_constant;
-    part(TASK_TURN);
+    part(TASK_SLOT);
     EXPECT_EQ(q_over(1 << 20, drive.control.per_torque_constant, 24), q_over(1 << 20, before, 24));
     part(TASK_JUDGE);
     const double per_ampere = 1.5 * m.pole_pairs * (m.flux + (m.ld - m.lq) * id);

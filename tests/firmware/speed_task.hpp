@@ -40,7 +40,7 @@ class SpeedTask : public Drive {
       drive_control_speed(&drive);
     }
   }
-  static void speed(double rad_per_s) { drive.position.used = {0, bpp(rad_per_s), 0, 32767}; }
+  static void speed(double rad_per_s) { drive.position.selected = {0, bpp(rad_per_s), 0, 32767}; }
   static double iq() { return real(drive.control.reference_q20.q, 20); }
   static double id() { return real(drive.control.reference_q20.d, 20); }
   static double torque_constant() { return real(machine_torque_constant_q24(&drive.model, 0), 24); }

@@ -9,7 +9,7 @@ extern "C" {
 #include "control/brake_limit.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 }
@@ -111,7 +111,7 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
   for (const Case& c : cases) {
     use_source(c.source);
     drive.control.current_limit_q20 = raw(c.limit, 20);
-    drive.control.seeing_q20 = 0;
+    drive.control.observability_q20 = 0;
     drive.position.blend.share_q15 = c.share_q15;
     speed(c.speed);
     for (int n = 0; n < 200; ++n) {
@@ -129,12 +129,12 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
 TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
   for (const auto& [d, room] : {std::pair{0.0, 10.0}, {-6.0, 8.0}, {6.0, 8.0}, {-10.0, 0.0}, {-11.0, 0.0}}) {
     drive.control.reference_q20.d = raw(d, 20);
-    EXPECT_NEAR(real(drive_current_room(&drive), 20), room, 1e-5) << d;
+    EXPECT_NEAR(real(drive_current_headroom(&drive), 20), room, 1e-5) << d;
     drive.control.weakening_q20 = raw(std::min(d, 0.0), 20);
     parameters.id_low_speed = raw(std::max(d, 0.0), 20);
     parameters.mtpa = 0;
     part(TASK_SPEED);
-    EXPECT_NEAR(real(drive.control.room_q20, 20), room, 1e-5) << d;
+    EXPECT_NEAR(real(drive.control.headroom_q20, 20), room, 1e-5) << d;
   }
 }
 
@@ -162,7 +162,7 @@ TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {
     in.end_q16 = raw(420.0, 16);
     in.emf_q16 = raw(std::fabs(w) * 1e-4 * real(drive.model.emf_q16, 16), 16);
     in.drop_q16 = raw(10.0 * real(drive.model.nominal_rs_q24, 24), 16);
-    EXPECT_NEAR(real(drive.control.braking_room_q20, 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01)
+    EXPECT_NEAR(real(drive.control.braking_headroom_q20, 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01)
         << w << ", " << link;
   }
 }
@@ -180,7 +180,7 @@ TEST_F(SpeedTask, ABrakingShaftKeepsToItsLimit) {
       drive.control.ramp.value = drive.control.target_bpp = bpp(sign * (300.0 + change * 250.0));
       for (int n = 0; n < 5; ++n) part(TASK_SPEED);
       const bool brakes = change < 0.0;
-      const double braking = real(drive.control.braking_room_q20, 20);
+      const double braking = real(drive.control.braking_headroom_q20, 20);
       ASSERT_GT(braking, 0.5);
       ASSERT_LT(braking, 6.0);
       EXPECT_NEAR(iq(), sign * change * (brakes ? braking : 8.0), 1e-4) << sign << change;
@@ -206,7 +206,8 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
     speed(w);
     drive.control.ramp.value = drive.control.target_bpp = bpp(w);
     drive.config.friction_per_bpp_q40 = raw(0.002 / 4.0 * kTurn / kPeriod / 4294967296.0, 40);  // 2 mNms, mechanical
-    drive.position.used.load_accel_q8 = static_cast<std::int32_t>(load_nm * real(drive.model.accel_q12, 12) * 256.0);
+    drive.position.selected.load_accel_q8 =
+        static_cast<std::int32_t>(load_nm * real(drive.model.accel_q12, 12) * 256.0);
     part(TASK_SPEED);
     return iq();
   };
@@ -221,13 +222,13 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
 TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
   use_source(POSITION_OBSERVER);
   ASSERT_TRUE(drive_config_load(&drive.config));
-  brake_hold.left = 5;
-  brake_hold.reference_bam = 0;
+  brake_release_hold.left = 5;
+  brake_release_hold.reference_bam = 0;
   part(TASK_SPEED);
   drive.control.reference_q20.q = raw(3.0, 20);
-  drive.position.used.load_accel_q8 = static_cast<std::int32_t>(1.2 * real(drive.model.accel_q12, 12) * 256.0);
+  drive.position.selected.load_accel_q8 = static_cast<std::int32_t>(1.2 * real(drive.model.accel_q12, 12) * 256.0);
   part(TASK_SPEED);
-  EXPECT_EQ(brake_hold.left, 3u);
+  EXPECT_EQ(brake_release_hold.left, 3u);
   EXPECT_NEAR(real(drive.control.speed.current_q20, 20), iq() - 1.2 / torque_constant(), 2e-3);
   EXPECT_GT(iq(), 2.2);
 }
@@ -255,12 +256,12 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     part(TASK_SPEED);
     parameters.hold_time = 1;
     hold_begin(&drive);
-    brake_hold.reference_bam = bam(0.3 + c.off);
+    brake_release_hold.reference_bam = bam(0.3 + c.off);
     const double w = 50.0;
     drive.control.ramp.value = bpp(w);
     const double per_nm = real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod;
-    drive.position.used = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
-                           static_cast<std::int32_t>(c.load_nm * real(drive.model.accel_q12, 12) * 256.0), 32767};
+    drive.position.selected = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
+                               static_cast<std::int32_t>(c.load_nm * real(drive.model.accel_q12, 12) * 256.0), 32767};
     drive.control.reference_q20.q = raw(c.iq, 20);
     ASSERT_TRUE(hold_step(&drive));
     const double per_ampere = per_nm * torque_constant();
@@ -269,7 +270,7 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     const double accel = 225.0 * 225.0 * c.off + 450.0 * (c.slow - gained) + c.load_nm * per_nm;
     const double wanted = accel / per_ampere;
     EXPECT_NEAR(iq(), c.iq + std::clamp(0.7 * (wanted - c.iq), -0.7, 0.7), 2e-3) << c.off << c.slow << c.load_nm;
-    EXPECT_EQ(brake_hold.left, 9u);
+    EXPECT_EQ(brake_release_hold.left, 9u);
   }
 }
 
@@ -286,14 +287,14 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     c.weakening_q20 = kMark;
     drive.inertia.ms = kMark;
     c.reference_q20.d = kMark;
-    c.room_q20 = raw(3.0, 20);
-    c.braking_room_q20 = kMark;
+    c.headroom_q20 = raw(3.0, 20);
+    c.braking_headroom_q20 = kMark;
     drive.schedule.period = static_cast<std::uint16_t>((k + 9) % 10);
     schedule_next(&drive);
     drive_control_speed(&drive);
     EXPECT_EQ(drive.time_ms != kMark, k == 0);
-    EXPECT_EQ(c.room_q20 != raw(3.0, 20), k == 0) << k;
-    EXPECT_EQ(c.braking_room_q20 != kMark, k == 0) << k;
+    EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;
+    EXPECT_EQ(c.braking_headroom_q20 != kMark, k == 0) << k;
     EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
     EXPECT_EQ(drive.inertia.ms != kMark, k == 6) << k;
     EXPECT_EQ(c.reference_q20.d != kMark, k == 0) << k;
@@ -353,11 +354,11 @@ TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
     drive.control.target_bpp = target;
     drive.config.ramp_step_bpp = 1;
     drive.control.ramp.value = ramp;
-    drive.position.used.speed_bpp = now;
-    position_hold_release(&drive.control.place);
-    if (before) (void)position_hold_step(&drive.control.place, 0, drive.config.hold_gain_q30);
+    drive.position.selected.speed_bpp = now;
+    position_hold_release(&drive.control.position_hold);
+    if (before) (void)position_hold_step(&drive.control.position_hold, 0, drive.config.hold_gain_q30);
     part(TASK_SPEED);
-    return drive.control.place.holding;
+    return drive.control.position_hold.holding;
   };
   const std::int32_t rest = drive.config.hold_below_bpp;
   ASSERT_GT(rest, 10);

@@ -32,8 +32,8 @@ class Stall : public Drive {
     double angle = 0.0;
     for (int n = 1; n <= most; ++n) {
       angle += rpm / 60.0 * 4.0 * 360.0 * 1e-3;
-      drive.position.used.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
-      drive.position.used.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
+      drive.position.selected.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
+      drive.position.selected.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
       look();
       if (drive.state == DRIVE_FAULT) return n;
     }
@@ -83,7 +83,7 @@ TEST_F(Stall, NotInAnotherStateThanRun) {
 
 // More than a quarter of a turn between two looks: the angle alone would not tell which way.
 TEST_F(Stall, ASpeedBeyondWhatTwoLooksTellIsNone) {
-  drive.position.used.speed_bpp = bpp_of(40000);
+  drive.position.selected.speed_bpp = bpp_of(40000);
   for (int n = 0; n < 2000; ++n) look();
   EXPECT_EQ(drive.fault, FAULT_NONE);
 }
@@ -110,7 +110,7 @@ TEST_F(Stall, AShaftThatGetsOnIsNone) {
 TEST_F(Stall, TheRestlessAngleOfABlockedShaftDoesNotHideIt) {
   int n = 0;
   for (; n < 5000 && drive.state == DRIVE_RUN; ++n) {
-    drive.position.used.angle_bam =
+    drive.position.selected.angle_bam =
         static_cast<std::uint32_t>(static_cast<std::int64_t>((n % 2 == 0 ? 3.5 : -3.5) * kDegree));
     look();
   }
@@ -144,8 +144,8 @@ TEST_F(Stall, AReversalIsNone) {
     for (int n = 0; n < 10000; ++n) {
       const double rpm = direction * (-1500.0 + 0.3 * n);
       angle += rpm / 60.0 * 4.0 * 360.0 * 1e-3;
-      drive.position.used.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
-      drive.position.used.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
+      drive.position.selected.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
+      drive.position.selected.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
       look();
       ASSERT_EQ(drive.fault, FAULT_NONE) << rpm;
     }

@@ -24,12 +24,12 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
     starting.tick = 139;
     start_step_catch(&drive);
     EXPECT_EQ(drive.found.phase, START_CATCH) << "not before its time";
-    EXPECT_FALSE(drive.flags.decides);
+    EXPECT_FALSE(drive.flags.wants_exclusive);
     starting.tick = 140;
     start_step_catch(&drive);
     EXPECT_EQ(drive.found.phase, START_CATCH) << "not beside anything else";
-    EXPECT_TRUE(drive.flags.decides);
-    drive.schedule.decides = true;
+    EXPECT_TRUE(drive.flags.wants_exclusive);
+    drive.schedule.exclusive = true;
     start_step_catch(&drive);
     const bool follows = std::fabs(stray) < 15.0;
     EXPECT_EQ(drive.state, follows ? DRIVE_RUN : DRIVE_START) << stray;
@@ -105,7 +105,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
     for (int n = 0; n < AXIS_PERIODS; ++n) see();
     EXPECT_FALSE(s.learnt) << "a decision has a period of its own";
     const std::uint32_t before = s.rotor.angle_bam;
-    drive.schedule.decides = true;
+    drive.schedule.exclusive = true;
     see();
     EXPECT_TRUE(s.learnt);
     const double most = 15.0 * kDegree;

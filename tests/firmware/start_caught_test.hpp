@@ -44,11 +44,11 @@ class StartCaught : public Drive {
     start_step_pulse(&drive);
     EXPECT_FALSE(board.gates_on) << "the current dies away";
     start_step_pulse(&drive);
-    EXPECT_TRUE(drive.flags.decides) << "in a period for itself";
+    EXPECT_TRUE(drive.flags.wants_exclusive) << "in a period for itself";
     EXPECT_EQ(drive.found.phase, START_PULSE);
-    drive.schedule.decides = true;
+    drive.schedule.exclusive = true;
     start_step_pulse(&drive);
-    drive.schedule.decides = false;
+    drive.schedule.exclusive = false;
     if (drive.found.phase == START_CATCH) start_step_catch(&drive);
   }
   void await_pulse() {

@@ -5,7 +5,7 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
@@ -33,12 +33,12 @@ class StartStanding : public Drive {
   static void step() {
     const std::uint16_t before = drive.found.phase;
     start_state.step(&drive);
-    drive.schedule.decides = drive.state == DRIVE_START && drive.flags.decides;
-    if (!drive.schedule.decides) return;
+    drive.schedule.exclusive = drive.state == DRIVE_START && drive.flags.wants_exclusive;
+    if (!drive.schedule.exclusive) return;
     EXPECT_EQ(drive.found.phase, before);
     start_state.step(&drive);
-    EXPECT_FALSE(drive.flags.decides);
-    drive.schedule.decides = false;
+    EXPECT_FALSE(drive.flags.wants_exclusive);
+    drive.schedule.exclusive = false;
   }
 
   /// At the end of a phase, with AVV's angle at hand.
@@ -67,7 +67,7 @@ class StartStanding : public Drive {
   }
   static void expect_runs(double angle) {
     EXPECT_EQ(drive.state, DRIVE_RUN);
-    EXPECT_NEAR(wrapped(rad(drive.position.used.angle_bam) - angle), 0.0, 1e-6);
+    EXPECT_NEAR(wrapped(rad(drive.position.selected.angle_bam) - angle), 0.0, 1e-6);
   }
 };
 
@@ -75,10 +75,10 @@ class StartStanding : public Drive {
 TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   drive.state = DRIVE_READY;
   drive_control_t& c = drive.control;
-  c.ramp.value = c.feed_q16 = c.reference_q20.d = c.reference_q20.q = 12345;
-  c.closed = c.place.holding = true;
+  c.ramp.value = c.feed_forward_q16 = c.reference_q20.d = c.reference_q20.q = 12345;
+  c.closed = c.position_hold.holding = true;
   drive.supervision.missing = drive.supervision.overrun = 3;
-  drive.supervision.synchronism.doubt = 99;
+  drive.supervision.synchronism.debounce = 99;
   starting.tries = starting.pulses = 2;
   drive.model.trim.rs_q24 = 777;
   drive.model.accel_q12 /= 2;
@@ -86,11 +86,11 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   drive.config.sensor_mismatch_q30 = 4321;
   start_state.begin(&drive, DRIVE_RUN);
   EXPECT_EQ(drive.state, DRIVE_START);
-  EXPECT_EQ(c.ramp.value | c.feed_q16 | c.reference_q20.d | c.reference_q20.q, 0);
+  EXPECT_EQ(c.ramp.value | c.feed_forward_q16 | c.reference_q20.d | c.reference_q20.q, 0);
   EXPECT_FALSE(c.closed);
-  EXPECT_FALSE(c.place.holding);
+  EXPECT_FALSE(c.position_hold.holding);
   EXPECT_EQ(drive.supervision.missing + drive.supervision.overrun, 0);
-  EXPECT_EQ(drive.supervision.synchronism.doubt, 0);
+  EXPECT_EQ(drive.supervision.synchronism.debounce, 0);
   EXPECT_EQ(starting.tries + starting.pulses, 0);
   EXPECT_EQ(drive.model.trim.rs_q24, 0);
   EXPECT_EQ(drive.model.accel_q12, drive.config.nameplate.accel_q12);
@@ -135,7 +135,7 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     SetUp();
     parameters.polarity_check = 0;
     parameters.hold_time = 40;
-    brake_hold.left = 7;  // of the last run
+    brake_release_hold.left = 7;  // of the last run
     const double speed = Motor{}.electrical(rpm);
     at(START_SETTLE, 99, speed);
     step();
@@ -144,7 +144,7 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     expect_runs(kThere);
     const bool turns = std::fabs(rpm) > 20.0;
     EXPECT_NEAR(rad_per_s(drive.control.ramp.value), turns ? speed : 0.0, 0.01) << rpm;
-    EXPECT_EQ(brake_hold.left, turns ? 0u : 400u) << rpm;
+    EXPECT_EQ(brake_release_hold.left, turns ? 0u : 400u) << rpm;
     EXPECT_EQ(drive.found.sigma_q8, 0);
   }
 }
@@ -376,40 +376,40 @@ TEST_F(StartStanding, AVectorBeginsFromRest) {
     drive.control.current.d.integral = drive.control.current.q.integral = 99;
     drive.position.seen.angle_bam = 5;
     polarity_watch.open = true;
-    start_turn(&drive);
-    EXPECT_EQ(drive.found.phase, START_TURN);
+    start_if_ramp(&drive);
+    EXPECT_EQ(drive.found.phase, START_IF_RAMP);
     EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
     EXPECT_EQ(drive.position.seen.angle_bam, 0u);
     EXPECT_TRUE(drive.control.closed);
     EXPECT_FALSE(polarity_watch.open);
-    EXPECT_EQ(starting.turn.backward, backward);
+    EXPECT_EQ(starting.if_start.backward, backward);
   }
 }
 
 // What the vector has turned is taken over as the source sees it: angle, speed and the current in its frame; the
 // controllers begin anew in that frame, and nobody holds the shaft.
 TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
-  start_turn(&drive);
-  if_start_t& turn = start().turn;
+  start_if_ramp(&drive);
+  if_start_t& if_start = start().if_start;
   drive.control.current.d.integral = drive.control.current.q.integral = 99;
-  brake_hold.left = 7;
+  brake_release_hold.left = 7;
   flux_observer.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
   for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
-    drive.position.used.angle_bam = turn.vector_bam;
-    drive.position.seen = {turn.vector_bam - bam(0.4), turn.speed_bpp, 0, 32767};
+    drive.position.selected.angle_bam = if_start.vector_bam;
+    drive.position.seen = {if_start.vector_bam - bam(0.4), if_start.speed_bpp, 0, 32767};
     drive.control.command_q16 = {0, 0};
     step();
   }
   ASSERT_EQ(drive.state, DRIVE_RUN);
-  EXPECT_EQ(drive.control.ramp.value, drive.config.turn.speed_bpp);
-  EXPECT_EQ(drive.position.used.angle_bam, drive.position.seen.angle_bam);
+  EXPECT_EQ(drive.control.ramp.value, drive.config.if_start.speed_bpp);
+  EXPECT_EQ(drive.position.selected.angle_bam, drive.position.seen.angle_bam);
   EXPECT_EQ(drive.position.encoder.angle_bam, drive.position.seen.angle_bam);
-  EXPECT_EQ(drive.position.encoder.speed_bpp, turn.speed_bpp);
+  EXPECT_EQ(drive.position.encoder.speed_bpp, if_start.speed_bpp);
   EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
   EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
   EXPECT_EQ(drive.control.reference_q20.d, 0);
-  EXPECT_NEAR(real(drive.control.reference_q20.q, 20), real(turn.current_q20, 20) * std::sin(0.4), 0.05);
-  EXPECT_EQ(brake_hold.left, 0u);
+  EXPECT_NEAR(real(drive.control.reference_q20.q, 20), real(if_start.current_q20, 20) * std::sin(0.4), 0.05);
+  EXPECT_EQ(brake_release_hold.left, 0u);
 }
 
 TEST_F(StartStanding, TheGatesHaveTheirInstant) {
@@ -426,19 +426,19 @@ TEST_F(StartStanding, TheGatesHaveTheirInstant) {
 // Speed control, encoder and the watch over the polarity go on from here; nobody holds the shaft.
 TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   board.encoder = 1234;
-  brake_hold.left = 9;
+  brake_release_hold.left = 9;
   drive.control.reference_q20.q = raw(3.0, 20);
   drive.control.speed.current_q20 = drive.control.speed.integral_q20 = raw(2.0, 20);
-  drive_hand_over(&drive, bam(0.8), bpp(100.0));
-  EXPECT_EQ(drive.position.used.angle_bam, bam(0.8));
-  EXPECT_EQ(drive.position.used.speed_bpp, bpp(100.0));
+  drive_bumpless_transfer(&drive, bam(0.8), bpp(100.0));
+  EXPECT_EQ(drive.position.selected.angle_bam, bam(0.8));
+  EXPECT_EQ(drive.position.selected.speed_bpp, bpp(100.0));
   EXPECT_EQ(drive.position.encoder.angle_bam, bam(0.8));
   EXPECT_EQ(drive.position.encoder.speed_bpp, bpp(100.0));
   const std::uint32_t count = position_encoder_angle(1234, 4, parameters.encoder_counts);
   EXPECT_EQ(drive.position.encoder_offset_bam, bam(0.8) - count);
   EXPECT_EQ(polarity_watch.axis.angle_bam, bam(0.8));
   EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(100.0));
-  EXPECT_EQ(brake_hold.left, 0u);
+  EXPECT_EQ(brake_release_hold.left, 0u);
   EXPECT_EQ(drive.control.ramp.value, bpp(100.0));
   EXPECT_EQ(drive.control.reference_q20.q, 0);
   EXPECT_EQ(drive.control.speed.current_q20, 0);
@@ -450,10 +450,10 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
     for (const int above : {0, 1}) {
       SetUp();
       use_source(source);
-      drive.config.blend.high_bpp = drive.config.turn.speed_bpp - above;
+      drive.config.blend.high_bpp = drive.config.if_start.speed_bpp - above;
       drive.position.blend.region = BLEND_LOW;
       drive.position.blend.share_q15 = 32767;
-      start_turn(&drive);
+      start_if_ramp(&drive);
       const bool alone = source >= POSITION_FLUX_CONV && above != 0;
       EXPECT_EQ(drive.position.blend.region, alone ? BLEND_HIGH : BLEND_LOW) << source;
       EXPECT_EQ(drive.position.blend.share_q15, alone ? 0 : 32767) << source;
@@ -462,9 +462,9 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
 }
 
 TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
-  start_turn(&drive);
+  start_if_ramp(&drive);
   for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
-    drive.position.seen = {start().turn.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
+    drive.position.seen = {start().if_start.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
     drive.control.command_q16 = {0, 0};
     step();
   }

@@ -60,8 +60,8 @@ TEST_F(States, ACurrentThatDoesNotEndIsAFaultAfterTenSeconds) {
 TEST_F(States, AResetCalibratesAnew) {
   make_ready();
   periods(1000);
-  drive.calm_at = 50000;  // a current has flowed for seconds then
-  drive_raise(&drive, FAULT_OFFSET);
+  drive.settled_at = 50000;  // a current has flowed for seconds then
+  drive_trip(&drive, FAULT_OFFSET);
   drive_command_reset();
   hal_adc_window_t w = still_window();
   w.start_a = static_cast<std::uint16_t>(4 * (2048 + 8));
@@ -115,7 +115,7 @@ TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
     drive.flags.spins = turning;
     drive.state = DRIVE_COMMISSION;
     commissioning.outcome = COMMISSIONING_RUNNING;
-    commissioning.phase = COMMISSIONING_TURN;
+    commissioning.phase = COMMISSIONING_ALIGN;
     board.gates_on = true;
     drive.request.reload = false;  // the background level has been there
     drive_command_stop();
@@ -291,7 +291,7 @@ TEST_F(States, EachStopHasItsWholeTime) {
   drive_command_stop();
   drive_sequence(&drive);
   ASSERT_EQ(drive.state, DRIVE_STOP);
-  drive.position.used.speed_bpp = bpp_of(5);
+  drive.position.selected.speed_bpp = bpp_of(5);
   drive.control.ramp.value = 1;
   for (int n = 0; n < 100; ++n) drive_sequence(&drive);  // the ramp has its own time
   drive.control.ramp.value = 0;

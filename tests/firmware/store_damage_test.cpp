@@ -247,7 +247,7 @@ TEST_F(Store, APageThatWearsOutIsNoticedBeforeTheOldSlotIsGivenUp) {
 
 TEST_F(Store, EveryStateHasItsWords) {
   for (int s = STORE_EMPTY; s <= STORE_OLDER; ++s) {
-    EXPECT_GT(bench::words_of(WORDS_STORE, static_cast<std::uint16_t>(s)).size(), 5u) << s;
+    EXPECT_GT(bench::words_of(CATALOGUE_STORE, static_cast<std::uint16_t>(s)).size(), 5u) << s;
   }
 }
 

@@ -44,7 +44,8 @@ class PowerCut : public Store {
   bool check_what_is_left() {
     const store_state_t state = power_on();
     const Values now = in_force();
-    EXPECT_TRUE(state == STORE_LOADED || (state == STORE_OLDER && now == old_)) << bench::words_of(WORDS_STORE, state);
+    EXPECT_TRUE(state == STORE_LOADED || (state == STORE_OLDER && now == old_))
+        << bench::words_of(CATALOGUE_STORE, state);
     EXPECT_TRUE(now == old_ || now == new_) << "a mixed set";
     // And the next save works.
     set_variant(7);
@@ -126,7 +127,7 @@ TEST_F(PowerCut, TwiceInARow) {
       nvm.cut_at_page = nvm.pages + second;
       ASSERT_EQ(save(), STORE_FAILED);
       const store_state_t state = power_on();
-      ASSERT_TRUE(state == STORE_LOADED || state == STORE_OLDER) << bench::words_of(WORDS_STORE, state);
+      ASSERT_TRUE(state == STORE_LOADED || state == STORE_OLDER) << bench::words_of(CATALOGUE_STORE, state);
       ASSERT_TRUE(in_force() == after_first || in_force() == new_);
     }
   }

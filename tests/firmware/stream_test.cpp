@@ -67,20 +67,20 @@ TEST_F(Requests, EachPortHasItsStream) {
   std::uint16_t answer[RECORD_MAX], event[RECORD_MAX];
   const std::uint16_t request[] = {REQUEST_STREAM, 7, 10, 0, 4, 0};
   EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(4, 2)).status(), OK);
-  EXPECT_EQ(request_answer(GUARD_BUS, request, 6, answer), 3);
+  EXPECT_EQ(request_answer(COMM_WATCHDOG_BUS, request, 6, answer), 3);
   EXPECT_EQ(answer[2], OK);
   records.clear();
   int heard = 0;
   for (int ms = 0; ms < 200; ++ms) {
     run(10);
-    if (stream_event(GUARD_BUS, event) == 0) continue;
+    if (stream_event(COMM_WATCHDOG_BUS, event) == 0) continue;
     EXPECT_EQ(event[1], heard++);
   }
   EXPECT_EQ(heard, 20);
   EXPECT_EQ(records.size(), 10u);
   EXPECT_EQ(ask(REQUEST_STREAM, little(0, 2)).status(), OK);
   run(10);
-  EXPECT_GT(stream_event(GUARD_BUS, event), 0) << "the other one goes on";
+  EXPECT_GT(stream_event(COMM_WATCHDOG_BUS, event), 0) << "the other one goes on";
 }
 
 // The counter is used up by what was missed, so the host sees the gap; the rest stays in step.
@@ -90,10 +90,10 @@ TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
   const std::uint32_t begin = drive.time_ms;
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {-2, 0x01020304};
-  stream_setup(GUARD_BUS, 10, places, 2);
+  stream_setup(COMM_WATCHDOG_BUS, 10, places, 2);
   const auto comes_at = [&](std::uint32_t ms) {
     drive.time_ms = begin + ms;
-    return stream_event(GUARD_BUS, event) > 0;
+    return stream_event(COMM_WATCHDOG_BUS, event) > 0;
   };
   EXPECT_FALSE(comes_at(9));
   ASSERT_TRUE(comes_at(10));
@@ -102,14 +102,14 @@ TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
   EXPECT_FALSE(comes_at(19));
   ASSERT_TRUE(comes_at(57)) << "those of 30, 40 and 50 are missed";
   EXPECT_EQ(event[1], 4);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 3);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 3);
   EXPECT_FALSE(comes_at(59));
   ASSERT_TRUE(comes_at(60));
   EXPECT_EQ(event[1], 5);
-  stream_dropped(GUARD_BUS);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 4);
-  stream_setup(GUARD_BUS, 10, places, 1);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 0) << "a new one begins anew";
+  stream_dropped(COMM_WATCHDOG_BUS);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 4);
+  stream_setup(COMM_WATCHDOG_BUS, 10, places, 1);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 0) << "a new one begins anew";
   EXPECT_FALSE(comes_at(69));
   ASSERT_TRUE(comes_at(70));
   EXPECT_EQ(event[1], 0);
@@ -120,15 +120,15 @@ TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
 TEST_F(Requests, AStreamThatNobodyComesForIsCountedToTheEndOfAWord) {
   const std::uint16_t place = 0;
   std::uint16_t event[RECORD_MAX];
-  stream_setup(GUARD_BUS, 1, &place, 1);
+  stream_setup(COMM_WATCHDOG_BUS, 1, &place, 1);
   drive.time_ms += 60'000;
-  ASSERT_GT(stream_event(GUARD_BUS, event), 0);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 59'999);
+  ASSERT_GT(stream_event(COMM_WATCHDOG_BUS, event), 0);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 59'999);
   drive.time_ms += 60'000;
-  ASSERT_GT(stream_event(GUARD_BUS, event), 0);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 65'535);
-  stream_dropped(GUARD_BUS);
-  EXPECT_EQ(stream_lost(GUARD_BUS), 65'535);
+  ASSERT_GT(stream_event(COMM_WATCHDOG_BUS, event), 0);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 65'535);
+  stream_dropped(COMM_WATCHDOG_BUS);
+  EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 65'535);
 }
 
 }  // namespace

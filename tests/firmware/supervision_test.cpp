@@ -255,7 +255,7 @@ TEST_F(Drive, AStopEndsAtTwoRevolutionsPerMinute) {
     drive_command_stop();
     drive.control.ramp.value = 0;
     drive.state = DRIVE_STOP;
-    drive.position.used.speed_bpp = bpp_of(1000) / 10000 * tenths;
+    drive.position.selected.speed_bpp = bpp_of(1000) / 10000 * tenths;
     drive_sequence(&drive);
     EXPECT_EQ(drive.state, std::abs(tenths) < 20 ? DRIVE_READY : DRIVE_STOP) << tenths;
     EXPECT_EQ(board.gates_on, std::abs(tenths) > 20) << tenths;
@@ -278,7 +278,7 @@ TEST_F(Drive, AFaultPutsTheSpeedCommandToZero) {
   board.tripped_by_pin = true;
   period();
   EXPECT_EQ(drive.control.target_bpp, 0);
-  EXPECT_EQ(drive.control.wanted_rpm_q16, 0);
+  EXPECT_EQ(drive.control.command_rpm_q16, 0);
 }
 
 // The gates must be safe to open at the highest speed: sqrt(3) * 0.16 Vs * 4 * 2 pi / 60 = 0.1161 V per rpm.

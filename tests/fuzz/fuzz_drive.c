@@ -6,7 +6,7 @@
 #include "firmware/commissioning/outcome.h"
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
@@ -26,7 +26,7 @@ typedef struct {
   drive_t drive;
   drive_start_t starting;
   commissioning_t commissioning;
-  hold_t brake_hold;
+  hold_t brake_release_hold;
   polarity_watch_t polarity_watch;
   flux_observer_t flux_observer;
 } reached_t;
@@ -54,7 +54,7 @@ static void periods_until(drive_state_t state, uint16_t most) {
 }
 
 static void keep(drive_state_t state) {
-  const reached_t now = {drive, starting, commissioning, brake_hold, polarity_watch, flux_observer};
+  const reached_t now = {drive, starting, commissioning, brake_release_hold, polarity_watch, flux_observer};
   reached[state] = now;
 }
 
@@ -62,7 +62,7 @@ static void restore(uint16_t state) {
   drive = reached[state].drive;
   starting = reached[state].starting;
   commissioning = reached[state].commissioning;
-  brake_hold = reached[state].brake_hold;
+  brake_release_hold = reached[state].brake_release_hold;
   polarity_watch = reached[state].polarity_watch;
   flux_observer = reached[state].flux_observer;
 }
@@ -103,7 +103,7 @@ static void reach_states(void) {
   drive_command_stop();
   period();
   keep(DRIVE_STOP);
-  drive_raise(&drive, FAULT_OVER_CURRENT);
+  drive_trip(&drive, FAULT_OVER_CURRENT);
   period();
   keep(DRIVE_FAULT);
   all_reached = true;
@@ -116,7 +116,7 @@ void fuzz_power_on(void) {
 }
 
 static uint16_t answer_as_bus(const uint16_t* request, uint16_t count, uint16_t* answer) {
-  return request_answer(GUARD_BUS, request, count, answer);
+  return request_answer(COMM_WATCHDOG_BUS, request, count, answer);
 }
 
 void fuzz_node_on(void) { can_node_reset(answer_as_bus); }
@@ -150,7 +150,7 @@ void fuzz_fault(uint16_t which) {
 #undef FAULT
   };
   const drive_fault_t fault = faults[which % (uint16_t)(sizeof faults / sizeof faults[0])];
-  if (fault != FAULT_NONE) drive_raise(&drive, fault);
+  if (fault != FAULT_NONE) drive_trip(&drive, fault);
 }
 
 void fuzz_pass(uint16_t ms) {

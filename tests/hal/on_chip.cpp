@@ -14,18 +14,18 @@ namespace {
 
 // A level pattern that goes round: one leg after the other.
 void slice_function() {
-  hal_slice_t slice;
-  hal_slice_read(&slice);
-  hal_slice_set_legs(static_cast<std::uint16_t>(1u << (fw.slices.size() % 3)));
+  hal_timed_samples_t slice;
+  hal_sampling_timer_read(&slice);
+  hal_sampling_timer_set_legs(static_cast<std::uint16_t>(1u << (fw.slices.size() % 3)));
   fw.slices.push_back(slice);
   hal_profile_step(fw.window_cycles);
   fw.slice_ends.push_back(hal_pwm_period_tick());
 }
 
 void choose_slices() {
-  if (fw.slice_ticks != 0 && !fw.sliced) fw.sliced = hal_slices_begin(fw.slice_ticks);
+  if (fw.slice_ticks != 0 && !fw.sliced) fw.sliced = hal_sampling_timer_begin(fw.slice_ticks);
   if (fw.slice_ticks == 0 && fw.sliced) {
-    hal_slices_end();
+    hal_sampling_timer_end();
     fw.sliced = false;
   }
 }

@@ -12,7 +12,7 @@
 #include "hal/hal_adc.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_slices.h"
+#include "hal/hal_sampling_timer.h"
 #include "sim_host/chip/chip.hpp"
 #include "tests/hal/bench_world.hpp"
 
@@ -49,7 +49,7 @@ struct Firmware {
   int preemptions;
   std::uint32_t encoder_count;
   bool sliced;
-  std::vector<hal_slice_t> slices;
+  std::vector<hal_timed_samples_t> slices;
   std::vector<std::uint16_t> slice_ends;  // TBCTR at the end of the slice interrupt
 };
 extern Firmware fw;

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <vector>
 
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 #include "tests/hal/on_chip.hpp"
 
 namespace stillspin::test {
@@ -23,19 +23,19 @@ TEST_F(OnChipPwm, no_device_is_ever_on_before_the_gates_are) {
 
 // Host in the loop: what the drive asks of the gates is played and noted, never done.
 TEST_F(OnChipPwm, no_device_is_ever_on_while_a_tape_plays) {
-  hal_tape_start(TAPE_PLAYS, [] {});
-  tape_period_t& period = hal_tape.period;
-  period.input_count = TAPE_INPUTS;
+  hal_replay_start(REPLAY_PLAYS, [] {});
+  replay_period_t& period = hal_replay.period;
+  period.input_count = REPLAY_INPUTS;
   std::fill(std::begin(period.inputs), std::end(period.inputs), std::uint16_t{1});  // all that is asked for is done
   fw.gates_on = true;
   board.run_until(kStarted + 10 * kPeriod);
   EXPECT_TRUE(fw.gates_ok);
   const std::vector<std::uint16_t> told(period.outputs, period.outputs + period.output_count);
-  EXPECT_NE(std::find(told.begin(), told.end(), TAPE_GATES_ON), told.end()) << "asked for";
+  EXPECT_NE(std::find(told.begin(), told.end(), REPLAY_GATES_ON), told.end()) << "asked for";
   for (const BenchWorld::Pins& p : world.pins) {
     EXPECT_FALSE(p.a || p.b) << "module " << p.module << " at " << p.t;
   }
-  hal_tape_start(TAPE_OFF, nullptr);
+  hal_replay_start(REPLAY_OFF, nullptr);
 }
 
 TEST_F(OnChipPwm, pulses_stand_where_the_frame_puts_them) {

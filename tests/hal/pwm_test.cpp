@@ -1,7 +1,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_safety.h"
-#include "hal/hal_tape.h"
 #include "tests/hal/bus_test.hpp"
 
 namespace stillspin::test {
@@ -170,16 +170,16 @@ TEST_F(Pwm, frame_of_an_overrun_control_interrupt_writes_nothing) {
   EXPECT_TRUE(hal_pwm_write(&frame, 5000));
 }
 
-// A computer that plays the tape must find the drive as late as it was.
+// A computer that plays the recording must find the drive as late as it was.
 TEST_F(Pwm, a_tape_says_whether_a_frame_was_in_time) {
   const hal_pwm_frame_t frame = frame_of_distinct_values();
   for (const bool in_time : {true, false}) {
-    hal_tape_start(TAPE_RECORDS, nullptr);
+    hal_replay_start(REPLAY_RECORDS, nullptr);
     bus.words[EPWM_BASE(1) + EPWM_TBCTR] = in_time ? 5000 : 5001;
     EXPECT_EQ(hal_pwm_write(&frame, 5000), in_time);
-    ASSERT_EQ(hal_tape.period.input_count, 1);
-    EXPECT_EQ(hal_tape.period.inputs[0], in_time ? 1 : 0);
-    hal_tape_start(TAPE_OFF, nullptr);
+    ASSERT_EQ(hal_replay.period.input_count, 1);
+    EXPECT_EQ(hal_replay.period.inputs[0], in_time ? 1 : 0);
+    hal_replay_start(REPLAY_OFF, nullptr);
   }
 }
 

@@ -1,6 +1,6 @@
 // Puts the drive that was compiled with a 16-bit int (toolchain/int16) in the place of the native one: the linker leads
 // the bench's calls here (-Wl,--wrap). Tables and words stay the native ones; what sets parameters goes to both, and
-// both must give the same answer. The tape is not for this drive.
+// both must give the same answer. The recording is not for this drive.
 
 #include <cstdio>
 #include <cstdlib>
@@ -12,7 +12,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/mode.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 }
 
 namespace {
@@ -114,8 +114,8 @@ commissioning_result_t __wrap_drive_commissioning_result(uint16_t index) {
   return {static_cast<uint16_t>(flat[0]), flat[1], flat[2], static_cast<commissioning_verdict_t>(flat[3])};
 }
 
-void __wrap_hal_tape_start(tape_mode_t mode, void (*)(void)) {
-  if (mode != TAPE_OFF) differ("no tape of the drive with a 16-bit int");
+void __wrap_hal_tape_start(replay_mode_t mode, void (*)(void)) {
+  if (mode != REPLAY_OFF) differ("no recording of the drive with a 16-bit int");
 }
 
 }  // extern "C"

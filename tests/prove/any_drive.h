@@ -12,7 +12,7 @@
 void any_moment(void);
 
 /// Somebody has asked for a stream.
-static inline void any_stream(guard_t port) {
+static inline void any_stream(comm_watchdog_t port) {
   uint16_t places[STREAM_SIGNALS];
   for (uint16_t k = 0; k < STREAM_SIGNALS; k++) places[k] = any_up_to(signal_count() - 1u);
   stream_setup(port, any_u16, places, any_up_to(STREAM_SIGNALS));

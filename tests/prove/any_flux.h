@@ -11,7 +11,7 @@ static inline void any_flux(flux_observer_config_t* c) {
   c->is_plain = any_bool();
   c->cutoff_q30 = any_from(107374L, 16106127L);
   c->bandwidth_q30 = any_from(107374L, 107374182L);
-  c->blind_q20 = any_from(0, 2 * AMPERES_Q20);
+  c->unknown_voltage_q20 = any_from(0, 2 * AMPERES_Q20);
   c->adaptation_periods = (uint16_t)any_from(1, 1000);
   c->adaptation.saturation_q24 = any_from(0, 16777216L);
   c->adaptation.lowest_bpp = any_from(1, INT32_MAX);

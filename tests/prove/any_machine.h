@@ -1,4 +1,4 @@
-// A machine with any parameters that the model takes, at any working point.
+// A machine with any parameters that the model takes, at any operating point.
 
 #ifndef STILLSPIN_TESTS_PROVE_ANY_MACHINE_H
 #define STILLSPIN_TESTS_PROVE_ANY_MACHINE_H

@@ -1,4 +1,4 @@
-// A machine's model in operation, at any working point and with anything learnt: every constant anywhere in the range
+// A machine's model in operation, at any operating point and with anything learnt: every constant anywhere in the range
 // that control/machine_model.h gives it. That the model stays in them is the business of the part control.
 
 #ifndef STILLSPIN_TESTS_PROVE_ANY_MODEL_H
@@ -44,7 +44,7 @@ static inline void any_nameplate(machine_model_t* m) {
 
 static inline int32_t any_learnt(void) { return any_from(LEAST_SHARE_Q24, 16777216L); }
 
-// What adaptation leaves: admittance.h, voltage_match.h.
+// What adaptation leaves: inverse_inductance.h, voltage_match.h.
 static inline void any_trim(machine_model_t* m) {
   m->trim.mean_q30 = any_from(-Y0_END_Q30 / 4, Y0_END_Q30 / 2);
   m->trim.half_q30 = any_from(-Y0_END_Q30 / 3, Y0_END_Q30 / 2);
@@ -57,8 +57,8 @@ static inline void any_trim(machine_model_t* m) {
   m->trim.psi_variance_q32 = any_from(0, MACHINE_PSI_VARIANCE_Q32);
 }
 
-// Two main admittances and any direction.
-static inline void any_admittance(machine_model_t* m) {
+// Two main inverse inductances and any direction.
+static inline void any_inverse_inductance(machine_model_t* m) {
   const int32_t larger_q30 = any_from(1, Y_END_Q30);
   const int32_t smaller_q30 = any_from(1, larger_q30);
   const rotation_t twice = frame_rotation(any_u32);
@@ -85,7 +85,7 @@ static inline void any_working_point(machine_model_t* m) {
   any_trim(m);
   m->rs_q24 = any_from(-RS_NOMINAL_MAX_Q24 / 2, 2 * RS_NOMINAL_MAX_Q24);
   m->iq_q20 = any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20);
-  any_admittance(m);
+  any_inverse_inductance(m);
   m->per_yq = any_inverse(31u, 61u);
   any_turn(m);
   m->psi_d_q16 = any_i32;

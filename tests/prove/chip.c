@@ -3,30 +3,30 @@
 
 #include "hal/hal_adc.h"
 #include "hal/hal_clock.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
-#include "hal/hal_lines.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_safety.h"
+#include "hal/hal_sampling_timer.h"
 #include "hal/hal_sci.h"
-#include "hal/hal_slices.h"
-#include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 #include "tests/prove/any.h"
 
-// The tape in any state.
-hal_tape_t hal_tape;
-void tape_pass_call(void) {}
-uint16_t tape_take(void) { return any_u16; }
-uint16_t tape_note(uint16_t value) { return value; }
-void tape_tell(tape_told_t what, const uint16_t* words, uint16_t count) {
+// The recording in any state.
+hal_replay_t hal_replay;
+void replay_pass_call(void) {}
+uint16_t replay_take(void) { return any_u16; }
+uint16_t replay_note(uint16_t value) { return value; }
+void replay_output(replay_output_t what, const uint16_t* words, uint16_t count) {
   (void)what;
   for (uint16_t k = 0; k < count; k++) any_u16 = words[k];
 }
-void tape_take_results(uint16_t* results, uint16_t count) {
+void replay_take_results(uint16_t* results, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) results[k] = any_u16;
 }
-void tape_note_results(const uint16_t* results, uint16_t count) {
+void replay_note_results(const uint16_t* results, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) any_u16 = results[k];
 }
 
@@ -36,7 +36,7 @@ static void set_up(void) {
   (void)hal_clock_init();
   hal_time_init();
   hal_safety_init();
-  hal_lines_init();
+  hal_digital_io_init();
   (void)hal_pwm_init(any_u16);
   (void)hal_sci_init(any_u32);
   hal_adc_power_up();
@@ -48,16 +48,16 @@ static void set_up(void) {
 
 static void convert(void) {
   hal_adc_window_t window;
-  hal_slice_t slice;
+  hal_timed_samples_t slice;
   uint16_t ground, reference;
   (void)hal_adc_is_up();
   hal_adc_read_window(&window);
   hal_adc_choose_slow(any_bool());
   hal_adc_measure_reference(&ground, &reference);
-  (void)hal_slices_begin(any_u16);
-  hal_slice_read(&slice);
-  hal_slice_set_legs(any_u16);
-  hal_slices_end();
+  (void)hal_sampling_timer_begin(any_u16);
+  hal_sampling_timer_read(&slice);
+  hal_sampling_timer_set_legs(any_u16);
+  hal_sampling_timer_end();
 }
 
 static void switch_gates(void) {
@@ -85,12 +85,12 @@ static void exchange_octets(void) {
 
 static void look_at_pins(void) {
   (void)hal_encoder_count();
-  (void)hal_lines_emergency();
-  (void)hal_lines_run();
-  (void)hal_lines_gates_pass();
-  hal_lines_relay(any_bool());
-  hal_lines_brake(any_bool());
-  hal_lines_wire_emergency();
+  (void)hal_digital_io_emergency();
+  (void)hal_digital_io_run();
+  (void)hal_digital_io_gates_pass();
+  hal_digital_io_relay(any_bool());
+  hal_digital_io_brake(any_bool());
+  hal_digital_io_wire_emergency();
   hal_safety_fault_lamp(any_bool());
   hal_safety_toggle_enable();
   (void)hal_time_cycles();
@@ -106,7 +106,7 @@ static void interrupt(void) {
 void prove_chip(void) {
   set_up();
   while (any_bool()) {
-    hal_tape.mode = (tape_mode_t)any_up_to(TAPE_PLAYS);
+    hal_replay.mode = (replay_mode_t)any_up_to(REPLAY_PLAYS);
     convert();
     switch_gates();
     exchange_octets();

@@ -29,7 +29,7 @@ bool command_makes_safe(const editor_line_t* line) { return line->count > 0u && 
 void requests_reset(void) {}
 void requests_service(void) {}
 
-uint16_t request_answer(guard_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
+uint16_t request_answer(comm_watchdog_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
   (void)port;
   for (uint16_t k = 0; k < count; k++) any_u16 = request[k];
   any_octets(answer, RECORD_MAX);
@@ -42,8 +42,8 @@ void prove_console(void) {
   console_reset();
   while (any_bool()) {
     any_moment();
-    if (any_bool()) any_stream(GUARD_SERIAL);
-    if (any_bool()) guard_begin((guard_t)any_up_to(3), any_u32);
+    if (any_bool()) any_stream(COMM_WATCHDOG_SERIAL);
+    if (any_bool()) comm_watchdog_begin((comm_watchdog_t)any_up_to(3), any_u32);
     link_service();
     console_service();
     (void)link_errors();

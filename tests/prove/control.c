@@ -25,7 +25,7 @@ static void keep_model(void) {
     model.trim.psi_q16 = any_from(-TRIM_FLUX_END_Q16, TRIM_FLUX_END_Q16);
     if (any_bool()) machine_model_move(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
     if (any_bool()) machine_model_follow(&model, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));
-    if (any_bool()) machine_model_turn(&model);
+    if (any_bool()) machine_model_renew_sensitivity(&model);
     if (any_bool()) machine_model_scale_inertia(&model, &told, any_from(RATIO_MIN_Q24, RATIO_MAX_Q24));
     (void)machine_torque_q16(&model, any_dq(CURRENT_MAX_Q20));
   }

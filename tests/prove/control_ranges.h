@@ -34,17 +34,17 @@ void machine_model_follow(machine_model_t* m, int32_t iq_q20);
 
 /*@ requires \valid(m); assigns m->per_yq, m->k_dd_q24, m->k_dq_q24, m->k_qd_q24, m->k0_q20 \from *m;
     ensures OF_TURN(m); */
-void machine_model_turn(machine_model_t* m);
+void machine_model_renew_sensitivity(machine_model_t* m);
 
-/*@ requires \valid(s) && \valid_read(in) && FROM_TO(s->told.share_q30, 0, 1073741824);
+/*@ requires \valid(s) && \valid_read(in) && FROM_TO(s->nominal.share_q30, 0, 1073741824);
     requires WITHIN(in->lowest_q20, CURRENT_MAX_Q20) && WITHIN(in->highest_q20, CURRENT_MAX_Q20);
     assigns s->current_q20, s->integral_q20, \result \from *s, law, *in;
     ensures WITHIN(\result, CURRENT_MAX_Q20); */
 int32_t speed_controller_step(speed_controller_t* s, speed_law_t law, const speed_controller_input_t* in);
 
-/*@ requires \valid(s) && \valid_read(c) && \valid_read(m) && FROM_TO(s->told.share_q30, 0, 1073741824);
+/*@ requires \valid(s) && \valid_read(c) && \valid_read(m) && FROM_TO(s->nominal.share_q30, 0, 1073741824);
     assigns *s, \result \from *s, *c, *m;
-    ensures FLAG(\result); ensures FROM_TO(s->told.share_q30, 0, 1073741824); */
+    ensures FLAG(\result); ensures FROM_TO(s->nominal.share_q30, 0, 1073741824); */
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m);
 
 /*@ requires \valid(s) && \valid_read(c); assigns *s, \result \from *s, *c, voltage_q16, seen_bam, seen_bpp;

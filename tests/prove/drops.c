@@ -11,8 +11,8 @@
 
 static void look(int32_t least_q20, int32_t most_q20) {
   dead_time_config_t c;
-  c.blocked_ticks = (int16_t)any_from(0, 240);
-  c.released_ticks = (int16_t)any_from(0, 240);
+  c.turn_on_ticks = (int16_t)any_from(0, 240);
+  c.turn_off_ticks = (int16_t)any_from(0, 240);
   c.edge_band_q20 = any_from(0, 4 * AMPERES_Q20);
   c.band_q20 = any_from(least_q20, most_q20);
   c.per_band_q29 = (int32_t)(17592186044416LL / c.band_q20) + any_from(0, 1);  // as dead_time_design has it, rounded

@@ -21,7 +21,7 @@
 #define K0_END_Q20 1073741824L                // 1024 A per period
 #define FLUX_END_Q16 2097152000L              // 32000 V, of the map
 #define TRIM_FLUX_END_Q16 786432000L          // three eighths of that, learnt
-#define LEAST_SHARE_Q24 (-15728640L)          // of the map's admittances, learnt: 15/16 less
+#define LEAST_SHARE_Q24 (-15728640L)          // of the map's inverse inductances, learnt: 15/16 less
 #define START_SAMPLES 4                       // hal/hal_adc.h
 #define END_SAMPLES 3
 #define OFFSET_MIN_Q8 491520L                     // 1920 codes (firmware/drive/sequence.c)

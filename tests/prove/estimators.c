@@ -1,9 +1,9 @@
 // The estimators that look at windows: deviation, regression, AVV and ZVV, what learns from them, slopes of samples.
 
-#include "estimators/admittance.h"
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation.h"
+#include "estimators/inverse_inductance.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
@@ -63,7 +63,7 @@ static void step_avv(const estimator_input_t* in) {
   avv_t s;
   avv_preset(&s, any_u32, any_speed(), any_i32);
   s.error_bam = any_i32;
-  s.observer.speed_rest_q8 = any_from(0, 255);
+  s.observer.speed_remainder_q8 = any_from(0, 255);
   (void)avv_step(&s, &c, in);
   (void)avv_angle_is_near(&s.regression, in->model);
 }
@@ -83,8 +83,8 @@ static void learn(void) {
   const regression_t r = any_regression();
   machine_model_t* const m = &around.model;
   any_model(m);
-  if (any_bool()) admittance_preset(m, any_i32, any_i32);
-  admittance_step(m, &r, any_share());
+  if (any_bool()) inverse_inductance_preset(m, any_i32, any_i32);
+  inverse_inductance_step(m, &r, any_share());
   sensor_match_step(&sensors, &r, any_from(1, INT32_MAX), any_share());
   any_model(m);
   if (any_bool()) voltage_match_resistance(m, any_i32);
@@ -100,7 +100,7 @@ static void judge(const estimator_input_t* in) {
   s.turned_q16 = any_from(-49152000L, 49152000L);
   s.emf_q16 = any_from(-134217728L, 134217728L);  // 2048 V
   s.limit_q16 = any_from(0, 32768000L);
-  s.doubt = any_from(0, 1000000000L);
+  s.debounce = any_from(0, 1000000000L);
   synchronism_look(&seen, in->model, in->windows, in->window_count, any_u32);
   (void)synchronism_judge(&s, &c, in->model, &seen, any_i32);
 }

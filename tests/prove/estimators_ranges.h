@@ -4,11 +4,11 @@
 #ifndef STILLSPIN_TESTS_PROVE_ESTIMATORS_RANGES_H
 #define STILLSPIN_TESTS_PROVE_ESTIMATORS_RANGES_H
 
-#include "estimators/admittance.h"
 #include "estimators/avv.h"
 #include "estimators/deviation.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/flux_observer.h"
+#include "estimators/inverse_inductance.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
@@ -27,10 +27,10 @@
 #define OF_OUTPUT(x) (WITHIN((x).speed_bpp, SPEED_MAX_BPP) && FROM_TO((x).quality_q15, 0, 32767))
 
 /*@ requires \valid(m) && \valid_read(r); assigns m->trim \from *m, *r, share_q30; ensures OF_LEARNT(m); */
-void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
+void inverse_inductance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
 
 /*@ requires \valid(m); assigns m->trim \from *m, mean_q30, half_q30; ensures OF_LEARNT(m); */
-void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
+void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 
 /*@ requires \valid(m); assigns m->trim \from *m, more_q24; ensures OF_LEARNT(m); */
 void voltage_match_resistance(machine_model_t* m, int32_t more_q24);
@@ -55,13 +55,13 @@ estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_inp
 bool zvv_deviation_q20(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t* deviation_q20);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in); assigns *s, \result \from *s, *c, indirect:*in;
-    ensures OF_OUTPUT(\result); ensures WITHIN(s->speed_bpp, SPEED_MAX_BPP) && FROM_TO(s->speed_rest_q8, 0, 255);
-    ensures FLAG(s->load_is_new) && FLAG(s->leaned) && FLAG(s->is_sensitive) && FLAG(s->cogging.active);
+    ensures OF_OUTPUT(\result); ensures WITHIN(s->speed_bpp, SPEED_MAX_BPP) && FROM_TO(s->speed_remainder_q8, 0, 255);
+    ensures FLAG(s->load_is_new) && FLAG(s->load_step_suspected) && FLAG(s->is_sensitive) && FLAG(s->cogging.active);
     ensures OF_VARIANCE(s->p_aa) && OF_VARIANCE(s->p_ss) && OF_VARIANCE(s->p_ll);
     ensures WITHIN(s->p_as, VARIANCE_END_Q20) && WITHIN(s->p_al, VARIANCE_END_Q20);
     ensures WITHIN(s->p_sl, VARIANCE_END_Q20) && FROM_TO(s->cogging.known_q30, 0, 1073741824);
-    ensures FROM_TO(s->score_power_q23, 0, POWER_END_Q23) && s->score_rest <= 255;
-    ensures FROM_TO(s->alert_q30, 0, 1073741824) && FROM_TO(s->gathered.periods, 0, 11);
+    ensures FROM_TO(s->score_power_q23, 0, POWER_END_Q23) && s->score_remainder <= 255;
+    ensures FROM_TO(s->noise_boost_q30, 0, 1073741824) && FROM_TO(s->gathered.periods, 0, 11);
     ensures FROM_TO(s->gathered.aa_q21, 0, s->gathered.periods * INFORMATION_END_Q21);
     ensures FROM_TO(s->gathered.ss_q21, 0, s->gathered.periods * INFORMATION_END_Q21);
     ensures FROM_TO(s->gathered.as_q24, s->gathered.periods * -2147483648LL, s->gathered.periods * 2147483647LL);
@@ -75,10 +75,11 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c);
 
 /*@ requires \valid(s) && \valid(residual_q20) && \valid(span_ticks) && \valid(periods);
-    assigns s->left, *residual_q20, *span_ticks, *periods, \result
-            \from s->left, *residual_q20, *span_ticks, *periods;
+    assigns s->residual, *residual_q20, *span_ticks, *periods, \result
+            \from s->residual, *residual_q20, *span_ticks, *periods;
     ensures FLAG(\result); */
-bool deviation_observer_take_left(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks, int32_t* periods);
+bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks,
+                                           int32_t* periods);
 
 /*@ requires \valid_read(m) && \valid_read(w); assigns \result \from *m, *w, angle_bam, speed_bpp;
     ensures VECTOR_DQ(\result.voltage_q16, 4600 * VOLTS_Q16);

@@ -23,14 +23,14 @@
 #include "firmware/start/start.h"
 #include "firmware/store/store.h"
 #include "hal/hal_adc.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
-#include "hal/hal_lines.h"
 #include "hal/hal_profile.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_safety.h"
-#include "hal/hal_slices.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_sampling_timer.h"
 #include "tests/prove/any_config.h"
 #include "tests/prove/any_parameters.h"
 
@@ -46,7 +46,7 @@ void hal_adc_read_window(hal_adc_window_t* w) {
   w->aux = any_up_to(4095);
 }
 
-void hal_slice_read(hal_slice_t* slice) {
+void hal_sampling_timer_read(hal_timed_samples_t* slice) {
   slice->current_a = any_up_to(4095);
   slice->current_b = any_up_to(4095);
   slice->link = any_up_to(4095);
@@ -56,7 +56,7 @@ uint32_t hal_encoder_count(void) { return any_u32; }
 uint16_t hal_irq_disable(void) { return any_u16; }
 void hal_irq_restore(uint16_t state) { (void)state; }
 uint16_t hal_irq_unexpected_count(void) { return any_u16; }
-bool hal_lines_emergency(void) { return any_bool(); }
+bool hal_digital_io_emergency(void) { return any_bool(); }
 void hal_profile_step(uint16_t cycles) { (void)cycles; }
 void hal_pwm_gates_off(void) {}
 bool hal_pwm_gates_on(void) { return any_bool(); }
@@ -70,12 +70,12 @@ bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
 }
 void hal_safety_fault_lamp(bool lit) { (void)lit; }
 void hal_safety_toggle_enable(void) {}
-void hal_slice_set_legs(uint16_t state) { (void)state; }
-bool hal_slices_begin(uint16_t slice_ticks) {
+void hal_sampling_timer_set_legs(uint16_t state) { (void)state; }
+bool hal_sampling_timer_begin(uint16_t slice_ticks) {
   (void)slice_ticks;
   return any_bool();
 }
-void hal_slices_end(void) {}
+void hal_sampling_timer_end(void) {}
 static void nothing_else(void) {}
 const phase_control_t* const edition_phase_control = &hysteresis_control;
 service_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, start_reset, commissioning_reset, NULL};
@@ -85,9 +85,9 @@ interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};
 void selftest_reset(void) {}
 void hal_encoder_init(uint32_t counts_per_turn) { (void)counts_per_turn; }
 bool hal_pwm_set_dead_band(uint16_t ticks) { return any_bool(); }
-bool hal_tape_has_work(tape_work_t work) { return true; }
-void hal_tape_work_begin(tape_work_t work) { (void)work; }
-void hal_tape_work_end(void) {}
+bool hal_replay_has_work(replay_work_t work) { return true; }
+void hal_replay_work_begin(replay_work_t work) { (void)work; }
+void hal_replay_work_end(void) {}
 
 // The background level's part in the commissioning.
 void commissioning_judge(const commissioning_t* c, commissioning_report_t* report) {
@@ -126,7 +126,7 @@ static void one_period(void) {
   drive.request.reset = any_bool();
   drive.request.commission = any_bool();
   drive.loading = any_bool();
-  drive.control.wanted_rpm_q16 = any_i32;
+  drive.control.command_rpm_q16 = any_i32;
   for (uint16_t k = 0; k < 3u; k++) {
     if (any_bool()) drive_window_interrupt();
   }

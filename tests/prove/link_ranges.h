@@ -8,8 +8,8 @@
 #include "firmware/console/commands.h"
 #include "firmware/console/suggest.h"
 #include "firmware/link/splitter.h"
+#include "firmware/text/catalogue.h"
 #include "firmware/text/text.h"
-#include "firmware/text/words.h"
 #include "tests/prove/qmath_ranges.h"
 
 /*@ requires count == 0 || \valid_read(octets + (0 .. count - 1)); assigns \result \from octets[0 .. count - 1]; */
@@ -88,7 +88,7 @@ void put_text(octet_writer_t* w, const char* text);
 
 /*@ requires \valid(w); assigns w->octets[0 .. w->room - 1], w->count, w->full \from w->count, w->room, kind, code;
     ensures w->count <= w->room; ensures w->full == 0 || w->full == 1; */
-void put_words(octet_writer_t* w, words_kind_t kind, uint16_t code);
+void put_message(octet_writer_t* w, catalogue_t kind, uint16_t code);
 
 /*@ requires \valid(w); assigns w->octets[0 .. w->room - 1], w->count, w->full \from w->count, w->room, value;
     ensures w->count <= w->room; ensures w->full == 0 || w->full == 1; */

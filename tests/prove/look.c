@@ -9,8 +9,8 @@
 
 static surroundings_t around;
 
-static deviation_left_t any_left(int32_t periods) {
-  deviation_left_t left;
+static deviation_residual_t any_left(int32_t periods) {
+  deviation_residual_t left;
   left.d_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_from(-INT32_MAX, INT32_MAX);
   left.q_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_from(-INT32_MAX, INT32_MAX);
   left.span_ticks = periods * any_from(0, 3 * PERIOD_TICKS);
@@ -23,7 +23,7 @@ static void look_once(const estimator_input_t* in) {
   deviation_observer_t s;
   deviation_observer_preset(&s, any_u32, any_speed(), any_i32);
   s.speed_bpp = any_from(-SPEED_MAX_BPP - CHANGE_MAX_BPP, SPEED_MAX_BPP + CHANGE_MAX_BPP);
-  s.left = any_left(0);
+  s.residual = any_left(0);
   s.sensitivity =
       deviation_sensitivity(&around.model, machine_speed_rad_q30(any_speed()), any_dq(any_current_end_q20 / 2 * 3));
   s.is_sensitive = any_bool();
@@ -35,7 +35,7 @@ static void look_once(const estimator_input_t* in) {
 static void leave_after(const estimator_input_t* in, int32_t periods) {
   deviation_t d[ESTIMATOR_WINDOWS];
   for (uint16_t k = 0; k < ESTIMATOR_WINDOWS; k++) d[k].residual_q20 = any_dq(RESIDUAL_END_Q20);
-  deviation_left_t left = any_left(periods);
+  deviation_residual_t left = any_left(periods);
   leave(&left, in, d);
   //@ assert 0 <= left.periods <= 15 && 0 <= left.span_ticks <= left.periods * 30000;
   //@ assert WITHIN(left.d_q20, left.periods * LEFT_END_Q20) && WITHIN(left.q_q20, left.periods * LEFT_END_Q20);
@@ -47,11 +47,11 @@ static void leave_after_all(const estimator_input_t* in) {
 
 static void ask_left(void) {
   deviation_observer_t s;
-  s.left = any_left(any_from(0, 15));
+  s.residual = any_left(any_from(0, 15));
   dq_t residual_q20;
   int32_t span_ticks;
   int32_t periods;
-  (void)deviation_observer_take_left(&s, &residual_q20, &span_ticks, &periods);
+  (void)deviation_observer_take_mean_residual(&s, &residual_q20, &span_ticks, &periods);
 }
 
 void prove_look(void) {

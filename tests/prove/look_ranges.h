@@ -15,11 +15,11 @@
     requires VECTOR_DQ(d[0].residual_q20, RESIDUAL_END_Q20);
     requires in->window_count > 1 ==> VECTOR_DQ(d[1].residual_q20, RESIDUAL_END_Q20);
     requires in->window_count > 2 ==> VECTOR_DQ(d[2].residual_q20, RESIDUAL_END_Q20); */
-static void leave(deviation_left_t* left, const estimator_input_t* in, const deviation_t d[]);
+static void leave(deviation_residual_t* left, const estimator_input_t* in, const deviation_t d[]);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in) && FROM_TO(in->window_count, 1, ESTIMATOR_WINDOWS);
     requires WITHIN(s->speed_bpp, SPEED_MAX_BPP + CHANGE_MAX_BPP);
-    assigns s->left, s->sensitivity, s->is_sensitive, s->regression, s->regressed_bam, \result
+    assigns s->residual, s->sensitivity, s->is_sensitive, s->regression, s->regressed_bam, \result
             \from *s, *c, indirect:*in;
     ensures FROM_TO(\result.aa, 0, INFORMATION_MAX) && FROM_TO(\result.ss, 0, INFORMATION_MAX);
     ensures FLAG(s->is_sensitive); */

@@ -25,13 +25,13 @@ modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, e
     requires \initialized(&pattern->pulses.at[0 .. 5]) && OF_EDGES(pattern->pulses.at);
     requires \initialized(&pattern->pulses.order);
     requires \initialized(&pattern->windows[0 .. 2]) && OF_WINDOWS(pattern);
-    requires VECTOR_AB(carried->current_q20, CARRIED_MAX_Q20) && FROM_TO(carried->admittance_q30, 0, Y_END_Q30);
+    requires VECTOR_AB(carried->current_q20, CARRIED_MAX_Q20) && FROM_TO(carried->inverse_inductance_q30, 0, Y_END_Q30);
     requires FROM_TO(carried->link_q16, 0, VOLTAGE_MAX_Q16);
     assigns pattern->windows[0 .. 2], pattern->window_count, *command \from *c, *sampling, *carried, *pattern;
     ensures FROM_TO(pattern->window_count, 0, 3); ensures OF_WINDOWS(pattern);
     ensures \initialized(&command->at[0 .. 5]); */
-void svpwm_send(const dead_time_config_t* c, const sampling_config_t* sampling, const svpwm_carried_t* carried,
-                svpwm_pattern_t* pattern, svpwm_pulses_t* command);
+void svpwm_compensate_edges(const dead_time_config_t* c, const sampling_config_t* sampling,
+                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, svpwm_pulses_t* command);
 
 /*@ requires \valid_read(p) && OF_EDGES(p->at) && FROM_TO(link_q16, 0, VOLTAGE_MAX_Q16);
     assigns \result \from *p, link_q16; ensures VECTOR_AB(\result, 2 * VOLTAGE_MAX_Q16); */

@@ -89,7 +89,7 @@ void prove_node(void) {
     any_moment();
     any_parameters();
     feature_status.stepped = any_bool();
-    if (any_bool()) any_stream(GUARD_BUS);
+    if (any_bool()) any_stream(COMM_WATCHDOG_BUS);
     can_node_service();
     (void)can_node_state();
   }

@@ -24,10 +24,10 @@ static void any_covariance(deviation_observer_t* s) {
 static void any_scores(deviation_observer_t* s) {
   s->mean_score_q20 = any_i32;
   s->score_power_q23 = any_from(0, POWER_END_Q23);
-  s->score_rest = any_up_to(255);
-  s->alert_q30 = any_from(0, 1073741824L);
+  s->score_remainder = any_up_to(255);
+  s->noise_boost_q30 = any_from(0, 1073741824L);
   s->load_is_new = any_bool();
-  s->leaned = any_bool();
+  s->load_step_suspected = any_bool();
 }
 
 static void any_cogging(cogging_t* c) {
@@ -54,7 +54,7 @@ static deviation_gathered_t any_gathered(int32_t periods) {
 static deviation_observer_t any_state(void) {
   deviation_observer_t s;
   deviation_observer_preset(&s, any_u32, any_speed(), any_i32);
-  s.speed_rest_q8 = any_up_to(255);
+  s.speed_remainder_q8 = any_up_to(255);
   any_covariance(&s);
   any_scores(&s);
   any_cogging(&s.cogging);
@@ -78,7 +78,7 @@ static void ask(void) {
   deviation_observer_t s = any_state();
   s.gathered = any_gathered(any_from(0, 11));
   (void)deviation_observer_is_due(&s);
-  (void)deviation_observer_is_pressed(&s);
+  (void)deviation_observer_update_is_urgent(&s);
   deviation_observer_learn(&s, &tuning);
   deviation_observer_stands(&s);
   //@ assert OF_VARIANCE(s.p_aa) && OF_VARIANCE(s.p_ss) && OF_VARIANCE(s.p_ll) && WITHIN(s.p_al, VARIANCE_END_Q20);
@@ -89,11 +89,12 @@ static void ask(void) {
 static void begin(void) {
   deviation_observer_t s;
   deviation_observer_preset(&s, any_u32, any_speed(), any_i32);
-  //@ assert WITHIN(s.speed_bpp, SPEED_MAX_BPP) && s.speed_rest_q8 == 0 && s.score_rest == 0 && s.alert_q30 == 0;
+  //@ assert WITHIN(s.speed_bpp, SPEED_MAX_BPP) && s.speed_remainder_q8 == 0 && s.score_remainder == 0 &&
+  // s.noise_boost_q30 == 0;
   //@ assert OF_VARIANCE(s.p_aa) && OF_VARIANCE(s.p_ss) && OF_VARIANCE(s.p_ll);
   //@ assert s.p_as == 0 && s.p_al == 0 && s.p_sl == 0 && FROM_TO(s.score_power_q23, 0, POWER_END_Q23);
   //@ assert s.gathered.periods == 0 && s.gathered.aa_q21 == 0 && s.gathered.as_q24 == 0 && s.gathered.ss_q21 == 0;
-  //@ assert s.left.periods == 0 && s.left.span_ticks == 0 && s.left.d_q20 == 0 && s.left.q_q20 == 0;
+  //@ assert s.residual.periods == 0 && s.residual.span_ticks == 0 && s.residual.d_q20 == 0 && s.residual.q_q20 == 0;
   //@ assert s.cogging.cos_q8 == 0 && s.cogging.sin_q8 == 0 && s.cogging.known_q30 == 0;
 }
 

@@ -56,7 +56,7 @@ static int32_t any_quarter(void) { return any_from(INT32_MIN / 4, INT32_MAX / 4)
 // In half of the range, of either sign.
 static void follow_with_rest(unsigned n) {
   uint32_t rest = any_u32 & (((uint32_t)1 << n) - 1u);
-  (void)q_follow_rest(any_from(-0x40000000L, 0x3FFFFFFFL), any_from(-0x40000000L, 0x3FFFFFFFL), n, &rest);
+  (void)q_follow_remainder(any_from(-0x40000000L, 0x3FFFFFFFL), any_from(-0x40000000L, 0x3FFFFFFFL), n, &rest);
 }
 
 static void squared_from(int32_t least, int32_t most, unsigned n) {

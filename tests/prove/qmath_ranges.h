@@ -43,7 +43,7 @@ static inline int32_t q_mix_sat(int32_t a, int32_t b, int32_t share, unsigned bi
     requires \valid(rest) && \initialized(rest) && *rest < (1 << n);
     assigns *rest, \result \from a, b, n, *rest; ensures \initialized(rest); ensures *rest < (1 << n);
     ensures a <= \result || b <= \result; ensures \result <= a || \result <= b; */
-static inline int32_t q_follow_rest(int32_t a, int32_t b, unsigned n, uint32_t* rest);
+static inline int32_t q_follow_remainder(int32_t a, int32_t b, unsigned n, uint32_t* rest);
 
 /*@ assigns \result \from x; ensures \result <= 4611686018427387904; */
 static inline uint64_t q_square(int32_t x);

@@ -16,8 +16,8 @@
 #include "hal/hal_flash.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
+#include "hal/hal_replay.h"
 #include "hal/hal_sci.h"
-#include "hal/hal_tape.h"
 #include "hal/hal_time.h"
 #include "tests/prove/any_drive.h"
 
@@ -50,43 +50,43 @@ link_errors_t link_errors(void) {
 
 void drive_reset(void) { scope_reset(); }
 
-// What the drive asks of the tape while it is stepped, in any order.
+// What the drive asks of the recording while it is stepped, in any order.
 static void ask_the_tape(void) {
-  uint16_t words[TAPE_OUTPUTS];
-  any_octets(words, TAPE_OUTPUTS);
+  uint16_t words[REPLAY_OUTPUTS];
+  any_octets(words, REPLAY_OUTPUTS);
   while (any_bool()) {
-    (void)tape_note(any_u16);
-    if (tape_plays()) (void)tape_take();
-    tape_tell((tape_told_t)any_up_to(8), words, any_up_to(15));
+    (void)replay_note(any_u16);
+    if (replay_plays()) (void)replay_take();
+    replay_output((replay_output_t)any_up_to(8), words, any_up_to(15));
   }
 }
 
 // A call of a window that is played plays no other.
 void drive_window_interrupt(void) {
-  uint16_t results[TAPE_RESULTS];
-  if (any_bool()) tape_take_results(results, any_bool() ? TAPE_RESULTS : 3u);
+  uint16_t results[REPLAY_RESULTS];
+  if (any_bool()) replay_take_results(results, any_bool() ? REPLAY_RESULTS : 3u);
   ask_the_tape();
 }
 
 void drive_control_step(drive_t* d) {
   (void)d;
   while (any_bool()) {
-    tape_call();
+    replay_call();
     ask_the_tape();
   }
 }
 
 void background_step(drive_t* d) {
   (void)d;
-  if (!hal_tape_has_work(any_bool() ? TAPE_RELOADED : TAPE_EVALUATED)) return;
-  hal_tape_work_begin(TAPE_RELOADED);
-  hal_tape_work_end();
+  if (!hal_replay_has_work(any_bool() ? REPLAY_RELOADED : REPLAY_EVALUATED)) return;
+  hal_replay_work_begin(REPLAY_RELOADED);
+  hal_replay_work_end();
 }
 
 static uint16_t request[RECORD_MAX];
 static uint16_t answer[RECORD_MAX];
 
-static void ask(guard_t port, uint16_t type) {
+static void ask(comm_watchdog_t port, uint16_t type) {
   any_octets(request, RECORD_MAX);
   request[0] = type;
   (void)request_answer(port, request, any_up_to(RECORD_MAX - 2u), answer);
@@ -98,10 +98,10 @@ static void one_type(uint16_t type) {
     any_moment();
     hil_service();
     requests_service();
-    ask(any_bool() ? GUARD_SERIAL : GUARD_BUS, type);
-    (void)stream_event(GUARD_SERIAL, answer);
-    (void)stream_event(GUARD_BUS, answer);
-    guard_service();
+    ask(any_bool() ? COMM_WATCHDOG_SERIAL : COMM_WATCHDOG_BUS, type);
+    (void)stream_event(COMM_WATCHDOG_SERIAL, answer);
+    (void)stream_event(COMM_WATCHDOG_BUS, answer);
+    comm_watchdog_service();
   }
 }
 

@@ -1,4 +1,4 @@
-// What q_follow_rest takes of shifts and masks: sentences of the numbers, for that proof alone.
+// What q_follow_remainder takes of shifts and masks: sentences of the numbers, for that proof alone.
 
 #ifndef STILLSPIN_TESTS_PROVE_REST_H
 #define STILLSPIN_TESTS_PROVE_REST_H

@@ -5,8 +5,8 @@
 #include "firmware/base/clear.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
+#include "hal/hal_digital_io.h"
 #include "hal/hal_flash.h"
-#include "hal/hal_lines.h"
 #include "hal/hal_selftest.h"
 #include "hal/hal_time.h"
 #include "tests/prove/any_parameters.h"
@@ -15,7 +15,7 @@ drive_t drive;
 
 bool drive_is_energised(void) { return any_bool(); }
 
-bool hal_lines_gates_pass(void) { return any_bool(); }
+bool hal_digital_io_gates_pass(void) { return any_bool(); }
 bool hal_selftest_gates_are_off(void) { return any_bool(); }
 bool hal_watchdog_caused_reset(void) { return any_bool(); }
 uint16_t hal_selftest_watchdog_count(void) { return any_u16; }

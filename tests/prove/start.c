@@ -1,13 +1,13 @@
 // The estimators of the start, of the run-up and of the commissioning: with anything that windows can say, step after
 // step.
 
-#include "estimators/admittance_tensor.h"
 #include "estimators/axis.h"
 #include "estimators/emf_sign.h"
 #include "estimators/fit.h"
 #include "estimators/flying.h"
 #include "estimators/followed.h"
 #include "estimators/inertia_match.h"
+#include "estimators/inverse_inductance_tensor.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
 #include "estimators/wiring.h"

@@ -4,12 +4,12 @@
 #ifndef STILLSPIN_TESTS_PROVE_START_RANGES_H
 #define STILLSPIN_TESTS_PROVE_START_RANGES_H
 
-#include "estimators/admittance_tensor.h"
 #include "estimators/axis.h"
 #include "estimators/emf_sign.h"
 #include "estimators/flying.h"
 #include "estimators/followed.h"
 #include "estimators/inertia_match.h"
+#include "estimators/inverse_inductance_tensor.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
 #include "estimators/wiring.h"
@@ -40,8 +40,8 @@ void axis_add(axis_t* s, const regression_t* r);
     ensures WITHIN(\result.angle_bam, 1073741824); */
 axis_result_t axis_evaluate(const axis_t* s, const machine_model_t* m);
 
-/*@ requires \valid(f) && FROM_TO(length, 4, 32767); assigns *f \from *f, tick, length, asked_q20, flows_q20; */
-void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t asked_q20, int32_t flows_q20);
+/*@ requires \valid(f) && FROM_TO(length, 4, 32767); assigns *f \from *f, tick, length, reference_q20, flows_q20; */
+void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t reference_q20, int32_t flows_q20);
 
 /*@ requires \valid_read(s) && \valid_read(m); assigns \result \from *s, *m, code_q20;
     ensures FROM_TO(\result, 0, 11); */

@@ -30,7 +30,7 @@ static void send(uint32_t order) {
   pattern.pulses.order = order;
   const int32_t link_q16 = any_from(0, VOLTAGE_MAX_Q16);
   const svpwm_carried_t carried = {any_vector(CARRIED_MAX_Q20), any_from(0, Y_END_Q30), link_q16};
-  svpwm_send(&dead_time, &config.sampling, &carried, &pattern, &command);
+  svpwm_compensate_edges(&dead_time, &config.sampling, &carried, &pattern, &command);
   (void)svpwm_mean_q16(&pattern.pulses, link_q16);
   const int16_t middles[SVPWM_WINDOWS] = {any_ticks(0, SVPWM_PERIOD_TICKS), any_ticks(0, SVPWM_PERIOD_TICKS),
                                           any_ticks(0, SVPWM_PERIOD_TICKS)};

@@ -7,7 +7,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
-#include "firmware/text/words.h"
+#include "firmware/text/catalogue.h"
 #include "tests/prove/any.h"
 
 #define WORDS_OF_A_KIND 48  // at least; what comes behind is there for no kind
@@ -85,8 +85,8 @@ static void one_format(uint16_t q, uint16_t decimals) {
 
 static void words_of(uint16_t kind) {
   octet_writer_t w = writer();
-  for (uint16_t code = 0; code < WORDS_OF_A_KIND; code++) put_words(&w, (words_kind_t)kind, code);
-  put_words(&w, (words_kind_t)kind, (uint16_t)any_from(WORDS_OF_A_KIND, 65535L));
+  for (uint16_t code = 0; code < WORDS_OF_A_KIND; code++) put_message(&w, (catalogue_t)kind, code);
+  put_message(&w, (catalogue_t)kind, (uint16_t)any_from(WORDS_OF_A_KIND, 65535L));
 }
 
 // One more octet, however full the block is; all else goes through this.
@@ -106,7 +106,7 @@ void prove_numbers(void) {
   put_spaces_to(&w, any_u16);
   any_word();
   for (uint16_t count = 0; count <= EDITOR_LINE; count++) (void)text_number(word.text, count, &number);
-  for (uint16_t kind = 0; kind < WORDS_KINDS; kind++) words_of(kind);
+  for (uint16_t kind = 0; kind < CATALOGUES; kind++) words_of(kind);
   for (uint16_t q = 0; q <= 32u; q++) {
     for (uint16_t decimals = 0; decimals <= TEXT_DECIMALS_MAX; decimals++) one_format(q, decimals);
   }

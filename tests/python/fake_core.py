@@ -232,7 +232,9 @@ def _lag(values, constant):
     return out
 
 
-def run(*, plant, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress, tape=None):
+def run(
+    *, plant, parameters, commands, load, duration, max_start, record_every, waveform, seed, progress, recording=None
+):
     began = clock.perf_counter()
     for share in (0.25, 0.5, 0.75, 1.0):
         if progress is not None and not progress(share):
@@ -289,7 +291,7 @@ def run(*, plant, parameters, commands, load, duration, max_start, record_every,
     )
 
 
-def commission(*, plant, parameters, limit, seed, progress, tape=None):
+def commission(*, plant, parameters, limit, seed, progress, recording=None):
     """The friction is refused when it is told as 9, and nothing is found with a dead short."""
     for share in (0.0, 0.5, 1.0):
         if progress is not None and not progress(share, "a phase"):

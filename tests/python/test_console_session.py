@@ -1,4 +1,4 @@
-"""A session of the console begins clean, keeps the guard alive and leaves no motor running behind it."""
+"""A session of the console begins clean, keeps the watchdog alive and leaves no motor running behind it."""
 
 import os
 import pty

@@ -80,6 +80,6 @@ def test_texts_that_are_the_same_share_their_octets() -> None:
 @pytest.mark.parametrize("text", ["10 µs", "line\\n"])
 def test_what_the_console_cannot_show_is_refused(tmp_path: Path, text: str) -> None:
     (tmp_path / "firmware" / "text").mkdir(parents=True)
-    (tmp_path / "firmware" / "text" / "word_list.h").write_text(f'WORDS(STATE, 0, "{text}")\n', encoding="utf-8")
+    (tmp_path / "firmware" / "text" / "catalogue_list.h").write_text(f'WORDS(STATE, 0, "{text}")\n', encoding="utf-8")
     with pytest.raises(ValueError, match="plain ASCII"):
         pack_text.texts(tmp_path)

@@ -209,7 +209,7 @@ TEST(QArith, WhatFollowsWithARestLosesNothing) {
         const Wide one = Wide{1} << n;
         for (const Wide before : {Wide{0}, Wide{1}, one / 2, one - 1}) {
           std::uint32_t rest = static_cast<std::uint32_t>(before);
-          const std::int32_t got = q_follow_rest(a, b, n, &rest);
+          const std::int32_t got = q_follow_remainder(a, b, n, &rest);
           ASSERT_TRUE(lies_between(got, a, b)) << a << ", " << b << ", " << n;
           ASSERT_LT(rest, one);
           ASSERT_TRUE(Wide{got} * one + rest == Wide{a} * one + before + difference) << a << ", " << b << ", " << n;

@@ -129,7 +129,7 @@ TEST(DeadTime, InAWideBandEveryEdgeIsShiftedByItsCurrent) {
     const Vector mean = random.direction(random.between(0.0, 3.0));
     // no ripple: the current of an edge is its leg's mean
     const svpwm_carried_t carried = {raw_ab(mean, 20), 0, raw(kLink, 16)};
-    svpwm_send(&c, &sampling, &carried, &pattern, &command);
+    svpwm_compensate_edges(&c, &sampling, &carried, &pattern, &command);
     for (std::uint16_t edge = 0; edge < SVPWM_EDGES; ++edge) {
       const double blocking = (edge < SVPWM_LEGS ? 1.0 : -1.0) * phase(mean, edge % SVPWM_LEGS);
       const double share = std::clamp(blocking / 1.5, -1.0, 1.0);
@@ -148,7 +148,7 @@ TEST(DeadTime, AboveItsErrorACurrentIsCertainThoughNotTrusted) {
   for (const double amps : {0.69, 0.71, -0.69, -0.71}) {
     const svpwm_ripple_edge_t rise = {0, 0, 5000, raw(amps, 20)};
     svpwm_arrival_t arrival;
-    const std::int32_t sent = dead_time_send(&c, &rise, &arrival);
+    const std::int32_t sent = dead_time_compensate(&c, &rise, &arrival);
     const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
     const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
     EXPECT_NEAR(5000 - sent, middle + half * amps / 1.5, 0.51) << amps;

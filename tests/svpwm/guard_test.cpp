@@ -10,12 +10,12 @@ namespace {
 
 using namespace stillspin::test;
 
-constexpr std::int16_t kBlocked = 230, kReleased = 60;
+constexpr std::int16_t kTurnOn = 230, kTurnOff = 60;
 
 dead_time_config_t dead_time() {
   dead_time_config_t c = {};
-  c.blocked_ticks = kBlocked;
-  c.released_ticks = kReleased;
+  c.turn_on_ticks = kTurnOn;
+  c.turn_off_ticks = kTurnOff;
   c.band_q20 = 209715;       // 0.2 A
   c.edge_band_q20 = 734003;  // 0.7 A
   dead_time_design(&c);
@@ -73,8 +73,8 @@ void expect_clear(const svpwm_pattern_t& p, const svpwm_pulses_t& command, const
     ASSERT_GE(last - first, s.span_min_ticks);
     for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) {
       const bool open = arrivals[edge].earliest != arrivals[edge].latest;
-      const int early = open ? command.at[edge] + kReleased : p.pulses.at[edge];
-      const int late = open ? command.at[edge] + kBlocked : p.pulses.at[edge];
+      const int early = open ? command.at[edge] + kTurnOff : p.pulses.at[edge];
+      const int late = open ? command.at[edge] + kTurnOn : p.pulses.at[edge];
       const bool before = late + s.settle_ticks <= first, after = early >= last + s.burst_ticks;
       ASSERT_TRUE(before || after) << "edge " << edge << ", window " << k;
     }
@@ -104,7 +104,7 @@ void expect_sent(const svpwm_pulses_t& wanted, ab_t current, const Sent& pieces,
   svpwm_pattern_t p = {};
   p.pulses = wanted;
   svpwm_pulses_t command = {};
-  svpwm_send(&c, &s, &carried, &p, &command);
+  svpwm_compensate_edges(&c, &s, &carried, &p, &command);
   for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) ASSERT_EQ(command.at[edge], pieces.command.at[edge]) << edge;
   ASSERT_EQ(p.window_count, found.window_count);
   for (int k = 0; k < p.window_count; ++k) {

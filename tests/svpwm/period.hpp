@@ -83,12 +83,12 @@ struct Sent {
 };
 
 inline Sent sent(const dead_time_config_t& c, const svpwm_pulses_t& wanted, const svpwm_carried_t& carried) {
-  svpwm_ripple_walk_t walk =
-      svpwm_ripple_walk(&wanted, frame_inverse_clarke(carried.current_q20), carried.admittance_q30, carried.link_q16);
+  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, frame_inverse_clarke(carried.current_q20),
+                                               carried.inverse_inductance_q30, carried.link_q16);
   Sent s = {};
   while (walk.order != 0u) {
     const svpwm_ripple_edge_t e = svpwm_ripple_next(&walk);
-    s.command.at[e.edge] = static_cast<std::int16_t>(dead_time_send(&c, &e, &s.arrivals[e.edge]));
+    s.command.at[e.edge] = static_cast<std::int16_t>(dead_time_compensate(&c, &e, &s.arrivals[e.edge]));
   }
   return s;
 }

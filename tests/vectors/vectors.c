@@ -133,7 +133,7 @@ static void tracking_observer(void) {
   result(tracking.angle_bam);
   signed_result(tracking.speed_bpp);
   signed_result(tracking.load_accel_q8);
-  signed_result(tracking.speed_rest_q8);
+  signed_result(tracking.speed_remainder_q8);
 }
 
 static blend_t blending;

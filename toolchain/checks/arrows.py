@@ -36,7 +36,7 @@ LEFT = "toolchain/arrows_left.txt"
 # What each part may include besides itself: a part or a single file. The longest prefix that fits a path decides which
 # part of the house it is in.
 _SEAM = ("hal/f2808/registers.h", "hal/f2808/target.h")
-_BENCH_HAL = ("hal/hal_tape.h", "hal/hal_board.h", "hal/hal_flash.h", "hal/hal_image.h")
+_BENCH_HAL = ("hal/hal_replay.h", "hal/hal_board.h", "hal/hal_flash.h", "hal/hal_image.h")
 _UNDER_FIRMWARE = ("hal/qmath", "hal", "control", "svpwm", "estimators")
 _FOLDERS = tuple(f"firmware/{folder}" for line in FIRMWARE for folder in line)
 MAY_INCLUDE: dict[str, tuple[str, ...]] = {

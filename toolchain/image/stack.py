@@ -17,7 +17,7 @@ TABLE = Path(__file__).resolve().parent.parent / "f2808" / "indirect_calls.txt"
 CALL_WORDS = 2
 CONTEXT_WORDS = 48  # 14 by the CPU, the rest is what __interrupt saves at most
 LEVELS = ("main", "control_isr", "window_isr")  # background, and each may be interrupted by the next
-PLAYS = "tape_pass_call"  # goes on with a tape, which a host in the loop has brought
+PLAYS = "replay_pass_call"  # goes on with a recording, which a host in the loop has brought
 _MODE = re.compile(r"\[(.+)\]")
 
 
@@ -201,7 +201,7 @@ def _add_levels(graph: Graph, levels: tuple[str, ...], where: str, depth: Depth)
 def stack_depth(objects: list[ObjectFile], levels: tuple[str, ...] = LEVELS) -> Depth:
     """The deepest of the drive's modes, and the ways of each; or another program's levels on top of one another.
 
-    Of another program no call through a pointer is known, and it plays no tape.
+    Of another program no call through a pointer is known, and it plays no recording.
     """
     if levels != LEVELS:
         depth, graph = Depth(), build_graph(objects)

@@ -153,7 +153,7 @@ DEFECTS = (
     Defect("editor", "insert", "firmware/console/editor.c", "l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
     Defect("commands", "set_channels", "firmware/scope/commands.c", "a->count > 1u +", "a->count > 2u +"),
     Defect("requests", "scope_read", "firmware/scope/requests.c", "count > READ_MAX", "count > 2u * READ_MAX"),
-    Defect("requests", "delta_take", "firmware/hil/hil.c", "shape[2] > TAPE_INPUTS", "shape[2] > 2u * TAPE_INPUTS"),
+    Defect("requests", "delta_take", "firmware/hil/hil.c", "shape[2] > REPLAY_INPUTS", "shape[2] > 2u * REPLAY_INPUTS"),
     Defect("console", "keep", "firmware/console/console.c", "kept_count) & (KEPT - 1u)", "kept_count) & KEPT"),
     Defect("node", "can_put", "firmware/can/messages.c", "&frame->data[at >> 3]", "&frame->data[at >> 2]"),
     Defect("blocks", "cobs_decode", "firmware/link/cobs.c", "from = 0; from < count", "from = 0; from <= count"),
@@ -161,7 +161,7 @@ DEFECTS = (
         "framing", "splitter_octet", "firmware/link/splitter.c", "<= RECORD_ENCODED_MAX)", "<= RECORD_ENCODED_MAX + 1u)"
     ),
     Defect("framing", "take", "firmware/can/segments.c", "j->count >= RECORD_MAX", "j->count > RECORD_MAX"),
-    Defect("store", "take_header", "firmware/store/survey.c", "slot + 1u == SLOTS", "slot == SLOTS"),
+    Defect("store", "take_header", "firmware/store/scan.c", "slot + 1u == SLOTS", "slot == SLOTS"),
     Defect("kernel", "write", "firmware/flash_kernel/requests.c", "> KERNEL_WORDS_MAX", "> 2u * KERNEL_WORDS_MAX"),
     Defect(
         "selftest",
@@ -173,7 +173,7 @@ DEFECTS = (
     Defect("results", "agree", "firmware/commissioning/result.c", "q_sub_sat(a, b)", "a - b"),
     Defect("chip", "keep", "hal/f2808/sci.c", "in % HAL_SCI_RECEIVE_RING]", "in % (HAL_SCI_RECEIVE_RING + 1u)]"),
     Defect("left", "q_shl_sat", "hal/qmath/qarith.h", "(x > q_shr(INT32_MAX, n))", "(x >= q_shr(INT32_MAX, n))"),
-    Defect("rest", "q_follow_rest", "hal/qmath/qarith.h", "(int32_t)(sum >> n)", "(int32_t)(sum >> (n - 1u))"),
+    Defect("rest", "q_follow_remainder", "hal/qmath/qarith.h", "(int32_t)(sum >> n)", "(int32_t)(sum >> (n - 1u))"),
     Defect("devices", "bit_of", "hal/f2808/can.c", "(31u - q_clz32(pending))", "(32u - q_clz32(pending))"),
     Defect("contracts", "q_clamp", "hal/qmath/qarith.h", "return (x > hi) ? hi : x;", "return (x >= hi) ? lo : x;"),
     Defect("contracts", "q_sat64", "hal/qmath/qarith.h", "(x < 0) ? INT32_MIN : INT32_MAX", "INT32_MAX"),

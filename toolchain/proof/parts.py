@@ -30,12 +30,12 @@ class Part:
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
 OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
-OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_rest,q_mix,q_mix_sat,q_square,q_square_sat"
+OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_remainder,q_mix,q_mix_sat,q_square,q_square_sat"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_DROPS = "dead_time_sign_q21,dead_time_delay_ticks"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
-OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_words,put_packed,packed_is_empty,packed_next"
+OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_next"
 OF_DECIMALS = "text_number,decimal_raw,decimal_is_whole"
 OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_equals,packed_is,packed_copy,suggest_is_near"
 OF_LINES = "editor_octet,editor_next,editor_show"
@@ -80,7 +80,7 @@ FRAMES = (
 TEXTS = (
     *(
         "firmware/text/text.c",
-        "firmware/text/words.c",
+        "firmware/text/catalogue.c",
         "firmware/text/packed_text.c",
         "firmware/dictionary/parameters.c",
         "firmware/drive/signals.c",
@@ -90,7 +90,13 @@ TEXTS = (
 TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (
     *("tests/prove/any_drive.c", "firmware/api/actions.c", "firmware/mode/fault_history.c", "firmware/scope/scope.c"),
-    *("firmware/api/guard.c", "firmware/api/status.c", "firmware/mode/access.c", "firmware/link/stream.c", *TEXTS),
+    *(
+        "firmware/api/comm_watchdog.c",
+        "firmware/api/status.c",
+        "firmware/mode/access.c",
+        "firmware/link/stream.c",
+        *TEXTS,
+    ),
     *("firmware/store/actions.c", "firmware/commissioning/actions.c"),
 )
 TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "editor", "output"))
@@ -98,7 +104,7 @@ TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "ed
 STORE = (
     *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/api/status.c", OCTETS, CRC),
     "hal/qmath/qdiv.c",
-    *(f"firmware/store/{name}.c" for name in ("reader", "slot", "store", "survey", "values", "writer")),
+    *(f"firmware/store/{name}.c" for name in ("reader", "scan", "slot", "store", "values", "writer")),
 )
 KERNEL = (
     *("tests/prove/kernel.c", "firmware/flash_kernel/*.c", "firmware/link/splitter.c", RECORD, OCTETS, CRC),
@@ -114,13 +120,16 @@ RESULTS = (
     *(
         "firmware/dictionary/parameters.c",
         "firmware/mode/access.c",
-        "estimators/admittance_tensor.c",
+        "estimators/inverse_inductance_tensor.c",
         "estimators/fit.c",
     ),
     *CONTROL,
 )
 
-DRIVERS = "adc", "clock", "encoder", "gpio", "irq", "lines", "pwm", "safety", "sci", "slices", "timer", "watchdog"
+DRIVERS = (
+    *("adc", "clock", "digital_io", "encoder", "gpio", "irq"),
+    *("pwm", "safety", "sampling_timer", "sci", "timer", "watchdog"),
+)
 ANY_REGISTER = "tests/prove/any_register.c"
 CHIP = ("tests/prove/chip.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2808/{name}.c" for name in DRIVERS))
 OF_DEVICES = "can", "i2c", "eeprom", "selftest", "flash", "flash_read", "gpio"
@@ -314,7 +323,7 @@ PARTS = (
         (
             *("tests/prove/requests.c", "firmware/link/requests*.c", CRC),
             *(f"firmware/{folder}/requests.c" for folder in ("scope", "store", "commissioning")),
-            *("firmware/hil/*.c", "firmware/base/clear.c", "hal/tape.c", *BESIDE),
+            *("firmware/hil/*.c", "firmware/base/clear.c", "hal/replay.c", *BESIDE),
         ),
         READER,
         *(OF_QMATH, OF_WRITING, "packed_equals"),
@@ -368,7 +377,7 @@ PARTS = (
             ("contracts", CONTRACTS_OF_QMATH, (BITS, CONTRACTS, OVER)),
             ("shifts", ("q_shr",), (BITS, CONTRACTS, FLOOR, SHIFT_RANGES)),
             ("left", ("q_shr", "q_shl_sat"), (CONTRACTS, FLOOR, LEFT_SHIFT)),
-            ("rest", ("q_follow_rest",), (REST, SHIFT_RANGES, RANGES)),
+            ("rest", ("q_follow_remainder",), (REST, SHIFT_RANGES, RANGES)),
             ("between", BETWEEN, (BITS, CONTRACTS, SHIFT_RANGES, RANGES)),
         )
     ),

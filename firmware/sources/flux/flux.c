@@ -15,8 +15,8 @@
 #define MAGNET_SHARE_Q30 53687091L       // 0.05: 200 ms
 #define CURRENT_LEAST_Q24 838861L        // the torque current makes a twentieth of the magnet's flux
 #define LEARNING_BPP 27342611L           // 400 rad/s: the magnet's flux is learnt from there on
-#define SEEING_SHIFT 4                   // 16 ms: the torque current's noise stays out of i_d
-#define SEEING 3               // times the current whose sign is certain: i_d without torque where the flux sees
+#define OBSERVABILITY_SHIFT 4            // 16 ms: the torque current's noise stays out of i_d
+#define OBSERVABLE_CURRENTS 3  // times the current whose sign is certain: i_d without torque where the flux sees
 #define LEAST_BAND_Q20 10486L  // 0.01 A
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
@@ -38,15 +38,15 @@ static void narrow_band(dead_time_config_t* c) {
 
 bool flux_source_load(drive_config_t* c) {
   const parameters_t* const p = &parameters;
-  const bool is_wanted = method() >= 0;
-  if (is_wanted) narrow_band(&c->dead_time);
+  const bool is_selected = method() >= 0;
+  if (is_selected) narrow_band(&c->dead_time);
   flux_observer_config_t* const f = &c->flux;
   f->method = (flux_method_t)q_max(method(), FLUX_CONV);
   f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
   f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
   f->is_plain = p->flux_plain != 0;
   // Without dead time every voltage is known.
-  f->blind_q20 = (c->dead_time.blocked_ticks > 0) ? c->dead_time.band_q20 : 0;
+  f->unknown_voltage_q20 = (c->dead_time.turn_on_ticks > 0) ? c->dead_time.band_q20 : 0;
   f->adaptation_periods = ADAPTATION_PERIODS;
   f->adaptation.saturation_q24 =
       ((p->flux_adapt & LEARN_INDUCTANCE) != 0) ? flux_adaptation_identify_q24(&c->nameplate) : 0;
@@ -54,12 +54,12 @@ bool flux_source_load(drive_config_t* c) {
   f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
   f->adaptation.current_q24 = CURRENT_LEAST_Q24;
   f->adaptation.lowest_bpp = LEARNING_BPP;
-  return !is_wanted || flux_observer_config_valid(f, &c->nameplate);
+  return !is_selected || flux_observer_config_valid(f, &c->nameplate);
 }
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
 static flux_period_t period_of(const drive_t* d, bool is_full) {
-  const uint32_t end_bam = d->position.used.angle_bam + (uint32_t)d->position.used.speed_bpp;
+  const uint32_t end_bam = d->position.selected.angle_bam + (uint32_t)d->position.selected.speed_bpp;
   flux_period_t p;
   p.is_full = is_full;
   p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
@@ -134,16 +134,17 @@ static excitation_t flux_excitation(const drive_t* d) {
 }
 
 // While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
-// one, and an integral of the commanded one is blind. So some current always flows where the flux has the shaft, below
-// the speed at which the magnet is learnt, and the EMF stands out of that.
-static int32_t seeing_current(drive_t* d) {
+// one, and an integral of the commanded one does not see it. So some current always flows where the flux has the shaft,
+// below the speed at which the magnet is learnt, and the EMF stands out of that.
+static int32_t observability_current(drive_t* d) {
   drive_control_t* const c = &d->control;
-  const int32_t least_q20 = q_min(SEEING * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
-  const bool blind =
-      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.used.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
-  const int32_t missing_q20 = blind ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
-  c->seeing_q20 = q_follow(c->seeing_q20, missing_q20, SEEING_SHIFT);
-  return -c->seeing_q20;
+  const int32_t least_q20 =
+      q_min(OBSERVABLE_CURRENTS * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
+  const bool unobservable = d->position.blend.share_q15 == 0 &&
+                            q_abs_sat(d->position.selected.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
+  const int32_t missing_q20 = unobservable ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
+  c->observability_q20 = q_follow(c->observability_q20, missing_q20, OBSERVABILITY_SHIFT);
+  return -c->observability_q20;
 }
 
 // The observer below the blend, the stator flux above, both between. There nothing is learnt of the windows, for want
@@ -156,5 +157,5 @@ static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
 }
 
 const position_source_t flux_source = {
-    source_flux,        flux_excitation, seeing_current,
+    source_flux,        flux_excitation, observability_current,
     flux_source_follow, flux_begin,      SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};

@@ -9,7 +9,7 @@
 void source_step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (d->flags.frozen) return;
-  if (d->schedule.turn == TURN_REGRESS)
+  if (d->schedule.slot == SLOT_REGRESSION)
     d->position.is_near = q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM;
   source_learn(d, &d->position.avv.regression);
 }

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
 
@@ -17,8 +17,8 @@ estimator_output_t source_observer(drive_t* d, estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
   const regression_t* const r = &d->position.observer.regression;
   // Whether the windows agree with the angle, so that the regression is linear, is asked in the place behind it.
-  if (d->schedule.turn == TURN_REGRESS) d->position.is_near = in->regress && in->window_count > 0u;
-  if (d->schedule.turn == TURN_LOOK) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
+  if (d->schedule.slot == SLOT_REGRESSION) d->position.is_near = in->regress && in->window_count > 0u;
+  if (d->schedule.slot == SLOT_LOOK) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
   source_learn(d, r);
   d->position.high = out;
   return out;

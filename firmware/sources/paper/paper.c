@@ -16,7 +16,7 @@ static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blen
 
 // Both at work, and no room for both in a period: ZVV looks at the windows beside speed control and field weakening,
 // AVV in all others.
-static void step_by_turns(drive_t* d, estimator_input_t* in) {
+static void step_alternately(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
   const uint16_t count = in->window_count;
   const bool is_long = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
@@ -45,7 +45,7 @@ static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
     p->low = p->high;
     zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
   } else {
-    step_by_turns(d, in);
+    step_alternately(d, in);
   }
   return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
 }
@@ -53,7 +53,8 @@ static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
 // Long zero vectors at low speed and extended active ones from below the blend on.
 static excitation_t paper_excitation(const drive_t* d) {
   const int32_t enter = d->config.blend.low_bpp / 4 * 3;
-  return (q_abs_sat(d->position.used.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
+  return (q_abs_sat(d->position.selected.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
-const position_source_t paper_source = {source_paper, paper_excitation, NULL, NULL, NULL, SOURCE_BLENDS | SOURCE_TURNS};
+const position_source_t paper_source = {
+    source_paper, paper_excitation, NULL, NULL, NULL, SOURCE_BLENDS | SOURCE_ALTERNATES};

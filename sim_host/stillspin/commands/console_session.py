@@ -1,7 +1,7 @@
 """A session of the console: it begins with nothing of the one before, and no motor runs on behind it unless told so.
 
-While it lasts, records beside the text keep the drive's guard alive, so that a bare `start` is taken and a session that
-dies stops the motor; one that ends, in whatever way, stops what it has started at once.
+While it lasts, records beside the text keep the drive's watchdog alive, so that a bare `start` is taken and a session
+that dies stops the motor; one that ends, in whatever way, stops what it has started at once.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Session:
             self._drive.let_go()
 
     def _set_free(self) -> str:
-        """Take the guard off a motor that runs, and say what became of it.
+        """Take the watchdog off a motor that runs, and say what became of it.
 
         The port may be closed at once after this: the answer is waited for, so that no octet of the line is lost.
         """

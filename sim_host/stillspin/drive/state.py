@@ -52,7 +52,7 @@ class RawStatus:
 
     @property
     def held(self) -> bool:
-        """Whether it is this client that keeps the guard alive, because its start asked for it."""
+        """Whether it is this client that keeps the watchdog alive, because its start asked for it."""
         return bool(self.link & 4)
 
     @property

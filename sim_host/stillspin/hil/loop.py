@@ -21,7 +21,7 @@ _SIGNALS_AT_ONCE = 16
 _PERIOD = 1e-4  # s
 
 Play = Callable[[NativeCore, Progress, NativeStepLoop], str]
-"""A run on the virtual drive whose tape the loop takes; gives the reason why it broke off, empty when it did not."""
+"""A run on the virtual drive whose recording the loop takes; the reason why it broke off, empty when it did not."""
 
 
 @dataclass(frozen=True)

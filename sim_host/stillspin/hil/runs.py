@@ -112,7 +112,7 @@ class _CommissioningPlay:
             self.settings.changes,
             self.settings.seed,
             lambda share, _phase: progress(share),
-            tape=loop,
+            recording=loop,
             limit=_CHECK_COMMISSION if self.check else commission.LIMIT,
         )
         return "" if self.check else result.reason

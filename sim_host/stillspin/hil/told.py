@@ -1,4 +1,4 @@
-"""What a drive told its hardware in a period, in words: the outputs of a step's answer (hal/hal_tape.h)."""
+"""What a drive told its hardware in a period, in words: the outputs of a step's answer (hal/hal_replay.h)."""
 
 from __future__ import annotations
 

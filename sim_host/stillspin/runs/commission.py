@@ -89,10 +89,10 @@ def play(
     seed: int,
     progress: Callable[[float, str], bool] | None,
     *,
-    tape: NativeStepLoop | None = None,
+    recording: NativeStepLoop | None = None,
     limit: float = LIMIT,
 ) -> NativeCommissioning:
-    """The commissioning itself, however it ends within `limit` simulated seconds; `tape` gets every period of it.
+    """The commissioning itself, however it ends within `limit` simulated seconds; `recording` gets every period of it.
 
     Raises:
         InputError: parameters that do not fit together.
@@ -106,7 +106,7 @@ def play(
             limit=limit,
             seed=seed,
             progress=progress,
-            tape=tape,
+            recording=recording,
         )
     except ValueError as error:
         raise InputError(str(error)) from error

@@ -178,9 +178,9 @@ def _check_commands(run: Run, known: Mapping[str, Entry], where: str) -> None:
 
 
 def play(
-    native: NativeCore, job: Job, progress: core.Progress | None, tape: NativeStepLoop | None = None
+    native: NativeCore, job: Job, progress: core.Progress | None, recording: NativeStepLoop | None = None
 ) -> NativeResult:
-    """The run itself; `tape` gets every period of it."""
+    """The run itself; `recording` gets every period of it."""
     run = job.run
     return native.run(
         plant=job.plant,
@@ -193,7 +193,7 @@ def play(
         waveform=run.waveform or (0.0, 0.0, 1),
         seed=job.seed,
         progress=progress,
-        tape=tape,
+        recording=recording,
     )
 
 

@@ -1,12 +1,12 @@
-// The machine's incremental admittance as a full 2 x 2 tensor, from pairs of windows under different vectors.
+// The machine's incremental inverse inductance as a full 2 x 2 tensor, from pairs of windows under different vectors.
 //
 // The difference of two windows of one period is ds = Y dv: resistance, back-EMF and drops cancel to first order, and
 // the rest is in the model's own slope, which is taken off beforehand (deviation.h). Sums of dv dv' and ds dv' over
 // many periods give Y = (sum ds dv')(sum dv dv')^-1 exactly, whichever directions dv took. The symmetric part is the
 // machine; the antisymmetric one is the mismatch of the two current sensors (sensor_match.h).
 
-#ifndef STILLSPIN_ESTIMATORS_ADMITTANCE_TENSOR_H
-#define STILLSPIN_ESTIMATORS_ADMITTANCE_TENSOR_H
+#ifndef STILLSPIN_ESTIMATORS_INVERSE_INDUCTANCE_TENSOR_H
+#define STILLSPIN_ESTIMATORS_INVERSE_INDUCTANCE_TENSOR_H
 
 #include "estimators/deviation.h"
 
@@ -32,7 +32,7 @@ void tensor_add(tensor_sums_t* s, const deviation_t* first, const deviation_t* s
 /// are no sums or the vectors had one direction only.
 bool tensor_solve(const tensor_sums_t* s, const machine_model_t* m, tensor_axes_t* out);
 
-/// Inductance in mH, Q20, of an admittance in A per V and period of 100 us, Q30.
+/// Inductance in mH, Q20, of an inverse inductance in A per V and period of 100 us, Q30.
 int32_t tensor_inductance_q20(int32_t y_q30);
 
 #endif

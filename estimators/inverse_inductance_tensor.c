@@ -1,4 +1,4 @@
-#include "estimators/admittance_tensor.h"
+#include "estimators/inverse_inductance_tensor.h"
 
 #include "estimators/fit.h"
 

@@ -1,5 +1,5 @@
 // What the drive's numbers mean, in the user's words, but for the faults (fault_list.h). WORDS(kind, code, text): a
-// kind is one of words_kind_t, its codes begin with 0 and have no gaps. No include guard: it is included with different
+// kind is one of catalogue_t, its codes begin with 0 and have no gaps. No include guard: it is included with different
 // meanings of WORDS.
 
 WORDS(STATE, 0, "boot")
@@ -28,7 +28,7 @@ WORDS(VERDICT, 6, "impossible for a motor: check the phase order and the current
 WORDS(VERDICT, 7, "depends on another value that was refused")
 
 WORDS(PHASE, 0, "offsets, axis and polarity")
-WORDS(PHASE, 1, "turning to a favourable angle")
+WORDS(PHASE, 1, "aligning the rotor")
 WORDS(PHASE, 2, "DC staircase: resistance, drop, dead time")
 WORDS(PHASE, 3, "spin: flux linkage, inertia, friction")
 WORDS(PHASE, 4, "inductances under torque current")
@@ -63,7 +63,7 @@ WORDS(START, 3, "finding the axis")
 WORDS(START, 4, "settling the current loop")
 WORDS(START, 5, "polarity by saturation")
 WORDS(START, 6, "polarity by motion")
-WORDS(START, 7, "turning a current vector")
+WORDS(START, 7, "open-loop (I-F) ramp")
 WORDS(START, 8, "charging the bootstrap capacitors")
 
 WORDS(COMMISSIONING, 0, "not yet")

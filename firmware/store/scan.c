@@ -1,4 +1,4 @@
-#include "firmware/store/survey.h"
+#include "firmware/store/scan.h"
 
 #include <stddef.h>
 
@@ -27,9 +27,9 @@ static uint16_t reads;                // of what is being read
 static uint16_t before[SLOT_HEADER];  // the header as it was read the time before
 static store_report_t report;
 
-const store_report_t* survey_report(void) { return &report; }
+const store_report_t* scan_report(void) { return &report; }
 
-uint16_t survey_progress(void) { return (stage == CHECK_SLOT) ? reader_progress() : 0u; }
+uint16_t scan_progress(void) { return (stage == CHECK_SLOT) ? reader_progress() : 0u; }
 
 static void read_header(uint16_t of) {
   slot = of;
@@ -55,7 +55,7 @@ static bool read_again(void) {
   return true;
 }
 
-void survey_begin(bool stage_values) {
+void scan_begin(bool stage_values) {
   static const store_report_t nothing = {0};
   staging = stage_values;
   stage = LOOK_AT_HEADERS;
@@ -75,15 +75,15 @@ static bool is_outrun(void) {
   return false;
 }
 
-static survey_result_t conclude(void) {
+static scan_result_t conclude(void) {
   if (report.slot < SLOTS) report.older = is_outrun();
-  if (report.slot < SLOTS) return SURVEY_FOUND;
-  if (any_foreign) return SURVEY_FOREIGN;
-  return (report.damaged > 0u) ? SURVEY_DAMAGED : SURVEY_EMPTY;
+  if (report.slot < SLOTS) return SCAN_FOUND;
+  if (any_foreign) return SCAN_FOREIGN;
+  return (report.damaged > 0u) ? SCAN_DAMAGED : SCAN_EMPTY;
 }
 
 // The newest slot that has not been checked yet.
-static survey_result_t check_next(void) {
+static scan_result_t check_next(void) {
   uint16_t newest = SLOTS;
   for (uint16_t k = 0; k < SLOTS; k++) {
     if (!candidate[k]) continue;
@@ -95,7 +95,7 @@ static survey_result_t check_next(void) {
   stage = CHECK_SLOT;
   reads = 0;
   begin_check();
-  return SURVEY_GOES_ON;
+  return SCAN_GOES_ON;
 }
 
 static void give_up_slot(void) {
@@ -113,8 +113,8 @@ static bool header_is_sure(void) {
   return same;
 }
 
-static survey_result_t take_header(void) {
-  if (!header_is_sure() && read_again()) return SURVEY_GOES_ON;
+static scan_result_t take_header(void) {
+  if (!header_is_sure() && read_again()) return SCAN_GOES_ON;
   headers[slot] = slot_unpack_header(octets);
   candidate[slot] = slot_is_plausible(&headers[slot]);
   spoilt[slot] = false;
@@ -122,7 +122,7 @@ static survey_result_t take_header(void) {
   reads = 0;
   if (slot + 1u == SLOTS) return check_next();
   read_header((uint16_t)(slot + 1u));
-  return SURVEY_GOES_ON;
+  return SCAN_GOES_ON;
 }
 
 static void take_entry(const slot_entry_t* entry) {
@@ -148,7 +148,7 @@ static void take_entry(const slot_entry_t* entry) {
 }
 
 // A valid slot: the one to take, unless another firmware's format keeps it from being read.
-static survey_result_t take_slot(void) {
+static scan_result_t take_slot(void) {
   if (report.newest == SLOTS) {
     report.newest = slot;
     report.sequence = headers[slot].sequence;
@@ -163,30 +163,30 @@ static survey_result_t take_slot(void) {
   return conclude();
 }
 
-survey_result_t survey_step(void) {
+scan_result_t scan_step(void) {
   if (stage == LOOK_AT_HEADERS) {
     const hal_nvm_state_t state = arrives ? hal_nvm_step() : NVM_FAILED;
-    if (state == NVM_BUSY) return SURVEY_GOES_ON;
+    if (state == NVM_BUSY) return SCAN_GOES_ON;
     if (state == NVM_DONE) return take_header();
-    return read_again() ? SURVEY_GOES_ON : SURVEY_FAILED;
+    return read_again() ? SCAN_GOES_ON : SCAN_FAILED;
   }
   slot_entry_t entry;
   reader_result_t result = reader_step(&entry);
   for (uint16_t k = 1; result == READER_ENTRY; k++) {
     take_entry(&entry);
-    if (k == ENTRIES_IN_A_STEP) return SURVEY_GOES_ON;
+    if (k == ENTRIES_IN_A_STEP) return SCAN_GOES_ON;
     result = reader_step(&entry);
   }
   switch (result) {
     case READER_VALID:
       return take_slot();
     case READER_BAD:
-      if (read_again()) return SURVEY_GOES_ON;
+      if (read_again()) return SCAN_GOES_ON;
       give_up_slot();
       return check_next();
     case READER_FAILED:
-      return read_again() ? SURVEY_GOES_ON : SURVEY_FAILED;
+      return read_again() ? SCAN_GOES_ON : SCAN_FAILED;
     default:
-      return SURVEY_GOES_ON;
+      return SCAN_GOES_ON;
   }
 }

@@ -9,16 +9,16 @@
 //
 // The current reference moves slowly enough for the voltage to leave the windows long, at most s in a period. A current
 // x above what the load wants is gone x/s periods later only, and has made the shaft faster by a(x) (x/s) T/2
-// meanwhile, a(x) its acceleration. w' is seven tenths of that, which is what a magnet 30 % weaker than told makes of
-// it. Without w' the loop comes too late on its way back, and swings up to 4 degrees where the inertia is 30 % less
-// than told or the flux 30 % more. In current 2 wc w' is 0.7 wc T x |x| / s, whatever the motor.
+// meanwhile, a(x) its acceleration. w' is seven tenths of that, which is what a magnet 30 % weaker than nominal makes
+// of it. Without w' the loop comes too late on its way back, and swings up to 4 degrees where the inertia is 30 % less
+// than nominal or the flux 30 % more. In current 2 wc w' is 0.7 wc T x |x| / s, whatever the motor.
 //
 // The loop needs a map of the cross-saturation: its angle error of 0.46 degrees per ampere, unknown, closes this loop
 // on itself, with a gain of 0.8 on motor A and of 1 from wc = 250 rad/s on. The resistance is the one seen at the
 // start: at standstill the speed comes from what resistance and drops leave of the voltage, and a resistance 30 % off
 // makes the speed seen go against the torque.
 
-#include "firmware/drive/brake_hold.h"
+#include "firmware/drive/brake_release_hold.h"
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
@@ -31,42 +31,42 @@
 #define SLEW_Q20 734003L            // s, 0.7 A: some 50 V, within the alternating layout
 #define RETURN_Q30 24159191L        // 0.7 wc T / s, per ampere
 
-hold_t brake_hold;
+hold_t brake_release_hold;
 
 void hold_begin(drive_t* d) {
-  hold_t* const h = &brake_hold;
+  hold_t* const h = &brake_release_hold;
   // The other sources have no observer that could be fast for a moment.
   h->left = position_has(d, SOURCE_READS) ? (uint32_t)parameters.hold_time * DRIVE_PERIODS_PER_MS : 0u;
-  h->reference_bam = d->position.used.angle_bam;
+  h->reference_bam = d->position.selected.angle_bam;
   h->current_per_accel = q_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
   if (h->left > 0u) deviation_observer_stands(&d->position.observer);
 }
 
-void hold_end(void) { brake_hold.left = 0; }
+void hold_end(void) { brake_release_hold.left = 0; }
 
-bool hold_is_on(const drive_t* d) { return brake_hold.left > 0u && d->state == DRIVE_RUN; }
+bool hold_is_on(const drive_t* d) { return brake_release_hold.left > 0u && d->state == DRIVE_RUN; }
 
 // Electrical acceleration, binary angle per period^2, Q8, without the load's and w'.
 static int32_t restoring_accel_q8(const drive_t* d) {
-  const estimator_output_t* const now = &d->position.used;
-  const int32_t behind = angle_diff_bam(brake_hold.reference_bam, now->angle_bam);
+  const estimator_output_t* const now = &d->position.selected;
+  const int32_t behind = angle_diff_bam(brake_release_hold.reference_bam, now->angle_bam);
   const int32_t slow = q_sub_sat(d->control.ramp.value, now->speed_bpp);
   return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
 }
 
 bool hold_step(drive_t* d) {
-  hold_t* const h = &brake_hold;
+  hold_t* const h = &brake_release_hold;
   if (!hold_is_on(d)) return false;
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
   drive_control_t* const c = &d->control;
-  const int64_t load_q40 = q_product(d->position.used.load_accel_q8, h->current_per_accel);
+  const int64_t load_q40 = q_product(d->position.selected.load_accel_q8, h->current_per_accel);
   const int32_t above_q20 = q_sat64(c->reference_q20.q - q_shr64(load_q40, 20));
   const int32_t return_q20 = q_mul_sat(q_mul_sat(above_q20, q_abs_sat(above_q20), 20), RETURN_Q30, 30);
-  const int64_t asked_q40 = q_mac(load_q40, restoring_accel_q8(d), h->current_per_accel);
-  const int32_t current_q20 = q_sat64(q_shr64(asked_q40, 20) - return_q20);
-  const int32_t limited_q20 = q_clamp(current_q20, -c->room_q20, c->room_q20);
-  const int32_t wanted_q20 = q_mix(c->reference_q20.q, limited_q20, FILTER_Q30, 30);
-  c->reference_q20.q = q_clamp(wanted_q20, c->reference_q20.q - SLEW_Q20, c->reference_q20.q + SLEW_Q20);
+  const int64_t command_q40 = q_mac(load_q40, restoring_accel_q8(d), h->current_per_accel);
+  const int32_t current_q20 = q_sat64(q_shr64(command_q40, 20) - return_q20);
+  const int32_t limited_q20 = q_clamp(current_q20, -c->headroom_q20, c->headroom_q20);
+  const int32_t command_q20 = q_mix(c->reference_q20.q, limited_q20, FILTER_Q30, 30);
+  c->reference_q20.q = q_clamp(command_q20, c->reference_q20.q - SLEW_Q20, c->reference_q20.q + SLEW_Q20);
   return true;
 }

@@ -2,7 +2,7 @@
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_pwm.h"
-#include "hal/hal_slices.h"
+#include "hal/hal_sampling_timer.h"
 #include "tests/hal/bus_test.hpp"
 
 namespace stillspin::test {
@@ -41,7 +41,7 @@ class Slices : public BusTest {
 };
 
 TEST_F(Slices, begin_stops_bursts_and_holds_the_legs_low) {
-  ASSERT_TRUE(hal_slices_begin(1000));
+  ASSERT_TRUE(hal_sampling_timer_begin(1000));
   expect_at_once(5, 0xFFFF, 0xFFFF);
   expect_at_once(6, 0xFFFF, 0xFFFF);
   expect_at_once(4, 0xFFFF, 10);
@@ -67,16 +67,16 @@ TEST_F(Slices, begin_stops_bursts_and_holds_the_legs_low) {
 
 TEST_F(Slices, refused_ones_change_nothing) {
   for (const std::uint16_t ticks : {0, 1, 400, 499, 501, 700, 9999, 10001, 20000}) {
-    EXPECT_FALSE(hal_slices_begin(ticks)) << ticks;
+    EXPECT_FALSE(hal_sampling_timer_begin(ticks)) << ticks;
     EXPECT_TRUE(bus.steps.empty()) << ticks;
   }
-  for (const std::uint16_t ticks : {500, 625, 2500, 10000}) EXPECT_TRUE(hal_slices_begin(ticks)) << ticks;
+  for (const std::uint16_t ticks : {500, 625, 2500, 10000}) EXPECT_TRUE(hal_sampling_timer_begin(ticks)) << ticks;
 }
 
 TEST_F(Slices, each_bit_is_a_leg) {
   for (std::uint16_t state = 0; state < 8; ++state) {
     bus.forget_steps();
-    hal_slice_set_legs(state);
+    hal_sampling_timer_set_legs(state);
     for (unsigned leg = 0; leg < 3; ++leg) {
       EXPECT_EQ(written(1 + leg, EPWM_AQCSFRC), Values{(state >> leg & 1) != 0 ? 2u : 1u}) << state;
     }
@@ -86,8 +86,8 @@ TEST_F(Slices, each_bit_is_a_leg) {
 
 TEST_F(Slices, results_are_taken_then_rearmed_then_acknowledged) {
   for (std::uint16_t n = 0; n < 16; ++n) bus.words[REG_MIRROR_ADCRESULT0 + n] = static_cast<std::uint16_t>(100 + n);
-  hal_slice_t slice;
-  hal_slice_read(&slice);
+  hal_timed_samples_t slice;
+  hal_sampling_timer_read(&slice);
   EXPECT_EQ(slice.current_a, 108);
   EXPECT_EQ(slice.current_b, 109);
   EXPECT_EQ(slice.link, 110);
@@ -100,9 +100,9 @@ TEST_F(Slices, results_are_taken_then_rearmed_then_acknowledged) {
 }
 
 TEST_F(Slices, end_gives_the_period_back_without_pulses_or_bursts) {
-  ASSERT_TRUE(hal_slices_begin(500));
+  ASSERT_TRUE(hal_sampling_timer_begin(500));
   bus.forget_steps();
-  hal_slices_end();
+  hal_sampling_timer_end();
   for (unsigned module = 1; module <= 6; ++module) expect_at_once(module, 0xFFFF, 0xFFFF);
   EXPECT_EQ(epwm(4, EPWM_TBPRD), 9999);
   for (unsigned leg = 1; leg <= 3; ++leg) {

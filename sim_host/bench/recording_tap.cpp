@@ -1,4 +1,4 @@
-#include "sim_host/bench/tape_tap.hpp"
+#include "sim_host/bench/recording_tap.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "firmware/link/record.h"
 #include "firmware/link/requests.h"
 #include "firmware/mode/commands.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
 
 namespace stillspin::bench {
 namespace {
@@ -30,7 +30,7 @@ void put32(Octets& octets, std::uint32_t value) {
 }
 
 // The results of slices have three words; more of them than of windows come in a period.
-unsigned words_of(const tape_period_t& p) {
+unsigned words_of(const replay_period_t& p) {
   for (unsigned k = 0; k < p.window_count; k++) {
     const std::uint16_t* const r = p.windows[k].results;
     if (std::any_of(r + kSliceWords, r + kWindowWords, [](std::uint16_t word) { return word != 0; })) {
@@ -53,7 +53,7 @@ void put(octet_writer_t& w, const std::uint16_t* words, std::uint16_t* before, s
 }
 
 // In the order of firmware/hil/hil.h.
-Octets step_of(const tape_period_t& p, std::uint16_t sequence, StepWords& before) {
+Octets step_of(const replay_period_t& p, std::uint16_t sequence, StepWords& before) {
   std::array<std::uint16_t, RECORD_BODY_MAX> room;
   octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
   const unsigned results = words_of(p);
@@ -70,7 +70,7 @@ Octets step_of(const tape_period_t& p, std::uint16_t sequence, StepWords& before
   return octets_of(w);
 }
 
-Octets answer_of(const tape_period_t& p, std::uint16_t sequence, hil_answer_t& before) {
+Octets answer_of(const replay_period_t& p, std::uint16_t sequence, hil_answer_t& before) {
   std::array<std::uint16_t, RECORD_BODY_MAX> room;
   octet_writer_t w = octet_writer(room.data(), RECORD_BODY_MAX);
   hil_put_answer(&w, sequence, false, &p, &before);
@@ -90,33 +90,33 @@ std::vector<std::int32_t> raw_signals() {
 
 }  // namespace
 
-TapeTap* TapeTap::recording_ = nullptr;
+RecordingTap* RecordingTap::recording_ = nullptr;
 
-TapeTap::TapeTap(TapeSink sink) : sink_(std::move(sink)) {}
+RecordingTap::RecordingTap(RecordingSink sink) : sink_(std::move(sink)) {}
 
-TapeTap::~TapeTap() {
+RecordingTap::~RecordingTap() {
   if (!sink_) return;
-  hal_tape_start(TAPE_OFF, nullptr);
+  hal_replay_start(REPLAY_OFF, nullptr);
   recording_ = nullptr;
 }
 
-bool TapeTap::turn() {
+bool RecordingTap::turn() {
   if (!sink_) return true;
-  // The firmware has come up by its first period, and has cleared the tape for itself.
+  // The firmware has come up by its first period, and has cleared the recording for itself.
   if (!begun_) {
     begun_ = true;
     recording_ = this;
-    hal_tape_start(TAPE_RECORDS, take_late_period);
+    hal_replay_start(REPLAY_RECORDS, take_late_period);
   }
   // A step that has not run yet, or that is late and still running, belongs to the period that ends with it.
   // So does work of the background that this period's start came into.
-  if (hal_tape_end_period()) take_period();
+  if (hal_replay_end_period()) take_period();
   return hand_over();
 }
 
 // Called by the drive before it does what belongs to the next period.
 // Nothing may be thrown through it.
-void TapeTap::take_late_period() {
+void RecordingTap::take_late_period() {
   try {
     recording_->take_period();
   } catch (const std::runtime_error&) {
@@ -124,34 +124,34 @@ void TapeTap::take_late_period() {
   }
 }
 
-void TapeTap::take_period() {
-  if (!hal_tape_finish_period()) torn_ = true;
-  const tape_period_t& p = hal_tape.period;
+void RecordingTap::take_period() {
+  if (!hal_replay_finish_period()) torn_ = true;
+  const replay_period_t& p = hal_replay.period;
   period_.step = step_of(p, sequence_, step_before_);
   period_.answer = answer_of(p, sequence_, answer_before_);
   period_.outputs.assign(p.outputs, p.outputs + p.output_count);
   period_.signals = raw_signals();
   taken_.push_back(std::exchange(period_, std::exchange(next_, {})));
   sequence_++;
-  hal_tape_next_period();
+  hal_replay_next_period();
 }
 
-bool TapeTap::hand_over() {
-  if (torn_) throw std::runtime_error("a period has more inputs or outputs than a tape holds");
+bool RecordingTap::hand_over() {
+  if (torn_) throw std::runtime_error("a period has more inputs or outputs than a recording holds");
   bool more = true;
-  for (const TapedPeriod& period : taken_) more = more && sink_(period);
+  for (const RecordedPeriod& period : taken_) more = more && sink_(period);
   taken_.clear();
   return more;
 }
 
-void TapeTap::note_command(unsigned code, std::int32_t argument) {
+void RecordingTap::note_command(unsigned code, std::int32_t argument) {
   if (!sink_) return;
   Octets request{REQUEST_COMMAND, static_cast<std::uint8_t>(code)};
   put32(request, static_cast<std::uint32_t>(argument));
   ask(std::move(request));
 }
 
-void TapeTap::note_parameter(unsigned id, std::int32_t raw) {
+void RecordingTap::note_parameter(unsigned id, std::int32_t raw) {
   if (!sink_) return;
   Octets request{REQUEST_PARAMETER_SET};
   put16(request, id);
@@ -159,9 +159,9 @@ void TapeTap::note_parameter(unsigned id, std::int32_t raw) {
   ask(std::move(request));
 }
 
-// What is asked while a step runs, or is still on the tape, is for the one behind it.
-void TapeTap::ask(Octets request) {
-  TapedPeriod& period = hal_tape.stepping || hal_tape.stepped ? next_ : period_;
+// What is asked while a step runs, or is still in the recording, is for the one behind it.
+void RecordingTap::ask(Octets request) {
+  RecordedPeriod& period = hal_replay.stepping || hal_replay.stepped ? next_ : period_;
   period.requests.push_back(std::move(request));
 }
 

@@ -1,7 +1,7 @@
-// Holding the shaft while a brake opens, see brake_hold.c.
+// Holding the shaft while a brake opens, see brake_release_hold.c.
 
-#ifndef STILLSPIN_FIRMWARE_DRIVE_BRAKE_HOLD_H
-#define STILLSPIN_FIRMWARE_DRIVE_BRAKE_HOLD_H
+#ifndef STILLSPIN_FIRMWARE_DRIVE_BRAKE_RELEASE_HOLD_H
+#define STILLSPIN_FIRMWARE_DRIVE_BRAKE_RELEASE_HOLD_H
 
 #include "firmware/mode/mode.h"
 
@@ -11,7 +11,7 @@ typedef struct {
   int32_t current_per_accel;  // A (Q20) per acceleration (Q8), Q20
 } hold_t;
 
-extern hold_t brake_hold;
+extern hold_t brake_release_hold;
 
 /// Holds the shaft for hold_time from now.
 void hold_begin(drive_t* d);

@@ -1,8 +1,8 @@
 // The board's own lines: relay, brake, emergency stop, run switch, gates.
 
 #include "hal/f2808/registers.h"
-#include "hal/hal_lines.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_digital_io.h"
+#include "hal/hal_replay.h"
 #include "tests/hal/bus_test.hpp"
 
 namespace stillspin::test {
@@ -11,18 +11,18 @@ namespace {
 constexpr std::uint32_t kEmergency = 1u << 13;
 }  // namespace
 
-class Lines : public BusTest {
+class DigitalIo : public BusTest {
  protected:
   void SetUp() override { bus.power_all(); }
   void TearDown() override {
-    hal_tape_start(TAPE_OFF, nullptr);
+    hal_replay_start(REPLAY_OFF, nullptr);
     BusTest::TearDown();
   }
 };
 
-TEST_F(Lines, emergency_stop_trips_the_legs_and_not_the_witness) {
+TEST_F(DigitalIo, emergency_stop_trips_the_legs_and_not_the_witness) {
   for (unsigned module = 1; module <= 4; ++module) bus.words[EPWM_BASE(module) + EPWM_TZSEL] = EPWM_TZSEL_OSHT1_MASK;
-  hal_lines_wire_emergency();
+  hal_digital_io_wire_emergency();
   for (unsigned module = 1; module <= 3; ++module) {
     EXPECT_EQ(bus.words[EPWM_BASE(module) + EPWM_TZSEL], EPWM_TZSEL_OSHT1_MASK | EPWM_TZSEL_OSHT1_MASK << 1)
         << "ePWM" << module << ": beside the comparator";
@@ -32,31 +32,31 @@ TEST_F(Lines, emergency_stop_trips_the_legs_and_not_the_witness) {
   expect_before(bus.first_write(REG_GPAMUX1), bus.first_write(EPWM_BASE(1) + EPWM_TZSEL), "the pin before it trips");
 }
 
-TEST_F(Lines, emergency_stop_is_pressed_when_its_line_is_low) {
-  EXPECT_FALSE(hal_lines_emergency());
+TEST_F(DigitalIo, emergency_stop_is_pressed_when_its_line_is_low) {
+  EXPECT_FALSE(hal_digital_io_emergency());
   bus.words[REG_GPADAT] = static_cast<std::uint16_t>(~kEmergency);
-  EXPECT_TRUE(hal_lines_emergency());
+  EXPECT_TRUE(hal_digital_io_emergency());
 }
 
 // What hangs on the lines of a board in the loop is no simulation's.
-TEST_F(Lines, emergency_stop_of_a_tape_is_the_tapes) {
-  hal_tape_start(TAPE_RECORDS, nullptr);
-  EXPECT_FALSE(hal_lines_emergency());
-  EXPECT_EQ(hal_tape.period.inputs[0], 0);
-  hal_tape_start(TAPE_PLAYS, [] {});
-  hal_tape.period.input_count = 2;
-  hal_tape.period.inputs[0] = 1;
-  hal_tape.period.inputs[1] = 0;
+TEST_F(DigitalIo, emergency_stop_of_a_tape_is_the_tapes) {
+  hal_replay_start(REPLAY_RECORDS, nullptr);
+  EXPECT_FALSE(hal_digital_io_emergency());
+  EXPECT_EQ(hal_replay.period.inputs[0], 0);
+  hal_replay_start(REPLAY_PLAYS, [] {});
+  hal_replay.period.input_count = 2;
+  hal_replay.period.inputs[0] = 1;
+  hal_replay.period.inputs[1] = 0;
   bus.forget_steps();
-  EXPECT_TRUE(hal_lines_emergency());
-  EXPECT_FALSE(hal_lines_emergency());
+  EXPECT_TRUE(hal_digital_io_emergency());
+  EXPECT_FALSE(hal_digital_io_emergency());
   EXPECT_TRUE(bus.steps.empty()) << "no register is reached";
 }
 
 // The board is off until it is told otherwise, and each line is told alone.
-TEST_F(Lines, relay_and_brake_begin_off_and_follow_one_by_one) {
+TEST_F(DigitalIo, relay_and_brake_begin_off_and_follow_one_by_one) {
   const std::uint32_t relay = 1u << 16, brake = 1u << 17;
-  hal_lines_init();
+  hal_digital_io_init();
   for (const std::uint32_t line : {relay, brake}) {
     expect_before(bus.first_write(REG_GPACLEAR, line), bus.first_write(REG_GPADIR, line), "level before direction");
   }
@@ -71,21 +71,21 @@ TEST_F(Lines, relay_and_brake_begin_off_and_follow_one_by_one) {
     EXPECT_EQ(bus.steps.at(0).value, line) << "and no other line";
   };
   for (const bool on : {true, false}) {
-    does(hal_lines_relay, on, relay);
-    does(hal_lines_brake, on, brake);
+    does(hal_digital_io_relay, on, relay);
+    does(hal_digital_io_brake, on, brake);
   }
 }
 
-TEST_F(Lines, run_switch_is_on_when_its_line_is_low_and_gates_pass_when_theirs_is_high) {
+TEST_F(DigitalIo, run_switch_is_on_when_its_line_is_low_and_gates_pass_when_theirs_is_high) {
   const auto only = [this](unsigned pin, bool level) { bus.set32(REG_GPADAT, level ? 1u << pin : ~(1u << pin)); };
   only(25, false);
-  EXPECT_TRUE(hal_lines_run());
+  EXPECT_TRUE(hal_digital_io_run());
   only(25, true);
-  EXPECT_FALSE(hal_lines_run());
+  EXPECT_FALSE(hal_digital_io_run());
   only(24, true);
-  EXPECT_TRUE(hal_lines_gates_pass());
+  EXPECT_TRUE(hal_digital_io_gates_pass());
   only(24, false);
-  EXPECT_FALSE(hal_lines_gates_pass());
+  EXPECT_FALSE(hal_digital_io_gates_pass());
 }
 
 }  // namespace stillspin::test

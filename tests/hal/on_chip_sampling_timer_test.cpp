@@ -93,8 +93,8 @@ TEST_F(OnChipSlices, EndGivesPulsesAndWindowsBack) {
 }
 
 TEST_F(OnChipSlices, RefusesWhatDoesNotFillThePeriodAndWhatIsTooShort) {
-  EXPECT_FALSE(hal_slices_begin(700));
-  EXPECT_FALSE(hal_slices_begin(400));
+  EXPECT_FALSE(hal_sampling_timer_begin(700));
+  EXPECT_FALSE(hal_sampling_timer_begin(400));
 }
 
 }  // namespace stillspin::test

@@ -1,20 +1,20 @@
-// Slow adaptation of the machine's admittances to what the windows show (saturation, nameplate errors).
+// Slow adaptation of the machine's inverse inductances to what the windows show (saturation, nameplate errors).
 //
 // With differences of active vectors, y = (Y0 + 1/2 dY S(2 theta)) dv is linear in Y0 and 1/2 dY: the residual along dv
 // belongs to Y0, the one along the mirrored dv to 1/2 dY (regression.h). A least-mean-squares step per period moves
 // both, within bounds around what the parameters say. It makes AVV independent of the inductances, which the paper's
 // three-vector form is too.
 
-#ifndef STILLSPIN_ESTIMATORS_ADMITTANCE_H
-#define STILLSPIN_ESTIMATORS_ADMITTANCE_H
+#ifndef STILLSPIN_ESTIMATORS_INVERSE_INDUCTANCE_H
+#define STILLSPIN_ESTIMATORS_INVERSE_INDUCTANCE_H
 
 #include "estimators/regression.h"
 
 /// Moves the model's trim; share_q30: part of the error taken over per period, 0 for none. The model takes the trim
-/// into account with its next move to a working point.
-void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
+/// into account with its next move to an operating point.
+void inverse_inductance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
 
 /// Takes Y0 T and 1/2 dY T at no current that were found otherwise, within the same bounds.
-void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
+void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
 
 #endif

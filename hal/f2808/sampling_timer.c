@@ -4,8 +4,8 @@
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
-#include "hal/hal_slices.h"
-#include "hal/hal_tape.h"
+#include "hal/hal_replay.h"
+#include "hal/hal_sampling_timer.h"
 
 #define CLOCK_MODULE PWM_SLICE_MODULE  // its time base counts the slices
 #define SLICE_RESULTS 3u
@@ -57,7 +57,7 @@ TARGET_RAM_CODE static void set_legs(uint16_t state) {
 }
 
 static bool begin(uint16_t slice_ticks) {
-  if (slice_ticks < HAL_SLICE_MIN_TICKS || HAL_PWM_PERIOD_TICKS % slice_ticks != 0u) {
+  if (slice_ticks < HAL_SAMPLING_TIMER_MIN_TICKS || HAL_PWM_PERIOD_TICKS % slice_ticks != 0u) {
     return false;
   }
   const uint16_t state = irq_hold();
@@ -71,10 +71,10 @@ static bool begin(uint16_t slice_ticks) {
   return true;
 }
 
-bool hal_slices_begin(uint16_t slice_ticks) {
-  tape_tell(TAPE_SLICES, &slice_ticks, 1u);
-  tape_call();
-  return tape_plays() ? tape_take() != 0u : tape_note(begin(slice_ticks) ? 1u : 0u) != 0u;
+bool hal_sampling_timer_begin(uint16_t slice_ticks) {
+  replay_output(REPLAY_SAMPLING_TIMER, &slice_ticks, 1u);
+  replay_call();
+  return replay_plays() ? replay_take() != 0u : replay_note(begin(slice_ticks) ? 1u : 0u) != 0u;
 }
 
 static void end(void) {
@@ -89,11 +89,11 @@ static void end(void) {
   irq_release(state);
 }
 
-void hal_slices_end(void) {
+void hal_sampling_timer_end(void) {
   const uint16_t none = 0u;
-  tape_tell(TAPE_SLICES, &none, 1u);
-  tape_call();
-  if (!tape_plays()) {
+  replay_output(REPLAY_SAMPLING_TIMER, &none, 1u);
+  replay_call();
+  if (!replay_plays()) {
     end();
   }
 }
@@ -105,13 +105,13 @@ TARGET_RAM_CODE static void take_results(uint16_t* results) {
   adc_rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
-  tape_note_results(results, SLICE_RESULTS);
+  replay_note_results(results, SLICE_RESULTS);
 }
 
-TARGET_RAM_CODE void hal_slice_read(hal_slice_t* slice) {
+TARGET_RAM_CODE void hal_sampling_timer_read(hal_timed_samples_t* slice) {
   uint16_t results[SLICE_RESULTS];
-  if (tape_plays()) {
-    tape_take_results(results, SLICE_RESULTS);
+  if (replay_plays()) {
+    replay_take_results(results, SLICE_RESULTS);
   } else {
     take_results(results);
   }
@@ -120,9 +120,9 @@ TARGET_RAM_CODE void hal_slice_read(hal_slice_t* slice) {
   slice->link = results[2];
 }
 
-TARGET_RAM_CODE void hal_slice_set_legs(uint16_t state) {
-  tape_tell(TAPE_LEGS, &state, 1u);
-  if (!tape_plays()) {
+TARGET_RAM_CODE void hal_sampling_timer_set_legs(uint16_t state) {
+  replay_output(REPLAY_LEGS, &state, 1u);
+  if (!replay_plays()) {
     set_legs(state);
   }
 }

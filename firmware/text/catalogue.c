@@ -1,16 +1,16 @@
-#include "firmware/text/words.h"
+#include "firmware/text/catalogue.h"
 
-// The kind of each row of word_list.h.
-#define WORDS(kind, code, text) WORDS_##kind,
+// The kind of each row of catalogue_list.h.
+#define WORDS(kind, code, text) CATALOGUE_##kind,
 static const uint16_t kinds[] = {
-#include "firmware/text/word_list.h"
+#include "firmware/text/catalogue_list.h"
 };
 #undef WORDS
 
 #define ROWS ((uint16_t)(sizeof kinds / sizeof kinds[0]))
 #define FAULTS ((uint16_t)TEXT_REMEDY_0 - (uint16_t)TEXT_FAULT_0)
 
-// The place of a word in word_list.h; ROWS when there is none.
+// The place of a word in catalogue_list.h; ROWS when there is none.
 static uint16_t row_of(uint16_t kind, uint16_t code) {
   uint16_t k = 0;
   while (k < ROWS && kinds[k] != kind) k++;
@@ -18,21 +18,23 @@ static uint16_t row_of(uint16_t kind, uint16_t code) {
   return (k < ROWS && kinds[k] == kind) ? k : ROWS;
 }
 
-static bool is_of_fault(uint16_t kind) { return kind == (uint16_t)WORDS_FAULT || kind == (uint16_t)WORDS_REMEDY; }
+static bool is_of_fault(uint16_t kind) {
+  return kind == (uint16_t)CATALOGUE_FAULT || kind == (uint16_t)CATALOGUE_REMEDY;
+}
 
-bool words_exist(uint16_t kind, uint16_t code) {
+bool message_exists(uint16_t kind, uint16_t code) {
   if (is_of_fault(kind)) return code < FAULTS;
   return code < ROWS && row_of(kind, code) < ROWS;
 }
 
-void put_words(octet_writer_t* w, words_kind_t kind, uint16_t code) {
-  if (!words_exist((uint16_t)kind, code)) {
+void put_message(octet_writer_t* w, catalogue_t kind, uint16_t code) {
+  if (!message_exists((uint16_t)kind, code)) {
     put_u8(w, '?');
     return;
   }
   uint16_t text = (uint16_t)TEXT_STATE_0;
   if (is_of_fault((uint16_t)kind)) {
-    text = (uint16_t)((kind == WORDS_FAULT ? (uint16_t)TEXT_FAULT_0 : (uint16_t)TEXT_REMEDY_0) + code);
+    text = (uint16_t)((kind == CATALOGUE_FAULT ? (uint16_t)TEXT_FAULT_0 : (uint16_t)TEXT_REMEDY_0) + code);
   } else {
     text = (uint16_t)(text + row_of((uint16_t)kind, code));
   }

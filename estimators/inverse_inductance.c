@@ -1,36 +1,36 @@
-#include "estimators/admittance.h"
+#include "estimators/inverse_inductance.h"
 
 typedef struct {
   int32_t mean_q30, half_q30;
-} admittance_t;
+} inverse_inductance_t;
 
 // Y0 and 1/2 dY at no current as the parameters have them.
-static admittance_t nominal(const machine_model_t* m) {
+static inverse_inductance_t nominal(const machine_model_t* m) {
   const machine_point_t* const p = &m->map.points[0];
-  const admittance_t y = {p->ydd_q30 / 2 + p->yqq_q30 / 2, (p->ydd_q30 - p->yqq_q30) / 2};
+  const inverse_inductance_t y = {p->ydd_q30 / 2 + p->yqq_q30 / 2, (p->ydd_q30 - p->yqq_q30) / 2};
   return y;
 }
 
-static void trim(machine_model_t* m, const admittance_t* y, int32_t mean_q30, int32_t half_q30) {
+static void trim(machine_model_t* m, const inverse_inductance_t* y, int32_t mean_q30, int32_t half_q30) {
   const int32_t mean = q_clamp(mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
-  // Both admittances stay positive, whatever the windows say.
+  // Both inverse inductances stay positive, whatever the windows say.
   const int32_t half_max = q_min(2 * y->half_q30, (y->mean_q30 + mean) / 10 * 9);
   const int32_t half_min = q_min(y->half_q30 / 3, half_max);
   machine_model_trim(m, mean, q_clamp(half_q30, half_min - y->half_q30, half_max - y->half_q30));
 }
 
-void admittance_step(machine_model_t* m, const regression_t* r, int32_t share_q30) {
+void inverse_inductance_step(machine_model_t* m, const regression_t* r, int32_t share_q30) {
   if (r->information <= 0) return;
-  const admittance_t y = nominal(m);
-  // Admittance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for.
+  const inverse_inductance_t y = nominal(m);
+  // Inverse inductance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for.
   const q_inverse_t per_spread = q_invert(r->spread_q8);
   const int32_t mean_q30 = m->trim.mean_q30 + q_mul(q_over(r->along_q16, per_spread, 22), share_q30, 30);
   const int32_t half_q30 = m->trim.half_q30 + q_mul(q_over(r->mirror_q16, per_spread, 22), share_q30, 30);
   trim(m, &y, mean_q30, half_q30);
 }
 
-void admittance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
-  const admittance_t y = nominal(m);
+void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
+  const inverse_inductance_t y = nominal(m);
   trim(m, &y, q_sub_sat(mean_q30, y.mean_q30), q_sub_sat(half_q30, y.half_q30));
   machine_model_settle(m);
 }
