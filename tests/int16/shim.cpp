@@ -114,7 +114,7 @@ commissioning_result_t __wrap_drive_commissioning_result(uint16_t index) {
   return {static_cast<uint16_t>(flat[0]), flat[1], flat[2], static_cast<commissioning_verdict_t>(flat[3])};
 }
 
-void __wrap_hal_tape_start(replay_mode_t mode, void (*)(void)) {
+void __wrap_hal_replay_start(replay_mode_t mode, void (*)(void)) {
   if (mode != REPLAY_OFF) differ("no recording of the drive with a 16-bit int");
 }
 
