@@ -17,6 +17,7 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
 What has not changed is not written again. FOLDER belongs into the include path before the tree.
 """
 
+import re
 import sys
 import tomllib
 from collections.abc import Iterable
@@ -29,6 +30,8 @@ import pack_text
 
 ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
+PARAMETERS, SIGNALS = "firmware/dictionary/parameter_list.h", "firmware/dictionary/signal_list.h"
+KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
 
 
@@ -192,12 +195,82 @@ def header_of(feature: Feature, header: str, root: Path) -> str:
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else path.resolve().as_posix()
 
 
+def runs(rows: Iterable[int]) -> list[tuple[int, int]]:
+    """Rows that follow each other, as their first and their number."""
+    found: list[tuple[int, int]] = []
+    for row in sorted(rows):
+        first, count = found[-1] if found else (row, 0)
+        found = [*found[:-1], (first, count + 1)] if first + count == row and count else [*found, (row, 1)]
+    return found
+
+
+def left_out_text(edition: Edition, root: Path) -> str:
+    """The C file with what the edition has not (firmware/base/edition.h).
+
+    Raises:
+        ValueError: a feature names a parameter, a signal or a kind of words that does not exist.
+    """
+    parameters = [int(row[0]) for row in pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")]
+    signals = [row[0] for row in pack_text.rows(pack_text.whole(root, SIGNALS), "SIGNAL")]
+    kinds = dict(KIND.findall((root / KINDS).read_text(encoding="utf-8")))
+    gone = left_out(edition, root)
+
+    def places(names: Iterable[Any], known: list[Any]) -> str:
+        return " ".join(f"{{{first}, {count}}}," for first, count in runs(known.index(name) for name in names))
+
+    try:
+        mask = sum(1 << int(kinds[word]) for feature in gone for word in feature.words)
+        rows = places((number for feature in gone for number in feature.parameters), parameters)
+        places_of_signals = places((name for feature in gone for name in feature.signals), signals)
+    except (KeyError, ValueError) as error:
+        raise ValueError(f"{FEATURE}: {error}") from error
+    return "\n".join(
+        [
+            f"// Made by toolchain/compose.py: what the edition {edition.name} has not.",
+            "",
+            '#include "firmware/base/edition.h"',
+            "",
+            f'const char edition_name[] = "{edition.name}";',
+            f"const rows_t edition_parameters_left_out[] = {{{f'{rows} {{0, 0}}'.strip()}}};",
+            f"const rows_t edition_signals_left_out[] = {{{f'{places_of_signals} {{0, 0}}'.strip()}}};",
+            f"const uint16_t edition_words_left_out = 0x{mask:04x}u;",
+            "",
+        ]
+    )
+
+
+def needless_texts(edition: Edition, root: Path) -> set[str]:
+    """What the edition never says: of the features that it has not all but the names, which it refuses."""
+    gone = left_out(edition, root)
+    numbers = {str(number) for feature in gone for number in feature.parameters}
+    rows = pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")
+    parameters = [row[1] for row in rows if row[0] in numbers]
+    found = {f"TEXT_PARAMETER_{what}{name}" for name in parameters for what in ("", "UNIT_")}
+    found |= {f"TEXT_SIGNAL_{what}{name}" for feature in gone for name in feature.signals for what in ("", "UNIT_")}
+    kinds = tuple(f"TEXT_{word}_" for feature in gone for word in feature.words)
+    for feature in gone:
+        list_of_phrases = feature.folder / "phrase_list.h"
+        if list_of_phrases.exists():
+            said = pack_text.rows(list_of_phrases.read_text(encoding="utf-8"), "PHRASE")
+            found |= {f"SAY_{row[0]}" for row in said}
+    return found | {name for name in pack_text.texts(root) if name.startswith(kinds)}
+
+
+def left_out(edition: Edition, root: Path = ROOT) -> list[Feature]:
+    """The tree's features that it has not."""
+    here = {feature.name for feature in edition.features}
+    return [feature for feature in all_features(root) if feature.name not in here]
+
+
 def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
     """The files by their names in the folder."""
     texts = pack_text.texts(root)
+    needless = needless_texts(edition, root)
+    kept = ["" if name in needless else text for name, text in texts.items()]
     return {
         pack_text.NUMBERS: pack_text.numbers(list(texts)),
-        TEXTS: pack_text.pack(list(texts.values())),
+        TEXTS: pack_text.pack(kept),
+        "left_out.c": left_out_text(edition, root),
         **{f"{name}.c": table_text(name, edition, root) for name in TABLES},
     }
 
@@ -226,14 +299,13 @@ def write_for_cmake(folder: Path, name: str) -> None:
     """The same, and what CMake has to know of it."""
     edition, features = read_edition(name), all_features()
     sources = write(folder, name)
-    here = {feature.name for feature in edition.features}
     known = {feature.name for feature in features}
     outside = [feature for feature in edition.features if feature.name not in known]
     files = [Path(__file__), Path(pack_text.__file__), edition.file, *pack_text.files(ROOT)]
     files += [feature.folder / FEATURE for feature in (*features, *outside)]
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))
-    text += set_list("composed_left_out", (feature.name for feature in features if feature.name not in here))
+    text += set_list("composed_left_out", (feature.name for feature in left_out(edition)))
     text += set_list("composed_outside", (feature.folder.resolve().as_posix() for feature in outside))
     write_one(folder / CMAKE, text)
 

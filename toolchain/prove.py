@@ -36,6 +36,7 @@ from proof.shown import Shown
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
 MADE = "made"
+ASK_THE_EDITION = {"firmware/dictionary/parameters.c", "firmware/drive/signals.c", "firmware/text/catalogue.c"}
 KNOWN = "tests/prove/alarms.txt"
 SECONDS = 1500
 FALSE_SHARE = 4  # of a goal's time: still some ten times what is true of the planted functions takes
@@ -59,6 +60,9 @@ def sources_of(part: Part, tree: Path, out: Path) -> list[str]:
     found = [path.relative_to(tree).as_posix() for pattern in part.sources for path in sorted(tree.glob(pattern))]
     made = [name for name in part.sources if name.startswith(f"{MADE}/")]
     made += [f"{MADE}/{compose.TEXTS}"] if "firmware/text/packed_text.c" in found else []
+    if ASK_THE_EDITION & set(found):
+        found.append("firmware/base/edition.c")
+        made.append(f"{MADE}/left_out.c")
     return [*found, *(str(out / name) for name in made)]
 
 

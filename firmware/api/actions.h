@@ -23,8 +23,9 @@ typedef enum {
   ANSWER_RUNNING = 3,  // not while the power stage is on
   ANSWER_LENGTH = 4,
   ANSWER_BUSY = 5,
-  ANSWER_STATE = 6,    // not in this state of the drive
-  ANSWER_CONFLICT = 7  // parameters that do not fit together
+  ANSWER_STATE = 6,     // not in this state of the drive
+  ANSWER_CONFLICT = 7,  // parameters that do not fit together
+  ANSWER_EDITION = 8    // of a feature that this edition of the firmware has not
 } answer_status_t;
 
 /// Whether the drive can begin anything now.

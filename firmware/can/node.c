@@ -164,7 +164,7 @@ static void send_periodic(uint32_t now_ms) {
 static answer_status_t carry_out(int32_t operation, uint16_t id, int32_t raw) {
   const parameter_info_t* const parameter = parameter_by_id(id);
   octet_writer_t unheard = octet_writer(NULL, 0u);
-  if (parameter == NULL) return ANSWER_UNKNOWN;
+  if (parameter == NULL) return parameter_is_left_out(id) ? ANSWER_EDITION : ANSWER_UNKNOWN;
   if (operation == PARAMETER_GET) return ANSWER_OK;
   return operation == PARAMETER_SET ? action_set(parameter, raw, &unheard) : ANSWER_RANGE;
 }

@@ -143,7 +143,7 @@ static int32_t share_per_slot_q30(int32_t time_q8) {
 }
 
 static bool load_blend(drive_config_t* c) {
-  const bool flux = (position_sources[parameters.position_source]->traits & SOURCE_HANDS_OVER) != 0u;
+  const bool flux = (drive_source_wanted()->traits & SOURCE_HANDS_OVER) != 0u;
   const int32_t low = flux ? parameters.flux_low : parameters.blend_low;
   const int32_t high = flux ? parameters.flux_high : parameters.blend_high;
   return blend_design(&c->blend, q_mul_sat(low, c->bpp_per_rpm_q8, 24), q_mul_sat(high, c->bpp_per_rpm_q8, 24));

@@ -4,6 +4,7 @@
 
 #include "firmware/api/actions.h"
 #include "firmware/api/status.h"
+#include "firmware/base/edition.h"
 #include "firmware/config/rules.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/job.h"
@@ -247,6 +248,7 @@ static word_t pattern;
 static bool list_signals(uint16_t step) {
   const signal_info_t* const s = signal_info(step);
   if (s == NULL) return false;
+  if (signal_is_left_out(step)) return true;
   if (!word_occurs(&pattern, s->name) && !word_occurs(&pattern, s->meaning)) return true;
   put_signal_row(line_begin(), step);
   line_end();
@@ -266,5 +268,7 @@ void command_version(const words_of_line_t* a) {
   put_text(w, FIRMWARE_NAME);
   put_packed(w, SAY_protocol);
   put_unsigned(w, LINK_PROTOCOL);
+  put_packed(w, SAY_edition);
+  put_text(w, edition_name);
   line_end();
 }

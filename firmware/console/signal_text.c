@@ -5,7 +5,7 @@
 
 uint16_t signal_find(const word_t* name) {
   for (uint16_t k = 0; k < signal_count(); k++) {
-    if (packed_equals(signal_info(k)->name, name->text, name->count)) return k;
+    if (!signal_is_left_out(k) && packed_equals(signal_info(k)->name, name->text, name->count)) return k;
   }
   return SIGNAL_NONE;
 }

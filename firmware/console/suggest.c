@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/base/edition.h"
 #include "firmware/console/command_table.h"
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
@@ -19,6 +20,16 @@ static suggest_kind_t kind_of;
 static word_t wanted;
 static packed_text_t near[MOST];
 static uint16_t found;
+
+// Whether another edition of the firmware has it.
+static bool is_left_out(void) {
+  if (kind_of == SUGGEST_COMMAND) return false;
+  if (parameter_name_is_left_out(wanted.text, wanted.count)) return true;
+  for (uint16_t k = 0; k < signal_count(); k++) {
+    if (signal_is_left_out(k) && packed_equals(signal_info(k)->name, wanted.text, wanted.count)) return true;
+  }
+  return false;
+}
 
 // PACKED_NONE behind the last one.
 static packed_text_t name_of(uint16_t index) {
@@ -91,14 +102,28 @@ static bool look(uint16_t step) {
     }
     char name[SUGGEST_NAME_ROOM];
     packed_copy(number, name, SUGGEST_NAME_ROOM);
-    if (suggest_is_near(name, &wanted)) near[found++] = number;
+    const bool is_here = kind_of != SUGGEST_SIGNAL || !signal_is_left_out((uint16_t)(step * NAMES_A_STEP + k));
+    if (is_here && suggest_is_near(name, &wanted)) near[found++] = number;
   }
   return true;
+}
+
+static void refuse_left_out(void) {
+  octet_writer_t* const w = line_begin();
+  put_u8(w, '\'');
+  put_word(w, &wanted);
+  put_packed(w, SAY_is_not_in_this_edition);
+  put_text(w, edition_name);
+  line_end_refused();
 }
 
 void suggest(suggest_kind_t kind, const word_t* word) {
   kind_of = kind;
   wanted = *word;
   found = 0;
+  if (is_left_out()) {
+    refuse_left_out();
+    return;
+  }
   console_run(look, false);
 }

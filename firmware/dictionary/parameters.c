@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/base/edition.h"
 #include "hal/hal_board.h"
 
 parameters_t parameters;
@@ -37,37 +38,69 @@ static const parameter_info_t table[] = {
 
 // The values stand in the table's order: the struct is an array with names.
 typedef char values_are_an_array[(sizeof(parameters_t) == COUNT * sizeof(int32_t)) ? 1 : -1];
-static int32_t* value_of(uint16_t k) { return &((int32_t*)(void*)&parameters)[k]; }
+static int32_t* value_of(parameters_t* of, uint16_t row) { return &((int32_t*)(void*)of)[row]; }
 
-void parameters_reset(void) {
-  for (uint16_t k = 0; k < COUNT; k++) *value_of(k) = table[k].initial;
+// The row of a parameter by its place among those of the edition.
+static uint16_t row_of(uint16_t index) {
+  for (const rows_t* gone = edition_parameters_left_out; gone->count > 0u && gone->first <= index; gone++) {
+    index = (uint16_t)(index + gone->count);
+  }
+  return index;
 }
 
-uint16_t parameter_count(void) { return COUNT; }
+void parameters_reset(void) {
+  for (uint16_t k = 0; k < COUNT; k++) *value_of(&parameters, k) = table[k].initial;
+}
 
-const parameter_info_t* parameter_info(uint16_t index) { return (index < COUNT) ? &table[index] : NULL; }
+uint16_t parameter_count(void) {
+  uint16_t count = COUNT;
+  for (const rows_t* gone = edition_parameters_left_out; gone->count > 0u; gone++)
+    count = (uint16_t)(count - gone->count);
+  return count;
+}
 
-static uint16_t index_of(uint16_t id) {
+const parameter_info_t* parameter_info(uint16_t index) {
+  return (index < parameter_count()) ? &table[row_of(index)] : NULL;
+}
+
+int32_t* parameter_value(parameters_t* of, uint16_t index) { return value_of(of, row_of(index)); }
+
+static bool is_here(uint16_t row) { return row < COUNT && !edition_leaves_out(edition_parameters_left_out, row); }
+
+static uint16_t row_by_id(uint16_t id) {
   uint16_t k = 0;
   while (k < COUNT && table[k].id != id) k++;
   return k;
 }
 
-const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count) {
-  for (uint16_t k = 0; k < COUNT; k++) {
-    if (packed_equals(table[k].name, name, count)) return &table[k];
-  }
-  return NULL;
+static uint16_t row_by_name(const uint16_t* name, uint16_t count) {
+  uint16_t k = 0;
+  while (k < COUNT && !packed_equals(table[k].name, name, count)) k++;
+  return k;
 }
 
-const parameter_info_t* parameter_by_id(uint16_t id) { return parameter_info(index_of(id)); }
+const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count) {
+  const uint16_t row = row_by_name(name, count);
+  return is_here(row) ? &table[row] : NULL;
+}
+
+const parameter_info_t* parameter_by_id(uint16_t id) {
+  const uint16_t row = row_by_id(id);
+  return is_here(row) ? &table[row] : NULL;
+}
+
+bool parameter_is_left_out(uint16_t id) { return edition_leaves_out(edition_parameters_left_out, row_by_id(id)); }
+
+bool parameter_name_is_left_out(const uint16_t* name, uint16_t count) {
+  return edition_leaves_out(edition_parameters_left_out, row_by_name(name, count));
+}
 
 void parameter_write(uint16_t id, int32_t raw) {
-  const uint16_t k = index_of(id);
-  if (k < COUNT) *value_of(k) = raw;
+  const uint16_t k = row_by_id(id);
+  if (is_here(k)) *value_of(&parameters, k) = raw;
 }
 
 int32_t parameter_get(uint16_t id) {
-  const uint16_t k = index_of(id);
-  return (k < COUNT) ? *value_of(k) : 0;
+  const uint16_t k = row_by_id(id);
+  return (k < COUNT) ? *value_of(&parameters, k) : 0;
 }

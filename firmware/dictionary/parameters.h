@@ -47,8 +47,11 @@ typedef struct {
   int32_t minimum, maximum, initial;  // raw, with q fractional bits
 } parameter_info_t;
 
+/// Those of the edition, in the order of the list.
 uint16_t parameter_count(void);
 const parameter_info_t* parameter_info(uint16_t index);
+/// The value in a set of them, index 0 .. parameter_count() - 1.
+int32_t* parameter_value(parameters_t* of, uint16_t index);
 /// By its number; NULL when there is none.
 const parameter_info_t* parameter_by_id(uint16_t id);
 /// Capitals count as small letters.
@@ -56,6 +59,10 @@ const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
 /// No check: see parameter_set in mode/commands.h. A number that does not exist writes nothing.
 void parameter_write(uint16_t id, int32_t raw);
 int32_t parameter_get(uint16_t id);
+
+/// Of a feature that this edition has not: it stays at its default.
+bool parameter_is_left_out(uint16_t id);
+bool parameter_name_is_left_out(const uint16_t* name, uint16_t count);
 
 /// Puts every parameter to its default.
 void parameters_reset(void);

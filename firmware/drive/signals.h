@@ -40,6 +40,8 @@ typedef struct {
 } signal_info_t;
 
 uint16_t signal_count(void);
+/// Of a feature that this edition has not: it has a place, and is always 0.
+bool signal_is_left_out(uint16_t place);
 /// NULL behind the last one.
 const signal_info_t* signal_info(uint16_t place);
 

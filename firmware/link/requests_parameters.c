@@ -7,6 +7,9 @@
 
 #define READ_MAX 32u
 
+// Why there is no parameter of that number.
+static answer_status_t refuse(uint16_t id) { return parameter_is_left_out(id) ? ANSWER_EDITION : ANSWER_UNKNOWN; }
+
 static answer_status_t request_parameter_read(request_t* r) {
   const uint16_t first = take_u16(&r->body);
   const uint16_t count = take_u8(&r->body);
@@ -22,14 +25,15 @@ static answer_status_t request_parameter_read(request_t* r) {
 
 static answer_status_t request_parameter_get(request_t* r) {
   const uint16_t id = take_u16(&r->body);
-  if (parameter_by_id(id) == NULL) return ANSWER_UNKNOWN;
+  if (parameter_by_id(id) == NULL) return refuse(id);
   put_i32(&r->answer, parameter_get(id));
   return ANSWER_OK;
 }
 
 static answer_status_t request_parameter_set(request_t* r) {
-  const parameter_info_t* const p = parameter_by_id(take_u16(&r->body));
-  if (p == NULL) return ANSWER_UNKNOWN;
+  const uint16_t id = take_u16(&r->body);
+  const parameter_info_t* const p = parameter_by_id(id);
+  if (p == NULL) return refuse(id);
   const answer_status_t status = action_set(p, take_i32(&r->body), &r->answer);
   if (status == ANSWER_OK) put_i32(&r->answer, parameter_get(p->id));
   return status;

@@ -16,6 +16,7 @@ static answer_status_t request_signals(request_t* r) {
   for (uint16_t k = 0; k < count; k++) {
     places[k] = take_u16(&r->body);
     if (places[k] >= signal_count()) return ANSWER_RANGE;
+    if (signal_is_left_out(places[k])) return ANSWER_EDITION;
   }
   const signals_seen_t seen = drive_signals_copy(places, count, values);
   for (uint16_t k = 0; k < count; k++) put_i32(&r->answer, values[k]);
@@ -31,6 +32,7 @@ static answer_status_t request_stream(request_t* r) {
   for (uint16_t k = 0; k < count; k++) {
     places[k] = take_u16(&r->body);
     if (places[k] >= signal_count()) return ANSWER_RANGE;
+    if (signal_is_left_out(places[k])) return ANSWER_EDITION;
   }
   if (period_ms != 0u && count == 0u) return ANSWER_LENGTH;
   stream_setup(r->port, period_ms, places, count);

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/base/crc.h"
+#include "firmware/base/edition.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/dictionary/version.h"
 #include "firmware/drive/signals.h"
@@ -80,7 +81,7 @@ void requests_service(void) {
   } else {
     const signal_info_t* const s = signal_info((uint16_t)(sum.at++ - parameter_count()));
     if (s != NULL) {
-      put_signal(&piece, s);
+      if (!signal_is_left_out((uint16_t)(sum.at - 1u - parameter_count()))) put_signal(&piece, s);
     } else {
       sum.in_words = true;
       sum.at = 0;
@@ -116,6 +117,7 @@ static answer_status_t request_identity(request_t* r) {
   put_text(&r->answer, BOARD_NAME);
   put_u8(&r->answer, 0);
   put_build(&r->answer);
+  put_text(&r->answer, edition_name);
   return ANSWER_OK;
 }
 
@@ -127,8 +129,10 @@ static answer_status_t request_parameter_info(request_t* r) {
 }
 
 static answer_status_t request_signal_info(request_t* r) {
-  const signal_info_t* const s = signal_info(take_u16(&r->body));
+  const uint16_t place = take_u16(&r->body);
+  const signal_info_t* const s = signal_info(place);
   if (s == NULL) return ANSWER_RANGE;
+  if (signal_is_left_out(place)) return ANSWER_EDITION;
   put_signal(&r->answer, s);
   return ANSWER_OK;
 }
@@ -137,6 +141,7 @@ static answer_status_t request_words(request_t* r) {
   const uint16_t kind = take_u8(&r->body);
   if (kind >= CATALOGUES) return ANSWER_UNKNOWN;
   const uint16_t code = take_u8(&r->body);
+  if (words_are_left_out(kind)) return ANSWER_EDITION;
   if (!message_exists(kind, code)) return ANSWER_RANGE;
   put_message(&r->answer, (catalogue_t)kind, code);
   return ANSWER_OK;

@@ -3,8 +3,6 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 
-void drive_choose_source(void) { drive.source = position_sources[parameters.position_source]; }
-
 void drive_parameters_changed(void) {
   drive.request.reload = true;
   drive_choose_source();

@@ -63,6 +63,9 @@ extern drive_t drive;
 /// What is made of the parameters is made anew; the position source is chosen at once.
 void drive_parameters_changed(void);
 void drive_choose_source(void);
+/// That of the parameter; the observer where this edition leaves that one out, and the drive does not start.
+bool drive_source_is_left_out(void);
+const position_source_t* drive_source_wanted(void);
 
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/drive/signals.h"
 #include "firmware/scope/scope.h"
 #include "firmware/text/packed_text.h"
 
@@ -18,6 +19,7 @@ static answer_status_t request_scope_setup(request_t* r) {
   const uint16_t mode = take_u8(b);
   const uint16_t edge = take_u8(b);
   s.trigger = take_u16(b);
+  if (signal_is_left_out(s.trigger)) return ANSWER_EDITION;
   s.level = take_i32(b);
   s.count = take_u8(b);
   const uint16_t least = (uint16_t)(HEAD_OCTETS + CHANNEL_OCTETS * s.count);
@@ -28,6 +30,7 @@ static answer_status_t request_scope_setup(request_t* r) {
   for (uint16_t k = 0; k < SCOPE_CHANNELS; k++) {
     if (k >= s.count) break;
     s.channel[k].signal = take_u16(b);
+    if (signal_is_left_out(s.channel[k].signal)) return ANSWER_EDITION;
     s.channel[k].shift = take_u8(b);
   }
   s.hysteresis = (octets_left(b) > 0u) ? take_i32(b) : SCOPE_BY_SPAN;

@@ -1,23 +1,13 @@
 #include "firmware/store/values.h"
 
-#include <stddef.h>
-
 #include "firmware/dictionary/parameters.h"
 #include "hal/qmath/qarith.h"
 
 #define Q_MAX 31u  // fractional bits of a 32-bit number
 
-#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) offsetof(parameters_t, name),
-static const size_t offsets[] = {
-#include "firmware/dictionary/parameter_list.h"
-};
-#undef PARAMETER
-
 static parameters_t set;
 static bool has_rated_current;  // the set has a rated_current of its own
 static uint16_t guess;          // where the next number is likely to be: a slot has them in the table's order
-
-static int32_t* value(parameters_t* of, uint16_t index) { return (int32_t*)(void*)((char*)of + offsets[index]); }
 
 // Index of a parameter, parameter_count() when there is none.
 static uint16_t find(uint16_t id) {
@@ -34,7 +24,7 @@ static uint16_t find(uint16_t id) {
 void values_reset(void) {
   guess = 0;
   has_rated_current = false;
-  for (uint16_t k = 0; k < parameter_count(); k++) *value(&set, k) = parameter_info(k)->initial;
+  for (uint16_t k = 0; k < parameter_count(); k++) *parameter_value(&set, k) = parameter_info(k)->initial;
 }
 
 void values_copy(void) {
@@ -63,8 +53,8 @@ value_fate_t values_put(const slot_entry_t* entry) {
   if (more > 0) slack = (int64_t)(1uLL << more);
   if (raw < info->minimum - slack || raw > info->maximum + slack) return VALUE_REFUSED;
   raw = (raw < info->minimum) ? info->minimum : raw;
-  *value(&set, index) = (raw > info->maximum) ? info->maximum : (int32_t)raw;
-  if (offsets[index] == offsetof(parameters_t, rated_current)) has_rated_current = true;
+  *parameter_value(&set, index) = (raw > info->maximum) ? info->maximum : (int32_t)raw;
+  if (parameter_value(&set, index) == &set.rated_current) has_rated_current = true;
   return (more == 0) ? VALUE_TAKEN : VALUE_RESCALED;
 }
 
@@ -74,22 +64,22 @@ void values_complete(void) {
 
 slot_entry_t values_entry(uint16_t index) {
   const parameter_info_t* const info = parameter_info(index);
-  const slot_entry_t entry = {info->id, info->q, *value(&set, index)};
+  const slot_entry_t entry = {info->id, info->q, *parameter_value(&set, index)};
   return entry;
 }
 
 uint16_t values_changed(void) {
   uint16_t changed = 0;
   for (uint16_t k = 0; k < parameter_count(); k++) {
-    if (*value(&parameters, k) != *value(&set, k)) changed++;
+    if (*parameter_value(&parameters, k) != *parameter_value(&set, k)) changed++;
   }
   return changed;
 }
 
 void values_swap(void) {
   for (uint16_t k = 0; k < parameter_count(); k++) {
-    const int32_t kept = *value(&parameters, k);
-    *value(&parameters, k) = *value(&set, k);
-    *value(&set, k) = kept;
+    const int32_t kept = *parameter_value(&parameters, k);
+    *parameter_value(&parameters, k) = *parameter_value(&set, k);
+    *parameter_value(&set, k) = kept;
   }
 }

@@ -1,5 +1,7 @@
 #include "firmware/text/catalogue.h"
 
+#include "firmware/base/edition.h"
+
 // The kind of each row of catalogue_list.h.
 #define WORDS(kind, code, text) CATALOGUE_##kind,
 static const uint16_t kinds[] = {
@@ -22,7 +24,10 @@ static bool is_of_fault(uint16_t kind) {
   return kind == (uint16_t)CATALOGUE_FAULT || kind == (uint16_t)CATALOGUE_REMEDY;
 }
 
+bool words_are_left_out(uint16_t kind) { return kind < CATALOGUES && ((edition_words_left_out >> kind) & 1u) != 0u; }
+
 bool message_exists(uint16_t kind, uint16_t code) {
+  if (words_are_left_out(kind)) return false;
   if (is_of_fault(kind)) return code < FAULTS;
   return code < ROWS && row_of(kind, code) < ROWS;
 }

@@ -35,8 +35,11 @@ typedef enum {
 
 #define CATALOGUES 16u
 
-/// Whether there is such a kind, and such a code in it.
+/// Whether there is such a kind in this edition, and such a code in it.
 bool message_exists(uint16_t kind, uint16_t code);
+
+/// Of a feature that this edition has not.
+bool words_are_left_out(uint16_t kind);
 
 /// Writes them out; "?" when there are none.
 void put_message(octet_writer_t* w, catalogue_t kind, uint16_t code);

@@ -55,6 +55,7 @@ WORDS(STATUS, 4, "the record has a wrong length")
 WORDS(STATUS, 5, "busy, ask again")
 WORDS(STATUS, 6, "not in this state of the drive")
 WORDS(STATUS, 7, "the parameters do not fit together")
+WORDS(STATUS, 8, "not in this edition of the firmware")
 
 WORDS(START, 0, "waiting with the gates off")
 WORDS(START, 1, "short circuit, to see the back-EMF")

@@ -29,7 +29,16 @@ double known(const Row& r, double value) {
 struct Column {
   ColumnInfo info;
   double (*value)(const Row&);
+  int place = -1;  // of a signal that not every edition has
 };
+
+#define SIGNAL(name, unit, q, of, value, meaning) kPlace_##name,
+enum Place {
+#include "firmware/dictionary/signal_list.h"
+};
+#undef SIGNAL
+
+bool is_here(const Column& c) { return c.place < 0 || !signal_is_left_out(static_cast<std::uint16_t>(c.place)); }
 
 // Names, units and meaning of the record; the firmware's own part follows firmware/dictionary/signal_list.h.
 const Column kColumns[] = {
@@ -79,9 +88,11 @@ const Column kColumns[] = {
     {{"true_load_angle", "rad", "angle of the stator flux ahead of the d-axis"},
      [](const Row& r) { return std::atan2(r.p.flux_q, r.p.flux_d); }},
     {{"load_angle", "rad", "angle of the stator flux ahead of the d-axis, as estimated"},
-     [](const Row& r) { return known(r, radians(r.f.load_angle)); }},
+     [](const Row& r) { return known(r, radians(r.f.load_angle)); },
+     kPlace_load_angle},
     {{"magnet_flux", "Vs", "magnet flux as the stator-flux sources estimate it"},
-     [](const Row& r) { return scaled(r.f.magnet_flux, 16) * 1e-3; }},
+     [](const Row& r) { return scaled(r.f.magnet_flux, 16) * 1e-3; },
+     kPlace_magnet_flux},
     {{"told_angle", "1/rad^2", "Fisher information of the last period's windows about the electrical angle"},
      [](const Row& r) { return r.told.angle; }},
     {{"told_cross", "s/rad^2",
@@ -96,7 +107,9 @@ const Column kColumns[] = {
 const std::vector<ColumnInfo>& columns() {
   static const std::vector<ColumnInfo> list = [] {
     std::vector<ColumnInfo> all;
-    for (const Column& c : kColumns) all.push_back(c.info);
+    for (const Column& c : kColumns) {
+      if (is_here(c)) all.push_back(c.info);
+    }
     return all;
   }();
   return list;
@@ -123,7 +136,9 @@ void Recorder::finish_row(const drive_signals_t& signals, const drive_samples_t&
   const Information told = information_(state_, samples);
   const Row row{time_, state_, signals, told};
   std::size_t k = 0;
-  for (const Column& c : kColumns) values_[k++].push_back(c.value(row));
+  for (const Column& c : kColumns) {
+    if (is_here(c)) values_[k++].push_back(c.value(row));
+  }
 }
 
 std::vector<std::vector<double>> Recorder::take(double origin) {

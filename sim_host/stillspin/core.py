@@ -151,15 +151,22 @@ PARAMETERS = "parameters.json"
 """The firmware's parameter table in a wheel, which has no native module to ask; toolchain/wheel.py puts it there."""
 
 
-def _on_board(board: str) -> ModuleType:
-    """The native module of another board than the usual one."""
-    folder = Path(__file__).parent / "boards"
+EDITION = "STILLSPIN_EDITION"
+"""Environment variable: the edition, a name of firmware/editions/; unset or empty is the usual one, lab."""
+LAB = "lab"
+_OTHERS = {BOARD: "boards", EDITION: "editions"}
+
+
+def _other(kind: str, name: str) -> ModuleType:
+    """The native module of another board or edition than the usual one."""
+    folder = Path(__file__).parent / _OTHERS[kind]
     known = sorted(path.parent.name for path in folder.glob("*/_core*.so"))
-    if board not in known:
-        raise InputError(f"{BOARD} '{board}': there is no such board; known: {', '.join(known) or 'none is built'}")
-    spec = importlib.util.spec_from_file_location("stillspin._core", next((folder / board).glob("_core*.so")))
+    if name not in known:
+        what = _OTHERS[kind].removesuffix("s")
+        raise InputError(f"{kind} '{name}': there is no such {what}; known: {', '.join(known) or 'none is built'}")
+    spec = importlib.util.spec_from_file_location("stillspin._core", next((folder / name).glob("_core*.so")))
     if spec is None or spec.loader is None:
-        raise ImportError(f"the module of board {board} does not load")
+        raise ImportError(f"the module of {kind} {name} does not load")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     sys.modules["stillspin._core"] = module
@@ -180,10 +187,15 @@ def load() -> NativeCore:
     Raises:
         InputError: it is not there, or does not load on this machine.
     """
-    board = os.environ.get(BOARD, "")
+    wanted = {kind: os.environ.get(kind, "") for kind in _OTHERS}
+    if wanted[EDITION] == LAB:
+        wanted[EDITION] = ""
+    if all(wanted.values()):
+        raise InputError(f"{BOARD} and {EDITION}: no virtual drive is built for both at once")
     try:
-        if board and "stillspin._core" not in sys.modules:
-            return cast(NativeCore, _on_board(board))
+        for kind, name in wanted.items():
+            if name and "stillspin._core" not in sys.modules:
+                return cast(NativeCore, _other(kind, name))
         return cast(NativeCore, _built_or_installed())
     except ModuleNotFoundError as error:
         raise InputError(NOT_INSTALLED) from error

@@ -128,7 +128,7 @@ TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
   send("re");
   run(100);
   serial_break();
-  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n") << "what is typed behind it counts";
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n") << "what is typed behind it counts";
 }
 
 // "help start free" with a break in it is no start; a line that is all there may be said again.
@@ -167,7 +167,7 @@ TEST_F(ConsoleHands, ABreakEndsARecordThatWasBegun) {
   send(Octets{0, 'a', 'b'});
   run(3);
   serial_break();
-  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n");
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n");
 }
 
 TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {

@@ -266,7 +266,7 @@ TEST_F(Console, AMemoryThatDoesNotAnswerIsTold) {
   EXPECT_TRUE(has(said, "fail") || has(said, "does not answer")) << said;
 }
 
-TEST_F(Console, Version) { EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n"); }
+TEST_F(Console, Version) { EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n"); }
 
 TEST_F(Console, CtrlCEndsALongAnswerAndTheLine) {
   send("list\r");
@@ -276,10 +276,10 @@ TEST_F(Console, CtrlCEndsALongAnswerAndTheLine) {
   text.clear();
   run(2000);
   EXPECT_EQ(text, "");
-  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n");
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n");
   send("set speed_ramp 1\x03");
   run(200);
-  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1\r\n");
+  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n");
 }
 
 TEST_F(Console, WhatIsTypedAheadIsNotLost) {

@@ -7,7 +7,7 @@
 
 namespace stillspin::test {
 
-enum { OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT };
+enum { OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT, EDITION };
 
 class Requests : public Terminal {
  protected:

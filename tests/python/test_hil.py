@@ -129,7 +129,7 @@ def test_a_board_that_says_nothing_is_told():
     assert "stillspin: no answer from the drive on serial port" in done.output
 
 
-BUILT = r"stillspin \d+\.\d+\.\d+ \(board bench, unknown commit, table [0-9a-f]{8}\)"
+BUILT = r"stillspin \d+\.\d+\.\d+ \(edition lab, board bench, unknown commit, table [0-9a-f]{8}\)"
 KINDS = {
     "A09": "id_3",  # locked rotor, encoder
     "A12": "hysteresis",  # slices instead of windows, which interrupt the control step

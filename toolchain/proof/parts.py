@@ -66,6 +66,7 @@ CONFIGURATION = (
     *(
         "tests/prove/configuration.c",
         "firmware/config/config.c",
+        "firmware/mode/source.c",
         "firmware/dictionary/parameters.c",
         "firmware/config/rules.c",
         "firmware/base/clear.c",

@@ -22,6 +22,7 @@ _ALWAYS = 1
 _Q, _NEEDS = 0x3F, 6
 _FORMAT = 2
 _BOOT = 10.0
+_BUILD = struct.calcsize("<IH")
 _AGAIN = 0.1
 
 
@@ -40,6 +41,8 @@ class Identity:
     """First 32 bits of the commit that its image was built from; 0 where that is not known."""
     changed: bool = False
     """Whether there were changes beside the commit."""
+    edition: str = ""
+    """What is in it (firmware/editions/); empty where it does not say."""
 
     @property
     def build(self) -> str:
@@ -49,7 +52,8 @@ class Identity:
     @property
     def text(self) -> str:
         """All of it, for people and for the heads of files."""
-        return f"{self.version} (board {self.board or 'unknown'}, {self.build}, table {self.crc:08x})"
+        made = f"edition {self.edition or 'unknown'}, board {self.board or 'unknown'}, {self.build}"
+        return f"{self.version} ({made}, table {self.crc:08x})"
 
 
 def identity(ask: Ask) -> Identity:
@@ -77,8 +81,8 @@ def identity(ask: Ask) -> Identity:
     version, _, more = body[struct.calcsize("<HHHHI") :].partition(b"\0")
     board, _, build = more.partition(b"\0")
     commit, changed = unpack("<IH", build) if build else (0, 0)
-    name, file = (octets.decode("ascii", "replace") for octets in (version, board))
-    return Identity(parameters, signals, faults, crc, name, file, commit, bool(changed))
+    name, file, edition = (octets.decode("ascii", "replace") for octets in (version, board, build[_BUILD:]))
+    return Identity(parameters, signals, faults, crc, name, file, commit, bool(changed), edition)
 
 
 def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = None) -> Table:
@@ -99,7 +103,11 @@ def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = No
             parameters.append(_parameter(index, ask(Request.PARAMETER_INFO, struct.pack("<H", index))))
         else:
             number = index - who.parameters
-            signals.append(_signal(number, ask(Request.SIGNAL_INFO, struct.pack("<H", number))))
+            try:
+                signals.append(_signal(number, ask(Request.SIGNAL_INFO, struct.pack("<H", number))))
+            except RefusedError as error:
+                if error.status != StatusCode.EDITION:
+                    raise
         if progress:
             progress((index + 1) / total)
     found = Table(who.version, who.crc, who.faults, tuple(parameters), tuple(signals))
@@ -153,7 +161,8 @@ def _load(who: Identity) -> Table | None:
         signals = tuple(Signal(**entry) for entry in data["signals"])
     except (OSError, ValueError, TypeError, KeyError, AttributeError):
         return None
-    if (len(parameters), len(signals)) != (who.parameters, who.signals):
+    # An edition may leave signals out.
+    if len(parameters) != who.parameters or len(signals) > who.signals:
         return None
     return Table(who.version, who.crc, who.faults, parameters, signals)
 

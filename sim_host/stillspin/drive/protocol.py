@@ -51,6 +51,7 @@ class StatusCode(IntEnum):
     BUSY = 5
     STATE = 6
     CONFLICT = 7
+    EDITION = 8
 
 
 class Command(IntEnum):

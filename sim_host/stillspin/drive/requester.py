@@ -29,6 +29,7 @@ REASONS = {
     StatusCode.BUSY: "the drive is busy with another request; try again",
     StatusCode.STATE: "not in this state of the drive",
     StatusCode.CONFLICT: "the parameters do not go together",
+    StatusCode.EDITION: "not in this edition of the firmware",
 }
 
 

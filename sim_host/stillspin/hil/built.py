@@ -50,6 +50,8 @@ def _differs(what: str, board: object, virtual: object) -> str:
 def _of_identity(theirs: Identity, ours: Identity) -> Iterator[str]:
     if theirs.version != ours.version:
         yield _differs("version", theirs.version, ours.version)
+    if theirs.edition != ours.edition:
+        yield _differs("edition", theirs.edition or "unknown", ours.edition)
     if theirs.board != ours.board:
         yield _differs("board file", theirs.board or "unknown", ours.board)
 
