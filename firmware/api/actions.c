@@ -137,25 +137,29 @@ static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octe
   return ANSWER_RANGE;
 }
 
-// The value is in the table already, `before` was.
-static answer_status_t check_conflict(const parameter_info_t* p, int32_t before, octet_writer_t* why) {
-  const packed_text_t conflict = parameter_conflict();
+// Values that do not fit together are taken while the drive is off. Once a change is told of no start is taken, so what
+// is seen of the power stage stays true.
+static bool is_refused(packed_text_t conflict) {
+  if (conflict == PACKED_NONE) return false;
+  drive_parameters_changed();
+  return drive_is_energised();
+}
+
+// What it would conflict with is known before the table has it.
+static answer_status_t set(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
+  const packed_text_t conflict = parameter_conflict_with(p->id, raw);
+  const bool refused = is_refused(conflict);
+  if (!refused) parameter_change(p->id, raw);
   if (conflict == PACKED_NONE) return ANSWER_OK;
-  if (drive_is_energised()) {
-    (void)parameter_set(p->id, before);
-    put_packed(why, SAY_not_taken_while_the_drive_runs);
-  } else {
-    put_packed(why, SAY_set_but_the_drive_does_not_start);
-  }
+  put_packed(why, refused ? SAY_not_taken_while_the_drive_runs : SAY_set_but_the_drive_does_not_start);
   put_conflict(why, conflict);
   return ANSWER_CONFLICT;
 }
 
 answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why) {
-  const int32_t before = parameter_get(parameter->id);
-  switch (parameter_set(parameter->id, raw)) {
+  switch (parameter_settable(parameter->id, raw)) {
     case SET_OK:
-      return check_conflict(parameter, before, why);
+      return set(parameter, raw, why);
     case SET_RANGE:
       return refuse_range(parameter, raw, why);
     case SET_RUNNING:

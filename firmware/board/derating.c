@@ -47,8 +47,9 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
 }
 
 int32_t board_lasting_current(void) {
-  if (parameters.overload_current >= 0) return parameters.overload_current;
-  return (parameters.rated_current != 0) ? parameters.rated_current : parameters.current_limit / 2;
+  if (drive.config.values.overload_current >= 0) return drive.config.values.overload_current;
+  return (drive.config.values.rated_current != 0) ? drive.config.values.rated_current
+                                                  : drive.config.values.current_limit / 2;
 }
 
 // Square of the current, of that which may flow for ever; saturated at eleven times that current.
@@ -59,8 +60,8 @@ static int32_t heating_q24(int32_t ever_q20) {
 }
 
 static drive_fault_t follow_overload(int32_t ever_q20, int32_t* share_q15) {
-  board.heat_q24 += (heating_q24(ever_q20) - board.heat_q24) / (parameters.overload_time / (int32_t)TURN);
-  const int32_t end_q15 = q_min(INTERLOCK_SHARE_ONE, q_div(ever_q20, parameters.current_limit, 15));
+  board.heat_q24 += (heating_q24(ever_q20) - board.heat_q24) / (drive.config.values.overload_time / (int32_t)TURN);
+  const int32_t end_q15 = q_min(INTERLOCK_SHARE_ONE, q_div(ever_q20, drive.config.values.current_limit, 15));
   *share_q15 = q_min(*share_q15, share_between(board.heat_q24, HEAT_ONE_Q24 / 5 * 4, HEAT_ONE_Q24, end_q15));
   return board.heat_q24 > HEAT_ONE_Q24 / 10 * 11 ? FAULT_OVERLOAD : FAULT_NONE;
 }

@@ -106,7 +106,7 @@ void board_service(void) {
 }
 
 drive_fault_t board_refusal(void) {
-  return parameters.precharge_voltage != 0 && !board.relay ? FAULT_PRECHARGE : FAULT_NONE;
+  return drive.config.values.precharge_voltage != 0 && !board.relay ? FAULT_PRECHARGE : FAULT_NONE;
 }
 
 static void put_item(octet_writer_t* w, board_words_t word) {

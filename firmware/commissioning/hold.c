@@ -19,7 +19,7 @@
 #define SLOPE_STEPS 64  // periods for the current limit
 
 void commissioning_set_d(drive_t* d, int32_t level_q20) {
-  const int32_t step = parameters.current_limit / SLOPE_STEPS;
+  const int32_t step = d->config.values.current_limit / SLOPE_STEPS;
   dq_t* const r = &d->control.reference_q20;
   r->d = q_clamp(level_q20, r->d - step, r->d + step);
 }
@@ -31,7 +31,7 @@ void commissioning_hold(drive_t* d) {
       q_sub_sat(q_mul_sat(error_bam, STIFFNESS_Q30, 22), q_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
   const int32_t torque_q20 = q_mul_sat(q_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
   const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
-  const int32_t limit = parameters.current_limit / 4;
+  const int32_t limit = d->config.values.current_limit / 4;
   d->control.reference_q20.q = q_clamp(current, -limit, limit);
 }
 

@@ -38,7 +38,7 @@
 static const int16_t signs[SEGMENTS] = {1, -1, -1, 1};
 
 static int32_t level_q20(uint16_t level) {
-  return parameters.current_limit / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
+  return drive.config.values.current_limit / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
 }
 
 // Periods in which a reversal of the current settles.
@@ -89,11 +89,11 @@ static bool usable(const map_t* m, uint16_t segment) {
 // The current follows the plan two periods later: the plan's slope goes to the voltage at once, its value to the
 // controller with that delay. So the integrator has nothing to do and the current does not overshoot.
 static void follow(drive_t* d, map_t* m, int32_t target_q20) {
-  const int32_t step = parameters.current_limit / SLOPE_STEPS;
+  const int32_t step = d->config.values.current_limit / SLOPE_STEPS;
   const int32_t last = m->plan[0];
   d->control.reference_q20.q = m->plan[1];
   m->plan[1] = last;
-  m->plan[0] = q_limit(q_clamp(target_q20, last - step, last + step), parameters.current_limit);
+  m->plan[0] = q_limit(q_clamp(target_q20, last - step, last + step), d->config.values.current_limit);
   d->control.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
 }
 

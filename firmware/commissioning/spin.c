@@ -33,7 +33,7 @@ static void add_ramp(const drive_t* d, spin_ramp_t* s) {
 }
 
 static int32_t target_rpm_q16(uint16_t leg) {
-  const int32_t high_q16 = q_shl_sat(q_min(parameters.spin_speed, parameters.speed_limit), 8);
+  const int32_t high_q16 = q_shl_sat(q_min(drive.config.values.spin_speed, drive.config.values.speed_limit), 8);
   if (leg == (uint16_t)LEG_STOP) return 0;
   return (leg == (uint16_t)LEG_UP) ? high_q16 : high_q16 / 3;
 }

@@ -39,15 +39,15 @@ static int32_t ripple_q20(const drive_t* d) {
 // A level lasts 0.9 s: the square of its current, of that which may flow for ever, times 0.9 s over the time constant.
 static int32_t bearable_q20(void) {
   const int32_t lasting_q20 = board_lasting_current();
-  if (lasting_q20 == 0) return parameters.current_limit;
-  const int32_t share_q8 = (int32_t)q_sqrt32((uint32_t)parameters.overload_time * 18u);  // 2^16 / 4 / 900 ms
-  return q_min(parameters.current_limit, q_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
+  if (lasting_q20 == 0) return drive.config.values.current_limit;
+  const int32_t share_q8 = (int32_t)q_sqrt32((uint32_t)drive.config.values.overload_time * 18u);  // 2^16 / 4 / 900 ms
+  return q_min(drive.config.values.current_limit, q_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
 }
 
 static int32_t level_q20(const drive_t* d, uint16_t index) {
   const int32_t limit = commissioning.staircase.most_q20;
   const bool weakening = index >= SIDE;
-  const int32_t most = weakening ? q_clamp(parameters.weakening_limit, limit / 2, limit) : limit;
+  const int32_t most = weakening ? q_clamp(d->config.values.weakening_limit, limit / 2, limit) : limit;
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
   if (least > most / 4 * 3) return 0;  // no room for a line: nothing will be found
   const int32_t step = (most - least) / (int32_t)(SIDE - 1u);

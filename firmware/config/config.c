@@ -200,6 +200,16 @@ static bool load_position(drive_config_t* c) {
   return load_blend(c);
 }
 
+// Parameters as they are, by their places in the table.
+static void load_values(config_values_t* v) {
+#define PLACE(name) (uint16_t)(offsetof(parameters_t, name) / sizeof(int32_t)),
+  static const uint16_t places[] = {CONFIG_VALUES(PLACE)};
+#undef PLACE
+  const int32_t* const from = (const int32_t*)(const void*)&parameters;
+  int32_t* const to = (int32_t*)(void*)v;
+  for (uint16_t k = 0; k < sizeof places / sizeof places[0]; k++) to[k] = from[places[k]];
+}
+
 static bool load_parts(drive_config_t* c) {
   bool fits = true;
   for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) fits = edition_config_parts[k](c) && fits;
@@ -209,6 +219,7 @@ static bool load_parts(drive_config_t* c) {
 const drive_config_t* drive_config_make(void) {
   static drive_config_t made;  // too large for the stack; the background level alone makes configurations
   clear(&made, sizeof made);
+  load_values(&made.values);
   const bool fits =
       load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made) && load_parts(&made);
   return fits ? &made : NULL;

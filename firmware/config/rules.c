@@ -29,7 +29,7 @@ static bool map_is_crossed(const parameters_t* p) {
   return false;
 }
 
-packed_text_t drive_config_or_conflict(const drive_config_t** made) {
+static packed_text_t broken_rule(void) {
   const parameters_t* const p = &parameters;
   const uint16_t source = drive_source_wanted()->traits;
   if (drive_source_is_left_out()) return SAY_position_source_this_edition_has_not;
@@ -65,13 +65,30 @@ packed_text_t drive_config_or_conflict(const drive_config_t** made) {
   if (p->start_method == 1 && (source & SOURCE_MEASURES) != 0u) return SAY_start_method_1_needs_a_position_source;
   if (p->start_method == 1 && p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
   if (p->current_bandwidth * (3 + p->current_divider) > 10400) return SAY_current_bandwidth_must_not_exceed_2080_rad;
+  return PACKED_NONE;
+}
+
+packed_text_t drive_config_or_conflict(const drive_config_t** made) {
+  const packed_text_t broken = broken_rule();
+  if (broken != PACKED_NONE) return broken;
   *made = drive_config_make();
   return (*made != NULL) ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
 }
 
+// Without a frame for the configuration that nobody wants: the deepest way of the stack leads here.
 packed_text_t parameter_conflict(void) {
-  const drive_config_t* unused;
-  return drive_config_or_conflict(&unused);
+  const packed_text_t broken = broken_rule();
+  if (broken != PACKED_NONE || drive_config_make() != NULL) return broken;
+  return SAY_the_machine_s_parameters_are_too_extreme;
+}
+
+// No interrupt reads the table, so nobody sees the value meanwhile.
+packed_text_t parameter_conflict_with(uint16_t id, int32_t raw) {
+  const int32_t before = parameter_get(id);
+  parameter_write(id, raw);
+  const packed_text_t conflict = parameter_conflict();
+  parameter_write(id, before);
+  return conflict;
 }
 
 // Whatever changes a parameter asks for a new configuration, which finds out.

@@ -3,6 +3,8 @@
 #ifndef STILLSPIN_FIRMWARE_CONFIG_RULES_H
 #define STILLSPIN_FIRMWARE_CONFIG_RULES_H
 
+#include <stdint.h>
+
 #include "firmware/text/packed_text.h"
 
 #if defined(__cplusplus)
@@ -11,7 +13,9 @@ extern "C" {
 
 /// Why the present parameters cannot be used together, one sentence; PACKED_NONE when they can.
 packed_text_t parameter_conflict(void);
-/// The same, without a calculation when the background level has made a configuration of them.
+/// The same, were this parameter at that value.
+packed_text_t parameter_conflict_with(uint16_t id, int32_t raw);
+/// The same of the present ones, without a calculation when the background level has made a configuration of them.
 packed_text_t parameter_conflict_known(void);
 
 #if defined(__cplusplus)

@@ -13,7 +13,7 @@ void drive_control_current(drive_t* d) {
     return;
   }
   // In between, the command stands still in the rotor frame.
-  if (d->schedule.period % (uint16_t)parameters.current_divider != 0u) return;
+  if (d->schedule.period % (uint16_t)d->config.values.current_divider != 0u) return;
   c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
                                            c->measured_q20, d->position.selected.speed_bpp);
   if (c->feed_forward_q16 != 0)

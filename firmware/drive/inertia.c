@@ -13,7 +13,7 @@ static void look(const drive_t* d, inertia_seen_t* in) {
   in->reference_bpp = d->control.ramp.value;
   in->torque_accel_q8 = d->position.torque_accel_q8;
   // Three tenths of what the current limit gives.
-  const int32_t limit_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), parameters.current_limit, 28);
+  const int32_t limit_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), d->config.values.current_limit, 28);
   in->least_accel_q8 = q_mul_sat(limit_q16, d->model.accel_q12, 20) / 10 * 3;
   in->still_bpp = q_mul_sat(STILL_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
 }
@@ -35,7 +35,7 @@ static void hand_on(drive_t* d, int32_t factor_q24) {
 // for inertia.
 void drive_match_inertia(drive_t* d) {
   const bool alone = position_has(d, SOURCE_SINGLE) && position_has(d, SOURCE_READS);
-  if (parameters.inertia_adapt == 0 || !d->config.mapped || !alone) return;
+  if (d->config.values.inertia_adapt == 0 || !d->config.mapped || !alone) return;
   if (d->state != DRIVE_RUN) {
     d->inertia.quiet_ms = 0;
     d->inertia.phase = INERTIA_REST;

@@ -15,7 +15,7 @@
 
 static excitation_t excitation(const drive_t* d) {
   if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
-  if (parameters.excitation != EXCITATION_BY_SOURCE) return (excitation_t)parameters.excitation;
+  if (d->config.values.excitation != EXCITATION_BY_SOURCE) return (excitation_t)d->config.values.excitation;
   const position_source_t* const source = d->source;
   return (source->excitation == NULL) ? EXCITATION_ALTERNATING : source->excitation(d);
 }

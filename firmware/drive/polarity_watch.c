@@ -31,7 +31,7 @@ static void forget_voltage(polarity_watch_t* w) {
 
 void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp) {
   polarity_watch_t* const w = &polarity_watch;
-  w->open = parameters.polarity_check != 0;
+  w->open = drive.config.values.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
   w->axis_periods = 0;
   w->samples_invalid = false;
@@ -57,7 +57,7 @@ static int32_t axis_off(const drive_t* d) {
 
 // While the current is large or the windows do not show the axis.
 static bool samples_are_invalid(const drive_t* d) {
-  return q_abs_sat(d->control.measured_q20.q) > parameters.current_limit / 2 ||
+  return q_abs_sat(d->control.measured_q20.q) > d->config.values.current_limit / 2 ||
          (d->samples.count > 0u && regression_in_use(d)->information == 0);
 }
 

@@ -109,7 +109,7 @@ void drive_estimate(drive_t* d) {
 }
 
 uint32_t position_encoder_now(const drive_t* d) {
-  return position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, parameters.encoder_counts);
+  return position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, d->config.values.encoder_counts);
 }
 
 void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {

@@ -16,14 +16,15 @@
 static bool over_current(const drive_t* d) {
   if (d->samples.count == 0u) return false;
   const abc_t i = frame_inverse_clarke(d->samples.windows[d->samples.count - 1u].current_q20);
-  const int32_t limit = parameters.trip_current;
+  const int32_t limit = d->config.values.trip_current;
   return !(q_in_range(i.a, -limit, limit) && q_in_range(i.b, -limit, limit) && q_in_range(i.c, -limit, limit));
 }
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
 static bool encoder_beside_avv(const drive_t* d) {
-  return position_has(d, SOURCE_MEASURES) && parameters.current_law == CURRENT_LAW_PI && parameters.flux_beside == 0 &&
-         parameters.excitation != EXCITATION_CENTRED && parameters.excitation < EXCITATION_LONG_ZERO;
+  return position_has(d, SOURCE_MEASURES) && d->config.values.current_law == CURRENT_LAW_PI &&
+         d->config.values.flux_beside == 0 && d->config.values.excitation != EXCITATION_CENTRED &&
+         d->config.values.excitation < EXCITATION_LONG_ZERO;
 }
 
 // How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
@@ -37,11 +38,11 @@ static int32_t disagreement(const drive_t* d) {
 
 // The two estimators must agree wherever both are used, and no speed may be far beyond the largest reference.
 static bool diverged(drive_t* d, int32_t periods, int32_t apart_bam) {
-  const int32_t speed_limit = q_mul_floor(parameters.speed_limit, d->config.bpp_per_rpm_q8, 16);
-  const bool wrong = (apart_bam > 0 && apart_bam > q_mul_floor(parameters.divergence_limit, 11930465L, 16)) ||
+  const int32_t speed_limit = q_mul_floor(d->config.values.speed_limit, d->config.bpp_per_rpm_q8, 16);
+  const bool wrong = (apart_bam > 0 && apart_bam > q_mul_floor(d->config.values.divergence_limit, 11930465L, 16)) ||
                      q_abs_sat(d->position.selected.speed_bpp) / 3 * 2 > speed_limit;
   d->supervision.diverged_periods = wrong ? (uint16_t)(d->supervision.diverged_periods + (uint16_t)periods) : 0u;
-  return d->supervision.diverged_periods > (uint16_t)(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+  return d->supervision.diverged_periods > (uint16_t)(d->config.values.divergence_time * DRIVE_PERIODS_PER_MS);
 }
 
 static int32_t span_of(const drive_samples_t* s) {
@@ -54,7 +55,7 @@ static int32_t span_of(const drive_samples_t* s) {
 static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int32_t apart_bam) {
   const bool measured = position_has(d, SOURCE_MEASURES);
   const regression_t* const by_avv = &d->position.avv.regression;
-  if (measured && parameters.encoder_trim != 0) return false;
+  if (measured && d->config.values.encoder_trim != 0) return false;
   synchronism_seen_t seen = {{0, 0}, 0, d->position.selected.speed_bpp, ahead_bpp, periods};
   // Where the observer reads the windows, its residuals say how it is: those of all periods since it was last asked.
   if (position_observer_reads(d)) {
@@ -104,8 +105,8 @@ static drive_fault_t check(drive_t* d) {
   if (d->supervision.missing > MISSING_MAX) return FAULT_NO_SAMPLES;
   if (d->supervision.overrun > OVERRUN_MAX) return FAULT_OVERRUN;
   if (over_current(d)) return FAULT_CURRENT_LIMIT;
-  if (d->samples.link_q16 < parameters.link_minimum) return FAULT_LINK_LOW;
-  if (d->samples.link_q16 > parameters.link_maximum) return FAULT_LINK_HIGH;
+  if (d->samples.link_q16 < d->config.values.link_minimum) return FAULT_LINK_LOW;
+  if (d->samples.link_q16 > d->config.values.link_maximum) return FAULT_LINK_HIGH;
   if (polarity_watch_step(d)) return FAULT_POLARITY;
   return (drive_is_turning(d) && judges_now(d)) ? check_position(d) : FAULT_NONE;
 }

@@ -25,12 +25,12 @@ void drive_reset(void) {
   parameters_reset();
   interlock_reset();
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();
-  drive.control.current_limit_q20 = interlock_current_limit();
   drive.zero_current_a_q8 = drive.zero_current_b_q8 = DRIVE_MIDDLE_Q8;
   drive.trim.offset_a_q8 = drive.zero_current_a_q8;
   drive.trim.offset_b_q8 = drive.zero_current_b_q8;
   drive_choose_source();
   drive.config_valid = drive_config_load(&drive.config);
+  drive.control.current_limit_q20 = interlock_current_limit();
   drive.model = drive.config.nameplate;
   drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
   drive.samples.scale = slopes_scale(&drive.config.slopes, &drive.trim);

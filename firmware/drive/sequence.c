@@ -69,7 +69,7 @@ static void stop(drive_t* d) {
   v->stopping_periods++;
   if (q_abs_sat(d->position.selected.speed_bpp) <= still) {
     coast(d);
-  } else if (v->stopping_periods > (uint32_t)parameters.stop_time * DRIVE_PERIODS_PER_MS) {
+  } else if (v->stopping_periods > (uint32_t)d->config.values.stop_time * DRIVE_PERIODS_PER_MS) {
     drive_trip(d, FAULT_STOP);
   }
 }

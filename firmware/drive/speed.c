@@ -11,7 +11,7 @@
 #define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link
 
 static int32_t voltage_limit(const drive_t* d) {
-  return q_mul(d->samples.link_q16, q_mul(parameters.voltage_use, PERCENT_OF_SQRT3_INV_Q30, 16), 30);
+  return q_mul(d->samples.link_q16, q_mul(d->config.values.voltage_use, PERCENT_OF_SQRT3_INV_Q30, 16), 30);
 }
 
 static void weaken(drive_t* d) {
@@ -20,15 +20,15 @@ static void weaken(drive_t* d) {
                                       c->reference_q20.q,
                                       q_hypot(c->command_q16.d, c->command_q16.q),
                                       voltage_limit(d),
-                                      parameters.weakening_limit,
-                                      parameters.weakening_gain};
+                                      d->config.values.weakening_limit,
+                                      d->config.values.weakening_gain};
   c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->model);
 }
 
 static void refer_field(drive_t* d) {
   drive_control_t* const c = &d->control;
-  int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : parameters.id_low_speed;
-  int32_t least = (parameters.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
+  int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : d->config.values.id_low_speed;
+  int32_t least = (d->config.values.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
   if (d->source->highest_d_q20 != NULL) least = q_min(least, d->source->highest_d_q20(d));
   // A commissioning takes its spin for one without i_d.
   if (d->state == DRIVE_COMMISSION) {
@@ -65,11 +65,12 @@ int32_t drive_current_headroom(const drive_t* d) {
 static int32_t braking_headroom(const drive_t* d, int32_t headroom_q20) {
   brake_limit_input_t in;
   in.link_q16 = d->samples.link_q16;
-  in.start_q16 = parameters.link_regulation;
+  in.start_q16 = d->config.values.link_regulation;
   // The rest of the way to the fault is for noise and for the delay of the loop.
-  in.end_q16 = parameters.link_regulation + (parameters.link_maximum - parameters.link_regulation) / 3 * 2;
+  in.end_q16 =
+      d->config.values.link_regulation + (d->config.values.link_maximum - d->config.values.link_regulation) / 3 * 2;
   in.emf_q16 = q_mul_sat(q_abs_sat(machine_speed_rad_q30(d->position.selected.speed_bpp)), d->model.emf_q16, 30);
-  in.drop_q16 = q_mul_sat(d->model.nominal_rs_q24, parameters.current_limit, 28);
+  in.drop_q16 = q_mul_sat(d->model.nominal_rs_q24, d->config.values.current_limit, 28);
   return brake_limit_q20(&in, headroom_q20);
 }
 
@@ -142,7 +143,7 @@ static void step_speed(drive_t* d, bool held) {
     speed_controller_preset(&c->speed, q_sub_sat(c->reference_q20.q, in.load_current_q20));
     return;
   }
-  c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)parameters.speed_law, &in);
+  c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)d->config.values.speed_law, &in);
   note_limits(d, &in);
 }
 

@@ -20,7 +20,7 @@
 
 hysteresis_t hysteresis;
 
-static uint16_t slice_ticks(void) { return (uint16_t)q_shr_round(parameters.slice_time * 100, 16); }
+static uint16_t slice_ticks(void) { return (uint16_t)q_shr_round(drive.config.values.slice_time * 100, 16); }
 
 static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t band) {
   if (lack > band) return (uint16_t)(state | leg_bit);
@@ -85,17 +85,17 @@ static void hysteresis_samples(drive_t* d) {
   d->control.measured_q20.d = q_limit(mean_q20.d, DRIVE_CURRENT_END_Q20);
   d->control.measured_q20.q = q_limit(mean_q20.q, DRIVE_CURRENT_END_Q20);
   d->samples.link_q16 = q_follow_near(d->samples.link_q16, (int32_t)taken.link_code * d->config.volts_per_code_q16, 3);
-  if (q_mul(taken.peak_q8, per_code_q30, 18) > parameters.trip_current) drive_trip(d, FAULT_CURRENT_LIMIT);
+  if (q_mul(taken.peak_q8, per_code_q30, 18) > d->config.values.trip_current) drive_trip(d, FAULT_CURRENT_LIMIT);
 }
 
 // The band follows the switching frequency: seldom enough to average over the modulation by the angle.
 static void adapt(hysteresis_t* h) {
-  if (++h->periods < ADAPT_PERIODS || parameters.hysteresis_frequency == 0) return;
+  if (++h->periods < ADAPT_PERIODS || drive.config.values.hysteresis_frequency == 0) return;
   const uint16_t rises = (uint16_t)(h->switched - h->counted);
   h->counted = h->switched;
   h->periods = 0;
   // Three legs, 10 ms: 30 rises per kHz.
-  const int32_t reference = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
+  const int32_t reference = q_max(1, q_shr_round(drive.config.values.hysteresis_frequency * 30, 16));
   const int32_t error_q15 = q_clamp(q_div((int32_t)rises - reference, reference, 15), -32767L, 32767L);
   h->band_q20 =
       q_clamp(h->band_q20 + q_mul(q_mul(h->band_q20, error_q15, 15), ADAPT_SHARE_Q15, 15), BAND_MIN_Q20, BAND_MAX_Q20);
@@ -135,13 +135,13 @@ static void begin(drive_t* d) {
   clear(h, sizeof *h);
   h->offset_a_q8 = d->trim.offset_a_q8;
   h->offset_b_q8 = d->trim.offset_b_q8;
-  h->band_q20 = parameters.hysteresis_band;
+  h->band_q20 = d->config.values.hysteresis_band;
   refer(d);
   d->sliced = (uint16_t)hal_sampling_timer_begin(slice_ticks());
 }
 
 static bool hysteresis_step(drive_t* d) {
-  const bool wanted = parameters.current_law == 1 && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
+  const bool wanted = d->config.values.current_law == 1 && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
   if (wanted && d->sliced == 0u) begin(d);
   if (!wanted && d->sliced != 0u) {
     hal_sampling_timer_end();

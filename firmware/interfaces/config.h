@@ -15,11 +15,12 @@
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
 #include "estimators/zvv.h"
+#include "firmware/interfaces/config_values.h"
 #include "svpwm/edges.h"
 #include "svpwm/modulator.h"
 
 /// Derived from the parameters, see config/config.c. Holds nothing that is found while the drive runs: the background
-/// level replaces it as a whole.
+/// level replaces it as a whole, and the interrupts read no parameter beside it.
 typedef struct drive_config {
   machine_model_t nameplate;
   modulator_config_t modulator;
@@ -49,6 +50,7 @@ typedef struct drive_config {
   int32_t sensor_mismatch_q30;   // of the current sensors, as a share
   bool mapped;                   // the turn of the saliency axis with the current is known
   saturation_slopes_t saturation;
+  config_values_t values;
 } drive_config_t;
 
 #endif

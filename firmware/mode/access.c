@@ -6,15 +6,22 @@
 #include "firmware/mode/commands.h"
 #include "firmware/mode/mode.h"
 
-parameter_result_t parameter_set(uint16_t id, int32_t raw) {
+parameter_result_t parameter_settable(uint16_t id, int32_t raw) {
   const parameter_info_t* const info = parameter_by_id(id);
   if (info == NULL) return SET_UNKNOWN;
   if (raw < info->minimum || raw > info->maximum) return SET_RANGE;
-  if (info->access == PARAMETER_STOPPED) {
-    drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
-    if (drive_is_energised()) return SET_RUNNING;
-  }
+  if (info->access == PARAMETER_ALWAYS) return SET_OK;
+  drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
+  return drive_is_energised() ? SET_RUNNING : SET_OK;
+}
+
+void parameter_change(uint16_t id, int32_t raw) {
   parameter_write(id, raw);
   drive_parameters_changed();
-  return SET_OK;
+}
+
+parameter_result_t parameter_set(uint16_t id, int32_t raw) {
+  const parameter_result_t result = parameter_settable(id, raw);
+  if (result == SET_OK) parameter_change(id, raw);
+  return result;
 }

@@ -3,10 +3,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 
-void drive_parameters_changed(void) {
-  drive.request.reload = true;
-  drive_choose_source();
-}
+void drive_parameters_changed(void) { drive.request.reload = true; }
 
 void drive_command_start(void) { drive.request.start = true; }
 
@@ -46,6 +43,6 @@ void drive_command_reset(void) { drive.request.reset = true; }
 void drive_command_speed(int32_t rpm_q16) {
   drive.control.command_rpm_q16 = rpm_q16;
   if (drive.flags.spins) return;  // the spin has a speed of its own
-  const int32_t limit_q16 = q_shl_sat(parameters.speed_limit, 8);
+  const int32_t limit_q16 = q_shl_sat(drive.config.values.speed_limit, 8);
   drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
 }

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_digital_io.h"
 #include "hal/hal_irq.h"
 #include "hal/qmath/qmath.h"
@@ -11,12 +11,12 @@ int32_t interlock_share_q15;
 
 void interlock_reset(void) { interlock_share_q15 = INTERLOCK_SHARE_ONE; }
 
-int32_t interlock_current_limit(void) { return q_mul(parameters.current_limit, interlock_share_q15, 15); }
+int32_t interlock_current_limit(void) { return q_mul(drive.config.values.current_limit, interlock_share_q15, 15); }
 
 bool interlock_is_warm(void) { return interlock_share_q15 < INTERLOCK_SHARE_ONE; }
 
 drive_fault_t interlock_emergency(void) {
-  return parameters.emergency_stop != 0 && hal_digital_io_emergency() ? FAULT_EMERGENCY : FAULT_NONE;
+  return drive.config.values.emergency_stop != 0 && hal_digital_io_emergency() ? FAULT_EMERGENCY : FAULT_NONE;
 }
 
 drive_fault_t interlock_refusal(void) {

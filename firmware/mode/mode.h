@@ -60,7 +60,7 @@ typedef struct drive {
 
 extern drive_t drive;
 
-/// What is made of the parameters is made anew; the position source is chosen at once.
+/// What is made of the parameters is to be made anew.
 void drive_parameters_changed(void);
 void drive_choose_source(void);
 /// That of the parameter; the observer where this edition leaves that one out, and the drive does not start.

@@ -10,7 +10,7 @@
 #define REST_PERIODS 20u
 
 void start_charge(drive_t* d) {
-  if (parameters.bootstrap_time == 0) {
+  if (d->config.values.bootstrap_time == 0) {
     start_look(d);
     return;
   }
@@ -22,7 +22,7 @@ void start_charge(drive_t* d) {
 static bool flows(const drive_t* d) {
   if (d->samples.count == 0u || d->flags.invalid > 0u) return false;
   const ab_t i = d->samples.windows[d->samples.count - 1u].current_q20;
-  return q_max(q_abs_sat(i.alpha), q_abs_sat(i.beta)) > parameters.current_limit / 2;
+  return q_max(q_abs_sat(i.alpha), q_abs_sat(i.beta)) > d->config.values.current_limit / 2;
 }
 
 void start_step_charge(drive_t* d) {
@@ -33,7 +33,7 @@ void start_step_charge(drive_t* d) {
     return;
   }
   s->charged++;
-  if ((int32_t)s->charged >= q_shr(parameters.bootstrap_time * DRIVE_PERIODS_PER_MS + 65535L, 16)) {
+  if ((int32_t)s->charged >= q_shr(d->config.values.bootstrap_time * DRIVE_PERIODS_PER_MS + 65535L, 16)) {
     start_look(d);
   } else if (flows(d)) {
     start_power(d, false);

@@ -144,7 +144,7 @@ void start_step_pulse(drive_t* d) {
     const bool early = d->flags.invalid > 0u && w->middle_tick - w->span_ticks / 2 < s->on_tick + ON_TICKS;
     if (!early) flying_add(&s->pulse, &d->model, w, tick_of(d, w));
   }
-  const bool enough = flying_current(&s->pulse) > parameters.current_limit / 16;
+  const bool enough = flying_current(&s->pulse) > d->config.values.current_limit / 16;
   if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) start_power(d, false);
 }
 

@@ -18,11 +18,14 @@
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
 static bool is_if_start_next(const drive_t* d) {
-  return parameters.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
+  return d->config.values.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
 }
 
 // Only where the listening has found that the shaft stands.
-bool start_checks_wiring(void) { return parameters.wiring_check != 0 && parameters.flying_start != 0; }
+bool start_checks_wiring(void) {
+  const config_values_t* const v = &drive.config.values;
+  return v->wiring_check != 0 && v->flying_start != 0;
+}
 
 void start_find_axis(drive_t* d) {
   d->flags.shorted = false;
@@ -109,7 +112,7 @@ static bool has_followed(drive_t* d, int32_t amplitude_q20) {
 // Twice as much with each try; after one that the voltage was too low for, half of that.
 static int32_t motion_current(const drive_start_t* s) {
   if (s->starved && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
-  return q_min(q_shl_sat(parameters.polarity_current, s->tries), parameters.current_limit);
+  return q_min(q_shl_sat(drive.config.values.polarity_current, s->tries), drive.config.values.current_limit);
 }
 
 static void try_motion(drive_t* d) {
@@ -132,8 +135,8 @@ static void try_motion(drive_t* d) {
 static void try_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_SATURATION) s->tries = 0;
-  const int32_t more = (s->tries >= 2u) ? parameters.start_current / 2 : 0;
-  const int32_t current = q_min(parameters.start_current + more, parameters.current_limit);
+  const int32_t more = (s->tries >= 2u) ? d->config.values.start_current / 2 : 0;
+  const int32_t current = q_min(d->config.values.start_current + more, d->config.values.current_limit);
   if (s->tries == 1u) {
     saturation_again(&s->saturation);
     begin_test(d, START_SATURATION);
@@ -149,7 +152,7 @@ static void try_saturation(drive_t* d) {
 
 void start_step_settle(drive_t* d) {
   if (starting.tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return;
-  if (parameters.polarity_check == 0) {
+  if (d->config.values.polarity_check == 0) {
     decided(d, POLARITY_RIGHT, 0);
   } else if (starting.held_back > 0u) {
     try_motion(d);

@@ -65,7 +65,7 @@ static void start_begin(drive_t* d, drive_state_t behind) {
 }
 
 void start_look(drive_t* d) {
-  if (parameters.flying_start != 0) {
+  if (d->config.values.flying_start != 0) {
     start_listen(d, LISTEN_FIRST);
   } else {
     start_find_axis(d);

@@ -211,7 +211,7 @@ TEST_F(Inertia, NothingIsLearntWithoutTheMapTheParameterAndTheObserver) {
     SetUp();
     run_up(0.5);
     if (missing == 1) drive.config.mapped = false;
-    if (missing == 2) parameters.inertia_adapt = 0;
+    if (missing == 2) drive.config.values.inertia_adapt = 0;
     if (missing == 3) use_source(POSITION_OBSERVER_AVV);
     drive_match_inertia(&drive);
     EXPECT_EQ(drive.inertia.ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;

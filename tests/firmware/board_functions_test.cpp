@@ -29,6 +29,7 @@ class BoardFunctions : public Drive {
     drive.state = DRIVE_READY;
     drive.loading = false;
     parameters.rated_current = raw(10.89, 20);
+    use_parameters();
     drive.samples.link_q16 = raw(300.0, 16);
   }
 
@@ -85,6 +86,7 @@ TEST_F(BoardFunctions, NothingIsDoneThatIsNotWired) {
 TEST_F(BoardFunctions, OutputsAreSetUpOnce) {
   parameters.precharge_voltage = raw(200.0, 16);
   parameters.emergency_stop = 1;
+  use_parameters();
   look(3);
   parameters.brake_voltage = raw(400.0, 16);
   look(3);
@@ -100,6 +102,7 @@ TEST_F(BoardFunctions, OutputsAreSetUpOnce) {
 
 TEST_F(BoardFunctions, TheRelayFollowsTheChargeOfTheLink) {
   parameters.precharge_voltage = raw(200.0, 16);
+  use_parameters();
   look_at_link(199.0);
   EXPECT_FALSE(board.relay);
   EXPECT_EQ(interlock_refusal(), FAULT_PRECHARGE);
@@ -121,6 +124,7 @@ TEST_F(BoardFunctions, TheRelayFollowsTheChargeOfTheLink) {
 TEST_F(BoardFunctions, AChargeThatDoesNotEndIsAFault) {
   parameters.precharge_voltage = raw(200.0, 16);
   parameters.precharge_time = 50;
+  use_parameters();
   look_at_link(25.0, 200);
   EXPECT_EQ(drive.state, DRIVE_READY) << "an eighth: there is no supply yet";
   look_at_link(25.1, 50);
@@ -186,6 +190,7 @@ TEST_F(BoardFunctions, TheGateEnableMustComeThrough) {
 
 TEST_F(BoardFunctions, TheEmergencyStopFaultsRefusesAndExplains) {
   parameters.emergency_stop = 1;
+  use_parameters();
   look();
   EXPECT_EQ(drive.state, DRIVE_READY);
   EXPECT_EQ(words(), "emergency stop released; current limit 100 %");
@@ -201,6 +206,7 @@ TEST_F(BoardFunctions, TheEmergencyStopFaultsRefusesAndExplains) {
 // A control interrupt in the middle of it would find a drive that is half in its fault.
 TEST_F(BoardFunctions, AFaultIsRaisedWithTheInterruptsHeldOff) {
   parameters.emergency_stop = 1;
+  use_parameters();
   board.emergency = true;
   look();
   ASSERT_EQ(drive.fault, FAULT_EMERGENCY);
@@ -211,6 +217,7 @@ TEST_F(BoardFunctions, AFaultIsRaisedWithTheInterruptsHeldOff) {
 
 TEST_F(BoardFunctions, NothingIsJudgedWhileTheDriveBoots) {
   parameters.emergency_stop = 1;
+  use_parameters();
   board.emergency = true;
   drive.state = DRIVE_BOOT;
   look(10);
@@ -290,6 +297,7 @@ TEST_F(BoardFunctions, ABrokenSensorIsAFaultOnceTheDriveIsCalibrated) {
 TEST_F(BoardFunctions, OverloadIsBorneForItsTime) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
+  use_parameters();
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {raw(-6.0, 20), raw(10.3923, 20)};  // 12 A
   const int looks = looks_to_fault(5000);
@@ -300,6 +308,7 @@ TEST_F(BoardFunctions, OverloadIsBorneForItsTime) {
 // By default the motor's rated current is what may flow for ever; the time constant is a winding's.
 TEST_F(BoardFunctions, WithoutAnotherCurrentTheMotorsRatedOneCounts) {
   parameters.rated_current = raw(4.0, 20);
+  use_parameters();
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {0, raw(8.0, 20)};
   const int looks = looks_to_fault(60000);
@@ -312,21 +321,27 @@ TEST_F(BoardFunctions, WithoutARatedCurrentHalfOfTheLimitCounts) {
   parameters_reset();
   ASSERT_EQ(parameters.rated_current, 0) << "nobody has told it";
   parameters.current_limit = raw(9.0, 20);
+  use_parameters();
   EXPECT_EQ(board_lasting_current(), raw(4.5, 20));
   EXPECT_NE(words().find("rated_current not set: half of current_limit is used"), std::string::npos);
   parameters.rated_current = raw(6.0, 20);
+  use_parameters();
   EXPECT_EQ(board_lasting_current(), raw(6.0, 20));
   EXPECT_EQ(words().find("rated_current"), std::string::npos);
   parameters.overload_current = raw(5.0, 20);
+  use_parameters();
   EXPECT_EQ(board_lasting_current(), raw(5.0, 20));
   parameters.rated_current = 0;
+  use_parameters();
   EXPECT_EQ(words().find("rated_current"), std::string::npos) << "it is told what may flow";
   parameters.overload_current = 0;
+  use_parameters();
   EXPECT_NE(words().find("no overload protection"), std::string::npos);
 }
 
 TEST_F(BoardFunctions, AnOverloadCurrentOfZeroWatchesNothing) {
   parameters.overload_current = 0;
+  use_parameters();
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {0, raw(30.0, 20)};
   look(200000);
@@ -338,6 +353,7 @@ TEST_F(BoardFunctions, AnOverloadCurrentOfZeroWatchesNothing) {
 TEST_F(BoardFunctions, TheMeanSquareIsAsFineForASmallMotor) {
   parameters.rated_current = raw(0.1, 20);
   parameters.overload_time = 600000;
+  use_parameters();
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {0, raw(0.12, 20)};
   const int looks = looks_to_fault(1200000);
@@ -348,6 +364,7 @@ TEST_F(BoardFunctions, TheMeanSquareIsAsFineForASmallMotor) {
 TEST_F(BoardFunctions, TheLimitFallsToWhatMayFlowForEver) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
+  use_parameters();
   drive.state = DRIVE_RUN;
   const std::pair<double, double> cases[] = {{8.8, 1.0}, {9.5, 0.5 * (1.0 + 10.0 / 14.0)}, {10.1, 10.0 / 14.0}};
   for (const auto& [amps, expected] : cases) {
@@ -360,6 +377,7 @@ TEST_F(BoardFunctions, TheLimitFallsToWhatMayFlowForEver) {
   look(3000);
   EXPECT_NEAR(share(), 1.0, 1e-3);
   parameters.overload_current = raw(20.0, 20);  // above the limit in use: nothing falls
+  use_parameters();
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {0, raw(19.5, 20)};
   look(12000);
@@ -371,6 +389,7 @@ TEST_F(BoardFunctions, TheHotterOfTheTwoRules) {
   parameters.temperature_derating = raw(60.0, 8);
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
+  use_parameters();
   drive.state = DRIVE_RUN;
   drive.control.measured_q20 = {0, raw(10.1, 20)};
   convert(1497);

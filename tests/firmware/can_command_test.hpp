@@ -25,6 +25,7 @@ class CanCommand : public Drive {
     can_command_reset(&command);
     use_source(0);
     parameters.polarity_check = 0;
+    use_parameters();
   }
   hal_can_frame_t frame(std::int32_t mode, std::int32_t speed = 0, bool clear = false) {
     return command_frame(alive = (alive + 1) % 16, mode, speed, clear);

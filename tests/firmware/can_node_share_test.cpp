@@ -200,6 +200,7 @@ TEST_F(CanNode, BusOffIsKeptForItsWholePauseHoweverLateItIsSeen) {
 TEST_F(CanNode, ItsStateTellsWhoIsInCommand) {
   use_source(0);
   parameters.polarity_check = 0;
+  use_parameters();
   EXPECT_EQ(can_node_state().rate_kbit, -1);
   parameters.can_rate = 250;
   pass(40);

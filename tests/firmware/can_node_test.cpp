@@ -284,6 +284,7 @@ TEST_F(CanNode, SendsTheStreamBehindTheAnswers) {
 TEST_F(CanNode, AnyFramesLeaveTheDriveControllable) {
   use_source(0);
   parameters.polarity_check = 0;
+  use_parameters();
   pass(40);
   std::mt19937 random(11);
   for (int round = 0; round < 200'000; ++round) {

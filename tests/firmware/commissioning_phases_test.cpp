@@ -127,6 +127,7 @@ TEST_F(Phases, APairIsUnderOppositeVectors) {
 // the ripple changes no current's sign on. Each is summed for 0.84 s, 60 ms after it was asked for.
 TEST_F(Phases, TheStaircaseSumsEachLevel) {
   parameters.weakening_limit = raw(0.8 * limit_, 20);
+  use_parameters();
   const double ripple = kLink * 2.0 / 3.0 * real(drive.model.yd_q30, 30) * drive.config.modulator.pulse_ticks / 1e4;
   const auto level = [&](int index) {
     const double most = index < 7 ? limit_ : 0.8 * limit_;
@@ -220,6 +221,7 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
 TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   parameters.spin_speed = 900 * 256;
   parameters.speed_limit = 450 * 256;
+  use_parameters();
   std::int32_t most = 0;
   for (int n = 0; n < 60000 && (n == 0 || drive.flags.spins); ++n) {
     (void)step(commissioning_spin);

@@ -81,13 +81,16 @@ TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
 // With the machine cool a level of 0.9 s is a quarter of what trips.
 TEST_F(CommissioningStairs, ALevelIsNoOverload) {
   parameters.rated_current = raw(4.0, 20);
+  use_parameters();
   for (const auto& [seconds, most] : {std::pair{60.0, 14.0}, {10.0, 4.0 * std::sqrt(10.0 / 3.6)}, {1.0, 4.0}}) {
     parameters.overload_time = static_cast<std::int32_t>(1000.0 * seconds);
+    use_parameters();
     commissioning.tick = 0;
     (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(stairs().most_q20, 20), most, 0.01 * most) << seconds;
   }
   parameters.overload_current = 0;
+  use_parameters();
   (void)commissioning_climb(&drive);
   EXPECT_EQ(stairs().most_q20, parameters.current_limit);
 }

@@ -30,6 +30,7 @@ class Commissioning : public Drive {
   /// In the start; its end is told to the drive, for it needs a machine behind it.
   void begin() {
     parameters.flying_start = 0;
+    use_parameters();
     make_ready();
     drive_command_commission();
     periods(10);
@@ -63,6 +64,7 @@ TEST_F(Commissioning, IsNotTurnedByAVector) {
     SetUp();
     parameters.start_method = 1;
     parameters.flying_start = 0;
+    use_parameters();
     make_ready();
     asked ? drive_command_commission() : drive_command_start();
     periods(2);
@@ -77,6 +79,7 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
     parameters.start_method = 1;
     parameters.flying_start = listens;
     parameters.wiring_check = 1;
+    use_parameters();
     make_ready();
     drive_command_start();
     period();
@@ -99,6 +102,7 @@ TEST_F(Commissioning, AStartIsStillAStart) {
 
 TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
   parameters.flying_start = 0;
+  use_parameters();
   make_ready();
   drive_command_commission();
   periods(10);
@@ -156,6 +160,7 @@ TEST_F(Commissioning, AMapCurrentWithoutItsLevelsIsNotUsed) {
   commissioning_report_t report;
   commissioning_t& c = commissioning;
   parameters.current_limit = raw(8.0, 20);
+  use_parameters();
   const std::int32_t before = parameters.map_current;
   c.model = drive.config.nameplate;
   c.unsaturated.vv_dd = c.unsaturated.vv_qq = 1 << 30;
@@ -197,6 +202,7 @@ TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
 // Whatever the last one was broken off in.
 TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
   parameters.flying_start = 0;
+  use_parameters();
   make_ready();
   commissioning_t& c = commissioning;
   c.predicting = c.solve_motion = c.evaluate = true;

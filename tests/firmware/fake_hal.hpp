@@ -111,6 +111,13 @@ inline std::int32_t bpp_of(int rpm) {
   return bpp;
 }
 
+/// What the exchange of the configuration gives the interrupts of the parameters as they are, at once.
+inline void use_parameters() {
+#define USE(name) drive.config.values.name = parameters.name;
+  CONFIG_VALUES(USE)
+#undef USE
+}
+
 /// Another position source, at once.
 inline void use_source(std::int32_t source) {
   parameters.position_source = source;
@@ -123,6 +130,7 @@ class Drive : public ::testing::Test {
     board = FakeBoard{};
     drive_reset();
     parameters.wiring_check = 0;  // no motor is there, and no current flows
+    use_parameters();
   }
   void TearDown() override { EXPECT_EQ(board.held_off, 0) << "interrupts that nobody has let through again"; }
 
@@ -164,6 +172,7 @@ class Drive : public ::testing::Test {
   void make_run() {
     use_source(0);
     parameters.polarity_check = 0;
+    use_parameters();
     make_ready();
     drive_command_start();
     for (int n = 0; n < 350 && drive.state != DRIVE_RUN; ++n) period();

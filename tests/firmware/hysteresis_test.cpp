@@ -115,6 +115,7 @@ TEST_F(Hysteresis, BandNarrowsWhileTheySwitchTooSeldom) {
 
 TEST_F(Hysteresis, BandStaysWithoutAFrequency) {
   parameters.hysteresis_frequency = 0;
+  use_parameters();
   const double before = band();
   for (int n = 0; n < 300; ++n) swinging_period(2.0, 4);
   EXPECT_EQ(band(), before);
@@ -138,8 +139,10 @@ TEST_F(Hysteresis, NoSlicesAreAFault) {
 TEST_F(Hysteresis, NeedsTheEncoderAndWholeSlices) {
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   parameters.slice_time = raw(7.0, 16);
+  use_parameters();
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
   parameters.slice_time = raw(10.0, 16);
+  use_parameters();
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   use_source(2);
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
@@ -217,6 +220,7 @@ TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
     drive.position.selected.angle_bam = bam(begin);
     drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
     parameters.slice_time = raw(tick == 0 ? 5.0 : 10.0, 16);
+    use_parameters();
     const int slices = tick == 0 ? 20 : 10;
     ASSERT_TRUE(hysteresis_control.step(&drive));
     const double passed = std::min(tick, 10000) / 10000.0;
@@ -289,6 +293,7 @@ TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds
   hysteresis_t& h = ::hysteresis;
   const auto after = [&h](int kilohertz, double amps) {
     parameters.hysteresis_frequency = raw(8.0, 16);
+    use_parameters();
     h.band_q20 = raw(amps, 20);
     h.periods = 0;
     h.switched = static_cast<std::uint16_t>(h.counted + 30 * kilohertz);
@@ -329,6 +334,7 @@ TEST_F(Hysteresis, ARunBeginsAnew) {
   drive.trim.offset_b_q8 = raw(2040.0, 8);
   parameters.hysteresis_band = raw(0.3, 20);
   parameters.slice_time = raw(10.0, 16);
+  use_parameters();
   board.slice_ticks = 0;
   EXPECT_TRUE(hysteresis_control.step(&drive));
   const hysteresis_t& h = ::hysteresis;
@@ -345,6 +351,7 @@ TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
     for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION, DRIVE_FAULT}) {
       SetUp();
       parameters.current_law = law;
+      use_parameters();
       drive.state = state;
       const bool wanted = law == 1 && (state == DRIVE_RUN || state == DRIVE_STOP);
       EXPECT_EQ(hysteresis_control.step(&drive), wanted) << law << state;

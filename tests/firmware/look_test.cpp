@@ -85,6 +85,7 @@ TEST_F(Look, AnEmergencyStopForbidsIt) {
   drive_command_coast();
   period();
   parameters.emergency_stop = 1;
+  use_parameters();
   board.emergency = true;
   drive_command_look();
   period();

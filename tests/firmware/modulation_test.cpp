@@ -184,6 +184,7 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
     for (const drive_state_t state : {DRIVE_RUN, DRIVE_STOP, DRIVE_START, DRIVE_COMMISSION}) {
       SetUp();
       parameters.excitation = asked;
+      use_parameters();
       drive.state = state;
       drive.flags.shorted = false;
       const bool own = state == DRIVE_START || state == DRIVE_COMMISSION;
@@ -239,6 +240,7 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
     for (std::uint16_t period = 0; period < 10; ++period) {
       SetUp();
       parameters.current_divider = divider;
+      use_parameters();
       drive.schedule.period = period;
       drive.control.reference_q20 = raw_dq({2.0, 5.0}, 20);
       current_controller_t copy = drive.control.current;

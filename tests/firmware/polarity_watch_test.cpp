@@ -22,6 +22,7 @@ class PolarityWatch : public Drive {
   void SetUp() override {
     Drive::SetUp();
     parameters.polarity_check = 1;
+    use_parameters();
     make_ready();
     drive.state = DRIVE_RUN;
     drive.samples.count = 2;
@@ -126,6 +127,7 @@ TEST_F(PolarityWatch, IsAwakeInRunUntilItKnows) {
   EXPECT_FALSE(polarity_watch_is_awake(&drive));
   drive.state = DRIVE_RUN;
   parameters.polarity_check = 0;
+  use_parameters();
   polarity_watch_begin(0, 0);
   EXPECT_FALSE(polarity_watch_is_awake(&drive));
 }
@@ -146,6 +148,7 @@ TEST_F(PolarityWatch, BeginsWithNothingOfTheLastRun) {
   for (const int check : {0, 1}) {
     polarity_watch_t& w = polarity_watch;
     parameters.polarity_check = check;
+    use_parameters();
     w.axis_periods = w.periods = w.voltage_q12.d = w.voltage_q12.q = 7;
     w.samples_invalid = true;
     w.open = check == 0;

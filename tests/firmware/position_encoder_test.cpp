@@ -78,6 +78,7 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
     run_with(POSITION_ENCODER);
     position_align_encoder(&drive, kHere, 0);
     parameters.flux_beside = beside;
+    use_parameters();
     drive.position.avv.observer.angle_bam = kThere;
     see_machine(kHere);
     estimate();

@@ -237,6 +237,7 @@ TEST_F(Position, TheObserverIsToldOfAnInertiaThatIsTakenBack) {
   run_with(POSITION_OBSERVER);
   drive.config.mapped = true;
   parameters.inertia_adapt = 1;
+  use_parameters();
   inertia_match_t& s = drive.inertia;
   s.phase = INERTIA_SETTLE;
   s.ratio_q24 = raw(0.5, 24);

@@ -62,6 +62,7 @@ TEST_F(Protection, GatesThatGoOffByThemselvesAreNamedByTheirCause) {
     SetUp();
     make_run();
     parameters.emergency_stop = 1;
+    use_parameters();
     board.emergency = pressed;
     board.gates_on = false;  // the hardware, not the comparator
     period();
@@ -104,6 +105,7 @@ TEST_F(Protection, WhatIsBesideTheEncoderCountsWhereItIsOne) {
     make_run();
     trust_synchronism();
     parameters.*c.parameter = c.value;
+    use_parameters();
     const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
     (void)while_running(3 * allowed, [&] {
       hold_avv_apart();
@@ -150,6 +152,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
     make_run();
     trust_synchronism();
     parameters.divergence_limit = raw(50.0, 16);
+    use_parameters();
     drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
     drive.schedule.judges = true;
     drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
@@ -321,6 +324,7 @@ TEST_F(Protection, AnEncoderThatIsTrimmedIsNotJudged) {
     SetUp();
     make_run();
     parameters.encoder_trim = trimmed ? raw(30.0, 16) : 0;
+    use_parameters();
     (void)while_running(400, [] {
       board.encoder = (board.encoder + 4u) & 4095u;
       drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;

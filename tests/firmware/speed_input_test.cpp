@@ -21,6 +21,7 @@ class SpeedInput : public Drive {
     use_source(0);
     parameters.polarity_check = 0;
     parameters.speed_input = 1;
+    use_parameters();
     drive_parameters_changed();
     background_step(&drive);
     make_ready();
@@ -37,6 +38,7 @@ class SpeedInput : public Drive {
       if (drive.state != DRIVE_RUN) continue;
       drive.config.synchronism.bad_periods = 1000000;  // no machine behind these windows
       parameters.divergence_time = 1000;
+      use_parameters();
     }
   }
   static double asked_rpm() { return drive.control.command_rpm_q16 / 65536.0; }

@@ -23,6 +23,7 @@ TEST_F(SpeedTask, WeakeningSeesWhatTheModulatorHas) {
   parameters.voltage_use = raw(92.0, 16);
   parameters.weakening_limit = raw(7.0, 20);
   parameters.weakening_gain = 1234;
+  use_parameters();
   drive.control.command_q16 = {raw(-60.0, 16), raw(80.0, 16)};
   drive.control.reference_q20.q = raw(3.0, 20);
   for (const double w : {500.0, 1200.0, 1400.0, 3000.0}) {
@@ -59,6 +60,7 @@ TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
 // where the observer is in use there; but weakening none of it in a commissioning.
 TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   parameters.id_low_speed = raw(1.5, 20);
+  use_parameters();
   drive.control.reference_q20.q = raw(9.0, 20);
   const double best = real(mtpa_current_q20(&drive.config.mtpa, raw(9.0, 20)), 20);
   ASSERT_LT(best, -0.3);
@@ -80,6 +82,7 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
                         {-20.0, 0, BLEND_LOW, DRIVE_RUN, -10.0}};
   for (const Case& c : cases) {
     parameters.mtpa = c.mtpa;
+    use_parameters();
     drive.state = c.state;
     drive.flags.spins = true;
     drive.position.blend.region = c.region;
@@ -108,6 +111,7 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
   drive.config.dead_time.certain_q20 = raw(0.7, 20);
   drive.config.flux.adaptation.lowest_bpp = bpp(400.0);
   parameters.mtpa = 0;
+  use_parameters();
   for (const Case& c : cases) {
     use_source(c.source);
     drive.control.current_limit_q20 = raw(c.limit, 20);
@@ -133,6 +137,7 @@ TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
     drive.control.weakening_q20 = raw(std::min(d, 0.0), 20);
     parameters.id_low_speed = raw(std::max(d, 0.0), 20);
     parameters.mtpa = 0;
+    use_parameters();
     part(TASK_SPEED);
     EXPECT_NEAR(real(drive.control.headroom_q20, 20), room, 1e-5) << d;
   }
@@ -144,6 +149,7 @@ TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {
   parameters.link_regulation = raw(400.0, 16);
   parameters.link_maximum = raw(430.0, 16);
   parameters.current_limit = raw(10.0, 20);
+  use_parameters();
   for (const auto& [w, link] : {std::pair{-400.0, 390.0},
                                 {-400.0, 405.0},
                                 {-400.0, 410.0},
@@ -174,6 +180,7 @@ TEST_F(SpeedTask, ABrakingShaftKeepsToItsLimit) {
       SetUp();
       parameters.link_regulation = raw(400.0, 16);
       parameters.link_maximum = raw(430.0, 16);
+      use_parameters();
       drive.samples.link_q16 = raw(415.0, 16);
       drive.control.current_limit_q20 = raw(8.0, 20);
       speed(sign * 300.0);
@@ -255,6 +262,7 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     ASSERT_TRUE(drive_config_load(&drive.config));
     part(TASK_SPEED);
     parameters.hold_time = 1;
+    use_parameters();
     hold_begin(&drive);
     brake_release_hold.reference_bam = bam(0.3 + c.off);
     const double w = 50.0;
@@ -280,6 +288,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
   for (int k = 0; k < 10; ++k) {
     SetUp();
     parameters.inertia_adapt = 1;
+    use_parameters();
     use_source(POSITION_OBSERVER);
     drive.config.mapped = true;
     drive_control_t& c = drive.control;

@@ -19,6 +19,7 @@ class StartRefused : public Drive {
     Drive::SetUp();
     use_source(0);
     parameters.polarity_check = 0;
+    use_parameters();
     make_ready();
   }
   void until_on() {
@@ -49,17 +50,20 @@ TEST_F(StartRefused, AfterAnInterruptThatNobodyExpected) {
 
 TEST_F(StartRefused, WhileTheLinkIsNotCharged) {
   parameters.precharge_voltage = raw(200.0, 16);
+  use_parameters();
   expect_refused(FAULT_PRECHARGE);
 }
 
 TEST_F(StartRefused, WhileTheEmergencyStopIsPressed) {
   parameters.emergency_stop = 1;
+  use_parameters();
   board.emergency = true;
   expect_refused(FAULT_EMERGENCY);
 }
 
 TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft) {
   parameters.flying_start = 0;
+  use_parameters();
   board.pin_low = true;
   expect_refused(FAULT_OVER_CURRENT);
   EXPECT_NE(drive.found.phase, START_AXIS);
@@ -68,6 +72,7 @@ TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft
 // Windows that never show the axis, for want of voltage: 20 ms, then the drive says so.
 TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
   parameters.flying_start = 0;
+  use_parameters();
   drive_command_start();
   period();
   ASSERT_EQ(drive.state, DRIVE_START);
@@ -87,6 +92,7 @@ TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
 TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
   parameters.bootstrap_time = raw(5.0, 16);
   parameters.flying_start = 0;
+  use_parameters();
   drive_command_start();
   period();
   ASSERT_EQ(drive.found.phase, START_CHARGE);
@@ -104,6 +110,7 @@ TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
 // A period without samples says nothing of a current; the next one will.
 TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
   parameters.bootstrap_time = raw(20.0, 16);
+  use_parameters();
   drive_command_start();
   until_on();
   for (int n = 0; n < 4; ++n) period(still_window(), drive.modulation.sampled.window_count);
@@ -116,6 +123,7 @@ TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
 TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   parameters.bootstrap_time = raw(20.0, 16);
   parameters.flying_start = 0;
+  use_parameters();
   drive_command_start();
   until_on();
   hal_adc_window_t w = still_window();
@@ -135,6 +143,7 @@ TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
   for (const auto& [ms, periods_on] : {std::pair{5.0, 50}, {5.01, 51}}) {
     SetUp();
     parameters.bootstrap_time = raw(ms, 16);
+    use_parameters();
     drive_command_start();
     until_on();
     drive.samples.count = 0;
@@ -155,6 +164,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
         for (const bool blind : {false, true}) {
           SetUp();
           parameters.bootstrap_time = raw(20.0, 16);
+          use_parameters();
           drive_command_start();
           until_on();
           drive.flags.invalid = blind ? 1 : 0;
@@ -172,6 +182,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
 // For a current to die away.
 TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
   parameters.bootstrap_time = raw(20.0, 16);
+  use_parameters();
   drive_command_start();
   until_on();
   drive.flags.invalid = 0;

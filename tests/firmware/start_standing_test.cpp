@@ -23,6 +23,7 @@ class StartStanding : public Drive {
   void SetUp() override {
     Drive::SetUp();
     parameters.flying_start = 0;
+    use_parameters();
     make_ready();
     start_state.begin(&drive, DRIVE_RUN);
     ASSERT_EQ(drive.found.phase, START_AXIS);
@@ -135,6 +136,7 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     SetUp();
     parameters.polarity_check = 0;
     parameters.hold_time = 40;
+    use_parameters();
     brake_release_hold.left = 7;  // of the last run
     const double speed = Motor{}.electrical(rpm);
     at(START_SETTLE, 99, speed);
@@ -227,6 +229,7 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
 // with half of the current that was too much; after the third time the voltage is named.
 TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
   parameters.polarity_current = raw(4.0, 20);
+  use_parameters();
   start().saturation.current_q20 = raw(10.0, 20);
   start().followed.worst_q20 = raw(3.8, 20);
   saturation_says(POLARITY_RIGHT);
@@ -291,6 +294,7 @@ TEST_F(StartStanding, AShaftThatTheTestHasSetInMotionIsListenedToAnew) {
 TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
   parameters.polarity_current = raw(4.0, 20);
   parameters.current_limit = raw(14.0, 20);
+  use_parameters();
   drive.config.saturation = {0, 0};
   start().held_back = 1;
   at(START_SETTLE, 100);
@@ -315,6 +319,7 @@ TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
 TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   parameters.polarity_current = raw(4.0, 20);
   parameters.current_limit = raw(14.0, 20);
+  use_parameters();
   drive.config.saturation = {0, 0};
   at(START_SETTLE, 100);
   step();

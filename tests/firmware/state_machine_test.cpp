@@ -287,6 +287,7 @@ TEST_F(States, AFeaturesStateHasItsPlace) {
 TEST_F(States, EachStopHasItsWholeTime) {
   make_run();
   parameters.stop_time = 50;
+  use_parameters();
   drive.supervision.stopping_periods = 400;
   drive_command_stop();
   drive_sequence(&drive);

@@ -232,6 +232,7 @@ TEST_F(Drive, CoastDoesNotWaitForParameters) {
 
 TEST_F(Drive, StopThatDoesNotReachStandstillFaults) {
   parameters.stop_time = 50;
+  use_parameters();
   make_run();
   drive.config.synchronism.bad_periods = 1000000;  // these windows are no machine's
   drive_command_stop();
@@ -285,8 +286,10 @@ TEST_F(Drive, AFaultPutsTheSpeedCommandToZero) {
 TEST_F(Drive, SpeedLimitWhoseEmfExceedsTheLinkIsAConflict) {
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   parameters.speed_limit = raw(3617.0, 8);  // 419.9 V of 420
+  use_parameters();
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   parameters.speed_limit = raw(3619.0, 8);  // 420.1 V
+  use_parameters();
   ASSERT_NE(parameter_conflict(), PACKED_NONE);
   EXPECT_NE(text_of(parameter_conflict()).find("speed_limit"), std::string::npos);
 }
@@ -294,10 +297,12 @@ TEST_F(Drive, SpeedLimitWhoseEmfExceedsTheLinkIsAConflict) {
 TEST_F(Drive, LinkRegulationLiesBetweenTheFaults) {
   for (const double volts : {150.0, 419.5, 430.0}) {
     parameters.link_regulation = raw(volts, 16);
+    use_parameters();
     ASSERT_NE(parameter_conflict(), PACKED_NONE) << volts;
     EXPECT_NE(text_of(parameter_conflict()).find("link_regulation"), std::string::npos);
   }
   parameters.link_regulation = raw(419.0, 16);
+  use_parameters();
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
 }
 
@@ -329,9 +334,11 @@ TEST_F(Drive, SpeedReferenceIsClampedToTheLimit) {
 
 TEST_F(Drive, AHoldWantsTheAlternatingLayout) {
   parameters.hold_time = 100;
+  use_parameters();
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   for (const int excitation : {0, 1, 4}) {
     parameters.excitation = excitation;
+    use_parameters();
     ASSERT_NE(parameter_conflict(), PACKED_NONE) << excitation;
     EXPECT_NE(text_of(parameter_conflict()).find("hold_time"), std::string::npos);
   }

@@ -4,6 +4,7 @@
 #include "firmware/can/node.h"
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/outcome.h"
+#include "firmware/config/config.h"
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
@@ -71,6 +72,7 @@ static void power_on(void) {
   fuzz_board_power_on();
   drive_reset();
   parameters.wiring_check = 0;  // no motor is there
+  (void)drive_config_load(&drive.config);
   hil_reset();
   link_reset();
   console_reset();

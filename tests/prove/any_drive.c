@@ -90,6 +90,11 @@ uint32_t drive_time_ms(void) { return any_u32; }
 drive_state_t drive_state(void) { return (drive_state_t)any_up_to(7); }
 
 packed_text_t parameter_conflict(void) { return (packed_text_t)any_up_to((uint16_t)PACKED_NONE); }
+packed_text_t parameter_conflict_with(uint16_t id, int32_t raw) {
+  (void)id;
+  (void)raw;
+  return parameter_conflict();
+}
 packed_text_t parameter_conflict_known(void) { return (packed_text_t)any_up_to((uint16_t)PACKED_NONE); }
 
 commissioning_outcome_t drive_commissioning_outcome(void) { return (commissioning_outcome_t)any_up_to(5); }

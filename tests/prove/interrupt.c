@@ -104,14 +104,23 @@ void commissioning_solve_motion(commissioning_t* c) {
   c->accel_q12 = any_i32;
 }
 
-bool drive_config_load(drive_config_t* c) {
+// Of whatever parameters it is made.
+static void any_made(drive_config_t* c) {
   any_config(c);
+  any_parameters();
+#define TAKE(name) c->values.name = parameters.name;
+  CONFIG_VALUES(TAKE)
+#undef TAKE
+}
+
+bool drive_config_load(drive_config_t* c) {
+  any_made(c);
   return any_bool();
 }
 
 packed_text_t drive_config_or_conflict(const drive_config_t** made) {
   static drive_config_t fresh;
-  any_config(&fresh);
+  any_made(&fresh);
   *made = &fresh;
   return any_bool() ? PACKED_NONE : any_up_to(PACKED_NONE - 1u);
 }

@@ -3,8 +3,7 @@
 A parameter that is set acts at once where it is read; the configuration is changed between two control interrupts, when
 all of it fits together. What an interrupt runs is found by name, from its two functions on: what they call, hand on or
 look up in a table, the features' rows, what toolchain/f2808/indirect_calls.txt says of calls through pointers, and
-macros. What still reads
-a parameter there stands in LEFT, which only shrinks.
+macros.
 """
 
 import re
@@ -15,11 +14,10 @@ from pathlib import Path
 
 import compose
 
-from checks import Finding, left
+from checks import Finding
 from checks.calls import DEFINITION, NAME, code
 from checks.preprocessor import directives
 
-LEFT = "toolchain/parameters_left.txt"
 INTERRUPTS = ("drive_control_interrupt", "drive_window_interrupt")
 POINTERS = "toolchain/f2808/indirect_calls.txt"
 
@@ -123,15 +121,8 @@ def reads(root: Path) -> Iterator[tuple[str, int, str, str]]:
 
 
 def check(root: Path) -> list[Finding]:
-    """Findings for parameters read in an interrupt, and for exceptions that nothing needs."""
-    found, borne = sorted(set(reads(root))), left(root / LEFT)
-    findings = [
+    """Findings for parameters read in an interrupt."""
+    return [
         Finding(source, line, f"{name}, which an interrupt runs, reads {what}: it may read the configuration alone")
-        for source, line, what, name in found
-        if (source, what) not in borne
-    ]
-    needed = {(source, what) for source, _, what, _ in found}
-    stale = {place: line for place, line in borne.items() if place not in needed}
-    return findings + [
-        Finding(LEFT, n, f"{source} no longer reads {what}: take it out") for (source, what), n in stale.items()
+        for source, line, what, name in sorted(set(reads(root)))
     ]

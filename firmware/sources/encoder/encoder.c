@@ -16,7 +16,7 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
                             d->config.avv.bandwidth_long_q30);
   estimator_output_t out = {d->position.encoder.angle_bam, d->position.encoder.speed_bpp,
                             d->position.encoder.load_accel_q8, 32767};
-  if (parameters.flux_beside > 0) {
+  if (d->config.values.flux_beside > 0) {
     d->position.high = flux_source_look_on(d, in, &out);
   } else {
     source_step_avv(d, in);

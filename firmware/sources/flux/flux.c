@@ -123,7 +123,7 @@ estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, c
 }
 
 estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
-  const int32_t least_bpp = q_mul_sat(parameters.flux_low, d->config.bpp_per_rpm_q8, 24);
+  const int32_t least_bpp = q_mul_sat(d->config.values.flux_low, d->config.bpp_per_rpm_q8, 24);
   if (q_abs_sat(truth->speed_bpp) >= least_bpp) return step(d, in, false);
   flux_source_follow(d, truth);
   return *truth;
