@@ -73,7 +73,7 @@ PARTS = {
             *(f"firmware/drive/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "protection")),
             *(
                 f"firmware/drive/{name}.c"
-                for name in ("sequence", "speed", "reset", "brake_release_hold", "polarity_watch")
+                for name in ("sequence", "hand_over", "speed", "reset", "brake_release_hold", "polarity_watch")
             ),
             *("firmware/board/*.c", "firmware/commissioning/*.c"),
         ),
@@ -94,7 +94,11 @@ PARTS = {
         FIRMWARE,
     ),
     "firmware/console": Part(
-        ("firmware/console/*.c", "firmware/text/*.c", "firmware/dictionary/*.c", "firmware/base/clear.c"), FIRMWARE
+        (
+            *("firmware/console/*.c", "firmware/text/*.c", "firmware/dictionary/*.c"),
+            *("firmware/base/clear.c", "firmware/base/edition.c"),
+        ),
+        FIRMWARE,
     ),
     "firmware/link": Part(
         (
