@@ -316,7 +316,7 @@ def commission(*, plant, parameters, limit, seed, progress, recording=None):
     )
 
 
-FIRMWARE = "stillspin fake (board bench, commit 0badcafe, table 12345678)"
+FIRMWARE = "stillspin fake (edition unknown, board bench, commit 0badcafe, table 12345678)"
 
 
 class VirtualBoard:

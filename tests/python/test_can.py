@@ -110,7 +110,7 @@ def test_words_of_states_and_faults_are_those_of_the_firmware():
     assert faults
     ours = {int(number): name.lower() for number, name in faults}
     assert {k: str(v) for k, v in status.get_signal_by_name("FAULT").choices.items()} == ours
-    states = re.findall(r"DRIVE_(\w+) = (\d+)", (ROOT / "firmware/mode/states.h").read_text())
+    states = re.findall(r"DRIVE_(\w+) = (\d+)", (ROOT / "firmware/interfaces/state.h").read_text())
     ours = {int(number): name.lower() for name, number in states}
     assert {k: str(v) for k, v in status.get_signal_by_name("STATE").choices.items()} == ours
 

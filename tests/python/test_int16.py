@@ -75,7 +75,9 @@ def library(tmp_path: Path, *options: str) -> Path:
     """The planted code, compiled and linked to be loaded."""
     source = tmp_path / "planted.c"
     source.write_text(PLANTED, encoding="utf-8")
-    subprocess.run([sys.executable, COMPILE, tmp_path / "out", *options, source], check=True, cwd=ROOT)
+    subprocess.run(
+        [sys.executable, COMPILE, tmp_path / "out", "--made", tmp_path, *options, source], check=True, cwd=ROOT
+    )
     made = tmp_path / "planted.so"
     subprocess.run(["gcc", "-shared", "-o", made, tmp_path / "out/all.o"], check=True)
     return made

@@ -68,7 +68,7 @@ def test_version_as_option_and_command(call):
 
 def test_a_drive_tells_its_version_board_build_and_table(call, fake):
     *_, drive = call("version", "--drive", fake.port).stdout.splitlines()
-    assert drive.startswith("drive: fake 1.0 (board ipm, commit 1234abcd, changed, table ")
+    assert drive.startswith("drive: fake 1.0 (edition unknown, board ipm, commit 1234abcd, changed, table ")
 
 
 def asked(tmp_path, **variables):
