@@ -77,6 +77,7 @@ TABLES = {
     "status_lines": Table("const status_line_t", STATUS),
     "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one"),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
+    "current_shares": Table("current_share_t", "firmware/mode/interlock.h"),
 }
 
 

@@ -66,6 +66,8 @@ static drive_fault_t follow_overload(int32_t ever_q20, int32_t* share_q15) {
   return board.heat_q24 > HEAT_ONE_Q24 / 10 * 11 ? FAULT_OVERLOAD : FAULT_NONE;
 }
 
+int32_t board_current_share(void) { return board.share_q15; }
+
 drive_fault_t board_follow_heat(void) {
   if ((board.at_ms & (TURN - 1u)) != 0u) return FAULT_NONE;
   int32_t share_q15 = INTERLOCK_SHARE_ONE;
@@ -80,6 +82,6 @@ drive_fault_t board_follow_heat(void) {
     const drive_fault_t overload = follow_overload(ever_q20, &share_q15);
     if (fault == FAULT_NONE) fault = overload;
   }
-  interlock_share_q15 = share_q15;
+  board.share_q15 = share_q15;
   return fault;
 }

@@ -20,6 +20,7 @@ board_t board;
 
 void board_reset(void) {
   clear(&board, sizeof board);
+  board.share_q15 = INTERLOCK_SHARE_ONE;
   board.switch_closed = true;  // a switch that is closed at power-on starts nothing
   selftest_reset();
 }

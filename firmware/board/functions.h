@@ -44,6 +44,7 @@ typedef struct {
   uint16_t charging_ms;    // the DC link has been on its way for so long
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
+  int32_t share_q15;       // of current_limit, left by heat sink and overload
   int32_t heat_q24;        // mean square of the current, of that which may flow for ever
   uint16_t code;           // of the speed command
   uint16_t lost_ms;        // without a signal for so long
@@ -63,6 +64,9 @@ void board_service(void);
 
 /// The precharge against a start (mode/interlock.h).
 drive_fault_t board_refusal(void);
+
+/// Of current_limit what heat sink and overload leave (mode/interlock.h).
+int32_t board_current_share(void);
 
 /// Phase current that may flow for ever, peak: overload_current, else the motor's rated one, else half of
 /// current_limit. A, Q20; 0: any may.

@@ -23,7 +23,6 @@ void drive_reset(void) {
   clear(&polarity_watch, sizeof polarity_watch);
   fault_history_reset();
   parameters_reset();
-  interlock_reset();
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();
   drive.zero_current_a_q8 = drive.zero_current_b_q8 = DRIVE_MIDDLE_Q8;
   drive.trim.offset_a_q8 = drive.zero_current_a_q8;

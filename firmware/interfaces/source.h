@@ -10,16 +10,15 @@ struct drive;
 
 /// What others have to know of a source.
 enum {
-  SOURCE_MEASURES = 1,     // the angle is measured, not estimated
-  SOURCE_SINGLE = 2,       // one estimator at all speeds
-  SOURCE_OBSERVES = 4,     // the deviation observer is at work at low speed
-  SOURCE_READS = 8,        // and it reads the windows, not AVV
-  SOURCE_HANDS_OVER = 16,  // above the blend it rests, and the other has the shaft alone
-  SOURCE_BLENDS = 32,      // two estimators, both meant to be right only between the ends of the blend
-  SOURCE_BESIDE = 64,      // two estimators, both meant to be right at any speed
-  SOURCE_ALTERNATES =
-      128,  // two estimators that look at the windows by turns; the blend goes by a speed from the start on
-  SOURCE_AVV_FIRST = 256  // it is AVV that looks at the windows first
+  SOURCE_MEASURES = 1,      // the angle is measured, not estimated
+  SOURCE_SINGLE = 2,        // one estimator at all speeds
+  SOURCE_OBSERVES = 4,      // the deviation observer is at work at low speed
+  SOURCE_READS = 8,         // and it reads the windows, not AVV
+  SOURCE_HANDS_OVER = 16,   // above the blend it rests, and the other has the shaft alone
+  SOURCE_BLENDS = 32,       // two estimators, both meant to be right only between the ends of the blend
+  SOURCE_BESIDE = 64,       // two estimators, both meant to be right at any speed
+  SOURCE_ALTERNATES = 128,  // two estimators have the windows in turn; the blend goes by a speed from the start on
+  SOURCE_AVV_FIRST = 256    // it is AVV that looks at the windows first
 };
 
 typedef struct {

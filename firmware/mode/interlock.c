@@ -9,9 +9,14 @@
 
 int32_t interlock_share_q15;
 
-void interlock_reset(void) { interlock_share_q15 = INTERLOCK_SHARE_ONE; }
-
-int32_t interlock_current_limit(void) { return q_mul(drive.config.values.current_limit, interlock_share_q15, 15); }
+int32_t interlock_current_limit(void) {
+  int32_t least_q15 = INTERLOCK_SHARE_ONE;
+  for (uint16_t k = 0; edition_current_shares[k] != NULL; k++) {
+    least_q15 = q_min(least_q15, edition_current_shares[k]());
+  }
+  interlock_share_q15 = least_q15;
+  return q_mul(drive.config.values.current_limit, least_q15, 15);
+}
 
 bool interlock_is_warm(void) { return interlock_share_q15 < INTERLOCK_SHARE_ONE; }
 

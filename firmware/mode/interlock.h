@@ -20,12 +20,15 @@ typedef drive_fault_t interlock_t(void);
 /// Those of the edition, NULL behind the last one (editions/).
 extern interlock_t* const edition_interlocks[];
 
-void interlock_reset(void);
+/// Of current_limit what somebody leaves, Q15, 0 or more. Background level.
+typedef int32_t current_share_t(void);
+/// Those of the edition, NULL behind the last one (editions/).
+extern current_share_t* const edition_current_shares[];
 
-/// Of current_limit what is left, Q15; the background level writes it (board/derating.c).
+/// Of current_limit what was left then, Q15.
 extern int32_t interlock_share_q15;
 
-/// Largest phase current now, A, Q20.
+/// Largest phase current by the least of these, A, Q20. Background level.
 int32_t interlock_current_limit(void);
 
 /// Whether that is less than the whole: something has to cool.

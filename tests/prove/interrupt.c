@@ -82,6 +82,8 @@ service_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, sta
 work_t* const edition_works[] = {commissioning_service, NULL};
 static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
 interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};
+static int32_t any_share(void) { return any_from(0, INTERLOCK_SHARE_ONE); }
+current_share_t* const edition_current_shares[] = {board_current_share, any_share, NULL};
 void selftest_reset(void) {}
 void hal_encoder_init(uint32_t counts_per_turn) { (void)counts_per_turn; }
 bool hal_pwm_set_dead_band(uint16_t ticks) { return any_bool(); }
