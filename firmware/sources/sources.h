@@ -10,7 +10,7 @@ extern const position_source_t encoder_source, paper_source, observer_avv_source
     flux_source;
 
 /// In its slots: inverse inductances and match of the sensors, resistance and flux. Resistance and flux are learnt once
-/// the drive runs; until then the sensors have that turn.
+/// the drive runs; until then the sensors have that slot.
 void source_learn(drive_t* d, const regression_t* r);
 
 /// AVV, and what its regression says of the machine.
