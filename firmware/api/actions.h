@@ -25,7 +25,7 @@ typedef enum {
   ANSWER_BUSY = 5,
   ANSWER_STATE = 6,     // not in this state of the drive
   ANSWER_CONFLICT = 7,  // parameters that do not fit together
-  ANSWER_EDITION = 8    // of a feature that this edition of the firmware has not
+  ANSWER_EDITION = 8    // of a feature that is not in this edition of the firmware
 } answer_status_t;
 
 /// Whether the drive can begin anything now.

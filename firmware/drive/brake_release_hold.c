@@ -36,7 +36,7 @@ hold_t brake_release_hold;
 void hold_begin(drive_t* d) {
   hold_t* const h = &brake_release_hold;
   // The other sources have no observer that could be fast for a moment.
-  h->left = position_has(d, SOURCE_READS) ? (uint32_t)d->config.values.hold_time * DRIVE_PERIODS_PER_MS : 0u;
+  h->left = drive_source_has(d, SOURCE_READS) ? (uint32_t)d->config.values.hold_time * DRIVE_PERIODS_PER_MS : 0u;
   h->reference_bam = d->position.selected.angle_bam;
   h->current_per_accel = q_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
   if (h->left > 0u) deviation_observer_stands(&d->position.observer);

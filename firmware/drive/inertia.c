@@ -34,7 +34,7 @@ static void hand_on(drive_t* d, int32_t factor_q24) {
 // Without the map a large current turns the angle, and the torque is less than the current says: that would be taken
 // for inertia.
 void drive_match_inertia(drive_t* d) {
-  const bool alone = position_has(d, SOURCE_SINGLE) && position_has(d, SOURCE_READS);
+  const bool alone = drive_source_has(d, SOURCE_SINGLE) && drive_source_has(d, SOURCE_READS);
   if (d->config.values.inertia_adapt == 0 || !d->config.mapped || !alone) return;
   if (d->state != DRIVE_RUN) {
     d->inertia.quiet_ms = 0;

@@ -11,8 +11,6 @@
 
 #include "firmware/drive/polarity_watch.h"
 
-#include "firmware/dictionary/parameters.h"
-#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
@@ -40,7 +38,7 @@ void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp) {
 }
 
 static const regression_t* regression_in_use(const drive_t* d) {
-  return position_has(d, SOURCE_READS) ? &d->position.observer.regression : &d->position.avv.regression;
+  return drive_source_has(d, SOURCE_READS) ? &d->position.observer.regression : &d->position.avv.regression;
 }
 
 // How far the axis that the windows have shown is ahead of the watch's: AVV's of this period, the observer's when it
@@ -48,7 +46,7 @@ static const regression_t* regression_in_use(const drive_t* d) {
 static int32_t axis_off(const drive_t* d) {
   const drive_position_t* const p = &d->position;
   const polarity_watch_t* const w = &polarity_watch;
-  const bool observed = position_has(d, SOURCE_READS);
+  const bool observed = drive_source_has(d, SOURCE_READS);
   const uint32_t from = observed ? p->observer.regressed_bam : p->avv.observer.angle_bam;
   const int32_t error = observed ? avv_angle_error(&p->observer.regression, &d->model) : p->avv.error_bam;
   const uint32_t own = observed ? w->axis_then_bam : w->axis.angle_bam;

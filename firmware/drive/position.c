@@ -33,7 +33,7 @@ void position_bumpless_transfer(drive_t* d) {
 }
 
 bool position_observer_reads(const drive_t* d) {
-  return position_has(d, SOURCE_READS) && !(position_has(d, SOURCE_HANDS_OVER) && position_observer_rests(d));
+  return drive_source_has(d, SOURCE_READS) && !(drive_source_has(d, SOURCE_HANDS_OVER) && position_observer_rests(d));
 }
 
 // Angle in the middle of the windows' period, of a frame that has run on evenly since.
@@ -133,7 +133,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   zvv_preset(&p->zvv, angle_bam, speed_bpp);
   begin_flux(d, false);
   blend_reset(&p->blend);
-  if (position_has(d, SOURCE_ALTERNATES)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
+  if (drive_source_has(d, SOURCE_ALTERNATES)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
   p->low = p->selected;
   p->high = p->selected;
 }
@@ -147,7 +147,7 @@ void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
 }
 
 bool position_encoder_is_reversed(const drive_t* d) {
-  if (!position_has(d, SOURCE_MEASURES)) return false;
+  if (!drive_source_has(d, SOURCE_MEASURES)) return false;
   const uint32_t encoder_bam = d->position.encoder.angle_bam - d->position.aligned_bam;
   const uint32_t windows_bam = d->position.high.angle_bam - d->position.aligned_bam;
   return q_abs_sat(angle_diff_bam(windows_bam + encoder_bam, 0)) <

@@ -29,9 +29,6 @@ static inline dq_t position_seen(const drive_t* d, dq_t vector) {
   return frame_moved(vector, d->position.seen.angle_bam - d->position.selected.angle_bam);
 }
 
-/// Whether the source in use has this trait.
-static inline bool position_has(const drive_t* d, uint16_t trait) { return (d->source->traits & trait) != 0u; }
-
 /// True where the blend has left the low-speed estimator, and nobody else needs it.
 bool position_observer_rests(const drive_t* d);
 

@@ -22,7 +22,7 @@ static bool over_current(const drive_t* d) {
 
 // Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
 static bool encoder_beside_avv(const drive_t* d) {
-  return position_has(d, SOURCE_MEASURES) && d->config.values.current_law == CURRENT_LAW_PI &&
+  return drive_source_has(d, SOURCE_MEASURES) && d->config.values.current_law == CURRENT_LAW_PI &&
          d->config.values.flux_beside == 0 && d->config.values.excitation != EXCITATION_CENTRED &&
          d->config.values.excitation < EXCITATION_LONG_ZERO;
 }
@@ -30,8 +30,8 @@ static bool encoder_beside_avv(const drive_t* d) {
 // How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
 static int32_t disagreement(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  const bool both = position_has(d, SOURCE_BESIDE) || encoder_beside_avv(d) ||
-                    (position_has(d, SOURCE_BLENDS) && p->blend.region == BLEND_BOTH);
+  const bool both = drive_source_has(d, SOURCE_BESIDE) || encoder_beside_avv(d) ||
+                    (drive_source_has(d, SOURCE_BLENDS) && p->blend.region == BLEND_BOTH);
   if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
   return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
 }
@@ -53,7 +53,7 @@ static int32_t span_of(const drive_samples_t* s) {
 
 // An angle error that is asked for is none.
 static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int32_t apart_bam) {
-  const bool measured = position_has(d, SOURCE_MEASURES);
+  const bool measured = drive_source_has(d, SOURCE_MEASURES);
   const regression_t* const by_avv = &d->position.avv.regression;
   if (measured && d->config.values.encoder_trim != 0) return false;
   synchronism_seen_t seen = {{0, 0}, 0, d->position.selected.speed_bpp, ahead_bpp, periods};
@@ -61,7 +61,7 @@ static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int
   if (position_observer_reads(d)) {
     (void)deviation_observer_take_mean_residual(&d->position.observer, &seen.residual_q20, &seen.span_ticks,
                                                 &seen.periods);
-  } else if (position_has(d, SOURCE_ALTERNATES) && by_avv->information > 0) {
+  } else if (drive_source_has(d, SOURCE_ALTERNATES) && by_avv->information > 0) {
     seen.residual_q20 = by_avv->mean_q20;  // AVV has regressed the same windows
     seen.span_ticks = span_of(&d->samples);
   } else {

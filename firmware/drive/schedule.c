@@ -11,13 +11,13 @@ static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST,
 
 // Whether the deviation observer runs at all while the shaft turns.
 static bool has_observer(const drive_t* d) {
-  if (position_has(d, SOURCE_HANDS_OVER)) return !position_observer_rests(d);
-  return position_has(d, SOURCE_OBSERVES);
+  if (drive_source_has(d, SOURCE_HANDS_OVER)) return !position_observer_rests(d);
+  return drive_source_has(d, SOURCE_OBSERVES);
 }
 
 // Observer and flux both at work: the observer leaves the windows out beside speed control and field weakening.
 static bool is_beside_flux(const drive_t* d) {
-  return position_has(d, SOURCE_HANDS_OVER) && !blend_is_low(&d->position.blend);
+  return drive_source_has(d, SOURCE_HANDS_OVER) && !blend_is_low(&d->position.blend);
 }
 
 // What cannot wait: operating point or covariance, by turns where both want it, the covariance first where it would be

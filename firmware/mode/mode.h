@@ -67,6 +67,9 @@ void drive_choose_source(void);
 bool drive_source_is_left_out(void);
 const position_source_t* drive_source_wanted(void);
 
+/// Whether the source in use has this trait.
+static inline bool drive_source_has(const drive_t* d, uint16_t trait) { return (d->source->traits & trait) != 0u; }
+
 /// True where the speed control and the chosen position source are at work.
 bool drive_is_turning(const drive_t* d);
 

@@ -20,7 +20,7 @@ void start_if_ramp(drive_t* d) {
   current_controller_reset(&d->control.current);
   d->control.closed = true;
   polarity_watch_end();
-  if (position_has(d, SOURCE_HANDS_OVER) && d->config.if_start.speed_bpp > d->config.blend.high_bpp)
+  if (drive_source_has(d, SOURCE_HANDS_OVER) && d->config.if_start.speed_bpp > d->config.blend.high_bpp)
     position_bumpless_transfer(d);
   d->flags.open_loop = true;
   start_enter(d, START_IF_RAMP);
