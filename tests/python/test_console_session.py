@@ -13,6 +13,8 @@ from stillspin.drive.requester import wait_until
 from stillspin.exit_codes import ExitCode
 
 PATIENCE = 15.0
+DRAWS = "\x1b[?7l"
+"""The line editor draws, so keys are its own; until then the terminal takes a Ctrl-D for itself."""
 READY, RUN, STOP = 2, 4, 5
 
 
@@ -40,6 +42,7 @@ class Person:
         os.set_blocking(self._master, False)
         self.seen = ""
         assert self.sees("Ctrl-D leaves"), self.seen
+        assert self.sees(DRAWS), self.seen
 
     def _look(self):
         try:
