@@ -10,6 +10,7 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     headers     what declares the rows: in its folder, or from the root
     parameters  numbers of the parameters that are its own
     signals     names of the signals that are its own
+    faults      numbers of the faults that only it brings about
     words       kinds of words (text/word_list.h) that are its own
     rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
                 have theirs from its list
@@ -31,6 +32,7 @@ import pack_text
 ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
 PARAMETERS, SIGNALS = "firmware/dictionary/parameter_list.h", "firmware/dictionary/signal_list.h"
+FAULTS = "firmware/dictionary/fault_list.h"
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
 
@@ -91,6 +93,7 @@ class Feature:
     headers: tuple[str, ...] = ()
     parameters: tuple[int, ...] = ()
     signals: tuple[str, ...] = ()
+    faults: tuple[int, ...] = ()
     words: tuple[str, ...] = ()
     rows: dict[str, Any] = field(default_factory=dict)
 
@@ -209,20 +212,26 @@ def left_out_text(edition: Edition, root: Path) -> str:
     """The C file with what the edition has not (firmware/base/edition.h).
 
     Raises:
-        ValueError: a feature names a parameter, a signal or a kind of words that does not exist.
+        ValueError: a feature names a parameter, a signal, a fault or a kind of words that does not exist.
     """
     parameters = [int(row[0]) for row in pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")]
     signals = [row[0] for row in pack_text.rows(pack_text.whole(root, SIGNALS), "SIGNAL")]
+    faults = [int(row[0]) for row in pack_text.rows(pack_text.whole(root, FAULTS), "FAULT")]
     kinds = dict(KIND.findall((root / KINDS).read_text(encoding="utf-8")))
     gone = left_out(edition, root)
 
-    def places(names: Iterable[Any], known: list[Any]) -> str:
-        return " ".join(f"{{{first}, {count}}}," for first, count in runs(known.index(name) for name in names))
+    def rows(what: str, names: Iterable[Any], known: list[Any]) -> str:
+        found = runs(known.index(name) for name in names)
+        text = "".join(f"{{{first}, {count}}}, " for first, count in found)
+        return f"const rows_t edition_{what}_left_out[] = {{{text}{{0, 0}}}};"
 
     try:
         mask = sum(1 << int(kinds[word]) for feature in gone for word in feature.words)
-        rows = places((number for feature in gone for number in feature.parameters), parameters)
-        places_of_signals = places((name for feature in gone for name in feature.signals), signals)
+        tables = [
+            rows("parameters", (number for feature in gone for number in feature.parameters), parameters),
+            rows("signals", (name for feature in gone for name in feature.signals), signals),
+            rows("faults", (number for feature in gone for number in feature.faults), faults),
+        ]
     except (KeyError, ValueError) as error:
         raise ValueError(f"{FEATURE}: {error}") from error
     return "\n".join(
@@ -232,8 +241,7 @@ def left_out_text(edition: Edition, root: Path) -> str:
             '#include "firmware/base/edition.h"',
             "",
             f'const char edition_name[] = "{edition.name}";',
-            f"const rows_t edition_parameters_left_out[] = {{{f'{rows} {{0, 0}}'.strip()}}};",
-            f"const rows_t edition_signals_left_out[] = {{{f'{places_of_signals} {{0, 0}}'.strip()}}};",
+            *tables,
             f"const uint16_t edition_words_left_out = 0x{mask:04x}u;",
             "",
         ]
@@ -248,7 +256,11 @@ def needless_texts(edition: Edition, root: Path) -> set[str]:
     parameters = [row[1] for row in rows if row[0] in numbers]
     found = {f"TEXT_PARAMETER_{what}{name}" for name in parameters for what in ("", "UNIT_")}
     found |= {f"TEXT_SIGNAL_{what}{name}" for feature in gone for name in feature.signals for what in ("", "UNIT_")}
+    found |= {f"TEXT_{what}_{number}" for feature in gone for number in feature.faults for what in ("FAULT", "REMEDY")}
+    commands = [COMMANDS[place] for feature in gone for place, _ in feature.places("commands")]
+    found |= {f"TEXT_COMMAND_{what}{name}" for name in commands for what in ("", "ARGUMENTS_")}
     kinds = tuple(f"TEXT_{word}_" for feature in gone for word in feature.words)
+    kinds += tuple(f"TEXT_HELP_{name}_" for name in commands)
     for feature in gone:
         list_of_phrases = feature.folder / "phrase_list.h"
         if list_of_phrases.exists():

@@ -1,5 +1,5 @@
 // What the features have to tell each other, and whoever asks how the drive is: written by the one who knows, read by
-// all. What an edition has not stays at zero.
+// all. What an edition has not stays at zero, but for the store.
 
 #ifndef STILLSPIN_FIRMWARE_API_STATUS_H
 #define STILLSPIN_FIRMWARE_API_STATUS_H
@@ -15,6 +15,7 @@ extern "C" {
 #endif
 
 #define UNSAVED_UNKNOWN 255u
+#define STORE_STATE_ABSENT 8u  // of CATALOGUE_STORE: nothing can be saved
 
 typedef struct {
   bool stepped;                 // a host steps the drive: it and its parameters are a simulation's (hil/)

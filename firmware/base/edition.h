@@ -13,20 +13,21 @@ extern "C" {
 
 extern const char edition_name[];
 
-/// Rows of a table, one behind the other.
+/// Rows of a table, one behind the other; count 0 behind the last ones.
 typedef struct {
   uint16_t first, count;
 } rows_t;
 
-/// Those that are left out, from the first to the last; count 0 behind them.
+/// Those that are left out, from the first to the last.
 extern const rows_t edition_parameters_left_out[];  // of parameter_list.h
 extern const rows_t edition_signals_left_out[];     // of signal_list.h
+extern const rows_t edition_faults_left_out[];      // of fault_list.h
 
 /// Kinds of words that are left out (text/words.h), a bit each.
 extern const uint16_t edition_words_left_out;
 
-/// Whether a row is among those.
-bool edition_leaves_out(const rows_t* left_out, uint16_t row);
+/// Whether a row is among them.
+bool rows_have(const rows_t* rows, uint16_t row);
 
 #if defined(__cplusplus)
 }

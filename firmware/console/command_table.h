@@ -22,6 +22,8 @@ typedef void command_function_t(const words_of_line_t* a);
 packed_text_t command_name(uint16_t command);
 /// Those of the edition by their places in the list, NULL where it has not that command (editions/).
 extern command_function_t* const edition_commands[];
+bool command_is_here(uint16_t command);
+
 packed_text_t command_arguments(uint16_t command);
 packed_text_t command_meaning(uint16_t command);
 

@@ -1,7 +1,5 @@
 #include "firmware/console/commands.h"
 
-#include <stddef.h>
-
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
@@ -13,12 +11,8 @@ void command_obey(const editor_line_t* line, bool expired) {
   const word_t name = next_word(line, &at);
   if (name.count == 0u) return;
   const uint16_t command = command_find(&name);
-  if (command == COMMANDS) {
+  if (!command_is_here(command)) {
     suggest(SUGGEST_COMMAND, &name);
-    return;
-  }
-  if (edition_commands[command] == NULL) {
-    line_refused(SAY_this_edition_does_not_have_that_command);
     return;
   }
   words_of_line_t a;
@@ -52,7 +46,7 @@ static void put_command(uint16_t command) {
 }
 
 static bool list_commands(uint16_t step) {
-  if (step < COMMANDS && edition_commands[step] != NULL) put_command(step);
+  if (command_is_here(step)) put_command(step);
   if (step == COMMANDS) line_of(SAY_ctrl_c_ends_a_long_answer_stop);
   return step < COMMANDS;
 }
@@ -85,7 +79,7 @@ void command_help(const words_of_line_t* a) {
     return;
   }
   const uint16_t command = command_find(&a->word[0]);
-  if (command < COMMANDS) {
+  if (command_is_here(command)) {
     explained = command;
     console_run(explain, false);
   } else {

@@ -23,7 +23,7 @@ static uint16_t found;
 
 // Whether another edition of the firmware has it.
 static bool is_left_out(void) {
-  if (kind_of == SUGGEST_COMMAND) return false;
+  if (kind_of == SUGGEST_COMMAND) return command_find(&wanted) < COMMANDS;
   if (parameter_name_is_left_out(wanted.text, wanted.count)) return true;
   for (uint16_t k = 0; k < signal_count(); k++) {
     if (signal_is_left_out(k) && packed_equals(signal_info(k)->name, wanted.text, wanted.count)) return true;
@@ -93,6 +93,12 @@ static void say(void) {
   line_end_refused();
 }
 
+// Parameters count those of the edition alone.
+static bool is_here(uint16_t index) {
+  if (kind_of == SUGGEST_COMMAND) return command_is_here(index);
+  return kind_of != SUGGEST_SIGNAL || !signal_is_left_out(index);
+}
+
 static bool look(uint16_t step) {
   for (uint16_t k = 0; k < NAMES_A_STEP; k++) {
     const packed_text_t number = name_of((uint16_t)(step * NAMES_A_STEP + k));
@@ -102,8 +108,7 @@ static bool look(uint16_t step) {
     }
     char name[SUGGEST_NAME_ROOM];
     packed_copy(number, name, SUGGEST_NAME_ROOM);
-    const bool is_here = kind_of != SUGGEST_SIGNAL || !signal_is_left_out((uint16_t)(step * NAMES_A_STEP + k));
-    if (is_here && suggest_is_near(name, &wanted)) near[found++] = number;
+    if (is_here((uint16_t)(step * NAMES_A_STEP + k)) && suggest_is_near(name, &wanted)) near[found++] = number;
   }
   return true;
 }

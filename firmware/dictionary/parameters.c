@@ -65,7 +65,7 @@ const parameter_info_t* parameter_info(uint16_t index) {
 
 int32_t* parameter_value(parameters_t* of, uint16_t index) { return value_of(of, row_of(index)); }
 
-static bool is_here(uint16_t row) { return row < COUNT && !edition_leaves_out(edition_parameters_left_out, row); }
+static bool is_here(uint16_t row) { return row < COUNT && !rows_have(edition_parameters_left_out, row); }
 
 static uint16_t row_by_id(uint16_t id) {
   uint16_t k = 0;
@@ -89,10 +89,10 @@ const parameter_info_t* parameter_by_id(uint16_t id) {
   return is_here(row) ? &table[row] : NULL;
 }
 
-bool parameter_is_left_out(uint16_t id) { return edition_leaves_out(edition_parameters_left_out, row_by_id(id)); }
+bool parameter_is_left_out(uint16_t id) { return rows_have(edition_parameters_left_out, row_by_id(id)); }
 
 bool parameter_name_is_left_out(const uint16_t* name, uint16_t count) {
-  return edition_leaves_out(edition_parameters_left_out, row_by_name(name, count));
+  return rows_have(edition_parameters_left_out, row_by_name(name, count));
 }
 
 void parameter_write(uint16_t id, int32_t raw) {

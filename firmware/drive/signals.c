@@ -58,7 +58,7 @@ uint16_t signal_count(void) { return COUNT; }
 
 const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &table[place] : NULL; }
 
-bool signal_is_left_out(uint16_t place) { return edition_leaves_out(edition_signals_left_out, place); }
+bool signal_is_left_out(uint16_t place) { return rows_have(edition_signals_left_out, place); }
 
 bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
 

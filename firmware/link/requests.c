@@ -2,9 +2,22 @@
 
 #include <stddef.h>
 
+#include "firmware/base/edition.h"
 #include "firmware/link/request_rows.h"
+#include "firmware/text/catalogue.h"
+#include "firmware/text/text.h"
 
 #define COMMAND_BODY 5u  // code and argument
+
+// What some edition answers (requests.h).
+#define FROM_TO(first, last) {(first), (last) + 1u - (first)}
+static const rows_t known[] = {
+    FROM_TO(REQUEST_IDENTITY, REQUEST_LINK),
+    FROM_TO(REQUEST_SCOPE_SETUP, REQUEST_LOOK),
+    FROM_TO(REQUEST_HIL_ENTER, REQUEST_HIL_LEAVE),
+    FROM_TO(REQUEST_OF_COMMAND(COMMAND_START), REQUEST_OF_COMMAND(COMMAND_LOOK)),
+    {0, 0},
+};
 
 static const request_row_t* find(uint16_t type) {
   for (uint16_t k = 0; edition_requests[k] != NULL; k++) {
@@ -22,9 +35,16 @@ static answer_status_t handle(request_t* r, uint16_t type) {
   }
   const request_row_t* const row = find(type);
   const uint16_t count = octets_left(&r->body);
-  if (row == NULL) return ANSWER_UNKNOWN;
+  if (row == NULL) return rows_have(known, type) ? ANSWER_EDITION : ANSWER_UNKNOWN;
   if (count < (row->body & 0xFFu) || count > row->body >> 8) return ANSWER_LENGTH;
   return row->handler(r);
+}
+
+// Whoever refuses with it has written nothing.
+static void put_edition(octet_writer_t* w) {
+  put_message(w, CATALOGUE_STATUS, (uint16_t)ANSWER_EDITION);
+  put_text(w, ", ");
+  put_text(w, edition_name);
 }
 
 uint16_t request_answer(comm_watchdog_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
@@ -37,6 +57,8 @@ uint16_t request_answer(comm_watchdog_t port, const uint16_t* request, uint16_t 
   r.answer = octet_writer(&answer[3], RECORD_BODY_MAX);
   answer[0] = type | RECORD_ANSWER;
   answer[1] = request[1] & 0xFFu;
-  answer[2] = (uint16_t)handle(&r, type);
+  const answer_status_t status = handle(&r, type);
+  if (status == ANSWER_EDITION) put_edition(&r.answer);
+  answer[2] = (uint16_t)status;
   return (uint16_t)(r.answer.count + 3u);
 }

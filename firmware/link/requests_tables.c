@@ -61,8 +61,9 @@ static void add(const octet_writer_t* piece) {
 }
 
 static void next_words(octet_writer_t* piece) {
-  if (message_exists(sum.kind, sum.at)) {
-    put_message(piece, (catalogue_t)sum.kind, sum.at++);
+  if (message_is_known(sum.kind, sum.at)) {
+    if (message_exists(sum.kind, sum.at)) put_message(piece, (catalogue_t)sum.kind, sum.at);
+    sum.at++;
     return;
   }
   sum.at = 0;
@@ -92,7 +93,7 @@ void requests_service(void) {
 
 static uint16_t faults(void) {
   uint16_t count = 0;
-  while (message_exists(CATALOGUE_FAULT, count)) count++;
+  while (message_is_known(CATALOGUE_FAULT, count)) count++;
   return count;
 }
 
@@ -141,8 +142,8 @@ static answer_status_t request_words(request_t* r) {
   const uint16_t kind = take_u8(&r->body);
   if (kind >= CATALOGUES) return ANSWER_UNKNOWN;
   const uint16_t code = take_u8(&r->body);
-  if (words_are_left_out(kind)) return ANSWER_EDITION;
-  if (!message_exists(kind, code)) return ANSWER_RANGE;
+  if (!message_is_known(kind, code)) return ANSWER_RANGE;
+  if (message_is_left_out(kind, code)) return ANSWER_EDITION;
   put_message(&r->answer, (catalogue_t)kind, code);
   return ANSWER_OK;
 }

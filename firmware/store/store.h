@@ -36,7 +36,7 @@ typedef enum {
   STORE_SAVED = 5,
   STORE_FAILED = 6,    // a save was broken off: the set saved before is still there
   STORE_READING = 7,   // at power-on or on command
-  STORE_ABSENT = 8,    // no memory answers
+  STORE_ABSENT = 8,    // no memory answers: STORE_STATE_ABSENT
   STORE_CONFLICT = 9,  // the saved values do not fit together (parameter_conflict)
   STORE_FOREIGN = 10,  // written in a format of the future
   STORE_OLDER = 11     // loaded, but not what was saved last: that is damaged, broken off or in a format of the future

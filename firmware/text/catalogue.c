@@ -24,12 +24,18 @@ static bool is_of_fault(uint16_t kind) {
   return kind == (uint16_t)CATALOGUE_FAULT || kind == (uint16_t)CATALOGUE_REMEDY;
 }
 
-bool words_are_left_out(uint16_t kind) { return kind < CATALOGUES && ((edition_words_left_out >> kind) & 1u) != 0u; }
+bool message_is_left_out(uint16_t kind, uint16_t code) {
+  if (is_of_fault(kind)) return rows_have(edition_faults_left_out, code);
+  return kind < CATALOGUES && ((edition_words_left_out >> kind) & 1u) != 0u;
+}
 
-bool message_exists(uint16_t kind, uint16_t code) {
-  if (words_are_left_out(kind)) return false;
+bool message_is_known(uint16_t kind, uint16_t code) {
   if (is_of_fault(kind)) return code < FAULTS;
   return code < ROWS && row_of(kind, code) < ROWS;
+}
+
+bool message_exists(uint16_t kind, uint16_t code) {
+  return message_is_known(kind, code) && !message_is_left_out(kind, code);
 }
 
 void put_message(octet_writer_t* w, catalogue_t kind, uint16_t code) {

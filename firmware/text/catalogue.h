@@ -35,11 +35,14 @@ typedef enum {
 
 #define CATALOGUES 16u
 
-/// Whether there is such a kind in this edition, and such a code in it.
-bool message_exists(uint16_t kind, uint16_t code);
+/// Whether any edition has such a kind, and such a code in it.
+bool message_is_known(uint16_t kind, uint16_t code);
 
 /// Of a feature that this edition has not.
-bool words_are_left_out(uint16_t kind);
+bool message_is_left_out(uint16_t kind, uint16_t code);
+
+/// Known, and in this edition.
+bool message_exists(uint16_t kind, uint16_t code);
 
 /// Writes them out; "?" when there are none.
 void put_message(octet_writer_t* w, catalogue_t kind, uint16_t code);

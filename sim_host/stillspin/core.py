@@ -157,10 +157,24 @@ LAB = "lab"
 _OTHERS = {BOARD: "boards", EDITION: "editions"}
 
 
+def _built(kind: str) -> list[str]:
+    """Names of the boards or editions that there is a native module of, but for the usual one."""
+    return sorted(path.parent.name for path in (Path(__file__).parent / _OTHERS[kind]).glob("*/_core*.so"))
+
+
+def follow_edition(name: str) -> None:
+    """Choose an edition for this process, which has no virtual drive yet, and for those that it begins.
+
+    Args:
+        name: of the edition; the usual virtual drive stands for one that is not built. Empty changes nothing.
+    """
+    if name:
+        os.environ[EDITION] = name if name in _built(EDITION) else LAB
+
+
 def _other(kind: str, name: str) -> ModuleType:
     """The native module of another board or edition than the usual one."""
-    folder = Path(__file__).parent / _OTHERS[kind]
-    known = sorted(path.parent.name for path in folder.glob("*/_core*.so"))
+    folder, known = Path(__file__).parent / _OTHERS[kind], _built(kind)
     if name not in known:
         what = _OTHERS[kind].removesuffix("s")
         raise InputError(f"{kind} '{name}': there is no such {what}; known: {', '.join(known) or 'none is built'}")

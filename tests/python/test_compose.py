@@ -68,6 +68,22 @@ def test_what_is_left_out_leaves_its_place_empty() -> None:
     assert "edition_phase_control = NULL;" in compose.table_text("phase_control", compose.read_edition("minimal"), ROOT)
 
 
+def test_texts_of_what_is_left_out_are_not_packed_but_for_names() -> None:
+    needless = compose.needless_texts(compose.read_edition("minimal"), ROOT)
+    gone = {
+        "TEXT_COMMAND_scope",
+        "TEXT_COMMAND_ARGUMENTS_scope",
+        "TEXT_HELP_scope_1",
+        "TEXT_FAULT_28",
+        "TEXT_REMEDY_28",
+    }
+    assert gone <= needless
+    kept = {"TEXT_COMMAND_NAME_scope", "TEXT_COMMAND_start", "TEXT_HELP_start_1", "TEXT_FAULT_2", "TEXT_STATUS_8"}
+    assert not kept & needless
+    assert needless <= compose.pack_text.texts(ROOT).keys(), "every one of them is a text"
+    assert not compose.needless_texts(compose.read_edition("lab"), ROOT)
+
+
 def test_every_row_is_declared_by_a_header_that_its_feature_names() -> None:
     """Otherwise only the compiler of an edition that has it would notice."""
     for feature in compose.all_features():

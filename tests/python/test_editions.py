@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from desk import board
 
 # What a feature that drive and minimal leave out would have recorded.
 LEFT_OUT = {"load_angle", "magnet_flux"}
@@ -81,7 +82,8 @@ def test_an_unknown_edition_is_refused_in_a_sentence() -> None:
 
 REFUSALS = """
 print(desk.type("get flux_low", 150), desk.type("set can_node 3", 150), desk.type("get load_angle", 150), sep="")
-print(desk.type("get flux", 300))
+print(desk.type("get flux", 300), desk.type("scope arm", 150), desk.type("help scope", 150), desk.type("help", 1500))
+print("suggested:", desk.type("scopes", 300))
 """
 
 
@@ -91,6 +93,111 @@ def test_what_is_left_out_is_refused_by_its_edition() -> None:
         assert f"'{name}' is not in this edition of the firmware, minimal" in said
     assert "there is no parameter 'flux'" in said, "what no edition has"
     assert "flux_high" not in said, "nor is it suggested"
+    assert said.count("'scope' is not in this edition of the firmware, minimal") == 2, "a command and its help"
+    assert "captures signals" not in said
+    assert "measures machine" not in said
+    assert "switches the power stage on" in said, "what is there is explained"
+    assert "there is no command 'scopes': see 'help'" in said.split("suggested:")[1]
+
+
+ASKED = """
+import json
+from stillspin import core
+core.load()
+from stillspin.drive import describe
+from stillspin.drive.own import virtual_ask
+from stillspin.drive.protocol import Request
+from stillspin.drive.state import RawStatus
+from stillspin.link.errors import RefusedError
+
+def answer(ask, kind, body):
+    try:
+        ask(kind, body)
+    except RefusedError as error:
+        return error.status, str(error)
+    return 0, ""
+
+with virtual_ask() as ask:
+    who = describe.identity(ask)
+    # A body that no request has, so that nothing is carried out; commands have one length.
+    long, command = bytes(239), Request.COMMAND
+    requests = {kind: answer(ask, kind, long) for kind in range(0x40) if kind not in (Request.HIL_STEP, command)}
+    commands = {code: answer(ask, command, bytes([code]) + bytes(4)) for code in range(0x100)}
+    faults = [answer(ask, Request.WORDS, bytes([kind, code])) for kind in (1, 8) for code in range(who.faults + 1)]
+    status = RawStatus.unpack(ask(Request.STATUS, b""))
+print(json.dumps([requests, commands, faults, [status.store, status.save_progress, status.unsaved], who.edition]))
+"""
+UNKNOWN, RANGE, EDITION = 1, 2, 8
+SCOPE, HIL = set(range(0x10, 0x15)), {0x20, 0x22}  # HIL_STEP takes any length
+RESULT, COMMISSION, STORE = {0x16}, {6}, {7, 8, 9}
+LEFT_OUT_REQUESTS = {
+    "lab": (set(), set()),
+    "drive": (HIL, set()),
+    "hil": (RESULT, COMMISSION),
+    "minimal": (SCOPE | RESULT | HIL, COMMISSION | STORE),
+}
+
+
+@pytest.mark.parametrize("edition", LEFT_OUT_REQUESTS)
+def test_a_request_of_what_is_left_out_is_told_from_one_that_no_edition_knows(edition: str) -> None:
+    """Every number that there can be: lab has them all, so what it does not know nobody does."""
+    lab, own = (json.loads(on(name, "-c", ASKED)) for name in ("lab", edition))
+    words = [f"not in this edition of the firmware, {edition}"]
+    for asked, in_lab, left_out in zip(own[:2], lab[:2], LEFT_OUT_REQUESTS[edition], strict=True):
+        assert {int(kind) for kind, (status, _) in asked.items() if status == EDITION} == left_out
+        assert [said for status, said in asked.values() if status == EDITION] == words * len(left_out)
+        unknown, in_no = ({kind for kind, (status, _) in of.items() if status == UNKNOWN} for of in (asked, in_lab))
+        assert unknown == in_no
+        assert len(unknown) > 20
+    faults, in_lab = own[2], lab[2]
+    assert len(faults) == len(in_lab), "numbers of faults are those of all editions"
+    assert [status for status, _ in in_lab].count(RANGE) == 2, "behind the last one"
+    encoder = [k for k, fault in enumerate(faults) if fault != in_lab[k]]
+    assert [faults[k] for k in encoder] == [[EDITION, *words]] * (0 if edition == "lab" else 2)
+
+
+@pytest.mark.parametrize(
+    ("edition", "way"), [("hil", "--port"), ("hil", "--can"), ("lab", "--port"), ("drive", "--port")]
+)
+def test_a_board_is_compared_with_a_virtual_drive_of_its_own_edition(
+    edition: str, way: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever edition the environment of the command has."""
+    file = tmp_path / "results.json"
+    monkeypatch.setenv("STILLSPIN_EDITION", edition)
+    with board(tmp_path, "--speed", "0") as port:
+        where = port if way == "--port" else str(tmp_path / "can")
+        options = ("--run", "creep", "--check", way, where, "--json", str(file))
+        said = on("minimal", "-m", "stillspin", "hil", "A10", *options, expected=int(edition == "drive"))
+    if edition == "drive":
+        assert "not in this edition of the firmware, drive" in said
+        return
+    (row,) = json.loads(file.read_text())["runs"]
+    assert f"edition {edition}," in row["firmware"]
+    assert row["board"] == row["native"] and row["steps"] > 2000
+
+
+def test_an_edition_that_is_not_built_is_answered_with_the_command_that_makes_it() -> None:
+    """A board of one's own edition, before the first step."""
+    code = """
+from stillspin import core
+core.follow_edition("limited")
+core.load()
+from stillspin.drive import describe
+from stillspin.hil import built
+asked = describe.identity
+theirs = describe.Identity(1, 1, 1, 1, "stillspin 0.1.0", "bench", edition="limited")
+describe.identity = lambda ask: theirs if ask == "board" else asked(ask)
+built.check_board("board")
+"""
+    said = on("hil", "-c", code, expected=1)
+    assert "cmake --preset release -DSTILLSPIN_EDITION=limited && cmake --build --preset release" in said
+
+
+def test_without_a_store_the_status_says_that_nothing_can_be_saved() -> None:
+    absent, progress = 8, 100
+    assert json.loads(on("minimal", "-c", ASKED))[3] == [absent, progress, 0]
+    assert json.loads(on("drive", "-c", ASKED))[3][0] != absent
 
 
 def test_a_client_reads_the_table_and_the_edition_of_the_drive() -> None:

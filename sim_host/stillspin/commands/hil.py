@@ -16,7 +16,7 @@ from stillspin.commands.connection import DriveOption, wanted
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.hil import Difference, campaign, runs
+from stillspin.hil import Difference, built, campaign, runs
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
@@ -79,25 +79,32 @@ def hil(
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
 
-    The board's power stage stays off; it leaves this mode by a reset, which the end of the command brings about.
+    The board is compared with a virtual drive of its own edition. Its power stage stays off; it leaves this mode by a
+    reset, which the end of the command brings about.
     Virtual boards do as many runs at a time as --jobs says, a real one does one.
     Exit status 0 when every run is identical, 4 when one differs.
     """
     of = revision()
+    board = _address(port, can, where)
+    is_virtual = board.partition(":")[0] == _VIRTUAL
+    if not is_virtual:
+        if (jobs or 1) != 1 or cluster:
+            raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
+        runs.ids(scenarios)  # before anything is asked of the board
+        core.follow_edition(built.edition_at(board))
     wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params)
     everything = wish.runs(core.load())
     if not everything:
         raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios)}")
     results = Results(file)
-    board = _address(port, can, where)
     kind = _kind(board)
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [everything[number] for number in runs.broad(everything) if number in left]
     skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
     rows = (
         _on_virtual(chosen, kind, of, Where(jobs or processors(), cluster))
-        if board.partition(":")[0] == _VIRTUAL
-        else _on_one(chosen, board, of, Where(jobs or 1, cluster))
+        if is_virtual
+        else _on_one(chosen, board, of)
     )
     done = []
     with junit.Report(junit_file, "hil") as verdicts:
@@ -139,9 +146,7 @@ def _is_done(results: Results, run: LoopRun, kind: str, of: str) -> bool:
     return row is not None and row.identical and row.revision == of
 
 
-def _on_one(chosen: Sequence[LoopRun], board: str, of: str, where: Where) -> Iterator[Row]:
-    if where.jobs != 1 or where.cluster:
-        raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
+def _on_one(chosen: Sequence[LoopRun], board: str, of: str) -> Iterator[Row]:
     with PhaseBar(Console(stderr=True)) as bar:
         yield from campaign.on_one(chosen, board, of, lambda run: partial(bar.show, phase=f"{run.scenario} {run.name}"))
 

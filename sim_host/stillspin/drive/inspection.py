@@ -8,7 +8,7 @@ from typing import Self
 
 from stillspin.drive import describe, protocol
 from stillspin.drive.describe import unpack
-from stillspin.drive.protocol import Command, Request, Words
+from stillspin.drive.protocol import Command, Request, StatusCode, Words
 from stillspin.drive.requester import Requester
 from stillspin.drive.state import Fault, RawFault, RawStatus, Status, rpm
 from stillspin.drive.table import KNOWN_ROTOR, Table
@@ -124,8 +124,9 @@ class Inspection:
             try:
                 body = self._ask(Request.WORDS, struct.pack("<BB", kind, code))
                 self._words[kind, code] = body.decode("ascii", "replace").rstrip("\0")
-            except RefusedError:
-                self._words[kind, code] = "" if kind == Words.REMEDY else f"{kind.name.lower()} {code}"
+            except RefusedError as error:
+                unknown = str(error) if error.status == StatusCode.EDITION else f"{kind.name.lower()} {code}"
+                self._words[kind, code] = "" if kind == Words.REMEDY else unknown
         return self._words[kind, code]
 
     def command(self, code: Command, argument: int = 0) -> None:

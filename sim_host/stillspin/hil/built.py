@@ -8,11 +8,28 @@ from typing import TypeVar
 from stillspin.drive import describe
 from stillspin.drive.describe import Ask, Identity
 from stillspin.drive.own import virtual_ask
+from stillspin.drive.requester import Requester
 from stillspin.drive.table import Parameter, Signal, Table
+from stillspin.hil.kept_board import TIMEOUT
+from stillspin.link import address
 from stillspin.link.errors import DifferentError
 
 _SHOWN = 8
 Row = TypeVar("Row", Parameter, Signal)
+
+
+def edition_at(where: str) -> str:
+    """The edition of the board at an address; empty where it does not say.
+
+    Raises:
+        InputError: no address.
+        DriveError: nothing can be opened there, or nothing answers.
+    """
+    requester = Requester(address.connect(where), TIMEOUT)
+    try:
+        return describe.identity(lambda kind, body: requester.request(kind, body, repeat=True)).edition
+    finally:
+        requester.close()
 
 
 def check_board(ask: Ask) -> Identity:
@@ -30,6 +47,12 @@ def check_board(ask: Ask) -> Identity:
     theirs = describe.identity(ask)
     with virtual_ask() as ask_virtual:
         ours = describe.identity(ask_virtual)
+        if theirs.edition not in ("", ours.edition):
+            raise DifferentError(
+                f"the board has edition {theirs.edition}, and no virtual drive of it is built here: cmake --preset "
+                f"release -DSTILLSPIN_EDITION={theirs.edition} && cmake --build --preset release makes one (for a "
+                "list of your own its path is the name). No step was done"
+            )
         found = list(_of_identity(theirs, ours))
         if theirs.crc != ours.crc:
             found += _of_tables(describe.table(ask, theirs), describe.table(ask_virtual, ours))
@@ -50,8 +73,8 @@ def _differs(what: str, board: object, virtual: object) -> str:
 def _of_identity(theirs: Identity, ours: Identity) -> Iterator[str]:
     if theirs.version != ours.version:
         yield _differs("version", theirs.version, ours.version)
-    if theirs.edition != ours.edition:
-        yield _differs("edition", theirs.edition or "unknown", ours.edition)
+    if not theirs.edition:
+        yield _differs("edition", "unknown", ours.edition)
     if theirs.board != ours.board:
         yield _differs("board file", theirs.board or "unknown", ours.board)
 

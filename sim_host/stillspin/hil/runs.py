@@ -42,11 +42,27 @@ SettingsOf = Callable[[str], Settings]
 """What all runs with one motor have in common."""
 
 
+def ids(wanted: Sequence[str]) -> list[str]:
+    """What is meant, by its names.
+
+    Args:
+        wanted: scenarios; `commission`; `all` is the commissioning and every scenario, also those on demand.
+
+    Raises:
+        InputError: there is no such scenario.
+    """
+    names = [COMMISSION, *scenario_file.ids()] if ALL in wanted else list(wanted)
+    for name in names:
+        if name != COMMISSION:
+            scenario_file.load(name)
+    return names
+
+
 def named(wanted: Sequence[str], settings: SettingsOf, native: NativeCore, *, check: bool) -> list[LoopRun]:
     """The runs that are meant.
 
     Args:
-        wanted: scenarios; `commission`; `all` is the commissioning and every scenario, also those on demand.
+        wanted: see `ids`.
         settings: of a motor.
         native: the native module.
         check: only the beginning of each.
@@ -54,8 +70,7 @@ def named(wanted: Sequence[str], settings: SettingsOf, native: NativeCore, *, ch
     Raises:
         InputError: there is no such scenario, or it asks for what does not exist.
     """
-    names = [COMMISSION, *scenario_file.ids()] if ALL in wanted else wanted
-    return [run for name in names for run in _runs(name, settings, native, check=check)]
+    return [run for name in ids(wanted) for run in _runs(name, settings, native, check=check)]
 
 
 def broad(chosen: Sequence[LoopRun]) -> list[int]:
