@@ -63,6 +63,13 @@ static inline dq_t frame_park(ab_t v, rotation_t r) {
   return w;
 }
 
+/// The same by upper words, for a vector in which two bits more than wanted stand: components two bits coarser.
+static inline dq_t frame_park_hi(ab_t v, rotation_t r) {
+  const dq_t w = {q_mul_hi(v.alpha, r.cos_q30) + q_mul_hi(v.beta, r.sin_q30),
+                  q_mul_hi(v.beta, r.cos_q30) - q_mul_hi(v.alpha, r.sin_q30)};
+  return w;
+}
+
 static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
   ab_t v = {q_mul_add_floor(w.d, r.cos_q30, -w.q, r.sin_q30, 30), q_mul_add_floor(w.d, r.sin_q30, w.q, r.cos_q30, 30)};
   return v;

@@ -53,7 +53,7 @@ static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {
 
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in) {
   tracking_observer_predict(&s->observer, in->torque_accel_q8);
-  deviation_t d[ESTIMATOR_WINDOWS];
+  deviation_change_t seen[ESTIMATOR_WINDOWS];
   estimator_frame_t own[ESTIMATOR_WINDOWS];
   const estimator_frame_t* f = in->frames;
   const int32_t speed_bpp = s->observer.speed_bpp;
@@ -63,8 +63,8 @@ estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_inp
     deviation_frames(in->windows, in->window_count, deviation_middle(s->observer.angle_bam, speed_bpp), w_q30, own);
     f = own;
   }
-  for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &d[k]);
-  regression_evaluate(&s->regression, d, in);
+  for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &seen[k]);
+  regression_evaluate(&s->regression, seen, in);
   if (s->regression.information > 0) {
     s->error_bam = avv_angle_error(&s->regression, in->model);
     tracking_observer_correct(&s->observer, s->error_bam, bandwidth_q30(c, s->regression.information));

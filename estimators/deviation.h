@@ -5,6 +5,9 @@
 // k0 as in machine_model.h, u = v - R i:
 //   residual = s - Y v + A i - w k0,  A = Y R - w K,
 //   h_angle = (J Y - Y J) u + w (J h - K J i),  h_speed = h.
+// What is measured is a change of the current, so all of it is multiplied with the window's span instead of divided by
+// it: every window then has the same noise. With Y = mean + mirror S, J Y - Y J is 2 J S of the mirrored voltage, which
+// Y v has made already. Products are upper words.
 // A and w k0 are the same for all windows of a period, and of the sensitivities, which only weight the residuals, the
 // part that the current makes is taken at one current of the period.
 
@@ -13,15 +16,23 @@
 
 #include "estimators/estimator.h"
 
-/// The model at a speed.
+#define DEVIATION_PERIOD_Q17 ((int32_t)1310720000L)  // ESTIMATOR_PERIOD_TICKS
+
+/// The model at a speed. A beyond 2 per period belongs to no machine that a period is short for.
 typedef struct {
-  int32_t less_dd_q26, less_dq_q26, less_qq_q26;   // -Y, A per V and period
-  int32_t a_dd_q22, a_dq_q22, a_qd_q22, a_qq_q22;  // A, A per period and A
-  struct {
-    int64_t d, q;
-  } less_emf_q42;  // -w k0, A per period
+  int32_t mean_q30, half_q30, cross_q30;           // Y = [mean + half, cross; cross, mean - half], A per V and period
+  int32_t a_dd_q29, a_dq_q29, a_qd_q29, a_qq_q29;  // A, A per period and A
+  dq_t emf_q15;                                    // w k0, A per period
 } deviation_model_t;
 
+/// What a window shows.
+typedef struct {
+  dq_t left_q17;      // of the current's change, what the model does not explain, A
+  dq_t mirrored_q15;  // half, cross; cross, -half times the voltage, A per period
+  dq_t voltage_q17;   // V
+} deviation_change_t;
+
+/// The same of one window as a slope.
 typedef struct {
   dq_t residual_q20;  // A per period, within +-512
   dq_t voltage_q16;   // V
@@ -30,9 +41,8 @@ typedef struct {
 
 /// What the residuals of a period say about angle and speed.
 typedef struct {
-  int32_t saliency_q30, tilt_q30, less_tilt_q30;  // J Y - Y J = [-tilt, saliency; saliency, tilt]
-  dq_t rest_q17;                                  // what of h_angle does not hang on the voltage, A per period and rad
-  dq_t h_speed_q20;                               // h_speed, A per period and (rad per period)
+  dq_t rest_q17;     // what of h_angle does not hang on the voltage, A per period and rad, within +-4096
+  dq_t h_speed_q20;  // h_speed, A per period and (rad per period)
 } deviation_sensitivity_t;
 
 /// Angle of the estimator in the middle of the period in which the windows lie, from that at its end.
@@ -41,35 +51,47 @@ static inline uint32_t deviation_middle(uint32_t angle_bam, int32_t speed_bpp) {
 }
 
 /// The period's windows in the frame that has an angle in the middle of that period and turns evenly; w_q30: its speed,
-/// rad per period, below 1.9. An angle is right to 2e-5 rad up to 0.6 rad per period.
+/// rad per period, below 1.9. An angle is right to
+/// the third power of what the frame turns between the middles, over 6: 5e-3 rad at 0.6 rad per period.
 void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32_t middle_bam, int32_t w_q30,
                       estimator_frame_t frames[]);
 
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30);
 
-/// sum + a x + b y + c u + d v, Q42: whole products.
-static inline int64_t deviation_of_four(int64_t sum_q42, int32_t a, int32_t x, int32_t b, int32_t y, int32_t c,
-                                        int32_t u, int32_t d, int32_t v) {
-  return q_mac(q_mac(q_mac(q_mac(sum_q42, a, x), b, y), c, u), d, v);
+/// What the saliency makes of a voltage.
+static inline dq_t deviation_mirrored_q15(int32_t half_q30, int32_t cross_q30, dq_t v_q17) {
+  const dq_t s = {q_mul_hi(half_q30, v_q17.d) + q_mul_hi(cross_q30, v_q17.q),
+                  q_mul_hi(cross_q30, v_q17.d) - q_mul_hi(half_q30, v_q17.q)};
+  return s;
 }
 
-/// A slope, A per period Q20, and what EMF, current and voltage leave of it, Q42. Samples that no machine makes have a
-/// residual of 512 A per period.
-static inline int32_t deviation_left_q20(int32_t slope_q20, int64_t rest_q42) {
-  return q_sat_bits(q_mac(rest_q42, slope_q20, 4194304L), 22, 29u);
+/// A change of the current that the model makes of a slope, A, Q17.
+static inline int32_t deviation_made_q17(int32_t slope_q15, int32_t share_q30) {
+  return q_mul_floor(slope_q15, share_q30, 28);
 }
 
 static inline void deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w,
-                                      const estimator_frame_t* f, deviation_t* out) {
-  const dq_t s = frame_park(w->slope_q20, f->rotation);
-  const dq_t v = frame_park(w->voltage_q16, f->rotation);
-  const dq_t i = f->current_q20;
-  out->residual_q20.d = deviation_left_q20(s.d, deviation_of_four(at->less_emf_q42.d, at->a_dd_q22, i.d, at->a_dq_q22,
-                                                                  i.q, at->less_dd_q26, v.d, at->less_dq_q26, v.q));
-  out->residual_q20.q = deviation_left_q20(s.q, deviation_of_four(at->less_emf_q42.q, at->a_qd_q22, i.d, at->a_qq_q22,
-                                                                  i.q, at->less_dq_q26, v.d, at->less_qq_q26, v.q));
-  out->voltage_q16 = v;
-  out->current_q20 = i;
+                                      const estimator_frame_t* f, deviation_change_t* out) {
+  const int32_t share_q30 = estimator_share_q30(w);
+  const dq_t v = frame_park_hi(w->voltage_q19, f->rotation);
+  const dq_t i = f->current_q18;
+  const dq_t mirrored = deviation_mirrored_q15(at->half_q30, at->cross_q30, v);
+  const dq_t slope_q15 = {q_mul_hi(at->mean_q30, v.d) + mirrored.d + at->emf_q15.d - q_mul_hi(at->a_dd_q29, i.d) -
+                              q_mul_hi(at->a_dq_q29, i.q),
+                          q_mul_hi(at->mean_q30, v.q) + mirrored.q + at->emf_q15.q - q_mul_hi(at->a_qd_q29, i.d) -
+                              q_mul_hi(at->a_qq_q29, i.q)};
+  const dq_t seen_q17 = frame_park_hi(w->change_q19, f->rotation);
+  // Two upper words lose a unit together, and a difference of them none.
+  out->left_q17.d = seen_q17.d + 1 - deviation_made_q17(slope_q15.d, share_q30);
+  out->left_q17.q = seen_q17.q - deviation_made_q17(slope_q15.q, share_q30);
+  out->mirrored_q15 = mirrored;
+  out->voltage_q17 = v;
+}
+
+/// A change of this many fraction bits as a slope, A per period, Q20. Samples that no machine makes have 512 A per
+/// period.
+static inline int32_t deviation_slope_q20(int32_t change, unsigned bits, int32_t span_ticks) {
+  return q_sat_bits(q_product(change, DEVIATION_PERIOD_Q17 / span_ticks), bits - 3u, 29);
 }
 
 /// One window, at the angle of the estimator at the end of its period.
@@ -78,11 +100,9 @@ deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_
 
 deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t w_q30, dq_t current_q20);
 
-/// h_angle of a window, A per period and rad, Q17: upper words. Each component of the voltage below 4096 V.
-static inline dq_t deviation_by_angle_q17(const deviation_sensitivity_t* s, dq_t v_q16) {
-  const dq_t v_q19 = {v_q16.d * 8, v_q16.q * 8};
-  const dq_t h = {q_mul_add_floor(s->saliency_q30, v_q19.q, s->less_tilt_q30, v_q19.d, 32) + s->rest_q17.d,
-                  q_mul_add_floor(s->saliency_q30, v_q19.d, s->tilt_q30, v_q19.q, 32) + s->rest_q17.q};
+/// h_angle of a window, A per period and rad, Q17.
+static inline dq_t deviation_by_angle_q17(const deviation_sensitivity_t* s, dq_t mirrored_q15) {
+  const dq_t h = {s->rest_q17.d - mirrored_q15.q * 8, s->rest_q17.q + mirrored_q15.d * 8};
   return h;
 }
 

@@ -5,7 +5,6 @@
 
 #include "estimators/deviation_observer.h"
 
-#define GAIN_END_Q17 134217728L  // 1024 A per period and rad; six squares stay in 64 bits
 #define INFORMATION_MAX (8L * 16777216L)
 
 typedef struct {
@@ -13,37 +12,45 @@ typedef struct {
   int32_t a, s;        // score, Q20
 } information_t;
 
-// Information and score while the windows add to them. A window weighs the square of its span, in whole ticks times 16:
-// an upper word of a product with it is 1 / PER_UNIT of a number that is weighed with the square of its share in the
-// period. h_speed is the same for all windows: what belongs to it is multiplied once.
+// Information and score while the windows add to them. Changes of the current have the same noise in all windows; what
+// makes them of slopes is a window's share in the period. h_speed is the same for all windows: what belongs to it is
+// multiplied once.
 typedef struct {
-  int64_t aa_q34, a_q37;  // h_angle^2, h_angle e
-  dq_t h_q17, e_q20;      // h_angle, e
-  int32_t weight;         // sum of all weights: the windows of a period do not overlap
+  int64_t aa_q30, a_q32;  // h_angle^2, h_angle e
+  dq_t h_q14, e_q17;      // h_angle, e
+  int32_t square_q28;     // shares
+  // Of all windows, whether they count or not.
+  dq_t left_q15;
+  int32_t span_ticks;
 } information_sums_t;
 
-static inline void information_collect(information_sums_t* n, int32_t limit_q20, const deviation_sensitivity_t* h,
-                                       int32_t span, const deviation_t* d) {
-  const int32_t weight = span * span * 16;
-  const dq_t by_angle = deviation_by_angle_q17(h, d->voltage_q16);
-  const dq_t g = {q_limit(by_angle.d, GAIN_END_Q17), q_limit(by_angle.q, GAIN_END_Q17)};
-  const dq_t e = {q_limit(d->residual_q20.d, limit_q20), q_limit(d->residual_q20.q, limit_q20)};
-  const dq_t wg = {q_mul_hi(g.d, weight), q_mul_hi(g.q, weight)};
-  n->aa_q34 = q_mac(q_mac(n->aa_q34, g.d, wg.d), g.q, wg.q);
-  n->a_q37 = q_mac(q_mac(n->a_q37, e.d, wg.d), e.q, wg.q);
-  n->h_q17.d += wg.d;
-  n->h_q17.q += wg.q;
-  n->e_q20.d += q_mul_hi(e.d, weight);
-  n->e_q20.q += q_mul_hi(e.q, weight);
-  n->weight += weight;
+static inline void information_pass(information_sums_t* n, const estimator_window_t* w, const deviation_change_t* c) {
+  n->left_q15.d += q_shr(c->left_q17.d, 2);
+  n->left_q15.q += q_shr(c->left_q17.q, 2);
+  n->span_ticks += w->span_ticks;
+}
+
+static inline void information_collect(information_sums_t* n, int32_t limit_q19, const deviation_sensitivity_t* h,
+                                       int32_t share_q30, const deviation_change_t* c) {
+  const dq_t by_angle = deviation_by_angle_q17(h, c->mirrored_q15);
+  const dq_t g = {q_mul_hi(by_angle.d, share_q30), q_mul_hi(by_angle.q, share_q30)};
+  const int32_t limit_q17 = q_mul_hi(limit_q19, share_q30);
+  const dq_t e = {q_limit(c->left_q17.d, limit_q17), q_limit(c->left_q17.q, limit_q17)};
+  n->aa_q30 = q_mac(q_mac(n->aa_q30, g.d, g.d), g.q, g.q);
+  n->a_q32 = q_mac(q_mac(n->a_q32, g.d, e.d), g.q, e.q);
+  n->h_q14.d += q_mul_hi(g.d * 2, share_q30);
+  n->h_q14.q += q_mul_hi(g.q * 2, share_q30);
+  n->e_q17.d += q_mul_hi(e.d * 4, share_q30);
+  n->e_q17.q += q_mul_hi(e.q * 4, share_q30);
+  n->square_q28 += q_mul_hi(share_q30, share_q30);
 }
 
 static inline int32_t per_noise_sat(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
-  return q_sat64(q_shr64(q_product(q_sat64(q_shr64(sum, shift)), c->weight_q8), 18));
+  return q_sat64(q_shr64(q_product(q_sat64(q_shr64(sum, shift)), c->weight_q8), 17));
 }
 
 static inline int32_t per_noise(const deviation_observer_config_t* c, int64_t sum, unsigned shift) {
-  return q_mul_floor(q_sat64(q_shr64(sum, shift)), c->weight_q8, 18);
+  return q_mul_floor(q_sat64(q_shr64(sum, shift)), c->weight_q8, 17);
 }
 
 // More information than the formats hold counts as less, all of it alike, or the update would overshoot.
@@ -60,18 +67,18 @@ static inline information_t bounded(const information_t* n) {
 // score not above 272 times the root of it (OUTLIER in both axes).
 static inline information_t information_of(const information_sums_t* n, const deviation_observer_config_t* c,
                                            dq_t h_s) {
-  const int64_t as_q37 = q_mac(q_product(h_s.d, n->h_q17.d), h_s.q, n->h_q17.q);
+  const int64_t as_q34 = q_mac(q_product(h_s.d, n->h_q14.d), h_s.q, n->h_q14.q);
   const uint32_t turn2_q8 = (uint32_t)((q_square(h_s.d) + q_square(h_s.q)) >> 32);
-  const uint32_t ss_q10 = (uint32_t)(((uint64_t)turn2_q8 * (uint32_t)n->weight) >> 30);
-  const int64_t s_q40 = q_mac(q_product(h_s.d, n->e_q20.d), h_s.q, n->e_q20.q);
-  const int32_t aa = per_noise_sat(c, n->aa_q34, 12);
-  const int32_t ss = q_sat64((int64_t)(((uint64_t)ss_q10 * (uint32_t)c->weight_q8) >> 18));
+  const uint32_t ss_q8 = (uint32_t)(((uint64_t)turn2_q8 * (uint32_t)n->square_q28) >> 28);
+  const int64_t s_q37 = q_mac(q_product(h_s.d, n->e_q17.d), h_s.q, n->e_q17.q);
+  const int32_t aa = per_noise_sat(c, n->aa_q30, 9);
+  const int32_t ss = q_sat64((int64_t)(((uint64_t)ss_q8 * (uint32_t)c->weight_q8) >> 16));
   if (aa > INFORMATION_MAX || ss > INFORMATION_MAX) {
-    const information_t large = {aa, per_noise_sat(c, as_q37, 21), ss, per_noise_sat(c, n->a_q37, 13),
-                                 per_noise_sat(c, s_q40, 22)};
+    const information_t large = {aa, per_noise_sat(c, as_q34, 19), ss, per_noise_sat(c, n->a_q32, 9),
+                                 per_noise_sat(c, s_q37, 20)};
     return bounded(&large);
   }
-  const information_t i = {aa, per_noise(c, as_q37, 21), ss, per_noise(c, n->a_q37, 13), per_noise(c, s_q40, 22)};
+  const information_t i = {aa, per_noise(c, as_q34, 19), ss, per_noise(c, n->a_q32, 9), per_noise(c, s_q37, 20)};
   return i;
 }
 

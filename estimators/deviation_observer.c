@@ -6,13 +6,12 @@
 #define BAM_PER_UNIT_Q7 1367130551L  // 2^-6 rad
 #define BPP_PER_UNIT_Q12 683565276L  // 2^-12 rad per period
 #define ACCEL_Q8_PER_UNIT 667544L    // 2^-18 rad per period^2
-#define PER_UNIT_Q19 1407375L        // 2^32 / (16 N^2), N the period in ticks
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
 #define VARIANCE_MAX (512L * ONE_Q20)
-#define OUTLIER 192L  // of what a window as long as the period has for noise: 48 sigma in a quarter of it
+#define OUTLIER 192L  // sigma in a window as long as the period: 48 in a quarter of it
 #define ONE_Q30 1073741823L
 #define BOOST_SHIFT 9u              // the boost fades within 51 ms
 #define BOOST_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
@@ -29,7 +28,7 @@
 #define DUE_Q9 128L
 #define PERIODS_DUE 7L
 #define PERIODS_MAX 12L       // the covariance is renewed at the latest
-#define LEFT_PERIODS_MAX 16L  // nobody takes what is left: it begins anew
+#define LEFT_PERIODS_MAX 15L  // nobody takes what is left: it begins anew
 
 typedef struct {
   int32_t a, s;
@@ -46,8 +45,8 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
                                const deviation_observer_tuning_t* t) {
   const int32_t noise_q20 = q_clamp(t->noise_q20, 1049, ONE_Q20);
   const int32_t inverse_q20 = q_min(q_div(ONE_Q20, noise_q20, 20), 1000 * ONE_Q20);
-  c->weight_q8 = q_mul(q_square_sat(inverse_q20, 30), PER_UNIT_Q19, 21);
-  c->residual_limit_q20 = noise_q20 * OUTLIER;
+  c->weight_q8 = q_square_sat(inverse_q20, 32);
+  c->limit_q19 = noise_q20 * (OUTLIER / 2);
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
   c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
@@ -266,36 +265,31 @@ bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residu
   const deviation_residual_t sum = s->residual;
   s->residual = no_residual;
   if (sum.span_ticks <= 0) return false;
-  const int32_t per_tick_q30 = 1073741824L / sum.span_ticks;
-  residual_q20->d = q_mul_sat(q_sat64(q_shr64(sum.d_q20, 16)), per_tick_q30, 14);
-  residual_q20->q = q_mul_sat(q_sat64(q_shr64(sum.q_q20, 16)), per_tick_q30, 14);
+  const int32_t per_span_q17 = DEVIATION_PERIOD_Q17 / sum.span_ticks;
+  residual_q20->d = q_sat64(q_shr64(q_product(left.d_q11, per_span_q17), 8));
+  residual_q20->q = q_sat64(q_shr64(q_product(left.q_q11, per_span_q17), 8));
   *span_ticks = sum.span_ticks / q_max(sum.periods, 1);
   *periods = sum.periods;
   return true;
 }
 
-// What is left counts with the span of its window.
-static void leave(deviation_residual_t* left, const estimator_input_t* in, const deviation_t d[]) {
-  if (++left->periods >= LEFT_PERIODS_MAX) {
-    *left = no_residual;
-    return;
-  }
-  int64_t d_q20 = left->d_q20;
-  int64_t q_q20 = left->q_q20;
-  for (uint16_t k = 0; k < in->window_count; k++) {
-    const int32_t span = in->windows[k].span_ticks;
-    d_q20 = q_mac(d_q20, d[k].residual_q20.d, span);
-    q_q20 = q_mac(q_q20, d[k].residual_q20.q, span);
-    left->span_ticks += span;
-  }
-  left->d_q20 = d_q20;
-  left->q_q20 = q_q20;
+static void leave(deviation_residual_t* left, const information_sums_t* n) {
+  if (left->periods >= LEFT_PERIODS_MAX) *left = no_residual;
+  left->d_q11 += q_shr(n->left_q15.d + 8, 4);
+  left->q_q11 += q_shr(n->left_q15.q + 8, 4);
+  left->span_ticks += n->span_ticks;
+  left->periods++;
 }
 
-// One loop after the other, so that each has few numbers of its own.
+static void refresh(deviation_observer_t* s, const machine_model_t* m, int32_t w_q30, dq_t current_q18) {
+  const dq_t current_q20 = {current_q18.d * 4, current_q18.q * 4};
+  s->sensitivity = deviation_sensitivity(m, w_q30, current_q20);
+  s->is_sensitive = true;
+}
+
 static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
-  information_sums_t sums = {0, 0, {0, 0}, {0, 0}, 0};
-  deviation_t d[ESTIMATOR_WINDOWS];
+  information_sums_t sums = {0, 0, {0, 0}, {0, 0}, 0, {0, 0}, 0};
+  deviation_change_t seen[ESTIMATOR_WINDOWS];
   estimator_frame_t own[ESTIMATOR_WINDOWS];
   const estimator_frame_t* f = in->frames;
   const int32_t w_q30 = machine_speed_rad_q30(s->speed_bpp);
@@ -304,26 +298,23 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
     f = own;
   }
   const deviation_model_t at = deviation_model(in->model, w_q30);
-  for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &d[k]);
-  leave(&s->residual, in, d);
   // What the first period says counts only where the sensitivities were asked for beside it.
   const bool counts = s->is_sensitive || in->refresh;
-  if (in->refresh || !s->is_sensitive) {
-    s->sensitivity = deviation_sensitivity(in->model, w_q30, f[in->window_count / 2u].current_q20);
-    s->is_sensitive = true;
-  }
-  const deviation_sensitivity_t* const h = &s->sensitivity;
-  const int32_t limit_q20 = c->residual_limit_q20;
-  const uint16_t counting = counts ? in->window_count : 0u;
-  for (uint16_t k = 0; k < counting; k++) {
+  if (in->refresh || !s->is_sensitive) refresh(s, in->model, w_q30, f[in->window_count / 2u].current_q18);
+  for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    if (!c->zero_vectors_only || w->zero_vector) information_collect(&sums, limit_q20, h, w->span_ticks, &d[k]);
+    deviation_in_frame(&at, w, &f[k], &seen[k]);
+    information_pass(&sums, w, &seen[k]);
+    if (counts && (!c->zero_vectors_only || w->zero_vector)) {
+      information_collect(&sums, c->limit_q19, &s->sensitivity, estimator_share_q30(w), &seen[k]);
+    }
   }
+  leave(&s->residual, &sums);
   if (in->regress) {
-    regression_evaluate(&s->regression, d, in);
+    regression_evaluate(&s->regression, seen, in);
     s->regressed_bam = s->angle_bam;
   }
-  return information_of(&sums, c, h->h_speed_q20);
+  return information_of(&sums, c, s->sensitivity.h_speed_q20);
 }
 
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their

@@ -34,8 +34,8 @@ typedef struct {
 } deviation_observer_tuning_t;
 
 typedef struct {
-  int32_t weight_q8;             // of a window as long as the period: 1 / variance, in the unit of the sums, 2.7..2.7e6
-  int32_t residual_limit_q20;    // residuals beyond it count as this, A per period
+  int32_t weight_q8;             // 1 / variance of a change of the current, A^-2, 1..1e6
+  int32_t limit_q19;             // A: what is left of a window counts as its share of this at most
   int32_t load_noise_q20;        // variance that the load gains per period, own units
   int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes
   int32_t load_step_q20;         // variance of a step of the load, at a crawl
@@ -49,7 +49,7 @@ typedef struct {
 
 /// What the observer has left unexplained since somebody last took it (deviation_observer_take_mean_residual).
 typedef struct {
-  int64_t d_q20, q_q20;  // sum of the residuals times their spans, A per period and ticks
+  int32_t d_q11, q_q11;  // sum of what is left of the current's changes, A
   int32_t span_ticks;    // of all windows
   int32_t periods;
 } deviation_residual_t;

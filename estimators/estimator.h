@@ -17,9 +17,9 @@
 
 /// One window: the current deviation under a constant voltage vector.
 typedef struct {
-  ab_t slope_q20;       // di/dt, A per period
+  ab_t change_q19;      // of the current between the two bursts, A
+  ab_t voltage_q19;     // voltage at the terminals: switching state and DC link less the devices' drops, V
   ab_t current_q20;     // current in the middle of the window, A
-  ab_t voltage_q16;     // voltage at the terminals: switching state and DC link less the devices' drops, V
   int16_t middle_tick;  // instant half-way between the two bursts
   int16_t span_ticks;   // time between the two bursts
   bool zero_vector;
@@ -28,8 +28,11 @@ typedef struct {
 /// A window in a rotor frame.
 typedef struct {
   rotation_t rotation;  // of the frame at the window's middle
-  dq_t current_q20;     // current there, A
+  dq_t current_q18;     // current there, A
 } estimator_frame_t;
+
+/// Span of a window as a share of the period, Q30, 2e-6 of it less.
+static inline int32_t estimator_share_q30(const estimator_window_t* w) { return w->span_ticks * 107374L; }
 
 typedef struct {
   const machine_model_t* model;

@@ -6,9 +6,7 @@
 #define BPP_PER_RAD 683565276L  // 2^32 / 2 pi
 
 void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_window_t* w, int32_t tick) {
-  // From the middle of the window to its bursts.
-  const int32_t half_q30 = ((int32_t)w->span_ticks / 2) * 107374;  // of a period
-  const ab_t way_q20 = {q_mul_sat(w->slope_q20.alpha, half_q30, 30), q_mul_sat(w->slope_q20.beta, half_q30, 30)};
+  const ab_t way_q20 = w->change_q19;  // half of it lies between the middle of the window and its bursts
   if (s->windows == 0u) {
     s->first_tick = tick - w->span_ticks / 2;
     s->first_q20.alpha = w->current_q20.alpha - way_q20.alpha;
@@ -19,8 +17,8 @@ void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_win
   s->last_tick = tick + w->span_ticks / 2;
   s->last_q20.alpha = w->current_q20.alpha + way_q20.alpha;
   s->last_q20.beta = w->current_q20.beta + way_q20.beta;
-  const ab_t driving_q16 = {w->voltage_q16.alpha - q_mul(m->rs_q24, w->current_q20.alpha, 28),
-                            w->voltage_q16.beta - q_mul(m->rs_q24, w->current_q20.beta, 28)};
+  const ab_t driving_q16 = {q_shr(w->voltage_q19.alpha, 3) - q_mul(m->rs_q24, w->current_q20.alpha, 28),
+                            q_shr(w->voltage_q19.beta, 3) - q_mul(m->rs_q24, w->current_q20.beta, 28)};
   s->drive_q16.alpha = q_add_sat(s->drive_q16.alpha, driving_q16.alpha);
   s->drive_q16.beta = q_add_sat(s->drive_q16.beta, driving_q16.beta);
   s->windows++;

@@ -21,7 +21,7 @@ typedef struct {
   dq_t mean_q20;        // weighted mean residual, A per period
 } regression_t;
 
-/// Regression over the deviations d of the input's windows, all taken at one angle and speed.
-void regression_evaluate(regression_t* r, const deviation_t d[], const estimator_input_t* in);
+/// Regression over what the input's windows show, all of them at one angle and speed.
+void regression_evaluate(regression_t* r, const deviation_change_t seen[], const estimator_input_t* in);
 
 #endif

@@ -1,4 +1,4 @@
-// From the sums of two bursts of conversions to the slope and the middle current of a window.
+// From the sums of two bursts of conversions to the change of the current and its middle in a window.
 
 #ifndef STILLSPIN_ESTIMATORS_SLOPES_H
 #define STILLSPIN_ESTIMATORS_SLOPES_H
@@ -36,7 +36,7 @@ void slopes_design(slopes_config_t* c);
 
 slopes_scale_t slopes_scale(const slopes_config_t* c, const slopes_trim_t* trim);
 
-/// Fills slope_q20 and current_q20 of the window; span_ticks must be set and positive.
+/// Fills change_q19 and current_q20 of the window.
 void slopes_evaluate(const slopes_scale_t* c, const slopes_sums_t* sums, estimator_window_t* w);
 
 #endif

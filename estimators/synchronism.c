@@ -15,9 +15,8 @@
 #define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 #define RATIO_END_Q8 46340L
-#define SLOPE_BITS 30u    // 1024 A per period
 #define CURRENT_BITS 29u  // 512 A
-#define VOLTAGE_BITS 27u  // 2048 V
+#define VOLTAGE_BITS 30u  // 2048 V
 
 void synchronism_reset(synchronism_t* s) {
   static const synchronism_t fresh = {{0, 0}, 0, 0, 0, 0};
@@ -37,7 +36,6 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
                       uint16_t count, uint32_t angle_bam) {
   estimator_window_t mean = {{0, 0}, {0, 0}, {0, 0}, 0, 0, false};
   int32_t share_q30[ESTIMATOR_WINDOWS];
-  window_sum_t slope = {0, 0};
   window_sum_t current = {0, 0};
   window_sum_t voltage = {0, 0};
   int32_t total = 0;
@@ -50,13 +48,16 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
     share_q30[k] = q_share_q30(windows[k].span_ticks, per_tick_q30);
     middle_q15 += q_shr(share_q30[k], 15) * windows[k].middle_tick;
   }
+  mean.span_ticks = (int16_t)seen->span_ticks;
   mean.middle_tick = (int16_t)q_clamp(q_shr(middle_q15, 15), 0, PERIOD_TICKS);
-  for (uint16_t k = 0; k < count; k++) add(&slope, windows[k].slope_q20, share_q30[k]);
-  mean.slope_q20 = mean_of(&slope, SLOPE_BITS);
-  for (uint16_t k = 0; k < count; k++) add(&current, windows[k].current_q20, share_q30[k]);
+  for (uint16_t k = 0; k < count; k++) {
+    mean.change_q19.alpha += windows[k].change_q19.alpha;
+    mean.change_q19.beta += windows[k].change_q19.beta;
+    add(&current, windows[k].current_q20, share_q30[k]);
+  }
   mean.current_q20 = mean_of(&current, CURRENT_BITS);
-  for (uint16_t k = 0; k < count; k++) add(&voltage, windows[k].voltage_q16, share_q30[k]);
-  mean.voltage_q16 = mean_of(&voltage, VOLTAGE_BITS);
+  for (uint16_t k = 0; k < count; k++) add(&voltage, windows[k].voltage_q19, share_q30[k]);
+  mean.voltage_q19 = mean_of(&voltage, VOLTAGE_BITS);
   seen->residual_q20 = deviation_evaluate(m, &mean, angle_bam, seen->speed_bpp).residual_q20;
 }
 

@@ -23,12 +23,13 @@ typedef struct {
 // One window; emf_q16: w lambda of the speed that D takes off.
 static void see(seen_t* sum, const machine_model_t* m, const estimator_window_t* w, const estimator_frame_t* f,
                 int32_t emf_q16) {
-  const dq_t slope = frame_park(w->slope_q20, f->rotation);
-  const dq_t drop = frame_park(w->voltage_q16, f->rotation);
-  const int32_t volts_q16 = q_sat64(q_mul64(m->rs_q24, f->current_q20.q, 28) + emf_q16 - drop.q);
-  const int64_t deviation_q46 = q_mac(q_product(m->yq_q30, volts_q16), slope.q, ONE_Q26) + ONE_Q26 / 2;
+  const dq_t change_q19 = frame_park(w->change_q19, f->rotation);
+  const dq_t drop_q17 = frame_park_hi(w->voltage_q19, f->rotation);
+  const int32_t volts_q16 = q_sat64(q_mul64(m->rs_q24, f->current_q18.q, 26) + emf_q16 - q_shr(drop_q17.q, 1));
+  const int32_t slope_q20 = deviation_slope_q20(change_q19.q, 19, w->span_ticks);
+  const int64_t deviation_q46 = q_mac(q_product(m->yq_q30, volts_q16), slope_q20, ONE_Q26) + ONE_Q26 / 2;
   sum->deviation_q20 = q_sat64(q_shr64(deviation_q46, 26) + sum->deviation_q20);
-  sum->volts_q16 -= drop.d;
+  sum->volts_q16 -= q_shr(drop_q17.d, 1);
 }
 
 static bool mean_deviation(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, int32_t emf_bpp,

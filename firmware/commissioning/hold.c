@@ -65,9 +65,9 @@ void commissioning_estimate(drive_t* d, estimator_input_t* in) {
 
 // Windows under opposite vectors, as the alternating layout has them: what is common to both is then not the link.
 static bool opposite(const estimator_window_t* a, const estimator_window_t* b) {
-  const int32_t apart_q16 = 10L * 65536L;
-  return q_abs_sat(a->voltage_q16.alpha + b->voltage_q16.alpha) < apart_q16 &&
-         q_abs_sat(a->voltage_q16.beta + b->voltage_q16.beta) < apart_q16;
+  const int32_t apart_q19 = 10L * 524288L;
+  return q_abs_sat(a->voltage_q19.alpha + b->voltage_q19.alpha) < apart_q19 &&
+         q_abs_sat(a->voltage_q19.beta + b->voltage_q19.beta) < apart_q19;
 }
 
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {

@@ -10,8 +10,6 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_encoder.h"
 
-#define ONE_Q26 67108864L
-
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
 static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
@@ -42,8 +40,8 @@ static uint32_t middle_of(const estimator_output_t* now) {
 }
 
 // Mean of some currents less their ripple, A.
-static int32_t less_ripple_q20(int32_t sum_q20, int64_t ripple_q46, int32_t per_count_q30) {
-  const int32_t left_q14 = (int32_t)q_shr64(q_product(sum_q20, ONE_Q26) - ripple_q46, 32);
+static int32_t less_ripple_q20(int32_t sum_q18, int32_t ripple_q14, int32_t per_count_q30) {
+  const int32_t left_q14 = q_shr(sum_q18, 4) - ripple_q14;
   return q_sat_bits(q_product(left_q14, per_count_q30), 24, DRIVE_CURRENT_BITS);
 }
 
@@ -54,14 +52,14 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
   const uint32_t middle_bam = middle_of(first);
   deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(first->speed_bpp), s->frames);
   for (uint16_t k = 0; k < s->count; k++) {
-    sum.d += s->frames[k].current_q20.d;
-    sum.q += s->frames[k].current_q20.q;
+    sum.d += s->frames[k].current_q18.d;
+    sum.q += s->frames[k].current_q18.q;
   }
   // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
   const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
   const int32_t per_count_q30 = per_windows_q30[s->count];
-  const dq_t mean_q20 = {less_ripple_q20(sum.d, q_product(d->model.yd_q30, ripple_q16.d), per_count_q30),
-                         less_ripple_q20(sum.q, q_product(d->model.yq_q30, ripple_q16.q), per_count_q30)};
+  const dq_t mean_q20 = {less_ripple_q20(sum.d, q_mul_hi(d->model.yd_q30, ripple_q16.d), per_count_q30),
+                         less_ripple_q20(sum.q, q_mul_hi(d->model.yq_q30, ripple_q16.q), per_count_q30)};
   d->control.measured_q20 = mean_q20;
   if (first == selected || first->angle_bam == selected->angle_bam) return;
   const dq_t moved_q20 = frame_moved(mean_q20, middle_of(selected) - middle_bam);

@@ -1,4 +1,4 @@
-// From bursts of conversions to windows with slope, current and voltage.
+// From bursts of conversions to windows with change of current, current and voltage.
 //
 // The window interrupt stores raw sums; the control interrupt, once per period, swaps the two buffers and turns the
 // sums of the period before into physical quantities, with the pattern that was running then.
@@ -14,7 +14,7 @@
 #include "hal/hal_profile.h"
 #include "svpwm/ripple.h"
 
-#define THIRD 357913941L  // Q30
+#define THIRD_Q32 1431655765L
 
 static sampling_buffer_t sampling_buffers[2];
 static uint16_t sampling_filling;
@@ -57,12 +57,12 @@ static const int16_t sides_of_state[8] = {0, 0, 1, 1, -1, -1, 0, 0};
 typedef struct {
   const dead_time_config_t* drops;
   const slopes_scale_t* slopes;
-  int32_t third_q16, side_q16;  // of the DC link, V
+  int32_t third_q19, side_q19;  // of the DC link, V
 } scale_t;
 
 static scale_t scale_of(const drive_t* d) {
-  const scale_t s = {&d->config.dead_time, &d->samples.scale, q_mul_floor(d->samples.link_q16, THIRD, 30),
-                     q_mul_floor(d->samples.link_q16, FRAME_SQRT3_INV_Q30, 30)};
+  const scale_t s = {&d->config.dead_time, &d->samples.scale, q_mul_hi(d->samples.link_q16 * 8, THIRD_Q32),
+                     q_mul_hi(d->samples.link_q16 * 8, FRAME_SQRT3_INV_Q30) * 4};
   return s;
 }
 
@@ -75,9 +75,9 @@ static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_wi
   out->middle_tick = (int16_t)q_shr(begin + end, 1);
   out->zero_vector = svpwm_is_zero_vector(state);
   slopes_evaluate(s->slopes, &sums, out);
-  const ab_t drop = dead_time_drop_q16(s->drops, out->current_q20);
-  out->voltage_q16.alpha = thirds_of_state[state] * s->third_q16 - drop.alpha;
-  out->voltage_q16.beta = sides_of_state[state] * s->side_q16 - drop.beta;
+  const ab_t drop_q16 = dead_time_drop_q16(s->drops, out->current_q20);
+  out->voltage_q19.alpha = thirds_of_state[state] * s->third_q19 - drop_q16.alpha * 8;
+  out->voltage_q19.beta = sides_of_state[state] * s->side_q19 - drop_q16.beta * 8;
 }
 
 // Takes over an eighth of what each window says; up to 2000 V, so that the sum stays in 31 bits.

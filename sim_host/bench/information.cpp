@@ -42,7 +42,7 @@ WindowInformation::Pair WindowInformation::slope(double angle, double speed, Pai
 
 void WindowInformation::add(Information& sum, double angle, double speed, const estimator_window_t& w) const {
   const Pair current{std::ldexp(w.current_q20.alpha, -20), std::ldexp(w.current_q20.beta, -20)};
-  const Pair voltage{std::ldexp(w.voltage_q16.alpha, -16), std::ldexp(w.voltage_q16.beta, -16)};
+  const Pair voltage{std::ldexp(w.voltage_q19.alpha, -19), std::ldexp(w.voltage_q19.beta, -19)};
   const double before = (ESTIMATOR_PERIOD_TICKS - w.middle_tick) * kTick;
   const double at = angle - speed * before;
   const auto derivative = [&](double d_angle, double d_speed, double step) {

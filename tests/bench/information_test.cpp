@@ -27,7 +27,7 @@ drive_samples_t one_window(double volts, double amps, double direction, double s
   drive_samples_t s = {};
   s.count = 1;
   estimator_window_t& w = s.windows[0];
-  w.voltage_q16 = {static_cast<std::int32_t>(std::lround(std::ldexp(volts, 16))), 0};
+  w.voltage_q19 = {static_cast<std::int32_t>(std::lround(std::ldexp(volts, 19))), 0};
   w.current_q20 = {static_cast<std::int32_t>(std::lround(std::ldexp(amps * std::cos(direction), 20))),
                    static_cast<std::int32_t>(std::lround(std::ldexp(amps * std::sin(direction), 20)))};
   w.middle_tick = 5000;

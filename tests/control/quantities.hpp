@@ -54,6 +54,12 @@ inline Vector real(dq_t v, int q) { return {real(v.d, q), real(v.q, q)}; }
 inline ab_t raw_ab(Vector v, int q) { return {raw(v.x, q), raw(v.y, q)}; }
 inline dq_t raw_dq(Vector v, int q) { return {raw(v.x, q), raw(v.y, q)}; }
 
+/// What a slope, A per period, changes a current over so many ticks, as a window has it, and back.
+inline ab_t raw_change(Vector slope, int span) { return raw_ab(slope * (span / 10000.0), 19); }
+inline Vector slope_from(ab_t change, int span) {
+  return Vector{real(change.alpha, 19), real(change.beta, 19)} * (10000.0 / span);
+}
+
 /// Motor A of the benches, with SI numbers.
 struct Motor {
   double rs = 0.32, ld = 4.9e-3, lq = 7.8e-3, flux = 0.16;

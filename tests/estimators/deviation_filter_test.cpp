@@ -55,8 +55,8 @@ class Reference {
   // the stationary frame of the estimate's own angle is used throughout.
   Vector residual(const estimator_window_t& w, double angle, double speed) const {
     const double at = angle - speed * (1.0 - w.middle_tick / 10000.0);
-    const Vector model = slope_of(motor_, at, speed / kPeriod, real(w.current_q20, 20), real(w.voltage_q16, 16));
-    return real(w.slope_q20, 20) - model * kPeriod;
+    const Vector model = slope_of(motor_, at, speed / kPeriod, real(w.current_q20, 20), real(w.voltage_q19, 19));
+    return slope_from(w.change_q19, w.span_ticks) - model * kPeriod;
   }
 
   void predict(double torque) {
@@ -267,11 +267,11 @@ TEST_P(AnyWindow, IsSurvived) {
     std::vector<estimator_window_t> windows;
     for (int k = 0; k < 3; ++k) {
       estimator_window_t w = {};
-      w.slope_q20 = raw_ab({random.between(-400.0, 400.0), random.between(-400.0, 400.0)}, 20);
       w.current_q20 = raw_ab({random.between(-20.0, 20.0), random.between(-20.0, 20.0)}, 20);
-      w.voltage_q16 = raw_ab({random.between(-300.0, 300.0), random.between(-300.0, 300.0)}, 16);
+      w.voltage_q19 = raw_ab({random.between(-300.0, 300.0), random.between(-300.0, 300.0)}, 19);
       w.middle_tick = static_cast<std::int16_t>(500 + random.below(9000));
       w.span_ticks = static_cast<std::int16_t>(100 + random.below(9000));
+      w.change_q19 = raw_change({random.between(-400.0, 400.0), random.between(-400.0, 400.0)}, w.span_ticks);
       windows.push_back(w);
     }
     // the speed is kept where the drive's own supervision would have stopped it

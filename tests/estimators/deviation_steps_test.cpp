@@ -179,7 +179,7 @@ TEST(DeviationSteps, DesignInItsUnits) {
   EXPECT_NEAR(o.config.load_step_q20, std::pow(units(1.0), 2) * kOne, 5e-3 * o.config.load_step_q20);
   EXPECT_EQ(o.config.moving_step_q20, 4 * o.config.load_step_q20);  // twice the step
   EXPECT_EQ(Observer(false).config.moving_step_q20, 0);
-  EXPECT_EQ(o.config.residual_limit_q20, 192 * raw(0.1, 20));
+  EXPECT_EQ(o.config.limit_q19, 96 * raw(0.1, 20));
 }
 
 TEST(DeviationSteps, QualityIsWhatIsLeftOfTheAnglesVariance) {
@@ -242,27 +242,28 @@ TEST(DeviationSteps, WhatIsLeftIsTheMeanBySpans) {
   dq_t residual = {};
   std::int32_t span = 0, periods = 0;
   ASSERT_TRUE(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods));
-  EXPECT_NEAR(real(residual.d, 20), sum.x / ticks, 1e-4);
-  EXPECT_NEAR(real(residual.q, 20), sum.y / ticks, 1e-4);
+  // each period's changes are rounded to 0.49 mA
+  EXPECT_NEAR(real(residual.d, 20), sum.x / ticks, 3 * 2.5e-4 * 10000 / ticks);
+  EXPECT_NEAR(real(residual.q, 20), sum.y / ticks, 3 * 2.5e-4 * 10000 / ticks);
   EXPECT_EQ(span, ticks / 3);
   EXPECT_EQ(periods, 3);
   EXPECT_FALSE(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods));
 }
 
-// Of windows that nobody asks for nothing is kept: after sixteen periods it begins anew.
+// Of windows that nobody asks for nothing is kept: after fifteen periods it begins anew.
 TEST(DeviationSteps, WhatNobodyTakesIsForgotten) {
   const Motor m;
   const std::vector<Window> windows = {window_at(m, 0.0, 0.0, {1.0, 2.0}, state_vector(1), 2500, 2500),
                                        window_at(m, 0.0, 0.0, {1.0, 2.0}, state_vector(6), 7500, 2500)};
-  for (const auto& [count, kept] : {std::pair{15, 15}, {16, 0}, {17, 1}}) {
+  for (const auto& [count, kept] : {std::pair{15, 15}, {16, 1}, {17, 2}}) {
     Observer o;
     const Input in(o.model, windows);
     for (int n = 0; n < count; ++n) (void)deviation_observer_step(&o.state, &o.config, in.get());
     dq_t residual = {};
     std::int32_t span = 0, periods = 0;
-    EXPECT_EQ(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods), kept > 0) << count;
+    EXPECT_EQ(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods), true) << count;
     EXPECT_EQ(periods, kept);
-    EXPECT_EQ(span, kept > 0 ? 5000 : 0);
+    EXPECT_EQ(span, 5000);
   }
 }
 

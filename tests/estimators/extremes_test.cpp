@@ -19,34 +19,39 @@ namespace {
 using namespace stillspin::test;
 using namespace stillspin::test::seen;
 
-constexpr std::int32_t kSlopeEnd = (1 << 30) - 1;     // 1024 A per period
-constexpr std::int32_t kResidualEnd = (1 << 29) - 1;  // 512
-
-// The slope of a sensor that jumps from end to end, seen at a speed that makes as much of its own.
+// The change of a sensor that jumps from end to end within a short window, seen at a speed that makes as much of its
+// own.
 TEST(Extremes, AResidualBeyondItsFormatKeepsItsSign) {
-  const rotation_t ahead = {0, 1 << 30};
-  const estimator_frame_t frame = {ahead, {0, 0}};
-  for (const std::int32_t sign : {1, -1}) {
-    deviation_model_t at = {};
-    at.less_emf_q42 = {sign * 1900 * (std::int64_t{1} << 42), sign * 1900 * (std::int64_t{1} << 42)};
+  const machine_model_t none = {};
+  for (const double sign : {1.0, -1.0}) {
     estimator_window_t w = {};
-    w.slope_q20 = {sign * kSlopeEnd, sign * kSlopeEnd};
-    deviation_t d;
-    deviation_in_frame(&at, &w, &frame, &d);
-    EXPECT_NEAR(d.residual_q20.d, sign * kResidualEnd, 1);
-    EXPECT_NEAR(d.residual_q20.q, sign * kResidualEnd, 1);
+    w.change_q19 = raw_ab({sign * 400.0, sign * 800.0}, 19);
+    w.span_ticks = 40;
+    w.middle_tick = 5000;
+    const deviation_t d = deviation_evaluate(&none, &w, 0, 0);
+    EXPECT_NEAR(real(d.residual_q20.d, 20), sign * 512.0, 1e-3);
+    EXPECT_NEAR(real(d.residual_q20.q, 20), sign * 512.0, 1e-3);
   }
 }
 
-// So does what the model makes of a current.
-TEST(Extremes, AResidualOfTheModelAloneKeepsItsSign) {
-  const estimator_frame_t frame = {{0, 1 << 30}, {400 * (1 << 20), 0}};
-  deviation_model_t at = {};
-  at.a_dd_q22 = 20 * (1 << 22);  // 8000 A per period
-  const estimator_window_t w = {};
-  deviation_t d;
-  deviation_in_frame(&at, &w, &frame, &d);
-  EXPECT_EQ(d.residual_q20.d, kResidualEnd);
+// A machine whose current follows the voltage within half a period counts as one that takes half a period.
+TEST(Extremes, WhatTheModelMakesOfACurrentKeepsItsSign) {
+  machine_model_t m = {};
+  m.rs_q24 = raw(20.0, 24);
+  m.yd_q30 = m.yq_q30 = raw(1.0, 30);
+  for (const double sign : {1.0, -1.0}) {
+    m.ydq_q30 = raw(sign * 0.5, 30);
+    const deviation_model_t at = deviation_model(&m, 0);
+    EXPECT_NEAR(real(at.a_dd_q29, 29), 2.0, 1e-6);
+    EXPECT_NEAR(real(at.a_dq_q29, 29), sign * 2.0, 1e-6);
+    estimator_window_t w = {};
+    w.span_ticks = 10000;
+    const estimator_frame_t frame = {{0, 1 << 30}, {400 << 18, 0}};
+    deviation_change_t c;
+    deviation_in_frame(&at, &w, &frame, &c);
+    EXPECT_NEAR(real(c.left_q17.d, 17), 800.0, 0.01);
+    EXPECT_NEAR(real(c.left_q17.q, 17), sign * 800.0, 0.01);
+  }
 }
 
 // A machine with Lq = 2.7 Ld has sensitivities of 470 A at 200 A; with the largest saliency that may be learnt (Lq = 19

@@ -111,7 +111,7 @@ TEST(Flying, OneWindowIsEnough) {
   const Vector slope = current_derivative(m, s.theta + s.w * middle, s.w, i, {0, 0});
   estimator_window_t w = {};
   w.current_q20 = raw_ab(i, 20);
-  w.slope_q20 = raw_ab(slope * kPeriod, 20);
+  w.change_q19 = raw_change(slope * kPeriod, 2000);
   w.span_ticks = 2000;
   flying_pulse_t p;
   flying_begin(&p);
@@ -220,7 +220,7 @@ TEST(Flying, ResistanceAndDropsAreTakenOff) {
   flying_begin(&p);
   estimator_window_t w = {};
   w.current_q20 = raw_ab({6.0, -9.0}, 20);
-  w.voltage_q16 = raw_ab({-1.0, 1.5}, 16);
+  w.voltage_q19 = raw_ab({-1.0, 1.5}, 19);
   for (int k = 0; k < 3; ++k) flying_add(&p, &model, &w, 2000 + 3000 * k);
   const flying_emf_t e = flying_evaluate(&p, &model);
   const Vector expected = {-1.0 - m.rs * 6.0, 1.5 + m.rs * 9.0};

@@ -120,11 +120,9 @@ TEST(Fresh, DeviationObserver) {
   EXPECT_EQ(s.cogging.known_q30 | s.cogging.order | s.cogging.wave.cos_q30 | s.cogging.wave.sin_q30, 0);
   EXPECT_EQ(s.cogging.stepped_bam | s.regressed_bam, 0u);
   EXPECT_EQ(s.gathered.aa_q21 | s.gathered.as_q24 | s.gathered.ss_q21 | s.gathered.periods, 0);
-  EXPECT_EQ(s.residual.d_q20 | s.residual.q_q20 | s.residual.span_ticks | s.residual.periods, 0);
+  EXPECT_EQ(s.residual.d_q11 | s.residual.q_q11 | s.residual.span_ticks | s.residual.periods, 0);
   const deviation_sensitivity_t& h = s.sensitivity;
-  EXPECT_EQ(
-      h.saliency_q30 | h.tilt_q30 | h.less_tilt_q30 | h.rest_q17.d | h.rest_q17.q | h.h_speed_q20.d | h.h_speed_q20.q,
-      0);
+  EXPECT_EQ(h.rest_q17.d | h.rest_q17.q | h.h_speed_q20.d | h.h_speed_q20.q, 0);
   const regression_t& r = s.regression;
   EXPECT_EQ(r.spread_q8 | r.along_q16 | r.mirror_q16 | r.cross_q16 | r.curl_q16 | r.information, 0);
   EXPECT_EQ(r.mean_q20.d | r.mean_q20.q, 0);
@@ -209,13 +207,13 @@ TEST(Fresh, Flying) {
   flying_begin(&s);
   EXPECT_EQ(s.windows, 0);
   estimator_window_t w = {};
-  w.voltage_q16 = {raw(-1.0, 16), raw(1.5, 16)};
-  w.slope_q20 = {raw(5.0, 20), raw(-5.0, 20)};
+  w.voltage_q19 = {raw(-1.0, 19), raw(1.5, 19)};
+  w.change_q19 = raw_change({5.0, -5.0}, 2000);
   w.span_ticks = 2000;
   flying_add(&s, &m, &w, 70000);
   EXPECT_EQ(s.windows, 1);
-  EXPECT_EQ(s.drive_q16.alpha, w.voltage_q16.alpha);
-  EXPECT_EQ(s.drive_q16.beta, w.voltage_q16.beta);
+  EXPECT_EQ(s.drive_q16.alpha, raw(-1.0, 16));
+  EXPECT_EQ(s.drive_q16.beta, raw(1.5, 16));
   EXPECT_EQ(s.first_tick, 69000);
   EXPECT_EQ(s.last_tick, 71000);
   EXPECT_NEAR(real(s.first_q20.alpha, 20), -0.5, 1e-5);

@@ -40,7 +40,7 @@ estimator_window_t sampled(const Motor& motor, const Window& w, double theta, do
   sums.end_a = sum(current + half, 0);
   sums.end_b = sum(current + half, 1);
   estimator_window_t e = {};
-  e.voltage_q16 = raw_ab(v, 16);
+  e.voltage_q19 = raw_ab(v, 19);
   e.middle_tick = static_cast<std::int16_t>(w.middle);
   e.span_ticks = static_cast<std::int16_t>(w.span);
   e.zero_vector = w.state == 0 || w.state == 7;
@@ -63,7 +63,9 @@ double sigma(unsigned state, int span, double amps, bool of_speed, std::uint64_t
     const deviation_t d = deviation_evaluate(&m, &w, bam(theta), 0);
     const Vector e = real(d.residual_q20, 20);
     const deviation_sensitivity_t s = deviation_sensitivity(&m, 0, d.current_q20);
-    const Vector h = of_speed ? real(s.h_speed_q20, 20) : real(deviation_by_angle_q17(&s, d.voltage_q16), 17);
+    const dq_t mirrored_q15 =
+        deviation_mirrored_q15((m.yd_q30 - m.yq_q30) / 2, m.ydq_q30, {2 * d.voltage_q16.d, 2 * d.voltage_q16.q});
+    const Vector h = of_speed ? real(s.h_speed_q20, 20) : real(deviation_by_angle_q17(&s, mirrored_q15), 17);
     const double error = (e.x * h.x + e.y * h.y) / (h.x * h.x + h.y * h.y);
     squares += error * error;
   }

@@ -51,9 +51,9 @@ inline estimator_window_t observed(const Motor& m, const Window& w, double theta
   const double at = theta - speed * m.period * (1.0 - w.middle / 10000.0);
   const Vector v = state_voltage(w.state);
   estimator_window_t e = {};
-  e.slope_q20 = raw_ab(slope_of(m, at, speed, current, v) * m.period + slope_noise, 20);
+  e.change_q19 = raw_change(slope_of(m, at, speed, current, v) * m.period + slope_noise, w.span);
   e.current_q20 = raw_ab(current, 20);
-  e.voltage_q16 = raw_ab(v, 16);
+  e.voltage_q19 = raw_ab(v, 19);
   e.middle_tick = static_cast<std::int16_t>(w.middle);
   e.span_ticks = static_cast<std::int16_t>(w.span);
   e.zero_vector = w.state == 0 || w.state == 7;

@@ -12,7 +12,7 @@
 #include "tests/control/quantities.hpp"
 
 extern "C" {
-#include "estimators/estimator.h"
+#include "estimators/deviation.h"
 }
 
 // A namespace of its own: machine.hpp has windows of another make.
@@ -51,9 +51,9 @@ struct Window {
 
   estimator_window_t raw() const {
     estimator_window_t w;
-    w.slope_q20 = raw_ab(slope, 20);
+    w.change_q19 = raw_change(slope, span);
     w.current_q20 = raw_ab(current, 20);
-    w.voltage_q16 = raw_ab(voltage, 16);
+    w.voltage_q19 = raw_ab(voltage, 19);
     w.middle_tick = static_cast<std::int16_t>(middle);
     w.span_ticks = static_cast<std::int16_t>(span);
     w.zero_vector = voltage.length() < 1.0;
@@ -72,6 +72,11 @@ inline Window window_at(const Motor& m, double theta, double w, Vector i, Vector
   x.middle = middle;
   x.span = span;
   return x;
+}
+
+/// What the model's saliency makes of a voltage.
+inline dq_t mirrored(const machine_model_t& m, dq_t v_q16) {
+  return deviation_mirrored_q15((m.yd_q30 - m.yq_q30) / 2, m.ydq_q30, {v_q16.d * 2, v_q16.q * 2});
 }
 
 /// The period's windows of the alternating layout: +x and -x, x going round the phases, the order changing.

@@ -257,18 +257,18 @@ TEST(OneStep, InformationBeyondItsBoundShrinksAlike) {
   deviation_observer_config_t c = {};
   c.weight_q8 = 1 << 20;
   information_sums_t sums = {};
-  sums.h_q17 = {10000, -15000};
-  sums.e_q20 = {4000, 9000};
-  sums.weight = 1 << 28;
-  sums.a_q37 = std::int64_t{1} << 25;
+  sums.h_q14 = {3400, -5000};
+  sums.e_q17 = {1300, 3000};
+  sums.square_q28 = 1 << 25;
+  sums.a_q32 = std::int64_t{1} << 21;
   const dq_t h_s = {-20000000, 40000000};
   information_sums_t more = sums;
-  sums.aa_q34 = std::int64_t{1} << 28;
+  sums.aa_q30 = std::int64_t{1} << 25;
   const information_t within = information_of(&sums, &c, h_s);
   ASSERT_LT(std::max(within.aa, within.ss), INFORMATION_MAX);
   // the same windows with so much weight that the angle's information is beyond
   c.weight_q8 *= 512;
-  more.aa_q34 = sums.aa_q34;
+  more.aa_q30 = sums.aa_q30;
   const information_t beyond = information_of(&more, &c, h_s);
   EXPECT_NEAR(std::max(beyond.aa, beyond.ss), INFORMATION_MAX, 16.0);
   const double share = static_cast<double>(beyond.ss) / within.ss;

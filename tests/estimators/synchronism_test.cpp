@@ -323,9 +323,9 @@ TEST(Synchronism, AWindowAloneIsItsOwnMean) {
   Random random(3);
   for (int n = 0; n < 2000; ++n) {
     estimator_window_t w = {};
-    w.slope_q20 = raw_ab(random.direction(random.between(0.1, 5.0)), 20);
+    w.change_q19 = raw_change(random.direction(random.between(0.1, 5.0)), 4096);
     w.current_q20 = raw_ab(random.direction(random.between(0.1, 14.0)), 20);
-    w.voltage_q16 = raw_ab(random.direction(random.between(0.1, 200.0)), 16);
+    w.voltage_q19 = raw_ab(random.direction(random.between(0.1, 200.0)), 19);
     w.middle_tick = static_cast<std::int16_t>(2048 + random.below(5000));
     w.span_ticks = 4096;
     const std::uint32_t angle = bam(random.between(-kPi, kPi));

@@ -31,13 +31,17 @@ class Bench {
         windows.push_back(observed(truth_, w, theta_, speed_, Vector{0.0, iq_}.turned(theta_ - speed_ * kPeriod / 2)));
       }
       const estimator_input_t in = input_of(model_, windows);
-      deviation_t d[ESTIMATOR_WINDOWS];
+      const std::int32_t w_q30 = machine_speed_rad_q30(bpp(speed_));
+      const deviation_model_t at = deviation_model(&model_, w_q30);
+      estimator_frame_t frames[ESTIMATOR_WINDOWS];
+      deviation_change_t seen[ESTIMATOR_WINDOWS];
+      deviation_frames(in.windows, in.window_count, deviation_middle(bam(theta_), bpp(speed_)), w_q30, frames);
       for (std::uint16_t k = 0; k < in.window_count; ++k) {
-        d[k] = deviation_evaluate(&model_, &in.windows[k], bam(theta_), bpp(speed_));
+        deviation_in_frame(&at, &in.windows[k], &frames[k], &seen[k]);
       }
       regression_t r;
-      regression_evaluate(&r, d, &in);
-      voltage_match_step(&model_, &r, machine_speed_rad_q30(bpp(speed_)), kShare);
+      regression_evaluate(&r, seen, &in);
+      voltage_match_step(&model_, &r, w_q30, kShare);
     }
     machine_model_move(&model_, raw(iq_, 20));
   }

@@ -115,10 +115,10 @@ TEST_F(Phases, APairIsUnderOppositeVectors) {
   EXPECT_FALSE(commissioning_pair(&drive, &first, &second));
   for (const auto& [volts, pair] : {std::pair{9.5, true}, {10.5, false}, {-9.5, true}, {-10.5, false}}) {
     windows({2.0, 0.0}, 0.0, 0.0);
-    drive.samples.windows[1].voltage_q16.alpha += raw(volts, 16);
+    drive.samples.windows[1].voltage_q19.alpha += raw(volts, 19);
     EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << volts;
     windows({2.0, 0.0}, 0.0, 0.0);
-    drive.samples.windows[1].voltage_q16.beta += raw(volts, 16);
+    drive.samples.windows[1].voltage_q19.beta += raw(volts, 19);
     EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << volts;
   }
 }

@@ -105,8 +105,8 @@ TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
     m.tick = 55;
     drive.samples.count = pair ? 2 : 1;
     drive.samples.windows[0] = drive.samples.windows[1] = {};
-    drive.samples.windows[0].voltage_q16 = {raw(200.0, 16), 0};
-    drive.samples.windows[1].voltage_q16 = {raw(-200.0, 16), 0};
+    drive.samples.windows[0].voltage_q19 = {raw(200.0, 19), 0};
+    drive.samples.windows[1].voltage_q19 = {raw(-200.0, 19), 0};
     (void)commissioning_map(&drive);
     EXPECT_EQ(m.group[0][3].tensor.count, pair ? 1 : 0);  // the mirrored train begins with a negative current
     m.pause = true;
@@ -154,8 +154,8 @@ TEST_F(CommissioningStairs, APairIsOppositeAlongBothAxes) {
   w[0] = w[1] = {};
   for (const auto& [a, b] : {std::pair{100.0, 150.0}, {0.0, 150.0}, {-100.0, 0.0}}) {
     for (const auto& [along, across] : {std::pair{-1.0, -1.0}, {-1.0, 1.0}, {1.0, -1.0}}) {
-      w[0].voltage_q16 = raw_ab({a, b}, 16);
-      w[1].voltage_q16 = raw_ab({along * a, across * b}, 16);
+      w[0].voltage_q19 = raw_ab({a, b}, 19);
+      w[1].voltage_q19 = raw_ab({along * a, across * b}, 19);
       const bool pair = (a == 0.0 || along < 0.0) && (b == 0.0 || across < 0.0);
       EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << a << " " << b << " " << along << across;
     }

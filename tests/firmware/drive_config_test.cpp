@@ -76,8 +76,8 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.avv.bandwidth_short_q30, 30), 100.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.zvv.kp_q30, 30), 4.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.zvv.ki_q40, 40) / (4.0 * kPeriod * kPeriod), 1.0, 1e-4);
-  EXPECT_NEAR(real(c.observer.weight_q8, 8) * 1.6e9 / std::ldexp(1.0, 32), 100.0, 0.01);  // 100 mA
-  EXPECT_NEAR(real(c.observer.residual_limit_q20, 20), 19.2, 0.01);
+  EXPECT_NEAR(real(c.observer.weight_q8, 8), 100.0, 0.01);  // 100 mA
+  EXPECT_NEAR(real(c.observer.limit_q19, 19), 19.2, 0.01);
   EXPECT_NEAR(real(c.adapt_share_q30, 30), SCHEDULE_SLOTS * kPeriod / 150e-3, 1e-8);
   const double newton_metres =
       m.inertia / m.pole_pairs * kTurn / std::ldexp(kPeriod * kPeriod, 32);  // per bpp a period

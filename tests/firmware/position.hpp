@@ -53,8 +53,8 @@ class Position : public Drive {
       const Vector own = v.turned(-rad(angle_bam));
       const Vector slope = {real(m.yd_q30, 30) * own.x, real(m.yq_q30, 30) * own.y};
       w.zero_vector = false;
-      w.voltage_q16 = raw_ab(v, 16);
-      w.slope_q20 = raw_ab(slope.turned(rad(angle_bam)), 20);
+      w.voltage_q19 = raw_ab(v, 19);
+      w.change_q19 = raw_change(slope.turned(rad(angle_bam)), w.span_ticks);
     }
   }
   static void blend(blend_region_t region, double share_of_low) {

@@ -65,7 +65,7 @@ TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
   run_with(POSITION_ENCODER);
   position_align_encoder(&drive, kHere, 0);
   drive.config.encoder_trim_bam = bam(0.3);
-  drive.samples.windows[0].slope_q20 = {raw(0.02, 20), raw(0.01, 20)};
+  drive.samples.windows[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   estimate();
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere) - 0.3);
   EXPECT_NEAR(real(drive.position.deviation_q20, 20), slope.y, 1e-4);

@@ -96,8 +96,8 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
     learn_with(POSITION_OBSERVER);
     see_machine(kHere);
     for (int k = 0; k < 2; ++k) {
-      drive.samples.windows[k].slope_q20.alpha += raw(k == 0 ? 0.2 : -0.2, 20);
-      drive.samples.windows[k].slope_q20.beta += raw(k == 0 ? 0.1 : -0.1, 20);
+      drive.samples.windows[k].change_q19.alpha += raw(k == 0 ? 0.06 : -0.06, 19);
+      drive.samples.windows[k].change_q19.beta += raw(k == 0 ? 0.03 : -0.03, 19);
     }
     drive.state = DRIVE_START;
     drive.schedule.turning = false;
@@ -118,7 +118,7 @@ TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
     for (const bool predicting : {true, false}) {
       learn_with(POSITION_FLUX_CONV);
       see_machine(kHere);
-      drive.samples.windows[0].slope_q20.alpha += raw(0.2, 20);
+      drive.samples.windows[0].change_q19.alpha += raw(0.06, 19);
       drive.state = DRIVE_COMMISSION;
       drive.schedule.turning = false;
       drive.flags.frozen = !adapting;

@@ -49,8 +49,8 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
       run_with(POSITION_PAPER);
       blend(below ? BLEND_LOW : BLEND_BOTH, below ? 1.0 : 0.5);
       drive.schedule.task = task;
-      drive.samples.windows[0].slope_q20 = {0, raw(0.02, 20)};
-      drive.samples.windows[1].voltage_q16 = {raw(150.0, 16), 0};
+      drive.samples.windows[0].change_q19 = raw_change({0.0, 0.02}, 3000);
+      drive.samples.windows[1].voltage_q19 = {raw(150.0, 19), 0};
       drive.position.low.quality_q15 = 12345;
       drive_estimate(&drive);
       const bool of_zvv = (task == TASK_SPEED || task == TASK_FIELD) != below;
@@ -68,7 +68,7 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
     run_with(POSITION_PAPER);
     see(1);
     blend(BLEND_LOW, 1.0);
-    drive.samples.windows[0].slope_q20 = {raw(0.02, 20), raw(0.01, 20)};
+    drive.samples.windows[0].change_q19 = raw_change({0.02, 0.01}, 3000);
     if (!same) drive.position.selected.angle_bam = kThere;
     drive_estimate(&drive);
     const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
@@ -82,7 +82,7 @@ TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
   blend(BLEND_BOTH, 0.5);
   drive.schedule.task = TASK_SPEED;
   drive.position.high.angle_bam = drive.position.avv.observer.angle_bam = kThere;
-  drive.samples.windows[0].slope_q20 = {raw(0.02, 20), raw(0.01, 20)};
+  drive.samples.windows[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   drive_estimate(&drive);
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
   EXPECT_NEAR(real(drive.position.zvv.deviation_q20, 20), slope.y, 5e-5);

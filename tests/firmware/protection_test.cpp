@@ -210,7 +210,7 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   drive_protect(&drive);
   EXPECT_EQ(drive.state, DRIVE_RUN) << "nothing was seen yet";
   estimator_window_t w = drive.samples.windows[0];
-  w.slope_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
+  w.change_q19 = raw_change({5.0, 5.0}, w.span_ticks);  // no machine of this model does that
   const estimator_input_t in = {&drive.model, &w, 1, 0, false, false, false, nullptr};
   for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
   drive_protect(&drive);

@@ -44,9 +44,9 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
       const Vector v = {(2.0 * a - b - c) / 3.0 * link - (2.0 * drop[0] - drop[1] - drop[2]) / 3.0,
                         (b - c) / std::sqrt(3.0) * link - (drop[1] - drop[2]) / std::sqrt(3.0)};
       // the link is filtered on from window to window: up to 0.05 V between this window and the last
-      ASSERT_NEAR(real(e.voltage_q16.alpha, 16), v.x, 0.1);
-      ASSERT_NEAR(real(e.voltage_q16.beta, 16), v.y, 0.1);
-      ASSERT_NEAR(real(e.slope_q20.alpha, 20), rise * 20.0 / 2048.0 * 10000.0 / (end - begin), 0.01);
+      ASSERT_NEAR(real(e.voltage_q19.alpha, 19), v.x, 0.1);
+      ASSERT_NEAR(real(e.voltage_q19.beta, 19), v.y, 0.1);
+      ASSERT_NEAR(real(e.change_q19.alpha, 19), rise * 20.0 / 2048.0, 1e-5);
     }
     if (drive.state != DRIVE_RUN) break;
   }

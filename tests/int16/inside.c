@@ -6,16 +6,16 @@
 uint16_t samples_out(int32_t* flat);
 void commissioning_out(uint16_t index, int32_t* flat);
 
-// Windows of the last period, eight numbers each in the order of estimator_window_t; returns how many.
+// Windows of the last period, eight numbers each change, current, voltage and the rest; returns how many.
 uint16_t samples_out(int32_t* flat) {
   for (uint16_t k = 0; k < ESTIMATOR_WINDOWS; k++) {
     const estimator_window_t* const w = &drive.samples.windows[k];
-    *flat++ = w->slope_q20.alpha;
-    *flat++ = w->slope_q20.beta;
+    *flat++ = w->change_q19.alpha;
+    *flat++ = w->change_q19.beta;
     *flat++ = w->current_q20.alpha;
     *flat++ = w->current_q20.beta;
-    *flat++ = w->voltage_q16.alpha;
-    *flat++ = w->voltage_q16.beta;
+    *flat++ = w->voltage_q19.alpha;
+    *flat++ = w->voltage_q19.beta;
     *flat++ = w->middle_tick;
     *flat++ = w->span_ticks;
   }

@@ -65,9 +65,9 @@ drive_signals_t __wrap_drive_signals(void) {
   drive.samples.count = int16_samples_out(flat);
   const int32_t* f = flat;
   for (estimator_window_t& w : drive.samples.windows) {
-    w.slope_q20 = {f[0], f[1]};
+    w.change_q19 = {f[0], f[1]};
     w.current_q20 = {f[2], f[3]};
-    w.voltage_q16 = {f[4], f[5]};
+    w.voltage_q19 = {f[4], f[5]};
     w.middle_tick = static_cast<int16_t>(f[6]);
     w.span_ticks = static_cast<int16_t>(f[7]);
     f += kWindowWords;

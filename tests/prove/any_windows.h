@@ -1,4 +1,4 @@
-// A period's windows with any contents: any slope that fits its format, what current two sensors can show, any voltage
+// A period's windows with any contents: any current and any change of it that two sensors can show, any voltage
 // of a DC link of 2000 V, and spans that lie in the period one beside the other.
 
 #ifndef STILLSPIN_TESTS_PROVE_ANY_WINDOWS_H
@@ -32,10 +32,10 @@ static inline int32_t any_up_to_end(int32_t most) {
 }
 
 static inline void any_window(estimator_window_t* w, int16_t span_ticks) {
-  w->slope_q20 = any_ab(SLOPE_MAX_Q20);
+  w->change_q19 = any_ab(CHANGE_MAX_Q19);
   w->current_q20.alpha = any_up_to_end(WINDOW_ALPHA_MAX_Q20);
   w->current_q20.beta = any_up_to_end(WINDOW_BETA_MAX_Q20);
-  w->voltage_q16 = any_ab(WINDOW_VOLTS_MAX_Q16);
+  w->voltage_q19 = any_ab(8 * WINDOW_VOLTS_MAX_Q16);
   w->middle_tick = (int16_t)any_from(0, PERIOD_TICKS);
   w->span_ticks = span_ticks;
   w->zero_vector = any_bool();
@@ -44,7 +44,7 @@ static inline void any_window(estimator_window_t* w, int16_t span_ticks) {
 static inline estimator_frame_t any_frame(void) {
   estimator_frame_t f;
   f.rotation = frame_rotation(any_u32);
-  f.current_q20 = any_dq(any_current_end_q20);
+  f.current_q18 = any_dq(any_current_end_q20 / 4);
   return f;
 }
 

@@ -12,17 +12,17 @@
 #define ASKED_MAX_Q16 (8270 * VOLTS_Q16)      // of the modulator
 #define SPEED_MAX_BPP 1298773986L             // 1.9 rad per period
 #define TURN_MAX_BPP 683565276L               // 1 rad per period: with the current put ahead
-#define SLOPE_MAX_Q20 1073741824L             // slopes.h
-#define RS_NOMINAL_MAX_Q24 352321536L         // 21 ohm
-#define Y0_END_Q30 644245094L                 // 0.6 A per V and period, in the map (firmware/config/config.c)
-#define Y_END_Q30 1288490189L                 // 1.2, with what is learnt
-#define Y_CROSS_END_Q30 966367641L            // 0.9 across
-#define TILT_END_Q24 1073741824L              // 64
-#define K0_END_Q20 1073741824L                // 1024 A per period
-#define FLUX_END_Q16 2097152000L              // 32000 V, of the map
-#define TRIM_FLUX_END_Q16 786432000L          // three eighths of that, learnt
-#define LEAST_SHARE_Q24 (-15728640L)          // of the map's inverse inductances, learnt: 15/16 less
-#define START_SAMPLES 4                       // hal/hal_adc.h
+#define CHANGE_MAX_Q19 382730240L      // 730 A: what two sensors of 200 A show from end to end, mismatch included
+#define RS_NOMINAL_MAX_Q24 352321536L  // 21 ohm
+#define Y0_END_Q30 644245094L          // 0.6 A per V and period, in the map (firmware/config/config.c)
+#define Y_END_Q30 1288490189L          // 1.2, with what is learnt
+#define Y_CROSS_END_Q30 966367641L     // 0.9 across
+#define TILT_END_Q24 1073741824L       // 64
+#define K0_END_Q20 1073741824L         // 1024 A per period
+#define FLUX_END_Q16 2097152000L       // 32000 V, of the map
+#define TRIM_FLUX_END_Q16 786432000L   // three eighths of that, learnt
+#define LEAST_SHARE_Q24 (-15728640L)   // of the map's inverse inductances, learnt: 15/16 less
+#define START_SAMPLES 4                // hal/hal_adc.h
 #define END_SAMPLES 3
 #define OFFSET_MIN_Q8 491520L                     // 1920 codes (firmware/drive/sequence.c)
 #define OFFSET_MAX_Q8 557056L                     // 2176
@@ -36,7 +36,7 @@
 #define VARIANCE_END_Q20 536870912L              // deviation_observer.c
 #define POWER_END_Q23 1073741823L                // of scores
 #define INFORMATION_END_Q21 16777217L            // of a period, deviation_information.h, and a rounding
-#define LEFT_END_Q20 16106127352500LL            // of a period: 512 A times the ticks of three windows
+#define LEFT_END_Q11 100663296L                  // of a period: 16384 A in each of three windows
 #define RATIO_MIN_Q24 2097152L                   // of the inertia to the one that the parameters say
 #define RATIO_MAX_Q24 134217728L
 

@@ -122,8 +122,8 @@ bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const ma
     requires FROM_TO(c->alpha_a_q36, -GAIN_MAX_Q36 / 20, GAIN_MAX_Q36);
     requires FROM_TO(c->beta_a_q36, -GAIN_MAX_Q36 / 20, GAIN_MAX_Q36 / 10 * 6);
     requires FROM_TO(c->beta_b_q36, -GAIN_MAX_Q36 / 10, GAIN_MAX_Q36 / 10 * 12);
-    assigns w->slope_q20, w->current_q20 \from *c, *sums, w->span_ticks;
-    ensures VECTOR_AB(w->slope_q20, SLOPE_MAX_Q20); ensures WITHIN(w->current_q20.alpha, WINDOW_ALPHA_MAX_Q20);
+    assigns w->change_q19, w->current_q20 \from *c, *sums;
+    ensures VECTOR_AB(w->change_q19, CHANGE_MAX_Q19); ensures WITHIN(w->current_q20.alpha, WINDOW_ALPHA_MAX_Q20);
     ensures WITHIN(w->current_q20.beta, WINDOW_BETA_MAX_Q20); */
 void slopes_evaluate(const slopes_scale_t* c, const slopes_sums_t* sums, estimator_window_t* w);
 

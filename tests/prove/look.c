@@ -11,8 +11,8 @@ static surroundings_t around;
 
 static deviation_residual_t any_left(int32_t periods) {
   deviation_residual_t left;
-  left.d_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_from(-INT32_MAX, INT32_MAX);
-  left.q_q20 = (int64_t)periods * LEFT_END_Q20 / INT32_MAX * any_from(-INT32_MAX, INT32_MAX);
+  left.d_q11 = any_from(-periods * LEFT_END_Q11, periods * LEFT_END_Q11);
+  left.q_q11 = any_from(-periods * LEFT_END_Q11, periods * LEFT_END_Q11);
   left.span_ticks = periods * any_from(0, 3 * PERIOD_TICKS);
   left.periods = periods;
   return left;
@@ -33,12 +33,12 @@ static void look_once(const estimator_input_t* in) {
 }
 
 static void leave_after(const estimator_input_t* in, int32_t periods) {
-  deviation_t d[ESTIMATOR_WINDOWS];
-  for (uint16_t k = 0; k < ESTIMATOR_WINDOWS; k++) d[k].residual_q20 = any_dq(RESIDUAL_END_Q20);
+  deviation_change_t c[ESTIMATOR_WINDOWS];
+  for (uint16_t k = 0; k < ESTIMATOR_WINDOWS; k++) c[k].left_q17 = any_dq(INT32_MAX);
   deviation_residual_t left = any_left(periods);
-  leave(&left, in, d);
+  leave(&left, in, c);
   //@ assert 0 <= left.periods <= 15 && 0 <= left.span_ticks <= left.periods * 30000;
-  //@ assert WITHIN(left.d_q20, left.periods * LEFT_END_Q20) && WITHIN(left.q_q20, left.periods * LEFT_END_Q20);
+  //@ assert WITHIN(left.d_q11, left.periods * LEFT_END_Q11) && WITHIN(left.q_q11, left.periods * LEFT_END_Q11);
 }
 
 static void leave_after_all(const estimator_input_t* in) {

@@ -8,14 +8,13 @@
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"
 
-#define CHANGE_MAX_BPP 8388608L      // of a period's torque, foreseen
-#define RESIDUAL_END_Q20 536870912L  // 512 A per period, deviation.h
+#define CHANGE_MAX_BPP 8388608L  // of a period's torque, foreseen
 
 /*@ requires \valid(left) && \valid_read(in) && FROM_TO(in->window_count, 1, ESTIMATOR_WINDOWS);
-    requires VECTOR_DQ(d[0].residual_q20, RESIDUAL_END_Q20);
-    requires in->window_count > 1 ==> VECTOR_DQ(d[1].residual_q20, RESIDUAL_END_Q20);
-    requires in->window_count > 2 ==> VECTOR_DQ(d[2].residual_q20, RESIDUAL_END_Q20); */
-static void leave(deviation_residual_t* left, const estimator_input_t* in, const deviation_t d[]);
+    requires VECTOR_DQ(c[0].left_q17, INT32_MAX);
+    requires in->window_count > 1 ==> VECTOR_DQ(c[1].left_q17, INT32_MAX);
+    requires in->window_count > 2 ==> VECTOR_DQ(c[2].left_q17, INT32_MAX); */
+static void leave(deviation_residual_t* left, const estimator_input_t* in, const deviation_change_t c[]);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in) && FROM_TO(in->window_count, 1, ESTIMATOR_WINDOWS);
     requires WITHIN(s->speed_bpp, SPEED_MAX_BPP + CHANGE_MAX_BPP);

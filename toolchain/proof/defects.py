@@ -62,9 +62,7 @@ DEFECTS = (
         "(uint32_t)c->pulse_ticks * FOUR",
         "(int32_t)c->pulse_ticks * 99 * (int32_t)FOUR",
     ),
-    Defect(
-        "turned", "turned", "estimators/deviation.c", "(square_q28 - fourth_q28) * 2", "(square_q28 - fourth_q28) * 16"
-    ),
+    Defect("turned", "turned", "estimators/deviation.c", "q_mul_hi(x_q30, x_q30) * 2", "q_mul_hi(x_q30, x_q30) * 16"),
     Defect("limits", "q_sat_bits", "hal/qmath/qarith.h", "q_shr64(x, n + bits)", "q_shr64(x, n + bits + 1u)"),
     Defect(
         "shifts",
