@@ -58,7 +58,8 @@ wiring_t wiring_judge(const axis_t* s, const machine_model_t* m, int32_t code_q2
   const int32_t x = q_add_sat(saliency_q14, q_shr(s->mirror_q16, 2));
   const int32_t c = q_shr(s->cross_q16, 2), u = q_shr(s->curl_q16, 2);
   if (is_full(s->along_q16) || is_full(s->mirror_q16) || is_full(s->cross_q16) || is_full(y)) return WIRING_GOOD;
-  if (y > 0 && q_abs_sat(u) < y / 4 && q_hypot(x, c) < y / SALIENCY * (SALIENCY - 1)) return WIRING_GOOD;
+  if (y > expected_q14 / FAINT && q_abs_sat(u) < y / 4 && q_hypot(x, c) < y / SALIENCY * (SALIENCY - 1))
+    return WIRING_GOOD;
   const sight_t a = {q_add_sat(y, x), q_sub_sat(c, u)};
   const sight_t beta = {q_add_sat(c, u), q_sub_sat(y, x)};
   const sight_t b = {q_mul_sub_sat(beta.x, HALF_SQRT3_Q30, a.x, ONE_Q30 / 2, 30),

@@ -47,7 +47,7 @@ class Phases : public Drive {
       const double left = k == 0 ? first : second;
       const double along = real(m.yd_q30, 30) * (volts - real(m.rs_q24, 24) * current.x) + left;
       const double across = -real(m.yq_q30, 30) * real(m.rs_q24, 24) * current.y;
-      w = {raw_ab({along, across}, 20), raw_ab(current, 20), raw_ab({volts, 0.0}, 16), 0, 2500, false};
+      w = {raw_change({along, across}, 2500), raw_ab({volts, 0.0}, 19), raw_ab(current, 20), 0, 2500, false};
       w.middle_tick = static_cast<std::int16_t>(k == 0 ? 3100 : 7300);
     }
     const sampling_config_t& c = drive.config.modulator.sampling;

@@ -105,6 +105,7 @@ TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
     m.tick = 55;
     drive.samples.count = pair ? 2 : 1;
     drive.samples.windows[0] = drive.samples.windows[1] = {};
+    drive.samples.windows[0].span_ticks = drive.samples.windows[1].span_ticks = 2500;
     drive.samples.windows[0].voltage_q19 = {raw(200.0, 19), 0};
     drive.samples.windows[1].voltage_q19 = {raw(-200.0, 19), 0};
     (void)commissioning_map(&drive);
@@ -152,6 +153,7 @@ TEST_F(CommissioningStairs, APairIsOppositeAlongBothAxes) {
   drive.samples.count = 2;
   estimator_window_t* const w = drive.samples.windows;
   w[0] = w[1] = {};
+  w[0].span_ticks = w[1].span_ticks = 2500;
   for (const auto& [a, b] : {std::pair{100.0, 150.0}, {0.0, 150.0}, {-100.0, 0.0}}) {
     for (const auto& [along, across] : {std::pair{-1.0, -1.0}, {-1.0, 1.0}, {1.0, -1.0}}) {
       w[0].voltage_q19 = raw_ab({a, b}, 19);

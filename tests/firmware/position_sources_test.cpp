@@ -126,7 +126,7 @@ TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
         see(1);
         drive.control.measured_q20.q = raw(2.5, 20);
         estimate(static_cast<schedule_slot_t>(slot));
-        EXPECT_EQ(drive.position.observer.sensitivity.saliency_q30 != 0, follows) << "of the observer, with the model";
+        EXPECT_EQ(drive.position.observer.sensitivity.h_speed_q20.q != 0, follows) << "of the observer, with the model";
       }
     }
   }

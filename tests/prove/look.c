@@ -32,17 +32,18 @@ static void look_once(const estimator_input_t* in) {
   (void)look(&s, &tuning, in);
 }
 
-static void leave_after(const estimator_input_t* in, int32_t periods) {
-  deviation_change_t c[ESTIMATOR_WINDOWS];
-  for (uint16_t k = 0; k < ESTIMATOR_WINDOWS; k++) c[k].left_q17 = any_dq(INT32_MAX);
+static void leave_after(int32_t periods) {
+  information_sums_t n;
+  n.left_q15 = any_dq(LEFT_END_Q15);
+  n.span_ticks = any_from(1, 3 * PERIOD_TICKS);
   deviation_residual_t left = any_left(periods);
-  leave(&left, in, c);
-  //@ assert 0 <= left.periods <= 15 && 0 <= left.span_ticks <= left.periods * 30000;
+  leave(&left, &n);
+  //@ assert 1 <= left.periods <= 15 && 0 <= left.span_ticks <= left.periods * 30000;
   //@ assert WITHIN(left.d_q11, left.periods * LEFT_END_Q11) && WITHIN(left.q_q11, left.periods * LEFT_END_Q11);
 }
 
-static void leave_after_all(const estimator_input_t* in) {
-  for (int32_t periods = 0; periods < 16; periods++) leave_after(in, periods);
+static void leave_after_all(void) {
+  for (int32_t periods = 0; periods < 16; periods++) leave_after(periods);
 }
 
 static void ask_left(void) {
@@ -60,8 +61,8 @@ void prove_look(void) {
       if (!is_case_of(of_case, count)) continue;
       const estimator_input_t in = any_input(&around, of_case, count);
       look_once(&in);
-      leave_after_all(&in);
     }
   }
+  leave_after_all();
   ask_left();
 }

@@ -10,11 +10,9 @@
 
 #define CHANGE_MAX_BPP 8388608L  // of a period's torque, foreseen
 
-/*@ requires \valid(left) && \valid_read(in) && FROM_TO(in->window_count, 1, ESTIMATOR_WINDOWS);
-    requires VECTOR_DQ(c[0].left_q17, INT32_MAX);
-    requires in->window_count > 1 ==> VECTOR_DQ(c[1].left_q17, INT32_MAX);
-    requires in->window_count > 2 ==> VECTOR_DQ(c[2].left_q17, INT32_MAX); */
-static void leave(deviation_residual_t* left, const estimator_input_t* in, const deviation_change_t c[]);
+/*@ requires \valid(left) && \valid_read(n) && VECTOR_DQ(n->left_q15, LEFT_END_Q15);
+    requires FROM_TO(n->span_ticks, 1, 30000); */
+static void leave(deviation_residual_t* left, const information_sums_t* n);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in) && FROM_TO(in->window_count, 1, ESTIMATOR_WINDOWS);
     requires WITHIN(s->speed_bpp, SPEED_MAX_BPP + CHANGE_MAX_BPP);

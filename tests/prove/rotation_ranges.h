@@ -7,7 +7,7 @@
 #include "tests/prove/qmath_ranges.h"
 
 /*@ requires -1073741856 <= x_q30 <= 1073741856; assigns \result \from r, x_q30;
-    ensures -1213328262 <= \result.sin_q30 <= 1213328262; ensures -1213328262 <= \result.cos_q30 <= 1213328262; */
+    ensures -1288490189 <= \result.sin_q30 <= 1288490189; ensures -1288490189 <= \result.cos_q30 <= 1288490189; */
 static rotation_t turned(rotation_t r, int32_t x_q30);
 
 #endif

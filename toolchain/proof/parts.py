@@ -253,7 +253,7 @@ PARTS = (
         eva(
             name,
             (f"tests/prove/{name}.c", *sources),
-            (*READER, "-eva-slevel-function", "information_collect:100"),
+            (*READER, "-eva-slevel-function", "information_collect:100,look:100"),
             f"{OF_QMATH},turned{given}",
             headers=(ROTATION_RANGES, *headers),
         )
