@@ -71,7 +71,7 @@ static inline information_t information_of(const information_sums_t* n, const de
   const uint32_t turn2_q8 = (uint32_t)((q_square(h_s.d) + q_square(h_s.q)) >> 32);
   const uint32_t ss_q8 = (uint32_t)(((uint64_t)turn2_q8 * (uint32_t)n->square_q28) >> 28);
   const int64_t s_q37 = q_mac(q_product(h_s.d, n->e_q17.d), h_s.q, n->e_q17.q);
-  const int32_t aa = per_noise_sat(c, n->aa_q30, 9);
+  const int32_t aa = q_max(per_noise_sat(c, n->aa_q30, 9), 0);  // a sum of squares, which no interval shows
   const int32_t ss = q_sat64((int64_t)(((uint64_t)ss_q8 * (uint32_t)c->weight_q8) >> 16));
   if (aa > INFORMATION_MAX || ss > INFORMATION_MAX) {
     const information_t large = {aa, per_noise_sat(c, as_q34, 19), ss, per_noise_sat(c, n->a_q32, 9),
