@@ -15,8 +15,9 @@
 #define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 #define RATIO_END_Q8 46340L
-#define CURRENT_BITS 29u  // 512 A
-#define VOLTAGE_BITS 30u  // 2048 V
+#define CHANGE_END_Q19 268435456L  // 512 A
+#define CURRENT_BITS 29u           // 512 A
+#define VOLTAGE_BITS 30u           // 2048 V
 
 void synchronism_reset(synchronism_t* s) {
   static const synchronism_t fresh = {{0, 0}, 0, 0, 0, 0};
@@ -55,6 +56,8 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
     mean.change_q19.beta += windows[k].change_q19.beta;
     add(&current, windows[k].current_q20, share_q30[k]);
   }
+  mean.change_q19.alpha = q_limit(mean.change_q19.alpha, CHANGE_END_Q19);
+  mean.change_q19.beta = q_limit(mean.change_q19.beta, CHANGE_END_Q19);
   mean.current_q20 = mean_of(&current, CURRENT_BITS);
   for (uint16_t k = 0; k < count; k++) add(&voltage, windows[k].voltage_q19, share_q30[k]);
   mean.voltage_q19 = mean_of(&voltage, VOLTAGE_BITS);

@@ -82,8 +82,8 @@ bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residu
                                            int32_t* periods);
 
 /*@ requires \valid_read(m) && \valid_read(w); assigns \result \from *m, *w, angle_bam, speed_bpp;
-    ensures VECTOR_DQ(\result.voltage_q16, 4600 * VOLTS_Q16);
-    ensures VECTOR_DQ(\result.current_q20, 1150 * AMPERES_Q20); */
+    ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16);
+    ensures VECTOR_DQ(\result.current_q20, 1300 * AMPERES_Q20); */
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp);
 
