@@ -28,9 +28,8 @@ static int32_t damping_q29(const machine_model_t* m, int32_t y_q30, int32_t w_q3
 }
 
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
-  const int32_t half_q30 = q_shr(m->yd_q30 - m->yq_q30, 1);
-  const deviation_model_t at = {m->yq_q30 + half_q30,
-                                half_q30,
+  const deviation_model_t at = {q_shr(m->yd_q30, 1) + q_shr(m->yq_q30, 1),
+                                q_shr(m->yd_q30 - m->yq_q30, 1),
                                 m->ydq_q30,
                                 damping_q29(m, m->yd_q30, w_q30, m->k_dd_q24),
                                 damping_q29(m, m->ydq_q30, w_q30, m->k_dq_q24),

@@ -51,8 +51,8 @@ static inline uint32_t deviation_middle(uint32_t angle_bam, int32_t speed_bpp) {
 }
 
 /// The period's windows in the frame that has an angle in the middle of that period and turns evenly; w_q30: its speed,
-/// rad per period, below 1.9. An angle is right to
-/// the third power of what the frame turns between the middles, over 6: 5e-3 rad at 0.6 rad per period.
+/// rad per period, below 1.9. An angle is right to a sixth of the cube of what the frame turns from the period's middle
+/// to the window's: 4.5e-3 rad at the end of a period of 0.6 rad.
 void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32_t middle_bam, int32_t w_q30,
                       estimator_frame_t frames[]);
 

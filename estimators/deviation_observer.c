@@ -266,8 +266,8 @@ bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residu
   s->residual = no_residual;
   if (sum.span_ticks <= 0) return false;
   const int32_t per_span_q17 = DEVIATION_PERIOD_Q17 / sum.span_ticks;
-  residual_q20->d = q_sat64(q_shr64(q_product(left.d_q11, per_span_q17), 8));
-  residual_q20->q = q_sat64(q_shr64(q_product(left.q_q11, per_span_q17), 8));
+  residual_q20->d = q_sat64(q_shr64(q_product(sum.d_q11, per_span_q17), 8));
+  residual_q20->q = q_sat64(q_shr64(q_product(sum.q_q11, per_span_q17), 8));
   *span_ticks = sum.span_ticks / q_max(sum.periods, 1);
   *periods = sum.periods;
   return true;

@@ -15,9 +15,10 @@
 #define ONE_Q24 16777216L
 #define LONG_TICKS 5000L  // windows of this length together: the floor is meant for them
 #define RATIO_END_Q8 46340L
-#define CHANGE_END_Q19 268435456L  // 512 A
-#define CURRENT_BITS 29u           // 512 A
-#define VOLTAGE_BITS 30u           // 2048 V
+#define CHANGE_END_Q19 268435456L   // 512 A
+#define CURRENT_BITS 29u            // 512 A
+#define VOLTAGE_BITS 30u            // 2048 V
+#define VOLTAGE_END_Q19 702545920L  // 1340 V: two thirds of a link of 2000 V, and the devices' drops
 
 void synchronism_reset(synchronism_t* s) {
   static const synchronism_t fresh = {{0, 0}, 0, 0, 0, 0};
@@ -29,6 +30,11 @@ static void add(window_sum_t* sum, ab_t x, int32_t share_q30) { window_sum_add(s
 static ab_t mean_of(const window_sum_t* sum, unsigned bits) {
   const ab_t mean = {window_sum_mean(sum->x, bits), window_sum_mean(sum->y, bits)};
   return mean;
+}
+
+static ab_t within(ab_t x, int32_t end) {
+  const ab_t limited = {q_limit(x.alpha, end), q_limit(x.beta, end)};
+  return limited;
 }
 
 // All windows as one, weighted with their spans, so that a net voltage of unequal windows stays small: the inductances
@@ -56,11 +62,10 @@ void synchronism_look(synchronism_seen_t* seen, const machine_model_t* m, const 
     mean.change_q19.beta += windows[k].change_q19.beta;
     add(&current, windows[k].current_q20, share_q30[k]);
   }
-  mean.change_q19.alpha = q_limit(mean.change_q19.alpha, CHANGE_END_Q19);
-  mean.change_q19.beta = q_limit(mean.change_q19.beta, CHANGE_END_Q19);
+  mean.change_q19 = within(mean.change_q19, CHANGE_END_Q19);
   mean.current_q20 = mean_of(&current, CURRENT_BITS);
   for (uint16_t k = 0; k < count; k++) add(&voltage, windows[k].voltage_q19, share_q30[k]);
-  mean.voltage_q19 = mean_of(&voltage, VOLTAGE_BITS);
+  mean.voltage_q19 = within(mean_of(&voltage, VOLTAGE_BITS), VOLTAGE_END_Q19);
   seen->residual_q20 = deviation_evaluate(m, &mean, angle_bam, seen->speed_bpp).residual_q20;
 }
 

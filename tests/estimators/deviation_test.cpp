@@ -41,8 +41,8 @@ Motor random_motor(Random& random) {
 }
 
 // T = 100 us is 1.7e-6 off as Q30, and with it every model slope (up to 15 A per period here: 2.6e-5); the change of
-// the current, a fifth of the slope here, has some six roundings to 7.6e-6 A. The frame is off by a third of the cube
-// of half the angle, and with it both the slope and what the model makes of it.
+// the current, a fifth of the slope here, has some six roundings to 7.6e-6 A. The frame is off by a sixth of the cube
+// of what it turns from the period's middle (deviation.h), and with it both the slope and what the model makes of it.
 double frame_error(const Point& p) { return std::pow(std::abs(p.w() * (p.middle - 5000) * 1e-8), 3) / 6.0; }
 double residual_tolerance(const Point& p, Vector slope) { return 2.4e-4 + frame_error(p) * 2.0 * slope.length(); }
 
@@ -103,12 +103,15 @@ TEST(Deviation, SensitivitiesAreTheDerivativesOfTheSlope) {
     const Vector h_a = real(deviation_by_angle_q17(&h, mirrored(model, d.voltage_q16)), 17);
     const Vector h_s = real(h.h_speed_q20, 20);
     // 1.7e-6 of T as above in both; K is right to a few 1e-7 and is multiplied by 15 A; what the saliency makes of the
-    // voltage and of R i has two upper words of 2^-15 A each, doubled
-    // The frame is that of the window above, and so are voltage and current in it.
+    // voltage and of R i has two upper words of 2^-15 A each, doubled. In a frame that is off, v - R i and i are turned
+    // by as much, and what either makes of h_angle with them; K i is up to 2 A of h_speed for one of current.
     const double off = frame_error(p);
-    ASSERT_NEAR(h_a.x, by_angle.x, 2.8e-4 + (3e-6 + 3.0 * off) * by_angle.length() + off * 8.0) << n;
-    ASSERT_NEAR(h_a.y, by_angle.y, 2.8e-4 + (3e-6 + 3.0 * off) * by_angle.length() + off * 8.0) << n;
-    // K is up to 2, and the current right to 2e-5 A
+    const double saliency = real(model.yd_q30 - model.yq_q30, 30) * (p.voltage - p.current * m.rs).length();
+    const double turn = p.w() * m.period * real(model.k_dq_q24 + model.k_qd_q24, 24) * p.current.length();
+    const double turned = off * (std::abs(saliency) + std::abs(turn));
+    ASSERT_NEAR(h_a.x, by_angle.x, 2.8e-4 + 3e-6 * by_angle.length() + turned) << n;
+    ASSERT_NEAR(h_a.y, by_angle.y, 2.8e-4 + 3e-6 * by_angle.length() + turned) << n;
+    // The current is right to 2e-5 A.
     ASSERT_NEAR(h_s.x, by_speed.x, 6e-5 + 4e-6 * by_speed.length() + 2.0 * off * p.current.length()) << n;
     ASSERT_NEAR(h_s.y, by_speed.y, 6e-5 + 4e-6 * by_speed.length() + 2.0 * off * p.current.length()) << n;
   }
@@ -175,7 +178,9 @@ TEST(Deviation, SensitivitiesOfATiltedSaliency) {
     };
     // over a whole period five roundings of the slope to 3.1e-5 A, in each axis
     EXPECT_NEAR(residual(0.0, 0).length(), 0.0, 2.2e-4) << n;
-    constexpr double kStep = 3e-2;  // central differences: 1.5e-4 of the value
+    // Central differences: 4 / 6 of the squared step, 6e-4, of what repeats twice a turn, and 1.6e-4 A of roundings
+    // over the step, 5e-3; no draw has a third of either.
+    constexpr double kStep = 3e-2;
     const Vector by_angle = (residual(kStep, 0) - residual(-kStep, 0)) * (0.5 / kStep);
     const std::int32_t dw = bpp(300.0);  // the slope is linear in the speed
     const Vector by_speed = (residual(0.0, -dw) - residual(0.0, dw)) * (0.5 / rad(dw));

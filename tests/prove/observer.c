@@ -89,8 +89,8 @@ static void ask(void) {
 static void begin(void) {
   deviation_observer_t s;
   deviation_observer_preset(&s, any_u32, any_speed(), any_i32);
-  //@ assert WITHIN(s.speed_bpp, SPEED_MAX_BPP) && s.speed_remainder_q8 == 0 && s.score_remainder == 0 &&
-  // s.noise_boost_q30 == 0;
+  //@ assert WITHIN(s.speed_bpp, SPEED_MAX_BPP) && s.speed_remainder_q8 == 0;
+  //@ assert s.score_remainder == 0 && s.noise_boost_q30 == 0;
   //@ assert OF_VARIANCE(s.p_aa) && OF_VARIANCE(s.p_ss) && OF_VARIANCE(s.p_ll);
   //@ assert s.p_as == 0 && s.p_al == 0 && s.p_sl == 0 && FROM_TO(s.score_power_q23, 0, POWER_END_Q23);
   //@ assert s.gathered.periods == 0 && s.gathered.aa_q21 == 0 && s.gathered.as_q24 == 0 && s.gathered.ss_q21 == 0;
