@@ -3,17 +3,12 @@
 // The gates come on when the short circuit is what the modulator gives. A shaft that turns drives a current through it:
 // then they rest until it has died away, and only what they were on counts.
 
-#include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 
 #define REST_PERIODS 20u
 
-void start_charge(drive_t* d) {
-  if (d->config.values.bootstrap_time == 0) {
-    start_look(d);
-    return;
-  }
+void start_begin_charge(drive_t* d) {
   d->flags.shorted = true;
   starting.charged = 0;
   start_enter(d, START_CHARGE);
@@ -25,18 +20,18 @@ static bool flows(const drive_t* d) {
   return q_max(q_abs_sat(i.alpha), q_abs_sat(i.beta)) > d->config.values.current_limit / 2;
 }
 
-void start_step_charge(drive_t* d) {
+start_phase_t start_step_charge(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->flags.gates_off) {
-    if (s->tick < REST_PERIODS) return;
-    start_power(d, true);
-    return;
+    if (s->tick >= REST_PERIODS) start_power(d, true);
+    return START_GOES_ON;
   }
   s->charged++;
-  if ((int32_t)s->charged >= q_shr(d->config.values.bootstrap_time * DRIVE_PERIODS_PER_MS + 65535L, 16)) {
-    start_look(d);
-  } else if (flows(d)) {
+  if ((int32_t)s->charged >= q_shr(d->config.values.bootstrap_time * DRIVE_PERIODS_PER_MS + 65535L, 16))
+    return start_look(d);
+  if (flows(d)) {
     start_power(d, false);
     s->tick = 0;
   }
+  return START_GOES_ON;
 }

@@ -1,7 +1,6 @@
 // The start of a shaft that turns: two short circuits tell angle, polarity and speed, then the current loop is closed
 // at that speed and watched for a moment before the drive runs.
 
-#include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
@@ -17,17 +16,20 @@
 #define ON_TICKS 200              // from the gates' command to the devices
 #define STRAY_MAX_BAM 178956971L  // 15 degrees
 
-void start_listen(drive_t* d, uint16_t pause) {
+void start_begin_listen(drive_t* d) {
   start_power(d, false);
   d->flags.shorted = true;
   d->flags.caught = false;
   d->control.closed = false;
-  starting.pause = pause;
   start_enter(d, START_LISTEN);
 }
 
-void start_step_listen(drive_t* d) {
-  if (starting.tick < starting.pause) return;
+start_phase_t start_step_listen(drive_t* d) {
+  (void)d;
+  return (starting.tick < starting.pause) ? START_GOES_ON : START_PULSE;
+}
+
+void start_begin_pulse(drive_t* d) {
   flying_begin(&starting.pulse);
   start_enter(d, START_PULSE);
   start_power(d, true);
@@ -76,55 +78,43 @@ static void end_look(drive_t* d, look_outcome_t outcome, int32_t speed_bpp) {
   drive_enter(d, DRIVE_READY);
 }
 
-static void try_again(drive_t* d) {
+static start_phase_t try_again(drive_t* d) {
   drive_start_t* const s = &starting;
   s->tries++;
   s->pulses = 0;
-  if (s->tries < PAIRS_MAX) {
-    start_listen(d, PAUSE_MIN);
-  } else if (d->flags.behind == DRIVE_READY) {
+  if (s->tries < PAIRS_MAX) return start_listen(PAUSE_MIN);
+  if (d->flags.behind == DRIVE_READY) {
     end_look(d, LOOK_UNCLEAR, flying_speed(s->emf_q16, &d->model));
   } else {
     drive_trip(d, FAULT_POLARITY);
   }
+  return START_GOES_ON;
 }
 
-static void judge_pair(drive_t* d, const flying_emf_t* second) {
+static start_phase_t judge_pair(drive_t* d, const flying_emf_t* second) {
   drive_start_t* const s = &starting;
   s->emf_q16 = second->size_q16;
-  if (!flying_resolve(&s->first, second, &d->model, &s->rotor)) {
-    try_again(d);
-  } else if (d->flags.behind == DRIVE_READY) {
-    end_look(d, LOOK_TURNS, s->rotor.speed_bpp);
-  } else {
-    d->flags.caught = true;
-    start_enter(d, START_CATCH);
-  }
+  if (!flying_resolve(&s->first, second, &d->model, &s->rotor)) return try_again(d);
+  if (d->flags.behind != DRIVE_READY) return START_CATCH;
+  end_look(d, LOOK_TURNS, s->rotor.speed_bpp);
+  return START_GOES_ON;
 }
 
-static void find_no_emf(drive_t* d) {
-  if (d->flags.behind == DRIVE_READY) {
-    end_look(d, LOOK_STANDS, flying_speed(STANDING_Q16, &d->model));
-  } else {
-    start_find_axis(d);
-  }
+static start_phase_t find_no_emf(drive_t* d) {
+  if (d->flags.behind != DRIVE_READY) return start_at_standstill(d);
+  end_look(d, LOOK_STANDS, flying_speed(STANDING_Q16, &d->model));
+  return START_GOES_ON;
 }
 
 // The gates are off again.
-static void judge_pulse(drive_t* d) {
+static start_phase_t judge_pulse(drive_t* d) {
   drive_start_t* const s = &starting;
   const flying_emf_t e = flying_evaluate(&s->pulse, &d->model);
-  if (e.size_q16 < STANDING_Q16) {
-    find_no_emf(d);
-    return;
-  }
+  if (e.size_q16 < STANDING_Q16) return find_no_emf(d);
   s->pulses++;
-  if (s->pulses == 1u) {
-    s->first = e;
-    start_listen(d, (uint16_t)flying_pause(&e, &d->model, PAUSE_MIN, PAUSE_MAX));
-  } else {
-    judge_pair(d, &e);
-  }
+  if (s->pulses > 1u) return judge_pair(d, &e);
+  s->first = e;
+  return start_listen((uint16_t)flying_pause(&e, &d->model, PAUSE_MIN, PAUSE_MAX));
 }
 
 // Middle of a window of the last period, on the start's clock; ticks count on behind the end of their format.
@@ -132,12 +122,9 @@ static int32_t tick_of(const drive_t* d, const estimator_window_t* w) {
   return (int32_t)(clock_of(d) - (uint32_t)(ESTIMATOR_PERIOD_TICKS - w->middle_tick));
 }
 
-void start_step_pulse(drive_t* d) {
+start_phase_t start_step_pulse(drive_t* d) {
   drive_start_t* const s = &starting;
-  if (d->flags.gates_off) {
-    if (start_has_exclusive_slot(d)) judge_pulse(d);
-    return;
-  }
+  if (d->flags.gates_off) return start_has_exclusive_slot(d) ? judge_pulse(d) : START_GOES_ON;
   for (uint16_t k = 0; k < d->samples.count; k++) {
     const estimator_window_t* const w = &d->samples.windows[k];
     // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
@@ -146,6 +133,7 @@ void start_step_pulse(drive_t* d) {
   }
   const bool enough = flying_current(&s->pulse) > d->config.values.current_limit / 16;
   if (s->pulse.windows > 0u && (enough || s->tick >= PULSE_MAX)) start_power(d, false);
+  return START_GOES_ON;
 }
 
 // The first periods go to the axis and the inverse inductances, in the frame that turns with the rotor as the back-EMF
@@ -162,23 +150,26 @@ static void learn(drive_t* d) {
   position_preset_axis(d, s->rotor.angle_bam, s->rotor.speed_bpp);
 }
 
+void start_begin_catch(drive_t* d) {
+  d->flags.caught = true;
+  start_enter(d, START_CATCH);
+}
+
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
-void start_step_catch(drive_t* d) {
+start_phase_t start_step_catch(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->flags.shorted) {
     close_loop(d);
-    return;
+    return START_GOES_ON;
   }
   if (d->flags.gates_off) start_power(d, true);
   if (!s->learnt) {
     learn(d);
-    return;
+    return START_GOES_ON;
   }
   s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
-  if (s->tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return;
-  if (q_abs_sat(s->stray) < STRAY_MAX_BAM) {
-    start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
-  } else {
-    try_again(d);
-  }
+  if (s->tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;
+  if (q_abs_sat(s->stray) >= STRAY_MAX_BAM) return try_again(d);
+  start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
+  return START_GOES_ON;
 }

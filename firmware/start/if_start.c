@@ -13,7 +13,8 @@
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 
-void start_if_ramp(drive_t* d) {
+void start_begin_if_ramp(drive_t* d) {
+  if (!start_begin_standstill(d)) return;
   static const estimator_output_t none = {0, 0, 0, 0};
   d->position.seen = none;
   if_start_begin(&starting.if_start, 0, d->control.target_bpp < 0);
@@ -63,7 +64,7 @@ static void take_over(drive_t* d) {
   drive_enter(d, DRIVE_RUN);
 }
 
-void start_step_if_ramp(drive_t* d) {
+start_phase_t start_step_if_ramp(drive_t* d) {
   drive_start_t* const s = &starting;
   const estimator_output_t* const seen = &d->position.seen;
   const if_start_result_t result =
@@ -72,4 +73,5 @@ void start_step_if_ramp(drive_t* d) {
   d->control.reference_q20.q = 0;
   if (result == IF_START_TAKEN_OVER && start_has_exclusive_slot(d)) take_over(d);
   if (result == IF_START_FAILED) drive_trip(d, FAULT_DIVERGENCE);
+  return START_GOES_ON;
 }

@@ -1,6 +1,5 @@
 // The start of a shaft that stands: axis, then polarity, by saturation or by a motion. See start.h.
 
-#include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
@@ -17,25 +16,8 @@
 #define HOLD_BACKS 2u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
-static bool is_if_start_next(const drive_t* d) {
-  return d->config.values.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
-}
-
-// Only where the listening has found that the shaft stands.
-bool start_checks_wiring(void) {
-  const config_values_t* const v = &drive.config.values;
-  return v->wiring_check != 0 && v->flying_start != 0;
-}
-
-void start_find_axis(drive_t* d) {
-  d->flags.shorted = false;
-  d->control.closed = false;
-  position_preset(d, 0, 0);
-  axis_begin(&starting.axis);
-  if (d->flags.gates_off) start_power(d, true);
-  if (d->state != DRIVE_START) return;
-  start_enter(d, START_AXIS);
-  if (is_if_start_next(d) && !start_checks_wiring()) start_if_ramp(d);
+void start_begin_axis(drive_t* d) {
+  if (start_begin_standstill(d)) start_enter(d, START_AXIS);
 }
 
 static drive_fault_t fault_of(wiring_t wiring) {
@@ -45,22 +27,19 @@ static drive_fault_t fault_of(wiring_t wiring) {
   return (wiring <= WIRING_REVERSED_BOTH) ? FAULT_CURRENT_SENSOR : FAULT_SENSOR_ORDER;
 }
 
-void start_step_axis(drive_t* d) {
+start_phase_t start_step_axis(drive_t* d) {
   int32_t axis_bam = 0;
   const bool seen = start_sees_axis(d, starting.tick >= AXIS_SKIP, &axis_bam);
   position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
-  if (!seen) return;
+  if (!seen) return START_GOES_ON;
   const drive_fault_t fault = fault_of(d->found.wiring);
   if (fault != FAULT_NONE) {
     drive_trip(d, fault);
-  } else if (is_if_start_next(d)) {
-    d->model = d->config.nameplate;
-    position_preset(d, 0, 0);
-    start_if_ramp(d);
-  } else {
-    d->control.closed = true;
-    start_enter(d, START_SETTLE);
+    return START_GOES_ON;
   }
+  if (!start_is_open_loop(d)) return START_SETTLE;
+  d->model = d->config.nameplate;
+  return START_IF_RAMP;
 }
 
 // AVV's speed where it is more than noise.
@@ -71,12 +50,13 @@ static int32_t present_speed(const drive_t* d) {
 }
 
 // The angle is AVV's, or half a turn away.
-static void decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
+static start_phase_t decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
   const uint32_t angle = d->position.avv.observer.angle_bam;
   const int32_t speed = present_speed(d);
   d->found.sigma_q8 = sigma_q8;
   start_run(d, (result == POLARITY_WRONG) ? angle + ANGLE_BAM_HALF_TURN : angle, speed);
   if (d->state == DRIVE_RUN && speed == 0) hold_begin(d);
+  return START_GOES_ON;
 }
 
 static void begin_test(drive_t* d, start_phase_t phase) {
@@ -89,24 +69,20 @@ static drive_fault_t left_open(const drive_start_t* s) { return s->starved ? FAU
 
 // The shaft has been set in motion, or, with a voltage that is too low for the current, the angle may have gone astray,
 // too: from the beginning.
-static void hold_back(drive_t* d) {
+static start_phase_t hold_back(drive_t* d) {
   drive_start_t* const s = &starting;
   s->held_back++;
   s->pulses = 0;
   s->tries = 0;
-  if (s->held_back > HOLD_BACKS) {
-    drive_trip(d, left_open(s));
-  } else {
-    start_look(d);
-  }
+  if (s->held_back <= HOLD_BACKS) return start_look(d);
+  drive_trip(d, left_open(s));
+  return START_GOES_ON;
 }
 
-// True when the current of a test has followed; else all begins anew, with less.
-static bool has_followed(drive_t* d, int32_t amplitude_q20) {
-  if (followed_well(&starting.followed, amplitude_q20)) return true;
+// The current of a test has not followed: all begins anew, with less.
+static start_phase_t starve(drive_t* d) {
   starting.starved = true;
-  hold_back(d);
-  return false;
+  return hold_back(d);
 }
 
 // Twice as much with each try; after one that the voltage was too low for, half of that.
@@ -115,7 +91,7 @@ static int32_t motion_current(const drive_start_t* s) {
   return q_min(q_shl_sat(drive.config.values.polarity_current, s->tries), drive.config.values.current_limit);
 }
 
-static void try_motion(drive_t* d) {
+void start_begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_MOTION) s->tries = 0;
   if (s->starved && s->tries > 0u) {
@@ -132,7 +108,7 @@ static void try_motion(drive_t* d) {
 }
 
 // Twice with the same current, the second time together with the first; then with half as much again.
-static void try_saturation(drive_t* d) {
+void start_begin_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_SATURATION) s->tries = 0;
   const int32_t more = (s->tries >= 2u) ? d->config.values.start_current / 2 : 0;
@@ -143,22 +119,22 @@ static void try_saturation(drive_t* d) {
     return;
   }
   if (!saturation_is_visible(&d->model, &d->config.saturation, current)) {
-    try_motion(d);
+    start_begin_motion(d);
     return;
   }
   saturation_begin(&s->saturation, &d->model, &d->config.saturation, current);
   begin_test(d, START_SATURATION);
 }
 
-void start_step_settle(drive_t* d) {
-  if (starting.tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return;
-  if (d->config.values.polarity_check == 0) {
-    decided(d, POLARITY_RIGHT, 0);
-  } else if (starting.held_back > 0u) {
-    try_motion(d);
-  } else {
-    try_saturation(d);
-  }
+void start_begin_settle(drive_t* d) {
+  d->control.closed = true;
+  start_enter(d, START_SETTLE);
+}
+
+start_phase_t start_step_settle(drive_t* d) {
+  if (starting.tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;
+  if (d->config.values.polarity_check == 0) return decided(d, POLARITY_RIGHT, 0);
+  return (starting.held_back > 0u) ? START_MOTION : START_SATURATION;
 }
 
 // A winding that is much colder or warmer than when it was measured: what follows may stand under load at once.
@@ -167,7 +143,7 @@ static void take_resistance(drive_t* d) {
   if (q_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
 }
 
-void start_step_saturation(drive_t* d) {
+start_phase_t start_step_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   saturation_t* const test = &s->saturation;
   const int32_t reference_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
@@ -176,22 +152,18 @@ void start_step_saturation(drive_t* d) {
   if (s->tick <= SATURATION_LENGTH)
     followed_step(&s->followed, tick, SATURATION_SEGMENT, reference_q20, d->control.measured_q20.d);
   if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_has_exclusive_slot(d))
-    return;
+    return START_GOES_ON;
   s->tries++;
-  if (!has_followed(d, test->current_q20)) return;
+  if (!followed_well(&s->followed, test->current_q20)) return starve(d);
   if (test->result != POLARITY_AMBIGUOUS) {
     take_resistance(d);
-    decided(d, test->result, test->sigma_q8);
-  } else if (s->tries < SATURATION_TRIES) {
-    try_saturation(d);
-  } else if (present_speed(d) == 0) {
-    try_motion(d);
-  } else {
-    hold_back(d);
+    return decided(d, test->result, test->sigma_q8);
   }
+  if (s->tries < SATURATION_TRIES) return START_SATURATION;
+  return (present_speed(d) == 0) ? START_MOTION : hold_back(d);
 }
 
-void start_step_motion(drive_t* d) {
+start_phase_t start_step_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
   const int32_t reference_q20 = polarity_step(&s->motion, raw);
@@ -199,15 +171,12 @@ void start_step_motion(drive_t* d) {
   const int16_t tick = (int16_t)((s->motion.tick - 1) % POLARITY_SEGMENT);
   if (s->tick <= POLARITY_LENGTH)
     followed_step(&s->followed, tick, POLARITY_SEGMENT, reference_q20, d->control.measured_q20.q);
-  if (s->motion.result == POLARITY_PENDING || !start_has_exclusive_slot(d)) return;
+  if (s->motion.result == POLARITY_PENDING || !start_has_exclusive_slot(d)) return START_GOES_ON;
   s->tries++;
-  if (!has_followed(d, s->motion.current_q20)) return;
-  if (s->motion.result != POLARITY_AMBIGUOUS) {
-    decided(d, s->motion.result, s->motion.sigma_q8);
-  } else if (s->tries < (s->starved ? HELD_TRIES : MOTION_TRIES)) {
-    try_motion(d);
-  } else {
-    d->found.sigma_q8 = s->motion.sigma_q8;
-    drive_trip(d, left_open(s));
-  }
+  if (!followed_well(&s->followed, s->motion.current_q20)) return starve(d);
+  if (s->motion.result != POLARITY_AMBIGUOUS) return decided(d, s->motion.result, s->motion.sigma_q8);
+  if (s->tries < (s->starved ? HELD_TRIES : MOTION_TRIES)) return START_MOTION;
+  d->found.sigma_q8 = s->motion.sigma_q8;
+  drive_trip(d, left_open(s));
+  return START_GOES_ON;
 }

@@ -5,18 +5,23 @@
 #include <stddef.h>
 
 #include "firmware/base/clear.h"
-#include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 
-#define LISTEN_FIRST 4u  // periods until the short circuit is what the modulator gives
+typedef struct {
+  void (*begin)(drive_t* d);
+  start_phase_t (*step)(drive_t* d);
+} phase_t;
 
-drive_start_t starting;
-
-void start_reset(void) { clear(&starting, sizeof starting); }
+static const phase_t phases[] = {
+    {start_begin_listen, start_step_listen}, {start_begin_pulse, start_step_pulse},
+    {start_begin_catch, start_step_catch},   {start_begin_axis, start_step_axis},
+    {start_begin_settle, start_step_settle}, {start_begin_saturation, start_step_saturation},
+    {start_begin_motion, start_step_motion}, {start_begin_if_ramp, start_step_if_ramp},
+    {start_begin_charge, start_step_charge}};
 
 static void reset_control(drive_t* d) {
   d->control.closed = false;
@@ -54,43 +59,20 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   return refusal == FAULT_NONE;
 }
 
+static start_phase_t first(const drive_t* d) {
+  return (d->config.values.bootstrap_time != 0) ? START_CHARGE : start_look(d);
+}
+
 // For a look at the shaft the lower devices are enough: they need no bootstrap capacitors.
 static void start_begin(drive_t* d, drive_state_t behind) {
   if (!prepare(d, behind)) return;
-  if (behind == DRIVE_READY) {
-    start_listen(d, LISTEN_FIRST);
-  } else {
-    start_charge(d);
-  }
-}
-
-void start_look(drive_t* d) {
-  if (d->config.values.flying_start != 0) {
-    start_listen(d, LISTEN_FIRST);
-  } else {
-    start_find_axis(d);
-  }
-}
-
-// A commissioning wants a shaft that stands; one that was caught turning is brought to rest instead.
-static drive_state_t state_behind(const drive_t* d) {
-  return (d->flags.behind == DRIVE_COMMISSION && d->flags.caught) ? DRIVE_STOP : d->flags.behind;
-}
-
-void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  drive_bumpless_transfer(d, angle_bam, speed_bpp);
-  drive_enter(d, state_behind(d));
-  if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon(d);
+  phases[(behind == DRIVE_READY) ? start_listen(START_LISTEN_FIRST) : first(d)].begin(d);
 }
 
 static void start_step(drive_t* d) {
-  typedef void (*step_t)(drive_t*);
-  static const step_t steps[] = {start_step_listen, start_step_pulse,   start_step_catch,
-                                 start_step_axis,   start_step_settle,  start_step_saturation,
-                                 start_step_motion, start_step_if_ramp, start_step_charge};
-  drive_start_t* const s = &starting;
-  s->tick++;
-  steps[d->found.phase](d);
+  starting.tick++;
+  const start_phase_t next = phases[d->found.phase].step(d);
+  if (next != START_GOES_ON) phases[next].begin(d);
   if (d->flags.invalid > 0u && !d->flags.gates_off) d->flags.invalid--;
 }
 

@@ -1,10 +1,17 @@
-// What the phases of the start have in common: gates, periods for a decision, and the axis.
+// What the phases of the start have in common: gates, periods for a decision, the axis, and what may follow.
 
-#include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
+#include "firmware/start/step.h"
+
+#include "firmware/base/clear.h"
+#include "firmware/drive/position.h"
+#include "firmware/drive/steps.h"
 #include "hal/hal_pwm.h"
 
 #define AXIS_TIMEOUT 200u  // periods
+
+drive_start_t starting;
+
+void start_reset(void) { clear(&starting, sizeof starting); }
 
 void start_enter(drive_t* d, start_phase_t phase) {
   d->found.phase = phase;
@@ -29,8 +36,51 @@ bool start_has_exclusive_slot(drive_t* d) {
   return now;
 }
 
+start_phase_t start_listen(uint16_t pause) {
+  starting.pause = pause;
+  return START_LISTEN;
+}
+
+start_phase_t start_look(const drive_t* d) {
+  return (d->config.values.flying_start != 0) ? start_listen(START_LISTEN_FIRST) : start_at_standstill(d);
+}
+
+bool start_is_open_loop(const drive_t* d) {
+  return d->config.values.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
+}
+
+// Only where the listening has found that the shaft stands.
+static bool checks_wiring(const drive_t* d) {
+  const config_values_t* const v = &d->config.values;
+  return v->wiring_check != 0 && v->flying_start != 0;
+}
+
+start_phase_t start_at_standstill(const drive_t* d) {
+  return (start_is_open_loop(d) && !checks_wiring(d)) ? START_IF_RAMP : START_AXIS;
+}
+
+bool start_begin_standstill(drive_t* d) {
+  d->flags.shorted = false;
+  d->control.closed = false;
+  position_preset(d, 0, 0);
+  axis_begin(&starting.axis);
+  if (d->flags.gates_off) start_power(d, true);
+  return d->state == DRIVE_START;
+}
+
+// A commissioning wants a shaft that stands; one that was caught turning is brought to rest instead.
+static drive_state_t state_behind(const drive_t* d) {
+  return (d->flags.behind == DRIVE_COMMISSION && d->flags.caught) ? DRIVE_STOP : d->flags.behind;
+}
+
+void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
+  drive_bumpless_transfer(d, angle_bam, speed_bpp);
+  drive_enter(d, state_behind(d));
+  if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon(d);
+}
+
 static void judge_wiring(drive_t* d) {
-  if (!start_checks_wiring()) return;
+  if (!checks_wiring(d)) return;
   d->found.wiring = wiring_judge(&starting.axis, &d->model, q_shr(d->config.slopes.amps_per_code_q30, 10));
 }
 

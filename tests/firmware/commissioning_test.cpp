@@ -17,6 +17,7 @@ extern "C" {
 #include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 #include "firmware/text/catalogue.h"
 }
 
@@ -84,8 +85,7 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
     drive_command_start();
     period();
     ASSERT_EQ(drive.found.phase, listens ? START_LISTEN : START_IF_RAMP);
-    start_find_axis(&drive);
-    EXPECT_EQ(drive.found.phase, listens ? START_AXIS : START_IF_RAMP);
+    EXPECT_EQ(start_at_standstill(&drive), listens ? START_AXIS : START_IF_RAMP);
   }
 }
 

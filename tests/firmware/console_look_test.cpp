@@ -13,7 +13,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/states.h"
-#include "firmware/start/start.h"
+#include "firmware/start/step.h"
 }
 
 namespace {

@@ -14,6 +14,7 @@ extern "C" {
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 #include "svpwm/ripple.h"
 }
 

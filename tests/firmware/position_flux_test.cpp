@@ -10,7 +10,7 @@ extern "C" {
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
-#include "firmware/start/start.h"
+#include "firmware/start/step.h"
 #include "svpwm/ripple.h"
 }
 

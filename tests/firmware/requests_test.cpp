@@ -17,7 +17,7 @@ extern "C" {
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
-#include "firmware/start/start.h"
+#include "firmware/start/step.h"
 #include "firmware/text/catalogue.h"
 #include "hal/hal_board.h"
 #include "hal/hal_flash.h"

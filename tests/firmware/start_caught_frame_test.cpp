@@ -7,6 +7,7 @@
 extern "C" {
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 }
 
 namespace {
@@ -21,16 +22,16 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
     ASSERT_EQ(drive.found.phase, START_CATCH);
     starting.learnt = true;
     starting.stray = drive.position.avv.error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
-    starting.tick = 139;
-    start_step_catch(&drive);
+    starting.tick = 138;
+    start_state.step(&drive);
     EXPECT_EQ(drive.found.phase, START_CATCH) << "not before its time";
     EXPECT_FALSE(drive.flags.wants_exclusive);
-    starting.tick = 140;
-    start_step_catch(&drive);
+    starting.tick = 139;
+    start_state.step(&drive);
     EXPECT_EQ(drive.found.phase, START_CATCH) << "not beside anything else";
     EXPECT_TRUE(drive.flags.wants_exclusive);
     drive.schedule.exclusive = true;
-    start_step_catch(&drive);
+    start_state.step(&drive);
     const bool follows = std::fabs(stray) < 15.0;
     EXPECT_EQ(drive.state, follows ? DRIVE_RUN : DRIVE_START) << stray;
     EXPECT_EQ(starting.tries, follows ? 0 : 1);
@@ -56,7 +57,7 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
   EXPECT_EQ(drive.position.avv.observer.speed_bpp, s.rotor.speed_bpp);
   EXPECT_EQ(drive.control.weakening_q20, 0) << "at 300 rad/s nothing is weakened";
   EXPECT_FALSE(board.gates_on);
-  start_step_catch(&drive);
+  start_state.step(&drive);
   EXPECT_TRUE(board.gates_on);
 }
 
@@ -80,7 +81,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
     regression_t& r = drive.position.avv.regression;
     r = {};
     for (int n = 1; n <= 5; ++n) {
-      start_step_catch(&drive);
+      start_state.step(&drive);
       EXPECT_FALSE(s.learnt);
       EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - caught.angle_bam)), n * 300.0 * kPeriod, 1e-3);
       EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
@@ -96,7 +97,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
       r.along_q16 = raw(0.25 * mean * spread, 16);
       r.mirror_q16 = raw((1.25 * std::cos(2.0 * off) - 1.0) * half * spread, 16);
       r.cross_q16 = raw(1.25 * std::sin(2.0 * off) * half * spread, 16);
-      start_step_catch(&drive);
+      start_state.step(&drive);
     };
     drive.flags.invalid = 1;
     see();

@@ -7,6 +7,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 }
 
 #include <algorithm>
@@ -88,7 +89,7 @@ TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
   starting.pulse.windows = 0;
   drive.samples.count = 0;
   starting.tick = 100;
-  start_step_pulse(&drive);
+  start_state.step(&drive);
   EXPECT_EQ(drive.found.phase, START_PULSE);
   EXPECT_EQ(starting.pulses, 0);
 }
@@ -111,7 +112,7 @@ TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
         w.span_ticks = 2000;
         drive.samples.windows[k] = w;
       }
-      start_step_pulse(&drive);
+      start_state.step(&drive);
       int expected = 0;  // the devices switch 2 us after they are told
       for (const int begin : {1500, 6500}) expected += blind == 0 || begin >= on + 200;
       EXPECT_EQ(starting.pulse.windows, expected) << blind << ", " << on;
@@ -154,10 +155,10 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
       SetUp();
       await_pulse();
       drive.samples.count = 0;
-      starting.tick = static_cast<std::uint16_t>(tick);
+      starting.tick = static_cast<std::uint16_t>(tick - 1);
       starting.pulse.windows = 1;
       starting.pulse.last_q20 = {0, raw(-share * enough, 20)};
-      start_step_pulse(&drive);
+      start_state.step(&drive);
       EXPECT_EQ(board.gates_on, share < 1.0 && tick < 12) << share << " " << tick;
     }
   }
@@ -165,7 +166,8 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
 
 // As long as it was told, with the gates off and the short circuit as what the modulator gives.
 TEST_F(StartCaught, AStartListensForItsPause) {
-  start_listen(&drive, 10);
+  starting.pause = 10;
+  start_begin_listen(&drive);
   EXPECT_TRUE(drive.flags.shorted);
   for (int n = 1; n < 10; ++n) start_state.step(&drive);
   EXPECT_EQ(drive.found.phase, START_LISTEN);

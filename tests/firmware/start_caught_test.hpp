@@ -10,6 +10,7 @@ extern "C" {
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 }
 
 namespace stillspin::test {
@@ -41,15 +42,15 @@ class StartCaught : public Drive {
   }
   /// Of the short circuit that has been seen: the gates go off, it is judged, and the loop is closed where it fits.
   static void judge() {
-    start_step_pulse(&drive);
+    start_state.step(&drive);
     EXPECT_FALSE(board.gates_on) << "the current dies away";
-    start_step_pulse(&drive);
+    start_state.step(&drive);
     EXPECT_TRUE(drive.flags.wants_exclusive) << "in a period for itself";
     EXPECT_EQ(drive.found.phase, START_PULSE);
     drive.schedule.exclusive = true;
-    start_step_pulse(&drive);
+    start_state.step(&drive);
     drive.schedule.exclusive = false;
-    if (drive.found.phase == START_CATCH) start_step_catch(&drive);
+    if (drive.found.phase == START_CATCH) start_state.step(&drive);
   }
   void await_pulse() {
     for (int n = 0; n < 700 && drive.found.phase != START_PULSE; ++n) period();

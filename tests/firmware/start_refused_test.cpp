@@ -7,6 +7,7 @@ extern "C" {
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 }
 
 namespace {
@@ -147,9 +148,9 @@ TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
     drive_command_start();
     until_on();
     drive.samples.count = 0;
-    for (int n = 1; n < periods_on; ++n) start_step_charge(&drive);
+    for (int n = 1; n < periods_on; ++n) start_state.step(&drive);
     EXPECT_EQ(drive.found.phase, START_CHARGE) << ms;
-    start_step_charge(&drive);
+    start_state.step(&drive);
     EXPECT_NE(drive.found.phase, START_CHARGE) << ms;
   }
 }
@@ -171,7 +172,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
           drive.samples.count = 2;
           drive.samples.windows[0].current_q20 = drive.samples.windows[1].current_q20 = {0, 0};
           drive.samples.windows[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
-          start_step_charge(&drive);
+          start_state.step(&drive);
           EXPECT_EQ(board.gates_on, share < 1.0 || !latest || blind) << share << latest << blind;
         }
       }
@@ -188,7 +189,7 @@ TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
   drive.flags.invalid = 0;
   drive.samples.count = 1;
   drive.samples.windows[0].current_q20 = {parameters.current_limit, 0};
-  start_step_charge(&drive);
+  start_state.step(&drive);
   ASSERT_FALSE(board.gates_on);
   for (int n = 1; n < 20; ++n) start_state.step(&drive);
   EXPECT_FALSE(board.gates_on);

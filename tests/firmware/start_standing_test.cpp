@@ -10,6 +10,7 @@ extern "C" {
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 }
 
 namespace {
@@ -381,7 +382,7 @@ TEST_F(StartStanding, AVectorBeginsFromRest) {
     drive.control.current.d.integral = drive.control.current.q.integral = 99;
     drive.position.seen.angle_bam = 5;
     polarity_watch.open = true;
-    start_if_ramp(&drive);
+    start_begin_if_ramp(&drive);
     EXPECT_EQ(drive.found.phase, START_IF_RAMP);
     EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
     EXPECT_EQ(drive.position.seen.angle_bam, 0u);
@@ -394,7 +395,7 @@ TEST_F(StartStanding, AVectorBeginsFromRest) {
 // What the vector has turned is taken over as the source sees it: angle, speed and the current in its frame; the
 // controllers begin anew in that frame, and nobody holds the shaft.
 TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
-  start_if_ramp(&drive);
+  start_begin_if_ramp(&drive);
   if_start_t& if_start = start().if_start;
   drive.control.current.d.integral = drive.control.current.q.integral = 99;
   brake_release_hold.left = 7;
@@ -458,7 +459,7 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
       drive.config.blend.high_bpp = drive.config.if_start.speed_bpp - above;
       drive.position.blend.region = BLEND_LOW;
       drive.position.blend.share_q15 = 32767;
-      start_if_ramp(&drive);
+      start_begin_if_ramp(&drive);
       const bool alone = source >= POSITION_FLUX_CONV && above != 0;
       EXPECT_EQ(drive.position.blend.region, alone ? BLEND_HIGH : BLEND_LOW) << source;
       EXPECT_EQ(drive.position.blend.share_q15, alone ? 0 : 32767) << source;
@@ -467,7 +468,7 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
 }
 
 TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
-  start_if_ramp(&drive);
+  start_begin_if_ramp(&drive);
   for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
     drive.position.seen = {start().if_start.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
     drive.control.command_q16 = {0, 0};

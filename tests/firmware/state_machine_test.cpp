@@ -12,6 +12,7 @@ extern "C" {
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
 #include "firmware/start/phases.h"
+#include "firmware/start/start.h"
 }
 
 namespace {

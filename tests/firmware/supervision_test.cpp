@@ -9,7 +9,7 @@ extern "C" {
 #include "firmware/drive/steps.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
-#include "firmware/start/start.h"
+#include "firmware/start/step.h"
 }
 
 namespace {

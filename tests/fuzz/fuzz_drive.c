@@ -17,6 +17,7 @@
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux/flux.h"
 #include "firmware/start/start.h"
+#include "firmware/start/step.h"
 #include "firmware/store/store.h"
 
 #define CALIBRATION 400u  // periods that are more than enough

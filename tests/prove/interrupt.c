@@ -21,6 +21,7 @@
 #include "firmware/mode/mode.h"
 #include "firmware/scope/scope.h"
 #include "firmware/start/start.h"
+#include "firmware/start/step.h"
 #include "firmware/store/store.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_digital_io.h"
