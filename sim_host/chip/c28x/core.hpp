@@ -1,0 +1,124 @@
+// The C28x core, object mode 1 and address mode 0: it executes machine code word by word on memory behind a Bus.
+//
+// It follows TI's description of the instruction set (SPRU430F), one instruction after another. The pipeline is not
+// modelled: an instruction sees everything that the one before it did, which the hardware's protected pipeline
+// guarantees for registers and memory. `cycles` adds up the cycles of the instructions as their table has them, without
+// waits of memories, fetches or pipeline conflicts; so it is a lower bound.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_C28X_CORE_HPP
+#define STILLSPIN_SIM_HOST_CHIP_C28X_CORE_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_host/chip/c28x/instruction.hpp"
+#include "sim_host/chip/c28x/mapped_memory.hpp"
+#include "sim_host/chip/c28x/registers.hpp"
+
+namespace stillspin::c28x {
+
+enum class Stop : std::uint8_t {
+  kNone,        // the cycles are used up
+  kIdle,        // IDLE, and no enabled interrupt is there
+  kBreakpoint,  // ESTOP0, where breakpoints stop the core; the program counter is at it
+  kUnmodelled   // AMODE was set: location fields mean what is not modelled
+};
+
+enum Vector : unsigned { kVectorNmi = 18, kVectorIllegal = 19 };
+
+class Core : public MappedMemory {
+ public:
+  explicit Core(Bus& bus);
+
+  /// Registers as after a reset, the program counter from the reset vector.
+  void reset();
+  /// Executes until `cycles` reaches `until` or something stops it. What was begun is finished, RPT with its repeats.
+  Stop run(std::uint64_t until);
+  /// One instruction, or the entry into one interrupt.
+  Stop step() { return run(cycles + 1); }
+
+  /// A request of CPU interrupt 1..16 (INT1..INT14, DLOGINT, RTOSINT).
+  void request(unsigned interrupt) { r.ifr = static_cast<std::uint16_t>(r.ifr | 1U << (interrupt - 1)); }
+  void request_nmi() { nmi_ = true; }
+
+  void set_stop_at_breakpoint(bool stop) { stop_at_breakpoint_ = stop; }
+
+  Registers r;
+  std::uint64_t cycles = 0;
+  std::uint64_t instructions = 0;
+  /// How often each form was executed, in the order of kForms; repeats count as one.
+  std::vector<std::uint32_t> executed;
+
+  // --- for the operations ------------------------------------------------------------------------------------------
+
+  /// Where a location is: an address, or kInRegister with the code of a register. The pointer is stepped.
+  static constexpr std::uint32_t kInRegister = 0x80000000;
+  std::uint32_t locate(unsigned loc, unsigned step);
+  /// Of the byte moves: an address, and whether the upper byte is meant.
+  struct BytePlace {
+    std::uint32_t place;
+    bool upper;
+  };
+  BytePlace locate_byte(unsigned loc);
+  std::uint16_t load16(std::uint32_t place) {
+    return (place & kInRegister) == 0 ? read16(place) : register16(place & 0xF);
+  }
+  void store16(std::uint32_t place, std::uint16_t value) {
+    if ((place & kInRegister) == 0) return write16(place, value);
+    set_register16(place & 0xF, value);
+  }
+  std::uint32_t load32(std::uint32_t place) {
+    return (place & kInRegister) == 0 ? read32(place) : *register32(place & 0xF);
+  }
+  void store32(std::uint32_t place, std::uint32_t value) {
+    if ((place & kInRegister) == 0) return write32(place, value);
+    *register32(place & 0xF) = value;
+  }
+  std::uint16_t loc16(const Instruction& i) { return load16(locate(i.loc, 1)); }
+  std::uint32_t loc32(const Instruction& i) { return load32(locate(i.loc, 2)); }
+
+  /// What *, *++, *--, *0++ and *0-- (0..4) do to the auxiliary register that ARP selects.
+  void step_pointer(unsigned kind, std::uint32_t& pointer, unsigned step) const;
+
+  bool holds(unsigned condition);
+  void jump(std::uint32_t address) { r.pc = address & kProgramMask; }
+  void not_taken(const Instruction& i) { cycles -= i.cycles - i.cycles_not_taken; }
+
+  void push16(std::uint16_t value) { write16(r.sp++, value); }
+  std::uint16_t pop16() { return read16(--r.sp); }
+  void push32(std::uint32_t value);
+  std::uint32_t pop32();
+
+  /// RPT: the next instruction `count` times more, without an interrupt between; once if it is not repeatable.
+  void repeat(std::uint32_t count);
+  /// How many times the instruction was repeated before: addresses in program memory advance by it.
+  std::uint32_t repeats_done = 0;
+
+  void take_interrupt(unsigned vector);
+  void return_from_interrupt();
+  void wait_for_interrupt() { idle_ = r.idlestat = true; }
+  void breakpoint(const Instruction& i);
+  void stop_unmodelled() { stop_ = Stop::kUnmodelled; }
+
+ private:
+  std::uint16_t register16(unsigned code) const;
+  void set_register16(unsigned code, std::uint16_t value);
+  std::uint32_t* register32(unsigned code);
+  std::uint32_t locate_indirect(unsigned loc, unsigned step);
+  const Instruction& fetch(std::uint32_t address);
+  void execute(const Instruction& i);
+  bool serve_interrupts();
+
+  static constexpr std::uint32_t kDecoded = 1U << 14;
+
+  bool idle_ = false;
+  bool nmi_ = false;
+  bool stop_at_breakpoint_ = false;
+  Stop stop_ = Stop::kNone;
+  std::vector<Instruction>
+      decoded_;  // by the lowest bits of the address, each checked against the words that are there
+};
+
+}  // namespace stillspin::c28x
+
+#endif

@@ -1,0 +1,1 @@
+"""Machine code of the C28x: its table of instructions, an assembler and a disassembler."""
