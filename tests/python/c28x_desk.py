@@ -3,7 +3,7 @@
 import subprocess
 from pathlib import Path
 
-from stillspin.c28x.assembler import assemble
+from stillspin.c28x.program import assemble
 
 ROOT = Path(__file__).resolve().parents[2]
 DESK = ROOT / "build/release/tests/c28x/c28x_desk"

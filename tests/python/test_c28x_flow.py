@@ -5,8 +5,8 @@ import itertools
 import pytest
 from c28x_desk import Run, ask, put
 
-from stillspin.c28x.assembler import assemble
 from stillspin.c28x.operands import CONDITIONS
+from stillspin.c28x.program import assemble
 
 HOLDS = {
     "NEQ": lambda f: not f["z"],
@@ -200,6 +200,15 @@ def test_a_higher_interrupt_comes_first_and_a_lower_one_may_be_let_in():
     assert Run(both, requests=[1, 2], reads=[(0x8000, 4)]).memory[0] == [1, 2, 3, 0]
 
 
+def test_priorities_are_those_of_the_vector_table():
+    """Routines of all sixteen in a row note their numbers; each return lets the next one in."""
+    table = ",".join(["start", *(f"int{n}" for n in range(1, 17))])
+    routines = "".join(f"int{n}: MOV *XAR4++,#{n}\n IRET\n" for n in range(1, 17))
+    source = f".org 0x3FFFC0\n .long {table}\n .org 0x1000\n{routines} .org 0x2000\nstart: EINT\n NOP\n ESTOP0"
+    run = Run(source, registers={"ier": 0xFFFF, "xar4": 0x8000}, requests=range(1, 17), reads=[(0x8000, 17)])
+    assert run.memory[0] == [16, *range(1, 16), 0]
+
+
 def test_interrupts_wait_for_ier_and_intm_and_for_the_end_of_a_repeat():
     body = "start: EINT\n RPT #99\n || ADDB AL,#0\n NOP\n RPT #99\n || NOP\n ESTOP0"
     masked = Run(with_vectors("start: NOP\n ESTOP0", int1="MOVB XAR5,#1"), requests=[1], registers={"ier": 1})
@@ -264,6 +273,14 @@ def test_intr_clears_its_request_and_an_nmi_cannot_be_masked():
     program = assemble(with_vectors("start: NOP\n NOP\n ESTOP0", nmi="MOVB XAR5,#1"))
     answers = ask(["fresh", *put(program.words), "set pc 2000", "nmi", "go 100", "state"])
     assert "xar5=1" in answers[-1].split()
+
+
+@pytest.mark.parametrize(("way", "seen", "left"), [("TRAP #2", 7, 2), ("INTR INT2", 5, 0)])
+def test_a_trap_leaves_the_masks_alone_and_intr_does_as_its_interrupt(way, seen, left):
+    run = Run(
+        with_vectors(f"start: {way}\n ESTOP0", int2="MOV @AR3,IER"), requests=[2], registers={"ier": 7, "intm": 1}
+    )
+    assert (run.registers["xar3"], run.registers["ifr"], run.registers["ier"]) == (seen, left, 7)
 
 
 def test_stack_alignment_is_undone():

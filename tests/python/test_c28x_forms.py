@@ -7,8 +7,9 @@ from collections import defaultdict
 import pytest
 from c28x_desk import ask, state
 
-from stillspin.c28x.assembler import assemble, assemble_line
+from stillspin.c28x.assembler import assemble_line
 from stillspin.c28x.disassembler import disassemble
+from stillspin.c28x.program import assemble
 from stillspin.c28x.table import forms
 from stillspin.errors import InputError
 

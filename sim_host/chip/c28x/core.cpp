@@ -71,12 +71,10 @@ bool Core::serve_interrupts() {
     take_interrupt(kVectorNmi);
     return true;
   }
-  // RTOSINT and DLOGINT come before INT1 and so on.
+  // RTOSINT comes before INT1 and so on; DLOGINT, the next to it in the registers, is the last.
   unsigned number = kMaskable;
-  if ((requested & 0xC000U) == 0) {
+  if ((requested >> (kMaskable - 1)) == 0) {
     for (number = 1; (requested >> (number - 1) & 1U) == 0;) ++number;
-  } else if ((requested & 0x8000U) == 0) {
-    number = kMaskable - 1;
   }
   take_interrupt(number);
   return true;
