@@ -51,11 +51,11 @@ bench: build ## measure how fast the simulation runs
 
 isr-cost: build ## count the interrupts' instructions on a Cortex-M3 (QEMU): cycles of a period; bit for bit the native run
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/keep.py isr-cost toolchain/isr/count.py $(BUILD)/tests/m3/stillspin_isr_record build/image-check build/isr-cost
+	@$(PYTHON) toolchain/keep.py isr-cost toolchain/isr/count.py $(BUILD)/tests/m3 build/image-check build/isr-cost
 
-image-check: setup ## estimate the DSP's image, by edition, by a stand-in for TI's compiler: symbols, sizes, stack
+image-check: setup ## estimate the DSP's image, by edition and of EDITION, by a stand-in for TI's compiler: symbols, sizes, stack
 	@bash toolchain/setup.sh build cortex
-	@$(PYTHON) toolchain/keep.py image toolchain/image/check.py build/image-check
+	@$(PYTHON) toolchain/keep.py image toolchain/image/check.py build/image-check $(EDITION)
 
 int16: build ## run every scenario compiled with a 16-bit int and char, bit for bit the native run, and planted defects
 	@bash toolchain/setup.sh build llvm

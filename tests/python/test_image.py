@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 from checks import command_files  # noqa: E402
 from costs import chance_of_words, costs  # noqa: E402
-from image import check, classes, link, stack  # noqa: E402
+from image import check, classes, features, hooks, link, stack  # noqa: E402
 from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
@@ -45,22 +45,58 @@ def test_linker_command_files_keep_to_the_chip(house: Path) -> None:
 @pytest.mark.parametrize(
     ("right", "wrong", "blamed"),
     [
-        ("> ENTRY,     PAGE = 0", "> BOOT,      PAGE = 0", "codestart is not at 0x3F7FF6, where it is looked for"),
+        (
+            "> ENTRY,     PAGE = 0",
+            "> BOOT,      PAGE = 0",
+            "codestart is not at 0x3F7FF6, where it is looked for",
+        ),
         ("origin = 0x3F7FF6", "origin = 0x3F7FF8", "passwords"),
-        ("length = 0x003F58", "length = 0x003F68", "RESIDENT reaches into the passwords"),
-        (".econst   : >> APP | RESIDENT", ".econst   : > PASSWORDS", ".econst is placed on PASSWORDS"),
-        (".econst   : >> APP | RESIDENT", ".econst   : >> APP | PASSWORDS", ".econst is placed on PASSWORDS"),
-        (".text     : >> APP | RESIDENT", ".text     : >> APP | NOWHERE", "range that does not exist"),
-        (".cinit    : > APP,       PAGE = 0", ".cinit    : > APP, fill = 0, PAGE = 0", "fill"),
-        ("origin = 0x3FB000, length = 0x000FF8", "origin = 0x3FA800, length = 0x0017F8", "share memory"),
+        (
+            "length = 0x003F58",
+            "length = 0x003F68",
+            "RESIDENT reaches into the passwords",
+        ),
+        (
+            ".econst   : >> APP | RESIDENT",
+            ".econst   : > PASSWORDS",
+            ".econst is placed on PASSWORDS",
+        ),
+        (
+            ".econst   : >> APP | RESIDENT",
+            ".econst   : >> APP | PASSWORDS",
+            ".econst is placed on PASSWORDS",
+        ),
+        (
+            ".text     : >> APP | RESIDENT",
+            ".text     : >> APP | NOWHERE",
+            "range that does not exist",
+        ),
+        (
+            ".cinit    : > APP,       PAGE = 0",
+            ".cinit    : > APP, fill = 0, PAGE = 0",
+            "fill",
+        ),
+        (
+            "origin = 0x3FB000, length = 0x000FF8",
+            "origin = 0x3FA800, length = 0x0017F8",
+            "share memory",
+        ),
         ("length = 0x000FF8", "length = 0x001000", "last 8 words"),
         ("length = 0x00BFB8", "length = 0x00CFB8", "share memory"),
         ("origin = 0x008000", "origin = 0x007000", "outside of memory"),
         ("--stack_size=0x7F8", "--stack_size=0x900", "stack"),
-        ("origin = 0x000000, length = 0x0007F8", "origin = 0x3FA000, length = 0x0007F8", "stack"),
+        (
+            "origin = 0x000000, length = 0x0007F8",
+            "origin = 0x3FA000, length = 0x0007F8",
+            "stack",
+        ),
         ("RUN_START(_image_globals_start), ", "", "image_globals_start is not made"),
         ("  identity  : > IDENTITY,  PAGE = 0\n", "", "identity has no place"),
-        ("identity  : > IDENTITY,", "identity  : > NOWHERE,", "range that does not exist"),
+        (
+            "identity  : > IDENTITY,",
+            "identity  : > NOWHERE,",
+            "range that does not exist",
+        ),
     ],
 )
 def test_slip_in_a_linker_command_file_is_caught(house: Path, right: str, wrong: str, blamed: str) -> None:
@@ -76,7 +112,12 @@ def test_boot_code_fits_between_entry_and_passwords() -> None:
     ranges = read_command_file(ROOT / FLASH).ranges
     assert code.words["codestart"] == ranges["ENTRY"].length == 2
     assert code.words["appentry"] <= ranges["APP_ENTRY"].length
-    assert code.wanted == {"c_int00", "image_identity", "image_globals_start", "image_globals_size"}
+    assert code.wanted == {
+        "c_int00",
+        "image_identity",
+        "image_globals_start",
+        "image_globals_size",
+    }
 
 
 def test_boot_code_knows_the_same_mark_and_watchdog_as_the_drive() -> None:
@@ -94,7 +135,13 @@ def compiled(tmp_path: Path, code: str) -> Path:
     source, target = tmp_path / "x.c", tmp_path / "x.obj"
     source.write_text(code, encoding="utf-8")
     cl2000 = ROOT / "toolchain/standin/bin/cl2000"
-    run = [str(cl2000), "--compile_only", f"--c_file={source}", f"--include_path={ROOT}", f"--output_file={target}"]
+    run = [
+        str(cl2000),
+        "--compile_only",
+        f"--c_file={source}",
+        f"--include_path={ROOT}",
+        f"--output_file={target}",
+    ]
     subprocess.run(run, check=True)
     return target
 
@@ -139,13 +186,52 @@ def test_figure_beyond_its_limit_is_caught_and_one_beyond_its_goal_is_short(
     limits.write_text(f"# edition | key | goal | limit\nlab | globals | 100 | {limit}\nlab | stack | 10 | 10\n")
     monkeypatch.setattr(check, "LIMITS", limits)
     figures = {"globals": 200, "stack": 10}
-    assert check.judged("lab", figures) == (["lab, globals in RAM: 200, goal 100"], complaints)
+    assert check.judged("lab", figures) == (
+        ["lab, globals in RAM: 200, goal 100"],
+        complaints,
+    )
     assert check.judged("drive", figures) == ([], [])
+
+
+def test_what_a_feature_takes_is_what_no_other_asks_for(tmp_path: Path) -> None:
+    """What two features share is neither's; a word that an edition has beside the rest is found."""
+    library, program = "stillspin_{}.dir/", "stillspin_f2808.dir/main.c.obj"
+    codes = {
+        program: "void loop(void);\nint main(void) { loop(); return 0; }",
+        "stillspin_firmware.dir/boot/main.c.obj": "int both(void);\nvoid loop(void);\n"
+        "void loop(void) { (void)both(); }",
+        "stillspin_firmware.dir/hil/hil.c.obj": "int own(void);\nint shared(void);\nint f(void);\nint f(void) "
+        "{ return own() + shared(); }",
+        "stillspin_firmware.dir/store/store.c.obj": "int shared(void);\nint both(void);\nint g(void);\nint words[9];\n"
+        "int g(void) { return both() + shared(); }",
+        **{
+            f"{library.format('control')}{name}.c.obj": f"int {name}(void);\nint {name}(void) {{ return {len(name)}; }}"
+            for name in ("own", "shared", "both")
+        },
+    }
+    linked = {Path("/build", name): read_object(compiled(tmp_path, code + "\n")) for name, code in codes.items()}
+    rows = features.taken(linked, ["drive"])
+    assert set(rows) == {(), ("hil",), ("store",), ("hil", "store")}
+    assert features.shares(linked, ["drive"])[Path("/build/stillspin_control.dir/own.c.obj")] == ("hil",)
+    assert features.shares(linked, ["drive"])[Path("/build/stillspin_control.dir/both.c.obj")] == ()
+    assert rows[("store",)].ram == 18
+    assert sum(words.flash for words in rows.values()) == pytest.approx(features.words_of(linked.values()).flash)
+    less = {path: obj for path, obj in linked.items() if path.stem not in ("hil.c", "own.c")}
+    assert features.difference(linked, less, ["hil"], rows).flash == pytest.approx(0)
+    shared = {path: obj for path, obj in less.items() if path.stem != "shared.c"}
+    assert features.difference(linked, shared, ["hil"], rows).flash == pytest.approx(-rows[("hil", "store")].flash)
 
 
 def test_words_are_those_that_the_chip_is_expected_to_need() -> None:
     """Of the drive's code alone: TI's library and constants are what they are."""
-    counted = {"code": 1900, "ram_code": 100, "library": 800, "flash": 3000, "globals": 500, "stack": 50}
+    counted = {
+        "code": 1900,
+        "ram_code": 100,
+        "library": 800,
+        "flash": 3000,
+        "globals": 500,
+        "stack": 50,
+    }
     figures = check.figures_of(counted | {"flash_room": 65328, "ram_code_room": 4088}, 1300)
     words = costs(ROOT)["words"]
     assert figures["flash_by_class"] == 1800 + 1300
@@ -211,7 +297,12 @@ def test_instructions_have_their_class(mnemonic: str, operands: str, found: str)
 def test_words_by_class_are_those_of_a_listing() -> None:
     listing = "\n".join(
         [
-            *("a.obj:     file format elf32-littlearm", "", "Disassembly of section .text.f:", "00000000 <f>:"),
+            *(
+                "a.obj:     file format elf32-littlearm",
+                "",
+                "Disassembly of section .text.f:",
+                "00000000 <f>:",
+            ),
             *("   0:\tadds\tr0, #1", "   2:\tbx\tlr", "   4:\t.word\t0x00000000"),
         ]
     )
@@ -230,12 +321,31 @@ def test_the_stand_ins_flags_are_those_that_the_costs_were_measured_with() -> No
     loader.exec_module(module)
     flags = [flag for flag in module.CLANG if flag not in ("-include", str(module.STANDIN / "include.h"))]
     assert flags == [
-        *("--target=thumbv7m-none-eabi", "-mcpu=cortex-m3", "-std=c99", "-ffreestanding", "-Os", "-mno-movt"),
-        *("-ffunction-sections", "-fdata-sections", "-fno-unwind-tables", "-fstack-usage"),
-        *("-D__TI_COMPILER_VERSION__=22006000", "-D__TMS320C28XX__", "-D__TMS320C2000__"),
+        *(
+            "--target=thumbv7m-none-eabi",
+            "-mcpu=cortex-m3",
+            "-std=c99",
+            "-ffreestanding",
+            "-Os",
+            "-mno-movt",
+        ),
+        *(
+            "-ffunction-sections",
+            "-fdata-sections",
+            "-fno-unwind-tables",
+            "-fstack-usage",
+        ),
+        *(
+            "-D__TI_COMPILER_VERSION__=22006000",
+            "-D__TMS320C28XX__",
+            "-D__TMS320C2000__",
+        ),
         *("-Wall", "-Wextra", "-Wshadow", "-Wundef", "-Werror", "-Wno-unused-function"),
     ]
-    assert module.SIZE == {"--opt_for_speed=0": ("-mllvm", "-inline-threshold=5"), "--opt_for_speed=1": ()}
+    assert module.SIZE == {
+        "--opt_for_speed=0": ("-mllvm", "-inline-threshold=5"),
+        "--opt_for_speed=1": (),
+    }
     preset = (ROOT / "toolchain/c28x-cl2000.cmake").read_text(encoding="utf-8")
     assert "${C2000_FLAGS} --relaxed_ansi -O2 --opt_for_speed=0 --gen_func_subsections=on" in preset
 
@@ -248,11 +358,17 @@ def test_the_stand_ins_flags_are_those_that_the_costs_were_measured_with() -> No
             "long long f(long long a, long long b) { return a / b; }",
             ["f, which an interrupt may run, calls __aeabi_ldivmod"],
         ),
-        ("float f(float a, float b) { return a * b; }", ["f, which an interrupt may run, calls __aeabi_fmul"]),
+        (
+            "float f(float a, float b) { return a * b; }",
+            ["f, which an interrupt may run, calls __aeabi_fmul"],
+        ),
     ],
 )
 def test_a_dear_function_of_the_library_in_an_interrupt_is_caught(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, quotient: str, complaints: list[str]
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    quotient: str,
+    complaints: list[str],
 ) -> None:
     """Through a pointer that the table of indirect calls knows."""
     code = f"void control_isr(void);\nvoid window_isr(void);\n__attribute__((noinline)) {quotient}\n"
@@ -281,7 +397,10 @@ def test_resident_part_is_that_of_the_floors_below_the_drive(tmp_path: Path) -> 
         assert pile.words(file)[".text"] == 209  # the C start-up moves with main
     pile, _ = resident(tmp_path, "libstillspin_firmware.a", code)
     assert pile.words(file)["resident"] == 591
-    for member, section in (("deviation_observer.c.obj", "observers"), ("deviation.c.obj", "resident")):
+    for member, section in (
+        ("deviation_observer.c.obj", "observers"),
+        ("deviation.c.obj", "resident"),
+    ):
         assert file.section_of("libstillspin_estimators.a", member, ".text") == section
 
 
@@ -291,8 +410,14 @@ def test_resident_part_is_that_of_the_floors_below_the_drive(tmp_path: Path) -> 
         ("int other(void);\nint f(void);\nint f(void) { return other(); }", "other"),
         ("int count;\nint f(void);\nint f(void) { return count++; }", "count"),
         ("static int calls;\nint f(void);\nint f(void) { return calls++; }", "calls"),
-        ("extern const int table[4];\nint f(int k);\nint f(int k) { return table[k]; }", "table"),
-        ("int g(void);\nextern int (*const list[])(void);\nint (*const list[])(void) = {g};", "g"),
+        (
+            "extern const int table[4];\nint f(int k);\nint f(int k) { return table[k]; }",
+            "table",
+        ),
+        (
+            "int g(void);\nextern int (*const list[])(void);\nint (*const list[])(void) = {g};",
+            "g",
+        ),
     ],
 )
 def test_resident_part_that_depends_on_what_moves_is_caught(tmp_path: Path, code: str, moved: str) -> None:
@@ -304,7 +429,9 @@ def test_resident_part_that_depends_on_what_moves_is_caught(tmp_path: Path, code
     assert complaints == []
 
 
-def test_resident_part_may_call_itself_read_its_tables_and_divide(tmp_path: Path) -> None:
+def test_resident_part_may_call_itself_read_its_tables_and_divide(
+    tmp_path: Path,
+) -> None:
     code = """
 static const long table[] = {3, 1, 4, 1, 5};
 __attribute__((noinline)) static long entry(unsigned k) { return table[k % 5u]; }
@@ -341,7 +468,61 @@ int main(void) { small(); large(); return 0; }
     assert total(one) + 90 <= total(other) < total("")
     assert total(one + other) == total(other)
     table.write_text("[one]\nnobody is not called\n")
-    assert "not understood: nobody is not called" in "; ".join(stack_depth(objects).complaints)
+    assert "calls.txt: nobody is no function" in stack_depth(objects).complaints
+    table.write_text("large is sometimes called\n")
+    assert "not understood: large is sometimes called" in "; ".join(stack_depth(objects).complaints)
+
+
+STATES = """
+#include <stddef.h>
+#include "firmware/interfaces/state.h"
+void by_step(struct drive* d);
+void by_begin(struct drive* d, drive_state_t s);
+extern const state_t start_state;
+"""
+LOOP = "int main(void) { drive_states[0]->step(NULL); return 0; }\nvoid control_isr(void);\nvoid window_isr(void);\n"
+LOOP += "void control_isr(void) {}\nvoid window_isr(void) {}\n"
+OWN = "void by_step(struct drive* d) { (void)d; }\n"
+OWN += "void by_begin(struct drive* d, drive_state_t s) { (void)d, (void)s; }\n"
+
+
+@pytest.mark.parametrize(
+    ("calls", "complaints"),
+    [
+        ("main -> @drive_states.step", []),
+        ("main -> @drive_states.stop", ["calls.txt: @drive_states.stop is no table"]),
+        ("main -> @drive_status.step", ["calls.txt: @drive_status.step is no table"]),
+        # What belongs to a feature that is not linked goes for nothing, what no feature has does not.
+        ("main -> @drive_states.step\nhysteresis_step -> hal_tick", []),
+        ("main -> @drive_states.step hysteresis_samples", []),
+        (
+            "main -> @drive_states.step hysteresis_sample",
+            ["calls.txt: hysteresis_sample is no function"],
+        ),
+        ("main -> @drive_states.step\nhil_step is not called", []),
+        (
+            "main -> @drive_states.step\nhysteresis_stop -> hal_tick",
+            ["calls.txt: hysteresis_stop is no function"],
+        ),
+        # A function of the tree that every edition has is missed.
+        (
+            "main -> @drive_states.step interlock_refusal",
+            ["calls.txt: interlock_refusal is no function"],
+        ),
+    ],
+)
+def test_calls_through_a_pointer_follow_the_edition(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, calls: str, complaints: list[str]
+) -> None:
+    rows = "const state_t start_state = {by_begin, by_step, NULL, NULL};\n"
+    tables = "const state_t* const drive_states[] = {&start_state, NULL};\n"
+    objects = [read_object(compiled(tmp_path, STATES + own)) for own in (LOOP + OWN, rows, tables)]
+    (tmp_path / "calls.txt").write_text(calls + "\n")
+    monkeypatch.setattr(stack, "TABLE", tmp_path / "calls.txt")
+    assert stack_depth(objects).complaints == complaints
+    assert hooks.reached(objects, "drive_states.step") == {"by_step"}
+    assert hooks.reached(objects, "drive_states.begin") == {"by_begin"}
+    assert hooks.reached(objects, "drive_states.abandon") == set()
 
 
 def test_stack_sees_frames_recursion_and_pointers(tmp_path: Path) -> None:

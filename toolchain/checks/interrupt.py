@@ -27,6 +27,12 @@ _MACRO = re.compile(r"(\w+)(?:\([^)]*\))?\s(.*)")
 _READ = re.compile(r"(?<![\w.>])parameters\b(?:\s*\.\s*(\w+))?")
 
 
+def _named(word: str) -> str:
+    """The function or table of a word; of a table that is composed all members count."""
+    table, _, member = word.removeprefix("@").rpartition(".")
+    return table if any(kind.prefix + key == table for key, kind in compose.TABLES.items()) else member
+
+
 @dataclass(frozen=True)
 class Piece:
     """A function, a table or a macro: where it begins, and its text."""
@@ -87,7 +93,7 @@ class Program:
                 mode = content
             caller, arrow, called = content.partition("->")
             if arrow and mode in {"", "[drive]"}:
-                names = [name.lstrip("@").split(".")[-1] for name in re.sub(r"\d+ x ", "", called).split()]
+                names = [_named(word) for word in re.sub(r"\d+ x ", "", called).split()]
                 self._pointers.setdefault(caller.strip(), []).extend(names)
 
     def named(self, source: str, name: str) -> list[Piece]:

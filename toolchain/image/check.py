@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Builds the image of each edition by the stand-in for cl2000, and says whether it fits its chip.
 
-Usage: toolchain/image/check.py OUT     (make image-check)
+Usage: toolchain/image/check.py OUT [EDITION]...     (make image-check)
 
-A build that fails, and a figure beyond its limit in toolchain/f2808/image_limits.txt, are failures; what is beyond its
-goal is said to be short. The figures go to OUT/figures.json, what they come to to OUT/budget.json.
+Beside EDITIONS, of each EDITION, a list in firmware/editions/ or the path of one. All are linked of the same objects,
+which are compiled once. A build that fails, and a figure beyond its limit in toolchain/f2808/image_limits.txt, are
+failures; what is beyond its goal is said to be short. The figures go to OUT/figures.json, what they come to to
+OUT/budget.json.
 """
 
 from __future__ import annotations
@@ -13,26 +15,28 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
+import compose  # noqa: E402
 from costs import costs  # noqa: E402
 
-from image import classes  # noqa: E402
+from image import classes, features  # noqa: E402
 from image.elf import read_object  # noqa: E402
 from image.sizes import object_words  # noqa: E402
 
 ROOT = HERE.parents[1]
 STANDIN = ROOT / "toolchain" / "standin"
 LIMITS = ROOT / "toolchain" / "f2808" / "image_limits.txt"
-EDITIONS = ("lab",)
+WHOLE, *OTHERS = EDITIONS = ("lab", "drive", "hil", "minimal")  # the first has all that there is
 RAM = 18432  # words of the chip
-FIGURES = "hal/f2808/image/stillspin_f2808.json"  # what the link leaves, in the build's folder
-MAPS = ("stillspin_f2808", "stillspin_flash_kernel", "stillspin_lamp")
+IMAGES = "hal/f2808/image"  # in the build's folder
+FIGURES = "stillspin_f2808.json"  # what the link of one leaves
+PROGRAMS = ("stillspin_flash_kernel", "stillspin_lamp")  # that know no edition
 WHAT = {
     "thumb": "code, half words of Thumb-2",
     "code": "of these in flash, with TI's library",
@@ -51,9 +55,10 @@ WHAT = {
 }
 
 
-def configure(edition: str, folder: Path) -> None:
-    """Prepares the build of an edition. CalledProcessError where that fails; its output is in FOLDER.log."""
-    options = (f"-DSTILLSPIN_EDITION={edition}", f"-DF2808_FLASH_API={STANDIN / 'Flash2808_API.lib'}")
+def configure(folder: Path, more: Iterable[str] = OTHERS) -> None:
+    """Prepares the build of the images. CalledProcessError where that fails; its output is in FOLDER.log."""
+    editions = (f"-DSTILLSPIN_EDITION={WHOLE}", f"-DSTILLSPIN_MORE_EDITIONS={';'.join(more)}")
+    options = (*editions, f"-DF2808_FLASH_API={STANDIN / 'Flash2808_API.lib'}")
     environment = os.environ | {"C2000_CG_ROOT": str(STANDIN)}
     run("configure", ["cmake", "--preset", "f2808", "-B", str(folder), *options], folder, environment)
 
@@ -61,6 +66,11 @@ def configure(edition: str, folder: Path) -> None:
 def build(folder: Path) -> None:
     """All that can be built. CalledProcessError where that is not all of it."""
     run("build", ["cmake", "--build", str(folder), "--parallel", "2", "--", "-k", "0"], folder)
+
+
+def linked(folder: Path, edition: str) -> Path:
+    """What the link of an edition's image leaves."""
+    return folder / IMAGES / ("" if edition == WHOLE else edition) / FIGURES
 
 
 def run(what: str, command: list[str], folder: Path, environment: Mapping[str, str] = os.environ) -> None:
@@ -75,19 +85,27 @@ def run(what: str, command: list[str], folder: Path, environment: Mapping[str, s
         raise subprocess.CalledProcessError(done.returncode, command)
 
 
-def parts_of(objects: list[str], folder: Path) -> dict[str, dict[str, int]]:
-    """By folder of the tree: half words of Thumb-2, and words by half words and by the classes of instructions."""
-    known = costs(ROOT)
-    paths = [folder / name for name in objects]
-    parts: dict[str, dict[str, float]] = {}
-    for file, counts in classes.counted(classes.disassembled(paths)).items():
-        part = next(name for name in Path(file).relative_to(folder).parts if name != "CMakeFiles")
-        row = parts.setdefault(part, {"half_words": 0, "by_class": 0})
-        row["by_class"] += classes.words(counts, known["classes"])
+def counted(objects: Iterable[Path]) -> dict[Path, tuple[int, float]]:
+    """Of each object its half words of Thumb-2, and words by the classes of their instructions."""
+    known = costs(ROOT)["classes"]
+    found = {}
+    for file, counts in classes.counted(classes.disassembled(sorted(objects))).items():
         sections = object_words(read_object(Path(file)))
-        row["half_words"] += sections.get(".text", 0) + sections.get("ramfuncs", 0)
+        half_words = sections.get(".text", 0) + sections.get("ramfuncs", 0)
+        found[Path(file)] = half_words, classes.words(counts, known)
+    return found
+
+
+def parts_of(objects: Mapping[Path, tuple[int, float]], folder: Path) -> dict[str, dict[str, int]]:
+    """By folder of the tree: half words of Thumb-2, and words by half words and by the classes of instructions."""
+    parts: dict[str, dict[str, float]] = {}
+    for file, (half_words, by_class) in objects.items():
+        part = next(name for name in file.relative_to(folder).parts if name != "CMakeFiles")
+        row = parts.setdefault(part, {"half_words": 0, "by_class": 0})
+        row["half_words"] += half_words
+        row["by_class"] += by_class
     for row in parts.values():
-        row["expected"] = known["words"]["expected"] * row["half_words"]
+        row["expected"] = costs(ROOT)["words"]["expected"] * row["half_words"]
     return {part: {name: round(value) for name, value in row.items()} for part, row in sorted(parts.items())}
 
 
@@ -124,6 +142,39 @@ def budget(figures: Mapping[str, int]) -> dict[str, int]:
     }
 
 
+def by_feature(objects: Mapping[str, list[Path]]) -> tuple[dict[str, Any], list[str]]:
+    """What each feature takes of the whole image, and in which editions it is; what is wrong.
+
+    Wrong is an edition that is not the whole image less what it leaves out.
+    """
+    editions = {name: {feature.name for feature in compose.read_edition(name).features} for name in EDITIONS}
+    linked_ = {name: features.read(objects[name]) for name in EDITIONS}
+    whole, always = linked_[WHOLE], set.intersection(*editions.values())
+    rows = features.taken(whole, always)
+    differences = {
+        name: features.difference(whole, own, editions[WHOLE] - editions[name], rows) for name, own in linked_.items()
+    }
+    figures = {
+        "rows": [
+            {
+                "features": row,
+                "flash": round(words.flash),
+                "ram": round(words.ram),
+                "editions": [name for name, has in editions.items() if not row or has.intersection(row)],
+            }
+            for row, words in rows.items()
+        ],
+        "tables": {
+            name: round(features.words_of(features.tables(own).values()).flash) for name, own in linked_.items()
+        },
+    }
+    return figures, [
+        f"{name} takes {words.flash:.0f} words of flash and {words.ram:.0f} of RAM too many"
+        for name, words in differences.items()
+        if abs(words.flash) >= 1 or abs(words.ram) >= 1
+    ]
+
+
 def limits() -> dict[str, dict[str, tuple[int, int]]]:
     """By edition and figure: goal and limit."""
     found: dict[str, dict[str, tuple[int, int]]] = {}
@@ -156,39 +207,52 @@ def published(edition: str, figures: Mapping[str, int]) -> dict[str, Any]:
 def main() -> int:
     """Build, print, judge."""
     out = Path(sys.argv[1]).resolve()
+    folder = out / "build"
+    more = [*OTHERS, *(str(Path(name).resolve()) if name.endswith(".txt") else name for name in sys.argv[2:])]
+    names = [WHOLE, *(Path(name).stem for name in more)]
     figures: dict[str, dict[str, int]] = {}
     parts: dict[str, dict[str, dict[str, int]]] = {}
     failed, short, beyond = False, [], []
-    for edition in EDITIONS:
-        folder = out / edition
-        made = folder / FIGURES
-        for left in (made, made.with_suffix(".out")):  # so that it is linked again
-            left.unlink(missing_ok=True)
-        try:
-            configure(edition, folder)
-            build(folder)
-        except subprocess.CalledProcessError:
-            failed = True
-        if not made.exists():
-            continue
-        linked = json.loads(made.read_text(encoding="utf-8"))
-        parts[edition] = parts_of(linked.pop("objects"), folder)
-        figures[edition] = figures_of(linked, sum(part["by_class"] for part in parts[edition].values()))
-        for name in MAPS:
-            print(f"{edition}, {name}:\n{made.with_name(f'{name}.map').read_text(encoding='utf-8')}")
+    for edition in names:
+        for old in (linked(folder, edition), linked(folder, edition).with_suffix(".out")):  # so that it is linked again
+            old.unlink(missing_ok=True)
+    try:
+        configure(folder, more)
+        build(folder)
+    except subprocess.CalledProcessError:
+        failed = True
+    left = {name: json.loads(file.read_text("utf-8")) for name in names if (file := linked(folder, name)).exists()}
+    objects = {name: [folder / obj for obj in of.pop("objects")] for name, of in left.items()}
+    of_objects = counted(set().union(*objects.values()))
+    for edition, of in left.items():
+        parts[edition] = parts_of({obj: of_objects[obj] for obj in objects[edition] if obj in of_objects}, folder)
+        figures[edition] = figures_of(of, sum(part["by_class"] for part in parts[edition].values()))
+        print(f"{edition}:\n{linked(folder, edition).with_suffix('.map').read_text(encoding='utf-8')}")
         judgement = judged(edition, figures[edition])
         short += judgement[0]
         beyond += judgement[1]
+    for name in PROGRAMS if figures else ():
+        print(f"{name}:\n{(folder / IMAGES / f'{name}.map').read_text(encoding='utf-8')}")
     if not figures:
         return 1
     budgets = {"editions": {edition: budget(own) for edition, own in figures.items()}}
     (out / "budget.json").write_text(json.dumps(budgets, indent=1), encoding="utf-8")
-    details = {edition: published(edition, own) for edition, own in figures.items()}
-    (out / "figures.json").write_text(json.dumps({**budgets, "details": details, "parts": parts}), encoding="utf-8")
+    found: dict[str, Any] = {
+        "editions": {edition: budgets["editions"][edition] for edition in EDITIONS if edition in figures},
+        "details": {edition: published(edition, figures[edition]) for edition in EDITIONS if edition in figures},
+        "parts": {edition: parts[edition] for edition in EDITIONS if edition in parts},
+    }
+    if set(EDITIONS) <= objects.keys():
+        found["features"], faults = by_feature(objects)
+        beyond += faults
+    (out / "figures.json").write_text(json.dumps(found), encoding="utf-8")
     for edition, own in budgets["editions"].items():
         print(f"{edition}: " + ", ".join(f"{name} {value}" for name, value in own.items()))
         for part, row in parts[edition].items():
             print(f"  {part:12}" + "".join(f"{name.replace('_', ' '):>12} {value:6}" for name, value in row.items()))
+    for row in found.get("features", {}).get("rows", ()):
+        name = ", ".join(row["features"]) or "every edition"
+        print(f"{name:16} flash {row['flash']:6} RAM {row['ram']:6}  {', '.join(row['editions'])}")
     for line in short:
         print(f"image-check: short: {line}")
     for line in beyond:

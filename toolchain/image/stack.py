@@ -1,9 +1,11 @@
 """How deep the stack gets, from the call graph of the Cortex-M3 objects and the compiler's frame sizes.
 
 Calls through pointers are not in the objects: toolchain/f2808/indirect_calls.txt says for every function that makes
-one what it may reach, and a function that is missing there, or a recursion, is a finding. Where the drive has modes
-that exclude each other, the table says what holds in which, and the deepest counts. The C28x differs: a call
-there takes two words, an interrupt saves what CONTEXT_WORDS says; frames are taken as half their bytes.
+one what it may reach, mostly by the edition's tables (hooks.py); a function that is missing there, or a recursion, is a
+finding. What is named there and belongs to a feature that is not linked goes for nothing; what no feature has is a
+finding. Where the drive has modes that exclude each other, the table says what holds in which, and the deepest counts.
+The C28x differs: a call there takes two words, an interrupt saves what CONTEXT_WORDS says; frames are taken as half
+their bytes.
 """
 
 import re
@@ -12,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from image.elf import CALLS, ObjectFile
+from image.hooks import in_other_editions, reached
 
 TABLE = Path(__file__).resolve().parent.parent / "f2808" / "indirect_calls.txt"
 CALL_WORDS = 2
@@ -88,20 +91,6 @@ def build_graph(objects: list[ObjectFile]) -> Graph:
     return graph
 
 
-def _table(objects: list[ObjectFile], name: str) -> set[str]:
-    """Every function whose address stands in a constant table."""
-    functions = {symbol.name for obj in objects for symbol in obj.symbols if symbol.is_function}
-    sections = [s for obj in objects for s in obj.sections if s.name == f".rodata.{name}"]
-    return {called for section in sections for _, _, called in section.relocations} & functions
-
-
-def _reached(graph: Graph, objects: list[ObjectFile], word: str) -> set[str]:
-    """The functions that a word of the table of indirect calls stands for."""
-    if word.startswith("@"):
-        return _table(objects, word[1:])
-    return {name for name in graph.frames if re.fullmatch(word, name)}
-
-
 def _modes() -> dict[str, list[str]]:
     """The table's lines by the mode that they hold in; what stands before the first mode holds in all."""
     always: list[str] = []
@@ -122,15 +111,25 @@ def _add_indirect(
     """Completes the graph; returns the callers that may nest: how often, by which function."""
     known: set[str] = set()
     nested: dict[str, tuple[int, str]] = {}
+
+    def missing(name: str) -> bool:
+        """Whether this edition has no such function; a complaint where no edition has."""
+        if name not in graph.frames and not in_other_editions(objects, name):
+            depth.complaints.append(f"{TABLE.name}: {name} is no function")
+        return name not in graph.frames
+
     for line in lines:
         caller, arrow, callees = line.partition(" -> ")
         caller = caller.strip()
         if not arrow:
             never = line.removesuffix(" is not called")
-            if never == line or never not in graph.frames:
+            if never == line:
                 depth.complaints.append(f"{TABLE.name}: not understood: {line}")
-            for below in graph.calls.values():
-                below.discard(never)
+            elif not missing(never):
+                for below in graph.calls.values():
+                    below.discard(never)
+            continue
+        if missing(caller):
             continue
         known.add(caller)
         times = re.fullmatch(r"\s*(\d+) x (\w+)\s*", callees)
@@ -138,10 +137,10 @@ def _add_indirect(
             nested[caller] = (int(times[1]), times[2])
             continue
         for word in callees.split():
-            reached = _reached(graph, objects, word)
-            if not reached:
-                depth.complaints.append(f"{TABLE.name}: {word} is no function")
-            graph.calls.setdefault(caller, set()).update(reached)
+            found = reached(objects, word[1:]) if word.startswith("@") else {word}
+            if found is None:
+                depth.complaints.append(f"{TABLE.name}: {word} is no table")
+            graph.calls.setdefault(caller, set()).update(name for name in found or () if not missing(name))
     for caller in sorted(graph.by_pointer - known):
         depth.complaints.append(f"{caller} calls through a pointer: add it to {TABLE.name}")
     for caller in sorted(known - graph.by_pointer):

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """What the interrupts cost on the chip, in expected cycles: the image's program, its instructions counted in QEMU.
 
-Usage: toolchain/isr/count.py RECORDER IMAGES OUT     (make isr-cost)
+Usage: toolchain/isr/count.py RECORDERS IMAGES OUT     (make isr-cost)
 
-IMAGES has, or gets, a folder for each edition's image as the stand-in for cl2000 builds it. Runs of the virtual drive
-(runs.py) are recorded natively at the drive's register accesses and replayed on an emulated Cortex-M3 that runs what
-the image is made of (program.py). A replay that does anything else than the native run, a period that is longer than
-toolchain/isr/limits.txt allows, a function that is not as in the image and accesses no registers, and one of the
-compiler's library that is not there to copy are failures. What is beyond its goal is said to be short. The tables are
-printed; the counts go to OUT/figures.json, what they come to to OUT/budget.json.
+IMAGES has, or gets, the build of the editions' images by the stand-in for cl2000. Runs of the virtual drive (runs.py)
+are recorded natively at the drive's register accesses and replayed on an emulated Cortex-M3 that runs what the image is
+made of (program.py). A replay that does anything else than the native run, a period that is longer than
+toolchain/isr/limits.txt allows, and a function of the compiler's library that is not there to copy are failures. What
+is beyond its goal is said to be short. The tables are printed; the counts of the edition that has all go to
+OUT/figures.json, what those of each come to to OUT/budget.json.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -76,12 +77,27 @@ def replay(made: Program, trace: Path, entry: int, what: str) -> Counts:
     return found
 
 
-def record(recorder: Path, out: Path, source: str, run: Run) -> Path:
+def record(recorder: Path, trace: Path, source: str, run: Run) -> None:
     """Records one run natively."""
-    trace = out / "run.trace"
     numbers = (str(number) for number in (run.rpm, run.load, run.shaft))
     subprocess.run([recorder, trace, *numbers, *runs.SOURCES[source], *run.words], check=True)
-    return trace
+
+
+def counted(recorder: Path, made: Program, edition: str, source: str) -> Scheme:
+    """All runs of a scheme, two at a time."""
+    entry = costs(ROOT)["cycles"]["interrupt_entry"]
+
+    def one(numbered: tuple[int, Run]) -> Counts:
+        number, run = numbered
+        trace = made.image.with_name(f"{number}.trace")
+        record(recorder, trace, source, run)
+        found = replay(made, trace, entry, f"{edition}, {source}, {run.name}")
+        trace.unlink()
+        return found
+
+    own = runs.of(edition, source)
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip((run.name for run in own), pool.map(one, enumerate(own)), strict=True))
 
 
 def whole(schemes: Mapping[str, Scheme]) -> Counts:
@@ -212,47 +228,39 @@ def called(made: Program, total: Counts) -> list[str]:
     return [f"an interrupt calls {name}" for name in library if not COPIES.fullmatch(name)]
 
 
-def other_program(build: Path, out: Path) -> list[str]:
-    """What is counted and is not what the image has, but for the drivers, whose register accesses are calls."""
-    same, other = program.compared(build, out)
-    print(f"{same} of {same + len(other)} functions are octet for octet those of the image")
-    return [f"{name} is not as in the image" for name in other if not name.startswith("hal/")]
-
-
 def main() -> int:
     """Build, record, replay, print."""
-    recorder, images, out = (Path(word).resolve() for word in sys.argv[1:4])
+    recorders, images, out = (Path(word).resolve() for word in sys.argv[1:4])
     if missing := program.missing_tools():
         print(f"isr-cost: not installed: {' '.join(missing)}; run once: sudo apt-get install {' '.join(missing)}")
         return 1
     cycles = costs(ROOT)["cycles"]
     figures, budgets = {}, {}
-    short, complaints = [], []
+    check.configure(images / "build")
+    with suppress(subprocess.CalledProcessError):  # what is wrong with the images is the images' business
+        check.build(images / "build")
+    objects = program.make(images / "build", out)
+    short: list[str] = []
+    complaints: list[str] = []
     for edition, sources in runs.EDITIONS.items():
-        check.configure(edition, images / edition)
-        with suppress(subprocess.CalledProcessError):  # what is wrong with the image is the image's business
-            check.build(images / edition)
-        made = program.make(images / edition, out / edition)
-        complaints += other_program(images / edition, out / edition)
+        made = program.link(objects, edition, out / edition)
         write_regions(made, cycles, made.image.with_suffix(".regions"))
-        schemes: dict[str, Scheme] = {source: {} for source in sources}
-        for source in sources:
-            for run in runs.RUNS[source]:
-                trace = record(recorder, out / edition, source, run)
-                schemes[source][run.name] = replay(made, trace, cycles["interrupt_entry"], f"{source}, {run.name}")
-                trace.unlink()
-        figures[edition], budgets[edition] = figures_of(made, schemes), budget(schemes, cycles)
+        recorder = recorders / f"stillspin_isr_record_{edition}"
+        schemes = {source: counted(recorder, made, edition, source) for source in sources}
+        own, budgets[edition] = figures_of(made, schemes), budget(schemes, cycles)
         default = schemes[runs.DEFAULT]
-        scope = default[runs.SCOPED.name].worst - default[runs.BARE.name].worst
-        short += charges(counts.joined(default.values()), scope)
+        if edition == check.WHOLE:
+            figures[edition] = own
+            scope = default[runs.SCOPED.name].worst - default[runs.BARE.name].worst
+            short += charges(counts.joined(default.values()), scope)
         complaints += called(made, whole(schemes))
         for source in sources:
             columns = ("mean", "worst", "mean_instructions", "worst_instructions")
-            print("\n".join(table(f"{edition}, {source}", figures[edition]["sources"][source]["steps"], columns)))
-            print("\n".join(table("at rpm", figures[edition]["sources"][source]["runs"], columns)), flush=True)
-        dearest = {f"{row['function']}, {row['file'].rpartition('/')[2]}": row for row in figures[edition]["functions"]}
+            print("\n".join(table(f"{edition}, {source}", own["sources"][source]["steps"], columns)))
+            print("\n".join(table("at rpm", own["sources"][source]["runs"], columns)), flush=True)
+        dearest = {f"{row['function']}, {row['file'].rpartition('/')[2]}": row for row in own["functions"]}
         shown = dict(list(dearest.items())[:30])
-        print("\n".join(table(f"longest period, {figures[edition]['longest_in']}", shown, ("longest", "mean", "in"))))
+        print("\n".join(table(f"longest period, {own['longest_in']}", shown, ("longest", "mean", "in"))))
     found = {"period_cycles": cycles["period"], "editions": budgets}
     (out / "budget.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
     goals = [{"edition": edition, "source": source, "goal": goal} for edition, source, goal, _ in limits()]

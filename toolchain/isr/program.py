@@ -1,7 +1,7 @@
 """The image's program with a replay in the place of its registers (tests/m3), and what counts its instructions.
 
-Every source is compiled by the very command that makes the image's object of it (the stand-in for cl2000), with
-tests/m3/calls.h for hal/f2808/target.h. Only the replay itself is compiled aside.
+The objects are the image's own, but for the drivers': these are compiled again by the very commands that made them (by
+the stand-in for cl2000), with tests/m3/calls.h for hal/f2808/target.h. The replay itself is compiled aside.
 """
 
 import json
@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from image import check
 from image.elf import read_object
 from image.ram_code import SECTION as RAM_CODE
 
@@ -23,7 +24,9 @@ CPU = ("-mcpu=cortex-m3", "-mthumb")
 # As the stand-in does: an enumeration is an int; and bool is a word by its header.
 ASIDE = (*CPU, "-O2", "-std=c99", "-g", "-Wall", "-Wextra", "-fno-short-enums")
 PLUGIN = ("-std=c99", "-O2", "-Wall", "-Wextra", "-fPIC", "-shared")
+TABLES = re.compile(r"(?:made|editions/(\w+))/\w+\.c")  # of an edition, in the build's folder
 LIBRARIES = re.compile(r"CMakeFiles/(stillspin_\w+)\.dir/")
+DRIVERS = "hal/f2808/"
 PROGRAMS = re.compile(r"stillspin_(f2808\w*|lamp|flash_kernel)")  # their own starts, and other programs
 # A section of the linker's map: name, place, length, object; a long name stands in a line of its own.
 MAPPED = re.compile(r"^ (\.text\S*|ramfuncs)\s+(0x[0-9a-f]+)\s+(0x[0-9a-f]+) (\S+)$", re.MULTILINE)
@@ -44,6 +47,25 @@ class Function:
     start: int
     size: int
     in_ram: bool
+
+
+@dataclass(frozen=True)
+class Objects:
+    """What programs are linked of: the drive's objects with their sources, and the replay's."""
+
+    build: Path
+    sources: dict[Path, Path]
+    aside: list[Path]
+
+    def of(self, edition: str) -> dict[Path, Path]:
+        """Those of an edition: its tables, and all that has no edition."""
+        found = {}
+        for target, source in self.sources.items():
+            inside = source.relative_to(self.build).as_posix() if source.is_relative_to(self.build) else ""
+            table = TABLES.fullmatch(inside)
+            if not table or (table[1] or check.WHOLE) == edition:
+                found[target] = source
+        return found
 
 
 @dataclass(frozen=True)
@@ -88,10 +110,11 @@ def _compile(build: Path, out: Path) -> dict[Path, Path]:
     sources = {}
     jobs = []
     for name, words in commands(build).items():
-        target = (out / name).resolve()
-        target.parent.mkdir(parents=True, exist_ok=True)
-        sources[target] = _source(words)
-        jobs.append([*words, f"--preinclude={REPLAY / 'calls.h'}", f"--output_file={target}"])
+        target = (out if name.startswith(DRIVERS) else build) / name
+        sources[target.resolve()] = _source(words)
+        if name.startswith(DRIVERS):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            jobs.append([*words, f"--preinclude={REPLAY / 'calls.h'}", f"--output_file={target}"])
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda job: subprocess.run(job, check=True, cwd=build), jobs))
     return sources
@@ -155,35 +178,18 @@ def marks_of(image: Path) -> dict[str, int]:
     return {symbol.name: symbol.value for symbol in symbols if symbol.is_function and MARKS.fullmatch(symbol.name)}
 
 
-def _codes(path: Path) -> dict[str, bytes]:
-    """The octets of an object's functions."""
-    obj = read_object(path)
-    functions = [symbol for symbol in obj.symbols if symbol.is_function and symbol.section]
-    return {each.name: obj.sections[each.section].content[each.value : each.value + each.size] for each in functions}
-
-
-def compared(build: Path, out: Path) -> tuple[int, list[str]]:
-    """How many functions are octet for octet the image's, and the others, `OBJECT: FUNCTION`.
-
-    These should be the drivers' that access registers. FileNotFoundError where the image has not been built.
-    """
-    same, other = 0, []
-    for name in commands(build):
-        own, counted = _codes(build / name), _codes(out / name)
-        for function, code in own.items():
-            if counted.get(function) == code:
-                same += 1
-            else:
-                other.append(f"{name}: {function}")
-    return same, other
-
-
-def make(build: Path, out: Path) -> Program:
-    """Of the image that was built in a folder."""
+def make(build: Path, out: Path) -> Objects:
+    """Compiles what the images in a folder were made of."""
     out.mkdir(parents=True, exist_ok=True)
-    sources, aside = _compile(build, out), _compile_aside(build, out)
-    image = _link([*sources, *aside], out)
+    return Objects(build, _compile(build, out), _compile_aside(build, out))
+
+
+def link(objects: Objects, edition: str, out: Path) -> Program:
+    """The program of one edition."""
+    out.mkdir(parents=True, exist_ok=True)
+    sources = objects.of(edition)
+    image = _link([*sources, *objects.aside], out)
     plugin = (out / "count.so").resolve()
     subprocess.run([NATIVE, *PLUGIN, REPLAY / "count.c", "-o", plugin], check=True)
     linked = (out / "replay.map").read_text(encoding="utf-8")
-    return Program(image, plugin, functions_of(linked, sources, aside), marks_of(image))
+    return Program(image, plugin, functions_of(linked, sources, objects.aside), marks_of(image))

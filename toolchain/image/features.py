@@ -1,0 +1,108 @@
+"""What each feature takes of the image that has all of them, and that an edition is this image less what it leaves out.
+
+An object belongs to the feature in whose folder its source is. One of the floors below belongs to the features from
+which alone it is reached, by the names that objects ask for; what is reached without them, or from a feature that every
+edition has, belongs to what every edition has. What differs beside whole objects is the edition's own tables and texts.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import compose
+from costs import costs
+
+from image.elf import ObjectFile, read_object
+from image.sizes import object_words
+
+FIRMWARE = "stillspin_firmware.dir/"
+PROGRAM = "stillspin_f2808.dir/"
+TABLES = ("made/", "editions/")
+FLASH = (".econst", ".cinit", ".pinit", ".switch")
+
+
+@dataclass(frozen=True)
+class Words:
+    """Of flash, as expected, and of RAM, the code that runs there included."""
+
+    flash: float = 0.0
+    ram: float = 0.0
+
+    def __add__(self, other: "Words") -> "Words":
+        return Words(self.flash + other.flash, self.ram + other.ram)
+
+    def __sub__(self, other: "Words") -> "Words":
+        return Words(self.flash - other.flash, self.ram - other.ram)
+
+
+Row = tuple[str, ...]  # the features that share it; none: what every edition has
+Linked = Mapping[Path, ObjectFile]
+
+
+def words_of(objects: Iterable[ObjectFile]) -> Words:
+    """What objects come to."""
+    per_half_word = costs(compose.ROOT)["words"]["expected"]
+    total = Words()
+    for sections in map(object_words, objects):
+        hot = per_half_word * sections.get("ramfuncs", 0)
+        rest = per_half_word * sections.get(".text", 0) + sum(sections.get(name, 0) for name in FLASH)
+        total += Words(hot + rest, hot + sections.get(".ebss", 0))
+    return total
+
+
+def read(objects: Iterable[Path]) -> Linked:
+    """The objects of a link that are compiled."""
+    return {
+        path: read_object(path) for path in objects if path.suffix == ".obj" and path.read_bytes()[:4] == b"\x7fELF"
+    }
+
+
+def _inside(path: Path) -> str:
+    """Where an object lies in its library."""
+    return path.as_posix().rpartition(".dir/")[2]
+
+
+def tables(linked: Linked) -> Linked:
+    """Those of the edition, its packed texts among them."""
+    return {path: obj for path, obj in linked.items() if any(f"/{folder}" in _inside(path) for folder in TABLES)}
+
+
+def shares(linked: Linked, always: Iterable[str]) -> dict[Path, Row]:
+    """Of each object but the tables the features that have it. `always`: features that every edition has."""
+    names = {feature.name for feature in compose.all_features()} - set(always)
+    left = linked.keys() - tables(linked).keys()
+    own = {path: next((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), "") for path in left}
+    homes = {name: path for path in left for name in linked[path].defined}
+    asks = {path: {homes[name] for name in linked[path].wanted & homes.keys()} for path in left}
+    starts = {path: {own[path]} for path in left if own[path]}
+    starts |= {path: {""} for path in left if _begins(path, always)}
+    found: dict[Path, set[str]] = {path: set() for path in left}
+    waiting = list(starts.items())
+    while waiting:
+        path, users = waiting.pop()
+        if users <= found[path]:
+            continue
+        found[path] |= users
+        waiting += [(below, users) for below in asks[path] if not own[below]]
+    return {path: () if "" in users else tuple(sorted(users)) for path, users in found.items()}
+
+
+def _begins(path: Path, always: Iterable[str]) -> bool:
+    """Whether every edition has it by itself: a program's start, and what a feature that is never left out brings."""
+    return PROGRAM in path.as_posix() or any(f"{FIRMWARE}{name}/" in path.as_posix() for name in always)
+
+
+def taken(linked: Linked, always: Iterable[str]) -> dict[Row, Words]:
+    """What features take of the flash and of the RAM, alone or with others; () is what every edition has."""
+    found: dict[Row, Words] = {}
+    for path, row in shares(linked, always).items():
+        found[row] = found.get(row, Words()) + words_of([linked[path]])
+    return dict(sorted(found.items()))
+
+
+def difference(whole: Linked, edition: Linked, left_out: Iterable[str], rows: Mapping[Row, Words]) -> Words:
+    """What an edition takes beside the whole image less what it leaves out: nothing, but for a fault of the build."""
+    gone = set(left_out)
+    less = sum((words for row, words in rows.items() if row and gone.issuperset(row)), Words())
+    of_tables = words_of(tables(edition).values()) - words_of(tables(whole).values())
+    return words_of(edition.values()) - (words_of(whole.values()) - less + of_tables)
