@@ -47,6 +47,7 @@ BAD = {
     "tune": ("tune", "--port", "70000", "--drive", NOBODY),
     "hil": ("hil", "A99", "--port", NOBODY),
     "flash": ("flash", "none.out"),
+    "image show": ("image", "show", "none.out"),
     "demo-image": ("demo-image", "/dev/null/demo"),
     "loader": ("loader", "flash.bin", "--kernel", "none.out"),
 }

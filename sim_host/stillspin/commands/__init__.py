@@ -13,6 +13,7 @@ from stillspin.commands import (
     explain,
     flash,
     hil,
+    image,
     loader,
     monitor,
     motor,
@@ -35,6 +36,7 @@ def register(app: typer.Typer) -> None:
     app.command(name="startup-matrix")(startup.startup_matrix)
     app.add_typer(params.app, name="params")
     app.add_typer(motor.app, name="motor")
+    app.add_typer(image.app, name="image")
     app.command(name="console")(console.console)
     app.command(name="schema")(schema.schema)
     app.command(name="scope")(scope.scope)
