@@ -37,7 +37,7 @@ static void read_header(uint16_t of) {
 }
 
 static void begin_check(void) {
-  report.values = report.rescaled = report.refused = report.first_refused = report.unknown = 0;
+  report.values = report.rescaled = report.refused = report.first_refused = report.unknown = report.left_out = 0;
   if (staging) values_reset();
   reader_begin(slot);
 }
@@ -141,6 +141,7 @@ static void take_entry(const slot_entry_t* entry) {
       break;
     case VALUE_UNKNOWN:
       report.unknown++;
+      if (parameter_is_left_out(entry->id)) report.left_out++;
       break;
     default:
       break;

@@ -110,7 +110,8 @@ static store_state_t take_over(void) {
     return STORE_CONFLICT;
   }
   if (report.older) return STORE_OLDER;
-  const bool other_firmware = report.rescaled > 0u || report.refused > 0u || report.missing > 0u || report.unknown > 0u;
+  const bool other_firmware =
+      report.rescaled > 0u || report.refused > 0u || report.missing > 0u || report.unknown > report.left_out;
   return other_firmware ? STORE_MIGRATED : STORE_LOADED;
 }
 

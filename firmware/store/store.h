@@ -5,7 +5,7 @@
 // read is read once more before it is given up; when the slot that is given up may have been the newer one, the state
 // says so. Values go by the stable number of their parameter and are rescaled when its format has changed; a value
 // outside of its range is refused, its default stays in force; numbers that this firmware does not know are kept and
-// written back, so that going back to an older firmware and forth again loses nothing.
+// written back, so that going to an older firmware or to another edition and back again loses nothing.
 //
 // store_service does all the work, in the background level and in short slices (below 2000 cycles, but for the exchange
 // of a whole set, which checks it like a changed parameter does); it never waits. At power-on it reads while the drive
@@ -54,6 +54,7 @@ typedef struct {
   uint16_t first_refused;  // number of the first of them, 0 for none
   uint16_t missing;        // parameters that the slot does not have: default
   uint16_t unknown;        // kept for another firmware
+  uint16_t left_out;       // of these, parameters of a feature that this edition has not
   uint16_t damaged;        // slots in which something is that is not valid
 } store_report_t;
 
