@@ -54,7 +54,7 @@ def ids(wanted: Sequence[str]) -> list[str]:
     names = [COMMISSION, *scenario_file.ids()] if ALL in wanted else list(wanted)
     for name in names:
         if name != COMMISSION:
-            scenario_file.load(name)
+            scenario_file.find(name)
     return names
 
 
