@@ -2,10 +2,10 @@
    `make lint` compares with this file.
 
    Sector A is programmed once, over JTAG: boot entry, passwords, boot code, and the resident part, which refers to
-   nothing outside of itself and has no globals, so that it comes out the same word for word as long as its sources and
-   the compiler do. Sectors B to D hold the rest and are what an update erases; an update brings an image whose sector A
-   is the board's. What does not fit B to D goes behind the resident part: such an image is whole, but no update can
-   bring it. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which leaves the chip
+   nothing outside of itself and has no globals, so that it comes out the same word for word, in every edition, as long as
+   its sources and the compiler do. Sectors B to D hold the rest and are what an update erases; an update brings an image
+   whose sector A is the board's. What does not fit B to D goes behind the resident part: such an image is whole, but no
+   update can bring it. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which leaves the chip
    open. Passwords of all zeros would lock it for ever. */
 
 --stack_size=0x7F8
@@ -29,8 +29,10 @@ PAGE 1:
 
 /* The CPU fetches ahead of what it runs: code keeps off the last eight words of a block of memory. Start-up zeroes
    .ebss by the two symbols below, so it has to stay in one piece. There is no heap: .esysmem is empty. The boot ROM
-   has its own stack in 0x400 to 0x47F, and is through when the drive's begins. Of the floors that know nothing of the
-   drive all is resident but what is worked on most. */
+   has its own stack in 0x400 to 0x47F, and is through when the drive's begins. Resident is, one
+   after the other, what every edition needs of the floors that know nothing of the drive, but for what looks at the
+   windows, which is worked on most; and of TI's library what that calls, but for 64-bit quotients, which commissioning
+   alone wants. */
 
 SECTIONS
 {
@@ -38,15 +40,44 @@ SECTIONS
   boot      : > BOOT,      PAGE = 0
   appentry  : > APP_ENTRY, PAGE = 0
   identity  : > IDENTITY,  PAGE = 0
-  observers : { libstillspin_estimators.a<deviation_observer*, flux_observer*, flux_adaptation*>(.text)
-                libstillspin_estimators.a<deviation_observer*, flux_observer*, flux_adaptation*>(.econst)
-              } > APP, PAGE = 0
+  quotients : { rts2800_ml.lib<ll_div*>(.text) } > APP, PAGE = 0
   resident  : { rts2800_ml.lib<l_div*, u_div*, i_div*, ll_*, memcpy*, memset*>(.text)
-                libstillspin_qmath.a<*>(.text) libstillspin_qmath.a<*>(.econst) libstillspin_qmath.a<*>(.switch)
-                libstillspin_svpwm.a<*>(.text) libstillspin_svpwm.a<*>(.econst) libstillspin_svpwm.a<*>(.switch)
-                libstillspin_control.a<*>(.text) libstillspin_control.a<*>(.econst) libstillspin_control.a<*>(.switch)
-                libstillspin_estimators.a<*>(.text) libstillspin_estimators.a<*>(.econst) libstillspin_estimators.a<*>(.switch)
-              } >> RESIDENT | APP, PAGE = 0
+                libstillspin_qmath.a<qdiv.*>(.text, .econst, .switch)
+                libstillspin_qmath.a<qsqrt.*>(.text, .econst, .switch)
+                libstillspin_qmath.a<qtrig.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<alternating.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<dead_time.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<edges.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<extended.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<modulator.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<on_time.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<ripple.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<windows.*>(.text, .econst, .switch)
+                libstillspin_control.a<brake_limit.*>(.text, .econst, .switch)
+                libstillspin_control.a<current_controller.*>(.text, .econst, .switch)
+                libstillspin_control.a<field_weakening.*>(.text, .econst, .switch)
+                libstillspin_control.a<frame.*>(.text, .econst, .switch)
+                libstillspin_control.a<if_start.*>(.text, .econst, .switch)
+                libstillspin_control.a<machine_map.*>(.text, .econst, .switch)
+                libstillspin_control.a<machine_model.*>(.text, .econst, .switch)
+                libstillspin_control.a<mtpa.*>(.text, .econst, .switch)
+                libstillspin_control.a<position_hold.*>(.text, .econst, .switch)
+                libstillspin_control.a<speed_controller.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<axis.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<blend.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<emf_sign.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<flying.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<followed.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<inertia_match.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<inverse_inductance.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<polarity.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<saturation.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<sensor_match.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<slopes.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<tracking_observer.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<voltage_match.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<wiring.*>(.text, .econst, .switch)
+              } > RESIDENT, PAGE = 0
   .cinit    : > APP,       PAGE = 0
   .pinit    : > APP,       PAGE = 0
   .switch   : > APP,       PAGE = 0

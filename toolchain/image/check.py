@@ -27,6 +27,7 @@ from costs import costs  # noqa: E402
 
 from image import classes, features  # noqa: E402
 from image.elf import read_object  # noqa: E402
+from image.resident import changed  # noqa: E402
 from image.sizes import object_words  # noqa: E402
 
 ROOT = HERE.parents[1]
@@ -46,8 +47,8 @@ WHAT = {
     "flash_by_class": "the same by the classes of the instructions",
     "strings": "strings, a word for a character, and packed texts",
     "constants": "other constants",
-    "resident": "half words and words that stay in sector A",
-    "update": "half words and words that an update writes (B to D)",
+    "resident": "what stays in sector A, expected",
+    "update": "what an update writes (B to D), expected",
     "globals": "globals in RAM",
     "scope": "of these: the scope's buffer",
     "stack": "stack, by the call graph",
@@ -116,12 +117,15 @@ def figures_of(counted: Mapping[str, int], by_class: int) -> dict[str, int]:
     rest = counted["flash"] - thumb
     expected = words["expected"] * thumb
     hot = round(words["expected"] * counted["ram_code"])
+    resident = counted["resident"] + (words["expected"] - 1) * counted["resident_code"]
     return {
         **counted,
         "thumb": thumb,
         "flash_expected": round(rest + expected),
         "flash_p90": round(rest + expected * words["p90"]),
         "flash_by_class": rest + by_class,
+        "resident": round(resident),
+        "update": round(rest + expected - resident),
         "ram_code_expected": hot,
         "ram": counted["globals"] + counted["stack"] + hot,
     }
@@ -223,6 +227,7 @@ def main() -> int:
         failed = True
     left = {name: json.loads(file.read_text("utf-8")) for name in names if (file := linked(folder, name)).exists()}
     objects = {name: [folder / obj for obj in of.pop("objects")] for name, of in left.items()}
+    beyond += changed({name: of.pop("kept") for name, of in left.items()}) if left else []
     of_objects = counted(set().union(*objects.values()))
     for edition, of in left.items():
         parts[edition] = parts_of({obj: of_objects[obj] for obj in objects[edition] if obj in of_objects}, folder)

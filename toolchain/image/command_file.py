@@ -1,7 +1,7 @@
 """TI's linker command files as far as those here go.
 
 MEMORY with ranges; SECTIONS by `> RANGE` and `>> RANGE | RANGE`, of all input sections of that name or of those that
-`{ ARCHIVE<MEMBER, ..>(SECTION) .. }` names, the first that names one gets it.
+`{ ARCHIVE<MEMBER, ..>(SECTION, ..) .. }` names, the first that names one gets it.
 """
 
 import re
@@ -11,7 +11,7 @@ from pathlib import Path
 
 _RANGE = re.compile(r"^\s*(\w+)\s*:\s*origin\s*=\s*(\w+),\s*length\s*=\s*(\w+)", re.MULTILINE)
 _SECTION = re.compile(r"^\s*([.\w]+)\s*:\s*(\{[^}]*\}\s*)?((?:>|LOAD|=|\w).*(?:\n {6,}.*)*)", re.MULTILINE)
-_INPUT = re.compile(r"([\w.]+)<([^>]*)>\(([.\w]+)\)")
+_INPUT = re.compile(r"([\w.]+)<([^>]*)>\(([^)]*)\)")
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,10 @@ def read_command_file(path: Path) -> CommandFile:
     for match in _SECTION.finditer(sections):
         words = match[3]
         inputs = tuple(
-            (archive, member.strip(), section)
-            for archive, members, section in _INPUT.findall(match[2] or "")
+            (archive, member.strip(), section.strip())
+            for archive, members, named in _INPUT.findall(match[2] or "")
             for member in members.split(",")
+            for section in named.split(",")
         )
         load = re.search(r"(?:^>>?|LOAD\s*=)\s*(\w+)", words)
         spill = re.search(r"^>>\s*\w+\s*\|\s*(\w+)", words)

@@ -15,7 +15,7 @@ from image.command_file import CommandFile, read_command_file
 from image.elf import ObjectFile, read_object
 from image.interrupts import dear_calls
 from image.ram_code import left_in_flash, marked
-from image.resident import unresident
+from image.resident import kept, unresident
 from image.sizes import RUN_TIME_LIBRARY, RUN_TIME_WORDS, object_words
 from image.stack import Depth, stack_depth
 
@@ -106,7 +106,7 @@ def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Dep
     words = pile.words()
     scope = sum(s.size // 2 for o in pile.objects for s in o.sections if s.name == ".bss.ring" and s.size > 4096)
     flash = sum(words.get(n, 0) for n in (".text", ".econst", ".cinit", ".pinit", ".switch", "ramfuncs"))
-    resident = placed.get(RESIDENT, 0)
+    in_sector_a = [o for o in pile.objects if file.section_of(o.archive, o.path.name, ".text") == RESIDENT]
     return {
         "ram_code": words.get("ramfuncs", 0),
         "scope": scope,
@@ -115,8 +115,8 @@ def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Dep
         "constants": words.get(".econst", 0) - words.get("strings", 0),
         "code": words.get(".text", 0),
         "flash": flash,
-        "resident": resident,
-        "update": flash - min(resident, file.ranges[SECTOR_A].length),
+        "resident": placed.get(RESIDENT, 0),
+        "resident_code": sum(object_words(o).get(".text", 0) for o in in_sector_a),
         "stack": depth.total,
         "library": sum(RUN_TIME_WORDS.values()),  # of the code, and words of the C28x already
         "flash_room": sum(file.ranges[name].length for name in FLASH),
@@ -164,7 +164,8 @@ def link(arguments: list[str]) -> int:
     output.with_suffix(".map").write_text("\n".join(lines) + "\n", encoding="utf-8")
     output.write_text(NO_CODE, encoding="utf-8")
     if SECTOR_A in file.ranges:
-        left = {**figures, "objects": [str(obj.path) for obj in pile.objects]}
+        objects = [str(obj.path) for obj in pile.objects]
+        left = {**figures, "objects": objects, "kept": kept(pile.objects, file, RESIDENT)}
         output.with_suffix(".json").write_text(json.dumps(left), encoding="utf-8")
     for complaint in (*(f"undefined: {name}" for name in missing), *grown, *depth.complaints):
         print(f"link (stand-in): {complaint}", file=sys.stderr)

@@ -2,15 +2,18 @@
 
 Of the objects that a linker command file puts into one section of the image, every relocation has to lead into that
 section again, or to what TI's library brings for arithmetic and copying; and none of them may have globals, which have
-no fixed place either. So the section comes out the same word for word whatever else changes.
+no fixed place either. So the section comes out the same word for word whatever else changes, where what is in it and
+its order are the same: that is compared between images.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatch
+from hashlib import sha256
 
 from image.command_file import CommandFile
 from image.elf import ObjectFile, Section
-from image.sizes import section_of
+from image.sizes import RUN_TIME_LIBRARY, section_of
 
 ARITHMETIC = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*")
 
@@ -40,4 +43,46 @@ def unresident(objects: Iterable[ObjectFile], file: CommandFile, kept: str) -> l
         }
         moved = sorted(n for n in wanted - own - public if not ARITHMETIC.fullmatch(n))
         complaints += [f"{obj.path.name} is resident and refers to {name}, which an update moves" for name in moved]
+    return complaints
+
+
+def kept(objects: Iterable[ObjectFile], file: CommandFile, section: str) -> list[str]:
+    """What the image has in `section`, in the order of the linker command file: names, and what the words come from.
+
+    An input of the command file that no object answers to is there without words.
+    """
+    objects = list(objects)
+    inputs = next(placement.inputs for placement in file.placements if placement.section == section)
+    lines = []
+    for archive, member, name in inputs:
+        found = [
+            (obj, own)
+            for obj in objects
+            if obj.archive == archive and fnmatch(obj.path.name, member)
+            for own in obj.sections
+            if section_of(own) == name and _place(file, obj, own) == section
+        ]
+        lines += [f"{archive}<{obj.path.name}>({own.name}) {_digest(own)}" for obj, own in found]
+        if not found and name == ".text" and archive != RUN_TIME_LIBRARY:
+            lines.append(f"{archive}<{member}>({name}) is not there")
+    return lines
+
+
+def _digest(section: Section) -> str:
+    words = repr((section.content, section.size, sorted(section.relocations)))
+    return sha256(words.encode()).hexdigest()[:16]
+
+
+def changed(images: Mapping[str, Sequence[str]]) -> list[str]:
+    """What of the resident part is not in all images as it is in the first, in words."""
+    (first, expected), *others = images.items()
+    complaints = [f"{line}, and is to be resident" for line in expected if line.endswith(" is not there")]
+    for name, lines in others:
+        here, there = [line for line in lines if line not in expected], [line for line in expected if line not in lines]
+        complaints += [
+            f"the resident part of {name} has {line.rpartition(' ')[0]} beside that of {first}" for line in here
+        ]
+        complaints += [f"the resident part of {name} has not {line.rpartition(' ')[0]} as in {first}" for line in there]
+        if not here and not there and list(lines) != list(expected):
+            complaints.append(f"the resident part of {name} has another order than that of {first}")
     return complaints
