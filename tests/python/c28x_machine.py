@@ -1,4 +1,6 @@
-"""A second C28x, in Python integers: registers, memory and locations. Its operations are in c28x_moves and c28x_sums.
+"""A second C28x, in Python integers: registers, memory and locations.
+
+Its operations are in c28x_sums, c28x_moves and c28x_pointers.
 
 It shares the table of instructions with the core in C++ and nothing else. What a value is, is worked out as a number
 and brought into its width afterwards; flags are questions about the exact number.

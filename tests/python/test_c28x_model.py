@@ -6,14 +6,15 @@ test_c28x_programs.
 
 import random
 
-import c28x_moves
+import c28x_moves  # noqa: F401 (it adds its operations)
+import c28x_pointers  # noqa: F401
 import pytest
 from c28x_desk import ask, put, state
 from c28x_machine import FLAGS, Machine
+from c28x_sums import OPERATIONS
 
 from stillspin.c28x.table import forms
 
-OPERATIONS = c28x_moves.OPERATIONS
 STRAIGHT = [form for form in forms() if form.operation in OPERATIONS]
 PROGRAM = 0x3F8000
 PAGE = 0x8000
