@@ -184,6 +184,18 @@ nb::list signal_rows() {
   return rows;
 }
 
+// Of all parameters and signals, whatever the edition.
+nb::list dictionary_names() {
+  nb::list names;
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) names.append(#name);
+#include "firmware/dictionary/parameter_list.h"
+#undef PARAMETER
+#define SIGNAL(name, unit, q, of, value, meaning) names.append(#name);
+#include "firmware/dictionary/signal_list.h"
+#undef SIGNAL
+  return names;
+}
+
 nb::object default_of(const Entry& e) {
   const double value = e.get(Setup());
   switch (e.kind) {
@@ -238,6 +250,7 @@ NB_MODULE(_core, m) {
         nb::arg("seed"), nb::arg("progress").none(), nb::arg("recording") = nb::none(),
         "The firmware's commissioning on the virtual drive; see core.py.");
   m.def("parameters", &parameter_rows, "The firmware's parameter table.");
+  m.def("names", &dictionary_names, "Of all parameters and signals of the firmware, whatever the edition.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");
   m.def("signals", &signal_rows, "Name, unit and meaning of the recorded columns.");

@@ -114,6 +114,10 @@ class NativeCore(Protocol):
         """The firmware's parameter table."""
         ...
 
+    def names(self) -> list[str]:
+        """Of all parameters and signals of the firmware, whatever the edition."""
+        ...
+
     def check_parameters(self, parameters: dict[str, float]) -> None:
         """Raises ValueError when firmware parameters do not fit together."""
         ...
@@ -259,6 +263,17 @@ def known_parameters() -> dict[str, Entry]:
     if not file.exists():
         return parameters(load())
     return {row["name"]: _parameter_entry(row) for row in json.loads(file.read_text(encoding="utf-8"))}
+
+
+def known_names() -> frozenset[str]:
+    """Names of parameters and signals of the firmware that this package belongs to, whatever the edition.
+
+    Without a virtual drive to ask those of the parameters alone, without a table none.
+    """
+    try:
+        return frozenset(load().names())
+    except InputError:
+        return frozenset(known_parameters()) if Path(__file__).with_name(PARAMETERS).exists() else frozenset()
 
 
 def _parameter_entry(row: Mapping[str, Any]) -> Entry:

@@ -203,6 +203,10 @@ def parameters():
     return [dict(zip(names, row, strict=True)) | {"whole": row[1] in whole} for row in _PARAMETERS]
 
 
+def names():
+    return [row[1] for row in _PARAMETERS] + list(SIGNALS)
+
+
 def check_parameters(parameters):
     """Everything fits together here."""
 

@@ -200,6 +200,21 @@ def test_without_a_store_the_status_says_that_nothing_can_be_saved() -> None:
     assert json.loads(on("drive", "-c", ASKED))[3][0] != absent
 
 
+def test_the_client_names_the_edition_that_has_not_what_was_asked_for(tmp_path: Path) -> None:
+    """Exit status 1: the drive's answer, not a wrong name."""
+    file = tmp_path / "parameters.toml"
+    drive = ("--drive", "virtual:")
+    file.write_text("[parameters]\nspeed_ramp = 500\nflux_low = 123.0\n", encoding="utf-8")
+    said = on("minimal", "-m", "stillspin", "params", "load", str(file), *drive, expected=1)
+    assert "parameter 'flux_low' is not in this edition of the firmware, minimal" in said
+    for signal in ("load_angle", "current_q"):
+        said = on("minimal", "-m", "stillspin", "scope", signal, *drive, expected=1)
+        assert "not in this edition of the firmware, minimal" in said
+    file.write_text("[parameters]\nflux_lou = 123.0\n", encoding="utf-8")
+    said = on("minimal", "-m", "stillspin", "params", "load", str(file), *drive, expected=2)
+    assert "no parameter 'flux_lou'" in said, "what no edition has"
+
+
 def test_a_client_reads_the_table_and_the_edition_of_the_drive() -> None:
     """Records in the place of the console's words: status 8, no row of what is left out."""
     code = """

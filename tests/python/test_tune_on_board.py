@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 import pytest
 from desk import PATIENT, board, needs_board
 
+from stillspin import core
 from stillspin.drive import Drive
 from stillspin.drive.requester import wait_until
 from stillspin.tune.server import Server
@@ -23,8 +24,17 @@ LONG = 240
 
 
 @contextmanager
-def opened(page, *options):
+def opened(page, *options, edition="lab"):
     """The page of a board of its own, and the drive."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(core.EDITION, edition)  # of the board's process
+        with _opened(page, *options) as drive:
+            patch.undo()
+            yield drive
+
+
+@contextmanager
+def _opened(page, *options):
     with (
         TemporaryDirectory() as directory,
         chdir(directory),
@@ -122,6 +132,29 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     assert "check the supply" in tuned.inner_text("#history")
     tuned.wait_for_selector("#hold:has-text('Start')")  # nothing is held any more
     picture(tuned, "fault")
+
+
+def test_what_the_edition_of_a_drive_leaves_out_has_no_panel(tmp_path, monkeypatch, page):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    with opened(page, edition="minimal"):
+        assert page.inner_text("#edition") == (
+            "Edition minimal of the firmware leaves out: scope, commissioning, store, CAN bus."
+        )
+        tabs = page.locator("[role=tab]:visible")
+        assert tabs.all_inner_texts() == ["Live", "Parameters", "Faults"]
+        tabs.nth(0).press("ArrowLeft")
+        assert page.is_visible("#faults"), "by the keys as well"
+        change(page, "speed_ramp", 500)
+        assert page.inner_text("#store-note") == "Changes are in effect; they last until the drive is switched off."
+        assert not page.is_visible("#save")
+        assert not page.is_visible("#store")
+        assert page.locator("[data-name=can_node]").count() == 0
+        assert "STORE" not in page.inner_text("aside").upper().replace(page.inner_text("#edition").upper(), "")
+    with opened(page, edition="lab"):
+        assert not page.is_visible("#edition")
+        assert tabs.count() == 5
+        page.click("[data-tab=parameters]")
+        assert page.is_visible("#save")
 
 
 def test_a_page_that_is_closed_stops_the_real_firmware(tuned):

@@ -8,12 +8,12 @@ import os
 import struct
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from stillspin.counted import counted
-from stillspin.drive.protocol import VERSION, Request, StatusCode
+from stillspin.drive.protocol import VERSION, Request, StatusCode, Words
 from stillspin.drive.table import Parameter, Signal, Table
 from stillspin.link.errors import DifferentError, RefusedError
 
@@ -95,7 +95,7 @@ def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = No
     """
     known = _load(who)
     if known:
-        return known
+        return replace(known, edition=who.edition)
     total = who.parameters + who.signals
     parameters, signals = [], []
     for index in range(total):
@@ -112,6 +112,27 @@ def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = No
             progress((index + 1) / total)
     found = Table(who.version, who.crc, who.faults, tuple(parameters), tuple(signals))
     _save(found)
+    return replace(found, edition=who.edition)
+
+
+_PARTS = {
+    Words.SCOPE: "scope",
+    Words.COMMISSIONING: "commissioning",
+    Words.STORE: "store",
+    Words.CAN: "CAN bus",
+}
+"""Parts of the firmware that have words of their own."""
+
+
+def left_out(ask: Ask) -> list[str]:
+    """Parts that the drive's edition has not, for people."""
+    found = []
+    for kind, part in _PARTS.items():
+        try:
+            ask(Request.WORDS, struct.pack("<BB", kind, 0))
+        except RefusedError as error:
+            if error.status == StatusCode.EDITION:
+                found.append(part)
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from functools import cached_property
 from typing import Self
 
 from stillspin.drive import describe, protocol
@@ -62,6 +63,11 @@ class Inspection:
     def version(self) -> str:
         """Of the firmware."""
         return self.identity.version
+
+    @cached_property
+    def left_out(self) -> list[str]:
+        """Parts of the firmware that its edition has not, for people."""
+        return describe.left_out(self._ask)
 
     def raw_status(self, once: float | None = None, *, urgent: bool = False) -> RawStatus:
         """The numbers behind `status`.

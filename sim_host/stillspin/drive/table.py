@@ -7,7 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from stillspin.errors import InputError, did_you_mean
+from stillspin import core
+from stillspin.drive.protocol import StatusCode
+from stillspin.errors import InputError, StillspinError, did_you_mean
+from stillspin.link.errors import RefusedError
 from stillspin.quantity import Range
 
 TURN = "turn"
@@ -125,6 +128,8 @@ class Table:
     """Causes of faults that the drive knows."""
     parameters: tuple[Parameter, ...]
     signals: tuple[Signal, ...] = field(default=())
+    edition: str = field(default="", compare=False)
+    """What is in the firmware; empty where it does not say."""
 
     @cached_property
     def _parameters(self) -> dict[str, Parameter]:
@@ -139,9 +144,10 @@ class Table:
 
         Raises:
             InputError: there is none; names what is near.
+            RefusedError: another edition of the firmware has it.
         """
         if name not in self._parameters:
-            raise InputError(f"no parameter '{name}'{did_you_mean(name, self._parameters)}")
+            raise self._missing("parameter", name, self._parameters)
         return self._parameters[name]
 
     def has_parameter(self, name: str) -> bool:
@@ -153,10 +159,17 @@ class Table:
 
         Raises:
             InputError: there is none; names what is near.
+            RefusedError: another edition of the firmware has it.
         """
         if name not in self._signals:
-            raise InputError(f"no signal '{name}'{did_you_mean(name, self._signals)}")
+            raise self._missing("signal", name, self._signals)
         return self._signals[name]
+
+    def _missing(self, kind: str, name: str, known: Iterable[str]) -> StillspinError:
+        if self.edition not in ("", core.LAB) and name in core.known_names():
+            words = f"{kind} '{name}' is not in this edition of the firmware, {self.edition}"
+            return RefusedError(words, StatusCode.EDITION)
+        return InputError(f"no {kind} '{name}'{did_you_mean(name, known)}")
 
     def chosen(self, names: Iterable[str]) -> list[Signal]:
         """The signals of these names, in their order."""

@@ -24,6 +24,8 @@ def describe(drive: Drive, plotted: Sequence[str]) -> Message:
     return {
         "t": "hello",
         "version": drive.version,
+        "edition": drive.identity.edition,
+        "left_out": drive.left_out,
         "crc": table.crc,
         "where": drive.link.transport.name,
         "parameters": [_parameter(entry) for entry in table.parameters],

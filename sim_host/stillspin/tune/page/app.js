@@ -2,6 +2,7 @@
 
 import { Commissioning } from "./commissioning.js";
 import { by } from "./dom.js";
+import { showEdition } from "./edition.js";
 import { Events } from "./events.js";
 import { Faults } from "./faults.js";
 import { Known } from "./known.js";
@@ -20,6 +21,7 @@ const fail = (error) => events.note(error.message);
 link.on(["hello", "again"], ({ version, where }) => (by("where").textContent = `${version} · ${where}`));
 
 tabs();
+link.on(["hello", "again"], showEdition);
 const run = new Run(link, events);
 const parameters = new Parameters(link, fail);
 new Live(link, fail);

@@ -23,7 +23,8 @@ export class Parameters {
     by("defaults").onclick = () => this.defaults();
   }
 
-  build({ parameters, values }) {
+  build({ parameters, values, left_out: leftOut }) {
+    this.kept = leftOut.includes("store") ? "last until the drive is switched off" : "are kept when they are saved";
     this.rows = new Map();
     const groups = [...new Set(parameters.map((parameter) => parameter.group))];
     by("tree").replaceChildren(
@@ -86,7 +87,7 @@ export class Parameters {
       const { value, conflict } = await this.link.ask("set", { name: row.parameter.name, value: text });
       this.put(row, value);
       this.complain(row, conflict);
-      by("store-note").textContent = "Changes are in effect; they are kept when they are saved.";
+      by("store-note").textContent = `Changes are in effect; they ${this.kept}.`;
       return conflict;
     } catch (error) {
       this.complain(row, error.message);
@@ -128,7 +129,7 @@ export class Parameters {
     try {
       const { values, named, different, complaints } = await this.link.ask("load", { name: file.name, text: await file.text() });
       this.take(values);
-      by("store-note").textContent = `${file.name} names ${counted(named, "parameter")}, of which ${different} had another value here. They are kept when they are saved.`;
+      by("store-note").textContent = `${file.name} names ${counted(named, "parameter")}, of which ${different} had another value here. They ${this.kept}.`;
       if (complaints.length) this.fail(new Error(complaints.join("; ")));
     } catch (error) {
       this.fail(error);

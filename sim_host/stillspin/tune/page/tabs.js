@@ -13,7 +13,7 @@ export function tabs() {
       by(button.dataset.tab).hidden = button !== chosen;
     }
   };
-  buttons.forEach((button, at) => {
+  buttons.forEach((button) => {
     const panel = by(button.dataset.tab);
     button.id = `tab-${button.dataset.tab}`;
     button.setAttribute("aria-controls", panel.id);
@@ -21,8 +21,9 @@ export function tabs() {
     panel.setAttribute("aria-labelledby", button.id);
     button.onclick = () => show(button);
     button.onkeydown = ({ key }) => {
-      const next = buttons[(at + (STEP[key] ?? 0) + buttons.length) % buttons.length];
       if (!STEP[key]) return;
+      const shown = buttons.filter((other) => !other.hidden);
+      const next = shown[(shown.indexOf(button) + STEP[key] + shown.length) % shown.length];
       next.focus();
       show(next);
     };
