@@ -26,16 +26,16 @@ class Reload : public Drive {
   static void reload() {
     drive_parameters_changed();
     background_step(&drive);
-    EXPECT_FALSE(drive.request.reload);
+    EXPECT_FALSE(inside::request().reload);
   }
 };
 
 TEST_F(Reload, NothingIsDoneThatWasNotAskedFor) {
   parameters.pole_pairs = 6;
   background_step(&drive);
-  EXPECT_EQ(drive.config.nameplate.pole_pairs, 4);
+  EXPECT_EQ(inside::config().nameplate.pole_pairs, 4);
   reload();
-  EXPECT_EQ(drive.config.nameplate.pole_pairs, 6);
+  EXPECT_EQ(inside::config().nameplate.pole_pairs, 6);
 }
 
 // While the power stage is off the model, the speed control and the hardware follow, and what was learnt is forgotten;
@@ -43,11 +43,11 @@ TEST_F(Reload, NothingIsDoneThatWasNotAskedFor) {
 TEST_F(Reload, TheMachineFollowsWhileThePowerStageIsOff) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN}) {
     SetUp();
-    drive.state = state;
+    inside::state() = state;
     const bool off = state == DRIVE_READY;
-    drive.model.trim.rs_q24 = 12345;
-    drive.control.speed_ready = false;
-    const std::int32_t share = drive.control.speed.gains.share_q30;
+    inside::model().trim.rs_q24 = 12345;
+    inside::speed_ready() = false;
+    const std::int32_t share = inside::speed_controller().gains.share_q30;
     parameters.encoder_counts = 1000;
     parameters.dead_time = raw(1.3, 16);
     parameters.magnet_flux = raw(0.1, 28);
@@ -55,12 +55,12 @@ TEST_F(Reload, TheMachineFollowsWhileThePowerStageIsOff) {
     board.dead_band = 0;
     board.encoder_counts = 0;
     reload();
-    EXPECT_TRUE(drive.config_valid);
-    EXPECT_EQ(drive.config.nameplate.flux_q28, raw(0.1, 28));
-    EXPECT_EQ(drive.model.flux_q28 == raw(0.1, 28), off);
-    EXPECT_EQ(drive.model.trim.rs_q24, off ? 0 : 12345);
-    EXPECT_EQ(drive.control.speed_ready, off);
-    EXPECT_EQ(drive.control.speed.gains.share_q30 != share, off);
+    EXPECT_TRUE(inside::config_valid());
+    EXPECT_EQ(inside::config().nameplate.flux_q28, raw(0.1, 28));
+    EXPECT_EQ(inside::model().flux_q28 == raw(0.1, 28), off);
+    EXPECT_EQ(inside::model().trim.rs_q24, off ? 0 : 12345);
+    EXPECT_EQ(inside::speed_ready(), off);
+    EXPECT_EQ(inside::speed_controller().gains.share_q30 != share, off);
     EXPECT_EQ(board.encoder_counts, off ? 1000u : 0u);
     EXPECT_EQ(board.dead_band, off ? 130 : 0);
   }
@@ -71,8 +71,8 @@ TEST_F(Reload, SpeedAndCurrentAreInTheNewUnits) {
   parameters.pole_pairs = 8;
   parameters.current_limit = parameters.weakening_limit = raw(3.5, 20);
   reload();
-  EXPECT_NEAR(drive.control.target_bpp / (80.0 * kPeriod * 4294967296.0), 1.0, 1e-5);
-  EXPECT_EQ(drive.control.current_limit_q20, raw(3.5, 20));
+  EXPECT_NEAR(inside::target_bpp() / (80.0 * kPeriod * 4294967296.0), 1.0, 1e-5);
+  EXPECT_EQ(inside::current_limit_q20(), raw(3.5, 20));
 }
 
 // The old configuration stays in use, but nobody starts with it.
@@ -80,24 +80,24 @@ TEST_F(Reload, ParametersThatDoNotFitTogetherLeaveTheConfigurationAndSayWhy) {
   parameters.blend_high = parameters.blend_low;
   parameters.pole_pairs = 6;
   reload();
-  EXPECT_FALSE(drive.config_valid);
-  EXPECT_TRUE(drive.conflict_known);
-  EXPECT_EQ(drive.conflict, SAY_blend_high_must_be_above_blend_low);
-  EXPECT_EQ(drive.config.nameplate.pole_pairs, 4);
+  EXPECT_FALSE(inside::config_valid());
+  EXPECT_TRUE(inside::conflict_known());
+  EXPECT_EQ(inside::conflict(), SAY_blend_high_must_be_above_blend_low);
+  EXPECT_EQ(inside::config().nameplate.pole_pairs, 4);
   parameters.blend_high = 2 * parameters.blend_low;
   reload();
-  EXPECT_TRUE(drive.config_valid);
-  EXPECT_EQ(drive.conflict, PACKED_NONE);
-  EXPECT_EQ(drive.config.nameplate.pole_pairs, 6);
+  EXPECT_TRUE(inside::config_valid());
+  EXPECT_EQ(inside::conflict(), PACKED_NONE);
+  EXPECT_EQ(inside::config().nameplate.pole_pairs, 6);
 }
 
 TEST_F(Reload, ADeadBandThatTheHardwareCannotMakeIsNoConfiguration) {
   board.dead_band_fits = false;
   reload();
-  EXPECT_FALSE(drive.config_valid);
+  EXPECT_FALSE(inside::config_valid());
   board.dead_band_fits = true;
   reload();
-  EXPECT_TRUE(drive.config_valid);
+  EXPECT_TRUE(inside::config_valid());
 }
 
 TEST_F(Reload, TheDeadBandIsTheParametersButNeverLessThanTheHardwaresLeast) {
@@ -114,12 +114,12 @@ class Inertia : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    drive.state = DRIVE_RUN;
-    drive.config.mapped = true;
+    inside::state() = DRIVE_RUN;
+    inside::config().mapped = true;
     parameters.inertia_adapt = 1;
     use_source(POSITION_OBSERVER);
-    drive.control.ramp.value = drive.position.selected.speed_bpp = bpp_of(100);
-    drive.inertia.reference_bpp = drive.control.ramp.value;
+    inside::speed_ramp().value = inside::selected().speed_bpp = bpp_of(100);
+    inside::inertia().reference_bpp = inside::speed_ramp().value;
   }
   static double acceleration_limit() {
     const Motor m;
@@ -128,47 +128,47 @@ class Inertia : public Drive {
   }
   /// A run-up that has turned the shaft twice as far as its torque should have, with this share of the limit's torque.
   static void run_up(double share) {
-    inertia_match_t& s = drive.inertia;
+    inertia_match_t& s = inside::inertia();
     inertia_match_reset(&s);
     s.phase = INERTIA_RUN_UP;
-    s.reference_bpp = drive.control.ramp.value - 1000;
+    s.reference_bpp = inside::speed_ramp().value - 1000;
     s.ms = 99;
     s.before_q24 = s.ratio_q24;
     s.start_base_q8 = raw(1000.0, 8);
     s.speed0_bpp = bpp_of(10);
     s.gained_bpp = s.last_gained_bpp = static_cast<std::int32_t>(1000.0 * share * acceleration_limit());
-    s.angle_bam = drive.position.selected.angle_bam;
+    s.angle_bam = inside::selected().angle_bam;
     s.expected = raw(4.0, 24);
     s.turned = raw(8.0, 24);
     s.next = raw(4.0, 24);
-    drive.control.ramp.value = bpp_of(900);
+    inside::speed_ramp().value = bpp_of(900);
   }
 };
 
 // What was found in a run-up is given to the model, the speed control and the observer, which has mistaken it for load.
 TEST_F(Inertia, WhatARunUpFindsIsHandedOn) {
   run_up(0.5);
-  const std::int32_t speed = drive.inertia.speed0_bpp + 2 * drive.inertia.gained_bpp;
-  drive.position.observer.load_accel_q8 = raw(-7000.0, 8);
-  drive.position.observer.speed_bpp = bpp_of(20);
-  const double accel = drive.model.accel_q12, share = drive.control.speed.gains.amps_per_bpp;
+  const std::int32_t speed = inside::inertia().speed0_bpp + 2 * inside::inertia().gained_bpp;
+  inside::observer().load_accel_q8 = raw(-7000.0, 8);
+  inside::observer().speed_bpp = bpp_of(20);
+  const double accel = inside::model().accel_q12, share = inside::speed_controller().gains.amps_per_bpp;
   drive_match_inertia(&drive);
-  const double ratio = real(drive.inertia.ratio_q24, 24);
+  const double ratio = real(inside::inertia().ratio_q24, 24);
   EXPECT_NEAR(ratio, 2.0, 0.1);
-  EXPECT_NEAR(drive.model.accel_q12 / accel, ratio, 1e-3);
-  EXPECT_NEAR(drive.control.speed.gains.amps_per_bpp / share, 1.0 / ratio, 1e-3);
-  EXPECT_EQ(drive.position.observer.load_accel_q8, drive.inertia.start_base_q8) << "the load is that of before";
-  EXPECT_NEAR(drive.position.observer.load_accel_q8, 1000.0 * 256.0 * ratio, 256.0);
-  EXPECT_NEAR(drive.position.observer.speed_bpp / static_cast<double>(speed), 1.0, 0.05);
+  EXPECT_NEAR(inside::model().accel_q12 / accel, ratio, 1e-3);
+  EXPECT_NEAR(inside::speed_controller().gains.amps_per_bpp / share, 1.0 / ratio, 1e-3);
+  EXPECT_EQ(inside::observer().load_accel_q8, inside::inertia().start_base_q8) << "the load is that of before";
+  EXPECT_NEAR(inside::observer().load_accel_q8, 1000.0 * 256.0 * ratio, 256.0);
+  EXPECT_NEAR(inside::observer().speed_bpp / static_cast<double>(speed), 1.0, 0.05);
 }
 
 TEST_F(Inertia, ASpeedBeyondTheModelsIsItsEnd) {
   run_up(0.5);
-  drive.inertia.speed0_bpp = MACHINE_SPEED_END_BPP - 1000;
-  drive.inertia.turned = raw(60.0, 24);
-  drive.inertia.expected = raw(30.0, 24);
+  inside::inertia().speed0_bpp = MACHINE_SPEED_END_BPP - 1000;
+  inside::inertia().turned = raw(60.0, 24);
+  inside::inertia().expected = raw(30.0, 24);
   drive_match_inertia(&drive);
-  EXPECT_EQ(drive.position.observer.speed_bpp, MACHINE_SPEED_END_BPP);
+  EXPECT_EQ(inside::observer().speed_bpp, MACHINE_SPEED_END_BPP);
 }
 
 // Three tenths of the torque at the current's limit, less says nothing.
@@ -177,7 +177,7 @@ TEST_F(Inertia, ARunUpUnderLittleTorqueSaysNothing) {
     SetUp();
     run_up(share);
     drive_match_inertia(&drive);
-    EXPECT_EQ(drive.inertia.ratio_q24 != INERTIA_SAME_Q24, share > 0.3) << share;
+    EXPECT_EQ(inside::inertia().ratio_q24 != INERTIA_SAME_Q24, share > 0.3) << share;
   }
 }
 
@@ -185,24 +185,24 @@ TEST_F(Inertia, ARunUpUnderLittleTorqueSaysNothing) {
 TEST_F(Inertia, TheReferenceIsReachedWithin20Rpm) {
   for (const int off : {-21, -19, 19, 21}) {
     SetUp();
-    drive.position.selected.speed_bpp = bpp_of(100 + off);
+    inside::selected().speed_bpp = bpp_of(100 + off);
     drive_match_inertia(&drive);
-    EXPECT_EQ(drive.inertia.quiet_ms, std::abs(off) < 20 ? 1 : 0) << off;
+    EXPECT_EQ(inside::inertia().quiet_ms, std::abs(off) < 20 ? 1 : 0) << off;
   }
 }
 
 // At rest the torque's slow mean; what begins the run-up is the ramp.
 TEST_F(Inertia, ARunUpBeginsWithTheRampAfterARest) {
-  drive.position.torque_accel_q8 = raw(160.0, 8);
-  drive.position.selected.angle_bam = 0x12345678u;
+  inside::torque_accel_q8() = raw(160.0, 8);
+  inside::selected().angle_bam = 0x12345678u;
   for (int n = 0; n < 30; ++n) drive_match_inertia(&drive);
-  EXPECT_EQ(drive.inertia.phase, INERTIA_REST);
-  EXPECT_GT(drive.inertia.base_q8, raw(100.0, 8));
-  EXPECT_EQ(drive.inertia.angle_bam, 0x12345678u);
-  drive.control.ramp.value += 1;
+  EXPECT_EQ(inside::inertia().phase, INERTIA_REST);
+  EXPECT_GT(inside::inertia().base_q8, raw(100.0, 8));
+  EXPECT_EQ(inside::inertia().angle_bam, 0x12345678u);
+  inside::speed_ramp().value += 1;
   drive_match_inertia(&drive);
-  EXPECT_EQ(drive.inertia.phase, INERTIA_RUN_UP);
-  EXPECT_EQ(drive.inertia.speed0_bpp, drive.position.selected.speed_bpp);
+  EXPECT_EQ(inside::inertia().phase, INERTIA_RUN_UP);
+  EXPECT_EQ(inside::inertia().speed0_bpp, inside::selected().speed_bpp);
 }
 
 // A large current turns the angle where the map is not known, and other sources have no observer to correct.
@@ -210,23 +210,23 @@ TEST_F(Inertia, NothingIsLearntWithoutTheMapTheParameterAndTheObserver) {
   for (int missing = 0; missing < 4; ++missing) {
     SetUp();
     run_up(0.5);
-    if (missing == 1) drive.config.mapped = false;
-    if (missing == 2) drive.config.values.inertia_adapt = 0;
+    if (missing == 1) inside::config().mapped = false;
+    if (missing == 2) inside::config().values.inertia_adapt = 0;
     if (missing == 3) use_source(POSITION_OBSERVER_AVV);
     drive_match_inertia(&drive);
-    EXPECT_EQ(drive.inertia.ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;
+    EXPECT_EQ(inside::inertia().ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;
   }
 }
 
 TEST_F(Inertia, OutsideOfRunARunUpIsForgotten) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_STOP, DRIVE_FAULT}) {
     run_up(0.5);
-    drive.inertia.quiet_ms = 30;
-    drive.state = state;
+    inside::inertia().quiet_ms = 30;
+    inside::state() = state;
     drive_match_inertia(&drive);
-    EXPECT_EQ(drive.inertia.phase, INERTIA_REST);
-    EXPECT_EQ(drive.inertia.quiet_ms, 0);
-    EXPECT_EQ(drive.inertia.ratio_q24, INERTIA_SAME_Q24);
+    EXPECT_EQ(inside::inertia().phase, INERTIA_REST);
+    EXPECT_EQ(inside::inertia().quiet_ms, 0);
+    EXPECT_EQ(inside::inertia().ratio_q24, INERTIA_SAME_Q24);
   }
 }
 
@@ -237,11 +237,11 @@ TEST(SignalTable, EverySignalHasAPlaceAndNothingIsBehindTheLast) {
   for (std::uint16_t place = 0; place < signal_count(); ++place) ASSERT_NE(signal_info(place), nullptr);
   EXPECT_EQ(signal_info(signal_count()), nullptr);
   EXPECT_EQ(drive_signal(signal_count(), 0), 0);
-  drive.heat_sink_q8 = 20 * 256;
+  inside::heat_sink_q8() = 20 * 256;
   const auto last = static_cast<std::uint16_t>(signal_count() - 1);
   EXPECT_EQ(drive_signal(last, KNOWN_HEAT_SINK), 20 * 256) << "the last of them";
   EXPECT_EQ(drive_signal(last, 0), 0);
-  drive.state = DRIVE_STOP;
+  inside::state() = DRIVE_STOP;
   EXPECT_EQ(drive_signal(0, 0), DRIVE_STOP);
   EXPECT_EQ(drive_signals().state, DRIVE_STOP);
 }

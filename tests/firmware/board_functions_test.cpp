@@ -26,28 +26,28 @@ class BoardFunctions : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    drive.state = DRIVE_READY;
-    drive.loading = false;
+    inside::state() = DRIVE_READY;
+    inside::loading() = false;
     parameters.rated_current = raw(10.89, 20);
     use_parameters();
-    drive.samples.link_q16 = raw(300.0, 16);
+    inside::link_q16() = raw(300.0, 16);
   }
 
   /// The next milliseconds of the background level.
   static void look(int times = 1) {
     for (int n = 0; n < times; ++n) {
-      drive.time_ms++;
+      inside::time_ms()++;
       board_service();
     }
   }
   static void look_at_link(double volts, int times = 1) {
-    drive.samples.link_q16 = raw(volts, 16);
+    inside::link_q16() = raw(volts, 16);
     look(times);
   }
   /// How many more looks until the drive faults, at most `most`.
   static int looks_to_fault(int most) {
     int n = 0;
-    for (; n < most && drive.state != DRIVE_FAULT; ++n) look();
+    for (; n < most && inside::state() != DRIVE_FAULT; ++n) look();
     return n;
   }
   /// A code of the converter's last place in a window, as a period leaves it.
@@ -73,7 +73,7 @@ TEST_F(BoardFunctions, NothingIsDoneThatIsNotWired) {
   board.emergency = true;
   look_at_link(30.0, 5000);
   look_at_link(415.0, 5000);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.relay);
   EXPECT_FALSE(board.brake);
   EXPECT_EQ(board.digital_io_wired, 0);
@@ -93,8 +93,8 @@ TEST_F(BoardFunctions, OutputsAreSetUpOnce) {
   EXPECT_EQ(board.digital_io_wired, 1);
   EXPECT_EQ(board.emergency_wired, 1);
   drive_reset();
-  drive.state = DRIVE_READY;
-  drive.loading = false;
+  inside::state() = DRIVE_READY;
+  inside::loading() = false;
   parameters.brake_voltage = raw(400.0, 16);
   look();
   EXPECT_EQ(board.digital_io_wired, 2) << "the brake resistor alone wants them, too";
@@ -113,10 +113,10 @@ TEST_F(BoardFunctions, TheRelayFollowsTheChargeOfTheLink) {
   EXPECT_NE(words().find("precharge relay closed"), std::string::npos);
   look_at_link(151.0);
   EXPECT_TRUE(board.relay);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   look_at_link(149.0);
   EXPECT_TRUE(board.relay) << "a relay is not opened under current";
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   look();
   EXPECT_FALSE(board.relay);
 }
@@ -126,14 +126,14 @@ TEST_F(BoardFunctions, AChargeThatDoesNotEndIsAFault) {
   parameters.precharge_time = 50;
   use_parameters();
   look_at_link(25.0, 200);
-  EXPECT_EQ(drive.state, DRIVE_READY) << "an eighth: there is no supply yet";
+  EXPECT_EQ(inside::state(), DRIVE_READY) << "an eighth: there is no supply yet";
   look_at_link(25.1, 50);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   look_at_link(20.0);  // gone again: the time counts anew
   look_at_link(100.0, 50);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   look();
-  EXPECT_EQ(drive.fault, FAULT_PRECHARGE);
+  EXPECT_EQ(inside::fault(), FAULT_PRECHARGE);
   EXPECT_EQ(::board.charging_ms, 0);
 }
 
@@ -145,7 +145,7 @@ TEST_F(BoardFunctions, TheBrakeResistorHasItsHysteresis) {
     look_at_link(380.0);
     EXPECT_FALSE(board.brake);
     EXPECT_NE(words().find("brake resistor off"), std::string::npos);
-    drive.samples.link_q16 = raw(380.1, 16);
+    inside::link_q16() = raw(380.1, 16);
     board_service();  // within the same millisecond
     EXPECT_TRUE(board.brake);
     EXPECT_NE(words().find("brake resistor on"), std::string::npos);
@@ -163,12 +163,12 @@ TEST_F(BoardFunctions, TheBrakeResistorIsNotBurnt) {
   parameters.brake_voltage = raw(380.0, 16);
   for (const int percent : {10, 20}) {
     parameters.brake_share = raw(percent, 16);
-    drive.state = DRIVE_READY;
+    inside::state() = DRIVE_READY;
     ::board.brake_mean_q30 = 0;
     look_at_link(300.0);
-    drive.samples.link_q16 = raw(390.0, 16);
+    inside::link_q16() = raw(390.0, 16);
     const int looks = looks_to_fault(5000);
-    EXPECT_EQ(drive.fault, FAULT_BRAKE_RESISTOR);
+    EXPECT_EQ(inside::fault(), FAULT_BRAKE_RESISTOR);
     EXPECT_NEAR(looks, -8192.0 * std::log(1.0 - percent / 100.0), 10.0) << percent;
   }
 }
@@ -177,22 +177,22 @@ TEST_F(BoardFunctions, TheGateEnableMustComeThrough) {
   parameters.gate_feedback = 1;
   board.gates_pass = true;
   look(100);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   board.gates_pass = false;
   look(20);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   board.gates_pass = true;
   look();
   board.gates_pass = false;
   EXPECT_EQ(looks_to_fault(100), 21);
-  EXPECT_EQ(drive.fault, FAULT_GATE_ENABLE);
+  EXPECT_EQ(inside::fault(), FAULT_GATE_ENABLE);
 }
 
 TEST_F(BoardFunctions, TheEmergencyStopFaultsRefusesAndExplains) {
   parameters.emergency_stop = 1;
   use_parameters();
   look();
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_EQ(words(), "emergency stop released; current limit 100 %");
   EXPECT_EQ(interlock_why_off(), FAULT_GATES_OFF);
   board.emergency = true;
@@ -200,7 +200,7 @@ TEST_F(BoardFunctions, TheEmergencyStopFaultsRefusesAndExplains) {
   EXPECT_EQ(interlock_why_off(), FAULT_EMERGENCY);
   EXPECT_EQ(words(), "emergency stop pressed; current limit 100 %");
   look();
-  EXPECT_EQ(drive.fault, FAULT_EMERGENCY);
+  EXPECT_EQ(inside::fault(), FAULT_EMERGENCY);
 }
 
 // A control interrupt in the middle of it would find a drive that is half in its fault.
@@ -209,7 +209,7 @@ TEST_F(BoardFunctions, AFaultIsRaisedWithTheInterruptsHeldOff) {
   use_parameters();
   board.emergency = true;
   look();
-  ASSERT_EQ(drive.fault, FAULT_EMERGENCY);
+  ASSERT_EQ(inside::fault(), FAULT_EMERGENCY);
   EXPECT_EQ(board.gates_off_calls, 1);
   EXPECT_EQ(board.off_unheld, 0);
   EXPECT_EQ(board.held_off, 0);
@@ -219,12 +219,12 @@ TEST_F(BoardFunctions, NothingIsJudgedWhileTheDriveBoots) {
   parameters.emergency_stop = 1;
   use_parameters();
   board.emergency = true;
-  drive.state = DRIVE_BOOT;
+  inside::state() = DRIVE_BOOT;
   look(10);
-  EXPECT_EQ(drive.fault, FAULT_NONE);
-  drive.state = DRIVE_CALIBRATE;
+  EXPECT_EQ(inside::fault(), FAULT_NONE);
+  inside::state() = DRIVE_CALIBRATE;
   look();
-  EXPECT_EQ(drive.fault, FAULT_EMERGENCY);
+  EXPECT_EQ(inside::fault(), FAULT_EMERGENCY);
 }
 
 // The table's points, and half-way between them; once in eight milliseconds.
@@ -242,10 +242,10 @@ TEST_F(BoardFunctions, TheHeatSinksTemperatureIsThatOfTheTable) {
     }
   }
   EXPECT_EQ(drive_known(&drive) & KNOWN_HEAT_SINK, KNOWN_HEAT_SINK);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_NE(words().find("heat sink 130 C"), std::string::npos) << words();
   convert(codes[3]);
-  drive.time_ms = 8;
+  inside::time_ms() = 8;
   look(7);  // 9 .. 15
   EXPECT_NE(words().find("heat sink 130 C"), std::string::npos) << "not yet";
   look();
@@ -264,33 +264,33 @@ TEST_F(BoardFunctions, AHotHeatSinkTakesHalfTheCurrentAndThenAll) {
     look(8);
     EXPECT_NEAR(share(), c.share, 0.01) << c.code;
     EXPECT_NEAR(real(interlock_current_limit(), 20), 14.0 * c.share, 0.15);
-    EXPECT_EQ(drive.control.current_limit_q20, interlock_current_limit());
+    EXPECT_EQ(inside::current_limit_q20(), interlock_current_limit());
   }
   EXPECT_NE(words().find("current limit 6"), std::string::npos) << words();
   convert(369);
   look(8);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   convert(360);
   look(8);
-  EXPECT_EQ(drive.fault, FAULT_TEMPERATURE);
+  EXPECT_EQ(inside::fault(), FAULT_TEMPERATURE);
 }
 
 TEST_F(BoardFunctions, ABrokenSensorIsAFaultOnceTheDriveIsCalibrated) {
   parameters.temperature_limit = raw(130.0, 8);
   for (const int code : {3937 + 33, 159 - 33}) {
-    drive.state = DRIVE_CALIBRATE;
-    drive.fault = FAULT_NONE;
+    inside::state() = DRIVE_CALIBRATE;
+    inside::fault() = FAULT_NONE;
     convert(static_cast<std::uint16_t>(code));
     look(8);
-    EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
-    drive.state = DRIVE_READY;
+    EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
+    inside::state() = DRIVE_READY;
     look(8);
-    EXPECT_EQ(drive.fault, FAULT_TEMPERATURE) << code;
+    EXPECT_EQ(inside::fault(), FAULT_TEMPERATURE) << code;
   }
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   convert(3937 + 32);  // colder than the table, but a sensor
   look(8);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 // I^2 t: from rest, the mean square of i reaches q of i^2 after -T ln(1 - q).
@@ -298,10 +298,10 @@ TEST_F(BoardFunctions, OverloadIsBorneForItsTime) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
   use_parameters();
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {raw(-6.0, 20), raw(10.3923, 20)};  // 12 A
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {raw(-6.0, 20), raw(10.3923, 20)};  // 12 A
   const int looks = looks_to_fault(5000);
-  EXPECT_EQ(drive.fault, FAULT_OVERLOAD);
+  EXPECT_EQ(inside::fault(), FAULT_OVERLOAD);
   EXPECT_NEAR(looks, -1000.0 * std::log(1.0 - 110.0 / 144.0), 20.0);
 }
 
@@ -309,10 +309,10 @@ TEST_F(BoardFunctions, OverloadIsBorneForItsTime) {
 TEST_F(BoardFunctions, WithoutAnotherCurrentTheMotorsRatedOneCounts) {
   parameters.rated_current = raw(4.0, 20);
   use_parameters();
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {0, raw(8.0, 20)};
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {0, raw(8.0, 20)};
   const int looks = looks_to_fault(60000);
-  EXPECT_EQ(drive.fault, FAULT_OVERLOAD);
+  EXPECT_EQ(inside::fault(), FAULT_OVERLOAD);
   EXPECT_NEAR(looks, -60000.0 * std::log(1.0 - 1.1 / 4.0), 400.0);
 }
 
@@ -342,10 +342,10 @@ TEST_F(BoardFunctions, WithoutARatedCurrentHalfOfTheLimitCounts) {
 TEST_F(BoardFunctions, AnOverloadCurrentOfZeroWatchesNothing) {
   parameters.overload_current = 0;
   use_parameters();
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {0, raw(30.0, 20)};
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {0, raw(30.0, 20)};
   look(200000);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_EQ(share(), 1.0);
 }
 
@@ -354,10 +354,10 @@ TEST_F(BoardFunctions, TheMeanSquareIsAsFineForASmallMotor) {
   parameters.rated_current = raw(0.1, 20);
   parameters.overload_time = 600000;
   use_parameters();
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {0, raw(0.12, 20)};
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {0, raw(0.12, 20)};
   const int looks = looks_to_fault(1200000);
-  EXPECT_EQ(drive.fault, FAULT_OVERLOAD);
+  EXPECT_EQ(inside::fault(), FAULT_OVERLOAD);
   EXPECT_NEAR(looks, -600000.0 * std::log(1.0 - 1.1 / 1.44), 20000.0);
 }
 
@@ -365,21 +365,21 @@ TEST_F(BoardFunctions, TheLimitFallsToWhatMayFlowForEver) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
   use_parameters();
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   const std::pair<double, double> cases[] = {{8.8, 1.0}, {9.5, 0.5 * (1.0 + 10.0 / 14.0)}, {10.1, 10.0 / 14.0}};
   for (const auto& [amps, expected] : cases) {
-    drive.control.measured_q20 = {0, raw(amps, 20)};
+    inside::current_dq_q20() = {0, raw(amps, 20)};
     look(12000);
     EXPECT_NEAR(share(), expected, 0.02) << amps;
   }
-  EXPECT_EQ(drive.state, DRIVE_RUN);
-  drive.state = DRIVE_READY;  // no current flows, whatever was measured last
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
+  inside::state() = DRIVE_READY;  // no current flows, whatever was measured last
   look(3000);
   EXPECT_NEAR(share(), 1.0, 1e-3);
   parameters.overload_current = raw(20.0, 20);  // above the limit in use: nothing falls
   use_parameters();
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {0, raw(19.5, 20)};
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {0, raw(19.5, 20)};
   look(12000);
   EXPECT_NEAR(share(), 1.0, 1e-3);
 }
@@ -390,8 +390,8 @@ TEST_F(BoardFunctions, TheHotterOfTheTwoRules) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
   use_parameters();
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {0, raw(10.1, 20)};
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {0, raw(10.1, 20)};
   convert(1497);
   look(12000);
   EXPECT_NEAR(share(), 10.0 / 14.0, 0.01);
@@ -399,10 +399,10 @@ TEST_F(BoardFunctions, TheHotterOfTheTwoRules) {
   look(8);
   EXPECT_NEAR(share(), 0.63, 0.01);
   convert(360);
-  drive.control.measured_q20 = {0, raw(30.0, 20)};
+  inside::current_dq_q20() = {0, raw(30.0, 20)};
   ::board.heat_q24 = 2 << 24;
   look(8);
-  EXPECT_EQ(drive.fault, FAULT_TEMPERATURE) << "the first that is found is told";
+  EXPECT_EQ(inside::fault(), FAULT_TEMPERATURE) << "the first that is found is told";
 }
 
 TEST_F(BoardFunctions, TheConverterAndItsReferenceMayBeOffBySoMuch) {
@@ -418,7 +418,7 @@ TEST_F(BoardFunctions, TheConverterAndItsReferenceMayBeOffBySoMuch) {
     EXPECT_EQ(selftest_service(), c.good ? FAULT_NONE : FAULT_SELF_TEST) << c.ground << " " << c.off;
   }
   selftest_reset();
-  drive.loading = true;  // what is wired is not known yet
+  inside::loading() = true;  // what is wired is not known yet
   EXPECT_EQ(selftest_service(), FAULT_NONE);
   EXPECT_EQ(selftest.failed, 0);
 }

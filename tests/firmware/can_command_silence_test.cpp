@@ -11,7 +11,7 @@ namespace {
 
 TEST_F(CanCommand, TheTimeOutIsAsLongAsItSays) {
   parameters.can_timeout = 50;
-  drive.time_ms = 1000;
+  inside::time_ms() = 1000;
   take(frame(CAN_MODE_OFF));
   can_command_service(&command, 1049);
   EXPECT_FALSE(command.timed_out);
@@ -34,7 +34,7 @@ TEST_F(CanCommand, WithoutAReactionTheBusKeepsTheCommand) {
   EXPECT_TRUE(command.timed_out);
   EXPECT_TRUE(command.commanding);
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.command_rpm_q16, 100 << 16) << "the next command goes on with it";
+  EXPECT_EQ(inside::command_rpm_q16(), 100 << 16) << "the next command goes on with it";
 }
 
 TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {
@@ -46,13 +46,13 @@ TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {
     parameters.can_reaction = reaction;
     parameters.can_timeout = 50;
     make_running_by_bus();
-    drive.control.ramp.value = 50'000'000;  // it is turning: a stop takes a while
+    inside::speed_ramp().value = 50'000'000;  // it is turning: a stop takes a while
     pass(39);
-    EXPECT_EQ(drive.state, DRIVE_RUN);
+    EXPECT_EQ(inside::state(), DRIVE_RUN);
     EXPECT_FALSE(command.timed_out);
     pass(3);
     EXPECT_TRUE(command.timed_out);
-    EXPECT_EQ(drive.state, after[reaction]) << "reaction " << reaction;
+    EXPECT_EQ(inside::state(), after[reaction]) << "reaction " << reaction;
   }
 }
 
@@ -60,13 +60,13 @@ TEST_F(CanCommand, CommandsThatComeBackDoNotStartItAgain) {
   parameters.can_reaction = CAN_REACTION_COAST;
   make_running_by_bus();
   pass(300);
-  ASSERT_EQ(drive.state, DRIVE_READY);
+  ASSERT_EQ(inside::state(), DRIVE_READY);
   say(CAN_MODE_RUN, 0, 300);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(command.timed_out);
   say(CAN_MODE_OFF, 0, 20);
   say(CAN_MODE_RUN, 0, 60);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 TEST_F(CanCommand, SilenceWhileOffDoesNotMakeTheNextRunAStart) {
@@ -75,7 +75,7 @@ TEST_F(CanCommand, SilenceWhileOffDoesNotMakeTheNextRunAStart) {
   pass(300);
   ASSERT_TRUE(command.timed_out);
   say(CAN_MODE_RUN, 0, 100);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(CanCommand, AFaultIsClearedByARisingBitAndTheDriveDoesNotStartByItself) {
@@ -84,9 +84,9 @@ TEST_F(CanCommand, AFaultIsClearedByARisingBitAndTheDriveDoesNotStartByItself) {
   EXPECT_FALSE(command.commanding);
   take(frame(CAN_MODE_RUN, 0, true));
   pass(10);
-  EXPECT_NE(drive.state, DRIVE_FAULT);
+  EXPECT_NE(inside::state(), DRIVE_FAULT);
   say(CAN_MODE_RUN, 0, 150);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(CanCommand, ARunGivenDuringAFaultIsForgotten) {
@@ -95,7 +95,7 @@ TEST_F(CanCommand, ARunGivenDuringAFaultIsForgotten) {
   say(CAN_MODE_RUN, 0, 20);
   drive_command_reset();  // somebody else clears it
   say(CAN_MODE_RUN, 0, 150);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 // In one message, and the fault is gone before the background level comes by again.
@@ -104,22 +104,22 @@ TEST_F(CanCommand, ARunThatClearsAFaultDoesNotStartToo) {
   say(CAN_MODE_OFF, 0, 20);
   take(frame(CAN_MODE_RUN, 0, true));
   periods(2);
-  ASSERT_NE(drive.state, DRIVE_FAULT);
+  ASSERT_NE(inside::state(), DRIVE_FAULT);
   say(CAN_MODE_RUN, 0, 150);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(CanCommand, OnlyARisingBitClearsAndOnlyAFault) {
   make_ready();
   take(frame(CAN_MODE_OFF, 0, true));
-  EXPECT_FALSE(drive.request.reset) << "there is no fault";
-  drive.state = DRIVE_FAULT;
+  EXPECT_FALSE(inside::request().reset) << "there is no fault";
+  inside::state() = DRIVE_FAULT;
   take(frame(CAN_MODE_OFF, 0, true));
-  EXPECT_FALSE(drive.request.reset) << "the bit has been there since before the fault";
+  EXPECT_FALSE(inside::request().reset) << "the bit has been there since before the fault";
   take(frame(CAN_MODE_OFF, 0, false));
-  EXPECT_FALSE(drive.request.reset);
+  EXPECT_FALSE(inside::request().reset);
   take(frame(CAN_MODE_OFF, 0, true));
-  EXPECT_TRUE(drive.request.reset);
+  EXPECT_TRUE(inside::request().reset);
 }
 
 TEST_F(CanCommand, ADriveThatSomebodyElseStartedIsNotStoppedBySilence) {
@@ -127,19 +127,19 @@ TEST_F(CanCommand, ADriveThatSomebodyElseStartedIsNotStoppedBySilence) {
   say(CAN_MODE_OFF, 0, 20);
   drive_command_start();
   pass(400);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_TRUE(command.timed_out);
   say(CAN_MODE_OFF, 0, 20);
-  EXPECT_EQ(drive.state, DRIVE_RUN) << "no change of mode";
+  EXPECT_EQ(inside::state(), DRIVE_RUN) << "no change of mode";
   say(CAN_MODE_STOP, 0, 10);
-  EXPECT_NE(drive.state, DRIVE_RUN) << "a change to stop is meant";
+  EXPECT_NE(inside::state(), DRIVE_RUN) << "a change to stop is meant";
 }
 
 TEST_F(CanCommand, TheClockMayWrap) {
-  drive.time_ms = 0xFFFFFF00u;
+  inside::time_ms() = 0xFFFFFF00u;
   make_running_by_bus();
   say(CAN_MODE_RUN, 0, 500);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   pass(250);
   EXPECT_TRUE(command.timed_out);
 }

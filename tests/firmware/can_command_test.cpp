@@ -16,11 +16,11 @@ namespace {
 TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
   make_running_by_bus();
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.command_rpm_q16, 100 << 16) << "400 quarters of a revolution per minute";
+  EXPECT_EQ(inside::command_rpm_q16(), 100 << 16) << "400 quarters of a revolution per minute";
   take(frame(CAN_MODE_RUN, -400));
-  EXPECT_EQ(drive.control.command_rpm_q16, -100 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), -100 * 65536);
   take(frame(CAN_MODE_STOP));
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 // Its own time-out watches over the motor, and nobody else lets go of it.
@@ -39,7 +39,7 @@ TEST_F(CanCommand, TheMotorIsItsOwn) {
 TEST_F(CanCommand, OffOpensTheGates) {
   make_running_by_bus();
   say(CAN_MODE_OFF, 0, 10);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
   EXPECT_FALSE(command.commanding);
 }
@@ -47,24 +47,24 @@ TEST_F(CanCommand, OffOpensTheGates) {
 TEST_F(CanCommand, AModeThatDoesNotExistIsOff) {
   make_running_by_bus();
   say(3, 0, 10);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(CanCommand, RunFromTheFirstMessageOnStartsNothing) {
   make_ready();
   say(CAN_MODE_RUN, 400, 500);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   say(CAN_MODE_STOP, 0, 20);
   say(CAN_MODE_RUN, 0, 60);
-  EXPECT_EQ(drive.state, DRIVE_RUN) << "a change to run starts";
+  EXPECT_EQ(inside::state(), DRIVE_RUN) << "a change to run starts";
 }
 
 TEST_F(CanCommand, RunIsKeptUntilTheDriveIsReady) {
   periods(10);
-  ASSERT_EQ(drive.state, DRIVE_CALIBRATE);
+  ASSERT_EQ(inside::state(), DRIVE_CALIBRATE);
   take(frame(CAN_MODE_OFF));
   say(CAN_MODE_RUN, 0, 120);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 TEST_F(CanCommand, DamagedRepeatedAndForeignCommandsDoNotCount) {
@@ -76,7 +76,7 @@ TEST_F(CanCommand, DamagedRepeatedAndForeignCommandsDoNotCount) {
   f = frame(CAN_MODE_STOP);
   take(f);
   const auto heard = command.heard_ms;
-  drive.request.stop = false;
+  inside::request().stop = false;
   pass(5);
   take(f);
   EXPECT_EQ(command.heard_ms, heard) << "the same message again";
@@ -134,8 +134,8 @@ TEST_F(CanCommand, TheFirstOffOrStopIsAChangeToIt) {
     SetUp();
     make_run();  // by somebody else
     take(frame(mode));
-    EXPECT_EQ(drive.request.coast, mode == CAN_MODE_OFF);
-    EXPECT_EQ(drive.request.stop, mode == CAN_MODE_STOP);
+    EXPECT_EQ(inside::request().coast, mode == CAN_MODE_OFF);
+    EXPECT_EQ(inside::request().stop, mode == CAN_MODE_STOP);
   }
 }
 
@@ -146,9 +146,9 @@ TEST_F(CanCommand, WhatDoesNotCountDoesNothing) {
     f.data[3] ^= 1;
     take(f);
   }
-  EXPECT_FALSE(drive.request.stop);
-  EXPECT_FALSE(drive.request.coast);
-  EXPECT_EQ(drive.control.command_rpm_q16, 0);
+  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::request().coast);
+  EXPECT_EQ(inside::command_rpm_q16(), 0);
   EXPECT_FALSE(command.clear_fault);
 }
 
@@ -157,38 +157,38 @@ TEST_F(CanCommand, ARunGivenWhileSomebodyElseRunsTheDriveIsNotForLater) {
   say(CAN_MODE_OFF, 0, 0);
   can_command_reset(&command);
   take(frame(CAN_MODE_STOP));  // heard, and the drive runs on by its own start
-  drive.request.stop = false;
+  inside::request().stop = false;
   say(CAN_MODE_RUN, 0, 30);
-  ASSERT_EQ(drive.state, DRIVE_RUN);
+  ASSERT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_FALSE(command.commanding);
   drive_command_stop();
   say(CAN_MODE_RUN, 400, 300);
-  EXPECT_EQ(drive.state, DRIVE_READY) << "nobody has asked for a start since";
+  EXPECT_EQ(inside::state(), DRIVE_READY) << "nobody has asked for a start since";
 }
 
 TEST_F(CanCommand, AStopForgetsAStartThatHasNotBeenTaken) {
   make_ready();
   say(CAN_MODE_OFF, 0, 20);
-  drive.request.reload = true;  // holds the start back
+  inside::request().reload = true;  // holds the start back
   take(frame(CAN_MODE_RUN));
-  ASSERT_TRUE(drive.request.start);
+  ASSERT_TRUE(inside::request().start);
   pass(1);
   EXPECT_TRUE(command.commanding) << "the start has only not been taken yet";
   take(frame(CAN_MODE_STOP));
-  drive.request.reload = false;
+  inside::request().reload = false;
   pass(100);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(CanCommand, ASpeedIsTakenOnlyByADriveThatTheBusRuns) {
   make_running_by_bus();
-  drive.state = DRIVE_FAULT;
+  inside::state() = DRIVE_FAULT;
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.command_rpm_q16, 0) << "not for after the fault";
-  drive.state = DRIVE_RUN;
+  EXPECT_EQ(inside::command_rpm_q16(), 0) << "not for after the fault";
+  inside::state() = DRIVE_RUN;
   command.commanding = false;
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(drive.control.command_rpm_q16, 0) << "somebody else's";
+  EXPECT_EQ(inside::command_rpm_q16(), 0) << "somebody else's";
 }
 
 TEST_F(CanCommand, AStopThatGoesOnDoesNotStopWhatSomebodyElseStarts) {
@@ -196,7 +196,7 @@ TEST_F(CanCommand, AStopThatGoesOnDoesNotStopWhatSomebodyElseStarts) {
   say(CAN_MODE_STOP, 0, 20);
   drive_command_start();
   say(CAN_MODE_STOP, 0, 100);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 TEST_F(CanCommand, AnotherStopEndsTheBusCommand) {
@@ -204,7 +204,7 @@ TEST_F(CanCommand, AnotherStopEndsTheBusCommand) {
   drive_command_coast();
   say(CAN_MODE_RUN, 0, 200);
   EXPECT_FALSE(command.commanding);
-  EXPECT_EQ(drive.state, DRIVE_READY) << "and the next run message does not start it again";
+  EXPECT_EQ(inside::state(), DRIVE_READY) << "and the next run message does not start it again";
 }
 
 }  // namespace

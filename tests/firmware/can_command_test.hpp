@@ -30,14 +30,14 @@ class CanCommand : public Drive {
   hal_can_frame_t frame(std::int32_t mode, std::int32_t speed = 0, bool clear = false) {
     return command_frame(alive = (alive + 1) % 16, mode, speed, clear);
   }
-  void take(const hal_can_frame_t& f) { can_command_take(&command, &f, drive.time_ms); }
+  void take(const hal_can_frame_t& f) { can_command_take(&command, &f, inside::time_ms()); }
   void pass(int ms) {
     for (int k = 0; k < ms; ++k) {
       for (int n = 0; n < 10; ++n) {
         period();
         forget_windows();
       }
-      can_command_service(&command, drive.time_ms);
+      can_command_service(&command, inside::time_ms());
     }
   }
   /// A command every 10 ms for as long.
@@ -51,7 +51,7 @@ class CanCommand : public Drive {
     make_ready();
     say(CAN_MODE_OFF, 0, 20);
     say(CAN_MODE_RUN, 0, 60);
-    ASSERT_EQ(drive.state, DRIVE_RUN);
+    ASSERT_EQ(inside::state(), DRIVE_RUN);
     ASSERT_TRUE(command.commanding);
   }
   /// By the over-current comparator, which has let go again.
@@ -60,7 +60,7 @@ class CanCommand : public Drive {
     board.tripped_by_pin = true;
     board.gates_on = false;
     periods(2);
-    ASSERT_EQ(drive.state, DRIVE_FAULT);
+    ASSERT_EQ(inside::state(), DRIVE_FAULT);
     board.tripped_by_pin = false;
   }
 };

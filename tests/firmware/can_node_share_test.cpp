@@ -145,15 +145,15 @@ TEST_F(CanNode, EveryMessageTakesItsTime) {
   board.can_in[kRecordGroup] = {record[1]};
   EXPECT_GT(cycles_of_a_round(), piece) << "an answer's pieces";
   parameters.can_status_period = 1;
-  drive.time_ms++;
+  inside::time_ms()++;
   const std::uint32_t status = cycles_of_a_round();
   EXPECT_GT(status, idle) << "a status";
   parameters.can_status_period = 0;
   parameters.can_telemetry_period = 1;
-  drive.time_ms++;
+  inside::time_ms()++;
   EXPECT_EQ(cycles_of_a_round() - idle, 2 * (status - idle)) << "telemetry is two messages";
   parameters.can_telemetry_period = 0;
-  drive.time_ms += 1000;
+  inside::time_ms() += 1000;
   EXPECT_EQ(cycles_of_a_round(), status) << "a diagnostic is one";
 }
 
@@ -184,13 +184,13 @@ TEST_F(CanNode, BusOffIsKeptForItsWholePauseHoweverLateItIsSeen) {
   parameters.can_recovery = 100;
   pass(5);
   board.can_status.state = HAL_CAN_BUS_OFF;
-  drive.time_ms += 1000;
+  inside::time_ms() += 1000;
   can_node_service();
   EXPECT_EQ(board.can_recoveries, 0);
-  drive.time_ms += 99;
+  inside::time_ms() += 99;
   can_node_service();
   EXPECT_EQ(board.can_recoveries, 0);
-  drive.time_ms += 1;
+  inside::time_ms() += 1;
   can_node_service();
   EXPECT_EQ(board.can_recoveries, 1);
 }
@@ -213,7 +213,7 @@ TEST_F(CanNode, ItsStateTellsWhoIsInCommand) {
   EXPECT_FALSE(can_node_state().commanding);
   board.can_in[kCommandGroup] = {command(2, CAN_MODE_RUN)};
   pass(60);
-  ASSERT_EQ(drive.state, DRIVE_RUN);
+  ASSERT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_TRUE(can_node_state().commanding);
   EXPECT_FALSE(can_node_state().timed_out);
   pass(parameters.can_timeout);
@@ -270,7 +270,7 @@ TEST_F(CanNode, OfAHostInTheLoopTheBusCarriesRecordsOnly) {
   parameters.can_node = 2;  // the simulation's
   for (const auto& piece : pieces({1, 2})) board.can_in[kRecordGroup].push_back(piece);
   for (int ms = 0; ms < 1100; ++ms) {
-    drive.time_ms++;
+    inside::time_ms()++;
     can_node_service();
   }
   EXPECT_EQ(board.can_set_ups, 1);

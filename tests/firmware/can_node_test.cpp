@@ -98,7 +98,7 @@ TEST_F(CanNode, ParametersAreReadAndWrittenByNumber) {
   r = answer_to(parameter(7, 222, 0));
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RANGE);
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_OPERATION), 7) << "as asked";
-  drive.request.reload = false;  // main.c's work
+  inside::request().reload = false;  // main.c's work
   make_run();
   r = answer_to(parameter(1, 220, 2));
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RUNNING);
@@ -235,13 +235,13 @@ TEST_F(CanNode, WithNobodyToAnswerRecordsAreLeftUnanswered) {
 TEST_F(CanNode, IsOffTheBusUntilTheSavedRateIsKnown) {
   board.can_groups.clear();
   can_node_reset(answer_in_test);
-  drive.loading = true;
+  inside::loading() = true;
   pass(20);
   EXPECT_TRUE(board.can_groups.empty()) << "500 kbit/s may be the wrong rate";
   EXPECT_TRUE(board.can_out.empty());
   parameters.can_rate = 250;
   parameters.can_node = 7;
-  drive.loading = false;
+  inside::loading() = false;
   pass(20);
   EXPECT_EQ(board.can_rate, 250'000u);
   EXPECT_TRUE(take_sent().count(0x187) == 1);
@@ -308,11 +308,11 @@ TEST_F(CanNode, AnyFramesLeaveTheDriveControllable) {
     }
   };
   say(CAN_MODE_OFF, 10);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   say(CAN_MODE_RUN, 6);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   say(CAN_MODE_OFF, 2);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   answer_octets = 20;
   board.can_out.clear();
   for (const auto& piece : pieces({8, 1})) board.can_in[kRecordGroup].push_back(piece);

@@ -42,7 +42,7 @@ class CanTelemetry : public Drive {
 using Fields = std::vector<can_field_t>;
 
 TEST_F(CanTelemetry, EachBitOfTheStatusHasAMeaningOfItsOwn) {
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   const hal_can_frame_t idle = status();
   EXPECT_EQ(can_get(&idle, CAN_STATUS_STATE), DRIVE_READY);
   command.commanding = true;
@@ -52,23 +52,23 @@ TEST_F(CanTelemetry, EachBitOfTheStatusHasAMeaningOfItsOwn) {
   EXPECT_EQ(changed(idle, status()), Fields{CAN_STATUS_TIMED_OUT});
   command.timed_out = false;
   EXPECT_EQ(changed(idle, status(9)), Fields{CAN_STATUS_ALIVE});
-  drive.state = DRIVE_STOP;
+  inside::state() = DRIVE_STOP;
   EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_ENERGISED, CAN_STATUS_SPEED_KNOWN}));
-  drive.state = DRIVE_FAULT;
-  drive.fault = FAULT_OVER_CURRENT;
+  inside::state() = DRIVE_FAULT;
+  inside::fault() = FAULT_OVER_CURRENT;
   EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_FAULT}));
 }
 
 TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
   for (int state = DRIVE_BOOT; state <= DRIVE_COMMISSION; ++state) {
-    drive.state = static_cast<drive_state_t>(state);
+    inside::state() = static_cast<drive_state_t>(state);
     const hal_can_frame_t frame = status();
     EXPECT_EQ(can_get(&frame, CAN_STATUS_STATE), state);
     EXPECT_EQ(can_get(&frame, CAN_STATUS_ENERGISED), drive_is_energised() ? 1 : 0);
     EXPECT_EQ(can_get(&frame, CAN_STATUS_SPEED_KNOWN), drive_knows_speed(&drive) ? 1 : 0);
   }
-  drive.fault = FAULT_OVER_CURRENT;
-  drive.limits = LIMIT_CURRENT | LIMIT_BRAKING;
+  inside::fault() = FAULT_OVER_CURRENT;
+  inside::limits() = LIMIT_CURRENT | LIMIT_BRAKING;
   const hal_can_frame_t frame = status(13);
   EXPECT_EQ(can_get(&frame, CAN_STATUS_FAULT), FAULT_OVER_CURRENT);
   EXPECT_EQ(can_get(&frame, CAN_STATUS_LIMITS), LIMIT_CURRENT | LIMIT_BRAKING);
@@ -76,9 +76,9 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
 }
 
 TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
-  drive.state = DRIVE_RUN;
-  drive.position.selected.speed_bpp = bpp_of(1500);
-  drive.control.ramp.value = bpp_of(-750);
+  inside::state() = DRIVE_RUN;
+  inside::selected().speed_bpp = bpp_of(1500);
+  inside::speed_ramp().value = bpp_of(-750);
   const hal_can_frame_t frame = status();
   EXPECT_NEAR(value_of(frame, CAN_STATUS_SPEED), 1500.0, half_step(CAN_STATUS_SPEED));
   EXPECT_NEAR(value_of(frame, CAN_STATUS_REFERENCE), -750.0, half_step(CAN_STATUS_REFERENCE));
@@ -86,12 +86,12 @@ TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
 
 // Every value another one, so that none can stand for its neighbour.
 TEST_F(CanTelemetry, CurrentsVoltagesAndTorqueAreInTheirUnits) {
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {raw(-1.5, 20), raw(7.25, 20)};
-  drive.control.reference_q20 = {raw(-2.125, 20), raw(9.75, 20)};
-  drive.control.command_q16 = {raw(-80.5, 16), raw(120.25, 16)};
-  drive.samples.link_q16 = raw(310.5, 16);
-  drive.position.selected.load_accel_q8 = 1'000'000;
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {raw(-1.5, 20), raw(7.25, 20)};
+  inside::reference_dq_q20() = {raw(-2.125, 20), raw(9.75, 20)};
+  inside::command_dq_q16() = {raw(-80.5, 16), raw(120.25, 16)};
+  inside::link_q16() = raw(310.5, 16);
+  inside::selected().load_accel_q8 = 1'000'000;
   const double torque = drive_signals().load_torque / 65536.0;
   ASSERT_GT(torque, 0.01);
   hal_can_frame_t first = can_frame(CAN_TELEMETRY_1, 1), second = can_frame(CAN_TELEMETRY_2, 1);

@@ -23,11 +23,11 @@ class Phases : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    drive.state = DRIVE_COMMISSION;
-    drive.model = drive.config.nameplate;
-    commissioning.model = drive.model;
-    drive.samples.link_q16 = raw(kLink, 16);
-    drive.position.selected = {0, 0, 0, 32767};
+    inside::state() = DRIVE_COMMISSION;
+    inside::model() = inside::config().nameplate;
+    commissioning.model = inside::model();
+    inside::link_q16() = raw(kLink, 16);
+    inside::selected() = {0, 0, 0, 32767};
     limit_ = real(parameters.current_limit, 20);
   }
 
@@ -39,10 +39,10 @@ class Phases : public Drive {
   }
   /// The period's windows, under opposite vectors along alpha; what they leave over is along d, A per period.
   static void windows(Vector current, double first, double second) {
-    const machine_model_t& m = drive.model;
-    drive.samples.count = 2;
+    const machine_model_t& m = inside::model();
+    inside::window_count() = 2;
     for (int k = 0; k < 2; ++k) {
-      estimator_window_t& w = drive.samples.windows[k];
+      estimator_window_t& w = inside::windows()[k];
       const double volts = (k == 0 ? 1.0 : -1.0) * kLink * 2.0 / 3.0;
       const double left = k == 0 ? first : second;
       const double along = real(m.yd_q30, 30) * (volts - real(m.rs_q24, 24) * current.x) + left;
@@ -50,12 +50,12 @@ class Phases : public Drive {
       w = {raw_change({along, across}, 2500), raw_ab({volts, 0.0}, 19), raw_ab(current, 20), 0, 2500, false};
       w.middle_tick = static_cast<std::int16_t>(k == 0 ? 3100 : 7300);
     }
-    const sampling_config_t& c = drive.config.modulator.sampling;
-    drive.modulation.sampled.windows[0] = svpwm_window_between(&c, 1500, 4500, 1);
-    drive.modulation.sampled.windows[1] = svpwm_window_between(&c, 5500, 8500, 6);
+    const sampling_config_t& c = inside::config().modulator.sampling;
+    inside::sampled_pattern().windows[0] = svpwm_window_between(&c, 1500, 4500, 1);
+    inside::sampled_pattern().windows[1] = svpwm_window_between(&c, 5500, 8500, 6);
   }
   /// Electrical acceleration per torque, rad/s^2 and N m.
-  static double per_torque() { return real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod; }
+  static double per_torque() { return real(inside::model().accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod; }
   static std::int32_t accel_q8(double rad_per_s2) { return raw(rad_per_s2 * kPeriod * kPeriod / kTurn, 40); }
 
   double limit_ = 0.0;
@@ -67,18 +67,18 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
     double off, speed, load;
   };
   for (const Case& c : {Case{0.2, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 200.0}, {-0.1, 2.0, -300.0}}) {
-    drive.position.selected = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
+    inside::selected() = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
     commissioning.target_bam = bam(1.0 + c.off);
     commissioning_hold(&drive);
     const double accel = 3600.0 * c.off - 120.0 * c.speed + c.load;
-    const double torque_constant = real(machine_torque_constant_q24(&drive.model, 0), 24);
-    EXPECT_NEAR(real(drive.control.reference_q20.q, 20), accel / per_torque() / torque_constant, 2e-3) << c.off;
+    const double torque_constant = real(machine_torque_constant_q24(&inside::model(), 0), 24);
+    EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), accel / per_torque() / torque_constant, 2e-3) << c.off;
   }
   for (const double sign : {1.0, -1.0}) {
-    drive.position.selected = {0, 0, 0, 32767};
+    inside::selected() = {0, 0, 0, 32767};
     commissioning.target_bam = bam(sign * 2.0);
     commissioning_hold(&drive);
-    EXPECT_NEAR(real(drive.control.reference_q20.q, 20), sign * limit_ / 4.0, 1e-5);
+    EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), sign * limit_ / 4.0, 1e-5);
   }
 }
 
@@ -86,7 +86,7 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
 TEST_F(Phases, TheShaftIsTakenToASixthOfATurn) {
   for (const auto& [from, to] : {std::pair{0.0, 0.0}, {29.0, 0.0}, {31.0, 60.0}, {-80.0, -60.0}, {179.0, 180.0}}) {
     commissioning.tick = 0;
-    drive.position.selected.angle_bam = bam(from * kDegree);
+    inside::selected().angle_bam = bam(from * kDegree);
     std::uint32_t last = bam(from * kDegree);
     int n = 1;
     for (; !step(commissioning_align); ++n) {
@@ -111,14 +111,14 @@ TEST_F(Phases, APairIsUnderOppositeVectors) {
   ASSERT_TRUE(commissioning_pair(&drive, &first, &second));
   EXPECT_NEAR(real(first.residual_q20.d, 20), 0.3, 1e-4);
   EXPECT_NEAR(real(second.residual_q20.d, 20), -0.2, 1e-4);
-  drive.samples.count = 3;
+  inside::window_count() = 3;
   EXPECT_FALSE(commissioning_pair(&drive, &first, &second));
   for (const auto& [volts, pair] : {std::pair{9.5, true}, {10.5, false}, {-9.5, true}, {-10.5, false}}) {
     windows({2.0, 0.0}, 0.0, 0.0);
-    drive.samples.windows[1].voltage_q19.alpha += raw(volts, 19);
+    inside::windows()[1].voltage_q19.alpha += raw(volts, 19);
     EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << volts;
     windows({2.0, 0.0}, 0.0, 0.0);
-    drive.samples.windows[1].voltage_q19.beta += raw(volts, 19);
+    inside::windows()[1].voltage_q19.beta += raw(volts, 19);
     EXPECT_EQ(commissioning_pair(&drive, &first, &second), pair) << volts;
   }
 }
@@ -128,29 +128,30 @@ TEST_F(Phases, APairIsUnderOppositeVectors) {
 TEST_F(Phases, TheStaircaseSumsEachLevel) {
   parameters.weakening_limit = raw(0.8 * limit_, 20);
   use_parameters();
-  const double ripple = kLink * 2.0 / 3.0 * real(drive.model.yd_q30, 30) * drive.config.modulator.pulse_ticks / 1e4;
+  const double ripple =
+      kLink * 2.0 / 3.0 * real(inside::model().yd_q30, 30) * inside::config().modulator.pulse_ticks / 1e4;
   const auto level = [&](int index) {
     const double most = index < 7 ? limit_ : 0.8 * limit_;
     const double least = std::max(0.4 * most, 2.4 * ripple);
     return (index < 7 ? 1.0 : -1.0) * (least + (most - least) / 6.0 * (index % 7));
   };
-  drive.control.command_q16 = {raw(1.5, 16), raw(-0.3, 16)};
-  drive.control.reference_q20 = {0, 0};
+  inside::command_dq_q16() = {raw(1.5, 16), raw(-0.3, 16)};
+  inside::reference_dq_q20() = {0, 0};
   constexpr double kSag = 5e-4;  // V per tick: the link falls under the first vector and rises under the second
   int n = 0;
   std::int32_t last = 0;
   for (; n < 200000; ++n) {
-    const double current = real(drive.control.reference_q20.d, 20);
-    drive.control.measured_q20 = drive.control.reference_q20;
+    const double current = real(inside::reference_dq_q20().d, 20);
+    inside::current_dq_q20() = inside::reference_dq_q20();
     windows({current, 0.0}, 0.05, -0.01);
-    drive.samples.link_end_q16[0] = raw(kLink - kSag * (4350 - 1500), 16);
-    drive.samples.link_end_q16[1] = raw(kLink - kSag * 3000 + kSag * (8550 - 5500), 16);
+    inside::link_end_q16()[0] = raw(kLink - kSag * (4350 - 1500), 16);
+    inside::link_end_q16()[1] = raw(kLink - kSag * 3000 + kSag * (8550 - 5500), 16);
     if (step(commissioning_climb)) break;
-    ASSERT_LE(std::abs(drive.control.reference_q20.d - last), parameters.current_limit / 64) << n;
-    last = drive.control.reference_q20.d;
+    ASSERT_LE(std::abs(inside::reference_dq_q20().d - last), parameters.current_limit / 64) << n;
+    last = inside::reference_dq_q20().d;
   }
   EXPECT_NEAR(n, 14 * 9000 + 601 + 64, 64);
-  EXPECT_EQ(drive.control.reference_q20.d, 0) << "the current is gone when it is over";
+  EXPECT_EQ(inside::reference_dq_q20().d, 0) << "the current is gone when it is over";
   ASSERT_EQ(commissioning.staircase.index, 14);
   for (int k = 0; k < 14; ++k) {
     const staircase_level_t& l = commissioning.staircase.level[k];
@@ -172,18 +173,18 @@ TEST_F(Phases, TheStaircaseSumsEachLevel) {
 
 // The shaft follows its reference at once: three stations of a second, ramps between them, and a stop.
 TEST_F(Phases, TheSpinSumsStationsAndRamps) {
-  drive.position.selected = {bam(0.4), bpp(5.0), 0, 32767};
+  inside::selected() = {bam(0.4), bpp(5.0), 0, 32767};
   const std::int32_t high = bpp_of(600);
-  drive.control.command_q16 = {raw(-3.0, 16), raw(20.0, 16)};
-  drive.control.measured_q20 = {raw(0.25, 20), raw(0.5, 20)};
-  drive.control.reference_q20.d = raw(1.0, 20);
+  inside::command_dq_q16() = {raw(-3.0, 16), raw(20.0, 16)};
+  inside::current_dq_q20() = {raw(0.25, 20), raw(0.5, 20)};
+  inside::reference_dq_q20().d = raw(1.0, 20);
   int n = 0;
   std::int32_t last = 0;
   for (; n < 100000; ++n) {
     EXPECT_FALSE(step(commissioning_spin));
-    if (!drive.flags.spins) break;
-    ASSERT_LE(std::abs(drive.control.target_bpp - last), high / 3000 + 1) << n;
-    last = drive.control.ramp.value = drive.position.selected.speed_bpp = drive.control.target_bpp;
+    if (!inside::flags().spins) break;
+    ASSERT_LE(std::abs(inside::target_bpp() - last), high / 3000 + 1) << n;
+    last = inside::speed_ramp().value = inside::selected().speed_bpp = inside::target_bpp();
   }
   // ramps of 0.1, 0.2, 0.2 and 0.1 s, settling and stations, 0.3 s at rest
   EXPECT_NEAR(n, 1000 + 2000 + 2000 + 1000 + 3 * 14000 + 3000, 20);
@@ -206,15 +207,15 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
 
   // Held again where it came to rest, until the background level has made its motion of the sums.
   EXPECT_TRUE(commissioning.solve_motion);
-  EXPECT_EQ(drive.control.reference_q20.d, 0);
-  EXPECT_EQ(commissioning.target_bam, drive.position.selected.angle_bam);
+  EXPECT_EQ(inside::reference_dq_q20().d, 0);
+  EXPECT_EQ(commissioning.target_bam, inside::selected().angle_bam);
   EXPECT_FALSE(step(commissioning_spin));
   commissioning.torque_q24 = 123456;
   commissioning.accel_q12 = 654321;
   commissioning.solve_motion = false;
   EXPECT_TRUE(step(commissioning_spin));
-  EXPECT_EQ(drive.model.torque_q24, 123456);
-  EXPECT_EQ(drive.model.accel_q12, 654321);
+  EXPECT_EQ(inside::model().torque_q24, 123456);
+  EXPECT_EQ(inside::model().accel_q12, 654321);
 }
 
 // Within the speeds that are allowed, and no faster than the drive's own ramp.
@@ -223,10 +224,10 @@ TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   parameters.speed_limit = 450 * 256;
   use_parameters();
   std::int32_t most = 0;
-  for (int n = 0; n < 60000 && (n == 0 || drive.flags.spins); ++n) {
+  for (int n = 0; n < 60000 && (n == 0 || inside::flags().spins); ++n) {
     (void)step(commissioning_spin);
-    drive.control.ramp.value = drive.position.selected.speed_bpp = drive.control.target_bpp;
-    most = std::max(most, drive.control.target_bpp);
+    inside::speed_ramp().value = inside::selected().speed_bpp = inside::target_bpp();
+    most = std::max(most, inside::target_bpp());
   }
   EXPECT_NEAR(most, bpp_of(450), 300);
   SetUp();
@@ -245,7 +246,7 @@ struct Train {
 
 TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
   const map_t& m = commissioning.map;
-  drive.position.selected.angle_bam = bam(0.5);
+  inside::selected().angle_bam = bam(0.5);
   std::vector<Train> trains;
   std::vector<std::int32_t> feeds, references;
   std::vector<int> pauses(1, 0), stills;
@@ -256,9 +257,9 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
     const bool paused = n == 0 || m.pause;
     const std::int32_t still = commissioning.unsaturated.count;
     const std::uint32_t held = commissioning.target_bam;
-    if (n > 0) drive.position.selected.angle_bam = held;  // the shaft is where it is held
-    drive.control.measured_q20 = {0, drive.control.reference_q20.q};
-    windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
+    if (n > 0) inside::selected().angle_bam = held;  // the shaft is where it is held
+    inside::current_dq_q20() = {0, inside::reference_dq_q20().q};
+    windows({0.0, real(inside::reference_dq_q20().q, 20)}, 0.0, 0.0);
     ASSERT_FALSE(step(commissioning_map));
     if (paused) {
       ++pauses.back();
@@ -275,11 +276,11 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
     }
     EXPECT_EQ(commissioning.unsaturated.count, still);
     Train& t = trains.back();
-    t.current.push_back(real(drive.control.reference_q20.q, 20));
+    t.current.push_back(real(inside::reference_dq_q20().q, 20));
     t.farthest = std::max(t.farthest, std::fabs(rad(m.position_bam)));
     if (trains.size() == 1) {
-      feeds.push_back(drive.control.feed_forward_q16);
-      references.push_back(drive.control.reference_q20.q);
+      feeds.push_back(inside::feed_forward_q16());
+      references.push_back(inside::reference_dq_q20().q);
     }
     if (m.pause) {
       t.end = rad(m.position_bam);
@@ -305,7 +306,7 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
   for (std::size_t n = 1; n < references.size(); ++n) {
     EXPECT_LE(std::abs(references[n] - references[n - 1]), parameters.current_limit / 12);
     const double volts = n + 2 < references.size()
-                             ? real(references[n + 2] - references[n + 1], 20) / real(drive.model.yq_q30, 30)
+                             ? real(references[n + 2] - references[n + 1], 20) / real(inside::model().yq_q30, 30)
                              : 0.0;
     EXPECT_NEAR(real(feeds[n], 16), volts, 1e-3) << n;
   }
@@ -323,10 +324,10 @@ TEST_F(Phases, TheMapSumsItsGroups) {
   int trains[4] = {}, segments[4] = {};
   for (int n = 0; !step(commissioning_map); ++n) {
     ASSERT_LT(n, 2000000);
-    drive.position.selected.angle_bam = commissioning.target_bam;
+    inside::selected().angle_bam = commissioning.target_bam;
     if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
-    drive.control.measured_q20 = {0, drive.control.reference_q20.q};
-    windows({0.0, real(drive.control.reference_q20.q, 20)}, 0.0, 0.0);
+    inside::current_dq_q20() = {0, inside::reference_dq_q20().q};
+    windows({0.0, real(inside::reference_dq_q20().q, 20)}, 0.0, 0.0);
   }
   for (int level = 0; level < 4; ++level) {
     // A reversal takes twice the level at a twelfth of the limit a period, and 20 periods to settle.
@@ -357,10 +358,10 @@ TEST_F(Phases, ASegmentTakesTheShaftSixDegreesOn) {
   const map_t& m = commissioning.map;
   for (const auto& [inertia, length] : {std::pair{1.0, 0}, {0.2, 40}, {100.0, 90}}) {
     commissioning.tick = 0;
-    drive.model = drive.config.nameplate;
-    drive.model.accel_q12 = static_cast<std::int32_t>(drive.model.accel_q12 / inertia);
+    inside::model() = inside::config().nameplate;
+    inside::model().accel_q12 = static_cast<std::int32_t>(inside::model().accel_q12 / inertia);
     while (commissioning.tick == 0 || m.pause) (void)step(commissioning_map);
-    const double accel = real(machine_torque_constant_q24(&drive.model, 0), 24) * limit_ / 4.0 * per_torque();
+    const double accel = real(machine_torque_constant_q24(&inside::model(), 0), 24) * limit_ / 4.0 * per_torque();
     const double periods = std::sqrt(6.0 * kDegree / accel) / kPeriod;
     EXPECT_NEAR(m.segment, length == 0 ? std::clamp(periods, 40.0, 90.0) : length, 1.0) << inertia;
   }

@@ -23,7 +23,7 @@ class CommissioningStairs : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    drive.state = DRIVE_COMMISSION;
+    inside::state() = DRIVE_COMMISSION;
     commissioning.model = nameplate();
     commissioning.tick = 1;
     commissioning.staircase.most_q20 = parameters.current_limit;
@@ -34,10 +34,10 @@ class CommissioningStairs : public Drive {
 TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
   for (const auto& [drop, sixths] : {std::pair{0.0, 0}, {0.95, 1}, {2.0, 5}}) {
     SetUp();
-    drive.config.dead_time.drop_q16 = raw(drop, 16);
-    dead_time_design(&drive.config.dead_time);
-    drive.control.measured_q20 = {raw(10.0, 20), 0};
-    drive.position.selected.angle_bam = bam(sixths * kPi / 3.0);
+    inside::config().dead_time.drop_q16 = raw(drop, 16);
+    dead_time_design(&inside::config().dead_time);
+    inside::current_dq_q20() = {raw(10.0, 20), 0};
+    inside::selected().angle_bam = bam(sixths * kPi / 3.0);
     stairs().tick = 600;
     (void)commissioning_climb(&drive);
     ASSERT_EQ(stairs().level[0].periods, 1);
@@ -51,23 +51,23 @@ TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
     SetUp();
     if (!room) commissioning.model.yd_q30 *= 8;  // 0.6 mH: a ripple of 8 A and more
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
-    EXPECT_NEAR(real(drive.control.reference_q20.d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
+    EXPECT_NEAR(real(inside::reference_dq_q20().d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
   }
 }
 
 // A level begins when heat sink and overload leave the whole limit, and one that has begun goes on; so does a train.
 TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
   interlock_share_q15 = INTERLOCK_SHARE_ONE - 1;
-  drive.control.reference_q20.d = raw(0.5, 20);
+  inside::reference_dq_q20().d = raw(0.5, 20);
   for (int n = 0; n < 100; ++n) EXPECT_FALSE(commissioning_climb(&drive));
-  EXPECT_EQ(drive.control.reference_q20.d, 0);
+  EXPECT_EQ(inside::reference_dq_q20().d, 0);
   EXPECT_EQ(stairs().tick, 0);
   interlock_share_q15 = INTERLOCK_SHARE_ONE;
   (void)commissioning_climb(&drive);
   interlock_share_q15 = INTERLOCK_SHARE_ONE - 1;
   for (int n = 0; n < 100; ++n) (void)commissioning_climb(&drive);
   EXPECT_EQ(stairs().tick, 101);
-  EXPECT_GT(drive.control.reference_q20.d, 0);
+  EXPECT_GT(inside::reference_dq_q20().d, 0);
   map_t& m = commissioning.map;
   m.pause = true;
   m.train = 1;
@@ -103,11 +103,11 @@ TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
     m.segment = 60;
     m.train = 1;
     m.tick = 55;
-    drive.samples.count = pair ? 2 : 1;
-    drive.samples.windows[0] = drive.samples.windows[1] = {};
-    drive.samples.windows[0].span_ticks = drive.samples.windows[1].span_ticks = 2500;
-    drive.samples.windows[0].voltage_q19 = {raw(200.0, 19), 0};
-    drive.samples.windows[1].voltage_q19 = {raw(-200.0, 19), 0};
+    inside::window_count() = pair ? 2 : 1;
+    inside::windows()[0] = inside::windows()[1] = {};
+    inside::windows()[0].span_ticks = inside::windows()[1].span_ticks = 2500;
+    inside::windows()[0].voltage_q19 = {raw(200.0, 19), 0};
+    inside::windows()[1].voltage_q19 = {raw(-200.0, 19), 0};
     (void)commissioning_map(&drive);
     EXPECT_EQ(m.group[0][3].tensor.count, pair ? 1 : 0);  // the mirrored train begins with a negative current
     m.pause = true;
@@ -139,19 +139,19 @@ TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
   for (const double share : {0.74, 0.76}) {
     SetUp();
     const double limit = real(parameters.current_limit, 20);
-    const double pulse = drive.config.modulator.pulse_ticks / 1e4;
-    const double link = real(drive.samples.link_q16, 16);
+    const double pulse = inside::config().modulator.pulse_ticks / 1e4;
+    const double link = real(inside::link_q16(), 16);
     commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
-    EXPECT_NEAR(real(drive.control.reference_q20.d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
+    EXPECT_NEAR(real(inside::reference_dq_q20().d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
   }
 }
 
 // Opposite along either axis; vectors that are alike in one of them are no pair.
 TEST_F(CommissioningStairs, APairIsOppositeAlongBothAxes) {
   deviation_t first, second;
-  drive.samples.count = 2;
-  estimator_window_t* const w = drive.samples.windows;
+  inside::window_count() = 2;
+  estimator_window_t* const w = inside::windows();
   w[0] = w[1] = {};
   w[0].span_ticks = w[1].span_ticks = 2500;
   for (const auto& [a, b] : {std::pair{100.0, 150.0}, {0.0, 150.0}, {-100.0, 0.0}}) {

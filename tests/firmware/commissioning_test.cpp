@@ -35,7 +35,7 @@ class Commissioning : public Drive {
     make_ready();
     drive_command_commission();
     periods(10);
-    ASSERT_EQ(drive.state, DRIVE_START);
+    ASSERT_EQ(inside::state(), DRIVE_START);
     start_run(&drive, 0, 0);
     periods(5);
   }
@@ -44,7 +44,7 @@ class Commissioning : public Drive {
 TEST_F(Commissioning, FollowsTheStart) {
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_NONE);
   begin();
-  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
   EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_ALIGN);
   EXPECT_TRUE(board.gates_on);
@@ -55,7 +55,7 @@ TEST_F(Commissioning, IsTakenInReadyOnly) {
   make_run();
   drive_command_commission();
   periods(20);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_NONE);
 }
 
@@ -69,7 +69,7 @@ TEST_F(Commissioning, IsNotTurnedByAVector) {
     make_ready();
     asked ? drive_command_commission() : drive_command_start();
     periods(2);
-    EXPECT_EQ(drive.found.phase, asked ? START_AXIS : START_IF_RAMP);
+    EXPECT_EQ(inside::start_found().phase, asked ? START_AXIS : START_IF_RAMP);
   }
 }
 
@@ -84,7 +84,7 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
     make_ready();
     drive_command_start();
     period();
-    ASSERT_EQ(drive.found.phase, listens ? START_LISTEN : START_IF_RAMP);
+    ASSERT_EQ(inside::start_found().phase, listens ? START_LISTEN : START_IF_RAMP);
     EXPECT_EQ(start_at_standstill(&drive), listens ? START_AXIS : START_IF_RAMP);
   }
 }
@@ -93,11 +93,11 @@ TEST_F(Commissioning, AStartIsStillAStart) {
   begin();
   drive_command_stop();
   periods(5);
-  drive.request.reload = false;  // the background level's part
+  inside::request().reload = false;  // the background level's part
   drive_command_start();
   periods(10);
   start_run(&drive, 0, 0);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
@@ -106,25 +106,25 @@ TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
   make_ready();
   drive_command_commission();
   periods(10);
-  drive.flags.caught = true;
+  inside::flags().caught = true;
   start_run(&drive, 0, 4000000);  // 140 rpm
-  EXPECT_EQ(drive.state, DRIVE_STOP);
+  EXPECT_EQ(inside::state(), DRIVE_STOP);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
 }
 
 TEST_F(Commissioning, AStopBreaksItOffAndChangesNothing) {
   begin();
   const parameters_t before = parameters;
-  const std::int16_t settle = drive.config.modulator.sampling.settle_ticks;
+  const std::int16_t settle = inside::config().modulator.sampling.settle_ticks;
   drive_command_stop();
   periods(3);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
   EXPECT_EQ(std::memcmp(&before, &parameters, sizeof before), 0);
-  EXPECT_TRUE(drive.request.reload) << "the configuration it changed for itself must come back";
-  ASSERT_TRUE(drive_config_load(&drive.config));
-  EXPECT_LT(drive.config.modulator.sampling.settle_ticks, settle);
+  EXPECT_TRUE(inside::request().reload) << "the configuration it changed for itself must come back";
+  ASSERT_TRUE(drive_config_load(&inside::config()));
+  EXPECT_LT(inside::config().modulator.sampling.settle_ticks, settle);
 }
 
 TEST_F(Commissioning, AFaultEndsIt) {
@@ -133,18 +133,18 @@ TEST_F(Commissioning, AFaultEndsIt) {
   board.tripped_by_pin = true;
   periods(2);
   commissioning_service(&drive);
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_FAILED);
   EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_IDLE);
-  EXPECT_EQ(drive.flags.behind, DRIVE_BOOT) << "no start leads there any more";
-  EXPECT_TRUE(drive.request.reload);
+  EXPECT_EQ(inside::flags().behind, DRIVE_BOOT) << "no start leads there any more";
+  EXPECT_TRUE(inside::request().reload);
   EXPECT_FALSE(board.gates_on);
 }
 
 TEST_F(Commissioning, SumsThatAreEmptyChangeNothing) {
   commissioning_report_t report;
   const parameters_t before = parameters;
-  commissioning.model = drive.config.nameplate;
+  commissioning.model = inside::config().nameplate;
   commissioning_judge(&commissioning, &report);
   EXPECT_EQ(commissioning_use(&report), COMMISSIONING_PARTLY);
   EXPECT_EQ(report.count, 23);
@@ -162,7 +162,7 @@ TEST_F(Commissioning, AMapCurrentWithoutItsLevelsIsNotUsed) {
   parameters.current_limit = raw(8.0, 20);
   use_parameters();
   const std::int32_t before = parameters.map_current;
-  c.model = drive.config.nameplate;
+  c.model = inside::config().nameplate;
   c.unsaturated.vv_dd = c.unsaturated.vv_qq = 1 << 30;
   c.unsaturated.count = 100;
   commissioning_judge(&c, &report);
@@ -175,10 +175,10 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  drive.request.reload = false;
-  commissioning.model = drive.config.nameplate;
+  inside::request().reload = false;
+  commissioning.model = inside::config().nameplate;
   commissioning_service(&drive);
-  EXPECT_TRUE(drive.request.reload) << "nothing was measured, yet the longer settling has to go";
+  EXPECT_TRUE(inside::request().reload) << "nothing was measured, yet the longer settling has to go";
 }
 
 // Played from a recording, the background's work is done where it was done, and not before.
@@ -186,17 +186,17 @@ TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  drive.flags.over = true;
-  commissioning.model = drive.config.nameplate;
+  inside::flags().over = true;
+  commissioning.model = inside::config().nameplate;
   drive_parameters_changed();
   hal_replay_start(REPLAY_PLAYS, nullptr);
   background_step(&drive);
   EXPECT_TRUE(commissioning.evaluate);
-  EXPECT_TRUE(drive.request.reload);
+  EXPECT_TRUE(inside::request().reload);
   hal_replay_start(REPLAY_OFF, nullptr);
   background_step(&drive);
   EXPECT_FALSE(commissioning.evaluate);
-  EXPECT_FALSE(drive.request.reload);
+  EXPECT_FALSE(inside::request().reload);
 }
 
 // Whatever the last one was broken off in.
@@ -210,9 +210,9 @@ TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
   c.tick = 99;
   drive_command_commission();
   period();
-  EXPECT_EQ(drive.state, DRIVE_START);
-  EXPECT_FALSE(drive.flags.spins || drive.flags.frozen || c.predicting || c.solve_motion || c.evaluate);
-  EXPECT_EQ(drive.flags.behind, DRIVE_COMMISSION);
+  EXPECT_EQ(inside::state(), DRIVE_START);
+  EXPECT_FALSE(inside::flags().spins || inside::flags().frozen || c.predicting || c.solve_motion || c.evaluate);
+  EXPECT_EQ(inside::flags().behind, DRIVE_COMMISSION);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
   EXPECT_EQ(c.tick, 0);
 }
@@ -222,21 +222,21 @@ TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
 TEST_F(Commissioning, PhasesFollowEachOther) {
   begin();
   commissioning_t& c = commissioning;
-  EXPECT_FALSE(drive.flags.frozen);
+  EXPECT_FALSE(inside::flags().frozen);
   c.tick = 6000;  // of turning to its place
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_STAIRCASE);
   EXPECT_EQ(c.tick, 0);
-  EXPECT_TRUE(drive.flags.frozen);
+  EXPECT_TRUE(inside::flags().frozen);
   commissioning_state.step(&drive);
   EXPECT_EQ(c.tick, 1);
   c.staircase.index = STAIRCASE_LEVELS;
   c.staircase.tick = 601;
-  drive.control.reference_q20.d = 0;
+  inside::reference_dq_q20().d = 0;
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_SPIN);
   c.tick = 1;
-  drive.trim.mismatch_q30 = 4321;
+  inside::sensor_trim().mismatch_q30 = 4321;
   commissioning_state.step(&drive);  // a spin that is over
   EXPECT_EQ(c.phase, COMMISSIONING_MAP);
   EXPECT_EQ(c.mismatch_q30, 4321);
@@ -248,37 +248,37 @@ TEST_F(Commissioning, PhasesFollowEachOther) {
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_EVALUATE);
   EXPECT_TRUE(c.evaluate);
-  EXPECT_TRUE(drive.flags.over);
+  EXPECT_TRUE(inside::flags().over);
   EXPECT_FALSE(board.gates_on);
-  EXPECT_FALSE(drive.control.closed);
-  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_FALSE(inside::loop_is_closed());
+  EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
   commissioning_state.step(&drive);
-  EXPECT_EQ(drive.state, DRIVE_COMMISSION) << "the background level is not through yet";
+  EXPECT_EQ(inside::state(), DRIVE_COMMISSION) << "the background level is not through yet";
   c.evaluate = false;
   commissioning_state.step(&drive);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  drive.flags.over = true;
+  inside::flags().over = true;
   drive_command_stop();
   periods(3);
-  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_RUNNING);
 }
 
 TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
   begin();
-  drive.flags.spins = true;
-  drive.control.target_bpp = 12345;
+  inside::flags().spins = true;
+  inside::target_bpp() = 12345;
   drive_command_speed(1000L * 65536L);
-  EXPECT_EQ(drive.control.target_bpp, 12345);
-  drive.flags.spins = false;
+  EXPECT_EQ(inside::target_bpp(), 12345);
+  inside::flags().spins = false;
   drive_command_speed(1000L * 65536L);
-  EXPECT_GT(drive.control.target_bpp, 12345);
+  EXPECT_GT(inside::target_bpp(), 12345);
 }
 
 TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
@@ -300,9 +300,9 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
     std::memset(&c.spin, 0x11, sizeof c.spin);
     std::memset(&c.unsaturated, 0x11, sizeof c.unsaturated);
     c.tick = 0;
-    drive.flags.spins = false;
-    drive.flags.frozen = true;
-    drive.samples.count = 0;
+    inside::flags().spins = false;
+    inside::flags().frozen = true;
+    inside::window_count() = 0;
     EXPECT_FALSE(phase(&drive));
   };
   first_period(commissioning_climb);
@@ -318,7 +318,7 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   EXPECT_EQ(c.map.tick, 1);
   EXPECT_TRUE(c.map.pause);
   EXPECT_EQ(c.unsaturated.count, 0);
-  const double moved = rad(angle_diff_bam(c.target_bam, drive.position.selected.angle_bam));
+  const double moved = rad(angle_diff_bam(c.target_bam, inside::selected().angle_bam));
   EXPECT_NEAR(moved, 45.0 * kDegree / 300.0, 1e-6) << "from where the shaft is";
   for (const auto& level : c.map.group) {
     for (const map_group_t& g : level) {
@@ -327,7 +327,7 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
     }
   }
   first_period(commissioning_spin);
-  EXPECT_TRUE(drive.flags.spins && !drive.flags.frozen);
+  EXPECT_TRUE(inside::flags().spins && !inside::flags().frozen);
   EXPECT_EQ(c.spin.leg, 0);
   EXPECT_EQ(c.spin.tick, 0);
   for (const spin_station_t& s : c.spin.station) EXPECT_EQ(s.speed | s.voltage_q | s.current_q | s.periods, 0);

@@ -20,7 +20,7 @@ class ConsoleHands : public Console {
 
   void SetUp() override {
     Console::SetUp();
-    drive.state = DRIVE_READY;
+    inside::state() = DRIVE_READY;
   }
   /// What is said at once to a line that has stood for so many rounds.
   std::string after(const std::string& line, int rounds) {
@@ -33,9 +33,9 @@ class ConsoleHands : public Console {
   }
   void start_hold() {
     (void)command("start hold", 100);
-    ASSERT_TRUE(drive.request.start);
-    drive.request.start = false;
-    drive.state = DRIVE_RUN;
+    ASSERT_TRUE(inside::request().start);
+    inside::request().start = false;
+    inside::state() = DRIVE_RUN;
     run(300);
   }
   void serial_break() {
@@ -50,18 +50,18 @@ class ConsoleHands : public Console {
 TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
   for (const char* line : {"start free", "start hold", "commission start free"}) {
     EXPECT_EQ(after(line, kLong), std::string("\r\n") + kTooOld) << line;
-    EXPECT_FALSE(drive.request.start || drive.request.commission || comm_watchdog_is_on()) << line;
+    EXPECT_FALSE(inside::request().start || inside::request().commission || comm_watchdog_is_on()) << line;
   }
   EXPECT_FALSE(has(after("start free", kShort), "typed over 5 s ago"));
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
 }
 
 TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
   EXPECT_TRUE(has(after("ref 50", kLong), "ref 50.00 rpm")) << "nothing moves yet";
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_TRUE(has(after("ref 60", kLong), "typed over 5 s ago"));
   EXPECT_TRUE(has(after("look", kLong), "typed over 5 s ago"));
-  EXPECT_EQ(drive.control.command_rpm_q16, 50 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 50 * 65536);
   EXPECT_TRUE(has(after("ref 0", kLong), "ref 0.00 rpm"));
 }
 
@@ -69,9 +69,9 @@ TEST_F(ConsoleHands, OtherLinesNeverExpire) {
   EXPECT_TRUE(has(after("get speed_ramp", kLong), "speed_ramp = "));
   EXPECT_TRUE(has(after("set speed_ramp 250", 20 * kLong), "speed_ramp = 250 rpm/s"));
   EXPECT_TRUE(has(after("commission results", kLong), "nothing has been measured"));
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_TRUE(has(after("stop", kLong), "stopping"));
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 // Once expired it stays expired: to complete somebody else's line is not to have typed it.
@@ -79,12 +79,12 @@ TEST_F(ConsoleHands, AnOldLineStaysOldUntilItIsEmptied) {
   send("start fre");
   run(kLong);
   EXPECT_TRUE(has(command("e"), "typed over 5 s ago"));
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
   send("start fre");
   run(kLong);
   send("\x15");
   EXPECT_FALSE(has(command("start free", 300), "typed over 5 s ago"));
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
 }
 
 TEST_F(ConsoleHands, AnOldLineThatWasTakenBackIsForgotten) {
@@ -92,13 +92,13 @@ TEST_F(ConsoleHands, AnOldLineThatWasTakenBackIsForgotten) {
   run(kLong);
   send("\b\b\b");
   EXPECT_FALSE(has(command("start free", 300), "typed over 5 s ago"));
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
 }
 
 TEST_F(ConsoleHands, TheArrowUpBringsAnOldLineBackAsANewOne) {
   (void)after("start free", kLong);
   (void)command("\x1B[A", 300);
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
 }
 
 // Typed ahead during an answer, it is as old as when it came, not as when its turn came.
@@ -106,7 +106,7 @@ TEST_F(ConsoleHands, WhatIsTypedAheadIsAsOldAsItIs) {
   board.serial_room = 0;
   send("list\rstart free");
   for (int k = 0; k < kLong / 10; ++k) {
-    drive.time_ms++;
+    inside::time_ms()++;
     board.serial_room = 300;  // for the console to take octets
     link_service();
     board.serial_room = 0;  // and none for the lines of the answer
@@ -116,7 +116,7 @@ TEST_F(ConsoleHands, WhatIsTypedAheadIsAsOldAsItIs) {
   send("\r");
   run(40000);
   EXPECT_TRUE(has(text, "typed over 5 s ago")) << text.substr(text.size() - 200);
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
 }
 
 TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
@@ -124,7 +124,7 @@ TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
   run(100);
   serial_break();
   EXPECT_EQ(command("", 300), "") << "an empty line";
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
   send("re");
   run(100);
   serial_break();
@@ -137,9 +137,9 @@ TEST_F(ConsoleHands, TheRestOfALineMovesNothing) {
   run(100);
   serial_break();
   EXPECT_TRUE(has(command("start free", 300), "a break cut it"));
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
   EXPECT_FALSE(has(command("start free", 300), "a break cut it"));
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
 }
 
 // The break is counted by the interrupt, the octets are read in rounds: those before it and behind it in one.
@@ -147,10 +147,10 @@ TEST_F(ConsoleHands, ABreakStandsWhereItCameAmongTheOctets) {
   send("start free\r");
   serial_break();
   EXPECT_EQ(command("get speed_ramp", 300).substr(0, 10), "speed_ramp");
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
   serial_break();
   EXPECT_FALSE(has(command("start free", 300), "nothing done")) << "nothing was cut";
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
 }
 
 TEST_F(ConsoleHands, ABreakLeavesWhatWasTypedBehindItDuringALongAnswer) {
@@ -159,7 +159,7 @@ TEST_F(ConsoleHands, ABreakLeavesWhatWasTypedBehindItDuringALongAnswer) {
   serial_break();
   send("ref 50\r");
   run(40000);
-  EXPECT_EQ(drive.control.command_rpm_q16, 50 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 50 * 65536);
   EXPECT_FALSE(has(text, "ref 70"));
 }
 
@@ -175,7 +175,7 @@ TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
   run(100);
   serial_break();
   run(30000);
-  EXPECT_EQ(drive.control.command_rpm_q16, 0);
+  EXPECT_EQ(inside::command_rpm_q16(), 0);
   EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n");
 }
 
@@ -185,18 +185,18 @@ TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
   for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
     EXPECT_EQ(command(line), ways) << line;
   }
-  EXPECT_FALSE(drive.request.start || drive.request.commission);
+  EXPECT_FALSE(inside::request().start || inside::request().commission);
 }
 
 TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
   EXPECT_TRUE(
       has(command("start free", 100), "free: nobody watches; it runs until 'stop', even without this terminal"));
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
   EXPECT_FALSE(comm_watchdog_is_on());
-  drive.request.start = false;
-  drive.state = DRIVE_RUN;
+  inside::request().start = false;
+  inside::state() = DRIVE_RUN;
   run(100000);
-  EXPECT_FALSE(drive.request.stop) << "and means it";
+  EXPECT_FALSE(inside::request().stop) << "and means it";
 }
 
 TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
@@ -205,13 +205,13 @@ TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
     run(9000);
     send(k % 2 == 0 ? "\r" : "x");
     run(10);
-    ASSERT_FALSE(drive.request.stop) << k;
+    ASSERT_FALSE(inside::request().stop) << k;
   }
   run(9000);
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
   text.clear();
   run(1500);
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
   EXPECT_TRUE(has(text, "\r\n! nothing was heard for link_timeout: the motor stops\r\n")) << text;
   text.clear();
   run(20000);
@@ -226,14 +226,14 @@ TEST_F(ConsoleHands, OctetsThatNoKeySendsDoNotHold) {
     send(Octets{octets[std::size_t(k % 3)]});
     run(1000);
   }
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 TEST_F(ConsoleHands, ALetGoMotorCoastsWhenThatIsTheReaction) {
   parameters.link_reaction = LINK_REACTION_COAST;
   start_hold();
   run(11000);
-  EXPECT_TRUE(drive.request.coast);
+  EXPECT_TRUE(inside::request().coast);
 }
 
 TEST_F(ConsoleHands, RecordsDoNotHoldWhatKeysHold) {
@@ -242,7 +242,7 @@ TEST_F(ConsoleHands, RecordsDoNotHoldWhatKeysHold) {
     (void)ask(REQUEST_STATUS, kSession);
     run(600);
   }
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 // The space bar is the key to hold: it leaves the line empty and an answer that goes on alone.
@@ -255,17 +255,17 @@ TEST_F(ConsoleHands, TheSpaceBarHoldsAndNothingElse) {
     send(" ");
     run(300);
   }
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
   EXPECT_GE(std::count(text.begin(), text.end(), '\n'), 15) << text;
   EXPECT_FALSE(has(text, "> "));
   send("stop\r");
   run(100);
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 TEST_F(ConsoleHands, ASpaceIsASpaceWhenNobodyHolds) {
   (void)command("start free", 100);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   send("watch\r");
   run(300);
   text.clear();
@@ -282,19 +282,19 @@ TEST_F(ConsoleHands, RecordsOfASessionGuardABareStart) {
   EXPECT_TRUE(has(command("start", 300), "nobody would watch")) << "who only looks holds nothing";
   (void)ask(REQUEST_STATUS, kSession);
   EXPECT_EQ(command("start", 100), "");
-  EXPECT_TRUE(drive.request.start);
-  drive.request.start = false;
-  drive.state = DRIVE_RUN;
+  EXPECT_TRUE(inside::request().start);
+  inside::request().start = false;
+  inside::state() = DRIVE_RUN;
   for (int k = 0; k < 30; ++k) {
     (void)ask(REQUEST_STATUS, kSession);
     run(5000);
   }
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
   for (int k = 0; k < 20; ++k) {  // the terminal has died, the next session is there at once
     (void)ask(REQUEST_STATUS, little(4711, 4));
     run(200);
   }
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 TEST_F(ConsoleHands, ASessionThatWasThereIsNoGuard) {
@@ -302,7 +302,7 @@ TEST_F(ConsoleHands, ASessionThatWasThereIsNoGuard) {
   run(9000);
   EXPECT_FALSE(has(command("commission start", 100), "nobody would watch"));
   (void)command("stop");
-  drive.request.commission = false;
+  inside::request().commission = false;
   (void)ask(REQUEST_STATUS, kSession);
   run(10500);
   EXPECT_TRUE(has(command("commission start", 100), "nobody would watch"));
@@ -312,20 +312,20 @@ TEST_F(ConsoleHands, WhoLeavesMayLetGoOfAMotorThatRuns) {
   start_hold();
   EXPECT_TRUE(has(command("start free", 100), "free: nobody watches"));
   run(30000);
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
 }
 
 // What others hold they let go of themselves; the answer says so.
 TEST_F(ConsoleHands, NobodyLetsGoOfWhatTheBusOrTheSwitchHolds) {
   const std::string others = "the CAN bus or the board's switch holds the motor: nothing changed\r\n";
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_EQ(command("start free", 100), others);
   EXPECT_TRUE(comm_watchdog_is_on());
   comm_watchdog_begin(COMM_WATCHDOG_OWN, 0);
   EXPECT_EQ(command("start free", 100), others);
   run(50000);
-  EXPECT_FALSE(drive.request.stop) << "they do not speak through it";
+  EXPECT_FALSE(inside::request().stop) << "they do not speak through it";
 }
 
 }  // namespace

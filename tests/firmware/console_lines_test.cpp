@@ -32,11 +32,11 @@ class ConsoleLines : public Console {
   static long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
   static void at_work() {
-    drive.state = DRIVE_RUN;
-    drive.position.selected.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
-    drive.control.command_rpm_q16 = raw(-712.3, 16);
-    drive.samples.link_q16 = raw(287.6, 16);
-    drive.control.measured_q20 = {raw(1.234, 20), raw(-5.678, 20)};
+    inside::state() = DRIVE_RUN;
+    inside::selected().speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
+    inside::command_rpm_q16() = raw(-712.3, 16);
+    inside::link_q16() = raw(287.6, 16);
+    inside::current_dq_q20() = {raw(1.234, 20), raw(-5.678, 20)};
   }
 };
 
@@ -96,11 +96,11 @@ TEST_F(ConsoleLines, WatchIsALineTwiceASecond) {
 // The newest first, each with its circumstances.
 TEST_F(ConsoleLines, FaultsWithTheirCircumstances) {
   at_work();
-  drive.time_ms = 5067;
+  inside::time_ms() = 5067;
   drive_trip(&drive, FAULT_LINK_LOW);
   at_work();
-  drive.state = DRIVE_STOP;
-  drive.time_ms = 65407;
+  inside::state() = DRIVE_STOP;
+  inside::time_ms() = 65407;
   drive_trip(&drive, FAULT_OVERRUN);
   run(10);  // nobody types yet: it is not told
   const std::string circumstances = " at 600.5 rpm, link 287.6 V, d 1.23 A, q -5.68 A\r\n";
@@ -175,10 +175,10 @@ TEST_F(ConsoleLines, AScopeThatWasOnlyGivenItsChannels) {
 
 TEST_F(ConsoleLines, ARecordOfTheScopeIsARow) {
   at_work();
-  drive.control.measured_q20.q = raw(-5.5, 20);
+  inside::current_dq_q20().q = raw(-5.5, 20);
   (void)command("scope channels speed current_q state");
   (void)command("scope arm");
-  drive.time_ms = 7;
+  inside::time_ms() = 7;
   for (int k = 0; k < 1100; ++k) scope_step();
   const std::string state = command("scope");
   EXPECT_EQ(state.rfind("scope: done, 1024 records, trigger in record 256 at 7 ms\r\n", 0), 0u) << state;
@@ -208,7 +208,7 @@ TEST_F(ConsoleLines, AnyErrorOfThePortDisturbsALine) {
     send("0\r");
     run(300);
     EXPECT_TRUE(has(text, "the line was disturbed on its way: nothing done, send it again\r\n> ")) << text;
-    EXPECT_EQ(drive.control.command_rpm_q16, 0);
+    EXPECT_EQ(inside::command_rpm_q16(), 0);
     EXPECT_EQ(command("ref 0"), "ref 0.00 rpm\r\n") << "the next one is not";
   }
 }

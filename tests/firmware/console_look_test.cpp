@@ -24,8 +24,8 @@ using namespace stillspin::test;
 TEST_F(Console, StatusAndFaults) {
   EXPECT_EQ(command("faults"), "no fault since power-on\r\n");
   EXPECT_EQ(command("reset"), "no fault is latched\r\n");
-  drive.state = DRIVE_RUN;
-  drive.time_ms += 12000;
+  inside::state() = DRIVE_RUN;
+  inside::time_ms() += 12000;
   drive_trip(&drive, FAULT_SYNCHRONISM);
   const std::string faults = command("faults");
   EXPECT_TRUE(has(faults, "1 since power-on, which was 12 s ago")) << faults;
@@ -41,25 +41,25 @@ TEST_F(Console, StatusAndFaults) {
 
 TEST_F(Console, StatusSaysWhatHoldsTheDriveBack) {
   EXPECT_TRUE(has(command("status"), "limits      none\r\n"));
-  drive.limits = LIMIT_CURRENT;
+  inside::limits() = LIMIT_CURRENT;
   EXPECT_TRUE(has(command("status"), "limits      current limit\r\n"));
-  drive.limits = LIMIT_VOLTAGE | LIMIT_BRAKING;
+  inside::limits() = LIMIT_VOLTAGE | LIMIT_BRAKING;
   EXPECT_TRUE(has(command("status"), "limits      voltage limit, braking reduced by the DC link\r\n"));
 }
 
 TEST_F(Console, StatusSaysHowFarAProcedureIs) {
-  drive.state = DRIVE_COMMISSION;
+  inside::state() = DRIVE_COMMISSION;
   commissioning.phase = COMMISSIONING_SPIN;
-  drive.found.phase = START_CHARGE;
+  inside::start_found().phase = START_CHARGE;
   EXPECT_TRUE(has(command("status"), "state       commissioning: spin: flux linkage, inertia, friction\r\n"));
-  drive.state = DRIVE_START;
+  inside::state() = DRIVE_START;
   EXPECT_TRUE(has(command("status"), "state       starting: charging the bootstrap capacitors\r\n"));
 }
 
 TEST_F(Console, StatusSaysWhyParametersDoNotFitTogether) {
   parameters.if_current = parameters.current_limit + 1;
   parameters.start_method = 1;
-  drive.request.reload = true;
+  inside::request().reload = true;
   EXPECT_TRUE(has(command("status"),
                   "parameters  if_current must not exceed current_limit with start_method 1 (if_current = "
                   "14.00 A, current_limit = 14.00 A, start_method = 1); 3 of the parameters not saved"));
@@ -73,24 +73,24 @@ TEST_F(Console, GetSaysWhatMayNotChangeWhileItRuns) {
 TEST_F(Console, Signals) {
   const std::string all = command("signals", 10000);
   for (std::uint16_t k = 0; k < signal_count(); ++k) EXPECT_TRUE(has(all, bench::text_of(signal_info(k)->name)));
-  drive.state = DRIVE_RUN;
-  drive.position.selected.speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
+  inside::state() = DRIVE_RUN;
+  inside::selected().speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
   EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
 }
 
 // With the power stage off the estimators go on, and what they make of nothing is no speed.
 TEST_F(Console, WhatIsUnknownIsSaidInWords) {
-  drive.state = DRIVE_READY;
-  drive.position.selected.speed_bpp = bpp_of(25);
-  drive.control.measured_q20 = {1 << 20, -5 * (1 << 20)};
-  drive.control.command_rpm_q16 = 600 * 65536;
-  drive.samples.count = 1;
-  drive.samples.windows[0].current_q20 = {raw(0.02, 20), raw(-0.0346, 20)};
+  inside::state() = DRIVE_READY;
+  inside::selected().speed_bpp = bpp_of(25);
+  inside::current_dq_q20() = {1 << 20, -5 * (1 << 20)};
+  inside::command_rpm_q16() = 600 * 65536;
+  inside::window_count() = 1;
+  inside::windows()[0].current_q20 = {raw(0.02, 20), raw(-0.0346, 20)};
   std::string said = command("status", 3000);
   EXPECT_TRUE(has(said, "state       ready\r\n")) << said;
   EXPECT_TRUE(has(said, "speed       unknown, the shaft may be turning; reference 600.0 rpm\r\n")) << said;
   EXPECT_TRUE(has(said, "current     phase a 0.02 A, phase b -0.04 A\r\n")) << said;
-  drive.samples.count = 0;
+  inside::window_count() = 0;
   EXPECT_TRUE(
       has(command("watch", 300), "ready   unknown, the shaft may be turning; reference 600.0 rpm   phase a 0.00"));
   EXPECT_TRUE(has(command("watch speed current_q", 300), "\nspeed unknown   current_q unknown\r\n"));
@@ -102,21 +102,21 @@ TEST_F(Console, WhatIsUnknownIsSaidInWords) {
 }
 
 TEST_F(Console, WatchGoesOnUntilAKey) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   send("watch\r");
   run(16000);
   EXPECT_TRUE(has(text, "running   0.0 rpm of 0.0 rpm"));
   send("stop\r");
   run(300);
-  EXPECT_TRUE(drive.request.stop) << "the key that ends it belongs to the next command";
+  EXPECT_TRUE(inside::request().stop) << "the key that ends it belongs to the next command";
   text.clear();
   run(10000);
   EXPECT_EQ(text, "");
 }
 
 TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {1 << 20, -5 * (1 << 20)};
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {1 << 20, -5 * (1 << 20)};
   EXPECT_EQ(command("watch current_q", 300), "current_q -5.000 A\r\n");
   EXPECT_TRUE(
       has(command("watch current_q fault current_d", 300), "current_q -5.000 A   fault 0   current_d 1.000 A\r\n"));
@@ -124,39 +124,39 @@ TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
 }
 
 TEST_F(Console, WatchShowsFourSignalsAtMost) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_TRUE(has(command("watch state fault limit speed", 300), "state 4   fault 0   limit 0   speed 0.00 rpm\r\n"));
   EXPECT_TRUE(has(command("watch state fault limit speed angle", 300), "at most four signals"));
 }
 
 TEST_F(Console, WatchSaysWhatHoldsTheDriveBack) {
   EXPECT_FALSE(has(command("watch", 300), " V   "));
-  drive.limits = LIMIT_CURRENT | LIMIT_WEAKENING;
+  inside::limits() = LIMIT_CURRENT | LIMIT_WEAKENING;
   EXPECT_TRUE(has(command("watch", 300), " V   current limit, field weakening\r\n"));
 }
 
 TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
-  drive.state = DRIVE_COMMISSION;
+  inside::state() = DRIVE_COMMISSION;
   commissioning.phase = COMMISSIONING_STAIRCASE;
-  drive.limits = LIMIT_CURRENT | LIMIT_VOLTAGE | LIMIT_WEAKENING | LIMIT_OVERRUN | LIMIT_BRAKING;
+  inside::limits() = LIMIT_CURRENT | LIMIT_VOLTAGE | LIMIT_WEAKENING | LIMIT_OVERRUN | LIMIT_BRAKING;
   const std::string line = command("watch", 300);
   EXPECT_EQ(line.size(), TEXT_LINE_MAX);
   EXPECT_EQ(line.substr(line.size() - 5), "...\r\n");
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_FALSE(has(command("watch", 300), "..."));
 }
 
 TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_OPEN_PHASE);
-  drive.found.wiring = WIRING_OPEN_B;
+  inside::start_found().wiring = WIRING_OPEN_B;
   const std::string named = command("status");
   EXPECT_TRUE(has(named, ": " + bench::words_of(CATALOGUE_WIRING, WIRING_OPEN_B) + ". ")) << named;
-  drive.found.wiring = WIRING_GOOD;
+  inside::start_found().wiring = WIRING_GOOD;
   const std::string plain = command("status");
   EXPECT_FALSE(has(plain, bench::words_of(CATALOGUE_WIRING, WIRING_GOOD))) << plain;
-  drive.found.wiring = WIRING_OPEN_B;
-  drive.fault = FAULT_SYNCHRONISM;
+  inside::start_found().wiring = WIRING_OPEN_B;
+  inside::fault() = FAULT_SYNCHRONISM;
   EXPECT_FALSE(has(command("status"), bench::words_of(CATALOGUE_WIRING, WIRING_OPEN_B))) << "found by an earlier start";
 }
 
@@ -172,9 +172,9 @@ TEST_F(Console, Commissioning) {
   EXPECT_EQ(command("commission results"), "nothing has been measured since power-on\r\n");
   EXPECT_TRUE(has(command("commission now"), "commission start"));
   EXPECT_TRUE(has(command("commission start free"), "not ready"));
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_TRUE(has(command("commission start free"), "the shaft will turn"));
-  EXPECT_TRUE(drive.request.commission);
+  EXPECT_TRUE(inside::request().commission);
 }
 
 TEST_F(Console, ACommissioningUnderWayIsToldWithItsPhase) {
@@ -234,12 +234,12 @@ TEST_F(Console, WhoCommandsOverTheBus) {
     board.can_in[0].push_back(f);
     can_node_service();
   };
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   come(CAN_MODE_OFF);
   EXPECT_TRUE(has(command("can"), "commands    received, but the drive was not started by them\r\n"));
   come(CAN_MODE_RUN);
   EXPECT_TRUE(has(command("can"), "commands    in command of the drive\r\n"));
-  drive.time_ms += static_cast<std::uint32_t>(parameters.can_timeout);
+  inside::time_ms() += static_cast<std::uint32_t>(parameters.can_timeout);
   can_node_service();
   EXPECT_TRUE(has(command("can"), "commands    missing (can_timeout)\r\n"));
 }

@@ -91,7 +91,7 @@ TEST_F(Refusals, EveryWayToSayNoIsOne) {
 }
 
 TEST_F(Refusals, WhatTheDriveDoesNotDoNowIsOne) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   for (const char* line : {"set speed_limit 1000", "load", "defaults", "start hold", "commission start"}) {
     EXPECT_EQ(of(line), 1) << line << ": " << text;
   }
@@ -109,7 +109,7 @@ TEST_F(Refusals, ASaveThatFailsIsOne) {
 }
 
 TEST_F(Refusals, AStartThatEndsInAFaultIsOne) {
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   const std::uint16_t before = feature_status.refusals;
   send("start free\r");
   run(100);

@@ -48,12 +48,12 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
                   "channels speed current_q angle\r\n"
                   "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
-    drive.position.selected.speed_bpp = bpp_of(k);
-    drive.control.measured_q20.q = -5 * (1 << 20);
-    drive.position.selected.angle_bam = 1u << 30;
-    drive.time_ms = static_cast<std::uint32_t>(k);
+    inside::selected().speed_bpp = bpp_of(k);
+    inside::current_dq_q20().q = -5 * (1 << 20);
+    inside::selected().angle_bam = 1u << 30;
+    inside::time_ms() = static_cast<std::uint32_t>(k);
     scope_step();
   }
   EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));
@@ -61,7 +61,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
   EXPECT_TRUE(has(rows, "-5.000      0.2500"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   for (int k = 0; k < 20; ++k) scope_step();
   EXPECT_TRUE(has(command("scope stop"), "stopped"));
   const std::string unknown = command("scope print 1", 6000);
@@ -84,8 +84,8 @@ TEST_F(ConsoleScope, AStepOfARecordMayBeMoreThanOne) {
   EXPECT_TRUE(has(command("scope channels deviation_q"), "set"));
   EXPECT_TRUE(has(command("scope trigger now"), "set"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
-  drive.state = DRIVE_RUN;
-  drive.position.deviation_q20 = -(9 << 20);  // in a period of 100 us
+  inside::state() = DRIVE_RUN;
+  inside::deviation_q20() = -(9 << 20);  // in a period of 100 us
   steps(2000);
   EXPECT_TRUE(has(command("scope print 1000", 2000), "\n1000  -90000.0"));
 }
@@ -179,7 +179,7 @@ TEST_F(ConsoleScope, WhatCanBePrinted) {
 // A machine at the other end, or in AUTO mode the reading itself, may arm it meanwhile.
 TEST_F(ConsoleScope, APrintEndsWhenTheScopeIsArmedAgain) {
   (void)command("scope channels state");
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   (void)command("scope arm");
   steps(2000);
   send("scope print 1\r");

@@ -60,7 +60,7 @@ TEST_F(Console, WhatIsRefusedIsExplained) {
   EXPECT_TRUE(has(command("set speed_limit"), "set name value [unit]"));
   EXPECT_TRUE(has(command("set speed_limit 1 2 3"), "set name value [unit]"));
   EXPECT_EQ(parameters.speed_limit, 3300 * 256);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_EQ(command("set speed_limit 1000"),
             "speed_limit may not change while the power stage is on: stop the drive first\r\n");
 }
@@ -85,7 +85,7 @@ TEST_F(Console, NumbersAreOneRule) {
             "1,000 is not a number (point, no comma) in rpm up to speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref 1e9"), "1e9 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref -40000"), "-40000 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
-  EXPECT_EQ(drive.control.command_rpm_q16, 1500 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 1500 * 65536);
 }
 
 TEST_F(Console, DidYouMean) {
@@ -132,7 +132,7 @@ TEST_F(Console, List) {
 
 TEST_F(Console, StartRefStop) {
   EXPECT_TRUE(has(command("start free"), "not ready yet"));
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_EQ(command("ref 600 rpm"), "ref 600.00 rpm\r\n");
   EXPECT_EQ(command("ref -50rpm"), "ref -50.00 rpm\r\n");
   EXPECT_EQ(command("ref"), "ref -50.00 rpm\r\n");
@@ -140,27 +140,27 @@ TEST_F(Console, StartRefStop) {
   EXPECT_TRUE(has(command("ref 60 Hz"), "nothing changed"));
   EXPECT_TRUE(has(command("ref 60 rpm now"), "nothing changed"));
   EXPECT_TRUE(has(command("start now"), "nothing done"));
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
   send("start free\r");
   run(300);
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
   text.clear();
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   run(100);
   EXPECT_TRUE(has(text, "running after 3")) << text;
   EXPECT_EQ(command("stop at once please"), "stopping\r\n");
-  EXPECT_TRUE(drive.request.stop);
-  drive.state = DRIVE_READY;
+  EXPECT_TRUE(inside::request().stop);
+  inside::state() = DRIVE_READY;
   EXPECT_EQ(command("stop"), "the power stage is off\r\n");
   EXPECT_EQ(command("coast"), "power stage off\r\n");
 }
 
 TEST_F(Console, StartAndResetStandAlone) {
-  drive.state = DRIVE_FAULT;
+  inside::state() = DRIVE_FAULT;
   EXPECT_EQ(command("reset now"), "this command takes nothing after it: nothing done\r\n");
-  EXPECT_FALSE(drive.request.reset);
+  EXPECT_FALSE(inside::request().reset);
   EXPECT_TRUE(has(command("reset"), "cleared"));
-  EXPECT_TRUE(drive.request.reset);
+  EXPECT_TRUE(inside::request().reset);
 }
 
 // A line has room for more words than a command takes.
@@ -173,47 +173,47 @@ TEST_F(Console, WordsBeyondTheLastAreLeftOut) {
 }
 
 TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   send("start free\r");
   run(100);
-  drive.time_ms += 4900;
+  inside::time_ms() += 4900;
   run(500);
   EXPECT_FALSE(has(text, "not running yet"));
   run(1000);
   EXPECT_TRUE(has(text, "not running yet: see 'status'\r\n> ")) << text;
-  EXPECT_TRUE(drive.request.start) << "it may still come";
+  EXPECT_TRUE(inside::request().start) << "it may still come";
 }
 
 TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   send("start free\rstop\r");
   run(500);
-  EXPECT_TRUE(drive.request.stop);
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_TRUE(inside::request().stop);
+  EXPECT_FALSE(inside::request().start);
 }
 
 TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_STOP);
   run(100);
   EXPECT_EQ(text, "") << "nobody is there";
   send("sta");
   run(100);
   text.clear();
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_TRUE(has(text, "! fault: DC link below link_minimum\r\n")) << text;
   EXPECT_TRUE(has(text, "\r> sta")) << "what has been typed is still there";
   (void)ask(REQUEST_STATUS);
   text.clear();
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_LINK_HIGH);
   run(300);
   EXPECT_TRUE(has(text, "! fault: DC link above")) << "a terminal that keeps the guard alive is still one: " << text;
   (void)ask(REQUEST_IDENTITY);
   text.clear();
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_EQ(text, "") << "a machine is there";
@@ -221,7 +221,7 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
 
 TEST_F(Console, AFaultThatIsForgottenIsNotTold) {
   send("x");
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   ASSERT_TRUE(has(text, "! fault"));
@@ -240,7 +240,7 @@ TEST_F(Console, SaveLoadDefaults) {
   EXPECT_EQ(parameters.speed_ramp, 3000 * 256);
   EXPECT_TRUE(has(command("load", 20000), "the saved values are in force"));
   EXPECT_EQ(parameters.speed_ramp, 250 * 256);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_TRUE(has(command("load"), "stop the drive first"));
   EXPECT_TRUE(has(command("defaults"), "stop the drive first"));
   EXPECT_TRUE(has(command("save", 20000), "the values have been saved")) << "while it runs, too";
@@ -286,31 +286,31 @@ TEST_F(Console, WhatIsTypedAheadIsNotLost) {
   send("list\rversion\rref 70\r");
   run(30000);
   EXPECT_TRUE(has(text, "protocol 1"));
-  EXPECT_EQ(drive.control.command_rpm_q16, 70 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 70 * 65536);
 }
 
 TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   send("list\rref 70\r");
   run(200);
   send("stop\r\n");
   run(100);
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
   run(30000);
   EXPECT_TRUE(has(text, "the answer and what was typed ahead end here\r\nstopping\r\n> "));
-  EXPECT_EQ(drive.control.command_rpm_q16, 0) << "and that was said";
+  EXPECT_EQ(inside::command_rpm_q16(), 0) << "and that was said";
 }
 
 // A terminal that ends its lines with a line feed stops the motor as soon as any.
 TEST_F(Console, EitherEndOfALineStopsInTheMiddleOfAnAnswer) {
   for (const char* end : {"\r", "\n"}) {
-    drive.state = DRIVE_RUN;
-    drive.request.stop = false;
+    inside::state() = DRIVE_RUN;
+    inside::request().stop = false;
     send("list\r");
     run(200);
     send(std::string("stop") + end);
     run(100);
-    EXPECT_TRUE(drive.request.stop) << int(end[0]);
+    EXPECT_TRUE(inside::request().stop) << int(end[0]);
     run(2000);
   }
 }
@@ -322,7 +322,7 @@ TEST_F(Console, MoreThanCanBeKeptEndsTheAnswerAndIsNotLostEither) {
   send(lines);
   run(60000);
   EXPECT_TRUE(has(text, "more input than can be kept"));
-  EXPECT_EQ(drive.control.command_rpm_q16, 70 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 70 * 65536);
 }
 
 TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
@@ -336,7 +336,7 @@ TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
 }
 
 TEST_F(Console, ADisturbedLineIsNotObeyed) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   send("set speed_ramp 1");
   run(50);
   board.serial_errors.framing++;
@@ -348,21 +348,21 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
       "ref \xC3\xA4"
       "50\r");
   run(300);
-  EXPECT_EQ(drive.control.command_rpm_q16, 0);
+  EXPECT_EQ(inside::command_rpm_q16(), 0);
   send("st\xFFop\r");
   run(300);
-  EXPECT_TRUE(drive.request.stop) << "but to stop is always right";
+  EXPECT_TRUE(inside::request().stop) << "but to stop is always right";
   send(
       "co\xFF"
       "ast\r");
   run(300);
-  EXPECT_TRUE(drive.request.coast) << "and to switch off";
+  EXPECT_TRUE(inside::request().coast) << "and to switch off";
   EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n") << "the next line is another one";
 }
 
 TEST_F(Console, ALineThatIsTooLongIsRefused) {
   EXPECT_TRUE(has(command("ref 50" + std::string(80, ' ')), "at most 80 characters: nothing done"));
-  EXPECT_EQ(drive.control.command_rpm_q16, 0);
+  EXPECT_EQ(inside::command_rpm_q16(), 0);
 }
 
 // Lines never come out in pieces: whatever the room, whole lines or none.

@@ -25,7 +25,7 @@ class ControlInterrupt : public Drive {
 // Each step says how long it takes when it has been done, so that what follows it happens as late as on the chip.
 TEST_F(ControlInterrupt, EveryStepTellsItsTimeOnce) {
   make_run();
-  const int windows = drive.modulation.sampled.window_count;
+  const int windows = inside::sampled_pattern().window_count;
   Steps expected(static_cast<std::size_t>(windows), CYCLES_WINDOW);
   for (const unsigned cycles :
        {CYCLES_READ_SAMPLES, CYCLES_ESTIMATE, CYCLES_SUPERVISE, CYCLES_CONTROL, CYCLES_MODULATE, CYCLES_SERIAL}) {
@@ -34,7 +34,7 @@ TEST_F(ControlInterrupt, EveryStepTellsItsTimeOnce) {
   EXPECT_EQ(told(0), expected);
   const Steps blind = {CYCLES_READ_SLICES, CYCLES_ESTIMATE_BLIND, CYCLES_SUPERVISE_BLIND,
                        CYCLES_CONTROL,     CYCLES_MODULATE,       CYCLES_SERIAL};
-  EXPECT_EQ(told(drive.modulation.sampled.window_count), blind) << "without windows it is over earlier";
+  EXPECT_EQ(told(inside::sampled_pattern().window_count), blind) << "without windows it is over earlier";
 }
 
 // The window interrupt may come between begin and end only; all of the interrupt's work is there, the serial port's
@@ -51,12 +51,12 @@ TEST_F(ControlInterrupt, ItsWorkIsBetweenBeginAndEnd) {
 // Between the speed control's milliseconds the current loop makes a voltage of what is asked for.
 TEST_F(ControlInterrupt, ACurrentThatIsAskedForBecomesAVoltage) {
   make_run();
-  periods_until([] { return drive.schedule.period == 2; });
+  periods_until([] { return inside::schedule().period == 2; });
   for (const double amps : {3.0, -3.0}) {
-    drive.control.reference_q20.q = raw(amps, 20);
-    const std::int32_t before = drive.control.command_q16.q;
+    inside::reference_dq_q20().q = raw(amps, 20);
+    const std::int32_t before = inside::command_dq_q16().q;
     periods(2);  // with a current divider of two
-    EXPECT_GT((drive.control.command_q16.q - before) * (amps > 0.0 ? 1.0 : -1.0), raw(5.0, 16)) << amps;
+    EXPECT_GT((inside::command_dq_q16().q - before) * (amps > 0.0 ? 1.0 : -1.0), raw(5.0, 16)) << amps;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "sim_host/bench/texts.hpp"
 #include "tests/control/quantities.hpp"
+#include "tests/firmware/inside.hpp"
 
 extern "C" {
 #include "firmware/config/config.h"
@@ -48,9 +49,9 @@ class DriveConfig : public testing::Test {
 };
 
 TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
-  EXPECT_TRUE(drive.config_valid);
-  EXPECT_TRUE(drive.control.speed_ready);
-  const drive_config_t& c = drive.config;
+  EXPECT_TRUE(inside::config_valid());
+  EXPECT_TRUE(inside::speed_ready());
+  const drive_config_t& c = inside::config();
   const Motor m;
   // a decimal parameter is right to half an LSB of its Q format; the tolerances are a few of those, relative
   EXPECT_NEAR(real(c.nameplate.ld_q30, 30), m.ld, 1e-8);
@@ -89,7 +90,7 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
 
 // Refused, and the configuration in use is left as it was.
 void expect_refused() {
-  drive_config_t c = drive.config;
+  drive_config_t c = inside::config();
   c.ramp_step_bpp = 12345;
   drive_config_t before;
   std::memcpy(&before, &c, sizeof c);
@@ -104,14 +105,14 @@ TEST_F(DriveConfig, InconsistentBlend) {
   set("blend_high", 99.0);
   expect_refused();
   set("blend_high", 101.0);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
 }
 
 TEST_F(DriveConfig, InductanceAcrossBelowTheOneAlong) {
   set("inductance_q", 4.8);
   expect_refused();
   set("inductance_q", 4.9);  // a surface-magnet machine is allowed
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
 }
 
 TEST_F(DriveConfig, WindowLimitsTheWrongWayRound) {
@@ -119,14 +120,14 @@ TEST_F(DriveConfig, WindowLimitsTheWrongWayRound) {
   set("window_maximum", 24.0);
   expect_refused();
   set("window_maximum", 25.0);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
 }
 
 // What the estimators make of a machine has to fit their formats at every point of its map, not at no current alone.
 TEST_F(DriveConfig, AMapWithTooLittleInductanceIsRefused) {
   set("inductance_d", 0.2);
   set("inductance_q", 0.4);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
   set("ldd_3", 75.0);  // T/L of 0.67 A per V
   expect_refused();
 }
@@ -135,7 +136,7 @@ TEST_F(DriveConfig, AnAxisThatTurnsTooFarIsRefused) {
   set("inductance_d", 0.9);
   set("inductance_q", 0.9);
   set("ldq_2", 0.3);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
   set("ldq_2", 0.81);  // T/L of 0.58 A per V along the axes, 0.53 across
   expect_refused();
 }
@@ -144,12 +145,12 @@ TEST_F(DriveConfig, AMagnetThatDrivesTooMuchCurrentIsRefused) {
   set("inductance_d", 0.2);
   set("inductance_q", 0.8);
   set("magnet_flux", 0.79);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
   set("magnet_flux", 0.81);  // lambda/Lq of 1013 A
   expect_refused();
   set("magnet_flux", 0.7);
   set("lqq_4", 90.0);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
   set("lqq_4", 80.0);  // 1094 A at its last point alone
   expect_refused();
 }
@@ -157,7 +158,7 @@ TEST_F(DriveConfig, AMagnetThatDrivesTooMuchCurrentIsRefused) {
 TEST_F(DriveConfig, ASaliencyTooLargeForTheSensorsIsRefused) {
   set("inductance_d", 0.5);
   set("inductance_q", 5.0);
-  EXPECT_TRUE(drive_config_load(&drive.config));
+  EXPECT_TRUE(drive_config_load(&inside::config()));
   set("current_full_scale", 200.0);
   expect_refused();
 }
@@ -218,7 +219,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
       const parameter_info_t& p = *parameter_info(k);
       ASSERT_EQ(parameter_set(p.id, random_value(random, p, n % 2 == 0)), SET_OK) << stillspin::bench::text_of(p.name);
     }
-    drive_config_t c = drive.config;
+    drive_config_t c = inside::config();
     if (!drive_config_load(&c)) {
       ++refused;
       continue;
@@ -249,7 +250,7 @@ TEST_F(DriveConfig, SpeedCommandIsClampedToTheLimit) {
   const std::pair<double, double> cases[] = {{600, 600}, {-600, -600}, {5000, 3300}, {-32000, -3300}};
   for (const auto& [asked, got] : cases) {
     drive_command_speed(raw(asked, 16));
-    EXPECT_NEAR(drive.control.target_bpp / per_rpm, got, 0.01) << asked;
+    EXPECT_NEAR(inside::target_bpp() / per_rpm, got, 0.01) << asked;
   }
 }
 
@@ -301,8 +302,8 @@ TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
   set("flux_cutoff", 30.0);
   set("lqq_4", 80.0);
   set("lqq_2", 90.0);
-  ASSERT_TRUE(drive_config_load(&drive.config));
-  const drive_config_t& c = drive.config;
+  ASSERT_TRUE(drive_config_load(&inside::config()));
+  const drive_config_t& c = inside::config();
   EXPECT_EQ(c.flux.method, FLUX_PP02);
   EXPECT_NEAR(real(c.flux.cutoff_q30, 30), 30.0 * kPeriod, 1e-8);
   EXPECT_NEAR(rad_per_s(c.flux.adaptation.lowest_bpp), 400.0, 0.1);
@@ -310,7 +311,7 @@ TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
   EXPECT_GT(c.flux.adaptation.saturation_q24, 0);
   EXPECT_EQ(c.flux.adaptation.magnet_q30, 0);
   set("flux_adapt", 2.0);
-  ASSERT_TRUE(drive_config_load(&drive.config));
+  ASSERT_TRUE(drive_config_load(&inside::config()));
   EXPECT_EQ(c.flux.adaptation.saturation_q24, 0);
   EXPECT_GT(c.flux.adaptation.magnet_q30, 0);
 }

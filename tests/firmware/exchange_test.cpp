@@ -43,16 +43,10 @@ class Exchange : public Drive {
     std::vector<std::uint16_t> edges(board.frame.rise_tick, board.frame.rise_tick + 3);
     edges.insert(edges.end(), board.frame.fall_tick, board.frame.fall_tick + 3);
     edges.insert(edges.end(), board.frame.burst_start_tick, board.frame.burst_start_tick + 3);
-    const drive_control_t& c = drive.control;
-    return {drive.state,
-            drive.fault,
-            drive.limits,
-            c.reference_q20.d,
-            c.reference_q20.q,
-            drive.position.selected.angle_bam,
-            c.command_q16.d,
-            c.braking_headroom_q20,
-            edges,
+    const drive_control_t& c = inside::control();
+    return {inside::state(),   inside::fault(),        inside::limits(),
+            c.reference_q20.d, c.reference_q20.q,      inside::selected().angle_bam,
+            c.command_q16.d,   c.braking_headroom_q20, edges,
             board.legs};
   }
 
@@ -64,10 +58,10 @@ class Exchange : public Drive {
     std::vector<Seen> all;
     for (int n = 0; n < 300; ++n) {
       if (spoils) spoil_table();
-      if (drive.sliced != 0u) {
+      if (inside::sliced() != 0u) {
         for (int k = 0; k < 20; ++k) drive_window_interrupt();
       }
-      period(window(n), drive.sliced != 0u ? drive.modulation.sampled.window_count : 0);
+      period(window(n), inside::sliced() != 0u ? inside::sampled_pattern().window_count : 0);
       all.push_back(seen());
     }
     return all;
@@ -81,7 +75,7 @@ class Exchange : public Drive {
   }
 
   void make_exchanged() {
-    ASSERT_TRUE(drive_config_load(&drive.config));
+    ASSERT_TRUE(drive_config_load(&inside::config()));
     make_ready();
   }
 };
@@ -102,7 +96,7 @@ TEST_F(Exchange, AStopAndItsEndDoNot) {
   expect_no_difference(
       [&] {
         make_run();
-        drive.control.ramp.value = bpp_of(100);
+        inside::speed_ramp().value = bpp_of(100);
         drive_command_stop();
       },
       DRIVE_STOP);
@@ -112,7 +106,7 @@ TEST_F(Exchange, HysteresisDoesNot) {
   expect_no_difference(
       [&] {
         parameters.current_law = CURRENT_LAW_HYSTERESIS;
-        ASSERT_TRUE(drive_config_load(&drive.config));
+        ASSERT_TRUE(drive_config_load(&inside::config()));
         make_run();
       },
       DRIVE_RUN);
@@ -139,7 +133,7 @@ TEST_F(Exchange, ACommissioningDoesNot) {
         parameters.polarity_check = 0;
         make_exchanged();
         drive_command_commission();
-        for (int n = 0; n < 350 && drive.state != DRIVE_COMMISSION; ++n) period();
+        for (int n = 0; n < 350 && inside::state() != DRIVE_COMMISSION; ++n) period();
       },
       DRIVE_COMMISSION);
 }
@@ -148,28 +142,28 @@ TEST_F(Exchange, ACommissioningDoesNot) {
 TEST_F(Exchange, ASourceThatIsSetIsNotChosenYet) {
   make_ready();
   ASSERT_EQ(parameter_set(kPositionSource, POSITION_AVV), SET_OK);
-  EXPECT_EQ(drive.source, position_sources[POSITION_OBSERVER]);
+  EXPECT_EQ(inside::source(), position_sources[POSITION_OBSERVER]);
   period();
-  EXPECT_EQ(drive.source, position_sources[POSITION_OBSERVER]);
+  EXPECT_EQ(inside::source(), position_sources[POSITION_OBSERVER]);
   background_step(&drive);
-  EXPECT_EQ(drive.source, position_sources[POSITION_AVV]);
+  EXPECT_EQ(inside::source(), position_sources[POSITION_AVV]);
 }
 
 TEST_F(Exchange, WhatIsSetComesWithTheExchange) {
   make_run();
-  const std::int32_t before = drive.config.values.link_regulation, wanted = raw(380.0, 16);
+  const std::int32_t before = inside::config().values.link_regulation, wanted = raw(380.0, 16);
   ASSERT_EQ(parameter_set(kLinkRegulation, wanted), SET_OK);
   period();
-  EXPECT_EQ(drive.config.values.link_regulation, before);
+  EXPECT_EQ(inside::config().values.link_regulation, before);
   background_step(&drive);
-  EXPECT_EQ(drive.config.values.link_regulation, wanted);
+  EXPECT_EQ(inside::config().values.link_regulation, wanted);
 }
 
 // A set that is refused is nowhere: neither in the table, nor in what is exchanged next.
 TEST_F(Exchange, ARefusedSetNeverComes) {
   make_run();
   background_step(&drive);
-  const config_values_t before = drive.config.values;
+  const config_values_t before = inside::config().values;
   const std::int32_t set = parameters.link_regulation;
   std::uint16_t octets[200];
   octet_writer_t why = octet_writer(octets, 200);
@@ -178,9 +172,9 @@ TEST_F(Exchange, ARefusedSetNeverComes) {
   EXPECT_EQ(parameters.link_regulation, set);
   period();
   background_step(&drive);
-  EXPECT_EQ(std::memcmp(&drive.config.values, &before, sizeof before), 0);
-  EXPECT_TRUE(drive.config_valid);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(std::memcmp(&inside::config().values, &before, sizeof before), 0);
+  EXPECT_TRUE(inside::config_valid());
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 // Asking what a value would conflict with asks for nothing.
@@ -191,7 +185,7 @@ TEST_F(Exchange, AQuestionChangesNothing) {
   EXPECT_NE(parameter_conflict_with(kLinkRegulation, parameters.link_maximum), PACKED_NONE);
   EXPECT_EQ(parameter_conflict_with(kLinkRegulation, set), PACKED_NONE);
   EXPECT_EQ(parameters.link_regulation, set);
-  EXPECT_FALSE(drive.request.reload);
+  EXPECT_FALSE(inside::request().reload);
   EXPECT_EQ(parameter_conflict_known(), PACKED_NONE);
 }
 

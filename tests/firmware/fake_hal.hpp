@@ -18,6 +18,7 @@
 #include "hal/hal_sampling_timer.h"
 #include "hal/hal_sci.h"
 #include "tests/control/quantities.hpp"
+#include "tests/firmware/inside.hpp"
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
@@ -106,14 +107,15 @@ inline hal_adc_window_t still_window(double link = 300.0) {
 /// The lowest electrical speed that is shown as this mechanical one, rpm.
 inline std::int32_t bpp_of(int rpm) {
   const auto shown = [](std::int32_t bpp) { return drive_rpm_q16(&drive, bpp); };
-  std::int32_t bpp = static_cast<std::int32_t>(static_cast<std::int64_t>(rpm) * drive.config.bpp_per_rpm_q8 / 256) - 4;
+  std::int32_t bpp =
+      static_cast<std::int32_t>(static_cast<std::int64_t>(rpm) * inside::config().bpp_per_rpm_q8 / 256) - 4;
   while (shown(bpp) < rpm * 65536) bpp++;
   return bpp;
 }
 
 /// What the exchange of the configuration gives the interrupts of the parameters as they are, at once.
 inline void use_parameters() {
-#define USE(name) drive.config.values.name = parameters.name;
+#define USE(name) inside::config().values.name = parameters.name;
   CONFIG_VALUES(USE)
 #undef USE
 }
@@ -121,7 +123,7 @@ inline void use_parameters() {
 /// Another position source, at once.
 inline void use_source(std::int32_t source) {
   parameters.position_source = source;
-  drive.source = position_sources[source];
+  inside::source() = position_sources[source];
 }
 
 class Drive : public ::testing::Test {
@@ -136,7 +138,7 @@ class Drive : public ::testing::Test {
 
   /// One period: as many window interrupts as the pattern has windows, then the control interrupt.
   void period(const hal_adc_window_t& w = still_window(), int missing = 0) {
-    const int count = drive.modulation.sampled.window_count - missing;
+    const int count = inside::sampled_pattern().window_count - missing;
     for (int k = 0; k < count; ++k) {
       board.adc.push_back(w);
       drive_window_interrupt();
@@ -156,18 +158,18 @@ class Drive : public ::testing::Test {
   /// Ready, calibrated.
   void make_ready() {
     periods(400);
-    ASSERT_EQ(drive.state, DRIVE_READY);
+    ASSERT_EQ(inside::state(), DRIVE_READY);
   }
 
   /// Running, with the encoder and without the polarity test, which needs a machine behind it.
   /// What is learnt of windows without a machine behind them would soon be a fault.
   static void forget_windows() {
-    if (!drive_is_energised() || drive.state == DRIVE_START) return;
+    if (!drive_is_energised() || inside::state() == DRIVE_START) return;
     position_preset(&drive, 0, 0);
     position_align_encoder(&drive, 0, 0);
-    sensor_match_reset(&drive.position.sensors);
-    drive.trim.mismatch_q30 = 0;
-    drive.supervision = drive_supervision_t{};
+    sensor_match_reset(&inside::sensors_match());
+    inside::sensor_trim().mismatch_q30 = 0;
+    inside::supervision() = drive_supervision_t{};
   }
   void make_run() {
     use_source(0);
@@ -175,10 +177,10 @@ class Drive : public ::testing::Test {
     use_parameters();
     make_ready();
     drive_command_start();
-    for (int n = 0; n < 350 && drive.state != DRIVE_RUN; ++n) period();
-    ASSERT_EQ(drive.state, DRIVE_RUN);
+    for (int n = 0; n < 350 && inside::state() != DRIVE_RUN; ++n) period();
+    ASSERT_EQ(inside::state(), DRIVE_RUN);
     forget_windows();
-    drive.control.ramp.value = 0;
+    inside::speed_ramp().value = 0;
     periods(20);
   }
 };

@@ -114,7 +114,7 @@ TEST_F(Stepping, ADriveDoesWhatItDoesByItself) {
   drive_reset();
   for (int n = 0; n < 450; ++n) {
     Period p;
-    for (int k = drive.modulation.sampled.window_count; k > 0; --k) {
+    for (int k = inside::sampled_pattern().window_count; k > 0; --k) {
       hal_adc_window_t w = still_window(300.0 + random() % 5);
       w.start_a = static_cast<std::uint16_t>(w.start_a + random() % 9);
       w.end_b = static_cast<std::uint16_t>(w.end_b + random() % 9);
@@ -127,7 +127,7 @@ TEST_F(Stepping, ADriveDoesWhatItDoesByItself) {
     p.frame = board.frame;
     recorded.push_back(p);
   }
-  ASSERT_EQ(drive.state, DRIVE_READY);
+  ASSERT_EQ(inside::state(), DRIVE_READY);
   enter();
   for (std::size_t n = 0; n < recorded.size(); ++n) {
     HilPeriod told = empty();
@@ -198,16 +198,16 @@ TEST_F(Stepping, WorkIsDoneOnItsSideOfTheStep) {
   for (const std::uint16_t side : {kEarly, std::uint16_t{0}}) {
     (void)step(empty());
     commissioning.evaluate = true;
-    drive.request.reload = true;
+    inside::request().reload = true;
     HilPeriod p = empty();
     p.works = {static_cast<std::uint16_t>(REPLAY_RELOADED | side), static_cast<std::uint16_t>(REPLAY_EVALUATED | side),
                static_cast<std::uint16_t>(REPLAY_RELOADED | side)};
     EXPECT_EQ(step(p).torn, 0) << side;
-    EXPECT_FALSE(commissioning.evaluate || drive.request.reload) << "an evaluation changes parameters";
+    EXPECT_FALSE(commissioning.evaluate || inside::request().reload) << "an evaluation changes parameters";
   }
-  drive.request.reload = true;
+  inside::request().reload = true;
   EXPECT_EQ(step(empty()).torn, 0);
-  EXPECT_TRUE(drive.request.reload) << "none without a word in the recording";
+  EXPECT_TRUE(inside::request().reload) << "none without a word in the recording";
 }
 
 // Windows are played where they came: before the step, in the call that hands the pulses over, behind it.
@@ -218,13 +218,13 @@ TEST_F(Stepping, WindowsComeWhereTheyCame) {
     HilPeriod p = empty();
     for (const std::uint16_t call : calls) p.windows.push_back(recorded_window(call, still_window()));
     EXPECT_EQ(step(p).torn, 0);
-    const bool in_this = drive.supervision.missing == 0;
+    const bool in_this = inside::missing_windows() == 0;
     EXPECT_EQ(step(empty()).torn, 0);
-    return std::make_pair(in_this, drive.supervision.missing == 0);
+    return std::make_pair(in_this, inside::missing_windows() == 0);
   };
   (void)step(empty());
   (void)step(empty());
-  ASSERT_EQ(drive.modulation.sampled.window_count, 2) << "as many make a period whole";
+  ASSERT_EQ(inside::sampled_pattern().window_count, 2) << "as many make a period whole";
   EXPECT_EQ(seen_by_steps({0, 0}), std::make_pair(true, false));
   EXPECT_EQ(seen_by_steps({1, REPLAY_BEHIND}), std::make_pair(false, true));
   EXPECT_EQ(seen_by_steps({0, REPLAY_BEHIND}), std::make_pair(false, false));
@@ -232,10 +232,10 @@ TEST_F(Stepping, WindowsComeWhereTheyCame) {
 
 // A host with another compiler has to find the same number.
 TEST_F(Stepping, TheCheckSumIsOverEverySignalInItsOrder) {
-  drive.state = DRIVE_READY;
-  drive.control.measured_q20 = {-1, 0x12345678};
-  drive.control.command_q16 = {INT32_MIN, 77};
-  drive.position.low.angle_bam = 0x89ABCDEF;
+  inside::state() = DRIVE_READY;
+  inside::current_dq_q20() = {-1, 0x12345678};
+  inside::command_dq_q16() = {INT32_MIN, 77};
+  inside::low_speed_estimate().angle_bam = 0x89ABCDEF;
   std::uint32_t crc = CRC32_BEGIN;
   for (std::uint16_t k = 0; k < signal_count(); ++k) {
     const auto value = static_cast<std::uint32_t>(drive_signal(k, drive_known(&drive)));

@@ -87,11 +87,11 @@ TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
     }
     EXPECT_TRUE(board.interrupts_enabled);
     EXPECT_TRUE(replay_plays());
-    EXPECT_EQ(drive.state, DRIVE_BOOT);
+    EXPECT_EQ(inside::state(), DRIVE_BOOT);
     EXPECT_EQ(parameter_get(86), 3000 * 256);
     EXPECT_EQ(hil_expected(), 0);
     ASSERT_EQ(give_step(0, longest).status(), OK);
-    ASSERT_NE(drive.state, DRIVE_BOOT) << "it is stepped";
+    ASSERT_NE(inside::state(), DRIVE_BOOT) << "it is stepped";
   }
   hil_reset();
   EXPECT_FALSE(feature_status.stepped || replay_plays()) << "only power-on ends it";
@@ -100,7 +100,7 @@ TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
 // Of the board's own interrupts the serial port and the watchdog live on. The drive is not theirs.
 TEST_F(HostInTheLoop, TheBoardsInterruptsServeThePortAndTheWatchdog) {
   ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
-  const std::uint16_t heartbeat = drive.heartbeat, before = feature_status.heartbeat;
+  const std::uint16_t heartbeat = inside::heartbeat(), before = feature_status.heartbeat;
   for (int k = 1; k <= 3; ++k) {
     board.control_interrupt();
     board.window_interrupt();
@@ -108,7 +108,7 @@ TEST_F(HostInTheLoop, TheBoardsInterruptsServeThePortAndTheWatchdog) {
     EXPECT_EQ(board.serial_services, k);
     EXPECT_EQ(board.control_ends, k);
   }
-  EXPECT_EQ(drive.heartbeat, heartbeat);
+  EXPECT_EQ(inside::heartbeat(), heartbeat);
   ASSERT_EQ(ask(REQUEST_HIL_LEAVE).status(), OK);
   const std::uint16_t last = feature_status.heartbeat;
   board.control_interrupt();
@@ -164,8 +164,8 @@ TEST_F(HostInTheLoop, AStepThatComesAgainIsAnsweredAgainAndNotCarriedOut) {
   ASSERT_EQ(give_step(0).status(), OK);
   const Answer once = give_step(1);
   ASSERT_EQ(once.status(), OK);
-  drive.fault = FAULT_LINK_LOW;  // were it carried out, the step would see to that
-  drive.state = DRIVE_FAULT;
+  inside::fault() = FAULT_LINK_LOW;  // were it carried out, the step would see to that
+  inside::state() = DRIVE_FAULT;
   const std::uint32_t crc = hil_signals_crc();
   const Answer again = give_step(1);
   EXPECT_EQ(again.status(), OK);

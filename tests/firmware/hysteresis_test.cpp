@@ -25,7 +25,7 @@ class Hysteresis : public Drive {
   void SetUp() override {
     Drive::SetUp();
     parameters.current_law = 1;
-    drive.config_valid = drive_config_load(&drive.config);
+    inside::config_valid() = drive_config_load(&inside::config());
     make_run();
     slice();
   }
@@ -56,22 +56,22 @@ TEST_F(Hysteresis, RunsFromRunOnAndWritesNoPulses) {
     drive_control_interrupt();
   }
   EXPECT_EQ(board.frames, frames);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 // A shaft that is brought to rest keeps its slices until the gates go off.
 TEST_F(Hysteresis, BringsTheShaftToRest) {
-  drive.position.encoder.speed_bpp = bpp_of(1000);
+  inside::encoder_observer().speed_bpp = bpp_of(1000);
   drive_command_stop();
   drive_control_interrupt();
-  ASSERT_EQ(drive.state, DRIVE_STOP);
+  ASSERT_EQ(inside::state(), DRIVE_STOP);
   EXPECT_EQ(board.slice_ticks, 500);
-  for (int n = 0; n < 100 && drive.state == DRIVE_STOP; ++n) {
+  for (int n = 0; n < 100 && inside::state() == DRIVE_STOP; ++n) {
     slice();
-    drive.position.encoder.speed_bpp = 0;
+    inside::encoder_observer().speed_bpp = 0;
     drive_control_interrupt();
   }
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_EQ(board.slice_ticks, 0);
 }
 
@@ -97,14 +97,14 @@ TEST_F(Hysteresis, MeanOfTheSlicesIsTheMeasuredCurrent) {
   for (int n = 0; n < 20; ++n) slice(n % 2 == 0 ? 2.2 : 1.8, -1.0);  // along phase a, where the rotor is
   drive_control_interrupt();
   // the code is rounded to 10 mA, the encoder's zero is that of the start
-  EXPECT_NEAR(std::hypot(real(drive.control.measured_q20.d, 20), real(drive.control.measured_q20.q, 20)), 2.0, 0.01);
+  EXPECT_NEAR(std::hypot(real(inside::current_dq_q20().d, 20), real(inside::current_dq_q20().q, 20)), 2.0, 0.01);
 }
 
 TEST_F(Hysteresis, BandWidensWhileTheLegsSwitchTooOften) {
   const double before = band();
   for (int n = 0; n < 300; ++n) swinging_period(2.0, 4);  // four rises a period and leg are 40 kHz
   EXPECT_GT(band(), 1.2 * before);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 TEST_F(Hysteresis, BandNarrowsWhileTheySwitchTooSeldom) {
@@ -125,15 +125,15 @@ TEST_F(Hysteresis, OverCurrentInOneSliceIsAFaultAndEndsIt) {
   slice(18.5, 0.0);  // trip_current is 18 A
   slice();
   drive_control_interrupt();
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_CURRENT_LIMIT);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_CURRENT_LIMIT);
   EXPECT_FALSE(board.gates_on);
   EXPECT_EQ(board.slice_ticks, 0) << "back to pulses";
 }
 
 TEST_F(Hysteresis, NoSlicesAreAFault) {
   for (int n = 0; n < 10; ++n) drive_control_interrupt();
-  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_EQ(inside::fault(), FAULT_NO_SAMPLES);
 }
 
 TEST_F(Hysteresis, NeedsTheEncoderAndWholeSlices) {
@@ -213,12 +213,12 @@ TEST_F(Hysteresis, BothReferencesMoveWithTheSlicesUpToAnEnd) {
 TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
   const Vector reference = {3.0, -5.0};
   const double speed = 0.11, begin = 0.7;  // rad per period
-  drive.control.reference_q20 = raw_dq(reference, 20);
+  inside::reference_dq_q20() = raw_dq(reference, 20);
   ::hysteresis.offset_a_q8 = raw(2048.0, 8);
   for (const int tick : {0, 1234, 9999, 12000}) {
     board.pwm_tick = static_cast<std::uint16_t>(tick);
-    drive.position.selected.angle_bam = bam(begin);
-    drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
+    inside::selected().angle_bam = bam(begin);
+    inside::selected().speed_bpp = raw(speed / kTurn, 32);
     parameters.slice_time = raw(tick == 0 ? 5.0 : 10.0, 16);
     use_parameters();
     const int slices = tick == 0 ? 20 : 10;
@@ -243,32 +243,32 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   h.offset_b_q8 = raw(2048.0 - 20.48, 8);
   hysteresis_control.samples(&drive);
   board.slice.link = 2000;
-  drive.samples.link_q16 = raw(300.0, 16);
+  inside::link_q16() = raw(300.0, 16);
   for (int n = 0; n < 5; ++n) slice(n < 3 ? 4.1 : -0.9, 2.3);  // 2.0 and 2.5 A
-  drive.position.selected.angle_bam = bam(0.4);
-  drive.position.selected.speed_bpp = raw(0.2 / kTurn, 32);
-  drive.supervision.missing = 3;
-  drive.samples.count = 2;
+  inside::selected().angle_bam = bam(0.4);
+  inside::selected().speed_bpp = raw(0.2 / kTurn, 32);
+  inside::missing_windows() = 3;
+  inside::window_count() = 2;
   hysteresis_control.samples(&drive);
   const Vector wanted = Vector{2.0, (2.0 + 2.0 * 2.5) / std::sqrt(3.0)}.turned(-0.5);
-  EXPECT_NEAR(real(drive.control.measured_q20.d, 20), wanted.x, 0.01);
-  EXPECT_NEAR(real(drive.control.measured_q20.q, 20), wanted.y, 0.01);
-  EXPECT_NEAR(real(drive.samples.link_q16, 16), 300.0 + (2000.0 / 4096.0 * 450.0 - 300.0) / 8.0, 0.01);
-  EXPECT_EQ(drive.supervision.missing, 0);
-  EXPECT_EQ(drive.samples.count, 0) << "of windows";
-  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_NEAR(real(inside::current_dq_q20().d, 20), wanted.x, 0.01);
+  EXPECT_NEAR(real(inside::current_dq_q20().q, 20), wanted.y, 0.01);
+  EXPECT_NEAR(real(inside::link_q16(), 16), 300.0 + (2000.0 / 4096.0 * 450.0 - 300.0) / 8.0, 0.01);
+  EXPECT_EQ(inside::missing_windows(), 0);
+  EXPECT_EQ(inside::window_count(), 0) << "of windows";
+  EXPECT_EQ(inside::fault(), FAULT_NONE);
   const hysteresis_sums_t& left = h.sums;
   EXPECT_EQ(std::vector<std::int32_t>({left.a_q8, left.b_q8, left.peak_q8, left.slices}), std::vector<std::int32_t>(4));
   // Taken once: without a slice everything stays, and the period counts as one without samples.
-  const dq_t before = drive.control.measured_q20;
+  const dq_t before = inside::current_dq_q20();
   for (int n = 1; n < 4; ++n) {
     hysteresis_control.samples(&drive);
-    EXPECT_EQ(drive.supervision.missing, n);
-    EXPECT_EQ(drive.control.measured_q20.d, before.d);
+    EXPECT_EQ(inside::missing_windows(), n);
+    EXPECT_EQ(inside::current_dq_q20().d, before.d);
   }
   slice(1.1, -0.7);
   hysteresis_control.samples(&drive);
-  EXPECT_NEAR(std::hypot(real(drive.control.measured_q20.d, 20), real(drive.control.measured_q20.q, 20)), 1.0, 0.01)
+  EXPECT_NEAR(std::hypot(real(inside::current_dq_q20().d, 20), real(inside::current_dq_q20().q, 20)), 1.0, 0.01)
       << "of this slice alone";
 }
 
@@ -284,7 +284,7 @@ TEST_F(Hysteresis, AnyPhaseTripsInEitherDirection) {
     slice(c.a, c.b);
     for (int n = 0; n < 19; ++n) slice();
     drive_control_interrupt();
-    EXPECT_EQ(drive.fault, c.trips ? FAULT_CURRENT_LIMIT : FAULT_NONE) << c.a << " " << c.b;
+    EXPECT_EQ(inside::fault(), c.trips ? FAULT_CURRENT_LIMIT : FAULT_NONE) << c.a << " " << c.b;
   }
 }
 
@@ -315,10 +315,10 @@ TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds
 
 // What windows have left from before is not taken for those of the first period with pulses.
 TEST_F(Hysteresis, PulsesBeginWithoutOldWindows) {
-  drive.sliced = 0;
+  inside::sliced() = 0;
   for (int n = 0; n < 2; ++n) drive_window_interrupt();
   (void)hysteresis_control.step(&drive);
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_FALSE(hysteresis_control.step(&drive));
   EXPECT_EQ(sampling_swap()->count, 0);
   EXPECT_EQ(sampling_swap()->count, 0);
@@ -326,12 +326,12 @@ TEST_F(Hysteresis, PulsesBeginWithoutOldWindows) {
 
 // A run begins with the band of the parameter, the offsets that were found, and nothing of the run before.
 TEST_F(Hysteresis, ARunBeginsAnew) {
-  drive.sliced = 0;
+  inside::sliced() = 0;
   ::hysteresis.sums = {1, 2, 3, 4, 5};
   ::hysteresis.state = 7;
   ::hysteresis.switched = 50;
-  drive.trim.offset_a_q8 = raw(2050.0, 8);
-  drive.trim.offset_b_q8 = raw(2040.0, 8);
+  inside::sensor_trim().offset_a_q8 = raw(2050.0, 8);
+  inside::sensor_trim().offset_b_q8 = raw(2040.0, 8);
   parameters.hysteresis_band = raw(0.3, 20);
   parameters.slice_time = raw(10.0, 16);
   use_parameters();
@@ -352,11 +352,11 @@ TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
       SetUp();
       parameters.current_law = law;
       use_parameters();
-      drive.state = state;
+      inside::state() = state;
       const bool wanted = law == 1 && (state == DRIVE_RUN || state == DRIVE_STOP);
       EXPECT_EQ(hysteresis_control.step(&drive), wanted) << law << state;
       EXPECT_EQ(board.slice_ticks, wanted ? 500 : 0);
-      EXPECT_EQ(drive.sliced, wanted ? 1 : 0);
+      EXPECT_EQ(inside::sliced(), wanted ? 1 : 0);
     }
   }
 }
@@ -373,13 +373,13 @@ TEST_F(Hysteresis, ItsStepsSayWhatTheyTake) {
 
 // Nobody commands a voltage meanwhile.
 TEST_F(Hysteresis, TheCurrentControlRests) {
-  drive.control.closed = true;
-  drive.control.command_q16 = {raw(10.0, 16), raw(-20.0, 16)};
-  drive.control.current.q.integral = 1234567;
+  inside::loop_is_closed() = true;
+  inside::command_dq_q16() = {raw(10.0, 16), raw(-20.0, 16)};
+  inside::current_controller().q.integral = 1234567;
   drive_control_current(&drive);
-  EXPECT_EQ(drive.control.command_q16.d, 0);
-  EXPECT_EQ(drive.control.command_q16.q, 0);
-  EXPECT_EQ(drive.control.current.q.integral, 0);
+  EXPECT_EQ(inside::command_dq_q16().d, 0);
+  EXPECT_EQ(inside::command_dq_q16().q, 0);
+  EXPECT_EQ(inside::current_controller().q.integral, 0);
 }
 
 }  // namespace

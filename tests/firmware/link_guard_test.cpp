@@ -12,15 +12,15 @@ class Guard : public Requests {
  protected:
   void SetUp() override {
     Requests::SetUp();
-    drive.state = DRIVE_READY;
+    inside::state() = DRIVE_READY;
     parameters.link_timeout = 200;
   }
   static constexpr std::int32_t kMine = 0x12345, kOthers = 0x12347;
   Answer tell(std::int32_t number) { return ask(REQUEST_STATUS, little(static_cast<std::uint32_t>(number), 4)); }
   void start(std::int32_t argument) {
     ASSERT_EQ(give(COMMAND_START, argument).status(), OK);
-    drive.request.start = false;
-    drive.state = DRIVE_RUN;
+    inside::request().start = false;
+    inside::state() = DRIVE_RUN;
   }
 };
 
@@ -30,42 +30,42 @@ TEST_F(Guard, SilenceStopsTheDrive) {
     run(1000);
     EXPECT_EQ(tell(kMine).number(22, 1), 5u) << "on, and of who asks";
   }
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
   run(1500);
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
   run(600);
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 2u) << "and it says so";
 }
 
 TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
   ASSERT_EQ(give(COMMAND_START, kMine).status(), OK);
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
-  drive.state = DRIVE_FAULT;
+  inside::state() = DRIVE_FAULT;
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 0u);
-  drive.state = DRIVE_RUN;  // reset and started by somebody else
+  inside::state() = DRIVE_RUN;  // reset and started by somebody else
   run(3000);
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
 }
 
 TEST_F(Guard, ItCanBeToldToCoast) {
   parameters.link_reaction = LINK_REACTION_COAST;
   start(kMine);
   run(2500);
-  EXPECT_TRUE(drive.request.coast);
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_TRUE(inside::request().coast);
+  EXPECT_FALSE(inside::request().stop);
 }
 
 TEST_F(Guard, WithoutItSilenceIsNothing) {
   start(0);
   run(5000);
-  EXPECT_FALSE(drive.request.stop || drive.request.coast);
+  EXPECT_FALSE(inside::request().stop || inside::request().coast);
 }
 
 TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
   start(~1);
   EXPECT_FALSE(comm_watchdog_is_on());
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   ASSERT_EQ(give(COMMAND_COMMISSION, ~1).status(), OK);
   EXPECT_FALSE(comm_watchdog_is_on());
   ASSERT_EQ(give(COMMAND_COMMISSION, kMine).status(), OK);
@@ -80,7 +80,7 @@ TEST_F(Guard, OtherClientsKeepNothingAlive) {
     (void)ask(REQUEST_SIGNALS, {0, 0});
     (void)ask(REQUEST_STATUS);
   }
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
@@ -90,7 +90,7 @@ TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
     run(1000);
     (void)tell(kMine);
   }
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
 }
 
 TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
@@ -98,7 +98,7 @@ TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
     EXPECT_EQ(give(code, 1).status(), RANGE);
     EXPECT_EQ(give(code, 1).text(), "a guarded start needs the client's number: this client is too old");
   }
-  EXPECT_FALSE(drive.request.start || drive.request.commission);
+  EXPECT_FALSE(inside::request().start || inside::request().commission);
   EXPECT_EQ(give(COMMAND_SPEED, 1).status(), OK) << "of which the lowest bit says nothing";
   for (int octets = 1; octets < 4; ++octets) EXPECT_EQ(ask(REQUEST_STATUS, little(1, octets)).status(), LENGTH);
 }
@@ -106,13 +106,13 @@ TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
 // From the last record on, and no earlier; then it has done its work.
 TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
   const auto stops_at = [](std::uint32_t ms) {
-    drive.request.stop = false;
-    drive.time_ms = ms;
+    inside::request().stop = false;
+    inside::time_ms() = ms;
     comm_watchdog_service();
-    return drive.request.stop;
+    return inside::request().stop;
   };
-  drive.state = DRIVE_RUN;
-  drive.time_ms = 1000;
+  inside::state() = DRIVE_RUN;
+  inside::time_ms() = 1000;
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_FALSE(stops_at(1199));
   comm_watchdog_heard(COMM_WATCHDOG_BUS, 7);
@@ -122,11 +122,11 @@ TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
   EXPECT_FALSE(comm_watchdog_is_on() || stops_at(9999));
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_FALSE(comm_watchdog_has_stopped()) << "since the last start";
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_TRUE(stops_at(20000)) << "a start that was not carried out yet is taken back";
   EXPECT_FALSE(comm_watchdog_has_stopped());
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   comm_watchdog_reset();
   EXPECT_FALSE(comm_watchdog_is_on() || stops_at(30000));
 }
@@ -140,17 +140,17 @@ TEST_F(Guard, OnlyThePortThatStartedCounts) {
     (void)request_answer(COMM_WATCHDOG_BUS, request, 6, answer);
     send("\r");  // nor does text
   }
-  EXPECT_TRUE(drive.request.stop);
+  EXPECT_TRUE(inside::request().stop);
 }
 
 TEST_F(Guard, ItEndsWithThePowerStage) {
   start(kMine);
   run(10);
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   run(10);
-  drive.state = DRIVE_RUN;  // started by someone else, without it
+  inside::state() = DRIVE_RUN;  // started by someone else, without it
   run(5000);
-  EXPECT_FALSE(drive.request.stop);
+  EXPECT_FALSE(inside::request().stop);
 }
 
 }  // namespace

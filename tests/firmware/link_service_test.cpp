@@ -82,12 +82,12 @@ TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   const std::uint16_t place = 9;
   const int event = 2 + 2 + 4 + 4 + 1 + 2 + 1;  // zeros, type and counter, time, value, known, CRC, COBS
   const int longest_event = event + 4 * (int(STREAM_SIGNALS) - 1);
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20.d = 0x01010101;
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20().d = 0x01010101;
   stream_setup(COMM_WATCHDOG_SERIAL, 5, &place, 1);
   const auto sends_after = [&](unsigned ms, int missing) {
     const unsigned before = sent();
-    drive.time_ms += ms;
+    inside::time_ms() += ms;
     board.serial_room = static_cast<std::uint16_t>(kLongest + TEXT_LINE_MAX + longest_event - missing);
     link_service();
     return sent() - before;
@@ -111,7 +111,7 @@ TEST_F(LinkService, ACommandBehindAStrayZeroIsCarriedOut) {
 TEST_F(LinkService, AResetForgetsTextThatWaits) {
   send(Octets{0} + Octets{'h', 'e', 'l', 'p', '\r'});
   link_service();
-  drive.time_ms += SPLITTER_REST_MS;
+  inside::time_ms() += SPLITTER_REST_MS;
   link_service();
   link_reset();
   board.serial_out.clear();

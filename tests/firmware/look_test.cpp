@@ -24,13 +24,13 @@ class Look : public StartCaught {
     drive_command_look();
     EXPECT_EQ(drive_look_outcome(), LOOK_RUNNING) << "asked for, and not begun yet";
     period();
-    ASSERT_EQ(drive.state, DRIVE_START);
+    ASSERT_EQ(inside::state(), DRIVE_START);
     EXPECT_EQ(drive_look_outcome(), LOOK_RUNNING);
   }
   static double rpm() { return real(drive_look_rpm(), 16); }
   static void expect_ready() {
-    EXPECT_EQ(drive.state, DRIVE_READY);
-    EXPECT_EQ(drive.fault, FAULT_NONE);
+    EXPECT_EQ(inside::state(), DRIVE_READY);
+    EXPECT_EQ(inside::fault(), FAULT_NONE);
     EXPECT_FALSE(board.gates_on);
     EXPECT_FALSE(drive_is_energised());
   }
@@ -57,7 +57,7 @@ TEST_F(Look, AnEmfBelowThreeVoltsIsAShaftThatStandsOrCrawls) {
 // No fault, as it is for a start: nobody wants to run.
 TEST_F(Look, PairsThatDoNotFitAreNoFault) {
   for (int pulse = 0; pulse < 8; ++pulse) {
-    ASSERT_EQ(drive.state, DRIVE_START) << pulse;
+    ASSERT_EQ(inside::state(), DRIVE_START) << pulse;
     await_pulse();
     see_pulse(0.5, 48.0);
   }
@@ -89,7 +89,7 @@ TEST_F(Look, AnEmergencyStopForbidsIt) {
   board.emergency = true;
   drive_command_look();
   period();
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
   EXPECT_EQ(drive_look_outcome(), LOOK_ENDED);
 }
 
@@ -99,7 +99,7 @@ TEST_F(Look, AStartBehindItIsNotTakenForIt) {
   period();
   drive_command_start();
   period();
-  ASSERT_EQ(drive.state, DRIVE_START);
+  ASSERT_EQ(inside::state(), DRIVE_START);
   EXPECT_EQ(drive_look_outcome(), LOOK_ENDED);
 }
 
@@ -108,7 +108,7 @@ TEST_F(Drive, OneThatRunsDoesNotLook) {
   make_run();
   drive_command_look();
   period();
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_EQ(drive_look_outcome(), LOOK_ENDED);
 }
 
@@ -116,14 +116,14 @@ class LookAsked : public Requests {
  protected:
   void SetUp() override {
     Requests::SetUp();
-    drive.loading = false;
-    drive.state = DRIVE_READY;
+    inside::loading() = false;
+    inside::state() = DRIVE_READY;
     run(10);
   }
   static void show(look_outcome_t outcome, int rpm) {
-    drive.request.look = false;
-    drive.look.outcome = outcome;
-    drive.look.rpm_q16 = rpm * 65536;
+    inside::request().look = false;
+    inside::look().outcome = outcome;
+    inside::look().rpm_q16 = rpm * 65536;
   }
 };
 
@@ -135,7 +135,7 @@ TEST_F(LookAsked, TheConsoleWaitsForWhatItShows) {
   } cases[] = {{LOOK_TURNS, "turns", "300 rpm"}, {LOOK_STANDS, "stands", "300 rpm"}, {LOOK_UNCLEAR, "", "300 rpm"}};
   for (const auto& c : cases) {
     EXPECT_EQ(command("look", 300), "") << "the pulses are under way";
-    ASSERT_TRUE(drive.request.look);
+    ASSERT_TRUE(inside::request().look);
     show(c.outcome, 300);
     text.clear();
     run(300);
@@ -155,10 +155,10 @@ TEST_F(LookAsked, OneThatWasBrokenOffHasNoSpeed) {
 
 TEST_F(LookAsked, IsRefusedWhereAStartIs) {
   EXPECT_NE(command("look twice"), "");
-  EXPECT_FALSE(drive.request.look) << "it has no arguments";
-  drive.state = DRIVE_RUN;
+  EXPECT_FALSE(inside::request().look) << "it has no arguments";
+  inside::state() = DRIVE_RUN;
   EXPECT_NE(command("look").find("busy"), std::string::npos);
-  EXPECT_FALSE(drive.request.look);
+  EXPECT_FALSE(inside::request().look);
 }
 
 TEST_F(LookAsked, AMachineReadsTheSame) {

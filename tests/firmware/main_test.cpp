@@ -78,7 +78,7 @@ TEST_F(Main, EverythingIsSetUpBeforeTheFirstSleep) {
   EXPECT_EQ(board.baud, 115200u);
   EXPECT_EQ(board.encoder_counts, 4096u);
   EXPECT_EQ(board.dead_band, drive_dead_band_ticks());
-  EXPECT_TRUE(drive.config_valid);
+  EXPECT_TRUE(inside::config_valid());
   EXPECT_FALSE(board.gates_on);
   EXPECT_EQ(selftest.ground, 7) << "the self-test has looked";
 }
@@ -86,7 +86,7 @@ TEST_F(Main, EverythingIsSetUpBeforeTheFirstSleep) {
 TEST_F(Main, ADeadBandThatTheHardwareCannotMakeIsNoConfiguration) {
   board.dead_band_fits = false;
   run_to_sleep_10();
-  EXPECT_FALSE(drive.config_valid);
+  EXPECT_FALSE(inside::config_valid());
 }
 
 // The converter comes up meanwhile. What was saved is in force when the drive leaves BOOT, and not before.
@@ -100,15 +100,15 @@ TEST_F(Main, WhatWasSavedIsInForceWhenLoadingEnds) {
     nvm.latency = latency;
     board.adc_looks = 5;
     run([](int n) {
-      if (drive.loading) {
+      if (inside::loading()) {
         EXPECT_EQ(board.baud, 115200u) << "until it is known";
       } else {
         EXPECT_EQ(parameters.speed_ramp, raw(1234.0, 8));
-        EXPECT_FALSE(drive.request.reload) << "and the configuration that goes with it";
+        EXPECT_FALSE(inside::request().reload) << "and the configuration that goes with it";
       }
-      return n < 20000 && drive.loading;
+      return n < 20000 && inside::loading();
     });
-    EXPECT_FALSE(drive.loading);
+    EXPECT_FALSE(inside::loading());
     EXPECT_EQ(board.baud, 230400u);
     EXPECT_EQ(board.baud_calls, 2);
   }
@@ -116,8 +116,8 @@ TEST_F(Main, WhatWasSavedIsInForceWhenLoadingEnds) {
 
 // The usual rate is not set up twice, and no record is lost by it.
 TEST_F(Main, TheUsualRateIsLeftAsItIs) {
-  run([](int n) { return n < 20000 && drive.loading; });
-  EXPECT_FALSE(drive.loading);
+  run([](int n) { return n < 20000 && inside::loading(); });
+  EXPECT_FALSE(inside::loading());
   EXPECT_EQ(board.baud_calls, 1);
 }
 
@@ -149,14 +149,14 @@ TEST_F(Main, TheBackgroundLeavesADriveInTheLoopAlone) {
     enters = in_the_loop;
     left = 10;
     run([](int) {
-      if (drive.loading || --left > 5) return true;
+      if (inside::loading() || --left > 5) return true;
       if (left == 5 && enters) {
         EXPECT_EQ(hil_enter(), HIL_OK);
       }
       if (left == 5) drive_parameters_changed();
       return left > 0;
     });
-    EXPECT_EQ(drive.request.reload, in_the_loop);
+    EXPECT_EQ(inside::request().reload, in_the_loop);
   }
 }
 
@@ -166,12 +166,12 @@ TEST_F(Main, WithAHostInTheLoopTheBoardsOwnInterruptsFeedTheWatchdog) {
   sleep = 0;
   run([](int) {
     board.cycles += HAL_TIME_CYCLES_PER_US * 2000u;
-    if (drive.loading) return true;
+    if (inside::loading()) return true;
     if (++sleep == 1) {
       EXPECT_EQ(hil_enter(), HIL_OK);
     }
     if (sleep == 2) before = board.watchdog_services;
-    if (sleep > 2 && sleep < 12) drive.heartbeat++;
+    if (sleep > 2 && sleep < 12) inside::heartbeat()++;
     if (sleep == 12) {
       EXPECT_EQ(board.watchdog_services, before);
     }

@@ -27,50 +27,50 @@ class Modulation : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    drive.state = DRIVE_RUN;
+    inside::state() = DRIVE_RUN;
     polarity_watch.open = false;
-    drive.control.closed = true;
-    drive.samples.link_q16 = raw(300.0, 16);
-    drive.position.selected = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
-    drive.control.command_q16 = raw_dq({20.0, 35.0}, 16);
-    drive.control.measured_q20 = raw_dq({1.5, -4.0}, 20);
-    drive.limits = 0;
+    inside::loop_is_closed() = true;
+    inside::link_q16() = raw(300.0, 16);
+    inside::selected() = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
+    inside::command_dq_q16() = raw_dq({20.0, 35.0}, 16);
+    inside::current_dq_q20() = raw_dq({1.5, -4.0}, 20);
+    inside::limits() = 0;
   }
   /// The pulses of this excitation, and whether they are those that the drive makes.
   static bool modulates_as(excitation_t excitation) {
-    modulator_t state = drive.modulation.state;
+    modulator_t state = inside::modulator();
     drive_modulate(&drive);
     svpwm_pulses_t wanted = {};
-    (void)modulator_step(&state, &drive.config.modulator, excitation, drive.modulation.command_q16,
-                         drive.samples.link_q16, &wanted);
-    return std::memcmp(wanted.at, drive.modulation.next.pulses.at, sizeof wanted.at) == 0;
+    (void)modulator_step(&state, &inside::config().modulator, excitation, inside::modulated_q16(), inside::link_q16(),
+                         &wanted);
+    return std::memcmp(wanted.at, inside::next_pattern().pulses.at, sizeof wanted.at) == 0;
   }
 };
 
 // The voltage acts in the next period, whose middle is one and a half periods on; the devices' drops are added.
 TEST_F(Modulation, TheVoltageIsTurnedToWhereTheRotorWillBe) {
   for (const double speed : {0.12, -0.5}) {
-    drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
+    inside::selected().speed_bpp = raw(speed / kTurn, 32);
     drive_modulate(&drive);
     const double angle = 0.3 + 1.5 * speed;
     const Vector current = Vector{1.5, -4.0}.turned(angle);
-    const Vector drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current, 20)), 16);
+    const Vector drop = real(dead_time_drop_q16(&inside::config().dead_time, raw_ab(current, 20)), 16);
     EXPECT_GT(drop.length(), 0.5);
     const Vector wanted = Vector{20.0, 35.0}.turned(angle) + drop;
-    EXPECT_NEAR(real(drive.modulation.command_q16.alpha, 16), wanted.x, 1e-3);
-    EXPECT_NEAR(real(drive.modulation.command_q16.beta, 16), wanted.y, 1e-3);
+    EXPECT_NEAR(real(inside::modulated_q16().alpha, 16), wanted.x, 1e-3);
+    EXPECT_NEAR(real(inside::modulated_q16().beta, 16), wanted.y, 1e-3);
     // and that is what the motor gets
-    const Vector mean = real(svpwm_mean_q16(&drive.modulation.next.pulses, drive.samples.link_q16), 16);
+    const Vector mean = real(svpwm_mean_q16(&inside::next_pattern().pulses, inside::link_q16()), 16);
     EXPECT_NEAR((mean - wanted).length(), 0.0, 0.1);
   }
 }
 
 TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   drive_modulate(&drive);
-  const svpwm_pattern_t& p = drive.modulation.next;
+  const svpwm_pattern_t& p = inside::next_pattern();
   const hal_pwm_frame_t& f = board.frame;
   ASSERT_EQ(p.window_count, 2);
-  const dead_time_config_t& c = drive.config.dead_time;
+  const dead_time_config_t& c = inside::config().dead_time;
   // As far as the current at the edge says: by the blocked or the released time, never more.
   int blocked = 0, released = 0;
   for (std::uint16_t leg = 0; leg < 3; ++leg) {
@@ -86,10 +86,10 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   svpwm_pattern_t again = p;
   svpwm_pulses_t command = {};
   const double angle = 0.3 + 1.5 * 0.12;
-  const machine_model_t& m = drive.model;
+  const machine_model_t& m = inside::model();
   const svpwm_carried_t carried = {raw_ab(Vector{1.5, -4.0}.turned(angle), 20), (m.yd_q30 + m.yq_q30) / 2,
-                                   drive.samples.link_q16};
-  svpwm_compensate_edges(&c, &drive.config.modulator.sampling, &carried, &again, &command);
+                                   inside::link_q16()};
+  svpwm_compensate_edges(&c, &inside::config().modulator.sampling, &carried, &again, &command);
   for (std::uint16_t leg = 0; leg < 3; ++leg) {
     EXPECT_NEAR(f.rise_tick[leg], command.at[leg], 1) << leg;
     EXPECT_NEAR(f.fall_tick[leg], command.at[3 + leg], 1) << leg;
@@ -105,8 +105,8 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
 TEST_F(Modulation, ItsStepSaysWhatItTakes) {
   for (const bool shorted : {false, true}) {
     board.profile.clear();
-    drive.state = DRIVE_START;
-    drive.flags.shorted = shorted;
+    inside::state() = DRIVE_START;
+    inside::flags().shorted = shorted;
     drive_modulate(&drive);
     EXPECT_EQ(spent(), CYCLES_MODULATE);
   }
@@ -115,38 +115,38 @@ TEST_F(Modulation, ItsStepSaysWhatItTakes) {
 // What was read belongs to the period before; a frame that came too late leaves the one that runs, and is counted.
 TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
   drive_modulate(&drive);
-  drive.position.selected.angle_bam = bam(2.0);
-  const svpwm_pattern_t first = drive.modulation.running;
-  EXPECT_EQ(std::memcmp(&first, &drive.modulation.next, sizeof first), 0);
+  inside::selected().angle_bam = bam(2.0);
+  const svpwm_pattern_t first = inside::running_pattern();
+  EXPECT_EQ(std::memcmp(&first, &inside::next_pattern(), sizeof first), 0);
   board.late = true;
   for (int n = 1; n < 4; ++n) {
     drive_modulate(&drive);
-    EXPECT_EQ(drive.supervision.overrun, n);
-    EXPECT_EQ(drive.limits & LIMIT_OVERRUN, LIMIT_OVERRUN);
-    EXPECT_EQ(std::memcmp(&first, &drive.modulation.running, sizeof first), 0);
-    EXPECT_EQ(std::memcmp(&first, &drive.modulation.sampled, sizeof first), 0);
+    EXPECT_EQ(inside::overruns(), n);
+    EXPECT_EQ(inside::limits() & LIMIT_OVERRUN, LIMIT_OVERRUN);
+    EXPECT_EQ(std::memcmp(&first, &inside::running_pattern(), sizeof first), 0);
+    EXPECT_EQ(std::memcmp(&first, &inside::sampled_pattern(), sizeof first), 0);
   }
   board.late = false;
-  drive.limits = 0;
+  inside::limits() = 0;
   drive_modulate(&drive);
-  EXPECT_EQ(drive.supervision.overrun, 0) << "in a row";
-  EXPECT_EQ(drive.limits & LIMIT_OVERRUN, 0);
-  EXPECT_EQ(std::memcmp(&first, &drive.modulation.sampled, sizeof first), 0);
-  EXPECT_NE(std::memcmp(&first, &drive.modulation.running, sizeof first), 0);
+  EXPECT_EQ(inside::overruns(), 0) << "in a row";
+  EXPECT_EQ(inside::limits() & LIMIT_OVERRUN, 0);
+  EXPECT_EQ(std::memcmp(&first, &inside::sampled_pattern(), sizeof first), 0);
+  EXPECT_NE(std::memcmp(&first, &inside::running_pattern(), sizeof first), 0);
 }
 
 // The excess that the link cannot give comes off the integrators, along the axes in which it was asked.
 TEST_F(Modulation, AVoltageThatTheLinkHasNotComesOffTheIntegrators) {
   for (const bool closed : {true, false}) {
     SetUp();
-    drive.control.closed = closed;
-    drive.control.measured_q20 = {0, 0};
-    drive.control.command_q16 = raw_dq({-150.0, 250.0}, 16);
-    current_controller_t& c = drive.control.current;
+    inside::loop_is_closed() = closed;
+    inside::current_dq_q20() = {0, 0};
+    inside::command_dq_q16() = raw_dq({-150.0, 250.0}, 16);
+    current_controller_t& c = inside::current_controller();
     c.d.integral = raw(-150.0, 20);
     c.q.integral = raw(250.0, 20);
     drive_modulate(&drive);
-    EXPECT_EQ(drive.limits & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
+    EXPECT_EQ(inside::limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
     const double d = real(c.d.integral, 20) + 150.0, q = real(c.q.integral, 20) - 250.0;
     if (closed) {
       EXPECT_GT(d, 1.0);
@@ -167,10 +167,10 @@ TEST_F(Modulation, TheExcitationIsTheOneAskedForOrTheSources) {
         SetUp();
         use_source(source);
         // the paper's own: long zero vectors up to three quarters of the blend's begin
-        const std::int32_t enter = drive.config.blend.low_bpp / 4 * 3;
-        drive.position.selected.speed_bpp = fast ? -enter : 1 - enter;
-        drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
-        drive.position.blend.share_q15 = 0;
+        const std::int32_t enter = inside::config().blend.low_bpp / 4 * 3;
+        inside::selected().speed_bpp = fast ? -enter : 1 - enter;
+        inside::blend().region = alone ? BLEND_HIGH : BLEND_BOTH;
+        inside::blend().share_q15 = 0;
         excitation_t wanted = EXCITATION_ALTERNATING;
         if (source == POSITION_PAPER) wanted = fast ? EXCITATION_EXTENDED : EXCITATION_LONG_ZERO;
         if (source >= POSITION_FLUX_CONV && alone) wanted = EXCITATION_CENTRED;
@@ -186,8 +186,8 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
       SetUp();
       parameters.excitation = asked;
       use_parameters();
-      drive.state = state;
-      drive.flags.shorted = false;
+      inside::state() = state;
+      inside::flags().shorted = false;
       const bool own = state == DRIVE_START || state == DRIVE_COMMISSION;
       EXPECT_TRUE(modulates_as(own ? EXCITATION_ALTERNATING : static_cast<excitation_t>(asked))) << asked << state;
     }
@@ -196,10 +196,10 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
 
 // Whatever voltage is asked: all lower devices on for the whole period, which three windows share.
 TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
-  drive.flags.shorted = true;
+  inside::flags().shorted = true;
   drive_modulate(&drive);
-  const sampling_config_t& c = drive.config.modulator.sampling;
-  const svpwm_pattern_t& p = drive.modulation.next;
+  const sampling_config_t& c = inside::config().modulator.sampling;
+  const svpwm_pattern_t& p = inside::next_pattern();
   ASSERT_EQ(p.window_count, 3);
   int at = 0;
   for (const svpwm_window_t& w : p.windows) {
@@ -212,28 +212,28 @@ TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
   for (const std::int16_t edge : p.pulses.at) {
     EXPECT_LT(edge, 0) << "a leg is never high";
   }
-  EXPECT_EQ(std::memcmp(&p, &drive.modulation.running, sizeof p), 0);
+  EXPECT_EQ(std::memcmp(&p, &inside::running_pattern(), sizeof p), 0);
   for (int leg = 0; leg < 3; ++leg) EXPECT_EQ(board.frame.rise_tick[leg], static_cast<std::uint16_t>(p.pulses.at[leg]));
   EXPECT_EQ(board.frame.burst_start_tick[0], p.windows[0].start);
 }
 
 TEST_F(Modulation, OnlyAStartShortsTheMachine) {
-  drive.flags.shorted = true;
+  inside::flags().shorted = true;
   drive_enter(&drive, DRIVE_RUN);
   drive_modulate(&drive);
-  EXPECT_GE(*std::max_element(std::begin(drive.modulation.next.pulses.at), std::end(drive.modulation.next.pulses.at)),
+  EXPECT_GE(*std::max_element(std::begin(inside::next_pattern().pulses.at), std::end(inside::next_pattern().pulses.at)),
             0);
 }
 
 // An open loop commands nothing, and begins anew.
 TEST_F(Modulation, AnOpenLoopCommandsNoVoltageAndForgets) {
-  drive.control.closed = false;
-  drive.control.current.d.integral = drive.control.current.q.integral = 99999;
+  inside::loop_is_closed() = false;
+  inside::current_controller().d.integral = inside::current_controller().q.integral = 99999;
   drive_control_current(&drive);
-  EXPECT_EQ(drive.control.command_q16.d, 0);
-  EXPECT_EQ(drive.control.command_q16.q, 0);
-  EXPECT_EQ(drive.control.current.d.integral, 0);
-  EXPECT_EQ(drive.control.current.q.integral, 0);
+  EXPECT_EQ(inside::command_dq_q16().d, 0);
+  EXPECT_EQ(inside::command_dq_q16().q, 0);
+  EXPECT_EQ(inside::current_controller().d.integral, 0);
+  EXPECT_EQ(inside::current_controller().q.integral, 0);
 }
 
 TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
@@ -242,17 +242,17 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
       SetUp();
       parameters.current_divider = divider;
       use_parameters();
-      drive.schedule.period = period;
-      drive.control.reference_q20 = raw_dq({2.0, 5.0}, 20);
-      current_controller_t copy = drive.control.current;
-      const dq_t before = drive.control.command_q16;
+      inside::schedule().period = period;
+      inside::reference_dq_q20() = raw_dq({2.0, 5.0}, 20);
+      current_controller_t copy = inside::current_controller();
+      const dq_t before = inside::command_dq_q16();
       const dq_t wanted =
-          current_controller_step(&copy, &drive.config.current, &drive.model, drive.control.reference_q20,
-                                  drive.control.measured_q20, drive.position.selected.speed_bpp);
+          current_controller_step(&copy, &inside::config().current, &inside::model(), inside::reference_dq_q20(),
+                                  inside::current_dq_q20(), inside::selected().speed_bpp);
       drive_control_current(&drive);
       const bool steps = divider == 1 || period % 2 == 0;
-      EXPECT_EQ(drive.control.command_q16.d, steps ? wanted.d : before.d) << divider << period;
-      EXPECT_EQ(drive.control.command_q16.q, steps ? wanted.q : before.q) << divider << period;
+      EXPECT_EQ(inside::command_dq_q16().d, steps ? wanted.d : before.d) << divider << period;
+      EXPECT_EQ(inside::command_dq_q16().q, steps ? wanted.q : before.q) << divider << period;
     }
   }
 }
@@ -260,11 +260,11 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
 // A change of the reference that is known beforehand is fed along q, within what a command may be.
 TEST_F(Modulation, WhatIsFedComesOnTopAlongQ) {
   const auto command = [](std::int32_t feed_forward_q16) {
-    drive.schedule.period = 0;
-    current_controller_reset(&drive.control.current);
-    drive.control.feed_forward_q16 = feed_forward_q16;
+    inside::schedule().period = 0;
+    current_controller_reset(&inside::current_controller());
+    inside::feed_forward_q16() = feed_forward_q16;
     drive_control_current(&drive);
-    return drive.control.command_q16;
+    return inside::command_dq_q16();
   };
   const dq_t without = command(0);
   for (const double volts : {12.0, -7.0}) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sim_host/bench/texts.hpp"
+#include "tests/firmware/inside.hpp"
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
@@ -93,11 +94,11 @@ TEST_F(Parameters, SetAndGet) {
   for (const Row& r : kRows) {
     const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows));
     for (const std::int32_t raw : {info->minimum, info->maximum, info->minimum + 1}) {
-      drive.request.reload = false;
+      stillspin::test::inside::request().reload = false;
       ASSERT_EQ(parameter_set(info->id, raw), SET_OK) << r.name;
       EXPECT_EQ(parameter_get(info->id), raw) << r.name;
       EXPECT_EQ(*r.value, raw) << r.name;
-      EXPECT_TRUE(drive.request.reload) << r.name;
+      EXPECT_TRUE(stillspin::test::inside::request().reload) << r.name;
     }
   }
   parameters_reset();
@@ -109,10 +110,10 @@ TEST_F(Parameters, ARefusedValueChangesNothing) {
     const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows));
     for (const std::int32_t raw : {info->minimum - 1, info->maximum + 1, std::numeric_limits<std::int32_t>::min(),
                                    std::numeric_limits<std::int32_t>::max()}) {
-      drive.request.reload = false;
+      stillspin::test::inside::request().reload = false;
       EXPECT_EQ(parameter_set(info->id, raw), SET_RANGE) << r.name;
       EXPECT_EQ(parameter_get(info->id), info->initial) << r.name;
-      EXPECT_FALSE(drive.request.reload) << r.name;
+      EXPECT_FALSE(stillspin::test::inside::request().reload) << r.name;
     }
   }
 }
@@ -125,7 +126,7 @@ TEST_F(Parameters, UnknownNumbers) {
     ASSERT_EQ(parameter_set(static_cast<std::uint16_t>(id), 1), SET_UNKNOWN) << id;
     ASSERT_EQ(parameter_get(static_cast<std::uint16_t>(id)), 0) << id;
   }
-  EXPECT_FALSE(drive.request.reload);
+  EXPECT_FALSE(stillspin::test::inside::request().reload);
   EXPECT_EQ(parameter_info(parameter_count()), nullptr);
   EXPECT_EQ(parameter_info(0xFFFF), nullptr);
 }
@@ -136,7 +137,7 @@ TEST_F(Parameters, RefusedWhileEnergised) {
                                DRIVE_RUN,  DRIVE_STOP,      DRIVE_FAULT};
   for (const drive_state_t state : all) {
     const bool energised = state == DRIVE_START || state == DRIVE_RUN || state == DRIVE_STOP;
-    drive.state = state;
+    stillspin::test::inside::state() = state;
     EXPECT_EQ(drive_is_energised(), energised) << state;
     for (const Row& r : kRows) {
       const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows));

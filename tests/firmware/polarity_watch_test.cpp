@@ -24,22 +24,22 @@ class PolarityWatch : public Drive {
     parameters.polarity_check = 1;
     use_parameters();
     make_ready();
-    drive.state = DRIVE_RUN;
-    drive.samples.count = 2;
-    drive.control.measured_q20 = {0, 0};
+    inside::state() = DRIVE_RUN;
+    inside::window_count() = 2;
+    inside::current_dq_q20() = {0, 0};
     polarity_watch_begin(bam(0.5), 0);
     polarity_watch.axis_then_bam = bam(0.5);
   }
   static void source(std::int32_t source) {
     use_source(source);
-    drive.position.avv.regression.information = 1000000;
-    drive.position.avv.error_bam = 0;
-    drive.position.observer.regression = {};
-    drive.position.observer.regression.information = 1000000;
-    drive.position.observer.regression.spread_q8 = raw(40000.0, 8);
+    inside::avv().regression.information = 1000000;
+    inside::avv().error_bam = 0;
+    inside::observer().regression = {};
+    inside::observer().regression.information = 1000000;
+    inside::observer().regression.spread_q8 = raw(40000.0, 8);
   }
   static bool step(schedule_slot_t turn) {
-    drive.schedule.slot = turn;
+    inside::schedule().slot = turn;
     return polarity_watch_step(&drive);
   }
   static double axis() { return rad(polarity_watch.axis.angle_bam); }
@@ -52,8 +52,8 @@ TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
     for (const double off : {0.1, -0.1, 1.4, -1.4}) {
       SetUp();
       source(POSITION_AVV);
-      drive.position.avv.observer.angle_bam = bam(0.5 + 0.75 * off + half);
-      drive.position.avv.error_bam = static_cast<std::int32_t>(bam(0.25 * off));
+      inside::avv().observer.angle_bam = bam(0.5 + 0.75 * off + half);
+      inside::avv().error_bam = static_cast<std::int32_t>(bam(0.25 * off));
       for (int n = 0; n < 4; ++n) EXPECT_FALSE(step(kNone));
       EXPECT_FALSE(step(kFollow));
       const double all = std::clamp(5.0 * off, -kPi, kPi);  // an angle is no more than half a turn
@@ -71,7 +71,7 @@ TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
   EXPECT_FALSE(step(kRegress));
   const double then = 0.5 + 200.0 * kPeriod;
   EXPECT_NEAR(rad(polarity_watch.axis_then_bam), then, 1e-5);
-  drive.position.observer.regressed_bam = bam(then + 0.2);
+  inside::observer().regressed_bam = bam(then + 0.2);
   for (int n = 0; n < 2; ++n) EXPECT_FALSE(step(kNone));
   EXPECT_FALSE(step(kFollow));
   EXPECT_NEAR(axis(), 0.5 + 4 * 200.0 * kPeriod + 3.0 * 120.0 * kPeriod * 0.2 * 4.0, 1e-4);
@@ -80,7 +80,7 @@ TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
 // Both axes of what was commanded are gathered until the back-EMF is looked at, and then it begins anew.
 TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   source(POSITION_OBSERVER);
-  drive.control.command_q16 = {raw(2.0, 16), raw(-5.0, 16)};
+  inside::command_dq_q16() = {raw(2.0, 16), raw(-5.0, 16)};
   for (int n = 0; n < 3; ++n) EXPECT_FALSE(step(kNone));
   EXPECT_EQ(polarity_watch.voltage_q12.d, 3 * raw(2.0, 12));
   EXPECT_EQ(polarity_watch.voltage_q12.q, 3 * raw(-5.0, 12));
@@ -96,15 +96,15 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
   for (const int why : {0, 1, 2, 3}) {
     SetUp();
     source(POSITION_AVV);
-    drive.position.selected = {bam(-1.0), bpp(70.0), 0, 32767};
-    drive.position.avv.observer.angle_bam = bam(0.5);
+    inside::selected() = {bam(-1.0), bpp(70.0), 0, 32767};
+    inside::avv().observer.angle_bam = bam(0.5);
     const double limit = real(parameters.current_limit, 20);
-    if (why == 1) drive.control.measured_q20.q = raw(0.51 * limit, 20);
-    if (why == 2) drive.control.measured_q20.q = raw(-0.51 * limit, 20);
-    if (why == 3) drive.position.avv.regression.information = 0;
-    if (why == 0) drive.control.measured_q20.q = raw(0.49 * limit, 20);
+    if (why == 1) inside::current_dq_q20().q = raw(0.51 * limit, 20);
+    if (why == 2) inside::current_dq_q20().q = raw(-0.51 * limit, 20);
+    if (why == 3) inside::avv().regression.information = 0;
+    if (why == 0) inside::current_dq_q20().q = raw(0.49 * limit, 20);
     polarity_watch.sign.clear = polarity_watch.sign.against = 9;
-    drive.control.command_q16 = {raw(1.0, 16), raw(2.0, 16)};
+    inside::command_dq_q16() = {raw(1.0, 16), raw(2.0, 16)};
     EXPECT_FALSE(step(kNone));
     EXPECT_FALSE(step(kFollow));
     const bool blind = why != 0;
@@ -114,7 +114,7 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     EXPECT_EQ(polarity_watch.periods, blind ? 0 : 2);
     EXPECT_EQ(polarity_watch.voltage_q12.q, blind ? 0 : raw(4.0, 12));
     if (blind) {
-      EXPECT_EQ(polarity_watch.sign.last_iq_q20, drive.control.measured_q20.q);
+      EXPECT_EQ(polarity_watch.sign.last_iq_q20, inside::current_dq_q20().q);
       EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(70.0));
     }
   }
@@ -123,9 +123,9 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
 // It sleeps but in RUN, until its question is answered, and where nobody asks it.
 TEST_F(PolarityWatch, IsAwakeInRunUntilItKnows) {
   EXPECT_TRUE(polarity_watch_is_awake(&drive));
-  drive.state = DRIVE_STOP;
+  inside::state() = DRIVE_STOP;
   EXPECT_FALSE(polarity_watch_is_awake(&drive));
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   parameters.polarity_check = 0;
   use_parameters();
   polarity_watch_begin(0, 0);
@@ -174,11 +174,11 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
       const std::int32_t speed = bpp_of(600);
       polarity_watch.axis.speed_bpp = speed;
       const Vector command = Vector{0.0, emf}.turned(-off);
-      drive.control.command_q16 = raw_dq(command, 16);
+      inside::command_dq_q16() = raw_dq(command, 16);
       bool reversed = false;
       int n = 0;
       for (; n < 600 && polarity_watch.open; ++n) {
-        drive.position.selected.angle_bam =
+        inside::selected().angle_bam =
             polarity_watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
         reversed = step(n % 5 == 4 ? SLOT_VOLTAGE : kNone);
       }
@@ -192,7 +192,7 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
 // The sums of voltages that nobody looks at stay what they are.
 TEST_F(PolarityWatch, SumsThatAreNotLookedAtEnd) {
   source(POSITION_AVV);
-  drive.control.command_q16 = {raw(4000.0, 16), raw(-4000.0, 16)};
+  inside::command_dq_q16() = {raw(4000.0, 16), raw(-4000.0, 16)};
   for (int n = 0; n < 20000; ++n) EXPECT_FALSE(step(kNone));
   EXPECT_GT(polarity_watch.voltage_q12.d, 1000000000);
   EXPECT_LT(polarity_watch.voltage_q12.q, -1000000000);

@@ -24,31 +24,31 @@ class Position : public Drive {
     SetUp();
     make_ready();
     use_source(source);
-    ASSERT_TRUE(drive_config_load(&drive.config));
-    drive.state = DRIVE_RUN;
-    drive.schedule.turning = true;
+    ASSERT_TRUE(drive_config_load(&inside::config()));
+    inside::state() = DRIVE_RUN;
+    inside::schedule().turning = true;
     polarity_watch.open = false;
     position_preset(&drive, kHere, 0);
     see(2);
   }
   /// So many windows, the first of them under a zero vector, of a machine at rest without current.
   static void see(std::uint16_t count) {
-    drive.samples.count = count;
-    drive.samples.ripple_q16 = {0, 0};
+    inside::window_count() = count;
+    inside::ripple_q16() = {0, 0};
     for (std::uint16_t k = 0; k < count; ++k) {
       estimator_window_t w = {};
       w.middle_tick = static_cast<std::int16_t>(2500 + 5000 * k);
       w.span_ticks = 3000;
       w.zero_vector = k == 0;
-      drive.samples.windows[k] = w;
+      inside::windows()[k] = w;
     }
   }
   /// Two windows of opposite voltages along phase a, as the model has a machine that stands at this angle.
   static void see_machine(std::uint32_t angle_bam) {
     see(2);
-    const machine_model_t& m = drive.model;
+    const machine_model_t& m = inside::model();
     for (int k = 0; k < 2; ++k) {
-      estimator_window_t& w = drive.samples.windows[k];
+      estimator_window_t& w = inside::windows()[k];
       const Vector v = {k == 0 ? 180.0 : -180.0, 0.0};
       const Vector own = v.turned(-rad(angle_bam));
       const Vector slope = {real(m.yd_q30, 30) * own.x, real(m.yq_q30, 30) * own.y};
@@ -58,8 +58,8 @@ class Position : public Drive {
     }
   }
   static void blend(blend_region_t region, double share_of_low) {
-    drive.position.blend.region = region;
-    drive.position.blend.share_q15 = static_cast<std::int32_t>(share_of_low * 32767.0);
+    inside::blend().region = region;
+    inside::blend().share_q15 = static_cast<std::int32_t>(share_of_low * 32767.0);
   }
 };
 
@@ -68,10 +68,10 @@ class Sources : public Position {
  protected:
   /// In a period of this turn.
   static void estimate(schedule_slot_t turn = SCHEDULE_SLOTS) {
-    drive.schedule.slot = turn;
+    inside::schedule().slot = turn;
     drive_estimate(&drive);
   }
-  static dq_t measured() { return drive.control.measured_q20; }
+  static dq_t measured() { return inside::current_dq_q20(); }
 };
 
 }  // namespace stillspin::test

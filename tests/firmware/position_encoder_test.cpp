@@ -11,13 +11,13 @@ using namespace stillspin::test;
 // The spin of a commissioning runs on the observer, whatever the source.
 TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
   run_with(POSITION_ENCODER);
-  drive.state = DRIVE_COMMISSION;
-  drive.flags.spins = true;
-  drive.position.observer.angle_bam = kThere;
-  drive.position.encoder.angle_bam = kHere;
+  inside::state() = DRIVE_COMMISSION;
+  inside::flags().spins = true;
+  inside::observer().angle_bam = kThere;
+  inside::encoder_observer().angle_bam = kHere;
   estimate();
-  EXPECT_EQ(drive.position.selected.angle_bam, drive.position.observer.angle_bam);
-  EXPECT_NEAR(rad(drive.position.selected.angle_bam - kThere), 0.0, 0.01);
+  EXPECT_EQ(inside::selected().angle_bam, inside::observer().angle_bam);
+  EXPECT_NEAR(rad(inside::selected().angle_bam - kThere), 0.0, 0.01);
 }
 
 // Angle from the count and what was found at the start, speed by a tracking observer; the trim turns the frame alone.
@@ -25,23 +25,23 @@ TEST_F(Sources, TheEncoderHasAngleAndSpeed) {
   run_with(POSITION_ENCODER);
   board.encoder = 3000;
   position_align_encoder(&drive, kHere, bpp(80.0));
-  EXPECT_EQ(drive.position.encoder.angle_bam, kHere);
-  EXPECT_EQ(drive.position.encoder.speed_bpp, bpp(80.0));
+  EXPECT_EQ(inside::encoder_observer().angle_bam, kHere);
+  EXPECT_EQ(inside::encoder_observer().speed_bpp, bpp(80.0));
   see(0);
   for (int n = 1; n <= 3000; ++n) {
     board.encoder = static_cast<std::uint32_t>(3000 + 3 * n) % 4096u;  // 12 electrical steps of a period
     estimate();
   }
   const double speed = 3.0 / 4096.0 * 4.0 * kTurn / kPeriod;
-  EXPECT_NEAR(rad_per_s(drive.position.selected.speed_bpp), speed, 1e-3 * speed);
+  EXPECT_NEAR(rad_per_s(inside::selected().speed_bpp), speed, 1e-3 * speed);
   const double angle = rad(kHere) + std::fmod(9000.0, 1024.0) / 1024.0 * kTurn;
-  EXPECT_NEAR(wrapped(rad(drive.position.selected.angle_bam) - angle), 0.0, 0.01);
-  EXPECT_EQ(drive.position.selected.quality_q15, 32767);
-  drive.config.encoder_trim_bam = bam(0.5);
+  EXPECT_NEAR(wrapped(rad(inside::selected().angle_bam) - angle), 0.0, 0.01);
+  EXPECT_EQ(inside::selected().quality_q15, 32767);
+  inside::config().encoder_trim_bam = bam(0.5);
   estimate();
-  EXPECT_EQ(drive.position.low.angle_bam, drive.position.encoder.angle_bam);
-  EXPECT_EQ(drive.position.selected.angle_bam, drive.position.encoder.angle_bam + bam(0.5));
-  EXPECT_EQ(drive.position.selected.speed_bpp, drive.position.encoder.speed_bpp);
+  EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::encoder_observer().angle_bam);
+  EXPECT_EQ(inside::selected().angle_bam, inside::encoder_observer().angle_bam + bam(0.5));
+  EXPECT_EQ(inside::selected().speed_bpp, inside::encoder_observer().speed_bpp);
 }
 
 // An angle that is off is taken up within the long windows' bandwidth, three poles at once.
@@ -49,27 +49,27 @@ TEST_F(Sources, TheEncodersObserverHasTheLongWindowsBandwidth) {
   run_with(POSITION_ENCODER);
   see(0);
   position_align_encoder(&drive, kHere, 0);
-  drive.position.encoder.angle_bam = kHere - bam(0.01);
+  inside::encoder_observer().angle_bam = kHere - bam(0.01);
   estimate();
-  EXPECT_NEAR(rad(drive.position.encoder.angle_bam - kHere), -0.01 * (1.0 - 3.0 * 200.0 * kPeriod), 1e-6);
+  EXPECT_NEAR(rad(inside::encoder_observer().angle_bam - kHere), -0.01 * (1.0 - 3.0 * 200.0 * kPeriod), 1e-6);
 }
 
 TEST_F(Sources, TheEncodersSpeedHasTheModelsEnd) {
   run_with(POSITION_ENCODER);
   position_align_encoder(&drive, kHere, INT32_MAX);
-  EXPECT_EQ(drive.position.encoder.speed_bpp, MACHINE_SPEED_END_BPP);
+  EXPECT_EQ(inside::encoder_observer().speed_bpp, MACHINE_SPEED_END_BPP);
 }
 
 // D of the zero vectors, in the frame in use, trim included.
 TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
   run_with(POSITION_ENCODER);
   position_align_encoder(&drive, kHere, 0);
-  drive.config.encoder_trim_bam = bam(0.3);
-  drive.samples.windows[0].change_q19 = raw_change({0.02, 0.01}, 3000);
+  inside::config().encoder_trim_bam = bam(0.3);
+  inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   estimate();
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere) - 0.3);
-  EXPECT_NEAR(real(drive.position.deviation_q20, 20), slope.y, 1e-4);
-  EXPECT_NE(drive.position.avv.regression.information, 1) << "AVV looks on";
+  EXPECT_NEAR(real(inside::deviation_q20(), 20), slope.y, 1e-4);
+  EXPECT_NE(inside::avv().regression.information, 1) << "AVV looks on";
 }
 
 // Beside the encoder AVV looks on in its own frame, or a stator flux in its place.
@@ -79,15 +79,16 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
     position_align_encoder(&drive, kHere, 0);
     parameters.flux_beside = beside;
     use_parameters();
-    drive.position.avv.observer.angle_bam = kThere;
+    inside::avv().observer.angle_bam = kThere;
     see_machine(kHere);
     estimate();
     if (beside == 0) {
-      EXPECT_NEAR(rad(drive.position.avv.error_bam), -rad(kThere - kHere), 0.01);
-      EXPECT_EQ(drive.position.high.angle_bam, drive.position.avv.observer.angle_bam);
+      EXPECT_NEAR(rad(inside::avv().error_bam), -rad(kThere - kHere), 0.01);
+      EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv().observer.angle_bam);
     } else {
-      EXPECT_EQ(drive.position.avv.error_bam, 0);
-      EXPECT_EQ(drive.position.high.angle_bam, drive.position.encoder.angle_bam) << "at rest the flux follows";
+      EXPECT_EQ(inside::avv().error_bam, 0);
+      EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::encoder_observer().angle_bam)
+          << "at rest the flux follows";
     }
   }
 }
@@ -97,8 +98,8 @@ TEST_F(Sources, OnlyAnEncoderCanBeReversed) {
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER}) {
     run_with(source);
     position_align_encoder(&drive, kHere, 0);
-    drive.position.encoder.angle_bam = kHere + 0x1000000u;
-    drive.position.high.angle_bam = kHere - 0x1000000u;
+    inside::encoder_observer().angle_bam = kHere + 0x1000000u;
+    inside::high_speed_estimate().angle_bam = kHere - 0x1000000u;
     EXPECT_EQ(position_encoder_is_reversed(&drive), source == POSITION_ENCODER);
   }
 }

@@ -26,7 +26,7 @@ TEST_F(Sources, AFluxLooksOnFromItsLowerSpeedOn) {
     use_parameters();
     const estimator_output_t there = {kThere, 0, 0, 32767}, truth = {kHere, bpp_of(rpm), 33, 32767};
     flux_source_follow(&drive, &there);
-    const estimator_input_t in = {&drive.model, drive.samples.windows, 0, 0, false, false, false, nullptr};
+    const estimator_input_t in = {&inside::model(), inside::windows(), 0, 0, false, false, false, nullptr};
     const estimator_output_t out = flux_source_look_on(&drive, &in, &truth);
     const bool follows = std::abs(rpm) < 100;
     EXPECT_EQ(out.angle_bam == kHere, follows) << rpm;
@@ -45,33 +45,33 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
     see(0);
     const double speed = 0.2;
     const Vector current = {-1.0, 6.0};
-    drive.position.selected = {kHere, raw(speed / kTurn, 32), 0, 32767};
-    drive.position.observer.speed_bpp = drive.position.selected.speed_bpp;
-    drive.control.measured_q20 = drive.control.reference_q20 = raw_dq(current, 20);
-    flux_source_follow(&drive, &drive.position.selected);
-    drive.samples.link_q16 = raw(310.0, 16);
+    inside::selected() = {kHere, raw(speed / kTurn, 32), 0, 32767};
+    inside::observer().speed_bpp = inside::selected().speed_bpp;
+    inside::current_dq_q20() = inside::reference_dq_q20() = raw_dq(current, 20);
+    flux_source_follow(&drive, &inside::selected());
+    inside::link_q16() = raw(310.0, 16);
     for (int leg = 0; leg < 3; ++leg) {
-      drive.modulation.sampled.pulses.at[leg] = static_cast<std::int16_t>(1000 + 500 * leg);
-      drive.modulation.sampled.pulses.at[3 + leg] = static_cast<std::int16_t>(6000 - 700 * leg);
+      inside::sampled_pattern().pulses.at[leg] = static_cast<std::int16_t>(1000 + 500 * leg);
+      inside::sampled_pattern().pulses.at[3 + leg] = static_cast<std::int16_t>(6000 - 700 * leg);
     }
     const Vector before = real(flux_observer.flux_q16, 16);
     const Vector from = current.turned(rad(kHere)), to = current.turned(rad(kHere) + speed);
     estimate();
     EXPECT_NEAR((real(flux_observer.current_q20, 20) - to).length(), 0.0, 1e-4);
-    const Vector mean = real(svpwm_mean_q16(&drive.modulation.sampled.pulses, raw(310.0, 16)), 16);
-    const Vector drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(to, 20)), 16);
-    const Vector grown = mean - drop - (from + to) * (0.5 * real(drive.model.rs_q24, 24));
+    const Vector mean = real(svpwm_mean_q16(&inside::sampled_pattern().pulses, raw(310.0, 16)), 16);
+    const Vector drop = real(dead_time_drop_q16(&inside::config().dead_time, raw_ab(to, 20)), 16);
+    const Vector grown = mean - drop - (from + to) * (0.5 * real(inside::model().rs_q24, 24));
     EXPECT_GT(grown.length(), 20.0);
     // The low-pass forgets some thousandths of a flux of 1600 V.
     EXPECT_NEAR((real(flux_observer.flux_q16, 16) - before - grown).length(), 0.0, 8.0);
-    EXPECT_EQ(drive.position.high.angle_bam, flux_observer.observer.angle_bam);
+    EXPECT_EQ(inside::high_speed_estimate().angle_bam, flux_observer.observer.angle_bam);
     if (watched) continue;
-    EXPECT_EQ(drive.position.low.angle_bam, drive.position.high.angle_bam);
-    EXPECT_EQ(drive.position.selected.angle_bam, drive.position.high.angle_bam);
+    EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::high_speed_estimate().angle_bam);
+    EXPECT_EQ(inside::selected().angle_bam, inside::high_speed_estimate().angle_bam);
     // The observer goes along, so that it is right when it is wanted again.
-    EXPECT_EQ(drive.position.observer.angle_bam, drive.position.high.angle_bam);
-    EXPECT_EQ(drive.position.observer.speed_bpp, drive.position.high.speed_bpp);
-    EXPECT_EQ(drive.position.observer.load_accel_q8, drive.position.high.load_accel_q8);
+    EXPECT_EQ(inside::observer().angle_bam, inside::high_speed_estimate().angle_bam);
+    EXPECT_EQ(inside::observer().speed_bpp, inside::high_speed_estimate().speed_bpp);
+    EXPECT_EQ(inside::observer().load_accel_q8, inside::high_speed_estimate().load_accel_q8);
   }
 }
 
@@ -85,13 +85,13 @@ TEST_F(Sources, WhatTheDevicesTakeIsNotTheFluxs) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_HIGH, 0.0);
     see(0);
-    drive.config.dead_time.drop_q16 = drops ? raw(volts, 16) : 0;
-    dead_time_design(&drive.config.dead_time);
-    drive.control.measured_q20 = raw_dq(current, 20);
-    flux_source_follow(&drive, &drive.position.selected);
+    inside::config().dead_time.drop_q16 = drops ? raw(volts, 16) : 0;
+    dead_time_design(&inside::config().dead_time);
+    inside::current_dq_q20() = raw_dq(current, 20);
+    flux_source_follow(&drive, &inside::selected());
     estimate();
     flux[drops] = real(flux_observer.flux_q16, 16);
-    drop = real(dead_time_drop_q16(&drive.config.dead_time, raw_ab(current.turned(rad(kHere)), 20)), 16);
+    drop = real(dead_time_drop_q16(&inside::config().dead_time, raw_ab(current.turned(rad(kHere)), 20)), 16);
   }
   EXPECT_GT(std::min(std::fabs(drop.x), std::fabs(drop.y)), 1.0);
   EXPECT_NEAR(flux[1].x - flux[0].x, -drop.x, 0.05);
@@ -103,10 +103,10 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
   for (const std::uint16_t windows : {0, 2}) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_BOTH, 0.5);
-    flux_source_follow(&drive, &drive.position.selected);
+    flux_source_follow(&drive, &inside::selected());
     flux_observer.pause = 1;
     see(windows);
-    drive.schedule.skips = false;
+    inside::schedule().skips = false;
     board.profile.clear();
     estimate();
     EXPECT_EQ(flux_observer.pause > 1, windows == 0);
@@ -126,21 +126,21 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
   for (const bool aligned : {false, true}) {
     run_with(POSITION_OBSERVER);
     see(0);
-    drive.state = DRIVE_START;
-    drive.flags.open_loop = true;
-    drive.config.if_start.align_periods = 500;
+    inside::state() = DRIVE_START;
+    inside::flags().open_loop = true;
+    inside::config().if_start.align_periods = 500;
     starting.if_start.tick = aligned ? 500 : 499;
     starting.if_start.angle_bam = kThere;
     starting.if_start.speed_bpp = 4321;
-    drive.position.selected = {kHere, 1234, 0, 0};
-    drive.position.observer.angle_bam = kThere;
-    drive.position.observer.speed_bpp = 0;
+    inside::selected() = {kHere, 1234, 0, 0};
+    inside::observer().angle_bam = kThere;
+    inside::observer().speed_bpp = 0;
     estimate();
-    EXPECT_EQ(drive.position.selected.angle_bam, kThere + 4321u);
-    EXPECT_EQ(drive.position.selected.speed_bpp, 4321);
-    EXPECT_EQ(drive.position.seen.angle_bam, drive.position.observer.angle_bam);
-    EXPECT_NEAR(rad(drive.position.seen.angle_bam - (aligned ? kThere : kHere)), 0.0, 1e-3);
-    EXPECT_EQ(drive.position.avv.observer.angle_bam, kHere) << "all of them are set at rest";
+    EXPECT_EQ(inside::selected().angle_bam, kThere + 4321u);
+    EXPECT_EQ(inside::selected().speed_bpp, 4321);
+    EXPECT_EQ(inside::seen().angle_bam, inside::observer().angle_bam);
+    EXPECT_NEAR(rad(inside::seen().angle_bam - (aligned ? kThere : kHere)), 0.0, 1e-3);
+    EXPECT_EQ(inside::avv().observer.angle_bam, kHere) << "all of them are set at rest";
   }
 }
 
@@ -150,17 +150,17 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
     run_with(POSITION_FLUX_CONV);
     see(0);
     blend(BLEND_HIGH, 0.0);
-    drive.state = DRIVE_START;
-    drive.flags.open_loop = true;
-    starting.if_start.tick = drive.config.if_start.align_periods = 500;
+    inside::state() = DRIVE_START;
+    inside::flags().open_loop = true;
+    starting.if_start.tick = inside::config().if_start.align_periods = 500;
     starting.if_start.angle_bam = kThere;
-    starting.if_start.speed_bpp = drive.config.if_start.speed_bpp - (up ? 0 : 1);
-    drive.position.selected = {kHere, 1234, 0, 0};
+    starting.if_start.speed_bpp = inside::config().if_start.speed_bpp - (up ? 0 : 1);
+    inside::selected() = {kHere, 1234, 0, 0};
     flux_observer.observer.angle_bam = kThere;
     estimate();
     EXPECT_EQ(flux_observer.observer.angle_bam == kHere, !up);
-    EXPECT_EQ(drive.position.seen.angle_bam, flux_observer.observer.angle_bam);
-    EXPECT_EQ(drive.position.selected.angle_bam, kThere + static_cast<std::uint32_t>(starting.if_start.speed_bpp));
+    EXPECT_EQ(inside::seen().angle_bam, flux_observer.observer.angle_bam);
+    EXPECT_EQ(inside::selected().angle_bam, kThere + static_cast<std::uint32_t>(starting.if_start.speed_bpp));
   }
 }
 
@@ -172,17 +172,17 @@ TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
     run_with(POSITION_FLUX_CONV + FLUX_PP02);
     see(0);
     blend(BLEND_HIGH, 0.0);
-    drive.state = DRIVE_START;
-    drive.flags.open_loop = true;
-    starting.if_start.tick = drive.config.if_start.align_periods;
-    starting.if_start.speed_bpp = drive.config.if_start.speed_bpp;
-    drive.control.reference_q20 = drive.control.measured_q20 = raw_dq({0.0, 14.0}, 20);
-    drive.position.selected = {kHere, 0, 0, 0};
-    drive.position.seen.angle_bam = turned ? kHere - 0x40000000u : kHere;
+    inside::state() = DRIVE_START;
+    inside::flags().open_loop = true;
+    starting.if_start.tick = inside::config().if_start.align_periods;
+    starting.if_start.speed_bpp = inside::config().if_start.speed_bpp;
+    inside::reference_dq_q20() = inside::current_dq_q20() = raw_dq({0.0, 14.0}, 20);
+    inside::selected() = {kHere, 0, 0, 0};
+    inside::seen().angle_bam = turned ? kHere - 0x40000000u : kHere;
     const estimator_output_t now = {kHere, bpp_of(600), 0, 0};
     flux_source_follow(&drive, &now);
     estimate();
-    seen[turned] = drive.position.seen.angle_bam;
+    seen[turned] = inside::seen().angle_bam;
   }
   EXPECT_NE(seen[0], seen[1]);
 }

@@ -19,23 +19,23 @@ class Learning : public Sources {
   void learn_with(std::int32_t source) {
     run_with(source);
     see(0);
-    drive.model = drive.config.nameplate;
-    sensor_match_reset(&drive.position.sensors);
-    drive.trim.mismatch_q30 = 0;
-    drive.position.is_near = true;
-    drive.modulation.state.is_alternating = true;
-    drive.model.iq_q20 = raw(3.0, 20);
+    inside::model() = inside::config().nameplate;
+    sensor_match_reset(&inside::sensors_match());
+    inside::sensor_trim().mismatch_q30 = 0;
+    inside::is_near() = true;
+    inside::modulator().is_alternating = true;
+    inside::model().iq_q20 = raw(3.0, 20);
     regression_t r = {};
     r.spread_q8 = raw(30000.0, 8);
     r.along_q16 = raw(40.0, 16);
     r.curl_q16 = raw(20.0, 16);
     r.mean_q20 = {0, raw(0.01, 20)};
     r.information = 1000000;
-    drive.position.observer.regression = r;
+    inside::observer().regression = r;
   }
-  static bool inverse_inductances() { return drive.model.trim.mean_q30 != 0; }
-  static bool sensors() { return drive.position.sensors.mismatch_q30 != 0; }
-  static bool voltage() { return drive.model.trim.rs_q24 != 0 || drive.model.trim.psi_q16 != 0; }
+  static bool inverse_inductances() { return inside::model().trim.mean_q30 != 0; }
+  static bool sensors() { return inside::sensors_match().mismatch_q30 != 0; }
+  static bool voltage() { return inside::model().trim.rs_q24 != 0 || inside::model().trim.psi_q16 != 0; }
 };
 
 // Inverse inductances and sensors in one slot, resistance and flux in another: once it runs, and near enough.
@@ -45,13 +45,13 @@ TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
     for (const bool near : {true, false}) {
       for (const bool alternating : {true, false}) {
         learn_with(POSITION_OBSERVER);
-        drive.position.is_near = near;
-        drive.modulation.state.is_alternating = alternating;
+        inside::is_near() = near;
+        inside::modulator().is_alternating = alternating;
         estimate(static_cast<schedule_slot_t>(slot));
         EXPECT_EQ(inverse_inductances(), near && slot == SLOT_INDUCTANCE) << slot;
         EXPECT_EQ(sensors(), near && slot == SLOT_INDUCTANCE && alternating) << slot << "all directions, or none";
         EXPECT_EQ(voltage(), near && slot == SLOT_VOLTAGE) << slot;
-        EXPECT_EQ(drive.trim.mismatch_q30, drive.position.sensors.mismatch_q30);
+        EXPECT_EQ(inside::sensor_trim().mismatch_q30, inside::sensors_match().mismatch_q30);
       }
     }
   }
@@ -73,21 +73,21 @@ TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
 // A turn takes 5/4 as long as the places say, and twice that while the shaft turns, where half as much again is learnt.
 TEST_F(Learning, SharesAreThoseOfTheParametersTimes) {
   learn_with(POSITION_OBSERVER);
-  const double y0 = 0.5 * (real(drive.model.yd_q30, 30) + real(drive.model.yq_q30, 30));
+  const double y0 = 0.5 * (real(inside::model().yd_q30, 30) + real(inside::model().yq_q30, 30));
   estimate(SLOT_INDUCTANCE);
-  const double share = 1.5 * real(drive.config.adapt_share_q30, 30);
-  EXPECT_NEAR(real(drive.model.trim.mean_q30, 30) / (share * 40.0 / 30000.0), 1.0, 1e-3);
-  EXPECT_NEAR(real(drive.trim.mismatch_q30, 30) / (share * std::sqrt(3.0) * 20.0 / 30000.0 / y0), 1.0, 1e-3);
+  const double share = 1.5 * real(inside::config().adapt_share_q30, 30);
+  EXPECT_NEAR(real(inside::model().trim.mean_q30, 30) / (share * 40.0 / 30000.0), 1.0, 1e-3);
+  EXPECT_NEAR(real(inside::sensor_trim().mismatch_q30, 30) / (share * std::sqrt(3.0) * 20.0 / 30000.0 / y0), 1.0, 1e-3);
   learn_with(POSITION_OBSERVER);
-  drive.position.selected.speed_bpp = drive.position.observer.speed_bpp = bpp(60.0);
-  drive.model.trim.psi_variance_q32 = 0;
-  machine_model_t model = drive.model;
-  voltage_match_step(&model, &drive.position.observer.regression, raw(60.0 * kPeriod, 30),
-                     raw(1.5 * real(drive.config.drift_share_q30, 30), 30));
+  inside::selected().speed_bpp = inside::observer().speed_bpp = bpp(60.0);
+  inside::model().trim.psi_variance_q32 = 0;
+  machine_model_t model = inside::model();
+  voltage_match_step(&model, &inside::observer().regression, raw(60.0 * kPeriod, 30),
+                     raw(1.5 * real(inside::config().drift_share_q30, 30), 30));
   estimate(SLOT_VOLTAGE);
   EXPECT_NE(model.trim.rs_q24, 0);
-  EXPECT_NEAR(drive.model.trim.rs_q24, model.trim.rs_q24, 2 + std::abs(model.trim.rs_q24) / 100);
-  EXPECT_NEAR(drive.model.trim.psi_q16, model.trim.psi_q16, 2 + std::abs(model.trim.psi_q16) / 100);
+  EXPECT_NEAR(inside::model().trim.rs_q24, model.trim.rs_q24, 2 + std::abs(model.trim.rs_q24) / 100);
+  EXPECT_NEAR(inside::model().trim.psi_q16, model.trim.psi_q16, 2 + std::abs(model.trim.psi_q16) / 100);
 }
 
 // A start learns inverse inductances in their slot and the sensors in the voltage's, with 5/4 of the share.
@@ -96,19 +96,20 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
     learn_with(POSITION_OBSERVER);
     see_machine(kHere);
     for (int k = 0; k < 2; ++k) {
-      drive.samples.windows[k].change_q19.alpha += raw(k == 0 ? 0.06 : -0.06, 19);
-      drive.samples.windows[k].change_q19.beta += raw(k == 0 ? 0.03 : -0.03, 19);
+      inside::windows()[k].change_q19.alpha += raw(k == 0 ? 0.06 : -0.06, 19);
+      inside::windows()[k].change_q19.beta += raw(k == 0 ? 0.03 : -0.03, 19);
     }
-    drive.state = DRIVE_START;
-    drive.schedule.turning = false;
+    inside::state() = DRIVE_START;
+    inside::schedule().turning = false;
     estimate(slot);
     EXPECT_EQ(inverse_inductances(), slot == SLOT_INDUCTANCE) << slot;
     EXPECT_EQ(sensors(), slot == SLOT_VOLTAGE) << slot;
     EXPECT_FALSE(voltage());
     if (slot != SLOT_INDUCTANCE) continue;
-    const regression_t& r = drive.position.avv.regression;
-    const double wanted = 1.25 * real(drive.config.adapt_share_q30, 30) * real(r.along_q16, 16) / real(r.spread_q8, 8);
-    EXPECT_NEAR(real(drive.model.trim.mean_q30, 30) / wanted, 1.0, 1e-2);
+    const regression_t& r = inside::avv().regression;
+    const double wanted =
+        1.25 * real(inside::config().adapt_share_q30, 30) * real(r.along_q16, 16) / real(r.spread_q8, 8);
+    EXPECT_NEAR(real(inside::model().trim.mean_q30, 30) / wanted, 1.0, 1e-2);
   }
 }
 
@@ -118,23 +119,23 @@ TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
     for (const bool predicting : {true, false}) {
       learn_with(POSITION_FLUX_CONV);
       see_machine(kHere);
-      drive.samples.windows[0].change_q19.alpha += raw(0.06, 19);
-      drive.state = DRIVE_COMMISSION;
-      drive.schedule.turning = false;
-      drive.flags.frozen = !adapting;
+      inside::windows()[0].change_q19.alpha += raw(0.06, 19);
+      inside::state() = DRIVE_COMMISSION;
+      inside::schedule().turning = false;
+      inside::flags().frozen = !adapting;
       commissioning.predicting = predicting;
-      drive.position.avv.observer = {kThere, 1000, raw(500.0, 8), 0};
-      drive.control.measured_q20 = {0, 0};
-      const std::int32_t error = drive.position.avv.error_bam = 4711;
+      inside::avv().observer = {kThere, 1000, raw(500.0, 8), 0};
+      inside::current_dq_q20() = {0, 0};
+      const std::int32_t error = inside::avv().error_bam = 4711;
       estimate(SLOT_INDUCTANCE);
       EXPECT_EQ(inverse_inductances(), adapting && !predicting);
-      EXPECT_EQ(drive.position.avv.error_bam == error, predicting) << "no measurement at all";
-      EXPECT_EQ(drive.position.selected.angle_bam, drive.position.avv.observer.angle_bam);
+      EXPECT_EQ(inside::avv().error_bam == error, predicting) << "no measurement at all";
+      EXPECT_EQ(inside::selected().angle_bam, inside::avv().observer.angle_bam);
       if (!predicting) continue;
-      EXPECT_EQ(drive.position.selected.angle_bam, kThere + 1000u);
-      EXPECT_EQ(drive.position.selected.speed_bpp, 1000) << "the load as of now is left out";
-      EXPECT_EQ(drive.position.selected.load_accel_q8, raw(500.0, 8));
-      EXPECT_EQ(drive.position.selected.quality_q15, 32767);
+      EXPECT_EQ(inside::selected().angle_bam, kThere + 1000u);
+      EXPECT_EQ(inside::selected().speed_bpp, 1000) << "the load as of now is left out";
+      EXPECT_EQ(inside::selected().load_accel_q8, raw(500.0, 8));
+      EXPECT_EQ(inside::selected().quality_q15, 32767);
     }
   }
 }

@@ -23,15 +23,15 @@ TEST_F(Sources, TheCurrentIsTheWindowsMeanLessTheirRipple) {
   for (std::uint16_t count = 1; count <= 3; ++count) {
     run_with(POSITION_ENCODER);
     see(count);
-    for (int k = 0; k < count; ++k) drive.samples.windows[k].middle_tick = static_cast<std::int16_t>(1500 + 3100 * k);
-    drive.position.selected.speed_bpp = raw(speed / kTurn, 32);
+    for (int k = 0; k < count; ++k) inside::windows()[k].middle_tick = static_cast<std::int16_t>(1500 + 3100 * k);
+    inside::selected().speed_bpp = raw(speed / kTurn, 32);
     // The ripple of all of them is turned by one angle, that of the middle one.
-    const double one = rad(kHere) + speed * drive.samples.windows[count / 2].middle_tick / 10000.0;
-    const double yd = real(drive.model.yd_q30, 30), yq = real(drive.model.yq_q30, 30);
+    const double one = rad(kHere) + speed * inside::windows()[count / 2].middle_tick / 10000.0;
+    const double yd = real(inside::model().yd_q30, 30), yq = real(inside::model().yq_q30, 30);
     const Vector waves = {yd * ripple.x, yq * ripple.y};
-    drive.samples.ripple_q16 = raw_ab((ripple * count).turned(one), 16);
+    inside::ripple_q16() = raw_ab((ripple * count).turned(one), 16);
     for (std::uint16_t k = 0; k < count; ++k) {
-      estimator_window_t& w = drive.samples.windows[k];
+      estimator_window_t& w = inside::windows()[k];
       const double angle = rad(kHere) + speed * w.middle_tick / 10000.0;
       w.current_q20 = raw_ab((current + waves).turned(angle), 20);
     }
@@ -45,8 +45,8 @@ TEST_F(Sources, TheCurrentIsTheWindowsMeanLessTheirRipple) {
 TEST_F(Sources, TheCurrentHasAnEndAndStaysWithoutWindows) {
   run_with(POSITION_ENCODER);
   see(1);
-  drive.samples.windows[0].current_q20 = raw_ab(Vector{500.0, 0.0}.turned(rad(kHere)), 20);
-  drive.samples.ripple_q16 = raw_ab(Vector{-5000.0, 0.0}.turned(rad(kHere)), 16);
+  inside::windows()[0].current_q20 = raw_ab(Vector{500.0, 0.0}.turned(rad(kHere)), 20);
+  inside::ripple_q16() = raw_ab(Vector{-5000.0, 0.0}.turned(rad(kHere)), 16);
   estimate();
   EXPECT_NEAR(real(measured().d, 20), 512.0, 1e-3);
   see(0);
@@ -59,11 +59,11 @@ TEST_F(Sources, ABlindStartMeasuresNothing) {
   for (const std::uint16_t invalid : {0, 1, 2}) {
     run_with(POSITION_OBSERVER);
     see(1);
-    drive.samples.windows[0].current_q20 = {raw(1.0, 20), 0};
-    drive.control.measured_q20 = {0, 0};
-    drive.state = DRIVE_START;
-    drive.schedule.turning = false;
-    drive.flags.invalid = invalid;
+    inside::windows()[0].current_q20 = {raw(1.0, 20), 0};
+    inside::current_dq_q20() = {0, 0};
+    inside::state() = DRIVE_START;
+    inside::schedule().turning = false;
+    inside::flags().invalid = invalid;
     estimate();
     EXPECT_EQ(measured().d != 0, invalid == 0) << invalid;
   }
@@ -75,17 +75,17 @@ TEST_F(Sources, TheTorqueAcceleratesOnceThePolarityIsKnown) {
   for (const bool starting : {false, true}) {
     run_with(POSITION_OBSERVER);
     see(0);
-    drive.control.measured_q20 = {0, raw(4.0, 20)};
-    drive.schedule.turning = !starting;
-    drive.inertia.phase = INERTIA_RUN_UP;
-    drive.inertia.start_base_q8 = raw(-3.0, 8);
-    drive.inertia.gained_bpp = 100;
+    inside::current_dq_q20() = {0, raw(4.0, 20)};
+    inside::schedule().turning = !starting;
+    inside::inertia().phase = INERTIA_RUN_UP;
+    inside::inertia().start_base_q8 = raw(-3.0, 8);
+    inside::inertia().gained_bpp = 100;
     estimate();
     const double accel =
         starting ? 0.0
                  : m.torque_constant() * 4.0 * m.pole_pairs / m.inertia * kPeriod * kPeriod / kTurn * 4294967296.0;
-    EXPECT_NEAR(real(drive.position.torque_accel_q8, 8), accel, 1e-3 * accel);
-    EXPECT_NEAR(drive.inertia.gained_bpp, 103.0 + accel, 1.0 + 1e-3 * accel) << "every period counts";
+    EXPECT_NEAR(real(inside::torque_accel_q8(), 8), accel, 1e-3 * accel);
+    EXPECT_NEAR(inside::inertia().gained_bpp, 103.0 + accel, 1.0 + 1e-3 * accel) << "every period counts";
   }
 }
 
@@ -93,15 +93,15 @@ TEST_F(Sources, TheTorqueAcceleratesOnceThePolarityIsKnown) {
 TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   run_with(POSITION_OBSERVER);
   see(0);
-  drive.state = DRIVE_START;
-  drive.flags.open_loop = true;
-  drive.position.seen.angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
-  drive.control.measured_q20 = {raw(4.0, 20), 0};
+  inside::state() = DRIVE_START;
+  inside::flags().open_loop = true;
+  inside::seen().angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
+  inside::current_dq_q20() = {raw(4.0, 20), 0};
   estimate();
-  EXPECT_LT(drive.position.torque_accel_q8, -raw(1000.0, 8));
-  drive.position.seen.angle_bam = drive.position.selected.angle_bam;
+  EXPECT_LT(inside::torque_accel_q8(), -raw(1000.0, 8));
+  inside::seen().angle_bam = inside::selected().angle_bam;
   estimate();
-  EXPECT_EQ(drive.position.torque_accel_q8, 0);
+  EXPECT_EQ(inside::torque_accel_q8(), 0);
 }
 
 // The model moves where the schedule says so or has its slot, and makes K of the rest in the look's slot.
@@ -111,22 +111,22 @@ TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
       for (const bool watched : {false, true}) {
         run_with(POSITION_OBSERVER);
         see(0);
-        drive.model = drive.config.nameplate;
+        inside::model() = inside::config().nameplate;
         polarity_watch.open = watched;
-        drive.schedule.moves = moves;
-        drive.control.measured_q20.q = raw(2.5, 20);
-        const std::int32_t k = drive.model.k_dq_q24;
-        drive.model.k_dq_q24 = 0;
-        drive.position.observer.is_sensitive = true;
-        drive.position.observer.sensitivity = {};
+        inside::schedule().moves = moves;
+        inside::current_dq_q20().q = raw(2.5, 20);
+        const std::int32_t k = inside::model().k_dq_q24;
+        inside::model().k_dq_q24 = 0;
+        inside::observer().is_sensitive = true;
+        inside::observer().sensitivity = {};
         estimate(static_cast<schedule_slot_t>(slot));
         const bool follows = moves || slot == SLOT_OPERATING_POINT;
-        EXPECT_EQ(drive.model.iq_q20, follows ? raw(2.5, 20) : 0) << slot << moves;
-        EXPECT_EQ(drive.model.k_dq_q24 == k, slot == SLOT_LOOK && !watched) << slot << watched;
+        EXPECT_EQ(inside::model().iq_q20, follows ? raw(2.5, 20) : 0) << slot << moves;
+        EXPECT_EQ(inside::model().k_dq_q24 == k, slot == SLOT_LOOK && !watched) << slot << watched;
         see(1);
-        drive.control.measured_q20.q = raw(2.5, 20);
+        inside::current_dq_q20().q = raw(2.5, 20);
         estimate(static_cast<schedule_slot_t>(slot));
-        EXPECT_EQ(drive.position.observer.sensitivity.h_speed_q20.q != 0, follows) << "of the observer, with the model";
+        EXPECT_EQ(inside::observer().sensitivity.h_speed_q20.q != 0, follows) << "of the observer, with the model";
       }
     }
   }
@@ -138,11 +138,11 @@ TEST_F(Sources, TheScheduleDecidesOnWindowsAndCovariance) {
     for (const bool renews : {false, true}) {
       run_with(POSITION_OBSERVER);
       see_machine(kHere);
-      deviation_observer_t& o = drive.position.observer;
+      deviation_observer_t& o = inside::observer();
       o.p_aa = o.p_ss = raw(0.02, 20);
       o.p_ll = raw(0.02, 20);
-      drive.schedule.skips = skips;
-      drive.schedule.renews = renews;
+      inside::schedule().skips = skips;
+      inside::schedule().renews = renews;
       estimate();
       EXPECT_EQ(o.residual.span_ticks, skips ? 0 : 6000) << renews;
       EXPECT_EQ(o.gathered.periods == 0, renews) << skips;
@@ -156,10 +156,10 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
   for (const bool held : {false, true}) {
     run_with(POSITION_OBSERVER);
     parameters.map_known = 1;
-    ASSERT_TRUE(drive_config_load(&drive.config));
+    ASSERT_TRUE(drive_config_load(&inside::config()));
     brake_release_hold.left = held ? 100 : 0;
-    drive.schedule.renews = true;
-    deviation_observer_t& o = drive.position.observer;
+    inside::schedule().renews = true;
+    deviation_observer_t& o = inside::observer();
     o.p_aa = o.p_as = o.p_al = o.p_ss = o.p_sl = 0;
     o.p_ll = raw(0.02, 20);
     see(0);
@@ -173,14 +173,15 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
 TEST_F(Sources, AvvBesideTheObserverSeesItsOwnError) {
   run_with(POSITION_OBSERVER_AVV);
   blend(BLEND_BOTH, 0.5);
-  drive.position.avv.observer.angle_bam = kThere;
+  inside::avv().observer.angle_bam = kThere;
   see_machine(kHere);
   estimate();
-  EXPECT_NEAR(rad(drive.position.avv.error_bam), -rad(kThere - kHere), 0.01);
-  EXPECT_EQ(drive.position.low.angle_bam, drive.position.observer.angle_bam);
-  EXPECT_EQ(drive.position.high.angle_bam, drive.position.avv.observer.angle_bam);
-  const double low = rad(drive.position.low.angle_bam - kHere), high = rad(drive.position.high.angle_bam - kHere);
-  EXPECT_NEAR(rad(drive.position.selected.angle_bam - kHere), 0.5 * (low + high), 0.01 * (high - low) + 1e-3);
+  EXPECT_NEAR(rad(inside::avv().error_bam), -rad(kThere - kHere), 0.01);
+  EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::observer().angle_bam);
+  EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv().observer.angle_bam);
+  const double low = rad(inside::low_speed_estimate().angle_bam - kHere),
+               high = rad(inside::high_speed_estimate().angle_bam - kHere);
+  EXPECT_NEAR(rad(inside::selected().angle_bam - kHere), 0.5 * (low + high), 0.01 * (high - low) + 1e-3);
 }
 
 // Beyond 15 degrees the regression is not linear; it is asked in its own slot, and stands until the next.
@@ -191,10 +192,10 @@ TEST_F(Sources, AvvLearnsWithin15DegreesOnly) {
       const std::uint32_t there = kHere + bam(degrees * kDegree);
       see_machine(there);
       const bool before = std::fabs(degrees) > 15.0;
-      drive.position.is_near = before;
+      inside::is_near() = before;
       estimate(slot);
-      EXPECT_NEAR(rad(drive.position.avv.error_bam) / kDegree, degrees, 0.3);
-      EXPECT_EQ(drive.position.is_near, slot == SLOT_REGRESSION ? !before : before) << degrees;
+      EXPECT_NEAR(rad(inside::avv().error_bam) / kDegree, degrees, 0.3);
+      EXPECT_EQ(inside::is_near(), slot == SLOT_REGRESSION ? !before : before) << degrees;
     }
   }
 }
@@ -204,10 +205,10 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
     run_with(source);
     blend(BLEND_BOTH, 0.5);
     flux_observer.machine.psi_q16 = 0;
-    drive.position.avv.observer.load_accel_q8 = drive.position.observer.load_accel_q8 = 99;
-    const std::int32_t speed = drive.config.blend.high_bpp + 1;
+    inside::avv().observer.load_accel_q8 = inside::observer().load_accel_q8 = 99;
+    const std::int32_t speed = inside::config().blend.high_bpp + 1;
     position_preset(&drive, kThere, speed);
-    const drive_position_t& p = drive.position;
+    const drive_position_t& p = inside::position();
     for (const estimator_output_t& out : {p.selected, p.low, p.high}) {
       EXPECT_EQ(out.angle_bam, kThere);
       EXPECT_EQ(out.speed_bpp, speed);
@@ -232,7 +233,7 @@ TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
   for (const int sign : {1, -1}) {
     run_with(POSITION_OBSERVER);
     position_preset(&drive, kThere, sign * 2000000000);
-    const drive_position_t& p = drive.position;
+    const drive_position_t& p = inside::position();
     for (const std::int32_t speed :
          {p.selected.speed_bpp, p.avv.observer.speed_bpp, p.observer.speed_bpp, p.zvv.speed_bpp})
       EXPECT_EQ(speed, sign * MACHINE_SPEED_END_BPP);
@@ -243,11 +244,11 @@ TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
 TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
   run_with(POSITION_OBSERVER);
   position_preset_axis(&drive, kThere, 777);
-  EXPECT_EQ(drive.position.selected.angle_bam, kThere);
-  EXPECT_EQ(drive.position.selected.speed_bpp, 777);
-  EXPECT_EQ(drive.position.avv.observer.angle_bam, kThere);
-  EXPECT_EQ(drive.position.avv.observer.speed_bpp, 777);
-  EXPECT_EQ(drive.position.observer.angle_bam, kHere);
+  EXPECT_EQ(inside::selected().angle_bam, kThere);
+  EXPECT_EQ(inside::selected().speed_bpp, 777);
+  EXPECT_EQ(inside::avv().observer.angle_bam, kThere);
+  EXPECT_EQ(inside::avv().observer.speed_bpp, 777);
+  EXPECT_EQ(inside::observer().angle_bam, kHere);
 }
 
 // The paper's idle estimator has the other one's speed as well, and none of its load.
@@ -255,18 +256,18 @@ TEST_F(Sources, ThePapersIdleEstimatorKnowsTheSpeed) {
   run_with(POSITION_PAPER);
   see(1);
   blend(BLEND_LOW, 1.0);
-  drive.position.zvv.speed_bpp = 5000;
-  zvv_preset(&drive.position.zvv, kHere, 5000);
-  drive.position.avv.observer.load_accel_q8 = 77;
+  inside::zvv().speed_bpp = 5000;
+  zvv_preset(&inside::zvv(), kHere, 5000);
+  inside::avv().observer.load_accel_q8 = 77;
   estimate();
-  EXPECT_EQ(drive.position.avv.observer.speed_bpp, drive.position.zvv.speed_bpp);
-  EXPECT_EQ(drive.position.avv.observer.load_accel_q8, 0);
+  EXPECT_EQ(inside::avv().observer.speed_bpp, inside::zvv().speed_bpp);
+  EXPECT_EQ(inside::avv().observer.load_accel_q8, 0);
   run_with(POSITION_PAPER);
   blend(BLEND_HIGH, 0.0);
-  drive.position.avv.observer.speed_bpp = bpp_of(200);
+  inside::avv().observer.speed_bpp = bpp_of(200);
   estimate();
-  EXPECT_EQ(drive.position.zvv.speed_bpp, drive.position.avv.observer.speed_bpp);
-  EXPECT_NEAR(rad_per_s(drive.position.zvv.speed_bpp), 200.0 / 60.0 * kTurn * 4.0, 1.0);
+  EXPECT_EQ(inside::zvv().speed_bpp, inside::avv().observer.speed_bpp);
+  EXPECT_NEAR(rad_per_s(inside::zvv().speed_bpp), 200.0 / 60.0 * kTurn * 4.0, 1.0);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
     run_with(POSITION_PAPER);
     see(c.windows);
     blend(c.region, c.share);
-    drive_position_t& p = drive.position;
+    drive_position_t& p = inside::position();
     p.avv.observer.angle_bam = kThere;
     drive_estimate(&drive);
     const double apart = rad(kThere - kHere);  // who runs moves, a thousandth of that
@@ -48,16 +48,16 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
     for (const bool below : {false, true}) {
       run_with(POSITION_PAPER);
       blend(below ? BLEND_LOW : BLEND_BOTH, below ? 1.0 : 0.5);
-      drive.schedule.task = task;
-      drive.samples.windows[0].change_q19 = raw_change({0.0, 0.02}, 3000);
-      drive.samples.windows[1].voltage_q19 = {raw(150.0, 19), 0};
-      drive.position.low.quality_q15 = 12345;
+      inside::schedule().task = task;
+      inside::windows()[0].change_q19 = raw_change({0.0, 0.02}, 3000);
+      inside::windows()[1].voltage_q19 = {raw(150.0, 19), 0};
+      inside::low_speed_estimate().quality_q15 = 12345;
       drive_estimate(&drive);
       const bool of_zvv = (task == TASK_SPEED || task == TASK_FIELD) != below;
-      EXPECT_EQ(drive.position.zvv.deviation_q20 != 0, of_zvv) << task;
-      EXPECT_EQ(drive.position.low.quality_q15 == 12345, !of_zvv) << task;
-      EXPECT_EQ(drive.position.avv.regression.information > 0, !of_zvv) << task;
-      EXPECT_EQ(drive.position.low.angle_bam, drive.position.zvv.angle_bam) << task;
+      EXPECT_EQ(inside::zvv().deviation_q20 != 0, of_zvv) << task;
+      EXPECT_EQ(inside::low_speed_estimate().quality_q15 == 12345, !of_zvv) << task;
+      EXPECT_EQ(inside::avv().regression.information > 0, !of_zvv) << task;
+      EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::zvv().angle_bam) << task;
     }
   }
 }
@@ -68,11 +68,11 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
     run_with(POSITION_PAPER);
     see(1);
     blend(BLEND_LOW, 1.0);
-    drive.samples.windows[0].change_q19 = raw_change({0.02, 0.01}, 3000);
-    if (!same) drive.position.selected.angle_bam = kThere;
+    inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
+    if (!same) inside::selected().angle_bam = kThere;
     drive_estimate(&drive);
     const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
-    EXPECT_NEAR(real(drive.position.zvv.deviation_q20, 20), slope.y, 5e-5) << same;
+    EXPECT_NEAR(real(inside::zvv().deviation_q20, 20), slope.y, 5e-5) << same;
   }
 }
 
@@ -80,12 +80,12 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
 TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
   run_with(POSITION_PAPER);
   blend(BLEND_BOTH, 0.5);
-  drive.schedule.task = TASK_SPEED;
-  drive.position.high.angle_bam = drive.position.avv.observer.angle_bam = kThere;
-  drive.samples.windows[0].change_q19 = raw_change({0.02, 0.01}, 3000);
+  inside::schedule().task = TASK_SPEED;
+  inside::high_speed_estimate().angle_bam = inside::avv().observer.angle_bam = kThere;
+  inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   drive_estimate(&drive);
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
-  EXPECT_NEAR(real(drive.position.zvv.deviation_q20, 20), slope.y, 5e-5);
+  EXPECT_NEAR(real(inside::zvv().deviation_q20, 20), slope.y, 5e-5);
 }
 
 // The place of a regression that saw nothing teaches nothing.
@@ -93,10 +93,10 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
   for (const std::uint16_t windows : {2, 0}) {
     run_with(POSITION_OBSERVER);
     see(windows);
-    drive.schedule.slot = SLOT_REGRESSION;
-    drive.position.is_near = windows == 0;
+    inside::schedule().slot = SLOT_REGRESSION;
+    inside::is_near() = windows == 0;
     drive_estimate(&drive);
-    EXPECT_EQ(drive.position.is_near, windows > 0);
+    EXPECT_EQ(inside::is_near(), windows > 0);
   }
 }
 
@@ -104,11 +104,11 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
 TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
   for (const bool near : {true, false}) {
     run_with(POSITION_OBSERVER);
-    drive.schedule.slot = SLOT_LOOK;
-    drive.position.is_near = near;
-    drive.position.observer.regression = {};
+    inside::schedule().slot = SLOT_LOOK;
+    inside::is_near() = near;
+    inside::observer().regression = {};
     drive_estimate(&drive);
-    EXPECT_EQ(drive.position.is_near, near && avv_angle_is_near(&drive.position.observer.regression, &drive.model));
+    EXPECT_EQ(inside::is_near(), near && avv_angle_is_near(&inside::observer().regression, &inside::model()));
   }
 }
 
@@ -140,13 +140,13 @@ TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
         run_with(POSITION_FLUX_CONV);
         blend(region, 0.5);
         polarity_watch.open = watched;
-        drive.schedule.slot = asked ? SLOT_REGRESSION : SCHEDULE_SLOTS;
-        drive.position.is_near = !asked;
-        drive.position.observer.regressed_bam = kThere;
+        inside::schedule().slot = asked ? SLOT_REGRESSION : SCHEDULE_SLOTS;
+        inside::is_near() = !asked;
+        inside::observer().regressed_bam = kThere;
         drive_estimate(&drive);
         const bool regressed = asked && (region == BLEND_LOW || watched);
-        EXPECT_EQ(drive.position.observer.regressed_bam != kThere, regressed) << region;
-        EXPECT_EQ(drive.position.is_near, regressed || !asked) << "what was not regressed teaches nothing";
+        EXPECT_EQ(inside::observer().regressed_bam != kThere, regressed) << region;
+        EXPECT_EQ(inside::is_near(), regressed || !asked) << "what was not regressed teaches nothing";
       }
     }
   }
@@ -168,16 +168,16 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       run_with(c.source);
       see(1);
       blend(c.region, c.share);
-      drive.samples.windows[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
-      if (starting) drive.state = DRIVE_START;
-      drive.schedule.turning = !starting;
-      drive.position.selected.angle_bam = kThere;
-      drive.position.high.angle_bam = kHere + 0x01000000u;
+      inside::windows()[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
+      if (starting) inside::state() = DRIVE_START;
+      inside::schedule().turning = !starting;
+      inside::selected().angle_bam = kThere;
+      inside::high_speed_estimate().angle_bam = kHere + 0x01000000u;
       drive_estimate(&drive);
       const Vector current = Vector{3.0, 1.0}.turned(-rad(kThere));
       // A sum of windows is Q14.
-      EXPECT_NEAR(real(drive.control.measured_q20.d, 20), current.x, 6.5e-5) << c.source << c.region << starting;
-      EXPECT_NEAR(real(drive.control.measured_q20.q, 20), current.y, 6.5e-5) << c.source << c.region << starting;
+      EXPECT_NEAR(real(inside::current_dq_q20().d, 20), current.x, 6.5e-5) << c.source << c.region << starting;
+      EXPECT_NEAR(real(inside::current_dq_q20().q, 20), current.y, 6.5e-5) << c.source << c.region << starting;
     }
   }
 }
@@ -186,15 +186,15 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
 TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
   for (const double share : {1.0, 0.9}) {
     run_with(POSITION_FLUX_CONV);
-    const estimator_input_t in = {&drive.model, drive.samples.windows, 2, 0, false, false, false, nullptr};
+    const estimator_input_t in = {&inside::model(), inside::windows(), 2, 0, false, false, false, nullptr};
     const estimator_output_t there = {kThere, 0, 0, 32767}, low = {kHere, 0, 0, 32767};
     flux_source_follow(&drive, &there);
     blend(BLEND_LOW, share);
     (void)flux_source_beside(&drive, &in, &low);
     if (share == 1.0) {
-      EXPECT_EQ(drive.position.high.angle_bam, kHere);
+      EXPECT_EQ(inside::high_speed_estimate().angle_bam, kHere);
     } else {
-      EXPECT_NEAR(rad(drive.position.high.angle_bam - kThere), 0.0, 0.01);
+      EXPECT_NEAR(rad(inside::high_speed_estimate().angle_bam - kThere), 0.0, 0.01);
     }
   }
 }
@@ -206,7 +206,7 @@ TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
   EXPECT_TRUE(hold_is_on(&drive));
   EXPECT_TRUE(hold_step(&drive));
   EXPECT_EQ(brake_release_hold.left, 99u);
-  drive.state = DRIVE_STOP;
+  inside::state() = DRIVE_STOP;
   EXPECT_FALSE(hold_is_on(&drive));
   EXPECT_FALSE(hold_step(&drive));
   EXPECT_EQ(brake_release_hold.left, 99u);
@@ -219,13 +219,13 @@ TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
       for (const bool limited : {false, true}) {
         run_with(POSITION_OBSERVER);
         const std::int32_t now = sign * bpp_of(1000);
-        drive.position.selected.speed_bpp = drive.control.ramp.value = now;
-        drive.control.target_bpp = now + sign * change * bpp_of(500);
-        drive.limits = limited ? LIMIT_BRAKING : 0;
-        drive.schedule.task = TASK_SPEED;
+        inside::selected().speed_bpp = inside::speed_ramp().value = now;
+        inside::target_bpp() = now + sign * change * bpp_of(500);
+        inside::limits() = limited ? LIMIT_BRAKING : 0;
+        inside::schedule().task = TASK_SPEED;
         drive_control_speed(&drive);
         const bool waits = limited && change < 0;
-        EXPECT_EQ(drive.control.ramp.value == now, waits) << sign << change << limited;
+        EXPECT_EQ(inside::speed_ramp().value == now, waits) << sign << change << limited;
       }
     }
   }
@@ -235,25 +235,25 @@ TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
 // it; while the shaft runs up the observer gets the speed that the torque should have made.
 TEST_F(Position, TheObserverIsToldOfAnInertiaThatIsTakenBack) {
   run_with(POSITION_OBSERVER);
-  drive.config.mapped = true;
+  inside::config().mapped = true;
   parameters.inertia_adapt = 1;
   use_parameters();
-  inertia_match_t& s = drive.inertia;
+  inertia_match_t& s = inside::inertia();
   s.phase = INERTIA_SETTLE;
   s.ratio_q24 = raw(0.5, 24);
   s.before_q24 = raw(1.0, 24);
   s.ms = s.quiet_ms = 200;
   s.start_base_q8 = 0;
   s.base_q8 = s.mean_q8 = raw(4000.0, 8);  // the load came with the run-up and stayed
-  drive.position.torque_accel_q8 = s.base_q8;
-  drive.position.observer.load_accel_q8 = raw(300.0, 8);
-  drive.position.observer.speed_bpp = 777;
+  inside::torque_accel_q8() = s.base_q8;
+  inside::observer().load_accel_q8 = raw(300.0, 8);
+  inside::observer().speed_bpp = 777;
   drive_match_inertia(&drive);
   EXPECT_EQ(s.phase, INERTIA_REST);
   EXPECT_EQ(s.ratio_q24, raw(1.0, 24));
-  EXPECT_EQ(drive.position.observer.load_accel_q8, raw(600.0, 8));
-  EXPECT_EQ(drive.position.observer.speed_bpp, 777);
-  EXPECT_EQ(drive.model.accel_q12, drive.config.nameplate.accel_q12);
+  EXPECT_EQ(inside::observer().load_accel_q8, raw(600.0, 8));
+  EXPECT_EQ(inside::observer().speed_bpp, 777);
+  EXPECT_EQ(inside::model().accel_q12, inside::config().nameplate.accel_q12);
 }
 
 }  // namespace

@@ -20,28 +20,28 @@ class ProtectionLimits : public Drive {
     Drive::SetUp();
     make_run();
     polarity_watch.open = false;
-    drive.schedule.judges = false;
-    drive.modulation.state.is_alternating = false;
-    drive.samples.count = 1;
+    inside::schedule().judges = false;
+    inside::modulator().is_alternating = false;
+    inside::window_count() = 1;
     currents({0, 0});
   }
   static void currents(ab_t first, ab_t second = {0, 0}) {
-    drive.samples.windows[0].current_q20 = first;
-    drive.samples.windows[1].current_q20 = second;
+    inside::windows()[0].current_q20 = first;
+    inside::windows()[1].current_q20 = second;
   }
   static drive_fault_t judged() {
     drive_protect(&drive);
-    return drive.fault;
+    return inside::fault();
   }
 };
 
 TEST_F(ProtectionLimits, MissingSamplesAndLatePeriods) {
   for (const int bad : {0, 1}) {
     SetUp();
-    drive.supervision.missing = static_cast<std::uint16_t>(5 + bad);
+    inside::missing_windows() = static_cast<std::uint16_t>(5 + bad);
     EXPECT_EQ(judged(), bad != 0 ? FAULT_NO_SAMPLES : FAULT_NONE);
     SetUp();
-    drive.supervision.overrun = static_cast<std::uint16_t>(10 + bad);
+    inside::overruns() = static_cast<std::uint16_t>(10 + bad);
     EXPECT_EQ(judged(), bad != 0 ? FAULT_OVERRUN : FAULT_NONE);
   }
 }
@@ -50,10 +50,10 @@ TEST_F(ProtectionLimits, MissingSamplesAndLatePeriods) {
 TEST_F(ProtectionLimits, TheLinkAndTheCurrentMayReachTheirLimits) {
   for (const int bad : {0, 1}) {
     SetUp();
-    drive.samples.link_q16 = parameters.link_minimum - bad;
+    inside::link_q16() = parameters.link_minimum - bad;
     EXPECT_EQ(judged(), bad != 0 ? FAULT_LINK_LOW : FAULT_NONE);
     SetUp();
-    drive.samples.link_q16 = parameters.link_maximum + bad;
+    inside::link_q16() = parameters.link_maximum + bad;
     EXPECT_EQ(judged(), bad != 0 ? FAULT_LINK_HIGH : FAULT_NONE);
     for (const int sign : {1, -1}) {
       SetUp();
@@ -68,7 +68,7 @@ TEST_F(ProtectionLimits, TheLatestWindowIsLookedAt) {
   const ab_t much = {raw(18.5, 20), 0};
   for (const bool latest : {false, true}) {
     SetUp();
-    drive.samples.count = 2;
+    inside::window_count() = 2;
     latest ? currents({0, 0}, much) : currents(much);
     EXPECT_EQ(judged(), latest ? FAULT_CURRENT_LIMIT : FAULT_NONE);
   }
@@ -81,8 +81,8 @@ TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
     for (const bool runs : {false, true}) {
       for (const bool pin : {false, true}) {
         SetUp();
-        drive.state = DRIVE_START;
-        drive.flags.gates_off = meant;
+        inside::state() = DRIVE_START;
+        inside::flags().gates_off = meant;
         if (runs) drive_enter(&drive, DRIVE_RUN);
         board.gates_on = false;
         board.tripped_by_pin = pin;
@@ -94,9 +94,9 @@ TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
 
 TEST_F(ProtectionLimits, ADriveThatIsOffIsNotJudged) {
   for (const drive_state_t state : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY}) {
-    drive.state = state;
-    drive.supervision.missing = drive.supervision.overrun = 1000;
-    drive.samples.link_q16 = 0;
+    inside::state() = state;
+    inside::missing_windows() = inside::overruns() = 1000;
+    inside::link_q16() = 0;
     EXPECT_EQ(judged(), FAULT_NONE) << state;
   }
 }
@@ -107,15 +107,15 @@ TEST_F(ProtectionLimits, TheSpanOfThePapersWindowsIsThatOfAll) {
   for (const auto& [first, second] : {std::pair{4000, 0}, {1000, 3000}, {3000, 1000}}) {
     SetUp();
     use_source(POSITION_PAPER);
-    drive.schedule.judges = true;
-    drive.samples.count = second == 0 ? 1 : 2;
-    drive.samples.windows[0].span_ticks = static_cast<std::int16_t>(first);
-    drive.samples.windows[1].span_ticks = static_cast<std::int16_t>(second);
-    drive.position.avv.regression = {};
-    drive.position.avv.regression.information = 1;  // it has seen something
-    synchronism_reset(&drive.supervision.synchronism);
+    inside::schedule().judges = true;
+    inside::window_count() = second == 0 ? 1 : 2;
+    inside::windows()[0].span_ticks = static_cast<std::int16_t>(first);
+    inside::windows()[1].span_ticks = static_cast<std::int16_t>(second);
+    inside::avv().regression = {};
+    inside::avv().regression.information = 1;  // it has seen something
+    synchronism_reset(&inside::synchronism());
     (void)judged();
-    const synchronism_t& s = drive.supervision.synchronism;
+    const synchronism_t& s = inside::synchronism();
     if (second == 0) expected = s;
     ASSERT_GT(expected.limit_q16, 0);
     EXPECT_EQ(s.limit_q16, expected.limit_q16) << first;
@@ -128,23 +128,23 @@ TEST_F(ProtectionLimits, AvvBesideTheEncoderIsNoDoubtOfTheAngle) {
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER_AVV}) {
     SetUp();
     use_source(source);
-    drive.schedule.judges = true;
-    drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
-    drive.position.selected.speed_bpp = 0;
-    drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
-    drive.position.high.angle_bam = drive.position.low.angle_bam + bam(2.0);
-    synchronism_reset(&drive.supervision.synchronism);
+    inside::schedule().judges = true;
+    inside::windows()[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
+    inside::selected().speed_bpp = 0;
+    inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
+    inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(2.0);
+    synchronism_reset(&inside::synchronism());
     (void)judged();
-    EXPECT_EQ(drive.supervision.synchronism.debounce > 0, source == POSITION_OBSERVER_AVV);
+    EXPECT_EQ(inside::synchronism().debounce > 0, source == POSITION_OBSERVER_AVV);
   }
 }
 
 TEST_F(ProtectionLimits, TheRecordOfAFaultSaysWhatWas) {
-  drive.time_ms = 12345;
-  drive.state = DRIVE_STOP;
-  drive.position.selected.speed_bpp = bpp_of(600);
-  drive.samples.link_q16 = raw(287.5, 16);
-  drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};
+  inside::time_ms() = 12345;
+  inside::state() = DRIVE_STOP;
+  inside::selected().speed_bpp = bpp_of(600);
+  inside::link_q16() = raw(287.5, 16);
+  inside::current_dq_q20() = {raw(1.5, 20), raw(-2.5, 20)};
   drive_trip(&drive, FAULT_LINK_LOW);
   drive_trip(&drive, FAULT_OVERRUN);  // the first stays
   EXPECT_EQ(fault_history_total(), 1);

@@ -31,16 +31,16 @@ class Protection : public Drive {
   template <typename Hold>
   int while_running(int most, Hold hold) {
     int n = 0;
-    for (; n < most && drive.state == DRIVE_RUN; ++n) {
+    for (; n < most && inside::state() == DRIVE_RUN; ++n) {
       hold();
       period();
     }
     return n;
   }
   /// These windows are no machine's.
-  static void trust_synchronism() { drive.config.synchronism.bad_periods = 1000000; }
+  static void trust_synchronism() { inside::config().synchronism.bad_periods = 1000000; }
   static void hold_avv_apart() {
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x31C71C72u;
+    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam + 0x31C71C72u;
   }
 };
 
@@ -50,9 +50,9 @@ TEST_F(Protection, EachPhaseTripsInEitherDirection) {
     SetUp();
     make_run();
     period(window_with(a * 0.95, b * 0.95));
-    EXPECT_EQ(drive.state, DRIVE_RUN) << a;
+    EXPECT_EQ(inside::state(), DRIVE_RUN) << a;
     period(window_with(a, b));
-    EXPECT_EQ(drive.fault, FAULT_CURRENT_LIMIT) << a << " " << b;
+    EXPECT_EQ(inside::fault(), FAULT_CURRENT_LIMIT) << a << " " << b;
     EXPECT_FALSE(board.gates_on);
   }
 }
@@ -66,8 +66,8 @@ TEST_F(Protection, GatesThatGoOffByThemselvesAreNamedByTheirCause) {
     board.emergency = pressed;
     board.gates_on = false;  // the hardware, not the comparator
     period();
-    EXPECT_EQ(drive.state, DRIVE_FAULT);
-    EXPECT_EQ(drive.fault, pressed ? FAULT_EMERGENCY : FAULT_GATES_OFF);
+    EXPECT_EQ(inside::state(), DRIVE_FAULT);
+    EXPECT_EQ(inside::fault(), pressed ? FAULT_EMERGENCY : FAULT_GATES_OFF);
   }
 }
 
@@ -80,12 +80,12 @@ TEST_F(Protection, ASpeedFarBeyondTheLimitIsDivergence) {
     const auto speed = static_cast<std::int32_t>(bpp_of(3300) * share);
     const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
     const int n = while_running(2 * allowed, [&] {
-      drive.position.avv.observer.speed_bpp = speed;
-      drive.position.selected.speed_bpp = speed;
+      inside::avv().observer.speed_bpp = speed;
+      inside::selected().speed_bpp = speed;
     });
-    EXPECT_EQ(drive.state, share > 1.5 ? DRIVE_FAULT : DRIVE_RUN);
+    EXPECT_EQ(inside::state(), share > 1.5 ? DRIVE_FAULT : DRIVE_RUN);
     if (share > 1.5) {
-      EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+      EXPECT_EQ(inside::fault(), FAULT_DIVERGENCE);
       EXPECT_NEAR(n, allowed, 5);
     }
   }
@@ -109,11 +109,11 @@ TEST_F(Protection, WhatIsBesideTheEncoderCountsWhereItIsOne) {
     const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
     (void)while_running(3 * allowed, [&] {
       hold_avv_apart();
-      if (c.parameter == &parameters_t::flux_beside) drive.position.high.quality_q15 = 32767;
+      if (c.parameter == &parameters_t::flux_beside) inside::high_speed_estimate().quality_q15 = 32767;
     });
-    EXPECT_EQ(drive.state, c.counts ? DRIVE_FAULT : DRIVE_RUN) << c.value;
+    EXPECT_EQ(inside::state(), c.counts ? DRIVE_FAULT : DRIVE_RUN) << c.value;
     if (c.counts) {
-      EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+      EXPECT_EQ(inside::fault(), FAULT_DIVERGENCE);
     }
   }
 }
@@ -134,14 +134,14 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
     make_run();
     trust_synchronism();
     use_source(c.source);
-    drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    drive.schedule.judges = true;
-    drive.modulation.state.is_alternating = true;
-    drive.position.blend.region = c.region;
-    drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
-    drive.position.high.angle_bam = drive.position.low.angle_bam + bam(1.2);
+    inside::diverged_periods() = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+    inside::schedule().judges = true;
+    inside::modulator().is_alternating = true;
+    inside::blend().region = c.region;
+    inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
+    inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(1.2);
     drive_protect(&drive);
-    EXPECT_EQ(drive.fault, c.counts ? FAULT_DIVERGENCE : FAULT_NONE) << c.source << " " << c.region;
+    EXPECT_EQ(inside::fault(), c.counts ? FAULT_DIVERGENCE : FAULT_NONE) << c.source << " " << c.region;
   }
 }
 
@@ -153,34 +153,34 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
     trust_synchronism();
     parameters.divergence_limit = raw(50.0, 16);
     use_parameters();
-    drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    drive.schedule.judges = true;
-    drive.position.low.quality_q15 = drive.position.high.quality_q15 = 32767;
-    drive.position.high.angle_bam = drive.position.low.angle_bam + bam(part * 50.0 * kDegree);
+    inside::diverged_periods() = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+    inside::schedule().judges = true;
+    inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
+    inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(part * 50.0 * kDegree);
     drive_protect(&drive);
-    EXPECT_EQ(drive.fault, std::fabs(part) > 1.0 ? FAULT_DIVERGENCE : FAULT_NONE) << part;
+    EXPECT_EQ(inside::fault(), std::fabs(part) > 1.0 ? FAULT_DIVERGENCE : FAULT_NONE) << part;
   }
 }
 
 // A disagreement counts from divergence_limit on, and where it ends the time begins anew.
 TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   const auto apart = [](double degrees) {
-    drive.position.avv.observer.angle_bam = drive.position.high.angle_bam =
-        drive.position.encoder.angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
+    inside::avv().observer.angle_bam = inside::high_speed_estimate().angle_bam =
+        inside::encoder_observer().angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
   };
   make_run();
   trust_synchronism();
   const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
   (void)while_running(3 * allowed, [&] { apart(40.0); });  // AVV is pulled back a little before it is looked at
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   for (int n = 0; n < 3; ++n) {
     (void)while_running(allowed - 12, [&] { apart(70.0); });
-    ASSERT_EQ(drive.state, DRIVE_RUN);
+    ASSERT_EQ(inside::state(), DRIVE_RUN);
     (void)while_running(12, [&] { apart(0.0); });
   }
-  EXPECT_EQ(drive.supervision.diverged_periods, 0);
+  EXPECT_EQ(inside::diverged_periods(), 0);
   (void)while_running(3 * allowed, [&] { apart(70.0); });
-  EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+  EXPECT_EQ(inside::fault(), FAULT_DIVERGENCE);
 }
 
 // An estimator that says itself that it knows nothing disagrees with nobody.
@@ -189,13 +189,13 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
     SetUp();
     make_run();
     trust_synchronism();
-    drive.supervision.diverged_periods = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    drive.schedule.judges = true;
-    drive.position.low.quality_q15 = low;
-    drive.position.high.quality_q15 = high;
-    drive.position.high.angle_bam = drive.position.low.angle_bam + ANGLE_BAM_HALF_TURN;
+    inside::diverged_periods() = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
+    inside::schedule().judges = true;
+    inside::low_speed_estimate().quality_q15 = low;
+    inside::high_speed_estimate().quality_q15 = high;
+    inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + ANGLE_BAM_HALF_TURN;
     drive_protect(&drive);
-    EXPECT_EQ(drive.fault, (low != 0 && high != 0) ? FAULT_DIVERGENCE : FAULT_NONE) << low << " " << high;
+    EXPECT_EQ(inside::fault(), (low != 0 && high != 0) ? FAULT_DIVERGENCE : FAULT_NONE) << low << " " << high;
   }
 }
 
@@ -203,18 +203,18 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
 TEST_F(Protection, ResidualsAreJudgedOnce) {
   make_run();
   use_source(POSITION_OBSERVER);
-  drive.schedule.judges = true;
-  drive.config.synchronism.bad_periods = 0;
-  drive.config.synchronism.floor_q16 = raw(0.5, 16);
-  drive.config.synchronism.share_q15 = 0;
+  inside::schedule().judges = true;
+  inside::config().synchronism.bad_periods = 0;
+  inside::config().synchronism.floor_q16 = raw(0.5, 16);
+  inside::config().synchronism.share_q15 = 0;
   drive_protect(&drive);
-  EXPECT_EQ(drive.state, DRIVE_RUN) << "nothing was seen yet";
-  estimator_window_t w = drive.samples.windows[0];
+  EXPECT_EQ(inside::state(), DRIVE_RUN) << "nothing was seen yet";
+  estimator_window_t w = inside::windows()[0];
   w.change_q19 = raw_change({5.0, 5.0}, w.span_ticks);  // no machine of this model does that
-  const estimator_input_t in = {&drive.model, &w, 1, 0, false, false, false, nullptr};
-  for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
+  const estimator_input_t in = {&inside::model(), &w, 1, 0, false, false, false, nullptr};
+  for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&inside::observer(), &inside::config().observer, &in);
   drive_protect(&drive);
-  EXPECT_EQ(drive.fault, FAULT_SYNCHRONISM);
+  EXPECT_EQ(inside::fault(), FAULT_SYNCHRONISM);
 }
 
 // Beside the flux it is the observer's residuals that are judged, in their turns; alone the flux is judged by windows.
@@ -225,16 +225,16 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
       make_run();
       trust_synchronism();
       use_source(POSITION_FLUX_CONV);
-      drive.position.blend.region = alone ? BLEND_HIGH : BLEND_BOTH;
-      drive.position.blend.share_q15 = alone ? 0 : 16384;
+      inside::blend().region = alone ? BLEND_HIGH : BLEND_BOTH;
+      inside::blend().share_q15 = alone ? 0 : 16384;
       polarity_watch.open = false;
-      drive.schedule.judges = asked;
-      drive.modulation.state.is_alternating = true;
-      drive.position.observer.residual = {0, 0, 3000, 1};
-      drive.supervision.judged_at = static_cast<std::uint16_t>(drive.heartbeat - 1u);
+      inside::schedule().judges = asked;
+      inside::modulator().is_alternating = true;
+      inside::observer().residual = {0, 0, 3000, 1};
+      inside::judged_at() = static_cast<std::uint16_t>(inside::heartbeat() - 1u);
       drive_protect(&drive);
-      EXPECT_EQ(drive.position.observer.residual.span_ticks, (!alone && asked) ? 0 : 3000) << alone << asked;
-      EXPECT_EQ(drive.supervision.judged_at == drive.heartbeat, alone || asked) << alone << asked;
+      EXPECT_EQ(inside::observer().residual.span_ticks, (!alone && asked) ? 0 : 3000) << alone << asked;
+      EXPECT_EQ(inside::judged_at() == inside::heartbeat(), alone || asked) << alone << asked;
     }
   }
 }
@@ -245,22 +245,22 @@ TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
     SetUp();
     make_run();
     use_source(POSITION_PAPER);
-    drive.config.synchronism.bad_periods = 0;
-    drive.config.synchronism.floor_q16 = raw(0.5, 16);
-    drive.config.synchronism.share_q15 = 0;
-    drive.schedule.judges = true;
-    synchronism_reset(&drive.supervision.synchronism);
-    drive.samples.count = 1;
-    drive.samples.windows[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
-    drive.position.selected.speed_bpp = 0;
-    drive.position.avv.regression = {};
-    drive.position.avv.regression.mean_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
-    drive.position.avv.regression.information = seen ? 1000 : 0;
+    inside::config().synchronism.bad_periods = 0;
+    inside::config().synchronism.floor_q16 = raw(0.5, 16);
+    inside::config().synchronism.share_q15 = 0;
+    inside::schedule().judges = true;
+    synchronism_reset(&inside::synchronism());
+    inside::window_count() = 1;
+    inside::windows()[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
+    inside::selected().speed_bpp = 0;
+    inside::avv().regression = {};
+    inside::avv().regression.mean_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
+    inside::avv().regression.information = seen ? 1000 : 0;
     for (int n = 0; n < 8; ++n) {
-      drive.heartbeat++;
+      inside::heartbeat()++;
       drive_protect(&drive);
     }
-    EXPECT_EQ(drive.fault, seen ? FAULT_SYNCHRONISM : FAULT_NONE);
+    EXPECT_EQ(inside::fault(), seen ? FAULT_SYNCHRONISM : FAULT_NONE);
   }
 }
 
@@ -273,21 +273,21 @@ TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
       make_run();
       trust_synchronism();
       use_source(POSITION_OBSERVER);
-      drive.position.selected.speed_bpp = bpp_of(300);
-      drive.supervision.judged_bam = drive.position.selected.angle_bam = 0xFFFFF000u;  // and on past the turn's end
-      drive.supervision.judged_at = drive.heartbeat = 65533u;                          // and the counter's
+      inside::selected().speed_bpp = bpp_of(300);
+      inside::judged_bam() = inside::selected().angle_bam = 0xFFFFF000u;  // and on past the turn's end
+      inside::judged_at() = inside::heartbeat() = 65533u;                 // and the counter's
       const estimator_window_t still = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
-      const estimator_input_t in = {&drive.model, &still, 1, 0, false, false, false, nullptr};
-      (void)deviation_observer_step(&drive.position.observer, &drive.config.observer, &in);
-      synchronism_reset(&drive.supervision.synchronism);
-      drive.heartbeat = static_cast<decltype(drive.heartbeat)>(drive.heartbeat + static_cast<unsigned>(since));
-      drive.position.selected.angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
-      drive.schedule.judges = true;
+      const estimator_input_t in = {&inside::model(), &still, 1, 0, false, false, false, nullptr};
+      (void)deviation_observer_step(&inside::observer(), &inside::config().observer, &in);
+      synchronism_reset(&inside::synchronism());
+      inside::heartbeat() = static_cast<std::uint16_t>(inside::heartbeat() + static_cast<unsigned>(since));
+      inside::selected().angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
+      inside::schedule().judges = true;
       drive_protect(&drive);
-      const synchronism_t& s = drive.supervision.synchronism;
-      const double emf = real(drive.model.emf_q16, 16) * std::ldexp(bpp_of(ahead), -32) * kTurn;
+      const synchronism_t& s = inside::synchronism();
+      const double emf = real(inside::model().emf_q16, 16) * std::ldexp(bpp_of(ahead), -32) * kTurn;
       EXPECT_NEAR(real(s.turned_q16 - s.error_q16.q, 16), since <= 6 ? 0.25 * emf : 0.0, 0.01) << since;
-      EXPECT_EQ(drive.supervision.judged_bam, drive.position.selected.angle_bam);
+      EXPECT_EQ(inside::judged_bam(), inside::selected().angle_bam);
     }
   }
 }
@@ -301,19 +301,20 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     const std::int32_t speed = bpp_of(600);  // 40 V
     polarity_watch.open = true;
     polarity_watch.samples_invalid = false;
-    drive.position.selected.speed_bpp = polarity_watch.axis.speed_bpp = speed;
-    polarity_watch.axis.angle_bam = drive.position.selected.angle_bam;
-    drive.control.measured_q20 = {0, 0};
-    drive.control.command_q16 = {0, raw(reversed ? -40.0 : 40.0, 16)};
+    inside::selected().speed_bpp = polarity_watch.axis.speed_bpp = speed;
+    polarity_watch.axis.angle_bam = inside::selected().angle_bam;
+    inside::current_dq_q20() = {0, 0};
+    inside::command_dq_q16() = {0, raw(reversed ? -40.0 : 40.0, 16)};
     int n = 0;
-    for (; n < 400 && polarity_watch.open && drive.state == DRIVE_RUN; ++n) {
-      drive.schedule.slot = n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
-      drive.position.selected.angle_bam += static_cast<std::uint32_t>(speed);
+    for (; n < 400 && polarity_watch.open && inside::state() == DRIVE_RUN; ++n) {
+      inside::schedule().slot =
+          n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
+      inside::selected().angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
     }
     EXPECT_GT(n, 50);
-    EXPECT_EQ(drive.fault, reversed ? FAULT_POLARITY : FAULT_NONE);
-    EXPECT_EQ(drive.state, reversed ? DRIVE_FAULT : DRIVE_RUN);
+    EXPECT_EQ(inside::fault(), reversed ? FAULT_POLARITY : FAULT_NONE);
+    EXPECT_EQ(inside::state(), reversed ? DRIVE_FAULT : DRIVE_RUN);
     EXPECT_FALSE(polarity_watch.open);
   }
 }
@@ -327,9 +328,9 @@ TEST_F(Protection, AnEncoderThatIsTrimmedIsNotJudged) {
     use_parameters();
     (void)while_running(400, [] {
       board.encoder = (board.encoder + 4u) & 4095u;
-      drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+      inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
     });
-    EXPECT_EQ(drive.state, trimmed ? DRIVE_RUN : DRIVE_FAULT);
+    EXPECT_EQ(inside::state(), trimmed ? DRIVE_RUN : DRIVE_FAULT);
   }
 }
 
@@ -340,13 +341,13 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
     make_run();
     (void)while_running(400, [&] {
       board.encoder = (board.encoder + 4u) & 4095u;
-      drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+      inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
       polarity_watch.open = open;
       polarity_watch.samples_invalid = true;  // it has no say of its own for now
       polarity_watch.sign.expected_q16 = raw(8.0, 16);
       polarity_watch.sign.seen_q16 = raw(-3.0, 16);
     });
-    EXPECT_EQ(drive.fault, open ? FAULT_POLARITY : FAULT_SYNCHRONISM);
+    EXPECT_EQ(inside::fault(), open ? FAULT_POLARITY : FAULT_SYNCHRONISM);
   }
 }
 
@@ -360,21 +361,21 @@ TEST_F(Protection, EveryFaultOpensTheGatesBeforeAnythingElse) {
     EXPECT_FALSE(board.lit_with_gates_on) << fault;
     EXPECT_TRUE(board.lamp) << fault;
     periods(100);
-    EXPECT_EQ(drive.fault, fault) << "latched";
+    EXPECT_EQ(inside::fault(), fault) << "latched";
     EXPECT_FALSE(board.gates_on) << fault;
   }
 }
 
 TEST_F(Protection, TheFaultRecordSaysWhatWas) {
   make_run();
-  drive.control.measured_q20 = {raw(1.5, 20), raw(-2.5, 20)};
-  drive.time_ms = 12345;
+  inside::current_dq_q20() = {raw(1.5, 20), raw(-2.5, 20)};
+  inside::time_ms() = 12345;
   drive_trip(&drive, FAULT_LINK_LOW);
   drive_trip(&drive, FAULT_OVERRUN);  // the first stays
-  EXPECT_EQ(drive.fault, FAULT_LINK_LOW);
-  EXPECT_EQ(drive.periods, 0u);
-  EXPECT_EQ(drive.control.target_bpp, 0);
-  EXPECT_FALSE(drive.control.closed);
+  EXPECT_EQ(inside::fault(), FAULT_LINK_LOW);
+  EXPECT_EQ(inside::periods(), 0u);
+  EXPECT_EQ(inside::target_bpp(), 0);
+  EXPECT_FALSE(inside::loop_is_closed());
 }
 
 // The history counts as far as it can and goes on keeping the last.

@@ -75,8 +75,8 @@ TEST_F(RequestFields, StatusTellsHowTheDriveIs) {
   run(100);
   ASSERT_GE(store_progress(), 20);
   ASSERT_LT(store_progress(), 100);
-  drive.state = DRIVE_COMMISSION;
-  drive.fault = FAULT_STOP;
+  inside::state() = DRIVE_COMMISSION;
+  inside::fault() = FAULT_STOP;
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_MAP;
   commissioning.map.level = 3;
@@ -119,9 +119,9 @@ TEST_F(RequestFields, EveryErrorOfTheLinkHasItsPlace) {
 }
 
 TEST_F(RequestFields, AsManySignalsAsThereMayBe) {
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {-5, 0x12345678};
-  drive.position.low.angle_bam = 0x89ABCDEF;
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {-5, 0x12345678};
+  inside::low_speed_estimate().angle_bam = 0x89ABCDEF;
   Octets places, values;
   for (const std::uint16_t place : {0, 5, 9, 10, 0, 5, 9, 10, 0, 5, 9, 10, 0, 5, 10, 9}) {
     places = places + little(place, 2);
@@ -201,15 +201,15 @@ TEST_F(RequestFields, AScopeIsSetUpAsTold) {
 }
 
 TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).text(), "the scope is not set up yet");
   const Octets setup = little(1, 2) + little(300, 2) + Octets{SCOPE_SINGLE, SCOPE_AT_ONCE, 4, 0} + i32(0);
   ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, setup + Octets{2, 9, 0, 0, 10, 0, 0}).status(), OK);
   ASSERT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
   EXPECT_EQ(of(ask(REQUEST_SCOPE_STATE)), Octets{SCOPE_FILLING} + little(0, 2) + little(SCOPE_NOWHERE, 2) + i32(0));
   for (int k = 0; k < 2000; ++k) {
-    drive.control.measured_q20 = {k, -k};
-    drive.time_ms = static_cast<std::uint32_t>(0x01020000 + k);
+    inside::current_dq_q20() = {k, -k};
+    inside::time_ms() = static_cast<std::uint32_t>(0x01020000 + k);
     scope_step();
   }
   EXPECT_EQ(of(ask(REQUEST_SCOPE_STATE)),
@@ -226,10 +226,10 @@ TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
 }
 
 TEST_F(RequestFields, AStreamTakesItsSignalsInTheirOrder) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   Octets body = little(20, 2), values;
-  drive.control.measured_q20 = {-5, 0x12345678};
-  drive.position.low.angle_bam = 0x89ABCDEF;
+  inside::current_dq_q20() = {-5, 0x12345678};
+  inside::low_speed_estimate().angle_bam = 0x89ABCDEF;
   for (const std::uint16_t place : {9, 10, 5, 0, 9, 5, 10, 9}) {
     body = body + little(place, 2);
     values = values + i32(drive_signal(place, drive_known(&drive)));

@@ -122,7 +122,7 @@ TEST_F(Requests, ReadGetAndSet) {
   EXPECT_EQ(ask(REQUEST_PARAMETER_READ, little(0, 2) + little(33, 1)).status(), RANGE);
   EXPECT_EQ(set(86, 500 * 256).number(0, 4), 500u * 256u);
   EXPECT_EQ(ask(REQUEST_PARAMETER_GET, little(86, 2)).number(0, 4), 500u * 256u);
-  EXPECT_TRUE(drive.request.reload);
+  EXPECT_TRUE(inside::request().reload);
   EXPECT_EQ(ask(REQUEST_PARAMETER_GET, little(19, 2)).status(), UNKNOWN);
   EXPECT_EQ(set(19, 0).status(), UNKNOWN);
 }
@@ -132,7 +132,7 @@ TEST_F(Requests, ARefusalSaysWhy) {
   EXPECT_EQ(range.status(), RANGE);
   EXPECT_EQ(range.text(), "speed_limit = 7000.0 is outside of 10 .. 6000 rpm: nothing changed");
   EXPECT_EQ(parameter_get(9), 3300 * 256);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   const Answer running = set(9, 1000 * 256);
   EXPECT_EQ(running.status(), RUNNING);
   EXPECT_EQ(running.text(), "speed_limit may not change while the power stage is on: stop the drive first");
@@ -150,11 +150,11 @@ TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
             "set, but the drive does not start with it: window_maximum must be at least window_minimum "
             "(window_maximum = 10.00 us, window_minimum = 18.00 us)");
   EXPECT_EQ(parameter_get(43), 10 * 65536);
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_EQ(give(COMMAND_START).status(), CONFLICT);
-  EXPECT_FALSE(drive.request.start);
+  EXPECT_FALSE(inside::request().start);
   EXPECT_EQ(set(43, long_window).status(), OK);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   const Answer refused = set(43, 10 * 65536);
   EXPECT_EQ(refused.status(), CONFLICT);
   EXPECT_EQ(refused.text().substr(0, 30), "not taken while the drive runs");
@@ -163,27 +163,27 @@ TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
 
 TEST_F(Requests, Commands) {
   EXPECT_EQ(give(COMMAND_START).status(), STATE) << "not calibrated yet";
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_EQ(give(COMMAND_SPEED, 600 * 65536).status(), OK);
-  EXPECT_EQ(drive.control.command_rpm_q16, 600 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 600 * 65536);
   const Answer fast = give(COMMAND_SPEED, 4000 * 65536);
   EXPECT_EQ(fast.status(), RANGE);
   EXPECT_EQ(fast.text(), "4000.0 rpm is beyond speed_limit, 3300 rpm: nothing changed");
-  EXPECT_EQ(drive.control.command_rpm_q16, 600 * 65536);
+  EXPECT_EQ(inside::command_rpm_q16(), 600 * 65536);
   EXPECT_EQ(give(COMMAND_START).status(), OK);
-  EXPECT_TRUE(drive.request.start);
+  EXPECT_TRUE(inside::request().start);
   EXPECT_EQ(give(COMMAND_STOP).status(), OK);
-  EXPECT_TRUE(drive.request.stop);
-  EXPECT_FALSE(drive.request.start) << "a start that was not carried out yet must not outlive the stop";
+  EXPECT_TRUE(inside::request().stop);
+  EXPECT_FALSE(inside::request().start) << "a start that was not carried out yet must not outlive the stop";
   EXPECT_EQ(give(COMMAND_COMMISSION).status(), OK);
   EXPECT_EQ(give(COMMAND_COAST).status(), OK);
-  EXPECT_FALSE(drive.request.commission);
+  EXPECT_FALSE(inside::request().commission);
   EXPECT_EQ(give(COMMAND_RESET).status(), STATE);
-  drive.state = DRIVE_FAULT;
-  drive.fault = FAULT_STOP;
+  inside::state() = DRIVE_FAULT;
+  inside::fault() = FAULT_STOP;
   EXPECT_EQ(give(COMMAND_START).text(), "a fault is latched, reset it first: standstill not reached within stop_time");
   EXPECT_EQ(give(COMMAND_RESET).status(), OK);
-  EXPECT_TRUE(drive.request.reset);
+  EXPECT_TRUE(inside::request().reset);
   EXPECT_EQ(give(77).status(), UNKNOWN);
 }
 
@@ -206,19 +206,19 @@ TEST_F(Requests, TheStore) {
   (void)request_answer(COMM_WATCHDOG_SERIAL, load, 7, answer);
   EXPECT_EQ(answer[2], BUSY) << "at rest as well";
   run(20000);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_EQ(give(COMMAND_LOAD).status(), RUNNING);
   EXPECT_EQ(give(COMMAND_DEFAULTS).status(), RUNNING);
 }
 
 TEST_F(Requests, StatusAndSignals) {
-  drive.state = DRIVE_RUN;
-  drive.position.selected.speed_bpp = bpp_of(-123);
-  drive.control.ramp.value = bpp_of(600);
-  drive.limits = LIMIT_VOLTAGE | LIMIT_BRAKING;
+  inside::state() = DRIVE_RUN;
+  inside::selected().speed_bpp = bpp_of(-123);
+  inside::speed_ramp().value = bpp_of(600);
+  inside::limits() = LIMIT_VOLTAGE | LIMIT_BRAKING;
   const Answer a = ask(REQUEST_STATUS);
   ASSERT_EQ(a.body(), 25u);
-  EXPECT_NEAR(a.number(0, 4), drive.time_ms, 45);
+  EXPECT_NEAR(a.number(0, 4), inside::time_ms(), 45);
   EXPECT_EQ(a.number(4, 1), static_cast<unsigned>(DRIVE_RUN));
   EXPECT_EQ(a.number(6, 2), static_cast<unsigned>(LIMIT_VOLTAGE | LIMIT_BRAKING));
   EXPECT_NEAR(static_cast<std::int32_t>(a.number(8, 4)), -123 * 65536, 3);
@@ -237,9 +237,9 @@ TEST_F(Requests, FaultsWithTheirCircumstances) {
   EXPECT_EQ(ask(REQUEST_FAULT, {0}).status(), RANGE);
   make_run();
   board.tripped_by_pin = true;
-  drive.position.selected.speed_bpp = q_mul(drive.config.bpp_per_rpm_q8, 600 * 256, 16);
-  drive.control.measured_q20.q = 3 << 20;
-  const std::uint32_t then = drive.time_ms;
+  inside::selected().speed_bpp = q_mul(inside::config().bpp_per_rpm_q8, 600 * 256, 16);
+  inside::current_dq_q20().q = 3 << 20;
+  const std::uint32_t then = inside::time_ms();
   drive_trip(&drive, FAULT_OVER_CURRENT);
   drive_trip(&drive, FAULT_STOP);  // one that comes on top is none of its own
   const Answer a = ask(REQUEST_FAULT, {0});
@@ -254,8 +254,8 @@ TEST_F(Requests, FaultsWithTheirCircumstances) {
 
 TEST_F(Requests, TheHistoryKeepsTheLastSixteen) {
   for (int k = 0; k < 20; ++k) {
-    drive.state = DRIVE_READY;
-    drive.time_ms = static_cast<std::uint32_t>(100 + k);
+    inside::state() = DRIVE_READY;
+    inside::time_ms() = static_cast<std::uint32_t>(100 + k);
     drive_trip(&drive, FAULT_OFFSET);
   }
   EXPECT_EQ(fault_history_total(), 20);
@@ -350,10 +350,10 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   wrong[12] = 2;
   EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, wrong).status(), LENGTH);
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   for (int k = 0; k < 3000; ++k) {
-    drive.position.selected.speed_bpp = bpp_of(k);
-    drive.time_ms = static_cast<std::uint32_t>(k);
+    inside::selected().speed_bpp = bpp_of(k);
+    inside::time_ms() = static_cast<std::uint32_t>(k);
     scope_step();
   }
   const Answer state = ask(REQUEST_SCOPE_STATE);
@@ -371,16 +371,16 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
 
 TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
   drive_reset();
-  drive.time_ms = 5;
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20.d = 6;
+  inside::time_ms() = 5;
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20().d = 6;
   const std::uint16_t places[] = {9, 60000};
   std::int32_t values[2] = {-1, -1};
   EXPECT_EQ(drive_signals_copy(places, 2, values).time_ms, 5u);
   EXPECT_EQ(values[0], 6);
   EXPECT_EQ(values[1], 0);
   EXPECT_EQ(drive_signals_copy(places, 1, values).known, KNOWN_ROTOR | KNOWN_FRAME);
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   EXPECT_EQ(drive_signals_copy(places, 1, values).known, 0);
   EXPECT_EQ(values[0], 0);
 }

@@ -18,7 +18,7 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
   make_run();
   Random random(310);
   for (int n = 0; n < 300; ++n) {
-    const svpwm_pattern_t p = drive.modulation.sampled;
+    const svpwm_pattern_t p = inside::sampled_pattern();
     // a current of 3 A along phase a that rises by some codes in each window
     hal_adc_window_t w = still_window();
     const int base = 2048 + 307;
@@ -28,9 +28,9 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
     w.start_b = static_cast<std::uint16_t>(4 * (2048 - 153));
     w.end_b = static_cast<std::uint16_t>(3 * (2048 - 153));
     period(w);
-    ASSERT_EQ(drive.samples.count, p.window_count);
+    ASSERT_EQ(inside::window_count(), p.window_count);
     for (int k = 0; k < p.window_count; ++k) {
-      const estimator_window_t& e = drive.samples.windows[k];
+      const estimator_window_t& e = inside::windows()[k];
       const svpwm_window_t& from = p.windows[k];
       const int begin = from.start + static_cast<int>(HAL_ADC_START_DELAY_TICKS);
       const int end = from.end + static_cast<int>(HAL_ADC_END_DELAY_TICKS);
@@ -40,7 +40,7 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
       const double a = from.state & 1u, b = (from.state >> 1) & 1u, c = (from.state >> 2) & 1u;
       // less 0.95 V against each phase's current: a positive, b and c negative by half
       const double drop[] = {0.95, -0.95, -0.95};
-      const double link = real(drive.samples.link_q16, 16);
+      const double link = real(inside::link_q16(), 16);
       const Vector v = {(2.0 * a - b - c) / 3.0 * link - (2.0 * drop[0] - drop[1] - drop[2]) / 3.0,
                         (b - c) / std::sqrt(3.0) * link - (drop[1] - drop[2]) / std::sqrt(3.0)};
       // the link is filtered on from window to window: up to 0.05 V between this window and the last
@@ -49,7 +49,7 @@ TEST_F(Drive, WindowsCarryTheirTimesVoltagesAndSlopes) {
       // amperes per code are right to 4e-4
       ASSERT_NEAR(real(e.change_q19.alpha, 19), rise * 20.0 / 2048.0, 1e-5 + 4e-4 * std::abs(rise) * 20.0 / 2048.0);
     }
-    if (drive.state != DRIVE_RUN) break;
+    if (inside::state() != DRIVE_RUN) break;
   }
 }
 
@@ -73,36 +73,36 @@ TEST_F(Drive, ADriveAtRestIsNotLimited) {
   for (const bool closed : {false, true}) {
     SetUp();
     make_ready();
-    drive.control.closed = closed;
-    drive.control.measured_q20 = {raw(3.0, 20), 0};
-    drive.control.command_q16 = {0, 0};
-    drive.config.dead_time.drop_q16 = raw(5.0, 16);  // the modulator reckons with 10 V at least
-    dead_time_design(&drive.config.dead_time);
-    drive.samples.link_q16 = 0;
-    drive.limits = 0;
+    inside::loop_is_closed() = closed;
+    inside::current_dq_q20() = {raw(3.0, 20), 0};
+    inside::command_dq_q16() = {0, 0};
+    inside::config().dead_time.drop_q16 = raw(5.0, 16);  // the modulator reckons with 10 V at least
+    dead_time_design(&inside::config().dead_time);
+    inside::link_q16() = 0;
+    inside::limits() = 0;
     drive_modulate(&drive);
-    EXPECT_EQ(drive.limits & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
+    EXPECT_EQ(inside::limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
   }
 }
 
 TEST_F(Drive, LinkFilterSettlesOnTheMeasurement) {
   make_ready();
-  EXPECT_NEAR(real(drive.samples.link_q16, 16), 300.0, 0.06);  // half a code
+  EXPECT_NEAR(real(inside::link_q16(), 16), 300.0, 0.06);  // half a code
   for (int n = 0; n < 40; ++n) period(still_window(250.0));
-  EXPECT_NEAR(real(drive.samples.link_q16, 16), 250.0, 0.06);
+  EXPECT_NEAR(real(inside::link_q16(), 16), 250.0, 0.06);
 }
 
 TEST_F(Drive, EveryFrameIsOneThatTheHardwareCanDo) {
   make_run();
   Random random(311);
-  drive.config.synchronism.bad_periods = 1000000;  // the windows are no machine's: it is not the subject
+  inside::config().synchronism.bad_periods = 1000000;  // the windows are no machine's: it is not the subject
   drive_command_speed(raw(3000.0, 16));
-  for (int n = 0; n < 3000 && drive.state == DRIVE_RUN; ++n) {
+  for (int n = 0; n < 3000 && inside::state() == DRIVE_RUN; ++n) {
     board.encoder = (board.encoder + 20u) & 4095u;
     hal_adc_window_t w = still_window();
     w.start_a = static_cast<std::uint16_t>(4 * (2048 + random.below(800) - 400));
     w.end_a = static_cast<std::uint16_t>(3 * (2048 + random.below(800) - 400));
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;  // no divergence: it is not the subject
+    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;  // no divergence: it is not the subject
     period(w);
     const hal_pwm_frame_t& f = board.frame;
     for (int leg = 0; leg < 3; ++leg) {
@@ -138,20 +138,20 @@ void sample(const std::vector<hal_adc_window_t>& windows) {
 TEST_F(Drive, TheLinkIsAMeanOfEightWindows) {
   make_ready();
   for (const double before : {0.0, 260.0}) {
-    const auto count = static_cast<std::size_t>(drive.modulation.sampled.window_count);
+    const auto count = static_cast<std::size_t>(inside::sampled_pattern().window_count);
     ASSERT_GT(count, 1u);
-    drive.samples.link_q16 = raw(before, 16);
+    inside::link_q16() = raw(before, 16);
     std::vector<hal_adc_window_t> windows;
-    double mean = before == 0.0 ? real(still_window(300.0).link * drive.config.volts_per_code_q16, 16) : before;
+    double mean = before == 0.0 ? real(still_window(300.0).link * inside::config().volts_per_code_q16, 16) : before;
     mean *= (8.0 - static_cast<double>(count)) / 8.0;
     for (std::size_t k = 0; k < count; ++k) {
       windows.push_back(still_window(300.0 + 10.0 * static_cast<double>(k)));
-      mean += real(windows[k].link * drive.config.volts_per_code_q16, 16) / 8.0;
+      mean += real(windows[k].link * inside::config().volts_per_code_q16, 16) / 8.0;
     }
     sample(windows);
-    EXPECT_NEAR(real(drive.samples.link_q16, 16), mean, 1e-3) << before;
+    EXPECT_NEAR(real(inside::link_q16(), 16), mean, 1e-3) << before;
     for (std::size_t k = 0; k < count; ++k) {
-      EXPECT_EQ(drive.samples.link_end_q16[k], windows[k].link * drive.config.volts_per_code_q16) << k;
+      EXPECT_EQ(inside::link_end_q16()[k], windows[k].link * inside::config().volts_per_code_q16) << k;
     }
   }
 }
@@ -200,16 +200,16 @@ TEST_F(Drive, BuffersAreSwappedWithTheInterruptsHeldOff) {
 // What was learnt of the sensors is taken in its turn.
 TEST_F(Drive, TheSensorsScaleIsRenewedInItsTurn) {
   make_ready();
-  const slopes_scale_t before = drive.samples.scale;
-  drive.trim.mismatch_q30 = raw(0.02, 30);
-  drive.trim.offset_a_q8 += 512;
-  const slopes_scale_t renewed = slopes_scale(&drive.config.slopes, &drive.trim);
+  const slopes_scale_t before = inside::sensor_scale();
+  inside::sensor_trim().mismatch_q30 = raw(0.02, 30);
+  inside::sensor_trim().offset_a_q8 += 512;
+  const slopes_scale_t renewed = slopes_scale(&inside::config().slopes, &inside::sensor_trim());
   ASSERT_NE(std::memcmp(&before, &renewed, sizeof before), 0);
   for (const schedule_slot_t turn : {SLOT_REGRESSION, SCHEDULE_SLOTS, SLOT_VOLTAGE}) {
-    drive.schedule.slot = turn;
-    sample(std::vector<hal_adc_window_t>(drive.modulation.sampled.window_count, still_window()));
+    inside::schedule().slot = turn;
+    sample(std::vector<hal_adc_window_t>(inside::sampled_pattern().window_count, still_window()));
     const slopes_scale_t& expected = turn == SLOT_VOLTAGE ? renewed : before;
-    EXPECT_EQ(std::memcmp(&drive.samples.scale, &expected, sizeof expected), 0) << turn;
+    EXPECT_EQ(std::memcmp(&inside::sensor_scale(), &expected, sizeof expected), 0) << turn;
   }
 }
 

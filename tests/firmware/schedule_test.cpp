@@ -27,33 +27,33 @@ class Schedule : public Drive {
   /// In RUN with this source, at a known angle without current, at the end of a millisecond.
   static void run_with(std::int32_t source) {
     use_source(source);
-    ASSERT_TRUE(drive_config_load(&drive.config));
-    drive.state = DRIVE_RUN;
+    ASSERT_TRUE(drive_config_load(&inside::config()));
+    inside::state() = DRIVE_RUN;
     polarity_watch.open = false;
-    drive.periods = 100;
+    inside::periods() = 100;
     position_preset(&drive, 0, 0);
     know(0.01);
-    drive.control.measured_q20 = {0, 0};
-    drive.model.iq_q20 = 0;
-    drive.schedule = {};
-    drive.schedule.period = 9;
-    drive.schedule.last = SLOT_OPERATING_POINT;
+    inside::current_dq_q20() = {0, 0};
+    inside::model().iq_q20 = 0;
+    inside::schedule() = {};
+    inside::schedule().period = 9;
+    inside::schedule().last = SLOT_OPERATING_POINT;
   }
   /// The observer knows its angle to `share` of 5 degrees, with nothing gathered.
   static void know(double share) {
-    deviation_observer_t& o = drive.position.observer;
+    deviation_observer_t& o = inside::observer();
     o.p_aa = raw(32.0 * share, 20);
     o.gathered = {0, 0, 0, 0};
     o.load_is_new = false;
   }
-  static void leave_working_point() { drive.control.measured_q20.q = raw(0.13, 20); }
+  static void leave_working_point() { inside::current_dq_q20().q = raw(0.13, 20); }
 
   /// The next periods.
   static std::vector<schedule_t> next(int count) {
     std::vector<schedule_t> all;
     for (int k = 0; k < count; ++k) {
       schedule_next(&drive);
-      all.push_back(drive.schedule);
+      all.push_back(inside::schedule());
     }
     return all;
   }
@@ -78,7 +78,7 @@ TEST_F(Schedule, TurnsGoRoundAndEveryTaskHasItsPeriod) {
 
 // A start has no judgements and no renewals: all periods are turns but those of the speed and of the field.
 TEST_F(Schedule, BeforeTheShaftTurnsEveryPeriodIsATurnThatHasNoTask) {
-  drive.state = DRIVE_START;
+  inside::state() = DRIVE_START;
   know(1.1);
   int turn = 0;
   for (const schedule_t& s : next(40)) {
@@ -92,10 +92,10 @@ TEST_F(Schedule, BeforeTheShaftTurnsEveryPeriodIsATurnThatHasNoTask) {
 TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
   for (int before = 0; before < 10; ++before) {
     SetUp();
-    drive.state = DRIVE_START;
+    inside::state() = DRIVE_START;
     leave_working_point();
     next(before);
-    drive.flags.wants_exclusive = true;
+    inside::flags().wants_exclusive = true;
     schedule_t s = next(1)[0];
     const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;  // then it waits
     EXPECT_NE(s.exclusive, own);
@@ -103,14 +103,14 @@ TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
     EXPECT_TRUE(s.exclusive && s.skips);
     EXPECT_EQ(s.slot, SCHEDULE_SLOTS);
     EXPECT_FALSE(s.moves || s.renews || s.judges);
-    drive.flags.wants_exclusive = false;
+    inside::flags().wants_exclusive = false;
     EXPECT_FALSE(next(1)[0].exclusive);
   }
 }
 
 TEST_F(Schedule, OnlyAStartDecides) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION}) {
-    drive.flags.wants_exclusive = true;
+    inside::flags().wants_exclusive = true;
     drive_enter(&drive, state);
     EXPECT_FALSE(next(1)[0].exclusive) << state;
   }
@@ -128,7 +128,7 @@ TEST_F(Schedule, WhatCannotWaitTakesThreeTurnsInARowAtMost) {
   for (const bool moved : {true, false}) {
     SetUp();
     if (moved) leave_working_point();
-    if (!moved) drive.position.observer.gathered.periods = 7;  // a gain that gets old
+    if (!moved) inside::observer().gathered.periods = 7;  // a gain that gets old
     int given = 0, turns = 0;
     for (const schedule_t& s : next(40)) {
       if (s.task != TASK_SLOT) {
@@ -148,7 +148,7 @@ TEST_F(Schedule, WhatCannotWaitTakesThreeTurnsInARowAtMost) {
 
 TEST_F(Schedule, WorkingPointAndCovarianceTakeTurns) {
   leave_working_point();
-  drive.position.observer.load_is_new = true;
+  inside::observer().load_is_new = true;
   bool moved_last = false;
   int given = 0;
   for (const schedule_t& s : next(80)) {
@@ -164,7 +164,7 @@ TEST_F(Schedule, WorkingPointAndCovarianceTakeTurns) {
 // An eighth of an ampere is near enough.
 TEST_F(Schedule, AWorkingPointNearByCanWait) {
   for (const double off : {0.12, -0.12}) {
-    drive.control.measured_q20.q = raw(off, 20);
+    inside::current_dq_q20().q = raw(off, 20);
     for (const schedule_t& s : next(10)) EXPECT_FALSE(s.moves);
   }
 }
@@ -182,7 +182,7 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   }
   // Known, but with much to learn: the same, and the synchronism is judged.
   know(0.9);
-  drive.position.observer.gathered = {0, raw(1.0, 21), 0, 1};
+  inside::observer().gathered = {0, raw(1.0, 21), 0, 1};
   for (const schedule_t& s : next(10)) {
     EXPECT_TRUE(s.update_urgent && !s.unsure);
     const bool long_task = s.task == TASK_SPEED || s.task == TASK_FIELD;
@@ -192,19 +192,19 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
 }
 
 TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {
-  drive.periods = 9;
+  inside::periods() = 9;
   for (const schedule_t& s : next(10)) {
     EXPECT_FALSE(s.judges);
     EXPECT_TRUE(s.update_urgent && !s.unsure) << "how much its windows will tell is not known yet";
     EXPECT_NE(s.skips, s.renews);
   }
-  drive.periods = 10;
+  inside::periods() = 10;
   EXPECT_TRUE(next(2).back().judges);
 }
 
 TEST_F(Schedule, AHeldShaftMovesItsWorkingPointWithEveryTurn) {
   brake_release_hold.left = 1000;
-  drive.position.observer.load_is_new = true;
+  inside::observer().load_is_new = true;
   for (const schedule_t& s : next(40)) {
     EXPECT_TRUE(s.held);
     EXPECT_EQ(s.slot, SCHEDULE_SLOTS);
@@ -220,8 +220,8 @@ TEST_F(Schedule, SourcesWithoutTheObserverDoNotWaitForIt) {
     for (const bool alone : {false, true}) {
       run_with(source);
       know(1.1);
-      drive.position.blend.region = alone ? BLEND_HIGH : BLEND_LOW;
-      drive.position.blend.share_q15 = alone ? 0 : 32767;
+      inside::blend().region = alone ? BLEND_HIGH : BLEND_LOW;
+      inside::blend().share_q15 = alone ? 0 : 32767;
       const bool has =
           source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV || (source >= POSITION_FLUX_CONV && !alone);
       for (const schedule_t& s : next(10)) {
@@ -246,8 +246,8 @@ TEST_F(Schedule, BesideTheFluxLongTasksHaveTheirPeriodWithoutWindows) {
                {POSITION_ENCODER, BLEND_BOTH, 0.5, false}};
   for (const auto& c : cases) {
     run_with(c.source);
-    drive.position.blend.region = c.region;
-    drive.position.blend.share_q15 = static_cast<std::int32_t>(32767.0 * c.share);
+    inside::blend().region = c.region;
+    inside::blend().share_q15 = static_cast<std::int32_t>(32767.0 * c.share);
     for (const schedule_t& s : next(20)) {
       EXPECT_EQ(s.skips, c.skips && (s.task == TASK_SPEED || s.task == TASK_FIELD)) << c.source << c.region << s.period;
     }

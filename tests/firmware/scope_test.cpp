@@ -242,7 +242,7 @@ TEST_F(Scope, WhatIsUnknownIsNoNumber) {
   s.channel[2] = {signal_state, 0};
   arm(s);
   interrupts(4, -1);
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   scope_step();
   interrupts(1024, -1);
   for (std::uint16_t channel = 0; channel < 2; ++channel) {
@@ -279,7 +279,7 @@ TEST_F(Scope, WordsAreShiftedAndSaturated) {
 // In its place: the control interrupt records what it has just published, and the clock counts its milliseconds.
 TEST_F(Scope, RunsInTheControlInterrupt) {
   make_ready();
-  EXPECT_EQ(drive.time_ms, 40u);
+  EXPECT_EQ(inside::time_ms(), 40u);
   scope_setup_t s = counting();
   s.edge = SCOPE_AT_ONCE;
   s.channel[0] = {signal_state, 0};

@@ -23,10 +23,10 @@ class Scope : public Drive {
  protected:
   /// Interrupt number n: `current_d` is n, `current_q` what the test says.
   void interrupt(std::int32_t current = 0) {
-    drive.state = DRIVE_RUN;
-    drive.control.measured_q20.d = static_cast<std::int32_t>(n_);
-    drive.control.measured_q20.q = current;
-    drive.time_ms = n_ / 10u;
+    inside::state() = DRIVE_RUN;
+    inside::current_dq_q20().d = static_cast<std::int32_t>(n_);
+    inside::current_dq_q20().q = current;
+    inside::time_ms() = n_ / 10u;
     scope_step();
     n_++;
   }

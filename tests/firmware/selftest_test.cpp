@@ -109,7 +109,7 @@ TEST_F(SelfTest, SaysWhatIsWrong) {
 }
 
 TEST_F(SelfTest, DoesNotTouchTheRamWhileTheDriveRuns) {
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   whole_ram();
   EXPECT_EQ(selftest.pair, 0);
 }

@@ -35,30 +35,30 @@ class SpeedInput : public Drive {
     for (int ms = 0; ms < 8 * count; ++ms) {
       for (int n = 0; n < 10; ++n) period(w);
       board_service();
-      if (drive.state != DRIVE_RUN) continue;
-      drive.config.synchronism.bad_periods = 1000000;  // no machine behind these windows
+      if (inside::state() != DRIVE_RUN) continue;
+      inside::config().synchronism.bad_periods = 1000000;  // no machine behind these windows
       parameters.divergence_time = 1000;
       use_parameters();
     }
   }
-  static double asked_rpm() { return drive.control.command_rpm_q16 / 65536.0; }
+  static double asked_rpm() { return inside::command_rpm_q16() / 65536.0; }
 };
 
 TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {
   turns(3, true, 2048);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_EQ(asked_rpm(), 0.0);
   turns(1, false, 2048);
   EXPECT_EQ(::board.input, SPEED_INPUT_WAITS);
   turns(1, true, 0);
-  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
   EXPECT_FALSE(comm_watchdog_release()) << "the switch watches over its motor";
 }
 
 TEST_F(SpeedInput, TheConverterIsChosenForThreeMillisecondsInEight) {
   for (int n = 0; n < 10; ++n) period();
-  while (drive.time_ms % 8 != 0) {
+  while (inside::time_ms() % 8 != 0) {
     for (int n = 0; n < 10; ++n) period();
     board_service();
   }
@@ -96,9 +96,9 @@ TEST_F(SpeedInput, TheVoltageIsTheSpeed) {
 TEST_F(SpeedInput, OpeningTheSwitchStops) {
   turns(1, false, 0);
   turns(6, true, 0);
-  ASSERT_EQ(drive.state, DRIVE_RUN);
+  ASSERT_EQ(inside::state(), DRIVE_RUN);
   turns(2, false, 0);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
 }
 
@@ -107,13 +107,13 @@ TEST_F(SpeedInput, OpeningTheSwitchClearsAFaultAndClosingItDoesNot) {
   turns(6, true, 0);
   drive_trip(&drive, FAULT_LINK_LOW);
   turns(2, true, 0);
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
   turns(8, false, 0);
-  EXPECT_EQ(drive.state, DRIVE_READY);
-  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
+  EXPECT_EQ(inside::fault(), FAULT_NONE);
   drive_trip(&drive, FAULT_LINK_LOW);
   turns(2, true, 0);
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
   EXPECT_EQ(::board.input, SPEED_INPUT_WAITS);
 }
 
@@ -125,19 +125,19 @@ TEST_F(SpeedInput, ALostLiveZeroStopsAndStaysStopped) {
       parameters.speed_input_loss = reaction;
       turns(2, false, 410);
       turns(6, true, 410);
-      ASSERT_EQ(drive.state, DRIVE_RUN);
+      ASSERT_EQ(inside::state(), DRIVE_RUN);
       turns(2, true, code);
-      EXPECT_EQ(drive.state, DRIVE_RUN) << "16 ms";
+      EXPECT_EQ(inside::state(), DRIVE_RUN) << "16 ms";
       EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
       turns(1, true, 410);
       turns(2, true, code);
       EXPECT_EQ(::board.input, SPEED_INPUT_RUNS) << "counted anew";
       turns(2, true, code);
       EXPECT_EQ(::board.input, SPEED_INPUT_LOST);
-      EXPECT_EQ(drive.state, DRIVE_READY);
+      EXPECT_EQ(inside::state(), DRIVE_READY);
       EXPECT_FALSE(board.gates_on);
       turns(3, true, 2048);
-      EXPECT_EQ(drive.state, DRIVE_READY) << "the signal alone does not start it again";
+      EXPECT_EQ(inside::state(), DRIVE_READY) << "the signal alone does not start it again";
     }
   }
   for (const std::uint16_t code : {std::uint16_t{205}, std::uint16_t{3891}}) {
@@ -154,12 +154,12 @@ TEST_F(SpeedInput, LossCoastsWhereThatIsWanted) {
   parameters.speed_input_loss = 2;
   turns(1, false, 410);
   turns(6, true, 410);
-  ASSERT_EQ(drive.state, DRIVE_RUN);
-  drive.control.ramp.value = raw(0.01, 32);  // a shaft that turns would be brought to rest first
+  ASSERT_EQ(inside::state(), DRIVE_RUN);
+  inside::speed_ramp().value = raw(0.01, 32);  // a shaft that turns would be brought to rest first
   const int off = board.gates_off_calls;
   turns(3, true, 100);
   EXPECT_GT(board.gates_off_calls, off);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 TEST_F(SpeedInput, TheBoardsWordsSayWhatItDoes) {
@@ -182,11 +182,11 @@ TEST_F(SpeedInput, NotUsedItCommandsNothing) {
   parameters.speed_input = 0;
   turns(1, false, 4000);
   turns(3, true, 4000);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_EQ(::board.input, SPEED_INPUT_OFF);
   parameters.speed_input = 1;
   turns(2, true, 4000);
-  EXPECT_EQ(drive.state, DRIVE_READY) << "closed before it was used";
+  EXPECT_EQ(inside::state(), DRIVE_READY) << "closed before it was used";
 }
 
 // A switch that is closed when the input comes into use starts nothing, as at power-on.
@@ -199,10 +199,10 @@ TEST_F(SpeedInput, ASwitchClosedBeforehandStartsNothing) {
   turns(2, true, 0);  // but not when it was closed
   parameters.speed_input = 1;
   turns(3, true, 0);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   turns(1, false, 0);
   turns(6, true, 0);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 }  // namespace

@@ -17,11 +17,11 @@ class SpeedKnown : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    drive.position.selected = {0x20000000u, 123456, 1'000'000, 32767};
-    drive.position.low = drive.position.high = drive.position.selected;
-    drive.position.deviation_q20 = 1000;
+    inside::selected() = {0x20000000u, 123456, 1'000'000, 32767};
+    inside::low_speed_estimate() = inside::high_speed_estimate() = inside::selected();
+    inside::deviation_q20() = 1000;
     flux_observer.load_angle_bam = 0x01000000;
-    drive.control.measured_q20 = {raw(-1.5, 20), raw(2.5, 20)};
+    inside::current_dq_q20() = {raw(-1.5, 20), raw(2.5, 20)};
   }
   static void expect(bool known, const char* what) { expect(known, known, what); }
   static void expect(bool known, bool seen, const char* what) {
@@ -50,33 +50,33 @@ TEST_F(SpeedKnown, InTheStatesInWhichTheRotorIsFollowed) {
   const std::pair<drive_state_t, bool> states[] = {{DRIVE_BOOT, false}, {DRIVE_CALIBRATE, false}, {DRIVE_READY, false},
                                                    {DRIVE_RUN, true},   {DRIVE_STOP, true},       {DRIVE_FAULT, false}};
   for (const auto& [state, known] : states) {
-    drive.state = state;
+    inside::state() = state;
     expect(known, std::to_string(state).c_str());
   }
 }
 
 TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
-  drive.state = DRIVE_COMMISSION;
+  inside::state() = DRIVE_COMMISSION;
   expect(true, "it measures");
-  drive.flags.over = true;
+  inside::flags().over = true;
   expect(false, "the background level has the rest");
 }
 
 // Before the polarity is known the angle may be half a turn off; a vector that turns says nothing of the rotor.
 TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
-  drive.state = DRIVE_START;
+  inside::state() = DRIVE_START;
   for (const bool caught : {false, true}) {
-    drive.flags.caught = caught;
-    drive.flags.invalid = 0;
+    inside::flags().caught = caught;
+    inside::flags().invalid = 0;
     expect(caught, true, std::to_string(caught).c_str());
-    drive.flags.invalid = 1;
+    inside::flags().invalid = 1;
     expect(false, "the windows are of before");
   }
 }
 
 TEST_F(SpeedKnown, TheEncoderMakesNoDifference) {
   use_source(0);
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   expect(false, "its count has an angle only while the drive runs");
 }
 

@@ -21,17 +21,17 @@ class SpeedTask : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    drive.state = DRIVE_RUN;
+    inside::state() = DRIVE_RUN;
     polarity_watch.open = false;
-    drive.samples.link_q16 = raw(kLink, 16);
-    drive.control.current_limit_q20 = raw(10.0, 20);
-    drive.control.reference_q20 = {0, 0};
-    drive.control.ramp.value = drive.control.target_bpp = 0;
+    inside::link_q16() = raw(kLink, 16);
+    inside::current_limit_q20() = raw(10.0, 20);
+    inside::reference_dq_q20() = {0, 0};
+    inside::speed_ramp().value = inside::target_bpp() = 0;
     parameters.position_hold = 0;
     speed(0.0);
   }
   static void part(task_t task) {
-    drive.schedule.task = task;
+    inside::schedule().task = task;
     drive_control_speed(&drive);
   }
   static void millisecond() {
@@ -40,10 +40,10 @@ class SpeedTask : public Drive {
       drive_control_speed(&drive);
     }
   }
-  static void speed(double rad_per_s) { drive.position.selected = {0, bpp(rad_per_s), 0, 32767}; }
-  static double iq() { return real(drive.control.reference_q20.q, 20); }
-  static double id() { return real(drive.control.reference_q20.d, 20); }
-  static double torque_constant() { return real(machine_torque_constant_q24(&drive.model, 0), 24); }
+  static void speed(double rad_per_s) { inside::selected() = {0, bpp(rad_per_s), 0, 32767}; }
+  static double iq() { return real(inside::reference_dq_q20().q, 20); }
+  static double id() { return real(inside::reference_dq_q20().d, 20); }
+  static double torque_constant() { return real(machine_torque_constant_q24(&inside::model(), 0), 24); }
 };
 
 }  // namespace stillspin::test

@@ -24,30 +24,30 @@ TEST_F(SpeedTask, WeakeningSeesWhatTheModulatorHas) {
   parameters.weakening_limit = raw(7.0, 20);
   parameters.weakening_gain = 1234;
   use_parameters();
-  drive.control.command_q16 = {raw(-60.0, 16), raw(80.0, 16)};
-  drive.control.reference_q20.q = raw(3.0, 20);
+  inside::command_dq_q16() = {raw(-60.0, 16), raw(80.0, 16)};
+  inside::reference_dq_q20().q = raw(3.0, 20);
   for (const double w : {500.0, 1200.0, 1400.0, 3000.0}) {
     speed(w);
-    drive.control.weakening.trim_q20 = raw(-1.0, 20);
+    inside::field_weakening().trim_q20 = raw(-1.0, 20);
     part(TASK_FIELD);
     const field_weakening_input_t in = {
         bpp(w), raw(3.0, 20), raw(100.0, 16), raw(kLink / std::sqrt(3.0) * 0.92, 16), raw(7.0, 20), 1234};
     field_weakening_t expected = {raw(-1.0, 20)};
-    const std::int32_t current = field_weakening_step(&expected, &in, &drive.model);
-    EXPECT_NEAR(real(drive.control.weakening_q20, 20), real(current, 20), 1e-3) << w;
-    EXPECT_NEAR(real(drive.control.weakening.trim_q20, 20), real(expected.trim_q20, 20), 1e-4) << w;
+    const std::int32_t current = field_weakening_step(&expected, &in, &inside::model());
+    EXPECT_NEAR(real(inside::weakening_q20(), 20), real(current, 20), 1e-3) << w;
+    EXPECT_NEAR(real(inside::field_weakening().trim_q20, 20), real(expected.trim_q20, 20), 1e-4) << w;
   }
 }
 
 // In START nothing is weakened, but for a shaft that has been caught.
 TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
   const auto sees = [&](drive_state_t state, bool caught) {
-    drive.state = state;
-    drive.flags.caught = caught;
+    inside::state() = state;
+    inside::flags().caught = caught;
     constexpr std::int32_t kMark = 77;
-    drive.control.weakening_q20 = kMark;
+    inside::weakening_q20() = kMark;
     part(TASK_FIELD);
-    return drive.control.weakening_q20 != kMark;
+    return inside::weakening_q20() != kMark;
   };
   EXPECT_TRUE(sees(DRIVE_RUN, false));
   EXPECT_TRUE(sees(DRIVE_STOP, false));
@@ -61,8 +61,8 @@ TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
 TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   parameters.id_low_speed = raw(1.5, 20);
   use_parameters();
-  drive.control.reference_q20.q = raw(9.0, 20);
-  const double best = real(mtpa_current_q20(&drive.config.mtpa, raw(9.0, 20)), 20);
+  inside::reference_dq_q20().q = raw(9.0, 20);
+  const double best = real(mtpa_current_q20(&inside::config().mtpa, raw(9.0, 20)), 20);
   ASSERT_LT(best, -0.3);
   struct Case {
     double weakening;
@@ -83,15 +83,15 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   for (const Case& c : cases) {
     parameters.mtpa = c.mtpa;
     use_parameters();
-    drive.state = c.state;
-    drive.flags.spins = true;
-    drive.position.blend.region = c.region;
-    drive.control.weakening_q20 = raw(c.weakening, 20);
-    drive.control.reference_q20.q = raw(9.0, 20);
-    drive.limits = c.weakening < 0.0 ? 0 : LIMIT_WEAKENING;
+    inside::state() = c.state;
+    inside::flags().spins = true;
+    inside::blend().region = c.region;
+    inside::weakening_q20() = raw(c.weakening, 20);
+    inside::reference_dq_q20().q = raw(9.0, 20);
+    inside::limits() = c.weakening < 0.0 ? 0 : LIMIT_WEAKENING;
     part(TASK_SPEED);
     EXPECT_NEAR(id(), c.expected, 1e-4) << c.weakening << ", " << c.mtpa << ", " << c.region;
-    EXPECT_EQ((drive.limits & LIMIT_WEAKENING) != 0, c.weakening < 0.0);
+    EXPECT_EQ((inside::limits() & LIMIT_WEAKENING) != 0, c.weakening < 0.0);
   }
 }
 
@@ -108,18 +108,18 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
       {0.0, 10.0, 10.0, 0, 7, -2.1},   {-1.5, -10.0, 10.0, 0, 5, -0.6},      {3.0, 10.0, 10.0, 0, 7, 0.0},
       {0.0, -399.0, 10.0, 0, 7, -2.1}, {0.0, -401.0, 10.0, 0, 7, 0.0},       {0.0, 10.0, 3.0, 0, 7, -1.5},
       {0.0, 10.0, 10.0, 1, 7, 0.0},    {0.0, 10.0, 10.0, INT16_MAX, 7, 0.0}, {0.0, 10.0, 10.0, 0, 4, 0.0}};
-  drive.config.dead_time.certain_q20 = raw(0.7, 20);
-  drive.config.flux.adaptation.lowest_bpp = bpp(400.0);
+  inside::config().dead_time.certain_q20 = raw(0.7, 20);
+  inside::config().flux.adaptation.lowest_bpp = bpp(400.0);
   parameters.mtpa = 0;
   use_parameters();
   for (const Case& c : cases) {
     use_source(c.source);
-    drive.control.current_limit_q20 = raw(c.limit, 20);
-    drive.control.observability_q20 = 0;
-    drive.position.blend.share_q15 = c.share_q15;
+    inside::current_limit_q20() = raw(c.limit, 20);
+    inside::observability_q20() = 0;
+    inside::blend().share_q15 = c.share_q15;
     speed(c.speed);
     for (int n = 0; n < 200; ++n) {
-      drive.control.reference_q20.q = raw(c.iq, 20);
+      inside::reference_dq_q20().q = raw(c.iq, 20);
       part(TASK_SPEED);
       if (n == 0) {
         EXPECT_NEAR(id(), c.expected / 16.0, 1e-3) << c.iq << ", " << c.speed;
@@ -132,14 +132,14 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
 // What the largest current leaves beside i_d.
 TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
   for (const auto& [d, room] : {std::pair{0.0, 10.0}, {-6.0, 8.0}, {6.0, 8.0}, {-10.0, 0.0}, {-11.0, 0.0}}) {
-    drive.control.reference_q20.d = raw(d, 20);
+    inside::reference_dq_q20().d = raw(d, 20);
     EXPECT_NEAR(real(drive_current_headroom(&drive), 20), room, 1e-5) << d;
-    drive.control.weakening_q20 = raw(std::min(d, 0.0), 20);
+    inside::weakening_q20() = raw(std::min(d, 0.0), 20);
     parameters.id_low_speed = raw(std::max(d, 0.0), 20);
     parameters.mtpa = 0;
     use_parameters();
     part(TASK_SPEED);
-    EXPECT_NEAR(real(drive.control.headroom_q20, 20), room, 1e-5) << d;
+    EXPECT_NEAR(real(inside::headroom_q20(), 20), room, 1e-5) << d;
   }
 }
 
@@ -160,15 +160,15 @@ TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {
                                 {-16.0, 410.0},
                                 {19.0, 410.0}}) {
     speed(w);
-    drive.samples.link_q16 = raw(link, 16);
+    inside::link_q16() = raw(link, 16);
     part(TASK_SPEED);
     brake_limit_input_t in = {};
     in.link_q16 = raw(link, 16);
     in.start_q16 = raw(400.0, 16);
     in.end_q16 = raw(420.0, 16);
-    in.emf_q16 = raw(std::fabs(w) * 1e-4 * real(drive.model.emf_q16, 16), 16);
-    in.drop_q16 = raw(10.0 * real(drive.model.nominal_rs_q24, 24), 16);
-    EXPECT_NEAR(real(drive.control.braking_headroom_q20, 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01)
+    in.emf_q16 = raw(std::fabs(w) * 1e-4 * real(inside::model().emf_q16, 16), 16);
+    in.drop_q16 = raw(10.0 * real(inside::model().nominal_rs_q24, 24), 16);
+    EXPECT_NEAR(real(inside::braking_headroom_q20(), 20), real(brake_limit_q20(&in, raw(10.0, 20)), 20), 0.01)
         << w << ", " << link;
   }
 }
@@ -181,29 +181,29 @@ TEST_F(SpeedTask, ABrakingShaftKeepsToItsLimit) {
       parameters.link_regulation = raw(400.0, 16);
       parameters.link_maximum = raw(430.0, 16);
       use_parameters();
-      drive.samples.link_q16 = raw(415.0, 16);
-      drive.control.current_limit_q20 = raw(8.0, 20);
+      inside::link_q16() = raw(415.0, 16);
+      inside::current_limit_q20() = raw(8.0, 20);
       speed(sign * 300.0);
-      drive.control.ramp.value = drive.control.target_bpp = bpp(sign * (300.0 + change * 250.0));
+      inside::speed_ramp().value = inside::target_bpp() = bpp(sign * (300.0 + change * 250.0));
       for (int n = 0; n < 5; ++n) part(TASK_SPEED);
       const bool brakes = change < 0.0;
-      const double braking = real(drive.control.braking_headroom_q20, 20);
+      const double braking = real(inside::braking_headroom_q20(), 20);
       ASSERT_GT(braking, 0.5);
       ASSERT_LT(braking, 6.0);
       EXPECT_NEAR(iq(), sign * change * (brakes ? braking : 8.0), 1e-4) << sign << change;
-      EXPECT_EQ((drive.limits & LIMIT_BRAKING) != 0, brakes);
-      EXPECT_EQ((drive.limits & LIMIT_CURRENT) != 0, !brakes);
+      EXPECT_EQ((inside::limits() & LIMIT_BRAKING) != 0, brakes);
+      EXPECT_EQ((inside::limits() & LIMIT_CURRENT) != 0, !brakes);
     }
   }
 }
 
 TEST_F(SpeedTask, WithinItsLimitsNoLimitIsSaid) {
-  drive.control.weakening_q20 = raw(-1.0, 20);
-  drive.limits = LIMIT_BRAKING | LIMIT_CURRENT | LIMIT_WEAKENING;
+  inside::weakening_q20() = raw(-1.0, 20);
+  inside::limits() = LIMIT_BRAKING | LIMIT_CURRENT | LIMIT_WEAKENING;
   speed(100.0);
-  drive.control.ramp.value = drive.control.target_bpp = bpp(100.0);
+  inside::speed_ramp().value = inside::target_bpp() = bpp(100.0);
   part(TASK_SPEED);
-  EXPECT_EQ(drive.limits, LIMIT_WEAKENING) << "that one weakening renews itself";
+  EXPECT_EQ(inside::limits(), LIMIT_WEAKENING) << "that one weakening renews itself";
 }
 
 // The load that the observer sees is balanced at once, less what friction is part of it.
@@ -211,10 +211,10 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
   const auto current = [&](double w, double load_nm) {
     SetUp();
     speed(w);
-    drive.control.ramp.value = drive.control.target_bpp = bpp(w);
-    drive.config.friction_per_bpp_q40 = raw(0.002 / 4.0 * kTurn / kPeriod / 4294967296.0, 40);  // 2 mNms, mechanical
-    drive.position.selected.load_accel_q8 =
-        static_cast<std::int32_t>(load_nm * real(drive.model.accel_q12, 12) * 256.0);
+    inside::speed_ramp().value = inside::target_bpp() = bpp(w);
+    inside::config().friction_per_bpp_q40 =
+        raw(0.002 / 4.0 * kTurn / kPeriod / 4294967296.0, 40);  // 2 mNms, mechanical
+    inside::selected().load_accel_q8 = static_cast<std::int32_t>(load_nm * real(inside::model().accel_q12, 12) * 256.0);
     part(TASK_SPEED);
     return iq();
   };
@@ -228,15 +228,15 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
 // While a start's hold has the torque, the speed law waits where it will go on from: the current less the load's.
 TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
   use_source(POSITION_OBSERVER);
-  ASSERT_TRUE(drive_config_load(&drive.config));
+  ASSERT_TRUE(drive_config_load(&inside::config()));
   brake_release_hold.left = 5;
   brake_release_hold.reference_bam = 0;
   part(TASK_SPEED);
-  drive.control.reference_q20.q = raw(3.0, 20);
-  drive.position.selected.load_accel_q8 = static_cast<std::int32_t>(1.2 * real(drive.model.accel_q12, 12) * 256.0);
+  inside::reference_dq_q20().q = raw(3.0, 20);
+  inside::selected().load_accel_q8 = static_cast<std::int32_t>(1.2 * real(inside::model().accel_q12, 12) * 256.0);
   part(TASK_SPEED);
   EXPECT_EQ(brake_release_hold.left, 3u);
-  EXPECT_NEAR(real(drive.control.speed.current_q20, 20), iq() - 1.2 / torque_constant(), 2e-3);
+  EXPECT_NEAR(real(inside::speed_controller().current_q20, 20), iq() - 1.2 / torque_constant(), 2e-3);
   EXPECT_GT(iq(), 2.2);
 }
 
@@ -259,18 +259,18 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
                         {-0.0533, 0.0, 0.0, -3.0}}) {
     SetUp();
     use_source(POSITION_OBSERVER);
-    ASSERT_TRUE(drive_config_load(&drive.config));
+    ASSERT_TRUE(drive_config_load(&inside::config()));
     part(TASK_SPEED);
     parameters.hold_time = 1;
     use_parameters();
     hold_begin(&drive);
     brake_release_hold.reference_bam = bam(0.3 + c.off);
     const double w = 50.0;
-    drive.control.ramp.value = bpp(w);
-    const double per_nm = real(drive.model.accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod;
-    drive.position.selected = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
-                               static_cast<std::int32_t>(c.load_nm * real(drive.model.accel_q12, 12) * 256.0), 32767};
-    drive.control.reference_q20.q = raw(c.iq, 20);
+    inside::speed_ramp().value = bpp(w);
+    const double per_nm = real(inside::model().accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod;
+    inside::selected() = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
+                          static_cast<std::int32_t>(c.load_nm * real(inside::model().accel_q12, 12) * 256.0), 32767};
+    inside::reference_dq_q20().q = raw(c.iq, 20);
     ASSERT_TRUE(hold_step(&drive));
     const double per_ampere = per_nm * torque_constant();
     const double above = c.iq - c.load_nm / torque_constant();
@@ -290,86 +290,86 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     parameters.inertia_adapt = 1;
     use_parameters();
     use_source(POSITION_OBSERVER);
-    drive.config.mapped = true;
-    drive_control_t& c = drive.control;
-    drive.time_ms = kMark;
+    inside::config().mapped = true;
+    drive_control_t& c = inside::control();
+    inside::time_ms() = kMark;
     c.weakening_q20 = kMark;
-    drive.inertia.ms = kMark;
+    inside::inertia().ms = kMark;
     c.reference_q20.d = kMark;
     c.headroom_q20 = raw(3.0, 20);
     c.braking_headroom_q20 = kMark;
-    drive.schedule.period = static_cast<std::uint16_t>((k + 9) % 10);
+    inside::schedule().period = static_cast<std::uint16_t>((k + 9) % 10);
     schedule_next(&drive);
     drive_control_speed(&drive);
-    EXPECT_EQ(drive.time_ms != kMark, k == 0);
+    EXPECT_EQ(inside::time_ms() != kMark, k == 0);
     EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;
     EXPECT_EQ(c.braking_headroom_q20 != kMark, k == 0) << k;
     EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
-    EXPECT_EQ(drive.inertia.ms != kMark, k == 6) << k;
+    EXPECT_EQ(inside::inertia().ms != kMark, k == 6) << k;
     EXPECT_EQ(c.reference_q20.d != kMark, k == 0) << k;
   }
 }
 
 // A millisecond counts as one, and nothing is controlled while nothing turns.
 TEST_F(SpeedTask, AMillisecondHasTenPeriods) {
-  const std::uint32_t before = drive.time_ms;
+  const std::uint32_t before = inside::time_ms();
   millisecond();
   millisecond();
-  EXPECT_EQ(drive.time_ms, before + 2);
-  drive.state = DRIVE_READY;
-  drive.control.ramp.value = 0;
-  drive.control.target_bpp = 1000000;
+  EXPECT_EQ(inside::time_ms(), before + 2);
+  inside::state() = DRIVE_READY;
+  inside::speed_ramp().value = 0;
+  inside::target_bpp() = 1000000;
   millisecond();
-  EXPECT_EQ(drive.time_ms, before + 3);
-  EXPECT_EQ(drive.control.ramp.value, 0);
+  EXPECT_EQ(inside::time_ms(), before + 3);
+  EXPECT_EQ(inside::speed_ramp().value, 0);
 }
 
 // The ramp moves by its step in each millisecond and in STOP to zero; where there is none the reference jumps.
 TEST_F(SpeedTask, TheRampLeadsToItsTarget) {
-  drive.config.ramp_step_bpp = 1000;
-  drive.control.target_bpp = 5000000;
+  inside::config().ramp_step_bpp = 1000;
+  inside::target_bpp() = 5000000;
   part(TASK_SPEED);
   part(TASK_SPEED);
-  EXPECT_EQ(drive.control.ramp.value, 2000);
-  drive.state = DRIVE_STOP;
+  EXPECT_EQ(inside::speed_ramp().value, 2000);
+  inside::state() = DRIVE_STOP;
   part(TASK_SPEED);
-  EXPECT_EQ(drive.control.ramp.value, 1000);
-  drive.state = DRIVE_RUN;
-  drive.config.ramp_step_bpp = 0;
+  EXPECT_EQ(inside::speed_ramp().value, 1000);
+  inside::state() = DRIVE_RUN;
+  inside::config().ramp_step_bpp = 0;
   part(TASK_SPEED);
-  EXPECT_EQ(drive.control.ramp.value, 5000000);
+  EXPECT_EQ(inside::speed_ramp().value, 5000000);
 }
 
 // The law is told where the ramp is and by how much it moves on; where there is none, where it has jumped to.
 TEST_F(SpeedTask, TheLawFollowsTheRampAndJumpsWithoutOne) {
   for (const std::int32_t step : {20000, 0}) {
     SetUp();
-    drive.config.ramp_step_bpp = step;
-    drive.control.ramp.value = 300000;
-    drive.control.target_bpp = 500000;
-    speed_controller_t law = drive.control.speed;
+    inside::config().ramp_step_bpp = step;
+    inside::speed_ramp().value = 300000;
+    inside::target_bpp() = 500000;
+    speed_controller_t law = inside::speed_controller();
     const speed_controller_input_t in = {step > 0 ? 300000 : 500000, step, 0, 0, raw(-10.0, 20), raw(10.0, 20)};
     part(TASK_SPEED);
-    EXPECT_EQ(drive.control.reference_q20.q, speed_controller_step(&law, SPEED_PREDICTIVE, &in)) << step;
+    EXPECT_EQ(inside::reference_dq_q20().q, speed_controller_step(&law, SPEED_PREDICTIVE, &in)) << step;
   }
 }
 
 // Told to stand, a shaft keeps its place: only in RUN, with the ramp at zero too, and from a speed on that is at rest.
 TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
   parameters.position_hold = 1280;
-  ASSERT_TRUE(drive_config_load(&drive.config));
+  ASSERT_TRUE(drive_config_load(&inside::config()));
   const auto holds = [&](drive_state_t state, std::int32_t target, std::int32_t ramp, std::int32_t now, bool before) {
-    drive.state = state;
-    drive.control.target_bpp = target;
-    drive.config.ramp_step_bpp = 1;
-    drive.control.ramp.value = ramp;
-    drive.position.selected.speed_bpp = now;
-    position_hold_release(&drive.control.position_hold);
-    if (before) (void)position_hold_step(&drive.control.position_hold, 0, drive.config.hold_gain_q30);
+    inside::state() = state;
+    inside::target_bpp() = target;
+    inside::config().ramp_step_bpp = 1;
+    inside::speed_ramp().value = ramp;
+    inside::selected().speed_bpp = now;
+    position_hold_release(&inside::position_hold());
+    if (before) (void)position_hold_step(&inside::position_hold(), 0, inside::config().hold_gain_q30);
     part(TASK_SPEED);
-    return drive.control.position_hold.holding;
+    return inside::position_hold().holding;
   };
-  const std::int32_t rest = drive.config.hold_below_bpp;
+  const std::int32_t rest = inside::config().hold_below_bpp;
   ASSERT_GT(rest, 10);
   EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, 0, false));
   EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, rest - 1, false));

@@ -15,16 +15,16 @@ class Stall : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    drive.state = DRIVE_RUN;
-    drive.loading = false;
-    drive.samples.link_q16 = raw(300.0, 16);
+    inside::state() = DRIVE_RUN;
+    inside::loading() = false;
+    inside::link_q16() = raw(300.0, 16);
     refer(100);
-    drive.limits = LIMIT_CURRENT;
+    inside::limits() = LIMIT_CURRENT;
     parameters.stall_time = 500;
   }
-  static void refer(int rpm) { drive.control.ramp.value = rpm < 0 ? -bpp_of(-rpm) : bpp_of(rpm); }
+  static void refer(int rpm) { inside::speed_ramp().value = rpm < 0 ? -bpp_of(-rpm) : bpp_of(rpm); }
   static void look() {
-    drive.time_ms++;
+    inside::time_ms()++;
     board_service();
   }
   /// Milliseconds until the fault, `most` without one; the shaft turns at rpm meanwhile.
@@ -32,20 +32,20 @@ class Stall : public Drive {
     double angle = 0.0;
     for (int n = 1; n <= most; ++n) {
       angle += rpm / 60.0 * 4.0 * 360.0 * 1e-3;
-      drive.position.selected.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
-      drive.position.selected.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
+      inside::selected().angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
+      inside::selected().speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
       look();
-      if (drive.state == DRIVE_FAULT) return n;
+      if (inside::state() == DRIVE_FAULT) return n;
     }
     return most;
   }
   void expect_none(double rpm) {
     EXPECT_EQ(looks_to_fault(rpm, 5000), 5000) << rpm;
-    EXPECT_EQ(drive.fault, FAULT_NONE) << rpm;
+    EXPECT_EQ(inside::fault(), FAULT_NONE) << rpm;
   }
   void expect_stall(double rpm) {
     EXPECT_NEAR(looks_to_fault(rpm, 5000), 501, 2) << rpm;
-    EXPECT_EQ(drive.fault, FAULT_STALL) << rpm;
+    EXPECT_EQ(inside::fault(), FAULT_STALL) << rpm;
   }
 };
 
@@ -68,24 +68,24 @@ TEST_F(Stall, NeverAtAReferenceOfZero) {
 
 TEST_F(Stall, NotBelowTheLimitOfTheCurrent) {
   for (const int limits : {0, int(LIMIT_VOLTAGE), int(LIMIT_WEAKENING | LIMIT_BRAKING | LIMIT_OVERRUN)}) {
-    drive.limits = limits;
+    inside::limits() = limits;
     expect_none(0.0);
   }
 }
 
 TEST_F(Stall, NotInAnotherStateThanRun) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_STOP, DRIVE_COMMISSION}) {
-    drive.state = state;
+    inside::state() = state;
     expect_none(0.0);
-    EXPECT_EQ(drive.state, state);
+    EXPECT_EQ(inside::state(), state);
   }
 }
 
 // More than a quarter of a turn between two looks: the angle alone would not tell which way.
 TEST_F(Stall, ASpeedBeyondWhatTwoLooksTellIsNone) {
-  drive.position.selected.speed_bpp = bpp_of(40000);
+  inside::selected().speed_bpp = bpp_of(40000);
   for (int n = 0; n < 2000; ++n) look();
-  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_EQ(inside::fault(), FAULT_NONE);
 }
 
 TEST_F(Stall, ZeroSwitchesItOff) {
@@ -109,8 +109,8 @@ TEST_F(Stall, AShaftThatGetsOnIsNone) {
 
 TEST_F(Stall, TheRestlessAngleOfABlockedShaftDoesNotHideIt) {
   int n = 0;
-  for (; n < 5000 && drive.state == DRIVE_RUN; ++n) {
-    drive.position.selected.angle_bam =
+  for (; n < 5000 && inside::state() == DRIVE_RUN; ++n) {
+    inside::selected().angle_bam =
         static_cast<std::uint32_t>(static_cast<std::int64_t>((n % 2 == 0 ? 3.5 : -3.5) * kDegree));
     look();
   }
@@ -120,18 +120,18 @@ TEST_F(Stall, TheRestlessAngleOfABlockedShaftDoesNotHideIt) {
 // The noise of the speed takes a blocked shaft off the limit now and then; it is found all the same.
 TEST_F(Stall, AMomentOffTheLimitTakesFourBack) {
   EXPECT_EQ(looks_to_fault(0.0, 400), 400);
-  drive.limits = 0;
+  inside::limits() = 0;
   look();
-  drive.limits = LIMIT_CURRENT;
+  inside::limits() = LIMIT_CURRENT;
   EXPECT_NEAR(looks_to_fault(0.0, 5000), 105, 2);
-  EXPECT_EQ(drive.fault, FAULT_STALL);
+  EXPECT_EQ(inside::fault(), FAULT_STALL);
 }
 
 TEST_F(Stall, OffTheLimitForAFifthOfTheTimeBeginsAnew) {
   EXPECT_EQ(looks_to_fault(0.0, 400), 400);
-  drive.limits = 0;
+  inside::limits() = 0;
   for (int n = 0; n < 100; ++n) look();
-  drive.limits = LIMIT_CURRENT;
+  inside::limits() = LIMIT_CURRENT;
   expect_stall(0.0);
 }
 
@@ -144,10 +144,10 @@ TEST_F(Stall, AReversalIsNone) {
     for (int n = 0; n < 10000; ++n) {
       const double rpm = direction * (-1500.0 + 0.3 * n);
       angle += rpm / 60.0 * 4.0 * 360.0 * 1e-3;
-      drive.position.selected.angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
-      drive.position.selected.speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
+      inside::selected().angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(angle * kDegree));
+      inside::selected().speed_bpp = rpm < 0 ? -bpp_of(int(-rpm)) : bpp_of(int(rpm));
       look();
-      ASSERT_EQ(drive.fault, FAULT_NONE) << rpm;
+      ASSERT_EQ(inside::fault(), FAULT_NONE) << rpm;
     }
   }
 }

@@ -19,21 +19,21 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
   for (const double stray : {14.9, -14.9, 15.1, -15.1}) {
     SetUp();
     catch_at(300.0, 1.0);
-    ASSERT_EQ(drive.found.phase, START_CATCH);
+    ASSERT_EQ(inside::start_found().phase, START_CATCH);
     starting.learnt = true;
-    starting.stray = drive.position.avv.error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
+    starting.stray = inside::avv().error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
     starting.tick = 138;
     start_state.step(&drive);
-    EXPECT_EQ(drive.found.phase, START_CATCH) << "not before its time";
-    EXPECT_FALSE(drive.flags.wants_exclusive);
+    EXPECT_EQ(inside::start_found().phase, START_CATCH) << "not before its time";
+    EXPECT_FALSE(inside::flags().wants_exclusive);
     starting.tick = 139;
     start_state.step(&drive);
-    EXPECT_EQ(drive.found.phase, START_CATCH) << "not beside anything else";
-    EXPECT_TRUE(drive.flags.wants_exclusive);
-    drive.schedule.exclusive = true;
+    EXPECT_EQ(inside::start_found().phase, START_CATCH) << "not beside anything else";
+    EXPECT_TRUE(inside::flags().wants_exclusive);
+    inside::schedule().exclusive = true;
     start_state.step(&drive);
     const bool follows = std::fabs(stray) < 15.0;
-    EXPECT_EQ(drive.state, follows ? DRIVE_RUN : DRIVE_START) << stray;
+    EXPECT_EQ(inside::state(), follows ? DRIVE_RUN : DRIVE_START) << stray;
     EXPECT_EQ(starting.tries, follows ? 0 : 1);
     EXPECT_EQ(board.gates_on, follows);
   }
@@ -43,19 +43,19 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
   starting.stray = 99;
   starting.learnt = true;
   starting.axis.count = 5;
-  drive.control.weakening.trim_q20 = raw(-3.0, 20);
+  inside::field_weakening().trim_q20 = raw(-3.0, 20);
   catch_at(300.0, 1.0);
   const drive_start_t& s = starting;
-  ASSERT_EQ(drive.found.phase, START_CATCH);
-  EXPECT_TRUE(drive.flags.caught);
-  EXPECT_FALSE(drive.flags.shorted || s.learnt);
+  ASSERT_EQ(inside::start_found().phase, START_CATCH);
+  EXPECT_TRUE(inside::flags().caught);
+  EXPECT_FALSE(inside::flags().shorted || s.learnt);
   EXPECT_EQ(s.stray, 0);
   EXPECT_EQ(s.axis.count, 0);
-  EXPECT_EQ(drive.found.sigma_q8, s.rotor.sigma_q8);
-  EXPECT_GT(drive.found.sigma_q8, 0);
-  EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
-  EXPECT_EQ(drive.position.avv.observer.speed_bpp, s.rotor.speed_bpp);
-  EXPECT_EQ(drive.control.weakening_q20, 0) << "at 300 rad/s nothing is weakened";
+  EXPECT_EQ(inside::start_found().sigma_q8, s.rotor.sigma_q8);
+  EXPECT_GT(inside::start_found().sigma_q8, 0);
+  EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
+  EXPECT_EQ(inside::avv().observer.speed_bpp, s.rotor.speed_bpp);
+  EXPECT_EQ(inside::weakening_q20(), 0) << "at 300 rad/s nothing is weakened";
   EXPECT_FALSE(board.gates_on);
   start_state.step(&drive);
   EXPECT_TRUE(board.gates_on);
@@ -64,9 +64,9 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
 // A fast shaft needs its field current from the first period on.
 TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
   catch_at(1500.0, 1.0);
-  ASSERT_EQ(drive.found.phase, START_CATCH);
-  EXPECT_LT(real(drive.control.weakening_q20, 20), -0.1);
-  EXPECT_LT(real(drive.control.reference_q20.d, 20), -0.1);
+  ASSERT_EQ(inside::start_found().phase, START_CATCH);
+  EXPECT_LT(real(inside::weakening_q20(), 20), -0.1);
+  EXPECT_LT(real(inside::reference_dq_q20().d, 20), -0.1);
 }
 
 // Until the axis is seen the frame turns with the rotor as the back-EMF has it; then with the axis, where that is not
@@ -75,22 +75,22 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
   for (const double off : {0.1, -0.1, 0.5, -0.5}) {
     SetUp();
     catch_at(300.0, 1.25);
-    ASSERT_EQ(drive.found.phase, START_CATCH);
+    ASSERT_EQ(inside::start_found().phase, START_CATCH);
     drive_start_t& s = starting;
     const flying_rotor_t caught = s.rotor;
-    regression_t& r = drive.position.avv.regression;
+    regression_t& r = inside::avv().regression;
     r = {};
     for (int n = 1; n <= 5; ++n) {
       start_state.step(&drive);
       EXPECT_FALSE(s.learnt);
       EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - caught.angle_bam)), n * 300.0 * kPeriod, 1e-3);
-      EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
-      EXPECT_EQ(drive.position.avv.observer.speed_bpp, caught.speed_bpp);
+      EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
+      EXPECT_EQ(inside::avv().observer.speed_bpp, caught.speed_bpp);
     }
     EXPECT_EQ(s.axis.count, 0) << "it has not been seen";
-    EXPECT_NEAR(1.0 * drive.model.trim.psi_q16 / drive.model.emf_q16, 0.25, 0.01);
-    const double mean = 0.5 * (real(drive.model.yd_q30, 30) + real(drive.model.yq_q30, 30));
-    const double half = 0.5 * (real(drive.model.yd_q30, 30) - real(drive.model.yq_q30, 30)), spread = 4000.0;
+    EXPECT_NEAR(1.0 * inside::model().trim.psi_q16 / inside::model().emf_q16, 0.25, 0.01);
+    const double mean = 0.5 * (real(inside::model().yd_q30, 30) + real(inside::model().yq_q30, 30));
+    const double half = 0.5 * (real(inside::model().yd_q30, 30) - real(inside::model().yq_q30, 30)), spread = 4000.0;
     const auto see = [&] {  // inductances that are a fifth smaller than told
       r.information = 1000000;
       r.spread_q8 = raw(spread, 8);
@@ -99,20 +99,20 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
       r.cross_q16 = raw(1.25 * std::sin(2.0 * off) * half * spread, 16);
       start_state.step(&drive);
     };
-    drive.flags.invalid = 1;
+    inside::flags().invalid = 1;
     see();
     EXPECT_EQ(s.axis.count, 0) << "windows of gates that were off";
-    drive.flags.invalid = 0;
+    inside::flags().invalid = 0;
     for (int n = 0; n < AXIS_PERIODS; ++n) see();
     EXPECT_FALSE(s.learnt) << "a decision has a period of its own";
     const std::uint32_t before = s.rotor.angle_bam;
-    drive.schedule.exclusive = true;
+    inside::schedule().exclusive = true;
     see();
     EXPECT_TRUE(s.learnt);
     const double most = 15.0 * kDegree;
     EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - before)), 300.0 * kPeriod + std::clamp(off, -most, most), 2e-3) << off;
-    EXPECT_EQ(drive.position.avv.observer.angle_bam, s.rotor.angle_bam);
-    EXPECT_EQ(drive.model.trim.psi_q16, 0) << "the flux is as told";
+    EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
+    EXPECT_EQ(inside::model().trim.psi_q16, 0) << "the flux is as told";
   }
 }
 

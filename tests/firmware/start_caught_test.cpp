@@ -20,8 +20,8 @@ TEST_F(StartCaught, APairThatFitsGivesTheSpeed) {
   for (const double speed : {300.0, -300.0}) {
     SetUp();
     catch_at(speed, 1.0);
-    EXPECT_EQ(drive.found.phase, START_CATCH);
-    EXPECT_TRUE(drive.control.closed);
+    EXPECT_EQ(inside::start_found().phase, START_CATCH);
+    EXPECT_TRUE(inside::loop_is_closed());
     EXPECT_NEAR(rad_per_s(starting.rotor.speed_bpp), speed, 1.0);
   }
 }
@@ -37,15 +37,15 @@ TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
     constexpr int kAgo = 47000;  // ticks, 4.7 periods
     const double turned = speed * (clock() - kAgo - first) * 1e-8;
     flying_pulse_t& p = starting.pulse;
-    drive.samples.count = 0;
+    inside::window_count() = 0;
     p.windows = 2;
     p.first_tick = clock() - kAgo - 5000;
     p.last_tick = clock() - kAgo + 5000;
     p.first_q20 = p.last_q20 = raw_ab(Vector{2.0, 0.0}.turned(0.5 + turned), 20);
     p.drive_q16 = raw_ab(Vector{96.0, 0.0}.turned(0.5 + turned), 16);
-    const double lag = rad(flying_evaluate(&p, &drive.model).lag_bam);
+    const double lag = rad(flying_evaluate(&p, &inside::model()).lag_bam);
     judge();
-    ASSERT_EQ(drive.found.phase, START_CATCH);
+    ASSERT_EQ(inside::start_found().phase, START_CATCH);
     // e = w lambda q, and the turning saliency has turned it against the rotation by the lag
     const double behind = std::copysign(kPi / 2.0 - lag, speed);
     const double there = 0.5 + turned - behind + speed * kAgo * 1e-8;
@@ -63,8 +63,9 @@ TEST_F(StartCaught, AFluxThatIsOffIsTakenFromALargeEmf) {
   for (const auto& c : cases) {
     SetUp();
     catch_at(c.speed, c.flux);
-    ASSERT_EQ(drive.found.phase, START_CATCH) << c.flux;
-    EXPECT_NEAR(1.0 * drive.model.trim.psi_q16 / drive.model.emf_q16, c.taken, 0.01) << c.speed << ", " << c.flux;
+    ASSERT_EQ(inside::start_found().phase, START_CATCH) << c.flux;
+    EXPECT_NEAR(1.0 * inside::model().trim.psi_q16 / inside::model().emf_q16, c.taken, 0.01)
+        << c.speed << ", " << c.flux;
   }
 }
 
@@ -72,25 +73,25 @@ TEST_F(StartCaught, AFluxThatIsOffIsTakenFromALargeEmf) {
 TEST_F(StartCaught, PairsThatDoNotFitAreTriedAgainFourTimes) {
   for (int pair = 1; pair <= 4; ++pair) {
     for (int k = 0; k < 2; ++k) {
-      ASSERT_EQ(drive.state, DRIVE_START) << pair;
+      ASSERT_EQ(inside::state(), DRIVE_START) << pair;
       await_pulse();
       see_pulse(0.5, 48.0);
     }
     EXPECT_EQ(starting.tries, pair);
     EXPECT_FALSE(board.gates_on);
-    EXPECT_FALSE(drive.control.closed);
+    EXPECT_FALSE(inside::loop_is_closed());
   }
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_POLARITY);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_POLARITY);
 }
 
 TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
   await_pulse();
   starting.pulse.windows = 0;
-  drive.samples.count = 0;
+  inside::window_count() = 0;
   starting.tick = 100;
   start_state.step(&drive);
-  EXPECT_EQ(drive.found.phase, START_PULSE);
+  EXPECT_EQ(inside::start_found().phase, START_PULSE);
   EXPECT_EQ(starting.pulses, 0);
 }
 
@@ -99,18 +100,18 @@ TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
 TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
   for (const int blind : {2, 1, 0}) {
     for (const int on : {1000, 1290, 1300, 1310, 1500, 4000, 9000}) {
-      drive.found.phase = START_PULSE;
-      drive.flags.gates_off = false;
+      inside::start_found().phase = START_PULSE;
+      inside::flags().gates_off = false;
       starting.tick = 0;
-      drive.flags.invalid = static_cast<std::uint16_t>(blind);
+      inside::flags().invalid = static_cast<std::uint16_t>(blind);
       starting.on_tick = on;
       flying_begin(&starting.pulse);
-      drive.samples.count = 2;
+      inside::window_count() = 2;
       for (int k = 0; k < 2; ++k) {
         estimator_window_t w = {};
         w.middle_tick = static_cast<std::int16_t>(2500 + 5000 * k);
         w.span_ticks = 2000;
-        drive.samples.windows[k] = w;
+        inside::windows()[k] = w;
       }
       start_state.step(&drive);
       int expected = 0;  // the devices switch 2 us after they are told
@@ -126,10 +127,10 @@ TEST_F(StartCaught, TheNextPulseWaitsForSixtyDegrees) {
     SetUp();
     await_pulse();
     see_pulse(0.5, speed * Motor{}.flux);
-    ASSERT_EQ(drive.found.phase, START_LISTEN);
+    ASSERT_EQ(inside::start_found().phase, START_LISTEN);
     const double wait = kPi / 3.0 / speed / kPeriod;
     EXPECT_NEAR(starting.pause, std::max(6.0, wait), wait < 6.0 ? 0.0 : 0.01 * wait + 1.0) << speed;
-    EXPECT_FALSE(drive.control.closed);
+    EXPECT_FALSE(inside::loop_is_closed());
     await_pulse();
     EXPECT_EQ(starting.pulse.windows, 0) << "seen anew";
   }
@@ -141,8 +142,8 @@ TEST_F(StartCaught, AnEmfBelowThreeVoltsIsAShaftThatStands) {
     SetUp();
     await_pulse();
     see_pulse(0.5, volts);
-    EXPECT_EQ(drive.found.phase, volts < 3.0 ? START_AXIS : START_LISTEN);
-    EXPECT_EQ(drive.flags.shorted, volts > 3.0);
+    EXPECT_EQ(inside::start_found().phase, volts < 3.0 ? START_AXIS : START_LISTEN);
+    EXPECT_EQ(inside::flags().shorted, volts > 3.0);
     EXPECT_EQ(board.gates_on, volts < 3.0);
   }
 }
@@ -154,7 +155,7 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
     for (const int tick : {11, 12}) {
       SetUp();
       await_pulse();
-      drive.samples.count = 0;
+      inside::window_count() = 0;
       starting.tick = static_cast<std::uint16_t>(tick - 1);
       starting.pulse.windows = 1;
       starting.pulse.last_q20 = {0, raw(-share * enough, 20)};
@@ -168,12 +169,12 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
 TEST_F(StartCaught, AStartListensForItsPause) {
   starting.pause = 10;
   start_begin_listen(&drive);
-  EXPECT_TRUE(drive.flags.shorted);
+  EXPECT_TRUE(inside::flags().shorted);
   for (int n = 1; n < 10; ++n) start_state.step(&drive);
-  EXPECT_EQ(drive.found.phase, START_LISTEN);
+  EXPECT_EQ(inside::start_found().phase, START_LISTEN);
   EXPECT_FALSE(board.gates_on);
   start_state.step(&drive);
-  EXPECT_EQ(drive.found.phase, START_PULSE);
+  EXPECT_EQ(inside::start_found().phase, START_PULSE);
   EXPECT_TRUE(board.gates_on);
 }
 

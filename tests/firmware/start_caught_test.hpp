@@ -23,16 +23,16 @@ class StartCaught : public Drive {
     make_ready();
     drive_command_start();
     period();
-    ASSERT_EQ(drive.state, DRIVE_START);
+    ASSERT_EQ(inside::state(), DRIVE_START);
   }
 
   /// Ticks from the start of START to the running period.
-  static std::uint32_t clock() { return drive.periods * ESTIMATOR_PERIOD_TICKS; }
+  static std::uint32_t clock() { return inside::periods() * ESTIMATOR_PERIOD_TICKS; }
 
   /// The next short circuit, with a back-EMF of this size (V) in this direction (rad) in its middle, which is now.
   static void see_pulse(double direction, double volts) {
     flying_pulse_t& p = starting.pulse;
-    drive.samples.count = 0;
+    inside::window_count() = 0;
     p.windows = 2;
     p.first_tick = clock() - 5000;
     p.last_tick = clock() + 5000;
@@ -45,16 +45,16 @@ class StartCaught : public Drive {
     start_state.step(&drive);
     EXPECT_FALSE(board.gates_on) << "the current dies away";
     start_state.step(&drive);
-    EXPECT_TRUE(drive.flags.wants_exclusive) << "in a period for itself";
-    EXPECT_EQ(drive.found.phase, START_PULSE);
-    drive.schedule.exclusive = true;
+    EXPECT_TRUE(inside::flags().wants_exclusive) << "in a period for itself";
+    EXPECT_EQ(inside::start_found().phase, START_PULSE);
+    inside::schedule().exclusive = true;
     start_state.step(&drive);
-    drive.schedule.exclusive = false;
-    if (drive.found.phase == START_CATCH) start_state.step(&drive);
+    inside::schedule().exclusive = false;
+    if (inside::start_found().phase == START_CATCH) start_state.step(&drive);
   }
   void await_pulse() {
-    for (int n = 0; n < 700 && drive.found.phase != START_PULSE; ++n) period();
-    ASSERT_EQ(drive.found.phase, START_PULSE);
+    for (int n = 0; n < 700 && inside::start_found().phase != START_PULSE; ++n) period();
+    ASSERT_EQ(inside::start_found().phase, START_PULSE);
   }
   /// Two short circuits of a shaft at this speed (rad/s, electrical) whose magnet is `flux` times what was told.
   void catch_at(double speed, double flux) {
@@ -62,7 +62,7 @@ class StartCaught : public Drive {
     await_pulse();
     const std::uint32_t first = clock();
     see_pulse(0.5, volts);
-    ASSERT_EQ(drive.found.phase, START_LISTEN);
+    ASSERT_EQ(inside::start_found().phase, START_LISTEN);
     await_pulse();
     see_pulse(0.5 + speed * (clock() - first) * 1e-8, volts);
   }

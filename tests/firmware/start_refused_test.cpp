@@ -33,14 +33,14 @@ class StartRefused : public Drive {
       period();
       ASSERT_FALSE(board.gates_on) << n;
     }
-    EXPECT_EQ(drive.state, DRIVE_FAULT);
-    EXPECT_EQ(drive.fault, fault);
+    EXPECT_EQ(inside::state(), DRIVE_FAULT);
+    EXPECT_EQ(inside::fault(), fault);
     EXPECT_GT(board.gates_off_calls, frames_with_gates);
   }
 };
 
 TEST_F(StartRefused, WithASpeedControlThatCouldNotBeSetUp) {
-  drive.control.speed_ready = false;
+  inside::speed_ready() = false;
   expect_refused(FAULT_PARAMETER);
 }
 
@@ -67,7 +67,7 @@ TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft
   use_parameters();
   board.pin_low = true;
   expect_refused(FAULT_OVER_CURRENT);
-  EXPECT_NE(drive.found.phase, START_AXIS);
+  EXPECT_NE(inside::start_found().phase, START_AXIS);
 }
 
 // Windows that never show the axis, for want of voltage: 20 ms, then the drive says so.
@@ -76,14 +76,14 @@ TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
   use_parameters();
   drive_command_start();
   period();
-  ASSERT_EQ(drive.state, DRIVE_START);
+  ASSERT_EQ(inside::state(), DRIVE_START);
   int n = 0;
-  for (; n < 400 && drive.state == DRIVE_START; ++n) {
-    drive.position.avv.regression.information = 0;
+  for (; n < 400 && inside::state() == DRIVE_START; ++n) {
+    inside::avv().regression.information = 0;
     starting.axis.count = 0;
     period();
   }
-  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+  EXPECT_EQ(inside::fault(), FAULT_START_VOLTAGE);
   EXPECT_NEAR(n, 200, 3);
   EXPECT_FALSE(board.gates_on);
 }
@@ -96,15 +96,15 @@ TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
   use_parameters();
   drive_command_start();
   period();
-  ASSERT_EQ(drive.found.phase, START_CHARGE);
+  ASSERT_EQ(inside::start_found().phase, START_CHARGE);
   EXPECT_FALSE(board.gates_on);
   int on = 0;
-  for (int n = 0; n < 200 && drive.found.phase == START_CHARGE; ++n) {
+  for (int n = 0; n < 200 && inside::start_found().phase == START_CHARGE; ++n) {
     period();
     on += board.gates_on ? 1 : 0;
-    EXPECT_TRUE(drive.flags.shorted || drive.found.phase != START_CHARGE);
+    EXPECT_TRUE(inside::flags().shorted || inside::start_found().phase != START_CHARGE);
   }
-  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_NEAR(on, 50, 2);
 }
 
@@ -114,9 +114,9 @@ TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
   use_parameters();
   drive_command_start();
   until_on();
-  for (int n = 0; n < 4; ++n) period(still_window(), drive.modulation.sampled.window_count);
-  EXPECT_EQ(drive.samples.count, 0);
-  EXPECT_EQ(drive.found.phase, START_CHARGE);
+  for (int n = 0; n < 4; ++n) period(still_window(), inside::sampled_pattern().window_count);
+  EXPECT_EQ(inside::window_count(), 0);
+  EXPECT_EQ(inside::start_found().phase, START_CHARGE);
   EXPECT_TRUE(board.gates_on);
   EXPECT_EQ(starting.charged, 4);
 }
@@ -131,12 +131,12 @@ TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   w.start_a = 4 * (2048 + 8 * 102);  // 8 A of 14
   w.end_a = 3 * (2048 + 8 * 102);
   for (int n = 0; n < 4; ++n) period(w);
-  EXPECT_EQ(drive.found.phase, START_CHARGE);
+  EXPECT_EQ(inside::start_found().phase, START_CHARGE);
   EXPECT_FALSE(board.gates_on);
   int rest = 0;
   for (; rest < 100 && !board.gates_on; ++rest) period();
   EXPECT_NEAR(rest, 20, 4);
-  EXPECT_EQ(drive.found.phase, START_CHARGE) << "only what they were on counts";
+  EXPECT_EQ(inside::start_found().phase, START_CHARGE) << "only what they were on counts";
 }
 
 // Whole periods, and no fewer than asked for.
@@ -147,11 +147,11 @@ TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
     use_parameters();
     drive_command_start();
     until_on();
-    drive.samples.count = 0;
+    inside::window_count() = 0;
     for (int n = 1; n < periods_on; ++n) start_state.step(&drive);
-    EXPECT_EQ(drive.found.phase, START_CHARGE) << ms;
+    EXPECT_EQ(inside::start_found().phase, START_CHARGE) << ms;
     start_state.step(&drive);
-    EXPECT_NE(drive.found.phase, START_CHARGE) << ms;
+    EXPECT_NE(inside::start_found().phase, START_CHARGE) << ms;
   }
 }
 
@@ -168,10 +168,10 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
           use_parameters();
           drive_command_start();
           until_on();
-          drive.flags.invalid = blind ? 1 : 0;
-          drive.samples.count = 2;
-          drive.samples.windows[0].current_q20 = drive.samples.windows[1].current_q20 = {0, 0};
-          drive.samples.windows[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
+          inside::flags().invalid = blind ? 1 : 0;
+          inside::window_count() = 2;
+          inside::windows()[0].current_q20 = inside::windows()[1].current_q20 = {0, 0};
+          inside::windows()[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
           start_state.step(&drive);
           EXPECT_EQ(board.gates_on, share < 1.0 || !latest || blind) << share << latest << blind;
         }
@@ -186,9 +186,9 @@ TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
   use_parameters();
   drive_command_start();
   until_on();
-  drive.flags.invalid = 0;
-  drive.samples.count = 1;
-  drive.samples.windows[0].current_q20 = {parameters.current_limit, 0};
+  inside::flags().invalid = 0;
+  inside::window_count() = 1;
+  inside::windows()[0].current_q20 = {parameters.current_limit, 0};
   start_state.step(&drive);
   ASSERT_FALSE(board.gates_on);
   for (int n = 1; n < 20; ++n) start_state.step(&drive);

@@ -27,29 +27,29 @@ class StartStanding : public Drive {
     use_parameters();
     make_ready();
     start_state.begin(&drive, DRIVE_RUN);
-    ASSERT_EQ(drive.found.phase, START_AXIS);
+    ASSERT_EQ(inside::start_found().phase, START_AXIS);
   }
   static drive_start_t& start() { return starting; }
 
   /// A period of the start, and the one that it asks for a decision alone.
   static void step() {
-    const std::uint16_t before = drive.found.phase;
+    const std::uint16_t before = inside::start_found().phase;
     start_state.step(&drive);
-    drive.schedule.exclusive = drive.state == DRIVE_START && drive.flags.wants_exclusive;
-    if (!drive.schedule.exclusive) return;
-    EXPECT_EQ(drive.found.phase, before);
+    inside::schedule().exclusive = inside::state() == DRIVE_START && inside::flags().wants_exclusive;
+    if (!inside::schedule().exclusive) return;
+    EXPECT_EQ(inside::start_found().phase, before);
     start_state.step(&drive);
-    EXPECT_FALSE(drive.flags.wants_exclusive);
-    drive.schedule.exclusive = false;
+    EXPECT_FALSE(inside::flags().wants_exclusive);
+    inside::schedule().exclusive = false;
   }
 
   /// At the end of a phase, with AVV's angle at hand.
   static void at(start_phase_t phase, int tick, double speed = 0.0) {
-    drive.found.phase = phase;
+    inside::start_found().phase = phase;
     start().tick = static_cast<std::uint16_t>(tick - 1);
-    drive.position.avv.observer.angle_bam = bam(kThere);
-    drive.position.avv.observer.speed_bpp = bpp(speed);
-    drive.position.avv.error_bam = 0;
+    inside::avv().observer.angle_bam = bam(kThere);
+    inside::avv().observer.speed_bpp = bpp(speed);
+    inside::avv().error_bam = 0;
   }
   /// The test by saturation is over with this result.
   static void saturation_says(polarity_result_t result) {
@@ -68,48 +68,48 @@ class StartStanding : public Drive {
     step();
   }
   static void expect_runs(double angle) {
-    EXPECT_EQ(drive.state, DRIVE_RUN);
-    EXPECT_NEAR(wrapped(rad(drive.position.selected.angle_bam) - angle), 0.0, 1e-6);
+    EXPECT_EQ(inside::state(), DRIVE_RUN);
+    EXPECT_NEAR(wrapped(rad(inside::selected().angle_bam) - angle), 0.0, 1e-6);
   }
 };
 
 // Nothing of the last run is left, whatever it was.
 TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
-  drive.state = DRIVE_READY;
-  drive_control_t& c = drive.control;
+  inside::state() = DRIVE_READY;
+  drive_control_t& c = inside::control();
   c.ramp.value = c.feed_forward_q16 = c.reference_q20.d = c.reference_q20.q = 12345;
   c.closed = c.position_hold.holding = true;
-  drive.supervision.missing = drive.supervision.overrun = 3;
-  drive.supervision.synchronism.debounce = 99;
+  inside::missing_windows() = inside::overruns() = 3;
+  inside::synchronism().debounce = 99;
   starting.tries = starting.pulses = 2;
-  drive.model.trim.rs_q24 = 777;
-  drive.model.accel_q12 /= 2;
-  drive.inertia.ratio_q24 /= 2;
-  drive.config.sensor_mismatch_q30 = 4321;
+  inside::model().trim.rs_q24 = 777;
+  inside::model().accel_q12 /= 2;
+  inside::inertia().ratio_q24 /= 2;
+  inside::config().sensor_mismatch_q30 = 4321;
   start_state.begin(&drive, DRIVE_RUN);
-  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_EQ(c.ramp.value | c.feed_forward_q16 | c.reference_q20.d | c.reference_q20.q, 0);
   EXPECT_FALSE(c.closed);
   EXPECT_FALSE(c.position_hold.holding);
-  EXPECT_EQ(drive.supervision.missing + drive.supervision.overrun, 0);
-  EXPECT_EQ(drive.supervision.synchronism.debounce, 0);
+  EXPECT_EQ(inside::missing_windows() + inside::overruns(), 0);
+  EXPECT_EQ(inside::synchronism().debounce, 0);
   EXPECT_EQ(starting.tries + starting.pulses, 0);
-  EXPECT_EQ(drive.model.trim.rs_q24, 0);
-  EXPECT_EQ(drive.model.accel_q12, drive.config.nameplate.accel_q12);
-  EXPECT_EQ(drive.inertia.ratio_q24, INERTIA_SAME_Q24);
-  EXPECT_EQ(drive.position.sensors.mismatch_q30, 4321);
-  EXPECT_EQ(drive.trim.mismatch_q30, 4321);
+  EXPECT_EQ(inside::model().trim.rs_q24, 0);
+  EXPECT_EQ(inside::model().accel_q12, inside::config().nameplate.accel_q12);
+  EXPECT_EQ(inside::inertia().ratio_q24, INERTIA_SAME_Q24);
+  EXPECT_EQ(inside::sensors_match().mismatch_q30, 4321);
+  EXPECT_EQ(inside::sensor_trim().mismatch_q30, 4321);
   EXPECT_TRUE(board.gates_on);
 }
 
 // From the fourth period on each regression counts, twelve of them, all at an angle of zero. Then the current loop is
 // closed in the frame that was found.
 TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
-  const machine_model_t& m = drive.model;
+  const machine_model_t& m = inside::model();
   const double half = 0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)), spread = 40000.0;
   int n = 0;
-  for (; drive.found.phase == START_AXIS && n < 50; ++n) {
-    regression_t& r = drive.position.avv.regression;
+  for (; inside::start_found().phase == START_AXIS && n < 50; ++n) {
+    regression_t& r = inside::avv().regression;
     r = {};
     r.information = 1000000;
     r.spread_q8 = raw(spread, 8);
@@ -117,15 +117,15 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
     r.mirror_q16 = raw((std::cos(2.0 * kThere) - 1.0) * half * spread, 16);  // the model has it at zero
     r.cross_q16 = raw(std::sin(2.0 * kThere) * half * spread, 16);
     step();
-    if (drive.found.phase == START_AXIS) {
-      EXPECT_EQ(drive.position.avv.observer.angle_bam, 0u);
-      EXPECT_FALSE(drive.control.closed);
+    if (inside::start_found().phase == START_AXIS) {
+      EXPECT_EQ(inside::avv().observer.angle_bam, 0u);
+      EXPECT_FALSE(inside::loop_is_closed());
     }
   }
   EXPECT_EQ(n, 3 + 12);
-  EXPECT_EQ(drive.found.phase, START_SETTLE);
-  EXPECT_TRUE(drive.control.closed);
-  EXPECT_NEAR(rad(drive.position.avv.observer.angle_bam), kThere, 1e-4);
+  EXPECT_EQ(inside::start_found().phase, START_SETTLE);
+  EXPECT_TRUE(inside::loop_is_closed());
+  EXPECT_NEAR(rad(inside::avv().observer.angle_bam), kThere, 1e-4);
   EXPECT_NEAR(real(m.trim.mean_q30, 30), 0.0005, 1e-6);
   EXPECT_NEAR(real(m.trim.half_q30, 30), 0.0, 1e-6);
 }
@@ -142,23 +142,23 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     const double speed = Motor{}.electrical(rpm);
     at(START_SETTLE, 99, speed);
     step();
-    EXPECT_EQ(drive.state, DRIVE_START);
+    EXPECT_EQ(inside::state(), DRIVE_START);
     step();
     expect_runs(kThere);
     const bool turns = std::fabs(rpm) > 20.0;
-    EXPECT_NEAR(rad_per_s(drive.control.ramp.value), turns ? speed : 0.0, 0.01) << rpm;
+    EXPECT_NEAR(rad_per_s(inside::speed_ramp().value), turns ? speed : 0.0, 0.01) << rpm;
     EXPECT_EQ(brake_release_hold.left, turns ? 0u : 400u) << rpm;
-    EXPECT_EQ(drive.found.sigma_q8, 0);
+    EXPECT_EQ(inside::start_found().sigma_q8, 0);
   }
 }
 
 TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
   for (const bool visible : {true, false}) {
     SetUp();
-    drive.config.saturation = {0, visible ? raw(0.002, 30) : 0};
+    inside::config().saturation = {0, visible ? raw(0.002, 30) : 0};
     at(START_SETTLE, 100);
     step();
-    EXPECT_EQ(drive.found.phase, visible ? START_SATURATION : START_MOTION);
+    EXPECT_EQ(inside::start_found().phase, visible ? START_SATURATION : START_MOTION);
     EXPECT_EQ(start().tick, 0);
     EXPECT_EQ(start().tries, 0);
     EXPECT_EQ(visible ? start().saturation.current_q20 : start().motion.current_q20,
@@ -168,26 +168,27 @@ TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
 
 // The currents of the tests are those that are commanded: along d without a torque, along q with one.
 TEST_F(StartStanding, TheTestsCommandTheirCurrents) {
-  drive.config.saturation = {0, raw(0.002, 30)};
+  inside::config().saturation = {0, raw(0.002, 30)};
   at(START_SETTLE, 100);
   step();
   for (int n = 0; n < 30; ++n) step();
-  EXPECT_EQ(drive.control.reference_q20.d, parameters.start_current);
-  EXPECT_EQ(drive.control.reference_q20.q, 0);
+  EXPECT_EQ(inside::reference_dq_q20().d, parameters.start_current);
+  EXPECT_EQ(inside::reference_dq_q20().q, 0);
   SetUp();
-  drive.config.saturation = {0, 0};
+  inside::config().saturation = {0, 0};
   at(START_SETTLE, 100);
   step();
   std::int32_t most = 0;
   for (int n = 0; n < POLARITY_LENGTH / 2; ++n) {
     step();
-    most = std::max(most, drive.control.reference_q20.q);
+    most = std::max(most, inside::reference_dq_q20().q);
   }
   EXPECT_EQ(most, parameters.polarity_current);
-  EXPECT_EQ(drive.control.reference_q20.d, 0);
+  EXPECT_EQ(inside::reference_dq_q20().d, 0);
   // What it expects is what this current does to the shaft in two patterns.
-  const double torque = real(machine_torque_constant_q24(&drive.model, 0), 24) * real(parameters.polarity_current, 20);
-  const double accel = torque * real(drive.model.accel_q12, 12);
+  const double torque =
+      real(machine_torque_constant_q24(&inside::model(), 0), 24) * real(parameters.polarity_current, 20);
+  const double accel = torque * real(inside::model().accel_q12, 12);
   EXPECT_NEAR(start().motion.expected_bam, accel * POLARITY_SEGMENT * POLARITY_SEGMENT * 2.0, 1e-3 * accel * 1e3);
 }
 
@@ -200,21 +201,21 @@ TEST_F(StartStanding, SaturationDecidesOnceItsCurrentIsGone) {
     start().saturation.result = result;
     start().saturation.sigma_q8 = 1234;
     step();
-    EXPECT_EQ(drive.state, DRIVE_START);
+    EXPECT_EQ(inside::state(), DRIVE_START);
     step();
     expect_runs(result == POLARITY_RIGHT ? kThere : kThere + kPi);
-    EXPECT_EQ(drive.found.sigma_q8, 1234);
+    EXPECT_EQ(inside::start_found().sigma_q8, 1234);
   }
 }
 
 // Twice with the same current, both together; once with half as much again, up to the limit; then by motion.
 TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
-  drive.config.saturation = {0, raw(0.002, 30)};
+  inside::config().saturation = {0, raw(0.002, 30)};
   at(START_SETTLE, 100);
   step();
   const std::int32_t current = parameters.start_current;
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(drive.found.phase, START_SATURATION);
+  EXPECT_EQ(inside::start_found().phase, START_SATURATION);
   EXPECT_EQ(start().saturation.passes, 2);
   EXPECT_EQ(start().saturation.current_q20, current);
   EXPECT_EQ(start().tick, 0);
@@ -222,7 +223,7 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   EXPECT_EQ(start().saturation.passes, 1);
   EXPECT_EQ(start().saturation.current_q20, std::min(current + current / 2, parameters.current_limit));
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(drive.found.phase, START_MOTION);
+  EXPECT_EQ(inside::start_found().phase, START_MOTION);
   EXPECT_EQ(start().tries, 0);
 }
 
@@ -234,16 +235,16 @@ TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
   start().saturation.current_q20 = raw(10.0, 20);
   start().followed.worst_q20 = raw(3.8, 20);
   saturation_says(POLARITY_RIGHT);
-  EXPECT_EQ(drive.found.phase, START_AXIS);
+  EXPECT_EQ(inside::start_found().phase, START_AXIS);
   EXPECT_EQ(start().held_back, 1);
   at(START_SETTLE, 100);
   step();
-  ASSERT_EQ(drive.found.phase, START_MOTION);
+  ASSERT_EQ(inside::start_found().phase, START_MOTION);
   EXPECT_EQ(start().motion.current_q20, raw(4.0, 20));
   EXPECT_EQ(start().followed.worst_q20, 0);
   start().followed.worst_q20 = raw(1.6, 20);
   motion_says(1.0);
-  EXPECT_EQ(drive.found.phase, START_AXIS);
+  EXPECT_EQ(inside::start_found().phase, START_AXIS);
   at(START_SETTLE, 100);
   step();
   EXPECT_EQ(start().motion.current_q20, raw(2.0, 20));
@@ -253,42 +254,42 @@ TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
   EXPECT_EQ(start().motion.passes, 2);
   start().followed.worst_q20 = raw(0.8, 20);
   motion_says(1.0);
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_START_VOLTAGE);
 }
 
 TEST_F(StartStanding, ThreeEighthsOfTheAmplitudeAreTheLimit) {
   start().saturation.current_q20 = raw(10.0, 20);
   start().followed.worst_q20 = raw(3.7, 20);
   saturation_says(POLARITY_RIGHT);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 // What less current does not tell either is the voltage's fault, not the shaft's.
 TEST_F(StartStanding, WhatStaysOpenAfterThatNamesTheVoltage) {
-  drive.config.saturation = {0, 0};
+  inside::config().saturation = {0, 0};
   start().held_back = 1;
   start().starved = true;
   at(START_SETTLE, 100);
   step();
   for (int n = 0; n < 5; ++n) motion_says(0.0);
-  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_EQ(start().motion.passes, 6);
   motion_says(0.0);
-  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+  EXPECT_EQ(inside::fault(), FAULT_START_VOLTAGE);
 }
 
 // A saturation that stays open on a shaft that turns meanwhile, or an angle that does, is no place for the other test.
 TEST_F(StartStanding, AShaftThatTheTestHasSetInMotionIsListenedToAnew) {
-  drive.config.saturation = {0, raw(0.002, 30)};
+  inside::config().saturation = {0, raw(0.002, 30)};
   start().tries = 2;
-  drive.position.avv.observer.speed_bpp = bpp(60.0);
+  inside::avv().observer.speed_bpp = bpp(60.0);
   at(START_SATURATION, SATURATION_LENGTH + 100, 60.0);
   start().saturation.tick = SATURATION_LENGTH;
   start().saturation.result = POLARITY_AMBIGUOUS;
   step();
   EXPECT_EQ(start().held_back, 1);
-  EXPECT_EQ(drive.found.phase, START_AXIS);
+  EXPECT_EQ(inside::start_found().phase, START_AXIS);
 }
 
 // A shaft that creeps has all its current: motion is tried as ever, and what stays open is the polarity's fault.
@@ -296,7 +297,7 @@ TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
   parameters.polarity_current = raw(4.0, 20);
   parameters.current_limit = raw(14.0, 20);
   use_parameters();
-  drive.config.saturation = {0, 0};
+  inside::config().saturation = {0, 0};
   start().held_back = 1;
   at(START_SETTLE, 100);
   step();
@@ -305,7 +306,7 @@ TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
     EXPECT_FALSE(start().motion.bounded);
     motion_says(0.1);
   }
-  EXPECT_EQ(drive.fault, FAULT_POLARITY);
+  EXPECT_EQ(inside::fault(), FAULT_POLARITY);
   SetUp();
   start().held_back = 2;
   start().tries = 2;
@@ -313,7 +314,7 @@ TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
   start().saturation.tick = SATURATION_LENGTH;
   start().saturation.result = POLARITY_AMBIGUOUS;
   step();
-  EXPECT_EQ(drive.fault, FAULT_POLARITY);
+  EXPECT_EQ(inside::fault(), FAULT_POLARITY);
 }
 
 // Twice the current with each try, up to the limit; after three the polarity is a fault that says how sure it was.
@@ -321,40 +322,40 @@ TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   parameters.polarity_current = raw(4.0, 20);
   parameters.current_limit = raw(14.0, 20);
   use_parameters();
-  drive.config.saturation = {0, 0};
+  inside::config().saturation = {0, 0};
   at(START_SETTLE, 100);
   step();
   for (const double amps : {4.0, 8.0, 14.0}) {
-    EXPECT_EQ(drive.state, DRIVE_START);
-    EXPECT_EQ(drive.found.phase, START_MOTION);
+    EXPECT_EQ(inside::state(), DRIVE_START);
+    EXPECT_EQ(inside::start_found().phase, START_MOTION);
     EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
     motion_says(0.1);
   }
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_POLARITY);
-  EXPECT_EQ(drive.found.sigma_q8, start().motion.sigma_q8);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_POLARITY);
+  EXPECT_EQ(inside::start_found().sigma_q8, start().motion.sigma_q8);
   EXPECT_FALSE(board.gates_on);
 }
 
 TEST_F(StartStanding, MotionTellsTheHalfTurn) {
   for (const double response : {1.0, -1.0}) {
     SetUp();
-    drive.config.saturation = {0, 0};
+    inside::config().saturation = {0, 0};
     at(START_SETTLE, 100);
     step();
     motion_says(response);
     expect_runs(response > 0.0 ? kThere : kThere + kPi);
-    EXPECT_EQ(drive.found.sigma_q8, start().motion.sigma_q8);
+    EXPECT_EQ(inside::start_found().sigma_q8, start().motion.sigma_q8);
   }
 }
 
 // The angle that the motion is seen by is what the windows show, not what the observer has made of it.
 TEST_F(StartStanding, MotionIsSeenByTheRawAngle) {
-  drive.config.saturation = {0, 0};
+  inside::config().saturation = {0, 0};
   at(START_SETTLE, 100);
   step();
   at(START_MOTION, 2);
-  drive.position.avv.error_bam = 1000000;
+  inside::avv().error_bam = 1000000;
   step();
   EXPECT_EQ(start().motion.last_bam, bam(kThere) + 1000000u);
 }
@@ -363,7 +364,7 @@ TEST_F(StartStanding, MotionIsSeenByTheRawAngle) {
 TEST_F(StartStanding, TheResistanceIsTakenWhereItIsOff) {
   for (const double share : {0.055, 0.07, -0.055, -0.07}) {
     SetUp();
-    const machine_model_t& m = drive.model;
+    const machine_model_t& m = inside::model();
     const double rs = real(m.nominal_rs_q24, 24);
     saturation_t& s = start().saturation;
     s.current_q20 = raw(10.0, 20);
@@ -378,15 +379,15 @@ TEST_F(StartStanding, TheResistanceIsTakenWhereItIsOff) {
 TEST_F(StartStanding, AVectorBeginsFromRest) {
   for (const bool backward : {false, true}) {
     SetUp();
-    drive.control.target_bpp = backward ? -1000000 : 1000000;
-    drive.control.current.d.integral = drive.control.current.q.integral = 99;
-    drive.position.seen.angle_bam = 5;
+    inside::target_bpp() = backward ? -1000000 : 1000000;
+    inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
+    inside::seen().angle_bam = 5;
     polarity_watch.open = true;
     start_begin_if_ramp(&drive);
-    EXPECT_EQ(drive.found.phase, START_IF_RAMP);
-    EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
-    EXPECT_EQ(drive.position.seen.angle_bam, 0u);
-    EXPECT_TRUE(drive.control.closed);
+    EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
+    EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
+    EXPECT_EQ(inside::seen().angle_bam, 0u);
+    EXPECT_TRUE(inside::loop_is_closed());
     EXPECT_FALSE(polarity_watch.open);
     EXPECT_EQ(starting.if_start.backward, backward);
   }
@@ -397,57 +398,57 @@ TEST_F(StartStanding, AVectorBeginsFromRest) {
 TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
   start_begin_if_ramp(&drive);
   if_start_t& if_start = start().if_start;
-  drive.control.current.d.integral = drive.control.current.q.integral = 99;
+  inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
   brake_release_hold.left = 7;
   flux_observer.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
-  for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
-    drive.position.selected.angle_bam = if_start.vector_bam;
-    drive.position.seen = {if_start.vector_bam - bam(0.4), if_start.speed_bpp, 0, 32767};
-    drive.control.command_q16 = {0, 0};
+  for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
+    inside::selected().angle_bam = if_start.vector_bam;
+    inside::seen() = {if_start.vector_bam - bam(0.4), if_start.speed_bpp, 0, 32767};
+    inside::command_dq_q16() = {0, 0};
     step();
   }
-  ASSERT_EQ(drive.state, DRIVE_RUN);
-  EXPECT_EQ(drive.control.ramp.value, drive.config.if_start.speed_bpp);
-  EXPECT_EQ(drive.position.selected.angle_bam, drive.position.seen.angle_bam);
-  EXPECT_EQ(drive.position.encoder.angle_bam, drive.position.seen.angle_bam);
-  EXPECT_EQ(drive.position.encoder.speed_bpp, if_start.speed_bpp);
+  ASSERT_EQ(inside::state(), DRIVE_RUN);
+  EXPECT_EQ(inside::speed_ramp().value, inside::config().if_start.speed_bpp);
+  EXPECT_EQ(inside::selected().angle_bam, inside::seen().angle_bam);
+  EXPECT_EQ(inside::encoder_observer().angle_bam, inside::seen().angle_bam);
+  EXPECT_EQ(inside::encoder_observer().speed_bpp, if_start.speed_bpp);
   EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
-  EXPECT_EQ(drive.control.current.d.integral | drive.control.current.q.integral, 0);
-  EXPECT_EQ(drive.control.reference_q20.d, 0);
-  EXPECT_NEAR(real(drive.control.reference_q20.q, 20), real(if_start.current_q20, 20) * std::sin(0.4), 0.05);
+  EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
+  EXPECT_EQ(inside::reference_dq_q20().d, 0);
+  EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), real(if_start.current_q20, 20) * std::sin(0.4), 0.05);
   EXPECT_EQ(brake_release_hold.left, 0u);
 }
 
 TEST_F(StartStanding, TheGatesHaveTheirInstant) {
   start_power(&drive, false);
-  EXPECT_FALSE(board.gates_on || !drive.flags.gates_off);
+  EXPECT_FALSE(board.gates_on || !inside::flags().gates_off);
   board.pwm_tick = 4321;
-  drive.flags.invalid = 0;
+  inside::flags().invalid = 0;
   start_power(&drive, true);
-  EXPECT_TRUE(board.gates_on && !drive.flags.gates_off);
+  EXPECT_TRUE(board.gates_on && !inside::flags().gates_off);
   EXPECT_EQ(start().on_tick, 4321);
-  EXPECT_EQ(drive.flags.invalid, 2) << "this period and the next have begun with the gates off";
+  EXPECT_EQ(inside::flags().invalid, 2) << "this period and the next have begun with the gates off";
 }
 
 // Speed control, encoder and the watch over the polarity go on from here; nobody holds the shaft.
 TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   board.encoder = 1234;
   brake_release_hold.left = 9;
-  drive.control.reference_q20.q = raw(3.0, 20);
-  drive.control.speed.current_q20 = drive.control.speed.integral_q20 = raw(2.0, 20);
+  inside::reference_dq_q20().q = raw(3.0, 20);
+  inside::speed_controller().current_q20 = inside::speed_controller().integral_q20 = raw(2.0, 20);
   drive_bumpless_transfer(&drive, bam(0.8), bpp(100.0));
-  EXPECT_EQ(drive.position.selected.angle_bam, bam(0.8));
-  EXPECT_EQ(drive.position.selected.speed_bpp, bpp(100.0));
-  EXPECT_EQ(drive.position.encoder.angle_bam, bam(0.8));
-  EXPECT_EQ(drive.position.encoder.speed_bpp, bpp(100.0));
+  EXPECT_EQ(inside::selected().angle_bam, bam(0.8));
+  EXPECT_EQ(inside::selected().speed_bpp, bpp(100.0));
+  EXPECT_EQ(inside::encoder_observer().angle_bam, bam(0.8));
+  EXPECT_EQ(inside::encoder_observer().speed_bpp, bpp(100.0));
   const std::uint32_t count = position_encoder_angle(1234, 4, parameters.encoder_counts);
-  EXPECT_EQ(drive.position.encoder_offset_bam, bam(0.8) - count);
+  EXPECT_EQ(inside::encoder_offset_bam(), bam(0.8) - count);
   EXPECT_EQ(polarity_watch.axis.angle_bam, bam(0.8));
   EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(100.0));
   EXPECT_EQ(brake_release_hold.left, 0u);
-  EXPECT_EQ(drive.control.ramp.value, bpp(100.0));
-  EXPECT_EQ(drive.control.reference_q20.q, 0);
-  EXPECT_EQ(drive.control.speed.current_q20, 0);
+  EXPECT_EQ(inside::speed_ramp().value, bpp(100.0));
+  EXPECT_EQ(inside::reference_dq_q20().q, 0);
+  EXPECT_EQ(inside::speed_controller().current_q20, 0);
 }
 
 // The flux that takes over above its blend has the shaft from the start on; nobody else does.
@@ -456,42 +457,42 @@ TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
     for (const int above : {0, 1}) {
       SetUp();
       use_source(source);
-      drive.config.blend.high_bpp = drive.config.if_start.speed_bpp - above;
-      drive.position.blend.region = BLEND_LOW;
-      drive.position.blend.share_q15 = 32767;
+      inside::config().blend.high_bpp = inside::config().if_start.speed_bpp - above;
+      inside::blend().region = BLEND_LOW;
+      inside::blend().share_q15 = 32767;
       start_begin_if_ramp(&drive);
       const bool alone = source >= POSITION_FLUX_CONV && above != 0;
-      EXPECT_EQ(drive.position.blend.region, alone ? BLEND_HIGH : BLEND_LOW) << source;
-      EXPECT_EQ(drive.position.blend.share_q15, alone ? 0 : 32767) << source;
+      EXPECT_EQ(inside::blend().region, alone ? BLEND_HIGH : BLEND_LOW) << source;
+      EXPECT_EQ(inside::blend().share_q15, alone ? 0 : 32767) << source;
     }
   }
 }
 
 TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
   start_begin_if_ramp(&drive);
-  for (int n = 0; drive.state == DRIVE_START && n < 100000; ++n) {
-    drive.position.seen = {start().if_start.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
-    drive.control.command_q16 = {0, 0};
+  for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
+    inside::seen() = {start().if_start.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
+    inside::command_dq_q16() = {0, 0};
     step();
   }
-  EXPECT_EQ(drive.fault, FAULT_DIVERGENCE);
+  EXPECT_EQ(inside::fault(), FAULT_DIVERGENCE);
   EXPECT_FALSE(board.gates_on);
 }
 
 TEST_F(StartStanding, AnAxisHasTwentyMilliseconds) {
   start().tick = 199;
   step();
-  EXPECT_EQ(drive.state, DRIVE_START);
-  drive.samples.count = 2;
+  EXPECT_EQ(inside::state(), DRIVE_START);
+  inside::window_count() = 2;
   step();
-  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
+  EXPECT_EQ(inside::fault(), FAULT_START_VOLTAGE);
 }
 
 TEST_F(StartStanding, WithoutWindowsTheAxisLacksSamples) {
   start().tick = 200;
-  drive.samples.count = 0;
+  inside::window_count() = 0;
   step();
-  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_EQ(inside::fault(), FAULT_NO_SAMPLES);
 }
 
 }  // namespace

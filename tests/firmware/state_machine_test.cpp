@@ -22,12 +22,12 @@ using namespace stillspin::test;
 class States : public Drive {};
 
 TEST_F(States, CalibrationWithoutSamplesIsAFault) {
-  const auto silent = [this] { period(still_window(), drive.modulation.sampled.window_count); };
+  const auto silent = [this] { period(still_window(), inside::sampled_pattern().window_count); };
   for (int n = 0; n < 1990; ++n) silent();
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
   for (int n = 0; n < 30; ++n) silent();
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_NO_SAMPLES);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_NO_SAMPLES);
 }
 
 TEST_F(States, EitherSensorsOffsetMustBePlausible) {
@@ -38,8 +38,8 @@ TEST_F(States, EitherSensorsOffsetMustBePlausible) {
     w.start_b = static_cast<std::uint16_t>(4 * (2048 + b));
     for (int n = 0; n < 600; ++n) period(w);
     const bool good = std::abs(a) < 100 && std::abs(b) < 100;
-    EXPECT_EQ(drive.state, good ? DRIVE_READY : DRIVE_FAULT) << a << " " << b;
-    EXPECT_EQ(drive.fault, good ? FAULT_NONE : FAULT_OFFSET);
+    EXPECT_EQ(inside::state(), good ? DRIVE_READY : DRIVE_FAULT) << a << " " << b;
+    EXPECT_EQ(inside::fault(), good ? FAULT_NONE : FAULT_OFFSET);
   }
 }
 
@@ -51,29 +51,29 @@ TEST_F(States, ACurrentThatDoesNotEndIsAFaultAfterTenSeconds) {
     period(w);
   };
   for (int n = 0; n < 99990; ++n) restless(n);
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
   for (int n = 0; n < 30; ++n) restless(n);
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_OFFSET);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_OFFSET);
 }
 
 // Offsets are looked for as long after a fault as at first: a sensor that has drifted meanwhile is followed.
 TEST_F(States, AResetCalibratesAnew) {
   make_ready();
   periods(1000);
-  drive.settled_at = 50000;  // a current has flowed for seconds then
+  inside::settled_at() = 50000;  // a current has flowed for seconds then
   drive_trip(&drive, FAULT_OFFSET);
   drive_command_reset();
   hal_adc_window_t w = still_window();
   w.start_a = static_cast<std::uint16_t>(4 * (2048 + 8));
   w.end_a = static_cast<std::uint16_t>(3 * (2048 + 8));
   period(w);
-  ASSERT_EQ(drive.state, DRIVE_CALIBRATE);
+  ASSERT_EQ(inside::state(), DRIVE_CALIBRATE);
   for (int n = 0; n < 255; ++n) period(w);
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
   period(w);
-  EXPECT_EQ(drive.state, DRIVE_READY);
-  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048 + 8, 0.1);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
+  EXPECT_NEAR(real(inside::sensor_trim().offset_a_q8, 8), 2048 + 8, 0.1);
 }
 
 // The same request twice, or one that its state has no use for, does nothing and is not remembered.
@@ -83,14 +83,15 @@ TEST_F(States, RequestsThatAStateHasNoUseForAreForgotten) {
   drive_command_start();
   drive_command_commission();
   periods(3);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
-  EXPECT_FALSE(drive.request.start || drive.request.reset || drive.request.commission || drive.request.stop);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
+  EXPECT_FALSE(inside::request().start || inside::request().reset || inside::request().commission ||
+               inside::request().stop);
   drive_command_stop();
   periods(30);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   drive_command_stop();
   periods(5);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
 }
 
@@ -98,30 +99,30 @@ TEST_F(States, AStopBreaksAStartOffAndOpensThePowerStage) {
   make_ready();
   drive_command_start();
   periods(20);
-  ASSERT_EQ(drive.state, DRIVE_START);
+  ASSERT_EQ(inside::state(), DRIVE_START);
   drive_command_stop();
   period();
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
 }
 
 // A shaft that a commissioning turns is brought to rest; its gates stay on until it stands.
 TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
   make_run();
-  drive.state = DRIVE_COMMISSION;
+  inside::state() = DRIVE_COMMISSION;
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_SPIN;
   commissioning.tick = 1;
   for (const bool turning : {true, false}) {
-    drive.flags.spins = turning;
-    drive.state = DRIVE_COMMISSION;
+    inside::flags().spins = turning;
+    inside::state() = DRIVE_COMMISSION;
     commissioning.outcome = COMMISSIONING_RUNNING;
     commissioning.phase = COMMISSIONING_ALIGN;
     board.gates_on = true;
-    drive.request.reload = false;  // the background level has been there
+    inside::request().reload = false;  // the background level has been there
     drive_command_stop();
     drive_sequence(&drive);
-    EXPECT_EQ(drive.state, turning ? DRIVE_STOP : DRIVE_READY);
+    EXPECT_EQ(inside::state(), turning ? DRIVE_STOP : DRIVE_READY);
     EXPECT_EQ(board.gates_on, turning);
     EXPECT_EQ(commissioning.outcome, COMMISSIONING_ABORTED);
   }
@@ -130,18 +131,18 @@ TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
 // With the gates off already and the background level at work a stop has nothing to break off.
 TEST_F(States, AStopLetsAnEvaluationEnd) {
   make_ready();
-  drive.state = DRIVE_COMMISSION;
+  inside::state() = DRIVE_COMMISSION;
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  drive.flags.over = true;
+  inside::flags().over = true;
   drive_command_stop();
   drive_sequence(&drive);
-  EXPECT_EQ(drive.state, DRIVE_COMMISSION);
+  EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
   EXPECT_EQ(commissioning.outcome, COMMISSIONING_RUNNING);
   commissioning.evaluate = false;
   drive_sequence(&drive);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
 }
 
 // A hundred codes off the middle is too much, and what would leave the formats of the samples is not even used.
@@ -152,8 +153,9 @@ TEST_F(States, AnOffsetEndsWhereTheSamplesFormatsDo) {
       hal_adc_window_t w = still_window();
       (first ? w.start_a : w.start_b) = static_cast<std::uint16_t>(4 * 2048 + quarters);
       for (int n = 0; n < 600; ++n) period(w);
-      EXPECT_EQ(drive.state, std::abs(quarters) < 400 ? DRIVE_READY : DRIVE_FAULT) << quarters;
-      const double off = real(first ? drive.trim.offset_a_q8 : drive.trim.offset_b_q8, 8) - 2048.0;
+      EXPECT_EQ(inside::state(), std::abs(quarters) < 400 ? DRIVE_READY : DRIVE_FAULT) << quarters;
+      const double off =
+          real(first ? inside::sensor_trim().offset_a_q8 : inside::sensor_trim().offset_b_q8, 8) - 2048.0;
       EXPECT_NEAR(off, std::clamp(quarters / 4.0, -128.0, 128.0), 0.1) << quarters;
     }
   }
@@ -170,7 +172,7 @@ TEST_F(States, ACurrentIsWhatIsTenCodesOff) {
       w.start_b = static_cast<std::uint16_t>(4 * 2048 - sign * b);
       period(w);
     }
-    EXPECT_EQ(drive.state, a + b < 40 ? DRIVE_READY : DRIVE_CALIBRATE) << a << " " << b;
+    EXPECT_EQ(inside::state(), a + b < 40 ? DRIVE_READY : DRIVE_CALIBRATE) << a << " " << b;
   }
 }
 
@@ -178,54 +180,54 @@ TEST_F(States, ACurrentIsWhatIsTenCodesOff) {
 TEST_F(States, EveryPeriodCounts) {
   make_ready();
   const int toggles = board.enable_toggles;
-  const std::uint32_t in_state = drive.periods;
-  const std::uint16_t beats = drive.heartbeat;
+  const std::uint32_t in_state = inside::periods();
+  const std::uint16_t beats = inside::heartbeat();
   periods(7);
   EXPECT_EQ(board.enable_toggles, toggles + 7);
-  EXPECT_EQ(drive.periods, in_state + 7);
-  EXPECT_EQ(drive.heartbeat, beats + 7);
+  EXPECT_EQ(inside::periods(), in_state + 7);
+  EXPECT_EQ(inside::heartbeat(), beats + 7);
 }
 
 TEST_F(States, TheDriveBootsUntilItsValuesAreThere) {
-  drive.loading = true;
+  inside::loading() = true;
   periods(100);
-  EXPECT_EQ(drive.state, DRIVE_BOOT);
-  drive.loading = false;
+  EXPECT_EQ(inside::state(), DRIVE_BOOT);
+  inside::loading() = false;
   period();
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
-  EXPECT_EQ(drive.periods, 0u);
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
+  EXPECT_EQ(inside::periods(), 0u);
 }
 
 // Gates off at once, whatever is under way; what a commissioning has changed for itself must come back.
 TEST_F(States, ACoastEndsACommissioning) {
   make_run();
   commissioning_t& c = commissioning;
-  drive.state = DRIVE_COMMISSION;
+  inside::state() = DRIVE_COMMISSION;
   c.outcome = COMMISSIONING_RUNNING;
   c.phase = COMMISSIONING_MAP;
   drive_command_coast();
   drive_sequence(&drive);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
   EXPECT_EQ(c.outcome, COMMISSIONING_ABORTED);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
-  EXPECT_TRUE(drive.request.reload);
+  EXPECT_TRUE(inside::request().reload);
 }
 
 TEST_F(States, ACoastIsCarriedOutOnce) {
   make_run();
   drive_command_coast();
   period();
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   drive_command_start();
   period();
-  EXPECT_EQ(drive.state, DRIVE_START);
+  EXPECT_EQ(inside::state(), DRIVE_START);
   SetUp();
   make_ready();
-  const std::uint32_t in_state = drive.periods;
+  const std::uint32_t in_state = inside::periods();
   drive_command_coast();
   period();
-  EXPECT_EQ(drive.periods, in_state + 1) << "a power stage that is off has nothing to switch off";
+  EXPECT_EQ(inside::periods(), in_state + 1) << "a power stage that is off has nothing to switch off";
 }
 
 // What was asked for before and not carried out yet must not outlive the stop that follows.
@@ -237,7 +239,7 @@ TEST_F(States, AStopForgetsWhatWasAskedForBefore) {
       begin();
       end();
       periods(3);
-      EXPECT_EQ(drive.state, DRIVE_READY);
+      EXPECT_EQ(inside::state(), DRIVE_READY);
       EXPECT_FALSE(board.gates_on);
     }
   }
@@ -249,9 +251,9 @@ TEST_F(States, AStartBehindAFailedCommissioningIsAStart) {
   commissioning.outcome = COMMISSIONING_RUNNING;
   drive_command_start();
   drive_sequence(&drive);
-  ASSERT_EQ(drive.state, DRIVE_START);
+  ASSERT_EQ(inside::state(), DRIVE_START);
   start_run(&drive, 0, 0);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
 }
 
 TEST_F(States, WhereThePowerStageIsOnAndWhereTheShaftIsTurned) {
@@ -263,16 +265,16 @@ TEST_F(States, WhereThePowerStageIsOnAndWhereTheShaftIsTurned) {
                {DRIVE_FAULT, false, false}};
   for (const bool spin : {false, true}) {
     for (const auto& c : cases) {
-      drive.flags.spins = spin;
+      inside::flags().spins = spin;
       drive_enter(&drive, c.state);
       EXPECT_EQ(drive_is_energised(), c.energised) << c.state;
       EXPECT_EQ(drive_is_turning(&drive), c.turning) << c.state;
     }
     drive_enter(&drive, DRIVE_COMMISSION);
-    drive.flags.spins = spin;
+    inside::flags().spins = spin;
     EXPECT_TRUE(drive_is_energised());
     EXPECT_EQ(drive_is_turning(&drive), spin);
-    drive.flags.over = true;
+    inside::flags().over = true;
     EXPECT_FALSE(drive_is_energised());
   }
 }
@@ -289,18 +291,18 @@ TEST_F(States, EachStopHasItsWholeTime) {
   make_run();
   parameters.stop_time = 50;
   use_parameters();
-  drive.supervision.stopping_periods = 400;
+  inside::stopping_periods() = 400;
   drive_command_stop();
   drive_sequence(&drive);
-  ASSERT_EQ(drive.state, DRIVE_STOP);
-  drive.position.selected.speed_bpp = bpp_of(5);
-  drive.control.ramp.value = 1;
+  ASSERT_EQ(inside::state(), DRIVE_STOP);
+  inside::selected().speed_bpp = bpp_of(5);
+  inside::speed_ramp().value = 1;
   for (int n = 0; n < 100; ++n) drive_sequence(&drive);  // the ramp has its own time
-  drive.control.ramp.value = 0;
+  inside::speed_ramp().value = 0;
   for (int n = 0; n < 500; ++n) drive_sequence(&drive);
-  EXPECT_EQ(drive.state, DRIVE_STOP);
+  EXPECT_EQ(inside::state(), DRIVE_STOP);
   drive_sequence(&drive);
-  EXPECT_EQ(drive.fault, FAULT_STOP);
+  EXPECT_EQ(inside::fault(), FAULT_STOP);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_F(Store, SavedValuesComeBack) {
     EXPECT_EQ(in_force(), saved) << n;
     EXPECT_EQ(store_report()->sequence, std::uint32_t(n));
     EXPECT_EQ(store_report()->values, parameter_count());
-    EXPECT_TRUE(drive.request.reload);
+    EXPECT_TRUE(inside::request().reload);
   }
 }
 
@@ -133,13 +133,13 @@ TEST_F(Store, OneJobAtATimeAndNoLoadWhileRunning) {
   EXPECT_FALSE(store_load());
   EXPECT_FALSE(store_defaults());
   serve();
-  drive.state = DRIVE_RUN;
+  inside::state() = DRIVE_RUN;
   EXPECT_FALSE(store_load());
   EXPECT_FALSE(store_defaults());
   EXPECT_EQ(save(), STORE_SAVED) << "the background has time for it";
-  drive.state = DRIVE_READY;
+  inside::state() = DRIVE_READY;
   ASSERT_TRUE(store_load());
-  drive.state = DRIVE_START;  // meanwhile
+  inside::state() = DRIVE_START;  // meanwhile
   serve();
   EXPECT_EQ(store_state(), STORE_FAILED);
 }
@@ -149,10 +149,10 @@ TEST_F(Store, LoadAndDefaultsOnCommand) {
   set_variant(3);
   const Values saved = in_force();
   save();
-  drive.request.reload = false;
+  inside::request().reload = false;
   ASSERT_TRUE(store_defaults());
   EXPECT_EQ(in_force(), defaults());
-  EXPECT_TRUE(drive.request.reload);
+  EXPECT_TRUE(inside::request().reload);
   ASSERT_TRUE(store_load());
   EXPECT_EQ(store_state(), STORE_READING);
   serve();
@@ -163,12 +163,12 @@ TEST_F(Store, LoadAndDefaultsOnCommand) {
 // ---- in its place ---------------------------------------------------------------------------------------------------
 
 TEST_F(Store, TheDriveStaysInBootWhileItIsRead) {
-  drive.loading = true;
+  inside::loading() = true;
   periods(100);
-  EXPECT_EQ(drive.state, DRIVE_BOOT);
-  drive.loading = false;
+  EXPECT_EQ(inside::state(), DRIVE_BOOT);
+  inside::loading() = false;
   periods(1);
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
 }
 
 TEST_F(Store, ResetIsThePowerOnStateOfABoardWithoutOne) {

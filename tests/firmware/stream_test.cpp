@@ -15,8 +15,8 @@ namespace {
 using namespace stillspin::test;
 
 TEST_F(Requests, AStreamComesAtItsPeriod) {
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20.d = 77;
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20().d = 77;
   EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(9, 2) + little(0, 2)).status(), OK);
   records.clear();
   run(2000);  // 200 ms
@@ -87,12 +87,12 @@ TEST_F(Requests, EachPortHasItsStream) {
 TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
   const std::uint16_t places[] = {9, 10};
   std::uint16_t event[RECORD_MAX];
-  const std::uint32_t begin = drive.time_ms;
-  drive.state = DRIVE_RUN;
-  drive.control.measured_q20 = {-2, 0x01020304};
+  const std::uint32_t begin = inside::time_ms();
+  inside::state() = DRIVE_RUN;
+  inside::current_dq_q20() = {-2, 0x01020304};
   stream_setup(COMM_WATCHDOG_BUS, 10, places, 2);
   const auto comes_at = [&](std::uint32_t ms) {
-    drive.time_ms = begin + ms;
+    inside::time_ms() = begin + ms;
     return stream_event(COMM_WATCHDOG_BUS, event) > 0;
   };
   EXPECT_FALSE(comes_at(9));
@@ -121,10 +121,10 @@ TEST_F(Requests, AStreamThatNobodyComesForIsCountedToTheEndOfAWord) {
   const std::uint16_t place = 0;
   std::uint16_t event[RECORD_MAX];
   stream_setup(COMM_WATCHDOG_BUS, 1, &place, 1);
-  drive.time_ms += 60'000;
+  inside::time_ms() += 60'000;
   ASSERT_GT(stream_event(COMM_WATCHDOG_BUS, event), 0);
   EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 59'999);
-  drive.time_ms += 60'000;
+  inside::time_ms() += 60'000;
   ASSERT_GT(stream_event(COMM_WATCHDOG_BUS, event), 0);
   EXPECT_EQ(stream_lost(COMM_WATCHDOG_BUS), 65'535);
   stream_dropped(COMM_WATCHDOG_BUS);

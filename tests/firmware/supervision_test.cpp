@@ -18,9 +18,9 @@ using namespace stillspin::test;
 using stillspin::bench::text_of;
 
 TEST_F(Drive, FromBootToReadyWithTheGatesOff) {
-  EXPECT_EQ(drive.state, DRIVE_BOOT);
+  EXPECT_EQ(inside::state(), DRIVE_BOOT);
   period();
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE);
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
   make_ready();
   EXPECT_FALSE(board.gates_on);
   EXPECT_GT(board.enable_toggles, 300);  // the hardware watchdog of the gate driver
@@ -31,18 +31,18 @@ TEST_F(Drive, CalibrationTakesTheOffsets) {
   w.start_a = 4 * 2048 + 25;
   w.start_b = 4 * 2048 - 13;
   for (int n = 0; n < 400; ++n) period(w);
-  ASSERT_EQ(drive.state, DRIVE_READY);
+  ASSERT_EQ(inside::state(), DRIVE_READY);
   // a first-order mean of 16 periods over 256; floor(x / 16) stops up to 15 short
-  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048.0 + 25.0 / 4.0, 16.0 / 256);
-  EXPECT_NEAR(real(drive.trim.offset_b_q8, 8), 2048.0 - 13.0 / 4.0, 16.0 / 256);
+  EXPECT_NEAR(real(inside::sensor_trim().offset_a_q8, 8), 2048.0 + 25.0 / 4.0, 16.0 / 256);
+  EXPECT_NEAR(real(inside::sensor_trim().offset_b_q8, 8), 2048.0 - 13.0 / 4.0, 16.0 / 256);
 }
 
 TEST_F(Drive, AnImplausibleOffsetIsAFault) {
   hal_adc_window_t w = still_window();
   w.start_a = 4 * (2048 + 130);
   for (int n = 0; n < 400; ++n) period(w);
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_OFFSET);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_OFFSET);
   EXPECT_TRUE(board.lamp);
 }
 
@@ -52,40 +52,40 @@ TEST_F(Drive, OffsetsAreNotTakenWhileACurrentFlows) {
   for (int n = 0; n < 3000; ++n) {
     w.start_a = static_cast<std::uint16_t>(4 * (2048 + (n / 8 % 2 ? 200 : -200)));
     period(w);
-    ASSERT_EQ(drive.state, DRIVE_CALIBRATE) << n;
+    ASSERT_EQ(inside::state(), DRIVE_CALIBRATE) << n;
   }
   for (int n = 0; n < 400; ++n) period(still_window());
-  ASSERT_EQ(drive.state, DRIVE_READY);
-  EXPECT_NEAR(real(drive.trim.offset_a_q8, 8), 2048.0, 16.0 / 256);
+  ASSERT_EQ(inside::state(), DRIVE_READY);
+  EXPECT_NEAR(real(inside::sensor_trim().offset_a_q8, 8), 2048.0, 16.0 / 256);
 }
 
 TEST_F(Drive, StartNeedsReady) {
   drive_command_start();
   periods(20);
-  EXPECT_NE(drive.state, DRIVE_START);
+  EXPECT_NE(inside::state(), DRIVE_START);
   EXPECT_FALSE(board.gates_on);
   make_ready();
   periods(50);
-  EXPECT_EQ(drive.state, DRIVE_READY) << "an early command must not be remembered";
+  EXPECT_EQ(inside::state(), DRIVE_READY) << "an early command must not be remembered";
 }
 
 TEST_F(Drive, StartRunStop) {
   make_run();
   EXPECT_TRUE(board.gates_on);
-  EXPECT_TRUE(drive.control.closed);
+  EXPECT_TRUE(inside::loop_is_closed());
   drive_command_stop();
   periods(30);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
-  EXPECT_FALSE(drive.control.closed);
+  EXPECT_FALSE(inside::loop_is_closed());
 }
 
 TEST_F(Drive, StartIsRefusedWithParametersThatDoNotFit) {
   make_ready();
-  drive.config_valid = false;
+  inside::config_valid() = false;
   drive_command_start();
   periods(3);
-  EXPECT_EQ(drive.fault, FAULT_PARAMETER);
+  EXPECT_EQ(inside::fault(), FAULT_PARAMETER);
   EXPECT_FALSE(board.gates_on);
 }
 
@@ -94,17 +94,17 @@ TEST_F(Drive, StartIsRefusedWhileTheComparatorIsLow) {
   board.pin_low = true;
   drive_command_start();
   periods(10);  // the gates come on when the short circuit is what the modulator gives
-  EXPECT_EQ(drive.fault, FAULT_OVER_CURRENT);
+  EXPECT_EQ(inside::fault(), FAULT_OVER_CURRENT);
   EXPECT_FALSE(board.gates_on);
 }
 
 /// Whatever happened must have opened the power stage, be latched, and stay so until the reset.
 void expect_fault(drive_fault_t fault) {
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, fault);
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), fault);
   EXPECT_FALSE(board.gates_on);
   EXPECT_TRUE(board.lamp);
-  EXPECT_FALSE(drive.control.closed);
+  EXPECT_FALSE(inside::loop_is_closed());
 }
 
 TEST_F(Drive, ComparatorTrip) {
@@ -125,7 +125,7 @@ TEST_F(Drive, SampledCurrentBeyondTheTripLevel) {
     w.end_b = static_cast<std::uint16_t>(3 * codes(-amps / 2));
     period(w);
     if (amps < 18.0) {
-      EXPECT_EQ(drive.state, DRIVE_RUN);
+      EXPECT_EQ(inside::state(), DRIVE_RUN);
     }
   }
   expect_fault(FAULT_CURRENT_LIMIT);
@@ -152,10 +152,10 @@ TEST_F(Drive, LinkVoltageOutOfItsRange) {
 TEST_F(Drive, FivePeriodsWithoutSamplesAreBornSixAreNot) {
   make_run();
   for (int n = 0; n < 5; ++n) period(still_window(), 1);
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   period();
   for (int n = 0; n < 5; ++n) period(still_window(), 1);
-  EXPECT_EQ(drive.state, DRIVE_RUN) << "one good period starts the count again";
+  EXPECT_EQ(inside::state(), DRIVE_RUN) << "one good period starts the count again";
   period(still_window(), 1);
   expect_fault(FAULT_NO_SAMPLES);
 }
@@ -165,9 +165,9 @@ TEST_F(Drive, LateInterruptsRepeatThePatternAndFaultInTheEnd) {
   board.late = true;
   const int frames = board.frames;
   for (int n = 0; n < 8; ++n) period();
-  EXPECT_EQ(drive.state, DRIVE_RUN);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_EQ(board.frames, frames);
-  EXPECT_NE(drive.limits & LIMIT_OVERRUN, 0);
+  EXPECT_NE(inside::limits() & LIMIT_OVERRUN, 0);
   for (int n = 0; n < 5; ++n) period();
   expect_fault(FAULT_OVERRUN);
 }
@@ -176,9 +176,9 @@ TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
   make_run();
   const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
   int n = 0;
-  while (drive.state == DRIVE_RUN && n < 2 * allowed) {
+  while (inside::state() == DRIVE_RUN && n < 2 * allowed) {
     // the encoder says one thing, AVV is held 70 degrees away: beyond divergence_limit, less than a quarter turn
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam + 0x31C71C72u;
+    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam + 0x31C71C72u;
     period();
     n++;
   }
@@ -190,9 +190,9 @@ TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
 TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
   make_run();
   int n = 0;
-  while (drive.state == DRIVE_RUN && n < 400) {
+  while (inside::state() == DRIVE_RUN && n < 400) {
     board.encoder = (board.encoder + 4u) & 4095u;
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
     period();
     n++;
   }
@@ -201,30 +201,30 @@ TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
 
 TEST_F(Drive, CoastOpensThePowerStageAtOnceAtAnySpeed) {
   make_run();
-  drive.position.encoder.speed_bpp = raw(0.01, 32);
+  inside::encoder_observer().speed_bpp = raw(0.01, 32);
   drive_command_coast();
   period();
-  EXPECT_EQ(drive.state, DRIVE_READY);
-  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
+  EXPECT_EQ(inside::fault(), FAULT_NONE);
   EXPECT_FALSE(board.gates_on);
-  EXPECT_FALSE(drive.control.closed);
+  EXPECT_FALSE(inside::loop_is_closed());
 }
 
 TEST_F(Drive, CoastBreaksAStartOffAndOutlastsIt) {
   make_ready();
   drive_command_start();
   periods(20);
-  ASSERT_EQ(drive.state, DRIVE_START);
+  ASSERT_EQ(inside::state(), DRIVE_START);
   drive_command_coast();
   drive_command_start();  // in the same period: the gates stay off
   periods(3);
-  EXPECT_EQ(drive.state, DRIVE_READY);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
   EXPECT_FALSE(board.gates_on);
 }
 
 TEST_F(Drive, CoastDoesNotWaitForParameters) {
   make_run();
-  drive.request.reload = true;  // the background level never gets to it
+  inside::request().reload = true;  // the background level never gets to it
   drive_command_coast();
   period();
   EXPECT_FALSE(board.gates_on);
@@ -234,13 +234,13 @@ TEST_F(Drive, StopThatDoesNotReachStandstillFaults) {
   parameters.stop_time = 50;
   use_parameters();
   make_run();
-  drive.config.synchronism.bad_periods = 1000000;  // these windows are no machine's
+  inside::config().synchronism.bad_periods = 1000000;  // these windows are no machine's
   drive_command_stop();
   int n = 0;
-  while (drive.state != DRIVE_FAULT && drive.state != DRIVE_READY && n < 2000) {
+  while (inside::state() != DRIVE_FAULT && inside::state() != DRIVE_READY && n < 2000) {
     // an encoder that goes on at 5 rpm, above the 2 rpm that count as rest
-    drive.position.encoder.speed_bpp = raw(5.0 / 60.0 * 4.0 * kPeriod, 32);
-    drive.position.avv.observer.angle_bam = drive.position.encoder.angle_bam;
+    inside::encoder_observer().speed_bpp = raw(5.0 / 60.0 * 4.0 * kPeriod, 32);
+    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
     period();
     n++;
   }
@@ -254,11 +254,11 @@ TEST_F(Drive, AStopEndsAtTwoRevolutionsPerMinute) {
     SetUp();
     make_run();
     drive_command_stop();
-    drive.control.ramp.value = 0;
-    drive.state = DRIVE_STOP;
-    drive.position.selected.speed_bpp = bpp_of(1000) / 10000 * tenths;
+    inside::speed_ramp().value = 0;
+    inside::state() = DRIVE_STOP;
+    inside::selected().speed_bpp = bpp_of(1000) / 10000 * tenths;
     drive_sequence(&drive);
-    EXPECT_EQ(drive.state, std::abs(tenths) < 20 ? DRIVE_READY : DRIVE_STOP) << tenths;
+    EXPECT_EQ(inside::state(), std::abs(tenths) < 20 ? DRIVE_READY : DRIVE_STOP) << tenths;
     EXPECT_EQ(board.gates_on, std::abs(tenths) > 20) << tenths;
   }
 }
@@ -267,10 +267,10 @@ TEST_F(Drive, ASpeedCommandBeforeTheStartIsKept) {
   make_ready();
   drive_command_speed(raw(300.0, 16));
   make_run();
-  drive.config.synchronism.bad_periods = 1000000;  // these windows are no machine's
+  inside::config().synchronism.bad_periods = 1000000;  // these windows are no machine's
   periods(20);
-  EXPECT_GT(drive.control.ramp.value, 0);
-  EXPECT_NEAR(rad_per_s(drive.control.target_bpp) / kTurn * 60.0 / 4.0, 300.0, 0.01);
+  EXPECT_GT(inside::speed_ramp().value, 0);
+  EXPECT_NEAR(rad_per_s(inside::target_bpp()) / kTurn * 60.0 / 4.0, 300.0, 0.01);
 }
 
 TEST_F(Drive, AFaultPutsTheSpeedCommandToZero) {
@@ -278,8 +278,8 @@ TEST_F(Drive, AFaultPutsTheSpeedCommandToZero) {
   drive_command_speed(raw(300.0, 16));
   board.tripped_by_pin = true;
   period();
-  EXPECT_EQ(drive.control.target_bpp, 0);
-  EXPECT_EQ(drive.control.command_rpm_q16, 0);
+  EXPECT_EQ(inside::target_bpp(), 0);
+  EXPECT_EQ(inside::command_rpm_q16(), 0);
 }
 
 // The gates must be safe to open at the highest speed: sqrt(3) * 0.16 Vs * 4 * 2 pi / 60 = 0.1161 V per rpm.
@@ -316,10 +316,10 @@ TEST_F(Drive, FaultStaysUntilTheReset) {
   board.tripped_by_pin = false;
   drive_command_reset();
   periods(2);
-  EXPECT_EQ(drive.state, DRIVE_CALIBRATE) << "an implausible offset must not slip through a reset";
+  EXPECT_EQ(inside::state(), DRIVE_CALIBRATE) << "an implausible offset must not slip through a reset";
   periods(400);
-  EXPECT_EQ(drive.state, DRIVE_READY);
-  EXPECT_EQ(drive.fault, FAULT_NONE);
+  EXPECT_EQ(inside::state(), DRIVE_READY);
+  EXPECT_EQ(inside::fault(), FAULT_NONE);
   EXPECT_FALSE(board.lamp);
   EXPECT_FALSE(board.gates_on);
 }
@@ -328,7 +328,7 @@ TEST_F(Drive, SpeedReferenceIsClampedToTheLimit) {
   for (const double rpm : {1000.0, 5000.0, -5000.0}) {
     drive_command_speed(raw(rpm, 16));
     const double expected = std::max(-3300.0, std::min(3300.0, rpm));
-    EXPECT_NEAR(rad_per_s(drive.control.target_bpp) / kTurn * 60.0 / 4.0, expected, 0.01);
+    EXPECT_NEAR(rad_per_s(inside::target_bpp()) / kTurn * 60.0 / 4.0, expected, 0.01);
   }
 }
 
@@ -354,18 +354,18 @@ TEST_F(Drive, AMapWithoutSaliencyIsNamed) {
 
 TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
   make_run();
-  drive.state = DRIVE_START;
+  inside::state() = DRIVE_START;
   starting = {};
-  drive.flags.caught = true;
-  drive.found.phase = START_CATCH;
+  inside::flags().caught = true;
+  inside::start_found().phase = START_CATCH;
   for (int n = 0; n < 300; ++n) {
-    drive.position.avv.regression.information = 0;
+    inside::avv().regression.information = 0;
     starting.axis.count = 0;
     period();
   }
-  EXPECT_EQ(drive.state, DRIVE_FAULT);
-  EXPECT_EQ(drive.fault, FAULT_START_VOLTAGE);
-  EXPECT_LT(drive.supervision.missing, 5) << "windows there were";
+  EXPECT_EQ(inside::state(), DRIVE_FAULT);
+  EXPECT_EQ(inside::fault(), FAULT_START_VOLTAGE);
+  EXPECT_LT(inside::missing_windows(), 5) << "windows there were";
 }
 
 }  // namespace

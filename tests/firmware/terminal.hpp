@@ -67,10 +67,10 @@ class Terminal : public Drive {
   void run(int rounds) {
     for (int k = 0; k < rounds; ++k) {
       if (++rounds_ % 10 == 0) {
-        drive.time_ms++;
+        inside::time_ms()++;
         board.serial_room = static_cast<std::uint16_t>(std::min<int>(HAL_SCI_TRANSMIT_RING, board.serial_room + 12));
       }
-      drive.heartbeat++;
+      inside::heartbeat()++;
       store_service();
       link_service();
       console_service();
@@ -118,7 +118,7 @@ class Terminal : public Drive {
  private:
   void collect() {
     while (!board.serial_out.empty()) {
-      const std::int16_t found = splitter_octet(&far_, board.serial_out.front(), drive.time_ms);
+      const std::int16_t found = splitter_octet(&far_, board.serial_out.front(), inside::time_ms());
       board.serial_out.pop_front();
       if (found == SPLITTER_RECORD) records.emplace_back(far_.octets, far_.octets + far_.count);
       for (int k = 0; k < found; ++k) text += static_cast<char>(far_.octets[k]);

@@ -10,7 +10,7 @@ from planting import plant
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from checks import comparisons, faces, interrupt, left  # noqa: E402
+from checks import comparisons, faces, inside, interrupt, left  # noqa: E402
 
 
 def including(count: int) -> str:
@@ -142,3 +142,11 @@ def test_what_the_interrupts_run_is_found_in_the_drive_itself() -> None:
 def test_headers_have_no_exceptions() -> None:
     """Nor will they have any."""
     assert not left(ROOT / faces.LEFT)
+
+
+def test_test_that_reaches_into_the_drive_is_caught(tmp_path: Path) -> None:
+    plant(tmp_path, inside.FACE, "inline auto& state() { return drive.state; }\n")
+    plant(tmp_path, "tests/firmware/x.cpp", "// The drive. So it is.\nint f() { return inside::state(); }\n")
+    assert inside.check(tmp_path) == []
+    plant(tmp_path, "tests/firmware/y.cpp", "int f() { return x; }\nint g() { return drive.state + board.drive.x; }\n")
+    assert [(f.path, f.line) for f in inside.check(tmp_path)] == [("tests/firmware/y.cpp", 2)]
