@@ -6,10 +6,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cantools
 import pandas as pd
 import pytest
 from desk import board
 from own_edition import LOADED, ROOT, linked
+
+from stillspin import can
 
 # What a feature that drive and minimal leave out would have recorded.
 LEFT_OUT = {"load_angle", "magnet_flux"}
@@ -201,6 +204,25 @@ def test_a_board_is_compared_with_a_virtual_drive_of_its_own_edition(
     (row,) = json.loads(file.read_text())["runs"]
     assert f"edition {edition}," in row["firmware"]
     assert row["board"] == row["native"] and row["steps"] > 2000
+
+
+@pytest.mark.parametrize("edition", ["lab", "drive"])
+def test_the_dbc_that_is_exported_is_that_of_the_edition(
+    edition: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "own.dbc"
+    monkeypatch.setenv("STILLSPIN_EDITION", edition)
+    with board(tmp_path):
+        on("lab", "-m", "stillspin", "can", f"can:slcan:{tmp_path / 'can'}", "--export", str(file))
+    own, all_editions = cantools.database.load_file(file), can.database(1)
+    assert [(m.name, m.frame_id, len(m.signals)) for m in own.messages] == [
+        (m.name, m.frame_id, len(m.signals)) for m in all_editions.messages
+    ]
+    faults, known = (
+        dict(bus.get_message_by_name("STATUS").get_signal_by_name("FAULT").choices) for bus in (own, all_editions)
+    )
+    assert known.pop(28) == "encoder"
+    assert faults == {**known, **({28: "encoder"} if edition == "lab" else {})}
 
 
 def test_an_edition_that_is_not_built_is_answered_with_the_command_that_makes_it() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
+from collections.abc import Collection
 from importlib.resources import files
 
 import cantools.database
@@ -26,6 +28,18 @@ def database(node: int = 1) -> Database:
         message.frame_id += node - 1
     loaded.refresh()
     return loaded
+
+
+def text_of(faults: Collection[int], node: int = 1) -> str:
+    """A DBC file of a node whose edition of the firmware has these faults.
+
+    Raises:
+        ValueError: a node that cannot be.
+    """
+    loaded = database(node)
+    fault = loaded.get_message_by_name("STATUS").get_signal_by_name("FAULT")
+    fault.choices = OrderedDict((code, name) for code, name in (fault.choices or {}).items() if code in faults)
+    return str(loaded.as_dbc_string())
 
 
 def text() -> str:

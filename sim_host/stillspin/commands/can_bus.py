@@ -14,6 +14,9 @@ import typer
 from cantools.database import Database
 from cantools.database.errors import Error as DatabaseError
 
+from stillspin.can import text_of
+from stillspin.commands import parameter_file
+from stillspin.commands.connection import opened
 from stillspin.errors import InputError
 from stillspin.link import address
 from stillspin.link.can_bus import NODES, open_bus
@@ -44,19 +47,30 @@ def bus(
         ),
     ] = 0.0,
     changes: Annotated[bool, typer.Option("--changes", help="Only messages whose content has changed.")] = False,
+    export: Annotated[
+        Path | None,
+        typer.Option(
+            "--export", metavar="FILE", help="Write the DBC file of the node, as its edition has it, and end."
+        ),
+    ] = None,
 ) -> None:
     """Show every message of the bus with its signals, until Ctrl-C."""
     wanted = address.parse(where)
     if wanted.kind != "can":
         raise InputError(f"address '{where}': must be a CAN bus, such as can:slcan:/dev/ttyACM0")
+    if export:
+        with opened(where) as drive:
+            parameter_file.write(export, text_of(drive.has_faults(), wanted.options["node"]))
+            print(f"node {wanted.options['node']}, {drive.identity.text}; see {export}")
+        return
     only = wanted.options["node"] if "node=" in where else None
     decoder = Decoder(load(dbc))
     end = time.monotonic() + duration if duration else math.inf
-    opened = open_bus(wanted.interface, wanted.channel, wanted.options["bitrate"])
+    listened = open_bus(wanted.interface, wanted.channel, wanted.options["bitrate"])
     seen: dict[int, bytes] = {}
     try:
         while time.monotonic() < end:
-            message = opened.recv(_WAIT)
+            message = listened.recv(_WAIT)
             if message is None or (only is not None and message.arbitration_id & _NODE_MASK != only):
                 continue
             data = bytes(message.data)
@@ -67,7 +81,7 @@ def bus(
         if duration:  # without, it is the end
             raise
     finally:
-        opened.shutdown()
+        listened.shutdown()
 
 
 def load(path: Path) -> Database:

@@ -115,6 +115,11 @@ def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = No
     return replace(found, edition=who.edition)
 
 
+def faults(ask: Ask, who: Identity) -> list[int]:
+    """Numbers of the faults that the drive's edition has."""
+    return [code for code in range(who.faults) if _has(ask, Words.FAULT, code)]
+
+
 _PARTS = {
     Words.SCOPE: "scope",
     Words.COMMISSIONING: "commissioning",
@@ -126,14 +131,16 @@ _PARTS = {
 
 def left_out(ask: Ask) -> list[str]:
     """Parts that the drive's edition has not, for people."""
-    found = []
-    for kind, part in _PARTS.items():
-        try:
-            ask(Request.WORDS, struct.pack("<BB", kind, 0))
-        except RefusedError as error:
-            if error.status == StatusCode.EDITION:
-                found.append(part)
-    return found
+    return [part for kind, part in _PARTS.items() if not _has(ask, kind, 0)]
+
+
+def _has(ask: Ask, kind: Words, code: int) -> bool:
+    """Whether the drive's edition has a word of this kind, as far as it says."""
+    try:
+        ask(Request.WORDS, struct.pack("<BB", kind, code))
+    except RefusedError as error:
+        return error.status != StatusCode.EDITION
+    return True
 
 
 def unpack(form: str, body: bytes) -> tuple[Any, ...]:

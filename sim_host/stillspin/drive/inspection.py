@@ -69,6 +69,10 @@ class Inspection:
         """Parts of the firmware that its edition has not, for people."""
         return describe.left_out(self._ask)
 
+    def has_faults(self) -> list[int]:
+        """Numbers of the faults that its edition has."""
+        return describe.faults(self._ask, self.identity)
+
     def raw_status(self, once: float | None = None, *, urgent: bool = False) -> RawStatus:
         """The numbers behind `status`.
 
