@@ -1,77 +1,17 @@
 // The start of a shaft that stands, phase by phase: what each asks of the drive and where it goes from there. What the
 // estimators say is the test's.
 
-#include "tests/firmware/fake_hal.hpp"
+#include "tests/firmware/start_standing_test.hpp"
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
-#include "firmware/mode/states.h"
-#include "firmware/sources/flux/flux.h"
-#include "firmware/start/phases.h"
-#include "firmware/start/start.h"
 }
 
 namespace {
 
 using namespace stillspin::test;
-
-constexpr double kThere = 0.7;  // the axis, rad
-
-class StartStanding : public Drive {
- protected:
-  void SetUp() override {
-    Drive::SetUp();
-    parameters.flying_start = 0;
-    use_parameters();
-    make_ready();
-    start_state.begin(&drive, DRIVE_RUN);
-    ASSERT_EQ(inside::start_found().phase, START_AXIS);
-  }
-  static drive_start_t& start() { return starting; }
-
-  /// A period of the start, and the one that it asks for a decision alone.
-  static void step() {
-    const std::uint16_t before = inside::start_found().phase;
-    start_state.step(&drive);
-    inside::schedule().exclusive = inside::state() == DRIVE_START && inside::flags().wants_exclusive;
-    if (!inside::schedule().exclusive) return;
-    EXPECT_EQ(inside::start_found().phase, before);
-    start_state.step(&drive);
-    EXPECT_FALSE(inside::flags().wants_exclusive);
-    inside::schedule().exclusive = false;
-  }
-
-  /// At the end of a phase, with AVV's angle at hand.
-  static void at(start_phase_t phase, int tick, double speed = 0.0) {
-    inside::start_found().phase = phase;
-    start().tick = static_cast<std::uint16_t>(tick - 1);
-    inside::avv().observer.angle_bam = bam(kThere);
-    inside::avv().observer.speed_bpp = bpp(speed);
-    inside::avv().error_bam = 0;
-  }
-  /// The test by saturation is over with this result.
-  static void saturation_says(polarity_result_t result) {
-    at(START_SATURATION, SATURATION_LENGTH + 100);
-    start().saturation.tick = SATURATION_LENGTH;
-    start().saturation.result = result;
-    step();
-  }
-  /// And the one by motion: all its angles have been seen but the last.
-  static void motion_says(double response) {
-    at(START_MOTION, 2);
-    polarity_t& m = start().motion;
-    m.tick = POLARITY_LENGTH - 1;
-    m.response_bam = static_cast<std::int32_t>(response * m.expected_bam);
-    m.rough_bam = 0;
-    step();
-  }
-  static void expect_runs(double angle) {
-    EXPECT_EQ(inside::state(), DRIVE_RUN);
-    EXPECT_NEAR(wrapped(rad(inside::selected().angle_bam) - angle), 0.0, 1e-6);
-  }
-};
 
 // Nothing of the last run is left, whatever it was.
 TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
@@ -375,50 +315,6 @@ TEST_F(StartStanding, TheResistanceIsTakenWhereItIsOff) {
   }
 }
 
-// The vector turns with its own angle, with the current controllers from rest, and is not watched for its polarity.
-TEST_F(StartStanding, AVectorBeginsFromRest) {
-  for (const bool backward : {false, true}) {
-    SetUp();
-    inside::target_bpp() = backward ? -1000000 : 1000000;
-    inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
-    inside::seen().angle_bam = 5;
-    polarity_watch.open = true;
-    start_begin_if_ramp(&drive);
-    EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
-    EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
-    EXPECT_EQ(inside::seen().angle_bam, 0u);
-    EXPECT_TRUE(inside::loop_is_closed());
-    EXPECT_FALSE(polarity_watch.open);
-    EXPECT_EQ(starting.if_start.backward, backward);
-  }
-}
-
-// What the vector has turned is taken over as the source sees it: angle, speed and the current in its frame; the
-// controllers begin anew in that frame, and nobody holds the shaft.
-TEST_F(StartStanding, TheSourceTakesOverWhereTheVectorIs) {
-  start_begin_if_ramp(&drive);
-  if_start_t& if_start = start().if_start;
-  inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
-  brake_release_hold.left = 7;
-  flux_observer.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
-  for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
-    inside::selected().angle_bam = if_start.vector_bam;
-    inside::seen() = {if_start.vector_bam - bam(0.4), if_start.speed_bpp, 0, 32767};
-    inside::command_dq_q16() = {0, 0};
-    step();
-  }
-  ASSERT_EQ(inside::state(), DRIVE_RUN);
-  EXPECT_EQ(inside::speed_ramp().value, inside::config().if_start.speed_bpp);
-  EXPECT_EQ(inside::selected().angle_bam, inside::seen().angle_bam);
-  EXPECT_EQ(inside::encoder_observer().angle_bam, inside::seen().angle_bam);
-  EXPECT_EQ(inside::encoder_observer().speed_bpp, if_start.speed_bpp);
-  EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
-  EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
-  EXPECT_EQ(inside::reference_dq_q20().d, 0);
-  EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), real(if_start.current_q20, 20) * std::sin(0.4), 0.05);
-  EXPECT_EQ(brake_release_hold.left, 0u);
-}
-
 TEST_F(StartStanding, TheGatesHaveTheirInstant) {
   start_power(&drive, false);
   EXPECT_FALSE(board.gates_on || !inside::flags().gates_off);
@@ -449,34 +345,6 @@ TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   EXPECT_EQ(inside::speed_ramp().value, bpp(100.0));
   EXPECT_EQ(inside::reference_dq_q20().q, 0);
   EXPECT_EQ(inside::speed_controller().current_q20, 0);
-}
-
-// The flux that takes over above its blend has the shaft from the start on; nobody else does.
-TEST_F(StartStanding, AFluxThatTakesOverHasTheShaftAlone) {
-  for (const std::int32_t source : {POSITION_OBSERVER, POSITION_FLUX_CONV, POSITION_FLUX_ACTIVE}) {
-    for (const int above : {0, 1}) {
-      SetUp();
-      use_source(source);
-      inside::config().blend.high_bpp = inside::config().if_start.speed_bpp - above;
-      inside::blend().region = BLEND_LOW;
-      inside::blend().share_q15 = 32767;
-      start_begin_if_ramp(&drive);
-      const bool alone = source >= POSITION_FLUX_CONV && above != 0;
-      EXPECT_EQ(inside::blend().region, alone ? BLEND_HIGH : BLEND_LOW) << source;
-      EXPECT_EQ(inside::blend().share_q15, alone ? 0 : 32767) << source;
-    }
-  }
-}
-
-TEST_F(StartStanding, AVectorThatTheShaftDoesNotFollowIsAFault) {
-  start_begin_if_ramp(&drive);
-  for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
-    inside::seen() = {start().if_start.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
-    inside::command_dq_q16() = {0, 0};
-    step();
-  }
-  EXPECT_EQ(inside::fault(), FAULT_DIVERGENCE);
-  EXPECT_FALSE(board.gates_on);
 }
 
 TEST_F(StartStanding, AnAxisHasTwentyMilliseconds) {
