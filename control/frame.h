@@ -31,6 +31,7 @@ typedef struct {
 
 #define FRAME_SQRT3_INV_Q30 619925131L   // 1/sqrt(3)
 #define FRAME_SQRT3_HALF_Q30 929887697L  // sqrt(3)/2
+#define FRAME_SQRT3_HALF_Q31 1859775393L
 
 static inline rotation_t frame_rotation(uint32_t angle_bam) {
   rotation_t r;
@@ -72,6 +73,21 @@ static inline dq_t frame_park_hi(ab_t v, rotation_t r) {
 
 static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
   ab_t v = {q_mul_add_floor(w.d, r.cos_q30, -w.q, r.sin_q30, 30), q_mul_add_floor(w.d, r.sin_q30, w.q, r.cos_q30, 30)};
+  return v;
+}
+
+/// The same two of upper words alone, a few LSB less exact: where a product's last bits do not count, a third of the
+/// work on a machine without 64-bit registers.
+static inline abc_t frame_phases(ab_t v) {
+  const int32_t half = q_shr(v.alpha, 1);
+  const int32_t side = 2 * q_mul_hi(v.beta, FRAME_SQRT3_HALF_Q31);
+  abc_t x = {v.alpha, side - half, -side - half};
+  return x;
+}
+
+static inline ab_t frame_back(dq_t w, rotation_t r) {
+  ab_t v = {4 * (q_mul_hi(w.d, r.cos_q30) - q_mul_hi(w.q, r.sin_q30)),
+            4 * (q_mul_hi(w.d, r.sin_q30) + q_mul_hi(w.q, r.cos_q30))};
   return v;
 }
 

@@ -1,8 +1,10 @@
 #include "svpwm/alternating.h"
 
 static void advance(alternating_state_t* s) {
-  s->leg = (uint16_t)((s->leg + 1u) % SVPWM_LEGS);
-  if (s->leg == 0u) s->pair_first = !s->pair_first;
+  s->leg++;
+  if (s->leg < SVPWM_LEGS) return;
+  s->leg = 0u;
+  s->pair_first = !s->pair_first;
 }
 
 typedef struct {
@@ -14,16 +16,16 @@ static void put_pair_first(svpwm_pulses_t* p, const lengths_t* l) {
   svpwm_put_pulse(p, l->longer, SVPWM_FIRST_TICK, l->on_longer);
   svpwm_put_pulse(p, l->shorter, SVPWM_FIRST_TICK, l->on_shorter);
   svpwm_put_pulse(p, l->x, SVPWM_LAST_TICK - l->on_x, l->on_x);
-  p->order = svpwm_order(l->longer, l->shorter, svpwm_fall_of(l->shorter), svpwm_fall_of(l->longer), l->x,
-                         svpwm_fall_of(l->x));
+  svpwm_put_order(p, l->longer, l->shorter, svpwm_fall_of(l->shorter), svpwm_fall_of(l->longer), l->x,
+                  svpwm_fall_of(l->x));
 }
 
 static void put_pair_last(svpwm_pulses_t* p, const lengths_t* l) {
   svpwm_put_pulse(p, l->x, SVPWM_FIRST_TICK, l->on_x);
   svpwm_put_pulse(p, l->longer, SVPWM_LAST_TICK - l->on_longer, l->on_longer);
   svpwm_put_pulse(p, l->shorter, SVPWM_LAST_TICK - l->on_shorter, l->on_shorter);
-  p->order = svpwm_order(l->x, svpwm_fall_of(l->x), l->longer, l->shorter, svpwm_fall_of(l->longer),
-                         svpwm_fall_of(l->shorter));
+  svpwm_put_order(p, l->x, svpwm_fall_of(l->x), l->longer, l->shorter, svpwm_fall_of(l->longer),
+                  svpwm_fall_of(l->shorter));
 }
 
 // The pulse of x and the longer one of the pair add up to 9401 ticks at most: they do not meet.
@@ -49,8 +51,4 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
   } else {
     put_pair_last(pulses, &l);
   }
-}
-
-bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks) {
-  return 10L * (t->leg[t->hi] - t->leg[t->lo]) < 7L * pulse_ticks;
 }

@@ -21,6 +21,8 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
 
 /// True when the command is small enough for this layout: below 0.7 of the pulse both opposite vectors stay sampleable,
 /// up to some 50 V with any x.
-bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks);
+static inline bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks) {
+  return 10L * (t->leg[t->hi] - t->leg[t->lo]) < 7L * pulse_ticks;
+}
 
 #endif

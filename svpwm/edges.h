@@ -4,6 +4,7 @@
 #define STILLSPIN_SVPWM_EDGES_H
 
 #include "svpwm/dead_time.h"
+#include "svpwm/ripple.h"
 #include "svpwm/windows.h"
 
 /// What the legs carry in the period, for the current at an edge.
@@ -13,8 +14,9 @@ typedef struct {
   int32_t link_q16;                // DC link, V
 } svpwm_carried_t;
 
-/// Commands that make the motor see the edges of the pattern's pulses, and the pattern's windows.
+/// When each leg has to be told to rise and to fall, ticks, for the motor to see the edges of the pattern's pulses; and
+/// the pattern's windows.
 void svpwm_compensate_edges(const dead_time_config_t* c, const sampling_config_t* sampling,
-                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, svpwm_pulses_t* command);
+                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, uint16_t rise[], uint16_t fall[]);
 
 #endif

@@ -41,7 +41,7 @@ static void lay_out(const svpwm_on_time_t* t, int32_t t1, int32_t t2, const layo
   svpwm_put_pulse(pulses, t->hi, hi, t1 + t2 + l->low_on);
   svpwm_put_pulse(pulses, t->mid, mid, t2 + l->low_on);
   svpwm_put_pulse(pulses, t->lo, lo, l->low_on);
-  pulses->order = svpwm_order(t->hi, t->mid, t->lo, svpwm_fall_of(t->hi), svpwm_fall_of(t->mid), svpwm_fall_of(t->lo));
+  svpwm_put_order(pulses, t->hi, t->mid, t->lo, svpwm_fall_of(t->hi), svpwm_fall_of(t->mid), svpwm_fall_of(t->lo));
 }
 
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
@@ -75,8 +75,8 @@ void svpwm_cheapest_pair(const extended_config_t* c, const svpwm_on_time_t* t, s
 }
 
 // All legs begin, then they end, the one that is on longest first and last.
-static uint32_t nested_order(const svpwm_on_time_t* t) {
-  return svpwm_order(t->hi, t->mid, t->lo, svpwm_fall_of(t->lo), svpwm_fall_of(t->mid), svpwm_fall_of(t->hi));
+static void put_nested_order(svpwm_pulses_t* pulses, const svpwm_on_time_t* t) {
+  svpwm_put_order(pulses, t->hi, t->mid, t->lo, svpwm_fall_of(t->lo), svpwm_fall_of(t->mid), svpwm_fall_of(t->hi));
 }
 
 static void put_centred(svpwm_pulses_t* pulses, uint16_t leg, int32_t on) {
@@ -91,7 +91,7 @@ void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
   put_centred(pulses, 0u, common + t->leg[0]);
   put_centred(pulses, 1u, common + t->leg[1]);
   put_centred(pulses, 2u, common + t->leg[2]);
-  pulses->order = nested_order(t);
+  put_nested_order(pulses, t);
 }
 
 void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
@@ -99,5 +99,5 @@ void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses) {
   svpwm_put_pulse(pulses, 0u, SVPWM_FIRST_TICK, common + t->leg[0]);
   svpwm_put_pulse(pulses, 1u, SVPWM_FIRST_TICK, common + t->leg[1]);
   svpwm_put_pulse(pulses, 2u, SVPWM_FIRST_TICK, common + t->leg[2]);
-  pulses->order = nested_order(t);
+  put_nested_order(pulses, t);
 }

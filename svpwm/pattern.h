@@ -29,7 +29,7 @@
 /// Edges have numbers: leg k rises at edge k and falls at edge SVPWM_LEGS + k.
 typedef struct {
   int16_t at[SVPWM_EDGES];
-  uint32_t order;  // the edges' numbers in the order of time, four bits each, the first one lowest
+  uint16_t order[SVPWM_EDGES];  // the edges' numbers in the order of time
 } svpwm_pulses_t;
 
 static inline uint16_t svpwm_fall_of(uint16_t leg) { return (uint16_t)(SVPWM_LEGS + leg); }
@@ -46,22 +46,15 @@ static inline int32_t svpwm_on_ticks(const svpwm_pulses_t* p, uint16_t leg) {
 }
 
 /// Every layout knows in which order its edges come, so nobody has to sort them.
-static inline uint32_t svpwm_order(uint16_t e1, uint16_t e2, uint16_t e3, uint16_t e4, uint16_t e5, uint16_t e6) {
-  return (uint32_t)e1 | (uint32_t)e2 << 4 | (uint32_t)e3 << 8 | (uint32_t)e4 << 12 | (uint32_t)e5 << 16 |
-         (uint32_t)e6 << 20;
+static inline void svpwm_put_order(svpwm_pulses_t* p, uint16_t e1, uint16_t e2, uint16_t e3, uint16_t e4, uint16_t e5,
+                                   uint16_t e6) {
+  p->order[0] = e1;
+  p->order[1] = e2;
+  p->order[2] = e3;
+  p->order[3] = e4;
+  p->order[4] = e5;
+  p->order[5] = e6;
 }
-
-/// A walk along the edges takes them off an order.
-static inline uint32_t svpwm_next_edge(uint32_t* order) {
-  const uint32_t edge = *order & 15u;
-  *order >>= 4;
-  return edge;
-}
-
-/// When an edge comes at the motor, ticks. Both are the instant wanted where that is certain.
-typedef struct {
-  int32_t earliest, latest;
-} svpwm_arrival_t;
 
 /// Two bursts of conversions in an interval of constant switching state.
 typedef struct {

@@ -18,51 +18,69 @@ ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t c
 /// Mean voltage of a period with these pulses, V Q16.
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
 
-/// A walk along the edges that says what the own phase of each carries at that edge: its mean current and the ripple.
+/// A walk along the edges that says what the own phase of each carries at that edge: its mean current and the ripple,
+/// as shares of a unit of current.
 ///
 /// Three times a leg less the sum of the three. A leg has been high for nothing at its rise and for all of its pulse at
-/// its fall, and the sum of all legs is a line t slope + offset between two edges.
+/// its fall; the sum of all legs grows evenly between two edges. Numbers of 1/16 of the DC-link voltage and 1/N of a
+/// tick; on the way they may wrap, their sums do not.
 typedef struct {
-  int32_t on3;       // three times the pulse's length, ticks
-  int32_t mean_q20;  // mean current, A
-} svpwm_ripple_leg_t;
+  uint32_t on3[SVPWM_LEGS];      // three times the pulse's length
+  int32_t mean_q12[SVPWM_LEGS];  // mean current
+  int32_t gain_q44;              // current per ripple
+} svpwm_ripple_legs_t;
 
 typedef struct {
-  const svpwm_pulses_t* pulses;
-  uint32_t order;  // of the edges that are left
-  svpwm_ripple_leg_t legs[SVPWM_LEGS];
-  int32_t slope, offset;  // of the sum of the legs, of the DC-link voltage and 1/N of a tick
-  int32_t gain_q28;       // A per ripple
+  uint32_t slope, sum;  // of the legs together, less: how fast, and at the last edge
+  int32_t tick;         // of the last edge
 } svpwm_ripple_walk_t;
 
-typedef struct {
-  uint32_t edge, leg;
-  int32_t tick;
-  int32_t blocking_q20;  // current that keeps the edge from coming with its command: out of a leg that rises, A
-} svpwm_ripple_edge_t;
+#define SVPWM_RIPPLE_PER_TICK ((uint32_t)16)
+#define SVPWM_RIPPLE_PER_PERIOD (SVPWM_RIPPLE_PER_TICK * (uint32_t)SVPWM_PERIOD_TICKS)
+// 4 * 2^32 / (3 N^2 * 16), of amperes in Q20, halved: Q31.
+#define SVPWM_RIPPLE_GAIN_Q31 1921535841L
 
 /// inverse_inductance_q30: mean T/L, A per V and period; link_q16: DC link, V; together taken as 1024 A at most. Mean
-/// currents up to 1400 A.
-svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20, int32_t inverse_inductance_q30,
-                                      int32_t link_q16);
+/// currents up to 1400 A. per_unit_q24: of the unit, up to 100 per A.
+static inline svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20,
+                                                    int32_t inverse_inductance_q30, int32_t link_q16,
+                                                    int32_t per_unit_q24, svpwm_ripple_legs_t* legs) {
+  const uint32_t a = SVPWM_RIPPLE_PER_TICK * (uint32_t)svpwm_on_ticks(p, 0);
+  const uint32_t b = SVPWM_RIPPLE_PER_TICK * (uint32_t)svpwm_on_ticks(p, 1);
+  const uint32_t c = SVPWM_RIPPLE_PER_TICK * (uint32_t)svpwm_on_ticks(p, 2);
+  const int32_t amperes_q18 = q_min(q_mul_hi(link_q16 * 16, inverse_inductance_q30), 268435456L);
+  const int32_t gain_q52 = 2 * q_mul_hi(amperes_q18 * 4, SVPWM_RIPPLE_GAIN_Q31);  // A
+  const svpwm_ripple_walk_t w = {(uint32_t)0 - (a + b + c), 0, 0};
+  legs->on3[0] = 3u * a;
+  legs->on3[1] = 3u * b;
+  legs->on3[2] = 3u * c;
+  legs->mean_q12[0] = q_mul_hi(mean_q20.a, per_unit_q24);
+  legs->mean_q12[1] = q_mul_hi(mean_q20.b, per_unit_q24);
+  legs->mean_q12[2] = q_mul_hi(mean_q20.c, per_unit_q24);
+  legs->gain_q44 = q_mul_hi(gain_q52, per_unit_q24);
+  return w;
+}
 
-/// The next edge; there is one while `order` is not 0, as the last edge is a falling one.
-static inline svpwm_ripple_edge_t svpwm_ripple_next(svpwm_ripple_walk_t* w) {
-  svpwm_ripple_edge_t e;
-  e.edge = svpwm_next_edge(&w->order);
-  e.tick = w->pulses->at[e.edge];
-  const bool falls = e.edge >= SVPWM_LEGS;
-  e.leg = falls ? e.edge - SVPWM_LEGS : e.edge;
-  const svpwm_ripple_leg_t* const own = &w->legs[e.leg];
-  const int32_t change = falls ? -SVPWM_PERIOD_TICKS : SVPWM_PERIOD_TICKS;
-  const int32_t high = falls ? own->on3 * (int32_t)SVPWM_PERIOD_TICKS : 0;
-  const int32_t ripple = high - (own->on3 + w->slope) * e.tick - w->offset;
-  w->slope += change;
-  w->offset -= change * e.tick;
-  // At most N^2, and times 16 for the upper word to be that of a shift by 28; of edges that are none's it would wrap.
-  const int32_t current_q20 = own->mean_q20 + q_mul_hi((int32_t)((uint32_t)ripple * 16u), w->gain_q28);
-  e.blocking_q20 = falls ? -current_q20 : current_q20;
-  return e;
+static inline void svpwm_ripple_reach(svpwm_ripple_walk_t* w, int32_t tick) {
+  w->sum += w->slope * (uint32_t)(tick - w->tick);
+  w->tick = tick;
+}
+
+/// Current out of a leg that rises next.
+static inline int32_t svpwm_ripple_rise(svpwm_ripple_walk_t* w, const svpwm_ripple_legs_t* legs, unsigned leg,
+                                        int32_t tick) {
+  svpwm_ripple_reach(w, tick);
+  w->slope += SVPWM_RIPPLE_PER_PERIOD;
+  return legs->mean_q12[leg] - q_mul_hi((int32_t)(legs->on3[leg] * (uint32_t)tick + w->sum), legs->gain_q44);
+}
+
+/// Current into a leg that falls next.
+static inline int32_t svpwm_ripple_fall(svpwm_ripple_walk_t* w, const svpwm_ripple_legs_t* legs, unsigned leg,
+                                        int32_t tick) {
+  svpwm_ripple_reach(w, tick);
+  w->slope -= SVPWM_RIPPLE_PER_PERIOD;
+  const uint32_t lacks = legs->on3[leg] * (uint32_t)(tick - SVPWM_PERIOD_TICKS) + w->sum;
+  return q_mul_hi((int32_t)lacks, legs->gain_q44) - legs->mean_q12[leg];
 }
 
 #endif

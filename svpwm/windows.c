@@ -3,7 +3,7 @@
 static int32_t span(const svpwm_window_t* w) { return (int32_t)w->end - w->start; }
 
 // The shortest goes, where there are too many, and the later ones move up.
-static void make_room(svpwm_pattern_t* pattern, const svpwm_window_t* window) {
+void svpwm_replace_window(svpwm_pattern_t* pattern, const svpwm_window_t* window) {
   svpwm_window_t* const w = pattern->windows;
   uint16_t shortest = 0;
   for (uint16_t k = 1; k < SVPWM_WINDOWS; k++) {
@@ -14,12 +14,15 @@ static void make_room(svpwm_pattern_t* pattern, const svpwm_window_t* window) {
   w[SVPWM_WINDOWS - 1] = *window;
 }
 
-void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* window) {
-  if (window->end < window->start + c->span_min_ticks) return;
+void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
+                       unsigned state) {
+  const svpwm_window_t window = svpwm_window_between(c, begin, end, state);
+  if (window.end < window.start + c->span_min_ticks) return;
   if (pattern->window_count < SVPWM_WINDOWS) {
-    pattern->windows[pattern->window_count++] = *window;
+    pattern->windows[pattern->window_count++] = window;
   } else {
-    make_room(pattern, window);
+    const svpwm_window_t more = window;  // in memory where it has to be, and only there
+    svpwm_replace_window(pattern, &more);
   }
 }
 

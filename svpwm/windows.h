@@ -16,7 +16,7 @@ typedef struct {
 
 /// The window of an interval: of its edges the first comes at begin at the latest, the last at end at the earliest.
 static inline svpwm_window_t svpwm_window_between(const sampling_config_t* c, int32_t begin, int32_t end,
-                                                  uint32_t state) {
+                                                  unsigned state) {
   const svpwm_window_t w = {(int16_t)(begin + c->settle_ticks), (int16_t)q_min(end - c->burst_ticks, c->last_tick),
                             (uint16_t)state};
   return w;
@@ -26,38 +26,48 @@ static inline svpwm_window_t svpwm_window_between(const sampling_config_t* c, in
 /// certain: a window begins when the edges before it have come at the latest, and ends when those behind it can come at
 /// the earliest.
 typedef struct {
-  const sampling_config_t* c;
-  svpwm_pattern_t* pattern;
   int32_t shortest;      // interval worth a look, ticks
   int32_t begin, ended;  // of the interval, of the last window
-  uint32_t state;
+  unsigned state;
 } svpwm_finder_t;
 
 static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_pattern_t* pattern) {
-  const svpwm_finder_t f = {c, pattern, (int32_t)c->settle_ticks + c->burst_ticks + c->span_min_ticks, 0, 0, 0};
+  const svpwm_finder_t f = {(int32_t)c->settle_ticks + c->burst_ticks + c->span_min_ticks, 0, 0, 0};
   pattern->window_count = 0;
   return f;
 }
 
 /// An edge that may come before the one that has ended the last window; a window that may be worth it.
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end);
-void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, const svpwm_window_t* window);
+void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
+                       unsigned state);
+/// One more than there is room for; by itself, as it is rare and the other is not.
+void svpwm_replace_window(svpwm_pattern_t* pattern, const svpwm_window_t* window);
 
-static inline void svpwm_finder_end_interval(svpwm_finder_t* f, int32_t end) {
+static inline void svpwm_finder_end_interval(svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern,
+                                             int32_t end) {
   if (end - f->begin < f->shortest) return;  // most intervals are short
-  const svpwm_window_t window = svpwm_window_between(f->c, f->begin, end, f->state);
-  svpwm_take_window(f->c, f->pattern, &window);
+  svpwm_take_window(c, pattern, f->begin, end, f->state);
   f->ended = end;
 }
 
-static inline void svpwm_finder_pass(svpwm_finder_t* f, uint32_t leg, const svpwm_arrival_t* edge) {
-  if (edge->earliest < f->ended) svpwm_shorten_window(f->c, f->pattern, edge->earliest);
-  svpwm_finder_end_interval(f, edge->earliest);
-  f->begin = q_max(f->begin, edge->latest);
-  f->state ^= 1uL << leg;
+/// An edge comes from a tick on, and by another at the latest; both are the instant wanted where that is certain.
+static inline void svpwm_finder_pass(svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern,
+                                     unsigned leg, int32_t earliest, int32_t latest) {
+  svpwm_finder_end_interval(f, c, pattern, earliest);
+  f->begin = q_max(f->begin, latest);
+  f->state = f->state ^ (1u << leg);
+}
+
+/// Before an edge that is not certain: it may come before the one that has ended the last window.
+static inline void svpwm_finder_beware(const svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern,
+                                       int32_t earliest) {
+  if (earliest < f->ended) svpwm_shorten_window(c, pattern, earliest);
 }
 
 /// Behind the last edge: the period's end cuts some.
-static inline void svpwm_finder_finish(svpwm_finder_t* f) { svpwm_finder_end_interval(f, SVPWM_PERIOD_TICKS); }
+static inline void svpwm_finder_finish(svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern) {
+  svpwm_finder_end_interval(f, c, pattern, SVPWM_PERIOD_TICKS);
+}
 
 #endif

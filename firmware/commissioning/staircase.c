@@ -23,8 +23,8 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 
-#define VOLT_THIRD_Q27 44739243L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
-#define VOLT_SIDE_Q27 77490641L
+#define VOLT_THIRD_Q29 178956971L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
+#define VOLT_SIDE_Q29 309962566L
 
 #define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
@@ -57,8 +57,8 @@ static int32_t level_q20(const drive_t* d, uint16_t index) {
 // What one volt of drop in every phase gives along the d-axis, Q20.
 static int32_t factor_q20(const drive_t* d, ab_t current_q20, rotation_t r) {
   dead_time_config_t one_volt = d->config.dead_time;
-  one_volt.third_drop_q27 = VOLT_THIRD_Q27;
-  one_volt.side_drop_q27 = VOLT_SIDE_Q27;
+  one_volt.third_per_amp_q21 = q_mul_hi(one_volt.per_band_q24, VOLT_THIRD_Q29);
+  one_volt.side_per_amp_q21 = q_mul_hi(one_volt.per_band_q24, VOLT_SIDE_Q29);
   return frame_park(dead_time_drop_q16(&one_volt, current_q20), r).d * 16;
 }
 
@@ -73,7 +73,7 @@ static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
 // Difference of the link between the middles of the two windows, from that between their ends, as a voltage along d.
 static int32_t sag_q20(const drive_t* d, const deviation_t w[2]) {
   const estimator_window_t* const e = d->samples.windows;
-  const svpwm_window_t* const p = d->modulation.sampled.windows;
+  const svpwm_window_t* const p = modulation_sampled(&d->modulation)->windows;
   const sampling_config_t* const c = &d->config.modulator.sampling;
   const int32_t around = c->settle_ticks + c->burst_ticks;
   const int32_t length = p[0].end - p[0].start + around;

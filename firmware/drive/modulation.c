@@ -22,12 +22,17 @@ static excitation_t excitation(const drive_t* d) {
 
 // All lower devices on for the whole period, and three windows in it.
 static svpwm_pattern_t short_circuit(const sampling_config_t* c) {
-  const svpwm_pattern_t p = {{{-1, -1, -1, -1, -1, -1}, 0},
+  const svpwm_pattern_t p = {{{-1, -1, -1, -1, -1, -1}, {0, 0, 0, 0, 0, 0}},
                              {svpwm_window_between(c, 0, 3300, 0), svpwm_window_between(c, 3300, 6600, 0),
                               svpwm_window_between(c, 6600, SVPWM_PERIOD_TICKS, 0)},
                              SVPWM_WINDOWS};
   return p;
 }
+
+static const hal_pwm_frame_t no_pulses = {{HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
+                                          {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
+                                          {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
+                                          {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE}};
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
 static uint32_t angle_at_action(const drive_t* d) {
@@ -35,55 +40,54 @@ static uint32_t angle_at_action(const drive_t* d) {
   return d->position.selected.angle_bam + (uint32_t)(speed + speed / 2);
 }
 
-// Written out, three times each, rather than as loops.
-static inline void put_leg(hal_pwm_frame_t* f, const svpwm_pulses_t* command, uint16_t leg) {
-  f->rise_tick[leg] = (uint16_t)command->at[leg];
-  f->fall_tick[leg] = (uint16_t)command->at[SVPWM_LEGS + leg];
-}
-
+// Written out, three times, rather than as a loop.
 static inline void put_window(hal_pwm_frame_t* f, const svpwm_pattern_t* p, uint16_t k) {
   const bool used = k < p->window_count;
   f->burst_start_tick[k] = used ? (uint16_t)p->windows[k].start : HAL_PWM_NONE;
   f->burst_end_tick[k] = used ? (uint16_t)p->windows[k].end : HAL_PWM_NONE;
 }
 
-static void write_frame(drive_t* d, const svpwm_pulses_t* command) {
-  const svpwm_pattern_t* const p = &d->modulation.next;
-  hal_pwm_frame_t f;
-  put_leg(&f, command, 0u);
-  put_leg(&f, command, 1u);
-  put_leg(&f, command, 2u);
-  put_window(&f, p, 0u);
-  put_window(&f, p, 1u);
-  put_window(&f, p, 2u);
-  const bool written = hal_pwm_write(&f, DEADLINE_TICK);
-  d->modulation.sampled = d->modulation.running;
+// What was told too late leaves the pattern that runs for another period.
+static void write_frame(drive_t* d, hal_pwm_frame_t* f, uint16_t made) {
+  drive_modulation_t* const m = &d->modulation;
+  const svpwm_pattern_t* const p = &m->patterns[made];
+  put_window(f, p, 0u);
+  put_window(f, p, 1u);
+  put_window(f, p, 2u);
+  const bool written = hal_pwm_write(f, DEADLINE_TICK);
+  m->sampled = m->running;
   if (written) {
+    m->running = made;
     d->supervision.overrun = 0;
-    d->modulation.running = *p;
   } else {
     d->supervision.overrun++;
     d->limits |= LIMIT_OVERRUN;
   }
 }
 
-void drive_modulate(drive_t* d) {
-  if (edition_phase_control != NULL && edition_phase_control->step(d)) return;
+void drive_modulation_reset(drive_modulation_t* m) {
+  m->sampled = 0;
+  m->running = 0;
+  modulator_reset(&m->state);
+}
+
+static void modulate_into(drive_t* d, uint16_t made) {
   drive_control_t* const c = &d->control;
+  svpwm_pattern_t* const pattern = &d->modulation.patterns[made];
+  hal_pwm_frame_t f;
   if (d->flags.shorted) {
-    d->modulation.next = short_circuit(&d->config.modulator.sampling);
+    *pattern = short_circuit(&d->config.modulator.sampling);
+    f = no_pulses;
     hal_profile_step(CYCLES_MODULATE);
-    write_frame(d, &d->modulation.next.pulses);
+    write_frame(d, &f, made);
     return;
   }
   const rotation_t r = frame_rotation(angle_at_action(d));
-  const ab_t current_q20 = frame_inverse_park(c->measured_q20, r);
+  const ab_t current_q20 = frame_back(c->measured_q20, r);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);
-  const ab_t reference_q16 = frame_inverse_park(c->command_q16, r);
+  const ab_t reference_q16 = frame_back(c->command_q16, r);
   const ab_t command_q16 = {reference_q16.alpha + drop_q16.alpha, reference_q16.beta + drop_q16.beta};
   d->modulation.command_q16 = command_q16;
-  svpwm_pattern_t* const pattern = &d->modulation.next;
-  svpwm_pulses_t command;
   const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d),
                                                    command_q16, d->samples.link_q16, &pattern->pulses);
   if (result.limited && c->closed) {
@@ -93,7 +97,18 @@ void drive_modulate(drive_t* d) {
     d->limits |= LIMIT_VOLTAGE;
   }
   const svpwm_carried_t carried = {current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16};
-  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, &command);
+  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, f.rise_tick,
+                         f.fall_tick);
   hal_profile_step(CYCLES_MODULATE);
-  write_frame(d, &command);
+  write_frame(d, &f, made);
+}
+
+// Into the pattern that does not run: a call for each of the two, as what is proved of one place is not of either.
+void drive_modulate(drive_t* d) {
+  if (edition_phase_control != NULL && edition_phase_control->step(d)) return;
+  if (d->modulation.running == 0u) {
+    modulate_into(d, 1u);
+  } else {
+    modulate_into(d, 0u);
+  }
 }

@@ -11,6 +11,7 @@
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/sampling.h"
+#include "firmware/drive/steps.h"
 #include "firmware/interfaces/service.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/interlock.h"
@@ -34,6 +35,6 @@ void drive_reset(void) {
   drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
   drive.samples.scale = slopes_scale(&drive.config.slopes, &drive.trim);
   drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
-  modulator_reset(&drive.modulation.state);
+  drive_modulation_reset(&drive.modulation);
   position_preset(&drive, 0, 0);
 }

@@ -106,7 +106,7 @@ void drive_read_samples(drive_t* d) {
     return;
   }
   const sampling_buffer_t* const b = sampling_swap();
-  const svpwm_pattern_t* const p = &d->modulation.sampled;
+  const svpwm_pattern_t* const p = modulation_sampled(&d->modulation);
   drive_samples_t* const s = &d->samples;
   s->count = 0;
   const bool complete = b->count == p->window_count;

@@ -30,6 +30,7 @@ void drive_sequence(drive_t* d);         // drive/sequence.c
 void drive_control_speed(drive_t* d);    // drive/speed.c
 void drive_control_current(drive_t* d);  // drive/current.c
 void drive_modulate(drive_t* d);         // modulation.c
+void drive_modulation_reset(drive_modulation_t* m);
 
 /// Decides what the period that begins does (schedule.h).
 void schedule_next(drive_t* d);

@@ -81,11 +81,15 @@ typedef struct {
 
 typedef struct {
   modulator_t state;
-  svpwm_pattern_t sampled;  // pattern of the period whose windows were just read
-  svpwm_pattern_t running;  // pattern of the period that has just begun
-  svpwm_pattern_t next;     // pattern in the making
-  ab_t command_q16;         // voltage commanded of the modulator, drops of the devices added
+  svpwm_pattern_t patterns[2];  // where one is made, nobody needs what it held any more
+  uint16_t sampled;             // of the period whose windows were just read
+  uint16_t running;             // of the period that has just begun
+  ab_t command_q16;             // voltage commanded of the modulator, drops of the devices added
 } drive_modulation_t;
+
+static inline const svpwm_pattern_t* modulation_sampled(const drive_modulation_t* m) {
+  return &m->patterns[m->sampled];
+}
 
 typedef struct {
   uint16_t missing, overrun, diverged_periods;

@@ -88,9 +88,8 @@ inline auto& weakening_q20() { return drive.control.weakening_q20; }
 // The modulator.
 inline auto& modulated_q16() { return drive.modulation.command_q16; }
 inline auto& modulator() { return drive.modulation.state; }
-inline auto& next_pattern() { return drive.modulation.next; }
-inline auto& running_pattern() { return drive.modulation.running; }
-inline auto& sampled_pattern() { return drive.modulation.sampled; }
+inline auto& running_pattern() { return drive.modulation.patterns[drive.modulation.running]; }
+inline auto& sampled_pattern() { return drive.modulation.patterns[drive.modulation.sampled]; }
 
 // What protection has counted.
 inline auto& diverged_periods() { return drive.supervision.diverged_periods; }

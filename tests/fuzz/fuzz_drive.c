@@ -37,7 +37,7 @@ static reached_t reached[FUZZ_STATES];
 static bool all_reached;
 
 static void period(void) {
-  for (uint16_t k = 0; k < drive.modulation.sampled.window_count; k++) {
+  for (uint16_t k = 0; k < modulation_sampled(&drive.modulation)->window_count; k++) {
     fuzz_board_still_window();
     drive_window_interrupt();
   }

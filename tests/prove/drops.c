@@ -1,5 +1,4 @@
-// Drops and delays of the devices near a current's change of sign, for every band, slice by slice: between the two
-// signs nothing is beyond them.
+// Drops of the devices near a current's change of sign, for every band, slice by slice: none is more than the whole.
 
 #include "svpwm/dead_time.h"
 #include "tests/prove/any.h"
@@ -9,15 +8,20 @@
 #define BAND_MIN_Q20 10485L  // 0.01 A
 #define BAND_MAX_Q20 (2 * AMPERES_Q20)
 
+static ab_t any_current(void) {
+  const ab_t v = {any_from(-CARRIED_MAX_Q20, CARRIED_MAX_Q20), any_from(-CARRIED_MAX_Q20, CARRIED_MAX_Q20)};
+  return v;
+}
+
+// As dead_time_design has it, rounded.
 static void look(int32_t least_q20, int32_t most_q20) {
   dead_time_config_t c;
-  c.turn_on_ticks = (int16_t)any_from(0, 240);
-  c.turn_off_ticks = (int16_t)any_from(0, 240);
-  c.edge_band_q20 = any_from(0, 4 * AMPERES_Q20);
   c.band_q20 = any_from(least_q20, most_q20);
-  c.per_band_q29 = (int32_t)(17592186044416LL / c.band_q20) + any_from(0, 1);  // as dead_time_design has it, rounded
-  (void)dead_time_sign_q21(&c, any_i32);
-  (void)dead_time_delay_ticks(&c, any_i32);
+  const int32_t drop_q16 = any_from(0, 5 * VOLTS_Q16);
+  const int32_t per_amp_q21 = (int32_t)((int64_t)drop_q16 * 33554432LL / c.band_q20) + any_from(0, 2);
+  c.third_per_amp_q21 = per_amp_q21 / 3;
+  c.side_per_amp_q21 = q_mul(per_amp_q21, FRAME_SQRT3_INV_Q30, 30);
+  (void)dead_time_drop_q16(&c, any_current());
 }
 
 // Each slice is a fiftieth longer than the one before.

@@ -32,7 +32,7 @@
 #define WINDOW_BETA_MAX_Q20 (387 * AMPERES_Q20)
 #define WINDOW_VOLTS_MAX_Q16 (1340 * VOLTS_Q16)  // two thirds of 2000 V, and the devices' drops
 #define MISMATCH_END_Q30 53687091L               // sensor_match.h
-#define SIGN_END_Q21 2160066L                    // 1.03: a sign, and what intervals add
+#define DROP_END_Q16 (7 * VOLTS_Q16)             // four thirds of 5 V, and what intervals add
 #define VARIANCE_END_Q20 536870912L              // deviation_observer.c
 #define POWER_END_Q23 1073741823L                // of scores
 #define INFORMATION_END_Q21 16777217L            // of a period, deviation_information.h, and a rounding

@@ -88,7 +88,7 @@ void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 /*@ requires GIVEN(t) && 0 <= pulse_ticks <= 4700;
     ensures \result != 0 <==> FITS(t, pulse_ticks); */
-bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks);
+static inline bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks);
 
 /*@ predicate lengths(lengths_t* l) = \valid_read(l) && legs_of(l->x, l->longer, l->shorter) &&
       1 <= l->on_x <= LONGEST && 1 <= l->on_longer <= LONGEST && 1 <= l->on_shorter <= LONGEST; */
@@ -120,10 +120,10 @@ void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t
 bool modulator_config_valid(const modulator_config_t* c);
 
 /*@ assigns \nothing; */
-int32_t svpwm_ticks_per_volt_q20(int32_t link_q16, int32_t last_q20);
+static inline int32_t svpwm_ticks_per_volt_q20(int32_t link_q16, int32_t last_q20);
 
 /*@ assigns \nothing; ensures ON_TIMES(\result); */
-svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t ticks_per_volt_q20);
+static inline svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t ticks_per_volt_q20);
 
 /*@ requires \valid_read(s) && \valid_read(c) && GIVEN(t) && IS_PULSE(c->pulse_ticks);
    assigns \nothing; ensures \result != 0 ==> FITS(t, c->pulse_ticks); */

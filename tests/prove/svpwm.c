@@ -19,35 +19,41 @@ static bool configure(void) {
 }
 
 // Any edges of a period, in one order: that they lie in the period is what layouts.c proves.
-static void send(uint32_t order) {
+static void send(const svpwm_pulses_t* pulses) {
   static svpwm_pattern_t pattern;
-  svpwm_pulses_t command;
+  uint16_t rise[SVPWM_LEGS], fall[SVPWM_LEGS];
+  pattern.pulses = *pulses;
   for (uint16_t k = 0; k < SVPWM_EDGES; k++) pattern.pulses.at[k] = any_ticks(-1, SVPWM_PERIOD_TICKS);
   for (uint16_t k = 0; k < SVPWM_WINDOWS; k++) {
     const svpwm_window_t w = {any_ticks(0, 9800), any_ticks(0, 9800), any_up_to(7)};
     pattern.windows[k] = w;
   }
-  pattern.pulses.order = order;
   const int32_t link_q16 = any_from(0, VOLTAGE_MAX_Q16);
   const svpwm_carried_t carried = {any_vector(CARRIED_MAX_Q20), any_from(0, Y_END_Q30), link_q16};
-  svpwm_compensate_edges(&dead_time, &config.sampling, &carried, &pattern, &command);
+  svpwm_compensate_edges(&dead_time, &config.sampling, &carried, &pattern, rise, fall);
   (void)svpwm_mean_q16(&pattern.pulses, link_q16);
   const int16_t middles[SVPWM_WINDOWS] = {any_ticks(0, SVPWM_PERIOD_TICKS), any_ticks(0, SVPWM_PERIOD_TICKS),
                                           any_ticks(0, SVPWM_PERIOD_TICKS)};
   (void)svpwm_ripple_q16(&pattern.pulses, middles, any_up_to(SVPWM_WINDOWS), link_q16);
 }
 
-// What is sent of a period, and its windows, in each of the orders (svpwm_order in svpwm/extended.c and alternating.c).
+// What is sent of a period, and its windows, in each of the orders (svpwm_put_order in svpwm/extended.c and
+// alternating.c).
 void prove_edges(void) {
   if (!configure()) return;
   for (uint16_t first = 0; first < 6u; first++) {
     const uint16_t a = (uint16_t)(first / 2u);
     const uint16_t b = (uint16_t)((a + 1u + first % 2u) % 3u);
     const uint16_t c = (uint16_t)(3u - a - b);
-    send(svpwm_order(a, b, c, svpwm_fall_of(a), svpwm_fall_of(b), svpwm_fall_of(c)));
-    send(svpwm_order(a, b, c, svpwm_fall_of(c), svpwm_fall_of(b), svpwm_fall_of(a)));
-    send(svpwm_order(a, b, svpwm_fall_of(b), svpwm_fall_of(a), c, svpwm_fall_of(c)));
-    send(svpwm_order(a, svpwm_fall_of(a), b, c, svpwm_fall_of(b), svpwm_fall_of(c)));
+    svpwm_pulses_t p = {{0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}};
+    svpwm_put_order(&p, a, b, c, svpwm_fall_of(a), svpwm_fall_of(b), svpwm_fall_of(c));
+    send(&p);
+    svpwm_put_order(&p, a, b, c, svpwm_fall_of(c), svpwm_fall_of(b), svpwm_fall_of(a));
+    send(&p);
+    svpwm_put_order(&p, a, b, svpwm_fall_of(b), svpwm_fall_of(a), c, svpwm_fall_of(c));
+    send(&p);
+    svpwm_put_order(&p, a, svpwm_fall_of(a), b, c, svpwm_fall_of(b), svpwm_fall_of(c));
+    send(&p);
   }
 }
 

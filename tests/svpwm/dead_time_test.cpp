@@ -16,15 +16,12 @@ constexpr double kDeadTicks = 200.0, kTurnOn = 30.0, kTurnOff = 60.0;
 constexpr double kLink = 300.0;
 
 dead_time_config_t config() {
-  dead_time_config_t c = {static_cast<std::int16_t>(kDeadTicks + kTurnOn),
-                          static_cast<std::int16_t>(kTurnOff),
-                          raw(0.7, 20),
-                          raw(0.2, 20),
-                          raw(0.95, 16),
-                          0,
-                          0,
-                          0,
-                          0};
+  dead_time_config_t c = {};
+  c.turn_on_ticks = static_cast<std::int16_t>(kDeadTicks + kTurnOn);
+  c.turn_off_ticks = static_cast<std::int16_t>(kTurnOff);
+  c.edge_band_q20 = raw(0.7, 20);
+  c.band_q20 = raw(0.2, 20);
+  c.drop_q16 = raw(0.95, 16);
   dead_time_design(&c);
   return c;
 }
@@ -118,43 +115,36 @@ TEST(DeadTime, InAWideBandEveryEdgeIsShiftedByItsCurrent) {
   Random random(121);
   dead_time_config_t c = config();
   c.band_q20 = raw(1.5, 20);
+  c.edge_band_q20 = raw(2.0, 20);
   dead_time_design(&c);
   const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff), half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
   const sampling_config_t sampling = default_modulator().sampling;
   int between = 0;
   for (int n = 0; n < 500; ++n) {
     svpwm_pattern_t pattern = {};
-    svpwm_pulses_t command;
     pattern.pulses = some_pulses(random);
     const Vector mean = random.direction(random.between(0.0, 3.0));
     // no ripple: the current of an edge is its leg's mean
     const svpwm_carried_t carried = {raw_ab(mean, 20), 0, raw(kLink, 16)};
-    svpwm_compensate_edges(&c, &sampling, &carried, &pattern, &command);
+    const svpwm_pulses_t command = send(c, sampling, carried, &pattern);
     for (std::uint16_t edge = 0; edge < SVPWM_EDGES; ++edge) {
       const double blocking = (edge < SVPWM_LEGS ? 1.0 : -1.0) * phase(mean, edge % SVPWM_LEGS);
       const double share = std::clamp(blocking / 1.5, -1.0, 1.0);
       ASSERT_NEAR(pattern.pulses.at[edge] - command.at[edge], middle + half * share, 1.0) << blocking;
-      between += (std::fabs(blocking) > 0.7 && std::fabs(blocking) < 1.5) ? 1 : 0;
+      between += std::fabs(blocking) < 1.5 ? 1 : 0;
     }
   }
   EXPECT_GT(between, 300);
 }
 
-// A band wider than the error of the prediction: between the two the sign is certain, and the shift still between.
-TEST(DeadTime, AboveItsErrorACurrentIsCertainThoughNotTrusted) {
-  dead_time_config_t c = config();
-  c.band_q20 = raw(1.5, 20);
-  dead_time_design(&c);
+// A current beyond the error of its prediction is certain: its edge comes when it is wanted.
+TEST(DeadTime, AboveItsErrorACurrentIsCertain) {
+  const dead_time_config_t c = config();
+  const dead_time_delay_t delay = dead_time_delay(&c);
   for (const double amps : {0.69, 0.71, -0.69, -0.71}) {
-    const svpwm_ripple_edge_t rise = {0, 0, 5000, raw(amps, 20)};
-    svpwm_arrival_t arrival;
-    const std::int32_t sent = dead_time_compensate(&c, &rise, &arrival);
-    const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
-    const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
-    EXPECT_NEAR(5000 - sent, middle + half * amps / 1.5, 0.51) << amps;
-    const bool certain = std::fabs(amps) > 0.7;
-    EXPECT_EQ(arrival.earliest, certain ? 5000 : sent + kTurnOff) << amps;
-    EXPECT_EQ(arrival.latest, certain ? 5000 : sent + kDeadTicks + kTurnOn) << amps;
+    const auto share_q12 = static_cast<std::int32_t>(std::lround(amps / 0.2 * 4096.0));
+    EXPECT_EQ(dead_time_is_in_doubt(&c, share_q12), std::fabs(amps) < 0.7) << amps;
+    EXPECT_EQ(dead_time_delay_ticks(&delay, share_q12), amps > 0.0 ? kDeadTicks + kTurnOn : kTurnOff);
   }
 }
 

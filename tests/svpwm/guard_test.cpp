@@ -103,8 +103,7 @@ void expect_sent(const svpwm_pulses_t& wanted, ab_t current, const Sent& pieces,
   const svpwm_carried_t carried = {current, 17179869L, 300L * 65536L};
   svpwm_pattern_t p = {};
   p.pulses = wanted;
-  svpwm_pulses_t command = {};
-  svpwm_compensate_edges(&c, &s, &carried, &p, &command);
+  const svpwm_pulses_t command = send(c, s, carried, &p);
   for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) ASSERT_EQ(command.at[edge], pieces.command.at[edge]) << edge;
   ASSERT_EQ(p.window_count, found.window_count);
   for (int k = 0; k < p.window_count; ++k) {

@@ -81,6 +81,8 @@ TEST(OnTime, TheLegsBelongTogetherWithAnyVoltage) {
     const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
     ASSERT_GE(t1, 0);
     ASSERT_GE(t2, 0);
+    ASSERT_TRUE(t1 > 0 || t.hi < t.mid) << "between equal ones the first is the longer";
+    ASSERT_TRUE(t2 > 0 || t.mid < t.lo);
     ASSERT_LE(t1 + t2, SVPWM_SPREAD_MAX_TICKS + 1) << v.x << ", " << v.y << ", " << link;
     ASSERT_NEAR(t.leg[t.hi], (2.0 * t1 + t2) / 3.0, 1.0);
     ASSERT_NEAR(t.leg[t.mid], (t2 - t1) / 3.0, 1.0);

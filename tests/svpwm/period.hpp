@@ -26,18 +26,16 @@ inline svpwm_pulses_t ordered(svpwm_pulses_t p) {
   std::array<std::pair<int, unsigned>, SVPWM_EDGES> edges;  // rises before the falls of the same tick
   for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) edges[edge] = {p.at[edge], edge};
   std::sort(edges.begin(), edges.end());
-  p.order = 0;
-  for (unsigned k = 0; k < SVPWM_EDGES; ++k) p.order |= edges[k].second << 4 * k;
+  for (unsigned k = 0; k < SVPWM_EDGES; ++k) p.order[k] = static_cast<std::uint16_t>(edges[k].second);
   return p;
 }
 
 /// A walk along the order visits all edges, none before another that comes later; a leg rises before it falls.
 inline void expect_ordered(const svpwm_pulses_t& p) {
-  std::uint32_t order = p.order;
   int before = 0;
   unsigned seen = 0;
   for (unsigned k = 0; k < SVPWM_EDGES; ++k) {
-    const std::uint32_t edge = svpwm_next_edge(&order);
+    const unsigned edge = p.order[k];
     ASSERT_LT(edge, SVPWM_EDGES);
     if (edge >= SVPWM_LEGS) {
       ASSERT_NE(seen >> (edge - SVPWM_LEGS) & 1u, 0u);
@@ -47,7 +45,6 @@ inline void expect_ordered(const svpwm_pulses_t& p) {
     before = p.at[edge];
   }
   ASSERT_EQ(seen, 63u);
-  ASSERT_EQ(order, 0u);
 }
 
 /// On-times at a DC-link voltage that nothing is known of.
@@ -55,8 +52,11 @@ inline svpwm_on_time_t on_time(ab_t voltage_q16, std::int32_t link_q16) {
   return svpwm_on_time(voltage_q16, svpwm_ticks_per_volt_q20(link_q16, 0));
 }
 
-/// When edges come, by their numbers.
-using Arrivals = std::array<svpwm_arrival_t, SVPWM_EDGES>;
+/// When edges come at the motor, by their numbers: both are the instant wanted where that is certain.
+struct Arrival {
+  std::int32_t earliest, latest;
+};
+using Arrivals = std::array<Arrival, SVPWM_EDGES>;
 
 /// Every edge comes when it is wanted.
 inline Arrivals certain(const svpwm_pulses_t& p) {
@@ -67,13 +67,13 @@ inline Arrivals certain(const svpwm_pulses_t& p) {
 
 /// The finder's walk with edges that come then.
 inline void find_windows(const sampling_config_t& c, const Arrivals& arrivals, svpwm_pattern_t* p) {
-  std::uint32_t order = p->pulses.order;
   svpwm_finder_t finder = svpwm_finder(&c, p);
-  while (order != 0u) {
-    const std::uint32_t edge = svpwm_next_edge(&order);
-    svpwm_finder_pass(&finder, edge % SVPWM_LEGS, &arrivals[edge]);
+  for (const std::uint16_t edge : p->pulses.order) {
+    const auto [earliest, latest] = arrivals[edge];
+    svpwm_finder_beware(&finder, &c, p, earliest);
+    svpwm_finder_pass(&finder, &c, p, edge % SVPWM_LEGS, earliest, latest);
   }
-  svpwm_finder_finish(&finder);
+  svpwm_finder_finish(&finder, &c, p);
 }
 
 /// The compensation of all edges.
@@ -83,14 +83,35 @@ struct Sent {
 };
 
 inline Sent sent(const dead_time_config_t& c, const svpwm_pulses_t& wanted, const svpwm_carried_t& carried) {
-  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, frame_inverse_clarke(carried.current_q20),
-                                               carried.inverse_inductance_q30, carried.link_q16);
+  svpwm_ripple_legs_t legs;
+  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, frame_phases(carried.current_q20),
+                                               carried.inverse_inductance_q30, carried.link_q16, c.per_band_q24, &legs);
+  const dead_time_delay_t delay = dead_time_delay(&c);
   Sent s = {};
-  while (walk.order != 0u) {
-    const svpwm_ripple_edge_t e = svpwm_ripple_next(&walk);
-    s.command.at[e.edge] = static_cast<std::int16_t>(dead_time_compensate(&c, &e, &s.arrivals[e.edge]));
+  for (const std::uint16_t edge : wanted.order) {
+    const unsigned leg = edge % SVPWM_LEGS;
+    const std::int32_t tick = wanted.at[edge];
+    const std::int32_t blocking =
+        edge < SVPWM_LEGS ? svpwm_ripple_rise(&walk, &legs, leg, tick) : svpwm_ripple_fall(&walk, &legs, leg, tick);
+    const std::int32_t at = tick - dead_time_delay_ticks(&delay, blocking);
+    s.command.at[edge] = static_cast<std::int16_t>(at);
+    s.arrivals[edge] = {tick, tick};
+    if (dead_time_is_in_doubt(&c, blocking)) s.arrivals[edge] = {at + c.turn_off_ticks, at + c.turn_on_ticks};
   }
   return s;
+}
+
+/// What the drive's one walk along the edges makes of a pattern: commands and windows.
+inline svpwm_pulses_t send(const dead_time_config_t& c, const sampling_config_t& sampling,
+                           const svpwm_carried_t& carried, svpwm_pattern_t* pattern) {
+  std::uint16_t rises[SVPWM_LEGS], falls[SVPWM_LEGS];
+  svpwm_compensate_edges(&c, &sampling, &carried, pattern, rises, falls);
+  svpwm_pulses_t command = pattern->pulses;
+  for (unsigned leg = 0; leg < SVPWM_LEGS; ++leg) {
+    command.at[leg] = static_cast<std::int16_t>(rises[leg]);
+    command.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(falls[leg]);
+  }
+  return command;
 }
 
 /// A pattern of pulses whose edges are certain.

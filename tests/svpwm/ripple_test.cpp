@@ -37,20 +37,19 @@ TEST(Ripple, IsTheIntegralOfTheVoltageLessItsMean) {
     for (int tick = 0; tick <= 10000; tick += 7) {
       const auto at = static_cast<std::int16_t>(tick);
       const Vector flux = real(svpwm_ripple_q16(&p, &at, 1, raw(link, 16)), 16);
-      // Each leg is rounded to 1/32 tick, Clarke cuts off up to 1/16: an eighth of a tick of the link, and 2^-16 V.
-      // As a current of motor A that is 0.1 mA.
-      const double tolerance = 0.125 * link * 1e-4 + 3e-5;
+      // Each leg is cut off at two of its units, 1/N of a tick, four of them count; the product at two of 2^-16 V.
+      const double tolerance = 8e-4 * link * 1e-4 + 3.1e-5;
       ASSERT_NEAR(flux.x, exact[static_cast<std::size_t>(tick)].x, tolerance) << n << ", " << tick;
       ASSERT_NEAR(flux.y, exact[static_cast<std::size_t>(tick)].y, tolerance) << n << ", " << tick;
     }
     const std::int16_t some[3] = {1400, 5005, 9100};
     const Vector sum = real(svpwm_ripple_q16(&p, some, 3, raw(link, 16)), 16);
-    ASSERT_NEAR(sum.x, exact[1400].x + exact[5005].x + exact[9100].x, 3 * 0.125 * link * 1e-4 + 3e-5);
-    ASSERT_NEAR(sum.y, exact[1400].y + exact[5005].y + exact[9100].y, 3 * 0.125 * link * 1e-4 + 3e-5);
+    ASSERT_NEAR(sum.x, exact[1400].x + exact[5005].x + exact[9100].x, 8e-4 * link * 1e-4 + 3.1e-5);
+    ASSERT_NEAR(sum.y, exact[1400].y + exact[5005].y + exact[9100].y, 8e-4 * link * 1e-4 + 3.1e-5);
     // what lies behind those that are asked for does not count
     const Vector two = real(svpwm_ripple_q16(&p, some, 2, raw(link, 16)), 16);
-    ASSERT_NEAR(two.x, exact[1400].x + exact[5005].x, 2 * 0.125 * link * 1e-4 + 3e-5);
-    ASSERT_NEAR(two.y, exact[1400].y + exact[5005].y, 2 * 0.125 * link * 1e-4 + 3e-5);
+    ASSERT_NEAR(two.x, exact[1400].x + exact[5005].x, 8e-4 * link * 1e-4 + 3.1e-5);
+    ASSERT_NEAR(two.y, exact[1400].y + exact[5005].y, 8e-4 * link * 1e-4 + 3.1e-5);
     const ab_t none = svpwm_ripple_q16(&p, some, 0, raw(link, 16));
     ASSERT_EQ(none.alpha, 0);
     ASSERT_EQ(none.beta, 0);
@@ -81,7 +80,7 @@ TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
   const svpwm_pulses_t p = {{260, 5760, 5800, 4500, 9960, 9900}, 0};
   for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {
     const Vector flux = real(svpwm_ripple_q16(&p, &tick, 1, raw(300.0, 16)), 16);
-    EXPECT_NEAR(flux.length(), 0.0, 0.004);  // an eighth of a tick
+    EXPECT_NEAR(flux.length(), 0.0, 1e-4);
   }
 }
 

@@ -32,7 +32,7 @@ class Part:
 OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
 OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_remainder,q_mix,q_mix_sat,q_square,q_square_sat"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
-OF_DROPS = "dead_time_sign_q21,dead_time_delay_ticks"
+OF_DROPS = "dead_time_drop_q16"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
 OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_next"
@@ -52,7 +52,7 @@ BETWEEN = ("q_shr_round", "q_sat64", "q_limit", "q_follow", "q_follow_near", "q_
 PULSES = "svpwm_put_pulse,layout_for,most_of_both,longest_window,lay_out,own_zero,advance"
 PULSES += ",put_pair_first,put_pair_last,modulator_config_valid,alternate,modulator_step"
 CONTRACTS_OF_LAYOUTS = tuple(f"{PULSES},{OF_LAYOUTS}".split(","))
-INLINED = "svpwm_fall_of,svpwm_order,nested_order,put_centred"
+INLINED = "svpwm_fall_of,svpwm_put_order,put_nested_order,put_centred"
 # Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. The part limits
 # shows that of q_sat_bits slice by slice; at q_mix and q_mix_sat the prover stops, and tests/qmath tries every edge.
 SHOWN_ELSEWHERE = ("q_sat_bits", "q_mix", "q_mix_sat")

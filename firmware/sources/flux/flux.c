@@ -69,7 +69,7 @@ static flux_period_t period_of(const drive_t* d, bool is_full) {
     p.measured_q20 = position_seen(d, p.measured_q20);
     p.reference_q20 = position_seen(d, p.reference_q20);
   }
-  const ab_t mean_q16 = svpwm_mean_q16(&d->modulation.sampled.pulses, d->samples.link_q16);
+  const ab_t mean_q16 = svpwm_mean_q16(&modulation_sampled(&d->modulation)->pulses, d->samples.link_q16);
   const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, p.current_q20);
   p.voltage_q16.alpha = mean_q16.alpha - drop_q16.alpha;
   p.voltage_q16.beta = mean_q16.beta - drop_q16.beta;
@@ -139,7 +139,7 @@ static excitation_t flux_excitation(const drive_t* d) {
 static int32_t observability_current(drive_t* d) {
   drive_control_t* const c = &d->control;
   const int32_t least_q20 =
-      q_min(OBSERVABLE_CURRENTS * d->config.dead_time.certain_q20, q_shr(c->current_limit_q20, 1));
+      q_min(OBSERVABLE_CURRENTS * d->config.dead_time.edge_band_q20, q_shr(c->current_limit_q20, 1));
   const bool unobservable = d->position.blend.share_q15 == 0 &&
                             q_abs_sat(d->position.selected.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
   const int32_t missing_q20 = unobservable ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
