@@ -33,15 +33,6 @@ void current_controller_reset(current_controller_t* s) {
   pi_reset(&s->q, 0);
 }
 
-dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c, const machine_model_t* m,
-                             dq_t reference_q20, dq_t measured_q20, int32_t speed_bpp) {
-  const dq_t rotational = machine_rotational_voltage_q16(m, measured_q20, speed_bpp);
-  dq_t v;
-  v.d = pi_step(&s->d, &c->d, reference_q20.d - measured_q20.d, rotational.d, CURRENT_COMMAND_BITS);
-  v.q = pi_step(&s->q, &c->q, reference_q20.q - measured_q20.q, rotational.q, CURRENT_COMMAND_BITS);
-  return v;
-}
-
 void current_controller_limited(current_controller_t* s, const current_controller_config_t* c, dq_t excess_q16) {
   pi_limited(&s->d, &c->d, excess_q16.d);
   pi_limited(&s->q, &c->q, excess_q16.q);

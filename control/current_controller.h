@@ -50,9 +50,16 @@ bool current_controller_design(current_controller_config_t* c, const machine_mod
 void current_controller_reset(current_controller_t* s);
 
 /// One step: currents in A Q20, speed in binary angle per period; returns the voltage command in V Q16, at most 4096 V
-/// along each axis.
-dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c, const machine_model_t* m,
-                             dq_t reference_q20, dq_t measured_q20, int32_t speed_bpp);
+/// along each axis. Inline, as current control alone calls it.
+static inline dq_t current_controller_step(current_controller_t* s, const current_controller_config_t* c,
+                                           const machine_model_t* m, dq_t reference_q20, dq_t measured_q20,
+                                           int32_t speed_bpp) {
+  const dq_t rotational = machine_rotational_voltage_q16(m, measured_q20, speed_bpp);
+  dq_t v;
+  v.d = pi_step(&s->d, &c->d, reference_q20.d - measured_q20.d, rotational.d, CURRENT_COMMAND_BITS);
+  v.q = pi_step(&s->q, &c->q, reference_q20.q - measured_q20.q, rotational.q, CURRENT_COMMAND_BITS);
+  return v;
+}
 
 /// Reports the part of the command that the modulator had to drop (asked minus realised, V Q16).
 void current_controller_limited(current_controller_t* s, const current_controller_config_t* c, dq_t excess_q16);

@@ -167,14 +167,6 @@ void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* nomi
   m->torque_per_accel_q24 = q_over(nominal->torque_per_accel_q24, q_invert(ratio_q24), 24);
 }
 
-dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {
-  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
-  // L_d i_d / T as V per (rad per period).
-  const int64_t along_q36 = q_mac(q_product(m->psi_d_q16, ONE_Q20), m->ld_q16, i_q20.d);
-  const dq_t v = {q_mul_floor(m->psi_q_q16, -w_q30, 30), q_mul_floor(q_sat64(q_shr64(along_q36, 20)), w_q30, 30)};
-  return v;
-}
-
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {
   // With a large positive i_d the reluctance would turn the sign; nobody wants to run there, and it is divided by.
   const int64_t constant_q44 = q_mac(q_product(m->torque_q24, ONE_Q20), m->reluctance_q24, id_q20);

@@ -122,7 +122,13 @@ static inline int32_t machine_speed_rad_q30(int32_t speed_bpp) {
 }
 
 /// Voltage induced by the rotation, V Q16, at the operating point and a current in A Q20: w (-psi_q, psi_d).
-dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp);
+static inline dq_t machine_rotational_voltage_q16(const machine_model_t* m, dq_t i_q20, int32_t speed_bpp) {
+  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
+  // L_d i_d / T as V per (rad per period).
+  const int64_t along_q36 = q_mac(q_product(m->psi_d_q16, 1048576L), m->ld_q16, i_q20.d);
+  const dq_t v = {q_mul_floor(m->psi_q_q16, -w_q30, 30), q_mul_floor(q_sat64(q_shr64(along_q36, 20)), w_q30, 30)};
+  return v;
+}
 
 /// Air-gap torque, N m Q16, of mean currents in A Q20. Seed paper eq (2) with P/2 instead of the misprinted P.
 int32_t machine_torque_q16(const machine_model_t* m, dq_t current_q20);

@@ -12,8 +12,8 @@ void drive_control_current(drive_t* d) {
     current_controller_reset(&c->current);
     return;
   }
-  // In between, the command stands still in the rotor frame.
-  if (d->schedule.period % (uint16_t)d->config.values.current_divider != 0u) return;
+  // In between, the command stands still in the rotor frame. The divider is 1 or 2.
+  if ((d->schedule.period & (uint16_t)(d->config.values.current_divider - 1)) != 0u) return;
   c->command_q16 = current_controller_step(&c->current, &d->config.current, &d->model, c->reference_q20,
                                            c->measured_q20, d->position.selected.speed_bpp);
   if (c->feed_forward_q16 != 0)

@@ -125,8 +125,6 @@ bool polarity_watch_step(drive_t* d) {
   return sign == EMF_SIGN_REVERSED;
 }
 
-bool polarity_watch_is_awake(const drive_t* d) { return polarity_watch.open && d->state == DRIVE_RUN; }
-
 bool polarity_watch_suspects(void) {
   const emf_sign_t* const sign = &polarity_watch.sign;
   return polarity_watch.open && sign->seen_q16 < -(sign->expected_q16 / 4);

@@ -25,6 +25,6 @@ void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp);
 void polarity_watch_end(void);
 bool polarity_watch_step(drive_t* d);
 bool polarity_watch_suspects(void);
-bool polarity_watch_is_awake(const drive_t* d);
+static inline bool polarity_watch_is_awake(const drive_t* d) { return polarity_watch.open && d->state == DRIVE_RUN; }
 
 #endif

@@ -15,8 +15,6 @@ static bool is_energised(const volatile drive_t* d) {
 
 bool drive_is_energised(void) { return is_energised(&drive); }
 
-bool drive_is_turning(const drive_t* d) { return d->state == DRIVE_RUN || d->state == DRIVE_STOP || d->flags.spins; }
-
 static bool sees_currents(const volatile drive_t* d) { return is_energised(d) && d->flags.invalid == 0u; }
 
 bool drive_knows_speed(const volatile drive_t* d) {

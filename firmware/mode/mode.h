@@ -71,7 +71,9 @@ const position_source_t* drive_source_wanted(void);
 static inline bool drive_source_has(const drive_t* d, uint16_t trait) { return (d->source->traits & trait) != 0u; }
 
 /// True where the speed control and the chosen position source are at work.
-bool drive_is_turning(const drive_t* d);
+static inline bool drive_is_turning(const drive_t* d) {
+  return d->state == DRIVE_RUN || d->state == DRIVE_STOP || d->flags.spins;
+}
 
 /// True where angle and speed in use are the rotor's: the power stage is on and the start has found them. With the
 /// gates off nothing is, with an encoder neither: what it counts has an angle from the start's end on, while the drive
