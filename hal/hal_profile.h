@@ -1,7 +1,8 @@
 // Run times for the model of the chip.
 //
 // A register access takes its time in the model by itself; arithmetic does not. A step of the control that takes long
-// says here how long, so that what follows it happens as late as on the chip. On the chip this does nothing.
+// says here how long, so that what follows it happens as late as on the chip. The image is compiled with a header in
+// the place of this one by which nothing is called. So it is no call that a recording counts (hal_replay.h).
 
 #ifndef STILLSPIN_HAL_HAL_PROFILE_H
 #define STILLSPIN_HAL_HAL_PROFILE_H

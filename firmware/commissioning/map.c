@@ -16,7 +16,6 @@
 // instants lie symmetrically. The angle is not corrected again before the current is gone, for its turn would be taken
 // for motion. Between trains the shaft is held for 40 ms.
 
-#include "firmware/base/clear.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/interlock.h"
@@ -127,6 +126,17 @@ static void move_on(const map_t* m) {
   if (m->train % 2u == 0u && m->tick < MOVE_PERIODS) commissioning.target_bam += PLACE_BAM / MOVE_PERIODS;
 }
 
+// What was summed up in an earlier commissioning goes piece by piece in the first pause: all of it at once is too much
+// for an interrupt.
+static void empty_next_group(map_t* m) {
+  const uint16_t n = (uint16_t)m->tick;
+  if (m->level != 0u || m->train != 0u || n >= MAP_LEVELS * MAP_GROUPS) return;
+  map_group_t* const g = &m->group[n / MAP_GROUPS][n % MAP_GROUPS];
+  tensor_reset(&g->tensor);
+  g->position = 0;
+  g->current = 0;
+}
+
 // The last part of a pause, at rest, is the map's point without current.
 static void add_pause(drive_t* d) {
   deviation_t first;
@@ -143,20 +153,28 @@ int32_t commissioning_map_done(const map_t* m) {
   return begin + q_min(periods, WANTED_PERIODS) * (ends[m->level + 1u] - begin) / WANTED_PERIODS;
 }
 
+static void begin(const drive_t* d, map_t* m) {
+  m->level = 0;
+  m->train = 0;
+  m->tick = 0;
+  m->segment = 0;
+  m->pause = true;
+  m->plan[0] = 0;
+  m->plan[1] = 0;
+  commissioning.target_bam = d->position.selected.angle_bam;
+  tensor_reset(&commissioning.unsaturated);
+}
+
 bool commissioning_map(drive_t* d) {
   map_t* const m = &commissioning.map;
-  if (commissioning.tick == 0) {
-    clear(m, sizeof *m);
-    m->pause = true;
-    commissioning.target_bam = d->position.selected.angle_bam;
-    tensor_reset(&commissioning.unsaturated);
-  }
+  if (commissioning.tick == 0) begin(d, m);
   if (m->level >= MAP_LEVELS) return true;
   if (!m->pause) {
     run_train(d, m);
     return false;
   }
   const int32_t length = (m->train % 2u == 0u) ? MOVE_PERIODS + PAUSE_PERIODS : PAUSE_PERIODS;
+  empty_next_group(m);
   move_on(m);
   commissioning_hold(d);
   if (m->tick == length && interlock_is_warm()) return false;

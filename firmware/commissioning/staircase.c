@@ -101,7 +101,8 @@ bool commissioning_climb(drive_t* d) {
   commissioning_t* const c = &commissioning;
   staircase_t* const s = &c->staircase;
   if (c->tick == 0) {
-    clear(s, sizeof *s);
+    s->index = 0;
+    s->tick = 0;
     s->most_q20 = bearable_q20();
   }
   commissioning_hold(d);
@@ -117,6 +118,7 @@ bool commissioning_climb(drive_t* d) {
   }
   commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];
+  if (s->tick == 0) clear(l, sizeof *l);
   s->tick = q_add_sat(s->tick, 1);
   if (s->tick > SETTLE_PERIODS) {
     const rotation_t r = frame_rotation(d->position.selected.angle_bam);

@@ -1,7 +1,5 @@
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
-#include "hal/hal_profile.h"
-#include "hal/hal_replay.h"
 #include "hal/hal_time.h"
 
 #define TIMER CPUTIMER_BASE(2u)
@@ -20,8 +18,3 @@ void hal_time_init(void) {
 uint32_t hal_time_cycles(void) { return 0xFFFFFFFFuL - target_read32(TIMER + CPUTIMER_TIM); }
 
 void hal_idle(void) { target_idle(); }
-
-void hal_profile_step(uint16_t cycles) {
-  replay_call();
-  target_elapse(cycles);
-}

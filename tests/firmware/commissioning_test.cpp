@@ -290,7 +290,7 @@ TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   }
 }
 
-// A phase's first period forgets the sums of the last commissioning.
+// Nothing of the last commissioning is in a sum when its first period is added.
 TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   begin();
   commissioning_t& c = commissioning;
@@ -309,6 +309,10 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   EXPECT_EQ(c.staircase.index, 0);
   EXPECT_EQ(c.staircase.tick, 1);
   for (const staircase_level_t& l : c.staircase.level) {
+    c.staircase.index = static_cast<std::uint16_t>(&l - c.staircase.level);
+    c.staircase.tick = 0;
+    c.tick = 1;
+    EXPECT_FALSE(commissioning_climb(&drive));
     EXPECT_EQ(l.current | l.factor | l.command | l.window_current | l.window_factor | l.residual | l.sag, 0);
     EXPECT_EQ(l.periods | l.windows, 0);
   }
@@ -320,6 +324,8 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   EXPECT_EQ(c.unsaturated.count, 0);
   const double moved = rad(angle_diff_bam(c.target_bam, inside::selected().angle_bam));
   EXPECT_NEAR(moved, 45.0 * kDegree / 300.0, 1e-6) << "from where the shaft is";
+  for (c.tick = 1; c.map.tick < 300; ++c.tick) EXPECT_FALSE(commissioning_map(&drive));
+  EXPECT_TRUE(c.map.pause) << "well before the first train";
   for (const auto& level : c.map.group) {
     for (const map_group_t& g : level) {
       EXPECT_EQ(g.position | g.current, 0);

@@ -67,7 +67,7 @@ const Call kCalls[] = {
     {"hal_irq_unexpected_count", [] { return hal_irq_unexpected_count(); }, {}, {1}, {9}},
     {"hal_irq_disable", [] { return hal_irq_disable(); }, {}, {}, {}, true, true},
     {"hal_irq_restore", quiet([] { hal_irq_restore(0); }), {}, {}, {}, true, true},
-    {"hal_profile_step", quiet([] { hal_profile_step(5); }), {}, {}},
+    {"hal_profile_step", quiet([] { hal_profile_step(5); }), {}, {}, {}, false},
     {"hal_safety_toggle_enable", quiet(hal_safety_toggle_enable), {REPLAY_ENABLE}, {}},
     {"hal_safety_fault_lamp, lit", quiet([] { hal_safety_fault_lamp(true); }), {REPLAY_LAMP, 1}, {}, {}, true, true},
     {"hal_safety_fault_lamp, dark", quiet([] { hal_safety_fault_lamp(false); }), {REPLAY_LAMP, 0}, {}, {}, true, true},

@@ -40,12 +40,13 @@ static const char* const phase_names[PHASES] = {"resting", "starting", "turning"
 enum { SAMPLES, ESTIMATE, SUPERVISE, CONTROL, MODULATE, HAND_OVER, LINK, WINDOWS, WINDOW, ALL, STEPS };
 static const char* const step_names[STEPS] = {"samples",   "estimate", "supervise", "control", "modulate",
                                               "hand_over", "link",     "windows",   "window",  "all"};
-// A period's mark is its phase. Steps begin with a function of the drive, the last two behind an end that it states.
-enum { OTHER = PHASES, RETURN, PAUSE, RESUME, ELAPSE, BEGINS_ESTIMATE, BEGINS_MODULATE = BEGINS_ESTIMATE + 3, NO_MARK };
+// A period's mark is its phase. Steps begin with a function of the drive or of a driver; where a drive has no frame to
+// hand over the link comes behind the modulation.
+enum { OTHER = PHASES, RETURN, PAUSE, RESUME, BEGINS_ESTIMATE, BEGINS_LINK = BEGINS_ESTIMATE + 5, NO_MARK };
 static const char* const mark_names[NO_MARK] = {
-    "mark_resting",  "mark_starting",       "mark_turning",  "mark_commission", "mark_window",
-    "mark_return",   "mark_pause",          "mark_resume",   "target_elapse",   "drive_estimate",
-    "drive_protect", "drive_control_speed", "drive_modulate"};
+    "mark_resting",        "mark_starting",  "mark_turning",  "mark_commission", "mark_window",
+    "mark_return",         "mark_pause",     "mark_resume",   "drive_estimate",  "drive_protect",
+    "drive_control_speed", "drive_modulate", "hal_pwm_write", "hal_sci_service"};
 
 typedef struct {
   uint64_t instructions, cycles;  // hundredths of a cycle
@@ -136,8 +137,8 @@ static void take_mark(uint32_t mark) {
   if (mark == PAUSE) nested[depth - 1u].paused = true;
   if (mark == RESUME) nested[depth - 1u].paused = false;
   if (nested[depth - 1u].window) return;
-  if (mark == ELAPSE && step >= MODULATE && step < LINK) step++;
   if (mark >= BEGINS_ESTIMATE && step + 1u == ESTIMATE + (mark - BEGINS_ESTIMATE)) step++;
+  if (mark == BEGINS_LINK && step == MODULATE) step = LINK;
 }
 
 static void charge(uint32_t to, const block_t* b) {

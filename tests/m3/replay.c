@@ -176,7 +176,6 @@ void target_clear_ifr(void) { act(TRACE_CPU, 0, 0); }
 uint16_t target_read_ier(void) { return (uint16_t)give(TRACE_READ_IER, 0); }
 void target_write_ier(uint16_t mask) { act(TRACE_WRITE_IER, 0, mask); }
 void target_idle(void) { act(TRACE_IDLE, 0, 0); }
-// Where it is called in the control interrupt a step ends: a mark, too. On the chip it is nothing.
 void target_elapse(uint16_t cycles) { act(TRACE_ELAPSE, 0, cycles); }
 
 void target_set_vector(uint16_t vector, target_isr_t isr) {

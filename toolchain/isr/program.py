@@ -31,7 +31,7 @@ PROGRAMS = re.compile(r"stillspin_(f2808\w*|lamp|flash_kernel)")  # their own st
 # A section of the linker's map: name, place, length, object; a long name stands in a line of its own.
 MAPPED = re.compile(r"^ (\.text\S*|ramfuncs)\s+(0x[0-9a-f]+)\s+(0x[0-9a-f]+) (\S+)$", re.MULTILINE)
 # Of the replay, and of the drive where a step of the control interrupt begins.
-MARKS = re.compile(r"mark_\w+|target_elapse|drive_(estimate|protect|control_speed|modulate)")
+MARKS = re.compile(r"mark_\w+|drive_(estimate|protect|control_speed|modulate)|hal_(pwm_write|sci_service)")
 
 
 @dataclass(frozen=True)
