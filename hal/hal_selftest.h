@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-#define HAL_SELFTEST_PAIRS 8192u              // pairs of words: L0, L1 and H0; the stack in M0 and M1 is not tested
+#define HAL_SELFTEST_PAIRS 8192u              // pairs of words: L0, L1 and H0; M0 and M1, code and stack, are not
 #define HAL_SELFTEST_WATCHDOG_CYCLES 10240uL  // CPU cycles for a count of the watchdog, when both clocks are right
 
 // March C- (A. J. van de Goor, "Testing Semiconductor Memories", 1991) over two neighbouring words on a checkerboard,

@@ -45,7 +45,7 @@ static inline void rearm(void) {
   target_write16(REG_ADCTRL2, CONTROL2 | ADCTRL2_RST_SEQ1_MASK | ADCTRL2_RST_SEQ2_MASK);
 }
 
-TARGET_RAM_CODE void adc_rearm(void) { rearm(); }
+void adc_rearm(void) { rearm(); }
 
 void hal_adc_set_up(void) {
   has_crosstalk = target_read16(REG_REVID) < REVISION_C;
@@ -109,11 +109,8 @@ void adc_sequence_slices(void) {
 static inline uint32_t pair(uint16_t first_result) { return target_read32(RESULT(first_result)); }
 
 // A pair, or a sum of pairs, of which the second channel has its own alone.
-static inline uint32_t less_crosstalk(uint32_t both) {
+static uint32_t less_crosstalk(uint32_t both) {
   const uint32_t share = (both & 0xFF00uL) << 8;
-  if (!has_crosstalk) {
-    return both;
-  }
   return (both >= share) ? both - share : both & 0xFFFFuL;
 }
 
@@ -128,17 +125,23 @@ static inline uint32_t sum_of_start(uint16_t first_result) {
   return three + pair((uint16_t)(first_result + 6u));
 }
 
-TARGET_RAM_CODE uint16_t adc_slice_result(uint16_t n) {
-  const uint32_t both = less_crosstalk(pair(SEQ2_FIRST_RESULT + (n & 2u)));
+uint16_t adc_slice_result(uint16_t n) {
+  const uint32_t read = pair(SEQ2_FIRST_RESULT + (n & 2u));
+  const uint32_t both = has_crosstalk ? less_crosstalk(read) : read;
   return (uint16_t)(((n & 1u) == 0u) ? both : both >> 16);
 }
 
 typedef char sums_have_as_many_terms_as_bursts[(HAL_ADC_START_SAMPLES == 4u && HAL_ADC_END_SAMPLES == 3u) ? 1 : -1];
 
 static inline void take_results(hal_adc_window_t* window) {
-  const uint32_t start = less_crosstalk(sum_of_start(0u));
-  const uint32_t end = less_crosstalk(sum_of_end(SEQ2_FIRST_RESULT));
-  const uint32_t slow = less_crosstalk(pair(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES));
+  uint32_t start = sum_of_start(0u);
+  uint32_t end = sum_of_end(SEQ2_FIRST_RESULT);
+  uint32_t slow = pair(SEQ2_FIRST_RESULT + 2u * HAL_ADC_END_SAMPLES);
+  if (has_crosstalk) {
+    start = less_crosstalk(start);
+    end = less_crosstalk(end);
+    slow = less_crosstalk(slow);
+  }
   window->start_a = (uint16_t)(start & 0xFFFFuL);
   window->start_b = (uint16_t)(start >> 16);
   window->end_a = (uint16_t)(end & 0xFFFFuL);
@@ -167,13 +170,20 @@ static void note_results(const hal_adc_window_t* window) {
   replay_note_results(results, REPLAY_RESULTS);
 }
 
-TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
+// While something is recorded or played.
+static void replay_window(hal_adc_window_t* window) {
   if (replay_plays()) {
     play_results(window);
     return;
   }
   take_results(window);
-  if (!replay_is_off()) {
-    note_results(window);
+  note_results(window);
+}
+
+void hal_adc_read_window(hal_adc_window_t* window) {
+  if (replay_is_off()) {
+    take_results(window);
+  } else {
+    replay_window(window);
   }
 }

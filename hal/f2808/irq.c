@@ -84,23 +84,23 @@ void hal_irq_enable(void) {
 
 // The control interrupt's own group stays unacknowledged until the end, so only the window's can come. The return from
 // the interrupt puts IER and INTM back.
-TARGET_RAM_CODE void hal_irq_control_begin(void) {
+void hal_irq_control_begin(void) {
   target_write_ier(PIE_GROUP_MASK(WINDOW_GROUP));
   target_enable_interrupts();
 }
 
-TARGET_RAM_CODE void hal_irq_control_end(void) {
+void hal_irq_control_end(void) {
   target_disable_interrupts();
   target_write16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_ETCLR, EPWM_ETCLR_INT_MASK);
   pie_acknowledge(CONTROL_GROUP);
 }
 
-TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
+uint16_t hal_irq_disable(void) {
   replay_call();
   return irq_hold();
 }
 
-TARGET_RAM_CODE void hal_irq_restore(uint16_t state) {
+void hal_irq_restore(uint16_t state) {
   replay_call();
   irq_release(state);
 }

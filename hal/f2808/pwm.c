@@ -55,15 +55,12 @@ static void set_up_compare(uint16_t module) {
   write_compare(epwm, HAL_PWM_NONE, HAL_PWM_NONE);
 }
 
-static bool is_tripped(uint16_t module) { return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK); }
+static inline bool is_tripped(uint16_t module) { return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK); }
 
+// Written out, with addresses that are constants.
 static bool is_any_leg_tripped(void) {
-  for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
-    if (is_tripped((uint16_t)(PWM_FIRST_LEG_MODULE + leg))) {
-      return true;
-    }
-  }
-  return false;
+  return is_tripped(PWM_FIRST_LEG_MODULE) || is_tripped(PWM_FIRST_LEG_MODULE + 1u) ||
+         is_tripped(PWM_FIRST_LEG_MODULE + 2u);
 }
 
 static bool dead_band_is_valid(uint16_t ticks) {
@@ -163,7 +160,7 @@ bool hal_pwm_set_dead_band(uint16_t dead_band_ticks) {
 
 static inline uint16_t period_tick(void) { return target_read16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_TBCTR); }
 
-TARGET_RAM_CODE uint16_t hal_pwm_period_tick(void) {
+uint16_t hal_pwm_period_tick(void) {
   replay_call();
   return replay_plays() ? replay_take() : replay_note(period_tick());
 }
@@ -184,7 +181,7 @@ static inline void write_window(const hal_pwm_frame_t* frame, uint16_t window) {
                 frame->burst_end_tick[window]);
 }
 
-TARGET_RAM_CODE static bool write_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+static bool write_registers(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
   // An interrupt between the look at the counter and the last write could carry the writes across the period start.
   const uint16_t state = irq_hold();
   const bool in_time = is_in_time(deadline_tick);
@@ -216,13 +213,13 @@ static void tell_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
   replay_output(REPLAY_FRAME, words, n);
 }
 
-TARGET_RAM_CODE bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+bool hal_pwm_write(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
   if (replay_is_off()) {
-    return write_frame(frame, deadline_tick);
+    return write_registers(frame, deadline_tick);
   }
   tell_frame(frame, deadline_tick);
   replay_call();
-  return replay_plays() ? replay_take() != 0u : replay_note(write_frame(frame, deadline_tick) ? 1u : 0u) != 0u;
+  return replay_plays() ? replay_take() != 0u : replay_note(write_registers(frame, deadline_tick) ? 1u : 0u) != 0u;
 }
 
 static bool gates_on(void) {
@@ -245,7 +242,7 @@ bool hal_pwm_gates_on(void) {
 }
 
 // Also while a recording is played: switching off is never wrong.
-TARGET_RAM_CODE void hal_pwm_gates_off(void) {
+void hal_pwm_gates_off(void) {
   replay_output(REPLAY_GATES_OFF, NULL, 0u);
   replay_call();
   target_eallow();
@@ -257,7 +254,10 @@ TARGET_RAM_CODE void hal_pwm_gates_off(void) {
 
 bool hal_pwm_is_tripped(void) {
   replay_call();
-  return replay_plays() ? replay_take() != 0u : replay_note(is_any_leg_tripped() ? 1u : 0u) != 0u;
+  if (replay_plays()) return replay_take() != 0u;
+  const bool tripped = is_any_leg_tripped();
+  if (!replay_is_off()) (void)replay_note(tripped ? 1u : 0u);
+  return tripped;
 }
 
 bool hal_pwm_was_tripped_by_pin(void) {

@@ -25,11 +25,11 @@ void hal_safety_init(void) {
 }
 
 void hal_safety_toggle_enable(void) {
-  replay_output(REPLAY_ENABLE, NULL, 0u);
-  replay_call();
-  if (!replay_plays()) {
-    gpio_toggle(BOARD_PIN_GATE_ENABLE);
+  if (!replay_is_off()) {
+    replay_output(REPLAY_ENABLE, NULL, 0u);
+    replay_call();
   }
+  if (!replay_plays()) gpio_toggle(BOARD_PIN_GATE_ENABLE);
 }
 
 void hal_safety_fault_lamp(bool lit) {

@@ -39,7 +39,7 @@ static void set_clock(uint16_t slice_ticks) {
   target_write16(epwm + EPWM_TBCTR, 0u);
 }
 
-TARGET_RAM_CODE static void force(uint16_t leg, uint16_t action) {
+static void force(uint16_t leg, uint16_t action) {
   target_write16(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_AQCSFRC, REG_FIELD(EPWM_AQCSFRC_CSFA, action));
 }
 
@@ -50,7 +50,7 @@ static void force_at_once(void) {
   }
 }
 
-TARGET_RAM_CODE static void set_legs(uint16_t state) {
+static void set_legs(uint16_t state) {
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
     force(leg, ((uint16_t)(state >> leg) & 1u) != 0u ? AQCSFRC_HIGH : AQCSFRC_LOW);
   }
@@ -98,7 +98,7 @@ void hal_sampling_timer_end(void) {
   }
 }
 
-TARGET_RAM_CODE static void take_results(uint16_t* results) {
+static void take_results(uint16_t* results) {
   for (uint16_t n = 0u; n < SLICE_RESULTS; n++) {
     results[n] = adc_slice_result(n);
   }
@@ -108,7 +108,7 @@ TARGET_RAM_CODE static void take_results(uint16_t* results) {
   replay_note_results(results, SLICE_RESULTS);
 }
 
-TARGET_RAM_CODE void hal_sampling_timer_read(hal_timed_samples_t* slice) {
+void hal_sampling_timer_read(hal_timed_samples_t* slice) {
   uint16_t results[SLICE_RESULTS];
   if (replay_plays()) {
     replay_take_results(results, SLICE_RESULTS);
@@ -120,7 +120,7 @@ TARGET_RAM_CODE void hal_sampling_timer_read(hal_timed_samples_t* slice) {
   slice->link = results[2];
 }
 
-TARGET_RAM_CODE void hal_sampling_timer_set_legs(uint16_t state) {
+void hal_sampling_timer_set_legs(uint16_t state) {
   replay_output(REPLAY_LEGS, &state, 1u);
   if (!replay_plays()) {
     set_legs(state);

@@ -2,9 +2,11 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+from fnmatch import fnmatch
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
@@ -16,7 +18,7 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 from checks import command_files  # noqa: E402
 from costs import chance_of_words, costs  # noqa: E402
-from image import check, classes, features, hooks, link, stack  # noqa: E402
+from image import check, classes, features, hooks, link, ram_code, stack  # noqa: E402
 from image.boot_code import instruction_words, read_boot_code  # noqa: E402
 from image.command_file import read_command_file  # noqa: E402
 from image.elf import read_object  # noqa: E402
@@ -28,6 +30,11 @@ from image.sizes import object_words  # noqa: E402
 from image.stack import build_graph, stack_depth  # noqa: E402
 
 FLASH = "toolchain/c28x/f2808_flash.cmd"
+FOLDERS = {f"libstillspin_{name}.a": name for name in ("control", "estimators", "firmware", "svpwm")} | {
+    "libstillspin_hal.a": "hal/f2808",
+    "libstillspin_qmath.a": "hal/qmath",
+    "libstillspin_replay.a": "hal",
+}
 
 
 @pytest.fixture
@@ -82,14 +89,12 @@ def test_linker_command_files_keep_to_the_chip(house: Path) -> None:
             "share memory",
         ),
         ("length = 0x000FF8", "length = 0x001000", "last 8 words"),
+        ("length = 0x0003E8", "length = 0x0003F0", "last 8 words"),
+        ("length = 0x0003E8", "length = 0x0004E8", "share memory"),
         ("length = 0x00BFB8", "length = 0x00CFB8", "share memory"),
         ("origin = 0x008000", "origin = 0x007000", "outside of memory"),
-        ("--stack_size=0x7F8", "--stack_size=0x900", "stack"),
-        (
-            "origin = 0x000000, length = 0x0007F8",
-            "origin = 0x3FA000, length = 0x0007F8",
-            "stack",
-        ),
+        ("--stack_size=0x400", "--stack_size=0x500", "stack"),
+        ("origin = 0x000400, length = 0x000400", "origin = 0x3FA000, length = 0x000400", "stack"),
         ("RUN_START(_image_globals_start), ", "", "image_globals_start is not made"),
         ("  identity  : > IDENTITY,  PAGE = 0\n", "", "identity has no place"),
         (
@@ -382,7 +387,7 @@ def resident(folder: Path, archive: str, code: str, name: str = "mtpa") -> tuple
     archived.write_text(f"{member}\n")
     pile = Pile([archived])
     pile.objects += pile.archived
-    return pile, unresident(pile.objects, read_command_file(ROOT / FLASH), "resident")
+    return pile, unresident(pile.objects, read_command_file(ROOT / FLASH), ("resident", "ramfixed"))
 
 
 LIBRARY = {"resident": 76 + 41 + 157, "quotients": 317, ".text": 209}  # the C start-up moves with main
@@ -391,11 +396,14 @@ LIBRARY = {"resident": 76 + 41 + 157, "quotients": 317, ".text": 209}  # the C s
 def test_resident_part_is_of_the_floors_below_the_drive(tmp_path: Path) -> None:
     code = "int twice(int x);\nint twice(int x) { return 2 * x; }\n"
     file = read_command_file(ROOT / FLASH)
-    for archive, name in (("qmath", "qdiv"), ("svpwm", "edges"), ("control", "mtpa"), ("estimators", "axis")):
+    for archive, name in (("qmath", "qdiv"), ("svpwm", "ripple"), ("control", "mtpa"), ("estimators", "axis")):
         pile, complaints = resident(tmp_path, f"libstillspin_{archive}.a", code, name)
         assert complaints == []
         own = sum(object_words(pile.objects[0]).values())
         assert pile.words(file) == LIBRARY | {"resident": LIBRARY["resident"] + own}
+    pile, complaints = resident(tmp_path, "libstillspin_svpwm.a", code, "edges")
+    assert complaints == []
+    assert pile.words(file) == LIBRARY | {"ramfixed": sum(object_words(pile.objects[0]).values())}
     for archive, name in (("firmware", "mtpa"), ("estimators", "deviation_observer"), ("estimators", "flux_observer")):
         pile, _ = resident(tmp_path, f"libstillspin_{archive}.a", code, name)
         assert pile.words(file)["resident"] == LIBRARY["resident"]
@@ -412,7 +420,7 @@ def test_resident_part_that_is_not_the_same_in_all_images_is_caught(tmp_path: Pa
         for name, value in zip(("mtpa", "frame"), values, strict=False):
             code = f"int {name}(void);\nint {name}(void) {{ return {value}; }}\n"
             objects += resident(tmp_path, "libstillspin_control.a", code, name)[0].objects
-        return [line for line in kept(objects, file, "resident") if not line.endswith("is not there")]
+        return [line for line in kept(objects, file, ("resident",)) if not line.endswith("is not there")]
 
     lab = image(1, 2)
     frame = "libstillspin_control.a<frame.c.obj>(.text.frame)"
@@ -425,7 +433,7 @@ def test_resident_part_that_is_not_the_same_in_all_images_is_caught(tmp_path: Pa
     ]
     order = ["the resident part of hil has another order than that of lab"]
     assert changed({"lab": lab, "hil": lab[::-1]}) == order
-    gone = kept([], file, "resident")
+    gone = kept([], file, ("resident",))
     assert changed({"lab": gone})[0] == "libstillspin_qmath.a<qdiv.*>(.text) is not there, and is to be resident"
 
 
@@ -587,9 +595,36 @@ int there(void);
 """
 
 
+def test_what_is_listed_runs_from_ram(tmp_path: Path) -> None:
+    """And is no code in flash; a function that its object has not is said, one of an absent object is not."""
+    text = (ROOT / FLASH).read_text(encoding="utf-8")
+    listed = "ramfuncs  : { *(ramfuncs) liba.a<x.*>(.text:_f, .text:_gone) liba.a<absent.*>(.text:_f)"
+    (tmp_path / "x.cmd").write_text(text.replace("ramfuncs  : { *(ramfuncs)", listed), encoding="utf-8")
+    file = read_command_file(tmp_path / "x.cmd")
+    code = "int f(int);\nint f(int x) { return x + 1; }\nint g(int);\nint g(int x) { return x + 2; }\n"
+    obj = read_object(compiled(tmp_path, code), "liba.a")
+    assert ram_code.unknown([obj], file) == [".text:_gone of x.* is to run from RAM and does not exist"]
+    assert [ram_code.runs_from_ram(file, "liba.a", "x.obj", f".text.{name}") for name in "fg"] == [True, False]
+    pile = Pile([])
+    pile.objects = [obj]
+    assert pile.words(file)["ramfuncs"] == pile.words(file)[".text"] - 209 == (pile.words()[".text"] - 800) // 2
+
+
+def test_what_the_drives_list_names_exists() -> None:
+    file = read_command_file(ROOT / FLASH)
+    for archive, member, section in (
+        each for p in file.placements if p.section in ram_code.SECTIONS for each in p.inputs
+    ):
+        folder = ROOT / FOLDERS[archive]
+        sources = [path for path in folder.rglob("*.c") if fnmatch(path.name + ".obj", member)]
+        name = section.removeprefix(".text").removeprefix(":_")
+        texts = [path.read_text(encoding="utf-8") for path in sources]
+        assert any(re.search(rf"^[a-z][^;{{]*\b{name}\([^;]*\{{", text, re.MULTILINE) for text in texts), (member, name)
+
+
 def test_what_is_marked_to_run_from_ram_is_there(tmp_path: Path) -> None:
     drivers = marked(ROOT / "hal/f2808")
-    assert drivers["clock.c"] == {"set_flash_timing"} and "hal_pwm_write" in drivers["pwm.c"]
+    assert {name for names in drivers.values() for name in names} == {"set_flash_timing"}
     code = RAM_CODE + "RAM void set_flash_timing(void) {}\nint there(void) { return 1; }\n"
     objects = [read_object(compiled(tmp_path, code))]
     assert left_in_flash(objects, {"x": {"set_flash_timing"}}) == []

@@ -18,6 +18,7 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 from costs import chance_of_cycles, costs  # noqa: E402
 from image import check  # noqa: E402
+from image.command_file import CommandFile, Placement  # noqa: E402
 from isr import count, counts, program, runs  # noqa: E402
 from isr.counts import Cost, Counts  # noqa: E402
 from isr.program import Function, Program  # noqa: E402
@@ -152,22 +153,28 @@ def compiled(code: str, target: Path) -> Path:
 
 def test_functions_are_found_where_the_linker_put_them(tmp_path: Path) -> None:
     """Of the drive by their objects' symbols, of the library by its members, of the replay none."""
-    target, aside = tmp_path / "x.obj", tmp_path / "replay.o"
-    code = "int f(int);\nint f(int x) { return x + 1; }\n"
+    library = tmp_path / "CMakeFiles/stillspin_a.dir"
+    library.mkdir(parents=True)
+    target, aside = library / "x.obj", tmp_path / "replay.o"
+    code = "int f(int), h(int);\nint f(int x) { return x + 1; }\nint h(int x) { return x + 3; }\n"
     code += '__attribute__((section("ramfuncs"))) int g(int);\nint g(int x) { return x + 2; }\n'
     source = compiled(code, target)
     linked = f"""Discarded input sections
  .text.gone     0x00000000        0x8 {target}
 Linker script and memory map
  .text.f        0x00001000        0x4 {target}
+ .text.h        0x00001800        0x4 {target}
  ramfuncs       0x00002000        0x4 {target}
  .text.a_name_too_long
                 0x00003000       0x20 {aside}
  .text          0x00004000       0x20 /usr/lib/libc_nano.a(lib_a-memcpy.o)
 """
-    found = program.functions_of(linked, {target: source}, [aside])
+    listed = Placement("ramfuncs", "APP", "RAM_CODE", inputs=(("libstillspin_a.a", "x*", ".text:_h"),))
+    file = CommandFile({}, [listed], 0, set(), "")
+    found = program.functions_of(linked, {target: source}, [aside], file)
     assert [(each.name, each.start, each.in_ram) for each in found] == [
         ("f", 0x1000, False),
+        ("h", 0x1800, True),
         ("g", 0x2000, True),
         ("memcpy", 0x4000, False),
     ]

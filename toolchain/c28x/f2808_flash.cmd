@@ -8,7 +8,7 @@
    update can bring it. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which leaves the chip
    open. Passwords of all zeros would lock it for ever. */
 
---stack_size=0x7F8
+--stack_size=0x400
 
 MEMORY
 {
@@ -21,9 +21,10 @@ PAGE 0:
   CSM_RESERVED : origin = 0x3F7F80, length = 0x000076
   ENTRY        : origin = 0x3F7FF6, length = 0x000002   /* where the boot ROM jumps to */
   PASSWORDS    : origin = 0x3F7FF8, length = 0x000008
+  RAM_FIXED    : origin = 0x000010, length = 0x0003E8   /* M0; not at 0, which is no function's address */
   RAM_CODE     : origin = 0x3FB000, length = 0x000FF8   /* upper half of H0, by its high address */
 PAGE 1:
-  STACK        : origin = 0x000000, length = 0x0007F8   /* M0, M1: SP reaches the low 64 K only */
+  STACK        : origin = 0x000400, length = 0x000400   /* M1: SP reaches the low 64 K only */
   RAM_DATA     : origin = 0x008000, length = 0x003000   /* L0, L1, lower half of H0 by its low address: one piece */
 }
 
@@ -32,7 +33,11 @@ PAGE 1:
    has its own stack in 0x400 to 0x47F, and is through when the drive's begins. Resident is, one
    after the other, what every edition needs of the floors that know nothing of the drive, but for what looks at the
    windows, which is worked on most; and of TI's library what that calls, but for 64-bit quotients, which commissioning
-   alone wants. */
+   alone wants.
+
+   What runs from RAM has no wait states. ramfixed and ramfuncs list what brings most cycles of an interrupt for a word
+   (make isr-cost says what in RAM is cold, and what in flash is hotter than what is listed): objects of the resident
+   part, which run from M0 in every image, and functions of the rest. */
 
 SECTIONS
 {
@@ -40,19 +45,46 @@ SECTIONS
   boot      : > BOOT,      PAGE = 0
   appentry  : > APP_ENTRY, PAGE = 0
   identity  : > IDENTITY,  PAGE = 0
+  ramfixed  : { libstillspin_qmath.a<qtrig.*>(.text)
+                libstillspin_svpwm.a<edges.*, windows.*>(.text)
+                libstillspin_estimators.a<slopes.*>(.text)
+              } LOAD = RESIDENT, RUN = RAM_FIXED, PAGE = 0,
+              LOAD_START(_image_ram_fixed_load), RUN_START(_image_ram_fixed_run), SIZE(_image_ram_fixed_size)
+  ramfuncs  : { *(ramfuncs)
+                libstillspin_hal.a<adc.*>(.text:_hal_adc_read_window, .text:_take_results)
+                libstillspin_hal.a<pwm.*>(.text:_hal_pwm_write, .text:_write_registers, .text:_hal_pwm_is_tripped,
+                                          .text:_is_any_leg_tripped, .text:_hal_pwm_was_tripped_by_pin)
+                libstillspin_hal.a<irq.*>(.text:_control_isr, .text:_window_isr, .text:_hal_irq_control_begin,
+                                          .text:_hal_irq_control_end, .text:_hal_irq_disable, .text:_hal_irq_restore)
+                libstillspin_hal.a<safety.*>(.text:_hal_safety_toggle_enable)
+                libstillspin_hal.a<gpio.*>(.text:_gpio_toggle)
+                libstillspin_firmware.a<control_interrupt.*>(.text:_drive_control_step, .text:_drive_control_interrupt)
+                libstillspin_firmware.a<schedule.*>(.text:_schedule_next)
+                libstillspin_firmware.a<sampling.*>(.text:_drive_read_samples, .text:_drive_window_interrupt)
+                libstillspin_firmware.a<position.*>(.text:_drive_estimate)
+                libstillspin_firmware.a<protection.*>(.text:_drive_protect)
+                libstillspin_firmware.a<current.*>(.text:_drive_control_current)
+                libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_write_frame)
+                libstillspin_firmware.a<mode.*>(.text:_drive_is_turning, .text:_is_energised)
+                libstillspin_firmware.a<brake_release_hold.*>(.text:_hold_is_on)
+                libstillspin_firmware.a<polarity_watch.*>(.text:_polarity_watch_is_awake)
+                libstillspin_estimators.a<deviation.*>(.text)
+                libstillspin_qmath.a<qsum.*>(.text)
+              } LOAD = APP, RUN = RAM_CODE, PAGE = 0,
+              LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
   quotients : { rts2800_ml.lib<ll_div*>(.text) } > APP, PAGE = 0
   resident  : { rts2800_ml.lib<l_div*, u_div*, i_div*, ll_*, memcpy*, memset*>(.text)
                 libstillspin_qmath.a<qdiv.*>(.text, .econst, .switch)
                 libstillspin_qmath.a<qsqrt.*>(.text, .econst, .switch)
-                libstillspin_qmath.a<qtrig.*>(.text, .econst, .switch)
+                libstillspin_qmath.a<qtrig.*>(.econst, .switch)
                 libstillspin_svpwm.a<alternating.*>(.text, .econst, .switch)
                 libstillspin_svpwm.a<dead_time.*>(.text, .econst, .switch)
-                libstillspin_svpwm.a<edges.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<edges.*>(.econst, .switch)
                 libstillspin_svpwm.a<extended.*>(.text, .econst, .switch)
                 libstillspin_svpwm.a<modulator.*>(.text, .econst, .switch)
                 libstillspin_svpwm.a<on_time.*>(.text, .econst, .switch)
                 libstillspin_svpwm.a<ripple.*>(.text, .econst, .switch)
-                libstillspin_svpwm.a<windows.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<windows.*>(.econst, .switch)
                 libstillspin_control.a<brake_limit.*>(.text, .econst, .switch)
                 libstillspin_control.a<current_controller.*>(.text, .econst, .switch)
                 libstillspin_control.a<field_weakening.*>(.text, .econst, .switch)
@@ -73,7 +105,7 @@ SECTIONS
                 libstillspin_estimators.a<polarity.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<saturation.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<sensor_match.*>(.text, .econst, .switch)
-                libstillspin_estimators.a<slopes.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<slopes.*>(.econst, .switch)
                 libstillspin_estimators.a<tracking_observer.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<voltage_match.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<wiring.*>(.text, .econst, .switch)
@@ -81,8 +113,6 @@ SECTIONS
   .cinit    : > APP,       PAGE = 0
   .pinit    : > APP,       PAGE = 0
   .switch   : > APP,       PAGE = 0
-  ramfuncs  : LOAD = APP, RUN = RAM_CODE, PAGE = 0,
-              LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
   .text     : >> APP | RESIDENT, PAGE = 0
   .econst   : >> APP | RESIDENT, PAGE = 0
   .stack    : > STACK,     PAGE = 1

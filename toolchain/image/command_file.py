@@ -1,7 +1,7 @@
 """TI's linker command files as far as those here go.
 
 MEMORY with ranges; SECTIONS by `> RANGE` and `>> RANGE | RANGE`, of all input sections of that name or of those that
-`{ ARCHIVE<MEMBER, ..>(SECTION, ..) .. }` names, the first that names one gets it.
+`{ ARCHIVE<MEMBER, ..>(SECTION, ..) .. }` names, the first that names one gets it. `.text:_NAME` is a function's own.
 """
 
 import re
@@ -39,8 +39,9 @@ class Placement:
     inputs: tuple[tuple[str, str, str], ...] = ()  # archive, member, section; none: all of the section's name
 
     def takes(self, archive: str, member: str, section: str) -> bool:
-        """Whether it names this input section."""
-        return any(archive == a and fnmatch(member, m) and section == s for a, m, s in self.inputs)
+        """Whether it names this input section, or the one that it is part of."""
+        names = (section, section.partition(":")[0])
+        return any(archive == a and fnmatch(member, m) and s in names for a, m, s in self.inputs)
 
     @property
     def ranges(self) -> tuple[str, ...]:
@@ -61,7 +62,7 @@ class CommandFile:
     def section_of(self, archive: str, member: str, section: str) -> str:
         """The output section of an input section."""
         taker = (p.section for p in self.placements if p.takes(archive, member, section))
-        return next(taker, section)
+        return next(taker, section.partition(":")[0])
 
 
 def read_command_file(path: Path) -> CommandFile:

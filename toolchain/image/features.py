@@ -12,9 +12,12 @@ from pathlib import Path
 import compose
 from costs import costs
 
+from image.command_file import read_command_file
 from image.elf import ObjectFile, read_object
+from image.ram_code import SECTION, half_words
 from image.sizes import object_words
 
+PLACES = compose.ROOT / "toolchain" / "c28x" / "f2808_flash.cmd"
 FIRMWARE = "stillspin_firmware.dir/"
 PROGRAM = "stillspin_f2808.dir/"
 TABLES = ("made/", "editions/")
@@ -42,11 +45,14 @@ Linked = Mapping[Path, ObjectFile]
 def words_of(objects: Iterable[ObjectFile]) -> Words:
     """What objects come to."""
     per_half_word = costs(compose.ROOT)["words"]["expected"]
+    file = read_command_file(PLACES)
     total = Words()
-    for sections in map(object_words, objects):
-        hot = per_half_word * sections.get("ramfuncs", 0)
-        rest = per_half_word * sections.get(".text", 0) + sum(sections.get(name, 0) for name in FLASH)
-        total += Words(hot + rest, hot + sections.get(".ebss", 0))
+    for obj in objects:
+        sections = object_words(obj)
+        code = per_half_word * (sections.get(".text", 0) + sections.get(SECTION, 0))
+        hot = per_half_word * half_words(obj, file)
+        constants = sum(sections.get(name, 0) for name in FLASH)
+        total += Words(code + constants, hot + sections.get(".ebss", 0))
     return total
 
 

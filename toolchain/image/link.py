@@ -14,9 +14,9 @@ from image.boot_code import BootCode, read_boot_code
 from image.command_file import CommandFile, read_command_file
 from image.elf import ObjectFile, read_object
 from image.interrupts import dear_calls
-from image.ram_code import left_in_flash, marked
+from image.ram_code import FIXED, SECTIONS, left_in_flash, marked, unknown
 from image.resident import kept, unresident
-from image.sizes import RUN_TIME_LIBRARY, RUN_TIME_WORDS, object_words
+from image.sizes import RUN_TIME_LIBRARY, RUN_TIME_WORDS, input_section, object_words, section_of
 from image.stack import Depth, stack_depth
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -24,10 +24,10 @@ DRIVERS = ROOT / "hal" / "f2808"
 # What TI's libraries bring: the C start-up, what a compiler calls for arithmetic or copying, and the flash library.
 RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR|Flash2808_\w+|Flash_\w+")
 KERNEL = "flash_kernel_main"
-RESIDENT = "resident"  # the section that stays in sector A
+RESIDENT = ("resident", FIXED)  # the sections that stay in sector A
 SECTOR_A = "RESIDENT"  # its range, which the drive's image has
 FLASH = ("APP_ENTRY", "APP", "RESIDENT")  # what sections may fill, but for boot code and identity
-HOT = "RAM_CODE"
+HOT = ("RAM_FIXED", "RAM_CODE")
 NO_CODE = "no code for the C28x: see the map beside this file\n"  # all that the linked file holds
 FLASH_LIBRARY_WORDS = 1600  # room for TI's flash library in the kernel; a guess
 
@@ -70,7 +70,8 @@ class Pile:
     def words(self, file: CommandFile | None = None) -> dict[str, int]:
         """Words by section of the objects, or by the image's sections that a linker command file puts them into."""
         total = dict(self.boot.words)
-        pieces = [(obj.archive, obj.path.name, object_words(obj)) for obj in self.objects]
+        name_of = input_section if file else section_of
+        pieces = [(obj.archive, obj.path.name, object_words(obj, name_of)) for obj in self.objects]
         pieces += [(RUN_TIME_LIBRARY, member, {".text": words}) for member, words in RUN_TIME_WORDS.items()]
         for archive, member, sections in pieces:
             for section, words in sections.items():
@@ -106,21 +107,22 @@ def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Dep
     words = pile.words()
     scope = sum(s.size // 2 for o in pile.objects for s in o.sections if s.name == ".bss.ring" and s.size > 4096)
     flash = sum(words.get(n, 0) for n in (".text", ".econst", ".cinit", ".pinit", ".switch", "ramfuncs"))
-    in_sector_a = [o for o in pile.objects if file.section_of(o.archive, o.path.name, ".text") == RESIDENT]
+    in_sector_a = [o for o in pile.objects if file.section_of(o.archive, o.path.name, ".text") in RESIDENT]
+    hot = sum(placed.get(name, 0) for name in SECTIONS)
     return {
-        "ram_code": words.get("ramfuncs", 0),
+        "ram_code": hot,
         "scope": scope,
         "globals": words.get(".ebss", 0),
         "strings": words.get("strings", 0),
         "constants": words.get(".econst", 0) - words.get("strings", 0),
-        "code": words.get(".text", 0),
+        "code": words.get(".text", 0) + words.get("ramfuncs", 0) - hot,
         "flash": flash,
-        "resident": placed.get(RESIDENT, 0),
+        "resident": sum(placed.get(name, 0) for name in RESIDENT),
         "resident_code": sum(object_words(o).get(".text", 0) for o in in_sector_a),
         "stack": depth.total,
         "library": sum(RUN_TIME_WORDS.values()),  # of the code, and words of the C28x already
         "flash_room": sum(file.ranges[name].length for name in FLASH),
-        "ram_code_room": file.ranges[HOT].length,
+        "ram_code_room": sum(file.ranges[name].length for name in HOT),
     }
 
 
@@ -138,7 +140,7 @@ def link(arguments: list[str]) -> int:
         figures = figures_of(pile, words, file, depth)
         rows = [f"| {name} | {value} |" for name, value in figures.items()]
         grown = unresident(pile.objects, file, RESIDENT) + left_in_flash(pile.objects, marked(DRIVERS))
-        grown += dear_calls(pile.objects)
+        grown += dear_calls(pile.objects) + unknown(pile.objects, file)
     else:  # a program in RAM
         depth = stack_depth(pile.objects, ("main",))
         words[".text"] += FLASH_LIBRARY_WORDS * any(KERNEL in obj.defined for obj in pile.objects)

@@ -1,16 +1,24 @@
-"""What is marked to run from RAM is really there: a compiler may put a small function into its caller, in flash.
+"""What runs from RAM: what the linker command file lists by name, and what is marked in the drivers' sources.
 
-What changes the flash's own timing may call nothing that lies in flash, either.
+The list (toolchain/c28x/f2808_flash.cmd) is for speed. It names functions, and objects of the resident part, which the
+linker has no functions of. Marked is what changes the flash's own timing: it may call nothing that lies there, and no
+compiler may put it into its caller.
 """
 
 import re
 from collections.abc import Iterable, Mapping
+from fnmatch import fnmatch
 from pathlib import Path
 
+from image.command_file import CommandFile
 from image.elf import ObjectFile
+from image.sizes import input_section, words_of
 
 SECTION = "ramfuncs"
+FIXED = "ramfixed"  # of the resident part, which runs from the same place in every image
+SECTIONS = (SECTION, FIXED)
 MARKED = re.compile(r"^TARGET_RAM_CODE [\w ]+?\**(\w+)\(", re.MULTILINE)
+LIBRARY = re.compile(r"CMakeFiles/(stillspin_\w+)\.dir/")
 ON_THE_FLASH = ("set_flash_timing",)
 
 
@@ -19,8 +27,39 @@ def marked(drivers: Path) -> dict[str, set[str]]:
     return {path.name: set(MARKED.findall(path.read_text(encoding="utf-8"))) for path in sorted(drivers.glob("*.c"))}
 
 
+def archive_of(path: Path) -> str:
+    """The library that an object of the build goes into."""
+    library = LIBRARY.search(path.as_posix())
+    return f"lib{library[1]}.a" if library else ""
+
+
+def runs_from_ram(file: CommandFile, archive: str, member: str, section: str) -> bool:
+    """Whether the linker puts an object's section (`.text.NAME`) into RAM."""
+    name = f".text:_{section[6:]}" if section.startswith(".text.") else section
+    return file.section_of(archive, member, name) in SECTIONS
+
+
+def half_words(obj: ObjectFile, file: CommandFile) -> int:
+    """Of an object of the build what runs from RAM."""
+    archive = archive_of(obj.path)
+    code = (each for each in obj.sections if each.name.startswith((".text", SECTION)))
+    return sum(words_of(each) for each in code if runs_from_ram(file, archive, obj.path.name, each.name))
+
+
+def unknown(objects: Iterable[ObjectFile], file: CommandFile) -> list[str]:
+    """What the list names of an object that is there and has no such function, in words."""
+    objects = list(objects)
+    complaints = []
+    for archive, member, section in (each for p in file.placements if p.section in SECTIONS for each in p.inputs):
+        found = [obj for obj in objects if obj.archive == archive and fnmatch(obj.path.name, member)]
+        names = {input_section(each) or "" for obj in found for each in obj.sections}
+        if found and not any(section in (name, name.partition(":")[0]) for name in names):
+            complaints.append(f"{section} of {member} is to run from RAM and does not exist")
+    return complaints
+
+
 def left_in_flash(objects: Iterable[ObjectFile], names: Mapping[str, set[str]]) -> list[str]:
-    """What of an image does not run from RAM alone, in words; `names` by file, whose object is FILE.obj."""
+    """What is marked and does not run from RAM alone, in words; `names` by file, whose object is FILE.obj."""
     complaints = []
     for obj in objects:
         here = {k for k, section in enumerate(obj.sections) if section.name == SECTION}

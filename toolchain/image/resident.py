@@ -1,60 +1,60 @@
 """What stays in the flash when a drive is updated may refer to nothing that an update moves.
 
-Of the objects that a linker command file puts into one section of the image, every relocation has to lead into that
-section again, or to what TI's library brings for arithmetic and copying; and none of them may have globals, which have
-no fixed place either. So the section comes out the same word for word whatever else changes, where what is in it and
-its order are the same: that is compared between images.
+Of the objects that a linker command file puts into the sections that stay, every relocation has to lead into these
+again, or to what TI's library brings for arithmetic and copying; and none of them may have globals, which have no fixed
+place either. So they come out the same word for word whatever else changes, where what is in them and its order are the
+same: that is compared between images.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatch
 from hashlib import sha256
 
 from image.command_file import CommandFile
 from image.elf import ObjectFile, Section
-from image.sizes import RUN_TIME_LIBRARY, section_of
+from image.sizes import RUN_TIME_LIBRARY, input_section, section_of
 
 ARITHMETIC = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*")
 
 
 def _place(file: CommandFile, obj: ObjectFile, section: Section) -> str | None:
     """Where it goes in the image; None for what is not in memory."""
-    name = section_of(section)
+    name = input_section(section)
     return file.section_of(obj.archive, obj.path.name, name) if name else None
 
 
-def _own(file: CommandFile, obj: ObjectFile, kept: str) -> Iterator[str]:
+def _own(file: CommandFile, obj: ObjectFile, kept: Collection[str]) -> Iterator[str]:
     """The names in the object of what is kept: symbols, and the sections themselves."""
-    inside = {k for k, section in enumerate(obj.sections) if _place(file, obj, section) == kept}
+    inside = {k for k, section in enumerate(obj.sections) if _place(file, obj, section) in kept}
     yield from (obj.sections[k].name for k in inside)
     yield from (symbol.name for symbol in obj.symbols if symbol.section in inside)
 
 
-def unresident(objects: Iterable[ObjectFile], file: CommandFile, kept: str) -> list[str]:
-    """What of the section `kept` depends on anything outside of it, in words."""
+def unresident(objects: Iterable[ObjectFile], file: CommandFile, kept: Collection[str]) -> list[str]:
+    """What of the sections `kept` depends on anything outside of them, in words."""
     objects = list(objects)
     public = {name for obj in objects for name in _own(file, obj, kept) if name in obj.defined}
     complaints = []
     for obj in objects:
         own = set(_own(file, obj, kept))
         wanted = {
-            name for section in obj.sections if _place(file, obj, section) == kept for _, _, name in section.relocations
+            name for section in obj.sections if _place(file, obj, section) in kept for _, _, name in section.relocations
         }
         moved = sorted(n for n in wanted - own - public if not ARITHMETIC.fullmatch(n))
         complaints += [f"{obj.path.name} is resident and refers to {name}, which an update moves" for name in moved]
     return complaints
 
 
-def kept(objects: Iterable[ObjectFile], file: CommandFile, section: str) -> list[str]:
-    """What the image has in `section`, in the order of the linker command file: names, and what the words come from.
+def kept(objects: Iterable[ObjectFile], file: CommandFile, sections: Collection[str]) -> list[str]:
+    """What the image has in `sections`, in the order of the linker command file: names, and what the words come from.
 
     An input of the command file that no object answers to is there without words.
     """
     objects = list(objects)
-    inputs = next(placement.inputs for placement in file.placements if placement.section == section)
+    placements = [placement for placement in file.placements if placement.section in sections]
     lines = []
-    for archive, member, name in inputs:
+    for section, (archive, member, name) in ((p.section, each) for p in placements for each in p.inputs):
         found = [
             (obj, own)
             for obj in objects

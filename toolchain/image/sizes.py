@@ -6,6 +6,8 @@ when compiling; an enumeration is counted with two words where the C28x needs on
 half words. How close that is to the C28x nobody here knows.
 """
 
+from collections.abc import Callable
+
 from image.elf import ObjectFile, Section
 
 # TI's library: start-up and exit 209, 64-bit quotients, comparisons and logic 317, 16- and 32-bit quotients 76, copying
@@ -30,16 +32,21 @@ def section_of(section: Section) -> str | None:
     return section.name
 
 
+def input_section(section: Section) -> str | None:
+    """The same, of a function's code with its own part of the name: `.text:_NAME`."""
+    return f".text:_{section.name[6:]}" if section.name.startswith(".text.") else section_of(section)
+
+
 def words_of(section: Section) -> int:
     """Estimated words."""
     return section.size if section.is_strings else (section.size + 1) // 2
 
 
-def object_words(obj: ObjectFile) -> dict[str, int]:
+def object_words(obj: ObjectFile, name_of: Callable[[Section], str | None] = section_of) -> dict[str, int]:
     """Words by section; strings also by themselves."""
     words: dict[str, int] = {}
     for section in obj.sections:
-        name = section_of(section)
+        name = name_of(section)
         if name is None:
             continue
         count = words_of(section)

@@ -29,7 +29,7 @@ sys.path.insert(0, str(HERE.parent))
 from costs import costs  # noqa: E402
 from image import check  # noqa: E402
 
-from isr import counts, program, runs  # noqa: E402
+from isr import counts, hot, program, runs  # noqa: E402
 from isr.counts import ALL, PHASES, STEPS, WINDOW, Counts  # noqa: E402
 from isr.program import Program  # noqa: E402
 from isr.runs import Run  # noqa: E402
@@ -253,6 +253,9 @@ def main() -> int:
             figures[edition] = own
             scope = default[runs.SCOPED.name].worst - default[runs.BARE.name].worst
             short += charges(counts.joined(default.values()), scope)
+            short += hot.cold(made.functions, set().union(*whole(schemes).ran.values()))
+        if edition == hot.EDITION:
+            short += hot.hotter(own["functions"])
         complaints += called(made, whole(schemes))
         for source in sources:
             columns = ("mean", "worst", "mean_instructions", "worst_instructions")

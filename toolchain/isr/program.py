@@ -14,11 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from image import check
+from image.command_file import CommandFile, read_command_file
 from image.elf import read_object
-from image.ram_code import SECTION as RAM_CODE
+from image.ram_code import archive_of, runs_from_ram
 
 ROOT = Path(__file__).resolve().parents[2]
 REPLAY = ROOT / "tests" / "m3"
+PLACES = ROOT / "toolchain" / "c28x" / "f2808_flash.cmd"
 COMPILER, EMULATOR, NATIVE = "arm-none-eabi-gcc", "qemu-system-arm", "gcc"
 CPU = ("-mcpu=cortex-m3", "-mthumb")
 # As the stand-in does: an enumeration is an int; and bool is a word by its header.
@@ -147,8 +149,11 @@ def _link(objects: list[Path], out: Path) -> Path:
     return image
 
 
-def functions_of(linked: str, sources: dict[Path, Path], aside: list[Path]) -> list[Function]:
-    """By the linker's map: those of the drive's objects, and whole members of the compiler's library."""
+def functions_of(linked: str, sources: dict[Path, Path], aside: list[Path], placed: CommandFile) -> list[Function]:
+    """By the linker's map: those of the drive's objects, and whole members of the compiler's library.
+
+    What of them runs from RAM stands in the image's linker command file.
+    """
     text = re.sub(r"^( \.text\S*)\n\s+", r"\1 ", linked, flags=re.MULTILINE)
     places = {
         (found[4], found[1]): (int(found[2], 16), int(found[3], 16))
@@ -162,7 +167,7 @@ def functions_of(linked: str, sources: dict[Path, Path], aside: list[Path]) -> l
             section = obj.sections[symbol.section].name
             start, length = places.get((str(target), section), (0, 0))
             if length:
-                in_ram = section == RAM_CODE
+                in_ram = runs_from_ram(placed, archive_of(target), target.name, section)
                 functions.append(Function(symbol.name, file, start + symbol.value, symbol.size, in_ram))
     own = {str(path) for path in (*sources, *aside)}
     for (path, _), (start, length) in places.items():
@@ -192,4 +197,5 @@ def link(objects: Objects, edition: str, out: Path) -> Program:
     plugin = (out / "count.so").resolve()
     subprocess.run([NATIVE, *PLUGIN, REPLAY / "count.c", "-o", plugin], check=True)
     linked = (out / "replay.map").read_text(encoding="utf-8")
-    return Program(image, plugin, functions_of(linked, sources, objects.aside), marks_of(image))
+    placed = read_command_file(PLACES)
+    return Program(image, plugin, functions_of(linked, sources, objects.aside, placed), marks_of(image))

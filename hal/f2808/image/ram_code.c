@@ -3,11 +3,15 @@
 #include "hal/f2808/target.h"
 #include "hal/hal_image.h"
 
-extern const uint16_t image_ram_code_load[];
-extern uint16_t image_ram_code_run[];
-extern const uint16_t image_ram_code_size[];
+extern const uint16_t image_ram_code_load[], image_ram_fixed_load[];
+extern uint16_t image_ram_code_run[], image_ram_fixed_run[];
+extern const uint16_t image_ram_code_size[], image_ram_fixed_size[];
+
+static void copy(uint16_t* to, const uint16_t* from, uint32_t words) {
+  for (uint32_t k = 0uL; k < words; k++) to[k] = from[k];
+}
 
 void hal_image_copy_ram_code(void) {
-  const uint32_t words = TARGET_LINKER_NUMBER(image_ram_code_size);
-  for (uint32_t k = 0uL; k < words; k++) image_ram_code_run[k] = image_ram_code_load[k];
+  copy(image_ram_code_run, image_ram_code_load, TARGET_LINKER_NUMBER(image_ram_code_size));
+  copy(image_ram_fixed_run, image_ram_fixed_load, TARGET_LINKER_NUMBER(image_ram_fixed_size));
 }
