@@ -1,11 +1,12 @@
-// Inertia learnt from run-ups (estimators/inertia_match.h), once a millisecond, and what hangs on it.
+// Inertia learnt from run-ups, and what hangs on it.
 
-#include "firmware/dictionary/parameters.h"
+#include "firmware/drive/inertia.h"
+
 #include "firmware/drive/position.h"
-#include "firmware/drive/steps.h"
-#include "firmware/mode/mode.h"
 
 #define STILL_RPM_Q16 1310720L  // 20 rpm
+
+inertia_match_t inertia_match;
 
 static void look(const drive_t* d, inertia_seen_t* in) {
   in->angle_bam = d->position.selected.angle_bam;
@@ -20,7 +21,7 @@ static void look(const drive_t* d, inertia_seen_t* in) {
 
 // The load that the observer has made of the wrong inertia goes, and the speed that it could not believe comes.
 static void hand_on(drive_t* d, int32_t factor_q24) {
-  const inertia_match_t* const s = &d->inertia;
+  const inertia_match_t* const s = &inertia_match;
   machine_model_scale_inertia(&d->model, &d->config.nameplate, s->ratio_q24);
   speed_controller_scale(&d->control.speed, s->ratio_q24);
   if (s->phase == INERTIA_RUN_UP) {
@@ -37,12 +38,12 @@ void drive_match_inertia(drive_t* d) {
   const bool alone = drive_source_has(d, SOURCE_SINGLE) && drive_source_has(d, SOURCE_READS);
   if (d->config.values.inertia_adapt == 0 || !d->config.mapped || !alone) return;
   if (d->state != DRIVE_RUN) {
-    d->inertia.quiet_ms = 0;
-    d->inertia.phase = INERTIA_REST;
+    inertia_match.quiet_ms = 0;
+    inertia_match.phase = INERTIA_REST;
     return;
   }
   inertia_seen_t in;
   look(d, &in);
-  const int32_t factor_q24 = inertia_match_step(&d->inertia, &in, DRIVE_PERIODS_PER_MS);
+  const int32_t factor_q24 = inertia_match_step(&inertia_match, &in, DRIVE_PERIODS_PER_MS);
   if (factor_q24 != INERTIA_SAME_Q24) hand_on(d, factor_q24);
 }

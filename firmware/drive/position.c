@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
@@ -98,7 +99,7 @@ void drive_estimate(drive_t* d) {
   if (open_loop) seen_q20 = position_seen(d, seen_q20);
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(machine_torque_q16(&d->model, seen_q20), d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
-  inertia_match_add(&d->inertia, in.torque_accel_q8);
+  inertia_match_add(&inertia_match, in.torque_accel_q8);
   if (open_loop || measuring) {
     drive_states[d->state]->estimate(d, &in);
   } else {
@@ -118,9 +119,11 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   p->selected = now;
 }
 
-static void begin_flux(drive_t* d, bool keeps) {
+// The one in use, and the flux, which may look on.
+static void begin_sources(drive_t* d, bool keeps) {
   const position_source_t* const flux = position_sources[POSITION_FLUX_CONV];
   if (flux != NULL) flux->begin(d, keeps);
+  if (d->source != flux && d->source->begin != NULL) d->source->begin(d, keeps);
 }
 
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
@@ -128,15 +131,14 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   position_preset_axis(d, angle_bam, seen_bpp);
   const int32_t speed_bpp = p->selected.speed_bpp;
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
-  zvv_preset(&p->zvv, angle_bam, speed_bpp);
-  begin_flux(d, false);
+  begin_sources(d, false);
   blend_reset(&p->blend);
   if (drive_source_has(d, SOURCE_ALTERNATES)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
   p->low = p->selected;
   p->high = p->selected;
 }
 
-void position_keep(drive_t* d) { begin_flux(d, true); }
+void position_keep(drive_t* d) { begin_sources(d, true); }
 
 void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   d->position.encoder_offset_bam = angle_bam - position_encoder_now(d);

@@ -8,6 +8,7 @@
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/sampling.h"
@@ -22,6 +23,8 @@ void drive_reset(void) {
   sampling_reset();
   hold_end();
   clear(&polarity_watch, sizeof polarity_watch);
+  clear(&inertia_match, sizeof inertia_match);
+  drive_look_end(LOOK_NONE, 0);
   fault_history_reset();
   parameters_reset();
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();

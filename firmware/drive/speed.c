@@ -5,6 +5,7 @@
 #include "control/brake_limit.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 

@@ -38,9 +38,6 @@ void schedule_next(drive_t* d);
 /// Lets the position sources and the speed control start from this angle and speed (drive/hand_over.c).
 void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
-/// Learns the inertia; once a millisecond (drive/inertia.c).
-void drive_match_inertia(drive_t* d);
-
 /// Torque current that the limit leaves beside the reference of i_d, A.
 int32_t drive_current_headroom(const drive_t* d);
 

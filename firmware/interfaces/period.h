@@ -17,7 +17,6 @@
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
-#include "estimators/zvv.h"
 #include "firmware/interfaces/schedule.h"
 #include "firmware/interfaces/source.h"
 #include "svpwm/modulator.h"
@@ -46,7 +45,6 @@ typedef struct {
   estimator_output_t seen;  // by the position source, while it looks on
   avv_t avv;
   deviation_observer_t observer;
-  zvv_t zvv;
   blend_t blend;
   sensor_match_t sensors;
   tracking_observer_t encoder;

@@ -29,8 +29,8 @@ typedef struct {
   int32_t (*highest_d_q20)(struct drive* d);
   /// Goes along with an angle that somebody else knows; NULL: need not.
   void (*follow)(struct drive* d, const estimator_output_t* now);
-  /// Whichever source has the shaft, as this one may look on: begins anew, or goes on with what it has seen while a
-  /// vector turned the shaft. NULL: has nothing of its own.
+  /// Begins anew from angle and speed in use, or goes on with what it has seen while a vector turned the shaft; so does
+  /// the flux, whichever source has the shaft, as it may look on. NULL: has nothing of its own.
   void (*begin)(struct drive* d, bool keeps);
   uint16_t traits;
 } position_source_t;

@@ -53,6 +53,8 @@ void drive_command_look(void);
 look_outcome_t drive_look_outcome(void);
 /// Mechanical, Q16; its sign only when it TURNS.
 int32_t drive_look_rpm(void);
+/// By the look itself: what it has found.
+void drive_look_end(look_outcome_t outcome, int32_t rpm_q16);
 
 #if defined(__cplusplus)
 }

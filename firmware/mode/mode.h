@@ -6,7 +6,6 @@
 #ifndef STILLSPIN_FIRMWARE_MODE_MODE_H
 #define STILLSPIN_FIRMWARE_MODE_MODE_H
 
-#include "estimators/inertia_match.h"
 #include "firmware/interfaces/config.h"
 #include "firmware/interfaces/period.h"
 #include "firmware/interfaces/state.h"
@@ -16,12 +15,6 @@
 typedef struct {
   bool start, stop, coast, reset, reload, commission, look;
 } drive_request_t;
-
-/// What the last look at the shaft has shown.
-typedef struct {
-  look_outcome_t outcome;
-  int32_t rpm_q16;
-} drive_look_t;
 
 /// What is read everywhere comes first, what is large last: the farther a member, the longer the code that reaches it.
 typedef struct drive {
@@ -46,9 +39,7 @@ typedef struct drive {
   machine_model_t model;  // nameplate, at the operating point and with what was learnt
   drive_modulation_t modulation;
   drive_supervision_t supervision;
-  inertia_match_t inertia;
   slopes_trim_t trim;  // current offsets, mismatch of the sensors
-  drive_look_t look;
   start_found_t found;
   uint32_t settled_at;                           // period in which the currents will have been at rest for long enough
   int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes

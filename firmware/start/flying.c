@@ -73,8 +73,7 @@ static void close_loop(drive_t* d) {
 
 // The gates are off already.
 static void end_look(drive_t* d, look_outcome_t outcome, int32_t speed_bpp) {
-  d->look.outcome = outcome;
-  d->look.rpm_q16 = drive_rpm_q16(d, speed_bpp);
+  drive_look_end(outcome, drive_rpm_q16(d, speed_bpp));
   drive_enter(d, DRIVE_READY);
 }
 

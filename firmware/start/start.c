@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "firmware/base/clear.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/interlock.h"
@@ -44,7 +45,7 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   clear(&starting, sizeof starting);
   clear(&d->found, sizeof d->found);
   d->model = d->config.nameplate;
-  inertia_match_reset(&d->inertia);
+  inertia_match_reset(&inertia_match);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
   d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
   d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;

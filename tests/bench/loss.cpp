@@ -7,6 +7,7 @@
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/sources/paper/paper.h"
 }
 
 namespace stillspin::bench {
@@ -23,7 +24,7 @@ void kick(double degrees) {
   drive_position_t& p = drive.position;
   p.avv.observer.angle_bam += turn;
   p.observer.angle_bam += turn;
-  p.zvv.angle_bam += turn;
+  paper_zvv.angle_bam += turn;
   p.encoder.angle_bam += turn;
   p.encoder_offset_bam += turn;
   drive.supervision.judged_bam += turn;  // no estimator jumps: that it has done so is not to give it away

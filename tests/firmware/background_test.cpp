@@ -4,6 +4,7 @@
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/signals.h"
 #include "firmware/drive/steps.h"
@@ -119,7 +120,7 @@ class Inertia : public Drive {
     parameters.inertia_adapt = 1;
     use_source(POSITION_OBSERVER);
     inside::speed_ramp().value = inside::selected().speed_bpp = bpp_of(100);
-    inside::inertia().reference_bpp = inside::speed_ramp().value;
+    inertia_match.reference_bpp = inside::speed_ramp().value;
   }
   static double acceleration_limit() {
     const Motor m;
@@ -128,7 +129,7 @@ class Inertia : public Drive {
   }
   /// A run-up that has turned the shaft twice as far as its torque should have, with this share of the limit's torque.
   static void run_up(double share) {
-    inertia_match_t& s = inside::inertia();
+    inertia_match_t& s = inertia_match;
     inertia_match_reset(&s);
     s.phase = INERTIA_RUN_UP;
     s.reference_bpp = inside::speed_ramp().value - 1000;
@@ -148,25 +149,25 @@ class Inertia : public Drive {
 // What was found in a run-up is given to the model, the speed control and the observer, which has mistaken it for load.
 TEST_F(Inertia, WhatARunUpFindsIsHandedOn) {
   run_up(0.5);
-  const std::int32_t speed = inside::inertia().speed0_bpp + 2 * inside::inertia().gained_bpp;
+  const std::int32_t speed = inertia_match.speed0_bpp + 2 * inertia_match.gained_bpp;
   inside::observer().load_accel_q8 = raw(-7000.0, 8);
   inside::observer().speed_bpp = bpp_of(20);
   const double accel = inside::model().accel_q12, share = inside::speed_controller().gains.amps_per_bpp;
   drive_match_inertia(&drive);
-  const double ratio = real(inside::inertia().ratio_q24, 24);
+  const double ratio = real(inertia_match.ratio_q24, 24);
   EXPECT_NEAR(ratio, 2.0, 0.1);
   EXPECT_NEAR(inside::model().accel_q12 / accel, ratio, 1e-3);
   EXPECT_NEAR(inside::speed_controller().gains.amps_per_bpp / share, 1.0 / ratio, 1e-3);
-  EXPECT_EQ(inside::observer().load_accel_q8, inside::inertia().start_base_q8) << "the load is that of before";
+  EXPECT_EQ(inside::observer().load_accel_q8, inertia_match.start_base_q8) << "the load is that of before";
   EXPECT_NEAR(inside::observer().load_accel_q8, 1000.0 * 256.0 * ratio, 256.0);
   EXPECT_NEAR(inside::observer().speed_bpp / static_cast<double>(speed), 1.0, 0.05);
 }
 
 TEST_F(Inertia, ASpeedBeyondTheModelsIsItsEnd) {
   run_up(0.5);
-  inside::inertia().speed0_bpp = MACHINE_SPEED_END_BPP - 1000;
-  inside::inertia().turned = raw(60.0, 24);
-  inside::inertia().expected = raw(30.0, 24);
+  inertia_match.speed0_bpp = MACHINE_SPEED_END_BPP - 1000;
+  inertia_match.turned = raw(60.0, 24);
+  inertia_match.expected = raw(30.0, 24);
   drive_match_inertia(&drive);
   EXPECT_EQ(inside::observer().speed_bpp, MACHINE_SPEED_END_BPP);
 }
@@ -177,7 +178,7 @@ TEST_F(Inertia, ARunUpUnderLittleTorqueSaysNothing) {
     SetUp();
     run_up(share);
     drive_match_inertia(&drive);
-    EXPECT_EQ(inside::inertia().ratio_q24 != INERTIA_SAME_Q24, share > 0.3) << share;
+    EXPECT_EQ(inertia_match.ratio_q24 != INERTIA_SAME_Q24, share > 0.3) << share;
   }
 }
 
@@ -187,7 +188,7 @@ TEST_F(Inertia, TheReferenceIsReachedWithin20Rpm) {
     SetUp();
     inside::selected().speed_bpp = bpp_of(100 + off);
     drive_match_inertia(&drive);
-    EXPECT_EQ(inside::inertia().quiet_ms, std::abs(off) < 20 ? 1 : 0) << off;
+    EXPECT_EQ(inertia_match.quiet_ms, std::abs(off) < 20 ? 1 : 0) << off;
   }
 }
 
@@ -196,13 +197,13 @@ TEST_F(Inertia, ARunUpBeginsWithTheRampAfterARest) {
   inside::torque_accel_q8() = raw(160.0, 8);
   inside::selected().angle_bam = 0x12345678u;
   for (int n = 0; n < 30; ++n) drive_match_inertia(&drive);
-  EXPECT_EQ(inside::inertia().phase, INERTIA_REST);
-  EXPECT_GT(inside::inertia().base_q8, raw(100.0, 8));
-  EXPECT_EQ(inside::inertia().angle_bam, 0x12345678u);
+  EXPECT_EQ(inertia_match.phase, INERTIA_REST);
+  EXPECT_GT(inertia_match.base_q8, raw(100.0, 8));
+  EXPECT_EQ(inertia_match.angle_bam, 0x12345678u);
   inside::speed_ramp().value += 1;
   drive_match_inertia(&drive);
-  EXPECT_EQ(inside::inertia().phase, INERTIA_RUN_UP);
-  EXPECT_EQ(inside::inertia().speed0_bpp, inside::selected().speed_bpp);
+  EXPECT_EQ(inertia_match.phase, INERTIA_RUN_UP);
+  EXPECT_EQ(inertia_match.speed0_bpp, inside::selected().speed_bpp);
 }
 
 // A large current turns the angle where the map is not known, and other sources have no observer to correct.
@@ -214,19 +215,19 @@ TEST_F(Inertia, NothingIsLearntWithoutTheMapTheParameterAndTheObserver) {
     if (missing == 2) inside::config().values.inertia_adapt = 0;
     if (missing == 3) use_source(POSITION_OBSERVER_AVV);
     drive_match_inertia(&drive);
-    EXPECT_EQ(inside::inertia().ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;
+    EXPECT_EQ(inertia_match.ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;
   }
 }
 
 TEST_F(Inertia, OutsideOfRunARunUpIsForgotten) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_STOP, DRIVE_FAULT}) {
     run_up(0.5);
-    inside::inertia().quiet_ms = 30;
+    inertia_match.quiet_ms = 30;
     inside::state() = state;
     drive_match_inertia(&drive);
-    EXPECT_EQ(inside::inertia().phase, INERTIA_REST);
-    EXPECT_EQ(inside::inertia().quiet_ms, 0);
-    EXPECT_EQ(inside::inertia().ratio_q24, INERTIA_SAME_Q24);
+    EXPECT_EQ(inertia_match.phase, INERTIA_REST);
+    EXPECT_EQ(inertia_match.quiet_ms, 0);
+    EXPECT_EQ(inertia_match.ratio_q24, INERTIA_SAME_Q24);
   }
 }
 

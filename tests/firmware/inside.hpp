@@ -20,10 +20,8 @@ inline auto& fault() { return drive.fault; }
 inline auto& flags() { return drive.flags; }
 inline auto& heartbeat() { return drive.heartbeat; }
 inline auto& heat_sink_q8() { return drive.heat_sink_q8; }
-inline auto& inertia() { return drive.inertia; }
 inline auto& limits() { return drive.limits; }
 inline auto& loading() { return drive.loading; }
-inline auto& look() { return drive.look; }
 inline auto& model() { return drive.model; }
 inline auto& periods() { return drive.periods; }
 inline auto& position() { return drive.position; }
@@ -62,7 +60,6 @@ inline auto& seen() { return drive.position.seen; }
 inline auto& selected() { return drive.position.selected; }
 inline auto& sensors_match() { return drive.position.sensors; }
 inline auto& torque_accel_q8() { return drive.position.torque_accel_q8; }
-inline auto& zvv() { return drive.position.zvv; }
 
 // Speed and current control.
 inline auto& braking_headroom_q20() { return drive.control.braking_headroom_q20; }

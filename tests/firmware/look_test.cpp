@@ -122,8 +122,7 @@ class LookAsked : public Requests {
   }
   static void show(look_outcome_t outcome, int rpm) {
     inside::request().look = false;
-    inside::look().outcome = outcome;
-    inside::look().rpm_q16 = rpm * 65536;
+    drive_look_end(outcome, rpm * 65536);
   }
 };
 

@@ -7,9 +7,11 @@ extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
 }
 
 namespace {
@@ -77,15 +79,15 @@ TEST_F(Sources, TheTorqueAcceleratesOnceThePolarityIsKnown) {
     see(0);
     inside::current_dq_q20() = {0, raw(4.0, 20)};
     inside::schedule().turning = !starting;
-    inside::inertia().phase = INERTIA_RUN_UP;
-    inside::inertia().start_base_q8 = raw(-3.0, 8);
-    inside::inertia().gained_bpp = 100;
+    inertia_match.phase = INERTIA_RUN_UP;
+    inertia_match.start_base_q8 = raw(-3.0, 8);
+    inertia_match.gained_bpp = 100;
     estimate();
     const double accel =
         starting ? 0.0
                  : m.torque_constant() * 4.0 * m.pole_pairs / m.inertia * kPeriod * kPeriod / kTurn * 4294967296.0;
     EXPECT_NEAR(real(inside::torque_accel_q8(), 8), accel, 1e-3 * accel);
-    EXPECT_NEAR(inside::inertia().gained_bpp, 103.0 + accel, 1.0 + 1e-3 * accel) << "every period counts";
+    EXPECT_NEAR(inertia_match.gained_bpp, 103.0 + accel, 1.0 + 1e-3 * accel) << "every period counts";
   }
 }
 
@@ -220,8 +222,10 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
     EXPECT_EQ(p.observer.angle_bam, kThere);
     EXPECT_EQ(p.observer.speed_bpp, speed);
     EXPECT_EQ(p.observer.load_accel_q8, 0);
-    EXPECT_EQ(p.zvv.angle_bam, kThere);
-    EXPECT_EQ(p.zvv.speed_bpp, speed);
+    if (source == POSITION_PAPER) {
+      EXPECT_EQ(paper_zvv.angle_bam, kThere);
+      EXPECT_EQ(paper_zvv.speed_bpp, speed);
+    }
     EXPECT_GT(flux_observer.machine.psi_q16, 0) << "what was learnt of the machine is forgotten";
     // The paper's pair is right at once at any speed; the others begin with the low-speed estimator.
     EXPECT_EQ(p.blend.region, source == POSITION_PAPER ? BLEND_HIGH : BLEND_LOW);
@@ -231,11 +235,11 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
 
 TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
   for (const int sign : {1, -1}) {
-    run_with(POSITION_OBSERVER);
+    run_with(POSITION_PAPER);
     position_preset(&drive, kThere, sign * 2000000000);
     const drive_position_t& p = inside::position();
     for (const std::int32_t speed :
-         {p.selected.speed_bpp, p.avv.observer.speed_bpp, p.observer.speed_bpp, p.zvv.speed_bpp})
+         {p.selected.speed_bpp, p.avv.observer.speed_bpp, p.observer.speed_bpp, paper_zvv.speed_bpp})
       EXPECT_EQ(speed, sign * MACHINE_SPEED_END_BPP);
   }
 }
@@ -256,18 +260,18 @@ TEST_F(Sources, ThePapersIdleEstimatorKnowsTheSpeed) {
   run_with(POSITION_PAPER);
   see(1);
   blend(BLEND_LOW, 1.0);
-  inside::zvv().speed_bpp = 5000;
-  zvv_preset(&inside::zvv(), kHere, 5000);
+  paper_zvv.speed_bpp = 5000;
+  zvv_preset(&paper_zvv, kHere, 5000);
   inside::avv().observer.load_accel_q8 = 77;
   estimate();
-  EXPECT_EQ(inside::avv().observer.speed_bpp, inside::zvv().speed_bpp);
+  EXPECT_EQ(inside::avv().observer.speed_bpp, paper_zvv.speed_bpp);
   EXPECT_EQ(inside::avv().observer.load_accel_q8, 0);
   run_with(POSITION_PAPER);
   blend(BLEND_HIGH, 0.0);
   inside::avv().observer.speed_bpp = bpp_of(200);
   estimate();
-  EXPECT_EQ(inside::zvv().speed_bpp, inside::avv().observer.speed_bpp);
-  EXPECT_NEAR(rad_per_s(inside::zvv().speed_bpp), 200.0 / 60.0 * kTurn * 4.0, 1.0);
+  EXPECT_EQ(paper_zvv.speed_bpp, inside::avv().observer.speed_bpp);
+  EXPECT_NEAR(rad_per_s(paper_zvv.speed_bpp), 200.0 / 60.0 * kTurn * 4.0, 1.0);
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
 #include "firmware/sources/sources.h"
 }
 
@@ -34,9 +36,9 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
     p.avv.observer.angle_bam = kThere;
     drive_estimate(&drive);
     const double apart = rad(kThere - kHere);  // who runs moves, a thousandth of that
-    EXPECT_NEAR(rad(p.zvv.angle_bam - kHere), c.zvv ? 0.0 : apart, 1e-3 * apart) << c.region << c.share;
+    EXPECT_NEAR(rad(paper_zvv.angle_bam - kHere), c.zvv ? 0.0 : apart, 1e-3 * apart) << c.region << c.share;
     EXPECT_NEAR(rad(p.avv.observer.angle_bam - kHere), c.avv ? apart : 0.0, 1e-3 * apart) << c.region << c.share;
-    EXPECT_EQ(p.low.angle_bam, p.zvv.angle_bam);
+    EXPECT_EQ(p.low.angle_bam, paper_zvv.angle_bam);
     EXPECT_EQ(p.high.angle_bam, p.avv.observer.angle_bam);
   }
 }
@@ -54,10 +56,10 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
       inside::low_speed_estimate().quality_q15 = 12345;
       drive_estimate(&drive);
       const bool of_zvv = (task == TASK_SPEED || task == TASK_FIELD) != below;
-      EXPECT_EQ(inside::zvv().deviation_q20 != 0, of_zvv) << task;
+      EXPECT_EQ(paper_zvv.deviation_q20 != 0, of_zvv) << task;
       EXPECT_EQ(inside::low_speed_estimate().quality_q15 == 12345, !of_zvv) << task;
       EXPECT_EQ(inside::avv().regression.information > 0, !of_zvv) << task;
-      EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::zvv().angle_bam) << task;
+      EXPECT_EQ(inside::low_speed_estimate().angle_bam, paper_zvv.angle_bam) << task;
     }
   }
 }
@@ -72,7 +74,7 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
     if (!same) inside::selected().angle_bam = kThere;
     drive_estimate(&drive);
     const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
-    EXPECT_NEAR(real(inside::zvv().deviation_q20, 20), slope.y, 5e-5) << same;
+    EXPECT_NEAR(real(paper_zvv.deviation_q20, 20), slope.y, 5e-5) << same;
   }
 }
 
@@ -85,7 +87,7 @@ TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
   inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   drive_estimate(&drive);
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
-  EXPECT_NEAR(real(inside::zvv().deviation_q20, 20), slope.y, 5e-5);
+  EXPECT_NEAR(real(paper_zvv.deviation_q20, 20), slope.y, 5e-5);
 }
 
 // The place of a regression that saw nothing teaches nothing.
@@ -238,7 +240,7 @@ TEST_F(Position, TheObserverIsToldOfAnInertiaThatIsTakenBack) {
   inside::config().mapped = true;
   parameters.inertia_adapt = 1;
   use_parameters();
-  inertia_match_t& s = inside::inertia();
+  inertia_match_t& s = inertia_match;
   s.phase = INERTIA_SETTLE;
   s.ratio_q24 = raw(0.5, 24);
   s.before_q24 = raw(1.0, 24);

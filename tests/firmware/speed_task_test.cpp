@@ -10,6 +10,7 @@ extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 }
@@ -294,7 +295,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     drive_control_t& c = inside::control();
     inside::time_ms() = kMark;
     c.weakening_q20 = kMark;
-    inside::inertia().ms = kMark;
+    inertia_match.ms = kMark;
     c.reference_q20.d = kMark;
     c.headroom_q20 = raw(3.0, 20);
     c.braking_headroom_q20 = kMark;
@@ -305,7 +306,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;
     EXPECT_EQ(c.braking_headroom_q20 != kMark, k == 0) << k;
     EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
-    EXPECT_EQ(inside::inertia().ms != kMark, k == 6) << k;
+    EXPECT_EQ(inertia_match.ms != kMark, k == 6) << k;
     EXPECT_EQ(c.reference_q20.d != kMark, k == 0) << k;
   }
 }

@@ -6,6 +6,7 @@
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 }
 
@@ -24,7 +25,7 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   starting.tries = starting.pulses = 2;
   inside::model().trim.rs_q24 = 777;
   inside::model().accel_q12 /= 2;
-  inside::inertia().ratio_q24 /= 2;
+  inertia_match.ratio_q24 /= 2;
   inside::config().sensor_mismatch_q30 = 4321;
   start_state.begin(&drive, DRIVE_RUN);
   EXPECT_EQ(inside::state(), DRIVE_START);
@@ -36,7 +37,7 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   EXPECT_EQ(starting.tries + starting.pulses, 0);
   EXPECT_EQ(inside::model().trim.rs_q24, 0);
   EXPECT_EQ(inside::model().accel_q12, inside::config().nameplate.accel_q12);
-  EXPECT_EQ(inside::inertia().ratio_q24, INERTIA_SAME_Q24);
+  EXPECT_EQ(inertia_match.ratio_q24, INERTIA_SAME_Q24);
   EXPECT_EQ(inside::sensors_match().mismatch_q30, 4321);
   EXPECT_EQ(inside::sensor_trim().mismatch_q30, 4321);
   EXPECT_TRUE(board.gates_on);

@@ -8,6 +8,7 @@
 #include "firmware/console/console.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
@@ -16,6 +17,7 @@
 #include "firmware/link/requests.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
 #include "firmware/start/start.h"
 #include "firmware/start/step.h"
 #include "firmware/store/store.h"
@@ -30,6 +32,8 @@ typedef struct {
   commissioning_t commissioning;
   hold_t brake_release_hold;
   polarity_watch_t polarity_watch;
+  inertia_match_t inertia_match;
+  zvv_t paper_zvv;
   flux_observer_t flux_observer;
 } reached_t;
 
@@ -56,7 +60,8 @@ static void periods_until(drive_state_t state, uint16_t most) {
 }
 
 static void keep(drive_state_t state) {
-  const reached_t now = {drive, starting, commissioning, brake_release_hold, polarity_watch, flux_observer};
+  const reached_t now = {drive,          starting,      commissioning, brake_release_hold,
+                         polarity_watch, inertia_match, paper_zvv,     flux_observer};
   reached[state] = now;
 }
 
@@ -66,6 +71,8 @@ static void restore(uint16_t state) {
   commissioning = reached[state].commissioning;
   brake_release_hold = reached[state].brake_release_hold;
   polarity_watch = reached[state].polarity_watch;
+  inertia_match = reached[state].inertia_match;
+  paper_zvv = reached[state].paper_zvv;
   flux_observer = reached[state].flux_observer;
 }
 

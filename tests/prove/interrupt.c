@@ -20,6 +20,7 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/scope/scope.h"
+#include "firmware/sources/paper/paper.h"
 #include "firmware/start/start.h"
 #include "firmware/start/step.h"
 #include "firmware/store/store.h"
@@ -79,7 +80,8 @@ bool hal_sampling_timer_begin(uint16_t slice_ticks) {
 void hal_sampling_timer_end(void) {}
 static void nothing_else(void) {}
 const phase_control_t* const edition_phase_control = &hysteresis_control;
-service_t* const edition_resets[] = {scope_reset, nothing_else, board_reset, start_reset, commissioning_reset, NULL};
+service_t* const edition_resets[] = {scope_reset, nothing_else,        board_reset, start_reset,
+                                     paper_reset, commissioning_reset, NULL};
 work_t* const edition_works[] = {commissioning_service, NULL};
 static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
 interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};

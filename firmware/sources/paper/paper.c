@@ -1,13 +1,20 @@
 // The paper's scheme: ZVV and AVV, blended.
 
+#include "firmware/sources/paper/paper.h"
+
 #include <stddef.h>
 
+#include "firmware/base/clear.h"
 #include "firmware/drive/position.h"
 #include "firmware/sources/sources.h"
 
+zvv_t paper_zvv;
+
+void paper_reset(void) { clear(&paper_zvv, sizeof paper_zvv); }
+
 static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
-  const estimator_output_t out = zvv_step(&d->position.zvv, &d->config.zvv, in, d->control.reference_q20.d);
-  d->position.deviation_q20 = d->position.zvv.deviation_q20;
+  const estimator_output_t out = zvv_step(&paper_zvv, &d->config.zvv, in, d->control.reference_q20.d);
+  d->position.deviation_q20 = paper_zvv.deviation_q20;
   return out;
 }
 
@@ -28,8 +35,8 @@ static void step_alternately(drive_t* d, estimator_input_t* in) {
     in->frames = 0;
     p->low = step_zvv(d, in);
   } else {
-    zvv_wait(&p->zvv);
-    p->low.angle_bam = p->zvv.angle_bam;
+    zvv_wait(&paper_zvv);
+    p->low.angle_bam = paper_zvv.angle_bam;
   }
 }
 
@@ -43,7 +50,7 @@ static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
   } else if (avv_alone(d)) {
     source_step_avv(d, in);
     p->low = p->high;
-    zvv_preset(&p->zvv, p->high.angle_bam, p->high.speed_bpp);
+    zvv_preset(&paper_zvv, p->high.angle_bam, p->high.speed_bpp);
   } else {
     step_alternately(d, in);
   }
@@ -56,5 +63,9 @@ static excitation_t paper_excitation(const drive_t* d) {
   return (q_abs_sat(d->position.selected.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
-const position_source_t paper_source = {
-    source_paper, paper_excitation, NULL, NULL, NULL, SOURCE_BLENDS | SOURCE_ALTERNATES};
+static void paper_begin(drive_t* d, bool keeps) {
+  if (!keeps) zvv_preset(&paper_zvv, d->position.selected.angle_bam, d->position.selected.speed_bpp);
+}
+
+const position_source_t paper_source = {source_paper, paper_excitation, NULL,
+                                        NULL,         paper_begin,      SOURCE_BLENDS | SOURCE_ALTERNATES};
