@@ -15,7 +15,8 @@ typedef enum {
   COMMISSIONING_STAIRCASE = 2,  // resistance, drop, dead time
   COMMISSIONING_SPIN = 3,       // flux linkage, inertia, friction
   COMMISSIONING_MAP = 4,        // inductances against torque current, sensors
-  COMMISSIONING_EVALUATE = 5
+  COMMISSIONING_EVALUATE = 5,
+  COMMISSIONING_COOLING = 6  // waits within staircase or map: only told, none that is gone through
 } commissioning_phase_t;
 
 typedef enum {
@@ -48,6 +49,7 @@ typedef struct {
 /// From READY. A stop command aborts it.
 void drive_command_commission(void);
 commissioning_outcome_t drive_commissioning_outcome(void);
+/// As told to the user: COMMISSIONING_COOLING in the place of a phase that waits.
 commissioning_phase_t drive_commissioning_phase(void);
 /// Share done, 0..1000.
 int32_t drive_commissioning_progress(void);

@@ -3,6 +3,7 @@
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
+#include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/start.h"
 #include "hal/hal_pwm.h"
@@ -125,7 +126,15 @@ void drive_command_commission(void) { drive.request.commission = true; }
 
 commissioning_outcome_t drive_commissioning_outcome(void) { return commissioning.outcome; }
 
-commissioning_phase_t drive_commissioning_phase(void) { return commissioning.phase; }
+// Heat sinks may take minutes, and one whose fan stands takes for ever: who waits is told.
+static bool cools(const commissioning_t* c) {
+  const bool rests = (c->phase == COMMISSIONING_STAIRCASE) ? c->staircase.tick == 0 : c->map.pause;
+  return interlock_is_warm() && rests && (c->phase == COMMISSIONING_STAIRCASE || c->phase == COMMISSIONING_MAP);
+}
+
+commissioning_phase_t drive_commissioning_phase(void) {
+  return cools(&commissioning) ? COMMISSIONING_COOLING : commissioning.phase;
+}
 
 // Share of the phase that is done, per mille.
 static int32_t within_phase(const commissioning_t* c) {

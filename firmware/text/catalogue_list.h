@@ -33,6 +33,7 @@ WORDS(PHASE, 2, "DC staircase: resistance, drop, dead time")
 WORDS(PHASE, 3, "spin: flux linkage, inertia, friction")
 WORDS(PHASE, 4, "inductances under torque current")
 WORDS(PHASE, 5, "evaluation")
+WORDS(PHASE, 6, "waiting at rest until heat sink and overload leave the whole current limit")
 
 WORDS(STORE, 0, "nothing has been saved yet: defaults are in force")
 WORDS(STORE, 1, "the saved values are in force")

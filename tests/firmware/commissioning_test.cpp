@@ -285,7 +285,7 @@ TEST_F(Commissioning, EveryVerdictAndPhaseHasWords) {
   for (int k = VERDICT_USED; k <= VERDICT_DEPENDS; ++k) {
     EXPECT_GT(bench::words_of(CATALOGUE_VERDICT, static_cast<std::uint16_t>(k)).size(), 10u);
   }
-  for (int k = COMMISSIONING_IDLE; k <= COMMISSIONING_EVALUATE; ++k) {
+  for (int k = COMMISSIONING_IDLE; k <= COMMISSIONING_COOLING; ++k) {
     EXPECT_GT(bench::words_of(CATALOGUE_PHASE, static_cast<std::uint16_t>(k)).size(), 5u);
   }
 }
