@@ -98,7 +98,7 @@ packed_text_t parameter_conflict_with(uint16_t id, int32_t raw) {
 packed_text_t parameter_conflict_known(void) { return (packed_text_t)any_up_to((uint16_t)PACKED_NONE); }
 
 commissioning_outcome_t drive_commissioning_outcome(void) { return (commissioning_outcome_t)any_up_to(5); }
-commissioning_phase_t drive_commissioning_phase(void) { return (commissioning_phase_t)any_up_to(5); }
+commissioning_phase_t drive_commissioning_phase(void) { return (commissioning_phase_t)any_up_to(6); }
 int32_t drive_commissioning_progress(void) { return any_from(0, 1000); }
 uint16_t drive_commissioning_count(void) { return any_up_to(30); }
 commissioning_result_t drive_commissioning_result(uint16_t index) {
@@ -112,7 +112,7 @@ static void any_status(void) {
   feature_status.store_progress = any_up_to(100);
   feature_status.unsaved = any_up_to(255);
   feature_status.commissioning_outcome = any_up_to(5);
-  feature_status.commissioning_phase = any_up_to(5);
+  feature_status.commissioning_phase = any_up_to(6);
   feature_status.commissioning_progress = any_up_to(1000);
 }
 service_t* const edition_status_updates[] = {any_status, 0};
