@@ -32,14 +32,14 @@ SIGNAL(windows, "", 0, DRIVE, d->samples.count, "current windows sampled in the 
 SIGNAL(start_phase, "", 0, DRIVE, d->found.phase, "phase of the start")
 SIGNAL(polarity_sigma, "", 8, DRIVE, d->found.sigma_q8,
        "confidence in the polarity found at the start, standard errors")
-SIGNAL(load_angle, "turn", 32, ROTOR, (d->position.flux == NULL) ? 0 : d->position.flux->load_angle_bam,
+SIGNAL(load_angle, "turn", 32, ROTOR, load_angle(d->position.flux),
        "estimated angle of the stator flux ahead of the rotor")
 SIGNAL(current_a, "A", 20, DRIVE, phase_current(d, false),
        "current of phase a as its sensor reads it, with the gates off as well: mean of the period's windows")
 SIGNAL(current_b, "A", 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
 SIGNAL(speed_known, "", 0, DRIVE, (known & KNOWN_ROTOR) != 0u,
        "1: angle and speed are the rotor's; 0: unknown, the shaft may turn")
-SIGNAL(magnet_flux, "mVs", 16, DRIVE, (d->position.flux == NULL) ? 0 : d->position.flux->machine.psi_q16 / 10,
+SIGNAL(magnet_flux, "mVs", 16, DRIVE, magnet_flux_q16(d->position.flux),
        "magnet flux as the stator-flux sources estimate it")
 SIGNAL(wiring, "", 0, DRIVE, d->found.wiring, "wiring mistake found at the start, 0 none")
 SIGNAL(temperature, "C", 8, HEAT_SINK, d->heat_sink_q8, "of the heat sink; unknown where temperature_limit is 0")

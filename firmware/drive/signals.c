@@ -37,6 +37,10 @@ static int32_t phase_current(const volatile drive_t* d, bool of_b) {
   return q_sub_sat(q_mul_floor(beta_q20, FRAME_SQRT3_HALF_Q30, 30), alpha_q20 / 2);
 }
 
+// The pointer is given: it is read once, and is one or none.
+static int32_t load_angle(const flux_observer_t* f) { return (f == NULL) ? 0 : f->load_angle_bam; }
+static int32_t magnet_flux_q16(const flux_observer_t* f) { return (f == NULL) ? 0 : f->machine.psi_q16 / 10; }
+
 // What is known is asked once for all of a pass: it has to fit between two interrupts.
 #define SIGNAL(name, unit, q, of, value, meaning)                            \
   static int32_t look_at_##name(const volatile drive_t* d, uint16_t known) { \

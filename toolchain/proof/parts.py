@@ -326,7 +326,7 @@ PARTS = (
             *(f"firmware/{folder}/requests.c" for folder in ("scope", "store", "commissioning")),
             *("firmware/hil/*.c", "firmware/base/clear.c", "hal/replay.c", *BESIDE),
         ),
-        READER,
+        (*READER, "-eva-split-return-function", "find:full"),  # a row says how long its bodies are
         *(OF_QMATH, OF_WRITING, "packed_equals"),
     ),
     of_link(
