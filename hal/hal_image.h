@@ -17,6 +17,8 @@ extern "C" {
 #define HAL_IMAGE_CHANGED 7u
 #define HAL_IMAGE_SUM_END 10u
 #define HAL_IMAGE_SUM 12u
+#define HAL_IMAGE_EDITION_WORDS 8u
+#define HAL_IMAGE_WORDS 22u  // all of it
 
 // At a fixed place in the image, for whoever has the file or the flash and not the running drive. Words only, so that
 // every compiler lays it out alike; of two words the low one comes first.
@@ -32,6 +34,7 @@ typedef struct {
   // and has ones until then.
   uint16_t sum_end[2];
   uint16_t sum[2];
+  uint16_t edition[HAL_IMAGE_EDITION_WORDS];  // its name, two characters a word, the low octet first; zeros behind it
 } hal_image_identity_t;
 
 extern const hal_image_identity_t image_identity;

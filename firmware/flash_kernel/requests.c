@@ -5,7 +5,6 @@
 #include "hal/hal_image.h"
 
 #define STATUS_AT 2u  // behind type and tag
-#define IDENTITY_WORDS 10u
 #define ENTRY_WORDS 2u
 
 static void put_flash(octet_writer_t* w, uint32_t address, uint16_t count) {
@@ -17,7 +16,7 @@ static uint16_t info(octet_writer_t* w) {
   put_u16(w, hal_flash_part());
   put_u16(w, hal_flash_revision());
   put_u8(w, hal_flash_is_locked() ? 1u : 0u);
-  put_flash(w, HAL_FLASH_IMAGE_IDENTITY, IDENTITY_WORDS);
+  put_flash(w, HAL_FLASH_IMAGE_IDENTITY, HAL_IMAGE_WORDS);
   put_flash(w, HAL_FLASH_BOOT_ENTRY, ENTRY_WORDS);
   return KERNEL_OK;
 }

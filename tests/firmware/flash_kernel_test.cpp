@@ -252,7 +252,7 @@ TEST_F(FlashKernel, TellsTheSumOfWhatIsThere) {
 
 TEST_F(FlashKernel, TellsWhichChipAndWhichImageItIs) {
   std::vector<std::uint16_t> expected = {KERNEL_INFO | 0x80, 5, KERNEL_OK, KERNEL_PROTOCOL, 0, 0x3C, 0, 3, 0, 0};
-  for (std::uint16_t k = 0; k < 10; k++) {
+  for (std::uint16_t k = 0; k < HAL_IMAGE_WORDS; k++) {
     flash.at(HAL_FLASH_IMAGE_IDENTITY + k) = static_cast<std::uint16_t>(0x4100 + k);
     expected.insert(expected.end(), {k, 0x41});
   }

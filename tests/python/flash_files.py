@@ -29,10 +29,16 @@ def kernel_blocks(words=12):
     return [Block(0x3FA000, (0x464B, 0, 0, 0, *(noise.randrange(0x10000) for _ in range(words))))]
 
 
-def image_blocks(seed, *, words=8, boot=BOOT, revision=0xC0FFEE00):
+def name_words(name):
+    """Two characters a word, the low octet first."""
+    return struct.unpack("<8H", name.encode().ljust(16, b"\0"))
+
+
+def image_blocks(seed, *, words=8, boot=BOOT, revision=0xC0FFEE00, edition=""):
     """A stand-in for an image of the drive: identity, and words in all three sectors."""
     noise = random.Random(seed)
-    identity = (MARK, 1, 0, 1, seed, revision & 0xFFFF, revision >> 16, 0, 0x1234, 0x5678, *NO_SUM)
+    built = (revision & 0xFFFF, revision >> 16, 0, 0x1234, 0x5678)
+    identity = (MARK, 1, 0, 1, seed, *built, *NO_SUM, *name_words(edition))
     places = (0x3E8000, 0x3E8040, 0x3EC010, 0x3F3FF0)
     code = [Block(at, tuple(noise.randrange(0x10000) for _ in range(words))) for at in places]
     return [code[0], Block(IDENTITY, identity), *code[1:], *boot]

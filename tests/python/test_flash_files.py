@@ -47,7 +47,7 @@ def test_every_format_gives_the_same_image(file, name):
     assert list(image.words) == make.cells(IMAGE)[: len(UPDATE)]
     assert image.resident == make.BOOT
     assert image.identity.text == "0.1.1 (commit c0ffee00, tables 56781234)"
-    assert image.size == 4 * 8 + 14
+    assert image.size == 4 * 8 + 22
 
 
 def test_words_of_hex_are_counted_as_hex2000_counts_them(file):
@@ -201,7 +201,7 @@ def test_dry_run_says_what_would_be_done_and_needs_no_port(tmp_path):
     kernel.write_bytes(make.coff(KERNEL, make.KERNEL_ENTRY))
     done = CliRunner().invoke(cli.app, ["flash", str(image), "--dry-run"])
     assert done.exit_code == 0, done.output
-    assert "0.1.1 (commit c0ffee00, tables 56781234), 46 words" in done.output
+    assert "0.1.1 (commit c0ffee00, tables 56781234), 54 words" in done.output
     assert "sector D: erase, then 72 words" in done.output
     assert "nothing was sent" in done.output
 

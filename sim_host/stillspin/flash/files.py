@@ -55,6 +55,8 @@ class Identity:
     tables: int
     demonstration: bool = False
     """It is no program, and for a virtual board alone."""
+    edition: str = ""
+    """What is in it (firmware/editions/); empty where it does not say."""
 
     @property
     def text(self) -> str:
@@ -63,17 +65,20 @@ class Identity:
         if self.demonstration:
             return f"{version} (a demonstration, for a virtual board alone)"
         commit = f"commit {self.revision:08x}" if self.revision else "unknown commit"
-        return f"{version} ({commit}{', changed' if self.changed else ''}, tables {self.tables:08x})"
+        edition = f"edition {self.edition}, " if self.edition else ""
+        return f"{version} ({edition}{commit}{', changed' if self.changed else ''}, tables {self.tables:08x})"
 
 
 def identity_of(words: tuple[int, ...]) -> Identity | None:
-    """The identity in its ten words, whether or not the mark is there; None where there is none."""
-    _, form, major, minor, patch, low, high, flags, tables_low, tables_high = words
+    """The identity in its words, whether or not the mark is there; None where there is none."""
+    _, form, major, minor, patch, low, high, flags, tables_low, tables_high, *rest = words
     if form != layout.IDENTITY_FORMAT:
         return None
     changed, demonstration = bool(flags & layout.CHANGED), bool(flags & layout.DEMONSTRATION)
     tables = tables_high << 16 | tables_low
-    return Identity((major, minor, patch), high << 16 | low, changed, tables, demonstration)
+    name = b"".join(word.to_bytes(2, "little") for word in rest[layout.SUM_WORDS :]).rstrip(b"\0\xff")
+    edition = name.decode("ascii", "replace")
+    return Identity((major, minor, patch), high << 16 | low, changed, tables, demonstration, edition)
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ _ERASE_WAIT = 60.0
 """Ten seconds a sector are typical, worn ones take longer."""
 _CHECK_WAIT = 5.0
 _POLL = 0.1
-_INFO = struct.Struct("<HHHB10H2H")
+_INFO = struct.Struct(f"<HHHB{layout.IDENTITY_WORDS}H2H")
 
 
 class Request(IntEnum):

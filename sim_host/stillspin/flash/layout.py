@@ -15,10 +15,11 @@ SECTOR_WORDS = 0x4000
 ERASED = 0xFFFF
 
 IDENTITY = 0x3E8020
-IDENTITY_WORDS = 10
+IDENTITY_WORDS = 22
 SUM_END = IDENTITY + 10
 """Where the image ends that the check sum covers; two words, as the sum."""
 SUM = IDENTITY + 12
+SUM_WORDS = 4
 MARK = 0x5AA5
 IDENTITY_FORMAT = 1
 CHANGED, DEMONSTRATION = 1, 2
