@@ -211,7 +211,6 @@ TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
   for (const std::int16_t edge : p.pulses.at) {
     EXPECT_LT(edge, 0) << "a leg is never high";
   }
-  EXPECT_EQ(std::memcmp(&p, &inside::running_pattern(), sizeof p), 0);
   for (int leg = 0; leg < 3; ++leg) EXPECT_EQ(board.frame.rise_tick[leg], static_cast<std::uint16_t>(p.pulses.at[leg]));
   EXPECT_EQ(board.frame.burst_start_tick[0], p.windows[0].start);
 }
@@ -220,9 +219,8 @@ TEST_F(Modulation, OnlyAStartShortsTheMachine) {
   inside::flags().shorted = true;
   drive_enter(&drive, DRIVE_RUN);
   drive_modulate(&drive);
-  EXPECT_GE(
-      *std::max_element(std::begin(inside::running_pattern().pulses.at), std::end(inside::running_pattern().pulses.at)),
-      0);
+  const auto& at = inside::running_pattern().pulses.at;
+  EXPECT_GE(*std::max_element(std::begin(at), std::end(at)), 0);
 }
 
 // An open loop commands nothing, and begins anew.

@@ -109,7 +109,7 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
       {0.0, 10.0, 10.0, 0, 7, -2.1},   {-1.5, -10.0, 10.0, 0, 5, -0.6},      {3.0, 10.0, 10.0, 0, 7, 0.0},
       {0.0, -399.0, 10.0, 0, 7, -2.1}, {0.0, -401.0, 10.0, 0, 7, 0.0},       {0.0, 10.0, 3.0, 0, 7, -1.5},
       {0.0, 10.0, 10.0, 1, 7, 0.0},    {0.0, 10.0, 10.0, INT16_MAX, 7, 0.0}, {0.0, 10.0, 10.0, 0, 4, 0.0}};
-  inside::config().dead_time.certain_q20 = raw(0.7, 20);
+  inside::config().dead_time.edge_band_q20 = raw(0.7, 20);
   inside::config().flux.adaptation.lowest_bpp = bpp(400.0);
   parameters.mtpa = 0;
   use_parameters();

@@ -14,7 +14,7 @@ from image.boot_code import BootCode, read_boot_code
 from image.command_file import CommandFile, read_command_file
 from image.elf import ObjectFile, read_object
 from image.interrupts import dear_calls
-from image.ram_code import FIXED, SECTIONS, left_in_flash, marked, unknown
+from image.ram_code import FIXED, SECTIONS, left_in_flash, marked
 from image.resident import kept, unresident
 from image.sizes import RUN_TIME_LIBRARY, RUN_TIME_WORDS, input_section, object_words, section_of
 from image.stack import Depth, stack_depth
@@ -140,7 +140,7 @@ def link(arguments: list[str]) -> int:
         figures = figures_of(pile, words, file, depth)
         rows = [f"| {name} | {value} |" for name, value in figures.items()]
         grown = unresident(pile.objects, file, RESIDENT) + left_in_flash(pile.objects, marked(DRIVERS))
-        grown += dear_calls(pile.objects) + unknown(pile.objects, file)
+        grown += dear_calls(pile.objects)
     else:  # a program in RAM
         depth = stack_depth(pile.objects, ("main",))
         words[".text"] += FLASH_LIBRARY_WORDS * any(KERNEL in obj.defined for obj in pile.objects)

@@ -1,18 +1,17 @@
 """What runs from RAM: what the linker command file lists by name, and what is marked in the drivers' sources.
 
-The list (toolchain/c28x/f2808_flash.cmd) is for speed. It names functions, and objects of the resident part, which the
-linker has no functions of. Marked is what changes the flash's own timing: it may call nothing that lies there, and no
-compiler may put it into its caller.
+The list (toolchain/c28x/f2808_flash.cmd) is for speed. It names functions, which a compiler may as well put into their
+callers, and objects of the resident part, which the linker has no functions of. Marked is what changes the flash's own
+timing: it may call nothing that lies there, and no compiler may put it into its caller.
 """
 
 import re
 from collections.abc import Iterable, Mapping
-from fnmatch import fnmatch
 from pathlib import Path
 
 from image.command_file import CommandFile
 from image.elf import ObjectFile
-from image.sizes import input_section, words_of
+from image.sizes import words_of
 
 SECTION = "ramfuncs"
 FIXED = "ramfixed"  # of the resident part, which runs from the same place in every image
@@ -44,18 +43,6 @@ def half_words(obj: ObjectFile, file: CommandFile) -> int:
     archive = archive_of(obj.path)
     code = (each for each in obj.sections if each.name.startswith((".text", SECTION)))
     return sum(words_of(each) for each in code if runs_from_ram(file, archive, obj.path.name, each.name))
-
-
-def unknown(objects: Iterable[ObjectFile], file: CommandFile) -> list[str]:
-    """What the list names of an object that is there and has no such function, in words."""
-    objects = list(objects)
-    complaints = []
-    for archive, member, section in (each for p in file.placements if p.section in SECTIONS for each in p.inputs):
-        found = [obj for obj in objects if obj.archive == archive and fnmatch(obj.path.name, member)]
-        names = {input_section(each) or "" for obj in found for each in obj.sections}
-        if found and not any(section in (name, name.partition(":")[0]) for name in names):
-            complaints.append(f"{section} of {member} is to run from RAM and does not exist")
-    return complaints
 
 
 def left_in_flash(objects: Iterable[ObjectFile], names: Mapping[str, set[str]]) -> list[str]:
