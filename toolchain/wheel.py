@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "sim_host"
 FOLDERS = ("stillspin", "motors", "profiles", "scenarios", "schemes")
 _BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_wheel(sys.argv[1]))"
+TABLES = ("chip/c28x",)  # of the virtual chip: their tables alone
 _NOT_COPIED = shutil.ignore_patterns("_core*", "boards", "__pycache__", "*.pyc")
 
 # The native module has no sources here that setuptools could compile; it is data of a package of one machine.
@@ -51,6 +52,10 @@ def client(out: Path, work: Path) -> Path:
 
     for folder in FOLDERS:
         shutil.copytree(SOURCE / folder, work / folder, ignore=_NOT_COPIED)
+    for folder in TABLES:
+        (work / folder).mkdir(parents=True)
+        for table in sorted((SOURCE / folder).glob("*.csv")):
+            shutil.copy(table, work / folder)
     shutil.copy(SOURCE / "pyproject.toml", work)
     shutil.copy(ROOT / "LICENSE", work)
     table = json.dumps(core.load().parameters(), indent=1, default=list)

@@ -9,6 +9,8 @@ namespace stillspin::plant {
 namespace {
 
 constexpr double kStandingStill = 1e-14;  // s
+constexpr int kSettled = 20;              // events at one instant after which what rounding says is not asked again
+constexpr double kMoment = 1e-12;         // s: goes on by this then
 constexpr int kMaxAtOnce = 60;            // more events than that at one instant are a defect of the model
 constexpr int kResetAfter = 64;           // segments
 constexpr double kGrazing = 1e-9;         // A: a double crossing less deep does not matter
@@ -39,7 +41,9 @@ void Trajectory::begin() {
 void Trajectory::look_ahead(Tick end) {
   if (!started_) begin();
   const double h = time_to(end);
-  flow_->advance(model_, start_, h, end_, step_);
+  // Devices without drops on a shaft that begins to turn: which current the voltage will drive is not to be seen before
+  // there is some, a moment later.
+  flow_->advance(model_, start_, at_once_ > kSettled ? std::min(h, kMoment) : h, end_, step_);
   if (!step_.event && !step_.far && !crosses()) {
     const double dip = grazing_instant();
     if (dip > 0.0) {

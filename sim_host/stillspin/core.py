@@ -166,6 +166,16 @@ def _built(kind: str) -> list[str]:
     return sorted(path.parent.name for path in (Path(__file__).parent / _OTHERS[kind]).glob("*/_core*.so"))
 
 
+def require() -> None:
+    """Complain at once where there is no virtual drive at all, without loading one.
+
+    Raises:
+        InputError: none is built or installed.
+    """
+    if not any(Path(__file__).parent.glob("_core*.so")) and importlib.util.find_spec("stillspin_virtual") is None:
+        raise InputError(NOT_INSTALLED)
+
+
 def follow_edition(name: str) -> None:
     """Choose an edition for this process, which has no virtual drive yet, and for those that it begins.
 

@@ -34,6 +34,7 @@ CALLS = {
     "raw_status": lambda drive: drive.raw_status(),
     "status": lambda drive: drive.status(),
     "faults": lambda drive: drive.faults(),
+    "has_faults": lambda drive: drive.has_faults(),
     "signals": lambda drive: drive.signals("speed"),
     "words": lambda drive: drive.words(3, 1),
     "stream": lambda drive: drive.stream(["speed"]),

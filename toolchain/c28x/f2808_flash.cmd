@@ -65,9 +65,8 @@ SECTIONS
                 libstillspin_firmware.a<protection.*>(.text:_drive_protect)
                 libstillspin_firmware.a<current.*>(.text:_drive_control_current)
                 libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_write_frame)
-                libstillspin_firmware.a<mode.*>(.text:_drive_is_turning, .text:_is_energised)
+                libstillspin_firmware.a<mode.*>(.text:_is_energised)
                 libstillspin_firmware.a<brake_release_hold.*>(.text:_hold_is_on)
-                libstillspin_firmware.a<polarity_watch.*>(.text:_polarity_watch_is_awake)
                 libstillspin_estimators.a<deviation.*>(.text)
                 libstillspin_qmath.a<qsum.*>(.text)
               } LOAD = APP, RUN = RAM_CODE, PAGE = 0,

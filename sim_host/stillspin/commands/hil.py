@@ -90,7 +90,8 @@ def hil(
     if not is_virtual:
         if (jobs or 1) != 1 or cluster:
             raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
-        runs.ids(scenarios)  # before anything is asked of the board
+        core.require()  # before anything is asked of the board
+        runs.ids(scenarios)
         core.follow_edition(built.edition_at(board))
     wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params)
     everything = wish.runs(core.load())

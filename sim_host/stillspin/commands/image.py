@@ -89,11 +89,13 @@ def show(
     entry = "" if program.entry is None else f", entry 0x{program.entry:06X}"
     print(f"{file.name}: {program.kind}, {counted(program.size, 'word')}{entry}")
     for block in program.blocks:
-        print(f"0x{block.address:06X} to 0x{block.end - 1:06X}  {len(block.words):>6} words  {_within(block)}")
+        print(
+            f"0x{block.address:06X} to 0x{block.end - 1:06X}  {counted(len(block.words), 'word'):>12}  {_within(block)}"
+        )
     used = _used(program)
     for name, words in PLACES:
         if used[name]:
-            print(f"{name:<9} {used[name]:>6} of {len(words)} words")
+            print(f"{name:<9} {used[name]:>6} of {counted(len(words), 'word')}")
     if used[NOWHERE]:
         print(f"{counted(used[NOWHERE], 'word')} in no memory of the chip")
         raise typer.Exit(ExitCode.SHORT)
