@@ -8,6 +8,7 @@ import re
 import sys
 from pathlib import Path
 
+from stillspin.c28x.pipeline import phases
 from stillspin.c28x.table import Form, forms
 
 MADE = "// Made from sim_host/chip/c28x/instructions.csv by toolchain/c28x_table.py.\n"
@@ -33,9 +34,13 @@ def _row(form: Form) -> str:
     is_signed = "Signed" in form.syntax or "Offset" in form.syntax
     bias = int(any(shift in form.syntax for shift in ONE_LESS))
     flags = [str(flag).lower() for flag in (form.repeatable, "mem" in form.syntax, is_signed)]
+    when = phases(form)
+    fields_when = (when.early_reg, when.late_reg, when.location_early, when.location_late)
+    pipeline = f"0x{when.early:X}, 0x{when.late:X}, " + ", ".join(str(flag).lower() for flag in fields_when)
     return (
         f'    {{"{form.syntax}", 0x{form.opcode:X}, 0x{form.mask:X}, operations::{form.operation}, {form.words}, '
-        f"{flags[0]}, {taken}, {not_taken}, {loc_bits}, {flags[1]}, {flags[2]}, {bias}, {fields}, {fixed}}},\n"
+        f"{flags[0]}, {taken}, {not_taken}, {loc_bits}, {flags[1]}, {flags[2]}, {bias}, "
+        f"{fields}, {fixed}, {{{pipeline}}}}},\n"
     )
 
 

@@ -11,9 +11,12 @@
 //     decode WORD WORD         answers the number of the form, ffff for none, and its words
 //     executed                 answers the numbers of the forms that were executed since the program began
 //     cycles                   answers cycles and instructions since `fresh`
+//     region FIRST WORDS ...   what the accesses of memory cost: the members of Region in their order
+//     waits                    answers the cycles waited for registers, data and fetches since `fresh`
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -57,6 +60,11 @@ class Desk {
     if (command == "get") get(words);
     if (command == "decode") decode_pair(words);
     if (command == "executed") executed();
+    if (command == "region") region(words);
+    if (command == "waits") {
+      const Waits& waits = core_->waits;
+      std::cout << waits.registers << ' ' << waits.data << ' ' << waits.fetch << '\n';
+    }
     if (command == "cycles") std::cout << core_->cycles << ' ' << core_->instructions << '\n';
   }
 
@@ -74,10 +82,11 @@ class Desk {
     core_ = std::make_unique<Core>(bus_);
     core_->map(0, kBlock, low_.data(), true);
     core_->map(kHigh, kBlock, high_.data(), true);
-    core_->r.pc = 0;
+    core_->jump(0);
     core_->r.objmode = true;
     core_->set_stop_at_breakpoint(true);
     name_registers();
+    regions_.clear();
   }
 
   template <typename Value>
@@ -106,10 +115,23 @@ class Desk {
     std::string register_name;
     words >> register_name;
     write_.at(register_name)(number(words));
+    if (register_name == "pc") core_->jump(core_->r.pc);
+  }
+  void region(std::istream& words) {
+    const std::uint32_t first = number(words);
+    const std::uint32_t count = number(words);
+    Region& made = regions_.emplace_back();
+    for (std::uint8_t* member :
+         {&made.block, &made.read_waits, &made.fetch_shift, &made.fetch_first, &made.fetch_next, &made.ahead}) {
+      *member = static_cast<std::uint8_t>(number(words));
+    }
+    made.ordered = number(words) != 0;
+    core_->set_region(first, count, made);
   }
   void put(std::istream& words) {
     std::uint32_t address = number(words);
-    for (std::uint32_t word = 0; words >> word;) core_->write16(address++, static_cast<std::uint16_t>(word));
+    for (std::uint32_t word = 0; words >> word;)
+      core_->MappedMemory::write16(address++, static_cast<std::uint16_t>(word));
   }
   void step(std::istream& words) {
     for (std::uint32_t count = number(words); count > 0; --count) core_->step();
@@ -125,7 +147,7 @@ class Desk {
   void get(std::istream& words) {
     const std::uint32_t address = number(words);
     const std::uint32_t count = number(words);
-    for (std::uint32_t k = 0; k < count; ++k) std::cout << std::hex << core_->read16(address + k) << ' ';
+    for (std::uint32_t k = 0; k < count; ++k) std::cout << std::hex << core_->MappedMemory::read16(address + k) << ' ';
     std::cout << std::dec << '\n';
   }
   static void decode_pair(std::istream& words) {
@@ -149,6 +171,7 @@ class Desk {
   NoMemory bus_;
   std::vector<std::uint16_t> low_;
   std::vector<std::uint16_t> high_;
+  std::deque<Region> regions_;
   std::unique_ptr<Core> core_;
   std::vector<std::uint64_t> seen_;
   std::map<std::string, std::function<std::uint32_t()>> read_;

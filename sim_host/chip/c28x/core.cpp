@@ -31,18 +31,22 @@ Stop Core::run(std::uint64_t until) {
 
 const Instruction& Core::fetch(std::uint32_t address) {
   Instruction& kept = decoded_[address % kDecoded];
-  const std::uint16_t word0 = read16(address);
-  if (kept.address == address && kept.word0 == word0 && (kept.words == 1 || kept.word1 == read16(address + 1))) {
+  const std::uint16_t word0 = MappedMemory::read16(address);
+  if (kept.address == address && kept.word0 == word0 &&
+      (kept.words == 1 || kept.word1 == MappedMemory::read16(address + 1))) {
     return kept;
   }
-  return kept = decode(address, word0, read16(address + 1));
+  return kept = decode(address, word0, MappedMemory::read16(address + 1));
 }
 
 void Core::execute(const Instruction& i) {
   if (i.form != kNoForm) ++executed[i.form];
+  wait_for(i, r.arp);
+  const std::uint64_t begin = cycles;
   r.pc = (i.address + i.words) & kProgramMask;
-  cycles += i.cycles;
   i.run(*this, i);
+  cycles += i.cycles;
+  note_results(i, begin);
 }
 
 void Core::repeat(std::uint32_t count) {
@@ -51,9 +55,8 @@ void Core::repeat(std::uint32_t count) {
   ++instructions;
   execute(repeated);
   if (!repeated.repeatable) return;
-  for (repeats_done = 1; repeats_done <= count; ++repeats_done) repeated.run(*this, repeated);
+  for (repeats_done = 1; repeats_done <= count; ++repeats_done, ++cycles) repeated.run(*this, repeated);
   repeats_done = 0;
-  cycles += count;
 }
 
 // True when an interrupt was entered. With INTM set an enabled request ends IDLE and does nothing else.
@@ -65,10 +68,9 @@ bool Core::serve_interrupts() {
     if (was_idle) r.idlestat = false;
     return false;
   }
-  cycles += 8;  // from the request to the first instruction, without waits of the memories
   if (nmi_) {
     nmi_ = false;
-    take_interrupt(kVectorNmi);
+    enter_interrupt(kVectorNmi);
     return true;
   }
   // RTOSINT comes before INT1 and so on; DLOGINT, the next to it in the registers, is the last.
@@ -76,8 +78,13 @@ bool Core::serve_interrupts() {
   if ((requested >> (kMaskable - 1)) == 0) {
     for (number = 1; (requested >> (number - 1) & 1U) == 0;) ++number;
   }
-  take_interrupt(number);
+  enter_interrupt(number);
   return true;
+}
+
+void Core::enter_interrupt(unsigned vector) {
+  take_interrupt(vector);
+  cycles += interrupt_cycles_;
 }
 
 // The registers that are saved by themselves, in pairs at even addresses: SP first steps past the word in use. IER is

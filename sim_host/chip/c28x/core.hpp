@@ -1,9 +1,8 @@
 // The C28x core, object mode 1 and address mode 0: it executes machine code word by word on memory behind a Bus.
 //
-// It follows TI's description of the instruction set (SPRU430F), one instruction after another. The pipeline is not
-// modelled: an instruction sees everything that the one before it did, which the hardware's protected pipeline
-// guarantees for registers and memory. `cycles` adds up the cycles of the instructions as their table has them, without
-// waits of memories, fetches or pipeline conflicts; so it is a lower bound.
+// It follows TI's description of the instruction set (SPRU430F), one instruction after another: an instruction sees
+// everything that the one before it did, which the hardware's protected pipeline guarantees for registers and memory.
+// What that protection, the memories and the fetches cost is added to the cycles that the table has (timing.hpp).
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_C28X_CORE_HPP
 #define STILLSPIN_SIM_HOST_CHIP_C28X_CORE_HPP
@@ -14,6 +13,7 @@
 #include "sim_host/chip/c28x/instruction.hpp"
 #include "sim_host/chip/c28x/mapped_memory.hpp"
 #include "sim_host/chip/c28x/registers.hpp"
+#include "sim_host/chip/c28x/timing.hpp"
 
 namespace stillspin::c28x {
 
@@ -26,7 +26,7 @@ enum class Stop : std::uint8_t {
 
 enum Vector : unsigned { kVectorNmi = 18, kVectorIllegal = 19 };
 
-class Core : public MappedMemory {
+class Core : public MappedMemory, public Timing {
  public:
   explicit Core(Bus& bus);
 
@@ -41,10 +41,12 @@ class Core : public MappedMemory {
   void request(unsigned interrupt) { r.ifr = static_cast<std::uint16_t>(r.ifr | 1U << (interrupt - 1)); }
   void request_nmi() { nmi_ = true; }
 
+  /// From a request to the first instruction, without waits of memories; 8 of them are the CPU's own, to save its
+  /// context.
+  void set_interrupt_cycles(std::uint32_t count) { interrupt_cycles_ = count; }
   void set_stop_at_breakpoint(bool stop) { stop_at_breakpoint_ = stop; }
 
   Registers r;
-  std::uint64_t cycles = 0;
   std::uint64_t instructions = 0;
   /// How often each form was executed, in the order of kForms; repeats count as one.
   std::vector<std::uint32_t> executed;
@@ -53,6 +55,22 @@ class Core : public MappedMemory {
 
   /// Where a location is: an address, or kInRegister with the code of a register. The pointer is stepped.
   static constexpr std::uint32_t kInRegister = 0x80000000;
+  std::uint16_t read16(std::uint32_t address) {
+    note_read(address, 1);
+    return MappedMemory::read16(address);
+  }
+  std::uint32_t read32(std::uint32_t address) {
+    note_read(address & ~1U, 2);
+    return MappedMemory::read32(address);
+  }
+  void write16(std::uint32_t address, std::uint16_t value) {
+    note_write(address, 1);
+    MappedMemory::write16(address, value);
+  }
+  void write32(std::uint32_t address, std::uint32_t value) {
+    note_write(address & ~1U, 2);
+    MappedMemory::write32(address, value);
+  }
   std::uint32_t locate(unsigned loc, unsigned step);
   /// Of the byte moves: an address, and whether the upper byte is meant.
   struct BytePlace {
@@ -81,7 +99,10 @@ class Core : public MappedMemory {
   void step_pointer(unsigned kind, std::uint32_t& pointer, unsigned step) const;
 
   bool holds(unsigned condition);
-  void jump(std::uint32_t address) { r.pc = address & kProgramMask; }
+  void jump(std::uint32_t address) {
+    r.pc = address & kProgramMask;
+    jump_to(r.pc);
+  }
   void not_taken(const Instruction& i) { cycles -= i.cycles - i.cycles_not_taken; }
 
   void push16(std::uint16_t value) { write16(r.sp++, value); }
@@ -108,9 +129,11 @@ class Core : public MappedMemory {
   const Instruction& fetch(std::uint32_t address);
   void execute(const Instruction& i);
   bool serve_interrupts();
+  void enter_interrupt(unsigned vector);
 
   static constexpr std::uint32_t kDecoded = 1U << 14;
 
+  std::uint32_t interrupt_cycles_ = 8;
   bool idle_ = false;
   bool nmi_ = false;
   bool stop_at_breakpoint_ = false;

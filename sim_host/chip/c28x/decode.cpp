@@ -72,6 +72,47 @@ bool is_location(const Form& form, unsigned loc) {
   return form.loc_bits == 16 || (loc != 0xA8 && loc != 0xAA && loc != 0xAD);
 }
 
+// What a location needs for its address. A register in the place of a location is needed where its form says so.
+unsigned needed_by_location(unsigned loc, bool register_too) {
+  const unsigned pointer = 1U << (loc & 7U);
+  switch (loc >> 3) {
+    case 0x10:
+    case 0x11:
+      return pointer;
+    case 0x12:
+      return pointer | 1U;
+    case 0x13:
+      return pointer | 2U;
+    case 0x14:
+      return register_too ? pointer : 0U;
+    default:
+      break;
+  }
+  if (loc < 0x40) return kUsesDp;
+  if (loc < 0x80) return kUsesSp;
+  if (loc >= 0xC0) return pointer;
+  if (loc == 0xBF) return 1U << 6 | 1U << 1;          // *AR6%++
+  if (loc == 0xBD || loc == 0xBE) return kUsesSp;     // *SP++, *--SP
+  if (loc >= 0xAE) return kUsesCurrent | 0xFFU;       // by ARP, some with the index AR0
+  return loc == 0xAD && register_too ? kUsesSp : 0U;  // @SP
+}
+
+void note_phases(Instruction& made, const Form& form) {
+  const Phases& phases = form.phases;
+  unsigned early = phases.early, late = phases.late;
+  if (phases.early_reg) early |= 1U << made.reg;
+  if (phases.late_reg) late |= 1U << made.reg;
+  if (form.reg2.width != 0) early |= 1U << made.reg2;
+  const bool has_location = form.loc.width != 0 || form.fixed_loc != 0;
+  if (has_location) early |= needed_by_location(made.loc, phases.location_early);
+  if (has_location && phases.location_late) {
+    if (made.loc >> 3 == 0x14) late |= 1U << (made.loc & 7U);
+    if (made.loc == 0xAD) late |= kUsesSp;
+  }
+  made.early = static_cast<std::uint16_t>(early);
+  made.late = static_cast<std::uint16_t>(late);
+}
+
 }  // namespace
 
 Instruction decode(std::uint32_t address, std::uint16_t word0, std::uint16_t word1) {
@@ -108,6 +149,7 @@ Instruction decode(std::uint32_t address, std::uint16_t word0, std::uint16_t wor
   if (form.signed_constant && (made.constant >> (form.constant.width - 1U) & 1U) != 0) {
     made.constant |= 0xFFFFFFFFU << form.constant.width;
   }
+  note_phases(made, form);
   return made;
 }
 

@@ -19,6 +19,17 @@ struct Field {
   std::uint8_t width = 0;  // 0: the form has no such field
 };
 
+/// When a form needs and changes the registers of addresses (stillspin/c28x/pipeline.py): masks, and what of its fields
+/// counts.
+struct Phases {
+  std::uint16_t early;
+  std::uint16_t late;
+  bool early_reg;
+  bool late_reg;
+  bool location_early;
+  bool location_late;
+};
+
 struct Form {
   const char* syntax;
   std::uint32_t opcode;
@@ -35,6 +46,7 @@ struct Form {
   Field loc, ax, reg, reg2, constant, shift, condition, bit;
   // What a form has instead of a field.
   std::uint8_t fixed_loc, fixed_reg, fixed_shift, fixed_condition, fixed_constant;
+  Phases phases;
 };
 
 extern const Form kForms[];
@@ -58,7 +70,15 @@ struct Instruction {
   bool repeatable = false;
   std::uint8_t cycles = 1;
   std::uint8_t cycles_not_taken = 1;
+  std::uint16_t early = 0;  // registers that its address needs, kUses...
+  std::uint16_t late = 0;   // those that it changes at the end of its execution
 };
+
+/// Bits of the masks of registers; 0 to 7 are XAR0 to XAR7.
+constexpr std::uint16_t kUsesSp = 1U << 8;
+constexpr std::uint16_t kUsesDp = 1U << 9;
+/// The one that ARP selects; the bits of all are set beside it.
+constexpr std::uint16_t kUsesCurrent = 1U << 15;
 
 /// `form` of an instruction that is none: its operation is the illegal-instruction trap.
 constexpr std::uint16_t kNoForm = 0xFFFF;

@@ -114,7 +114,7 @@ void loop_while(Core& core, const Instruction& i, bool zero) {
   const std::uint16_t value = static_cast<std::uint16_t>(core.loc16(i) & i.constant);
   set_nz16(core.r, value);
   core.r.loop = core.r.z == zero;
-  if (core.r.loop) core.jump(i.address);
+  if (core.r.loop) core.r.pc = i.address;  // nothing is fetched anew
 }
 
 }  // namespace
