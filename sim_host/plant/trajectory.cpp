@@ -11,7 +11,8 @@ namespace {
 constexpr double kStandingStill = 1e-14;  // s
 constexpr int kSettled = 20;              // events at one instant after which what rounding says is not asked again
 constexpr double kMoment = 1e-12;         // s: goes on by this then
-constexpr int kMaxAtOnce = 60;            // more events than that at one instant are a defect of the model
+constexpr int kMaxAtOnce = 60;            // more events than that at one instant are a defect of the model, as are
+                                          // more such moments with nothing but events between them
 constexpr int kResetAfter = 64;           // segments
 constexpr double kGrazing = 1e-9;         // A: a double crossing less deep does not matter
 
@@ -119,7 +120,8 @@ void Trajectory::commit() {
   end_[kAngle] = 0.0;
   start_.y = end_;
   at_once_ = step_.reached > kStandingStill ? 0 : at_once_ + 1;
-  if (at_once_ > kMaxAtOnce) {
+  if (at_once_ == 0) moments_ = step_.reached > kMoment ? 0 : moments_ + 1;
+  if (at_once_ > kMaxAtOnce || moments_ > kMaxAtOnce) {
     throw std::runtime_error("plant: more than " + std::to_string(kMaxAtOnce) + " events at tick " +
                              std::to_string(tick_) + "; the conduction modes do not settle");
   }

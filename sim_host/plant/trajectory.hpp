@@ -133,6 +133,7 @@ class Trajectory {
   bool ahead_ = false;
   mutable bool end_slope_known_ = false;
   int at_once_ = 0;  // events in a row without progress
+  int moments_ = 0;  // in a row in which it went on by next to nothing
   std::uint64_t grazing_ = 0;
 };
 

@@ -58,7 +58,8 @@ def test_half_the_rated_load_falls_on_the_shaft_at_every_angle() -> None:
     """Against the direction, with what makes the hold's loop swing (J -30%, flux +30%) or weak (flux -30%).
 
     Told 30 % too little flux, the hold lets 1 % of 1440 starts (30 seeds) go beyond the limit of 2 degrees, 2.24 at
-    most: of the 144 here, six or more are not this rate (1 in 250).
+    most: of the 144 here, six or more are not this rate (1 in 250). Their mean, 1.34, has a standard error of 0.017
+    with as many: that a start goes farther back by a twentieth is seen in it.
     """
     common, _ = startup.bench("bench")
     todo = [
@@ -74,6 +75,7 @@ def test_half_the_rated_load_falls_on_the_shaft_at_every_angle() -> None:
     weak = [item.backward for item in outcomes if item.case.error == "flux -30%"]
     assert sum(each > startup.BACKWARD_LIMIT for each in weak) < 6
     assert max(weak) < 2.5
+    assert sum(weak) / len(weak) < 1.41
     swinging = [item.backward for item in outcomes if item.case.error != "flux -30%"]
     assert max(swinging) < 1.5
 
