@@ -21,6 +21,7 @@ class CanCommand : public Drive {
   std::uint16_t alive = 0;
 
   void SetUp() override {
+    NEEDS("can");
     Drive::SetUp();
     can_command_reset(&command);
     use_source(0);

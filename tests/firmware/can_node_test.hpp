@@ -30,6 +30,7 @@ extern "C" inline std::uint16_t answer_in_test(const std::uint16_t* request, std
 class CanNode : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("can");
     Drive::SetUp();
     last_request.clear();
     answer_octets = 20;

@@ -15,6 +15,10 @@ namespace {
 
 class CanTelemetry : public Drive {
  protected:
+  void SetUp() override {
+    NEEDS("can");
+    Drive::SetUp();
+  }
   can_command_t command = {};
 
   /// As the other end reads it, in units.

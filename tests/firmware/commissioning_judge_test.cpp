@@ -27,6 +27,7 @@ constexpr Inductances saturated(int level) { return {4.655e-3, 7.41e-3 - 0.4e-3 
 class CommissioningJudge : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("commissioning");
     Drive::SetUp();
     const machine_model_t m = nameplate();
     c.model = m;

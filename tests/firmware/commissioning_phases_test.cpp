@@ -21,6 +21,7 @@ constexpr double kLink = 300.0;
 class Phases : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("commissioning");
     Drive::SetUp();
     make_ready();
     inside::state() = DRIVE_COMMISSION;

@@ -21,6 +21,7 @@ using namespace stillspin::test;
 class CommissioningStairs : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("commissioning");
     Drive::SetUp();
     make_ready();
     inside::state() = DRIVE_COMMISSION;

@@ -28,6 +28,10 @@ using namespace stillspin::test;
 
 class Commissioning : public Drive {
  protected:
+  void SetUp() override {
+    NEEDS("commissioning");
+    Drive::SetUp();
+  }
   /// In the start; its end is told to the drive, for it needs a machine behind it.
   void begin() {
     parameters.flying_start = 0;

@@ -48,6 +48,7 @@ class ConsoleHands : public Console {
 };
 
 TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
+  NEEDS("commissioning");
   for (const char* line : {"start free", "start hold", "commission start free"}) {
     EXPECT_EQ(after(line, kLong), std::string("\r\n") + kTooOld) << line;
     EXPECT_FALSE(inside::request().start || inside::request().commission || comm_watchdog_is_on()) << line;
@@ -66,6 +67,7 @@ TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
 }
 
 TEST_F(ConsoleHands, OtherLinesNeverExpire) {
+  NEEDS("commissioning");
   EXPECT_TRUE(has(after("get speed_ramp", kLong), "speed_ramp = "));
   EXPECT_TRUE(has(after("set speed_ramp 250", 20 * kLong), "speed_ramp = 250 rpm/s"));
   EXPECT_TRUE(has(after("commission results", kLong), "nothing has been measured"));
@@ -128,7 +130,7 @@ TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
   send("re");
   run(100);
   serial_break();
-  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n") << "what is typed behind it counts";
+  EXPECT_EQ(command("version"), kVersion) << "what is typed behind it counts";
 }
 
 // "help start free" with a break in it is no start; a line that is all there may be said again.
@@ -167,7 +169,7 @@ TEST_F(ConsoleHands, ABreakEndsARecordThatWasBegun) {
   send(Octets{0, 'a', 'b'});
   run(3);
   serial_break();
-  EXPECT_EQ(command("version"), "stillspin 0.1.0, protocol 1, edition lab\r\n");
+  EXPECT_EQ(command("version"), kVersion);
 }
 
 TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
@@ -180,6 +182,7 @@ TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
 }
 
 TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
+  NEEDS("commissioning");
   const std::string ways =
       "nothing done: nobody would watch. Add 'hold' (runs while a key is held) or 'free' (runs until 'stop')\r\n";
   for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
@@ -298,6 +301,7 @@ TEST_F(ConsoleHands, RecordsOfASessionGuardABareStart) {
 }
 
 TEST_F(ConsoleHands, ASessionThatWasThereIsNoGuard) {
+  NEEDS("commissioning");
   (void)ask(REQUEST_STATUS, kSession);
   run(9000);
   EXPECT_FALSE(has(command("commission start", 100), "nobody would watch"));

@@ -22,6 +22,7 @@ class Refusals : public Console {
 };
 
 TEST_F(Refusals, ALineThatIsCarriedOutIsNone) {
+  NEEDS("commissioning");
   for (const char* line : {"",
                            "help",
                            "help set",

@@ -16,6 +16,10 @@ using namespace stillspin::test;
 
 class ConsoleScope : public Console {
  protected:
+  void SetUp() override {
+    NEEDS("scope");
+    Console::SetUp();
+  }
   void steps(int n) {
     for (int k = 0; k < n; ++k) scope_step();
   }

@@ -7,6 +7,7 @@
 
 #include "sim_host/bench/texts.hpp"
 #include "tests/control/quantities.hpp"
+#include "tests/firmware/edition.hpp"
 #include "tests/firmware/inside.hpp"
 
 extern "C" {
@@ -236,7 +237,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
     ASSERT_GE(c.ramp_step_bpp, 0);
     ASSERT_GT(c.observer.weight_q8, 0);
     ASSERT_GT(c.observer.load_noise_q20, 0);
-    const bool flux = parameters.position_source >= POSITION_FLUX_CONV;
+    const bool flux = parameters.position_source >= POSITION_FLUX_CONV && !drive_source_is_left_out();
     const double low = real(flux ? parameters.flux_low : parameters.blend_low, 16) / 60.0 * parameters.pole_pairs *
                        std::ldexp(kPeriod, 32);
     ASSERT_NEAR(c.blend.low_bpp / low, 1.0, 1e-4);
@@ -266,6 +267,7 @@ TEST_F(DriveConfig, EncoderAngle) {
 }
 
 TEST_F(DriveConfig, TheStatorFluxNeedsAMachineThatItCanBeGiven) {
+  NEEDS("sources/flux");
   set("inductance_d", 1.5);
   set("inductance_q", 9.2);  // 6.1 times
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
@@ -298,6 +300,7 @@ TEST_F(DriveConfig, WhatTheLastConfigurationFoundIsKnown) {
 
 // Hand-over by its own speeds, method by the source, saturation by the map.
 TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
+  NEEDS("sources/flux");
   set("position_source", 7.0);
   set("flux_cutoff", 30.0);
   set("lqq_4", 80.0);

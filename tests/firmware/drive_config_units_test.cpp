@@ -112,6 +112,7 @@ TEST_F(Units, WindowsAndEdges) {
 
 // Half of the band is for the ripple at an edge, and centred pulses of the flux have none; 10 mA is left of any.
 TEST_F(Units, TheFluxHasHalfTheBand) {
+  NEEDS("sources/flux");
   parameters.drop_band = raw(0.3, 20);
   for (const bool beside : {false, true}) {
     parameters.position_source = beside ? POSITION_ENCODER : POSITION_FLUX_CONV;
@@ -322,6 +323,7 @@ TEST_F(Units, SaturationAlongTheAxes) {
 
 // Where the flux is at work a current's sign is trusted from half the band on.
 TEST_F(Units, TheMethodIsThatOfTheSourceOrOfWhoLooksOn) {
+  NEEDS("sources/flux");
   const std::int32_t band_q20 = made().dead_time.band_q20, edge_band_q20 = made().dead_time.edge_band_q20;
   EXPECT_EQ(band_q20, parameters.drop_band);
   EXPECT_EQ(edge_band_q20 - band_q20, raw(0.5, 20));
@@ -339,6 +341,7 @@ TEST_F(Units, TheMethodIsThatOfTheSourceOrOfWhoLooksOn) {
 }
 
 TEST_F(Units, TheStatorFlux) {
+  NEEDS("sources/flux");
   parameters.position_source = POSITION_FLUX_CONV;
   parameters.flux_cutoff = raw(31.0, 8);
   parameters.flux_bandwidth = raw(123.0, 8);
@@ -364,6 +367,7 @@ TEST_F(Units, TheStatorFlux) {
 
 // A phase without current makes its voltage itself within the dead time; where there is none all voltages are known.
 TEST_F(Units, WithoutDeadTimeTheFluxSeesEveryPhase) {
+  NEEDS("sources/flux");
   parameters.position_source = POSITION_FLUX_CONV;
   EXPECT_EQ(made().flux.unknown_voltage_q20, made().dead_time.band_q20);
   parameters.turn_on_delay = parameters.turn_off_delay = 0;

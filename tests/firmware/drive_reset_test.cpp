@@ -12,10 +12,6 @@
 #include "firmware/mode/states.h"
 #include "tests/firmware/fake_hal.hpp"
 
-extern "C" {
-#include "firmware/scope/scope.h"
-}
-
 namespace stillspin::test {
 namespace {
 
@@ -38,7 +34,6 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   EXPECT_EQ(inside::fault(), FAULT_NONE);
   EXPECT_EQ(inside::time_ms(), 0u);
   EXPECT_EQ(fault_history_total(), 0);
-  EXPECT_EQ(scope_setup_in_force()->count, 0);
   EXPECT_EQ(selftest.failed, 0);
   EXPECT_FALSE(::board.relay);
   EXPECT_EQ(parameters.current_limit, limit) << "the values are the table's";

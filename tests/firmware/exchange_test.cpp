@@ -81,6 +81,7 @@ class Exchange : public Drive {
 };
 
 TEST_F(Exchange, ARunDoesNotSeeTheTable) {
+  NEEDS("sources/paper");
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_PAPER, POSITION_OBSERVER, POSITION_FLUX_CONV}) {
     expect_no_difference(
         [&] {
@@ -128,6 +129,7 @@ TEST_F(Exchange, AStartDoesNot) {
 }
 
 TEST_F(Exchange, ACommissioningDoesNot) {
+  NEEDS("commissioning");
   expect_no_difference(
       [&] {
         parameters.polarity_check = 0;

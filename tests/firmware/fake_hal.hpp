@@ -18,6 +18,7 @@
 #include "hal/hal_sampling_timer.h"
 #include "hal/hal_sci.h"
 #include "tests/control/quantities.hpp"
+#include "tests/firmware/edition.hpp"
 #include "tests/firmware/inside.hpp"
 
 extern "C" {
@@ -120,8 +121,12 @@ inline void use_parameters() {
 #undef USE
 }
 
+/// Whether the edition has a position source.
+inline bool has_source(std::int32_t source) { return position_sources[source] != nullptr; }
+
 /// Another position source, at once.
 inline void use_source(std::int32_t source) {
+  ASSERT_TRUE(has_source(source)) << "a test that needs it says so: edition.hpp";
   parameters.position_source = source;
   inside::source() = position_sources[source];
 }

@@ -28,6 +28,7 @@ constexpr std::uint16_t kEarly = 8;   // a piece of work before the step
 class Stepping : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("hil");
     Drive::SetUp();
     let_tapes_play();
     enter();
@@ -195,6 +196,7 @@ TEST_F(Stepping, AStepThatIsNotWholeChangesNothing) {
 
 // The background's work stands on the side of the step on which it was done, as often as it was done.
 TEST_F(Stepping, WorkIsDoneOnItsSideOfTheStep) {
+  NEEDS("commissioning");
   for (const std::uint16_t side : {kEarly, std::uint16_t{0}}) {
     (void)step(empty());
     commissioning.evaluate = true;

@@ -17,6 +17,7 @@ using namespace stillspin::test;
 class HostInTheLoop : public Requests {
  protected:
   void SetUp() override {
+    NEEDS("hil");
     Requests::SetUp();
     let_tapes_play();
   }
@@ -54,6 +55,7 @@ TEST_F(HostInTheLoop, IsNotLetInWhileAGateMayBeOn) {
 }
 
 TEST_F(HostInTheLoop, IsNotLetInWhileTheMemoryIsWritten) {
+  NEEDS("store");
   nvm.latency = 100'000;
   ASSERT_EQ(give(COMMAND_SAVE).status(), OK);
   const Answer refused = ask(REQUEST_HIL_ENTER);

@@ -23,6 +23,7 @@ using namespace stillspin::test;
 class Hysteresis : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("hysteresis");
     Drive::SetUp();
     parameters.current_law = 1;
     inside::config_valid() = drive_config_load(&inside::config());

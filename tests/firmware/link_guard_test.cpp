@@ -63,6 +63,7 @@ TEST_F(Guard, WithoutItSilenceIsNothing) {
 }
 
 TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
+  NEEDS("commissioning");
   start(~1);
   EXPECT_FALSE(comm_watchdog_is_on());
   inside::state() = DRIVE_READY;
@@ -94,6 +95,7 @@ TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
 }
 
 TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
+  NEEDS("commissioning");
   for (const unsigned code : {COMMAND_START, COMMAND_COMMISSION}) {
     EXPECT_EQ(give(code, 1).status(), RANGE);
     EXPECT_EQ(give(code, 1).text(), "a guarded start needs the client's number: this client is too old");

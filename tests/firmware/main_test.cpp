@@ -91,6 +91,7 @@ TEST_F(Main, ADeadBandThatTheHardwareCannotMakeIsNoConfiguration) {
 
 // The converter comes up meanwhile. What was saved is in force when the drive leaves BOOT, and not before.
 TEST_F(Main, WhatWasSavedIsInForceWhenLoadingEnds) {
+  NEEDS("store");
   for (const int latency : {2, 300}) {
     SetUp();
     drive_reset();
@@ -182,6 +183,7 @@ TEST_F(Main, WithAHostInTheLoopTheBoardsOwnInterruptsFeedTheWatchdog) {
 }
 
 TEST_F(Main, SerialPortBusAndMemoryAreServed) {
+  NEEDS("can");
   run([](int n) {
     if (n == 5) {
       for (const char c : std::string("status\r")) board.serial_in.push_back(static_cast<std::uint16_t>(c));
@@ -199,6 +201,7 @@ TEST_F(Main, SerialPortBusAndMemoryAreServed) {
 
 // A record over the bus is answered as one over the serial port.
 TEST_F(Main, ARequestOverTheBusIsAnswered) {
+  NEEDS("can");
   run([](int n) {
     if (n == 10) {
       segment_splitter_t s = {};

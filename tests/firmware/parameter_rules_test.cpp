@@ -97,6 +97,7 @@ TEST_F(ParameterRules, ThePulseLeavesRoomForItsWindow) {
 }
 
 TEST_F(ParameterRules, ThePapersSchemeNeedsItsCurrentInEitherDirection) {
+  NEEDS("sources/paper");
   parameters.position_source = POSITION_PAPER;
   for (const double amps : {0.0, 0.99, -0.99}) {
     parameters.id_low_speed = raw(amps, 20);

@@ -38,6 +38,7 @@ TEST_F(Sources, AFluxLooksOnFromItsLowerSpeedOn) {
 // The voltage of the period before, less the devices' drops and what the resistance takes, is what the flux grows by;
 // the current is that at the period's end.
 TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
+  NEEDS("sources/flux");
   for (const bool watched : {false, true}) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_HIGH, 0.0);
@@ -77,6 +78,7 @@ TEST_F(Sources, TheFluxIntegratesTheVoltageOfThePeriodsPulses) {
 
 // The drops of the devices are those of the current at the period's end, along both axes.
 TEST_F(Sources, WhatTheDevicesTakeIsNotTheFluxs) {
+  NEEDS("sources/flux");
   Vector flux[2];
   const Vector current = {-1.0, 6.0};
   const double volts = 4.0;
@@ -100,6 +102,7 @@ TEST_F(Sources, WhatTheDevicesTakeIsNotTheFluxs) {
 
 // Between the speeds the flux has no time to learn where the observer has windows; where these are left out it has.
 TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
+  NEEDS("sources/flux");
   for (const std::uint16_t windows : {0, 2}) {
     run_with(POSITION_FLUX_CONV);
     blend(BLEND_BOTH, 0.5);
@@ -115,6 +118,7 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
 }
 
 TEST_F(Sources, TheFluxMayBeGivenTheShaftAtAnySpeed) {
+  NEEDS("sources/flux");
   run_with(POSITION_FLUX_CONV);
   EXPECT_FALSE(position_observer_rests(&drive));
   position_bumpless_transfer(&drive);
@@ -146,6 +150,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
 
 // A flux has no integral before the vector has its speed: until then it follows the vector.
 TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
+  NEEDS("sources/flux");
   for (const bool up : {false, true}) {
     run_with(POSITION_FLUX_CONV);
     see(0);
@@ -166,6 +171,7 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
 
 // While a vector is turned the references are in the vector's frame, and the flux knows them in its own.
 TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
+  NEEDS("sources/flux");
   // PP-02 takes the flux's length from the references: along its own axis they change it, across they turn it.
   std::uint32_t seen[2];
   for (const bool turned : {false, true}) {

@@ -115,6 +115,7 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
 
 // A commissioning at standstill has AVV, which learns where it is told to, or the torque alone.
 TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
+  NEEDS("commissioning", "sources/flux");
   for (const bool adapting : {true, false}) {
     for (const bool predicting : {true, false}) {
       learn_with(POSITION_FLUX_CONV);

@@ -21,6 +21,7 @@ using namespace stillspin::test;
 
 // ZVV alone, both, AVV alone; who does not run stands by where the other one is.
 TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
+  NEEDS("sources/paper");
   const struct {
     blend_region_t region;
     double share;
@@ -46,6 +47,7 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
 // Where the paper's estimators are both at work one has the windows of the periods of speed control and field
 // weakening, the other, which has more of the shaft, those of all others.
 TEST_F(Position, ThePapersEstimatorsTakeTurns) {
+  NEEDS("sources/paper");
   for (const task_t task : {TASK_SPEED, TASK_FIELD, TASK_JUDGE_FIRST, TASK_RENEW, TASK_SLOT}) {
     for (const bool below : {false, true}) {
       run_with(POSITION_PAPER);
@@ -66,6 +68,7 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
 
 // Windows are looked at in the estimator's own frame, whatever angle is in use.
 TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
+  NEEDS("sources/paper");
   for (const bool same : {true, false}) {
     run_with(POSITION_PAPER);
     see(1);
@@ -80,6 +83,7 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
 
 // So does ZVV where it takes turns with AVV, for which they were turned.
 TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
+  NEEDS("sources/paper");
   run_with(POSITION_PAPER);
   blend(BLEND_BOTH, 0.5);
   inside::schedule().task = TASK_SPEED;
@@ -116,6 +120,7 @@ TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
 
 // The flux is alone when the blend has come up all the way and the polarity is no question any more.
 TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
+  NEEDS("sources/flux");
   const struct {
     blend_region_t region;
     double share;
@@ -136,6 +141,7 @@ TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
 
 // Above the blend's begin the windows teach nothing, but that the watch of the polarity wants their axis.
 TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
+  NEEDS("sources/flux");
   for (const blend_region_t region : {BLEND_LOW, BLEND_BOTH, BLEND_HIGH}) {
     for (const bool watched : {false, true}) {
       for (const bool asked : {false, true}) {
@@ -166,6 +172,7 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
                {POSITION_OBSERVER_AVV, BLEND_BOTH, 0.5}, {POSITION_FLUX_CONV, BLEND_BOTH, 0.5},
                {POSITION_FLUX_CONV, BLEND_HIGH, 0.0}};
   for (const auto& c : cases) {
+    if (!has_source(c.source)) continue;
     for (const bool starting : {false, true}) {
       run_with(c.source);
       see(1);
@@ -186,6 +193,7 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
 
 // Below the blend the flux is where the observer's angle lets expect; from its begin on it runs by itself.
 TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
+  NEEDS("sources/flux");
   for (const double share : {1.0, 0.9}) {
     run_with(POSITION_FLUX_CONV);
     const estimator_input_t in = {&inside::model(), inside::windows(), 2, 0, false, false, false, nullptr};

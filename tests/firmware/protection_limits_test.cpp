@@ -103,6 +103,7 @@ TEST_F(ProtectionLimits, ADriveThatIsOffIsNotJudged) {
 
 // Windows tell as much as one that is as long as they are together.
 TEST_F(ProtectionLimits, TheSpanOfThePapersWindowsIsThatOfAll) {
+  NEEDS("sources/paper");
   synchronism_t expected = {};
   for (const auto& [first, second] : {std::pair{4000, 0}, {1000, 3000}, {3000, 1000}}) {
     SetUp();

@@ -130,6 +130,7 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
                {POSITION_FLUX_CONV, BLEND_HIGH, false},   {POSITION_OBSERVER_AVV, BLEND_LOW, true},
                {POSITION_OBSERVER_AVV, BLEND_HIGH, true}, {POSITION_AVV, BLEND_BOTH, false}};
   for (const auto& c : cases) {
+    if (!has_source(c.source)) continue;
     SetUp();
     make_run();
     trust_synchronism();
@@ -219,6 +220,7 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
 
 // Beside the flux it is the observer's residuals that are judged, in their turns; alone the flux is judged by windows.
 TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
+  NEEDS("sources/flux");
   for (const bool alone : {false, true}) {
     for (const bool asked : {false, true}) {
       SetUp();
@@ -241,6 +243,7 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
 
 // What the paper's AVV has made of a period's windows is what is judged, and the windows where it has seen nothing.
 TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
+  NEEDS("sources/paper");
   for (const bool seen : {true, false}) {
     SetUp();
     make_run();

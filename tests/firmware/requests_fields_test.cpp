@@ -55,6 +55,7 @@ TEST_F(RequestFields, EachTypeHasItsLengths) {
   };
   for (const auto& t : types) {
     Octets body(t.longest + 1, 0);
+    if (ask(t.type, body).status() == EDITION) continue;  // of which tests/python has the list
     EXPECT_EQ(ask(t.type, body).status(), LENGTH) << t.type;
     for (const std::size_t length : {t.shortest, t.longest}) {
       body.assign(length, 0);
@@ -69,6 +70,8 @@ TEST_F(RequestFields, EachTypeHasItsLengths) {
 }
 
 TEST_F(RequestFields, StatusTellsHowTheDriveIs) {
+  NEEDS("store", "commissioning");
+  nvm.latency = 20;  // so that it is under way behind the command, however little there is to save
   ASSERT_EQ(give(COMMAND_SAVE).status(), OK);
   for (int k = 0; k < 1000 && store_progress() < 20; ++k) run(1);
   nvm.latency = 1'000'000;
@@ -135,7 +138,8 @@ TEST_F(RequestFields, EverySignalTellsAllOfItself) {
   for (std::uint16_t k = 0; k < signal_count(); ++k) {
     const signal_info_t& s = *signal_info(k);
     const Answer a = ask(REQUEST_SIGNAL_INFO, little(k, 2));
-    ASSERT_EQ(a.status(), OK);
+    ASSERT_EQ(a.status(), signal_is_left_out(k) ? EDITION : OK);
+    if (signal_is_left_out(k)) continue;
     EXPECT_EQ(a.number(0, 1), s.q + 0x40u * (s.needs == KNOWN_HEAT_SINK ? 3u : s.needs));
     EXPECT_EQ(a.text(1), bench::text_of(s.name) + '\0' + bench::text_of(s.unit) + '\0' + bench::text_of(s.meaning));
   }
@@ -163,6 +167,7 @@ TEST_F(RequestFields, ParametersAreReadFromAnyPlaceOn) {
 }
 
 TEST_F(RequestFields, ResultsOfACommissioningAreToldWhole) {
+  NEEDS("commissioning");
   commissioning.evaluate = true;
   commissioning_service(&drive);
   const std::uint16_t count = drive_commissioning_count();
@@ -176,6 +181,7 @@ TEST_F(RequestFields, ResultsOfACommissioningAreToldWhole) {
 }
 
 TEST_F(RequestFields, AScopeIsSetUpAsTold) {
+  NEEDS("scope");
   const Octets head = little(0x0102, 2) + little(0x0203, 2), level = i32(-70000);
   const Octets channels = little(1, 1) + Octets{7, 0, 12};
   ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, head + Octets{SCOPE_AUTO, SCOPE_BELOW, 4, 0} + level + channels).status(), OK);
@@ -201,6 +207,7 @@ TEST_F(RequestFields, AScopeIsSetUpAsTold) {
 }
 
 TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
+  NEEDS("scope");
   inside::state() = DRIVE_RUN;
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).text(), "the scope is not set up yet");
   const Octets setup = little(1, 2) + little(300, 2) + Octets{SCOPE_SINGLE, SCOPE_AT_ONCE, 4, 0} + i32(0);

@@ -217,6 +217,7 @@ TEST_F(Schedule, AHeldShaftMovesItsWorkingPointWithEveryTurn) {
 // Only where it runs does the deviation observer want anything.
 TEST_F(Schedule, SourcesWithoutTheObserverDoNotWaitForIt) {
   for (std::int32_t source = POSITION_ENCODER; source <= POSITION_FLUX_ACTIVE; ++source) {
+    if (!has_source(source)) continue;
     for (const bool alone : {false, true}) {
       run_with(source);
       know(1.1);
@@ -234,6 +235,7 @@ TEST_F(Schedule, SourcesWithoutTheObserverDoNotWaitForIt) {
 
 // Where observer and flux are both at work the observer leaves its windows out beside the two other long tasks.
 TEST_F(Schedule, BesideTheFluxLongTasksHaveTheirPeriodWithoutWindows) {
+  NEEDS("sources/flux");
   const struct {
     std::int32_t source;
     blend_region_t region;

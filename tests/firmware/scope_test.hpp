@@ -21,6 +21,11 @@ enum : std::uint16_t {
 
 class Scope : public Drive {
  protected:
+  void SetUp() override {
+    NEEDS("scope");
+    Drive::SetUp();
+  }
+
   /// Interrupt number n: `current_d` is n, `current_q` what the test says.
   void interrupt(std::int32_t current = 0) {
     inside::state() = DRIVE_RUN;

@@ -99,6 +99,7 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
 // Without torque the flux would be blind: three times the current whose sign is certain flows, less what torque makes
 // flow, at low speed and where the flux has the shaft.
 TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
+  NEEDS("sources/flux");
   struct Case {
     double iq, speed, limit;
     std::int16_t share_q15;

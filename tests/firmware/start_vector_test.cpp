@@ -35,6 +35,7 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
 // What the vector has turned is taken over as the source sees it: angle, speed and the current in its frame; the
 // controllers begin anew in that frame, and nobody holds the shaft.
 TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
+  NEEDS("sources/flux");
   start_begin_if_ramp(&drive);
   if_start_t& if_start = start().if_start;
   inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
@@ -60,6 +61,7 @@ TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
 
 // The flux that takes over above its blend has the shaft from the start on; nobody else does.
 TEST_F(StartByVector, AFluxThatTakesOverHasTheShaftAlone) {
+  NEEDS("sources/flux");
   for (const std::int32_t source : {POSITION_OBSERVER, POSITION_FLUX_CONV, POSITION_FLUX_ACTIVE}) {
     for (const int above : {0, 1}) {
       SetUp();

@@ -108,6 +108,7 @@ TEST_F(States, AStopBreaksAStartOffAndOpensThePowerStage) {
 
 // A shaft that a commissioning turns is brought to rest; its gates stay on until it stands.
 TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
+  NEEDS("commissioning");
   make_run();
   inside::state() = DRIVE_COMMISSION;
   commissioning.outcome = COMMISSIONING_RUNNING;
@@ -130,6 +131,7 @@ TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
 
 // With the gates off already and the background level at work a stop has nothing to break off.
 TEST_F(States, AStopLetsAnEvaluationEnd) {
+  NEEDS("commissioning");
   make_ready();
   inside::state() = DRIVE_COMMISSION;
   commissioning.outcome = COMMISSIONING_RUNNING;
@@ -200,6 +202,7 @@ TEST_F(States, TheDriveBootsUntilItsValuesAreThere) {
 
 // Gates off at once, whatever is under way; what a commissioning has changed for itself must come back.
 TEST_F(States, ACoastEndsACommissioning) {
+  NEEDS("commissioning");
   make_run();
   commissioning_t& c = commissioning;
   inside::state() = DRIVE_COMMISSION;
@@ -280,6 +283,7 @@ TEST_F(States, WhereThePowerStageIsOnAndWhereTheShaftIsTurned) {
 }
 
 TEST_F(States, AFeaturesStateHasItsPlace) {
+  NEEDS("commissioning");
   EXPECT_EQ(drive_states[DRIVE_START], &start_state);
   EXPECT_EQ(drive_states[DRIVE_COMMISSION], &commissioning_state);
   for (const drive_state_t own : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_FAULT})

@@ -67,8 +67,8 @@ TEST_F(Store, AChangedFormatIsRescaled) {
     std::int32_t raw, expected;
   };
   for (const Case& c : {Case{8, 8, 12 << 8, 12 << 20}, Case{8, 24, (12 << 24) + 7, 12 << 20},
-                        Case{8, 24, (12 << 24) + 8, (12 << 20) + 1}, Case{71, 24, -(1 << 20), -(1 << 16)},
-                        Case{1, 8, 3 << 8, 3}, Case{71, 21, -3, -1}, Case{71, 21, -1, 0}}) {
+                        Case{8, 24, (12 << 24) + 8, (12 << 20) + 1}, Case{119, 24, -(1 << 20), -(1 << 16)},
+                        Case{1, 8, 3 << 8, 3}, Case{119, 21, -3, -1}, Case{119, 21, -1, 0}}) {
     Image image;
     image.entries = table();
     for (slot_entry_t& e : image.entries) {

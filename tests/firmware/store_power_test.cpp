@@ -16,6 +16,7 @@ class PowerCut : public Store {
  protected:
   /// Two saves lie behind: `old_` is valid, the slot of the one before will be written.
   void SetUp() override {
+    NEEDS("store");
     Store::SetUp();
     power_on();
     set_variant(1);

@@ -24,6 +24,7 @@ class Store : public Drive {
   using Values = std::map<std::uint16_t, std::int32_t>;
 
   void SetUp() override {
+    NEEDS("store");
     Drive::SetUp();
     nvm = FakeNvm{};
   }
@@ -76,8 +77,8 @@ class Store : public Drive {
     parameters.drop_band += n;
     parameters.pulse_time += n;
     parameters.stop_time = 1000 + n;
-    parameters.hysteresis_frequency = 65536 * (1 + n);
-    parameters.id_low_speed = -n;
+    parameters.speed_ramp += n;
+    parameters.ldq_1 = -n;
   }
 
   // ---- a memory as another firmware would have left it

@@ -14,13 +14,13 @@ TEST_F(Store, AChangeIsUnsavedUntilItIsSavedOrTakenBack) {
   const std::int32_t before = parameters.stop_time;
   parameters.stop_time = before + 7;
   EXPECT_EQ(store_unsaved(), 1);
-  parameters.id_low_speed = -5;
+  parameters.ldq_1 = -5;
   EXPECT_EQ(store_unsaved(), 2);
   parameters.stop_time = before;
   EXPECT_EQ(store_unsaved(), 1) << "set back to what is kept";
   EXPECT_EQ(save(), STORE_SAVED);
   EXPECT_EQ(store_unsaved(), 0);
-  parameters.id_low_speed = 0;
+  parameters.ldq_1 = 0;
   EXPECT_EQ(store_unsaved(), 1) << "its default is not what is kept";
 }
 
@@ -66,6 +66,7 @@ TEST_F(Store, BehindASaveThatFailedNobodyKnows) {
 }
 
 TEST_F(Console, StatusSaysWhatIsNotSaved) {
+  NEEDS("store");
   values_copy();  // what is kept, with what the tests' board needs
   EXPECT_TRUE(has(command("status", 3000), "parameters  fit together\r\n"));
   EXPECT_TRUE(has(command("set speed_ramp 100"), "speed_ramp = 100 rpm/s"));

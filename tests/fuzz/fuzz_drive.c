@@ -1,5 +1,7 @@
 #include "tests/fuzz/fuzz_drive.h"
 
+#include <stddef.h>
+
 #include "firmware/api/status.h"
 #include "firmware/can/node.h"
 #include "firmware/commissioning/commissioning.h"
@@ -193,15 +195,17 @@ bool fuzz_has_host(void) { return feature_status.stepped; }
 uint32_t fuzz_time_ms(void) { return drive.time_ms; }
 uint16_t fuzz_node(void) { return (uint16_t)parameters.can_node; }
 
-static bool is_wrong(uint16_t place, int32_t raw) {
-  const parameter_info_t* const p = parameter_info(place);
-  return raw < p->minimum || raw > p->maximum;
+// One that the edition has not keeps its default, which no other parameter's range need hold.
+static bool is_wrong(uint16_t id, int32_t raw) {
+  const parameter_info_t* const p = parameter_by_id(id);
+  return p != NULL && (raw < p->minimum || raw > p->maximum);
 }
 
 uint16_t fuzz_parameter_out_of_range(void) {
   uint16_t place = 0;
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  if (is_wrong(place++, parameters.name)) return place;
+  place++;                                                                                 \
+  if (is_wrong(id, parameters.name)) return place;
 #include "firmware/dictionary/parameter_list.h"
 #undef PARAMETER
   return 0;
