@@ -17,6 +17,7 @@ import browser
 import fake_core
 from fake_drive import FakeDrive
 from stillspin import cli
+from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.drive import Drive
 from stillspin.tune.server import Server
 
@@ -50,6 +51,14 @@ def power():
     yield switch_on
     for desk in opened:
         desk.board.close()
+
+
+@pytest.fixture
+def port():
+    """The serial port of a virtual board, without the board."""
+    terminal = PseudoTerminal()
+    yield terminal
+    terminal.close()
 
 
 @pytest.fixture

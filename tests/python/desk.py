@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import serial
 
 import stillspin
 
@@ -17,6 +18,11 @@ PATIENT = 2.5
 needs_board = pytest.mark.skipif(
     not any(Path(stillspin.__file__).parent.glob("_core*.so")), reason="the native module is not built"
 )
+
+
+def open_port(name, rate=115200, **options):
+    """A board's serial port, as a program opens it."""
+    return serial.Serial(str(name), rate, timeout=1.0, exclusive=True, **options)
 
 
 @contextmanager

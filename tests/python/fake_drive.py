@@ -4,63 +4,38 @@ It is for what a client must get right whatever is at the other end: time-outs, 
 real firmware does is tested against the virtual board.
 """
 
-import contextlib
-import os
-import pty
 import struct
 import threading
 import time
-import tty
 import zlib
+
+from fake_line import Line
+from fake_tables import (
+    BUSY,
+    COMMISSION,
+    CONFLICT,
+    CONFLICT_WORDS,
+    DEPTH,
+    FAULT,
+    LENGTH,
+    OK,
+    PARAMETERS,
+    RANGE,
+    READY,
+    ROTOR,
+    RUN,
+    RUNNING,
+    SIGNALS,
+    STATE,
+    STOP,
+    UNKNOWN,
+    WORDS,
+    RefusalError,
+    raw,
+)
 
 from stillspin.link.records import Record, to_wire
 from stillspin.link.splitter import Splitter, Text
-
-# id, name, unit, q, decimals, minimum, maximum, initial, always, meaning; values in the unit
-PARAMETERS = [
-    (1, "motor_poles", "", 0, 0, 1, 20, 4, False, "pole pairs"),
-    (6, "current_limit", "A", 20, 2, 0.1, 16, 14, True, "largest current"),
-    (8, "speed_limit", "rpm", 8, 0, 100, 4000, 3300, False, "largest speed"),
-    (86, "speed_ramp", "rpm/s", 8, 0, 0, 100000, 3000, True, "slope of the speed reference, 0 for a step"),
-    (164, "link_regulation", "V", 16, 1, 10, 450, 405, True, "DC link from which braking is reduced"),
-    (200, "link_timeout", "ms", 0, 0, 50, 10000, 300, True, "silence after which a guarded drive stops"),
-    (101, "ratio", "%", 16, 2, -50, 50, 0, True, ""),
-]
-SIGNALS = [
-    ("state", "", 0, "state of the drive"),
-    ("angle", "turn", 32, "electrical angle"),
-    ("speed", "rpm", 16, "mechanical speed"),
-    ("speed_known", "", 0, "1: known, 0: unknown"),
-    ("speed_reference", "rpm", 16, "speed reference after the ramp"),
-    ("current_d", "A", 20, "measured d-axis current"),
-    ("current_q", "A", 20, "measured q-axis current"),
-    ("link_voltage", "V", 16, "DC-link voltage"),
-]
-ROTOR = {"angle", "speed", "current_d", "current_q"}
-"""What is known only with the rotor's angle."""
-STATES = ["boot", "calibrate", "ready", "start", "run", "stop", "fault", "commission"]
-WORDS = {
-    0: STATES,
-    1: ["none", "over-current: the comparator opened the gates", "a phase current beyond trip_current"],
-    2: ["current", "voltage", "weakening"],
-    3: ["used", "too few samples"],
-    4: ["idle", "turning", "staircase"],
-    5: ["empty", "loaded", "damaged", "migrated", "saving", "saved", "failed"],
-    10: ["idle", "filling", "armed", "triggered", "done"],
-}
-CONFLICT_WORDS = "link_regulation must be above link_minimum"
-OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT = range(8)
-READY, RUN, STOP, FAULT, COMMISSION = 2, 4, 5, 6, 7
-DEPTH = 1024
-
-
-class RefusalError(Exception):
-    def __init__(self, status, text=""):
-        self.status, self.text = status, text
-
-
-def raw(value, q):
-    return round(value * 2**q)
 
 
 class FakeDrive:
@@ -99,14 +74,11 @@ class FakeDrive:
         self.seen = (2, 1059, "the shaft turns at 1059 rpm")  # by the next look
         self._counter = 0
         self._begin = self._last = self._heard = self._sent = self._watched = time.monotonic()
-        self._master, slave = pty.openpty()
-        tty.setraw(slave)
-        self.port = os.ttyname(slave)
-        self._slave = slave
+        self._line = Line()
+        self.port = self._line.name
         self._splitter = Splitter()
         self._lock = threading.Lock()
         self._end = threading.Event()
-        os.set_blocking(self._master, False)
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def __enter__(self):
@@ -119,13 +91,7 @@ class FakeDrive:
     def unplug(self):
         self._end.set()
         self._thread.join()
-        if self._slave is not None:
-            self._hang_up()
-
-    def _hang_up(self):
-        os.close(self._master)
-        os.close(self._slave)
-        self._slave = None
+        self._line.hang_up()
 
     def switch_on_again(self):
         """As after a power cut: the parameters are the defaults, the time begins anew, nothing is streamed."""
@@ -151,24 +117,14 @@ class FakeDrive:
         self.state, self.fault, self.guarded = FAULT, code, False
 
     def say(self, octets):
-        self._write(octets)
+        self._line.write(octets)
 
     def _now_ms(self):
         return int((time.monotonic() - self._begin) * 1000)
 
-    def _write(self, octets):
-        while octets:
-            with contextlib.suppress(BlockingIOError):
-                octets = octets[os.write(self._master, octets) :]
-
     def _run(self):
         while not self._end.is_set():
-            try:
-                octets = os.read(self._master, 4096)
-            except (BlockingIOError, OSError):
-                octets = b""
-                time.sleep(0.001)
-            for item in self._splitter.feed(octets, time.monotonic()):
+            for item in self._splitter.feed(self._line.read(), time.monotonic()):
                 if isinstance(item, Text):
                     self._console(item.octets)
                 elif isinstance(item, Record):
@@ -176,14 +132,14 @@ class FakeDrive:
             with self._lock:
                 self._move()
         if self.dies:
-            self._hang_up()
+            self._line.hang_up()
 
     def _console(self, octets):
         for octet in octets:
             self.watched = False
             if octet == 3:
                 self.typed, self.interrupts = b"", self.interrupts + 1
-                self._write(b"^C\r\n> ")
+                self._line.write(b"^C\r\n> ")
             elif octet == 13:
                 line, self.typed = self.typed, b""
                 self._obey(line)
@@ -196,7 +152,7 @@ class FakeDrive:
             return
         self.lines.append(line.decode())
         self.refusals += line.startswith(b"refuse")
-        self._write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
+        self._line.write(line + b"\r\n" + b"heard " + line + b"\r\n> ")
         if line.startswith(b"start"):
             self.start(self.beside_text if line == b"start" else 0)
         self.watched = line == b"watch"
@@ -232,7 +188,7 @@ class FakeDrive:
         now = time.monotonic()
         if self.watched and now - self._watched >= 0.02:
             self._watched = now
-            self._write(b"speed 12.3 rpm\r\n")
+            self._line.write(b"speed 12.3 rpm\r\n")
         if self.stream and now - self._sent >= self.stream[0]:
             self._sent = now
             numbers = self._signals(self.stream[1])
@@ -240,7 +196,7 @@ class FakeDrive:
             left_out, self.missing = (self.missing, 0) if self.streamed else (0, self.missing)
             self.streamed = True
             self._counter = (self._counter + 1 + left_out) % 256
-            self._write(to_wire(Record(0x40, self._counter, body + bytes((self.known,)))))
+            self._line.write(to_wire(Record(0x40, self._counter, body + bytes((self.known,)))))
 
     def _signals(self, indices):
         values = {"state": self.state, "speed": self.speed, "speed_reference": self.reference, "link_voltage": 310.0}
@@ -268,7 +224,7 @@ class FakeDrive:
             self.corrupt.remove(record.kind)
             wire = wire[:2] + bytes((wire[2] ^ 1 or 2,)) + wire[3:]
         chatter, self.chatter = self.chatter, b""
-        self._write(chatter + wire)
+        self._line.write(chatter + wire)
 
     def _request(self, kind, body):
         handler = getattr(self, f"_on_{kind:02x}", None)

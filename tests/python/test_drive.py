@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 import pytest
+from fake_tables import PARAMETERS
 
-from fake_drive import PARAMETERS
 from stillspin.drive import Channel, ConflictWarning, Drive, Outcome, Signal, Table, Trigger, scope
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until

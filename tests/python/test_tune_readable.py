@@ -4,9 +4,9 @@ import time
 
 import page_contrast
 import pytest
+from fake_tables import SIGNALS
 from test_tune_looks import TABS
 
-from fake_drive import SIGNALS
 from stillspin.drive.requester import wait_until
 
 RECORD = """
