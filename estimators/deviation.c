@@ -1,9 +1,8 @@
 #include "estimators/deviation.h"
 
-#define PER_TICK_Q32 429496L      // 1 / ESTIMATOR_PERIOD_TICKS, rounded down: half a period of ticks stays in 31 bits
-#define LOST_MAX_Q17 196608000L   // 1500 V over the resistance: more the samples alone can say
-#define DAMPING_END_Q22 8388608L  // 2 per period
-#define REST_END_Q17 536870912L   // 4096 A per period and rad
+#define PER_TICK_Q32 429496L     // 1 / ESTIMATOR_PERIOD_TICKS, rounded down: half a period of ticks stays in 31 bits
+#define LOST_MAX_Q17 196608000L  // 1500 V over the resistance: more the samples alone can say
+#define REST_END_Q17 536870912L  // 4096 A per period and rad
 
 // A rotation turned on by an angle x below 1 rad, to x^3/6: 1 - cos x = x^2/2, sin x = x.
 static rotation_t turned(rotation_t r, int32_t x_q30) {
@@ -25,7 +24,7 @@ void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32
 
 // Element of A = Y R - w K, to 2.4e-7.
 static int32_t damping_q29(const machine_model_t* m, int32_t y_q30, int32_t w_q30, int32_t k_q24) {
-  return q_limit(q_mul_hi(y_q30, m->rs_q24) - q_mul_hi(w_q30, k_q24), DAMPING_END_Q22) * 128;
+  return q_limit(q_mul_hi(y_q30, m->rs_q24) - q_mul_hi(w_q30, k_q24), DEVIATION_DAMPING_END_Q22) * 128;
 }
 
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {

@@ -18,7 +18,9 @@
 
 #define DEVIATION_PERIOD_Q17 ((int32_t)1310720000L)  // ESTIMATOR_PERIOD_TICKS
 
-/// The model at a speed. A beyond 2 per period belongs to no machine that a period is short for.
+#define DEVIATION_DAMPING_END_Q22 8388608L  // 2 per period
+
+/// The model at a speed. A beyond 2 per period is taken as 2.
 typedef struct {
   int32_t mean_q30, half_q30, cross_q30;           // Y = [mean + half, cross; cross, mean - half], A per V and period
   int32_t a_dd_q29, a_dq_q29, a_qd_q29, a_qq_q29;  // A, A per period and A

@@ -4,6 +4,7 @@
 
 #include <stddef.h>
 
+#include "estimators/deviation.h"
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/interfaces/config_part.h"
@@ -16,6 +17,7 @@
 #define COGGING_MAX_Q20 1048576L     // 1 N m
 #define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
 #define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
+#define RAD_PER_RPM_Q47 1473799531L  // 2 pi / 60 * 100 us
 #define MILLIHENRY_Q30 1099511628L   // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
@@ -43,6 +45,12 @@ static bool load_map(machine_model_t* m) {
   return machine_model_saturate(m, &map);
 }
 
+// What resistance and the fastest rotation take off the current's slope fits the look's format (deviation.h).
+static bool damping_fits(const machine_model_t* m, int32_t k_q24) {
+  const int32_t speed_q29 = q_mul_hi(parameters.speed_limit * parameters.pole_pairs * 64, RAD_PER_RPM_Q47);
+  return q_mul_hi(m->yd_q30, m->rs_q24) + q_mul_hi(speed_q29, k_q24) * 2 < DEVIATION_DAMPING_END_Q22;
+}
+
 // What the estimators make of a point of the map fits their formats: of h (machine_model.h) with the largest current
 // that two sensors show together, twice their full scale.
 static bool point_fits(const machine_model_t* m) {
@@ -50,7 +58,7 @@ static bool point_fits(const machine_model_t* m) {
   const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
   const int32_t k_q24 = q_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
   const int32_t h_speed_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
-  return k0_q20 <= K0_MAX_Q20 && h_speed_q20 < INT32_MAX;
+  return k0_q20 <= K0_MAX_Q20 && h_speed_q20 < INT32_MAX && damping_fits(m, either_q24);
 }
 
 // So does the torque per ampere with that current, and the torque with it: the reluctance adds 51 N m/A to the 30 of

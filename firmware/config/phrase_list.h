@@ -31,4 +31,4 @@ PHRASE(if_current_must_not_exceed_current_limit, "if_current must not exceed cur
 PHRASE(current_bandwidth_must_not_exceed_2080_rad,
        "current_bandwidth must not exceed 2080 rad/s with current_divider 2")
 PHRASE(the_machine_s_parameters_are_too_extreme,
-       "the machine's parameters are too extreme together: inertia, flux, inductances, map")
+       "the machine's parameters are too extreme together: inertia, flux, resistance, inductances, map, speed_limit")

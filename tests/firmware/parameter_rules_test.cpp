@@ -218,4 +218,24 @@ TEST_F(ParameterRules, AReluctanceBeyondTheTorquesFormatsIsRefused) {
   keeps();
 }
 
+// What the look takes off the slope of the current, per period and A: T R / L, and (L_q / L_d - 1) times what the rotor
+// turns in a period, 2 at most.
+TEST_F(ParameterRules, AMachineThatAPeriodIsTooLongForIsRefused) {
+  const parameters_t p = parameters;
+  parameters.magnet_flux = raw(0.01, 28);
+  parameters.inductance_d = raw(2.0, 20);
+  parameters.inductance_q = raw(16.0, 20);
+  parameters.speed_limit = raw(4200.0, 8);  // 0.264 rad per period on six pole pairs
+  parameters.pole_pairs = 6;
+  keeps();                                  // 0.02 + 7 * 0.264 = 1.87
+  parameters.speed_limit = raw(4600.0, 8);  // 2.04
+  refuses("too extreme");
+  parameters = p;
+  parameters.inductance_d = parameters.inductance_q = raw(0.25, 20);
+  parameters.stator_resistance = raw(4.9, 24);
+  keeps();  // a time constant of 51 us
+  parameters.stator_resistance = raw(5.1, 24);
+  refuses("too extreme");
+}
+
 }  // namespace
