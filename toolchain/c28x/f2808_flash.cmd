@@ -55,7 +55,8 @@ SECTIONS
                 libstillspin_hal.a<pwm.*>(.text:_hal_pwm_write, .text:_write_registers, .text:_hal_pwm_is_tripped,
                                           .text:_is_any_leg_tripped, .text:_hal_pwm_was_tripped_by_pin)
                 libstillspin_hal.a<irq.*>(.text:_control_isr, .text:_window_isr, .text:_hal_irq_control_begin,
-                                          .text:_hal_irq_control_end, .text:_hal_irq_disable, .text:_hal_irq_restore)
+                                          .text:_hal_irq_control_end, .text:_hal_irq_disable, .text:_hal_irq_restore,
+                                          .text:retain)   /* where cl2000 has interrupt functions */
                 libstillspin_hal.a<safety.*>(.text:_hal_safety_toggle_enable)
                 libstillspin_hal.a<gpio.*>(.text:_gpio_toggle)
                 libstillspin_firmware.a<control_interrupt.*>(.text:_drive_control_step, .text:_drive_control_interrupt)
