@@ -24,15 +24,15 @@ extern "C" {
 #define HAL_PWM_WINDOWS 3u
 #define HAL_PWM_PERIOD_TICKS ((uint16_t)PERIOD_TICKS)
 #define HAL_PWM_LAST_TICK (PERIOD_TICKS - 1u)  // the last tick of a period at which an edge or a burst can be
-#define HAL_PWM_NONE 0xFFFFu                   // as a rise tick: no pulse; as a burst tick: no burst
+#define HAL_PWM_NONE 0xFFFFu                   // as the tick of an edge: no pulse; as a burst tick: no burst
 #define HAL_PWM_DEAD_BAND_MIN_TICKS 1u         // 10 ns; the power stage asks for far more
 #define HAL_PWM_DEAD_BAND_MAX_TICKS 1023u      // 10.23 us
 #define HAL_PWM_WRITE_TICKS 120u               // hal_pwm_write takes no longer than this from its look at the counter
 
 // One period, ticks of 10 ns from the period start.
 typedef struct {
-  uint16_t rise_tick[HAL_PWM_LEGS];            // upper device on: 1 <= rise < fall <= 9999; > 9999: no pulse
-  uint16_t fall_tick[HAL_PWM_LEGS];            // upper device off
+  uint16_t
+      edge_tick[2u * HAL_PWM_LEGS];  // the legs' upper devices on, then off: 1 <= on < off <= 9999; > 9999: no pulse
   uint16_t burst_start_tick[HAL_PWM_WINDOWS];  // first burst of the window, 1..9999; > 9999: none
   uint16_t burst_end_tick[HAL_PWM_WINDOWS];    // last burst of the window, 1..9999; > 9999: none
 } hal_pwm_frame_t;

@@ -19,7 +19,9 @@ typedef struct {
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
   // Set by dead_time_design. Currents at the edges are shares of the band.
   int32_t per_band_q24;                         // 1 / band, 1/A
-  int32_t edge_band_q12;                        // edge_band / band
+  int32_t middle_q13;                           // delay without a current, ticks, and a half for rounding
+  int16_t range_ticks;                          // of the delay, from one sign to the other
+  uint32_t doubt_q12;                           // edge_band / band, just below
   int32_t third_per_amp_q21, side_per_amp_q21;  // drop / (3 band), drop / (sqrt(3) band), V per A
 } dead_time_config_t;
 
@@ -28,28 +30,16 @@ void dead_time_design(dead_time_config_t* c);
 
 #define DEAD_TIME_BAND_Q12 4096L
 
-/// What the delays of all edges of a period have in common.
-typedef struct {
-  int32_t middle_q13;   // without a current, ticks, and a half for rounding
-  int16_t range_ticks;  // from one sign to the other
-} dead_time_delay_t;
-
-static inline dead_time_delay_t dead_time_delay(const dead_time_config_t* c) {
-  const dead_time_delay_t d = {(c->turn_on_ticks + c->turn_off_ticks) * (int32_t)4096 + 4096,
-                               (int16_t)(c->turn_on_ticks - c->turn_off_ticks)};
-  return d;
-}
-
 /// Delay of an edge, ticks. The current is a share of the band, positive where it blocks the edge.
-static inline int32_t dead_time_delay_ticks(const dead_time_delay_t* d, int32_t blocking_q12) {
+static inline int32_t dead_time_delay_ticks(const dead_time_config_t* c, int32_t blocking_q12) {
   const int32_t in_band_q12 = q_clamp(blocking_q12, -DEAD_TIME_BAND_Q12, DEAD_TIME_BAND_Q12 - 1);
-  return q_shr(d->middle_q13 + (int16_t)in_band_q12 * (int32_t)d->range_ticks, 13);
+  return q_shr(c->middle_q13 + (int16_t)in_band_q12 * (int32_t)c->range_ticks, 13);
 }
 
 /// With a current below edge_band an edge is not certain: with the other sign than predicted it comes up to blocked -
 /// released ticks early or late.
 static inline bool dead_time_is_in_doubt(const dead_time_config_t* c, int32_t blocking_q12) {
-  return blocking_q12 < c->edge_band_q12 && blocking_q12 > -c->edge_band_q12;
+  return (uint32_t)blocking_q12 + c->doubt_q12 <= 2u * c->doubt_q12;
 }
 
 /// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.

@@ -14,9 +14,9 @@ typedef struct {
   int32_t link_q16;                // DC link, V
 } svpwm_carried_t;
 
-/// When each leg has to be told to rise and to fall, ticks, for the motor to see the edges of the pattern's pulses; and
-/// the pattern's windows.
+/// When each edge has to be sent, ticks, for the motor to see the edges of the pattern's pulses; and the pattern's
+/// windows.
 void svpwm_compensate_edges(const dead_time_config_t* c, const sampling_config_t* sampling,
-                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, uint16_t rise[], uint16_t fall[]);
+                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, uint16_t sent[]);
 
 #endif

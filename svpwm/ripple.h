@@ -61,23 +61,16 @@ static inline svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc
   return w;
 }
 
-static inline void svpwm_ripple_reach(svpwm_ripple_walk_t* w, int32_t tick) {
+/// What blocks the edge that comes next: the current out of a leg that rises, into one that falls.
+static inline int32_t svpwm_ripple_blocking(svpwm_ripple_walk_t* w, const svpwm_ripple_legs_t* legs, unsigned edge,
+                                            int32_t tick) {
   w->sum += w->slope * (uint32_t)(tick - w->tick);
   w->tick = tick;
-}
-
-/// Current out of a leg that rises next.
-static inline int32_t svpwm_ripple_rise(svpwm_ripple_walk_t* w, const svpwm_ripple_legs_t* legs, unsigned leg,
-                                        int32_t tick) {
-  svpwm_ripple_reach(w, tick);
-  w->slope += SVPWM_RIPPLE_PER_PERIOD;
-  return legs->mean_q12[leg] - q_mul_hi((int32_t)(legs->on3[leg] * (uint32_t)tick + w->sum), legs->gain_q44);
-}
-
-/// Current into a leg that falls next.
-static inline int32_t svpwm_ripple_fall(svpwm_ripple_walk_t* w, const svpwm_ripple_legs_t* legs, unsigned leg,
-                                        int32_t tick) {
-  svpwm_ripple_reach(w, tick);
+  if (edge < SVPWM_LEGS) {
+    w->slope += SVPWM_RIPPLE_PER_PERIOD;
+    return legs->mean_q12[edge] - q_mul_hi((int32_t)(legs->on3[edge] * (uint32_t)tick + w->sum), legs->gain_q44);
+  }
+  const unsigned leg = edge - SVPWM_LEGS;
   w->slope -= SVPWM_RIPPLE_PER_PERIOD;
   const uint32_t lacks = legs->on3[leg] * (uint32_t)(tick - SVPWM_PERIOD_TICKS) + w->sum;
   return q_mul_hi((int32_t)lacks, legs->gain_q44) - legs->mean_q12[leg];

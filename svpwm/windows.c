@@ -15,8 +15,8 @@ void svpwm_replace_window(svpwm_pattern_t* pattern, const svpwm_window_t* window
 }
 
 void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
-                       unsigned state) {
-  const svpwm_window_t window = svpwm_window_between(c, begin, end, state);
+                       unsigned passed) {
+  const svpwm_window_t window = svpwm_window_between(c, begin, end, (passed ^ (passed >> SVPWM_LEGS)) & 7u);
   if (window.end < window.start + c->span_min_ticks) return;
   if (pattern->window_count < SVPWM_WINDOWS) {
     pattern->windows[pattern->window_count++] = window;

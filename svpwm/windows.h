@@ -28,7 +28,7 @@ static inline svpwm_window_t svpwm_window_between(const sampling_config_t* c, in
 typedef struct {
   int32_t shortest;      // interval worth a look, ticks
   int32_t begin, ended;  // of the interval, of the last window
-  unsigned state;
+  unsigned passed;       // bit k: edge k has
 } svpwm_finder_t;
 
 static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_pattern_t* pattern) {
@@ -37,26 +37,27 @@ static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_patt
   return f;
 }
 
-/// An edge that may come before the one that has ended the last window; a window that may be worth it.
+/// An edge that may come before the one that has ended the last window; a window that may be worth it, behind the edges
+/// that have passed.
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end);
 void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
-                       unsigned state);
+                       unsigned passed);
 /// One more than there is room for; by itself, as it is rare and the other is not.
 void svpwm_replace_window(svpwm_pattern_t* pattern, const svpwm_window_t* window);
 
 static inline void svpwm_finder_end_interval(svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern,
                                              int32_t end) {
   if (end - f->begin < f->shortest) return;  // most intervals are short
-  svpwm_take_window(c, pattern, f->begin, end, f->state);
+  svpwm_take_window(c, pattern, f->begin, end, f->passed);
   f->ended = end;
 }
 
 /// An edge comes from a tick on, and by another at the latest; both are the instant wanted where that is certain.
 static inline void svpwm_finder_pass(svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern,
-                                     unsigned leg, int32_t earliest, int32_t latest) {
+                                     unsigned edge, int32_t earliest, int32_t latest) {
   svpwm_finder_end_interval(f, c, pattern, earliest);
   f->begin = q_max(f->begin, latest);
-  f->state = f->state ^ (1u << leg);
+  f->passed |= 1u << edge;
 }
 
 /// Before an edge that is not certain: it may come before the one that has ended the last window.

@@ -44,8 +44,6 @@ void hold_begin(drive_t* d) {
 
 void hold_end(void) { brake_release_hold.left = 0; }
 
-bool hold_is_on(const drive_t* d) { return brake_release_hold.left > 0u && d->state == DRIVE_RUN; }
-
 // Electrical acceleration, binary angle per period^2, Q8, without the load's and w'.
 static int32_t restoring_accel_q8(const drive_t* d) {
   const estimator_output_t* const now = &d->position.selected;

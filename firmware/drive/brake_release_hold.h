@@ -16,7 +16,7 @@ extern hold_t brake_release_hold;
 /// Holds the shaft for hold_time from now.
 void hold_begin(drive_t* d);
 void hold_end(void);
-bool hold_is_on(const drive_t* d);
+static inline bool hold_is_on(const drive_t* d) { return brake_release_hold.left > 0u && d->state == DRIVE_RUN; }
 
 /// One period; false when it is over and the speed controller has the torque current.
 bool hold_step(drive_t* d);

@@ -29,10 +29,10 @@ static svpwm_pattern_t short_circuit(const sampling_config_t* c) {
   return p;
 }
 
-static const hal_pwm_frame_t no_pulses = {{HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
-                                          {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
-                                          {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
-                                          {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE}};
+static const hal_pwm_frame_t no_pulses = {
+    {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
+    {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE},
+    {HAL_PWM_NONE, HAL_PWM_NONE, HAL_PWM_NONE}};
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
 static uint32_t angle_at_action(const drive_t* d) {
@@ -97,8 +97,7 @@ static void modulate_into(drive_t* d, uint16_t made) {
     d->limits |= LIMIT_VOLTAGE;
   }
   const svpwm_carried_t carried = {current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16};
-  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, f.rise_tick,
-                         f.fall_tick);
+  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, f.edge_tick);
   hal_profile_step(CYCLES_MODULATE);
   write_frame(d, &f, made);
 }

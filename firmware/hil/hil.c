@@ -48,7 +48,7 @@ static void own_window(void) {}
 
 static void stop_bursts(void) {
   hal_pwm_frame_t none;
-  for (uint16_t k = 0; k < HAL_PWM_LEGS; k++) none.rise_tick[k] = none.fall_tick[k] = HAL_PWM_NONE;
+  for (uint16_t k = 0; k < HAL_PWM_LEGS; k++) none.edge_tick[k] = none.edge_tick[HAL_PWM_LEGS + k] = HAL_PWM_NONE;
   for (uint16_t k = 0; k < HAL_PWM_WINDOWS; k++) none.burst_start_tick[k] = none.burst_end_tick[k] = HAL_PWM_NONE;
   (void)hal_pwm_write(&none, HAL_PWM_LAST_TICK);
 }

@@ -19,7 +19,7 @@
 // scope_read has given the last word of every channel; then it arms itself again.
 //
 // All but scope_step are for the background level. Cost: CYCLES_SCOPE of firmware/interfaces/isr_cycles.h while
-// recording. RAM: 4096 words.
+// recording. RAM: SCOPE_CHANNELS * SCOPE_DEPTH words.
 
 #ifndef STILLSPIN_FIRMWARE_SCOPE_SCOPE_H
 #define STILLSPIN_FIRMWARE_SCOPE_SCOPE_H
@@ -28,7 +28,7 @@
 #include <stdint.h>
 
 #define SCOPE_CHANNELS 4u
-#define SCOPE_DEPTH 1024u        // records; a power of two
+#define SCOPE_DEPTH 512u         // records; a power of two
 #define SCOPE_SHIFT_MAX 31u      // of a channel
 #define SCOPE_BY_SPAN (-1L)      // a hysteresis
 #define SCOPE_NOWHERE 0xFFFFu    // no trigger yet

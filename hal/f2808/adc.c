@@ -125,10 +125,12 @@ static inline uint32_t sum_of_start(uint16_t first_result) {
   return three + pair((uint16_t)(first_result + 6u));
 }
 
-uint16_t adc_slice_result(uint16_t n) {
-  const uint32_t read = pair(SEQ2_FIRST_RESULT + (n & 2u));
-  const uint32_t both = has_crosstalk ? less_crosstalk(read) : read;
-  return (uint16_t)(((n & 1u) == 0u) ? both : both >> 16);
+void adc_take_slice(uint16_t results[]) {
+  uint32_t currents = pair(SEQ2_FIRST_RESULT);
+  if (has_crosstalk) currents = less_crosstalk(currents);
+  results[0] = (uint16_t)(currents & 0xFFFFuL);
+  results[1] = (uint16_t)(currents >> 16);
+  results[2] = target_read16(RESULT(SEQ2_FIRST_RESULT + 2u));
 }
 
 typedef char sums_have_as_many_terms_as_bursts[(HAL_ADC_START_SAMPLES == 4u && HAL_ADC_END_SAMPLES == 3u) ? 1 : -1];

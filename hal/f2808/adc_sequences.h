@@ -11,8 +11,9 @@ void adc_sequence_windows(void);
 // Two pairs: currents, then link and auxiliary input.
 void adc_sequence_slices(void);
 
-// Result n of a slice: current a, current b, link, auxiliary input.
-uint16_t adc_slice_result(uint16_t n);
+// Of a slice: current a, current b, link.
+#define ADC_SLICE_RESULTS 3u
+void adc_take_slice(uint16_t results[]);
 
 // Back to the first slots of both sequences, without losing the triggers.
 void adc_rearm(void);

@@ -173,7 +173,7 @@ static inline bool is_in_time(uint16_t deadline_tick) {
 }
 
 static inline void write_leg(const hal_pwm_frame_t* frame, uint16_t leg) {
-  write_compare(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg), frame->rise_tick[leg], frame->fall_tick[leg]);
+  write_compare(EPWM_BASE(PWM_FIRST_LEG_MODULE + leg), frame->edge_tick[leg], frame->edge_tick[HAL_PWM_LEGS + leg]);
 }
 
 static inline void write_window(const hal_pwm_frame_t* frame, uint16_t window) {
@@ -202,8 +202,8 @@ static void tell_frame(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
   uint16_t words[2u * (HAL_PWM_LEGS + HAL_PWM_WINDOWS) + 1u];
   uint16_t n = 0u;
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
-    words[n++] = frame->rise_tick[leg];
-    words[n++] = frame->fall_tick[leg];
+    words[n++] = frame->edge_tick[leg];
+    words[n++] = frame->edge_tick[HAL_PWM_LEGS + leg];
   }
   for (uint16_t window = 0u; window < HAL_PWM_WINDOWS; window++) {
     words[n++] = frame->burst_start_tick[window];

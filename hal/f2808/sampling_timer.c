@@ -8,8 +8,7 @@
 #include "hal/hal_sampling_timer.h"
 
 #define CLOCK_MODULE PWM_SLICE_MODULE  // its time base counts the slices
-#define SLICE_RESULTS 3u
-#define TRIGGER_TICK 10u  // of the slice
+#define TRIGGER_TICK 10u               // of the slice
 
 // At once and not from the shadow: what was meant for this period must not come any more.
 static void write_compare_now(uint16_t module, uint16_t a, uint16_t b) {
@@ -99,19 +98,17 @@ void hal_sampling_timer_end(void) {
 }
 
 static void take_results(uint16_t* results) {
-  for (uint16_t n = 0u; n < SLICE_RESULTS; n++) {
-    results[n] = adc_slice_result(n);
-  }
+  adc_take_slice(results);
   adc_rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
-  replay_note_results(results, SLICE_RESULTS);
+  replay_note_results(results, ADC_SLICE_RESULTS);
 }
 
 void hal_sampling_timer_read(hal_timed_samples_t* slice) {
-  uint16_t results[SLICE_RESULTS];
+  uint16_t results[ADC_SLICE_RESULTS];
   if (replay_plays()) {
-    replay_take_results(results, SLICE_RESULTS);
+    replay_take_results(results, ADC_SLICE_RESULTS);
   } else {
     take_results(results);
   }

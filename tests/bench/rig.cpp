@@ -58,8 +58,8 @@ hal_pwm_frame_t pulses_along_a(std::uint16_t ticks, std::uint16_t base) {
   hal_pwm_frame_t f{};
   const std::uint16_t on[3] = {ticks, base, base};
   for (int leg = 0; leg < 3; ++leg) {
-    f.rise_tick[leg] = static_cast<std::uint16_t>(5000 - on[leg] / 2);
-    f.fall_tick[leg] = static_cast<std::uint16_t>(f.rise_tick[leg] + on[leg]);
+    f.edge_tick[leg] = static_cast<std::uint16_t>(5000 - on[leg] / 2);
+    f.edge_tick[HAL_PWM_LEGS + leg] = static_cast<std::uint16_t>(f.edge_tick[leg] + on[leg]);
     f.burst_start_tick[leg] = HAL_PWM_NONE;
     f.burst_end_tick[leg] = HAL_PWM_NONE;
   }

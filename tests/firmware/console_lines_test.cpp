@@ -178,7 +178,7 @@ TEST_F(ConsoleLines, AScopeThatWasOnlyGivenItsChannels) {
   EXPECT_EQ(command("scope"), "scope: idle, 0 records\r\n");
   (void)command("scope channels speed");
   EXPECT_EQ(command("scope"),
-            "scope: idle, 0 records\r\nchannels speed\r\ntrigger now, every 1, before 256, mode single\r\n");
+            "scope: idle, 0 records\r\nchannels speed\r\ntrigger now, every 1, before 128, mode single\r\n");
 }
 
 TEST_F(ConsoleLines, ARecordOfTheScopeIsARow) {
@@ -188,13 +188,13 @@ TEST_F(ConsoleLines, ARecordOfTheScopeIsARow) {
   (void)command("scope channels speed current_q state");
   (void)command("scope arm");
   inside::time_ms() = 7;
-  for (int k = 0; k < 1100; ++k) scope_step();
+  for (int k = 0; k < 600; ++k) scope_step();
   const std::string state = command("scope");
-  EXPECT_EQ(state.rfind("scope: done, 1024 records, trigger in record 256 at 7 ms\r\n", 0), 0u) << state;
+  EXPECT_EQ(state.rfind("scope: done, 512 records, trigger in record 128 at 7 ms\r\n", 0), 0u) << state;
   const auto row = [](const std::string& number) {
     return to(to(to(to(number, 6) + "600.50", 18) + "-5.500", 30) + "4", 42) + "\r\n";
   };
-  EXPECT_EQ(command("scope print 1000"), row("0") + row("1000"));
+  EXPECT_EQ(command("scope print 500"), row("0") + row("500"));
 }
 
 // A key ends a watch and the wait for a start, but not the wait for the store: its answer comes first.

@@ -60,7 +60,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
     inside::time_ms() = static_cast<std::uint32_t>(k);
     scope_step();
   }
-  EXPECT_TRUE(has(command("scope"), "scope: done, 1024 records, trigger in record 10"));
+  EXPECT_TRUE(has(command("scope"), "scope: done, 512 records, trigger in record 10"));
   const std::string rows = command("scope print 5", 60000);
   EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
   EXPECT_TRUE(has(rows, "-5.000      0.2500"));
@@ -91,7 +91,7 @@ TEST_F(ConsoleScope, AStepOfARecordMayBeMoreThanOne) {
   inside::state() = DRIVE_RUN;
   inside::deviation_q20() = -(9 << 20);  // in a period of 100 us
   steps(2000);
-  EXPECT_TRUE(has(command("scope print 1000", 2000), "\n1000  -90000.0"));
+  EXPECT_TRUE(has(command("scope print 500", 2000), "\n500   -90000.0"));
 }
 
 TEST_F(ConsoleScope, OneToFourChannels) {
@@ -147,8 +147,8 @@ TEST_F(ConsoleScope, NumbersAreWholeAndFitAWord) {
               std::string("every") + number + " is not a whole number in 1 .. 65535: nothing changed\r\n");
   }
   EXPECT_EQ(command("scope every 0"), "every 0 is not a whole number in 1 .. 65535: nothing changed\r\n");
-  EXPECT_EQ(command("scope before 1024"), "before 1024 is not a whole number in 0 .. 1023: nothing changed\r\n");
-  EXPECT_TRUE(has(command("scope before 1023"), "set"));
+  EXPECT_EQ(command("scope before 512"), "before 512 is not a whole number in 0 .. 511: nothing changed\r\n");
+  EXPECT_TRUE(has(command("scope before 511"), "set"));
   EXPECT_EQ(scope_setup_in_force()->decimation, 65535);
   EXPECT_TRUE(has(command("scope every 1e1"), "set"));
   EXPECT_EQ(scope_setup_in_force()->decimation, 10);
@@ -190,7 +190,7 @@ TEST_F(ConsoleScope, APrintEndsWhenTheScopeIsArmedAgain) {
   run(500);
   EXPECT_TRUE(has(text, "\n2     4 ")) << text;
   ASSERT_TRUE(scope_arm());
-  steps(1000);
+  steps(500);
   text.clear();
   run(20000);
   EXPECT_EQ(text, "> ") << "no rows of records that nobody made";

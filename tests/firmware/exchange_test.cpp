@@ -40,8 +40,7 @@ class Exchange : public Drive {
   using Seen = std::tuple<drive_state_t, drive_fault_t, std::int32_t, std::int32_t, std::int32_t, std::uint32_t,
                           std::int32_t, std::int32_t, std::vector<std::uint16_t>, std::uint16_t>;
   static Seen seen() {
-    std::vector<std::uint16_t> edges(board.frame.rise_tick, board.frame.rise_tick + 3);
-    edges.insert(edges.end(), board.frame.fall_tick, board.frame.fall_tick + 3);
+    std::vector<std::uint16_t> edges(std::begin(board.frame.edge_tick), std::end(board.frame.edge_tick));
     edges.insert(edges.end(), board.frame.burst_start_tick, board.frame.burst_start_tick + 3);
     const drive_control_t& c = inside::control();
     return {inside::state(),   inside::fault(),        inside::limits(),

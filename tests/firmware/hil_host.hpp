@@ -19,7 +19,7 @@ namespace stillspin::test {
 /// From now on the board's pulses and windows are played while a recording is played, as the drivers do it.
 inline void let_tapes_play() {
   board.plays_frame = [](const hal_pwm_frame_t& frame, bool* in_time) {
-    replay_output(REPLAY_FRAME, frame.rise_tick, HAL_PWM_LEGS);
+    replay_output(REPLAY_FRAME, frame.edge_tick, HAL_PWM_LEGS);
     replay_call();
     if (replay_plays()) *in_time = replay_take() != 0;
     return replay_plays();

@@ -134,7 +134,7 @@ TEST_F(Stepping, ADriveDoesWhatItDoesByItself) {
     HilPeriod told = empty();
     for (const hal_adc_window_t& w : recorded[n].windows) told.windows.push_back(recorded_window(0, w));
     const HilAnswer a = step(told);
-    const std::uint16_t* rise = recorded[n].frame.rise_tick;
+    const std::uint16_t* rise = recorded[n].frame.edge_tick;
     ASSERT_TRUE(a.fits);
     ASSERT_EQ(a.sequence, n);
     ASSERT_EQ(a.torn, 0) << n;

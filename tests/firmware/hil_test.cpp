@@ -82,8 +82,8 @@ TEST_F(HostInTheLoop, TheDriveBeginsAnewWithEveryEntry) {
     ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
     EXPECT_GT(board.gates_off_calls, switched_off);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(board.frame.rise_tick[k], HAL_PWM_NONE) << "the board itself makes no pulses";
-      EXPECT_EQ(board.frame.fall_tick[k], HAL_PWM_NONE);
+      EXPECT_EQ(board.frame.edge_tick[k], HAL_PWM_NONE) << "the board itself makes no pulses";
+      EXPECT_EQ(board.frame.edge_tick[HAL_PWM_LEGS + k], HAL_PWM_NONE);
       EXPECT_EQ(board.frame.burst_start_tick[k], HAL_PWM_NONE) << "nor does it sample";
       EXPECT_EQ(board.frame.burst_end_tick[k], HAL_PWM_NONE);
     }

@@ -74,7 +74,7 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   // As far as the current at the edge says: by the blocked or the released time, never more.
   int blocked = 0, released = 0;
   for (std::uint16_t leg = 0; leg < 3; ++leg) {
-    for (const int shift : {p.pulses.at[leg] - f.rise_tick[leg], p.pulses.at[3 + leg] - f.fall_tick[leg]}) {
+    for (const int shift : {p.pulses.at[leg] - f.edge_tick[leg], p.pulses.at[3 + leg] - f.edge_tick[3 + leg]}) {
       EXPECT_GE(shift, c.turn_off_ticks);
       EXPECT_LE(shift, c.turn_on_ticks);
       blocked += shift == c.turn_on_ticks;
@@ -84,16 +84,13 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   EXPECT_GT(blocked, 0);
   EXPECT_GT(released, 0);
   svpwm_pattern_t again = p;
-  std::uint16_t rises[3], falls[3];
+  std::uint16_t edges[SVPWM_EDGES];
   const double angle = 0.3 + 1.5 * 0.12;
   const machine_model_t& m = inside::model();
   const svpwm_carried_t carried = {raw_ab(Vector{1.5, -4.0}.turned(angle), 20), (m.yd_q30 + m.yq_q30) / 2,
                                    inside::link_q16()};
-  svpwm_compensate_edges(&c, &inside::config().modulator.sampling, &carried, &again, rises, falls);
-  for (std::uint16_t leg = 0; leg < 3; ++leg) {
-    EXPECT_NEAR(f.rise_tick[leg], rises[leg], 1) << leg;
-    EXPECT_NEAR(f.fall_tick[leg], falls[leg], 1) << leg;
-  }
+  svpwm_compensate_edges(&c, &inside::config().modulator.sampling, &carried, &again, edges);
+  for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) EXPECT_NEAR(f.edge_tick[edge], edges[edge], 1) << edge;
   for (int k = 0; k < 3; ++k) {
     const bool used = k < p.window_count;
     EXPECT_EQ(f.burst_start_tick[k], used ? p.windows[k].start : HAL_PWM_NONE);
@@ -212,7 +209,7 @@ TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
   for (const std::int16_t edge : p.pulses.at) {
     EXPECT_LT(edge, 0) << "a leg is never high";
   }
-  for (int leg = 0; leg < 3; ++leg) EXPECT_EQ(board.frame.rise_tick[leg], static_cast<std::uint16_t>(p.pulses.at[leg]));
+  for (int leg = 0; leg < 3; ++leg) EXPECT_EQ(board.frame.edge_tick[leg], static_cast<std::uint16_t>(p.pulses.at[leg]));
   EXPECT_EQ(board.frame.burst_start_tick[0], p.windows[0].start);
 }
 

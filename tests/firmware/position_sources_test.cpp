@@ -6,7 +6,6 @@
 extern "C" {
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
@@ -159,7 +158,7 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
     run_with(POSITION_OBSERVER);
     parameters.map_known = 1;
     ASSERT_TRUE(drive_config_load(&inside::config()));
-    brake_release_hold.left = held ? 100 : 0;
+    inside::schedule().held = held;
     inside::schedule().renews = true;
     deviation_observer_t& o = inside::observer();
     o.p_aa = o.p_as = o.p_al = o.p_ss = o.p_sl = 0;

@@ -182,12 +182,12 @@ TEST_F(RequestFields, ResultsOfACommissioningAreToldWhole) {
 
 TEST_F(RequestFields, AScopeIsSetUpAsTold) {
   NEEDS("scope");
-  const Octets head = little(0x0102, 2) + little(0x0203, 2), level = i32(-70000);
+  const Octets head = little(0x0102, 2) + little(0x0103, 2), level = i32(-70000);
   const Octets channels = little(1, 1) + Octets{7, 0, 12};
   ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, head + Octets{SCOPE_AUTO, SCOPE_BELOW, 4, 0} + level + channels).status(), OK);
   const scope_setup_t s = *scope_setup_in_force();
   EXPECT_EQ(s.decimation, 0x0102);
-  EXPECT_EQ(s.pretrigger, 0x0203);
+  EXPECT_EQ(s.pretrigger, 0x0103);
   EXPECT_EQ(s.mode, SCOPE_AUTO);
   EXPECT_EQ(s.edge, SCOPE_BELOW);
   EXPECT_EQ(s.trigger, 4);
@@ -222,7 +222,7 @@ TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
   EXPECT_EQ(of(ask(REQUEST_SCOPE_STATE)),
             Octets{SCOPE_DONE} + little(SCOPE_DEPTH, 2) + little(300, 2) + little(0x01020000 + 300, 4));
   EXPECT_EQ(of(ask(REQUEST_SCOPE_READ, Octets{1} + little(SCOPE_DEPTH - 1, 2) + Octets{100})),
-            little(static_cast<std::uint32_t>(-1023), 2))
+            little(static_cast<std::uint32_t>(1 - int(SCOPE_DEPTH)), 2))
       << "the last one";
   EXPECT_EQ(of(ask(REQUEST_SCOPE_READ, Octets{0} + little(300, 2) + Octets{2})), little(300, 2) + little(301, 2));
   EXPECT_EQ(ask(REQUEST_SCOPE_READ, Octets{0} + little(SCOPE_DEPTH, 2) + Octets{1}).status(), RANGE);

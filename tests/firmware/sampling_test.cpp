@@ -106,9 +106,9 @@ TEST_F(Drive, EveryFrameIsOneThatTheHardwareCanDo) {
     period(w);
     const hal_pwm_frame_t& f = board.frame;
     for (int leg = 0; leg < 3; ++leg) {
-      ASSERT_GE(f.rise_tick[leg], 1);
-      ASSERT_LT(f.rise_tick[leg], f.fall_tick[leg]);
-      ASSERT_LE(f.fall_tick[leg], 9999);
+      ASSERT_GE(f.edge_tick[leg], 1);
+      ASSERT_LT(f.edge_tick[leg], f.edge_tick[HAL_PWM_LEGS + leg]);
+      ASSERT_LE(f.edge_tick[HAL_PWM_LEGS + leg], 9999);
     }
     int last = -1000;
     for (int k = 0; k < 3; ++k) {

@@ -12,7 +12,7 @@ TEST_F(Scope, SingleStaysDone) {
   scope_setup_t s = counting();
   s.edge = SCOPE_AT_ONCE;
   arm(s);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   (void)read();
   interrupts(100);
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
@@ -29,15 +29,15 @@ TEST_F(Scope, AutoArmsAgainWhenEveryChannelHasBeenRead) {
   interrupts(2000);
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
   std::int16_t word;
-  EXPECT_EQ(scope_read(0, 1022, &word, 1), 1);
+  EXPECT_EQ(scope_read(0, SCOPE_DEPTH - 2, &word, 1), 1);
   (void)read(1);
   (void)read(1);
-  EXPECT_EQ(scope_read(0, 1024, &word, 1), 0) << "behind the last word there is none to give";
+  EXPECT_EQ(scope_read(0, SCOPE_DEPTH, &word, 1), 0) << "behind the last word there is none to give";
   EXPECT_EQ(scope_status().state, SCOPE_DONE) << "channel 0 has not been read to its end";
-  EXPECT_EQ(scope_read(0, 1023, &word, 1), 1);
-  EXPECT_EQ(word, 1023);
+  EXPECT_EQ(scope_read(0, SCOPE_DEPTH - 1, &word, 1), 1);
+  EXPECT_EQ(word, int(SCOPE_DEPTH) - 1);
   EXPECT_EQ(scope_status().state, SCOPE_FILLING);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   expect_consecutive(read(0), 2000);
 }
 
@@ -46,7 +46,7 @@ TEST_F(Scope, StopEndsAuto) {
   s.edge = SCOPE_AT_ONCE;
   s.mode = SCOPE_AUTO;
   arm(s);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   scope_stop();
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
   (void)read();
@@ -84,10 +84,10 @@ TEST_F(Scope, ReadingStaysInsideTheRecords) {
   scope_setup_t s = counting();
   s.edge = SCOPE_AT_ONCE;
   arm(s);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   std::array<std::int16_t, 200> words;
-  EXPECT_EQ(scope_read(0, 1000, words.data(), 200), 24);
-  EXPECT_EQ(scope_read(0, 1024, words.data(), 200), 0);
+  EXPECT_EQ(scope_read(0, SCOPE_DEPTH - 24, words.data(), 200), 24);
+  EXPECT_EQ(scope_read(0, SCOPE_DEPTH, words.data(), 200), 0);
   EXPECT_EQ(scope_read(0, 65535, words.data(), 200), 0);
   EXPECT_EQ(scope_read(1, 0, words.data(), 200), 0) << "no such channel";
   EXPECT_EQ(scope_read(0, 0, words.data(), 0), 0);
@@ -104,7 +104,7 @@ TEST_F(Scope, RefusedSetUpsChangeNothing) {
     EXPECT_EQ(scope_setup_in_force()->decimation, 1);
   };
   refused([](scope_setup_t& s) { s.decimation = 0; });
-  refused([](scope_setup_t& s) { s.pretrigger = 1024; });
+  refused([](scope_setup_t& s) { s.pretrigger = SCOPE_DEPTH; });
   refused([](scope_setup_t& s) { s.mode = static_cast<scope_mode_t>(2); });
   refused([](scope_setup_t& s) { s.edge = static_cast<scope_edge_t>(6); });
   refused([](scope_setup_t& s) { s.trigger = signals_listed; });

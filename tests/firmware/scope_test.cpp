@@ -34,7 +34,7 @@ TEST_F(Scope, TriggerLiesBehindItsPretrigger) {
   EXPECT_EQ(scope_status().trigger_time_ms, 50u);
   EXPECT_EQ(scope_status().recorded, 501);
   EXPECT_EQ(scope_status().trigger_at, 500);
-  interrupts(922);
+  interrupts(SCOPE_DEPTH - 102);
   EXPECT_EQ(scope_status().state, SCOPE_TRIGGERED);
   interrupt();
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
@@ -43,15 +43,15 @@ TEST_F(Scope, TriggerLiesBehindItsPretrigger) {
 }
 
 TEST_F(Scope, RingWrapsManyTimes) {
-  for (const int before : {1023, 1024, 1025, 5000, 10239}) {
-    for (const std::uint16_t pretrigger : {0, 1, 512, 1023}) {
+  for (const int before : {int(SCOPE_DEPTH) - 1, int(SCOPE_DEPTH), int(SCOPE_DEPTH) + 1, 5000, 10239}) {
+    for (const std::uint16_t pretrigger : {0u, 1u, 256u, SCOPE_DEPTH - 1u}) {
       scope_setup_t s = counting();
       s.pretrigger = pretrigger;
       n_ = 0;
       arm(s);
       interrupts(before);
       interrupt(100);
-      interrupts(1024);
+      interrupts(SCOPE_DEPTH);
       ASSERT_EQ(scope_status().state, SCOPE_DONE);
       ASSERT_EQ(scope_status().trigger_at, pretrigger);
       expect_consecutive(read(), before - pretrigger);
@@ -80,7 +80,7 @@ TEST_F(Scope, FirstInterruptBehindThePretriggerTriggers) {
   interrupts(100);
   interrupt(100);
   EXPECT_EQ(scope_status().state, SCOPE_TRIGGERED);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   expect_consecutive(read(), 0);
 }
 
@@ -195,11 +195,11 @@ TEST_F(Scope, AGreatChangeIsForgotten) {
 TEST_F(Scope, AtOnceStillHasItsPretrigger) {
   scope_setup_t s = counting();
   s.edge = SCOPE_AT_ONCE;
-  s.pretrigger = 1000;
+  s.pretrigger = 500;
   arm(s);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
-  EXPECT_EQ(scope_status().trigger_at, 1000);
+  EXPECT_EQ(scope_status().trigger_at, 500);
   expect_consecutive(read(), 0);
 }
 
@@ -208,7 +208,7 @@ TEST_F(Scope, DecimationKeepsOneInSoMany) {
   s.decimation = 7;
   s.edge = SCOPE_AT_ONCE;
   arm(s);
-  interrupts(1023 * 7);
+  interrupts((SCOPE_DEPTH - 1) * 7);
   EXPECT_EQ(scope_status().state, SCOPE_TRIGGERED);
   interrupt();
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
@@ -227,7 +227,7 @@ TEST_F(Scope, TriggerIsSeenBetweenTwoRecords) {
   EXPECT_EQ(scope_status().state, SCOPE_ARMED);
   interrupt();  // 60
   EXPECT_EQ(scope_status().state, SCOPE_TRIGGERED);
-  interrupts(10 * 1024);
+  interrupts(10 * SCOPE_DEPTH);
   expect_consecutive(read(), 30, 10);
 }
 
@@ -244,7 +244,7 @@ TEST_F(Scope, WhatIsUnknownIsNoNumber) {
   interrupts(4, -1);
   inside::state() = DRIVE_READY;
   scope_step();
-  interrupts(1024, -1);
+  interrupts(SCOPE_DEPTH, -1);
   for (std::uint16_t channel = 0; channel < 2; ++channel) {
     const std::vector<int> words = read(channel);
     EXPECT_EQ(words[3], -1);
@@ -266,7 +266,7 @@ TEST_F(Scope, WordsAreShiftedAndSaturated) {
   const std::int32_t values[] = {0,       32767, 32768, -32768, -32769, 524287,     524288,
                                  -524289, 15,    -1,    -16,    -17,    2147483647, -2147483647 - 1};
   for (const std::int32_t v : values) interrupt(v);
-  interrupts(1024);
+  interrupts(SCOPE_DEPTH);
   for (std::uint16_t channel = 0; channel < 4; ++channel) {
     const std::vector<int> words = read(channel);
     for (std::size_t k = 0; k < std::size(values); ++k) {
@@ -286,7 +286,7 @@ TEST_F(Scope, RunsInTheControlInterrupt) {
   arm(s);
   period();
   drive_trip(&drive, FAULT_STOP);
-  periods(1024);
+  periods(SCOPE_DEPTH);
   EXPECT_EQ(scope_status().state, SCOPE_DONE);
   EXPECT_EQ(scope_status().trigger_time_ms, 40u);
   const std::vector<int> words = read();

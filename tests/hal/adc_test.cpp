@@ -79,9 +79,11 @@ TEST_F(Adc, second_channels_are_freed_of_the_crosstalk_before_revision_c) {
     EXPECT_EQ(window.end_b, 3 * (early ? 990 : 1000));
     EXPECT_EQ(window.link, 2560);
     EXPECT_EQ(window.aux, early ? 0 : 4);
-    EXPECT_EQ(adc_slice_result(0), 2560);
-    EXPECT_EQ(adc_slice_result(1), early ? 990 : 1000);
-    EXPECT_EQ(adc_slice_result(2), 2560);
+    std::uint16_t slice[ADC_SLICE_RESULTS];
+    adc_take_slice(slice);
+    EXPECT_EQ(slice[0], 2560);
+    EXPECT_EQ(slice[1], early ? 990 : 1000);
+    EXPECT_EQ(slice[2], 2560);
   }
 }
 
@@ -168,7 +170,9 @@ TEST_F(Adc, slices_are_a_pair_of_currents_and_the_slow_pair) {
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3] & 0x00FFu, 0x0010u);
   EXPECT_EQ(bus.steps.at(bus.last_write_of_all()).address, REG_ADCTRL2) << "armed last";
   for (std::uint16_t n = 0; n < 16; ++n) bus.words[REG_MIRROR_ADCRESULT0 + n] = static_cast<std::uint16_t>(100 + n);
-  for (std::uint16_t n = 0; n < 4; ++n) EXPECT_EQ(adc_slice_result(n), 108 + n);
+  std::uint16_t slice[ADC_SLICE_RESULTS];
+  adc_take_slice(slice);
+  for (std::uint16_t n = 0; n < ADC_SLICE_RESULTS; ++n) EXPECT_EQ(slice[n], 108 + n);
   adc_sequence_windows();
   EXPECT_EQ(bus.words[REG_ADCMAXCONV], 0x0033u);
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3], 0x1000u);

@@ -61,7 +61,7 @@ class OnChip : public ::testing::Test {
  protected:
   void SetUp() override {
     fw = Firmware{};
-    fw.frame = hal_pwm_frame_t{{1000, 2000, 3000}, {7000, 6000, 5000}, {300, 3300, 7200}, {700, 4300, 8000}};
+    fw.frame = hal_pwm_frame_t{{1000, 2000, 3000, 7000, 6000, 5000}, {300, 3300, 7200}, {700, 4300, 8000}};
     fw.deadline = 9800;
     fw.gates_on = true;
   }

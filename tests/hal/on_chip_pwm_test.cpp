@@ -44,8 +44,8 @@ TEST_F(OnChipPwm, pulses_stand_where_the_frame_puts_them) {
   board.run_until(start + 5 * kPeriod - 1);
   expect_clean();
   for (int leg = 0; leg < 3; ++leg) {
-    const Tick rise = fw.frame.rise_tick[leg];
-    const Tick fall = fw.frame.fall_tick[leg];
+    const Tick rise = fw.frame.edge_tick[leg];
+    const Tick fall = fw.frame.edge_tick[HAL_PWM_LEGS + leg];
     for (Tick n = 0; n < 5; ++n) {
       const auto at = [&](bool upper, bool rising) {
         const std::vector<Tick> all = edges(leg, upper, rising, start);
@@ -60,7 +60,7 @@ TEST_F(OnChipPwm, pulses_stand_where_the_frame_puts_them) {
 }
 
 TEST_F(OnChipPwm, leg_without_a_pulse_keeps_its_lower_device_on) {
-  fw.frame.rise_tick[1] = HAL_PWM_NONE;
+  fw.frame.edge_tick[1] = HAL_PWM_NONE;
   board.run_until(kStarted);
   const Tick start = period_start();
   board.run_until(start + 5 * kPeriod);
@@ -70,8 +70,8 @@ TEST_F(OnChipPwm, leg_without_a_pulse_keeps_its_lower_device_on) {
 }
 
 TEST_F(OnChipPwm, both_devices_of_a_leg_are_never_on) {
-  fw.frame.rise_tick[0] = 1;
-  fw.frame.fall_tick[0] = 9999;  // the shortest pause that a frame can ask for
+  fw.frame.edge_tick[0] = 1;
+  fw.frame.edge_tick[HAL_PWM_LEGS + 0] = 9999;  // the shortest pause that a frame can ask for
   board.run_until(kStarted + 10 * kPeriod);
   for (const BenchWorld::Pins& p : world.pins) {
     EXPECT_FALSE(p.a && p.b) << "module " << p.module << " at " << p.t;
@@ -82,7 +82,7 @@ TEST_F(OnChipPwm, frame_takes_effect_at_the_next_period_start) {
   board.run_until(kStarted);
   const Tick start = period_start() + kPeriod;
   board.run_until(start - 1);
-  fw.frame.rise_tick[0] = 1500;  // read by the control interrupt of the period that begins at `start`
+  fw.frame.edge_tick[0] = 1500;  // read by the control interrupt of the period that begins at `start`
   board.run_until(start + 2 * kPeriod - 1);
   const std::vector<Tick> lower_off = edges(0, false, false, start);
   ASSERT_EQ(lower_off.size(), 2u);
@@ -101,7 +101,7 @@ TEST_F(OnChipPwm, late_frame_repeats_the_last_one) {
   board.run_until(kStarted);
   const Tick start = period_start() + kPeriod;
   board.run_until(start - 1);
-  fw.frame.rise_tick[0] = 1500;
+  fw.frame.edge_tick[0] = 1500;
   fw.write_at_tick = 9900;
   fw.deadline = 9800;
   const std::size_t before = fw.in_time.size();
@@ -140,8 +140,8 @@ TEST_F(OnChipPwm, frame_at_the_last_moment_is_written_as_a_whole) {
     board.run_until(start - 1);
     const int shift = write_at - fw.deadline + 21;  // a frame unlike all before
     const std::uint16_t rise = static_cast<std::uint16_t>(1000 + 10 * shift);
-    fw.frame.rise_tick[0] = rise;
-    fw.frame.rise_tick[2] = static_cast<std::uint16_t>(3000 + 10 * shift);
+    fw.frame.edge_tick[0] = rise;
+    fw.frame.edge_tick[2] = static_cast<std::uint16_t>(3000 + 10 * shift);
     fw.write_at_tick = write_at;
     const std::size_t n = fw.in_time.size();
     board.run_until(start + kPeriod + 1000);
@@ -149,7 +149,7 @@ TEST_F(OnChipPwm, frame_at_the_last_moment_is_written_as_a_whole) {
     board.run_until(start + 2 * kPeriod - 1);
     ASSERT_GT(fw.in_time.size(), n);
     const bool new_a = edges(0, false, false, start + kPeriod).at(0) == rise;
-    const bool new_c = edges(2, false, false, start + kPeriod).at(0) == fw.frame.rise_tick[2];
+    const bool new_c = edges(2, false, false, start + kPeriod).at(0) == fw.frame.edge_tick[2];
     EXPECT_EQ(new_a, fw.in_time[n]) << "written at " << write_at;
     EXPECT_EQ(new_c, fw.in_time[n]) << "written at " << write_at;
   }

@@ -89,7 +89,7 @@ TEST_F(OnChipSlices, EndGivesPulsesAndWindowsBack) {
   EXPECT_EQ(fw.windows.size() - windows, 6u) << "three a period";
   const std::vector<Tick> off = edges(0, false, false, start + 4 * kPeriod);
   ASSERT_EQ(off.size(), 2u);
-  EXPECT_EQ(off[0], fw.frame.rise_tick[0]);
+  EXPECT_EQ(off[0], fw.frame.edge_tick[0]);
 }
 
 TEST_F(OnChipSlices, RefusesWhatDoesNotFillThePeriodAndWhatIsTooShort) {

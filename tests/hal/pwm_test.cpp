@@ -11,7 +11,7 @@ constexpr std::uint16_t kDeadBand = 200;  // 2 us
 constexpr std::uint32_t kOverCurrentPin = 1u << 12;
 
 hal_pwm_frame_t frame_of_distinct_values() {
-  return hal_pwm_frame_t{{101, 201, 301}, {1101, 1201, 1301}, {401, 501, 601}, {1401, 1501, 1601}};
+  return hal_pwm_frame_t{{101, 201, 301, 1101, 1201, 1301}, {401, 501, 601}, {1401, 1501, 1601}};
 }
 }  // namespace
 
@@ -140,8 +140,8 @@ TEST_F(Pwm, frame_goes_to_the_compare_registers) {
   bus.words[EPWM_BASE(1) + EPWM_TBCTR] = 5000;
   ASSERT_TRUE(hal_pwm_write(&frame, 5000)) << "the deadline itself is in time";
   for (unsigned i = 0; i < 3; ++i) {
-    EXPECT_EQ(epwm(1 + i, EPWM_CMPA_CMPA), frame.rise_tick[i]);
-    EXPECT_EQ(epwm(1 + i, EPWM_CMPB), frame.fall_tick[i]);
+    EXPECT_EQ(epwm(1 + i, EPWM_CMPA_CMPA), frame.edge_tick[i]);
+    EXPECT_EQ(epwm(1 + i, EPWM_CMPB), frame.edge_tick[HAL_PWM_LEGS + i]);
     EXPECT_EQ(epwm(4 + i, EPWM_CMPA_CMPA), frame.burst_start_tick[i]);
     EXPECT_EQ(epwm(4 + i, EPWM_CMPB), frame.burst_end_tick[i]);
   }

@@ -45,7 +45,7 @@ std::function<std::uint32_t()> quiet(F f) {
   };
 }
 
-const hal_pwm_frame_t kFrame = {{101, 201, 301}, {1101, 1201, 1301}, {401, 501, 601}, {1401, 1501, 1601}};
+const hal_pwm_frame_t kFrame = {{101, 201, 301, 1101, 1201, 1301}, {401, 501, 601}, {1401, 1501, 1601}};
 
 Words frame_by(std::uint16_t deadline) {
   return {REPLAY_FRAME, 101, 1101, 201, 1201, 301, 1301, 401, 1401, 501, 1501, 601, 1601, deadline};

@@ -24,7 +24,7 @@ static inline void any_modulator(modulator_config_t* c) {
 static inline void any_dead_time(dead_time_config_t* c) {
   c->turn_on_ticks = any_ticks(0, 240);
   c->turn_off_ticks = any_ticks(0, 240);
-  c->edge_band_q20 = any_from(0, 4 * AMPERES_Q20);
+  c->edge_band_q20 = any_from(AMPERES_Q20 / 100, 4 * AMPERES_Q20);
   c->band_q20 = any_from(AMPERES_Q20 / 100, 2 * AMPERES_Q20);
   c->drop_q16 = any_from(0, 5 * VOLTS_Q16);
   dead_time_design(c);

@@ -62,7 +62,7 @@ static void convert(void) {
 
 static void switch_gates(void) {
   hal_pwm_frame_t frame;
-  for (uint16_t k = 0; k < HAL_PWM_LEGS; k++) frame.rise_tick[k] = frame.fall_tick[k] = any_u16;
+  for (uint16_t k = 0; k < HAL_PWM_LEGS; k++) frame.edge_tick[k] = frame.edge_tick[HAL_PWM_LEGS + k] = any_u16;
   for (uint16_t k = 0; k < HAL_PWM_WINDOWS; k++) frame.burst_start_tick[k] = frame.burst_end_tick[k] = any_u16;
   (void)hal_pwm_write(&frame, any_u16);
   (void)hal_pwm_set_dead_band(any_u16);

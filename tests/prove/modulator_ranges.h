@@ -23,18 +23,18 @@ modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, e
                                   ab_t voltage_q16, int32_t link_q16, svpwm_pulses_t* pulses);
 
 /*@ requires \valid_read(c) && \valid_read(sampling) && \valid_read(carried) && \valid(pattern);
-    requires \valid(rise + (0 .. 2)) && \valid(fall + (0 .. 2));
+    requires \valid(sent + (0 .. 5));
     requires \initialized(&pattern->pulses.at[0 .. 5]) && OF_EDGES(pattern->pulses.at);
     requires \initialized(&pattern->pulses.order[0 .. 5]) && OF_ORDER(pattern->pulses.order);
     requires \initialized(&pattern->windows[0 .. 2]) && OF_WINDOWS(pattern);
     requires VECTOR_AB(carried->current_q20, CARRIED_MAX_Q20) && FROM_TO(carried->inverse_inductance_q30, 0, Y_END_Q30);
     requires FROM_TO(carried->link_q16, 0, VOLTAGE_MAX_Q16);
-    assigns pattern->windows[0 .. 2], pattern->window_count, rise[0 .. 2], fall[0 .. 2]
+    assigns pattern->windows[0 .. 2], pattern->window_count, sent[0 .. 5]
             \from *c, *sampling, *carried, *pattern;
     ensures FROM_TO(pattern->window_count, 0, 3); ensures OF_WINDOWS(pattern);
-    ensures \initialized(&rise[0 .. 2]) && \initialized(&fall[0 .. 2]); */
+    ensures \initialized(&sent[0 .. 5]); */
 void svpwm_compensate_edges(const dead_time_config_t* c, const sampling_config_t* sampling,
-                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, uint16_t rise[], uint16_t fall[]);
+                            const svpwm_carried_t* carried, svpwm_pattern_t* pattern, uint16_t sent[]);
 
 /*@ requires \valid_read(p) && OF_EDGES(p->at) && FROM_TO(link_q16, 0, VOLTAGE_MAX_Q16);
     assigns \result \from *p, link_q16; ensures VECTOR_AB(\result, 2 * VOLTAGE_MAX_Q16); */

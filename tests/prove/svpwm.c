@@ -21,7 +21,7 @@ static bool configure(void) {
 // Any edges of a period, in one order: that they lie in the period is what layouts.c proves.
 static void send(const svpwm_pulses_t* pulses) {
   static svpwm_pattern_t pattern;
-  uint16_t rise[SVPWM_LEGS], fall[SVPWM_LEGS];
+  uint16_t sent[SVPWM_EDGES];
   pattern.pulses = *pulses;
   for (uint16_t k = 0; k < SVPWM_EDGES; k++) pattern.pulses.at[k] = any_ticks(-1, SVPWM_PERIOD_TICKS);
   for (uint16_t k = 0; k < SVPWM_WINDOWS; k++) {
@@ -30,7 +30,7 @@ static void send(const svpwm_pulses_t* pulses) {
   }
   const int32_t link_q16 = any_from(0, VOLTAGE_MAX_Q16);
   const svpwm_carried_t carried = {any_vector(CARRIED_MAX_Q20), any_from(0, Y_END_Q30), link_q16};
-  svpwm_compensate_edges(&dead_time, &config.sampling, &carried, &pattern, rise, fall);
+  svpwm_compensate_edges(&dead_time, &config.sampling, &carried, &pattern, sent);
   (void)svpwm_mean_q16(&pattern.pulses, link_q16);
   const int16_t middles[SVPWM_WINDOWS] = {any_ticks(0, SVPWM_PERIOD_TICKS), any_ticks(0, SVPWM_PERIOD_TICKS),
                                           any_ticks(0, SVPWM_PERIOD_TICKS)};

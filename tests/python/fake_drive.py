@@ -15,7 +15,6 @@ from fake_tables import (
     COMMISSION,
     CONFLICT,
     CONFLICT_WORDS,
-    DEPTH,
     FAULT,
     LENGTH,
     OK,
@@ -34,6 +33,7 @@ from fake_tables import (
     raw,
 )
 
+from stillspin.drive.scope import DEPTH
 from stillspin.link.records import Record, to_wire
 from stillspin.link.splitter import Splitter, Text
 

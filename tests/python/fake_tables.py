@@ -35,7 +35,6 @@ WORDS = {
 CONFLICT_WORDS = "link_regulation must be above link_minimum"
 OK, UNKNOWN, RANGE, RUNNING, LENGTH, BUSY, STATE, CONFLICT = range(8)
 READY, RUN, STOP, FAULT, COMMISSION = 2, 4, 5, 6, 7
-DEPTH = 1024
 
 
 class RefusalError(Exception):

@@ -108,14 +108,14 @@ def test_a_capture_is_written_in_every_form(ask, tmp_path):
     options = [part for file in files for part in ("--out", file)]
     result = ask("scope", "speed", "current_d=4", "--trigger", "speed", "--level", 5, *options)
     assert result.exit_code == 0, result.stderr
-    assert "1024 records every 0.1 ms" in result.stdout
+    assert "512 records every 0.1 ms" in result.stdout
     table = pq.read_table(tmp_path / "capture.parquet")
     assert table.column_names == ["time", "speed", "current_d"]
     assert json.loads(table.schema.metadata[b"stillspin"])["trigger"]["level"] == 5.0
     rows = list(csv.reader((tmp_path / "capture.csv").open()))
     assert rows[0] == ["time [s]", "speed [rpm]", "current_d [A]"]
-    assert len(rows) == 1025
-    assert float(rows[257][0]) == 0.0
+    assert len(rows) == 513
+    assert float(rows[129][0]) == 0.0
     assert (tmp_path / "capture.png").read_bytes().startswith(b"\x89PNG")
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*files, "home"])
 

@@ -192,7 +192,7 @@ def test_the_commands(port, home, tmp_path, monkeypatch):
     dumped = call("params", "dump", "all.toml")
     assert "parameters; see all.toml" in dumped
     assert call("params", "load", "all.toml").startswith("0 of ")
-    assert "1024 records every 0.1 ms" in call("scope", "current_d", "current_q", "--out", "x.csv")
+    assert "512 records every 0.1 ms" in call("scope", "current_d", "current_q", "--out", "x.csv")
     step = ["speed", "speed_reference", "--trigger", "speed_reference", "--level", "100", "--decimation", "2"]
     call("scope", *step, "--run", "600", "--out", "step.csv")
     rows = [line.split(",") for line in (tmp_path / "step.csv").read_text().splitlines() if line[0] in "-0123456789"]

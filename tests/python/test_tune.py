@@ -11,6 +11,7 @@ import pytest
 
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import wait_until
+from stillspin.drive.scope import DEPTH
 from stillspin.tune.actions import ACTIONS
 from stillspin.tune.dead_man import PATIENCE, DeadMan
 from stillspin.tune.guard import HEADERS
@@ -331,7 +332,7 @@ def test_the_next_capture_ends_the_one_before(server, fake):
         reply = await page.hear("reply")
         assert reply == {"t": "reply", "id": 77, "error": "another capture was started and ended this one"}
         fake.scope = DONE
-        assert len((await page.hear("reply"))["result"]["time"]) == 1024
+        assert len((await page.hear("reply"))["result"]["time"]) == DEPTH
 
     talk(server, conversation)
 

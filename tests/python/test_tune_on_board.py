@@ -103,7 +103,7 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     tuned.wait_for_selector("#scope-note.armed")  # the part before the trigger is recorded
     refer(tuned, 1000)
     tuned.wait_for_selector("#captured canvas")
-    assert "1024 records every 0.4 ms" in tuned.inner_text("#scope-note")
+    assert "512 records every 0.4 ms" in tuned.inner_text("#scope-note")
     picture(tuned, "scope")
     tuned.click("[data-tab=live]")
     refer(tuned, 400)

@@ -104,7 +104,7 @@ def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
     tuned.click("[data-tab=scope]")
     tuned.click("#capture")
     tuned.wait_for_selector("#captured canvas")
-    assert "1024 records every 0.4 ms" in tuned.inner_text("#scope-note")
+    assert "512 records every 0.4 ms" in tuned.inner_text("#scope-note")
     with tuned.expect_download() as download:
         tuned.click("#download")
     assert download.value.path().read_text().startswith("time [s],speed [rpm],current_d [A],current_q [A]\n")

@@ -140,11 +140,10 @@ TEST(DeadTime, InAWideBandEveryEdgeIsShiftedByItsCurrent) {
 // A current beyond the error of its prediction is certain: its edge comes when it is wanted.
 TEST(DeadTime, AboveItsErrorACurrentIsCertain) {
   const dead_time_config_t c = config();
-  const dead_time_delay_t delay = dead_time_delay(&c);
   for (const double amps : {0.69, 0.71, -0.69, -0.71}) {
     const auto share_q12 = static_cast<std::int32_t>(std::lround(amps / 0.2 * 4096.0));
     EXPECT_EQ(dead_time_is_in_doubt(&c, share_q12), std::fabs(amps) < 0.7) << amps;
-    EXPECT_EQ(dead_time_delay_ticks(&delay, share_q12), amps > 0.0 ? kDeadTicks + kTurnOn : kTurnOff);
+    EXPECT_EQ(dead_time_delay_ticks(&c, share_q12), amps > 0.0 ? kDeadTicks + kTurnOn : kTurnOff);
   }
 }
 

@@ -71,7 +71,7 @@ inline void find_windows(const sampling_config_t& c, const Arrivals& arrivals, s
   for (const std::uint16_t edge : p->pulses.order) {
     const auto [earliest, latest] = arrivals[edge];
     svpwm_finder_beware(&finder, &c, p, earliest);
-    svpwm_finder_pass(&finder, &c, p, edge % SVPWM_LEGS, earliest, latest);
+    svpwm_finder_pass(&finder, &c, p, edge, earliest, latest);
   }
   svpwm_finder_finish(&finder, &c, p);
 }
@@ -86,14 +86,11 @@ inline Sent sent(const dead_time_config_t& c, const svpwm_pulses_t& wanted, cons
   svpwm_ripple_legs_t legs;
   svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, frame_phases(carried.current_q20),
                                                carried.inverse_inductance_q30, carried.link_q16, c.per_band_q24, &legs);
-  const dead_time_delay_t delay = dead_time_delay(&c);
   Sent s = {};
   for (const std::uint16_t edge : wanted.order) {
-    const unsigned leg = edge % SVPWM_LEGS;
     const std::int32_t tick = wanted.at[edge];
-    const std::int32_t blocking =
-        edge < SVPWM_LEGS ? svpwm_ripple_rise(&walk, &legs, leg, tick) : svpwm_ripple_fall(&walk, &legs, leg, tick);
-    const std::int32_t at = tick - dead_time_delay_ticks(&delay, blocking);
+    const std::int32_t blocking = svpwm_ripple_blocking(&walk, &legs, edge, tick);
+    const std::int32_t at = tick - dead_time_delay_ticks(&c, blocking);
     s.command.at[edge] = static_cast<std::int16_t>(at);
     s.arrivals[edge] = {tick, tick};
     if (dead_time_is_in_doubt(&c, blocking)) s.arrivals[edge] = {at + c.turn_off_ticks, at + c.turn_on_ticks};
@@ -104,13 +101,10 @@ inline Sent sent(const dead_time_config_t& c, const svpwm_pulses_t& wanted, cons
 /// What the drive's one walk along the edges makes of a pattern: commands and windows.
 inline svpwm_pulses_t send(const dead_time_config_t& c, const sampling_config_t& sampling,
                            const svpwm_carried_t& carried, svpwm_pattern_t* pattern) {
-  std::uint16_t rises[SVPWM_LEGS], falls[SVPWM_LEGS];
-  svpwm_compensate_edges(&c, &sampling, &carried, pattern, rises, falls);
+  std::uint16_t edges[SVPWM_EDGES];
+  svpwm_compensate_edges(&c, &sampling, &carried, pattern, edges);
   svpwm_pulses_t command = pattern->pulses;
-  for (unsigned leg = 0; leg < SVPWM_LEGS; ++leg) {
-    command.at[leg] = static_cast<std::int16_t>(rises[leg]);
-    command.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(falls[leg]);
-  }
+  for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) command.at[edge] = static_cast<std::int16_t>(edges[edge]);
   return command;
 }
 

@@ -22,10 +22,11 @@ PAGE 0:
   ENTRY        : origin = 0x3F7FF6, length = 0x000002   /* where the boot ROM jumps to */
   PASSWORDS    : origin = 0x3F7FF8, length = 0x000008
   RAM_FIXED    : origin = 0x000010, length = 0x0003E8   /* M0; not at 0, which is no function's address */
-  RAM_CODE     : origin = 0x3FB000, length = 0x000FF8   /* upper half of H0, by its high address */
+  RAM_FIXED_H0 : origin = 0x3FAA00, length = 0x000500   /* H0 behind RAM_DATA, by its high address */
+  RAM_CODE     : origin = 0x3FAF00, length = 0x0010F8   /* the rest of it */
 PAGE 1:
   STACK        : origin = 0x000400, length = 0x000400   /* M1: SP reaches the low 64 K only */
-  RAM_DATA     : origin = 0x008000, length = 0x003000   /* L0, L1, lower half of H0 by its low address: one piece */
+  RAM_DATA     : origin = 0x008000, length = 0x002A00   /* L0, L1, some of H0 by its low address: one piece */
 }
 
 /* The CPU fetches ahead of what it runs: code keeps off the last eight words of a block of memory. Start-up zeroes
@@ -35,9 +36,9 @@ PAGE 1:
    windows, which is worked on most; and of TI's library what that calls, but for 64-bit quotients, which commissioning
    alone wants.
 
-   What runs from RAM has no wait states. ramfixed and ramfuncs list what brings most cycles of an interrupt for a word
-   (make isr-cost says what in RAM is cold, and what in flash is hotter than what is listed): objects of the resident
-   part, which run from M0 in every image, and functions of the rest. */
+   What runs from RAM has no wait states. ramfixed, ramfixedh0 and ramfuncs list what brings most cycles of an interrupt
+   for a word (make isr-cost says what in RAM is cold, and what in flash is hotter than what is listed): objects of the
+   resident part, which run from M0 and from a piece of H0 in every image, and functions of the rest. */
 
 SECTIONS
 {
@@ -50,8 +51,13 @@ SECTIONS
                 libstillspin_estimators.a<slopes.*>(.text)
               } LOAD = RESIDENT, RUN = RAM_FIXED, PAGE = 0,
               LOAD_START(_image_ram_fixed_load), RUN_START(_image_ram_fixed_run), SIZE(_image_ram_fixed_size)
+  ramfixedh0: { libstillspin_qmath.a<qdiv.*>(.text)
+                libstillspin_svpwm.a<alternating.*, modulator.*, ripple.*>(.text)
+              } LOAD = RESIDENT, RUN = RAM_FIXED_H0, PAGE = 0,
+              LOAD_START(_image_ram_fixed_h0_load), RUN_START(_image_ram_fixed_h0_run), SIZE(_image_ram_fixed_h0_size)
   ramfuncs  : { *(ramfuncs)
-                libstillspin_hal.a<adc.*>(.text:_hal_adc_read_window, .text:_take_results)
+                libstillspin_hal.a<adc.*>(.text:_hal_adc_read_window, .text:_take_results, .text:_adc_take_slice)
+                libstillspin_hal.a<sampling_timer.*>(.text:_hal_sampling_timer_read, .text:_hal_sampling_timer_set_legs)
                 libstillspin_hal.a<pwm.*>(.text:_hal_pwm_write, .text:_write_registers, .text:_hal_pwm_is_tripped,
                                           .text:_is_any_leg_tripped, .text:_hal_pwm_was_tripped_by_pin)
                 libstillspin_hal.a<irq.*>(.text:_control_isr, .text:_window_isr, .text:_hal_irq_control_begin,
@@ -65,25 +71,27 @@ SECTIONS
                 libstillspin_firmware.a<position.*>(.text:_drive_estimate)
                 libstillspin_firmware.a<protection.*>(.text:_drive_protect)
                 libstillspin_firmware.a<current.*>(.text:_drive_control_current)
-                libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_write_frame)
+                libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
-                libstillspin_firmware.a<brake_release_hold.*>(.text:_hold_is_on)
+                libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
+                libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_update_is_urgent)
+                libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
                 libstillspin_estimators.a<deviation.*>(.text)
                 libstillspin_qmath.a<qsum.*>(.text)
               } LOAD = APP, RUN = RAM_CODE, PAGE = 0,
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
   quotients : { rts2800_ml.lib<ll_div*>(.text) } > APP, PAGE = 0
   resident  : { rts2800_ml.lib<l_div*, u_div*, i_div*, ll_*, memcpy*, memset*>(.text)
-                libstillspin_qmath.a<qdiv.*>(.text, .econst, .switch)
+                libstillspin_qmath.a<qdiv.*>(.econst, .switch)
                 libstillspin_qmath.a<qsqrt.*>(.text, .econst, .switch)
                 libstillspin_qmath.a<qtrig.*>(.econst, .switch)
-                libstillspin_svpwm.a<alternating.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<alternating.*>(.econst, .switch)
                 libstillspin_svpwm.a<dead_time.*>(.text, .econst, .switch)
                 libstillspin_svpwm.a<edges.*>(.econst, .switch)
                 libstillspin_svpwm.a<extended.*>(.text, .econst, .switch)
-                libstillspin_svpwm.a<modulator.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<modulator.*>(.econst, .switch)
                 libstillspin_svpwm.a<on_time.*>(.text, .econst, .switch)
-                libstillspin_svpwm.a<ripple.*>(.text, .econst, .switch)
+                libstillspin_svpwm.a<ripple.*>(.econst, .switch)
                 libstillspin_svpwm.a<windows.*>(.econst, .switch)
                 libstillspin_control.a<brake_limit.*>(.text, .econst, .switch)
                 libstillspin_control.a<current_controller.*>(.text, .econst, .switch)

@@ -115,7 +115,7 @@ def _prefetch(file: CommandFile, blocks: list[tuple[str, Range]]) -> list[str]:
     code = {
         name
         for p in file.placements
-        if p.section in (".text", "ramfuncs", "ramfixed", "boot", "quotients", "resident")
+        if p.section in (".text", "ramfuncs", "ramfixed", "ramfixedh0", "boot", "quotients", "resident")
         for name in (p.run, p.spill)
     }
     return [

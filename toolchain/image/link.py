@@ -24,10 +24,10 @@ DRIVERS = ROOT / "hal" / "f2808"
 # What TI's libraries bring: the C start-up, what a compiler calls for arithmetic or copying, and the flash library.
 RUN_TIME = re.compile(r"__aeabi_\w+|mem(cpy|set|move|cmp|clr)\w*|c_int00|IER|IFR|Flash2808_\w+|Flash_\w+")
 KERNEL = "flash_kernel_main"
-RESIDENT = ("resident", FIXED)  # the sections that stay in sector A
+RESIDENT = ("resident", *FIXED)  # the sections that stay in sector A
 SECTOR_A = "RESIDENT"  # its range, which the drive's image has
 FLASH = ("APP_ENTRY", "APP", "RESIDENT")  # what sections may fill, but for boot code and identity
-HOT = ("RAM_FIXED", "RAM_CODE")
+HOT = ("RAM_FIXED", "RAM_FIXED_H0", "RAM_CODE")
 NO_CODE = "no code for the C28x: see the map beside this file\n"  # all that the linked file holds
 FLASH_LIBRARY_WORDS = 1600  # room for TI's flash library in the kernel; a guess
 
@@ -105,7 +105,8 @@ def place(words: dict[str, int], file: CommandFile) -> tuple[dict[str, int], lis
 def figures_of(pile: Pile, placed: dict[str, int], file: CommandFile, depth: Depth) -> dict[str, int]:
     """What goals and limits are about (check.py), and the room that there is."""
     words = pile.words()
-    scope = sum(s.size // 2 for o in pile.objects for s in o.sections if s.name == ".bss.ring" and s.size > 4096)
+    scopes = (obj for obj in pile.objects if obj.path.name.startswith("scope."))
+    scope = sum(section.size // 2 for obj in scopes for section in obj.sections if section.name == ".bss.ring")
     flash = sum(words.get(n, 0) for n in (".text", ".econst", ".cinit", ".pinit", ".switch", "ramfuncs"))
     in_sector_a = [o for o in pile.objects if file.section_of(o.archive, o.path.name, ".text") in RESIDENT]
     hot = sum(placed.get(name, 0) for name in SECTIONS)

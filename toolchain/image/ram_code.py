@@ -14,8 +14,8 @@ from image.elf import ObjectFile
 from image.sizes import words_of
 
 SECTION = "ramfuncs"
-FIXED = "ramfixed"  # of the resident part, which runs from the same place in every image
-SECTIONS = (SECTION, FIXED)
+FIXED = ("ramfixed", "ramfixedh0")  # of the resident part, which runs from the same places in every image
+SECTIONS = (SECTION, *FIXED)
 MARKED = re.compile(r"^TARGET_RAM_CODE [\w ]+?\**(\w+)\(", re.MULTILINE)
 LIBRARY = re.compile(r"CMakeFiles/(stillspin_\w+)\.dir/")
 ON_THE_FLASH = ("set_flash_timing",)

@@ -2,12 +2,11 @@
 
 #include <stddef.h>
 
-#include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
 
 static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in) {
-  const deviation_observer_config_t* const c = hold_is_on(d) ? &d->config.hold_observer : &d->config.observer;
+  const deviation_observer_config_t* const c = d->schedule.held ? &d->config.hold_observer : &d->config.observer;
   d->position.low = deviation_observer_step(&d->position.observer, c, in);
   return d->position.low;
 }

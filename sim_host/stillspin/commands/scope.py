@@ -75,7 +75,7 @@ def scope(
         typer.Option("--out", "-o", help="File to write: .parquet, .csv, .mf4, .svg, .png or .pdf. Repeatable."),
     ] = None,
 ) -> None:
-    """Capture signals around a trigger: 1024 records of up to four signals, at up to 10 kHz."""
+    """Capture signals around a trigger: 512 records of up to four signals, at up to 10 kHz."""
     files = out or capture_file.usual("capture")
     for file in files:
         capture_file.check(file)

@@ -17,7 +17,7 @@ from stillspin.errors import InputError, did_you_mean
 from stillspin.quantity import Range
 
 MOST = 4
-DEPTH = 1024
+DEPTH = 512
 """Records that the drive keeps."""
 CHUNK = 100
 """Records per Request.SCOPE_READ."""
