@@ -3,8 +3,10 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <memory>
@@ -32,10 +34,11 @@ struct PythonBoard {
 };
 
 void construct(PythonBoard* self, const nb::dict& plant, const std::map<std::string, double>& parameters,
-               std::uint64_t seed) {
+               std::uint64_t seed, const chip::CodeBlocks& image) {
   BoardRequest request;
   request.setup = setup_from(plant, seed);
   request.parameters = parameters;
+  request.image = image;
   new (self) PythonBoard{std::make_unique<VirtualBoard>(request)};
 }
 
@@ -179,13 +182,41 @@ nb::dict statistics(const PythonBoard& self) {
   return values;
 }
 
+nb::dict code(const PythonBoard& self) {
+  const c28x::Core& core = self.board().code();
+  nb::dict values;
+  values["cycles"] = core.cycles;
+  values["instructions"] = core.instructions;
+  values["waited_for_registers"] = core.waits.registers;
+  values["waited_for_data"] = core.waits.data;
+  values["waited_for_fetches"] = core.waits.fetch;
+  values["pc"] = core.r.pc;
+  values["sp"] = core.r.sp;
+  return values;
+}
+
+// Cycles by address, cycles of each interrupt by (vector, routine), and the highest stack pointer.
+nb::tuple spent(const PythonBoard& self) {
+  const c28x::Profile* profile = self.board().code().profile();
+  if (profile == nullptr) throw std::logic_error("nothing was noted: profile() comes first");
+  nb::dict cycles;
+  for (std::uint32_t k = 0; k < profile->cycles.size(); ++k) {
+    if (profile->cycles[k] != 0) cycles[nb::int_(c28x::Profile::address(k))] = profile->cycles[k];
+  }
+  nb::dict interrupts;
+  for (const auto& [which, each] : profile->interrupts) {
+    interrupts[nb::make_tuple(which.first, which.second)] = each;
+  }
+  return nb::make_tuple(cycles, interrupts, profile->highest_stack);
+}
+
 }  // namespace
 
 void bind_virtual_board(nb::module_& m) {
   using Self = const PythonBoard&;
   nb::class_<PythonBoard>(m, "VirtualBoard")
       .def("__init__", &construct, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("seed"),
-           "Power the board; see core.py.")
+           nb::arg("image") = chip::CodeBlocks(), "Power the board; see core.py.")
       .def("close", [](PythonBoard& self) { self.held.reset(); })
       .def("advance", &advance, nb::arg("ticks"))
       .def("advance_until_heard", &advance_until_heard, nb::arg("ticks"))
@@ -230,8 +261,14 @@ void bind_virtual_board(nb::module_& m) {
           nb::arg("name"), nb::arg("value"))
       .def("outputs", [](Self self) { return dict_of(self.board().outputs()); })
       .def("truth", [](Self self) { return dict_of(self.board().truth()); })
-      .def("signals", [](Self self) { return (void)self.board(), dict_of(VirtualBoard::signals()); })
-      .def("statistics", &statistics);
+      .def("signals", [](Self self) { return self.board().executes() ? nb::dict() : dict_of(VirtualBoard::signals()); })
+      .def("statistics", &statistics)
+      .def("code", &code)
+      .def("profile", [](Self self) { self.board().take_profile(); })
+      .def("spent", &spent)
+      .def(
+          "inspect", [](Self self, std::uint32_t address) { return self.board().inspect(address); },
+          nb::arg("address"));
 }
 
 }  // namespace stillspin::bench

@@ -13,6 +13,7 @@
 #include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "sim_host/bench/run.hpp"
+#include "sim_host/chip/boot_rom.hpp"
 #include "sim_host/chip/memory.hpp"
 
 namespace stillspin::bench {
@@ -38,11 +39,16 @@ VirtualBoard::VirtualBoard(const BoardRequest& request)
       locked_(request.setup.nominal.mechanics.locked),
       faults_(request.setup.fault),
       board_(request.setup.plant(), *this, &can_bus_),
-      chip_(board_, firmware_main) {
+      chip_(board_, request.image.empty() ? firmware_main : chip::boot_rom) {
   for (const auto& [name, value] : request.parameters) {
     unsigned id = 0;
     const std::int32_t raw = parameter_raw(name, value, id);
     parameters_.push_back({static_cast<std::uint16_t>(id), raw});
+  }
+  if (!request.image.empty()) {
+    chip_.execute_code();
+    chip_.load(request.image);
+    executes_ = true;
   }
   board_.attach(chip_);
   board_.fit(eeprom_);
@@ -97,7 +103,18 @@ Tick VirtualBoard::rest_periods() const {
 
 bool VirtualBoard::in_loop() { return feature_status.stepped; }
 
+const c28x::Core& VirtualBoard::code() {
+  if (!executes_) throw std::logic_error("this board runs the firmware that was compiled for the computer: no image");
+  return chip_.execute_code();
+}
+
+void VirtualBoard::take_profile() {
+  (void)code();
+  chip_.execute_code().take_profile();
+}
+
 void VirtualBoard::on_period(Tick t) {
+  if (executes_) return;
   const drive_signals_t s = drive_signals();
   const std::uint64_t resets = chip_.statistics().resets;
   if (resets != resets_) told_ = false;

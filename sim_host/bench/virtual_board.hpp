@@ -21,6 +21,7 @@
 #include "sim_host/bench/fault_plan.hpp"
 #include "sim_host/bench/firmware_lease.hpp"
 #include "sim_host/bench/setup.hpp"
+#include "sim_host/chip/c28x/core.hpp"
 #include "sim_host/devices/can_host.hpp"
 
 namespace stillspin::bench {
@@ -30,6 +31,9 @@ struct BoardRequest {
   /// Firmware parameters of a board that nobody has set up, in the table's units: told to the drive when it is first
   /// ready after power-on or a reset, unless it has found saved ones in its memory.
   std::map<std::string, double> parameters;
+  /// Machine code instead of the firmware: words by address, as a probe would put them into flash and RAM. Empty: the
+  /// firmware runs.
+  chip::CodeBlocks image;
 };
 
 /// A true or a measured quantity of the present.
@@ -89,6 +93,11 @@ class VirtualBoard final : private PeriodListener {
   std::uint64_t trips() const { return board_.trips(); }
   const Board& pins() const { return board_; }
   std::uint16_t inspect(std::uint32_t address) { return chip_.inspect(address); }
+  /// What executes the image; std::logic_error where the firmware runs.
+  const c28x::Core& code();
+  bool executes() const { return executes_; }
+  /// Notes from now on where the image's cycles go (c28x::Core::profile).
+  void take_profile();
 
  private:
   Tick rest_periods() const;
@@ -104,6 +113,7 @@ class VirtualBoard final : private PeriodListener {
 
   FirmwareLease lease_;
   std::vector<Told> parameters_;
+  bool executes_ = false;  // an image, of which only pins are known
   bool brake_until_run_;
   bool locked_;
   FaultPlayer faults_;

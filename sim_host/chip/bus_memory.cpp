@@ -56,11 +56,17 @@ std::uint16_t Core::inspect_memory(std::uint32_t address) {
 
 void Core::jump(std::uint32_t entry) {
   const Chip::Firmware program = jump_ ? jump_(entry) : nullptr;
+  if (program == nullptr && code_ != nullptr) code_->run(entry);
   if (program == nullptr) {
     model_error("nothing stands in for the code at this address", entry);
     leave_firmware();
   }
   program();
+}
+
+c28x::Core& Core::execute_code() {
+  if (code_ == nullptr) code_ = std::make_unique<CodeCpu>(*this);
+  return code_->cpu();
 }
 
 void Core::pass(Tick ticks) {

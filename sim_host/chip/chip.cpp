@@ -1,8 +1,10 @@
 #include "sim_host/chip/chip.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 #include "sim_host/chip/core.hpp"
+#include "sim_host/chip/memory.hpp"
 
 namespace stillspin::chip {
 
@@ -21,6 +23,17 @@ void Chip::fail(Failure failure) { core_->fail(failure); }
 void Chip::stop_can_transmission() { core_->stop_can_transmission(); }
 bool Chip::is_idle() const { return core_->is_idle(); }
 void Chip::on_jump(Jump jump) { core_->on_jump(std::move(jump)); }
+c28x::Core& Chip::execute_code() { return core_->execute_code(); }
+void Chip::load(const CodeBlocks& blocks) {
+  for (const auto& [first, words] : blocks) {
+    for (std::size_t k = 0; k < words.size(); ++k) {
+      const auto address = static_cast<std::uint32_t>(first + k);
+      if (!core_->memory().load(address, words[k])) {
+        throw std::invalid_argument("the chip has neither flash nor RAM at address " + std::to_string(address));
+      }
+    }
+  }
+}
 Memory& Chip::memory() { return core_->memory(); }
 std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
 

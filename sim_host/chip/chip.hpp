@@ -25,13 +25,22 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sim_host/chip/world.hpp"
+
+namespace stillspin::c28x {
+class Core;
+}
 
 namespace stillspin::chip {
 
 class Core;
 class Memory;
+
+/// Words from an address on.
+using CodeBlocks = std::vector<std::pair<std::uint32_t, std::vector<std::uint16_t>>>;
 
 /// What happened since power-on. Lost writes are firmware mistakes that the real chip hides.
 struct Statistics {
@@ -107,8 +116,14 @@ class Chip {
   bool is_idle() const;
 
   /// For a chip whose firmware is boot_rom: what runs natively in place of the code at an address, which cannot.
-  /// Without an answer (nullptr) the run ends.
+  /// Without an answer (nullptr) the run ends, unless code is executed.
   void on_jump(Jump jump);
+
+  /// For a chip whose firmware is boot_rom: the code that is in its memory is executed by a C28x core, where nothing
+  /// runs in its place. The core is there to be looked at; the chip runs it.
+  c28x::Core& execute_code();
+  /// Words by address into flash and RAM; std::invalid_argument where there is none.
+  void load(const CodeBlocks& blocks);
 
   /// RAM, security, and the flash, whose cells outlive resets.
   Memory& memory();

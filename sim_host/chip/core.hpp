@@ -13,11 +13,13 @@
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "sim_host/chip/adc.hpp"
 #include "sim_host/chip/chip.hpp"
+#include "sim_host/chip/code_cpu.hpp"
 #include "sim_host/chip/coroutine.hpp"
 #include "sim_host/chip/cpu_timers.hpp"
 #include "sim_host/chip/ecan.hpp"
@@ -63,6 +65,7 @@ class Core final : public ChipServices {
   std::uint16_t inspect(std::uint32_t address);
   Memory& memory() { return memory_; }
   void on_jump(Chip::Jump jump) { jump_ = std::move(jump); }
+  c28x::Core& execute_code();
 
   // ---- for the firmware (target_*)
   std::uint16_t read16(std::uint32_t address);
@@ -104,6 +107,8 @@ class Core final : public ChipServices {
   void model_error(const char* text, std::int64_t value) override;
 
  private:
+  friend class CodeCpu;
+
   // In the order in which they run at one tick.
   enum Source : unsigned { kWorldCall, kSystem, kEPwm, kAdc, kEQep1, kSci, kI2c, kECanA, kTimers, kWatchdog, kSources };
 
@@ -244,6 +249,7 @@ class Core final : public ChipServices {
   std::string error_;
   std::exception_ptr exception_;
   Coroutine coroutine_;
+  std::unique_ptr<CodeCpu> code_;
   Memory memory_;  // large: behind what every access touches
 };
 

@@ -28,12 +28,17 @@ bool Interrupts::raise(unsigned vector) {
 }
 
 unsigned Interrupts::fetch(unsigned line, bool& spurious) {
-  if (line >= kGroups) return line + 1;  // INT13, INT14: vectors 13 and 14
-  const unsigned ready = flags_[line] & enables_[line];
-  spurious = ready == 0;
-  const unsigned channel = spurious ? 0 : lowest(ready);
-  flags_[line] = static_cast<std::uint16_t>(flags_[line] & ~(spurious ? 0u : 1u << channel));
-  return VECTOR_PIE_FIRST + kChannels * line + channel;
+  unsigned vector = line + 1;  // INT13, INT14: vectors 13 and 14
+  if (line < kGroups) {
+    const unsigned ready = flags_[line] & enables_[line];
+    spurious = ready == 0;
+    const unsigned channel = spurious ? 0 : lowest(ready);
+    flags_[line] = static_cast<std::uint16_t>(flags_[line] & ~(spurious ? 0u : 1u << channel));
+    vector = VECTOR_PIE_FIRST + kChannels * line + channel;
+  }
+  const std::uint32_t address = kTableAddress + 2 * vector;
+  ctrl_ = static_cast<std::uint16_t>((address & PIECTRL_PIEVECT_MASK) | (ctrl_ & PIECTRL_ENPIE_MASK));
+  return vector;
 }
 
 Interrupts::Frame Interrupts::enter() {
@@ -44,8 +49,6 @@ Interrupts::Frame Interrupts::enter() {
   ifr_ = static_cast<std::uint16_t>(ifr_ & ~(1u << line));
   ier_ = static_cast<std::uint16_t>(ier_ & ~(1u << line));
   masked_ = true;
-  const std::uint32_t address = kTableAddress + 2 * frame.vector;
-  ctrl_ = static_cast<std::uint16_t>((address & PIECTRL_PIEVECT_MASK) | (ctrl_ & PIECTRL_ENPIE_MASK));
   return frame;
 }
 

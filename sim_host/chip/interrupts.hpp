@@ -40,6 +40,10 @@ class Interrupts {
   Frame enter();
   void leave(const Frame& frame);
 
+  /// The vector of a CPU line, 0 to 13, that the CPU has taken: of its first channel that is flagged and enabled, whose
+  /// flag is cleared.
+  unsigned fetch(unsigned line, bool& spurious);
+
   Isr vector(unsigned number) const { return vectors_[number]; }
   void set_vector(unsigned number, Isr isr) { vectors_[number] = isr; }
   bool table_enabled() const { return (ctrl_ & PIECTRL_ENPIE_MASK) != 0; }
@@ -48,6 +52,7 @@ class Interrupts {
   void set_masked(bool masked) { masked_ = masked; }
   /// From outside, as if other code had masked them.
   void set_held(bool held) { held_ = held; }
+  bool held() const { return held_; }
   std::uint16_t ier() const { return ier_; }
   void set_ier(std::uint16_t mask) { ier_ = mask; }
   std::uint16_t ifr() const { return ifr_; }
@@ -65,7 +70,6 @@ class Interrupts {
     acknowledge_ = static_cast<std::uint16_t>(acknowledge_ | bit);
     ifr_ = static_cast<std::uint16_t>(ifr_ | bit);
   }
-  unsigned fetch(unsigned line, bool& spurious);
 
   bool masked_ = true;  // INTM
   bool held_ = false;

@@ -72,6 +72,15 @@ std::optional<std::uint16_t> Memory::ram(std::uint32_t address) const {
   return index ? std::optional<std::uint16_t>(ram_[*index]) : std::nullopt;
 }
 
+bool Memory::load(std::uint32_t address, std::uint16_t word) {
+  const auto index = ram_index(fold(address));
+  if (!FlashArray::owns(address) && !index) return false;
+  (index ? ram_[*index] : flash_.words()[address - kFlashStart]) = word;
+  return true;
+}
+
+std::uint16_t* Memory::ram_words(std::uint32_t address) { return ram_.data() + ram_index(fold(address)).value(); }
+
 // ---- code security -------------------------------------------------------------------------------------
 
 void Memory::look_at_password(unsigned index) {

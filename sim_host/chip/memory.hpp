@@ -38,6 +38,10 @@ class Memory {
   FlashArray& flash() { return flash_; }
   /// A word of RAM as it is, for inspection; nothing where there is none.
   std::optional<std::uint16_t> ram(std::uint32_t address) const;
+  /// Puts a word into flash or RAM as a probe does, whatever is locked. False when there is neither.
+  bool load(std::uint32_t address, std::uint16_t word);
+  /// The words of RAM from an address of RAM on, up to the end of M1 or of H0.
+  std::uint16_t* ram_words(std::uint32_t address);
 
  private:
   static constexpr std::uint32_t kRamWords = 0x800 + 0x4000;  // M0 and M1; L0, L1 and H0

@@ -25,6 +25,8 @@ from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 
 Plant = dict[str, dict[str, Value]]
+Blocks = list[tuple[int, list[int]]]
+"""Words from an address on."""
 Signals = dict[str, npt.NDArray[Any]]
 Command = tuple[float, str, float]
 LoadPoint = tuple[float, float]
@@ -99,9 +101,12 @@ class NativeCore(Protocol):
         ...
 
     def VirtualBoard(  # noqa: N802 - a class of the module
-        self, *, plant: Plant, parameters: dict[str, float], seed: int
+        self, *, plant: Plant, parameters: dict[str, float], seed: int, image: Blocks = ...
     ) -> NativeBoard:
-        """A board that has just been powered; `parameters` as of a drive that nobody has set up otherwise."""
+        """A board that has just been powered; `parameters` as of a drive that nobody has set up otherwise.
+
+        `image`: machine code that it executes instead of the firmware. ValueError for words that are in no memory.
+        """
         ...
 
     def LoaderBoard(  # noqa: N802 - a class of the module

@@ -125,11 +125,27 @@ class NativeBoard(Protocol):
         ...
 
     def signals(self) -> dict[str, float]:
-        """The firmware's signals as of its last control interrupt; angles in turns."""
+        """The firmware's signals as of its last control interrupt; angles in turns. Of an image nothing is known."""
         ...
 
     def statistics(self) -> dict[str, int]:
         """Interrupts, resets, trips of the comparator, lost writes, idle ticks since it was powered."""
+        ...
+
+    def code(self) -> dict[str, int]:
+        """Of a board that executes an image: cycles, instructions, the cycles that were waited for, pc and sp."""
+        ...
+
+    def profile(self) -> None:
+        """Note from now on where the image's cycles go."""
+        ...
+
+    def spent(self) -> tuple[dict[int, int], dict[tuple[int, int], list[int]], int]:
+        """Cycles by address, cycles of each interrupt by vector and routine, and the highest stack pointer."""
+        ...
+
+    def inspect(self, address: int) -> int:
+        """A word of a register or memory, without an effect on the run."""
         ...
 
     def close(self) -> None:

@@ -48,6 +48,7 @@ BAD = {
     "hil": ("hil", "A99", "--port", NOBODY),
     "flash": ("flash", "none.out"),
     "image show": ("image", "show", "none.out"),
+    "image time": ("image", "time", "none.out"),
     "demo-image": ("demo-image", "/dev/null/demo"),
     "loader": ("loader", "flash.bin", "--kernel", "none.out"),
 }

@@ -19,7 +19,8 @@ void Core::reset() {
 
 Stop Core::run(std::uint64_t until) {
   stop_ = Stop::kNone;
-  while (cycles < until) {
+  until_ = until;
+  while (cycles < until_) {
     if (((r.ifr & r.ier) != 0 || nmi_) && serve_interrupts()) continue;
     if (idle_) return Stop::kIdle;
     ++instructions;
@@ -40,6 +41,14 @@ const Instruction& Core::fetch(std::uint32_t address) {
 }
 
 void Core::execute(const Instruction& i) {
+  const std::uint64_t before = cycles;
+  carry_out(i);
+  if (profile_ == nullptr) return;
+  profile_->spend(i.address, cycles - before - repeated_cycles_, r.sp);
+  repeated_cycles_ = 0;
+}
+
+void Core::carry_out(const Instruction& i) {
   if (i.form != kNoForm) ++executed[i.form];
   wait_for(i, r.arp);
   const std::uint64_t begin = cycles;
@@ -52,11 +61,15 @@ void Core::execute(const Instruction& i) {
 void Core::repeat(std::uint32_t count) {
   // A copy: the repeated instruction may overwrite the memory that it is in.
   const Instruction repeated = fetch(r.pc);
+  const std::uint64_t before = cycles;
   ++instructions;
-  execute(repeated);
-  if (!repeated.repeatable) return;
-  for (repeats_done = 1; repeats_done <= count; ++repeats_done, ++cycles) repeated.run(*this, repeated);
+  carry_out(repeated);
+  const std::uint32_t repeats = repeated.repeatable ? count : 0;
+  for (repeats_done = 1; repeats_done <= repeats; ++repeats_done, ++cycles) repeated.run(*this, repeated);
   repeats_done = 0;
+  if (profile_ == nullptr) return;
+  repeated_cycles_ = cycles - before;
+  profile_->spend(repeated.address, repeated_cycles_, r.sp);
 }
 
 // True when an interrupt was entered. With INTM set an enabled request ends IDLE and does nothing else.
@@ -109,6 +122,8 @@ void Core::take_interrupt(unsigned vector) {
 }
 
 void Core::return_from_interrupt() {
+  constexpr unsigned kOwnCycles = 8;
+  if (profile_ != nullptr) profile_->leave(cycles + kOwnCycles);
   jump(pop32());
   r.ier = low_half(pop32());
   const std::uint32_t status = pop32();

@@ -8,10 +8,12 @@
 #define STILLSPIN_SIM_HOST_CHIP_C28X_CORE_HPP
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim_host/chip/c28x/instruction.hpp"
 #include "sim_host/chip/c28x/mapped_memory.hpp"
+#include "sim_host/chip/c28x/profile.hpp"
 #include "sim_host/chip/c28x/registers.hpp"
 #include "sim_host/chip/c28x/timing.hpp"
 
@@ -34,6 +36,13 @@ class Core : public MappedMemory, public Timing {
   void reset();
   /// Executes until `cycles` reaches `until` or something stops it. What was begun is finished, RPT with its repeats.
   Stop run(std::uint64_t until);
+  /// Notes from now on where cycles are spent; entries of interrupts are the bus's to note.
+  void take_profile() { profile_ = std::make_unique<Profile>(); }
+  /// What was noted, nullptr for nothing.
+  Profile* profile() const { return profile_.get(); }
+
+  /// Ends `run` after the instruction that is being executed; for the bus.
+  void yield() { until_ = 0; }
   /// One instruction, or the entry into one interrupt.
   Stop step() { return run(cycles + 1); }
 
@@ -128,11 +137,15 @@ class Core : public MappedMemory, public Timing {
   std::uint32_t locate_indirect(unsigned loc, unsigned step);
   const Instruction& fetch(std::uint32_t address);
   void execute(const Instruction& i);
+  void carry_out(const Instruction& i);
   bool serve_interrupts();
   void enter_interrupt(unsigned vector);
 
   static constexpr std::uint32_t kDecoded = 1U << 14;
 
+  std::unique_ptr<Profile> profile_;
+  std::uint64_t repeated_cycles_ = 0;  // of what RPT repeats, noted apart from it
+  std::uint64_t until_ = 0;
   std::uint32_t interrupt_cycles_ = 8;
   bool idle_ = false;
   bool nmi_ = false;

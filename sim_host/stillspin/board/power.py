@@ -11,8 +11,10 @@ _FAST: core.Plant = {"solver": {"method": "rk4"}}
 """Unless profile or user say otherwise: real time matters more here than the last digit."""
 
 
-def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int) -> NativeBoard:
-    """A virtual board that has just been switched on.
+def power(
+    native: core.NativeCore, chosen: Profile, changes: Changes, seed: int, image: core.Blocks | None = None
+) -> NativeBoard:
+    """A virtual board that has just been switched on, with the firmware or a chip that executes an image.
 
     Raises:
         InputError: a plant or parameters that cannot be.
@@ -20,6 +22,9 @@ def power(native: core.NativeCore, chosen: Profile, changes: Changes, seed: int)
     parameters = {**chosen.parameters, **changes.parameters}
     try:
         native.check_parameters(parameters)
-        return native.VirtualBoard(plant=merged(_FAST, chosen.plant, changes.plant), parameters=parameters, seed=seed)
+        plant = merged(_FAST, chosen.plant, changes.plant)
+        if image:
+            return native.VirtualBoard(plant=plant, parameters={}, seed=seed, image=image)
+        return native.VirtualBoard(plant=plant, parameters=parameters, seed=seed)
     except ValueError as error:
         raise InputError(str(error)) from error

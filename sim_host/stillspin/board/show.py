@@ -111,7 +111,7 @@ class Show:
         """Time, speed, state of the drive, shaft, port."""
         desk = self._desk
         signals, truth = desk.board.signals(), desk.board.truth()
-        words = _STATES.get(int(signals["state"]), "?")
+        words = _STATES.get(int(signals["state"]), "?") if signals else "executes"
         port = f"open at {desk.port.rate} bit/s" if desk.port.is_open else "not open"
         return (
             f"{desk.time:9.1f} s  {self._ratio()}  {words}  shaft {truth['speed']:7.1f} rpm, load "

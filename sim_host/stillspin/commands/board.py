@@ -8,8 +8,10 @@ from typing import Annotated
 import typer
 
 from stillspin import core, resources
+from stillspin.board import image as images
 from stillspin.board import power, serve
 from stillspin.cases import profile
+from stillspin.errors import InputError
 from stillspin.options import ChangeOption, MotorOption, PaceOption, ParamsOption, ProfileOption, SeedOption, number
 from stillspin.runs import commission
 
@@ -55,11 +57,22 @@ def board(
             help="Switch off after so many seconds of the board's time.",
         ),
     ] = None,
+    image: Annotated[
+        Path | None,
+        typer.Option(
+            "--image",
+            metavar="FILE",
+            help="Execute this machine code of the C28x instead of the firmware: an .out file of cl2000 (COFF), Intel "
+            "hex or a boot stream.",
+        ),
+    ] = None,
     parent: Annotated[
         int | None, typer.Option("--parent", metavar="PID", help="Switch off when this process, its parent, is gone.")
     ] = None,
 ) -> None:
     """Run a virtual board in real time; its serial port is a pseudo-terminal. Ctrl-C switches it off."""
+    if image and (params or change):
+        raise InputError("--image: only --profile, --motor and --seed go with it; the program has its own parameters")
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
@@ -71,5 +84,7 @@ def board(
     title = f"motor {chosen.motor}, profile {chosen.name}, seed {seed}" + "".join(
         f", {words}" for words in changes.words
     )
-    powered = power.power(native, chosen, changes, seed)
+    if image:
+        title += f", executes {image.name}"
+    powered = power.power(native, chosen, changes, seed, images.load(image) if image else None)
     serve.serve(powered, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent), title)

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from stillspin.c28x.disassembler import disassemble
+from stillspin.commands import image_time
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -18,7 +19,11 @@ from stillspin.flash.files import read_program
 from stillspin.flash.program import Block, Program
 from stillspin.one_line_errors import OneLineErrors
 
-app = typer.Typer(cls=OneLineErrors, help="Linked images: show one.", rich_markup_mode=None)
+app = typer.Typer(
+    cls=OneLineErrors, help="Linked images: show one, time one on the virtual board.", rich_markup_mode=None
+)
+
+app.command(name="time")(image_time.time)
 
 PLACES = (
     *(("M0", range(0x000000, 0x000400)), ("M1", range(0x000400, 0x000800)), ("L0", range(0x008000, 0x009000))),

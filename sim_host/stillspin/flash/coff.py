@@ -16,6 +16,10 @@ _TARGET = 0x009D
 _HEADER = struct.Struct("<HHIIIHHH")
 _OPTIONAL = struct.Struct("<HHIIIIII")
 _SECTION = struct.Struct("<8sIIIIIIIIIHH")
+_SYMBOL = struct.Struct("<8sIhHBB")
+_NAMED = {2, 3, 6}
+"""Storage classes of what has an address: external, static, label."""
+_TEXT = 0x0020
 _EXECUTABLE = 0x0002
 _NOT_LOADED = 0x0001 | 0x0002 | 0x0010 | 0x0080
 """Dummy sections, those of another load, those that are only copied by a loader, and those without content."""
@@ -53,6 +57,40 @@ def _loaded(data: bytes, count: int, optional: int) -> Iterator[tuple[int, int, 
         _, load, _, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
         if size and raw and not kind & _NOT_LOADED:
             yield load, size, raw
+
+
+def functions(data: bytes) -> dict[int, str]:
+    """Names of places in code, by run address. Of several at one address the first that is external or a function's.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
+    _, count, _, table, symbols, optional, _, _ = _HEADER.unpack_from(data)
+    code = {
+        index + 1
+        for index in range(count)
+        if _SECTION.unpack_from(data, _HEADER.size + optional + index * _SECTION.size)[9] & _TEXT
+    }
+    strings = table + symbols * _SYMBOL.size
+    found: dict[int, str] = {}
+    at = 0
+    while at < symbols:
+        name, value, section, _, kind, more = _SYMBOL.unpack_from(data, table + at * _SYMBOL.size)
+        at += 1 + more
+        if section not in code or kind not in _NAMED:
+            continue
+        words = _name(name, data, strings)
+        if words and not words.startswith((".", "$")):
+            found.setdefault(value, words)
+    return found
+
+
+def _name(name: bytes, data: bytes, strings: int) -> str:
+    """Up to eight characters in place, or where they are in the table of strings."""
+    if name[:4] == bytes(4):
+        begin = strings + int.from_bytes(name[4:], "little")
+        name = data[begin : data.index(0, begin)]
+    return name.rstrip(b"\0").decode("ascii", "replace")
 
 
 def patched(data: bytes, name: str, address: int, words: Sequence[int]) -> bytes:

@@ -1,0 +1,61 @@
+// The C28x core in the place of the native firmware: it executes the words that are in the chip's memory.
+//
+// It runs on the firmware's stack, as the firmware would, and reaches peripherals through the same bus with the same
+// waits and gates. RAM and flash it reads by itself. Time is its own: the chip's events are run up to the cycle of an
+// access, and at the latest in the instruction in whose time they fall; interrupts are seen between instructions. The
+// flash's waits are those of FBANKWAIT and FOPT, an interrupt takes 14 cycles from the flag.
+//
+// Not modelled: memory that the security module keeps from code that runs elsewhere, stuck bits of RAM, the tables and
+// the code of the boot ROM (its vectors are there), a program that is told to fail.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_CODE_CPU_HPP
+#define STILLSPIN_SIM_HOST_CHIP_CODE_CPU_HPP
+
+#include <array>
+#include <cstdint>
+
+#include "sim_host/chip/c28x/core.hpp"
+#include "sim_host/chip/world.hpp"
+
+namespace stillspin::chip {
+
+class Core;
+
+class CodeCpu final : private c28x::Bus {
+ public:
+  explicit CodeCpu(Core& chip);
+  CodeCpu(const CodeCpu&) = delete;
+  CodeCpu& operator=(const CodeCpu&) = delete;
+
+  /// Executes from `entry` on, with the registers as the boot ROM leaves them. Only a reset ends it.
+  [[noreturn]] void run(std::uint32_t entry);
+
+  const c28x::Core& cpu() const { return cpu_; }
+  c28x::Core& cpu() { return cpu_; }
+
+ private:
+  std::uint16_t read(std::uint32_t address) override;
+  void write(std::uint32_t address, std::uint16_t value) override;
+  std::uint32_t read_pair(std::uint32_t address) override;
+  void write_pair(std::uint32_t address, std::uint32_t value) override;
+  std::uint32_t vector(unsigned number, std::uint32_t listed) override;
+
+  template <typename Access>
+  void at_the_bus(Access access);
+  void map();
+  void note_flash_waits();
+  void settle();
+  void collect();
+  void sleep();
+
+  Core& chip_;
+  c28x::Core cpu_;
+  std::uint64_t settled_ = 0;  // the cycle at which the chip's time stands
+  std::array<std::uint16_t, 256> vectors_{};
+  std::array<c28x::Region, 5> ram_;
+  c28x::Region flash_, frames_;
+};
+
+}  // namespace stillspin::chip
+
+#endif

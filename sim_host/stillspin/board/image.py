@@ -1,0 +1,41 @@
+"""An image on the virtual board: its words where a probe would put them, and a way to them from the flash's entry."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from stillspin.core import Blocks
+from stillspin.errors import InputError
+from stillspin.flash import layout
+from stillspin.flash.files import read_program
+from stillspin.flash.program import Program
+
+_LONG_BRANCH = 0x0040
+"""The first word of LB, with the upper six bits of where it goes."""
+
+
+def load(file: Path) -> Blocks:
+    """The words of a linked file.
+
+    Raises:
+        InputError: it cannot be read, or nothing says where it begins.
+    """
+    return blocks_of(read_program(file), str(file))
+
+
+def blocks_of(program: Program, name: str) -> Blocks:
+    """The words of a program. One that has nothing at the flash's entry gets a branch there, to its own entry.
+
+    Raises:
+        InputError: nothing says where it begins.
+    """
+    blocks: Blocks = [(block.address, list(block.words)) for block in program.blocks]
+    if program.word(layout.BOOT_ENTRY) is None:
+        if program.entry is None:
+            raise InputError(
+                f"{name}: has no code at the flash's entry 0x{layout.BOOT_ENTRY:06X}, to which the boot ROM jumps, "
+                "and no entry point of its own"
+            )
+        branch = [_LONG_BRANCH | program.entry >> 16, program.entry & 0xFFFF]
+        blocks.append((layout.BOOT_ENTRY, branch))
+    return blocks

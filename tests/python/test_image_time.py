@@ -1,0 +1,156 @@
+"""What an image's interrupts and functions took: the notes of the core, names of COFF, and `stillspin image time`."""
+
+import struct
+import subprocess
+import sys
+
+import pytest
+from c28x_chip import MILLISECOND, blocks, program
+from flash_files import coff, intel_hex
+
+from stillspin import core
+from stillspin.c28x import timed
+from stillspin.flash import coff as coff_files
+from stillspin.flash.program import Block, Program
+
+PLANT = {"solver": {"method": "rk4"}}
+FIRST_SECTION = 3
+"""Of the encoder's files: two without content come before."""
+ENTRY_CYCLES = 14
+
+
+def symbol(name, value, *, section=FIRST_SECTION, kind=2, more=0, strings=None):
+    """An entry of the table; a long name goes to the strings."""
+    field = name.encode()
+    if len(field) > 8:
+        field = struct.pack("<II", 0, 4 + len(strings))
+        strings += name.encode() + b"\0"
+    return struct.pack("<8sIhHBB", field, value, section, 0, kind, more) + bytes(18 * more)
+
+
+def with_symbols(data, entries, strings):
+    """The file with a table of symbols behind everything."""
+    count = sum(len(entry) // 18 for entry in entries)
+    head = data[:8] + struct.pack("<II", len(data), count)
+    return head + data[16:] + b"".join(entries) + struct.pack("<I", 4 + len(strings)) + bytes(strings)
+
+
+def named(name, symbols):
+    """A program as cl2000 would link it, with these of its labels."""
+    made = program(name)
+    parts = [Block(first, tuple(words)) for first, words in blocks(made.words)]
+    strings = bytearray()
+    entries = [symbol(label, made.symbols[label.upper()], strings=strings) for label in symbols]
+    return with_symbols(coff(parts), entries, strings)
+
+
+def test_names_of_code_come_from_the_table():
+    strings = bytearray()
+    entries = [
+        symbol("_main", 0x3F4000, more=1),
+        symbol("a_name_that_is_long", 0x3F4010, strings=strings),
+        symbol("_static", 0x3F4020, kind=3),
+        symbol("_again", 0x3F4000),
+        symbol(".text", 0x3F4000, kind=3),
+        symbol("$C$L1", 0x3F4004, kind=6),
+        symbol("_data", 0x8000, section=1),
+        symbol("_abs", 0x3F4030, section=-1),
+        symbol("_type", 0x3F4031, kind=13),
+    ]
+    data = with_symbols(coff([Block(0x3F4000, (0x7700,) * 64)]), entries, strings)
+    assert coff_files.functions(data) == {0x3F4000: "_main", 0x3F4010: "a_name_that_is_long", 0x3F4020: "_static"}
+    assert coff_files.functions(coff([Block(0x3F4000, (0x7700,))])) == {}
+
+
+@pytest.fixture
+def noted():
+    """Cycles by address, of interrupts, the stack, the run's cycles and the statistics of a program."""
+
+    def run(name, begin, end, patch=()):
+        image = blocks({**program(name).words, **dict(patch)})
+        board = core.load().VirtualBoard(plant=PLANT, parameters={}, seed=1, image=image)
+        try:
+            board.advance(begin)
+            before, counted = board.code()["cycles"], board.statistics()["interrupts"]
+            board.profile()
+            board.advance(end - begin)
+            spent, interrupts, stack = board.spent()
+            cycles = board.code()["cycles"] - before
+            return spent, interrupts, stack, cycles, board.statistics()["interrupts"] - counted
+        finally:
+            board.close()
+
+    return run
+
+
+def test_every_cycle_is_somewhere(noted):
+    spent, interrupts, stack, cycles, taken = noted("control", 20 * MILLISECOND, 30 * MILLISECOND)
+    assert cycles == pytest.approx(10 * MILLISECOND, abs=50)
+    assert sum(spent.values()) + ENTRY_CYCLES * taken == pytest.approx(cycles, abs=50)
+    assert stack == 0x402 + 15, "the call of main, and one context"
+    at = program("control").symbols
+    ((which, each),) = interrupts.items()
+    assert which == (32, at["SAMPLE"])
+    assert len(each) == pytest.approx(taken, abs=1)
+    inside = sum(count for address, count in spent.items() if address >= at["SAMPLE"])
+    assert inside + ENTRY_CYCLES * len(each) == pytest.approx(sum(each), abs=200)
+
+
+def test_what_comes_in_between_is_not_the_interrupts_own(noted):
+    at = program("nested").symbols
+    alone = noted("nested", 8 * MILLISECOND, 12 * MILLISECOND, {at["ALLOWED"]: 0})[1]
+    nested = noted("nested", 8 * MILLISECOND, 12 * MILLISECOND, {at["ALLOWED"]: 1})[1]
+    assert set(alone) == set(nested) == {(38, at["TICK"]), (48, at["PERIOD"])}
+    lengths = [max(each[48, at["PERIOD"]]) for each in (alone, nested)]
+    assert 6900 < lengths[0] < 8100
+    assert lengths[1] == pytest.approx(lengths[0], abs=60), "the ticks within are theirs"
+
+
+def test_functions_reach_to_the_next_name():
+    words = (0x7700, 0x7700, 0x0006, 0x28A9, 0x0005, 0x0006)  # NOP, NOP, LRETR; MOV AL,#5, LRETR
+    there = Program((Block(0x3F4000, words),))
+    rows = timed.functions(there, {0x3F4000: "one", 0x3F4003: "two"}, {0x3F4000: 4, 0x3F4003: 10, 0x3F4005: 1})
+    assert [(row.name, row.cycles, row.ran, row.end - row.first) for row in rows] == [
+        ("two", 11, 3, 3),
+        ("one", 4, 1, 3),
+    ]
+    assert timed.elsewhere(there, {0x3F4000: 4, 0x8000: 7}) == 7
+
+
+def test_bars_have_every_value():
+    lines = list(timed.histogram([100] * 3 + [117, 131, 131]))
+    assert [int(line.split("#")[0].split()[-1]) for line in lines] == [3, 1, 2]
+    assert list(timed.histogram([7, 7])) == [f"    {'7':>16}  {2:>8}  {'#' * 24}"]
+
+
+def test_vectors_have_ti_s_names():
+    names = [timed.vector_name(number) for number in (32, 37, 48, 127, 13, 14, 18, 19, 21)]
+    assert names == ["INT1.1", "INT1.6", "INT3.1", "INT12.8", "INT13", "INT14", "NMI", "ILLEGAL", "vector 21"]
+
+
+def run_command(image, *more):
+    command = [sys.executable, "-m", "stillspin", "image", "time", image, *more]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_the_command_names_interrupts_and_functions(tmp_path):
+    image = tmp_path / "control.out"
+    image.write_bytes(named("control", ["start", "main", "serial", "vector", "beside", "sample"]))
+    done = run_command(image, "--after", "0.02", "--for", "0.01", "--functions", "2")
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("control.out: 0.01 s, 1000")
+    assert lines[1].startswith("waited for registers ")
+    assert any(line.startswith("INT1.1 sample ") and " 200 " in line for line in lines)
+    assert any(line.startswith("beside ") for line in lines)
+    assert any(line.startswith("sample ") and "100%" in line for line in lines)
+    assert any(line.startswith("and ") and "more" in line for line in lines)
+    assert lines[-1] == "stack: up to 0x0411, 17 words from 0x0400"
+
+
+def test_without_names_there_are_addresses(tmp_path):
+    image = tmp_path / "control.hex"
+    image.write_bytes(intel_hex([Block(first, tuple(words)) for first, words in blocks(program("control").words)]))
+    done = run_command(image, "--after", "0.02", "--for", "0.002")
+    assert f"INT1.1 0x{program('control').symbols['SAMPLE']:06X}" in done.stdout
+    assert "(no name)" in done.stdout
