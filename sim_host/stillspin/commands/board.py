@@ -62,8 +62,8 @@ def board(
         typer.Option(
             "--image",
             metavar="FILE",
-            help="Execute this machine code of the C28x instead of the firmware: an .out file of cl2000 (COFF), Intel "
-            "hex or a boot stream.",
+            help="Execute this machine code of the C28x instead of the firmware: an .out file of cl2000 (COFF or "
+            "ELF), Intel hex or a boot stream.",
         ),
     ] = None,
     parent: Annotated[

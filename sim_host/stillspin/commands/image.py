@@ -79,7 +79,7 @@ def _address(text: str) -> int:
 @app.command()
 def show(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF), Intel hex or a boot stream.")],
+    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
     code: Annotated[
         str, typer.Option("--code", metavar="ADDRESS", help="List the code from this address on instead.")
     ] = "",

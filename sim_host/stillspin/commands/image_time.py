@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +18,7 @@ from stillspin.cases import profile
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import CampaignError
-from stillspin.flash import coff
+from stillspin.flash import coff, elf
 from stillspin.flash.files import read_program
 from stillspin.flash.program import Program
 from stillspin.options import MotorOption, ProfileOption, SeedOption, number
@@ -28,7 +29,12 @@ _STACK = 0x0400
 
 def _names(file: Path) -> dict[int, str]:
     data = file.read_bytes()
-    return coff.functions(data) if data.startswith(coff.MAGIC) else {}
+    try:
+        if data.startswith(elf.MAGIC):
+            return elf.functions(data)
+        return coff.functions(data) if data.startswith(coff.MAGIC) else {}
+    except (struct.error, ValueError):
+        return {}  # the words are there, and the table of names is not
 
 
 def _advance(board: NativeBoard, seconds: float) -> None:
@@ -78,7 +84,7 @@ def _say_functions(program: Program, names: Mapping[int, str], spent: Mapping[in
 
 def time(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF), Intel hex or a boot stream.")],
+    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
     seconds: Annotated[
         float, typer.Option("--for", parser=number("--for", 0, unit="s"), metavar="SECONDS", help="How long to look.")
     ] = 0.1,

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from stillspin.counted import counted
 from stillspin.errors import InputError
-from stillspin.flash import boot_stream, coff, image_sum, intel_hex, layout
+from stillspin.flash import boot_stream, coff, elf, image_sum, intel_hex, layout
 from stillspin.flash.layout import contains
 from stillspin.flash.program import Block, Program
 
-_FORMATS = "an .out file of cl2000 (COFF), Intel hex or a boot stream of hex2000"
+_FORMATS = "an .out file of cl2000 (COFF or ELF), Intel hex or a boot stream of hex2000"
 _LARGEST = 8 << 20
 
 
@@ -30,10 +30,8 @@ def read_program(path: Path) -> Program:
         raise InputError(
             f"{name}: a file of {counted(len(data), 'octet')} is no program for this chip; give {_FORMATS}"
         )
-    if data.startswith(b"\x7fELF"):
-        raise InputError(
-            f"{name}: is an ELF file; link with --abi=coffabi, as the preset f2808 does, or give Intel hex"
-        )
+    if data.startswith(elf.MAGIC):
+        return elf.read(data, name)
     if data.startswith(coff.MAGIC):
         return coff.read(data, name)
     if boot_stream.is_binary(data):
@@ -43,6 +41,20 @@ def read_program(path: Path) -> Program:
     if data.lstrip()[:1] == b":":
         return intel_hex.read(data, name)
     raise InputError(f"{name}: has an unknown format; give {_FORMATS}")
+
+
+def _read_for_flash(path: Path) -> Program:
+    """The same of what this drive is linked as: its start-up zeroes what COFF leaves to it.
+
+    Raises:
+        InputError: also for ELF.
+    """
+    program = read_program(path)
+    if program.kind == elf.KIND:
+        raise InputError(
+            f"{path}: is an ELF file; link with --abi=coffabi, as the preset f2808 does, or give Intel hex"
+        )
+    return program
 
 
 @dataclass(frozen=True)
@@ -136,7 +148,7 @@ def drive_image(path: Path) -> DriveImage:
     Raises:
         InputError: it cannot be read, or is no image that this board may get.
     """
-    program, name = read_program(path), str(path)
+    program, name = _read_for_flash(path), str(path)
     words = [layout.ERASED] * len(layout.UPDATE)
     resident, size = [], 0
     for block in program.blocks:
@@ -163,7 +175,7 @@ def kernel_program(path: Path) -> Program:
     Raises:
         InputError: it cannot be read, or is no kernel that may be loaded.
     """
-    program, name = read_program(path), str(path)
+    program, name = _read_for_flash(path), str(path)
     for block in program.blocks:
         if not contains(layout.KERNEL_RAM, block.address, len(block.words)):
             raise InputError(

@@ -1,0 +1,101 @@
+"""Executables of TI's EABI for the C28x: 32-bit ELF, little-endian, machine 141.
+
+Addresses count 16-bit words, sizes and places in the file octets. What is loaded where is in the program headers, whose
+physical address is the one to load to; symbols have run addresses.
+Source: the C28x's application binary interface (SPRAC71, chapters on object files) and System V's ELF.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from stillspin.errors import InputError
+from stillspin.flash.program import Block, Program, assemble
+
+KIND = "ELF"
+MAGIC = b"\x7fELF"
+_CLASS_AND_ORDER = b"\x01\x01"
+_MACHINE = 141
+_EXECUTABLE = 2
+_HEADER = struct.Struct("<16sHHIIIIIHHHHHH")
+_SEGMENT = struct.Struct("<IIIIIIII")
+_SECTION = struct.Struct("<IIIIIIIIII")
+_SYMBOL = struct.Struct("<IIIBBH")
+_LOAD = 1
+_SYMBOL_TABLE = 2
+_INSTRUCTIONS = 4
+_NAMED = {0, 2}
+"""Types of symbols that are places in code: without a type (assembly), function."""
+
+
+class _Header(NamedTuple):
+    kind: int
+    machine: int
+    entry: int
+    segments: int
+    sections: int
+    segment_count: int
+    section_count: int
+
+
+def _header(data: bytes) -> _Header:
+    _, kind, machine, _, entry, segments, sections, _, _, _, segment_count, _, section_count, _ = _HEADER.unpack_from(
+        data
+    )
+    return _Header(kind, machine, entry, segments, sections, segment_count, section_count)
+
+
+def read(data: bytes, name: str) -> Program:
+    """Read a file.
+
+    Raises:
+        InputError: it is damaged, of another chip, or no executable.
+    """
+    try:
+        return _read(data, name)
+    except struct.error:
+        raise InputError(f"{name}: the ELF file is cut short; copy it again") from None
+
+
+def _read(data: bytes, name: str) -> Program:
+    header = _header(data)
+    if header.machine != _MACHINE or data[4:6] != _CLASS_AND_ORDER:
+        raise InputError(
+            f"{name}: is an ELF file for another processor (machine {header.machine}), not for the C28x ({_MACHINE})"
+        )
+    if header.kind != _EXECUTABLE or not header.segment_count:
+        raise InputError(f"{name}: is an ELF object that has not been linked; give the .out file")
+    return assemble(list(_blocks(data, header)), header.entry, KIND, name)
+
+
+def _blocks(data: bytes, header: _Header) -> Iterator[Block]:
+    for index in range(header.segment_count):
+        kind, at, _, load, octets, _, _, _ = _SEGMENT.unpack_from(data, header.segments + index * _SEGMENT.size)
+        if kind == _LOAD and octets:
+            yield Block(load, struct.unpack_from(f"<{octets // 2}H", data, at))
+
+
+def functions(data: bytes) -> dict[int, str]:
+    """Names of places in code, by run address; of several at one address the first.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
+    header = _header(data)
+    sections = [
+        _SECTION.unpack_from(data, header.sections + index * _SECTION.size) for index in range(header.section_count)
+    ]
+    found: dict[int, str] = {}
+    for _, kind, _, _, at, octets, link, _, _, _ in sections:
+        if kind != _SYMBOL_TABLE:
+            continue
+        strings = sections[link][4]
+        for place in range(at, at + octets, _SYMBOL.size):
+            name, value, _, information, _, section = _SYMBOL.unpack_from(data, place)
+            code = section < len(sections) and sections[section][2] & _INSTRUCTIONS
+            words = data[strings + name : data.index(0, strings + name)].decode("ascii", "replace")
+            if code and information & 0xF in _NAMED and words and not words.startswith((".", "$")):
+                found.setdefault(value, words)
+    return found

@@ -1,0 +1,74 @@
+"""Executables of the C28x's EABI: words, load addresses and names, and where they are not taken."""
+
+import subprocess
+import sys
+
+import pytest
+from c28x_chip import blocks, program
+from elf_files import FUNCTION, OBJECT, UNTYPED, elf
+
+from stillspin.errors import InputError
+from stillspin.flash import elf as elf_files
+from stillspin.flash.files import drive_image, kernel_program, read_program
+from stillspin.flash.program import Block
+
+BLOCKS = [Block(0x3F4000, (0x7700, 0x1234, 0x0006)), Block(0x9000, (1, 2))]
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(data):
+        path = tmp_path / "program.out"
+        path.write_bytes(data)
+        return path
+
+    return write
+
+
+def test_words_are_where_they_are_loaded(file):
+    there = read_program(file(elf(BLOCKS, load={1: 0x3F5000 - 0x9000})))
+    assert there.blocks == (BLOCKS[0], Block(0x3F5000, (1, 2)))
+    assert (there.entry, there.kind) == (0x3F4000, "ELF")
+
+
+def test_names_are_those_of_code():
+    symbols = [
+        ("main", 0x3F4000, 0, FUNCTION), ("label", 0x3F4001, 0, UNTYPED), ("again", 0x3F4000, 0, FUNCTION),
+        ("table", 0x3F4002, 0, OBJECT), ("$C$L1", 0x3F4002, 0, UNTYPED), ("data", 0x9000, 1, UNTYPED),
+        ("absolute", 0x3F4002, None, UNTYPED),
+    ]  # fmt: skip
+    assert elf_files.functions(elf(BLOCKS, symbols=symbols)) == {0x3F4000: "main", 0x3F4001: "label"}
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (elf(BLOCKS, machine=40), "another processor"),
+        (elf(BLOCKS, order=b"\x01\x02"), "another processor"),
+        (elf(BLOCKS, kind=1), "has not been linked"),
+        (elf(BLOCKS)[:60], "cut short"),
+        (elf(BLOCKS)[:40], "cut short"),
+    ],
+)
+def test_what_cannot_be_is_said(file, data, words):
+    with pytest.raises(InputError, match=words):
+        read_program(file(data))
+
+
+@pytest.mark.parametrize("read", [drive_image, kernel_program])
+def test_the_drive_and_its_kernel_are_coff(file, read):
+    with pytest.raises(InputError, match="coffabi"):
+        read(file(elf(BLOCKS)))
+
+
+def test_an_image_is_timed_with_its_names(file):
+    made = program("control")
+    parts = [Block(first, tuple(words)) for first, words in blocks(made.words)]
+    code = next(index for index, block in enumerate(parts) if block.address == 0x3F4000)
+    symbols = [(name, made.symbols[name.upper()], code, FUNCTION) for name in ("start", "beside", "sample")]
+    image = file(elf(parts, symbols=symbols))
+    command = [sys.executable, "-m", "stillspin", "image", "time", image, "--after", "0.02", "--for", "0.002"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "INT1.1 sample " in done.stdout
+    assert "\nbeside " in done.stdout
