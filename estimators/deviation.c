@@ -39,19 +39,23 @@ deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
   return at;
 }
 
+deviation_t deviation_of(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f) {
+  deviation_change_t c;
+  deviation_in_frame(at, w, f, &c);
+  const deviation_t d = {
+      {deviation_slope_q20(c.left_q17.d, 17, w->span_ticks), deviation_slope_q20(c.left_q17.q, 17, w->span_ticks)},
+      {q_shr(c.voltage_q17.d, 1), q_shr(c.voltage_q17.q, 1)},
+      {f->current_q18.d * 4, f->current_q18.q * 4}};
+  return d;
+}
+
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp) {
   const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
   const deviation_model_t at = deviation_model(m, w_q30);
   estimator_frame_t f;
-  deviation_change_t c;
   deviation_frames(w, 1, deviation_middle(angle_bam, speed_bpp), w_q30, &f);
-  deviation_in_frame(&at, w, &f, &c);
-  const deviation_t d = {
-      {deviation_slope_q20(c.left_q17.d, 17, w->span_ticks), deviation_slope_q20(c.left_q17.q, 17, w->span_ticks)},
-      {q_shr(c.voltage_q17.d, 1), q_shr(c.voltage_q17.q, 1)},
-      {f.current_q18.d * 4, f.current_q18.q * 4}};
-  return d;
+  return deviation_of(&at, w, &f);
 }
 
 deviation_sensitivity_t deviation_sensitivity(const machine_model_t* m, int32_t w_q30, dq_t i) {

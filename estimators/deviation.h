@@ -96,7 +96,10 @@ static inline int32_t deviation_slope_q20(int32_t change, unsigned bits, int32_t
   return q_sat_bits(q_product(change, DEVIATION_PERIOD_Q17 / span_ticks), bits - 3u, 29);
 }
 
-/// One window, at the angle of the estimator at the end of its period.
+/// One window in its frame.
+deviation_t deviation_of(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f);
+
+/// The same at the angle of the estimator at the end of its period.
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp);
 

@@ -16,6 +16,7 @@
 #include "estimators/inverse_inductance_tensor.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/interfaces/state.h"
+#include "svpwm/dead_time.h"
 
 #define STAIRCASE_LEVELS 14u
 #define MAP_LEVELS 4u
@@ -23,7 +24,7 @@
 #define SPIN_STATIONS 3u
 #define SPIN_RAMPS 2u
 
-/// One level of the DC staircase. Sums over periods and over windows; currents and voltages Q20.
+/// One level of the DC staircase. Sums over periods and over windows; currents and voltages Q20, the sag V^2 Q12.
 typedef struct {
   int64_t current, factor, command;  // per period
   int64_t window_current, window_factor, residual, sag;
@@ -36,6 +37,7 @@ typedef struct {
   uint16_t index;
   int32_t tick;
   int32_t most_q20;
+  dead_time_config_t one_volt;  // the devices, if their drop were that
 } staircase_t;
 
 /// Periods of one sign of the torque in one kind of train (group: 2 * mirrored train + negative sign).

@@ -57,6 +57,7 @@ void commissioning_estimate(drive_t* d, estimator_input_t* in) {
     d->position.selected = position_sources[POSITION_AVV]->step(d, in);
     return;
   }
+  if (d->schedule.moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   tracking_observer_t* const o = &d->position.avv.observer;
   tracking_observer_predict(o, q_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
   const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
@@ -73,8 +74,9 @@ static bool opposite(const estimator_window_t* a, const estimator_window_t* b) {
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {
   const estimator_window_t* const w = d->samples.windows;
   if (d->samples.count != 2u || !opposite(&w[0], &w[1])) return false;
-  const estimator_output_t* const p = &d->position.selected;
-  *first = deviation_evaluate(&commissioning.model, &w[0], p->angle_bam, p->speed_bpp);
-  *second = deviation_evaluate(&commissioning.model, &w[1], p->angle_bam, p->speed_bpp);
+  const int32_t w_q30 = machine_speed_rad_q30(d->position.selected.speed_bpp);
+  const deviation_model_t at = deviation_model(&commissioning.model, w_q30);
+  *first = deviation_of(&at, &w[0], &d->samples.frames[0]);
+  *second = deviation_of(&at, &w[1], &d->samples.frames[1]);
   return true;
 }

@@ -110,6 +110,7 @@ static void run_train(drive_t* d, map_t* m) {
   m->pause = true;
   m->tick = 0;
   commissioning.predicting = false;
+  machine_model_follow(&d->model, 0);
 }
 
 static bool level_complete(const map_t* m) {

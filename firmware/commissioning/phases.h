@@ -17,7 +17,8 @@ void commissioning_hold(drive_t* d);                      // keeps the shaft at 
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
 /// Angle and speed while the shaft is held (commissioning/hold.c).
 void commissioning_estimate(drive_t* d, estimator_input_t* in);
-/// The period's two opposite windows against the model, in the frame of the angle in use; false when there are none.
+/// The period's two opposite windows against the model, in the frame that they were turned into; false when there are
+/// none.
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);
 
 #endif

@@ -10,6 +10,7 @@
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/step.h"
 
 #define SETTLE_PERIODS 4000
 #define STATION_PERIODS 10000
@@ -44,7 +45,6 @@ static void enter_leg(uint16_t leg) {
 }
 
 static void begin(drive_t* d) {
-  clear(&commissioning.spin, sizeof commissioning.spin);
   d->flags.spins = true;
   d->flags.frozen = false;
   drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
@@ -76,17 +76,24 @@ static bool hand_back(drive_t* d) {
   if (c->solve_motion) return false;
   d->model.torque_q24 = c->torque_q24;
   d->model.accel_q12 = c->accel_q12;
+  machine_model_follow(&d->model, 0);
   return true;
 }
 
 bool commissioning_spin(drive_t* d) {
   spin_t* const s = &commissioning.spin;
-  if (commissioning.tick == 0) begin(d);
+  // Two things that are long, in a period each.
+  if (commissioning.tick == 0) {
+    clear(s, sizeof *s);
+    return false;
+  }
+  if (commissioning.tick == 1) begin(d);
   if (!d->flags.spins) return hand_back(d);
   const bool arrived = approach(d);
   if (s->leg >= (uint16_t)LEG_STOP) {
     s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
-    if (s->tick > STILL_PERIODS) (void)hand_back(d);  // the background level comes first
+    // The background level comes first.
+    if (s->tick > STILL_PERIODS && start_has_exclusive_slot(d)) (void)hand_back(d);
     return false;
   }
   const bool settling = s->tick < SETTLE_PERIODS;

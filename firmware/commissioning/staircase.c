@@ -23,9 +23,6 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 
-#define VOLT_THIRD_Q29 178956971L  // of dead_time_design, for 1 V: a third, 1 / sqrt(3)
-#define VOLT_SIDE_Q29 309962566L
-
 #define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
 #define LEVEL_PERIODS 8400  // a multiple of the six periods in which the excitation comes round
@@ -55,23 +52,21 @@ static int32_t level_q20(const drive_t* d, uint16_t index) {
 }
 
 // What one volt of drop in every phase gives along the d-axis, Q20.
-static int32_t factor_q20(const drive_t* d, ab_t current_q20, rotation_t r) {
-  dead_time_config_t one_volt = d->config.dead_time;
-  one_volt.third_per_amp_q21 = q_mul_hi(one_volt.per_band_q24, VOLT_THIRD_Q29);
-  one_volt.side_per_amp_q21 = q_mul_hi(one_volt.per_band_q24, VOLT_SIDE_Q29);
-  return frame_park(dead_time_drop_q16(&one_volt, current_q20), r).d * 16;
+static int32_t factor_q20(ab_t current_q20, rotation_t r) {
+  return frame_park(dead_time_drop_q16(&commissioning.staircase.one_volt, current_q20), r).d * 16;
 }
 
 static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
   const dq_t i = d->control.measured_q20;
   l->current = q_gather(l->current, i.d);
   l->command = q_gather(l->command, (int64_t)d->control.command_q16.d * 16);
-  l->factor = q_gather(l->factor, factor_q20(d, frame_inverse_park(i, r), r));
+  l->factor = q_gather(l->factor, factor_q20(frame_inverse_park(i, r), r));
   l->periods = q_add_sat(l->periods, 1);
 }
 
-// Difference of the link between the middles of the two windows, from that between their ends, as a voltage along d.
-static int32_t sag_q20(const drive_t* d, const deviation_t w[2]) {
+// Difference of the link between the middles of the two windows, from that between their ends, times the voltage along
+// d: what the evaluation divides by the link is a voltage along d.
+static int32_t sag_q12(const drive_t* d, const deviation_t w[2]) {
   const estimator_window_t* const e = d->samples.windows;
   const svpwm_window_t* const p = modulation_sampled(&d->modulation)->windows;
   const sampling_config_t* const c = &d->config.modulator.sampling;
@@ -79,10 +74,9 @@ static int32_t sag_q20(const drive_t* d, const deviation_t w[2]) {
   const int32_t length = p[0].end - p[0].start + around;
   const int32_t middles = e[0].middle_tick - p[0].start + e[1].middle_tick - p[1].start + 2 * c->settle_ticks;
   const int32_t ends = middles + (e[0].span_ticks + e[1].span_ticks) / 2;
+  const int32_t share_q15 = (middles - length) * (int32_t)32768 / q_max(ends - length, 1);
   const int32_t at_ends_q16 = d->samples.link_end_q16[0] - d->samples.link_end_q16[1];
-  const int32_t at_middles_q16 = q_mul(at_ends_q16, q_div(middles - length, ends - length, 24), 24);
-  const int32_t share_q24 = q_div(w[0].voltage_q16.d / 2 - w[1].voltage_q16.d / 2, d->samples.link_q16, 24);
-  return q_mul(at_middles_q16, share_q24, 20);
+  return q_mul_sat(q_mul(at_ends_q16, share_q15, 15), w[0].voltage_q16.d / 2 - w[1].voltage_q16.d / 2, 20);
 }
 
 static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
@@ -90,11 +84,11 @@ static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
   if (!commissioning_pair(d, &w[0], &w[1])) return;
   for (uint16_t k = 0; k < 2u; k++) {
     l->window_current = q_gather(l->window_current, w[k].current_q20.d);
-    l->window_factor = q_gather(l->window_factor, factor_q20(d, d->samples.windows[k].current_q20, r));
+    l->window_factor = q_gather(l->window_factor, factor_q20(d->samples.windows[k].current_q20, r));
     l->residual = q_gather(l->residual, w[k].residual_q20.d);
     l->windows = q_add_sat(l->windows, 1);
   }
-  l->sag = q_gather(l->sag, sag_q20(d, w));
+  l->sag = q_gather(l->sag, sag_q12(d, w));
 }
 
 bool commissioning_climb(drive_t* d) {
@@ -104,6 +98,9 @@ bool commissioning_climb(drive_t* d) {
     s->index = 0;
     s->tick = 0;
     s->most_q20 = bearable_q20();
+    s->one_volt = d->config.dead_time;
+    s->one_volt.drop_q16 = 65536L;
+    dead_time_design(&s->one_volt);
   }
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {

@@ -78,13 +78,24 @@ void drive_estimate(drive_t* d) {
   const position_source_t* source = d->source;
   if (d->state == DRIVE_COMMISSION) source = position_sources[POSITION_OBSERVER];
   if (starting) source = position_sources[POSITION_AVV];
-  // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone.
-  const bool alone = (source->traits & SOURCE_SINGLE) != 0u || starting || open_loop;
-  const estimator_output_t* const first = alone ? &d->position.selected : first_of(d, source->traits);
+  // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone,
+  // or that looks on.
+  const bool single = (source->traits & SOURCE_SINGLE) != 0u;
+  const estimator_output_t* first = &d->position.selected;
+  const estimator_frame_t* frames = d->samples.frames;
+  if (open_loop) {
+    if (single) first = &d->position.seen;
+    if (!single) frames = NULL;
+  } else if (!(single || starting)) {
+    first = first_of(d, source->traits);
+  }
   if (count > 0u) measure_current(d, first);
-  const bool moves = d->schedule.moves || is_slot(d, SLOT_OPERATING_POINT);
+  // With the gates off the windows are no answer to the pattern's voltages.
+  if (starting && (d->flags.gates_off || !drive_is_energised())) return;
+  const bool moves = (d->schedule.moves || is_slot(d, SLOT_OPERATING_POINT)) && !d->flags.frozen;
   if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
-  if (is_slot(d, SLOT_LOOK) && !polarity_watch_is_awake(d)) machine_model_renew_sensitivity(&d->model);
+  const bool turns = is_slot(d, SLOT_LOOK) && !polarity_watch_is_awake(d) && !d->flags.frozen;
+  if (turns) machine_model_renew_sensitivity(&d->model);
   estimator_input_t in;
   in.model = &d->model;
   in.regress = is_slot(d, SLOT_REGRESSION);
@@ -92,7 +103,7 @@ void drive_estimate(drive_t* d) {
   in.refresh = moves || !d->schedule.turning;
   in.windows = d->samples.windows;
   in.window_count = d->schedule.skips ? 0u : count;
-  in.frames = (open_loop || measuring) ? 0 : d->samples.frames;
+  in.frames = frames;
   // While the polarity is open the sign of the torque is, too. A source that looks on is told what its own angle makes
   // of the current, as later.
   dq_t seen_q20 = d->control.measured_q20;

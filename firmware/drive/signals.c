@@ -25,16 +25,15 @@ static const signal_info_t table[] = {
 static int32_t phase_current(const volatile drive_t* d, bool of_b) {
   static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
   const uint16_t count = d->samples.count & ESTIMATOR_WINDOWS;  // three: a mask, too
-  ab_t sum = {0, 0};
+  int32_t alpha_q17 = 0;
+  int32_t beta_q17 = 0;
   for (uint16_t k = 0; k < count; k++) {
-    sum.alpha = q_add_sat(sum.alpha, d->samples.windows[k].current_q20.alpha);
-    sum.beta = q_add_sat(sum.beta, d->samples.windows[k].current_q20.beta);
+    alpha_q17 += q_shr(d->samples.windows[k].current_q20.alpha, 3);
+    if (of_b) beta_q17 += q_shr(d->samples.windows[k].current_q20.beta, 3);
   }
   const int32_t share_q30 = per_windows_q30[count];
-  const int32_t alpha_q20 = q_mul_floor(sum.alpha, share_q30, 30);
-  if (!of_b) return alpha_q20;
-  const int32_t beta_q20 = q_mul_floor(sum.beta, share_q30, 30);
-  return q_sub_sat(q_mul_floor(beta_q20, FRAME_SQRT3_HALF_Q30, 30), alpha_q20 / 2);
+  if (!of_b) return q_mul_sat(alpha_q17, share_q30, 27);
+  return q_mul_sat(q_mul_floor(beta_q17, FRAME_SQRT3_HALF_Q30, 30) - alpha_q17 / 2, share_q30, 27);
 }
 
 // The pointer is given: it is read once, and is one or none.

@@ -92,7 +92,10 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
     return false;
   }
   if (!start_has_exclusive_slot(d)) return false;
-  if (d->found.phase == START_AXIS) judge_wiring(d);
+  if (d->found.phase == START_AXIS) {
+    judge_wiring(d);
+    if (start_is_open_loop(d)) return true;
+  }
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
   inverse_inductance_preset(&d->model, axis.mean_q30, axis.half_q30);
   *axis_bam = axis.angle_bam;

@@ -60,8 +60,8 @@ void start_power(drive_t* d, bool on);
 bool start_has_exclusive_slot(drive_t* d);
 
 /// Takes the period's regression where it is valid. True, in a period for the decision, when the axis is known: the
-/// model has the inverse inductances, and *axis_bam is how far the axis is from where it was looked for. Too late is a
-/// fault.
+/// model has the inverse inductances, and *axis_bam is how far the axis is from where it was looked for. A current
+/// vector that is to turn the rotor needs neither. Too late is a fault.
 bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam);
 
 /// True where a current vector is to turn the rotor.

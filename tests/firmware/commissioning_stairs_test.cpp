@@ -39,6 +39,9 @@ TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
     dead_time_design(&inside::config().dead_time);
     inside::current_dq_q20() = {raw(10.0, 20), 0};
     inside::selected().angle_bam = bam(sixths * kPi / 3.0);
+    commissioning.tick = 0;
+    (void)commissioning_climb(&drive);
+    commissioning.tick = 1;
     stairs().tick = 600;
     (void)commissioning_climb(&drive);
     ASSERT_EQ(stairs().level[0].periods, 1);

@@ -239,7 +239,7 @@ TEST_F(Commissioning, PhasesFollowEachOther) {
   inside::reference_dq_q20().d = 0;
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_SPIN);
-  c.tick = 1;
+  c.tick = 2;
   inside::sensor_trim().mismatch_q30 = 4321;
   commissioning_state.step(&drive);  // a spin that is over
   EXPECT_EQ(c.phase, COMMISSIONING_MAP);
@@ -337,6 +337,8 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
     }
   }
   first_period(commissioning_spin);
+  c.tick = 1;
+  EXPECT_FALSE(commissioning_spin(&drive));
   EXPECT_TRUE(inside::flags().spins && !inside::flags().frozen);
   EXPECT_EQ(c.spin.leg, 0);
   EXPECT_EQ(c.spin.tick, 0);

@@ -39,6 +39,7 @@ inline auto& zero_current_a_q8() { return drive.zero_current_a_q8; }
 inline auto& zero_current_b_q8() { return drive.zero_current_b_q8; }
 
 // The last period's windows.
+inline auto& frames() { return drive.samples.frames; }
 inline auto& link_end_q16() { return drive.samples.link_end_q16; }
 inline auto& link_q16() { return drive.samples.link_q16; }
 inline auto& ripple_q16() { return drive.samples.ripple_q16; }

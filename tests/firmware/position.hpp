@@ -29,6 +29,7 @@ class Position : public Drive {
     inside::schedule().turning = true;
     polarity_watch.open = false;
     position_preset(&drive, kHere, 0);
+    inside::current_dq_q20() = {0, 0};
     see(2);
   }
   /// So many windows, the first of them under a zero vector, of a machine at rest without current.

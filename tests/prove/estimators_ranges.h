@@ -81,6 +81,14 @@ void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_
 bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks,
                                            int32_t* periods);
 
+/*@ requires \valid_read(m); assigns \result \from *m, w_q30; */
+deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30);
+
+/*@ requires \valid_read(at) && \valid_read(w) && \valid_read(f); assigns \result \from *at, *w, *f;
+    ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16);
+    ensures VECTOR_DQ(\result.current_q20, 1300 * AMPERES_Q20); */
+deviation_t deviation_of(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f);
+
 /*@ requires \valid_read(m) && \valid_read(w); assigns \result \from *m, *w, angle_bam, speed_bpp;
     ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16);
     ensures VECTOR_DQ(\result.current_q20, 1300 * AMPERES_Q20); */
