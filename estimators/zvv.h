@@ -3,14 +3,18 @@
 //   D = s_q + (R i_q + lambda w^)/Lq,   Kq = R (Ld - Lq) i_d* / (Ld Lq),   angle error = D / Kq, then PI -> speed ->
 //   angle.
 //
-// The drop of the devices is taken off D in the q-axis; along the d-axis it acts like R i_d* and belongs to Kq (at 3 A
-// it is as large).
+// What the print leaves out is said by zvv_config_t: the rotation's part of the measured slope, w (1 - Ld/Lq) id, which
+// otherwise biases the angle by w Ld / R, 1.8 degrees at 5 rpm and 22 at 60 rpm on the paper's motor; that the integral
+// alone goes into D and out as the speed: with the whole PI output fed back one step later the loop is unstable unless
+// Kp < Lq |Kq| / lambda; and the devices' drops in D. They stay out of Kq on purpose: with
 //
-// It needs i_d* != 0. Only the integral part of the speed goes into D: with the whole PI output fed back one step later
-// the loop is unstable unless Kp < Lq |Kq| / lambda, about 6 rad/s on the paper's motor. What the paper drops of the
-// rotated slope, w (1 - Ld/Lq) id, biases the angle by w Ld / R, 1.8 degrees at 5 rpm and 22 at 60 rpm there, and the
-// loop is slow (a few rad/s): it holds light loads near standstill with exact parameters, not more.
-// deviation_observer.h uses both axes and all terms.
+//   Kp = Lq |Kq| / lambda',   Ki = bandwidth of the speed times that,   lambda' = lambda - (Lq - Ld) i_d*
+//
+// Kp D / Kq is D Lq / lambda', the speed that the EMF tells, whatever else acts like R i_d. The angle's error then
+// decays by itself: neither a wrong speed nor an acceleration turns it (docs/physics.md, section 3).
+//
+// It needs i_d* > 0 of some amperes. The load (Fig. 7) is what the torque makes less what the speed makes of it,
+// through a low-pass of 20 ms.
 
 #ifndef STILLSPIN_ESTIMATORS_ZVV_H
 #define STILLSPIN_ESTIMATORS_ZVV_H
@@ -19,9 +23,18 @@
 
 #define ZVV_PERIODS 10  // as many without a zero vector the integral makes good with the next
 
-typedef struct {
+/// What the paper leaves out and the machine needs, and its load; each to be had or not (a mask).
+enum {
+  ZVV_ROTATION = 1,  // D without the rotation's part of the slope
+  ZVV_INTEGRAL = 2,  // the integral alone is fed back into D, and is the speed
+  ZVV_DROPS = 4,     // D without what the devices take
+  ZVV_LOAD = 8       // the load of Fig. 7
+};
+
+typedef struct zvv_config {
   int32_t kp_q30;  // Kp * T, per period
   int32_t ki_q40;  // Ki * T^2, per period^2
+  uint16_t terms;
 } zvv_config_t;
 
 typedef struct {
@@ -29,10 +42,11 @@ typedef struct {
   int32_t speed_bpp;       // PI output
   int32_t integral_q8bpp;  // integral part, with eight more fractional bits, |speed| below 200 rpm or so
   int32_t deviation_q20;   // last D, A per period
-  int32_t waited;          // periods since it was seen, up to ZVV_PERIODS
+  int32_t load_accel_q8;   // acceleration that the load takes away (Fig. 7)
+  int32_t waited;          // periods since D was seen, up to ZVV_PERIODS
 } zvv_t;
 
-void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp);
+void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);
 
 /// D (22) without a loop behind it: the mean over the zero vectors among the windows, A per period, Q20, in the frame
 /// of this angle (at the start of the running period) and speed. False, with nothing written, when there is no such

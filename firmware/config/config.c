@@ -173,8 +173,6 @@ static bool load_position(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->avv.bandwidth_short_q30 = bandwidth_step_q30(p->avv_bandwidth_short);
   c->avv.bandwidth_long_q30 = bandwidth_step_q30(q_max(p->avv_bandwidth_long, p->avv_bandwidth_short));
-  c->zvv.kp_q30 = bandwidth_step_q30(p->zvv_proportional);
-  c->zvv.ki_q40 = q_mul(p->zvv_integral, 11258999L, 18);  // rad/s^2 Q8 * T^2 as Q40
   // Without the map the angle turns with the current, and a load that is followed fast closes a loop over that.
   c->mapped = (p->map_known | p->ldq_1 | p->ldq_2 | p->ldq_3 | p->ldq_4) != 0;
   const deviation_observer_tuning_t observer = {q_mul(p->observer_noise, 1073741824L, 18) / 1000,

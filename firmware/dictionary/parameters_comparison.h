@@ -11,6 +11,11 @@ PARAMETER(173, hysteresis_frequency, "kHz", 16, 2, 0, 2500, 1000, ALWAYS,
 PARAMETER(174, slice_time, "us", 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
 
+// The paper's ZVV
+PARAMETER(310, zvv_terms, "", 0, 0, 0, 31, 31, ALWAYS,
+          "of the paper's scheme, added up: 1 rotation in D, 2 integral alone fed back, 4 drops in D, 8 load, 16 long "
+          "zero vectors by turns in the blend")
+
 // Position by the stator flux
 PARAMETER(300, flux_cutoff, "rad/s", 8, 1, 20, 1500, 20, STOPPED,
           "lowest cut-off of the low-pass that integrates the flux")

@@ -30,8 +30,8 @@ PARAMETER(77, observer_load_step, "Nm", 20, 2, 1, 10000, 200, ALWAYS,
 PARAMETER(76, cogging_order, "", 0, 0, 0, 60, 6, ALWAYS, "cogging periods per electrical turn; 0 learns none")
 PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
-PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 40, ALWAYS, "Kp of the paper's ZVV observer")
-PARAMETER(70, zvv_integral, "rad/s2", 8, 1, 0, 20000, 40, ALWAYS, "Ki of the paper's ZVV observer")
+PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 110, ALWAYS, "Kp of the paper's ZVV observer")
+PARAMETER(70, zvv_integral, "rad/s2", 8, 1, 0, 20000, 11000, ALWAYS, "Ki of the paper's ZVV observer")
 PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS,
           "d-axis current below the blend, makes the ZVV deviation observable")
 PARAMETER(74, drift_time, "ms", 8, 0, 50, 30000, 2000, ALWAYS,

@@ -14,7 +14,6 @@
 #include "estimators/saturation.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
-#include "estimators/zvv.h"
 #include "firmware/interfaces/config_values.h"
 #include "svpwm/edges.h"
 #include "svpwm/modulator.h"
@@ -30,10 +29,10 @@ typedef struct drive_config {
   mtpa_t mtpa;
   if_start_config_t if_start;
   avv_config_t avv;
-  zvv_config_t zvv;
   deviation_observer_config_t observer, hold_observer;
   blend_config_t blend;
   flux_observer_config_t flux;
+  const struct zvv_config* zvv;  // the paper's own part, where the edition has it
   slopes_config_t slopes;
   synchronism_config_t synchronism;
   int32_t volts_per_code_q16;

@@ -88,6 +88,15 @@ ParamsOption = Annotated[
     typer.Option("--params", metavar="FILE", help="Firmware parameters, such as `commission` writes them."),
 ]
 
+SchemeOption = Annotated[
+    str | None,
+    typer.Option(
+        "--scheme",
+        metavar="NAME",
+        help="Another scheme than the drive's own, such as paper: a set of firmware parameters, or a TOML file of one.",
+    ),
+]
+
 
 PaceOption = Annotated[
     float,

@@ -33,7 +33,7 @@ def find(kind: str, name_or_path: str) -> Path:
     """The file of something that is given by name or by path.
 
     Args:
-        kind: "profiles" or "motors".
+        kind: "profiles", "motors" or "schemes".
         name_or_path: one of those that ship, or the path of a TOML file.
 
     Raises:

@@ -77,7 +77,7 @@ TEST(Fresh, Avv) {
 
 TEST(Fresh, Zvv) {
   auto s = used<zvv_t>();
-  zvv_preset(&s, kAngle, kSpeed);
+  zvv_preset(&s, kAngle, kSpeed, 0);
   EXPECT_EQ(s.angle_bam, kAngle);
   EXPECT_EQ(s.speed_bpp, kSpeed);
   EXPECT_EQ(s.integral_q8bpp, kSpeed * 256);

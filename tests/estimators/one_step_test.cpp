@@ -281,7 +281,7 @@ TEST(OneStep, InformationBeyondItsBoundShrinksAlike) {
 // An estimator that is preset goes on with the speed that it is given, and has seen nothing.
 TEST(OneStep, PresetsTakeTheSpeedAlong) {
   zvv_t zvv = {};
-  zvv_preset(&zvv, 0x12345678u, -70000);
+  zvv_preset(&zvv, 0x12345678u, -70000, 0);
   EXPECT_EQ(zvv.angle_bam, 0x12345678u);
   EXPECT_EQ(zvv.speed_bpp, -70000);
   EXPECT_EQ(zvv.integral_q8bpp, -70000 * 256);

@@ -5,6 +5,7 @@
 #include "tests/firmware/fake_hal.hpp"
 
 extern "C" {
+#include "estimators/zvv.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/sources/flux/flux.h"
@@ -194,15 +195,18 @@ TEST_F(Units, AVectorThatCannotTurnTheShaftIsRefusedWhereItIsWanted) {
 }
 
 TEST_F(Units, ThePapersObservers) {
+  NEEDS("sources/paper");
   parameters.avv_bandwidth_short = raw(130.0, 8);
   parameters.avv_bandwidth_long = raw(270.0, 8);
   parameters.zvv_proportional = raw(7.0, 8);
   parameters.zvv_integral = raw(11.0, 8);
+  parameters.zvv_terms = 5;
   const drive_config_t& c = made();
   expect_near_share(real(c.avv.bandwidth_short_q30, 30), 130.0 * kPeriod, 1e-6);
   expect_near_share(real(c.avv.bandwidth_long_q30, 30), 270.0 * kPeriod, 1e-6);
-  expect_near_share(real(c.zvv.kp_q30, 30), 7.0 * kPeriod, 1e-5);
-  expect_near_share(real(c.zvv.ki_q40, 40), 11.0 * kPeriod * kPeriod, 1e-4);
+  expect_near_share(real(c.zvv->kp_q30, 30), 7.0 * kPeriod, 1e-5);
+  expect_near_share(real(c.zvv->ki_q40, 40), 11.0 * kPeriod * kPeriod, 1e-4);
+  EXPECT_EQ(c.zvv->terms, 5);
   parameters.avv_bandwidth_long = raw(90.0, 8);
   EXPECT_EQ(made().avv.bandwidth_long_q30, made().avv.bandwidth_short_q30) << "never slower with more to see";
 }

@@ -163,13 +163,13 @@ TEST_F(Modulation, TheExcitationIsTheOneAskedForOrTheSources) {
       for (const bool alone : {false, true}) {
         SetUp();
         use_source(source);
-        // the paper's own: long zero vectors up to three quarters of the blend's begin
+        // the paper's own: long zero vectors up to three quarters of the blend's begin, and in this period beyond
         const std::int32_t enter = inside::config().blend.low_bpp / 4 * 3;
         inside::selected().speed_bpp = fast ? -enter : 1 - enter;
         inside::blend().region = alone ? BLEND_HIGH : BLEND_BOTH;
         inside::blend().share_q15 = 0;
         excitation_t wanted = EXCITATION_ALTERNATING;
-        if (source == POSITION_PAPER) wanted = fast ? EXCITATION_EXTENDED : EXCITATION_LONG_ZERO;
+        if (source == POSITION_PAPER) wanted = fast && alone ? EXCITATION_EXTENDED : EXCITATION_LONG_ZERO;
         if (source >= POSITION_FLUX_CONV && alone) wanted = EXCITATION_CENTRED;
         EXPECT_TRUE(modulates_as(wanted)) << source << fast << alone;
       }

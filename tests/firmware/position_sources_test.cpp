@@ -256,24 +256,74 @@ TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
   EXPECT_EQ(inside::observer().angle_bam, kHere);
 }
 
-// The paper's idle estimator has the other one's speed as well, and none of its load.
+// The paper's idle estimator has the other one's speed and load as well.
 TEST_F(Sources, ThePapersIdleEstimatorKnowsTheSpeed) {
   NEEDS("sources/paper");
   run_with(POSITION_PAPER);
   see(1);
   blend(BLEND_LOW, 1.0);
-  paper_zvv.speed_bpp = 5000;
-  zvv_preset(&paper_zvv, kHere, 5000);
+  zvv_preset(&paper_zvv, kHere, 5000, -900);
   inside::avv().observer.load_accel_q8 = 77;
   estimate();
-  EXPECT_EQ(inside::avv().observer.speed_bpp, paper_zvv.speed_bpp);
-  EXPECT_EQ(inside::avv().observer.load_accel_q8, 0);
+  EXPECT_EQ(inside::avv().observer.speed_bpp, paper_zvv.integral_q8bpp / 256);
+  EXPECT_LT(inside::avv().observer.load_accel_q8, 0);
+  EXPECT_EQ(inside::avv().observer.load_accel_q8, paper_zvv.load_accel_q8);
   run_with(POSITION_PAPER);
   blend(BLEND_HIGH, 0.0);
   inside::avv().observer.speed_bpp = bpp_of(200);
   estimate();
   EXPECT_EQ(paper_zvv.speed_bpp, inside::avv().observer.speed_bpp);
   EXPECT_NEAR(rad_per_s(paper_zvv.speed_bpp), 200.0 / 60.0 * kTurn * 4.0, 1.0);
+}
+
+// Below the blend long zero vectors, above it extended active ones, in it both by turns: five periods of ten each, the
+// short work of ZVV beside speed control and field weakening.
+TEST_F(Sources, ThePapersLayoutGoesByTurnsInTheBlend) {
+  NEEDS("sources/paper");
+  run_with(POSITION_PAPER);
+  const position_source_t* const paper = position_sources[POSITION_PAPER];
+  const auto long_zeros = [&](int rpm, blend_region_t region, double share) {
+    blend(region, share);
+    inside::selected().speed_bpp = bpp_of(rpm);
+    std::string seen;
+    for (int period = 0; period < DRIVE_PERIODS_PER_MS; ++period) {
+      // what is looked at in this one
+      inside::schedule().period =
+          static_cast<std::uint16_t>((period + DRIVE_PERIODS_PER_MS - 2) % DRIVE_PERIODS_PER_MS);
+      const excitation_t e = paper->excitation(&drive);
+      seen += e == EXCITATION_LONG_ZERO ? 'z' : e == EXCITATION_EXTENDED ? 'e' : '?';
+    }
+    return seen;
+  };
+  EXPECT_EQ(long_zeros(44, BLEND_LOW, 1.0), "zzzzzzzzzz");
+  for (const int rpm : {46, -46}) EXPECT_EQ(long_zeros(rpm, BLEND_LOW, 1.0), "zezeezezez");
+  EXPECT_EQ(long_zeros(80, BLEND_BOTH, 0.5), "zezeezezez");
+  EXPECT_EQ(long_zeros(101, BLEND_HIGH, 0.1), "zezeezezez") << "still mixed";
+  EXPECT_EQ(long_zeros(101, BLEND_HIGH, 0.0), "eeeeeeeeee");
+  parameters.zvv_terms = 15;
+  ASSERT_TRUE(drive_config_load(&inside::config()));
+  EXPECT_EQ(long_zeros(44, BLEND_LOW, 1.0), "zzzzzzzzzz");
+  EXPECT_EQ(long_zeros(80, BLEND_BOTH, 0.5), "eeeeeeeeee");
+}
+
+// By turns each has the windows that were made for it, and goes on meanwhile with what it knows.
+TEST_F(Sources, ByTurnsEachHasItsOwnWindows) {
+  NEEDS("sources/paper");
+  for (const bool of_zvv : {true, false}) {
+    run_with(POSITION_PAPER);
+    blend(BLEND_BOTH, 0.5);
+    inside::selected().speed_bpp = bpp_of(80);
+    inside::reference_dq_q20().d = raw(8.0, 20);
+    if (of_zvv) {
+      see(1);
+    } else {
+      see_machine(kHere);
+    }
+    inside::schedule().task = of_zvv ? TASK_SLOT : TASK_SPEED;  // which without turns would be the other's
+    estimate();
+    EXPECT_EQ(paper_zvv.waited, of_zvv ? 0 : 1);
+    EXPECT_EQ(inside::avv().regression.information > 0, !of_zvv);
+  }
 }
 
 }  // namespace

@@ -44,8 +44,6 @@ static inline void any_control(drive_config_t* c) {
 static inline void any_position(drive_config_t* c) {
   c->avv.bandwidth_short_q30 = any_from(1, 107374182L);
   c->avv.bandwidth_long_q30 = any_from(1, 107374182L);
-  c->zvv.kp_q30 = any_from(0, 107374182L);
-  c->zvv.ki_q40 = any_from(0, 220000000L);
   c->observer = any_observer(&c->nameplate);
   c->hold_observer = any_observer(&c->nameplate);
   c->blend.low_bpp = any_from(1, SPEED_MAX_BPP);

@@ -69,9 +69,9 @@ static void step_avv(const estimator_input_t* in) {
 }
 
 static void step_zvv(const estimator_input_t* in) {
-  const zvv_config_t c = {any_from(0, 107374182L), any_from(0, 220000000L)};
+  const zvv_config_t c = {any_from(0, 107374182L), any_from(0, 220000000L), (uint16_t)any_from(0, 31)};
   zvv_t s;
-  zvv_preset(&s, any_u32, any_speed());
+  zvv_preset(&s, any_u32, any_speed(), any_i32);
   s.integral_q8bpp = any_from(-2000000000L, 2000000000L);
   s.deviation_q20 = any_i32;
   (void)zvv_step(&s, &c, in, any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20));

@@ -111,8 +111,13 @@ void commissioning_solve_motion(commissioning_t* c) {
 
 // Of whatever parameters it is made.
 static void any_made(drive_config_t* c) {
+  static zvv_config_t zvv;
   any_config(c);
   any_parameters();
+  zvv.kp_q30 = any_from(0, 107374182L);
+  zvv.ki_q40 = any_from(0, 220000000L);
+  zvv.terms = (uint16_t)any_from(0, 31);
+  c->zvv = &zvv;
 #define TAKE(name) c->values.name = parameters.name;
   CONFIG_VALUES(TAKE)
 #undef TAKE

@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+#include "estimators/zvv.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/sources/flux/flux.h"

@@ -5,15 +5,43 @@
 #include <stddef.h>
 
 #include "firmware/base/clear.h"
+#include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/sources/sources.h"
 
+#define PER_PERIOD_Q20 439804651L  // rad/s (Q8) to rad per period (Q30): 100 us 2^22 2^20
+#define PER_PERIOD2_Q18 11258999L  // rad/s^2 (Q8) to rad per period^2 (Q40)
+#define LONG_ZERO_BY_TURNS 16u     // of zvv_terms, beside those of zvv.h
+#define ZVV_PERIODS_OF_MS 0x02A5u  // whose windows it has then: 0, 2, 5, 7, 9
+
 zvv_t paper_zvv;
+
+// Of the configuration in use and of the one that is made meanwhile.
+static zvv_config_t parts[2];
 
 void paper_reset(void) { clear(&paper_zvv, sizeof paper_zvv); }
 
+bool paper_load(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  zvv_config_t* const part = (drive.config.zvv == &parts[0]) ? &parts[1] : &parts[0];
+  part->kp_q30 = q_mul(p->zvv_proportional, PER_PERIOD_Q20, 20);
+  part->ki_q40 = q_mul(p->zvv_integral, PER_PERIOD2_Q18, 18);
+  part->terms = (uint16_t)p->zvv_terms;
+  c->zvv = part;
+  return true;
+}
+
+// Below this speed there are long zero vectors alone.
+static int32_t enter_bpp(const drive_t* d) { return d->config.blend.low_bpp / 4 * 3; }
+
+// Both at work, in periods of their own: long zero vectors and extended active ones by turns.
+static bool is_by_turns(const drive_t* d) {
+  return (d->config.zvv->terms & LONG_ZERO_BY_TURNS) != 0u && !blend_is_high(&d->position.blend) &&
+         q_abs_sat(d->position.selected.speed_bpp) >= enter_bpp(d);
+}
+
 static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
-  const estimator_output_t out = zvv_step(&paper_zvv, &d->config.zvv, in, d->control.reference_q20.d);
+  const estimator_output_t out = zvv_step(&paper_zvv, d->config.zvv, in, d->control.reference_q20.d);
   d->position.deviation_q20 = paper_zvv.deviation_q20;
   return out;
 }
@@ -21,13 +49,18 @@ static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
 // Above the blend nobody asks ZVV.
 static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blend); }
 
-// Both at work, and no room for both in a period: ZVV looks at the windows beside speed control and field weakening,
-// AVV in all others.
+// Who looks at the windows where there is no room for both in a period: by turns the one that they were made for, else
+// ZVV beside speed control and field weakening and AVV in all others.
+static bool is_of_zvv(const drive_t* d) {
+  if (is_by_turns(d)) return d->samples.count <= 1u;
+  const bool is_long = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
+  return is_long != blend_is_low(&d->position.blend);
+}
+
 static void step_alternately(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
   const uint16_t count = in->window_count;
-  const bool is_long = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
-  const bool of_zvv = is_long != blend_is_low(&p->blend);
+  const bool of_zvv = is_of_zvv(d);
   if (of_zvv) in->window_count = 0;
   source_step_avv(d, in);
   if (of_zvv) {
@@ -43,14 +76,14 @@ static void step_alternately(drive_t* d, estimator_input_t* in) {
 // The estimator that is not asked stands by at the other's angle.
 static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
-  if (position_low_alone(d)) {
+  if (position_low_alone(d) && !is_by_turns(d)) {
     p->low = step_zvv(d, in);
     p->high = p->low;
-    avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, 0);
+    avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, p->low.load_accel_q8);
   } else if (avv_alone(d)) {
     source_step_avv(d, in);
     p->low = p->high;
-    zvv_preset(&paper_zvv, p->high.angle_bam, p->high.speed_bpp);
+    zvv_preset(&paper_zvv, p->high.angle_bam, p->high.speed_bpp, p->high.load_accel_q8);
   } else {
     step_alternately(d, in);
   }
@@ -59,12 +92,16 @@ static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
 
 // Long zero vectors at low speed and extended active ones from below the blend on.
 static excitation_t paper_excitation(const drive_t* d) {
-  const int32_t enter = d->config.blend.low_bpp / 4 * 3;
-  return (q_abs_sat(d->position.selected.speed_bpp) < enter) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
+  if (is_by_turns(d)) {
+    // What is made in this period acts in the next and is looked at in the one after that.
+    const unsigned seen = (d->schedule.period + 2u) % DRIVE_PERIODS_PER_MS;
+    return ((ZVV_PERIODS_OF_MS >> seen & 1u) != 0u) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
+  }
+  return (q_abs_sat(d->position.selected.speed_bpp) < enter_bpp(d)) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
 static void paper_begin(drive_t* d, bool keeps) {
-  if (!keeps) zvv_preset(&paper_zvv, d->position.selected.angle_bam, d->position.selected.speed_bpp);
+  if (!keeps) zvv_preset(&paper_zvv, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
 }
 
 const position_source_t paper_source = {source_paper, paper_excitation, NULL,

@@ -120,6 +120,7 @@ def _run(words: Json) -> dict[str, Json]:
         "commands": _list(_row(_number("s", 0), words, _number())),
         "reference": _reference(words),
         "load": _list(_row(_number("s"), _number("Nm"))) | {"description": "Corners of the load torque [s, Nm]"},
+        "scheme": _TEXT | {"description": "Another scheme than the drive's own, such as paper; under the parameters."},
         "parameters": {"$ref": "#/definitions/parameters"},
         "plant": {"$ref": "#/definitions/plant"},
         "reached": _list(reached, 1) | {"description": "Where the true shaft has to be, else the run does not count."},

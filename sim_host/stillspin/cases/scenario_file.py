@@ -101,6 +101,10 @@ def _schema() -> Json:
 def _with_defaults(run: Json, defaults: Json) -> Json:
     """The run with what it does not state itself taken from the defaults; parameters and plant are joined by key."""
     joined = {key: {**defaults.get(key, {}), **run.get(key, {})} for key in ("parameters", "plant")}
+    scheme = run.get("scheme", defaults.get("scheme"))
+    if scheme:
+        own = toml_table.read(resources.find("schemes", scheme)).table("parameters").items()
+        joined["parameters"] = {**own, **joined["parameters"]}
     return {**defaults, **run, **joined}
 
 

@@ -10,9 +10,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from stillspin import resources, toml_table
+from stillspin import core, resources, toml_table
 from stillspin.cases.profile import Profile
 from stillspin.cases.scenario import Plot, Scenario
+from stillspin.entry import Entry
+from stillspin.errors import InputError
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
 
@@ -106,15 +108,44 @@ class Scheme(Variant):
         plots = tuple(Plot(title, ("speed", "position_error"), names, window) for names, window in views)
         return replace(scenario, id=f"{scenario.id}-{self.mark}", runs=runs, plots=plots)
 
+    def told(self, profile: Profile, known: Mapping[str, Entry]) -> Profile:
+        """A profile whose drive has these parameters: the whole run, not a variant beside another.
+
+        Raises:
+            InputError: it is of another motor, or has a parameter or value that the drive has not.
+        """
+        if profile.motor != self.motor:
+            raise InputError(f"--scheme {self.mark}: is of motor {self.motor}, and this is motor {profile.motor}")
+        return replace(profile, parameters={**profile.parameters, **self.checked(known)})
+
+    def checked(self, known: Mapping[str, Entry]) -> dict[str, float]:
+        """Its parameters as numbers.
+
+        Raises:
+            InputError: the drive has no such parameter or value.
+        """
+        where = f"scheme {self.mark}"
+        return {name: core.parameter(known, name, value, f"{where}: {name}") for name, value in self.parameters.items()}
+
+
+def scheme(name_or_path: str) -> Scheme:
+    """A scheme that ships, or the one in a file.
+
+    Raises:
+        InputError: there is none, or its file is wrong.
+    """
+    path = resources.find("schemes", name_or_path)
+    table = toml_table.read(path)
+    values = table.table("parameters").items()
+    description = table.text("description").strip()
+    found = Scheme(path.stem, table.text("title"), description, table.text("motor"), values)
+    table.finish()
+    return found
+
 
 def paper() -> Scheme:
     """The scheme of the paper."""
-    table = toml_table.read(resources.directory("schemes") / "paper.toml")
-    values = table.table("parameters").items()
-    description = table.text("description").strip()
-    scheme = Scheme("paper", table.text("title"), description, table.text("motor"), values)
-    table.finish()
-    return scheme
+    return scheme("paper")
 
 
 def separate(

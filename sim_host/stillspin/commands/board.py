@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -10,9 +11,18 @@ import typer
 from stillspin import core, resources
 from stillspin.board import image as images
 from stillspin.board import power, serve
-from stillspin.cases import profile
+from stillspin.cases import profile, variant
 from stillspin.errors import InputError
-from stillspin.options import ChangeOption, MotorOption, PaceOption, ParamsOption, ProfileOption, SeedOption, number
+from stillspin.options import (
+    ChangeOption,
+    MotorOption,
+    PaceOption,
+    ParamsOption,
+    ProfileOption,
+    SchemeOption,
+    SeedOption,
+    number,
+)
 from stillspin.runs import commission
 
 
@@ -23,6 +33,7 @@ def board(
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
+    scheme: SchemeOption = None,
     speed: PaceOption = 1.0,
     serial_link: Annotated[
         Path | None,
@@ -71,7 +82,7 @@ def board(
     ] = None,
 ) -> None:
     """Run a virtual board in real time; its serial port is a pseudo-terminal. Ctrl-C switches it off."""
-    if image and (params or change):
+    if image and (params or change or scheme):
         raise InputError("--image: only --profile, --motor and --seed go with it; the program has its own parameters")
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
@@ -79,8 +90,11 @@ def board(
     profile.say_not_stated(chosen)
     changes = profile.changes(change or [], schema, known)
     if params:
-        changes.parameters = {**commission.load(params, known), **changes.parameters}
+        chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(params, known)})
         changes.words.append(f"--params {params.name}")
+    if scheme:
+        chosen = variant.scheme(scheme).told(chosen, known)
+        changes.words.append(f"--scheme {scheme}")
     title = f"motor {chosen.motor}, profile {chosen.name}, seed {seed}" + "".join(
         f", {words}" for words in changes.words
     )

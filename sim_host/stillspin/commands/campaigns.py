@@ -24,6 +24,7 @@ from stillspin.options import (
     OtherMotorOption,
     ParamsOption,
     ProfileOption,
+    SchemeOption,
     SeedOption,
     by_mark,
     processors,
@@ -71,6 +72,7 @@ def run(
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
+    scheme: SchemeOption = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-SCENARIO].")
     ] = None,
@@ -80,7 +82,8 @@ def run(
     chosen = scenario_file.load(scenario)
     where = out or Path(f"results-{chosen.id}")
     _carry_out(
-        [on_motor(motor, chosen)], Options(profile_name, seed, where, change or [], draw=not no_plots, params=params)
+        [on_motor(motor, chosen)],
+        Options(profile_name, seed, where, change or [], draw=not no_plots, params=params, scheme=scheme),
     )
 
 
@@ -101,6 +104,7 @@ def reproduce(
     ] = None,
     seed: SeedOption = 1,
     params: ParamsOption = None,
+    scheme: SchemeOption = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
     jobs: JobsOption = None,
     cluster: ClusterOption = "",
@@ -119,7 +123,7 @@ def reproduce(
         bool,
         typer.Option(
             "--paper-scheme/--no-paper-scheme",
-            help="Run the scenarios about the position error with the paper's position scheme, too.",
+            help="Run the scenarios about the position error with the paper's scheme beside it, too.",
         ),
     ] = True,
     junit_file: JunitOption = None,
@@ -139,6 +143,7 @@ def reproduce(
         out,
         where=Where(jobs or processors(), cluster),
         params=params,
+        scheme=scheme,
         commission=commission_first,
         paper_scheme=paper_scheme,
         nameplate=nameplate,

@@ -27,6 +27,7 @@ from stillspin.options import (
     JobsOption,
     ParamsOption,
     ProfileOption,
+    SchemeOption,
     SeedOption,
     processors,
 )
@@ -72,6 +73,7 @@ def hil(
     seed: SeedOption = 1,
     change: ChangeOption = None,
     params: ParamsOption = None,
+    scheme: SchemeOption = None,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = "",
@@ -93,7 +95,7 @@ def hil(
         core.require()  # before anything is asked of the board
         runs.ids(scenarios)
         core.follow_edition(built.edition_at(board))
-    wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params)
+    wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params, scheme)
     everything = wish.runs(core.load())
     if not everything:
         raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios)}")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from stillspin import core
-from stillspin.cases import profile
+from stillspin.cases import profile, variant
 from stillspin.hil import runs
 from stillspin.hil.runs import LoopRun
 from stillspin.revision import revision
@@ -20,7 +20,7 @@ class Wish:
     Attributes:
         scenarios, check: see runs.named.
         only: names of runs, all when empty.
-        profile, seed, changes, params: of the plant and of the drive, as for `stillspin run`.
+        profile, seed, changes, params, scheme: of the plant and of the drive, as for `stillspin run`.
     """
 
     scenarios: tuple[str, ...]
@@ -30,6 +30,7 @@ class Wish:
     seed: int = 1
     changes: tuple[str, ...] = ()
     params: Path | None = None
+    scheme: str | None = None
 
     def runs(self, native: core.NativeCore) -> list[LoopRun]:
         """The runs that are meant.
@@ -43,6 +44,8 @@ class Wish:
             chosen = profile.load(self.profile, schema, known, motor)
             if self.params:
                 chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(self.params, known)})
+            if self.scheme:
+                chosen = variant.scheme(self.scheme).told(chosen, known)
             changes = profile.changes(self.changes, schema, known)
             return execute.Settings(chosen, changes, self.seed, revision())
 

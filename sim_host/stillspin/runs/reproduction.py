@@ -11,7 +11,7 @@ from rich.console import Console
 from stillspin import __version__, core
 from stillspin.cases import profile, variant
 from stillspin.cases.scenario import Scenario
-from stillspin.cases.variant import Beside, Variant
+from stillspin.cases.variant import Beside, Scheme, Variant
 from stillspin.core import NativeCore
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
@@ -36,6 +36,7 @@ class Options:
         profile: a name or a path; changes: as `--set` takes them; out: the directory of the results.
         where: by whom; draw: whether to draw.
         params: a parameter file for the drive; None for none.
+        scheme: a name or a path, over both what the drive is told and what it finds out; None for its own.
         commission: whether the drive measures itself first, where the profile is for it and there is no `params`.
         paper_scheme, nameplate: the variants beside; others: and some more.
         told: is told of every scenario, also of those beside, as soon as it is measured.
@@ -48,6 +49,7 @@ class Options:
     where: Where = field(default_factory=Where)
     draw: bool = True
     params: Path | None = None
+    scheme: str | None = None
     commission: bool = False
     paper_scheme: bool = False
     nameplate: bool = False
@@ -77,10 +79,11 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
     for each in own.values():
         profile.say_not_stated(each.profile)
     settings = _told(native, own, options)
+    chosen = variant.scheme(options.scheme) if options.scheme else None
     screen = Console(stderr=True)
     # What is wrong with the scenarios is said before the drive spends half a minute on measuring itself.
     for scenario in scenarios:
-        execute.prepare(scenario, settings[scenario.motor], native)
+        execute.prepare(scenario, _in_scheme(native, settings[scenario.motor], chosen), native)
     with output.fresh_directory(options.out) as directory:
         refused: list[str] = []
         for motor in motors:
@@ -88,6 +91,8 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
                 file = directory / (PARAMS if len(motors) == 1 else f"params-{own[motor].profile.motor}.toml")
                 settings[motor], words = _commissioned(native, settings[motor], file, screen)
                 refused += words
+        own = {motor: _in_scheme(native, each, chosen) for motor, each in own.items()}
+        settings = {motor: _in_scheme(native, each, chosen) for motor, each in settings.items()}
         variants = _variants(own, settings, options)
         todo = [(scenario, settings[scenario.motor]) for scenario in scenarios]
         todo += [(v.scenario(s), v.settings(settings[s.motor])) for v in variants for s in scenarios if v.applies(s)]
@@ -119,12 +124,20 @@ def _told(native: NativeCore, own: Mapping[str, Settings], options: Options) -> 
     return {motor: _with_file(settings, file, native, file.name) for motor, settings in own.items()}
 
 
+def _in_scheme(native: NativeCore, settings: Settings, scheme: Scheme | None) -> Settings:
+    """Settings whose drive runs in another scheme, where one is wanted: on what it was told, or has found out."""
+    if scheme is None:
+        return settings
+    told = scheme.told(settings.profile, core.parameters(native))
+    return replace(settings, profile=told, parameters_from=f"{settings.parameters_from} and the {scheme.title}")
+
+
 def _variants(own: Mapping[str, Settings], settings: Mapping[str, Settings], options: Options) -> list[Variant]:
     variants: list[Variant] = []
     plates = {each.profile.motor: each.profile for each in own.values()}
     if options.nameplate and any(settings[key].profile.parameters != own[key].profile.parameters for key in own):
         variants.append(variant.nameplate(plates))
-    if options.paper_scheme:
+    if options.paper_scheme and not options.scheme:
         variants.append(variant.paper())
     return [*variants, *options.others]
 
