@@ -2,10 +2,11 @@
 // are hexadecimal, ticks too.
 //
 //     put ADDRESS WORD...      words into flash and RAM, before or between runs
-//     run TICK                 until then, through the boot ROM with its pins at flash boot
+//     run TICK                 until then, through the boot ROM, with its pins at flash boot unless they are set
 //     level PIN 0|1            of a pin that is read
 //     code CHANNEL WORD        what the converter sees
-//     send OCTET...            at the serial port, at 115200 bit/s
+//     rate BITS                a second at the far end of the serial port, 115200 at first
+//     send OCTET...            at the serial port
 //     get ADDRESS COUNT        answers registers and memory as they are
 //     cycles                   answers cycles, instructions and the cycles waited for registers, data and fetches
 //     heard                    answers what the port has sent: ticks and octets
@@ -41,6 +42,7 @@ class Desk final : public World {
     if (command == "run") chip_.run_until(static_cast<Tick>(number(words)));
     if (command == "level") set_level(words);
     if (command == "code") set_code(words);
+    if (command == "rate") line_.set_rate(number(words));
     if (command == "send") send(words);
     if (command == "get") get(words);
     if (command == "cycles") cycles();

@@ -3,7 +3,11 @@
 import itertools
 
 import pytest
-from c28x_chip import MILLISECOND, ask, program, put, rows, words
+from c28x_chip import MILLISECOND, PROGRAMS, ask, blocks, program, put, rows, words
+
+from stillspin.c28x.program import assemble
+from stillspin.flash import boot_stream
+from stillspin.flash.program import Block, Program
 
 UP = 8 * MILLISECOND
 """The PLL has locked by then, and every program runs."""
@@ -17,6 +21,28 @@ def test_an_echo_answers_over_the_serial_line():
     ])  # fmt: skip
     assert bytes(octet for _, octet in rows(heard, 2)) == sent.swapcase()
     assert counts.split() == ["0", "0", "0", "0"], "no interrupt, nothing lost, nothing unknown, no reset"
+
+
+def in_ram(name):
+    """A program for L0, as it is loaded there: its words alone, and where it begins."""
+    text = (PROGRAMS / "start.asm").read_text() + (PROGRAMS / f"{name}.asm").read_text()
+    text = text.replace(".org    0x3F7FF6\n        LB      start\n", "").replace(".org    0x3F4000", ".org    0x3F8000")
+    return assemble(text)
+
+
+def test_the_boot_rom_loads_a_program_over_the_serial_line_and_goes_there():
+    """Mode pins 110; the loader's clock is slow and so is its line. Then the program sets its own."""
+    loaded = in_ram("echo")
+    parts = tuple(Block(first, tuple(block)) for first, block in blocks(loaded.words))
+    stream = b"A" + boot_stream.to_octets(Program(parts, loaded.symbols["START"]))
+    done = 2 * MILLISECOND + len(stream) * 10 * 100_000_000 // 38400 + 10 * MILLISECOND
+    load, heard, counts = ask([
+        "level 22 0", "rate 9600", f"run {MILLISECOND:x}", "send " + " ".join(f"{octet:x}" for octet in stream),
+        f"run {done:x}", "heard", "rate 1c200", "send 6f 6b", f"run {done + 2 * MILLISECOND:x}", "heard", "counts",
+    ])  # fmt: skip
+    assert bytes(octet for _, octet in rows(load, 2)) == stream, "each octet comes back"
+    assert bytes(octet for _, octet in rows(heard, 2)) == b"OK"
+    assert counts.split()[2:] == ["0", "0"]
 
 
 def test_a_pwm_runs_on_its_own_once_it_is_set_up():
