@@ -59,13 +59,14 @@ static int32_t most_of_both(int32_t t1, int32_t t2, int32_t room);
 static int32_t longest_window(int32_t t1, int32_t t2, int32_t room, const extended_config_t* c);
 
 /*@ requires \valid_read(t) && \valid_read(l) && \valid(pulses) && \separated(pulses, t, l) && LEGS(*t);
-    requires spread(t1, t2) && 0 <= l->first && 0 <= l->second && 0 <= l->low_on;
+    requires spread(t1, t2) && 0 <= l->first && 0 <= l->second && 1 <= l->low_on;
     requires l->first + l->second + l->low_on <= LONGEST && l->first + t2 + l->low_on <= LONGEST;
     requires t1 + t2 + l->low_on <= LONGEST;
     assigns *pulses; ensures is(pulses, t->hi, SVPWM_FIRST_TICK, t1 + t2 + l->low_on);
     ensures is(pulses, t->mid, SVPWM_FIRST_TICK + l->first, t2 + l->low_on);
     ensures is(pulses, t->lo, SVPWM_FIRST_TICK + l->first + l->second, l->low_on);
-    ensures WRITTEN(pulses); */
+    ensures in_room(pulses);
+    ensures WRITTEN(pulses) && OF_ORDER(pulses->order); */
 static void lay_out(const svpwm_on_time_t* t, int32_t t1, int32_t t2, const layout_t* l, svpwm_pulses_t* pulses);
 
 /*@ requires extended(c) && GIVEN(t) && \valid(pulses) && \separated(pulses, t, c);
@@ -93,10 +94,12 @@ static inline bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t puls
 /*@ predicate lengths(lengths_t* l) = \valid_read(l) && legs_of(l->x, l->longer, l->shorter) &&
       1 <= l->on_x <= LONGEST && 1 <= l->on_longer <= LONGEST && 1 <= l->on_shorter <= LONGEST; */
 
-/*@ requires \valid(p) && lengths(l) && \separated(p, l); assigns *p; ensures in_room(p) && WRITTEN(p); */
+/*@ requires \valid(p) && lengths(l) && \separated(p, l); assigns p->at[0 .. 5], p->order[0 .. 5];
+    ensures in_room(p) && WRITTEN(p) && OF_ORDER(p->order); */
 static void put_pair_first(svpwm_pulses_t* p, const lengths_t* l);
 
-/*@ requires \valid(p) && lengths(l) && \separated(p, l); assigns *p; ensures in_room(p) && WRITTEN(p); */
+/*@ requires \valid(p) && lengths(l) && \separated(p, l); assigns p->at[0 .. 5], p->order[0 .. 5];
+    ensures in_room(p) && WRITTEN(p) && OF_ORDER(p->order); */
 static void put_pair_last(svpwm_pulses_t* p, const lengths_t* l);
 
 /*@ requires GIVEN(t) && (x == t->hi || x == t->mid || x == t->lo) && IS_PULSE(pulse_ticks);

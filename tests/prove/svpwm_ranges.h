@@ -29,25 +29,25 @@
 static inline bool svpwm_alternating_fits(const svpwm_on_time_t* t, int16_t pulse_ticks);
 
 /*@ assigns *s \from *s; assigns *pulses \from *s, *t, pulse_ticks;
-    ensures FROM_TO(s->leg, 0, 2) && FLAG(s->pair_first);
+    ensures FROM_TO(s->leg, 0, 2); ensures FLAG(s->pair_first);
     ensures WRITTEN(pulses);
-    ensures OF_EDGES(pulses->at) && OF_ORDER(pulses->order); */
+    ensures OF_EDGES(pulses->at); ensures OF_ORDER(pulses->order); */
 void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t pulse_ticks, svpwm_pulses_t* pulses);
 
 /*@ assigns *pulses \from *c, *t;
-    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at) && OF_ORDER(pulses->order); */
+    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at); ensures OF_ORDER(pulses->order); */
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 /*@ assigns *pulses \from *c, *t;
-    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at) && OF_ORDER(pulses->order); */
+    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at); ensures OF_ORDER(pulses->order); */
 void svpwm_cheapest_pair(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 /*@ assigns *pulses \from *t;
-    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at) && OF_ORDER(pulses->order); */
+    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at); ensures OF_ORDER(pulses->order); */
 void svpwm_centred(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 /*@ assigns *pulses \from *t;
-    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at) && OF_ORDER(pulses->order); */
+    ensures WRITTEN(pulses); ensures OF_EDGES(pulses->at); ensures OF_ORDER(pulses->order); */
 void svpwm_long_zero(const svpwm_on_time_t* t, svpwm_pulses_t* pulses);
 
 #endif
