@@ -1,68 +1,14 @@
-// What the commissioning does with the drive in each of its phases, and what it sums up: the shaft and the windows are
-// the test's, so what comes out is known beforehand.
+// What the commissioning does with the drive in each of its phases but the map, and what it sums up: the shaft and the
+// windows are the test's, so what comes out is known beforehand.
+
+#include "tests/firmware/commissioning_phases_test.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "tests/firmware/fake_hal.hpp"
-
-extern "C" {
-#include "firmware/commissioning/outcome.h"
-#include "firmware/commissioning/phases.h"
-#include "firmware/dictionary/parameters.h"
-#include "firmware/mode/states.h"
-}
-
 namespace {
 
 using namespace stillspin::test;
-
-constexpr double kLink = 300.0;
-
-class Phases : public Drive {
- protected:
-  void SetUp() override {
-    NEEDS("commissioning");
-    Drive::SetUp();
-    make_ready();
-    inside::state() = DRIVE_COMMISSION;
-    inside::model() = inside::config().nameplate;
-    commissioning.model = inside::model();
-    inside::link_q16() = raw(kLink, 16);
-    inside::selected() = {0, 0, 0, 32767};
-    limit_ = real(parameters.current_limit, 20);
-  }
-
-  /// One period of a phase, as the sequence calls it.
-  static bool step(bool (*phase)(drive_t*)) {
-    const bool done = phase(&drive);
-    commissioning.tick++;
-    return done;
-  }
-  /// The period's windows, under opposite vectors along alpha; what they leave over is along d, A per period.
-  static void windows(Vector current, double first, double second) {
-    const machine_model_t& m = inside::model();
-    inside::window_count() = 2;
-    for (int k = 0; k < 2; ++k) {
-      estimator_window_t& w = inside::windows()[k];
-      const double volts = (k == 0 ? 1.0 : -1.0) * kLink * 2.0 / 3.0;
-      const double left = k == 0 ? first : second;
-      const double along = real(m.yd_q30, 30) * (volts - real(m.rs_q24, 24) * current.x) + left;
-      const double across = -real(m.yq_q30, 30) * real(m.rs_q24, 24) * current.y;
-      w = {raw_change({along, across}, 2500), raw_ab({volts, 0.0}, 19), raw_ab(current, 20), 0, 2500, false};
-      w.middle_tick = static_cast<std::int16_t>(k == 0 ? 3100 : 7300);
-    }
-    deviation_frames(inside::windows(), 2, 0, 0, inside::frames());
-    const sampling_config_t& c = inside::config().modulator.sampling;
-    inside::sampled_pattern().windows[0] = svpwm_window_between(&c, 1500, 4500, 1);
-    inside::sampled_pattern().windows[1] = svpwm_window_between(&c, 5500, 8500, 6);
-  }
-  /// Electrical acceleration per torque, rad/s^2 and N m.
-  static double per_torque() { return real(inside::model().accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod; }
-  static std::int32_t accel_q8(double rad_per_s2) { return raw(rad_per_s2 * kPeriod * kPeriod / kTurn, 40); }
-
-  double limit_ = 0.0;
-};
 
 // A second-order law of 60 rad/s with the load fed forward, up to a quarter of the largest current.
 TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
@@ -244,137 +190,6 @@ TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   EXPECT_EQ(commissioning.spin.tick, 0);
 }
 
-// The map: trains of torque current that put the shaft back, their mirror images, and pauses; at four levels. The shaft
-// turns as the torque that was commanded makes it.
-struct Train {
-  std::vector<double> current;  // reference of i_q in each period, A
-  double farthest = 0.0;        // of the predicted way, rad
-  double end = 0.0;             // of that way
-};
-
-TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
-  const map_t& m = commissioning.map;
-  inside::selected().angle_bam = bam(0.5);
-  std::vector<Train> trains;
-  std::vector<std::int32_t> feeds, references;
-  std::vector<int> pauses(1, 0), stills;
-  std::size_t length = 0;
-  for (int n = 0; m.level == 0; ++n) {
-    ASSERT_LT(n, 400000);
-    if (!m.pause) length = static_cast<std::size_t>(m.segment);
-    const bool paused = n == 0 || m.pause;
-    const std::int32_t still = commissioning.unsaturated.count;
-    const std::uint32_t held = commissioning.target_bam;
-    if (n > 0) inside::selected().angle_bam = held;  // the shaft is where it is held
-    inside::current_dq_q20() = {0, inside::reference_dq_q20().q};
-    windows({0.0, real(inside::reference_dq_q20().q, 20)}, 0.0, 0.0);
-    ASSERT_FALSE(step(commissioning_map));
-    if (paused) {
-      ++pauses.back();
-      EXPECT_EQ(commissioning.predicting, !m.pause);
-      if (n > 0 && pauses.back() <= 300 && trains.size() % 2 == 0) {
-        EXPECT_NEAR(rad(angle_diff_bam(commissioning.target_bam, held)), 45.0 * kDegree / 300.0, 1e-6);
-      } else if (n > 0) {
-        EXPECT_EQ(commissioning.target_bam, held);
-      }
-      if (m.pause) continue;
-      stills.push_back(commissioning.unsaturated.count);
-      trains.emplace_back();
-      continue;
-    }
-    EXPECT_EQ(commissioning.unsaturated.count, still);
-    Train& t = trains.back();
-    t.current.push_back(real(inside::reference_dq_q20().q, 20));
-    t.farthest = std::max(t.farthest, std::fabs(rad(m.position_bam)));
-    if (trains.size() == 1) {
-      feeds.push_back(inside::feed_forward_q16());
-      references.push_back(inside::reference_dq_q20().q);
-    }
-    if (m.pause) {
-      t.end = rad(m.position_bam);
-      // The ramps of the current leave 6 / n of the way for a segment of n periods; the mirrored train takes it back.
-      EXPECT_NEAR(std::fabs(t.end), 6.0 / m.segment * t.farthest, 0.15 * std::fabs(t.end)) << trains.size();
-      if (trains.size() > 1) {
-        EXPECT_NEAR(t.end, -trains[trains.size() - 2].end, 1e-4 * t.farthest) << trains.size();
-      }
-      EXPECT_NEAR(t.current.back(), 0.0, 1e-5);
-      pauses.push_back(0);
-    }
-  }
-  // Three settled quarters of a train: - + + - first, then + - - +.
-  const double level = limit_ / 4.0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double sign = k == 0 ? -1.0 : 1.0;
-    const double signs[] = {sign, -sign, -sign, sign};
-    for (std::size_t part = 0; part < 4; ++part) {
-      EXPECT_NEAR(trains[k].current[(part + 1) * length - 1], signs[part] * level, 1e-5) << k << ", " << part;
-    }
-  }
-  // A slope of the whole current in twelve periods, whose voltage goes ahead of it by two.
-  for (std::size_t n = 1; n < references.size(); ++n) {
-    EXPECT_LE(std::abs(references[n] - references[n - 1]), parameters.current_limit / 12);
-    const double volts = n + 2 < references.size()
-                             ? real(references[n + 2] - references[n + 1], 20) / real(inside::model().yq_q30, 30)
-                             : 0.0;
-    EXPECT_NEAR(real(feeds[n], 16), volts, 1e-3) << n;
-  }
-  // Held for 40 ms, moved on for 30 before every second train; the last 20 are the point without current.
-  for (std::size_t k = 0; k < trains.size(); ++k) {
-    EXPECT_EQ(pauses[k], 401 + (k % 2 == 0 ? 300 : 0)) << k;
-    EXPECT_EQ(stills[k], 200 * static_cast<int>(k + 1)) << k;
-  }
-}
-
-// As many periods of each sign in each kind of train as a level wants, over whole rounds of eight places, without those
-// in which the current settles.
-TEST_F(Phases, TheMapSumsItsGroups) {
-  const map_t& m = commissioning.map;
-  int trains[4] = {}, segments[4] = {};
-  for (int n = 0; !step(commissioning_map); ++n) {
-    ASSERT_LT(n, 2000000);
-    inside::selected().angle_bam = commissioning.target_bam;
-    if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
-    inside::current_dq_q20() = {0, inside::reference_dq_q20().q};
-    windows({0.0, real(inside::reference_dq_q20().q, 20)}, 0.0, 0.0);
-  }
-  for (int level = 0; level < 4; ++level) {
-    // A reversal takes twice the level at a twelfth of the limit a period, and 20 periods to settle.
-    const int blank = 6 * (level + 1) + 20;
-    const int length = segments[level];
-    EXPECT_GE(length, blank + 14) << level;
-    EXPECT_EQ(trains[level] % 16, 0) << level;
-    for (int group = 0; group < 4; ++group) {
-      const map_group_t& g = m.group[level][group];
-      // The signs are + - - +: the second of two equal segments need not settle.
-      const bool outer = group == 0 || group == 3;
-      const int periods = outer ? 2 * (length - blank) : 2 * length - blank;
-      EXPECT_EQ(g.tensor.count, trains[level] / 2 * periods) << level << ", " << group;
-      EXPECT_GE(g.tensor.count, 8000 / (level + 1)) << level;
-      const double sign = group % 2 == 0 ? 1.0 : -1.0;
-      EXPECT_NEAR(real(g.current / g.tensor.count, 20), sign * limit_ * (level + 1) / 4.0, 1e-3) << level << group;
-      // What a train does to the shaft goes the way of its first current, and the mirrored one the other.
-      EXPECT_EQ(g.position > 0, group < 2) << level << ", " << group;
-      EXPECT_NEAR(static_cast<double>(g.position), -static_cast<double>(m.group[level][3 - group].position),
-                  1e-3 * std::fabs(static_cast<double>(g.position)))
-          << level << ", " << group;
-    }
-  }
-}
-
-// A segment is as long as a constant torque takes for six degrees: accel n^2, within what is short and long.
-TEST_F(Phases, ASegmentTakesTheShaftSixDegreesOn) {
-  const map_t& m = commissioning.map;
-  for (const auto& [inertia, length] : {std::pair{1.0, 0}, {0.2, 40}, {100.0, 90}}) {
-    commissioning.tick = 0;
-    inside::model() = inside::config().nameplate;
-    inside::model().accel_q12 = static_cast<std::int32_t>(inside::model().accel_q12 / inertia);
-    while (commissioning.tick == 0 || m.pause) (void)step(commissioning_map);
-    const double accel = real(machine_torque_constant_q24(&inside::model(), 0), 24) * limit_ / 4.0 * per_torque();
-    const double periods = std::sqrt(6.0 * kDegree / accel) / kPeriod;
-    EXPECT_NEAR(m.segment, length == 0 ? std::clamp(periods, 40.0, 90.0) : length, 1.0) << inertia;
-  }
-}
-
 TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
   commissioning_t& c = commissioning;
   const auto progress = [&](commissioning_phase_t phase) {
@@ -395,27 +210,6 @@ TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
   c.map.level = MAP_LEVELS;
   EXPECT_EQ(progress(COMMISSIONING_MAP), 1000);
   EXPECT_EQ(progress(COMMISSIONING_EVALUATE), 1000);
-}
-
-// A level is complete when each of its groups is, after whole rounds of places; or after so many trains that the pairs
-// of windows will not come.
-TEST_F(Phases, ALevelWantsAllItsGroups) {
-  map_t& m = commissioning.map;
-  for (int few = -1; few < 4; ++few) {
-    for (const int trains : {15, 16, 608}) {
-      m = {};
-      commissioning.tick = 1;
-      for (int k = 0; k < 4; ++k) m.group[0][k].tensor.count = k == few ? 7999 : 8000;
-      m.train = static_cast<std::uint16_t>(trains);
-      m.tick = 1000;
-      m.speed_q8 = m.position_bam = 1234;  // of the last train
-      m.pause = true;
-      ASSERT_FALSE(step(commissioning_map));
-      EXPECT_EQ(m.level, trains == 608 || (trains == 16 && few < 0) ? 1 : 0) << few << ", " << trains;
-      EXPECT_FALSE(m.pause);
-      EXPECT_EQ(m.speed_q8 | m.position_bam | m.tick, 0);
-    }
-  }
 }
 
 }  // namespace
