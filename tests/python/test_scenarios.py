@@ -260,7 +260,7 @@ def test_the_papers_zvv_holds_standstill_with_positive_d_current_only() -> None:
     }
     paper = {**variant.paper().checked(core.parameters(core.load())), **late}
     error, speed = standstill(paper)
-    assert error < 2.0
+    assert error < 3.0  # a noiseless converter has a dead zone of some degrees
     assert speed < 4.0
     error, _ = standstill({**paper, "id_low_speed": -8.0})
     assert error > 20.0
@@ -291,7 +291,9 @@ def test_the_papers_scheme_brings_a_rotor_through_its_transition_and_back(
     transition, steady = errors()
     assert 0.3 < transition < 6.0
     assert 0.1 < steady < 4.0  # a noiseless converter has a dead zone of some degrees
-    assert errors("--set", "adc.noise=1.2") < (8.0, 4.0)
+    transition, steady = errors("--set", "adc.noise=1.2")
+    assert 0.3 < transition < 8.0
+    assert 0.3 < steady < 4.0
     assert errors("--set", "adc.noise=1.2", "--set", "zvv_terms=15")[0] > 20.0
 
 

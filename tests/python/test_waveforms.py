@@ -153,8 +153,8 @@ def test_holds_are_where_the_reference_stays():
 def test_the_papers_scheme_runs_where_the_position_is_judged_and_its_source_left_open():
     paper = variant.paper()
     applies = {name for name in scenario_file.ids() if paper.applies(scenario_file.load(name))}
-    assert {"A10", "A11", "A15", "A16", "A17"} <= applies
-    assert not applies & {"A09", "A12", "A13", "A14", "A19", "S01"}
+    assert {"A10", "A11", "A15", "A16", "A17", "A18a", "A18b", "A18c", "A19"} <= applies
+    assert not applies & {"A09", "A12", "A13", "A14", "S01"}
     other = paper.scenario(scenario_file.load("A10"))
     assert other.runs[0].parameters["position_source"] == 1
     assert other.figures == scenario_file.load("A10").figures

@@ -94,9 +94,10 @@ class Scheme(Variant):
     parameters: dict[str, float | str]
 
     def applies(self, scenario: Scenario) -> bool:
-        """Whether the scenario is about the position error and leaves the position source open."""
+        """Whether it shows a paper's figure or is about the position error, and leaves source and layout open."""
         judged = any(figure.kind.startswith("position_error") for figure in scenario.figures)
-        own = any("position_source" in run.parameters for run in scenario.runs)
+        judged = judged or bool(scenario.paper_figure)
+        own = any({"position_source", "excitation"} & run.parameters.keys() for run in scenario.runs)
         return judged and not own and scenario.motor == self.motor
 
     def scenario(self, scenario: Scenario) -> Scenario:
