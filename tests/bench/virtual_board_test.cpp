@@ -70,7 +70,7 @@ TEST(VirtualBoard, ParametersAreToldOnceTheDriveIsReady) {
   EXPECT_NE(parameter_get(static_cast<std::uint16_t>(id)), raw);
   board.advance(kReady);
   EXPECT_EQ(parameter_get(static_cast<std::uint16_t>(id)), raw);
-  EXPECT_THROW(VirtualBoard({request().setup, {{"no_such", 1.0}}}), std::exception);
+  EXPECT_THROW(VirtualBoard({request().setup, {{"no_such", 1.0}}, {}}), std::exception);
 }
 
 // Saved at its default, a value is a saved value like any other.
