@@ -1,5 +1,7 @@
 #include "control/current_controller.h"
 
+#include "hal/qmath/qcall.h"
+
 // Bandwidth over the corner of the integrator.
 #define RESET_RATIO 4
 // Bandwidth times the delay, in parts per million of 2 rad.
@@ -10,9 +12,9 @@
 static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30, const current_design_t* d) {
   pi_config_t c;
   const int32_t step_q24 = q_div(d->bandwidth_rads * d->period_us * d->divider, 1000000L, 24);  // a T
-  c.kp_q20 = q_mul(inductance_q30, d->bandwidth_rads, 10);
+  c.kp_q20 = qc_mul(inductance_q30, d->bandwidth_rads, 10);
   const bool own = d->corner == CURRENT_CORNER_MACHINE;
-  c.ki_q20 = own ? q_mul_sat(m->nominal_rs_q24, step_q24, 28) : q_mul_sat(c.kp_q20, step_q24, 24) / RESET_RATIO;
+  c.ki_q20 = own ? qc_mul_sat(m->nominal_rs_q24, step_q24, 28) : qc_mul_sat(c.kp_q20, step_q24, 24) / RESET_RATIO;
   c.release_q20 = 4 * q_limit(q_div(c.ki_q20, c.kp_q20, 20), ONE_Q20 / 4);
   return c;
 }

@@ -1,5 +1,7 @@
 #include "control/if_start.h"
 
+#include "hal/qmath/qcall.h"
+
 #define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
 #define ANGLE_80_DEG 954437177L
 #define SHIFT_MAX_BAM 536870912L  // 45 degrees
@@ -9,8 +11,8 @@
 
 // Lq I/(lambda w0) in periods, as the next power of two.
 static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
-  const int32_t ratio_q12 = q_div(q_mul_sat(m->lq_q30, c->current_q20, 22), m->flux_q28, 12);
-  const int32_t periods = q_mul_sat(ratio_q12, c->damping_periods, 12);
+  const int32_t ratio_q12 = q_div(qc_mul_sat(m->lq_q30, c->current_q20, 22), m->flux_q28, 12);
+  const int32_t periods = qc_mul_sat(ratio_q12, c->damping_periods, 12);
   uint16_t n = FILTER_LEAST;
   while (n < FILTER_MOST && (1L << n) < periods) n++;
   return n;
@@ -23,8 +25,8 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_st
   c->speed_bpp = p->speed_bpp;
   c->wait_periods = p->wait_periods;
   // Acceleration at a right angle, bpp per period: (w0 T)^2 in units of 2 pi / 2^32.
-  const int32_t torque_q16 = q_mul(m->torque_q24, p->current_q20, 28);
-  const int32_t accel_bpp = q_mul_sat(torque_q16, m->accel_q12, 28);
+  const int32_t torque_q16 = qc_mul(m->torque_q24, p->current_q20, 28);
+  const int32_t accel_bpp = qc_mul_sat(torque_q16, m->accel_q12, 28);
   c->damping_periods = (int32_t)q_sqrt64((uint64_t)(TURNS_Q32_PER_RAD / q_max(accel_bpp, 1)));
   c->filter_shift = filter_shift(c, m);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.

@@ -1,5 +1,7 @@
 #include "control/machine_map.h"
 
+#include "hal/qmath/qcall.h"
+
 #define FLUX_END_Q16 2097152000L       // 32000 V
 #define ADMITTANCE_END_Q30 644245094L  // 0.6 A/V: the estimators' formats end there
 #define CROSS_END_Q30 483183820L       // 0.45
@@ -8,7 +10,7 @@
 
 // psi/T gained over a segment: mean inductance times its current, V per (rad per period), Q16.
 static int32_t flux_gain_q16(int32_t l0_q30, int32_t l1_q30, int32_t step_q20, int32_t period_q30) {
-  const int32_t flux_q28 = q_mul_sat(l0_q30 / 2 + l1_q30 / 2, step_q20, 22);
+  const int32_t flux_q28 = qc_mul_sat(l0_q30 / 2 + l1_q30 / 2, step_q20, 22);
   return q_div(flux_q28, period_q30, 18);
 }
 
@@ -18,11 +20,11 @@ static bool invert(machine_point_t* y, int32_t ldd_q30, int32_t lqq_q30, int32_t
   const int32_t tilt_d_q30 = q_div(ldq_q30, ldd_q30, 30);
   const int32_t tilt_q_q30 = q_limit(q_div(ldq_q30, lqq_q30, 30), ONE_Q30);
   if (tilt_d_q30 <= -ONE_Q30 || tilt_d_q30 >= ONE_Q30) return false;
-  const int32_t left_q30 = ONE_Q30 - q_mul(tilt_d_q30, tilt_q_q30, 30);
-  y->ydd_q30 = q_div(period_q30, q_mul(ldd_q30, left_q30, 30), 30);
-  y->ydq_q30 = q_mul(y->ydd_q30, -tilt_q_q30, 30);
+  const int32_t left_q30 = ONE_Q30 - qc_mul(tilt_d_q30, tilt_q_q30, 30);
+  y->ydd_q30 = q_div(period_q30, qc_mul(ldd_q30, left_q30, 30), 30);
+  y->ydq_q30 = qc_mul(y->ydd_q30, -tilt_q_q30, 30);
   if (y->ydd_q30 > ADMITTANCE_END_Q30 || !q_in_range(y->ydq_q30, -CROSS_END_Q30, CROSS_END_Q30)) return false;
-  y->yqq_q30 = q_min(q_div(period_q30, q_mul(lqq_q30, left_q30, 30), 30), y->ydd_q30);  // Lqq is not the smaller one
+  y->yqq_q30 = q_min(q_div(period_q30, qc_mul(lqq_q30, left_q30, 30), 30), y->ydd_q30);  // Lqq is not the smaller one
   return true;
 }
 
@@ -37,10 +39,10 @@ bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int
     if (p->ldd_q30[k] <= 0 || p->lqq_q30[k] < p->ldd_q30[k]) return false;
     if (!invert(y, p->ldd_q30[k], p->lqq_q30[k], p->ldq_q30[k], period_q30)) return false;
     if (k > 0u) {
-      psi_d_q16 = q_add_sat(psi_d_q16, flux_gain_q16(p->ldq_q30[k - 1u], p->ldq_q30[k], step_q20, period_q30));
-      psi_q_q16 = q_add_sat(psi_q_q16, flux_gain_q16(p->lqq_q30[k - 1u], p->lqq_q30[k], step_q20, period_q30));
+      psi_d_q16 = qc_add_sat(psi_d_q16, flux_gain_q16(p->ldq_q30[k - 1u], p->ldq_q30[k], step_q20, period_q30));
+      psi_q_q16 = qc_add_sat(psi_q_q16, flux_gain_q16(p->lqq_q30[k - 1u], p->lqq_q30[k], step_q20, period_q30));
     }
-    if (q_abs_sat(psi_d_q16) > FLUX_END_Q16 || psi_q_q16 > FLUX_END_Q16) return false;
+    if (qc_abs_sat(psi_d_q16) > FLUX_END_Q16 || psi_q_q16 > FLUX_END_Q16) return false;
     y->psi_d_q16 = psi_d_q16;
     y->psi_q_q16 = psi_q_q16;
   }

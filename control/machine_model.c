@@ -1,5 +1,7 @@
 #include "control/machine_model.h"
 
+#include "hal/qmath/qcall.h"
+
 #define ONE_Q20 ((int32_t)1048576L)
 #define ONE_Q24 ((int32_t)16777216L)
 #define RATIO_END_Q24 1056964608L  // 63: Lq/Ld less 1
@@ -148,7 +150,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->pole_pairs = p->pole_pairs;
   m->period_q30 = period_q30(p->period_us);
   m->periods_per_second = (int32_t)((1000000L + p->period_us / 2) / p->period_us);
-  m->ld_q16 = q_mul_sat(p->ld_q30, m->periods_per_second, 14);
+  m->ld_q16 = qc_mul_sat(p->ld_q30, m->periods_per_second, 14);
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
@@ -156,7 +158,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->trim = none;
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;
-  m->accel_q12 = q_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
+  m->accel_q12 = qc_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
   m->torque_per_accel_q24 = q_div(1048576L, m->accel_q12, 24);
   // A constant at the end of its format is not the machine's.
   return m->accel_q12 < INT32_MAX && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 && m->k0_q20.q > -K0_END_Q20;

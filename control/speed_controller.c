@@ -1,5 +1,7 @@
 #include "control/speed_controller.h"
 
+#include "hal/qmath/qcall.h"
+
 #define ONE_Q30 1073741824L
 
 static bool config_valid(const speed_controller_config_t* c) {
@@ -14,7 +16,7 @@ static int32_t series_q30(int32_t x_q30, int32_t n) {
   int32_t sum = ONE_Q30;
   int32_t term = ONE_Q30;
   for (; n <= 7; n++) {
-    term = -q_mul(term, x_q30, 30) / n;
+    term = -qc_mul(term, x_q30, 30) / n;
     sum += term;
   }
   return sum;
@@ -28,26 +30,26 @@ static int32_t mean_decay_q30(int32_t x_q30) { return series_q30(x_q30, 2); }
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m) {
   if (!config_valid(c)) return false;
   const int32_t step_q30 = q_div(c->step_periods, m->periods_per_second, 30);  // Ts, s
-  const int32_t x_q30 = q_mul_sat(q_div(c->friction_q24, c->inertia_q24, 20), step_q30, 20);
+  const int32_t x_q30 = qc_mul_sat(q_div(c->friction_q24, c->inertia_q24, 20), step_q30, 20);
   if (x_q30 >= ONE_Q30 / 2) return false;
   s->decay_q30 = exp_minus_q30(x_q30);
   // b: acceleration per N m (Q12 bpp per period) * Kt (Q24) * periods, to Q8 bpp per A.
-  const int32_t accel_per_amp_q8 = q_mul_sat(m->accel_q12, m->torque_q24, 28);
-  s->response_q8 = q_mul_sat(q_sat64((int64_t)accel_per_amp_q8 * c->step_periods), mean_decay_q30(x_q30), 30);
+  const int32_t accel_per_amp_q8 = qc_mul_sat(m->accel_q12, m->torque_q24, 28);
+  s->response_q8 = qc_mul_sat(q_sat64((int64_t)accel_per_amp_q8 * c->step_periods), mean_decay_q30(x_q30), 30);
   s->gains.amps_per_bpp = q_div(16777216L, s->response_q8, 24);
   // A rotor so heavy, or so light, that the gains do not fit.
   if (s->gains.amps_per_bpp == INT32_MAX || accel_per_amp_q8 > INT32_MAX / c->step_periods) return false;
   // alpha b^2 with b in rad/s (mechanical) per A: b = Kt Ts / J.
-  const int32_t b_q24 = q_mul_sat(q_div(m->torque_q24, c->inertia_q24, 16), step_q30, 22);
-  const int32_t weight_q16 = q_mul_sat(q_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
-  s->gains.share_q30 = q_clamp(ONE_Q30 - q_div(65536L, q_add_sat(weight_q16, 65536L), 30), 0, ONE_Q30);
-  const int32_t ratio_q30 = q_div(c->step_periods * 1000L, q_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
+  const int32_t b_q24 = qc_mul_sat(q_div(m->torque_q24, c->inertia_q24, 16), step_q30, 22);
+  const int32_t weight_q16 = qc_mul_sat(qc_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
+  s->gains.share_q30 = q_clamp(ONE_Q30 - q_div(65536L, qc_add_sat(weight_q16, 65536L), 30), 0, ONE_Q30);
+  const int32_t ratio_q30 = q_div(c->step_periods * 1000L, qc_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
   if (ratio_q30 >= ONE_Q30 / 2) return false;
   s->approach_q30 = ONE_Q30 - exp_minus_q30(ratio_q30);
   // Pole assignment: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, written with b = Kt Ts / J.
-  const int32_t wn_ts_q24 = q_mul_sat(c->pi_bandwidth_q8, step_q30, 14);
-  s->gains.pi_kp = q_mul_sat(s->gains.amps_per_bpp, q_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
-  s->gains.pi_ki = q_mul_sat(s->gains.amps_per_bpp, q_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
+  const int32_t wn_ts_q24 = qc_mul_sat(c->pi_bandwidth_q8, step_q30, 14);
+  s->gains.pi_kp = qc_mul_sat(s->gains.amps_per_bpp, qc_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);
+  s->gains.pi_ki = qc_mul_sat(s->gains.amps_per_bpp, qc_mul_sat(wn_ts_q24, wn_ts_q24, 24), 24);
   if (s->gains.pi_kp == INT32_MAX) return false;
   s->nominal = s->gains;
   speed_controller_preset(s, 0);

@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 import pack_text
+import word_code
 
 ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
@@ -282,7 +283,7 @@ def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
     kept = ["" if name in needless else text for name, text in texts.items()]
     return {
         pack_text.NUMBERS: pack_text.numbers(list(texts)),
-        TEXTS: pack_text.pack(kept),
+        TEXTS: pack_text.pack(kept, sum(1 for name in texts if pack_text.NAME.match(name))),
         "left_out.c": left_out_text(edition, root),
         **{f"{name}.c": table_text(name, edition, root) for name in TABLES},
     }
@@ -314,7 +315,7 @@ def write_for_cmake(folder: Path, name: str) -> None:
     sources = write(folder, name)
     known = {feature.name for feature in features}
     outside = [feature for feature in edition.features if feature.name not in known]
-    files = [Path(__file__), Path(pack_text.__file__), edition.file, *pack_text.files(ROOT)]
+    files = [Path(__file__), Path(pack_text.__file__), Path(word_code.__file__), edition.file, *pack_text.files(ROOT)]
     files += [feature.folder / FEATURE for feature in (*features, *outside)]
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))

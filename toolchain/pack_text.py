@@ -1,16 +1,16 @@
-"""Packs the drive's texts: two octets in a word, and an octet above 127 stands for two others.
+"""Packs the drive's texts: words of a dictionary, in as few bits as they are frequent (word_code.py).
 
 A character of a string takes a word of the C28x's flash. What the lists below have, names and units, meanings, causes
-and remedies, words of states and help, is therefore packed by pairs that occur often (byte pair encoding: P. Gage, "A
-New Algorithm for Data Compression", C Users Journal 12(2), 1994). The lists stay what people read and change; the
-texts' numbers are made here as well, so that the code that says something includes none of them.
+and remedies, words of states and help, takes a fifth of that. The lists stay what people read and change; the texts'
+numbers are made here as well, so that the code that says something includes none of them.
 """
 
 import re
 from collections import Counter
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
+
+import word_code
 
 ROOT = Path(__file__).resolve().parent.parent
 NUMBERS = "firmware/text/text_numbers.h"
@@ -19,22 +19,21 @@ NUMBERS = "firmware/text/text_numbers.h"
 LISTS = (
     ("firmware/dictionary/parameter_list.h", "PARAMETER", 9, "TEXT_PARAMETER_{1}"),
     ("firmware/dictionary/signal_list.h", "SIGNAL", 5, "TEXT_SIGNAL_{0}"),
+    ("firmware/text/catalogue_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
     ("firmware/dictionary/fault_list.h", "FAULT", 2, "TEXT_FAULT_{0}"),
     ("firmware/dictionary/fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
-    ("firmware/text/catalogue_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
     ("firmware/console/command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
     ("firmware/console/help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
     ("firmware/*/phrase_list.h", "PHRASE", 1, "SAY_{0}"),
-    ("firmware/dictionary/parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),
     ("firmware/dictionary/parameter_list.h", "PARAMETER", 2, "TEXT_PARAMETER_UNIT_{1}"),
-    ("firmware/dictionary/signal_list.h", "SIGNAL", 0, "TEXT_SIGNAL_NAME_{0}"),
     ("firmware/dictionary/signal_list.h", "SIGNAL", 1, "TEXT_SIGNAL_UNIT_{0}"),
-    ("firmware/console/command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
     ("firmware/console/command_list.h", "COMMAND", 1, "TEXT_COMMAND_ARGUMENTS_{0}"),
+    ("firmware/dictionary/parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),
+    ("firmware/dictionary/signal_list.h", "SIGNAL", 0, "TEXT_SIGNAL_NAME_{0}"),
+    ("firmware/console/command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
 )
-PAIRS = 128
-FIRST_PAIR = 128
-DEPTH = 8  # PACKED_DEPTH: pairs of pairs, at most so deep
+NAME = re.compile(r"TEXT_(PARAMETER|SIGNAL|COMMAND)_NAME_")  # what is looked up: the last of the texts
+BLOCK = 8  # PACKED_BLOCK: texts and entries from the beginning of a word on
 INCLUDE = re.compile(r'^#include "(firmware/[^"]+)"$', re.MULTILINE)
 TOKEN = re.compile(r'//[^\n]*|"(?:[^"\\]|\\.)*"|[(),]|[^"(),/]+|/')
 
@@ -93,28 +92,6 @@ def texts(root: Path = ROOT) -> dict[str, str]:
     return found
 
 
-def squeeze(strings: list[list[int]]) -> list[tuple[int, int]]:
-    """Replaces pairs in place, the most frequent first; the pairs."""
-    pairs: list[tuple[int, int]] = []
-    depth: dict[int, int] = {}
-    while len(pairs) < PAIRS:
-        counts = Counter(pair for string in strings for pair in pairwise(string))
-        shallow = (p for p in counts if max(depth.get(p[0], 0), depth.get(p[1], 0)) < DEPTH)
-        best = max(shallow, key=lambda p: (counts[p], p), default=None)
-        if best is None or counts[best] <= 3:  # a pair takes a word itself
-            break
-        code = FIRST_PAIR + len(pairs)
-        depth[code] = 1 + max(depth.get(best[0], 0), depth.get(best[1], 0))
-        pairs.append(best)
-        for string in strings:
-            at = 0
-            while at + 1 < len(string):
-                if (string[at], string[at + 1]) == best:
-                    string[at : at + 2] = [code]
-                at += 1
-    return pairs
-
-
 def table(name: str, values: list[int]) -> list[str]:
     """A C array of 16-bit words."""
     lines = [f"const uint16_t {name}[] = {{"]
@@ -124,34 +101,71 @@ def table(name: str, values: list[int]) -> list[str]:
 
 def numbers(names: list[str]) -> str:
     """The header with the texts' numbers."""
-    lines = ["// Made by toolchain/compose.py: the numbers of the packed texts.", "", "enum {"]
-    return "\n".join([*lines, *(f"  {name}," for name in names), "  PACKED_TEXTS", "};", ""])
+    lines = [
+        "// Made by toolchain/compose.py: the numbers of the packed texts.",
+        "",
+        "enum {",
+    ]
+    looked_up = next((name for name in names if NAME.match(name)), "PACKED_TEXTS")
+    lines += [f"  {name}," for name in names]
+    return "\n".join([*lines, "  PACKED_TEXTS,", f"  PACKED_FIRST_NAME = {looked_up}", "};", ""])
 
 
-def pack(strings: list[str]) -> str:
-    """The C file with the texts."""
-    coded = {string: [ord(c) for c in string] for string in strings}
-    pairs = squeeze(list(coded.values()))
-    octets: list[int] = []
-    start: dict[str, int] = {}
-    for string, codes in coded.items():
-        start[string] = len(octets)
-        octets += [*codes, 0]
-    starts = [start[string] for string in strings]
-    octets += [0] * (len(octets) % 2)
-    words = [octets[k] | octets[k + 1] << 8 for k in range(0, len(octets), 2)]
+def key(name: str) -> int:
+    """By which a name is looked up: packed_find()."""
+    found = 0
+    for letter in name.lower():
+        found = (31 * found + ord(letter)) & 0xFFFF
+    return found
+
+
+def blocks(items: list[str], start: int) -> tuple[list[int], list[int]]:
+    """Words with bit strings, BLOCK of them from a word's first bit on; where each block begins."""
+    whole = ["".join(items[k : k + BLOCK]) for k in range(0, len(items), BLOCK)]
+    starts, words = [], []
+    for bits in whole:
+        starts.append(start + len(words))
+        words += [int(f"{bits[k : k + 16]:0<16}", 2) for k in range(0, len(bits), 16)]
+    return starts, words
+
+
+def pack(strings: list[str], names: int = 0) -> str:
+    """The C file with the texts, the last of which are names."""
+    said = [word_code.words(string) for string in strings]
+    word_code.phrases(said)
+    entries = word_code.entries(said)
+    letters = Counter(letter for word in {*entries, *(w for text in said for w in text)} for letter in word)
+    letters[word_code.END] = max(len(entries), *letters.values()) + 1  # the first code
+    of_letters, of_entries = word_code.Code(letters), word_code.Code(entries)
+
+    def spelled(word: str) -> str:
+        return of_letters.of([*word, word_code.END])
+
+    def bits(word: str) -> str:
+        return of_entries.of([word]) if word in entries else of_entries.of([word_code.SPELLED]) + spelled(word)
+
+    dictionary, words = blocks([spelled(word) for word in of_entries.symbols], 0)
+    starts, more = blocks(["".join(map(bits, [*text, word_code.END])) for text in said], len(words))
+    words += more
+    tables = {
+        "packed_starts": starts,
+        "packed_dictionary": dictionary,
+        "packed_entry_counts": of_entries.counts,
+        "packed_letter_counts": of_letters.counts,
+        "packed_letters": [ord(letter or "\0") for letter in of_letters.symbols],
+        "packed_keys": [key(name) for name in strings[len(strings) - names :]],
+        "packed_bits": [*words, 0],  # a code is looked for in two words
+    }
     plain = sum(len(string) + 1 for string in strings)
-    taken = len(words) + len(starts) + len(pairs)
+    taken = sum(map(len, tables.values()))
     return "\n".join(
         [
             f"// Made by toolchain/compose.py: {len(strings)} texts, {plain} characters, {taken} words.",
             '#include "firmware/text/packed_text.h"',
             "",
             f"typedef char all_texts_are_here[(PACKED_TEXTS == {len(strings)}) ? 1 : -1];",
-            f"typedef char no_pair_is_too_deep[(PACKED_DEPTH == {DEPTH}) ? 1 : -1];",
+            f"typedef char blocks_are_as_long[(PACKED_BLOCK == {BLOCK}) ? 1 : -1];",
             "",
-            *table("packed_starts", starts),
-            *table("packed_pairs", [first << 8 | second for first, second in pairs]),
-            *table("packed_octets", words),
+            *(line for name, values in tables.items() for line in table(name, values)),
         ]
     )

@@ -8,6 +8,7 @@
 #include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
+#include "hal/qmath/qcall.h"
 
 #define NAME_MAX 32u  // characters of a parameter's name, and some
 
@@ -69,7 +70,7 @@ answer_status_t action_reset(octet_writer_t* why) {
   return ANSWER_OK;
 }
 
-static int32_t speed_limit_q16(void) { return q_shl_sat(parameters.speed_limit, 8); }
+static int32_t speed_limit_q16(void) { return qc_shl_sat(parameters.speed_limit, 8); }
 
 void put_speed_limit(octet_writer_t* w, packed_text_t why) {
   put_packed(w, why);
@@ -78,7 +79,7 @@ void put_speed_limit(octet_writer_t* w, packed_text_t why) {
 }
 
 answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
-  if (q_abs_sat(rpm_q16) <= speed_limit_q16()) {
+  if (qc_abs_sat(rpm_q16) <= speed_limit_q16()) {
     drive_command_speed(rpm_q16);
     return ANSWER_OK;
   }
@@ -89,14 +90,14 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
 
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
   put_fixed(w, raw, parameter->q, parameter->decimals);
-  if (packed_is_empty(parameter->unit)) return;
+  if (packed_is_empty(parameter_unit(parameter))) return;
   put_u8(w, ' ');
-  put_packed(w, parameter->unit);
+  put_packed(w, parameter_unit(parameter));
 }
 
 void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
   put_fixed(w, parameter->minimum, parameter->q, parameter->decimals);
-  put_text(w, " .. ");
+  put_packed(w, SAY_to);
   put_value(w, parameter, parameter->maximum);
   put_packed(w, SAY_nothing_changed);
 }
@@ -106,7 +107,7 @@ static bool is_of_a_name(uint16_t c) { return c >= '0' && c != ':'; }
 void put_conflict(octet_writer_t* w, packed_text_t conflict) {
   uint16_t name[NAME_MAX];
   uint16_t count = 0, c;
-  const char* separator = " (";
+  packed_text_t separator = SAY_opens_list;
   packed_reader_t r = packed_reader(conflict);
   put_packed(w, conflict);
   do {
@@ -118,19 +119,19 @@ void put_conflict(octet_writer_t* w, packed_text_t conflict) {
     const parameter_info_t* const p = parameter_named(name, count);
     count = 0;
     if (p == NULL) continue;
-    put_text(w, separator);
-    put_packed(w, p->name);
-    put_text(w, " = ");
+    put_packed(w, separator);
+    put_packed(w, parameter_name(p));
+    put_packed(w, SAY_is);
     put_value(w, p, parameter_get(p->id));
-    separator = ", ";
+    separator = SAY_comma;
   } while (c != 0u);
   put_u8(w, ')');  // every rule names a parameter
 }
 
 // With one decimal more where the table's are too few to show what is wrong.
 static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
-  put_packed(why, p->name);
-  put_text(why, " = ");
+  put_packed(why, parameter_name(p));
+  put_packed(why, SAY_is);
   put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
   put_packed(why, SAY_is_outside_of);
   put_range(why, p);
@@ -163,7 +164,7 @@ answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet
     case SET_RANGE:
       return refuse_range(parameter, raw, why);
     case SET_RUNNING:
-      put_packed(why, parameter->name);
+      put_packed(why, parameter_name(parameter));
       put_packed(why, SAY_may_not_change_while_the_power_stage);
       return ANSWER_RUNNING;
     default:

@@ -112,7 +112,7 @@ drive_fault_t board_refusal(void) {
 
 static void put_item(octet_writer_t* w, board_words_t word) {
   put_message(w, CATALOGUE_BOARD, (uint16_t)word);
-  put_text(w, "; ");
+  put_packed(w, SAY_semicolon);
 }
 
 static void put_number(octet_writer_t* w, board_words_t word, int32_t value, uint16_t q, const char* unit) {

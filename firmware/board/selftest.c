@@ -4,7 +4,6 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/catalogue.h"
-#include "firmware/text/text.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_board.h"
 #include "hal/hal_digital_io.h"
@@ -68,7 +67,7 @@ drive_fault_t selftest_service(void) {
 }
 
 static void put_item(octet_writer_t* w, uint16_t* items, uint16_t word) {
-  if (*items != 0u) put_text(w, "; ");
+  if (*items != 0u) put_packed(w, SAY_semicolon);
   put_message(w, CATALOGUE_SELFTEST, word);
   (*items)++;
 }

@@ -12,6 +12,7 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_digital_io.h"
+#include "hal/qmath/qcall.h"
 
 #define ONE_Q15 ((int32_t)32768)
 #define TURN 8u
@@ -56,10 +57,10 @@ static void take(int32_t code) {
   if (board.lost_ms > LOST_MS) lose();
   if (lost || board.input != SPEED_INPUT_RUNS) return;
   const int32_t share_q15 = live ? q_div(code - LIVE_FIRST, LIVE_SPAN, 15) : q_div(code, SPAN, 15);
-  const int32_t dead_q15 = q_mul(parameters.speed_input_dead, 21474836L, 32);
+  const int32_t dead_q15 = qc_mul(parameters.speed_input_dead, 21474836L, 32);
   const int32_t beyond = q_clamp(share_q15, 0, ONE_Q15) - dead_q15;
   const int32_t reference = beyond <= 0 ? 0 : q_div(beyond, ONE_Q15 - dead_q15, 15);
-  drive_command_speed(q_mul(q_shl_sat(parameters.speed_input_full, 8), reference, 15));
+  drive_command_speed(qc_mul(qc_shl_sat(parameters.speed_input_full, 8), reference, 15));
 }
 
 void board_follow_speed_input(void) {

@@ -10,6 +10,7 @@
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 #define LEAST_BAM 95443718L                         // 8 degrees: what the angle may stray under changing current
 #define MOST_BAM 1073741824L                        // a quarter of an electrical turn
@@ -30,7 +31,7 @@ static void begin_anew(const drive_t* d) {
 }
 
 static bool has_speed_reference(const drive_t* d) {
-  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && q_abs_sat(d->position.selected.speed_bpp) < FAST_BPP;
+  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && qc_abs_sat(d->position.selected.speed_bpp) < FAST_BPP;
 }
 
 // By a sixteenth of its largest speed since it began at least.
@@ -43,7 +44,7 @@ static bool is_slowing(const drive_t* d) {
 // Half of the reference's way in stall_time.
 static int32_t least_way_bam(const drive_t* d) {
   const int32_t half_periods = parameters.stall_time * (DRIVE_PERIODS_PER_MS / 2);
-  return q_clamp(q_sat64(q_product(q_abs_sat(d->control.ramp.value), half_periods)), LEAST_BAM, MOST_BAM);
+  return q_clamp(q_sat64(q_product(qc_abs_sat(d->control.ramp.value), half_periods)), LEAST_BAM, MOST_BAM);
 }
 
 // The way in the direction of the reference; one that is pushed back counts from where it has been pushed to.

@@ -24,7 +24,7 @@ static void line_bus(octet_writer_t* w) {
     put_unsigned(w, (uint32_t)now.rate_kbit);
     put_packed(w, SAY_kbit_s);
   }
-  put_text(w, ": ");
+  put_packed(w, SAY_colon);
   put_message(w, CATALOGUE_CAN, (uint16_t)now.bus.state);
 }
 

@@ -3,9 +3,10 @@
 #include <stddef.h>
 
 #include "hal/qmath/qarith.h"
+#include "hal/qmath/qcall.h"
 
-#define UNSIGNED false
-#define SIGNED true
+#define UNSIGNED 0
+#define SIGNED 1
 
 #define CAN_MESSAGE(message, base, octets, sender, meaning) {base, octets},
 #define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning)
@@ -32,15 +33,15 @@ const can_field_info_t* can_field_info(uint16_t field) { return field < (uint16_
 
 hal_can_frame_t can_frame(can_message_t message, uint16_t node) {
   hal_can_frame_t frame = {0uL, false, 0u, {0u}};
-  frame.id = messages[message].base + node;
+  frame.id = (uint16_t)(messages[message].base + node);
   frame.length = messages[message].octets;
   return frame;
 }
 
 static int32_t clamp_to(const can_field_info_t* f, int32_t value) {
   if (f->bits >= 32u) return value;
-  const int32_t span = (int32_t)((uint32_t)1u << (f->is_signed ? f->bits - 1u : f->bits));
-  return q_clamp(value, f->is_signed ? -span : 0, span - 1);
+  const int32_t span = (int32_t)((uint32_t)1u << (f->bits - f->is_signed));
+  return q_clamp(value, (f->is_signed != 0u) ? -span : 0, span - 1);
 }
 
 void can_put(hal_can_frame_t* frame, can_field_t field, int32_t value) {
@@ -61,13 +62,13 @@ int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
     const uint16_t at = (uint16_t)(f->first + k);
     steps |= (uint32_t)(frame->data[at >> 3] >> (at & 7u) & 1u) << k;
   }
-  const bool negative = f->is_signed && (steps >> (f->bits - 1u) & 1uL) != 0uL;
+  const bool negative = f->is_signed != 0u && (steps >> (f->bits - 1u) & 1uL) != 0uL;
   if (negative && f->bits < 32u) steps |= ~(((uint32_t)1u << f->bits) - 1u);
   return (int32_t)steps;
 }
 
 int32_t can_steps(can_field_t field, int32_t value, uint16_t q) {
-  return q_mul_sat(value, (int32_t)fields[field].per_unit, q);
+  return qc_mul_sat(value, (int32_t)fields[field].per_unit, q);
 }
 
 static uint16_t crc8_add(uint16_t crc, uint16_t octet) {

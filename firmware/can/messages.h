@@ -37,15 +37,13 @@ typedef enum {
 
 // What the drive needs of the table; names, senders, units and meanings are for the other end.
 typedef struct {
-  uint32_t base;
-  uint16_t octets;
+  uint16_t base : 12, octets : 4;
 } can_message_info_t;
 
 typedef struct {
-  can_message_t message;
-  uint16_t first, bits;
-  bool is_signed;
-  uint16_t per_unit;
+  uint16_t message : 4;  // can_message_t
+  uint16_t first : 6, bits : 6;
+  uint16_t is_signed : 1, per_unit : 15;
 } can_field_info_t;
 
 /// NULL behind the last one.

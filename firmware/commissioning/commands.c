@@ -19,9 +19,9 @@ static void show_commissioning(void) {
   put_packed(w, SAY_commissioning);
   put_message(w, CATALOGUE_COMMISSIONING, (uint16_t)outcome);
   if (outcome == COMMISSIONING_RUNNING) {
-    put_text(w, ", ");
+    put_packed(w, SAY_comma);
     put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
-    put_text(w, " %: ");
+    put_packed(w, SAY_percent_of);
     put_message(w, CATALOGUE_PHASE, (uint16_t)drive_commissioning_phase());
   }
   if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) put_unsaved(w);
@@ -33,10 +33,10 @@ static bool list_results(uint16_t step) {
   const parameter_info_t* const p = parameter_by_id(r.id);
   if (p == NULL) return false;  // there is no such result, or none any more
   octet_writer_t* const w = line_begin();
-  put_packed(w, p->name);
+  put_packed(w, parameter_name(p));
   put_spaces_to(w, 22);
   put_fixed(w, r.before, p->q, p->decimals);
-  put_text(w, " -> ");
+  put_packed(w, SAY_becomes);
   put_value(w, p, r.value);
   put_spaces_to(w, 50);
   put_message(w, CATALOGUE_VERDICT, (uint16_t)r.verdict);
@@ -55,9 +55,9 @@ static void begin_commissioning(const words_of_line_t* a) {
 void command_commission(const words_of_line_t* a) {
   if (a->count == 0u) {
     show_commissioning();
-  } else if (word_is(a, 0, "start")) {
+  } else if (word_is(a, 0, TEXT_COMMAND_NAME_start)) {
     begin_commissioning(a);
-  } else if (!word_is(a, 0, "results")) {
+  } else if (!word_is(a, 0, SAY_results)) {
     line_refused(SAY_commission_commission_start_or_commission_re);
   } else if (drive_commissioning_count() == 0u) {
     line_of(SAY_nothing_has_been_measured_since_power_on);

@@ -4,6 +4,7 @@
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
+#include "hal/qmath/qcall.h"
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,
 enum {
@@ -28,7 +29,7 @@ static commissioning_verdict_t near(int32_t value, int32_t before, int32_t facto
 }
 
 static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
-  return (q_abs_sat(q_sub_sat(a, b)) > q_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
+  return (qc_abs_sat(qc_sub_sat(a, b)) > qc_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
 }
 
 // What the functions below offer, each once: three of the staircase, three unsaturated, the map and that it is known,
@@ -52,17 +53,17 @@ static commissioning_verdict_t judge_staircase(const staircase_values_t* v, comm
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   const commissioning_verdict_t straight = (v->command_rms_q16 > RMS_MAX_Q16) ? VERDICT_SPREAD : VERDICT_USED;
   const commissioning_verdict_t quiet = (v->window_rms_q16 > RMS_MAX_Q16) ? VERDICT_SPREAD : VERDICT_USED;
-  const int32_t winding = q_sub_sat(v->resistance_q24, p->device_resistance);
+  const int32_t winding = qc_sub_sat(v->resistance_q24, p->device_resistance);
   const commissioning_verdict_t resistance = worst(worst(measured, straight), near(winding, p->stator_resistance, 3));
   offer(r, ID_stator_resistance, winding, resistance);
-  const bool big_drop = q_abs_sat(v->drop_error_q16) > DROP_CHANGE_MAX_Q16;
+  const bool big_drop = qc_abs_sat(v->drop_error_q16) > DROP_CHANGE_MAX_Q16;
   const commissioning_verdict_t drop = worst(worst(measured, quiet), big_drop ? VERDICT_NAMEPLATE : VERDICT_USED);
-  offer(r, ID_device_drop, q_add_sat(p->device_drop, v->drop_error_q16), drop);
+  offer(r, ID_device_drop, qc_add_sat(p->device_drop, v->drop_error_q16), drop);
   // Volts over the link are a share of the period of 100 us.
-  const int32_t edge_q16 = q_mul_sat(q_div(v->edge_error_q16, v->link_q16, 16), 100L * 65536L, 16);
-  const bool big_edge = q_abs_sat(edge_q16) > EDGE_CHANGE_MAX_Q16;
+  const int32_t edge_q16 = qc_mul_sat(q_div(v->edge_error_q16, v->link_q16, 16), 100L * 65536L, 16);
+  const bool big_edge = qc_abs_sat(edge_q16) > EDGE_CHANGE_MAX_Q16;
   const commissioning_verdict_t edge = worst(worst(resistance, drop), big_edge ? VERDICT_NAMEPLATE : VERDICT_USED);
-  offer(r, ID_turn_on_delay, q_add_sat(p->turn_on_delay, edge_q16), edge);
+  offer(r, ID_turn_on_delay, qc_add_sat(p->turn_on_delay, edge_q16), edge);
   return resistance;
 }
 
@@ -74,7 +75,7 @@ static commissioning_verdict_t judge_unsaturated(const map_values_t* v, int32_t 
   const commissioning_verdict_t q = worst(measured, near(v->lqq_q20, p->inductance_q, 2));
   offer(r, ID_inductance_d, v->ldd_q20, worst(d, (q == VERDICT_USED) ? d : VERDICT_DEPENDS));
   offer(r, ID_inductance_q, v->lqq_q20, worst(q, (d == VERDICT_USED) ? q : VERDICT_DEPENDS));
-  offer(r, ID_sensor_mismatch, q_mul_sat(mismatch_q30, 100L, 14), measured);  // percent, Q16
+  offer(r, ID_sensor_mismatch, qc_mul_sat(mismatch_q30, 100L, 14), measured);  // percent, Q16
   return worst(d, q);
 }
 
@@ -86,12 +87,12 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
                         commissioning_verdict_t unsaturated, commissioning_report_t* r) {
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   const commissioning_verdict_t current = agree(level_q20(level), v->current_q20, CURRENT_SHARE);
-  const bool singular = v->ldd_q20 <= 0 || v->lqq_q20 <= 0 || q_abs_sat(v->turn_bam) > TURN_MAX_BAM;
+  const bool singular = v->ldd_q20 <= 0 || v->lqq_q20 <= 0 || qc_abs_sat(v->turn_bam) > TURN_MAX_BAM;
   commissioning_verdict_t all = worst(measured, singular ? VERDICT_NOT_PHYSICAL : VERDICT_USED);
   all = worst(all, (current == VERDICT_USED) ? current : VERDICT_NOT_MEASURED);
   all = worst(all, (unsaturated == VERDICT_USED) ? unsaturated : VERDICT_DEPENDS);
-  const int32_t percent_d_q16 = q_mul_sat(q_div(v->ldd_q20, zero->ldd_q20, 24), 100L * 65536L, 24);
-  const int32_t percent_q_q16 = q_mul_sat(q_div(v->lqq_q20, zero->lqq_q20, 24), 100L * 65536L, 24);
+  const int32_t percent_d_q16 = qc_mul_sat(q_div(v->ldd_q20, zero->ldd_q20, 24), 100L * 65536L, 24);
+  const int32_t percent_q_q16 = qc_mul_sat(q_div(v->lqq_q20, zero->lqq_q20, 24), 100L * 65536L, 24);
   offer(r, (uint16_t)(ID_lqq_1 + level), percent_q_q16, all);
   offer(r, (uint16_t)(ID_ldd_1 + level), percent_d_q16, all);
   offer(r, (uint16_t)(ID_ldq_1 + level), v->ldq_q20, all);
@@ -122,7 +123,7 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
     ldq_q20[k] = level[k].ldq_q20;
     below = measured;
   }
-  const bool smooth = map_smooth(ldq_q20, q_sub_sat(zero->lqq_q20, zero->ldd_q20));
+  const bool smooth = map_smooth(ldq_q20, qc_sub_sat(zero->lqq_q20, zero->ldd_q20));
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     level[k].ldq_q20 = ldq_q20[k];
     judge_level(&level[k], zero, k, unsaturated, r);
@@ -138,21 +139,21 @@ void commissioning_solve_motion(commissioning_t* c) {
   c->accel_q12 = c->model.accel_q12;
   if (!v.valid || v.flux_q28 <= 0 || near(v.flux_q28, c->model.flux_q28, 2) != VERDICT_USED) return;
   if (inertia_q24 <= 0 || near(inertia_q24, parameters.inertia, 20) != VERDICT_USED) return;
-  c->torque_q24 = q_mul_sat(c->model.torque_q24, q_div(v.flux_q28, c->model.flux_q28, 24), 24);
-  c->accel_q12 = q_mul_sat(c->model.accel_q12, q_div(parameters.inertia, inertia_q24, 24), 24);
+  c->torque_q24 = qc_mul_sat(c->model.torque_q24, q_div(v.flux_q28, c->model.flux_q28, 24), 24);
+  c->accel_q12 = qc_mul_sat(c->model.accel_q12, q_div(parameters.inertia, inertia_q24, 24), 24);
 }
 
 // Flux over inertia, from how far the torque trains moved the shaft, is a second way to the inertia.
 static int32_t inertia_from_trains(const commissioning_t* c, const spin_values_t* v) {
   const map_values_t top = map_solve(c->map.group[MAP_LEVELS - 1u], &c->model);
-  const int32_t moved_q24 = q_max(q_add_sat(16777216L, top.share_q24), 1);
+  const int32_t moved_q24 = q_max(qc_add_sat(16777216L, top.share_q24), 1);
   return q_div(v->inertia_up_q24 / 2 + v->inertia_down_q24 / 2, moved_q24, 24);
 }
 
 static void judge_spin(const commissioning_t* c, commissioning_verdict_t resistance, commissioning_report_t* r) {
   const parameters_t* const p = &parameters;
   const int32_t winding = (resistance == VERDICT_USED) ? r->list[0].value : p->stator_resistance;
-  const int32_t resistance_q24 = q_add_sat(winding, p->device_resistance);
+  const int32_t resistance_q24 = qc_add_sat(winding, p->device_resistance);
   const spin_values_t v = spin_solve(&c->spin, resistance_q24, c->model.ld_q30, c->model.pole_pairs);
   const commissioning_verdict_t measured = v.valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   commissioning_verdict_t flux = worst(measured, agree(v.flux_q28, v.flux_low_q28, 10));
@@ -182,7 +183,7 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
   const staircase_values_t stairs = staircase_solve(&c->staircase, &c->model);
   const map_values_t zero = unsaturated_solve(&c->unsaturated, &c->model);
   const int32_t beyond_q30 = unsaturated_mismatch_q30(&c->unsaturated, &c->model);
-  const int32_t mismatch_q30 = q_add_sat(c->mismatch_q30, beyond_q30);
+  const int32_t mismatch_q30 = qc_add_sat(c->mismatch_q30, beyond_q30);
   const commissioning_verdict_t resistance = judge_staircase(&stairs, report);
   const commissioning_verdict_t unsaturated = judge_unsaturated(&zero, mismatch_q30, report);
   judge_map(c, &zero, unsaturated, report);

@@ -1,6 +1,7 @@
 #include "firmware/commissioning/solve.h"
 
 #include "estimators/fit.h"
+#include "hal/qmath/qcall.h"
 
 #define SQRT3_Q28 464943848L
 #define AXIS_PARTS 512  // of the saliency: mutual inductance that turns the axis by 0.1 degrees
@@ -37,9 +38,9 @@ static bool window_columns(const staircase_t* s, const machine_model_t* m, int32
     c->current[k] = mean_of(l->window_current, l->windows);
     c->factor[k] = mean_of(l->window_factor, l->windows);
     const int32_t sag_q20 = q_div(fit_ratio(l->sag, l->windows, 0), l->link_q16, 24);
-    const int32_t missing_q20 = q_sub_sat(sag_q20, q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
-    const int32_t known_q20 = q_mul_sat(q_sub_sat(resistance_q24, m->rs_q24), c->current[k], 24);
-    c->voltage[k] = for_fit(q_sub_sat(missing_q20, known_q20));
+    const int32_t missing_q20 = qc_sub_sat(sag_q20, q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
+    const int32_t known_q20 = qc_mul_sat(qc_sub_sat(resistance_q24, m->rs_q24), c->current[k], 24);
+    c->voltage[k] = for_fit(qc_sub_sat(missing_q20, known_q20));
   }
   return true;
 }
@@ -55,11 +56,11 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
   if (!window_columns(s, m, v.resistance_q24, &c)) return v;
   const int64_t square = fit_dot(c.factor, c.factor, STAIRCASE_LEVELS);
   v.drop_error_q16 = fit_ratio(fit_dot(c.factor, c.voltage, STAIRCASE_LEVELS), square, 16);
-  v.edge_error_q16 = q_sub_sat(plane.offset_q24 / 256, v.drop_error_q16);
+  v.edge_error_q16 = qc_sub_sat(plane.offset_q24 / 256, v.drop_error_q16);
   int64_t link = 0;
   int64_t rest = 0;
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
-    const int32_t left = for_fit(q_sub_sat(c.voltage[k] / 16, q_mul_sat(v.drop_error_q16, c.factor[k], 20)));
+    const int32_t left = for_fit(qc_sub_sat(c.voltage[k] / 16, qc_mul_sat(v.drop_error_q16, c.factor[k], 20)));
     rest += (int64_t)left * left;
     link += s->level[k].link_q16;
   }
@@ -71,25 +72,25 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
 
 // Inductances from the inverse inductances' mean and half difference and the direction of the larger one.
 static void invert(map_values_t* v, int32_t mean_q30, int32_t half_q30) {
-  const int32_t small = tensor_inductance_q20(q_add_sat(mean_q30, half_q30));
-  const int32_t large = tensor_inductance_q20(q_sub_sat(mean_q30, half_q30));
+  const int32_t small = tensor_inductance_q20(qc_add_sat(mean_q30, half_q30));
+  const int32_t large = tensor_inductance_q20(qc_sub_sat(mean_q30, half_q30));
   const int32_t middle = small / 2 + large / 2;
-  const int32_t half = q_sub_sat(large, small) / 2;
+  const int32_t half = qc_sub_sat(large, small) / 2;
   const rotation_t twice = frame_rotation((uint32_t)v->turn_bam * 2u);
-  v->ldd_q20 = q_sub_sat(middle, q_mul(half, twice.cos_q30, 30));
-  v->lqq_q20 = q_add_sat(middle, q_mul(half, twice.cos_q30, 30));
-  v->ldq_q20 = -q_mul(half, twice.sin_q30, 30);
+  v->ldd_q20 = qc_sub_sat(middle, qc_mul(half, twice.cos_q30, 30));
+  v->lqq_q20 = qc_add_sat(middle, qc_mul(half, twice.cos_q30, 30));
+  v->ldq_q20 = -qc_mul(half, twice.sin_q30, 30);
 }
 
 // From `from` towards `to` by a share.
 static int32_t along(int32_t from, int32_t to, int32_t share_q24) {
-  return q_add_sat(from, q_mul_sat(q_sub_sat(to, from), share_q24, 24));
+  return qc_add_sat(from, qc_mul_sat(qc_sub_sat(to, from), share_q24, 24));
 }
 
 void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20) {
   if (v->current_q20 <= below->current_q20) return;
-  const int32_t between_q20 = q_sub_sat(v->current_q20, below->current_q20);
-  const int32_t share_q24 = q_div(q_sub_sat(current_q20, below->current_q20), between_q20, 24);
+  const int32_t between_q20 = qc_sub_sat(v->current_q20, below->current_q20);
+  const int32_t share_q24 = q_div(qc_sub_sat(current_q20, below->current_q20), between_q20, 24);
   v->ldd_q20 = along(below->ldd_q20, v->ldd_q20, share_q24);
   v->lqq_q20 = along(below->lqq_q20, v->lqq_q20, share_q24);
   v->ldq_q20 = along(below->ldq_q20, v->ldq_q20, share_q24);
@@ -116,15 +117,15 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
     linear[k] = n * n * (1048576L / 4);
     cubic[k] = n * n * n * n * (1048576L / 64);
     value[k] = n * q_limit(ldq_q20[k], FIT_END / (int32_t)MAP_LEVELS);
-    largest = q_max(largest, q_abs_sat(ldq_q20[k]));
+    largest = q_max(largest, qc_abs_sat(ldq_q20[k]));
   }
   (void)fit_plane(linear, cubic, value, MAP_LEVELS, &fit);  // these two columns can be told apart
   const int32_t far_q20 = q_max(largest / 10, saliency_q20 / AXIS_PARTS);
   bool close = true;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     const int32_t n = (int32_t)k + 1;
-    value[k] = q_mul(fit.slope_q24, n * (1048576L / 4), 24) + q_mul(fit.offset_q24, n * n * n * (1048576L / 64), 24);
-    close = close && q_abs_sat(q_sub_sat(value[k], ldq_q20[k])) <= far_q20;
+    value[k] = qc_mul(fit.slope_q24, n * (1048576L / 4), 24) + qc_mul(fit.offset_q24, n * n * n * (1048576L / 64), 24);
+    close = close && qc_abs_sat(qc_sub_sat(value[k], ldq_q20[k])) <= far_q20;
   }
   for (uint16_t k = 0; close && k < MAP_LEVELS; k++) ldq_q20[k] = value[k];
   return close;
@@ -133,7 +134,7 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
 int32_t unsaturated_mismatch_q30(const tensor_sums_t* s, const machine_model_t* m) {
   tensor_axes_t a;
   if (!tensor_solve(s, m, &a)) return 0;
-  return q_mul_sat(q_div(a.across_q30, a.mean_q30, 30), SQRT3_Q28, 28);
+  return qc_mul_sat(q_div(a.across_q30, a.mean_q30, 30), SQRT3_Q28, 28);
 }
 
 map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_t* m) {
@@ -149,11 +150,11 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
     position[k] = fit_ratio(group[k].position, group[k].tensor.count, 0);
     mean += a.mean_q30 / (int32_t)MAP_GROUPS;
     half += a.half_q30 / (int32_t)MAP_GROUPS;
-    v.current_q20 += q_abs_sat(fit_ratio(group[k].current, group[k].tensor.count, 0)) / (int32_t)MAP_GROUPS;
+    v.current_q20 += qc_abs_sat(fit_ratio(group[k].current, group[k].tensor.count, 0)) / (int32_t)MAP_GROUPS;
   }
   // Groups 0 and 2 have i_q > 0, 1 and 3 i_q < 0; 2 and 3 are those of the mirrored train.
   const int32_t moved = (axis[0] - axis[2]) / 2 + (axis[1] - axis[3]) / 2;
-  const int32_t predicted = q_sub_sat(position[0], position[2]) / 2 + q_sub_sat(position[1], position[3]) / 2;
+  const int32_t predicted = qc_sub_sat(position[0], position[2]) / 2 + qc_sub_sat(position[1], position[3]) / 2;
   v.share_q24 = fit_ratio(moved, predicted, 24);
   v.turn_bam = (axis[0] - axis[1]) / 4 + (axis[2] - axis[3]) / 4;
   invert(&v, mean, half);
@@ -167,16 +168,16 @@ typedef struct {
 
 // The voltage without that of the d-axis current.
 static steady_t steady(const spin_station_t* s, int32_t ld_q30) {
-  const int32_t flux_q28 = q_mul_sat(ld_q30, fit_ratio(s->current_d, s->periods, 0), 22);
+  const int32_t flux_q28 = qc_mul_sat(ld_q30, fit_ratio(s->current_d, s->periods, 0), 22);
   const int32_t speed = fit_ratio(s->speed, s->periods, 0);
   const int32_t armature_q16 = fit_ratio((int64_t)flux_q28 * speed, BPP_PER_RAD_Q12, 0);
-  const steady_t m = {speed, q_sub_sat(fit_ratio(s->voltage_q, s->periods, 0), armature_q16),
+  const steady_t m = {speed, qc_sub_sat(fit_ratio(s->voltage_q, s->periods, 0), armature_q16),
                       fit_ratio(s->current_q, s->periods, 0)};
   return m;
 }
 
 static int32_t emf_q16(const steady_t* s, int32_t resistance_q24) {
-  return q_sub_sat(s->voltage_q16, q_mul_sat(resistance_q24, s->current_q20, 28));
+  return qc_sub_sat(s->voltage_q16, qc_mul_sat(resistance_q24, s->current_q20, 28));
 }
 
 static int32_t flux_q28(int32_t emf_q16, int32_t speed) { return fit_ratio(emf_q16 * BPP_PER_RAD_Q12, speed, 0); }
@@ -187,9 +188,9 @@ static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const stea
   const int32_t mean_speed = fit_ratio(r->speed, r->periods, 0);
   const int32_t place_q24 = fit_ratio((int64_t)mean_speed - low->speed, (int64_t)high->speed - low->speed, 24);
   const int32_t friction_q20 = along(low->current_q20, high->current_q20, place_q24);
-  const int32_t net_q20 = q_sub_sat(fit_ratio(r->current_q, r->periods, 0), friction_q20);
-  const int32_t torque_q24 = q_mul_sat(torque_constant_q24, net_q20, 20);
-  const int32_t impulse_q10 = q_mul_sat(torque_q24, r->periods, 14);  // N m periods
+  const int32_t net_q20 = qc_sub_sat(fit_ratio(r->current_q, r->periods, 0), friction_q20);
+  const int32_t torque_q24 = qc_mul_sat(torque_constant_q24, net_q20, 20);
+  const int32_t impulse_q10 = qc_mul_sat(torque_q24, r->periods, 14);  // N m periods
   return fit_ratio(impulse_q10 * BPP_PER_ACCEL_Q16 * pole_pairs, change, -2);
 }
 
@@ -201,18 +202,18 @@ spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30
   const steady_t low = steady(&s->station[0], ld_q30);
   const steady_t high = steady(&s->station[1], ld_q30);
   const steady_t end = steady(&s->station[2], ld_q30);
-  const int32_t change = q_sub_sat(high.speed, low.speed);
+  const int32_t change = qc_sub_sat(high.speed, low.speed);
   if (change <= 0 || s->ramp[0].periods == 0 || s->ramp[1].periods == 0) return v;
-  const int32_t current_q20 = q_sub_sat(high.current_q20, low.current_q20);
+  const int32_t current_q20 = qc_sub_sat(high.current_q20, low.current_q20);
   const int32_t low_emf_q16 = emf_q16(&low, resistance_q24);
-  v.flux_q28 = flux_q28(q_sub_sat(emf_q16(&high, resistance_q24), low_emf_q16), change);
+  v.flux_q28 = flux_q28(qc_sub_sat(emf_q16(&high, resistance_q24), low_emf_q16), change);
   v.flux_low_q28 = flux_q28(low_emf_q16, low.speed);
-  const int32_t torque_constant_q24 = q_mul_sat(v.flux_q28 / 16, 3 * pole_pairs, 1);
-  const int32_t torque_q20 = q_mul_sat(torque_constant_q24, current_q20, 24);
+  const int32_t torque_constant_q24 = qc_mul_sat(v.flux_q28 / 16, 3 * pole_pairs, 1);
+  const int32_t torque_q20 = qc_mul_sat(torque_constant_q24, current_q20, 24);
   v.friction_q24 = fit_ratio(torque_q20 * BPP_PER_RAD_Q4 * pole_pairs, change, 0);
   v.inertia_up_q24 = inertia_q24(&s->ramp[0], &low, &high, change, torque_constant_q24, pole_pairs);
   v.inertia_down_q24 =
-      inertia_q24(&s->ramp[1], &end, &high, q_sub_sat(end.speed, high.speed), torque_constant_q24, pole_pairs);
+      inertia_q24(&s->ramp[1], &end, &high, qc_sub_sat(end.speed, high.speed), torque_constant_q24, pole_pairs);
   v.valid = true;
   return v;
 }

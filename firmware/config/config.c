@@ -10,6 +10,7 @@
 #include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
+#include "hal/qmath/qcall.h"
 
 #define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
 #define CRAWL_MAX_RPM_Q16 655360L    // where cogging is learnt
@@ -24,11 +25,11 @@
 static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
 
 // bandwidth (rad/s, Q8) * T, Q30: 100 us * 2^22 = 419.43.
-static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return q_mul(bandwidth_q8, 439804651L, 20); }
+static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return qc_mul(bandwidth_q8, 439804651L, 20); }
 
 // Share of an inductance (H, Q30) in percent (Q16).
 static int32_t share_of(int32_t inductance_q30, int32_t percent_q16) {
-  return q_mul(inductance_q30, q_mul(percent_q16, 10737418L, 16), 30);
+  return qc_mul(inductance_q30, qc_mul(percent_q16, 10737418L, 16), 30);
 }
 
 static bool load_map(machine_model_t* m) {
@@ -40,7 +41,7 @@ static bool load_map(machine_model_t* m) {
   for (uint16_t k = 0; k < MACHINE_MAP_SEGMENTS; k++) {
     map.ldd_q30[k + 1u] = share_of(m->ld_q30, ldd_q16[k]);
     map.lqq_q30[k + 1u] = share_of(m->lq_q30, lqq_q16[k]);
-    map.ldq_q30[k + 1u] = q_mul(ldq_q20[k], MILLIHENRY_Q30, 30);
+    map.ldq_q30[k + 1u] = qc_mul(ldq_q20[k], MILLIHENRY_Q30, 30);
   }
   return machine_model_saturate(m, &map);
 }
@@ -56,8 +57,8 @@ static bool damping_fits(const machine_model_t* m, int32_t k_q24) {
 static bool point_fits(const machine_model_t* m) {
   const int32_t k0_q20 = q_max(q_abs_sat(m->k0_q20.d), q_abs_sat(m->k0_q20.q));
   const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
-  const int32_t k_q24 = q_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
-  const int32_t h_speed_q20 = q_add_sat(q_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
+  const int32_t k_q24 = qc_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
+  const int32_t h_speed_q20 = qc_add_sat(qc_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
   return k0_q20 <= K0_MAX_Q20 && h_speed_q20 < INT32_MAX && damping_fits(m, either_q24);
 }
 
@@ -81,8 +82,8 @@ static bool load_machine(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   machine_parameters_t m;
   m.rs_q24 = p->stator_resistance + p->device_resistance;
-  m.ld_q30 = q_mul(p->inductance_d, MILLIHENRY_Q30, 30);
-  m.lq_q30 = q_mul(p->inductance_q, MILLIHENRY_Q30, 30);
+  m.ld_q30 = qc_mul(p->inductance_d, MILLIHENRY_Q30, 30);
+  m.lq_q30 = qc_mul(p->inductance_q, MILLIHENRY_Q30, 30);
   m.flux_q28 = p->magnet_flux;
   m.inertia_q24 = p->inertia;
   m.pole_pairs = p->pole_pairs;
@@ -129,16 +130,16 @@ static bool load_control(drive_config_t* c) {
   c->speed.pi_bandwidth_q8 = p->speed_pi_bandwidth;
   c->speed.pi_damping_q12 = p->speed_pi_damping;
   // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
-  c->friction_per_bpp_q40 = q_mul_sat(q_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
-  c->ramp_step_bpp = q_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
+  c->friction_per_bpp_q40 = qc_mul_sat(qc_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
+  c->ramp_step_bpp = qc_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
   c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
-  c->hold_below_bpp = q_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
+  c->hold_below_bpp = qc_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);
   const if_start_parameters_t if_start = {
-      p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, q_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
-      q_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
+      p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, qc_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
+      qc_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
   const bool turns = if_start_design(&c->if_start, &c->nameplate, &if_start) || p->start_method == 0;
   static speed_controller_t trial;  // too large for the stack; the background level alone comes here
   return turns && speed_controller_init(&trial, &c->speed, &c->nameplate) &&
@@ -154,14 +155,14 @@ static bool load_blend(drive_config_t* c) {
   const bool flux = (drive_source_wanted()->traits & SOURCE_HANDS_OVER) != 0u;
   const int32_t low = flux ? parameters.flux_low : parameters.blend_low;
   const int32_t high = flux ? parameters.flux_high : parameters.blend_high;
-  return blend_design(&c->blend, q_mul_sat(low, c->bpp_per_rpm_q8, 24), q_mul_sat(high, c->bpp_per_rpm_q8, 24));
+  return blend_design(&c->blend, qc_mul_sat(low, c->bpp_per_rpm_q8, 24), qc_mul_sat(high, c->bpp_per_rpm_q8, 24));
 }
 
 // While the shaft is held the load is followed at once, five times as fast as at a crawl, and no step looked for.
 static void load_hold_observer(drive_config_t* c, const deviation_observer_tuning_t* usual) {
   deviation_observer_tuning_t t = *usual;
   t.noise_q20 = usual->noise_q20 / 10 * 3;
-  t.load_rate_q20 = q_shl_sat(usual->load_rate_q20, 1);
+  t.load_rate_q20 = qc_shl_sat(usual->load_rate_q20, 1);
   t.load_rate_quiet_q20 = t.load_rate_q20;
   t.load_step_q20 = 0;
   t.steps_at_speed = false;
@@ -175,30 +176,30 @@ static bool load_position(drive_config_t* c) {
   c->avv.bandwidth_long_q30 = bandwidth_step_q30(q_max(p->avv_bandwidth_long, p->avv_bandwidth_short));
   // Without the map the angle turns with the current, and a load that is followed fast closes a loop over that.
   c->mapped = (p->map_known | p->ldq_1 | p->ldq_2 | p->ldq_3 | p->ldq_4) != 0;
-  const deviation_observer_tuning_t observer = {q_mul(p->observer_noise, 1073741824L, 18) / 1000,
+  const deviation_observer_tuning_t observer = {qc_mul(p->observer_noise, 1073741824L, 18) / 1000,
                                                 p->observer_load_rate,
                                                 p->observer_load_quiet,
                                                 c->mapped ? p->observer_load_step : p->observer_load_step / 4 * 3,
-                                                q_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
+                                                qc_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
                                                 c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
   c->observer.cogging.fast_bpp = c->observer.crawl_bpp;
-  c->observer.cogging.bound_q8 = q_min(q_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24), COGGING_BOUND_END_Q8);
+  c->observer.cogging.bound_q8 = q_min(qc_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24), COGGING_BOUND_END_Q8);
   c->observer.zero_vectors_only = p->observer_windows == 0;
   load_hold_observer(c, &observer);
   c->synchronism.floor_q16 = p->synchronism_floor;
-  c->synchronism.share_q15 = q_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
+  c->synchronism.share_q15 = qc_mul(p->synchronism_share, 85899346L, 26);  // percent Q8 to Q15
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
   c->adapt_share_q30 = share_per_slot_q30(p->adapt_time);
   c->drift_share_q30 = share_per_slot_q30(p->drift_time);
   c->encoder_trim_bam = (uint32_t)q_mul64(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   // dLqq/di_d = dLdq/di_q, the slope of the map's first segment, over Lq. The other one comes in percent, Q24.
   c->saturation.q_q30 = q_div(q_div(p->ldq_1, p->inductance_q, 30), p->map_current / 4, 20);
-  c->saturation.d_q30 = q_mul(p->saturation_d, 687194767L, 30);
-  c->slopes.amps_per_code_q30 = q_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
+  c->saturation.d_q30 = qc_mul(p->saturation_d, 687194767L, 30);
+  c->slopes.amps_per_code_q30 = qc_mul(p->current_full_scale, 1073741824L, 31);  // full scale / 2048
   c->codes_per_amp_q16 = q_div(65536L, c->slopes.amps_per_code_q30, 30);
-  c->sensor_mismatch_q30 = q_mul(p->sensor_mismatch, 167772L, 10);  // percent, Q16
+  c->sensor_mismatch_q30 = qc_mul(p->sensor_mismatch, 167772L, 10);  // percent, Q16
   c->slopes.start_samples = HAL_ADC_START_SAMPLES;
   c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   slopes_design(&c->slopes);

@@ -9,14 +9,15 @@
 #include "firmware/mode/mode.h"
 #include "firmware/text/packed_text.h"
 #include "hal/hal_pwm.h"
+#include "hal/qmath/qcall.h"
 
 #define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
 #define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
 
 // Peak line-to-line EMF at the speed limit, V Q16: sqrt(3) lambda w.
 static int32_t largest_emf_q16(const parameters_t* p) {
-  const int32_t volts_q16 = q_mul_sat(p->magnet_flux, p->speed_limit * p->pole_pairs, 20);
-  return q_mul(volts_q16, 194755224L, 30);  // sqrt(3) 2 pi / 60
+  const int32_t volts_q16 = qc_mul_sat(p->magnet_flux, p->speed_limit * p->pole_pairs, 20);
+  return qc_mul(volts_q16, 194755224L, 30);  // sqrt(3) 2 pi / 60
 }
 
 // Lqq below Ldd at one of the map's points.
@@ -50,7 +51,7 @@ static packed_text_t broken_rule(void) {
   if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
   if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
   if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
-  if ((source & SOURCE_ALTERNATES) != 0u && q_abs_sat(p->id_low_speed) < 1048576L)
+  if ((source & SOURCE_ALTERNATES) != 0u && qc_abs_sat(p->id_low_speed) < 1048576L)
     return SAY_position_source_1_needs_id_low_speed;
   if ((p->excitation == 0 || p->excitation >= 4) && (source & (SOURCE_BESIDE | SOURCE_AVV_FIRST)) != 0u)
     return SAY_avv_needs_two_active_vectors;

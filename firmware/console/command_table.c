@@ -16,7 +16,5 @@ packed_text_t command_arguments(uint16_t command) { return text_of(TEXT_COMMAND_
 packed_text_t command_meaning(uint16_t command) { return text_of(TEXT_COMMAND_help, command); }
 
 uint16_t command_find(const word_t* name) {
-  uint16_t k = 0;
-  while (k < COMMANDS && !packed_equals(command_name(k), name->text, name->count)) k++;
-  return k;
+  return packed_find(TEXT_COMMAND_NAME_help, COMMANDS, name->text, name->count);
 }

@@ -32,7 +32,8 @@ bool command_may_move(const words_of_line_t* a) {
 bool command_makes_safe(const editor_line_t* line) {
   uint16_t at = 0;
   const word_t name = next_word(line, &at);
-  return text_equals("stop", name.text, name.count) || text_equals("coast", name.text, name.count);
+  return packed_equals(TEXT_COMMAND_NAME_stop, name.text, name.count) ||
+         packed_equals(TEXT_COMMAND_NAME_coast, name.text, name.count);
 }
 
 static void put_command(uint16_t command) {

@@ -46,9 +46,9 @@ static bool wait_for_run(uint16_t step) {
 bool choose_watchdog(const words_of_line_t* a, uint16_t k, comm_watchdog_t* watchdog) {
   if (a->count == k && comm_watchdog_beside_text() != 0u) {
     *watchdog = COMM_WATCHDOG_SERIAL;
-  } else if (a->count == k + 1u && word_is(a, k, "hold")) {
+  } else if (a->count == k + 1u && word_is(a, k, SAY_hold)) {
     *watchdog = COMM_WATCHDOG_KEYS;
-  } else if (a->count == k + 1u && word_is(a, k, "free")) {
+  } else if (a->count == k + 1u && word_is(a, k, SAY_free)) {
     *watchdog = COMM_WATCHDOG_NONE;
   } else {
     line_refused(SAY_nothing_done_nobody_would_watch_add);
@@ -130,8 +130,8 @@ static uint16_t read_speed(const words_of_line_t* a, decimal_t* number) {
   const uint16_t length = text_number(value->text, value->count, number);
   const uint16_t left = (uint16_t)(value->count - length);
   if (length == 0u || a->count > 2u) return 0;
-  if (left > 0u && (a->count > 1u || !text_equals("rpm", &value->text[length], left))) return 0;
-  return (a->count < 2u || word_is(a, 1, "rpm")) ? length : 0u;
+  if (left > 0u && (a->count > 1u || !packed_equals(TEXT_SIGNAL_UNIT_speed, &value->text[length], left))) return 0;
+  return (a->count < 2u || word_is(a, 1, TEXT_SIGNAL_UNIT_speed)) ? length : 0u;
 }
 
 static void take_speed(const words_of_line_t* a, const decimal_t* number, uint16_t length) {

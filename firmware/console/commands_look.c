@@ -24,15 +24,15 @@
 #define WATCH_SIGNALS 4u
 
 static void put_limits(octet_writer_t* w, int32_t limits) {
-  const char* separator = "";
+  bool any = false;
   uint32_t left = (uint32_t)limits;
   for (uint16_t bit = 0; message_exists(CATALOGUE_LIMIT, bit); bit++, left >>= 1) {
     if ((left & 1u) == 0u) continue;
-    put_text(w, separator);
+    if (any) put_packed(w, SAY_comma);
     put_message(w, CATALOGUE_LIMIT, bit);
-    separator = ", ";
+    any = true;
   }
-  if (separator[0] == '\0') put_packed(w, SAY_none);
+  if (!any) put_packed(w, SAY_none);
 }
 
 static void put_speeds(octet_writer_t* w) {
@@ -46,10 +46,10 @@ static void put_speeds(octet_writer_t* w) {
 static void status_state(octet_writer_t* w) {
   put_message(w, CATALOGUE_STATE, (uint16_t)drive.state);
   if (drive.state == DRIVE_START) {
-    put_text(w, ": ");
+    put_packed(w, SAY_colon);
     put_message(w, CATALOGUE_START, (uint16_t)drive_signals().start_phase);
   } else if (drive.state == DRIVE_COMMISSION) {
-    put_text(w, ": ");
+    put_packed(w, SAY_colon);
     status_update();
     put_message(w, CATALOGUE_PHASE, feature_status.commissioning_phase);
   }
@@ -61,7 +61,7 @@ static void put_pair(octet_writer_t* w, packed_text_t before, int32_t first_q20,
   put_fixed(w, first_q20, 20, 2);
   put_packed(w, between);
   put_fixed(w, second_q20, 20, 2);
-  put_text(w, " A");
+  put_packed(w, SAY_amperes);
 }
 
 // With the gates off there is no d and no q: what the sensors read.
@@ -76,7 +76,7 @@ static void status_current(octet_writer_t* w) {
 
 static void status_link(octet_writer_t* w) {
   put_fixed(w, drive_signals().link_voltage, 16, 1);
-  put_text(w, " V");
+  put_packed(w, SAY_volts);
 }
 
 static void status_limits(octet_writer_t* w) { put_limits(w, drive_signals().limit); }
@@ -86,10 +86,10 @@ static void status_fault(octet_writer_t* w) {
   put_message(w, CATALOGUE_FAULT, fault);
   if (fault == FAULT_NONE) return;
   if (fault >= FAULT_OPEN_PHASE && drive.found.wiring != WIRING_GOOD) {
-    put_text(w, ": ");
+    put_packed(w, SAY_colon);
     put_message(w, CATALOGUE_WIRING, (uint16_t)drive.found.wiring);
   }
-  put_text(w, ". ");
+  put_packed(w, SAY_full_stop);
   put_message(w, CATALOGUE_REMEDY, fault);
 }
 
@@ -98,7 +98,7 @@ void put_unsaved(octet_writer_t* w) {
   const uint16_t unsaved = feature_status.unsaved;
   if (unsaved == 0u) return;
   if (unsaved < UNSAVED_UNKNOWN) {
-    put_text(w, "; ");
+    put_packed(w, SAY_semicolon);
     put_unsigned(w, unsaved);
   }
   put_packed(w, (unsaved < UNSAVED_UNKNOWN) ? SAY_not_saved_save_keeps_them : SAY_not_saved_the_last_save_failed);
@@ -142,7 +142,7 @@ static uint32_t shown_ms;
 
 static void put_watched(octet_writer_t* w) {
   for (uint16_t k = 0; k < watched_count; k++) {
-    if (k > 0u) put_text(w, "   ");
+    if (k > 0u) put_packed(w, SAY_gap);
     put_packed(w, signal_info(watched[k])->name);
     put_u8(w, ' ');
     put_signal(w, watched[k]);
@@ -151,14 +151,14 @@ static void put_watched(octet_writer_t* w) {
 
 static void put_overview(octet_writer_t* w) {
   status_state(w);
-  put_text(w, "   ");
+  put_packed(w, SAY_gap);
   put_speeds(w);
-  put_text(w, "   ");
+  put_packed(w, SAY_gap);
   status_current(w);
-  put_text(w, "   ");
+  put_packed(w, SAY_gap);
   status_link(w);
   if (drive_signals().limit == 0) return;
-  put_text(w, "   ");
+  put_packed(w, SAY_gap);
   put_limits(w, drive_signals().limit);
 }
 
@@ -201,7 +201,7 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   put_unsigned(w, f->time_ms % 10u);
   put_packed(w, SAY_s);
   put_message(w, CATALOGUE_FAULT, (uint16_t)f->fault);
-  put_text(w, ", ");
+  put_packed(w, SAY_comma);
   put_message(w, CATALOGUE_STATE, (uint16_t)f->state);
   const bool turned = (f->known & KNOWN_ROTOR) != 0u;
   if (turned) {
@@ -213,7 +213,7 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   if ((f->known & KNOWN_FRAME) != 0u) {
     put_pair(w, SAY_v_d, f->current_d_q20, SAY_a_q, f->current_q_q20);
   } else {
-    put_text(w, " V");
+    put_packed(w, SAY_volts);
   }
 }
 
@@ -249,7 +249,7 @@ static bool list_signals(uint16_t step) {
   const signal_info_t* const s = signal_info(step);
   if (s == NULL) return false;
   if (signal_is_left_out(step)) return true;
-  if (!word_occurs(&pattern, s->name) && !word_occurs(&pattern, s->meaning)) return true;
+  if (!word_occurs(&pattern, s->name) && !word_occurs(&pattern, signal_meaning(s))) return true;
   put_signal_row(line_begin(), step);
   line_end();
   return true;

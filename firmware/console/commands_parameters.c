@@ -20,19 +20,19 @@ static word_t pattern;
 static void put_row(const parameter_info_t* p) {
   const int32_t raw = parameter_get(p->id);
   octet_writer_t* const w = line_begin();
-  put_packed(w, p->name);
+  put_packed(w, parameter_name(p));
   put_spaces_to(w, COLUMN_VALUE - 1u);
   put_u8(w, (raw == p->initial) ? ' ' : '*');
   put_value(w, p, raw);
   put_spaces_to(w, COLUMN_MEANING);
-  put_packed(w, p->meaning);
+  put_packed(w, parameter_meaning(p));
   line_end();
 }
 
 static bool list_one(uint16_t step) {
   const parameter_info_t* const p = parameter_info(step);
   if (p == NULL) return false;
-  if (word_occurs(&pattern, p->name) || word_occurs(&pattern, p->meaning)) put_row(p);
+  if (word_occurs(&pattern, parameter_name(p)) || word_occurs(&pattern, parameter_meaning(p))) put_row(p);
   return true;
 }
 
@@ -50,13 +50,13 @@ static bool describe(uint16_t step) {
   if (p == NULL) return false;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
-    put_packed(w, p->name);
-    put_text(w, " = ");
+    put_packed(w, parameter_name(p));
+    put_packed(w, SAY_is);
     put_value(w, p, parameter_get(p->id));
   } else if (step == 1u) {
-    put_text(w, "  ");
+    put_packed(w, SAY_indent);
     put_fixed(w, p->minimum, p->q, p->decimals);
-    put_text(w, " .. ");
+    put_packed(w, SAY_to);
     put_value(w, p, p->maximum);
     put_packed(w, SAY_default);
     put_fixed(w, p->initial, p->q, p->decimals);
@@ -64,8 +64,8 @@ static bool describe(uint16_t step) {
     put_unsigned(w, p->id);
     if (p->access == PARAMETER_STOPPED) put_packed(w, SAY_only_while_the_power_stage_is_off);
   } else {
-    put_text(w, "  ");
-    put_packed(w, p->meaning);
+    put_packed(w, SAY_indent);
+    put_packed(w, parameter_meaning(p));
   }
   line_end();
   return step < 2u;
@@ -96,17 +96,17 @@ static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_t
   const uint16_t* const behind = &value->text[number_length];
   const uint16_t left = (uint16_t)(value->count - number_length);
   if (left > 0u) return a->count == 2u && packed_equals(unit, behind, left);
-  return word_is_packed(a, 2, unit) || a->count == 2u;
+  return word_is(a, 2, unit) || a->count == 2u;
 }
 
 static void refuse_unit(const parameter_info_t* p) {
   octet_writer_t* const w = line_begin();
-  put_packed(w, p->name);
-  if (packed_is_empty(p->unit)) {
+  put_packed(w, parameter_name(p));
+  if (packed_is_empty(parameter_unit(p))) {
     put_packed(w, SAY_has_no_unit);
   } else {
     put_packed(w, SAY_is_in);
-    put_packed(w, p->unit);
+    put_packed(w, parameter_unit(p));
   }
   put_packed(w, SAY_nothing_changed);
   line_end_refused();
@@ -116,8 +116,8 @@ static void take_value(const parameter_info_t* p, int32_t raw) {
   octet_writer_t* const w = line_begin();
   const answer_status_t status = action_set(p, raw, w);
   if (status == ANSWER_OK) {
-    put_packed(w, p->name);
-    put_text(w, " = ");
+    put_packed(w, parameter_name(p));
+    put_packed(w, SAY_is);
     put_value(w, p, parameter_get(p->id));
   } else if (parameter_get(p->id) != raw) {  // one that does not fit together with others yet is taken
     count_refusal();
@@ -128,8 +128,8 @@ static void take_value(const parameter_info_t* p, int32_t raw) {
 // As it was typed: a number that does not fit has no other form.
 static void refuse_value(const parameter_info_t* p, const word_t* typed, packed_text_t why) {
   octet_writer_t* const w = line_begin();
-  put_packed(w, p->name);
-  put_text(w, " = ");
+  put_packed(w, parameter_name(p));
+  put_packed(w, SAY_is);
   put_word(w, typed);
   put_packed(w, why);
   put_range(w, p);
@@ -154,7 +154,7 @@ void command_set(const words_of_line_t* a) {
     refuse_value(p, &typed, SAY_is_not_a_number_in);
     return;
   }
-  if (!unit_fits(a, length, p->unit)) {
+  if (!unit_fits(a, length, parameter_unit(p))) {
     refuse_unit(p);
     return;
   }

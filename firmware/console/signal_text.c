@@ -4,10 +4,8 @@
 #include "firmware/text/text.h"
 
 uint16_t signal_find(const word_t* name) {
-  for (uint16_t k = 0; k < signal_count(); k++) {
-    if (!signal_is_left_out(k) && packed_equals(signal_info(k)->name, name->text, name->count)) return k;
-  }
-  return SIGNAL_NONE;
+  const uint16_t k = signal_named(name->text, name->count);
+  return (k < signal_count() && !signal_is_left_out(k)) ? k : SIGNAL_NONE;
 }
 
 uint16_t signal_decimals(const signal_info_t* s) {
@@ -30,9 +28,9 @@ void put_signal(octet_writer_t* w, uint16_t place) {
 
 void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
   put_fixed(w, raw, s->q, signal_decimals(s));
-  if (packed_is_empty(s->unit)) return;
+  if (packed_is_empty(signal_unit(s))) return;
   put_u8(w, ' ');
-  put_packed(w, s->unit);
+  put_packed(w, signal_unit(s));
 }
 
 void put_signal_row(octet_writer_t* w, uint16_t place) {
@@ -40,5 +38,5 @@ void put_signal_row(octet_writer_t* w, uint16_t place) {
   put_spaces_to(w, 22);
   put_signal(w, place);
   put_spaces_to(w, 40);
-  put_packed(w, signal_info(place)->meaning);
+  put_packed(w, signal_meaning(signal_info(place)));
 }

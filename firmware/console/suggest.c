@@ -25,10 +25,7 @@ static uint16_t found;
 static bool is_left_out(void) {
   if (kind_of == SUGGEST_COMMAND) return command_find(&wanted) < COMMANDS;
   if (parameter_name_is_left_out(wanted.text, wanted.count)) return true;
-  for (uint16_t k = 0; k < signal_count(); k++) {
-    if (signal_is_left_out(k) && packed_equals(signal_info(k)->name, wanted.text, wanted.count)) return true;
-  }
-  return false;
+  return signal_is_left_out(signal_named(wanted.text, wanted.count));
 }
 
 // PACKED_NONE behind the last one.
@@ -39,7 +36,7 @@ static packed_text_t name_of(uint16_t index) {
     return (s != NULL) ? s->name : PACKED_NONE;
   }
   const parameter_info_t* const p = parameter_info(index);
-  return (p != NULL) ? p->name : PACKED_NONE;
+  return (p != NULL) ? parameter_name(p) : PACKED_NONE;
 }
 
 static uint16_t length(const char* name) {
@@ -81,7 +78,7 @@ static void say(void) {
     if (k == 0u) {
       put_packed(w, SAY_did_you_mean);
     } else {
-      put_text(w, ", ");
+      put_packed(w, SAY_comma);
     }
     put_packed(w, near[k]);
   }

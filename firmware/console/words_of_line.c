@@ -2,13 +2,7 @@
 
 #include <stddef.h>
 
-#include "firmware/text/text.h"
-
-bool word_is(const words_of_line_t* a, uint16_t k, const char* name) {
-  return k < a->count && text_equals(name, a->word[k].text, a->word[k].count);
-}
-
-bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text) {
+bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t text) {
   return k < a->count && packed_equals(text, a->word[k].text, a->word[k].count);
 }
 

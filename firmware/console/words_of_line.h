@@ -31,13 +31,11 @@ typedef struct {
 /// The word from `at` on, or the next one; moves `at` behind it.
 word_t next_word(const editor_line_t* line, uint16_t* at);
 
-/// True when word k is there and is this one.
-bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
 /// The word as it was typed.
 void put_word(octet_writer_t* w, const word_t* word);
 
-/// True when word k is this text.
-bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t text);
+/// True when word k is there and is this text.
+bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t text);
 
 /// True when the word occurs in the text; one that is nowhere (text is NULL) occurs in all of them.
 bool word_occurs(const word_t* word, packed_text_t text);

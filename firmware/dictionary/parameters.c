@@ -23,9 +23,6 @@ parameters_t parameters;
    q,                                                                                      \
    decimals,                                                                               \
    PARAMETER_##access,                                                                     \
-   TEXT_PARAMETER_NAME_##name,                                                             \
-   TEXT_PARAMETER_UNIT_##name,                                                             \
-   TEXT_PARAMETER_##name,                                                                  \
    RAW(minimum, q, TEN_##decimals),                                                        \
    RAW(maximum, q, TEN_##decimals),                                                        \
    RAW(initial, q, TEN_##decimals)},
@@ -35,6 +32,17 @@ static const parameter_info_t table[] = {
 #undef PARAMETER
 
 #define COUNT ((uint16_t)(sizeof table / sizeof table[0]))
+
+// Texts stand in the table's order, whose first row this is.
+#define FIRST(what) TEXT_PARAMETER_##what##pole_pairs
+
+static packed_text_t text_of(const parameter_info_t* p, uint16_t first) {
+  return (packed_text_t)(first + (uint16_t)(p - table));
+}
+
+packed_text_t parameter_name(const parameter_info_t* p) { return text_of(p, FIRST(NAME_)); }
+packed_text_t parameter_unit(const parameter_info_t* p) { return text_of(p, FIRST(UNIT_)); }
+packed_text_t parameter_meaning(const parameter_info_t* p) { return text_of(p, FIRST()); }
 
 // The values stand in the table's order: the struct is an array with names.
 typedef char values_are_an_array[(sizeof(parameters_t) == COUNT * sizeof(int32_t)) ? 1 : -1];
@@ -74,9 +82,7 @@ static uint16_t row_by_id(uint16_t id) {
 }
 
 static uint16_t row_by_name(const uint16_t* name, uint16_t count) {
-  uint16_t k = 0;
-  while (k < COUNT && !packed_equals(table[k].name, name, count)) k++;
-  return k;
+  return packed_find(FIRST(NAME_), COUNT, name, count);
 }
 
 const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count) {

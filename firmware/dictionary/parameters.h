@@ -42,14 +42,16 @@ typedef struct {
   uint16_t id;
   uint16_t q : 6;
   uint16_t decimals : 4;
-  uint16_t access : 2;  // parameter_access_t
-  packed_text_t name, unit, meaning;
+  uint16_t access : 2;                // parameter_access_t
   int32_t minimum, maximum, initial;  // raw, with q fractional bits
 } parameter_info_t;
 
 /// Those of the edition, in the order of the list.
 uint16_t parameter_count(void);
 const parameter_info_t* parameter_info(uint16_t index);
+packed_text_t parameter_name(const parameter_info_t* p);
+packed_text_t parameter_unit(const parameter_info_t* p);
+packed_text_t parameter_meaning(const parameter_info_t* p);
 /// The value in a set of them, index 0 .. parameter_count() - 1.
 int32_t* parameter_value(parameters_t* of, uint16_t index);
 /// By its number; NULL when there is none.

@@ -12,8 +12,7 @@
 #define FRAME KNOWN_FRAME
 #define HEAT_SINK KNOWN_HEAT_SINK
 
-#define SIGNAL(name, unit, q, of, value, meaning) \
-  {TEXT_SIGNAL_NAME_##name, TEXT_SIGNAL_UNIT_##name, TEXT_SIGNAL_##name, q, of},
+#define SIGNAL(name, unit, q, of, value, meaning) {TEXT_SIGNAL_NAME_##name, q, of},
 static const signal_info_t table[] = {
 #include "firmware/dictionary/signal_list.h"
 };
@@ -61,6 +60,10 @@ uint16_t signal_count(void) { return COUNT; }
 
 const signal_info_t* signal_info(uint16_t place) { return (place < COUNT) ? &table[place] : NULL; }
 
+uint16_t signal_named(const uint16_t* name, uint16_t count) {
+  return packed_find(TEXT_SIGNAL_NAME_state, COUNT, name, count);
+}
+
 bool signal_is_left_out(uint16_t place) { return rows_have(edition_signals_left_out, place); }
 
 bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
@@ -82,16 +85,18 @@ signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_
   return with;
 }
 
+// The struct is an array with names, in the table's order.
+typedef char signals_are_an_array[(sizeof(drive_signals_t) == COUNT * sizeof(int32_t)) ? 1 : -1];
+
 drive_signals_t drive_signals(void) {
   const volatile uint16_t* const interrupts = &drive.heartbeat;
   drive_signals_t s;
+  int32_t* const values = (int32_t*)(void*)&s;
   uint16_t seen;
   do {
     seen = *interrupts;
     const uint16_t known = drive_known(&drive);
-#define SIGNAL(name, unit, q, of, value, meaning) s.name = look_at_##name(&drive, known);
-#include "firmware/dictionary/signal_list.h"
-#undef SIGNAL
+    for (uint16_t k = 0; k < COUNT; k++) values[k] = looks[k](&drive, known);
   } while (seen != *interrupts);
   return s;
 }

@@ -34,12 +34,22 @@ int32_t drive_signal(uint16_t place, uint16_t known);
 bool drive_signal_is_known(uint16_t place, uint16_t known);
 
 typedef struct {
-  packed_text_t name, unit, meaning;
+  packed_text_t name;
   uint16_t q : 8;
   uint16_t needs : 3;  // bit of known_t
 } signal_info_t;
 
+// The texts of all signals stand in the same order.
+static inline packed_text_t signal_unit(const signal_info_t* s) {
+  return (packed_text_t)(s->name - (uint16_t)TEXT_SIGNAL_NAME_speed + (uint16_t)TEXT_SIGNAL_UNIT_speed);
+}
+static inline packed_text_t signal_meaning(const signal_info_t* s) {
+  return (packed_text_t)(s->name - (uint16_t)TEXT_SIGNAL_NAME_speed + (uint16_t)TEXT_SIGNAL_speed);
+}
+
 uint16_t signal_count(void);
+/// The place of a name, left out or not; signal_count() when there is none. Capitals count as small letters.
+uint16_t signal_named(const uint16_t* name, uint16_t count);
 /// Of a feature that this edition has not: it has a place, and is always 0.
 bool signal_is_left_out(uint16_t place);
 /// NULL behind the last one.

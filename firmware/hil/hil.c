@@ -199,8 +199,7 @@ static uint32_t add_i32(uint32_t crc, int32_t value) {
 uint32_t hil_signals_crc(void) {
   const drive_signals_t s = drive_signals();
   uint32_t crc = CRC32_BEGIN;
-#define SIGNAL(name, unit, q, of, value, meaning) crc = add_i32(crc, s.name);
-#include "firmware/dictionary/signal_list.h"
-#undef SIGNAL
+  const int32_t* const values = (const int32_t*)(const void*)&s;
+  for (uint16_t k = 0; k < signal_count(); k++) crc = add_i32(crc, values[k]);
   return crc32_end(crc);
 }

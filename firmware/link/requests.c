@@ -5,7 +5,6 @@
 #include "firmware/base/edition.h"
 #include "firmware/link/request_rows.h"
 #include "firmware/text/catalogue.h"
-#include "firmware/text/text.h"
 
 #define COMMAND_BODY 5u  // code and argument
 
@@ -43,7 +42,7 @@ static answer_status_t handle(request_t* r, uint16_t type) {
 // Whoever refuses with it has written nothing.
 static void put_edition(octet_writer_t* w) {
   put_message(w, CATALOGUE_STATUS, (uint16_t)ANSWER_EDITION);
-  put_text(w, ", ");
+  put_packed(w, SAY_comma);
   put_text(w, edition_name);
 }
 

@@ -22,11 +22,11 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_i32(w, p->minimum);
   put_i32(w, p->maximum);
   put_i32(w, p->initial);
-  put_packed(w, p->name);
+  put_packed(w, parameter_name(p));
   put_u8(w, 0);
-  put_packed(w, p->unit);
+  put_packed(w, parameter_unit(p));
   put_u8(w, 0);
-  put_packed(w, p->meaning);
+  put_packed(w, parameter_meaning(p));
 }
 
 // What it needs stands in two bits: 0 nothing, 1 the rotor, 2 the frame, 3 the heat sink.
@@ -34,9 +34,9 @@ static void put_signal(octet_writer_t* w, const signal_info_t* s) {
   put_u8(w, (uint16_t)(s->q | (s->needs - (s->needs >> 2)) << 6));
   put_packed(w, s->name);
   put_u8(w, 0);
-  put_packed(w, s->unit);
+  put_packed(w, signal_unit(s));
   put_u8(w, 0);
-  put_packed(w, s->meaning);
+  put_packed(w, signal_meaning(s));
 }
 
 // The tables' check sum, taken piece by piece: all parameters as put_parameter gives them, all signals, all words.

@@ -2,6 +2,7 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 // What the last look at the shaft has shown.
 static look_outcome_t look;
@@ -52,6 +53,6 @@ void drive_command_reset(void) { drive.request.reset = true; }
 void drive_command_speed(int32_t rpm_q16) {
   drive.control.command_rpm_q16 = rpm_q16;
   if (drive.flags.spins) return;  // the spin has a speed of its own
-  const int32_t limit_q16 = q_shl_sat(drive.config.values.speed_limit, 8);
-  drive.control.target_bpp = q_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
+  const int32_t limit_q16 = qc_shl_sat(drive.config.values.speed_limit, 8);
+  drive.control.target_bpp = qc_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
 }

@@ -5,6 +5,7 @@
 #include "firmware/mode/fault_history.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
+#include "hal/qmath/qcall.h"
 
 drive_t drive;
 
@@ -31,7 +32,7 @@ uint32_t drive_time_ms(void) { return drive.time_ms; }
 drive_state_t drive_state(void) { return drive.state; }
 
 int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp) {
-  return q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24);
+  return qc_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24);
 }
 
 static void begin(drive_t* d, drive_state_t state) {

@@ -13,10 +13,12 @@
 #include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
+#include "hal/qmath/qcall.h"
 #include "hal/qmath/qmath.h"
 
-static const char* const edges[] = {"rising", "falling", "either", "now", "above", "below"};
-#define EDGES ((uint16_t)(sizeof edges / sizeof edges[0]))
+#define EDGES 6u
+
+static packed_text_t edge_text(uint16_t edge) { return (packed_text_t)(SAY_edge_rising + edge); }
 
 // Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
 static uint16_t shift_of(const signal_info_t* s) {
@@ -26,7 +28,7 @@ static uint16_t shift_of(const signal_info_t* s) {
   } reach[] = {{"", 7}, {"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
   uint16_t whole = 15;
   for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
-    if (packed_is(s->unit, reach[k].unit)) whole = reach[k].whole;
+    if (packed_is(signal_unit(s), reach[k].unit)) whole = reach[k].whole;
   }
   return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
 }
@@ -95,19 +97,19 @@ static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_
     return false;
   }
   (*k)++;
-  if (word_is_packed(a, *k, signal->unit)) (*k)++;
+  if (word_is(a, *k, signal_unit(signal))) (*k)++;
   return true;
 }
 
 static void set_trigger(const words_of_line_t* a) {
   scope_setup_t s = draft();
-  if (a->count == 2u && word_is(a, 1, edges[SCOPE_AT_ONCE])) {
+  if (a->count == 2u && word_is(a, 1, SAY_edge_now)) {
     s.edge = SCOPE_AT_ONCE;
     apply(&s);
     return;
   }
   uint16_t edge = 0;
-  while (edge < EDGES && !word_is(a, 2, edges[edge])) edge++;
+  while (edge < EDGES && !word_is(a, 2, edge_text(edge))) edge++;
   if (a->count < 4u || edge == EDGES || edge == SCOPE_AT_ONCE) {
     line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
     return;
@@ -152,7 +154,7 @@ static bool whole(const words_of_line_t* a, uint16_t least, uint16_t most, uint1
   }
   put_packed(w, SAY_is_not_a_whole_number_in);
   put_unsigned(w, least);
-  put_text(w, " .. ");
+  put_packed(w, SAY_to);
   put_unsigned(w, most);
   put_packed(w, SAY_nothing_changed);
   line_end_refused();
@@ -171,11 +173,11 @@ static void set_before(const words_of_line_t* a) {
 
 static void set_mode(const words_of_line_t* a) {
   scope_setup_t s = draft();
-  if (a->count != 2u || (!word_is(a, 1, "single") && !word_is(a, 1, "auto"))) {
+  s.mode = word_is(a, 1, SAY_auto) ? SCOPE_AUTO : SCOPE_SINGLE;
+  if (a->count != 2u || (s.mode == SCOPE_SINGLE && !word_is(a, 1, SAY_single))) {
     line_refused(SAY_scope_mode_single_or_scope_mode_auto);
     return;
   }
-  s.mode = word_is(a, 1, "auto") ? SCOPE_AUTO : SCOPE_SINGLE;
   apply(&s);
 }
 
@@ -183,7 +185,7 @@ static void put_state(octet_writer_t* w) {
   const scope_status_t status = scope_status();
   put_packed(w, SAY_scope);
   put_message(w, CATALOGUE_SCOPE, (uint16_t)status.state);
-  put_text(w, ", ");
+  put_packed(w, SAY_comma);
   put_unsigned(w, status.recorded);
   put_packed(w, SAY_records);
   if (status.trigger_at == SCOPE_NOWHERE) return;
@@ -200,7 +202,7 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     const signal_info_t* const signal = signal_info(s->trigger);
     put_packed(w, signal->name);
     put_u8(w, ' ');
-    put_text(w, edges[s->edge]);
+    put_packed(w, edge_text((uint16_t)s->edge));
     put_u8(w, ' ');
     put_signal_value(w, signal, s->level);
     if (s->hysteresis >= 0) {
@@ -208,7 +210,7 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
       put_fixed(w, s->hysteresis, signal->q, signal_decimals(signal));
     }
   } else {
-    put_packed(w, SAY_now);
+    put_packed(w, SAY_edge_now);
   }
   put_packed(w, SAY_every);
   put_unsigned(w, s->decimation);
@@ -253,7 +255,7 @@ static bool put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
     if (value == SCOPE_UNKNOWN) {
       put_u8(w, '-');
     } else {
-      put_fixed(w, q_shl_sat(value, (unsigned)q_clamp(-q, 0, 30)), (uint16_t)q_max(q, 0), signal_decimals(signal));
+      put_fixed(w, qc_shl_sat(value, (unsigned)q_clamp(-q, 0, 30)), (uint16_t)q_max(q, 0), signal_decimals(signal));
     }
     put_spaces_to(w, (uint16_t)(6u + 12u * (k + 1u)));
   }
@@ -279,31 +281,37 @@ static void begin_print(const words_of_line_t* a) {
   }
 }
 
+static void arm(const words_of_line_t* a) {
+  (void)a;
+  if (scope_arm()) {
+    line_of(SAY_armed);
+  } else {
+    line_refused(SAY_first_scope_channels_signal);
+  }
+}
+
+static void stop(const words_of_line_t* a) {
+  (void)a;
+  scope_stop();
+  line_of(SAY_stopped);
+}
+
+static const struct {
+  packed_text_t word;
+  void (*obey)(const words_of_line_t* a);
+} sub_commands[] = {{SAY_channels, set_channels},   {SAY_sub_trigger, set_trigger}, {SAY_sub_every, set_every},
+                    {SAY_sub_before, set_before},   {SAY_sub_mode, set_mode},       {SAY_sub_arm, arm},
+                    {TEXT_COMMAND_NAME_stop, stop}, {SAY_sub_print, begin_print}};
+
 void command_scope(const words_of_line_t* a) {
   if (a->count == 0u) {
     console_run(show, false);
-  } else if (word_is(a, 0, "channels")) {
-    set_channels(a);
-  } else if (word_is(a, 0, "trigger")) {
-    set_trigger(a);
-  } else if (word_is(a, 0, "every")) {
-    set_every(a);
-  } else if (word_is(a, 0, "before")) {
-    set_before(a);
-  } else if (word_is(a, 0, "mode")) {
-    set_mode(a);
-  } else if (word_is(a, 0, "arm")) {
-    if (scope_arm()) {
-      line_of(SAY_armed);
-    } else {
-      line_refused(SAY_first_scope_channels_signal);
-    }
-  } else if (word_is(a, 0, "stop")) {
-    scope_stop();
-    line_of(SAY_stopped);
-  } else if (word_is(a, 0, "print")) {
-    begin_print(a);
-  } else {
-    line_refused(SAY_no_such_scope_command_see_help);
+    return;
   }
+  for (uint16_t k = 0; k < sizeof sub_commands / sizeof sub_commands[0]; k++) {
+    if (!word_is(a, 0, sub_commands[k].word)) continue;
+    sub_commands[k].obey(a);
+    return;
+  }
+  line_refused(SAY_no_such_scope_command_see_help);
 }

@@ -17,12 +17,12 @@ static void put_report(octet_writer_t* w) {
   const store_report_t* const r = store_report();
   const parameter_info_t* const first = parameter_by_id(r->first_refused);
   if (first == NULL) return;
-  put_text(w, "; ");
+  put_packed(w, SAY_semicolon);
   put_unsigned(w, r->refused);
   put_packed(w, SAY_outside_of_their_range_now_at_their);
-  put_text(w, ": ");
-  put_packed(w, first->name);
-  if (r->refused > 1u) put_text(w, " ..");
+  put_packed(w, SAY_colon);
+  put_packed(w, parameter_name(first));
+  if (r->refused > 1u) put_packed(w, SAY_and_more);
 }
 
 static bool wait_for_store(uint16_t step) {

@@ -2,30 +2,74 @@
 
 #include "firmware/text/text.h"
 
-#define FIRST_PAIR 128u
+#define END 0u      // first code: a text ends, a word ends
+#define SPELLED 1u  // second code of an entry: a word's letters follow in the text
+
+enum { NO_WORD, OF_DICTIONARY, OF_TEXT };
+
+// What the next bits stand for, in a canonical Huffman code of which so many codes have one bit, two bits, ... 16 bits.
+static uint16_t next_code(uint32_t* at, const uint16_t* counts) {
+  const uint16_t* const words = &packed_bits[(uint16_t)(*at >> 4)];
+  uint32_t bits = ((uint32_t)words[0] << 16 | words[1]) << ((uint16_t)*at & 15u);
+  uint16_t shorter = 0;
+  for (uint16_t code = 0;; counts++) {
+    code = (uint16_t)(2u * code + (uint16_t)(bits >> 31));
+    bits <<= 1;
+    (*at)++;
+    if (code < *counts) return (uint16_t)(shorter + code);
+    code = (uint16_t)(code - *counts);
+    shorter = (uint16_t)(shorter + *counts);
+  }
+}
+
+static void skip_word(uint32_t* at) {
+  while (next_code(at, packed_letter_counts) != END) continue;
+}
+
+static void skip_text(uint32_t* at) {
+  uint16_t entry;
+  do {
+    entry = next_code(at, packed_entry_counts);
+    if (entry == SPELLED) skip_word(at);
+  } while (entry != END);
+}
 
 packed_reader_t packed_reader(packed_text_t text) {
-  packed_reader_t r;
-  r.at = packed_starts[text];
-  r.depth = 0;
+  packed_reader_t r = {(uint32_t)packed_starts[text / PACKED_BLOCK] << 4, 0, NO_WORD, 0, 0};
+  for (uint16_t k = text % PACKED_BLOCK; k > 0u; k--) skip_text(&r.text);
   return r;
 }
 
+// 0 at the end of a word.
+static uint16_t next_letter(packed_reader_t* r) {
+  return packed_letters[next_code((r->word_is == OF_TEXT) ? &r->text : &r->word, packed_letter_counts)];
+}
+
+// The next word's first letter, 0 at the end.
+static uint16_t begin_word(packed_reader_t* r) {
+  const uint16_t entry = next_code(&r->text, packed_entry_counts);
+  if (entry == END) return 0;
+  r->word_is = (entry == SPELLED) ? OF_TEXT : OF_DICTIONARY;
+  r->word = (uint32_t)packed_dictionary[entry / PACKED_BLOCK] << 4;
+  for (uint16_t k = entry % PACKED_BLOCK; k > 0u; k--) skip_word(&r->word);
+  return next_letter(r);
+}
+
+static bool is_letter(uint16_t c) { return text_small(c) >= (uint16_t)'a' && text_small(c) <= (uint16_t)'z'; }
+
 uint16_t packed_next(packed_reader_t* r) {
-  uint16_t code;
-  if (r->depth > 0u) {
-    code = r->waiting[--r->depth];
-  } else {
-    const uint16_t word = packed_octets[r->at >> 1];
-    code = ((r->at & 1u) != 0u) ? (uint16_t)(word >> 8) : (uint16_t)(word & 0xFFu);
-    r->at++;
+  uint16_t c = r->held;
+  r->held = 0;
+  if (c == 0u && r->word_is != NO_WORD) c = next_letter(r);
+  if (c == 0u) {
+    c = begin_word(r);
+    if (is_letter(c) && is_letter(r->last)) {
+      r->held = c;
+      c = (uint16_t)' ';
+    }
   }
-  while (code >= FIRST_PAIR) {
-    const uint16_t pair = packed_pairs[code - FIRST_PAIR];
-    r->waiting[r->depth++] = (uint16_t)(pair & 0xFFu);
-    code = (uint16_t)(pair >> 8);
-  }
-  return code;
+  r->last = c;
+  return c;
 }
 
 void put_packed(octet_writer_t* w, packed_text_t text) {
@@ -62,6 +106,15 @@ bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count) {
   uint16_t k = 0;
   for (; c != 0u && k < count && text_small(c) == text_small(wanted[k]); k++) c = packed_next(&r);
   return c == 0u && k == count;
+}
+
+uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count) {
+  const uint16_t* const keys = &packed_keys[first - (uint16_t)PACKED_FIRST_NAME];
+  uint16_t key = 0;
+  for (uint16_t k = 0; k < count; k++) key = (uint16_t)(31u * key + text_small(wanted[k]));
+  uint16_t at = 0;
+  while (at < texts && (keys[at] != key || !packed_equals((packed_text_t)(first + at), wanted, count))) at++;
+  return at;
 }
 
 // Whether the text goes on with these characters.

@@ -1,8 +1,9 @@
-// The drive's texts, packed in flash: two octets in a word, an octet above 127 stands for two others.
+// The drive's texts, packed in flash: Huffman codes of the words of a dictionary, whose letters are coded as well.
 //
 // A character of a string takes a whole word of the C28x's memory. toolchain/pack_text.py takes the texts from the
-// lists that people edit, numbers them (text_numbers.h, made by the build) and packs them to less than a third (byte
-// pair encoding: P. Gage, "A New Algorithm for Data Compression", C Users Journal 12(2), 1994).
+// lists that people edit, numbers them (text_numbers.h, made by the build) and packs them to a fifth
+// (toolchain/word_code.py). Where two words follow each other a space is between them. A word that is said once is in
+// no dictionary: its letters are in the text.
 
 #ifndef STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
 #define STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
@@ -17,18 +18,20 @@
 extern "C" {
 #endif
 
-/// A text's number. Texts that are the same share their octets.
+/// A text's number.
 typedef uint16_t packed_text_t;
 
 #define PACKED_NONE PACKED_TEXTS  // no text
 
-#define PACKED_DEPTH 8u  // pairs of pairs, at most so deep
+#define PACKED_BLOCK 8u  // so many texts, or entries of the dictionary, are read to find one
 
 /// A place in a text.
 typedef struct {
-  uint16_t at;                     // octet
-  uint16_t waiting[PACKED_DEPTH];  // second halves of the pairs begun
-  uint16_t depth;
+  uint32_t text;  // bits
+  uint32_t word;  // the same, in the dictionary
+  uint16_t word_is;
+  uint16_t last;  // character
+  uint16_t held;  // a word's first letter, for which a space came
 } packed_reader_t;
 
 packed_reader_t packed_reader(packed_text_t text);
@@ -50,14 +53,23 @@ bool packed_is(packed_text_t text, const char* string);
 /// True when the text is these characters and no more; capitals count as small letters.
 bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
+/// Which of so many names, from `first` on, it is: these characters and no more, and capitals count as small letters;
+/// `texts` when it is none. A name is found by its key, without reading the others.
+uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count);
+
 /// True when these characters occur in the text; capitals count as small letters.
 bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
-// What pack_text.py makes: where each text begins (octets), what the octets from 128 on stand for (first, second), and
-// the octets, the first in the lower half of a word. A zero ends a text.
+// What pack_text.py makes: the word of packed_bits at which every eighth text begins, and every eighth entry of the
+// dictionary, which are in the order of their codes; how many codes have one bit, two bits and so on; the letters in
+// the order of theirs.
 extern const uint16_t packed_starts[];
-extern const uint16_t packed_pairs[];
-extern const uint16_t packed_octets[];
+extern const uint16_t packed_dictionary[];
+extern const uint16_t packed_entry_counts[];
+extern const uint16_t packed_letter_counts[];
+extern const uint16_t packed_letters[];
+extern const uint16_t packed_keys[];  // of the names: packed_find
+extern const uint16_t packed_bits[];
 
 #if defined(__cplusplus)
 }

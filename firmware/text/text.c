@@ -1,5 +1,6 @@
 #include "firmware/text/text.h"
 
+#include "hal/qmath/qcall.h"
 #include "hal/qmath/qmath.h"
 
 #define EXPONENT_ENOUGH 100u  // for everything else to be beyond all formats
@@ -118,8 +119,8 @@ bool decimal_is_whole(const decimal_t* number) { return number->digits % ten[num
 
 bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw) {
   *raw = (q < 32u) ? q_div(number->digits, ten[number->decimals], q)
-                   : q_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
-  return q_abs_sat(*raw) < INT32_MAX;
+                   : qc_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
+  return qc_abs_sat(*raw) < INT32_MAX;
 }
 
 uint16_t text_small(uint16_t c) { return (c >= 'A' && c <= 'Z') ? (uint16_t)(c + 32u) : c; }

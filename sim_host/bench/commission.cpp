@@ -88,8 +88,8 @@ std::vector<Identified> identified() {
     const commissioning_result_t r = drive_commissioning_result(k);
     const parameter_info_t& info = info_of(r.id);
     Identified row;
-    row.name = text_of(info.name);
-    row.unit = text_of(info.unit);
+    row.name = text_of(parameter_name(&info));
+    row.unit = text_of(parameter_unit(&info));
     row.decimals = info.decimals;
     row.before = std::ldexp(r.before, -static_cast<int>(info.q));
     row.value = std::ldexp(r.value, -static_cast<int>(info.q));

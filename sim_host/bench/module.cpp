@@ -158,15 +158,15 @@ nb::list parameter_rows() {
     const parameter_info_t* p = parameter_info(k);
     nb::dict row;
     row["id"] = p->id;
-    row["name"] = text_of(p->name);
-    row["unit"] = text_of(p->unit);
+    row["name"] = text_of(parameter_name(p));
+    row["unit"] = text_of(parameter_unit(p));
     row["decimals"] = p->decimals;
     row["whole"] = p->q == 0;
     row["minimum"] = std::ldexp(p->minimum, -p->q);
     row["maximum"] = std::ldexp(p->maximum, -p->q);
     row["default"] = std::ldexp(p->initial, -p->q);
     row["access"] = p->access == PARAMETER_ALWAYS ? "always" : "stopped";
-    row["help"] = text_of(p->meaning);
+    row["help"] = text_of(parameter_meaning(p));
     rows.append(row);
   }
   return rows;

@@ -55,10 +55,10 @@ nb::list fields_of(can_message_t message) {
     if (f.message != message) continue;
     nb::dict field;
     field["name"] = kFields[k].name;
-    field["first"] = f.first;
-    field["bits"] = f.bits;
-    field["signed"] = f.is_signed;
-    field["per_unit"] = f.per_unit;
+    field["first"] = unsigned{f.first};
+    field["bits"] = unsigned{f.bits};
+    field["signed"] = f.is_signed != 0;
+    field["per_unit"] = unsigned{f.per_unit};
     field["unit"] = kFields[k].unit;
     field["meaning"] = kFields[k].meaning;
     fields.append(field);
@@ -72,8 +72,8 @@ nb::list messages() {
     const can_message_info_t& m = *can_message_info(k);
     nb::dict message;
     message["name"] = kMessages[k].name;
-    message["base"] = m.base;
-    message["octets"] = m.octets;
+    message["base"] = unsigned{m.base};
+    message["octets"] = unsigned{m.octets};
     message["sender"] = kMessages[k].sender;
     message["meaning"] = kMessages[k].meaning;
     message["fields"] = fields_of(static_cast<can_message_t>(k));

@@ -16,7 +16,7 @@ namespace {
 
 const parameter_info_t* find(const std::string& name) {
   for (std::uint16_t k = 0; k < parameter_count(); k++) {
-    if (name == text_of(parameter_info(k)->name)) return parameter_info(k);
+    if (name == text_of(parameter_name(parameter_info(k)))) return parameter_info(k);
   }
   return nullptr;
 }
@@ -32,7 +32,7 @@ std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) 
   std::ostringstream text;
   text << "firmware parameter " << name << " = " << value << ": out of range, allowed is "
        << std::ldexp(info->minimum, -info->q) << " to " << std::ldexp(info->maximum, -info->q) << " "
-       << text_of(info->unit);
+       << text_of(parameter_unit(info));
   throw std::invalid_argument(text.str());
 }
 

@@ -54,7 +54,7 @@ TEST(CanMessages, EveryFieldKeepsItsExtremesAndLeavesTheOthersAlone) {
     for (const std::uint16_t ground : {0x00, 0xFF}) {
       for (const std::int64_t value : {least, least + 1, std::int64_t{0}, std::int64_t{1}, most - 1, most}) {
         if (value < least || value > most) continue;
-        hal_can_frame_t frame = can_frame(f.message, 1);
+        hal_can_frame_t frame = can_frame(static_cast<can_message_t>(f.message), 1);
         for (auto& octet : frame.data) octet = ground;
         can_put(&frame, field, static_cast<std::int32_t>(value));
         EXPECT_EQ(can_get(&frame, field), static_cast<std::int32_t>(value)) << k;

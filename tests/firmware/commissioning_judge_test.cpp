@@ -55,7 +55,8 @@ class CommissioningJudge : public Drive {
     commissioning_report_t report;
     commissioning_judge(&c, &report);
     for (int k = 0; k < report.count; ++k) {
-      if (name == stillspin::bench::text_of(parameter_by_id(report.list[k].id)->name)) return report.list[k].verdict;
+      if (name == stillspin::bench::text_of(parameter_name(parameter_by_id(report.list[k].id))))
+        return report.list[k].verdict;
     }
     ADD_FAILURE() << name;
     return VERDICT_DEPENDS;

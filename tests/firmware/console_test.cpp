@@ -119,8 +119,8 @@ TEST_F(Console, List) {
   parameters.wiring_check = 1;  // as by default: nothing is marked as changed
   const std::string all = command("list", 30000);
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-    EXPECT_TRUE(has(all, bench::text_of(parameter_info(k)->name)));
-    EXPECT_TRUE(has(all, bench::text_of(parameter_info(k)->meaning))) << "whole";
+    EXPECT_TRUE(has(all, bench::text_of(parameter_name(parameter_info(k)))));
+    EXPECT_TRUE(has(all, bench::text_of(parameter_meaning(parameter_info(k))))) << "whole";
   }
   EXPECT_FALSE(has(all, "..."));
   EXPECT_FALSE(has(all, "*"));
@@ -336,7 +336,7 @@ TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
   EXPECT_TRUE(a.came());
   run(20000);
   for (std::uint16_t k = 0; k < parameter_count(); ++k)
-    EXPECT_TRUE(has(text, bench::text_of(parameter_info(k)->meaning)));
+    EXPECT_TRUE(has(text, bench::text_of(parameter_meaning(parameter_info(k)))));
 }
 
 TEST_F(Console, ADisturbedLineIsNotObeyed) {

@@ -27,7 +27,7 @@ using namespace stillspin::test;
 
 std::uint16_t id_of(const std::string& name) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-    if (name == stillspin::bench::text_of(parameter_info(k)->name)) return parameter_info(k)->id;
+    if (name == stillspin::bench::text_of(parameter_name(parameter_info(k)))) return parameter_info(k)->id;
   }
   ADD_FAILURE() << "no parameter " << name;
   return 0;
@@ -221,7 +221,8 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
     parameters_reset();
     for (std::uint16_t k = 0; k < parameter_count(); ++k) {
       const parameter_info_t& p = *parameter_info(k);
-      ASSERT_EQ(parameter_set(p.id, random_value(random, p, n % 2 == 0)), SET_OK) << stillspin::bench::text_of(p.name);
+      ASSERT_EQ(parameter_set(p.id, random_value(random, p, n % 2 == 0)), SET_OK)
+          << stillspin::bench::text_of(parameter_name(&p));
     }
     drive_config_t c = inside::config();
     if (!drive_config_load(&c)) {

@@ -117,11 +117,33 @@ TEST(PackedText, ACopyIsTheTextAsFarAsThereIsRoom) {
 
 TEST(PackedText, EveryNameHasRoomWhereNamesAreCompared) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-    EXPECT_LT(text_of(parameter_info(k)->name).size(), SUGGEST_NAME_ROOM);
+    EXPECT_LT(text_of(parameter_name(parameter_info(k))).size(), SUGGEST_NAME_ROOM);
   }
   for (std::uint16_t k = 0; k < signal_count(); ++k) {
     EXPECT_LT(text_of(signal_info(k)->name).size(), SUGGEST_NAME_ROOM);
   }
+}
+
+std::uint16_t place_of(packed_text_t first, std::uint16_t texts, const std::string& name) {
+  std::vector<std::uint16_t> wanted;
+  for (const char c : name) wanted.push_back(static_cast<unsigned char>(c));
+  return packed_find(first, texts, wanted.data(), static_cast<std::uint16_t>(wanted.size()));
+}
+
+TEST(PackedText, ANameIsFoundByItself) {
+  const packed_text_t first = TEXT_PARAMETER_NAME_pole_pairs;
+  const std::uint16_t names = TEXT_SIGNAL_NAME_state - TEXT_PARAMETER_NAME_pole_pairs;
+  for (std::uint16_t k = 0; k < names; ++k) {
+    EXPECT_EQ(place_of(first, names, text_of(first + k)), k);
+    EXPECT_EQ(place_of(first, names, text_of(first + k) + "~"), names);
+  }
+  EXPECT_EQ(place_of(first, names, ""), names);
+  EXPECT_EQ(place_of(first, names, "Stator_RESISTANCE"), TEXT_PARAMETER_NAME_stator_resistance - first);
+  EXPECT_EQ(place_of(first, TEXT_PARAMETER_NAME_stator_resistance - first, "stator_resistance"),
+            TEXT_PARAMETER_NAME_stator_resistance - first)
+      << "behind the last that is looked at";
+  EXPECT_EQ(place_of(TEXT_SIGNAL_NAME_state, signal_count(), "speed"), TEXT_SIGNAL_NAME_speed - TEXT_SIGNAL_NAME_state);
+  EXPECT_EQ(place_of(first, names, "stator_resistanb\x84"), names) << "the key of stator_resistance: 31 'c' + 'e'";
 }
 
 TEST(PackedText, PartsAreFound) {

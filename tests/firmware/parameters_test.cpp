@@ -72,11 +72,11 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
     const parameter_info_t* const info = parameter_info(k);
     ASSERT_NE(info, nullptr);
     EXPECT_EQ(info->id, r.id);
-    EXPECT_EQ(stillspin::bench::text_of(info->name), r.name);
+    EXPECT_EQ(stillspin::bench::text_of(parameter_name(info)), r.name);
     EXPECT_EQ(info->q, r.q) << r.name;
     EXPECT_EQ(info->decimals, r.decimals) << r.name;
     EXPECT_EQ(info->access, r.always ? PARAMETER_ALWAYS : PARAMETER_STOPPED) << r.name;
-    EXPECT_GT(stillspin::bench::text_of(info->meaning).size(), 3u) << r.name;
+    EXPECT_GT(stillspin::bench::text_of(parameter_meaning(info)).size(), 3u) << r.name;
     const std::pair<std::int32_t, double> pairs[] = {
         {info->minimum, r.minimum}, {info->maximum, r.maximum}, {info->initial, r.initial}};
     for (const auto& [raw, decimal] : pairs) {
@@ -91,11 +91,11 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
 TEST_F(Parameters, DefaultsLieInsideTheRanges) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     const parameter_info_t* const info = parameter_info(k);
-    EXPECT_LT(info->minimum, info->maximum) << stillspin::bench::text_of(info->name);
-    EXPECT_LE(info->minimum, info->initial) << stillspin::bench::text_of(info->name);
-    EXPECT_LE(info->initial, info->maximum) << stillspin::bench::text_of(info->name);
-    EXPECT_EQ(parameter_get(info->id), info->initial) << stillspin::bench::text_of(info->name);
-    EXPECT_EQ(*kRows[k].value, info->initial) << stillspin::bench::text_of(info->name);
+    EXPECT_LT(info->minimum, info->maximum) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_LE(info->minimum, info->initial) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_LE(info->initial, info->maximum) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_EQ(parameter_get(info->id), info->initial) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_EQ(*kRows[k].value, info->initial) << stillspin::bench::text_of(parameter_name(info));
   }
 }
 

@@ -141,7 +141,8 @@ TEST_F(RequestFields, EverySignalTellsAllOfItself) {
     ASSERT_EQ(a.status(), signal_is_left_out(k) ? EDITION : OK);
     if (signal_is_left_out(k)) continue;
     EXPECT_EQ(a.number(0, 1), s.q + 0x40u * (s.needs == KNOWN_HEAT_SINK ? 3u : s.needs));
-    EXPECT_EQ(a.text(1), bench::text_of(s.name) + '\0' + bench::text_of(s.unit) + '\0' + bench::text_of(s.meaning));
+    EXPECT_EQ(a.text(1), bench::text_of(s.name) + '\0' + bench::text_of(signal_unit(&s)) + '\0' +
+                             bench::text_of(signal_meaning(&s)));
   }
   EXPECT_EQ(ask(REQUEST_SIGNAL_INFO, little(signal_count(), 2)).status(), RANGE);
 }

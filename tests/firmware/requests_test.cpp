@@ -99,7 +99,8 @@ TEST_F(Requests, EveryParameterTellsAllOfItself) {
     EXPECT_EQ(static_cast<std::int32_t>(a.number(6, 4)), p.minimum);
     EXPECT_EQ(static_cast<std::int32_t>(a.number(10, 4)), p.maximum);
     EXPECT_EQ(static_cast<std::int32_t>(a.number(14, 4)), p.initial);
-    const std::string words = bench::text_of(p.name) + '\0' + bench::text_of(p.unit) + '\0' + bench::text_of(p.meaning);
+    const std::string words = bench::text_of(parameter_name(&p)) + '\0' + bench::text_of(parameter_unit(&p)) + '\0' +
+                              bench::text_of(parameter_meaning(&p));
     EXPECT_EQ(a.text(18), words) << "whole: nothing is cut off";
   }
   EXPECT_EQ(ask(REQUEST_PARAMETER_INFO, little(parameter_count(), 2)).status(), RANGE);

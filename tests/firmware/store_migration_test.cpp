@@ -92,7 +92,7 @@ TEST_F(Store, LimitsSurviveAChangeOfFormat) {
         if (std::fabs(exact) > 2147483646.0) continue;
         const slot_entry_t entry = {info->id, q, static_cast<std::int32_t>(std::floor(exact + 0.5))};
         values_reset();
-        ASSERT_NE(values_put(&entry), VALUE_REFUSED) << bench::text_of(info->name) << " q" << q;
+        ASSERT_NE(values_put(&entry), VALUE_REFUSED) << bench::text_of(parameter_name(info)) << " q" << q;
         const std::int32_t raw = values_entry(k).raw;
         ASSERT_GE(raw, info->minimum);
         ASSERT_LE(raw, info->maximum);
@@ -120,9 +120,9 @@ TEST_F(Store, AStepOfTheCoarserFormatBeyondALimitIsTheLimit) {
           values_reset();
           return values_put(&entry);
         };
-        ASSERT_EQ(put_at(at + away), VALUE_RESCALED) << bench::text_of(info->name) << " q" << q;
-        ASSERT_EQ(values_entry(k).raw, limit) << bench::text_of(info->name) << " q" << q;
-        ASSERT_EQ(put_at(at + 3.0 * away), VALUE_REFUSED) << bench::text_of(info->name) << " q" << q;
+        ASSERT_EQ(put_at(at + away), VALUE_RESCALED) << bench::text_of(parameter_name(info)) << " q" << q;
+        ASSERT_EQ(values_entry(k).raw, limit) << bench::text_of(parameter_name(info)) << " q" << q;
+        ASSERT_EQ(put_at(at + 3.0 * away), VALUE_REFUSED) << bench::text_of(parameter_name(info)) << " q" << q;
       }
     }
   }
@@ -133,11 +133,11 @@ TEST_F(Store, NoParameterHasMoreThan31FractionalBits) {
     const parameter_info_t* const info = parameter_info(k);
     for (const std::uint16_t q : {32, 40, 63, 64, 255}) {
       const slot_entry_t entry = {info->id, q, 0};
-      EXPECT_EQ(values_put(&entry), VALUE_REFUSED) << bench::text_of(info->name) << " q" << q;
+      EXPECT_EQ(values_put(&entry), VALUE_REFUSED) << bench::text_of(parameter_name(info)) << " q" << q;
     }
     const slot_entry_t finest = {info->id, 31, 0};
     if (info->minimum <= 0 && info->maximum >= 0) {
-      EXPECT_EQ(values_put(&finest), VALUE_RESCALED) << bench::text_of(info->name);
+      EXPECT_EQ(values_put(&finest), VALUE_RESCALED) << bench::text_of(parameter_name(info));
     }
   }
 }

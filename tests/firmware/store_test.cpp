@@ -63,8 +63,8 @@ TEST_F(Store, EveryParameterIsSaved) {
     if (parameter_conflict() != PACKED_NONE) continue;
     const Values saved = in_force();
     ASSERT_EQ(save(), STORE_SAVED);
-    ASSERT_EQ(power_on(), STORE_LOADED) << bench::text_of(info->name);
-    ASSERT_EQ(in_force(), saved) << bench::text_of(info->name);
+    ASSERT_EQ(power_on(), STORE_LOADED) << bench::text_of(parameter_name(info));
+    ASSERT_EQ(in_force(), saved) << bench::text_of(parameter_name(info));
   }
 }
 

@@ -92,7 +92,7 @@ packed_text_t __wrap_parameter_conflict(void) {
   for (uint16_t k = 0; k < parameter_count(); k++) {
     const parameter_info_t* const info = parameter_info(k);
     if (__real_parameter_set(info->id, int16_parameter_get(info->id)) != SET_OK) {
-      differ(stillspin::bench::text_of(info->name).c_str());
+      differ(stillspin::bench::text_of(parameter_name(info)).c_str());
     }
   }
   const packed_text_t native = __real_parameter_conflict();

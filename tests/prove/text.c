@@ -54,7 +54,7 @@ static void compare(const char* name) {
 
 void prove_names(void) {
   any_word();
-  for (uint16_t k = 0; k < parameter_count(); k++) compare_packed(parameter_info(k)->name);
+  for (uint16_t k = 0; k < parameter_count(); k++) compare_packed(parameter_name(parameter_info(k)));
   for (uint16_t k = 0; k < signal_count(); k++) compare_packed(signal_info(k)->name);
   for (uint16_t n = 0; n < SUGGEST_NAME_ROOM; n++) compare(any_name(n));
 }

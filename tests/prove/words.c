@@ -13,11 +13,8 @@
       (a->count > 2 ==> word_of(&a->word[2]));
 */
 
-/*@ requires words_of(a); assigns \nothing; */
-bool word_is(const words_of_line_t* a, uint16_t k, const char* name);
-
 /*@ requires words_of(a) && unit < PACKED_TEXTS; assigns \nothing; */
-bool word_is_packed(const words_of_line_t* a, uint16_t k, packed_text_t unit);
+bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t unit);
 
 /*@ requires words_of(a) && a->count >= 1 && \valid(number) && \separated(number, a); assigns *number;
     ensures \result <= a->word[0].count; */
@@ -29,8 +26,11 @@ static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_t
 
 // What the table says, the part commands reads.
 /*@ requires \valid_read(name + (0 .. count - 1)); assigns \nothing;
-    ensures \result == \null || (\valid_read(\result) && \result->unit < PACKED_TEXTS && \result->q <= 32); */
+    ensures \result == \null || (\valid_read(\result) && \result->q <= 32); */
 const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
+
+/*@ assigns \nothing; ensures \result < PACKED_TEXTS; */
+packed_text_t parameter_unit(const parameter_info_t* p);
 
 /*@ requires words_of(a); */
 void command_set(const words_of_line_t* a);

@@ -2,6 +2,7 @@
 
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,69 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 import compose  # noqa: E402
 import pack_text  # noqa: E402
+import word_code  # noqa: E402
 
 
-def unpacked(code: int, pairs: list[tuple[int, int]]) -> str:
-    if code < pack_text.FIRST_PAIR:
-        return chr(code)
-    return "".join(unpacked(half, pairs) for half in pairs[code - pack_text.FIRST_PAIR])
+def table(source: str, name: str) -> list[int]:
+    found = re.search(rf"{name}\[\] = \{{([^}}]*)\}}", source)
+    assert found
+    return [int(word, 16) for word in found[1].replace(",", " ").split()]
+
+
+class Unpacked:
+    """The tables read again, bit by bit, by code words that are looked up."""
+
+    def __init__(self, source: str) -> None:
+        self.bits = [f"{word:016b}" for word in table(source, "packed_bits")]
+        self.starts = table(source, "packed_starts")
+        self.letters = table(source, "packed_letters")
+        self.letter_codes = self.codes(table(source, "packed_letter_counts"))
+        self.entry_codes = self.codes(table(source, "packed_entry_counts"))
+        blocks = table(source, "packed_dictionary")
+        entries = len(self.entry_codes)
+        self.dictionary = [word for k, at in enumerate(blocks) for word in self.words(at, min(8, entries - 8 * k))]
+
+    @staticmethod
+    def codes(counts: list[int]) -> dict[str, int]:
+        found: dict[str, int] = {}
+        code = 0
+        for length, count in enumerate(counts, 1):
+            code *= 2
+            for _ in range(count):
+                found[f"{code:0{length}b}"] = len(found)
+                code += 1
+        return found
+
+    def read(self, bits: Iterator[str], codes: dict[str, int]) -> int:
+        code = ""
+        while code not in codes:
+            code += next(bits)
+        return codes[code]
+
+    def to_the_end(self, bits: Iterator[str], codes: dict[str, int]) -> Iterator[int]:
+        while (code := self.read(bits, codes)) != 0:
+            yield code
+
+    def at(self, word: int) -> Iterator[str]:
+        return iter("".join(self.bits[word:]))
+
+    def word(self, bits: Iterator[str]) -> str:
+        return "".join(chr(self.letters[k]) for k in self.to_the_end(bits, self.letter_codes))
+
+    def words(self, at: int, count: int) -> list[str]:
+        bits = self.at(at)
+        return [self.word(bits) for _ in range(count)]
+
+    def texts(self, count: int) -> list[str]:
+        found: list[str] = []
+        for k, at in enumerate(self.starts):
+            bits = self.at(at)
+            for _ in range(min(8, count - 8 * k)):
+                text = ""
+                for entry in self.to_the_end(bits, self.entry_codes):
+                    text = word_code.joined(text, self.word(bits) if entry == 1 else self.dictionary[entry])
+                found.append(text)
+        return found
 
 
 def test_arguments_of_a_macro_are_found() -> None:
@@ -47,34 +105,57 @@ def test_two_texts_of_a_name_are_refused(tmp_path: Path) -> None:
         pack_text.texts(tmp_path)
 
 
-def test_unpacking_gives_the_texts_back() -> None:
-    texts = list(pack_text.texts().values())
-    coded = [[ord(c) for c in text] for text in texts]
-    pairs = pack_text.squeeze(coded)
-    assert ["".join(unpacked(code, pairs) for code in string) for string in coded] == texts
-    assert sum(map(len, coded)) < 0.55 * sum(map(len, texts))
+@pytest.mark.parametrize("edition", ["lab", "minimal"])
+def test_unpacking_gives_the_texts_back(edition: str) -> None:
+    whole = compose.read_edition(edition)
+    needless = compose.needless_texts(whole, ROOT)
+    kept = ["" if name in needless else text for name, text in pack_text.texts().items()]
+    source = compose.made(whole)[compose.TEXTS]
+    assert Unpacked(source).texts(len(kept)) == kept
+    words = sum(len(found.split()) for found in re.findall(r"\{([^}]*)\};", source))
+    assert words < 0.21 * sum(len(text) + 1 for text in kept), "about a fifth of the characters"
 
 
-def test_pairs_are_not_deeper_than_the_firmware_can_read() -> None:
-    def depth(code: int) -> int:
-        if code < pack_text.FIRST_PAIR:
-            return 0
-        return 1 + max(depth(half) for half in pairs[code - pack_text.FIRST_PAIR])
+@pytest.mark.parametrize(
+    "texts",
+    [
+        ["rpm", "a text", "rpm", ""],
+        ["", ""],
+        [
+            " ",
+            "  a  b ",
+            "a1b",
+            "_a_b_",
+            "a - b",
+            "an (e)",
+            "~",
+            " of the set",
+            "of the ",
+            "aa aa aa",
+        ]
+        * 3,
+    ],
+)
+def test_what_is_between_two_words_is_kept(texts: list[str]) -> None:
+    assert Unpacked(pack_text.pack(texts)).texts(len(texts)) == texts
 
-    pairs = pack_text.squeeze([[ord("a")] * 2000 for _ in range(40)])
-    assert max(depth(pack_text.FIRST_PAIR + k) for k in range(len(pairs))) == pack_text.DEPTH
+
+def test_a_code_word_is_as_long_as_its_symbol_is_rare() -> None:
+    code = word_code.Code({"e": 8, "a": 4, "b": 2, "c": 1, "d": 1})
+    assert [code.of([symbol]) for symbol in "eabcd"] == [
+        "0",
+        "10",
+        "110",
+        "1110",
+        "1111",
+    ]
+    assert code.counts == [1, 1, 1, 2]
 
 
-def test_texts_that_are_the_same_share_their_octets() -> None:
-    def table(source: str, name: str) -> list[int]:
-        found = re.search(rf"{name}\[\] = \{{([^}}]*)\}}", source)
-        assert found
-        return [int(word, 16) for word in found[1].replace(",", " ").split()]
-
-    source = pack_text.pack(["rpm", "a text", "rpm", ""])
-    starts = table(source, "packed_starts")
-    assert starts[0] == starts[2] and len(set(starts)) == 3
-    assert len(table(source, "packed_octets")) == (len("rpm") + len("a text") + 3 + 1) // 2
+def test_words_that_stand_together_often_are_an_entry() -> None:
+    texts = [["the", "power", "stage", other] for other in "abcdefghij"]
+    word_code.phrases(texts)
+    assert texts[0] == ["the power stage", "a"]
 
 
 @pytest.mark.parametrize("text", ["10 µs", "line\\n"])

@@ -50,7 +50,8 @@ COMMANDS = {
         (
             *DRIVE,
             *("hal/f2808/image/boot.asm", "toolchain/c28x", "toolchain/f2808", "toolchain/image"),
-            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/compose.py", "toolchain/costs.py"),
+            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/word_code.py"),
+            *("toolchain/compose.py", "toolchain/costs.py"),
         ),
     ),
     "isr-cost": Made(

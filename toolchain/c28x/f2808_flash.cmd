@@ -82,6 +82,7 @@ SECTIONS
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
   quotients : { rts2800_ml.lib<ll_div*>(.text) } > APP, PAGE = 0
   resident  : { rts2800_ml.lib<l_div*, u_div*, i_div*, ll_*, memcpy*, memset*>(.text)
+                libstillspin_qmath.a<qcall.*>(.text, .econst, .switch)
                 libstillspin_qmath.a<qdiv.*>(.econst, .switch)
                 libstillspin_qmath.a<qsqrt.*>(.text, .econst, .switch)
                 libstillspin_qmath.a<qtrig.*>(.econst, .switch)

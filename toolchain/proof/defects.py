@@ -142,7 +142,7 @@ DEFECTS = (
         "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
     ),
     Defect("commissioning", "take_off", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
-    Defect("packed", "packed_next", "firmware/text/packed_text.c", "[code - FIRST_PAIR]", "[code - FIRST_PAIR + 1u]"),
+    Defect("packed", "next_code", "firmware/text/packed_text.c", "if (entry == SPELLED) skip_word(at);", ""),
     Defect("numbers", "put_digits", "firmware/text/text.c", "reversed[10]", "reversed[9]"),
     Defect("names", "common", "firmware/text/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
     Defect(

@@ -86,7 +86,7 @@ TEXTS = (
         "firmware/dictionary/parameters.c",
         "firmware/drive/signals.c",
     ),
-    *(OCTETS, "hal/qmath/qdiv.c"),
+    *(OCTETS, "hal/qmath/qcall.c", "hal/qmath/qdiv.c"),
 )
 TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (

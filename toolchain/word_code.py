@@ -1,0 +1,109 @@
+"""A dictionary of the texts' words, and the codes of its entries and of their letters.
+
+Code words are as long as what they stand for is rare (D. Huffman, "A Method for the Construction of Minimum-Redundancy
+Codes", Proc. IRE 40(9), 1952), those of a length follow each other, so that a table of how many have each length is all
+that reading needs. Between two words no space is said. Words that stand side by side often are an entry of their own.
+"""
+
+import heapq
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from itertools import count, pairwise
+
+END = ""  # of a text, and of a word, in the place of an entry or of a letter
+SPELLED = "\1"  # in the place of an entry: a word's letters follow
+WORD = re.compile(r"[A-Za-z]+|.")
+LETTER_BITS = 4.5  # of a letter of the dictionary, about
+WORTH = 4  # bits that an entry of several words has to save
+
+
+def words(text: str) -> list[str]:
+    """The words and other characters of a text, without a space between two words."""
+    found = WORD.findall(text)
+    around = zip(["", *found], found, [*found[1:], ""], strict=False)
+    return [word for before, word, behind in around if word != " " or not _joins(before, behind)]
+
+
+def joined(first: str, second: str) -> str:
+    """What two entries that follow each other say."""
+    return f"{first} {second}" if _joins(first, second) else first + second
+
+
+def _joins(first: str, second: str) -> bool:
+    return first[-1:].isalpha() and second[:1].isalpha()
+
+
+def _bits(all_of_them: int, *counts: int) -> float:
+    """What so many take in a code, beside the others."""
+    return all_of_them * math.log2(all_of_them) - sum(n * math.log2(n) for n in counts if n)
+
+
+def _saving(first: str, second: str, together: int, single: Mapping[str, int], total: int) -> float:
+    """Bits saved by an entry for two that stand together so often."""
+
+    def entry(text: str) -> float:
+        return LETTER_BITS * (len(text) + 1)
+
+    rest = single[first] - together, single[second] - together
+    gone = sum(entry(text) for text, n in zip((first, second), rest, strict=True) if n == 0)
+    before = _bits(total, single[first], single[second])
+    return before - _bits(total - together, *rest, together) + gone - entry(joined(first, second))
+
+
+def phrases(texts: list[list[str]]) -> None:
+    """Makes of words that stand together often one, in place, the most saving first."""
+    while True:
+        single = Counter(word for text in texts for word in text)
+        pairs = Counter(pair for text in texts for pair in pairwise(text) if pair[0] != pair[1])
+        total = single.total() + len(texts)
+        savings = {pair: _saving(*pair, n, single, total) for pair, n in pairs.items() if n > 2}
+        best = max(savings, key=lambda pair: (savings[pair], pair), default=None)
+        if best is None or savings[best] < WORTH:
+            return
+        for text in texts:
+            at = 0
+            while at + 1 < len(text):
+                if (text[at], text[at + 1]) == best:
+                    text[at : at + 2] = [joined(*best)]
+                at += 1
+
+
+class Code:
+    """A canonical Huffman code."""
+
+    def __init__(self, frequencies: Mapping[str, int]) -> None:
+        ties = count()
+        heap = [(n, next(ties), [symbol]) for symbol, n in sorted(frequencies.items())]
+        heapq.heapify(heap)
+        length = dict.fromkeys(frequencies, 0)
+        while len(heap) > 1:
+            n, _, one = heapq.heappop(heap)
+            m, _, other = heapq.heappop(heap)
+            for symbol in one + other:
+                length[symbol] += 1
+            heapq.heappush(heap, (n + m, next(ties), one + other))
+        self.symbols = sorted(frequencies, key=lambda symbol: (length[symbol], symbol))  # in the order of their codes
+        self.counts = [list(length.values()).count(k) for k in range(1, max(length.values()) + 1)]
+        self._bits: dict[str, str] = {}
+        code, bits = 0, 0
+        for symbol in self.symbols:
+            code <<= length[symbol] - bits
+            bits = length[symbol]
+            self._bits[symbol] = f"{code:0{bits}b}"
+            code += 1
+
+    def of(self, symbols: Iterable[str]) -> str:
+        """Their bits."""
+        return "".join(self._bits[symbol] for symbol in symbols)
+
+
+def entries(texts: list[list[str]]) -> Counter[str]:
+    """How often each of the dictionary is said. The end and what is spelled count so often that they come first."""
+    said = Counter(word for text in texts for word in text)
+    found = Counter({word: n for word, n in said.items() if n > 1 or len(word) == 1})
+    most = max(found.values(), default=0)
+    found[SPELLED] = max(said.total() - found.total(), most + 1)
+    found[END] = max(len(texts), found[SPELLED] + 1)
+    return found
