@@ -11,7 +11,6 @@
 #include "hal/hal_pwm.h"
 
 #define DEADLINE_TICK 9700u  // later than this in the period nothing is written
-#define EXCITATION_BY_SOURCE 3
 
 static excitation_t excitation(const drive_t* d) {
   if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;

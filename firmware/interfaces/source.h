@@ -21,6 +21,9 @@ enum {
   SOURCE_AVV_FIRST = 256    // it is AVV that looks at the windows first
 };
 
+/// Of the parameter `excitation`: the source says which pulses there are.
+#define EXCITATION_BY_SOURCE 3
+
 typedef struct {
   estimator_output_t (*step)(struct drive* d, estimator_input_t* in);
   /// The pulses it wants where the parameter `excitation` leaves that to it; NULL: alternating.

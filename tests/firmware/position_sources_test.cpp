@@ -326,4 +326,19 @@ TEST_F(Sources, ByTurnsEachHasItsOwnWindows) {
   }
 }
 
+// With pulses that the parameter chooses no period is made for ZVV alone.
+TEST_F(Sources, WithoutTurnsZvvLooksAtWhatThereIs) {
+  NEEDS("sources/paper");
+  run_with(POSITION_PAPER);
+  parameters.excitation = 1;
+  ASSERT_TRUE(drive_config_load(&inside::config()));
+  blend(BLEND_LOW, 1.0);
+  inside::selected().speed_bpp = bpp_of(50);
+  inside::reference_dq_q20().d = raw(8.0, 20);
+  see(2);
+  inside::schedule().task = TASK_SLOT;
+  estimate();
+  EXPECT_EQ(paper_zvv.waited, 0);
+}
+
 }  // namespace

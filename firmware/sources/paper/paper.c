@@ -34,9 +34,11 @@ bool paper_load(drive_config_t* c) {
 // Below this speed there are long zero vectors alone.
 static int32_t enter_bpp(const drive_t* d) { return d->config.blend.low_bpp / 4 * 3; }
 
-// Both at work, in periods of their own: long zero vectors and extended active ones by turns.
+// Both at work, in periods of their own: long zero vectors and extended active ones by turns, where the pulses are left
+// to the source.
 static bool is_by_turns(const drive_t* d) {
   return (d->config.zvv->terms & LONG_ZERO_BY_TURNS) != 0u && !blend_is_high(&d->position.blend) &&
+         d->config.values.excitation == EXCITATION_BY_SOURCE &&
          q_abs_sat(d->position.selected.speed_bpp) >= enter_bpp(d);
 }
 

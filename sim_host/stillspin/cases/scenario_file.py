@@ -71,7 +71,8 @@ def read(path: Path) -> Scenario:
     json_schema.check(data, _schema(), str(path))
     if data["id"] != path.stem:
         raise RelationError(f"{path}: id = '{data['id']}': must be the file's name, '{path.stem}'")
-    stated = [_with_defaults(run, data.get("defaults", {})) for run in data["runs"]]
+    schemes = _schemes(data, path)
+    stated = [_with_defaults(run, data.get("defaults", {}), schemes) for run in data["runs"]]
     runs = tuple(_run(run, f"{path}: runs[{number}]") for number, run in enumerate(stated))
     names = _unique([run.name for run in runs], f"{path}: runs")
     figures = tuple(_figure(item, runs, f"{path}: figures[{n}]") for n, item in enumerate(data["figures"]))
@@ -98,13 +99,25 @@ def _schema() -> Json:
     return file_schema.scenario(core.plant_schema(native), core.parameters(native))
 
 
-def _with_defaults(run: Json, defaults: Json) -> Json:
+def _schemes(data: Json, path: Path) -> dict[str, Json]:
+    """The parameters of each scheme that a run of the scenario names."""
+    found: dict[str, Json] = {}
+    for name in sorted({part["scheme"] for part in (data.get("defaults", {}), *data["runs"]) if part.get("scheme")}):
+        table = toml_table.read(resources.find("schemes", name)).items()
+        if table["motor"] != data["motor"]:
+            raise RelationError(
+                f"{path}: scheme = '{name}': is of motor {table['motor']}, and the scenario of {data['motor']}"
+            )
+        found[name] = table["parameters"]
+    return found
+
+
+def _with_defaults(run: Json, defaults: Json, schemes: dict[str, Json]) -> Json:
     """The run with what it does not state itself taken from the defaults; parameters and plant are joined by key."""
     joined = {key: {**defaults.get(key, {}), **run.get(key, {})} for key in ("parameters", "plant")}
     scheme = run.get("scheme", defaults.get("scheme"))
     if scheme:
-        own = toml_table.read(resources.find("schemes", scheme)).table("parameters").items()
-        joined["parameters"] = {**own, **joined["parameters"]}
+        joined["parameters"] = {**schemes[scheme], **joined["parameters"]}
     return {**defaults, **run, **joined}
 
 
