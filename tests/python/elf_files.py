@@ -6,6 +6,15 @@ CODE, DATA = 6, 3  # flags of sections: allocated and with instructions, allocat
 FUNCTION, OBJECT, UNTYPED = 2, 1, 0
 
 
+SEGMENT_OCTETS = 52 + 16
+"""Where the first segment says how many octets it has in the file."""
+
+
+def altered(data, at, value):
+    """The same file with another 32-bit value at an offset."""
+    return data[:at] + struct.pack("<I", value) + data[at + 4 :]
+
+
 def elf(blocks, entry=0x3F4000, *, symbols=(), machine=141, kind=2, order=b"\x01\x01", load=None):
     """An executable. `symbols` are (name, address, index of its block or None, type); `load` moves load addresses.
 

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from c28x_chip import blocks, program
-from elf_files import FUNCTION, OBJECT, UNTYPED, elf
+from elf_files import FUNCTION, OBJECT, SEGMENT_OCTETS, UNTYPED, altered, elf
 
 from stillspin.errors import InputError
 from stillspin.flash import elf as elf_files
@@ -40,6 +40,13 @@ def test_names_are_those_of_code():
     assert elf_files.functions(elf(BLOCKS, symbols=symbols)) == {0x3F4000: "main", 0x3F4001: "label"}
 
 
+def test_a_table_of_names_without_text_is_no_table():
+    data = elf(BLOCKS, symbols=[("main", 0x3F4000, 0, FUNCTION)])
+    links = len(data) - 2 * 40 + 24  # of the table of symbols, the last but one of the sections
+    with pytest.raises(ValueError, match="symbols name section 999 of 5"):
+        elf_files.functions(altered(data, links, 999))
+
+
 @pytest.mark.parametrize(
     ("data", "words"),
     [
@@ -48,6 +55,8 @@ def test_names_are_those_of_code():
         (elf(BLOCKS, kind=1), "has not been linked"),
         (elf(BLOCKS)[:60], "cut short"),
         (elf(BLOCKS)[:40], "cut short"),
+        (altered(elf(BLOCKS), SEGMENT_OCTETS, 5), "segment 0 of 5 octets is damaged"),
+        (altered(elf(BLOCKS), SEGMENT_OCTETS, 1 << 20), "segment 0 of 1048576 octets is damaged"),
     ],
 )
 def test_what_cannot_be_is_said(file, data, words):

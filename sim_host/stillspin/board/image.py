@@ -36,6 +36,8 @@ def blocks_of(program: Program, name: str) -> Blocks:
                 f"{name}: has no code at the flash's entry 0x{layout.BOOT_ENTRY:06X}, to which the boot ROM jumps, "
                 "and no entry point of its own"
             )
+        if program.word(program.entry) is None:
+            raise InputError(f"{name}: its entry point 0x{program.entry:06X} is in none of its sections")
         branch = [_LONG_BRANCH | program.entry >> 16, program.entry & 0xFFFF]
         blocks.append((layout.BOOT_ENTRY, branch))
     return blocks

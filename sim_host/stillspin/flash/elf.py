@@ -67,14 +67,19 @@ def _read(data: bytes, name: str) -> Program:
         )
     if header.kind != _EXECUTABLE or not header.segment_count:
         raise InputError(f"{name}: is an ELF object that has not been linked; give the .out file")
-    return assemble(list(_blocks(data, header)), header.entry, KIND, name)
+    return assemble(list(_blocks(data, header, name)), header.entry, KIND, name)
 
 
-def _blocks(data: bytes, header: _Header) -> Iterator[Block]:
+def _blocks(data: bytes, header: _Header, name: str) -> Iterator[Block]:
+    left = len(data)  # segments share nothing, so a file has no more in them than its size
     for index in range(header.segment_count):
         kind, at, _, load, octets, _, _, _ = _SEGMENT.unpack_from(data, header.segments + index * _SEGMENT.size)
-        if kind == _LOAD and octets:
-            yield Block(load, struct.unpack_from(f"<{octets // 2}H", data, at))
+        if kind != _LOAD or not octets:
+            continue
+        left -= octets
+        if octets % 2 or left < 0:
+            raise InputError(f"{name}: segment {index} of {octets} octets is damaged; copy the file again")
+        yield Block(load, struct.unpack_from(f"<{octets // 2}H", data, at))
 
 
 def functions(data: bytes) -> dict[int, str]:
@@ -82,6 +87,7 @@ def functions(data: bytes) -> dict[int, str]:
 
     Raises:
         struct.error: the file is cut short.
+        ValueError: a table of names has no text.
     """
     header = _header(data)
     sections = [
@@ -91,6 +97,8 @@ def functions(data: bytes) -> dict[int, str]:
     for _, kind, _, _, at, octets, link, _, _, _ in sections:
         if kind != _SYMBOL_TABLE:
             continue
+        if link >= len(sections):
+            raise ValueError(f"symbols name section {link} of {len(sections)}")
         strings = sections[link][4]
         for place in range(at, at + octets, _SYMBOL.size):
             name, value, _, information, _, section = _SYMBOL.unpack_from(data, place)
