@@ -16,6 +16,7 @@ END = ""  # of a text, and of a word, in the place of an entry or of a letter
 SPELLED = "\1"  # in the place of an entry: a word's letters follow
 WORD = re.compile(r"[A-Za-z]+|.")
 LETTER_BITS = 4.5  # of a letter of the dictionary, about
+LONGEST = 16  # bits of a code, as firmware/text/packed_text.c takes them
 WORTH = 4  # bits that an entry of several words has to save
 
 
@@ -71,7 +72,11 @@ def phrases(texts: list[list[str]]) -> None:
 
 
 class Code:
-    """A canonical Huffman code."""
+    """A canonical Huffman code.
+
+    Raises:
+        ValueError: a code is longer than the reader takes.
+    """
 
     def __init__(self, frequencies: Mapping[str, int]) -> None:
         ties = count()
@@ -84,6 +89,8 @@ class Code:
             for symbol in one + other:
                 length[symbol] += 1
             heapq.heappush(heap, (n + m, next(ties), one + other))
+        if max(length.values()) > LONGEST:
+            raise ValueError(f"a code of {max(length.values())} bits, where the reader takes {LONGEST}")
         self.symbols = sorted(frequencies, key=lambda symbol: (length[symbol], symbol))  # in the order of their codes
         self.counts = [list(length.values()).count(k) for k in range(1, max(length.values()) + 1)]
         self._bits: dict[str, str] = {}

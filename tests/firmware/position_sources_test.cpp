@@ -256,6 +256,21 @@ TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
   EXPECT_EQ(inside::observer().angle_bam, kHere);
 }
 
+// With the gates off the windows are no answer to the pattern's voltages: the current is measured, and nothing else.
+TEST_F(Sources, WithTheGatesOffNoEstimatorIsAtWork) {
+  for (const bool off : {true, false}) {
+    run_with(POSITION_OBSERVER);
+    inside::state() = DRIVE_START;
+    inside::schedule().turning = false;
+    inside::flags().gates_off = off;
+    see_machine(kHere);
+    inside::windows()[0].current_q20 = {raw(1.0, 20), 0};
+    estimate();
+    EXPECT_NE(measured().d, 0);
+    EXPECT_EQ(inside::avv().regression.information > 0, !off);
+  }
+}
+
 // The paper's idle estimator has the other one's speed and load as well.
 TEST_F(Sources, ThePapersIdleEstimatorKnowsTheSpeed) {
   NEEDS("sources/paper");

@@ -140,6 +140,15 @@ def test_what_is_between_two_words_is_kept(texts: list[str]) -> None:
     assert Unpacked(pack_text.pack(texts)).texts(len(texts)) == texts
 
 
+def test_a_code_longer_than_the_reader_takes_is_refused():
+    fibonacci = {
+        chr(97 + k): n for k, n in enumerate((1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987, 1597))
+    }
+    assert len(word_code.Code(fibonacci).counts) == 16
+    with pytest.raises(ValueError, match="17 bits"):
+        word_code.Code({**fibonacci, "z": 2584})
+
+
 def test_a_code_word_is_as_long_as_its_symbol_is_rare() -> None:
     code = word_code.Code({"e": 8, "a": 4, "b": 2, "c": 1, "d": 1})
     assert [code.of([symbol]) for symbol in "eabcd"] == [

@@ -294,7 +294,8 @@ def test_the_papers_scheme_brings_a_rotor_through_its_transition_and_back(
     transition, steady = errors("--set", "adc.noise=1.2")
     assert 0.3 < transition < 8.0
     assert 0.3 < steady < 4.0
-    assert errors("--set", "adc.noise=1.2", "--set", "zvv_terms=15")[0] > 20.0
+    blind = stillspin(*words, "--set", "adc.noise=1.2", "--set", "zvv_terms=15")
+    assert "broken off: the shaft turned at" in blind.stdout + blind.stderr
 
 
 def test_the_full_vector_form_needs_no_d_current_at_standstill() -> None:

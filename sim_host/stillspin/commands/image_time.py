@@ -86,7 +86,8 @@ def time(
     *,
     file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
     seconds: Annotated[
-        float, typer.Option("--for", parser=number("--for", 0.0001, unit="s"), metavar="SECONDS", help="How long to look.")
+        float,
+        typer.Option("--for", parser=number("--for", 0.0001, unit="s"), metavar="SECONDS", help="How long to look."),
     ] = 0.1,
     after: Annotated[
         float,
