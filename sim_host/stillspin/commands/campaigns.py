@@ -123,7 +123,7 @@ def reproduce(
         bool,
         typer.Option(
             "--paper-scheme/--no-paper-scheme",
-            help="Run the scenarios about the position error with the paper's scheme beside it, too.",
+            help="Run the paper's figures and what is about the position error with the paper's scheme, too.",
         ),
     ] = True,
     junit_file: JunitOption = None,
