@@ -52,7 +52,7 @@ DEFECTS = (
     ),
     Defect(
         *("a word behind the last one", "link16", TRAP, "firmware/text/catalogue.c"),
-        *("return (k < ROWS && kinds[k] == kind)", "return (kinds[k] == kind)"),
+        *("return kind < CATALOGUES && code <", "return code <"),
     ),
     Defect(
         *("a record that is too short for its CRC", "bus16", ADDRESS, "firmware/link/record.c"),

@@ -55,8 +55,8 @@ def test_a_table_of_names_without_text_is_no_table():
         (elf(BLOCKS, kind=1), "has not been linked"),
         (elf(BLOCKS)[:60], "cut short"),
         (elf(BLOCKS)[:40], "cut short"),
-        (altered(elf(BLOCKS), SEGMENT_OCTETS, 5), "segment 0 of 5 octets is damaged"),
-        (altered(elf(BLOCKS), SEGMENT_OCTETS, 1 << 20), "segment 0 of 1048576 octets is damaged"),
+        (altered(elf(BLOCKS), SEGMENT_OCTETS, 5), "segment 0 is damaged, its size is 5;"),
+        (altered(elf(BLOCKS), SEGMENT_OCTETS, 1 << 20), "segment 0 is damaged, its size is 1048576;"),
     ],
 )
 def test_what_cannot_be_is_said(file, data, words):

@@ -168,7 +168,7 @@ DEFECTS = (
         "selftest.pair < HAL_SELFTEST_PAIRS &&",
         "selftest.pair <= HAL_SELFTEST_PAIRS &&",
     ),
-    Defect("results", "agree", "firmware/commissioning/result.c", "q_sub_sat(a, b)", "a - b"),
+    Defect("results", "agree", "firmware/commissioning/result.c", "qc_sub_sat(a, b)", "(a - b)"),
     Defect("chip", "keep", "hal/f2808/sci.c", "in % HAL_SCI_RECEIVE_RING]", "in % (HAL_SCI_RECEIVE_RING + 1u)]"),
     Defect("left", "q_shl_sat", "hal/qmath/qarith.h", "(x > q_shr(INT32_MAX, n))", "(x >= q_shr(INT32_MAX, n))"),
     Defect("rest", "q_follow_remainder", "hal/qmath/qarith.h", "(int32_t)(sum >> n)", "(int32_t)(sum >> (n - 1u))"),

@@ -78,7 +78,7 @@ def _blocks(data: bytes, header: _Header, name: str) -> Iterator[Block]:
             continue
         left -= octets
         if octets % 2 or left < 0:
-            raise InputError(f"{name}: segment {index} of {octets} octets is damaged; copy the file again")
+            raise InputError(f"{name}: segment {index} is damaged, its size is {octets}; copy the file again")
         yield Block(load, struct.unpack_from(f"<{octets // 2}H", data, at))
 
 
