@@ -62,7 +62,10 @@ def test_after_an_emergency_the_speed_is_unknown_and_was_known_when_it_came(desk
     assert desk.state == FAULT
     assert desk.truth("speed") > 600
     expect_nothing_known(desk)
-    assert re.search(r"emergency stop, running at 9\d\d\.\d rpm", desk.type("faults", 200))
+    said = re.search(r"emergency stop, running at (\d+\.\d) rpm", desk.type("faults", 200))
+    assert said
+    # Some of the period in which the gates went off is in it: where they did makes up to 14 rpm either way.
+    assert math.isclose(float(said[1]), 900.0, abs_tol=20.0)
 
 
 def test_a_start_is_known_at_its_end(desk):
