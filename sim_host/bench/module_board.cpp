@@ -1,5 +1,7 @@
 // The class VirtualBoard of the Python module; core.py has the contract.
 
+#include "sim_host/bench/module_board.hpp"
+
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -9,29 +11,17 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 
 #include "sim_host/bench/loop_plugs.hpp"
 #include "sim_host/bench/module_setup.hpp"
-#include "sim_host/bench/virtual_board.hpp"
 
 namespace nb = nanobind;
 
 namespace stillspin::bench {
 namespace {
-
-// Python decides when an object goes; the board goes with close().
-struct PythonBoard {
-  std::unique_ptr<VirtualBoard> held;
-
-  VirtualBoard& board() const {
-    if (!held) throw std::runtime_error("the virtual board has been closed");
-    return *held;
-  }
-};
 
 void construct(PythonBoard* self, const nb::dict& plant, const std::map<std::string, double>& parameters,
                std::uint64_t seed, const chip::CodeBlocks& image) {
@@ -182,39 +172,12 @@ nb::dict statistics(const PythonBoard& self) {
   return values;
 }
 
-nb::dict code(const PythonBoard& self) {
-  const c28x::Core& core = self.board().code();
-  nb::dict values;
-  values["cycles"] = core.cycles;
-  values["instructions"] = core.instructions;
-  values["waited_for_registers"] = core.waits.registers;
-  values["waited_for_data"] = core.waits.data;
-  values["waited_for_fetches"] = core.waits.fetch;
-  values["pc"] = core.r.pc;
-  values["sp"] = core.r.sp;
-  return values;
-}
-
-// Cycles by address, cycles of each interrupt by (vector, routine), and the highest stack pointer.
-nb::tuple spent(const PythonBoard& self) {
-  const c28x::Profile* profile = self.board().code().profile();
-  if (profile == nullptr) throw std::logic_error("nothing was noted: profile() comes first");
-  nb::dict cycles;
-  for (std::uint32_t k = 0; k < profile->cycles.size(); ++k) {
-    if (profile->cycles[k] != 0) cycles[nb::int_(c28x::Profile::address(k))] = profile->cycles[k];
-  }
-  nb::dict interrupts;
-  for (const auto& [which, each] : profile->interrupts) {
-    interrupts[nb::make_tuple(which.first, which.second)] = each;
-  }
-  return nb::make_tuple(cycles, interrupts, profile->highest_stack);
-}
-
 }  // namespace
 
 void bind_virtual_board(nb::module_& m) {
   using Self = const PythonBoard&;
-  nb::class_<PythonBoard>(m, "VirtualBoard")
+  nb::class_<PythonBoard> board(m, "VirtualBoard");
+  board
       .def("__init__", &construct, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("seed"),
            nb::arg("image") = chip::CodeBlocks(), "Power the board; see core.py.")
       .def("close", [](PythonBoard& self) { self.held.reset(); })
@@ -263,12 +226,10 @@ void bind_virtual_board(nb::module_& m) {
       .def("truth", [](Self self) { return dict_of(self.board().truth()); })
       .def("signals", [](Self self) { return self.board().executes() ? nb::dict() : dict_of(VirtualBoard::signals()); })
       .def("statistics", &statistics)
-      .def("code", &code)
-      .def("profile", [](Self self) { self.board().take_profile(); })
-      .def("spent", &spent)
       .def(
           "inspect", [](Self self, std::uint32_t address) { return self.board().inspect(address); },
           nb::arg("address"));
+  bind_code(board);
 }
 
 }  // namespace stillspin::bench

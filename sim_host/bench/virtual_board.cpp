@@ -103,14 +103,9 @@ Tick VirtualBoard::rest_periods() const {
 
 bool VirtualBoard::in_loop() { return feature_status.stepped; }
 
-const c28x::Core& VirtualBoard::code() {
+chip::Chip& VirtualBoard::executing() {
   if (!executes_) throw std::logic_error("this board runs the firmware that was compiled for the computer: no image");
-  return chip_.execute_code();
-}
-
-void VirtualBoard::take_profile() {
-  (void)code();
-  chip_.execute_code().take_profile();
+  return chip_;
 }
 
 void VirtualBoard::on_period(Tick t) {

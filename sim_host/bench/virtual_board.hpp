@@ -93,11 +93,11 @@ class VirtualBoard final : private PeriodListener {
   std::uint64_t trips() const { return board_.trips(); }
   const Board& pins() const { return board_; }
   std::uint16_t inspect(std::uint32_t address) { return chip_.inspect(address); }
-  /// What executes the image; std::logic_error where the firmware runs.
-  const c28x::Core& code();
   bool executes() const { return executes_; }
-  /// Notes from now on where the image's cycles go (c28x::Core::profile).
-  void take_profile();
+  /// The chip that executes the image; std::logic_error where the firmware runs. Where its core's watch stops it,
+  /// advance returns early.
+  chip::Chip& executing();
+  c28x::Core& code() { return executing().execute_code(); }
 
  private:
   Tick rest_periods() const;

@@ -252,6 +252,7 @@ std::uint16_t Core::read_system(std::uint16_t offset) const {
 }
 
 std::uint16_t Core::inspect(std::uint32_t address) {
+  if (code_ != nullptr && CodeCpu::is_vector(address)) return code_->vector_word(address);
   if (device_at(address) == Device::kNone) return inspect_memory(address);
   const Statistics before = statistics_;
   const bool wide = device_at(address) == Device::kCan;

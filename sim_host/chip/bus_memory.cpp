@@ -69,6 +69,11 @@ c28x::Core& Core::execute_code() {
   return code_->cpu();
 }
 
+void Core::replace_flash_library(const FlashLibrary& places) {
+  execute_code();
+  code_->replace_flash_library(places);
+}
+
 void Core::pass(Tick ticks) {
   advance(now_ + ticks);
   finish_access();

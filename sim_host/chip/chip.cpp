@@ -24,6 +24,11 @@ void Chip::stop_can_transmission() { core_->stop_can_transmission(); }
 bool Chip::is_idle() const { return core_->is_idle(); }
 void Chip::on_jump(Jump jump) { core_->on_jump(std::move(jump)); }
 c28x::Core& Chip::execute_code() { return core_->execute_code(); }
+void Chip::replace_flash_library(const FlashLibrary& places) { core_->replace_flash_library(places); }
+void Chip::raise_interrupt(unsigned vector) {
+  if (core_->raise_from_outside(vector)) return;
+  throw std::invalid_argument("no interrupt line has vector " + std::to_string(vector) + ": 13, 14, 32 to 127");
+}
 void Chip::load(const CodeBlocks& blocks) {
   for (const auto& [first, words] : blocks) {
     for (std::size_t k = 0; k < words.size(); ++k) {

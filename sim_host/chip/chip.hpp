@@ -28,6 +28,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim_host/chip/code_flash_library.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::c28x {
@@ -120,8 +121,13 @@ class Chip {
   void on_jump(Jump jump);
 
   /// For a chip whose firmware is boot_rom: the code that is in its memory is executed by a C28x core, where nothing
-  /// runs in its place. The core is there to be looked at; the chip runs it.
+  /// runs in its place. The core is there to be looked at and stopped; the chip runs it. Where its watch stops it,
+  /// run_until returns early, now() being the time of the instruction that comes next; the next call goes on.
   c28x::Core& execute_code();
+  /// Where the program has TI's flash library, the model's cells do what it would.
+  void replace_flash_library(const FlashLibrary& places);
+  /// A request as if the vector's peripheral had made it; std::invalid_argument for a vector that has no line.
+  void raise_interrupt(unsigned vector);
   /// Words by address into flash and RAM; std::invalid_argument where there is none.
   void load(const CodeBlocks& blocks);
 

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::uint32_t kInterruptCycles = 14;
 constexpr std::uint16_t kStack = 0x0400;
-constexpr std::uint32_t kVectors = 0x0D00;
 constexpr std::uint32_t kRomVectors = 0x3FFFC0;
 constexpr std::uint32_t kRomTargets = 0x000040;  // vectors of the boot ROM point into M0, two words each
 constexpr std::uint32_t kFrames = 0x6000;        // peripheral frames 1 and 2
@@ -29,7 +28,6 @@ constexpr Block kRam[] = {{0x0000, 0x400, false},
                           {0x9000, 0x1000, true},
                           {0xA000, 0x2000, true}};
 
-bool is_vector(std::uint32_t address) { return address - kVectors < 0x100; }
 bool is_flash_register(std::uint32_t address) { return address >= REG_FOPT && address <= REG_FOTPWAIT; }
 
 }  // namespace
@@ -80,6 +78,7 @@ void CodeCpu::run(std::uint32_t entry) {
     const Tick free = (chip_.horizon_ - chip_.now_) / chip_.period_;
     const c28x::Stop stop = cpu_.run(cpu_.cycles + static_cast<std::uint64_t>(std::max<Tick>(free, 1)));
     if (stop == c28x::Stop::kIdle) sleep();
+    if (stop == c28x::Stop::kBreakpoint) halt();
     if (stop == c28x::Stop::kUnmodelled) {
       chip_.model_error("the program sets AMODE, which is not modelled, at address", cpu_.r.pc);
       chip_.leave_firmware();
@@ -118,8 +117,34 @@ void CodeCpu::sleep() {
   }
   chip_.idle_ = false;
   chip_.statistics_.idle_ticks += chip_.now_ - begin;
+  note_passed(begin);
+}
+
+// The chip's time has gone on by itself.
+void CodeCpu::note_passed(Tick begin) {
   cpu_.cycles += static_cast<std::uint64_t>((chip_.now_ - begin) / chip_.period_);
   settled_ = cpu_.cycles;
+}
+
+// Before an instruction: the host has the word until it lets time pass again.
+void CodeCpu::halt() {
+  settle();
+  c28x::Watch& watch = cpu_.watch();
+  if (watch.is_replaced()) {
+    const Tick begin = chip_.now_;
+    flash_library_.carry_out(chip_, cpu_);
+    note_passed(begin);
+    if (chip_.stop_) chip_.leave_firmware();
+    return;
+  }
+  watch.halted = true;
+  chip_.coroutine_.suspend();
+  watch.halted = false;
+}
+
+void CodeCpu::replace_flash_library(const FlashLibrary& places) {
+  flash_library_ = places;
+  for (const std::uint32_t place : places.functions()) cpu_.watch().replace_code_at(place);
 }
 
 // ---- the bus -------------------------------------------------------------------------------------------------

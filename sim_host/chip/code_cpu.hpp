@@ -15,6 +15,7 @@
 #include <cstdint>
 
 #include "sim_host/chip/c28x/core.hpp"
+#include "sim_host/chip/code_flash_library.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::chip {
@@ -30,8 +31,14 @@ class CodeCpu final : private c28x::Bus {
   /// Executes from `entry` on, with the registers as the boot ROM leaves them. Only a reset ends it.
   [[noreturn]] void run(std::uint32_t entry);
 
-  const c28x::Core& cpu() const { return cpu_; }
   c28x::Core& cpu() { return cpu_; }
+
+  /// Carries out TI's flash library on the chip's cells where the program has it.
+  void replace_flash_library(const FlashLibrary& places);
+
+  /// The table of vectors in the PIE's RAM, which is no register of the chip's.
+  static bool is_vector(std::uint32_t address) { return address - kVectors < 0x100; }
+  std::uint16_t vector_word(std::uint32_t address) const { return vectors_[address - kVectors]; }
 
  private:
   std::uint16_t read(std::uint32_t address) override;
@@ -47,9 +54,14 @@ class CodeCpu final : private c28x::Bus {
   void settle();
   void collect();
   void sleep();
+  void note_passed(Tick begin);
+  void halt();
+
+  static constexpr std::uint32_t kVectors = 0x0D00;
 
   Core& chip_;
   c28x::Core cpu_;
+  FlashLibrary flash_library_;
   std::uint64_t settled_ = 0;  // the cycle at which the chip's time stands
   std::array<std::uint16_t, 256> vectors_{};
   std::array<c28x::Region, 5> ram_;

@@ -66,6 +66,8 @@ class Core final : public ChipServices {
   Memory& memory() { return memory_; }
   void on_jump(Chip::Jump jump) { jump_ = std::move(jump); }
   c28x::Core& execute_code();
+  void replace_flash_library(const FlashLibrary& places);
+  bool raise_from_outside(unsigned vector) { return interrupts_.raise(vector); }
 
   // ---- for the firmware (target_*)
   std::uint16_t read16(std::uint32_t address);

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from stillspin.core_code import NativeCode
 
-class NativeBoard(Protocol):
+
+class NativeBoard(NativeCode, Protocol):
     """A virtual board on the desk. Its time passes in `advance` alone; what is handed over takes effect at `now`.
 
     One at a time in a process, and no other virtual drive beside it. `close` frees the process for the next.
@@ -130,18 +132,6 @@ class NativeBoard(Protocol):
 
     def statistics(self) -> dict[str, int]:
         """Interrupts, resets, trips of the comparator, lost writes, idle ticks since it was powered."""
-        ...
-
-    def code(self) -> dict[str, int]:
-        """Of a board that executes an image: cycles, instructions, the cycles that were waited for, pc and sp."""
-        ...
-
-    def profile(self) -> None:
-        """Note from now on where the image's cycles go."""
-        ...
-
-    def spent(self) -> tuple[dict[int, int], dict[tuple[int, int], list[int]], int]:
-        """Cycles by address, cycles of each interrupt by vector and routine, and the highest stack pointer."""
         ...
 
     def inspect(self, address: int) -> int:

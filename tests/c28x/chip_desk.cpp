@@ -2,6 +2,7 @@
 // are hexadecimal, ticks too.
 //
 //     put ADDRESS WORD...      words into flash and RAM, before or between runs
+//     library ERASE PROGRAM VERIFY SCALE   where the program has TI's flash library, 0 for what it has not
 //     run TICK                 until then, through the boot ROM, with its pins at flash boot unless they are set
 //     level PIN 0|1            of a pin that is read
 //     code CHANNEL WORD        what the converter sees
@@ -39,6 +40,7 @@ class Desk final : public World {
     std::string command;
     words >> command;
     if (command == "put") put(words);
+    if (command == "library") replace_library(words);
     if (command == "run") chip_.run_until(static_cast<Tick>(number(words)));
     if (command == "level") set_level(words);
     if (command == "code") set_code(words);
@@ -84,6 +86,11 @@ class Desk final : public World {
     CodeBlocks blocks{{address, {}}};
     for (std::uint32_t word = 0; words >> word;) blocks[0].second.push_back(static_cast<std::uint16_t>(word));
     chip_.load(blocks);
+  }
+  void replace_library(std::istream& words) {
+    FlashLibrary places;
+    for (std::uint32_t* place : {&places.erase, &places.program, &places.verify, &places.scale}) *place = number(words);
+    chip_.replace_flash_library(places);
   }
   void set_level(std::istream& words) {
     const std::uint32_t pin = number(words);

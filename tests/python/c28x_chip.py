@@ -4,7 +4,8 @@ import subprocess
 from itertools import islice
 from pathlib import Path
 
-from stillspin.c28x.program import assemble
+from stillspin.c28x import linked
+from stillspin.c28x.program import assemble_files
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = ROOT / "tests/c28x/programs"
@@ -13,8 +14,16 @@ MILLISECOND = 100_000
 
 
 def program(name):
-    """Words and names of a program with what brings the chip up before it."""
-    return assemble((PROGRAMS / "start.asm").read_text() + (PROGRAMS / f"{name}.asm").read_text())
+    """Words, names and lines of a program with what brings the chip up before it."""
+    return assemble_files([PROGRAMS / f"{name}.asm"])
+
+
+def linked_file(folder, name, sources=()):
+    """The program as a file with labels and lines; of other sources when there are some."""
+    made = assemble_files(list(sources) or [PROGRAMS / f"{name}.asm"])
+    file = folder / f"{name}.out"
+    file.write_bytes(linked.to_elf(made, 0x3F7FF6))
+    return file
 
 
 def blocks(words):

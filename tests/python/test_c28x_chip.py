@@ -25,7 +25,8 @@ def test_an_echo_answers_over_the_serial_line():
 
 def in_ram(name):
     """A program for L0, as it is loaded there: its words alone, and where it begins."""
-    text = (PROGRAMS / "start.asm").read_text() + (PROGRAMS / f"{name}.asm").read_text()
+    text = (PROGRAMS / f"{name}.asm").read_text().replace('.copy   "start.asm"', "")
+    text = (PROGRAMS / "start.asm").read_text() + text
     text = text.replace(".org    0x3F7FF6\n        LB      start\n", "").replace(".org    0x3F4000", ".org    0x3F8000")
     return assemble(text)
 

@@ -23,6 +23,7 @@ Stop Core::run(std::uint64_t until) {
   while (cycles < until_) {
     if (((r.ifr & r.ier) != 0 || nmi_) && serve_interrupts()) continue;
     if (idle_) return Stop::kIdle;
+    if (watch_ != nullptr && watch_->stops(r, cycles)) return Stop::kBreakpoint;
     ++instructions;
     execute(fetch(r.pc));
     if (stop_ != Stop::kNone) return stop_;
@@ -41,11 +42,11 @@ const Instruction& Core::fetch(std::uint32_t address) {
 }
 
 void Core::execute(const Instruction& i) {
-  const std::uint64_t before = cycles;
+  if (profile_ == nullptr) return carry_out(i);
+  const Spent before = spent();
   carry_out(i);
-  if (profile_ == nullptr) return;
-  profile_->spend(i.address, cycles - before - repeated_cycles_, r.sp);
-  repeated_cycles_ = 0;
+  profile_->spend(i.address, spent() - before - repeated_, r.sp);
+  repeated_ = {};
 }
 
 void Core::carry_out(const Instruction& i) {
@@ -61,15 +62,15 @@ void Core::carry_out(const Instruction& i) {
 void Core::repeat(std::uint32_t count) {
   // A copy: the repeated instruction may overwrite the memory that it is in.
   const Instruction repeated = fetch(r.pc);
-  const std::uint64_t before = cycles;
+  const Spent before = spent();
   ++instructions;
   carry_out(repeated);
   const std::uint32_t repeats = repeated.repeatable ? count : 0;
   for (repeats_done = 1; repeats_done <= repeats; ++repeats_done, ++cycles) repeated.run(*this, repeated);
   repeats_done = 0;
   if (profile_ == nullptr) return;
-  repeated_cycles_ = cycles - before;
-  profile_->spend(repeated.address, repeated_cycles_, r.sp);
+  repeated_ = spent() - before;
+  profile_->spend(repeated.address, repeated_, r.sp);
 }
 
 // True when an interrupt was entered. With INTM set an enabled request ends IDLE and does nothing else.

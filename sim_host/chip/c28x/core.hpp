@@ -16,13 +16,14 @@
 #include "sim_host/chip/c28x/profile.hpp"
 #include "sim_host/chip/c28x/registers.hpp"
 #include "sim_host/chip/c28x/timing.hpp"
+#include "sim_host/chip/c28x/watch.hpp"
 
 namespace stillspin::c28x {
 
 enum class Stop : std::uint8_t {
   kNone,        // the cycles are used up
   kIdle,        // IDLE, and no enabled interrupt is there
-  kBreakpoint,  // ESTOP0, where breakpoints stop the core; the program counter is at it
+  kBreakpoint,  // ESTOP0, where breakpoints stop the core, or the watch; the program counter is at the instruction
   kUnmodelled   // AMODE was set: location fields mean what is not modelled
 };
 
@@ -40,6 +41,11 @@ class Core : public MappedMemory, public Timing {
   void take_profile() { profile_ = std::make_unique<Profile>(); }
   /// What was noted, nullptr for nothing.
   Profile* profile() const { return profile_.get(); }
+  /// Where to stop and what to trace; it costs time from the first call on.
+  Watch& watch() {
+    if (watch_ == nullptr) watch_ = std::make_unique<Watch>();
+    return *watch_;
+  }
 
   /// Ends `run` after the instruction that is being executed; for the bus.
   void yield() { until_ = 0; }
@@ -143,8 +149,11 @@ class Core : public MappedMemory, public Timing {
 
   static constexpr std::uint32_t kDecoded = 1U << 14;
 
+  Spent spent() const { return {cycles, waits.registers, waits.data, waits.fetch}; }
+
   std::unique_ptr<Profile> profile_;
-  std::uint64_t repeated_cycles_ = 0;  // of what RPT repeats, noted apart from it
+  Spent repeated_;  // of what RPT repeats, noted apart from it
+  std::unique_ptr<Watch> watch_;
   std::uint64_t until_ = 0;
   std::uint32_t interrupt_cycles_ = 8;
   bool idle_ = false;

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
+from typing import Protocol
 
 from rich.console import Console
 
@@ -30,6 +31,17 @@ _PAUSE = 0.05  # s of wall time; the longest sleep
 _LEAVE = 1.0  # s that the terminal has for the last line
 
 
+class Debugger(Protocol):
+    """What may hold the board's time."""
+
+    @property
+    def runs(self) -> bool:
+        """Whether time may pass."""
+
+    def poll(self, seconds: float) -> None:
+        """Look whether anything is asked, and wait for that so long where time may not pass."""
+
+
 @dataclass(frozen=True)
 class Options:
     """How to run the board.
@@ -47,6 +59,7 @@ class Options:
     end: float | None = None
     eeprom: Path | None = None
     parent: int | None = None
+    debugger: Debugger | None = None
 
 
 def serve(board: NativeBoard, options: Options, title: str) -> None:
@@ -73,7 +86,7 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
         with stopped_by_signals() as stop, Show(Console(stderr=True), desk, pacer, options.speed) as show:
             began = time.monotonic()
             stop.parent = options.parent
-            _loop(desk, pacer, show, stop, options.end)
+            _loop(desk, pacer, show, stop, options)
             wall = time.monotonic() - began
         ran = desk.time
     finally:
@@ -134,10 +147,15 @@ def stopped_by_signals() -> Iterator[Stop]:
             signal.signal(number, handler)
 
 
-def _loop(desk: Desk, pacer: Pacer, show: Show, stop: Stop, end: float | None) -> None:
+def _loop(desk: Desk, pacer: Pacer, show: Show, stop: Stop, options: Options) -> None:
+    end, debugger = options.end, options.debugger
     while not stop.wanted and (end is None or desk.time < end):
         due = pacer.due(desk.time)
-        if pacer.free and desk.board.in_loop:
+        if debugger:
+            debugger.poll(_PAUSE)
+        if debugger and not debugger.runs:
+            pass  # its time stands
+        elif pacer.free and desk.board.in_loop:
             desk.answer()
         elif due >= SLICE:
             desk.step(SLICE)

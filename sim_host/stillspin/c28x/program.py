@@ -6,31 +6,47 @@
     .sect "name"         the same by name: whoever assembles says where each section begins
     .set COUNT, 8        a name for a value; also as TI has it, COUNT .set 8
     .word 1, COUNT+1     words as they are; .long the same with 32 bits, the lower half first
+    .copy "start.asm"    the lines of another file, beside the one that says so; only of a file, not of a text
 
-`.def`, `.ref` and `.global` are read over: all names are known everywhere, those of elsewhere are given. Upper and
-lower case are the same.
+All names are known everywhere, those of elsewhere are given: `.ref` is read over, and what `.def` or `.global` name a
+linked file tells others. Upper and lower case are the same.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
 
 from stillspin.c28x.assembler import assemble_line
 from stillspin.c28x.expression import NAME, evaluated
 from stillspin.c28x.table import WORD
 from stillspin.errors import InputError
 
-_READ_OVER = (".DEF", ".REF", ".GLOBAL")
+_TOLD = (".DEF", ".GLOBAL")
+_READ_OVER = ".REF"
+
+
+class Line(NamedTuple):
+    """A line of a source file, the first is 1. A text without a file has the name ''."""
+
+    file: str
+    number: int
 
 
 @dataclass
 class Program:
-    """Words by address, and the values of the names, which are in capitals."""
+    """Words by address, the lines of their instructions, and the values of the names, which are in capitals."""
 
     words: dict[int, int] = field(default_factory=dict)
     symbols: dict[str, int] = field(default_factory=dict)
+    labels: dict[str, int] = field(default_factory=dict)
+    """Those of the names that are places in code, as they are written."""
+    told: set[str] = field(default_factory=set)
+    lines: dict[int, Line] = field(default_factory=dict)
+    """By the address of each instruction."""
 
 
 class _Pass:
@@ -75,22 +91,64 @@ class _Pass:
             for text in arguments:
                 value = self.evaluate(text)
                 self.put([value & 0xFFFF, value >> WORD])
-        elif name not in _READ_OVER:
+        elif name in _TOLD:
+            self.program.told.update(arguments)
+        elif name != _READ_OVER:
             raise InputError(f"'{name}' is no directive")
 
-    def line(self, text: str) -> None:
-        text = text.partition(";")[0].strip().upper()
+    def line(self, text: str, where: Line) -> None:
+        written = text.partition(";")[0].strip()
+        text = written.upper()
         if match := re.fullmatch(rf"({NAME})\s+\.SET\s+(.+)", text):
             text = f".SET {match[1]},{match[2]}"
         while match := re.match(rf"({NAME}):\s*", text):
             self.program.symbols[match[1]] = self.at
             text = text[match.end() :]
+            label, _, written = written.partition(":")
+            self.program.labels[label.strip()] = self.at
         text = text.removeprefix("||").strip()
         if text.startswith("."):
             name, *rest = text.split(maxsplit=1)
             self.directive(name, re.sub(r"\s", "", "".join(rest)).split(","))
         elif text:
+            self.program.lines[self.at] = where
             self.put(assemble_line(text, self.at, self.evaluate))
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: cannot be read ({error})") from error
+
+
+def _lines(source: str, name: str, folder: Path | None) -> Iterator[tuple[Line, str]]:
+    """Those of a text, in the place of `.copy` those of the file."""
+    for number, text in enumerate(source.splitlines(), start=1):
+        match = re.fullmatch(r'\s*\.copy\s+"(.+)"\s*(;.*)?', text, re.IGNORECASE)
+        if match is None or folder is None:
+            yield Line(name, number), text
+            continue
+        other = folder / match[1]
+        if other.name == name:
+            raise InputError(f"{name}, line {number}: the file copies itself")
+        yield from _lines(_read(other), other.name, other.parent)
+
+
+def _assemble(
+    lines: list[tuple[Line, str]], sections: Mapping[str, int] | None, symbols: Mapping[str, int] | None
+) -> Program:
+    known = {name.upper(): value for name, value in (symbols or {}).items()}
+    for final in (False, True):
+        run = _Pass(known, sections or {}, final)
+        for where, text in lines:
+            try:
+                run.line(text, where)
+            except (InputError, ValueError, IndexError) as error:
+                named = f"{where.file}, " if where.file else ""
+                raise InputError(f"{named}line {where.number}: {error}") from error
+        known = run.program.symbols
+    return run.program
 
 
 def assemble(
@@ -106,13 +164,13 @@ def assemble(
     Raises:
         InputError: a line is wrong; it is named.
     """
-    known = {name.upper(): value for name, value in (symbols or {}).items()}
-    for final in (False, True):
-        run = _Pass(known, sections or {}, final)
-        for number, line in enumerate(source.splitlines(), start=1):
-            try:
-                run.line(line)
-            except (InputError, ValueError, IndexError) as error:
-                raise InputError(f"line {number}: {error}") from error
-        known = run.program.symbols
-    return run.program
+    return _assemble(list(_lines(source, "", None)), sections, symbols)
+
+
+def assemble_files(files: list[Path]) -> Program:
+    """A program of several files, one after the other, each with those that it copies.
+
+    Raises:
+        InputError: a file cannot be read, or a line is wrong; it is named.
+    """
+    return _assemble([line for file in files for line in _lines(_read(file), file.name, file.parent)], None, None)

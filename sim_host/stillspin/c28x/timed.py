@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from stillspin.c28x.disassembler import disassemble
+from stillspin.core_code import Spent
+from stillspin.flash.debug_lines import Lines, Source
 from stillspin.flash.program import Program
 
 _BARS = 8
 _BAR = 24
-_CHANNELS = 8
-_PIE_FIRST = 32
 _UNNAMED = "(no name)"
 
 
@@ -23,26 +23,31 @@ class Function:
     name: str
     first: int
     end: int
-    cycles: int
+    spent: Spent
     ran: int
     """Words of instructions that were executed."""
 
-
-def vector_name(number: int) -> str:
-    """As TI numbers them: INTx.y of the PIE, or the CPU's own."""
-    if number >= _PIE_FIRST:
-        group, channel = divmod(number - _PIE_FIRST, _CHANNELS)
-        return f"INT{group + 1}.{channel + 1}"
-    return {18: "NMI", 19: "ILLEGAL"}.get(number, f"INT{number}" if number < 15 else f"vector {number}")
+    @property
+    def cycles(self) -> int:
+        """With all waits."""
+        return self.spent[0]
 
 
-def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, int]) -> list[Function]:
+def added(some: Iterable[Spent]) -> Spent:
+    """The sum of cycles and waits."""
+    cycles, registers, data, fetches = 0, 0, 0, 0
+    for one in some:
+        cycles, registers, data, fetches = cycles + one[0], registers + one[1], data + one[2], fetches + one[3]
+    return cycles, registers, data, fetches
+
+
+def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, Spent]) -> list[Function]:
     """Those that the program has, in the order of their cycles.
 
     Args:
         program: its words.
         names: of places in its code, by address.
-        spent: cycles by the address of the instruction.
+        spent: cycles and waits by the address of the instruction.
     """
     starts = sorted({*names, *(block.address for block in program.blocks)})
     made = []
@@ -53,9 +58,9 @@ def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, in
         end = min(following, block.end)
         there = [address for address in spent if first <= address < end]
         ran = sum(_length(program, address) for address in there)
-        cycles = sum(spent[address] for address in there)
-        if first in names or cycles:
-            made.append(Function(names.get(first, _UNNAMED), first, end, cycles, ran))
+        if first in names or there:
+            took = added(spent[address] for address in there)
+            made.append(Function(names.get(first, _UNNAMED), first, end, took, ran))
     return sorted(made, key=lambda function: -function.cycles)
 
 
@@ -64,9 +69,19 @@ def _length(program: Program, address: int) -> int:
     return disassemble(words, address).words
 
 
-def elsewhere(program: Program, spent: Mapping[int, int]) -> int:
-    """Cycles of code that is not where the program has it: copied to RAM, most of all."""
-    return sum(cycles for address, cycles in spent.items() if program.word(address) is None)
+def by_line(lines: Lines, spent: Mapping[int, Spent]) -> list[tuple[Source, Spent]]:
+    """What each source line took, the longest first; code without a line is not in it."""
+    found: dict[Source, list[Spent]] = {}
+    for address, count in spent.items():
+        source = lines.at(address)
+        if source is not None:
+            found.setdefault(source, []).append(count)
+    return sorted(((source, added(counts)) for source, counts in found.items()), key=lambda row: -row[1][0])
+
+
+def elsewhere(program: Program, spent: Mapping[int, Spent]) -> Spent:
+    """What code took that is not where the program has it: copied to RAM, most of all."""
+    return added(count for address, count in spent.items() if program.word(address) is None)
 
 
 def histogram(cycles: Sequence[int]) -> Iterator[str]:

@@ -13,6 +13,8 @@ from stillspin.board import image as images
 from stillspin.board import power, serve
 from stillspin.cases import profile, variant
 from stillspin.errors import InputError
+from stillspin.image import opened
+from stillspin.image.gdb import Remote
 from stillspin.options import (
     ChangeOption,
     MotorOption,
@@ -22,6 +24,7 @@ from stillspin.options import (
     SchemeOption,
     SeedOption,
     number,
+    whole,
 )
 from stillspin.runs import commission
 
@@ -77,6 +80,15 @@ def board(
             "ELF), Intel hex or a boot stream.",
         ),
     ] = None,
+    gdb: Annotated[
+        int | None,
+        typer.Option(
+            "--gdb",
+            parser=whole("--gdb", 0, 65535),
+            metavar="PORT",
+            help="Let a debugger in at this port of this computer, 0 for any; the program of --image waits for it.",
+        ),
+    ] = None,
     parent: Annotated[
         int | None, typer.Option("--parent", metavar="PID", help="Switch off when this process, its parent, is gone.")
     ] = None,
@@ -84,6 +96,8 @@ def board(
     """Run a virtual board in real time; its serial port is a pseudo-terminal. Ctrl-C switches it off."""
     if image and (params or change or scheme):
         raise InputError("--image: only --profile, --motor and --seed go with it; the program has its own parameters")
+    if gdb is not None and not image:
+        raise InputError("--gdb: goes with --image FILE alone; the firmware on this computer has gdb itself")
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
@@ -101,4 +115,14 @@ def board(
     if image:
         title += f", executes {image.name}"
     powered = power.power(native, chosen, changes, seed, images.load(image) if image else None)
-    serve.serve(powered, serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent), title)
+    debugger = None
+    if image:
+        names = opened.equip(powered, image)
+        debugger = None if gdb is None else Remote(powered, names, gdb)
+        title += f", gdb: target remote localhost:{debugger.port}" if debugger else ""
+    options = serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger)
+    try:
+        serve.serve(powered, options, title)
+    finally:
+        if debugger:
+            debugger.close()

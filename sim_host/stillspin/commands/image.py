@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from stillspin.c28x.disassembler import disassemble
-from stillspin.commands import image_time
+from stillspin.commands import image_assemble, image_inject, image_time, image_trace
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -20,10 +20,15 @@ from stillspin.flash.program import Block, Program
 from stillspin.one_line_errors import OneLineErrors
 
 app = typer.Typer(
-    cls=OneLineErrors, help="Linked images: show one, time one on the virtual board.", rich_markup_mode=None
+    cls=OneLineErrors,
+    help="Linked images: show one; time, trace and interrupt one on the virtual board; assemble one.",
+    rich_markup_mode=None,
 )
 
 app.command(name="time")(image_time.time)
+app.command(name="trace")(image_trace.trace)
+app.command(name="inject")(image_inject.inject)
+app.command(name="assemble")(image_assemble.assemble)
 
 PLACES = (
     *(("M0", range(0x000000, 0x000400)), ("M1", range(0x000400, 0x000800)), ("L0", range(0x008000, 0x009000))),

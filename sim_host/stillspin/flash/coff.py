@@ -19,6 +19,7 @@ _SECTION = struct.Struct("<8sIIIIIIIIIHH")
 _SYMBOL = struct.Struct("<8sIhHBB")
 _NAMED = {2, 3, 6}
 """Storage classes of what has an address: external, static, label."""
+_ABSOLUTE = -1
 _TEXT = 0x0020
 _EXECUTABLE = 0x0002
 _NOT_LOADED = 0x0001 | 0x0002 | 0x0010 | 0x0080
@@ -65,24 +66,58 @@ def functions(data: bytes) -> dict[int, str]:
     Raises:
         struct.error: the file is cut short.
     """
-    _, count, _, table, symbols, optional, _, _ = _HEADER.unpack_from(data)
+    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
     code = {
         index + 1
         for index in range(count)
         if _SECTION.unpack_from(data, _HEADER.size + optional + index * _SECTION.size)[9] & _TEXT
     }
-    strings = table + symbols * _SYMBOL.size
     found: dict[int, str] = {}
+    for name, value, section in _symbols(data):
+        if section in code and not name.startswith((".", "$")):
+            found.setdefault(value, name)
+    return found
+
+
+def addresses(data: bytes) -> dict[str, int]:
+    """Addresses of everything that has a name, code and data; absolute values too.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
+    return {name: value for name, value, section in _symbols(data) if section > 0 or section == _ABSOLUTE}
+
+
+def _symbols(data: bytes) -> Iterator[tuple[str, int, int]]:
+    """Name, value and section of what has an address."""
+    _, _, _, table, symbols, _, _, _ = _HEADER.unpack_from(data)
+    strings = table + symbols * _SYMBOL.size
     at = 0
     while at < symbols:
         name, value, section, _, kind, more = _SYMBOL.unpack_from(data, table + at * _SYMBOL.size)
         at += 1 + more
-        if section not in code or kind not in _NAMED:
-            continue
-        words = _name(name, data, strings)
-        if words and not words.startswith((".", "$")):
-            found.setdefault(value, words)
-    return found
+        words = _name(name, data, strings) if kind in _NAMED else ""
+        if words:
+            yield words, value, section
+
+
+def section(data: bytes, wanted: str) -> Iterator[bytes]:
+    """The content of a section that is not loaded, in each way in which its octets may lie in words.
+
+    Two to a word, one to a word, or a size that counts octets: tools differ, and whoever reads sees which it is.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
+    _, count, _, table, symbols, optional, _, _ = _HEADER.unpack_from(data)
+    strings = table + symbols * _SYMBOL.size
+    for index in range(count):
+        name, _, _, size, raw, *_ = _SECTION.unpack_from(data, _HEADER.size + optional + index * _SECTION.size)
+        if raw and _name(name, data, strings) == wanted:
+            packed = data[raw : raw + 2 * size]
+            yield packed
+            yield packed[::2]
+            yield data[raw : raw + size]
 
 
 def _name(name: bytes, data: bytes, strings: int) -> str:

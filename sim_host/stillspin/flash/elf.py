@@ -17,17 +17,21 @@ from stillspin.flash.program import Block, Program, assemble
 KIND = "ELF"
 MAGIC = b"\x7fELF"
 _CLASS_AND_ORDER = b"\x01\x01"
-_MACHINE = 141
+MACHINE = 141
 _EXECUTABLE = 2
 _HEADER = struct.Struct("<16sHHIIIIIHHHHHH")
 _SEGMENT = struct.Struct("<IIIIIIII")
 _SECTION = struct.Struct("<IIIIIIIIII")
 _SYMBOL = struct.Struct("<IIIBBH")
 _LOAD = 1
+_ABSOLUTE = 0xFFF1
+_CONTENT = 1
 _SYMBOL_TABLE = 2
 _INSTRUCTIONS = 4
 _NAMED = {0, 2}
 """Types of symbols that are places in code: without a type (assembly), function."""
+_ADDRESSED = {0, 1, 2}
+"""And of data: object."""
 
 
 class _Header(NamedTuple):
@@ -61,9 +65,9 @@ def read(data: bytes, name: str) -> Program:
 
 def _read(data: bytes, name: str) -> Program:
     header = _header(data)
-    if header.machine != _MACHINE or data[4:6] != _CLASS_AND_ORDER:
+    if header.machine != MACHINE or data[4:6] != _CLASS_AND_ORDER:
         raise InputError(
-            f"{name}: is an ELF file for another processor (machine {header.machine}), not for the C28x ({_MACHINE})"
+            f"{name}: is an ELF file for another processor (machine {header.machine}), not for the C28x ({MACHINE})"
         )
     if header.kind != _EXECUTABLE or not header.segment_count:
         raise InputError(f"{name}: is an ELF object that has not been linked; give the .out file")
@@ -89,11 +93,46 @@ def functions(data: bytes) -> dict[int, str]:
         struct.error: the file is cut short.
         ValueError: a table of names has no text.
     """
+    sections = _sections(data)
+    found: dict[int, str] = {}
+    for name, value, kind, section in _symbols(data, sections):
+        code = section < len(sections) and sections[section][2] & _INSTRUCTIONS
+        if code and kind in _NAMED and not name.startswith((".", "$")):
+            found.setdefault(value, name)
+    return found
+
+
+def addresses(data: bytes) -> dict[str, int]:
+    """Addresses of everything that has a name, code and data; absolute values too. Raises as `functions` does."""
+    sections = _sections(data)
+    return {
+        name: value
+        for name, value, kind, section in _symbols(data, sections)
+        if kind in _ADDRESSED and (0 < section < len(sections) or section == _ABSOLUTE)
+    }
+
+
+def section(data: bytes, wanted: str) -> Iterator[bytes]:
+    """The content of a section by its name. Raises as `functions` does."""
+    sections = _sections(data)
+    names = _HEADER.unpack_from(data)[13]
+    if not names < len(sections):
+        return
+    strings = sections[names][4]
+    for name, kind, _, _, at, octets, *_ in sections:
+        if kind == _CONTENT and _text(data, strings + name) == wanted:
+            yield data[at : at + octets]
+
+
+def _sections(data: bytes) -> list[tuple[int, ...]]:
     header = _header(data)
-    sections = [
+    return [
         _SECTION.unpack_from(data, header.sections + index * _SECTION.size) for index in range(header.section_count)
     ]
-    found: dict[int, str] = {}
+
+
+def _symbols(data: bytes, sections: list[tuple[int, ...]]) -> Iterator[tuple[str, int, int, int]]:
+    """Name, value, type and section of what has a name."""
     for _, kind, _, _, at, octets, link, _, _, _ in sections:
         if kind != _SYMBOL_TABLE:
             continue
@@ -102,8 +141,9 @@ def functions(data: bytes) -> dict[int, str]:
         strings = sections[link][4]
         for place in range(at, at + octets, _SYMBOL.size):
             name, value, _, information, _, section = _SYMBOL.unpack_from(data, place)
-            code = section < len(sections) and sections[section][2] & _INSTRUCTIONS
-            words = data[strings + name : data.index(0, strings + name)].decode("ascii", "replace")
-            if code and information & 0xF in _NAMED and words and not words.startswith((".", "$")):
-                found.setdefault(value, words)
-    return found
+            if words := _text(data, strings + name):
+                yield words, value, information & 0xF, section
+
+
+def _text(data: bytes, at: int) -> str:
+    return data[at : data.index(0, at)].decode("ascii", "replace")

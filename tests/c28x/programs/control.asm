@@ -2,6 +2,8 @@
 ; reference by an integrator, whose upper part is the duty. The serial port is served beside it: an octet is a new
 ; reference, 16 codes each, and answered by the last sample.
 ; Words at 0x8000: reference, last sample, duty, number of samples; the integrator at 0x8006.
+        .copy   "start.asm"
+        .global REF, LAST, DUTY, COUNT, SUM
 REF     .set    0x8000
 LAST    .set    0x8001
 DUTY    .set    0x8002

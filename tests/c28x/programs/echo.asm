@@ -1,4 +1,5 @@
 ; A serial echo: each octet comes back, letters in the other case.
+        .copy   "start.asm"
 main:   LCR     serial
 again:  TBIT    @SCIRXST,#6
         B       again,NTC

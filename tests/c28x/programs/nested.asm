@@ -1,6 +1,8 @@
 ; Nested interrupts through the PIE. CPU timer 0 (INT1.7) every 25 us toggles GPIO7; ePWM1 (INT3.1) every 100 us works
 ; for some 70 us with GPIO6 high, and lets interrupts of group 1 in meanwhile where ALLOWED is 1.
 ; Words at 0x8000: timer interrupts, those of them within the other one, interrupts of the ePWM, ALLOWED.
+        .copy   "start.asm"
+        .global TIMERS, WITHIN, PERIODS, ALLOWED, INSIDE
 TIMERS  .set    0x8000
 WITHIN  .set    0x8001
 PERIODS .set    0x8002

@@ -1,5 +1,5 @@
 ; From the flash's entry to a chip at 100 MHz: watchdog off, PLL locked, clocks of the peripherals on, the flash's waits
-; and its prefetching as they are to be. Then it goes to `main`, which each program has.
+; and its prefetching as they are to be. Then it goes to `main`, which each program has; they copy this file.
 
 WDCR    .set    0x7029
 PLLSTS  .set    0x7011

@@ -1,4 +1,5 @@
 ; ePWM1 at 50 kHz with a duty of a quarter, up-count; output A alone.
+        .copy   "start.asm"
 TBCTL   .set    0x6800
 TBPRD   .set    0x6805
 CMPA    .set    0x6809

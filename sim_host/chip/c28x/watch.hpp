@@ -1,0 +1,93 @@
+// Where the core is to stop before an instruction, and the last instructions that it executed: for debuggers, and for
+// what stands in the place of code.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_C28X_WATCH_HPP
+#define STILLSPIN_SIM_HOST_CHIP_C28X_WATCH_HPP
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "sim_host/chip/c28x/profile.hpp"
+#include "sim_host/chip/c28x/registers.hpp"
+
+namespace stillspin::c28x {
+
+class Watch {
+ public:
+  static constexpr std::uint64_t kUnlimited = ~std::uint64_t{0};
+
+  /// What is executed next, with the registers before it.
+  struct Traced {
+    std::uint64_t cycles = 0;
+    Registers registers;
+  };
+
+  /// Stops before each execution of the instruction at this address.
+  void stop_at(std::uint32_t address, bool on) { mark(address, kStop, on); }
+  /// The same for all of them.
+  void stop_nowhere() {
+    for (std::uint8_t& marked : marks_) marked = static_cast<std::uint8_t>(marked & ~kStop);
+  }
+  /// Stops after so many instructions, repeats not counted; entries into interrupts are none.
+  void stop_after(std::uint64_t instructions) { left_ = instructions; }
+  /// Other code than the memory's is at this address; whoever runs the core carries it out.
+  void replace_code_at(std::uint32_t address) { mark(address, kReplaced, true); }
+
+  /// Keeps the last so many instructions, 0 for none.
+  void trace(std::size_t depth) {
+    trace_.assign(depth, {});
+    traced_ = 0;
+  }
+  /// Oldest first.
+  std::vector<Traced> traced() const {
+    const std::uint64_t kept = std::min<std::uint64_t>(traced_, trace_.size());
+    std::vector<Traced> all;
+    for (std::uint64_t k = traced_ - kept; k < traced_; ++k) all.push_back(trace_[k % trace_.size()]);
+    return all;
+  }
+
+  /// Before an instruction: whether to stop. The one at which it stopped is not stopped at again when it goes on.
+  bool stops(const Registers& r, std::uint64_t cycles) {
+    const std::uint8_t marked = marks_[Profile::index(r.pc)];
+    const bool passing = r.pc == passing_;
+    passing_ = kNowhere;
+    if (!passing && (left_ == 0 || (marked & kStop) != 0)) {
+      passing_ = r.pc;
+      left_ = kUnlimited;
+      replaced_ = false;
+      return true;
+    }
+    replaced_ = (marked & kReplaced) != 0;
+    if (replaced_) return true;
+    if (left_ != kUnlimited && left_ > 0) --left_;
+    if (!trace_.empty()) trace_[traced_++ % trace_.size()] = {cycles, r};
+    return false;
+  }
+  /// What the last stop was for: code that is replaced, rather than a debugger.
+  bool is_replaced() const { return replaced_; }
+
+  /// Whether the core stands at such a stop; said by who runs it.
+  bool halted = false;
+
+ private:
+  static constexpr std::uint8_t kStop = 1;
+  static constexpr std::uint8_t kReplaced = 2;
+  static constexpr std::uint32_t kNowhere = ~0U;
+
+  void mark(std::uint32_t address, std::uint8_t bit, bool on) {
+    std::uint8_t& marked = marks_[Profile::index(address & kProgramMask)];
+    marked = static_cast<std::uint8_t>(on ? marked | bit : marked & ~bit);
+  }
+
+  std::vector<std::uint8_t> marks_ = std::vector<std::uint8_t>(Profile::kLow + Profile::kHigh);
+  std::uint64_t left_ = kUnlimited;
+  std::uint32_t passing_ = kNowhere;
+  bool replaced_ = false;
+  std::vector<Traced> trace_;
+  std::uint64_t traced_ = 0;
+};
+
+}  // namespace stillspin::c28x
+
+#endif

@@ -1,0 +1,123 @@
+"""`stillspin image inject`: an interrupt at each instruction of a stretch of code, and whether anyone could tell."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stillspin import resources
+from stillspin.counted import counted
+from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
+from stillspin.flash.names import Names
+from stillspin.image import inject as injection
+from stillspin.image import opened, vectors
+from stillspin.image.inject import Difference, Report, Stretch
+from stillspin.options import MotorOption, ProfileOption, SeedOption, number
+
+_MOST_SHOWN = 8
+
+
+def _watched(texts: list[str], names: Names) -> list[tuple[int, int]]:
+    """NAME or NAME:WORDS."""
+    found = []
+    for text in texts:
+        name, mark, count = text.partition(":")
+        if mark and not (count.isdigit() and int(count) > 0):
+            raise InputError(f"--compare: '{text}' is not NAME or NAME:WORDS, such as COUNT:2")
+        found.append((names.address(name, "--compare"), int(count) if mark else 1))
+    return found
+
+
+def _what(difference: Difference, names: Names) -> str:
+    if isinstance(difference.what, str):
+        return difference.what
+    named = next((name for name, address in names.addresses.items() if address == difference.what), "")
+    return f"{named} (0x{difference.what:04X})" if named else f"0x{difference.what:04X}"
+
+
+def _say(report: Report, image: opened.Image) -> None:
+    names = image.names
+    for address, differences in report.differences:
+        print(f"before {names.place(address)}:")
+        for one in differences[:_MOST_SHOWN]:
+            print(
+                f"    {_what(one, names)} is 0x{one.value:X}; with the interrupt before the stretch 0x{one.before:X}, "
+                f"behind it 0x{one.after:X}"
+            )
+        if len(differences) > _MOST_SHOWN:
+            print(f"    and {len(differences) - _MOST_SHOWN} more")
+    for address, registers in report.spoilt[:1]:
+        spoilt = ", ".join(f"{one.what} (0x{one.before:X} is 0x{one.value:X})" for one in registers)
+        print(f"not put back by the interrupt, the first time before {names.place(address)}: {spoilt}")
+    if report.held_off:
+        print(f"held off to the end: asked for before {counted(len(report.held_off), 'instruction')}")
+    for address in report.unclear:
+        print(f"not compared, since other interrupts were moved by it: before {names.place(address)}")
+
+
+def inject(
+    *,
+    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    interrupt: Annotated[str, typer.Option("--interrupt", metavar="INTx.y", help="Which, by its line in the PIE.")],
+    begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")],
+    end: Annotated[
+        str, typer.Option("--to", metavar="PLACE", help="Where the stretch ends; none is once around to its beginning.")
+    ] = "",
+    compare: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--compare", metavar="NAME[:WORDS]", help="Compare these words instead of all of RAM. Repeatable."
+        ),
+    ] = None,
+    after: Annotated[
+        float,
+        typer.Option(
+            "--after",
+            parser=number("--after", 0, unit="s"),
+            metavar="SECONDS",
+            help="Let it run before, from power-on.",
+        ),
+    ] = 0.0,
+    within: Annotated[
+        float,
+        typer.Option(
+            "--within",
+            parser=number("--within", 1e-6, unit="s"),
+            metavar="SECONDS",
+            help="It begins, and ends, by then.",
+        ),
+    ] = 0.1,
+    most: Annotated[int, typer.Option("--most", min=1, max=100_000, help="Give up after as many instructions.")] = 2000,
+    profile_name: ProfileOption = "bench",
+    motor: MotorOption = resources.DEFAULT_MOTOR,
+    seed: SeedOption = 1,
+) -> None:
+    """Ask for an interrupt before each instruction executed in a stretch of code, and compare what it leaves behind.
+
+    Exit status 1 when some place gives another result than an interrupt before the stretch and one behind it.
+    """
+    image = opened.read(file)
+    first = image.names.address(begin, "--from")
+    last = image.names.address(end, "--to") if end else first
+    vector = vectors.number(interrupt, "--interrupt")
+    stretch = Stretch(first, last, vector, _watched(compare or [], image.names), most, within)
+    board = opened.power_on(image, profile_name, motor, seed)
+    try:
+        opened.advance(board, after)
+        report = injection.inject(board, stretch)
+    finally:
+        board.close()
+    print(
+        f"{file.name}: {interrupt.upper()} before each of {counted(len(report.executed), 'instruction')} from "
+        f"{image.names.place(first)} to {image.names.place(last)}"
+    )
+    _say(report, image)
+    if report.spoilt and not report.differences:
+        raise typer.Exit(ExitCode.SHORT)
+    if report.differences:
+        print(f"{counted(len(report.differences), 'place')} at which the interrupt can be told")
+        raise typer.Exit(ExitCode.SHORT)
+    print("as if it came before the stretch or behind it, each time")

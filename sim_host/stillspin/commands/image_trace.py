@@ -1,0 +1,57 @@
+"""`stillspin image trace`: the instructions that an image executes, with what each of them changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stillspin import resources
+from stillspin.errors import CampaignError
+from stillspin.image import opened
+from stillspin.image import trace as tracing
+from stillspin.options import MotorOption, ProfileOption, SeedOption, number
+
+
+def trace(
+    *,
+    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")] = "",
+    end: Annotated[str, typer.Option("--to", metavar="PLACE", help="The last instructions before this place.")] = "",
+    count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="As many.")] = 40,
+    after: Annotated[
+        float,
+        typer.Option(
+            "--after",
+            parser=number("--after", 0, unit="s"),
+            metavar="SECONDS",
+            help="Let it run before, from power-on.",
+        ),
+    ] = 0.0,
+    within: Annotated[
+        float,
+        typer.Option("--within", parser=number("--within", 1e-6, unit="s"), metavar="SECONDS", help="Give up then."),
+    ] = 0.1,
+    profile_name: ProfileOption = "bench",
+    motor: MotorOption = resources.DEFAULT_MOTOR,
+    seed: SeedOption = 1,
+) -> None:
+    """List executed instructions: cycle, address, instruction, its cycles with waits, registers that it changed."""
+    image = opened.read(file)
+    first = image.names.address(begin, "--from") if begin else None
+    last = image.names.address(end, "--to") if end else None
+    board = opened.power_on(image, profile_name, motor, seed)
+    try:
+        opened.advance(board, after)
+        if first is not None and not opened.run_to(board, [first], within):
+            raise CampaignError(f"--from: {image.names.place(first)} was not reached within {within:g} s")
+        board.trace(count)
+        if last is None:
+            board.stop_after(count)
+        if not opened.run_to(board, () if last is None else [last], within):
+            print(f"not reached within {within:g} s; the last instructions before:")
+        for line in tracing.lines(board, image.names):
+            print(line)
+    finally:
+        board.close()

@@ -1,0 +1,75 @@
+"""Typed view of what a virtual board has that executes an image (sim_host/bench/module_code.cpp)."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+Spent = tuple[int, int, int, int]
+"""Cycles, and of them those waited for registers, data and fetches."""
+Interrupt = tuple[int, int]
+"""Vector and routine."""
+
+
+class NativeCode(Protocol):
+    """What a board has that executes an image; RuntimeError from one that does not."""
+
+    def code(self) -> dict[str, int]:
+        """Cycles, instructions, the cycles that were waited for, pc and sp."""
+        ...
+
+    def profile(self) -> None:
+        """Note from now on where the image's cycles go."""
+        ...
+
+    def spent(self) -> tuple[dict[int, Spent], dict[Interrupt, list[int]], int]:
+        """Cycles by address, cycles of each interrupt, and the highest stack pointer."""
+        ...
+
+    def within(self) -> dict[Interrupt, dict[int, int]]:
+        """Cycles by address in each interrupt, without its entry and the interrupts in between."""
+        ...
+
+    def registers(self) -> dict[str, int]:
+        """ACC, P, XT, XAR0 to XAR7, PC, RPC, SP, DP, ST0, ST1, IFR, IER, DBGIER; between instructions when halted."""
+        ...
+
+    def set_register(self, name: str, value: int) -> None:
+        """One of them. ValueError for a name that is none."""
+        ...
+
+    def stop_at(self, addresses: list[int], traps: bool = False) -> None:
+        """Let `advance` end before the instructions at these addresses, and no longer at others; at ESTOP0 if told."""
+        ...
+
+    def stop_after(self, instructions: int) -> None:
+        """Let `advance` end when so many more instructions have been executed, once."""
+        ...
+
+    @property
+    def halted(self) -> bool:
+        """Whether the last `advance` ended at such a place."""
+        ...
+
+    def trace(self, depth: int) -> None:
+        """Keep the last so many instructions from now on; 0 ends it."""
+        ...
+
+    def traced(self) -> list[tuple[int, dict[str, int]]]:
+        """Of those kept, oldest first, cycles and registers before each."""
+        ...
+
+    def words(self, address: int, count: int) -> list[int]:
+        """As inspect, of neighbours."""
+        ...
+
+    def put(self, blocks: list[tuple[int, list[int]]]) -> None:
+        """Words into flash and RAM as a probe would; ValueError where there is neither."""
+        ...
+
+    def raise_interrupt(self, vector: int) -> None:
+        """A request as if the vector's peripheral had made it; ValueError for a vector that has no line."""
+        ...
+
+    def replace_flash_library(self, erase: int, program: int, verify: int, scale: int) -> None:
+        """Addresses of TI's flash library and its variable, 0 for none: the model's cells do what it would."""
+        ...

@@ -1,0 +1,78 @@
+"""What a linked file says beside its words: names of functions and variables, source lines."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from stillspin.errors import InputError, did_you_mean
+from stillspin.flash import coff, debug_lines, elf
+from stillspin.flash.debug_lines import Lines, Source
+
+_LINES = ".debug_line"
+
+
+@dataclass(frozen=True)
+class Names:
+    """Of a format without them all are empty."""
+
+    functions: Mapping[int, str] = field(default_factory=dict)
+    addresses: Mapping[str, int] = field(default_factory=dict)
+    """Of functions and variables. C's names have a _ in front in COFF."""
+    lines: Lines = field(default_factory=lambda: Lines([]))
+
+    def function(self, address: int) -> str:
+        """The name of the function around an address, or the address."""
+        before = [place for place in self.functions if place <= address]
+        if not before:
+            return f"0x{address:06X}"
+        first = max(before)
+        return self.functions[first] + (f"+{address - first}" if address > first else "")
+
+    def place(self, address: int) -> str:
+        """An address for people: where it is, in which function, from which line."""
+        source = self.lines.at(address)
+        return f"0x{address:06X} {self.function(address)}" + (f" ({source})" if source else "")
+
+    def address(self, text: str, option: str) -> int:
+        """What was typed: an address, a name with or without C's _, or FILE:LINE.
+
+        Raises:
+            InputError: there is nothing of it.
+        """
+        for name in (text, f"_{text}"):
+            if name in self.addresses:
+                return self.addresses[name]
+        file, _, number = text.rpartition(":")
+        if file and number.isdigit():
+            places = self.lines.places(file, int(number))
+            if places:
+                return places[0]
+            raise InputError(f"{option}: no code comes from line {number} of {file}")
+        try:
+            return int(text, 0)
+        except ValueError:
+            near = did_you_mean(text, self.addresses)
+            raise InputError(
+                f"{option}: '{text}' is neither an address such as 0x3F4000, nor FILE:LINE, nor a name that the image "
+                f"has{near}"
+            ) from None
+
+
+def read(file: Path) -> Names:
+    """Those of a file. What is damaged is left out: the words are there, and that is what runs."""
+    data = file.read_bytes()
+    kind = elf if data.startswith(elf.MAGIC) else coff if data.startswith(coff.MAGIC) else None
+    if kind is None:
+        return Names()
+    try:
+        read_lines = (debug_lines.read(section) for section in kind.section(data, _LINES))
+        lines = next((some for some in read_lines if some), Lines([]))
+        return Names(kind.functions(data), kind.addresses(data), lines)
+    except (struct.error, ValueError):
+        return Names()
+
+
+__all__ = ["Lines", "Names", "Source", "read"]

@@ -1,0 +1,108 @@
+"""An image with its names, on a virtual board that stops where it is told to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from stillspin import core
+from stillspin.board import power
+from stillspin.board.desk import TICKS_PER_SECOND
+from stillspin.board.image import blocks_of
+from stillspin.cases import profile
+from stillspin.core_board import NativeBoard
+from stillspin.errors import CampaignError
+from stillspin.flash import names
+from stillspin.flash.files import read_program
+from stillspin.flash.names import Names
+from stillspin.flash.program import Program
+
+SLICE = 1_000_000
+"""Ticks between two looks at a board that runs to a place."""
+
+
+@dataclass(frozen=True)
+class Image:
+    """A linked file."""
+
+    file: Path
+    program: Program
+    names: Names
+
+
+def read(file: Path) -> Image:
+    """A file with what it says of itself.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    return Image(file, read_program(file), names.read(file))
+
+
+def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBoard:
+    """A virtual board that has just been switched on and executes the image.
+
+    Raises:
+        InputError: a plant that cannot be, or an image that begins nowhere.
+    """
+    native = core.load()
+    chosen = profile.load(profile_name, core.plant_schema(native), core.parameters(native), motor)
+    board = power.power(native, chosen, profile.Changes(), seed, blocks_of(image.program, str(image.file)))
+    equip(board, image.file)
+    return board
+
+
+def equip(board: NativeBoard, file: Path) -> Names:
+    """Carry out TI's flash library on the model's cells, where the image has it; gives the image's names."""
+    there = names.read(file)
+
+    def place(name: str) -> int:
+        return there.addresses.get(name, there.addresses.get(f"_{name}", 0))
+
+    erase, program, verify = (place(f"Flash2808_{name}") for name in ("Erase", "Program", "Verify"))
+    if erase or program or verify:
+        board.replace_flash_library(erase, program, verify, place("Flash_CPUScaleFactor"))
+    return there
+
+
+def advance(board: NativeBoard, seconds: float) -> None:
+    """Let time pass.
+
+    Raises:
+        CampaignError: the chip cannot go on.
+    """
+    try:
+        board.advance(round(seconds * TICKS_PER_SECOND))
+    except RuntimeError as error:
+        raise CampaignError(f"the virtual board stopped: {error}") from error
+
+
+def run_to(board: NativeBoard, places: Iterable[int], seconds: float) -> bool:
+    """Let time pass until the core is about to execute the instruction at one of the places; false: it never was.
+
+    Raises:
+        CampaignError: the chip cannot go on.
+    """
+    board.stop_at(list(places))
+    end = board.now + round(seconds * TICKS_PER_SECOND)
+    try:
+        while board.now < end:
+            board.advance(min(SLICE, end - board.now))
+            if board.halted:
+                return True
+    except RuntimeError as error:
+        raise CampaignError(f"the virtual board stopped: {error}") from error
+    finally:
+        board.stop_at([])
+    return False
+
+
+def step(board: NativeBoard, seconds: float) -> bool:
+    """Execute one instruction; an interrupt that comes before it is entered first. False: the core sleeps for longer.
+
+    Raises:
+        CampaignError: the chip cannot go on.
+    """
+    board.stop_after(1)
+    return run_to(board, (), seconds)

@@ -1,0 +1,127 @@
+"""`stillspin image inject`: non-atomic accesses and spoiled registers are found, and nothing else is."""
+
+import subprocess
+import sys
+
+import pytest
+from c28x_chip import PROGRAMS, linked_file, program
+
+from stillspin.errors import CampaignError, InputError
+from stillspin.image import opened, vectors
+from stillspin.image.inject import Stretch, inject
+
+TICK = 38
+UP = 0.01
+
+
+@pytest.fixture
+def tried(tmp_path):
+    """The report of a stretch of a program, and the program's names."""
+    boards = []
+
+    def run(name, begin, end, vector, *, replaced=None, watched=(), after=UP, most=400):
+        source = PROGRAMS / f"{name}.asm"
+        if replaced:
+            (tmp_path / "start.asm").write_text((PROGRAMS / "start.asm").read_text())
+            text = source.read_text()
+            source = tmp_path / f"{name}.asm"
+            assert replaced[0] in text
+            source.write_text(text.replace(*replaced))
+        image = opened.read(linked_file(tmp_path, name, [source]))
+        at = image.names.addresses
+        while boards:
+            boards.pop().close()
+        board = opened.power_on(image, "bench", "A", 1)
+        boards.append(board)
+        opened.advance(board, after)
+        return inject(board, Stretch(at[begin], at[end], vector, watched, most, 0.05)), at
+
+    yield run
+    for board in boards:
+        board.close()
+
+
+def test_a_counter_in_three_steps_loses_an_interrupt(tried):
+    report, at = tried("shared", "torn", "whole", TICK)
+    assert len(report.executed) == 4
+    assert [address for address, _ in report.differences] == [at["torn"] + 3, at["torn"] + 4], "between MOV and MOV"
+    for _, differences in report.differences:
+        (lost,) = [one for one in differences if one.what == at["COUNT"]]
+        assert lost.value == lost.before - 1 == lost.after - 1
+
+
+def test_one_step_and_a_guarded_access_are_safe(tried):
+    for begin, end in (("whole", "guard"), ("guard", "again")):
+        report, _ = tried("shared", begin, end, TICK)
+        assert report.differences == []
+        assert report.unclear == report.spoilt == []
+
+
+def test_what_is_masked_to_the_end_is_held_off(tried):
+    longer = ("CLRC    INTM\n        NOP\nagain:  B", "NOP\n        NOP\nagain:  CLRC    INTM\n        B")
+    report, at = tried("shared", "guard", "again", TICK, replaced=longer)
+    assert report.differences == []
+    assert at["guard"] not in report.held_off
+    assert len(report.held_off) == len(report.executed), "all but the first; and at the end"
+
+
+def test_a_register_that_is_not_put_back_is_found(tried):
+    report, at = tried("shared", "whole", "guard", TICK, replaced=("#tick", "#careless"))
+    assert report.differences == [], "it is spoilt before and behind alike"
+    assert report.spoilt[0][0] == at["whole"]
+    assert {one.what for _, registers in report.spoilt for one in registers} == {"XAR7"}
+    first = report.spoilt[0][1][0]
+    assert (first.before, first.value) == (0x12345, 0x8000)
+
+
+def test_an_interrupt_that_is_off_is_said_to_be(tried):
+    with pytest.raises(CampaignError, match="never taken"):
+        tried("shared", "torn", "whole", 39)
+
+
+def test_places_that_are_never_reached(tried):
+    with pytest.raises(CampaignError, match="beginning"):
+        tried("shared", "careless", "torn", TICK)
+    with pytest.raises(CampaignError, match="within 20 instructions"):
+        tried("shared", "torn", "careless", TICK, most=20)
+
+
+def test_the_control_program_s_loop_stands_it(tried):
+    report, _ = tried("control", "beside", "beside", 32, after=0.03)
+    assert len(report.executed) == 3
+    assert report.differences == []
+
+
+def test_the_set_up_of_the_interrupts_stands_it(tried):
+    """From the permission on: the background of `nested` goes to sleep, and the timer comes by itself."""
+    at = program("nested").symbols
+    report, _ = tried("nested", "sleep", "tick", TICK, watched=[(at["PERIODS"], 1)])
+    assert report.differences == []
+
+
+def test_interrupts_by_ti_s_names():
+    for vector in (13, 14, 32, 39, 40, 127):
+        assert vectors.number(vectors.name(vector).lower(), "--interrupt") == vector
+    for text in ("INT0.1", "INT13.1", "INT1.9", "INT5", "NMI", ""):
+        with pytest.raises(InputError, match="--interrupt"):
+            vectors.number(text, "--interrupt")
+
+
+def test_the_command_names_the_place(tmp_path):
+    image = linked_file(tmp_path, "shared")
+    command = [sys.executable, "-m", "stillspin", "image", "inject", image, "--interrupt", "INT1.7", "--after", "0.01"]
+    done = subprocess.run(
+        [*command, "--from", "torn", "--to", "whole", "--compare", "COUNT"],
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1, done.stderr
+    lines = (PROGRAMS / "shared.asm").read_text().splitlines()
+    store = 1 + next(k for k, line in enumerate(lines) if "MOV     @COUNT,AL" in line)
+    assert f"(shared.asm:{store})" in done.stdout
+    assert "COUNT (0x8000) is 0x" in done.stdout
+    assert "2 places at which" in done.stdout
+    done = subprocess.run(
+        [*command, "--from", "whole", "--to", "guard"], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0
+    assert "each time" in done.stdout

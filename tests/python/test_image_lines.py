@@ -1,0 +1,197 @@
+"""Source lines: what the assembler says of its programs, what line programs of DWARF say, who names lines by them."""
+
+import struct
+import subprocess
+import sys
+
+import pytest
+from c28x_chip import PROGRAMS, linked_file
+from flash_files import coff
+from test_image_time import symbol, with_symbols
+
+from stillspin.c28x import linked, timed
+from stillspin.c28x.program import assemble_files
+from stillspin.errors import InputError
+from stillspin.flash import debug_lines, names
+from stillspin.flash.debug_lines import Lines, Row, Source
+from stillspin.flash.program import Block
+
+
+@pytest.fixture(scope="module")
+def control():
+    return assemble_files([PROGRAMS / "control.asm"])
+
+
+def test_every_instruction_has_the_line_that_it_was_written_on(control):
+    written = {name: (PROGRAMS / name).read_text().splitlines() for name in ("control.asm", "start.asm")}
+    assert {line.file for line in control.lines.values()} == set(written)
+    for label, address in control.labels.items():
+        if address in control.lines:
+            line = control.lines[address]
+            assert written[line.file][line.number - 1].startswith(f"{label}:")
+
+
+def test_lines_survive_the_file(control, tmp_path):
+    there = names.read(linked_file(tmp_path, "control"))
+    assert {address: there.lines.at(address) for address in control.lines} == {
+        address: Source(line.file, line.number) for address, line in control.lines.items()
+    }
+    first = control.symbols["SAMPLE"]
+    assert there.lines.at(max(control.words)) == there.lines.at(max(control.lines)), "IRET is the last word"
+    assert there.lines.at(max(control.words) + 1) is None, "behind the code there is no line"
+    assert there.lines.at(0x8000) is None
+    assert there.functions[first] == "sample"
+    assert there.addresses["REF"] == 0x8000, "what the program tells others"
+    assert "PERIOD" not in there.addresses
+
+
+def test_places_are_typed_as_names_lines_and_addresses(control, tmp_path):
+    there = names.read(linked_file(tmp_path, "control"))
+    line = control.lines[control.symbols["SAMPLE"]]
+    for typed in ("sample", f"control.asm:{line.number}", hex(control.symbols["SAMPLE"])):
+        assert there.address(typed, "--from") == control.symbols["SAMPLE"]
+    for typed in ("simple", "control.asm:1", "other.asm:70"):
+        with pytest.raises(InputError, match="--from"):
+            there.address(typed, "--from")
+    assert there.place(control.symbols["SAMPLE"] + 1).endswith(f" sample+1 (control.asm:{line.number + 1})")
+
+
+# ---- line programs of others, by hand
+
+
+def unit(opcodes, *, version=3, step=1, base=-5, span=14, count=13, folders=("src",), files=(("main.c", 1),)):
+    """A unit of .debug_line; `count` is the first special opcode."""
+    lengths = bytes((0, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1))[: count - 1]
+    table = b"".join(name.encode() + b"\0" for name in folders) + b"\0"
+    table += b"".join(name.encode() + b"\0" + bytes((folder, 0, 0)) for name, folder in files) + b"\0"
+    operations = b"\1" if version >= 4 else b""
+    head = bytes((step,)) + operations + struct.pack("<BbBB", 1, base, span, count) + lengths + table
+    body = struct.pack("<HI", version, len(head)) + head + opcodes
+    return struct.pack("<I", len(body)) + body
+
+
+def at(address):
+    return b"\0\5\2" + struct.pack("<I", address)
+
+
+END = b"\0\1\1"
+
+
+@pytest.mark.parametrize("version", [2, 3, 4])
+def test_opcodes_do_what_the_standard_says(version):
+    special = 13 + (2 - -5) + 14 * 3  # line + 2, address + 3
+    opcodes = (
+        at(0x3F4000) + b"\3\x09\1" + bytes((special,)) + b"\x08" + b"\3\x7f\1" + b"\x09\x10\x00\1" + b"\2\x04" + END
+    )
+    lines = debug_lines.read(unit(opcodes, version=version))
+    expected = {0x3F4000: 10, 0x3F4003: 12, 0x3F4003 + (255 - 13) // 14: 11, 0x3F4003 + 17 + 16: 11}
+    assert {address: lines.at(address).number for address in expected} == expected
+    assert lines.at(0x3F4002).number == 10
+    assert str(lines.at(0x3F4000)) == "src/main.c:10"
+    assert lines.at(0x3F4003 + 17 + 16 + 4) is None
+    assert lines.places("main.c", 12) == [0x3F4003]
+    assert lines.places("ain.c", 12) == []
+
+
+def test_steps_of_instructions_files_and_unknown_opcodes():
+    opcodes = at(0x100) + b"\5\x07\x06\x04\2\1" + b"\2\3\4\1\x03\1\1" + b"\0\3\x80\1\1" + END
+    lines = debug_lines.read(unit(opcodes, step=2, files=(("a.c", 0), ("b.c", 1))))
+    assert str(lines.at(0x100)) == "src/b.c:1"
+    assert str(lines.at(0x106)) == "a.c:2"
+
+
+def test_damaged_and_unknown_units_are_left_out():
+    good = unit(at(0x10) + b"\1\2\4" + END)
+    for bad in (unit(at(0x20) + b"\1" + END, version=5), unit(b"\0\x05\2\0"), struct.pack("<I", 3) + b"\3\0\1"):
+        assert debug_lines.read(bad + good).at(0x10) is not None
+        assert debug_lines.read(good + bad).at(0x20) is None
+    assert not debug_lines.read(struct.pack("<I", 0xFFFFFFFF) + bytes(40))
+    assert not debug_lines.read(good[:-8])
+
+
+def test_an_end_gives_way_to_a_beginning():
+    one, two = Source("a.c", 1), Source("b.c", 2)
+    lines = Lines([Row(0x10, one), Row(0x20, None), Row(0x20, two), Row(0x30, None)])
+    assert [lines.at(address) for address in (0x0F, 0x10, 0x20, 0x30)] == [None, one, two, None]
+
+
+def test_lines_add_up():
+    lines = Lines([Row(0x10, Source("a.c", 1)), Row(0x12, Source("a.c", 2)), Row(0x14, None)])
+    spent = {0x10: (1, 0, 0, 0), 0x11: (4, 1, 1, 1), 0x12: (9, 0, 0, 8), 0x14: (100, 0, 0, 0)}
+    assert timed.by_line(lines, spent) == [(Source("a.c", 2), (9, 0, 0, 8)), (Source("a.c", 1), (5, 1, 1, 1))]
+
+
+# ---- in COFF
+
+
+@pytest.mark.parametrize("wide", [False, True])
+def test_coff_has_them_packed_or_an_octet_to_a_word(tmp_path, control, wide):
+    """Read as it lies: nobody here has a file of cl2000."""
+    section = linked.debug_lines(control)
+    section += bytes(len(section) % 2)
+    octets = b"".join(bytes((octet, 0)) for octet in section) if wide else section
+    blocks = [Block(first, tuple(words)) for first, words in linked.runs(control.words)]
+    strings = bytearray()
+    data = with_symbols(coff(blocks), [symbol("sample", control.symbols["SAMPLE"], strings=strings)], strings)
+    file = tmp_path / "control.out"
+    file.write_bytes(with_section(data, ".debug_line", octets))
+    there = names.read(file)
+    line = control.lines[control.symbols["SAMPLE"]]
+    assert there.lines.at(control.symbols["SAMPLE"]) == Source(line.file, line.number)
+    assert "sample" in there.functions.values()
+
+
+def with_section(data, name, octets):
+    """The COFF file with one section more, whose content and name are behind all, and its head behind the others."""
+    _, count, _, table, symbols, optional, _, _ = struct.unpack_from("<HHIIIHHH", data)
+    heads = 22 + optional + 48 * count
+    moved = 48
+    raw = len(data) + moved
+    head = struct.pack("<8sIIIIIIIIIHH", struct.pack("<II", 0, 0), 0, 0, len(octets) // 2, raw, 0, 0, 0, 0, 0x10, 0, 0)
+    out = bytearray(data[:heads] + head + data[heads:])
+    struct.pack_into("<H", out, 2, count + 1)
+    struct.pack_into("<I", out, 8, table + moved)
+    for index in range(count):
+        at_ = 22 + optional + 48 * index + 20
+        (where,) = struct.unpack_from("<I", out, at_)
+        struct.pack_into("<I", out, at_, where + moved if where else 0)
+    strings = table + moved + 18 * symbols
+    out += octets
+    place = len(out) - strings
+    out += name.encode() + b"\0"
+    struct.pack_into("<II", out, heads, 0, place)
+    return bytes(out)
+
+
+# ---- the commands
+
+
+def run_command(*words):
+    command = [sys.executable, "-m", "stillspin", "image", *words]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_image_time_says_what_lines_took(tmp_path):
+    image = tmp_path / "control.out"
+    made = run_command("assemble", PROGRAMS / "control.asm", "--out", image)
+    assert made.returncode == 0, made.stderr
+    done = run_command("time", image, "--after", "0.02", "--for", "0.002", "--lines", "3")
+    assert done.returncode == 0, done.stderr
+    rows = [line for line in done.stdout.splitlines() if line.startswith("control.asm:")]
+    assert len(rows) == 3
+    assert "more (--lines)" in done.stdout
+    texts = (PROGRAMS / "control.asm").read_text().splitlines()
+    waiting = {int(row.split()[0].split(":")[1]) for row in rows}
+    assert all("SCIRXST" in texts[number - 1] or "beside,NTC" in texts[number - 1] for number in waiting)
+
+
+def test_assembling_says_what_is_wrong_and_where(tmp_path):
+    source = tmp_path / "wrong.asm"
+    source.write_text(" .org 0x3F4000\nstart: NOP\n FROB AL\n")
+    done = run_command("assemble", source, "--out", tmp_path / "x.out")
+    assert done.returncode == 2
+    assert "wrong.asm, line 3" in done.stderr
+    source.write_text(' .copy "wrong.asm"\n')
+    assert "copies itself" in run_command("assemble", source, "--out", tmp_path / "x.out").stderr
+    source.write_text(" .org 0x3F4000\n NOP\n")
+    assert "no label 'start'" in run_command("assemble", source, "--out", tmp_path / "x.out").stderr
