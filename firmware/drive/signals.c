@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "firmware/base/edition.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
 #define DRIVE 0
@@ -49,7 +50,7 @@ static int32_t magnet_flux_q16(const flux_observer_t* f) { return (f == NULL) ? 
 #undef SIGNAL
 
 #define SIGNAL(name, unit, q, of, value, meaning) look_at_##name,
-static int32_t (*const looks[])(const volatile drive_t* d, uint16_t known) = {
+static signal_look_t* const looks[] = {
 #include "firmware/dictionary/signal_list.h"
 };
 #undef SIGNAL
@@ -67,6 +68,8 @@ uint16_t signal_named(const uint16_t* name, uint16_t count) {
 bool signal_is_left_out(uint16_t place) { return rows_have(edition_signals_left_out, place); }
 
 bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
+
+signal_look_t* signal_look(uint16_t place) { return looks[(place < COUNT) ? place : 0u]; }
 
 int32_t drive_signal(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
 

@@ -18,14 +18,14 @@ bool drive_is_energised(void) { return is_energised(&drive); }
 
 static bool sees_currents(const volatile drive_t* d) { return is_energised(d) && d->flags.invalid == 0u; }
 
-bool drive_knows_speed(const volatile drive_t* d) {
-  return sees_currents(d) && (d->state != DRIVE_START || d->flags.caught);
+uint16_t drive_known(const volatile drive_t* d) {
+  const uint16_t beside = d->heat_sink_known ? KNOWN_HEAT_SINK : 0u;
+  if (!sees_currents(d)) return beside;
+  if (d->state == DRIVE_START && !d->flags.caught) return KNOWN_FRAME | beside;
+  return KNOWN_ROTOR | KNOWN_FRAME | beside;
 }
 
-uint16_t drive_known(const volatile drive_t* d) {
-  return (uint16_t)((drive_knows_speed(d) ? KNOWN_ROTOR : 0) | (sees_currents(d) ? KNOWN_FRAME : 0) |
-                    (d->heat_sink_known ? KNOWN_HEAT_SINK : 0));
-}
+bool drive_knows_speed(const volatile drive_t* d) { return (drive_known(d) & KNOWN_ROTOR) != 0u; }
 
 uint32_t drive_time_ms(void) { return drive.time_ms; }
 

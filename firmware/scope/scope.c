@@ -24,11 +24,36 @@ static uint16_t wait;      // control interrupts to the next record
 static uint16_t left;      // records still to come, when TRIGGERED
 static uint16_t mark;      // the trigger's record; SCOPE_NOWHERE
 static uint32_t mark_time_ms;
-static int32_t lowest, highest, mean;  // of the trigger signal, of late
+static int32_t lowest, highest, mean;  // of the trigger signal, of late; nothing yet while the lowest is the higher one
 static bool was_below, was_above;      // by the hysteresis, since the last edge
-static bool fresh;                     // there is no value yet
 static bool fired;                     // since the last record
 static uint16_t unread;  // AUTO: a bit for each channel whose last word has not been read; none behind a stop
+
+// What the set-up names, found once: the interrupt has no time to look it up.
+typedef struct {
+  signal_look_t* look;
+  uint16_t needs, shift;
+} watched_t;
+static watched_t watched[SCOPE_CHANNELS];
+static signal_look_t* trigger_look;
+
+// What an edge of the set-up is met by.
+#define RISES 1u
+#define FALLS 2u
+#define IS_ABOVE 4u
+#define IS_BELOW 8u
+static uint16_t wanted;
+
+static void find_watched(void) {
+  static const uint16_t of_edge[] = {RISES, FALLS, RISES | FALLS, IS_ABOVE | IS_BELOW, IS_ABOVE, IS_BELOW};
+  wanted = of_edge[setup_in_force.edge];
+  trigger_look = signal_look(setup_in_force.trigger);
+  for (uint16_t k = 0; k < SCOPE_CHANNELS; k++) {
+    const scope_channel_t* const c = &setup_in_force.channel[k];
+    const watched_t w = {signal_look(c->signal), signal_info(c->signal)->needs, c->shift};
+    watched[k] = w;
+  }
+}
 
 static bool is_running(void) {
   const scope_state_t now = state;
@@ -52,6 +77,7 @@ void scope_reset(void) {
   static const scope_setup_t none = {0};
   rest(SCOPE_IDLE);
   setup_in_force = none;
+  find_watched();
   forget_records();
 }
 
@@ -69,6 +95,7 @@ bool scope_setup(const scope_setup_t* setup) {
   if (!is_valid(setup)) return false;
   rest(SCOPE_IDLE);
   setup_in_force = *setup;
+  find_watched();
   forget_records();
   return true;
 }
@@ -80,7 +107,8 @@ bool scope_arm(void) {
   rest(SCOPE_IDLE);
   forget_records();
   wait = 1;
-  fresh = true;
+  lowest = INT32_MAX;
+  highest = INT32_MIN;
   was_below = false;
   was_above = false;
   fired = false;
@@ -126,67 +154,77 @@ uint16_t scope_read(uint16_t channel, uint16_t offset, int16_t* words, uint16_t 
 
 // ---- control interrupt level ---------------------------------------------------------------------------------------
 
-// At least by one, so that what has few steps is forgotten, too.
-static int32_t follow(int32_t from, int32_t to) {
-  const int32_t off = q_sub_sat(to, from);
-  return q_add_sat(from, q_shr(off, SPAN_FORGETS) + (off > 0 ? 1 : 0));
+// How far `to` is above `from`: of any two numbers, as it needs no sign.
+static uint32_t above_by(int32_t from, int32_t to) { return (uint32_t)to - (uint32_t)from; }
+
+// Of a distance of at least one the share that is followed: at least one, so that what has few steps is forgotten, too,
+// and never more than the distance, so that what follows does not overflow.
+static uint32_t share_of(uint32_t distance) { return (distance >> SPAN_FORGETS) + 1u; }
+
+static int32_t follow_up(int32_t from, int32_t to) { return (int32_t)((uint32_t)from + share_of(above_by(from, to))); }
+
+static int32_t follow_down(int32_t from, int32_t to) {
+  return (int32_t)((uint32_t)from - share_of(above_by(to, from)));
 }
 
-static int32_t quarter_of_span(int32_t value) {
-  if (fresh) lowest = highest = mean = value;
-  lowest = q_min(value, follow(lowest, value));
-  highest = q_max(value, follow(highest, value));
-  mean = follow(mean, value);
-  return q_shr(q_sub_sat(highest, lowest), 2);
-}
-
-// An edge against the way that the signal has gone of late has to be twice as large: noise is not.
-static void look_beyond(int32_t value, bool above) {
-  const int32_t level = setup_in_force.level;
-  int32_t below_by = setup_in_force.hysteresis, above_by = below_by;
-  if (below_by < 0) {
-    const int32_t quarter = quarter_of_span(value);
-    const int32_t off = q_sub_sat(mean, level);
-    below_by = (off > quarter) ? quarter + quarter : quarter;
-    above_by = (off < -quarter) ? quarter + quarter : quarter;
+static void follow_span(int32_t value) {
+  if (lowest > highest) mean = value;
+  lowest = (value > lowest) ? follow_up(lowest, value) : value;
+  highest = (value < highest) ? follow_down(highest, value) : value;
+  if (value > mean) {
+    mean = follow_up(mean, value);
+  } else if (value < mean) {
+    mean = follow_down(mean, value);
   }
-  was_below = !above && (was_below || value < q_sub_sat(level, below_by));
-  was_above = above && (was_above || value >= q_add_sat(level, above_by));
 }
 
+// An edge against the way that the signal has gone of late has to be twice as large: noise is not. `against_by`: how
+// far the mean is on the other side of the level, 0 when it is on this one.
+static bool is_beyond(uint32_t by, uint32_t against_by) {
+  const int32_t given = setup_in_force.hysteresis;
+  if (given >= 0) return by >= (uint32_t)given;
+  const uint32_t quarter = above_by(lowest, highest) >> 2;
+  return by >= ((against_by > quarter) ? quarter + quarter : quarter);
+}
+
+// By the hysteresis below the level is what is lower than it by more than that.
 static bool is_met(int32_t value) {
-  const bool above = value >= setup_in_force.level;
-  const bool rises = above && was_below;
-  const bool falls = !above && was_above;
-  look_beyond(value, above);
-  switch (setup_in_force.edge) {
-    case SCOPE_RISING:
-      return rises;
-    case SCOPE_FALLING:
-      return falls;
-    case SCOPE_EITHER:
-      return rises || falls;
-    case SCOPE_ABOVE:
-      return above;
-    case SCOPE_BELOW:
-      return !above;
-    default:
-      return true;
+  const int32_t level = setup_in_force.level;
+  uint16_t is;
+  if (value >= level) {
+    is = was_below ? IS_ABOVE | RISES : IS_ABOVE;
+    was_below = false;
+    if (!was_above) {
+      was_above = is_beyond(above_by(level, value), (mean < level) ? above_by(mean, level) : 0u);
+    }
+  } else {
+    is = was_above ? IS_BELOW | FALLS : IS_BELOW;
+    was_above = false;
+    if (!was_below) {
+      was_below = is_beyond(above_by(value, level) - 1u, (mean > level) ? above_by(level, mean) : 0u);
+    }
   }
+  return (is & wanted) != 0u;
 }
 
-static void watch_trigger(uint16_t known) {
-  const bool met = is_met(drive_signal(setup_in_force.trigger, known));
+static void watch_trigger(int32_t value) {
+  if (setup_in_force.hysteresis < 0) follow_span(value);
+  const bool met = is_met(value);
   if (state == SCOPE_FILLING && recorded >= setup_in_force.pretrigger) state = SCOPE_ARMED;
-  if (state == SCOPE_ARMED && met) fired = true;
-  fresh = false;
+  if (met && state == SCOPE_ARMED) fired = true;
 }
 
 static void record(uint16_t known) {
-  for (uint16_t k = 0; k < setup_in_force.count; k++) {
-    const scope_channel_t* const c = &setup_in_force.channel[k];
-    const int32_t value = q_clamp(q_shr(drive_signal(c->signal, known), c->shift), -INT16_MAX, INT16_MAX);
-    ring[k][head] = drive_signal_is_known(c->signal, known) ? (int16_t)value : SCOPE_UNKNOWN;
+  const uint16_t unknown = (uint16_t)~known;
+  const watched_t* const end = watched + setup_in_force.count;
+  const uint16_t here = head;
+  int16_t (*row)[SCOPE_DEPTH] = ring;
+  for (const watched_t* w = watched; w < end; w++, row++) {
+    int16_t word = SCOPE_UNKNOWN;
+    if ((w->needs & unknown) == 0u) {
+      word = (int16_t)q_clamp(q_shr(w->look(&drive, known), w->shift), -INT16_MAX, INT16_MAX);
+    }
+    (*row)[here] = word;
   }
   head = (uint16_t)((head + 1u) & RING_MASK);
   if (recorded < SCOPE_DEPTH) recorded++;
@@ -196,7 +234,7 @@ void scope_step(void) {
   if (!is_running()) return;
   hal_profile_step(CYCLES_SCOPE);
   const uint16_t known = drive_known(&drive);
-  watch_trigger(known);
+  watch_trigger(trigger_look(&drive, known));
   if (--wait > 0u) return;
   wait = setup_in_force.decimation;
   const uint16_t here = head;
