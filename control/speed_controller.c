@@ -8,7 +8,7 @@ static bool config_valid(const speed_controller_config_t* c) {
   return q_in_range(c->friction_q24, 0, 16777216L) && q_in_range(c->inertia_q24, 168L, 16777216L) &&
          q_in_range(c->step_periods, 1, 100) && q_in_range(c->alpha_q8, 256L, 25600000L) &&
          q_in_range(c->trajectory_ms_q8, 512L, 51200L) && q_in_range(c->pi_bandwidth_q8, 256L, 51200L) &&
-         q_in_range(c->pi_damping_q12, 1228L, 12288L);
+         q_in_range(c->pi_damping_q12, 1228L, 245760L);
 }
 
 // 1 - x/n + x^2/(n (n + 1)) - ... for 0 <= x < 1, Q30: exact where B Ts / J is tiny.

@@ -29,7 +29,7 @@ typedef struct {
   int32_t alpha_q8;          // weight of the predicted speed error, A^2 s^2 / rad^2, 1..100000
   int32_t trajectory_ms_q8;  // time constant of the reference trajectory, 2..200 ms
   int32_t pi_bandwidth_q8;   // natural frequency of the PI loop, rad/s, 1..200
-  int32_t pi_damping_q12;    // its damping, 0.3..3
+  int32_t pi_damping_q12;    // its damping, 0.3..60
 } speed_controller_config_t;
 
 /// What depends on the acceleration per ampere.

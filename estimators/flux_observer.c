@@ -11,7 +11,8 @@
 
 static stator_flux_config_t form_of(const flux_observer_config_t* c) {
   const stator_flux_form_t read = c->is_plain ? STATOR_FLUX_PLAIN : STATOR_FLUX_COMPENSATED;
-  const stator_flux_config_t form = {(c->method == FLUX_PP02) ? STATOR_FLUX_BARE : read, c->cutoff_q30, FOLLOW_Q30};
+  const bool is_bare = c->method == FLUX_PP02 && !c->is_printed;
+  const stator_flux_config_t form = {is_bare ? STATOR_FLUX_BARE : read, c->cutoff_q30, FOLLOW_Q30};
   return form;
 }
 
@@ -37,7 +38,7 @@ static void place_cutoff(flux_observer_t* s, const flux_observer_config_t* c) {
   const int32_t half_q30 = q_shr(q_abs_sat(machine_speed_rad_q30(s->observer.speed_bpp)), 1);
   int32_t most_q30 = 0;
   if (s->form.form == STATOR_FLUX_BARE) most_q30 = CUTOFF_MOST_Q30;
-  if (s->form.form == STATOR_FLUX_COMPENSATED) {
+  if (s->form.form == STATOR_FLUX_COMPENSATED && !c->is_printed) {
     most_q30 = q_min(s->form.cutoff_q30, COMPENSATED_MOST_Q30 - RISE_Q30) + RISE_Q30;
   }
   s->form.cutoff_q30 = q_max(q_min(half_q30, most_q30), c->cutoff_q30);
@@ -63,7 +64,8 @@ void flux_observer_preset(flux_observer_t* s, const estimator_output_t* now, dq_
 // along that phase the EMF is what the flux makes at the speed that is observed. From the speed on at which the magnet
 // is learnt it stands out of that.
 static void expect_unseen(const flux_observer_t* s, const flux_observer_config_t* f, ab_t* emf_q16) {
-  if (s->form.form == STATOR_FLUX_PLAIN || q_abs_sat(s->observer.speed_bpp) >= f->adaptation.lowest_bpp) return;
+  if (s->form.form == STATOR_FLUX_PLAIN || f->is_printed) return;
+  if (q_abs_sat(s->observer.speed_bpp) >= f->adaptation.lowest_bpp) return;
   const abc_t current_q20 = frame_inverse_clarke(s->current_q20);
   const bool a = q_abs_sat(current_q20.a) < f->unknown_voltage_q20;
   const bool b = q_abs_sat(current_q20.b) < f->unknown_voltage_q20;
@@ -104,6 +106,15 @@ static int32_t load_angle(const flux_observer_t* s, const flux_observer_config_t
   return flux_load_angle_dq(flux_currents_q24(&s->machine, v, square_q24));
 }
 
+// (34), which leads with the rotation: from the cut-off on it is none.
+static uint32_t printed_lead(const flux_observer_t* s, const flux_observer_config_t* c) {
+  const int32_t speed_q30 = machine_speed_rad_q30(s->observer.speed_bpp);
+  const int32_t length_q30 = q_abs_sat(speed_q30);
+  if (!c->is_printed || c->method != FLUX_PP02 || length_q30 >= c->cutoff_q30) return 0u;
+  const uint32_t lead_bam = q_atan2(c->cutoff_q30, length_q30);
+  return (speed_q30 < 0) ? 0u - lead_bam : lead_bam;
+}
+
 static uint32_t rotor_angle(flux_observer_t* s, const flux_observer_config_t* c, dq_t reference_q20) {
   const uint32_t flux_bam = flux_stator_angle(&s->vectors);
   if (c->method == FLUX_ACTIVE) {
@@ -112,7 +123,7 @@ static uint32_t rotor_angle(flux_observer_t* s, const flux_observer_config_t* c,
     return active_bam;
   }
   s->load_angle_bam = load_angle(s, c, reference_q20);
-  return flux_bam - (uint32_t)s->load_angle_bam;
+  return flux_bam - (uint32_t)s->load_angle_bam - printed_lead(s, c);
 }
 
 // Not at even intervals: the harmonics of the EMF stand still to who looks once in eight of their periods, as 10 ms are

@@ -20,6 +20,9 @@
 // drops leave open: below unknown_voltage_q20, and below the speed at which the magnet is learnt, the EMF along it is
 // not the nominal one, but what the flux makes at the observed speed. Where the cut-off is the least one (quality_q15
 // is 0 there), the integral is not to be trusted.
+//
+// As printed (is_printed) PP-02 takes its flux where the others do and turns the angle by (34) below the cut-off: by
+// 45 degrees at once, and what Fig. 5 has mended is mended twice. To show it.
 
 #ifndef STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
 #define STILLSPIN_ESTIMATORS_FLUX_OBSERVER_H
@@ -33,8 +36,9 @@ typedef enum { FLUX_CONV = 0, FLUX_PP01 = 1, FLUX_PP02 = 2, FLUX_ACTIVE = 3 } fl
 
 typedef struct {
   flux_method_t method;
-  bool is_plain;                // all but PP-02 on the low-pass as it is, at cutoff_q30, as the paper has them
-  int32_t cutoff_q30;           // least w_c T of the low-pass integrator, 1e-4..0.015
+  bool is_plain;                // all but PP-02 on the low-pass as it is, at cutoff_q30, as the paper explains them
+  bool is_printed;              // at cutoff_q30 always, PP-02 on the same flux as the others, with (34) below it
+  int32_t cutoff_q30;           // w_c T of the low-pass integrator, the least where it moves, 1e-4..0.015
   int32_t bandwidth_q30;        // bandwidth * T of the tracking observer, 1e-4..0.1
   int32_t unknown_voltage_q20;  // current of a phase below which its voltage is not known, A; 0 for none
   flux_adaptation_config_t adaptation;

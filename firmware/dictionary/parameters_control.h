@@ -46,7 +46,7 @@ PARAMETER(81, speed_law, "", 0, 0, 0, 1, 0, STOPPED, "0 predictive, 1 PI")
 PARAMETER(82, speed_alpha, "A2s2", 8, 0, 1, 100000, 200, STOPPED, "weight of the predicted speed error, per rad^2")
 PARAMETER(83, speed_trajectory, "ms", 8, 1, 20, 2000, 70, STOPPED, "time constant of the speed reference trajectory")
 PARAMETER(84, speed_pi_bandwidth, "rad/s", 8, 1, 10, 2000, 200, STOPPED, "natural frequency of the PI speed loop")
-PARAMETER(85, speed_pi_damping, "", 12, 2, 30, 300, 80, STOPPED, "damping of the PI speed loop")
+PARAMETER(85, speed_pi_damping, "", 12, 2, 30, 6000, 80, STOPPED, "damping of the PI speed loop")
 PARAMETER(86, speed_ramp, "rpm/s", 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
 PARAMETER(90, position_hold, "1/s", 8, 1, 0, 200, 50, ALWAYS,
           "how fast the shaft is brought back to where it stood, at a speed reference of zero; 0 lets it creep")

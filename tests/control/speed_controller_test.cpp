@@ -166,7 +166,7 @@ TEST(SpeedController, RangesEndWhereTheyAreSaidTo) {
       {&speed_controller_config_t::alpha_q8, 256, 25600000},
       {&speed_controller_config_t::trajectory_ms_q8, 512, 51200},
       {&speed_controller_config_t::pi_bandwidth_q8, 256, 51200},
-      {&speed_controller_config_t::pi_damping_q12, 1228, 12288},
+      {&speed_controller_config_t::pi_damping_q12, 1228, 245760},
   };
   Design slow;
   slow.step_periods = 5;

@@ -275,6 +275,38 @@ TEST(FluxObserver, PlainIsOffByThePhaseOfTheLowPass) {
   }
 }
 
+// As printed PP-02's angle jumps by 45 degrees at the cut-off: by Fig. 5 it is right above and turned by (34) below,
+// on the low-pass alone right below and off by the phase above. The speed in (34) closes a loop whose gain is at most
+// 3 b w_c/(w^2 + w_c^2) with an observer of bandwidth b: below one up to 28 rad/s here.
+TEST(FluxObserver, AsPrintedPp02IsRightOnOneSideOfTheCutOff) {
+  const double speed = 42.0;
+  for (const bool is_plain : {false, true}) {
+    for (const double cutoff : {30.0, 50.0}) {
+      for (const double w : {-speed, speed}) {
+        flux_observer_config_t c = config(FLUX_PP02);
+        c.is_plain = is_plain;
+        c.is_printed = true;
+        c.cutoff_q30 = raw(cutoff * kPeriod, 30);
+        c.bandwidth_q30 = raw(15.0 * kPeriod, 30);
+        Bench b(motor_b(), motor_b(), c, 0.3, w, Vector{0.0, 0.0});
+        const double error = b.run(20000);
+        const bool is_right = is_plain == (speed < cutoff);
+        EXPECT_NEAR(error, is_right ? 0.0 : std::atan(cutoff / speed), 0.01) << is_plain << ", " << cutoff << ", " << w;
+      }
+    }
+  }
+}
+
+// As printed the cut-off stays where it was set, whatever the speed.
+TEST(FluxObserver, AsPrintedTheCutOffStands) {
+  flux_observer_config_t c = config(FLUX_CONV);
+  c.is_printed = true;
+  c.cutoff_q30 = raw(20.0 * kPeriod, 30);
+  Bench b(motor_b(), motor_b(), c, 0.3, 400.0, Vector{0.0, 2.0});
+  EXPECT_LT(b.run(5000), 1e-3);
+  EXPECT_EQ(b.s.form.cutoff_q30, c.cutoff_q30);
+}
+
 // What is kept is not forgotten at once: a flux that has got shorter by a fifth of the magnet's stays so for some time.
 TEST(FluxObserver, KeepsAFluxWhoseLengthHasChanged) {
   const auto forgotten = [](bool keep) {

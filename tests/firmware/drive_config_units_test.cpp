@@ -356,6 +356,10 @@ TEST_F(Units, TheStatorFlux) {
   EXPECT_FALSE(c.flux.is_plain);
   parameters.flux_plain = 1;
   EXPECT_TRUE(made().flux.is_plain);
+  EXPECT_FALSE(made().flux.is_printed);
+  parameters.flux_plain = 2;
+  EXPECT_FALSE(made().flux.is_plain);
+  EXPECT_TRUE(made().flux.is_printed);
   // Once in 10 ms: 100 ms of the inductance, 200 ms of the magnet, from a twentieth of the magnet's flux on.
   const double step = c.flux.adaptation_periods * kPeriod;
   EXPECT_NEAR(step, 0.01, 1e-9);

@@ -23,7 +23,7 @@ static inline void any_control(drive_config_t* c) {
   c->speed.alpha_q8 = any_from(1, INT32_MAX);
   c->speed.trajectory_ms_q8 = any_from(512, 51200);
   c->speed.pi_bandwidth_q8 = any_from(256, 51200);
-  c->speed.pi_damping_q12 = any_from(1228, 12288);
+  c->speed.pi_damping_q12 = any_from(1228, 245760);
   c->mtpa.pole_q20 = any_from(0, 1048576000L);
   c->if_start.current_q20 = any_from(0, 100 * AMPERES_Q20);
   c->if_start.align_periods = any_from(2, 50000L);

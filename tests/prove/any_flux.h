@@ -9,6 +9,7 @@
 static inline void any_flux(flux_observer_config_t* c) {
   c->method = (flux_method_t)(any_u16 & 3u);
   c->is_plain = any_bool();
+  c->is_printed = any_bool();
   c->cutoff_q30 = any_from(107374L, 16106127L);
   c->bandwidth_q30 = any_from(107374L, 107374182L);
   c->unknown_voltage_q20 = any_from(0, 2 * AMPERES_Q20);

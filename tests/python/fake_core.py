@@ -149,7 +149,7 @@ _PARAMETERS = [
     (303, "flux_low", "rpm", 1, 1.0, 2000.0, 350.0, "STOPPED", "below it the observer is used"),
     (304, "flux_high", "rpm", 1, 2.0, 3000.0, 500.0, "STOPPED", "above it the stator flux is used"),
     (305, "flux_beside", "", 0, 0.0, 4.0, 0.0, "STOPPED", "a method that looks on"),
-    (306, "flux_plain", "", 0, 0.0, 1.0, 0.0, "STOPPED", "the low-pass as it is"),
+    (306, "flux_plain", "", 0, 0.0, 3.0, 0.0, "STOPPED", "the low-pass as it is, or as printed"),
     (330, "mtpa", "", 0, 0.0, 1.0, 0.0, "ALWAYS", "least current for a torque"),
     (331, "current_divider", "", 0, 1.0, 2.0, 1.0, "STOPPED", "periods per step of the current control"),
     (332, "current_corner", "", 0, 0.0, 1.0, 0.0, "STOPPED", "corner of the integrator"),

@@ -4,6 +4,7 @@ import json
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from stillspin import core
 from stillspin.cases import drift, profile, scenario_file
 from stillspin.errors import InputError
 from stillspin.options import by_mark
+from stillspin.runs import execute
 from stillspin.runs.execute import Settings
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
@@ -60,6 +62,32 @@ def test_a_drift_that_does_not_exist_is_said() -> None:
     assert [item.mark for item in by_mark(drifts, ["flux"], "drift")] == ["flux"]
     with pytest.raises(InputError, match="resistance"):
         by_mark(drifts, ["rust"], "drift")
+
+
+def test_a_factor_is_on_what_the_profile_says_and_the_user_has_the_last_word() -> None:
+    scenario = scenario_file.load("B21")
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    for name, true in (("bench", 1.1 * 1.3 - 1.0), ("ideal", 0.3)):
+        for words, expected in (([], true), (["parameter_error.resistance=0.2"], 0.2)):
+            settings = Settings(
+                profile.load(name, schema, known, "B"), profile.changes(words, schema, known), 1, "none"
+            )
+            plants = {job.run.name: job.plant for job in execute.prepare(scenario, settings, native)}
+            assert plants["warm"]["parameter_error"]["resistance"] == pytest.approx(expected)
+            assert plants["warm"].get("machine", {}) == plants["normal"].get("machine", {})
+
+
+@pytest.mark.parametrize("stated", ["{ machine = { resistance = 0.0 } }", "{ machine = { resistence = 1.3 } }"])
+def test_a_factor_is_of_an_entry_and_above_0(tmp_path: Path, stated: str) -> None:
+    text = scenario_file.find("B21").read_text(encoding="utf-8")
+    path = tmp_path / "B21.toml"
+    path.write_text(text.replace("{ machine = { resistance = 1.3 } }", stated), encoding="utf-8")
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    ideal = profile.load("ideal", schema, known, "B")
+    with pytest.raises(InputError, match="resist"):
+        execute.prepare(scenario_file.read(path), Settings(ideal, profile.Changes(), 1, "none"), native)
 
 
 def step(adapt: int, inertia: float) -> float:

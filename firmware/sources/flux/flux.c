@@ -20,6 +20,8 @@
 #define LEAST_BAND_Q20 10486L  // 0.01 A
 #define LEARN_INDUCTANCE 1
 #define LEARN_MAGNET 2
+#define PAPER_LOW_PASS 1
+#define PAPER_PRINT 2
 
 flux_observer_t flux_observer;
 
@@ -44,7 +46,8 @@ bool flux_source_load(drive_config_t* c) {
   f->method = (flux_method_t)q_max(method(), FLUX_CONV);
   f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
   f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
-  f->is_plain = p->flux_plain != 0;
+  f->is_plain = (p->flux_plain & PAPER_LOW_PASS) != 0;
+  f->is_printed = (p->flux_plain & PAPER_PRINT) != 0;
   // Without dead time every voltage is known.
   f->unknown_voltage_q20 = (c->dead_time.turn_on_ticks > 0) ? c->dead_time.band_q20 : 0;
   f->adaptation_periods = ADAPTATION_PERIODS;

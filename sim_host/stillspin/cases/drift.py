@@ -9,13 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from stillspin import core, resources, toml_table
+from stillspin.cases import factors
 from stillspin.cases.profile import merged
 from stillspin.cases.scenario import Goal, Scenario
 from stillspin.cases.variant import Variant
-from stillspin.errors import InputError
 from stillspin.runs.execute import Settings
-
-_ERROR = "parameter_error"
 
 
 @dataclass(frozen=True)
@@ -27,7 +25,7 @@ class Drift(Variant):
         schema: of the plant.
     """
 
-    factors: dict[str, dict[str, float]]
+    factors: factors.Factors
     goals: float
     schema: core.Schema
 
@@ -48,21 +46,8 @@ class Drift(Variant):
         return replace(settings, profile=replace(settings.profile, plant=changed), changes=changes)
 
     def plant(self, plant: core.Plant) -> core.Plant:
-        """The plant's entries that differ. Where the plant states an error of its own, that takes the change."""
-
-        def entry(section: str, key: str) -> float:
-            return float(plant.get(section, {}).get(key, self.schema[section][key].default))
-
-        result: core.Plant = merged(plant)
-        for section, keys in self.factors.items():
-            for key, factor in keys.items():
-                if key in self.schema[_ERROR]:
-                    error = (1.0 + entry(_ERROR, key)) * factor - 1.0
-                    where, name, value = _ERROR, key, error
-                else:
-                    where, name, value = section, key, entry(section, key) * factor
-                result.setdefault(where, {})[name] = core.plant_entry(self.schema, where, name, value, self.title)
-        return result
+        """The plant with what differs."""
+        return factors.multiplied(plant, self.factors, self.schema, self.title)
 
 
 def _times(goal: Goal, factor: float) -> Goal:
@@ -86,14 +71,7 @@ def load(schema: core.Schema) -> tuple[list[str], list[Drift]]:
 
 def _drift(table: toml_table.Table, goals: float, schema: core.Schema) -> Drift:
     title, mark = table.text("title"), table.text("mark")
-    factors: dict[str, dict[str, float]] = {}
-    for section, keys in table.table("factor").items().items():
-        core.section_known(schema, section, table.where)
-        for key, value in keys.items():
-            factor = toml_table.as_number(value)
-            if key not in schema[section] or factor is None or factor <= 0.0:
-                raise InputError(f"{table.where}: factor.{section}.{key}: must be a plant entry and a number above 0")
-            factors.setdefault(section, {})[key] = factor
+    found = factors.read(table.table("factor").items(), schema, table.where)
     table.finish()
     words = f"The same drive, commissioned before: {title}."
-    return Drift(mark, title, words, factors, goals, schema)
+    return Drift(mark, title, words, found, goals, schema)

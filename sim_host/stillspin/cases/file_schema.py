@@ -100,8 +100,14 @@ def scenario(entries: core.Schema, known: Mapping[str, Entry]) -> Json:
     }
     found = _table(keys, "id", "title", "motor", "runs", "figures")
     found["allOf"] = [_stated_somewhere("duration"), _stated_somewhere("reached")]
-    shared = {"plant": _table(_sections(entries)), "parameters": _parameters(known)}
+    shared = {"plant": _table(_sections(entries)), "factor": _factors(entries), "parameters": _parameters(known)}
     return _file("scenario", found, definitions=shared)
+
+
+def _factors(entries: core.Schema) -> Json:
+    """Numbers by section and entry; that they are above 0 says who reads them."""
+    sections = {name: _table(dict.fromkeys(section, _number("", 0))) for name, section in entries.items()}
+    return _table(sections) | {"description": "What entries of the plant are multiplied by, whatever the profile says."}
 
 
 def _stated_somewhere(key: str) -> Json:
@@ -123,6 +129,7 @@ def _run(words: Json) -> dict[str, Json]:
         "scheme": _TEXT | {"description": "Another scheme than the drive's own, such as paper; under the parameters."},
         "parameters": {"$ref": "#/definitions/parameters"},
         "plant": {"$ref": "#/definitions/plant"},
+        "factor": {"$ref": "#/definitions/factor"},
         "reached": _list(reached, 1) | {"description": "Where the true shaft has to be, else the run does not count."},
         "record_every": whole | {"description": "PWM periods to a record"},
         "waveform": _table({"window": _WINDOW, "raster": whole | {"unit": "x 10 ns"}}, "window"),

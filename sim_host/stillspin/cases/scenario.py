@@ -6,6 +6,7 @@ Times are seconds from the end of the start procedure. The file format is descri
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,6 +40,7 @@ class Run:
         commands: (s, what, value), sorted; load: corners (s, N m) of the load torque.
         parameters: firmware parameters that this run sets, only what the scenario compares; words are choices.
         plant: entries of the plant that this run needs, such as a locked shaft.
+        factors: what entries of the plant are multiplied by, whatever the profile says of them.
         record_every: PWM periods per record.
         waveform: the stretch that is looked into, None for none.
         may_be_lost: what it shows includes that the shaft is lost; that does not count as broken off.
@@ -56,6 +58,7 @@ class Run:
     record_every: int = 1
     waveform: Look | None = None
     may_be_lost: bool = False
+    factors: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def speed_command(self, time: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """The commanded speed (rpm) at each time (s): the last command given, 0 before the first."""

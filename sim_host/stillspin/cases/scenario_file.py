@@ -114,7 +114,7 @@ def _schemes(data: Json, path: Path) -> dict[str, Json]:
 
 def _with_defaults(run: Json, defaults: Json, schemes: dict[str, Json]) -> Json:
     """The run with what it does not state itself taken from the defaults; parameters and plant are joined by key."""
-    joined = {key: {**defaults.get(key, {}), **run.get(key, {})} for key in ("parameters", "plant")}
+    joined = {key: {**defaults.get(key, {}), **run.get(key, {})} for key in ("parameters", "plant", "factor")}
     scheme = run.get("scheme", defaults.get("scheme"))
     if scheme:
         joined["parameters"] = {**schemes[scheme], **joined["parameters"]}
@@ -158,6 +158,7 @@ def _run(stated: Json, where: str) -> Run:
         record_every=int(stated.get("record_every", 1)),
         waveform=_look(stated["waveform"], duration, f"{where}.waveform") if "waveform" in stated else None,
         may_be_lost=stated.get("may_be_lost", False),
+        factors=stated["factor"],
     )
 
 

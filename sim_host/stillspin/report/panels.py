@@ -141,6 +141,7 @@ PANELS: dict[str, Panel] = {
     "gates": Panel("gates", ()),
     "error_over_speed": Panel("position error (° el)", ()),
     "flux_limit": Panel("stator flux (Vs)", ()),
+    "load_angles": Panel("load angle (° el)", ()),
     "error_map": Panel("position error (° el)", ()),
 }
 """Every panel. Those without lines fill a drawing of their own, see special_plots.py."""

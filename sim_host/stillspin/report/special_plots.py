@@ -255,6 +255,22 @@ def flux_limits(shown: Shown) -> Canvas:
     return canvas
 
 
+def load_angles(shown: Shown) -> Canvas:
+    """The load angle over the current: estimated, and dashed the true one; a colour for each run."""
+    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
+    for number, (name, signals) in enumerate(shown.records.items()):
+        colour = RUN_COLOURS[number % len(RUN_COLOURS)]
+        current = np.hypot(pieces.as_floats(signals["true_i_d"]), pieces.as_floats(signals["true_i_q"]))
+        order = np.argsort(current)
+        for of, line in (("load_angle", "-"), ("true_load_angle", "--")):
+            angle = pieces.wrap_degrees(pieces.as_floats(signals[of]))
+            label = shown.title(name) if of == "load_angle" else None
+            axes.plot(current[order], angle[order], line, linewidth=0.9, color=colour, label=label)
+    axes.set(xlabel="current (A)", ylabel="load angle (° el)")
+    _legend(axes)
+    return canvas
+
+
 def error_maps(shown: Shown) -> Canvas:
     """Peak position error while a speed is held, a row per speed and a column per run; empty: not held."""
     found = {
@@ -294,6 +310,7 @@ SPECIAL: dict[str, Callable[[Shown], Canvas]] = {
     "gates": gates,
     "error_over_speed": errors_over_speed,
     "flux_limit": flux_limits,
+    "load_angles": load_angles,
     "error_map": error_maps,
 }
 """Panels that fill a drawing of their own."""

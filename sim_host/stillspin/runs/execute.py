@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from stillspin import core
+from stillspin.cases import factors
 from stillspin.cases.profile import Changes, Profile, merged
 from stillspin.cases.scenario import COMMANDS, Run, Scenario
 from stillspin.core import NativeCore, NativeResult, Plant
@@ -118,7 +119,9 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         for name, value in run.parameters.items()
     }
     _check_commands(run, known.parameters, where)
-    plant = merged(settings.profile.plant, own_plant, settings.changes.plant)
+    given = factors.read(run.factors, known.schema, where)
+    grown = factors.multiplied(merged(settings.profile.plant, own_plant), given, known.schema, where)
+    plant = merged(grown, settings.changes.plant)
     parameters = {**settings.profile.parameters, **own, **settings.changes.parameters}
     about = {
         "scenario": scenario.id,
