@@ -64,18 +64,18 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
 // standstill the direction is that of no lag.
 static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq_t emf_q16) {
   const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
-  const int32_t q = q_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
+  const int32_t q = qc_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
   return q_div(q_mul_add_sat(d, emf_q16.d, q, emf_q16.q, 20), q_hypot(d, q), 20);
 }
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
-  const dq_t emf_q16 = {q_sub_sat(voltage_q16.d, q_mul_sat(c->resistance_q24, s->current_q20, 28)), voltage_q16.q};
+  const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, qc_mul_sat(c->resistance_q24, s->current_q20, 28)), voltage_q16.q};
   s->mean_q16.d = q_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
   s->mean_q16.q = q_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
-  const int32_t seen = q_mul_sat(emf_along_q16(s, c, emf_q16), c->per_emf_q4, 20);
+  const int32_t seen = qc_mul_sat(emf_along_q16(s, c, emf_q16), c->per_emf_q4, 20);
   s->rotor_bpp = q_follow(s->rotor_bpp, seen, c->filter_shift);
   s->mean_bpp = q_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
-  const int32_t fast = q_sub_sat(s->rotor_bpp, s->mean_bpp);
+  const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
   s->angle_bam = s->vector_bam - (uint32_t)shift;
 }
@@ -86,8 +86,8 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
   step_vector(s, c);
   damp(s, c, voltage_q16);
   if (!if_start_is_up(s, c)) return IF_START_PENDING;
-  const bool near = q_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
-                    q_abs_sat(q_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;
+  const bool near = qc_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
+                    qc_abs_sat(qc_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;
   s->agreed = near ? s->agreed + 1 : 0;
   if (s->agreed >= IF_START_AGREED) return IF_START_TAKEN_OVER;
   s->waited++;

@@ -1,6 +1,7 @@
 #include "estimators/inverse_inductance_tensor.h"
 
 #include "estimators/fit.h"
+#include "hal/qmath/qcall.h"
 
 #define TENTH_Q20 104858L         // 100 us in ms: mH = ms / (A per V and period)
 #define SPREAD_MIN_Q28 26843546L  // determinant of the normalised sums: a tenth of that of evenly spread vectors
@@ -21,7 +22,7 @@ void tensor_add(tensor_sums_t* s, const deviation_t* first, const deviation_t* s
   s->sv_dq = q_gather(s->sv_dq, q_product(r.d, v.q));
   s->sv_qd = q_gather(s->sv_qd, q_product(r.q, v.d));
   s->sv_qq = q_gather(s->sv_qq, q_product(r.q, v.q));
-  s->count = q_add_sat(s->count, 1);
+  s->count = qc_add_sat(s->count, 1);
 }
 
 // One row of the quotient: (d, q) times the inverse of [a b; b c].
@@ -42,10 +43,10 @@ bool tensor_solve(const tensor_sums_t* s, const machine_model_t* m, tensor_axes_
   if (det_q28 < SPREAD_MIN_Q28) return false;
   dq_t slope_d = row(s->sv_dd, s->sv_dq, mean, ab_q28, c_q28, det_q28);
   dq_t slope_q = row(s->sv_qd, s->sv_qq, mean, ab_q28, c_q28, det_q28);
-  slope_d.d = q_add_sat(slope_d.d, m->yd_q30);
-  slope_q.q = q_add_sat(slope_q.q, m->yq_q30);
-  const int32_t difference = q_sub_sat(slope_d.d, slope_q.q);
-  const int32_t twice_cross = q_add_sat(slope_d.q, slope_q.d);
+  slope_d.d = qc_add_sat(slope_d.d, m->yd_q30);
+  slope_q.q = qc_add_sat(slope_q.q, m->yq_q30);
+  const int32_t difference = qc_sub_sat(slope_d.d, slope_q.q);
+  const int32_t twice_cross = qc_add_sat(slope_d.q, slope_q.d);
   out->mean_q30 = slope_d.d / 2 + slope_q.q / 2;
   out->half_q30 = q_hypot(difference, twice_cross) / 2;
   out->axis_bam = (int32_t)q_atan2(twice_cross, difference) / 2;

@@ -1,5 +1,7 @@
 #include "estimators/polarity.h"
 
+#include "hal/qmath/qcall.h"
+
 #define HALF (POLARITY_SEGMENT / 2)
 #define PAUSES 6
 #define PASSES_MAX 6
@@ -14,7 +16,7 @@ void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int3
   s->passes = 0;
   s->current_q20 = current_q20;
   // Two patterns, each with an excursion of accel * n^2.
-  s->expected_bam = q_mul_sat(accel_q8, (int32_t)POLARITY_SEGMENT * POLARITY_SEGMENT * 2, 8);
+  s->expected_bam = qc_mul_sat(accel_q8, (int32_t)POLARITY_SEGMENT * POLARITY_SEGMENT * 2, 8);
   s->response_bam = 0;
   s->rough_bam = 0;
   s->sigma_q8 = 0;
@@ -36,22 +38,22 @@ void polarity_again(polarity_t* s, uint32_t angle_bam) {
 static int32_t error_bam(const polarity_t* s) {
   static const int16_t per_root_q14[PASSES_MAX] = {16384, 11585, 9459, 8192, 7327, 6689};
   const int32_t rough = s->rough_bam / (PAUSES * (HALF - 1) * s->passes);
-  return q_mul_sat(q_mul_sat(rough, 89129L, 10), per_root_q14[s->passes - 1], 14);  // 2^-8 back to one, times 0.34
+  return qc_mul_sat(qc_mul_sat(rough, 89129L, 10), per_root_q14[s->passes - 1], 14);  // 2^-8 back to one, times 0.34
 }
 
 static polarity_result_t judge(polarity_t* s) {
   const int32_t threshold = q_max(s->expected_bam / 4, 1);
   const int32_t response = s->response_bam / s->passes;
-  s->sigma_q8 = q_div(q_abs_sat(response), q_max(error_bam(s), 1), 8);
+  s->sigma_q8 = q_div(qc_abs_sat(response), q_max(error_bam(s), 1), 8);
   if (s->sigma_q8 < SIGMA_MIN_Q8) return POLARITY_AMBIGUOUS;
-  if (s->bounded && q_abs_sat(response) / RESPONSE_MAX >= threshold) return POLARITY_AMBIGUOUS;
+  if (s->bounded && qc_abs_sat(response) / RESPONSE_MAX >= threshold) return POLARITY_AMBIGUOUS;
   if (response >= threshold) return POLARITY_RIGHT;
   return (response <= -threshold) ? POLARITY_WRONG : POLARITY_AMBIGUOUS;
 }
 
 static void look_at_scatter(polarity_t* s, uint32_t angle_bam) {
   if (s->tick % POLARITY_SEGMENT == HALF) return;  // no neighbour inside this pause
-  s->rough_bam = q_add_sat(s->rough_bam, q_shr(q_abs_sat(angle_diff_bam(angle_bam, s->last_bam)), 8));
+  s->rough_bam = qc_add_sat(s->rough_bam, q_shr(qc_abs_sat(angle_diff_bam(angle_bam, s->last_bam)), 8));
 }
 
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam) {
@@ -61,7 +63,7 @@ int32_t polarity_step(polarity_t* s, uint32_t angle_bam) {
   // Only the second half of a pause counts: the current has died away.
   if (s->tick % POLARITY_SEGMENT >= HALF) {
     const int32_t moved = angle_diff_bam(angle_bam, s->origin_bam) / (2 * HALF);
-    s->response_bam = q_add_sat(s->response_bam, sign * angle_weight[segment] * moved);
+    s->response_bam = qc_add_sat(s->response_bam, sign * angle_weight[segment] * moved);
     if (angle_weight[segment] != 0) look_at_scatter(s, angle_bam);
   }
   s->last_bam = angle_bam;

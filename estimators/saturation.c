@@ -1,5 +1,7 @@
 #include "estimators/saturation.h"
 
+#include "hal/qmath/qcall.h"
+
 #define RELATIVE_MAX_Q30 536870912L  // no inductance is taken to change by more than half
 #define FLOOR_SHARE 650              // of the mean inverse inductance: 0.15 %
 #define PASSES_MAX 8
@@ -17,7 +19,7 @@ static const int16_t segment_sign[SATURATION_SEGMENTS] = {1, -1, -1, 1};
 
 // Change of an inverse inductance from -I to +I: -2 I slope y.
 static int32_t expected_change(int32_t y_q30, int32_t slope_q30, int32_t current_q20) {
-  const int32_t relative_q30 = q_clamp(q_mul_sat(slope_q30, 2 * current_q20, 20), -RELATIVE_MAX_Q30, RELATIVE_MAX_Q30);
+  const int32_t relative_q30 = q_clamp(qc_mul_sat(slope_q30, 2 * current_q20, 20), -RELATIVE_MAX_Q30, RELATIVE_MAX_Q30);
   return -q_mul(y_q30, relative_q30, 30);
 }
 
@@ -56,9 +58,9 @@ void saturation_again(saturation_t* s) {
 
 // What the period says about the inverse inductances, projected on the expected change.
 static int32_t projected_q30(const saturation_t* s, const regression_t* r, const machine_model_t* m) {
-  const int32_t yd_q30 = q_add_sat(m->yd_q30, q_div(q_add_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
-  const int32_t yq_q30 = q_add_sat(m->yq_q30, q_div(q_sub_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
-  return q_add_sat(q_mul_sat(yd_q30, s->unit_d_q30, 30), q_mul_sat(yq_q30, s->unit_q_q30, 30));
+  const int32_t yd_q30 = qc_add_sat(m->yd_q30, q_div(qc_add_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
+  const int32_t yq_q30 = qc_add_sat(m->yq_q30, q_div(qc_sub_sat(r->along_q16, r->mirror_q16), r->spread_q8, 22));
+  return qc_add_sat(qc_mul_sat(yd_q30, s->unit_d_q30, 30), qc_mul_sat(yq_q30, s->unit_q_q30, 30));
 }
 
 static void judge(saturation_t* s) {
@@ -68,8 +70,8 @@ static void judge(saturation_t* s) {
   const uint32_t deviation = q_umul_hi(q_sqrt64(s->scatter), PER_ROOT_Q32) / (uint32_t)passes;
   const int32_t error = q_hypot((int32_t)deviation, s->floor_q30);
   s->score_q15 = q_div(change, s->expected_q30, 15);
-  s->sigma_q8 = q_div(q_abs_sat(change), q_max(error, 1), 8);
-  const int32_t size = q_abs_sat(s->score_q15);
+  s->sigma_q8 = q_div(qc_abs_sat(change), q_max(error, 1), 8);
+  const int32_t size = qc_abs_sat(s->score_q15);
   const bool clear = size > SCORE_MIN_Q15 && size < SCORE_MAX_Q15 && s->sigma_q8 >= SATURATION_SIGMA_MIN * 256L;
   s->result = !clear ? POLARITY_AMBIGUOUS : (change > 0) ? POLARITY_RIGHT : POLARITY_WRONG;
 }
@@ -77,12 +79,12 @@ static void judge(saturation_t* s) {
 static void end_round(saturation_t* s, int16_t round, int32_t sign) {
   const int32_t mean = s->round_q30;
   if (round > 0) {
-    const int32_t step = q_limit(q_sub_sat(mean, s->last_q30), STEP_END_Q30);
+    const int32_t step = q_limit(qc_sub_sat(mean, s->last_q30), STEP_END_Q30);
     s->scatter += (uint64_t)q_product(step, step);
   }
   s->last_q30 = mean;
   s->round_q30 = 0;
-  s->change_q30 = q_add_sat(s->change_q30, sign * (mean / ROUNDS_A_SIDE));
+  s->change_q30 = qc_add_sat(s->change_q30, sign * (mean / ROUNDS_A_SIDE));
 }
 
 int32_t saturation_resistance_q24(const saturation_t* s, const machine_model_t* m) {
@@ -94,7 +96,7 @@ int32_t saturation_resistance_q24(const saturation_t* s, const machine_model_t* 
 // Sums over all passes, at most 8 of 144 periods.
 static void add_missing(saturation_t* s, const regression_t* r, int32_t sign) {
   if (r->information <= 0) return;
-  s->missing_q20 = q_add_sat(s->missing_q20, sign * r->mean_q20.d);
+  s->missing_q20 = qc_add_sat(s->missing_q20, sign * r->mean_q20.d);
   s->missing_count++;
 }
 

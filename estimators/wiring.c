@@ -1,5 +1,7 @@
 #include "estimators/wiring.h"
 
+#include "hal/qmath/qcall.h"
+
 #define ONE_Q30 1073741824L
 #define HALF_SQRT3_Q30 929887697L
 #define PARTS 8     // less than so many parts of what the other one has is nothing
@@ -22,7 +24,7 @@ static uint16_t sixth_of(sight_t g) {
 
 // With a phase open the current has the line across its axis alone, and so has what the other sensor sees.
 static bool is_across(sight_t g, int32_t cosine_q30, int32_t sine_q30) {
-  return q_abs_sat(q_mul_add_sat(g.x, cosine_q30, g.y, sine_q30, 30)) < size_of(g) / PARTS;
+  return qc_abs_sat(q_mul_add_sat(g.x, cosine_q30, g.y, sine_q30, 30)) < size_of(g) / PARTS;
 }
 
 static wiring_t by_order(uint16_t a, uint16_t b) {
@@ -35,7 +37,7 @@ static wiring_t by_order(uint16_t a, uint16_t b) {
 
 static wiring_t name_of(sight_t a, sight_t b) {
   const int32_t size_a = size_of(a), size_b = size_of(b);
-  const sight_t c = {q_add_sat(a.x, b.x), q_add_sat(a.y, b.y)};
+  const sight_t c = {qc_add_sat(a.x, b.x), qc_add_sat(a.y, b.y)};
   if (size_a < size_b / PARTS) return is_across(b, ONE_Q30, 0) ? WIRING_OPEN_A : WIRING_DEAD_A;
   if (size_b < size_a / PARTS) return is_across(a, -ONE_Q30 / 2, HALF_SQRT3_Q30) ? WIRING_OPEN_B : WIRING_DEAD_B;
   if (size_of(c) < size_a / PARTS) return WIRING_OPEN_C;
@@ -48,20 +50,20 @@ static int32_t floor_of(const axis_t* s, int32_t code_q20) {
   return q_sat64(q_shr64(q_product(code_q20, (int32_t)volts_q4), 10));
 }
 
-static bool is_full(int32_t sum) { return q_abs_sat(sum) == INT32_MAX; }
+static bool is_full(int32_t sum) { return qc_abs_sat(sum) == INT32_MAX; }
 
 // Sums in a quarter of their size: twice of one, and four of them, have room.
 wiring_t wiring_judge(const axis_t* s, const machine_model_t* m, int32_t code_q20) {
-  const int32_t expected_q14 = q_mul_sat(m->yd_q30 / 2 + m->yq_q30 / 2, s->spread_q8, 24);
-  const int32_t saliency_q14 = q_mul_sat((m->yd_q30 - m->yq_q30) / 2, s->spread_q8, 24);
-  const int32_t y = q_add_sat(expected_q14, q_shr(s->along_q16, 2));
-  const int32_t x = q_add_sat(saliency_q14, q_shr(s->mirror_q16, 2));
+  const int32_t expected_q14 = qc_mul_sat(m->yd_q30 / 2 + m->yq_q30 / 2, s->spread_q8, 24);
+  const int32_t saliency_q14 = qc_mul_sat((m->yd_q30 - m->yq_q30) / 2, s->spread_q8, 24);
+  const int32_t y = qc_add_sat(expected_q14, q_shr(s->along_q16, 2));
+  const int32_t x = qc_add_sat(saliency_q14, q_shr(s->mirror_q16, 2));
   const int32_t c = q_shr(s->cross_q16, 2), u = q_shr(s->curl_q16, 2);
   if (is_full(s->along_q16) || is_full(s->mirror_q16) || is_full(s->cross_q16) || is_full(y)) return WIRING_GOOD;
-  if (y > expected_q14 / FAINT && q_abs_sat(u) < y / 4 && q_hypot(x, c) < y / SALIENCY * (SALIENCY - 1))
+  if (y > expected_q14 / FAINT && qc_abs_sat(u) < y / 4 && q_hypot(x, c) < y / SALIENCY * (SALIENCY - 1))
     return WIRING_GOOD;
-  const sight_t a = {q_add_sat(y, x), q_sub_sat(c, u)};
-  const sight_t beta = {q_add_sat(c, u), q_sub_sat(y, x)};
+  const sight_t a = {qc_add_sat(y, x), qc_sub_sat(c, u)};
+  const sight_t beta = {qc_add_sat(c, u), qc_sub_sat(y, x)};
   const sight_t b = {q_mul_sub_sat(beta.x, HALF_SQRT3_Q30, a.x, ONE_Q30 / 2, 30),
                      q_mul_sub_sat(beta.y, HALF_SQRT3_Q30, a.y, ONE_Q30 / 2, 30)};
   const int32_t floor_q14 = floor_of(s, code_q20);

@@ -5,6 +5,7 @@
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
+#include "hal/qmath/qcall.h"
 
 #define PULSE_MAX 12u          // periods of a short circuit that hardly drives a current
 #define PAUSE_MIN 6            // for the current to die away
@@ -40,14 +41,14 @@ void start_begin_pulse(drive_t* d) {
 // flux.
 static void take_flux(drive_t* d) {
   machine_model_t* const m = &d->model;
-  const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(starting.rotor.speed_bpp));
+  const int32_t w_q30 = qc_abs_sat(machine_speed_rad_q30(starting.rotor.speed_bpp));
   m->trim.psi_q16 = 0;
   if (starting.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
   const int32_t nominal_q30 = m->map.points[0].yqq_q30;
   const int32_t now_q30 = nominal_q30 + q_mul(nominal_q30, m->trim.yqq_q24, 24);
-  const int32_t emf_q16 = q_mul_sat(starting.emf_q16, q_div(nominal_q30, now_q30, 24), 24);
-  const int32_t off_q16 = q_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
-  if (q_abs_sat(off_q16) < m->emf_q16 / 8) return;
+  const int32_t emf_q16 = qc_mul_sat(starting.emf_q16, q_div(nominal_q30, now_q30, 24), 24);
+  const int32_t off_q16 = qc_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
+  if (qc_abs_sat(off_q16) < m->emf_q16 / 8) return;
   m->trim.psi_q16 = q_clamp(off_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
 }
 
@@ -168,7 +169,7 @@ start_phase_t start_step_catch(drive_t* d) {
   }
   s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
   if (s->tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;
-  if (q_abs_sat(s->stray) >= STRAY_MAX_BAM) return try_again(d);
+  if (qc_abs_sat(s->stray) >= STRAY_MAX_BAM) return try_again(d);
   start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
   return START_GOES_ON;
 }

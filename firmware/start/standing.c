@@ -5,6 +5,7 @@
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
+#include "hal/qmath/qcall.h"
 
 #define AXIS_SKIP 4u         // periods for the alternating layout to be what is sampled
 #define SETTLE_PERIODS 100u  // for the current loop to settle at zero, and the angle
@@ -45,8 +46,8 @@ start_phase_t start_step_axis(drive_t* d) {
 // AVV's speed where it is more than noise.
 static int32_t present_speed(const drive_t* d) {
   const int32_t speed = d->position.avv.observer.speed_bpp;
-  const int32_t least = q_mul_sat(TURNING_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
-  return (q_abs_sat(speed) > least) ? speed : 0;
+  const int32_t least = qc_mul_sat(TURNING_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
+  return (qc_abs_sat(speed) > least) ? speed : 0;
 }
 
 // The angle is AVV's, or half a turn away.
@@ -88,7 +89,7 @@ static start_phase_t starve(drive_t* d) {
 // Twice as much with each try; after one that the voltage was too low for, half of that.
 static int32_t motion_current(const drive_start_t* s) {
   if (s->starved && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
-  return q_min(q_shl_sat(drive.config.values.polarity_current, s->tries), drive.config.values.current_limit);
+  return q_min(qc_shl_sat(drive.config.values.polarity_current, s->tries), drive.config.values.current_limit);
 }
 
 void start_begin_motion(drive_t* d) {
@@ -100,9 +101,9 @@ void start_begin_motion(drive_t* d) {
     return;
   }
   const int32_t current = motion_current(s);
-  const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
+  const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
   polarity_begin(&s->motion, d->position.avv.observer.angle_bam, current,
-                 q_mul_sat(torque_q16, d->model.accel_q12, 20));
+                 qc_mul_sat(torque_q16, d->model.accel_q12, 20));
   s->motion.bounded = s->starved;
   begin_test(d, START_MOTION);
 }
@@ -140,7 +141,7 @@ start_phase_t start_step_settle(drive_t* d) {
 // A winding that is much colder or warmer than when it was measured: what follows may stand under load at once.
 static void take_resistance(drive_t* d) {
   const int32_t more_q24 = saturation_resistance_q24(&starting.saturation, &d->model);
-  if (q_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
+  if (qc_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
 }
 
 start_phase_t start_step_saturation(drive_t* d) {
