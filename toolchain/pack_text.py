@@ -8,6 +8,7 @@ numbers are made here as well, so that the code that says something includes non
 import re
 from collections import Counter
 from collections.abc import Iterator
+from itertools import zip_longest
 from pathlib import Path
 
 import word_code
@@ -33,7 +34,7 @@ LISTS = (
     ("firmware/console/command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
 )
 NAME = re.compile(r"TEXT_(PARAMETER|SIGNAL|COMMAND)_NAME_")  # what is looked up: the last of the texts
-BLOCK = 8  # PACKED_BLOCK: texts and entries from the beginning of a word on
+BLOCK = 16  # PACKED_BLOCK: texts and entries from the beginning of a word on
 INCLUDE = re.compile(r'^#include "(firmware/[^"]+)"$', re.MULTILINE)
 TOKEN = re.compile(r'//[^\n]*|"(?:[^"\\]|\\.)*"|[(),]|[^"(),/]+|/')
 
@@ -147,12 +148,13 @@ def pack(strings: list[str], names: int = 0) -> str:
     dictionary, words = blocks([spelled(word) for word in of_entries.symbols], 0)
     starts, more = blocks(["".join(map(bits, [*text, word_code.END])) for text in said], len(words))
     words += more
+    octets = [ord(letter or "\0") for letter in of_letters.symbols]
     tables = {
         "packed_starts": starts,
         "packed_dictionary": dictionary,
         "packed_entry_counts": of_entries.counts,
         "packed_letter_counts": of_letters.counts,
-        "packed_letters": [ord(letter or "\0") for letter in of_letters.symbols],
+        "packed_letters": [low | high << 8 for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)],
         "packed_keys": [key(name) for name in strings[len(strings) - names :]],
         "packed_bits": [*words, 0],  # a code is looked for in two words
     }

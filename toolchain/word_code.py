@@ -59,7 +59,7 @@ def phrases(texts: list[list[str]]) -> None:
         single = Counter(word for text in texts for word in text)
         pairs = Counter(pair for text in texts for pair in pairwise(text) if pair[0] != pair[1])
         total = single.total() + len(texts)
-        savings = {pair: _saving(*pair, n, single, total) for pair, n in pairs.items() if n > 2}
+        savings = {pair: _saving(*pair, n, single, total) for pair, n in pairs.items() if n > 1}
         best = max(savings, key=lambda pair: (savings[pair], pair), default=None)
         if best is None or savings[best] < WORTH:
             return

@@ -42,7 +42,8 @@ packed_reader_t packed_reader(packed_text_t text) {
 
 // 0 at the end of a word.
 static uint16_t next_letter(packed_reader_t* r) {
-  return packed_letters[next_code((r->word_is == OF_TEXT) ? &r->text : &r->word, packed_letter_counts)];
+  const uint16_t letter = next_code((r->word_is == OF_TEXT) ? &r->text : &r->word, packed_letter_counts);
+  return (packed_letters[letter / 2u] >> 8u * (letter % 2u)) & 0xFFu;
 }
 
 // The next word's first letter, 0 at the end.

@@ -27,12 +27,16 @@ class Unpacked:
     def __init__(self, source: str) -> None:
         self.bits = [f"{word:016b}" for word in table(source, "packed_bits")]
         self.starts = table(source, "packed_starts")
-        self.letters = table(source, "packed_letters")
+        self.letters = [octet for pair in table(source, "packed_letters") for octet in (pair & 0xFF, pair >> 8)]
         self.letter_codes = self.codes(table(source, "packed_letter_counts"))
         self.entry_codes = self.codes(table(source, "packed_entry_counts"))
         blocks = table(source, "packed_dictionary")
         entries = len(self.entry_codes)
-        self.dictionary = [word for k, at in enumerate(blocks) for word in self.words(at, min(8, entries - 8 * k))]
+        self.dictionary = [
+            word
+            for k, at in enumerate(blocks)
+            for word in self.words(at, min(pack_text.BLOCK, entries - pack_text.BLOCK * k))
+        ]
 
     @staticmethod
     def codes(counts: list[int]) -> dict[str, int]:
@@ -69,7 +73,7 @@ class Unpacked:
         found: list[str] = []
         for k, at in enumerate(self.starts):
             bits = self.at(at)
-            for _ in range(min(8, count - 8 * k)):
+            for _ in range(min(pack_text.BLOCK, count - pack_text.BLOCK * k)):
                 text = ""
                 for entry in self.to_the_end(bits, self.entry_codes):
                     text = word_code.joined(text, self.word(bits) if entry == 1 else self.dictionary[entry])
