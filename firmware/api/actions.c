@@ -96,9 +96,9 @@ void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw
 }
 
 void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
-  put_fixed(w, parameter->minimum, parameter->q, parameter->decimals);
+  put_fixed(w, parameter_minimum(parameter), parameter->q, parameter->decimals);
   put_packed(w, SAY_to);
-  put_value(w, parameter, parameter->maximum);
+  put_value(w, parameter, parameter_maximum(parameter));
   put_packed(w, SAY_nothing_changed);
 }
 

@@ -40,12 +40,11 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
 
 static void offer(commissioning_report_t* r, uint16_t id, int32_t value, commissioning_verdict_t verdict) {
   const parameter_info_t* const info = parameter_by_id(id);
-  const bool inside = value >= info->minimum && value <= info->maximum;
   commissioning_result_t* const out = &r->list[r->count++];
   out->id = id;
   out->before = parameter_get(id);
   out->value = value;
-  out->verdict = worst(verdict, inside ? VERDICT_USED : VERDICT_RANGE);
+  out->verdict = worst(verdict, parameter_allows(info, value) ? VERDICT_USED : VERDICT_RANGE);
 }
 
 static commissioning_verdict_t judge_staircase(const staircase_values_t* v, commissioning_report_t* r) {

@@ -4,28 +4,26 @@
 
 #include "firmware/base/edition.h"
 #include "hal/hal_board.h"
+#include "hal/qmath/qdiv.h"
 
 parameters_t parameters;
 
-// 10^n and the exact conversion of a decimal value to a raw one, in integers so that every compiler agrees.
-#define TEN_0 1LL
-#define TEN_1 10LL
-#define TEN_2 100LL
-#define TEN_3 1000LL
-#define TEN_4 10000LL
-#define TEN_5 100000LL
-#define TEN_6 1000000LL
-#define RAW(value, q, ten) \
-  (int32_t)((((value) < 0 ? -1LL : 1LL) * (ten) / 2 + (long long)(value) * (1LL << (q))) / (ten))
+// A number of the list, decimals without a point, as a word: thirteen bits of a step. What no step has does not
+// compile.
+static const int16_t steps[8] = {1, 10, 100, 1000, 1024};
+#define OF(value, step) ((value) % (step) == 0 && (value) / (step) >= -4096L && (value) / (step) < 4096L)
+#define STEP(value) \
+  (OF(value, 1L) ? 0 : OF(value, 10L) ? 1 : OF(value, 100L) ? 2 : OF(value, 1000L) ? 3 : OF(value, 1024L) ? 4 : 5)
+#define SIZE(step) ((step) == 0 ? 1L : (step) == 1 ? 10L : (step) == 2 ? 100L : (step) == 3 ? 1000L : 1024L)
+#define WORD(value) ((int16_t)((value) / SIZE(STEP(value)) * 8L + STEP(value)))
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  {id,                                                                                     \
-   q,                                                                                      \
-   decimals,                                                                               \
-   PARAMETER_##access,                                                                     \
-   RAW(minimum, q, TEN_##decimals),                                                        \
-   RAW(maximum, q, TEN_##decimals),                                                        \
-   RAW(initial, q, TEN_##decimals)},
+  typedef char name##_fits[(STEP(minimum) < 5 && STEP(maximum) < 5 && STEP(initial) < 5 && (decimals) <= 6) ? 1 : -1];
+#include "firmware/dictionary/parameter_list.h"
+#undef PARAMETER
+
+#define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
+  {id, q, decimals, PARAMETER_##access, WORD(minimum), WORD(maximum), WORD(initial)},
 static const parameter_info_t table[] = {
 #include "firmware/dictionary/parameter_list.h"
 };
@@ -44,6 +42,19 @@ packed_text_t parameter_name(const parameter_info_t* p) { return text_of(p, FIRS
 packed_text_t parameter_unit(const parameter_info_t* p) { return text_of(p, FIRST(UNIT_)); }
 packed_text_t parameter_meaning(const parameter_info_t* p) { return text_of(p, FIRST()); }
 
+static int32_t raw_of(const parameter_info_t* p, int16_t word) {
+  static const int32_t tens[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L};
+  return q_div(q_shr(word, 3) * steps[word & 7], tens[p->decimals], p->q);
+}
+
+int32_t parameter_minimum(const parameter_info_t* p) { return raw_of(p, p->minimum); }
+int32_t parameter_maximum(const parameter_info_t* p) { return raw_of(p, p->maximum); }
+int32_t parameter_initial(const parameter_info_t* p) { return raw_of(p, p->initial); }
+
+bool parameter_allows(const parameter_info_t* p, int32_t raw) {
+  return raw >= parameter_minimum(p) && raw <= parameter_maximum(p);
+}
+
 // The values stand in the table's order: the struct is an array with names.
 typedef char values_are_an_array[(sizeof(parameters_t) == COUNT * sizeof(int32_t)) ? 1 : -1];
 static int32_t* value_of(parameters_t* of, uint16_t row) { return &((int32_t*)(void*)of)[row]; }
@@ -57,7 +68,7 @@ static uint16_t row_of(uint16_t index) {
 }
 
 void parameters_reset(void) {
-  for (uint16_t k = 0; k < COUNT; k++) *value_of(&parameters, k) = table[k].initial;
+  for (uint16_t k = 0; k < COUNT; k++) *value_of(&parameters, k) = parameter_initial(&table[k]);
 }
 
 uint16_t parameter_count(void) {

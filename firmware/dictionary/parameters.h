@@ -43,7 +43,7 @@ typedef struct {
   uint16_t q : 6;
   uint16_t decimals : 4;
   uint16_t access : 2;                // parameter_access_t
-  int32_t minimum, maximum, initial;  // raw, with q fractional bits
+  int16_t minimum, maximum, initial;  // packed: parameter_minimum and the others have them
 } parameter_info_t;
 
 /// Those of the edition, in the order of the list.
@@ -52,6 +52,12 @@ const parameter_info_t* parameter_info(uint16_t index);
 packed_text_t parameter_name(const parameter_info_t* p);
 packed_text_t parameter_unit(const parameter_info_t* p);
 packed_text_t parameter_meaning(const parameter_info_t* p);
+/// Raw, with q fractional bits.
+int32_t parameter_minimum(const parameter_info_t* p);
+int32_t parameter_maximum(const parameter_info_t* p);
+int32_t parameter_initial(const parameter_info_t* p);
+/// Within the two.
+bool parameter_allows(const parameter_info_t* p, int32_t raw);
 /// The value in a set of them, index 0 .. parameter_count() - 1.
 int32_t* parameter_value(parameters_t* of, uint16_t index);
 /// By its number; NULL when there is none.

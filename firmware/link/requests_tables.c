@@ -19,9 +19,9 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_u8(w, p->decimals);
   put_u8(w, (uint16_t)p->access);
   put_u8(w, 0);  // flags, for later
-  put_i32(w, p->minimum);
-  put_i32(w, p->maximum);
-  put_i32(w, p->initial);
+  put_i32(w, parameter_minimum(p));
+  put_i32(w, parameter_maximum(p));
+  put_i32(w, parameter_initial(p));
   put_packed(w, parameter_name(p));
   put_u8(w, 0);
   put_packed(w, parameter_unit(p));

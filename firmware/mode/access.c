@@ -9,7 +9,7 @@
 parameter_result_t parameter_settable(uint16_t id, int32_t raw) {
   const parameter_info_t* const info = parameter_by_id(id);
   if (info == NULL) return SET_UNKNOWN;
-  if (raw < info->minimum || raw > info->maximum) return SET_RANGE;
+  if (!parameter_allows(info, raw)) return SET_RANGE;
   if (info->access == PARAMETER_ALWAYS) return SET_OK;
   drive_parameters_changed();  // from here on no start is taken, so what is seen next stays true
   return drive_is_energised() ? SET_RUNNING : SET_OK;

@@ -24,7 +24,7 @@ static uint16_t find(uint16_t id) {
 void values_reset(void) {
   guess = 0;
   has_rated_current = false;
-  for (uint16_t k = 0; k < parameter_count(); k++) *parameter_value(&set, k) = parameter_info(k)->initial;
+  for (uint16_t k = 0; k < parameter_count(); k++) *parameter_value(&set, k) = parameter_initial(parameter_info(k));
 }
 
 void values_copy(void) {
@@ -51,9 +51,11 @@ value_fate_t values_put(const slot_entry_t* entry) {
   // A limit in the coarser of two formats may be one step beyond that in the finer one.
   int64_t slack = (more == 0) ? 0 : 1;
   if (more > 0) slack = (int64_t)(1uLL << more);
-  if (raw < info->minimum - slack || raw > info->maximum + slack) return VALUE_REFUSED;
-  raw = (raw < info->minimum) ? info->minimum : raw;
-  *parameter_value(&set, index) = (raw > info->maximum) ? info->maximum : (int32_t)raw;
+  const int32_t least = parameter_minimum(info);
+  const int32_t most = parameter_maximum(info);
+  if (raw < least - slack || raw > most + slack) return VALUE_REFUSED;
+  raw = (raw < least) ? least : raw;
+  *parameter_value(&set, index) = (raw > most) ? most : (int32_t)raw;
   if (parameter_value(&set, index) == &set.rated_current) has_rated_current = true;
   return (more == 0) ? VALUE_TAKEN : VALUE_RESCALED;
 }

@@ -162,9 +162,9 @@ nb::list parameter_rows() {
     row["unit"] = text_of(parameter_unit(p));
     row["decimals"] = p->decimals;
     row["whole"] = p->q == 0;
-    row["minimum"] = std::ldexp(p->minimum, -p->q);
-    row["maximum"] = std::ldexp(p->maximum, -p->q);
-    row["default"] = std::ldexp(p->initial, -p->q);
+    row["minimum"] = std::ldexp(parameter_minimum(p), -p->q);
+    row["maximum"] = std::ldexp(parameter_maximum(p), -p->q);
+    row["default"] = std::ldexp(parameter_initial(p), -p->q);
     row["access"] = p->access == PARAMETER_ALWAYS ? "always" : "stopped";
     row["help"] = text_of(parameter_meaning(p));
     rows.append(row);

@@ -28,11 +28,12 @@ std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) 
   if (info == nullptr) throw std::invalid_argument("there is no firmware parameter '" + name + "'");
   id = info->id;
   const double raw = std::round(std::ldexp(value, info->q));
-  if (std::isfinite(raw) && raw >= info->minimum && raw <= info->maximum) return static_cast<std::int32_t>(raw);
+  if (std::isfinite(raw) && raw >= parameter_minimum(info) && raw <= parameter_maximum(info))
+    return static_cast<std::int32_t>(raw);
   std::ostringstream text;
   text << "firmware parameter " << name << " = " << value << ": out of range, allowed is "
-       << std::ldexp(info->minimum, -info->q) << " to " << std::ldexp(info->maximum, -info->q) << " "
-       << text_of(parameter_unit(info));
+       << std::ldexp(parameter_minimum(info), -info->q) << " to " << std::ldexp(parameter_maximum(info), -info->q)
+       << " " << text_of(parameter_unit(info));
   throw std::invalid_argument(text.str());
 }
 

@@ -80,7 +80,7 @@ TEST(VirtualBoard, WhatIsSavedOverrulesTheProfile) {
   unsigned id = 0;
   (void)parameter_raw("speed_ramp", 1234.0, id);
   const auto ramp = static_cast<std::uint16_t>(id);
-  const std::int32_t initial = parameter_by_id(ramp)->initial;
+  const std::int32_t initial = parameter_initial(parameter_by_id(ramp));
   std::vector<std::uint8_t> memory;
   {
     VirtualBoard board(r);

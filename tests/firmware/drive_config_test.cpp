@@ -207,10 +207,11 @@ TEST_F(DriveConfig, ALoadOverwritesTheWholeConfiguration) {
 // Anywhere between the ends, the ends themselves included; also near the default, so that some sets are accepted.
 std::int32_t random_value(Random& random, const parameter_info_t& p, bool wild) {
   const int kind = random.below(8);
-  if (wild && kind == 0) return p.minimum;
-  if (wild && kind == 1) return p.maximum;
-  const double lo = wild ? p.minimum : std::max<double>(p.minimum, p.initial - 0.2 * std::fabs(p.initial));
-  const double hi = wild ? p.maximum : std::min<double>(p.maximum, p.initial + 0.2 * std::fabs(p.initial));
+  const std::int32_t least = parameter_minimum(&p), most = parameter_maximum(&p), usual = parameter_initial(&p);
+  if (wild && kind == 0) return least;
+  if (wild && kind == 1) return most;
+  const double lo = wild ? least : std::max<double>(least, usual - 0.2 * std::fabs(usual));
+  const double hi = wild ? most : std::min<double>(most, usual + 0.2 * std::fabs(usual));
   return static_cast<std::int32_t>(std::llround(random.between(lo, hi)));
 }
 

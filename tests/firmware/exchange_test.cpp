@@ -26,7 +26,8 @@ class Exchange : public Drive {
   static void spoil_table() {
     for (std::uint16_t k = 0; k < parameter_count(); ++k) {
       const parameter_info_t* const p = parameter_info(k);
-      parameter_write(p->id, parameter_get(p->id) == p->maximum ? p->minimum : p->maximum);
+      parameter_write(p->id,
+                      parameter_get(p->id) == parameter_maximum(p) ? parameter_minimum(p) : parameter_maximum(p));
     }
   }
 

@@ -77,8 +77,9 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
     EXPECT_EQ(info->decimals, r.decimals) << r.name;
     EXPECT_EQ(info->access, r.always ? PARAMETER_ALWAYS : PARAMETER_STOPPED) << r.name;
     EXPECT_GT(stillspin::bench::text_of(parameter_meaning(info)).size(), 3u) << r.name;
-    const std::pair<std::int32_t, double> pairs[] = {
-        {info->minimum, r.minimum}, {info->maximum, r.maximum}, {info->initial, r.initial}};
+    const std::pair<std::int32_t, double> pairs[] = {{parameter_minimum(info), r.minimum},
+                                                     {parameter_maximum(info), r.maximum},
+                                                     {parameter_initial(info), r.initial}};
     for (const auto& [raw, decimal] : pairs) {
       const double wanted = exact(decimal, r);
       ASSERT_LE(std::fabs(wanted), 2147483647.0) << r.name << " does not fit";
@@ -91,18 +92,18 @@ TEST_F(Parameters, RawValuesAreTheRoundedOnes) {
 TEST_F(Parameters, DefaultsLieInsideTheRanges) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     const parameter_info_t* const info = parameter_info(k);
-    EXPECT_LT(info->minimum, info->maximum) << stillspin::bench::text_of(parameter_name(info));
-    EXPECT_LE(info->minimum, info->initial) << stillspin::bench::text_of(parameter_name(info));
-    EXPECT_LE(info->initial, info->maximum) << stillspin::bench::text_of(parameter_name(info));
-    EXPECT_EQ(parameter_get(info->id), info->initial) << stillspin::bench::text_of(parameter_name(info));
-    EXPECT_EQ(*kRows[k].value, info->initial) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_LT(parameter_minimum(info), parameter_maximum(info)) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_LE(parameter_minimum(info), parameter_initial(info)) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_LE(parameter_initial(info), parameter_maximum(info)) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_EQ(parameter_get(info->id), parameter_initial(info)) << stillspin::bench::text_of(parameter_name(info));
+    EXPECT_EQ(*kRows[k].value, parameter_initial(info)) << stillspin::bench::text_of(parameter_name(info));
   }
 }
 
 TEST_F(Parameters, SetAndGet) {
   for (const Row& r : kRows) {
     const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows.data()));
-    for (const std::int32_t raw : {info->minimum, info->maximum, info->minimum + 1}) {
+    for (const std::int32_t raw : {parameter_minimum(info), parameter_maximum(info), parameter_minimum(info) + 1}) {
       stillspin::test::inside::request().reload = false;
       ASSERT_EQ(parameter_set(info->id, raw), SET_OK) << r.name;
       EXPECT_EQ(parameter_get(info->id), raw) << r.name;
@@ -117,11 +118,12 @@ TEST_F(Parameters, SetAndGet) {
 TEST_F(Parameters, ARefusedValueChangesNothing) {
   for (const Row& r : kRows) {
     const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows.data()));
-    for (const std::int32_t raw : {info->minimum - 1, info->maximum + 1, std::numeric_limits<std::int32_t>::min(),
-                                   std::numeric_limits<std::int32_t>::max()}) {
+    for (const std::int32_t raw :
+         {parameter_minimum(info) - 1, parameter_maximum(info) + 1, std::numeric_limits<std::int32_t>::min(),
+          std::numeric_limits<std::int32_t>::max()}) {
       stillspin::test::inside::request().reload = false;
       EXPECT_EQ(parameter_set(info->id, raw), SET_RANGE) << r.name;
-      EXPECT_EQ(parameter_get(info->id), info->initial) << r.name;
+      EXPECT_EQ(parameter_get(info->id), parameter_initial(info)) << r.name;
       EXPECT_FALSE(stillspin::test::inside::request().reload) << r.name;
     }
   }
@@ -152,8 +154,8 @@ TEST_F(Parameters, RefusedWhileEnergised) {
       const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows.data()));
       parameters_reset();
       const bool allowed = r.always || !energised;
-      EXPECT_EQ(parameter_set(info->id, info->minimum), allowed ? SET_OK : SET_RUNNING) << r.name;
-      EXPECT_EQ(parameter_get(info->id), allowed ? info->minimum : info->initial) << r.name;
+      EXPECT_EQ(parameter_set(info->id, parameter_minimum(info)), allowed ? SET_OK : SET_RUNNING) << r.name;
+      EXPECT_EQ(parameter_get(info->id), allowed ? parameter_minimum(info) : parameter_initial(info)) << r.name;
     }
   }
 }

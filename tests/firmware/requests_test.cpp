@@ -96,9 +96,9 @@ TEST_F(Requests, EveryParameterTellsAllOfItself) {
     EXPECT_EQ(a.number(2, 1), p.q);
     EXPECT_EQ(a.number(3, 1), p.decimals);
     EXPECT_EQ(a.number(4, 1), static_cast<unsigned>(p.access));
-    EXPECT_EQ(static_cast<std::int32_t>(a.number(6, 4)), p.minimum);
-    EXPECT_EQ(static_cast<std::int32_t>(a.number(10, 4)), p.maximum);
-    EXPECT_EQ(static_cast<std::int32_t>(a.number(14, 4)), p.initial);
+    EXPECT_EQ(static_cast<std::int32_t>(a.number(6, 4)), parameter_minimum(&p));
+    EXPECT_EQ(static_cast<std::int32_t>(a.number(10, 4)), parameter_maximum(&p));
+    EXPECT_EQ(static_cast<std::int32_t>(a.number(14, 4)), parameter_initial(&p));
     const std::string words = bench::text_of(parameter_name(&p)) + '\0' + bench::text_of(parameter_unit(&p)) + '\0' +
                               bench::text_of(parameter_meaning(&p));
     EXPECT_EQ(a.text(18), words) << "whole: nothing is cut off";

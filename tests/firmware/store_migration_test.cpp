@@ -87,15 +87,15 @@ TEST_F(Store, LimitsSurviveAChangeOfFormat) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     const parameter_info_t* const info = parameter_info(k);
     for (std::uint16_t q = 0; q <= 31; ++q) {
-      for (const std::int32_t limit : {info->minimum, info->maximum}) {
+      for (const std::int32_t limit : {parameter_minimum(info), parameter_maximum(info)}) {
         const double exact = std::ldexp(double(limit), int(q) - int(info->q));
         if (std::fabs(exact) > 2147483646.0) continue;
         const slot_entry_t entry = {info->id, q, static_cast<std::int32_t>(std::floor(exact + 0.5))};
         values_reset();
         ASSERT_NE(values_put(&entry), VALUE_REFUSED) << bench::text_of(parameter_name(info)) << " q" << q;
         const std::int32_t raw = values_entry(k).raw;
-        ASSERT_GE(raw, info->minimum);
-        ASSERT_LE(raw, info->maximum);
+        ASSERT_GE(raw, parameter_minimum(info));
+        ASSERT_LE(raw, parameter_maximum(info));
         ASSERT_LE(std::fabs(double(raw) - limit), std::ldexp(1.0, std::max(0, int(info->q) - int(q))));
       }
     }
@@ -110,7 +110,7 @@ TEST_F(Store, AStepOfTheCoarserFormatBeyondALimitIsTheLimit) {
       if (q == info->q) continue;
       const int more = q - info->q;
       for (const bool upper : {false, true}) {
-        const std::int32_t limit = upper ? info->maximum : info->minimum;
+        const std::int32_t limit = upper ? parameter_maximum(info) : parameter_minimum(info);
         const double away = (upper ? 1.0 : -1.0) * std::ldexp(1.0, std::max(0, more));
         const double exact = std::ldexp(double(limit), more);
         const double at = upper ? std::floor(exact) : std::ceil(exact);
@@ -136,7 +136,7 @@ TEST_F(Store, NoParameterHasMoreThan31FractionalBits) {
       EXPECT_EQ(values_put(&entry), VALUE_REFUSED) << bench::text_of(parameter_name(info)) << " q" << q;
     }
     const slot_entry_t finest = {info->id, 31, 0};
-    if (info->minimum <= 0 && info->maximum >= 0) {
+    if (parameter_minimum(info) <= 0 && parameter_maximum(info) >= 0) {
       EXPECT_EQ(values_put(&finest), VALUE_RESCALED) << bench::text_of(parameter_name(info));
     }
   }

@@ -59,7 +59,9 @@ TEST_F(Store, EveryParameterIsSaved) {
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     const parameter_info_t* const info = parameter_info(k);
     parameters_reset();
-    ASSERT_EQ(parameter_set(info->id, info->initial == info->minimum ? info->minimum + 1 : info->initial - 1), SET_OK);
+    ASSERT_EQ(parameter_set(info->id, parameter_initial(info) == parameter_minimum(info) ? parameter_minimum(info) + 1
+                                                                                         : parameter_initial(info) - 1),
+              SET_OK);
     if (parameter_conflict() != PACKED_NONE) continue;
     const Values saved = in_force();
     ASSERT_EQ(save(), STORE_SAVED);

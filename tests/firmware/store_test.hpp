@@ -69,7 +69,8 @@ class Store : public Drive {
   }
   static Values defaults() {
     Values values;
-    for (std::uint16_t k = 0; k < parameter_count(); ++k) values[parameter_info(k)->id] = parameter_info(k)->initial;
+    for (std::uint16_t k = 0; k < parameter_count(); ++k)
+      values[parameter_info(k)->id] = parameter_initial(parameter_info(k));
     return values;
   }
   /// Sets of values that differ in every parameter whose range is wider, and fit together.
@@ -91,7 +92,7 @@ class Store : public Drive {
     std::vector<slot_entry_t> entries;
     for (std::uint16_t k = 0; k < parameter_count(); ++k) {
       const parameter_info_t* const info = parameter_info(k);
-      entries.push_back({info->id, info->q, info->initial});
+      entries.push_back({info->id, info->q, parameter_initial(info)});
     }
     return entries;
   }

@@ -198,7 +198,7 @@ uint16_t fuzz_node(void) { return (uint16_t)parameters.can_node; }
 // One that the edition has not keeps its default, which no other parameter's range need hold.
 static bool is_wrong(uint16_t id, int32_t raw) {
   const parameter_info_t* const p = parameter_by_id(id);
-  return p != NULL && (raw < p->minimum || raw > p->maximum);
+  return p != NULL && !parameter_allows(p, raw);
 }
 
 uint16_t fuzz_parameter_out_of_range(void) {
