@@ -15,13 +15,13 @@ void tensor_add(tensor_sums_t* s, const deviation_t* first, const deviation_t* s
   const dq_t v = {q_shr(first->voltage_q16.d - second->voltage_q16.d, 10),
                   q_shr(first->voltage_q16.q - second->voltage_q16.q, 10)};
   const dq_t r = {first->residual_q20.d - second->residual_q20.d, first->residual_q20.q - second->residual_q20.q};
-  s->vv_dd = q_gather(s->vv_dd, q_product(v.d, v.d));
-  s->vv_dq = q_gather(s->vv_dq, q_product(v.d, v.q));
-  s->vv_qq = q_gather(s->vv_qq, q_product(v.q, v.q));
-  s->sv_dd = q_gather(s->sv_dd, q_product(r.d, v.d));
-  s->sv_dq = q_gather(s->sv_dq, q_product(r.d, v.q));
-  s->sv_qd = q_gather(s->sv_qd, q_product(r.q, v.d));
-  s->sv_qq = q_gather(s->sv_qq, q_product(r.q, v.q));
+  q_gather(&s->vv_dd, q_product(v.d, v.d));
+  q_gather(&s->vv_dq, q_product(v.d, v.q));
+  q_gather(&s->vv_qq, q_product(v.q, v.q));
+  q_gather(&s->sv_dd, q_product(r.d, v.d));
+  q_gather(&s->sv_dq, q_product(r.d, v.q));
+  q_gather(&s->sv_qd, q_product(r.q, v.d));
+  q_gather(&s->sv_qq, q_product(r.q, v.q));
   s->count = qc_add_sat(s->count, 1);
 }
 

@@ -1,8 +1,6 @@
 #include "svpwm/ripple.h"
 
-#define PER_THIRD_Q58 960767921L  // 2^58 / (3 N^2), N = 10 000 ticks
-#define PER_SIDE_Q58 1664098853L  // 2^58 / (sqrt(3) N^2)
-#define LEG_SHIFT 1u              // a sum of four legs stays in 31 bits
+#define LEG_SHIFT 1u  // a sum of four legs stays in 31 bits
 
 // What of a pulse has passed at a tick.
 static inline int32_t passed(int32_t tick, int32_t rise, int32_t on) { return q_min(q_max(tick - rise, 0), on); }
@@ -19,19 +17,9 @@ static inline int32_t leg_at(const svpwm_pulses_t* p, uint16_t leg, const int32_
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16) {
   const int32_t asked[3] = {(count > 0u) ? ticks[0] : 0, (count > 1u) ? ticks[1] : 0, (count > 2u) ? ticks[2] : 0};
   const abc_t legs = {leg_at(p, 0, asked), leg_at(p, 1, asked), leg_at(p, 2, asked)};
-  const int32_t third_q32 = 2 * q_mul_hi(link_q16 * 16, 2 * PER_THIRD_Q58);  // of a unit of a leg
-  const int32_t side_q31 = 2 * q_mul_hi(link_q16 * 16, PER_SIDE_Q58);
+  const int32_t third_q32 = 2 * q_mul_hi(link_q16 * 16, 2 * SVPWM_PER_THIRD_Q58);  // of a unit of a leg
+  const int32_t side_q31 = 2 * q_mul_hi(link_q16 * 16, SVPWM_PER_SIDE_Q58);
   const ab_t flux = {2 * q_mul_hi(2 * legs.a - legs.b - legs.c, third_q32),
                      2 * q_mul_hi(2 * (legs.b - legs.c), side_q31)};
   return flux;
-}
-
-ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16) {
-  const int32_t a = svpwm_on_ticks(p, 0);
-  const int32_t b = svpwm_on_ticks(p, 1);
-  const int32_t c = svpwm_on_ticks(p, 2);
-  const int32_t ticks = (int32_t)SVPWM_PERIOD_TICKS;
-  const ab_t v = {q_mul_floor((2 * a - b - c) * ticks, q_mul_floor(link_q16, PER_THIRD_Q58, 28), 30),
-                  q_mul_floor((b - c) * ticks, q_mul_floor(link_q16, PER_SIDE_Q58, 28), 30)};
-  return v;
 }

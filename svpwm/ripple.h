@@ -12,10 +12,13 @@
 
 #include "svpwm/pattern.h"
 
+#define SVPWM_PER_THIRD_Q58 960767921L  // 2^58 / (3 N^2), N = 10 000 ticks
+#define SVPWM_PER_SIDE_Q58 1664098853L  // 2^58 / (sqrt(3) N^2)
+
 /// Ripple flux at some ticks together, up to three, V * period, Q16 (multiply by T/L to have amperes).
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16);
 
-/// Mean voltage of a period with these pulses, V Q16.
+/// Mean voltage of a period with these pulses, V Q16 (svpwm/mean.c: the flux methods alone want it).
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
 
 /// A walk along the edges that says what the own phase of each carries at that edge: its mean current and the ripple,

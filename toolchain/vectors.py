@@ -99,7 +99,7 @@ DEFECTS = (
            frozenset({"angles", "frames"}), AVR),
     Defect("hal/qmath/qarith.h", "q_shr((int32_t)a * b + 0x4000L, 15)", "q_shr(a * b + 0x4000L, 15)",
            frozenset({"halves"}), AVR),
-    Defect("hal/qmath/qdiv.c", "(rest >= den - rest) ? 1 : 0", "0", frozenset({"quotients"}), ALL),
+    Defect("hal/qmath/qquotient.c", "(rest >= den - rest) ? 1 : 0", "0", frozenset({"quotients"}), ALL),
     Defect("hal/qmath/qsqrt.c", "* inverse_q30) >> 54)", "* inverse_q30) >> 55)", frozenset({"roots"}), ALL),
     Defect("hal/qmath/qsqrt.c", "(rest > root && root != UINT32_MAX)", "((rest >> 16) > (root >> 16))",
            frozenset({"roots"}), ALL),

@@ -10,6 +10,7 @@
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
 #define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us
@@ -28,8 +29,8 @@ void commissioning_hold(drive_t* d) {
   const estimator_output_t* const p = &d->position.selected;
   const int32_t error_bam = angle_diff_bam(commissioning.target_bam, p->angle_bam);
   const int32_t command_q8 =
-      q_sub_sat(q_mul_sat(error_bam, STIFFNESS_Q30, 22), q_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
-  const int32_t torque_q20 = q_mul_sat(q_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
+      qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
+  const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
   const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
   const int32_t limit = d->config.values.current_limit / 4;
   d->control.reference_q20.q = q_clamp(current, -limit, limit);
@@ -59,7 +60,7 @@ void commissioning_estimate(drive_t* d, estimator_input_t* in) {
   }
   if (d->schedule.moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   tracking_observer_t* const o = &d->position.avv.observer;
-  tracking_observer_predict(o, q_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
+  tracking_observer_predict(o, qc_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
   const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
   d->position.selected = out;
 }
@@ -67,8 +68,8 @@ void commissioning_estimate(drive_t* d, estimator_input_t* in) {
 // Windows under opposite vectors, as the alternating layout has them: what is common to both is then not the link.
 static bool opposite(const estimator_window_t* a, const estimator_window_t* b) {
   const int32_t apart_q19 = 10L * 524288L;
-  return q_abs_sat(a->voltage_q19.alpha + b->voltage_q19.alpha) < apart_q19 &&
-         q_abs_sat(a->voltage_q19.beta + b->voltage_q19.beta) < apart_q19;
+  return qc_abs_sat(a->voltage_q19.alpha + b->voltage_q19.alpha) < apart_q19 &&
+         qc_abs_sat(a->voltage_q19.beta + b->voltage_q19.beta) < apart_q19;
 }
 
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {

@@ -20,6 +20,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 #define EXCURSION_BAM 71582788L  // 6 degrees
 #define SEGMENTS 4
@@ -47,8 +48,8 @@ static int32_t blank(uint16_t level) {
 
 static void begin_train(drive_t* d) {
   map_t* const m = &commissioning.map;
-  const int32_t torque_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), level_q20(m->level), 28);
-  const int32_t accel_q8 = q_max(q_mul_sat(torque_q16, d->model.accel_q12, 20), 1);
+  const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), level_q20(m->level), 28);
+  const int32_t accel_q8 = q_max(qc_mul_sat(torque_q16, d->model.accel_q12, 20), 1);
   const int32_t square = q_div(EXCURSION_BAM, accel_q8, 8);
   m->segment = q_clamp((int32_t)q_sqrt32((uint32_t)square), SEGMENT_MIN, SEGMENT_MAX);
   m->segment = q_max(m->segment, blank(m->level) + 14);
@@ -63,8 +64,8 @@ static void begin_train(drive_t* d) {
 // Follows what the current of the last period did to the shaft.
 static void predict(const drive_t* d, map_t* m) {
   const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
-  m->speed_q8 = q_add_sat(m->speed_q8, q_mul_sat(torque_q16, d->model.accel_q12, 20));
-  m->position_bam = q_add_sat(m->position_bam, q_shr(m->speed_q8, 8));
+  m->speed_q8 = qc_add_sat(m->speed_q8, qc_mul_sat(torque_q16, d->model.accel_q12, 20));
+  m->position_bam = qc_add_sat(m->position_bam, q_shr(m->speed_q8, 8));
 }
 
 static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
@@ -75,8 +76,8 @@ static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
   const bool negative = (signs[segment] < 0) != (mirrored != 0u);
   map_group_t* const g = &m->group[m->level][2u * mirrored + (negative ? 1u : 0u)];
   tensor_add(&g->tensor, &first, &second);
-  g->position = q_gather(g->position, m->position_bam);
-  g->current = q_gather(g->current, d->control.measured_q20.q);
+  q_gather(&g->position, m->position_bam);
+  q_gather(&g->current, d->control.measured_q20.q);
 }
 
 // The second of two equal segments need not settle.
@@ -105,7 +106,7 @@ static void run_train(drive_t* d, map_t* m) {
     sign = ((m->train % 2u) != 0u) ? -signs[segment] : signs[segment];
   }
   follow(d, m, sign * level_q20(m->level));
-  m->tick = q_add_sat(m->tick, 1);
+  m->tick = qc_add_sat(m->tick, 1);
   if (m->tick < SEGMENTS * m->segment + blank(m->level)) return;
   m->pause = true;
   m->tick = 0;
@@ -180,7 +181,7 @@ bool commissioning_map(drive_t* d) {
   commissioning_hold(d);
   if (m->tick == length && interlock_is_warm()) return false;
   if (m->tick > length - STILL_PERIODS) add_pause(d);
-  m->tick = q_add_sat(m->tick, 1);
+  m->tick = qc_add_sat(m->tick, 1);
   if (m->tick <= length) return false;
   if (level_complete(m)) {
     m->level++;

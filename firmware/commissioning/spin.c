@@ -11,6 +11,7 @@
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/step.h"
+#include "hal/qmath/qcall.h"
 
 #define SETTLE_PERIODS 4000
 #define STATION_PERIODS 10000
@@ -20,21 +21,21 @@
 typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
 
 static void add_station(const drive_t* d, spin_station_t* s) {
-  s->speed = q_gather(s->speed, d->position.selected.speed_bpp);
-  s->voltage_q = q_gather(s->voltage_q, d->control.command_q16.q);
-  s->current_q = q_gather(s->current_q, d->control.measured_q20.q);
-  s->current_d = q_gather(s->current_d, d->control.measured_q20.d);
-  s->periods = q_add_sat(s->periods, 1);
+  q_gather(&s->speed, d->position.selected.speed_bpp);
+  q_gather(&s->voltage_q, d->control.command_q16.q);
+  q_gather(&s->current_q, d->control.measured_q20.q);
+  q_gather(&s->current_d, d->control.measured_q20.d);
+  s->periods = qc_add_sat(s->periods, 1);
 }
 
 static void add_ramp(const drive_t* d, spin_ramp_t* s) {
-  s->speed = q_gather(s->speed, d->position.selected.speed_bpp);
-  s->current_q = q_gather(s->current_q, d->control.measured_q20.q);
-  s->periods = q_add_sat(s->periods, 1);
+  q_gather(&s->speed, d->position.selected.speed_bpp);
+  q_gather(&s->current_q, d->control.measured_q20.q);
+  s->periods = qc_add_sat(s->periods, 1);
 }
 
 static int32_t target_rpm_q16(uint16_t leg) {
-  const int32_t high_q16 = q_shl_sat(q_min(drive.config.values.spin_speed, drive.config.values.speed_limit), 8);
+  const int32_t high_q16 = qc_shl_sat(q_min(drive.config.values.spin_speed, drive.config.values.speed_limit), 8);
   if (leg == (uint16_t)LEG_STOP) return 0;
   return (leg == (uint16_t)LEG_UP) ? high_q16 : high_q16 / 3;
 }
@@ -54,11 +55,11 @@ static void begin(drive_t* d) {
 
 // Moves the speed reference towards the leg's; true when it is there. The drive's own ramp may be slower still.
 static bool approach(drive_t* d) {
-  const int32_t high = q_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
-  const int32_t goal = q_mul_sat(target_rpm_q16(commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
+  const int32_t high = qc_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
+  const int32_t goal = qc_mul_sat(target_rpm_q16(commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
   const int32_t step = high / RAMP_PERIODS;
   int32_t* const target = &d->control.target_bpp;
-  *target = q_clamp(goal, q_sub_sat(*target, step), q_add_sat(*target, step));
+  *target = q_clamp(goal, qc_sub_sat(*target, step), qc_add_sat(*target, step));
   return *target == goal && d->control.ramp.value == goal;
 }
 
@@ -91,7 +92,7 @@ bool commissioning_spin(drive_t* d) {
   if (!d->flags.spins) return hand_back(d);
   const bool arrived = approach(d);
   if (s->leg >= (uint16_t)LEG_STOP) {
-    s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
+    s->tick = qc_add_sat(s->tick, arrived ? 1 : 0);
     // The background level comes first.
     if (s->tick > STILL_PERIODS && start_has_exclusive_slot(d)) (void)hand_back(d);
     return false;
@@ -99,7 +100,7 @@ bool commissioning_spin(drive_t* d) {
   const bool settling = s->tick < SETTLE_PERIODS;
   if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
   if (!settling) add_station(d, &s->station[s->leg]);
-  s->tick = q_add_sat(s->tick, arrived ? 1 : 0);
+  s->tick = qc_add_sat(s->tick, arrived ? 1 : 0);
   if (s->tick >= SETTLE_PERIODS + STATION_PERIODS) enter_leg((uint16_t)(s->leg + 1u));
   return false;
 }

@@ -22,6 +22,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 #define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
@@ -29,7 +30,7 @@
 
 // Peak to peak on the d-axis: two thirds of the link for the length of a pulse.
 static int32_t ripple_q20(const drive_t* d) {
-  const int32_t swing_q20 = q_mul(d->samples.link_q16, commissioning.model.yd_q30, 26);
+  const int32_t swing_q20 = qc_mul(d->samples.link_q16, commissioning.model.yd_q30, 26);
   return swing_q20 / 3 * 2 / 100 * (d->config.modulator.pulse_ticks / 100);
 }
 
@@ -38,7 +39,7 @@ static int32_t bearable_q20(void) {
   const int32_t lasting_q20 = board_lasting_current();
   if (lasting_q20 == 0) return drive.config.values.current_limit;
   const int32_t share_q8 = (int32_t)q_sqrt32((uint32_t)drive.config.values.overload_time * 18u);  // 2^16 / 4 / 900 ms
-  return q_min(drive.config.values.current_limit, q_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
+  return q_min(drive.config.values.current_limit, qc_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
 }
 
 static int32_t level_q20(const drive_t* d, uint16_t index) {
@@ -58,10 +59,10 @@ static int32_t factor_q20(ab_t current_q20, rotation_t r) {
 
 static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
   const dq_t i = d->control.measured_q20;
-  l->current = q_gather(l->current, i.d);
-  l->command = q_gather(l->command, (int64_t)d->control.command_q16.d * 16);
-  l->factor = q_gather(l->factor, factor_q20(frame_inverse_park(i, r), r));
-  l->periods = q_add_sat(l->periods, 1);
+  q_gather(&l->current, i.d);
+  q_gather(&l->command, (int64_t)d->control.command_q16.d * 16);
+  q_gather(&l->factor, factor_q20(frame_inverse_park(i, r), r));
+  l->periods = qc_add_sat(l->periods, 1);
 }
 
 // Difference of the link between the middles of the two windows, from that between their ends, times the voltage along
@@ -76,19 +77,19 @@ static int32_t sag_q12(const drive_t* d, const deviation_t w[2]) {
   const int32_t ends = middles + (e[0].span_ticks + e[1].span_ticks) / 2;
   const int32_t share_q15 = (middles - length) * (int32_t)32768 / q_max(ends - length, 1);
   const int32_t at_ends_q16 = d->samples.link_end_q16[0] - d->samples.link_end_q16[1];
-  return q_mul_sat(q_mul(at_ends_q16, share_q15, 15), w[0].voltage_q16.d / 2 - w[1].voltage_q16.d / 2, 20);
+  return qc_mul_sat(qc_mul(at_ends_q16, share_q15, 15), w[0].voltage_q16.d / 2 - w[1].voltage_q16.d / 2, 20);
 }
 
 static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
   deviation_t w[2] = {{{0, 0}, {0, 0}, {0, 0}}, {{0, 0}, {0, 0}, {0, 0}}};
   if (!commissioning_pair(d, &w[0], &w[1])) return;
   for (uint16_t k = 0; k < 2u; k++) {
-    l->window_current = q_gather(l->window_current, w[k].current_q20.d);
-    l->window_factor = q_gather(l->window_factor, factor_q20(d->samples.windows[k].current_q20, r));
-    l->residual = q_gather(l->residual, w[k].residual_q20.d);
-    l->windows = q_add_sat(l->windows, 1);
+    q_gather(&l->window_current, w[k].current_q20.d);
+    q_gather(&l->window_factor, factor_q20(d->samples.windows[k].current_q20, r));
+    q_gather(&l->residual, w[k].residual_q20.d);
+    l->windows = qc_add_sat(l->windows, 1);
   }
-  l->sag = q_gather(l->sag, sag_q12(d, w));
+  q_gather(&l->sag, sag_q12(d, w));
 }
 
 bool commissioning_climb(drive_t* d) {
@@ -106,7 +107,7 @@ bool commissioning_climb(drive_t* d) {
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);
     if (d->control.reference_q20.d != 0) return false;
-    s->tick = q_add_sat(s->tick, 1);
+    s->tick = qc_add_sat(s->tick, 1);
     return s->tick > SETTLE_PERIODS + 1;
   }
   if (s->tick == 0 && interlock_is_warm()) {
@@ -116,7 +117,7 @@ bool commissioning_climb(drive_t* d) {
   commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];
   if (s->tick == 0) clear(l, sizeof *l);
-  s->tick = q_add_sat(s->tick, 1);
+  s->tick = qc_add_sat(s->tick, 1);
   if (s->tick > SETTLE_PERIODS) {
     const rotation_t r = frame_rotation(d->position.selected.angle_bam);
     add_period(d, l, r);

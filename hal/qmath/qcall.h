@@ -1,5 +1,5 @@
-// Operations of qarith.h as functions. Put in the place of its call each is longer than the call: what runs in no
-// interrupt takes these.
+// Operations of qarith.h as functions. Put in the place of its call each is longer than the call: what runs at the
+// background level takes these, and of the interrupt what has its periods to itself, the start and the commissioning.
 
 #ifndef STILLSPIN_HAL_QMATH_QCALL_H
 #define STILLSPIN_HAL_QMATH_QCALL_H

@@ -9,7 +9,7 @@
 //
 // Error: q_div none beyond correct rounding; q_reciprocal_q31 below by less than 2 LSB (all 2^31 divisors tried);
 // q_over below by less than 2^-28 of the quotient, besides its rounding.
-// Cost: q_div 106 instructions, q_reciprocal_q31 25, q_clz32 18, q_invert 50, q_over 12. Table: 128 words.
+// Cost: q_div some 120 instructions, q_reciprocal_q31 25, q_clz32 18, q_invert 50, q_over 12. Table: 128 words.
 
 #ifndef STILLSPIN_HAL_QMATH_QDIV_H
 #define STILLSPIN_HAL_QMATH_QDIV_H

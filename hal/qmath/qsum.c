@@ -2,7 +2,7 @@
 
 #define END 4611686018427387903LL
 
-int64_t q_gather(int64_t sum, int64_t x) {
-  const int64_t before = (sum > END) ? END : (sum < -END) ? -END : sum;
-  return before + x;
+void q_gather(int64_t* sum, int64_t x) {
+  const int64_t before = (*sum > END) ? END : (*sum < -END) ? -END : *sum;
+  *sum = before + x;
 }

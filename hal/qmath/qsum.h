@@ -9,9 +9,9 @@
 extern "C" {
 #endif
 
-// sum + x, for x within 2^62; a sum that is beyond 2^62 counts as 2^62 of its sign, so that it ends near there and
+// Adds x, within 2^62, to a sum; one that is beyond 2^62 counts as 2^62 of its sign, so that it ends near there and
 // never wraps: 2^31 terms of 32 bits stay below.
-int64_t q_gather(int64_t sum, int64_t x);
+void q_gather(int64_t* sum, int64_t x);
 
 #if defined(__cplusplus)
 }

@@ -51,7 +51,7 @@ SECTIONS
                 libstillspin_estimators.a<slopes.*>(.text)
               } LOAD = RESIDENT, RUN = RAM_FIXED, PAGE = 0,
               LOAD_START(_image_ram_fixed_load), RUN_START(_image_ram_fixed_run), SIZE(_image_ram_fixed_size)
-  ramfixedh0: { libstillspin_qmath.a<qdiv.*>(.text)
+  ramfixedh0: { libstillspin_qmath.a<qcall.*, qdiv.*>(.text)
                 libstillspin_svpwm.a<alternating.*, modulator.*, ripple.*>(.text)
               } LOAD = RESIDENT, RUN = RAM_FIXED_H0, PAGE = 0,
               LOAD_START(_image_ram_fixed_h0_load), RUN_START(_image_ram_fixed_h0_run), SIZE(_image_ram_fixed_h0_size)
@@ -82,8 +82,9 @@ SECTIONS
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
   quotients : { rts2800_ml.lib<ll_div*>(.text) } > APP, PAGE = 0
   resident  : { rts2800_ml.lib<l_div*, u_div*, i_div*, ll_*, memcpy*, memset*>(.text)
-                libstillspin_qmath.a<qcall.*>(.text, .econst, .switch)
+                libstillspin_qmath.a<qcall.*>(.econst, .switch)
                 libstillspin_qmath.a<qdiv.*>(.econst, .switch)
+                libstillspin_qmath.a<qquotient.*>(.text, .econst, .switch)
                 libstillspin_qmath.a<qsqrt.*>(.text, .econst, .switch)
                 libstillspin_qmath.a<qtrig.*>(.econst, .switch)
                 libstillspin_svpwm.a<alternating.*>(.econst, .switch)

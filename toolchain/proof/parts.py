@@ -86,7 +86,7 @@ TEXTS = (
         "firmware/dictionary/parameters.c",
         "firmware/drive/signals.c",
     ),
-    *(OCTETS, "hal/qmath/qcall.c", "hal/qmath/qdiv.c"),
+    *(OCTETS, "hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
 )
 TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
 BESIDE = (
@@ -104,7 +104,7 @@ TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "ed
 
 STORE = (
     *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/api/status.c", OCTETS, CRC),
-    "hal/qmath/qdiv.c",
+    *("hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
     *(f"firmware/store/{name}.c" for name in ("reader", "scan", "slot", "store", "values", "writer")),
 )
 KERNEL = (
@@ -113,7 +113,7 @@ KERNEL = (
 )
 SELFTEST = (
     *("tests/prove/selftest.c", "firmware/board/selftest.c", "firmware/board/flash_sum.c", "firmware/base/clear.c"),
-    *("firmware/dictionary/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c"),
+    *("firmware/dictionary/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
 )
 
 RESULTS = (
