@@ -1,12 +1,14 @@
 #include "control/field_weakening.h"
 
+#include "hal/qmath/qcall.h"
+
 void field_weakening_reset(field_weakening_t* s) { s->trim_q20 = 0; }
 
 // Flux that the voltage limit allows at this speed, V s Q28; saturates at low speed.
 static int32_t flux_limit_q28(const field_weakening_input_t* in, const machine_model_t* m) {
   const int32_t w_q30 = q_abs_sat(machine_speed_rad_q30(in->speed_bpp));
   const int32_t volts_per_flux_q16 = q_mul_sat(w_q30, m->periods_per_second, 14);  // w/T as Q16 rad/s
-  return q_over(in->voltage_limit_q16, q_invert(volts_per_flux_q16), 28);
+  return qc_over(in->voltage_limit_q16, q_invert(volts_per_flux_q16), 28);
 }
 
 // (V/w)^2 - (Lq iq)^2, (V s)^2.
@@ -19,7 +21,7 @@ static int64_t room_for_axis_q56(const field_weakening_input_t* in, const machin
 static int32_t feed_forward_q20(int64_t room_q56, const machine_model_t* m) {
   const int32_t axis = (room_q56 > 0) ? (int32_t)q_sqrt64((uint64_t)room_q56) : 0;
   const int32_t flux_q28 = m->flux_q28 + q_mul(m->trim.psi_q16, m->period_q30, 18);
-  return q_over(q_sub_sat(axis, flux_q28), m->per_ld, 22);
+  return qc_over(q_sub_sat(axis, flux_q28), m->per_ld, 22);
 }
 
 int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {

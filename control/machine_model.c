@@ -39,10 +39,10 @@ static void place_flux(machine_model_t* m) {
 // K = J - Y J adj(Y) / det(Y), everything over yq^2: Y/yq = [r, t; t, 1], det = r - t^2.
 static void renew_sensitivity(machine_model_t* m) {
   m->per_yq = q_invert(m->yq_q30);
-  const int32_t t_q24 = q_limit(q_over(m->ydq_q30, m->per_yq, 24), T_END_Q24);
-  const int32_t r_q24 = q_over(m->yd_q30, m->per_yq, 24);
+  const int32_t t_q24 = q_limit(qc_over(m->ydq_q30, m->per_yq, 24), T_END_Q24);
+  const int32_t r_q24 = qc_over(m->yd_q30, m->per_yq, 24);
   const int32_t t2_q24 = q_mul(t_q24, t_q24, 24);
-  const int32_t per_det_q24 = q_over(ONE_Q24, q_invert(r_q24 - t2_q24), 24);
+  const int32_t per_det_q24 = qc_over(ONE_Q24, q_invert(r_q24 - t2_q24), 24);
   const int32_t g_q24 = q_mul_sat(q_add_sat(r_q24, ONE_Q24), per_det_q24, 24);
   const int64_t one_q48 = q_product(ONE_Q24, ONE_Q24);
   m->k_dd_q24 = -q_sat_bits(q_product(t_q24, g_q24), 24, TILT_BITS);
@@ -63,7 +63,7 @@ static int32_t inverse_from(int32_t guess_q24, int32_t x_q24) {
 
 // Of a map below 0.6 A/V: as much again stays in the format, and something is always left.
 static int32_t share_of_map(int32_t more_q30, q_inverse_t per_map) {
-  return q_clamp(q_over(more_q30, per_map, 24), LEAST_SHARE_Q24, ONE_Q24);
+  return q_clamp(qc_over(more_q30, per_map, 24), LEAST_SHARE_Q24, ONE_Q24);
 }
 
 void machine_model_trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
@@ -166,7 +166,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
 
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* nominal, int32_t ratio_q24) {
   m->accel_q12 = q_mul_sat(nominal->accel_q12, ratio_q24, 24);
-  m->torque_per_accel_q24 = q_over(nominal->torque_per_accel_q24, q_invert(ratio_q24), 24);
+  m->torque_per_accel_q24 = qc_over(nominal->torque_per_accel_q24, q_invert(ratio_q24), 24);
 }
 
 int32_t machine_torque_constant_q24(const machine_model_t* m, int32_t id_q20) {

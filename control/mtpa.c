@@ -1,5 +1,7 @@
 #include "control/mtpa.h"
 
+#include "hal/qmath/qcall.h"
+
 #define POLE_MAX_Q20 1048576000L  // 1000 A
 #define CURRENT_MAX_Q20 209715200L
 
@@ -15,5 +17,5 @@ int32_t mtpa_current_q20(const mtpa_t* s, int32_t iq_q20) {
   const int64_t square = (int64_t)s->pole_q20 * s->pole_q20 + (int64_t)iq * iq;
   const int32_t root = (int32_t)q_sqrt64((uint64_t)square);
   const q_inverse_t per_sum = q_invert(q_add_sat(s->pole_q20, root));
-  return -q_mul(q_over(iq, per_sum, 30), iq, 30);
+  return -q_mul(qc_over(iq, per_sum, 30), iq, 30);
 }

@@ -61,10 +61,10 @@ void speed_controller_scale(speed_controller_t* s, int32_t ratio_q24) {
   const q_inverse_t per_ratio = q_invert(ratio_q24);
   const int32_t rest_q24 = q_shr(ONE_Q30 - s->nominal.share_q30, 6);
   const int32_t weight_q24 = q_mul(q_mul(q_shr(s->nominal.share_q30, 6), ratio_q24, 24), ratio_q24, 24);
-  s->gains.share_q30 = q_clamp(q_over(weight_q24, q_invert(weight_q24 + rest_q24), 30), 0, ONE_Q30);
-  s->gains.amps_per_bpp = q_over(s->nominal.amps_per_bpp, per_ratio, 24);
-  s->gains.pi_kp = q_over(s->nominal.pi_kp, per_ratio, 24);
-  s->gains.pi_ki = q_over(s->nominal.pi_ki, per_ratio, 24);
+  s->gains.share_q30 = q_clamp(qc_over(weight_q24, q_invert(weight_q24 + rest_q24), 30), 0, ONE_Q30);
+  s->gains.amps_per_bpp = qc_over(s->nominal.amps_per_bpp, per_ratio, 24);
+  s->gains.pi_kp = qc_over(s->nominal.pi_kp, per_ratio, 24);
+  s->gains.pi_ki = qc_over(s->nominal.pi_ki, per_ratio, 24);
 }
 
 void speed_controller_preset(speed_controller_t* s, int32_t current_q20) {

@@ -15,8 +15,8 @@ static int32_t emf_q16(emf_sign_t* s, const machine_model_t* m, const emf_sign_s
   const int32_t change_q20 = (seen->current_q20.q - s->last_iq_q20) / seen->periods;
   s->last_iq_q20 = seen->current_q20.q;
   // psi / T of the d-axis current, V per (rad per period).
-  const int32_t flux_q16 = q_over(seen->current_q20.d, q_invert(m->yd_q30), 26);
-  const int32_t drops_q16 = qc_add_sat(qc_mul(m->rs_q24, seen->current_q20.q, 28), q_over(change_q20, m->per_yq, 26));
+  const int32_t flux_q16 = qc_over(seen->current_q20.d, q_invert(m->yd_q30), 26);
+  const int32_t drops_q16 = qc_add_sat(qc_mul(m->rs_q24, seen->current_q20.q, 28), qc_over(change_q20, m->per_yq, 26));
   return qc_sub_sat(qc_sub_sat(seen->voltage_q16.q, drops_q16), qc_mul_sat(flux_q16, w_q30, 30));
 }
 

@@ -2,6 +2,7 @@
 
 #include "estimators/deviation.h"
 #include "estimators/window_sum.h"
+#include "hal/qmath/qcall.h"
 
 #define DEBOUNCE_PER_BAD 8     // a good period takes back an eighth of what a bad one adds
 #define DEBOUNCE_END 1048576L  // far beyond any fault, and as many periods of it stay in 31 bits
@@ -123,8 +124,8 @@ bool synchronism_judge(synchronism_t* s, const synchronism_config_t* c, const ma
   // A quarter of one period, half of several: these are a millisecond's mean, in which the steps of the current repeat.
   const unsigned shift = (seen->periods > 2) ? 1u : 2u;
   // 1 - K_qd is yq/yd but for the square of the tilt.
-  const dq_t error_q16 = {q_mul_sat(q_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24),
-                          q_over(seen->residual_q20.q, m->per_yq, 26)};
+  const dq_t error_q16 = {q_mul_sat(qc_over(seen->residual_q20.d, m->per_yq, 26), ONE_Q24 - m->k_qd_q24, 24),
+                          qc_over(seen->residual_q20.q, m->per_yq, 26)};
   follow_limit(s, c, m, seen, error_q16.q, shift);
   follow_errors(s, error_q16, q_mul_hi(m->emf_q16, seen->ahead_bpp), shift);
   int32_t per_period = debounce_per_period(s);

@@ -24,6 +24,7 @@
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 #define CONTROL_STEP_Q30 24159191L  // wc T, with 225 rad/s
 #define CONTROL_SQUARE_Q30 543582L  // its square
@@ -38,7 +39,7 @@ void hold_begin(drive_t* d) {
   // The other sources have no observer that could be fast for a moment.
   h->left = drive_source_has(d, SOURCE_READS) ? (uint32_t)d->config.values.hold_time * DRIVE_PERIODS_PER_MS : 0u;
   h->reference_bam = d->position.selected.angle_bam;
-  h->current_per_accel = q_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
+  h->current_per_accel = qc_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
   if (h->left > 0u) deviation_observer_stands(&d->position.observer);
 }
 

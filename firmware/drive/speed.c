@@ -8,6 +8,7 @@
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
 
 #define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link
 
@@ -54,7 +55,7 @@ static int32_t load_current(const drive_t* d) {
   const int32_t load_q20 = q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 20);
   const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
   const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
-  return q_over(torque_q20, d->control.per_torque_constant, 24);
+  return qc_over(torque_q20, d->control.per_torque_constant, 24);
 }
 
 int32_t drive_current_headroom(const drive_t* d) {

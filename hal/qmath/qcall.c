@@ -13,3 +13,5 @@ int32_t qc_shl_sat(int32_t x, unsigned n) { return q_shl_sat(x, n); }
 int32_t qc_mul(int32_t a, int32_t b, unsigned shift) { return q_mul(a, b, shift); }
 
 int32_t qc_mul_sat(int32_t a, int32_t b, unsigned shift) { return q_mul_sat(a, b, shift); }
+
+int32_t qc_over(int32_t num, q_inverse_t inverse, unsigned shift) { return q_over(num, inverse, shift); }

@@ -50,7 +50,3 @@ q_inverse_t q_invert(int32_t divisor) {
   const q_inverse_t inverse = {(int32_t)(q_reciprocal_q31(positive << zeros) >> 1), 62u - zeros};
   return inverse;
 }
-
-int32_t q_over(int32_t num, q_inverse_t inverse, unsigned shift) {
-  return q_mul_sat(num, inverse.value, inverse.exponent - shift);
-}

@@ -43,7 +43,9 @@ typedef struct {
 q_inverse_t q_invert(int32_t divisor);
 
 // num * 2^shift / divisor, rounded, saturated to int32_t; shift = 0..30, for a divisor from 2^n up 0..30 + n.
-int32_t q_over(int32_t num, q_inverse_t inverse, unsigned shift);
+static inline int32_t q_over(int32_t num, q_inverse_t inverse, unsigned shift) {
+  return q_mul_sat(num, inverse.value, inverse.exponent - shift);
+}
 
 #if defined(__cplusplus)
 }

@@ -8,6 +8,6 @@
 /*@ requires shift + 1 <= inverse.exponent <= shift + 62; assigns \nothing;
     ensures \result == sat32((num * inverse.value + (1 << (inverse.exponent - shift - 1)))
                              >> (inverse.exponent - shift)); */
-int32_t q_over(int32_t num, q_inverse_t inverse, unsigned shift);
+static inline int32_t q_over(int32_t num, q_inverse_t inverse, unsigned shift);
 
 #endif

@@ -183,5 +183,5 @@ DEFECTS = (
     Defect(
         "contracts", "q_abs_u32", "hal/qmath/qarith.h", "((uint32_t)0 - (uint32_t)x)", "((uint32_t)1 - (uint32_t)x)"
     ),
-    Defect("contracts", "q_over", "hal/qmath/qdiv.c", "inverse.exponent - shift", "inverse.exponent - 1u - shift"),
+    Defect("contracts", "q_over", "hal/qmath/qdiv.h", "inverse.exponent - shift", "inverse.exponent - 1u - shift"),
 )
