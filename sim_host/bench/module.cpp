@@ -205,6 +205,8 @@ nb::object default_of(const Entry& e) {
       return nb::int_(static_cast<long>(value));
     case EntryKind::kChoice:
       return nb::str((*e.choices)[static_cast<std::size_t>(value)].c_str());
+    case EntryKind::kText:
+      return nb::str("");
     default:
       return nb::float_(value);
   }
@@ -261,4 +263,5 @@ NB_MODULE(_core, m) {
   bind_step_loop(m);
   bind_loader_board(m);
   bind_can_messages(m);
+  bind_flux_map(m);
 }

@@ -2,29 +2,32 @@
 
 #include <nanobind/stl/string.h>
 
-#include <algorithm>
-#include <stdexcept>
+#include "sim_host/plant/flux_map.hpp"
 
 namespace nb = nanobind;
 
 namespace stillspin::bench {
 namespace {
 
-double chosen(const std::string& section, const std::string& key, const std::string& word) {
-  for (const Entry& e : entries()) {
-    if (section != e.section || key != e.key || e.choices == nullptr) continue;
-    const auto found = std::find(e.choices->begin(), e.choices->end(), word);
-    if (found != e.choices->end()) return static_cast<double>(found - e.choices->begin());
-  }
-  throw std::invalid_argument(section + "." + key + " = '" + word + "': not a choice");
-}
-
-double number(const std::string& section, const std::string& key, nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) return chosen(section, key, nb::cast<std::string>(value));
-  return nb::cast<double>(value);
+// What a nameplate would say of the machine, and how good the table is.
+nb::dict flux_map_facts(const std::string& path) {
+  const auto map = plant::FluxMap::read(path);
+  const plant::FluxMap::Value zero = map->at(0.0, 0.0);
+  nb::dict found;
+  found["inductance_d"] = zero.ldd;
+  found["inductance_q"] = zero.lqq;
+  found["magnet_flux"] = zero.psi_d;
+  found["magnet_flux_q"] = zero.psi_q;
+  found["misfit"] = map->misfit();
+  return found;
 }
 
 }  // namespace
+
+void bind_flux_map(nb::module_& m) {
+  m.def("flux_map", &flux_map_facts, nb::arg("path"),
+        "Inductances (H) and flux (Vs) at zero current of a table, and its largest misfit (Vs); see core.py.");
+}
 
 Setup setup_from(const nb::dict& plant, std::uint64_t seed) {
   Setup setup;
@@ -32,7 +35,11 @@ Setup setup_from(const nb::dict& plant, std::uint64_t seed) {
     for (const auto& [key, value] : nb::cast<nb::dict>(keys)) {
       const std::string s = nb::cast<std::string>(section);
       const std::string k = nb::cast<std::string>(key);
-      set_entry(setup, s, k, number(s, k, value));
+      if (nb::isinstance<nb::str>(value)) {
+        set_entry(setup, s, k, nb::cast<std::string>(value));
+      } else {
+        set_entry(setup, s, k, nb::cast<double>(value));
+      }
     }
   }
   setup.nominal.adc.seed = seed;

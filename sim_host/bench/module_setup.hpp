@@ -16,6 +16,9 @@ namespace stillspin::bench {
 /// Section -> key -> number, switch or word, and the noise's seed; std::invalid_argument for what does not exist.
 Setup setup_from(const nanobind::dict& plant, std::uint64_t seed);
 
+/// What a table of a machine's flux says at zero current.
+void bind_flux_map(nanobind::module_& module);
+
 /// The class VirtualBoard.
 void bind_virtual_board(nanobind::module_& module);
 

@@ -21,6 +21,11 @@ const std::vector<std::string> kPairs = {"none", "bc", "ca", "ab"};
   ROW(section, key, unit, kind, minimum, maximum, field, help, nullptr)
 #define CHOICE(section, key, words, field, help) \
   ROW(section, key, "", kChoice, 0, static_cast<double>((words).size() - 1), field, help, &(words))
+#define TEXT(section, key, field, help)                                                                        \
+  Entry {                                                                                                      \
+    #section, #key, "", EntryKind::kText, 0, 0, [](const Setup&) { return 0.0; }, [](Setup&, double) {}, help, \
+        nullptr, [](Setup& s) -> std::string& { return s.field; }                                              \
+  }
 #define AT(key, help) ENTRY(fault, key, "s", kNumber, 0, 3600, fault.key, help)
 
 const std::vector<Entry> kEntries = {
@@ -37,6 +42,8 @@ const std::vector<Entry> kEntries = {
           "nominal incremental Ldq at rated i_q"),
     ENTRY(machine, emf_harmonic_5, "", kNumber, 0, 0.3, nominal.machine.emf_harmonic_5, "share of the fundamental EMF"),
     ENTRY(machine, emf_harmonic_7, "", kNumber, 0, 0.3, nominal.machine.emf_harmonic_7, "share of the fundamental EMF"),
+    TEXT(machine, flux_map, nominal.machine.flux_map,
+         "file of the flux over the currents, in the place of inductances and saturation"),
     ENTRY(mechanics, inertia, "kgm2", kNumber, 1e-6, 100, nominal.mechanics.inertia, "nominal inertia"),
     ENTRY(mechanics, viscous_friction, "Nms", kNumber, 0, 10, nominal.mechanics.viscous_friction, "viscous friction"),
     ENTRY(mechanics, coulomb_friction, "Nm", kNumber, 0, 100, nominal.mechanics.coulomb_friction, "dry friction"),
@@ -130,6 +137,7 @@ const std::vector<Entry> kEntries = {
 };
 
 #undef AT
+#undef TEXT
 #undef CHOICE
 #undef ENTRY
 #undef ROW
@@ -138,18 +146,39 @@ const std::vector<Entry> kEntries = {
 
 const std::vector<Entry>& entries() { return kEntries; }
 
-void set_entry(Setup& setup, const std::string& section, const std::string& key, double value) {
+namespace {
+
+const Entry& entry_of(const std::string& section, const std::string& key) {
   for (const Entry& e : kEntries) {
-    if (section != e.section || key != e.key) continue;
-    if (!std::isfinite(value) || value < e.minimum || value > e.maximum) {
-      throw std::invalid_argument(section + "." + key + " = " + std::to_string(value) + " " + e.unit +
-                                  ": out of range, allowed is " + std::to_string(e.minimum) + " to " +
-                                  std::to_string(e.maximum));
-    }
-    e.set(setup, value);
-    return;
+    if (section == e.section && key == e.key) return e;
   }
   throw std::invalid_argument("there is no plant entry " + section + "." + key);
+}
+
+}  // namespace
+
+void set_entry(Setup& setup, const std::string& section, const std::string& key, double value) {
+  const Entry& e = entry_of(section, key);
+  if (e.kind == EntryKind::kText) throw std::invalid_argument(section + "." + key + ": must be a text");
+  if (!std::isfinite(value) || value < e.minimum || value > e.maximum) {
+    throw std::invalid_argument(section + "." + key + " = " + std::to_string(value) + " " + e.unit +
+                                ": out of range, allowed is " + std::to_string(e.minimum) + " to " +
+                                std::to_string(e.maximum));
+  }
+  e.set(setup, value);
+}
+
+void set_entry(Setup& setup, const std::string& section, const std::string& key, const std::string& word) {
+  const Entry& e = entry_of(section, key);
+  if (e.kind == EntryKind::kText) {
+    e.text(setup) = word;
+    return;
+  }
+  const auto count = e.choices == nullptr ? 0 : e.choices->size();
+  for (std::size_t n = 0; n < count; ++n) {
+    if ((*e.choices)[n] == word) return e.set(setup, static_cast<double>(n));
+  }
+  throw std::invalid_argument(section + "." + key + " = '" + word + "': not a choice");
 }
 
 plant::PlantConfig Setup::plant() const {

@@ -39,7 +39,7 @@ struct Setup {
   plant::PlantConfig plant() const;
 };
 
-enum class EntryKind { kNumber, kWhole, kSwitch, kChoice };
+enum class EntryKind { kNumber, kWhole, kSwitch, kChoice, kText };
 
 struct Entry {
   const char* section;
@@ -52,6 +52,7 @@ struct Entry {
   void (*set)(Setup&, double);
   const char* help;
   const std::vector<std::string>* choices;  // words for the values of a kChoice entry, else null
+  std::string& (*text)(Setup&) = nullptr;   // of a kText entry, which has no number, else null
 };
 
 /// All entries, grouped by section.
@@ -59,6 +60,9 @@ const std::vector<Entry>& entries();
 
 /// Sets one entry; throws std::invalid_argument when it does not exist or the value is out of range.
 void set_entry(Setup& setup, const std::string& section, const std::string& key, double value);
+
+/// The same by a word: one of the choices, or the text.
+void set_entry(Setup& setup, const std::string& section, const std::string& key, const std::string& word);
 
 }  // namespace stillspin::bench
 

@@ -26,7 +26,7 @@ void check_machine(const MachineConfig& m) {
   check("machine.cross_inductance", m.cross_inductance, -0.01, 0.01, "H");
   check("machine.emf_harmonic_5", m.emf_harmonic_5, 0, 0.3, "");
   check("machine.emf_harmonic_7", m.emf_harmonic_7, 0, 0.3, "");
-  if (!m.saturation) return;
+  if (!m.saturation || !m.flux_map.empty()) return;
   // At rated current the incremental inductances must still form a positive definite matrix.
   const double product = m.inductance_d * (0.8 * m.inductance_q - std::fabs(m.cross_inductance));
   if (m.cross_inductance * m.cross_inductance >= product) {

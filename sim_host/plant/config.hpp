@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 namespace stillspin::plant {
 
@@ -29,6 +30,7 @@ struct MachineConfig {
   double cross_inductance = 1.121e-4;   // H, incremental Ldq at i_q = +rated, odd in i_q, -0.01..0.01
   double emf_harmonic_5 = 0.02;         // fraction of the fundamental EMF, 0..0.3
   double emf_harmonic_7 = 0.01;         // fraction of the fundamental EMF, 0..0.3
+  std::string flux_map;                 // path of a table (flux_map.hpp) instead of inductances, saturation, flux
 };
 
 /// Shaft. The load torque is not here: see Plant::set_load.

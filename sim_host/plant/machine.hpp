@@ -13,12 +13,17 @@
 // stationary currents: 3/2 pp (psi_d iq - psi_q id + i . emf per speed).
 //
 // Not valid where the inductance matrix stops being positive definite (far beyond rated current; the model reports it).
+//
+// Instead of these formulas a table may say the flux (flux_map.hpp); harmonics and all else stay.
 // Units: A, Vs, H, J.
 
 #ifndef STILLSPIN_SIM_HOST_PLANT_MACHINE_HPP
 #define STILLSPIN_SIM_HOST_PLANT_MACHINE_HPP
 
+#include <memory>
+
 #include "sim_host/plant/config.hpp"
+#include "sim_host/plant/flux_map.hpp"
 #include "sim_host/plant/portable_math.hpp"
 
 namespace stillspin::plant {
@@ -30,18 +35,8 @@ struct Pair {
 
 class Machine {
  public:
-  explicit Machine(const MachineConfig& c)
-      : pole_pairs(c.pole_pairs),
-        torque_factor(1.5 * c.pole_pairs),
-        resistance(c.resistance),
-        ld(c.inductance_d),
-        lq(c.inductance_q),
-        lambda(c.magnet_flux),
-        k(c.saturation ? c.cross_inductance / c.rated_peak_current : 0.0),
-        knee(2.0 * c.rated_peak_current),
-        inverse_knee(c.saturation ? 1.0 / knee : 0.0),
-        harmonic_d(-c.magnet_flux * (c.emf_harmonic_5 + c.emf_harmonic_7)),
-        harmonic_q(c.magnet_flux * (c.emf_harmonic_7 - c.emf_harmonic_5)) {}
+  /// Reads the table where there is one: std::invalid_argument as FluxMap::read.
+  explicit Machine(const MachineConfig& c);
 
   /// A point on the saturation curve, from which the neighbourhood is cheap to reach.
   struct Anchor {
@@ -59,6 +54,7 @@ class Machine {
 
   /// Flux linkage without harmonics.
   Pair flux(double id, double iq, const Anchor& near) const {
+    if (map) return mapped_flux(id, iq);
     const double main =
         inverse_knee > 0.0 ? knee * lq * arc_tangent_near(iq * inverse_knee, near.x, near.arc) : lq * iq;
     return {lambda + ld * id + 0.5 * k * iq * iq, main + k * id * iq};
@@ -66,12 +62,14 @@ class Machine {
 
   /// The same where `at` is the very point.
   Pair flux_at(double id, double iq, const Anchor& at) const {
+    if (map) return mapped_flux(id, iq);
     const double main = inverse_knee > 0.0 ? knee * lq * at.arc : lq * iq;
     return {lambda + ld * id + 0.5 * k * iq * iq, main + k * id * iq};
   }
 
   /// Inverse of the incremental inductance matrix times `u`; determinant_sign <= 0 outside of the map's validity.
   Pair slope(double id, double iq, const Pair& u, double* determinant_sign) const {
+    if (map) return mapped_slope(id, iq, u, determinant_sign);
     const double x = iq * inverse_knee;
     const double m = 1.0 + x * x;
     const double lqq_m = lq + k * id * m;  // both divided by m at the end
@@ -92,6 +90,7 @@ class Machine {
 
   /// Energy of the field above that at zero current, J.
   double field_energy(double id, double iq) const {
+    if (map) return mapped_energy(id, iq);
     const double x = iq * inverse_knee;
     const double main = inverse_knee > 0.0 ? 0.5 * knee * knee * lq * logarithm(1.0 + x * x) : 0.5 * lq * iq * iq;
     return 1.5 * (0.5 * ld * id * id + k * id * iq * iq + main);
@@ -104,6 +103,12 @@ class Machine {
   double knee;          // A
   double inverse_knee;  // 1/A, 0 = linear
   double harmonic_d, harmonic_q;
+  std::shared_ptr<const FluxMap> map;  // null: the formulas
+
+ private:
+  Pair mapped_flux(double id, double iq) const;
+  Pair mapped_slope(double id, double iq, const Pair& u, double* determinant_sign) const;
+  double mapped_energy(double id, double iq) const;
 };
 
 }  // namespace stillspin::plant

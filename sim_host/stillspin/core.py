@@ -135,6 +135,14 @@ class NativeCore(Protocol):
         """Section -> key -> unit, minimum, maximum, default, help of the plant."""
         ...
 
+    def flux_map(self, path: str) -> Mapping[str, float]:
+        """A table of a machine's flux over its currents.
+
+        At zero current inductance_d, inductance_q (H), magnet_flux, magnet_flux_q (Vs); misfit, the largest difference
+        of the table to what the plant interpolates (Vs). ValueError for a table that no machine can have.
+        """
+        ...
+
     def replay(
         self,
         *,

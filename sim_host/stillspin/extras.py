@@ -14,6 +14,7 @@ EXTRA_OF = {
     "matplotlib": "plots",
     "pandas": "tables",
     "pyarrow": "tables",
+    "scipy": "maps",
 }
 """Package -> the extra in sim_host/pyproject.toml that brings it."""
 

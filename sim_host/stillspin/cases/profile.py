@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from stillspin import core, json_schema, resources, toml_table
-from stillspin.cases import file_schema, nameplate
+from stillspin.cases import file_schema, flux_table, nameplate
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 
@@ -110,6 +110,7 @@ def _read(kind: str, name: str, schema: core.Schema, known: Mapping[str, Entry])
         for section, entries in schema.items()
         if section in data
     }
+    plant = flux_table.stated(plant, path)
     parameters = {name: float(known[name].value(value)) for name, value in data.get("parameters", {}).items()}
     return _File(path.stem, data.get("description", "").strip(), plant, parameters, data.get("commission", False))
 

@@ -9,7 +9,8 @@ import typer
 
 from stillspin import core
 from stillspin.called import called
-from stillspin.cases import motor_check, profile, questions
+from stillspin.cases import flux_table, motor_check, profile, questions
+from stillspin.cases.flux_table import Columns
 from stillspin.cases.motor_told import Motor
 from stillspin.commands import parameter_file
 from stillspin.counted import counted
@@ -82,3 +83,35 @@ def new(
     }
     parameter_file.write(file, questions.file_text(file.stem, questions.read(typed)))
     print(f"{file} written; what will work with it: {called()} motor check {file}")
+
+
+@app.command()
+def flux(
+    *,
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A table of flux over current: .mat, .npz or .csv.")],
+    out: Annotated[
+        Path, typer.Option("--out", help="The table as the plant reads it; one that exists is not touched.")
+    ],
+) -> None:
+    """Take over a machine's flux from a finite-element program or a measurement, for `flux_map` of a motor's file."""
+    if out.exists():
+        raise InputError(f"{out}: exists already; name another file")
+    rows, turned = flux_table.along_d(flux_table.read(file))
+    flux_table.write(out, rows, file.name)
+    try:
+        found = flux_table.told(str(out), core.load())
+    except InputError:
+        out.unlink()
+        raise
+    if turned:
+        print("note: turned by a quarter of a turn: the magnet is along +d now, as the plant has it")
+    print(f"{out}: {counted(len(rows), 'point')}, i_d {_span(rows[:, 0])}, i_q {_span(rows[:, 1])}")
+    print(
+        f"at zero current Ld {1e3 * found.inductance_d:.4g} mH, Lq {1e3 * found.inductance_q:.4g} mH, "
+        f"magnet {found.magnet_flux:.4g} Vs; what is interpolated is off by at most {1e3 * found.misfit:.3g} mVs"
+    )
+    print(f'in the motor\'s file: [machine] flux_map = "{out.name}"')
+
+
+def _span(values: Columns) -> str:
+    return f"{values.min():.4g} … {values.max():.4g} A"
