@@ -99,6 +99,13 @@ TEST(Refusal, DurationAndRecordEvery) {
 TEST(Refusal, EveryPlantEntryTakesItsDefault) {
   for (const Entry& entry : entries()) {
     bench::Setup setup;
+    if (entry.kind == EntryKind::kText) {
+      EXPECT_EQ(entry.text(setup), "") << entry.key;
+      set_entry(setup, entry.section, entry.key, std::string("mine.csv"));
+      EXPECT_EQ(entry.text(setup), "mine.csv") << entry.key;
+      EXPECT_NE(refusal([&] { set_entry(setup, entry.section, entry.key, 1.0); }), "") << entry.key;
+      continue;
+    }
     const double value = entry.get(setup);
     EXPECT_EQ(refusal([&] { set_entry(setup, entry.section, entry.key, value); }), "")
         << entry.section << '.' << entry.key;
