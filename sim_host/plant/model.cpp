@@ -164,10 +164,10 @@ bool Model::far_from_events(const State& y, const State& slope, const State& end
 
 void Model::outside_map(const State& y) const {
   std::ostringstream message;
-  message << "plant: currents i_d = " << y[kId] << " A, i_q = " << y[kIq]
-          << " A are outside of the flux map (its inductance matrix is not positive definite there, or the table ends); "
-          << (machine.map ? "widen machine.flux_map" : "switch machine.saturation off")
-          << " or trip the inverter earlier";
+  message
+      << "plant: currents i_d = " << y[kId] << " A, i_q = " << y[kIq]
+      << " A are outside of the flux map (its inductance matrix is not positive definite there, or the table ends); "
+      << (machine.map ? "widen machine.flux_map" : "switch machine.saturation off") << " or trip the inverter earlier";
   throw std::runtime_error(message.str());
 }
 
