@@ -135,6 +135,17 @@ std::vector<std::uint16_t> words(Self self, std::uint32_t address, std::uint32_t
   return all;
 }
 
+// Codes of the converter, and writes to the ePWM as (samples before it, address, value, address behind its
+// instruction).
+nb::tuple taped(Self self) {
+  const chip::Tape& tape = self.board().tape();
+  nb::list writes;
+  for (const auto& write : tape.writes) {
+    writes.append(nb::make_tuple(write.samples, write.address, write.value, write.program));
+  }
+  return nb::make_tuple(tape.samples, writes);
+}
+
 void replace_flash_library(Self self, std::uint32_t erase, std::uint32_t program, std::uint32_t verify,
                            std::uint32_t scale) {
   self.board().executing().replace_flash_library({erase, program, verify, scale});
@@ -165,6 +176,10 @@ void bind_code(nb::class_<PythonBoard>& board) {
       .def(
           "raise_interrupt", [](Self self, unsigned vector) { self.board().executing().raise_interrupt(vector); },
           nb::arg("vector"))
+      .def(
+          "tape", [](Self self, std::vector<std::uint16_t> given) { self.board().tape().given = std::move(given); },
+          nb::arg("given"))
+      .def("taped", &taped)
       .def("replace_flash_library", &replace_flash_library, nb::arg("erase"), nb::arg("program"), nb::arg("verify"),
            nb::arg("scale"));
 }

@@ -320,6 +320,7 @@ void Core::write_epwm(std::uint32_t address, std::uint16_t value) {
   const std::uint16_t offset = offset_in_page(address);
   if (gate_stops(system_.epwm_clock(module), address)) return;
   if (epwm_register_protected(offset) && protection_stops(address)) return;
+  if (tape_ != nullptr) tape_->write(address, value, code_ != nullptr ? code_->cpu().r.pc : 0);
   epwm_.write(module, offset, value, now_);
   set_due(kEPwm, epwm_.next_event());
 }

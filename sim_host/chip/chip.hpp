@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "sim_host/chip/code_flash_library.hpp"
+#include "sim_host/chip/tape.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::c28x {
@@ -126,6 +127,9 @@ class Chip {
   c28x::Core& execute_code();
   /// Where the program has TI's flash library, the model's cells do what it would.
   void replace_flash_library(const FlashLibrary& places);
+  /// From the first call on what the converter sees and what is written to the ePWM modules is noted; codes that are
+  /// given to it go to the converter.
+  Tape& tape();
   /// A request as if the vector's peripheral had made it; std::invalid_argument for a vector that has no line.
   void raise_interrupt(unsigned vector);
   /// Words by address into flash and RAM; std::invalid_argument where there is none.

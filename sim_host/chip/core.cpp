@@ -333,7 +333,8 @@ void Core::pwm_outputs(int module, bool a, bool b, Tick t) {
 
 std::uint16_t Core::sample(int channel, Tick t) {
   world_touched_ = true;
-  return world_.adc_sample(t, channel);
+  const std::uint16_t seen = world_.adc_sample(t, channel);
+  return tape_ != nullptr ? tape_->sample(seen) : seen;
 }
 
 Tick Core::serial_reaches(Tick t, bool level) {

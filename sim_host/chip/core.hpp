@@ -33,6 +33,7 @@
 #include "sim_host/chip/peripheral.hpp"
 #include "sim_host/chip/sci.hpp"
 #include "sim_host/chip/system_control.hpp"
+#include "sim_host/chip/tape.hpp"
 #include "sim_host/chip/watchdog.hpp"
 
 namespace stillspin::chip {
@@ -67,6 +68,10 @@ class Core final : public ChipServices {
   void on_jump(Chip::Jump jump) { jump_ = std::move(jump); }
   c28x::Core& execute_code();
   void replace_flash_library(const FlashLibrary& places);
+  Tape& tape() {
+    if (tape_ == nullptr) tape_ = std::make_unique<Tape>();
+    return *tape_;
+  }
   bool raise_from_outside(unsigned vector) { return interrupts_.raise(vector); }
 
   // ---- for the firmware (target_*)
@@ -252,7 +257,8 @@ class Core final : public ChipServices {
   std::exception_ptr exception_;
   Coroutine coroutine_;
   std::unique_ptr<CodeCpu> code_;
-  Memory memory_;  // large: behind what every access touches
+  std::unique_ptr<Tape> tape_;  // nothing is noted without
+  Memory memory_;               // large: behind what every access touches
 };
 
 }  // namespace stillspin::chip

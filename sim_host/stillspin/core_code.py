@@ -70,6 +70,18 @@ class NativeCode(Protocol):
         """A request as if the vector's peripheral had made it; ValueError for a vector that has no line."""
         ...
 
+    def tape(self, given: list[int]) -> None:
+        """Note from now on what the converter sees and what is written to the ePWM; also of the firmware.
+
+        Args:
+            given: codes for the converter instead, in the order of its samples, as long as there are some.
+        """
+        ...
+
+    def taped(self) -> tuple[list[int], list[tuple[int, int, int, int]]]:
+        """Codes, and writes: samples before, address, value, address behind the instruction (0 of the firmware)."""
+        ...
+
     def replace_flash_library(self, erase: int, program: int, verify: int, scale: int) -> None:
         """Addresses of TI's flash library and its variable, 0 for none: the model's cells do what it would."""
         ...

@@ -86,8 +86,8 @@ def assemble_line(text: str, address: int = 0, evaluate: Evaluate | None = None)
     Raises:
         InputError: it is no instruction, or an operand is out of range.
     """
-    mnemonic, _, rest = text.strip().upper().partition(" ")
-    operands = re.sub(r"\s", "", rest)
+    mnemonic, *rest = text.strip().upper().split(None, 1)
+    operands = re.sub(r"\s", "", "".join(rest))
     value_of = evaluate or evaluated
     reasons = []
     for spelling in _spellings().get(mnemonic, []):
@@ -103,4 +103,6 @@ def assemble_line(text: str, address: int = 0, evaluate: Evaluate | None = None)
             reasons.append(str(error))
             continue
         return _words(spelling.form, values)
+    if mnemonic == "SUB" and (match := re.fullmatch(r"([^,]+),#(.+)", operands)):
+        return assemble_line(f"ADD {match[1]},#-({match[2]})", address, evaluate)  # there is no such code of its own
     raise InputError(f"'{text.strip()}' is no instruction" + (f": {reasons[-1]}" if reasons else ""))

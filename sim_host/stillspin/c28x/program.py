@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 from stillspin.c28x.assembler import assemble_line
 from stillspin.c28x.expression import NAME, evaluated
+from stillspin.c28x.macros import Expansion, ExpansionError
 from stillspin.c28x.table import WORD
 from stillspin.errors import InputError
 
@@ -135,18 +136,34 @@ def _lines(source: str, name: str, folder: Path | None) -> Iterator[tuple[Line, 
         yield from _lines(_read(other), other.name, other.parent)
 
 
+def _expanded(lines: list[tuple[Line, str]], known: Mapping[str, int]) -> list[tuple[Line, str]]:
+    """With macros filled in, and without what no condition wants."""
+    expansion: Expansion[Line] = Expansion(known)
+    try:
+        made = list(expansion.lines(lines))
+        expansion.end()
+    except ExpansionError as error:
+        where = error.where if isinstance(error.where, Line) else lines[-1][0]
+        raise InputError(f"{_named(where)}: {error}") from error
+    return made
+
+
+def _named(where: Line) -> str:
+    return f"{where.file}, line {where.number}" if where.file else f"line {where.number}"
+
+
 def _assemble(
     lines: list[tuple[Line, str]], sections: Mapping[str, int] | None, symbols: Mapping[str, int] | None
 ) -> Program:
     known = {name.upper(): value for name, value in (symbols or {}).items()}
+    expanded = _expanded(lines, known)
     for final in (False, True):
         run = _Pass(known, sections or {}, final)
-        for where, text in lines:
+        for where, text in expanded:
             try:
                 run.line(text, where)
             except (InputError, ValueError, IndexError) as error:
-                named = f"{where.file}, " if where.file else ""
-                raise InputError(f"{named}line {where.number}: {error}") from error
+                raise InputError(f"{_named(where)}: {error}") from error
         known = run.program.symbols
     return run.program
 

@@ -12,11 +12,13 @@ import typer
 from rich.console import Console
 
 from stillspin import core
+from stillspin.board import image as images
 from stillspin.commands.connection import DriveOption, wanted
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.hil import Difference, built, campaign, runs
+from stillspin.hil import Difference, boards, built, campaign, runs
+from stillspin.hil.boards import Board
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
@@ -42,6 +44,7 @@ _VIRTUAL = "virtual"
 
 def hil(
     *,
+    context: typer.Context,
     scenarios: Annotated[
         list[str], typer.Argument(metavar="ID...", help="Scenarios, such as A10; commission; all for everything.")
     ],
@@ -62,6 +65,10 @@ def hil(
         ),
     ] = "",
     where: DriveOption = "",
+    image: Annotated[
+        Path | None,
+        typer.Option("--image", metavar="FILE", help="A virtual board that executes this image of the C28x."),
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help=f"Only the start and the first {runs.CHECK:g} s of every run.")
     ] = False,
@@ -87,7 +94,7 @@ def hil(
     Exit status 0 when every run is identical, 4 when one differs.
     """
     of = revision()
-    board = _address(port, can, where)
+    board = _executing(context, image, port or can or where) if image else _address(port, can, where)
     is_virtual = board.partition(":")[0] == _VIRTUAL
     if not is_virtual:
         if (jobs or 1) != 1 or cluster:
@@ -134,6 +141,15 @@ def _address(port: str, can: str, where: str) -> str:
         interface, colon, _ = can.partition(":")
         return f"can:{can}" if colon and "/" not in interface else f"can:slcan:{can}"
     return wanted(where)
+
+
+def _executing(context: typer.Context, image: Path, other: str) -> str:
+    """The address of a virtual board that executes an image, until the command ends."""
+    if other:
+        raise InputError(f"--image: a virtual board of its own executes it; leave out {other}")
+    images.load(image)  # a file that cannot be executed is said to be so before anything starts
+    board = context.with_resource(Board(boards.memory(), image))
+    return board.wait("serial")
 
 
 def _kind(board: str) -> str:

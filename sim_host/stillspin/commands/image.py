@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from stillspin.c28x.disassembler import disassemble
-from stillspin.commands import image_assemble, image_inject, image_time, image_trace
+from stillspin.commands import image_assemble, image_inject, image_replay, image_time, image_trace
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -28,6 +28,8 @@ app = typer.Typer(
 app.command(name="time")(image_time.time)
 app.command(name="trace")(image_trace.trace)
 app.command(name="inject")(image_inject.inject)
+app.command(name="record")(image_replay.record)
+app.command(name="replay")(image_replay.replay)
 app.command(name="assemble")(image_assemble.assemble)
 
 PLACES = (

@@ -47,8 +47,10 @@ def memory() -> bytes:
 class Board:
     """One process, from entering to leaving; `memory` is what is in its memory after that."""
 
-    def __init__(self, memory: bytes | None) -> None:
+    def __init__(self, memory: bytes | None, image: Path | None = None) -> None:
+        """With the firmware that is compiled for this computer, or executing an image of the C28x."""
         self.memory = memory or b""
+        self._image = ["--image", str(image)] if image else []
 
     def __enter__(self) -> Self:
         """Switch it on."""
@@ -63,7 +65,9 @@ class Board:
         with self._log.open("w") as log:
             # Should this process end before it knows of that one, that one ends by itself.
             guard = ["--parent", str(os.getpid())]
-            self._process = subprocess.Popen(_command("--speed", "0", *guard, *plugs), stdout=log, stderr=log)
+            self._process = subprocess.Popen(
+                _command("--speed", "0", *self._image, *guard, *plugs), stdout=log, stderr=log
+            )
         return self
 
     def wait(self, kind: str, baud: int = BAUD) -> str:

@@ -1,0 +1,147 @@
+"""One run's converter codes given to another, and what both write to the ePWM compared, bit for bit.
+
+The run that is recorded is that of an image or of the firmware that is compiled for this computer. A tape has the codes
+in the order of the converter's samples, the octets that came at the serial port with their times, and every write to a
+register of the ePWM in order. What the program makes of equal inputs has to be equal: the first write that is not is
+named by its step, its register and the line of the image that made it. A step is a sample of the converter.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+
+from stillspin.core_board import NativeBoard
+from stillspin.errors import InputError
+from stillspin.image import opened
+
+_FORMAT = 1
+_MODULES = range(0x6800, 0x6980)
+_MODULE = 0x40
+_REGISTERS = {
+    **{0x00: "TBCTL", 0x01: "TBSTS", 0x02: "TBPHSHR", 0x03: "TBPHS", 0x04: "TBCTR", 0x05: "TBPRD", 0x07: "CMPCTL"},
+    **{0x08: "CMPAHR", 0x09: "CMPA", 0x0A: "CMPB", 0x0B: "AQCTLA", 0x0C: "AQCTLB", 0x0D: "AQSFRC", 0x0E: "AQCSFRC"},
+    **{0x0F: "DBCTL", 0x10: "DBRED", 0x11: "DBFED", 0x12: "TZSEL", 0x14: "TZCTL", 0x15: "TZEINT", 0x16: "TZFLG"},
+    **{0x17: "TZCLR", 0x18: "TZFRC", 0x19: "ETSEL", 0x1A: "ETPS", 0x1B: "ETFLG", 0x1C: "ETCLR", 0x1D: "ETFRC"},
+    **{0x1E: "PCCTL", 0x20: "HRCNFG"},
+}
+
+Octets = tuple[float, str]
+"""When, in seconds after power-on, and in hexadecimal digits what."""
+
+
+@dataclass(frozen=True)
+class Tape:
+    """Of a run from power-on."""
+
+    seconds: float
+    samples: list[int]
+    writes: list[tuple[int, int, int]]
+    """Samples before it, address, value."""
+    octets: list[Octets]
+    made_by: str
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The first write that is not the same; None where one side has no more."""
+
+    index: int
+    expected: tuple[int, int, int] | None
+    found: tuple[int, int, int] | None
+    program: int
+    """The address behind the instruction that wrote; 0 where there is none."""
+
+
+def register(address: int) -> str:
+    """As TI names it: EPwm1.CMPA."""
+    if address not in _MODULES:
+        return f"0x{address:04X}"
+    module, offset = divmod(address - _MODULES.start, _MODULE)
+    return f"EPwm{module + 1}.{_REGISTERS.get(offset, f'0x{offset:02X}')}"
+
+
+def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Sequence[int] = ()) -> Tape:
+    """Let a board that has just been switched on run, and record it.
+
+    Args:
+        board: of an image or the firmware.
+        seconds: how long.
+        octets: for its serial port.
+        given: codes for its converter.
+
+    Raises:
+        CampaignError: the chip cannot go on.
+    """
+    board.tape(list(given))
+    at = 0.0
+    for when, text in sorted(octets):
+        if when > seconds:
+            break
+        opened.advance(board, when - at)
+        at = when
+        board.serial_write(bytes.fromhex(text))
+    opened.advance(board, seconds - at)
+    samples, writes = board.taped()
+    return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "")
+
+
+def compare(tape: Tape, board: NativeBoard) -> Difference | None:
+    """Hold what a board has written, which was given the tape's codes, against the tape.
+
+    What came behind the last sample of the shorter run is not compared.
+    """
+    samples, writes = board.taped()
+    end = min(len(samples), len(tape.samples))
+    expected = [write for write in tape.writes if write[0] < end]
+    found = [write for write in writes if write[0] < end]
+    for index, (one, other) in enumerate(zip_longest(expected, found)):
+        if other is None or one != other[:3]:
+            return Difference(index, one, other[:3] if other else None, other[3] if other else 0)
+    return None
+
+
+def save(tape: Tape, file: Path) -> None:
+    """As JSON.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    content = {
+        "tape": _FORMAT,
+        "made_by": tape.made_by,
+        "seconds": tape.seconds,
+        "octets": tape.octets,
+        "samples": tape.samples,
+        "writes": tape.writes,
+    }
+    try:
+        file.write_text(json.dumps(content, separators=(",", ":")) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{file}: cannot be written ({error.strerror})") from error
+
+
+def load(file: Path) -> Tape:
+    """The same back.
+
+    Raises:
+        InputError: it cannot be read, or is no tape.
+    """
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        if content["tape"] != _FORMAT:
+            raise InputError(f"{file}: is a tape of format {content['tape']}, not {_FORMAT}; record it again")
+        return Tape(
+            float(content["seconds"]),
+            [int(code) for code in content["samples"]],
+            [(int(step), int(address), int(value)) for step, address, value in content["writes"]],
+            [(float(when), str(text)) for when, text in content["octets"]],
+            str(content["made_by"]),
+        )
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read ({error.strerror})") from error
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"{file}: is no tape of `image record` ({error})") from error

@@ -1,0 +1,151 @@
+"""`stillspin image record` and `replay`: equal inputs make equal outputs, and what does not is found and named."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from c28x_chip import PROGRAMS, linked_file
+
+from stillspin import core
+from stillspin.board import power
+from stillspin.cases import profile
+from stillspin.errors import InputError
+from stillspin.image import opened, tape
+
+FOR = 0.021
+OCTET = [(0.017, "f0")]
+"""A reference for the control program above what it samples, so that its integrator climbs."""
+
+
+def played(file, seed, given=(), seconds=FOR):
+    """What is recorded of an image, and a comparison with a tape while its board is on."""
+    board = opened.power_on(opened.read(file), "bench", "A", seed)
+    try:
+        made = tape.play(board, seconds, OCTET, given)
+        return made, lambda other: tape.compare(other, board), board
+    except BaseException:
+        board.close()
+        raise
+
+
+def compared(file, seed, recorded):
+    _, compare, board = played(file, seed, recorded.samples)
+    try:
+        return compare(recorded)
+    finally:
+        board.close()
+
+
+@pytest.fixture
+def control(tmp_path):
+    return linked_file(tmp_path, "control")
+
+
+@pytest.fixture
+def recorded(control):
+    made, _, board = played(control, 1)
+    board.close()
+    return made
+
+
+def test_the_codes_decide(control, recorded):
+    assert len(recorded.samples) > 100
+    assert compared(control, 1, recorded) is None
+    assert compared(control, 2, recorded) is None, "another plant's noise does not come through"
+    free, _, board = played(control, 2)
+    board.close()
+    assert free.samples != recorded.samples
+
+
+@pytest.mark.parametrize(
+    ("text", "other", "written"),
+    [
+        ("SFR     ACC,#8", "SFR     ACC,#7", "MOV     @CMPA,AL"),
+        ("#0x0900          ; SOCA", "#0x0901          ; SOCA", "ETSEL,#"),
+    ],
+)
+def test_a_planted_error_is_found_where_it_is_written(tmp_path, recorded, text, other, written):
+    source = (PROGRAMS / "control.asm").read_text()
+    assert text in source
+    (tmp_path / "start.asm").write_text((PROGRAMS / "start.asm").read_text())
+    changed = tmp_path / "control.asm"
+    changed.write_text(source.replace(text, other))
+    file = linked_file(tmp_path, "control", [changed])
+    difference = compared(file, 1, recorded)
+    line = opened.read(file).names.lines.at(difference.program - 1)
+    assert written in changed.read_text().splitlines()[line.number - 1]
+    assert difference.expected[:2] == difference.found[:2], "the same step and register"
+
+
+def test_what_is_missing_is_a_difference(control, recorded):
+    more = tape.Tape(
+        FOR,
+        recorded.samples,
+        [*recorded.writes[:40], (recorded.writes[40][0], 0x6809, 1), *recorded.writes[40:]],
+        OCTET,
+        "",
+    )
+    difference = compared(control, 1, more)
+    assert difference.index == 40
+    silent = tape.Tape(FOR, recorded.samples, [*recorded.writes, (len(recorded.samples) - 1, 0x6809, 1)], OCTET, "")
+    assert compared(control, 1, silent).found is None
+
+
+def test_the_firmware_is_recorded_as_well():
+    native = core.load()
+    chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), "A")
+    board = power.power(native, chosen, profile.Changes(), 1)
+    try:
+        made = tape.play(board, 0.15, [(0.1, b"start\r".hex())])
+    finally:
+        board.close()
+    assert len(made.samples) > 100
+    assert {tape.register(write[1]) for write in made.writes} >= {"EPwm1.CMPA", "EPwm1.TBPRD", "EPwm2.CMPA"}
+
+
+def run_command(*words):
+    command = [sys.executable, "-m", "stillspin", "image", *words]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_the_commands(tmp_path, control):
+    file = tmp_path / "control.tape"
+    done = run_command("record", file, "--image", control, "--for", "0.02", "--send", "0.018:@")
+    assert done.returncode == 0, done.stderr
+    done = run_command("replay", control, file, "--seed", "3")
+    assert done.returncode == 0, done.stdout
+    assert "the same" in done.stdout
+    content = json.loads(file.read_text())
+    content["writes"][-4][2] ^= 1
+    file.write_text(json.dumps(content))
+    done = run_command("replay", control, file)
+    assert done.returncode == 4
+    assert "differs: recorded step" in done.stdout
+    assert "EPwm1.CMPA" in done.stdout
+    assert "(control.asm:" in done.stdout
+
+
+def test_what_is_no_tape_is_said(tmp_path):
+    file = tmp_path / "x"
+    for content in ("", "[]", "{}", '{"tape": 1}', '{"tape": 7}'):
+        file.write_text(content)
+        with pytest.raises(InputError, match="tape"):
+            tape.load(file)
+    with pytest.raises(InputError, match="cannot be read"):
+        tape.load(tmp_path / "none")
+
+
+def test_times_of_lines_are_checked(tmp_path):
+    done = run_command("record", tmp_path / "x", "--send", "now:start")
+    assert done.returncode == 2
+    assert "--send" in done.stderr
+
+
+def test_registers_have_ti_s_names():
+    assert [tape.register(address) for address in (0x6809, 0x684A, 0x6940, 0x7101)] == [
+        "EPwm1.CMPA",
+        "EPwm2.CMPB",
+        "EPwm6.TBCTL",
+        "0x7101",
+    ]
