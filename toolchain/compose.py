@@ -69,8 +69,9 @@ COMMANDS = [row[0] for row in pack_text.rows((ROOT / "firmware/console/command_l
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
+    "start_phases": Table("const phase_t", "firmware/start/phases.h", "places", 9, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
-    "config_parts": Table("config_part_t", "firmware/interfaces/config_part.h"),
+    "config_parts": Table("const config_part_t", "firmware/interfaces/config_part.h"),
     **{name: Table("service_t", SERVICE) for name in ("resets", "power_on", "loading", "starting", "pass")},
     "works": Table("work_t", SERVICE),
     "watch": Table("watch_t", SERVICE, "one"),

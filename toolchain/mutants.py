@@ -69,7 +69,7 @@ PARTS = {
     # The states and what protects.
     "firmware": Part(
         (
-            *("firmware/mode/*.c", "firmware/config/rules.c", "firmware/api/actions.c", "firmware/start/*.c"),
+            *("firmware/mode/*.c", "firmware/config/rules.c", "firmware/api/actions.c", "firmware/start/**/*.c"),
             *(f"firmware/drive/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "protection")),
             *(
                 f"firmware/drive/{name}.c"

@@ -43,20 +43,6 @@ answer_status_t action_start(comm_watchdog_t watchdog, uint32_t holder, octet_wr
   return ANSWER_OK;
 }
 
-answer_status_t action_look(octet_writer_t* why) {
-  const answer_status_t status = action_may_begin(why);
-  if (status == ANSWER_OK) drive_command_look();
-  return status;
-}
-
-void put_look(octet_writer_t* w) {
-  const look_outcome_t outcome = drive_look_outcome();
-  put_message(w, CATALOGUE_LOOK, (uint16_t)outcome);
-  if (outcome < LOOK_TURNS || outcome > LOOK_UNCLEAR) return;
-  put_fixed(w, drive_look_rpm(), 16, 0);
-  put_packed(w, SAY_rpm);
-}
-
 void action_stop(void) { drive_command_stop(); }
 
 void action_coast(void) { drive_command_coast(); }

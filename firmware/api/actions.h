@@ -34,10 +34,6 @@ answer_status_t action_may_begin(octet_writer_t* why);
 /// With a watchdog, `link_timeout` without a record of its holder stops the drive again (comm_watchdog.h).
 answer_status_t action_start(comm_watchdog_t watchdog, uint32_t holder, octet_writer_t* why);
 
-/// Two short-circuit pulses: how the shaft turns. The outcome is asked for afterwards (drive_look_outcome).
-answer_status_t action_look(octet_writer_t* why);
-void put_look(octet_writer_t* w);
-
 /// Always taken: what is not under way need not be stopped.
 void action_stop(void);
 void action_coast(void);

@@ -12,7 +12,6 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
 #include "hal/hal_clock.h"
-#include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
@@ -40,7 +39,6 @@ void firmware_main(void) {
   do serve(edition_loading);
   while (!hal_adc_is_up());
   hal_adc_set_up();
-  hal_encoder_init((uint32_t)parameters.encoder_counts);
   hal_irq_install(drive_control_interrupt, drive_window_interrupt);
   serve(edition_starting);
   hal_watchdog_start();

@@ -24,8 +24,8 @@
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
 
-// bandwidth (rad/s, Q8) * T, Q30: 100 us * 2^22 = 419.43.
-static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return qc_mul(bandwidth_q8, 439804651L, 20); }
+// bandwidth (rad/s, Q8) * T, Q30.
+static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return qc_mul(bandwidth_q8, CONFIG_PER_PERIOD_Q20, 20); }
 
 // Share of an inductance (H, Q30) in percent (Q16).
 static int32_t share_of(int32_t inductance_q30, int32_t percent_q16) {
@@ -137,12 +137,8 @@ static bool load_control(drive_config_t* c) {
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);
-  const if_start_parameters_t if_start = {
-      p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, qc_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
-      qc_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
-  const bool turns = if_start_design(&c->if_start, &c->nameplate, &if_start) || p->start_method == 0;
   static speed_controller_t trial;  // too large for the stack; the background level alone comes here
-  return turns && speed_controller_init(&trial, &c->speed, &c->nameplate) &&
+  return speed_controller_init(&trial, &c->speed, &c->nameplate) &&
          current_controller_design(&c->current, &c->nameplate, &current);
 }
 
@@ -193,7 +189,6 @@ static bool load_position(drive_config_t* c) {
   c->synchronism.bad_periods = p->synchronism_time * DRIVE_PERIODS_PER_MS;
   c->adapt_share_q30 = share_per_slot_q30(p->adapt_time);
   c->drift_share_q30 = share_per_slot_q30(p->drift_time);
-  c->encoder_trim_bam = (uint32_t)q_mul64(p->encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   // dLqq/di_d = dLdq/di_q, the slope of the map's first segment, over Lq. The other one comes in percent, Q24.
   c->saturation.q_q30 = q_div(q_div(p->ldq_1, p->inductance_q, 30), p->map_current / 4, 20);
   c->saturation.d_q30 = qc_mul(p->saturation_d, 687194767L, 30);
@@ -219,7 +214,7 @@ static void load_values(config_values_t* v) {
 
 static bool load_parts(drive_config_t* c) {
   bool fits = true;
-  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) fits = edition_config_parts[k](c) && fits;
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) fits = edition_config_parts[k]->make(c) && fits;
   return fits;
 }
 
@@ -232,9 +227,15 @@ const drive_config_t* drive_config_make(void) {
   return fits ? &made : NULL;
 }
 
+void drive_config_take(drive_config_t* c, const drive_config_t* made) {
+  *c = *made;
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
+    if (edition_config_parts[k]->take != NULL) edition_config_parts[k]->take();
+  }
+}
+
 bool drive_config_load(drive_config_t* c) {
   const drive_config_t* const made = drive_config_make();
-  if (made == NULL) return false;
-  *c = *made;
-  return true;
+  if (made != NULL) drive_config_take(c, made);
+  return made != NULL;
 }

@@ -33,7 +33,7 @@ static bool map_is_crossed(const parameters_t* p) {
 static packed_text_t broken_rule(void) {
   const parameters_t* const p = &parameters;
   const uint16_t source = drive_source_wanted()->traits;
-  if (drive_source_is_left_out()) return SAY_position_source_is_not_in_this_edition;
+  if (drive_source_is_left_out(p)) return SAY_position_source_is_not_in_this_edition;
   if (p->inductance_q < p->inductance_d) return SAY_inductance_q_must_be_at_least_inductance;
   if (p->blend_high <= p->blend_low) return SAY_blend_high_must_be_above_blend_low;
   if (p->flux_high <= p->flux_low) return SAY_flux_high_must_be_above_flux_low;

@@ -1,8 +1,10 @@
 #include "firmware/console/commands.h"
 
+#include "firmware/base/edition.h"
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/suggest.h"
+#include "firmware/dictionary/version.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
 
@@ -86,4 +88,15 @@ void command_help(const words_of_line_t* a) {
   } else {
     suggest(SUGGEST_COMMAND, &a->word[0]);
   }
+}
+
+void command_version(const words_of_line_t* a) {
+  (void)a;
+  octet_writer_t* const w = line_begin();
+  put_text(w, FIRMWARE_NAME);
+  put_packed(w, SAY_protocol);
+  put_unsigned(w, LINK_PROTOCOL);
+  put_packed(w, SAY_edition);
+  put_text(w, edition_name);
+  line_end();
 }

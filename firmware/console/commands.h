@@ -18,6 +18,9 @@ extern "C" {
 /// Carries a line out, or says why not. The line stays unchanged until its job is through.
 void command_obey(const editor_line_t* line, bool expired);
 
+/// False, and said, where something stands behind a command that takes nothing.
+bool no_arguments(const words_of_line_t* a);
+
 /// For what energises or moves the motor: false, and said, when the line has expired. Whether a line does that depends
 /// on its words and on the drive ('ref 0', 'commission results'): so it is asked where it is about to happen.
 bool command_may_move(const words_of_line_t* a);
@@ -42,18 +45,23 @@ void command_set(const words_of_line_t* a);
 void command_start(const words_of_line_t* a);
 void command_stop(const words_of_line_t* a);
 void command_coast(const words_of_line_t* a);
-void command_look(const words_of_line_t* a);
 void command_reset(const words_of_line_t* a);
 void command_ref(const words_of_line_t* a);
 
-// commands_look.c
+// commands_status.c
 /// What would be lost with the power, behind what the line says; nothing where nothing would.
 void put_unsaved(octet_writer_t* w);
 extern const status_line_t state_line, speed_line, current_line, dc_link_line, limits_line, fault_line, parameters_line;
 void command_status(const words_of_line_t* a);
+
+// commands_faults.c
 void command_faults(const words_of_line_t* a);
+
+// commands_signals.c
 void command_signals(const words_of_line_t* a);
 void command_watch(const words_of_line_t* a);
+
+// commands.c
 void command_version(const words_of_line_t* a);
 
 #if defined(__cplusplus)

@@ -1,4 +1,4 @@
-// start, stop, coast, look, ref, reset.
+// start, stop, coast, ref, reset.
 
 #include <stddef.h>
 
@@ -17,7 +17,7 @@
 
 static uint32_t command_ms;
 
-static bool no_arguments(const words_of_line_t* a) {
+bool no_arguments(const words_of_line_t* a) {
   if (a->count == 0u) return true;
   line_refused(SAY_this_command_takes_nothing_after_it);
   return false;
@@ -96,24 +96,6 @@ void command_coast(const words_of_line_t* a) {
   (void)a;
   action_coast();
   line_of(SAY_power_stage_off);
-}
-
-static bool wait_for_look(uint16_t step) {
-  (void)step;
-  if (drive_look_outcome() == LOOK_RUNNING) return true;
-  put_look(line_begin());
-  if (drive_look_outcome() == LOOK_ENDED) count_refusal();
-  line_end();
-  return false;
-}
-
-void command_look(const words_of_line_t* a) {
-  if (!no_arguments(a) || !command_may_move(a)) return;
-  if (action_look(line_begin()) == ANSWER_OK) {
-    console_run(wait_for_look, false);
-  } else {
-    line_end_refused();
-  }
 }
 
 static void show_reference(void) {

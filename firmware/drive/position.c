@@ -9,7 +9,6 @@
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "hal/hal_encoder.h"
 
 static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
@@ -118,10 +117,6 @@ void drive_estimate(drive_t* d) {
   }
 }
 
-uint32_t position_encoder_now(const drive_t* d) {
-  return position_encoder_angle(hal_encoder_count(), d->model.pole_pairs, d->config.values.encoder_counts);
-}
-
 void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   drive_position_t* const p = &d->position;
   const int32_t speed_bpp = q_limit(seen_bpp, MACHINE_SPEED_END_BPP);
@@ -150,23 +145,3 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
 }
 
 void position_keep(drive_t* d) { begin_sources(d, true); }
-
-void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  d->position.encoder_offset_bam = angle_bam - position_encoder_now(d);
-  d->position.aligned_bam = angle_bam;
-  tracking_observer_preset(&d->position.encoder, angle_bam, q_limit(speed_bpp, MACHINE_SPEED_END_BPP), 0);
-}
-
-bool position_encoder_is_reversed(const drive_t* d) {
-  if (!drive_source_has(d, SOURCE_MEASURES)) return false;
-  const uint32_t encoder_bam = d->position.encoder.angle_bam - d->position.aligned_bam;
-  const uint32_t windows_bam = d->position.high.angle_bam - d->position.aligned_bam;
-  return q_abs_sat(angle_diff_bam(windows_bam + encoder_bam, 0)) <
-         q_abs_sat(angle_diff_bam(windows_bam, encoder_bam)) / 2;
-}
-
-uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {
-  // 2^32 / counts, exact where the counts are a power of two, to 1e-5 of a turn otherwise.
-  const uint32_t per_count = 0xFFFFFFFFuL / (uint32_t)counts_per_turn + 1u;
-  return count * per_count * (uint32_t)pole_pairs;
-}

@@ -11,19 +11,6 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 /// Lets every estimator start from this angle and speed.
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
-/// Makes the encoder's present count mean this angle. Reads the encoder.
-void position_align_encoder(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
-
-/// Whether the encoder has turned the other way than the windows since then. Only soon after a start, within an
-/// electrical turn.
-bool position_encoder_is_reversed(const drive_t* d);
-
-/// What the encoder shows now, without that offset.
-uint32_t position_encoder_now(const drive_t* d);
-
-/// Electrical angle of an encoder count whose zero lies on phase a.
-uint32_t position_encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);
-
 /// A vector in the frame that the control uses, in the frame of what the position source sees meanwhile.
 static inline dq_t position_seen(const drive_t* d, dq_t vector) {
   return frame_moved(vector, d->position.seen.angle_bam - d->position.selected.angle_bam);

@@ -1,5 +1,7 @@
 // What opens the power stage: looked at in every period, before anything is commanded.
 
+#include <stddef.h>
+
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
@@ -116,10 +118,12 @@ static bool is_of_angle(drive_fault_t fault) {
   return fault == FAULT_DIVERGENCE || fault == FAULT_SYNCHRONISM || fault == FAULT_POLARITY;
 }
 
+static bool is_reversed(const drive_t* d) { return d->source->is_reversed != NULL && d->source->is_reversed(d); }
+
 void drive_protect(drive_t* d) {
   if (!drive_is_energised()) return;
   const bool first_turns = polarity_watch_is_awake(d);
   drive_fault_t fault = check(d);
-  if (first_turns && is_of_angle(fault) && position_encoder_is_reversed(d)) fault = FAULT_ENCODER;
+  if (first_turns && is_of_angle(fault) && is_reversed(d)) fault = FAULT_ENCODER;
   if (fault != FAULT_NONE) drive_trip(d, fault);
 }

@@ -6,11 +6,11 @@
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/interfaces/service.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
-#include "hal/hal_encoder.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_replay.h"
@@ -19,6 +19,12 @@
 uint16_t drive_dead_band_ticks(void) {
   const int32_t ticks = q_shr_round(parameters.dead_time * 100, 16);
   return (uint16_t)q_max(ticks, (int32_t)HAL_PWM_DEAD_BAND_MIN_TICKS);
+}
+
+static void set_up_parts(void) {
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
+    if (edition_config_parts[k]->set_up != NULL) edition_config_parts[k]->set_up();
+  }
 }
 
 // A changed parameter becomes effective as a whole, between two control interrupts. Only this level writes the
@@ -35,13 +41,13 @@ static void reload(void) {
   drive.config_valid = valid;
   drive.conflict = conflict;
   drive.conflict_known = true;
-  if (valid) drive.config = *fresh;
+  if (valid) drive_config_take(&drive.config, fresh);
   drive.control.current_limit_q20 = interlock_current_limit();
   drive_command_speed(drive.control.command_rpm_q16);  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
-    hal_encoder_init((uint32_t)parameters.encoder_counts);
+    set_up_parts();
     if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());
   }
   hal_replay_work_end();

@@ -24,7 +24,6 @@ void drive_reset(void) {
   hold_end();
   clear(&polarity_watch, sizeof polarity_watch);
   clear(&inertia_match, sizeof inertia_match);
-  drive_look_end(LOOK_NONE, 0);
   fault_history_reset();
   parameters_reset();
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();

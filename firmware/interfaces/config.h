@@ -4,13 +4,11 @@
 #define STILLSPIN_FIRMWARE_INTERFACES_CONFIG_H
 
 #include "control/current_controller.h"
-#include "control/if_start.h"
 #include "control/mtpa.h"
 #include "control/speed_controller.h"
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
-#include "estimators/flux_observer.h"
 #include "estimators/saturation.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
@@ -19,7 +17,8 @@
 #include "svpwm/modulator.h"
 
 /// Derived from the parameters, see config/config.c. Holds nothing that is found while the drive runs: the background
-/// level replaces it as a whole, and the interrupts read no parameter beside it.
+/// level replaces it as a whole, with the constants that a feature has beside it (config_part.h), and the interrupts
+/// read no parameter beside these.
 typedef struct drive_config {
   machine_model_t nameplate;
   modulator_config_t modulator;
@@ -27,12 +26,9 @@ typedef struct drive_config {
   current_controller_config_t current;
   speed_controller_config_t speed;
   mtpa_t mtpa;
-  if_start_config_t if_start;
   avv_config_t avv;
   deviation_observer_config_t observer, hold_observer;
   blend_config_t blend;
-  flux_observer_config_t flux;
-  const struct zvv_config* zvv;  // the paper's own part, where the edition has it
   slopes_config_t slopes;
   synchronism_config_t synchronism;
   int32_t volts_per_code_q16;
@@ -45,7 +41,6 @@ typedef struct drive_config {
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
   int32_t hold_gain_q30;         // of the position hold, per period
   int32_t hold_below_bpp;        // slower than this counts as at rest
-  uint32_t encoder_trim_bam;     // deliberate turn of the encoder's angle
   int32_t sensor_mismatch_q30;   // of the current sensors, as a share
   bool mapped;                   // the turn of the saliency axis with the current is known
   saturation_slopes_t saturation;

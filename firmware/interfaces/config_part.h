@@ -1,4 +1,4 @@
-// What a feature makes of its parameters: a part of the drive's configuration.
+// What a feature makes of its parameters: constants of its own, exchanged with the drive's configuration.
 
 #ifndef STILLSPIN_FIRMWARE_INTERFACES_CONFIG_PART_H
 #define STILLSPIN_FIRMWARE_INTERFACES_CONFIG_PART_H
@@ -7,9 +7,21 @@
 
 struct drive_config;
 
-/// Adds it to what the drive's own parameters have made. False where they do not fit together.
-typedef bool config_part_t(struct drive_config* c);
+/// Of a bandwidth or rate, rad/s Q8, times the period: Q30. 100 us 2^22 2^20.
+#define CONFIG_PER_PERIOD_Q20 439804651L
+
+typedef struct {
+  /// Makes them beside those in use, which an interrupt may read meanwhile, and may change what the drive's own
+  /// parameters have made. False where they do not fit together. Background level.
+  bool (*make)(struct drive_config* c);
+  /// What was made last is in use from here on: with the rest of the configuration, between two control interrupts.
+  /// NULL: it has no constants of its own.
+  void (*take)(void);
+  /// The same for the board, with the power stage off and behind `take`; NULL: nothing.
+  void (*set_up)(void);
+} config_part_t;
+
 /// Those of the edition in their order, NULL behind the last one (editions/).
-extern config_part_t* const edition_config_parts[];
+extern const config_part_t* const edition_config_parts[];
 
 #endif

@@ -47,10 +47,7 @@ typedef struct {
   deviation_observer_t observer;
   blend_t blend;
   sensor_match_t sensors;
-  tracking_observer_t encoder;
   bool is_near;                 // what was last regressed is near enough to learn from
-  uint32_t encoder_offset_bam;  // electrical angle at count 0, found at the start
-  uint32_t aligned_bam;         // where it was found
   int32_t torque_accel_q8;      // acceleration of the torque of the measured current
   int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
   const flux_observer_t* flux;  // for those who look, NULL where no source has one
@@ -61,7 +58,6 @@ typedef struct {
   speed_controller_t speed;
   field_weakening_t weakening;
   int32_t weakening_q20;
-  int32_t observability_q20;                   // what flows against the d-axis so that the flux is observable
   int32_t current_limit_q20;                   // largest phase current now (board/functions.h)
   int32_t headroom_q20, braking_headroom_q20;  // torque current that the limits leave, and against the rotation, A
   q_inverse_t per_torque_constant;             // of N m per A, Q24, at the reference of i_d

@@ -35,6 +35,9 @@ typedef struct {
   /// Begins anew from angle and speed in use, or goes on with what it has seen while a vector turned the shaft; so does
   /// the flux, whichever source has the shaft, as it may look on. NULL: has nothing of its own.
   void (*begin)(struct drive* d, bool keeps);
+  /// Whether what it measures turns the other way than the windows since then. Only soon after a start, within an
+  /// electrical turn. NULL: it measures nothing.
+  bool (*is_reversed)(const struct drive* d);
   uint16_t traits;
 } position_source_t;
 

@@ -40,15 +40,6 @@ static answer_status_t request_reset(request_t* r) { return action_reset(&r->ans
 
 static answer_status_t request_speed(request_t* r) { return action_speed(take_i32(&r->body), &r->answer); }
 
-static answer_status_t request_begin_look(request_t* r) { return action_look(&r->answer); }
-
-static answer_status_t request_look(request_t* r) {
-  put_u8(&r->answer, (uint16_t)drive_look_outcome());
-  put_i32(&r->answer, drive_look_rpm());
-  put_look(&r->answer);
-  return ANSWER_OK;
-}
-
 static uint16_t link_flags(uint32_t asker) {
   return (uint16_t)((comm_watchdog_is_on() ? 1u : 0u) | (comm_watchdog_has_stopped() ? 2u : 0u) |
                     (comm_watchdog_is_of(asker) ? 4u : 0u));
@@ -112,11 +103,9 @@ static answer_status_t request_link(request_t* r) {
 const request_row_t drive_requests[] = {{REQUEST_STATUS, REQUEST_BODY(0u, 4u), request_status},
                                         {REQUEST_FAULT, REQUEST_BODY(1u, 1u), request_fault},
                                         {REQUEST_LINK, REQUEST_BODY(0u, 0u), request_link},
-                                        {REQUEST_LOOK, REQUEST_BODY(0u, 0u), request_look},
                                         {REQUEST_OF_COMMAND(COMMAND_START), ARGUMENT_BODY, request_start},
                                         {REQUEST_OF_COMMAND(COMMAND_STOP), ARGUMENT_BODY, request_stop},
                                         {REQUEST_OF_COMMAND(COMMAND_COAST), ARGUMENT_BODY, request_coast},
                                         {REQUEST_OF_COMMAND(COMMAND_RESET), ARGUMENT_BODY, request_reset},
                                         {REQUEST_OF_COMMAND(COMMAND_SPEED), ARGUMENT_BODY, request_speed},
-                                        {REQUEST_OF_COMMAND(COMMAND_LOOK), ARGUMENT_BODY, request_begin_look},
                                         REQUEST_ROWS_END};

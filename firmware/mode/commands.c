@@ -4,10 +4,6 @@
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
 
-// What the last look at the shaft has shown.
-static look_outcome_t look;
-static int32_t look_rpm_q16;
-
 void drive_parameters_changed(void) { drive.request.reload = true; }
 
 void drive_command_start(void) { drive.request.start = true; }
@@ -27,25 +23,6 @@ void drive_command_stop(void) {
 void drive_command_coast(void) {
   forget_starts();
   drive.request.coast = true;
-}
-
-void drive_command_look(void) {
-  look = LOOK_RUNNING;
-  drive.request.look = true;
-}
-
-// The end of a look writes its outcome; who breaks it off does not know of it.
-look_outcome_t drive_look_outcome(void) {
-  const bool goes_on = drive.request.look || (drive.state == DRIVE_START && drive.flags.behind == DRIVE_READY);
-  const look_outcome_t outcome = look;
-  return (outcome == LOOK_RUNNING && !goes_on) ? LOOK_ENDED : outcome;
-}
-
-int32_t drive_look_rpm(void) { return look_rpm_q16; }
-
-void drive_look_end(look_outcome_t outcome, int32_t rpm_q16) {
-  look = outcome;
-  look_rpm_q16 = rpm_q16;
 }
 
 void drive_command_reset(void) { drive.request.reset = true; }

@@ -55,8 +55,9 @@ extern drive_t drive;
 void drive_parameters_changed(void);
 void drive_choose_source(void);
 /// That of the parameter; the observer where this edition leaves that one out, and the drive does not start.
-bool drive_source_is_left_out(void);
 const position_source_t* drive_source_wanted(void);
+/// Whether this edition leaves out the one that these values name.
+bool drive_source_is_left_out(const parameters_t* p);
 
 /// Whether the source in use has this trait.
 static inline bool drive_source_has(const drive_t* d, uint16_t trait) { return (d->source->traits & trait) != 0u; }

@@ -5,12 +5,12 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 
-static const position_source_t* named(void) { return position_sources[parameters.position_source]; }
+static const position_source_t* named(const parameters_t* p) { return position_sources[p->position_source]; }
 
-bool drive_source_is_left_out(void) { return named() == NULL; }
+bool drive_source_is_left_out(const parameters_t* p) { return named(p) == NULL; }
 
 const position_source_t* drive_source_wanted(void) {
-  return drive_source_is_left_out() ? position_sources[POSITION_OBSERVER] : named();
+  return drive_source_is_left_out(&parameters) ? position_sources[POSITION_OBSERVER] : named(&parameters);
 }
 
 void drive_choose_source(void) { drive.source = drive_source_wanted(); }

@@ -3,12 +3,14 @@
 // The gates come on when the short circuit is what the modulator gives. A shaft that turns drives a current through it:
 // then they rest until it has died away, and only what they were on counts.
 
+#include <stddef.h>
+
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 
 #define REST_PERIODS 20u
 
-void start_begin_charge(drive_t* d) {
+static void begin_charge(drive_t* d) {
   d->flags.shorted = true;
   starting.charged = 0;
   start_enter(d, START_CHARGE);
@@ -20,7 +22,7 @@ static bool flows(const drive_t* d) {
   return q_max(q_abs_sat(i.alpha), q_abs_sat(i.beta)) > d->config.values.current_limit / 2;
 }
 
-start_phase_t start_step_charge(drive_t* d) {
+static start_phase_t step_charge(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->flags.gates_off) {
     if (s->tick >= REST_PERIODS) start_power(d, true);
@@ -35,3 +37,5 @@ start_phase_t start_step_charge(drive_t* d) {
   }
   return START_GOES_ON;
 }
+
+const phase_t charge_phase = {begin_charge, step_charge, NULL};

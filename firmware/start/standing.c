@@ -1,5 +1,7 @@
 // The start of a shaft that stands: axis, then polarity, by saturation or by a motion. See start.h.
 
+#include <stddef.h>
+
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
@@ -17,7 +19,7 @@
 #define HOLD_BACKS 2u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
-void start_begin_axis(drive_t* d) {
+static void begin_axis(drive_t* d) {
   if (start_begin_standstill(d)) start_enter(d, START_AXIS);
 }
 
@@ -28,7 +30,7 @@ static drive_fault_t fault_of(wiring_t wiring) {
   return (wiring <= WIRING_REVERSED_BOTH) ? FAULT_CURRENT_SENSOR : FAULT_SENSOR_ORDER;
 }
 
-start_phase_t start_step_axis(drive_t* d) {
+static start_phase_t step_axis(drive_t* d) {
   int32_t axis_bam = 0;
   const bool seen = start_sees_axis(d, starting.tick >= AXIS_SKIP, &axis_bam);
   position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
@@ -73,7 +75,6 @@ static drive_fault_t left_open(const drive_start_t* s) { return s->starved ? FAU
 static start_phase_t hold_back(drive_t* d) {
   drive_start_t* const s = &starting;
   s->held_back++;
-  s->pulses = 0;
   s->tries = 0;
   if (s->held_back <= HOLD_BACKS) return start_look(d);
   drive_trip(d, left_open(s));
@@ -92,7 +93,7 @@ static int32_t motion_current(const drive_start_t* s) {
   return q_min(qc_shl_sat(drive.config.values.polarity_current, s->tries), drive.config.values.current_limit);
 }
 
-void start_begin_motion(drive_t* d) {
+static void begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_MOTION) s->tries = 0;
   if (s->starved && s->tries > 0u) {
@@ -109,7 +110,7 @@ void start_begin_motion(drive_t* d) {
 }
 
 // Twice with the same current, the second time together with the first; then with half as much again.
-void start_begin_saturation(drive_t* d) {
+static void begin_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_SATURATION) s->tries = 0;
   const int32_t more = (s->tries >= 2u) ? d->config.values.start_current / 2 : 0;
@@ -120,19 +121,19 @@ void start_begin_saturation(drive_t* d) {
     return;
   }
   if (!saturation_is_visible(&d->model, &d->config.saturation, current)) {
-    start_begin_motion(d);
+    begin_motion(d);
     return;
   }
   saturation_begin(&s->saturation, &d->model, &d->config.saturation, current);
   begin_test(d, START_SATURATION);
 }
 
-void start_begin_settle(drive_t* d) {
+static void begin_settle(drive_t* d) {
   d->control.closed = true;
   start_enter(d, START_SETTLE);
 }
 
-start_phase_t start_step_settle(drive_t* d) {
+static start_phase_t step_settle(drive_t* d) {
   if (starting.tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;
   if (d->config.values.polarity_check == 0) return decided(d, POLARITY_RIGHT, 0);
   return (starting.held_back > 0u) ? START_MOTION : START_SATURATION;
@@ -144,7 +145,7 @@ static void take_resistance(drive_t* d) {
   if (qc_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
 }
 
-start_phase_t start_step_saturation(drive_t* d) {
+static start_phase_t step_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   saturation_t* const test = &s->saturation;
   const int32_t reference_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
@@ -164,7 +165,7 @@ start_phase_t start_step_saturation(drive_t* d) {
   return (present_speed(d) == 0) ? START_MOTION : hold_back(d);
 }
 
-start_phase_t start_step_motion(drive_t* d) {
+static start_phase_t step_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
   const int32_t reference_q20 = polarity_step(&s->motion, raw);
@@ -181,3 +182,8 @@ start_phase_t start_step_motion(drive_t* d) {
   drive_trip(d, left_open(s));
   return START_GOES_ON;
 }
+
+const phase_t axis_phase = {begin_axis, step_axis, NULL};
+const phase_t settle_phase = {begin_settle, step_settle, NULL};
+const phase_t saturation_phase = {begin_saturation, step_saturation, NULL};
+const phase_t motion_phase = {begin_motion, step_motion, NULL};

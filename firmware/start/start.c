@@ -12,18 +12,6 @@
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 
-typedef struct {
-  void (*begin)(drive_t* d);
-  start_phase_t (*step)(drive_t* d);
-} phase_t;
-
-static const phase_t phases[] = {
-    {start_begin_listen, start_step_listen}, {start_begin_pulse, start_step_pulse},
-    {start_begin_catch, start_step_catch},   {start_begin_axis, start_step_axis},
-    {start_begin_settle, start_step_settle}, {start_begin_saturation, start_step_saturation},
-    {start_begin_motion, start_step_motion}, {start_begin_if_ramp, start_step_if_ramp},
-    {start_begin_charge, start_step_charge}};
-
 static void reset_control(drive_t* d) {
   d->control.closed = false;
   modulator_reset(&d->modulation.state);
@@ -67,14 +55,16 @@ static start_phase_t first(const drive_t* d) {
 // For a look at the shaft the lower devices are enough: they need no bootstrap capacitors.
 static void start_begin(drive_t* d, drive_state_t behind) {
   if (!prepare(d, behind)) return;
-  phases[(behind == DRIVE_READY) ? start_listen(START_LISTEN_FIRST) : first(d)].begin(d);
+  start_phases[(behind == DRIVE_READY) ? START_LISTEN : first(d)]->begin(d);
 }
 
 static void start_step(drive_t* d) {
   starting.tick++;
-  const start_phase_t next = phases[d->found.phase].step(d);
-  if (next != START_GOES_ON) phases[next].begin(d);
+  const start_phase_t next = start_phases[d->found.phase]->step(d);
+  if (next != START_GOES_ON) start_phases[next]->begin(d);
   if (d->flags.invalid > 0u && !d->flags.gates_off) d->flags.invalid--;
 }
+
+static void start_estimate(drive_t* d, estimator_input_t* in) { start_phases[d->found.phase]->estimate(d, in); }
 
 const state_t start_state = {start_begin, start_step, start_estimate, NULL};

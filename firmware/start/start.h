@@ -8,7 +8,7 @@
 //
 // The same windows tell whether phases and current sensors are wired as they should be (estimators/wiring.h).
 //
-// With start_method 1 a shaft that stands is turned by a current vector instead (start/if_start.c): that needs no
+// With start_method 1 a shaft that stands is turned by a current vector instead (start/if_start/): that needs no
 // saliency.
 
 #ifndef STILLSPIN_FIRMWARE_START_START_H

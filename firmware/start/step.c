@@ -2,9 +2,12 @@
 
 #include "firmware/start/step.h"
 
+#include <stddef.h>
+
 #include "firmware/base/clear.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
+#include "firmware/start/phases.h"
 #include "hal/hal_pwm.h"
 
 #define AXIS_TIMEOUT 200u  // periods
@@ -36,24 +39,19 @@ bool start_has_exclusive_slot(drive_t* d) {
   return now;
 }
 
-start_phase_t start_listen(uint16_t pause) {
-  starting.pause = pause;
-  return START_LISTEN;
+// A turning shaft can be looked for, and is to be.
+static bool listens(const drive_t* d) {
+  return start_phases[START_LISTEN] != NULL && d->config.values.flying_start != 0;
 }
 
-start_phase_t start_look(const drive_t* d) {
-  return (d->config.values.flying_start != 0) ? start_listen(START_LISTEN_FIRST) : start_at_standstill(d);
-}
+start_phase_t start_look(const drive_t* d) { return listens(d) ? START_LISTEN : start_at_standstill(d); }
 
 bool start_is_open_loop(const drive_t* d) {
   return d->config.values.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
 }
 
 // Only where the listening has found that the shaft stands.
-static bool checks_wiring(const drive_t* d) {
-  const config_values_t* const v = &d->config.values;
-  return v->wiring_check != 0 && v->flying_start != 0;
-}
+static bool checks_wiring(const drive_t* d) { return d->config.values.wiring_check != 0 && listens(d); }
 
 start_phase_t start_at_standstill(const drive_t* d) {
   return (start_is_open_loop(d) && !checks_wiring(d)) ? START_IF_RAMP : START_AXIS;

@@ -3,9 +3,7 @@
 #ifndef STILLSPIN_FIRMWARE_START_STEP_H
 #define STILLSPIN_FIRMWARE_START_STEP_H
 
-#include "control/if_start.h"
 #include "estimators/axis.h"
-#include "estimators/flying.h"
 #include "estimators/followed.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
@@ -25,25 +23,16 @@ typedef enum {
 } start_phase_t;
 
 typedef struct {
-  uint16_t tick;   // periods since the phase was entered
-  uint16_t pause;  // periods to listen before the next pulse
-  uint16_t tries;  // of the present phase
-  uint16_t pulses;
-  uint16_t charged;      // periods in which the bootstrap capacitors were charged
-  bool learnt;           // axis and inverse inductances of a caught rotor are
-  int32_t on_tick;       // of the period in which the gates came on
-  flying_rotor_t rotor;  // caught: at the second pulse, then carried on
-  int32_t emf_q16;       // of that pulse, V
-  int32_t stray;         // filtered angle error while catching, binary angle
-  flying_pulse_t pulse;
-  flying_emf_t first;
+  uint16_t tick;     // periods since the phase was entered
+  uint16_t tries;    // of the present phase
+  uint16_t charged;  // periods in which the bootstrap capacitors were charged
+  int32_t on_tick;   // of the period in which the gates came on
   axis_t axis;
   saturation_t saturation;
   polarity_t motion;
   followed_t followed;  // the current, what the present test asked of it
   uint16_t held_back;   // how often all began anew
   bool starved;         // the current of a test did not follow: less is tried
-  if_start_t if_start;
 } drive_start_t;
 
 /// A drive has one start.
@@ -71,10 +60,7 @@ bool start_is_open_loop(const drive_t* d);
 /// refused, with a fault.
 bool start_begin_standstill(drive_t* d);
 
-#define START_LISTEN_FIRST 4u  // periods until the short circuit is what the modulator gives
-
 // What begins where a phase is over.
-start_phase_t start_listen(uint16_t pause);           // the next short circuit, after so many periods
 start_phase_t start_look(const drive_t* d);           // is the shaft to be looked at? Else as if it stood
 start_phase_t start_at_standstill(const drive_t* d);  // the shaft stands
 

@@ -19,7 +19,7 @@ static void put_report(octet_writer_t* w) {
   if (first == NULL) return;
   put_packed(w, SAY_semicolon);
   put_unsigned(w, r->refused);
-  put_packed(w, SAY_outside_of_their_range_now_at_their);
+  put_packed(w, SAY_refused_now_at_their_default);
   put_packed(w, SAY_colon);
   put_packed(w, parameter_name(first));
   if (r->refused > 1u) put_packed(w, SAY_and_more);

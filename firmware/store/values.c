@@ -1,6 +1,7 @@
 #include "firmware/store/values.h"
 
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "hal/qmath/qarith.h"
 
 #define Q_MAX 31u  // fractional bits of a 32-bit number
@@ -55,8 +56,14 @@ value_fate_t values_put(const slot_entry_t* entry) {
   const int32_t most = parameter_maximum(info);
   if (raw < least - slack || raw > most + slack) return VALUE_REFUSED;
   raw = (raw < least) ? least : raw;
-  *parameter_value(&set, index) = (raw > most) ? most : (int32_t)raw;
-  if (parameter_value(&set, index) == &set.rated_current) has_rated_current = true;
+  int32_t* const place = parameter_value(&set, index);
+  const int32_t before = *place;
+  *place = (raw > most) ? most : (int32_t)raw;
+  if (drive_source_is_left_out(&set)) {
+    *place = before;
+    return VALUE_REFUSED;
+  }
+  if (place == &set.rated_current) has_rated_current = true;
   return (more == 0) ? VALUE_TAKEN : VALUE_RESCALED;
 }
 

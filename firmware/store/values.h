@@ -14,7 +14,7 @@
 typedef enum {
   VALUE_TAKEN = 0,
   VALUE_RESCALED = 1,  // taken, in this firmware's format
-  VALUE_REFUSED = 2,   // outside of the range
+  VALUE_REFUSED = 2,   // outside of the range, or a choice that this edition has not
   VALUE_UNKNOWN = 3    // no such parameter
 } value_fate_t;
 

@@ -7,6 +7,7 @@
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/sources/encoder/encoder.h"
 #include "firmware/sources/paper/paper.h"
 }
 
@@ -25,8 +26,8 @@ void kick(double degrees) {
   p.avv.observer.angle_bam += turn;
   p.observer.angle_bam += turn;
   paper_zvv.angle_bam += turn;
-  p.encoder.angle_bam += turn;
-  p.encoder_offset_bam += turn;
+  encoder.observer.angle_bam += turn;
+  encoder.offset_bam += turn;
   drive.supervision.judged_bam += turn;  // no estimator jumps: that it has done so is not to give it away
 }
 

@@ -152,6 +152,7 @@ TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
 }
 
 TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
+  NEEDS("start/flying");
   inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_OPEN_PHASE);
   inside::start_found().wiring = WIRING_OPEN_B;

@@ -259,8 +259,8 @@ TEST_F(Console, LoadSaysWhichValuesWereRefused) {
   const std::string migrated = "values saved by another firmware are in force; save to keep them in this one's format";
   const slot_entry_t ramp = {86, 8, -1}, limit = {8, 20, INT32_MAX};
   EXPECT_EQ(load({}), migrated + "\r\n");
-  EXPECT_EQ(load({limit}), migrated + "; 1 outside of their range, now at their default: current_limit\r\n");
-  EXPECT_EQ(load({ramp, limit}), migrated + "; 2 outside of their range, now at their default: speed_ramp ..\r\n");
+  EXPECT_EQ(load({limit}), migrated + "; 1 refused, now at their default: current_limit\r\n");
+  EXPECT_EQ(load({ramp, limit}), migrated + "; 2 refused, now at their default: speed_ramp ..\r\n");
 }
 
 TEST_F(Console, AMemoryThatDoesNotAnswerIsTold) {

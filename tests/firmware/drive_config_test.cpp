@@ -19,6 +19,9 @@ extern "C" {
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
+#include "firmware/sources/encoder/encoder.h"
+#include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
 }
 
 namespace {
@@ -78,8 +81,8 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.avv.bandwidth_long_q30, 30), 200.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.avv.bandwidth_short_q30, 30), 100.0 * kPeriod, 1e-8);
   if (missing_of({"sources/paper"}).empty()) {
-    EXPECT_NEAR(real(c.zvv->kp_q30, 30), 11.0 * kPeriod, 1e-8);
-    EXPECT_NEAR(real(c.zvv->ki_q40, 40) / (1100.0 * kPeriod * kPeriod), 1.0, 1e-4);
+    EXPECT_NEAR(real(paper_config.kp_q30, 30), 11.0 * kPeriod, 1e-8);
+    EXPECT_NEAR(real(paper_config.ki_q40, 40) / (1100.0 * kPeriod * kPeriod), 1.0, 1e-4);
   }
   EXPECT_NEAR(real(c.observer.weight_q8, 8), 100.0, 0.01);  // 100 mA
   EXPECT_NEAR(real(c.observer.limit_q19, 19), 19.2, 0.01);
@@ -242,7 +245,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
     ASSERT_GE(c.ramp_step_bpp, 0);
     ASSERT_GT(c.observer.weight_q8, 0);
     ASSERT_GT(c.observer.load_noise_q20, 0);
-    const bool flux = parameters.position_source >= POSITION_FLUX_CONV && !drive_source_is_left_out();
+    const bool flux = parameters.position_source >= POSITION_FLUX_CONV && !drive_source_is_left_out(&parameters);
     const double low = real(flux ? parameters.flux_low : parameters.blend_low, 16) / 60.0 * parameters.pole_pairs *
                        std::ldexp(kPeriod, 32);
     ASSERT_NEAR(c.blend.low_bpp / low, 1.0, 1e-4);
@@ -265,7 +268,7 @@ TEST_F(DriveConfig, EncoderAngle) {
     for (const int count : {0, 1, counts / 3, counts - 1}) {
       const double exact = kTurn * 4 * count / counts;
       // 2^32 / counts rounded up by less than one LSB per count
-      EXPECT_NEAR(wrapped(rad(position_encoder_angle(static_cast<std::uint32_t>(count), 4, counts)) - exact), 0.0,
+      EXPECT_NEAR(wrapped(rad(encoder_angle(static_cast<std::uint32_t>(count), 4, counts)) - exact), 0.0,
                   4.0 * count * kTurn * std::ldexp(1.0, -32) + 1e-8);
     }
   }
@@ -312,16 +315,16 @@ TEST_F(DriveConfig, TheStatorFluxFollowsItsParameters) {
   set("lqq_2", 90.0);
   ASSERT_TRUE(drive_config_load(&inside::config()));
   const drive_config_t& c = inside::config();
-  EXPECT_EQ(c.flux.method, FLUX_PP02);
-  EXPECT_NEAR(real(c.flux.cutoff_q30, 30), 30.0 * kPeriod, 1e-8);
-  EXPECT_NEAR(rad_per_s(c.flux.adaptation.lowest_bpp), 400.0, 0.1);
+  EXPECT_EQ(flux_config.method, FLUX_PP02);
+  EXPECT_NEAR(real(flux_config.cutoff_q30, 30), 30.0 * kPeriod, 1e-8);
+  EXPECT_NEAR(rad_per_s(flux_config.adaptation.lowest_bpp), 400.0, 0.1);
   EXPECT_NEAR(c.blend.low_bpp / (350.0 * std::ldexp(4.0 / 60.0 * kPeriod, 32)), 1.0, 1e-5);
-  EXPECT_GT(c.flux.adaptation.saturation_q24, 0);
-  EXPECT_EQ(c.flux.adaptation.magnet_q30, 0);
+  EXPECT_GT(flux_config.adaptation.saturation_q24, 0);
+  EXPECT_EQ(flux_config.adaptation.magnet_q30, 0);
   set("flux_adapt", 2.0);
   ASSERT_TRUE(drive_config_load(&inside::config()));
-  EXPECT_EQ(c.flux.adaptation.saturation_q24, 0);
-  EXPECT_GT(c.flux.adaptation.magnet_q30, 0);
+  EXPECT_EQ(flux_config.adaptation.saturation_q24, 0);
+  EXPECT_GT(flux_config.adaptation.magnet_q30, 0);
 }
 
 }  // namespace

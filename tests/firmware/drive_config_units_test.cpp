@@ -8,7 +8,10 @@ extern "C" {
 #include "estimators/zvv.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/sources/encoder/encoder.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
+#include "firmware/start/if_start/if_start.h"
 }
 
 namespace {
@@ -22,10 +25,12 @@ class Units : public Drive {
   /// The configuration of the parameters as they are.
   static const drive_config_t& made() {
     static drive_config_t c;
-    const drive_config_t* const fresh = drive_config_make();
-    EXPECT_NE(fresh, nullptr);
-    if (fresh != nullptr) c = *fresh;
+    EXPECT_TRUE(drive_config_load(&c));
     return c;
+  }
+  static const flux_observer_config_t& made_flux() {
+    (void)made();
+    return flux_config;
   }
   static bool refused() { return drive_config_make() == nullptr; }
 };
@@ -171,21 +176,23 @@ TEST_F(Units, CurrentControl) {
 }
 
 TEST_F(Units, TheTurnedStart) {
+  NEEDS("start/if_start");
   parameters.if_current = raw(6.5, 20);
   parameters.if_align = 321;
   parameters.if_acceleration = raw(700.0, 8);
   parameters.if_speed = raw(270.0, 8);
   parameters.if_time = 1234;
-  const drive_config_t& c = made();
-  EXPECT_EQ(c.if_start.current_q20, parameters.if_current);
-  EXPECT_EQ(c.if_start.align_periods, 3210);
-  EXPECT_NEAR(c.if_start.step_bpp, 0.07 * kBppPerRpm, 1.0);
-  expect_near_share(c.if_start.speed_bpp, 270.0 * kBppPerRpm, 1e-4);
-  EXPECT_EQ(c.if_start.wait_periods, 12340);
+  (void)made();
+  EXPECT_EQ(if_ramp_config.current_q20, parameters.if_current);
+  EXPECT_EQ(if_ramp_config.align_periods, 3210);
+  EXPECT_NEAR(if_ramp_config.step_bpp, 0.07 * kBppPerRpm, 1.0);
+  expect_near_share(if_ramp_config.speed_bpp, 270.0 * kBppPerRpm, 1e-4);
+  EXPECT_EQ(if_ramp_config.wait_periods, 12340);
 }
 
 // A rotor so light that it swings about the vector faster than can be damped matters to who turns one.
 TEST_F(Units, AVectorThatCannotTurnTheShaftIsRefusedWhereItIsWanted) {
+  NEEDS("start/if_start");
   parameters.if_current = raw(12.0, 20);
   parameters.magnet_flux = raw(0.9, 28);
   parameters.inertia = raw(0.0002, 24);
@@ -204,9 +211,9 @@ TEST_F(Units, ThePapersObservers) {
   const drive_config_t& c = made();
   expect_near_share(real(c.avv.bandwidth_short_q30, 30), 130.0 * kPeriod, 1e-6);
   expect_near_share(real(c.avv.bandwidth_long_q30, 30), 270.0 * kPeriod, 1e-6);
-  expect_near_share(real(c.zvv->kp_q30, 30), 7.0 * kPeriod, 1e-5);
-  expect_near_share(real(c.zvv->ki_q40, 40), 11.0 * kPeriod * kPeriod, 1e-4);
-  EXPECT_EQ(c.zvv->terms, 5);
+  expect_near_share(real(paper_config.kp_q30, 30), 7.0 * kPeriod, 1e-5);
+  expect_near_share(real(paper_config.ki_q40, 40), 11.0 * kPeriod * kPeriod, 1e-4);
+  EXPECT_EQ(paper_config.terms, 5);
   parameters.avv_bandwidth_long = raw(90.0, 8);
   EXPECT_EQ(made().avv.bandwidth_long_q30, made().avv.bandwidth_short_q30) << "never slower with more to see";
 }
@@ -303,7 +310,7 @@ TEST_F(Units, SensorsAndTheEncoder) {
   parameters.sensor_mismatch = raw(-1.25, 16);
   for (const double degrees : {-180.0, -12.5, 0.01, 37.0, 180.0}) {
     parameters.encoder_trim = raw(degrees, 16);
-    EXPECT_NEAR(wrapped(rad(made().encoder_trim_bam) - degrees * kDegree), 0.0, 1e-6) << degrees;
+    EXPECT_NEAR(wrapped(rad((made(), encoder.trim_bam)) - degrees * kDegree), 0.0, 1e-6) << degrees;
   }
   const drive_config_t& c = made();
   expect_near_share(real(c.slopes.amps_per_code_q30, 30), 33.0 / 2048.0, 1e-6);
@@ -335,7 +342,7 @@ TEST_F(Units, TheMethodIsThatOfTheSourceOrOfWhoLooksOn) {
     for (const bool looks_on : {false, true}) {
       parameters.position_source = looks_on ? POSITION_ENCODER : POSITION_FLUX_CONV + method;
       parameters.flux_beside = looks_on ? 1 + method : 0;
-      EXPECT_EQ(made().flux.method, method);
+      EXPECT_EQ(made_flux().method, method);
       EXPECT_EQ(made().dead_time.band_q20, band_q20 / 2);
       EXPECT_EQ(made().dead_time.edge_band_q20 - made().dead_time.band_q20, raw(0.5, 20));
     }
@@ -351,23 +358,23 @@ TEST_F(Units, TheStatorFlux) {
   parameters.flux_bandwidth = raw(123.0, 8);
   parameters.lqq_4 = raw(80.0, 16);
   const drive_config_t c = made();
-  expect_near_share(real(c.flux.cutoff_q30, 30), 31.0 * kPeriod, 1e-5);
-  expect_near_share(real(c.flux.bandwidth_q30, 30), 123.0 * kPeriod, 1e-5);
-  EXPECT_FALSE(c.flux.is_plain);
+  expect_near_share(real(flux_config.cutoff_q30, 30), 31.0 * kPeriod, 1e-5);
+  expect_near_share(real(flux_config.bandwidth_q30, 30), 123.0 * kPeriod, 1e-5);
+  EXPECT_FALSE(flux_config.is_plain);
   parameters.flux_plain = 1;
-  EXPECT_TRUE(made().flux.is_plain);
-  EXPECT_FALSE(made().flux.is_printed);
+  EXPECT_TRUE(made_flux().is_plain);
+  EXPECT_FALSE(made_flux().is_printed);
   parameters.flux_plain = 2;
-  EXPECT_FALSE(made().flux.is_plain);
-  EXPECT_TRUE(made().flux.is_printed);
+  EXPECT_FALSE(made_flux().is_plain);
+  EXPECT_TRUE(made_flux().is_printed);
   // Once in 10 ms: 100 ms of the inductance, 200 ms of the magnet, from a twentieth of the magnet's flux on.
-  const double step = c.flux.adaptation_periods * kPeriod;
+  const double step = flux_config.adaptation_periods * kPeriod;
   EXPECT_NEAR(step, 0.01, 1e-9);
-  EXPECT_NEAR(real(c.flux.adaptation.inductance_q30, 30), step / 0.1, 1e-6);
-  EXPECT_NEAR(real(c.flux.adaptation.current_q24, 24), 0.05, 1e-6);
+  EXPECT_NEAR(real(flux_config.adaptation.inductance_q30, 30), step / 0.1, 1e-6);
+  EXPECT_NEAR(real(flux_config.adaptation.current_q24, 24), 0.05, 1e-6);
   for (const int learn : {0, 1, 2, 3}) {
     parameters.flux_adapt = learn;
-    const flux_adaptation_config_t& a = made().flux.adaptation;
+    const flux_adaptation_config_t& a = made_flux().adaptation;
     EXPECT_EQ(a.saturation_q24, (learn & 1) != 0 ? flux_adaptation_identify_q24(&c.nameplate) : 0) << learn;
     EXPECT_NEAR(real(a.magnet_q30, 30), (learn & 2) != 0 ? step / 0.2 : 0.0, 1e-6) << learn;
   }
@@ -377,12 +384,12 @@ TEST_F(Units, TheStatorFlux) {
 TEST_F(Units, WithoutDeadTimeTheFluxSeesEveryPhase) {
   NEEDS("sources/flux");
   parameters.position_source = POSITION_FLUX_CONV;
-  EXPECT_EQ(made().flux.unknown_voltage_q20, made().dead_time.band_q20);
+  EXPECT_EQ(made_flux().unknown_voltage_q20, made().dead_time.band_q20);
   parameters.turn_on_delay = parameters.turn_off_delay = 0;
   parameters.dead_time = raw(0.01, 16);
-  EXPECT_GT(made().flux.unknown_voltage_q20, 0);
+  EXPECT_GT(made_flux().unknown_voltage_q20, 0);
   parameters.dead_time = 0;
-  EXPECT_EQ(made().flux.unknown_voltage_q20, 0);
+  EXPECT_EQ(made_flux().unknown_voltage_q20, 0);
 }
 
 }  // namespace

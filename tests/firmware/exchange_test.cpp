@@ -13,6 +13,10 @@ extern "C" {
 #include "firmware/config/rules.h"
 #include "firmware/hysteresis/hysteresis.h"
 #include "firmware/mode/commands.h"
+#include "firmware/sources/encoder/encoder.h"
+#include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
+#include "firmware/start/if_start/if_start.h"
 }
 
 namespace stillspin::test {
@@ -114,7 +118,7 @@ TEST_F(Exchange, HysteresisDoesNot) {
 }
 
 TEST_F(Exchange, AStartDoesNot) {
-  for (int bits = 0; bits < 8; ++bits) {
+  for (int bits = 0; bits < (missing_of({"start/if_start"}).empty() ? 8 : 4); ++bits) {
     expect_no_difference(
         [&] {
           parameters.flying_start = bits & 1;
@@ -177,6 +181,25 @@ TEST_F(Exchange, ARefusedSetNeverComes) {
   EXPECT_EQ(std::memcmp(&inside::config().values, &before, sizeof before), 0);
   EXPECT_TRUE(inside::config_valid());
   EXPECT_EQ(inside::state(), DRIVE_RUN);
+}
+
+// What is made of other values is in use when it is taken, and then all that the features have made of them, too.
+TEST_F(Exchange, WhatIsMadeIsNotInUseYet) {
+  NEEDS("sources/encoder", "sources/flux", "sources/paper", "start/if_start");
+  const auto in_use = [] {
+    return std::vector<std::int32_t>{flux_config.cutoff_q30, paper_config.kp_q30, if_ramp_config.align_periods,
+                                     static_cast<std::int32_t>(encoder.trim_bam)};
+  };
+  const std::vector<std::int32_t> before = in_use();
+  for (std::int32_t* value : {&parameters.flux_cutoff, &parameters.zvv_proportional, &parameters.encoder_trim}) {
+    *value += 65536;
+  }
+  parameters.if_align += 1;
+  const drive_config_t* const made = drive_config_make();
+  ASSERT_NE(made, nullptr);
+  EXPECT_EQ(in_use(), before);
+  drive_config_take(&inside::config(), made);
+  for (std::size_t k = 0; k < before.size(); ++k) EXPECT_NE(in_use()[k], before[k]) << k;
 }
 
 // Asking what a value would conflict with asks for nothing.

@@ -14,6 +14,7 @@ extern "C" {
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
+#include "firmware/sources/encoder/encoder.h"
 }
 
 namespace {
@@ -62,14 +63,14 @@ TEST_F(Hysteresis, RunsFromRunOnAndWritesNoPulses) {
 
 // A shaft that is brought to rest keeps its slices until the gates go off.
 TEST_F(Hysteresis, BringsTheShaftToRest) {
-  inside::encoder_observer().speed_bpp = bpp_of(1000);
+  encoder.observer.speed_bpp = bpp_of(1000);
   drive_command_stop();
   drive_control_interrupt();
   ASSERT_EQ(inside::state(), DRIVE_STOP);
   EXPECT_EQ(board.slice_ticks, 500);
   for (int n = 0; n < 100 && inside::state() == DRIVE_STOP; ++n) {
     slice();
-    inside::encoder_observer().speed_bpp = 0;
+    encoder.observer.speed_bpp = 0;
     drive_control_interrupt();
   }
   EXPECT_EQ(inside::state(), DRIVE_READY);

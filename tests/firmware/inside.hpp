@@ -51,8 +51,6 @@ inline auto& windows() { return drive.samples.windows; }
 inline auto& avv() { return drive.position.avv; }
 inline auto& blend() { return drive.position.blend; }
 inline auto& deviation_q20() { return drive.position.deviation_q20; }
-inline auto& encoder_observer() { return drive.position.encoder; }
-inline auto& encoder_offset_bam() { return drive.position.encoder_offset_bam; }
 inline auto& high_speed_estimate() { return drive.position.high; }
 inline auto& is_near() { return drive.position.is_near; }
 inline auto& low_speed_estimate() { return drive.position.low; }
@@ -73,7 +71,6 @@ inline auto& feed_forward_q16() { return drive.control.feed_forward_q16; }
 inline auto& field_weakening() { return drive.control.weakening; }
 inline auto& headroom_q20() { return drive.control.headroom_q20; }
 inline auto& loop_is_closed() { return drive.control.closed; }
-inline auto& observability_q20() { return drive.control.observability_q20; }
 inline auto& per_torque_constant() { return drive.control.per_torque_constant; }
 inline auto& position_hold() { return drive.control.position_hold; }
 inline auto& reference_dq_q20() { return drive.control.reference_q20; }

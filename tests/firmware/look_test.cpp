@@ -6,6 +6,7 @@
 extern "C" {
 #include "firmware/api/actions.h"
 #include "firmware/mode/commands.h"
+#include "firmware/start/flying/look.h"
 }
 
 namespace {
@@ -15,6 +16,7 @@ using namespace stillspin::test;
 class Look : public StartCaught {
  protected:
   void SetUp() override {
+    NEEDS("start/flying");
     Drive::SetUp();
     use_source(0);
     make_ready();
@@ -105,6 +107,7 @@ TEST_F(Look, AStartBehindItIsNotTakenForIt) {
 
 // And nothing is begun that is asked for while the drive runs.
 TEST_F(Drive, OneThatRunsDoesNotLook) {
+  NEEDS("start/flying");
   make_run();
   drive_command_look();
   period();
@@ -115,6 +118,7 @@ TEST_F(Drive, OneThatRunsDoesNotLook) {
 class LookAsked : public Requests {
  protected:
   void SetUp() override {
+    NEEDS("start/flying");
     Requests::SetUp();
     inside::loading() = false;
     inside::state() = DRIVE_READY;

@@ -188,6 +188,7 @@ TEST_F(ParameterRules, AMachineBeyondTheFormatsIsRefused) {
   parameters.magnet_flux = raw(0.002, 28);
   refuses(extreme);
   parameters = p;
+  if (!missing_of({"start/if_start"}).empty()) return;
   parameters.start_method = 1;
   parameters.inertia = raw(1e-4, 24);  // so light under so much current that it swings faster than it can be damped
   parameters.magnet_flux = raw(0.35, 28);

@@ -4,6 +4,10 @@
 #include "firmware/mode/states.h"
 #include "tests/firmware/position.hpp"
 
+extern "C" {
+#include "firmware/sources/encoder/encoder.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -14,7 +18,7 @@ TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
   inside::state() = DRIVE_COMMISSION;
   inside::flags().spins = true;
   inside::observer().angle_bam = kThere;
-  inside::encoder_observer().angle_bam = kHere;
+  encoder.observer.angle_bam = kHere;
   estimate();
   EXPECT_EQ(inside::selected().angle_bam, inside::observer().angle_bam);
   EXPECT_NEAR(rad(inside::selected().angle_bam - kThere), 0.0, 0.01);
@@ -24,9 +28,9 @@ TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
 TEST_F(Sources, TheEncoderHasAngleAndSpeed) {
   run_with(POSITION_ENCODER);
   board.encoder = 3000;
-  position_align_encoder(&drive, kHere, bpp(80.0));
-  EXPECT_EQ(inside::encoder_observer().angle_bam, kHere);
-  EXPECT_EQ(inside::encoder_observer().speed_bpp, bpp(80.0));
+  position_preset(&drive, kHere, bpp(80.0));
+  EXPECT_EQ(encoder.observer.angle_bam, kHere);
+  EXPECT_EQ(encoder.observer.speed_bpp, bpp(80.0));
   see(0);
   for (int n = 1; n <= 3000; ++n) {
     board.encoder = static_cast<std::uint32_t>(3000 + 3 * n) % 4096u;  // 12 electrical steps of a period
@@ -37,34 +41,34 @@ TEST_F(Sources, TheEncoderHasAngleAndSpeed) {
   const double angle = rad(kHere) + std::fmod(9000.0, 1024.0) / 1024.0 * kTurn;
   EXPECT_NEAR(wrapped(rad(inside::selected().angle_bam) - angle), 0.0, 0.01);
   EXPECT_EQ(inside::selected().quality_q15, 32767);
-  inside::config().encoder_trim_bam = bam(0.5);
+  encoder.trim_bam = bam(0.5);
   estimate();
-  EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::encoder_observer().angle_bam);
-  EXPECT_EQ(inside::selected().angle_bam, inside::encoder_observer().angle_bam + bam(0.5));
-  EXPECT_EQ(inside::selected().speed_bpp, inside::encoder_observer().speed_bpp);
+  EXPECT_EQ(inside::low_speed_estimate().angle_bam, encoder.observer.angle_bam);
+  EXPECT_EQ(inside::selected().angle_bam, encoder.observer.angle_bam + bam(0.5));
+  EXPECT_EQ(inside::selected().speed_bpp, encoder.observer.speed_bpp);
 }
 
 // An angle that is off is taken up within the long windows' bandwidth, three poles at once.
 TEST_F(Sources, TheEncodersObserverHasTheLongWindowsBandwidth) {
   run_with(POSITION_ENCODER);
   see(0);
-  position_align_encoder(&drive, kHere, 0);
-  inside::encoder_observer().angle_bam = kHere - bam(0.01);
+  position_preset(&drive, kHere, 0);
+  encoder.observer.angle_bam = kHere - bam(0.01);
   estimate();
-  EXPECT_NEAR(rad(inside::encoder_observer().angle_bam - kHere), -0.01 * (1.0 - 3.0 * 200.0 * kPeriod), 1e-6);
+  EXPECT_NEAR(rad(encoder.observer.angle_bam - kHere), -0.01 * (1.0 - 3.0 * 200.0 * kPeriod), 1e-6);
 }
 
 TEST_F(Sources, TheEncodersSpeedHasTheModelsEnd) {
   run_with(POSITION_ENCODER);
-  position_align_encoder(&drive, kHere, INT32_MAX);
-  EXPECT_EQ(inside::encoder_observer().speed_bpp, MACHINE_SPEED_END_BPP);
+  position_preset(&drive, kHere, INT32_MAX);
+  EXPECT_EQ(encoder.observer.speed_bpp, MACHINE_SPEED_END_BPP);
 }
 
 // D of the zero vectors, in the frame in use, trim included.
 TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
   run_with(POSITION_ENCODER);
-  position_align_encoder(&drive, kHere, 0);
-  inside::config().encoder_trim_bam = bam(0.3);
+  position_preset(&drive, kHere, 0);
+  encoder.trim_bam = bam(0.3);
   inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   estimate();
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere) - 0.3);
@@ -76,7 +80,7 @@ TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
 TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
   for (const std::int32_t beside : {0, 1}) {
     run_with(POSITION_ENCODER);
-    position_align_encoder(&drive, kHere, 0);
+    position_preset(&drive, kHere, 0);
     parameters.flux_beside = beside;
     use_parameters();
     inside::avv().observer.angle_bam = kThere;
@@ -87,8 +91,7 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
       EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv().observer.angle_bam);
     } else {
       EXPECT_EQ(inside::avv().error_bam, 0);
-      EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::encoder_observer().angle_bam)
-          << "at rest the flux follows";
+      EXPECT_EQ(inside::high_speed_estimate().angle_bam, encoder.observer.angle_bam) << "at rest the flux follows";
     }
   }
 }
@@ -97,10 +100,11 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
 TEST_F(Sources, OnlyAnEncoderCanBeReversed) {
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER}) {
     run_with(source);
-    position_align_encoder(&drive, kHere, 0);
-    inside::encoder_observer().angle_bam = kHere + 0x1000000u;
+    position_preset(&drive, kHere, 0);
+    encoder.observer.angle_bam = kHere + 0x1000000u;
     inside::high_speed_estimate().angle_bam = kHere - 0x1000000u;
-    EXPECT_EQ(position_encoder_is_reversed(&drive), source == POSITION_ENCODER);
+    const auto is_reversed = inside::source()->is_reversed;
+    EXPECT_EQ(is_reversed != nullptr && is_reversed(&drive), source == POSITION_ENCODER);
   }
 }
 

@@ -10,6 +10,7 @@ extern "C" {
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/start/if_start/if_start.h"
 #include "firmware/start/step.h"
 #include "svpwm/ripple.h"
 }
@@ -127,15 +128,17 @@ TEST_F(Sources, TheFluxMayBeGivenTheShaftAtAnySpeed) {
 
 // The frame is the vector's, turned on; who looks on is set at rest, and runs from there on.
 TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
+  NEEDS("start/if_start");
   for (const bool aligned : {false, true}) {
     run_with(POSITION_OBSERVER);
     see(0);
     inside::state() = DRIVE_START;
     inside::flags().open_loop = true;
-    inside::config().if_start.align_periods = 500;
-    starting.if_start.tick = aligned ? 500 : 499;
-    starting.if_start.angle_bam = kThere;
-    starting.if_start.speed_bpp = 4321;
+    inside::start_found().phase = START_IF_RAMP;
+    if_ramp_config.align_periods = 500;
+    if_ramp.tick = aligned ? 500 : 499;
+    if_ramp.angle_bam = kThere;
+    if_ramp.speed_bpp = 4321;
     inside::selected() = {kHere, 1234, 0, 0};
     inside::observer().angle_bam = kThere;
     inside::observer().speed_bpp = 0;
@@ -157,15 +160,16 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
     blend(BLEND_HIGH, 0.0);
     inside::state() = DRIVE_START;
     inside::flags().open_loop = true;
-    starting.if_start.tick = inside::config().if_start.align_periods = 500;
-    starting.if_start.angle_bam = kThere;
-    starting.if_start.speed_bpp = inside::config().if_start.speed_bpp - (up ? 0 : 1);
+    inside::start_found().phase = START_IF_RAMP;
+    if_ramp.tick = if_ramp_config.align_periods = 500;
+    if_ramp.angle_bam = kThere;
+    if_ramp.speed_bpp = if_ramp_config.speed_bpp - (up ? 0 : 1);
     inside::selected() = {kHere, 1234, 0, 0};
     flux_observer.observer.angle_bam = kThere;
     estimate();
     EXPECT_EQ(flux_observer.observer.angle_bam == kHere, !up);
     EXPECT_EQ(inside::seen().angle_bam, flux_observer.observer.angle_bam);
-    EXPECT_EQ(inside::selected().angle_bam, kThere + static_cast<std::uint32_t>(starting.if_start.speed_bpp));
+    EXPECT_EQ(inside::selected().angle_bam, kThere + static_cast<std::uint32_t>(if_ramp.speed_bpp));
   }
 }
 
@@ -180,8 +184,9 @@ TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
     blend(BLEND_HIGH, 0.0);
     inside::state() = DRIVE_START;
     inside::flags().open_loop = true;
-    starting.if_start.tick = inside::config().if_start.align_periods;
-    starting.if_start.speed_bpp = inside::config().if_start.speed_bpp;
+    inside::start_found().phase = START_IF_RAMP;
+    if_ramp.tick = if_ramp_config.align_periods;
+    if_ramp.speed_bpp = if_ramp_config.speed_bpp;
     inside::reference_dq_q20() = inside::current_dq_q20() = raw_dq({0.0, 14.0}, 20);
     inside::selected() = {kHere, 0, 0, 0};
     inside::seen().angle_bam = turned ? kHere - 0x40000000u : kHere;

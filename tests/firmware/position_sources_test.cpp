@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
 #include "firmware/sources/paper/paper.h"
+#include "firmware/start/step.h"
 }
 
 namespace {
@@ -92,10 +93,12 @@ TEST_F(Sources, TheTorqueAcceleratesOnceThePolarityIsKnown) {
 
 // A source that looks on is told what its own angle makes of the current.
 TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
+  NEEDS("start/if_start");
   run_with(POSITION_OBSERVER);
   see(0);
   inside::state() = DRIVE_START;
   inside::flags().open_loop = true;
+  inside::start_found().phase = START_IF_RAMP;
   inside::seen().angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
   inside::current_dq_q20() = {raw(4.0, 20), 0};
   estimate();

@@ -9,6 +9,7 @@
 extern "C" {
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
+#include "firmware/sources/encoder/encoder.h"
 }
 
 namespace {
@@ -39,9 +40,7 @@ class Protection : public Drive {
   }
   /// These windows are no machine's.
   static void trust_synchronism() { inside::config().synchronism.bad_periods = 1000000; }
-  static void hold_avv_apart() {
-    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam + 0x31C71C72u;
-  }
+  static void hold_avv_apart() { inside::avv().observer.angle_bam = encoder.observer.angle_bam + 0x31C71C72u; }
 };
 
 TEST_F(Protection, EachPhaseTripsInEitherDirection) {
@@ -167,7 +166,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
 TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   const auto apart = [](double degrees) {
     inside::avv().observer.angle_bam = inside::high_speed_estimate().angle_bam =
-        inside::encoder_observer().angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
+        encoder.observer.angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
   };
   make_run();
   trust_synchronism();
@@ -331,7 +330,7 @@ TEST_F(Protection, AnEncoderThatIsTrimmedIsNotJudged) {
     use_parameters();
     (void)while_running(400, [] {
       board.encoder = (board.encoder + 4u) & 4095u;
-      inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
+      inside::avv().observer.angle_bam = encoder.observer.angle_bam;
     });
     EXPECT_EQ(inside::state(), trimmed ? DRIVE_RUN : DRIVE_FAULT);
   }
@@ -344,7 +343,7 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
     make_run();
     (void)while_running(400, [&] {
       board.encoder = (board.encoder + 4u) & 4095u;
-      inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
+      inside::avv().observer.angle_bam = encoder.observer.angle_bam;
       polarity_watch.open = open;
       polarity_watch.samples_invalid = true;  // it has no say of its own for now
       polarity_watch.sign.expected_q16 = raw(8.0, 16);

@@ -13,6 +13,7 @@ extern "C" {
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
+#include "firmware/sources/flux/flux.h"
 }
 
 namespace {
@@ -111,13 +112,13 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
       {0.0, -399.0, 10.0, 0, 7, -2.1}, {0.0, -401.0, 10.0, 0, 7, 0.0},       {0.0, 10.0, 3.0, 0, 7, -1.5},
       {0.0, 10.0, 10.0, 1, 7, 0.0},    {0.0, 10.0, 10.0, INT16_MAX, 7, 0.0}, {0.0, 10.0, 10.0, 0, 4, 0.0}};
   inside::config().dead_time.edge_band_q20 = raw(0.7, 20);
-  inside::config().flux.adaptation.lowest_bpp = bpp(400.0);
+  flux_config.adaptation.lowest_bpp = bpp(400.0);
   parameters.mtpa = 0;
   use_parameters();
   for (const Case& c : cases) {
     use_source(c.source);
     inside::current_limit_q20() = raw(c.limit, 20);
-    inside::observability_q20() = 0;
+    flux_observability_q20 = 0;
     inside::blend().share_q15 = c.share_q15;
     speed(c.speed);
     for (int n = 0; n < 200; ++n) {

@@ -6,6 +6,7 @@
 
 extern "C" {
 #include "firmware/mode/states.h"
+#include "firmware/start/flying/flying.h"
 #include "firmware/start/phases.h"
 #include "firmware/start/start.h"
 }
@@ -20,8 +21,8 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
     SetUp();
     catch_at(300.0, 1.0);
     ASSERT_EQ(inside::start_found().phase, START_CATCH);
-    starting.learnt = true;
-    starting.stray = inside::avv().error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
+    flying_start.learnt = true;
+    flying_start.stray = inside::avv().error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
     starting.tick = 138;
     start_state.step(&drive);
     EXPECT_EQ(inside::start_found().phase, START_CATCH) << "not before its time";
@@ -40,17 +41,17 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
 }
 
 TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
-  starting.stray = 99;
-  starting.learnt = true;
+  flying_start.stray = 99;
+  flying_start.learnt = true;
   starting.axis.count = 5;
   inside::field_weakening().trim_q20 = raw(-3.0, 20);
   catch_at(300.0, 1.0);
-  const drive_start_t& s = starting;
+  const flying_start_t& s = flying_start;
   ASSERT_EQ(inside::start_found().phase, START_CATCH);
   EXPECT_TRUE(inside::flags().caught);
   EXPECT_FALSE(inside::flags().shorted || s.learnt);
   EXPECT_EQ(s.stray, 0);
-  EXPECT_EQ(s.axis.count, 0);
+  EXPECT_EQ(starting.axis.count, 0);
   EXPECT_EQ(inside::start_found().sigma_q8, s.rotor.sigma_q8);
   EXPECT_GT(inside::start_found().sigma_q8, 0);
   EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
@@ -76,7 +77,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
     SetUp();
     catch_at(300.0, 1.25);
     ASSERT_EQ(inside::start_found().phase, START_CATCH);
-    drive_start_t& s = starting;
+    flying_start_t& s = flying_start;
     const flying_rotor_t caught = s.rotor;
     regression_t& r = inside::avv().regression;
     r = {};
@@ -87,7 +88,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
       EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
       EXPECT_EQ(inside::avv().observer.speed_bpp, caught.speed_bpp);
     }
-    EXPECT_EQ(s.axis.count, 0) << "it has not been seen";
+    EXPECT_EQ(starting.axis.count, 0) << "it has not been seen";
     EXPECT_NEAR(1.0 * inside::model().trim.psi_q16 / inside::model().emf_q16, 0.25, 0.01);
     const double mean = 0.5 * (real(inside::model().yd_q30, 30) + real(inside::model().yq_q30, 30));
     const double half = 0.5 * (real(inside::model().yd_q30, 30) - real(inside::model().yq_q30, 30)), spread = 4000.0;
@@ -101,7 +102,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
     };
     inside::flags().invalid = 1;
     see();
-    EXPECT_EQ(s.axis.count, 0) << "windows of gates that were off";
+    EXPECT_EQ(starting.axis.count, 0) << "windows of gates that were off";
     inside::flags().invalid = 0;
     for (int n = 0; n < AXIS_PERIODS; ++n) see();
     EXPECT_FALSE(s.learnt) << "a decision has a period of its own";

@@ -6,6 +6,7 @@
 extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/states.h"
+#include "firmware/start/flying/flying.h"
 #include "firmware/start/phases.h"
 #include "firmware/start/start.h"
 }
@@ -22,7 +23,7 @@ TEST_F(StartCaught, APairThatFitsGivesTheSpeed) {
     catch_at(speed, 1.0);
     EXPECT_EQ(inside::start_found().phase, START_CATCH);
     EXPECT_TRUE(inside::loop_is_closed());
-    EXPECT_NEAR(rad_per_s(starting.rotor.speed_bpp), speed, 1.0);
+    EXPECT_NEAR(rad_per_s(flying_start.rotor.speed_bpp), speed, 1.0);
   }
 }
 
@@ -36,7 +37,7 @@ TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
     await_pulse();
     constexpr int kAgo = 47000;  // ticks, 4.7 periods
     const double turned = speed * (clock() - kAgo - first) * 1e-8;
-    flying_pulse_t& p = starting.pulse;
+    flying_pulse_t& p = flying_start.pulse;
     inside::window_count() = 0;
     p.windows = 2;
     p.first_tick = clock() - kAgo - 5000;
@@ -49,7 +50,7 @@ TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
     // e = w lambda q, and the turning saliency has turned it against the rotation by the lag
     const double behind = std::copysign(kPi / 2.0 - lag, speed);
     const double there = 0.5 + turned - behind + speed * kAgo * 1e-8;
-    EXPECT_NEAR(wrapped(rad(starting.rotor.angle_bam) - there), 0.0, 2e-3) << speed;
+    EXPECT_NEAR(wrapped(rad(flying_start.rotor.angle_bam) - there), 0.0, 2e-3) << speed;
   }
 }
 
@@ -87,12 +88,12 @@ TEST_F(StartCaught, PairsThatDoNotFitAreTriedAgainFourTimes) {
 
 TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
   await_pulse();
-  starting.pulse.windows = 0;
+  flying_start.pulse.windows = 0;
   inside::window_count() = 0;
   starting.tick = 100;
   start_state.step(&drive);
   EXPECT_EQ(inside::start_found().phase, START_PULSE);
-  EXPECT_EQ(starting.pulses, 0);
+  EXPECT_EQ(flying_start.pulses, 0);
 }
 
 // Of the period in which the gates came on, only what lies behind that instant belongs to the short circuit; of the
@@ -105,7 +106,7 @@ TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
       starting.tick = 0;
       inside::flags().invalid = static_cast<std::uint16_t>(blind);
       starting.on_tick = on;
-      flying_begin(&starting.pulse);
+      flying_begin(&flying_start.pulse);
       inside::window_count() = 2;
       for (int k = 0; k < 2; ++k) {
         estimator_window_t w = {};
@@ -116,7 +117,7 @@ TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
       start_state.step(&drive);
       int expected = 0;  // the devices switch 2 us after they are told
       for (const int begin : {1500, 6500}) expected += blind == 0 || begin >= on + 200;
-      EXPECT_EQ(starting.pulse.windows, expected) << blind << ", " << on;
+      EXPECT_EQ(flying_start.pulse.windows, expected) << blind << ", " << on;
     }
   }
 }
@@ -129,10 +130,10 @@ TEST_F(StartCaught, TheNextPulseWaitsForSixtyDegrees) {
     see_pulse(0.5, speed * Motor{}.flux);
     ASSERT_EQ(inside::start_found().phase, START_LISTEN);
     const double wait = kPi / 3.0 / speed / kPeriod;
-    EXPECT_NEAR(starting.pause, std::max(6.0, wait), wait < 6.0 ? 0.0 : 0.01 * wait + 1.0) << speed;
+    EXPECT_NEAR(flying_start.pause, std::max(6.0, wait), wait < 6.0 ? 0.0 : 0.01 * wait + 1.0) << speed;
     EXPECT_FALSE(inside::loop_is_closed());
     await_pulse();
-    EXPECT_EQ(starting.pulse.windows, 0) << "seen anew";
+    EXPECT_EQ(flying_start.pulse.windows, 0) << "seen anew";
   }
 }
 
@@ -157,8 +158,8 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
       await_pulse();
       inside::window_count() = 0;
       starting.tick = static_cast<std::uint16_t>(tick - 1);
-      starting.pulse.windows = 1;
-      starting.pulse.last_q20 = {0, raw(-share * enough, 20)};
+      flying_start.pulse.windows = 1;
+      flying_start.pulse.last_q20 = {0, raw(-share * enough, 20)};
       start_state.step(&drive);
       EXPECT_EQ(board.gates_on, share < 1.0 && tick < 12) << share << " " << tick;
     }
@@ -167,8 +168,9 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
 
 // As long as it was told, with the gates off and the short circuit as what the modulator gives.
 TEST_F(StartCaught, AStartListensForItsPause) {
-  starting.pause = 10;
-  start_begin_listen(&drive);
+  inside::start_found().phase = START_PULSE;  // which has told how long
+  flying_start.pause = 10;
+  listen_phase.begin(&drive);
   EXPECT_TRUE(inside::flags().shorted);
   for (int n = 1; n < 10; ++n) start_state.step(&drive);
   EXPECT_EQ(inside::start_found().phase, START_LISTEN);

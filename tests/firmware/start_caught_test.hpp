@@ -9,6 +9,7 @@ extern "C" {
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
+#include "firmware/start/flying/flying.h"
 #include "firmware/start/phases.h"
 #include "firmware/start/start.h"
 }
@@ -18,6 +19,7 @@ namespace stillspin::test {
 class StartCaught : public Drive {
  protected:
   void SetUp() override {
+    NEEDS("start/flying");
     Drive::SetUp();
     use_source(0);
     make_ready();
@@ -31,7 +33,7 @@ class StartCaught : public Drive {
 
   /// The next short circuit, with a back-EMF of this size (V) in this direction (rad) in its middle, which is now.
   static void see_pulse(double direction, double volts) {
-    flying_pulse_t& p = starting.pulse;
+    flying_pulse_t& p = flying_start.pulse;
     inside::window_count() = 0;
     p.windows = 2;
     p.first_tick = clock() - 5000;

@@ -8,6 +8,7 @@ extern "C" {
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/polarity_watch.h"
+#include "firmware/sources/encoder/encoder.h"
 }
 
 namespace {
@@ -22,7 +23,7 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   c.closed = c.position_hold.holding = true;
   inside::missing_windows() = inside::overruns() = 3;
   inside::synchronism().debounce = 99;
-  starting.tries = starting.pulses = 2;
+  starting.tries = starting.held_back = 2;
   inside::model().trim.rs_q24 = 777;
   inside::model().accel_q12 /= 2;
   inertia_match.ratio_q24 /= 2;
@@ -34,7 +35,7 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   EXPECT_FALSE(c.position_hold.holding);
   EXPECT_EQ(inside::missing_windows() + inside::overruns(), 0);
   EXPECT_EQ(inside::synchronism().debounce, 0);
-  EXPECT_EQ(starting.tries + starting.pulses, 0);
+  EXPECT_EQ(starting.tries + starting.held_back, 0);
   EXPECT_EQ(inside::model().trim.rs_q24, 0);
   EXPECT_EQ(inside::model().accel_q12, inside::config().nameplate.accel_q12);
   EXPECT_EQ(inertia_match.ratio_q24, INERTIA_SAME_Q24);
@@ -329,6 +330,7 @@ TEST_F(StartStanding, TheGatesHaveTheirInstant) {
 
 // Speed control, encoder and the watch over the polarity go on from here; nobody holds the shaft.
 TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
+  use_source(POSITION_ENCODER);
   board.encoder = 1234;
   brake_release_hold.left = 9;
   inside::reference_dq_q20().q = raw(3.0, 20);
@@ -336,10 +338,10 @@ TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   drive_bumpless_transfer(&drive, bam(0.8), bpp(100.0));
   EXPECT_EQ(inside::selected().angle_bam, bam(0.8));
   EXPECT_EQ(inside::selected().speed_bpp, bpp(100.0));
-  EXPECT_EQ(inside::encoder_observer().angle_bam, bam(0.8));
-  EXPECT_EQ(inside::encoder_observer().speed_bpp, bpp(100.0));
-  const std::uint32_t count = position_encoder_angle(1234, 4, parameters.encoder_counts);
-  EXPECT_EQ(inside::encoder_offset_bam(), bam(0.8) - count);
+  EXPECT_EQ(encoder.observer.angle_bam, bam(0.8));
+  EXPECT_EQ(encoder.observer.speed_bpp, bpp(100.0));
+  const std::uint32_t count = encoder_angle(1234, 4, parameters.encoder_counts);
+  EXPECT_EQ(encoder.offset_bam, bam(0.8) - count);
   EXPECT_EQ(polarity_watch.axis.angle_bam, bam(0.8));
   EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(100.0));
   EXPECT_EQ(brake_release_hold.left, 0u);

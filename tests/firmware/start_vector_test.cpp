@@ -6,13 +6,20 @@ extern "C" {
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/start/if_start/if_start.h"
 }
 
 namespace {
 
 using namespace stillspin::test;
 
-class StartByVector : public StartStanding {};
+class StartByVector : public StartStanding {
+ protected:
+  void SetUp() override {
+    NEEDS("start/if_start");
+    StartStanding::SetUp();
+  }
+};
 
 // The vector turns with its own angle, with the current controllers from rest, and is not watched for its polarity.
 TEST_F(StartByVector, AVectorBeginsFromRest) {
@@ -22,13 +29,13 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
     inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
     inside::seen().angle_bam = 5;
     polarity_watch.open = true;
-    start_begin_if_ramp(&drive);
+    if_ramp_phase.begin(&drive);
     EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
     EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
     EXPECT_EQ(inside::seen().angle_bam, 0u);
     EXPECT_TRUE(inside::loop_is_closed());
     EXPECT_FALSE(polarity_watch.open);
-    EXPECT_EQ(starting.if_start.backward, backward);
+    EXPECT_EQ(if_ramp.backward, backward);
   }
 }
 
@@ -36,8 +43,8 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
 // controllers begin anew in that frame, and nobody holds the shaft.
 TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
   NEEDS("sources/flux");
-  start_begin_if_ramp(&drive);
-  if_start_t& if_start = start().if_start;
+  if_ramp_phase.begin(&drive);
+  if_start_t& if_start = if_ramp;
   inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
   brake_release_hold.left = 7;
   flux_observer.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
@@ -48,10 +55,8 @@ TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
     step();
   }
   ASSERT_EQ(inside::state(), DRIVE_RUN);
-  EXPECT_EQ(inside::speed_ramp().value, inside::config().if_start.speed_bpp);
+  EXPECT_EQ(inside::speed_ramp().value, if_ramp_config.speed_bpp);
   EXPECT_EQ(inside::selected().angle_bam, inside::seen().angle_bam);
-  EXPECT_EQ(inside::encoder_observer().angle_bam, inside::seen().angle_bam);
-  EXPECT_EQ(inside::encoder_observer().speed_bpp, if_start.speed_bpp);
   EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
   EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
   EXPECT_EQ(inside::reference_dq_q20().d, 0);
@@ -66,10 +71,10 @@ TEST_F(StartByVector, AFluxThatTakesOverHasTheShaftAlone) {
     for (const int above : {0, 1}) {
       SetUp();
       use_source(source);
-      inside::config().blend.high_bpp = inside::config().if_start.speed_bpp - above;
+      inside::config().blend.high_bpp = if_ramp_config.speed_bpp - above;
       inside::blend().region = BLEND_LOW;
       inside::blend().share_q15 = 32767;
-      start_begin_if_ramp(&drive);
+      if_ramp_phase.begin(&drive);
       const bool alone = source >= POSITION_FLUX_CONV && above != 0;
       EXPECT_EQ(inside::blend().region, alone ? BLEND_HIGH : BLEND_LOW) << source;
       EXPECT_EQ(inside::blend().share_q15, alone ? 0 : 32767) << source;
@@ -78,9 +83,9 @@ TEST_F(StartByVector, AFluxThatTakesOverHasTheShaftAlone) {
 }
 
 TEST_F(StartByVector, AVectorThatTheShaftDoesNotFollowIsAFault) {
-  start_begin_if_ramp(&drive);
+  if_ramp_phase.begin(&drive);
   for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
-    inside::seen() = {start().if_start.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
+    inside::seen() = {if_ramp.vector_bam + ANGLE_BAM_HALF_TURN, 0, 0, 32767};
     inside::command_dq_q16() = {0, 0};
     step();
   }

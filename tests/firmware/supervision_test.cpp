@@ -9,6 +9,7 @@ extern "C" {
 #include "firmware/drive/steps.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
+#include "firmware/sources/encoder/encoder.h"
 #include "firmware/start/step.h"
 }
 
@@ -178,7 +179,7 @@ TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
   int n = 0;
   while (inside::state() == DRIVE_RUN && n < 2 * allowed) {
     // the encoder says one thing, AVV is held 70 degrees away: beyond divergence_limit, less than a quarter turn
-    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam + 0x31C71C72u;
+    inside::avv().observer.angle_bam = encoder.observer.angle_bam + 0x31C71C72u;
     period();
     n++;
   }
@@ -192,7 +193,7 @@ TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
   int n = 0;
   while (inside::state() == DRIVE_RUN && n < 400) {
     board.encoder = (board.encoder + 4u) & 4095u;
-    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
+    inside::avv().observer.angle_bam = encoder.observer.angle_bam;
     period();
     n++;
   }
@@ -201,7 +202,7 @@ TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
 
 TEST_F(Drive, CoastOpensThePowerStageAtOnceAtAnySpeed) {
   make_run();
-  inside::encoder_observer().speed_bpp = raw(0.01, 32);
+  encoder.observer.speed_bpp = raw(0.01, 32);
   drive_command_coast();
   period();
   EXPECT_EQ(inside::state(), DRIVE_READY);
@@ -239,8 +240,8 @@ TEST_F(Drive, StopThatDoesNotReachStandstillFaults) {
   int n = 0;
   while (inside::state() != DRIVE_FAULT && inside::state() != DRIVE_READY && n < 2000) {
     // an encoder that goes on at 5 rpm, above the 2 rpm that count as rest
-    inside::encoder_observer().speed_bpp = raw(5.0 / 60.0 * 4.0 * kPeriod, 32);
-    inside::avv().observer.angle_bam = inside::encoder_observer().angle_bam;
+    encoder.observer.speed_bpp = raw(5.0 / 60.0 * 4.0 * kPeriod, 32);
+    inside::avv().observer.angle_bam = encoder.observer.angle_bam;
     period();
     n++;
   }
@@ -353,6 +354,7 @@ TEST_F(Drive, AMapWithoutSaliencyIsNamed) {
 }
 
 TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
+  NEEDS("start/flying");
   make_run();
   inside::state() = DRIVE_START;
   starting = {};

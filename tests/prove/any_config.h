@@ -5,7 +5,6 @@
 #define STILLSPIN_TESTS_PROVE_ANY_CONFIG_H
 
 #include "firmware/mode/mode.h"
-#include "tests/prove/any_flux.h"
 #include "tests/prove/any_modulator.h"
 #include "tests/prove/any_observer.h"
 
@@ -25,16 +24,6 @@ static inline void any_control(drive_config_t* c) {
   c->speed.pi_bandwidth_q8 = any_from(256, 51200);
   c->speed.pi_damping_q12 = any_from(1228, 245760);
   c->mtpa.pole_q20 = any_from(0, 1048576000L);
-  c->if_start.current_q20 = any_from(0, 100 * AMPERES_Q20);
-  c->if_start.align_periods = any_from(2, 50000L);
-  c->if_start.step_bpp = any_from(1, 683565276L);
-  c->if_start.speed_bpp = any_from(1, 683565276L);
-  c->if_start.wait_periods = any_from(0, 100000L);
-  c->if_start.damping_periods = any_from(1, 65536L);
-  c->if_start.per_emf_q4 = any_from(0, INT32_MAX);
-  c->if_start.filter_shift = (uint16_t)any_from(0, 15);
-  c->if_start.resistance_q24 = any_from(16777L, 838860800L);
-  c->if_start.least_q16 = any_from(0, 100 * VOLTS_Q16);
   c->friction_per_bpp_q40 = any_from(0, INT32_MAX);
   c->ramp_step_bpp = any_from(0, INT32_MAX);
   c->hold_gain_q30 = any_from(0, 10737418L);
@@ -51,7 +40,6 @@ static inline void any_position(drive_config_t* c) {
   c->blend.hysteresis_bpp = any_from(1, SPEED_MAX_BPP / 2);
   c->blend.rate_q15 = any_from(1, 32767);
   c->blend.per_range_q30 = any_from(1, 1073741824L);
-  any_flux(&c->flux);
   c->slopes.amps_per_code_q30 = any_from(524288L, 104857600L);
   c->slopes.start_samples = START_SAMPLES;
   c->slopes.end_samples = END_SAMPLES;
@@ -74,7 +62,6 @@ static inline void any_config(drive_config_t* c) {
   c->rpm_per_bpp_q40 = any_from(7680000L, 153700000L);
   c->adapt_share_q30 = any_from(0, 53687091L);
   c->drift_share_q30 = any_from(0, 53687091L);
-  c->encoder_trim_bam = any_u32;
   c->sensor_mismatch_q30 = any_from(0, 53687091L);
   c->mapped = any_bool();
   c->saturation.d_q30 = any_i32;

@@ -14,6 +14,7 @@
 #include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
+#include "firmware/start/flying/look.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"

@@ -6,10 +6,13 @@
 #include "firmware/config/config.h"
 #include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
+#include "firmware/sources/encoder/encoder.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/paper/paper.h"
+#include "firmware/start/if_start/if_start.h"
 #include "tests/prove/any_parameters.h"
 
-config_part_t* const edition_config_parts[] = {flux_source_load, NULL};
+const config_part_t* const edition_config_parts[] = {&flux_part, &encoder_part, &if_ramp_part, &paper_part, NULL};
 
 void prove_configuration(void) {
   const drive_config_t* made = 0;

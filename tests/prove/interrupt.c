@@ -16,11 +16,16 @@
 #include "firmware/drive/sampling.h"
 #include "firmware/drive/steps.h"
 #include "firmware/hysteresis/hysteresis.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/interfaces/service.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/scope/scope.h"
+#include "firmware/sources/encoder/encoder.h"
+#include "firmware/sources/flux/flux.h"
 #include "firmware/sources/paper/paper.h"
+#include "firmware/start/flying/look.h"
+#include "firmware/start/if_start/if_start.h"
 #include "firmware/start/start.h"
 #include "firmware/start/step.h"
 #include "firmware/store/store.h"
@@ -34,6 +39,7 @@
 #include "hal/hal_safety.h"
 #include "hal/hal_sampling_timer.h"
 #include "tests/prove/any_config.h"
+#include "tests/prove/any_flux.h"
 #include "tests/prove/any_parameters.h"
 
 // EVA knows memset as a whole, but octet after octet of a structure as anything.
@@ -80,8 +86,8 @@ bool hal_sampling_timer_begin(uint16_t slice_ticks) {
 void hal_sampling_timer_end(void) {}
 static void nothing_else(void) {}
 const phase_control_t* const edition_phase_control = &hysteresis_control;
-service_t* const edition_resets[] = {scope_reset, nothing_else,        board_reset, start_reset,
-                                     paper_reset, commissioning_reset, NULL};
+service_t* const edition_resets[] = {scope_reset, nothing_else,  board_reset, start_reset,         flux_reset,
+                                     paper_reset, encoder_reset, look_reset,  commissioning_reset, NULL};
 work_t* const edition_works[] = {commissioning_service, NULL};
 static drive_fault_t any_refusal(void) { return any_bool() ? FAULT_SELF_TEST : FAULT_NONE; }
 interlock_t* const edition_interlocks[] = {any_refusal, board_refusal, NULL};
@@ -109,22 +115,44 @@ void commissioning_solve_motion(commissioning_t* c) {
   c->accel_q12 = any_i32;
 }
 
+// The constants that features have beside it.
+static void any_parts(void) {
+  any_flux(&flux_config);
+  paper_config.kp_q30 = any_from(0, 107374182L);
+  paper_config.ki_q40 = any_from(0, 220000000L);
+  paper_config.terms = (uint16_t)any_from(0, 31);
+  encoder.trim_bam = any_u32;
+  if_ramp_config.current_q20 = any_from(0, 100 * AMPERES_Q20);
+  if_ramp_config.align_periods = any_from(2, 50000L);
+  if_ramp_config.step_bpp = any_from(1, 683565276L);
+  if_ramp_config.speed_bpp = any_from(1, 683565276L);
+  if_ramp_config.wait_periods = any_from(0, 100000L);
+  if_ramp_config.damping_periods = any_from(1, 65536L);
+  if_ramp_config.per_emf_q4 = any_from(0, INT32_MAX);
+  if_ramp_config.filter_shift = (uint16_t)any_from(0, 15);
+  if_ramp_config.resistance_q24 = any_from(16777L, 838860800L);
+  if_ramp_config.least_q16 = any_from(0, 100 * VOLTS_Q16);
+}
+
 // Of whatever parameters it is made.
 static void any_made(drive_config_t* c) {
-  static zvv_config_t zvv;
   any_config(c);
   any_parameters();
-  zvv.kp_q30 = any_from(0, 107374182L);
-  zvv.ki_q40 = any_from(0, 220000000L);
-  zvv.terms = (uint16_t)any_from(0, 31);
-  c->zvv = &zvv;
 #define TAKE(name) c->values.name = parameters.name;
   CONFIG_VALUES(TAKE)
 #undef TAKE
 }
 
+void drive_config_take(drive_config_t* c, const drive_config_t* made) {
+  *c = *made;
+  any_parts();
+}
+
+const config_part_t* const edition_config_parts[] = {&encoder_part, NULL};
+
 bool drive_config_load(drive_config_t* c) {
   any_made(c);
+  any_parts();
   return any_bool();
 }
 

@@ -8,7 +8,7 @@
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"  // before what it is about
 
-// -1 is none at all (firmware/start/flying.c).
+// -1 is none at all (firmware/start/flying/flying.c).
 #define OF_EDGE(tick) FROM_TO(tick, -1, SVPWM_PERIOD_TICKS)
 #define OF_EDGES(at) \
   (OF_EDGE((at)[0]) && OF_EDGE((at)[1]) && OF_EDGE((at)[2]) && OF_EDGE((at)[3]) && OF_EDGE((at)[4]) && OF_EDGE((at)[5]))

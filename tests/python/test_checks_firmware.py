@@ -134,7 +134,7 @@ def test_all_parameters_at_once_are_caught(tmp_path: Path) -> None:
 def test_what_the_interrupts_run_is_found_in_the_drive_itself() -> None:
     """Through calls, the table of phases, that of sources and their hooks, and down from each of both interrupts."""
     reached = set(interrupt.Program(ROOT).reached(interrupt.INTERRUPTS).values())
-    steps = {"drive_protect", "start_step_if_ramp", "source_paper", "flux_excitation", "hysteresis_slice", "scope_step"}
+    steps = {"drive_protect", "step_if_ramp", "source_paper", "flux_excitation", "hysteresis_slice", "scope_step"}
     assert {*steps, "board_refusal", "selftest_refusal"} <= reached
     assert not {"parameter_set", "drive_config_make", "background_step", "console_service"} & reached
 

@@ -15,7 +15,9 @@ from own_edition import LOADED, ROOT, linked
 from stillspin import can
 
 # What a feature that drive and minimal leave out would have recorded.
-LEFT_OUT = {"load_angle", "magnet_flux"}
+LEFT_OUT = {"drive": {"load_angle", "magnet_flux"}, "minimal": {"load_angle", "magnet_flux", "wiring"}}
+# Without a look for a turning shaft and for its wiring a start begins earlier: lab is told to leave both out as well.
+AS_IN = {"drive": (), "minimal": ("--set", "flying_start=0", "--set", "wiring_check=0")}
 # What the plant says, not the drive. The virtual chip takes an interrupt between two register accesses. The background
 # level of minimal has none of the bus's, so a control interrupt begins some ticks of 10 ns earlier or later, and with
 # it what it does itself in a start: gates on and off at no current, where the plant's solver ends a step. From there on
@@ -37,11 +39,11 @@ def on(edition: str, *command: str, expected: int = 0) -> str:
     return done.stdout + done.stderr
 
 
-def recorded(edition: str, scenario: str, where: Path) -> dict[str, pd.DataFrame]:
+def recorded(edition: str, scenario: str, where: Path, *options: str) -> dict[str, pd.DataFrame]:
     """Every run of a scenario, by its file's name."""
-    folder = where / edition / scenario
+    folder = where / edition / "".join(options) / scenario
     if not folder.exists():
-        on(edition, "-m", "stillspin", "run", scenario, "--no-plots", "--out", str(folder))
+        on(edition, "-m", "stillspin", "run", scenario, "--no-plots", "--out", str(folder), *options)
     return {path.name: pd.read_parquet(path) for path in sorted((folder / "runs").glob("*.parquet"))}
 
 
@@ -53,10 +55,10 @@ def where(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("scenario", SCENARIOS)
 @pytest.mark.parametrize("edition", ["drive", "minimal"])
 def test_in_a_run_the_drive_does_bit_for_bit_what_lab_does(edition: str, scenario: str, where: Path) -> None:
-    lab, own = recorded("lab", scenario, where), recorded(edition, scenario, where)
+    lab, own = recorded("lab", scenario, where, *AS_IN[edition]), recorded(edition, scenario, where)
     assert lab and lab.keys() == own.keys()
     for name, run in own.items():
-        assert set(lab[name].columns) - set(run.columns) == LEFT_OUT
+        assert set(lab[name].columns) - set(run.columns) == LEFT_OUT[edition]
         of_plant = [column for column in run.columns if column in PLANT or column.startswith("true_")]
         of_drive = [column for column in run.columns if column not in of_plant]
         pd.testing.assert_frame_equal(run[of_drive], lab[name][of_drive], check_exact=True)
@@ -76,13 +78,14 @@ pandas.DataFrame(dict(run.signals)).to_parquet(sys.argv[-1])
 """
 
 
-def test_with_the_bus_minimal_is_lab_to_the_last_bit_of_the_plant(where: Path) -> None:
+def test_with_the_bus_and_the_flying_start_minimal_is_lab_to_the_last_bit_of_the_plant(where: Path) -> None:
     both = where / "both.txt"
-    both.write_text((ROOT / "firmware/editions/minimal.txt").read_text(encoding="utf-8") + "can\n", encoding="utf-8")
+    minimal = (ROOT / "firmware/editions/minimal.txt").read_text(encoding="utf-8")
+    both.write_text(minimal + "can\nstart/flying\n", encoding="utf-8")
     on("lab", "-c", f"import sys{PLAYED}", str(where / "lab.parquet"))
     on("lab", "-c", f"{LOADED}{PLAYED}", str(linked(both)), str(where / "both.parquet"))
     lab, own = (pd.read_parquet(where / f"{name}.parquet") for name in ("lab", "both"))
-    assert set(lab.columns) - set(own.columns) == LEFT_OUT
+    assert set(lab.columns) - set(own.columns) == LEFT_OUT["drive"]
     pd.testing.assert_frame_equal(own, lab[own.columns], check_exact=True)
 
 
@@ -111,6 +114,7 @@ def test_an_unknown_edition_is_refused_in_a_sentence() -> None:
 
 REFUSALS = """
 print(desk.type("get flux_low", 150), desk.type("set can_node 3", 150), desk.type("get load_angle", 150), sep="")
+print(desk.type("set flying_start 0", 150), desk.type("set if_speed 200", 150), desk.type("look", 150), sep="")
 print(desk.type("get flux", 300), desk.type("scope arm", 150), desk.type("help scope", 150), desk.type("help", 1500))
 print("suggested:", desk.type("scopes", 300))
 """
@@ -118,7 +122,7 @@ print("suggested:", desk.type("scopes", 300))
 
 def test_what_is_left_out_is_refused_by_its_edition() -> None:
     said = on("minimal", "-c", f"{DESK}desk = Desk({{}}){REFUSALS}", str(Path(__file__).parent))
-    for name in ("flux_low", "can_node", "load_angle"):
+    for name in ("flux_low", "can_node", "load_angle", "flying_start", "if_speed", "look"):
         assert f"'{name}' is not in this edition of the firmware, minimal" in said
     assert "there is no parameter 'flux'" in said, "what no edition has"
     assert "flux_high" not in said, "nor is it suggested"
@@ -157,14 +161,16 @@ with virtual_ask() as ask:
 print(json.dumps([requests, commands, faults, [status.store, status.save_progress, status.unsaved], who.edition]))
 """
 UNKNOWN, RANGE, EDITION = 1, 2, 8
-SCOPE, HIL = set(range(0x10, 0x15)), {0x20, 0x22}  # HIL_STEP takes any length
-RESULT, COMMISSION, STORE = {0x16}, {6}, {7, 8, 9}
+SCOPE, LOOK, HIL = set(range(0x10, 0x15)), {0x17}, {0x20, 0x22}  # HIL_STEP takes any length
+RESULT, COMMISSION, STORE, BEGIN_LOOK = {0x16}, {6}, {7, 8, 9}, {10}
 LEFT_OUT_REQUESTS = {
     "lab": (set(), set()),
     "drive": (HIL, set()),
     "hil": (RESULT, COMMISSION),
-    "minimal": (SCOPE | RESULT | HIL, COMMISSION | STORE),
+    "minimal": (SCOPE | RESULT | LOOK | HIL, COMMISSION | STORE | BEGIN_LOOK),
 }
+
+LEFT_OUT_FAULTS = {"lab": 0, "drive": 1, "hil": 1, "minimal": 5}  # the encoder's; those of the wiring
 
 
 @pytest.mark.parametrize("edition", LEFT_OUT_REQUESTS)
@@ -181,8 +187,8 @@ def test_a_request_of_what_is_left_out_is_told_from_one_that_no_edition_knows(ed
     faults, in_lab = own[2], lab[2]
     assert len(faults) == len(in_lab), "numbers of faults are those of all editions"
     assert [status for status, _ in in_lab].count(RANGE) == 2, "behind the last one"
-    encoder = [k for k, fault in enumerate(faults) if fault != in_lab[k]]
-    assert [faults[k] for k in encoder] == [[EDITION, *words]] * (0 if edition == "lab" else 2)
+    gone = [k for k, fault in enumerate(faults) if fault != in_lab[k]]
+    assert [faults[k] for k in gone] == [[EDITION, *words]] * 2 * LEFT_OUT_FAULTS[edition], "its words and its remedy"
 
 
 @pytest.mark.parametrize(
@@ -365,8 +371,9 @@ def test_an_edition_without_a_store_does_not_touch_the_memory(memory: Path) -> N
     assert has("lab", memory, flux_low="123.0", can_node="5", speed_ramp="500")
 
 
-def test_a_source_that_an_edition_has_not_keeps_its_defaults_in_force_and_loses_nothing(memory: Path) -> None:
+def test_of_what_was_saved_an_edition_refuses_the_source_that_it_has_not_and_no_more(memory: Path) -> None:
     assert switch_on("lab", memory, "set position_source 8", "save")[-1] == SAVED
-    assert "the saved values do not fit together and are not used" in store_of("drive", memory)
-    assert has("drive", memory, can_node="1", speed_ramp="3000")
+    assert "values saved by another firmware are in force" in store_of("drive", memory)
+    assert "; 1 refused, now at their default: position_source" in switch_on("drive", memory, "load")[-1]
+    assert has("drive", memory, position_source="4", can_node="5", speed_ramp="500")
     assert has("lab", memory, position_source="8", flux_low="123.0", can_node="5", speed_ramp="500")

@@ -1,12 +1,14 @@
 """Scenario files: those that ship say what the bench is committed to; wrong ones are refused in one line."""
 
 import json
+import tomllib
 
 import numpy as np
 import pytest
 
 import fake_core
-from stillspin.cases import profile, scenario_file
+from stillspin import resources
+from stillspin.cases import profile, scenario_file, variant
 from stillspin.errors import InputError
 from stillspin.measure import figures
 from stillspin.runs import execute
@@ -122,6 +124,17 @@ def test_no_run_counts_whose_shaft_does_something_else(identifier, turning):
 def test_most_scenarios_touch_no_parameter_at_all():
     for identifier in ("A10", "A11", "A15", "A16", "A17"):
         assert all(not run.parameters and not run.plant for run in scenario_file.load(identifier).runs)
+
+
+def test_a_scheme_is_of_the_scenarios_motor() -> None:
+    """Read as the files have it: every scenario that names a scheme, for all runs or for one."""
+    named = set()
+    for identifier in scenario_file.ids():
+        data = tomllib.loads(resources.find("scenarios", identifier).read_text(encoding="utf-8"))
+        schemes = {part["scheme"] for part in (data.get("defaults", {}), *data["runs"]) if "scheme" in part}
+        assert {variant.scheme(name).motor for name in schemes} <= {data["motor"]}, identifier
+        named |= schemes
+    assert {"paper", "paper_b"} <= named
 
 
 def test_defaults_are_joined_with_what_a_run_says(tmp_path):

@@ -28,7 +28,7 @@ FIRMWARE = (
     ("api",),
     ("drive",),
     ("start", "sources", "hysteresis", "board", "console", "link", "boot"),
-    ("commissioning", "can", "store", "scope", "hil"),
+    ("commissioning", "can", "store", "scope", "hil", "start/flying", "start/if_start"),
     ("editions",),
 )
 LEFT = "toolchain/arrows_left.txt"

@@ -77,7 +77,10 @@ def shares(linked: Linked, always: Iterable[str]) -> dict[Path, Row]:
     """Of each object but the tables the features that have it. `always`: features that every edition has."""
     names = {feature.name for feature in compose.all_features()} - set(always)
     left = linked.keys() - tables(linked).keys()
-    own = {path: next((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), "") for path in left}
+    own = {
+        path: max((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), key=len, default="")
+        for path in left
+    }
     homes = {name: path for path in left for name in linked[path].defined}
     asks = {path: {homes[name] for name in linked[path].wanted & homes.keys()} for path in left}
     starts = {path: {own[path]} for path in left if own[path]}

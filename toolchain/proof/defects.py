@@ -126,7 +126,13 @@ DEFECTS = (
         "left->periods > LEFT_PERIODS_MAX",
     ),
     Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
-    Defect("configuration", "q_mul", "firmware/config/config.c", "q_mul64(p->encoder_trim", "q_mul(p->encoder_trim"),
+    Defect(
+        "configuration",
+        "q_mul",
+        "firmware/sources/encoder/encoder.c",
+        "q_mul64(parameters.encoder_trim",
+        "q_mul(parameters.encoder_trim",
+    ),
     Defect(
         "configuration", "load_machine", "firmware/config/config.c", "pole_pairs * 1832519L", "pole_pairs * 183251900L"
     ),

@@ -71,7 +71,7 @@ CONFIGURATION = (
         "firmware/config/rules.c",
         "firmware/base/clear.c",
     ),
-    *("firmware/sources/*/*.c", SOURCES_TABLE, "svpwm/*.c", *ESTIMATORS),
+    *("firmware/sources/*/*.c", "firmware/start/if_start/load.c", SOURCES_TABLE, "svpwm/*.c", *ESTIMATORS),
 )
 OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
 FRAMES = (
@@ -138,9 +138,10 @@ DEVICES = ("tests/prove/devices.c", ANY_REGISTER, "hal/qmath/qdiv.c", *(f"hal/f2
 
 # All that the control interrupt runs but what speaks to the chip; and what of that is read by itself.
 INTERRUPT = (
-    *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/scope/scope.c", *ESTIMATORS, "svpwm/*.c"),
+    *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/start/*/*.c", "firmware/scope/scope.c"),
+    *(*ESTIMATORS, "svpwm/*.c"),
     *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*/*.c", "firmware/hysteresis/*.c"),
-    *(SOURCES_TABLE, "made/drive_states.c"),
+    *(SOURCES_TABLE, "made/drive_states.c", "made/start_phases.c"),
     "firmware/dictionary/parameters.c",
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),

@@ -1,22 +1,69 @@
 // The reference encoder: angle from the count and the offset found at the start; a tracking observer makes a speed of
 // it.
 
+#include "firmware/sources/encoder/encoder.h"
+
 #include <stddef.h>
 
 #include "estimators/zvv.h"
+#include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
-#include "firmware/drive/position.h"
 #include "firmware/sources/flux/flux.h"
 #include "firmware/sources/sources.h"
+#include "hal/hal_encoder.h"
+
+encoder_t encoder;
+
+static uint32_t made_trim_bam;
+
+void encoder_reset(void) { clear(&encoder, sizeof encoder); }
+
+static bool make(drive_config_t* c) {
+  (void)c;
+  made_trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  return true;
+}
+
+static void take(void) { encoder.trim_bam = made_trim_bam; }
+
+void encoder_set_up(void) { hal_encoder_init((uint32_t)parameters.encoder_counts); }
+
+const config_part_t encoder_part = {make, take, encoder_set_up};
+
+uint32_t encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {
+  // 2^32 / counts, exact where the counts are a power of two, to 1e-5 of a turn otherwise.
+  const uint32_t per_count = 0xFFFFFFFFuL / (uint32_t)counts_per_turn + 1u;
+  return count * per_count * (uint32_t)pole_pairs;
+}
+
+// What it shows now, without the offset.
+static uint32_t angle_now(const drive_t* d) {
+  return encoder_angle(hal_encoder_count(), d->model.pole_pairs, d->config.values.encoder_counts);
+}
+
+// The present count means the angle in use.
+static void encoder_begin(drive_t* d, bool keeps) {
+  if (keeps) return;
+  const estimator_output_t* const now = &d->position.selected;
+  encoder.offset_bam = now->angle_bam - angle_now(d);
+  encoder.aligned_bam = now->angle_bam;
+  tracking_observer_preset(&encoder.observer, now->angle_bam, now->speed_bpp, 0);
+}
+
+static bool is_reversed(const drive_t* d) {
+  const uint32_t encoder_bam = encoder.observer.angle_bam - encoder.aligned_bam;
+  const uint32_t windows_bam = d->position.high.angle_bam - encoder.aligned_bam;
+  return q_abs_sat(angle_diff_bam(windows_bam + encoder_bam, 0)) <
+         q_abs_sat(angle_diff_bam(windows_bam, encoder_bam)) / 2;
+}
 
 static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   in->frames = 0;
-  const uint32_t angle = position_encoder_now(d) + d->position.encoder_offset_bam;
-  tracking_observer_predict(&d->position.encoder, in->torque_accel_q8);
-  tracking_observer_correct(&d->position.encoder, angle_diff_bam(angle, d->position.encoder.angle_bam),
+  tracking_observer_t* const o = &encoder.observer;
+  tracking_observer_predict(o, in->torque_accel_q8);
+  tracking_observer_correct(o, angle_diff_bam(angle_now(d) + encoder.offset_bam, o->angle_bam),
                             d->config.avv.bandwidth_long_q30);
-  estimator_output_t out = {d->position.encoder.angle_bam, d->position.encoder.speed_bpp,
-                            d->position.encoder.load_accel_q8, 32767};
+  estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
   if (d->config.values.flux_beside > 0) {
     d->position.high = flux_source_look_on(d, in, &out);
   } else {
@@ -24,9 +71,10 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   }
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
-  out.angle_bam += d->config.encoder_trim_bam;
+  out.angle_bam += encoder.trim_bam;
   (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &d->position.deviation_q20);
   return out;
 }
 
-const position_source_t encoder_source = {source_encoder, NULL, NULL, NULL, NULL, SOURCE_MEASURES | SOURCE_SINGLE};
+const position_source_t encoder_source = {
+    source_encoder, NULL, NULL, NULL, encoder_begin, is_reversed, SOURCE_MEASURES | SOURCE_SINGLE};

@@ -1,5 +1,7 @@
 #include "firmware/sources/flux/flux.h"
 
+#include <stddef.h>
+
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
@@ -9,7 +11,6 @@
 #include "hal/hal_profile.h"
 #include "svpwm/ripple.h"
 
-#define PER_PERIOD_Q20 439804651L        // rad/s (Q8) to rad per period (Q30), as in bandwidths: 100 us 2^22 2^20
 #define ADAPTATION_PERIODS 100u          // a tenth of the speed control's rate
 #define INDUCTANCE_SHARE_Q30 107374182L  // 0.1: 100 ms
 #define MAGNET_SHARE_Q30 53687091L       // 0.05: 200 ms
@@ -24,6 +25,13 @@
 #define PAPER_PRINT 2
 
 flux_observer_t flux_observer;
+flux_observer_config_t flux_config;
+
+int32_t flux_observability_q20;
+
+static flux_observer_config_t made;
+
+void flux_reset(void) { flux_observability_q20 = 0; }
 
 // That has the shaft, or looks on; below zero without one.
 static int32_t method(void) {
@@ -38,14 +46,14 @@ static void narrow_band(dead_time_config_t* c) {
   dead_time_design(c);
 }
 
-bool flux_source_load(drive_config_t* c) {
+static bool make(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   const bool is_selected = method() >= 0;
   if (is_selected) narrow_band(&c->dead_time);
-  flux_observer_config_t* const f = &c->flux;
+  flux_observer_config_t* const f = &made;
   f->method = (flux_method_t)q_max(method(), FLUX_CONV);
-  f->cutoff_q30 = q_mul(p->flux_cutoff, PER_PERIOD_Q20, 20);
-  f->bandwidth_q30 = q_mul(p->flux_bandwidth, PER_PERIOD_Q20, 20);
+  f->cutoff_q30 = q_mul(p->flux_cutoff, CONFIG_PER_PERIOD_Q20, 20);
+  f->bandwidth_q30 = q_mul(p->flux_bandwidth, CONFIG_PER_PERIOD_Q20, 20);
   f->is_plain = (p->flux_plain & PAPER_LOW_PASS) != 0;
   f->is_printed = (p->flux_plain & PAPER_PRINT) != 0;
   // Without dead time every voltage is known.
@@ -59,6 +67,10 @@ bool flux_source_load(drive_config_t* c) {
   f->adaptation.lowest_bpp = LEARNING_BPP;
   return !is_selected || flux_observer_config_valid(f, &c->nameplate);
 }
+
+static void take(void) { flux_config = made; }
+
+const config_part_t flux_part = {make, take, NULL};
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
 static flux_period_t period_of(const drive_t* d, bool is_full) {
@@ -83,14 +95,14 @@ static void flux_begin(drive_t* d, bool keeps) {
   if (keeps) {
     flux_observer_keep(&flux_observer);
   } else {
-    flux_observer_reset(&flux_observer, &d->config.flux, &d->model);
+    flux_observer_reset(&flux_observer, &flux_config, &d->model);
     d->position.flux = &flux_observer;
   }
 }
 
 static estimator_output_t step(drive_t* d, const estimator_input_t* in, bool is_full) {
   const flux_period_t p = period_of(d, is_full);
-  return flux_observer_step(&flux_observer, &d->config.flux, in, &p);
+  return flux_observer_step(&flux_observer, &flux_config, in, &p);
 }
 
 // The observer goes along, so that it is right when it is wanted again.
@@ -140,14 +152,14 @@ static excitation_t flux_excitation(const drive_t* d) {
 // one, and an integral of the commanded one does not see it. So some current always flows where the flux has the shaft,
 // below the speed at which the magnet is learnt, and the EMF stands out of that.
 static int32_t observability_current(drive_t* d) {
-  drive_control_t* const c = &d->control;
+  const drive_control_t* const c = &d->control;
   const int32_t least_q20 =
       q_min(OBSERVABLE_CURRENTS * d->config.dead_time.edge_band_q20, q_shr(c->current_limit_q20, 1));
-  const bool unobservable = d->position.blend.share_q15 == 0 &&
-                            q_abs_sat(d->position.selected.speed_bpp) < d->config.flux.adaptation.lowest_bpp;
+  const bool unobservable =
+      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.selected.speed_bpp) < flux_config.adaptation.lowest_bpp;
   const int32_t missing_q20 = unobservable ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
-  c->observability_q20 = q_follow(c->observability_q20, missing_q20, OBSERVABILITY_SHIFT);
-  return -c->observability_q20;
+  flux_observability_q20 = q_follow(flux_observability_q20, missing_q20, OBSERVABILITY_SHIFT);
+  return -flux_observability_q20;
 }
 
 // The observer below the blend, the stator flux above, both between. There nothing is learnt of the windows, for want
@@ -159,6 +171,10 @@ static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
   return flux_source_beside(d, in, &low);
 }
 
-const position_source_t flux_source = {
-    source_flux,        flux_excitation, observability_current,
-    flux_source_follow, flux_begin,      SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};
+const position_source_t flux_source = {source_flux,
+                                       flux_excitation,
+                                       observability_current,
+                                       flux_source_follow,
+                                       flux_begin,
+                                       NULL,
+                                       SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};

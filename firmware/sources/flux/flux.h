@@ -8,13 +8,22 @@
 #define STILLSPIN_FIRMWARE_SOURCES_FLUX_H
 
 #include "estimators/flux_observer.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
 
 extern flux_observer_t flux_observer;
 
-/// The flux's part of the configuration (interfaces/config_part.h). False where the flux is wanted for a machine that
-/// it cannot be given.
-bool flux_source_load(drive_config_t* c);
+/// What flows against the d-axis so that the flux is observable, A.
+extern int32_t flux_observability_q20;
+
+/// As after power-on.
+void flux_reset(void);
+
+/// Its constants in use.
+extern flux_observer_config_t flux_config;
+
+/// Makes them; false where the flux is wanted for a machine that it cannot be given.
+extern const config_part_t flux_part;
 
 /// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
 void flux_source_follow(drive_t* d, const estimator_output_t* now);

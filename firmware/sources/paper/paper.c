@@ -9,27 +9,29 @@
 #include "firmware/drive/position.h"
 #include "firmware/sources/sources.h"
 
-#define PER_PERIOD_Q20 439804651L  // rad/s (Q8) to rad per period (Q30): 100 us 2^22 2^20
 #define PER_PERIOD2_Q18 11258999L  // rad/s^2 (Q8) to rad per period^2 (Q40)
 #define LONG_ZERO_BY_TURNS 16u     // of zvv_terms, beside those of zvv.h
 #define ZVV_PERIODS_OF_MS 0x02A5u  // whose windows it has then: 0, 2, 5, 7, 9
 
 zvv_t paper_zvv;
+zvv_config_t paper_config;
 
-// Of the configuration in use and of the one that is made meanwhile.
-static zvv_config_t parts[2];
+static zvv_config_t made;
 
 void paper_reset(void) { clear(&paper_zvv, sizeof paper_zvv); }
 
-bool paper_load(drive_config_t* c) {
+static bool make(drive_config_t* c) {
+  (void)c;
   const parameters_t* const p = &parameters;
-  zvv_config_t* const part = (drive.config.zvv == &parts[0]) ? &parts[1] : &parts[0];
-  part->kp_q30 = q_mul(p->zvv_proportional, PER_PERIOD_Q20, 20);
-  part->ki_q40 = q_mul(p->zvv_integral, PER_PERIOD2_Q18, 18);
-  part->terms = (uint16_t)p->zvv_terms;
-  c->zvv = part;
+  made.kp_q30 = q_mul(p->zvv_proportional, CONFIG_PER_PERIOD_Q20, 20);
+  made.ki_q40 = q_mul(p->zvv_integral, PER_PERIOD2_Q18, 18);
+  made.terms = (uint16_t)p->zvv_terms;
   return true;
 }
+
+static void take(void) { paper_config = made; }
+
+const config_part_t paper_part = {make, take, NULL};
 
 // Below this speed there are long zero vectors alone.
 static int32_t enter_bpp(const drive_t* d) { return d->config.blend.low_bpp / 4 * 3; }
@@ -37,13 +39,13 @@ static int32_t enter_bpp(const drive_t* d) { return d->config.blend.low_bpp / 4 
 // Both at work, in periods of their own: long zero vectors and extended active ones by turns, where the pulses are left
 // to the source.
 static bool is_by_turns(const drive_t* d) {
-  return (d->config.zvv->terms & LONG_ZERO_BY_TURNS) != 0u && !blend_is_high(&d->position.blend) &&
+  return (paper_config.terms & LONG_ZERO_BY_TURNS) != 0u && !blend_is_high(&d->position.blend) &&
          d->config.values.excitation == EXCITATION_BY_SOURCE &&
          q_abs_sat(d->position.selected.speed_bpp) >= enter_bpp(d);
 }
 
 static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
-  const estimator_output_t out = zvv_step(&paper_zvv, d->config.zvv, in, d->control.reference_q20.d);
+  const estimator_output_t out = zvv_step(&paper_zvv, &paper_config, in, d->control.reference_q20.d);
   d->position.deviation_q20 = paper_zvv.deviation_q20;
   return out;
 }
@@ -106,5 +108,5 @@ static void paper_begin(drive_t* d, bool keeps) {
   if (!keeps) zvv_preset(&paper_zvv, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
 }
 
-const position_source_t paper_source = {source_paper, paper_excitation, NULL,
-                                        NULL,         paper_begin,      SOURCE_BLENDS | SOURCE_ALTERNATES};
+const position_source_t paper_source = {
+    source_paper, paper_excitation, NULL, NULL, paper_begin, NULL, SOURCE_BLENDS | SOURCE_ALTERNATES};

@@ -4,12 +4,14 @@
 #define STILLSPIN_FIRMWARE_SOURCES_PAPER_H
 
 #include "estimators/zvv.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
 
 extern zvv_t paper_zvv;
 
-/// Its part of the configuration (interfaces/config_part.h).
-bool paper_load(drive_config_t* c);
+/// Its constants in use.
+extern zvv_config_t paper_config;
+extern const config_part_t paper_part;
 
 /// As after power-on.
 void paper_reset(void);

@@ -5,23 +5,26 @@
 // its speed, with the flux that the vector lets expect. Below, and with the other sources, the shaft is seen from the
 // end of the vector's rest on.
 
+#include "firmware/start/if_start/if_start.h"
+
 #include <stddef.h>
 
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
 
-void start_begin_if_ramp(drive_t* d) {
+if_start_t if_ramp;
+
+static void begin_if_ramp(drive_t* d) {
   if (!start_begin_standstill(d)) return;
   static const estimator_output_t none = {0, 0, 0, 0};
   d->position.seen = none;
-  if_start_begin(&starting.if_start, 0, d->control.target_bpp < 0);
+  if_start_begin(&if_ramp, 0, d->control.target_bpp < 0);
   current_controller_reset(&d->control.current);
   d->control.closed = true;
   polarity_watch_end();
-  if (drive_source_has(d, SOURCE_HANDS_OVER) && d->config.if_start.speed_bpp > d->config.blend.high_bpp)
+  if (drive_source_has(d, SOURCE_HANDS_OVER) && if_ramp_config.speed_bpp > d->config.blend.high_bpp)
     position_bumpless_transfer(d);
   d->flags.open_loop = true;
   start_enter(d, START_IF_RAMP);
@@ -29,18 +32,18 @@ void start_begin_if_ramp(drive_t* d) {
 
 // Whether the source looks on in this period. At rest the angle is the vector's: a saliency has two.
 static bool looks_on(drive_t* d, const if_start_t* ramp) {
-  if (position_observer_rests(d) && !if_start_is_up(ramp, &d->config.if_start)) {
+  if (position_observer_rests(d) && !if_start_is_up(ramp, &if_ramp_config)) {
     if (d->source->follow != NULL) d->source->follow(d, &d->position.selected);
     return false;
   }
-  if (ramp->tick >= d->config.if_start.align_periods) return true;
+  if (ramp->tick >= if_ramp_config.align_periods) return true;
   position_preset(d, d->position.selected.angle_bam, d->position.selected.speed_bpp);
   return false;
 }
 
 // The control uses the vector's frame.
-void start_estimate(drive_t* d, estimator_input_t* in) {
-  const if_start_t* const ramp = &starting.if_start;
+static void estimate_if_ramp(drive_t* d, estimator_input_t* in) {
+  const if_start_t* const ramp = &if_ramp;
   d->position.seen = looks_on(d, ramp) ? d->source->step(d, in) : d->position.selected;
   d->position.selected.angle_bam = ramp->angle_bam + (uint32_t)ramp->speed_bpp;
   d->position.selected.speed_bpp = ramp->speed_bpp;
@@ -53,7 +56,6 @@ static void take_over(drive_t* d) {
   const estimator_output_t seen = d->position.seen;
   const dq_t own_q20 = position_seen(d, c->reference_q20);
   d->position.selected = seen;
-  position_align_encoder(d, seen.angle_bam, seen.speed_bpp);
   position_keep(d);
   hold_end();
   c->ramp.value = seen.speed_bpp;
@@ -64,14 +66,15 @@ static void take_over(drive_t* d) {
   drive_enter(d, DRIVE_RUN);
 }
 
-start_phase_t start_step_if_ramp(drive_t* d) {
-  drive_start_t* const s = &starting;
+static start_phase_t step_if_ramp(drive_t* d) {
   const estimator_output_t* const seen = &d->position.seen;
   const if_start_result_t result =
-      if_start_step(&s->if_start, &d->config.if_start, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
-  d->control.reference_q20.d = s->if_start.current_q20;
+      if_start_step(&if_ramp, &if_ramp_config, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
+  d->control.reference_q20.d = if_ramp.current_q20;
   d->control.reference_q20.q = 0;
   if (result == IF_START_TAKEN_OVER && start_has_exclusive_slot(d)) take_over(d);
   if (result == IF_START_FAILED) drive_trip(d, FAULT_DIVERGENCE);
   return START_GOES_ON;
 }
+
+const phase_t if_ramp_phase = {begin_if_ramp, step_if_ramp, estimate_if_ramp};

@@ -1,0 +1,79 @@
+// watch, signals.
+
+#include <stddef.h>
+
+#include "firmware/console/commands.h"
+#include "firmware/console/job.h"
+#include "firmware/console/output.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/console/status_text.h"
+#include "firmware/console/suggest.h"
+#include "firmware/drive/signals.h"
+#include "firmware/mode/commands.h"
+#include "firmware/text/packed_text.h"
+
+#define WATCH_MS 500u
+#define WATCH_SIGNALS 4u
+
+static uint16_t watched[WATCH_SIGNALS];
+static uint16_t watched_count;
+static uint32_t shown_ms;
+
+static void put_watched(octet_writer_t* w) {
+  for (uint16_t k = 0; k < watched_count; k++) {
+    if (k > 0u) put_packed(w, SAY_gap);
+    put_packed(w, signal_info(watched[k])->name);
+    put_u8(w, ' ');
+    put_signal(w, watched[k]);
+  }
+}
+
+static bool watch(uint16_t step) {
+  if (step > 0u && drive_time_ms() - shown_ms < WATCH_MS) return true;
+  shown_ms = drive_time_ms();
+  octet_writer_t* const w = line_begin();
+  if (watched_count > 0u) {
+    put_watched(w);
+  } else {
+    put_overview(w);
+  }
+  line_end();
+  return true;
+}
+
+void command_watch(const words_of_line_t* a) {
+  watched_count = 0;
+  if (a->count > WATCH_SIGNALS) {
+    line_refused(SAY_watch_shows_at_most_four_signals);
+    return;
+  }
+  for (uint16_t k = 0; k < a->count; k++) {
+    const uint16_t place = signal_find(&a->word[k]);
+    if (place == SIGNAL_NONE) {
+      suggest(SUGGEST_SIGNAL, &a->word[k]);
+      return;
+    }
+    watched[k] = place;
+  }
+  watched_count = a->count;
+  console_run(watch, true);
+}
+
+static word_t pattern;
+
+static bool list_signals(uint16_t step) {
+  const signal_info_t* const s = signal_info(step);
+  if (s == NULL) return false;
+  if (signal_is_left_out(step)) return true;
+  if (!word_occurs(&pattern, s->name) && !word_occurs(&pattern, signal_meaning(s))) return true;
+  put_signal_row(line_begin(), step);
+  line_end();
+  return true;
+}
+
+void command_signals(const words_of_line_t* a) {
+  pattern.text = NULL;
+  pattern.count = 0;
+  if (a->count > 0u) pattern = a->word[0];
+  console_run(list_signals, false);
+}

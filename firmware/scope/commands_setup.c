@@ -1,0 +1,175 @@
+// scope channels, trigger, every, before, mode: the set-up.
+
+#include <stddef.h>
+
+#include "firmware/console/output.h"
+#include "firmware/console/signal_text.h"
+#include "firmware/console/suggest.h"
+#include "firmware/drive/signals.h"
+#include "firmware/scope/scope.h"
+#include "firmware/scope/sub_commands.h"
+#include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
+#include "hal/qmath/qmath.h"
+
+#define EDGES 6u
+
+// Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
+static uint16_t shift_of(const signal_info_t* s) {
+  static const struct {
+    const char* unit;
+    uint16_t whole;
+  } reach[] = {{"", 7}, {"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
+  uint16_t whole = 15;
+  for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
+    if (packed_is(signal_unit(s), reach[k].unit)) whole = reach[k].whole;
+  }
+  return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
+}
+
+static scope_setup_t draft(void) {
+  scope_setup_t s = *scope_setup_in_force();
+  if (s.count > 0u) return s;
+  s.decimation = 1;
+  s.pretrigger = SCOPE_DEPTH / 4u;
+  s.mode = SCOPE_SINGLE;
+  s.edge = SCOPE_AT_ONCE;
+  s.hysteresis = SCOPE_BY_SPAN;
+  return s;
+}
+
+// Everything but the channels has been looked at where it was read.
+static void apply(const scope_setup_t* s) {
+  if (scope_setup(s)) {
+    line_of(SAY_set_scope_arm_starts_it);
+  } else {
+    line_refused(SAY_first_scope_channels_signal);
+  }
+}
+
+void scope_set_channels(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count < 2u || a->count > 1u + SCOPE_CHANNELS) {
+    line_refused(SAY_scope_channels_takes_one_to_four_signals);
+    return;
+  }
+  s.count = (uint16_t)(a->count - 1u);
+  for (uint16_t k = 0; k < s.count; k++) {
+    const uint16_t place = signal_find(&a->word[k + 1u]);
+    if (place == SIGNAL_NONE) {
+      suggest(SUGGEST_SIGNAL, &a->word[k + 1u]);
+      return;
+    }
+    s.channel[k].signal = place;
+    s.channel[k].shift = shift_of(signal_info(place));
+  }
+  apply(&s);
+}
+
+static void refuse_level(const word_t* typed, const signal_info_t* signal) {
+  octet_writer_t* const w = line_begin();
+  put_word(w, typed);
+  put_packed(w, SAY_is_not_between);
+  put_signal_value(w, signal, -INT32_MAX);
+  put_packed(w, SAY_and);
+  put_signal_value(w, signal, INT32_MAX);
+  put_packed(w, SAY_nothing_changed);
+  line_end_refused();
+}
+
+// A number in the signal's unit, and the unit when it is there; moves `k` behind them. False, and said, when it is
+// none.
+static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_t* signal, int32_t* raw) {
+  decimal_t number;
+  const word_t* const typed = &a->word[*k];
+  if (text_number(typed->text, typed->count, &number) != typed->count) {
+    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
+    return false;
+  }
+  if (!decimal_raw(&number, signal->q, raw)) {
+    refuse_level(typed, signal);
+    return false;
+  }
+  (*k)++;
+  if (word_is(a, *k, signal_unit(signal))) (*k)++;
+  return true;
+}
+
+void scope_set_trigger(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (a->count == 2u && word_is(a, 1, SAY_edge_now)) {
+    s.edge = SCOPE_AT_ONCE;
+    apply(&s);
+    return;
+  }
+  uint16_t edge = 0;
+  while (edge < EDGES && !word_is(a, 2, scope_edge_text(edge))) edge++;
+  if (a->count < 4u || edge == EDGES || edge == SCOPE_AT_ONCE) {
+    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
+    return;
+  }
+  s.trigger = signal_find(&a->word[1]);
+  if (s.trigger == SIGNAL_NONE) {
+    suggest(SUGGEST_SIGNAL, &a->word[1]);
+    return;
+  }
+  s.edge = (scope_edge_t)edge;
+  s.hysteresis = SCOPE_BY_SPAN;
+  const signal_info_t* const signal = signal_info(s.trigger);
+  uint16_t k = 3;
+  if (!read_level(a, &k, signal, &s.level)) return;
+  if (k < a->count && edge < SCOPE_AT_ONCE) {
+    if (!read_level(a, &k, signal, &s.hysteresis)) return;
+    s.hysteresis = q_max(s.hysteresis, 0);
+  }
+  if (k < a->count) {
+    line_refused(SAY_the_level_is_in_the_signal_s);
+  } else {
+    apply(&s);
+  }
+}
+
+static bool read_whole(const word_t* typed, uint16_t least, uint16_t most, uint16_t* value) {
+  decimal_t n;
+  int32_t number;
+  if (text_number(typed->text, typed->count, &n) != typed->count || !decimal_is_whole(&n)) return false;
+  if (!decimal_raw(&n, 0, &number) || number < (int32_t)least || number > (int32_t)most) return false;
+  *value = (uint16_t)number;
+  return true;
+}
+
+bool scope_whole(const words_of_line_t* a, uint16_t least, uint16_t most, uint16_t* value) {
+  if (a->count == 2u && read_whole(&a->word[1], least, most, value)) return true;
+  octet_writer_t* const w = line_begin();
+  for (uint16_t k = 0; k < a->count; k++) {
+    put_word(w, &a->word[k]);
+    if (k + 1u < a->count) put_u8(w, ' ');
+  }
+  put_packed(w, SAY_is_not_a_whole_number_in);
+  put_unsigned(w, least);
+  put_packed(w, SAY_to);
+  put_unsigned(w, most);
+  put_packed(w, SAY_nothing_changed);
+  line_end_refused();
+  return false;
+}
+
+void scope_set_every(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (scope_whole(a, 1, UINT16_MAX, &s.decimation)) apply(&s);
+}
+
+void scope_set_before(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  if (scope_whole(a, 0, SCOPE_DEPTH - 1u, &s.pretrigger)) apply(&s);
+}
+
+void scope_set_mode(const words_of_line_t* a) {
+  scope_setup_t s = draft();
+  s.mode = word_is(a, 1, SAY_auto) ? SCOPE_AUTO : SCOPE_SINGLE;
+  if (a->count != 2u || (s.mode == SCOPE_SINGLE && !word_is(a, 1, SAY_single))) {
+    line_refused(SAY_scope_mode_single_or_scope_mode_auto);
+    return;
+  }
+  apply(&s);
+}

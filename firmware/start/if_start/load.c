@@ -1,0 +1,23 @@
+// The I-F start's constants, of its parameters.
+
+#include <stddef.h>
+
+#include "firmware/dictionary/parameters.h"
+#include "firmware/start/if_start/if_start.h"
+#include "hal/qmath/qcall.h"
+
+if_start_config_t if_ramp_config;
+
+static if_start_config_t made;
+
+static bool make(drive_config_t* c) {
+  const parameters_t* const p = &parameters;
+  const if_start_parameters_t wanted = {
+      p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, qc_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
+      qc_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
+  return if_start_design(&made, &c->nameplate, &wanted) || p->start_method == 0;
+}
+
+static void take(void) { if_ramp_config = made; }
+
+const config_part_t if_ramp_part = {make, take, NULL};
