@@ -34,6 +34,23 @@ class Step:
     is_long: bool = False
 
 
+_PAPER_A = "reproduce A10 A11 A15 A16 A17 A18a A18b A18c --scheme paper"
+_PAPER_B = "reproduce B14 B15 B16 B17 B18 B19 B20 B21"
+_NOISE = "--profile build/figures/ideal-noise.toml"  # as `stillspin run ID --profile ideal --set adc.noise=1.2`
+_LOW_PASS = "toolchain/book/cases/paper_flux_low_pass.toml"
+_ALONE = "--no-paper-scheme --no-nameplate --out OUT"
+
+PAPERS = (
+    Step("papers-a-ideal", f"{_PAPER_A} --profile ideal {_ALONE}", is_long=True),
+    Step("papers-a-noise", f"{_PAPER_A} {_NOISE} {_ALONE}", is_long=True),
+    Step("papers-a-bench", f"{_PAPER_A} {_ALONE}", is_long=True),
+    Step("papers-b-ideal", f"{_PAPER_B} --scheme paper_flux --profile ideal {_ALONE}", is_long=True),
+    Step("papers-b-noise", f"{_PAPER_B} --scheme paper_flux {_NOISE} {_ALONE}", is_long=True),
+    Step("papers-b-bench", f"{_PAPER_B} --scheme paper_flux {_ALONE}", is_long=True),
+    Step("papers-b-low-pass", f"{_PAPER_B} --scheme {_LOW_PASS} --profile ideal {_ALONE}", is_long=True),
+)
+"""The papers' own drives."""
+
 STEPS = (
     Step("bench", "reproduce --no-paper-scheme --out OUT"),
     Step("ideal", "reproduce --profile ideal --no-paper-scheme --no-nameplate --out OUT"),
@@ -44,6 +61,7 @@ STEPS = (
     Step("motor-b", "reproduce S06 --no-paper-scheme --no-nameplate --out OUT"),
     Step("flux", "reproduce --motor B --no-paper-scheme --no-nameplate --out OUT"),
     Step("flux-ideal", "reproduce --motor B --profile ideal --no-paper-scheme --no-nameplate --out OUT"),
+    *PAPERS,
     Step("flux-beside", "reproduce S07 S08 S09 S10 S11 --no-paper-scheme --no-nameplate --out OUT", is_long=True),
     Step("startup", "startup-matrix --out OUT", is_long=True),
     Step("hil-serial", "hil all --check --port virtual --jobs 2 --json OUT/hil.json --resume", is_long=True),
@@ -63,6 +81,13 @@ LONGEST = "mutants"
 def _is_fresh(step: Step, made_of: str) -> bool:
     known = records.load(ROOT).get(step.name)
     return known is not None and (known["command"], known["sources"]) == (f"stillspin {step.command}", made_of)
+
+
+def make_noisy() -> None:
+    """Profile `ideal` with the noise of a converter, which is all that a command of its own would change."""
+    ideal = (ROOT / "sim_host/profiles/ideal.toml").read_text(encoding="utf-8")
+    WORK.mkdir(parents=True, exist_ok=True)
+    (WORK / "ideal-noise.toml").write_text(ideal.replace("\nnoise = 0.0\n", "\nnoise = 1.2\n"), encoding="utf-8")
 
 
 def carry_out(step: Step, made_of: str) -> bool:
@@ -122,6 +147,7 @@ def main() -> int:
     count, left = len(todo) + len(by_make), len(steps) + len(made)
     print(f"figures: {count} of {left} commands to run, {left - count} are up to date", flush=True)
     failed = False
+    make_noisy()
     for k, step in enumerate(todo, 1):
         print(f"figures: {k} of {count}: stillspin {step.command}", flush=True)
         failed = not carry_out(step, made_of) or failed

@@ -54,6 +54,12 @@ def value(scenarios: Mapping[str, Any], path: str, unit: str = "", digits: int =
     return f"**{text}**" if figure.get("met") is False else text
 
 
+def shown(scenarios: Mapping[str, Any], path: str, unit: str = "") -> str:
+    """A figure with its unit, without verdict; `lost` where the run did not come to it."""
+    number_of = _figure(scenarios, path)["value"]
+    return "lost" if number_of is None else number(number_of) + unit
+
+
 def tally(scenarios: Mapping[str, Any], family: str = "A") -> str:
     """`29 of 30`: goals of the scenarios of a family that are met."""
     own = [figures for name, figures in scenarios.items() if name.startswith(family)]
@@ -134,7 +140,7 @@ def identical(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 USED = (
-    *(value, number, fixed, tally, plain, within, share, printed, held, over_speed, counted, run_by_run),
+    *(value, shown, number, fixed, tally, plain, within, share, printed, held, over_speed, counted, run_by_run),
     *(thousands, identical, chip.hundreds, chip.chance),
 )
 
