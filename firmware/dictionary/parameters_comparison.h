@@ -31,5 +31,4 @@ PARAMETER(305, flux_beside, "", 0, 0, 0, 4, 0, STOPPED,
           "a stator-flux method beside position_source 0, looking on: 0 none, 1 CONV, 2 PP-01, 3 PP-02, 4 active")
 
 PARAMETER(306, flux_plain, "", 0, 0, 0, 3, 0, STOPPED,
-          "to compare, added up: 1 CONV, PP-01 and active flux on the low-pass alone at flux_cutoff, uncorrected, 2 as "
-          "printed: flux_cutoff always, PP-02 on the flux of the others with (34) below it")
+          "to compare, added up: 1 the low-pass at flux_cutoff alone, 2 as printed, PP-02 with (34)")
