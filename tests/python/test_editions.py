@@ -14,8 +14,8 @@ from own_edition import LOADED, ROOT, linked
 
 from stillspin import can
 
-# What a feature that drive and minimal leave out would have recorded.
-LEFT_OUT = {"drive": {"load_angle", "magnet_flux"}, "minimal": {"load_angle", "magnet_flux", "wiring"}}
+# What the features that drive and minimal leave out would have recorded.
+LEFT_OUT = {"load_angle", "magnet_flux"}
 # Without a look for a turning shaft and for its wiring a start begins earlier: lab is told to leave both out as well.
 AS_IN = {"drive": (), "minimal": ("--set", "flying_start=0", "--set", "wiring_check=0")}
 # What the plant says, not the drive. The virtual chip takes an interrupt between two register accesses. The background
@@ -58,7 +58,7 @@ def test_in_a_run_the_drive_does_bit_for_bit_what_lab_does(edition: str, scenari
     lab, own = recorded("lab", scenario, where, *AS_IN[edition]), recorded(edition, scenario, where)
     assert lab and lab.keys() == own.keys()
     for name, run in own.items():
-        assert set(lab[name].columns) - set(run.columns) == LEFT_OUT[edition]
+        assert set(lab[name].columns) - set(run.columns) == LEFT_OUT
         of_plant = [column for column in run.columns if column in PLANT or column.startswith("true_")]
         of_drive = [column for column in run.columns if column not in of_plant]
         pd.testing.assert_frame_equal(run[of_drive], lab[name][of_drive], check_exact=True)
@@ -85,7 +85,7 @@ def test_with_the_bus_and_the_flying_start_minimal_is_lab_to_the_last_bit_of_the
     on("lab", "-c", f"import sys{PLAYED}", str(where / "lab.parquet"))
     on("lab", "-c", f"{LOADED}{PLAYED}", str(linked(both)), str(where / "both.parquet"))
     lab, own = (pd.read_parquet(where / f"{name}.parquet") for name in ("lab", "both"))
-    assert set(lab.columns) - set(own.columns) == LEFT_OUT["drive"]
+    assert set(lab.columns) - set(own.columns) == LEFT_OUT
     pd.testing.assert_frame_equal(own, lab[own.columns], check_exact=True)
 
 

@@ -190,7 +190,7 @@ def test_resident_part_that_is_not_the_same_in_all_images_is_caught(tmp_path: Pa
     order = ["the resident part of hil has another order than that of lab"]
     assert changed({"lab": lab, "hil": lab[::-1]}) == order
     gone = kept([], file, ("resident",))
-    assert changed({"lab": gone})[0] == "libstillspin_qmath.a<qcall.*>(.text) is not there, and is to be resident"
+    assert changed({"lab": gone})[0] == "libstillspin_qmath.a<qquotient.*>(.text) is not there, and is to be resident"
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,11 @@ seen = []
 for volts in (3.0, 1.5):
     board.set_input("speed", volts)
     board.advance(SECOND // 5)
-    seen.append((board.truth()["i_q"], board.truth()["speed"], typed("status")))
+    ripple = []
+    for _ in range(20):  # over a period: the pulses of the excitation are in it
+        board.advance(SECOND // 200_000)
+        ripple.append(board.truth()["i_q"])
+    seen.append((sum(ripple) / len(ripple), board.truth()["speed"], typed("status")))
 board.close()
 print(json.dumps(seen))
 """

@@ -143,7 +143,7 @@ DEFECTS = (
         "q_sub_sat(length_q24, along_q24)",
         "length_q24 - along_q24",
     ),
-    Defect("start", "polarity_step", "estimators/polarity.c", "q_add_sat(s->response_bam, s", "(s->response_bam + s"),
+    Defect("start", "polarity_step", "estimators/polarity.c", "qc_add_sat(s->response_bam, s", "(s->response_bam + s"),
     Defect(
         "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
     ),
@@ -155,7 +155,7 @@ DEFECTS = (
         "near", "is_one_edit_away", "firmware/console/suggest.c", "&name[k + 1u], rest, l", "&name[k + 2u], rest, l"
     ),
     Defect("editor", "insert", "firmware/console/editor.c", "l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
-    Defect("commands", "set_channels", "firmware/scope/commands.c", "a->count > 1u +", "a->count > 2u +"),
+    Defect("commands", "scope_set_channels", "firmware/scope/commands_setup.c", "a->count > 1u +", "a->count > 2u +"),
     Defect("requests", "scope_read", "firmware/scope/requests.c", "count > READ_MAX", "count > 2u * READ_MAX"),
     Defect("requests", "delta_take", "firmware/hil/hil.c", "shape[2] > REPLAY_INPUTS", "shape[2] > 2u * REPLAY_INPUTS"),
     Defect("console", "keep", "firmware/console/console.c", "kept_count) & (KEPT - 1u)", "kept_count) & KEPT"),

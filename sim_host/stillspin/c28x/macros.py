@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Generic, NamedTuple, TypeVar
 
 from stillspin.c28x.expression import NAME, evaluated
+from stillspin.counted import counted
 
 _DEEPEST = 32
 """Macros in macros."""
@@ -125,7 +126,7 @@ class Expansion(Generic[Where]):
         macro = self._macros[name]
         values = rest.split(",") if rest else []
         if len(values) != len(macro.parameters):
-            raise ValueError(f"macro {name} has {len(macro.parameters)} parameters, here are {len(values)}")
+            raise ValueError(f"macro {name} has {counted(len(macro.parameters), 'parameter')}, here are {len(values)}")
         by_name = dict(zip(macro.parameters, values, strict=True))
         for where, text in macro.body:
             yield where, re.sub(r"[A-Za-z_$][\w$]*", lambda word: by_name.get(word[0].upper(), word[0]), text)
