@@ -5,7 +5,7 @@ which alone it is reached, by the names that objects ask for; what is reached wi
 edition has, belongs to what every edition has. What differs beside whole objects is the edition's own tables and texts.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -73,18 +73,15 @@ def tables(linked: Linked) -> Linked:
     return {path: obj for path, obj in linked.items() if any(f"/{folder}" in _inside(path) for folder in TABLES)}
 
 
-def shares(linked: Linked, always: Iterable[str]) -> dict[Path, Row]:
+def shares(linked: Linked, always: Collection[str]) -> dict[Path, Row]:
     """Of each object but the tables the features that have it. `always`: features that every edition has."""
-    names = {feature.name for feature in compose.all_features()} - set(always)
     left = linked.keys() - tables(linked).keys()
-    own = {
-        path: max((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), key=len, default="")
-        for path in left
-    }
+    folder = {path: _feature_of(path) for path in left}
+    own = {path: "" if folder[path] in always else folder[path] for path in left}
     homes = {name: path for path in left for name in linked[path].defined}
     asks = {path: {homes[name] for name in linked[path].wanted & homes.keys()} for path in left}
     starts = {path: {own[path]} for path in left if own[path]}
-    starts |= {path: {""} for path in left if _begins(path, always)}
+    starts |= {path: {""} for path in left if PROGRAM in path.as_posix() or folder[path] in always}
     found: dict[Path, set[str]] = {path: set() for path in left}
     waiting = list(starts.items())
     while waiting:
@@ -96,12 +93,13 @@ def shares(linked: Linked, always: Iterable[str]) -> dict[Path, Row]:
     return {path: () if "" in users else tuple(sorted(users)) for path, users in found.items()}
 
 
-def _begins(path: Path, always: Iterable[str]) -> bool:
-    """Whether every edition has it by itself: a program's start, and what a feature that is never left out brings."""
-    return PROGRAM in path.as_posix() or any(f"{FIRMWARE}{name}/" in path.as_posix() for name in always)
+def _feature_of(path: Path) -> str:
+    """The feature in whose folder its source is, the innermost: one may lie in another's folder."""
+    names = (feature.name for feature in compose.all_features())
+    return max((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), key=len, default="")
 
 
-def taken(linked: Linked, always: Iterable[str]) -> dict[Row, Words]:
+def taken(linked: Linked, always: Collection[str]) -> dict[Row, Words]:
     """What features take of the flash and of the RAM, alone or with others; () is what every edition has."""
     found: dict[Row, Words] = {}
     for path, row in shares(linked, always).items():
