@@ -54,6 +54,18 @@ def by_mark(items: Sequence[Choice], marks: Sequence[str], kind: str) -> list[Ch
     return [known[mark] for mark in marks] if marks else list(items)
 
 
+ImageArgument = Annotated[
+    Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")
+]
+AfterOption = Annotated[
+    float,
+    typer.Option(
+        "--after",
+        parser=number("--after", 0, unit="s"),
+        metavar="SECONDS",
+        help="Let it run before, from power-on.",
+    ),
+]
 ProfileOption = Annotated[
     str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
 ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,6 +17,7 @@ from stillspin.flash import layout
 from stillspin.flash.files import read_program
 from stillspin.flash.program import Block, Program
 from stillspin.one_line_errors import OneLineErrors
+from stillspin.options import ImageArgument
 
 app = typer.Typer(
     cls=OneLineErrors,
@@ -86,7 +86,7 @@ def _address(text: str) -> int:
 @app.command()
 def show(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    file: ImageArgument,
     code: Annotated[
         str, typer.Option("--code", metavar="ADDRESS", help="List the code from this address on instead.")
     ] = "",

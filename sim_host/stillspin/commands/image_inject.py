@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,7 +14,7 @@ from stillspin.flash.names import Names
 from stillspin.image import inject as injection
 from stillspin.image import opened, vectors
 from stillspin.image.inject import Difference, Report, Stretch
-from stillspin.options import MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, SeedOption, number
 
 _MOST_SHOWN = 8
 
@@ -60,7 +59,7 @@ def _say(report: Report, image: opened.Image) -> None:
 
 def inject(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    file: ImageArgument,
     interrupt: Annotated[str, typer.Option("--interrupt", metavar="INTx.y", help="Which, by its line in the PIE.")],
     begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")],
     end: Annotated[
@@ -72,15 +71,7 @@ def inject(
             "--compare", metavar="NAME[:WORDS]", help="Compare these words instead of all of RAM. Repeatable."
         ),
     ] = None,
-    after: Annotated[
-        float,
-        typer.Option(
-            "--after",
-            parser=number("--after", 0, unit="s"),
-            metavar="SECONDS",
-            help="Let it run before, from power-on.",
-        ),
-    ] = 0.0,
+    after: AfterOption = 0.0,
     within: Annotated[
         float,
         typer.Option(

@@ -18,7 +18,7 @@ from stillspin.image import opened
 from stillspin.image import tape as tapes
 from stillspin.image.opened import Image
 from stillspin.image.tape import Difference, Octets, Tape
-from stillspin.options import MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import ImageArgument, MotorOption, ProfileOption, SeedOption, number
 
 
 def _octets(texts: list[str]) -> list[Octets]:
@@ -89,7 +89,7 @@ def _say(difference: Difference, image: Image) -> None:
 
 def replay(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    file: ImageArgument,
     tape_file: Annotated[Path, typer.Argument(metavar="TAPE", help="What `image record` has written.")],
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,

@@ -15,7 +15,7 @@ from stillspin.core_code import Interrupt, Spent
 from stillspin.counted import counted
 from stillspin.image import opened, vectors
 from stillspin.image.opened import Image
-from stillspin.options import MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import ImageArgument, MotorOption, ProfileOption, SeedOption, number
 
 _STACK = 0x0400
 """Where the boot ROM leaves the stack pointer."""
@@ -89,7 +89,7 @@ def _say_lines(image: Image, spent: Mapping[int, Spent], most: int) -> None:
 
 def time(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    file: ImageArgument,
     seconds: Annotated[
         float,
         typer.Option("--for", parser=number("--for", 0.0001, unit="s"), metavar="SECONDS", help="How long to look."),

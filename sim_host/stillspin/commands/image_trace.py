@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,24 +10,16 @@ from stillspin import resources
 from stillspin.errors import CampaignError
 from stillspin.image import opened
 from stillspin.image import trace as tracing
-from stillspin.options import MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, SeedOption, number
 
 
 def trace(
     *,
-    file: Annotated[Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")],
+    file: ImageArgument,
     begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")] = "",
     end: Annotated[str, typer.Option("--to", metavar="PLACE", help="The last instructions before this place.")] = "",
     count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="As many.")] = 40,
-    after: Annotated[
-        float,
-        typer.Option(
-            "--after",
-            parser=number("--after", 0, unit="s"),
-            metavar="SECONDS",
-            help="Let it run before, from power-on.",
-        ),
-    ] = 0.0,
+    after: AfterOption = 0.0,
     within: Annotated[
         float,
         typer.Option("--within", parser=number("--within", 1e-6, unit="s"), metavar="SECONDS", help="Give up then."),
