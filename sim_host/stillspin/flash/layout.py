@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+RAM = ((0x0000, 0x0400), (0x0400, 0x0800), (0x8000, 0x9000), (0x9000, 0xA000), (0xA000, 0xC000))
+"""M0, M1, L0, L1, H0 by their low addresses: first word, end."""
 FLASH = range(0x3E8000, 0x3F8000)
 UPDATE = range(0x3E8000, 0x3F4000)
 """Sectors D, C, B: what an update erases and writes."""

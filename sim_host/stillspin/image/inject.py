@@ -17,10 +17,9 @@ from dataclasses import dataclass, field
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import CampaignError
+from stillspin.flash import layout
 from stillspin.image import opened
 
-RAM = ((0x0000, 0x0400), (0x0400, 0x0800), (0x8000, 0x9000), (0x9000, 0xA000), (0xA000, 0xC000))
-"""M0, M1, L0, L1, H0."""
 _LATER = frozenset({"PC", "IFR"})
 """Registers that time changes."""
 
@@ -166,7 +165,7 @@ def _look(board: NativeBoard, watched: Watched) -> dict[Key, int]:
 
 
 def _below_the_stack(pointer: int) -> Watched:
-    return [(first, (pointer if first <= pointer < end else end) - first) for first, end in RAM]
+    return [(first, (pointer if first <= pointer < end else end) - first) for first, end in layout.RAM]
 
 
 def _in_a_copy(work: Callable[[], _AtEnd | None]) -> _AtEnd | None:
